@@ -1,0 +1,183 @@
+//! A domain: everything the stages know about one kind of building, as data.
+//!
+//! `domains/<id>/domain.toml` holds the [`Domain`] (large domains split it over more `*.toml` files, which are merged
+//! table by table); `knowledge.json` beside it holds the constraints. Nothing here names a building type in code.
+
+mod furnishing;
+mod object;
+mod program;
+mod room_type;
+
+pub use furnishing::{Arrangement, FacingRule, Furnishing, Group, Member, Relation};
+pub use object::{Mount, ObjectType, Shape};
+pub use program::{Adjacency, AdjacencyRelation, Circulation, Program, ProgramRoom, Scheme};
+pub use room_type::{Access, AreaRange, Daylight, Materials, Privacy, RobotUse, RoomType, Zone};
+
+use std::collections::BTreeMap;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::document::{Document, Problem, check_unique};
+
+/// Words by language code (`en de fr es zh ko`), lower case; matched against prompts, longest first.
+pub type Words = BTreeMap<String, Vec<String>>;
+
+/// Id of the room type that stands in for rooms a prompt names and the domain does not know ("pooja room").
+pub const GENERIC_ROOM_TYPE: &str = "room";
+
+/// One kind of building with its own vocabulary, rooms, objects and rules.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Domain {
+    /// Format version of this document; 1.
+    pub version: u32,
+    /// Snake-case id, equal to the folder name.
+    pub id: String,
+    /// Name for people, English.
+    pub title: String,
+    /// One sentence for `domains list`.
+    pub description: String,
+    /// Words that say a prompt is about this domain ("hospital", "Klinik"); the domain with the longest match wins.
+    #[serde(default)]
+    pub keywords: Words,
+    /// Building types inside the domain ("ward", "dental_practice") with the words that name them.
+    #[serde(default)]
+    pub building_types: Vec<BuildingType>,
+    /// How people and robots move between rooms.
+    pub circulation: Circulation,
+    /// Room types, in the order a legend would list them.
+    pub room_types: Vec<RoomType>,
+    /// Room programs by archetype.
+    pub programs: Vec<Program>,
+    /// Which rooms belong together or apart.
+    #[serde(default)]
+    pub adjacency: Vec<Adjacency>,
+    /// Object types that furnishing refers to.
+    pub objects: Vec<ObjectType>,
+    /// Objects that stand together as one unit.
+    #[serde(default)]
+    pub groups: Vec<Group>,
+    /// Scenario roles: ambient people by role.
+    #[serde(default)]
+    pub roles: Vec<Role>,
+}
+
+/// A building type inside a domain.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BuildingType {
+    /// Snake-case id, for instance `dental_practice`.
+    pub id: String,
+    /// Words that name it.
+    pub keywords: Words,
+    /// The program it uses when the prompt does not list its rooms.
+    pub program: String,
+}
+
+/// A kind of person in the building, for scenarios.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Role {
+    /// Snake-case id, for instance `nurse`.
+    pub id: String,
+    /// Arena human model, `Domain/name`.
+    pub model: String,
+    /// Walking speed, m/s.
+    pub speed_m_s: f64,
+    /// Room types this person walks between, most frequent first.
+    pub visits: Vec<String>,
+}
+
+impl Domain {
+    /// Returns the room type with this id.
+    pub fn room_type(&self, id: &str) -> Option<&RoomType> {
+        self.room_types.iter().find(|t| t.id == id)
+    }
+
+    /// Returns the room type with this id, or the generic one that every domain has for rooms only a prompt names.
+    pub fn room_type_or_generic(&self, id: &str) -> &RoomType {
+        self.room_type(id).or_else(|| self.room_type(GENERIC_ROOM_TYPE)).expect("check() demands the generic room type")
+    }
+
+    /// Returns the object type with this id.
+    pub fn object(&self, id: &str) -> Option<&ObjectType> {
+        self.objects.iter().find(|o| o.id == id)
+    }
+
+    /// Returns the group with this id.
+    pub fn group(&self, id: &str) -> Option<&Group> {
+        self.groups.iter().find(|g| g.id == id)
+    }
+
+    /// Returns the program with this id.
+    pub fn program(&self, id: &str) -> Option<&Program> {
+        self.programs.iter().find(|p| p.id == id)
+    }
+}
+
+impl Document for Domain {
+    const KIND: &'static str = "domain";
+
+    fn check(&self) -> Vec<Problem> {
+        let mut problems = Vec::new();
+        if self.version != 1 {
+            problems.push(Problem::new("/version", format!("is {}, this release reads version 1", self.version)));
+        }
+        check_unique("/room_types", self.room_types.iter().map(|t| t.id.as_str()), &mut problems);
+        check_unique("/objects", self.objects.iter().map(|o| o.id.as_str()), &mut problems);
+        check_unique("/groups", self.groups.iter().map(|g| g.id.as_str()), &mut problems);
+        check_unique("/programs", self.programs.iter().map(|p| p.id.as_str()), &mut problems);
+        let room = |path: String, id: &str, problems: &mut Vec<Problem>| {
+            if self.room_type(id).is_none() {
+                problems.push(Problem::new(path, format!("room type `{id}` is not in room_types")));
+            }
+        };
+        room("/room_types".into(), GENERIC_ROOM_TYPE, &mut problems);
+        room("/circulation/room_type".into(), &self.circulation.room_type, &mut problems);
+        for (i, id) in self.circulation.hub_room_types.iter().enumerate() {
+            room(format!("/circulation/hub_room_types/{i}"), id, &mut problems);
+        }
+        for (i, id) in self.circulation.entrance_room_types.iter().enumerate() {
+            room(format!("/circulation/entrance_room_types/{i}"), id, &mut problems);
+        }
+        if self.programs.is_empty() {
+            problems.push(Problem::new("/programs", "is empty; a domain needs at least one program"));
+        }
+        for (i, program) in self.programs.iter().enumerate() {
+            for (j, entry) in program.rooms.iter().enumerate() {
+                room(format!("/programs/{i}/rooms/{j}/room_type"), &entry.room_type, &mut problems);
+                for (k, id) in entry.with.iter().enumerate() {
+                    room(format!("/programs/{i}/rooms/{j}/with/{k}"), id, &mut problems);
+                }
+            }
+        }
+        for (i, building) in self.building_types.iter().enumerate() {
+            if self.program(&building.program).is_none() {
+                problems.push(Problem::new(
+                    format!("/building_types/{i}/program"),
+                    format!("program `{}` is not in programs", building.program),
+                ));
+            }
+        }
+        for (i, pair) in self.adjacency.iter().enumerate() {
+            room(format!("/adjacency/{i}/a"), &pair.a, &mut problems);
+            room(format!("/adjacency/{i}/b"), &pair.b, &mut problems);
+        }
+        for (i, room_type) in self.room_types.iter().enumerate() {
+            room_type.check(&format!("/room_types/{i}"), self, &mut problems);
+        }
+        for (i, object) in self.objects.iter().enumerate() {
+            object.check(&format!("/objects/{i}"), &mut problems);
+        }
+        for (i, group) in self.groups.iter().enumerate() {
+            group.check(&format!("/groups/{i}"), self, &mut problems);
+        }
+        for (i, role) in self.roles.iter().enumerate() {
+            for (j, id) in role.visits.iter().enumerate() {
+                room(format!("/roles/{i}/visits/{j}"), id, &mut problems);
+            }
+        }
+        problems
+    }
+}

@@ -1,0 +1,176 @@
+//! Object types: real sizes, where they go, what they need around them.
+
+use std::collections::BTreeMap;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::Words;
+use crate::document::Problem;
+
+/// A kind of object with real dimensions.
+///
+/// `width` runs left to right of the front, `depth` front to back, `height` up.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ObjectType {
+    /// Snake-case id.
+    pub id: String,
+    /// Name for people, English.
+    pub label: String,
+    /// Words that name it in prompts.
+    #[serde(default)]
+    pub keywords: Words,
+    /// Sizes it comes in, `[width, depth, height]` in m, most common first; the seed picks one.
+    pub sizes_m: Vec<[f64; 3]>,
+    /// Where it is fixed.
+    pub mount: Mount,
+    /// Height of its underside above the floor, m, for wall and ceiling mounts (ceiling: counted from the floor too).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mount_height_m: Option<f64>,
+    /// Free floor in front, m.
+    #[serde(default)]
+    pub clearance_front_m: f64,
+    /// Free floor at each side that needs it, m.
+    #[serde(default)]
+    pub clearance_side_m: f64,
+    /// Which sides need `clearance_side_m`: 0, 1 or 2.
+    #[serde(default)]
+    pub clear_sides: u8,
+    /// True when things can stand on its top.
+    #[serde(default)]
+    pub surface: bool,
+    /// Outline and build of the simple model and of the plan symbol.
+    pub shape: Shape,
+    /// CSS color of the main part.
+    pub color: String,
+    /// Main material word (`wood`, `metal`, `fabric`, `ceramic`, `plastic`, `glass`).
+    pub material: String,
+    /// What a person does with it: `sit`, `lie`, `operate`, `touch`, `see`.
+    #[serde(default)]
+    pub affordances: Vec<String>,
+    /// Free tags for search.
+    #[serde(default)]
+    pub tags: Vec<String>,
+    /// Where the dimensions come from.
+    #[serde(default)]
+    pub source: String,
+    /// Anything else a later release or a custom domain wants to say about it.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub extra: BTreeMap<String, String>,
+}
+
+/// Where an object is fixed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Mount {
+    /// Stands on the floor.
+    Floor,
+    /// Hangs on a wall at `mount_height_m`.
+    Wall,
+    /// Hangs from the ceiling.
+    Ceiling,
+    /// Stands on another object.
+    Surface,
+}
+
+/// Build of the simple model and symbol of an object.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Shape {
+    /// A plain body.
+    Box,
+    /// A body with doors or drawers in front.
+    Cabinet,
+    /// Open shelves.
+    Shelf,
+    /// A top on four legs.
+    Table,
+    /// A round top on a column.
+    RoundTable,
+    /// A top on panels with a user side.
+    Desk,
+    /// Seat, back, four legs.
+    Chair,
+    /// Seat, back, column and star base.
+    SwivelChair,
+    /// A round seat.
+    Stool,
+    /// Seat, back and arms for one or more.
+    Sofa,
+    /// A row of seats on a beam.
+    Bench,
+    /// Mattress, pillow, headboard.
+    Bed,
+    /// Mattress, rails, panels, wheels.
+    HospitalBed,
+    /// A counter with a front panel.
+    Counter,
+    /// A counter with a bowl.
+    Sink,
+    /// A bowl on the wall or a pedestal.
+    Basin,
+    /// Water closet.
+    Toilet,
+    /// Tub.
+    Bathtub,
+    /// Tray, screen, head.
+    Shower,
+    /// A thin upright panel on a foot or wall (screen, board, mirror).
+    Panel,
+    /// A body on wheels with a handle.
+    Trolley,
+    /// A pole on a star foot.
+    Pole,
+    /// Foliage in a pot.
+    Plant,
+    /// A lamp on a stand or cord.
+    Lamp,
+    /// A machine with a front and a panel (washer, printer, vending machine).
+    Appliance,
+    /// A hob with rings.
+    Stove,
+    /// A thin cover on the floor.
+    Rug,
+    /// A cloth on a rail.
+    Curtain,
+    /// A robot dock with contacts.
+    Dock,
+    /// A cylinder.
+    Cylinder,
+    /// A car or truck.
+    Vehicle,
+    /// A ring-shaped scanner with a table.
+    Scanner,
+    /// Pallet racking.
+    Rack,
+}
+
+impl ObjectType {
+    pub(super) fn check(&self, path: &str, problems: &mut Vec<Problem>) {
+        if self.sizes_m.is_empty() {
+            problems
+                .push(Problem::new(format!("{path}/sizes_m"), "is empty; give at least one [width, depth, height]"));
+        }
+        for (i, size) in self.sizes_m.iter().enumerate() {
+            if size.iter().any(|v| !(0.002..=30.0).contains(v)) {
+                problems.push(Problem::new(
+                    format!("{path}/sizes_m/{i}"),
+                    format!("{size:?} m has an extent outside 0.002-30 m"),
+                ));
+            }
+        }
+        if matches!(self.mount, Mount::Wall | Mount::Ceiling) && self.mount_height_m.is_none() {
+            problems.push(Problem::new(
+                format!("{path}/mount_height_m"),
+                "is missing; wall and ceiling mounts need a height above the floor",
+            ));
+        }
+        if self.clear_sides > 2 {
+            problems.push(Problem::new(
+                format!("{path}/clear_sides"),
+                format!("is {}, an object has 2 sides", self.clear_sides),
+            ));
+        }
+    }
+}

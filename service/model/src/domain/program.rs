@@ -1,0 +1,119 @@
+//! Which rooms a building has, how they hang together, and how one moves between them.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// The rooms of one archetype, in the order in which they are added when a room count is asked for.
+///
+/// Rooms are taken from the top: first `min` of every entry (an entry with `min = 0` is skipped), then one more of each
+/// entry below its `max` in order, round after round, until the count is reached.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Program {
+    /// Snake-case id.
+    pub id: String,
+    /// Name for people, English.
+    pub title: String,
+    /// Rooms when the prompt gives no count, without circulation.
+    pub default_rooms: u32,
+    /// Entries, most important first.
+    pub rooms: Vec<ProgramRoom>,
+    /// Where the program comes from.
+    #[serde(default)]
+    pub source: String,
+}
+
+/// One line of a program.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ProgramRoom {
+    /// Room type id.
+    pub room_type: String,
+    /// How many before any entry gets more.
+    pub min: u32,
+    /// Never more than this.
+    pub max: u32,
+    /// Rooms that come with each one (a patient room's en suite); counted as rooms of their own.
+    #[serde(default)]
+    pub with: Vec<String>,
+    /// Adds rooms so that there is one per this many occupants (staff, beds, desks as the prompt gives them).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub occupants_per_room: Option<u32>,
+    /// Floor area per occupant, m^2, for rooms that grow with the head count (an open office).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub area_per_occupant_m2: Option<f64>,
+}
+
+/// How two room types relate.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Adjacency {
+    /// Room type id.
+    pub a: String,
+    /// Room type id.
+    pub b: String,
+    /// How strong.
+    pub relation: AdjacencyRelation,
+    /// Connector for `must` and `should`: `door`, `open`, `wall` or `near`. For `must_not`: what is forbidden, `door` or `wall`.
+    pub via: String,
+    /// Why, one phrase.
+    pub reason: String,
+    /// Where the rule comes from.
+    pub source: String,
+    /// Countries where it holds; empty means everywhere.
+    #[serde(default)]
+    pub jurisdictions: Vec<String>,
+}
+
+/// Strength of an adjacency.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum AdjacencyRelation {
+    /// Hard: every `a` connects to a `b` when the building has one.
+    Must,
+    /// Wished.
+    Should,
+    /// Better not.
+    ShouldNot,
+    /// Hard: no `a` connects so to a `b`.
+    MustNot,
+}
+
+/// How one moves between rooms.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Circulation {
+    /// Room type of the corridor or hall that the engine adds.
+    pub room_type: String,
+    /// Clear width, m, before constraints raise it.
+    pub width_m: f64,
+    /// Rooms that serve as the hub instead of a corridor when the program has one (a warehouse hall, a sales floor, a studio).
+    #[serde(default)]
+    pub hub_room_types: Vec<String>,
+    /// Rooms through which one enters the building, best first; without one the corridor has the entrance.
+    #[serde(default)]
+    pub entrance_room_types: Vec<String>,
+    /// Clear width of the entrance door, m.
+    pub entrance_width_m: f64,
+    /// True when a corridor needs a second way out at its far end.
+    #[serde(default)]
+    pub second_exit: bool,
+    /// Layout schemes that suit the domain, best first.
+    pub schemes: Vec<Scheme>,
+}
+
+/// A family of plans.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Scheme {
+    /// Rooms on both sides of a straight corridor, or of a hub room.
+    Straight,
+    /// A straight corridor that ends in a large room at the facade.
+    Capped,
+    /// Two wings at a right angle.
+    Angle,
+    /// Two parallel corridors around a core of service rooms.
+    Racetrack,
+    /// Several wings off one spine, with courtyards between.
+    Comb,
+}

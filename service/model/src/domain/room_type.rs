@@ -1,0 +1,199 @@
+//! What a room of one type needs: size, daylight, access, doors, materials, furniture, robots.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{Domain, Furnishing, Words};
+use crate::document::Problem;
+
+/// A kind of room.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RoomType {
+    /// Snake-case id, singular: `patient_room`.
+    pub id: String,
+    /// Name on plans, English: `Patient room`.
+    pub label: String,
+    /// What the room is for, one sentence.
+    pub description: String,
+    /// Words that name the room in prompts, singular and plural where they differ.
+    #[serde(default)]
+    pub keywords: Words,
+    /// `space_type` names under which the knowledge base speaks of this room, besides the id itself.
+    #[serde(default)]
+    pub spaces: Vec<String>,
+    /// Which part of the building it belongs to.
+    pub zone: Zone,
+    /// Who may pass through it.
+    pub privacy: Privacy,
+    /// Net floor area, m^2.
+    pub area_m2: AreaRange,
+    /// Least clear extent in both directions, m.
+    pub min_dimension_m: f64,
+    /// Whether it needs an outer wall with a window.
+    pub daylight: Daylight,
+    /// Where its door leads.
+    pub access: Access,
+    /// Room types it may be entered from when `access` is `host` (an en suite: `bedroom`).
+    #[serde(default)]
+    pub hosts: Vec<String>,
+    /// True when it holds plumbing: such rooms are put back to back.
+    #[serde(default)]
+    pub wet: bool,
+    /// Clear width of its door, m, before constraints raise it.
+    pub door_width_m: f64,
+    /// True when it opens to the circulation without a door leaf (a nurse station, a lobby).
+    #[serde(default)]
+    pub open_front: bool,
+    /// Clear height, m.
+    pub ceiling_height_m: f64,
+    /// Surface materials, Arena names.
+    pub materials: Materials,
+    /// What robots do here.
+    #[serde(default)]
+    pub robot: Vec<RobotUse>,
+    /// What stands in it, most important first.
+    #[serde(default)]
+    pub furnishing: Vec<Furnishing>,
+}
+
+/// Part of the building, used to group rooms and to color plans.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Zone {
+    /// Living by day; work areas of offices.
+    Day,
+    /// Sleeping; patient care.
+    Night,
+    /// Visitors.
+    Public,
+    /// Staff only.
+    Staff,
+    /// Bathrooms, kitchens, stores and technical rooms.
+    Service,
+    /// Corridors and halls.
+    Circulation,
+    /// Balconies, loading yards.
+    Outdoor,
+}
+
+/// Who may pass through a room on the way to another.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Privacy {
+    /// Anybody: halls, living rooms, lobbies, open-plan areas.
+    Public,
+    /// Only those who work there: a laboratory, a kitchen.
+    Shared,
+    /// Nobody: bedrooms, bathrooms, single offices, patient rooms, stores.
+    Private,
+}
+
+/// Least, usual and largest net floor area, m^2.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AreaRange {
+    /// Least, m^2.
+    pub min: f64,
+    /// Usual, m^2.
+    pub target: f64,
+    /// Largest, m^2.
+    pub max: f64,
+}
+
+/// Need for an outer wall with a window.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Daylight {
+    /// A hard rule.
+    Required,
+    /// Good to have.
+    Preferred,
+    /// Better inside: dark rooms, stores, wet cells.
+    None,
+}
+
+/// Where a room's door leads.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Access {
+    /// To the corridor, the hall or the hub room.
+    Circulation,
+    /// To the room it belongs to (en suite, walk-in closet, anteroom of an isolation room).
+    Host,
+}
+
+/// Arena material names (`Concrete_Smooth`, `Oak_Planks`, ...).
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Materials {
+    /// Floor.
+    pub floor: String,
+    /// Walls.
+    pub wall: String,
+    /// Ceiling.
+    pub ceiling: String,
+}
+
+/// What a robot does in a room.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum RobotUse {
+    /// Cleaned often.
+    CleaningHigh,
+    /// Cleaned seldom.
+    CleaningLow,
+    /// Delivers or serves here.
+    Service,
+    /// Suits a charging dock.
+    Charging,
+    /// Robots stay out.
+    KeepOut,
+}
+
+impl RoomType {
+    pub(super) fn check(&self, path: &str, domain: &Domain, problems: &mut Vec<Problem>) {
+        let a = self.area_m2;
+        if !(0.0 < a.min && a.min <= a.target && a.target <= a.max) {
+            problems.push(Problem::new(
+                format!("{path}/area_m2"),
+                format!("needs 0 < min <= target <= max, has {} / {} / {} m2", a.min, a.target, a.max),
+            ));
+        }
+        if self.min_dimension_m <= 0.0 || self.min_dimension_m.powi(2) > a.max {
+            problems.push(Problem::new(
+                format!("{path}/min_dimension_m"),
+                format!("{} m squared must be above 0 and fit in area_m2.max ({} m2)", self.min_dimension_m, a.max),
+            ));
+        }
+        if !(0.6..=4.0).contains(&self.door_width_m) {
+            problems.push(Problem::new(
+                format!("{path}/door_width_m"),
+                format!("{} m is outside 0.6-4.0 m", self.door_width_m),
+            ));
+        }
+        if !(2.0..=20.0).contains(&self.ceiling_height_m) {
+            problems.push(Problem::new(
+                format!("{path}/ceiling_height_m"),
+                format!("{} m is outside 2.0-20.0 m", self.ceiling_height_m),
+            ));
+        }
+        if (self.access == Access::Host) == self.hosts.is_empty() {
+            problems.push(Problem::new(
+                format!("{path}/hosts"),
+                "access `host` names its hosts, access `circulation` has none",
+            ));
+        }
+        for (i, host) in self.hosts.iter().enumerate() {
+            if domain.room_type(host).is_none() {
+                problems.push(Problem::new(
+                    format!("{path}/hosts/{i}"),
+                    format!("room type `{host}` is not in room_types"),
+                ));
+            }
+        }
+        for (i, f) in self.furnishing.iter().enumerate() {
+            f.check(&format!("{path}/furnishing/{i}"), domain, problems);
+        }
+    }
+}

@@ -1,0 +1,245 @@
+//! Room polygons, wall segments, doors and windows; no furniture.
+//!
+//! Room polygons run on wall center lines, so that neighbors share edges exactly and the polygons tile the building.
+//! A room's net floor is its polygon less half the thickness of each wall around it.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::document::{Document, Problem, check_unique};
+use crate::domain::Materials;
+use crate::geometry::{Polygon, Segment};
+
+/// A plan of one storey.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Floorplan {
+    /// Format version; 1.
+    pub version: u32,
+    /// Seed it was made with.
+    pub seed: u64,
+    /// Which family of plans it belongs to (`straight`, `capped`, `angle`, ...).
+    pub scheme: String,
+    /// Rooms in scene-graph order.
+    pub rooms: Vec<PlanRoom>,
+    /// Straight wall pieces with openings already cut out.
+    pub walls: Vec<Wall>,
+    /// Doors and open passages.
+    pub doors: Vec<Door>,
+    /// Windows.
+    pub windows: Vec<Window>,
+    /// Cost terms of the layout search, weighted, for those who compare plans.
+    #[serde(default)]
+    pub cost: Vec<CostTerm>,
+    /// Requests the plan could not honor, and the least change that was made.
+    #[serde(default)]
+    pub conflicts: Vec<crate::scene_graph::Note>,
+}
+
+/// A room with its outline.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PlanRoom {
+    /// Id from the scene graph.
+    pub room_id: String,
+    /// Room type id.
+    pub room_type: String,
+    /// Name on the plan.
+    pub name: String,
+    /// True for corridors and halls added to connect rooms.
+    #[serde(default)]
+    pub circulation: bool,
+    /// Outline on wall center lines, counter-clockwise.
+    pub polygon: Polygon,
+    /// Outline on wall faces, counter-clockwise: where furniture can stand.
+    pub net_polygon: Polygon,
+    /// Area of `net_polygon`, m^2.
+    pub net_area_m2: f64,
+    /// Clear height, m.
+    pub ceiling_height_m: f64,
+    /// Surface materials.
+    pub materials: Materials,
+    /// True keeps the room as it is when the plan is fed back.
+    #[serde(default)]
+    pub locked: bool,
+}
+
+/// A straight piece of wall.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Wall {
+    /// Unique id: `wall_12`.
+    pub wall_id: String,
+    /// Center line, m.
+    pub line: Segment,
+    /// Thickness, m.
+    pub thickness_m: f64,
+    /// Rooms on its sides: two, or one for an outer wall.
+    pub room_ids: Vec<String>,
+    /// True when one side is outdoors.
+    pub exterior: bool,
+    /// True keeps it when the plan is fed back.
+    #[serde(default)]
+    pub locked: bool,
+}
+
+/// A passage: a door, or an opening without a leaf.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Door {
+    /// Unique id: `door_3`.
+    pub door_id: String,
+    /// What fills the opening.
+    pub kind: DoorKind,
+    /// The opening on the wall's center line; its length is the structural opening, m.
+    pub line: Segment,
+    /// Clear width when open, m.
+    pub clear_width_m: f64,
+    /// Clear height, m.
+    pub height_m: f64,
+    /// Thickness of the wall it stands in, m.
+    pub wall_thickness_m: f64,
+    /// Rooms it connects: two, or one for an entrance or exit.
+    pub room_ids: Vec<String>,
+    /// True for the building's main entrance.
+    #[serde(default)]
+    pub entrance: bool,
+    /// How the leaf swings; absent for sliding doors and open passages.
+    #[serde(default)]
+    pub swing: Option<Swing>,
+    /// True keeps it when the plan is fed back.
+    #[serde(default)]
+    pub locked: bool,
+}
+
+/// What fills a passage.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum DoorKind {
+    /// One leaf.
+    Hinged,
+    /// Two leaves.
+    DoubleHinged,
+    /// Slides along the wall.
+    Sliding,
+    /// No leaf.
+    Open,
+}
+
+/// How a door leaf moves.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Swing {
+    /// Room the leaf opens into; absent when it opens outdoors.
+    pub into_room_id: Option<String>,
+    /// End of `line` that carries the hinge: true for `start`, false for `end` (both for double leaves).
+    pub hinge_at_start: bool,
+}
+
+/// A window in an outer wall.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Window {
+    /// Unique id: `window_7`.
+    pub window_id: String,
+    /// The opening on the wall's center line, m.
+    pub line: Segment,
+    /// Height of the sill above the floor, m.
+    pub sill_m: f64,
+    /// Height of the head above the floor, m.
+    pub head_m: f64,
+    /// Thickness of the wall it stands in, m.
+    pub wall_thickness_m: f64,
+    /// Room it lights.
+    pub room_id: String,
+    /// True keeps it when the plan is fed back.
+    #[serde(default)]
+    pub locked: bool,
+}
+
+/// One term of the layout cost.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CostTerm {
+    /// Name of the term (`area_error`, `proportion`, ...).
+    pub term: String,
+    /// Weighted cost; lower is better.
+    pub cost: f64,
+}
+
+impl Floorplan {
+    /// Returns the room with this id.
+    pub fn room(&self, id: &str) -> Option<&PlanRoom> {
+        self.rooms.iter().find(|r| r.room_id == id)
+    }
+
+    /// Returns the doors and open passages of a room.
+    pub fn doors_of<'a>(&'a self, id: &'a str) -> impl Iterator<Item = &'a Door> + 'a {
+        self.doors.iter().filter(move |d| d.room_ids.iter().any(|r| r == id))
+    }
+}
+
+impl Document for Floorplan {
+    const KIND: &'static str = "floorplan";
+
+    fn check(&self) -> Vec<Problem> {
+        let mut problems = Vec::new();
+        if self.version != 1 {
+            problems.push(Problem::new("/version", format!("is {}, this release reads version 1", self.version)));
+        }
+        check_unique("/rooms", self.rooms.iter().map(|r| r.room_id.as_str()), &mut problems);
+        check_unique("/walls", self.walls.iter().map(|w| w.wall_id.as_str()), &mut problems);
+        check_unique("/doors", self.doors.iter().map(|d| d.door_id.as_str()), &mut problems);
+        check_unique("/windows", self.windows.iter().map(|w| w.window_id.as_str()), &mut problems);
+        for (i, room) in self.rooms.iter().enumerate() {
+            for (name, polygon) in [("polygon", &room.polygon), ("net_polygon", &room.net_polygon)] {
+                if polygon.signed_area() <= 0.0 {
+                    problems.push(Problem::new(
+                        format!("/rooms/{i}/{name}"),
+                        format!("has signed area {:.3} m2; corners run counter-clockwise", polygon.signed_area()),
+                    ));
+                }
+                if !polygon.is_rectilinear() {
+                    problems.push(Problem::new(
+                        format!("/rooms/{i}/{name}"),
+                        "has an edge that is not along x or y; this release plans right angles only",
+                    ));
+                }
+            }
+        }
+        let known = |id: &String| self.room(id).is_some();
+        for (i, wall) in self.walls.iter().enumerate() {
+            if wall.room_ids.is_empty() || wall.room_ids.len() > 2 || !wall.room_ids.iter().all(known) {
+                problems
+                    .push(Problem::new(format!("/walls/{i}/room_ids"), "needs one or two ids of rooms in this plan"));
+            }
+        }
+        for (i, door) in self.doors.iter().enumerate() {
+            if door.room_ids.is_empty() || door.room_ids.len() > 2 || !door.room_ids.iter().all(known) {
+                problems
+                    .push(Problem::new(format!("/doors/{i}/room_ids"), "needs one or two ids of rooms in this plan"));
+            }
+            if door.clear_width_m > door.line.length() + crate::TOLERANCE_M {
+                problems.push(Problem::new(
+                    format!("/doors/{i}/clear_width_m"),
+                    format!("{} m is more than the opening of {:.3} m", door.clear_width_m, door.line.length()),
+                ));
+            }
+        }
+        for (i, window) in self.windows.iter().enumerate() {
+            if !known(&window.room_id) {
+                problems.push(Problem::new(
+                    format!("/windows/{i}/room_id"),
+                    format!("room `{}` is not in rooms", window.room_id),
+                ));
+            }
+            if window.sill_m >= window.head_m {
+                problems.push(Problem::new(
+                    format!("/windows/{i}/sill_m"),
+                    format!("{} m is not below the head at {} m", window.sill_m, window.head_m),
+                ));
+            }
+        }
+        problems
+    }
+}

@@ -1,0 +1,240 @@
+//! Points, polygons, rectangles, segments and poses in meters; x east, y north, yaw counter-clockwise.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Rounds a length to a whole millimeter, the resolution of every document.
+pub fn to_mm(meters: f64) -> f64 {
+    let rounded = (meters * 1000.0).round() / 1000.0;
+    if rounded == 0.0 { 0.0 } else { rounded } // never write -0.0
+}
+
+/// A point on the floor, m.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Point {
+    /// East, m.
+    pub x: f64,
+    /// North, m.
+    pub y: f64,
+}
+
+impl Point {
+    /// Returns a point.
+    pub fn new(x: f64, y: f64) -> Self {
+        Self { x, y }
+    }
+
+    /// Returns the distance to another point, m.
+    pub fn distance(self, other: Self) -> f64 {
+        (self.x - other.x).hypot(self.y - other.y)
+    }
+}
+
+/// Position on the floor and heading.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Pose {
+    /// East, m.
+    pub x: f64,
+    /// North, m.
+    pub y: f64,
+    /// Height of the object's underside above the floor, m.
+    #[serde(default)]
+    pub z: f64,
+    /// Heading of the object's own +x (its front), counter-clockwise from east, rad.
+    pub yaw_rad: f64,
+}
+
+/// A straight piece between two points, m.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Segment {
+    /// One end.
+    pub start: Point,
+    /// The other end.
+    pub end: Point,
+}
+
+impl Segment {
+    /// Returns the length, m.
+    pub fn length(&self) -> f64 {
+        self.start.distance(self.end)
+    }
+
+    /// Returns the point halfway.
+    pub fn middle(&self) -> Point {
+        Point::new((self.start.x + self.end.x) / 2.0, (self.start.y + self.end.y) / 2.0)
+    }
+
+    /// Returns true when the segment runs north-south rather than east-west.
+    pub fn is_vertical(&self) -> bool {
+        (self.start.x - self.end.x).abs() < (self.start.y - self.end.y).abs()
+    }
+}
+
+/// An axis-aligned rectangle, m.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Rect {
+    /// West edge, m.
+    pub x0: f64,
+    /// South edge, m.
+    pub y0: f64,
+    /// East edge, m.
+    pub x1: f64,
+    /// North edge, m.
+    pub y1: f64,
+}
+
+impl Rect {
+    /// Returns the rectangle between two corners in any order.
+    pub fn new(x0: f64, y0: f64, x1: f64, y1: f64) -> Self {
+        Self { x0: x0.min(x1), y0: y0.min(y1), x1: x0.max(x1), y1: y0.max(y1) }
+    }
+
+    /// Returns east-west extent, m.
+    pub fn width(&self) -> f64 {
+        self.x1 - self.x0
+    }
+
+    /// Returns north-south extent, m.
+    pub fn height(&self) -> f64 {
+        self.y1 - self.y0
+    }
+
+    /// Returns the area, m^2.
+    pub fn area(&self) -> f64 {
+        self.width() * self.height()
+    }
+
+    /// Returns the center.
+    pub fn center(&self) -> Point {
+        Point::new((self.x0 + self.x1) / 2.0, (self.y0 + self.y1) / 2.0)
+    }
+
+    /// Returns true when the interiors share more than a contact line.
+    pub fn overlaps(&self, other: &Self) -> bool {
+        let e = crate::TOLERANCE_M;
+        self.x0 < other.x1 - e && other.x0 < self.x1 - e && self.y0 < other.y1 - e && other.y0 < self.y1 - e
+    }
+
+    /// Returns true when the other rectangle lies inside, edges included.
+    pub fn contains(&self, other: &Self) -> bool {
+        let e = crate::TOLERANCE_M;
+        other.x0 >= self.x0 - e && other.x1 <= self.x1 + e && other.y0 >= self.y0 - e && other.y1 <= self.y1 + e
+    }
+
+    /// Returns the rectangle grown by `margin` on all sides (shrunk when negative), m.
+    pub fn grown(&self, margin: f64) -> Self {
+        Self { x0: self.x0 - margin, y0: self.y0 - margin, x1: self.x1 + margin, y1: self.y1 + margin }
+    }
+
+    /// Returns the four corners counter-clockwise from south-west.
+    pub fn corners(&self) -> [Point; 4] {
+        [
+            Point::new(self.x0, self.y0),
+            Point::new(self.x1, self.y0),
+            Point::new(self.x1, self.y1),
+            Point::new(self.x0, self.y1),
+        ]
+    }
+}
+
+/// A simple polygon: counter-clockwise, first corner not repeated, m.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(transparent)]
+pub struct Polygon(#[schemars(length(min = 3))] pub Vec<Point>);
+
+impl Polygon {
+    /// Returns the corners counter-clockwise.
+    pub fn corners(&self) -> &[Point] {
+        &self.0
+    }
+
+    /// Returns the edges in order, the closing one last.
+    pub fn edges(&self) -> impl Iterator<Item = Segment> + '_ {
+        (0..self.0.len()).map(|i| Segment { start: self.0[i], end: self.0[(i + 1) % self.0.len()] })
+    }
+
+    /// Returns the signed area by the shoelace formula, m^2: positive when counter-clockwise.
+    pub fn signed_area(&self) -> f64 {
+        self.edges().map(|e| e.start.x * e.end.y - e.end.x * e.start.y).sum::<f64>() / 2.0
+    }
+
+    /// Returns the area, m^2.
+    pub fn area(&self) -> f64 {
+        self.signed_area().abs()
+    }
+
+    /// Returns the smallest rectangle around the polygon.
+    pub fn bounds(&self) -> Rect {
+        let mut b = Rect { x0: f64::MAX, y0: f64::MAX, x1: f64::MIN, y1: f64::MIN };
+        for p in &self.0 {
+            b = Rect { x0: b.x0.min(p.x), y0: b.y0.min(p.y), x1: b.x1.max(p.x), y1: b.y1.max(p.y) };
+        }
+        b
+    }
+
+    /// Returns true when the point lies inside (boundary points may go either way).
+    pub fn contains(&self, p: Point) -> bool {
+        let mut inside = false;
+        for e in self.edges() {
+            if (e.start.y > p.y) != (e.end.y > p.y) {
+                let x = e.start.x + (p.y - e.start.y) / (e.end.y - e.start.y) * (e.end.x - e.start.x);
+                if p.x < x {
+                    inside = !inside;
+                }
+            }
+        }
+        inside
+    }
+
+    /// Returns true when every edge runs along an axis.
+    pub fn is_rectilinear(&self) -> bool {
+        let e = crate::TOLERANCE_M;
+        self.edges().all(|s| (s.start.x - s.end.x).abs() < e || (s.start.y - s.end.y).abs() < e)
+    }
+
+    /// Returns non-overlapping rectangles that together cover a rectilinear polygon, by slabs between corner heights.
+    pub fn rects(&self) -> Vec<Rect> {
+        let mut ys: Vec<f64> = self.0.iter().map(|p| p.y).collect();
+        ys.sort_by(f64::total_cmp);
+        ys.dedup_by(|a, b| (*a - *b).abs() < crate::TOLERANCE_M);
+        let mut open: Vec<Rect> = Vec::new();
+        let mut done = Vec::new();
+        for pair in ys.windows(2) {
+            let y = (pair[0] + pair[1]) / 2.0;
+            let mut xs: Vec<f64> =
+                self.edges().filter(|e| (e.start.y > y) != (e.end.y > y)).map(|e| e.start.x).collect();
+            xs.sort_by(f64::total_cmp);
+            let slabs: Vec<(f64, f64)> = xs.chunks_exact(2).map(|c| (c[0], c[1])).collect();
+            let (kept, closed): (Vec<Rect>, Vec<Rect>) = open.into_iter().partition(|r| slabs.contains(&(r.x0, r.x1)));
+            done.extend(closed);
+            open = slabs
+                .into_iter()
+                .map(|(x0, x1)| {
+                    let y0 = kept.iter().find(|r| (r.x0, r.x1) == (x0, x1)).map_or(pair[0], |r| r.y0);
+                    Rect { x0, y0, x1, y1: pair[1] }
+                })
+                .collect();
+        }
+        done.extend(open);
+        done
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rects_cover_an_l_shape_exactly() {
+        let l = Polygon(
+            [(0., 0.), (4., 0.), (4., 2.), (2., 2.), (2., 5.), (0., 5.)].map(|(x, y)| Point::new(x, y)).to_vec(),
+        );
+        let rects = l.rects();
+        assert_eq!(rects, vec![Rect::new(0., 0., 4., 2.), Rect::new(0., 2., 2., 5.)]);
+        assert_eq!(rects.iter().map(Rect::area).sum::<f64>(), l.area());
+    }
+}

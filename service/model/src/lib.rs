@@ -1,0 +1,27 @@
+//! Checked types of every artifact that passes between stages, with the units and geometry they are written in.
+//!
+//! What it is not for: producing artifacts (`pipeline`), reading other people's formats (`export`), finding domains on
+//! disk (`plugins`). Nothing here reads a clock, the environment or the network.
+//!
+//! Lengths are meters, areas square meters, angles radians; x east, y north, z up; yaw counter-clockwise from +x.
+//! An object's own frame has x forward (the side its user stands on), y left, z up (ROS REP 103).
+
+pub mod document;
+pub mod domain;
+pub mod error;
+pub mod floorplan;
+pub mod geometry;
+pub mod knowledge;
+pub mod placements;
+pub mod report;
+pub mod scenario;
+pub mod scene_graph;
+pub mod seed;
+pub mod world;
+
+pub use document::{Document, Problem};
+pub use error::Error;
+pub use geometry::{Point, Polygon, Pose, Rect, Segment};
+
+/// Contact tolerance in meters: two lengths closer than this are the same length.
+pub const TOLERANCE_M: f64 = 0.001;

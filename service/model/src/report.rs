@@ -1,0 +1,161 @@
+//! What was checked about a world: hard rules, and every knowledge-base constraint that applies, each with its source.
+
+use std::collections::BTreeMap;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::document::{Document, Problem};
+use crate::knowledge::Source;
+
+/// The verdict on one world.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Report {
+    /// Format version; 1.
+    pub version: u32,
+    /// Name of the world.
+    pub world: String,
+    /// True when every hard rule holds.
+    pub sound: bool,
+    /// Every hard rule with what broke it.
+    pub rules: Vec<RuleResult>,
+    /// Jurisdictions whose constraints were applied, nearest first.
+    pub jurisdictions: Vec<String>,
+    /// How the constraints fared.
+    pub summary: ConstraintSummary,
+    /// Every constraint that applies to something in this world.
+    pub constraints: Vec<ConstraintResult>,
+    /// Counts and measures of the world (`rooms`, `objects_per_room`, `circulation_share`, ...).
+    pub figures: BTreeMap<String, f64>,
+}
+
+/// One hard rule.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RuleResult {
+    /// Snake-case id: `door_blocked`.
+    pub rule: String,
+    /// What it demands, one sentence.
+    pub title: String,
+    /// How many things were checked.
+    pub checked: u32,
+    /// What breaks it; empty when it holds.
+    pub violations: Vec<Violation>,
+}
+
+/// One thing that breaks one rule.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Violation {
+    /// Rule id, or constraint id.
+    pub code: String,
+    /// Id of the room, door, wall or placement.
+    pub subject: String,
+    /// Measured value, where the rule has one.
+    #[serde(default)]
+    pub measured: Option<f64>,
+    /// Required value.
+    #[serde(default)]
+    pub required: Option<f64>,
+    /// Unit of both.
+    #[serde(default)]
+    pub unit: String,
+    /// One sentence for people: `corridor is 1.1 m wide, needs 1.8 m`.
+    pub message: String,
+}
+
+/// Counts of constraint results by status.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ConstraintSummary {
+    /// Satisfied.
+    pub satisfied: u32,
+    /// Violated.
+    pub violated: u32,
+    /// Applies to nothing in this world.
+    pub not_applicable: u32,
+    /// Cannot be decided from geometry and objects.
+    pub not_decidable: u32,
+}
+
+/// One constraint evaluated on one subject.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ConstraintResult {
+    /// Id in the knowledge base.
+    pub constraint_id: String,
+    /// Reference it belongs to.
+    pub ref_id: String,
+    /// What is limited.
+    pub name: String,
+    /// Id of the room, door or placement it was evaluated on; `building` for the whole.
+    pub subject: String,
+    /// Outcome.
+    pub status: Status,
+    /// True for regulations and standards with type minimum, maximum or range; false for advice.
+    pub mandatory: bool,
+    /// Measured value.
+    #[serde(default)]
+    pub measured: Option<f64>,
+    /// Least required value.
+    #[serde(default)]
+    pub required_min: Option<f64>,
+    /// Largest allowed value.
+    #[serde(default)]
+    pub required_max: Option<f64>,
+    /// Unit of the figures.
+    pub unit: String,
+    /// Why it does not apply or cannot be decided; how it was measured otherwise.
+    pub note: String,
+    /// Where the rule comes from.
+    pub citation: Citation,
+}
+
+/// Outcome of a constraint.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Status {
+    /// Holds.
+    Satisfied,
+    /// Does not hold.
+    Violated,
+    /// Has no subject here.
+    NotApplicable,
+    /// Cannot be decided from geometry and objects.
+    NotDecidable,
+}
+
+/// A source as cited, with jurisdiction and clause.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Citation {
+    /// Where the rule applies.
+    pub jurisdiction: String,
+    /// The source.
+    pub source: Source,
+    /// Clause and remarks.
+    #[serde(default)]
+    pub note: String,
+    /// The figure as printed.
+    #[serde(default)]
+    pub printed: Option<String>,
+    /// Confidence in the figure.
+    pub confidence: String,
+}
+
+impl Document for Report {
+    const KIND: &'static str = "report";
+
+    fn check(&self) -> Vec<Problem> {
+        let mut problems = Vec::new();
+        if self.version != 1 {
+            problems.push(Problem::new("/version", format!("is {}, this release reads version 1", self.version)));
+        }
+        let broken = self.rules.iter().any(|r| !r.violations.is_empty());
+        if self.sound == broken {
+            problems.push(Problem::new("/sound", "contradicts the rules listed below it"));
+        }
+        problems
+    }
+}

@@ -1,0 +1,232 @@
+//! Rooms as nodes, relations as edges; no coordinates yet.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::document::{Document, Problem, check_unique};
+
+/// What was asked for, understood.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SceneGraph {
+    /// Format version; 1.
+    pub version: u32,
+    /// The prompt as given.
+    pub prompt: String,
+    /// Seed of every random choice downstream.
+    pub seed: u64,
+    /// Domain id (`residential`, `office`, `hospital`, `school`, ..., `general`).
+    pub domain: String,
+    /// Building type inside the domain (`ward`, `hotel`), where known.
+    #[serde(default)]
+    pub building_type: Option<String>,
+    /// ISO 3166-1 alpha-2 code whose rules apply; absent means international rules only.
+    #[serde(default)]
+    pub country_code: Option<String>,
+    /// ISO 639-1 code of the prompt's language.
+    pub language: String,
+    /// Requested total net floor area, m^2.
+    #[serde(default)]
+    pub area_m2: Option<f64>,
+    /// Head counts and other figures the prompt gives.
+    #[serde(default)]
+    pub occupancy: Occupancy,
+    /// True when the prompt asks for wheelchair access.
+    #[serde(default)]
+    pub accessible: bool,
+    /// Rooms; those with `circulation` were added to connect the others and are not counted.
+    pub rooms: Vec<GraphRoom>,
+    /// Connections; every `door` and `open` edge is walkable in the finished world.
+    pub edges: Vec<GraphEdge>,
+    /// Pairs of rooms that share no door and no wall.
+    #[serde(default)]
+    pub apart: Vec<[String; 2]>,
+    /// Room types that must not occur.
+    #[serde(default)]
+    pub forbidden_room_types: Vec<String>,
+    /// Robots the world is for.
+    #[serde(default)]
+    pub robots: Vec<Robot>,
+    /// What was assumed where the prompt is silent.
+    #[serde(default)]
+    pub assumptions: Vec<Note>,
+    /// What contradicts itself or could not be honored, and what was done instead.
+    #[serde(default)]
+    pub conflicts: Vec<Note>,
+}
+
+/// Figures from the prompt; absent when not stated.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Occupancy {
+    /// People who work there.
+    #[serde(default)]
+    pub staff: Option<u32>,
+    /// Patient beds.
+    #[serde(default)]
+    pub beds: Option<u32>,
+    /// Desks.
+    #[serde(default)]
+    pub desks: Option<u32>,
+    /// Guests, pupils or customers.
+    #[serde(default)]
+    pub visitors: Option<u32>,
+}
+
+/// A room to be planned.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct GraphRoom {
+    /// Unique, snake case: `patient_room_3`; the zone name in `world.yaml`.
+    #[schemars(regex(pattern = "^[a-z0-9_]+$"))]
+    pub id: String,
+    /// Room type id of the domain, or a type only the prompt names (planned as the domain's generic `room`).
+    pub room_type: String,
+    /// Name on the plan: `Patient room 3`.
+    pub name: String,
+    /// What it is for.
+    pub description: String,
+    /// Net floor area to aim for, m^2.
+    pub target_area_m2: f64,
+    /// Least and largest net floor area allowed, m^2.
+    pub area_range_m2: [f64; 2],
+    /// 8 to 15 objects wished for, most important first (object ids of the domain).
+    pub wished_assets: Vec<String>,
+    /// People, beds or desks it must hold, where the prompt or program says.
+    #[serde(default)]
+    pub occupants: Option<u32>,
+    /// True for corridors, halls and lobbies that were added to connect rooms.
+    #[serde(default)]
+    pub circulation: bool,
+    /// True when the prompt names it.
+    #[serde(default)]
+    pub requested: bool,
+    /// True when one enters the building through it.
+    #[serde(default)]
+    pub entrance: bool,
+    /// True keeps the room as it is when the graph is fed back.
+    #[serde(default)]
+    pub locked: bool,
+}
+
+/// A relation between two rooms.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct GraphEdge {
+    /// Room id.
+    pub a: String,
+    /// Room id.
+    pub b: String,
+    /// How they meet.
+    pub connector: Connector,
+    /// True when the plan is wrong without it.
+    pub required: bool,
+    /// Who asked: the prompt, an adjacency rule's source, or `circulation`.
+    pub reason: String,
+}
+
+/// How neighboring rooms meet.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Connector {
+    /// By a door.
+    Door,
+    /// By an opening without a leaf.
+    Open,
+    /// By a shared wall.
+    Wall,
+    /// Close to each other, not necessarily touching.
+    Near,
+}
+
+/// A robot the world must suit.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Robot {
+    /// `cleaning`, `delivery`, `service`, `transport`.
+    pub kind: String,
+    /// How many.
+    pub count: u32,
+    /// Radius of the circle it turns in, m.
+    pub radius_m: f64,
+    /// Height, m.
+    pub height_m: f64,
+    /// True when it needs a charging dock in the building.
+    pub charging: bool,
+}
+
+/// A statement about how the prompt was read.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Note {
+    /// Snake-case kind: `default_domain`, `unknown_place`, `contradicting_counts`, ...
+    pub code: String,
+    /// One sentence for people.
+    pub message: String,
+}
+
+impl SceneGraph {
+    /// Returns the room with this id.
+    pub fn room(&self, id: &str) -> Option<&GraphRoom> {
+        self.rooms.iter().find(|r| r.id == id)
+    }
+
+    /// Returns the graph in the referee's simple form: rooms with id and room type, edges with a, b, connector.
+    pub fn to_simple(&self) -> serde_json::Value {
+        serde_json::json!({
+            "rooms": self.rooms.iter().map(|r| serde_json::json!({"id": r.id, "room_type": r.room_type})).collect::<Vec<_>>(),
+            "edges": self.edges.iter().filter(|e| e.required)
+                .map(|e| serde_json::json!({"a": e.a, "b": e.b, "connector": e.connector})).collect::<Vec<_>>(),
+        })
+    }
+}
+
+impl Document for SceneGraph {
+    const KIND: &'static str = "scene_graph";
+
+    fn check(&self) -> Vec<Problem> {
+        let mut problems = Vec::new();
+        if self.version != 1 {
+            problems.push(Problem::new("/version", format!("is {}, this release reads version 1", self.version)));
+        }
+        if self.rooms.is_empty() {
+            problems.push(Problem::new("/rooms", "is empty; a building needs at least one room"));
+        }
+        check_unique("/rooms", self.rooms.iter().map(|r| r.id.as_str()), &mut problems);
+        for (i, room) in self.rooms.iter().enumerate() {
+            let [min, max] = room.area_range_m2;
+            if !(0.0 < min && min <= room.target_area_m2 && room.target_area_m2 <= max) {
+                problems.push(Problem::new(
+                    format!("/rooms/{i}/target_area_m2"),
+                    format!("{} m2 is outside area_range_m2 {min}-{max} m2", room.target_area_m2),
+                ));
+            }
+        }
+        for (i, edge) in self.edges.iter().enumerate() {
+            for (end, id) in [("a", &edge.a), ("b", &edge.b)] {
+                if self.room(id).is_none() {
+                    problems.push(Problem::new(format!("/edges/{i}/{end}"), format!("room `{id}` is not in rooms")));
+                }
+            }
+            if edge.a == edge.b {
+                problems.push(Problem::new(format!("/edges/{i}"), format!("connects `{}` to itself", edge.a)));
+            }
+        }
+        for (i, pair) in self.apart.iter().enumerate() {
+            for (j, id) in pair.iter().enumerate() {
+                if self.room(id).is_none() {
+                    problems.push(Problem::new(format!("/apart/{i}/{j}"), format!("room `{id}` is not in rooms")));
+                }
+            }
+        }
+        for (i, robot) in self.robots.iter().enumerate() {
+            if !(0.05..=2.0).contains(&robot.radius_m) {
+                problems.push(Problem::new(
+                    format!("/robots/{i}/radius_m"),
+                    format!("{} m is outside 0.05-2 m", robot.radius_m),
+                ));
+            }
+        }
+        problems
+    }
+}

@@ -1,0 +1,1 @@
+//! Stage `floorplan`: under construction.

@@ -1,0 +1,1 @@
+//! Stage `scene_graph`: under construction.

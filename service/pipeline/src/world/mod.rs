@@ -1,0 +1,1 @@
+//! Stage `world`: under construction.
