@@ -12,6 +12,7 @@ pub mod error;
 pub mod floorplan;
 pub mod geometry;
 pub mod knowledge;
+pub mod occupancy;
 pub mod placements;
 pub mod report;
 pub mod scenario;

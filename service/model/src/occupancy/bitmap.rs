@@ -1,0 +1,335 @@
+//! A rectangular grid of bits in rows of 64-bit words: the set operations, erosion and flood fill that navigation needs.
+
+/// A set of grid cells; cell `(i, j)` is column `i` (east) of row `j` (north). Cells outside the grid are never set.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Bitmap {
+    nx: usize,
+    ny: usize,
+    stride: usize,
+    words: Vec<u64>,
+}
+
+impl Bitmap {
+    /// Returns an empty set over `nx` columns and `ny` rows.
+    pub fn new(nx: usize, ny: usize) -> Self {
+        let stride = nx.div_ceil(64);
+        Self { nx, ny, stride, words: vec![0; stride * ny] }
+    }
+
+    /// Returns the number of columns.
+    pub fn nx(&self) -> usize {
+        self.nx
+    }
+
+    /// Returns the number of rows.
+    pub fn ny(&self) -> usize {
+        self.ny
+    }
+
+    /// Returns true when the cell is in the set.
+    pub fn get(&self, i: usize, j: usize) -> bool {
+        i < self.nx && j < self.ny && self.words[j * self.stride + i / 64] >> (i % 64) & 1 == 1
+    }
+
+    /// Adds the cell, when it lies in the grid.
+    pub fn set(&mut self, i: usize, j: usize) {
+        if i < self.nx && j < self.ny {
+            self.words[j * self.stride + i / 64] |= 1 << (i % 64);
+        }
+    }
+
+    /// Adds (`value` true) or removes the cells of columns `i0..i1` and rows `j0..j1`, clipped to the grid.
+    pub fn fill(&mut self, i0: i64, i1: i64, j0: i64, j1: i64, value: bool) {
+        let (i0, i1) = clip(i0, i1, self.nx);
+        let (j0, j1) = clip(j0, j1, self.ny);
+        if i0 >= i1 {
+            return;
+        }
+        for j in j0..j1 {
+            for w in i0 / 64..=(i1 - 1) / 64 {
+                let mask = span_mask(i0, i1, w);
+                let word = &mut self.words[j * self.stride + w];
+                *word = if value { *word | mask } else { *word & !mask };
+            }
+        }
+    }
+
+    /// Returns true when any cell of columns `i0..i1` and rows `j0..j1` is in the set.
+    pub fn any_in(&self, i0: i64, i1: i64, j0: i64, j1: i64) -> bool {
+        let (i0, i1) = clip(i0, i1, self.nx);
+        let (j0, j1) = clip(j0, j1, self.ny);
+        i0 < i1
+            && (j0..j1)
+                .any(|j| (i0 / 64..=(i1 - 1) / 64).any(|w| self.words[j * self.stride + w] & span_mask(i0, i1, w) != 0))
+    }
+
+    /// Returns the number of cells in the set.
+    pub fn count(&self) -> usize {
+        self.words.iter().map(|w| w.count_ones() as usize).sum()
+    }
+
+    /// Returns the number of cells in both sets (of one size).
+    pub fn count_common(&self, other: &Self) -> usize {
+        self.words.iter().zip(&other.words).map(|(a, b)| (a & b).count_ones() as usize).sum()
+    }
+
+    /// Returns true when no cell is in the set.
+    pub fn is_empty(&self) -> bool {
+        self.words.iter().all(|w| *w == 0)
+    }
+
+    /// Adds every cell of the other set (of one size).
+    pub fn union(&mut self, other: &Self) {
+        self.words.iter_mut().zip(&other.words).for_each(|(a, b)| *a |= b);
+    }
+
+    /// Keeps only cells that are in the other set too (of one size).
+    pub fn intersect(&mut self, other: &Self) {
+        self.words.iter_mut().zip(&other.words).for_each(|(a, b)| *a &= b);
+    }
+
+    /// Removes every cell of the other set (of one size).
+    pub fn subtract(&mut self, other: &Self) {
+        self.words.iter_mut().zip(&other.words).for_each(|(a, b)| *a &= !b);
+    }
+
+    /// Returns the cells of the set in rows from south to north, west to east.
+    pub fn cells(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+        (0..self.ny).flat_map(move |j| {
+            (0..self.stride).flat_map(move |w| {
+                let mut word = self.words[j * self.stride + w];
+                std::iter::from_fn(move || {
+                    (word != 0).then(|| {
+                        let bit = word.trailing_zeros() as usize;
+                        word &= word - 1;
+                        (w * 64 + bit, j)
+                    })
+                })
+            })
+        })
+    }
+
+    /// Returns the cells whose whole surrounding disc is in the set: no missing cell center, and no cell outside the
+    /// grid, is nearer than `radius` (in cells) to the cell's center.
+    pub fn eroded(&self, radius: f64) -> Self {
+        let reach = radius.ceil() as i64;
+        let mut out = self.clone();
+        for dy in -reach..=reach {
+            // half width of the disc in this row: the largest dx with dx^2 + dy^2 < radius^2
+            let left = radius * radius - (dy * dy) as f64 - 1e-9;
+            if left <= 0.0 {
+                continue;
+            }
+            let half = (left.sqrt().ceil() as usize).saturating_sub(1);
+            let rows = self.eroded_along_rows(half);
+            for j in 0..self.ny {
+                let from = j as i64 + dy;
+                for w in 0..self.stride {
+                    let other =
+                        if (0..self.ny as i64).contains(&from) { rows[from as usize * self.stride + w] } else { 0 };
+                    out.words[j * self.stride + w] &= other;
+                }
+            }
+        }
+        out
+    }
+
+    /// Returns rows in which a bit stays when all bits within `half` columns are set, by doubling the window.
+    fn eroded_along_rows(&self, half: usize) -> Vec<u64> {
+        let mut out = self.words.clone();
+        if half == 0 {
+            return out;
+        }
+        for row in out.chunks_exact_mut(self.stride.max(1)) {
+            let whole = 2 * half + 1;
+            let mut window = 1;
+            while window < whole {
+                let step = window.min(whole - window);
+                and_shifted_down(row, step);
+                window += step;
+            }
+            shift_up(row, half);
+        }
+        out
+    }
+
+    /// Returns the cells of the set that touch a seed cell through cells of the set, by edges (not corners).
+    pub fn flood(&self, seeds: &Self) -> Self {
+        let mut out = seeds.clone();
+        out.intersect(self);
+        let (stride, ny) = (self.stride, self.ny);
+        if stride == 0 {
+            return out;
+        }
+        for j in 0..ny {
+            spread_row(&mut out.words[j * stride..(j + 1) * stride], &self.words[j * stride..(j + 1) * stride]);
+        }
+        loop {
+            let mut changed = false;
+            for j in 1..ny {
+                changed |= out.spread_from(self, j - 1, j);
+            }
+            for j in (1..ny).rev() {
+                changed |= out.spread_from(self, j, j - 1);
+            }
+            if !changed {
+                return out;
+            }
+        }
+    }
+
+    /// Spreads filled cells of row `from` into row `to`; returns true when the row changed.
+    fn spread_from(&mut self, mask: &Self, from: usize, to: usize) -> bool {
+        let s = self.stride;
+        let mut changed = false;
+        for w in 0..s {
+            let new = self.words[from * s + w] & mask.words[to * s + w] & !self.words[to * s + w];
+            if new != 0 {
+                self.words[to * s + w] |= new;
+                changed = true;
+            }
+        }
+        if changed {
+            spread_row(&mut self.words[to * s..(to + 1) * s], &mask.words[to * s..(to + 1) * s]);
+        }
+        changed
+    }
+
+    /// Returns the connected parts of the set, largest first (ties: the one with the south-western cell first).
+    pub fn components(&self) -> Vec<Self> {
+        let mut rest = self.clone();
+        let mut out = Vec::new();
+        loop {
+            let first = rest.cells().next();
+            let Some((i, j)) = first else { break };
+            let mut seed = Self::new(self.nx, self.ny);
+            seed.set(i, j);
+            let part = rest.flood(&seed);
+            rest.subtract(&part);
+            out.push(part);
+        }
+        out.sort_by_key(|part| std::cmp::Reverse(part.count()));
+        out
+    }
+}
+
+fn clip(a: i64, b: i64, n: usize) -> (usize, usize) {
+    (a.clamp(0, n as i64) as usize, b.clamp(0, n as i64) as usize)
+}
+
+/// Returns the bits of word `w` that belong to columns `i0..i1`.
+fn span_mask(i0: usize, i1: usize, w: usize) -> u64 {
+    let (lo, hi) = (i0.saturating_sub(w * 64).min(63), (i1 - w * 64).min(64));
+    (u64::MAX >> (64 - hi)) & (u64::MAX << lo)
+}
+
+/// Bit k becomes bit k AND bit k + step.
+fn and_shifted_down(row: &mut [u64], step: usize) {
+    let (words, bits) = (step / 64, step % 64);
+    for w in 0..row.len() {
+        let at = |k: usize| row.get(k).copied().unwrap_or(0);
+        let low = at(w + words) >> bits;
+        let high = if bits == 0 { 0 } else { at(w + words + 1) << (64 - bits) };
+        row[w] &= low | high;
+    }
+}
+
+/// Bit k moves to bit k + step.
+fn shift_up(row: &mut [u64], step: usize) {
+    let (words, bits) = (step / 64, step % 64);
+    for w in (0..row.len()).rev() {
+        let at = |k: Option<usize>| k.map_or(0, |k| row[k]);
+        let low = at(w.checked_sub(words)) << bits;
+        let high = if bits == 0 { 0 } else { at(w.checked_sub(words + 1)) >> (64 - bits) };
+        row[w] = low | high;
+    }
+}
+
+/// Spreads set bits along a row as far as the mask has ones (parallel prefix inside a word, a carry between words).
+fn spread_row(row: &mut [u64], mask: &[u64]) {
+    let mut carry = 0;
+    for (g, &m) in row.iter_mut().zip(mask) {
+        *g |= carry & m;
+        let mut p = m;
+        for shift in [1, 2, 4, 8, 16, 32] {
+            *g |= p & (*g << shift);
+            p &= p << shift;
+        }
+        carry = *g >> 63;
+    }
+    carry = 0;
+    for (g, &m) in row.iter_mut().zip(mask).rev() {
+        *g |= (carry << 63) & m;
+        let mut p = m;
+        for shift in [1, 2, 4, 8, 16, 32] {
+            *g |= p & (*g >> shift);
+            p &= p >> shift;
+        }
+        carry = *g & 1;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::seed::Stream;
+
+    fn noise(nx: usize, ny: usize, fill: f64, seed: u64) -> Bitmap {
+        let mut stream = Stream::new(seed, "bitmap");
+        let mut map = Bitmap::new(nx, ny);
+        for j in 0..ny {
+            for i in 0..nx {
+                if stream.chance(fill) {
+                    map.set(i, j);
+                }
+            }
+        }
+        map
+    }
+
+    #[test]
+    fn erosion_equals_the_plain_definition() {
+        for (seed, radius) in [(1, 1.0), (2, 1.5), (3, 2.0), (4, 3.3), (5, 6.0), (6, 7.0)] {
+            let map = noise(150, 40, 0.99, seed);
+            let eroded = map.eroded(radius);
+            for j in 0..40_i64 {
+                for i in 0..150_i64 {
+                    let r = radius.ceil() as i64;
+                    let whole = (-r..=r).all(|dy| {
+                        (-r..=r).all(|dx| {
+                            let far = ((dx * dx + dy * dy) as f64).sqrt() >= radius;
+                            let (x, y) = (i + dx, j + dy);
+                            far || (x >= 0 && y >= 0 && map.get(x as usize, y as usize))
+                        })
+                    });
+                    assert_eq!(eroded.get(i as usize, j as usize), whole, "radius {radius} at {i} {j}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn components_split_the_set_by_edges() {
+        let map = noise(130, 60, 0.6, 9);
+        let parts = map.components();
+        assert_eq!(parts.iter().map(Bitmap::count).sum::<usize>(), map.count());
+        for part in &parts {
+            for (i, j) in part.cells() {
+                for (x, y) in [(i + 1, j), (i, j + 1)] {
+                    assert_eq!(map.get(x, y), part.get(x, y), "a neighbor of {i} {j} is in another part");
+                }
+            }
+        }
+        assert!(parts.windows(2).all(|p| p[0].count() >= p[1].count()));
+    }
+
+    #[test]
+    fn fill_and_any_in_are_clipped() {
+        let mut map = Bitmap::new(70, 5);
+        map.fill(-3, 200, 1, 2, true);
+        assert_eq!(map.count(), 70);
+        assert!(map.any_in(60, 66, 0, 9) && !map.any_in(60, 66, 2, 9));
+        map.fill(10, 65, -4, 40, false);
+        assert_eq!(map.count(), 15);
+    }
+}
