@@ -1,0 +1,112 @@
+//! From a layout on the lattice to the floorplan document.
+
+use d3dgen_model::Segment;
+use d3dgen_model::floorplan::{CostTerm, Door, Floorplan, PlanRoom, Wall};
+use d3dgen_model::geometry::to_mm;
+use d3dgen_model::seed::Stream;
+
+use super::cost::{TERMS, Score};
+use super::doors::{Site, place_doors};
+use super::lattice::{Cellbox, INNER_HALF_M, OUTER_HALF_M, meters};
+use super::outline::{Mosaic, Stretch, outline};
+use super::realize::Layout;
+use super::spec::Brief;
+use super::windows::place_windows;
+
+/// How a plan is turned before it is written, so that not every building has its corridor from west to east.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Turn {
+    pub flip_x: bool,
+    pub flip_y: bool,
+    pub swap: bool,
+}
+
+/// Returns the boxes turned and moved so that the building's south-west corner is the origin.
+pub(super) fn turned(boxes: &[(usize, Cellbox)], turn: Turn) -> Vec<(usize, Cellbox)> {
+    let mut out: Vec<(usize, Cellbox)> = boxes
+        .iter()
+        .map(|(room, b)| {
+            let (xa, xb) = if turn.flip_x { (-b.x1, -b.x0) } else { (b.x0, b.x1) };
+            let (ya, yb) = if turn.flip_y { (-b.y1, -b.y0) } else { (b.y0, b.y1) };
+            let b = if turn.swap { Cellbox::new(ya, xa, yb, xb) } else { Cellbox::new(xa, ya, xb, yb) };
+            (*room, b)
+        })
+        .collect();
+    let x0 = out.iter().map(|(_, b)| b.x0).min().unwrap_or(0);
+    let y0 = out.iter().map(|(_, b)| b.y0).min().unwrap_or(0);
+    for (_, b) in &mut out {
+        *b = Cellbox::new(b.x0 - x0, b.y0 - y0, b.x1 - x0, b.y1 - y0);
+    }
+    out
+}
+
+/// Returns the finished plan, or why this layout cannot become one.
+pub(super) fn assemble(
+    brief: &Brief,
+    layout: &Layout,
+    score: &Score,
+    turn: Turn,
+    seed: u64,
+    scheme: &str,
+    rng: &mut Stream,
+) -> Result<Floorplan, String> {
+    let boxes = turned(&layout.boxes, turn);
+    let stretches = Mosaic::new(&boxes).stretches();
+    let mut rooms = Vec::with_capacity(brief.rooms.len());
+    for (i, spec) in brief.rooms.iter().enumerate() {
+        let ring = outline(i, &stretches).ok_or_else(|| format!("{} is not one simple polygon", spec.id))?;
+        let net_polygon = ring.net_polygon();
+        rooms.push(PlanRoom {
+            room_id: spec.id.clone(),
+            room_type: spec.room_type.clone(),
+            name: spec.name.clone(),
+            circulation: spec.circulation,
+            polygon: ring.polygon(),
+            net_area_m2: to_mm(net_polygon.signed_area()),
+            net_polygon,
+            ceiling_height_m: spec.ceiling_height,
+            materials: spec.materials.clone(),
+            locked: false,
+        });
+    }
+    let net_m2: Vec<f64> = rooms.iter().map(|r| r.net_area_m2).collect();
+    let doors = place_doors(&Site { brief, boxes: &boxes, stretches: &stretches, net_m2: &net_m2 }, rng)?;
+    let windows = place_windows(brief, &stretches, &net_m2, &doors);
+    let walls = walls(brief, &stretches, &doors);
+    let cost = TERMS.iter().zip(score.weighted()).map(|(t, c)| CostTerm { term: (*t).into(), cost: to_mm(c) }).collect();
+    let conflicts = brief.conflicts.clone();
+    Ok(Floorplan { version: 1, seed, scheme: scheme.into(), rooms, walls, doors, windows, cost, conflicts })
+}
+
+/// Returns wall pieces with the doors cut out; windows stay part of their wall, which goes on below the sill.
+fn walls(brief: &Brief, stretches: &[Stretch], doors: &[Door]) -> Vec<Wall> {
+    let mut walls = Vec::new();
+    for s in stretches {
+        let along = |p: d3dgen_model::Point| if s.vertical { p.y } else { p.x };
+        let across = |p: d3dgen_model::Point| if s.vertical { p.x } else { p.y };
+        let (mut from, end) = (meters(s.from), meters(s.to));
+        let mut cuts: Vec<(f64, f64)> = doors
+            .iter()
+            .filter(|d| d.line.is_vertical() == s.vertical && (across(d.line.start) - meters(s.at)).abs() < 1e-6)
+            .map(|d| (along(d.line.start), along(d.line.end)))
+            .filter(|(a, b)| *a >= from - 1e-6 && *b <= end + 1e-6)
+            .collect();
+        cuts.sort_by(|a, b| a.0.total_cmp(&b.0));
+        cuts.push((end, end));
+        for (a, b) in cuts {
+            if a - from > 1e-6 {
+                let half = if s.is_outer() { OUTER_HALF_M } else { INNER_HALF_M };
+                walls.push(Wall {
+                    wall_id: format!("wall_{}", walls.len() + 1),
+                    line: Segment { start: s.point(from), end: s.point(a) },
+                    thickness_m: 2.0 * half,
+                    room_ids: [s.low, s.high].into_iter().flatten().map(|r| brief.rooms[r].id.clone()).collect(),
+                    exterior: s.is_outer(),
+                    locked: false,
+                });
+            }
+            from = b;
+        }
+    }
+    walls
+}

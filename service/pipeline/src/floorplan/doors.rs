@@ -1,0 +1,274 @@
+//! Doors and open passages: where in the shared wall, how wide, which way the leaf swings.
+
+use d3dgen_model::floorplan::{Door, DoorKind, Swing};
+use d3dgen_model::geometry::{Rect, to_mm};
+use d3dgen_model::scene_graph::Connector;
+use d3dgen_model::seed::Stream;
+use d3dgen_model::{Point, Segment};
+
+use super::lattice::{Cellbox, INNER_HALF_M, JAMB_M, OUTER_HALF_M, meters};
+use super::outline::Stretch;
+use super::spec::Brief;
+
+/// Clear height of doors, m.
+const DOOR_HEIGHT_M: f64 = 2.1;
+/// Clear width from which a door gets two leaves, m.
+const DOUBLE_FROM_M: f64 = 1.25;
+/// A leaf whose square takes more than this share of the room slides instead.
+const SLIDING_SHARE: f64 = 0.22;
+/// Widest open passage, m, and the stubs of wall left beside it.
+const OPEN_MAX_M: f64 = 4.0;
+const OPEN_STUB_M: f64 = 0.3;
+/// Floor kept free in front of a door, m.
+const APPROACH_M: f64 = 0.6;
+
+/// The plan so far, as door placing sees it.
+pub(super) struct Site<'a> {
+    pub brief: &'a Brief,
+    pub boxes: &'a [(usize, Cellbox)],
+    pub stretches: &'a [Stretch],
+    pub net_m2: &'a [f64],
+}
+
+/// A place for one door.
+struct Spot {
+    door: Door,
+    /// Floor the leaf sweeps and floor to stand on, by room.
+    zones: Vec<(usize, Rect)>,
+    penalty: f64,
+}
+
+/// Returns all passages of the plan; the reason for each that finds no place.
+pub(super) fn place_doors(site: &Site<'_>, rng: &mut Stream) -> Result<Vec<Door>, String> {
+    let brief = site.brief;
+    let mut doors: Vec<Door> = Vec::new();
+    let mut zones: Vec<(usize, Rect)> = Vec::new();
+    let mut missing = Vec::new();
+    let mut wanted: Vec<(usize, usize, Connector, bool)> = Vec::new();
+    if let Some(spine) = brief.spine {
+        for (i, room) in brief.rooms.iter().enumerate().filter(|(i, r)| r.on_spine && *i != spine) {
+            let connector = if room.open_front { Connector::Open } else { Connector::Door };
+            wanted.push((i, spine, connector, true));
+        }
+    }
+    let walkable = |c: Connector| matches!(c, Connector::Door | Connector::Open);
+    wanted.extend(brief.links.iter().filter(|l| walkable(l.connector)).map(|l| (l.a, l.b, l.connector, l.required)));
+    for (a, b, connector, required) in wanted {
+        let spots = site.stretches.iter().filter(|s| s.joins(a, b)).flat_map(|s| site.spots(s, a, b, connector, rng));
+        take_best(spots.collect(), &mut doors, &mut zones, || {
+            if required {
+                missing.push(format!("{} to {}", brief.rooms[a].id, brief.rooms[b].id));
+            }
+        });
+    }
+    for (room, main) in site.entrances() {
+        let spots: Vec<Spot> = site
+            .stretches
+            .iter()
+            .filter(|s| s.only_room() == Some(room))
+            .flat_map(|s| site.entrance_spots(s, room, main, &doors))
+            .collect();
+        take_best(spots, &mut doors, &mut zones, || {
+            if main {
+                missing.push(format!("outdoors to {}", brief.rooms[room].id));
+            }
+        });
+    }
+    if !missing.is_empty() {
+        return Err(format!("no wall long enough for the door from {}", missing.join(", ")));
+    }
+    for (i, door) in doors.iter_mut().enumerate() {
+        door.door_id = format!("door_{}", i + 1);
+    }
+    Ok(doors)
+}
+
+/// Takes the spot that disturbs the doors already placed least.
+fn take_best(spots: Vec<Spot>, doors: &mut Vec<Door>, zones: &mut Vec<(usize, Rect)>, none: impl FnOnce()) {
+    let cost = |spot: &Spot| {
+        let clashes = spot
+            .zones
+            .iter()
+            .map(|(room, zone)| zones.iter().filter(|(r, z)| r == room && z.overlaps(zone)).count())
+            .sum::<usize>();
+        spot.penalty + 10.0 * clashes as f64
+    };
+    match spots.into_iter().min_by(|a, b| cost(a).total_cmp(&cost(b))) {
+        Some(spot) => {
+            zones.extend(spot.zones);
+            doors.push(spot.door);
+        }
+        None => none(),
+    }
+}
+
+impl Site<'_> {
+    /// Returns rooms that need a door to outdoors; the main one first.
+    fn entrances(&self) -> Vec<(usize, bool)> {
+        let brief = self.brief;
+        let main = brief.rooms.iter().position(|r| r.entrance).or(brief.spine);
+        let mut list: Vec<(usize, bool)> = main.map(|m| (m, true)).into_iter().collect();
+        if let Some(spine) = brief.spine
+            && brief.second_exit
+        {
+            list.push((spine, false));
+        }
+        list
+    }
+
+    /// Returns the free part of a stretch in meters: clear of the walls that meet its ends.
+    fn usable(&self, s: &Stretch) -> (f64, f64) {
+        let end = |at: i32| {
+            let outer = self.stretches.iter().any(|t| {
+                t.vertical != s.vertical && t.is_outer() && t.from <= s.at && s.at <= t.to && t.at == at
+            });
+            JAMB_M + if outer { OUTER_HALF_M } else { INNER_HALF_M }
+        };
+        (meters(s.from) + end(s.from), meters(s.to) - end(s.to))
+    }
+
+    fn spots(&self, s: &Stretch, a: usize, b: usize, connector: Connector, rng: &mut Stream) -> Vec<Spot> {
+        let clear = self.brief.door_width(a, b);
+        let opening = Brief::opening(clear);
+        let (from, to) = self.usable(s);
+        if to - from < opening - 1e-9 {
+            return Vec::new();
+        }
+        if connector == Connector::Open {
+            let width = (meters(s.len()) - 2.0 * (OPEN_STUB_M + INNER_HALF_M)).clamp(opening, OPEN_MAX_M);
+            let start = (from + to - width) / 2.0;
+            return vec![self.open_spot(s, a, b, start, width)];
+        }
+        let into = self.swing_room(a, b);
+        let first = if rng.chance(0.5) { 0.0 } else { 0.2 };
+        let mut spots = Vec::new();
+        for (start, hinge_at_start, penalty) in
+            [(from, true, first), (to - opening, false, 0.2 - first), ((from + to - opening) / 2.0, true, 1.5)]
+        {
+            spots.extend(self.leaf_spot(s, [a, b], into, start, clear, hinge_at_start, penalty));
+        }
+        spots
+    }
+
+    /// Returns the room a leaf opens into: never the corridor; of two rooms the one that hangs on the other, else the larger.
+    fn swing_room(&self, a: usize, b: usize) -> usize {
+        let brief = self.brief;
+        if Some(a) == brief.spine || brief.rooms[b].host == Some(a) {
+            return b;
+        }
+        if Some(b) == brief.spine || brief.rooms[a].host == Some(b) {
+            return a;
+        }
+        if self.net_m2[a] >= self.net_m2[b] { a } else { b }
+    }
+
+    fn open_spot(&self, s: &Stretch, a: usize, b: usize, start: f64, width: f64) -> Spot {
+        let line = Segment { start: s.point(start), end: s.point(start + width) };
+        let zones = [a, b].map(|r| (r, self.zone(s, r, start, width, APPROACH_M))).to_vec();
+        let door = self.door(line, DoorKind::Open, width, s, &[a, b], None);
+        Spot { door, zones, penalty: 0.0 }
+    }
+
+    #[expect(clippy::too_many_arguments, reason = "one door is where, between whom, how wide, which way")]
+    fn leaf_spot(
+        &self,
+        s: &Stretch,
+        rooms: [usize; 2],
+        into: usize,
+        start: f64,
+        clear: f64,
+        hinge_at_start: bool,
+        penalty: f64,
+    ) -> Option<Spot> {
+        let opening = Brief::opening(clear);
+        let line = Segment { start: s.point(start), end: s.point(start + opening) };
+        let double = clear >= DOUBLE_FROM_M;
+        let leaf = if double { opening / 2.0 } else { opening };
+        let swept = self.zone(s, into, start, opening, leaf.max(APPROACH_M));
+        let slides = leaf * leaf > SLIDING_SHARE * self.net_m2[into] || !self.inside(into, &swept);
+        let mut zones: Vec<(usize, Rect)> =
+            rooms.iter().map(|&r| (r, self.zone(s, r, start, opening, APPROACH_M))).collect();
+        let (kind, swing) = if slides {
+            (DoorKind::Sliding, None)
+        } else {
+            zones.push((into, swept));
+            let kind = if double { DoorKind::DoubleHinged } else { DoorKind::Hinged };
+            (kind, Some(Swing { into_room_id: Some(self.brief.rooms[into].id.clone()), hinge_at_start }))
+        };
+        if !rooms.iter().all(|&r| self.inside(r, &self.zone(s, r, start, opening, 0.5))) {
+            return None;
+        }
+        let door = self.door(line, kind, clear, s, &rooms, swing);
+        Some(Spot { door, zones, penalty: penalty + if slides { 0.5 } else { 0.0 } })
+    }
+
+    fn entrance_spots(&self, s: &Stretch, room: usize, main: bool, doors: &[Door]) -> Vec<Spot> {
+        let clear = self.brief.entrance_width;
+        let opening = Brief::opening(clear);
+        let (from, to) = self.usable(s);
+        if to - from < opening - 1e-9 {
+            return Vec::new();
+        }
+        let start = (from + to - opening) / 2.0;
+        let line = Segment { start: s.point(start), end: s.point(start + opening) };
+        let spine = Some(room) == self.brief.spine;
+        // The end of a corridor is where one looks for its door; a second exit belongs far from the first.
+        let mut penalty = if spine && !self.brief.hub { meters(s.len()) } else { 0.1 * f64::from(s.at.abs()) * 0.05 };
+        if !main {
+            let away = doors.iter().filter(|d| d.entrance).map(|d| d.line.middle().distance(line.middle())).fold(f64::MAX, f64::min);
+            if away < 5.0 {
+                return Vec::new();
+            }
+            penalty -= 0.5 * away.min(100.0);
+        }
+        let double = clear >= DOUBLE_FROM_M;
+        let zone = self.zone(s, room, start, opening, APPROACH_M);
+        if !self.inside(room, &zone) {
+            return Vec::new();
+        }
+        let kind = if double { DoorKind::DoubleHinged } else { DoorKind::Hinged };
+        // Doors on the way out open outwards.
+        let swing = Some(Swing { into_room_id: None, hinge_at_start: true });
+        let mut door = self.door(line, kind, clear, s, &[room], swing);
+        door.entrance = main;
+        vec![Spot { door, zones: vec![(room, zone)], penalty }]
+    }
+
+    fn door(&self, line: Segment, kind: DoorKind, clear: f64, s: &Stretch, rooms: &[usize], swing: Option<Swing>) -> Door {
+        Door {
+            door_id: String::new(),
+            kind,
+            line,
+            clear_width_m: to_mm(clear),
+            height_m: DOOR_HEIGHT_M,
+            wall_thickness_m: if s.is_outer() { 2.0 * OUTER_HALF_M } else { 2.0 * INNER_HALF_M },
+            room_ids: rooms.iter().map(|&r| self.brief.rooms[r].id.clone()).collect(),
+            entrance: false,
+            swing,
+            locked: false,
+        }
+    }
+
+    /// Returns the floor of `room` in front of an opening, `deep` meters from the wall's face.
+    fn zone(&self, s: &Stretch, room: usize, start: f64, width: f64, deep: f64) -> Rect {
+        let at = meters(s.at);
+        let half = if s.is_outer() { OUTER_HALF_M } else { INNER_HALF_M };
+        let (near, far) = if s.low == Some(room) { (at - half - deep, at - half) } else { (at + half, at + half + deep) };
+        if s.vertical { Rect::new(near, start, far, start + width) } else { Rect::new(start, near, start + width, far) }
+    }
+
+    /// Returns true when a rectangle lies in a room, probed on a 3 x 3 grid of points.
+    fn inside(&self, room: usize, zone: &Rect) -> bool {
+        let zone = zone.grown(-0.01);
+        let probe = |p: Point| {
+            self.boxes.iter().any(|(r, b)| {
+                let b = b.to_rect();
+                *r == room && (b.x0..=b.x1).contains(&p.x) && (b.y0..=b.y1).contains(&p.y)
+            })
+        };
+        (0..9).all(|k| {
+            let (i, j) = (f64::from(k % 3) / 2.0, f64::from(k / 3) / 2.0);
+            probe(Point::new(zone.x0 + i * zone.width(), zone.y0 + j * zone.height()))
+        })
+    }
+}

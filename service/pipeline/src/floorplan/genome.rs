@@ -1,0 +1,196 @@
+//! The discrete description of a plan that the search changes: which scheme, which rooms in which band and order, which
+//! small rooms nest beside whom, how deep the bands are.
+
+use d3dgen_model::domain::{Daylight, Scheme};
+use d3dgen_model::seed::Stream;
+
+use super::lattice::{INNER_HALF_M, up};
+use super::spec::Brief;
+
+/// A stretch of a band: a room over the full depth, with small rooms cut out of its corridor side.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Cell {
+    pub host: usize,
+    /// Small rooms from the start of the cell, along the corridor.
+    pub left: Vec<usize>,
+    /// Small rooms up to the end of the cell.
+    pub right: Vec<usize>,
+    /// Depth of the small rooms, lattice units.
+    pub nest_depth: i32,
+}
+
+impl Cell {
+    pub(super) fn new(host: usize) -> Self {
+        Self { host, left: Vec::new(), right: Vec::new(), nest_depth: 0 }
+    }
+
+    pub(super) fn nests(&self) -> impl Iterator<Item = usize> + '_ {
+        self.left.iter().chain(&self.right).copied()
+    }
+}
+
+/// A row of cells along one side of a corridor.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Band {
+    pub depth: i32,
+    pub cells: Vec<Cell>,
+}
+
+/// Which bands a room at the end of the corridor covers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Cover {
+    Both,
+    Top,
+    Bottom,
+}
+
+/// A large room that closes one end of the corridor.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Cap {
+    pub room: usize,
+    pub cover: Cover,
+    /// True when the uncovered band goes on beside the cap; false leaves a notch in the outline.
+    pub under: bool,
+}
+
+/// A plan as the search sees it.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Genome {
+    pub scheme: Scheme,
+    pub bands: Vec<Band>,
+    /// Rooms that close the start and the end of the corridor (straight schemes only).
+    pub caps: [Option<Cap>; 2],
+    /// Angle: true when the outer band fills the corner.
+    pub corner: bool,
+}
+
+/// Returns the number of bands of a scheme for `rooms` rooms.
+pub(super) fn band_count(scheme: Scheme, rooms: usize) -> usize {
+    match scheme {
+        Scheme::Straight | Scheme::Capped => 2,
+        Scheme::Angle | Scheme::Racetrack => 4,
+        Scheme::Comb => 2 * finger_count(rooms),
+    }
+}
+
+/// Returns how many wings a comb has for `rooms` rooms: about 16 a wing.
+pub(super) fn finger_count(rooms: usize) -> usize {
+    rooms.div_ceil(16).max(2)
+}
+
+impl Genome {
+    /// Returns a random start: large rooms as cells, small ones nested or on their own, en suites with their hosts.
+    pub(super) fn random(brief: &Brief, scheme: Scheme, rng: &mut Stream) -> Self {
+        let count = band_count(scheme, brief.rooms.len());
+        let mut genome = Self {
+            scheme,
+            bands: (0..count).map(|_| Band { depth: 0, cells: Vec::new() }).collect(),
+            caps: [None, None],
+            corner: rng.chance(0.7),
+        };
+        let mut free: Vec<usize> = (0..brief.rooms.len()).filter(|i| Some(*i) != brief.spine).collect();
+        rng.shuffle(&mut free);
+        if scheme == Scheme::Capped {
+            genome.choose_caps(brief, &mut free, rng);
+        }
+        let (nested, cells): (Vec<usize>, Vec<usize>) =
+            free.into_iter().partition(|&r| is_nestable(brief, r) && (brief.rooms[r].host.is_some() || rng.chance(0.6)));
+        for room in cells {
+            let lightest = genome.lightest_band(brief, room, rng);
+            genome.bands[lightest].cells.push(Cell::new(room));
+        }
+        for room in nested {
+            genome.nest_somewhere(brief, room, rng);
+        }
+        for band in &mut genome.bands {
+            let area: f64 = band.cells.iter().map(|c| brief.rooms[c.host].area_target).sum::<f64>();
+            let mean = area / band.cells.len().max(1) as f64;
+            band.depth = up((mean.sqrt() * (0.85 + 0.5 * rng.unit())).clamp(2.0, 9.0) + 0.18);
+        }
+        genome
+    }
+
+    fn choose_caps(&mut self, brief: &Brief, free: &mut Vec<usize>, rng: &mut Stream) {
+        let entrance = free.iter().position(|&r| brief.rooms[r].entrance && brief.rooms[r].area_target >= 8.0);
+        if let Some(i) = entrance
+            && rng.chance(0.7)
+        {
+            self.caps[0] = Some(random_cap(free.remove(i), rng));
+        }
+        let largest = free
+            .iter()
+            .enumerate()
+            .filter(|(_, r)| brief.rooms[**r].on_spine && brief.rooms[**r].area_target >= 9.0)
+            .max_by(|a, b| brief.rooms[*a.1].area_target.total_cmp(&brief.rooms[*b.1].area_target))
+            .map(|(i, _)| i);
+        if let Some(i) = largest {
+            self.caps[1] = Some(random_cap(free.remove(i), rng));
+        }
+    }
+
+    /// Puts a small room beside its host, or beside a random large room.
+    pub(super) fn nest_somewhere(&mut self, brief: &Brief, room: usize, rng: &mut Stream) {
+        let host = brief.rooms[room].host.or_else(|| guest_of(brief, room));
+        let mut places: Vec<(usize, usize)> = Vec::new();
+        for (b, band) in self.bands.iter().enumerate() {
+            for (c, cell) in band.cells.iter().enumerate() {
+                let fits = match host {
+                    Some(h) => cell.host == h,
+                    None => brief.rooms[cell.host].area_target >= 1.8 * brief.rooms[room].area_target,
+                };
+                if fits {
+                    places.push((b, c));
+                }
+            }
+        }
+        let Some(&(b, c)) = rng.pick(&places) else {
+            let b = rng.below(self.bands.len());
+            let at = rng.below(self.bands[b].cells.len() + 1);
+            self.bands[b].cells.insert(at, Cell::new(room));
+            return;
+        };
+        let cell = &mut self.bands[b].cells[c];
+        if cell.nest_depth == 0 {
+            cell.nest_depth = nest_depth(brief, room);
+        }
+        if rng.chance(0.5) {
+            cell.left.push(room);
+        } else {
+            cell.right.insert(0, room);
+        }
+    }
+
+    fn lightest_band(&self, brief: &Brief, room: usize, rng: &mut Stream) -> usize {
+        let load = |b: usize| self.bands[b].cells.iter().map(|c| brief.rooms[c.host].area_target).sum::<f64>();
+        let dark = brief.rooms[room].daylight == Daylight::None;
+        let candidates: Vec<usize> = match self.scheme {
+            // Bands 2 and 3 of a racetrack are its core.
+            Scheme::Racetrack if dark => vec![2, 3],
+            Scheme::Racetrack => vec![0, 1],
+            _ => (0..self.bands.len()).collect(),
+        };
+        let best = candidates.iter().copied().min_by(|a, b| load(*a).total_cmp(&load(*b))).unwrap_or(0);
+        if rng.chance(0.75) { best } else { *rng.pick(&candidates).unwrap_or(&best) }
+    }
+}
+
+fn random_cap(room: usize, rng: &mut Stream) -> Cap {
+    let cover = *rng.pick(&[Cover::Both, Cover::Top, Cover::Bottom]).unwrap_or(&Cover::Both);
+    Cap { room, cover, under: rng.chance(0.5) }
+}
+
+/// Returns true for rooms small enough to be cut out of a larger one's corridor side.
+pub(super) fn is_nestable(brief: &Brief, room: usize) -> bool {
+    let spec = &brief.rooms[room];
+    spec.area_target <= 9.0 && spec.daylight != Daylight::Required && !spec.entrance
+}
+
+/// Returns the room that is entered through `room` (an isolation room through its anteroom), if any.
+pub(super) fn guest_of(brief: &Brief, room: usize) -> Option<usize> {
+    brief.rooms.iter().position(|r| r.host == Some(room) && r.area_target > brief.rooms[room].area_target)
+}
+
+/// Returns a depth that gives a small room a good proportion, lattice units.
+pub(super) fn nest_depth(brief: &Brief, room: usize) -> i32 {
+    up((brief.rooms[room].area_target * 1.25).sqrt() + 2.0 * INNER_HALF_M)
+}

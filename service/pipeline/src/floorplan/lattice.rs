@@ -1,0 +1,107 @@
+//! Integer geometry on the 5 cm lattice that plans are searched on: exact, and the same bytes on every machine.
+
+use d3dgen_model::Rect;
+
+/// Lattice step, m.
+pub(super) const STEP_M: f64 = 0.05;
+/// Half the thickness of an inner wall, m.
+pub(super) const INNER_HALF_M: f64 = 0.06;
+/// Half the thickness of an outer wall, m.
+pub(super) const OUTER_HALF_M: f64 = 0.12;
+/// Least wall between a door opening and a room corner, measured from the face of the crossing wall, m.
+pub(super) const JAMB_M: f64 = 0.10;
+
+/// Returns meters as lattice units, rounded up.
+pub(super) fn up(meters: f64) -> i32 {
+    (meters / STEP_M - 1e-6).ceil() as i32
+}
+
+/// Returns meters as the nearest lattice unit.
+pub(super) fn nearest(meters: f64) -> i32 {
+    (meters / STEP_M).round() as i32
+}
+
+/// Returns lattice units in meters.
+pub(super) fn meters(units: i32) -> f64 {
+    f64::from(units) * STEP_M
+}
+
+/// A rectangle on the lattice; `x0 < x1`, `y0 < y1`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Cellbox {
+    pub x0: i32,
+    pub y0: i32,
+    pub x1: i32,
+    pub y1: i32,
+}
+
+impl Cellbox {
+    pub(super) fn new(xa: i32, ya: i32, xb: i32, yb: i32) -> Self {
+        Self { x0: xa.min(xb), y0: ya.min(yb), x1: xa.max(xb), y1: ya.max(yb) }
+    }
+
+    pub(super) fn width(&self) -> i32 {
+        self.x1 - self.x0
+    }
+
+    pub(super) fn height(&self) -> i32 {
+        self.y1 - self.y0
+    }
+
+    pub(super) fn area_m2(&self) -> f64 {
+        meters(self.width()) * meters(self.height())
+    }
+
+
+    /// Returns the center times two, so that it stays on the lattice.
+    pub(super) fn center2(&self) -> (i32, i32) {
+        (self.x0 + self.x1, self.y0 + self.y1)
+    }
+
+    pub(super) fn to_rect(self) -> Rect {
+        Rect::new(meters(self.x0), meters(self.y0), meters(self.x1), meters(self.y1))
+    }
+
+    /// Returns the shared edge of two rectangles that touch without overlapping, as the side of `self` it lies on
+    /// (0 west, 1 east, 2 south, 3 north) and the stretch `from..to` along that side.
+    pub(super) fn contact(&self, other: &Self) -> Option<(usize, i32, i32)> {
+        let (ylo, yhi) = (self.y0.max(other.y0), self.y1.min(other.y1));
+        let (xlo, xhi) = (self.x0.max(other.x0), self.x1.min(other.x1));
+        if ylo < yhi {
+            if self.x0 == other.x1 {
+                return Some((0, ylo, yhi));
+            }
+            if self.x1 == other.x0 {
+                return Some((1, ylo, yhi));
+            }
+        }
+        if xlo < xhi {
+            if self.y0 == other.y1 {
+                return Some((2, xlo, xhi));
+            }
+            if self.y1 == other.y0 {
+                return Some((3, xlo, xhi));
+            }
+        }
+        None
+    }
+}
+
+/// A coordinate frame of a band: rooms are laid along `u` from `origin`, their depth along `v`.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Frame {
+    pub origin: (i32, i32),
+    pub u: (i32, i32),
+    pub v: (i32, i32),
+}
+
+impl Frame {
+    /// Returns the rectangle between `along0..along1` and `out0..out1` in world lattice units.
+    pub(super) fn place(&self, along0: i32, along1: i32, out0: i32, out1: i32) -> Cellbox {
+        let at = |a: i32, o: i32| {
+            (self.origin.0 + self.u.0 * a + self.v.0 * o, self.origin.1 + self.u.1 * a + self.v.1 * o)
+        };
+        let ((xa, ya), (xb, yb)) = (at(along0, out0), at(along1, out1));
+        Cellbox::new(xa, ya, xb, yb)
+    }
+}

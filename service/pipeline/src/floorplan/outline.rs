@@ -1,0 +1,238 @@
+//! Room outlines from lattice boxes, and wall pieces between them.
+
+use std::collections::BTreeMap;
+
+use d3dgen_model::geometry::to_mm;
+use d3dgen_model::{Point, Polygon};
+
+use super::lattice::{Cellbox, INNER_HALF_M, OUTER_HALF_M, meters};
+
+/// A straight stretch of boundary on the lattice between two rooms, or between a room and outdoors.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Stretch {
+    /// True for a wall that runs north-south.
+    pub vertical: bool,
+    /// x of a vertical, y of a horizontal stretch.
+    pub at: i32,
+    pub from: i32,
+    pub to: i32,
+    /// Room on the west or south side.
+    pub low: Option<usize>,
+    /// Room on the east or north side.
+    pub high: Option<usize>,
+}
+
+impl Stretch {
+    pub(super) fn len(&self) -> i32 {
+        self.to - self.from
+    }
+
+    pub(super) fn is_outer(&self) -> bool {
+        self.low.is_none() || self.high.is_none()
+    }
+
+    /// Returns the room of an outer stretch.
+    pub(super) fn only_room(&self) -> Option<usize> {
+        match (self.low, self.high) {
+            (Some(room), None) | (None, Some(room)) => Some(room),
+            _ => None,
+        }
+    }
+
+    pub(super) fn joins(&self, a: usize, b: usize) -> bool {
+        (self.low, self.high) == (Some(a), Some(b)) || (self.low, self.high) == (Some(b), Some(a))
+    }
+
+    /// Returns the point at a position along the stretch, m.
+    pub(super) fn point(&self, along_m: f64) -> Point {
+        let at = meters(self.at);
+        if self.vertical { Point::new(to_mm(at), to_mm(along_m)) } else { Point::new(to_mm(along_m), to_mm(at)) }
+    }
+}
+
+/// Which room owns each cell of the compressed grid that all box edges span.
+pub(super) struct Mosaic {
+    xs: Vec<i32>,
+    ys: Vec<i32>,
+    owner: Vec<Option<usize>>,
+}
+
+impl Mosaic {
+    pub(super) fn new(boxes: &[(usize, Cellbox)]) -> Self {
+        let mut xs: Vec<i32> = boxes.iter().flat_map(|(_, b)| [b.x0, b.x1]).collect();
+        let mut ys: Vec<i32> = boxes.iter().flat_map(|(_, b)| [b.y0, b.y1]).collect();
+        for list in [&mut xs, &mut ys] {
+            list.sort_unstable();
+            list.dedup();
+        }
+        let mut owner = vec![None; xs.len() * ys.len()];
+        for (room, b) in boxes {
+            let range = |list: &[i32], lo: i32, hi: i32| {
+                list.partition_point(|v| *v < lo)..list.partition_point(|v| *v < hi)
+            };
+            for j in range(&ys, b.y0, b.y1) {
+                for i in range(&xs, b.x0, b.x1) {
+                    owner[j * xs.len() + i] = Some(*room);
+                }
+            }
+        }
+        Self { xs, ys, owner }
+    }
+
+    fn at(&self, i: usize, j: usize) -> Option<usize> {
+        // Index usize::MAX stands for one step before the first.
+        if i == usize::MAX || j == usize::MAX || i + 1 >= self.xs.len() || j + 1 >= self.ys.len() {
+            return None;
+        }
+        self.owner[j * self.xs.len() + i]
+    }
+
+    /// Returns all boundary stretches, as long as they stay between the same two sides.
+    pub(super) fn stretches(&self) -> Vec<Stretch> {
+        let mut found = Vec::new();
+        for vertical in [true, false] {
+            let (across, along) = if vertical { (&self.xs, &self.ys) } else { (&self.ys, &self.xs) };
+            for (i, &at) in across.iter().enumerate() {
+                let mut open: Option<Stretch> = None;
+                for j in 0..along.len().saturating_sub(1) {
+                    let before = i.wrapping_sub(1);
+                    let (low, high) = if vertical {
+                        (self.at(before, j), self.at(i, j))
+                    } else {
+                        (self.at(j, before), self.at(j, i))
+                    };
+                    let continues = open.is_some_and(|s| (s.low, s.high) == (low, high));
+                    if continues {
+                        if let Some(s) = &mut open {
+                            s.to = along[j + 1];
+                        }
+                        continue;
+                    }
+                    found.extend(open.take());
+                    if low != high {
+                        open = Some(Stretch { vertical, at, from: along[j], to: along[j + 1], low, high });
+                    }
+                }
+                found.extend(open);
+            }
+        }
+        found.sort();
+        found
+    }
+}
+
+/// A corner-by-corner outline, counter-clockwise on the lattice, and whether each edge (from corner i to i + 1) has
+/// outdoors beside it somewhere.
+pub(super) struct Outline {
+    pub corners: Vec<(i32, i32)>,
+    pub outer: Vec<bool>,
+}
+
+/// Returns the outline of a room from the stretches around it, or `None` when it is not one simple ring.
+pub(super) fn outline(room: usize, stretches: &[Stretch]) -> Option<Outline> {
+    // Directed edges with the room on the left.
+    let mut next: BTreeMap<(i32, i32), ((i32, i32), bool)> = BTreeMap::new();
+    for s in stretches.iter().filter(|s| s.low == Some(room) || s.high == Some(room)) {
+        let west_or_south = s.low == Some(room);
+        let (a, b) = if s.vertical { ((s.at, s.from), (s.at, s.to)) } else { ((s.from, s.at), (s.to, s.at)) };
+        let forward = s.vertical == west_or_south;
+        let (start, end) = if forward { (a, b) } else { (b, a) };
+        if next.insert(start, (end, s.is_outer())).is_some() {
+            return None;
+        }
+    }
+    let first = *next.keys().next()?;
+    let mut ring: Vec<((i32, i32), bool)> = Vec::new();
+    let mut here = first;
+    loop {
+        let (to, outer) = next.remove(&here)?;
+        ring.push((here, outer));
+        here = to;
+        if here == first {
+            break;
+        }
+    }
+    if !next.is_empty() {
+        return None;
+    }
+    Some(merge_straight(&ring))
+}
+
+/// Joins edges that go on in the same direction; the joined edge is an outer one when any part is.
+fn merge_straight(ring: &[((i32, i32), bool)]) -> Outline {
+    let n = ring.len();
+    let direction = |i: usize| {
+        let ((x0, y0), (x1, y1)) = (ring[i % n].0, ring[(i + 1) % n].0);
+        ((x1 - x0).signum(), (y1 - y0).signum())
+    };
+    let start = (0..n).find(|&i| direction(i + n - 1) != direction(i)).unwrap_or(0);
+    let mut outline = Outline { corners: Vec::new(), outer: Vec::new() };
+    for k in 0..n {
+        let i = start + k;
+        let outer = ring[i % n].1;
+        if k > 0 && direction(i - 1) == direction(i) {
+            if let Some(last) = outline.outer.last_mut() {
+                *last |= outer;
+            }
+        } else {
+            outline.corners.push(ring[i % n].0);
+            outline.outer.push(outer);
+        }
+    }
+    outline
+}
+
+impl Outline {
+    /// Returns the outline on wall center lines, m.
+    pub(super) fn polygon(&self) -> Polygon {
+        Polygon(self.corners.iter().map(|&(x, y)| Point::new(to_mm(meters(x)), to_mm(meters(y)))).collect())
+    }
+
+    /// Returns the outline on wall faces: every edge moved inwards by half its wall's thickness, m.
+    pub(super) fn net_polygon(&self) -> Polygon {
+        let n = self.corners.len();
+        let half = |i: usize| if self.outer[i % n] { OUTER_HALF_M } else { INNER_HALF_M };
+        // The line of edge i, moved to its left: x for vertical edges, y for horizontal ones.
+        let line = |i: usize| {
+            let ((x0, y0), (x1, y1)) = (self.corners[i % n], self.corners[(i + 1) % n]);
+            let (dx, dy) = ((x1 - x0).signum(), (y1 - y0).signum());
+            if dx == 0 { meters(x0) - f64::from(dy) * half(i) } else { meters(y0) + f64::from(dx) * half(i) }
+        };
+        let corner = |i: usize| {
+            let before = i + n - 1;
+            let vertical = self.corners[i % n].0 == self.corners[(i + 1) % n].0;
+            let (x, y) = if vertical { (line(i), line(before)) } else { (line(before), line(i)) };
+            Point::new(to_mm(x), to_mm(y))
+        };
+        Polygon((0..n).map(corner).collect())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_l_shaped_room_has_six_corners_and_a_net_area_inside_its_walls() {
+        let boxes = [
+            (0, Cellbox::new(0, 0, 80, 60)),
+            (0, Cellbox::new(0, 60, 40, 100)),
+            (1, Cellbox::new(40, 60, 80, 100)),
+        ];
+        let stretches = Mosaic::new(&boxes).stretches();
+        let l = outline(0, &stretches).expect("one ring");
+        assert_eq!(l.corners.len(), 6);
+        assert!((l.polygon().signed_area() - 16.0).abs() < 1e-9);
+        let net = l.net_polygon();
+        // 4.0 x 3.0 less (0.24, 0.18), plus 2.0 x 2.0 less (0.18, 0.06).
+        let expected = (4.0 - 0.24) * (3.0 - 0.18) + (2.0 - 0.18) * (2.0 - 0.06);
+        assert!((net.signed_area() - expected).abs() < 1e-6, "{} {expected}", net.signed_area());
+    }
+
+    #[test]
+    fn stretches_cover_both_sides_of_a_shared_wall_once() {
+        let boxes = [(0, Cellbox::new(0, 0, 40, 40)), (1, Cellbox::new(40, 0, 80, 60))];
+        let shared: Vec<_> = Mosaic::new(&boxes).stretches().into_iter().filter(|s| !s.is_outer()).collect();
+        assert_eq!(shared, vec![Stretch { vertical: true, at: 40, from: 0, to: 40, low: Some(0), high: Some(1) }]);
+    }
+}

@@ -1,0 +1,236 @@
+//! What the layout search needs to know about each room, in one place: the scene graph's wishes, the domain's room types
+//! and the knowledge base's limits, merged. The strictest figure wins.
+
+use std::collections::BTreeMap;
+
+use d3dgen_knowledge::{Limit, Limits};
+use d3dgen_model::domain::{Daylight, Domain, Materials, RoomType, Zone};
+use d3dgen_model::scene_graph::{Connector, GraphRoom, Note, SceneGraph};
+
+use crate::Error;
+
+/// Clear width that a wheelchair and most robots need through a door, m; used when the prompt asks for access.
+const ACCESSIBLE_DOOR_M: f64 = 0.9;
+
+/// One room as the search sees it. Areas are net m^2, lengths net m.
+#[derive(Debug, Clone)]
+pub(super) struct RoomSpec {
+    pub id: String,
+    pub room_type: String,
+    pub name: String,
+    pub circulation: bool,
+    pub area_min: f64,
+    pub area_target: f64,
+    pub area_max: f64,
+    pub min_dimension: f64,
+    pub daylight: Daylight,
+    pub zone: Zone,
+    pub wet: bool,
+    pub open_front: bool,
+    pub entrance: bool,
+    pub door_width: f64,
+    pub ceiling_height: f64,
+    pub materials: Materials,
+    /// True when a door leads from the spine into it.
+    pub on_spine: bool,
+    /// Room that it is entered from, for en suites and the like.
+    pub host: Option<usize>,
+}
+
+/// A relation between two rooms other than the spine.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Link {
+    pub a: usize,
+    pub b: usize,
+    pub connector: Connector,
+    pub required: bool,
+}
+
+/// The whole task.
+#[derive(Debug, Clone)]
+pub(super) struct Brief {
+    pub rooms: Vec<RoomSpec>,
+    /// Index of the corridor, hall or hub room; `None` for a single room.
+    pub spine: Option<usize>,
+    /// True when the spine is a room of its own right (a warehouse hall) and takes its width from its area.
+    pub hub: bool,
+    /// Clear corridor width, m.
+    pub spine_width: f64,
+    pub links: Vec<Link>,
+    pub apart: Vec<[usize; 2]>,
+    pub second_exit: bool,
+    pub entrance_width: f64,
+    pub conflicts: Vec<Note>,
+}
+
+impl Brief {
+    /// Returns the merged task.
+    ///
+    /// # Errors
+    /// `Mismatch` when an edge names a room that is not in the graph.
+    pub(super) fn new(graph: &SceneGraph, domain: &Domain, limits: &Limits) -> Result<Self, Error> {
+        let index: BTreeMap<&str, usize> = graph.rooms.iter().enumerate().map(|(i, r)| (r.id.as_str(), i)).collect();
+        let find = |id: &str| {
+            index.get(id).copied().ok_or_else(|| Error::Mismatch {
+                stage: "floorplan",
+                message: format!("an edge names room `{id}`, which the scene graph does not have"),
+            })
+        };
+        let mut conflicts = Vec::new();
+        let rooms: Vec<RoomSpec> =
+            graph.rooms.iter().map(|r| room_spec(r, graph, domain, limits, &mut conflicts)).collect();
+        let spine = spine_of(graph, domain, &index);
+        let circulation_width = max_limit(domain.circulation.width_m, limits.corridor_width.as_ref());
+        let mut brief = Self {
+            hub: spine.is_some_and(|s| !rooms[s].circulation),
+            rooms,
+            spine,
+            spine_width: circulation_width,
+            links: Vec::new(),
+            apart: Vec::new(),
+            second_exit: domain.circulation.second_exit,
+            entrance_width: max_limit(domain.circulation.entrance_width_m, limits.entrance_width.as_ref()),
+            conflicts,
+        };
+        if let Some(spine) = brief.spine
+            && !brief.rooms.iter().any(|r| r.entrance)
+        {
+            brief.rooms[spine].entrance = true;
+        }
+        for edge in &graph.edges {
+            let (a, b) = (find(&edge.a)?, find(&edge.b)?);
+            brief.add_edge(a, b, edge.connector, edge.required);
+        }
+        for [a, b] in &graph.apart {
+            brief.apart.push([find(a)?, find(b)?]);
+        }
+        Ok(brief)
+    }
+
+    fn add_edge(&mut self, a: usize, b: usize, connector: Connector, required: bool) {
+        let walkable = matches!(connector, Connector::Door | Connector::Open);
+        if let Some(spine) = self.spine
+            && (a == spine || b == spine)
+        {
+            let room = if a == spine { b } else { a };
+            if walkable && required {
+                self.rooms[room].on_spine = true;
+                self.rooms[room].open_front |= connector == Connector::Open;
+            }
+            return;
+        }
+        self.links.push(Link { a, b, connector, required });
+    }
+
+    /// Returns the structural opening of a door with this clear width, m, on the lattice.
+    pub(super) fn opening(clear: f64) -> f64 {
+        ((clear + 0.08) / 0.05 - 1e-6).ceil() * 0.05
+    }
+
+    /// Returns the clear width of a passage between two rooms: the wider need of the more demanding side that it serves.
+    pub(super) fn door_width(&self, a: usize, b: usize) -> f64 {
+        match self.spine {
+            Some(s) if s == a => self.rooms[b].door_width,
+            Some(s) if s == b => self.rooms[a].door_width,
+            // Between two rooms the door serves the one that hangs on the other, or the lesser need of equals.
+            _ if self.rooms[a].host == Some(b) => self.rooms[a].door_width,
+            _ if self.rooms[b].host == Some(a) => self.rooms[b].door_width,
+            _ => self.rooms[a].door_width.min(self.rooms[b].door_width),
+        }
+    }
+}
+
+fn max_limit(base: f64, limit: Option<&Limit>) -> f64 {
+    limit.map_or(base, |l| base.max(l.value))
+}
+
+fn room_spec(
+    room: &GraphRoom,
+    graph: &SceneGraph,
+    domain: &Domain,
+    limits: &Limits,
+    conflicts: &mut Vec<Note>,
+) -> RoomSpec {
+    let kind: &RoomType = domain.room_type_or_generic(&room.room_type);
+    let none = d3dgen_knowledge::RoomLimits::default();
+    let limit = limits.rooms.get(&room.room_type).unwrap_or(&none);
+    let [low, high] = room.area_range_m2;
+    let area_min = max_limit(low, limit.area_min.as_ref());
+    let mut area_max = high;
+    if area_min > high * 0.9 {
+        area_max = (area_min * 1.25).max(high);
+        if area_min > high {
+            conflicts.push(Note {
+                code: "area_raised_by_rule".into(),
+                message: format!(
+                    "{} is at least {area_min:.1} m2 by rule {}, more than the {high:.1} m2 allowed; the rule was followed",
+                    room.name,
+                    limit.area_min.as_ref().map_or("", |l| l.constraint_id.as_str()),
+                ),
+            });
+        }
+    }
+    let mut door_width = max_limit(kind.door_width_m, limit.door_width.as_ref());
+    if graph.accessible {
+        door_width = door_width.max(ACCESSIBLE_DOOR_M);
+    }
+    // A robot's circle passes with 5 cm to spare on both sides.
+    let robot = graph.robots.iter().map(|r| 2.0 * r.radius_m + 0.1).fold(0.0, f64::max);
+    RoomSpec {
+        id: room.id.clone(),
+        room_type: room.room_type.clone(),
+        name: room.name.clone(),
+        circulation: room.circulation,
+        area_min,
+        area_target: room.target_area_m2.clamp(area_min * 1.02, area_max),
+        area_max,
+        min_dimension: max_limit(kind.min_dimension_m, limit.dimension_min.as_ref()),
+        daylight: kind.daylight,
+        zone: kind.zone,
+        wet: kind.wet,
+        open_front: kind.open_front,
+        entrance: room.entrance,
+        door_width: door_width.max(robot),
+        ceiling_height: max_limit(kind.ceiling_height_m, limit.ceiling_height_min.as_ref()),
+        materials: kind.materials.clone(),
+        on_spine: false,
+        host: host_of(room, kind, graph, domain),
+    }
+}
+
+/// Returns the index of the room that a host-access room hangs on, by its required door edge.
+fn host_of(room: &GraphRoom, kind: &RoomType, graph: &SceneGraph, _domain: &Domain) -> Option<usize> {
+    if kind.hosts.is_empty() {
+        return None;
+    }
+    graph.edges.iter().filter(|e| e.required && matches!(e.connector, Connector::Door | Connector::Open)).find_map(|e| {
+        let other = match (e.a == room.id, e.b == room.id) {
+            (true, _) => &e.b,
+            (_, true) => &e.a,
+            _ => return None,
+        };
+        graph.rooms.iter().position(|r| &r.id == other && kind.hosts.contains(&r.room_type))
+    })
+}
+
+/// Returns the circulation room, or the hub that takes its part.
+fn spine_of(graph: &SceneGraph, domain: &Domain, index: &BTreeMap<&str, usize>) -> Option<usize> {
+    if let Some(i) = graph.rooms.iter().position(|r| r.circulation) {
+        return Some(i);
+    }
+    let degree = |id: &str| graph.edges.iter().filter(|e| e.required && (e.a == id || e.b == id)).count();
+    domain
+        .circulation
+        .hub_room_types
+        .iter()
+        .flat_map(|t| graph.rooms.iter().filter(move |r| &r.room_type == t))
+        .chain(&graph.rooms)
+        .max_by(|x, y| {
+            let key = |r: &GraphRoom| {
+                let listed = domain.circulation.hub_room_types.contains(&r.room_type);
+                (listed, degree(&r.id), (r.target_area_m2 * 100.0) as u64)
+            };
+            key(x).cmp(&key(y)).then(y.id.cmp(&x.id))
+        })
+        .map(|r| index[r.id.as_str()])
+}

@@ -1,0 +1,149 @@
+//! Properties of whole plans over hand-made briefs: homes, offices and wards of several sizes.
+
+use d3dgen_model::Document;
+use d3dgen_model::domain::{Daylight, Materials, Scheme, Zone};
+use d3dgen_model::scene_graph::Connector;
+use d3dgen_model::seed::Stream;
+
+use super::assemble::{Turn, assemble};
+use super::search::search;
+use super::spec::{Brief, Link, RoomSpec};
+
+fn room(id: &str, area: [f64; 3], min_dimension: f64, daylight: Daylight, zone: Zone) -> RoomSpec {
+    let material = || "Concrete_Smooth".to_owned();
+    RoomSpec {
+        id: id.into(),
+        room_type: id.trim_end_matches(|c: char| c == '_' || c.is_ascii_digit()).into(),
+        name: id.into(),
+        circulation: false,
+        area_min: area[0],
+        area_target: area[1],
+        area_max: area[2],
+        min_dimension,
+        daylight,
+        zone,
+        wet: false,
+        open_front: false,
+        entrance: false,
+        door_width: 0.9,
+        ceiling_height: 2.6,
+        materials: Materials { floor: material(), wall: material(), ceiling: material() },
+        on_spine: true,
+        host: None,
+    }
+}
+
+fn brief(mut rooms: Vec<RoomSpec>, width: f64, links: &[(usize, usize, Connector)]) -> Brief {
+    let mut corridor = room("corridor_1", [1.0, 10.0, 500.0], 1.0, Daylight::None, Zone::Circulation);
+    corridor.circulation = true;
+    corridor.on_spine = false;
+    corridor.entrance = !rooms.iter().any(|r| r.entrance);
+    rooms.push(corridor);
+    Brief {
+        spine: Some(rooms.len() - 1),
+        rooms,
+        hub: false,
+        spine_width: width,
+        links: links.iter().map(|&(a, b, connector)| Link { a, b, connector, required: true }).collect(),
+        apart: Vec::new(),
+        second_exit: false,
+        entrance_width: 1.0,
+        conflicts: Vec::new(),
+    }
+}
+
+fn home() -> Brief {
+    use Daylight::{None, Required};
+    let mut rooms = vec![
+        room("living_room_1", [13., 24., 35.], 3.2, Required, Zone::Day),
+        room("kitchen_1", [5., 10., 18.], 1.8, Required, Zone::Day),
+        room("bedroom_1", [9., 14., 20.], 2.4, Required, Zone::Night),
+        room("bedroom_2", [7., 12., 20.], 2.4, Required, Zone::Night),
+        room("bathroom_1", [3., 5., 8.], 1.6, None, Zone::Service),
+        room("en_suite_1", [3., 4., 6.], 1.5, None, Zone::Service),
+        room("storage_1", [1.5, 2.5, 6.], 1.0, None, Zone::Service),
+    ];
+    rooms[4].wet = true;
+    rooms[5].wet = true;
+    rooms[5].on_spine = false;
+    rooms[5].host = Some(2);
+    brief(rooms, 1.2, &[(0, 1, Connector::Open), (5, 2, Connector::Door)])
+}
+
+fn ward(beds: usize) -> Brief {
+    let mut rooms = vec![
+        room("nurse_station_1", [9., 12., 20.], 2.5, Daylight::None, Zone::Staff),
+        room("clean_utility_1", [6., 10., 14.], 2.2, Daylight::None, Zone::Service),
+        room("dirty_utility_1", [6., 9., 14.], 2.2, Daylight::None, Zone::Service),
+        room("staff_room_1", [10., 15., 20.], 2.6, Daylight::Preferred, Zone::Staff),
+    ];
+    rooms[0].open_front = true;
+    let mut links = Vec::new();
+    for _ in 0..beds {
+        let host = rooms.len();
+        let mut bed = room(&format!("patient_room_{host}"), [14., 18., 26.], 3.2, Daylight::Required, Zone::Night);
+        bed.door_width = 1.2;
+        let mut bath = room(&format!("ensuite_{host}"), [4.5, 5., 7.], 1.8, Daylight::None, Zone::Service);
+        (bath.wet, bath.on_spine, bath.host) = (true, false, Some(host));
+        rooms.extend([bed, bath]);
+        links.push((host, host + 1, Connector::Door));
+    }
+    brief(rooms, 2.4, &links)
+}
+
+fn hall() -> Brief {
+    let mut rooms = vec![
+        room("loading_dock_1", [60., 120., 200.], 6.0, Daylight::None, Zone::Service),
+        room("office_1", [10., 20., 30.], 2.4, Daylight::Required, Zone::Staff),
+        room("toilet_1", [3., 5., 8.], 1.5, Daylight::None, Zone::Service),
+        room("break_room_1", [10., 20., 40.], 2.6, Daylight::Preferred, Zone::Staff),
+    ];
+    rooms.push(room("warehouse_hall_1", [400., 1500., 3000.], 12.0, Daylight::None, Zone::Day));
+    let hub = rooms.len() - 1;
+    rooms[hub].on_spine = false;
+    rooms[hub].entrance = true;
+    let mut brief = brief(rooms, 1.2, &[]);
+    brief.rooms.pop();
+    (brief.spine, brief.hub) = (Some(hub), true);
+    brief
+}
+
+fn sound(brief: &Brief, schemes: &[Scheme], seed: u64) -> bool {
+    let mut rng = Stream::new(seed, "floorplan");
+    let Some(found) = search(brief, schemes, &mut rng) else { return false };
+    if found.score.hard > 1e-9 {
+        return false;
+    }
+    let turn = Turn { flip_x: seed % 2 == 1, flip_y: seed % 3 == 1, swap: seed % 5 == 1 };
+    match assemble(brief, &found.layout, &found.score, turn, seed, "test", &mut rng) {
+        Ok(plan) => {
+            assert_eq!(plan.check(), vec![], "seed {seed}");
+            for room in &plan.rooms {
+                assert!(plan.doors_of(&room.room_id).next().is_some(), "{} has no door, seed {seed}", room.room_id);
+            }
+            true
+        }
+        Err(reason) => {
+            eprintln!("seed {seed}: {reason}");
+            false
+        }
+    }
+}
+
+#[test]
+fn every_kind_of_brief_finds_sound_plans() {
+    let both = [Scheme::Straight, Scheme::Capped];
+    let cases: [(&str, Brief, &[Scheme]); 6] = [
+        ("home", home(), &both),
+        ("small ward", ward(2), &both),
+        ("ward", ward(4), &both),
+        ("angled ward", ward(8), &[Scheme::Angle]),
+        ("racetrack", ward(10), &[Scheme::Racetrack]),
+        ("warehouse", hall(), &[Scheme::Straight]),
+    ];
+    for (name, brief, schemes) in cases {
+        let good = (0..8).filter(|&seed| sound(&brief, schemes, seed)).count();
+        eprintln!("{name}: {good} of 8");
+        assert!(good >= 7, "{name}: only {good} of 8 seeds gave a sound plan");
+    }
+}

@@ -1,0 +1,104 @@
+//! Windows: as much glass as the daylight rule asks, evenly on the longest outer walls.
+
+use d3dgen_model::Segment;
+use d3dgen_model::domain::{Daylight, Zone};
+use d3dgen_model::floorplan::{Door, Window};
+
+use super::lattice::{OUTER_HALF_M, meters};
+use super::outline::Stretch;
+use super::spec::{Brief, RoomSpec};
+
+/// Glass per floor area; building codes ask for 1/10 to 1/7 (see the `window_to_floor_area` constraints).
+const GLASS_PER_FLOOR: f64 = 0.145;
+/// Sill of a normal window, of a bathroom window, and the usual head, m.
+const SILL_M: f64 = 0.9;
+const HIGH_SILL_M: f64 = 1.5;
+const HEAD_M: f64 = 2.2;
+/// Wall left between a window and a corner, and between two windows, m.
+const MARGIN_M: f64 = 0.35;
+/// Widest and narrowest single window, m.
+const PANE_M: (f64, f64) = (2.4, 0.6);
+
+/// Returns the windows of all rooms.
+pub(super) fn place_windows(brief: &Brief, stretches: &[Stretch], net_m2: &[f64], doors: &[Door]) -> Vec<Window> {
+    let mut windows = Vec::new();
+    for (i, room) in brief.rooms.iter().enumerate() {
+        let Some((sill, mut need)) = glass(room, net_m2[i]) else { continue };
+        let mut outer: Vec<&Stretch> = stretches.iter().filter(|s| s.only_room() == Some(i)).collect();
+        outer.sort_by_key(|s| (-s.len(), s.vertical, s.at, s.from));
+        for stretch in outer {
+            if need < 0.05 {
+                break;
+            }
+            for (from, to) in free_parts(stretch, doors) {
+                let usable = to - from - 2.0 * MARGIN_M;
+                if usable < PANE_M.1 || need < 0.05 {
+                    continue;
+                }
+                let total = need.max(PANE_M.1).min(usable);
+                need -= total;
+                add_panes(stretch, from, to, total, sill, room, &mut windows);
+            }
+        }
+    }
+    for (i, window) in windows.iter_mut().enumerate() {
+        window.window_id = format!("window_{}", i + 1);
+    }
+    windows
+}
+
+/// Returns sill height and total width of glass a room wants, m.
+fn glass(room: &RoomSpec, net_m2: f64) -> Option<(f64, f64)> {
+    if room.zone == Zone::Outdoor {
+        return None;
+    }
+    let head = HEAD_M.min(room.ceiling_height - 0.2);
+    match room.daylight {
+        Daylight::Required | Daylight::Preferred => Some((SILL_M, net_m2 * GLASS_PER_FLOOR / (head - SILL_M))),
+        Daylight::None if room.circulation => Some((SILL_M, 1.0)),
+        Daylight::None if room.wet => Some((HIGH_SILL_M, PANE_M.1)),
+        Daylight::None => None,
+    }
+}
+
+/// Returns the pieces of an outer wall without its doors, m.
+fn free_parts(stretch: &Stretch, doors: &[Door]) -> Vec<(f64, f64)> {
+    let along = |p: d3dgen_model::Point| if stretch.vertical { p.y } else { p.x };
+    let across = |p: d3dgen_model::Point| if stretch.vertical { p.x } else { p.y };
+    let (mut from, end) = (meters(stretch.from), meters(stretch.to));
+    let mut cuts: Vec<(f64, f64)> = doors
+        .iter()
+        .filter(|d| {
+            d.line.is_vertical() == stretch.vertical && (across(d.line.start) - meters(stretch.at)).abs() < 1e-6
+        })
+        .map(|d| (along(d.line.start), along(d.line.end)))
+        .filter(|(a, b)| *b > from && *a < end)
+        .collect();
+    cuts.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut parts = Vec::new();
+    for (a, b) in cuts {
+        parts.push((from, a));
+        from = b;
+    }
+    parts.push((from, end));
+    parts
+}
+
+fn add_panes(stretch: &Stretch, from: f64, to: f64, total: f64, sill: f64, room: &RoomSpec, windows: &mut Vec<Window>) {
+    let count = (total / PANE_M.0).ceil().max(1.0);
+    // Whole centimeters keep the document readable; each pane sits in the middle of its share of the wall.
+    let share = (to - from) / count;
+    let width = ((total / count).min(share - 2.0 * MARGIN_M).max(PANE_M.1.min(share)) * 20.0).floor() / 20.0;
+    for k in 0..count as usize {
+        let start = from + share * (k as f64 + 0.5) - width / 2.0;
+        windows.push(Window {
+            window_id: String::new(),
+            line: Segment { start: stretch.point(start), end: stretch.point(start + width) },
+            sill_m: sill,
+            head_m: HEAD_M.min(room.ceiling_height - 0.2),
+            wall_thickness_m: 2.0 * OUTER_HALF_M,
+            room_id: room.id.clone(),
+            locked: false,
+        });
+    }
+}
