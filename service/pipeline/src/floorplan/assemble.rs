@@ -5,7 +5,7 @@ use d3dgen_model::floorplan::{CostTerm, Door, Floorplan, PlanRoom, Wall};
 use d3dgen_model::geometry::to_mm;
 use d3dgen_model::seed::Stream;
 
-use super::cost::{TERMS, Score};
+use super::cost::{Score, TERMS};
 use super::doors::{Site, place_doors};
 use super::lattice::{Cellbox, INNER_HALF_M, OUTER_HALF_M, meters};
 use super::outline::{Mosaic, Stretch, outline};
@@ -73,7 +73,8 @@ pub(super) fn assemble(
     let doors = place_doors(&Site { brief, boxes: &boxes, stretches: &stretches, net_m2: &net_m2 }, rng)?;
     let windows = place_windows(brief, &stretches, &net_m2, &doors);
     let walls = walls(brief, &stretches, &doors);
-    let cost = TERMS.iter().zip(score.weighted()).map(|(t, c)| CostTerm { term: (*t).into(), cost: to_mm(c) }).collect();
+    let cost =
+        TERMS.iter().zip(score.weighted()).map(|(t, c)| CostTerm { term: (*t).into(), cost: to_mm(c) }).collect();
     let conflicts = brief.conflicts.clone();
     Ok(Floorplan { version: 1, seed, scheme: scheme.into(), rooms, walls, doors, windows, cost, conflicts })
 }

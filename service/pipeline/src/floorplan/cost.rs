@@ -5,6 +5,7 @@
 
 use d3dgen_model::domain::{Daylight, Zone};
 use d3dgen_model::scene_graph::Connector;
+use d3dgen_model::seed::Stream;
 
 use super::lattice::{Cellbox, INNER_HALF_M, OUTER_HALF_M, meters, up};
 use super::realize::{Layout, door_need};
@@ -22,8 +23,8 @@ pub(super) const TERMS: [&str; 9] = [
     "zoning",
     "narrow_parts",
 ];
-/// Weights of the soft terms.
-const WEIGHTS: [f64; 9] = [1.0, 0.6, 1.2, 0.5, 4.0, 0.35, 0.8, 0.5, 0.4];
+/// Standard weights of the soft terms; each plan's search varies them by its taste.
+pub(super) const WEIGHTS: [f64; 9] = [1.0, 0.6, 1.2, 0.5, 10.0, 0.35, 0.8, 0.5, 0.4];
 /// Least outer wall of a room that needs a window, m.
 pub(super) const WINDOW_WALL_M: f64 = 1.2;
 /// Net proportion above which a plan is refused.
@@ -39,15 +40,20 @@ pub(super) struct Score {
 }
 
 impl Score {
-    /// Returns the figure the search minimizes.
-    pub(super) fn total(&self) -> f64 {
-        self.hard * 30.0 + self.weighted().iter().sum::<f64>()
+    /// Returns the figure the search minimizes, under the taste of one plan.
+    pub(super) fn total(&self, weights: &[f64; 9]) -> f64 {
+        self.hard * 30.0 + self.soft.iter().zip(weights).map(|(s, w)| s * w).sum::<f64>()
     }
 
-    /// Returns the weighted soft terms.
+    /// Returns the soft terms under the standard weights, so that plans can be compared.
     pub(super) fn weighted(&self) -> [f64; 9] {
         std::array::from_fn(|i| self.soft[i] * WEIGHTS[i])
     }
+}
+
+/// Returns the weights one plan is searched with: another architect for every seed.
+pub(super) fn taste(rng: &mut Stream) -> [f64; 9] {
+    WEIGHTS.map(|w| w * (0.5 + rng.unit()))
 }
 
 /// A shared stretch of wall between two rooms.
@@ -122,12 +128,7 @@ impl Survey {
 
     /// Returns the longest shared wall of two rooms, lattice units.
     fn contact(&self, a: usize, b: usize) -> i32 {
-        self.contacts
-            .iter()
-            .filter(|c| (c.a, c.b) == (a, b) || (c.b, c.a) == (a, b))
-            .map(|c| c.len)
-            .max()
-            .unwrap_or(0)
+        self.contacts.iter().filter(|c| (c.a, c.b) == (a, b) || (c.b, c.a) == (a, b)).map(|c| c.len).max().unwrap_or(0)
     }
 }
 

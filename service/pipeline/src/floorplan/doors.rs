@@ -119,9 +119,10 @@ impl Site<'_> {
     /// Returns the free part of a stretch in meters: clear of the walls that meet its ends.
     fn usable(&self, s: &Stretch) -> (f64, f64) {
         let end = |at: i32| {
-            let outer = self.stretches.iter().any(|t| {
-                t.vertical != s.vertical && t.is_outer() && t.from <= s.at && s.at <= t.to && t.at == at
-            });
+            let outer = self
+                .stretches
+                .iter()
+                .any(|t| t.vertical != s.vertical && t.is_outer() && t.from <= s.at && s.at <= t.to && t.at == at);
             JAMB_M + if outer { OUTER_HALF_M } else { INNER_HALF_M }
         };
         (meters(s.from) + end(s.from), meters(s.to) - end(s.to))
@@ -215,7 +216,11 @@ impl Site<'_> {
         // The end of a corridor is where one looks for its door; a second exit belongs far from the first.
         let mut penalty = if spine && !self.brief.hub { meters(s.len()) } else { 0.1 * f64::from(s.at.abs()) * 0.05 };
         if !main {
-            let away = doors.iter().filter(|d| d.entrance).map(|d| d.line.middle().distance(line.middle())).fold(f64::MAX, f64::min);
+            let away = doors
+                .iter()
+                .filter(|d| d.entrance)
+                .map(|d| d.line.middle().distance(line.middle()))
+                .fold(f64::MAX, f64::min);
             if away < 5.0 {
                 return Vec::new();
             }
@@ -234,7 +239,15 @@ impl Site<'_> {
         vec![Spot { door, zones: vec![(room, zone)], penalty }]
     }
 
-    fn door(&self, line: Segment, kind: DoorKind, clear: f64, s: &Stretch, rooms: &[usize], swing: Option<Swing>) -> Door {
+    fn door(
+        &self,
+        line: Segment,
+        kind: DoorKind,
+        clear: f64,
+        s: &Stretch,
+        rooms: &[usize],
+        swing: Option<Swing>,
+    ) -> Door {
         Door {
             door_id: String::new(),
             kind,
@@ -253,7 +266,8 @@ impl Site<'_> {
     fn zone(&self, s: &Stretch, room: usize, start: f64, width: f64, deep: f64) -> Rect {
         let at = meters(s.at);
         let half = if s.is_outer() { OUTER_HALF_M } else { INNER_HALF_M };
-        let (near, far) = if s.low == Some(room) { (at - half - deep, at - half) } else { (at + half, at + half + deep) };
+        let (near, far) =
+            if s.low == Some(room) { (at - half - deep, at - half) } else { (at + half, at + half + deep) };
         if s.vertical { Rect::new(near, start, far, start + width) } else { Rect::new(start, near, start + width, far) }
     }
 

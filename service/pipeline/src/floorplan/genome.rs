@@ -93,8 +93,9 @@ impl Genome {
         if scheme == Scheme::Capped {
             genome.choose_caps(brief, &mut free, rng);
         }
-        let (nested, cells): (Vec<usize>, Vec<usize>) =
-            free.into_iter().partition(|&r| is_nestable(brief, r) && (brief.rooms[r].host.is_some() || rng.chance(0.6)));
+        let (nested, cells): (Vec<usize>, Vec<usize>) = free
+            .into_iter()
+            .partition(|&r| is_nestable(brief, r) && (brief.rooms[r].host.is_some() || rng.chance(0.6)));
         for room in cells {
             let lightest = genome.lightest_band(brief, room, rng);
             genome.bands[lightest].cells.push(Cell::new(room));

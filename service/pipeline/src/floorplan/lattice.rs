@@ -52,7 +52,6 @@ impl Cellbox {
         meters(self.width()) * meters(self.height())
     }
 
-
     /// Returns the center times two, so that it stays on the lattice.
     pub(super) fn center2(&self) -> (i32, i32) {
         (self.x0 + self.x1, self.y0 + self.y1)
@@ -98,9 +97,8 @@ pub(super) struct Frame {
 impl Frame {
     /// Returns the rectangle between `along0..along1` and `out0..out1` in world lattice units.
     pub(super) fn place(&self, along0: i32, along1: i32, out0: i32, out1: i32) -> Cellbox {
-        let at = |a: i32, o: i32| {
-            (self.origin.0 + self.u.0 * a + self.v.0 * o, self.origin.1 + self.u.1 * a + self.v.1 * o)
-        };
+        let at =
+            |a: i32, o: i32| (self.origin.0 + self.u.0 * a + self.v.0 * o, self.origin.1 + self.u.1 * a + self.v.1 * o);
         let ((xa, ya), (xb, yb)) = (at(along0, out0), at(along1, out1));
         Cellbox::new(xa, ya, xb, yb)
     }

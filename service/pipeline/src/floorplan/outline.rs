@@ -67,9 +67,8 @@ impl Mosaic {
         }
         let mut owner = vec![None; xs.len() * ys.len()];
         for (room, b) in boxes {
-            let range = |list: &[i32], lo: i32, hi: i32| {
-                list.partition_point(|v| *v < lo)..list.partition_point(|v| *v < hi)
-            };
+            let range =
+                |list: &[i32], lo: i32, hi: i32| list.partition_point(|v| *v < lo)..list.partition_point(|v| *v < hi);
             for j in range(&ys, b.y0, b.y1) {
                 for i in range(&xs, b.x0, b.x1) {
                     owner[j * xs.len() + i] = Some(*room);
@@ -214,11 +213,8 @@ mod tests {
 
     #[test]
     fn an_l_shaped_room_has_six_corners_and_a_net_area_inside_its_walls() {
-        let boxes = [
-            (0, Cellbox::new(0, 0, 80, 60)),
-            (0, Cellbox::new(0, 60, 40, 100)),
-            (1, Cellbox::new(40, 60, 80, 100)),
-        ];
+        let boxes =
+            [(0, Cellbox::new(0, 0, 80, 60)), (0, Cellbox::new(0, 60, 40, 100)), (1, Cellbox::new(40, 60, 80, 100))];
         let stretches = Mosaic::new(&boxes).stretches();
         let l = outline(0, &stretches).expect("one ring");
         assert_eq!(l.corners.len(), 6);

@@ -109,7 +109,8 @@ fn straight(brief: &Brief, genome: &Genome, spine: usize, layout: &mut Layout) {
     fill(brief, &bottom.at((-eb[0], 0), (1, 0), (0, -1)), len + eb[0] + eb[1], layout);
     for (side, cap) in caps.iter().enumerate() {
         let Some((cap, width)) = cap else { continue };
-        let (y0, y1) = (if cap.cover == Cover::Top { 0 } else { -db }, if cap.cover == Cover::Bottom { w } else { w + dt });
+        let (y0, y1) =
+            (if cap.cover == Cover::Top { 0 } else { -db }, if cap.cover == Cover::Bottom { w } else { w + dt });
         let (x0, x1) = if side == 0 { (-width, 0) } else { (len, len + width) };
         layout.boxes.push((cap.room, Cellbox::new(x0, y0, x1, y1)));
     }
@@ -223,7 +224,8 @@ fn span(brief: &Brief, cell: &Cell, depth: i32, misfit: &mut f64) -> Span {
     let clear_depth = meters(depth) - INNER_HALF_M - OUTER_HALF_M;
     let nests: i32 = cell.nests().map(|n| nest_width(brief, n, cell.nest_depth)).sum();
     let has_nests = nests > 0;
-    let main_depth = if has_nests { meters(depth - cell.nest_depth) - INNER_HALF_M - OUTER_HALF_M } else { clear_depth };
+    let main_depth =
+        if has_nests { meters(depth - cell.nest_depth) - INNER_HALF_M - OUTER_HALF_M } else { clear_depth };
     if main_depth < spec.min_dimension {
         *misfit += spec.min_dimension - main_depth;
     }
@@ -232,7 +234,8 @@ fn span(brief: &Brief, cell: &Cell, depth: i32, misfit: &mut f64) -> Span {
     let leg = if spec.on_spine { door_need(spec.door_width) } else { 0 };
     let proportion_min = main_depth / MAX_PROPORTION + 2.0 * INNER_HALF_M;
     let proportion_max = main_depth * MAX_PROPORTION + 2.0 * INNER_HALF_M;
-    let min = up(width_for(spec.area_min * 1.01).max(spec.min_dimension + 2.0 * INNER_HALF_M).max(proportion_min)).max(nests + leg);
+    let min = up(width_for(spec.area_min * 1.01).max(spec.min_dimension + 2.0 * INNER_HALF_M).max(proportion_min))
+        .max(nests + leg);
     let max = nearest(width_for(spec.area_max * 0.99).min(proportion_max));
     if max < min {
         *misfit += meters(min - max);

@@ -3,7 +3,7 @@
 use d3dgen_model::domain::Scheme;
 use d3dgen_model::seed::Stream;
 
-use super::cost::{Score, score};
+use super::cost::{Score, score, taste};
 use super::genome::{Cell, Cover, Genome, guest_of, is_nestable};
 use super::realize::{Layout, realize};
 use super::spec::Brief;
@@ -28,16 +28,17 @@ pub(super) struct Candidate {
 pub(super) fn search(brief: &Brief, schemes: &[Scheme], rng: &mut Stream) -> Option<Candidate> {
     let mut best: Option<Candidate> = None;
     let mut sound = 0;
+    let weights = taste(rng);
     for run in 0..MAX_RUNS {
         // The first choice of the seed gets most runs; the others step in when it does not work out.
         let scheme = if run < 4 { schemes.first() } else { schemes.get(run % schemes.len().max(1)) };
         let Some(&scheme) = scheme else { break };
-        let found = anneal(brief, scheme, rng);
+        let found = anneal(brief, scheme, &weights, rng);
         let is_sound = found.score.hard < 1e-9;
         sound += usize::from(is_sound);
-        let better = best.as_ref().is_none_or(|b| {
-            (b.score.hard >= 1e-9, b.score.total()) > (!is_sound, found.score.total())
-        });
+        let better = best
+            .as_ref()
+            .is_none_or(|b| (b.score.hard >= 1e-9, b.score.total(&weights)) > (!is_sound, found.score.total(&weights)));
         if better {
             best = Some(found);
         }
@@ -48,7 +49,7 @@ pub(super) fn search(brief: &Brief, schemes: &[Scheme], rng: &mut Stream) -> Opt
     best
 }
 
-fn anneal(brief: &Brief, scheme: Scheme, rng: &mut Stream) -> Candidate {
+fn anneal(brief: &Brief, scheme: Scheme, weights: &[f64; 9], rng: &mut Stream) -> Candidate {
     let steps = (STEPS_PER_ROOM * brief.rooms.len()).clamp(600, 12_000);
     let mut current = candidate(brief, Genome::random(brief, scheme, rng));
     let mut best = current.clone();
@@ -61,10 +62,10 @@ fn anneal(brief: &Brief, scheme: Scheme, rng: &mut Stream) -> Candidate {
             continue;
         }
         let next = candidate(brief, genome);
-        let worse = next.score.total() - current.score.total();
+        let worse = next.score.total(weights) - current.score.total(weights);
         if worse <= 0.0 || rng.unit() < (-worse / heat).exp() {
             current = next;
-            if current.score.total() < best.score.total() {
+            if current.score.total(weights) < best.score.total(weights) {
                 best = current.clone();
             }
         }
@@ -79,7 +80,7 @@ fn candidate(brief: &Brief, genome: Genome) -> Candidate {
 }
 
 /// Changes one thing; returns false when the drawn change does not apply.
-fn mutate(brief: &Brief, genome: &mut Genome, rng: &mut Stream) -> bool {
+pub(super) fn mutate(brief: &Brief, genome: &mut Genome, rng: &mut Stream) -> bool {
     match rng.below(100) {
         0..25 => change_depth(genome, rng),
         25..45 => swap_cells(genome, rng),
@@ -150,7 +151,9 @@ fn unnest(brief: &Brief, genome: &mut Genome, rng: &mut Stream) -> bool {
     let Some((b, c)) = any_cell(genome, rng) else { return false };
     let cell = &mut genome.bands[b].cells[c];
     let from_left = rng.chance(0.5);
-    let room = if from_left { cell.left.pop() } else { cell.right.pop() }.or_else(|| cell.left.pop()).or_else(|| cell.right.pop());
+    let room = if from_left { cell.left.pop() } else { cell.right.pop() }
+        .or_else(|| cell.left.pop())
+        .or_else(|| cell.right.pop());
     let Some(room) = room else { return false };
     if cell.nests().next().is_none() {
         cell.nest_depth = 0;
@@ -220,18 +223,4 @@ fn change_caps(brief: &Brief, genome: &mut Genome, rng: &mut Stream) -> bool {
         }
     }
     true
-}
-
-/// Asserts in tests that a change keeps every room exactly once.
-#[cfg(test)]
-pub(super) fn rooms_of(genome: &Genome) -> Vec<usize> {
-    let mut rooms: Vec<usize> = genome
-        .bands
-        .iter()
-        .flat_map(|b| &b.cells)
-        .flat_map(|c| std::iter::once(c.host).chain(c.nests()))
-        .chain(genome.caps.iter().flatten().map(|c| c.room))
-        .collect();
-    rooms.sort_unstable();
-    rooms
 }

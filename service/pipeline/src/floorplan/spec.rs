@@ -203,14 +203,16 @@ fn host_of(room: &GraphRoom, kind: &RoomType, graph: &SceneGraph, _domain: &Doma
     if kind.hosts.is_empty() {
         return None;
     }
-    graph.edges.iter().filter(|e| e.required && matches!(e.connector, Connector::Door | Connector::Open)).find_map(|e| {
-        let other = match (e.a == room.id, e.b == room.id) {
-            (true, _) => &e.b,
-            (_, true) => &e.a,
-            _ => return None,
-        };
-        graph.rooms.iter().position(|r| &r.id == other && kind.hosts.contains(&r.room_type))
-    })
+    graph.edges.iter().filter(|e| e.required && matches!(e.connector, Connector::Door | Connector::Open)).find_map(
+        |e| {
+            let other = match (e.a == room.id, e.b == room.id) {
+                (true, _) => &e.b,
+                (_, true) => &e.a,
+                _ => return None,
+            };
+            graph.rooms.iter().position(|r| &r.id == other && kind.hosts.contains(&r.room_type))
+        },
+    )
 }
 
 /// Returns the circulation room, or the hub that takes its part.

@@ -6,7 +6,8 @@ use d3dgen_model::scene_graph::Connector;
 use d3dgen_model::seed::Stream;
 
 use super::assemble::{Turn, assemble};
-use super::search::search;
+use super::genome::Genome;
+use super::search::{mutate, search};
 use super::spec::{Brief, Link, RoomSpec};
 
 fn room(id: &str, area: [f64; 3], min_dimension: f64, daylight: Daylight, zone: Zone) -> RoomSpec {
@@ -146,4 +147,37 @@ fn every_kind_of_brief_finds_sound_plans() {
         eprintln!("{name}: {good} of 8");
         assert!(good >= 7, "{name}: only {good} of 8 seeds gave a sound plan");
     }
+}
+
+fn rooms_of(genome: &Genome) -> Vec<usize> {
+    let cells = genome.bands.iter().flat_map(|b| &b.cells);
+    let mut rooms: Vec<usize> = cells.flat_map(|c| std::iter::once(c.host).chain(c.nests())).collect();
+    rooms.extend(genome.caps.iter().flatten().map(|c| c.room));
+    rooms.sort_unstable();
+    rooms
+}
+
+#[test]
+fn no_change_loses_or_doubles_a_room() {
+    let brief = ward(5);
+    let mut rng = Stream::new(3, "test");
+    for scheme in [Scheme::Straight, Scheme::Capped, Scheme::Angle, Scheme::Racetrack, Scheme::Comb] {
+        let mut genome = Genome::random(&brief, scheme, &mut rng);
+        let expected: Vec<usize> = (0..brief.rooms.len() - 1).collect();
+        for step in 0..2000 {
+            assert_eq!(rooms_of(&genome), expected, "{scheme:?}, step {step}");
+            mutate(&brief, &mut genome, &mut rng);
+        }
+    }
+}
+
+#[test]
+fn one_seed_gives_one_plan_and_two_seeds_give_two() {
+    let brief = home();
+    let boxes = |seed: u64| {
+        let found = search(&brief, &[Scheme::Capped], &mut Stream::new(seed, "floorplan"));
+        found.map(|f| f.layout.boxes)
+    };
+    assert_eq!(boxes(1), boxes(1));
+    assert_ne!(boxes(1), boxes(2));
 }
