@@ -1,1 +1,18 @@
-//! Under construction.
+//! Files of a checked world: pure functions from a [`World`](d3dgen_model::world::World) to bytes, one exporter per target.
+//!
+//! What it is not for: checking worlds (`pipeline::world`) and touching the disk; callers write the files. Nothing here
+//! reads a clock, the environment or installed fonts, so the same world gives the same bytes everywhere.
+
+pub mod error;
+pub mod exporters;
+pub mod shapes;
+pub mod yaml;
+
+mod color;
+mod font;
+
+pub use error::Error;
+pub use exporters::{Exporter, File};
+
+#[cfg(test)]
+mod sample;

@@ -1,0 +1,82 @@
+//! One file per target; [`all`] is the list that `--format` and its help read.
+
+mod arena;
+pub mod plan;
+
+use d3dgen_model::domain::Domain;
+use d3dgen_model::world::World;
+
+use crate::Error;
+
+pub use arena::Arena;
+pub use plan::Plan;
+
+/// A file to be written, relative to the world's output folder.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct File {
+    /// Relative path with forward slashes: `arena/worlds/ward/0/world.yaml`.
+    pub path: String,
+    /// Contents.
+    pub bytes: Vec<u8>,
+}
+
+impl File {
+    /// Returns a file.
+    pub fn new(path: impl Into<String>, bytes: impl Into<Vec<u8>>) -> Self {
+        Self { path: path.into(), bytes: bytes.into() }
+    }
+}
+
+/// Turns a world into the files of one target.
+pub trait Exporter: Sync {
+    /// Returns the snake-case name used by `--format`.
+    fn name(&self) -> &'static str;
+
+    /// Returns one sentence on what it writes and who reads it.
+    fn about(&self) -> &'static str;
+
+    /// Returns the files, sorted by path; a pure function of world and domain.
+    ///
+    /// # Errors
+    /// `Unsupported` or `TooLarge` when the format cannot hold this world, `Picture` when drawing fails.
+    fn export(&self, world: &World, domain: &Domain) -> Result<Vec<File>, Error>;
+}
+
+/// Returns every exporter, the default ones first.
+pub fn all() -> &'static [&'static dyn Exporter] {
+    &[&Arena, &Plan]
+}
+
+/// Returns the exporter with this name.
+pub fn get(name: &str) -> Option<&'static dyn Exporter> {
+    all().iter().copied().find(|e| e.name() == name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sample;
+
+    #[test]
+    fn names_are_unique_and_described() {
+        let names: std::collections::BTreeSet<_> = all().iter().map(|e| e.name()).collect();
+        assert_eq!(names.len(), all().len());
+        for exporter in all() {
+            assert!(exporter.about().len() > 20, "{} needs a sentence", exporter.name());
+            assert_eq!(get(exporter.name()).map(Exporter::name), Some(exporter.name()));
+        }
+        assert!(get("no_such_format").is_none());
+    }
+
+    #[test]
+    fn every_exporter_is_deterministic_and_writes_relative_sorted_paths() {
+        let (world, domain) = (sample::world(), sample::domain());
+        for exporter in all() {
+            let files = exporter.export(&world, &domain).unwrap();
+            assert!(!files.is_empty());
+            assert_eq!(files, exporter.export(&world, &domain).unwrap());
+            assert!(files.iter().all(|f| !f.path.starts_with('/') && !f.path.contains("..")));
+            assert!(files.windows(2).all(|p| p[0].path < p[1].path), "{} sorts its files", exporter.name());
+        }
+    }
+}
