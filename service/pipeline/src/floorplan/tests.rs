@@ -119,7 +119,10 @@ fn sound(brief: &Brief, schemes: &[Scheme], seed: u64) -> bool {
     match assemble(brief, &found.layout, &found.score, turn, seed, "test", &mut rng) {
         Ok(plan) => {
             assert_eq!(plan.check(), vec![], "seed {seed}");
-            for room in &plan.rooms {
+            for (room, spec) in plan.rooms.iter().zip(&brief.rooms) {
+                let area = room.net_area_m2;
+                let fits = spec.circulation || (spec.area_min - 0.01..=spec.area_max + 0.01).contains(&area);
+                assert!(fits, "{} has {area} m2, seed {seed}", room.room_id);
                 assert!(plan.doors_of(&room.room_id).next().is_some(), "{} has no door, seed {seed}", room.room_id);
             }
             true
