@@ -1,0 +1,38 @@
+//! The figures a floorplan must keep, drawn from constraints whose quantity, space and conditions are understood.
+
+use std::collections::BTreeMap;
+
+/// Hard figures for the floorplan stage; the strictest of what applies.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Limits {
+    /// Least clear width of circulation, m.
+    pub corridor_width: Option<Limit>,
+    /// Least clear width of the main entrance door, m.
+    pub entrance_width: Option<Limit>,
+    /// Limits by room type id.
+    pub rooms: BTreeMap<String, RoomLimits>,
+}
+
+/// Limits of one room type.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct RoomLimits {
+    /// Least net floor area, m^2.
+    pub area_min: Option<Limit>,
+    /// Largest net floor area, m^2.
+    pub area_max: Option<Limit>,
+    /// Least clear extent in both directions, m.
+    pub dimension_min: Option<Limit>,
+    /// Least clear width of its door, m.
+    pub door_width: Option<Limit>,
+    /// Least clear height, m.
+    pub ceiling_height_min: Option<Limit>,
+}
+
+/// A figure and where it comes from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Limit {
+    /// The figure in SI units.
+    pub value: f64,
+    /// Id of the constraint in the knowledge base.
+    pub constraint_id: String,
+}
