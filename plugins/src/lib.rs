@@ -1,1 +1,66 @@
-//! Under construction.
+//! Domains as plugins: those built into the program, and any folder a user names.
+//!
+//! What a domain knows is data ([`d3dgen_model::domain::Domain`]); a [`Plugin`] is how the pipeline gets at it. Nothing
+//! here knows the pipeline.
+
+mod builtin;
+mod custom;
+mod error;
+mod merge;
+
+use std::path::Path;
+
+use d3dgen_model::domain::Domain;
+use d3dgen_model::knowledge::KnowledgeBase;
+
+pub use builtin::{Builtin, all};
+pub use custom::Custom;
+pub use error::Error;
+
+/// A domain with its knowledge base.
+pub trait Plugin: Send + Sync {
+    /// Returns the id without reading anything else.
+    fn id(&self) -> &str;
+
+    /// Returns vocabulary, rooms, objects and rules.
+    fn domain(&self) -> &Domain;
+
+    /// Returns the citable building rules.
+    fn knowledge(&self) -> &KnowledgeBase;
+}
+
+/// All domains a process knows, in a stable order: built-in ones first, then folders as they were added.
+pub struct Registry {
+    plugins: Vec<Box<dyn Plugin>>,
+}
+
+impl Registry {
+    /// Returns the built-in domains; each is parsed when it is first used.
+    pub fn builtin() -> Self {
+        Self { plugins: all().into_iter().map(|b| Box::new(b) as Box<dyn Plugin>).collect() }
+    }
+
+    /// Adds the domain in a folder and returns it.
+    ///
+    /// # Errors
+    /// `Unreadable` when files are missing or not TOML, `Invalid` with every problem of a file that breaks its schema,
+    /// `Taken` when the id is in use.
+    pub fn add_folder(&mut self, folder: &Path) -> Result<&dyn Plugin, Error> {
+        let plugin = Custom::read(folder)?;
+        if self.get(plugin.id()).is_some() {
+            return Err(Error::Taken { folder: folder.to_path_buf(), id: plugin.id().to_owned() });
+        }
+        self.plugins.push(Box::new(plugin));
+        Ok(self.plugins.last().expect("just pushed").as_ref())
+    }
+
+    /// Returns the domain with this id.
+    pub fn get(&self, id: &str) -> Option<&dyn Plugin> {
+        self.iter().find(|p| p.id() == id)
+    }
+
+    /// Returns all domains in order.
+    pub fn iter(&self) -> impl Iterator<Item = &dyn Plugin> {
+        self.plugins.iter().map(AsRef::as_ref)
+    }
+}

@@ -141,6 +141,20 @@ pub enum Value {
     Table(BTreeMap<String, serde_json::Value>),
 }
 
+impl KnowledgeBase {
+    /// Returns a knowledge base without references, for a domain that brings none.
+    pub fn empty(domain: &str) -> Self {
+        let metadata = Metadata {
+            version: 1,
+            domain: domain.into(),
+            generated_by: "no knowledge.json was given".into(),
+            date: "1970-01-01".into(),
+            notes: Vec::new(),
+        };
+        Self { metadata, references: Vec::new() }
+    }
+}
+
 impl Document for KnowledgeBase {
     const KIND: &'static str = "knowledge_base";
 

@@ -1,0 +1,111 @@
+//! The domains shipped inside the program.
+
+use std::sync::OnceLock;
+
+use d3dgen_model::domain::Domain;
+use d3dgen_model::knowledge::KnowledgeBase;
+
+use crate::Plugin;
+
+/// A shipped domain: JSON texts made at build time, parsed when first used.
+pub struct Builtin {
+    id: &'static str,
+    domain_json: &'static str,
+    knowledge_json: &'static str,
+    domain: OnceLock<Domain>,
+    knowledge: OnceLock<KnowledgeBase>,
+}
+
+macro_rules! builtin {
+    ($id:literal) => {
+        Builtin {
+            id: $id,
+            domain_json: include_str!(concat!(env!("OUT_DIR"), "/", $id, ".json")),
+            knowledge_json: include_str!(concat!("../../domains/", $id, "/knowledge.json")),
+            domain: OnceLock::new(),
+            knowledge: OnceLock::new(),
+        }
+    };
+}
+
+/// Returns the shipped domains, in the order in which `domains list` shows them.
+pub fn all() -> Vec<Builtin> {
+    vec![
+        builtin!("residential"),
+        builtin!("office"),
+        builtin!("hospital"),
+        builtin!("school"),
+        builtin!("warehouse"),
+        builtin!("general"),
+    ]
+}
+
+impl Plugin for Builtin {
+    fn id(&self) -> &str {
+        self.id
+    }
+
+    fn domain(&self) -> &Domain {
+        self.domain.get_or_init(|| serde_json::from_str(self.domain_json).expect("a test reads every shipped domain"))
+    }
+
+    fn knowledge(&self) -> &KnowledgeBase {
+        self.knowledge
+            .get_or_init(|| serde_json::from_str(self.knowledge_json).expect("a test reads every shipped knowledge base"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use d3dgen_model::Document;
+
+    use super::*;
+
+    #[test]
+    fn every_shipped_domain_holds_its_schema_and_rules() {
+        for builtin in all() {
+            let domain = Domain::from_json(builtin.domain_json).unwrap_or_else(|e| panic!("{}: {e}", builtin.id));
+            assert_eq!(domain.id, builtin.id);
+            let knowledge =
+                KnowledgeBase::from_json(builtin.knowledge_json).unwrap_or_else(|e| panic!("{}: {e}", builtin.id));
+            assert_eq!(knowledge.metadata.domain, builtin.id);
+            assert_eq!(builtin.domain(), &domain);
+            assert_eq!(builtin.knowledge(), &knowledge);
+        }
+    }
+
+    #[test]
+    fn the_knowledge_bases_hold_every_researched_fact() {
+        // 318, 271 and 373 facts on the buildings, and the robot facts that join them.
+        let expected = [("residential", 357), ("office", 362), ("hospital", 452)];
+        for (id, count) in expected {
+            let builtin = all().into_iter().find(|b| b.id == id).expect("shipped");
+            let constraints: usize = builtin.knowledge().references.iter().map(|r| r.constraints.len()).sum();
+            assert_eq!(constraints, count, "{id}");
+        }
+    }
+
+    #[test]
+    fn every_room_type_has_enough_objects_to_wish_for() {
+        for builtin in all() {
+            let domain = builtin.domain();
+            for room in &domain.room_types {
+                let mut objects = BTreeSet::new();
+                for line in &room.furnishing {
+                    match domain.group(&line.item) {
+                        Some(group) => {
+                            objects.insert(&group.anchor);
+                            objects.extend(group.members.iter().map(|m| &m.object));
+                        }
+                        None => {
+                            objects.insert(&line.item);
+                        }
+                    }
+                }
+                assert!(objects.len() >= 8, "{}: {} knows {} objects, needs 8", builtin.id, room.id, objects.len());
+            }
+        }
+    }
+}
