@@ -1,1 +1,128 @@
-//! Stage `placement`: under construction.
+//! Stage `placement`: furniture by the domain's furnishing lines, sizes and clearances, with room for a robot.
+//!
+//! Each room is furnished by itself and from its own random stream, so that locking things in one room leaves the
+//! others as they were. `demand` says what a room should hold, `find` proposes positions, `state` and `nav` hold the
+//! hard rules, `search` chooses, `assemble` writes the document. Positions are whole millimeters and headings quarter
+//! turns; nothing here depends on the platform's floating-point library.
+//!
+//! It does not choose 3D models (`asset` names the object type) and does not move walls.
+
+pub mod assemble;
+mod demand;
+mod find;
+mod geom;
+mod locked;
+mod nav;
+mod search;
+mod space;
+mod state;
+mod style;
+mod unit;
+
+use std::collections::BTreeMap;
+
+use d3dgen_model::domain::{Domain, ObjectType};
+use d3dgen_model::floorplan::{Floorplan, PlanRoom};
+use d3dgen_model::placements::Placement;
+use d3dgen_model::placements::{Placements, Unplaced};
+use d3dgen_model::scene_graph::SceneGraph;
+use d3dgen_model::seed::Stream;
+
+use crate::Error;
+use geom::mm;
+use space::Space;
+
+/// Least radius of the disc that must find its way, m: a person, or a small robot.
+const LEAST_RADIUS_M: f64 = 0.30;
+/// Width of a corridor from which it must stay passable for two, m.
+const WIDE_CORRIDOR_M: f64 = 2.2;
+
+/// Furnishes every room of a floorplan.
+///
+/// Locked placements of `pinned` stay exactly as they are and the others go around them. What a room type requires and
+/// the room cannot hold is listed in `unplaced` with `required`, with the rule that stopped it.
+///
+/// # Errors
+/// `Mismatch` when the plan and the graph have different rooms, or when locked placements do not fit the plan, the
+/// domain or each other; every such placement is named.
+pub fn generate(
+    graph: &SceneGraph,
+    plan: &Floorplan,
+    domain: &Domain,
+    pinned: Option<&Placements>,
+) -> Result<Placements, Error> {
+    let mut problems = locked::strays(pinned, plan);
+    for room in plan.rooms.iter().filter(|r| graph.room(&r.room_id).is_none()) {
+        problems.push(format!("room `{}` of the floorplan is not in the scene graph", room.room_id));
+    }
+    let mut out = Placements { version: 1, seed: graph.seed, placements: Vec::new(), unplaced: Vec::new() };
+    for room in &plan.rooms {
+        match furnish_room(graph, plan, room, domain, pinned) {
+            Ok((placements, unplaced)) => {
+                out.placements.extend(placements);
+                out.unplaced.extend(unplaced);
+            }
+            Err(found) => problems.extend(found),
+        }
+    }
+    locked::settle(problems)?;
+    Ok(out)
+}
+
+fn furnish_room(
+    graph: &SceneGraph,
+    plan: &Floorplan,
+    room: &PlanRoom,
+    domain: &Domain,
+    pinned: Option<&Placements>,
+) -> Result<(Vec<Placement>, Vec<Unplaced>), Vec<String>> {
+    let space = Space::new(plan, room);
+    let kind = domain.room_type_or_generic(&room.room_type);
+    let tasks = demand::tasks(domain, kind, graph.room(&room.room_id), room.net_area_m2);
+    let fixed = locked::of_room(pinned, &room.room_id);
+    let (units, problems) = locked::placed(&fixed, domain, &space);
+    if !problems.is_empty() {
+        return Err(problems);
+    }
+    let mut stream = Stream::new(graph.seed, &format!("placement/{}", room.room_id));
+    let salt = (stream.unit() * (1_u64 << 52) as f64) as u64;
+    let sizes = pick_sizes(domain, &mut stream);
+    let present = locked::present(&fixed, &tasks, domain);
+    let job = search::Job {
+        domain,
+        space: &space,
+        tasks: &tasks,
+        locked: &units,
+        present: &present,
+        sizes: &|o| sizes.get(o.id.as_str()).copied().unwrap_or(0),
+        salt,
+        radius: radius(graph, &space),
+        keep_width: keep_width(room, domain, &space),
+    };
+    let outcome = search::furnish(&job);
+    let placements = assemble::placements(domain, &room.room_id, &tasks, &outcome, &fixed);
+    Ok((placements, assemble::unplaced(&room.room_id, &tasks, &outcome, &present)))
+}
+
+/// Picks one size for each object type of a room, the most common one most often.
+fn pick_sizes<'a>(domain: &'a Domain, stream: &mut Stream) -> BTreeMap<&'a str, usize> {
+    let mut pick = |o: &ObjectType| if stream.chance(0.5) { 0 } else { stream.below(o.sizes_m.len()) };
+    domain.objects.iter().map(|o| (o.id.as_str(), pick(o))).collect()
+}
+
+/// Returns the radius of the disc that must reach everything, mm: the largest robot's where the doors let it in.
+fn radius(graph: &SceneGraph, space: &Space) -> i32 {
+    let least = mm(LEAST_RADIUS_M);
+    let robot = graph.robots.iter().map(|r| mm(r.radius_m)).fold(least, i32::max);
+    let doors = space.doors.iter().map(|d| d.clear_width / 2).max().unwrap_or(robot);
+    robot.min(doors).max(least)
+}
+
+/// Returns the clear width to keep in circulation, mm; 0 for other rooms.
+fn keep_width(room: &PlanRoom, domain: &Domain, space: &Space) -> i32 {
+    if !room.circulation {
+        return 0;
+    }
+    let least = if space.breadth() >= mm(WIDE_CORRIDOR_M) { 2000 } else { 1200 };
+    mm(domain.circulation.width_m).max(least)
+}

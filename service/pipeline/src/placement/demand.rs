@@ -1,0 +1,161 @@
+//! What a room should hold: its type's furnishing lines and the wishes of the scene graph, in the order of placing.
+
+use d3dgen_model::domain::{Arrangement, Domain, Furnishing, Mount, ObjectType, RoomType};
+use d3dgen_model::scene_graph::GraphRoom;
+
+use super::unit::{Unit, variants};
+
+/// Largest number of units of one line in one room.
+const MAX_UNITS: u32 = 400;
+
+/// A number of equal units to place in one way.
+#[derive(Debug, Clone)]
+pub(super) struct Task<'a> {
+    /// Group or object id.
+    pub item: &'a str,
+    /// Anchor of the group, or the object.
+    pub anchor: &'a ObjectType,
+    pub arrangement: Arrangement,
+    /// How many to place.
+    pub count: u32,
+    /// How many of them the room type cannot do without.
+    pub required: u32,
+    /// Furnishing line counted from 0; wishes come after the last line.
+    pub line: usize,
+    /// Why it is wanted, for people.
+    pub rule: String,
+}
+
+impl Task<'_> {
+    /// Returns true when all units are found in one go.
+    pub fn is_batch(&self) -> bool {
+        matches!(self.arrangement, Arrangement::Rows | Arrangement::Overhead)
+    }
+}
+
+/// Returns the tasks of a room, most constrained first.
+pub(super) fn tasks<'a>(
+    domain: &'a Domain,
+    kind: &'a RoomType,
+    graph: Option<&'a GraphRoom>,
+    area_m2: f64,
+) -> Vec<Task<'a>> {
+    let occupied = occupied_line(domain, kind, graph);
+    let mut out: Vec<Task> = Vec::new();
+    for (line, f) in kind.furnishing.iter().enumerate() {
+        let Some(anchor) = anchor_of(domain, &f.item) else { continue };
+        let (mut count, mut required) = (count(f, area_m2), if f.required { f.min } else { 0 });
+        if let Some((steered, units)) = occupied
+            && steered == line
+        {
+            count = units.max(f.min);
+            required = required.min(count);
+        }
+        if count == 0 {
+            continue;
+        }
+        let name = arrangement_name(f.arrangement);
+        let rule = format!("furnishing line {} ({}): {name}", line + 1, f.item);
+        let whole =
+            Task { item: &f.item, anchor, arrangement: f.arrangement, count, required, line, rule: rule.clone() };
+        let together = whole.is_batch() || required == 0 || required == count || occupied.is_some_and(|o| o.0 == line);
+        if together {
+            out.push(whole);
+        } else {
+            // what the room cannot do without comes before the rest of the same line
+            out.push(Task { count: required, ..whole.clone() });
+            out.push(Task { count: count - required, required: 0, ..whole });
+        }
+    }
+    let lines = kind.furnishing.len();
+    for (i, object) in wishes(domain, kind, graph).into_iter().enumerate() {
+        let arrangement = natural(object);
+        let rule = format!("wished for in the scene graph ({}): {}", object.id, arrangement_name(arrangement));
+        out.push(Task { item: &object.id, anchor: object, arrangement, count: 1, required: 0, line: lines + i, rule });
+    }
+    out.sort_by_key(|t| (phase(t), t.line));
+    out
+}
+
+fn anchor_of<'a>(domain: &'a Domain, item: &str) -> Option<&'a ObjectType> {
+    domain.group(item).map_or_else(|| domain.object(item), |g| domain.object(&g.anchor))
+}
+
+/// Returns how many units a line asks for in a room of this size.
+fn count(f: &Furnishing, area_m2: f64) -> u32 {
+    if f.area_per_item_m2 <= 0.0 {
+        return f.max.min(MAX_UNITS);
+    }
+    ((area_m2 / f.area_per_item_m2) as u32).clamp(f.min, f.max).min(MAX_UNITS)
+}
+
+/// Returns the line that beds, desks or seats for the room's occupants belong to, and how many units they need.
+fn occupied_line(domain: &Domain, kind: &RoomType, graph: Option<&GraphRoom>) -> Option<(usize, u32)> {
+    let people = graph?.occupants.filter(|n| *n > 0)?;
+    let capacity = |measure: fn(&Unit) -> u32| {
+        kind.furnishing.iter().enumerate().find_map(|(line, f)| {
+            let unit = variants(domain, &f.item, &|_| 0, 1.0).into_iter().next()?;
+            let each = measure(&unit);
+            (each > 0 && f.max > 0).then_some((line, each))
+        })
+    };
+    let seats = || capacity(|u| u.seats()).filter(|(line, _)| kind.furnishing[*line].max > 1);
+    let (line, each) = capacity(|u| u.beds()).or_else(|| capacity(|u| u.desks())).or_else(seats)?;
+    let units = people.div_ceil(each).min(MAX_UNITS);
+    Some((line, units))
+}
+
+fn wishes<'a>(domain: &'a Domain, kind: &RoomType, graph: Option<&GraphRoom>) -> Vec<&'a ObjectType> {
+    let mut out: Vec<&ObjectType> = Vec::new();
+    for id in graph.map_or(&[][..], |g| &g.wished_assets) {
+        let covered = kind.furnishing.iter().any(|f| {
+            &f.item == id
+                || domain.group(&f.item).is_some_and(|g| &g.anchor == id || g.members.iter().any(|m| &m.object == id))
+        });
+        if let Some(object) = domain.object(id)
+            && !covered
+            && !out.iter().any(|o| o.id == object.id)
+        {
+            out.push(object);
+        }
+    }
+    out
+}
+
+/// Returns where a thing goes that no furnishing line speaks of.
+fn natural(object: &ObjectType) -> Arrangement {
+    match object.mount {
+        Mount::Floor | Mount::Wall => Arrangement::Wall,
+        Mount::Ceiling => Arrangement::Overhead,
+        Mount::Surface => Arrangement::OnSurface,
+    }
+}
+
+fn phase(task: &Task) -> u8 {
+    use Arrangement::{AtWindow, Center, OnSurface, Overhead, Rows};
+    let last = matches!(task.arrangement, OnSurface | Overhead | AtWindow);
+    match (task.required > 0, task.arrangement) {
+        _ if last => 4,
+        (true, Rows | Center) => 1,
+        (true, _) => 0,
+        (false, _) if task.anchor.mount == Mount::Floor => 2,
+        (false, _) => 3,
+    }
+}
+
+fn arrangement_name(a: Arrangement) -> &'static str {
+    match a {
+        Arrangement::Wall => "wall",
+        Arrangement::SolidWall => "solid_wall",
+        Arrangement::WindowWall => "window_wall",
+        Arrangement::Corner => "corner",
+        Arrangement::Center => "center",
+        Arrangement::Rows => "rows",
+        Arrangement::Facing => "facing",
+        Arrangement::BesideDoor => "beside_door",
+        Arrangement::OnSurface => "on_surface",
+        Arrangement::Overhead => "overhead",
+        Arrangement::AtWindow => "at_window",
+        Arrangement::FacingDoor => "facing_door",
+    }
+}

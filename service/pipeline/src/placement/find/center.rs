@@ -1,0 +1,136 @@
+//! Free-standing in the largest free area of the room.
+
+use std::rc::Rc;
+
+use super::{Find, Rule};
+use crate::placement::geom::{Box2, turn};
+use crate::placement::state::{Placed, at_frame};
+use crate::placement::unit::Unit;
+
+/// Grain of the search for free floor, mm.
+const GRAIN: i32 = 150;
+
+impl<'a> Find<'_, 'a, '_> {
+    /// Offers free-standing positions around the middle of the largest free rectangle.
+    pub(super) fn center(&mut self, unit: &Rc<Unit<'a>>) {
+        let free = self.largest_free();
+        let space = self.state.space;
+        let flat = unit.parts[0].solid.is_flat();
+        let grid = |lo: i32, hi: i32| {
+            let step = ((hi - lo) / 14).max(250);
+            (0..).map(move |k| lo + k * step).take_while(move |v| *v < hi)
+        };
+        let (fx, fy) = free.center();
+        let (mx, my) = space.main.center();
+        let mut centers = vec![(fx, fy), (mx, my), (fx, my), (mx, fy)];
+        centers.extend(grid(free.x0, free.x1).flat_map(|x| grid(free.y0, free.y1).map(move |y| (x, y))));
+        let before = self.out.len();
+        for q in 0..4_u8 {
+            let (bu, bv) = unit.bbox.center();
+            let (du, dv) = turn(q, bu, bv);
+            for &(x, y) in &centers {
+                let (u, v) = turn(4 - q, x - du, y - dv);
+                let placed = at_frame(unit, q, u, v, self.index);
+                self.offer(placed, u32::from(q % 2), |find, p| find.center_score(p, &free, flat));
+            }
+        }
+        if self.out.len() == before {
+            self.none(Rule::NoPlace);
+        }
+    }
+
+    fn center_score(&self, p: &Placed<'a>, free: &Box2, flat: bool) -> f64 {
+        let rect = p.world(&p.unit.bbox);
+        let ((cx, cy), (fx, fy)) = (rect.center(), free.center());
+        let off = f64::from((cx - fx).abs() + (cy - fy).abs()) / 1000.0;
+        let mut s = -0.6 * off;
+        let along = (rect.width() >= rect.height()) == (free.width() >= free.height());
+        s += if along { 0.8 } else { 0.0 };
+        if !flat {
+            for margin in [300, 600, 900] {
+                let around = rect.grown(margin);
+                let open = self.state.space.contains(&around)
+                    && !self.state.solids.iter().any(|s| s.stops_robot() && s.rect.overlaps(&around));
+                s += if open { 0.5 } else { 0.0 };
+            }
+        }
+        if let Some((q, focus)) = self.focus() {
+            // turned to what the room is about, in line with it
+            let (_, v) = turn((4 - q) % 4, cx, cy);
+            let (_, w) = turn((4 - q) % 4, focus.center().0, focus.center().1);
+            s += if (v - w).abs() < 150 { 0.3 } else { 0.0 };
+            s += if p.q == (q + 2) % 4 { 0.15 } else { 0.0 };
+        }
+        s
+    }
+
+    /// Returns the largest rectangle of floor without furniture and door zones, to the grain of the search.
+    pub(super) fn largest_free(&self) -> Box2 {
+        let space = self.state.space;
+        let b = space.bounds;
+        let grain = GRAIN.max(b.width().max(b.height()) / 80);
+        let (nx, ny) = ((b.width() / grain).max(1) as usize, (b.height() / grain).max(1) as usize);
+        let blocked: Vec<Box2> = (self.state.solids.iter().filter(|s| s.stops_robot()).map(|s| s.rect))
+            .chain(space.doors.iter().map(|d| d.zone))
+            .collect();
+        let cell = |i: usize, j: usize| {
+            let (x, y) = (b.x0 + i as i32 * grain, b.y0 + j as i32 * grain);
+            Box2 { x0: x, y0: y, x1: x + grain, y1: y + grain }
+        };
+        let mut taken = vec![false; nx * ny];
+        for (k, t) in taken.iter_mut().enumerate() {
+            *t = !space.contains(&cell(k % nx, k / nx));
+        }
+        for r in &blocked {
+            let lo = |v: i32, o: i32| ((v - o).max(0) / grain) as usize;
+            let hi = |v: i32, o: i32, n: usize| (((v - o).max(0) + grain - 1) / grain).min(n as i32) as usize;
+            for j in lo(r.y0, b.y0)..hi(r.y1, b.y0, ny) {
+                for i in lo(r.x0, b.x0)..hi(r.x1, b.x0, nx) {
+                    taken[j * nx + i] = true;
+                }
+            }
+        }
+        largest(&taken, nx, ny).map_or(space.main, |(i0, i1, j0, j1)| cell(i0, j0).union(&cell(i1 - 1, j1 - 1)))
+    }
+}
+
+/// Returns the largest rectangle of cells that are not taken, as columns `i0..i1` and rows `j0..j1` (heights of
+/// columns of free cells, row after row).
+fn largest(taken: &[bool], nx: usize, ny: usize) -> Option<(usize, usize, usize, usize)> {
+    let mut heights = vec![0_usize; nx + 1];
+    let mut best: Option<(usize, (usize, usize, usize, usize))> = None;
+    for j in 0..ny {
+        for i in 0..nx {
+            heights[i] = if taken[j * nx + i] { 0 } else { heights[i] + 1 };
+        }
+        let mut open: Vec<(usize, usize)> = Vec::new(); // start column, height; heights increase
+        for i in 0..=nx {
+            let mut start = i;
+            while let Some(&(from, height)) = open.last().filter(|o| o.1 >= heights[i]) {
+                open.pop();
+                start = from;
+                let area = height * (i - from);
+                if area > best.as_ref().map_or(0, |b| b.0) {
+                    best = Some((area, (from, i, j + 1 - height, j + 1)));
+                }
+            }
+            open.push((start, heights[i]));
+        }
+    }
+    best.map(|b| b.1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::largest;
+
+    #[test]
+    fn finds_the_largest_free_rectangle() {
+        let map = "#...\
+                   ....\
+                   ...#";
+        let taken: Vec<bool> = map.chars().map(|c| c == '#').collect();
+        assert_eq!(largest(&taken, 4, 3), Some((1, 3, 0, 3)));
+        assert_eq!(largest(&[true; 4], 2, 2), None);
+    }
+}

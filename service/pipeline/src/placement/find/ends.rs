@@ -1,0 +1,95 @@
+//! Turned to something: opposite the room's first item, or to the door.
+
+use std::rc::Rc;
+
+use d3dgen_model::domain::Mount;
+
+use super::{Find, Rule};
+use crate::placement::geom::turn;
+use crate::placement::state::at_frame;
+use crate::placement::unit::Unit;
+
+/// Grain of free-standing positions, mm.
+const STEP: i32 = 250;
+/// Floor a person needs behind a free-standing counter, mm.
+const BEHIND: i32 = 900;
+
+impl<'a> Find<'_, 'a, '_> {
+    /// Offers positions opposite the first item, facing it: on the wall across first, then free-standing.
+    pub(super) fn facing(&mut self, unit: &Rc<Unit<'a>>) {
+        let Some((target_q, target)) = self.focus() else { return self.along_walls(unit) };
+        let q = (target_q + 2) % 4;
+        let (_, axis) = turn((4 - q) % 4, target.center().0, target.center().1);
+        let (b, middle) = (unit.bbox, (unit.bbox.y0 + unit.bbox.y1) / 2);
+        for i in 0..self.state.space.walls.len() {
+            let wall = &self.state.space.walls[i];
+            if wall.q != q || wall.length() < b.height() {
+                continue;
+            }
+            let most = (wall.length() - b.height()) / 2;
+            for k in 0..=20 {
+                let side = if k % 2 == 0 { k / 2 } else { -(k + 1) / 2 } * 100;
+                let v = (axis - middle + side).clamp(wall.v0 - b.y0, wall.v1 - b.y1);
+                if side.abs() <= most + 100 {
+                    let placed = at_frame(unit, q, wall.u - b.x0, v, self.index);
+                    let off = f64::from((v + middle - axis).abs()) / 1000.0;
+                    self.offer(placed, i as u32, |_, _| 3.0 - 2.0 * off);
+                }
+            }
+        }
+        if self.task.anchor.mount == Mount::Floor && !unit.needs_wall {
+            let wide = self.state.space.bounds.turned((4 - q) % 4);
+            let t = target.turned((4 - q) % 4);
+            // in front of the target means at smaller u in the frame of the one that faces it
+            let mut u = t.x0 - unit.reach.x1;
+            while u + b.x0 > wide.x0 {
+                for side in [0, -STEP, STEP, -2 * STEP, 2 * STEP] {
+                    let placed = at_frame(unit, q, u, axis - middle + side, self.index);
+                    let far = f64::from(t.x0 - u) / 1000.0;
+                    let off = f64::from(side.abs()) / 1000.0;
+                    self.offer(placed, 90, |_, _| 1.5 - 2.0 * off - 0.3 * (far - 1.8).abs());
+                }
+                u -= STEP;
+            }
+        }
+        if self.out.is_empty() {
+            for i in 0..self.state.space.walls.len() {
+                let opposite = self.state.space.walls[i].q != target_q;
+                self.along_wall(unit, i, if opposite { -1.0 } else { -2.5 });
+            }
+        }
+    }
+
+    /// Offers positions that face the door of the room, with the far wall or a person's width behind.
+    pub(super) fn facing_door(&mut self, unit: &Rc<Unit<'a>>) {
+        let space = self.state.space;
+        let Some(door) = space.doors.first() else { return self.along_walls(unit) };
+        let wall = &space.walls[door.wall];
+        let q = (wall.q + 2) % 4;
+        let wide = space.bounds.turned((4 - q) % 4);
+        let door_axis = -(door.v0 + door.v1) / 2; // the frame is turned by half a turn against the wall's
+        let door_u = -wall.u;
+        let (b, middle) = (unit.bbox, (unit.bbox.y0 + unit.bbox.y1) / 2);
+        let backs = space.walls.iter().filter(|w| w.q == q).map(|w| w.u - b.x0);
+        let mut us: Vec<i32> = backs.collect();
+        us.extend((0..30).map(|k| wide.x0 + BEHIND - b.x0 + k * STEP).take_while(|u| u + b.x1 < door_u));
+        for u in us {
+            let behind = u + b.x0 - wide.x0;
+            for k in 0..24 {
+                let side = if k % 2 == 0 { k / 2 } else { -(k + 1) / 2 } * STEP;
+                let placed = at_frame(unit, q, u, door_axis - middle + side, self.index);
+                let front = f64::from(door_u - u - b.x1) / 1000.0;
+                let off = f64::from(side.abs()) / 1000.0;
+                let lost = if behind > 100 && behind < BEHIND { 1.5 } else { f64::from(behind) / 4000.0 };
+                let near = (1.8 - front).max(0.0) + 0.2 * (front - 4.0).max(0.0);
+                self.offer(placed, 80 + u32::from(behind > 100), |_, _| 2.0 - 0.6 * off - lost - near);
+            }
+        }
+        if self.out.is_empty() {
+            self.none(Rule::NoPlace);
+            for i in 0..space.walls.len() {
+                self.along_wall(unit, i, -1.5);
+            }
+        }
+    }
+}

@@ -1,0 +1,118 @@
+//! Positions for one unit, by arrangement: each valid one with how good it is, higher is better.
+
+mod center;
+mod ends;
+mod rows;
+mod top;
+mod walls;
+
+use std::rc::Rc;
+
+use d3dgen_model::domain::{Arrangement, Mount};
+
+pub(super) use rows::{over, rows};
+
+use super::demand::Task;
+use super::geom::Box2;
+use super::state::{Placed, Rule, State};
+use super::style::{Style, grain, style};
+use super::unit::Unit;
+
+/// A valid position, routes not yet looked at.
+#[derive(Debug, Clone)]
+pub(super) struct Candidate<'a> {
+    pub placed: Placed<'a>,
+    pub score: f64,
+    /// Positions of one class look alike (one wall, one corner): the search tries different classes.
+    pub class: u32,
+}
+
+/// How often each rule turned a position down.
+pub(super) type Tally = [u32; 7];
+
+/// The search for positions of one unit in one state of the room.
+pub(super) struct Find<'f, 'a, 's> {
+    pub state: &'f State<'a, 's>,
+    pub task: &'f Task<'a>,
+    pub index: usize,
+    /// Makes equal positions differ a little, by seed and room.
+    pub salt: u64,
+    /// Robot's diameter with a margin, mm: narrower gaps are dead corners.
+    pub aisle: i32,
+    pub out: Vec<Candidate<'a>>,
+    pub tally: &'f mut Tally,
+    style: Style,
+}
+
+impl<'f, 'a, 's> Find<'f, 'a, 's> {
+    pub fn new(
+        state: &'f State<'a, 's>,
+        task: &'f Task<'a>,
+        index: usize,
+        salt: u64,
+        aisle: i32,
+        tally: &'f mut Tally,
+    ) -> Self {
+        let both = task.anchor.clear_sides > 1 && task.anchor.clearance_side_m > 0.0;
+        let style = style(task.anchor.shape, task.anchor.mount, both);
+        Self { state, task, index, salt, aisle, out: Vec::new(), tally, style }
+    }
+
+    /// Collects positions of a unit as the task's arrangement wants it, best first.
+    pub fn run(mut self, unit: &Rc<Unit<'a>>) -> Vec<Candidate<'a>> {
+        match self.task.arrangement {
+            Arrangement::OnSurface => self.on_surfaces(unit),
+            Arrangement::AtWindow => self.at_windows(unit),
+            Arrangement::Center => {
+                self.center(unit);
+            }
+            Arrangement::Facing => self.facing(unit),
+            Arrangement::FacingDoor => self.facing_door(unit),
+            _ if self.task.anchor.mount == Mount::Surface => self.on_surfaces(unit),
+            _ => self.along_walls(unit),
+        }
+        self.out.sort_by(|a, b| b.score.total_cmp(&a.score));
+        self.out
+    }
+
+    /// Tests a position and keeps it when it breaks no rule.
+    fn offer(&mut self, placed: Placed<'a>, class: u32, score: impl FnOnce(&Self, &Placed<'a>) -> f64) {
+        let at_window = self.task.arrangement == Arrangement::AtWindow;
+        match self.state.test(&placed, at_window) {
+            Ok(()) => {
+                let grain = grain(
+                    self.salt,
+                    i64::from(placed.at.0 / 50),
+                    i64::from(placed.at.1 / 50) * 4 + i64::from(placed.q),
+                );
+                let score = score(self, &placed) + 0.25 * grain + 0.6 * self.class_grain(class);
+                self.out.push(Candidate { placed, score, class });
+            }
+            Err(rule) => self.tally[rule as usize] += 1,
+        }
+    }
+
+    fn class_grain(&self, class: u32) -> f64 {
+        grain(self.salt, i64::from(class) + 1, self.task.line as i64)
+    }
+
+    fn none(&mut self, rule: Rule) {
+        self.tally[rule as usize] += 1;
+    }
+
+    /// Returns where units of the same task stand already.
+    fn siblings(&self) -> impl Iterator<Item = &Placed<'a>> {
+        self.state.placed.iter().filter(|p| p.unit.item == self.task.item)
+    }
+
+    /// Returns what the room turns to: the first furnishing line's units, or whatever was placed first.
+    fn focus(&self) -> Option<(u8, Box2)> {
+        let other = || self.state.placed.iter().filter(|p| p.unit.item != self.task.item);
+        let first = other().find(|p| p.first_line).or_else(|| other().next())?;
+        let rect = other()
+            .filter(|p| p.task == first.task && p.q == first.q)
+            .map(|p| p.world(&p.unit.bbox))
+            .reduce(|a, b| a.union(&b))?;
+        Some((first.q, rect))
+    }
+}

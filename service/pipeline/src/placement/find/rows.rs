@@ -1,0 +1,266 @@
+//! Many equal units at once: parallel rows with aisles, and lamps spread over a ceiling.
+
+use std::rc::Rc;
+
+use d3dgen_model::domain::{Arrangement, Shape};
+
+use super::Tally;
+use crate::placement::demand::Task;
+use crate::placement::geom::{Box2, turn};
+use crate::placement::state::{Placed, State, at_frame};
+use crate::placement::style::grain;
+use crate::placement::unit::Unit;
+
+/// Least width of an aisle people use, mm.
+const AISLE: i32 = 900;
+/// Row plans whose every position is tested.
+const PLANS: usize = 20;
+/// Arrangements handed to the search.
+const KEPT: usize = 6;
+
+/// Units in rows, with how good the whole is.
+pub(in crate::placement) struct Batch<'a> {
+    pub placed: Vec<Placed<'a>>,
+    pub score: f64,
+}
+
+/// How rows are drawn up, in the frame of a unit turned by `q`.
+#[derive(Debug, Clone, Copy)]
+struct Plan {
+    q: u8,
+    columns: i32,
+    rows: i32,
+    /// Units side by side before a cross aisle.
+    run: i32,
+    /// From one unit's edge to the next in a row, mm.
+    gap_v: i32,
+    /// From one row's front to the next row's back, mm.
+    gap_u: i32,
+    /// Every second row turned around, backs touching.
+    paired: bool,
+    score: f64,
+}
+
+impl Plan {
+    fn breadth(&self, w: i32, aisle: i32) -> i32 {
+        let aisles = (self.columns - 1) / self.run;
+        self.columns * w + (self.columns - 1 - aisles) * self.gap_v + aisles * aisle
+    }
+
+    fn depth(&self, d: i32) -> i32 {
+        let gaps = if self.paired { (self.rows - 1) / 2 } else { self.rows - 1 };
+        self.rows * d + gaps * self.gap_u
+    }
+
+    /// Returns the low edge of a column, counted from the first.
+    fn column(&self, c: i32, w: i32, aisle: i32) -> i32 {
+        let aisles = c / self.run;
+        c * w + (c - aisles) * self.gap_v + aisles * aisle
+    }
+
+    /// Returns the low edge of a row, counted from the first, and whether it is turned around.
+    fn row(&self, r: i32, d: i32) -> (i32, bool) {
+        if self.paired { (r * d + r.div_euclid(2) * self.gap_u, r % 2 == 0) } else { (r * (d + self.gap_u), false) }
+    }
+}
+
+/// Returns ways to set up a task's units in rows, best first; each position holds, routes not looked at.
+pub(in crate::placement) fn rows<'a>(
+    state: &State<'a, '_>,
+    task: &Task,
+    index: usize,
+    unit: &Rc<Unit<'a>>,
+    salt: u64,
+    robot: i32,
+    tally: &mut Tally,
+) -> Vec<Batch<'a>> {
+    let aisle = robot.max(AISLE);
+    let count = task.count as i32;
+    let focus = state.placed.iter().find(|p| p.first_line && p.unit.item != task.item).map(|p| p.q);
+    let mut plans = plans(state, unit, count, robot, focus);
+    plans.sort_by(|a, b| b.score.total_cmp(&a.score));
+    plans.truncate(PLANS);
+    let mut out: Vec<Batch> = Vec::new();
+    for plan in &plans {
+        let wide = state.space.bounds.turned((4 - plan.q) % 4);
+        let (d, w) = (unit.bbox.width(), unit.bbox.height());
+        let (spare_u, spare_v) = (wide.width() - plan.depth(d), wide.height() - plan.breadth(w, aisle));
+        let (front, back) = (unit.reach.x1 - unit.bbox.x1, if plan.paired { unit.reach.x1 - unit.bbox.x1 } else { 0 });
+        for (ku, u0) in [(spare_u + back - front).max(0) / 2, back.min(spare_u), (spare_u - front).max(0), aisle]
+            .into_iter()
+            .enumerate()
+        {
+            for (kv, v0) in [spare_v / 2, 0, spare_v, aisle, spare_v - aisle].into_iter().enumerate() {
+                if u0 > spare_u || v0 > spare_v || v0 < 0 {
+                    continue;
+                }
+                let placed = set_up(state, plan, unit, (wide.x0 + u0, wide.y0 + v0), aisle, index, count, tally);
+                if placed.is_empty() {
+                    continue;
+                }
+                let share = placed.len() as f64 / f64::from(count.max(1));
+                let tidy = [0.5, 0.3, 0.1, 0.1][ku] + [0.5, 0.25, 0.25, 0.1, 0.1][kv];
+                let noise = 0.5 * grain(salt, i64::from(plan.q) * 64 + i64::from(plan.columns), (ku * 8 + kv) as i64);
+                out.push(Batch { placed, score: plan.score + 8.0 * (share - 1.0) + tidy + noise });
+            }
+        }
+    }
+    out.sort_by(|a, b| b.score.total_cmp(&a.score));
+    out.truncate(KEPT);
+    out
+}
+
+fn plans(state: &State, unit: &Unit, count: i32, robot: i32, focus: Option<u8>) -> Vec<Plan> {
+    let aisle = robot.max(AISLE);
+    let (b, r) = (unit.bbox, unit.reach);
+    let (d, w) = (b.width(), b.height());
+    let (front, back) = (r.x1 - b.x1, b.x0 - r.x0);
+    let gap_v = (b.y0 - r.y0).max(r.y1 - b.y1);
+    let pairs = matches!(unit.anchor().object.shape, Shape::Desk | Shape::Rack | Shape::Shelf | Shape::Bench);
+    let need = front.max(back);
+    let mut gaps = vec![if need > 0 { need } else { robot }, need.max(robot)];
+    gaps.dedup();
+    let mut out = Vec::new();
+    for q in 0..4_u8 {
+        let wide = state.space.bounds.turned((4 - q) % 4);
+        let turned = focus.map_or(0.0, |f| if q == (f + 2) % 4 { 1.5 } else { 0.0 });
+        for paired in [false, true] {
+            if paired && (!pairs || focus.is_some() || count < 2 || back > 0) {
+                continue;
+            }
+            for &gap_u in &gaps {
+                for run in [i32::MAX, 4, 3, 2] {
+                    for columns in 1..=count {
+                        let mut plan = Plan {
+                            q,
+                            columns,
+                            rows: (count + columns - 1) / columns,
+                            run,
+                            gap_v,
+                            gap_u,
+                            paired,
+                            score: 0.0,
+                        };
+                        if plan.breadth(w, aisle) > wide.height() {
+                            break;
+                        }
+                        if run < i32::MAX && columns <= run {
+                            continue; // no cross aisle: the same as one long run
+                        }
+                        let wished = plan.rows;
+                        while plan.rows > 1 && plan.depth(d) + front + if paired { front } else { 0 } > wide.width() {
+                            plan.rows -= 1;
+                        }
+                        plan.score = turned + rate(&plan, wished, count, (d, w), &wide, aisle);
+                        out.push(plan);
+                    }
+                }
+            }
+        }
+    }
+    out
+}
+
+fn rate(plan: &Plan, wished: i32, count: i32, (d, w): (i32, i32), wide: &Box2, aisle: i32) -> f64 {
+    let held = (plan.rows * plan.columns).min(count);
+    let mut s = 8.0 * f64::from(held - count) / f64::from(count);
+    // a block shaped like its room
+    let (pu, pv) = (f64::from(plan.depth(d)), f64::from(plan.breadth(w, aisle)));
+    let (ru, rv) = (f64::from(wide.width()), f64::from(wide.height()));
+    s -= 2.0 * (pu / ru - pv / rv).abs();
+    // full rows, long runs broken by aisles, wide aisles where there is room
+    s -= 0.5 * f64::from(plan.columns * wished - count) / f64::from(plan.columns);
+    s -= if plan.run == i32::MAX && plan.columns > 4 { 0.8 } else { 0.0 };
+    s -= if plan.run == 2 { 0.2 } else { 0.0 };
+    s + if plan.paired { 0.6 } else { 0.0 } + f64::from(plan.gap_u.min(1500)) / 5000.0
+}
+
+#[expect(clippy::too_many_arguments, reason = "the inner step of one search, called once")]
+fn set_up<'a>(
+    state: &State<'a, '_>,
+    plan: &Plan,
+    unit: &Rc<Unit<'a>>,
+    (u0, v0): (i32, i32),
+    aisle: i32,
+    index: usize,
+    count: i32,
+    tally: &mut Tally,
+) -> Vec<Placed<'a>> {
+    let b = unit.bbox;
+    let (d, w) = (b.width(), b.height());
+    let mut out: Vec<Placed> = Vec::new();
+    // one row more than needed makes up for places that doors take
+    for r in 0..=plan.rows {
+        for c in 0..plan.columns {
+            if out.len() as i32 >= count {
+                return out;
+            }
+            let ((du, around), dv) = (plan.row(r, d), plan.column(c, w, aisle));
+            let (q, u, v) = if around {
+                // turned by half a turn, so that its back is at the high end of its row
+                (((plan.q + 2) % 4), -(u0 + du + d) - b.x0, -(v0 + dv) - b.y1)
+            } else {
+                (plan.q, u0 + du - b.x0, v0 + dv - b.y0)
+            };
+            let placed = at_frame(unit, q, u, v, index);
+            match state.test(&placed, false).and_then(|()| apart(&out, &placed)) {
+                Ok(()) => out.push(placed),
+                Err(rule) => tally[rule as usize] += 1,
+            }
+        }
+    }
+    out
+}
+
+/// Tests a unit against the others of its batch, which the state does not know yet.
+fn apart(others: &[Placed], p: &Placed) -> Result<(), super::Rule> {
+    let (body, clears) =
+        (p.world(&p.unit.bbox), |p: &Placed| -> Vec<Box2> { p.unit.clears.iter().map(|c| p.world(c)).collect() });
+    let own = clears(p);
+    for o in others {
+        let other = o.world(&o.unit.bbox);
+        if other.overlaps(&body) {
+            return Err(super::Rule::Collision);
+        }
+        if own.iter().any(|c| c.overlaps(&other)) || clears(o).iter().any(|c| c.overlaps(&body)) {
+            return Err(super::Rule::Clearance);
+        }
+    }
+    Ok(())
+}
+
+/// Returns units spread evenly over the ceiling of the room's main part.
+pub(in crate::placement) fn over<'a>(
+    state: &State<'a, '_>,
+    task: &Task,
+    index: usize,
+    unit: &Rc<Unit<'a>>,
+    tally: &mut Tally,
+) -> Vec<Batch<'a>> {
+    debug_assert!(task.arrangement == Arrangement::Overhead);
+    let main = state.space.main;
+    let count = task.count.max(1) as i32;
+    let (long, short) = (main.width().max(main.height()), main.width().min(main.height()));
+    // as many lines as keep the spacing alike in both directions
+    let lines = (1..=count).find(|l| (count + l - 1) / l * short <= long * l || *l == count).unwrap_or(1);
+    let each = (count + lines - 1) / lines;
+    let along_x = main.width() >= main.height();
+    let (bx, by) = unit.bbox.center();
+    let mut placed = Vec::new();
+    for k in 0..count {
+        let (line, n) = (k / each, k % each);
+        let in_line = each.min(count - line * each);
+        let a = long * (2 * n + 1) / (2 * in_line);
+        let s = short * (2 * line + 1) / (2 * lines);
+        let (x, y) = if along_x { (main.x0 + a, main.y0 + s) } else { (main.x0 + s, main.y0 + a) };
+        let q = if along_x { 1 } else { 0 };
+        let (du, dv) = turn(q, bx, by);
+        let (u, v) = turn(4 - q, x - du, y - dv);
+        let p = at_frame(unit, q, u, v, index);
+        match state.test(&p, false).and_then(|()| apart(&placed, &p)) {
+            Ok(()) => placed.push(p),
+            Err(rule) => tally[rule as usize] += 1,
+        }
+    }
+    if placed.is_empty() { Vec::new() } else { vec![Batch { placed, score: 1.0 }] }
+}

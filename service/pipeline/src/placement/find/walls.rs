@@ -1,0 +1,256 @@
+//! Back to a wall: at the ends and in the middle of every free stretch, beside neighbors, under windows.
+
+use std::rc::Rc;
+
+use d3dgen_model::domain::{Arrangement, Mount};
+
+use super::{Find, Rule};
+use crate::placement::geom::{Box2, FLAT, turn};
+use crate::placement::space::WallSide;
+use crate::placement::state::{Placed, at_frame};
+use crate::placement::unit::Unit;
+
+/// Positions nearer than this along a wall are one position, mm.
+const SAME: i32 = 20;
+/// Regular positions along a wall, beside the telling ones, mm.
+const STEP: i32 = 450;
+/// A gap narrower than this beside furniture collects dust, mm.
+const SLIVER: i32 = 300;
+
+/// What already takes part of a wall.
+struct Front {
+    /// Stretches along the wall that are taken, merged and in order.
+    taken: Vec<(i32, i32)>,
+    /// Ends and middles of everything near the wall.
+    marks: Vec<i32>,
+}
+
+impl<'a> Find<'_, 'a, '_> {
+    /// Offers positions with the back to each wall.
+    pub(super) fn along_walls(&mut self, unit: &Rc<Unit<'a>>) {
+        let before = self.out.len();
+        for i in 0..self.state.space.walls.len() {
+            self.along_wall(unit, i, 0.0);
+        }
+        if self.out.len() == before {
+            self.none(Rule::NoPlace);
+        }
+    }
+
+    /// Offers positions with the back to one wall; `bonus` is added to each score.
+    pub(super) fn along_wall(&mut self, unit: &Rc<Unit<'a>>, index: usize, bonus: f64) {
+        let space = self.state.space;
+        let wall = &space.walls[index];
+        let b = unit.bbox;
+        if wall.length() < b.height() {
+            self.none(Rule::Outside);
+            return;
+        }
+        let front = self.front(wall, index, unit);
+        let u = wall.u - b.x0;
+        for v in self.stops(wall, index, unit, &front) {
+            let placed = at_frame(unit, wall.q, u, v, self.index);
+            let class = index as u32 * 4
+                + if v + b.y0 < wall.v0 + 300 {
+                    0
+                } else if v + b.y1 > wall.v1 - 300 {
+                    1
+                } else {
+                    2
+                };
+            self.offer(placed, class, |find, p| bonus + find.wall_score(p, index, &front, v));
+        }
+    }
+
+    /// Looks along a wall for what is in the way of a unit.
+    fn front(&self, wall: &WallSide, index: usize, unit: &Unit) -> Front {
+        let space = self.state.space;
+        let b = unit.bbox;
+        let (z0, z1) = unit
+            .parts
+            .iter()
+            .filter(|p| p.mount != Mount::Ceiling && p.mount != Mount::Surface)
+            .fold((i32::MAX, FLAT + 1), |(lo, hi), p| (lo.min(p.solid.z0), hi.max(p.solid.z1)));
+        let near = |r: &Box2| {
+            let r = r.turned((4 - wall.q) % 4);
+            (r.x0 < wall.u + b.width() && r.x1 > wall.u && r.y1 > wall.v0 && r.y0 < wall.v1).then_some((r.y0, r.y1))
+        };
+        let mut taken: Vec<(i32, i32)> = Vec::new();
+        taken.extend(space.doors.iter().filter(|d| z0 < d.height).filter_map(|d| near(&d.zone)));
+        let solids = self.state.solids.iter();
+        taken.extend(solids.clone().filter(|s| !s.is_flat() && s.z0 < z1 && z0 < s.z1).filter_map(|s| near(&s.rect)));
+        let mut marks: Vec<i32> = taken.iter().flat_map(|t| [t.0, t.1]).collect();
+        for w in space.windows_of(index) {
+            if z1 > w.sill && z0 < w.head {
+                taken.push((w.v0, w.v1));
+            }
+            marks.extend([w.v0, w.v1]);
+        }
+        marks.extend(self.state.clears.iter().filter_map(near).flat_map(|t| [t.0, t.1]));
+        taken.sort_unstable();
+        let mut merged: Vec<(i32, i32)> = Vec::new();
+        for t in taken {
+            match merged.last_mut() {
+                Some(last) if t.0 <= last.1 => last.1 = last.1.max(t.1),
+                _ => merged.push(t),
+            }
+        }
+        Front { taken: merged, marks }
+    }
+
+    /// Returns positions of the unit's origin along the wall.
+    fn stops(&self, wall: &WallSide, index: usize, unit: &Unit, front: &Front) -> Vec<i32> {
+        let (b, r) = (unit.bbox, unit.reach);
+        let mut out = Vec::new();
+        let marks = [wall.v0, wall.v1].into_iter().chain(front.marks.iter().copied());
+        for m in marks {
+            out.extend([m - b.y0, m - b.y1, m - r.y0, m - r.y1]);
+        }
+        if self.task.arrangement != Arrangement::Corner {
+            let middle = (b.y0 + b.y1) / 2;
+            let mut from = wall.v0;
+            for &(t0, t1) in front.taken.iter().chain(&[(wall.v1, wall.v1)]) {
+                out.push((from + t0) / 2 - middle);
+                from = from.max(t1);
+            }
+            out.extend(self.state.space.windows_of(index).map(|w| (w.v0 + w.v1) / 2 - middle));
+            if self.task.anchor.mount == Mount::Wall {
+                // over the middle of what stands below
+                out.extend(self.state.placed.iter().filter(|p| p.q == wall.q && p.on_floor()).map(|p| {
+                    let r = p.world(&p.unit.parts[0].solid.rect).turned((4 - wall.q) % 4);
+                    (r.y0 + r.y1) / 2 - middle
+                }));
+            }
+            for p in self.siblings().filter(|p| p.q % 2 == wall.q % 2) {
+                // in line with one of its kind across the room
+                out.push(turn((4 - wall.q) % 4, p.at.0, p.at.1).1);
+            }
+            let mut v = wall.v0 - b.y0 + STEP / 2;
+            while v + b.y1 < wall.v1 {
+                out.push(v);
+                v += STEP;
+            }
+        }
+        out.retain(|v| v + b.y0 >= wall.v0 && v + b.y1 <= wall.v1);
+        out.sort_unstable();
+        out.dedup_by(|a, b| *a - *b < SAME && *a != wall.v1 - unit.bbox.y1);
+        out
+    }
+
+    fn wall_score(&self, p: &Placed<'a>, index: usize, front: &Front, v: i32) -> f64 {
+        let (space, style) = (self.state.space, self.style);
+        let wall = &space.walls[index];
+        let b = p.unit.bbox;
+        let (a, z) = (v + b.y0, v + b.y1);
+        let low = front.taken.iter().filter(|t| t.1 <= a + 5).map(|t| t.1).max().unwrap_or(wall.v0).max(wall.v0);
+        let high = front.taken.iter().filter(|t| t.0 >= z - 5).map(|t| t.0).min().unwrap_or(wall.v1).min(wall.v1);
+        let (gl, gr) = ((a - low).max(0), (high - z).max(0));
+        let floor = self.task.anchor.mount == Mount::Floor;
+        let mut s = 0.0;
+        for (gap, at_door) in [(gl, self.is_door_edge(index, low)), (gr, self.is_door_edge(index, high))] {
+            if gap <= 5 {
+                s += if at_door { 0.0 } else { style.flush };
+            } else if floor && gap < SLIVER && !at_door {
+                s -= 0.9;
+            } else if floor && gap < self.aisle && !at_door {
+                s -= 0.35;
+            }
+        }
+        let spare = f64::from(gl + gr);
+        s -= style.centered * f64::from((gl - gr).abs()) / (spare + 1.0) * (spare / 2000.0).min(1.0);
+        s -= style.tight * (spare / 3000.0).min(1.0);
+        s += self.window_score(index, a, z) + self.door_score(p) + self.sibling_score(p, a, z, index);
+        s + self.arrangement_score(p, index, a, z)
+    }
+
+    fn is_door_edge(&self, wall: usize, v: i32) -> bool {
+        self.state.space.doors.iter().any(|d| d.wall == wall && ((d.v0 - v).abs() < 10 || (d.v1 - v).abs() < 10))
+    }
+
+    /// Light and views: windows behind it, a window at its side.
+    fn window_score(&self, index: usize, a: i32, z: i32) -> f64 {
+        let space = self.state.space;
+        let solid = if self.task.arrangement == Arrangement::SolidWall { 1.5 } else { 0.0 };
+        let behind: i32 = space.windows_of(index).map(|w| (z.min(w.v1) - a.max(w.v0)).max(0)).sum();
+        let mut s = -(self.style.solid_behind + solid) * f64::from(behind) / f64::from((z - a).max(1));
+        if self.style.side_light > 0.0 {
+            let q = space.walls[index].q;
+            let beside = space.windows.iter().any(|w| space.walls[w.wall].q % 2 != q % 2);
+            s += if beside { self.style.side_light } else { 0.0 };
+        }
+        s
+    }
+
+    /// Distance to the door of the room, and not having it in one's back.
+    fn door_score(&self, p: &Placed<'a>) -> f64 {
+        let space = self.state.space;
+        let Some(door) = space.doors.first() else { return 0.0 };
+        let rect = p.world(&p.unit.bbox);
+        let gap = f64::from(rect.gap(&door.zone)) / 1000.0;
+        let size = f64::from(space.bounds.width().max(space.bounds.height())) / 1000.0;
+        let mut s = self.style.far_from_door * (gap / size.max(1.0)).min(1.0);
+        if self.style.far_from_door > 1.0 && gap < 0.5 {
+            s -= 0.8;
+        }
+        if self.style.door_in_view > 0.0 {
+            // its user stands in front and looks at it: a door further in front is behind the user
+            let (dx, dy) = super::super::geom::DIR[usize::from(p.q)];
+            let (c, d) = (rect.center(), door.zone.center());
+            if (d.0 - c.0) * dx + (d.1 - c.1) * dy > 1200 {
+                s -= self.style.door_in_view;
+            }
+        }
+        s
+    }
+
+    /// Equal things in one line, evenly spaced, on one wall.
+    fn sibling_score(&self, p: &Placed<'a>, a: i32, z: i32, index: usize) -> f64 {
+        let wall = &self.state.space.walls[index];
+        let mut s: f64 = 0.0;
+        for other in self.siblings() {
+            let r = other.world(&other.unit.bbox).turned((4 - wall.q) % 4);
+            let same_wall = other.q == p.q && (r.x0 - wall.u).abs() < 60;
+            let aligned = (r.y0 - a).abs() < 30 && (r.y1 - z).abs() < 30;
+            s = s.max(match (same_wall, other.q == (p.q + 2) % 4 && aligned) {
+                (true, _) => 0.8,
+                (_, true) => 0.5,
+                _ => 0.0,
+            });
+        }
+        s
+    }
+
+    fn arrangement_score(&self, p: &Placed<'a>, index: usize, a: i32, z: i32) -> f64 {
+        let space = self.state.space;
+        let wall = &space.walls[index];
+        match self.task.arrangement {
+            Arrangement::Corner => {
+                let near = |end: i32, inner: bool, at: i32| inner && (end - at).abs() < 120;
+                if near(wall.v0, wall.corner0, a) || near(wall.v1, wall.corner1, z) { 2.0 } else { -1.0 }
+            }
+            Arrangement::WindowWall => {
+                let mid = (a + z) / 2;
+                let off = space.windows_of(index).map(|w| ((w.v0 + w.v1) / 2 - mid).abs()).min();
+                off.map_or(-1.5, |off| 1.5 - f64::from(off) / 1000.0)
+            }
+            Arrangement::BesideDoor => self.beside_door(p, index, a, z),
+            _ => 0.0,
+        }
+    }
+
+    /// Next to a door on its wall, the latch side first; on the wall around the corner next.
+    fn beside_door(&self, p: &Placed<'a>, index: usize, a: i32, z: i32) -> f64 {
+        let rect = p.world(&p.unit.bbox);
+        let one = |(rank, d): (usize, &super::super::space::DoorZone)| {
+            let later = 0.4 * rank as f64;
+            if d.wall != index {
+                return 0.5 - later - f64::from(rect.gap(&d.zone)) / 800.0;
+            }
+            let above = z >= d.v1;
+            let gap = if above { a - d.v1 } else { d.v0 - z };
+            let latch = d.latch_high.map_or(0.3, |high| if high == above { 0.8 } else { 0.0 });
+            2.0 + latch - later - f64::from((gap - 100).abs()) / 300.0
+        };
+        self.state.space.doors.iter().enumerate().map(one).fold(-2.0, f64::max)
+    }
+}

@@ -1,0 +1,119 @@
+//! Placements handed in as locked: kept as they are, checked against the plan, counted towards what a room needs.
+
+use std::rc::Rc;
+
+use d3dgen_model::domain::{Domain, Mount};
+use d3dgen_model::floorplan::Floorplan;
+use d3dgen_model::placements::{Placement, Placements};
+
+use super::demand::Task;
+use super::geom::{Box2, Solid, mm};
+use super::space::Space;
+use super::state::Placed;
+use super::unit::{Part, Unit};
+use crate::Error;
+
+/// Returns the locked placements of one room.
+pub(super) fn of_room<'p>(pinned: Option<&'p Placements>, room_id: &str) -> Vec<&'p Placement> {
+    pinned.map_or(Vec::new(), |p| p.placements.iter().filter(|p| p.locked && p.room_id == room_id).collect())
+}
+
+/// Returns what is wrong with locked placements whose room the plan does not have.
+pub(super) fn strays(pinned: Option<&Placements>, plan: &Floorplan) -> Vec<String> {
+    let all = pinned.map_or(&[][..], |p| &p.placements);
+    let stray = all.iter().filter(|p| p.locked && plan.room(&p.room_id).is_none());
+    stray.map(|p| format!("`{}` stands in room `{}`, which the floorplan lacks", p.placement_id, p.room_id)).collect()
+}
+
+/// Returns locked placements as placed units, and everything that keeps them from standing where they are.
+pub(super) fn placed<'a>(locked: &[&Placement], domain: &'a Domain, space: &Space) -> (Vec<Placed<'a>>, Vec<String>) {
+    let mut problems = Vec::new();
+    let mut units: Vec<Placed> = Vec::new();
+    for p in locked {
+        let solid = solid_of(p);
+        let id = &p.placement_id;
+        let Some(object) = domain.object(&p.object) else {
+            problems.push(format!("locked `{id}` is a `{}`, which domain `{}` does not know", p.object, domain.id));
+            continue;
+        };
+        if !space.contains(&solid.rect.grown(-1)) {
+            problems.push(format!("locked `{id}` does not stand inside room `{}`", p.room_id));
+        }
+        if let Some(d) = space.doors.iter().find(|d| {
+            p.mount != Mount::Surface
+                && !solid.is_flat()
+                && solid.z0 < d.height
+                && d.zone.overlaps(&solid.rect.grown(-1))
+        }) {
+            problems.push(format!("locked `{id}` stands in the floor that door `{}` needs", d.id));
+        }
+        for (other, q) in units.iter().zip(locked) {
+            let theirs = other.solid(other.unit.anchor());
+            let inner = Solid { rect: solid.rect.grown(-1), ..solid };
+            if !solid.is_flat() && !theirs.is_flat() && inner.overlaps(&theirs) {
+                problems.push(format!("locked `{id}` and locked `{}` share space", q.placement_id));
+            }
+        }
+        let mount = p.mount;
+        let part = Part { object, quarter: 0, solid, mount, support: None };
+        let unit = Unit {
+            item: &object.id,
+            group: false,
+            parts: vec![part],
+            clears: Vec::new(),
+            bbox: solid.rect,
+            reach: solid.rect,
+            needs_wall: mount == Mount::Wall,
+        };
+        units.push(Placed {
+            unit: Rc::new(unit),
+            q: 0,
+            at: (0, 0),
+            first_line: false,
+            task: usize::MAX,
+            support: None,
+            z: 0,
+        });
+    }
+    (units, problems)
+}
+
+fn solid_of(p: &Placement) -> Solid {
+    let b = p.footprint().bounds();
+    let rect = Box2 { x0: mm(b.x0), y0: mm(b.y0), x1: mm(b.x1), y1: mm(b.y1) };
+    Solid { rect, z0: mm(p.pose.z), z1: mm(p.top_m()) }
+}
+
+/// Returns how many units of each task stand there already: groups by their anchor.
+pub(super) fn present(locked: &[&Placement], tasks: &[Task], domain: &Domain) -> Vec<u32> {
+    let mut used = vec![false; locked.len()];
+    tasks
+        .iter()
+        .map(|task| {
+            let group = domain.group(task.item).is_some();
+            let mut n = 0;
+            for (k, p) in locked.iter().enumerate() {
+                let in_group =
+                    p.group.as_deref().is_some_and(|g| g.starts_with(&format!("{}_{}_", p.room_id, task.item)));
+                let counts = if group {
+                    in_group && p.object == task.anchor.id
+                } else {
+                    p.group.is_none() && p.object == task.item
+                };
+                if counts && !used[k] && n < task.count {
+                    used[k] = true;
+                    n += 1;
+                }
+            }
+            n
+        })
+        .collect()
+}
+
+/// Returns an error that names every problem, when there is one.
+///
+/// # Errors
+/// `Mismatch` with all problems.
+pub(super) fn settle(problems: Vec<String>) -> Result<(), Error> {
+    if problems.is_empty() { Ok(()) } else { Err(Error::Mismatch { stage: "placement", message: problems.join("; ") }) }
+}

@@ -1,0 +1,226 @@
+//! A room while it is being furnished: what stands where, and whether one more thing may stand there.
+
+use std::rc::Rc;
+
+use d3dgen_model::domain::Mount;
+
+use super::geom::{Box2, Solid, turn};
+use super::nav::{Nav, Routes};
+use super::space::Space;
+use super::unit::{Part, Unit};
+
+/// A hard rule that a position can break.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Rule {
+    /// No wall, corner, window, door or surface of the wished kind.
+    NoPlace,
+    /// Not on the net floor or not under the ceiling.
+    Outside,
+    /// On floor a door needs.
+    Door,
+    /// Taller than the sill in front of a window.
+    Window,
+    /// Shares space with another object.
+    Collision,
+    /// Takes or lacks the free floor something needs to be used.
+    Clearance,
+    /// Cuts the robot off from a door, an object or part of the floor.
+    Route,
+}
+
+impl Rule {
+    /// Returns what the rule demands, for people.
+    pub fn text(self) -> &'static str {
+        match self {
+            Self::NoPlace => "the room has no suitable wall, corner, window, door or surface for it",
+            Self::Outside => "no wall or floor of the room is large enough",
+            Self::Door => "it would stand in the floor a door needs",
+            Self::Window => "it would stand in front of a window above its sill",
+            Self::Collision => "other objects take the space",
+            Self::Clearance => "there is not enough free floor to use it and its neighbors",
+            Self::Route => "a robot could no longer reach a door, an object or part of the floor",
+        }
+    }
+}
+
+/// A unit at a position.
+#[derive(Debug, Clone)]
+pub(super) struct Placed<'a> {
+    pub unit: Rc<Unit<'a>>,
+    /// Heading of the anchor and world position of the unit's origin.
+    pub q: u8,
+    pub at: (i32, i32),
+    /// True for units of the first furnishing line: what the room is about.
+    pub first_line: bool,
+    /// Index of the task that asked for it.
+    pub task: usize,
+    /// The object it stands on: placed unit and part.
+    pub support: Option<(usize, usize)>,
+    /// Height of the unit's floor.
+    pub z: i32,
+}
+
+impl Placed<'_> {
+    /// Returns a rectangle of the unit in the world.
+    pub fn world(&self, local: &Box2) -> Box2 {
+        local.turned(self.q).shifted(self.at.0, self.at.1)
+    }
+
+    /// Returns a part's box in the world.
+    pub fn solid(&self, part: &Part) -> Solid {
+        Solid { rect: self.world(&part.solid.rect), z0: part.solid.z0 + self.z, z1: part.solid.z1 + self.z }
+    }
+
+    /// Returns what must be reachable for the unit to be of use: the free floor it asks for, or its outline.
+    pub fn targets(&self) -> Vec<Box2> {
+        if self.unit.clears.is_empty() {
+            return vec![self.world(&self.unit.bbox)];
+        }
+        self.unit.clears.iter().map(|c| self.world(c)).collect()
+    }
+
+    /// Returns true when a person or robot comes up to it on the floor.
+    pub fn on_floor(&self) -> bool {
+        self.support.is_none() && self.unit.parts.iter().any(|p| p.mount == Mount::Floor && p.solid.stops_robot())
+    }
+}
+
+/// Extra free floor demanded in front of things that stand in circulation, mm; 0 elsewhere.
+pub(super) type KeepWidth = i32;
+
+/// A room with what has been placed so far.
+#[derive(Debug, Clone)]
+pub(super) struct State<'a, 's> {
+    pub space: &'s Space,
+    pub placed: Vec<Placed<'a>>,
+    pub solids: Vec<Solid>,
+    pub clears: Vec<Box2>,
+    nav: Nav,
+    targets: Vec<Vec<Box2>>,
+    /// Clear floor the robot can use, in cells.
+    pub free_area: usize,
+    keep_width: KeepWidth,
+}
+
+impl<'a, 's> State<'a, 's> {
+    /// Returns the empty room.
+    pub fn new(space: &'s Space, nav: Nav, keep_width: KeepWidth) -> Self {
+        let free_area = nav.routes().map_or(0, |r| r.area);
+        Self {
+            space,
+            placed: Vec::new(),
+            solids: Vec::new(),
+            clears: Vec::new(),
+            nav,
+            targets: Vec::new(),
+            free_area,
+            keep_width,
+        }
+    }
+
+    /// Returns the rule that forbids a unit's parts at a position, routes not looked at.
+    ///
+    /// `at_window` lets curtains and blinds hang in front of windows.
+    pub fn test(&self, p: &Placed, at_window: bool) -> Result<(), Rule> {
+        let space = self.space;
+        if p.support.is_none() && !space.bounds.contains(&p.world(&p.unit.bbox)) {
+            return Err(Rule::Outside);
+        }
+        for part in &p.unit.parts {
+            let solid = p.solid(part);
+            if p.support.is_none() && !space.contains(&solid.rect) || solid.z1 > space.ceiling {
+                return Err(Rule::Outside);
+            }
+            if solid.is_flat() && solid.z0 == 0 {
+                // floor covering may lie anywhere, but not on other floor covering
+                if self.solids.iter().any(|s| s.is_flat() && s.overlaps(&solid)) {
+                    return Err(Rule::Collision);
+                }
+                continue;
+            }
+            if self.solids.iter().any(|s| !(s.is_flat() && s.z0 == 0) && s.overlaps(&solid)) {
+                return Err(Rule::Collision);
+            }
+            if part.mount == Mount::Surface || p.support.is_some() {
+                continue;
+            }
+            if space.doors.iter().any(|d| solid.z0 < d.height && d.zone.overlaps(&solid.rect)) {
+                return Err(Rule::Door);
+            }
+            let before_window =
+                |w: &super::space::WindowZone| solid.z1 > w.sill && solid.z0 < w.head && w.zone.overlaps(&solid.rect);
+            if !at_window && part.mount != Mount::Ceiling && space.windows.iter().any(before_window) {
+                return Err(Rule::Window);
+            }
+            if solid.stops_robot() && self.clears.iter().any(|c| c.overlaps(&solid.rect)) {
+                return Err(Rule::Clearance);
+            }
+        }
+        if p.support.is_none() {
+            self.test_clears(p)?;
+        }
+        Ok(())
+    }
+
+    fn test_clears(&self, p: &Placed) -> Result<(), Rule> {
+        let free =
+            |c: &Box2| self.space.contains(c) && !self.solids.iter().any(|s| s.stops_robot() && s.rect.overlaps(c));
+        if !p.unit.clears.iter().all(|c| free(&p.world(c))) {
+            return Err(Rule::Clearance);
+        }
+        if self.keep_width > 0 && p.on_floor() {
+            let b = p.unit.bbox;
+            if b.width() > 100 && !free(&p.world(&Box2 { x0: b.x1, x1: b.x1 + self.keep_width, ..b })) {
+                return Err(Rule::Clearance);
+            }
+        }
+        Ok(())
+    }
+
+    /// Returns the floor left to robots once the units stand there, or the rule they break.
+    pub fn route(&self, units: &[Placed]) -> Result<Option<Routes>, Rule> {
+        let obstacles: Vec<Box2> = units.iter().flat_map(obstacles).collect();
+        if obstacles.is_empty() && !units.iter().any(needs_reach) {
+            return Ok(None);
+        }
+        let mut nav = self.nav.clone();
+        obstacles.iter().for_each(|o| nav.block(o));
+        let routes = nav.routes().ok_or(Rule::Route)?;
+        let reached = self.targets.iter().all(|t| nav.reaches(&routes, t))
+            && units.iter().filter(|u| needs_reach(u)).all(|u| nav.reaches(&routes, &u.targets()));
+        if reached { Ok(Some(routes)) } else { Err(Rule::Route) }
+    }
+
+    /// Puts units down that were tested.
+    pub fn add(&mut self, units: Vec<Placed<'a>>) {
+        for p in units {
+            for part in &p.unit.parts {
+                let solid = p.solid(part);
+                self.solids.push(solid);
+            }
+            obstacles(&p).for_each(|o| self.nav.block(&o));
+            if p.support.is_none() {
+                self.clears.extend(p.unit.clears.iter().map(|c| p.world(c)));
+            }
+            if needs_reach(&p) {
+                self.targets.push(p.targets());
+            }
+            self.placed.push(p);
+        }
+        self.free_area = self.nav.routes().map_or(0, |r| r.area);
+    }
+}
+
+fn obstacles(p: &Placed) -> impl Iterator<Item = Box2> {
+    p.unit.parts.iter().map(|part| p.solid(part)).filter(Solid::stops_robot).map(|s| s.rect)
+}
+
+/// Returns true when a robot must be able to come up to the unit.
+fn needs_reach(p: &Placed) -> bool {
+    p.on_floor() || (p.support.is_none() && !p.unit.clears.is_empty())
+}
+
+/// Returns a unit at a position of an object frame turned by `q`: `(u, v)` are world coordinates turned back by `q`.
+pub(super) fn at_frame<'a>(unit: &Rc<Unit<'a>>, q: u8, u: i32, v: i32, task: usize) -> Placed<'a> {
+    Placed { unit: Rc::clone(unit), q, at: turn(q, u, v), first_line: false, task, support: None, z: 0 }
+}

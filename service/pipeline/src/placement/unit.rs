@@ -1,0 +1,393 @@
+//! A group or a single object as one rigid unit around its anchor, in the anchor's frame: x forward, y left, origin
+//! at the middle of the anchor's back edge.
+
+use d3dgen_model::domain::{Domain, FacingRule, Group, Member, Mount, ObjectType, Relation, Shape};
+
+use super::geom::{Box2, ROBOT_HEIGHT, Solid, mm};
+
+/// Largest number of members kept around one anchor, whatever a domain says.
+const MAX_MEMBERS: u32 = 40;
+
+/// One object of a unit.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Part<'a> {
+    pub object: &'a ObjectType,
+    /// Quarter turns of its front against the anchor's.
+    pub quarter: u8,
+    pub solid: Solid,
+    /// As placed: a thing on another one is a surface mount whatever its type says.
+    pub mount: Mount,
+    /// The part it stands on.
+    pub support: Option<usize>,
+}
+
+/// Objects placed as one.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Unit<'a> {
+    /// Group or object id.
+    pub item: &'a str,
+    /// True when it is a group of the domain.
+    pub group: bool,
+    /// The anchor first.
+    pub parts: Vec<Part<'a>>,
+    /// Floor to keep free of other things.
+    pub clears: Vec<Box2>,
+    /// Around everything that is not flat and not on the ceiling.
+    pub bbox: Box2,
+    /// Around `bbox` and `clears`.
+    pub reach: Box2,
+    /// True when a part hangs on the wall behind, so the unit cannot stand free.
+    pub needs_wall: bool,
+}
+
+/// Which size each object has in this room: index into `sizes_m` by object id.
+pub(super) type Sizes<'a> = dyn Fn(&ObjectType) -> usize + 'a;
+
+impl<'a> Unit<'a> {
+    pub fn anchor(&self) -> &Part<'a> {
+        &self.parts[0]
+    }
+
+    /// Returns the unit mirrored left to right, or `None` when that changes nothing.
+    pub fn mirrored(&self) -> Option<Self> {
+        let mut out = self.clone();
+        for part in &mut out.parts {
+            part.solid.rect = part.solid.rect.mirrored();
+            part.quarter = (4 - part.quarter) % 4;
+        }
+        out.clears.iter_mut().for_each(|c| *c = c.mirrored());
+        out.bbox = out.bbox.mirrored();
+        out.reach = out.reach.mirrored();
+        let key = |u: &Self| {
+            let mut parts: Vec<(Box2, i32)> = u.parts.iter().map(|p| (p.solid.rect, p.solid.z0)).collect();
+            let mut clears = u.clears.clone();
+            parts.sort_unstable();
+            clears.sort_unstable();
+            (parts, clears)
+        };
+        (key(&out) != key(self)).then_some(out)
+    }
+
+    /// Returns the unit without what hangs on the wall behind it.
+    pub fn free_standing(self) -> Self {
+        if !self.needs_wall || self.anchor().mount == Mount::Wall {
+            return self;
+        }
+        let parts = self.parts.into_iter().filter(|p| p.mount != Mount::Wall).collect();
+        finish_with(self.item, self.group, parts, self.clears)
+    }
+
+    /// Returns how many people can lie on the unit's beds: two on a wide one.
+    pub fn beds(&self) -> u32 {
+        let bed = |p: &&Part| matches!(p.object.shape, Shape::Bed | Shape::HospitalBed);
+        self.parts.iter().filter(bed).map(|p| 1 + u32::from(width_of(p) >= 1350)).sum()
+    }
+
+    /// Returns how many desks the unit has.
+    pub fn desks(&self) -> u32 {
+        self.parts.iter().filter(|p| p.object.shape == Shape::Desk).count() as u32
+    }
+
+    /// Returns how many people can sit on the unit's chairs.
+    pub fn seats(&self) -> u32 {
+        let seat =
+            |p: &&Part| matches!(p.object.shape, Shape::Chair | Shape::SwivelChair | Shape::Stool | Shape::Bench);
+        self.parts.iter().filter(seat).map(|p| (width_of(p) as u32 / 450).max(1)).sum()
+    }
+}
+
+fn width_of(part: &Part) -> i32 {
+    if part.quarter % 2 == 0 { part.solid.rect.height() } else { part.solid.rect.width() }
+}
+
+/// Returns the forms of a unit to try in turn: the picked sizes first, then the other sizes from large to small, then
+/// with fewer members on the floor, last of all the smallest with required members only.
+///
+/// `tightness` scales the clearances (1 is as the domain says).
+pub(super) fn variants<'a>(domain: &'a Domain, item: &'a str, sizes: &Sizes, tightness: f64) -> Vec<Unit<'a>> {
+    let group = domain.group(item);
+    let Some(anchor) = group.map_or_else(|| domain.object(item), |g| domain.object(&g.anchor)) else {
+        return Vec::new();
+    };
+    let picked = sizes(anchor);
+    let mut order: Vec<usize> = (0..anchor.sizes_m.len()).filter(|i| *i != picked).collect();
+    let area = |i: usize| anchor.sizes_m[i][0] * anchor.sizes_m[i][1];
+    order.sort_by(|a, b| area(*b).total_cmp(&area(*a)));
+    let smallest = order.iter().copied().chain([picked]).min_by(|a, b| area(*a).total_cmp(&area(*b))).unwrap_or(picked);
+    let mut out: Vec<Unit> = Vec::new();
+    let mut add = |unit: Unit<'a>| {
+        if !out.contains(&unit) {
+            out.push(unit);
+        }
+    };
+    for size in [picked].into_iter().chain(order) {
+        add(build(domain, item, group, anchor, size, sizes, usize::MAX, tightness));
+    }
+    if let Some(group) = group {
+        let optional = group.members.iter().filter(|m| !m.required && takes_floor(domain, m)).count();
+        let smallest_size = |o: &ObjectType| {
+            let area = |i: &usize| o.sizes_m[*i][0] * o.sizes_m[*i][1];
+            (0..o.sizes_m.len()).min_by(|a, b| area(a).total_cmp(&area(b))).unwrap_or(0)
+        };
+        for keep in (0..optional).rev() {
+            add(build(domain, item, Some(group), anchor, picked, sizes, keep, tightness));
+            add(build(domain, item, Some(group), anchor, smallest, &smallest_size, keep, tightness));
+        }
+        add(build(domain, item, Some(group), anchor, smallest, &smallest_size, 0, tightness));
+    }
+    out
+}
+
+fn takes_floor(domain: &Domain, member: &Member) -> bool {
+    let on_floor = domain.object(&member.object).is_some_and(|o| o.mount == Mount::Floor);
+    on_floor && !matches!(member.relation, Relation::On | Relation::Above | Relation::Over | Relation::Under)
+}
+
+#[expect(
+    clippy::too_many_arguments,
+    reason = "one call site; a struct of them would be built once and taken apart once"
+)]
+fn build<'a>(
+    domain: &'a Domain,
+    item: &'a str,
+    group: Option<&'a Group>,
+    anchor: &'a ObjectType,
+    size: usize,
+    sizes: &Sizes,
+    keep_optional: usize,
+    tightness: f64,
+) -> Unit<'a> {
+    let [w, d, h] = size_mm(anchor, size);
+    let z = base_height(anchor);
+    let rect = Box2 { x0: 0, y0: -(w / 2), x1: d, y1: w - w / 2 };
+    let solid = Solid { rect, z0: z, z1: z + h };
+    let mount = if anchor.mount == Mount::Surface { Mount::Floor } else { anchor.mount };
+    let mut parts = vec![Part { object: anchor, quarter: 0, solid, mount, support: None }];
+    let mut kept = 0;
+    for member in group.map_or(&[][..], |g| &g.members) {
+        if !member.required && takes_floor(domain, member) {
+            if kept == keep_optional {
+                continue;
+            }
+            kept += 1;
+        }
+        if let Some(object) = domain.object(&member.object) {
+            add_member(&mut parts, member, object, sizes(object));
+        }
+    }
+    finish(item, group.is_some(), parts, tightness)
+}
+
+fn size_mm(object: &ObjectType, size: usize) -> [i32; 3] {
+    object.sizes_m.get(size).or(object.sizes_m.first()).map_or([500; 3], |s| s.map(|v| mm(v).max(1)))
+}
+
+fn base_height(object: &ObjectType) -> i32 {
+    match object.mount {
+        Mount::Floor | Mount::Surface => 0,
+        Mount::Wall | Mount::Ceiling => mm(object.mount_height_m.unwrap_or(1.5)),
+    }
+}
+
+fn finish<'a>(item: &'a str, group: bool, parts: Vec<Part<'a>>, tightness: f64) -> Unit<'a> {
+    let mut clears = Vec::new();
+    parts.iter().for_each(|part| clears_of(part, tightness, &mut clears));
+    // a strip of free floor that lies under the unit's own anchor says nothing
+    clears.retain(|c| !parts.iter().any(|p| p.solid.stops_robot() && p.solid.rect.contains(c)));
+    finish_with(item, group, parts, clears)
+}
+
+fn finish_with<'a>(item: &'a str, group: bool, parts: Vec<Part<'a>>, clears: Vec<Box2>) -> Unit<'a> {
+    let mut bbox = parts[0].solid.rect;
+    for part in &parts {
+        if part.mount != Mount::Ceiling && part.mount != Mount::Surface && !part.solid.is_flat() {
+            bbox = bbox.union(&part.solid.rect);
+        }
+    }
+    let reach = clears.iter().fold(bbox, |r, c| r.union(c));
+    let back = bbox.x0;
+    let needs_wall = parts.iter().any(|p| p.mount == Mount::Wall && p.solid.rect.x0 <= back + 5);
+    Unit { item, group, parts, clears, bbox, reach, needs_wall }
+}
+
+/// Adds the floor in front of and beside a part that must stay free.
+fn clears_of(part: &Part, tightness: f64, out: &mut Vec<Box2>) {
+    if part.mount == Mount::Surface || part.mount == Mount::Ceiling || part.solid.z0 > ROBOT_HEIGHT + 400 {
+        return;
+    }
+    let front = mm(part.object.clearance_front_m * tightness);
+    let side = mm(part.object.clearance_side_m * tightness);
+    // in the part's own frame, then turned to the unit's
+    let own = part.solid.rect.turned((4 - part.quarter) % 4);
+    let mut add = |b: Box2| out.push(b.turned(part.quarter));
+    if front > 0 {
+        add(Box2 { x0: own.x1, x1: own.x1 + front, ..own });
+    }
+    if side > 0 && part.object.clear_sides > 0 {
+        add(Box2 { y0: own.y1, y1: own.y1 + side, ..own });
+        if part.object.clear_sides > 1 {
+            add(Box2 { y0: own.y0 - side, y1: own.y0, ..own });
+        }
+    }
+}
+
+fn add_member<'a>(parts: &mut Vec<Part<'a>>, member: &Member, object: &'a ObjectType, size: usize) {
+    let [w, d, h] = size_mm(object, size);
+    let count = member.count.clamp(1, MAX_MEMBERS);
+    let anchor = parts[0].solid;
+    let a = anchor.rect;
+    let (gap, offset) = (mm(member.gap_m), mm(member.offset_m));
+    let facing = |toward: u8| match member.facing {
+        FacingRule::Same => 0,
+        FacingRule::Toward => toward,
+        FacingRule::Opposite => 2,
+    };
+    // extents along the unit's x and y after turning
+    let extent = |q: u8| if q % 2 == 0 { (d, w) } else { (w, d) };
+    let at = |cx0: i32, cy0: i32, q: u8| {
+        let (ex, ey) = extent(q);
+        Box2 { x0: cx0, y0: cy0, x1: cx0 + ex, y1: cy0 + ey }
+    };
+    // boxes of two things may touch, never overlap: tucking a chair under its table means touching it
+    let low = base_height(object) < anchor.z1;
+    let gap = if low && gap < 0 { 0 } else { gap };
+    let floor = |rect: Box2| Solid { rect, z0: base_height(object), z1: base_height(object) + h };
+    match member.relation {
+        Relation::Left | Relation::Right => {
+            let left = member.relation == Relation::Left;
+            let q = facing(if left { 3 } else { 1 });
+            let (_, ey) = extent(q);
+            for _ in 0..count {
+                let y = if left { a.y1 + gap } else { a.y0 - gap - ey };
+                let step = if left { (0, 20) } else { (0, -20) };
+                if let Some(solid) = pushed(parts, floor(at(a.x0 + offset, y, q)), step) {
+                    parts.push(Part { object, quarter: q, solid, mount: object.mount, support: None });
+                }
+            }
+        }
+        Relation::Front | Relation::Back => {
+            let front = member.relation == Relation::Front;
+            let q = facing(if front { 2 } else { 0 });
+            let (ex, ey) = extent(q);
+            let x = if front { a.x1 + gap } else { a.x0 - gap - ex };
+            let pitch = (a.height() / count as i32).max(ey + 50);
+            for k in 0..count as i32 {
+                let y = offset - ey / 2 + (2 * k - (count as i32 - 1)) * pitch / 2;
+                let step = if front { (20, 0) } else { (-20, 0) };
+                if let Some(solid) = pushed(parts, floor(at(x, y, q)), step) {
+                    parts.push(Part { object, quarter: q, solid, mount: object.mount, support: None });
+                }
+            }
+        }
+        Relation::Around => {
+            for (rect, q) in around(a, w, d, gap, count) {
+                parts.push(Part { object, quarter: q, solid: floor(rect), mount: object.mount, support: None });
+            }
+        }
+        Relation::On => {
+            let q = facing(0);
+            let (ex, ey) = extent(q);
+            for _ in 0..count {
+                let x = (a.x0 + a.x1 - ex) / 2 + gap;
+                let y = (a.y0 + a.y1 - ey) / 2 + offset;
+                if let Some(rect) = on_top(parts, at(x, y, q)) {
+                    let solid = Solid { rect, z0: anchor.z1, z1: anchor.z1 + h };
+                    parts.push(Part { object, quarter: q, solid, mount: Mount::Surface, support: Some(0) });
+                }
+            }
+        }
+        Relation::Above => {
+            // against the wall behind the unit, which stands at the back of everything so far
+            let back = parts.iter().filter(|p| p.mount != Mount::Ceiling).map(|p| p.solid.rect.x0).min().unwrap_or(0);
+            let z = base_height(object).max(anchor.z1 + 50);
+            let rect = Box2 { x0: back, y0: offset - w / 2, x1: back + d, y1: offset - w / 2 + w };
+            let solid = Solid { rect, z0: z, z1: z + h };
+            if let Some(solid) = pushed(parts, solid, (0, 20)) {
+                parts.push(Part { object, quarter: 0, solid, mount: Mount::Wall, support: None });
+            }
+        }
+        Relation::Over | Relation::Under => {
+            let q = facing(0);
+            let (ex, ey) = extent(q);
+            let rect = at((a.x0 + a.x1 - ex) / 2 + gap, (a.y0 + a.y1 - ey) / 2 + offset, q);
+            let z = if member.relation == Relation::Over { base_height(object) } else { 0 };
+            let solid = Solid { rect, z0: z, z1: z + h };
+            parts.push(Part { object, quarter: q, solid, mount: object.mount, support: None });
+        }
+    }
+}
+
+/// Moves a solid in steps until it overlaps no part; `None` after 3 m.
+fn pushed(parts: &[Part], solid: Solid, step: (i32, i32)) -> Option<Solid> {
+    let free = |s: &Solid| s.is_flat() || !parts.iter().any(|p| !p.solid.is_flat() && p.solid.overlaps(s));
+    (0..150).map(|k| Solid { rect: solid.rect.shifted(k * step.0, k * step.1), ..solid }).find(free)
+}
+
+/// Returns the place on the anchor's top nearest to the wished one: inside its outline, beside what stands there.
+fn on_top(parts: &[Part], wish: Box2) -> Option<Box2> {
+    let top = parts[0].solid.rect;
+    if wish.width() > top.width() || wish.height() > top.height() {
+        return None;
+    }
+    let into = |b: Box2| {
+        let dx = (top.x0 - b.x0).max(0) - (b.x1 - top.x1).max(0);
+        let dy = (top.y0 - b.y0).max(0) - (b.y1 - top.y1).max(0);
+        b.shifted(dx, dy)
+    };
+    let taken = |b: &Box2| parts.iter().any(|p| p.mount == Mount::Surface && p.solid.rect.overlaps(b));
+    (0..80)
+        .map(|k: i32| if k % 2 == 0 { k / 2 } else { -(k + 1) / 2 })
+        .map(|k| into(wish.shifted(0, k * 50)))
+        .chain((-10..10).map(|k| into(wish.shifted(k * 50, 0))))
+        .find(|b| !taken(b))
+}
+
+/// Returns `count` seats of `w` x `d` around a table, each facing it: long sides first, then the ends.
+fn around(table: Box2, w: i32, d: i32, gap: i32, count: u32) -> Vec<(Box2, u8)> {
+    const ELBOW: i32 = 80;
+    let fits = |length: i32| ((length + ELBOW) / (w + ELBOW)).max(1);
+    let (x_sides, y_sides) = (fits(table.height()), fits(table.width()));
+    let long_first = table.height() >= table.width();
+    let (long, short) = if long_first { (x_sides, y_sides) } else { (y_sides, x_sides) };
+    let count = count as i32;
+    let on_long = count.min(2 * long);
+    let on_short = (count - on_long).min(2 * short);
+    let halves = [on_long - on_long / 2, on_long / 2, on_short - on_short / 2, on_short / 2];
+    let sides: [u8; 4] = if long_first { [0, 2, 1, 3] } else { [1, 3, 0, 2] };
+    let mut out = Vec::new();
+    for (n, side) in halves.into_iter().zip(sides) {
+        let length = if side % 2 == 0 { table.height() } else { table.width() };
+        let (cx, cy) = table.center();
+        for k in 0..n {
+            let along = (2 * k + 1 - n) * (length / n.max(1)).max(w + 10) / 2;
+            let rect = match side {
+                0 => Box2 {
+                    x0: table.x1 + gap,
+                    y0: cy + along - w / 2,
+                    x1: table.x1 + gap + d,
+                    y1: cy + along - w / 2 + w,
+                },
+                2 => Box2 {
+                    x0: table.x0 - gap - d,
+                    y0: cy + along - w / 2,
+                    x1: table.x0 - gap,
+                    y1: cy + along - w / 2 + w,
+                },
+                1 => Box2 {
+                    x0: cx + along - w / 2,
+                    y0: table.y1 + gap,
+                    x1: cx + along - w / 2 + w,
+                    y1: table.y1 + gap + d,
+                },
+                _ => Box2 {
+                    x0: cx + along - w / 2,
+                    y0: table.y0 - gap - d,
+                    x1: cx + along - w / 2 + w,
+                    y1: table.y0 - gap,
+                },
+            };
+            out.push((rect, (side + 2) % 4));
+        }
+    }
+    out
+}
