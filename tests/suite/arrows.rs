@@ -1,0 +1,97 @@
+//! The crates use each other only along the arrows of CONTRIBUTING.md, and only the command knows clock and environment.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use d3dgen_tests::workspace;
+use serde_json::Value;
+
+/// What each crate may use. A new arrow is a decision: amend the list in CONTRIBUTING.md with it.
+const ARROWS: &[(&str, &[&str])] = &[
+    ("model", &[]),
+    ("plugins", &["model"]),
+    ("knowledge", &["model"]),
+    ("pipeline", &["model", "plugins", "knowledge"]),
+    ("export", &["model"]),
+    ("cli", &["model", "plugins", "knowledge", "pipeline", "export"]),
+    ("tests", &["model", "plugins", "knowledge", "pipeline", "export"]),
+];
+
+/// Other people's file formats and protocols, and the crates that may know them.
+const OUTSIDE: &[(&str, &[&str])] = &[
+    ("png", &["export"]),
+    ("resvg", &["export"]),
+    ("svgtypes", &["export"]),
+    ("ttf-parser", &["export"]),
+    ("tonic", &["proto", "server", "cli"]),
+    ("prost", &["proto", "server", "cli"]),
+    ("clap", &["cli"]),
+    ("indicatif", &["cli"]),
+    ("ctrlc", &["cli"]),
+];
+
+/// Returns the packages of the workspace with the packages each uses, development aside.
+fn packages() -> BTreeMap<String, (PathBuf, BTreeSet<String>)> {
+    let args = ["metadata", "--format-version", "1", "--no-deps", "--offline"];
+    let output = Command::new(env!("CARGO")).args(args).current_dir(workspace()).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let metadata: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let text = |v: &Value| v.as_str().unwrap_or_default().to_owned();
+    let package = |p: &Value| {
+        let used = p["dependencies"].as_array().unwrap().iter().filter(|d| d["kind"] != "dev");
+        let folder = Path::new(p["manifest_path"].as_str().unwrap()).parent().unwrap().to_path_buf();
+        (text(&p["name"]).replace("d3dgen-", ""), (folder, used.map(|d| text(&d["name"])).collect()))
+    };
+    metadata["packages"].as_array().unwrap().iter().map(package).collect()
+}
+
+#[test]
+fn crates_use_each_other_along_the_arrows_only() {
+    let packages = packages();
+    assert_eq!(packages.keys().map(String::as_str).collect::<BTreeSet<_>>(), ARROWS.iter().map(|a| a.0).collect());
+    for (name, allowed) in ARROWS {
+        for used in packages[*name].1.iter().filter_map(|u| u.strip_prefix("d3dgen-")) {
+            assert!(allowed.contains(&used), "{name} uses {used}; the arrows allow only {allowed:?}");
+        }
+    }
+}
+
+#[test]
+fn formats_and_protocols_stay_where_they_belong() {
+    for (name, (_, used)) in packages() {
+        for (outside, homes) in OUTSIDE {
+            assert!(!used.contains(*outside) || homes.contains(&name.as_str()), "{name} uses {outside}");
+        }
+    }
+}
+
+#[test]
+fn only_the_command_reads_clock_and_environment() {
+    const FORBIDDEN: &[&str] = &["std::env", "env::var", "SystemTime", "Instant::now", "std::net", "thread_rng"];
+    fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                sources(&path, found);
+            } else if path.extension().is_some_and(|e| e == "rs") && path.file_name().is_some_and(|n| n != "tests.rs") {
+                found.push(path);
+            }
+        }
+    }
+    for (name, (folder, _)) in packages() {
+        if name == "cli" || name == "tests" {
+            continue;
+        }
+        let mut files = Vec::new();
+        sources(&folder.join("src"), &mut files);
+        assert!(!files.is_empty(), "{name} has no sources");
+        for file in files {
+            let text = std::fs::read_to_string(&file).unwrap();
+            let code = text.split("#[cfg(test)]\nmod tests {").next().unwrap_or_default();
+            for word in FORBIDDEN {
+                assert!(!code.contains(word), "{} uses {word}", file.display());
+            }
+        }
+    }
+}
