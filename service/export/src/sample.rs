@@ -366,13 +366,13 @@ fn furniture() -> Vec<Placement> {
         place("bedroom_1", "wardrobe", 1, (0.43, 6.9, 0.), east, None),
         place("bedroom_1", "curtain", 1, (2.4, 7.83, 0.1), south, None),
         place("kitchen_1", "refrigerator", 1, (9.55, 2.95, 0.), west, None),
-        place("kitchen_1", "stove", 1, (9.58, 1.5, 0.), west, None),
-        place("kitchen_1", "kitchen_sink", 1, (9.58, 0.8, 0.), west, None),
-        place("kitchen_1", "kitchen_counter", 1, (9.58, 2.1 + 0.3, 0.), west, None),
-        place("kitchen_1", "dining_table", 1, (7.4, 1.0, 0.), east, None),
-        place("kitchen_1", "chair", 1, (8.05, 0.65, 0.), west, None),
-        place("kitchen_1", "chair", 2, (8.05, 1.4, 0.), west, None),
-        place("kitchen_1", "stool", 1, (6.78, 1.0, 0.), east, None),
+        place("kitchen_1", "kitchen_counter", 1, (9.58, 2.02, 0.), west, None),
+        place("kitchen_1", "stove", 1, (9.58, 1.11, 0.), west, None),
+        place("kitchen_1", "kitchen_sink", 1, (9.18, 0.42, 0.), north, None),
+        place("kitchen_1", "dining_table", 1, (7.01, 1.0, 0.), east, None),
+        place("kitchen_1", "chair", 1, (7.72, 0.65, 0.), west, None),
+        place("kitchen_1", "chair", 2, (7.72, 1.4, 0.), west, None),
+        place("kitchen_1", "stool", 1, (7.01, 2.05, 0.), south, None),
         place("bedroom_2", "single_bed", 1, (3.12, 1.16, 0.), north, None),
         place("bedroom_2", "desk", 1, (5.8, 0.43, 0.), north, None),
         place("bedroom_2", "monitor", 1, (5.8, 0.3, 0.74), north, Some("bedroom_2_desk_1")),
@@ -382,4 +382,78 @@ fn furniture() -> Vec<Placement> {
         place("bathroom_1", "washbasin", 1, (2.3, 1.6, 0.), west, None),
         place("bathroom_1", "mirror", 1, (2.52, 1.6, 1.1), west, None),
     ]
+}
+
+/// Returns a hall with one object of every build, six to a row, turned in all four directions.
+pub fn catalogue() -> World {
+    let sizes: [(Shape, [f64; 3]); 33] = [
+        (Shape::Box, [0.8, 0.5, 0.5]),
+        (Shape::Cabinet, [1.2, 0.45, 1.8]),
+        (Shape::Shelf, [1.2, 0.4, 1.8]),
+        (Shape::Table, [1.6, 0.9, 0.75]),
+        (Shape::RoundTable, [1.1, 1.1, 0.75]),
+        (Shape::Desk, [1.6, 0.8, 0.74]),
+        (Shape::Chair, [0.45, 0.5, 0.88]),
+        (Shape::SwivelChair, [0.62, 0.62, 1.0]),
+        (Shape::Stool, [0.4, 0.4, 0.6]),
+        (Shape::Sofa, [2.1, 0.9, 0.8]),
+        (Shape::Bench, [1.8, 0.55, 0.8]),
+        (Shape::Bed, [1.6, 2.05, 0.95]),
+        (Shape::HospitalBed, [1.0, 2.15, 1.0]),
+        (Shape::Counter, [2.4, 0.9, 1.1]),
+        (Shape::Sink, [1.2, 0.6, 1.1]),
+        (Shape::Basin, [0.6, 0.5, 0.95]),
+        (Shape::Toilet, [0.38, 0.7, 0.8]),
+        (Shape::Bathtub, [1.7, 0.75, 0.58]),
+        (Shape::Shower, [0.9, 0.9, 2.1]),
+        (Shape::Panel, [1.4, 0.5, 1.5]),
+        (Shape::Trolley, [0.5, 0.8, 0.95]),
+        (Shape::Pole, [0.6, 0.6, 1.9]),
+        (Shape::Plant, [0.6, 0.6, 1.4]),
+        (Shape::Lamp, [0.45, 0.45, 1.6]),
+        (Shape::Appliance, [0.6, 0.62, 0.85]),
+        (Shape::Stove, [0.6, 0.6, 0.9]),
+        (Shape::Rug, [2.0, 1.4, 0.01]),
+        (Shape::Curtain, [1.8, 0.12, 2.2]),
+        (Shape::Dock, [0.5, 0.4, 0.35]),
+        (Shape::Cylinder, [0.5, 0.5, 0.7]),
+        (Shape::Vehicle, [1.2, 2.4, 2.1]),
+        (Shape::Scanner, [1.9, 2.3, 1.9]),
+        (Shape::Rack, [2.7, 1.1, 4.0]),
+    ];
+    let (width, depth) = (18.0, 18.0);
+    let hall = Polygon(vec![Point::new(0., 0.), Point::new(width, 0.), Point::new(width, depth), Point::new(0., depth)]);
+    let mut floorplan = floorplan();
+    let outlines = [("living_room_1".to_owned(), hall.clone())];
+    floorplan.rooms.retain(|r| r.room_id == "living_room_1");
+    floorplan.rooms[0].net_polygon = inset(&hall, &outlines);
+    floorplan.rooms[0].net_area_m2 = floorplan.rooms[0].net_polygon.area();
+    floorplan.rooms[0].polygon = hall;
+    floorplan.windows.clear();
+    floorplan.doors.retain(|d| d.entrance);
+    floorplan.doors[0].room_ids = vec!["living_room_1".into()];
+    floorplan.walls = walls(&outlines, &[floorplan.doors[0].line]);
+    let placements = sizes
+        .iter()
+        .enumerate()
+        .map(|(i, (shape, size_m))| Placement {
+            placement_id: format!("{}_{i}", shape_id(*shape)),
+            object: shape_id(*shape),
+            asset: format!("Sample/{shape:?}"),
+            pose: Pose {
+                x: 1.8 + 2.85 * (i % 6) as f64,
+                y: depth - 1.8 - 2.85 * (i / 6) as f64,
+                z: 0.0,
+                yaw_rad: (i % 4) as f64 * std::f64::consts::FRAC_PI_2,
+            },
+            size_m: *size_m,
+            ..place("living_room_1", "chair", i, (0., 0., 0.), 0, None)
+        })
+        .collect();
+    let mut world = assemble(floorplan, Placements { version: 1, seed: 7, placements, unplaced: vec![] });
+    world.scenario.rois.clear();
+    world.scenario.pois.clear();
+    world.scenario.robots.clear();
+    world.scene_graph.rooms.retain(|r| r.id == "living_room_1");
+    world
 }

@@ -1,11 +1,244 @@
-//! stub to be replaced
-use d3dgen_model::domain::Domain;
+//! An architect's plan as `plan.svg` and `plan.png`.
+//!
+//! The picture is drawn once as SVG: walls with thickness, door swings, windows, furniture symbols, room names with net
+//! areas, robot zones, dimensions, title block and legend. All type is outlines, so it looks the same everywhere. The PNG
+//! is that SVG rendered.
+
+mod building;
+mod labels;
+mod page;
+mod panel;
+mod pen;
+mod robots;
+mod style;
+mod symbols;
+
+use d3dgen_model::domain::{Domain, Mount, Shape};
+use d3dgen_model::floorplan::Floorplan;
+use d3dgen_model::geometry::{Point, Pose, Rect};
+use d3dgen_model::placements::Placement;
 use d3dgen_model::world::World;
+use resvg::{tiny_skia, usvg};
+
 use super::{Exporter, File};
 use crate::Error;
+use building::Sides;
+use page::{Frame, Page, Path};
+
+/// Sheet width aimed for, sheet units.
+const WIDTH: f64 = 2000.0;
+/// Height of the drawing aimed for, sheet units.
+const HEIGHT: f64 = 1240.0;
+/// Distance of the frame from the edge of the sheet.
+const EDGE: f64 = 28.0;
+/// Free space between frame, drawing and title block.
+const GAP: f64 = 44.0;
+/// Scale limits, sheet units per meter: small flats are not blown up, large halls stay legible.
+const SCALES: [f64; 2] = [26.0, 112.0];
+/// Width limits of the PNG, px.
+const PNG_WIDTHS: [f64; 2] = [1600.0, 2400.0];
+
+/// Type size of dimensions and entrances, sheet units.
+const UNIT: f64 = 16.0;
+
+/// Writes the plan.
 pub struct Plan;
+
 impl Exporter for Plan {
-    fn name(&self) -> &'static str { "plan" }
-    fn about(&self) -> &'static str { "x xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx" }
-    fn export(&self, _: &World, _: &Domain) -> Result<Vec<File>, Error> { Ok(vec![File::new("plan.svg", "")]) }
+    fn name(&self) -> &'static str {
+        "plan"
+    }
+
+    fn about(&self) -> &'static str {
+        "an architect's plan to look at and print: plan.svg and plan.png"
+    }
+
+    fn export(&self, world: &World, domain: &Domain) -> Result<Vec<File>, Error> {
+        let svg = svg(world, domain);
+        let png = png(&svg)?;
+        Ok(vec![File::new("plan.png", png), File::new("plan.svg", svg)])
+    }
 }
+
+/// Returns the plan as SVG.
+pub fn svg(world: &World, domain: &Domain) -> String {
+    let plan = &world.floorplan;
+    let around = building::outer_bounds(plan);
+    let beside = around.width() < 1.5 * around.height();
+    let panel_width = if beside { panel::WIDTH + GAP } else { 0.0 };
+
+    // The drawing's scale follows from the sheet; weights and type follow from the scale, within limits.
+    let room_for = |total: f64, panel: f64| total - 2.0 * (EDGE + GAP) - panel - 120.0;
+    let fit = (room_for(WIDTH, panel_width) / around.width()).min(room_for(HEIGHT, 0.0) / around.height());
+    let scale = fit.clamp(SCALES[0], SCALES[1]);
+    let k = (scale / 55.0).clamp(0.7, 1.15);
+    let (margins, offsets) = margins(plan, &around, scale);
+    let frame = Frame { scale, origin: Point::new(around.x0, around.y1), at: (EDGE + margins.west, EDGE + margins.north) };
+    let on_sheet = frame.rect(&around);
+    let drawing = Rect { x0: EDGE, y0: EDGE, x1: on_sheet.x1 + margins.east, y1: on_sheet.y1 + margins.south };
+
+    let mut page = Page::new();
+    let shown = Shown::of(world, domain);
+    building::floors(&mut page, &frame, plan, domain);
+    robots::zones(&mut page, &frame, &world.scenario, k);
+    furniture(&mut page, &frame, &shown);
+    building::walls(&mut page, &frame, plan);
+    building::windows(&mut page, &frame, plan);
+    building::doors(&mut page, &frame, plan);
+    building::entrances(&mut page, &frame, plan, UNIT);
+    building::dimensions(&mut page, &frame, &around, offsets, UNIT);
+    let marks = robots::marks(&mut page, &frame, &world.scenario, 17.0 * k.max(0.85));
+    let numbers = label(&mut page, &frame, (world, domain), &shown, marks, 18.0 * k.clamp(0.8, 1.1));
+
+    let facts = panel::Facts { world, domain, numbers: &numbers, around: &around, scale, k };
+    let (width, height) = facts.draw(&mut page, &drawing, beside, HEIGHT);
+    let border = Rect { x0: EDGE, y0: EDGE, x1: width - EDGE, y1: height - EDGE };
+    page.path("fr", Path::new().rect(&border));
+    let paper = panel::paper(width, height, scale);
+    page.finish((width, height), (paper.width_mm, paper.height_mm), &panel::title(world, domain), &style::sheet(k))
+}
+
+/// Returns the free space around the building and where its dimensions go: on sides without an entrance if there are any.
+fn margins(plan: &Floorplan, around: &Rect, scale: f64) -> (Sides<f64>, Sides<Option<f64>>) {
+    let doors = building::entrance_sides(plan, around);
+    let swing = building::outward_reach(plan) * scale;
+    let near = 52.0;
+    let beyond = swing + 2.4 * UNIT;
+    let pick = |first: bool, second: bool, beyond: f64| match (first, second) {
+        (false, _) => (Some(near), None),
+        (true, false) => (None, Some(near)),
+        (true, true) => (Some(beyond), None),
+    };
+    // Beside the building the entrance's name runs outwards, above and below it only takes a line.
+    let (west, east) = pick(doors.west, doors.east, beyond + 4.0 * UNIT);
+    let (south, north) = pick(doors.south, doors.north, beyond + 2.0 * UNIT);
+    let margin = |offset: Option<f64>, door: bool, name: f64| {
+        let named = if door { beyond + name } else { 0.0 };
+        offset.map_or(16.0, |o| o + 1.6 * UNIT).max(named).max(30.0) + GAP * 0.8
+    };
+    let margins = Sides {
+        west: margin(west, doors.west, 3.6 * UNIT),
+        east: margin(east, doors.east, 3.6 * UNIT),
+        north: margin(north, doors.north, UNIT),
+        south: margin(south, doors.south, UNIT),
+    };
+    (margins, Sides { west, east, north, south })
+}
+
+/// Returns the picture of an SVG that [`svg`] made, between 1600 and 2400 px wide.
+///
+/// # Errors
+/// `Picture` when the renderer refuses the SVG: a bug of ours.
+pub fn png(svg: &str) -> Result<Vec<u8>, Error> {
+    let refused = |reason: String| Error::Picture { picture: "plan.png", reason };
+    let tree = usvg::Tree::from_str(svg, &usvg::Options::default()).map_err(|e| refused(e.to_string()))?;
+    // The width in millimeters is for print; pixels follow the sheet units in the view box.
+    let natural = svg
+        .split_once("viewBox=\"0 0 ")
+        .and_then(|(_, rest)| rest.split(' ').next()?.parse::<f64>().ok())
+        .ok_or_else(|| refused("it has no view box".into()))?;
+    let width = natural.clamp(PNG_WIDTHS[0], PNG_WIDTHS[1]);
+    let zoom = width / f64::from(tree.size().width());
+    let (width, height) = (width.round(), (f64::from(tree.size().height()) * zoom).round());
+    let mut pixmap = tiny_skia::Pixmap::new(width as u32, height as u32)
+        .ok_or_else(|| refused(format!("{width} x {height} px is no size for a picture")))?;
+    // The sheet's own background may end within the last row or column of pixels.
+    pixmap.fill(tiny_skia::Color::WHITE);
+    let transform = tiny_skia::Transform::from_scale(zoom as f32, zoom as f32);
+    resvg::render(&tree, transform, &mut pixmap.as_mut());
+    pixmap.encode_png().map_err(|e| refused(e.to_string()))
+}
+
+/// A placement with what its symbol depends on.
+struct Thing<'a> {
+    placement: &'a Placement,
+    shape: Shape,
+    layer: Layer,
+}
+
+/// From the floor upwards.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Layer {
+    Covering,
+    Floor,
+    Surface,
+    Wall,
+    Overhead,
+}
+
+/// Objects in drawing order.
+struct Shown<'a>(Vec<Thing<'a>>);
+
+impl<'a> Shown<'a> {
+    fn of(world: &'a World, domain: &Domain) -> Self {
+        let mut things: Vec<Thing<'a>> = world
+            .placements
+            .placements
+            .iter()
+            .map(|placement| {
+                let shape = domain.object(&placement.object).map_or(Shape::Box, |o| o.shape);
+                let layer = match placement.mount {
+                    Mount::Floor if placement.top_m() < 0.05 => Layer::Covering,
+                    Mount::Floor => Layer::Floor,
+                    Mount::Surface => Layer::Surface,
+                    Mount::Wall => Layer::Wall,
+                    Mount::Ceiling => Layer::Overhead,
+                };
+                Thing { placement, shape, layer }
+            })
+            .collect();
+        // Chairs slide under tables: lower things first.
+        things.sort_by(|a, b| {
+            let key = |t: &Thing<'_>| (t.layer, (t.placement.top_m() * 1000.0).round() as i64);
+            key(a).cmp(&key(b))
+        });
+        Self(things)
+    }
+}
+
+fn furniture(page: &mut Page, frame: &Frame, shown: &Shown<'_>) {
+    page.open_group("furniture");
+    for thing in &shown.0 {
+        let mut pen = pen::Pen::new(page, frame, thing.placement);
+        symbols::draw(thing.shape, thing.placement.pose.z, &mut pen);
+    }
+    page.close_group();
+}
+
+/// Names the rooms; returns each one's number where there was no space for its name.
+fn label(
+    page: &mut Page,
+    frame: &Frame,
+    (world, domain): (&World, &Domain),
+    shown: &Shown<'_>,
+    marks: Vec<Rect>,
+    size: f64,
+) -> Vec<Option<usize>> {
+    let plan = &world.floorplan;
+    let mut obstacles = labels::Obstacles { hard: marks, soft: building::swings(frame, plan) };
+    for thing in &shown.0 {
+        let rect = frame.rect(&thing.placement.footprint().bounds());
+        match thing.layer {
+            Layer::Floor | Layer::Surface | Layer::Wall => obstacles.hard.push(rect),
+            Layer::Covering | Layer::Overhead => obstacles.soft.push(rect),
+        }
+    }
+    let rooms: Vec<labels::Room<'_>> = plan
+        .rooms
+        .iter()
+        .map(|r| labels::Room {
+            name: &r.name,
+            tint: style::tint(domain.room_type_or_generic(&r.room_type).zone),
+            area_m2: r.net_area_m2,
+            floor: r.net_polygon.rects().iter().map(|rect| frame.rect(rect)).collect(),
+        })
+        .collect();
+    labels::draw(page, &rooms, &obstacles, size)
+}
+
+fn at(pose: &Pose) -> Point {
+    Point::new(pose.x, pose.y)
+}
+
+#[cfg(test)]
+mod tests;

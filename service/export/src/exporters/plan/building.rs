@@ -1,0 +1,316 @@
+//! Floors, walls, doors, windows and outer dimensions.
+
+use d3dgen_model::TOLERANCE_M;
+use d3dgen_model::domain::Domain;
+use d3dgen_model::floorplan::{Door, DoorKind, Floorplan, Wall, Window};
+use d3dgen_model::geometry::{Point, Rect, Segment};
+
+use super::page::{Anchor, Frame, Page, Path, on_sheet};
+use super::style;
+
+/// Thickness of a door leaf as drawn, m.
+const LEAF_M: f64 = 0.045;
+
+/// Tints every room by the part of the building it belongs to.
+pub(super) fn floors(page: &mut Page, frame: &Frame, plan: &Floorplan, domain: &Domain) {
+    page.open_group("floors");
+    for room in &plan.rooms {
+        let zone = domain.room_type_or_generic(&room.room_type).zone;
+        let fill = format!("fill=\"{}\"", style::tint(zone));
+        page.path_with(&fill, Path::new().polygon(&on_sheet(frame, &room.polygon)));
+    }
+    page.close_group();
+}
+
+/// Draws walls as one dark body with a darker edge.
+pub(super) fn walls(page: &mut Page, frame: &Frame, plan: &Floorplan) {
+    page.open_group("walls");
+    let body = plan
+        .walls
+        .iter()
+        .map(|w| frame.rect(&wall_rect(w, plan)))
+        .fold(Path::new(), |path, rect| path.rect(&rect));
+    // The edge of every piece first, the bodies over it: what stays visible is the edge of their union.
+    page.path("wo", body.clone());
+    page.path("w", body);
+    page.close_group();
+}
+
+/// Returns a wall piece with its ends drawn into the corners, but not into openings.
+fn wall_rect(wall: &Wall, plan: &Floorplan) -> Rect {
+    let half = wall.thickness_m / 2.0;
+    let openings = || plan.doors.iter().map(|d| &d.line).chain(plan.windows.iter().map(|w| &w.line));
+    let reach = |end: Point| {
+        let at_opening = openings().any(|o| {
+            o.is_vertical() == wall.line.is_vertical()
+                && (o.start.distance(end) < TOLERANCE_M || o.end.distance(end) < TOLERANCE_M)
+        });
+        if at_opening { 0.0 } else { half }
+    };
+    let (a, b) = (wall.line.start, wall.line.end);
+    if wall.line.is_vertical() {
+        let (low, high) = if a.y < b.y { (a, b) } else { (b, a) };
+        Rect { x0: a.x - half, x1: a.x + half, y0: low.y - reach(low), y1: high.y + reach(high) }
+    } else {
+        let (low, high) = if a.x < b.x { (a, b) } else { (b, a) };
+        Rect { x0: low.x - reach(low), x1: high.x + reach(high), y0: a.y - half, y1: a.y + half }
+    }
+}
+
+/// A straight opening with its own axes: `t` along the wall, `n` across it.
+struct Opening {
+    line: Segment,
+    t: (f64, f64),
+    n: (f64, f64),
+    length: f64,
+    half: f64,
+}
+
+impl Opening {
+    /// `into` tells the side that `n` points to.
+    fn new(line: Segment, thickness: f64, into: impl Fn(Point) -> bool) -> Self {
+        let length = line.length().max(TOLERANCE_M);
+        let t = ((line.end.x - line.start.x) / length, (line.end.y - line.start.y) / length);
+        let (m, probe) = (line.middle(), thickness / 2.0 + 0.05);
+        let n = (-t.1, t.0);
+        let n = if into(Point::new(m.x + n.0 * probe, m.y + n.1 * probe)) { n } else { (-n.0, -n.1) };
+        Self { line, t, n, length, half: thickness / 2.0 }
+    }
+
+    /// Returns the point `along` from the start and `across` from the center line.
+    fn at(&self, along: f64, across: f64) -> Point {
+        let s = self.line.start;
+        Point::new(s.x + self.t.0 * along + self.n.0 * across, s.y + self.t.1 * along + self.n.1 * across)
+    }
+
+    fn quad(&self, along: [f64; 2], across: [f64; 2], frame: &Frame) -> Path {
+        let [a, b] = along;
+        let [c, d] = across;
+        Path::new().polygon(&[(a, c), (b, c), (b, d), (a, d)].map(|(x, y)| frame.map(self.at(x, y))))
+    }
+}
+
+/// Draws windows: the faces of the wall and the pane between them.
+pub(super) fn windows(page: &mut Page, frame: &Frame, plan: &Floorplan) {
+    page.open_group("windows");
+    for window in &plan.windows {
+        draw_window(page, frame, window);
+    }
+    page.close_group();
+}
+
+fn draw_window(page: &mut Page, frame: &Frame, window: &Window) {
+    let o = Opening::new(window.line, window.wall_thickness_m, |_| true);
+    page.path("n", o.quad([0.0, o.length], [-o.half, o.half], frame));
+    for across in [-0.18, 0.18] {
+        let ends = [0.0, o.length].map(|along| frame.map(o.at(along, across * o.half)));
+        page.path("nf", Path::new().segment(ends[0], ends[1]));
+    }
+}
+
+/// Draws doors with leaves and swings, sliding panels and open passages.
+pub(super) fn doors(page: &mut Page, frame: &Frame, plan: &Floorplan) {
+    page.open_group("doors");
+    for door in &plan.doors {
+        draw_door(page, frame, plan, door);
+    }
+    page.close_group();
+}
+
+fn opening_of(door: &Door, plan: &Floorplan) -> Opening {
+    let into = door.swing.as_ref().and_then(|s| s.into_room_id.as_deref());
+    let inside = |p: Point| plan.rooms.iter().any(|r| r.polygon.contains(p));
+    Opening::new(door.line, door.wall_thickness_m, |p| match (into, door.swing.is_some()) {
+        (Some(id), _) => plan.room(id).is_some_and(|r| r.polygon.contains(p)),
+        (None, true) => !inside(p),
+        (None, false) => inside(p),
+    })
+}
+
+fn draw_door(page: &mut Page, frame: &Frame, plan: &Floorplan, door: &Door) {
+    let o = opening_of(door, plan);
+    let hinge_at_start = door.swing.as_ref().is_none_or(|s| s.hinge_at_start);
+    match door.kind {
+        DoorKind::Hinged if hinge_at_start => leaf(page, frame, &o, 0.0, 1.0, o.length),
+        DoorKind::Hinged => leaf(page, frame, &o, o.length, -1.0, o.length),
+        DoorKind::DoubleHinged => {
+            leaf(page, frame, &o, 0.0, 1.0, o.length / 2.0);
+            leaf(page, frame, &o, o.length, -1.0, o.length / 2.0);
+        }
+        DoorKind::Sliding => sliding(page, frame, plan, &o),
+        DoorKind::Open => {
+            for across in [-o.half, o.half] {
+                let ends = [0.0, o.length].map(|along| frame.map(o.at(along, across)));
+                page.path("do", Path::new().segment(ends[0], ends[1]));
+            }
+        }
+    }
+}
+
+/// One leaf, open at a right angle, hinged `along` the wall and closing in direction `sign`.
+fn leaf(page: &mut Page, frame: &Frame, o: &Opening, along: f64, sign: f64, length: f64) {
+    let at = |along_by: f64, out: f64| frame.map(o.at(along + sign * along_by, o.half + out));
+    let k = 0.5523 * length;
+    page.path(
+        "da",
+        Path::new().to(at(0.0, length)).cubic(at(k, length), at(length, k), at(length, 0.0)),
+    );
+    page.path("dl", Path::new().polygon(&[at(0.0, 0.0), at(0.0, length), at(LEAF_M, length), at(LEAF_M, 0.0)]));
+}
+
+/// A panel half drawn back into the longer of the two walls beside it.
+fn sliding(page: &mut Page, frame: &Frame, plan: &Floorplan, o: &Opening) {
+    let beside = |p: Point| {
+        let touches = |w: &&Wall| w.line.start.distance(p) < TOLERANCE_M || w.line.end.distance(p) < TOLERANCE_M;
+        plan.walls
+            .iter()
+            .filter(|w| w.line.is_vertical() == o.line.is_vertical())
+            .filter(touches)
+            .map(|w| w.line.length())
+            .fold(0.0, f64::max)
+    };
+    let (from, to) = if beside(o.line.start) >= beside(o.line.end) {
+        (-0.35 * o.length, 0.6 * o.length)
+    } else {
+        (0.4 * o.length, 1.35 * o.length)
+    };
+    for across in [-o.half, o.half] {
+        let ends = [0.0, o.length].map(|along| frame.map(o.at(along, across)));
+        page.path("da", Path::new().segment(ends[0], ends[1]));
+    }
+    page.path("dl", o.quad([from, to], [-LEAF_M / 2.0, LEAF_M / 2.0], frame));
+}
+
+/// Returns the floor that leaves sweep, on the sheet, for the labels to avoid.
+pub(super) fn swings(frame: &Frame, plan: &Floorplan) -> Vec<Rect> {
+    plan.doors
+        .iter()
+        .filter(|d| d.swing.is_some())
+        .map(|d| {
+            let o = opening_of(d, plan);
+            let reach = if d.kind == DoorKind::DoubleHinged { o.length / 2.0 } else { o.length };
+            let (a, b) = (o.at(0.0, o.half), o.at(o.length, o.half + reach));
+            frame.rect(&Rect::new(a.x, a.y, b.x, b.y))
+        })
+        .collect()
+}
+
+/// Returns how far the widest leaf opens to the outside, m.
+pub(super) fn outward_reach(plan: &Floorplan) -> f64 {
+    plan.doors
+        .iter()
+        .filter(|d| d.swing.as_ref().is_some_and(|s| s.into_room_id.is_none()))
+        .map(|d| if d.kind == DoorKind::DoubleHinged { d.line.length() / 2.0 } else { d.line.length() })
+        .fold(0.0, f64::max)
+}
+
+/// Marks the ways in and out with an arrow; the main entrance is filled and named.
+pub(super) fn entrances(page: &mut Page, frame: &Frame, plan: &Floorplan, size: f64) {
+    page.open_group("entrances");
+    for door in plan.doors.iter().filter(|d| d.room_ids.len() == 1) {
+        let Some(room) = door.room_ids.first().and_then(|id| plan.room(id)) else { continue };
+        let o = Opening::new(door.line, door.wall_thickness_m, |p| !room.polygon.contains(p));
+        let outward = door.swing.as_ref().is_some_and(|s| s.into_room_id.is_none());
+        let reach = if !outward {
+            0.0
+        } else if door.kind == DoorKind::DoubleHinged {
+            o.length / 2.0
+        } else {
+            o.length
+        };
+        let unit = size / frame.scale;
+        let (tip, tail, middle) = (o.half + reach + 0.45 * unit, o.half + reach + 1.35 * unit, o.length / 2.0);
+        let at = |along: f64, across: f64| frame.map(o.at(along, across));
+        let arrow = [at(middle, tip), at(middle - 0.55 * unit, tail), at(middle + 0.55 * unit, tail)];
+        page.path(if door.entrance { "ea" } else { "ex" }, Path::new().polygon(&arrow));
+        let label = if door.entrance { "Entrance" } else { "Exit" };
+        let (x, y) = at(middle, tail + 0.35 * unit);
+        let (nx, ny) = (o.n.0, -o.n.1);
+        let (anchor, y) = if nx > 0.5 {
+            (Anchor::Start, y + 0.35 * size)
+        } else if nx < -0.5 {
+            (Anchor::End, y + 0.35 * size)
+        } else {
+            (Anchor::Middle, if ny > 0.0 { y + 0.75 * size } else { y })
+        };
+        page.text(label, (x, y), size * 0.9, style::SMALL, anchor);
+    }
+    page.close_group();
+}
+
+/// Returns the rectangle around the outer faces of all walls, m.
+pub(super) fn outer_bounds(plan: &Floorplan) -> Rect {
+    plan.walls
+        .iter()
+        .map(|w| wall_rect(w, plan))
+        .chain(plan.rooms.iter().map(|r| r.polygon.bounds()))
+        .reduce(|a, b| Rect { x0: a.x0.min(b.x0), y0: a.y0.min(b.y0), x1: a.x1.max(b.x1), y1: a.y1.max(b.y1) })
+        .unwrap_or(Rect::new(0.0, 0.0, 1.0, 1.0))
+}
+
+/// Sides of the building, as seen on the sheet.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Sides<T> {
+    pub west: T,
+    pub east: T,
+    pub north: T,
+    pub south: T,
+}
+
+/// Returns on which sides of the building there are ways in or out.
+pub(super) fn entrance_sides(plan: &Floorplan, around: &Rect) -> Sides<bool> {
+    let mut sides = Sides { west: false, east: false, north: false, south: false };
+    for line in plan.doors.iter().filter(|d| d.room_ids.len() == 1).map(|d| d.line) {
+        let (m, c) = (line.middle(), around.center());
+        match (line.is_vertical(), m.x < c.x, m.y < c.y) {
+            (true, true, _) => sides.west = true,
+            (true, false, _) => sides.east = true,
+            (false, _, true) => sides.south = true,
+            (false, _, false) => sides.north = true,
+        }
+    }
+    sides
+}
+
+/// Draws the overall extents on the sides that have an offset, m.
+pub(super) fn dimensions(page: &mut Page, frame: &Frame, around: &Rect, offsets: Sides<Option<f64>>, size: f64) {
+    page.open_group("dimensions");
+    let r = frame.rect(around);
+    let label = |meters: f64| format!("{meters:.2} m");
+    let (across, along) = (label(around.width()), label(around.height()));
+    if let Some(offset) = offsets.south {
+        dimension(page, [(r.x0, r.y1), (r.x1, r.y1)], (0.0, offset), size);
+        page.text(&across, ((r.x0 + r.x1) / 2.0, r.y1 + offset - 0.5 * size), size, style::SMALL, Anchor::Middle);
+    }
+    if let Some(offset) = offsets.north {
+        dimension(page, [(r.x0, r.y0), (r.x1, r.y0)], (0.0, -offset), size);
+        page.text(&across, ((r.x0 + r.x1) / 2.0, r.y0 - offset - 0.5 * size), size, style::SMALL, Anchor::Middle);
+    }
+    for (offset, edge) in [(offsets.west.map(|o| -o), r.x0), (offsets.east, r.x1)] {
+        let Some(offset) = offset else { continue };
+        dimension(page, [(edge, r.y0), (edge, r.y1)], (offset, 0.0), size);
+        let at = (edge + offset - 0.5 * size, (r.y0 + r.y1) / 2.0);
+        page.upright(at, |page| {
+            page.text(&along, at, size, style::SMALL, Anchor::Middle);
+        });
+    }
+    page.close_group();
+}
+
+/// One dimension line: extension lines from two corners, the line itself and slashes at its ends.
+fn dimension(page: &mut Page, ends: [(f64, f64); 2], (dx, dy): (f64, f64), size: f64) {
+    let length = dx.hypot(dy).max(1.0);
+    let (ux, uy) = (dx / length, dy / length);
+    let (tick, over) = (0.45 * size, 0.6 * size);
+    let (mut lines, mut ticks) = (Path::new(), Path::new());
+    for (x, y) in ends {
+        let (ex, ey) = (x + dx, y + dy);
+        lines = lines.segment((x + 0.3 * dx, y + 0.3 * dy), (ex + ux * over, ey + uy * over));
+        ticks = ticks.segment((ex - tick, ey + tick), (ex + tick, ey - tick));
+    }
+    let [a, b] = ends.map(|(x, y)| (x + dx, y + dy));
+    // The line runs a little past its ends, along the wall it measures.
+    let (px, py) = (uy.abs() * over, ux.abs() * over);
+    page.path("dm", lines.segment((a.0 - px, a.1 - py), (b.0 + px, b.1 + py)));
+    page.path("dt", ticks);
+}

@@ -1,0 +1,380 @@
+//! Title block, facts, legend, scale bar and north arrow, beside the drawing or below it.
+
+use std::collections::BTreeSet;
+
+use d3dgen_model::domain::{Domain, Zone};
+use d3dgen_model::floorplan::{DoorKind, PlanRoom};
+use d3dgen_model::geometry::Rect;
+use d3dgen_model::scenario::RoiKind;
+use d3dgen_model::world::World;
+
+use super::labels;
+use super::page::{Anchor, Block, Page, Path};
+use super::{EDGE, GAP, robots, style};
+use crate::font::Weight;
+
+/// Width of a column of the title block, sheet units.
+pub(super) const WIDTH: f64 = 372.0;
+/// Type size of facts and legend.
+const SIZE: f64 = 15.5;
+/// Distance between two baselines.
+const ROW: f64 = 24.0;
+/// Most rooms that are listed one by one.
+const MOST_LISTED: usize = 40;
+/// Distance between two blocks.
+const BLOCK_GAP: f64 = 34.0;
+
+/// What the title block speaks about.
+pub(super) struct Facts<'a> {
+    pub world: &'a World,
+    pub domain: &'a Domain,
+    /// For each room of the plan: its number, where the drawing has no space for its name.
+    pub numbers: &'a [Option<usize>],
+    /// Outer faces of the building, m.
+    pub around: &'a Rect,
+    /// Sheet units per meter.
+    pub scale: f64,
+    /// Factor of line weights.
+    pub k: f64,
+}
+
+/// A print size with a round scale.
+pub(super) struct Paper {
+    pub width_mm: f64,
+    pub height_mm: f64,
+    /// `1:100`.
+    pub ratio: u32,
+    /// `A3`, where the sheet fits one.
+    pub name: Option<&'static str>,
+}
+
+/// Returns the largest round scale at which the sheet fits a common paper.
+pub(super) fn paper(width: f64, height: f64, scale: f64) -> Paper {
+    const PAPERS: [(&str, f64, f64); 4] =
+        [("A4", 297.0, 210.0), ("A3", 420.0, 297.0), ("A2", 594.0, 420.0), ("A1", 841.0, 594.0)];
+    let at = |ratio: u32| {
+        let mm = 1000.0 / (scale * f64::from(ratio));
+        (width * mm, height * mm)
+    };
+    let largest = if width > height { &PAPERS[..2] } else { &PAPERS[..] };
+    for ratio in [50, 100, 200, 500, 1000] {
+        let (w, h) = at(ratio);
+        let fits = |paper: &&(&'static str, f64, f64)| w.max(h) <= paper.1 && w.min(h) <= paper.2;
+        if let Some(paper) = largest.iter().find(fits) {
+            return Paper { width_mm: w, height_mm: h, ratio, name: Some(paper.0) };
+        }
+    }
+    let (width_mm, height_mm) = at(2000);
+    Paper { width_mm, height_mm, ratio: 2000, name: None }
+}
+
+/// Returns the plan's title: the kind of building.
+pub(super) fn title(world: &World, domain: &Domain) -> String {
+    world.scene_graph.building_type.as_deref().map_or_else(|| domain.title.clone(), sentence)
+}
+
+/// `dental_practice` -> `Dental practice`.
+fn sentence(id: &str) -> String {
+    let text = id.replace('_', " ");
+    let mut letters = text.chars();
+    letters.next().map(|c| c.to_uppercase().collect::<String>() + letters.as_str()).unwrap_or_default()
+}
+
+impl Facts<'_> {
+    /// Draws the panel right of (`beside`) or below the drawing; returns the size of the sheet.
+    pub fn draw(&self, page: &mut Page, drawing: &Rect, beside: bool, least_height: f64) -> (f64, f64) {
+        let mut blocks = vec![self.heading(page), self.figures(page)];
+        blocks.extend(self.schedule(page));
+        blocks.push(self.legend(page));
+        if beside {
+            self.draw_beside(page, drawing, &blocks, least_height.min(drawing.y1 + EDGE))
+        } else {
+            self.draw_below(page, drawing, &blocks)
+        }
+    }
+
+    fn draw_beside(&self, page: &mut Page, drawing: &Rect, blocks: &[Block], least: f64) -> (f64, f64) {
+        let total: f64 = blocks.iter().map(|b| b.height + BLOCK_GAP).sum();
+        let paper_width = drawing.x1 + 2.0 * GAP + WIDTH + EDGE;
+        let height = (drawing.y1 + EDGE).max(2.0 * EDGE + GAP + total + 96.0).max(least);
+        let x = drawing.x1 + GAP;
+        page.path("fr", Path::new().segment((drawing.x1, EDGE), (drawing.x1, height - EDGE)));
+        let mut y = EDGE + GAP * 0.8;
+        for block in blocks {
+            page.place(block, (x, y));
+            y += block.height + BLOCK_GAP;
+        }
+        let foot = self.foot(page, paper_width, height);
+        page.place(&foot, (x, height - EDGE - foot.height - 0.6 * GAP));
+        (paper_width, height)
+    }
+
+    fn draw_below(&self, page: &mut Page, drawing: &Rect, blocks: &[Block]) -> (f64, f64) {
+        let width = (drawing.x1 + EDGE).max(2.0 * EDGE + 4.0 * (WIDTH + GAP) + GAP);
+        let count = ((width - 2.0 * EDGE - GAP) / (WIDTH + GAP)).floor().max(1.0) as usize;
+        let step = (width - 2.0 * EDGE - GAP) / count as f64;
+        // Each block goes under the shortest column, the foot last and to the right.
+        let mut columns = vec![0.0_f64; count];
+        let mut places = Vec::new();
+        for (i, block) in blocks.iter().enumerate() {
+            let free = count.saturating_sub(1).max(1);
+            let column = if i < free {
+                i
+            } else {
+                (0..free).min_by(|a, b| columns[*a].total_cmp(&columns[*b])).unwrap_or(0)
+            };
+            places.push((column, columns[column]));
+            columns[column] += block.height + BLOCK_GAP;
+        }
+        let strip = columns.iter().copied().fold(0.0, f64::max).max(130.0);
+        let height = drawing.y1 + GAP * 0.8 + strip + EDGE;
+        page.path("fr", Path::new().segment((EDGE, drawing.y1), (width - EDGE, drawing.y1)));
+        for (block, (column, down)) in blocks.iter().zip(places) {
+            page.place(block, (EDGE + GAP + column as f64 * step, drawing.y1 + GAP * 0.8 + down));
+        }
+        let foot = self.foot(page, width, height);
+        let x = EDGE + GAP + (count - 1) as f64 * step;
+        page.place(&foot, (x, height - EDGE - foot.height - 0.6 * GAP));
+        (width, height)
+    }
+
+    /// Domain, kind of building and the prompt.
+    fn heading(&self, page: &mut Page) -> Block {
+        let (world, domain) = (self.world, self.domain);
+        page.block(|page| {
+            let mut y = 0.0;
+            if world.scene_graph.building_type.is_some() && title(world, domain) != domain.title {
+                y += 13.0;
+                page.text(&domain.title.to_uppercase(), (0.0, y), 13.0, style::SMALL, Anchor::Start);
+                y += 8.0;
+            }
+            for line in wrap(page, &title(world, domain), 33.0, Weight::SemiBold, 3) {
+                y += 33.0;
+                page.text(&line, (0.0, y), 33.0, style::HEADING, Anchor::Start);
+            }
+            y += 10.0;
+            let prompt = world.scene_graph.prompt.trim();
+            // A prompt in a script the font lacks would show gaps; the title says enough.
+            if !prompt.is_empty() && page.font(Weight::Regular).covers(prompt) {
+                for line in wrap(page, &format!("“{prompt}”"), 16.5, Weight::Regular, 6) {
+                    y += 22.0;
+                    page.text(&line, (0.0, y), 16.5, style::SMALL, Anchor::Start);
+                }
+            }
+            y
+        })
+    }
+
+    /// The table of facts.
+    fn figures(&self, page: &mut Page) -> Block {
+        let world = self.world;
+        let rooms = world.floorplan.rooms.iter().filter(|r| !r.circulation).count();
+        let circulation = world.floorplan.rooms.len() - rooms;
+        let area: f64 = world.floorplan.rooms.iter().filter(|r| !self.outdoor(&r.room_type)).map(|r| r.net_area_m2).sum();
+        let doors = world.floorplan.doors.iter().filter(|d| d.kind != DoorKind::Open).count();
+        let plus = if circulation > 0 { format!(" + {circulation} circulation") } else { String::new() };
+        let mut rows = vec![
+            ("Rooms", format!("{rooms}{plus}")),
+            ("Net floor area", format!("{area:.1} m²")),
+            ("Outer size", format!("{:.2} × {:.2} m", self.around.width(), self.around.height())),
+            ("Doors, windows", format!("{doors}, {}", world.floorplan.windows.len())),
+            ("Objects", world.placements.placements.len().to_string()),
+        ];
+        let robots: Vec<String> = world
+            .scene_graph
+            .robots
+            .iter()
+            .map(|r| format!("{} {} (Ø {:.2} m)", r.count, r.kind.replace('_', " "), 2.0 * r.radius_m))
+            .collect();
+        if !robots.is_empty() {
+            rows.push(("Robots", robots.join(", ")));
+        }
+        rows.push(("Rules of", world.scene_graph.country_code.clone().unwrap_or_else(|| "International".into())));
+        rows.push(("Seed", world.scene_graph.seed.to_string()));
+        rows.push(("Made by", world.generator.clone()));
+        page.block(|page| {
+            let mut y = 0.0;
+            for (name, value) in &rows {
+                page.path("fr", Path::new().segment((0.0, y), (WIDTH, y)));
+                let lines = wrap_to(page, value, SIZE, Weight::Regular, 2, WIDTH - 130.0);
+                page.text(name, (0.0, y + 17.0), SIZE, style::SMALL, Anchor::Start);
+                for (i, line) in lines.iter().enumerate() {
+                    y += if i == 0 { 0.0 } else { ROW - 4.0 };
+                    page.text(line, (130.0, y + 17.0), SIZE, style::TEXT, Anchor::Start);
+                }
+                y += ROW;
+            }
+            page.path("fr", Path::new().segment((0.0, y), (WIDTH, y)));
+            y
+        })
+    }
+
+    fn outdoor(&self, room_type: &str) -> bool {
+        self.domain.room_type_or_generic(room_type).zone == Zone::Outdoor
+    }
+
+    /// The list of rooms with their net areas, or only those that are numbers in the drawing when there are many.
+    fn schedule(&self, page: &mut Page) -> Option<Block> {
+        let all: Vec<(Option<usize>, &PlanRoom)> =
+            self.numbers.iter().copied().zip(&self.world.floorplan.rooms).collect();
+        let numbered: Vec<_> = all.iter().filter(|(n, _)| n.is_some()).copied().collect();
+        let rows = if all.len() <= MOST_LISTED { all } else { numbered };
+        if rows.is_empty() {
+            return None;
+        }
+        let columns = if rows.len() > 9 { 2 } else { 1 };
+        let per_column = rows.len().div_ceil(columns);
+        let width = (WIDTH - 22.0 * (columns as f64 - 1.0)) / columns as f64;
+        let size = if columns > 1 { 13.5 } else { SIZE };
+        let row = if columns > 1 { ROW - 2.0 } else { ROW };
+        Some(page.block(|page| {
+            let top = heading(page, "Rooms, net floor area");
+            for (i, (number, room)) in rows.iter().enumerate() {
+                let (x, y) = ((i / per_column) as f64 * (width + 22.0), top + (i % per_column) as f64 * row);
+                let mut left = x;
+                if let Some(number) = number {
+                    labels::badge(page, (x + 9.0, y + 11.5), *number, 9.0);
+                    left += 25.0;
+                }
+                let area = format!("{:.1} m²", room.net_area_m2);
+                let taken = page.text(&area, (x + width, y + 16.5), size, style::SMALL, Anchor::End);
+                let space = x + width - left - taken - 8.0;
+                if let Some(name) = wrap_to(page, &room.name, size, Weight::Regular, 1, space).first() {
+                    page.text(name, (left, y + 16.5), size, style::TEXT, Anchor::Start);
+                }
+            }
+            top + per_column as f64 * row
+        }))
+    }
+
+    /// Tints, robot zones and marks that occur, in two columns.
+    fn legend(&self, page: &mut Page) -> Block {
+        let world = self.world;
+        let zones: BTreeSet<Zone> =
+            world.floorplan.rooms.iter().map(|r| self.domain.room_type_or_generic(&r.room_type).zone).collect();
+        let rois: BTreeSet<RoiKind> = world.scenario.rois.iter().map(|r| r.kind).collect();
+        let goals = world.scenario.robots.iter().any(|r| !r.goals.is_empty());
+        let docks = world.scenario.pois.iter().any(|p| p.kind == "dock");
+        let mut rows: Vec<(&str, Swatch)> = zones.into_iter().map(|z| (style::zone_label(z), Swatch::Zone(z))).collect();
+        rows.extend(rois.into_iter().map(|r| (style::roi_label(r), Swatch::Roi(r))));
+        if docks {
+            rows.push(("Charging dock", Swatch::Dock));
+        }
+        if !world.scenario.robots.is_empty() {
+            rows.push(("Robot at its start", Swatch::Start));
+        }
+        if goals {
+            rows.push(("Stops in order", Swatch::Goal));
+        }
+        page.block(|page| {
+            let top = heading(page, "Legend");
+            let half = rows.len().div_ceil(2);
+            for (i, (text, swatch)) in rows.iter().enumerate() {
+                let (column, row) = (i / half, i % half);
+                let (x, y) = (column as f64 * (WIDTH * 0.54), top + row as f64 * (ROW + 3.0));
+                swatch.draw(page, (x, y + 3.0), self.k);
+                page.text(text, (x + 38.0, y + 16.5), SIZE - 1.0, style::TEXT, Anchor::Start);
+            }
+            top + half as f64 * (ROW + 3.0)
+        })
+    }
+
+    /// Scale bar, scale and north arrow.
+    fn foot(&self, page: &mut Page, width: f64, height: f64) -> Block {
+        let paper = paper(width, height, self.scale);
+        page.block(|page| {
+            let step = [1.0, 2.0, 5.0, 10.0].into_iter().find(|m| m * self.scale >= 48.0).unwrap_or(20.0);
+            let bar = step * self.scale;
+            let pieces = ((WIDTH - 110.0) / bar).floor().clamp(1.0, 4.0) as usize;
+            for i in 0..pieces {
+                let x = i as f64 * bar;
+                let r = Rect { x0: x, y0: 30.0, x1: x + bar, y1: 37.0 };
+                page.path(if i % 2 == 0 { "sb" } else { "sw" }, Path::new().rect(&r));
+            }
+            for i in 0..=pieces {
+                let meters = step * i as f64;
+                let unit = if i == pieces { " m" } else { "" };
+                page.text(&format!("{meters:.0}{unit}"), (i as f64 * bar, 23.0), 13.5, style::SMALL, Anchor::Middle);
+            }
+            let on = paper.name.map_or(String::new(), |n| format!(" on {n}"));
+            page.text(&format!("1:{}{on}", paper.ratio), (0.0, 58.0), 13.5, style::SMALL, Anchor::Start);
+            north(page, (WIDTH - 26.0, 34.0), 24.0);
+            62.0
+        })
+    }
+}
+
+/// A needle in a ring with its N.
+fn north(page: &mut Page, (x, y): (f64, f64), r: f64) {
+    page.path("nr", Path::new().circle((x, y), r));
+    page.path("ea", Path::new().polygon(&[(x, y - 0.8 * r), (x + 0.34 * r, y + 0.62 * r), (x, y + 0.36 * r)]));
+    page.path("ex", Path::new().polygon(&[(x, y - 0.8 * r), (x - 0.34 * r, y + 0.62 * r), (x, y + 0.36 * r)]));
+    page.text("N", (x, y - r - 6.0), 15.0, style::HEADING, Anchor::Middle);
+}
+
+/// What stands before a legend's words.
+enum Swatch {
+    Zone(Zone),
+    Roi(RoiKind),
+    Dock,
+    Start,
+    Goal,
+}
+
+impl Swatch {
+    fn draw(&self, page: &mut Page, (x, y): (f64, f64), k: f64) {
+        let r = Rect { x0: x, y0: y, x1: x + 28.0, y1: y + 17.0 };
+        let middle = (x + 14.0, y + 8.5);
+        match self {
+            Self::Zone(zone) => {
+                let fill = format!("fill=\"{}\" stroke=\"{}\" stroke-width=\"0.8\"", style::tint(*zone), style::RULE);
+                page.path_with(&fill, Path::new().rect(&r));
+            }
+            Self::Roi(kind) => {
+                robots::area(page, *kind, Path::new().rect(&r), &[r], 0.6 * k);
+                if matches!(kind, RoiKind::CleaningZone | RoiKind::KeepOut) {
+                    page.path("fr", Path::new().rect(&r));
+                }
+            }
+            Self::Dock => robots::dock(page, middle, 9.5),
+            Self::Start => robots::robot(page, middle, (1.0, 0.0), 9.5),
+            Self::Goal => robots::goal(page, middle, 1, 9.0),
+        }
+    }
+}
+
+/// A block's heading; returns where its rows begin.
+fn heading(page: &mut Page, text: &str) -> f64 {
+    page.text(&text.to_uppercase(), (0.0, 12.0), 13.0, style::SMALL, Anchor::Start);
+    22.0
+}
+
+fn wrap(page: &Page, text: &str, size: f64, weight: Weight, limit: usize) -> Vec<String> {
+    wrap_to(page, text, size, weight, limit, WIDTH)
+}
+
+/// Breaks a text into at most `limit` lines of a width; what does not fit ends in an ellipsis.
+fn wrap_to(page: &Page, text: &str, size: f64, weight: Weight, limit: usize, width: f64) -> Vec<String> {
+    let font = page.font(weight);
+    let mut lines: Vec<String> = vec![String::new()];
+    for word in text.split_whitespace() {
+        let last = lines.last_mut().expect("there is always one line");
+        let longer = if last.is_empty() { word.to_owned() } else { format!("{last} {word}") };
+        if last.is_empty() || font.width(&longer, size) <= width {
+            *last = longer;
+        } else {
+            lines.push(word.to_owned());
+        }
+    }
+    let cut = lines.len() > limit;
+    lines.truncate(limit);
+    for (i, line) in lines.iter_mut().enumerate() {
+        let ellipsis = if cut && i + 1 == limit { "…" } else { "" };
+        // One long word, or the last line with its ellipsis: letters go until it fits.
+        while !line.is_empty() && font.width(&format!("{line}{ellipsis}"), size) > width {
+            line.pop();
+        }
+        line.push_str(ellipsis);
+    }
+    lines
+}
