@@ -216,7 +216,9 @@ fn whole(brief: &Brief, layout: &Layout, survey: &Survey, score: &mut Score) {
     if let Some(spine) = brief.spine
         && !brief.hub
     {
-        score.soft[4] += (survey.gross_m2[spine] / total - 0.10).max(0.0);
+        // From a fifth on, circulation is what a reviewer objects to first.
+        let share = survey.gross_m2[spine] / total;
+        score.soft[4] += (share - 0.10).max(0.0) + 5.0 * (share - 0.20).max(0.0);
     }
     let perimeter: f64 = survey.outer.iter().map(|o| meters(o.1)).sum();
     score.soft[6] += perimeter / (4.0 * total.sqrt()) - 1.0 + 0.02 * layout.notch;
