@@ -13,9 +13,39 @@ use serde_json::{Value, json};
 pub const ALL_SHAPES: [Shape; 33] = {
     use Shape::*;
     [
-        Box, Cabinet, Shelf, Table, RoundTable, Desk, Chair, SwivelChair, Stool, Sofa, Bench, Bed, HospitalBed, Counter,
-        Sink, Basin, Toilet, Bathtub, Shower, Panel, Trolley, Pole, Plant, Lamp, Appliance, Stove, Rug, Curtain, Dock,
-        Cylinder, Vehicle, Scanner, Rack,
+        Box,
+        Cabinet,
+        Shelf,
+        Table,
+        RoundTable,
+        Desk,
+        Chair,
+        SwivelChair,
+        Stool,
+        Sofa,
+        Bench,
+        Bed,
+        HospitalBed,
+        Counter,
+        Sink,
+        Basin,
+        Toilet,
+        Bathtub,
+        Shower,
+        Panel,
+        Trolley,
+        Pole,
+        Plant,
+        Lamp,
+        Appliance,
+        Stove,
+        Rug,
+        Curtain,
+        Dock,
+        Cylinder,
+        Vehicle,
+        Scanner,
+        Rack,
     ]
 };
 
@@ -139,9 +169,7 @@ pub fn assemble(floorplan: Floorplan, placements: Placements) -> World {
 }
 
 fn scenario() -> Scenario {
-    let square = |x: f64, y: f64, w: f64, h: f64| {
-        json!([{"x": x, "y": y}, {"x": x + w, "y": y}, {"x": x + w, "y": y + h}, {"x": x, "y": y + h}])
-    };
+    let square = |x: f64, y: f64, w: f64, h: f64| json!([{"x": x, "y": y}, {"x": x + w, "y": y}, {"x": x + w, "y": y + h}, {"x": x, "y": y + h}]);
     let robot = json!({"kind": "cleaning", "count": 1, "radius_m": 0.2, "height_m": 0.4, "charging": true});
     let pose = |x: f64, y: f64, yaw: f64| json!({"x": x, "y": y, "z": 0.0, "yaw_rad": yaw});
     let value = json!({
@@ -165,7 +193,8 @@ fn scenario() -> Scenario {
 
 /// Returns the plan: 10 x 8 m with a balcony.
 pub fn floorplan() -> Floorplan {
-    let rooms: [(&str, &str, &[(f64, f64)]); 7] = [
+    type Outline = &'static [(f64, f64)];
+    let rooms: [(&str, &str, Outline); 7] = [
         ("hallway_1", "Hallway", &[(0., 3.4), (6.5, 3.4), (6.5, 4.7), (0., 4.7)]),
         ("living_room_1", "Living room", &[(6.5, 3.4), (10., 3.4), (10., 8.), (4.5, 8.), (4.5, 4.7), (6.5, 4.7)]),
         ("bedroom_1", "Bedroom 1", &[(0., 4.7), (4.5, 4.7), (4.5, 8.), (0., 8.)]),
@@ -205,7 +234,17 @@ pub fn floorplan() -> Floorplan {
             }
         })
         .collect();
-    Floorplan { version: 1, seed: 7, scheme: "straight".into(), rooms, walls, doors, windows, cost: vec![], conflicts: vec![] }
+    Floorplan {
+        version: 1,
+        seed: 7,
+        scheme: "straight".into(),
+        rooms,
+        walls,
+        doors,
+        windows,
+        cost: vec![],
+        conflicts: vec![],
+    }
 }
 
 fn segment(x0: f64, y0: f64, x1: f64, y1: f64) -> Segment {
@@ -233,7 +272,13 @@ fn doors() -> Vec<Door> {
         door("door_4", Hinged, segment(5.4, 3.4, 6.3, 3.4), &["hallway_1", "bedroom_2"], Some(("bedroom_2", false))),
         door("door_5", Open, segment(6.5, 3.5, 6.5, 4.6), &["hallway_1", "living_room_1"], None),
         door("door_6", Sliding, segment(7.0, 3.4, 8.0, 3.4), &["living_room_1", "kitchen_1"], None),
-        door("door_7", Hinged, segment(10., 5.4, 10., 6.3), &["living_room_1", "balcony_1"], Some(("balcony_1", false))),
+        door(
+            "door_7",
+            Hinged,
+            segment(10., 5.4, 10., 6.3),
+            &["living_room_1", "balcony_1"],
+            Some(("balcony_1", false)),
+        ),
     ]
 }
 
@@ -278,11 +323,14 @@ fn walls(rooms: &[(String, Polygon)], openings: &[Segment]) -> Vec<Wall> {
                 let middle = point(a, (pair[0] + pair[1]) / 2.0, vertical);
                 let side = |s: f64| owner(point(a + s, (pair[0] + pair[1]) / 2.0, vertical));
                 let (left, right) = (side(-0.01), side(0.01));
-                let open = openings.iter().any(|s| s.start.distance(middle) + middle.distance(s.end) < s.length() + 1e-6);
+                let open =
+                    openings.iter().any(|s| s.start.distance(middle) + middle.distance(s.end) < s.length() + 1e-6);
                 if left == right || open {
                     continue;
                 }
-                let exterior = left.is_none() || right.is_none() || [&left, &right].iter().any(|r| r.as_deref() == Some("balcony_1"));
+                let exterior = left.is_none()
+                    || right.is_none()
+                    || [&left, &right].iter().any(|r| r.as_deref() == Some("balcony_1"));
                 let room_ids: Vec<String> = left.into_iter().chain(right).collect();
                 let line = Segment { start: point(a, pair[0], vertical), end: point(a, pair[1], vertical) };
                 match walls.last_mut() {
@@ -422,7 +470,8 @@ pub fn catalogue() -> World {
         (Shape::Rack, [2.7, 1.1, 4.0]),
     ];
     let (width, depth) = (18.0, 18.0);
-    let hall = Polygon(vec![Point::new(0., 0.), Point::new(width, 0.), Point::new(width, depth), Point::new(0., depth)]);
+    let hall =
+        Polygon(vec![Point::new(0., 0.), Point::new(width, 0.), Point::new(width, depth), Point::new(0., depth)]);
     let mut floorplan = floorplan();
     let outlines = [("living_room_1".to_owned(), hall.clone())];
     floorplan.rooms.retain(|r| r.room_id == "living_room_1");

@@ -98,6 +98,12 @@ fn write_text(out: &mut String, text: &str) {
         out.push_str(text);
         return;
     }
+    // Line separators and the BOM end a scalar in YAML 1.1, so they are escaped like control characters.
+    let escape = |c: char| c.is_control() || matches!(c, '\u{2028}' | '\u{2029}' | '\u{feff}');
+    if !text.contains(escape) {
+        let _ = write!(out, "'{}'", text.replace('\'', "''"));
+        return;
+    }
     out.push('"');
     for c in text.chars() {
         match c {
@@ -105,8 +111,7 @@ fn write_text(out: &mut String, text: &str) {
             '\\' => out.push_str("\\\\"),
             '\n' => out.push_str("\\n"),
             '\t' => out.push_str("\\t"),
-            // Line separators and the BOM end a scalar in YAML 1.1, so they are escaped like control characters.
-            c if c.is_control() || matches!(c, '\u{2028}' | '\u{2029}' | '\u{feff}') => {
+            c if escape(c) => {
                 let _ = write!(out, "\\u{:04x}", u32::from(c));
             }
             c => out.push(c),
@@ -118,10 +123,11 @@ fn write_text(out: &mut String, text: &str) {
 /// Returns true when PyYAML and libyaml take the bare text for that very string.
 fn is_plain(text: &str) -> bool {
     const WORDS: [&str; 8] = ["true", "false", "yes", "no", "on", "off", "null", "nan"];
-    let starts_well = text.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_');
+    let starts_well =
+        text.trim_start_matches('-').starts_with(|c: char| c.is_alphabetic() || c == '_') && !text.starts_with("--");
     starts_well
         && !text.ends_with(' ')
-        && text.chars().all(|c| c.is_ascii_alphanumeric() || " _-./(),'+:".contains(c))
+        && text.chars().all(|c| c.is_alphanumeric() || " _-./(),'+:".contains(c))
         && !text.contains(": ")
         && !text.ends_with(':')
         && !WORDS.contains(&text.to_ascii_lowercase().as_str())
@@ -148,14 +154,16 @@ mod tests {
             (json!(-0.0), "0.0"),
             (json!(0.1 + 0.2), "0.3"),
             (json!(12), "12"),
-            (json!("no"), "\"no\""),
-            (json!("12"), "\"12\""),
-            (json!(""), "\"\""),
-            (json!("-y"), "\"-y\""),
-            (json!("a: b # c"), "\"a: b # c\""),
+            (json!("no"), "'no'"),
+            (json!("12"), "'12'"),
+            (json!(""), "''"),
+            (json!("-y"), "-y"),
+            (json!("a: b # c"), "'a: b # c'"),
             (json!("two\nlines \"x\""), "\"two\\nlines \\\"x\\\"\""),
-            (json!("Großküche 病房"), "\"Großküche 病房\""),
+            (json!("Großküche 病房"), "Großküche 病房"),
             (json!("Object/Patient_Bed"), "Object/Patient_Bed"),
+            (json!("--x"), "'--x'"),
+            (json!("it's: so"), "'it''s: so'"),
             (json!("kind::bed"), "kind::bed"),
         ] {
             assert_eq!(to_string(&value), format!("{text}\n"));

@@ -35,10 +35,7 @@ impl Exporter for Arena {
             File::new(format!("{root}/0/world.yaml"), yaml::to_string(&world_yaml::level(world, domain, &models)?)),
             File::new(format!("{root}/0/map.png"), map::png(&world.floorplan)?),
             File::new(format!("{root}/0/map.yaml"), yaml::to_string(&map::yaml(&world.floorplan))),
-            File::new(
-                format!("{root}/scenarios/default/scenario.yaml"),
-                yaml::to_string(&scenario::scenario(world)),
-            ),
+            File::new(format!("{root}/scenarios/default/scenario.yaml"), yaml::to_string(&scenario::scenario(world))),
         ];
         files.extend(models.files(&format!("{root}/assets"), domain));
         files.sort_by(|a, b| a.path.cmp(&b.path));

@@ -73,7 +73,8 @@ pub fn svg(world: &World, domain: &Domain) -> String {
     let scale = fit.clamp(SCALES[0], SCALES[1]);
     let k = (scale / 55.0).clamp(0.7, 1.15);
     let (margins, offsets) = margins(plan, &around, scale);
-    let frame = Frame { scale, origin: Point::new(around.x0, around.y1), at: (EDGE + margins.west, EDGE + margins.north) };
+    let frame =
+        Frame { scale, origin: Point::new(around.x0, around.y1), at: (EDGE + margins.west, EDGE + margins.north) };
     let on_sheet = frame.rect(&around);
     let drawing = Rect { x0: EDGE, y0: EDGE, x1: on_sheet.x1 + margins.east, y1: on_sheet.y1 + margins.south };
 

@@ -55,8 +55,7 @@ fn geometry(solid: &Solid) -> (String, String) {
                 Axis::Y => "1.570796 0 0",
                 Axis::Z => "0 0 0",
             };
-            let shape =
-                format!("<cylinder><radius>{}</radius><length>{}</length></cylinder>", n(*radius), n(*length));
+            let shape = format!("<cylinder><radius>{}</radius><length>{}</length></cylinder>", n(*radius), n(*length));
             (format!("{x} {y} {z} {turn}"), shape)
         }
         Solid::Sphere { radius, .. } => {

@@ -89,8 +89,7 @@ fn every_wall_and_door_is_listed_once_and_walls_run_through_windows() {
     let windows: f64 = world.floorplan.windows.iter().map(|w| w.line.length()).sum();
     let walls: f64 = world.floorplan.walls.iter().map(|w| w.line.length()).sum();
     assert!((length("walls") - walls - windows).abs() < 1e-6);
-    let doors: f64 =
-        world.floorplan.doors.iter().filter(|d| d.kind != DoorKind::Open).map(|d| d.line.length()).sum();
+    let doors: f64 = world.floorplan.doors.iter().filter(|d| d.kind != DoorKind::Open).map(|d| d.line.length()).sum();
     assert!((length("doors") - doors).abs() < 1e-6);
 }
 
@@ -137,7 +136,8 @@ fn an_asset_in_two_sizes_becomes_two_models() {
     let chairs: Vec<&str> =
         files.iter().map(|f| f.path.as_str()).filter(|p| p.contains("/Chair") && p.ends_with(".usda")).collect();
     assert_eq!(chairs.len(), 2, "{chairs:?}");
-    let text = files.iter().find(|f| f.path.ends_with("world.yaml")).map(|f| String::from_utf8_lossy(&f.bytes)).unwrap();
+    let text =
+        files.iter().find(|f| f.path.ends_with("world.yaml")).map(|f| String::from_utf8_lossy(&f.bytes)).unwrap();
     assert!(text.contains("model: Sample/Chair_500x500x880\n") && text.contains("model: Sample/Chair_450x500x880\n"));
 }
 

@@ -31,13 +31,7 @@ pub(super) fn level(world: &World, domain: &Domain, models: &Models) -> Result<V
     Ok(json!({ "zones": zones }))
 }
 
-fn zone(
-    room: &PlanRoom,
-    world: &World,
-    domain: &Domain,
-    models: &Models,
-    walls: &[SolidWall],
-) -> Result<Value, Error> {
+fn zone(room: &PlanRoom, world: &World, domain: &Domain, models: &Models, walls: &[SolidWall]) -> Result<Value, Error> {
     let id = &room.room_id;
     let room_type = domain.room_type_or_generic(&room.room_type);
     let description = world.scene_graph.room(id).map_or(room.name.as_str(), |r| r.description.as_str());
@@ -206,7 +200,9 @@ fn solid_walls(plan: &Floorplan) -> Vec<SolidWall> {
             d3dgen_model::Point::new(x, y)
         };
         solid.extend(
-            joined.into_iter().map(|(a, b)| SolidWall { owner: owner.clone(), line: Segment { start: at(a), end: at(b) } }),
+            joined
+                .into_iter()
+                .map(|(a, b)| SolidWall { owner: owner.clone(), line: Segment { start: at(a), end: at(b) } }),
         );
     }
     solid

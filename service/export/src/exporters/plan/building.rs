@@ -25,11 +25,8 @@ pub(super) fn floors(page: &mut Page, frame: &Frame, plan: &Floorplan, domain: &
 /// Draws walls as one dark body with a darker edge.
 pub(super) fn walls(page: &mut Page, frame: &Frame, plan: &Floorplan) {
     page.open_group("walls");
-    let body = plan
-        .walls
-        .iter()
-        .map(|w| frame.rect(&wall_rect(w, plan)))
-        .fold(Path::new(), |path, rect| path.rect(&rect));
+    let body =
+        plan.walls.iter().map(|w| frame.rect(&wall_rect(w, plan))).fold(Path::new(), |path, rect| path.rect(&rect));
     // The edge of every piece first, the bodies over it: what stays visible is the edge of their union.
     page.path("wo", body.clone());
     page.path("w", body);
@@ -151,10 +148,7 @@ fn draw_door(page: &mut Page, frame: &Frame, plan: &Floorplan, door: &Door) {
 fn leaf(page: &mut Page, frame: &Frame, o: &Opening, along: f64, sign: f64, length: f64) {
     let at = |along_by: f64, out: f64| frame.map(o.at(along + sign * along_by, o.half + out));
     let k = 0.5523 * length;
-    page.path(
-        "da",
-        Path::new().to(at(0.0, length)).cubic(at(k, length), at(length, k), at(length, 0.0)),
-    );
+    page.path("da", Path::new().to(at(0.0, length)).cubic(at(k, length), at(length, k), at(length, 0.0)));
     page.path("dl", Path::new().polygon(&[at(0.0, 0.0), at(0.0, length), at(LEAF_M, length), at(LEAF_M, 0.0)]));
 }
 

@@ -23,7 +23,6 @@ pub(super) struct Room<'a> {
     pub floor: Vec<Rect>,
 }
 
-
 /// Things labels keep away from.
 pub(super) struct Obstacles {
     /// Never written over.
@@ -160,7 +159,8 @@ impl Grid {
     fn new(room: &Room<'_>, obstacles: &Obstacles) -> Self {
         let bounds = room.floor.iter().copied().reduce(union).unwrap_or(Rect::new(0.0, 0.0, 1.0, 1.0));
         let (columns, rows) = ((bounds.width() / CELL) as usize + 1, (bounds.height() / CELL) as usize + 1);
-        let mut grid = Self { x0: bounds.x0, y0: bounds.y0, columns, rows, hard: vec![], soft: vec![], center: (0.0, 0.0) };
+        let mut grid =
+            Self { x0: bounds.x0, y0: bounds.y0, columns, rows, hard: vec![], soft: vec![], center: (0.0, 0.0) };
         let mut hard = vec![1; columns * rows];
         let mut soft = vec![0; columns * rows];
         room.floor.iter().for_each(|r| grid.paint(&mut hard, r, 0));

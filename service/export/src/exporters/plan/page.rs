@@ -188,8 +188,7 @@ impl Page {
                 size * 0.28
             );
         }
-        let _ =
-            writeln!(self.out, "<path fill=\"{}\" aria-label=\"{}\" d=\"{outline}\"/>", style.fill, escaped(text));
+        let _ = writeln!(self.out, "<path fill=\"{}\" aria-label=\"{}\" d=\"{outline}\"/>", style.fill, escaped(text));
         width
     }
 

@@ -118,11 +118,8 @@ impl Facts<'_> {
         let mut places = Vec::new();
         for (i, block) in blocks.iter().enumerate() {
             let free = count.saturating_sub(1).max(1);
-            let column = if i < free {
-                i
-            } else {
-                (0..free).min_by(|a, b| columns[*a].total_cmp(&columns[*b])).unwrap_or(0)
-            };
+            let column =
+                if i < free { i } else { (0..free).min_by(|a, b| columns[*a].total_cmp(&columns[*b])).unwrap_or(0) };
             places.push((column, columns[column]));
             columns[column] += block.height + BLOCK_GAP;
         }
@@ -170,7 +167,8 @@ impl Facts<'_> {
         let world = self.world;
         let rooms = world.floorplan.rooms.iter().filter(|r| !r.circulation).count();
         let circulation = world.floorplan.rooms.len() - rooms;
-        let area: f64 = world.floorplan.rooms.iter().filter(|r| !self.outdoor(&r.room_type)).map(|r| r.net_area_m2).sum();
+        let area: f64 =
+            world.floorplan.rooms.iter().filter(|r| !self.outdoor(&r.room_type)).map(|r| r.net_area_m2).sum();
         let doors = world.floorplan.doors.iter().filter(|d| d.kind != DoorKind::Open).count();
         let plus = if circulation > 0 { format!(" + {circulation} circulation") } else { String::new() };
         let mut rows = vec![
@@ -255,7 +253,8 @@ impl Facts<'_> {
         let rois: BTreeSet<RoiKind> = world.scenario.rois.iter().map(|r| r.kind).collect();
         let goals = world.scenario.robots.iter().any(|r| !r.goals.is_empty());
         let docks = world.scenario.pois.iter().any(|p| p.kind == "dock");
-        let mut rows: Vec<(&str, Swatch)> = zones.into_iter().map(|z| (style::zone_label(z), Swatch::Zone(z))).collect();
+        let mut rows: Vec<(&str, Swatch)> =
+            zones.into_iter().map(|z| (style::zone_label(z), Swatch::Zone(z))).collect();
         rows.extend(rois.into_iter().map(|r| (style::roi_label(r), Swatch::Roi(r))));
         if docks {
             rows.push(("Charging dock", Swatch::Dock));

@@ -9,6 +9,9 @@ use d3dgen_model::placements::Placement;
 
 use super::page::{Frame, Page, Path};
 
+/// A quadratic piece of an outline: its control point and its end.
+pub(super) type Curve = ((f64, f64), (f64, f64));
+
 /// A pen over one object.
 pub(super) struct Pen<'a> {
     page: &'a mut Page,
@@ -112,8 +115,8 @@ impl<'a> Pen<'a> {
         self.page.path(class, path);
     }
 
-    /// A closed outline of quadratic curves: pairs of (control, end), from `start`.
-    pub fn blob(&mut self, class: &str, start: (f64, f64), curves: &[((f64, f64), (f64, f64))]) {
+    /// A closed outline of quadratic curves from `start`.
+    pub fn blob(&mut self, class: &str, start: (f64, f64), curves: &[Curve]) {
         let mut path = Path::new().to(self.at(start.0, start.1));
         for (control, end) in curves {
             path = path.quad(self.at(control.0, control.1), self.at(end.0, end.1));
@@ -122,7 +125,7 @@ impl<'a> Pen<'a> {
     }
 
     /// An open curve of quadratic pieces.
-    pub fn curve(&mut self, class: &str, start: (f64, f64), curves: &[((f64, f64), (f64, f64))]) {
+    pub fn curve(&mut self, class: &str, start: (f64, f64), curves: &[Curve]) {
         let mut path = Path::new().to(self.at(start.0, start.1));
         for (control, end) in curves {
             path = path.quad(self.at(control.0, control.1), self.at(end.0, end.1));

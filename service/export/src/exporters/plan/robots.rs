@@ -29,14 +29,15 @@ pub(super) fn area(page: &mut Page, kind: RoiKind, outline: Path, rects: &[Rect]
     match kind {
         RoiKind::CleaningZone => {
             let lines = rects.iter().fold(Path::new(), |path, r| hatch(path, r, 15.0 * k, false));
-            let look = format!("fill=\"none\" stroke=\"{stroke}\" stroke-opacity=\".42\" stroke-width=\"{:.2}\"", 0.9 * k);
+            let look =
+                format!("fill=\"none\" stroke=\"{stroke}\" stroke-opacity=\".42\" stroke-width=\"{:.2}\"", 0.9 * k);
             page.path_with(&look, lines);
         }
         RoiKind::KeepOut => {
-            let lines = rects.iter().fold(Path::new(), |path, r| {
-                hatch(hatch(path, r, 13.0 * k, false), r, 13.0 * k, true)
-            });
-            let look = format!("fill=\"none\" stroke=\"{stroke}\" stroke-opacity=\".28\" stroke-width=\"{:.2}\"", 0.9 * k);
+            let lines =
+                rects.iter().fold(Path::new(), |path, r| hatch(hatch(path, r, 13.0 * k, false), r, 13.0 * k, true));
+            let look =
+                format!("fill=\"none\" stroke=\"{stroke}\" stroke-opacity=\".28\" stroke-width=\"{:.2}\"", 0.9 * k);
             page.path_with(&look, lines);
         }
         RoiKind::ServiceZone | RoiKind::ChargingBuffer => {

@@ -1,6 +1,6 @@
 //! Machines, lamps, plants and the rest.
 
-use crate::exporters::plan::pen::Pen;
+use crate::exporters::plan::pen::{Curve, Pen};
 
 /// A thin upright panel; a deep one shows its foot.
 pub(super) fn panel(p: &mut Pen<'_>) {
@@ -18,8 +18,7 @@ pub(super) fn panel(p: &mut Pen<'_>) {
 pub(super) fn pole(p: &mut Pen<'_>) {
     let r = p.w.min(p.d) / 2.0;
     // Five feet: cosines and sines of multiples of 72 degrees.
-    const FEET: [(f64, f64); 5] =
-        [(0.0, 1.0), (0.9511, 0.309), (0.5878, -0.809), (-0.5878, -0.809), (-0.9511, 0.309)];
+    const FEET: [(f64, f64); 5] = [(0.0, 1.0), (0.9511, 0.309), (0.5878, -0.809), (-0.5878, -0.809), (-0.9511, 0.309)];
     let feet = FEET.map(|(x, y)| [(0.0, 0.0), (r * x, r * y)]);
     let feet: Vec<&[(f64, f64)]> = feet.iter().map(|l| l.as_slice()).collect();
     p.lines("f", &feet);
@@ -33,13 +32,19 @@ pub(super) fn pole(p: &mut Pen<'_>) {
 pub(super) fn plant(p: &mut Pen<'_>) {
     let r = p.w.min(p.d) / 2.0;
     // Eight leaves: sixteen directions of the compass, tips and notches in turn.
-    const RAYS: [(f64, f64); 16] = [
-        (1.0, 0.0), (0.9239, 0.3827), (0.7071, 0.7071), (0.3827, 0.9239), (0.0, 1.0), (-0.3827, 0.9239),
-        (-0.7071, 0.7071), (-0.9239, 0.3827), (-1.0, 0.0), (-0.9239, -0.3827), (-0.7071, -0.7071), (-0.3827, -0.9239),
-        (0.0, -1.0), (0.3827, -0.9239), (0.7071, -0.7071), (0.9239, -0.3827),
-    ];
-    let at = |i: usize, s: f64| (RAYS[i % 16].0 * r * s, RAYS[i % 16].1 * r * s);
-    let curves: Vec<((f64, f64), (f64, f64))> = (0..8).map(|i| (at(2 * i + 1, 1.36), at(2 * i + 2, 0.62))).collect();
+    const D: f64 = std::f64::consts::FRAC_1_SQRT_2;
+    const QUARTER: [(f64, f64); 4] = [(1.0, 0.0), (0.9239, 0.3827), (D, D), (0.3827, 0.9239)];
+    let ray = |i: usize| {
+        let (x, y) = QUARTER[i % 4];
+        match (i / 4) % 4 {
+            0 => (x, y),
+            1 => (-y, x),
+            2 => (-x, -y),
+            _ => (y, -x),
+        }
+    };
+    let at = |i: usize, s: f64| (ray(i).0 * r * s, ray(i).1 * r * s);
+    let curves: Vec<Curve> = (0..8).map(|i| (at(2 * i + 1, 1.36), at(2 * i + 2, 0.62))).collect();
     p.blob("p", at(0, 0.62), &curves);
     let veins: Vec<[(f64, f64); 2]> = (0..8).map(|i| [(0.0, 0.0), at(2 * i + 1, 0.62)]).collect();
     let veins: Vec<&[(f64, f64)]> = veins.iter().map(|l| l.as_slice()).collect();
@@ -49,7 +54,7 @@ pub(super) fn plant(p: &mut Pen<'_>) {
 /// A circle with a cross.
 pub(super) fn lamp(p: &mut Pen<'_>) {
     let r = p.w.min(p.d) / 2.0;
-    let x = 0.7071 * r;
+    let x = std::f64::consts::FRAC_1_SQRT_2 * r;
     p.circle("b", (0.0, 0.0), r);
     p.lines("f", &[&[(-x, -x), (x, x)], &[(-x, x), (x, -x)]]);
     p.circle("s", (0.0, 0.0), 0.3 * r);

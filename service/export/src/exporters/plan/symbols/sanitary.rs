@@ -28,7 +28,13 @@ pub(super) fn basin(p: &mut Pen<'_>) {
     p.blob(
         "b",
         (-u, -v),
-        &[((0.0, -v), (u, -v)), ((u, -0.4 * v), (u, 0.1 * v)), ((u, v), (0.0, v)), ((-u, v), (-u, 0.1 * v)), ((-u, -0.4 * v), (-u, -v))],
+        &[
+            ((0.0, -v), (u, -v)),
+            ((u, -0.4 * v), (u, 0.1 * v)),
+            ((u, v), (0.0, v)),
+            ((-u, v), (-u, 0.1 * v)),
+            ((-u, -0.4 * v), (-u, -v)),
+        ],
     );
     p.ellipse("s", (0.0, 0.12 * v), 0.7 * u, 0.62 * v);
     p.circle("f", (0.0, 0.12 * v), 0.03);
@@ -51,7 +57,13 @@ pub(super) fn toilet(p: &mut Pen<'_>) {
         p.blob(
             class,
             (-0.72 * w, low),
-            &[((0.0, low), (0.72 * w, low)), ((w, low), (w, low + 0.35 * (high - low))), ((w, high), (0.0, high)), ((-w, high), (-w, low + 0.35 * (high - low))), ((-w, low), (-0.72 * w, low))],
+            &[
+                ((0.0, low), (0.72 * w, low)),
+                ((w, low), (w, low + 0.35 * (high - low))),
+                ((w, high), (0.0, high)),
+                ((-w, high), (-w, low + 0.35 * (high - low))),
+                ((-w, low), (-0.72 * w, low)),
+            ],
         );
     };
     bowl(1.0, cistern, v, p, "b");

@@ -17,7 +17,12 @@ fn back(p: &mut Pen<'_>, u: f64) {
     p.blob(
         "b",
         (-u, outer + bow),
-        &[((0.0, outer - bow), (u, outer + bow)), ((u * 1.02, inner), (u * 0.96, inner + bow)), ((0.0, inner - bow), (-u * 0.96, inner + bow)), ((-u * 1.02, inner), (-u, outer + bow))],
+        &[
+            ((0.0, outer - bow), (u, outer + bow)),
+            ((u * 1.02, inner), (u * 0.96, inner + bow)),
+            ((0.0, inner - bow), (-u * 0.96, inner + bow)),
+            ((-u * 1.02, inner), (-u, outer + bow)),
+        ],
     );
 }
 
