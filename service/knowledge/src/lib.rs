@@ -2,10 +2,25 @@
 //! and how a finished world fares against each of them.
 //!
 //! What it is not for: deciding whether a world is sound (hard rules live in the pipeline's `world` stage) and reading
-//! files. Which measurable quantity a constraint speaks of is data: `data/quantities.toml`.
+//! files. Which measurable quantity a constraint speaks of, and what its conditions mean, is data: `data/*.toml`.
 
+mod conditions;
+mod draw_limits;
+mod figure;
+pub mod jurisdiction;
 mod limits;
+mod measure;
 mod query;
+mod retrieve;
+mod tables;
 
+pub use conditions::Guard;
+pub use figure::Bounds;
 pub use limits::{Limit, Limits, RoomLimits};
+pub use measure::Measure;
 pub use query::{Query, QueryRoom};
+pub use retrieve::{Applicable, Retrieval, Rule, Scope, retrieve};
+pub use tables::QuantityRow;
+
+#[cfg(test)]
+mod tests;

@@ -1,7 +1,10 @@
 //! What is asked of a knowledge base: a building, where it stands, its rooms and its robots.
 
-use d3dgen_model::domain::Domain;
-use d3dgen_model::scene_graph::{Occupancy, Robot, SceneGraph};
+use d3dgen_model::domain::{Daylight, Domain, RoomType, Shape, Zone};
+use d3dgen_model::scene_graph::{GraphRoom, Robot, SceneGraph};
+
+/// Floor area that one person is reckoned with when nothing says how many there are, m^2.
+const AREA_PER_PERSON_M2: f64 = 10.0;
 
 /// The building whose rules are wanted.
 #[derive(Debug, Clone, PartialEq)]
@@ -16,14 +19,16 @@ pub struct Query {
     pub accessible: bool,
     /// Room types of the building, each once, in scene-graph order.
     pub rooms: Vec<QueryRoom>,
-    /// Head counts, where known.
-    pub occupancy: Occupancy,
+    /// People at a time, as stated or reckoned from the area.
+    pub persons: u32,
+    /// False when `persons` is only reckoned from the area.
+    pub persons_stated: bool,
     /// Robots that work in it.
     pub robots: Vec<Robot>,
 }
 
 /// A room type at hand and the names under which knowledge bases speak of it.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct QueryRoom {
     /// Room type id.
     pub room_type: String,
@@ -33,6 +38,14 @@ pub struct QueryRoom {
     pub count: u32,
     /// True for corridors, halls and lobbies that were added to connect rooms.
     pub circulation: bool,
+    /// Part of the building it belongs to.
+    pub zone: Zone,
+    /// Its need for a window.
+    pub daylight: Daylight,
+    /// True when beds on wheels stand in it.
+    pub beds: bool,
+    /// Largest net floor area that the scene graph allows any such room, m^2.
+    pub area_max_m2: f64,
 }
 
 impl Query {
@@ -43,23 +56,62 @@ impl Query {
             if let Some(known) = rooms.iter_mut().find(|r| r.room_type == room.room_type) {
                 known.count += 1;
                 known.circulation |= room.circulation;
-                continue;
+                known.area_max_m2 = known.area_max_m2.min(room.area_range_m2[1]);
+            } else {
+                rooms.push(query_room(room, domain));
             }
-            rooms.push(QueryRoom {
-                room_type: room.room_type.clone(),
-                spaces: domain.room_type(&room.room_type).map(|t| t.spaces.clone()).unwrap_or_default(),
-                count: 1,
-                circulation: room.circulation,
-            });
         }
+        let (persons, persons_stated) = persons(graph);
         Self {
             country_code: graph.country_code.clone(),
             domain: graph.domain.clone(),
             building_type: graph.building_type.clone(),
             accessible: graph.accessible,
             rooms,
-            occupancy: graph.occupancy.clone(),
+            persons,
+            persons_stated,
             robots: graph.robots.clone(),
         }
+    }
+
+    /// Returns the number of robots.
+    pub fn robot_count(&self) -> u32 {
+        self.robots.iter().map(|r| r.count).sum()
+    }
+}
+
+fn query_room(room: &GraphRoom, domain: &Domain) -> QueryRoom {
+    let kind = domain.room_type_or_generic(&room.room_type);
+    QueryRoom {
+        room_type: room.room_type.clone(),
+        // the spaces of the generic room type say nothing about a room that only the prompt names
+        spaces: domain.room_type(&room.room_type).map(|t| t.spaces.clone()).unwrap_or_default(),
+        count: 1,
+        circulation: room.circulation,
+        zone: kind.zone,
+        daylight: kind.daylight,
+        beds: has_rolling_beds(kind, domain),
+        area_max_m2: room.area_range_m2[1],
+    }
+}
+
+/// Returns true when a room type is furnished with beds on wheels.
+fn has_rolling_beds(kind: &RoomType, domain: &Domain) -> bool {
+    kind.furnishing.iter().filter(|f| f.min > 0).any(|f| {
+        let object = domain.group(&f.item).map_or(f.item.as_str(), |g| g.anchor.as_str());
+        domain.object(object).is_some_and(|o| o.shape == Shape::HospitalBed)
+    })
+}
+
+/// Returns how many people there are at a time, and whether the prompt says so.
+fn persons(graph: &SceneGraph) -> (u32, bool) {
+    let o = &graph.occupancy;
+    // desks are used by staff: count the larger of the two
+    let stated = o.staff.unwrap_or(0).max(o.desks.unwrap_or(0)) + o.beds.unwrap_or(0) + o.visitors.unwrap_or(0);
+    let held: u32 = graph.rooms.iter().filter_map(|r| r.occupants).sum();
+    let area: f64 = graph.rooms.iter().map(|r| r.target_area_m2).sum();
+    match stated.max(held) {
+        0 => ((area / AREA_PER_PERSON_M2).ceil() as u32, false),
+        n => (n, true),
     }
 }

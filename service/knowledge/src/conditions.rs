@@ -1,0 +1,83 @@
+//! Whether the conditions of a constraint hold for a building.
+
+use d3dgen_model::knowledge::Constraint;
+
+use crate::query::Query;
+use crate::tables::{ConditionRow, TABLES, When};
+
+/// What the conditions of one constraint come to.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct Conditions {
+    /// Why the constraint does not apply at all.
+    pub fails: Option<String>,
+    /// Why it cannot be said whether it applies.
+    pub unknown: Option<String>,
+    /// What is left to ask of each room.
+    pub guards: Vec<Guard>,
+    /// Spaces the constraint leaves out.
+    pub except: Vec<String>,
+    /// True when it is about the ways of beds on wheels only.
+    pub beds: bool,
+}
+
+/// A condition that depends on the room.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Guard {
+    /// Net floor area above the first and up to the second figure, m^2.
+    Area(f64, f64),
+    /// Number of beds, ends included.
+    Beds(f64, f64),
+}
+
+/// Returns what the conditions of a constraint come to.
+pub(crate) fn evaluate(c: &Constraint, query: &Query) -> Conditions {
+    let mut out = Conditions::default();
+    for phrase in &c.conditions {
+        let Some(row) = TABLES.condition(phrase) else {
+            if !is_code(phrase) && out.unknown.is_none() {
+                out.unknown = Some(format!("depends on \"{phrase}\", which the documents do not tell"));
+            }
+            continue;
+        };
+        out.except.extend(row.except.iter().cloned());
+        match guard(row) {
+            Some(guard) => out.guards.push(guard),
+            None if holds(row, query) => out.beds |= row.when == When::Beds,
+            None => out.fails = Some(row.reason.clone().unwrap_or_else(|| format!("holds only for \"{phrase}\""))),
+        }
+    }
+    out
+}
+
+fn guard(row: &ConditionRow) -> Option<Guard> {
+    let (min, max) = (row.min.unwrap_or(f64::MIN), row.max.unwrap_or(f64::MAX));
+    match row.when {
+        When::Area => Some(Guard::Area(min, max)),
+        When::BedsInRoom => Some(Guard::Beds(min, max)),
+        _ => None,
+    }
+}
+
+fn holds(row: &ConditionRow, query: &Query) -> bool {
+    let beds = query.rooms.iter().any(|r| r.beds);
+    match row.when {
+        When::Always | When::Area | When::BedsInRoom => true,
+        When::Never => false,
+        When::Accessible => query.accessible,
+        When::Beds => beds,
+        When::NoBeds => !beds,
+        When::Public => query.accessible || !row.except_domains.contains(&query.domain),
+        When::TwoRobots => query.robot_count() >= 2,
+        When::Persons => row.holds(f64::from(query.persons)),
+        When::RoomsOf => {
+            let count: u32 = query.rooms.iter().filter(|r| row.room_types.contains(&r.room_type)).map(|r| r.count).sum();
+            row.holds(f64::from(count))
+        }
+    }
+}
+
+/// Returns true for room codes of guidelines, `1BR-ST` or `CLUR-12`: they name the room once more.
+fn is_code(phrase: &str) -> bool {
+    phrase.chars().any(|c| c.is_ascii_uppercase())
+        && phrase.chars().all(|c| c.is_ascii_uppercase() || c.is_ascii_digit() || "-/. ".contains(c))
+}

@@ -1,0 +1,103 @@
+//! From the constraints that apply to the figures a floorplan must keep.
+//!
+//! A figure is taken from the nearest jurisdiction that has one, the strictest there. Regulations and standards count,
+//! and the least figures of guidelines; rules about robots are added on top wherever they come from. A figure that the
+//! scene graph's own sizes cannot meet is left to the report.
+
+use std::collections::BTreeSet;
+
+use crate::limits::{Limit, Limits, RoomLimits};
+use crate::measure::Measure;
+use crate::query::Query;
+use crate::retrieve::{Applicable, Rule, Scope};
+
+/// Source types whose least figures a plan keeps.
+const PLANNED_BY: [&str; 3] = ["regulation", "standard", "guideline"];
+/// Topic of the rules about robots.
+const ROBOT_TOPIC: &str = "robot_placement_charging_circulation";
+/// Widest door that a limit may ask of an ordinary room, m: wider ones are gates with rules of their own.
+const WIDEST_DOOR_M: f64 = 2.0;
+
+/// Returns the limits that the constraints come to.
+pub(crate) fn draw(constraints: &[Applicable], chain: &[String], query: &Query) -> Limits {
+    let usable: Vec<(&Applicable, &Rule)> = constraints
+        .iter()
+        .filter(|a| a.guards.is_empty() && a.superseded_by.is_none())
+        .filter_map(|a| Some((a, a.decision.as_ref().ok()?)))
+        .collect();
+    let pick = |wanted: &dyn Fn(&Applicable, &Rule) -> Option<f64>| strictest(&usable, chain, query, wanted);
+    let mut limits = Limits {
+        corridor_width: pick(&|a, r| {
+            (r.quantity.measure == Measure::CirculationWidth && a.scope == Scope::Circulation).then_some(r.bounds.min?)
+        }),
+        entrance_width: pick(&|a, r| {
+            let door = r.quantity.measure == Measure::DoorWidth && matches!(a.scope, Scope::Entrance | Scope::Doors);
+            door.then_some(r.bounds.min?)
+        }),
+        rooms: Default::default(),
+    };
+    for room in &query.rooms {
+        let about = |a: &Applicable| match &a.scope {
+            Scope::Rooms(types) => types.contains(&room.room_type),
+            Scope::Circulation => room.circulation,
+            _ => false,
+        };
+        let least = |measures: &[Measure], most: f64| {
+            pick(&|a, r| {
+                let value = r.bounds.min?;
+                (about(a) && measures.contains(&r.quantity.measure) && value <= most).then_some(value)
+            })
+        };
+        let side = room.area_max_m2.sqrt();
+        let found = RoomLimits {
+            area_min: least(&[Measure::RoomArea], room.area_max_m2),
+            area_max: None,
+            dimension_min: least(&[Measure::LeastDimension, Measure::InnerRectangle], side),
+            door_width: pick(&|a, r| {
+                let value = r.bounds.min?;
+                let door = r.quantity.measure == Measure::DoorWidth && value <= WIDEST_DOOR_M;
+                (door && (about(a) || a.scope == Scope::Doors)).then_some(value)
+            }),
+            ceiling_height_min: least(&[Measure::CeilingHeight], f64::MAX),
+        };
+        if found != RoomLimits::default() {
+            limits.rooms.insert(room.room_type.clone(), found);
+        }
+    }
+    limits
+}
+
+/// Returns the strictest least figure of the nearest jurisdiction, or of the rules about robots when that is stricter.
+fn strictest(
+    usable: &[(&Applicable, &Rule)],
+    chain: &[String],
+    query: &Query,
+    wanted: &dyn Fn(&Applicable, &Rule) -> Option<f64>,
+) -> Option<Limit> {
+    let candidates: Vec<(&Applicable, f64)> =
+        usable.iter().filter(|(a, _)| is_planned(a, query)).filter_map(|(a, r)| Some((*a, wanted(a, r)?))).collect();
+    let about_robots = |a: &Applicable| robot_rule(a, query);
+    let places: BTreeSet<&str> =
+        candidates.iter().filter(|(a, _)| !about_robots(a)).map(|(a, _)| a.citation.jurisdiction.as_str()).collect();
+    let nearest = chain.iter().find(|c| places.contains(c.as_str()));
+    candidates
+        .iter()
+        .filter(|(a, _)| about_robots(a) || Some(&a.citation.jurisdiction) == nearest)
+        .max_by(|(a, x), (b, y)| x.total_cmp(y).then_with(|| b.constraint.constraint_id.cmp(&a.constraint.constraint_id)))
+        .map(|(a, value)| Limit { value: *value, constraint_id: a.constraint.constraint_id.clone() })
+}
+
+fn is_planned(a: &Applicable, query: &Query) -> bool {
+    let kind = a.constraint.constraint_type.as_str();
+    let binding = PLANNED_BY.contains(&a.citation.source.source_type.as_str())
+        && (a.mandatory || kind == "minimum" || kind == "table");
+    binding || robot_rule(a, query)
+}
+
+/// Returns true for the rules of papers about robots that were asked for (two-way traffic).
+fn robot_rule(a: &Applicable, query: &Query) -> bool {
+    !query.robots.is_empty()
+        && a.constraint.topic == ROBOT_TOPIC
+        && a.constraint.constraint_type == "minimum"
+        && a.citation.source.source_type == "paper"
+}

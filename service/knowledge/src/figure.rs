@@ -1,0 +1,146 @@
+//! The figures of a constraint: from the polymorphic value to an interval, or to the sides of a rectangle.
+
+use d3dgen_model::knowledge::{Constraint, Value};
+use serde_json::Value as Json;
+
+use crate::measure::Measure;
+
+/// What is required: an interval, and for rectangles two sides.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Bounds {
+    /// Least allowed value.
+    pub min: Option<f64>,
+    /// Largest allowed value.
+    pub max: Option<f64>,
+    /// Sides of the required rectangle, shorter first, m.
+    pub sides: Option<[f64; 2]>,
+}
+
+impl Bounds {
+    fn at_least(value: f64) -> Self {
+        Self { min: Some(value), ..Self::default() }
+    }
+
+    fn at_most(value: f64) -> Self {
+        Self { max: Some(value), ..Self::default() }
+    }
+}
+
+/// Returns what a constraint requires of a quantity.
+///
+/// # Errors
+/// Says why the value has no figure that the quantity can be held against.
+pub(crate) fn bounds(c: &Constraint, measure: Measure, persons: u32) -> Result<Bounds, String> {
+    match &c.value {
+        Value::Number(v) => Ok(one(*v, c, measure)),
+        Value::Flag(true) => Ok(Bounds::at_least(1.0)),
+        Value::Flag(false) => Ok(Bounds::at_most(0.0)),
+        Value::Range { min, max } => Ok(interval(*min, *max, c)),
+        Value::Table(table) if table.contains_key("width") => {
+            let figure = |key: &str| table.get(key).and_then(Json::as_f64);
+            match (figure("width"), figure("length")) {
+                (Some(w), Some(l)) if is_rectangle(measure) => {
+                    Ok(Bounds { sides: Some([w.min(l), w.max(l)]), ..Bounds::at_least(w.min(l)) })
+                }
+                // doors and lanes: the width is what is passed
+                (Some(w), _) => Ok(Bounds::at_least(w)),
+                _ => Err("its dimensions are not figures".into()),
+            }
+        }
+        Value::Table(table) => match table.values().filter_map(Json::as_f64).fold(None, least) {
+            Some(v) if table.keys().any(|k| k.ends_with("_side")) => Ok(Bounds::at_least(v)),
+            _ => by_persons(table.iter(), persons)
+                .map(|v| one(v, c, measure))
+                .ok_or_else(|| "its table is not by number of people".into()),
+        },
+        Value::Expression { expr } => Err(format!("its formula `{expr}` has quantities that the documents do not hold")),
+        Value::List(_) => Err("its value is a list".into()),
+    }
+}
+
+fn is_rectangle(measure: Measure) -> bool {
+    matches!(measure, Measure::InnerRectangle | Measure::FreeRectangle)
+}
+
+fn one(value: f64, c: &Constraint, measure: Measure) -> Bounds {
+    let maximum = match c.constraint_type.as_str() {
+        "maximum" => true,
+        "minimum" => false,
+        _ => measure.advice_is_maximum(),
+    };
+    if maximum { Bounds::at_most(value) } else { Bounds::at_least(value) }
+}
+
+fn interval(min: f64, max: f64, c: &Constraint) -> Bounds {
+    match c.constraint_type.as_str() {
+        "minimum" => Bounds::at_least(min),
+        "maximum" => Bounds::at_most(max),
+        _ => Bounds { min: Some(min), max: Some(max), sides: None },
+    }
+}
+
+fn least(a: Option<f64>, b: f64) -> Option<f64> {
+    Some(a.map_or(b, |a: f64| a.min(b)))
+}
+
+/// Returns the entry of a table by head count: keys `<=50`, `26-50`, `>220`.
+fn by_persons<'a>(entries: impl Iterator<Item = (&'a String, &'a Json)>, persons: u32) -> Option<f64> {
+    let mut rows: Vec<(u32, f64)> = Vec::new();
+    for (key, value) in entries {
+        let upper = match (key.strip_prefix("<="), key.split_once('-')) {
+            (Some(n), _) => n.trim().parse().ok()?,
+            (_, Some((_, n))) => n.trim().parse().ok()?,
+            _ if key.starts_with('>') => continue,
+            _ => return None,
+        };
+        rows.push((upper, value.as_f64()?));
+    }
+    rows.sort_by_key(|r| r.0);
+    rows.iter().find(|(upper, _)| persons <= *upper).map(|r| r.1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeMap;
+
+    fn constraint(constraint_type: &str, value: Value) -> Constraint {
+        Constraint {
+            constraint_id: "c".into(),
+            name: "n".into(),
+            topic: "t".into(),
+            constraint_type: constraint_type.into(),
+            value,
+            unit: "m".into(),
+            measurement_basis: "clear_width".into(),
+            space_type: "corridor".into(),
+            conditions: Vec::new(),
+            confidence: "high".into(),
+            verified: "seen".into(),
+            original_value: None,
+            note: String::new(),
+            source_ids: Vec::new(),
+            seen_at: None,
+        }
+    }
+
+    #[test]
+    fn tables_by_head_count() {
+        let table: BTreeMap<String, Json> =
+            [("<=5", 0.9), ("<=20", 1.0), ("<=300", 1.8)].map(|(k, v)| (k.to_owned(), v.into())).into();
+        let c = constraint("table", Value::Table(table));
+        for (persons, width) in [(3, Some(0.9)), (20, Some(1.0)), (21, Some(1.8)), (999, None)] {
+            let found = bounds(&c, Measure::CirculationWidth, persons).ok().and_then(|b| b.min);
+            assert_eq!(found, width, "{persons} people");
+        }
+    }
+
+    #[test]
+    fn advice_goes_the_way_of_its_quantity() {
+        let c = constraint("recommendation", Value::Number(2.0));
+        assert_eq!(bounds(&c, Measure::CirculationWidth, 1), Ok(Bounds::at_least(2.0)));
+        assert_eq!(bounds(&c, Measure::Proportion, 1), Ok(Bounds::at_most(2.0)));
+        let c = constraint("maximum", Value::Number(2.0));
+        assert_eq!(bounds(&c, Measure::CirculationWidth, 1), Ok(Bounds::at_most(2.0)));
+    }
+}

@@ -1,0 +1,51 @@
+//! Which rules apply in a place: subdivision, country, region, international, nearest first.
+
+/// Regions whose rules their member states follow, with ISO 3166-1 codes.
+const REGIONS: [(&str, &[&str]); 1] = [(
+    "EU",
+    &[
+        "AT", "BE", "BG", "CY", "CZ", "DE", "DK", "EE", "ES", "FI", "FR", "GR", "HR", "HU", "IE", "IT", "LT", "LU", "LV",
+        "MT", "NL", "PL", "PT", "RO", "SE", "SI", "SK",
+    ],
+)];
+
+/// Code of rules that hold everywhere.
+pub const INTERNATIONAL: &str = "INT";
+
+/// Returns the jurisdictions of a place, nearest first: `US-CA` gives `US-CA`, `US`, `INT`.
+///
+/// `None` (no country known) gives international rules only.
+pub fn chain(country_code: Option<&str>) -> Vec<String> {
+    let mut out = Vec::new();
+    if let Some(code) = country_code.map(str::to_ascii_uppercase).filter(|c| !c.is_empty() && c != INTERNATIONAL) {
+        let country = code.split('-').next().unwrap_or(&code).to_owned();
+        if country != code {
+            out.push(code);
+        }
+        let regions = REGIONS.iter().filter(|(_, members)| members.contains(&country.as_str()));
+        let regions: Vec<String> = regions.map(|(name, _)| (*name).to_owned()).collect();
+        out.push(country);
+        out.extend(regions);
+    }
+    out.push(INTERNATIONAL.to_owned());
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nearest_first() {
+        let cases: [(Option<&str>, &[&str]); 5] = [
+            (None, &["INT"]),
+            (Some("US"), &["US", "INT"]),
+            (Some("US-NC"), &["US-NC", "US", "INT"]),
+            (Some("de"), &["DE", "EU", "INT"]),
+            (Some("EU"), &["EU", "INT"]),
+        ];
+        for (code, expected) in cases {
+            assert_eq!(chain(code), expected, "{code:?}");
+        }
+    }
+}

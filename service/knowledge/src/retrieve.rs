@@ -1,0 +1,221 @@
+//! Which constraints of a knowledge base apply to a building, what each is about, and what it requires.
+
+use std::collections::BTreeSet;
+
+use d3dgen_model::domain::Shape;
+use d3dgen_model::knowledge::{Constraint, KnowledgeBase, Reference};
+use d3dgen_model::report::Citation;
+
+use crate::conditions::{self, Conditions, Guard};
+use crate::draw_limits;
+use crate::figure::{self, Bounds};
+use crate::jurisdiction;
+use crate::limits::Limits;
+use crate::query::Query;
+use crate::tables::{QuantityRow, SpaceKind, TABLES};
+
+/// The constraints of a building.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Retrieval {
+    /// Jurisdictions whose rules were taken, nearest first.
+    pub jurisdictions: Vec<String>,
+    /// Constraints about something in the building, in the order of the knowledge base.
+    pub constraints: Vec<Applicable>,
+    /// Constraints of these jurisdictions about something the building does not have.
+    pub not_applicable: u32,
+    /// Figures for the floorplan.
+    pub limits: Limits,
+    /// People at a time that figures by head count were taken for.
+    pub persons: u32,
+    /// False when `persons` is only reckoned from the area.
+    pub persons_stated: bool,
+    /// Number of robots.
+    pub robots: u32,
+}
+
+/// A constraint that applies.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Applicable {
+    /// The rule.
+    pub constraint: Constraint,
+    /// Reference it belongs to.
+    pub ref_id: String,
+    /// Where it comes from.
+    pub citation: Citation,
+    /// True for regulations and standards, false for advice.
+    pub mandatory: bool,
+    /// What it is about.
+    pub scope: Scope,
+    /// Conditions that remain to be asked of each room.
+    pub guards: Vec<Guard>,
+    /// How it is measured and what it requires, or why it cannot be decided.
+    pub decision: Result<Rule, String>,
+    /// Id of the constraint of a nearer jurisdiction that goes before this one.
+    pub superseded_by: Option<String>,
+}
+
+/// What a constraint is about.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Scope {
+    /// Rooms of these types.
+    Rooms(BTreeSet<String>),
+    /// Corridors and halls.
+    Circulation,
+    /// Every door of rooms.
+    Doors,
+    /// The main entrance door.
+    Entrance,
+    /// The building as a whole.
+    Building,
+    /// Objects of these builds.
+    Objects(Vec<Shape>),
+}
+
+/// A quantity with its required figures.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rule {
+    /// What is measured.
+    pub quantity: &'static QuantityRow,
+    /// What is required.
+    pub bounds: Bounds,
+    /// Room types of the other space of distances and pairs.
+    pub to: BTreeSet<String>,
+}
+
+/// Returns the constraints that apply to a building, nearest jurisdiction first when they contradict each other.
+pub fn retrieve(knowledge: &KnowledgeBase, query: &Query) -> Retrieval {
+    let chain = jurisdiction::chain(query.country_code.as_deref());
+    let mut constraints = Vec::new();
+    let mut not_applicable = 0;
+    for reference in knowledge.references.iter().filter(|r| chain.contains(&r.jurisdiction)) {
+        for constraint in &reference.constraints {
+            match applicable(constraint, reference, query) {
+                Some(found) => constraints.push(found),
+                None => not_applicable += 1,
+            }
+        }
+    }
+    supersede(&mut constraints, &chain);
+    let limits = draw_limits::draw(&constraints, &chain, query);
+    let used = |code: &String| code == jurisdiction::INTERNATIONAL || constraints.iter().any(|c| &c.citation.jurisdiction == code);
+    Retrieval {
+        jurisdictions: chain.iter().filter(|c| used(c)).cloned().collect(),
+        not_applicable,
+        limits,
+        persons: query.persons,
+        persons_stated: query.persons_stated,
+        robots: query.robot_count(),
+        constraints,
+    }
+}
+
+/// Returns a constraint with its meaning for this building; `None` when it is about nothing there.
+fn applicable(c: &Constraint, reference: &Reference, query: &Query) -> Option<Applicable> {
+    let conditions = conditions::evaluate(c, query);
+    if conditions.fails.is_some() {
+        return None;
+    }
+    let scope = narrowed(scope(&c.space_type, query)?, &conditions, query)?;
+    let decision = match (&conditions.unknown, TABLES.quantity(c)) {
+        (_, None) => Err(TABLES.unknown(c)),
+        (Some(reason), _) => Err(reason.clone()),
+        (None, Some(quantity)) => figure::bounds(c, quantity.measure, query.persons).map(|bounds| Rule {
+            quantity,
+            bounds,
+            to: quantity.to.iter().flat_map(|s| types_of(s, query)).collect(),
+        }),
+    };
+    Some(Applicable {
+        citation: citation(c, reference)?,
+        mandatory: is_mandatory(c, reference),
+        constraint: c.clone(),
+        ref_id: reference.ref_id.clone(),
+        scope,
+        guards: conditions.guards,
+        decision,
+        superseded_by: None,
+    })
+}
+
+/// Returns what a space name means in this building; `None` when it has none of it.
+fn scope(space: &str, query: &Query) -> Option<Scope> {
+    let named = types_of(space, query);
+    match TABLES.space(space, &query.domain).map(|s| (s.kind, s)) {
+        Some((SpaceKind::Circulation, _)) if query.rooms.iter().any(|r| r.circulation) || !named.is_empty() => {
+            Some(Scope::Circulation)
+        }
+        Some((SpaceKind::Circulation, _)) => None,
+        Some((SpaceKind::AllRooms, _)) => Some(Scope::Rooms(query.rooms.iter().map(|r| r.room_type.clone()).collect())),
+        Some((SpaceKind::Doors, _)) => Some(Scope::Doors),
+        Some((SpaceKind::Entrance, _)) => Some(Scope::Entrance),
+        Some((SpaceKind::Building, _)) => Some(Scope::Building),
+        Some((SpaceKind::Objects, row)) => Some(Scope::Objects(row.shapes.clone())),
+        Some((SpaceKind::Robots, _)) => (!query.robots.is_empty()).then_some(Scope::Building),
+        Some((SpaceKind::Rooms, _)) | None => (!named.is_empty()).then_some(Scope::Rooms(named)),
+    }
+}
+
+/// Returns the room types at hand that a space name covers.
+fn types_of(space: &str, query: &Query) -> BTreeSet<String> {
+    let row = TABLES.space(space, &query.domain);
+    let rooms = query.rooms.iter().filter(|r| {
+        r.room_type == space
+            || r.spaces.iter().any(|s| s == space)
+            || row.is_some_and(|row| row.kind == SpaceKind::Rooms && row.room_types.contains(&r.room_type))
+    });
+    rooms.map(|r| r.room_type.clone()).collect()
+}
+
+/// Takes from a scope what the conditions leave out.
+fn narrowed(scope: Scope, conditions: &Conditions, query: &Query) -> Option<Scope> {
+    let rolling = || query.rooms.iter().filter(|r| r.beds).map(|r| r.room_type.clone()).collect::<BTreeSet<_>>();
+    let scope = match scope {
+        Scope::Doors if conditions.beds => Scope::Rooms(rolling()),
+        Scope::Rooms(types) if conditions.beds => Scope::Rooms(types.intersection(&rolling()).cloned().collect()),
+        other => other,
+    };
+    let except: BTreeSet<String> = conditions.except.iter().flat_map(|s| types_of(s, query)).collect();
+    match scope {
+        Scope::Rooms(types) => {
+            let left: BTreeSet<String> = types.difference(&except).cloned().collect();
+            (!left.is_empty()).then_some(Scope::Rooms(left))
+        }
+        other => Some(other),
+    }
+}
+
+fn citation(c: &Constraint, reference: &Reference) -> Option<Citation> {
+    let source = c.source_ids.iter().find_map(|id| reference.sources.iter().find(|s| &s.source_id == id))?;
+    Some(Citation {
+        jurisdiction: reference.jurisdiction.clone(),
+        source: source.clone(),
+        note: c.note.clone(),
+        printed: c.original_value.clone(),
+        confidence: c.confidence.clone(),
+    })
+}
+
+fn is_mandatory(c: &Constraint, reference: &Reference) -> bool {
+    let source = c.source_ids.iter().find_map(|id| reference.sources.iter().find(|s| &s.source_id == id));
+    source.is_some_and(|s| matches!(s.source_type.as_str(), "regulation" | "standard"))
+        && !matches!(c.constraint_type.as_str(), "recommendation" | "rule_of_thumb")
+}
+
+/// Marks what a mandatory constraint of a nearer jurisdiction on the same quantity of the same space goes before.
+fn supersede(constraints: &mut [Applicable], chain: &[String]) {
+    let rank = |a: &Applicable| chain.iter().position(|c| *c == a.citation.jurisdiction).unwrap_or(chain.len());
+    let key = |a: &Applicable| {
+        a.decision.as_ref().ok().map(|r| (r.quantity.measure, a.constraint.space_type.clone(), r.bounds.min.is_some()))
+    };
+    let nearer: Vec<_> = constraints
+        .iter()
+        .filter(|a| a.mandatory && a.guards.is_empty())
+        .filter_map(|a| Some((key(a)?, rank(a), a.constraint.constraint_id.clone())))
+        .collect();
+    for a in constraints.iter_mut().filter(|a| a.mandatory) {
+        let Some(own) = key(a) else { continue };
+        let here = rank(a);
+        a.superseded_by = nearer.iter().find(|(k, r, _)| *k == own && *r < here).map(|(_, _, id)| id.clone());
+        a.mandatory = a.superseded_by.is_none();
+    }
+}

@@ -1,0 +1,245 @@
+//! The tables that give constraints a meaning: quantities, spaces and conditions, read from `data/*.toml`.
+
+use std::sync::LazyLock;
+
+use d3dgen_model::domain::Shape;
+use d3dgen_model::knowledge::Constraint;
+use serde::Deserialize;
+
+use crate::measure::Measure;
+
+/// The tables that ship with the crate.
+pub(crate) static TABLES: LazyLock<Tables> = LazyLock::new(|| {
+    let quantities: Quantities = toml::from_str(include_str!("../data/quantities.toml"))
+        .expect("data/quantities.toml is part of the crate and read by its tests");
+    let spaces: Spaces = toml::from_str(include_str!("../data/spaces.toml"))
+        .expect("data/spaces.toml is part of the crate and read by its tests");
+    let conditions: Conditions = toml::from_str(include_str!("../data/conditions.toml"))
+        .expect("data/conditions.toml is part of the crate and read by its tests");
+    Tables {
+        quantities: quantities.quantity,
+        unknown: quantities.unknown,
+        spaces: spaces.space,
+        conditions: conditions.condition,
+    }
+});
+
+/// All tables.
+pub(crate) struct Tables {
+    pub quantities: Vec<QuantityRow>,
+    pub unknown: Vec<UnknownRow>,
+    pub spaces: Vec<SpaceRow>,
+    pub conditions: Vec<ConditionRow>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Quantities {
+    quantity: Vec<QuantityRow>,
+    unknown: Vec<UnknownRow>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Spaces {
+    space: Vec<SpaceRow>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Conditions {
+    condition: Vec<ConditionRow>,
+}
+
+/// Which constraints speak of which quantity.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct QuantityRow {
+    /// The quantity.
+    pub measure: Measure,
+    #[serde(default)]
+    units: Vec<String>,
+    #[serde(default)]
+    bases: Vec<String>,
+    #[serde(default)]
+    bases_containing: Vec<String>,
+    #[serde(default)]
+    spaces: Vec<String>,
+    #[serde(default)]
+    not_spaces: Vec<String>,
+    #[serde(default)]
+    names: Vec<String>,
+    #[serde(default)]
+    names_without: Vec<String>,
+    /// The other space of distances and pairs of rooms.
+    #[serde(default)]
+    pub to: Vec<String>,
+    /// Builds of the objects that a clearance is about.
+    #[serde(default)]
+    pub shapes: Vec<Shape>,
+}
+
+/// Why constraints of a unit cannot be decided.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct UnknownRow {
+    pub units: Vec<String>,
+    pub reason: String,
+}
+
+/// What a general space name stands for.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct SpaceRow {
+    pub names: Vec<String>,
+    pub kind: SpaceKind,
+    #[serde(default)]
+    pub room_types: Vec<String>,
+    #[serde(default)]
+    pub shapes: Vec<Shape>,
+    #[serde(default)]
+    pub only_domains: Vec<String>,
+    #[serde(default)]
+    pub except_domains: Vec<String>,
+}
+
+/// Kind of a general space.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum SpaceKind {
+    Circulation,
+    AllRooms,
+    Doors,
+    Entrance,
+    Building,
+    Rooms,
+    Objects,
+    Robots,
+}
+
+/// What a condition means.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct ConditionRow {
+    pub when: When,
+    #[serde(default)]
+    pub phrases: Vec<String>,
+    #[serde(default)]
+    pub containing: Vec<String>,
+    #[serde(default)]
+    pub min: Option<f64>,
+    #[serde(default)]
+    pub max: Option<f64>,
+    #[serde(default)]
+    pub room_types: Vec<String>,
+    #[serde(default)]
+    pub except: Vec<String>,
+    #[serde(default)]
+    pub except_domains: Vec<String>,
+    #[serde(default)]
+    pub reason: Option<String>,
+}
+
+/// The fact a condition asks for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum When {
+    Always,
+    Never,
+    Accessible,
+    Beds,
+    NoBeds,
+    Public,
+    TwoRobots,
+    Persons,
+    Area,
+    RoomsOf,
+    BedsInRoom,
+}
+
+impl QuantityRow {
+    /// Returns true when the row speaks of this constraint.
+    pub(crate) fn matches(&self, c: &Constraint) -> bool {
+        let among = |list: &[String], word: &str| list.is_empty() || list.iter().any(|w| w == word);
+        let part = |list: &[String], text: &str| list.iter().any(|w| text.contains(w.as_str()));
+        let basis = match (self.bases.is_empty(), self.bases_containing.is_empty()) {
+            (true, true) => true,
+            _ => self.bases.contains(&c.measurement_basis) || part(&self.bases_containing, &c.measurement_basis),
+        };
+        basis
+            && among(&self.units, &c.unit)
+            && among(&self.spaces, &c.space_type)
+            && !self.not_spaces.contains(&c.space_type)
+            && (self.names.is_empty() || part(&self.names, &c.name))
+            && !part(&self.names_without, &c.name)
+    }
+}
+
+impl ConditionRow {
+    /// Returns true when the row explains this phrase.
+    pub(crate) fn explains(&self, phrase: &str) -> bool {
+        self.phrases.iter().any(|p| p == phrase) || self.containing.iter().any(|p| phrase.contains(p.as_str()))
+    }
+
+    /// Returns true when a figure lies within the row's interval.
+    pub(crate) fn holds(&self, figure: f64) -> bool {
+        self.min.is_none_or(|m| figure >= m) && self.max.is_none_or(|m| figure <= m)
+    }
+}
+
+impl Tables {
+    /// Returns the row that explains a condition.
+    pub(crate) fn condition(&self, phrase: &str) -> Option<&ConditionRow> {
+        self.conditions.iter().find(|c| c.explains(phrase))
+    }
+
+    /// Returns what a general space name stands for in a domain.
+    pub(crate) fn space(&self, name: &str, domain: &str) -> Option<&SpaceRow> {
+        self.spaces.iter().find(|s| {
+            s.names.iter().any(|n| n == name)
+                && (s.only_domains.is_empty() || s.only_domains.iter().any(|d| d == domain))
+                && !s.except_domains.iter().any(|d| d == domain)
+        })
+    }
+
+    /// Returns the quantity a constraint speaks of.
+    pub(crate) fn quantity(&self, c: &Constraint) -> Option<&QuantityRow> {
+        self.quantities.iter().find(|q| q.matches(c))
+    }
+
+    /// Returns why a constraint of no known quantity cannot be decided.
+    pub(crate) fn unknown(&self, c: &Constraint) -> String {
+        match self.unknown.iter().find(|u| u.units.contains(&c.unit)) {
+            Some(row) => row.reason.clone(),
+            None => format!("how to measure `{}` of `{}` is not known", c.measurement_basis, c.space_type),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn every_phrase_and_general_space_has_one_meaning() {
+        let mut seen = BTreeSet::new();
+        for phrase in TABLES.conditions.iter().flat_map(|c| &c.phrases) {
+            assert!(seen.insert(phrase), "condition `{phrase}` stands twice in data/conditions.toml");
+        }
+        let mut seen = BTreeSet::new();
+        for name in TABLES.spaces.iter().flat_map(|s| &s.names) {
+            assert!(seen.insert(name), "space `{name}` stands twice in data/spaces.toml");
+        }
+    }
+
+    #[test]
+    fn rows_that_need_figures_have_them() {
+        for row in &TABLES.conditions {
+            let figures = row.min.is_some() || row.max.is_some();
+            let needs = matches!(row.when, When::Persons | When::Area | When::RoomsOf | When::BedsInRoom);
+            assert_eq!(figures, needs, "row of {:?}: {:?}", row.when, row.phrases.first());
+            assert_eq!(row.when == When::Never, row.reason.is_some(), "{:?}", row.phrases.first());
+        }
+    }
+}

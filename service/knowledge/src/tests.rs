@@ -1,0 +1,82 @@
+//! What the shipped knowledge bases come to for buildings of several countries.
+
+use std::path::Path;
+
+use d3dgen_model::document::Document;
+use d3dgen_model::domain::{Daylight, Zone};
+use d3dgen_model::knowledge::KnowledgeBase;
+
+use crate::*;
+
+fn knowledge(domain: &str) -> KnowledgeBase {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../domains").join(domain).join("knowledge.json");
+    KnowledgeBase::from_json(&std::fs::read_to_string(path).expect("every domain has a knowledge base"))
+        .expect("shipped knowledge bases are valid")
+}
+
+fn room(room_type: &str, spaces: &[&str], beds: bool) -> QueryRoom {
+    QueryRoom {
+        room_type: room_type.into(),
+        spaces: spaces.iter().map(|s| (*s).to_owned()).collect(),
+        count: 1,
+        circulation: matches!(room_type, "corridor" | "hallway"),
+        zone: Zone::Day,
+        daylight: Daylight::Required,
+        beds,
+        area_max_m2: 60.0,
+    }
+}
+
+fn query(domain: &str, country: Option<&str>) -> Query {
+    let rooms = match domain {
+        "residential" => vec![
+            room("bedroom", &[], false),
+            room("living_room", &[], false),
+            room("kitchen", &[], false),
+            room("bathroom", &[], false),
+            room("hallway", &[], false),
+        ],
+        "hospital" => vec![
+            room("patient_room", &["patient_room_single"], true),
+            room("nurse_station", &[], false),
+            room("corridor", &["corridor", "ward"], false),
+        ],
+        _ => vec![room("open_office", &[], false), room("meeting_room", &[], false), room("corridor", &[], false)],
+    };
+    Query {
+        country_code: country.map(str::to_owned),
+        domain: domain.into(),
+        building_type: None,
+        accessible: false,
+        rooms,
+        persons: 18,
+        persons_stated: false,
+        robots: Vec::new(),
+    }
+}
+
+#[test]
+fn limits_are_the_figures_of_the_nearest_rules() {
+    let limits = |domain, country| retrieve(&knowledge(domain), &query(domain, country)).limits;
+    let value = |l: &Option<Limit>| l.as_ref().map(|l| l.value);
+    let room = |l: &Limits, id: &str| l.rooms.get(id).cloned().unwrap_or_default();
+
+    let us = limits("residential", Some("US"));
+    assert_eq!(value(&room(&us, "bedroom").area_min), Some(6.5));
+    assert_eq!(value(&room(&us, "bedroom").dimension_min), Some(2.134));
+    assert_eq!(value(&room(&us, "kitchen").dimension_min), None, "kitchens are exempt");
+    assert_eq!(value(&us.corridor_width), Some(0.914));
+
+    let us = limits("hospital", Some("US"));
+    assert_eq!(value(&us.corridor_width), Some(2.438));
+    assert_eq!(value(&room(&us, "patient_room").area_min), Some(11.15));
+    let de = limits("hospital", Some("DE"));
+    assert_eq!(value(&de.corridor_width), Some(2.25));
+    assert_eq!(value(&room(&de, "patient_room").door_width), Some(1.25));
+
+    let de = limits("office", Some("DE"));
+    assert_eq!(value(&de.corridor_width), Some(1.0), "ASR A1.8 for up to 20 people");
+    assert_eq!(value(&room(&de, "open_office").door_width), Some(0.9));
+    let int = limits("office", None);
+    assert_eq!(value(&int.corridor_width), Some(1.2), "ISO 21542");
+}
