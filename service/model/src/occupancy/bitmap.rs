@@ -54,6 +54,21 @@ impl Bitmap {
         }
     }
 
+    /// Removes the cells of columns `i0..i1` of row `j`, clipped to the grid; returns how many of them `counted` (of one
+    /// size) has.
+    pub fn remove_counting(&mut self, i0: i64, i1: i64, j: usize, counted: &Self) -> usize {
+        let (i0, i1) = clip(i0, i1, self.nx);
+        let mut removed = 0;
+        if i0 < i1 && j < self.ny {
+            for w in i0 / 64..=(i1 - 1) / 64 {
+                let (mask, k) = (span_mask(i0, i1, w), j * self.stride + w);
+                removed += (self.words[k] & mask & counted.words[k]).count_ones() as usize;
+                self.words[k] &= !mask;
+            }
+        }
+        removed
+    }
+
     /// Returns true when any cell of columns `i0..i1` and rows `j0..j1` is in the set.
     pub fn any_in(&self, i0: i64, i1: i64, j0: i64, j1: i64) -> bool {
         let (i0, i1) = clip(i0, i1, self.nx);
@@ -61,6 +76,25 @@ impl Bitmap {
         i0 < i1
             && (j0..j1)
                 .any(|j| (i0 / 64..=(i1 - 1) / 64).any(|w| self.words[j * self.stride + w] & span_mask(i0, i1, w) != 0))
+    }
+
+    /// Returns into how many pieces the edge cells of columns `i0..i1` and rows `j0..j1` that are in the set fall,
+    /// going once around.
+    pub fn pieces_around(&self, i0: i64, i1: i64, j0: i64, j1: i64) -> usize {
+        let at = |i: i64, j: i64| i >= 0 && j >= 0 && self.get(i as usize, j as usize);
+        let south = (i0..i1 - 1).map(|i| (i, j0));
+        let east = (j0..j1 - 1).map(|j| (i1 - 1, j));
+        let north = (i0 + 1..i1).rev().map(|i| (i, j1 - 1));
+        let west = (j0 + 1..j1).rev().map(|j| (i0, j));
+        let (mut pieces, mut first, mut last) = (0, None, false);
+        for (i, j) in south.chain(east).chain(north).chain(west) {
+            let on = at(i, j);
+            pieces += usize::from(on && !last);
+            first.get_or_insert(on);
+            last = on;
+        }
+        // the piece at the end goes on at the start
+        if pieces > 1 && last && first == Some(true) { pieces - 1 } else { pieces }
     }
 
     /// Returns the number of cells in the set.
@@ -324,6 +358,18 @@ mod tests {
     }
 
     #[test]
+    fn pieces_around_a_block_are_counted_once_around() {
+        let mut map = Bitmap::new(90, 20);
+        map.fill(0, 90, 0, 20, true);
+        assert_eq!(map.pieces_around(60, 70, 5, 12), 1);
+        map.fill(0, 90, 8, 9, false);
+        assert_eq!(map.pieces_around(60, 70, 5, 12), 2);
+        assert_eq!(map.pieces_around(60, 70, -1, 5), 1);
+        map.fill(0, 90, 0, 20, false);
+        assert_eq!(map.pieces_around(60, 70, 5, 12), 0);
+    }
+
+    #[test]
     fn fill_and_any_in_are_clipped() {
         let mut map = Bitmap::new(70, 5);
         map.fill(-3, 200, 1, 2, true);
@@ -331,5 +377,9 @@ mod tests {
         assert!(map.any_in(60, 66, 0, 9) && !map.any_in(60, 66, 2, 9));
         map.fill(10, 65, -4, 40, false);
         assert_eq!(map.count(), 15);
+        let counted = map.clone();
+        map.set(30, 1);
+        assert_eq!(map.remove_counting(5, 68, 1, &counted), 8);
+        assert_eq!(map.count(), 7);
     }
 }

@@ -1,6 +1,7 @@
 //! What a room should hold: its type's furnishing lines and the wishes of the scene graph, in the order of placing.
 
 use d3dgen_model::domain::{Arrangement, Domain, Furnishing, Mount, ObjectType, RoomType};
+use d3dgen_model::occupancy::ROBOT_HEIGHT_M;
 use d3dgen_model::scene_graph::GraphRoom;
 
 use super::unit::{Unit, variants};
@@ -27,6 +28,11 @@ pub(super) struct Task<'a> {
 }
 
 impl Task<'_> {
+    /// Returns true for what comes after everything that stands on the floor.
+    pub fn is_decor(&self) -> bool {
+        phase(self) >= 3
+    }
+
     /// Returns true when all units are found in one go.
     pub fn is_batch(&self) -> bool {
         matches!(self.arrangement, Arrangement::Rows | Arrangement::Overhead)
@@ -94,7 +100,7 @@ fn occupied_line(domain: &Domain, kind: &RoomType, graph: Option<&GraphRoom>) ->
     let people = graph?.occupants.filter(|n| *n > 0)?;
     let capacity = |measure: fn(&Unit) -> u32| {
         kind.furnishing.iter().enumerate().find_map(|(line, f)| {
-            let unit = variants(domain, &f.item, &|_| 0, 1.0).into_iter().next()?;
+            let unit = variants(domain, &f.item, &|_| 0, 1.0, i32::MAX / 2).into_iter().next()?;
             let each = measure(&unit);
             (each > 0 && f.max > 0).then_some((line, each))
         })
@@ -138,9 +144,17 @@ fn phase(task: &Task) -> u8 {
         _ if last => 4,
         (true, Rows | Center) => 1,
         (true, _) => 0,
-        (false, _) if task.anchor.mount == Mount::Floor => 2,
+        (false, _) if takes_floor(task.anchor) => 2,
         (false, _) => 3,
     }
+}
+
+/// Returns true for what stands on the floor or hangs so low and deep that one needs the floor before it.
+fn takes_floor(object: &ObjectType) -> bool {
+    let low = object.mount_height_m.is_none_or(|z| z < ROBOT_HEIGHT_M);
+    let depth = object.sizes_m.first().map_or(0.0, |s| s[1]);
+    object.mount == Mount::Floor
+        || (object.mount == Mount::Wall && low && (depth > 0.15 || object.clearance_front_m > 0.3))
 }
 
 fn arrangement_name(a: Arrangement) -> &'static str {

@@ -1,5 +1,7 @@
 //! Room to move: which floor a robot's disc can use, kept up to date while furniture is placed.
 
+use std::rc::Rc;
+
 use d3dgen_model::geometry::Rect;
 use d3dgen_model::occupancy::{Bitmap, CELL_M, Frame};
 
@@ -14,22 +16,27 @@ const POCKET_CELLS: usize = 12;
 /// Clear floor of one room for one radius.
 #[derive(Debug, Clone)]
 pub(super) struct Nav {
+    shared: Rc<Ground>,
+    /// Cells where the disc's center can be; reaches through the doors.
+    clear: Bitmap,
+    /// Those of them connected to the first door.
+    main: Bitmap,
+    /// How many of `main` and of `clear` lie in the room.
+    area: usize,
+    total: usize,
+    /// True when `main` is what can really be reached.
+    whole: bool,
+}
+
+/// What does not change while a room is furnished.
+#[derive(Debug)]
+struct Ground {
     frame: Frame,
     /// Net floor.
     inside: Bitmap,
-    /// Cells where the disc's center can be; reaches through the doors.
-    clear: Bitmap,
     /// A cell in each door, outside the wall.
     doors: Vec<(usize, usize)>,
     radius_m: f64,
-}
-
-/// Floor a robot can use after a move.
-pub(super) struct Routes {
-    /// Cells connected to the first door.
-    pub main: Bitmap,
-    /// Clear cells inside the room in `main`.
-    pub area: usize,
 }
 
 fn rect_m(b: &Box2) -> Rect {
@@ -43,7 +50,7 @@ impl Nav {
         let frame = Frame::around(rect_m(&space.bounds.grown(radius + 450)));
         let mut inside = Bitmap::new(frame.nx, frame.ny);
         for rect in space.floor_rects() {
-            let (i0, i1, j0, j1) = frame.span(&rect_m(&rect));
+            let (i0, i1, j0, j1) = frame.span(&rect_m(rect));
             inside.fill(i0, i1, j0, j1, true);
         }
         let mut floor = inside.clone();
@@ -57,50 +64,73 @@ impl Nav {
             doors.extend(frame.cell(seed.center_m()));
         }
         let radius_m = f64::from(radius) / 1000.0;
-        Self { clear: floor.eroded(radius_m / CELL_M), frame, inside, doors, radius_m }
+        let clear = floor.eroded(radius_m / CELL_M);
+        let total = clear.count_common(&inside);
+        let ground = Ground { frame, inside, doors, radius_m };
+        let main = clear.clone();
+        let mut out = Self { main, clear, area: total, total, whole: false, shared: Rc::new(ground) };
+        out.settle();
+        out
     }
 
     /// Takes what an obstacle leaves no room for.
+    ///
+    /// What stays is connected still when the edge of the lost part meets the reachable floor in one piece; otherwise
+    /// [`Nav::settle`] has to look.
     pub fn block(&mut self, obstacle: &Box2) {
+        let ground = Rc::clone(&self.shared);
         let r = rect_m(obstacle);
-        let (_, _, j0, j1) = self.frame.span(&r.grown(self.radius_m));
+        let (bi0, bi1, j0, j1) = ground.frame.span(&r.grown(ground.radius_m));
         for j in j0.max(0)..j1 {
-            let y = self.frame.center(0, j as usize).y;
+            let y = ground.frame.center(0, j as usize).y;
             let dy = (r.y0 - y).max(y - r.y1).max(0.0);
-            let left = self.radius_m * self.radius_m - dy * dy;
+            let left = ground.radius_m * ground.radius_m - dy * dy;
             if left > 0.0 {
                 let half = left.sqrt() - 1e-6;
                 let row = Rect { x0: r.x0 - half, x1: r.x1 + half, ..r };
-                let (i0, i1, _, _) = self.frame.span(&row);
-                self.clear.fill(i0, i1, j, j + 1, false);
+                let (i0, i1, _, _) = ground.frame.span(&row);
+                self.total -= self.clear.remove_counting(i0, i1, j as usize, &ground.inside);
+                self.area -= self.main.remove_counting(i0, i1, j as usize, &ground.inside);
             }
+        }
+        if self.whole {
+            self.whole = self.main.pieces_around(bi0 - 1, bi1 + 1, j0 - 1, j1 + 1) <= 1;
         }
     }
 
-    /// Returns the usable floor, or `None` when doors are cut off from each other or too much floor from the doors.
-    pub fn routes(&self) -> Option<Routes> {
-        let main = match self.doors.first() {
-            Some(&(i, j)) => {
-                let mut seed = Bitmap::new(self.frame.nx, self.frame.ny);
-                seed.set(i, j);
-                self.clear.flood(&seed)
+    /// Brings the reachable floor up to date after obstacles; returns true when every door and nearly all clear floor
+    /// belongs to it.
+    pub fn settle(&mut self) -> bool {
+        let ground = Rc::clone(&self.shared);
+        if !self.whole {
+            let mut seed = Bitmap::new(ground.frame.nx, ground.frame.ny);
+            match ground.doors.first() {
+                Some(&(i, j)) => seed.set(i, j),
+                None => {
+                    let largest = self.clear.components().into_iter().next();
+                    seed = largest.unwrap_or(seed);
+                }
             }
-            None => self.clear.components().into_iter().next()?,
-        };
-        if self.doors.iter().any(|&(i, j)| !main.get(i, j)) {
-            return None;
+            self.main = self.clear.flood(&seed);
+            self.whole = true;
+            self.area = self.main.count_common(&ground.inside);
         }
-        let (area, total) = (main.count_common(&self.inside), self.clear.count_common(&self.inside));
-        let allowed = ((total as f64 * POCKET_SHARE) as usize).min(4 * POCKET_CELLS).max(POCKET_CELLS);
-        (area > 0 && total - area <= allowed).then_some(Routes { main, area })
+        let allowed = ((self.total as f64 * POCKET_SHARE) as usize).clamp(POCKET_CELLS, 4 * POCKET_CELLS);
+        let doors = ground.doors.iter().all(|&(i, j)| self.main.get(i, j));
+        doors && self.area > 0 && self.total - self.area <= allowed
+    }
+
+    /// Returns the number of cells in the room that the disc's center can reach.
+    pub fn area(&self) -> usize {
+        self.area
     }
 
     /// Returns true when the disc can come up to one of the rectangles.
-    pub fn reaches(&self, routes: &Routes, targets: &[Box2]) -> bool {
-        let margin = (self.radius_m * 1000.0) as i32 + 100;
+    pub fn reaches(&self, targets: &[Box2]) -> bool {
+        let margin = (self.shared.radius_m * 1000.0) as i32 + 100;
         targets.iter().any(|t| {
-            let (i0, i1, j0, j1) = self.frame.span(&rect_m(&t.grown(margin)));
-            routes.main.any_in(i0, i1, j0, j1)
+            let (i0, i1, j0, j1) = self.shared.frame.span(&rect_m(&t.grown(margin)));
+            self.main.any_in(i0, i1, j0, j1)
         })
     }
 }

@@ -57,26 +57,32 @@ pub(super) struct Outcome<'a> {
 pub(super) fn furnish<'a>(job: &Job<'a, '_>) -> Outcome<'a> {
     let mut best: Option<Outcome> = None;
     for level in 0..LEVELS.len() {
-        let pass = Pass::new(job, level);
-        let mut local = pass.run((usize::MAX, 0));
-        for (n, departure) in DEPARTURES.into_iter().chain(RESCUES).enumerate() {
-            if n >= DEPARTURES.len() && local.required_missing == 0 {
-                break;
-            }
-            let other = pass.run(departure);
-            if (other.required_missing, -other.score) < (local.required_missing, -local.score) {
-                local = other;
-            }
+        let outcome = Pass::new(job, level).furnish();
+        let done = outcome.required_missing == 0;
+        if best.as_ref().is_none_or(|b| outcome.required_missing < b.required_missing) {
+            best = Some(outcome);
         }
-        let better = best.as_ref().is_none_or(|b| local.required_missing < b.required_missing);
-        if better {
-            best = Some(local);
-        }
-        if best.as_ref().is_some_and(|b| b.required_missing == 0) {
+        if done {
             break;
         }
     }
     best.expect("there is at least one level")
+}
+
+/// A room half furnished: the state and what is missing so far.
+struct Draft<'a, 's> {
+    state: State<'a, 's>,
+    outcome: Outcome<'a>,
+    /// Units placed or tried so far.
+    steps: usize,
+}
+
+impl Draft<'_, '_> {
+    /// Returns how good the draft is, lower is better: what is missing, then looks and free floor.
+    fn cost(&self, empty: usize) -> (u32, f64) {
+        let free = 3.0 * self.state.free_area as f64 / empty.max(1) as f64;
+        (self.outcome.required_missing, -self.outcome.score - free)
+    }
 }
 
 /// One level of strictness with the units built for it.
@@ -94,7 +100,7 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
         let forms = job.tasks.iter().map(|task| {
             let tightness = if task.required > 0 { tightness } else { 1.0 };
             let free = matches!(task.arrangement, Arrangement::Center | Arrangement::Rows);
-            variants(job.domain, task.item, job.sizes, tightness)
+            variants(job.domain, task.item, job.sizes, tightness, job.space.ceiling)
                 .into_iter()
                 .map(|unit| if free { unit.free_standing() } else { unit })
                 .map(|unit| {
@@ -111,13 +117,57 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
         Self { job, level, forms, start }
     }
 
-    /// Furnishes the room once; the unit counted `departure.0` takes its choice of rank `departure.1`.
-    fn run(&self, departure: (usize, usize)) -> Outcome<'a> {
-        let mut state = self.start.clone();
-        let mut out =
+    /// Furnishes the room: several drafts of what stands on the floor, the best one with everything else.
+    fn furnish(&self) -> Outcome<'a> {
+        let tasks = self.job.tasks;
+        let floor = tasks.iter().position(|t| t.is_decor()).unwrap_or(tasks.len());
+        let empty = self.start.free_area;
+        let draft = |departure| {
+            let mut draft = self.blank();
+            self.run(&mut draft, 0..floor, departure);
+            draft
+        };
+        let mut best = draft((usize::MAX, 0));
+        let hopeless = best.outcome.required_missing > 0 && self.hopeless();
+        for (n, departure) in DEPARTURES.into_iter().chain(RESCUES).enumerate() {
+            if hopeless || departure.0 >= best.steps || n >= DEPARTURES.len() && best.outcome.required_missing == 0 {
+                continue;
+            }
+            let other = draft(departure);
+            if other.cost(empty) < best.cost(empty) {
+                best = other;
+            }
+        }
+        self.run(&mut best, floor..tasks.len(), (usize::MAX, 0));
+        Outcome { placed: best.state.placed, ..best.outcome }
+    }
+
+    fn blank(&self) -> Draft<'a, 's> {
+        let outcome =
             Outcome { placed: Vec::new(), missing: Vec::new(), required_missing: 0, score: 0.0, level: self.level };
-        let mut step = 0;
-        for (index, task) in self.job.tasks.iter().enumerate() {
+        Draft { state: self.start.clone(), outcome, steps: 0 }
+    }
+
+    /// Returns true when something required finds no place even in the empty room, so that no order helps.
+    fn hopeless(&self) -> bool {
+        let tasks = self.job.tasks.iter().enumerate();
+        tasks.filter(|(index, task)| task.required > self.job.present[*index] && !task.is_decor()).any(
+            |(index, task)| {
+                let mut tally = Tally::default();
+                if task.is_batch() && !self.lines_walls(task) {
+                    self.batch(&self.start, index, task.required, 0, &mut tally).is_none()
+                } else {
+                    task.arrangement != Arrangement::OnSurface
+                        && self.single(&self.start, index, 0, &mut tally).is_none()
+                }
+            },
+        )
+    }
+
+    /// Places some of the tasks; the unit counted `departure.0` takes its choice of rank `departure.1`.
+    fn run(&self, draft: &mut Draft<'a, 's>, tasks: std::ops::Range<usize>, departure: (usize, usize)) {
+        for index in tasks {
+            let task = &self.job.tasks[index];
             let present = self.job.present[index];
             let count = task.count.saturating_sub(present);
             if count == 0 {
@@ -125,35 +175,31 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
             }
             let mut tally = Tally::default();
             let mut placed = 0;
-            let rank = |step: &mut usize| {
-                *step += 1;
-                if *step - 1 == departure.0 { departure.1 } else { 0 }
+            let rank = |steps: &mut usize| {
+                *steps += 1;
+                if *steps - 1 == departure.0 { departure.1 } else { 0 }
             };
+            let Draft { state, outcome, steps } = draft;
             if task.is_batch() && !self.lines_walls(task) {
-                if let Some((units, score)) = self.batch(&state, index, count, rank(&mut step), &mut tally) {
+                if let Some((units, score)) = self.batch(state, index, count, rank(steps), &mut tally) {
                     placed = units.len() as u32;
-                    out.score += score;
+                    outcome.score += score;
                     state.add(units);
                 }
             } else {
                 while placed < count {
-                    let Some((unit, score)) = self.single(&state, index, rank(&mut step), &mut tally) else { break };
-                    out.score += score + if task.required > 0 { 2.0 } else { 1.0 };
+                    let Some((unit, score)) = self.single(state, index, rank(steps), &mut tally) else { break };
+                    outcome.score += score + if task.required > 0 { 2.0 } else { 1.0 };
                     state.add(vec![unit]);
                     placed += 1;
                 }
             }
             if placed < count {
-                let rule = Self::decisive(&tally);
-                out.missing.push((index, count - placed, rule));
-                out.required_missing += task.required.saturating_sub(present + placed);
-                out.score -= 1.5;
+                outcome.missing.push((index, count - placed, Self::decisive(&tally)));
+                outcome.required_missing += task.required.saturating_sub(present + placed);
+                outcome.score -= 1.5;
             }
         }
-        let empty = self.start.free_area.max(1) as f64;
-        out.score += 3.0 * state.free_area as f64 / empty;
-        out.placed = state.placed;
-        out
     }
 
     /// Returns true for rows that stand along walls: beds have their heads there.
@@ -161,13 +207,11 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
         task.arrangement == Arrangement::Rows && matches!(task.anchor.shape, Shape::Bed | Shape::HospitalBed)
     }
 
-    /// Returns the rule that stopped the positions that came farthest.
+    /// Returns the rule that stopped most positions.
     fn decisive(tally: &Tally) -> Rule {
         use Rule::{Clearance, Collision, Door, NoPlace, Outside, Route, Window};
-        [Route, Clearance, Collision, Window, Door, Outside]
-            .into_iter()
-            .find(|r| tally[*r as usize] > 0)
-            .unwrap_or(NoPlace)
+        let rules = [NoPlace, Outside, Door, Window, Collision, Clearance, Route];
+        rules.into_iter().max_by_key(|r| tally[*r as usize]).unwrap_or(NoPlace)
     }
 
     fn batch(
@@ -190,14 +234,8 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
             };
             for batch in batches.into_iter().skip(rank) {
                 let mut kept: Vec<Placed> = Vec::new();
-                for mut p in batch.placed {
-                    p.first_line = task.line == 0;
-                    kept.push(p);
-                    if state.route(&kept).is_err() {
-                        tally[Rule::Route as usize] += 1;
-                        kept.pop();
-                    }
-                }
+                keep_passable(state, &batch.placed, &mut kept, tally);
+                kept.iter_mut().for_each(|p| p.first_line = task.line == 0);
                 let score = batch.score + kept.len() as f64;
                 if !kept.is_empty() && best.as_ref().is_none_or(|b| (kept.len(), score) > (b.0.len(), b.1)) {
                     best = Some((kept, score));
@@ -228,6 +266,23 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
     }
 }
 
+/// Adds as many of the units as leave robots their room: all at once, else each half by itself.
+fn keep_passable<'a>(state: &State<'a, '_>, units: &[Placed<'a>], kept: &mut Vec<Placed<'a>>, tally: &mut Tally) {
+    let before = kept.len();
+    kept.extend_from_slice(units);
+    if units.is_empty() || state.route(kept).is_ok() {
+        return;
+    }
+    kept.truncate(before);
+    if let [_] = units {
+        tally[Rule::Route as usize] += 1;
+        return;
+    }
+    let (first, second) = units.split_at(units.len() / 2);
+    keep_passable(state, first, kept, tally);
+    keep_passable(state, second, kept, tally);
+}
+
 /// Returns the best candidate that leaves robots their room, free floor counted; `rank` skips that many classes.
 fn choose<'a>(
     state: &State<'a, '_>,
@@ -239,8 +294,8 @@ fn choose<'a>(
     let mut seen: Vec<u32> = Vec::new();
     for candidate in candidates.iter().take(ROUTE_TESTS) {
         match state.route(std::slice::from_ref(&candidate.placed)) {
-            Ok(routes) => {
-                let lost = routes.map_or(0.0, |r| 1.0 - r.area as f64 / state.free_area.max(1) as f64);
+            Ok(area) => {
+                let lost = 1.0 - area as f64 / state.free_area.max(1) as f64;
                 passed.push((candidate.score - 3.0 * lost, candidate.class, candidate));
                 if !seen.contains(&candidate.class) {
                     seen.push(candidate.class);

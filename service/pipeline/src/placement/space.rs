@@ -77,7 +77,6 @@ pub(super) struct Space {
     pub doors: Vec<DoorZone>,
     pub windows: Vec<WindowZone>,
     pub ceiling: i32,
-    pub area_m2: f64,
     /// Rectangles inside the bounds and outside the outline.
     holes: Vec<Box2>,
     /// Rectangles that cover the outline.
@@ -98,7 +97,6 @@ impl Space {
             doors: Vec::new(),
             windows: Vec::new(),
             ceiling: mm(room.ceiling_height_m),
-            area_m2: room.net_area_m2,
             holes,
             floor: room.net_polygon.rects().iter().map(Box2::from_rect).collect(),
         };

@@ -5,9 +5,12 @@ use std::rc::Rc;
 use d3dgen_model::domain::Mount;
 
 use super::geom::{Box2, Solid, turn};
-use super::nav::{Nav, Routes};
+use super::nav::Nav;
 use super::space::Space;
 use super::unit::{Part, Unit};
+
+/// Depth up to which things on a wall may hang in floor that others need free, mm.
+const THIN: i32 = 150;
 
 /// A hard rule that a position can break.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -105,7 +108,7 @@ pub(super) struct State<'a, 's> {
 impl<'a, 's> State<'a, 's> {
     /// Returns the empty room.
     pub fn new(space: &'s Space, nav: Nav, keep_width: KeepWidth) -> Self {
-        let free_area = nav.routes().map_or(0, |r| r.area);
+        let free_area = nav.area();
         Self {
             space,
             placed: Vec::new(),
@@ -152,7 +155,9 @@ impl<'a, 's> State<'a, 's> {
             if !at_window && part.mount != Mount::Ceiling && space.windows.iter().any(before_window) {
                 return Err(Rule::Window);
             }
-            if solid.stops_robot() && self.clears.iter().any(|c| c.overlaps(&solid.rect)) {
+            // curtains and rails along a wall narrow nothing
+            let thin = part.mount == Mount::Wall && part.solid.rect.width() <= THIN;
+            if solid.stops_robot() && !thin && self.clears.iter().any(|c| c.overlaps(&solid.rect)) {
                 return Err(Rule::Clearance);
             }
         }
@@ -177,18 +182,19 @@ impl<'a, 's> State<'a, 's> {
         Ok(())
     }
 
-    /// Returns the floor left to robots once the units stand there, or the rule they break.
-    pub fn route(&self, units: &[Placed]) -> Result<Option<Routes>, Rule> {
+    /// Returns how many cells of floor stay reachable once the units stand there, or the rule they break.
+    pub fn route(&self, units: &[Placed]) -> Result<usize, Rule> {
         let obstacles: Vec<Box2> = units.iter().flat_map(obstacles).collect();
-        if obstacles.is_empty() && !units.iter().any(needs_reach) {
-            return Ok(None);
+        if obstacles.is_empty() {
+            let reached = units.iter().filter(|u| needs_reach(u)).all(|u| self.nav.reaches(&u.targets()));
+            return if reached { Ok(self.free_area) } else { Err(Rule::Route) };
         }
         let mut nav = self.nav.clone();
         obstacles.iter().for_each(|o| nav.block(o));
-        let routes = nav.routes().ok_or(Rule::Route)?;
-        let reached = self.targets.iter().all(|t| nav.reaches(&routes, t))
-            && units.iter().filter(|u| needs_reach(u)).all(|u| nav.reaches(&routes, &u.targets()));
-        if reached { Ok(Some(routes)) } else { Err(Rule::Route) }
+        let reached = nav.settle()
+            && self.targets.iter().all(|t| nav.reaches(t))
+            && units.iter().filter(|u| needs_reach(u)).all(|u| nav.reaches(&u.targets()));
+        if reached { Ok(nav.area()) } else { Err(Rule::Route) }
     }
 
     /// Puts units down that were tested.
@@ -207,7 +213,8 @@ impl<'a, 's> State<'a, 's> {
             }
             self.placed.push(p);
         }
-        self.free_area = self.nav.routes().map_or(0, |r| r.area);
+        self.nav.settle();
+        self.free_area = self.nav.area();
     }
 }
 

@@ -103,12 +103,19 @@ fn width_of(part: &Part) -> i32 {
 /// Returns the forms of a unit to try in turn: the picked sizes first, then the other sizes from large to small, then
 /// with fewer members on the floor, last of all the smallest with required members only.
 ///
-/// `tightness` scales the clearances (1 is as the domain says).
-pub(super) fn variants<'a>(domain: &'a Domain, item: &'a str, sizes: &Sizes, tightness: f64) -> Vec<Unit<'a>> {
+/// `tightness` scales the clearances (1 is as the domain says); things that hang stay below `ceiling`, mm.
+pub(super) fn variants<'a>(
+    domain: &'a Domain,
+    item: &'a str,
+    sizes: &Sizes,
+    tightness: f64,
+    ceiling: i32,
+) -> Vec<Unit<'a>> {
     let group = domain.group(item);
     let Some(anchor) = group.map_or_else(|| domain.object(item), |g| domain.object(&g.anchor)) else {
         return Vec::new();
     };
+    let plan = Plan { domain, item, group, anchor, tightness, ceiling };
     let picked = sizes(anchor);
     let mut order: Vec<usize> = (0..anchor.sizes_m.len()).filter(|i| *i != picked).collect();
     let area = |i: usize| anchor.sizes_m[i][0] * anchor.sizes_m[i][1];
@@ -121,7 +128,7 @@ pub(super) fn variants<'a>(domain: &'a Domain, item: &'a str, sizes: &Sizes, tig
         }
     };
     for size in [picked].into_iter().chain(order) {
-        add(build(domain, item, group, anchor, size, sizes, usize::MAX, tightness));
+        add(plan.build(size, sizes, usize::MAX));
     }
     if let Some(group) = group {
         let optional = group.members.iter().filter(|m| !m.required && takes_floor(domain, m)).count();
@@ -130,10 +137,10 @@ pub(super) fn variants<'a>(domain: &'a Domain, item: &'a str, sizes: &Sizes, tig
             (0..o.sizes_m.len()).min_by(|a, b| area(a).total_cmp(&area(b))).unwrap_or(0)
         };
         for keep in (0..optional).rev() {
-            add(build(domain, item, Some(group), anchor, picked, sizes, keep, tightness));
-            add(build(domain, item, Some(group), anchor, smallest, &smallest_size, keep, tightness));
+            add(plan.build(picked, sizes, keep));
+            add(plan.build(smallest, &smallest_size, keep));
         }
-        add(build(domain, item, Some(group), anchor, smallest, &smallest_size, 0, tightness));
+        add(plan.build(smallest, &smallest_size, 0));
     }
     out
 }
@@ -143,49 +150,50 @@ fn takes_floor(domain: &Domain, member: &Member) -> bool {
     on_floor && !matches!(member.relation, Relation::On | Relation::Above | Relation::Over | Relation::Under)
 }
 
-#[expect(
-    clippy::too_many_arguments,
-    reason = "one call site; a struct of them would be built once and taken apart once"
-)]
-fn build<'a>(
+/// What all forms of a unit share.
+struct Plan<'a> {
     domain: &'a Domain,
     item: &'a str,
     group: Option<&'a Group>,
     anchor: &'a ObjectType,
-    size: usize,
-    sizes: &Sizes,
-    keep_optional: usize,
     tightness: f64,
-) -> Unit<'a> {
-    let [w, d, h] = size_mm(anchor, size);
-    let z = base_height(anchor);
-    let rect = Box2 { x0: 0, y0: -(w / 2), x1: d, y1: w - w / 2 };
-    let solid = Solid { rect, z0: z, z1: z + h };
-    let mount = if anchor.mount == Mount::Surface { Mount::Floor } else { anchor.mount };
-    let mut parts = vec![Part { object: anchor, quarter: 0, solid, mount, support: None }];
-    let mut kept = 0;
-    for member in group.map_or(&[][..], |g| &g.members) {
-        if !member.required && takes_floor(domain, member) {
-            if kept == keep_optional {
-                continue;
+    ceiling: i32,
+}
+
+impl<'a> Plan<'a> {
+    /// Builds the unit with one size of the anchor and the first so many optional members on the floor.
+    fn build(&self, size: usize, sizes: &Sizes, keep_optional: usize) -> Unit<'a> {
+        let [w, d, h] = size_mm(self.anchor, size);
+        let z = hung(self.anchor, h, self.ceiling);
+        let rect = Box2 { x0: 0, y0: -(w / 2), x1: d, y1: w - w / 2 };
+        let solid = Solid { rect, z0: z, z1: z + h };
+        let mount = if self.anchor.mount == Mount::Surface { Mount::Floor } else { self.anchor.mount };
+        let mut parts = vec![Part { object: self.anchor, quarter: 0, solid, mount, support: None }];
+        let mut kept = 0;
+        for member in self.group.map_or(&[][..], |g| &g.members) {
+            if !member.required && takes_floor(self.domain, member) {
+                if kept == keep_optional {
+                    continue;
+                }
+                kept += 1;
             }
-            kept += 1;
+            if let Some(object) = self.domain.object(&member.object) {
+                add_member(&mut parts, member, object, sizes(object), self.ceiling);
+            }
         }
-        if let Some(object) = domain.object(&member.object) {
-            add_member(&mut parts, member, object, sizes(object));
-        }
+        finish(self.item, self.group.is_some(), parts, self.tightness)
     }
-    finish(item, group.is_some(), parts, tightness)
 }
 
 fn size_mm(object: &ObjectType, size: usize) -> [i32; 3] {
     object.sizes_m.get(size).or(object.sizes_m.first()).map_or([500; 3], |s| s.map(|v| mm(v).max(1)))
 }
 
-fn base_height(object: &ObjectType) -> i32 {
+/// Returns the height of the underside of something `h` high: where its type hangs it, below the ceiling.
+fn hung(object: &ObjectType, h: i32, ceiling: i32) -> i32 {
     match object.mount {
         Mount::Floor | Mount::Surface => 0,
-        Mount::Wall | Mount::Ceiling => mm(object.mount_height_m.unwrap_or(1.5)),
+        Mount::Wall | Mount::Ceiling => mm(object.mount_height_m.unwrap_or(1.5)).min(ceiling - h).max(0),
     }
 }
 
@@ -231,7 +239,7 @@ fn clears_of(part: &Part, tightness: f64, out: &mut Vec<Box2>) {
     }
 }
 
-fn add_member<'a>(parts: &mut Vec<Part<'a>>, member: &Member, object: &'a ObjectType, size: usize) {
+fn add_member<'a>(parts: &mut Vec<Part<'a>>, member: &Member, object: &'a ObjectType, size: usize, ceiling: i32) {
     let [w, d, h] = size_mm(object, size);
     let count = member.count.clamp(1, MAX_MEMBERS);
     let anchor = parts[0].solid;
@@ -249,9 +257,9 @@ fn add_member<'a>(parts: &mut Vec<Part<'a>>, member: &Member, object: &'a Object
         Box2 { x0: cx0, y0: cy0, x1: cx0 + ex, y1: cy0 + ey }
     };
     // boxes of two things may touch, never overlap: tucking a chair under its table means touching it
-    let low = base_height(object) < anchor.z1;
-    let gap = if low && gap < 0 { 0 } else { gap };
-    let floor = |rect: Box2| Solid { rect, z0: base_height(object), z1: base_height(object) + h };
+    let base = hung(object, h, ceiling);
+    let gap = if base < anchor.z1 && gap < 0 { 0 } else { gap };
+    let floor = |rect: Box2| Solid { rect, z0: base, z1: base + h };
     match member.relation {
         Relation::Left | Relation::Right => {
             let left = member.relation == Relation::Left;
@@ -299,7 +307,10 @@ fn add_member<'a>(parts: &mut Vec<Part<'a>>, member: &Member, object: &'a Object
         Relation::Above => {
             // against the wall behind the unit, which stands at the back of everything so far
             let back = parts.iter().filter(|p| p.mount != Mount::Ceiling).map(|p| p.solid.rect.x0).min().unwrap_or(0);
-            let z = base_height(object).max(anchor.z1 + 50);
+            let z = if base < anchor.z1 && anchor.z1 + 50 + h <= ceiling { anchor.z1 + 50 } else { base };
+            if z < anchor.z1 && !member.required {
+                return; // the anchor reaches up to where it would hang
+            }
             let rect = Box2 { x0: back, y0: offset - w / 2, x1: back + d, y1: offset - w / 2 + w };
             let solid = Solid { rect, z0: z, z1: z + h };
             if let Some(solid) = pushed(parts, solid, (0, 20)) {
@@ -309,8 +320,10 @@ fn add_member<'a>(parts: &mut Vec<Part<'a>>, member: &Member, object: &'a Object
         Relation::Over | Relation::Under => {
             let q = facing(0);
             let (ex, ey) = extent(q);
-            let rect = at((a.x0 + a.x1 - ex) / 2 + gap, (a.y0 + a.y1 - ey) / 2 + offset, q);
-            let z = if member.relation == Relation::Over { base_height(object) } else { 0 };
+            // centered, but not through the wall behind the anchor
+            let x = ((a.x0 + a.x1 - ex) / 2 + gap).max(a.x0);
+            let rect = at(x, (a.y0 + a.y1 - ey) / 2 + offset, q);
+            let z = if member.relation == Relation::Over { base } else { 0 };
             let solid = Solid { rect, z0: z, z1: z + h };
             parts.push(Part { object, quarter: q, solid, mount: object.mount, support: None });
         }

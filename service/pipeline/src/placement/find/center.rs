@@ -24,6 +24,7 @@ impl<'a> Find<'_, 'a, '_> {
         let (mx, my) = space.main.center();
         let mut centers = vec![(fx, fy), (mx, my), (fx, my), (mx, fy)];
         centers.extend(grid(free.x0, free.x1).flat_map(|x| grid(free.y0, free.y1).map(move |y| (x, y))));
+        centers.extend(self.beside_siblings(unit));
         let before = self.out.len();
         for q in 0..4_u8 {
             let (bu, bv) = unit.bbox.center();
@@ -54,6 +55,13 @@ impl<'a> Find<'_, 'a, '_> {
                 s += if open { 0.5 } else { 0.0 };
             }
         }
+        // equal things in one line, turned alike
+        let in_line = self.siblings().any(|o| {
+            let (x, y) = o.world(&o.unit.bbox).center();
+            o.q % 2 == p.q % 2 && ((x - cx).abs() < 30 || (y - cy).abs() < 30)
+        });
+        let turned_alike = self.siblings().next().is_none_or(|o| o.q % 2 == p.q % 2);
+        s += if in_line { 0.9 } else { 0.0 } - if turned_alike { 0.0 } else { 0.8 };
         if let Some((q, focus)) = self.focus() {
             // turned to what the room is about, in line with it
             let (_, v) = turn((4 - q) % 4, cx, cy);
@@ -62,6 +70,25 @@ impl<'a> Find<'_, 'a, '_> {
             s += if p.q == (q + 2) % 4 { 0.15 } else { 0.0 };
         }
         s
+    }
+
+    /// Returns places in line with units of the same kind: end to end, and with an aisle between.
+    fn beside_siblings(&self, unit: &Unit<'a>) -> Vec<(i32, i32)> {
+        let mut out = Vec::new();
+        for o in self.siblings() {
+            let r = o.world(&o.unit.bbox);
+            let (x, y) = r.center();
+            let (w, d) = if o.q % 2 == 0 {
+                (unit.bbox.width(), unit.bbox.height())
+            } else {
+                (unit.bbox.height(), unit.bbox.width())
+            };
+            for gap in [self.aisle, self.aisle + 300, self.aisle + 900] {
+                let (dx, dy) = (r.width() / 2 + w / 2 + gap, r.height() / 2 + d / 2 + gap);
+                out.extend([(x + dx, y), (x - dx, y), (x, y + dy), (x, y - dy)]);
+            }
+        }
+        out
     }
 
     /// Returns the largest rectangle of floor without furniture and door zones, to the grain of the search.

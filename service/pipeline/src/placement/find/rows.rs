@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use d3dgen_model::domain::{Arrangement, Shape};
 
-use super::Tally;
+use super::{Rule, Tally};
 use crate::placement::demand::Task;
 use crate::placement::geom::{Box2, turn};
 use crate::placement::state::{Placed, State, at_frame};
@@ -79,7 +79,7 @@ pub(in crate::placement) fn rows<'a>(
     let focus = state.placed.iter().find(|p| p.first_line && p.unit.item != task.item).map(|p| p.q);
     let mut plans = plans(state, unit, count, robot, focus);
     plans.sort_by(|a, b| b.score.total_cmp(&a.score));
-    plans.truncate(PLANS);
+    plans.truncate((PLANS * 10 / task.count.max(10) as usize).max(3));
     let mut out: Vec<Batch> = Vec::new();
     for plan in &plans {
         let wide = state.space.bounds.turned((4 - plan.q) % 4);
@@ -203,7 +203,7 @@ fn set_up<'a>(
                 (plan.q, u0 + du - b.x0, v0 + dv - b.y0)
             };
             let placed = at_frame(unit, q, u, v, index);
-            match state.test(&placed, false).and_then(|()| apart(&out, &placed)) {
+            match state.test(&placed, false) {
                 Ok(()) => out.push(placed),
                 Err(rule) => tally[rule as usize] += 1,
             }
@@ -212,21 +212,11 @@ fn set_up<'a>(
     out
 }
 
-/// Tests a unit against the others of its batch, which the state does not know yet.
-fn apart(others: &[Placed], p: &Placed) -> Result<(), super::Rule> {
-    let (body, clears) =
-        (p.world(&p.unit.bbox), |p: &Placed| -> Vec<Box2> { p.unit.clears.iter().map(|c| p.world(c)).collect() });
-    let own = clears(p);
-    for o in others {
-        let other = o.world(&o.unit.bbox);
-        if other.overlaps(&body) {
-            return Err(super::Rule::Collision);
-        }
-        if own.iter().any(|c| c.overlaps(&other)) || clears(o).iter().any(|c| c.overlaps(&body)) {
-            return Err(super::Rule::Clearance);
-        }
-    }
-    Ok(())
+/// Tests a lamp against the others of its batch, which the state does not know yet.
+fn apart(others: &[Placed], p: &Placed) -> Result<(), Rule> {
+    let body = p.world(&p.unit.bbox);
+    let free = others.iter().all(|o| !o.world(&o.unit.bbox).overlaps(&body));
+    if free { Ok(()) } else { Err(Rule::Collision) }
 }
 
 /// Returns units spread evenly over the ceiling of the room's main part.
