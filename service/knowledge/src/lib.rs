@@ -4,15 +4,19 @@
 //! What it is not for: deciding whether a world is sound (hard rules live in the pipeline's `world` stage) and reading
 //! files. Which measurable quantity a constraint speaks of, and what its conditions mean, is data: `data/*.toml`.
 
+pub mod clearance;
+pub mod compliance;
 mod conditions;
 mod draw_limits;
 mod figure;
+pub mod freespace;
 pub mod jurisdiction;
 mod limits;
 mod measure;
 mod query;
 mod retrieve;
 mod tables;
+pub mod travel;
 
 pub use conditions::Guard;
 pub use figure::Bounds;

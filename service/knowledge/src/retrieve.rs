@@ -11,6 +11,7 @@ use crate::draw_limits;
 use crate::figure::{self, Bounds};
 use crate::jurisdiction;
 use crate::limits::Limits;
+use crate::measure::Measure;
 use crate::query::Query;
 use crate::tables::{QuantityRow, SpaceKind, TABLES};
 
@@ -115,8 +116,14 @@ fn applicable(c: &Constraint, reference: &Reference, query: &Query) -> Option<Ap
     if conditions.fails.is_some() {
         return None;
     }
-    let scope = narrowed(scope(&c.space_type, query)?, &conditions, query)?;
-    let decision = match (&conditions.unknown, TABLES.quantity(c)) {
+    let quantity = TABLES.quantity(c);
+    // a rule that asks for a room speaks of buildings without it too
+    let presence = quantity.is_some_and(|q| matches!(q.measure, Measure::RoomsPresent | Measure::RoomNeededAbovePersons));
+    let scope = match scope(&c.space_type, query) {
+        None if presence => Scope::Rooms(BTreeSet::new()),
+        found => narrowed(found?, &conditions, query)?,
+    };
+    let decision = match (&conditions.unknown, quantity) {
         (_, None) => Err(TABLES.unknown(c)),
         (Some(reason), _) => Err(reason.clone()),
         (None, Some(quantity)) => figure::bounds(c, quantity.measure, query.persons).map(|bounds| Rule {

@@ -1,0 +1,72 @@
+//! Free floor around objects, and where docks stand.
+
+use d3dgen_model::floorplan::Door;
+use d3dgen_model::Rect;
+
+use super::Reading;
+use super::site::{Object, Room, Site};
+use crate::clearance::{Side, door_zones, free_depth};
+use crate::measure::Measure;
+use crate::retrieve::{Applicable, Rule, Scope};
+
+/// Free depth beyond this does not count as room to move at an object, m.
+const MOVING_DEPTH_M: f64 = 1.5;
+
+/// Reads a quantity of every object the constraint is about.
+pub(super) fn read(site: &Site, a: &Applicable, rule: &Rule) -> Vec<Reading> {
+    let shapes = &rule.quantity.shapes;
+    let shapes = match &a.scope {
+        Scope::Objects(of_scope) if shapes.is_empty() => of_scope,
+        _ => shapes,
+    };
+    let mut out = Vec::new();
+    for room in site.rooms_of(a) {
+        for object in room.objects.iter().filter(|o| o.is(shapes)) {
+            if let Some(value) = figure(site, room, object, a, rule) {
+                out.push(Reading::new(&object.placement.placement_id, value));
+            }
+        }
+    }
+    out
+}
+
+fn figure(site: &Site, room: &Room, object: &Object, a: &Applicable, rule: &Rule) -> Option<f64> {
+    let depth = |side: Side| {
+        let others = room.objects.iter().filter(|o| o.blocks && !belong_together(o, object)).map(|o| o.rect);
+        free_depth(object.placement, side, &room.plan.net_polygon, others)
+    };
+    match rule.quantity.measure {
+        Measure::ObjectFront => Some(depth(Side::Front)),
+        Measure::ObjectSides => {
+            let (left, right) = (depth(Side::Left), depth(Side::Right));
+            let one_side = a.constraint.measurement_basis.contains("one side");
+            Some(if one_side { left.max(right) } else { left.min(right) })
+        }
+        Measure::FreeAreaAtObject => Some(object.placement.size_m[0] * depth(Side::Front).min(MOVING_DEPTH_M)),
+        Measure::GapBetweenObjects => {
+            let shapes = &rule.quantity.shapes;
+            let others = room.objects.iter().filter(|o| o.is(shapes) && o.placement != object.placement);
+            others.map(|o| gap(&o.rect, &object.rect)).reduce(f64::min)
+        }
+        Measure::DockClearOfDoors => {
+            let free = |d: &&Door| door_zones(d).iter().all(|zone| !zone.overlaps(&object.rect));
+            Some(if room.doors.iter().all(free) { 1.0 } else { 0.0 })
+        }
+        Measure::DockInDryRoom => Some(if room.kind.wet { 0.0 } else { 1.0 }),
+        _ => None,
+    }
+    .filter(|_| site.domain.object(&object.placement.object).is_some())
+}
+
+/// Returns true for an object and what was placed with it (a desk and its chair): they share their clearance.
+fn belong_together(a: &Object, b: &Object) -> bool {
+    a.placement.placement_id == b.placement.placement_id
+        || (a.placement.group.is_some() && a.placement.group == b.placement.group)
+}
+
+/// Returns the distance between two outlines along the axis that parts them, m.
+fn gap(a: &Rect, b: &Rect) -> f64 {
+    let x = (a.x0 - b.x1).max(b.x0 - a.x1);
+    let y = (a.y0 - b.y1).max(b.y0 - a.y1);
+    x.max(y).max(0.0)
+}

@@ -1,0 +1,78 @@
+//! Ways through the furnished building: corridor widths, distances to exits and between rooms.
+
+use std::collections::BTreeSet;
+
+use d3dgen_model::Point;
+
+use super::Reading;
+use super::site::{Room, Site};
+use crate::measure::Measure;
+use crate::retrieve::{Applicable, Rule, Scope};
+use crate::travel::Distances;
+
+/// Reads a width or distance.
+pub(super) fn read(site: &Site, a: &Applicable, rule: &Rule) -> Vec<Reading> {
+    match rule.quantity.measure {
+        Measure::CirculationWidth => widths(site, a),
+        Measure::TravelDistance => farthest_from_exit(site),
+        Measure::StraightDistance => straight(site),
+        Measure::DistanceToRoom => {
+            let to = site.rooms.iter().filter(|r| rule.to.contains(&r.plan.room_type));
+            room_to_room(site, site.rooms.iter().collect(), to.collect())
+        }
+        Measure::DistanceBetween => {
+            let near = site.rooms_of(a).collect();
+            let far = site.rooms.iter().filter(|r| rule.to.contains(&r.plan.room_type)).collect();
+            room_to_room(site, far, near)
+        }
+        _ => Vec::new(),
+    }
+}
+
+fn widths(site: &Site, a: &Applicable) -> Vec<Reading> {
+    let asked: BTreeSet<&str> = match &a.scope {
+        Scope::Rooms(types) => types.iter().map(String::as_str).collect(),
+        _ => BTreeSet::new(),
+    };
+    let rooms = site.rooms.iter().filter(|r| r.plan.circulation || asked.contains(r.plan.room_type.as_str()));
+    rooms.map(|r| Reading::new(&r.plan.room_id, r.space().passage(&r.doors))).collect()
+}
+
+fn exits(site: &Site) -> Vec<Point> {
+    site.world.floorplan.doors.iter().filter(|d| d.room_ids.len() == 1).map(|d| d.line.middle()).collect()
+}
+
+/// Returns, for the room with the longest way out, the length of that way.
+fn farthest_from_exit(site: &Site) -> Vec<Reading> {
+    let map = site.occupancy();
+    let distances = Distances::from(map, &exits(site));
+    let ways = site.rooms.iter().filter_map(|r| Some((r, distances.largest_in(map, r.plan)?)));
+    let longest = ways.max_by(|x, y| x.1.total_cmp(&y.1));
+    longest.map(|(r, d)| Reading::new(&r.plan.room_id, d)).into_iter().collect()
+}
+
+fn straight(site: &Site) -> Vec<Reading> {
+    let exits = exits(site);
+    let from = |p: &Point| exits.iter().map(|e| e.distance(*p)).reduce(f64::min);
+    let far = site.rooms.iter().filter_map(|r| {
+        let corners = r.plan.net_polygon.corners().iter();
+        Some((r, corners.filter_map(from).reduce(f64::max)?))
+    });
+    far.max_by(|x, y| x.1.total_cmp(&y.1)).map(|(r, d)| Reading::new(&r.plan.room_id, d)).into_iter().collect()
+}
+
+/// Returns, for the room of `from` that has the longest way to the nearest room of `to`, that way from door to door.
+fn room_to_room(site: &Site, from: Vec<&Room>, to: Vec<&Room>) -> Vec<Reading> {
+    let doors = |room: &Room| room.doors.iter().map(|d| d.line.middle()).collect::<Vec<_>>();
+    let goals: Vec<Point> = to.iter().flat_map(|r| doors(r)).collect();
+    if goals.is_empty() {
+        return Vec::new();
+    }
+    let map = site.occupancy();
+    let distances = Distances::from(map, &goals);
+    let ways = from.iter().filter_map(|r| {
+        let way = doors(r).into_iter().filter_map(|p| distances.at(map, p)).reduce(f64::min)?;
+        Some((r, way))
+    });
+    ways.max_by(|x, y| x.1.total_cmp(&y.1)).map(|(r, d)| Reading::new(&r.plan.room_id, d)).into_iter().collect()
+}

@@ -1,0 +1,207 @@
+//! Exact free floor among right angles: the maximal free rectangles of a room, what fits in it, and how wide one can pass.
+
+use d3dgen_model::floorplan::Door;
+use d3dgen_model::{Polygon, Rect, TOLERANCE_M};
+
+/// How far beyond the wall faces a door's opening is looked for, m: it must meet the floor on both sides.
+const REACH_M: f64 = 0.02;
+
+/// The free floor of a room, as all rectangles in it that cannot be made larger.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FreeSpace {
+    /// Maximal rectangles; they overlap.
+    pub rects: Vec<Rect>,
+}
+
+impl FreeSpace {
+    /// Returns the free floor of a rectilinear outline with axis-aligned obstacles in it.
+    pub fn new(outline: &Polygon, obstacles: &[Rect]) -> Self {
+        let bounds = outline.bounds();
+        let inside: Vec<&Rect> = obstacles.iter().filter(|o| o.overlaps(&bounds)).collect();
+        let cuts = |corner: fn(&d3dgen_model::Point) -> f64, lo: fn(&Rect) -> f64, hi: fn(&Rect) -> f64| {
+            let mut v: Vec<f64> = outline.corners().iter().map(corner).collect();
+            v.extend(inside.iter().flat_map(|o| [lo(o), hi(o)]).filter(|c| *c > lo(&bounds) && *c < hi(&bounds)));
+            v.sort_by(f64::total_cmp);
+            v.dedup_by(|a, b| (*a - *b).abs() < TOLERANCE_M);
+            v
+        };
+        let xs = cuts(|p| p.x, |r| r.x0, |r| r.x1);
+        let ys = cuts(|p| p.y, |r| r.y0, |r| r.y1);
+        let floor = outline.rects();
+        let free: Vec<Vec<bool>> = ys
+            .windows(2)
+            .map(|y| {
+                xs.windows(2)
+                    .map(|x| {
+                        let middle = Rect::new(x[0], y[0], x[1], y[1]).center();
+                        let holds = |r: &Rect| r.x0 < middle.x && middle.x < r.x1 && r.y0 < middle.y && middle.y < r.y1;
+                        floor.iter().any(holds) && !inside.iter().any(|o| holds(o))
+                    })
+                    .collect()
+            })
+            .collect();
+        Self { rects: maximal(&free, &xs, &ys) }
+    }
+
+    /// Returns the side of the largest free square, m; 0 without free floor.
+    pub fn largest_square(&self) -> f64 {
+        self.rects.iter().map(short_side).fold(0.0, f64::max)
+    }
+
+    /// Returns the largest width of a free rectangle that is at least `length` long, m; 0 when there is none.
+    pub fn width_at_length(&self, length: f64) -> f64 {
+        let long = |r: &&Rect| r.width().max(r.height()) >= length - TOLERANCE_M;
+        self.rects.iter().filter(long).map(short_side).fold(0.0, f64::max)
+    }
+
+    /// Returns the width of the widest square that can be pushed between all these doors, m.
+    ///
+    /// At a door itself only the door's own clear width is asked for. 0 when two doors are cut off from each other.
+    pub fn passage(&self, doors: &[&Door]) -> f64 {
+        let gates: Vec<(Rect, bool, f64)> =
+            doors.iter().map(|d| (gate(d), d.line.is_vertical(), d.clear_width_m)).collect();
+        let mut widths: Vec<f64> = self.rects.iter().map(short_side).collect();
+        for (i, a) in self.rects.iter().enumerate() {
+            widths.extend(self.rects[i + 1..].iter().map(|b| short_side(&common(a, b))).filter(|w| *w > 0.0));
+        }
+        widths.sort_by(f64::total_cmp);
+        widths.dedup_by(|a, b| (*a - *b).abs() < TOLERANCE_M);
+        let passes = |w: f64| self.connects(&gates, w);
+        // the wider, the fewer ways: search for the last width that passes
+        let cut = widths.partition_point(|w| passes(*w));
+        cut.checked_sub(1).map_or(0.0, |i| widths[i])
+    }
+
+    fn connects(&self, gates: &[(Rect, bool, f64)], width: f64) -> bool {
+        let wide: Vec<&Rect> = self.rects.iter().filter(|r| short_side(r) >= width - TOLERANCE_M).collect();
+        let mut group: Vec<usize> = (0..wide.len()).collect();
+        for i in 0..wide.len() {
+            for j in i + 1..wide.len() {
+                if short_side(&common(wide[i], wide[j])) >= width - TOLERANCE_M {
+                    let (a, b) = (group[i], group[j]);
+                    group.iter_mut().filter(|g| **g == b).for_each(|g| *g = a);
+                }
+            }
+        }
+        let serves = |r: &Rect, (gate, vertical, clear): &(Rect, bool, f64)| {
+            let c = common(r, gate);
+            let along = if *vertical { c.height() } else { c.width() };
+            let across = if *vertical { c.width() } else { c.height() };
+            across > 0.0 && along >= clear.min(width) - TOLERANCE_M
+        };
+        let mut parts: Vec<usize> = group.clone();
+        parts.sort_unstable();
+        parts.dedup();
+        parts.iter().any(|part| {
+            gates.iter().all(|gate| wide.iter().zip(&group).any(|(r, g)| g == part && serves(r, gate)))
+        })
+    }
+}
+
+fn short_side(r: &Rect) -> f64 {
+    r.width().min(r.height())
+}
+
+/// Returns the common part of two rectangles; an extent is negative when they do not meet.
+fn common(a: &Rect, b: &Rect) -> Rect {
+    Rect { x0: a.x0.max(b.x0), y0: a.y0.max(b.y0), x1: a.x1.min(b.x1), y1: a.y1.min(b.y1) }
+}
+
+/// Returns the opening of a door through its wall and a little beyond.
+fn gate(door: &Door) -> Rect {
+    let (a, b) = (door.line.start, door.line.end);
+    let r = Rect::new(a.x, a.y, b.x, b.y);
+    let half = door.wall_thickness_m / 2.0 + REACH_M;
+    if door.line.is_vertical() {
+        Rect { x0: r.x0 - half, x1: r.x1 + half, ..r }
+    } else {
+        Rect { y0: r.y0 - half, y1: r.y1 + half, ..r }
+    }
+}
+
+/// Returns all maximal rectangles of free cells.
+fn maximal(free: &[Vec<bool>], xs: &[f64], ys: &[f64]) -> Vec<Rect> {
+    let columns = xs.len().saturating_sub(1);
+    let mut out = Vec::new();
+    for low in 0..free.len() {
+        let mut open = vec![true; columns];
+        for high in low..free.len() {
+            open.iter_mut().zip(&free[high]).for_each(|(o, f)| *o &= f);
+            if !open.contains(&true) {
+                break;
+            }
+            let mut i = 0;
+            while i < columns {
+                let run = open[i..].iter().take_while(|o| **o).count();
+                if run == 0 {
+                    i += 1;
+                    continue;
+                }
+                let whole = |row: Option<&Vec<bool>>| row.is_some_and(|r| r[i..i + run].iter().all(|f| *f));
+                let grows = whole(low.checked_sub(1).and_then(|j| free.get(j))) || whole(free.get(high + 1));
+                if !grows {
+                    out.push(Rect { x0: xs[i], x1: xs[i + run], y0: ys[low], y1: ys[high + 1] });
+                }
+                i += run;
+            }
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use d3dgen_model::floorplan::DoorKind;
+    use d3dgen_model::{Point, Segment};
+
+    fn door(x0: f64, y0: f64, x1: f64, y1: f64) -> Door {
+        let line = Segment { start: Point::new(x0, y0), end: Point::new(x1, y1) };
+        Door {
+            door_id: "d".into(),
+            kind: DoorKind::Open,
+            clear_width_m: line.length(),
+            line,
+            height_m: 2.1,
+            wall_thickness_m: 0.12,
+            room_ids: Vec::new(),
+            entrance: false,
+            swing: None,
+            locked: false,
+        }
+    }
+
+    /// An L-shaped corridor: 10 m east at 1.5 m wide, then 6 m north at 1.2 m wide.
+    fn corridor() -> Polygon {
+        Polygon([(0., 0.), (10., 0.), (10., 7.5), (8.8, 7.5), (8.8, 1.5), (0., 1.5)].map(|(x, y)| Point::new(x, y)).to_vec())
+    }
+
+    #[test]
+    fn the_narrower_arm_rules_an_l() {
+        let space = FreeSpace::new(&corridor(), &[]);
+        assert_eq!(space.rects.len(), 2);
+        let ends = [door(-0.06, 0.2, -0.06, 1.2), door(8.9, 7.56, 9.9, 7.56)];
+        let width = space.passage(&ends.iter().collect::<Vec<_>>());
+        assert!((width - 1.2).abs() < 1e-6, "{width}");
+        assert!((space.largest_square() - 1.5).abs() < 1e-6);
+    }
+
+    #[test]
+    fn furniture_narrows_the_way_and_may_close_it() {
+        let ends = [door(-0.06, 0.2, -0.06, 1.2), door(8.9, 7.56, 9.9, 7.56)];
+        let ends: Vec<&Door> = ends.iter().collect();
+        let bench = Rect::new(3.0, 0.0, 4.0, 0.5);
+        assert!((FreeSpace::new(&corridor(), &[bench]).passage(&ends) - 1.0).abs() < 1e-6);
+        let wall = Rect::new(3.0, 0.0, 3.2, 1.5);
+        assert_eq!(FreeSpace::new(&corridor(), &[wall]).passage(&ends), 0.0);
+    }
+
+    #[test]
+    fn rectangles_fit_or_not() {
+        let room = Polygon(Rect::new(0.0, 0.0, 2.2, 1.6).corners().to_vec());
+        let space = FreeSpace::new(&room, &[Rect::new(0.0, 0.0, 0.5, 0.5)]);
+        assert!((space.width_at_length(2.2) - 1.1).abs() < 1e-6);
+        assert!((space.width_at_length(1.7) - 1.6).abs() < 1e-6);
+        assert_eq!(space.width_at_length(2.3), 0.0);
+    }
+}
