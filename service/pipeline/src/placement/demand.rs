@@ -1,6 +1,6 @@
 //! What a room should hold: its type's furnishing lines and the wishes of the scene graph, in the order of placing.
 
-use d3dgen_model::domain::{Arrangement, Domain, Furnishing, Mount, ObjectType, RoomType};
+use d3dgen_model::domain::{Arrangement, Domain, Furnishing, Mount, ObjectType, RoomType, Shape};
 use d3dgen_model::occupancy::ROBOT_HEIGHT_M;
 use d3dgen_model::scene_graph::GraphRoom;
 
@@ -79,8 +79,26 @@ pub(super) fn tasks<'a>(
         let rule = format!("wished for in the scene graph ({}): {}", object.id, arrangement_name(arrangement));
         out.push(Task { item: &object.id, anchor: object, arrangement, count: 1, required: 0, line: lines + i, rule });
     }
+    turn_to_audience(&mut out);
     out.sort_by_key(|t| (phase(t), t.line));
     out
+}
+
+/// Lets a screen or board face the rows of seats a room begins with, where no line says what faces them.
+fn turn_to_audience(tasks: &mut [Task]) {
+    let seats = |s: Shape| matches!(s, Shape::Bench | Shape::Chair | Shape::Table | Shape::Desk | Shape::Sofa);
+    let audience = tasks.iter().any(|t| t.line == 0 && t.arrangement == Arrangement::Rows && seats(t.anchor.shape));
+    if !audience || tasks.iter().any(|t| t.arrangement == Arrangement::Facing) {
+        return;
+    }
+    let shown = |t: &&mut Task| {
+        t.anchor.shape == Shape::Panel
+            && t.arrangement == Arrangement::Wall
+            && t.anchor.affordances.iter().any(|a| a == "see")
+    };
+    if let Some(task) = tasks.iter_mut().find(shown) {
+        task.arrangement = Arrangement::Facing;
+    }
 }
 
 fn anchor_of<'a>(domain: &'a Domain, item: &str) -> Option<&'a ObjectType> {

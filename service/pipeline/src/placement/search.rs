@@ -224,13 +224,14 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
     ) -> Option<(Vec<Placed<'a>>, f64)> {
         let task = Task { count, ..self.job.tasks[index].clone() };
         let aisle = 2 * (self.job.radius + LEVELS[self.level].1) + 50;
+        let one_way = self.job.tasks.iter().any(|t| t.arrangement == Arrangement::Facing);
         let mut best: Option<(Vec<Placed>, f64)> = None;
         for forms in &self.forms[index] {
             let unit = &forms[0];
             let batches = if task.arrangement == Arrangement::Overhead {
                 over(state, &task, index, unit, tally)
             } else {
-                rows(state, &task, index, unit, self.job.salt, aisle, tally)
+                rows(state, &task, index, unit, self.job.salt, aisle, one_way, tally)
             };
             for batch in batches.into_iter().skip(rank) {
                 let mut kept: Vec<Placed> = Vec::new();

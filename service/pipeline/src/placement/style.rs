@@ -19,6 +19,8 @@ pub(super) struct Style {
     pub door_in_view: f64,
     /// On the shortest stretch of wall it fits.
     pub tight: f64,
+    /// Far from others of its kind rather than in line with them.
+    pub spread: f64,
 }
 
 const PLAIN: Style = Style {
@@ -29,6 +31,7 @@ const PLAIN: Style = Style {
     far_from_door: 0.0,
     door_in_view: 0.0,
     tight: 0.4,
+    spread: 0.0,
 };
 
 /// Returns the preferences of a shape; `both_sides` when it is used from its left and right.
@@ -37,7 +40,7 @@ pub(super) fn style(shape: Shape, mount: Mount, both_sides: bool) -> Style {
         return match shape {
             Shape::Sink | Shape::Basin | Shape::Toilet => Style { flush: 0.1, solid_behind: 0.6, ..PLAIN },
             Shape::Panel => Style { centered: 0.8, flush: 0.0, tight: 0.0, ..PLAIN },
-            _ => Style { centered: 0.3, flush: 0.0, tight: 0.1, ..PLAIN },
+            _ => Style { centered: 0.3, flush: 0.0, tight: 0.1, spread: 0.6, ..PLAIN },
         };
     }
     match shape {
@@ -76,7 +79,7 @@ pub(super) fn style(shape: Shape, mount: Mount, both_sides: bool) -> Style {
         Shape::Toilet => Style { flush: 0.0, far_from_door: 0.5, solid_behind: 0.4, tight: 0.3, ..PLAIN },
         Shape::Basin => Style { flush: 0.1, solid_behind: 0.5, ..PLAIN },
         Shape::Plant | Shape::Lamp | Shape::Pole => {
-            Style { flush: 1.0, tight: 0.8, far_from_door: 0.3, solid_behind: 0.0, ..PLAIN }
+            Style { flush: 1.0, tight: 0.8, far_from_door: 0.3, solid_behind: 0.0, spread: 1.0, ..PLAIN }
         }
         _ => PLAIN,
     }

@@ -61,7 +61,7 @@ impl<'a> Find<'_, 'a, '_> {
             o.q % 2 == p.q % 2 && ((x - cx).abs() < 30 || (y - cy).abs() < 30)
         });
         let turned_alike = self.siblings().next().is_none_or(|o| o.q % 2 == p.q % 2);
-        s += if in_line { 0.9 } else { 0.0 } - if turned_alike { 0.0 } else { 0.8 };
+        s += if in_line { 0.9 } else { 0.0 } - if turned_alike { 0.0 } else { 1.6 };
         if let Some((q, focus)) = self.focus() {
             // turned to what the room is about, in line with it
             let (_, v) = turn((4 - q) % 4, cx, cy);

@@ -13,6 +13,8 @@ use crate::placement::unit::Unit;
 
 /// Least width of an aisle people use, mm.
 const AISLE: i32 = 900;
+/// Free floor between tables in a row where there is room, mm.
+const TABLES_APART: i32 = 500;
 /// Row plans whose every position is tested.
 const PLANS: usize = 20;
 /// Arrangements handed to the search.
@@ -65,6 +67,8 @@ impl Plan {
 }
 
 /// Returns ways to set up a task's units in rows, best first; each position holds, routes not looked at.
+///
+/// `robot` is the narrowest aisle, mm; `one_way` keeps seats from standing back to back, for something will face them.
 pub(in crate::placement) fn rows<'a>(
     state: &State<'a, '_>,
     task: &Task,
@@ -72,12 +76,13 @@ pub(in crate::placement) fn rows<'a>(
     unit: &Rc<Unit<'a>>,
     salt: u64,
     robot: i32,
+    one_way: bool,
     tally: &mut Tally,
 ) -> Vec<Batch<'a>> {
     let aisle = robot.max(AISLE);
     let count = task.count as i32;
     let focus = state.placed.iter().find(|p| p.first_line && p.unit.item != task.item).map(|p| p.q);
-    let mut plans = plans(state, unit, count, robot, focus);
+    let mut plans = plans(state, unit, count, robot, focus, one_way);
     plans.sort_by(|a, b| b.score.total_cmp(&a.score));
     plans.truncate((PLANS * 10 / task.count.max(10) as usize).max(3));
     let mut out: Vec<Batch> = Vec::new();
@@ -110,13 +115,18 @@ pub(in crate::placement) fn rows<'a>(
     out
 }
 
-fn plans(state: &State, unit: &Unit, count: i32, robot: i32, focus: Option<u8>) -> Vec<Plan> {
+fn plans(state: &State, unit: &Unit, count: i32, robot: i32, focus: Option<u8>, one_way: bool) -> Vec<Plan> {
     let aisle = robot.max(AISLE);
     let (b, r) = (unit.bbox, unit.reach);
     let (d, w) = (b.width(), b.height());
     let (front, back) = (r.x1 - b.x1, b.x0 - r.x0);
-    let gap_v = (b.y0 - r.y0).max(r.y1 - b.y1);
-    let pairs = matches!(unit.anchor().object.shape, Shape::Desk | Shape::Rack | Shape::Shelf | Shape::Bench);
+    let side = (b.y0 - r.y0).max(r.y1 - b.y1);
+    let shape = unit.anchor().object.shape;
+    let pairs = matches!(shape, Shape::Desk | Shape::Rack | Shape::Shelf) || shape == Shape::Bench && !one_way;
+    // tables stand apart where there is room
+    let apart = if matches!(shape, Shape::Table | Shape::RoundTable) { TABLES_APART.max(side) } else { side };
+    let mut sides = vec![apart, side];
+    sides.dedup();
     let need = front.max(back);
     let mut gaps = vec![if need > 0 { need } else { robot }, need.max(robot)];
     gaps.dedup();
@@ -128,30 +138,21 @@ fn plans(state: &State, unit: &Unit, count: i32, robot: i32, focus: Option<u8>) 
             if paired && (!pairs || focus.is_some() || count < 2 || back > 0) {
                 continue;
             }
-            for &gap_u in &gaps {
+            for (&gap_u, &gap_v) in gaps.iter().flat_map(|u| sides.iter().map(move |v| (u, v))) {
                 for run in [i32::MAX, 4, 3, 2] {
                     for columns in 1..=count {
-                        let mut plan = Plan {
-                            q,
-                            columns,
-                            rows: (count + columns - 1) / columns,
-                            run,
-                            gap_v,
-                            gap_u,
-                            paired,
-                            score: 0.0,
-                        };
+                        let rows = (count + columns - 1) / columns;
+                        let mut plan = Plan { q, columns, rows, run, gap_v, gap_u, paired, score: 0.0 };
                         if plan.breadth(w, aisle) > wide.height() {
                             break;
                         }
                         if run < i32::MAX && columns <= run {
                             continue; // no cross aisle: the same as one long run
                         }
-                        let wished = plan.rows;
                         while plan.rows > 1 && plan.depth(d) + front + if paired { front } else { 0 } > wide.width() {
                             plan.rows -= 1;
                         }
-                        plan.score = turned + rate(&plan, wished, count, (d, w), &wide, aisle);
+                        plan.score = turned + rate(&plan, rows, count, (d, w), &wide, aisle);
                         out.push(plan);
                     }
                 }
@@ -172,7 +173,9 @@ fn rate(plan: &Plan, wished: i32, count: i32, (d, w): (i32, i32), wide: &Box2, a
     s -= 0.5 * f64::from(plan.columns * wished - count) / f64::from(plan.columns);
     s -= if plan.run == i32::MAX && plan.columns > 4 { 0.8 } else { 0.0 };
     s -= if plan.run == 2 { 0.2 } else { 0.0 };
-    s + if plan.paired { 0.6 } else { 0.0 } + f64::from(plan.gap_u.min(1500)) / 5000.0
+    s + if plan.paired { 0.6 } else { 0.0 }
+        + f64::from(plan.gap_v.min(600)) / 1500.0
+        + f64::from(plan.gap_u.min(1500)) / 5000.0
 }
 
 #[expect(clippy::too_many_arguments, reason = "the inner step of one search, called once")]

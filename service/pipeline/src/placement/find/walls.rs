@@ -203,19 +203,30 @@ impl<'a> Find<'_, 'a, '_> {
         s
     }
 
-    /// Equal things in one line, evenly spaced, on one wall.
+    /// Equal things in one line on one wall as close as they may be, or opposite each other.
     fn sibling_score(&self, p: &Placed<'a>, a: i32, z: i32, index: usize) -> f64 {
         let wall = &self.state.space.walls[index];
         let mut s: f64 = 0.0;
+        if self.style.spread > 0.0 {
+            let rect = p.world(&p.unit.bbox);
+            let nearest = self.siblings().map(|o| rect.gap(&o.world(&o.unit.bbox))).min();
+            return nearest.map_or(0.0, |gap| self.style.spread * (f64::from(gap) / 2500.0).min(1.0));
+        }
         for other in self.siblings() {
-            let r = other.world(&other.unit.bbox).turned((4 - wall.q) % 4);
+            let turned = |b: &Box2| other.world(b).turned((4 - wall.q) % 4);
+            let (r, reach) = (turned(&other.unit.bbox), turned(&other.unit.reach));
             let same_wall = other.q == p.q && (r.x0 - wall.u).abs() < 60;
             let aligned = (r.y0 - a).abs() < 30 && (r.y1 - z).abs() < 30;
-            s = s.max(match (same_wall, other.q == (p.q + 2) % 4 && aligned) {
-                (true, _) => 0.8,
-                (_, true) => 0.5,
-                _ => 0.0,
-            });
+            if same_wall {
+                let (gap, theirs, own) = if a >= r.y1 {
+                    (a - r.y1, reach.y1 - r.y1, p.unit.bbox.y0 - p.unit.reach.y0)
+                } else {
+                    (r.y0 - z, r.y0 - reach.y0, p.unit.reach.y1 - p.unit.bbox.y1)
+                };
+                s = s.max(if (gap - theirs.max(own)).abs() <= 30 { 1.5 } else { 0.7 });
+            } else if other.q == (p.q + 2) % 4 && aligned {
+                s = s.max(0.5);
+            }
         }
         s
     }
