@@ -1,0 +1,34 @@
+//! Counts and measures of a world for those who compare worlds.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::context::Context;
+
+/// Returns the figures of a world by name; areas in m^2, shares 0 to 1.
+pub fn measure(c: &Context) -> BTreeMap<String, f64> {
+    let area = |only_circulation: bool| -> f64 {
+        let rooms = c.rooms.iter().filter(|r| r.plan.circulation || !only_circulation);
+        rooms.map(|r| r.plan.net_area_m2).sum()
+    };
+    let rooms = c.rooms.iter().filter(|r| !r.plan.circulation).count() as f64;
+    let taken: f64 = c.objects.iter().filter(|o| o.blocks && o.placement.support.is_none()).map(|o| o.rect.area()).sum();
+    let kinds: BTreeSet<&str> = c.objects.iter().map(|o| o.placement.object.as_str()).collect();
+    let share = |part: f64, whole: f64| if whole > 0.0 { part / whole } else { 0.0 };
+    let l_shaped = c.rooms.iter().filter(|r| r.plan.polygon.corners().len() > 4).count() as f64;
+    let figures = [
+        ("rooms", rooms),
+        ("rooms_with_circulation", c.rooms.len() as f64),
+        ("doors", c.plan().doors.len() as f64),
+        ("windows", c.plan().windows.len() as f64),
+        ("objects", c.objects.len() as f64),
+        ("objects_per_room", share(c.objects.len() as f64, c.rooms.len() as f64)),
+        ("object_types", kinds.len() as f64),
+        ("net_area_m2", area(false)),
+        ("circulation_share", share(area(true), area(false))),
+        ("floor_covered", share(taken, area(false))),
+        ("rooms_not_rectangular", l_shaped),
+        ("free_component", c.reach().largest_share),
+        ("unplaced_wishes", c.world.placements.unplaced.len() as f64),
+    ];
+    figures.map(|(name, value)| (name.to_owned(), (value * 1000.0).round() / 1000.0)).into()
+}

@@ -1,0 +1,139 @@
+//! Rules about robots, docks and what the scenario says.
+
+use std::collections::BTreeMap;
+
+use d3dgen_knowledge::clearance::{Side, door_zones, free_depth};
+use d3dgen_model::domain::Shape;
+use d3dgen_model::occupancy::Bitmap;
+use d3dgen_model::{Point, Pose};
+
+use super::Findings;
+use crate::world::context::{Context, LEAST_RADIUS_M, Object, common_area};
+
+/// A region may reach beyond its room by rounding, m^2.
+const REGION_SLACK_M2: f64 = 0.01;
+/// Radius of a person standing, m.
+const PERSON_RADIUS_M: f64 = 0.25;
+
+fn is_dock(object: &Object) -> bool {
+    object.kind.is_some_and(|k| k.shape == Shape::Dock)
+}
+
+pub fn docks(c: &Context, out: &mut Findings) {
+    for dock in c.objects.iter().filter(|o| is_dock(o)) {
+        out.look();
+        let p = dock.placement;
+        let Some(room) = c.room(&p.room_id) else { continue };
+        for door in &room.doors {
+            if door_zones(door).iter().any(|zone| common_area(zone, &dock.rect) > 1e-6) {
+                out.add(&p.placement_id, format!("stands in the way of `{}`", door.door_id));
+            }
+        }
+        let others = c.objects_in(&p.room_id).filter(|o| o.blocks && o.placement.placement_id != p.placement_id);
+        let depth = free_depth(p, Side::Front, &room.plan.net_polygon, others.map(|o| o.rect));
+        // the whole clearance for robots that were asked for, a robot's width for docks that only stand there
+        let wanted = dock.kind.map_or(0.0, |k| k.clearance_front_m);
+        let needed = wanted.max(2.0 * c.radius).min(if c.graph().robots.is_empty() { 2.0 * c.radius } else { f64::MAX });
+        if depth < needed - 0.01 {
+            let message = format!("has {depth:.2} m free in front, needs {needed:.2} m");
+            out.add_figure(&p.placement_id, message, depth, needed, "m");
+        }
+    }
+}
+
+pub fn dock_missing(c: &Context, out: &mut Findings) {
+    if c.graph().robots.iter().any(|r| r.charging) {
+        out.look();
+        if !c.objects.iter().any(is_dock) {
+            out.add("building", "robots that charge were asked for and the building has no dock");
+        }
+    }
+}
+
+/// Free floor by radius, each worked out once.
+struct Clear<'c, 'a> {
+    context: &'c Context<'a>,
+    maps: BTreeMap<u64, Bitmap>,
+}
+
+impl<'c, 'a> Clear<'c, 'a> {
+    fn new(context: &'c Context<'a>) -> Self {
+        Self { context, maps: BTreeMap::new() }
+    }
+
+    fn of(&mut self, radius: f64) -> &Bitmap {
+        let key = (radius * 1000.0) as u64;
+        self.maps.entry(key).or_insert_with(|| self.context.occupancy().clear(radius))
+    }
+}
+
+fn point(pose: &Pose) -> Point {
+    Point::new(pose.x, pose.y)
+}
+
+pub fn tasks(c: &Context, out: &mut Findings) {
+    let mut clear = Clear::new(c);
+    for task in &c.world.scenario.robots {
+        out.look();
+        let radius = task.robot.radius_m.max(LEAST_RADIUS_M);
+        let map = clear.of(radius);
+        let frame = &c.occupancy().frame;
+        let mut seed = Bitmap::new(frame.nx, frame.ny);
+        match frame.cell(point(&task.start)) {
+            Some((i, j)) if map.get(i, j) => seed.set(i, j),
+            _ => {
+                out.add(&task.robot_id, "starts where it does not fit");
+                continue;
+            }
+        }
+        let reached = map.flood(&seed);
+        for goal in task.goals.iter().chain(&task.dock) {
+            let Some(poi) = c.world.scenario.pois.iter().find(|p| &p.poi_id == goal) else {
+                out.add(&task.robot_id, format!("its goal `{goal}` is not a point of the scenario"));
+                continue;
+            };
+            if !c.is_clear(&reached, point(&poi.pose)) {
+                out.add(format!("{}|{goal}", task.robot_id), "the robot cannot get there from its start");
+            }
+        }
+    }
+}
+
+pub fn poses(c: &Context, out: &mut Findings) {
+    let mut clear = Clear::new(c);
+    let scenario = &c.world.scenario;
+    for poi in &scenario.pois {
+        out.look();
+        let inside = c.room(&poi.room_id).is_some_and(|r| r.plan.net_polygon.contains(point(&poi.pose)));
+        if !inside {
+            out.add(&poi.poi_id, format!("is not in `{}`", poi.room_id));
+        } else if !c.is_clear(clear.of(LEAST_RADIUS_M), point(&poi.pose)) {
+            out.add(&poi.poi_id, "nobody can stand there");
+        }
+    }
+    for agent in &scenario.agents {
+        out.look();
+        if !c.is_clear(clear.of(PERSON_RADIUS_M), point(&agent.start)) {
+            out.add(&agent.agent_id, "starts where nobody can stand");
+        }
+        for room in agent.waypoints.iter().filter(|id| c.room(id).is_none()) {
+            out.add(&agent.agent_id, format!("walks to `{room}`, which is not in the plan"));
+        }
+    }
+}
+
+pub fn regions(c: &Context, out: &mut Findings) {
+    for roi in &c.world.scenario.rois {
+        out.look();
+        let Some(room) = c.room(&roi.room_id) else {
+            out.add(&roi.roi_id, format!("its room `{}` is not in the plan", roi.room_id));
+            continue;
+        };
+        let pieces = roi.polygon.rects();
+        let inside: f64 = pieces.iter().flat_map(|p| room.rects.iter().map(move |r| common_area(p, r))).sum();
+        let outside = roi.polygon.area() - inside;
+        if outside > REGION_SLACK_M2 || roi.polygon.signed_area() <= 0.0 {
+            out.add_figure(&roi.roi_id, format!("{outside:.2} m2 lie outside its room"), outside, REGION_SLACK_M2, "m^2");
+        }
+    }
+}

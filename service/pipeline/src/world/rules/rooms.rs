@@ -1,0 +1,79 @@
+//! Rules about the size and shape of rooms.
+
+use d3dgen_knowledge::freespace::FreeSpace;
+use d3dgen_model::TOLERANCE_M;
+use d3dgen_model::domain::Zone;
+
+use super::Findings;
+use crate::world::context::{Context, Room};
+
+/// Longest length over width.
+const PROPORTION: f64 = 2.5;
+/// Share of an area that rounding to the wall lattice may take or add.
+const AREA_SLACK: f64 = 0.01;
+/// How far a building rule may push an area beyond what was asked for.
+const RAISED_BY_RULE: f64 = 1.25;
+
+pub fn area(c: &Context, out: &mut Findings) {
+    for room in &c.rooms {
+        let Some(asked) = c.graph().room(&room.plan.room_id) else { continue };
+        let limit = c.retrieval.limits.rooms.get(&room.plan.room_type).and_then(|l| l.area_min.as_ref());
+        let [low, high] = asked.area_range_m2;
+        let low = limit.map_or(low, |l| l.value.max(low));
+        let high = high.max(low * RAISED_BY_RULE);
+        out.look();
+        let area = room.plan.net_area_m2;
+        if area < low * (1.0 - AREA_SLACK) {
+            let why = limit.filter(|l| l.value >= low).map_or(String::new(), |l| format!(", by {}", l.constraint_id));
+            out.add_figure(&room.plan.room_id, format!("has {area:.2} m2, needs {low:.2} m2{why}"), area, low, "m^2");
+        }
+        // circulation is as large as the way it has to go
+        if area > high * (1.0 + AREA_SLACK) && !room.plan.circulation {
+            let message = format!("has {area:.2} m2, at most {high:.2} m2 were asked for");
+            out.add_figure(&room.plan.room_id, message, area, high, "m^2");
+        }
+    }
+}
+
+pub fn dimension(c: &Context, out: &mut Findings) {
+    for room in c.rooms.iter().filter(|r| !r.plan.circulation) {
+        out.look();
+        let limit = c.retrieval.limits.rooms.get(&room.plan.room_type).and_then(|l| l.dimension_min.as_ref());
+        let least = limit.map_or(room.kind.min_dimension_m, |l| l.value.max(room.kind.min_dimension_m));
+        let side = FreeSpace::new(&room.plan.net_polygon, &[]).largest_square();
+        if side < least - TOLERANCE_M {
+            out.add_figure(&room.plan.room_id, format!("is {side:.2} m wide, needs {least:.2} m"), side, least, "m");
+        }
+    }
+}
+
+pub fn proportion(c: &Context, out: &mut Findings) {
+    for room in c.rooms.iter().filter(|r| !r.plan.circulation && r.kind.zone != Zone::Circulation) {
+        out.look();
+        let ratio = length_to_width(room);
+        if ratio > PROPORTION + TOLERANCE_M {
+            out.add_figure(&room.plan.room_id, format!("is {ratio:.2} times as long as wide"), ratio, PROPORTION, "ratio");
+        }
+    }
+}
+
+/// Returns length over width of a rectangular room, or of the largest rectangle in any other.
+fn length_to_width(room: &Room) -> f64 {
+    let ratio = |w: f64, h: f64| w.max(h) / w.min(h).max(TOLERANCE_M);
+    let space = FreeSpace::new(&room.plan.net_polygon, &[]);
+    let largest = space.rects.iter().max_by(|a, b| a.area().total_cmp(&b.area()));
+    largest.map_or(f64::MAX, |r| ratio(r.width(), r.height()))
+}
+
+pub fn height(c: &Context, out: &mut Findings) {
+    for room in &c.rooms {
+        let limit = c.retrieval.limits.rooms.get(&room.plan.room_type).and_then(|l| l.ceiling_height_min.as_ref());
+        let Some(limit) = limit else { continue };
+        out.look();
+        let height = room.plan.ceiling_height_m;
+        if height < limit.value - TOLERANCE_M {
+            let message = format!("is {height:.2} m high, needs {:.2} m, by {}", limit.value, limit.constraint_id);
+            out.add_figure(&room.plan.room_id, message, height, limit.value, "m");
+        }
+    }
+}
