@@ -2,9 +2,8 @@
 //!
 //! Barlow under the SIL Open Font License (`fonts/OFL.txt`), cut down to Latin letters, figures and signs.
 
-use std::fmt::Write;
-
 use ttf_parser::gpos::{PairAdjustment, PositioningSubtable};
+use ttf_parser::opentype_layout::LayoutTable;
 use ttf_parser::{Face, GlyphId, OutlineBuilder, Tag};
 
 /// Weight of the type.
@@ -19,6 +18,8 @@ pub enum Weight {
 /// The font in one weight.
 pub struct Font {
     face: Face<'static>,
+    /// Pair positioning of the `kern` feature.
+    kerning: Vec<PairAdjustment<'static>>,
 }
 
 impl Font {
@@ -28,7 +29,9 @@ impl Font {
             Weight::Regular => include_bytes!("../fonts/Barlow-Regular.ttf"),
             Weight::SemiBold => include_bytes!("../fonts/Barlow-SemiBold.ttf"),
         };
-        Self { face: Face::parse(bytes, 0).expect("the embedded font is whole; a test draws with it") }
+        let face = Face::parse(bytes, 0).expect("the embedded font is whole; a test draws with it");
+        let kerning = face.tables().gpos.map(kerning).unwrap_or_default();
+        Self { face, kerning }
     }
 
     /// Returns true when the font has a glyph for every character.
@@ -65,24 +68,18 @@ impl Font {
         glyphs
     }
 
-    /// Kerning between two glyphs in font units, from the font's pair positioning.
+    /// Kerning between two glyphs in font units.
     fn kern(&self, left: GlyphId, right: GlyphId) -> f64 {
-        let Some(gpos) = self.face.tables().gpos else { return 0.0 };
-        let kerning = gpos.features.into_iter().find(|f| f.tag == Tag::from_bytes(b"kern"));
-        let lookups = kerning.into_iter().flat_map(|f| f.lookup_indices).filter_map(|i| gpos.lookups.get(i));
-        for lookup in lookups {
-            for subtable in lookup.subtables.into_iter::<PositioningSubtable<'_>>() {
-                let PositioningSubtable::Pair(pair) = subtable else { continue };
-                let Some(index) = pair.coverage().get(left) else { continue };
-                let found = match pair {
-                    PairAdjustment::Format1 { sets, .. } => sets.get(index).and_then(|set| set.get(right)),
-                    PairAdjustment::Format2 { classes, matrix, .. } => {
-                        matrix.get((classes.0.get(left), classes.1.get(right)))
-                    }
-                };
-                if let Some((first, _)) = found {
-                    return f64::from(first.x_advance);
+        for pair in &self.kerning {
+            let Some(index) = pair.coverage().get(left) else { continue };
+            let found = match pair {
+                PairAdjustment::Format1 { sets, .. } => sets.get(index).and_then(|set| set.get(right)),
+                PairAdjustment::Format2 { classes, matrix, .. } => {
+                    matrix.get((classes.0.get(left), classes.1.get(right)))
                 }
+            };
+            if let Some((first, _)) = found {
+                return f64::from(first.x_advance);
             }
         }
         0.0
@@ -93,7 +90,17 @@ impl Font {
     }
 }
 
-/// Writes outlines with y down, two decimals.
+/// Returns the pair adjustments of the `kern` feature in order.
+fn kerning(gpos: LayoutTable<'static>) -> Vec<PairAdjustment<'static>> {
+    let feature = gpos.features.into_iter().find(|f| f.tag == Tag::from_bytes(b"kern"));
+    let lookups = feature.into_iter().flat_map(|f| f.lookup_indices).filter_map(|i| gpos.lookups.get(i));
+    lookups
+        .flat_map(|lookup| lookup.subtables.into_iter::<PositioningSubtable<'_>>())
+        .filter_map(|subtable| if let PositioningSubtable::Pair(pair) = subtable { Some(pair) } else { None })
+        .collect()
+}
+
+/// Writes outlines with y down.
 struct Pen<'a> {
     x: f64,
     y: f64,
@@ -105,8 +112,40 @@ impl Pen<'_> {
     fn put(&mut self, command: char, points: &[(f32, f32)]) {
         self.out.push(command);
         for (i, (x, y)) in points.iter().enumerate() {
-            let (x, y) = (self.x + f64::from(*x) * self.scale, self.y - f64::from(*y) * self.scale);
-            let _ = write!(self.out, "{}{:.1} {:.1}", if i > 0 { " " } else { "" }, x, y);
+            if i > 0 {
+                self.out.push(' ');
+            }
+            write_number(self.out, self.x + f64::from(*x) * self.scale);
+            self.out.push(' ');
+            write_number(self.out, self.y - f64::from(*y) * self.scale);
+        }
+    }
+}
+
+/// Writes a sheet coordinate in at most two decimals, by whole numbers: outlines are most of a picture's bytes and time.
+pub fn write_number(out: &mut String, value: f64) {
+    let hundredths = (value * 100.0).round() as i64;
+    if hundredths < 0 {
+        out.push('-');
+    }
+    let (whole, rest) = (hundredths.unsigned_abs() / 100, hundredths.unsigned_abs() % 100);
+    let mut digits = [0_u8; 20];
+    let mut at = digits.len();
+    let mut left = whole;
+    loop {
+        at -= 1;
+        digits[at] = b'0' + (left % 10) as u8;
+        left /= 10;
+        if left == 0 {
+            break;
+        }
+    }
+    out.extend(digits[at..].iter().map(|d| char::from(*d)));
+    if rest > 0 {
+        out.push('.');
+        out.push(char::from(b'0' + (rest / 10) as u8));
+        if rest % 10 > 0 {
+            out.push(char::from(b'0' + (rest % 10) as u8));
         }
     }
 }
@@ -147,6 +186,17 @@ mod tests {
             let width = font.width("Küche 12.5 m²", 20.0);
             assert!((90.0..150.0).contains(&width), "{width}");
             assert!((font.width("Küche 12.5 m²", 40.0) - 2.0 * width).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn numbers_are_short() {
+        for (value, text) in
+            [(0.0, "0"), (-0.001, "0"), (12.5, "12.5"), (-3.047, "-3.05"), (100.0, "100"), (0.999, "1")]
+        {
+            let mut out = String::new();
+            write_number(&mut out, value);
+            assert_eq!(out, text);
         }
     }
 

@@ -17,6 +17,7 @@ use d3dgen_model::domain::{Domain, Mount, Shape};
 use d3dgen_model::floorplan::Floorplan;
 use d3dgen_model::geometry::{Point, Pose, Rect};
 use d3dgen_model::placements::Placement;
+use d3dgen_model::scenario::RoiKind;
 use d3dgen_model::world::World;
 use resvg::{tiny_skia, usvg};
 
@@ -35,6 +36,8 @@ const EDGE: f64 = 28.0;
 const GAP: f64 = 44.0;
 /// Scale limits, sheet units per meter: small flats are not blown up, large halls stay legible.
 const SCALES: [f64; 2] = [26.0, 112.0];
+/// Scale below which small rooms lose their names and the sheet grows instead, sheet units per meter.
+const LEGIBLE: f64 = 46.0;
 /// Width limits of the PNG, px.
 const PNG_WIDTHS: [f64; 2] = [1600.0, 2400.0];
 
@@ -65,12 +68,9 @@ pub fn svg(world: &World, domain: &Domain) -> String {
     let plan = &world.floorplan;
     let around = building::outer_bounds(plan);
     let beside = around.width() < 1.5 * around.height();
-    let panel_width = if beside { panel::WIDTH + GAP } else { 0.0 };
 
     // The drawing's scale follows from the sheet; weights and type follow from the scale, within limits.
-    let room_for = |total: f64, panel: f64| total - 2.0 * (EDGE + GAP) - panel - 120.0;
-    let fit = (room_for(WIDTH, panel_width) / around.width()).min(room_for(HEIGHT, 0.0) / around.height());
-    let scale = fit.clamp(SCALES[0], SCALES[1]);
+    let scale = scale(&around, if beside { panel::WIDTH + GAP } else { 0.0 });
     let k = (scale / 55.0).clamp(0.7, 1.15);
     let (margins, offsets) = margins(plan, &around, scale);
     let frame =
@@ -79,24 +79,41 @@ pub fn svg(world: &World, domain: &Domain) -> String {
     let drawing = Rect { x0: EDGE, y0: EDGE, x1: on_sheet.x1 + margins.east, y1: on_sheet.y1 + margins.south };
 
     let mut page = Page::new();
-    let shown = Shown::of(world, domain);
-    building::floors(&mut page, &frame, plan, domain);
-    robots::zones(&mut page, &frame, &world.scenario, k);
-    furniture(&mut page, &frame, &shown);
-    building::walls(&mut page, &frame, plan);
-    building::windows(&mut page, &frame, plan);
-    building::doors(&mut page, &frame, plan);
-    building::entrances(&mut page, &frame, plan, UNIT);
-    building::dimensions(&mut page, &frame, &around, offsets, UNIT);
-    let marks = robots::marks(&mut page, &frame, &world.scenario, 17.0 * k.max(0.85));
-    let numbers = label(&mut page, &frame, (world, domain), &shown, marks, 18.0 * k.clamp(0.8, 1.1));
-
+    let mut numbers = Vec::new();
+    let block = page.block(|page| {
+        let shown = Shown::of(world, domain);
+        building::floors(page, &frame, plan, domain);
+        robots::zones(page, &frame, &world.scenario, k);
+        furniture(page, &frame, &shown);
+        building::walls(page, &frame, plan);
+        building::windows(page, &frame, plan);
+        building::doors(page, &frame, plan);
+        building::entrances(page, &frame, plan, UNIT);
+        building::dimensions(page, &frame, &around, offsets, UNIT);
+        let marks = robots::marks(page, &frame, &world.scenario, 17.0 * k.max(0.85));
+        numbers = label(page, &frame, (world, domain), &shown, marks, 18.0 * k.clamp(0.8, 1.1));
+        drawing.y1
+    });
     let facts = panel::Facts { world, domain, numbers: &numbers, around: &around, scale, k };
-    let (width, height) = facts.draw(&mut page, &drawing, beside, HEIGHT);
+    let (width, height) = facts.draw(&mut page, &drawing, beside);
+    // A title block larger than the drawing leaves space around it: the drawing stands in its middle.
+    let spare = if beside { (0.0, height - EDGE - drawing.y1) } else { (width - EDGE - drawing.x1, 0.0) };
+    page.place(&block, (spare.0.max(0.0) / 2.0, spare.1.max(0.0) / 2.0));
     let border = Rect { x0: EDGE, y0: EDGE, x1: width - EDGE, y1: height - EDGE };
     page.path("fr", Path::new().rect(&border));
     let paper = panel::paper(width, height, scale);
     page.finish((width, height), (paper.width_mm, paper.height_mm), &panel::title(world, domain), &style::sheet(k))
+}
+
+/// Returns the scale of the drawing, sheet units per meter; large buildings get a larger sheet.
+fn scale(around: &Rect, panel_width: f64) -> f64 {
+    let fit = |width: f64, height: f64| {
+        let taken = 2.0 * (EDGE + GAP) + 120.0;
+        ((width - taken - panel_width) / around.width()).min((height - taken) / around.height())
+    };
+    let usual = fit(WIDTH, HEIGHT);
+    let scale = if usual < LEGIBLE { fit(1.2 * WIDTH, 1.6 * HEIGHT).min(LEGIBLE) } else { usual };
+    scale.clamp(SCALES[0], SCALES[1])
 }
 
 /// Returns the free space around the building and where its dimensions go: on sides without an entrance if there are any.
@@ -224,6 +241,9 @@ fn label(
             Layer::Covering | Layer::Overhead => obstacles.soft.push(rect),
         }
     }
+    // Type across the edge of a small zone is hard to read; zones as large as their room cannot be avoided.
+    let small = world.scenario.rois.iter().filter(|r| matches!(r.kind, RoiKind::ServiceZone | RoiKind::ChargingBuffer));
+    obstacles.soft.extend(small.map(|r| frame.rect(&r.polygon.bounds())));
     let rooms: Vec<labels::Room<'_>> = plan
         .rooms
         .iter()

@@ -7,7 +7,7 @@ use std::fmt::Write;
 
 use d3dgen_model::geometry::{Point, Polygon, Rect};
 
-use crate::font::{Font, Weight};
+use crate::font::{Font, Weight, write_number};
 
 /// Where meters land on the sheet.
 #[derive(Debug, Clone, Copy)]
@@ -105,11 +105,6 @@ impl Path {
     }
 }
 
-fn write_number(out: &mut String, value: f64) {
-    let rounded = (value * 100.0).round() / 100.0;
-    let _ = write!(out, "{}", if rounded == 0.0 { 0.0 } else { rounded });
-}
-
 /// Where a line of type is anchored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Anchor {
@@ -180,15 +175,19 @@ impl Page {
         if outline.is_empty() {
             return width;
         }
-        if let Some(halo) = style.halo {
-            let _ = writeln!(
-                self.out,
-                "<path fill=\"none\" stroke=\"{halo}\" stroke-width=\"{:.1}\" stroke-linejoin=\"round\" \
-                 stroke-opacity=\"0.85\" d=\"{outline}\"/>",
+        // The stroke lies under the fill: a soft edge that keeps type legible on lines.
+        let halo = style.halo.map_or(String::new(), |halo| {
+            format!(
+                " stroke=\"{halo}\" stroke-width=\"{:.1}\" stroke-opacity=\".85\" paint-order=\"stroke\"",
                 size * 0.28
-            );
-        }
-        let _ = writeln!(self.out, "<path fill=\"{}\" aria-label=\"{}\" d=\"{outline}\"/>", style.fill, escaped(text));
+            )
+        });
+        let _ = writeln!(
+            self.out,
+            "<path fill=\"{}\"{halo} aria-label=\"{}\" d=\"{outline}\"/>",
+            style.fill,
+            escaped(text)
+        );
         width
     }
 

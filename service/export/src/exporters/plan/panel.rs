@@ -50,17 +50,15 @@ pub(super) struct Paper {
 
 /// Returns the largest round scale at which the sheet fits a common paper.
 pub(super) fn paper(width: f64, height: f64, scale: f64) -> Paper {
-    const PAPERS: [(&str, f64, f64); 4] =
-        [("A4", 297.0, 210.0), ("A3", 420.0, 297.0), ("A2", 594.0, 420.0), ("A1", 841.0, 594.0)];
+    const PAPERS: [(&str, f64, f64); 2] = [("A4", 297.0, 210.0), ("A3", 420.0, 297.0)];
     let at = |ratio: u32| {
         let mm = 1000.0 / (scale * f64::from(ratio));
         (width * mm, height * mm)
     };
-    let largest = if width > height { &PAPERS[..2] } else { &PAPERS[..] };
     for ratio in [50, 100, 200, 500, 1000] {
         let (w, h) = at(ratio);
         let fits = |paper: &&(&'static str, f64, f64)| w.max(h) <= paper.1 && w.min(h) <= paper.2;
-        if let Some(paper) = largest.iter().find(fits) {
+        if let Some(paper) = PAPERS.iter().find(fits) {
             return Paper { width_mm: w, height_mm: h, ratio, name: Some(paper.0) };
         }
     }
@@ -82,21 +80,17 @@ fn sentence(id: &str) -> String {
 
 impl Facts<'_> {
     /// Draws the panel right of (`beside`) or below the drawing; returns the size of the sheet.
-    pub fn draw(&self, page: &mut Page, drawing: &Rect, beside: bool, least_height: f64) -> (f64, f64) {
+    pub fn draw(&self, page: &mut Page, drawing: &Rect, beside: bool) -> (f64, f64) {
         let mut blocks = vec![self.heading(page), self.figures(page)];
         blocks.extend(self.schedule(page));
         blocks.push(self.legend(page));
-        if beside {
-            self.draw_beside(page, drawing, &blocks, least_height.min(drawing.y1 + EDGE))
-        } else {
-            self.draw_below(page, drawing, &blocks)
-        }
+        if beside { self.draw_beside(page, drawing, &blocks) } else { self.draw_below(page, drawing, &blocks) }
     }
 
-    fn draw_beside(&self, page: &mut Page, drawing: &Rect, blocks: &[Block], least: f64) -> (f64, f64) {
+    fn draw_beside(&self, page: &mut Page, drawing: &Rect, blocks: &[Block]) -> (f64, f64) {
         let total: f64 = blocks.iter().map(|b| b.height + BLOCK_GAP).sum();
         let paper_width = drawing.x1 + 2.0 * GAP + WIDTH + EDGE;
-        let height = (drawing.y1 + EDGE).max(2.0 * EDGE + GAP + total + 96.0).max(least);
+        let height = (drawing.y1 + EDGE).max(2.0 * EDGE + GAP + total + 96.0);
         let x = drawing.x1 + GAP;
         page.path("fr", Path::new().segment((drawing.x1, EDGE), (drawing.x1, height - EDGE)));
         let mut y = EDGE + GAP * 0.8;
@@ -111,20 +105,24 @@ impl Facts<'_> {
 
     fn draw_below(&self, page: &mut Page, drawing: &Rect, blocks: &[Block]) -> (f64, f64) {
         let width = (drawing.x1 + EDGE).max(2.0 * EDGE + 4.0 * (WIDTH + GAP) + GAP);
-        let count = ((width - 2.0 * EDGE - GAP) / (WIDTH + GAP)).floor().max(1.0) as usize;
+        let count = ((width - 2.0 * EDGE - GAP) / (WIDTH + GAP)).floor().max(2.0) as usize;
         let step = (width - 2.0 * EDGE - GAP) / count as f64;
-        // Each block goes under the shortest column, the foot last and to the right.
+        let foot = self.foot(page, width, drawing.y1 + 400.0);
+        // The legend stands over the scale in the last column; the others fill the columns before it, shortest first.
         let mut columns = vec![0.0_f64; count];
         let mut places = Vec::new();
         for (i, block) in blocks.iter().enumerate() {
-            let free = count.saturating_sub(1).max(1);
-            let column =
-                if i < free { i } else { (0..free).min_by(|a, b| columns[*a].total_cmp(&columns[*b])).unwrap_or(0) };
+            let column = if i + 1 == blocks.len() {
+                count - 1
+            } else {
+                (0..count - 1).min_by(|a, b| columns[*a].total_cmp(&columns[*b])).unwrap_or(0)
+            };
             places.push((column, columns[column]));
             columns[column] += block.height + BLOCK_GAP;
         }
-        let strip = columns.iter().copied().fold(0.0, f64::max).max(130.0);
-        let height = drawing.y1 + GAP * 0.8 + strip + EDGE;
+        columns[count - 1] += foot.height;
+        let strip = columns.iter().copied().fold(0.0, f64::max);
+        let height = drawing.y1 + GAP * 0.8 + strip + 0.6 * GAP + EDGE;
         page.path("fr", Path::new().segment((EDGE, drawing.y1), (width - EDGE, drawing.y1)));
         for (block, (column, down)) in blocks.iter().zip(places) {
             page.place(block, (EDGE + GAP + column as f64 * step, drawing.y1 + GAP * 0.8 + down));
@@ -187,7 +185,7 @@ impl Facts<'_> {
         if !robots.is_empty() {
             rows.push(("Robots", robots.join(", ")));
         }
-        rows.push(("Rules of", world.scene_graph.country_code.clone().unwrap_or_else(|| "International".into())));
+        rows.push(("Building rules", world.scene_graph.country_code.clone().unwrap_or_else(|| "International".into())));
         rows.push(("Seed", world.scene_graph.seed.to_string()));
         rows.push(("Made by", world.generator.clone()));
         page.block(|page| {
@@ -215,6 +213,8 @@ impl Facts<'_> {
     fn schedule(&self, page: &mut Page) -> Option<Block> {
         let all: Vec<(Option<usize>, &PlanRoom)> =
             self.numbers.iter().copied().zip(&self.world.floorplan.rooms).collect();
+        let mut all = all;
+        all.sort_by_key(|(_, room)| by_name(&room.name));
         let numbered: Vec<_> = all.iter().filter(|(n, _)| n.is_some()).copied().collect();
         let rows = if all.len() <= MOST_LISTED { all } else { numbered };
         if rows.is_empty() {
@@ -237,6 +237,9 @@ impl Facts<'_> {
                 let area = format!("{:.1} m²", room.net_area_m2);
                 let taken = page.text(&area, (x + width, y + 16.5), size, style::SMALL, Anchor::End);
                 let space = x + width - left - taken - 8.0;
+                // A long name may be set a little tighter before it is cut.
+                let long = page.font(Weight::Regular).width(&room.name, size) > space;
+                let size = if long { 0.88 * size } else { size };
                 if let Some(name) = wrap_to(page, &room.name, size, Weight::Regular, 1, space).first() {
                     page.text(name, (left, y + 16.5), size, style::TEXT, Anchor::Start);
                 }
@@ -301,6 +304,12 @@ impl Facts<'_> {
             62.0
         })
     }
+}
+
+/// Returns a key that puts `Patient room 10` after `Patient room 9`.
+fn by_name(name: &str) -> (String, u32) {
+    let word = name.trim_end_matches(|c: char| c.is_ascii_digit());
+    (word.to_lowercase(), name[word.len()..].parse().unwrap_or(0))
 }
 
 /// A needle in a ring with its N.

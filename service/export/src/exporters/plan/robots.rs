@@ -28,9 +28,9 @@ pub(super) fn area(page: &mut Page, kind: RoiKind, outline: Path, rects: &[Rect]
     let (fill, stroke) = style::roi_colors(kind);
     match kind {
         RoiKind::CleaningZone => {
-            let lines = rects.iter().fold(Path::new(), |path, r| hatch(path, r, 15.0 * k, false));
+            let lines = rects.iter().fold(Path::new(), |path, r| hatch(path, r, 17.0 * k, false));
             let look =
-                format!("fill=\"none\" stroke=\"{stroke}\" stroke-opacity=\".42\" stroke-width=\"{:.2}\"", 0.9 * k);
+                format!("fill=\"none\" stroke=\"{stroke}\" stroke-opacity=\".36\" stroke-width=\"{:.2}\"", 0.9 * k);
             page.path_with(&look, lines);
         }
         RoiKind::KeepOut => {

@@ -44,7 +44,7 @@ pub(super) fn tint(zone: Zone) -> &'static str {
 /// Returns the legend's words for a part of the building.
 pub(super) fn zone_label(zone: Zone) -> &'static str {
     match zone {
-        Zone::Day => "Day and work rooms",
+        Zone::Day => "Day, work, treatment",
         Zone::Night => "Sleeping and care",
         Zone::Public => "Public",
         Zone::Staff => "Staff",
