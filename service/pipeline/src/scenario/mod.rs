@@ -1,1 +1,61 @@
-//! Stage `scenario`: under construction.
+//! Stage `scenario`: robot zones, points, robots with work and people who fill the scene.
+//!
+//! Everything stands on floor that the largest robot asked for (a disc of 0.30 m at least) can reach from the rest of the
+//! building. Which rooms are cleaned, served or off limits, and who walks where, is the domain's data.
+
+mod floor;
+mod people;
+mod points;
+mod regions;
+mod robots;
+
+
+use d3dgen_model::domain::Domain;
+use d3dgen_model::floorplan::Floorplan;
+use d3dgen_model::placements::Placements;
+use d3dgen_model::scenario::Scenario;
+use d3dgen_model::scene_graph::SceneGraph;
+
+use crate::Error;
+use floor::Floor;
+
+/// Fills a furnished building with regions, points, robots and people.
+///
+/// Robots come from the scene graph; without any there are still points and people.
+///
+/// # Errors
+/// `Mismatch` when the placements or the graph speak of rooms that the plan does not have.
+pub fn generate(
+    graph: &SceneGraph,
+    plan: &Floorplan,
+    placements: &Placements,
+    domain: &Domain,
+) -> Result<Scenario, Error> {
+    fits(graph, plan, placements)?;
+    let mut floor = Floor::new(graph, plan, placements, domain);
+    let mut scenario = Scenario {
+        version: 1,
+        seed: graph.seed,
+        rois: regions::all(&floor),
+        pois: points::all(&floor, graph),
+        robots: Vec::new(),
+        agents: Vec::new(),
+    };
+    scenario.robots = robots::all(&mut floor, graph, &scenario.pois);
+    scenario.agents = people::all(&mut floor, graph);
+    Ok(scenario)
+}
+
+fn fits(graph: &SceneGraph, plan: &Floorplan, placements: &Placements) -> Result<(), Error> {
+    let rooms = graph.rooms.iter().map(|r| &r.id).chain(placements.placements.iter().map(|p| &p.room_id));
+    let mut strangers: Vec<&str> = rooms.filter(|id| plan.room(id).is_none()).map(String::as_str).collect();
+    strangers.sort_unstable();
+    strangers.dedup();
+    if strangers.is_empty() {
+        return Ok(());
+    }
+    Err(Error::Mismatch {
+        stage: "scenario",
+        message: format!("the floorplan has no room {}", strangers.join(", ")),
+    })
+}

@@ -1,0 +1,116 @@
+//! The free floor of a furnished building, and spots on it.
+
+use d3dgen_knowledge::clearance::quarter;
+use d3dgen_model::domain::{Domain, ObjectType, RobotUse, RoomType};
+use d3dgen_model::floorplan::{Floorplan, PlanRoom};
+use d3dgen_model::geometry::to_mm;
+use d3dgen_model::occupancy::{Bitmap, Occupancy};
+use d3dgen_model::placements::{Placement, Placements};
+use d3dgen_model::scene_graph::SceneGraph;
+use d3dgen_model::{Point, Pose, Rect};
+
+/// Least radius of the disc that must find its way, m.
+pub(super) const LEAST_RADIUS_M: f64 = 0.30;
+/// Forward and left of the four headings.
+const FORWARD: [(f64, f64); 4] = [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)];
+
+/// The building as robots and people find it.
+pub(super) struct Floor<'a> {
+    pub plan: &'a Floorplan,
+    pub domain: &'a Domain,
+    pub rooms: Vec<Room<'a>>,
+    /// Radius that everything here is reachable for, m.
+    pub radius: f64,
+    occupancy: Occupancy,
+}
+
+/// A room with what stands in it.
+pub(super) struct Room<'a> {
+    pub plan: &'a PlanRoom,
+    pub kind: &'a RoomType,
+    pub objects: Vec<(&'a Placement, &'a ObjectType)>,
+    /// Reachable cells of the room that are still free of robots and people.
+    spots: Bitmap,
+}
+
+impl<'a> Floor<'a> {
+    pub fn new(graph: &SceneGraph, plan: &'a Floorplan, placements: &'a Placements, domain: &'a Domain) -> Self {
+        let occupancy = Occupancy::of_world(plan, placements);
+        let radius = graph.robots.iter().map(|r| r.radius_m).fold(LEAST_RADIUS_M, f64::max);
+        let main = occupancy.reach(plan, radius).main;
+        let room = |room: &'a PlanRoom| {
+            let mut spots = occupancy.room_cells(room);
+            spots.intersect(&main);
+            let here = placements.placements.iter().filter(|p| p.room_id == room.room_id);
+            Room {
+                plan: room,
+                kind: domain.room_type_or_generic(&room.room_type),
+                objects: here.filter_map(|p| Some((p, domain.object(&p.object)?))).collect(),
+                spots,
+            }
+        };
+        Self { rooms: plan.rooms.iter().map(room).collect(), plan, domain, radius, occupancy }
+    }
+
+    /// Returns the reachable spot of a room nearest to a point; `None` when the room has none.
+    pub fn spot_near(&self, room: &Room, p: Point) -> Option<Point> {
+        self.occupancy.nearest(&room.spots, p)
+    }
+
+    /// Returns the reachable spot of a room by its number in a list of them, wrapped around.
+    pub fn spot(&self, room: &Room, number: usize) -> Option<Point> {
+        let count = room.spots.count();
+        let (i, j) = room.spots.cells().nth(number % count.max(1))?;
+        Some(self.occupancy.frame.center(i, j))
+    }
+
+    /// Returns the number of spots of a room.
+    pub fn spots(&self, room: &Room) -> usize {
+        room.spots.count()
+    }
+
+    /// Takes the floor around a robot or person (of this radius) from the spots of all rooms.
+    pub fn take(&mut self, p: Point, radius: f64) {
+        let reach = radius + self.radius;
+        let taken = Rect::new(p.x - reach, p.y - reach, p.x + reach, p.y + reach);
+        let (i0, i1, j0, j1) = self.occupancy.frame.span(&taken);
+        self.rooms.iter_mut().for_each(|r| r.spots.fill(i0, i1, j0, j1, false));
+    }
+}
+
+impl Room<'_> {
+    pub fn is_for(&self, usage: RobotUse) -> bool {
+        self.kind.robot.contains(&usage)
+    }
+}
+
+/// Returns the point at this distance in front of an object.
+pub(super) fn in_front(p: &Placement, distance: f64) -> Point {
+    let (dx, dy) = FORWARD[usize::from(quarter(p.pose.yaw_rad) % 4)];
+    let away = p.size_m[1] / 2.0 + distance;
+    Point::new(p.pose.x + dx * away, p.pose.y + dy * away)
+}
+
+/// Returns the floor in front of an object: its width and `beside` on both sides, `depth` deep.
+pub(super) fn floor_in_front(p: &Placement, depth: f64, beside: f64) -> Rect {
+    let r = p.footprint().bounds();
+    match quarter(p.pose.yaw_rad) {
+        0 => Rect { x0: r.x1, x1: r.x1 + depth, y0: r.y0 - beside, y1: r.y1 + beside },
+        1 => Rect { y0: r.y1, y1: r.y1 + depth, x0: r.x0 - beside, x1: r.x1 + beside },
+        2 => Rect { x1: r.x0, x0: r.x0 - depth, y0: r.y0 - beside, y1: r.y1 + beside },
+        _ => Rect { y1: r.y0, y0: r.y0 - depth, x0: r.x0 - beside, x1: r.x1 + beside },
+    }
+}
+
+/// Returns the pose at a point that looks the nearest way along an axis at another point.
+pub(super) fn looking_at(from: Point, to: Point) -> Pose {
+    use std::f64::consts::{FRAC_PI_2, PI};
+    let (dx, dy) = (to.x - from.x, to.y - from.y);
+    let yaw_rad = match (dx.abs() >= dy.abs(), dx >= 0.0, dy >= 0.0) {
+        (true, true, _) => 0.0,
+        (true, false, _) => PI,
+        (false, _, true) => FRAC_PI_2,
+        (false, _, false) => -FRAC_PI_2,
+    };
+    Pose { x: to_mm(from.x), y: to_mm(from.y), z: 0.0, yaw_rad }
+}

@@ -1,0 +1,116 @@
+//! Named points: docks, service points, cleaning points, the entrance, waiting bays.
+
+use d3dgen_model::domain::{ObjectType, RobotUse, Shape};
+use d3dgen_model::placements::Placement;
+use d3dgen_model::scenario::Poi;
+use d3dgen_model::scene_graph::SceneGraph;
+use d3dgen_model::Point;
+
+use super::floor::{Floor, Room, in_front, looking_at};
+
+/// Gap between a robot's hull and what it serves, m.
+const GAP_M: f64 = 0.10;
+/// Most waiting bays.
+const MOST_BAYS: u32 = 4;
+/// Least distance of a waiting bay from a door, m.
+const BAY_FROM_DOOR_M: f64 = 1.0;
+/// Builds of objects at which a robot serves, the telling ones first.
+const SERVED: [Shape; 8] = [
+    Shape::Counter,
+    Shape::HospitalBed,
+    Shape::Bed,
+    Shape::Desk,
+    Shape::Table,
+    Shape::RoundTable,
+    Shape::Shelf,
+    Shape::Cabinet,
+];
+/// Kind of robot that visits rooms to clean them.
+const CLEANING: &str = "cleaning";
+
+/// Returns what a robot serves in a room: the first object of the most telling build.
+pub(super) fn served<'r>(room: &'r Room) -> Option<&'r (&'r Placement, &'r ObjectType)> {
+    SERVED.iter().find_map(|shape| room.objects.iter().find(|(p, k)| k.shape == *shape && p.support.is_none()))
+}
+
+/// Returns all points; each can be reached.
+pub(super) fn all(floor: &Floor, graph: &SceneGraph) -> Vec<Poi> {
+    let mut out: Vec<Poi> = entrance(floor).into_iter().collect();
+    for room in &floor.rooms {
+        let docks = room.objects.iter().filter(|(_, k)| k.shape == Shape::Dock);
+        for (dock, _) in docks {
+            let number = out.iter().filter(|p| p.kind == "dock").count() + 1;
+            out.extend(at_object(floor, room, dock).map(|pose| poi(format!("dock_{number}"), "dock", room, pose)));
+        }
+    }
+    for room in floor.rooms.iter().filter(|r| r.is_for(RobotUse::Service) && !r.is_for(RobotUse::KeepOut)) {
+        let pose = match served(room) {
+            Some((object, _)) => at_object(floor, room, object),
+            None => in_the_middle(floor, room),
+        };
+        let id = format!("service_point_{}", room.plan.room_id);
+        out.extend(pose.map(|pose| poi(id, "service_point", room, pose)));
+    }
+    if graph.robots.iter().any(|r| r.kind == CLEANING) {
+        let cleaned = |r: &&Room| r.is_for(RobotUse::CleaningHigh) || r.is_for(RobotUse::CleaningLow);
+        for room in floor.rooms.iter().filter(cleaned).filter(|r| !r.is_for(RobotUse::KeepOut)) {
+            let id = format!("cleaning_point_{}", room.plan.room_id);
+            out.extend(in_the_middle(floor, room).map(|pose| poi(id, "cleaning_point", room, pose)));
+        }
+    }
+    out.extend(bays(floor, graph));
+    out
+}
+
+fn poi(poi_id: String, kind: &str, room: &Room, pose: d3dgen_model::Pose) -> Poi {
+    Poi { poi_id, kind: kind.into(), room_id: room.plan.room_id.clone(), pose }
+}
+
+fn at_object(floor: &Floor, room: &Room, object: &Placement) -> Option<d3dgen_model::Pose> {
+    let wanted = in_front(object, floor.radius + GAP_M);
+    let spot = floor.spot_near(room, wanted)?;
+    Some(looking_at(spot, Point::new(object.pose.x, object.pose.y)))
+}
+
+fn in_the_middle(floor: &Floor, room: &Room) -> Option<d3dgen_model::Pose> {
+    let pieces = room.plan.net_polygon.rects();
+    let largest = pieces.iter().max_by(|a, b| a.area().total_cmp(&b.area()))?;
+    let spot = floor.spot_near(room, largest.center())?;
+    Some(looking_at(spot, largest.center()))
+}
+
+/// Returns the point inside the main entrance, looking in.
+fn entrance(floor: &Floor) -> Option<Poi> {
+    let door = floor.plan.doors.iter().find(|d| d.entrance)?;
+    let room = floor.rooms.iter().find(|r| door.room_ids.contains(&r.plan.room_id))?;
+    let middle = door.line.middle();
+    let spot = floor.spot_near(room, middle)?;
+    // looking on in the direction in which one has come in
+    let on = Point::new(2.0 * spot.x - middle.x, 2.0 * spot.y - middle.y);
+    Some(poi("entrance_1".into(), "entrance", room, looking_at(spot, on)))
+}
+
+/// Returns places in the circulation, or in the room one enters through, where robots wait without standing before a door.
+fn bays(floor: &Floor, graph: &SceneGraph) -> Vec<Poi> {
+    let robots: u32 = graph.robots.iter().map(|r| r.count).sum();
+    let entered = |id: &str| graph.room(id).is_some_and(|r| r.entrance);
+    let room = floor.rooms.iter().find(|r| r.plan.circulation);
+    let Some(room) = room.or_else(|| floor.rooms.iter().find(|r| entered(&r.plan.room_id))) else { return Vec::new() };
+    let doors: Vec<Point> = floor.plan.doors_of(&room.plan.room_id).map(|d| d.line.middle()).collect();
+    let mut taken: Vec<Point> = Vec::new();
+    let count = floor.spots(room);
+    for _ in 0..robots.clamp(1, MOST_BAYS) {
+        // every tenth spot: the best of many is as good as the best of all
+        let free = (0..count).step_by(10).filter_map(|n| floor.spot(room, n));
+        let apart = |p: &Point| {
+            let others = taken.iter().all(|t| t.distance(*p) >= 2.0 * floor.radius + GAP_M);
+            others && doors.iter().all(|d| d.distance(*p) >= BAY_FROM_DOOR_M)
+        };
+        let room_around = |p: &Point| doors.iter().chain(&taken).map(|d| d.distance(*p)).fold(f64::MAX, f64::min);
+        let best = free.filter(apart).max_by(|a, b| room_around(a).total_cmp(&room_around(b)));
+        taken.extend(best);
+    }
+    let middle = room.plan.net_polygon.bounds().center();
+    let each = taken.iter().enumerate();
+    each.map(|(i, p)| poi(format!("waiting_bay_{}", i + 1), "waiting_bay", room, looking_at(*p, middle))).collect()
+}

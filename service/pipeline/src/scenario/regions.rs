@@ -1,0 +1,70 @@
+//! Robot zones: floor to be cleaned, floor to serve at, floor around docks, floor to keep out of.
+
+use d3dgen_model::domain::{RobotUse, Shape};
+use d3dgen_model::geometry::to_mm;
+use d3dgen_model::scenario::{Roi, RoiKind};
+use d3dgen_model::{Polygon, Rect};
+
+use super::floor::{Floor, Room, floor_in_front};
+use super::points::served;
+
+/// Depth of the floor to serve at, m.
+const SERVICE_DEPTH_M: f64 = 1.2;
+/// Free floor beside a dock that belongs to it, m.
+const DOCK_BESIDE_M: f64 = 0.5;
+/// Least side of a region, m.
+const LEAST_SIDE_M: f64 = 0.3;
+
+/// Returns all regions, room by room.
+pub(super) fn all(floor: &Floor) -> Vec<Roi> {
+    let mut out = Vec::new();
+    let mut docks = 0;
+    for room in &floor.rooms {
+        let id = &room.plan.room_id;
+        let mut whole = |kind, prefix: &str, note: &str| {
+            out.push(Roi {
+                roi_id: format!("{prefix}_{id}"),
+                kind,
+                room_id: id.clone(),
+                polygon: room.plan.net_polygon.clone(),
+                note: note.into(),
+            });
+        };
+        if room.is_for(RobotUse::KeepOut) {
+            whole(RoiKind::KeepOut, "keep_out", "robots stay out");
+        } else if room.is_for(RobotUse::CleaningHigh) {
+            whole(RoiKind::CleaningZone, "cleaning_zone", "high");
+        } else if room.is_for(RobotUse::CleaningLow) {
+            whole(RoiKind::CleaningZone, "cleaning_zone", "low");
+        }
+        if room.is_for(RobotUse::Service)
+            && let Some((object, _)) = served(room)
+            && let Some(polygon) = clipped(room, &floor_in_front(object, SERVICE_DEPTH_M, 0.0))
+        {
+            let note = format!("in front of {}", object.placement_id);
+            out.push(Roi { roi_id: format!("service_zone_{id}"), kind: RoiKind::ServiceZone, room_id: id.clone(), polygon, note });
+        }
+        for (dock, kind) in room.objects.iter().filter(|(_, k)| k.shape == Shape::Dock) {
+            docks += 1;
+            let depth = kind.clearance_front_m.max(2.0 * floor.radius);
+            if let Some(polygon) = clipped(room, &floor_in_front(dock, depth, DOCK_BESIDE_M)) {
+                let note = format!("free floor of {}", dock.placement_id);
+                let roi_id = format!("charging_buffer_{docks}");
+                out.push(Roi { roi_id, kind: RoiKind::ChargingBuffer, room_id: id.clone(), polygon, note });
+            }
+        }
+    }
+    out
+}
+
+/// Returns the largest part of a rectangle that lies on one straight piece of the room's net floor.
+fn clipped(room: &Room, r: &Rect) -> Option<Polygon> {
+    let parts = room.plan.net_polygon.rects().into_iter().map(|n| Rect {
+        x0: to_mm(n.x0.max(r.x0)),
+        y0: to_mm(n.y0.max(r.y0)),
+        x1: to_mm(n.x1.min(r.x1)),
+        y1: to_mm(n.y1.min(r.y1)),
+    });
+    let parts = parts.filter(|p| p.width() >= LEAST_SIDE_M && p.height() >= LEAST_SIDE_M);
+    parts.max_by(|a, b| a.area().total_cmp(&b.area())).map(|p| Polygon(p.corners().to_vec()))
+}
