@@ -50,8 +50,9 @@ impl Plugin for Builtin {
     }
 
     fn knowledge(&self) -> &KnowledgeBase {
-        self.knowledge
-            .get_or_init(|| serde_json::from_str(self.knowledge_json).expect("a test reads every shipped knowledge base"))
+        self.knowledge.get_or_init(|| {
+            serde_json::from_str(self.knowledge_json).expect("a test reads every shipped knowledge base")
+        })
     }
 }
 

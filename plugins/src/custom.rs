@@ -22,12 +22,14 @@ impl Custom {
     pub fn read(folder: &Path) -> Result<Self, Error> {
         let table = merge::domain_folder(folder)
             .map_err(|reason| Error::Unreadable { folder: folder.to_path_buf(), reason })?;
-        let domain = Domain::from_value(table)
-            .map_err(|source| Error::Invalid { file: folder.join("domain.toml"), source })?;
+        let domain =
+            Domain::from_value(table).map_err(|source| Error::Invalid { file: folder.join("domain.toml"), source })?;
         let file = folder.join("knowledge.json");
         let knowledge = if file.is_file() {
-            let text = std::fs::read_to_string(&file)
-                .map_err(|e| Error::Unreadable { folder: folder.to_path_buf(), reason: format!("knowledge.json: {e}") })?;
+            let text = std::fs::read_to_string(&file).map_err(|e| Error::Unreadable {
+                folder: folder.to_path_buf(),
+                reason: format!("knowledge.json: {e}"),
+            })?;
             KnowledgeBase::from_json(&text).map_err(|source| Error::Invalid { file, source })?
         } else {
             KnowledgeBase::empty(&domain.id)
@@ -84,8 +86,12 @@ mod tests {
             let path = entry.unwrap().path();
             fs::copy(&path, dir.path().join(path.file_name().unwrap())).unwrap();
         }
-        fs::write(dir.path().join("broken.toml"), "[[groups]]\nid = \"x\"\nanchor = \"no_such_thing\"\nmembers = []\n\
-            [[roles]]\nid = \"r\"\nmodel = \"Common/x\"\nspeed_m_s = 1.0\nvisits = [\"no_such_room\"]\n").unwrap();
+        fs::write(
+            dir.path().join("broken.toml"),
+            "[[groups]]\nid = \"x\"\nanchor = \"no_such_thing\"\nmembers = []\n\
+            [[roles]]\nid = \"r\"\nmodel = \"Common/x\"\nspeed_m_s = 1.0\nvisits = [\"no_such_room\"]\n",
+        )
+        .unwrap();
         let message = Custom::read(dir.path()).err().expect("two problems").to_string();
         assert!(message.contains("no_such_thing") && message.contains("no_such_room"), "{message}");
     }

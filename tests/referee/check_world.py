@@ -47,8 +47,9 @@ LINE = 0.05  # half the thickness in which a wall stops a robot
 FLAT = 0.03  # things this low are driven over
 HEAD = 1.2  # things that begin this high do not stop a robot
 SLACK = 0.03  # rounding of a robot's radius that a 5 cm grid would allow too
-PRIVATE = {"bedroom", "bathroom", "toilet", "guest_room", "patient_room"}
-BELONGS = {"bathroom", "toilet", "walk_in_closet", "closet", "dressing_room", "balcony"}
+# Words in room types: rooms one does not walk through, and rooms that may open on such a room alone.
+PRIVATE = ("bedroom", "bath", "suite", "shower", "toilet", "guest_room", "patient_room")
+BELONGS = ("bath", "suite", "shower", "toilet", "closet", "dressing", "balcony")
 
 
 def point(p):
@@ -227,7 +228,7 @@ class World:
         todo = list(reached)
         while todo:
             here = todo.pop()
-            if self.types.get(here) in PRIVATE:
+            if self.is_any(here, PRIVATE):
                 continue
             for link in self.links:
                 if here in link:
@@ -235,8 +236,11 @@ class World:
                     reached |= fresh
                     todo += fresh
         for name in sorted(set(self.zones) - reached):
-            if self.types.get(name) not in BELONGS:
+            if not self.is_any(name, BELONGS):
                 self.fail("private_way", name)
+
+    def is_any(self, zone, words):
+        return any(word in self.types.get(zone, "") for word in words)
 
     def check_graph(self):
         wanted = {room["id"]: room.get("room_type") for room in self.graph["rooms"]}

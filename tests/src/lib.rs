@@ -2,7 +2,10 @@
 //!
 //! The tests themselves are one binary, `suite/main.rs`; the times of the stages are in `benches/stages.rs`.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::sync::OnceLock;
 
 use d3dgen_model::document::Document;
 use d3dgen_model::domain::Domain;
@@ -58,4 +61,64 @@ pub fn golden(file: &Path, found: &str) {
             number + 1
         );
     }
+}
+
+/// Returns the `d3dgen` program, built when it is stale.
+///
+/// # Panics
+/// When it does not build.
+pub fn program() -> &'static Path {
+    static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
+    PROGRAM.get_or_init(|| {
+        // Cargo builds a package's programs for its own tests only, so it is asked for this one.
+        let args = ["build", "-q", "--offline", "-p", "d3dgen-cli", "--bin", "d3dgen", "--message-format", "json"];
+        let built = Command::new(env!("CARGO")).args(args).current_dir(workspace()).output().expect("cargo runs");
+        assert!(built.status.success(), "{}", String::from_utf8_lossy(&built.stderr));
+        let messages = String::from_utf8_lossy(&built.stdout).into_owned();
+        let program = messages.lines().filter_map(|line| {
+            let message: serde_json::Value = serde_json::from_str(line).ok()?;
+            message["executable"].as_str().map(PathBuf::from)
+        });
+        program.last().expect("cargo names the program it built")
+    })
+}
+
+/// Runs `d3dgen` in a folder.
+///
+/// # Panics
+/// When it cannot be started.
+pub fn run(folder: &Path, args: &[&str]) -> Output {
+    Command::new(program()).args(args).current_dir(folder).output().expect("the program starts")
+}
+
+/// Runs `d3dgen` and returns its standard output.
+///
+/// # Panics
+/// When it fails, with what it said.
+pub fn run_well(folder: &Path, args: &[&str]) -> String {
+    let output = run(folder, args);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "d3dgen {}: {said}", args.join(" "));
+    String::from_utf8(output.stdout).expect("the program writes UTF-8")
+}
+
+/// Returns every file below a folder by relative path, with its bytes.
+///
+/// # Panics
+/// When the folder cannot be read.
+pub fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    fn walk(base: &Path, folder: &Path, found: &mut BTreeMap<String, Vec<u8>>) {
+        for entry in std::fs::read_dir(folder).expect("a folder of ours") {
+            let path = entry.expect("a folder of ours").path();
+            if path.is_dir() {
+                walk(base, &path, found);
+            } else {
+                let name = path.strip_prefix(base).expect("it lies below").to_string_lossy().into_owned();
+                found.insert(name, std::fs::read(&path).expect("a file of ours"));
+            }
+        }
+    }
+    let mut found = BTreeMap::new();
+    walk(folder, folder, &mut found);
+    found
 }

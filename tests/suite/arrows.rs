@@ -1,4 +1,4 @@
-//! The crates use each other only along the arrows of CONTRIBUTING.md, and only the command knows clock and environment.
+//! The crates use each other only along the arrows of ARCHITECTURE.md, and only the command knows clock and environment.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -7,7 +7,7 @@ use std::process::Command;
 use d3dgen_tests::workspace;
 use serde_json::Value;
 
-/// What each crate may use. A new arrow is a decision: amend the list in CONTRIBUTING.md with it.
+/// What each crate may use. A new arrow is a decision: amend the list in ARCHITECTURE.md with it.
 const ARROWS: &[(&str, &[&str])] = &[
     ("model", &[]),
     ("plugins", &["model"]),

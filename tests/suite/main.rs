@@ -2,4 +2,8 @@
 
 mod arrows;
 mod documents;
+mod errors;
+mod goldens;
+mod pins;
+mod same_bytes;
 mod schemas;

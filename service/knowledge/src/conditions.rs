@@ -70,7 +70,8 @@ fn holds(row: &ConditionRow, query: &Query) -> bool {
         When::TwoRobots => query.robot_count() >= 2,
         When::Persons => row.holds(f64::from(query.persons)),
         When::RoomsOf => {
-            let count: u32 = query.rooms.iter().filter(|r| row.room_types.contains(&r.room_type)).map(|r| r.count).sum();
+            let count: u32 =
+                query.rooms.iter().filter(|r| row.room_types.contains(&r.room_type)).map(|r| r.count).sum();
             row.holds(f64::from(count))
         }
     }

@@ -83,7 +83,9 @@ fn strictest(
     candidates
         .iter()
         .filter(|(a, _)| about_robots(a) || Some(&a.citation.jurisdiction) == nearest)
-        .max_by(|(a, x), (b, y)| x.total_cmp(y).then_with(|| b.constraint.constraint_id.cmp(&a.constraint.constraint_id)))
+        .max_by(|(a, x), (b, y)| {
+            x.total_cmp(y).then_with(|| b.constraint.constraint_id.cmp(&a.constraint.constraint_id))
+        })
         .map(|(a, value)| Limit { value: *value, constraint_id: a.constraint.constraint_id.clone() })
 }
 

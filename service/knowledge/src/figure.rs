@@ -53,7 +53,9 @@ pub(crate) fn bounds(c: &Constraint, measure: Measure, persons: u32) -> Result<B
                 .map(|v| one(v, c, measure))
                 .ok_or_else(|| "its table is not by number of people".into()),
         },
-        Value::Expression { expr } => Err(format!("its formula `{expr}` has quantities that the documents do not hold")),
+        Value::Expression { expr } => {
+            Err(format!("its formula `{expr}` has quantities that the documents do not hold"))
+        }
         Value::List(_) => Err("its value is a list".into()),
     }
 }

@@ -92,9 +92,9 @@ impl FreeSpace {
         let mut parts: Vec<usize> = group.clone();
         parts.sort_unstable();
         parts.dedup();
-        parts.iter().any(|part| {
-            gates.iter().all(|gate| wide.iter().zip(&group).any(|(r, g)| g == part && serves(r, gate)))
-        })
+        parts
+            .iter()
+            .any(|part| gates.iter().all(|gate| wide.iter().zip(&group).any(|(r, g)| g == part && serves(r, gate))))
     }
 }
 
@@ -173,7 +173,11 @@ mod tests {
 
     /// An L-shaped corridor: 10 m east at 1.5 m wide, then 6 m north at 1.2 m wide.
     fn corridor() -> Polygon {
-        Polygon([(0., 0.), (10., 0.), (10., 7.5), (8.8, 7.5), (8.8, 1.5), (0., 1.5)].map(|(x, y)| Point::new(x, y)).to_vec())
+        Polygon(
+            [(0., 0.), (10., 0.), (10., 7.5), (8.8, 7.5), (8.8, 1.5), (0., 1.5)]
+                .map(|(x, y)| Point::new(x, y))
+                .to_vec(),
+        )
     }
 
     #[test]

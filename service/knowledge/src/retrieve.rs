@@ -98,7 +98,9 @@ pub fn retrieve(knowledge: &KnowledgeBase, query: &Query) -> Retrieval {
     }
     supersede(&mut constraints, &chain);
     let limits = draw_limits::draw(&constraints, &chain, query);
-    let used = |code: &String| code == jurisdiction::INTERNATIONAL || constraints.iter().any(|c| &c.citation.jurisdiction == code);
+    let used = |code: &String| {
+        code == jurisdiction::INTERNATIONAL || constraints.iter().any(|c| &c.citation.jurisdiction == code)
+    };
     Retrieval {
         jurisdictions: chain.iter().filter(|c| used(c)).cloned().collect(),
         not_applicable,
@@ -118,7 +120,8 @@ fn applicable(c: &Constraint, reference: &Reference, query: &Query) -> Option<Ap
     }
     let quantity = TABLES.quantity(c);
     // a rule that asks for a room speaks of buildings without it too
-    let presence = quantity.is_some_and(|q| matches!(q.measure, Measure::RoomsPresent | Measure::RoomNeededAbovePersons));
+    let presence =
+        quantity.is_some_and(|q| matches!(q.measure, Measure::RoomsPresent | Measure::RoomNeededAbovePersons));
     let scope = match scope(&c.space_type, query) {
         None if presence => Scope::Rooms(BTreeSet::new()),
         found => narrowed(found?, &conditions, query)?,

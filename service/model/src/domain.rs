@@ -10,7 +10,7 @@ mod room_type;
 
 pub use furnishing::{Arrangement, FacingRule, Furnishing, Group, Member, Relation};
 pub use object::{Mount, ObjectType, Shape};
-pub use program::{Adjacency, AdjacencyRelation, Circulation, Program, ProgramRoom, Scheme};
+pub use program::{Adjacency, AdjacencyRelation, Circulation, Occupants, Program, ProgramRoom, Scheme};
 pub use room_type::{Access, AreaRange, Daylight, Materials, Privacy, RobotUse, RoomType, Zone};
 
 use std::collections::BTreeMap;

@@ -27,4 +27,7 @@ pub enum Error {
         /// What does not fit, with ids.
         message: String,
     },
+    /// The caller asked to stop.
+    #[error("cancelled")]
+    Cancelled,
 }

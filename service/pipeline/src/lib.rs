@@ -5,6 +5,7 @@
 
 pub mod error;
 pub mod floorplan;
+pub mod generate;
 pub mod placement;
 pub mod scenario;
 pub mod scene_graph;

@@ -29,6 +29,10 @@ impl Exporter for Arena {
     }
 
     fn export(&self, world: &World, domain: &Domain) -> Result<Vec<File>, Error> {
+        if snake(&world.name) != world.name || world.name.is_empty() {
+            let reason = "a world's name is of lower-case letters, digits and underscores".to_owned();
+            return Err(Error::Unsupported { exporter: "arena", subject: world.name.clone(), reason });
+        }
         let root = format!("arena/worlds/{}", world.name);
         let models = assets::Models::of(world)?;
         let mut files = vec![

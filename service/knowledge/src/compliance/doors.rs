@@ -30,7 +30,9 @@ fn concerns(site: &Site, a: &Applicable, door: &Door) -> bool {
     match &a.scope {
         Scope::Doors => leaf,
         Scope::Entrance => door.entrance,
-        Scope::Circulation => leaf && door.room_ids.iter().any(|id| site.world.floorplan.room(id).is_some_and(|r| r.circulation)),
+        Scope::Circulation => {
+            leaf && door.room_ids.iter().any(|id| site.world.floorplan.room(id).is_some_and(|r| r.circulation))
+        }
         // the door of a room, not those of the closets and bathrooms that hang on it
         Scope::Rooms(types) => {
             let hangs_on = |inner: &str, outer: &str| {

@@ -75,7 +75,9 @@ pub fn evaluate(world: &World, domain: &Domain, retrieval: &Retrieval) -> (Vec<C
 fn readings(site: &Site, a: &Applicable, rule: &Rule) -> Vec<Reading> {
     use Measure as M;
     match rule.quantity.measure {
-        M::RoomArea | M::AreaPerBed | M::AreaPerPerson | M::AirVolumePerPerson | M::LeastDimension => rooms::read(site, a, rule),
+        M::RoomArea | M::AreaPerBed | M::AreaPerPerson | M::AirVolumePerPerson | M::LeastDimension => {
+            rooms::read(site, a, rule)
+        }
         M::InnerRectangle | M::FreeRectangle | M::TurningCircle | M::Proportion | M::CeilingHeight => {
             rooms::read(site, a, rule)
         }
@@ -85,7 +87,9 @@ fn readings(site: &Site, a: &Applicable, rule: &Rule) -> Vec<Reading> {
         M::CirculationWidth | M::TravelDistance | M::StraightDistance | M::DistanceToRoom | M::DistanceBetween => {
             routes::read(site, a, rule)
         }
-        M::BuildingArea | M::CirculationShare | M::RoomsPresent | M::RoomNeededAbovePersons => counts::read(site, a, rule),
+        M::BuildingArea | M::CirculationShare | M::RoomsPresent | M::RoomNeededAbovePersons => {
+            counts::read(site, a, rule)
+        }
         M::ToiletsForPersons | M::PersonsPerToilet | M::BedsPerToilet => counts::read(site, a, rule),
         M::ObjectFront | M::ObjectSides | M::GapBetweenObjects | M::FreeAreaAtObject => objects::read(site, a, rule),
         M::DockClearOfDoors | M::DockInDryRoom => objects::read(site, a, rule),
@@ -118,11 +122,16 @@ fn judge(a: &Applicable, rule: &Rule, readings: &[Reading], retrieval: &Retrieva
     let broken: Vec<&Reading> = readings.iter().filter(|r| margin(r) < -SLACK).collect();
     if !broken.is_empty() {
         let each = broken.into_iter();
-        return each.map(|r| result(a, Some(rule), &r.subject, Status::Violated, Some(r.value), note(String::new()))).collect();
+        return each
+            .map(|r| result(a, Some(rule), &r.subject, Status::Violated, Some(r.value), note(String::new())))
+            .collect();
     }
     let closest = readings.iter().min_by(|x, y| margin(x).total_cmp(&margin(y)));
     let among = if readings.len() > 1 { format!("closest of {}", readings.len()) } else { String::new() };
-    closest.map(|r| result(a, Some(rule), &r.subject, Status::Satisfied, Some(r.value), note(among))).into_iter().collect()
+    closest
+        .map(|r| result(a, Some(rule), &r.subject, Status::Satisfied, Some(r.value), note(among)))
+        .into_iter()
+        .collect()
 }
 
 fn by_head_count(a: &Applicable) -> bool {

@@ -1,7 +1,7 @@
 //! Free floor around objects, and where docks stand.
 
-use d3dgen_model::floorplan::Door;
 use d3dgen_model::Rect;
+use d3dgen_model::floorplan::Door;
 
 use super::Reading;
 use super::site::{Object, Room, Site};

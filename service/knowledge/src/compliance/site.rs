@@ -2,12 +2,12 @@
 
 use std::cell::OnceCell;
 
+use d3dgen_model::Rect;
 use d3dgen_model::domain::{Domain, ObjectType, RoomType, Shape};
 use d3dgen_model::floorplan::{Door, PlanRoom, Window};
 use d3dgen_model::occupancy::{Occupancy, stops_robot};
 use d3dgen_model::placements::Placement;
 use d3dgen_model::world::World;
-use d3dgen_model::Rect;
 
 use crate::conditions::Guard;
 use crate::freespace::FreeSpace;

@@ -36,12 +36,36 @@ pub struct ProgramRoom {
     /// Rooms that come with each one (a patient room's en suite); counted as rooms of their own.
     #[serde(default)]
     pub with: Vec<String>,
-    /// Adds rooms so that there is one per this many occupants (staff, beds, desks as the prompt gives them).
+    /// Whose number `occupants_per_room` and `area_per_occupant_m2` count.
+    #[serde(default, skip_serializing_if = "Occupants::is_staff")]
+    pub occupants: Occupants,
+    /// Adds rooms so that there is one per this many occupants, as the prompt gives them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub occupants_per_room: Option<u32>,
     /// Floor area per occupant, m^2, for rooms that grow with the head count (an open office).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub area_per_occupant_m2: Option<f64>,
+}
+
+/// A head count of a prompt.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Occupants {
+    /// Those who work there, or their desks.
+    #[default]
+    Staff,
+    /// Guests, pupils, customers.
+    Visitors,
+    /// Patients' beds.
+    Beds,
+    /// Those who live there.
+    Residents,
+}
+
+impl Occupants {
+    fn is_staff(&self) -> bool {
+        *self == Self::Staff
+    }
 }
 
 /// How two room types relate.

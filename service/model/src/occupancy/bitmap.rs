@@ -279,16 +279,14 @@ fn shift_up(row: &mut [u64], step: usize) {
     }
 }
 
-/// Spreads set bits along a row as far as the mask has ones (parallel prefix inside a word, a carry between words).
+/// Spreads set bits along a row as far as the mask has ones: up by addition, down by parallel prefix, a carry between
+/// words.
 fn spread_row(row: &mut [u64], mask: &[u64]) {
     let mut carry = 0;
     for (g, &m) in row.iter_mut().zip(mask) {
         *g |= carry & m;
-        let mut p = m;
-        for shift in [1, 2, 4, 8, 16, 32] {
-            *g |= p & (*g << shift);
-            p &= p << shift;
-        }
+        // adding a seed to its run of ones carries to the run's end: what the sum changes is what the seed reaches
+        *g |= (m.wrapping_add(*g) ^ m) & m;
         carry = *g >> 63;
     }
     carry = 0;

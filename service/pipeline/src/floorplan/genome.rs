@@ -183,7 +183,7 @@ fn random_cap(room: usize, rng: &mut Stream) -> Cap {
 /// Returns true for rooms small enough to be cut out of a larger one's corridor side.
 pub(super) fn is_nestable(brief: &Brief, room: usize) -> bool {
     let spec = &brief.rooms[room];
-    spec.area_target <= 9.0 && spec.daylight != Daylight::Required && !spec.entrance
+    spec.area_target <= 9.0 && !spec.needs_outer_wall() && !spec.entrance
 }
 
 /// Returns the room that is entered through `room` (an isolation room through its anteroom), if any.

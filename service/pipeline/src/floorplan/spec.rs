@@ -37,6 +37,13 @@ pub(super) struct RoomSpec {
     pub host: Option<usize>,
 }
 
+impl RoomSpec {
+    /// Returns true when a hard rule puts it on the facade: daylight rooms and balconies.
+    pub(super) fn needs_outer_wall(&self) -> bool {
+        self.daylight == Daylight::Required || self.zone == Zone::Outdoor
+    }
+}
+
 /// A relation between two rooms other than the spine.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Link {

@@ -3,11 +3,13 @@
 use std::rc::Rc;
 
 use d3dgen_model::geometry::Rect;
-use d3dgen_model::occupancy::{Bitmap, CELL_M, Frame};
+use d3dgen_model::occupancy::{Bitmap, Frame};
 
-use super::geom::Box2;
+use super::geom::{Box2, mm};
 use super::space::Space;
 
+/// Half the edge of a grid cell, mm.
+const HALF: i32 = 25;
 /// Clear floor that may be cut off in a room before it counts as split, as a share of the whole.
 const POCKET_SHARE: f64 = 0.03;
 /// Clear floor a single pocket may have whatever the room's size: a quarter of this many cells is 1 dm^2.
@@ -36,7 +38,9 @@ struct Ground {
     inside: Bitmap,
     /// A cell in each door, outside the wall.
     doors: Vec<(usize, usize)>,
-    radius_m: f64,
+    radius: i32,
+    /// South-west corner of the grid, mm.
+    origin: (i32, i32),
 }
 
 fn rect_m(b: &Box2) -> Rect {
@@ -63,10 +67,10 @@ impl Nav {
             let seed = wall.strip(mid - 1, mid + 1, -220, -218);
             doors.extend(frame.cell(seed.center_m()));
         }
-        let radius_m = f64::from(radius) / 1000.0;
-        let clear = floor.eroded(radius_m / CELL_M);
+        let clear = floor.eroded(f64::from(radius) / f64::from(2 * HALF));
         let total = clear.count_common(&inside);
-        let ground = Ground { frame, inside, doors, radius_m };
+        let origin = (mm(frame.origin.x), mm(frame.origin.y));
+        let ground = Ground { frame, inside, doors, radius, origin };
         let main = clear.clone();
         let mut out = Self { main, clear, area: total, total, whole: false, shared: Rc::new(ground) };
         out.settle();
@@ -79,22 +83,22 @@ impl Nav {
     /// [`Nav::settle`] has to look.
     pub fn block(&mut self, obstacle: &Box2) {
         let ground = Rc::clone(&self.shared);
-        let r = rect_m(obstacle);
-        let (bi0, bi1, j0, j1) = ground.frame.span(&r.grown(ground.radius_m));
+        let (o, radius) = (obstacle, ground.radius);
+        // first cell whose center is at or beyond a coordinate, and one past the last at or before it
+        let first = |v: i32, origin: i32| i64::from((v - origin + HALF - 1).div_euclid(2 * HALF));
+        let last = |v: i32, origin: i32| i64::from((v - origin + HALF).div_euclid(2 * HALF));
+        let (j0, j1) = (first(o.y0 - radius, ground.origin.1), last(o.y1 + radius, ground.origin.1));
+        let (i0, i1) = (first(o.x0 - radius, ground.origin.0), last(o.x1 + radius, ground.origin.0));
         for j in j0.max(0)..j1 {
-            let y = ground.frame.center(0, j as usize).y;
-            let dy = (r.y0 - y).max(y - r.y1).max(0.0);
-            let left = ground.radius_m * ground.radius_m - dy * dy;
-            if left > 0.0 {
-                let half = left.sqrt() - 1e-6;
-                let row = Rect { x0: r.x0 - half, x1: r.x1 + half, ..r };
-                let (i0, i1, _, _) = ground.frame.span(&row);
-                self.total -= self.clear.remove_counting(i0, i1, j as usize, &ground.inside);
-                self.area -= self.main.remove_counting(i0, i1, j as usize, &ground.inside);
-            }
+            let y = ground.origin.1 + (2 * j as i32 + 1) * HALF;
+            let dy = (o.y0 - y).max(y - o.y1).max(0);
+            let half = f64::from(radius * radius - dy * dy).max(0.0).sqrt() as i32;
+            let (a, b) = (first(o.x0 - half, ground.origin.0), last(o.x1 + half, ground.origin.0));
+            self.total -= self.clear.remove_counting(a, b, j as usize, &ground.inside);
+            self.area -= self.main.remove_counting(a, b, j as usize, &ground.inside);
         }
         if self.whole {
-            self.whole = self.main.pieces_around(bi0 - 1, bi1 + 1, j0 - 1, j1 + 1) <= 1;
+            self.whole = self.main.pieces_around(i0 - 1, i1 + 1, j0 - 1, j1 + 1) <= 1;
         }
     }
 
@@ -127,7 +131,7 @@ impl Nav {
 
     /// Returns true when the disc can come up to one of the rectangles.
     pub fn reaches(&self, targets: &[Box2]) -> bool {
-        let margin = (self.shared.radius_m * 1000.0) as i32 + 100;
+        let margin = self.shared.radius + 100;
         targets.iter().any(|t| {
             let (i0, i1, j0, j1) = self.shared.frame.span(&rect_m(&t.grown(margin)));
             self.main.any_in(i0, i1, j0, j1)

@@ -9,7 +9,6 @@ mod points;
 mod regions;
 mod robots;
 
-
 use d3dgen_model::domain::Domain;
 use d3dgen_model::floorplan::Floorplan;
 use d3dgen_model::placements::Placements;
@@ -54,8 +53,5 @@ fn fits(graph: &SceneGraph, plan: &Floorplan, placements: &Placements) -> Result
     if strangers.is_empty() {
         return Ok(());
     }
-    Err(Error::Mismatch {
-        stage: "scenario",
-        message: format!("the floorplan has no room {}", strangers.join(", ")),
-    })
+    Err(Error::Mismatch { stage: "scenario", message: format!("the floorplan has no room {}", strangers.join(", ")) })
 }

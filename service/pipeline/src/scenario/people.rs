@@ -19,7 +19,8 @@ const MOST_WAYPOINTS: usize = 4;
 /// Returns a few people: one of each role that has rooms to visit here, then more of the first roles.
 pub(super) fn all(floor: &mut Floor, graph: &SceneGraph) -> Vec<Agent> {
     let domain = floor.domain;
-    let walkable = |role: &&Role| floor.rooms.iter().any(|r| role.visits.contains(&r.plan.room_type) && floor.spots(r) > 0);
+    let walkable =
+        |role: &&Role| floor.rooms.iter().any(|r| role.visits.contains(&r.plan.room_type) && floor.spots(r) > 0);
     let roles: Vec<&Role> = domain.roles.iter().filter(walkable).collect();
     let wanted = (floor.rooms.len() / ROOMS_PER_PERSON).clamp(PEOPLE.0, PEOPLE.1);
     let mut out: Vec<Agent> = Vec::new();

@@ -1,10 +1,10 @@
 //! Named points: docks, service points, cleaning points, the entrance, waiting bays.
 
+use d3dgen_model::Point;
 use d3dgen_model::domain::{ObjectType, RobotUse, Shape};
 use d3dgen_model::placements::Placement;
 use d3dgen_model::scenario::Poi;
 use d3dgen_model::scene_graph::SceneGraph;
-use d3dgen_model::Point;
 
 use super::floor::{Floor, Room, in_front, looking_at};
 

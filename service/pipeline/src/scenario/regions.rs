@@ -42,7 +42,13 @@ pub(super) fn all(floor: &Floor) -> Vec<Roi> {
             && let Some(polygon) = clipped(room, &floor_in_front(object, SERVICE_DEPTH_M, 0.0))
         {
             let note = format!("in front of {}", object.placement_id);
-            out.push(Roi { roi_id: format!("service_zone_{id}"), kind: RoiKind::ServiceZone, room_id: id.clone(), polygon, note });
+            out.push(Roi {
+                roi_id: format!("service_zone_{id}"),
+                kind: RoiKind::ServiceZone,
+                room_id: id.clone(),
+                polygon,
+                note,
+            });
         }
         for (dock, kind) in room.objects.iter().filter(|(_, k)| k.shape == Shape::Dock) {
             docks += 1;

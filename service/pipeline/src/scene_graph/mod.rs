@@ -1,1 +1,77 @@
-//! Stage `scene_graph`: under construction.
+//! Stage `scene_graph`: from a prompt to rooms and relations.
+//!
+//! No language model: rules over the words of the prompt and the data of the domains. `reading` understands the prompt
+//! with the modules about words, `program` completes the rooms, `rooms` names, sizes and furnishes them, `edges`
+//! connects them.
+
+mod building;
+mod dwelling;
+mod edges;
+mod language;
+mod measures;
+mod mentions;
+mod numbers;
+mod places;
+mod program;
+mod reading;
+mod relations;
+mod robots;
+mod rooms;
+mod text;
+mod unknown;
+mod wishes;
+mod words;
+
+use d3dgen_model::scene_graph::SceneGraph;
+use d3dgen_plugins::Registry;
+
+use crate::Error;
+
+/// What to build: a prompt, and flags that overrule it.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Request {
+    /// What people ask for, in English, German, French, Spanish, Chinese or Korean.
+    pub prompt: String,
+    /// Seed of every random choice.
+    pub seed: u64,
+    /// Domain id; read from the prompt when absent.
+    pub domain: Option<String>,
+    /// Country as ISO 3166-1 alpha-2 code or name; read from the prompt when absent.
+    pub country: Option<String>,
+    /// Rooms in total, circulation aside.
+    pub rooms: Option<u32>,
+    /// Net floor area in total, m^2.
+    pub area_m2: Option<f64>,
+    /// Radius of the largest robot, m.
+    pub robot_radius_m: Option<f64>,
+}
+
+/// Turns a request into a scene graph.
+///
+/// # Errors
+/// `Refused` for prompts without words, absurd sizes, unknown domains and countries, with what would work.
+pub fn generate(request: &Request, registry: &Registry) -> Result<SceneGraph, Error> {
+    let mut reading = reading::read(request, registry)?;
+    let planned = program::complete(&mut reading);
+    let mut rooms = rooms::describe(&mut reading, &planned);
+    let web = edges::connect(&mut reading, &planned, &mut rooms);
+    Ok(SceneGraph {
+        version: 1,
+        prompt: request.prompt.clone(),
+        seed: request.seed,
+        domain: reading.domain.id.clone(),
+        building_type: reading.building_type,
+        country_code: reading.country_code,
+        language: reading.language.into(),
+        area_m2: reading.area_m2,
+        occupancy: reading.occupancy,
+        accessible: reading.accessible,
+        rooms,
+        edges: web.edges,
+        apart: web.apart,
+        forbidden_room_types: reading.wishes.forbidden,
+        robots: reading.robots,
+        assumptions: reading.assumptions,
+        conflicts: reading.conflicts,
+    })
+}

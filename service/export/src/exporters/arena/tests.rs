@@ -152,6 +152,14 @@ fn an_asset_reference_cannot_leave_the_asset_folder() {
 }
 
 #[test]
+fn a_world_name_cannot_leave_the_output_folder() {
+    for name in ["", "../x", "A", "a/b"] {
+        let world = World { name: name.into(), ..sample::world() };
+        assert!(Arena.export(&world, &sample::domain()).is_err(), "{name}");
+    }
+}
+
+#[test]
 fn the_map_is_free_in_rooms_and_doors_and_black_outside() {
     let world = sample::world();
     let bytes = map::png(&world.floorplan).unwrap();

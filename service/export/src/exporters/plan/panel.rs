@@ -339,7 +339,7 @@ impl Swatch {
                 page.path_with(&fill, Path::new().rect(&r));
             }
             Self::Roi(kind) => {
-                robots::area(page, *kind, Path::new().rect(&r), &[r], 0.6 * k);
+                robots::area(page, *kind, Path::new().rect(&r), &[r], 0.5 * k.max(0.9), 0.9);
                 if matches!(kind, RoiKind::CleaningZone | RoiKind::KeepOut) {
                     page.path("fr", Path::new().rect(&r));
                 }

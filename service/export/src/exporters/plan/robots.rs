@@ -18,26 +18,31 @@ pub(super) fn zones(page: &mut Page, frame: &Frame, scenario: &Scenario, k: f64)
     for roi in rois {
         let outline = Path::new().polygon(&on_sheet(frame, &roi.polygon));
         let rects: Vec<Rect> = roi.polygon.rects().iter().map(|r| frame.rect(r)).collect();
-        area(page, roi.kind, outline, &rects, k);
+        area(page, roi.kind, outline, &rects, k, 0.36);
     }
     page.close_group();
 }
 
-/// Draws one zone in the look of its kind; also the swatch of the legend.
-pub(super) fn area(page: &mut Page, kind: RoiKind, outline: Path, rects: &[Rect], k: f64) {
+/// Draws one zone in the look of its kind, its hatching this opaque; also the swatch of the legend.
+pub(super) fn area(page: &mut Page, kind: RoiKind, outline: Path, rects: &[Rect], k: f64, opacity: f64) {
     let (fill, stroke) = style::roi_colors(kind);
     match kind {
         RoiKind::CleaningZone => {
             let lines = rects.iter().fold(Path::new(), |path, r| hatch(path, r, 17.0 * k, false));
-            let look =
-                format!("fill=\"none\" stroke=\"{stroke}\" stroke-opacity=\".36\" stroke-width=\"{:.2}\"", 0.9 * k);
+            let look = format!(
+                "fill=\"none\" stroke=\"{stroke}\" stroke-opacity=\"{opacity}\" stroke-width=\"{:.2}\"",
+                0.9 * k
+            );
             page.path_with(&look, lines);
         }
         RoiKind::KeepOut => {
             let lines =
                 rects.iter().fold(Path::new(), |path, r| hatch(hatch(path, r, 13.0 * k, false), r, 13.0 * k, true));
-            let look =
-                format!("fill=\"none\" stroke=\"{stroke}\" stroke-opacity=\".28\" stroke-width=\"{:.2}\"", 0.9 * k);
+            let look = format!(
+                "fill=\"none\" stroke=\"{stroke}\" stroke-opacity=\"{:.2}\" stroke-width=\"{:.2}\"",
+                0.78 * opacity,
+                0.9 * k
+            );
             page.path_with(&look, lines);
         }
         RoiKind::ServiceZone | RoiKind::ChargingBuffer => {

@@ -22,7 +22,13 @@ pub fn floating(c: &Context, out: &mut Findings) {
         let ends = door.room_ids.iter().filter_map(|id| c.room(id));
         let off = ends.map(|r| off_outline(&door.line, r)).fold(0.0, f64::max);
         if off > ON_LINE_M {
-            out.add_figure(&door.door_id, format!("{off:.2} m of the door lie on no outline of its rooms"), off, 0.0, "m");
+            out.add_figure(
+                &door.door_id,
+                format!("{off:.2} m of the door lie on no outline of its rooms"),
+                off,
+                0.0,
+                "m",
+            );
         }
         let crossed: f64 = c
             .plan()

@@ -124,7 +124,10 @@ fn belongs_to_wall(c: &Context, room: &Room, p: &Placement) -> bool {
     let name = item.unwrap_or(&p.object);
     let mut lines = room.kind.furnishing.iter().filter(|f| f.item == name).peekable();
     let against = |f: &Furnishing| {
-        matches!(f.arrangement, Arrangement::Wall | Arrangement::SolidWall | Arrangement::WindowWall | Arrangement::Corner)
+        matches!(
+            f.arrangement,
+            Arrangement::Wall | Arrangement::SolidWall | Arrangement::WindowWall | Arrangement::Corner
+        )
     };
     lines.peek().is_some() && lines.all(against)
 }
@@ -152,7 +155,9 @@ pub fn clearance(c: &Context, out: &mut Findings) {
         let blocking: Vec<&Object> = c.objects_in(&room.plan.room_id).filter(|o| o.blocks).collect();
         for object in &blocking {
             let p = object.placement;
-            let Some(kind) = object.kind.filter(|k| k.clearance_front_m > 0.0 && p.mount == Mount::Floor) else { continue };
+            let Some(kind) = object.kind.filter(|k| k.clearance_front_m > 0.0 && p.mount == Mount::Floor) else {
+                continue;
+            };
             out.look();
             let others = blocking.iter().filter(|o| !together(o.placement, p)).map(|o| o.rect);
             let depth = free_depth(p, Side::Front, &room.plan.net_polygon, others);

@@ -33,7 +33,8 @@ fn joined(c: &Context, a: &str, b: &str) -> bool {
 
 /// Returns the length of the boundary the rooms share, m.
 fn common_wall(a: &Room, b: &Room) -> f64 {
-    let each = a.plan.polygon.edges().flat_map(|e| b.plan.polygon.edges().filter_map(move |f| shared(&e, &f, ON_LINE_M)));
+    let each =
+        a.plan.polygon.edges().flat_map(|e| b.plan.polygon.edges().filter_map(move |f| shared(&e, &f, ON_LINE_M)));
     each.map(|(from, to)| to - from).sum()
 }
 

@@ -35,7 +35,11 @@ const fn rule(id: &'static str, title: &'static str, check: fn(&Context, &mut Fi
 /// Every hard rule.
 pub const RULES: &[Rule] = &[
     rule("not_finite", "every number is finite", zones::not_finite),
-    rule("zone_invalid", "room outlines have three corners or more, do not cross themselves and enclose an area", zones::invalid),
+    rule(
+        "zone_invalid",
+        "room outlines have three corners or more, do not cross themselves and enclose an area",
+        zones::invalid,
+    ),
     rule("zone_clockwise", "room outlines run counter-clockwise without repeating the first corner", zones::clockwise),
     rule("zone_overlap", "two rooms share no floor", zones::overlap),
     rule("zone_net", "the net outline of a room lies within its outline and has the stated area", zones::net),
@@ -57,9 +61,17 @@ pub const RULES: &[Rule] = &[
     rule("object_no_size", "every object has positive extents", objects::size),
     rule("object_outside", "an object stands within its room", objects::outside),
     rule("object_collision", "two objects do not share space", objects::collision),
-    rule("object_unsupported", "an object stands on the floor or a surface, or hangs on a wall or the ceiling", objects::support),
+    rule(
+        "object_unsupported",
+        "an object stands on the floor or a surface, or hangs on a wall or the ceiling",
+        objects::support,
+    ),
     rule("object_too_high", "an object fits under the ceiling", objects::ceiling),
-    rule("unreachable_zone", "a person or robot gets from the entrance to at least half of every room's free floor", navigation::zones),
+    rule(
+        "unreachable_zone",
+        "a person or robot gets from the entrance to at least half of every room's free floor",
+        navigation::zones,
+    ),
     rule("free_space_split", "at least 95 % of the free floor is connected", navigation::split),
     rule("corridor_narrow", "circulation keeps its clear width from door to door", navigation::corridors),
     rule("graph_room_missing", "the rooms are exactly those of the scene graph", graph::rooms),
@@ -130,6 +142,11 @@ impl Findings {
     }
 
     pub(crate) fn into_result(self, title: &str) -> RuleResult {
-        RuleResult { rule: self.rule.to_owned(), title: title.to_owned(), checked: self.checked, violations: self.violations }
+        RuleResult {
+            rule: self.rule.to_owned(),
+            title: title.to_owned(),
+            checked: self.checked,
+            violations: self.violations,
+        }
     }
 }

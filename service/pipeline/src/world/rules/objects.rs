@@ -22,7 +22,10 @@ pub fn size(c: &Context, out: &mut Findings) {
             out.add(&object.placement.placement_id, "an extent is not positive");
         }
         if object.kind.is_none() {
-            out.add(&object.placement.placement_id, format!("`{}` is no object of the domain", object.placement.object));
+            out.add(
+                &object.placement.placement_id,
+                format!("`{}` is no object of the domain", object.placement.object),
+            );
         }
     }
 }
@@ -107,7 +110,8 @@ fn off_wall(object: &Object, room: &Room) -> Option<String> {
 fn off_ceiling(object: &Object, room: &Room) -> Option<String> {
     let p = object.placement;
     // what hangs on a long rod still hangs from the ceiling; what starts below head height does not
-    (p.top_m() < room.plan.ceiling_height_m * 0.5).then(|| format!("hangs from the ceiling, and ends at {:.2} m", p.top_m()))
+    (p.top_m() < room.plan.ceiling_height_m * 0.5)
+        .then(|| format!("hangs from the ceiling, and ends at {:.2} m", p.top_m()))
 }
 
 fn off_surface(c: &Context, object: &Object) -> Option<String> {

@@ -33,7 +33,8 @@ pub fn docks(c: &Context, out: &mut Findings) {
         let depth = free_depth(p, Side::Front, &room.plan.net_polygon, others.map(|o| o.rect));
         // the whole clearance for robots that were asked for, a robot's width for docks that only stand there
         let wanted = dock.kind.map_or(0.0, |k| k.clearance_front_m);
-        let needed = wanted.max(2.0 * c.radius).min(if c.graph().robots.is_empty() { 2.0 * c.radius } else { f64::MAX });
+        let needed =
+            wanted.max(2.0 * c.radius).min(if c.graph().robots.is_empty() { 2.0 * c.radius } else { f64::MAX });
         if depth < needed - 0.01 {
             let message = format!("has {depth:.2} m free in front, needs {needed:.2} m");
             out.add_figure(&p.placement_id, message, depth, needed, "m");
@@ -133,7 +134,13 @@ pub fn regions(c: &Context, out: &mut Findings) {
         let inside: f64 = pieces.iter().flat_map(|p| room.rects.iter().map(move |r| common_area(p, r))).sum();
         let outside = roi.polygon.area() - inside;
         if outside > REGION_SLACK_M2 || roi.polygon.signed_area() <= 0.0 {
-            out.add_figure(&roi.roi_id, format!("{outside:.2} m2 lie outside its room"), outside, REGION_SLACK_M2, "m^2");
+            out.add_figure(
+                &roi.roi_id,
+                format!("{outside:.2} m2 lie outside its room"),
+                outside,
+                REGION_SLACK_M2,
+                "m^2",
+            );
         }
     }
 }

@@ -52,7 +52,13 @@ pub fn proportion(c: &Context, out: &mut Findings) {
         out.look();
         let ratio = length_to_width(room);
         if ratio > PROPORTION + TOLERANCE_M {
-            out.add_figure(&room.plan.room_id, format!("is {ratio:.2} times as long as wide"), ratio, PROPORTION, "ratio");
+            out.add_figure(
+                &room.plan.room_id,
+                format!("is {ratio:.2} times as long as wide"),
+                ratio,
+                PROPORTION,
+                "ratio",
+            );
         }
     }
 }

@@ -40,7 +40,13 @@ pub fn stray(c: &Context, out: &mut Findings) {
             far = far.max(off(&room.plan.polygon.edges().collect::<Vec<_>>()));
         }
         if far > STRAY_M {
-            out.add_figure(&wall.wall_id, format!("{far:.2} m of the wall lie on no outline of its rooms"), far, STRAY_M, "m");
+            out.add_figure(
+                &wall.wall_id,
+                format!("{far:.2} m of the wall lie on no outline of its rooms"),
+                far,
+                STRAY_M,
+                "m",
+            );
         }
         if wall.exterior != (wall.room_ids.len() == 1) {
             out.add(&wall.wall_id, "an outer wall has one room, an inner wall two");

@@ -129,7 +129,8 @@ pub fn net(c: &Context, out: &mut Findings) {
             out.add_figure(&room.plan.room_id, "the net outline reaches beyond the outline", area - inside, 0.0, "m^2");
         }
         if (area - room.plan.net_area_m2).abs() > 0.01 {
-            let message = format!("the stated net area is {:.2} m2, the outline has {area:.2} m2", room.plan.net_area_m2);
+            let message =
+                format!("the stated net area is {:.2} m2, the outline has {area:.2} m2", room.plan.net_area_m2);
             out.add_figure(&room.plan.room_id, message, room.plan.net_area_m2, area, "m^2");
         }
     }

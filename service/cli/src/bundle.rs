@@ -1,0 +1,27 @@
+//! The folder of a world: its documents, report and files in other formats.
+
+use d3dgen_model::document::Document;
+use d3dgen_model::domain::Domain;
+use d3dgen_model::report::Report;
+use d3dgen_model::world::World;
+
+use crate::commands::Formats;
+use crate::error::Error;
+use crate::output::Output;
+
+/// Writes the folder; of an unsound world only the report and the documents of the stages.
+///
+/// # Errors
+/// `Write`, `Export`, or `Interrupted` between two formats.
+pub fn write(world: &World, report: &Report, domain: &Domain, formats: &Formats, output: &Output) -> Result<(), Error> {
+    output.write("report.json", report.to_json().as_bytes())?;
+    output.write("scene_graph.json", world.scene_graph.to_json().as_bytes())?;
+    output.write("floorplan.json", world.floorplan.to_json().as_bytes())?;
+    output.write("placements.json", world.placements.to_json().as_bytes())?;
+    output.write("scenario.json", world.scenario.to_json().as_bytes())?;
+    if report.sound {
+        output.write("world.json", world.to_json().as_bytes())?;
+        formats.write(world, domain, output)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,128 @@
+//! `d3dgen domains`: the kinds of building there are.
+
+use std::path::PathBuf;
+
+use clap::Subcommand;
+use d3dgen_model::domain::Domain;
+use d3dgen_plugins::{Custom, Plugin, Registry};
+
+use crate::error::Error;
+use crate::input::write_text;
+use crate::registry::{RegistryArgs, domain, domain_folders};
+use crate::table::table;
+
+/// Arguments.
+#[derive(clap::Args)]
+pub struct Args {
+    #[command(subcommand)]
+    action: Action,
+}
+
+#[derive(Subcommand)]
+enum Action {
+    /// One line for each domain
+    List {
+        /// Print one JSON line for each domain
+        #[arg(long)]
+        json: bool,
+        #[command(flatten)]
+        registry: RegistryArgs,
+    },
+    /// Rooms, programs and objects of one domain
+    Show {
+        /// Id of the domain
+        id: String,
+        /// Print the whole domain as JSON
+        #[arg(long)]
+        json: bool,
+        #[command(flatten)]
+        registry: RegistryArgs,
+    },
+    /// Read domain folders and report every problem
+    Validate {
+        /// Folder of a domain, or of several
+        #[arg(value_name = "DIR", required = true)]
+        dirs: Vec<PathBuf>,
+    },
+}
+
+impl Args {
+    pub fn run(self) -> Result<(), Error> {
+        match self.action {
+            Action::List { json, registry } => list(&registry.load()?, json),
+            Action::Show { id, json, registry } => {
+                let registry = registry.load()?;
+                let domain = domain(&registry, &id)?.domain();
+                write_text(None, &if json { d3dgen_model::Document::to_json(domain) } else { shown(domain) })
+            }
+            Action::Validate { dirs } => validate(&dirs),
+        }
+    }
+}
+
+fn figures(plugin: &dyn Plugin) -> [usize; 4] {
+    let (domain, knowledge) = (plugin.domain(), plugin.knowledge());
+    let constraints = knowledge.references.iter().map(|r| r.constraints.len()).sum();
+    [domain.room_types.len(), domain.programs.len(), domain.objects.len(), constraints]
+}
+
+fn list(registry: &Registry, json: bool) -> Result<(), Error> {
+    let mut text = String::new();
+    let mut rows = Vec::new();
+    for plugin in registry.iter() {
+        let (domain, [room_types, programs, objects, constraints]) = (plugin.domain(), figures(plugin));
+        let line = serde_json::json!({
+            "id": domain.id, "title": domain.title, "description": domain.description, "room_types": room_types,
+            "programs": programs, "objects": objects, "constraints": constraints,
+        });
+        text += &format!("{line}\n");
+        let cells = [room_types, programs, objects, constraints].map(|n| n.to_string());
+        rows.push([vec![domain.id.clone()], cells.to_vec(), vec![domain.description.clone()]].concat());
+    }
+    let header = ["domain", "room types", "programs", "objects", "constraints", ""];
+    write_text(None, &if json { text } else { table(&header, &rows) })
+}
+
+fn shown(domain: &Domain) -> String {
+    let rooms = domain.room_types.iter().map(|t| {
+        let a = t.area_m2;
+        let furniture: Vec<&str> = t.furnishing.iter().filter(|f| f.required).map(|f| f.item.as_str()).collect();
+        vec![t.id.clone(), a.min.to_string(), a.target.to_string(), a.max.to_string(), furniture.join(", ")]
+    });
+    let programs = domain.programs.iter().map(|p| {
+        let rooms: Vec<String> = p.rooms.iter().map(|r| format!("{} {}-{}", r.room_type, r.min, r.max)).collect();
+        vec![p.id.clone(), p.default_rooms.to_string(), rooms.join(", ")]
+    });
+    format!(
+        "{}: {}\n{}\n\n{}\n{}",
+        domain.id,
+        domain.title,
+        domain.description,
+        table(&["room type", "min m2", "usual", "max", "always has"], &rooms.collect::<Vec<_>>()),
+        table(&["program", "rooms", "from - to"], &programs.collect::<Vec<_>>()),
+    )
+}
+
+fn validate(dirs: &[PathBuf]) -> Result<(), Error> {
+    let folders = dirs.iter().map(|d| domain_folders(d)).collect::<Result<Vec<_>, Error>>()?.concat();
+    let mut broken = 0;
+    for folder in &folders {
+        match Custom::read(folder) {
+            Ok(plugin) => {
+                let [room_types, programs, objects, constraints] = figures(&plugin);
+                let found = format!(
+                    "{room_types} room types, {programs} programs, {objects} objects, {constraints} constraints"
+                );
+                write_text(None, &format!("{}: valid; {found}\n", folder.display()))?;
+            }
+            Err(error) => {
+                broken += 1;
+                eprintln!("{error}");
+            }
+        }
+    }
+    match broken {
+        0 => Ok(()),
+        n => Err(Error::Input(format!("{n} of {} domains cannot be used", folders.len()))),
+    }
+}

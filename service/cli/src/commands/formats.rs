@@ -1,0 +1,67 @@
+//! The flags that say which files to write of a world, shared by `generate` and `export`.
+
+use d3dgen_export::exporters::{self, File, plan};
+use d3dgen_model::domain::Domain;
+use d3dgen_model::world::World;
+
+use crate::error::Error;
+use crate::interrupt;
+use crate::output::Output;
+
+/// Flags for formats.
+#[derive(clap::Args, Clone)]
+pub struct FormatArgs {
+    /// Formats to write, with commas between (`d3dgen version` lists them)
+    #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "arena,plan")]
+    format: Vec<String>,
+    /// Leave out plan.png, which takes longer than all the rest
+    #[arg(long)]
+    no_png: bool,
+}
+
+/// The formats chosen.
+pub struct Formats {
+    names: Vec<&'static str>,
+    png: bool,
+}
+
+impl FormatArgs {
+    /// Returns the formats, each once.
+    ///
+    /// # Errors
+    /// `Input` with the formats there are.
+    pub fn chosen(&self) -> Result<Formats, Error> {
+        let mut names = Vec::new();
+        for name in &self.format {
+            let exporter = exporters::get(name.trim()).ok_or_else(|| {
+                let known: Vec<&str> = exporters::all().iter().map(|e| e.name()).collect();
+                Error::Input(format!("format `{name}` is not known; there are {}", known.join(", ")))
+            })?;
+            if !names.contains(&exporter.name()) {
+                names.push(exporter.name());
+            }
+        }
+        Ok(Formats { names, png: !self.no_png })
+    }
+}
+
+impl Formats {
+    /// Writes the files of the world.
+    ///
+    /// # Errors
+    /// `Export`, `Write`, or `Interrupted` between two formats.
+    pub fn write(&self, world: &World, domain: &Domain, output: &Output) -> Result<(), Error> {
+        for exporter in self.names.iter().filter_map(|name| exporters::get(name)) {
+            interrupt::check()?;
+            let files = if exporter.name() == "plan" && !self.png {
+                vec![File::new("plan.svg", plan::svg(world, domain))] // the picture is never drawn
+            } else {
+                exporter.export(world, domain)?
+            };
+            for File { path, bytes } in files {
+                output.write(&path, &bytes)?;
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,105 @@
+//! `d3dgen generate`: from a sentence to checked worlds on disk.
+
+mod batch;
+mod one;
+
+use std::path::{Path, PathBuf};
+
+use d3dgen_pipeline::scene_graph::Request;
+
+use super::formats;
+use crate::error::Error;
+use crate::interrupt;
+use crate::output::{Output, check_collection, check_free};
+use crate::progress::Progress;
+use crate::registry::RegistryArgs;
+use crate::request::{RequestArgs, prompt};
+use crate::summary::{Summary, closing};
+
+/// Arguments.
+#[derive(clap::Args)]
+pub struct Args {
+    /// What to build, in a sentence (`-`: from standard input)
+    prompt: String,
+    /// Folder to write: new, empty, or an earlier output, which is replaced; with --count it gets a folder per seed
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+    #[command(flatten)]
+    request: RequestArgs,
+    /// Number of worlds, the seed counted up
+    #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    count: u64,
+    /// Name of the world, lower case with underscores; with --count the seed is added
+    #[arg(long, value_name = "NAME", value_parser = super::world_name)]
+    name: Option<String>,
+    /// Print one JSON line for each world
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    formats: formats::FormatArgs,
+    #[command(flatten)]
+    registry: RegistryArgs,
+}
+
+/// One world to be made.
+struct Job {
+    request: Request,
+    name: Option<String>,
+    path: PathBuf,
+}
+
+impl Args {
+    pub fn run(self) -> Result<(), Error> {
+        let registry = self.registry.load()?;
+        let maker = one::Maker { registry, formats: self.formats.chosen()?, flag: interrupt::flag() };
+        let request = self.request.request(&prompt(&self.prompt)?);
+        if self.count == 1 {
+            let job = Job { request, name: self.name, path: self.out };
+            let progress = Progress::of(1);
+            let made = maker.make(&job, &progress);
+            progress.finish();
+            return finish(vec![made?], self.json, 0, &job.path);
+        }
+        let jobs = self.jobs(&request)?;
+        let progress = Progress::of(jobs.len());
+        let (worlds, failed) = batch::run(&maker, &jobs, &progress, self.json)?;
+        finish(worlds, false, failed, &self.out)
+    }
+
+    /// Returns a job for each seed, after a look at all the folders they will write.
+    fn jobs(&self, request: &Request) -> Result<Vec<Job>, Error> {
+        let last = request.seed.checked_add(self.count - 1);
+        let last =
+            last.ok_or_else(|| Error::Input(format!("--seed {} leaves no {} seeds", request.seed, self.count)))?;
+        check_collection(&self.out)?;
+        let job = |seed: u64| Job {
+            request: Request { seed, ..request.clone() },
+            name: self.name.as_ref().map(|name| format!("{name}_{seed}")),
+            path: self.out.join(seed.to_string()),
+        };
+        let jobs: Vec<Job> = (request.seed..=last).map(job).collect();
+        for job in &jobs {
+            check_free(&job.path)?;
+        }
+        drop(Output::new(&jobs[0].path)?); // the folder can be written
+        Ok(jobs)
+    }
+}
+
+/// Prints what came of it.
+fn finish(worlds: Vec<Summary>, json: bool, failed: usize, out: &Path) -> Result<(), Error> {
+    if json {
+        worlds.iter().try_for_each(one::print_json)?;
+    }
+    eprint!("{}written to {}\n", closing(&worlds), out.display());
+    let unsound: Vec<&str> = worlds.iter().filter(|w| !w.sound()).map(Summary::name).collect();
+    match (unsound.first(), failed) {
+        (None, 0) => Ok(()),
+        (Some(first), _) => Err(Error::Unsound(format!(
+            "{} of {} worlds break hard rules and are not written, only their reports: first {first}",
+            unsound.len(),
+            worlds.len() + failed
+        ))),
+        (None, _) => Err(Error::Input(format!("{failed} of {} worlds could not be made", worlds.len() + failed))),
+    }
+}

@@ -1,0 +1,101 @@
+//! One world: made, timed, written.
+
+use std::sync::atomic::AtomicBool;
+use std::time::{Duration, Instant};
+
+use d3dgen_pipeline::generate::{Artifact, Event, Settings, Stage, generate_world};
+use d3dgen_plugins::Registry;
+
+use super::Job;
+use crate::bundle;
+use crate::commands::Formats;
+use crate::error::Error;
+use crate::input::write_text;
+use crate::interrupt;
+use crate::output::Output;
+use crate::progress::Progress;
+use crate::registry::domain;
+use crate::summary::Summary;
+
+/// What all worlds of a run share.
+pub struct Maker {
+    pub registry: Registry,
+    pub formats: Formats,
+    pub flag: &'static AtomicBool,
+}
+
+impl Maker {
+    /// Makes a world and writes its folder; of an unsound one only the report and the documents of the stages.
+    pub fn make(&self, job: &Job, progress: &Progress) -> Result<Summary, Error> {
+        let output = Output::new(&job.path)?;
+        let settings = Settings { name: job.name.clone(), ..Settings::default() };
+        let mut clock = Clock::default();
+        let mut observe = |event: Event<'_>| {
+            clock.hear(&event);
+            talk(&event, &clock, progress);
+        };
+        let made = generate_world(&job.request, &self.registry, &settings, &mut observe, self.flag)?;
+        let begun = Instant::now();
+        progress.doing("files");
+        let domain = domain(&self.registry, &made.world.scene_graph.domain)?.domain();
+        bundle::write(&made.world, &made.report, domain, &self.formats, &output)?;
+        interrupt::check()?;
+        output.commit()?;
+        let mut times = clock.times();
+        times.push(("files", begun.elapsed()));
+        progress.done(&format!("files ({:.0} ms)", begun.elapsed().as_secs_f64() * 1000.0));
+        Ok(Summary::new(&made, &job.path, times))
+    }
+}
+
+/// Time spent in each stage, all attempts together.
+#[derive(Default)]
+struct Clock {
+    begun: Option<Instant>,
+    spent: [Duration; Stage::ALL.len()],
+}
+
+impl Clock {
+    fn hear(&mut self, event: &Event<'_>) {
+        match event {
+            Event::Started(..) => self.begun = Some(Instant::now()),
+            Event::Finished(stage, ..) => {
+                if let Some(begun) = self.begun.take() {
+                    self.spent[*stage as usize] += begun.elapsed();
+                }
+            }
+            Event::Rejected(..) => self.begun = None,
+        }
+    }
+
+    fn times(&self) -> Vec<(&'static str, Duration)> {
+        Stage::ALL.iter().map(|s| (s.name(), self.spent[*s as usize])).collect()
+    }
+}
+
+fn talk(event: &Event<'_>, clock: &Clock, progress: &Progress) {
+    match event {
+        Event::Started(stage, _) => progress.doing(stage.name()),
+        Event::Rejected(attempt, reason) => progress.done(&format!("attempt {}: {reason}", attempt + 1)),
+        Event::Finished(stage, _, artifact) => {
+            let found = match artifact {
+                Artifact::SceneGraph(g) => format!("{} rooms, {} connections", g.rooms.len(), g.edges.len()),
+                Artifact::Floorplan(p) => {
+                    format!("{} walls, {} doors, {} windows", p.walls.len(), p.doors.len(), p.windows.len())
+                }
+                Artifact::Placements(p) => format!("{} objects", p.placements.len()),
+                Artifact::Scenario(s) => {
+                    format!("{} robots, {} people, {} areas", s.robots.len(), s.agents.len(), s.rois.len())
+                }
+                Artifact::World(_, report) => format!("{} rules checked", report.rules.len()),
+            };
+            let spent = clock.spent[*stage as usize].as_secs_f64() * 1000.0;
+            progress.done(&format!("{}: {found} ({spent:.0} ms)", stage.name()));
+        }
+    }
+}
+
+/// Prints the JSON line of a world.
+pub fn print_json(summary: &Summary) -> Result<(), Error> {
+    write_text(None, &format!("{}\n", summary.json()))
+}

@@ -1,0 +1,75 @@
+//! The commands, one file each; the order here is the order of the help.
+
+mod check;
+mod completions;
+mod domains;
+mod export;
+mod floorplan;
+mod formats;
+mod generate;
+mod placement;
+mod scenario;
+mod scene_graph;
+mod version;
+mod world;
+
+use clap::Subcommand;
+
+pub use formats::Formats;
+
+use crate::error::Error;
+
+/// Everything `d3dgen` can do.
+#[derive(Subcommand)]
+pub enum Command {
+    /// Make a checked world (or many) from a sentence
+    Generate(generate::Args),
+    /// Stage 1: rooms and relations of a prompt
+    SceneGraph(scene_graph::Args),
+    /// Stage 2: room outlines, walls, doors and windows of a scene graph
+    Floorplan(floorplan::Args),
+    /// Stage 3: furniture of a floorplan
+    Placement(placement::Args),
+    /// Stage 4: robots, people and named areas of a furnished plan
+    Scenario(scenario::Args),
+    /// Stage 5: one world of the four documents, checked
+    World(world::Args),
+    /// Judge worlds: every hard rule and every constraint that applies
+    Check(check::Args),
+    /// Write a world in other formats
+    Export(export::Args),
+    /// List, show and validate the kinds of building
+    Domains(domains::Args),
+    /// Print a completion script for a shell
+    Completions(completions::Args),
+    /// Print the version, and the versions of the documents it reads
+    Version,
+}
+
+impl Command {
+    /// Runs the command.
+    ///
+    /// # Errors
+    /// What the user should read; [`Error::exit_code`] says how the process ends.
+    pub fn run(self) -> Result<(), Error> {
+        match self {
+            Self::Generate(args) => args.run(),
+            Self::SceneGraph(args) => args.run(),
+            Self::Floorplan(args) => args.run(),
+            Self::Placement(args) => args.run(),
+            Self::Scenario(args) => args.run(),
+            Self::World(args) => args.run(),
+            Self::Check(args) => args.run(),
+            Self::Export(args) => args.run(),
+            Self::Domains(args) => args.run(),
+            Self::Completions(args) => args.run(),
+            Self::Version => version::run(),
+        }
+    }
+}
+
+/// Returns the name of a world when Arena takes it.
+fn world_name(text: &str) -> Result<String, String> {
+    let fits = !text.is_empty() && text.bytes().all(|b| matches!(b, b'a'..=b'z' | b'0'..=b'9' | b'_'));
+    if fits { Ok(text.to_owned()) } else { Err("a name has only a-z, 0-9 and _".into()) }
+}

@@ -1,0 +1,62 @@
+//! The one error type of this crate, and the exit code each kind ends with.
+
+use std::io;
+use std::path::PathBuf;
+
+/// Why a command stopped.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// A flag or argument cannot be used; the message says which and what would work.
+    #[error("{0}")]
+    Input(String),
+    /// A file or folder cannot be read.
+    #[error("cannot read {}: {source}", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// A file or folder cannot be written.
+    #[error("cannot write {}: {source}", path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// A file is not the document it should be.
+    #[error("{}: {source}", path.display())]
+    Document {
+        /// The file.
+        path: PathBuf,
+        /// Every problem found in it.
+        source: d3dgen_model::Error,
+    },
+    /// A domain folder cannot be used.
+    #[error(transparent)]
+    Domain(#[from] d3dgen_plugins::Error),
+    /// A stage refused.
+    #[error(transparent)]
+    Stage(#[from] d3dgen_pipeline::Error),
+    /// A world cannot be written in a format.
+    #[error(transparent)]
+    Export(#[from] d3dgen_export::Error),
+    /// A world breaks hard rules.
+    #[error("{0}")]
+    Unsound(String),
+    /// The user pressed Ctrl-C.
+    #[error("interrupted; nothing half-written is left behind")]
+    Interrupted,
+}
+
+impl Error {
+    /// Returns the exit code: 1 for an unsound world, 130 after Ctrl-C, 2 for all else.
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::Unsound(_) => 1,
+            Self::Interrupted | Self::Stage(d3dgen_pipeline::Error::Cancelled) => 130,
+            _ => 2,
+        }
+    }
+}

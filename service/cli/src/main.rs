@@ -1,0 +1,32 @@
+//! The `d3dgen` command. Data goes to standard output, talk to standard error.
+//!
+//! What it is not for: deciding anything about buildings. Commands read documents, call a stage, write what comes back.
+
+mod bundle;
+mod cli;
+mod commands;
+mod error;
+mod input;
+mod interrupt;
+mod output;
+mod progress;
+mod registry;
+mod request;
+mod summary;
+mod table;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+fn main() -> ExitCode {
+    let cli = cli::Cli::parse();
+    interrupt::install();
+    match cli.command.run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::from(error.exit_code())
+        }
+    }
+}

@@ -1,0 +1,243 @@
+//! Output folders that are either complete or not there.
+//!
+//! Everything is written into a temporary folder first: beside a folder to be made, inside one that exists (which may be
+//! a mount point or the current folder and cannot be renamed). Dropping an [`Output`] leaves the disk as it was.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use tempfile::TempDir;
+
+use crate::error::Error;
+
+/// Names a world's folder may hold; a folder with anything else in it is somebody's work and is never replaced.
+const OURS: &[&str] = &[
+    "world.json",
+    "report.json",
+    "scene_graph.json",
+    "floorplan.json",
+    "placements.json",
+    "scenario.json",
+    "plan.svg",
+    "plan.png",
+    "arena",
+    "gazebo",
+    "usd",
+    "mujoco",
+    "gltf",
+    "nav2",
+    "rmf",
+];
+/// The file that every world's folder has, sound or not.
+const MARK: &str = "report.json";
+const TMP_PREFIX: &str = ".d3dgen-";
+const TMP_SUFFIX: &str = ".tmp";
+
+/// A folder being written.
+pub struct Output {
+    path: PathBuf,
+    tmp: TempDir,
+    exists: bool,
+    adds: bool,
+}
+
+impl Output {
+    /// Returns an output for a folder that is absent, empty, or an earlier output.
+    ///
+    /// # Errors
+    /// `Input` when the folder holds other things, `Write` when it cannot be written.
+    pub fn new(path: &Path) -> Result<Self, Error> {
+        Self::begin(path, check_free(path)?, false)
+    }
+
+    /// Returns an output that replaces only the files and folders it writes itself.
+    ///
+    /// # Errors
+    /// As [`Output::new`]; an earlier export, which is no whole world, is taken too.
+    pub fn adding_to(path: &Path) -> Result<Self, Error> {
+        Self::begin(path, check_ours(path, false)?, true)
+    }
+
+    fn begin(path: &Path, exists: bool, adds: bool) -> Result<Self, Error> {
+        let home = if exists { path } else { nearest_folder(path) };
+        let refused = |source| Error::Write { path: path.to_path_buf(), source };
+        let tmp = tempfile::Builder::new().prefix(TMP_PREFIX).suffix(TMP_SUFFIX).tempdir_in(home).map_err(refused)?;
+        fs::create_dir(tmp.path().join("new")).map_err(refused)?;
+        Ok(Self { path: path.to_path_buf(), tmp, exists, adds })
+    }
+
+    /// Writes a file of the folder, with the folders above it.
+    ///
+    /// # Errors
+    /// `Write` with the path the file would have had.
+    pub fn write(&self, name: &str, bytes: &[u8]) -> Result<(), Error> {
+        let file = self.fresh().join(name);
+        let folder = file.parent().map_or(Ok(()), fs::create_dir_all);
+        folder
+            .and_then(|()| fs::write(&file, bytes))
+            .map_err(|source| Error::Write { path: self.path.join(name), source })
+    }
+
+    /// Puts the folder in its place; an earlier output goes away whole.
+    ///
+    /// # Errors
+    /// `Write`; what was there before is then still there.
+    pub fn commit(self) -> Result<(), Error> {
+        let moved = if self.exists { self.exchange() } else { self.rename() };
+        moved.map_err(|source| Error::Write { path: self.path.clone(), source })
+    }
+
+    fn fresh(&self) -> PathBuf {
+        self.tmp.path().join("new")
+    }
+
+    fn rename(&self) -> io::Result<()> {
+        if let Some(parent) = self.path.parent() {
+            fs::create_dir_all(parent)?;
+        }
+        fs::rename(self.fresh(), &self.path)
+    }
+
+    /// Swaps the entries of an existing folder, the mark of a finished output last.
+    fn exchange(&self) -> io::Result<()> {
+        let old = self.tmp.path().join("old");
+        fs::create_dir(&old)?;
+        let mut done: Vec<(PathBuf, PathBuf)> = Vec::new();
+        let mut step = |from: PathBuf, to: PathBuf| {
+            fs::rename(&from, &to)?;
+            done.push((from, to));
+            Ok(())
+        };
+        let mut incoming = entries(&self.fresh())?;
+        incoming.sort_by_key(|name| name == MARK);
+        let goes = |name: &String| !self.tmp.path().ends_with(name) && (!self.adds || incoming.contains(name));
+        let outgoing = entries(&self.path)?.into_iter().filter(goes);
+        let result = outgoing
+            .map(|name| (self.path.join(&name), old.join(&name)))
+            .chain(incoming.iter().map(|name| (self.fresh().join(name), self.path.join(name))))
+            .try_for_each(|(from, to)| step(from, to));
+        if result.is_err() {
+            for (from, to) in done.iter().rev() {
+                // The first error is the one to report; what cannot be moved back stays in the temporary folder's place.
+                let _ = fs::rename(to, from);
+            }
+        }
+        result
+    }
+}
+
+/// Returns whether the folder exists; refuses one that holds other things than an output.
+///
+/// # Errors
+/// `Input` when it is no folder or holds other things, `Write` when it cannot be looked into.
+pub fn check_free(path: &Path) -> Result<bool, Error> {
+    check_ours(path, true)
+}
+
+fn check_ours(path: &Path, marked: bool) -> Result<bool, Error> {
+    match fs::metadata(path) {
+        Err(e) if e.kind() == io::ErrorKind::NotFound && fs::symlink_metadata(path).is_err() => return Ok(false),
+        Err(source) => return Err(Error::Write { path: path.to_path_buf(), source }),
+        Ok(found) if !found.is_dir() => {
+            return Err(Error::Input(format!("{} is a file; --out needs a folder", path.display())));
+        }
+        Ok(_) => {}
+    }
+    let names = entries(path).map_err(|source| Error::Write { path: path.to_path_buf(), source })?;
+    let names: Vec<&String> = names.iter().filter(|n| !is_leftover(n)).collect();
+    let foreign = names.iter().find(|n| !OURS.contains(&n.as_str()));
+    if let Some(name) = foreign.or(names.first().filter(|_| marked && !names.iter().any(|n| *n == MARK))) {
+        return Err(Error::Input(format!(
+            "{} holds `{name}` and is not an output of d3dgen; name an empty or new folder",
+            path.display()
+        )));
+    }
+    Ok(true)
+}
+
+/// Refuses a folder for many worlds that holds anything but worlds in numbered folders.
+///
+/// # Errors
+/// As [`check_free`].
+pub fn check_collection(path: &Path) -> Result<(), Error> {
+    let Ok(names) = entries(path) else {
+        return check_free(path).map(|_| ());
+    };
+    match names.iter().find(|n| !is_leftover(n) && !n.bytes().all(|b| b.is_ascii_digit())) {
+        Some(name) => Err(Error::Input(format!(
+            "{} holds `{name}`, and with --count it may hold only worlds in numbered folders; name an empty or new folder",
+            path.display()
+        ))),
+        None => Ok(()),
+    }
+}
+
+fn is_leftover(name: &str) -> bool {
+    name.starts_with(TMP_PREFIX) && name.ends_with(TMP_SUFFIX)
+}
+
+fn entries(folder: &Path) -> io::Result<Vec<String>> {
+    let mut names = fs::read_dir(folder)?
+        .map(|e| e.map(|e| e.file_name().to_string_lossy().into_owned()))
+        .collect::<io::Result<Vec<String>>>()?;
+    names.sort();
+    Ok(names)
+}
+
+/// Returns the nearest ancestor that exists: on the same file system as the folder to be made.
+fn nearest_folder(path: &Path) -> &Path {
+    let above = path.ancestors().skip(1).find(|p| p.as_os_str().is_empty() || p.exists());
+    above.filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn files(folder: &Path) -> Vec<String> {
+        entries(folder).unwrap()
+    }
+
+    #[test]
+    fn a_new_folder_appears_whole_or_not_at_all() {
+        let home = TempDir::new().unwrap();
+        let path = home.path().join("a/b");
+        let output = Output::new(&path).unwrap();
+        output.write("arena/x.yaml", b"1").unwrap();
+        assert!(!path.exists());
+        drop(output);
+        assert_eq!(files(home.path()), Vec::<String>::new());
+
+        let output = Output::new(&path).unwrap();
+        output.write("report.json", b"{}").unwrap();
+        output.commit().unwrap();
+        assert_eq!(files(home.path()), ["a"]);
+        assert_eq!(files(&path), ["report.json"]);
+    }
+
+    #[test]
+    fn an_earlier_output_is_replaced_whole() {
+        let home = TempDir::new().unwrap();
+        for names in [["report.json", "usd/a.usda"], ["report.json", "plan.svg"]] {
+            let output = Output::new(home.path()).unwrap();
+            names.iter().for_each(|n| output.write(n, n.as_bytes()).unwrap());
+            output.commit().unwrap();
+        }
+        assert_eq!(files(home.path()), ["plan.svg", "report.json"]);
+    }
+
+    #[test]
+    fn what_is_not_ours_is_left_alone() {
+        let home = TempDir::new().unwrap();
+        fs::write(home.path().join("report.json"), "{}").unwrap();
+        assert!(check_free(home.path()).unwrap());
+        fs::write(home.path().join("thesis.tex"), "x").unwrap();
+        let message = Output::new(home.path()).err().unwrap().to_string();
+        assert!(message.contains("thesis.tex"), "{message}");
+        assert!(check_collection(home.path()).is_err());
+        let file = home.path().join("thesis.tex");
+        assert!(Output::new(&file).is_err() && Output::new(&file.join("below")).is_err());
+        assert_eq!(files(home.path()), ["report.json", "thesis.tex"]);
+    }
+}

@@ -1,0 +1,58 @@
+//! The flags that say what to build, shared by `generate` and `scene-graph` so that both make the same graph.
+
+use std::io::{self, Read};
+
+use d3dgen_pipeline::scene_graph::Request;
+
+use crate::error::Error;
+
+/// What the flags say beside the prompt.
+#[derive(clap::Args, Clone)]
+pub struct RequestArgs {
+    /// Seed of all choices: the same seed and request give the same bytes
+    #[arg(long, default_value_t = 0, value_name = "N")]
+    pub seed: u64,
+    /// Kind of building (`d3dgen domains list`); otherwise read from the prompt
+    #[arg(long, value_name = "ID")]
+    pub domain: Option<String>,
+    /// Country whose rules apply, as a code (DE) or an English name; otherwise read from the prompt
+    #[arg(long, value_name = "COUNTRY")]
+    pub country: Option<String>,
+    /// Number of rooms, corridors not counted
+    #[arg(long, value_name = "N")]
+    pub rooms: Option<u32>,
+    /// Floor area in m2
+    #[arg(long, value_name = "M2")]
+    pub area: Option<f64>,
+    /// Radius in m of the largest robot
+    #[arg(long, value_name = "M")]
+    pub robot_radius: Option<f64>,
+}
+
+impl RequestArgs {
+    /// Returns the request for a prompt.
+    pub fn request(&self, prompt: &str) -> Request {
+        Request {
+            prompt: prompt.to_owned(),
+            seed: self.seed,
+            domain: self.domain.clone(),
+            country: self.country.clone(),
+            rooms: self.rooms,
+            area_m2: self.area,
+            robot_radius_m: self.robot_radius,
+        }
+    }
+}
+
+/// Returns the prompt, read from standard input for `-`.
+///
+/// # Errors
+/// `Read` when standard input is not text.
+pub fn prompt(given: &str) -> Result<String, Error> {
+    if given != "-" {
+        return Ok(given.to_owned());
+    }
+    let mut text = String::new();
+    io::stdin().read_to_string(&mut text).map_err(|source| Error::Read { path: "standard input".into(), source })?;
+    Ok(text.trim().to_owned())
+}

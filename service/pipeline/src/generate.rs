@@ -1,0 +1,229 @@
+//! The stages in a row: from a request to a checked world, with progress, cancellation and new attempts.
+//!
+//! Used by everyone who makes whole worlds (the command line, a server, tests). The scene graph is made once: it is what
+//! was asked for. When the plan, the furniture or the check fails, the stages after it start again under a seed derived
+//! from the first, so that the outcome still depends on nothing but the request.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use d3dgen_knowledge::{Query, Retrieval};
+use d3dgen_model::floorplan::Floorplan;
+use d3dgen_model::placements::Placements;
+use d3dgen_model::report::Report;
+use d3dgen_model::scenario::Scenario;
+use d3dgen_model::scene_graph::SceneGraph;
+use d3dgen_model::seed::Stream;
+use d3dgen_model::world::World;
+use d3dgen_plugins::{Plugin, Registry};
+
+use crate::scene_graph::Request;
+use crate::{Error, floorplan, placement, scenario, scene_graph, world};
+
+/// How to make a world, beside the request itself.
+#[derive(Debug, Clone)]
+pub struct Settings {
+    /// Name of the world, `^[a-z0-9_]+$`; made of the graph when absent.
+    pub name: Option<String>,
+    /// How often plan and furniture are tried, at least 1.
+    pub attempts: u32,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { name: None, attempts: 6 }
+    }
+}
+
+/// A step on the way, in the order of the path.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Stage {
+    /// Prompt to rooms and relations.
+    SceneGraph,
+    /// Rooms to outlines, walls, openings.
+    Floorplan,
+    /// Furniture.
+    Placement,
+    /// Robots and people.
+    Scenario,
+    /// Assembly and check.
+    World,
+}
+
+impl Stage {
+    /// Every stage in order.
+    pub const ALL: [Self; 5] = [Self::SceneGraph, Self::Floorplan, Self::Placement, Self::Scenario, Self::World];
+
+    /// Returns the one name a stage has everywhere.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::SceneGraph => "scene_graph",
+            Self::Floorplan => "floorplan",
+            Self::Placement => "placement",
+            Self::Scenario => "scenario",
+            Self::World => "world",
+        }
+    }
+}
+
+/// What a stage made; a client can show a plan while its furniture is still being placed.
+#[derive(Debug, Clone, Copy)]
+pub enum Artifact<'a> {
+    /// Of stage `scene_graph`.
+    SceneGraph(&'a SceneGraph),
+    /// Of stage `floorplan`.
+    Floorplan(&'a Floorplan),
+    /// Of stage `placement`.
+    Placements(&'a Placements),
+    /// Of stage `scenario`.
+    Scenario(&'a Scenario),
+    /// Of stage `world`.
+    World(&'a World, &'a Report),
+}
+
+/// News from the path.
+#[derive(Debug, Clone, Copy)]
+pub enum Event<'a> {
+    /// A stage begins, in an attempt counted from 0.
+    Started(Stage, u32),
+    /// A stage is done.
+    Finished(Stage, u32, Artifact<'a>),
+    /// An attempt (counted from 0) came to nothing, and why; another one follows unless it was the last.
+    Rejected(u32, &'a str),
+}
+
+/// A world with its verdict.
+#[derive(Debug, Clone)]
+pub struct Generated {
+    /// The world; to be used only when `report.sound`.
+    pub world: World,
+    /// Every rule and constraint.
+    pub report: Report,
+    /// How many attempts it took.
+    pub attempts: u32,
+}
+
+/// Makes and checks a world.
+///
+/// `observe` hears of every stage; `cancelled` is looked at before each. When no attempt is sound, the one with the
+/// fewest broken rules is returned, its report saying so.
+///
+/// # Errors
+/// What the stages return (`Refused` at once, `Infeasible` after the last attempt); `Cancelled`.
+pub fn generate_world(
+    request: &Request,
+    registry: &Registry,
+    settings: &Settings,
+    observe: &mut dyn FnMut(Event<'_>),
+    cancelled: &AtomicBool,
+) -> Result<Generated, Error> {
+    begin(Stage::SceneGraph, 0, observe, cancelled)?;
+    let graph = scene_graph::generate(request, registry)?;
+    observe(Event::Finished(Stage::SceneGraph, 0, Artifact::SceneGraph(&graph)));
+    furnish_and_check(&graph, registry, settings, observe, cancelled)
+}
+
+/// Makes and checks a world of a scene graph: all stages but the first.
+///
+/// # Errors
+/// As [`generate_world`]; `Mismatch` when the graph's domain is not registered.
+pub fn furnish_and_check(
+    graph: &SceneGraph,
+    registry: &Registry,
+    settings: &Settings,
+    observe: &mut dyn FnMut(Event<'_>),
+    cancelled: &AtomicBool,
+) -> Result<Generated, Error> {
+    let plugin = registry.get(&graph.domain).ok_or_else(|| Error::Mismatch {
+        stage: "floorplan",
+        message: format!("the scene graph is of domain `{}`, which is not registered", graph.domain),
+    })?;
+    let retrieved = retrieve(graph, plugin);
+    let name = settings.name.clone().unwrap_or_else(|| world_name(graph));
+    let mut best: Option<Generated> = None;
+    let mut reason = None;
+    for attempt in 0..settings.attempts.max(1) {
+        let seed = attempt_seed(graph.seed, attempt);
+        match self::attempt(graph, plugin, &retrieved, (&name, seed, attempt), observe, cancelled) {
+            Ok(found) if found.report.sound => return Ok(found),
+            Ok(found) => {
+                let (rule, broken) = broken(&found.report);
+                observe(Event::Rejected(attempt, &format!("breaks {broken} hard rule(s), first {rule}")));
+                if best.as_ref().is_none_or(|b| broken < self::broken(&b.report).1) {
+                    best = Some(found);
+                }
+            }
+            Err(error @ Error::Infeasible { .. }) => {
+                observe(Event::Rejected(attempt, &error.to_string()));
+                reason = Some(error);
+            }
+            Err(error) => return Err(error),
+        }
+    }
+    best.ok_or_else(|| reason.expect("every attempt ends in a world or an error"))
+}
+
+/// Returns what the knowledge base of the graph's domain says about its building, country and rooms.
+pub fn retrieve(graph: &SceneGraph, plugin: &dyn Plugin) -> Retrieval {
+    d3dgen_knowledge::retrieve(plugin.knowledge(), &Query::of_graph(graph, plugin.domain()))
+}
+
+/// Returns a world's name when none is given: building type (or domain) and seed, `ward_7`.
+pub fn world_name(graph: &SceneGraph) -> String {
+    let kind = graph.building_type.as_deref().unwrap_or(&graph.domain);
+    let kind: String =
+        kind.chars().map(|c| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '_' }).collect();
+    format!("{kind}_{}", graph.seed)
+}
+
+/// Returns the seed of an attempt: the first has the request's own.
+pub fn attempt_seed(seed: u64, attempt: u32) -> u64 {
+    if attempt == 0 {
+        return seed;
+    }
+    // 32 bits: exact in every JSON reader
+    Stream::new(seed, &format!("attempt/{attempt}")).below(1 << 32) as u64
+}
+
+fn attempt(
+    graph: &SceneGraph,
+    plugin: &dyn Plugin,
+    retrieved: &Retrieval,
+    (name, seed, attempt): (&str, u64, u32),
+    observe: &mut dyn FnMut(Event<'_>),
+    cancelled: &AtomicBool,
+) -> Result<Generated, Error> {
+    let domain = plugin.domain();
+    let reseeded = SceneGraph { seed, ..graph.clone() };
+
+    begin(Stage::Floorplan, attempt, observe, cancelled)?;
+    let plan = floorplan::generate(&reseeded, domain, &retrieved.limits, None)?;
+    observe(Event::Finished(Stage::Floorplan, attempt, Artifact::Floorplan(&plan)));
+
+    begin(Stage::Placement, attempt, observe, cancelled)?;
+    let placements = placement::generate(&reseeded, &plan, domain, None)?;
+    observe(Event::Finished(Stage::Placement, attempt, Artifact::Placements(&placements)));
+
+    begin(Stage::Scenario, attempt, observe, cancelled)?;
+    let scenario = scenario::generate(&reseeded, &plan, &placements, domain)?;
+    observe(Event::Finished(Stage::Scenario, attempt, Artifact::Scenario(&scenario)));
+
+    begin(Stage::World, attempt, observe, cancelled)?;
+    let world = world::assemble(name, graph.clone(), plan, placements, scenario);
+    let report = world::check(&world, domain, retrieved);
+    observe(Event::Finished(Stage::World, attempt, Artifact::World(&world, &report)));
+    Ok(Generated { world, report, attempts: attempt + 1 })
+}
+
+fn begin(stage: Stage, attempt: u32, observe: &mut dyn FnMut(Event<'_>), cancelled: &AtomicBool) -> Result<(), Error> {
+    if cancelled.load(Ordering::Relaxed) {
+        return Err(Error::Cancelled);
+    }
+    observe(Event::Started(stage, attempt));
+    Ok(())
+}
+
+/// Returns the first broken rule and how many there are.
+fn broken(report: &Report) -> (&str, usize) {
+    let mut rules = report.rules.iter().filter(|r| !r.violations.is_empty());
+    rules.next().map_or(("none", 0), |first| (&first.rule, 1 + rules.count()))
+}

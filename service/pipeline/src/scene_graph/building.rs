@@ -1,0 +1,184 @@
+//! Which building a prompt is about: domain, building type, the words that say so, and where its list of rooms begins.
+
+use d3dgen_model::domain::{Domain, Words};
+use d3dgen_plugins::Registry;
+
+use super::numbers::Number;
+use super::text::{Kind, Phrases, Span, Token};
+use super::words::{Spoken, Tag};
+
+/// The building a prompt names.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Building {
+    pub domain: String,
+    pub building_type: Option<String>,
+    /// Words that name it; these are no rooms.
+    pub head: Option<Span>,
+    /// First token of the list of rooms.
+    pub list_from: usize,
+    /// True when the prompt has no word for a building, and its rooms decided.
+    pub by_rooms: bool,
+}
+
+/// A word for a building: domain and, where it is one, building type.
+type Meaning = Vec<(usize, Option<usize>)>;
+
+/// Returns the building, or `None` when neither a building nor a room is named.
+pub(super) fn recognize(
+    tokens: &[Token],
+    registry: &Registry,
+    languages: &[&str],
+    spoken: &[&Spoken],
+    numbers: &[Number],
+    places: &[Span],
+    only: Option<&str>,
+) -> Option<Building> {
+    let domains: Vec<&Domain> =
+        registry.iter().map(|p| p.domain()).filter(|d| only.is_none_or(|o| o == d.id)).collect();
+    let list_from = list_start(tokens, spoken, languages);
+    let found = occurrences(tokens, &domains, languages, places);
+    let plural = |span: &Span| numbers.iter().any(|n| n.span.end == span.start && n.value > 1.0);
+    let head_final = matches!(languages.first(), Some(&("zh" | "ko")));
+    let pick = if head_final {
+        found.iter().filter(|(s, _)| !plural(s)).max_by_key(|(span, _)| {
+            let ends = tokens.get(span.end).is_none_or(Token::is_mark);
+            (span.end - span.start + if ends { 3 } else { 0 } + usize::from(span.start == 0), span.start)
+        })
+    } else {
+        let before: Vec<&(Span, Meaning)> = found.iter().filter(|(s, _)| s.start < list_from && !plural(s)).collect();
+        // "veterinary practice" beside "practice": the longer of two neighbors
+        match before.as_slice() {
+            [a, b, ..] if a.0.end == b.0.start && b.0.end - b.0.start > a.0.end - a.0.start => Some(*b),
+            [a, ..] => Some(*a),
+            [] => None,
+        }
+    };
+    let votes = || room_votes(tokens, &domains, languages);
+    let Some((span, meaning)) = pick else {
+        let best = votes().into_iter().enumerate().max_by_key(|&(i, n)| (n, usize::MAX - i)).filter(|v| v.1 > 0);
+        // A building named only inside the list ("there is an office") still says more than nothing.
+        let late = found.first().map(|(_, m)| m[0].0);
+        let domain = best.map(|b| b.0).or(late)?;
+        return Some(Building {
+            domain: domains[domain].id.clone(),
+            building_type: None,
+            head: None,
+            list_from: 0,
+            by_rooms: true,
+        });
+    };
+    let (domain, kind) = if meaning.len() > 1 {
+        let votes = votes();
+        let typed = |m: &&(usize, Option<usize>)| (m.1.is_some(), votes[m.0], usize::MAX - m.0);
+        *meaning.iter().max_by_key(typed)?
+    } else {
+        *meaning.first()?
+    };
+    let kind = kind.or_else(|| other_type(&found, domain));
+    Some(Building {
+        domain: domains[domain].id.clone(),
+        building_type: kind.map(|k| domains[domain].building_types[k].id.clone()),
+        head: Some(*span),
+        list_from: if head_final { 0 } else { list_from.max(span.end) },
+        by_rooms: false,
+    })
+}
+
+/// Returns a building type of the domain named elsewhere ("hospital: an intensive care unit").
+fn other_type(found: &[(Span, Meaning)], domain: usize) -> Option<usize> {
+    found.iter().flat_map(|(_, m)| m).find_map(|(d, kind)| kind.filter(|_| *d == domain))
+}
+
+/// Returns where a list of rooms begins: after "with", a colon, or the first comma.
+fn list_start(tokens: &[Token], spoken: &[&Spoken], languages: &[&str]) -> usize {
+    if matches!(languages.first(), Some(&("zh" | "ko"))) {
+        return 0;
+    }
+    (1..tokens.len())
+        .find(|&i| {
+            tokens[i].mark() == Some(':')
+                || (tokens[i].mark() == Some(',') && i > 1)
+                || spoken.iter().any(|s| s.tag_at(tokens, i, Tag::Starts).is_some() && tokens[i].text != "rooms")
+        })
+        .unwrap_or(tokens.len())
+}
+
+fn occurrences(tokens: &[Token], domains: &[&Domain], languages: &[&str], places: &[Span]) -> Vec<(Span, Meaning)> {
+    let vocabularies: Vec<Phrases<Meaning>> = languages.iter().map(|l| vocabulary(domains, l)).collect();
+    let mut out = Vec::new();
+    let mut i = 0;
+    while i < tokens.len() {
+        if places.iter().any(|p| p.contains(i)) {
+            i += 1;
+            continue;
+        }
+        let mut best: Option<(usize, &Meaning)> = None;
+        for v in &vocabularies {
+            if let Some((end, meaning)) = v.longest_at(tokens, i)
+                && best.is_none_or(|b| end > b.0)
+            {
+                best = Some((end, meaning));
+            }
+        }
+        if best.is_none() && tokens[i].kind == Kind::Word {
+            best = vocabularies.iter().find_map(|v| v.ending(&tokens[i].text, 4)).map(|(m, _)| (i + 1, m));
+        }
+        match best {
+            Some((end, meaning)) => {
+                out.push((Span { start: i, end }, meaning.clone()));
+                i = end;
+            }
+            None => i += 1,
+        }
+    }
+    out
+}
+
+fn vocabulary(domains: &[&Domain], language: &str) -> Phrases<Meaning> {
+    let mut phrases: Phrases<Meaning> = Phrases::new(language);
+    let mut add = |words: &Words, meaning: (usize, Option<usize>)| {
+        for phrase in words.get(language).into_iter().flatten() {
+            phrases.put(phrase, vec![meaning], |old, new| {
+                let mut all: Meaning = old.iter().filter(|m| m.0 != new[0].0 || m.1.is_some()).copied().collect();
+                if !all.iter().any(|m| m.0 == new[0].0) {
+                    all.push(new[0]);
+                }
+                all
+            });
+        }
+    };
+    for (d, domain) in domains.iter().enumerate() {
+        for (k, kind) in domain.building_types.iter().enumerate() {
+            add(&kind.keywords, (d, Some(k)));
+        }
+        add(&domain.keywords, (d, None));
+    }
+    phrases
+}
+
+/// Returns how many tokens of the prompt name rooms, by domain.
+fn room_votes(tokens: &[Token], domains: &[&Domain], languages: &[&str]) -> Vec<usize> {
+    domains
+        .iter()
+        .map(|domain| {
+            let vocabularies: Vec<Phrases<()>> = languages
+                .iter()
+                .map(|l| {
+                    let mut phrases = Phrases::new(l);
+                    for room in &domain.room_types {
+                        room.keywords.get(*l).into_iter().flatten().for_each(|p| phrases.insert(p, ()));
+                    }
+                    phrases
+                })
+                .collect();
+            let mut votes = 0;
+            let mut i = 0;
+            while i < tokens.len() {
+                let end = vocabularies.iter().filter_map(|v| v.longest_at(tokens, i)).map(|f| f.0).max();
+                votes += end.map_or(0, |e| e - i);
+                i = end.unwrap_or(i + 1);
+            }
+            votes
+        })
+        .collect()
+}

@@ -1,0 +1,155 @@
+//! Short forms of dwellings: "3BHK", "T3", "2LDK", "Dreizimmerwohnung", "三室两厅两卫", "2 bed 2 bath", "투룸".
+
+use std::collections::BTreeMap;
+
+use d3dgen_model::domain::Domain;
+
+use super::numbers::Number;
+use super::text::{Kind, Span, Token};
+use super::words::{Dwelling, Spoken, Tag, words};
+
+/// Rooms that a short form stands for.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct ShortForm {
+    pub span: Span,
+    /// Room types and how many.
+    pub rooms: BTreeMap<String, i64>,
+}
+
+/// Returns the short forms of a prompt; none in domains without the room types of a dwelling.
+pub(super) fn short_forms(tokens: &[Token], numbers: &[Number], domain: &Domain, spoken: &[&Spoken]) -> Vec<ShortForm> {
+    let d = &words().dwelling;
+    if [&d.living, &d.bedroom, &d.kitchen].iter().any(|id| domain.room_type(id).is_none()) {
+        return Vec::new();
+    }
+    let mut out: Vec<ShortForm> = Vec::new();
+    for i in 0..tokens.len() {
+        if out.iter().any(|f| f.span.contains(i)) {
+            continue;
+        }
+        let found = lettered(tokens, i, d)
+            .or_else(|| counted(tokens, i, numbers, d, domain, spoken))
+            .or_else(|| one_word(tokens, i, d, spoken))
+            .or_else(|| chinese(tokens, i, numbers, d));
+        out.extend(found.filter(|f| f.rooms.values().all(|n| (0..=60).contains(n))));
+    }
+    out
+}
+
+fn rooms_to_live(n: f64, d: &Dwelling) -> BTreeMap<String, i64> {
+    // Half rooms ("2,5-Zimmer-Wohnung") are niches, not rooms.
+    let bedrooms = (n.floor() as i64 - 1).max(0);
+    let mut rooms = BTreeMap::from([(d.living.clone(), 1)]);
+    if bedrooms > 0 {
+        rooms.insert(d.bedroom.clone(), bedrooms);
+    }
+    rooms
+}
+
+/// "T3", "F2"
+fn lettered(tokens: &[Token], i: usize, d: &Dwelling) -> Option<ShortForm> {
+    let token = &tokens[i];
+    let digits = token.text.strip_prefix(['t', 'f'])?;
+    if !token.capital || digits.is_empty() || digits.len() > 2 {
+        return None;
+    }
+    let n: f64 = digits.parse().ok()?;
+    (n >= 1.0).then(|| ShortForm { span: Span { start: i, end: i + 1 }, rooms: rooms_to_live(n, d) })
+}
+
+/// "3 BHK", "2LDK", "3-Zimmer-Wohnung", "3 pièces", "2 bed 1 bath", "2BR/2BA"
+fn counted(
+    tokens: &[Token],
+    i: usize,
+    numbers: &[Number],
+    d: &Dwelling,
+    domain: &Domain,
+    spoken: &[&Spoken],
+) -> Option<ShortForm> {
+    let number = numbers.iter().find(|n| n.span.start == i && !n.vague && n.value > 0.0)?;
+    let at = number.span.end;
+    let unit = tokens.get(at)?;
+    let n = number.value as i64;
+    let form = |end: usize, rooms: BTreeMap<String, i64>| Some(ShortForm { span: Span { start: i, end }, rooms });
+    let with = |others: &[String]| {
+        let mut rooms: BTreeMap<String, i64> =
+            others.iter().filter(|t| domain.room_type(t).is_some()).map(|t| (t.clone(), 1)).collect();
+        rooms.insert(d.bedroom.clone(), n);
+        rooms
+    };
+    match unit.text.as_str() {
+        "bhk" => return form(at + 1, with(&d.bhk)),
+        "ldk" => return form(at + 1, with(&d.ldk)),
+        "dk" if !unit.spaced => return form(at + 1, with(std::slice::from_ref(&d.kitchen))),
+        _ => {}
+    }
+    if d.rooms_to_live.contains(&unit.text) {
+        return form(at + 1, rooms_to_live(number.value, d));
+    }
+    let joined = |k: usize| tokens.get(k).is_some_and(|t| !t.is_mark());
+    if let Some(end) = spoken.iter().find_map(|s| s.tag_at(tokens, at, Tag::Habitable))
+        && !number.article
+    {
+        return form(end, rooms_to_live(number.value, d));
+    }
+    // "2 bed flat", "2 bed 2 bath", "3BR": letters or the bare singular; "5 beds" stays with the people
+    let short = d.bed_letters.contains(&unit.text) && (unit.text != "bed" || joined(at + 1)) && unit.text != "beds";
+    if short && tokens.get(at + 1).is_none_or(|t| t.text != "room" && t.text != "rooms") {
+        return form(at + 1, BTreeMap::from([(d.bedroom.clone(), n)]));
+    }
+    let bath = d.bath_letters.contains(&unit.text) && tokens.get(at + 1).is_none_or(|t| !t.text.starts_with("room"));
+    bath.then(|| ShortForm { span: Span { start: i, end: at + 1 }, rooms: BTreeMap::from([(d.bathroom.clone(), n)]) })
+}
+
+/// "Dreizimmerwohnung", "투룸"
+fn one_word(tokens: &[Token], i: usize, d: &Dwelling, spoken: &[&Spoken]) -> Option<ShortForm> {
+    let token = &tokens[i];
+    if token.kind == Kind::Hangul {
+        let text: String = tokens[i..].iter().take(2).map(|t| t.text.as_str()).collect();
+        let n = *d.bedroom_words.get(&text)? as i64;
+        return Some(ShortForm {
+            span: Span { start: i, end: i + 2 },
+            rooms: BTreeMap::from([(d.bedroom.clone(), n)]),
+        });
+    }
+    let head = d.rooms_to_live.iter().find_map(|w| {
+        let plural = token.text.strip_suffix('n').unwrap_or(&token.text);
+        token.text.strip_suffix(w.as_str()).or_else(|| plural.strip_suffix(w.as_str()))
+    })?;
+    let n = spoken.iter().find_map(|s| s.numbers.get(head)).copied()?;
+    Some(ShortForm { span: Span { start: i, end: i + 1 }, rooms: rooms_to_live(n, d) })
+}
+
+/// "三室两厅两卫", "3室1厅", "两房一厅一厨一卫"
+fn chinese(tokens: &[Token], i: usize, numbers: &[Number], d: &Dwelling) -> Option<ShortForm> {
+    let mut rooms: BTreeMap<String, i64> = BTreeMap::new();
+    let mut end = i;
+    let mut units = 0;
+    loop {
+        let Some(number) = numbers.iter().find(|n| n.span.start == end && n.value >= 0.0) else { break };
+        let at = number.span.end;
+        let mut unit = None;
+        for len in [2, 1] {
+            let Some(part) = tokens.get(at..at + len) else { continue };
+            let text: String = part.iter().map(|t| t.text.as_str()).collect();
+            if let Some(room) = d.zh_units.get(&text) {
+                unit = Some((len, text, room));
+                break;
+            }
+        }
+        let Some((len, text, room)) = unit else { break };
+        let n = number.value as i64;
+        if text == "厅" && n > 1 {
+            *rooms.entry(d.living.clone()).or_default() += n - 1;
+            *rooms.entry(d.dining.clone()).or_default() += 1;
+        } else {
+            *rooms.entry(room.clone()).or_default() += n;
+        }
+        units += 1;
+        end = at + len;
+        if end >= tokens.len() {
+            break;
+        }
+    }
+    (units >= 2).then(|| ShortForm { span: Span { start: i, end }, rooms })
+}

@@ -1,0 +1,221 @@
+//! How the rooms connect: circulation, hosts, what the prompt asks for, and the domain's adjacency rules.
+
+use d3dgen_model::domain::{Adjacency, AdjacencyRelation};
+use d3dgen_model::scene_graph::{Connector, GraphEdge, GraphRoom};
+
+use super::places::note;
+use super::program::Planned;
+use super::reading::Reading;
+use super::relations::Spread;
+use super::rooms;
+
+/// Walls that one room can be asked to share with others; more are wished for only.
+const MOST_WALLS: usize = 2;
+
+/// Edges and pairs to keep apart.
+#[derive(Debug, Default)]
+pub(super) struct Web {
+    pub edges: Vec<GraphEdge>,
+    pub apart: Vec<[String; 2]>,
+}
+
+/// Connects the rooms; adds the corridor where the building needs one.
+pub(super) fn connect(reading: &mut Reading, planned: &[Planned], rooms: &mut Vec<GraphRoom>) -> Web {
+    let mut web = Web::default();
+    let hub = hub(reading, planned, rooms);
+    web.circulate(planned, rooms, hub);
+    choose_entrance(reading, rooms, hub);
+    keep_apart(reading, rooms, &mut web);
+    web.follow_prompt(reading, planned, rooms);
+    web.follow_rules(reading, rooms);
+    web
+}
+
+/// Returns the index of the room all others open to: a hub of the domain, a new corridor, or the only room.
+fn hub(reading: &mut Reading, planned: &[Planned], rooms: &mut Vec<GraphRoom>) -> usize {
+    let circulation = &reading.domain.circulation;
+    let by_type = circulation.hub_room_types.iter().find_map(|t| rooms.iter().position(|r| &r.room_type == t));
+    let free: Vec<usize> = (0..planned.len()).filter(|&i| planned[i].host.is_none()).collect();
+    let forbidden = reading.wishes.forbidden.contains(&circulation.room_type);
+    match (by_type, free.as_slice()) {
+        (Some(hub), _) => hub,
+        (None, [only]) => *only,
+        _ => {
+            if forbidden {
+                let message = format!(
+                    "{} rooms cannot be reached without a {}; one was added",
+                    free.len(),
+                    circulation.room_type
+                );
+                reading.conflicts.push(note("circulation_needed", message));
+            }
+            rooms.push(rooms::circulation(reading));
+            rooms.len() - 1
+        }
+    }
+}
+
+impl Web {
+    fn put(&mut self, rooms: &[GraphRoom], (a, b): (usize, usize), connector: Connector, required: bool, reason: &str) {
+        let (a, b) = (rooms[a].id.clone(), rooms[b].id.clone());
+        let same = |e: &&mut GraphEdge| e.a == a && e.b == b || e.a == b && e.b == a;
+        let walkable = |c| matches!(c, Connector::Door | Connector::Open);
+        match self.edges.iter_mut().find(same) {
+            // a door already joins them; an opening asked for takes its place
+            Some(known) if walkable(known.connector) => {
+                if connector == Connector::Open && required {
+                    known.connector = connector;
+                    known.reason = reason.into();
+                }
+            }
+            Some(known) if known.required || !required => {}
+            Some(known) => *known = GraphEdge { a, b, connector, required, reason: reason.into() },
+            None => self.edges.push(GraphEdge { a, b, connector, required, reason: reason.into() }),
+        }
+    }
+
+    fn circulate(&mut self, planned: &[Planned], rooms: &[GraphRoom], hub: usize) {
+        for (i, room) in planned.iter().enumerate().filter(|(i, _)| *i != hub) {
+            let open = room.kind.open_front && room.host.is_none();
+            let connector = if open { Connector::Open } else { Connector::Door };
+            let reason = if room.host.is_some() { "host" } else { "circulation" };
+            self.put(rooms, (i, room.host.unwrap_or(hub)), connector, true, reason);
+        }
+    }
+
+    fn has_apart(&self, a: &str, b: &str) -> bool {
+        self.apart.iter().any(|[x, y]| x == a && y == b || x == b && y == a)
+    }
+
+    /// Adds what the prompt asks for.
+    fn follow_prompt(&mut self, reading: &mut Reading, planned: &[Planned], rooms: &[GraphRoom]) {
+        for pair in reading.wishes.pairs.clone() {
+            let of = |kind: &str| -> Vec<usize> { (0..rooms.len()).filter(|&i| rooms[i].room_type == kind).collect() };
+            let (from, to) = (of(&pair.a), of(&pair.b));
+            let hangs = |i: usize, j: usize| planned.get(i).is_some_and(|p| p.host == Some(j));
+            let met = from.iter().all(|&i| to.iter().any(|&j| hangs(i, j) || hangs(j, i)));
+            if from.is_empty() || to.is_empty() || pair.belongs || met {
+                continue;
+            }
+            let forbids =
+                |rule: &&Adjacency| rule.relation == AdjacencyRelation::MustNot && is_pair(rule, &pair.a, &pair.b);
+            let rule = reading
+                .domain
+                .adjacency
+                .iter()
+                .find(forbids)
+                .filter(|r| r.via == "wall" || pair.connector != Connector::Wall);
+            if let Some(rule) = rule.filter(|_| pair.connector != Connector::Near) {
+                let message = format!("{} and {} may not be joined by a {}: {}", pair.a, pair.b, rule.via, rule.reason);
+                reading.conflicts.push(note("forbidden_adjacency", message));
+                continue;
+            }
+            let pairs = spread(&from, &to, pair.spread);
+            let crowded = |i: usize| pairs.iter().filter(|p| p.0 == i || p.1 == i).count() > MOST_WALLS;
+            let many = pairs.iter().any(|p| crowded(p.0) || crowded(p.1));
+            for (i, j) in pairs.iter().copied() {
+                if self.has_apart(&rooms[i].id, &rooms[j].id) {
+                    continue;
+                }
+                let connector = if many { Connector::Near } else { pair.connector };
+                self.put(rooms, (i, j), connector, connector != Connector::Near, "prompt");
+            }
+        }
+    }
+
+    /// Adds the domain's rules: `must` as required edges, `should` as wishes.
+    fn follow_rules(&mut self, reading: &Reading, rooms: &[GraphRoom]) {
+        for rule in &reading.domain.adjacency {
+            let here = |c: &String| reading.country_code.as_ref() == Some(c);
+            if !rule.jurisdictions.is_empty() && !rule.jurisdictions.iter().any(here) {
+                continue;
+            }
+            let required = match rule.relation {
+                AdjacencyRelation::Must => true,
+                AdjacencyRelation::Should => false,
+                AdjacencyRelation::ShouldNot | AdjacencyRelation::MustNot => continue,
+            };
+            let of = |kind: &str| -> Vec<usize> { (0..rooms.len()).filter(|&i| rooms[i].room_type == kind).collect() };
+            let (from, to) = (of(&rule.a), of(&rule.b));
+            if from.is_empty() || to.is_empty() || rule.a == rule.b {
+                continue;
+            }
+            let connector = connector(&rule.via);
+            for (i, j) in spread(&from, &to, Spread::Each) {
+                let joined = |e: &GraphEdge| {
+                    let walk = matches!(e.connector, Connector::Door | Connector::Open);
+                    let other = if e.a == rooms[i].id { &e.b } else { &e.a };
+                    let touches = e.a == rooms[i].id || e.b == rooms[i].id;
+                    walk && e.required && touches && to.iter().any(|&k| &rooms[k].id == other)
+                };
+                if !self.edges.iter().any(joined) && !self.has_apart(&rooms[i].id, &rooms[j].id) {
+                    self.put(rooms, (i, j), connector, required && connector != Connector::Near, &rule.source);
+                }
+            }
+        }
+    }
+}
+
+fn is_pair(rule: &Adjacency, a: &str, b: &str) -> bool {
+    rule.a == a && rule.b == b || rule.a == b && rule.b == a
+}
+
+fn connector(via: &str) -> Connector {
+    match via {
+        "door" => Connector::Door,
+        "open" => Connector::Open,
+        "wall" => Connector::Wall,
+        _ => Connector::Near,
+    }
+}
+
+/// Returns the pairs of rooms that a pair of room types stands for.
+fn spread(from: &[usize], to: &[usize], how: Spread) -> Vec<(usize, usize)> {
+    let mut out: Vec<(usize, usize)> = match how {
+        Spread::All => from.iter().flat_map(|&i| to.iter().map(move |&j| (i, j))).collect(),
+        Spread::Between => from.iter().flat_map(|&i| to.iter().take(2).map(move |&j| (i, j))).collect(),
+        // every room of the first with one of the second, evenly spread
+        Spread::Each => {
+            from.iter().enumerate().map(|(k, &i)| (i, to[k * to.len().min(from.len()) / from.len()])).collect()
+        }
+    };
+    // rooms of one type beside each other: a chain
+    if from == to {
+        out = from.windows(2).map(|w| (w[0], w[1])).collect();
+    }
+    out.retain(|(i, j)| i != j);
+    out
+}
+
+/// Marks the room one enters the building through.
+fn choose_entrance(reading: &mut Reading, rooms: &mut [GraphRoom], hub: usize) {
+    let of = |kind: &String| rooms.iter().position(|r| &r.room_type == kind);
+    let wished = reading.wishes.entrance.iter().find_map(of);
+    let usual = reading.domain.circulation.entrance_room_types.iter().find_map(of);
+    rooms[wished.or(usual).unwrap_or(hub)].entrance = true;
+}
+
+/// Lists the pairs that share neither door nor wall: those the prompt names, and those the domain rules out.
+fn keep_apart(reading: &mut Reading, rooms: &[GraphRoom], web: &mut Web) {
+    let rules = reading.domain.adjacency.iter().filter(|r| {
+        let here =
+            r.jurisdictions.is_empty() || r.jurisdictions.iter().any(|c| reading.country_code.as_ref() == Some(c));
+        r.relation == AdjacencyRelation::MustNot && r.via == "wall" && here
+    });
+    let pairs: Vec<[String; 2]> =
+        reading.wishes.apart.iter().cloned().chain(rules.map(|r| [r.a.clone(), r.b.clone()])).collect();
+    for [a, b] in pairs {
+        for x in rooms.iter().filter(|r| r.room_type == a) {
+            for y in rooms.iter().filter(|r| r.room_type == b && r.id != x.id) {
+                let joined = web.edges.iter().any(|e| e.a == x.id && e.b == y.id || e.a == y.id && e.b == x.id);
+                if joined {
+                    let message =
+                        format!("{} and {} cannot be apart: one is entered through the other", x.name, y.name);
+                    reading.conflicts.push(note("apart_but_joined", message));
+                } else if !web.has_apart(&x.id, &y.id) {
+                    web.apart.push([x.id.clone(), y.id.clone()]);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,63 @@
+//! Which language a prompt is in.
+
+use super::text::{Kind, Token};
+use super::words::{Tag, words};
+
+/// Returns the ISO 639-1 code of the prompt's language (`en de fr es zh ko`); English when nothing tells.
+pub(super) fn detect(tokens: &[Token]) -> &'static str {
+    let count = |test: fn(&Token) -> bool| tokens.iter().filter(|t| test(t)).count();
+    let hangul = count(|t| t.kind == Kind::Hangul);
+    let han = count(|t| t.kind == Kind::Han);
+    let latin = count(|t| t.kind == Kind::Word);
+    // A syllable or character weighs less than a word; a foreign name or two does not change the language.
+    if hangul > 0 && hangul >= han && hangul > latin {
+        return "ko";
+    }
+    if han > 0 && han > latin {
+        return "zh";
+    }
+    let mut best = ("en", 0.0);
+    for code in ["en", "de", "fr", "es"] {
+        let Some(spoken) = words().languages.get(code) else { continue };
+        let mut score = if code == "en" { 0.01 } else { 0.0 };
+        for (i, token) in tokens.iter().enumerate() {
+            if token.kind != Kind::Word {
+                continue;
+            }
+            let known = spoken
+                .words
+                .phrases
+                .get(&Tag::Detect)
+                .is_some_and(|words| words.iter().any(|w| super::text::fold(w) == token.text));
+            let number = spoken.numbers.contains_key(&token.text);
+            let phrase = spoken.tags.longest_at(tokens, i).is_some();
+            score += if known { 1.0 } else { 0.0 } + if number { 0.7 } else { 0.0 } + if phrase { 0.3 } else { 0.0 };
+        }
+        if score > best.1 {
+            best = (code, score);
+        }
+    }
+    best.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::text::tokens;
+    use super::*;
+
+    #[test]
+    fn tells_six_languages() {
+        for (text, code) in [
+            ("two-bedroom flat in Germany", "en"),
+            ("Eine Dreizimmerwohnung in Berlin mit Küche", "de"),
+            ("Un appartement T3 à Paris avec deux chambres", "fr"),
+            ("Oficina en Madrid para 25 empleados", "es"),
+            ("上海一套三室两厅两卫的住宅", "zh"),
+            ("서울에 있는 방 2개와 화장실 1개짜리 아파트", "ko"),
+            ("", "en"),
+            ("???", "en"),
+        ] {
+            assert_eq!(detect(&tokens(text)), code, "{text}");
+        }
+    }
+}

@@ -1,0 +1,410 @@
+//! Rooms, people and totals that a prompt names, each with its number.
+
+use d3dgen_model::domain::{Domain, GENERIC_ROOM_TYPE};
+use d3dgen_plugins::Registry;
+
+use super::numbers::Number;
+use super::text::{Kind, Phrases, Span, Token, fold};
+use super::unknown;
+use super::words::{Spoken, Tag};
+
+/// What a mention is about.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum What {
+    /// A room type of the domain, of another domain, or a slug of the prompt's own words.
+    Room(String),
+    /// A robot's charging, named by a verb or a place that need not be a room.
+    Charge,
+    /// The entrance of the building.
+    Entrance,
+    /// Rooms in total.
+    Total,
+    Staff,
+    People,
+    Visitors,
+    Beds,
+    Desks,
+    Residents,
+}
+
+/// One mention.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Mention {
+    pub span: Span,
+    pub what: What,
+    /// The number before (or, in some languages, after) it.
+    pub count: Option<i64>,
+    /// True for "a", "eine": one of them, perhaps only an article.
+    pub article: bool,
+    /// True for "several".
+    pub vague: bool,
+    /// True for a plural form.
+    pub plural: bool,
+    /// True after "the" and the like.
+    pub definite: bool,
+    /// First token of the number or article, or of the mention itself.
+    pub from: usize,
+}
+
+impl Mention {
+    pub(super) fn room_type(&self) -> Option<&str> {
+        if let What::Room(id) = &self.what { Some(id) } else { None }
+    }
+}
+
+/// A word for a room.
+#[derive(Debug, Clone, PartialEq)]
+struct RoomWord {
+    id: String,
+    /// Letters of the phrase; a longer form of the same word is its plural.
+    letters: usize,
+}
+
+/// Words for rooms in the prompt's languages.
+pub(super) struct Vocabulary {
+    own: Vec<Phrases<RoomWord>>,
+    foreign: Vec<Phrases<RoomWord>>,
+}
+
+impl Vocabulary {
+    /// Collects the room words of the domain and, for rooms it does not know, of all other domains.
+    pub(super) fn new(domain: &Domain, registry: &Registry, languages: &[&str]) -> Self {
+        let own = languages.iter().map(|l| phrases(std::iter::once(domain), l)).collect();
+        let others = || registry.iter().map(|p| p.domain()).filter(|d| d.id != domain.id);
+        let foreign = languages.iter().map(|l| phrases(others(), l)).collect();
+        Self { own, foreign }
+    }
+
+    /// Returns end, room type and whether it is a plural of the longest room word at a token.
+    fn at(&self, tokens: &[Token], i: usize) -> Option<(usize, &str, bool)> {
+        let longest = |list: &'_ [Phrases<RoomWord>]| {
+            let mut best: Option<(usize, String, usize)> = None;
+            for found in list.iter().filter_map(|p| p.longest_at(tokens, i)) {
+                if best.as_ref().is_none_or(|b| found.0 > b.0) {
+                    best = Some((found.0, found.1.id.clone(), found.1.letters));
+                }
+            }
+            best
+        };
+        let (own, foreign) = (longest(&self.own), longest(&self.foreign));
+        let own_end = own.as_ref().map_or(0, |o| o.0);
+        let from_own = foreign.as_ref().is_none_or(|f| f.0 <= own_end);
+        let (end, ..) = if from_own { own? } else { foreign? };
+        let list = if from_own { &self.own } else { &self.foreign };
+        let word = list.iter().find_map(|p| p.longest_at(tokens, i).filter(|f| f.0 == end))?.1;
+        let letters: usize = tokens[i..end].iter().map(|t| t.text.chars().count()).sum();
+        Some((end, word.id.as_str(), letters > word.letters))
+    }
+
+    /// Returns the room type of a compound's ending ("Damentoilette").
+    fn ending(&self, word: &str) -> Option<&str> {
+        self.own.iter().find_map(|p| p.ending(word, 5)).map(|(w, _)| w.id.as_str())
+    }
+
+    /// Returns the room type of a phrase.
+    pub(super) fn whole(&self, text: &str) -> Option<&str> {
+        self.own.iter().chain(&self.foreign).find_map(|p| p.whole(text)).map(|w| w.id.as_str())
+    }
+}
+
+fn phrases<'a>(domains: impl Iterator<Item = &'a Domain>, language: &str) -> Phrases<RoomWord> {
+    let mut phrases: Phrases<RoomWord> = Phrases::new(language);
+    for domain in domains {
+        for room in domain.room_types.iter().filter(|r| r.id != GENERIC_ROOM_TYPE) {
+            let words = room.keywords.get(language).into_iter().flatten().map(String::as_str);
+            let id = room.id.replace('_', " ");
+            let id = if language == "en" { Some(id.as_str()) } else { None };
+            for phrase in words.chain(id) {
+                let letters = phrase.split_whitespace().map(|w| fold(w).chars().count()).sum();
+                phrases.put(phrase, RoomWord { id: room.id.clone(), letters }, |old, new| {
+                    let letters = if old.id == new.id { old.letters.min(new.letters) } else { old.letters };
+                    RoomWord { id: old.id.clone(), letters }
+                });
+            }
+        }
+    }
+    phrases
+}
+
+/// What the other readers have taken already.
+pub(super) struct Taken<'a> {
+    /// Places, areas, short forms, robots.
+    pub spans: &'a [Span],
+    /// Words that name the building.
+    pub head: Option<Span>,
+    pub list_from: usize,
+}
+
+/// Returns all mentions in order.
+pub(super) fn mentions(
+    tokens: &[Token],
+    numbers: &[Number],
+    vocabulary: &Vocabulary,
+    spoken: &[&Spoken],
+    language: &str,
+    taken: &Taken,
+) -> Vec<Mention> {
+    let mut out: Vec<Mention> = Vec::new();
+    let mut i = 0;
+    while i < tokens.len() {
+        if let Some(span) = taken.spans.iter().chain(&taken.head).find(|s| s.contains(i)) {
+            i = span.end.max(i + 1);
+            continue;
+        }
+        if tokens[i].is_mark() {
+            i += 1;
+            continue;
+        }
+        match noun_at(tokens, i, vocabulary, spoken, language, taken) {
+            Some((end, what, plural)) => {
+                out.push(Mention {
+                    span: Span { start: i, end },
+                    what,
+                    count: None,
+                    article: false,
+                    vague: false,
+                    plural,
+                    definite: false,
+                    from: i,
+                });
+                i = end;
+            }
+            None => i += 1,
+        }
+    }
+    ellipses(tokens, vocabulary, &mut out);
+    drop_modifiers(tokens, &mut out);
+    attach_numbers(tokens, numbers, spoken, language, taken, &mut out);
+    drop_echoes(tokens, taken, &mut out);
+    out
+}
+
+fn noun_at(
+    tokens: &[Token],
+    i: usize,
+    vocabulary: &Vocabulary,
+    spoken: &[&Spoken],
+    language: &str,
+    taken: &Taken,
+) -> Option<(usize, What, bool)> {
+    let free = |end: usize| {
+        let span = Span { start: i, end };
+        !taken.spans.iter().chain(&taken.head).any(|s| s.overlaps(span))
+    };
+    let room =
+        vocabulary.at(tokens, i).filter(|r| free(r.0)).map(|(end, id, plural)| (end, What::Room(id.into()), plural));
+    let entrance = spoken.iter().find_map(|s| s.tag_at(tokens, i, Tag::Entrance)).filter(|&end| free(end));
+    if let Some(end) = entrance
+        && room.as_ref().is_none_or(|r| r.0 <= end)
+    {
+        // "cafe at the entrance" means a place, "an entrance, a kitchen" a room
+        let near = (i.saturating_sub(2)..i).any(|k| {
+            spoken
+                .iter()
+                .any(|s| s.tag_at(tokens, k, Tag::Near).is_some() || s.tag_at(tokens, k, Tag::Definite).is_some())
+        });
+        if near || room.is_none() {
+            return Some((end, What::Entrance, false));
+        }
+    }
+    let people = [
+        (Tag::Staff, What::Staff),
+        (Tag::Visitors, What::Visitors),
+        (Tag::Beds, What::Beds),
+        (Tag::Desks, What::Desks),
+        (Tag::Residents, What::Residents),
+        (Tag::People, What::People),
+        (Tag::Total, What::Total),
+        (Tag::ChargePlace, What::Charge),
+        (Tag::Charge, What::Charge),
+    ]
+    .into_iter()
+    .filter_map(|(tag, what)| {
+        let end = spoken.iter().find_map(|s| s.tag_at(tokens, i, tag))?;
+        free(end).then_some((end, what, true))
+    })
+    .max_by_key(|p| p.0);
+    let generic = people.as_ref().is_some_and(|p| p.1 == What::Total);
+    match (room, people) {
+        (Some(room), Some(people)) if people.0 > room.0 => Some(people),
+        (Some(room), _) => Some(room),
+        (None, people) => {
+            let unknown = if people.is_none() || generic {
+                unknown::room_at(tokens, i, spoken, language, taken.list_from)
+                    .filter(|(end, _)| free(*end))
+                    .map(|(end, name)| (end, What::Room(name), false))
+            } else {
+                None
+            };
+            let compound = || {
+                let token = &tokens[i];
+                (token.kind == Kind::Word && i >= taken.list_from)
+                    .then(|| vocabulary.ending(&token.text))
+                    .flatten()
+                    .map(|id| (i + 1, What::Room(id.into()), false))
+            };
+            compound().or(unknown).or(people)
+        }
+    }
+}
+
+/// Completes "clean and dirty utility", "men's and women's toilets", "Wohn- und Esszimmer".
+fn ellipses(tokens: &[Token], vocabulary: &Vocabulary, out: &mut Vec<Mention>) {
+    let mut added = Vec::new();
+    for m in out.iter() {
+        let Some(id) = m.room_type() else { continue };
+        let Some(join) = m.span.start.checked_sub(1) else { continue };
+        let Some(first) = join.checked_sub(1) else { continue };
+        let joins = matches!(tokens[join].text.as_str(), "and" | "or" | "und" | "oder" | "y" | "et" | "/");
+        let free = tokens[first].kind == Kind::Word && !out.iter().any(|o| o.span.contains(first));
+        if !joins || !free {
+            continue;
+        }
+        let word = &tokens[first].text;
+        let rest: Vec<&str> = tokens[m.span.start + 1..m.span.end].iter().map(|t| t.text.as_str()).collect();
+        let mut tries = Vec::new();
+        if !rest.is_empty() {
+            tries.push(format!("{word} {}", rest.join(" ")));
+        }
+        if let Some(head) = tokens.get(m.span.start).filter(|t| t.text.is_ascii() && m.span.end == m.span.start + 1) {
+            tries.extend((3..head.text.len().saturating_sub(2)).map(|cut| format!("{word}{}", &head.text[cut..])));
+        }
+        if let Some(other) = tries.iter().find_map(|t| vocabulary.whole(t))
+            && other != id
+        {
+            added.push(Mention {
+                span: Span { start: first, end: join },
+                what: What::Room(other.into()),
+                from: first,
+                ..m.clone()
+            });
+        }
+    }
+    out.extend(added);
+    out.sort_by_key(|m| m.span.start);
+}
+
+/// Drops people that only qualify a room: "kids' bathroom", "staff toilets", "patient lounge".
+fn drop_modifiers(tokens: &[Token], out: &mut Vec<Mention>) {
+    let rooms: Vec<usize> = out.iter().filter(|m| m.room_type().is_some()).map(|m| m.span.start).collect();
+    out.retain(|m| {
+        let person = matches!(m.what, What::Staff | What::People | What::Visitors | What::Desks | What::Residents);
+        let latin = tokens[m.span.start].kind == Kind::Word;
+        !(person && latin && rooms.contains(&m.span.end))
+    });
+}
+
+/// Drops repeated words for the building outside the list of rooms ("office office office").
+fn drop_echoes(tokens: &[Token], taken: &Taken, out: &mut Vec<Mention>) {
+    let Some(head) = taken.head else { return };
+    let text = |span: Span| tokens[span.start..span.end].iter().map(|t| t.text.as_str()).collect::<String>();
+    let name = text(head);
+    out.retain(|m| {
+        let before_list = m.span.start < taken.list_from;
+        !(m.room_type().is_some() && before_list && m.count.is_none() && name.contains(&text(m.span)))
+    });
+}
+
+fn attach_numbers(
+    tokens: &[Token],
+    numbers: &[Number],
+    spoken: &[&Spoken],
+    language: &str,
+    taken: &Taken,
+    out: &mut [Mention],
+) {
+    let spans: Vec<Span> = out.iter().map(|m| m.span).collect();
+    let usable: Vec<&Number> = numbers
+        .iter()
+        .filter(|n| !taken.spans.iter().chain(&taken.head).chain(&spans).any(|s| s.overlaps(n.span)))
+        .collect();
+    let mut used = vec![false; usable.len()];
+    for m in out.iter_mut() {
+        let after = || number_after(tokens, m.span.end, &usable, spoken, language);
+        let before = || number_before(tokens, m.span.start, &usable, spoken, &spans);
+        let found = if language == "ko" { after().or_else(before) } else { before().or_else(after) };
+        let special = || {
+            let tag = match m.what {
+                What::Staff => Tag::StaffBefore,
+                What::Visitors => Tag::VisitorsBefore,
+                _ => return None,
+            };
+            let ends = spoken.iter().any(|s| s.tag_at(tokens, m.span.start, tag) == Some(m.span.end));
+            ends.then(|| usable.iter().position(|n| n.span.start == m.span.end)).flatten()
+        };
+        let Some(k) = found.or_else(special).filter(|&k| !used[k]) else {
+            m.definite = (m.span.start.saturating_sub(2)..m.span.start).any(|k| {
+                spoken.iter().any(|s| s.tag_at(tokens, k, Tag::Definite).is_some_and(|end| end <= m.span.start))
+            });
+            continue;
+        };
+        let number = usable[k];
+        used[k] = !(number.article || number.vague);
+        m.count = Some(number.value.clamp(-1e9, 1e9).trunc() as i64);
+        m.article = number.article;
+        m.vague = number.vague;
+        m.from = m.from.min(number.span.start);
+        m.definite = number.span.start > 0
+            && spoken.iter().any(|s| s.tag_at(tokens, number.span.start - 1, Tag::Definite).is_some());
+    }
+}
+
+/// Returns the number before a noun, over adjectives and counters.
+fn number_before(
+    tokens: &[Token],
+    start: usize,
+    numbers: &[&Number],
+    spoken: &[&Spoken],
+    nouns: &[Span],
+) -> Option<usize> {
+    let mut at = start;
+    for _ in 0..5 {
+        if let Some(k) = numbers.iter().position(|n| n.span.end == at) {
+            return Some(k);
+        }
+        at = at.checked_sub(1)?;
+        let token = &tokens[at];
+        if token.is_mark() || nouns.iter().any(|s| s.contains(at)) || matches!(token.kind, Kind::Number(_)) {
+            return None;
+        }
+        let has = |tag| spoken.iter().any(|s| s.tag_at(tokens, at, tag) == Some(at + 1));
+        let parts = [Tag::Stops, Tag::Starts, Tag::No, Tag::Near, Tag::Door, Tag::Joins, Tag::Each, Tag::Definite];
+        let joint = matches!(token.text.as_str(), "的" | "의" | "de" | "of");
+        if !joint && parts.iter().any(|&tag| has(tag)) && !has(Tag::Counters) {
+            return None;
+        }
+    }
+    None
+}
+
+/// Returns the number after a noun: "방 2개", "会议室3间", "bedrooms: 3", "bedroom x 2".
+fn number_after(
+    tokens: &[Token],
+    end: usize,
+    numbers: &[&Number],
+    spoken: &[&Spoken],
+    language: &str,
+) -> Option<usize> {
+    let closes = |at: usize| tokens.get(at).is_none_or(Token::is_mark);
+    let number_at = |at: usize| numbers.iter().position(|n| n.span.start == at);
+    let next = tokens.get(end)?;
+    let counter = |at: usize| spoken.iter().find_map(|s| s.tag_at(tokens, at, Tag::Counters));
+    match language {
+        "ko" => {
+            let particle =
+                !next.spaced && matches!(next.text.as_str(), "은" | "는" | "이" | "가" | "을" | "를" | "도" | "만");
+            let at = if particle { end + 1 } else { end };
+            number_at(at).filter(|&k| counter(numbers[k].span.end).is_some() || closes(numbers[k].span.end))
+        }
+        "zh" => number_at(end).filter(|&k| {
+            let after = counter(numbers[k].span.end).unwrap_or(numbers[k].span.end);
+            let joined = spoken.iter().any(|s| s.tag_at(tokens, after, Tag::Joins).is_some());
+            closes(after) || joined
+        }),
+        _ => {
+            let at = if matches!(next.text.as_str(), "x" | ":" | "," | "-") { end + 1 } else { return None };
+            let listed = next.text != "," && next.text != "-";
+            number_at(at).filter(|&k| closes(numbers[k].span.end) && (listed || tokens.len() > numbers[k].span.end))
+        }
+    }
+}

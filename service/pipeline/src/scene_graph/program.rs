@@ -1,0 +1,349 @@
+//! Which rooms the building has: those the prompt names, completed from the program of its building type.
+
+use std::collections::BTreeMap;
+
+use d3dgen_model::domain::{Access, Occupants, ProgramRoom, RoomType, Zone};
+
+use super::places::note;
+use super::reading::{MAX_ROOMS, Reading};
+use super::wishes::{CHARGING, Pair, Wish};
+
+/// Rooms of a building planned by area alone.
+const MOST_BY_AREA: usize = 60;
+/// Share of a building's net area that its corridors take, before any plan is drawn.
+pub(super) const CIRCULATION_SHARE: f64 = 0.14;
+
+/// A room to be.
+#[derive(Debug, Clone)]
+pub(super) struct Planned<'a> {
+    /// Type of the domain, or a name that only the prompt knows.
+    pub room_type: String,
+    /// What the domain knows about it.
+    pub kind: &'a RoomType,
+    /// The prompt's words for a type the domain does not know.
+    pub name: Option<String>,
+    /// Area the prompt gives, m^2.
+    pub area_m2: Option<f64>,
+    pub requested: bool,
+    /// Index of the room it is entered from, when that is not the circulation.
+    pub host: Option<usize>,
+    /// People, beds or desks it is to hold.
+    pub occupants: Option<u32>,
+}
+
+/// Returns the rooms of the building, circulation aside.
+pub(super) fn complete<'a>(reading: &mut Reading<'a>) -> Vec<Planned<'a>> {
+    let mut build = Build::new(reading);
+    build.take_wishes();
+    match (reading.total, reading.closed) {
+        (None, true) => {}
+        (Some(total), _) => build.fill_to(total as usize),
+        (None, false) => build.fill_usual(),
+    }
+    let mut rooms = build.rooms;
+    hold_people(reading, &mut rooms);
+    hang_on_hosts(reading, &mut rooms);
+    state_additions(reading, &rooms);
+    rooms
+}
+
+struct Build<'r, 'a> {
+    reading: &'r Reading<'a>,
+    rooms: Vec<Planned<'a>>,
+    /// Zones for sleeping in which the prompt fixes the rooms.
+    sleeping_is_fixed: bool,
+}
+
+impl<'r, 'a> Build<'r, 'a> {
+    fn new(reading: &'r Reading<'a>) -> Self {
+        let zone = |w: &Wish| reading.domain.room_type(&w.room_type).map(|t| t.zone);
+        let sleeping_is_fixed = reading.wishes.wishes.iter().any(|w| w.exact && zone(w) == Some(Zone::Night));
+        Self { reading, rooms: Vec::new(), sleeping_is_fixed }
+    }
+
+    fn take_wishes(&mut self) {
+        let corridor = &self.reading.domain.circulation.room_type;
+        for wish in self.reading.wishes.wishes.iter().filter(|w| &w.room_type != corridor) {
+            for _ in 0..wish.count {
+                self.push(&wish.room_type, Some(wish));
+            }
+        }
+        let charging = self.reading.wishes.charging_room || self.reading.wishes.charging && !self.reading.closed;
+        if charging && !self.is_forbidden(CHARGING) && self.count(CHARGING) == 0 {
+            self.push(CHARGING, None);
+            self.rooms.last_mut().expect("just pushed").requested = true;
+        }
+    }
+
+    fn push(&mut self, room_type: &str, wish: Option<&Wish>) {
+        let kind = self.reading.domain.room_type_or_generic(room_type);
+        self.rooms.push(Planned {
+            room_type: room_type.to_owned(),
+            kind,
+            name: wish.filter(|_| kind.id != room_type).map(|w| w.name.clone()),
+            area_m2: wish.and_then(|w| w.area_m2),
+            requested: wish.is_some(),
+            host: None,
+            occupants: None,
+        });
+    }
+
+    fn count(&self, room_type: &str) -> usize {
+        self.rooms.iter().filter(|r| r.room_type == room_type).count()
+    }
+
+    fn is_forbidden(&self, room_type: &str) -> bool {
+        self.reading.wishes.forbidden.iter().any(|f| f == room_type)
+    }
+
+    /// Returns true when the program may add rooms of a type to those the prompt names.
+    fn may_grow(&self, room_type: &str) -> bool {
+        let wishes = &self.reading.wishes;
+        let exact = wishes.wishes.iter().any(|w| w.exact && w.room_type == room_type);
+        let night = self.reading.domain.room_type(room_type).is_some_and(|t| t.zone == Zone::Night);
+        !exact && !self.is_forbidden(room_type) && !(night && self.sleeping_is_fixed)
+    }
+
+    /// Adds one room of an entry with those that come with it; returns false when there is no place for it.
+    fn add(&mut self, entry: &ProgramRoom, limit: usize) -> bool {
+        if !self.may_grow(&entry.room_type) || self.rooms.len() >= limit {
+            return false;
+        }
+        self.push(&entry.room_type, None);
+        for with in &entry.with {
+            if self.rooms.len() < limit && self.may_grow(with) {
+                self.push(with, None);
+            }
+        }
+        true
+    }
+
+    /// Walks through the program as it grows: `min` of every entry, then one more of each below its `max`, again and
+    /// again. `visit` returns false to stop.
+    fn walk(&mut self, mut visit: impl FnMut(&mut Self, &'a ProgramRoom) -> bool) {
+        let entries = &self.reading.program.rooms;
+        let rounds = entries.iter().map(|e| e.max.saturating_sub(e.min)).max().unwrap_or(0);
+        for round in 0..=rounds {
+            for entry in entries {
+                let n = if round == 0 { entry.min } else { u32::from(entry.min + round <= entry.max) };
+                for _ in 0..n {
+                    if !visit(self, entry) {
+                        return;
+                    }
+                }
+            }
+        }
+    }
+
+    /// Fills up to a total; rooms the prompt names count first, a program's own come in its order.
+    fn fill_to(&mut self, total: usize) {
+        self.spend_wishes(total, usize::MAX);
+        // a program shorter than the count goes on with what it has
+        while self.rooms.len() < total {
+            let before = self.rooms.len();
+            for entry in &self.reading.program.rooms {
+                if entry.max > 1 {
+                    self.add(entry, total);
+                }
+            }
+            if self.rooms.len() == before {
+                let growing = self.reading.wishes.wishes.iter().find(|w| !w.exact).map(|w| w.room_type.clone());
+                let kind = growing.unwrap_or_else(|| self.reading.program.rooms[0].room_type.clone());
+                self.push(&kind, None);
+            }
+        }
+    }
+
+    /// Walks the program up to `limit` rooms in all or `usual` rooms of the program; a program's room that the prompt
+    /// names already is that room.
+    fn spend_wishes(&mut self, limit: usize, usual: usize) {
+        let mut named: BTreeMap<String, usize> = BTreeMap::new();
+        for room in &self.rooms {
+            *named.entry(room.room_type.clone()).or_default() += 1;
+        }
+        let mut spent = 0;
+        self.walk(|build, entry| {
+            if build.rooms.len() >= limit || spent >= usual {
+                return false;
+            }
+            match named.get_mut(&entry.room_type).filter(|n| **n > 0) {
+                Some(left) => {
+                    *left -= 1;
+                    spent += 1 + entry.with.len();
+                }
+                None => {
+                    let before = build.rooms.len();
+                    build.add(entry, limit);
+                    spent += (build.rooms.len() - before).max(1);
+                }
+            }
+            true
+        });
+    }
+
+    /// Fills with the rooms such a building usually has, as many as the area and the people ask for.
+    fn fill_usual(&mut self) {
+        let program = self.reading.program;
+        let most = MAX_ROOMS as usize;
+        self.spend_wishes(most, program.default_rooms as usize);
+        self.fit_people(most);
+        if let Some(area) = self.reading.area_m2 {
+            self.fit_area(area * (1.0 - CIRCULATION_SHARE));
+        }
+    }
+
+    /// Adds rooms that a head count asks for.
+    fn fit_people(&mut self, limit: usize) {
+        for entry in &self.reading.program.rooms {
+            let present = self.count(&entry.room_type);
+            let Some(people) = head_count(self.reading, entry.occupants).filter(|_| present > 0) else { continue };
+            let kind = self.reading.domain.room_type_or_generic(&entry.room_type);
+            let by_count = entry.occupants_per_room.map_or(0, |per| people.div_ceil(per.max(1)) as usize);
+            let by_area = entry
+                .area_per_occupant_m2
+                .map_or(0, |per| (per * f64::from(people) / kind.area_m2.max).ceil() as usize);
+            for _ in present..by_count.max(by_area) {
+                self.add(entry, limit);
+            }
+        }
+        if let Some(people) = self.reading.residents {
+            // two share a bedroom, everyone else has one
+            let wanted = people.saturating_sub(1).max(1) as usize;
+            let sleeping =
+                |e: &&ProgramRoom| self.reading.domain.room_type_or_generic(&e.room_type).zone == Zone::Night;
+            if let Some(entry) = self.reading.program.rooms.iter().find(sleeping) {
+                for _ in self.count(&entry.room_type)..wanted {
+                    self.add(entry, limit);
+                }
+            }
+        }
+    }
+
+    /// Drops or adds rooms until the usual sizes fit an area, net m^2.
+    fn fit_area(&mut self, area: f64) {
+        let sum = |build: &Self, size: fn(&RoomType) -> f64| build.rooms.iter().map(|r| size(r.kind)).sum::<f64>();
+        while sum(self, |k| 0.5 * (k.area_m2.min + k.area_m2.target)) > area {
+            // what comes last in the program goes first
+            let Some(last) = self.rooms.iter().rposition(|r| !r.requested) else { break };
+            if self.rooms.len() <= 1 {
+                break;
+            }
+            self.rooms.remove(last);
+        }
+        let roomy = sum(self, |k| k.area_m2.target.max(0.75 * k.area_m2.max));
+        if roomy >= area {
+            return;
+        }
+        let mut seen: BTreeMap<&str, u32> = BTreeMap::new();
+        let counted: BTreeMap<String, u32> = self.rooms.iter().fold(BTreeMap::new(), |mut map, r| {
+            *map.entry(r.room_type.clone()).or_default() += 1;
+            map
+        });
+        self.walk(|build, entry| {
+            let n = seen.entry(&entry.room_type).or_default();
+            *n += 1;
+            if *n > counted.get(&entry.room_type).copied().unwrap_or(0) {
+                build.add(entry, MOST_BY_AREA);
+            }
+            build.rooms.len() < MOST_BY_AREA && sum(build, |k| k.area_m2.target) < area
+        });
+    }
+}
+
+/// Returns the head count a program entry speaks of.
+fn head_count(reading: &Reading, of: Occupants) -> Option<u32> {
+    let o = &reading.occupancy;
+    match of {
+        Occupants::Staff => o.staff.max(o.desks),
+        Occupants::Visitors => o.visitors,
+        Occupants::Beds => o.beds,
+        Occupants::Residents => reading.residents,
+    }
+}
+
+/// Spreads the people over the rooms that the program gives them.
+fn hold_people(reading: &mut Reading, rooms: &mut [Planned]) {
+    for entry in &reading.program.rooms {
+        let Some(people) = head_count(reading, entry.occupants) else { continue };
+        let places: Vec<usize> = (0..rooms.len()).filter(|&i| rooms[i].room_type == entry.room_type).collect();
+        let sits = entry.area_per_occupant_m2.is_some() || entry.occupants != Occupants::Staff;
+        if !sits || places.is_empty() || places.iter().any(|&i| rooms[i].occupants.is_some()) {
+            continue;
+        }
+        let n = places.len() as u32;
+        for (k, &i) in places.iter().enumerate() {
+            rooms[i].occupants = Some(people / n + u32::from((k as u32) < people % n));
+            let area = entry.area_per_occupant_m2.map(|per| per * f64::from(people) / f64::from(n));
+            rooms[i].area_m2 = rooms[i].area_m2.or(area);
+        }
+    }
+    // beds the program does not know of stand in the rooms the prompt names for sleeping
+    if let Some(beds) = reading.occupancy.beds
+        && rooms.iter().all(|r| r.occupants.is_none())
+    {
+        let places: Vec<usize> =
+            (0..rooms.len()).filter(|&i| rooms[i].requested && rooms[i].kind.zone == Zone::Night).collect();
+        if (1..=beds as usize).contains(&places.len()) {
+            let n = places.len() as u32;
+            for (k, &i) in places.iter().enumerate() {
+                rooms[i].occupants = Some(beds / n + u32::from((k as u32) < beds % n));
+            }
+        }
+    }
+}
+
+/// Finds for every en suite, closet and the like the room it is entered from.
+fn hang_on_hosts(reading: &mut Reading, rooms: &mut [Planned]) {
+    let pairs: Vec<Pair> = reading.wishes.pairs.iter().filter(|p| p.belongs).cloned().collect();
+    for i in 0..rooms.len() {
+        let room = &rooms[i];
+        let belongs = pairs.iter().find(|p| p.a == room.room_type);
+        let hosted = room.kind.access == Access::Host;
+        if !hosted && belongs.is_none() {
+            continue;
+        }
+        let fits = |h: &Planned| match belongs {
+            // "isolation room with anteroom": the type says that one enters through the anteroom
+            Some(pair) => h.room_type == pair.b && !h.kind.hosts.contains(&room.room_type),
+            None => room.kind.hosts.contains(&h.room_type),
+        };
+        let by_type = |h: &Planned| hosted && room.kind.hosts.contains(&h.room_type);
+        let guests = |h: usize, rooms: &[Planned]| {
+            rooms.iter().filter(|r| r.host == Some(h) && r.room_type == rooms[i].room_type).count()
+        };
+        let candidates = |test: &dyn Fn(&Planned) -> bool| {
+            (0..rooms.len())
+                .filter(|&h| h != i && test(&rooms[h]) && rooms[h].host != Some(i))
+                .min_by_key(|&h| (guests(h, rooms), usize::from(rooms[h].host.is_some()), h.abs_diff(i), h))
+        };
+        let host = candidates(&fits).or_else(|| candidates(&by_type));
+        // a room the prompt gives to one host only ("bedroom with its own bath and a second bath")
+        let taken = !hosted && host.is_some_and(|h| guests(h, rooms) > 0);
+        if taken {
+            continue;
+        }
+        if host.is_none() && hosted {
+            let message =
+                format!("{} has no room to be entered from; it opens to the circulation instead", room.kind.label);
+            reading.assumptions.push(note("no_host", message));
+        }
+        rooms[i].host = host;
+    }
+}
+
+/// States which rooms the prompt does not name.
+fn state_additions(reading: &mut Reading, rooms: &[Planned]) {
+    let mut added: Vec<(&str, u32)> = Vec::new();
+    for room in rooms.iter().filter(|r| !r.requested) {
+        match added.iter_mut().find(|a| a.0 == room.kind.label) {
+            Some(known) => known.1 += 1,
+            None => added.push((&room.kind.label, 1)),
+        }
+    }
+    if added.is_empty() {
+        return;
+    }
+    let list: Vec<String> = added.iter().map(|(label, n)| format!("{n} {}", label.to_lowercase())).collect();
+    let message = format!("rooms added from program {}: {}", reading.program.id, list.join(", "));
+    reading.assumptions.push(note("rooms_added", message));
+}

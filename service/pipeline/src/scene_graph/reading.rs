@@ -1,0 +1,433 @@
+//! A prompt understood: every fact it states, before rooms are added or connected.
+
+use d3dgen_model::domain::{Domain, Program};
+use d3dgen_model::scene_graph::{Note, Occupancy, Robot};
+use d3dgen_plugins::Registry;
+
+use super::building::{self, Building};
+use super::mentions::{Mention, Taken, Vocabulary, What, mentions};
+use super::places::{self, note};
+use super::relations;
+use super::text::{MAX_TOKENS, Span, Token, tokens};
+use super::wishes::{self, CHARGING, MANY, Text, Wishes};
+use super::words::{Spoken, Tag, words};
+use super::{Request, dwelling, language, measures, numbers, robots};
+use crate::Error;
+
+/// Most rooms one world is planned for.
+pub(super) const MAX_ROOMS: u32 = MANY as u32;
+/// Largest building, m^2.
+const MAX_AREA_M2: f64 = 200_000.0;
+/// Largest head count that is taken at its word.
+const MAX_HEADS: i64 = 5000;
+
+/// Facts of a prompt.
+pub(super) struct Reading<'a> {
+    pub language: &'static str,
+    pub domain: &'a Domain,
+    pub building_type: Option<String>,
+    pub program: &'a Program,
+    pub country_code: Option<String>,
+    pub wishes: Wishes,
+    /// Rooms in total, where fixed.
+    pub total: Option<u32>,
+    /// True when the prompt lists all rooms there are to be.
+    pub closed: bool,
+    pub area_m2: Option<f64>,
+    pub occupancy: Occupancy,
+    /// People who live there.
+    pub residents: Option<u32>,
+    pub accessible: bool,
+    pub robots: Vec<Robot>,
+    /// Objects that the prompt names, each with the room type it is named with.
+    pub objects: Vec<(String, Option<String>)>,
+    pub assumptions: Vec<Note>,
+    pub conflicts: Vec<Note>,
+}
+
+pub(super) fn refused(message: String) -> Error {
+    Error::Refused { stage: "scene_graph", message }
+}
+
+/// Reads a request.
+///
+/// # Errors
+/// `Refused` for prompts without words, absurd sizes, unknown domains and countries.
+pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Reading<'a>, Error> {
+    check_flags(request, registry)?;
+    let prompt = request.prompt.as_str();
+    let tokens = tokens(prompt);
+    if tokens.iter().all(Token::is_mark) {
+        let message = "the prompt has no words; describe a building, for instance `two-bedroom flat in Germany`";
+        return Err(refused(message.into()));
+    }
+    let language = language::detect(&tokens);
+    let languages: Vec<&str> = if language == "en" { vec!["en"] } else { vec![language, "en"] };
+    let spoken: Vec<&Spoken> = languages.iter().filter_map(|l| words().languages.get(*l)).collect();
+    let numbers = numbers::numbers(&tokens, language, &spoken);
+    let mut place = places::locate(&tokens, prompt, &spoken);
+    let (mut assumptions, mut conflicts) = (place.assumptions, place.conflicts);
+    if tokens.len() >= MAX_TOKENS {
+        conflicts.push(note("prompt_cut", format!("only the first {MAX_TOKENS} words of the prompt were read")));
+    }
+    let flag_country = request.country.as_deref().and_then(places::code_of);
+    if let (Some(flag), Some(named)) = (&flag_country, &place.country_code)
+        && flag != named
+    {
+        conflicts.push(note("country_flag", format!("the prompt says {named}, the request {flag}; {flag} was used")));
+    }
+    if flag_country.is_some() {
+        conflicts.retain(|n| n.code != "ambiguous_place" && n.code != "unknown_place");
+    }
+    let building = building_of(
+        request,
+        registry,
+        &tokens,
+        &languages,
+        &spoken,
+        &numbers,
+        &place.spans,
+        &mut assumptions,
+        &mut conflicts,
+    );
+    let domain =
+        registry.get(&building.domain).map(|p| p.domain()).ok_or_else(|| refused("no domain is registered".into()))?;
+    let program = program_of(domain, building.building_type.as_deref());
+
+    let areas = measures::areas(&tokens, &numbers);
+    let radius = measures::robot_radius(&tokens, &numbers, &spoken);
+    let machines = robots::read(&tokens, &numbers, &spoken);
+    let short_forms = dwelling::short_forms(&tokens, &numbers, domain, &spoken);
+    let mut spans: Vec<Span> = std::mem::take(&mut place.spans);
+    spans.extend(areas.iter().map(|a| a.span));
+    spans.extend(short_forms.iter().map(|f| f.span));
+    spans.extend(machines.spans.iter().copied());
+    spans.extend(radius.iter().map(|r| r.0));
+    let vocabulary = Vocabulary::new(domain, registry, &languages);
+    let taken = Taken { spans: &spans, head: building.head, list_from: building.list_from };
+    let mentions = mentions(&tokens, &numbers, &vocabulary, &spoken, language, &taken);
+    let said = relations::read(&tokens, &mentions, &spoken, language);
+    let text = Text {
+        tokens: &tokens,
+        prompt,
+        mentions: &mentions,
+        said: &said,
+        short_forms: &short_forms,
+        areas: &areas,
+        list_from: building.list_from,
+        robots: machines.named,
+    };
+    let mut wishes = wishes::gather(&text, &mut conflicts);
+    let robots = machines_of(&machines, &wishes, radius.map(|r| r.1), request, &mut assumptions, &mut conflicts);
+    let area_m2 = total_area(&text, request, &mut conflicts);
+    let people = People::read(&mentions, program, domain, &mut conflicts);
+    beds_are_rooms(&people, &mentions, program, &mut wishes);
+    let total = total_rooms(request, &mentions, &wishes, &mut conflicts)?;
+    let listed: u64 = wishes.wishes.iter().map(|w| u64::from(w.count)).sum();
+    if listed > u64::from(MAX_ROOMS) {
+        return Err(refused(format!(
+            "the prompt asks for {listed} rooms; one world has {MAX_ROOMS} at most, ask for fewer"
+        )));
+    }
+    let closed = is_closed(&wishes, &text, &building);
+    Ok(Reading {
+        language,
+        domain,
+        building_type: building.building_type,
+        program,
+        country_code: flag_country.or(place.country_code),
+        objects: objects_of(&tokens, &mentions, domain, &languages),
+        wishes,
+        total,
+        closed,
+        area_m2,
+        occupancy: people.occupancy,
+        residents: people.residents,
+        accessible: (0..tokens.len()).any(|i| spoken.iter().any(|s| s.tag_at(&tokens, i, Tag::Accessible).is_some())),
+        robots,
+        assumptions,
+        conflicts,
+    })
+}
+
+fn check_flags(request: &Request, registry: &Registry) -> Result<(), Error> {
+    if let Some(id) = &request.domain
+        && registry.get(id).is_none()
+    {
+        let known: Vec<&str> = registry.iter().map(|p| p.id()).collect();
+        return Err(refused(format!("domain `{id}` is not known; known are {}", known.join(", "))));
+    }
+    if let Some(country) = &request.country
+        && places::code_of(country).is_none()
+    {
+        return Err(refused(format!("country `{country}` is not known; give an ISO 3166-1 code such as DE or US")));
+    }
+    if let Some(n) = request.rooms.filter(|n| !(1..=MAX_ROOMS).contains(n)) {
+        return Err(refused(format!("{n} rooms were asked for; one world has 1 to {MAX_ROOMS} rooms")));
+    }
+    if let Some(area) = request.area_m2.filter(|a| !(a.is_finite() && (5.0..=MAX_AREA_M2).contains(a))) {
+        return Err(refused(format!("an area of {area} m2 was asked for; one world has 5 to {MAX_AREA_M2} m2")));
+    }
+    if let Some(radius) = request.robot_radius_m.filter(|r| !(r.is_finite() && (0.05..=2.0).contains(r))) {
+        return Err(refused(format!("a robot radius of {radius} m was asked for; it must be 0.05 to 2 m")));
+    }
+    Ok(())
+}
+
+#[expect(clippy::too_many_arguments, reason = "the parts of one prompt, each read by its own module")]
+fn building_of(
+    request: &Request,
+    registry: &Registry,
+    tokens: &[Token],
+    languages: &[&str],
+    spoken: &[&Spoken],
+    numbers: &[numbers::Number],
+    places: &[Span],
+    assumptions: &mut Vec<Note>,
+    conflicts: &mut Vec<Note>,
+) -> Building {
+    let recognize = |only| building::recognize(tokens, registry, languages, spoken, numbers, places, only);
+    let found = recognize(None);
+    if let Some(id) = &request.domain {
+        if let Some(other) = found.as_ref().filter(|b| &b.domain != id && !b.by_rooms) {
+            let message =
+                format!("the prompt reads like domain {}, the request says {id}; {id} was used", other.domain);
+            conflicts.push(note("domain_flag", message));
+        }
+        let head = found.as_ref().and_then(|b| b.head);
+        let list_from = found.as_ref().map_or(0, |b| b.list_from);
+        return match recognize(Some(id)) {
+            Some(b) => b,
+            None => Building { domain: id.clone(), building_type: None, head, list_from, by_rooms: false },
+        };
+    }
+    match found {
+        Some(building) => {
+            if building.by_rooms {
+                let message = format!("the prompt names no building; its rooms suggest domain {}", building.domain);
+                assumptions.push(note("domain_from_rooms", message));
+            }
+            building
+        }
+        None => {
+            let id = registry.iter().next().map_or(String::new(), |p| p.id().to_owned());
+            let message = format!("the prompt does not say what to build; domain {id} was taken");
+            assumptions.push(note("default_domain", message));
+            Building { domain: id, building_type: None, head: None, list_from: 0, by_rooms: false }
+        }
+    }
+}
+
+fn program_of<'a>(domain: &'a Domain, building_type: Option<&str>) -> &'a Program {
+    building_type
+        .and_then(|id| domain.building_types.iter().find(|b| b.id == id))
+        .and_then(|b| domain.program(&b.program))
+        .or_else(|| domain.programs.first())
+        .expect("a domain's check demands a program")
+}
+
+/// Head counts of a prompt.
+struct People {
+    occupancy: Occupancy,
+    residents: Option<u32>,
+}
+
+impl People {
+    fn read(mentions: &[Mention], program: &Program, domain: &Domain, conflicts: &mut Vec<Note>) -> Self {
+        let mut count = |what: &What| {
+            let n = mentions.iter().filter(|m| &m.what == what && !m.article).filter_map(|m| m.count).max()?;
+            if !(1..=MAX_HEADS).contains(&n) {
+                conflicts.push(note(
+                    "impossible_count",
+                    format!("a head count of {n} was left out; 1 to {MAX_HEADS} can be planned"),
+                ));
+                return None;
+            }
+            u32::try_from(n).ok()
+        };
+        let people = count(&What::People);
+        let mut occupancy = Occupancy {
+            staff: count(&What::Staff),
+            beds: count(&What::Beds),
+            desks: count(&What::Desks),
+            visitors: count(&What::Visitors),
+        };
+        let mut residents = count(&What::Residents);
+        // "for 40 people": those who live in a dwelling, work where the program seats staff, visit anywhere else
+        let lives = domain.room_type(&words().dwelling.bedroom).is_some()
+            && program.rooms.iter().any(|r| r.room_type == words().dwelling.bedroom);
+        let works = program.rooms.iter().any(|r| r.area_per_occupant_m2.is_some() || r.occupants_per_room.is_some());
+        match people {
+            Some(n) if lives => residents = residents.or(Some(n)),
+            Some(n) if works => occupancy.staff = occupancy.staff.or(Some(n)),
+            Some(n) => occupancy.visitors = occupancy.visitors.or(Some(n)),
+            None => {}
+        }
+        Self { occupancy, residents }
+    }
+}
+
+/// "10 beds in single rooms" are 10 rooms.
+fn beds_are_rooms(people: &People, mentions: &[Mention], program: &Program, wishes: &mut Wishes) {
+    let Some(beds) = people.occupancy.beds else { return };
+    let Some(at) = mentions.iter().position(|m| m.what == What::Beds && m.count.is_some()) else { return };
+    let Some(next) = mentions.get(at + 1).filter(|m| m.span.start <= mentions[at].span.end + 2) else { return };
+    let (Some(id), None) = (next.room_type(), next.count) else { return };
+    let _ = program;
+    if next.plural
+        && let Some(wish) = wishes.wishes.iter_mut().find(|w| w.room_type == id && !w.exact)
+    {
+        wish.count = beds;
+        wish.exact = true;
+    }
+}
+
+fn machines_of(
+    machines: &robots::Robots,
+    wishes: &Wishes,
+    radius: Option<f64>,
+    request: &Request,
+    assumptions: &mut Vec<Note>,
+    conflicts: &mut Vec<Note>,
+) -> Vec<Robot> {
+    let mut wanted = machines.wanted.clone();
+    if wanted.is_empty() && (wishes.charging || request.robot_radius_m.is_some()) {
+        wanted.push(robots::Wanted { kind: "service", count: 1 });
+    }
+    if machines.kind_assumed {
+        assumptions
+            .push(note("robot_kind", "the prompt does not say what its robots do; service robots were assumed".into()));
+    }
+    let radius = match radius {
+        Some(r) if !(0.05..=2.0).contains(&r) => {
+            conflicts.push(note(
+                "robot_radius",
+                format!("a robot radius of {r} m is outside 0.05-2 m; the usual one was taken"),
+            ));
+            None
+        }
+        other => other,
+    };
+    if let (Some(flag), Some(named)) = (request.robot_radius_m, radius)
+        && (flag - named).abs() > 1e-9
+    {
+        conflicts.push(note(
+            "radius_flag",
+            format!("the prompt says {named} m robot radius, the request {flag} m; {flag} m was used"),
+        ));
+    }
+    let charging = wishes.charging || wishes.wishes.iter().any(|w| w.room_type == CHARGING);
+    wanted
+        .iter()
+        .filter_map(|w| {
+            let body = words().robot_kinds.get(w.kind)?;
+            let radius_m = request.robot_radius_m.or(radius).unwrap_or(body.radius_m);
+            Some(Robot { kind: w.kind.into(), count: w.count, radius_m, height_m: body.height_m, charging })
+        })
+        .collect()
+}
+
+fn total_area(text: &Text, request: &Request, conflicts: &mut Vec<Note>) -> Option<f64> {
+    let named = text.areas.iter().filter(|a| !wishes::is_room_area(text, a)).map(|a| a.value).next();
+    let named = named.filter(|&area| {
+        let sane = (5.0..=MAX_AREA_M2).contains(&area);
+        if !sane {
+            conflicts.push(note(
+                "impossible_area",
+                format!("an area of {area:.1} m2 was left out; 5 to {MAX_AREA_M2} m2 can be planned"),
+            ));
+        }
+        sane
+    });
+    if let (Some(flag), Some(named)) = (request.area_m2, named)
+        && (flag - named).abs() > 0.01
+    {
+        conflicts.push(note(
+            "area_flag",
+            format!("the prompt says {named:.1} m2, the request {flag:.1} m2; {flag:.1} m2 was used"),
+        ));
+    }
+    // One third of a millimeter squared of noise from unit factors helps nobody.
+    request.area_m2.or(named).map(|a| (a * 100.0).round() / 100.0)
+}
+
+fn total_rooms(
+    request: &Request,
+    mentions: &[Mention],
+    wishes: &Wishes,
+    conflicts: &mut Vec<Note>,
+) -> Result<Option<u32>, Error> {
+    let named = mentions.iter().filter(|m| m.what == What::Total && !m.article && !m.vague).find_map(|m| m.count);
+    if let Some(n) = named.filter(|n| *n > MANY) {
+        return Err(refused(format!(
+            "the prompt asks for {n} rooms; one world has {MAX_ROOMS} at most, ask for fewer"
+        )));
+    }
+    let named = named.filter(|&n| {
+        if n <= 0 {
+            conflicts
+                .push(note("impossible_count", format!("{n} rooms cannot be built; the usual number was planned")));
+        }
+        n > 0
+    });
+    let named = named.and_then(|n| u32::try_from(n).ok());
+    if let (Some(flag), Some(n)) = (request.rooms, named)
+        && flag != n
+    {
+        conflicts.push(note("rooms_flag", format!("the prompt says {n} rooms, the request {flag}; {flag} was used")));
+    }
+    let total = request.rooms.or(named);
+    let listed: u32 = wishes.wishes.iter().map(|w| w.count).fold(0, u32::saturating_add);
+    if let Some(n) = total.filter(|n| *n < listed && listed <= MAX_ROOMS) {
+        conflicts.push(note(
+            "more_rooms_listed",
+            format!("{n} rooms were asked for in total, but {listed} are listed; {listed} were planned"),
+        ));
+        return Ok(Some(listed));
+    }
+    Ok(total)
+}
+
+/// Returns true when the listed rooms are the whole building.
+fn is_closed(wishes: &Wishes, text: &Text, building: &Building) -> bool {
+    let listed: Vec<_> = wishes.wishes.iter().filter(|w| w.listed).collect();
+    let colon = building.list_from < text.tokens.len()
+        && (building.list_from..(building.list_from + 1)).any(|i| text.tokens[i].mark() == Some(':'));
+    let types = listed.len();
+    let open = listed.iter().any(|w| !w.exact);
+    !open && (types >= 3 || types >= 2 && colon)
+}
+
+fn objects_of(
+    tokens: &[Token],
+    mentions: &[Mention],
+    domain: &Domain,
+    languages: &[&str],
+) -> Vec<(String, Option<String>)> {
+    let mut out: Vec<(String, Option<String>)> = Vec::new();
+    for language in languages {
+        let mut phrases = super::text::Phrases::new(language);
+        for object in &domain.objects {
+            object.keywords.get(*language).into_iter().flatten().for_each(|p| phrases.insert(p, object.id.clone()));
+            if *language == "en" {
+                phrases.insert(&object.label, object.id.clone());
+            }
+        }
+        let mut i = 0;
+        while i < tokens.len() {
+            let inside = mentions.iter().any(|m| m.room_type().is_some() && m.span.contains(i));
+            match phrases.longest_at(tokens, i).filter(|_| !inside) {
+                Some((end, id)) => {
+                    let with = mentions.iter().rev().filter(|m| m.span.end <= i).find_map(|m| m.room_type());
+                    let near = with.map(str::to_owned);
+                    if !out.iter().any(|o| &o.0 == id) {
+                        out.push((id.clone(), near));
+                    }
+                    i = end;
+                }
+                None => i += 1,
+            }
+        }
+    }
+    out
+}

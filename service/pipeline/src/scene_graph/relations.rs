@@ -1,0 +1,271 @@
+//! Which rooms the prompt wants beside, open to, within or away from each other, and which it does not want at all.
+
+use d3dgen_model::scene_graph::Connector;
+
+use super::mentions::{Mention, What};
+use super::text::Token;
+use super::words::{Spoken, Tag};
+
+/// How a pair is spread over the rooms of its types.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Spread {
+    /// Each room of the first type with one of the second.
+    Each,
+    /// Every room of the first with every one of the second.
+    All,
+    /// One room of the first with two of the second.
+    Between,
+}
+
+/// Two mentions that belong together.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Relation {
+    pub subject: usize,
+    pub object: usize,
+    pub connector: Connector,
+    pub spread: Spread,
+    /// True for rooms to be kept apart.
+    pub apart: bool,
+    /// True when the object belongs to the subject ("bedroom with its own bathroom").
+    pub belongs: bool,
+}
+
+/// What the sentences say about mentions, by index.
+#[derive(Debug, Default)]
+pub(super) struct Said {
+    pub relations: Vec<Relation>,
+    /// Mentions after "no", "without".
+    pub negated: Vec<usize>,
+    /// Mentions that are objects of a relation: they name a room again.
+    pub objects: Vec<usize>,
+    /// Mentions that are subjects of a relation.
+    pub subjects: Vec<usize>,
+    /// Mentions counted once for each room of another mention: (guest, host).
+    pub each: Vec<(usize, usize)>,
+}
+
+const RELATIONS: [Tag; 7] = [Tag::Near, Tag::Door, Tag::Open, Tag::Together, Tag::Between, Tag::Around, Tag::Apart];
+
+/// Reads all relations and negations.
+pub(super) fn read(tokens: &[Token], mentions: &[Mention], spoken: &[&Spoken], language: &str) -> Said {
+    let mut said = Said { negated: negated(tokens, mentions, spoken, language), ..Said::default() };
+    let reader = Reader { tokens, mentions, spoken, postposed: matches!(language, "zh" | "ko" | "de") };
+    let mut i = 0;
+    while i < tokens.len() {
+        if mentions.iter().any(|m| m.span.contains(i)) {
+            i += 1;
+            continue;
+        }
+        let found = spoken.iter().find_map(|s| {
+            let (end, tags) = s.tags.longest_at(tokens, i)?;
+            RELATIONS.iter().rev().find(|t| tags.contains(t)).map(|tag| (end, *tag))
+        });
+        match found {
+            Some((end, tag)) => {
+                reader.relation(i, end, tag, &mut said);
+                i = end;
+            }
+            None => i += 1,
+        }
+    }
+    belongings(&reader, &mut said);
+    said
+}
+
+struct Reader<'a> {
+    tokens: &'a [Token],
+    mentions: &'a [Mention],
+    spoken: &'a [&'a Spoken],
+    /// True where the relation can stand behind both rooms.
+    postposed: bool,
+}
+
+impl Reader<'_> {
+    fn place(&self, i: usize) -> bool {
+        matches!(self.mentions[i].what, What::Room(_) | What::Charge | What::Entrance)
+    }
+
+    fn tagged(&self, i: usize, tag: Tag) -> bool {
+        self.spoken.iter().any(|s| s.tag_at(self.tokens, i, tag).is_some())
+    }
+
+    /// Returns up to `n` mentions before a token in its sentence, nearest first.
+    fn before(&self, at: usize, n: usize) -> Vec<usize> {
+        let from = (0..at).rev().find(|&i| self.tokens[i].ends_sentence()).map_or(0, |i| i + 1);
+        (0..self.mentions.len())
+            .rev()
+            .filter(|&m| self.place(m) && self.mentions[m].span.end <= at && self.mentions[m].span.start >= from)
+            .take(n)
+            .collect()
+    }
+
+    /// Returns the mentions after a token up to the end of its clause.
+    fn after(&self, at: usize, n: usize) -> Vec<usize> {
+        let mut out = Vec::new();
+        let mut i = at;
+        let mut steps = 0;
+        while i < self.tokens.len() && out.len() < n && steps < 7 {
+            if let Some(m) = self.mentions.iter().position(|m| m.span.start == i) {
+                if !self.place(m) {
+                    break;
+                }
+                out.push(m);
+                i = self.mentions[m].span.end;
+                steps = 0;
+                continue;
+            }
+            let token = &self.tokens[i];
+            // "있고", "있다": the Korean clause ends; "있는" goes on to a noun
+            let verb = token.text == "있" && self.tokens.get(i + 1).is_some_and(|t| t.text != "는");
+            let again = !out.is_empty() && !self.tagged(i, Tag::Joins) && !self.tagged(i, Tag::Definite);
+            if token.is_mark() || verb || self.tagged(i, Tag::Starts) || self.tagged(i, Tag::No) || again {
+                break;
+            }
+            i += 1;
+            steps += 1;
+        }
+        out
+    }
+
+    fn is_group(&self, m: usize) -> bool {
+        self.mentions[m].plural || self.mentions[m].count.is_some_and(|n| n > 1)
+    }
+
+    fn relation(&self, start: usize, end: usize, tag: Tag, said: &mut Said) {
+        let connector = match tag {
+            Tag::Door => Connector::Door,
+            Tag::Open => Connector::Open,
+            Tag::Around => Connector::Near,
+            _ => Connector::Wall,
+        };
+        let before = self.before(start, 3);
+        let mut after = self.after(end, 2);
+        // "between them": the last group named
+        let them = after.is_empty()
+            && (end..(end + 2).min(self.tokens.len()))
+                .take_while(|&i| !self.tokens[i].is_mark())
+                .any(|i| self.tagged(i, Tag::Them));
+        if them && before.len() > 1 {
+            let group = before[1..].iter().find(|&&m| self.is_group(m)).copied();
+            after = group.map_or_else(|| before[1..].to_vec(), |g| vec![g]);
+        }
+        let mut pairs: Vec<(usize, usize)> = Vec::new();
+        let group_object = after.first().is_some_and(|&m| self.is_group(m) || self.both_before(m));
+        let spread = match tag {
+            Tag::Around => Spread::All,
+            Tag::Between if group_object => Spread::Between,
+            _ if after.first().is_some_and(|&m| self.both_before(m)) => Spread::All,
+            _ => Spread::Each,
+        };
+        match (tag, before.as_slice(), after.as_slice()) {
+            (Tag::Together, [b, a, ..], _) if !self.is_group(*b) => pairs.push((*a, *b)),
+            (Tag::Together, [b, ..], _) => pairs.push((*b, *b)),
+            (Tag::Between, [s, ..], [a, b, ..]) => pairs.extend([(*s, *a), (*s, *b)]),
+            (Tag::Between, [b, a, ..], [s]) if self.postposed && !group_object => pairs.extend([(*s, *a), (*s, *b)]),
+            (Tag::Between, [s, ..], [group]) => pairs.push((*s, *group)),
+            (Tag::Between, ..) => {}
+            (_, [s, ..], [o, rest @ ..]) => {
+                pairs.push((*s, *o));
+                // "next to the kitchen and the dining room"
+                if let [second] = rest
+                    && self.mentions[*second].definite
+                {
+                    pairs.push((*s, *second));
+                }
+            }
+            (_, [b, a, ..], []) if self.postposed => pairs.push((*a, *b)),
+            (_, [], [o, s, ..]) => pairs.push((*s, *o)),
+            _ => {}
+        }
+        for (subject, object) in pairs {
+            said.subjects.push(subject);
+            said.objects.push(object);
+            if subject == object && !self.is_group(subject) {
+                continue;
+            }
+            let apart = tag == Tag::Apart;
+            said.relations.push(Relation { subject, object, connector, spread, apart, belongs: false });
+        }
+    }
+
+    fn both_before(&self, m: usize) -> bool {
+        let from = self.mentions[m].from;
+        (from.saturating_sub(2)..=from).any(|i| i < self.tokens.len() && self.tagged(i, Tag::Both))
+    }
+}
+
+/// Reads "bedroom with its own bathroom", "8 guest rooms each with bathroom", "isolation room with anteroom".
+fn belongings(reader: &Reader, said: &mut Said) {
+    let tokens = reader.tokens;
+    for g in 1..reader.mentions.len() {
+        let guest = &reader.mentions[g];
+        let Some(h) = (0..g).rev().find(|&h| reader.mentions[h].room_type().is_some() || !reader.place(h)) else {
+            continue;
+        };
+        let host = &reader.mentions[h];
+        if host.room_type().is_none() || guest.room_type().is_none() || said.negated.contains(&g) {
+            continue;
+        }
+        let between = host.span.end..guest.from.min(guest.span.start);
+        if between.is_empty() || between.len() > 7 || between.clone().any(|i| tokens[i].ends_sentence()) {
+            continue;
+        }
+        let has = |tag| between.clone().any(|i| reader.tagged(i, tag));
+        // the words after the guest count too: "with a bathroom each"
+        let tail = guest.span.end..(guest.span.end + 2).min(tokens.len());
+        let each =
+            has(Tag::Each) || tail.clone().take_while(|&i| !tokens[i].is_mark()).any(|i| reader.tagged(i, Tag::Each));
+        let starts = has(Tag::Starts);
+        let comma = between.clone().any(|i| tokens[i].is_mark());
+        let many = host.count.is_some_and(|n| n > 1) || host.plural;
+        let numbered = guest.count.is_some() && !guest.article;
+        let joined = between.clone().any(|i| reader.tagged(i, Tag::Joins));
+        let related = RELATIONS.iter().any(|&t| has(t));
+        if related || !starts && !each {
+            continue;
+        }
+        if each && many && (starts || has(Tag::Own)) || starts && !comma && !joined && many && !numbered {
+            said.each.push((g, h));
+        } else if !(starts && !comma && !joined && !numbered) || many {
+            continue;
+        }
+        let (connector, spread) = (Connector::Door, Spread::Each);
+        said.relations.push(Relation { subject: g, object: h, connector, spread, apart: false, belongs: true });
+    }
+}
+
+/// Returns the mentions after "no", "without", or before "없는".
+fn negated(tokens: &[Token], mentions: &[Mention], spoken: &[&Spoken], language: &str) -> Vec<usize> {
+    let tag_end = |i: usize, tag| spoken.iter().find_map(|s| s.tag_at(tokens, i, tag));
+    let mut out = Vec::new();
+    for i in 0..tokens.len() {
+        let Some(end) = tag_end(i, Tag::No) else { continue };
+        if mentions.iter().any(|m| m.span.contains(i)) {
+            continue;
+        }
+        if language == "ko" {
+            let before =
+                mentions.iter().rposition(|m| m.span.end <= i && m.span.end + 1 >= i && m.room_type().is_some());
+            out.extend(before);
+            continue;
+        }
+        let mut at = end;
+        let mut first = true;
+        while let Some(m) = mentions.iter().position(|m| m.from >= at) {
+            let mention = &mentions[m];
+            let gap = at..mention.from;
+            let blocked = gap
+                .clone()
+                .any(|k| tokens[k].is_mark() || tag_end(k, Tag::Starts).is_some() || tag_end(k, Tag::Near).is_some());
+            let joined = gap.len() <= 1 && gap.clone().all(|k| tag_end(k, Tag::Joins).is_some());
+            let fits = if first { gap.len() <= 3 && !blocked } else { joined && mention.count.is_none() };
+            if !fits || mention.room_type().is_none() {
+                break;
+            }
+            out.push(m);
+            at = mention.span.end;
+            first = false;
+        }
+    }
+    out
+}

@@ -1,0 +1,166 @@
+//! Names, sizes and wished objects of the rooms.
+
+use std::collections::BTreeMap;
+
+use d3dgen_model::domain::{Domain, GENERIC_ROOM_TYPE, RoomType};
+use d3dgen_model::scene_graph::GraphRoom;
+
+use super::places::note;
+use super::program::{CIRCULATION_SHARE, Planned};
+use super::reading::Reading;
+
+/// Most objects wished for in one room.
+const MOST_WISHES: usize = 15;
+/// Share by which the areas may miss the one asked for before that is worth a note.
+const AREA_TOLERANCE: f64 = 0.1;
+
+/// Returns the rooms as the graph states them, in the order they are planned in.
+pub(super) fn describe(reading: &mut Reading, planned: &[Planned]) -> Vec<GraphRoom> {
+    let areas = target_areas(reading, planned);
+    let named = named_objects(reading, planned);
+    let mut total: BTreeMap<&str, u32> = BTreeMap::new();
+    for room in planned {
+        *total.entry(&room.room_type).or_default() += 1;
+    }
+    let mut seen: BTreeMap<&str, u32> = BTreeMap::new();
+    let mut rooms = Vec::new();
+    for (i, room) in planned.iter().enumerate() {
+        let number = seen.entry(&room.room_type).or_default();
+        *number += 1;
+        let label = label(room);
+        let name = if total[room.room_type.as_str()] > 1 { format!("{label} {number}") } else { label };
+        rooms.push(GraphRoom {
+            id: format!("{}_{number}", room.room_type),
+            room_type: room.room_type.clone(),
+            name,
+            description: match &room.name {
+                Some(words) => format!("`{words}` of the prompt. {}", room.kind.description),
+                None => room.kind.description.clone(),
+            },
+            target_area_m2: areas[i],
+            area_range_m2: [room.kind.area_m2.min, room.kind.area_m2.max],
+            wished_assets: wished_assets(reading.domain, room.kind, named.get(&i).map_or(&[], Vec::as_slice)),
+            occupants: room.occupants.filter(|n| *n > 0),
+            circulation: false,
+            requested: room.requested,
+            entrance: false,
+            locked: false,
+        });
+    }
+    rooms
+}
+
+/// Returns the corridor, hall or lobby that connects the rooms.
+pub(super) fn circulation(reading: &Reading) -> GraphRoom {
+    let kind = reading.domain.room_type_or_generic(&reading.domain.circulation.room_type);
+    GraphRoom {
+        id: format!("{}_1", kind.id),
+        room_type: kind.id.clone(),
+        name: kind.label.clone(),
+        description: kind.description.clone(),
+        target_area_m2: kind.area_m2.target,
+        area_range_m2: [kind.area_m2.min, kind.area_m2.max],
+        wished_assets: wished_assets(reading.domain, kind, &[]),
+        occupants: None,
+        circulation: true,
+        requested: reading.wishes.wishes.iter().any(|w| w.room_type == kind.id),
+        entrance: false,
+        locked: false,
+    }
+}
+
+/// Returns the name on the plan: the domain's label, or the prompt's own word for a room the domain does not know.
+fn label(room: &Planned) -> String {
+    if room.kind.id == room.room_type && room.room_type != GENERIC_ROOM_TYPE {
+        return room.kind.label.clone();
+    }
+    let words = room.room_type.replace('_', " ");
+    let mut letters = words.chars();
+    letters.next().map_or(words.clone(), |first| first.to_uppercase().chain(letters).collect())
+}
+
+/// Returns target areas, net m^2: the usual ones, scaled together towards the area asked for.
+fn target_areas(reading: &mut Reading, planned: &[Planned]) -> Vec<f64> {
+    let mut areas = Vec::with_capacity(planned.len());
+    for room in planned {
+        let range = room.kind.area_m2;
+        let wished = room.area_m2.unwrap_or(range.target);
+        let area = wished.clamp(range.min, range.max);
+        if (area - wished).abs() > 0.05 {
+            let message = format!(
+                "{} of {wished:.1} m2 is outside the range {}-{} m2 of its type; {area:.1} m2 was planned",
+                label(room),
+                range.min,
+                range.max
+            );
+            reading.conflicts.push(note("area_out_of_range", message));
+        }
+        areas.push(area);
+    }
+    let Some(total) = reading.area_m2 else { return areas.into_iter().map(tenth).collect() };
+    let budget = total * (1.0 - CIRCULATION_SHARE);
+    let at = |scale: f64| -> Vec<f64> {
+        let sized = planned.iter().zip(&areas).map(|(room, area)| {
+            let range = room.kind.area_m2;
+            if room.area_m2.is_some() { *area } else { (area * scale).clamp(range.min, range.max) }
+        });
+        sized.collect()
+    };
+    let (mut low, mut high) = (0.01, 100.0);
+    for _ in 0..48 {
+        let middle = 0.5 * (low + high);
+        if at(middle).iter().sum::<f64>() < budget { low = middle } else { high = middle }
+    }
+    let scaled = at(high);
+    let sum: f64 = scaled.iter().sum();
+    if (sum - budget).abs() > AREA_TOLERANCE * budget {
+        let message = format!(
+            "{total:.0} m2 were asked for; the rooms can have about {:.0} m2 within the ranges of their types",
+            sum / (1.0 - CIRCULATION_SHARE)
+        );
+        reading.conflicts.push(note("area_not_reachable", message));
+    }
+    scaled.into_iter().map(tenth).collect()
+}
+
+/// Rounds to 0.1 m^2; ranges of the domains have no finer steps that could be left.
+fn tenth(area: f64) -> f64 {
+    (area * 10.0).round() / 10.0
+}
+
+/// Returns the objects that the prompt names, by index of the room they belong in.
+fn named_objects(reading: &mut Reading, planned: &[Planned]) -> BTreeMap<usize, Vec<String>> {
+    let mut out: BTreeMap<usize, Vec<String>> = BTreeMap::new();
+    for (object, room_type) in std::mem::take(&mut reading.objects) {
+        let usual = |r: &Planned| furniture(reading.domain, r.kind).any(|o| o == object);
+        let with = planned.iter().position(|r| room_type.as_deref() == Some(&r.room_type));
+        match with.or_else(|| planned.iter().position(usual)) {
+            Some(i) => out.entry(i).or_default().push(object),
+            None => {
+                let message = format!("no room was found for the object {object}; it was left out");
+                reading.conflicts.push(note("object_without_room", message));
+            }
+        }
+    }
+    out
+}
+
+/// Returns the objects a room type is furnished with, most important first.
+fn furniture<'a>(domain: &'a Domain, kind: &'a RoomType) -> impl Iterator<Item = &'a str> {
+    kind.furnishing.iter().flat_map(|line| {
+        let group = domain.group(&line.item);
+        let anchor = group.map_or(line.item.as_str(), |g| g.anchor.as_str());
+        let members = group.into_iter().flat_map(|g| g.members.iter().map(|m| m.object.as_str()));
+        std::iter::once(anchor).chain(members)
+    })
+}
+
+fn wished_assets(domain: &Domain, kind: &RoomType, named: &[String]) -> Vec<String> {
+    let mut out: Vec<String> = Vec::new();
+    for object in named.iter().map(String::as_str).chain(furniture(domain, kind)) {
+        if out.len() < MOST_WISHES && !out.iter().any(|o| o == object) {
+            out.push(object.to_owned());
+        }
+    }
+    out
+}

@@ -1,0 +1,309 @@
+//! From mentions to wishes: how many rooms of each type, which pairs, what is forbidden.
+
+use std::collections::BTreeMap;
+
+use d3dgen_model::scene_graph::{Connector, Note};
+
+use super::dwelling::ShortForm;
+use super::measures::Area;
+use super::mentions::{Mention, What};
+use super::places::note;
+use super::relations::{Said, Spread};
+use super::text::Token;
+
+/// Rooms of one type that the prompt names.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Wish {
+    pub room_type: String,
+    pub count: u32,
+    /// True when the prompt gives a number (or one thing in the singular); false for "offices".
+    pub exact: bool,
+    /// Words of the prompt, for types no domain knows.
+    pub name: String,
+    /// Area of one such room, m^2.
+    pub area_m2: Option<f64>,
+    /// True when the rooms are listed, not only part of the building's name ("two-bedroom flat").
+    pub listed: bool,
+}
+
+/// Two room types that belong together.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Pair {
+    pub a: String,
+    pub b: String,
+    pub connector: Connector,
+    pub spread: Spread,
+    /// True when `a` belongs to `b` (an en suite).
+    pub belongs: bool,
+}
+
+/// Everything the prompt wants in terms of room types.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) struct Wishes {
+    pub wishes: Vec<Wish>,
+    pub pairs: Vec<Pair>,
+    pub apart: Vec<[String; 2]>,
+    pub forbidden: Vec<String>,
+    pub entrance: Vec<String>,
+    /// True when some charging place near a room is asked for.
+    pub charging_room: bool,
+    /// True when charging is mentioned at all.
+    pub charging: bool,
+}
+
+/// Room type of a charging place; every domain may have it.
+pub(super) const CHARGING: &str = "robot_charging";
+/// A count above this is no plan but a slip; the caller refuses.
+pub(super) const MANY: i64 = 500;
+
+/// What the counting needs to see.
+pub(super) struct Text<'a> {
+    pub tokens: &'a [Token],
+    pub prompt: &'a str,
+    pub mentions: &'a [Mention],
+    pub said: &'a Said,
+    pub short_forms: &'a [ShortForm],
+    pub areas: &'a [Area],
+    pub list_from: usize,
+    /// True when robots are named; then charging is about them.
+    pub robots: bool,
+}
+
+/// Counts rooms and gathers pairs; contradictions become conflicts.
+pub(super) fn gather(text: &Text, conflicts: &mut Vec<Note>) -> Wishes {
+    let mut out = Wishes::default();
+    let type_of = |m: usize| match &text.mentions[m].what {
+        What::Room(id) => Some(id.clone()),
+        What::Charge if text.robots => Some(CHARGING.to_owned()),
+        _ => None,
+    };
+    out.charging =
+        text.robots && text.mentions.iter().any(|m| m.what == What::Charge || m.room_type() == Some(CHARGING));
+    let mut order: Vec<String> = Vec::new();
+    let mut by_type: BTreeMap<String, Vec<usize>> = BTreeMap::new();
+    let shorts = text.short_forms.iter().flat_map(|f| f.rooms.keys().map(move |k| (f.span.start, k.clone())));
+    let named =
+        text.mentions.iter().enumerate().filter_map(|(i, m)| Some((m.span.start, m.room_type()?.to_owned(), i)));
+    let mut seen: Vec<(usize, String)> = shorts.chain(named.clone().map(|(at, id, _)| (at, id))).collect();
+    seen.sort_by_key(|s| s.0);
+    for (_, id) in seen {
+        if !order.contains(&id) {
+            order.push(id);
+        }
+    }
+    for (_, id, i) in named {
+        by_type.entry(id).or_default().push(i);
+    }
+    for id in order {
+        let none = Vec::new();
+        let list = by_type.get(&id).unwrap_or(&none);
+        count_type(text, &id, list, &mut out, conflicts);
+    }
+    each_of_host(text, &mut out);
+    for relation in &text.said.relations {
+        // "cafe at the entrance"
+        let (s, o) = (relation.subject, relation.object);
+        for (place, other) in [(s, o), (o, s)] {
+            if text.mentions[place].what == What::Entrance
+                && !relation.apart
+                && let Some(id) = type_of(other)
+                && !out.entrance.contains(&id)
+            {
+                out.entrance.push(id);
+            }
+        }
+        let (Some(a), Some(b)) = (type_of(s), type_of(o)) else { continue };
+        if relation.apart {
+            if a != b && !out.apart.contains(&[a.clone(), b.clone()]) {
+                out.apart.push([a, b]);
+            }
+            continue;
+        }
+        out.charging_room |= a == CHARGING || b == CHARGING;
+        let pair = Pair { a, b, connector: relation.connector, spread: relation.spread, belongs: relation.belongs };
+        match out.pairs.iter_mut().find(|p| p.a == pair.a && p.b == pair.b || p.a == pair.b && p.b == pair.a) {
+            Some(known) if known.belongs || !pair.belongs => {}
+            Some(known) => *known = pair,
+            None => out.pairs.push(pair),
+        }
+    }
+    out
+}
+
+fn count_type(text: &Text, id: &str, list: &[usize], out: &mut Wishes, conflicts: &mut Vec<Note>) {
+    let label = id.replace('_', " ");
+    let short: Option<i64> = text.short_forms.iter().filter_map(|f| f.rooms.get(id)).copied().max();
+    let negated: Vec<usize> = list.iter().copied().filter(|m| text.said.negated.contains(m)).collect();
+    let mut positive: Vec<usize> = list.iter().copied().filter(|m| !negated.contains(m)).collect();
+    let bad = |m: usize| text.mentions[m].count.filter(|&n| n <= 0);
+    let mut zero = false;
+    for m in positive.clone() {
+        if let Some(n) = bad(m) {
+            positive.retain(|&p| p != m);
+            zero |= n == 0;
+            let choice = if n == 0 { "none was planned" } else { "the usual number was planned" };
+            conflicts.push(note("impossible_count", format!("{n} rooms of type {label} cannot be built; {choice}")));
+        }
+    }
+    if !negated.is_empty() || zero {
+        // Objects of a relation do not ask for a room, so "no kitchen next to the bedroom" stays a ban.
+        if positive.iter().any(|m| text.mentions[*m].count.is_some()) {
+            conflicts
+                .push(note("wanted_and_forbidden", format!("{label} is both asked for and ruled out; it was planned")));
+        } else {
+            out.forbidden.push(id.to_owned());
+            return;
+        }
+    }
+    let Some(counted) = count_mentions(text, id, &positive, short, &label, conflicts) else { return };
+    let area_m2 = positive.iter().find_map(|&m| room_area(text, &text.mentions[m]));
+    let name = positive.first().map_or(label.clone(), |&m| {
+        let span = text.mentions[m].span;
+        text.prompt.get(text.tokens[span.start].start..text.tokens[span.end - 1].end).unwrap_or(&label).to_owned()
+    });
+    out.wishes.push(Wish {
+        room_type: id.to_owned(),
+        count: counted.0,
+        exact: counted.1,
+        name,
+        area_m2,
+        listed: counted.2,
+    });
+}
+
+/// Returns count, whether it is exact, and whether the type is listed.
+fn count_mentions(
+    text: &Text,
+    id: &str,
+    positive: &[usize],
+    short: Option<i64>,
+    label: &str,
+    conflicts: &mut Vec<Note>,
+) -> Option<(u32, bool, bool)> {
+    let (mut head, mut sum, mut explicit, mut exact, mut listed) = (short, 0i64, false, true, false);
+    let mut references = 0i64;
+    let mut first = true;
+    for &m in positive {
+        let mention = &text.mentions[m];
+        let n = mention.count.unwrap_or(if mention.plural { 2 } else { 1 });
+        let in_name = mention.span.start < text.list_from && mention.count.is_some() && !mention.article;
+        let again = is_reference(text, m, first);
+        if in_name && text.list_from < text.tokens.len() {
+            head = Some(head.map_or(n, |h| h.max(n)));
+        } else if again {
+            references = references.max(n);
+        } else {
+            sum += n;
+            listed = true;
+            explicit |= mention.count.is_some() && !mention.article;
+            exact &= !mention.vague && (mention.count.is_some() || !mention.plural);
+            first = false;
+        }
+    }
+    let listed_any = listed || !positive.is_empty();
+    if let Some(h) = head {
+        if sum > h && explicit {
+            conflicts.push(note(
+                "contradicting_counts",
+                format!("the prompt asks for {h} and for {sum} rooms of type {label}; {sum} were planned"),
+            ));
+            return Some((clamp(sum), true, listed_any));
+        }
+        return Some((clamp(h), true, listed_any));
+    }
+    let n = if sum > 0 { sum } else { references };
+    let _ = id;
+    (n > 0).then(|| (clamp(n), exact, true))
+}
+
+fn clamp(n: i64) -> u32 {
+    u32::try_from(n.clamp(0, MANY * 1000)).unwrap_or(0)
+}
+
+/// Returns true when a mention speaks of rooms named before, or elsewhere.
+fn is_reference(text: &Text, m: usize, first: bool) -> bool {
+    let mention = &text.mentions[m];
+    let numbered = mention.count.is_some() && !mention.article;
+    let same = |other: &Mention| other.what == mention.what;
+    let others =
+        text.mentions.iter().enumerate().any(|(o, other)| {
+            o != m && same(other) && !text.said.objects.contains(&o) && !text.said.negated.contains(&o)
+        });
+    let object = text.said.objects.contains(&m);
+    if object && (others || !first) {
+        return true;
+    }
+    if first {
+        return false;
+    }
+    let subject = text.said.subjects.contains(&m);
+    if mention.definite || subject && !numbered {
+        return true;
+    }
+    if mention.count.is_some() {
+        return false;
+    }
+    // A bare repeated word is a room of its own only as a list item.
+    let mark = |i: Option<usize>| i.and_then(|i| text.tokens.get(i)).is_none_or(Token::is_mark);
+    !(mark(mention.from.checked_sub(1)) && mark(Some(mention.span.end)))
+}
+
+/// Counts rooms that come with each of another: 8 guest rooms with a bathroom each are 8 bathrooms.
+fn each_of_host(text: &Text, out: &mut Wishes) {
+    for &(guest, host) in &text.said.each {
+        let (Some(g), Some(h)) = (text.mentions[guest].room_type(), text.mentions[host].room_type()) else { continue };
+        let hosts = out.wishes.iter().find(|w| w.room_type == h).map_or(0, |w| w.count);
+        let here = text.mentions[host].count.map_or(hosts, clamp).max(1);
+        let own = clamp(text.mentions[guest].count.unwrap_or(1).max(1));
+        let elsewhere: u32 = text
+            .mentions
+            .iter()
+            .enumerate()
+            .filter(|(m, other)| {
+                *m != guest
+                    && other.room_type() == Some(g)
+                    && !is_reference(text, *m, false)
+                    && !text.said.negated.contains(m)
+                    && !text.said.each.iter().any(|e| e.0 == *m)
+            })
+            .map(|(_, other)| clamp(other.count.unwrap_or(1)))
+            .sum();
+        if let Some(wish) = out.wishes.iter_mut().find(|w| w.room_type == g) {
+            wish.count = wish.count.max(here.saturating_mul(own).saturating_add(elsewhere));
+            wish.exact = true;
+        }
+    }
+}
+
+/// Returns the area that belongs to a mention: "kitchen of 12 m2", "12 m2 kitchen", "living room (30 m2)".
+fn room_area(text: &Text, mention: &Mention) -> Option<f64> {
+    text.areas
+        .iter()
+        .find(|area| {
+            let after = mention.span.end..area.span.start;
+            let before = area.span.end..mention.from;
+            let short = |range: &std::ops::Range<usize>| {
+                range.start <= range.end
+                    && range.len() <= 2
+                    && range.clone().all(|i| {
+                        let t = &text.tokens[i];
+                        matches!(
+                            t.text.as_str(),
+                            "of" | "with" | "mit" | "von" | "de" | "d" | "con" | "a" | "à" | "about" | "each" | "etwa"
+                        ) || (t.mark() == Some(',') && text.prompt.as_bytes().get(t.start) == Some(&b'('))
+                    })
+            };
+            mention.span.start >= text.list_from.min(text.tokens.len())
+                && (area.span.start >= mention.span.end && short(&after)
+                    || area.span.end <= mention.from && before.is_empty())
+        })
+        .map(|area| area.value)
+}
+
+/// Returns true when an area belongs to a room, not to the building.
+pub(super) fn is_room_area(text: &Text, area: &Area) -> bool {
+    text.mentions
+        .iter()
+        .filter(|m| m.room_type().is_some())
+        .any(|m| room_area(&Text { areas: std::slice::from_ref(area), ..*text }, m).is_some())
+}

@@ -1,0 +1,196 @@
+//! How people speak in prompts, from `words.toml`: read once, the same for every request.
+
+use std::collections::BTreeMap;
+use std::sync::LazyLock;
+
+use serde::Deserialize;
+
+use super::text::{Phrases, Token};
+
+/// What a phrase does in a sentence.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum Tag {
+    Detect,
+    NumberJoins,
+    Vague,
+    Articles,
+    Definite,
+    Counters,
+    Each,
+    Both,
+    Them,
+    Own,
+    Starts,
+    Stops,
+    Joins,
+    No,
+    Negative,
+    Near,
+    Door,
+    Open,
+    Together,
+    Between,
+    Around,
+    Apart,
+    Entrance,
+    Total,
+    Habitable,
+    Accessible,
+    Staff,
+    People,
+    Visitors,
+    VisitorsBefore,
+    StaffBefore,
+    Beds,
+    Desks,
+    Residents,
+    Clean,
+    Deliver,
+    Serve,
+    Transport,
+    Robot,
+    CleanVerbs,
+    DeliverVerbs,
+    ServeVerbs,
+    TransportVerbs,
+    TableWords,
+    Charge,
+    ChargePlace,
+    Radius,
+    Diameter,
+    RoomWords,
+    SpaceWords,
+    NotNames,
+    Repeat,
+    StyleWords,
+    PlaceBefore,
+    Nowhere,
+    Inject,
+}
+
+/// Words of one language.
+#[derive(Debug, Deserialize)]
+pub(super) struct Language {
+    pub numbers: BTreeMap<String, f64>,
+    pub multipliers: BTreeMap<String, f64>,
+    pub quantities: BTreeMap<String, f64>,
+    /// Adjectives of nationality by country code.
+    pub demonyms: BTreeMap<String, Vec<String>>,
+    #[serde(flatten)]
+    pub phrases: BTreeMap<Tag, Vec<String>>,
+}
+
+/// Body of a typical robot of a kind.
+#[derive(Debug, Clone, Copy, Deserialize)]
+pub(super) struct Body {
+    pub radius_m: f64,
+    pub height_m: f64,
+}
+
+/// Room types behind short forms of dwellings.
+#[derive(Debug, Deserialize)]
+pub(super) struct Dwelling {
+    pub living: String,
+    pub dining: String,
+    pub bedroom: String,
+    pub kitchen: String,
+    pub bathroom: String,
+    pub bhk: Vec<String>,
+    pub ldk: Vec<String>,
+    pub rooms_to_live: Vec<String>,
+    pub zh_units: BTreeMap<String, String>,
+    pub bed_letters: Vec<String>,
+    pub bath_letters: Vec<String>,
+    pub bedroom_words: BTreeMap<String, f64>,
+}
+
+#[derive(Debug, Deserialize)]
+struct File {
+    area_units: BTreeMap<String, f64>,
+    length_units: BTreeMap<String, f64>,
+    robot_kinds: BTreeMap<String, Body>,
+    dwelling: Dwelling,
+    #[serde(flatten)]
+    languages: BTreeMap<String, Language>,
+}
+
+/// All words of the module, ready for matching.
+pub(super) struct Words {
+    pub languages: BTreeMap<String, Spoken>,
+    pub area_units: Phrases<f64>,
+    pub length_units: Phrases<f64>,
+    pub robot_kinds: BTreeMap<String, Body>,
+    pub dwelling: Dwelling,
+}
+
+/// One language ready for matching.
+pub(super) struct Spoken {
+    pub words: Language,
+    pub tags: Phrases<Vec<Tag>>,
+    pub quantities: Phrases<f64>,
+    /// Number words, folded.
+    pub numbers: BTreeMap<String, f64>,
+    pub multipliers: BTreeMap<String, f64>,
+}
+
+impl Spoken {
+    /// Returns the end of the longest phrase with this tag that begins at a token.
+    pub(super) fn tag_at(&self, tokens: &[Token], i: usize, tag: Tag) -> Option<usize> {
+        self.tags.longest_at(tokens, i).filter(|(_, tags)| tags.contains(&tag)).map(|(end, _)| end)
+    }
+}
+
+/// Returns the words of all languages.
+pub(super) fn words() -> &'static Words {
+    static WORDS: LazyLock<Words> = LazyLock::new(|| {
+        let file: File = toml::from_str(include_str!("words.toml")).expect("a test reads words.toml");
+        let units = |units: &BTreeMap<String, f64>| {
+            let mut phrases = Phrases::new("");
+            units.iter().for_each(|(unit, factor)| phrases.insert(unit, *factor));
+            phrases
+        };
+        Words {
+            area_units: units(&file.area_units),
+            length_units: units(&file.length_units),
+            languages: file.languages.into_iter().map(|(code, words)| (code.clone(), spoken(&code, words))).collect(),
+            robot_kinds: file.robot_kinds,
+            dwelling: file.dwelling,
+        }
+    });
+    &WORDS
+}
+
+fn spoken(code: &str, words: Language) -> Spoken {
+    let mut tags = Phrases::new("");
+    for (tag, phrases) in &words.phrases {
+        for phrase in phrases {
+            tags.put(phrase, vec![*tag], |old: &Vec<Tag>, new| {
+                if old.contains(&new[0]) { old.clone() } else { [old.clone(), new.clone()].concat() }
+            });
+        }
+    }
+    let mut quantities = Phrases::new(code);
+    words.quantities.iter().for_each(|(phrase, value)| quantities.insert(phrase, *value));
+    let folded =
+        |map: &BTreeMap<String, f64>| map.iter().map(|(word, value)| (super::text::fold(word), *value)).collect();
+    let (numbers, multipliers) = (folded(&words.numbers), folded(&words.multipliers));
+    Spoken { numbers, multipliers, words, tags, quantities }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_language_has_numbers_relations_and_robots() {
+        let words = words();
+        assert_eq!(words.languages.keys().collect::<Vec<_>>(), ["de", "en", "es", "fr", "ko", "zh"]);
+        for (code, spoken) in &words.languages {
+            for tag in [Tag::No, Tag::Near, Tag::Door, Tag::Apart, Tag::Between, Tag::Staff, Tag::Clean, Tag::Charge] {
+                assert!(spoken.words.phrases.get(&tag).is_some_and(|p| !p.is_empty()), "{code} has no {tag:?}");
+            }
+        }
+        assert_eq!(words.area_units.whole("square feet"), Some(&0.092_903_04));
+    }
+}
