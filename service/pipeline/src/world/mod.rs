@@ -11,6 +11,3 @@ pub mod rules;
 
 pub use assemble::assemble;
 pub use check::check;
-
-#[cfg(test)]
-pub(crate) mod sample;
