@@ -73,6 +73,8 @@ pub(super) struct Survey {
     net_m2: Vec<f64>,
     /// Largest box of each room.
     main: Vec<Option<Cellbox>>,
+    /// Clear width and height of that box, m.
+    clear: Vec<(f64, f64)>,
 }
 
 impl Survey {
@@ -87,6 +89,7 @@ impl Survey {
             gross_m2: vec![0.0; rooms],
             net_m2: vec![0.0; rooms],
             main: vec![None; rooms],
+            clear: vec![(0.0, 0.0); rooms],
         };
         for (i, (a, first)) in boxes.iter().enumerate() {
             for (j, (b, second)) in boxes.iter().enumerate().skip(i + 1) {
@@ -104,20 +107,23 @@ impl Survey {
         for (i, (room, shape)) in boxes.iter().enumerate() {
             survey.gross_m2[*room] += shape.area_m2();
             let mut net = shape.area_m2();
+            let mut walls = [0.0; 2];
             for s in 0..4 {
                 let len = if s < 2 { shape.height() } else { shape.width() };
                 let free = len - side[i][s];
                 let outer = &mut survey.outer[*room];
                 outer.0 = outer.0.max(free);
                 outer.1 += free;
-                // A straight wall that is partly an outer one is as thick as one all along.
+                net -= meters(free) * OUTER_HALF_M + meters(len - own[i][s] - free) * INNER_HALF_M;
+                // the clear extent ends at the thickest wall of a side
                 let half = if free > 0 { OUTER_HALF_M } else { INNER_HALF_M };
-                net -= meters(len - own[i][s]) * half;
+                walls[s / 2] += if own[i][s] == len { 0.0 } else { half };
             }
             survey.net_m2[*room] += net;
             let larger = survey.main[*room].is_none_or(|m| m.area_m2() < shape.area_m2());
             if larger {
                 survey.main[*room] = Some(*shape);
+                survey.clear[*room] = (meters(shape.width()) - walls[0], meters(shape.height()) - walls[1]);
             }
         }
         for net in &mut survey.net_m2 {
@@ -145,10 +151,10 @@ pub(super) fn score(brief: &Brief, layout: &Layout) -> Score {
 fn rooms(brief: &Brief, survey: &Survey, score: &mut Score) {
     let spine = brief.spine.unwrap_or(usize::MAX);
     for (i, spec) in brief.rooms.iter().enumerate() {
-        let Some(main) = survey.main[i] else {
+        if survey.main[i].is_none() {
             score.hard += 5.0;
             continue;
-        };
+        }
         let corridor = i == spine && !brief.hub;
         if !corridor {
             let net = survey.net_m2[i];
@@ -157,7 +163,7 @@ fn rooms(brief: &Brief, survey: &Survey, score: &mut Score) {
             // Readers who measure on center lines should find the area in range too.
             let over = ((survey.gross_m2[i] - spec.area_max) / spec.area_max).max(0.0);
             score.soft[0] += ((net - spec.area_target) / spec.area_target).powi(2) + 3.0 * over;
-            let (w, h) = (meters(main.width()) - 0.15, meters(main.height()) - 0.15);
+            let (w, h) = survey.clear[i];
             score.hard += (spec.min_dimension - w.min(h)).max(0.0);
             let proportion = w.max(h) / w.min(h).max(0.1);
             score.hard += (proportion - PROPORTION_LIMIT).max(0.0);

@@ -120,8 +120,8 @@ impl Mosaic {
     }
 }
 
-/// A corner-by-corner outline, counter-clockwise on the lattice, and whether each edge (from corner i to i + 1) has
-/// outdoors beside it somewhere.
+/// A corner-by-corner outline, counter-clockwise on the lattice, and whether each edge (from corner i to i + 1) is an outer
+/// wall. A straight side changes from outer to inner wall at a corner of its own.
 pub(super) struct Outline {
     pub corners: Vec<(i32, i32)>,
     pub outer: Vec<bool>,
@@ -157,25 +157,21 @@ pub(super) fn outline(room: usize, stretches: &[Stretch]) -> Option<Outline> {
     Some(merge_straight(&ring))
 }
 
-/// Joins edges that go on in the same direction; the joined edge is an outer one when any part is.
+/// Joins edges that go on in the same direction with the same wall.
 fn merge_straight(ring: &[((i32, i32), bool)]) -> Outline {
     let n = ring.len();
     let direction = |i: usize| {
         let ((x0, y0), (x1, y1)) = (ring[i % n].0, ring[(i + 1) % n].0);
         ((x1 - x0).signum(), (y1 - y0).signum())
     };
-    let start = (0..n).find(|&i| direction(i + n - 1) != direction(i)).unwrap_or(0);
+    let goes_on = |i: usize| direction(i + n - 1) == direction(i) && ring[(i + n - 1) % n].1 == ring[i % n].1;
+    let start = (0..n).find(|&i| !goes_on(i)).unwrap_or(0);
     let mut outline = Outline { corners: Vec::new(), outer: Vec::new() };
     for k in 0..n {
         let i = start + k;
-        let outer = ring[i % n].1;
-        if k > 0 && direction(i - 1) == direction(i) {
-            if let Some(last) = outline.outer.last_mut() {
-                *last |= outer;
-            }
-        } else {
+        if k == 0 || !goes_on(i) {
             outline.corners.push(ring[i % n].0);
-            outline.outer.push(outer);
+            outline.outer.push(ring[i % n].1);
         }
     }
     outline
@@ -184,26 +180,48 @@ fn merge_straight(ring: &[((i32, i32), bool)]) -> Outline {
 impl Outline {
     /// Returns the outline on wall center lines, m.
     pub(super) fn polygon(&self) -> Polygon {
-        Polygon(self.corners.iter().map(|&(x, y)| Point::new(to_mm(meters(x)), to_mm(meters(y)))).collect())
+        let turns = (0..self.corners.len()).filter(|&i| !self.is_straight(i));
+        Polygon(turns.map(|i| self.corners[i]).map(|(x, y)| Point::new(to_mm(meters(x)), to_mm(meters(y)))).collect())
     }
 
-    /// Returns the outline on wall faces: every edge moved inwards by half its wall's thickness, m.
+    /// Returns the outline on wall faces, m: every edge moved inwards by half its wall's thickness. Where a straight side
+    /// changes its wall, the faces step.
     pub(super) fn net_polygon(&self) -> Polygon {
         let n = self.corners.len();
         let half = |i: usize| if self.outer[i % n] { OUTER_HALF_M } else { INNER_HALF_M };
         // The line of edge i, moved to its left: x for vertical edges, y for horizontal ones.
         let line = |i: usize| {
-            let ((x0, y0), (x1, y1)) = (self.corners[i % n], self.corners[(i + 1) % n]);
-            let (dx, dy) = ((x1 - x0).signum(), (y1 - y0).signum());
+            let ((x0, y0), (dx, dy)) = (self.corners[i % n], self.direction(i));
             if dx == 0 { meters(x0) - f64::from(dy) * half(i) } else { meters(y0) + f64::from(dx) * half(i) }
         };
-        let corner = |i: usize| {
-            let before = i + n - 1;
-            let vertical = self.corners[i % n].0 == self.corners[(i + 1) % n].0;
-            let (x, y) = if vertical { (line(i), line(before)) } else { (line(before), line(i)) };
+        let point = |vertical: bool, across: f64, along: f64| {
+            let (x, y) = if vertical { (across, along) } else { (along, across) };
             Point::new(to_mm(x), to_mm(y))
         };
-        Polygon((0..n).map(corner).collect())
+        let mut corners = Vec::with_capacity(n);
+        for i in 0..n {
+            let vertical = self.direction(i).0 == 0;
+            if self.is_straight(i) {
+                let along = meters(if vertical { self.corners[i].1 } else { self.corners[i].0 });
+                corners.push(point(vertical, line(i + n - 1), along));
+                corners.push(point(vertical, line(i), along));
+            } else {
+                corners.push(point(vertical, line(i), line(i + n - 1)));
+            }
+        }
+        Polygon(corners)
+    }
+
+    /// Returns the direction of the edge from corner `i`.
+    fn direction(&self, i: usize) -> (i32, i32) {
+        let n = self.corners.len();
+        let ((x0, y0), (x1, y1)) = (self.corners[i % n], self.corners[(i + 1) % n]);
+        ((x1 - x0).signum(), (y1 - y0).signum())
+    }
+
+    /// Returns true when the outline does not turn at corner `i`.
+    fn is_straight(&self, i: usize) -> bool {
+        self.direction(i + self.corners.len() - 1) == self.direction(i)
     }
 }
 
@@ -222,6 +240,19 @@ mod tests {
         let net = l.net_polygon();
         // 4.0 x 3.0 less (0.24, 0.18), plus 2.0 x 2.0 less (0.18, 0.06).
         let expected = (4.0 - 0.24) * (3.0 - 0.18) + (2.0 - 0.18) * (2.0 - 0.06);
+        assert!((net.signed_area() - expected).abs() < 1e-6, "{} {expected}", net.signed_area());
+    }
+
+    #[test]
+    fn a_wall_that_turns_from_outer_to_inner_steps_by_half_its_thickness() {
+        let boxes = [(0, Cellbox::new(0, 0, 40, 80)), (1, Cellbox::new(40, 0, 80, 40))];
+        let stretches = Mosaic::new(&boxes).stretches();
+        let long = outline(0, &stretches).expect("one ring");
+        assert_eq!(long.polygon().corners().len(), 4);
+        let net = long.net_polygon();
+        assert_eq!(net.corners().len(), 6);
+        // east side: 2 m of inner wall, 2 m of outer wall
+        let expected = (2.0 - 0.12 - 0.06) * (2.0 - 0.12) + (2.0 - 0.24) * (2.0 - 0.12);
         assert!((net.signed_area() - expected).abs() < 1e-6, "{} {expected}", net.signed_area());
     }
 

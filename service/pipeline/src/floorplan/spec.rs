@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use d3dgen_knowledge::{Limit, Limits};
 use d3dgen_model::domain::{Daylight, Domain, Materials, RoomType, Zone};
-use d3dgen_model::scene_graph::{Connector, GraphRoom, Note, SceneGraph};
+use d3dgen_model::scene_graph::{Connector, GraphEdge, GraphRoom, Note, SceneGraph};
 
 use crate::Error;
 
@@ -84,9 +84,12 @@ impl Brief {
             })
         };
         let mut conflicts = Vec::new();
-        let rooms: Vec<RoomSpec> =
+        let mut rooms: Vec<RoomSpec> =
             graph.rooms.iter().map(|r| room_spec(r, graph, domain, limits, &mut conflicts)).collect();
         let spine = spine_of(graph, domain, &index);
+        for (spec, room) in rooms.iter_mut().zip(&graph.rooms) {
+            spec.host = host_of(room, graph, domain, spine);
+        }
         let circulation_width = max_limit(domain.circulation.width_m, limits.corridor_width.as_ref());
         let mut brief = Self {
             hub: spine.is_some_and(|s| !rooms[s].circulation),
@@ -201,25 +204,26 @@ fn room_spec(
         ceiling_height: max_limit(kind.ceiling_height_m, limit.ceiling_height_min.as_ref()),
         materials: kind.materials.clone(),
         on_spine: false,
-        host: host_of(room, kind, graph, domain),
+        host: None,
     }
 }
 
-/// Returns the index of the room that a host-access room hangs on, by its required door edge.
-fn host_of(room: &GraphRoom, kind: &RoomType, graph: &SceneGraph, _domain: &Domain) -> Option<usize> {
-    if kind.hosts.is_empty() {
+/// Returns the index of the room that another is entered from when no door leads from the spine into it.
+fn host_of(room: &GraphRoom, graph: &SceneGraph, domain: &Domain, spine: Option<usize>) -> Option<usize> {
+    let walkable = |e: &&GraphEdge| e.required && matches!(e.connector, Connector::Door | Connector::Open);
+    let other = |e: &GraphEdge| match (e.a == room.id, e.b == room.id) {
+        (true, _) => graph.rooms.iter().position(|r| r.id == e.b),
+        (_, true) => graph.rooms.iter().position(|r| r.id == e.a),
+        _ => None,
+    };
+    let mut others: Vec<usize> = graph.edges.iter().filter(walkable).filter_map(other).collect();
+    if graph.rooms.iter().position(|r| r.id == room.id) == spine || others.iter().any(|o| Some(*o) == spine) {
         return None;
     }
-    graph.edges.iter().filter(|e| e.required && matches!(e.connector, Connector::Door | Connector::Open)).find_map(
-        |e| {
-            let other = match (e.a == room.id, e.b == room.id) {
-                (true, _) => &e.b,
-                (_, true) => &e.a,
-                _ => return None,
-            };
-            graph.rooms.iter().position(|r| &r.id == other && kind.hosts.contains(&r.room_type))
-        },
-    )
+    // a room between two that hang on each other (an anteroom) is entered from the outer one
+    let hosts = &domain.room_type_or_generic(&room.room_type).hosts;
+    others.sort_by_key(|&o| !hosts.contains(&graph.rooms[o].room_type));
+    others.first().copied()
 }
 
 /// Returns the circulation room, or the hub that takes its part.
