@@ -78,10 +78,16 @@ pub(super) fn recognize(
     Some(Building {
         domain: domains[domain].id.clone(),
         building_type: kind.map(|k| domains[domain].building_types[k].id.clone()),
-        head: Some(*span),
+        head: Some(without_count(*span, numbers)),
         list_from: if head_final { 0 } else { list_from.max(span.end) },
         by_rooms: false,
     })
+}
+
+/// Leaves a count in the building's name to the rooms: of "one-bedroom flat" only "flat" is the building.
+fn without_count(span: Span, numbers: &[Number]) -> Span {
+    let counted = numbers.iter().any(|n| span.start <= n.span.start && n.span.end < span.end);
+    Span { start: if counted { span.end - 1 } else { span.start }, ..span }
 }
 
 /// Returns a building type of the domain named elsewhere ("hospital: an intensive care unit").

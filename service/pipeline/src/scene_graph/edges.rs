@@ -63,8 +63,9 @@ impl Web {
         match self.edges.iter_mut().find(same) {
             // a door already joins them; an opening asked for takes its place
             Some(known) if walkable(known.connector) => {
-                if connector == Connector::Open && required {
-                    known.connector = connector;
+                if required && (connector == Connector::Open || !known.required) {
+                    known.connector = if walkable(connector) { connector } else { known.connector };
+                    known.required |= walkable(connector);
                     known.reason = reason.into();
                 }
             }
