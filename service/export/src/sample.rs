@@ -454,6 +454,7 @@ pub fn catalogue() -> World {
         (Shape::Toilet, [0.38, 0.7, 0.8]),
         (Shape::Bathtub, [1.7, 0.75, 0.58]),
         (Shape::Shower, [0.9, 0.9, 2.1]),
+        (Shape::Cubicle, [0.9, 1.55, 2.0]),
         (Shape::Panel, [1.4, 0.5, 1.5]),
         (Shape::Trolley, [0.5, 0.8, 0.95]),
         (Shape::Pole, [0.6, 0.6, 1.9]),

@@ -190,6 +190,7 @@ fn build_of(shape: Shape) -> fn(&mut Body) {
         Shape::Toilet => sanitary::toilet,
         Shape::Bathtub => sanitary::bathtub,
         Shape::Shower => sanitary::shower,
+        Shape::Cubicle => sanitary::cubicle,
         Shape::Panel => machines::panel,
         Shape::Pole => machines::pole,
         Shape::Plant => machines::plant,

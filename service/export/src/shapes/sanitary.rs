@@ -60,6 +60,20 @@ pub(super) fn bathtub(b: &mut Body) {
     b.block([b.w - rim, b.w], [rim, b.d - rim], [b.h * 0.25, b.h], Main);
 }
 
+/// A toilet between partitions on feet; the door stands in front.
+pub(super) fn cubicle(b: &mut Body) {
+    let (panel, foot) = (0.02, 0.12_f64.min(b.h * 0.1));
+    for x in [0.0, b.w - panel] {
+        b.block([x, x + panel], [0.0, b.d], [foot, b.h], Main);
+    }
+    b.block([panel, b.w - panel], [0.0, panel], [foot, b.h], Main);
+    b.block([b.w * 0.75, b.w * 0.85], [0.0, panel * 1.5], [b.h * 0.48, b.h * 0.52], Metal);
+    let middle = b.w / 2.0;
+    b.block([middle - 0.19, middle + 0.19], [b.d - 0.2, b.d], [0.35, 0.8], White);
+    b.block([middle - 0.12, middle + 0.12], [b.d - 0.55, b.d - 0.1], [0.0, 0.3], White);
+    b.post(middle, b.d - 0.45, 0.19, [0.3, 0.42], White);
+}
+
 /// Tray, a glass screen at the left, pole and head at the rear.
 pub(super) fn shower(b: &mut Body) {
     let tray = 0.05_f64.min(b.h * 0.2);

@@ -116,6 +116,8 @@ pub enum Shape {
     Bathtub,
     /// Tray, screen, head.
     Shower,
+    /// A toilet between partitions, with a door.
+    Cubicle,
     /// A thin upright panel on a foot or wall (screen, board, mirror).
     Panel,
     /// A body on wheels with a handle.

@@ -162,7 +162,9 @@ fn rooms(brief: &Brief, survey: &Survey, score: &mut Score) {
             score.hard += ((net - spec.area_max) / spec.area_max).max(0.0) * 4.0;
             // Readers who measure on center lines should find the area in range too.
             let over = ((survey.gross_m2[i] - spec.area_max) / spec.area_max).max(0.0);
-            score.soft[0] += ((net - spec.area_target) / spec.area_target).powi(2) + 3.0 * over;
+            // half the area is as wrong as double the area
+            let off = (net - spec.area_target) / net.min(spec.area_target).max(0.1);
+            score.soft[0] += off.powi(2) + 3.0 * over;
             let (w, h) = survey.clear[i];
             score.hard += (spec.min_dimension - w.min(h)).max(0.0);
             let proportion = w.max(h) / w.min(h).max(0.1);

@@ -37,12 +37,20 @@ pub(super) fn recognize(
         registry.iter().map(|p| p.domain()).filter(|d| only.is_none_or(|o| o == d.id)).collect();
     let list_from = list_start(tokens, spoken, languages);
     let found = occurrences(tokens, &domains, languages, places);
-    let plural = |span: &Span| numbers.iter().any(|n| n.span.end == span.start && n.value > 1.0);
+    let plural = |span: &Span| {
+        let counted = |n: &Number| {
+            let after = spoken.iter().find_map(|s| s.tag_at(tokens, n.span.end, Tag::Counters));
+            n.span.end == span.start || after == Some(span.start)
+        };
+        numbers.iter().any(|n| n.value > 1.0 && counted(n))
+    };
     let head_final = matches!(languages.first(), Some(&("zh" | "ko")));
     let pick = if head_final {
         found.iter().filter(|(s, _)| !plural(s)).max_by_key(|(span, _)| {
             let ends = tokens.get(span.end).is_none_or(Token::is_mark);
-            (span.end - span.start + if ends { 3 } else { 0 } + usize::from(span.start == 0), span.start)
+            let first = found.first().is_some_and(|f| f.0 == *span);
+            let item = is_item(tokens, span.start, spoken, first);
+            (!item, span.end - span.start + if ends { 3 } else { 0 } + usize::from(span.start == 0), span.start)
         })
     } else {
         let before: Vec<&(Span, Meaning)> = found.iter().filter(|(s, _)| s.start < list_from && !plural(s)).collect();
@@ -88,6 +96,25 @@ pub(super) fn recognize(
 fn without_count(span: Span, numbers: &[Number]) -> Span {
     let counted = numbers.iter().any(|n| span.start <= n.span.start && n.span.end < span.end);
     Span { start: if counted { span.end - 1 } else { span.start }, ..span }
+}
+
+/// Returns true for a building word that is an item in a Chinese or Korean list of rooms: "有装卸区、办公室和".
+fn is_item(tokens: &[Token], start: usize, spoken: &[&Spoken], first: bool) -> bool {
+    let modified = start > 0 && matches!(tokens[start - 1].text.as_str(), "的" | "는" | "은" | "한" | "춘");
+    if modified {
+        return false;
+    }
+    let tagged = |i: usize, tag| spoken.iter().any(|s| s.tag_at(tokens, i, tag).is_some());
+    for i in (start.saturating_sub(4)..start).rev() {
+        let han = tokens[i].kind == Kind::Han;
+        if tokens[i].is_mark() {
+            return !first;
+        }
+        if tagged(i, Tag::Joins) || han && tagged(i, Tag::Starts) {
+            return true;
+        }
+    }
+    false
 }
 
 /// Returns a building type of the domain named elsewhere ("hospital: an intensive care unit").

@@ -98,7 +98,15 @@ fn counted(
         return form(at + 1, BTreeMap::from([(d.bedroom.clone(), n)]));
     }
     let bath = d.bath_letters.contains(&unit.text) && tokens.get(at + 1).is_none_or(|t| !t.text.starts_with("room"));
-    bath.then(|| ShortForm { span: Span { start: i, end: at + 1 }, rooms: BTreeMap::from([(d.bathroom.clone(), n)]) })
+    bath.then(|| {
+        let mut rooms = BTreeMap::from([(d.bathroom.clone(), n)]);
+        // a half bath is a toilet
+        if number.value.fract() > 0.0 && domain.room_type(&d.toilet).is_some() {
+            rooms.insert(d.toilet.clone(), 1);
+        }
+        rooms.retain(|_, n| *n > 0);
+        ShortForm { span: Span { start: i, end: at + 1 }, rooms }
+    })
 }
 
 /// "Dreizimmerwohnung", "투룸"

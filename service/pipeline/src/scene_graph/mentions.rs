@@ -76,7 +76,7 @@ impl Vocabulary {
     }
 
     /// Returns end, room type and whether it is a plural of the longest room word at a token.
-    fn at(&self, tokens: &[Token], i: usize) -> Option<(usize, &str, bool)> {
+    fn at(&self, tokens: &[Token], i: usize, numbers: &[Number], spoken: &[&Spoken]) -> Option<(usize, &str, bool)> {
         let longest = |list: &'_ [Phrases<RoomWord>]| {
             let mut best: Option<(usize, String, usize)> = None;
             for found in list.iter().filter_map(|p| p.longest_at(tokens, i)) {
@@ -87,13 +87,35 @@ impl Vocabulary {
             best
         };
         let (own, foreign) = (longest(&self.own), longest(&self.foreign));
+        // "two bedrooms" and "large kitchen" of another domain are numbers and adjectives before a room of this one
+        let loose = numbers.iter().any(|n| n.span.start == i) || tagged(tokens, i, spoken, Tag::NotNames);
+        let foreign = foreign.filter(|f| {
+            !(loose
+                && (i + 1..f.0).any(|k| self.own.iter().any(|p| p.longest_at(tokens, k).is_some_and(|o| o.0 >= f.0))))
+        });
         let own_end = own.as_ref().map_or(0, |o| o.0);
         let from_own = foreign.as_ref().is_none_or(|f| f.0 <= own_end);
         let (end, ..) = if from_own { own? } else { foreign? };
         let list = if from_own { &self.own } else { &self.foreign };
-        let word = list.iter().find_map(|p| p.longest_at(tokens, i).filter(|f| f.0 == end))?.1;
+        let (phrases, word) =
+            list.iter().find_map(|p| p.longest_at(tokens, i).filter(|f| f.0 == end).map(|f| (p, f.1)))?;
+        // a keyword may be a plural itself ("single rooms"): its singular has the same stem
+        let singular =
+            phrases.by_stems(&tokens[i..end]).filter(|w| w.id == word.id).map_or(word.letters, |w| w.letters);
         let letters: usize = tokens[i..end].iter().map(|t| t.text.chars().count()).sum();
-        Some((end, word.id.as_str(), letters > word.letters))
+        Some((end, word.id.as_str(), letters > singular.min(word.letters)))
+    }
+
+    /// Returns the domain's room type that the words for the building end in ("chemistry lab").
+    pub(super) fn room_named(&self, tokens: &[Token]) -> Option<String> {
+        let ends = |i: usize| self.own.iter().find_map(|p| p.longest_at(tokens, i).filter(|f| f.0 == tokens.len()));
+        (0..tokens.len()).find_map(|i| ends(i).map(|f| f.1.id.clone()))
+    }
+
+    /// Returns true when a room word of several tokens begins at a token and reaches an end.
+    fn known_to(&self, tokens: &[Token], i: usize, end: usize) -> bool {
+        let reaches = |p: &Phrases<RoomWord>| p.longest_at(tokens, i).is_some_and(|f| f.0 >= end && f.0 > i + 1);
+        self.own.iter().chain(&self.foreign).any(reaches)
     }
 
     /// Returns the room type of a compound's ending ("Damentoilette").
@@ -105,6 +127,10 @@ impl Vocabulary {
     pub(super) fn whole(&self, text: &str) -> Option<&str> {
         self.own.iter().chain(&self.foreign).find_map(|p| p.whole(text)).map(|w| w.id.as_str())
     }
+}
+
+fn tagged(tokens: &[Token], i: usize, spoken: &[&Spoken], tag: Tag) -> bool {
+    spoken.iter().any(|s| s.tag_at(tokens, i, tag).is_some())
 }
 
 fn phrases<'a>(domains: impl Iterator<Item = &'a Domain>, language: &str) -> Phrases<RoomWord> {
@@ -155,7 +181,7 @@ pub(super) fn mentions(
             i += 1;
             continue;
         }
-        match noun_at(tokens, i, vocabulary, spoken, language, taken) {
+        match noun_at(tokens, i, numbers, vocabulary, spoken, language, taken) {
             Some((end, what, plural)) => {
                 out.push(Mention {
                     span: Span { start: i, end },
@@ -175,6 +201,7 @@ pub(super) fn mentions(
     ellipses(tokens, vocabulary, &mut out);
     drop_modifiers(tokens, &mut out);
     attach_numbers(tokens, numbers, spoken, language, taken, &mut out);
+    count_hosts(tokens, spoken, &mut out);
     drop_echoes(tokens, taken, &mut out);
     out
 }
@@ -182,6 +209,7 @@ pub(super) fn mentions(
 fn noun_at(
     tokens: &[Token],
     i: usize,
+    numbers: &[Number],
     vocabulary: &Vocabulary,
     spoken: &[&Spoken],
     language: &str,
@@ -191,8 +219,10 @@ fn noun_at(
         let span = Span { start: i, end };
         !taken.spans.iter().chain(&taken.head).any(|s| s.overlaps(span))
     };
-    let room =
-        vocabulary.at(tokens, i).filter(|r| free(r.0)).map(|(end, id, plural)| (end, What::Room(id.into()), plural));
+    let room = vocabulary
+        .at(tokens, i, numbers, spoken)
+        .filter(|r| free(r.0))
+        .map(|(end, id, plural)| (end, What::Room(id.into()), plural));
     let entrance = spoken.iter().find_map(|s| s.tag_at(tokens, i, Tag::Entrance)).filter(|&end| free(end));
     if let Some(end) = entrance
         && room.as_ref().is_none_or(|r| r.0 <= end)
@@ -209,7 +239,9 @@ fn noun_at(
     }
     let people = [
         (Tag::Staff, What::Staff),
+        (Tag::StaffBefore, What::Staff),
         (Tag::Visitors, What::Visitors),
+        (Tag::VisitorsBefore, What::Visitors),
         (Tag::Beds, What::Beds),
         (Tag::Desks, What::Desks),
         (Tag::Residents, What::Residents),
@@ -231,7 +263,8 @@ fn noun_at(
         (None, people) => {
             let unknown = if people.is_none() || generic {
                 unknown::room_at(tokens, i, spoken, language, taken.list_from)
-                    .filter(|(end, _)| free(*end))
+                    // "nurse treatment room" is a treatment room
+                    .filter(|(end, _)| free(*end) && !(i + 1..*end).any(|k| vocabulary.known_to(tokens, k, *end)))
                     .map(|(end, name)| (end, What::Room(name), false))
             } else {
                 None
@@ -294,6 +327,19 @@ fn drop_modifiers(tokens: &[Token], out: &mut Vec<Mention>) {
     });
 }
 
+/// Gives the number in "3 ensuite bedrooms" to the bedrooms.
+fn count_hosts(tokens: &[Token], spoken: &[&Spoken], out: &mut [Mention]) {
+    for g in 1..out.len() {
+        let (before, after) = out.split_at_mut(g);
+        let (Some(guest), Some(host)) = (before.last_mut(), after.first_mut()) else { continue };
+        let own = tagged(tokens, guest.span.start, spoken, Tag::Own) && guest.span.end == host.span.start;
+        if own && guest.room_type().is_some() && host.room_type().is_some() && host.count.is_none() {
+            (host.count, host.article, host.vague) = (guest.count.take(), guest.article, guest.vague);
+            host.from = guest.from;
+        }
+    }
+}
+
 /// Drops repeated words for the building outside the list of rooms ("office office office").
 fn drop_echoes(tokens: &[Token], taken: &Taken, out: &mut Vec<Mention>) {
     let Some(head) = taken.head else { return };
@@ -332,7 +378,7 @@ fn attach_numbers(
             let ends = spoken.iter().any(|s| s.tag_at(tokens, m.span.start, tag) == Some(m.span.end));
             ends.then(|| usable.iter().position(|n| n.span.start == m.span.end)).flatten()
         };
-        let Some(k) = found.or_else(special).filter(|&k| !used[k]) else {
+        let Some(k) = special().or(found).filter(|&k| !used[k]) else {
             m.definite = (m.span.start.saturating_sub(2)..m.span.start).any(|k| {
                 spoken.iter().any(|s| s.tag_at(tokens, k, Tag::Definite).is_some_and(|end| end <= m.span.start))
             });

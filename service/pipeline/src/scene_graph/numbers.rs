@@ -41,7 +41,13 @@ fn number_at(tokens: &[Token], i: usize, language: &str, spoken: &[&Spoken]) -> 
         let number = unsigned_at(tokens, next, language, spoken).filter(|n| !n.article && !n.vague)?;
         return Some(Number { span: Span { start: i, end: number.span.end }, value: -number.value, ..number });
     }
-    unsigned_at(tokens, i, language, spoken)
+    let number = unsigned_at(tokens, i, language, spoken)?;
+    // "two and a half baths"
+    let half = spoken.iter().find_map(|s| s.tag_at(tokens, number.span.end, Tag::Halves));
+    Some(match half {
+        Some(end) => Number { span: Span { end, ..number.span }, value: number.value + 0.5, ..number },
+        None => number,
+    })
 }
 
 fn unsigned_at(tokens: &[Token], i: usize, language: &str, spoken: &[&Spoken]) -> Option<Number> {

@@ -1,6 +1,6 @@
 //! A prompt understood: every fact it states, before rooms are added or connected.
 
-use d3dgen_model::domain::{Domain, Program};
+use d3dgen_model::domain::{Domain, Program, ProgramRoom};
 use d3dgen_model::scene_graph::{Note, Occupancy, Robot};
 use d3dgen_plugins::Registry;
 
@@ -9,7 +9,7 @@ use super::mentions::{Mention, Taken, Vocabulary, What, mentions};
 use super::places::{self, note};
 use super::relations;
 use super::text::{MAX_TOKENS, Span, Token, tokens};
-use super::wishes::{self, CHARGING, MANY, Text, Wishes};
+use super::wishes::{self, CHARGING, MANY, Text, Wish, Wishes};
 use super::words::{Spoken, Tag, words};
 use super::{Request, dwelling, language, measures, numbers, robots};
 use crate::Error;
@@ -18,6 +18,8 @@ use crate::Error;
 pub(super) const MAX_ROOMS: u32 = MANY as u32;
 /// Largest building, m^2.
 const MAX_AREA_M2: f64 = 200_000.0;
+/// A building's first room that is so many times larger than all listed ones is what it is for.
+const MAIN_ROOM_SHARE: f64 = 1.5;
 /// Largest head count that is taken at its word.
 const MAX_HEADS: i64 = 5000;
 
@@ -130,6 +132,10 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         )));
     }
     let closed = is_closed(&wishes, &text, &building);
+    if closed && total.is_none() {
+        let named = building.head.and_then(|h| vocabulary.room_named(&tokens[h.start..h.end]));
+        assumptions.extend(add_main_room(&mut wishes, program, domain, &people, named.as_deref()));
+    }
     Ok(Reading {
         language,
         domain,
@@ -395,7 +401,48 @@ fn is_closed(wishes: &Wishes, text: &Text, building: &Building) -> bool {
         && (building.list_from..(building.list_from + 1)).any(|i| text.tokens[i].mark() == Some(':'));
     let types = listed.len();
     let open = listed.iter().any(|w| !w.exact);
-    !open && (types >= 3 || types >= 2 && colon)
+    // "no kitchen, no bathroom" in a list of rooms are items of it
+    let items = types + wishes.forbidden.len();
+    !open && types >= 1 && (items >= 3 || types >= 2 && colon)
+}
+
+/// Adds to a list of rooms the one the building is for where the list takes it for granted: a laboratory's laboratory,
+/// a supermarket's sales floor, the desks of those who work there. A dwelling has no such room.
+fn add_main_room(
+    wishes: &mut Wishes,
+    program: &Program,
+    domain: &Domain,
+    people: &People,
+    named: Option<&str>,
+) -> Option<Note> {
+    let main = program.rooms.first()?;
+    let listed = |id: &str| wishes.wishes.iter().any(|w| w.room_type == id);
+    let lives = program.rooms.iter().any(|r| r.room_type == words().dwelling.bedroom);
+    if lives || listed(&main.room_type) || wishes.forbidden.contains(&main.room_type) {
+        return None;
+    }
+    let works = |r: &ProgramRoom| r.area_per_occupant_m2.is_some() || r.occupants_per_room.is_some();
+    let placed = program.rooms.iter().any(|r| works(r) && listed(&r.room_type));
+    let size = |id: &str| domain.room_type_or_generic(id).area_m2.target;
+    let largest = wishes.wishes.iter().map(|w| size(&w.room_type)).fold(0.0, f64::max);
+    let heads = people.occupancy.staff.or(people.occupancy.desks).is_some() && works(main);
+    let needed = named == Some(main.room_type.as_str())
+        || !placed && (heads || size(&main.room_type) > MAIN_ROOM_SHARE * largest);
+    needed.then(|| {
+        let label = main.room_type.replace('_', " ");
+        wishes.wishes.insert(
+            0,
+            Wish {
+                room_type: main.room_type.clone(),
+                count: 1,
+                exact: false,
+                name: label.clone(),
+                area_m2: None,
+                listed: false,
+            },
+        );
+        note("main_room", format!("the list of rooms takes the {label} for granted; it was added"))
+    })
 }
 
 fn objects_of(

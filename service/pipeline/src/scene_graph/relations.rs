@@ -197,6 +197,16 @@ impl Reader<'_> {
 /// Reads "bedroom with its own bathroom", "8 guest rooms each with bathroom", "isolation room with anteroom".
 fn belongings(reader: &Reader, said: &mut Said) {
     let tokens = reader.tokens;
+    // "3 ensuite bedrooms"
+    for h in 1..reader.mentions.len() {
+        let (guest, host) = (&reader.mentions[h - 1], &reader.mentions[h]);
+        let rooms = guest.room_type().is_some() && host.room_type().is_some() && !said.negated.contains(&h);
+        if rooms && guest.span.end == host.span.start && reader.tagged(guest.span.start, Tag::Own) {
+            said.each.push((h - 1, h));
+            let (connector, spread) = (Connector::Door, Spread::Each);
+            said.relations.push(Relation { subject: h - 1, object: h, connector, spread, apart: false, belongs: true });
+        }
+    }
     for g in 1..reader.mentions.len() {
         let guest = &reader.mentions[g];
         let Some(h) = (0..g).rev().find(|&h| reader.mentions[h].room_type().is_some() || !reader.place(h)) else {

@@ -38,7 +38,7 @@ pub(super) fn describe(reading: &mut Reading, planned: &[Planned]) -> Vec<GraphR
                 None => room.kind.description.clone(),
             },
             target_area_m2: areas[i],
-            area_range_m2: [room.kind.area_m2.min, room.kind.area_m2.max],
+            area_range_m2: area_range(room, areas[i]),
             wished_assets: wished_assets(reading.domain, room.kind, named.get(&i).map_or(&[], Vec::as_slice)),
             occupants: room.occupants.filter(|n| *n > 0),
             circulation: false,
@@ -77,6 +77,18 @@ fn label(room: &Planned) -> String {
     let words = room.room_type.replace('_', " ");
     let mut letters = words.chars();
     letters.next().map_or(words.clone(), |first| first.to_uppercase().chain(letters).collect())
+}
+
+/// Returns the areas allowed, net m^2: those of the type; close to the one the prompt or its head count gives.
+fn area_range(room: &Planned, target: f64) -> [f64; 2] {
+    let range = room.kind.area_m2;
+    match room.area_m2 {
+        Some(_) => [
+            range.min.max(tenth(target * (1.0 - AREA_TOLERANCE))),
+            range.max.min(tenth(target * (1.0 + AREA_TOLERANCE))),
+        ],
+        None => [range.min, range.max],
+    }
 }
 
 /// Returns target areas, net m^2: the usual ones, scaled together towards the area asked for.

@@ -67,6 +67,10 @@ pub(super) fn tokens(text: &str) -> Vec<Token> {
             out.push(Token { text: digits, kind, start, end: at(&chars, end, text), spaced, capital: false });
             j = end;
             spaced = false;
+        } else if c == '㎡' {
+            let end = at(&chars, j, text);
+            out.push(Token { text: "m2".into(), kind: Kind::Word, start, end, spaced, capital: false });
+            spaced = false;
         } else if is_han(c) || is_hangul(c) {
             let kind = if is_han(c) { Kind::Han } else { Kind::Hangul };
             out.push(Token { text: c.to_string(), kind, start, end: at(&chars, j, text), spaced, capital: false });
@@ -119,7 +123,7 @@ fn plain(c: char) -> char {
 }
 
 fn is_han(c: char) -> bool {
-    matches!(c, '\u{3041}'..='\u{30ff}' | '\u{3400}'..='\u{4dbf}' | '\u{4e00}'..='\u{9fff}' | '\u{f900}'..='\u{faff}' | '㎡')
+    matches!(c, '\u{3041}'..='\u{30ff}' | '\u{3400}'..='\u{4dbf}' | '\u{4e00}'..='\u{9fff}' | '\u{f900}'..='\u{faff}')
 }
 
 fn is_hangul(c: char) -> bool {
@@ -204,6 +208,7 @@ pub(super) fn fold(text: &str) -> String {
             'ß' => out.push_str("ss"),
             'æ' => out.push_str("ae"),
             'œ' => out.push_str("oe"),
+            '㎡' => out.push_str("m2"),
             _ if c.is_alphanumeric() => out.push(base(c)),
             _ => {}
         }
@@ -255,7 +260,7 @@ pub(super) fn stem<'a>(word: &'a str, language: &str) -> &'a str {
         "de" => {
             let mut word = word;
             loop {
-                let shorter = strip(word, &["ern", "en", "er", "es", "e", "n", "s"], 3);
+                let shorter = strip(word, &["ern", "en", "em", "er", "es", "e", "n", "s"], 3);
                 if shorter.len() == word.len() {
                     return word;
                 }
@@ -345,6 +350,12 @@ impl<T: Clone> Phrases<T> {
             }
         }
         found
+    }
+
+    /// Returns what a phrase means by its stems, the form in which singular and plural are one.
+    pub(super) fn by_stems(&self, tokens: &[Token]) -> Option<&T> {
+        let stems: String = tokens.iter().map(|t| stem(&t.text, &self.language)).collect();
+        self.stems.get(&stems)
     }
 
     /// Returns the meaning of one folded word.

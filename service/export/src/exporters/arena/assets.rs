@@ -180,7 +180,7 @@ fn kind(shape: Shape) -> &'static str {
         Shape::Bench => "bench",
         Shape::Bed | Shape::HospitalBed => "bed",
         Shape::Counter => "counter",
-        Shape::Sink | Shape::Basin | Shape::Toilet | Shape::Bathtub | Shape::Shower => "sanitary",
+        Shape::Sink | Shape::Basin | Shape::Toilet | Shape::Bathtub | Shape::Shower | Shape::Cubicle => "sanitary",
         Shape::Panel | Shape::Rug => "decor",
         Shape::Trolley => "cart",
         Shape::Pole | Shape::Dock | Shape::Vehicle | Shape::Scanner => "equipment",

@@ -57,6 +57,7 @@ fn symbol_of(shape: Shape) -> fn(&mut Pen<'_>) {
         Shape::Toilet => sanitary::toilet,
         Shape::Bathtub => sanitary::bathtub,
         Shape::Shower => sanitary::shower,
+        Shape::Cubicle => sanitary::cubicle,
         Shape::Panel => machines::panel,
         Shape::Pole => machines::pole,
         Shape::Plant => machines::plant,

@@ -80,6 +80,22 @@ pub(super) fn bathtub(p: &mut Pen<'_>) {
     p.circle("b", (u - 0.5 * rim, 0.0), 0.03);
 }
 
+/// Partitions on three sides, a door in front, the toilet at the back.
+pub(super) fn cubicle(p: &mut Pen<'_>) {
+    let (u, v) = p.half();
+    p.outline("s", 0.0);
+    p.rect("b", (-0.2, 0.02 - v), (0.2, 0.2 - v), 0.03);
+    p.ellipse("b", (0.0, 0.44 - v), 0.18, 0.24);
+    p.ellipse("f", (0.0, 0.44 - v), 0.11, 0.16);
+    let partition = 0.03;
+    for side in [-u, u - partition] {
+        p.rect("d", (side, -v), (side + partition, v), 0.0);
+    }
+    p.rect("d", (-u, v - partition), (-0.5 * u, v), 0.0);
+    p.rect("d", (0.7 * u, v - partition), (u, v), 0.0);
+    p.lines("f", &[&[(0.7 * u, v - partition), (0.7 * u - 0.2, v - 1.1 * u)]]);
+}
+
 /// A tray with falls to the drain.
 pub(super) fn shower(p: &mut Pen<'_>) {
     let (u, v) = p.half();
