@@ -1,0 +1,273 @@
+//! Scores the prompt reader: prompts with the facts a sensible person reads in them, and texts that make no sense.
+//!
+//! `prompts/own.jsonl` belongs to this repository. A second set in the same form is scored too where it lies beside the
+//! workspace. Room counts are minima, `n_rooms` counts rooms other than circulation, adjacency means any edge.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use d3dgen_model::scene_graph::SceneGraph;
+use d3dgen_pipeline::Error;
+use d3dgen_pipeline::scene_graph::{Request, generate};
+use d3dgen_plugins::Registry;
+use serde::Deserialize;
+
+/// Domains that the prompts call by name; every other one is `other`.
+const NAMED_DOMAINS: [&str; 3] = ["residential", "office", "hospital"];
+/// Room type of a charging place.
+const CHARGING: &str = "robot_charging";
+
+/// A prompt and what it says; fields that a set leaves out are not scored.
+#[derive(Debug, Deserialize)]
+#[serde(default)]
+struct Case {
+    id: String,
+    prompt: String,
+    domain: String,
+    /// Further domains that are right too.
+    alt_domains: Vec<String>,
+    country_code: Option<String>,
+    n_rooms: Option<usize>,
+    must_rooms: BTreeMap<String, usize>,
+    adjacency: Vec<[String; 2]>,
+    not_adjacent: Vec<[String; 2]>,
+    forbidden_rooms: Vec<String>,
+    /// Robot kinds, and `charging`.
+    robot: Vec<String>,
+    robot_radius_m: Option<f64>,
+    area_m2: Option<f64>,
+    staff: Option<u32>,
+    beds: Option<u32>,
+    desks: Option<u32>,
+    accessible: bool,
+    reject: bool,
+    clarify: bool,
+    tags: Vec<String>,
+}
+
+impl Default for Case {
+    fn default() -> Self {
+        Self {
+            id: String::new(),
+            prompt: String::new(),
+            domain: String::new(),
+            alt_domains: Vec::new(),
+            country_code: None,
+            n_rooms: None,
+            must_rooms: BTreeMap::new(),
+            adjacency: Vec::new(),
+            not_adjacent: Vec::new(),
+            forbidden_rooms: Vec::new(),
+            robot: Vec::new(),
+            robot_radius_m: None,
+            area_m2: None,
+            staff: None,
+            beds: None,
+            desks: None,
+            accessible: false,
+            reject: false,
+            clarify: false,
+            tags: Vec::new(),
+        }
+    }
+}
+
+/// What was got wrong, one line a fact.
+struct Misses(Vec<String>);
+
+impl Misses {
+    fn check<T: std::fmt::Debug>(&mut self, right: bool, fact: &str, expected: T, got: impl std::fmt::Debug) {
+        if !right {
+            self.0.push(format!("{fact}: expected {expected:?}, got {got:?}"));
+        }
+    }
+}
+
+fn request(prompt: &str) -> Request {
+    Request { prompt: prompt.into(), ..Request::default() }
+}
+
+fn misses(case: &Case, registry: &Registry) -> Vec<String> {
+    let mut misses = Misses(Vec::new());
+    match (generate(&request(&case.prompt), registry), case.reject) {
+        (Err(Error::Refused { .. }), true) => {}
+        (Ok(graph), true) => misses.check(false, "refusal", "a refusal", format!("{} rooms", graph.rooms.len())),
+        (Err(error), _) => misses.check(false, "result", "a scene graph", error.to_string()),
+        (Ok(graph), false) => {
+            check_facts(case, &graph, &mut misses);
+            check_rooms(case, &graph, &mut misses);
+            check_robots(case, &graph, &mut misses);
+        }
+    }
+    misses.0
+}
+
+fn check_facts(case: &Case, graph: &SceneGraph, misses: &mut Misses) {
+    let domain = if NAMED_DOMAINS.contains(&graph.domain.as_str()) { graph.domain.as_str() } else { "other" };
+    let underspecified = case.tags.iter().any(|t| t == "underspecified") && case.must_rooms.is_empty() && case.clarify;
+    let right = domain == case.domain || case.alt_domains.iter().any(|d| d == domain);
+    misses.check(right || underspecified, "domain", &case.domain, &graph.domain);
+    misses.check(graph.country_code == case.country_code, "country", &case.country_code, &graph.country_code);
+    if let Some(area) = case.area_m2 {
+        let right = graph.area_m2.is_some_and(|got| (got - area).abs() <= 0.02 * area);
+        misses.check(right, "area", area, graph.area_m2);
+    }
+    let heads = &graph.occupancy;
+    for (fact, expected, got) in
+        [("staff", case.staff, heads.staff), ("beds", case.beds, heads.beds), ("desks", case.desks, heads.desks)]
+    {
+        misses.check(expected.is_none() || expected == got, fact, expected, got);
+    }
+    misses.check(!case.accessible || graph.accessible, "accessible", true, graph.accessible);
+    let stated = !graph.conflicts.is_empty() || !graph.assumptions.is_empty();
+    misses.check(!case.clarify || stated, "clarify", "a conflict or an assumption", "none");
+}
+
+fn check_rooms(case: &Case, graph: &SceneGraph, misses: &mut Misses) {
+    let counted: Vec<&str> = graph.rooms.iter().filter(|r| !r.circulation).map(|r| r.room_type.as_str()).collect();
+    if let Some(n) = case.n_rooms {
+        misses.check(counted.len() == n, "n_rooms", n, (counted.len(), &counted));
+    }
+    for (room_type, least) in &case.must_rooms {
+        let n = graph.rooms.iter().filter(|r| &r.room_type == room_type).count();
+        misses.check(n >= *least, "must_rooms", (room_type, least), (n, &counted));
+    }
+    for room_type in &case.forbidden_rooms {
+        misses.check(!counted.contains(&room_type.as_str()), "forbidden_rooms", room_type, &counted);
+    }
+    let edges = || -> Vec<String> {
+        graph.edges.iter().filter(|e| e.reason != "circulation").map(|e| format!("{}-{}", e.a, e.b)).collect()
+    };
+    for pair in &case.adjacency {
+        misses.check(has_edge(graph, pair), "adjacency", pair, edges());
+    }
+    for pair in &case.not_adjacent {
+        let listed = graph.apart.iter().any(|[x, y]| {
+            is(graph, x, &pair[0]) && is(graph, y, &pair[1]) || is(graph, x, &pair[1]) && is(graph, y, &pair[0])
+        });
+        misses.check(listed && !has_edge(graph, pair), "not_adjacent", pair, &graph.apart);
+    }
+}
+
+fn is(graph: &SceneGraph, id: &str, room_type: &str) -> bool {
+    graph.room(id).is_some_and(|r| r.room_type == room_type || room_type == "entrance" && r.entrance)
+}
+
+/// Returns true when some edge joins the two room types; to the entrance, being it is close enough.
+fn has_edge(graph: &SceneGraph, [a, b]: &[String; 2]) -> bool {
+    let at_entrance =
+        |kind: &str, other: &str| other == "entrance" && graph.rooms.iter().any(|r| r.entrance && r.room_type == kind);
+    at_entrance(a, b)
+        || at_entrance(b, a)
+        || graph
+            .edges
+            .iter()
+            .any(|e| is(graph, &e.a, a) && is(graph, &e.b, b) || is(graph, &e.a, b) && is(graph, &e.b, a))
+}
+
+fn check_robots(case: &Case, graph: &SceneGraph, misses: &mut Misses) {
+    for kind in &case.robot {
+        let right = match kind.as_str() {
+            "charging" => {
+                graph.robots.iter().any(|r| r.charging) || graph.rooms.iter().any(|r| r.room_type == CHARGING)
+            }
+            kind => graph.robots.iter().any(|r| r.kind == kind),
+        };
+        misses.check(right, "robot", kind, &graph.robots);
+    }
+    if let Some(radius) = case.robot_radius_m {
+        let right = graph.robots.iter().any(|r| (r.radius_m - radius).abs() < 1e-6);
+        misses.check(right, "robot radius", radius, &graph.robots);
+    }
+}
+
+/// Scores a set; returns how many are right and how many there are, and prints the rest.
+pub(crate) fn score(path: &Path) -> (usize, usize) {
+    let registry = Registry::builtin();
+    let text = std::fs::read_to_string(path).expect("the caller looked for the file");
+    let cases: Vec<Case> =
+        text.lines().map(|line| serde_json::from_str(line).expect("a line of the set is a case")).collect();
+    let mut right = 0;
+    for case in &cases {
+        let misses = misses(case, &registry);
+        right += usize::from(misses.is_empty());
+        if !misses.is_empty() {
+            println!("{} {:?}", case.id, case.prompt);
+            misses.iter().for_each(|miss| println!("    {miss}"));
+        }
+    }
+    println!("{right} of {} prompts right in {}", cases.len(), path.display());
+    (right, cases.len())
+}
+
+#[test]
+fn reads_our_own_prompts() {
+    let (right, all) = score(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/prompts/own.jsonl"));
+    assert!(all >= 70, "{all} prompts");
+    assert!(right * 100 >= all * 95, "{right} of {all}");
+}
+
+#[test]
+fn reads_the_open_prompts_where_they_are() {
+    let path: PathBuf = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/llm/prompts_open.jsonl");
+    if !path.is_file() {
+        println!("skipped: {} is not there", path.display());
+        return;
+    }
+    let (right, all) = score(&path);
+    assert!(right * 40 >= all * 38, "{right} of {all}");
+}
+
+/// Bytes that look random, the same on every run.
+fn noise(seed: u64, length: usize, letters: &[char]) -> String {
+    let mut state = seed;
+    let mut next = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as usize
+    };
+    (0..length).map(|_| letters[next() % letters.len()]).collect()
+}
+
+#[test]
+fn nonsense_gives_an_answer_and_soon() {
+    let registry = Registry::builtin();
+    let letters: Vec<char> = "abc xyz,.:-/&'\"0123456789 m2 ½²³ äöüß éè ñ 室厅卫三两个间 방개실한두 🏠🤖 \t\n\r\0\u{7f}\u{200d}\u{202e}\u{feff}\u{301}"
+        .chars()
+        .collect();
+    let words = ["two ", "bedrooms ", "next to ", "the ", "kitchen, ", "no ", "-", "7 ", "each with ", "and ", ". "];
+    let mut texts: Vec<String> = (0..200).map(|seed| noise(seed, 10 + 3 * seed as usize, &letters)).collect();
+    texts.extend((0..60).map(|seed| {
+        let picks = noise(seed, 12, &['0', '1', '2', '3', '4', '5', '6', '7', '8', '9', ':']);
+        picks.bytes().map(|b| words[usize::from(b - b'0')]).collect::<String>()
+    }));
+    let long = 100_000;
+    texts.extend([
+        "office ".repeat(long / 7),
+        "a".repeat(long),
+        "9".repeat(long),
+        "两".repeat(long / 3),
+        "방".repeat(long / 3),
+        "two bedrooms next to the kitchen and ".repeat(long / 37),
+        noise(7, long, &letters),
+        "🏠🤖🛏️".repeat(long / 15),
+        "\u{0}\u{1}\u{2}\u{1b}[31m".into(),
+        "1 2 3 4 5 6 7 8 9 10".into(),
+        "99999999999999999999999999 bedrooms".into(),
+        "3e999 rooms, 1e-9 m2, NaN desks, 0 staff".into(),
+        "m2 m2 m2 sq ft".into(),
+        "robot robot radius 0 m radius 1e9 km".into(),
+    ]);
+    for text in &texts {
+        let start = Instant::now();
+        let result = generate(&request(text), &registry);
+        let took = start.elapsed();
+        let head: String = text.chars().take(60).collect();
+        assert!(took < Duration::from_secs(5), "{head:?} took {took:?}");
+        match result {
+            Ok(graph) => assert!(!graph.rooms.is_empty(), "{head:?}"),
+            Err(Error::Refused { message, .. }) => assert!(message.len() > 20, "{head:?}: {message}"),
+            Err(other) => panic!("{head:?}: {other}"),
+        }
+    }
+}
