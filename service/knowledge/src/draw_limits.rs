@@ -30,6 +30,7 @@ pub(crate) fn draw(constraints: &[Applicable], chain: &[String], query: &Query) 
         corridor_width: pick(&|a, r| {
             (r.quantity.measure == Measure::CirculationWidth && a.scope == Scope::Circulation).then_some(r.bounds.min?)
         }),
+        corridor_width_advised: advised_width(&usable),
         entrance_width: pick(&|a, r| {
             let door = r.quantity.measure == Measure::DoorWidth && matches!(a.scope, Scope::Entrance | Scope::Doors);
             door.then_some(r.bounds.min?)
@@ -52,6 +53,7 @@ pub(crate) fn draw(constraints: &[Applicable], chain: &[String], query: &Query) 
         let found = RoomLimits {
             area_min: least(&[Measure::RoomArea], room.area_max_m2),
             area_max: None,
+            area_advised: advised_area(&usable, &about, room.area_max_m2),
             dimension_min: least(&[Measure::LeastDimension, Measure::InnerRectangle], side),
             door_width: pick(&|a, r| {
                 let value = r.bounds.min?;
@@ -65,6 +67,22 @@ pub(crate) fn draw(constraints: &[Applicable], chain: &[String], query: &Query) 
         }
     }
     limits
+}
+
+/// Returns the width of circulation that meets all advice.
+fn advised_width(usable: &[(&Applicable, &Rule)]) -> Option<f64> {
+    let about =
+        |a: &Applicable, r: &Rule| r.quantity.measure == Measure::CirculationWidth && a.scope == Scope::Circulation;
+    usable.iter().filter(|(a, r)| about(a, r)).filter_map(|(_, r)| r.bounds.min).reduce(f64::max)
+}
+
+/// Returns the areas that meet all advice; least figures go before largest ones.
+fn advised_area(usable: &[(&Applicable, &Rule)], about: &dyn Fn(&Applicable) -> bool, most: f64) -> Option<[f64; 2]> {
+    let bounds =
+        || usable.iter().filter(|(a, r)| r.quantity.measure == Measure::RoomArea && about(a)).map(|(_, r)| &r.bounds);
+    let least = bounds().filter_map(|b| b.min).filter(|v| *v <= most).reduce(f64::max);
+    let largest = bounds().filter_map(|b| b.max).filter(|v| least.is_none_or(|l| *v >= l)).reduce(f64::min);
+    (least.is_some() || largest.is_some()).then(|| [least.unwrap_or(0.0), largest.unwrap_or(most).min(most)])
 }
 
 /// Returns the strictest least figure of the nearest jurisdiction, or of the rules about robots when that is stricter.

@@ -1,12 +1,14 @@
-//! The figures a floorplan must keep, drawn from constraints whose quantity, space and conditions are understood.
+//! The figures a floorplan must keep and those it should aim for, drawn from constraints whose quantity, space and conditions are understood.
 
 use std::collections::BTreeMap;
 
-/// Hard figures for the floorplan stage; the strictest of what applies.
+/// Figures for the floorplan stage: the strictest of what applies, hard unless called advised.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Limits {
     /// Least clear width of circulation, m.
     pub corridor_width: Option<Limit>,
+    /// Width that advice asks of circulation beyond the hard figure, m; a wish.
+    pub corridor_width_advised: Option<f64>,
     /// Least clear width of the main entrance door, m.
     pub entrance_width: Option<Limit>,
     /// Limits by room type id.
@@ -20,6 +22,8 @@ pub struct RoomLimits {
     pub area_min: Option<Limit>,
     /// Largest net floor area, m^2.
     pub area_max: Option<Limit>,
+    /// Net floor area between which all advice is met, or most of it where advice contradicts itself, m^2; a wish.
+    pub area_advised: Option<[f64; 2]>,
     /// Least clear extent in both directions, m.
     pub dimension_min: Option<Limit>,
     /// Least clear width of its door, m.

@@ -1,5 +1,4 @@
-//! The stages from prompt to checked world. Each stage folder reads alike: `retrieve.rs` (what the databases say),
-//! the engine, `check.rs` (hard constraints), `assemble.rs` (build the model type).
+//! The stages from prompt to checked world, one folder each; `generate` drives them.
 //!
 //! Stages take values and return documents; they read no file, clock or environment.
 

@@ -12,6 +12,11 @@ use crate::Error;
 /// Clear width that a wheelchair and most robots need through a door, m; used when the prompt asks for access.
 const ACCESSIBLE_DOOR_M: f64 = 0.9;
 
+/// Advice widens a corridor by this factor at most: what asks for more is about another kind of corridor.
+const MOST_ADVISED_WIDTH: f64 = 1.25;
+/// Share of a target area kept from the edges of what is advised, for the search to move in.
+const ADVICE_MARGIN: f64 = 0.03;
+
 /// One room as the search sees it. Areas are net m^2, lengths net m.
 #[derive(Debug, Clone)]
 pub(super) struct RoomSpec {
@@ -90,7 +95,9 @@ impl Brief {
         for (spec, room) in rooms.iter_mut().zip(&graph.rooms) {
             spec.host = host_of(room, graph, domain, spine);
         }
-        let circulation_width = max_limit(domain.circulation.width_m, limits.corridor_width.as_ref());
+        let hard_width = max_limit(domain.circulation.width_m, limits.corridor_width.as_ref());
+        let advised_width = limits.corridor_width_advised.unwrap_or(0.0).min(MOST_ADVISED_WIDTH * hard_width);
+        let circulation_width = hard_width.max(advised_width);
         let mut brief = Self {
             hub: spine.is_some_and(|s| !rooms[s].circulation),
             rooms,
@@ -180,6 +187,11 @@ fn room_spec(
             });
         }
     }
+    let mut area_target = room.target_area_m2;
+    if let Some([least, most]) = limit.area_advised {
+        let least = least * (1.0 + ADVICE_MARGIN);
+        area_target = area_target.clamp(least, (most * (1.0 - ADVICE_MARGIN)).max(least));
+    }
     let mut door_width = max_limit(kind.door_width_m, limit.door_width.as_ref());
     if graph.accessible {
         door_width = door_width.max(ACCESSIBLE_DOOR_M);
@@ -192,7 +204,7 @@ fn room_spec(
         name: room.name.clone(),
         circulation: room.circulation,
         area_min,
-        area_target: room.target_area_m2.clamp(area_min * 1.02, area_max),
+        area_target: area_target.clamp((area_min * 1.02).min(area_max), area_max),
         area_max,
         min_dimension: max_limit(kind.min_dimension_m, limit.dimension_min.as_ref()),
         daylight: kind.daylight,
