@@ -69,7 +69,8 @@ pub fn write_text(out: Option<&Path>, text: &str) -> Result<(), Error> {
     let mut name = path.file_name().unwrap_or_default().to_os_string();
     name.push(".d3dgen.tmp");
     let fresh = path.with_file_name(name);
-    let written = fs::write(&fresh, text).and_then(|()| fs::rename(&fresh, path));
+    let folder = path.parent().map_or(Ok(()), fs::create_dir_all);
+    let written = folder.and_then(|()| fs::write(&fresh, text)).and_then(|()| fs::rename(&fresh, path));
     if written.is_err() {
         let _ = fs::remove_file(&fresh); // the error above is the one to report
     }

@@ -21,7 +21,6 @@ use clap::Parser;
 
 fn main() -> ExitCode {
     let cli = cli::Cli::parse();
-    interrupt::install();
     match cli.command.run() {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {

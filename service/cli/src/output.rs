@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
 use crate::error::Error;
+use crate::interrupt;
 
 /// Names a world's folder may hold; a folder with anything else in it is somebody's work and is never replaced.
 const OURS: &[&str] = &[
@@ -60,8 +61,14 @@ impl Output {
     }
 
     fn begin(path: &Path, exists: bool, adds: bool) -> Result<Self, Error> {
+        interrupt::listen();
         let home = if exists { path } else { nearest_folder(path) };
-        let refused = |source| Error::Write { path: path.to_path_buf(), source };
+        let refused = |source: io::Error| {
+            // Without the temporary name, which tells the reader nothing.
+            let said = source.to_string();
+            let reason = said.split(" at path ").next().unwrap_or_default().to_owned();
+            Error::Write { path: path.to_path_buf(), source: io::Error::new(source.kind(), reason) }
+        };
         let tmp = tempfile::Builder::new().prefix(TMP_PREFIX).suffix(TMP_SUFFIX).tempdir_in(home).map_err(refused)?;
         fs::create_dir(tmp.path().join("new")).map_err(refused)?;
         Ok(Self { path: path.to_path_buf(), tmp, exists, adds })
@@ -99,7 +106,8 @@ impl Output {
         fs::rename(self.fresh(), &self.path)
     }
 
-    /// Swaps the entries of an existing folder, the mark of a finished output last.
+    /// Swaps the entries of an existing folder: the mark of a finished output goes first and comes last, so that a folder
+    /// that was being swapped when the power went is known by its missing mark and its temporary folder.
     fn exchange(&self) -> io::Result<()> {
         let old = self.tmp.path().join("old");
         fs::create_dir(&old)?;
@@ -112,9 +120,11 @@ impl Output {
         let mut incoming = entries(&self.fresh())?;
         incoming.sort_by_key(|name| name == MARK);
         let goes = |name: &String| !self.tmp.path().ends_with(name) && (!self.adds || incoming.contains(name));
-        let outgoing = entries(&self.path)?.into_iter().filter(goes);
+        let mut outgoing: Vec<String> = entries(&self.path)?.into_iter().filter(goes).collect();
+        outgoing.sort_by_key(|name| name != MARK);
         let result = outgoing
-            .map(|name| (self.path.join(&name), old.join(&name)))
+            .iter()
+            .map(|name| (self.path.join(name), old.join(name)))
             .chain(incoming.iter().map(|name| (self.fresh().join(name), self.path.join(name))))
             .try_for_each(|(from, to)| step(from, to));
         if result.is_err() {
@@ -144,10 +154,12 @@ fn check_ours(path: &Path, marked: bool) -> Result<bool, Error> {
         }
         Ok(_) => {}
     }
-    let names = entries(path).map_err(|source| Error::Write { path: path.to_path_buf(), source })?;
-    let names: Vec<&String> = names.iter().filter(|n| !is_leftover(n)).collect();
+    let all = entries(path).map_err(|source| Error::Write { path: path.to_path_buf(), source })?;
+    let names: Vec<&String> = all.iter().filter(|n| !is_leftover(n)).collect();
     let foreign = names.iter().find(|n| !OURS.contains(&n.as_str()));
-    if let Some(name) = foreign.or(names.first().filter(|_| marked && !names.iter().any(|n| *n == MARK))) {
+    // A leftover stands for the mark: a run was killed while it put the mark in place.
+    let has_mark = all.iter().any(|n| n == MARK || is_leftover(n));
+    if let Some(name) = foreign.or(names.first().filter(|_| marked && !has_mark)) {
         return Err(Error::Input(format!(
             "{} holds `{name}` and is not an output of d3dgen; name an empty or new folder",
             path.display()
@@ -225,6 +237,18 @@ mod tests {
             output.commit().unwrap();
         }
         assert_eq!(files(home.path()), ["plan.svg", "report.json"]);
+    }
+
+    #[test]
+    fn what_a_killed_run_left_is_cleaned_up() {
+        let home = TempDir::new().unwrap();
+        let left = home.path().join(".d3dgen-abc.tmp/old");
+        fs::create_dir_all(&left).and_then(|()| fs::write(left.join("report.json"), "{}")).unwrap();
+        fs::write(home.path().join("plan.svg"), "").unwrap();
+        let output = Output::new(home.path()).unwrap();
+        output.write("report.json", b"{}").unwrap();
+        output.commit().unwrap();
+        assert_eq!(files(home.path()), ["report.json"]);
     }
 
     #[test]

@@ -1,9 +1,10 @@
 //! What came of a world, for people (a table) and programs (a JSON line).
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use d3dgen_model::report::{ConstraintSummary, Report};
+use d3dgen_model::report::{ConstraintResult, ConstraintSummary, Report, Status};
 use d3dgen_model::scene_graph::Note;
 use d3dgen_pipeline::generate::Generated;
 use serde_json::{Value, json};
@@ -11,23 +12,30 @@ use serde_json::{Value, json};
 use crate::error::Error;
 use crate::table::table;
 
-/// Most notes and violations that are printed of one world; the report has all.
+/// Most notes, broken rules and constraints that are printed of one run; the reports have all.
 const MOST_LINES: usize = 12;
 
 /// The figures of one world.
 pub struct Summary {
     name: String,
     domain: String,
+    building_type: Option<String>,
+    country_code: Option<String>,
     seed: u64,
     path: PathBuf,
     sound: bool,
+    rules: usize,
     rooms: usize,
     circulation: usize,
     area_m2: f64,
     objects: usize,
+    robots: usize,
+    people: usize,
     constraints: ConstraintSummary,
+    violated: Vec<String>,
     broken: Vec<String>,
-    notes: Vec<Note>,
+    assumptions: Vec<Note>,
+    conflicts: Vec<Note>,
     attempts: u32,
     times: Vec<(&'static str, Duration)>,
 }
@@ -38,20 +46,26 @@ impl Summary {
         let Generated { world, report, attempts } = made;
         let graph = &world.scene_graph;
         let circulation = world.floorplan.rooms.iter().filter(|r| r.circulation).count();
-        let notes = graph.conflicts.iter().chain(&world.floorplan.conflicts);
         Self {
             name: world.name.clone(),
             domain: graph.domain.clone(),
+            building_type: graph.building_type.clone(),
+            country_code: graph.country_code.clone(),
             seed: graph.seed,
             path: path.to_path_buf(),
             sound: report.sound,
+            rules: report.rules.len(),
             rooms: world.floorplan.rooms.len() - circulation,
             circulation,
             area_m2: world.floorplan.rooms.iter().map(|r| r.net_area_m2).sum(),
             objects: world.placements.placements.len(),
+            robots: world.scenario.robots.len(),
+            people: world.scenario.agents.len(),
             constraints: report.summary.clone(),
+            violated: report.constraints.iter().filter(|c| c.status == Status::Violated).map(violated_line).collect(),
             broken: broken_lines(report),
-            notes: notes.cloned().collect(),
+            assumptions: graph.assumptions.clone(),
+            conflicts: graph.conflicts.iter().chain(&world.floorplan.conflicts).cloned().collect(),
             attempts: *attempts,
             times,
         }
@@ -72,55 +86,138 @@ impl Summary {
         let times: serde_json::Map<String, Value> =
             self.times.iter().map(|(stage, t)| ((*stage).to_owned(), json!(round(ms(*t), 2)))).collect();
         json!({
-            "world": self.name, "domain": self.domain, "seed": self.seed, "path": self.path.display().to_string(),
+            "world": self.name, "domain": self.domain, "building_type": self.building_type,
+            "country_code": self.country_code, "seed": self.seed, "path": self.path.display().to_string(),
             "sound": self.sound, "rooms": self.rooms, "circulation_rooms": self.circulation,
-            "area_m2": round(self.area_m2, 2), "objects": self.objects, "constraints": self.constraints,
-            "violations": self.broken, "conflicts": self.notes, "attempts": self.attempts, "stage_ms": times,
+            "area_m2": round(self.area_m2, 2), "objects": self.objects, "robots": self.robots, "people": self.people,
+            "constraints": self.constraints, "violations": self.broken, "assumptions": self.assumptions,
+            "conflicts": self.conflicts, "attempts": self.attempts, "stage_ms": times,
         })
+    }
+
+    /// Returns the closing lines of a single world.
+    pub fn page(&self) -> String {
+        let c = &self.constraints;
+        let building = [Some(self.domain.as_str()), self.building_type.as_deref(), self.country_code.as_deref()];
+        let stages: Vec<String> = self.times.iter().map(|(stage, t)| format!("{stage} {:.0}", ms(*t))).collect();
+        let again = if self.attempts > 1 { format!(", in {} attempts", self.attempts) } else { String::new() };
+        let rows = [
+            ("building", building.into_iter().flatten().collect::<Vec<_>>().join(", ")),
+            ("rooms", format!("{} + {} for circulation, {:.1} m2", self.rooms, self.circulation, self.area_m2)),
+            ("objects", format!("{}, {:.1} a room", self.objects, self.objects_per_room())),
+            ("robots", format!("{}, people {}", self.robots, self.people)),
+            ("hard rules", format!("{} checked, {} times broken", self.rules, self.broken.len())),
+            (
+                "constraints",
+                format!(
+                    "{} satisfied, {} violated, {} not decidable from a plan",
+                    c.satisfied, c.violated, c.not_decidable
+                ),
+            ),
+            ("time", format!("{:.0} ms: {}{again}", self.total_ms(), stages.join(", "))),
+            ("folder", self.path.display().to_string()),
+        ];
+        let mut text = format!("\n{}, seed {}: {}\n", self.name, self.seed, verdict(self.sound));
+        for (label, value) in rows {
+            text += &format!("  {label:<12} {value}\n");
+        }
+        for (label, lines) in [
+            ("assumed", messages(&self.assumptions)),
+            ("changed", messages(&self.conflicts)),
+            ("violated", self.violated.clone()),
+            ("broken", self.broken.clone()),
+        ] {
+            text += &listed(label, &lines);
+        }
+        text
     }
 
     fn row(&self) -> Vec<String> {
         let c = &self.constraints;
-        let rooms =
-            if self.circulation == 0 { self.rooms.to_string() } else { format!("{}+{}", self.rooms, self.circulation) };
-        let times: Vec<String> = self.times.iter().map(|(_, t)| format!("{:.0}", ms(*t))).collect();
         vec![
             self.name.clone(),
-            if self.sound { "sound" } else { "UNSOUND" }.to_owned(),
-            rooms,
+            verdict(self.sound).to_owned(),
+            self.rooms.to_string(),
+            self.circulation.to_string(),
             format!("{:.1}", self.area_m2),
             self.objects.to_string(),
-            format!("{}/{}/{}", c.satisfied, c.violated, c.not_decidable),
-            times.join(" + "),
+            format!("{:.1}", self.objects_per_room()),
+            c.satisfied.to_string(),
+            c.violated.to_string(),
+            self.attempts.to_string(),
+            format!("{:.0}", self.total_ms()),
         ]
+    }
+
+    fn objects_per_room(&self) -> f64 {
+        self.objects as f64 / (self.rooms + self.circulation).max(1) as f64
+    }
+
+    fn total_ms(&self) -> f64 {
+        self.times.iter().map(|(_, t)| ms(*t)).sum()
     }
 }
 
-/// Returns the closing table of some worlds, with what was changed or broken below it.
+/// Returns the closing table of many worlds, with what was changed or broken below it.
 pub fn closing(worlds: &[Summary]) -> String {
-    let header = ["world", "", "rooms", "m2", "objects", "satisfied/violated/open", "ms"];
-    let mut text = table(&header, &worlds.iter().map(Summary::row).collect::<Vec<_>>());
-    if let Some(first) = worlds.first() {
-        let stages: Vec<&str> = first.times.iter().map(|(stage, _)| *stage).collect();
-        text += &format!(
-            "rooms + circulation; constraints satisfied/violated/not decidable; ms of {}\n",
-            stages.join(" + ")
-        );
-    }
-    for world in worlds {
-        let notes = world.notes.iter().map(|n| n.message.as_str());
-        let lines: Vec<String> = notes.map(|m| format!("changed: {m}")).chain(world.broken.iter().cloned()).collect();
-        for line in lines.iter().take(MOST_LINES) {
-            text += &format!("{}: {line}\n", world.name);
-        }
-        if lines.len() > MOST_LINES {
-            text += &format!("{}: and {} more, see report.json\n", world.name, lines.len() - MOST_LINES);
-        }
+    let header = [
+        "world",
+        "",
+        "rooms",
+        "circulation",
+        "area m2",
+        "objects",
+        "a room",
+        "satisfied",
+        "violated",
+        "attempts",
+        "time ms",
+    ];
+    let mut text = format!("\n{}", table(&header, &worlds.iter().map(Summary::row).collect::<Vec<_>>()));
+    let mut changes = BTreeSet::new(); // worlds of one prompt mostly share them
+    let changed = worlds.iter().flat_map(|w| messages(&w.conflicts)).filter(|m| changes.insert(m.clone()));
+    text += &listed("changed", &changed.collect::<Vec<_>>());
+    let broken = worlds.iter().flat_map(|w| w.broken.iter().map(|line| format!("{}: {line}", w.name)));
+    text += &listed("broken", &broken.collect::<Vec<_>>());
+    text
+}
+
+/// Returns lines under one label, the last one saying how many were left out.
+fn listed(label: &str, lines: &[String]) -> String {
+    let mut text: String = lines.iter().take(MOST_LINES).map(|line| format!("  {label:<12} {line}\n")).collect();
+    if lines.len() > MOST_LINES {
+        text += &format!("  {label:<12} and {} more, see report.json\n", lines.len() - MOST_LINES);
     }
     text
 }
 
-/// Returns a line for each violation.
+fn messages(notes: &[Note]) -> Vec<String> {
+    notes.iter().map(|n| n.message.clone()).collect()
+}
+
+fn verdict(sound: bool) -> &'static str {
+    if sound { "sound" } else { "UNSOUND" }
+}
+
+/// Returns a violated constraint with its figures and where it comes from.
+fn violated_line(c: &ConstraintResult) -> String {
+    let limits = [("at least", c.required_min), ("at most", c.required_max)];
+    let limits: Vec<String> =
+        limits.iter().filter_map(|(word, v)| v.map(|v| format!("{word} {}", round(v, 3)))).collect();
+    let measured = c.measured.map_or_else(|| "not measured".into(), |m| round(m, 3).to_string());
+    let force = if c.mandatory { "mandatory" } else { "advice" };
+    format!(
+        "{} of {}: {measured}, should be {} {} ({force}, {}: {})",
+        c.name,
+        c.subject,
+        limits.join(" and "),
+        c.unit,
+        c.citation.jurisdiction,
+        c.citation.source.title
+    )
+}
+
+/// Returns a line for each violation of a hard rule.
 pub fn broken_lines(report: &Report) -> Vec<String> {
     let violations = report.rules.iter().flat_map(|r| &r.violations);
     violations.map(|v| format!("{} {}: {}", v.code, v.subject, v.message)).collect()

@@ -5,10 +5,12 @@ use std::path::PathBuf;
 use d3dgen_model::document::Document;
 use d3dgen_model::floorplan::Floorplan;
 use d3dgen_model::scene_graph::SceneGraph;
+use d3dgen_pipeline::generate::Settings;
 use d3dgen_pipeline::{floorplan, generate};
 
 use crate::error::Error;
 use crate::input::{document, write_text};
+use crate::interrupt;
 use crate::registry::{RegistryArgs, domain};
 
 /// Arguments.
@@ -37,8 +39,16 @@ impl Args {
         let registry = self.registry.load()?;
         let plugin = domain(&registry, &graph.domain)?;
         graph.seed = self.seed.unwrap_or(graph.seed);
-        let retrieved = generate::retrieve(&graph, plugin);
-        let plan = floorplan::generate(&graph, plugin.domain(), &retrieved.limits, pinned.as_ref())?;
+        let whole =
+            |graph| generate::furnish_and_check(graph, &registry, &Settings::default(), &mut |_| {}, interrupt::flag());
+        let plan = match pinned {
+            // The plan `generate` takes: a first one that cannot be furnished is passed over there, too.
+            None if let Ok(made) = whole(&graph) => made.world.floorplan,
+            _ => {
+                let limits = generate::retrieve(&graph, plugin).limits;
+                floorplan::generate(&graph, plugin.domain(), &limits, pinned.as_ref())?
+            }
+        };
         write_text(self.out.as_deref(), &plan.to_json())
     }
 }

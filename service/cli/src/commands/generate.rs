@@ -3,7 +3,7 @@
 mod batch;
 mod one;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use d3dgen_pipeline::scene_graph::Request;
 
@@ -21,7 +21,8 @@ use crate::summary::{Summary, closing};
 pub struct Args {
     /// What to build, in a sentence (`-`: from standard input)
     prompt: String,
-    /// Folder to write: new, empty, or an earlier output, which is replaced; with --count it gets a folder per seed
+    /// Folder to write: new, empty, or an earlier output, which is replaced; with --count it gets a folder for each seed,
+    /// and worlds of other seeds in it stay
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
     #[command(flatten)]
@@ -32,6 +33,9 @@ pub struct Args {
     /// Name of the world, lower case with underscores; with --count the seed is added
     #[arg(long, value_name = "NAME", value_parser = super::world_name)]
     name: Option<String>,
+    /// Build what contradicts itself too, as `conflicts` of the scene graph says; otherwise it is refused
+    #[arg(long)]
+    allow_conflicts: bool,
     /// Print one JSON line for each world
     #[arg(long)]
     json: bool,
@@ -51,19 +55,26 @@ struct Job {
 impl Args {
     pub fn run(self) -> Result<(), Error> {
         let registry = self.registry.load()?;
-        let maker = one::Maker { registry, formats: self.formats.chosen()?, flag: interrupt::flag() };
+        let (formats, flag) = (self.formats.chosen()?, interrupt::flag());
+        let maker = one::Maker { registry, formats, allow_conflicts: self.allow_conflicts, flag };
         let request = self.request.request(&prompt(&self.prompt)?);
         if self.count == 1 {
             let job = Job { request, name: self.name, path: self.out };
             let progress = Progress::of(1);
             let made = maker.make(&job, &progress);
             progress.finish();
-            return finish(vec![made?], self.json, 0, &job.path);
+            let made = made?;
+            if self.json {
+                one::print_json(&made)?;
+            }
+            eprint!("{}", made.page());
+            return verdict(&[made], 0);
         }
         let jobs = self.jobs(&request)?;
         let progress = Progress::of(jobs.len());
         let (worlds, failed) = batch::run(&maker, &jobs, &progress, self.json)?;
-        finish(worlds, false, failed, &self.out)
+        eprintln!("{}  {:<12} {}", closing(&worlds), "folder", self.out.display());
+        verdict(&worlds, failed)
     }
 
     /// Returns a job for each seed, after a look at all the folders they will write.
@@ -86,20 +97,17 @@ impl Args {
     }
 }
 
-/// Prints what came of it.
-fn finish(worlds: Vec<Summary>, json: bool, failed: usize, out: &Path) -> Result<(), Error> {
-    if json {
-        worlds.iter().try_for_each(one::print_json)?;
-    }
-    eprint!("{}written to {}\n", closing(&worlds), out.display());
+/// Returns how the command ends: well only when every world asked for is sound.
+fn verdict(worlds: &[Summary], failed: usize) -> Result<(), Error> {
     let unsound: Vec<&str> = worlds.iter().filter(|w| !w.sound()).map(Summary::name).collect();
-    match (unsound.first(), failed) {
-        (None, 0) => Ok(()),
-        (Some(first), _) => Err(Error::Unsound(format!(
-            "{} of {} worlds break hard rules and are not written, only their reports: first {first}",
+    let all = worlds.len() + failed;
+    match unsound.first() {
+        None if failed == 0 => Ok(()),
+        None if failed == all => Err(Error::Input(format!("none of {all} worlds could be made"))),
+        None => Err(Error::Unsound(format!("{failed} of {all} worlds could not be made"))),
+        Some(first) => Err(Error::Unsound(format!(
+            "{} of {all} worlds break hard rules and are not written, only their reports: first {first}",
             unsound.len(),
-            worlds.len() + failed
         ))),
-        (None, _) => Err(Error::Input(format!("{failed} of {} worlds could not be made", worlds.len() + failed))),
     }
 }

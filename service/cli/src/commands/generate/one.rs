@@ -3,7 +3,9 @@
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
-use d3dgen_pipeline::generate::{Artifact, Event, Settings, Stage, generate_world};
+use d3dgen_model::scene_graph::SceneGraph;
+use d3dgen_pipeline::generate::{Artifact, Event, Settings, Stage, furnish_and_check};
+use d3dgen_pipeline::scene_graph;
 use d3dgen_plugins::Registry;
 
 use super::Job;
@@ -21,6 +23,7 @@ use crate::summary::Summary;
 pub struct Maker {
     pub registry: Registry,
     pub formats: Formats,
+    pub allow_conflicts: bool,
     pub flag: &'static AtomicBool,
 }
 
@@ -34,7 +37,13 @@ impl Maker {
             clock.hear(&event);
             talk(&event, &clock, progress);
         };
-        let made = generate_world(&job.request, &self.registry, &settings, &mut observe, self.flag)?;
+        observe(Event::Started(Stage::SceneGraph, 0));
+        let graph = scene_graph::generate(&job.request, &self.registry)?;
+        if !self.allow_conflicts {
+            refuse_contradictions(&graph)?;
+        }
+        observe(Event::Finished(Stage::SceneGraph, 0, Artifact::SceneGraph(&graph)));
+        let made = furnish_and_check(&graph, &self.registry, &settings, &mut observe, self.flag)?;
         let begun = Instant::now();
         progress.doing("files");
         let domain = domain(&self.registry, &made.world.scene_graph.domain)?.domain();
@@ -48,10 +57,27 @@ impl Maker {
     }
 }
 
+/// Conflicts that leave open what is wanted; all others have a natural way out, which was taken.
+const CONTRADICTIONS: &[&str] = &["wanted_and_forbidden", "contradicting_counts", "apart_but_joined"];
+
+/// Refuses a request that says two things at once.
+fn refuse_contradictions(graph: &SceneGraph) -> Result<(), Error> {
+    let found = graph.conflicts.iter().filter(|n| CONTRADICTIONS.contains(&n.code.as_str()));
+    let messages: Vec<&str> = found.map(|n| n.message.as_str()).collect();
+    if messages.is_empty() {
+        return Ok(());
+    }
+    Err(Error::Input(format!(
+        "the prompt contradicts itself: {}; say which you want, or take that with --allow-conflicts",
+        messages.join("; ")
+    )))
+}
+
 /// Time spent in each stage, all attempts together.
 #[derive(Default)]
 struct Clock {
     begun: Option<Instant>,
+    last: Duration,
     spent: [Duration; Stage::ALL.len()],
 }
 
@@ -61,7 +87,8 @@ impl Clock {
             Event::Started(..) => self.begun = Some(Instant::now()),
             Event::Finished(stage, ..) => {
                 if let Some(begun) = self.begun.take() {
-                    self.spent[*stage as usize] += begun.elapsed();
+                    self.last = begun.elapsed();
+                    self.spent[*stage as usize] += self.last;
                 }
             }
             Event::Rejected(..) => self.begun = None,
@@ -89,8 +116,7 @@ fn talk(event: &Event<'_>, clock: &Clock, progress: &Progress) {
                 }
                 Artifact::World(_, report) => format!("{} rules checked", report.rules.len()),
             };
-            let spent = clock.spent[*stage as usize].as_secs_f64() * 1000.0;
-            progress.done(&format!("{}: {found} ({spent:.0} ms)", stage.name()));
+            progress.done(&format!("{}: {found} ({:.0} ms)", stage.name(), clock.last.as_secs_f64() * 1000.0));
         }
     }
 }
