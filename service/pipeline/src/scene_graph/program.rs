@@ -13,6 +13,9 @@ const MOST_BY_AREA: usize = 60;
 /// Share of a building's net area that its corridors take, before any plan is drawn.
 pub(super) const CIRCULATION_SHARE: f64 = 0.14;
 
+/// What rooms need beyond their least area before a building counts as too small for them, as a factor.
+const TIGHT: f64 = 1.1;
+
 /// A room to be.
 #[derive(Debug, Clone)]
 pub(super) struct Planned<'a> {
@@ -24,6 +27,8 @@ pub(super) struct Planned<'a> {
     pub name: Option<String>,
     /// Area the prompt gives, m^2.
     pub area_m2: Option<f64>,
+    /// Area that the people in it ask for, m^2.
+    pub people_area_m2: Option<f64>,
     pub requested: bool,
     /// Index of the room it is entered from, when that is not the circulation.
     pub host: Option<usize>,
@@ -66,12 +71,26 @@ impl<'r, 'a> Build<'r, 'a> {
         for wish in self.reading.wishes.wishes.iter().filter(|w| &w.room_type != corridor) {
             for _ in 0..wish.count {
                 self.push(&wish.room_type, Some(wish));
+                self.bring_host(&wish.room_type);
             }
         }
         let charging = self.reading.wishes.charging_room || self.reading.wishes.charging && !self.reading.closed;
         if charging && !self.is_forbidden(CHARGING) && self.count(CHARGING) == 0 {
             self.push(CHARGING, None);
             self.rooms.last_mut().expect("just pushed").requested = true;
+        }
+    }
+
+    /// Adds the room through which one enters the last one, where a program of the domain has them together (an isolation
+    /// room and its anteroom).
+    fn bring_host(&mut self, room_type: &str) {
+        let kind = self.reading.domain.room_type_or_generic(room_type);
+        let mut entries =
+            self.reading.domain.programs.iter().flat_map(|p| &p.rooms).filter(|e| e.room_type == room_type);
+        let host = entries.find_map(|e| e.with.iter().find(|w| kind.hosts.contains(w)));
+        let named = |id: &str| self.reading.wishes.wishes.iter().any(|w| w.room_type == id);
+        if let Some(host) = host.filter(|h| !self.reading.closed && !named(h) && !self.is_forbidden(h)) {
+            self.push(host, None);
         }
     }
 
@@ -82,6 +101,7 @@ impl<'r, 'a> Build<'r, 'a> {
             kind,
             name: wish.filter(|_| kind.id != room_type).map(|w| w.name.clone()),
             area_m2: wish.and_then(|w| w.area_m2),
+            people_area_m2: None,
             requested: wish.is_some(),
             host: None,
             occupants: None,
@@ -222,7 +242,7 @@ impl<'r, 'a> Build<'r, 'a> {
     /// Drops or adds rooms until the usual sizes fit an area, net m^2.
     fn fit_area(&mut self, area: f64) {
         let sum = |build: &Self, size: fn(&RoomType) -> f64| build.rooms.iter().map(|r| size(r.kind)).sum::<f64>();
-        while sum(self, |k| 0.5 * (k.area_m2.min + k.area_m2.target)) > area {
+        while sum(self, |k| TIGHT * k.area_m2.min) > area {
             // what comes last in the program goes first
             let Some(last) = self.rooms.iter().rposition(|r| !r.requested) else { break };
             if self.rooms.len() <= 1 {
@@ -256,7 +276,8 @@ fn head_count(reading: &Reading, of: Occupants) -> Option<u32> {
     match of {
         Occupants::Staff => o.staff.max(o.desks),
         Occupants::Visitors => o.visitors,
-        Occupants::Beds => o.beds,
+        // who stays in a ward are its patients, whatever the prompt calls them
+        Occupants::Beds => o.beds.or(o.visitors),
         Occupants::Residents => reading.residents,
     }
 }
@@ -274,7 +295,7 @@ fn hold_people(reading: &mut Reading, rooms: &mut [Planned]) {
         for (k, &i) in places.iter().enumerate() {
             rooms[i].occupants = Some(people / n + u32::from((k as u32) < people % n));
             let area = entry.area_per_occupant_m2.map(|per| per * f64::from(people) / f64::from(n));
-            rooms[i].area_m2 = rooms[i].area_m2.or(area);
+            rooms[i].people_area_m2 = area;
         }
     }
     // beds the program does not know of stand in the rooms the prompt names for sleeping
@@ -314,7 +335,7 @@ fn hang_on_hosts(reading: &mut Reading, rooms: &mut [Planned]) {
         let candidates = |test: &dyn Fn(&Planned) -> bool| {
             (0..rooms.len())
                 .filter(|&h| h != i && test(&rooms[h]) && rooms[h].host != Some(i))
-                .min_by_key(|&h| (guests(h, rooms), usize::from(rooms[h].host.is_some()), h.abs_diff(i), h))
+                .min_by_key(|&h| (guests(h, rooms), usize::from(rooms[h].host.is_some()), h))
         };
         let host = candidates(&fits).or_else(|| candidates(&by_type));
         // a room the prompt gives to one host only ("bedroom with its own bath and a second bath")

@@ -11,6 +11,8 @@ use super::reading::Reading;
 
 /// Most objects wished for in one room.
 const MOST_WISHES: usize = 15;
+/// Share of the usual area per head that a building short of area leaves.
+const CROWDED: f64 = 0.6;
 /// Share by which the areas may miss the one asked for before that is worth a note.
 const AREA_TOLERANCE: f64 = 0.1;
 
@@ -79,15 +81,16 @@ fn label(room: &Planned) -> String {
     letters.next().map_or(words.clone(), |first| first.to_uppercase().chain(letters).collect())
 }
 
-/// Returns the areas allowed, net m^2: those of the type; close to the one the prompt or its head count gives.
+/// Returns the areas allowed, net m^2: those of the type; close to the one the prompt gives, enough for the people in it.
 fn area_range(room: &Planned, target: f64) -> [f64; 2] {
     let range = room.kind.area_m2;
-    match room.area_m2 {
-        Some(_) => [
-            range.min.max(tenth(target * (1.0 - AREA_TOLERANCE))),
-            range.max.min(tenth(target * (1.0 + AREA_TOLERANCE))),
-        ],
-        None => [range.min, range.max],
+    let about = |low: f64, high: f64| {
+        [range.min.max(tenth(target * low)).min(target), range.max.min(tenth(target * high)).max(target)]
+    };
+    match (room.area_m2, room.people_area_m2) {
+        (Some(_), _) => about(1.0 - AREA_TOLERANCE, 1.0 + AREA_TOLERANCE),
+        (None, Some(_)) => about(1.0 - AREA_TOLERANCE, 1.0 + 3.0 * AREA_TOLERANCE),
+        (None, None) => [range.min, range.max],
     }
 }
 
@@ -96,7 +99,7 @@ fn target_areas(reading: &mut Reading, planned: &[Planned]) -> Vec<f64> {
     let mut areas = Vec::with_capacity(planned.len());
     for room in planned {
         let range = room.kind.area_m2;
-        let wished = room.area_m2.unwrap_or(range.target);
+        let wished = room.area_m2.or(room.people_area_m2).unwrap_or(range.target);
         let area = wished.clamp(range.min, range.max);
         if (area - wished).abs() > 0.05 {
             let message = format!(
@@ -114,7 +117,11 @@ fn target_areas(reading: &mut Reading, planned: &[Planned]) -> Vec<f64> {
     let at = |scale: f64| -> Vec<f64> {
         let sized = planned.iter().zip(&areas).map(|(room, area)| {
             let range = room.kind.area_m2;
-            if room.area_m2.is_some() { *area } else { (area * scale).clamp(range.min, range.max) }
+            match (room.area_m2, room.people_area_m2) {
+                (Some(_), _) => *area,
+                (_, Some(people)) => (area * scale).clamp(range.min.max(CROWDED * people).min(range.max), range.max),
+                _ => (area * scale).clamp(range.min, range.max),
+            }
         });
         sized.collect()
     };
