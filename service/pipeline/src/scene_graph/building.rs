@@ -5,7 +5,7 @@ use d3dgen_plugins::Registry;
 
 use super::numbers::Number;
 use super::text::{Kind, Phrases, Span, Token};
-use super::words::{Spoken, Tag};
+use super::words::{Spoken, Tag, words};
 
 /// The building a prompt names.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,7 +39,8 @@ pub(super) fn recognize(
     let found = occurrences(tokens, &domains, languages, places);
     let plural = |span: &Span| {
         let counted = |n: &Number| {
-            let after = spoken.iter().find_map(|s| s.tag_at(tokens, n.span.end, Tag::Counters));
+            let area = words().area_units.longest_at(tokens, n.span.end).is_some();
+            let after = spoken.iter().find_map(|s| s.tag_at(tokens, n.span.end, Tag::Counters)).filter(|_| !area);
             n.span.end == span.start || after == Some(span.start)
         };
         numbers.iter().any(|n| n.value > 1.0 && counted(n))
@@ -63,7 +64,10 @@ pub(super) fn recognize(
     };
     let votes = || room_votes(tokens, &domains, languages);
     let Some((span, meaning)) = pick else {
-        let best = votes().into_iter().enumerate().max_by_key(|&(i, n)| (n, usize::MAX - i)).filter(|v| v.1 > 0);
+        let mut votes = votes();
+        // "two offices": rooms here, but a word for that building all the same
+        found.iter().flat_map(|f| &f.1).for_each(|m| votes[m.0] += 1);
+        let best = votes.into_iter().enumerate().max_by_key(|&(i, n)| (n, usize::MAX - i)).filter(|v| v.1 > 0);
         // A building named only inside the list ("there is an office") still says more than nothing.
         let late = found.first().map(|(_, m)| m[0].0);
         let domain = best.map(|b| b.0).or(late)?;

@@ -1,6 +1,6 @@
 //! A prompt understood: every fact it states, before rooms are added or connected.
 
-use d3dgen_model::domain::{Domain, Program, ProgramRoom};
+use d3dgen_model::domain::{Access, Domain, Occupants, Program, ProgramRoom};
 use d3dgen_model::scene_graph::{Note, Occupancy, Robot};
 use d3dgen_plugins::Registry;
 
@@ -20,6 +20,8 @@ pub(super) const MAX_ROOMS: u32 = MANY as u32;
 const MAX_AREA_M2: f64 = 200_000.0;
 /// A building's first room that is so many times larger than all listed ones is what it is for.
 const MAIN_ROOM_SHARE: f64 = 1.5;
+/// A room for more people each is no place to work at but one to meet or wash in.
+const MOST_IN_OFFICE: u32 = 4;
 /// Largest head count that is taken at its word.
 const MAX_HEADS: i64 = 5000;
 
@@ -120,6 +122,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         robots: machines.named,
     };
     let mut wishes = wishes::gather(&text, &mut conflicts);
+    name_private_bathrooms(&mut wishes, domain);
     let robots = machines_of(&machines, &wishes, radius.map(|r| r.1), request, &mut assumptions, &mut conflicts);
     let area_m2 = total_area(&text, request, &mut conflicts);
     let people = People::read(&mentions, program, domain, &mut conflicts);
@@ -288,6 +291,24 @@ fn beds_are_rooms(people: &People, mentions: &[Mention], program: &Program, wish
     }
 }
 
+/// Turns "habitaciones con baño" into guest rooms with bathrooms where the word alone means a public toilet.
+fn name_private_bathrooms(wishes: &mut Wishes, domain: &Domain) {
+    let Some(bathroom) = domain.room_type(&words().dwelling.bathroom).filter(|t| t.access == Access::Host) else {
+        return;
+    };
+    let public = |id: &str| domain.room_type(id).is_some_and(|t| t.access != Access::Host && t.zone == bathroom.zone);
+    for pair in wishes.pairs.iter_mut().filter(|p| p.belongs && bathroom.hosts.contains(&p.b)) {
+        let toilet = words().dwelling.toilets.contains(&pair.a);
+        if !(toilet && public(&pair.a)) || wishes.wishes.iter().any(|w| w.room_type == bathroom.id) {
+            continue;
+        }
+        if let Some(wish) = wishes.wishes.iter_mut().find(|w| w.room_type == pair.a) {
+            wish.room_type.clone_from(&bathroom.id);
+        }
+        pair.a.clone_from(&bathroom.id);
+    }
+}
+
 fn machines_of(
     machines: &robots::Robots,
     wishes: &Wishes,
@@ -421,8 +442,11 @@ fn add_main_room(
     if lives || listed(&main.room_type) || wishes.forbidden.contains(&main.room_type) {
         return None;
     }
-    let works = |r: &ProgramRoom| r.area_per_occupant_m2.is_some() || r.occupants_per_room.is_some();
-    let placed = program.rooms.iter().any(|r| works(r) && listed(&r.room_type));
+    let works = |r: &ProgramRoom| {
+        let seat = r.area_per_occupant_m2.is_some() || r.occupants_per_room.is_some_and(|n| n <= MOST_IN_OFFICE);
+        r.occupants == Occupants::Staff && seat
+    };
+    let placed = domain.programs.iter().flat_map(|p| &p.rooms).any(|r| works(r) && listed(&r.room_type));
     let size = |id: &str| domain.room_type_or_generic(id).area_m2.target;
     let largest = wishes.wishes.iter().map(|w| size(&w.room_type)).fold(0.0, f64::max);
     let heads = people.occupancy.staff.or(people.occupancy.desks).is_some() && works(main);

@@ -264,9 +264,9 @@ fn negated(tokens: &[Token], mentions: &[Mention], spoken: &[&Spoken], language:
         while let Some(m) = mentions.iter().position(|m| m.from >= at) {
             let mention = &mentions[m];
             let gap = at..mention.from;
-            let blocked = gap
-                .clone()
-                .any(|k| tokens[k].is_mark() || tag_end(k, Tag::Starts).is_some() || tag_end(k, Tag::Near).is_some());
+            let blocked = gap.clone().any(|k| {
+                tokens[k].is_mark() || [Tag::Starts, Tag::Near, Tag::Between].iter().any(|&t| tag_end(k, t).is_some())
+            });
             let joined = gap.len() <= 1 && gap.clone().all(|k| tag_end(k, Tag::Joins).is_some());
             let fits = if first { gap.len() <= 3 && !blocked } else { joined && mention.count.is_none() };
             if !fits || mention.room_type().is_none() {

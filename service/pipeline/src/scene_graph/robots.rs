@@ -43,7 +43,7 @@ pub(super) fn read(tokens: &[Token], numbers: &[Number], spoken: &[&Spoken]) -> 
             i += 1;
             continue;
         };
-        let count = count_before(tokens, i, numbers);
+        let count = count_of(tokens, (i, end), numbers, spoken);
         if let Some((_, kind)) = KINDS.iter().find(|(tag, _)| tags.contains(tag)) {
             let kind = if *kind == "delivery" && serves(tokens, i, spoken) { "service" } else { kind };
             out.spans.push(Span { start: i, end });
@@ -80,10 +80,13 @@ fn add(wanted: &mut Vec<Wanted>, kind: &'static str, count: u32) {
     }
 }
 
-fn count_before(tokens: &[Token], start: usize, numbers: &[Number]) -> u32 {
+/// Returns the number before a robot, or behind it with a counter: "机器人三台", "로봇 2대".
+fn count_of(tokens: &[Token], (start, end): (usize, usize), numbers: &[Number], spoken: &[&Spoken]) -> u32 {
+    let counter = |i: usize| spoken.iter().any(|s| s.tag_at(tokens, i, Tag::Counters).is_some());
     let near = numbers.iter().rev().find(|n| {
         n.span.end <= start && start - n.span.end <= 2 && !tokens[n.span.end..start].iter().any(Token::is_mark)
     });
+    let near = near.or_else(|| numbers.iter().find(|n| n.span.start == end && counter(n.span.end)));
     near.map_or(1, |n| n.value.clamp(1.0, 100.0) as u32)
 }
 

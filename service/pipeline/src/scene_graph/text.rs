@@ -339,7 +339,7 @@ impl<T: Clone> Phrases<T> {
     pub(super) fn longest_at(&self, tokens: &[Token], i: usize) -> Option<(usize, &T)> {
         let (mut exact, mut stems) = (String::new(), String::new());
         let mut found = None;
-        for (j, token) in tokens.iter().enumerate().skip(i).take(self.longest.max(1)) {
+        for (j, token) in tokens.iter().enumerate().skip(i).take(self.longest + 1) {
             if token.is_mark() {
                 break;
             }

@@ -253,7 +253,10 @@ fn each_of_host(text: &Text, out: &mut Wishes) {
     for &(guest, host) in &text.said.each {
         let (Some(g), Some(h)) = (text.mentions[guest].room_type(), text.mentions[host].room_type()) else { continue };
         let hosts = out.wishes.iter().find(|w| w.room_type == h).map_or(0, |w| w.count);
-        let here = text.mentions[host].count.map_or(hosts, clamp).max(1);
+        // "6 double rooms, 2 single rooms, each with bathroom": all of them
+        let alike = (0..=host).rev().take_while(|&m| text.mentions[m].room_type() == Some(h));
+        let counted: u32 = alike.filter_map(|m| text.mentions[m].count).map(clamp).fold(0, u32::saturating_add);
+        let here = text.mentions[host].count.map_or(hosts, |_| counted).max(1);
         let own = clamp(text.mentions[guest].count.unwrap_or(1).max(1));
         let elsewhere: u32 = text
             .mentions

@@ -98,6 +98,8 @@ pub(super) struct Dwelling {
     pub kitchen: String,
     pub bathroom: String,
     pub toilet: String,
+    /// Rooms that a word for a bathroom may mean where no one lives.
+    pub toilets: Vec<String>,
     pub bhk: Vec<String>,
     pub ldk: Vec<String>,
     pub rooms_to_live: Vec<String>,
