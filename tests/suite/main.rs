@@ -2,6 +2,7 @@
 
 mod arrows;
 mod documents;
+mod domain_guide;
 mod errors;
 mod goldens;
 mod pins;

@@ -98,7 +98,8 @@ impl Summary {
     /// Returns the closing lines of a single world.
     pub fn page(&self) -> String {
         let c = &self.constraints;
-        let building = [Some(self.domain.as_str()), self.building_type.as_deref(), self.country_code.as_deref()];
+        let building_type = self.building_type.as_deref().filter(|t| *t != self.domain);
+        let building = [Some(self.domain.as_str()), building_type, self.country_code.as_deref()];
         let stages: Vec<String> = self.times.iter().map(|(stage, t)| format!("{stage} {:.0}", ms(*t))).collect();
         let again = if self.attempts > 1 { format!(", in {} attempts", self.attempts) } else { String::new() };
         let rows = [

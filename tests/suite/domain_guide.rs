@@ -1,0 +1,41 @@
+//! The example of `domains/README.md` is a domain that works.
+
+use std::fs;
+
+use d3dgen_tests::{run, run_well, workspace};
+
+/// Returns the code block of a language in the guide that begins with a text.
+fn block<'a>(guide: &'a str, language: &str, begins: &str) -> &'a str {
+    let mut blocks = guide.split("\n```").skip(1).step_by(2);
+    let mut texts = blocks.by_ref().filter_map(|b| b.strip_prefix(language)?.strip_prefix('\n'));
+    texts.find(|t| t.starts_with(begins)).expect("the guide has this block")
+}
+
+#[test]
+fn the_domain_of_the_guide_makes_worlds() {
+    let guide = fs::read_to_string(workspace().join("domains/README.md")).unwrap();
+    let home = tempfile::tempdir().unwrap();
+    let folder = home.path().join("observatory");
+    fs::create_dir(&folder).unwrap();
+    fs::write(folder.join("domain.toml"), block(&guide, "toml", "version = 1")).unwrap();
+    fs::write(folder.join("knowledge.json"), block(&guide, "json", "{")).unwrap();
+
+    assert!(run_well(home.path(), &["domains", "validate", "observatory"]).contains("6 room types"));
+    let prompt = "observatory with two telescope rooms";
+    let request = ["generate", prompt, "--domains-dir", ".", "--no-png", "--json", "--out", "o", "--count", "3"];
+    for line in run_well(home.path(), &request).lines() {
+        let world: serde_json::Value = serde_json::from_str(line).unwrap();
+        assert_eq!((&world["domain"], &world["rooms"]), (&"observatory".into(), &5.into()), "{world}");
+        assert!(world["constraints"]["satisfied"].as_u64() > Some(0), "the rule of the guide holds: {world}");
+    }
+    let world = fs::read_to_string(home.path().join("o/0/world.json")).unwrap();
+    assert!(world.contains("telescope_room_2") && world.contains("telescope_room_1_telescope_1"));
+
+    // A mistake is named with its place.
+    let broken = block(&guide, "toml", "version = 1").replace("anchor = \"desk\"", "anchor = \"desc\"");
+    fs::write(folder.join("domain.toml"), broken).unwrap();
+    let output = run(home.path(), &["domains", "validate", "observatory"]);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(said.contains("/groups/0/anchor") && said.contains("`desc`"), "{said}");
+}
