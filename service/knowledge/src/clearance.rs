@@ -1,11 +1,15 @@
 //! Free floor beside a placed object, and the floor that doors need.
 
+use d3dgen_model::domain::Mount;
 use d3dgen_model::floorplan::Door;
 use d3dgen_model::placements::Placement;
-use d3dgen_model::{Point, Polygon, Rect};
+use d3dgen_model::{Point, Polygon, Rect, TOLERANCE_M};
 
 /// Depth in front of a door that must stay free, m.
 pub const DOOR_LANE_M: f64 = 0.5;
+/// Depth up to which something on a wall narrows no passage and takes nobody's floor, m: what building codes let project
+/// into a walk.
+pub const PROJECTION_M: f64 = 0.10;
 /// Overlap at which an obstacle counts as beside, not ahead, m.
 const GRAZE_M: f64 = 0.02;
 
@@ -18,6 +22,11 @@ pub enum Side {
     Left,
     /// Its right, as left.
     Right,
+}
+
+/// Returns true for what hangs on a wall and is so shallow that it narrows no passage.
+pub fn is_shallow(p: &Placement) -> bool {
+    p.mount == Mount::Wall && p.size_m[1] <= PROJECTION_M + TOLERANCE_M
 }
 
 /// Returns the heading of a placement in quarter turns counter-clockwise from east, 0 to 3.

@@ -58,8 +58,7 @@ impl FreeSpace {
     ///
     /// At a door itself only the door's own clear width is asked for. 0 when two doors are cut off from each other.
     pub fn passage(&self, doors: &[&Door]) -> f64 {
-        let gates: Vec<(Rect, bool, f64)> =
-            doors.iter().map(|d| (gate(d), d.line.is_vertical(), d.clear_width_m)).collect();
+        let gates = gates(doors);
         let mut widths: Vec<f64> = self.rects.iter().map(short_side).collect();
         for (i, a) in self.rects.iter().enumerate() {
             widths.extend(self.rects[i + 1..].iter().map(|b| short_side(&common(a, b))).filter(|w| *w > 0.0));
@@ -70,6 +69,11 @@ impl FreeSpace {
         // the wider, the fewer ways: search for the last width that passes
         let cut = widths.partition_point(|w| passes(*w));
         cut.checked_sub(1).map_or(0.0, |i| widths[i])
+    }
+
+    /// Returns true when a square of this width (m) can be pushed between all these doors, as [`FreeSpace::passage`].
+    pub fn passes(&self, doors: &[&Door], width: f64) -> bool {
+        self.connects(&gates(doors), width)
     }
 
     fn connects(&self, gates: &[(Rect, bool, f64)], width: f64) -> bool {
@@ -105,6 +109,10 @@ fn short_side(r: &Rect) -> f64 {
 /// Returns the common part of two rectangles; an extent is negative when they do not meet.
 fn common(a: &Rect, b: &Rect) -> Rect {
     Rect { x0: a.x0.max(b.x0), y0: a.y0.max(b.y0), x1: a.x1.min(b.x1), y1: a.y1.min(b.y1) }
+}
+
+fn gates(doors: &[&Door]) -> Vec<(Rect, bool, f64)> {
+    doors.iter().map(|d| (gate(d), d.line.is_vertical(), d.clear_width_m)).collect()
 }
 
 /// Returns the opening of a door through its wall and a little beyond.
@@ -195,7 +203,9 @@ mod tests {
         let ends = [door(-0.06, 0.2, -0.06, 1.2), door(8.9, 7.56, 9.9, 7.56)];
         let ends: Vec<&Door> = ends.iter().collect();
         let bench = Rect::new(3.0, 0.0, 4.0, 0.5);
-        assert!((FreeSpace::new(&corridor(), &[bench]).passage(&ends) - 1.0).abs() < 1e-6);
+        let furnished = FreeSpace::new(&corridor(), &[bench]);
+        assert!((furnished.passage(&ends) - 1.0).abs() < 1e-6);
+        assert!(furnished.passes(&ends, 1.0) && !furnished.passes(&ends, 1.05));
         let wall = Rect::new(3.0, 0.0, 3.2, 1.5);
         assert_eq!(FreeSpace::new(&corridor(), &[wall]).passage(&ends), 0.0);
     }

@@ -55,7 +55,7 @@ pub(super) fn placed<'a>(locked: &[&Placement], domain: &'a Domain, space: &Spac
             }
         }
         let mount = p.mount;
-        let part = Part { object, quarter: 0, solid, mount, support: None };
+        let part = Part { object, quarter: 0, solid, mount, support: None, optional: false };
         let unit = Unit {
             item: &object.id,
             group: false,

@@ -18,6 +18,7 @@ mod space;
 mod state;
 mod style;
 mod unit;
+mod way;
 
 use std::collections::BTreeMap;
 
@@ -31,11 +32,10 @@ use d3dgen_model::seed::Stream;
 use crate::Error;
 use geom::mm;
 use space::Space;
+use way::Way;
 
 /// Least radius of the disc that must find its way, m: a person, or a small robot.
 const LEAST_RADIUS_M: f64 = 0.30;
-/// Width of a corridor from which it must stay passable for two, m.
-const WIDE_CORRIDOR_M: f64 = 2.2;
 
 /// Furnishes every room of a floorplan.
 ///
@@ -88,6 +88,8 @@ fn furnish_room(
     let salt = (stream.unit() * (1_u64 << 52) as f64) as u64;
     let sizes = pick_sizes(domain, &mut stream);
     let present = locked::present(&fixed, &tasks, domain);
+    let robot_m = graph.robots.iter().map(|r| r.radius_m).fold(LEAST_RADIUS_M, f64::max);
+    let way = Way::new(plan, room, domain, robot_m);
     let job = search::Job {
         domain,
         space: &space,
@@ -97,7 +99,7 @@ fn furnish_room(
         sizes: &|o| sizes.get(o.id.as_str()).copied().unwrap_or(0),
         salt,
         radius: radius(graph, &space),
-        keep_width: keep_width(room, domain, &space),
+        way: way.as_ref(),
     };
     let outcome = search::furnish(&job);
     let placements = assemble::placements(domain, &room.room_id, &tasks, &outcome, &fixed);
@@ -116,13 +118,4 @@ fn radius(graph: &SceneGraph, space: &Space) -> i32 {
     let robot = graph.robots.iter().map(|r| mm(r.radius_m)).fold(least, i32::max);
     let doors = space.doors.iter().map(|d| d.clear_width / 2).max().unwrap_or(robot);
     robot.min(doors).max(least)
-}
-
-/// Returns the clear width to keep in circulation, mm; 0 for other rooms.
-fn keep_width(room: &PlanRoom, domain: &Domain, space: &Space) -> i32 {
-    if !room.circulation {
-        return 0;
-    }
-    let least = if space.breadth() >= mm(WIDE_CORRIDOR_M) { 2000 } else { 1200 };
-    mm(domain.circulation.width_m).max(least)
 }

@@ -2,7 +2,6 @@
 
 use std::rc::Rc;
 
-use d3dgen_model::geometry::Rect;
 use d3dgen_model::occupancy::{Bitmap, Frame};
 
 use super::geom::{Box2, mm};
@@ -43,18 +42,13 @@ struct Ground {
     origin: (i32, i32),
 }
 
-fn rect_m(b: &Box2) -> Rect {
-    let m = |v: i32| f64::from(v) / 1000.0;
-    Rect { x0: m(b.x0), y0: m(b.y0), x1: m(b.x1), y1: m(b.y1) }
-}
-
 impl Nav {
     /// Returns the empty room for a disc of this radius, mm. Doors never limit it: their width is the plan's business.
     pub fn new(space: &Space, radius: i32) -> Self {
-        let frame = Frame::around(rect_m(&space.bounds.grown(radius + 450)));
+        let frame = Frame::around(space.bounds.grown(radius + 450).to_rect());
         let mut inside = Bitmap::new(frame.nx, frame.ny);
         for rect in space.floor_rects() {
-            let (i0, i1, j0, j1) = frame.span(&rect_m(rect));
+            let (i0, i1, j0, j1) = frame.span(&rect.to_rect());
             inside.fill(i0, i1, j0, j1, true);
         }
         let mut floor = inside.clone();
@@ -62,7 +56,7 @@ impl Nav {
         for door in &space.doors {
             let wall = &space.walls[door.wall];
             let (mid, half) = ((door.v0 + door.v1) / 2, ((door.v1 - door.v0) / 2).max(radius + 75));
-            let (i0, i1, j0, j1) = frame.span(&rect_m(&wall.strip(mid - half, mid + half, -(radius + 400), 50)));
+            let (i0, i1, j0, j1) = frame.span(&wall.strip(mid - half, mid + half, -(radius + 400), 50).to_rect());
             floor.fill(i0, i1, j0, j1, true);
             let seed = wall.strip(mid - 1, mid + 1, -220, -218);
             doors.extend(frame.cell(seed.center_m()));
@@ -133,7 +127,7 @@ impl Nav {
     pub fn reaches(&self, targets: &[Box2]) -> bool {
         let margin = self.shared.radius + 100;
         targets.iter().any(|t| {
-            let (i0, i1, j0, j1) = self.shared.frame.span(&rect_m(&t.grown(margin)));
+            let (i0, i1, j0, j1) = self.shared.frame.span(&t.grown(margin).to_rect());
             self.main.any_in(i0, i1, j0, j1)
         })
     }

@@ -9,8 +9,9 @@ use super::demand::Task;
 use super::find::{Candidate, Find, Tally, over, rows};
 use super::nav::Nav;
 use super::space::Space;
-use super::state::{KeepWidth, Placed, Rule, State};
+use super::state::{Placed, Rule, State};
 use super::unit::{Unit, variants};
+use super::way::Way;
 
 /// Positions whose routes are looked at before a unit counts as unplaceable.
 const ROUTE_TESTS: usize = 40;
@@ -35,7 +36,8 @@ pub(super) struct Job<'a, 's> {
     pub salt: u64,
     /// Radius of the robot, mm.
     pub radius: i32,
-    pub keep_width: KeepWidth,
+    /// In circulation, what must stay open.
+    pub way: Option<&'s Way>,
 }
 
 /// How strict a pass is: clearances as a share, and a margin around the robot, mm.
@@ -112,7 +114,7 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
                 .collect()
         });
         let forms = forms.collect();
-        let mut start = State::new(job.space, Nav::new(job.space, job.radius + margin), job.keep_width);
+        let mut start = State::new(job.space, Nav::new(job.space, job.radius + margin), job.way);
         start.add(job.locked.to_vec());
         Self { job, level, forms, start }
     }

@@ -3,7 +3,7 @@
 use d3dgen_model::floorplan::{Door, DoorKind, Floorplan, PlanRoom};
 use d3dgen_model::geometry::Segment;
 
-use super::geom::{Box2, mm, turn};
+use super::geom::{Box2, Solid, mm, turn};
 
 /// Floor kept free in front of every door over its width, mm.
 const DOOR_DEPTH: i32 = 600;
@@ -65,6 +65,13 @@ pub(super) struct WindowZone {
     pub sill: i32,
     pub head: i32,
     pub zone: Box2,
+}
+
+impl WindowZone {
+    /// Returns true when something at this place takes light.
+    pub fn is_hidden_by(&self, solid: &Solid) -> bool {
+        solid.z1 > self.sill && solid.z0 < self.head && self.zone.overlaps(&solid.rect)
+    }
 }
 
 /// A room without furniture.
@@ -145,11 +152,6 @@ impl Space {
     /// Returns the windows of one wall.
     pub fn windows_of(&self, wall: usize) -> impl Iterator<Item = &WindowZone> {
         self.windows.iter().filter(move |w| w.wall == wall)
-    }
-
-    /// Returns the smaller extent of the room's largest rectangle, mm.
-    pub fn breadth(&self) -> i32 {
-        self.main.width().min(self.main.height())
     }
 
     /// Finds the wall side that carries an opening, and the opening's extent along it.

@@ -8,9 +8,7 @@ use super::geom::{Box2, Solid, turn};
 use super::nav::Nav;
 use super::space::Space;
 use super::unit::{Part, Unit};
-
-/// Depth up to which things on a wall may hang in floor that others need free, mm.
-const THIN: i32 = 150;
+use super::way::Way;
 
 /// A hard rule that a position can break.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -88,9 +86,6 @@ impl Placed<'_> {
     }
 }
 
-/// Extra free floor demanded in front of things that stand in circulation, mm; 0 elsewhere.
-pub(super) type KeepWidth = i32;
-
 /// A room with what has been placed so far.
 #[derive(Debug, Clone)]
 pub(super) struct State<'a, 's> {
@@ -98,26 +93,30 @@ pub(super) struct State<'a, 's> {
     pub placed: Vec<Placed<'a>>,
     pub solids: Vec<Solid>,
     pub clears: Vec<Box2>,
+    /// Outlines of what takes floor: not what is flat, hangs high or flat on a wall.
+    bodies: Vec<Box2>,
     nav: Nav,
     targets: Vec<Vec<Box2>>,
     /// Clear floor the robot can use, in cells.
     pub free_area: usize,
-    keep_width: KeepWidth,
+    /// In circulation, what must stay open.
+    way: Option<&'s Way>,
 }
 
 impl<'a, 's> State<'a, 's> {
     /// Returns the empty room.
-    pub fn new(space: &'s Space, nav: Nav, keep_width: KeepWidth) -> Self {
+    pub fn new(space: &'s Space, nav: Nav, way: Option<&'s Way>) -> Self {
         let free_area = nav.area();
         Self {
             space,
             placed: Vec::new(),
             solids: Vec::new(),
             clears: Vec::new(),
+            bodies: Vec::new(),
             nav,
             targets: Vec::new(),
             free_area,
-            keep_width,
+            way,
         }
     }
 
@@ -144,20 +143,17 @@ impl<'a, 's> State<'a, 's> {
             if self.solids.iter().any(|s| !(s.is_flat() && s.z0 == 0) && s.overlaps(&solid)) {
                 return Err(Rule::Collision);
             }
+            // a kettle on a counter stands in the light as a tall counter does
+            if !at_window && space.windows.iter().any(|w| w.is_hidden_by(&solid)) {
+                return Err(Rule::Window);
+            }
             if part.mount == Mount::Surface || p.support.is_some() {
                 continue;
             }
             if space.doors.iter().any(|d| solid.z0 < d.height && d.zone.overlaps(&solid.rect)) {
                 return Err(Rule::Door);
             }
-            let before_window =
-                |w: &super::space::WindowZone| solid.z1 > w.sill && solid.z0 < w.head && w.zone.overlaps(&solid.rect);
-            if !at_window && part.mount != Mount::Ceiling && space.windows.iter().any(before_window) {
-                return Err(Rule::Window);
-            }
-            // curtains and rails along a wall narrow nothing
-            let thin = part.mount == Mount::Wall && part.solid.rect.width() <= THIN;
-            if solid.stops_robot() && !thin && self.clears.iter().any(|c| c.overlaps(&solid.rect)) {
+            if takes_floor(part, &solid) && self.clears.iter().any(|c| c.overlaps(&solid.rect)) {
                 return Err(Rule::Clearance);
             }
         }
@@ -168,18 +164,21 @@ impl<'a, 's> State<'a, 's> {
     }
 
     fn test_clears(&self, p: &Placed) -> Result<(), Rule> {
-        let free =
-            |c: &Box2| self.space.contains(c) && !self.solids.iter().any(|s| s.stops_robot() && s.rect.overlaps(c));
-        if !p.unit.clears.iter().all(|c| free(&p.world(c))) {
-            return Err(Rule::Clearance);
-        }
-        if self.keep_width > 0 && p.on_floor() {
-            let b = p.unit.bbox;
-            if b.width() > 100 && !free(&p.world(&Box2 { x0: b.x1, x1: b.x1 + self.keep_width, ..b })) {
-                return Err(Rule::Clearance);
+        let free = |c: &Box2| self.space.contains(c) && !self.bodies.iter().any(|b| b.overlaps(c));
+        if p.unit.clears.iter().all(|c| free(&p.world(c))) { Ok(()) } else { Err(Rule::Clearance) }
+    }
+
+    /// Tests a unit as [`State::test`]; what stands on it and is no essential part of it is left away before a window.
+    pub fn fit(&self, p: Placed<'a>, at_window: bool) -> Result<Placed<'a>, Rule> {
+        match self.test(&p, at_window) {
+            Ok(()) => Ok(p),
+            Err(Rule::Window) => {
+                let hides = |part: &Part| self.space.windows.iter().any(|w| w.is_hidden_by(&p.solid(part)));
+                let lower = Placed { unit: Rc::new(p.unit.cleared(hides).ok_or(Rule::Window)?), ..p.clone() };
+                self.test(&lower, at_window).map(|()| lower)
             }
+            Err(rule) => Err(rule),
         }
-        Ok(())
     }
 
     /// Returns how many cells of floor stay reachable once the units stand there, or the rule they break.
@@ -191,7 +190,12 @@ impl<'a, 's> State<'a, 's> {
         }
         let mut nav = self.nav.clone();
         obstacles.iter().for_each(|o| nav.block(o));
+        let open = |way: &Way| {
+            let new: Vec<Box2> = units.iter().flat_map(bodies).collect();
+            new.is_empty() || way.stays_open(&[&self.bodies[..], &new].concat())
+        };
         let reached = nav.settle()
+            && self.way.is_none_or(open)
             && self.targets.iter().all(|t| nav.reaches(t))
             && units.iter().filter(|u| needs_reach(u)).all(|u| nav.reaches(&u.targets()));
         if reached { Ok(nav.area()) } else { Err(Rule::Route) }
@@ -205,6 +209,7 @@ impl<'a, 's> State<'a, 's> {
                 self.solids.push(solid);
             }
             obstacles(&p).for_each(|o| self.nav.block(&o));
+            self.bodies.extend(bodies(&p));
             if p.support.is_none() {
                 self.clears.extend(p.unit.clears.iter().map(|c| p.world(c)));
             }
@@ -220,6 +225,15 @@ impl<'a, 's> State<'a, 's> {
 
 fn obstacles(p: &Placed) -> impl Iterator<Item = Box2> {
     p.unit.parts.iter().map(|part| p.solid(part)).filter(Solid::stops_robot).map(|s| s.rect)
+}
+
+/// Returns the outlines of what takes floor from people passing by or using something.
+fn bodies(p: &Placed) -> impl Iterator<Item = Box2> {
+    p.unit.parts.iter().map(|part| (part, p.solid(part))).filter(|(part, s)| takes_floor(part, s)).map(|(_, s)| s.rect)
+}
+
+fn takes_floor(part: &Part, solid: &Solid) -> bool {
+    solid.stops_robot() && !part.is_shallow()
 }
 
 /// Returns true when a robot must be able to come up to the unit.

@@ -75,7 +75,9 @@ pub(super) fn style(shape: Shape, mount: Mount, both_sides: bool) -> Style {
         Shape::Sink | Shape::Counter | Shape::Appliance => Style { flush: 0.8, far_from_door: 0.2, ..PLAIN },
         Shape::Cabinet | Shape::Shelf | Shape::Rack => Style { flush: 0.8, solid_behind: 1.0, tight: 0.6, ..PLAIN },
         Shape::Bench | Shape::Panel => Style { centered: 0.4, flush: 0.2, tight: 0.2, ..PLAIN },
-        Shape::Bathtub | Shape::Shower | Shape::Cubicle => Style { flush: 1.0, far_from_door: 0.8, solid_behind: 0.6, ..PLAIN },
+        Shape::Bathtub | Shape::Shower | Shape::Cubicle => {
+            Style { flush: 1.0, far_from_door: 0.8, solid_behind: 0.6, ..PLAIN }
+        }
         Shape::Toilet => Style { flush: 0.0, far_from_door: 0.5, solid_behind: 0.4, tight: 0.3, ..PLAIN },
         Shape::Basin => Style { flush: 0.1, solid_behind: 0.5, ..PLAIN },
         Shape::Plant | Shape::Lamp | Shape::Pole => {

@@ -1,6 +1,7 @@
 //! A group or a single object as one rigid unit around its anchor, in the anchor's frame: x forward, y left, origin
 //! at the middle of the anchor's back edge.
 
+use d3dgen_knowledge::clearance::PROJECTION_M;
 use d3dgen_model::domain::{Domain, FacingRule, Group, Member, Mount, ObjectType, Relation, Shape};
 
 use super::geom::{Box2, ROBOT_HEIGHT, Solid, mm};
@@ -19,6 +20,17 @@ pub(super) struct Part<'a> {
     pub mount: Mount,
     /// The part it stands on.
     pub support: Option<usize>,
+    /// True for what the group can do without.
+    pub optional: bool,
+}
+
+impl Part<'_> {
+    /// Returns true for what hangs flat on a wall, which narrows no passage.
+    pub fn is_shallow(&self) -> bool {
+        let r = self.solid.rect;
+        let depth = if self.quarter % 2 == 0 { r.width() } else { r.height() };
+        self.mount == Mount::Wall && depth <= mm(PROJECTION_M)
+    }
 }
 
 /// Objects placed as one.
@@ -75,6 +87,13 @@ impl<'a> Unit<'a> {
         }
         let parts = self.parts.into_iter().filter(|p| p.mount != Mount::Wall).collect();
         finish_with(self.item, self.group, parts, self.clears)
+    }
+
+    /// Returns the unit without the optional things on its top that are in the way; `None` when none is.
+    pub fn cleared(&self, in_the_way: impl Fn(&Part) -> bool) -> Option<Self> {
+        let gone = |p: &Part| p.optional && p.mount == Mount::Surface && in_the_way(p);
+        let parts: Vec<Part> = self.parts.iter().filter(|p| !gone(p)).cloned().collect();
+        (parts.len() < self.parts.len()).then(|| finish_with(self.item, self.group, parts, self.clears.clone()))
     }
 
     /// Returns how many people can lie on the unit's beds: two on a wide one.
@@ -168,7 +187,7 @@ impl<'a> Plan<'a> {
         let rect = Box2 { x0: 0, y0: -(w / 2), x1: d, y1: w - w / 2 };
         let solid = Solid { rect, z0: z, z1: z + h };
         let mount = if self.anchor.mount == Mount::Surface { Mount::Floor } else { self.anchor.mount };
-        let mut parts = vec![Part { object: self.anchor, quarter: 0, solid, mount, support: None }];
+        let mut parts = vec![Part { object: self.anchor, quarter: 0, solid, mount, support: None, optional: false }];
         let mut kept = 0;
         for member in self.group.map_or(&[][..], |g| &g.members) {
             if !member.required && takes_floor(self.domain, member) {
@@ -269,7 +288,14 @@ fn add_member<'a>(parts: &mut Vec<Part<'a>>, member: &Member, object: &'a Object
                 let y = if left { a.y1 + gap } else { a.y0 - gap - ey };
                 let step = if left { (0, 20) } else { (0, -20) };
                 if let Some(solid) = pushed(parts, floor(at(a.x0 + offset, y, q)), step) {
-                    parts.push(Part { object, quarter: q, solid, mount: object.mount, support: None });
+                    parts.push(Part {
+                        object,
+                        quarter: q,
+                        solid,
+                        mount: object.mount,
+                        support: None,
+                        optional: !member.required,
+                    });
                 }
             }
         }
@@ -283,13 +309,27 @@ fn add_member<'a>(parts: &mut Vec<Part<'a>>, member: &Member, object: &'a Object
                 let y = offset - ey / 2 + (2 * k - (count as i32 - 1)) * pitch / 2;
                 let step = if front { (20, 0) } else { (-20, 0) };
                 if let Some(solid) = pushed(parts, floor(at(x, y, q)), step) {
-                    parts.push(Part { object, quarter: q, solid, mount: object.mount, support: None });
+                    parts.push(Part {
+                        object,
+                        quarter: q,
+                        solid,
+                        mount: object.mount,
+                        support: None,
+                        optional: !member.required,
+                    });
                 }
             }
         }
         Relation::Around => {
             for (rect, q) in around(a, w, d, gap, count) {
-                parts.push(Part { object, quarter: q, solid: floor(rect), mount: object.mount, support: None });
+                parts.push(Part {
+                    object,
+                    quarter: q,
+                    solid: floor(rect),
+                    mount: object.mount,
+                    support: None,
+                    optional: !member.required,
+                });
             }
         }
         Relation::On => {
@@ -300,7 +340,14 @@ fn add_member<'a>(parts: &mut Vec<Part<'a>>, member: &Member, object: &'a Object
                 let y = (a.y0 + a.y1 - ey) / 2 + offset;
                 if let Some(rect) = on_top(parts, at(x, y, q)) {
                     let solid = Solid { rect, z0: anchor.z1, z1: anchor.z1 + h };
-                    parts.push(Part { object, quarter: q, solid, mount: Mount::Surface, support: Some(0) });
+                    parts.push(Part {
+                        object,
+                        quarter: q,
+                        solid,
+                        mount: Mount::Surface,
+                        support: Some(0),
+                        optional: !member.required,
+                    });
                 }
             }
         }
@@ -314,7 +361,14 @@ fn add_member<'a>(parts: &mut Vec<Part<'a>>, member: &Member, object: &'a Object
             let rect = Box2 { x0: back, y0: offset - w / 2, x1: back + d, y1: offset - w / 2 + w };
             let solid = Solid { rect, z0: z, z1: z + h };
             if let Some(solid) = pushed(parts, solid, (0, 20)) {
-                parts.push(Part { object, quarter: 0, solid, mount: Mount::Wall, support: None });
+                parts.push(Part {
+                    object,
+                    quarter: 0,
+                    solid,
+                    mount: Mount::Wall,
+                    support: None,
+                    optional: !member.required,
+                });
             }
         }
         Relation::Over | Relation::Under => {
@@ -325,7 +379,14 @@ fn add_member<'a>(parts: &mut Vec<Part<'a>>, member: &Member, object: &'a Object
             let rect = at(x, (a.y0 + a.y1 - ey) / 2 + offset, q);
             let z = if member.relation == Relation::Over { base } else { 0 };
             let solid = Solid { rect, z0: z, z1: z + h };
-            parts.push(Part { object, quarter: q, solid, mount: object.mount, support: None });
+            parts.push(Part {
+                object,
+                quarter: q,
+                solid,
+                mount: object.mount,
+                support: None,
+                optional: !member.required,
+            });
         }
     }
 }

@@ -155,9 +155,9 @@ mod tests {
     fn finds_the_largest_free_rectangle() {
         let map = "#...\
                    ....\
-                   ...#";
+                   ..##";
         let taken: Vec<bool> = map.chars().map(|c| c == '#').collect();
-        assert_eq!(largest(&taken, 4, 3), Some((1, 3, 0, 3)));
+        assert_eq!(largest(&taken, 4, 3), Some((1, 4, 0, 2)));
         assert_eq!(largest(&[true; 4], 2, 2), None);
     }
 }

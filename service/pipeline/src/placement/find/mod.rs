@@ -78,14 +78,16 @@ impl<'f, 'a, 's> Find<'f, 'a, 's> {
     /// Tests a position and keeps it when it breaks no rule.
     fn offer(&mut self, placed: Placed<'a>, class: u32, score: impl FnOnce(&Self, &Placed<'a>) -> f64) {
         let at_window = self.task.arrangement == Arrangement::AtWindow;
-        match self.state.test(&placed, at_window) {
-            Ok(()) => {
+        let parts = placed.unit.parts.len();
+        match self.state.fit(placed, at_window) {
+            Ok(placed) => {
                 let grain = grain(
                     self.salt,
                     i64::from(placed.at.0 / 50),
                     i64::from(placed.at.1 / 50) * 4 + i64::from(placed.q),
                 );
-                let score = score(self, &placed) + 0.25 * grain + 0.6 * self.class_grain(class);
+                let lost = parts - placed.unit.parts.len();
+                let score = score(self, &placed) + 0.25 * grain + 0.6 * self.class_grain(class) - 0.4 * lost as f64;
                 self.out.push(Candidate { placed, score, class });
             }
             Err(rule) => self.tally[rule as usize] += 1,

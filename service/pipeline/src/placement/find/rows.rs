@@ -206,8 +206,8 @@ fn set_up<'a>(
                 (plan.q, u0 + du - b.x0, v0 + dv - b.y0)
             };
             let placed = at_frame(unit, q, u, v, index);
-            match state.test(&placed, false) {
-                Ok(()) => out.push(placed),
+            match state.fit(placed, false) {
+                Ok(placed) => out.push(placed),
                 Err(rule) => tally[rule as usize] += 1,
             }
         }

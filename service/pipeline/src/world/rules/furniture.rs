@@ -2,10 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use d3dgen_knowledge::clearance::{Side, free_depth, quarter};
-use d3dgen_model::TOLERANCE_M;
-use d3dgen_model::domain::{Arrangement, FacingRule, Furnishing, Group, Mount};
+use d3dgen_knowledge::clearance::{Side, free_depth, is_shallow, quarter};
+use d3dgen_model::domain::{Arrangement, FacingRule, Furnishing, Group, Member, Mount, Relation};
 use d3dgen_model::placements::Placement;
+use d3dgen_model::{Rect, TOLERANCE_M};
 
 use super::Findings;
 use crate::world::context::{Context, Object, Room, bounds};
@@ -66,7 +66,7 @@ pub fn facing(c: &Context, out: &mut Findings) {
             for found in members(c, room, group) {
                 let Some(anchor) = found.iter().find(|p| p.object == group.anchor) else { continue };
                 for p in found.iter().filter(|p| p.placement_id != anchor.placement_id && p.mount != Mount::Ceiling) {
-                    let mut rules = group.members.iter().filter(|m| m.object == p.object).map(|m| m.facing).peekable();
+                    let mut rules = group.members.iter().filter(|m| m.object == p.object).map(facing_of).peekable();
                     if rules.peek().is_none() {
                         continue;
                     }
@@ -79,6 +79,11 @@ pub fn facing(c: &Context, out: &mut Findings) {
             }
         }
     }
+}
+
+/// Returns how a member faces: what stands around something faces it whatever its line says.
+fn facing_of(member: &Member) -> FacingRule {
+    if member.relation == Relation::Around { FacingRule::Toward } else { member.facing }
 }
 
 /// Heading of each quarter turn.
@@ -105,7 +110,7 @@ pub fn back(c: &Context, out: &mut Findings) {
                 continue;
             }
             out.look();
-            if let Some(gap) = behind(object, room).filter(|gap| *gap > BACK_M) {
+            if let Some(gap) = behind(&rear(c, object), object.placement, room).filter(|gap| *gap > BACK_M) {
                 let message = format!("its back is {gap:.2} m from the wall");
                 out.add_figure(&object.placement.placement_id, message, gap, BACK_M, "m");
             }
@@ -132,12 +137,30 @@ fn belongs_to_wall(c: &Context, room: &Room, p: &Placement) -> bool {
     lines.peek().is_some() && lines.all(against)
 }
 
-/// Returns the distance from an object's back to the wall behind it, m; `None` without a wall behind.
-fn behind(object: &Object, room: &Room) -> Option<f64> {
-    let r = object.rect;
+/// Returns the outline of an anchor with what its group has behind it: a counter with its staff's side, a table with
+/// seats on both sides. Their back is the group's.
+fn rear(c: &Context, object: &Object) -> Rect {
+    let Some(group) = object.placement.group.as_deref() else { return object.rect };
+    let (dx, dy) = HEADINGS[usize::from(quarter(object.placement.pose.yaw_rad) % 4)];
+    let own = object.rect.center();
+    let members = c.objects_in(&object.placement.room_id).filter(|o| {
+        let center = o.rect.center();
+        let ahead = dx * (center.x - own.x) + dy * (center.y - own.y);
+        o.placement.group.as_deref() == Some(group) && o.placement.mount == Mount::Floor && ahead < 0.0
+    });
+    members.fold(object.rect, |r, o| Rect {
+        x0: r.x0.min(o.rect.x0),
+        y0: r.y0.min(o.rect.y0),
+        x1: r.x1.max(o.rect.x1),
+        y1: r.y1.max(o.rect.y1),
+    })
+}
+
+/// Returns the distance from the back of an outline to the wall behind it, m; very far without a wall behind.
+fn behind(r: &Rect, p: &Placement, room: &Room) -> Option<f64> {
     let gaps = room.plan.net_polygon.edges().filter_map(|e| {
         let w = bounds(&e);
-        let (across, gap) = match quarter(object.placement.pose.yaw_rad) {
+        let (across, gap) = match quarter(p.pose.yaw_rad) {
             0 => ((w.y0, w.y1, r.y0, r.y1, e.is_vertical()), r.x0 - w.x0),
             1 => ((w.x0, w.x1, r.x0, r.x1, !e.is_vertical()), r.y0 - w.y0),
             2 => ((w.y0, w.y1, r.y0, r.y1, e.is_vertical()), w.x0 - r.x1),
@@ -152,7 +175,9 @@ fn behind(object: &Object, room: &Room) -> Option<f64> {
 
 pub fn clearance(c: &Context, out: &mut Findings) {
     for room in &c.rooms {
-        let blocking: Vec<&Object> = c.objects_in(&room.plan.room_id).filter(|o| o.blocks).collect();
+        // what hangs flat on a wall takes nobody's floor
+        let blocks = |o: &&Object| o.blocks && !is_shallow(o.placement);
+        let blocking: Vec<&Object> = c.objects_in(&room.plan.room_id).filter(blocks).collect();
         for object in &blocking {
             let p = object.placement;
             let Some(kind) = object.kind.filter(|k| k.clearance_front_m > 0.0 && p.mount == Mount::Floor) else {

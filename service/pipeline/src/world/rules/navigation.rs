@@ -2,6 +2,7 @@
 
 use super::Findings;
 use crate::world::context::{Context, LEAST_RADIUS_M, Room};
+use d3dgen_knowledge::clearance::is_shallow;
 use d3dgen_model::TOLERANCE_M;
 
 /// Share of a room's free floor that must be reachable.
@@ -38,7 +39,7 @@ pub fn split(c: &Context, out: &mut Findings) {
 }
 
 /// Bare corridors keep what the domain and the building rules ask for; furnished ones what the domain asks for, and the
-/// width that the robots need to pass.
+/// width that the robots need to pass. What hangs flat on a wall narrows nothing.
 pub fn corridors(c: &Context, out: &mut Findings) {
     let domain = c.domain.circulation.width_m;
     let limit = c.retrieval.limits.corridor_width.as_ref();
@@ -66,5 +67,5 @@ pub fn corridors(c: &Context, out: &mut Findings) {
 }
 
 fn furniture<'s>(c: &'s Context, room: &'s Room) -> impl Iterator<Item = &'s crate::world::context::Object<'s>> {
-    c.objects_in(&room.plan.room_id)
+    c.objects_in(&room.plan.room_id).filter(|o| !is_shallow(o.placement))
 }
