@@ -11,12 +11,12 @@ use d3dgen_model::floorplan::Floorplan;
 use d3dgen_model::placements::Placements;
 use d3dgen_model::report::Report;
 use d3dgen_model::scenario::Scenario;
-use d3dgen_model::scene_graph::SceneGraph;
+use d3dgen_model::scene_graph::{Note, SceneGraph};
 use d3dgen_model::seed::Stream;
 use d3dgen_model::world::World;
 use d3dgen_plugins::{Plugin, Registry};
 
-use crate::scene_graph::Request;
+use crate::scene_graph::{BY_PROMPT, Request};
 use crate::{Error, floorplan, placement, scenario, scene_graph, world};
 
 /// How to make a world, beside the request itself.
@@ -124,6 +124,8 @@ pub fn generate_world(
 
 /// Makes and checks a world of a scene graph: all stages but the first.
 ///
+/// When no plan can join the rooms as the prompt asks, that becomes a wish, and a conflict of the world's scene graph.
+///
 /// # Errors
 /// As [`generate_world`]; `Mismatch` when the graph's domain is not registered.
 pub fn furnish_and_check(
@@ -137,6 +139,41 @@ pub fn furnish_and_check(
         stage: "floorplan",
         message: format!("the scene graph is of domain `{}`, which is not registered", graph.domain),
     })?;
+    match attempts(graph, plugin, settings, observe, cancelled) {
+        Err(error @ Error::Infeasible { .. }) => match relaxed(graph) {
+            Some(relaxed) => attempts(&relaxed, plugin, settings, observe, cancelled),
+            None => Err(error),
+        },
+        other => other,
+    }
+}
+
+/// Returns the graph with what the prompt wants beside each other as wishes, or `None` when there is nothing to relax.
+fn relaxed(graph: &SceneGraph) -> Option<SceneGraph> {
+    let mut out = graph.clone();
+    let reached = |room: &str| {
+        graph.edges.iter().any(|e| e.required && e.reason != BY_PROMPT && (e.a == room || e.b == room))
+    };
+    for edge in out.edges.iter_mut().filter(|e| e.required && e.reason == BY_PROMPT) {
+        if reached(&edge.a) && reached(&edge.b) {
+            edge.required = false;
+            let (a, b) = (&edge.a, &edge.b);
+            out.conflicts.push(Note {
+                code: "adjacency_not_built".into(),
+                message: format!("no plan was found with {a} and {b} joined as asked; it is a wish now"),
+            });
+        }
+    }
+    (out.conflicts.len() > graph.conflicts.len()).then_some(out)
+}
+
+fn attempts(
+    graph: &SceneGraph,
+    plugin: &dyn Plugin,
+    settings: &Settings,
+    observe: &mut dyn FnMut(Event<'_>),
+    cancelled: &AtomicBool,
+) -> Result<Generated, Error> {
     let retrieved = retrieve(graph, plugin);
     let name = settings.name.clone().unwrap_or_else(|| world_name(graph));
     let mut best: Option<Generated> = None;

@@ -3,6 +3,7 @@
 use d3dgen_model::domain::{Adjacency, AdjacencyRelation};
 use d3dgen_model::scene_graph::{Connector, GraphEdge, GraphRoom};
 
+use super::BY_PROMPT;
 use super::places::note;
 use super::program::Planned;
 use super::reading::Reading;
@@ -119,7 +120,7 @@ impl Web {
                     continue;
                 }
                 let connector = if many { Connector::Near } else { pair.connector };
-                self.put(rooms, (i, j), connector, connector != Connector::Near, "prompt");
+                self.put(rooms, (i, j), connector, connector != Connector::Near, BY_PROMPT);
             }
         }
     }

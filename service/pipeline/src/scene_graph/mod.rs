@@ -27,6 +27,9 @@ use d3dgen_plugins::Registry;
 
 use crate::Error;
 
+/// Reason of the edges that a prompt asks for.
+pub(crate) const BY_PROMPT: &str = "prompt";
+
 /// What to build: a prompt, and flags that overrule it.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Request {
