@@ -93,6 +93,14 @@ fn counted(
         return form(end, rooms_to_live(number.value, d));
     }
     // "2 bed flat", "2 bed 2 bath", "3BR": letters or the bare singular; "5 beds" stays with the people
+    // "4 beds, 3.5 baths" sleep in bedrooms
+    let baths = || {
+        let next = numbers.iter().find(|n| n.span.start > at && n.span.start <= at + 2);
+        next.is_some_and(|n| tokens.get(n.span.end).is_some_and(|t| d.bath_letters.contains(&t.text)))
+    };
+    if unit.text == "beds" && baths() {
+        return form(at + 1, BTreeMap::from([(d.bedroom.clone(), n)]));
+    }
     let short = d.bed_letters.contains(&unit.text) && (unit.text != "bed" || joined(at + 1)) && unit.text != "beds";
     if short && tokens.get(at + 1).is_none_or(|t| t.text != "room" && t.text != "rooms") {
         return form(at + 1, BTreeMap::from([(d.bedroom.clone(), n)]));
@@ -133,6 +141,7 @@ fn chinese(tokens: &[Token], i: usize, numbers: &[Number], d: &Dwelling) -> Opti
     let mut rooms: BTreeMap<String, i64> = BTreeMap::new();
     let mut end = i;
     let mut units = 0;
+    let mut sleeps = false;
     loop {
         let Some(number) = numbers.iter().find(|n| n.span.start == end && n.value >= 0.0) else { break };
         let at = number.span.end;
@@ -147,6 +156,8 @@ fn chinese(tokens: &[Token], i: usize, numbers: &[Number], d: &Dwelling) -> Opti
         }
         let Some((len, text, room)) = unit else { break };
         let n = number.value as i64;
+        // "三室的房子", but not "三房间"
+        sleeps = units == 0 && room == &d.bedroom && !tokens.get(at + len).is_some_and(|t| t.text == "间");
         if text == "厅" && n > 1 {
             *rooms.entry(d.living.clone()).or_default() += n - 1;
             *rooms.entry(d.dining.clone()).or_default() += 1;
@@ -159,5 +170,5 @@ fn chinese(tokens: &[Token], i: usize, numbers: &[Number], d: &Dwelling) -> Opti
             break;
         }
     }
-    (units >= 2).then(|| ShortForm { span: Span { start: i, end }, rooms })
+    (units >= 2 || sleeps).then(|| ShortForm { span: Span { start: i, end }, rooms })
 }

@@ -98,7 +98,11 @@ impl Vocabulary {
         };
         let total = |end: usize| spoken.iter().any(|s| s.tag_at(tokens, i, Tag::Total) == Some(end));
         let own_to = own.as_ref().map_or(0, |o| o.0);
-        let foreign = foreign.filter(|f| !(loose && inside(f.0) || adjective(own_to, f.0) || total(f.0)));
+        // "salón comedor" is a living room and a dining room where both are known
+        let two = |end: usize| {
+            own_to > i && self.own.iter().any(|p| p.longest_at(tokens, own_to).is_some_and(|o| o.0 >= end))
+        };
+        let foreign = foreign.filter(|f| !(loose && inside(f.0) || adjective(own_to, f.0) || total(f.0) || two(f.0)));
         let own_end = own.as_ref().map_or(0, |o| o.0);
         let from_own = foreign.as_ref().is_none_or(|f| f.0 <= own_end);
         let (end, ..) = if from_own { own? } else { foreign? };
@@ -265,6 +269,14 @@ fn noun_at(
     let generic = people.as_ref().is_some_and(|p| p.1 == What::Total);
     match (room, people) {
         (Some(room), Some(people)) if people.0 > room.0 => Some(people),
+        // "30 hot desks" are places to work, not 30 offices
+        (Some(room), Some(people))
+            if people.1 == What::Desks
+                && people.0 == room.0
+                && numbers.iter().any(|n| n.span.end == i && !n.article) =>
+        {
+            Some(people)
+        }
         (Some(room), _) => Some(room),
         (None, people) => {
             let unknown = if people.is_none() || generic {

@@ -3,7 +3,7 @@
 use d3dgen_model::scene_graph::Connector;
 
 use super::mentions::{Mention, What};
-use super::text::Token;
+use super::text::{Kind, Token};
 use super::words::{Spoken, Tag};
 
 /// How a pair is spread over the rooms of its types.
@@ -68,8 +68,31 @@ pub(super) fn read(tokens: &[Token], mentions: &[Mention], spoken: &[&Spoken], l
             None => i += 1,
         }
     }
+    at_entrance(&reader, &mut said);
     belongings(&reader, &mut said);
     said
+}
+
+/// Reads "입구에 카페", "入口处咖啡厅": in these languages the place stands before what is there.
+fn at_entrance(reader: &Reader, said: &mut Said) {
+    for (e, entrance) in reader.mentions.iter().enumerate() {
+        let wide = matches!(reader.tokens[entrance.span.start].kind, Kind::Han | Kind::Hangul);
+        let next = reader.mentions.get(e + 1).filter(|m| {
+            let gap = entrance.span.end..m.from.min(m.span.start);
+            m.room_type().is_some() && gap.len() <= 2 && !gap.into_iter().any(|i| reader.tokens[i].is_mark())
+        });
+        let known = said.relations.iter().any(|r| r.subject == e || r.object == e);
+        if entrance.what == What::Entrance && wide && next.is_some() && !known {
+            said.relations.push(Relation {
+                subject: e + 1,
+                object: e,
+                connector: Connector::Wall,
+                spread: Spread::Each,
+                apart: false,
+                belongs: false,
+            });
+        }
+    }
 }
 
 struct Reader<'a> {
@@ -127,6 +150,14 @@ impl Reader<'_> {
         out
     }
 
+    /// Returns true when a mention begins a statement of its own: "and the office is close to the entrance".
+    fn goes_on(&self, m: usize) -> bool {
+        let end = self.mentions[m].span.end;
+        (end..(end + 3).min(self.tokens.len()))
+            .take_while(|&i| !self.tokens[i].is_mark() && !self.tagged(i, Tag::Joins))
+            .any(|i| RELATIONS.iter().any(|&tag| self.tagged(i, tag)))
+    }
+
     fn is_group(&self, m: usize) -> bool {
         self.mentions[m].plural || self.mentions[m].count.is_some_and(|n| n > 1)
     }
@@ -169,6 +200,7 @@ impl Reader<'_> {
                 // "next to the kitchen and the dining room"
                 if let [second] = rest
                     && self.mentions[*second].definite
+                    && !self.goes_on(*second)
                 {
                     pairs.push((*s, *second));
                 }
@@ -223,11 +255,21 @@ fn belongings(reader: &Reader, said: &mut Said) {
         let has = |tag| between.clone().any(|i| reader.tagged(i, tag));
         // the words after the guest count too: "with a bathroom each"
         let tail = guest.span.end..(guest.span.end + 2).min(tokens.len());
-        let each =
-            has(Tag::Each) || tail.clone().take_while(|&i| !tokens[i].is_mark()).any(|i| reader.tagged(i, Tag::Each));
-        let starts = has(Tag::Starts);
+        // "each bedroom has its own bathroom", "각 객실에 욕실"
+        let each_host =
+            (host.span.start.saturating_sub(3)..host.span.start).rev().take_while(|&i| !tokens[i].is_mark()).any(|i| {
+                reader
+                    .spoken
+                    .iter()
+                    .any(|s| s.tag_at(tokens, i, Tag::Each).is_some_and(|end| end + 1 >= host.span.start))
+            });
+        let each = each_host
+            || has(Tag::Each)
+            || tail.clone().take_while(|&i| !tokens[i].is_mark()).any(|i| reader.tagged(i, Tag::Each));
+        let at_host = between.clone().all(|i| matches!(tokens[i].text.as_str(), "에" | "는" | "마" | "다" | "엔"));
+        let starts = has(Tag::Starts) || each_host && at_host;
         let comma = between.clone().any(|i| tokens[i].is_mark());
-        let many = host.count.is_some_and(|n| n > 1) || host.plural;
+        let many = host.count.is_some_and(|n| n > 1) || host.plural || each_host;
         let numbered = guest.count.is_some() && !guest.article;
         let joined = between.clone().any(|i| reader.tagged(i, Tag::Joins));
         let related = RELATIONS.iter().any(|&t| has(t));

@@ -50,6 +50,9 @@ impl Token {
 /// Longest prompt that is read; the rest is ignored with a note.
 pub(super) const MAX_TOKENS: usize = 4000;
 
+/// Words whose dot ends no sentence.
+const ABBREVIATIONS: [&str; 10] = ["sq", "approx", "ca", "env", "aprox", "incl", "inkl", "min", "max", "bzw"];
+
 /// Returns the tokens of a text, `MAX_TOKENS` at most.
 pub(super) fn tokens(text: &str) -> Vec<Token> {
     let chars: Vec<(usize, char)> = text.char_indices().map(|(i, c)| (i, plain(c))).collect();
@@ -92,6 +95,9 @@ pub(super) fn tokens(text: &str) -> Vec<Token> {
                 let end = at(&chars, j, text);
                 out.push(Token { text: ";".into(), kind: Kind::Mark(';'), start, end, spaced, capital: false });
             }
+        } else if c == '.' && out.last().is_some_and(|t| ABBREVIATIONS.contains(&t.text.as_str())) {
+            // "800 sq. ft." goes on after its first dot
+            spaced = true;
         } else if let Some(mark) = mark_of(&chars, i, spaced) {
             let end = at(&chars, j, text);
             out.push(Token { text: mark.to_string(), kind: Kind::Mark(mark), start, end, spaced, capital: false });

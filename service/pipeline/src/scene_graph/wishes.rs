@@ -229,6 +229,11 @@ fn is_reference(text: &Text, m: usize, first: bool) -> bool {
         text.mentions.iter().enumerate().any(|(o, other)| {
             o != m && same(other) && !text.said.objects.contains(&o) && !text.said.negated.contains(&o)
         });
+    // "3 bedrooms; each bedroom has a bathroom"
+    let host = mention.count.is_none() && !mention.plural && text.said.each.iter().any(|e| e.1 == m);
+    if host && others {
+        return true;
+    }
     let object = text.said.objects.contains(&m);
     if object && (others || !first) {
         return true;

@@ -167,9 +167,11 @@ pub(super) fn words() -> &'static Words {
 
 fn spoken(code: &str, words: Language) -> Spoken {
     let mut tags = Phrases::new("");
+    let robots = [Tag::Clean, Tag::Deliver, Tag::Serve, Tag::Transport];
     for (tag, phrases) in &words.phrases {
-        for phrase in phrases {
-            tags.put(phrase, vec![*tag], |old: &Vec<Tag>, new| {
+        let plurals = phrases.iter().filter(|_| code == "en" && robots.contains(tag)).map(|p| format!("{p}s"));
+        for phrase in phrases.iter().cloned().chain(plurals) {
+            tags.put(&phrase, vec![*tag], |old: &Vec<Tag>, new| {
                 if old.contains(&new[0]) { old.clone() } else { [old.clone(), new.clone()].concat() }
             });
         }
