@@ -33,6 +33,11 @@ impl Task<'_> {
         phase(self) >= 3
     }
 
+    /// Returns true for seats and what people sit at: a line of rows of them is an audience.
+    pub fn is_audience(&self) -> bool {
+        matches!(self.anchor.shape, Shape::Bench | Shape::Chair | Shape::Table | Shape::Desk | Shape::Sofa)
+    }
+
     /// Returns true when all units are found in one go.
     pub fn is_batch(&self) -> bool {
         matches!(self.arrangement, Arrangement::Rows | Arrangement::Overhead)
@@ -86,8 +91,7 @@ pub(super) fn tasks<'a>(
 
 /// Lets a screen or board face the rows of seats a room begins with, where no line says what faces them.
 fn turn_to_audience(tasks: &mut [Task]) {
-    let seats = |s: Shape| matches!(s, Shape::Bench | Shape::Chair | Shape::Table | Shape::Desk | Shape::Sofa);
-    let audience = tasks.iter().any(|t| t.line == 0 && t.arrangement == Arrangement::Rows && seats(t.anchor.shape));
+    let audience = tasks.iter().any(|t| t.line == 0 && t.arrangement == Arrangement::Rows && t.is_audience());
     if !audience || tasks.iter().any(|t| t.arrangement == Arrangement::Facing) {
         return;
     }
@@ -156,11 +160,12 @@ fn natural(object: &ObjectType) -> Arrangement {
 }
 
 fn phase(task: &Task) -> u8 {
-    use Arrangement::{AtWindow, Center, OnSurface, Overhead, Rows};
+    use Arrangement::{AtWindow, Center, Facing, OnSurface, Overhead, Rows};
     let last = matches!(task.arrangement, OnSurface | Overhead | AtWindow);
     match (task.required > 0, task.arrangement) {
         _ if last => 4,
-        (true, Rows | Center) => 1,
+        // what faces the first line comes after it
+        (true, Rows | Center | Facing) => 1,
         (true, _) => 0,
         (false, _) if takes_floor(task.anchor) => 2,
         (false, _) => 3,

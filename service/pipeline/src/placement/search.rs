@@ -6,7 +6,7 @@ use std::rc::Rc;
 use d3dgen_model::domain::{Arrangement, Domain, ObjectType, Shape};
 
 use super::demand::Task;
-use super::find::{Candidate, Find, Tally, over, rows};
+use super::find::{Candidate, Find, Tally, Terms, over, rows};
 use super::nav::Nav;
 use super::space::Space;
 use super::state::{Placed, Rule, State};
@@ -225,15 +225,50 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
         tally: &mut Tally,
     ) -> Option<(Vec<Placed<'a>>, f64)> {
         let task = Task { count, ..self.job.tasks[index].clone() };
-        let aisle = 2 * (self.job.radius + LEVELS[self.level].1) + 50;
-        let one_way = self.job.tasks.iter().any(|t| t.arrangement == Arrangement::Facing);
+        let terms = Terms {
+            salt: self.job.salt,
+            robot: self.aisle(),
+            one_way: self.job.tasks.iter().any(|t| t.arrangement == Arrangement::Facing),
+            stage: self.stage(&task),
+        };
+        let best = self.best_batch(state, &task, index, rank, &terms, tally);
+        if terms.stage > 0 && best.as_ref().is_none_or(|b| (b.0.len() as u32) < task.required.max(1)) {
+            return self.best_batch(state, &task, index, rank, &Terms { stage: 0, ..terms }, tally);
+        }
+        best
+    }
+
+    /// Returns the floor to leave before the rows a room begins with, for what faces them, mm.
+    fn stage(&self, task: &Task) -> i32 {
+        if task.line > 0 || task.arrangement != Arrangement::Rows || !task.is_audience() {
+            return 0;
+        }
+        let facing = self.job.tasks.iter().zip(&self.forms).filter(|(t, _)| t.arrangement == Arrangement::Facing);
+        let depths = facing.filter_map(|(_, forms)| forms.first()?.first()).map(|u| u.as_looking(&u.reach).width());
+        depths.max().map_or(0, |depth| depth + self.aisle())
+    }
+
+    /// Returns the narrowest gap a robot passes, mm.
+    fn aisle(&self) -> i32 {
+        2 * (self.job.radius + LEVELS[self.level].1) + 50
+    }
+
+    fn best_batch(
+        &self,
+        state: &State<'a, 's>,
+        task: &Task,
+        index: usize,
+        rank: usize,
+        terms: &Terms,
+        tally: &mut Tally,
+    ) -> Option<(Vec<Placed<'a>>, f64)> {
         let mut best: Option<(Vec<Placed>, f64)> = None;
         for forms in &self.forms[index] {
             let unit = &forms[0];
             let batches = if task.arrangement == Arrangement::Overhead {
-                over(state, &task, index, unit, tally)
+                over(state, task, index, unit, tally)
             } else {
-                rows(state, &task, index, unit, self.job.salt, aisle, one_way, tally)
+                rows(state, task, index, unit, terms, tally)
             };
             for batch in batches.into_iter().skip(rank) {
                 let mut kept: Vec<Placed> = Vec::new();
@@ -244,7 +279,7 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
                     best = Some((kept, score));
                 }
             }
-            if best.as_ref().is_some_and(|b| b.0.len() as u32 >= count) {
+            if best.as_ref().is_some_and(|b| b.0.len() as u32 >= task.count) {
                 break;
             }
         }
@@ -252,8 +287,7 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
     }
 
     fn single(&self, state: &State<'a, 's>, index: usize, rank: usize, tally: &mut Tally) -> Option<(Placed<'a>, f64)> {
-        let task = &self.job.tasks[index];
-        let aisle = 2 * (self.job.radius + LEVELS[self.level].1) + 50;
+        let (task, aisle) = (&self.job.tasks[index], self.aisle());
         for forms in &self.forms[index] {
             let mut candidates: Vec<Candidate> = Vec::new();
             for unit in forms {

@@ -89,6 +89,22 @@ impl<'a> Unit<'a> {
         finish_with(self.item, self.group, parts, self.clears)
     }
 
+    /// Returns where its users look, in quarter turns against the anchor's front: pupils at their tables look over the
+    /// table, someone on a sofa looks ahead with it.
+    pub fn look(&self) -> u8 {
+        if !matches!(self.anchor().object.shape, Shape::Desk | Shape::Table) {
+            return 0;
+        }
+        let mut seats = self.parts.iter().filter(|p| is_seat(p.object.shape)).map(|p| p.quarter);
+        let Some(first) = seats.next() else { return 0 };
+        if seats.all(|q| q == first) { first } else { 0 }
+    }
+
+    /// Returns a rectangle of the unit in the frame in which its users look along x.
+    pub fn as_looking(&self, local: &Box2) -> Box2 {
+        local.turned((4 - self.look()) % 4)
+    }
+
     /// Returns the unit without the optional things on its top that are in the way; `None` when none is.
     pub fn cleared(&self, in_the_way: impl Fn(&Part) -> bool) -> Option<Self> {
         let gone = |p: &Part| p.optional && p.mount == Mount::Surface && in_the_way(p);
@@ -109,10 +125,12 @@ impl<'a> Unit<'a> {
 
     /// Returns how many people can sit on the unit's chairs.
     pub fn seats(&self) -> u32 {
-        let seat =
-            |p: &&Part| matches!(p.object.shape, Shape::Chair | Shape::SwivelChair | Shape::Stool | Shape::Bench);
-        self.parts.iter().filter(seat).map(|p| (width_of(p) as u32 / 450).max(1)).sum()
+        self.parts.iter().filter(|p| is_seat(p.object.shape)).map(|p| (width_of(p) as u32 / 450).max(1)).sum()
     }
+}
+
+fn is_seat(shape: Shape) -> bool {
+    matches!(shape, Shape::Chair | Shape::SwivelChair | Shape::Stool | Shape::Bench)
 }
 
 fn width_of(part: &Part) -> i32 {

@@ -6,11 +6,13 @@ use d3dgen_model::domain::Mount;
 
 use super::{Find, Rule};
 use crate::placement::geom::turn;
-use crate::placement::state::at_frame;
+use crate::placement::state::{Placed, at_frame};
 use crate::placement::unit::Unit;
 
 /// Grain of free-standing positions, mm.
 const STEP: i32 = 250;
+/// Positions along a wall to either side of the axis, 0.1 m apart.
+const SIDEWAYS: i32 = 80;
 /// Floor a person needs behind a free-standing counter, mm.
 const BEHIND: i32 = 900;
 
@@ -18,22 +20,32 @@ impl<'a> Find<'_, 'a, '_> {
     /// Offers positions opposite the first item, facing it: on the wall across first, then free-standing.
     pub(super) fn facing(&mut self, unit: &Rc<Unit<'a>>) {
         let Some((target_q, target)) = self.focus() else { return self.along_walls(unit) };
+        // all in the frame of the one that faces the target: its users look along x
         let q = (target_q + 2) % 4;
+        let look = unit.look();
         let (_, axis) = turn((4 - q) % 4, target.center().0, target.center().1);
-        let (b, middle) = (unit.bbox, (unit.bbox.y0 + unit.bbox.y1) / 2);
+        let (b, r) = (unit.as_looking(&unit.bbox), unit.as_looking(&unit.reach));
+        let middle = (b.y0 + b.y1) / 2;
+        let own = (q + 4 - look) % 4;
+        let at = |u: i32, v: i32, task: usize| Placed { at: turn(q, u, v), ..at_frame(unit, own, 0, 0, task) };
+        // whoever sits before the wall needs room for the chair
+        let back = if look == 0 { b.x0 } else { r.x0.min(b.x0) };
         for i in 0..self.state.space.walls.len() {
             let wall = &self.state.space.walls[i];
             if wall.q != q || wall.length() < b.height() {
                 continue;
             }
             let most = (wall.length() - b.height()) / 2;
-            for k in 0..=20 {
+            for k in 0..=SIDEWAYS {
                 let side = if k % 2 == 0 { k / 2 } else { -(k + 1) / 2 } * 100;
-                let v = (axis - middle + side).clamp(wall.v0 - b.y0, wall.v1 - b.y1);
+                let (low, high) = (wall.v0 - b.y0, wall.v1 - b.y1);
+                let v = (axis - middle + side).clamp(low, high);
                 if side.abs() <= most + 100 {
-                    let placed = at_frame(unit, q, wall.u - b.x0, v, self.index);
+                    let placed = at(wall.u - back, v, self.index);
                     let off = f64::from((v + middle - axis).abs()) / 1000.0;
-                    self.offer(placed, i as u32, |_, _| 3.0 - 2.0 * off);
+                    // a speaker's desk leaves the middle to the board
+                    let aside = f64::from((v - low).min(high - v)) / 1000.0;
+                    self.offer(placed, i as u32, |_, _| if look == 0 { 3.0 - 2.0 * off } else { 3.0 - aside });
                 }
             }
         }
@@ -41,10 +53,10 @@ impl<'a> Find<'_, 'a, '_> {
             let wide = self.state.space.bounds.turned((4 - q) % 4);
             let t = target.turned((4 - q) % 4);
             // in front of the target means at smaller u in the frame of the one that faces it
-            let mut u = t.x0 - unit.reach.x1;
+            let mut u = t.x0 - r.x1;
             while u + b.x0 > wide.x0 {
                 for side in [0, -STEP, STEP, -2 * STEP, 2 * STEP] {
-                    let placed = at_frame(unit, q, u, axis - middle + side, self.index);
+                    let placed = at(u, axis - middle + side, self.index);
                     let far = f64::from(t.x0 - u) / 1000.0;
                     let off = f64::from(side.abs()) / 1000.0;
                     self.offer(placed, 90, |_, _| 1.5 - 2.0 * off - 0.3 * (far - 1.8).abs());

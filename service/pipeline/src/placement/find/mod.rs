@@ -10,7 +10,7 @@ use std::rc::Rc;
 
 use d3dgen_model::domain::{Arrangement, Mount};
 
-pub(super) use rows::{over, rows};
+pub(super) use rows::{Terms, over, rows};
 
 use super::demand::Task;
 use super::geom::Box2;
@@ -107,7 +107,7 @@ impl<'f, 'a, 's> Find<'f, 'a, 's> {
         self.state.placed.iter().filter(|p| p.unit.item == self.task.item)
     }
 
-    /// Returns what the room turns to: the first furnishing line's units, or whatever was placed first.
+    /// Returns what the room turns to, with where its users look: the first furnishing line's units, or whatever was placed first.
     fn focus(&self) -> Option<(u8, Box2)> {
         let other = || self.state.placed.iter().filter(|p| p.unit.item != self.task.item);
         let first = other().find(|p| p.first_line).or_else(|| other().next())?;
@@ -115,6 +115,6 @@ impl<'f, 'a, 's> Find<'f, 'a, 's> {
             .filter(|p| p.task == first.task && p.q == first.q)
             .map(|p| p.world(&p.unit.bbox))
             .reduce(|a, b| a.union(&b))?;
-        Some((first.q, rect))
+        Some(((first.q + first.unit.look()) % 4, rect))
     }
 }

@@ -54,6 +54,16 @@ impl Plan {
         self.rows * d + gaps * self.gap_u
     }
 
+    /// Returns the floor to keep before and after the rows, mm: to use them, and for what they look at.
+    fn margins(&self, unit: &Unit, front: i32, stage: i32) -> (i32, i32) {
+        let back = if self.paired { front } else { 0 };
+        match unit.look() {
+            0 => (back, front.max(stage)),
+            2 => (back.max(stage), front),
+            _ => (back, front),
+        }
+    }
+
     /// Returns the low edge of a column, counted from the first.
     fn column(&self, c: i32, w: i32, aisle: i32) -> i32 {
         let aisles = c / self.run;
@@ -66,23 +76,31 @@ impl Plan {
     }
 }
 
+/// What rows have to do with the rest of the room.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::placement) struct Terms {
+    pub salt: u64,
+    /// Narrowest aisle, mm.
+    pub robot: i32,
+    /// Keeps seats from standing back to back, for something will face them.
+    pub one_way: bool,
+    /// Floor before the rows for whatever faces them, mm.
+    pub stage: i32,
+}
+
 /// Returns ways to set up a task's units in rows, best first; each position holds, routes not looked at.
-///
-/// `robot` is the narrowest aisle, mm; `one_way` keeps seats from standing back to back, for something will face them.
 pub(in crate::placement) fn rows<'a>(
     state: &State<'a, '_>,
     task: &Task,
     index: usize,
     unit: &Rc<Unit<'a>>,
-    salt: u64,
-    robot: i32,
-    one_way: bool,
+    terms: &Terms,
     tally: &mut Tally,
 ) -> Vec<Batch<'a>> {
-    let aisle = robot.max(AISLE);
+    let aisle = terms.robot.max(AISLE);
     let count = task.count as i32;
     let focus = state.placed.iter().find(|p| p.first_line && p.unit.item != task.item).map(|p| p.q);
-    let mut plans = plans(state, unit, count, robot, focus, one_way);
+    let mut plans = plans(state, unit, count, focus, terms);
     plans.sort_by(|a, b| b.score.total_cmp(&a.score));
     plans.truncate((PLANS * 10 / task.count.max(10) as usize).max(3));
     let mut out: Vec<Batch> = Vec::new();
@@ -90,22 +108,34 @@ pub(in crate::placement) fn rows<'a>(
         let wide = state.space.bounds.turned((4 - plan.q) % 4);
         let (d, w) = (unit.bbox.width(), unit.bbox.height());
         let (spare_u, spare_v) = (wide.width() - plan.depth(d), wide.height() - plan.breadth(w, aisle));
-        let (front, back) = (unit.reach.x1 - unit.bbox.x1, if plan.paired { unit.reach.x1 - unit.bbox.x1 } else { 0 });
+        let front = unit.reach.x1 - unit.bbox.x1;
+        let (back, front) = plan.margins(unit, front, terms.stage);
         for (ku, u0) in [(spare_u + back - front).max(0) / 2, back.min(spare_u), (spare_u - front).max(0), aisle]
             .into_iter()
             .enumerate()
         {
+            if terms.stage > 0 && (u0 < back || u0 > spare_u - front) {
+                continue;
+            }
             for (kv, v0) in [spare_v / 2, 0, spare_v, aisle, spare_v - aisle].into_iter().enumerate() {
                 if u0 > spare_u || v0 > spare_v || v0 < 0 {
                     continue;
                 }
-                let placed = set_up(state, plan, unit, (wide.x0 + u0, wide.y0 + v0), aisle, index, count, tally);
+                let mut placed = set_up(state, plan, unit, (wide.x0 + u0, wide.y0 + v0), aisle, index, count, tally);
+                if terms.stage > 0 {
+                    // the row that makes up for others must not stand on the stage
+                    placed.retain(|p| {
+                        let r = p.world(&unit.bbox).turned((4 - plan.q) % 4);
+                        r.x0 >= wide.x0 + back && r.x1 <= wide.x1 - front
+                    });
+                }
                 if placed.is_empty() {
                     continue;
                 }
                 let share = placed.len() as f64 / f64::from(count.max(1));
                 let tidy = [0.5, 0.3, 0.1, 0.1][ku] + [0.5, 0.25, 0.25, 0.1, 0.1][kv];
-                let noise = 0.5 * grain(salt, i64::from(plan.q) * 64 + i64::from(plan.columns), (ku * 8 + kv) as i64);
+                let noise =
+                    0.5 * grain(terms.salt, i64::from(plan.q) * 64 + i64::from(plan.columns), (ku * 8 + kv) as i64);
                 out.push(Batch { placed, score: plan.score + 8.0 * (share - 1.0) + tidy + noise });
             }
         }
@@ -115,14 +145,15 @@ pub(in crate::placement) fn rows<'a>(
     out
 }
 
-fn plans(state: &State, unit: &Unit, count: i32, robot: i32, focus: Option<u8>, one_way: bool) -> Vec<Plan> {
+fn plans(state: &State, unit: &Unit, count: i32, focus: Option<u8>, terms: &Terms) -> Vec<Plan> {
+    let (robot, look) = (terms.robot, unit.look());
     let aisle = robot.max(AISLE);
     let (b, r) = (unit.bbox, unit.reach);
     let (d, w) = (b.width(), b.height());
     let (front, back) = (r.x1 - b.x1, b.x0 - r.x0);
     let side = (b.y0 - r.y0).max(r.y1 - b.y1);
     let shape = unit.anchor().object.shape;
-    let pairs = matches!(shape, Shape::Desk | Shape::Rack | Shape::Shelf) || shape == Shape::Bench && !one_way;
+    let pairs = matches!(shape, Shape::Desk | Shape::Rack | Shape::Shelf) || shape == Shape::Bench && !terms.one_way;
     // tables stand apart where there is room
     let apart = if matches!(shape, Shape::Table | Shape::RoundTable) { TABLES_APART.max(side) } else { side };
     let mut sides = vec![apart, side];
@@ -133,9 +164,10 @@ fn plans(state: &State, unit: &Unit, count: i32, robot: i32, focus: Option<u8>, 
     let mut out = Vec::new();
     for q in 0..4_u8 {
         let wide = state.space.bounds.turned((4 - q) % 4);
-        let turned = focus.map_or(0.0, |f| if q == (f + 2) % 4 { 1.5 } else { 0.0 });
+        let turned = focus.map_or(0.0, |f| if (q + look) % 4 == (f + 2) % 4 { 1.5 } else { 0.0 });
+        let stage = if terms.stage > 0 { stage_score(state, (q + look + 2) % 4) } else { 0.0 };
         for paired in [false, true] {
-            if paired && (!pairs || focus.is_some() || count < 2 || back > 0) {
+            if paired && (!pairs || focus.is_some() || count < 2 || back > 0 || terms.stage > 0) {
                 continue;
             }
             for (&gap_u, &gap_v) in gaps.iter().flat_map(|u| sides.iter().map(move |v| (u, v))) {
@@ -149,10 +181,11 @@ fn plans(state: &State, unit: &Unit, count: i32, robot: i32, focus: Option<u8>, 
                         if run < i32::MAX && columns <= run {
                             continue; // no cross aisle: the same as one long run
                         }
-                        while plan.rows > 1 && plan.depth(d) + front + if paired { front } else { 0 } > wide.width() {
+                        let (low, high) = plan.margins(unit, front, terms.stage);
+                        while plan.rows > 1 && plan.depth(d) + low + high > wide.width() {
                             plan.rows -= 1;
                         }
-                        plan.score = turned + rate(&plan, rows, count, (d, w), &wide, aisle);
+                        plan.score = turned + stage + rate(&plan, rows, count, (d, w), &wide, aisle);
                         out.push(plan);
                     }
                 }
@@ -160,6 +193,15 @@ fn plans(state: &State, unit: &Unit, count: i32, robot: i32, focus: Option<u8>, 
         }
     }
     out
+}
+
+/// Rates the walls with this heading as what rows of seats look at: solid, and not where people come in.
+fn stage_score(state: &State, q: u8) -> f64 {
+    let walls = || state.space.walls.iter().enumerate().filter(|(_, w)| w.q == q);
+    let length: i32 = walls().map(|(_, w)| w.length()).sum();
+    let windows: i32 = walls().flat_map(|(i, _)| state.space.windows_of(i)).map(|w| w.v1 - w.v0).sum();
+    let doors = walls().map(|(i, _)| state.space.doors.iter().filter(|d| d.wall == i).count()).sum::<usize>();
+    -4.0 * f64::from(windows) / f64::from(length.max(1)) - 0.8 * doors as f64
 }
 
 fn rate(plan: &Plan, wished: i32, count: i32, (d, w): (i32, i32), wide: &Box2, aisle: i32) -> f64 {
