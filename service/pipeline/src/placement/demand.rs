@@ -50,6 +50,7 @@ pub(super) fn tasks<'a>(
     kind: &'a RoomType,
     graph: Option<&'a GraphRoom>,
     area_m2: f64,
+    windows: u32,
 ) -> Vec<Task<'a>> {
     let occupied = occupied_line(domain, kind, graph);
     let mut out: Vec<Task> = Vec::new();
@@ -61,6 +62,10 @@ pub(super) fn tasks<'a>(
         {
             count = units.max(f.min);
             required = required.min(count);
+        }
+        if f.arrangement == Arrangement::AtWindow {
+            count = count.min(windows);
+            required = required.min(windows);
         }
         if count == 0 {
             continue;

@@ -78,7 +78,7 @@ fn furnish_room(
 ) -> Result<(Vec<Placement>, Vec<Unplaced>), Vec<String>> {
     let space = Space::new(plan, room);
     let kind = domain.room_type_or_generic(&room.room_type);
-    let tasks = demand::tasks(domain, kind, graph.room(&room.room_id), room.net_area_m2);
+    let tasks = demand::tasks(domain, kind, graph.room(&room.room_id), room.net_area_m2, space.windows.len() as u32);
     let fixed = locked::of_room(pinned, &room.room_id);
     let (units, problems) = locked::placed(&fixed, domain, &space);
     if !problems.is_empty() {

@@ -15,6 +15,9 @@ use crate::placement::unit::Unit;
 const AISLE: i32 = 900;
 /// Free floor between tables in a row where there is room, mm.
 const TABLES_APART: i32 = 500;
+/// Steps away from a place on the ceiling that is taken, mm.
+const BESIDE: [(i32, i32); 9] =
+    [(0, 0), (500, 0), (-500, 0), (0, 500), (0, -500), (900, 0), (-900, 0), (0, 900), (0, -900)];
 /// Row plans whose every position is tested.
 const PLANS: usize = 20;
 /// Arrangements handed to the search.
@@ -292,8 +295,17 @@ pub(in crate::placement) fn over<'a>(
         let (du, dv) = turn(q, bx, by);
         let (u, v) = turn(4 - q, x - du, y - dv);
         let p = at_frame(unit, q, u, v, index);
-        match state.test(&p, false).and_then(|()| apart(&placed, &p)) {
-            Ok(()) => placed.push(p),
+        // beside its place in line where a lamp or a hood hangs already
+        let mut tested = Err(Rule::Collision);
+        for (du, dv) in BESIDE {
+            let moved = Placed { at: (p.at.0 + du, p.at.1 + dv), ..p.clone() };
+            tested = state.test(&moved, false).and_then(|()| apart(&placed, &moved)).map(|()| moved);
+            if tested.is_ok() {
+                break;
+            }
+        }
+        match tested {
+            Ok(p) => placed.push(p),
             Err(rule) => tally[rule as usize] += 1,
         }
     }
