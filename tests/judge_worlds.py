@@ -2,8 +2,9 @@
 """Makes worlds with the release binary and has every one judged from outside.
 
 The full run makes 290 worlds: residential, office and hospital with 5, 8 and 10 rooms and 30 seeds each, school and
-warehouse with 10 seeds each. `--sample` makes the same kinds with fewer seeds. Judges: tests/referee/check_world.py, and
-the referee of ../shared where that folder exists. Exit status 0 when no judge finds anything.
+warehouse with 10 seeds each. `--sample` makes the same kinds with fewer seeds. Judges: tests/referee/check_world.py, the
+referee of ../shared where that folder exists, and `contents` below: required objects, areas within the domain's ranges,
+rooms that must or must not adjoin. Exit status 0 when no judge finds anything and every world asked for was made.
 
 Needs the packages of tests/requirements.txt; without them it makes .venv in the checkout and starts again in it.
 """
@@ -32,6 +33,9 @@ CASES = [  # domain, rooms (None: as the prompt says), prompt
     ("warehouse", None, "warehouse with a delivery robot"),
 ]
 CORE = {"residential", "office", "hospital"}
+AREAS_IN_RANGE = 0.98  # least share of rooms with an area in the range of their type
+THINGS_A_ROOM = 5.0  # least average
+COLUMNS = "{:<12} {:>5} {:>6} {:>6} {:>7} {:>6} {:>8} {:>9} {:>9} {:>9} {:>9}"
 
 
 def in_venv():
@@ -56,25 +60,72 @@ def load(name, path):
     return module
 
 
+@functools.cache
+def domain_of(binary, name):
+    """Returns the domain with its lists as tables by id."""
+    shown = subprocess.run([binary, "domains", "show", name, "--json"], check=True, capture_output=True, text=True)
+    domain = json.loads(shown.stdout)
+    tables = {key: {item["id"]: item for item in domain[key]} for key in ("room_types", "groups")}
+    return tables | {"adjacency": domain["adjacency"]}
+
+
+def contents(folder, domain):
+    """Returns what a world lacks of its domain's demands, its rooms, and how many have an area in their type's range."""
+    graph, plan, placed = (
+        json.loads((folder / f"{name}.json").read_text()) for name in ("scene_graph", "floorplan", "placements")
+    )
+    found = []
+    rooms = [r for r in plan["rooms"] if not r["circulation"]]
+    in_range = 0
+    for room in rooms:
+        kind = domain["room_types"].get(room["room_type"], domain["room_types"]["room"])
+        area = kind["area_m2"]
+        in_range += area["min"] - 0.01 <= room["net_area_m2"] <= area["max"] + 0.01
+        here = Counter(p["object"] for p in placed["placements"] if p["room_id"] == room["room_id"])
+        for line in kind["furnishing"]:
+            if line.get("required"):
+                group = domain["groups"].get(line["item"])
+                anchor = group["anchor"] if group else line["item"]
+                members = [m["object"] for m in group["members"] if m.get("required")] if group else []
+                if here[anchor] < line["min"] or any(not here[m] for m in members):
+                    found.append(f"object_missing: {room['room_id']} without {line['item']}")
+    kinds = {r["room_id"]: r["room_type"] for r in plan["rooms"]}
+    links = {frozenset(d["room_ids"]) for d in plan["doors"] if len(d["room_ids"]) == 2}
+    links |= {frozenset((e["a"], e["b"])) for e in graph["edges"] if e["connector"] == "open" and e.get("required", True)}
+    for rule in domain["adjacency"]:
+        if rule.get("via") not in ("door", "open") or (places := rule.get("jurisdictions")) and graph["country_code"] not in places:
+            continue
+        ours, others = ([i for i, kind in kinds.items() if kind == rule[side]] for side in "ab")
+        for room in ours:
+            joined = any(frozenset((room, other)) in links for other in others)
+            if rule["relation"] == "must" and others and not joined:
+                found.append(f"adjacency_missing: {room} to {rule['b']}")
+            if rule["relation"] == "must_not" and joined:
+                found.append(f"adjacency_forbidden: {room} to {rule['b']}")
+    return found, len(rooms), in_range
+
+
 def judge(task):
     """Returns what each judge finds in one world, and its figures."""
-    folder, binary = task
+    folder, binary, name = task
     graph = json.loads(subprocess.run(
         [binary, "scene-graph", "--from", folder / "scene_graph.json", "--simple"], check=True, capture_output=True, text=True,
     ).stdout)
-    found, figures = [], {}
+    found, rooms, in_range = contents(folder, domain_of(binary, name))
+    found = [f"contents: {line}" for line in found]
+    figures = {"rooms": rooms, "in_range": in_range}
     (file,) = folder.rglob("world.yaml")
     judges = [("own", ROOT / "tests" / "referee" / "check_world.py")]
     judges += [("shared", SHARED_REFEREE)] if SHARED_REFEREE.exists() else []
-    for name, path in judges:
-        broken, seen = load(f"{name}_referee", path).judge(file, graph)
-        found += [f"{name}: {b['rule']}: {b['subject']}" for b in broken]
-        figures = figures or seen
+    for label, path in judges:
+        broken, seen = load(f"{label}_referee", path).judge(file, graph)
+        found += [f"{label}: {b['rule']}: {b['subject']}" for b in broken]
+        figures = seen | figures
     return folder, found, figures
 
 
 def make(binary, out, domain, rooms, prompt, seeds):
-    """Returns the folders of the worlds made, and how many of `seeds` were not."""
+    """Returns the sound worlds made, and how many of `seeds` were not."""
     command = [binary, "generate", prompt, "--domain", domain, "--count", str(seeds), "--seed", "0", "--json", "--no-png"]
     command += ["--out", out] + (["--rooms", str(rooms)] if rooms else [])
     if seeds == 1:
@@ -87,6 +138,20 @@ def make(binary, out, domain, rooms, prompt, seeds):
     return sound, seeds - len(sound)
 
 
+def row(domain, rooms, seeds, worlds, verdicts):
+    """Returns the line of one case."""
+    count = max(1, len(worlds))
+    figures = [f for _, _, f in verdicts]
+    things, zones, of_rooms, in_range = (sum(f[k] for f in figures) for k in ("things", "zones", "rooms", "in_range"))
+    middle = sorted(sum(w["stage_ms"].values()) for w in worlds)[len(worlds) // 2] if worlds else 0
+    satisfied, violated = (sum(w["constraints"][k] for w in worlds) / count for k in ("satisfied", "violated"))
+    return COLUMNS.format(
+        domain, rooms or "", seeds, sum(not found for _, found, _ in verdicts), f"{things / count:.0f}",
+        f"{things / max(1, zones):.1f}", f"{100 * in_range / max(1, of_rooms):.1f} %",
+        f"{sum(w['area_m2'] for w in worlds) / count:.0f}", f"{middle:.0f}", f"{satisfied:.1f}", f"{violated:.1f}",
+    )
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--sample", action="store_true", help="4 seeds a case (2 of the custom ones) instead of 30 and 10")
@@ -96,11 +161,11 @@ def main():
     in_venv()
     if not args.binary.exists():
         sys.exit(f"{args.binary} is missing; build it: cargo build --release")
-    print("judges: tests/referee/check_world.py" + (", ../shared/referee" if SHARED_REFEREE.exists() else
+    print("judges: tests/referee/check_world.py, contents" + (", ../shared/referee" if SHARED_REFEREE.exists() else
           " (there is no ../shared/referee beside this checkout)"))
-    row = "{:<12} {:>5} {:>6} {:>6} {:>7} {:>9} {:>8} {:>10} {:>9} {:>9}"
-    print(row.format("domain", "rooms", "worlds", "clean", "things", "per room", "m2", "ms median", "satisfied", "violated"))
-    total, clean, causes = 0, 0, Counter()
+    header = ("domain", "rooms", "worlds", "clean", "things", "a room", "in range", "area m2", "median ms", "satisfied", "violated")
+    print(COLUMNS.format(*header))
+    total, clean, causes, sums = 0, 0, Counter(), Counter()
     begun = time.monotonic()
     with tempfile.TemporaryDirectory() as scratch, ProcessPoolExecutor() as pool:
         base = args.out or Path(scratch)
@@ -108,26 +173,20 @@ def main():
             seeds = (4 if args.sample else 30) if domain in CORE else (2 if args.sample else 10)
             worlds, missing = make(args.binary, base / f"{domain}_{rooms or 'default'}", domain, rooms, prompt, seeds)
             causes["not made"] += missing
-            verdicts = list(pool.map(judge, [(Path(w["path"]), args.binary) for w in worlds]))
-            for folder, found, _ in verdicts:
+            verdicts = list(pool.map(judge, [(Path(w["path"]), args.binary, domain) for w in worlds]))
+            for folder, found, figures in verdicts:
                 causes.update(f"{domain}: {': '.join(f.split(': ')[:2])}" for f in found)
+                sums.update({key: figures[key] for key in ("rooms", "in_range", "things", "zones")})
                 for line in found[:5]:
                     print(f"  {folder.relative_to(base)}: {line}")
-            for world in worlds:
-                if rooms and world["rooms"] != rooms:
-                    causes["wrong number of rooms"] += 1
+            causes["wrong number of rooms"] += sum(w["rooms"] != rooms for w in worlds if rooms)
             total += seeds
-            good = sum(not found for _, found, _ in verdicts)
-            clean += good
-            count = max(1, len(worlds))
-            middle = sorted(sum(w["stage_ms"].values()) for w in worlds)[len(worlds) // 2] if worlds else 0
-            things = sum(f["things"] for _, _, f in verdicts)
-            zones = max(1, sum(f["zones"] for _, _, f in verdicts))
-            constraints = [sum(w["constraints"][k] for w in worlds) / count for k in ("satisfied", "violated")]
-            print(row.format(
-                domain, rooms or "", seeds, good, f"{things / count:.0f}", f"{things / zones:.1f}",
-                f"{sum(w['area_m2'] for w in worlds) / count:.0f}", f"{middle:.0f}", *(f"{c:.1f}" for c in constraints),
-            ), flush=True)
+            clean += sum(not found for _, found, _ in verdicts)
+            print(row(domain, rooms, seeds, worlds, verdicts), flush=True)
+    share, average = sums["in_range"] / max(1, sums["rooms"]), sums["things"] / max(1, sums["zones"])
+    print(f"{100 * share:.1f} % of {sums['rooms']} rooms have an area in the range of their type, {average:.1f} things a room")
+    causes["too few areas in range"] += share < AREAS_IN_RANGE
+    causes["too few things a room"] += average < THINGS_A_ROOM
     for cause, count in causes.most_common():
         if count:
             print(f"  {count:>5}  {cause}")

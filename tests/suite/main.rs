@@ -5,6 +5,8 @@ mod documents;
 mod domain_guide;
 mod errors;
 mod goldens;
+#[cfg(unix)]
+mod interrupted;
 mod pins;
 mod same_bytes;
 mod schemas;

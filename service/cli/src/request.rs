@@ -19,13 +19,13 @@ pub struct RequestArgs {
     #[arg(long, value_name = "COUNTRY")]
     pub country: Option<String>,
     /// Number of rooms, corridors not counted
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub rooms: Option<u32>,
     /// Floor area in m2
-    #[arg(long, value_name = "M2")]
+    #[arg(long, value_name = "M2", allow_negative_numbers = true)]
     pub area: Option<f64>,
     /// Radius in m of the largest robot
-    #[arg(long, value_name = "M")]
+    #[arg(long, value_name = "M", allow_negative_numbers = true)]
     pub robot_radius: Option<f64>,
 }
 
