@@ -62,7 +62,7 @@ impl Summary {
             robots: world.scenario.robots.len(),
             people: world.scenario.agents.len(),
             constraints: report.summary.clone(),
-            violated: report.constraints.iter().filter(|c| c.status == Status::Violated).map(violated_line).collect(),
+            violated: violated_lines(report),
             broken: broken_lines(report),
             assumptions: graph.assumptions.clone(),
             conflicts: graph.conflicts.iter().chain(&world.floorplan.conflicts).cloned().collect(),
@@ -102,12 +102,16 @@ impl Summary {
         let building = [Some(self.domain.as_str()), building_type, self.country_code.as_deref()];
         let stages: Vec<String> = self.times.iter().map(|(stage, t)| format!("{stage} {:.0}", ms(*t))).collect();
         let again = if self.attempts > 1 { format!(", in {} attempts", self.attempts) } else { String::new() };
+        let circulation =
+            if self.circulation > 0 { format!(" + {} for circulation", self.circulation) } else { String::new() };
+        let rules =
+            if self.broken.is_empty() { "all hold".into() } else { format!("broken {} times", self.broken.len()) };
         let rows = [
             ("building", building.into_iter().flatten().collect::<Vec<_>>().join(", ")),
-            ("rooms", format!("{} + {} for circulation, {:.1} m2", self.rooms, self.circulation, self.area_m2)),
+            ("rooms", format!("{}{circulation}, {:.1} m2", self.rooms, self.area_m2)),
             ("objects", format!("{}, {:.1} a room", self.objects, self.objects_per_room())),
             ("robots", format!("{}, people {}", self.robots, self.people)),
-            ("hard rules", format!("{} checked, {} times broken", self.rules, self.broken.len())),
+            ("hard rules", format!("{} checked, {rules}", self.rules)),
             (
                 "constraints",
                 format!(
@@ -198,6 +202,13 @@ fn messages(notes: &[Note]) -> Vec<String> {
 
 fn verdict(sound: bool) -> &'static str {
     if sound { "sound" } else { "UNSOUND" }
+}
+
+/// Returns a line for each violated constraint, mandatory ones first.
+fn violated_lines(report: &Report) -> Vec<String> {
+    let mut violated: Vec<_> = report.constraints.iter().filter(|c| c.status == Status::Violated).collect();
+    violated.sort_by_key(|c| !c.mandatory);
+    violated.into_iter().map(violated_line).collect()
 }
 
 /// Returns a violated constraint with its figures and where it comes from.
