@@ -98,7 +98,7 @@ fn counted(
         let next = numbers.iter().find(|n| n.span.start > at && n.span.start <= at + 2);
         next.is_some_and(|n| tokens.get(n.span.end).is_some_and(|t| d.bath_letters.contains(&t.text)))
     };
-    if unit.text == "beds" && baths() {
+    if matches!(unit.text.as_str(), "bed" | "beds") && baths() {
         return form(at + 1, BTreeMap::from([(d.bedroom.clone(), n)]));
     }
     let short = d.bed_letters.contains(&unit.text) && (unit.text != "bed" || joined(at + 1)) && unit.text != "beds";
@@ -142,8 +142,7 @@ fn chinese(tokens: &[Token], i: usize, numbers: &[Number], d: &Dwelling) -> Opti
     let mut end = i;
     let mut units = 0;
     let mut sleeps = false;
-    loop {
-        let Some(number) = numbers.iter().find(|n| n.span.start == end && n.value >= 0.0) else { break };
+    while let Some(number) = numbers.iter().find(|n| n.span.start == end && n.value >= 0.0) {
         let at = number.span.end;
         let mut unit = None;
         for len in [2, 1] {
@@ -157,7 +156,7 @@ fn chinese(tokens: &[Token], i: usize, numbers: &[Number], d: &Dwelling) -> Opti
         let Some((len, text, room)) = unit else { break };
         let n = number.value as i64;
         // "三室的房子", but not "三房间"
-        sleeps = units == 0 && room == &d.bedroom && !tokens.get(at + len).is_some_and(|t| t.text == "间");
+        sleeps = units == 0 && room == &d.bedroom && tokens.get(at + len).is_none_or(|t| t.text != "间");
         if text == "厅" && n > 1 {
             *rooms.entry(d.living.clone()).or_default() += n - 1;
             *rooms.entry(d.dining.clone()).or_default() += 1;
@@ -170,5 +169,5 @@ fn chinese(tokens: &[Token], i: usize, numbers: &[Number], d: &Dwelling) -> Opti
             break;
         }
     }
-    (units >= 2 || sleeps).then(|| ShortForm { span: Span { start: i, end }, rooms })
+    (units >= 2 || sleeps).then_some(ShortForm { span: Span { start: i, end }, rooms })
 }

@@ -225,6 +225,9 @@ fn noun_at(
     language: &str,
     taken: &Taken,
 ) -> Option<(usize, What, bool)> {
+    if tagged(tokens, i, spoken, Tag::Storeys) {
+        return None;
+    }
     let free = |end: usize| {
         let span = Span { start: i, end };
         !taken.spans.iter().chain(&taken.head).any(|s| s.overlaps(span))
@@ -243,7 +246,9 @@ fn noun_at(
                 .iter()
                 .any(|s| s.tag_at(tokens, k, Tag::Near).is_some() || s.tag_at(tokens, k, Tag::Definite).is_some())
         });
-        if near || room.is_none() {
+        // "입구에": the particle makes it a place
+        let longer = room.as_ref().is_some_and(|r| r.0 < end) && tokens[i].kind != Kind::Word;
+        if near || longer || room.is_none() {
             return Some((end, What::Entrance, false));
         }
     }

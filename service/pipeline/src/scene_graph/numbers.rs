@@ -94,8 +94,14 @@ fn digits_at(tokens: &[Token], i: usize, value: f64, spoken: &[&Spoken]) -> Numb
         value *= factor;
         end += 1;
     }
-    if tokens.get(end).is_some_and(|t| t.kind == Kind::Han && t.text == "万") {
-        value *= 10_000.0;
+    let myriad = tokens.get(end).filter(|t| !t.spaced && matches!(t.kind, Kind::Han | Kind::Hangul));
+    if let Some(factor) = myriad.and_then(|t| match t.text.as_str() {
+        "万" | "만" => Some(10_000.0),
+        "千" | "천" => Some(1000.0),
+        "百" | "백" => Some(100.0),
+        _ => None,
+    }) {
+        value *= factor;
         end += 1;
     }
     Number { span: Span { start: i, end }, value, article: false, vague: false }
@@ -111,8 +117,7 @@ fn words_at(tokens: &[Token], i: usize, spoken: &Spoken, language: &str) -> Opti
     let mut total = 0.0;
     let mut group = single(i).or_else(|| spoken.multipliers.get(word(i)?).map(|_| 1.0))?;
     let mut end = if single(i).is_some() { i + 1 } else { i };
-    loop {
-        let Some(next) = word(end) else { break };
+    while let Some(next) = word(end) {
         if let Some(factor) = spoken.multipliers.get(next) {
             group *= factor;
             if *factor >= 1000.0 {
@@ -234,6 +239,7 @@ fn korean(tokens: &[Token], i: usize, spoken: &[&Spoken]) -> Option<(usize, f64)
             "십" => Some(10.0),
             "백" => Some(100.0),
             "천" => Some(1000.0),
+            "만" => Some(10_000.0),
             _ => None,
         } {
             total += if current > 0.0 { current } else { 1.0 } * factor;
@@ -277,6 +283,8 @@ mod tests {
             ("ko", "두 개의 회의실", 2.0),
             ("ko", "열두 명", 12.0),
             ("ko", "십이 명", 12.0),
+            ("ko", "10만 개", 100_000.0),
+            ("en", "two and a half baths", 2.5),
         ] {
             let spoken = [&words().languages[language], &words().languages["en"]];
             let found = numbers(&tokens(text), language, &spoken);

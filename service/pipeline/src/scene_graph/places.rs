@@ -160,7 +160,7 @@ fn place_at(tokens: &[Token], i: usize, prompt: &str, spoken: &[&Spoken]) -> Opt
     for (letters, code) in [(["u", "s"], "US"), (["u", "k"], "GB")] {
         let dotted = token.text == letters[0]
             && tokens.get(i + 1).and_then(Token::mark) == Some('.')
-            && tokens.get(i + 2).is_some_and(|t| t.text == letters[1] && !t.spaced || t.text == letters[1]);
+            && tokens.get(i + 2).is_some_and(|t| t.text == letters[1]);
         if dotted && token.capital {
             return Some((i + 3, Place { codes: vec![code.into()], strict: false, city: false }));
         }

@@ -26,6 +26,7 @@ const MOST_IN_OFFICE: u32 = 4;
 const MAX_HEADS: i64 = 5000;
 
 /// Facts of a prompt.
+#[derive(Clone)]
 pub(super) struct Reading<'a> {
     pub language: &'static str,
     pub domain: &'a Domain,
@@ -133,6 +134,11 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         return Err(refused(format!(
             "the prompt asks for {listed} rooms; one world has {MAX_ROOMS} at most, ask for fewer"
         )));
+    }
+    let storeys = |n: &&numbers::Number| spoken.iter().any(|s| s.tag_at(&tokens, n.span.end, Tag::Storeys).is_some());
+    if let Some(n) = numbers.iter().filter(storeys).find(|n| n.value > 1.0) {
+        let message = format!("{} floors were asked for; all rooms were planned on one", n.value);
+        conflicts.push(note("one_floor", message));
     }
     let closed = is_closed(&wishes, &text, &building);
     if closed && total.is_none() {

@@ -81,10 +81,18 @@ fn at_entrance(reader: &Reader, said: &mut Said) {
             let gap = entrance.span.end..m.from.min(m.span.start);
             m.room_type().is_some() && gap.len() <= 2 && !gap.into_iter().any(|i| reader.tokens[i].is_mark())
         });
+        // "카페가 입구에 있는", "咖啡厅在入口处"
+        let particles = ["가", "이", "은", "는", "도", "在", "于", "位"];
+        let before = e.checked_sub(1).filter(|&p| {
+            let gap = reader.mentions[p].span.end..entrance.from;
+            let plain = gap.clone().all(|i| particles.contains(&reader.tokens[i].text.as_str()));
+            reader.mentions[p].room_type().is_some() && (1..=2).contains(&gap.len()) && plain
+        });
+        let room = before.or(next.map(|_| e + 1));
         let known = said.relations.iter().any(|r| r.subject == e || r.object == e);
-        if entrance.what == What::Entrance && wide && next.is_some() && !known {
+        if let Some(room) = room.filter(|_| entrance.what == What::Entrance && wide && !known) {
             said.relations.push(Relation {
-                subject: e + 1,
+                subject: room,
                 object: e,
                 connector: Connector::Wall,
                 spread: Spread::Each,

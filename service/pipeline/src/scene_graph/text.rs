@@ -160,7 +160,7 @@ fn number(chars: &[(usize, char)], i: usize) -> (usize, f64, String) {
         let run = digits_from(end + 1);
         let thousands = matches!(mark, ',' | '.' | ' ' | '\u{a0}' | '\u{202f}' | '\'' | '_')
             && run == 3
-            && (digits.len() <= 3 || digits.len() % 3 == 0 || end > i + 3)
+            && (digits.len() <= 3 || digits.len().is_multiple_of(3) || end > i + 3)
             && digits != "0";
         if thousands {
             digits.extend(chars[end + 1..end + 4].iter().map(|c| c.1));

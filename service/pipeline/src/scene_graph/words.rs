@@ -36,6 +36,7 @@ pub(super) enum Tag {
     Apart,
     Entrance,
     Total,
+    Storeys,
     Habitable,
     Accessible,
     Staff,
