@@ -69,7 +69,7 @@ pub(super) fn placements(
             let center = solid.rect.center_m();
             let q = (unit.q + part.quarter) % 4;
             let r = solid.rect;
-            let (w, d) = if q % 2 == 0 { (r.height(), r.width()) } else { (r.width(), r.height()) };
+            let (w, d) = if q.is_multiple_of(2) { (r.height(), r.width()) } else { (r.width(), r.height()) };
             let meters = |v: i32| f64::from(v) / 1000.0;
             let on = match (part.support, unit.support) {
                 (Some(k), _) => own.get(k),

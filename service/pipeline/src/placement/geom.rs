@@ -38,7 +38,8 @@ impl Box2 {
         Self { x0: mm(r.x0), y0: mm(r.y0), x1: mm(r.x1), y1: mm(r.y1) }
     }
 
-    pub fn to_rect(&self) -> Rect {
+    /// Returns the rectangle in meters.
+    pub fn meters(&self) -> Rect {
         let m = |v: i32| f64::from(v) / 1000.0;
         Rect { x0: m(self.x0), y0: m(self.y0), x1: m(self.x1), y1: m(self.y1) }
     }

@@ -45,10 +45,10 @@ struct Ground {
 impl Nav {
     /// Returns the empty room for a disc of this radius, mm. Doors never limit it: their width is the plan's business.
     pub fn new(space: &Space, radius: i32) -> Self {
-        let frame = Frame::around(space.bounds.grown(radius + 450).to_rect());
+        let frame = Frame::around(space.bounds.grown(radius + 450).meters());
         let mut inside = Bitmap::new(frame.nx, frame.ny);
         for rect in space.floor_rects() {
-            let (i0, i1, j0, j1) = frame.span(&rect.to_rect());
+            let (i0, i1, j0, j1) = frame.span(&rect.meters());
             inside.fill(i0, i1, j0, j1, true);
         }
         let mut floor = inside.clone();
@@ -56,7 +56,7 @@ impl Nav {
         for door in &space.doors {
             let wall = &space.walls[door.wall];
             let (mid, half) = ((door.v0 + door.v1) / 2, ((door.v1 - door.v0) / 2).max(radius + 75));
-            let (i0, i1, j0, j1) = frame.span(&wall.strip(mid - half, mid + half, -(radius + 400), 50).to_rect());
+            let (i0, i1, j0, j1) = frame.span(&wall.strip(mid - half, mid + half, -(radius + 400), 50).meters());
             floor.fill(i0, i1, j0, j1, true);
             let seed = wall.strip(mid - 1, mid + 1, -220, -218);
             doors.extend(frame.cell(seed.center_m()));
@@ -127,7 +127,7 @@ impl Nav {
     pub fn reaches(&self, targets: &[Box2]) -> bool {
         let margin = self.shared.radius + 100;
         targets.iter().any(|t| {
-            let (i0, i1, j0, j1) = self.shared.frame.span(&t.grown(margin).to_rect());
+            let (i0, i1, j0, j1) = self.shared.frame.span(&t.grown(margin).meters());
             self.main.any_in(i0, i1, j0, j1)
         })
     }

@@ -199,7 +199,8 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
             if placed < count {
                 outcome.missing.push((index, count - placed, Self::decisive(&tally)));
                 outcome.required_missing += task.required.saturating_sub(present + placed);
-                outcome.score -= 1.5;
+                // what a room's list names first matters most
+                outcome.score -= 1.0 + 3.0 / (1.0 + task.line as f64);
             }
         }
     }

@@ -28,7 +28,7 @@ impl Part<'_> {
     /// Returns true for what hangs flat on a wall, which narrows no passage.
     pub fn is_shallow(&self) -> bool {
         let r = self.solid.rect;
-        let depth = if self.quarter % 2 == 0 { r.width() } else { r.height() };
+        let depth = if self.quarter.is_multiple_of(2) { r.width() } else { r.height() };
         self.mount == Mount::Wall && depth <= mm(PROJECTION_M)
     }
 }
@@ -134,7 +134,7 @@ fn is_seat(shape: Shape) -> bool {
 }
 
 fn width_of(part: &Part) -> i32 {
-    if part.quarter % 2 == 0 { part.solid.rect.height() } else { part.solid.rect.width() }
+    if part.quarter.is_multiple_of(2) { part.solid.rect.height() } else { part.solid.rect.width() }
 }
 
 /// Returns the forms of a unit to try in turn: the picked sizes first, then the other sizes from large to small, then
@@ -288,7 +288,7 @@ fn add_member<'a>(parts: &mut Vec<Part<'a>>, member: &Member, object: &'a Object
         FacingRule::Opposite => 2,
     };
     // extents along the unit's x and y after turning
-    let extent = |q: u8| if q % 2 == 0 { (d, w) } else { (w, d) };
+    let extent = |q: u8| if q.is_multiple_of(2) { (d, w) } else { (w, d) };
     let at = |cx0: i32, cy0: i32, q: u8| {
         let (ex, ey) = extent(q);
         Box2 { x0: cx0, y0: cy0, x1: cx0 + ex, y1: cy0 + ey }
@@ -448,7 +448,7 @@ fn around(table: Box2, w: i32, d: i32, gap: i32, count: u32) -> Vec<(Box2, u8)> 
     let sides: [u8; 4] = if long_first { [0, 2, 1, 3] } else { [1, 3, 0, 2] };
     let mut out = Vec::new();
     for (n, side) in halves.into_iter().zip(sides) {
-        let length = if side % 2 == 0 { table.height() } else { table.width() };
+        let length = if side.is_multiple_of(2) { table.height() } else { table.width() };
         let (cx, cy) = table.center();
         for k in 0..n {
             let along = (2 * k + 1 - n) * (length / n.max(1)).max(w + 10) / 2;

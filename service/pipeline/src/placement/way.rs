@@ -30,7 +30,7 @@ impl Way {
 
     /// Returns true when the obstacles leave the width between all doors.
     pub fn stays_open(&self, obstacles: &[Box2]) -> bool {
-        let taken: Vec<_> = obstacles.iter().map(Box2::to_rect).collect();
+        let taken: Vec<_> = obstacles.iter().map(Box2::meters).collect();
         let doors: Vec<&Door> = self.doors.iter().collect();
         FreeSpace::new(&self.outline, &taken).passes(&doors, self.width_m - TOLERANCE_M)
     }

@@ -78,7 +78,7 @@ impl<'a> Find<'_, 'a, '_> {
         for o in self.siblings() {
             let r = o.world(&o.unit.bbox);
             let (x, y) = r.center();
-            let (w, d) = if o.q % 2 == 0 {
+            let (w, d) = if o.q.is_multiple_of(2) {
                 (unit.bbox.width(), unit.bbox.height())
             } else {
                 (unit.bbox.height(), unit.bbox.width())
@@ -131,9 +131,9 @@ fn largest(taken: &[bool], nx: usize, ny: usize) -> Option<(usize, usize, usize,
             heights[i] = if taken[j * nx + i] { 0 } else { heights[i] + 1 };
         }
         let mut open: Vec<(usize, usize)> = Vec::new(); // start column, height; heights increase
-        for i in 0..=nx {
+        for (i, &here) in heights.iter().enumerate() {
             let mut start = i;
-            while let Some(&(from, height)) = open.last().filter(|o| o.1 >= heights[i]) {
+            while let Some(&(from, height)) = open.last().filter(|o| o.1 >= here) {
                 open.pop();
                 start = from;
                 let area = height * (i - from);
@@ -141,7 +141,7 @@ fn largest(taken: &[bool], nx: usize, ny: usize) -> Option<(usize, usize, usize,
                     best = Some((area, (from, i, j + 1 - height, j + 1)));
                 }
             }
-            open.push((start, heights[i]));
+            open.push((start, here));
         }
     }
     best.map(|b| b.1)

@@ -18,6 +18,8 @@ const TABLES_APART: i32 = 500;
 /// Steps away from a place on the ceiling that is taken, mm.
 const BESIDE: [(i32, i32); 9] =
     [(0, 0), (500, 0), (-500, 0), (0, 500), (0, -500), (900, 0), (-900, 0), (0, 900), (0, -900)];
+/// Distances of a curtain from the foot of its bed, mm.
+const FOOT_GAPS: [i32; 4] = [300, 450, 150, 50];
 /// Row plans whose every position is tested.
 const PLANS: usize = 20;
 /// Arrangements handed to the search.
@@ -158,8 +160,12 @@ fn plans(state: &State, unit: &Unit, count: i32, focus: Option<u8>, terms: &Term
     let shape = unit.anchor().object.shape;
     let pairs = matches!(shape, Shape::Desk | Shape::Rack | Shape::Shelf) || shape == Shape::Bench && !terms.one_way;
     // tables stand apart where there is room
-    let apart = if matches!(shape, Shape::Table | Shape::RoundTable) { TABLES_APART.max(side) } else { side };
-    let mut sides = vec![apart, side];
+    let (apart, least) = match shape {
+        Shape::Table => (TABLES_APART.max(side), side),
+        Shape::RoundTable => (TABLES_APART.max(side), (TABLES_APART / 2).max(side)),
+        _ => (side, side),
+    };
+    let mut sides = vec![apart, least];
     sides.dedup();
     let need = front.max(back);
     let mut gaps = vec![if need > 0 { need } else { robot }, need.max(robot)];
@@ -267,6 +273,28 @@ fn apart(others: &[Placed], p: &Placed) -> Result<(), Rule> {
     if free { Ok(()) } else { Err(Rule::Collision) }
 }
 
+/// Returns curtains on the ceiling across the feet of the beds a room begins with.
+fn at_feet<'a>(
+    state: &State<'a, '_>,
+    task: &Task,
+    index: usize,
+    unit: &Rc<Unit<'a>>,
+    tally: &mut Tally,
+) -> Vec<Batch<'a>> {
+    let mut placed: Vec<Placed> = Vec::new();
+    for host in state.placed.iter().filter(|p| p.first_line && p.on_floor()).take(task.count as usize) {
+        let anchor = host.world(&host.unit.anchor().solid.rect).turned((4 - host.q) % 4);
+        let v = (anchor.y0 + anchor.y1) / 2 - (unit.bbox.y0 + unit.bbox.y1) / 2;
+        let tries = FOOT_GAPS.map(|gap| at_frame(unit, host.q, anchor.x1 + gap - unit.bbox.x0, v, index));
+        let fits = |p: &Placed| state.test(p, false).and_then(|()| apart(&placed, p));
+        match tries.into_iter().find(|p| fits(p).is_ok()) {
+            Some(p) => placed.push(p),
+            None => tally[Rule::Collision as usize] += 1,
+        }
+    }
+    if placed.is_empty() { Vec::new() } else { vec![Batch { placed, score: 1.0 }] }
+}
+
 /// Returns units spread evenly over the ceiling of the room's main part.
 pub(in crate::placement) fn over<'a>(
     state: &State<'a, '_>,
@@ -276,6 +304,9 @@ pub(in crate::placement) fn over<'a>(
     tally: &mut Tally,
 ) -> Vec<Batch<'a>> {
     debug_assert!(task.arrangement == Arrangement::Overhead);
+    if unit.anchor().object.shape == Shape::Curtain {
+        return at_feet(state, task, index, unit, tally);
+    }
     let main = state.space.main;
     let count = task.count.max(1) as i32;
     let (long, short) = (main.width().max(main.height()), main.width().min(main.height()));

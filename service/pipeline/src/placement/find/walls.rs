@@ -49,6 +49,10 @@ impl<'a> Find<'_, 'a, '_> {
         let front = self.front(wall, index, unit);
         let u = wall.u - b.x0;
         for v in self.stops(wall, index, unit, &front) {
+            if self.is_wedged(unit, &front, v) {
+                self.none(Rule::Clearance);
+                continue;
+            }
             let placed = at_frame(unit, wall.q, u, v, self.index);
             let class = index as u32 * 4
                 + if v + b.y0 < wall.v0 + 300 {
@@ -96,6 +100,16 @@ impl<'a> Find<'_, 'a, '_> {
             }
         }
         Front { taken: merged, marks }
+    }
+
+    /// Returns true for seats nobody gets to: furniture close by on both sides.
+    fn is_wedged(&self, unit: &Unit, front: &Front, v: i32) -> bool {
+        if self.task.required > 0 || unit.seats() < 2 || unit.parts.len() < 3 {
+            return false;
+        }
+        let (a, z) = (v + unit.bbox.y0, v + unit.bbox.y1);
+        let near = |gap: i32| (0..SLIVER).contains(&gap);
+        front.taken.iter().any(|t| near(a - t.1)) && front.taken.iter().any(|t| near(t.0 - z))
     }
 
     /// Returns positions of the unit's origin along the wall.
