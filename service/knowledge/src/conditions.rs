@@ -1,6 +1,6 @@
 //! Whether the conditions of a constraint hold for a building.
 
-use d3dgen_model::knowledge::Constraint;
+use d3dgen_model::knowledge::{Constraint, Reference};
 
 use crate::query::Query;
 use crate::tables::{ConditionRow, TABLES, When};
@@ -49,6 +49,13 @@ pub(crate) fn evaluate(c: &Constraint, query: &Query) -> Conditions {
     out
 }
 
+/// Returns true when a document is about buildings such as this one.
+pub(crate) fn document_holds(reference: &Reference, query: &Query) -> bool {
+    let titled = |title: &String| reference.sources.iter().any(|s| s.title.contains(title.as_str()));
+    let rows = TABLES.documents.iter().filter(|d| d.domains.contains(&query.domain) && d.titles.iter().any(titled));
+    rows.into_iter().all(|d| fact(d.when, query).unwrap_or(true))
+}
+
 fn guard(row: &ConditionRow) -> Option<Guard> {
     let (min, max) = (row.min.unwrap_or(f64::MIN), row.max.unwrap_or(f64::MAX));
     match row.when {
@@ -59,21 +66,32 @@ fn guard(row: &ConditionRow) -> Option<Guard> {
 }
 
 fn holds(row: &ConditionRow, query: &Query) -> bool {
-    let beds = query.rooms.iter().any(|r| r.beds);
+    if let Some(fact) = fact(row.when, query) {
+        return fact;
+    }
     match row.when {
-        When::Always | When::Area | When::BedsInRoom => true,
-        When::Never => false,
-        When::Accessible => query.accessible,
-        When::Beds => beds,
-        When::NoBeds => !beds,
         When::Public => query.accessible || !row.except_domains.contains(&query.domain),
-        When::TwoRobots => query.robot_count() >= 2,
         When::Persons => row.holds(f64::from(query.persons)),
         When::RoomsOf => {
             let count: u32 =
                 query.rooms.iter().filter(|r| row.room_types.contains(&r.room_type)).map(|r| r.count).sum();
             row.holds(f64::from(count))
         }
+        _ => true,
+    }
+}
+
+/// Returns whether a fact holds that needs no figures of a row.
+fn fact(when: When, query: &Query) -> Option<bool> {
+    let beds = query.rooms.iter().any(|r| r.beds);
+    match when {
+        When::Always => Some(true),
+        When::Never => Some(false),
+        When::Accessible => Some(query.accessible),
+        When::Beds => Some(beds),
+        When::NoBeds => Some(!beds),
+        When::TwoRobots => Some(query.robot_count() >= 2),
+        When::Public | When::Persons | When::Area | When::RoomsOf | When::BedsInRoom => None,
     }
 }
 

@@ -6,7 +6,8 @@
 
 use std::collections::BTreeSet;
 
-use crate::limits::{Limit, Limits, RoomLimits};
+use crate::conditions::Guard;
+use crate::limits::{AreaLimit, Limit, Limits, RoomLimits};
 use crate::measure::Measure;
 use crate::query::Query;
 use crate::retrieve::{Applicable, Rule, Scope};
@@ -28,9 +29,9 @@ pub(crate) fn draw(constraints: &[Applicable], chain: &[String], query: &Query) 
     let pick = |wanted: &dyn Fn(&Applicable, &Rule) -> Option<f64>| strictest(&usable, chain, query, wanted);
     let mut limits = Limits {
         corridor_width: pick(&|a, r| {
-            (r.quantity.measure == Measure::CirculationWidth && a.scope == Scope::Circulation).then_some(r.bounds.min?)
+            (r.quantity.measure == Measure::CirculationWidth && is_circulation(a, query)).then_some(r.bounds.min?)
         }),
-        corridor_width_advised: advised_width(&usable),
+        corridor_width_advised: advised_width(&usable, query),
         entrance_width: pick(&|a, r| {
             let door = r.quantity.measure == Measure::DoorWidth && matches!(a.scope, Scope::Entrance | Scope::Doors);
             door.then_some(r.bounds.min?)
@@ -61,6 +62,7 @@ pub(crate) fn draw(constraints: &[Applicable], chain: &[String], query: &Query) 
                 (door && (about(a) || a.scope == Scope::Doors)).then_some(value)
             }),
             ceiling_height_min: least(&[Measure::CeilingHeight], f64::MAX),
+            ceiling_heights_by_area: ceilings_by_area(constraints, &about, query),
         };
         if found != RoomLimits::default() {
             limits.rooms.insert(room.room_type.clone(), found);
@@ -69,11 +71,31 @@ pub(crate) fn draw(constraints: &[Applicable], chain: &[String], query: &Query) 
     limits
 }
 
+/// Returns the clear heights that rooms above an area need.
+fn ceilings_by_area(constraints: &[Applicable], about: &dyn Fn(&Applicable) -> bool, query: &Query) -> Vec<AreaLimit> {
+    let candidates = constraints.iter().filter(|a| a.superseded_by.is_none() && about(a) && is_planned(a, query));
+    let steps = candidates.filter_map(|a| {
+        let rule = a.decision.as_ref().ok().filter(|r| r.quantity.measure == Measure::CeilingHeight)?;
+        let &[Guard::Area(above_m2, up_to_m2)] = a.guards.as_slice() else { return None };
+        let limit = Limit { value: rule.bounds.min?, constraint_id: a.constraint.constraint_id.clone() };
+        Some(AreaLimit { above_m2, up_to_m2, limit })
+    });
+    steps.collect()
+}
+
 /// Returns the width of circulation that meets all advice.
-fn advised_width(usable: &[(&Applicable, &Rule)]) -> Option<f64> {
-    let about =
-        |a: &Applicable, r: &Rule| r.quantity.measure == Measure::CirculationWidth && a.scope == Scope::Circulation;
+fn advised_width(usable: &[(&Applicable, &Rule)], query: &Query) -> Option<f64> {
+    let about = |a: &Applicable, r: &Rule| r.quantity.measure == Measure::CirculationWidth && is_circulation(a, query);
     usable.iter().filter(|(a, r)| about(a, r)).filter_map(|(_, r)| r.bounds.min).reduce(f64::max)
+}
+
+/// Returns true for constraints on circulation, whether they call it so or by the room type it has here.
+fn is_circulation(a: &Applicable, query: &Query) -> bool {
+    match &a.scope {
+        Scope::Circulation => true,
+        Scope::Rooms(types) => query.rooms.iter().any(|r| r.circulation && types.contains(&r.room_type)),
+        _ => false,
+    }
 }
 
 /// Returns the areas that meet all advice; least figures go before largest ones.

@@ -20,7 +20,7 @@ pub mod travel;
 
 pub use conditions::Guard;
 pub use figure::Bounds;
-pub use limits::{Limit, Limits, RoomLimits};
+pub use limits::{AreaLimit, Limit, Limits, RoomLimits};
 pub use measure::Measure;
 pub use query::{Query, QueryRoom};
 pub use retrieve::{Applicable, Retrieval, Rule, Scope, retrieve};

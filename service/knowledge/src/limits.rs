@@ -30,6 +30,8 @@ pub struct RoomLimits {
     pub door_width: Option<Limit>,
     /// Least clear height, m.
     pub ceiling_height_min: Option<Limit>,
+    /// Least clear heights that depend on the net floor area, m.
+    pub ceiling_heights_by_area: Vec<AreaLimit>,
 }
 
 /// A figure and where it comes from.
@@ -39,4 +41,23 @@ pub struct Limit {
     pub value: f64,
     /// Id of the constraint in the knowledge base.
     pub constraint_id: String,
+}
+
+/// A figure for rooms of a range of net floor areas.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AreaLimit {
+    /// Least area it holds for, m^2.
+    pub above_m2: f64,
+    /// Largest area it holds for, m^2.
+    pub up_to_m2: f64,
+    /// The figure.
+    pub limit: Limit,
+}
+
+impl RoomLimits {
+    /// Returns the least clear height of a room of this net floor area, m.
+    pub fn ceiling_height(&self, area_m2: f64) -> Option<f64> {
+        let steps = self.ceiling_heights_by_area.iter().filter(|s| s.above_m2 <= area_m2 && area_m2 <= s.up_to_m2);
+        steps.map(|s| s.limit.value).chain(self.ceiling_height_min.iter().map(|l| l.value)).reduce(f64::max)
+    }
 }

@@ -34,6 +34,19 @@ pub struct Retrieval {
     pub robots: u32,
 }
 
+impl Retrieval {
+    /// Returns the mandatory constraints that ask for a kind of room the building does not have, with its space name.
+    pub fn missing_rooms(&self) -> impl Iterator<Item = (&str, &Applicable)> {
+        self.constraints.iter().filter_map(|a| {
+            let rule = a.decision.as_ref().ok()?;
+            let asks = matches!(rule.quantity.measure, Measure::RoomsPresent | Measure::RoomNeededAbovePersons);
+            let none = matches!(&a.scope, Scope::Rooms(types) if types.is_empty());
+            let missing = asks && none && a.mandatory && rule.bounds.min.is_some_and(|n| n >= 1.0);
+            missing.then_some((a.constraint.space_type.as_str(), a))
+        })
+    }
+}
+
 /// A constraint that applies.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Applicable {
@@ -89,6 +102,10 @@ pub fn retrieve(knowledge: &KnowledgeBase, query: &Query) -> Retrieval {
     let mut constraints = Vec::new();
     let mut not_applicable = 0;
     for reference in knowledge.references.iter().filter(|r| chain.contains(&r.jurisdiction)) {
+        if !conditions::document_holds(reference, query) {
+            not_applicable += reference.constraints.len() as u32;
+            continue;
+        }
         for constraint in &reference.constraints {
             match applicable(constraint, reference, query) {
                 Some(found) => constraints.push(found),

@@ -21,6 +21,7 @@ pub(crate) static TABLES: LazyLock<Tables> = LazyLock::new(|| {
         unknown: quantities.unknown,
         spaces: spaces.space,
         conditions: conditions.condition,
+        documents: conditions.document,
     }
 });
 
@@ -30,6 +31,7 @@ pub(crate) struct Tables {
     pub unknown: Vec<UnknownRow>,
     pub spaces: Vec<SpaceRow>,
     pub conditions: Vec<ConditionRow>,
+    pub documents: Vec<DocumentRow>,
 }
 
 #[derive(Deserialize)]
@@ -49,6 +51,7 @@ struct Spaces {
 #[serde(deny_unknown_fields)]
 struct Conditions {
     condition: Vec<ConditionRow>,
+    document: Vec<DocumentRow>,
 }
 
 /// Which constraints speak of which quantity.
@@ -138,6 +141,16 @@ pub(crate) struct ConditionRow {
     pub except_domains: Vec<String>,
     #[serde(default)]
     pub reason: Option<String>,
+}
+
+/// A document all of whose constraints have one more condition.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct DocumentRow {
+    pub when: When,
+    pub domains: Vec<String>,
+    /// Words of its title.
+    pub titles: Vec<String>,
 }
 
 /// The fact a condition asks for.

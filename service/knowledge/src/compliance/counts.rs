@@ -17,7 +17,7 @@ fn figure(site: &Site, a: &Applicable, rule: &Rule) -> Option<f64> {
         let rooms = site.rooms.iter().filter(|r| r.plan.circulation || !circulation_only);
         rooms.map(|r| r.plan.net_area_m2).sum()
     };
-    let toilets = site.count(&[Shape::Toilet]);
+    let toilets = site.count(&[Shape::Toilet, Shape::Cubicle]);
     let per_toilet = |n: f64| (toilets > 0 && n > 0.0).then(|| n / toilets as f64);
     match rule.quantity.measure {
         Measure::BuildingArea => Some(area(false)),

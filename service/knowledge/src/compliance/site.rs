@@ -9,6 +9,7 @@ use d3dgen_model::occupancy::{Occupancy, stops_robot};
 use d3dgen_model::placements::Placement;
 use d3dgen_model::world::World;
 
+use crate::clearance::is_shallow;
 use crate::conditions::Guard;
 use crate::freespace::FreeSpace;
 use crate::retrieve::{Applicable, Retrieval, Scope};
@@ -37,7 +38,7 @@ pub(super) struct Object<'a> {
     pub placement: &'a Placement,
     pub kind: Option<&'a ObjectType>,
     pub rect: Rect,
-    /// True when it takes floor from people.
+    /// True when it takes floor from people; handrails and signs do not.
     pub blocks: bool,
 }
 
@@ -62,7 +63,7 @@ impl<'a> Site<'a> {
                 placement,
                 kind: domain.object(&placement.object),
                 rect: placement.footprint().bounds(),
-                blocks: stops_robot(placement),
+                blocks: stops_robot(placement) && !is_shallow(placement),
             });
         }
         Self { world, domain, retrieval, rooms, occupancy: OnceCell::new() }

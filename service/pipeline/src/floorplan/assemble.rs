@@ -56,15 +56,16 @@ pub(super) fn assemble(
     for (i, spec) in brief.rooms.iter().enumerate() {
         let ring = outline(i, &stretches).ok_or_else(|| format!("{} is not one simple polygon", spec.id))?;
         let net_polygon = ring.net_polygon();
+        let net_area_m2 = to_mm(net_polygon.signed_area());
         rooms.push(PlanRoom {
             room_id: spec.id.clone(),
             room_type: spec.room_type.clone(),
             name: spec.name.clone(),
             circulation: spec.circulation,
             polygon: ring.polygon(),
-            net_area_m2: to_mm(net_polygon.signed_area()),
+            net_area_m2,
             net_polygon,
-            ceiling_height_m: spec.ceiling_height,
+            ceiling_height_m: spec.ceiling_height.max(spec.limits.ceiling_height(net_area_m2).unwrap_or(0.0)),
             materials: spec.materials.clone(),
             locked: false,
         });

@@ -164,7 +164,9 @@ fn rooms(brief: &Brief, survey: &Survey, score: &mut Score) {
             let over = ((survey.gross_m2[i] - spec.area_max) / spec.area_max).max(0.0);
             // half the area is as wrong as double the area
             let off = (net - spec.area_target) / net.min(spec.area_target).max(0.1);
-            score.soft[0] += off.powi(2) + 3.0 * over;
+            let [least, most] = spec.limits.area_advised.unwrap_or([0.0, f64::MAX]);
+            let ill_advised = ((least - net).max(net - most) / spec.area_target).max(0.0);
+            score.soft[0] += off.powi(2) + 3.0 * over + 3.0 * ill_advised;
             let (w, h) = survey.clear[i];
             score.hard += (spec.min_dimension - w.min(h)).max(0.0);
             let proportion = w.max(h) / w.min(h).max(0.1);

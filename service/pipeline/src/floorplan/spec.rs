@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use d3dgen_knowledge::{Limit, Limits};
+use d3dgen_knowledge::{Limit, Limits, RoomLimits};
 use d3dgen_model::domain::{Daylight, Domain, Materials, RoomType, Zone};
 use d3dgen_model::scene_graph::{Connector, GraphEdge, GraphRoom, Note, SceneGraph};
 
@@ -35,6 +35,8 @@ pub(super) struct RoomSpec {
     pub entrance: bool,
     pub door_width: f64,
     pub ceiling_height: f64,
+    /// Limits of its type, for what depends on the finished room.
+    pub limits: RoomLimits,
     pub materials: Materials,
     /// True when a door leads from the spine into it.
     pub on_spine: bool,
@@ -169,7 +171,7 @@ fn room_spec(
     conflicts: &mut Vec<Note>,
 ) -> RoomSpec {
     let kind: &RoomType = domain.room_type_or_generic(&room.room_type);
-    let none = d3dgen_knowledge::RoomLimits::default();
+    let none = RoomLimits::default();
     let limit = limits.rooms.get(&room.room_type).unwrap_or(&none);
     let [low, high] = room.area_range_m2;
     let area_min = max_limit(low, limit.area_min.as_ref());
@@ -213,7 +215,8 @@ fn room_spec(
         open_front: kind.open_front,
         entrance: room.entrance,
         door_width: door_width.max(robot),
-        ceiling_height: max_limit(kind.ceiling_height_m, limit.ceiling_height_min.as_ref()),
+        ceiling_height: kind.ceiling_height_m,
+        limits: limit.clone(),
         materials: kind.materials.clone(),
         on_spine: false,
         host: None,

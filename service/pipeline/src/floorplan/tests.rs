@@ -31,6 +31,7 @@ fn room(id: &str, area: [f64; 3], min_dimension: f64, daylight: Daylight, zone: 
         materials: Materials { floor: material(), wall: material(), ceiling: material() },
         on_spine: true,
         host: None,
+        limits: d3dgen_knowledge::RoomLimits::default(),
     }
 }
 

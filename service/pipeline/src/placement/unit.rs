@@ -295,7 +295,8 @@ fn add_member<'a>(parts: &mut Vec<Part<'a>>, member: &Member, object: &'a Object
     };
     // boxes of two things may touch, never overlap: tucking a chair under its table means touching it
     let base = hung(object, h, ceiling);
-    let gap = if base < anchor.z1 && gap < 0 { 0 } else { gap };
+    let beside = !matches!(member.relation, Relation::On | Relation::Over | Relation::Under);
+    let gap = if beside && base < anchor.z1 && gap < 0 { 0 } else { gap };
     let floor = |rect: Box2| Solid { rect, z0: base, z1: base + h };
     match member.relation {
         Relation::Left | Relation::Right => {

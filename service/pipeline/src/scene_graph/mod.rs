@@ -22,9 +22,12 @@ mod unknown;
 mod wishes;
 mod words;
 
+use d3dgen_knowledge::Query;
 use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_plugins::Registry;
 
+use self::program::Planned;
+use self::reading::Reading;
 use crate::Error;
 
 /// Reason of the edges that a prompt asks for.
@@ -55,10 +58,22 @@ pub struct Request {
 /// `Refused` for prompts without words, absurd sizes, unknown domains and countries, with what would work.
 pub fn generate(request: &Request, registry: &Registry) -> Result<SceneGraph, Error> {
     let mut reading = reading::read(request, registry)?;
-    let planned = program::complete(&mut reading);
-    let mut rooms = rooms::describe(&mut reading, &planned);
-    let web = edges::connect(&mut reading, &planned, &mut rooms);
-    Ok(SceneGraph {
+    let mut planned = program::complete(&mut reading);
+    let draft = assemble(request, reading.clone(), &planned);
+    if let Some(plugin) = registry.get(&draft.domain) {
+        let retrieval = d3dgen_knowledge::retrieve(plugin.knowledge(), &Query::of_graph(&draft, plugin.domain()));
+        if program::follow_rules(&mut reading, &mut planned, &retrieval) {
+            return Ok(assemble(request, reading, &planned));
+        }
+    }
+    Ok(draft)
+}
+
+/// Describes and connects the rooms.
+fn assemble(request: &Request, mut reading: Reading, planned: &[Planned]) -> SceneGraph {
+    let mut rooms = rooms::describe(&mut reading, planned);
+    let web = edges::connect(&mut reading, planned, &mut rooms);
+    SceneGraph {
         version: 1,
         prompt: request.prompt.clone(),
         seed: request.seed,
@@ -76,5 +91,5 @@ pub fn generate(request: &Request, registry: &Registry) -> Result<SceneGraph, Er
         robots: reading.robots,
         assumptions: reading.assumptions,
         conflicts: reading.conflicts,
-    })
+    }
 }

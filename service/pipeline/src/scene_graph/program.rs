@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use d3dgen_knowledge::Retrieval;
 use d3dgen_model::domain::{Access, Occupants, ProgramRoom, RoomType, Zone};
 
 use super::places::note;
@@ -50,6 +51,34 @@ pub(super) fn complete<'a>(reading: &mut Reading<'a>) -> Vec<Planned<'a>> {
     hang_on_hosts(reading, &mut rooms);
     state_additions(reading, &rooms);
     rooms
+}
+
+/// Adds rooms that a building rule asks for; returns true when something was added or said.
+pub(super) fn follow_rules<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned<'a>>, rules: &Retrieval) -> bool {
+    let mut changed = false;
+    for (space, rule) in rules.missing_rooms() {
+        let speaks = |t: &&RoomType| t.id == space || t.spaces.iter().any(|s| s == space);
+        let Some(kind) = reading.domain.room_types.iter().find(speaks) else { continue };
+        let what = format!("{} by {}", kind.label.to_lowercase(), rule.constraint.constraint_id);
+        changed = true;
+        if reading.total.is_some() || reading.closed || reading.wishes.forbidden.contains(&kind.id) {
+            let message = format!("the building needs a {what}; the prompt's own list of rooms was followed");
+            reading.conflicts.push(note("rule_asks_for_room", message));
+            continue;
+        }
+        reading.assumptions.push(note("room_by_rule", format!("added a {what}")));
+        rooms.push(Planned {
+            room_type: kind.id.clone(),
+            kind,
+            name: None,
+            area_m2: None,
+            people_area_m2: None,
+            requested: false,
+            host: None,
+            occupants: None,
+        });
+    }
+    changed
 }
 
 struct Build<'r, 'a> {
