@@ -17,6 +17,8 @@ mod search;
 mod space;
 mod state;
 mod style;
+#[cfg(test)]
+mod tests;
 mod unit;
 mod way;
 
