@@ -90,7 +90,8 @@ pub(super) fn tasks<'a>(
         out.push(Task { item: &object.id, anchor: object, arrangement, count: 1, required: 0, line: lines + i, rule });
     }
     turn_to_audience(&mut out);
-    out.sort_by_key(|t| (phase(t), t.line));
+    // corners are few: what cannot do without one comes before what only wants a wall
+    out.sort_by_key(|t| (phase(t), t.required == 0 || t.arrangement != Arrangement::Corner, t.line));
     out
 }
 

@@ -138,6 +138,11 @@ impl<'a, 's> State<'a, 's> {
                 if self.solids.iter().any(|s| s.is_flat() && s.overlaps(&solid)) {
                     return Err(Rule::Collision);
                 }
+                // nobody wants to step over the edge of a rug in a door
+                let alone = p.unit.parts.len() == 1;
+                if alone && space.doors.iter().any(|d| d.zone.overlaps(&solid.rect)) {
+                    return Err(Rule::Door);
+                }
                 continue;
             }
             if self.solids.iter().any(|s| !(s.is_flat() && s.z0 == 0) && s.overlaps(&solid)) {
