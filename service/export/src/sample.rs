@@ -434,7 +434,7 @@ fn furniture() -> Vec<Placement> {
 
 /// Returns a hall with one object of every build, six to a row, turned in all four directions.
 pub fn catalogue() -> World {
-    let sizes: [(Shape, [f64; 3]); 33] = [
+    let sizes: [(Shape, [f64; 3]); 34] = [
         (Shape::Box, [0.8, 0.5, 0.5]),
         (Shape::Cabinet, [1.2, 0.45, 1.8]),
         (Shape::Shelf, [1.2, 0.4, 1.8]),
