@@ -14,6 +14,8 @@ const GLASS_PER_FLOOR: f64 = 0.145;
 const SILL_M: f64 = 0.9;
 const HIGH_SILL_M: f64 = 1.5;
 const HEAD_M: f64 = 2.2;
+/// Height of the balustrade of balconies and terraces, m.
+const BALUSTRADE_M: f64 = 1.0;
 /// Wall left between a window and a corner, and between two windows, m.
 const MARGIN_M: f64 = 0.35;
 /// Widest and narrowest single window, m.
@@ -24,6 +26,7 @@ pub(super) fn place_windows(brief: &Brief, stretches: &[Stretch], net_m2: &[f64]
     let mut windows = Vec::new();
     for (i, room) in brief.rooms.iter().enumerate() {
         let Some((sill, mut need)) = glass(room, net_m2[i]) else { continue };
+        let pane = if room.zone == Zone::Outdoor { f64::MAX } else { PANE_M.0 };
         let mut outer: Vec<&Stretch> = stretches.iter().filter(|s| s.only_room() == Some(i)).collect();
         outer.sort_by_key(|s| (-s.len(), s.vertical, s.at, s.from));
         for stretch in outer {
@@ -37,7 +40,7 @@ pub(super) fn place_windows(brief: &Brief, stretches: &[Stretch], net_m2: &[f64]
                 }
                 let total = need.max(PANE_M.1).min(usable);
                 need -= total;
-                add_panes(stretch, from, to, total, sill, room, &mut windows);
+                add_panes(stretch, from, to, (total, pane), sill, room, &mut windows);
             }
         }
     }
@@ -50,7 +53,8 @@ pub(super) fn place_windows(brief: &Brief, stretches: &[Stretch], net_m2: &[f64]
 /// Returns sill height and total width of glass a room wants, m.
 fn glass(room: &RoomSpec, net_m2: f64) -> Option<(f64, f64)> {
     if room.zone == Zone::Outdoor {
-        return None;
+        // a balustrade, open above: all there is
+        return Some((BALUSTRADE_M, f64::MAX));
     }
     let head = HEAD_M.min(room.ceiling_height - 0.2);
     match room.daylight {
@@ -84,8 +88,16 @@ fn free_parts(stretch: &Stretch, doors: &[Door]) -> Vec<(f64, f64)> {
     parts
 }
 
-fn add_panes(stretch: &Stretch, from: f64, to: f64, total: f64, sill: f64, room: &RoomSpec, windows: &mut Vec<Window>) {
-    let count = (total / PANE_M.0).ceil().max(1.0);
+fn add_panes(
+    stretch: &Stretch,
+    from: f64,
+    to: f64,
+    (total, pane): (f64, f64),
+    sill: f64,
+    room: &RoomSpec,
+    windows: &mut Vec<Window>,
+) {
+    let count = (total / pane).ceil().max(1.0);
     // Whole centimeters keep the document readable; each pane sits in the middle of its share of the wall.
     let share = (to - from) / count;
     let width = ((total / count).min(share - 2.0 * MARGIN_M).max(PANE_M.1.min(share)) * 20.0).floor() / 20.0;

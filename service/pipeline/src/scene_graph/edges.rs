@@ -70,6 +70,10 @@ impl Web {
                     known.reason = reason.into();
                 }
             }
+            // a wall asked for does not rule out a door in it
+            Some(known) if known.required && walkable(connector) => {
+                self.edges.push(GraphEdge { a, b, connector, required, reason: reason.into() });
+            }
             Some(known) if known.required || !required => {}
             Some(known) => *known = GraphEdge { a, b, connector, required, reason: reason.into() },
             None => self.edges.push(GraphEdge { a, b, connector, required, reason: reason.into() }),

@@ -66,16 +66,12 @@ pub(super) fn paper(width: f64, height: f64, scale: f64) -> Paper {
     Paper { width_mm, height_mm, ratio: 2000, name: None }
 }
 
-/// Returns the plan's title: the kind of building.
+/// Returns the plan's title: what the domain calls this kind of building.
 pub(super) fn title(world: &World, domain: &Domain) -> String {
-    world.scene_graph.building_type.as_deref().map_or_else(|| domain.title.clone(), sentence)
-}
-
-/// `dental_practice` -> `Dental practice`.
-fn sentence(id: &str) -> String {
-    let text = id.replace('_', " ");
-    let mut letters = text.chars();
-    letters.next().map(|c| c.to_uppercase().collect::<String>() + letters.as_str()).unwrap_or_default()
+    let id = world.scene_graph.building_type.as_deref();
+    let kind = id.and_then(|id| domain.building_types.iter().find(|b| b.id == id));
+    let program = kind.and_then(|b| domain.program(&b.program));
+    program.map_or_else(|| domain.title.clone(), |p| p.title.clone())
 }
 
 impl Facts<'_> {
