@@ -10,7 +10,7 @@ use d3dgen_model::world::World;
 use serde_json::{Value, json};
 
 /// Every build there is; a test compares it with the schema.
-pub const ALL_SHAPES: [Shape; 33] = {
+pub const ALL_SHAPES: [Shape; 34] = {
     use Shape::*;
     [
         Box,
@@ -32,6 +32,7 @@ pub const ALL_SHAPES: [Shape; 33] = {
         Toilet,
         Bathtub,
         Shower,
+        Cubicle,
         Panel,
         Trolley,
         Pole,
