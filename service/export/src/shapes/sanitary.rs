@@ -62,16 +62,18 @@ pub(super) fn bathtub(b: &mut Body) {
 
 /// A toilet between partitions on feet; the door stands in front.
 pub(super) fn cubicle(b: &mut Body) {
-    let (panel, foot) = (0.02, 0.12_f64.min(b.h * 0.1));
-    for x in [0.0, b.w - panel] {
-        b.block([x, x + panel], [0.0, b.d], [foot, b.h], Main);
+    let panel = 0.02_f64.min(b.w.min(b.d) * 0.1);
+    let foot = 0.12_f64.min(b.h * 0.1);
+    for x in [[0.0, panel], [b.w - panel, b.w]] {
+        b.block(x, [0.0, b.d], [foot, b.h], Main);
+        b.block(x, [b.d * 0.04, b.d * 0.08], [0.0, foot], Metal);
+        b.block(x, [b.d * 0.92, b.d * 0.96], [0.0, foot], Metal);
     }
     b.block([panel, b.w - panel], [0.0, panel], [foot, b.h], Main);
-    b.block([b.w * 0.75, b.w * 0.85], [0.0, panel * 1.5], [b.h * 0.48, b.h * 0.52], Metal);
-    let middle = b.w / 2.0;
-    b.block([middle - 0.19, middle + 0.19], [b.d - 0.2, b.d], [0.35, 0.8], White);
-    b.block([middle - 0.12, middle + 0.12], [b.d - 0.55, b.d - 0.1], [0.0, 0.3], White);
-    b.post(middle, b.d - 0.45, 0.19, [0.3, 0.42], White);
+    b.block([b.w * 0.75, b.w * 0.85], [panel, panel * 1.5], [b.h * 0.48, b.h * 0.52], Metal);
+    b.block([b.w * 0.29, b.w * 0.71], [b.d * 0.87, b.d], [b.h * 0.18, b.h * 0.4], White);
+    b.block([b.w * 0.37, b.w * 0.63], [b.d * 0.65, b.d * 0.92], [0.0, b.h * 0.15], White);
+    b.block([b.w * 0.3, b.w * 0.7], [b.d * 0.58, b.d * 0.87], [b.h * 0.15, b.h * 0.21], White);
 }
 
 /// Tray, a glass screen at the left, pole and head at the rear.
