@@ -173,14 +173,19 @@ impl<'a, 's> State<'a, 's> {
         if p.unit.clears.iter().all(|c| free(&p.world(c))) { Ok(()) } else { Err(Rule::Clearance) }
     }
 
-    /// Tests a unit as [`State::test`]; what stands on it and is no essential part of it is left away before a window.
+    /// Tests a unit as [`State::test`]; what stands on it or hangs over it and is no essential part of it is left away
+    /// where it would stand in the light or meet something that hangs there.
     pub fn fit(&self, p: Placed<'a>, at_window: bool) -> Result<Placed<'a>, Rule> {
         match self.test(&p, at_window) {
             Ok(()) => Ok(p),
-            Err(Rule::Window) => {
-                let hides = |part: &Part| self.space.windows.iter().any(|w| w.is_hidden_by(&p.solid(part)));
-                let lower = Placed { unit: Rc::new(p.unit.cleared(hides).ok_or(Rule::Window)?), ..p.clone() };
-                self.test(&lower, at_window).map(|()| lower)
+            Err(rule @ (Rule::Window | Rule::Collision)) => {
+                let in_the_way = |part: &Part| {
+                    let solid = p.solid(part);
+                    self.space.windows.iter().any(|w| w.is_hidden_by(&solid))
+                        || part.mount == Mount::Ceiling && self.solids.iter().any(|s| s.overlaps(&solid))
+                };
+                let lesser = Placed { unit: Rc::new(p.unit.cleared(in_the_way).ok_or(rule)?), ..p.clone() };
+                self.test(&lesser, at_window).map(|()| lesser)
             }
             Err(rule) => Err(rule),
         }

@@ -261,3 +261,15 @@ fn the_same_seed_furnishes_alike_and_others_differ() {
         assert!((6..10).any(|seed| site.furnished(domain, seed).placements != first.placements));
     });
 }
+
+#[test]
+fn both_beds_of_a_double_room_find_their_place() {
+    with_domain("hospital", |domain| {
+        let windows = vec![(0.4, 1.7, 0.9), (2.5, 3.8, 0.9)];
+        let site = Site { doors: vec![3.4], windows, ..Site::new("patient_room_double", 4.25, 6.4) };
+        for seed in 0..12 {
+            let found = site.furnished(domain, seed);
+            assert_eq!(of(&found, "hospital_bed").len(), 2, "{seed}: {:?}", found.unplaced);
+        }
+    });
+}

@@ -105,11 +105,14 @@ impl<'a> Unit<'a> {
         local.turned((4 - self.look()) % 4)
     }
 
-    /// Returns the unit without the optional things on its top that are in the way; `None` when none is.
+    /// Returns the unit without the optional things on its top and over it that are in the way; `None` when none is.
     pub fn cleared(&self, in_the_way: impl Fn(&Part) -> bool) -> Option<Self> {
-        let gone = |p: &Part| p.optional && p.mount == Mount::Surface && in_the_way(p);
+        let gone = |p: &Part| p.optional && matches!(p.mount, Mount::Surface | Mount::Ceiling) && in_the_way(p);
+        if !self.parts.iter().any(gone) {
+            return None;
+        }
         let parts: Vec<Part> = self.parts.iter().filter(|p| !gone(p)).cloned().collect();
-        (parts.len() < self.parts.len()).then(|| finish_with(self.item, self.group, parts, self.clears.clone()))
+        Some(finish_with(self.item, self.group, parts, self.clears.clone()))
     }
 
     /// Returns how many people can lie on the unit's beds: two on a wide one.

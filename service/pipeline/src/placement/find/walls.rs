@@ -171,7 +171,10 @@ impl<'a> Find<'_, 'a, '_> {
             }
         }
         let spare = f64::from(gl + gr);
-        s -= style.centered * f64::from((gl - gr).abs()) / (spare + 1.0) * (spare / 2000.0).min(1.0);
+        let aside = f64::from((gl - gr).abs()) / (spare + 1.0) * (spare / 2000.0).min(1.0);
+        // the first of several beds leaves the rest of the wall to the others
+        let more = self.task.required as usize > self.siblings().count() + 1;
+        s += if more { 0.8 * aside } else { -style.centered * aside };
         s -= style.tight * (spare / 3000.0).min(1.0);
         s += self.window_score(index, a, z) + self.door_score(p) + self.sibling_score(p, a, z, index);
         s + self.arrangement_score(p, index, a, z)

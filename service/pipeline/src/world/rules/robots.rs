@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use d3dgen_knowledge::clearance::{Side, door_zones, free_depth};
+use d3dgen_knowledge::clearance::{Side, door_zones, free_depth, is_shallow};
 use d3dgen_model::domain::Shape;
 use d3dgen_model::occupancy::Bitmap;
 use d3dgen_model::{Point, Pose};
@@ -29,7 +29,9 @@ pub fn docks(c: &Context, out: &mut Findings) {
                 out.add(&p.placement_id, format!("stands in the way of `{}`", door.door_id));
             }
         }
-        let others = c.objects_in(&p.room_id).filter(|o| o.blocks && o.placement.placement_id != p.placement_id);
+        let others = c
+            .objects_in(&p.room_id)
+            .filter(|o| o.blocks && !is_shallow(o.placement) && o.placement.placement_id != p.placement_id);
         let depth = free_depth(p, Side::Front, &room.plan.net_polygon, others.map(|o| o.rect));
         // the whole clearance for robots that were asked for, a robot's width for docks that only stand there
         let wanted = dock.kind.map_or(0.0, |k| k.clearance_front_m);
