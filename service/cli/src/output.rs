@@ -91,7 +91,11 @@ impl Output {
     /// # Errors
     /// `Write`; what was there before is then still there.
     pub fn commit(self) -> Result<(), Error> {
-        let moved = if self.exists { self.exchange() } else { self.rename() };
+        let moved = match (self.exists, self.adds) {
+            (false, _) => self.rename(),
+            (true, false) => self.swap().or_else(|_| self.exchange()),
+            (true, true) => self.exchange(),
+        };
         moved.map_err(|source| Error::Write { path: self.path.clone(), source })
     }
 
@@ -104,6 +108,30 @@ impl Output {
             fs::create_dir_all(parent)?;
         }
         fs::rename(self.fresh(), &self.path)
+    }
+
+    /// Swaps the whole folder with the old one in a single step that cannot be seen half done.
+    ///
+    /// It fails, with nothing changed, for a mount point, a link, the current folder, and where the system cannot do it.
+    #[cfg(target_os = "linux")]
+    fn swap(&self) -> io::Result<()> {
+        use rustix::fs::{CWD, RenameFlags, renameat_with};
+        if fs::symlink_metadata(&self.path)?.is_symlink() {
+            return Err(io::ErrorKind::Unsupported.into());
+        }
+        let beside =
+            tempfile::Builder::new().prefix(TMP_PREFIX).suffix(TMP_SUFFIX).tempdir_in(nearest_folder(&self.path))?;
+        let fresh = beside.path().join("new");
+        fs::rename(self.fresh(), &fresh)?;
+        renameat_with(CWD, &fresh, CWD, &self.path, RenameFlags::EXCHANGE).or_else(|refused| {
+            fs::rename(&fresh, self.fresh())?;
+            Err(refused.into())
+        }) // what was there before goes with `beside`
+    }
+
+    #[cfg(not(target_os = "linux"))]
+    fn swap(&self) -> io::Result<()> {
+        Err(io::ErrorKind::Unsupported.into())
     }
 
     /// Swaps the entries of an existing folder: the mark of a finished output goes first and comes last, so that a folder
