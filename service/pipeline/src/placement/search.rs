@@ -19,6 +19,8 @@ const ROUTE_TESTS: usize = 40;
 const WEIGHED: usize = 4;
 /// Ranks of choice tried for the first, second, ... unit, one departure at a time.
 const DEPARTURES: [(usize, usize); 5] = [(0, 1), (1, 1), (0, 2), (2, 1), (1, 2)];
+/// Free floor from which two departures are enough, in cells (100 m^2): halls take long and look alike.
+const LARGE: usize = 40_000;
 /// Further departures while something required has no place.
 const RESCUES: [(usize, usize); 6] = [(0, 3), (2, 2), (3, 1), (0, 4), (1, 3), (3, 2)];
 
@@ -132,7 +134,8 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
         let mut best = draft((usize::MAX, 0));
         let hopeless = best.outcome.required_missing > 0 && self.hopeless();
         for (n, departure) in DEPARTURES.into_iter().chain(RESCUES).enumerate() {
-            if hopeless || departure.0 >= best.steps || n >= DEPARTURES.len() && best.outcome.required_missing == 0 {
+            let looks = if empty > LARGE { 2 } else { DEPARTURES.len() };
+            if hopeless || departure.0 >= best.steps || n >= looks && best.outcome.required_missing == 0 {
                 continue;
             }
             let other = draft(departure);
@@ -271,13 +274,18 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
             } else {
                 rows(state, task, index, unit, terms, tally)
             };
+            let most = batches.iter().skip(rank).map(|b| b.placed.len()).max().unwrap_or(0);
             for batch in batches.into_iter().skip(rank) {
                 let mut kept: Vec<Placed> = Vec::new();
                 keep_passable(state, &batch.placed, &mut kept, tally);
                 kept.iter_mut().for_each(|p| p.first_line = task.line == 0);
                 let score = batch.score + kept.len() as f64;
+                let whole = kept.len() >= most;
                 if !kept.is_empty() && best.as_ref().is_none_or(|b| (kept.len(), score) > (b.0.len(), b.1)) {
                     best = Some((kept, score));
+                }
+                if whole {
+                    break; // the others hold no more and look no better
                 }
             }
             if best.as_ref().is_some_and(|b| b.0.len() as u32 >= task.count) {

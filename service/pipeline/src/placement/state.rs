@@ -233,8 +233,10 @@ impl<'a, 's> State<'a, 's> {
     }
 }
 
+/// Returns what robots drive around; what stands on a top takes no more floor than what carries it.
 fn obstacles(p: &Placed) -> impl Iterator<Item = Box2> {
-    p.unit.parts.iter().map(|part| p.solid(part)).filter(Solid::stops_robot).map(|s| s.rect)
+    let parts = p.unit.parts.iter().filter(|part| part.mount != Mount::Surface && p.support.is_none());
+    parts.map(|part| p.solid(part)).filter(Solid::stops_robot).map(|s| s.rect)
 }
 
 /// Returns the outlines of what takes floor from people passing by or using something.
@@ -243,7 +245,7 @@ fn bodies(p: &Placed) -> impl Iterator<Item = Box2> {
 }
 
 fn takes_floor(part: &Part, solid: &Solid) -> bool {
-    solid.stops_robot() && !part.is_shallow()
+    solid.stops_robot() && part.mount != Mount::Surface && !part.is_shallow()
 }
 
 /// Returns true when a robot must be able to come up to the unit.

@@ -15,18 +15,28 @@ use super::unit::variants;
 const OUTER_M: f64 = 0.24;
 
 /// One room of `width` x `depth` m with doors in its south wall and windows (from, to, sill) in its north wall.
-struct Site {
-    room_type: &'static str,
+struct Site<'s> {
+    room_type: &'s str,
     width: f64,
     depth: f64,
     doors: Vec<f64>,
     windows: Vec<(f64, f64, f64)>,
     circulation: bool,
+    /// Whether door leaves swing into the room.
+    leaf_inside: bool,
 }
 
-impl Site {
-    fn new(room_type: &'static str, width: f64, depth: f64) -> Self {
-        Self { room_type, width, depth, doors: vec![width / 2.0], windows: Vec::new(), circulation: false }
+impl<'s> Site<'s> {
+    fn new(room_type: &'s str, width: f64, depth: f64) -> Self {
+        Self {
+            room_type,
+            width,
+            depth,
+            doors: vec![width / 2.0],
+            windows: Vec::new(),
+            circulation: false,
+            leaf_inside: true,
+        }
     }
 
     fn id(&self) -> String {
@@ -59,7 +69,7 @@ impl Site {
             wall_thickness_m: OUTER_M,
             room_ids: vec![self.id()],
             entrance: i == 0,
-            swing: Some(Swing { into_room_id: None, hinge_at_start: true }),
+            swing: Some(Swing { into_room_id: self.leaf_inside.then(|| self.id()), hinge_at_start: true }),
             locked: false,
         };
         let window = |(i, w): (usize, &(f64, f64, f64))| Window {
@@ -272,4 +282,27 @@ fn both_beds_of_a_double_room_find_their_place() {
             assert_eq!(of(&found, "hospital_bed").len(), 2, "{seed}: {:?}", found.unplaced);
         }
     });
+}
+
+/// Every room type of every domain, at its least and its usual area, holds what makes it that room.
+#[test]
+fn every_room_type_holds_what_it_needs() {
+    let mut problems = Vec::new();
+    for plugin in Registry::builtin().iter() {
+        let domain = plugin.domain();
+        for kind in &domain.room_types {
+            let (least, usual) = (kind.area_m2.min, kind.area_m2.target);
+            for (area, stretch, leaf_inside) in [(least, 1.0, false), (least, 1.5, false), (usual, 1.2, true)] {
+                let side = (area / stretch).sqrt().max(kind.min_dimension_m);
+                let width = area / side;
+                let id = kind.id.as_str();
+                let site = Site { doors: vec![0.9], leaf_inside, ..Site::new(id, side.max(1.4), width.max(1.0)) };
+                let found = site.furnished(domain, 3);
+                for u in found.unplaced.iter().filter(|u| u.required) {
+                    problems.push(format!("{} {id} {side:.2} x {width:.2}: {} {}", domain.id, u.item, u.reason));
+                }
+            }
+        }
+    }
+    assert!(problems.is_empty(), "{}", problems.join("\n"));
 }

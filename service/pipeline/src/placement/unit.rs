@@ -181,6 +181,7 @@ pub(super) fn variants<'a>(
             add(plan.build(smallest, &smallest_size, keep));
         }
         add(plan.build(smallest, &smallest_size, 0));
+        add(plan.build_bare(smallest, &smallest_size));
     }
     out
 }
@@ -203,20 +204,27 @@ struct Plan<'a> {
 impl<'a> Plan<'a> {
     /// Builds the unit with one size of the anchor and the first so many optional members on the floor.
     fn build(&self, size: usize, sizes: &Sizes, keep_optional: usize) -> Unit<'a> {
+        let mut kept = 0;
+        self.build_with(size, sizes, |member| {
+            let counts = !member.required && takes_floor(self.domain, member);
+            kept += usize::from(counts);
+            !counts || kept <= keep_optional
+        })
+    }
+
+    /// Builds the unit with required members only.
+    fn build_bare(&self, size: usize, sizes: &Sizes) -> Unit<'a> {
+        self.build_with(size, sizes, |member| member.required)
+    }
+
+    fn build_with(&self, size: usize, sizes: &Sizes, mut keep: impl FnMut(&Member) -> bool) -> Unit<'a> {
         let [w, d, h] = size_mm(self.anchor, size);
         let z = hung(self.anchor, h, self.ceiling);
         let rect = Box2 { x0: 0, y0: -(w / 2), x1: d, y1: w - w / 2 };
         let solid = Solid { rect, z0: z, z1: z + h };
         let mount = if self.anchor.mount == Mount::Surface { Mount::Floor } else { self.anchor.mount };
         let mut parts = vec![Part { object: self.anchor, quarter: 0, solid, mount, support: None, optional: false }];
-        let mut kept = 0;
-        for member in self.group.map_or(&[][..], |g| &g.members) {
-            if !member.required && takes_floor(self.domain, member) {
-                if kept == keep_optional {
-                    continue;
-                }
-                kept += 1;
-            }
+        for member in self.group.map_or(&[][..], |g| &g.members).iter().filter(|m| keep(m)) {
             if let Some(object) = self.domain.object(&member.object) {
                 add_member(&mut parts, member, object, sizes(object), self.ceiling);
             }
