@@ -91,8 +91,16 @@ impl Survey {
             main: vec![None; rooms],
             clear: vec![(0.0, 0.0); rooms],
         };
-        for (i, (a, first)) in boxes.iter().enumerate() {
-            for (j, (b, second)) in boxes.iter().enumerate().skip(i + 1) {
+        // A sweep from west to east: only boxes that begin before this one ends can touch it.
+        let mut by_west: Vec<usize> = (0..boxes.len()).collect();
+        by_west.sort_unstable_by_key(|&i| (boxes[i].1.x0, i));
+        for (k, &i) in by_west.iter().enumerate() {
+            let (a, first) = &boxes[i];
+            for &j in &by_west[k + 1..] {
+                let (b, second) = &boxes[j];
+                if second.x0 > first.x1 {
+                    break;
+                }
                 let Some((s, from, to)) = first.contact(second) else { continue };
                 side[i][s] += to - from;
                 side[j][s ^ 1] += to - from;

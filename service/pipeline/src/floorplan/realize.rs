@@ -38,7 +38,8 @@ pub(super) fn door_need(clear_m: f64) -> i32 {
 
 /// Returns the corridor's width between wall center lines, lattice units.
 pub(super) fn spine_units(brief: &Brief) -> i32 {
-    let width = up(brief.spine_width + INNER_HALF_M + OUTER_HALF_M);
+    // wings and courtyards put outer walls on both sides
+    let width = up(brief.spine_width + 2.0 * OUTER_HALF_M);
     // The entrance door stands in the corridor's end wall, between two corners with outer walls.
     let entered = brief.spine.is_some_and(|s| brief.rooms[s].entrance) || brief.second_exit;
     if entered { width.max(door_need(brief.entrance_width) + 1) } else { width }
