@@ -229,27 +229,34 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
         tally: &mut Tally,
     ) -> Option<(Vec<Placed<'a>>, f64)> {
         let task = Task { count, ..self.job.tasks[index].clone() };
-        let terms = Terms {
+        let depth = self.stage(&task);
+        let terms = |stage: i32| Terms {
             salt: self.job.salt,
             robot: self.aisle(),
             one_way: self.job.tasks.iter().any(|t| t.arrangement == Arrangement::Facing),
-            stage: self.stage(&task),
+            stage,
         };
-        let best = self.best_batch(state, &task, index, rank, &terms, tally);
-        if terms.stage > 0 && best.as_ref().is_none_or(|b| (b.0.len() as u32) < task.required.max(1)) {
-            return self.best_batch(state, &task, index, rank, &Terms { stage: 0, ..terms }, tally);
+        // a stage one can walk around, a bare one, none: the first that leaves room for those who must sit
+        let mut stages = vec![depth + self.aisle(), depth, 0];
+        stages.retain(|stage| depth > 0 || *stage == 0);
+        let mut best = None;
+        for stage in stages {
+            best = self.best_batch(state, &task, index, rank, &terms(stage), tally);
+            if best.as_ref().is_some_and(|b| b.0.len() as u32 >= task.required.max(1)) {
+                break;
+            }
         }
         best
     }
 
-    /// Returns the floor to leave before the rows a room begins with, for what faces them, mm.
+    /// Returns the depth of what faces the rows a room begins with, mm.
     fn stage(&self, task: &Task) -> i32 {
         if task.line > 0 || task.arrangement != Arrangement::Rows || !task.is_audience() {
             return 0;
         }
         let facing = self.job.tasks.iter().zip(&self.forms).filter(|(t, _)| t.arrangement == Arrangement::Facing);
         let depths = facing.filter_map(|(_, forms)| forms.first()?.first()).map(|u| u.as_looking(&u.reach).width());
-        depths.max().map_or(0, |depth| depth + self.aisle())
+        depths.max().unwrap_or(0)
     }
 
     /// Returns the narrowest gap a robot passes, mm.
