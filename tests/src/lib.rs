@@ -75,11 +75,11 @@ pub fn program() -> &'static Path {
         let built = Command::new(env!("CARGO")).args(args).current_dir(workspace()).output().expect("cargo runs");
         assert!(built.status.success(), "{}", String::from_utf8_lossy(&built.stderr));
         let messages = String::from_utf8_lossy(&built.stdout).into_owned();
-        let program = messages.lines().filter_map(|line| {
+        let mut program = messages.lines().filter_map(|line| {
             let message: serde_json::Value = serde_json::from_str(line).ok()?;
             message["executable"].as_str().map(PathBuf::from)
         });
-        program.last().expect("cargo names the program it built")
+        program.next_back().expect("cargo names the program it built")
     })
 }
 

@@ -151,9 +151,8 @@ pub fn furnish_and_check(
 /// Returns the graph with what the prompt wants beside each other as wishes, or `None` when there is nothing to relax.
 fn relaxed(graph: &SceneGraph) -> Option<SceneGraph> {
     let mut out = graph.clone();
-    let reached = |room: &str| {
-        graph.edges.iter().any(|e| e.required && e.reason != BY_PROMPT && (e.a == room || e.b == room))
-    };
+    let reached =
+        |room: &str| graph.edges.iter().any(|e| e.required && e.reason != BY_PROMPT && (e.a == room || e.b == room));
     for edge in out.edges.iter_mut().filter(|e| e.required && e.reason == BY_PROMPT) {
         if reached(&edge.a) && reached(&edge.b) {
             edge.required = false;

@@ -12,10 +12,16 @@ use super::wishes::{CHARGING, Pair, Wish};
 /// Rooms of a building planned by area alone.
 const MOST_BY_AREA: usize = 60;
 /// Share of a building's net area that its corridors take, before any plan is drawn.
-pub(super) const CIRCULATION_SHARE: f64 = 0.14;
+const CIRCULATION_SHARE: f64 = 0.14;
 
 /// What rooms need beyond their least area before a building counts as too small for them, as a factor.
 const TIGHT: f64 = 1.1;
+
+/// Returns the share of the net area that goes to corridors: none where a hall takes their part.
+pub(super) fn circulation_share(reading: &Reading, rooms: &[Planned]) -> f64 {
+    let hubs = &reading.domain.circulation.hub_room_types;
+    if rooms.len() < 2 || rooms.iter().any(|r| hubs.contains(&r.room_type)) { 0.0 } else { CIRCULATION_SHARE }
+}
 
 /// A room to be.
 #[derive(Debug, Clone)]
@@ -150,7 +156,8 @@ impl<'r, 'a> Build<'r, 'a> {
         let wishes = &self.reading.wishes;
         let exact = wishes.wishes.iter().any(|w| w.exact && w.room_type == room_type);
         let night = self.reading.domain.room_type(room_type).is_some_and(|t| t.zone == Zone::Night);
-        !exact && !self.is_forbidden(room_type) && !(night && self.sleeping_is_fixed)
+        let fixed = exact || night && self.sleeping_is_fixed;
+        !fixed && !self.is_forbidden(room_type)
     }
 
     /// Adds one room of an entry with those that come with it; returns false when there is no place for it.
@@ -237,7 +244,7 @@ impl<'r, 'a> Build<'r, 'a> {
         self.spend_wishes(most, program.default_rooms as usize);
         self.fit_people(most);
         if let Some(area) = self.reading.area_m2 {
-            self.fit_area(area * (1.0 - CIRCULATION_SHARE));
+            self.fit_area(area * (1.0 - circulation_share(self.reading, &self.rooms)));
         }
     }
 

@@ -433,8 +433,8 @@ fn is_closed(wishes: &Wishes, text: &Text, building: &Building) -> bool {
     // "3BHK with a balcony": the short form leaves out what every dwelling has
     let settled = |id: &String| wishes.wishes.iter().any(|w| &w.room_type == id) || wishes.forbidden.contains(id);
     let dwelling = &words().dwelling;
-    let short = !text.short_forms.is_empty() && !(settled(&dwelling.kitchen) && settled(&dwelling.bathroom));
-    !open && !short && types >= 1 && (items >= 3 || types >= 2 && colon)
+    let whole = text.short_forms.is_empty() || settled(&dwelling.kitchen) && settled(&dwelling.bathroom);
+    !open && whole && types >= 1 && (items >= 3 || types >= 2 && colon)
 }
 
 /// Adds to a list of rooms the one the building is for where the list takes it for granted: a laboratory's laboratory,

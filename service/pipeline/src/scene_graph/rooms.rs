@@ -6,7 +6,7 @@ use d3dgen_model::domain::{Domain, GENERIC_ROOM_TYPE, RoomType};
 use d3dgen_model::scene_graph::GraphRoom;
 
 use super::places::note;
-use super::program::{CIRCULATION_SHARE, Planned};
+use super::program::{Planned, circulation_share};
 use super::reading::Reading;
 
 /// Most objects wished for in one room.
@@ -113,7 +113,8 @@ fn target_areas(reading: &mut Reading, planned: &[Planned]) -> Vec<f64> {
         areas.push(area);
     }
     let Some(total) = reading.area_m2 else { return areas.into_iter().map(tenth).collect() };
-    let budget = total * (1.0 - CIRCULATION_SHARE);
+    let for_rooms = 1.0 - circulation_share(reading, planned);
+    let budget = total * for_rooms;
     let at = |scale: f64| -> Vec<f64> {
         let sized = planned.iter().zip(&areas).map(|(room, area)| {
             let range = room.kind.area_m2;
@@ -135,7 +136,7 @@ fn target_areas(reading: &mut Reading, planned: &[Planned]) -> Vec<f64> {
     if (sum - budget).abs() > AREA_TOLERANCE * budget {
         let message = format!(
             "{total:.0} m2 were asked for; the rooms can have about {:.0} m2 within the ranges of their types",
-            sum / (1.0 - CIRCULATION_SHARE)
+            sum / for_rooms
         );
         reading.conflicts.push(note("area_not_reachable", message));
     }
