@@ -64,6 +64,11 @@ impl<'a> Floor<'a> {
         Some(self.occupancy.frame.center(i, j))
     }
 
+    /// Returns every so many-th reachable spot of a room.
+    pub fn every(&self, room: &Room, step: usize) -> Vec<Point> {
+        room.spots.cells().step_by(step).map(|(i, j)| self.occupancy.frame.center(i, j)).collect()
+    }
+
     /// Returns the number of spots of a room.
     pub fn spots(&self, room: &Room) -> usize {
         room.spots.count()

@@ -98,16 +98,15 @@ fn bays(floor: &Floor, graph: &SceneGraph) -> Vec<Poi> {
     let Some(room) = room.or_else(|| floor.rooms.iter().find(|r| entered(&r.plan.room_id))) else { return Vec::new() };
     let doors: Vec<Point> = floor.plan.doors_of(&room.plan.room_id).map(|d| d.line.middle()).collect();
     let mut taken: Vec<Point> = Vec::new();
-    let count = floor.spots(room);
+    // every tenth spot: the best of many is as good as the best of all
+    let spots = floor.every(room, 10);
     for _ in 0..robots.clamp(1, MOST_BAYS) {
-        // every tenth spot: the best of many is as good as the best of all
-        let free = (0..count).step_by(10).filter_map(|n| floor.spot(room, n));
         let apart = |p: &Point| {
             let others = taken.iter().all(|t| t.distance(*p) >= 2.0 * floor.radius + GAP_M);
             others && doors.iter().all(|d| d.distance(*p) >= BAY_FROM_DOOR_M)
         };
         let room_around = |p: &Point| doors.iter().chain(&taken).map(|d| d.distance(*p)).fold(f64::MAX, f64::min);
-        let best = free.filter(apart).max_by(|a, b| room_around(a).total_cmp(&room_around(b)));
+        let best = spots.iter().copied().filter(apart).max_by(|a, b| room_around(a).total_cmp(&room_around(b)));
         taken.extend(best);
     }
     let middle = room.plan.net_polygon.bounds().center();
