@@ -48,6 +48,12 @@ impl FreeSpace {
         self.rects.iter().map(short_side).fold(0.0, f64::max)
     }
 
+    /// Returns length over width of the largest free rectangle; infinite without free floor.
+    pub fn proportion(&self) -> f64 {
+        let largest = self.rects.iter().max_by(|a, b| a.area().total_cmp(&b.area()));
+        largest.map_or(f64::INFINITY, |r| r.width().max(r.height()) / short_side(r).max(TOLERANCE_M))
+    }
+
     /// Returns the largest width of a free rectangle that is at least `length` long, m; 0 when there is none.
     pub fn width_at_length(&self, length: f64) -> f64 {
         let long = |r: &&Rect| r.width().max(r.height()) >= length - TOLERANCE_M;

@@ -1,10 +1,13 @@
 //! From a layout on the lattice to the floorplan document.
 
+use d3dgen_knowledge::freespace::FreeSpace;
 use d3dgen_model::Segment;
+use d3dgen_model::domain::Zone;
 use d3dgen_model::floorplan::{CostTerm, Door, Floorplan, PlanRoom, Wall};
 use d3dgen_model::geometry::to_mm;
 use d3dgen_model::seed::Stream;
 
+use super::PROPORTION_LIMIT;
 use super::cost::{Score, TERMS};
 use super::doors::{Site, place_doors};
 use super::lattice::{Cellbox, INNER_HALF_M, OUTER_HALF_M, meters};
@@ -57,6 +60,10 @@ pub(super) fn assemble(
         let ring = outline(i, &stretches).ok_or_else(|| format!("{} is not one simple polygon", spec.id))?;
         let net_polygon = ring.net_polygon();
         let net_area_m2 = to_mm(net_polygon.signed_area());
+        let proportion = FreeSpace::new(&net_polygon, &[]).proportion();
+        if proportion > PROPORTION_LIMIT && !spec.circulation && spec.zone != Zone::Circulation {
+            return Err(format!("{} is {proportion:.1} times as long as wide", spec.id));
+        }
         rooms.push(PlanRoom {
             room_id: spec.id.clone(),
             room_type: spec.room_type.clone(),

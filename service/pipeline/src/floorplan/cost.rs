@@ -7,6 +7,7 @@ use d3dgen_model::domain::{Daylight, Zone};
 use d3dgen_model::scene_graph::Connector;
 use d3dgen_model::seed::Stream;
 
+use super::PROPORTION_LIMIT;
 use super::lattice::{Cellbox, INNER_HALF_M, OUTER_HALF_M, meters, up};
 use super::realize::{Layout, door_need};
 use super::spec::Brief;
@@ -27,8 +28,6 @@ pub(super) const TERMS: [&str; 9] = [
 pub(super) const WEIGHTS: [f64; 9] = [1.0, 0.6, 1.2, 0.5, 10.0, 0.35, 0.8, 0.5, 0.4];
 /// Least outer wall of a room that needs a window, m.
 pub(super) const WINDOW_WALL_M: f64 = 1.2;
-/// Net proportion above which a plan is refused.
-const PROPORTION_LIMIT: f64 = 2.5;
 
 /// Verdict on a layout.
 #[derive(Debug, Clone, Default)]

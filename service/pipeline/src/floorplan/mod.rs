@@ -33,6 +33,8 @@ use assemble::{Turn, assemble};
 use search::search;
 use spec::Brief;
 
+/// Longest net length over width of a room: a hard rule.
+pub(crate) const PROPORTION_LIMIT: f64 = 2.5;
 /// Plans tried before the stage gives up.
 const ATTEMPTS: u64 = 8;
 

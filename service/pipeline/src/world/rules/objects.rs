@@ -116,7 +116,9 @@ fn off_ceiling(object: &Object, room: &Room) -> Option<String> {
 
 fn off_surface(c: &Context, object: &Object) -> Option<String> {
     let p = object.placement;
-    let id = p.support.as_deref()?;
+    let Some(id) = p.support.as_deref() else {
+        return Some("stands on a surface and names none".to_owned());
+    };
     let Some(base) = c.objects.iter().find(|o| o.placement.placement_id == id) else {
         return Some(format!("stands on `{id}`, which is not there"));
     };

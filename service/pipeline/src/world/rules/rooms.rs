@@ -5,10 +5,9 @@ use d3dgen_model::TOLERANCE_M;
 use d3dgen_model::domain::Zone;
 
 use super::Findings;
-use crate::world::context::{Context, Room};
+use crate::floorplan::PROPORTION_LIMIT as PROPORTION;
+use crate::world::context::Context;
 
-/// Longest length over width.
-const PROPORTION: f64 = 2.5;
 /// Share of an area that rounding to the wall lattice may take or add.
 const AREA_SLACK: f64 = 0.01;
 /// How far a building rule may push an area beyond what was asked for.
@@ -50,7 +49,7 @@ pub fn dimension(c: &Context, out: &mut Findings) {
 pub fn proportion(c: &Context, out: &mut Findings) {
     for room in c.rooms.iter().filter(|r| !r.plan.circulation && r.kind.zone != Zone::Circulation) {
         out.look();
-        let ratio = length_to_width(room);
+        let ratio = FreeSpace::new(&room.plan.net_polygon, &[]).proportion();
         if ratio > PROPORTION + TOLERANCE_M {
             out.add_figure(
                 &room.plan.room_id,
@@ -61,14 +60,6 @@ pub fn proportion(c: &Context, out: &mut Findings) {
             );
         }
     }
-}
-
-/// Returns length over width of a rectangular room, or of the largest rectangle in any other.
-fn length_to_width(room: &Room) -> f64 {
-    let ratio = |w: f64, h: f64| w.max(h) / w.min(h).max(TOLERANCE_M);
-    let space = FreeSpace::new(&room.plan.net_polygon, &[]);
-    let largest = space.rects.iter().max_by(|a, b| a.area().total_cmp(&b.area()));
-    largest.map_or(f64::MAX, |r| ratio(r.width(), r.height()))
 }
 
 pub fn height(c: &Context, out: &mut Findings) {

@@ -27,8 +27,14 @@ pub fn not_finite(c: &Context, out: &mut Findings) {
         look(&r.room_id, polygon(&r.polygon) && polygon(&r.net_polygon) && sizes);
     }
     plan.walls.iter().for_each(|w| look(&w.wall_id, line(&w.line) && w.thickness_m.is_finite()));
-    plan.doors.iter().for_each(|d| look(&d.door_id, line(&d.line) && d.clear_width_m.is_finite()));
-    plan.windows.iter().for_each(|w| look(&w.window_id, line(&w.line) && w.sill_m.is_finite() && w.head_m.is_finite()));
+    plan.doors.iter().for_each(|d| {
+        let sizes = [d.clear_width_m, d.height_m, d.wall_thickness_m];
+        look(&d.door_id, line(&d.line) && sizes.iter().all(|v| v.is_finite()));
+    });
+    plan.windows.iter().for_each(|w| {
+        let sizes = [w.sill_m, w.head_m, w.wall_thickness_m];
+        look(&w.window_id, line(&w.line) && sizes.iter().all(|v| v.is_finite()));
+    });
     for p in &c.world.placements.placements {
         look(&p.placement_id, pose(&p.pose) && p.size_m.iter().all(|v| v.is_finite()));
     }
