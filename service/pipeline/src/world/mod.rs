@@ -11,3 +11,6 @@ pub mod rules;
 
 pub use assemble::assemble;
 pub use check::check;
+
+#[cfg(test)]
+mod tests;
