@@ -276,6 +276,10 @@ fn clears_of(part: &Part, tightness: f64, out: &mut Vec<Box2>) {
     // in the part's own frame, then turned to the unit's
     let own = part.solid.rect.turned((4 - part.quarter) % 4);
     let mut add = |b: Box2| out.push(b.turned(part.quarter));
+    // one stands on a level shower's tray, so nothing else does
+    if part.object.shape == Shape::Shower && part.solid.is_flat() {
+        add(own);
+    }
     if front > 0 {
         add(Box2 { x0: own.x1, x1: own.x1 + front, ..own });
     }
