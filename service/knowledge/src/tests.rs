@@ -80,3 +80,35 @@ fn limits_are_the_figures_of_the_nearest_rules() {
     let int = limits("office", None);
     assert_eq!(value(&int.corridor_width), Some(1.2), "ISO 21542");
 }
+
+#[test]
+fn documents_about_accessible_homes_hold_only_where_access_is_asked_for() {
+    let count = |accessible| {
+        let query = Query { accessible, ..query("residential", Some("US")) };
+        let found = retrieve(&knowledge("residential"), &query).constraints;
+        found.iter().filter(|a| a.citation.source.title.contains("ADA Standards")).count()
+    };
+    assert_eq!(count(false), 0);
+    assert!(count(true) > 0);
+}
+
+#[test]
+fn more_people_need_wider_corridors() {
+    let width = |persons| {
+        let query = Query { persons, persons_stated: true, ..query("office", Some("DE")) };
+        retrieve(&knowledge("office"), &query).limits.corridor_width.map(|l| l.value)
+    };
+    assert_eq!(width(18), Some(1.0));
+    assert!(width(150) > width(18), "{:?}", width(150));
+}
+
+#[test]
+fn ceilings_by_area_hold_within_their_steps_only() {
+    let limits = retrieve(&knowledge("office"), &query("office", Some("DE"))).limits;
+    let room = &limits.rooms["open_office"];
+    assert!(!room.ceiling_heights_by_area.is_empty());
+    for step in &room.ceiling_heights_by_area {
+        let inside = step.up_to_m2.min(step.above_m2.max(0.0) + 1.0);
+        assert!(room.ceiling_height(inside).is_some_and(|h| h >= step.limit.value), "{step:?}");
+    }
+}

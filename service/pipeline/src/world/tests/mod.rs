@@ -2,6 +2,7 @@
 //! that rule, at that subject.
 
 mod building;
+mod compliance;
 mod furnishing;
 mod openings;
 
