@@ -29,6 +29,9 @@ pub(super) const WEIGHTS: [f64; 9] = [1.0, 0.6, 1.2, 0.5, 10.0, 0.35, 0.8, 0.5, 
 /// Least outer wall of a room that needs a window, m.
 pub(super) const WINDOW_WALL_M: f64 = 1.2;
 
+/// Share by which the whole may miss the area asked for before it costs.
+const AREA_TOLERANCE: f64 = 0.03;
+
 /// Verdict on a layout.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Score {
@@ -236,6 +239,10 @@ fn whole(brief: &Brief, layout: &Layout, survey: &Survey, score: &mut Score) {
         // From a fifth on, circulation is what a reviewer objects to first.
         let share = survey.gross_m2[spine] / total;
         score.soft[4] += (share - 0.10).max(0.0) + 5.0 * (share - 0.20).max(0.0);
+    }
+    if let Some(area) = brief.area {
+        let net: f64 = survey.net_m2.iter().sum();
+        score.soft[0] += 20.0 * ((net - area).abs() / area - AREA_TOLERANCE).max(0.0);
     }
     let perimeter: f64 = survey.outer.iter().map(|o| meters(o.1)).sum();
     score.soft[6] += perimeter / (4.0 * total.sqrt()) - 1.0 + 0.02 * layout.notch;

@@ -73,6 +73,8 @@ pub(super) struct Brief {
     pub links: Vec<Link>,
     pub apart: Vec<[usize; 2]>,
     pub second_exit: bool,
+    /// Net floor area asked for in total, m^2.
+    pub area: Option<f64>,
     pub entrance_width: f64,
     pub conflicts: Vec<Note>,
 }
@@ -108,6 +110,7 @@ impl Brief {
             links: Vec::new(),
             apart: Vec::new(),
             second_exit: domain.circulation.second_exit,
+            area: graph.area_m2,
             entrance_width: max_limit(domain.circulation.entrance_width_m, limits.entrance_width.as_ref()),
             conflicts,
         };

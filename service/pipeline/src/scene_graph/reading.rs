@@ -140,7 +140,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         let message = format!("{} floors were asked for; all rooms were planned on one", n.value);
         conflicts.push(note("one_floor", message));
     }
-    let closed = is_closed(&wishes, &text, &building);
+    let closed = is_closed(&wishes, &text, &building, is_dwelling(program));
     if closed && total.is_none() {
         let named = building.head.and_then(|h| vocabulary.room_named(&tokens[h.start..h.end]));
         assumptions.extend(add_main_room(&mut wishes, program, domain, &people, named.as_deref()));
@@ -421,8 +421,13 @@ fn total_rooms(
     Ok(total)
 }
 
+/// Returns true for programs of buildings that people live in.
+fn is_dwelling(program: &Program) -> bool {
+    program.rooms.iter().any(|r| r.room_type == words().dwelling.bedroom || r.room_type == words().dwelling.living)
+}
+
 /// Returns true when the listed rooms are the whole building.
-fn is_closed(wishes: &Wishes, text: &Text, building: &Building) -> bool {
+fn is_closed(wishes: &Wishes, text: &Text, building: &Building, lives: bool) -> bool {
     let listed: Vec<_> = wishes.wishes.iter().filter(|w| w.listed).collect();
     let colon = building.list_from < text.tokens.len()
         && (building.list_from..(building.list_from + 1)).any(|i| text.tokens[i].mark() == Some(':'));
@@ -430,10 +435,9 @@ fn is_closed(wishes: &Wishes, text: &Text, building: &Building) -> bool {
     let open = listed.iter().any(|w| !w.exact);
     // "no kitchen, no bathroom" in a list of rooms are items of it
     let items = types + wishes.forbidden.len();
-    // "3BHK with a balcony": the short form leaves out what every dwelling has
+    // "3BHK with a balcony", "four bedrooms and a garage": what every dwelling has goes without saying
     let settled = |id: &String| wishes.wishes.iter().any(|w| &w.room_type == id) || wishes.forbidden.contains(id);
-    let dwelling = &words().dwelling;
-    let whole = text.short_forms.is_empty() || settled(&dwelling.kitchen) && settled(&dwelling.bathroom);
+    let whole = !lives || words().dwelling.essential.iter().all(|any| any.iter().any(settled));
     !open && whole && types >= 1 && (items >= 3 || types >= 2 && colon)
 }
 
@@ -448,7 +452,7 @@ fn add_main_room(
 ) -> Option<Note> {
     let main = program.rooms.first()?;
     let listed = |id: &str| wishes.wishes.iter().any(|w| w.room_type == id);
-    let lives = program.rooms.iter().any(|r| r.room_type == words().dwelling.bedroom);
+    let lives = is_dwelling(program);
     if lives || listed(&main.room_type) || wishes.forbidden.contains(&main.room_type) {
         return None;
     }

@@ -101,6 +101,8 @@ pub(super) struct Dwelling {
     pub toilet: String,
     /// Rooms that a word for a bathroom may mean where no one lives.
     pub toilets: Vec<String>,
+    /// Rooms that no dwelling is without, each with what can stand for it.
+    pub essential: Vec<Vec<String>>,
     pub bhk: Vec<String>,
     pub ldk: Vec<String>,
     pub rooms_to_live: Vec<String>,
