@@ -112,3 +112,17 @@ fn ceilings_by_area_hold_within_their_steps_only() {
         assert!(room.ceiling_height(inside).is_some_and(|h| h >= step.limit.value), "{step:?}");
     }
 }
+
+#[test]
+fn advised_areas_lie_between_the_least_figure_and_what_the_room_may_have() {
+    let mut seen = 0;
+    for (domain, country) in [("residential", "US"), ("hospital", "DE"), ("hospital", "US"), ("office", "DE")] {
+        for (room_type, room) in retrieve(&knowledge(domain), &query(domain, Some(country))).limits.rooms {
+            let Some([low, high]) = room.area_advised else { continue };
+            assert!(0.0 <= low && low <= high && high <= 60.0, "{domain} {country} {room_type}: {low} to {high} m2");
+            assert!(room.area_min.is_none_or(|l| l.value <= low), "{domain} {country} {room_type}");
+            seen += 1;
+        }
+    }
+    assert!(seen > 0);
+}

@@ -2,18 +2,31 @@
 
 use std::collections::BTreeSet;
 
-use d3dgen_knowledge::{Measure, Retrieval, compliance};
+use d3dgen_knowledge::{Measure, Query, Retrieval, compliance, retrieve};
 use d3dgen_model::report::Status;
 
-use super::{SAMPLES, Sample};
+use super::{REGISTRY, SAMPLES, Sample};
 
 /// Returns the retrieval with every required figure replaced by one least figure.
-fn with_least(sample: &Sample, least: f64) -> Retrieval {
-    let mut retrieval = sample.retrieval.clone();
+fn with_least(retrieval: &Retrieval, least: f64) -> Retrieval {
+    let mut retrieval = retrieval.clone();
     for rule in retrieval.constraints.iter_mut().filter_map(|a| a.decision.as_mut().ok()) {
         (rule.bounds.min, rule.bounds.max) = (Some(least), None);
     }
     retrieval
+}
+
+/// Returns what applies to a world wherever its knowledge base has rules and access is asked for.
+fn everywhere(sample: &Sample) -> Vec<Retrieval> {
+    let graph = &sample.world.scene_graph;
+    let knowledge = REGISTRY.get(&graph.domain).unwrap().knowledge();
+    let places: BTreeSet<&str> = knowledge.references.iter().map(|r| r.jurisdiction.as_str()).collect();
+    let query = |place: &&str| Query {
+        country_code: Some((*place).to_owned()),
+        accessible: true,
+        ..Query::of_graph(graph, sample.domain)
+    };
+    places.iter().map(|place| retrieve(knowledge, &query(place))).collect()
 }
 
 /// Returns the measures of what was found with this status, all results being complete.
@@ -35,15 +48,21 @@ fn measures(sample: &Sample, retrieval: &Retrieval, status: Status) -> BTreeSet<
 #[test]
 fn every_measure_at_hand_is_kept_by_one_figure_and_broken_by_another() {
     let (mut kept, mut broken) = (BTreeSet::new(), BTreeSet::new());
+    let mut asked = BTreeSet::new();
     for sample in SAMPLES.iter() {
-        kept.extend(measures(sample, &with_least(sample, -1e9), Status::Satisfied));
-        broken.extend(measures(sample, &with_least(sample, 1e9), Status::Violated));
+        for retrieval in everywhere(sample) {
+            asked.extend(retrieval.constraints.iter().filter_map(|a| Some(a.decision.as_ref().ok()?.quantity.measure)));
+            kept.extend(measures(sample, &with_least(&retrieval, -1e9), Status::Satisfied));
+            broken.extend(measures(sample, &with_least(&retrieval, 1e9), Status::Violated));
+        }
     }
     // whether a room is needed goes by the head count: the figure is one room, whatever the constraint says
     kept.remove(&Measure::RoomNeededAbovePersons);
     broken.remove(&Measure::RoomNeededAbovePersons);
     assert_eq!(kept, broken);
-    assert!(kept.len() >= 20, "{} measures: {kept:?}", kept.len());
+    asked.remove(&Measure::RoomNeededAbovePersons);
+    assert_eq!(asked.difference(&kept).collect::<Vec<_>>(), [&Measure::RoomArea; 0], "measured in no world");
+    assert!(kept.len() >= 30, "{} measures: {kept:?}", kept.len());
 }
 
 #[test]
