@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use d3dgen_knowledge::Retrieval;
-use d3dgen_model::domain::{Access, Occupants, ProgramRoom, RoomType, Zone};
+use d3dgen_model::domain::{Access, Occupants, ProgramRoom, RoomType, Shape, Zone};
 
 use super::places::note;
 use super::reading::{MAX_ROOMS, Reading};
@@ -109,11 +109,21 @@ impl<'r, 'a> Build<'r, 'a> {
                 self.bring_host(&wish.room_type);
             }
         }
-        let charging = self.reading.wishes.charging_room || self.reading.wishes.charging && !self.reading.closed;
+        let charging = self.reading.wishes.charging_room || self.reading.wishes.charging && !self.has_dock();
         if charging && !self.is_forbidden(CHARGING) && self.count(CHARGING) == 0 {
             self.push(CHARGING, None);
             self.rooms.last_mut().expect("just pushed").requested = true;
         }
+    }
+
+    /// Returns true when one of the rooms is furnished with a dock anyway.
+    fn has_dock(&self) -> bool {
+        let domain = self.reading.domain;
+        let is_dock = |item: &str| {
+            let object = domain.group(item).map_or(item, |g| g.anchor.as_str());
+            domain.object(object).is_some_and(|o| o.shape == Shape::Dock)
+        };
+        self.rooms.iter().any(|r| r.kind.furnishing.iter().any(|f| is_dock(&f.item)))
     }
 
     /// Adds the room through which one enters the last one, where a program of the domain has them together (an isolation

@@ -111,7 +111,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     let vocabulary = Vocabulary::new(domain, registry, &languages);
     let taken = Taken { spans: &spans, head: building.head, list_from: building.list_from };
     let mentions = mentions(&tokens, &numbers, &vocabulary, &spoken, language, &taken);
-    let said = relations::read(&tokens, &mentions, &spoken, language);
+    let said = relations::read(&tokens, &mentions, &spoken, language, building.head);
     let text = Text {
         tokens: &tokens,
         prompt,

@@ -3,7 +3,7 @@
 use d3dgen_model::scene_graph::Connector;
 
 use super::mentions::{Mention, What};
-use super::text::{Kind, Token};
+use super::text::{Kind, Span, Token};
 use super::words::{Spoken, Tag};
 
 /// How a pair is spread over the rooms of its types.
@@ -47,9 +47,15 @@ pub(super) struct Said {
 const RELATIONS: [Tag; 7] = [Tag::Near, Tag::Door, Tag::Open, Tag::Together, Tag::Between, Tag::Around, Tag::Apart];
 
 /// Reads all relations and negations.
-pub(super) fn read(tokens: &[Token], mentions: &[Mention], spoken: &[&Spoken], language: &str) -> Said {
+pub(super) fn read(
+    tokens: &[Token],
+    mentions: &[Mention],
+    spoken: &[&Spoken],
+    language: &str,
+    building: Option<Span>,
+) -> Said {
     let mut said = Said { negated: negated(tokens, mentions, spoken, language), ..Said::default() };
-    let reader = Reader { tokens, mentions, spoken, postposed: matches!(language, "zh" | "ko" | "de") };
+    let reader = Reader { tokens, mentions, spoken, postposed: matches!(language, "zh" | "ko" | "de"), building };
     let mut i = 0;
     while i < tokens.len() {
         if mentions.iter().any(|m| m.span.contains(i)) {
@@ -109,6 +115,8 @@ struct Reader<'a> {
     spoken: &'a [&'a Spoken],
     /// True where the relation can stand behind both rooms.
     postposed: bool,
+    /// Words that name the building.
+    building: Option<Span>,
 }
 
 impl Reader<'_> {
@@ -257,7 +265,10 @@ fn belongings(reader: &Reader, said: &mut Said) {
             continue;
         }
         let between = host.span.end..guest.from.min(guest.span.start);
-        if between.is_empty() || between.len() > 7 || between.clone().any(|i| tokens[i].ends_sentence()) {
+        // "two-bedroom flat with a kitchen": the flat has it, not the bedroom
+        let of_building = reader.building.is_some_and(|b| between.clone().any(|i| b.contains(i)));
+        let apart = of_building || between.clone().any(|i| tokens[i].ends_sentence());
+        if between.is_empty() || between.len() > 7 || apart {
             continue;
         }
         let has = |tag| between.clone().any(|i| reader.tagged(i, tag));
