@@ -20,6 +20,7 @@ use crate::summary::{Summary, closing};
 #[derive(clap::Args)]
 pub struct Args {
     /// What to build, in a sentence (`-`: from standard input)
+    #[arg(allow_hyphen_values = true)]
     prompt: String,
     /// Folder to write: new, empty, or an earlier output, which is replaced; with --count it gets a folder for each seed,
     /// and worlds of other seeds in it stay

@@ -14,7 +14,7 @@ use crate::request::{RequestArgs, prompt};
 #[derive(clap::Args)]
 pub struct Args {
     /// What to build, in a sentence (`-`: from standard input)
-    #[arg(required_unless_present = "from", conflicts_with = "from")]
+    #[arg(required_unless_present = "from", conflicts_with = "from", allow_hyphen_values = true)]
     prompt: Option<String>,
     /// Take the graph of a scene_graph.json, a world.json, or a world's folder
     #[arg(long, value_name = "FILE")]

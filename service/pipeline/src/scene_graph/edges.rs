@@ -3,12 +3,12 @@
 use d3dgen_model::domain::{Adjacency, AdjacencyRelation};
 use d3dgen_model::scene_graph::{Connector, GraphEdge, GraphRoom};
 
-use super::BY_PROMPT;
 use super::places::note;
 use super::program::Planned;
 use super::reading::Reading;
 use super::relations::Spread;
 use super::rooms;
+use super::{BY_HOST, BY_PROMPT};
 
 /// Walls that one room can be asked to share with others; more are wished for only.
 const MOST_WALLS: usize = 2;
@@ -84,7 +84,7 @@ impl Web {
         for (i, room) in planned.iter().enumerate().filter(|(i, _)| *i != hub) {
             let open = room.kind.open_front && room.host.is_none();
             let connector = if open { Connector::Open } else { Connector::Door };
-            let reason = if room.host.is_some() { "host" } else { "circulation" };
+            let reason = if room.host.is_some() { BY_HOST } else { "circulation" };
             self.put(rooms, (i, room.host.unwrap_or(hub)), connector, true, reason);
         }
     }

@@ -33,6 +33,9 @@ use crate::Error;
 /// Reason of the edges that a prompt asks for.
 pub(crate) const BY_PROMPT: &str = "prompt";
 
+/// Reason of the edge between a room and the one it is entered from.
+pub(crate) const BY_HOST: &str = "host";
+
 /// What to build: a prompt, and flags that overrule it.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Request {

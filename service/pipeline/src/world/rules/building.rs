@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use d3dgen_model::domain::{Access, Privacy};
 
 use super::Findings;
+use crate::scene_graph::BY_HOST;
 use crate::world::context::{Context, Room};
 
 /// Rooms are entered from outdoors or through rooms that are not private; what belongs to a host (en suite, closet,
@@ -47,6 +48,13 @@ fn may_pass(c: &Context, from: &Room, to: &Room) -> bool {
     let hosted = |inner: &Room, outer: &Room| {
         inner.kind.access == Access::Host && inner.kind.hosts.contains(&outer.plan.room_type)
     };
+    // a bathroom that the scene graph gives to one room is that room's en suite
+    let belongs = |inner: &Room, outer: &Room| {
+        let pair = [inner.plan.room_id.as_str(), outer.plan.room_id.as_str()];
+        let mut edges = c.graph().edges.iter().filter(|e| e.required && e.reason == BY_HOST);
+        inner.kind.wet && edges.any(|e| pair == [e.a.as_str(), e.b.as_str()])
+    };
     // an anteroom hangs on its host and is the way into it
-    from.plan.circulation || hub || from.kind.privacy != Privacy::Private || hosted(to, from) || hosted(from, to)
+    let hangs = hosted(to, from) || hosted(from, to) || belongs(to, from);
+    from.plan.circulation || hub || from.kind.privacy != Privacy::Private || hangs
 }
