@@ -83,7 +83,9 @@ fn counted(
         "dk" if !unit.spaced => return form(at + 1, with(std::slice::from_ref(&d.kitchen))),
         _ => {}
     }
-    if d.rooms_to_live.contains(&unit.text) {
+    // "2.5 rooms": only rooms to live in are counted by halves
+    let halves = number.value.fract() > 0.0 && matches!(unit.text.as_str(), "room" | "rooms");
+    if halves || d.rooms_to_live.contains(&unit.text) {
         return form(at + 1, rooms_to_live(number.value, d));
     }
     let joined = |k: usize| tokens.get(k).is_some_and(|t| !t.is_mark());

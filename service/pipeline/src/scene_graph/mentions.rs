@@ -1,5 +1,7 @@
 //! Rooms, people and totals that a prompt names, each with its number.
 
+use std::collections::BTreeSet;
+
 use d3dgen_model::domain::{Domain, GENERIC_ROOM_TYPE};
 use d3dgen_plugins::Registry;
 
@@ -64,6 +66,8 @@ struct RoomWord {
 pub(super) struct Vocabulary {
     own: Vec<Phrases<RoomWord>>,
     foreign: Vec<Phrases<RoomWord>>,
+    /// Room types of the domain itself.
+    ids: BTreeSet<String>,
 }
 
 impl Vocabulary {
@@ -72,7 +76,7 @@ impl Vocabulary {
         let own = languages.iter().map(|l| phrases(std::iter::once(domain), l)).collect();
         let others = || registry.iter().map(|p| p.domain()).filter(|d| d.id != domain.id);
         let foreign = languages.iter().map(|l| phrases(others(), l)).collect();
-        Self { own, foreign }
+        Self { own, foreign, ids: domain.room_types.iter().map(|r| r.id.clone()).collect() }
     }
 
     /// Returns end, room type and whether it is a plural of the longest room word at a token.
@@ -209,7 +213,7 @@ pub(super) fn mentions(
         }
     }
     ellipses(tokens, vocabulary, &mut out);
-    drop_modifiers(tokens, &mut out);
+    drop_modifiers(tokens, vocabulary, &mut out);
     attach_numbers(tokens, numbers, spoken, language, taken, &mut out);
     count_hosts(tokens, spoken, &mut out);
     drop_echoes(tokens, taken, &mut out);
@@ -340,13 +344,15 @@ fn ellipses(tokens: &[Token], vocabulary: &Vocabulary, out: &mut Vec<Mention>) {
     out.sort_by_key(|m| m.span.start);
 }
 
-/// Drops people that only qualify a room: "kids' bathroom", "staff toilets", "patient lounge".
-fn drop_modifiers(tokens: &[Token], out: &mut Vec<Mention>) {
+/// Drops what only qualifies a room: people in "kids' bathroom", "staff toilets", and words for rooms of other kinds of
+/// buildings, as in a home's "open-plan kitchen".
+fn drop_modifiers(tokens: &[Token], vocabulary: &Vocabulary, out: &mut Vec<Mention>) {
     let rooms: Vec<usize> = out.iter().filter(|m| m.room_type().is_some()).map(|m| m.span.start).collect();
     out.retain(|m| {
         let person = matches!(m.what, What::Staff | What::People | What::Visitors | What::Desks | What::Residents);
         let latin = tokens[m.span.start].kind == Kind::Word;
-        !(person && latin && rooms.contains(&m.span.end))
+        let stranger = m.room_type().is_some_and(|id| !vocabulary.ids.contains(id));
+        !((person || stranger) && latin && rooms.contains(&m.span.end))
     });
 }
 

@@ -8,6 +8,7 @@ use d3dgen_model::domain::{Access, Occupants, ProgramRoom, RoomType, Shape, Zone
 use super::places::note;
 use super::reading::{MAX_ROOMS, Reading};
 use super::wishes::{CHARGING, Pair, Wish};
+use super::words::words;
 
 /// Rooms of a building planned by area alone.
 const MOST_BY_AREA: usize = 60;
@@ -165,8 +166,11 @@ impl<'r, 'a> Build<'r, 'a> {
     fn may_grow(&self, room_type: &str) -> bool {
         let wishes = &self.reading.wishes;
         let exact = wishes.wishes.iter().any(|w| w.exact && w.room_type == room_type);
-        let night = self.reading.domain.room_type(room_type).is_some_and(|t| t.zone == Zone::Night);
-        let fixed = exact || night && self.sleeping_is_fixed;
+        let zone = self.reading.domain.room_type(room_type).map(|t| t.zone);
+        let night = zone == Some(Zone::Night);
+        let essential = words().dwelling.essential.iter().flatten().any(|e| e == room_type);
+        let lived_in = (night || zone == Some(Zone::Day)) && !essential;
+        let fixed = exact || night && self.sleeping_is_fixed || lived_in && self.reading.habitable_fixed;
         !fixed && !self.is_forbidden(room_type)
     }
 
@@ -378,10 +382,12 @@ fn hang_on_hosts(reading: &mut Reading, rooms: &mut [Planned]) {
         let guests = |h: usize, rooms: &[Planned]| {
             rooms.iter().filter(|r| r.host == Some(h) && r.room_type == rooms[i].room_type).count()
         };
+        // the usual host first: a terrace lies before the living room
+        let rank = |h: &Planned| room.kind.hosts.iter().position(|k| *k == h.room_type);
         let candidates = |test: &dyn Fn(&Planned) -> bool| {
             (0..rooms.len())
                 .filter(|&h| h != i && test(&rooms[h]) && rooms[h].host != Some(i))
-                .min_by_key(|&h| (guests(h, rooms), usize::from(rooms[h].host.is_some()), h))
+                .min_by_key(|&h| (guests(h, rooms), rank(&rooms[h]), usize::from(rooms[h].host.is_some()), h))
         };
         let host = candidates(&fits).or_else(|| candidates(&by_type));
         // a room the prompt gives to one host only ("bedroom with its own bath and a second bath")

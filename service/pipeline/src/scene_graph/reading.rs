@@ -38,6 +38,8 @@ pub(super) struct Reading<'a> {
     pub total: Option<u32>,
     /// True when the prompt lists all rooms there are to be.
     pub closed: bool,
+    /// True when the prompt counts the rooms to live in ("3-Zimmer-Wohnung", "2BHK").
+    pub habitable_fixed: bool,
     pub area_m2: Option<f64>,
     pub occupancy: Occupancy,
     /// People who live there.
@@ -155,6 +157,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         wishes,
         total,
         closed,
+        habitable_fixed: !short_forms.is_empty(),
         area_m2,
         occupancy: people.occupancy,
         residents: people.residents,
