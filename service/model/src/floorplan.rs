@@ -22,7 +22,7 @@ pub struct Floorplan {
     pub scheme: String,
     /// Rooms in scene-graph order.
     pub rooms: Vec<PlanRoom>,
-    /// Straight wall pieces with openings already cut out.
+    /// Straight wall pieces with doors cut out; windows leave the wall below and above them, so it goes on.
     pub walls: Vec<Wall>,
     /// Doors and open passages.
     pub doors: Vec<Door>,
