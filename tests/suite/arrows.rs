@@ -14,7 +14,8 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("knowledge", &["model"]),
     ("pipeline", &["model", "plugins", "knowledge"]),
     ("export", &["model"]),
-    ("cli", &["model", "plugins", "knowledge", "pipeline", "export"]),
+    ("research", &["model"]),
+    ("cli", &["model", "plugins", "knowledge", "pipeline", "export", "research"]),
     ("tests", &["model", "plugins", "knowledge", "pipeline", "export"]),
 ];
 

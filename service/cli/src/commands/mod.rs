@@ -8,6 +8,7 @@ mod floorplan;
 mod formats;
 mod generate;
 mod placement;
+mod research;
 mod scenario;
 mod scene_graph;
 mod version;
@@ -40,6 +41,8 @@ pub enum Command {
     Export(export::Args),
     /// List, show and validate the kinds of building
     Domains(domains::Args),
+    /// Find building rules in text
+    Research(research::Args),
     /// Print a completion script for a shell
     Completions(completions::Args),
     /// Print the version, and the versions of the documents it reads
@@ -62,6 +65,7 @@ impl Command {
             Self::Check(args) => args.run(),
             Self::Export(args) => args.run(),
             Self::Domains(args) => args.run(),
+            Self::Research(args) => args.run(),
             Self::Completions(args) => args.run(),
             Self::Version => version::run(),
         }

@@ -1,0 +1,371 @@
+//! Which figures of a sentence are limits, of what kind, and which only say when a limit holds or report a fact.
+
+use super::lexicon::{Bound, Lexicon};
+use super::mention::{Figure, Mention};
+use super::token::{Kind, Token};
+use super::{Confidence, ConstraintType};
+
+/// How far behind a figure "minimum" may stand, in tokens.
+const AFTER_REACH: usize = 9;
+/// How far before a comparator the word may stand that makes it a condition, in tokens.
+const OPENER_REACH: usize = 6;
+/// How far before a figure "within" and the like may stand, in tokens.
+const CLOSE_REACH: usize = 3;
+
+/// A sentence and its figures.
+pub struct Sentence<'a> {
+    pub lexicon: &'a Lexicon,
+    pub text: &'a str,
+    pub lang: &'a str,
+    pub tokens: &'a [Token],
+    pub mentions: &'a [Mention],
+}
+
+/// What stands at a figure.
+#[derive(Debug, Clone, Copy)]
+struct Sided {
+    bound: Bound,
+    strong: bool,
+    /// "within", "up to": words of place as well.
+    fixed: bool,
+    /// Where the comparator begins.
+    at: usize,
+    /// It stands behind the figure.
+    behind: bool,
+}
+
+/// What the sentence as a whole is.
+struct Tone {
+    duty: bool,
+    advice: bool,
+    habit: bool,
+    reckoned: bool,
+    report: bool,
+    past: bool,
+    plain: bool,
+}
+
+impl Sentence<'_> {
+    /// Returns for each figure its kind and how plain it is, none where it is no limit.
+    pub fn verdicts(&self) -> Vec<Option<(ConstraintType, Confidence)>> {
+        let tone = self.tone();
+        if tone.report && !self.is_physical() || tone.past && !tone.duty {
+            return vec![None; self.mentions.len()];
+        }
+        let sides = self.sides();
+        let mut conditions: Vec<bool> = (0..self.mentions.len()).map(|i| self.is_condition(i, sides[i])).collect();
+        let main = self.first_duty();
+        for i in 0..self.mentions.len() {
+            let before = main.is_some_and(|d| self.mentions[i].to <= d);
+            let later =
+                (i + 1..self.mentions.len()).any(|j| !conditions[j] && main.is_some_and(|d| self.mentions[j].from > d));
+            let bare = sides[i].is_none_or(|s| !s.strong || s.at > 0 && self.ends_noun(s.at));
+            if before && later && bare && self.mentions[i].thing.is_none_or(|_| sides[i].is_some()) && !self.chained(i)
+            {
+                conditions[i] = true;
+            }
+        }
+        if conditions.iter().all(|c| *c) {
+            // "If doors are powered a width of 850 mm is required": nothing else is left that the duty could be about.
+            for i in 0..self.mentions.len() {
+                let to = self.mentions[i].to;
+                let comma = (to..self.tokens.len()).find(|&k| self.tokens[k].is(","));
+                let duty = (to..self.tokens.len()).find(|&k| self.cue("duty", k));
+                let since = (0..self.mentions[i].from).any(|k| self.cue("duty", k))
+                    && sides[i].is_some_and(|s| !self.ends_noun(s.at));
+                let own = sides[i].is_none_or(|s| s.strong) && duty.is_some_and(|d| comma.is_none_or(|c| d < c));
+                conditions[i] = !(own || since) || self.condition_thing(i);
+            }
+        }
+        let any_strong = sides.iter().flatten().any(|s| s.strong);
+        (0..self.mentions.len())
+            .map(|i| if conditions[i] { None } else { self.verdict(i, sides[i], &tone, any_strong) })
+            .collect()
+    }
+
+    fn cue(&self, name: &str, i: usize) -> bool {
+        self.lexicon.cues.get(name).is_at(self.tokens, i)
+    }
+
+    fn tone(&self) -> Tone {
+        let any = |name: &str| self.lexicon.cues.get(name).any(self.tokens);
+        Tone {
+            duty: any("duty"),
+            advice: any("advice"),
+            habit: any("habit"),
+            reckoned: any("reckoned"),
+            report: any("report"),
+            past: any("past"),
+            plain: any("plain"),
+        }
+    }
+
+    /// Whether a report word is outweighed: duty, and a length or an area.
+    fn is_physical(&self) -> bool {
+        let dimension = |m: &Mention| m.unit.and_then(|u| self.lexicon.units.get(u)).map(|u| u.dimension.clone());
+        self.lexicon.cues.get("duty").any(self.tokens)
+            && self.mentions.iter().filter_map(dimension).any(|d| !matches!(d.as_str(), "share" | "time" | "mass"))
+    }
+
+    fn first_duty(&self) -> Option<usize> {
+        (0..self.tokens.len()).find(|&k| self.cue("duty", k))
+    }
+
+    /// Returns the comparator of each figure: the nearest before it, one behind it, or that of the figure it goes with.
+    fn sides(&self) -> Vec<Option<Sided>> {
+        let mut sides: Vec<Option<Sided>> = Vec::new();
+        let mut from = 0;
+        for (i, mention) in self.mentions.iter().enumerate() {
+            let mut side = self.side_before(from, mention);
+            from = mention.to;
+            if side.is_none_or(|s| !s.strong) {
+                let next = self.mentions.get(i + 1).map_or(self.tokens.len(), |m| m.from);
+                if let Some((behind, end)) = self.side_behind(mention, next).filter(|b| b.0.strong || side.is_none()) {
+                    side = Some(behind);
+                    from = end;
+                }
+            }
+            if side.is_none() && i > 0 && self.goes_with_previous(i) {
+                side = sides.get(i - 1).copied().flatten();
+            }
+            sides.push(side);
+        }
+        sides
+    }
+
+    fn side_before(&self, from: usize, mention: &Mention) -> Option<Sided> {
+        let mut found: Option<Sided> = None;
+        let mut k = from;
+        while k < mention.from {
+            let known = self.lexicon.before.at(self.tokens, k).filter(|c| c.0 <= mention.from);
+            let part = || self.tokens.get(k).and_then(|t| self.lexicon.prefixes.part(t, false)).map(|c| (k + 1, c));
+            let Some((end, index)) = known.or_else(part) else {
+                k += 1;
+                continue;
+            };
+            if let Some(comparator) = self.lexicon.comparators.get(index) {
+                let near = !comparator.fixed || mention.from - end <= CLOSE_REACH;
+                let before_thing = comparator.strong || mention.from - end <= OPENER_REACH + CLOSE_REACH;
+                let article = self.tokens.get(k).is_some_and(|t| t.is("every")) && mention.unit.is_none();
+                if near && before_thing && !article {
+                    let negated = !comparator.fixed && !comparator.strong && self.is_negated(from, k);
+                    let bound = if negated { opposite(comparator.bound) } else { comparator.bound };
+                    let weak_after_strong = !comparator.strong && !negated && found.is_some_and(|f| f.strong);
+                    if !weak_after_strong {
+                        found = Some(Sided {
+                            bound,
+                            strong: comparator.strong || negated,
+                            fixed: comparator.fixed,
+                            at: k,
+                            behind: false,
+                        });
+                    }
+                }
+            }
+            k = end;
+        }
+        let forbidden = (mention.to..self.tokens.len()).any(|k| self.cue("forbidden", k));
+        found.map(|s| if forbidden && !s.strong { Sided { bound: opposite(s.bound), strong: true, ..s } } else { s })
+    }
+
+    fn is_negated(&self, from: usize, at: usize) -> bool {
+        (from..at).any(|k| self.cue("negations", k))
+    }
+
+    fn side_behind(&self, mention: &Mention, next: usize) -> Option<(Sided, usize)> {
+        for k in mention.to..next.min(mention.to + AFTER_REACH) {
+            if let Some((end, index)) =
+                self.lexicon.after.at(self.tokens, k).filter(|c| c.0 < next || next == self.tokens.len())
+            {
+                let comparator = self.lexicon.comparators.get(index)?;
+                let negated = !comparator.strong && self.is_negated(mention.to.saturating_sub(OPENER_REACH), k);
+                let bound = if negated { opposite(comparator.bound) } else { comparator.bound };
+                return Some((
+                    Sided { bound, strong: comparator.strong || negated, fixed: false, at: k, behind: true },
+                    end,
+                ));
+            }
+            let token = self.tokens.get(k)?;
+            if matches!(token.text.as_str(), "," | ";" | ":" | ")") || self.cue("and", k) || self.cue("duty", k) {
+                return None;
+            }
+        }
+        None
+    }
+
+    /// Whether a figure follows the one before by "and", "by" or a comma alone, without a verb between.
+    fn goes_with_previous(&self, i: usize) -> bool {
+        let (Some(a), Some(b)) = (i.checked_sub(1).and_then(|k| self.mentions.get(k)), self.mentions.get(i)) else {
+            return false;
+        };
+        let between = a.to..b.from;
+        between.len() <= OPENER_REACH + 2
+            && between.clone().any(|k| self.cue("links", k))
+            && !between.clone().any(|k| {
+                self.cue("duty", k) || self.cue("plain", k) || self.cue("advice", k) || self.cue("hard_openers", k)
+            })
+    }
+
+    /// Whether the figure after this one belongs to it (`2 m by 3 m`).
+    fn chained(&self, i: usize) -> bool {
+        self.mentions.get(i).is_some_and(|m| m.side.is_some())
+    }
+
+    /// Whether the token before is the end of a noun that is known.
+    fn ends_noun(&self, at: usize) -> bool {
+        (1..=3).any(|n| {
+            at.checked_sub(n).is_some_and(|k| {
+                let ends = |end: Option<usize>| end == Some(at);
+                ends(self.lexicon.space.at(self.tokens, k).map(|e| e.0))
+                    || ends(self.lexicon.thing.at(self.tokens, k).map(|e| e.0))
+                    || ends(self.lexicon.object.at(self.tokens, k).map(|e| e.0))
+            })
+        })
+    }
+
+    /// Returns how many figures are no articles.
+    fn figures(&self) -> usize {
+        self.mentions.iter().filter(|m| !m.weak || matches!(m.figure, Figure::Per(..))).count()
+    }
+
+    fn condition_thing(&self, i: usize) -> bool {
+        self.mentions.get(i).is_some_and(|m| {
+            matches!(m.figure, Figure::Number(_) | Figure::Range(..))
+                && m.thing.and_then(|t| self.lexicon.things.get(t)).is_some_and(|t| t.condition)
+        })
+    }
+
+    fn is_condition(&self, i: usize, side: Option<Sided>) -> bool {
+        let Some(mention) = self.mentions.get(i) else { return true };
+        if self.condition_thing(i) && side.is_none_or(|s| !s.strong) {
+            return true;
+        }
+        if matches!(mention.figure, Figure::Per(..)) {
+            return false;
+        }
+        if mention.weak
+            && side.is_none()
+            && self.figures() > 0
+            && !self.lexicon.cues.get("hard_openers").any(self.tokens)
+        {
+            return true; // "a single room needs 14 m²"
+        }
+        for k in (0..mention.from).rev() {
+            let token = &self.tokens[k];
+            if self.cue("idioms", k) || self.cue("duty", k) || matches!(token.text.as_str(), "," | ";" | ":") {
+                break;
+            }
+            if self.cue("hard_openers", k) {
+                return true;
+            }
+        }
+        let preposition = |k: usize| self.cue("soft_openers", k) || self.cue("between_only", k);
+        let counted = mention.thing.is_some() && side.is_none() && self.figures() > 1;
+        if counted && mention.from.checked_sub(1).is_some_and(preposition) {
+            return true; // "between two beds"
+        }
+        let Some(side) = side.filter(|s| !s.strong && !s.behind) else { return false };
+        let after_duty = side.fixed && self.first_duty().is_some_and(|d| d < side.at);
+        if self.ends_noun(side.at) && !after_duty {
+            return !self.follows_duty_alone(side.at, i);
+        }
+        (side.at.saturating_sub(OPENER_REACH)..side.at)
+            .rev()
+            .take_while(|&k| !self.cue("duty", k) && !self.cue("plain", k))
+            .any(|k| self.cue("soft_openers", k))
+            && (self.figures() > 1 || self.first_duty().is_some_and(|d| mention.to <= d) && !self.permits(mention))
+    }
+
+    /// "Provide storage rooms up to 10 m²": the only figure, after the duty.
+    fn follows_duty_alone(&self, at: usize, i: usize) -> bool {
+        let permitted = self.mentions.get(i).is_some_and(|m| self.permits(m));
+        self.figures() == 1 && (self.first_duty().is_some_and(|d| d < at) || permitted)
+    }
+
+    /// Whether what the figure describes is then permitted.
+    fn permits(&self, mention: &Mention) -> bool {
+        (mention.to..self.tokens.len()).any(|k| self.cue("permission", k))
+    }
+
+    fn verdict(
+        &self,
+        i: usize,
+        side: Option<Sided>,
+        tone: &Tone,
+        any_strong: bool,
+    ) -> Option<(ConstraintType, Confidence)> {
+        use Confidence::{High, Low, Medium};
+        let mention = self.mentions.get(i)?;
+        let to_type = |bound| if bound == Bound::Min { ConstraintType::Minimum } else { ConstraintType::Maximum };
+        let form = self.is_form(mention);
+        let normative = tone.duty || tone.advice || tone.habit || tone.reckoned || form && !tone.plain;
+        let reported = tone.plain && !tone.duty && !tone.advice && !tone.habit && !tone.reckoned;
+        match &mention.figure {
+            Figure::Range(..) if normative || any_strong => return Some((ConstraintType::Range, Medium)),
+            Figure::Range(..) => return None,
+            Figure::Per(..) if tone.habit => return Some((ConstraintType::RuleOfThumb, Low)),
+            Figure::Per(..) if !reported || side.is_some_and(|s| s.strong) => {
+                return Some((ConstraintType::Ratio, Medium));
+            }
+            Figure::Per(..) => return None,
+            _ => {}
+        }
+        if tone.reckoned && mention.basis.is_some() {
+            return Some((ConstraintType::Ratio, Medium));
+        }
+        if let Some(side) = side {
+            if side.strong || tone.duty || tone.advice || !tone.plain && form {
+                return Some((to_type(side.bound), if side.strong { High } else { Medium }));
+            }
+            return None;
+        }
+        if matches!(mention.figure, Figure::Ratio(_)) {
+            return (normative || any_strong).then_some((ConstraintType::Ratio, Medium));
+        }
+        if mention.thing.is_some() && mention.weak && !tone.duty && mention.basis.is_none() {
+            return None;
+        }
+        let approximate = mention.from.checked_sub(1).is_some_and(|k| {
+            self.cue("approximate", k) || self.tokens[k].is(".") && k > 0 && self.cue("approximate", k - 1)
+        });
+        if tone.habit || approximate && !tone.advice {
+            return (tone.habit || tone.duty).then_some((ConstraintType::RuleOfThumb, Low));
+        }
+        let quantity = self.quantity(i);
+        let should = (0..self.tokens.len())
+            .any(|k| matches!(self.tokens[k].text.as_str(), "should" | "sollte" | "sollten" | "soll" | "sollen"));
+        if tone.advice || should {
+            return Some((ConstraintType::Recommendation, Medium));
+        }
+        if tone.duty {
+            let upper = quantity.is_some_and(|q| q.upper);
+            return Some((if upper { ConstraintType::Maximum } else { ConstraintType::Minimum }, Medium));
+        }
+        if mention.thing.is_some() && !form {
+            return None;
+        }
+        (form && !reported || any_strong && mention.thing.is_none()).then_some((ConstraintType::Recommendation, Low))
+    }
+
+    /// Whether the sentence is a note ("Corridors: 1.5 m", "Window area 10 %") up to this figure.
+    fn is_form(&self, mention: &Mention) -> bool {
+        let head = self.tokens.get(..mention.from).unwrap_or_default();
+        let known = (0..head.len()).any(|k| {
+            self.lexicon.space.is_at(head, k)
+                || self.lexicon.object.is_at(head, k)
+                || self.lexicon.quantity.is_at(head, k)
+                || self.lexicon.thing.is_at(head, k)
+                || head.get(k).is_some_and(|t| self.lexicon.quantity.part(t, true).is_some())
+        });
+        let words = self.tokens.iter().filter(|t| t.kind == Kind::Word).count();
+        let colon =
+            head.iter().any(|t| matches!(t.text.as_str(), ":" | "：" | "=" | "≥" | "≤" | ">=" | "<=" | "–" | "—"));
+        let bound = self.side_before(0, mention).is_some_and(|s| s.strong);
+        let counted = matches!(mention.figure, Figure::Per(..)) || mention.basis.is_some();
+        (known || bound) && (colon || bound || words <= 8) || counted && words <= 12
+    }
+}
+
+fn opposite(bound: Bound) -> Bound {
+    if bound == Bound::Min { Bound::Max } else { Bound::Min }
+}

@@ -1,0 +1,183 @@
+//! Constraints of sentences and tables: find the figures, tell limits from conditions and reports, name what is limited.
+
+mod classify;
+mod lexicon;
+mod mention;
+mod sentence;
+mod subject;
+mod table;
+mod token;
+
+use std::ops::Range;
+
+use d3dgen_model::knowledge::Value;
+use serde::Serialize;
+
+use classify::Sentence;
+use lexicon::Lexicon;
+use mention::{Figure, Finder, Mention};
+
+/// On which side of the figure things may be, or how binding it is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ConstraintType {
+    /// Not below.
+    Minimum,
+    /// Not above.
+    Maximum,
+    /// From and to.
+    Range,
+    /// So many for so many, or a share.
+    Ratio,
+    /// Advised.
+    Recommendation,
+    /// Usual.
+    RuleOfThumb,
+}
+
+/// How plainly the sentence says it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Confidence {
+    /// Guessed from form.
+    Low,
+    /// Carried over, or said by duty alone.
+    Medium,
+    /// A comparator stands at the figure.
+    High,
+}
+
+/// A rule with its figure as printed.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Constraint {
+    /// What is limited, snake case.
+    pub name: String,
+    /// Kind of limit.
+    pub constraint_type: ConstraintType,
+    /// The figure, in `unit`.
+    pub value: Value,
+    /// The printed unit in one spelling (`m^2`, `ft`, `count`, `ratio`), with its basis (`m^2/person`).
+    pub unit: String,
+    /// Which space or object it is about; empty when the text does not say.
+    pub space: String,
+    /// When it holds, in the words of the text.
+    pub conditions: Vec<String>,
+    /// How plainly it is said.
+    pub confidence: Confidence,
+}
+
+/// A constraint and where it stands.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Finding {
+    /// The rule.
+    pub constraint: Constraint,
+    /// Bytes of the sentence or table row.
+    pub evidence: Range<usize>,
+    /// Bytes of the figure.
+    pub printed: Range<usize>,
+    /// The figure's ends in SI units, for comparing; a ratio's quotient; the figures of a formula.
+    pub si: Vec<f64>,
+}
+
+/// Reads text with the shipped vocabulary.
+#[derive(Debug)]
+pub struct Extractor {
+    lexicon: &'static Lexicon,
+}
+
+impl Extractor {
+    /// Returns the extractor.
+    pub fn shared() -> Self {
+        Self { lexicon: Lexicon::shared() }
+    }
+
+    /// Returns the constraints of a text in its order; `lang` is an ISO 639-1 code or empty.
+    pub fn extract(&self, text: &str, lang: &str) -> Vec<Finding> {
+        let lang = lang.get(..2).unwrap_or_default().to_lowercase();
+        let mut findings = Vec::new();
+        for (range, is_table) in table::split(text) {
+            let Some(part) = text.get(range.clone()) else { continue };
+            let found = if is_table { table::extract(self.lexicon, part, &lang) } else { self.prose(part, &lang) };
+            findings.extend(found.into_iter().map(|f| Finding {
+                evidence: f.evidence.start + range.start..f.evidence.end + range.start,
+                printed: f.printed.start + range.start..f.printed.end + range.start,
+                ..f
+            }));
+        }
+        findings
+    }
+
+    fn prose(&self, text: &str, lang: &str) -> Vec<Finding> {
+        let tokens = token::tokens(text, lang);
+        let mut findings = Vec::new();
+        for (from, to) in sentence::sentences(&tokens, self.lexicon) {
+            let tokens = tokens.get(from..to).unwrap_or_default();
+            let mentions = Finder { lexicon: self.lexicon, text, lang, tokens }.mentions();
+            if mentions.is_empty() {
+                continue;
+            }
+            let sentence = Sentence { lexicon: self.lexicon, text, lang, tokens, mentions: &mentions };
+            let verdicts = sentence.verdicts();
+            let conditions = sentence.conditions();
+            for (i, verdict) in verdicts.into_iter().enumerate() {
+                let (Some((constraint_type, confidence)), Some(mention)) = (verdict, mentions.get(i)) else { continue };
+                let constraint = Constraint {
+                    name: sentence.name(i),
+                    constraint_type,
+                    value: value(mention),
+                    unit: unit(self.lexicon, mention),
+                    space: sentence.space(i),
+                    conditions: conditions.clone(),
+                    confidence,
+                };
+                let place = |a: usize, b: usize| {
+                    let start = tokens.get(a).map_or(0, |t| t.start);
+                    start..b.checked_sub(1).and_then(|k| tokens.get(k)).map_or(start, |t| t.end)
+                };
+                findings.push(Finding {
+                    si: si(self.lexicon, mention),
+                    evidence: place(0, tokens.len()),
+                    printed: place(mention.from, mention.to),
+                    constraint,
+                });
+            }
+        }
+        findings
+    }
+}
+
+/// Returns the value in the form of the knowledge base.
+fn value(mention: &Mention) -> Value {
+    match &mention.figure {
+        Figure::Number(n) => Value::Number(*n),
+        Figure::Range(min, max) => Value::Range { min: *min, max: *max },
+        Figure::Per(a, b) => Value::Expression { expr: format!("{a} per {b}") },
+        Figure::Ratio(expr) | Figure::Formula(expr) => Value::Expression { expr: expr.clone() },
+    }
+}
+
+fn unit(lexicon: &Lexicon, mention: &Mention) -> String {
+    let plain = match (&mention.figure, mention.unit.and_then(|u| lexicon.units.get(u))) {
+        (Figure::Ratio(_), _) => return "ratio".into(),
+        (_, Some(unit)) => unit.id.as_str(),
+        (_, None) => "count",
+    };
+    mention.basis.as_ref().map_or_else(|| plain.to_owned(), |basis| format!("{plain}/{basis}"))
+}
+
+fn si(lexicon: &Lexicon, mention: &Mention) -> Vec<f64> {
+    let factor = mention.unit.and_then(|u| lexicon.units.get(u)).map_or(1.0, |u| u.factor);
+    match &mention.figure {
+        Figure::Number(n) => vec![n * factor],
+        Figure::Range(a, b) => vec![a * factor, b * factor],
+        Figure::Per(a, b) => vec![a / b],
+        Figure::Ratio(expr) => {
+            let parts: Vec<f64> = expr.split([':', '/']).filter_map(|p| p.parse().ok()).collect();
+            if let [a, b] = parts.as_slice() { vec![a / b] } else { Vec::new() }
+        }
+        Figure::Formula(expr) => expr.split(' ').filter_map(|p| p.parse().ok()).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,122 @@
+//! Tables with `|` between cells: a row names the space, a column head the quantity, its unit and its side.
+
+use std::ops::Range;
+
+use super::classify::Sentence;
+use super::lexicon::{Bound, Lexicon};
+use super::mention::{Figure, Finder};
+use super::token::{Kind, tokens};
+use super::{Confidence, Constraint, ConstraintType, Finding, si, unit, value};
+
+/// Returns the parts of a text, each with whether it is a table: lines in a row with `|` in them.
+pub fn split(text: &str) -> Vec<(Range<usize>, bool)> {
+    let mut parts: Vec<(Range<usize>, bool)> = Vec::new();
+    let mut at = 0;
+    for line in text.split_inclusive('\n') {
+        let is_row = line.matches('|').count() >= 1;
+        let range = at..at + line.len();
+        at = range.end;
+        match parts.last_mut() {
+            Some((last, kind)) if *kind == is_row => last.end = range.end,
+            _ => parts.push((range, is_row)),
+        }
+    }
+    parts
+}
+
+/// Returns the constraints of a table.
+pub fn extract(lexicon: &Lexicon, text: &str, lang: &str) -> Vec<Finding> {
+    let mut rows: Vec<(Range<usize>, Vec<Range<usize>>)> = Vec::new();
+    let mut at = 0;
+    for line in text.split_inclusive('\n') {
+        let cells = cells(line, at);
+        if cells.iter().any(|c| text.get(c.clone()).is_some_and(|t| t.contains(char::is_alphanumeric))) {
+            rows.push((at..at + line.trim_end().len(), cells));
+        }
+        at += line.len();
+    }
+    let Some(((_, head), body)) = rows.split_first() else { return Vec::new() };
+    let mut findings = Vec::new();
+    for (line, row) in body {
+        let Some(label) = row.first().and_then(|c| text.get(c.clone())) else { continue };
+        for (column, cell) in row.iter().enumerate().skip(1) {
+            let title = head.get(column).and_then(|c| text.get(c.clone())).unwrap_or_default();
+            let printed = text.get(cell.clone()).unwrap_or_default();
+            findings.extend(read(lexicon, lang, label, title, printed).into_iter().map(|c| Finding {
+                evidence: line.clone(),
+                printed: cell.clone(),
+                ..c
+            }));
+        }
+    }
+    findings
+}
+
+fn cells(line: &str, offset: usize) -> Vec<Range<usize>> {
+    let mut out = Vec::new();
+    let mut at = offset;
+    let inner = line.trim_end();
+    for (i, cell) in inner.split('|').enumerate() {
+        let range = at..at + cell.len();
+        at = range.end + 1;
+        if !(i == 0 && cell.trim().is_empty()) {
+            out.push(range);
+        }
+    }
+    out
+}
+
+/// Reads a cell as the sentence "row, column: figure unit".
+fn read(lexicon: &Lexicon, lang: &str, label: &str, title: &str, cell: &str) -> Option<Finding> {
+    let figures = tokens(cell, lang);
+    figures.iter().find(|t| matches!(t.kind, Kind::Number(_)))?;
+    let printed_unit = [cell, title, label].iter().find_map(|t| unit_in(lexicon, t, lang));
+    let cell = cell.trim();
+    let own = unit_in(lexicon, cell, lang).is_some();
+    let spelled = if own { String::new() } else { printed_unit.clone().unwrap_or_default() };
+    // Column heads name the things counted where there is no unit.
+    let text = format!("{} {}: {cell} {spelled}", label.trim(), title.trim());
+    let all = tokens(&text, lang);
+    let mentions = Finder { lexicon, text: &text, lang, tokens: &all }.mentions();
+    let head_end = label.trim().len() + title.trim().len() + 2;
+    let index = mentions.iter().position(|m| all.get(m.from).is_some_and(|t| t.start >= head_end));
+    let sentence = Sentence { lexicon, text: &text, lang, tokens: &all, mentions: &mentions };
+    let index = index?;
+    let mention = mentions.get(index)?;
+    let bound = all.iter().enumerate().find_map(|(k, t)| {
+        let known = lexicon.before.at(&all, k).or_else(|| lexicon.prefixes.part(t, false).map(|p| (k + 1, p)));
+        known.and_then(|(_, c)| lexicon.comparators.get(c)).map(|c| c.bound)
+    });
+    let constraint_type = match (&mention.figure, bound) {
+        (Figure::Range(..), _) => ConstraintType::Range,
+        (_, Some(Bound::Min)) => ConstraintType::Minimum,
+        (_, Some(Bound::Max)) => ConstraintType::Maximum,
+        (Figure::Ratio(_) | Figure::Per(..), None) => ConstraintType::Ratio,
+        _ if lexicon.cues.get("duty").any(&all) => ConstraintType::Minimum,
+        _ => ConstraintType::Recommendation,
+    };
+    let constraint = Constraint {
+        name: sentence.name(index),
+        constraint_type,
+        value: value(mention),
+        unit: unit(lexicon, mention),
+        space: sentence.space(index),
+        conditions: Vec::new(),
+        confidence: if bound.is_some() { Confidence::High } else { Confidence::Medium },
+    };
+    Some(Finding { si: si(lexicon, mention), constraint, evidence: 0..0, printed: 0..0 })
+}
+
+/// Returns the unit that stands in brackets, behind a figure, or at the end of a head ("Width in m").
+fn unit_in(lexicon: &Lexicon, text: &str, lang: &str) -> Option<String> {
+    let all = tokens(text, lang);
+    let mut found = None;
+    for (k, token) in all.iter().enumerate() {
+        let figure = token.number().is_some();
+        let opens = matches!(token.text.as_str(), "(" | "[" | "," | "/") || token.is("in") && k > 0;
+        if figure || opens {
+            found = found.or_else(|| lexicon.unit_at(text, token.end, lang)).filter(|u| u.1 > token.end);
+        }
+    }
+    found.and_then(|(unit, _)| lexicon.units.get(unit)).map(|u| u.id.clone())
+}
