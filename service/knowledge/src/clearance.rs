@@ -43,13 +43,23 @@ pub fn free_depth(object: &Placement, side: Side, outline: &Polygon, obstacles: 
     };
     let ahead = (quarter(object.pose.yaw_rad) + turn) % 4;
     // look along +x: turn everything back by `ahead` quarters about the origin
-    let own = turned(&object.footprint().bounds(), ahead);
-    let (mut low, mut high) = (own.y0, own.y1);
+    let mut own = turned(&object.footprint().bounds(), ahead);
     if side != Side::Front {
         // seen along its left the object's front lies to the right (low y); along its right, to the left
-        let length = (high - low) * 0.6;
-        if side == Side::Left { high = low + length } else { low = high - length }
+        let length = (own.y1 - own.y0) * 0.6;
+        if side == Side::Left { own.y1 = own.y0 + length } else { own.y0 = own.y1 - length }
     }
+    depth_along(own, ahead, outline, obstacles)
+}
+
+/// Returns the free depth beside a rectangle towards a quarter turn (0 east, 1 north, ...) over its whole side, m.
+pub fn depth_beside(own: &Rect, ahead: u8, outline: &Polygon, obstacles: impl Iterator<Item = Rect>) -> f64 {
+    depth_along(turned(own, ahead), ahead, outline, obstacles)
+}
+
+/// Returns how far one can look along +x from a rectangle that was turned back by `ahead` quarters, m.
+fn depth_along(own: Rect, ahead: u8, outline: &Polygon, obstacles: impl Iterator<Item = Rect>) -> f64 {
+    let (low, high) = (own.y0, own.y1);
     let meets = |y0: f64, y1: f64| y0 < high - GRAZE_M && y1 > low + GRAZE_M;
     let mut depth = f64::MAX;
     for edge in outline.edges() {

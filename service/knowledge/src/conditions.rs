@@ -18,15 +18,28 @@ pub(crate) struct Conditions {
     pub except: Vec<String>,
     /// True when it is about the ways of beds on wheels only.
     pub beds: bool,
+    /// True when reports judge it and plans do not aim at it.
+    pub reported_only: bool,
 }
 
 /// A condition that depends on the room.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub enum Guard {
     /// Net floor area above the first and up to the second figure, m^2.
     Area(f64, f64),
     /// Number of beds, ends included.
     Beds(f64, f64),
+    /// Number of seats, ends included.
+    Seats(f64, f64),
+    /// Number of objects of the row's kinds, ends included.
+    Objects(&'static ConditionRow, f64, f64),
+    /// Number of exits of the building, ends included.
+    Exits(f64, f64),
+    /// A word of the row is part of the room's name.
+    Named(&'static ConditionRow),
+    /// The door opens into the room (true) or out of it.
+    OpensInto(bool),
 }
 
 /// Returns what the conditions of a constraint come to.
@@ -40,6 +53,7 @@ pub(crate) fn evaluate(c: &Constraint, query: &Query) -> Conditions {
             continue;
         };
         out.except.extend(row.except.iter().cloned());
+        out.reported_only |= row.reported_only;
         match guard(row) {
             Some(guard) => out.guards.push(guard),
             None if holds(row, query) => out.beds |= row.when == When::Beds,
@@ -49,6 +63,15 @@ pub(crate) fn evaluate(c: &Constraint, query: &Query) -> Conditions {
     out
 }
 
+/// Returns why the conditions of a constraint are never known to hold; `None` when some building meets them.
+pub(crate) fn never(c: &Constraint) -> Option<String> {
+    c.conditions.iter().find_map(|phrase| match TABLES.condition(phrase) {
+        None if is_code(phrase) => None,
+        None => Some(format!("depends on \"{phrase}\", which the documents do not tell")),
+        Some(row) => (row.when == When::Never).then(|| row.reason.clone().unwrap_or_default()),
+    })
+}
+
 /// Returns true when a document is about buildings such as this one.
 pub(crate) fn document_holds(reference: &Reference, query: &Query) -> bool {
     let titled = |title: &String| reference.sources.iter().any(|s| s.title.contains(title.as_str()));
@@ -56,11 +79,17 @@ pub(crate) fn document_holds(reference: &Reference, query: &Query) -> bool {
     rows.into_iter().all(|d| fact(d.when, query).unwrap_or(true))
 }
 
-fn guard(row: &ConditionRow) -> Option<Guard> {
+fn guard(row: &'static ConditionRow) -> Option<Guard> {
     let (min, max) = (row.min.unwrap_or(f64::MIN), row.max.unwrap_or(f64::MAX));
     match row.when {
         When::Area => Some(Guard::Area(min, max)),
         When::BedsInRoom => Some(Guard::Beds(min, max)),
+        When::SeatsInRoom => Some(Guard::Seats(min, max)),
+        When::ObjectsInRoom => Some(Guard::Objects(row, min, max)),
+        When::Exits => Some(Guard::Exits(min, max)),
+        When::Named => Some(Guard::Named(row)),
+        When::OpensInto => Some(Guard::OpensInto(true)),
+        When::OpensOut => Some(Guard::OpensInto(false)),
         _ => None,
     }
 }
@@ -92,6 +121,8 @@ fn fact(when: When, query: &Query) -> Option<bool> {
         When::NoBeds => Some(!beds),
         When::TwoRobots => Some(query.robot_count() >= 2),
         When::Public | When::Persons | When::Area | When::RoomsOf | When::BedsInRoom => None,
+        When::SeatsInRoom | When::ObjectsInRoom | When::Exits | When::Named => None,
+        When::OpensInto | When::OpensOut => None,
     }
 }
 

@@ -3,7 +3,37 @@
 use d3dgen_model::knowledge::{Constraint, Value};
 use serde_json::Value as Json;
 
+use crate::expression;
 use crate::measure::Measure;
+
+/// Share by which an object may differ from the usual size that advice gives.
+const USUAL: f64 = 0.1;
+
+/// What formulas may ask about a building.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct Facts {
+    /// People at a time.
+    pub persons: u32,
+    /// Number of robots.
+    pub robots: u32,
+    /// Radius of the circle that the largest robot turns in, m.
+    pub robot_radius: Option<f64>,
+}
+
+impl Facts {
+    /// Returns the figure behind a name of a formula.
+    ///
+    /// Documents hold the turning circle of a robot only: it is round, or square where the formula asks for its length.
+    fn figure(&self, name: &str, formula: &str) -> Option<f64> {
+        let side = if formula.contains("robot_length") { std::f64::consts::SQRT_2 } else { 2.0 };
+        match name {
+            "N" => Some(f64::from(self.persons)),
+            "N_robots" => Some(f64::from(self.robots)),
+            "robot_width" | "robot_length" => self.robot_radius.map(|r| r * side),
+            _ => None,
+        }
+    }
+}
 
 /// What is required: an interval, and for rectangles two sides.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -30,11 +60,18 @@ impl Bounds {
 ///
 /// # Errors
 /// Says why the value has no figure that the quantity can be held against.
-pub(crate) fn bounds(c: &Constraint, measure: Measure, persons: u32) -> Result<Bounds, String> {
+pub(crate) fn bounds(c: &Constraint, measure: Measure, facts: &Facts) -> Result<Bounds, String> {
+    let persons = facts.persons;
     match &c.value {
+        _ if measure == Measure::ObjectExtents => extents(c).map(|_| Bounds::at_most(0.0)),
+        Value::Number(v) if measure.is_extent() && !matches!(c.constraint_type.as_str(), "minimum" | "maximum") => {
+            Ok(Bounds { min: Some(v * (1.0 - USUAL)), max: Some(v * (1.0 + USUAL)), sides: None })
+        }
         Value::Number(v) => Ok(one(*v, c, measure)),
         Value::Flag(true) => Ok(Bounds::at_least(1.0)),
         Value::Flag(false) => Ok(Bounds::at_most(0.0)),
+        Value::Range { min, .. } if measure.is_clearance() => Ok(Bounds::at_least(*min)),
+        Value::Range { max, .. } if measure == Measure::PersonsPerRoom => Ok(Bounds::at_most(*max)),
         Value::Range { min, max } => Ok(interval(*min, *max, c)),
         Value::Table(table) if table.contains_key("width") => {
             let figure = |key: &str| table.get(key).and_then(Json::as_f64);
@@ -53,15 +90,39 @@ pub(crate) fn bounds(c: &Constraint, measure: Measure, persons: u32) -> Result<B
                 .map(|v| one(v, c, measure))
                 .ok_or_else(|| "its table is not by number of people".into()),
         },
-        Value::Expression { expr } => {
-            Err(format!("its formula `{expr}` has quantities that the documents do not hold"))
-        }
+        Value::Expression { expr } => match expression::evaluate(expr, &|name| facts.figure(name, expr)) {
+            Some(v) => Ok(one(v, c, measure)),
+            None => Err(format!("its formula `{expr}` has quantities that the documents do not hold")),
+        },
         Value::List(_) => Err("its value is a list".into()),
     }
 }
 
+/// The interval of one extent, m, by its name in the constraint.
+pub(crate) type Extent<'a> = (&'a str, f64, f64);
+
+/// Returns the extents of an object that a table gives, each with the interval that is meant.
+///
+/// # Errors
+/// Says that the value is no table of extents.
+pub(crate) fn extents(c: &Constraint) -> Result<Vec<Extent<'_>>, String> {
+    let wrong = || "its dimensions are not figures".to_owned();
+    let Value::Table(table) = &c.value else { return Err(wrong()) };
+    let extent = |(key, value): (&'_ String, &Json)| {
+        match value {
+            Json::Number(n) => n.as_f64().map(|v| (v * (1.0 - USUAL), v * (1.0 + USUAL))),
+            Json::Array(ends) => Some((ends.first()?.as_f64()?, ends.last()?.as_f64()?)),
+            _ => None,
+        }
+        .filter(|_| matches!(key.as_str(), "width" | "length" | "depth" | "height"))
+    };
+    let found: Option<Vec<Extent>> =
+        table.iter().map(|(k, v)| extent((k, v)).map(|(low, high)| (k.as_str(), low, high))).collect();
+    found.filter(|f| !f.is_empty()).ok_or_else(wrong)
+}
+
 fn is_rectangle(measure: Measure) -> bool {
-    matches!(measure, Measure::InnerRectangle | Measure::FreeRectangle)
+    matches!(measure, Measure::InnerRectangle | Measure::FreeRectangle | Measure::ObjectSize)
 }
 
 fn one(value: f64, c: &Constraint, measure: Measure) -> Bounds {
@@ -132,7 +193,8 @@ mod tests {
             [("<=5", 0.9), ("<=20", 1.0), ("<=300", 1.8)].map(|(k, v)| (k.to_owned(), v.into())).into();
         let c = constraint("table", Value::Table(table));
         for (persons, width) in [(3, Some(0.9)), (20, Some(1.0)), (21, Some(1.8)), (999, None)] {
-            let found = bounds(&c, Measure::CirculationWidth, persons).ok().and_then(|b| b.min);
+            let found =
+                bounds(&c, Measure::CirculationWidth, &Facts { persons, ..Facts::default() }).ok().and_then(|b| b.min);
             assert_eq!(found, width, "{persons} people");
         }
     }
@@ -140,9 +202,9 @@ mod tests {
     #[test]
     fn advice_goes_the_way_of_its_quantity() {
         let c = constraint("recommendation", Value::Number(2.0));
-        assert_eq!(bounds(&c, Measure::CirculationWidth, 1), Ok(Bounds::at_least(2.0)));
-        assert_eq!(bounds(&c, Measure::Proportion, 1), Ok(Bounds::at_most(2.0)));
+        assert_eq!(bounds(&c, Measure::CirculationWidth, &Facts::default()), Ok(Bounds::at_least(2.0)));
+        assert_eq!(bounds(&c, Measure::Proportion, &Facts::default()), Ok(Bounds::at_most(2.0)));
         let c = constraint("maximum", Value::Number(2.0));
-        assert_eq!(bounds(&c, Measure::CirculationWidth, 1), Ok(Bounds::at_most(2.0)));
+        assert_eq!(bounds(&c, Measure::CirculationWidth, &Facts::default()), Ok(Bounds::at_most(2.0)));
     }
 }

@@ -8,6 +8,7 @@ pub mod clearance;
 pub mod compliance;
 mod conditions;
 mod draw_limits;
+mod expression;
 mod figure;
 pub mod freespace;
 pub mod jurisdiction;
@@ -15,6 +16,7 @@ mod limits;
 mod measure;
 mod query;
 mod retrieve;
+mod stats;
 mod tables;
 pub mod travel;
 
@@ -24,7 +26,8 @@ pub use limits::{AreaLimit, Limit, Limits, RoomLimits};
 pub use measure::Measure;
 pub use query::{Query, QueryRoom};
 pub use retrieve::{Applicable, Retrieval, Rule, Scope, retrieve};
-pub use tables::QuantityRow;
+pub use stats::{Stats, decidable};
+pub use tables::{ConditionRow, QuantityRow};
 
 #[cfg(test)]
 mod tests;

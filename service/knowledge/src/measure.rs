@@ -84,6 +84,118 @@ pub enum Measure {
     DockClearOfDoors,
     /// Docks in rooms without plumbing.
     DockInDryRoom,
+    /// Docks whose back stands against a wall.
+    DockAgainstWall,
+    /// Docks that leave circulation its required width.
+    DockKeepsEgress,
+    /// Docks for each robot.
+    DocksPerRobot,
+    /// Width, depth and height of an object: the shorter plan side where the longer one suffices, m.
+    ObjectSize,
+    /// How far the extents of an object lie outside the given ones, m.
+    ObjectExtents,
+    /// Extent of an object across its front, m.
+    ObjectWidth,
+    /// Extent of an object front to back, m.
+    ObjectDepth,
+    /// Height of the top of an object above the floor, m.
+    ObjectHeight,
+    /// Free floor all around an object, m.
+    ObjectAround,
+    /// Free floor in front of an object and at both its sides, m.
+    ObjectThreeSides,
+    /// Distance from an object to the nearest wall around it that it does not stand against, m.
+    ObjectToWall,
+    /// Distance from an object to the nearest of other kinds, m.
+    ObjectToObject,
+    /// Distance from the middle of an object to what stands at its side, m.
+    CentreToSide,
+    /// Distance between the middles of objects of a kind, m.
+    CentreSpacing,
+    /// Free floor between desks or shelves that face each other, m.
+    FacingGap,
+    /// Edge of a table for each seat at it, m.
+    TableEdgePerSeat,
+    /// Distance from an object to the nearest window of its room, m.
+    WindowDistance,
+    /// How far things on walls stand out into circulation, m.
+    WallProjection,
+    /// Distances between sink, stove and refrigerator, m.
+    WorkTriangleLeg,
+    /// Sum of the distances between sink, stove and refrigerator, m.
+    WorkTriangleTotal,
+    /// Net floor area of a room for each object of a kind in it, m^2.
+    AreaPerObject,
+    /// Gross floor area of a room for each person in it, m^2.
+    GrossAreaPerPerson,
+    /// Net floor area beyond the first workplace's for each further one, m^2.
+    AreaPerFurther,
+    /// Floor without furniture for each person, m^2.
+    FreeAreaPerPerson,
+    /// People on 100 m^2 of a room.
+    PersonsPer100,
+    /// Net floor area of the largest room of a kind, m^2.
+    LargestRoomArea,
+    /// Net floor area of the building for each person, m^2.
+    BuildingAreaPerPerson,
+    /// Gross floor area of the building for each bed, m^2.
+    BuildingAreaPerBed,
+    /// People for each room of a kind.
+    PersonsPerRoom,
+    /// Beds for each room of a kind.
+    BedsPerRoomKind,
+    /// People for each object of a kind.
+    PersonsPerObject,
+    /// People in a building with one exit.
+    PersonsBySingleExit,
+    /// Width of all exits for each person, in the constraint's unit.
+    ExitWidthPerPerson,
+    /// Circulation over the net floor area of all other rooms.
+    CirculationAllowance,
+    /// Way from the farthest free point of a room to circulation, m.
+    DistanceToCirculation,
+    /// Largest width of a window of a room, m.
+    WindowWidth,
+    /// Largest height of a window of a room, m.
+    WindowHeight,
+    /// Area of the largest window of a room, m^2.
+    WindowArea,
+    /// Depth of a room behind its windows over its height.
+    DepthToHeight,
+    /// Free floor inside a door, m.
+    DoorLanding,
+    /// Free floor before a door on the side it opens to, m.
+    DoorPullDepth,
+    /// Free floor before a door on the side it opens from, m.
+    DoorPushDepth,
+    /// Wall beside the latch of a door on the side it opens to, m.
+    LatchPullSide,
+    /// Wall beside the latch of a door on the side it opens from, m.
+    LatchPushSide,
+    /// No wall joins two kinds of rooms.
+    NoSharedWall,
+    /// Radius of robots of a kind, m.
+    RobotRadius,
+    /// Number of exits.
+    Exits,
+    /// Desks of the building for so much floor of the rooms, the area being the row's base.
+    DesksPerArea,
+    /// Docks in the room of the main entrance or next to it.
+    DockNearEntrance,
+    /// A wall joins each room of one kind with one of the other.
+    SharedWall,
+    /// Time to walk from the farthest room to the nearest of a kind, min.
+    WalkingMinutes,
+    /// Free width under a desk, m.
+    LegRoom,
+    /// Height of the threshold of a door, m.
+    Threshold,
+    /// Circulation without stairs.
+    NoStairs,
+    /// Circulation without glass down to the floor and without mirrors.
+    NoGlassOrMirrors,
+    /// Distance between robots where they start, m.
+    RobotsApart,
 }
 
 impl Measure {
@@ -101,6 +213,29 @@ impl Measure {
                 | Self::PersonsPerToilet
                 | Self::BedsPerToilet
                 | Self::CirculationShare
+                | Self::CirculationAllowance
+                | Self::PersonsPerRoom
+                | Self::DesksPerArea
+                | Self::WalkingMinutes
+                | Self::Threshold
+                | Self::BedsPerRoomKind
+                | Self::PersonsPerObject
+                | Self::PersonsPer100
+                | Self::RobotRadius
         )
+    }
+
+    /// Returns true when more than the upper end of an advised range does no harm.
+    pub(crate) fn is_clearance(self) -> bool {
+        use Measure as M;
+        matches!(
+            self,
+            M::ObjectFront | M::ObjectSides | M::ObjectAround | M::ObjectThreeSides | M::ObjectToWall | M::FacingGap
+        ) || matches!(self, M::GapBetweenObjects | M::TableEdgePerSeat)
+    }
+
+    /// Returns true for an extent of an object, which advice gives as the usual figure.
+    pub(crate) fn is_extent(self) -> bool {
+        matches!(self, Self::ObjectWidth | Self::ObjectDepth | Self::ObjectHeight)
     }
 }

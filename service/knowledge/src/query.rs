@@ -1,5 +1,6 @@
 //! What is asked of a knowledge base: a building, where it stands, its rooms and its robots.
 
+use crate::figure::Facts;
 use d3dgen_model::domain::{Daylight, Domain, RoomType, Shape, Zone};
 use d3dgen_model::scene_graph::{GraphRoom, Robot, SceneGraph};
 
@@ -72,6 +73,12 @@ impl Query {
             persons_stated,
             robots: graph.robots.clone(),
         }
+    }
+
+    /// Returns what formulas may ask about the building.
+    pub(crate) fn facts(&self) -> Facts {
+        let robot_radius = self.robots.iter().map(|r| r.radius_m).reduce(f64::max);
+        Facts { persons: self.persons, robots: self.robot_count(), robot_radius }
     }
 
     /// Returns the number of robots.

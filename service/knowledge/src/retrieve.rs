@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use d3dgen_model::domain::Shape;
-use d3dgen_model::knowledge::{Constraint, KnowledgeBase, Reference};
+use d3dgen_model::knowledge::{Constraint, KnowledgeBase, Reference, Value};
 use d3dgen_model::report::Citation;
 
 use crate::conditions::{self, Conditions, Guard};
@@ -66,6 +66,8 @@ pub struct Applicable {
     pub decision: Result<Rule, String>,
     /// Id of the constraint of a nearer jurisdiction that goes before this one.
     pub superseded_by: Option<String>,
+    /// True when reports judge it and plans do not aim at it.
+    pub reported_only: bool,
 }
 
 /// What a constraint is about.
@@ -113,8 +115,10 @@ pub fn retrieve(knowledge: &KnowledgeBase, query: &Query) -> Retrieval {
             }
         }
     }
+    let mut planned: Vec<Applicable> = constraints.iter().filter(|a| !a.reported_only).cloned().collect();
+    supersede(&mut planned, &chain);
+    let limits = draw_limits::draw(&planned, &chain, query);
     supersede(&mut constraints, &chain);
-    let limits = draw_limits::draw(&constraints, &chain, query);
     let used = |code: &String| {
         code == jurisdiction::INTERNATIONAL || constraints.iter().any(|c| &c.citation.jurisdiction == code)
     };
@@ -146,7 +150,7 @@ fn applicable(c: &Constraint, reference: &Reference, query: &Query) -> Option<Ap
     let decision = match (&conditions.unknown, quantity) {
         (_, None) => Err(TABLES.unknown(c)),
         (Some(reason), _) => Err(reason.clone()),
-        (None, Some(quantity)) => figure::bounds(c, quantity.measure, query.persons).map(|bounds| Rule {
+        (None, Some(quantity)) => figure::bounds(c, quantity.measure, &query.facts()).map(|bounds| Rule {
             quantity,
             bounds,
             to: quantity.to.iter().flat_map(|s| types_of(s, query)).collect(),
@@ -154,7 +158,10 @@ fn applicable(c: &Constraint, reference: &Reference, query: &Query) -> Option<Ap
     };
     Some(Applicable {
         citation: citation(c, reference)?,
-        mandatory: is_mandatory(c, reference),
+        mandatory: is_mandatory(c, reference) && !quantity.is_some_and(|q| q.advice),
+        reported_only: conditions.reported_only
+            || quantity.is_some_and(|q| q.reported_only)
+            || matches!(c.value, Value::Expression { .. }),
         constraint: c.clone(),
         ref_id: reference.ref_id.clone(),
         scope,

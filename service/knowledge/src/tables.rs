@@ -12,12 +12,14 @@ use crate::measure::Measure;
 pub(crate) static TABLES: LazyLock<Tables> = LazyLock::new(|| {
     let quantities: Quantities = toml::from_str(include_str!("../data/quantities.toml"))
         .expect("data/quantities.toml is part of the crate and read by its tests");
+    let reported: Reported = toml::from_str(include_str!("../data/quantities_reported.toml"))
+        .expect("data/quantities_reported.toml is part of the crate and read by its tests");
     let spaces: Spaces = toml::from_str(include_str!("../data/spaces.toml"))
         .expect("data/spaces.toml is part of the crate and read by its tests");
     let conditions: Conditions = toml::from_str(include_str!("../data/conditions.toml"))
         .expect("data/conditions.toml is part of the crate and read by its tests");
     Tables {
-        quantities: quantities.quantity,
+        quantities: [reported.quantity, quantities.quantity].concat(),
         unknown: quantities.unknown,
         spaces: spaces.space,
         conditions: conditions.condition,
@@ -39,6 +41,12 @@ pub(crate) struct Tables {
 struct Quantities {
     quantity: Vec<QuantityRow>,
     unknown: Vec<UnknownRow>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Reported {
+    quantity: Vec<QuantityRow>,
 }
 
 #[derive(Deserialize)]
@@ -80,6 +88,24 @@ pub struct QuantityRow {
     /// Builds of the objects that a clearance is about.
     #[serde(default)]
     pub shapes: Vec<Shape>,
+    /// Ids of the objects that a size or distance is about.
+    #[serde(default)]
+    pub objects: Vec<String>,
+    /// Builds of the other objects of a distance.
+    #[serde(default)]
+    pub to_shapes: Vec<Shape>,
+    /// Figure that goes before the first step (area of the first workplace, m^2).
+    #[serde(default)]
+    pub base: f64,
+    /// True for ways that count only where the building has one exit.
+    #[serde(default)]
+    pub single_exit: bool,
+    /// True for figures that even regulations only reckon with: breaking them breaks no rule.
+    #[serde(default)]
+    pub advice: bool,
+    /// True when reports judge it and plans do not aim at it.
+    #[serde(default)]
+    pub reported_only: bool,
 }
 
 /// Why constraints of a unit cannot be decided.
@@ -121,26 +147,38 @@ pub(crate) enum SpaceKind {
 }
 
 /// What a condition means.
-#[derive(Deserialize)]
+#[derive(Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct ConditionRow {
-    pub when: When,
+pub struct ConditionRow {
+    pub(crate) when: When,
     #[serde(default)]
-    pub phrases: Vec<String>,
+    pub(crate) phrases: Vec<String>,
     #[serde(default)]
-    pub containing: Vec<String>,
+    pub(crate) containing: Vec<String>,
     #[serde(default)]
-    pub min: Option<f64>,
+    pub(crate) min: Option<f64>,
     #[serde(default)]
-    pub max: Option<f64>,
+    pub(crate) max: Option<f64>,
     #[serde(default)]
-    pub room_types: Vec<String>,
+    pub(crate) room_types: Vec<String>,
     #[serde(default)]
-    pub except: Vec<String>,
+    pub(crate) except: Vec<String>,
     #[serde(default)]
-    pub except_domains: Vec<String>,
+    pub(crate) except_domains: Vec<String>,
     #[serde(default)]
-    pub reason: Option<String>,
+    pub(crate) reason: Option<String>,
+    /// Builds of the objects that are counted.
+    #[serde(default)]
+    pub(crate) shapes: Vec<Shape>,
+    /// Ids of the objects that are counted.
+    #[serde(default)]
+    pub(crate) objects: Vec<String>,
+    /// Words of the room's name.
+    #[serde(default)]
+    pub(crate) words: Vec<String>,
+    /// True when reports judge what has it and plans do not aim at it.
+    #[serde(default)]
+    pub(crate) reported_only: bool,
 }
 
 /// A document all of whose constraints have one more condition.
@@ -168,9 +206,25 @@ pub(crate) enum When {
     Area,
     RoomsOf,
     BedsInRoom,
+    SeatsInRoom,
+    ObjectsInRoom,
+    Exits,
+    Named,
+    OpensInto,
+    OpensOut,
 }
 
 impl QuantityRow {
+    /// Returns true when the row is about this kind of object.
+    pub(crate) fn picks(&self, kind: &d3dgen_model::domain::ObjectType) -> bool {
+        self.shapes.contains(&kind.shape) || self.objects.contains(&kind.id)
+    }
+
+    /// Returns true when the row names the objects it is about.
+    pub(crate) fn names_objects(&self) -> bool {
+        !self.shapes.is_empty() || !self.objects.is_empty()
+    }
+
     /// Returns true when the row speaks of this constraint.
     pub(crate) fn matches(&self, c: &Constraint) -> bool {
         let among = |list: &[String], word: &str| list.is_empty() || list.iter().any(|w| w == word);
@@ -250,7 +304,8 @@ mod tests {
     fn rows_that_need_figures_have_them() {
         for row in &TABLES.conditions {
             let figures = row.min.is_some() || row.max.is_some();
-            let needs = matches!(row.when, When::Persons | When::Area | When::RoomsOf | When::BedsInRoom);
+            let needs = matches!(row.when, When::Persons | When::Area | When::RoomsOf | When::BedsInRoom)
+                || matches!(row.when, When::SeatsInRoom | When::ObjectsInRoom | When::Exits);
             assert_eq!(figures, needs, "row of {:?}: {:?}", row.when, row.phrases.first());
             assert_eq!(row.when == When::Never, row.reason.is_some(), "{:?}", row.phrases.first());
         }

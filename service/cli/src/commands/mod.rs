@@ -7,6 +7,7 @@ mod export;
 mod floorplan;
 mod formats;
 mod generate;
+mod knowledge;
 mod placement;
 mod research;
 mod scenario;
@@ -43,6 +44,8 @@ pub enum Command {
     Domains(domains::Args),
     /// Find building rules in text
     Research(research::Args),
+    /// Count what the knowledge bases hold
+    Knowledge(knowledge::Args),
     /// Print a completion script for a shell
     Completions(completions::Args),
     /// Print the version, and the versions of the documents it reads
@@ -66,6 +69,7 @@ impl Command {
             Self::Export(args) => args.run(),
             Self::Domains(args) => args.run(),
             Self::Research(args) => args.run(),
+            Self::Knowledge(args) => args.run(),
             Self::Completions(args) => args.run(),
             Self::Version => version::run(),
         }

@@ -2,8 +2,8 @@
 
 use d3dgen_model::floorplan::{Door, DoorKind};
 
-use super::Reading;
 use super::site::Site;
+use super::{Reading, approach};
 use crate::measure::Measure;
 use crate::retrieve::{Applicable, Rule, Scope};
 
@@ -12,11 +12,25 @@ const ENTRANCE: &str = "entry";
 
 /// Reads a quantity of every door the constraint is about.
 pub(super) fn read(site: &Site, a: &Applicable, rule: &Rule) -> Vec<Reading> {
+    match rule.quantity.measure {
+        Measure::NoDoorBetween | Measure::RoomsAdjacent => return read_pairs(site, a, rule),
+        Measure::NoSharedWall | Measure::SharedWall => return read_walls(site, a, rule),
+        Measure::DoorLanding
+        | Measure::DoorPullDepth
+        | Measure::DoorPushDepth
+        | Measure::LatchPullSide
+        | Measure::LatchPushSide => {
+            return approach::read(site, rule.quantity.measure, |d| concerns(site, a, d));
+        }
+        _ => {}
+    }
     let doors = site.world.floorplan.doors.iter().filter(|d| concerns(site, a, d));
     let value = |d: &Door| match rule.quantity.measure {
         Measure::DoorWidth => Some(d.clear_width_m),
         Measure::DoorOpeningWidth => Some(d.line.length()),
         Measure::DoorHeight => Some(d.height_m),
+        // the floor of a world is one plane: no document has a sill in a door
+        Measure::Threshold => Some(0.0),
         // a yes-or-no rule: 1 when the leaf does not stand in the way
         Measure::SwingIntoCirculation => Some(if opens_into_circulation(site, d) { 0.0 } else { 1.0 }),
         _ => None,
@@ -51,7 +65,7 @@ fn opens_into_circulation(site: &Site, door: &Door) -> bool {
 }
 
 /// Reads, for each room the constraint is about, whether the pair of rooms is as it should be.
-pub(super) fn read_pairs(site: &Site, a: &Applicable, rule: &Rule) -> Vec<Reading> {
+fn read_pairs(site: &Site, a: &Applicable, rule: &Rule) -> Vec<Reading> {
     let to_entrance = rule.quantity.to.iter().any(|t| t == ENTRANCE);
     if rule.to.is_empty() && !to_entrance {
         return Vec::new();
@@ -63,6 +77,19 @@ pub(super) fn read_pairs(site: &Site, a: &Applicable, rule: &Rule) -> Vec<Readin
             other.is_some_and(|o| rule.to.contains(&o.room_type)) || (to_entrance && d.entrance)
         });
         Reading::flag(&room.plan.room_id, meets == (rule.quantity.measure == Measure::RoomsAdjacent))
+    });
+    rooms.collect()
+}
+
+/// Reads, for each room the constraint is about, whether it keeps away from rooms of the other kind.
+fn read_walls(site: &Site, a: &Applicable, rule: &Rule) -> Vec<Reading> {
+    let walls = &site.world.floorplan.walls;
+    let is_other = |id: &String| site.world.floorplan.room(id).is_some_and(|r| rule.to.contains(&r.room_type));
+    let rooms = site.rooms_of(a).filter(|_| !rule.to.is_empty()).map(|room| {
+        let own = |ids: &[String]| ids.contains(&room.plan.room_id);
+        let meets = walls.iter().filter(|w| own(&w.room_ids)).flat_map(|w| &w.room_ids);
+        let meets = meets.filter(|id| **id != room.plan.room_id).any(is_other);
+        Reading::flag(&room.plan.room_id, meets == (rule.quantity.measure == Measure::SharedWall))
     });
     rooms.collect()
 }

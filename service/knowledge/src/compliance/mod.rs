@@ -3,12 +3,15 @@
 //! Areas and extents are net, between wall faces. A constraint on many rooms, doors or objects is listed once for each
 //! that breaks it, or once with the closest call when all hold.
 
+mod approach;
 mod counts;
 mod doors;
 mod objects;
 mod rooms;
 mod routes;
 mod site;
+mod sizes;
+mod spacing;
 
 use d3dgen_model::domain::Domain;
 use d3dgen_model::report::{ConstraintResult, ConstraintSummary, Status};
@@ -72,28 +75,13 @@ pub fn evaluate(world: &World, domain: &Domain, retrieval: &Retrieval) -> (Vec<C
     (out, summary)
 }
 
+/// Reads the quantity wherever the world has it; each family of quantities answers for its own.
 fn readings(site: &Site, a: &Applicable, rule: &Rule) -> Vec<Reading> {
-    use Measure as M;
-    match rule.quantity.measure {
-        M::RoomArea | M::AreaPerBed | M::AreaPerPerson | M::AirVolumePerPerson | M::LeastDimension => {
-            rooms::read(site, a, rule)
-        }
-        M::InnerRectangle | M::FreeRectangle | M::TurningCircle | M::Proportion | M::CeilingHeight => {
-            rooms::read(site, a, rule)
-        }
-        M::WindowSill | M::WindowRatio | M::Windows | M::BedsPerRoom | M::AreaPerRobot => rooms::read(site, a, rule),
-        M::DoorWidth | M::DoorOpeningWidth | M::DoorHeight | M::SwingIntoCirculation => doors::read(site, a, rule),
-        M::NoDoorBetween | M::RoomsAdjacent => doors::read_pairs(site, a, rule),
-        M::CirculationWidth | M::TravelDistance | M::StraightDistance | M::DistanceToRoom | M::DistanceBetween => {
-            routes::read(site, a, rule)
-        }
-        M::BuildingArea | M::CirculationShare | M::RoomsPresent | M::RoomNeededAbovePersons => {
-            counts::read(site, a, rule)
-        }
-        M::ToiletsForPersons | M::PersonsPerToilet | M::BedsPerToilet => counts::read(site, a, rule),
-        M::ObjectFront | M::ObjectSides | M::GapBetweenObjects | M::FreeAreaAtObject => objects::read(site, a, rule),
-        M::DockClearOfDoors | M::DockInDryRoom => objects::read(site, a, rule),
+    if !site.admits(a, rule.quantity.single_exit) {
+        return Vec::new();
     }
+    let families = [rooms::read, doors::read, routes::read, counts::read, objects::read];
+    families.iter().flat_map(|read| read(site, a, rule)).collect()
 }
 
 /// Returns one result for each reading that breaks the rule, or the closest call.
@@ -110,10 +98,13 @@ fn judge(a: &Applicable, rule: &Rule, readings: &[Reading], retrieval: &Retrieva
         if let Some([short, long]) = rule.bounds.sides {
             parts.push(format!("needs {short} x {long} m; measured is the width at that length"));
         }
+        if rule.quantity.measure == Measure::ObjectExtents {
+            parts.push("measured is how far an extent lies outside the usual ones, a tenth off allowed".to_owned());
+        }
         if let Some(id) = &a.superseded_by {
             parts.push(format!("{id} of a nearer jurisdiction goes before it"));
         }
-        if by_head_count(a) && !retrieval.persons_stated {
+        if by_head_count(a) && rule.quantity.measure != Measure::DocksPerRobot && !retrieval.persons_stated {
             parts.push(format!("for {} people, reckoned from the area", retrieval.persons));
         }
         parts.retain(|p| !p.is_empty());

@@ -1,10 +1,11 @@
 //! Free floor around objects, and where docks stand.
 
 use d3dgen_model::Rect;
+use d3dgen_model::domain::Shape;
 use d3dgen_model::floorplan::Door;
 
-use super::Reading;
 use super::site::{Object, Room, Site};
+use super::{Reading, sizes, spacing};
 use crate::clearance::{Side, door_zones, free_depth};
 use crate::measure::Measure;
 use crate::retrieve::{Applicable, Rule, Scope};
@@ -14,20 +15,37 @@ const MOVING_DEPTH_M: f64 = 1.5;
 
 /// Reads a quantity of every object the constraint is about.
 pub(super) fn read(site: &Site, a: &Applicable, rule: &Rule) -> Vec<Reading> {
-    let shapes = &rule.quantity.shapes;
-    let shapes = match &a.scope {
-        Scope::Objects(of_scope) if shapes.is_empty() => of_scope,
-        _ => shapes,
+    match rule.quantity.measure {
+        Measure::WorkTriangleLeg | Measure::WorkTriangleTotal => return spacing::work_triangles(site, a, rule),
+        Measure::WallProjection => return spacing::projections(site, a),
+        Measure::DockKeepsEgress => return docks_keep_egress(site),
+        _ => {}
+    }
+    let concerns = |o: &Object| match &a.scope {
+        Scope::Objects(of_scope) if !rule.quantity.names_objects() => o.is(of_scope),
+        _ => o.kind.is_some_and(|k| rule.quantity.picks(k)),
     };
     let mut out = Vec::new();
     for room in site.rooms_of(a) {
-        for object in room.objects.iter().filter(|o| o.is(shapes)) {
-            if let Some(value) = figure(site, room, object, a, rule) {
-                out.push(Reading::new(&object.placement.placement_id, value));
-            }
+        for object in room.objects.iter().filter(|o| concerns(o)) {
+            let value = figure(site, room, object, a, rule)
+                .or_else(|| sizes::figure(object, a, rule))
+                .or_else(|| spacing::figure(room, object, rule));
+            out.extend(value.map(|v| Reading::new(&object.placement.placement_id, v)));
         }
     }
     out
+}
+
+/// Reads, for each piece of circulation with a dock, whether what is left is as wide as circulation must be.
+fn docks_keep_egress(site: &Site) -> Vec<Reading> {
+    let least = site.retrieval.limits.corridor_width.as_ref().map_or(0.0, |l| l.value);
+    let docks = |r: &&Room| r.plan.circulation && r.has(&[Shape::Dock]);
+    let kept = |r: &Room| r.space().passes(&r.doors, least);
+    let narrowed: Vec<Reading> =
+        site.rooms.iter().filter(docks).map(|r| Reading::flag(&r.plan.room_id, kept(r))).collect();
+    let none = narrowed.is_empty() && site.count(&[Shape::Dock]) > 0;
+    if none { vec![Reading::flag("building", true)] } else { narrowed }
 }
 
 fn figure(site: &Site, room: &Room, object: &Object, a: &Applicable, rule: &Rule) -> Option<f64> {
@@ -44,14 +62,21 @@ fn figure(site: &Site, room: &Room, object: &Object, a: &Applicable, rule: &Rule
         }
         Measure::FreeAreaAtObject => Some(object.placement.size_m[0] * depth(Side::Front).min(MOVING_DEPTH_M)),
         Measure::GapBetweenObjects => {
-            let shapes = &rule.quantity.shapes;
-            let others = room.objects.iter().filter(|o| o.is(shapes) && o.placement != object.placement);
+            let alike = |o: &&Object| o.kind.is_some_and(|k| rule.quantity.picks(k)) && o.placement != object.placement;
+            let others = room.objects.iter().filter(alike);
             others.map(|o| gap(&o.rect, &object.rect)).reduce(f64::min)
         }
         Measure::DockClearOfDoors => {
             let free = |d: &&Door| door_zones(d).iter().all(|zone| !zone.overlaps(&object.rect));
             Some(if room.doors.iter().all(free) { 1.0 } else { 0.0 })
         }
+        Measure::DockNearEntrance => {
+            let plan = &site.world.floorplan;
+            let entered = |id: &String| plan.doors_of(id).any(|d| d.entrance);
+            let next = room.doors.iter().flat_map(|d| &d.room_ids).any(entered);
+            Some(if next { 1.0 } else { 0.0 })
+        }
+        Measure::DockAgainstWall => Some(if spacing::back_is_at_wall(room, object) { 1.0 } else { 0.0 }),
         Measure::DockInDryRoom => Some(if room.kind.wet { 0.0 } else { 1.0 }),
         _ => None,
     }
@@ -59,13 +84,13 @@ fn figure(site: &Site, room: &Room, object: &Object, a: &Applicable, rule: &Rule
 }
 
 /// Returns true for an object and what was placed with it (a desk and its chair): they share their clearance.
-fn belong_together(a: &Object, b: &Object) -> bool {
+pub(super) fn belong_together(a: &Object, b: &Object) -> bool {
     a.placement.placement_id == b.placement.placement_id
         || (a.placement.group.is_some() && a.placement.group == b.placement.group)
 }
 
 /// Returns the distance between two outlines along the axis that parts them, m.
-fn gap(a: &Rect, b: &Rect) -> f64 {
+pub(super) fn gap(a: &Rect, b: &Rect) -> f64 {
     let x = (a.x0 - b.x1).max(b.x0 - a.x1);
     let y = (a.y0 - b.y1).max(b.y0 - a.y1);
     x.max(y).max(0.0)

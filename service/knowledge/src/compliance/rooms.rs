@@ -8,6 +8,9 @@ use crate::freespace::FreeSpace;
 use crate::measure::Measure;
 use crate::retrieve::{Applicable, Rule};
 
+/// Windows with a lower sill than this reach down to the floor, m.
+const FLOOR_GLASS_M: f64 = 0.10;
+
 /// Reads a quantity of every room the constraint is about; rooms without it (no bed for an area per bed) are left out.
 pub(super) fn read(site: &Site, a: &Applicable, rule: &Rule) -> Vec<Reading> {
     site.rooms_of(a).filter_map(|room| Some(Reading::new(&room.plan.room_id, figure(site, room, rule)?))).collect()
@@ -38,6 +41,29 @@ fn figure(site: &Site, room: &Room, rule: &Rule) -> Option<f64> {
             glass / area.max(TOLERANCE_M)
         }
         Measure::Windows => room.windows.len() as f64,
+        Measure::WindowWidth => room.windows.iter().map(|w| w.line.length()).reduce(f64::max)?,
+        Measure::WindowHeight => room.windows.iter().map(|w| w.head_m - w.sill_m).reduce(f64::max)?,
+        Measure::WindowArea => room.windows.iter().map(|w| w.line.length() * (w.head_m - w.sill_m)).reduce(f64::max)?,
+        Measure::DepthToHeight => depth_behind_windows(room)? / room.plan.ceiling_height_m.max(TOLERANCE_M),
+        // a world is one storey: its circulation has no steps
+        Measure::NoStairs => 1.0,
+        Measure::NoGlassOrMirrors => {
+            let glass = room.windows.iter().any(|w| w.sill_m < FLOOR_GLASS_M);
+            let mirrors = |o: &&super::site::Object| o.kind.is_some_and(|k| k.tags.iter().any(|t| t == "mirror"));
+            let mirror = room.objects.iter().any(|o| mirrors(&o) || o.placement.object.contains("mirror"));
+            if glass || mirror { 0.0 } else { 1.0 }
+        }
+        Measure::AreaPerObject => {
+            per(area, room.objects.iter().filter(|o| o.kind.is_some_and(|k| rule.quantity.picks(k))).count())?
+        }
+        Measure::GrossAreaPerPerson => per(room.plan.polygon.signed_area().abs(), room.persons())?,
+        Measure::AreaPerFurther => per(area - rule.quantity.base, room.persons().checked_sub(1)?)?,
+        Measure::FreeAreaPerPerson => {
+            let taken: f64 =
+                room.objects.iter().filter(|o| o.blocks && o.placement.support.is_none()).map(|o| o.rect.area()).sum();
+            per(area - taken, room.persons())?
+        }
+        Measure::PersonsPer100 => (room.persons() > 0).then(|| room.persons() as f64 * 100.0 / area)?,
         _ => return None,
     })
 }
@@ -45,4 +71,19 @@ fn figure(site: &Site, room: &Room, rule: &Rule) -> Option<f64> {
 /// Returns the floor between the walls, without furniture.
 fn bare(room: &Room) -> FreeSpace {
     FreeSpace::new(&room.plan.net_polygon, &[])
+}
+
+/// Returns how deep a room with windows on one side only lies behind them, m; `None` for other rooms.
+fn depth_behind_windows(room: &Room) -> Option<f64> {
+    let first = room.windows.first()?;
+    let across = |w: &d3dgen_model::floorplan::Window| {
+        let middle = w.line.middle();
+        if w.line.is_vertical() { middle.x } else { middle.y }
+    };
+    let same_side = |w: &&d3dgen_model::floorplan::Window| {
+        w.line.is_vertical() == first.line.is_vertical() && (across(w) - across(first)).abs() < TOLERANCE_M
+    };
+    let bounds = room.plan.net_polygon.bounds();
+    let depth = if first.line.is_vertical() { bounds.width() } else { bounds.height() };
+    room.windows.iter().all(same_side).then_some(depth)
 }

@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use d3dgen_model::Point;
+use d3dgen_model::floorplan::Door;
 
 use super::Reading;
 use super::site::{Room, Site};
@@ -10,15 +11,23 @@ use crate::measure::Measure;
 use crate::retrieve::{Applicable, Rule, Scope};
 use crate::travel::Distances;
 
+/// How far a slow walker gets in a minute, m.
+const METERS_A_MINUTE: f64 = 60.0;
+
 /// Reads a width or distance.
 pub(super) fn read(site: &Site, a: &Applicable, rule: &Rule) -> Vec<Reading> {
     match rule.quantity.measure {
         Measure::CirculationWidth => widths(site, a),
         Measure::TravelDistance => farthest_from_exit(site),
+        Measure::DistanceToCirculation => to_circulation(site, a),
         Measure::StraightDistance => straight(site),
-        Measure::DistanceToRoom => {
+        Measure::DistanceToRoom | Measure::WalkingMinutes => {
             let to = site.rooms.iter().filter(|r| rule.to.contains(&r.plan.room_type));
-            room_to_room(site, site.rooms.iter().collect(), to.collect())
+            let mut ways = room_to_room(site, site.rooms.iter().collect(), to.collect());
+            if rule.quantity.measure == Measure::WalkingMinutes {
+                ways.iter_mut().for_each(|w| w.value /= METERS_A_MINUTE);
+            }
+            ways
         }
         Measure::DistanceBetween => {
             let near = site.rooms_of(a).collect();
@@ -39,7 +48,21 @@ fn widths(site: &Site, a: &Applicable) -> Vec<Reading> {
 }
 
 fn exits(site: &Site) -> Vec<Point> {
-    site.world.floorplan.doors.iter().filter(|d| d.room_ids.len() == 1).map(|d| d.line.middle()).collect()
+    site.exits().map(|d| d.line.middle()).collect()
+}
+
+/// Returns, for each room that opens on circulation, the way from its farthest point to that door.
+fn to_circulation(site: &Site, a: &Applicable) -> Vec<Reading> {
+    let map = site.occupancy();
+    let leads = |d: &&&Door| {
+        let ends = d.room_ids.iter().filter_map(|id| site.world.floorplan.room(id));
+        ends.into_iter().any(|r| r.circulation)
+    };
+    let way = |room: &Room| {
+        let doors: Vec<Point> = room.doors.iter().filter(leads).map(|d| d.line.middle()).collect();
+        if doors.is_empty() { None } else { Distances::from(map, &doors).largest_in(map, room.plan) }
+    };
+    site.rooms_of(a).filter_map(|r| Some(Reading::new(&r.plan.room_id, way(r)?))).collect()
 }
 
 /// Returns, for the room with the longest way out, the length of that way.

@@ -78,13 +78,25 @@ impl<'a> Site<'a> {
                 Scope::Objects(shapes) => room.has(shapes),
                 Scope::Building | Scope::Doors | Scope::Entrance => false,
             };
-            about && a.guards.iter().all(|g| room.passes(*g))
+            about && a.guards.iter().all(|g| room.passes(g))
         })
     }
 
     /// Returns the free floor of the furnished world.
     pub fn occupancy(&self) -> &Occupancy {
         self.occupancy.get_or_init(|| Occupancy::of_world(&self.world.floorplan, &self.world.placements))
+    }
+
+    /// Returns the doors and openings that lead out of the building.
+    pub fn exits(&self) -> impl Iterator<Item = &'a Door> {
+        self.world.floorplan.doors.iter().filter(|d| d.room_ids.len() == 1)
+    }
+
+    /// Returns true when what a constraint asks of the building as a whole holds.
+    pub fn admits(&self, a: &Applicable, single_exit: bool) -> bool {
+        let exits = self.exits().count() as f64;
+        let within = |g: &Guard| !matches!(g, Guard::Exits(min, max) if exits < *min || exits > *max);
+        (!single_exit || exits == 1.0) && a.guards.iter().all(within)
     }
 
     /// Returns how many objects of these builds the building has.
@@ -120,10 +132,28 @@ impl Room<'_> {
         if desks > 0 { desks } else { self.count(&[Shape::Chair, Shape::SwivelChair, Shape::Stool]) }
     }
 
-    fn passes(&self, guard: Guard) -> bool {
-        let (value, min, max, open) = match guard {
+    fn passes(&self, guard: &Guard) -> bool {
+        let (value, min, max, open) = match *guard {
             Guard::Area(min, max) => (self.plan.net_area_m2, min, max, true),
             Guard::Beds(min, max) => (self.beds() as f64, min, max, false),
+            Guard::Seats(min, max) => (self.persons() as f64, min, max, false),
+            Guard::Objects(row, min, max) => {
+                let kinds = self.objects.iter().filter_map(|o| o.kind);
+                let counted = kinds.filter(|k| row.shapes.contains(&k.shape) || row.objects.contains(&k.id));
+                (counted.count() as f64, min, max, false)
+            }
+            Guard::Named(row) => {
+                let name = self.plan.name.to_lowercase();
+                return row.words.iter().any(|w| name.contains(w.as_str()));
+            }
+            // the door that leads out of it: doors of rooms that hang on it have their leaf where they will
+            Guard::OpensInto(inward) => {
+                let into =
+                    |d: &&&Door| d.swing.as_ref().is_some_and(|s| s.into_room_id.as_ref() == Some(&self.plan.room_id));
+                return self.doors.len() == 1 && (self.doors.iter().filter(into).count() == 1) == inward;
+            }
+            // asked of the building once
+            Guard::Exits(..) => return true,
         };
         (if open { value > min } else { value >= min }) && value <= max
     }

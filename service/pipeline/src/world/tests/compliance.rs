@@ -1,11 +1,18 @@
 //! Constraints of the shipped knowledge bases on built worlds: kept by one figure, broken by another, always with source.
 
 use std::collections::BTreeSet;
+use std::sync::atomic::AtomicBool;
 
-use d3dgen_knowledge::{Measure, Query, Retrieval, compliance, retrieve};
-use d3dgen_model::report::Status;
+use d3dgen_knowledge::{Measure, Query, Retrieval, Stats, compliance, retrieve};
+use d3dgen_model::Document;
+use d3dgen_model::Pose;
+use d3dgen_model::placements::Placement;
+use d3dgen_model::report::{ConstraintResult, Status};
+use d3dgen_model::world::World;
 
 use super::{REGISTRY, SAMPLES, Sample};
+use crate::generate::{Settings, generate_world, retrieve as retrieve_world};
+use crate::scene_graph::Request;
 
 /// Returns the retrieval with every required figure replaced by one least figure.
 fn with_least(retrieval: &Retrieval, least: f64) -> Retrieval {
@@ -29,6 +36,139 @@ fn everywhere(sample: &Sample) -> Vec<Retrieval> {
     places.iter().map(|place| retrieve(knowledge, &query(place))).collect()
 }
 
+/// Worlds with what the common samples lack.
+const MORE: [&str; 3] = [
+    "hospital in the US with two exam rooms, a treatment room, a waiting area and three toilets",
+    "office in the US with an open office for 12 people, a storage room next to a robot charging room, two delivery robots \
+     and two cleaning robots",
+    "hospital in India with two four-bed patient rooms and two delivery robots",
+];
+
+fn made(prompt: &str) -> Sample {
+    let request = Request { prompt: prompt.to_owned(), seed: 7, ..Request::default() };
+    let made = generate_world(&request, &REGISTRY, &Settings::default(), &mut |_| {}, &AtomicBool::new(false)).unwrap();
+    let plugin = REGISTRY.get(&made.world.scene_graph.domain).unwrap();
+    let retrieval = retrieve_world(&made.world.scene_graph, plugin);
+    Sample { world: made.world, domain: plugin.domain(), retrieval }
+}
+
+/// Gap between the fronts of the two desks of [`facing_desks`], m.
+const AISLE_M: f64 = 1.6;
+
+/// Returns the office with nothing in its open office but two desks whose fronts face each other.
+fn facing_desks() -> Sample {
+    let sample = &SAMPLES[1];
+    let mut world = sample.world.clone();
+    let room = world.floorplan.rooms.iter().find(|r| r.room_type == "open_office").unwrap().clone();
+    let middle = room.net_polygon.bounds().center();
+    let all = &mut world.placements.placements;
+    let mut desk = all.iter().find(|p| p.room_id == room.room_id && p.object == "desk").unwrap().clone();
+    all.retain(|p| p.room_id != room.room_id);
+    desk.group = None;
+    for (n, yaw_rad, side) in [(1, 0.0, -1.0), (2, std::f64::consts::PI, 1.0)] {
+        let x = middle.x + side * (AISLE_M + desk.size_m[1]) / 2.0;
+        let pose = Pose { x, y: middle.y, yaw_rad, ..desk.pose };
+        all.push(Placement { placement_id: format!("facing_{n}"), pose, ..desk.clone() });
+    }
+    Sample { world, domain: sample.domain, retrieval: sample.retrieval.clone() }
+}
+
+/// Returns the flat with two single beds, so far (m) apart, and nothing else in its first bedroom.
+fn twin_beds(apart: f64) -> Sample {
+    let sample = &SAMPLES[0];
+    let mut world = sample.world.clone();
+    let room = world.floorplan.rooms.iter().find(|r| r.room_type == "bedroom").unwrap().clone();
+    let bounds = room.net_polygon.bounds();
+    let all = &mut world.placements.placements;
+    let bed = all.iter().find(|p| p.room_id == room.room_id && p.object.ends_with("bed")).unwrap().clone();
+    all.retain(|p| p.room_id != room.room_id);
+    for n in [0.0, 1.0] {
+        let size_m = [0.9, 1.96, 0.5];
+        let pose = Pose { x: bounds.x0 + 0.98, y: bounds.y0 + 0.6 + n * (0.9 + apart), yaw_rad: 0.0, ..bed.pose };
+        let placement_id = format!("twin_{n}");
+        all.push(Placement { placement_id, pose, size_m, object: "single_bed".into(), group: None, ..bed.clone() });
+    }
+    Sample { world, domain: sample.domain, retrieval: sample.retrieval.clone() }
+}
+
+#[test]
+fn rules_for_twin_beds_hold_where_two_stand() {
+    let gap = |apart| {
+        let sample = twin_beds(apart);
+        verdicts(&sample, &sample.world, "twin_bed_gap").first().map(|r| (r.status, r.measured))
+    };
+    assert_eq!(gap(0.9), Some((Status::Satisfied, Some(0.9))));
+    assert_eq!(gap(0.6), Some((Status::Violated, Some(0.6))));
+    let sample = &SAMPLES[0];
+    assert!(verdicts(sample, &sample.world, "twin_bed_gap").is_empty(), "no room has two single beds");
+}
+
+/// Returns the verdicts on a world whose constraint id contains a name.
+fn verdicts(sample: &Sample, world: &World, name: &str) -> Vec<ConstraintResult> {
+    let (results, _) = compliance::evaluate(world, sample.domain, &sample.retrieval);
+    results.into_iter().filter(|r| r.constraint_id.contains(name)).collect()
+}
+
+/// Returns the status and figure of the only verdict.
+fn verdict(sample: &Sample, world: &World, name: &str) -> (Status, f64) {
+    let found = verdicts(sample, world, name);
+    let [only] = found.as_slice() else { panic!("{name}: {found:?}") };
+    (only.status, only.measured.unwrap())
+}
+
+#[test]
+fn aisles_between_desks_are_measured_front_to_front() {
+    let sample = facing_desks();
+    assert_eq!(verdict(&sample, &sample.world, "back_to_back_desk_aisle"), (Status::Satisfied, AISLE_M));
+    let mut narrow = sample.world.clone();
+    let desk = narrow.placements.placements.iter_mut().find(|p| p.placement_id == "facing_2").unwrap();
+    desk.pose.x -= 0.3;
+    let found = verdicts(&sample, &narrow, "back_to_back_desk_aisle");
+    assert_eq!(found.len(), 2, "each desk is reported");
+    assert!(found.iter().all(|r| r.status == Status::Violated && r.measured == Some(1.3)), "{found:?}");
+}
+
+#[test]
+fn sizes_of_objects_are_held_against_their_rules() {
+    let sample = facing_desks();
+    let resized = |depth: f64| {
+        let mut world = sample.world.clone();
+        let desks = world.placements.placements.iter_mut().filter(|p| p.object.ends_with("desk"));
+        desks.for_each(|p| p.size_m = [1.6, depth, 0.74]);
+        world
+    };
+    assert_eq!(verdict(&sample, &resized(0.85), "desk_depth"), (Status::Satisfied, 0.85));
+    assert_eq!(verdict(&sample, &resized(0.85), "desk_surface").0, Status::Satisfied);
+    assert_eq!(verdict(&sample, &resized(0.85), "desk_standard"), (Status::Satisfied, 0.0));
+    let small = resized(0.6);
+    assert!(verdicts(&sample, &small, "desk_depth").iter().all(|r| r.measured == Some(0.6)));
+    for name in ["desk_depth", "desk_surface", "desk_standard"] {
+        let found = verdicts(&sample, &small, name);
+        assert!(!found.is_empty() && found.iter().all(|r| r.status == Status::Violated), "{name}: {found:?}");
+    }
+    // 0.8 m less a tenth is 0.72 m: 0.12 m more than there is
+    assert!(verdicts(&sample, &small, "desk_standard").iter().all(|r| r.measured == Some(0.12)));
+}
+
+#[test]
+fn toilets_are_measured_from_their_middle_to_what_stands_beside() {
+    let sample = &SAMPLES[0];
+    let mut world = sample.world.clone();
+    let all = &mut world.placements.placements;
+    let toilet = all.iter().find(|p| p.object == "toilet").unwrap().clone();
+    all.retain(|p| p.room_id != toilet.room_id || p.placement_id == toilet.placement_id);
+    let room = world.floorplan.room(&toilet.room_id).unwrap().net_polygon.bounds();
+    let place = |world: &mut World, from_wall: f64| {
+        let p = world.placements.placements.iter_mut().find(|p| p.placement_id == toilet.placement_id).unwrap();
+        p.pose = Pose { x: room.x0 + from_wall, y: room.y0 + toilet.size_m[1] / 2.0, z: 0.0, ..toilet.pose };
+        p.pose.yaw_rad = std::f64::consts::FRAC_PI_2;
+    };
+    place(&mut world, 0.45);
+    assert_eq!(verdict(sample, &world, "toilet_centerline_to_side"), (Status::Satisfied, 0.45));
+    place(&mut world, 0.30);
+    assert_eq!(verdict(sample, &world, "toilet_centerline_to_side"), (Status::Violated, 0.3));
+}
+
 /// Returns the measures of what was found with this status, all results being complete.
 fn measures(sample: &Sample, retrieval: &Retrieval, status: Status) -> BTreeSet<Measure> {
     let (results, summary) = compliance::evaluate(&sample.world, sample.domain, retrieval);
@@ -49,7 +189,9 @@ fn measures(sample: &Sample, retrieval: &Retrieval, status: Status) -> BTreeSet<
 fn every_measure_at_hand_is_kept_by_one_figure_and_broken_by_another() {
     let (mut kept, mut broken) = (BTreeSet::new(), BTreeSet::new());
     let mut asked = BTreeSet::new();
-    for sample in SAMPLES.iter() {
+    let more = MORE.map(made);
+    let moved = [facing_desks(), twin_beds(0.9)];
+    for sample in SAMPLES.iter().chain(&more).chain(&moved) {
         for retrieval in everywhere(sample) {
             asked.extend(retrieval.constraints.iter().filter_map(|a| Some(a.decision.as_ref().ok()?.quantity.measure)));
             kept.extend(measures(sample, &with_least(&retrieval, -1e9), Status::Satisfied));
@@ -79,4 +221,20 @@ fn a_shipped_figure_that_a_changed_world_breaks_is_reported_at_its_subject() {
     let (before, after) = (at_door(&sample.world), at_door(&world));
     assert!(after.len() > before.len());
     assert!(after.iter().any(|r| r.measured == Some(0.3) && r.required_min.is_some_and(|m| m > 0.3)));
+}
+
+#[test]
+fn shipped_knowledge_exceeds_the_papers_counts_and_most_of_it_is_decided() {
+    let paper = [("residential", 24, 138, 12, 3), ("office", 29, 172, 16, 4), ("hospital", 41, 160, 82, 9)];
+    for (domain, references, constraints, room_types, jurisdictions) in paper {
+        let plugin = REGISTRY.get(domain).unwrap();
+        let stats = Stats::of(plugin.knowledge(), plugin.domain(), plugin.knowledge().to_json().len());
+        assert!(stats.references > references, "{domain}: {} references", stats.references);
+        assert!(stats.constraints > constraints, "{domain}: {} constraints", stats.constraints);
+        assert!(stats.room_types > room_types, "{domain}: {} room types", stats.room_types);
+        assert!(stats.jurisdictions > jurisdictions, "{domain}: {} jurisdictions", stats.jurisdictions);
+        assert_eq!(stats.confidence.values().sum::<usize>(), stats.constraints);
+        assert_eq!(stats.decided + stats.not_decidable.values().sum::<usize>(), stats.constraints);
+        assert!(stats.share_decided >= 0.6, "{domain}: {:.3} decided", stats.share_decided);
+    }
 }

@@ -1,0 +1,134 @@
+//! Free floor around objects, and distances between objects, walls and windows.
+
+use d3dgen_model::domain::{Mount, Shape};
+use d3dgen_model::{Point, Rect};
+
+use super::Reading;
+use super::objects::{belong_together, gap};
+use super::site::{Object, Room, Site};
+use crate::clearance::{Side, depth_beside, free_depth, quarter};
+use crate::measure::Measure;
+use crate::retrieve::{Applicable, Rule};
+
+/// Objects nearer to a wall than this stand against it, m.
+const AGAINST_M: f64 = 0.10;
+/// Heights between which a thing on a wall stands out into the way of people, m.
+const HEAD_ROOM_M: [f64; 2] = [0.685, 2.03];
+/// Seats belong to a table at most this far from its edge, m.
+const AT_TABLE_M: f64 = 0.5;
+/// Thickness of the panels that a desk stands on, m.
+const DESK_PANEL_M: f64 = 0.03;
+const SEATS: [Shape; 3] = [Shape::Chair, Shape::SwivelChair, Shape::Stool];
+
+/// Returns a distance of an object, m; `None` when the quantity is none or the room lacks the other end.
+pub(super) fn figure(room: &Room, object: &Object, rule: &Rule) -> Option<f64> {
+    let alike = |o: &&Object| o.placement != object.placement && o.kind.is_some_and(|k| rule.quantity.picks(k));
+    let (own, own_middle) = (&object.rect, object.rect.center());
+    match rule.quantity.measure {
+        Measure::ObjectAround => (0..4).map(|turn| depth(room, object, turn)).reduce(f64::min),
+        Measure::ObjectThreeSides => {
+            let sides = [Side::Front, Side::Left, Side::Right];
+            sides
+                .map(|side| free_depth(object.placement, side, &room.plan.net_polygon, others(room, object)))
+                .into_iter()
+                .reduce(f64::min)
+        }
+        Measure::ObjectToWall => {
+            let to_wall = |turn| depth_beside(own, turn, &room.plan.net_polygon, std::iter::empty());
+            (0..4).map(to_wall).filter(|d| *d > AGAINST_M).reduce(f64::min)
+        }
+        Measure::ObjectToObject => {
+            let ends = room.objects.iter().filter(|o| o.is(&rule.quantity.to_shapes));
+            ends.map(|o| gap(&o.rect, own)).reduce(f64::min)
+        }
+        Measure::CentreToSide => {
+            let ahead = quarter(object.placement.pose.yaw_rad);
+            let side = |turn| depth(room, object, (ahead + turn) % 4);
+            Some(side(1).min(side(3)) + object.placement.size_m[0] / 2.0)
+        }
+        Measure::CentreSpacing => {
+            room.objects.iter().filter(alike).map(|o| o.rect.center().distance(own_middle)).reduce(f64::min)
+        }
+        Measure::FacingGap => facing_gap(room, object, rule),
+        Measure::LegRoom => {
+            let under = |o: &&Object| o.is(&[Shape::Cabinet]) && o.rect.overlaps(own);
+            let taken: f64 = room.objects.iter().filter(under).map(|o| o.placement.size_m[0]).sum();
+            Some(object.placement.size_m[0] - taken - 2.0 * DESK_PANEL_M)
+        }
+        Measure::TableEdgePerSeat => {
+            let seats = room.objects.iter().filter(|o| o.is(&SEATS) && belong_together(o, object));
+            let seats = seats.filter(|o| gap(&o.rect, own) <= AT_TABLE_M).count();
+            (seats > 0).then(|| 2.0 * (own.width() + own.height()) / seats as f64)
+        }
+        Measure::WindowDistance => room.windows.iter().map(|w| w.line.middle().distance(own_middle)).reduce(f64::min),
+        _ => None,
+    }
+}
+
+/// Returns true when the back of an object stands against a wall.
+pub(super) fn back_is_at_wall(room: &Room, object: &Object) -> bool {
+    let back = (quarter(object.placement.pose.yaw_rad) + 2) % 4;
+    depth_beside(&object.rect, back, &room.plan.net_polygon, std::iter::empty()) <= AGAINST_M
+}
+
+/// Reads how far each thing on a wall of circulation stands out, at the height of people.
+pub(super) fn projections(site: &Site, a: &Applicable) -> Vec<Reading> {
+    let in_the_way = |o: &&Object| {
+        let z = o.placement.pose.z;
+        o.placement.mount == Mount::Wall && z > HEAD_ROOM_M[0] && z < HEAD_ROOM_M[1]
+    };
+    let rooms = site.rooms_of(a).filter(|r| r.plan.circulation);
+    let objects = rooms.flat_map(|r| r.objects.iter().filter(in_the_way));
+    objects.map(|o| Reading::new(&o.placement.placement_id, o.placement.size_m[1])).collect()
+}
+
+/// Reads the triangle from the front of the sink to that of the stove and of the refrigerator in each kitchen.
+pub(super) fn work_triangles(site: &Site, a: &Applicable, rule: &Rule) -> Vec<Reading> {
+    let mut out = Vec::new();
+    for room in site.rooms_of(a) {
+        let first = |fits: &dyn Fn(&Object) -> bool| room.objects.iter().find(|o| fits(o)).map(front);
+        let sink = first(&|o| o.is(&[Shape::Sink]));
+        let stove = first(&|o| o.is(&[Shape::Stove]));
+        let cold = first(&|o| rule.quantity.objects.contains(&o.placement.object));
+        let (Some(sink), Some(stove), Some(cold)) = (sink, stove, cold) else { continue };
+        let legs = [sink.distance(stove), stove.distance(cold), cold.distance(sink)];
+        match rule.quantity.measure {
+            Measure::WorkTriangleTotal => out.push(Reading::new(&room.plan.room_id, legs.iter().sum())),
+            _ => out.extend(legs.map(|leg| Reading::new(&room.plan.room_id, leg))),
+        }
+    }
+    out
+}
+
+/// Returns the middle of the front edge of an object.
+fn front(object: &Object) -> Point {
+    let (middle, half) = (object.rect.center(), object.placement.size_m[1] / 2.0);
+    let (dx, dy) =
+        [(half, 0.0), (0.0, half), (-half, 0.0), (0.0, -half)][usize::from(quarter(object.placement.pose.yaw_rad) % 4)];
+    Point::new(middle.x + dx, middle.y + dy)
+}
+
+/// Returns the free depth towards a quarter turn up to the next wall or thing that does not belong to the object, m.
+fn depth(room: &Room, object: &Object, turn: u8) -> f64 {
+    depth_beside(&object.rect, turn, &room.plan.net_polygon, others(room, object))
+}
+
+fn others<'a>(room: &'a Room, object: &'a Object) -> impl Iterator<Item = Rect> + 'a {
+    room.objects.iter().filter(|o| o.blocks && !belong_together(o, object)).map(|o| o.rect)
+}
+
+/// Returns the aisle between the front of this desk or shelf and the next one that faces it, m.
+fn facing_gap(room: &Room, object: &Object, rule: &Rule) -> Option<f64> {
+    let ahead = quarter(object.placement.pose.yaw_rad);
+    let outline = &room.plan.net_polygon;
+    let faces = |o: &&Object| {
+        quarter(o.placement.pose.yaw_rad) == (ahead + 2) % 4 && o.kind.is_some_and(|k| rule.quantity.picks(k))
+    };
+    let desks = room.objects.iter().filter(faces).map(|o| o.rect);
+    let things =
+        room.objects.iter().filter(|o| o.blocks && !o.is(&SEATS) && !belong_together(o, object)).map(|o| o.rect);
+    let to_desk = depth_beside(&object.rect, ahead, outline, desks);
+    let to_wall = depth_beside(&object.rect, ahead, outline, std::iter::empty());
+    let to_thing = depth_beside(&object.rect, ahead, outline, things);
+    (to_desk < to_wall - AGAINST_M && to_desk <= to_thing + crate::compliance::SLACK).then_some(to_desk)
+}
