@@ -104,10 +104,8 @@ fn query_room(room: &GraphRoom, domain: &Domain) -> QueryRoom {
 
 /// Returns true when a room type is furnished with beds on wheels.
 fn has_rolling_beds(kind: &RoomType, domain: &Domain) -> bool {
-    kind.furnishing.iter().filter(|f| f.min > 0).any(|f| {
-        let object = domain.group(&f.item).map_or(f.item.as_str(), |g| g.anchor.as_str());
-        domain.object(object).is_some_and(|o| o.shape == Shape::HospitalBed)
-    })
+    let rolls = |item: &str| domain.anchor(item).is_some_and(|o| o.shape == Shape::HospitalBed);
+    kind.furnishing.iter().filter(|f| f.min > 0).any(|f| rolls(&f.item))
 }
 
 /// Returns how many people there are at a time, and whether the prompt says so.

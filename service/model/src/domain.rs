@@ -110,6 +110,11 @@ impl Domain {
         self.groups.iter().find(|g| g.id == id)
     }
 
+    /// Returns the object a furnishing item is about: the anchor of a group, or the object itself.
+    pub fn anchor(&self, item: &str) -> Option<&ObjectType> {
+        self.object(self.group(item).map_or(item, |g| g.anchor.as_str()))
+    }
+
     /// Returns the program with this id.
     pub fn program(&self, id: &str) -> Option<&Program> {
         self.programs.iter().find(|p| p.id == id)

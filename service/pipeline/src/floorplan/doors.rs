@@ -16,9 +16,9 @@ const DOOR_HEIGHT_M: f64 = 2.1;
 const DOUBLE_FROM_M: f64 = 1.25;
 /// A leaf whose square takes more than this share of the room slides instead.
 const SLIDING_SHARE: f64 = 0.22;
-/// Widest open passage, m, and the stubs of wall left beside it.
+/// Widest open passage, m, and the piece of wall left on each side of it.
 const OPEN_MAX_M: f64 = 4.0;
-const OPEN_STUB_M: f64 = 0.3;
+const OPEN_JAMB_M: f64 = 0.3;
 /// Floor kept free in front of a door, m.
 const APPROACH_M: f64 = 0.6;
 
@@ -136,7 +136,7 @@ impl Site<'_> {
             return Vec::new();
         }
         if connector == Connector::Open {
-            let width = (meters(s.len()) - 2.0 * (OPEN_STUB_M + INNER_HALF_M)).clamp(opening, OPEN_MAX_M);
+            let width = (meters(s.len()) - 2.0 * (OPEN_JAMB_M + INNER_HALF_M)).clamp(opening, OPEN_MAX_M);
             let start = (from + to - width) / 2.0;
             return vec![self.open_spot(s, a, b, start, width)];
         }

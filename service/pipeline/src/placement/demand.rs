@@ -55,7 +55,7 @@ pub(super) fn tasks<'a>(
     let occupied = occupied_line(domain, kind, graph);
     let mut out: Vec<Task> = Vec::new();
     for (line, f) in kind.furnishing.iter().enumerate() {
-        let Some(anchor) = anchor_of(domain, &f.item) else { continue };
+        let Some(anchor) = domain.anchor(&f.item) else { continue };
         let (mut count, mut required) = (count(f, area_m2), if f.required { f.min } else { 0 });
         if let Some((steered, units)) = occupied
             && steered == line
@@ -109,10 +109,6 @@ fn turn_to_audience(tasks: &mut [Task]) {
     if let Some(task) = tasks.iter_mut().find(shown) {
         task.arrangement = Arrangement::Facing;
     }
-}
-
-fn anchor_of<'a>(domain: &'a Domain, item: &str) -> Option<&'a ObjectType> {
-    domain.group(item).map_or_else(|| domain.object(item), |g| domain.object(&g.anchor))
 }
 
 /// Returns how many units a line asks for in a room of this size.

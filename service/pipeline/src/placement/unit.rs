@@ -152,7 +152,7 @@ pub(super) fn variants<'a>(
     ceiling: i32,
 ) -> Vec<Unit<'a>> {
     let group = domain.group(item);
-    let Some(anchor) = group.map_or_else(|| domain.object(item), |g| domain.object(&g.anchor)) else {
+    let Some(anchor) = domain.anchor(item) else {
         return Vec::new();
     };
     let plan = Plan { domain, item, group, anchor, tightness, ceiling };
@@ -313,6 +313,14 @@ fn add_member<'a>(parts: &mut Vec<Part<'a>>, member: &Member, object: &'a Object
     let beside = !matches!(member.relation, Relation::On | Relation::Over | Relation::Under);
     let gap = if beside && base < anchor.z1 && gap < 0 { 0 } else { gap };
     let floor = |rect: Box2| Solid { rect, z0: base, z1: base + h };
+    let part = |quarter: u8, solid: Solid| Part {
+        object,
+        quarter,
+        solid,
+        mount: object.mount,
+        support: None,
+        optional: !member.required,
+    };
     match member.relation {
         Relation::Left | Relation::Right => {
             let left = member.relation == Relation::Left;
@@ -322,14 +330,7 @@ fn add_member<'a>(parts: &mut Vec<Part<'a>>, member: &Member, object: &'a Object
                 let y = if left { a.y1 + gap } else { a.y0 - gap - ey };
                 let step = if left { (0, 20) } else { (0, -20) };
                 if let Some(solid) = pushed(parts, floor(at(a.x0 + offset, y, q)), step) {
-                    parts.push(Part {
-                        object,
-                        quarter: q,
-                        solid,
-                        mount: object.mount,
-                        support: None,
-                        optional: !member.required,
-                    });
+                    parts.push(part(q, solid));
                 }
             }
         }
@@ -343,27 +344,13 @@ fn add_member<'a>(parts: &mut Vec<Part<'a>>, member: &Member, object: &'a Object
                 let y = offset - ey / 2 + (2 * k - (count as i32 - 1)) * pitch / 2;
                 let step = if front { (20, 0) } else { (-20, 0) };
                 if let Some(solid) = pushed(parts, floor(at(x, y, q)), step) {
-                    parts.push(Part {
-                        object,
-                        quarter: q,
-                        solid,
-                        mount: object.mount,
-                        support: None,
-                        optional: !member.required,
-                    });
+                    parts.push(part(q, solid));
                 }
             }
         }
         Relation::Around => {
             for (rect, q) in around(a, w, d, gap, count) {
-                parts.push(Part {
-                    object,
-                    quarter: q,
-                    solid: floor(rect),
-                    mount: object.mount,
-                    support: None,
-                    optional: !member.required,
-                });
+                parts.push(part(q, floor(rect)));
             }
         }
         Relation::On => {
@@ -374,14 +361,7 @@ fn add_member<'a>(parts: &mut Vec<Part<'a>>, member: &Member, object: &'a Object
                 let y = (a.y0 + a.y1 - ey) / 2 + offset;
                 if let Some(rect) = on_top(parts, at(x, y, q)) {
                     let solid = Solid { rect, z0: anchor.z1, z1: anchor.z1 + h };
-                    parts.push(Part {
-                        object,
-                        quarter: q,
-                        solid,
-                        mount: Mount::Surface,
-                        support: Some(0),
-                        optional: !member.required,
-                    });
+                    parts.push(Part { mount: Mount::Surface, support: Some(0), ..part(q, solid) });
                 }
             }
         }
@@ -395,14 +375,7 @@ fn add_member<'a>(parts: &mut Vec<Part<'a>>, member: &Member, object: &'a Object
             let rect = Box2 { x0: back, y0: offset - w / 2, x1: back + d, y1: offset - w / 2 + w };
             let solid = Solid { rect, z0: z, z1: z + h };
             if let Some(solid) = pushed(parts, solid, (0, 20)) {
-                parts.push(Part {
-                    object,
-                    quarter: 0,
-                    solid,
-                    mount: Mount::Wall,
-                    support: None,
-                    optional: !member.required,
-                });
+                parts.push(Part { mount: Mount::Wall, ..part(0, solid) });
             }
         }
         Relation::Over | Relation::Under => {
@@ -413,14 +386,7 @@ fn add_member<'a>(parts: &mut Vec<Part<'a>>, member: &Member, object: &'a Object
             let rect = at(x, (a.y0 + a.y1 - ey) / 2 + offset, q);
             let z = if member.relation == Relation::Over { base } else { 0 };
             let solid = Solid { rect, z0: z, z1: z + h };
-            parts.push(Part {
-                object,
-                quarter: q,
-                solid,
-                mount: object.mount,
-                support: None,
-                optional: !member.required,
-            });
+            parts.push(part(q, solid));
         }
     }
 }

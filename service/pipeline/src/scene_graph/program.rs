@@ -44,6 +44,21 @@ pub(super) struct Planned<'a> {
     pub occupants: Option<u32>,
 }
 
+impl<'a> Planned<'a> {
+    fn new(room_type: &str, kind: &'a RoomType) -> Self {
+        Self {
+            room_type: room_type.to_owned(),
+            kind,
+            name: None,
+            area_m2: None,
+            people_area_m2: None,
+            requested: false,
+            host: None,
+            occupants: None,
+        }
+    }
+}
+
 /// Returns the rooms of the building, circulation aside.
 pub(super) fn complete<'a>(reading: &mut Reading<'a>) -> Vec<Planned<'a>> {
     let mut build = Build::new(reading);
@@ -74,16 +89,7 @@ pub(super) fn follow_rules<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planne
             continue;
         }
         reading.assumptions.push(note("room_by_rule", format!("added a {what}")));
-        rooms.push(Planned {
-            room_type: kind.id.clone(),
-            kind,
-            name: None,
-            area_m2: None,
-            people_area_m2: None,
-            requested: false,
-            host: None,
-            occupants: None,
-        });
+        rooms.push(Planned::new(&kind.id, kind));
     }
     changed
 }
@@ -119,11 +125,7 @@ impl<'r, 'a> Build<'r, 'a> {
 
     /// Returns true when one of the rooms is furnished with a dock anyway.
     fn has_dock(&self) -> bool {
-        let domain = self.reading.domain;
-        let is_dock = |item: &str| {
-            let object = domain.group(item).map_or(item, |g| g.anchor.as_str());
-            domain.object(object).is_some_and(|o| o.shape == Shape::Dock)
-        };
+        let is_dock = |item: &str| self.reading.domain.anchor(item).is_some_and(|o| o.shape == Shape::Dock);
         self.rooms.iter().any(|r| r.kind.furnishing.iter().any(|f| is_dock(&f.item)))
     }
 
@@ -143,14 +145,10 @@ impl<'r, 'a> Build<'r, 'a> {
     fn push(&mut self, room_type: &str, wish: Option<&Wish>) {
         let kind = self.reading.domain.room_type_or_generic(room_type);
         self.rooms.push(Planned {
-            room_type: room_type.to_owned(),
-            kind,
             name: wish.filter(|_| kind.id != room_type).map(|w| w.name.clone()),
             area_m2: wish.and_then(|w| w.area_m2),
-            people_area_m2: None,
             requested: wish.is_some(),
-            host: None,
-            occupants: None,
+            ..Planned::new(room_type, kind)
         });
     }
 

@@ -129,7 +129,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     let robots = machines_of(&machines, &wishes, radius.map(|r| r.1), request, &mut assumptions, &mut conflicts);
     let area_m2 = total_area(&text, request, &mut conflicts);
     let people = People::read(&mentions, program, domain, &mut conflicts);
-    beds_are_rooms(&people, &mentions, program, &mut wishes);
+    beds_are_rooms(&people, &mentions, &mut wishes);
     let total = total_rooms(request, &mentions, &wishes, &mut conflicts)?;
     let listed: u64 = wishes.wishes.iter().map(|w| u64::from(w.count)).sum();
     if listed > u64::from(MAX_ROOMS) {
@@ -286,12 +286,11 @@ impl People {
 }
 
 /// "10 beds in single rooms" are 10 rooms.
-fn beds_are_rooms(people: &People, mentions: &[Mention], program: &Program, wishes: &mut Wishes) {
+fn beds_are_rooms(people: &People, mentions: &[Mention], wishes: &mut Wishes) {
     let Some(beds) = people.occupancy.beds else { return };
     let Some(at) = mentions.iter().position(|m| m.what == What::Beds && m.count.is_some()) else { return };
     let Some(next) = mentions.get(at + 1).filter(|m| m.span.start <= mentions[at].span.end + 2) else { return };
     let (Some(id), None) = (next.room_type(), next.count) else { return };
-    let _ = program;
     if next.plural
         && let Some(wish) = wishes.wishes.iter_mut().find(|w| w.room_type == id && !w.exact)
     {

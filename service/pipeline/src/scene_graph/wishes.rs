@@ -155,7 +155,7 @@ fn count_type(text: &Text, id: &str, list: &[usize], out: &mut Wishes, conflicts
             return;
         }
     }
-    let Some(counted) = count_mentions(text, id, &positive, short, &label, conflicts) else { return };
+    let Some(counted) = count_mentions(text, &positive, short, &label, conflicts) else { return };
     let area_m2 = positive.iter().find_map(|&m| room_area(text, &text.mentions[m]));
     let name = positive.first().map_or(label.clone(), |&m| {
         let span = text.mentions[m].span;
@@ -174,7 +174,6 @@ fn count_type(text: &Text, id: &str, list: &[usize], out: &mut Wishes, conflicts
 /// Returns count, whether it is exact, and whether the type is listed.
 fn count_mentions(
     text: &Text,
-    id: &str,
     positive: &[usize],
     short: Option<i64>,
     label: &str,
@@ -212,7 +211,6 @@ fn count_mentions(
         return Some((clamp(h), true, listed_any));
     }
     let n = if sum > 0 { sum } else { references };
-    let _ = id;
     (n > 0).then(|| (clamp(n), exact, true))
 }
 
