@@ -11,11 +11,13 @@ use serde_json::Value;
 const ARROWS: &[(&str, &[&str])] = &[
     ("model", &[]),
     ("plugins", &["model"]),
-    ("knowledge", &["model"]),
+    ("store", &[]),
+    ("llm", &[]),
+    ("knowledge", &["model", "store"]),
     ("pipeline", &["model", "plugins", "knowledge"]),
     ("export", &["model"]),
-    ("research", &["model"]),
-    ("cli", &["model", "plugins", "knowledge", "pipeline", "export", "research"]),
+    ("research", &["model", "llm"]),
+    ("cli", &["model", "store", "llm", "plugins", "knowledge", "pipeline", "export", "research"]),
     ("tests", &["model", "plugins", "knowledge", "pipeline", "export"]),
 ];
 
@@ -25,6 +27,14 @@ const OUTSIDE: &[(&str, &[&str])] = &[
     ("resvg", &["export"]),
     ("svgtypes", &["export"]),
     ("ttf-parser", &["export"]),
+    ("redb", &["store"]),
+    ("sled", &["store"]),
+    ("tantivy", &["store"]),
+    ("hnsw_rs", &["store"]),
+    ("fastembed", &["store"]),
+    ("reqwest", &["llm", "research"]),
+    ("scraper", &["research"]),
+    ("pdf-extract", &["research"]),
     ("tonic", &["proto", "server", "cli"]),
     ("prost", &["proto", "server", "cli"]),
     ("clap", &["cli"]),
@@ -70,6 +80,8 @@ fn formats_and_protocols_stay_where_they_belong() {
 #[test]
 fn only_the_command_reads_clock_and_environment() {
     const FORBIDDEN: &[&str] = &["std::env", "env::var", "SystemTime", "Instant::now", "std::net", "thread_rng"];
+    // Crates that speak to the network know addresses, and measure how long an answer took; the date stays outside.
+    const NETWORK: &[&str] = &["llm", "research"];
     fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
         for entry in std::fs::read_dir(folder).unwrap() {
             let path = entry.unwrap().path();
@@ -91,6 +103,9 @@ fn only_the_command_reads_clock_and_environment() {
             let text = std::fs::read_to_string(&file).unwrap();
             let code = text.split("#[cfg(test)]\nmod tests {").next().unwrap_or_default();
             for word in FORBIDDEN {
+                if NETWORK.contains(&name.as_str()) && matches!(*word, "Instant::now" | "std::net") {
+                    continue;
+                }
                 assert!(!code.contains(word), "{} uses {word}", file.display());
             }
         }

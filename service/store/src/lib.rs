@@ -1,0 +1,1 @@
+//! Embedded storage: records behind a key-value trait, and the full text and vector indexes derived from them.
