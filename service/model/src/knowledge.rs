@@ -3,7 +3,7 @@
 //! The shape is the paper's (`rag_data.generated.json`, arXiv 2608.11876): metadata, then references, each with sources
 //! and constraints whose `value` is polymorphic.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -155,36 +155,202 @@ impl KnowledgeBase {
     }
 }
 
+/// Kinds of constraint.
+pub const CONSTRAINT_TYPES: [&str; 7] =
+    ["minimum", "maximum", "range", "ratio", "table", "recommendation", "rule_of_thumb"];
+
+/// How sure a figure is, surest first.
+pub const CONFIDENCES: [&str; 3] = ["high", "medium", "low"];
+
+/// Jurisdiction of rules that the owner of a building sets: they hold wherever it stands, beside the law of the place.
+pub const LOCAL: &str = "LOCAL";
+
+/// Source type of rules that a person has set or changed in the database.
+pub const AMENDMENT: &str = "amendment";
+
 impl Document for KnowledgeBase {
     const KIND: &'static str = "knowledge_base";
 
     fn check(&self) -> Vec<Problem> {
         let mut problems = Vec::new();
+        if self.metadata.version != 1 {
+            let message = format!("is {}, this release reads version 1", self.metadata.version);
+            problems.push(Problem::new("/metadata/version", message));
+        }
+        check_date("/metadata/date", &self.metadata.date, &mut problems);
         check_unique("/references", self.references.iter().map(|r| r.ref_id.as_str()), &mut problems);
-        let mut seen = std::collections::BTreeSet::new();
+        let mut seen = BTreeSet::new();
         for (i, reference) in self.references.iter().enumerate() {
+            let path = format!("/references/{i}");
+            check_reference(&path, reference, &mut problems);
             for (j, constraint) in reference.constraints.iter().enumerate() {
-                let path = format!("/references/{i}/constraints/{j}");
+                let path = format!("{path}/constraints/{j}");
                 if !seen.insert(&constraint.constraint_id) {
                     problems.push(Problem::new(
                         format!("{path}/constraint_id"),
                         format!("`{}` is used twice; ids are unique in the file", constraint.constraint_id),
                     ));
                 }
-                for (k, id) in constraint.source_ids.iter().enumerate() {
-                    if !reference.sources.iter().any(|s| &s.source_id == id) {
-                        problems.push(Problem::new(
-                            format!("{path}/source_ids/{k}"),
-                            format!("`{id}` is not in the sources of `{}`", reference.ref_id),
-                        ));
-                    }
-                }
-                if constraint.source_ids.is_empty() {
-                    problems
-                        .push(Problem::new(format!("{path}/source_ids"), "is empty; every constraint cites a source"));
-                }
+                check_constraint(&path, constraint, reference, &mut problems);
             }
         }
         problems
+    }
+}
+
+fn check_reference(path: &str, reference: &Reference, problems: &mut Vec<Problem>) {
+    check_id(&format!("{path}/ref_id"), &reference.ref_id, problems);
+    check_date(&format!("{path}/retrieved_at"), &reference.retrieved_at, problems);
+    if !is_jurisdiction(&reference.jurisdiction) {
+        problems.push(Problem::new(
+            format!("{path}/jurisdiction"),
+            format!("`{}` is no ISO 3166 code (`DE`, `US-NC`), `EU`, `INT` or `LOCAL`", reference.jurisdiction),
+        ));
+    }
+    check_unique(&format!("{path}/sources"), reference.sources.iter().map(|s| s.source_id.as_str()), problems);
+    for (k, source) in reference.sources.iter().enumerate() {
+        if source.url.as_ref().is_some_and(|u| !is_address(u)) {
+            problems.push(Problem::new(
+                format!("{path}/sources/{k}/url"),
+                "is no address like https://... or urn:...; leave it out when there is none",
+            ));
+        }
+    }
+}
+
+fn check_constraint(path: &str, constraint: &Constraint, reference: &Reference, problems: &mut Vec<Problem>) {
+    let mut problem = |field: &str, message: String| problems.push(Problem::new(format!("{path}/{field}"), message));
+    for (k, id) in constraint.source_ids.iter().enumerate() {
+        if !reference.sources.iter().any(|s| &s.source_id == id) {
+            problem(&format!("source_ids/{k}"), format!("`{id}` is not in the sources of `{}`", reference.ref_id));
+        }
+    }
+    if constraint.source_ids.is_empty() {
+        problem("source_ids", "is empty; every constraint cites a source".into());
+    }
+    for (field, word, known) in [
+        ("constraint_type", &constraint.constraint_type, CONSTRAINT_TYPES.as_slice()),
+        ("confidence", &constraint.confidence, CONFIDENCES.as_slice()),
+    ] {
+        if !known.contains(&word.as_str()) {
+            problem(field, format!("`{word}` is none of {}", known.join(", ")));
+        }
+    }
+    match &constraint.value {
+        Value::Range { min, max } if min > max => problem("value", format!("min {min} is above max {max}")),
+        Value::Expression { expr } if expr.trim().is_empty() => problem("value/expr", "is empty".into()),
+        Value::List(list) if list.is_empty() => problem("value", "is an empty list".into()),
+        Value::Table(table) if table.is_empty() => problem("value", "is an empty table".into()),
+        _ => {}
+    }
+    check_id(&format!("{path}/constraint_id"), &constraint.constraint_id, problems);
+    for (field, word) in
+        [("name", &constraint.name), ("unit", &constraint.unit), ("space_type", &constraint.space_type)]
+    {
+        if word.trim().is_empty() {
+            problems.push(Problem::new(format!("{path}/{field}"), "is empty"));
+        }
+    }
+}
+
+fn check_id(path: &str, id: &str, problems: &mut Vec<Problem>) {
+    if id.trim().is_empty() || id.chars().any(char::is_control) || id.len() > 200 {
+        problems.push(Problem::new(path, "an id has 1 to 200 bytes and no control characters"));
+    }
+}
+
+fn check_date(path: &str, date: &str, problems: &mut Vec<Problem>) {
+    if !is_date(date) {
+        problems.push(Problem::new(path, format!("`{date}` is no date like 2026-11-21")));
+    }
+}
+
+/// Returns true for an address that others can follow or look up: not one of this machine, not a program.
+fn is_address(url: &str) -> bool {
+    let Some((scheme, rest)) = url.split_once(':') else { return false };
+    let named = scheme.starts_with(|c: char| c.is_ascii_lowercase())
+        && scheme.bytes().all(|b| b.is_ascii_lowercase() || b.is_ascii_digit() || matches!(b, b'+' | b'-' | b'.'));
+    named && !rest.is_empty() && !matches!(scheme, "file" | "data" | "javascript")
+}
+
+/// Returns true for `YYYY-MM-DD`.
+pub fn is_date(text: &str) -> bool {
+    let parts: Vec<&str> = text.split('-').collect();
+    let number = |part: &str, len: usize| (part.len() == len).then(|| part.parse::<u32>().ok()).flatten();
+    match parts.as_slice() {
+        [year, month, day] => {
+            number(year, 4).is_some()
+                && number(month, 2).is_some_and(|m| (1..=12).contains(&m))
+                && number(day, 2).is_some_and(|d| (1..=31).contains(&d))
+        }
+        _ => false,
+    }
+}
+
+/// Returns true for an ISO 3166-1 or 3166-2 code, `EU`, `INT` and `LOCAL`.
+pub fn is_jurisdiction(code: &str) -> bool {
+    let upper = |part: &str| part.bytes().all(|b| b.is_ascii_uppercase());
+    let (country, division) = code.split_once('-').map_or((code, None), |(c, d)| (c, Some(d)));
+    let division_fits = division
+        .is_none_or(|d| (1..=3).contains(&d.len()) && d.bytes().all(|b| b.is_ascii_uppercase() || b.is_ascii_digit()));
+    matches!(code, "INT" | LOCAL) || country.len() == 2 && upper(country) && division_fits
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sample() -> serde_json::Value {
+        serde_json::json!({
+            "metadata": {"version": 1, "domain": "office", "generated_by": "test", "date": "2026-11-21"},
+            "references": [{
+                "ref_id": "r", "building_type": "office", "jurisdiction": "DE", "retrieved_at": "2026-11-21",
+                "sources": [{"source_id": "s1", "title": "T", "publisher": "P", "edition_or_year": "2020",
+                    "url": "https://example.org", "type": "standard"}],
+                "constraints": [{
+                    "constraint_id": "c", "name": "corridor_width", "topic": "room_size", "constraint_type": "minimum",
+                    "value": 1.5, "unit": "m", "measurement_basis": "clear_width", "space_type": "corridor",
+                    "confidence": "high", "verified": "seen", "source_ids": ["s1"]
+                }]
+            }]
+        })
+    }
+
+    #[test]
+    fn every_problem_is_named_with_its_place() {
+        assert!(KnowledgeBase::from_value(sample()).is_ok());
+        let cases: &[(&str, serde_json::Value)] = &[
+            ("/metadata/version", 2.into()),
+            ("/metadata/date", "yesterday".into()),
+            ("/references/0/ref_id", "".into()),
+            ("/references/0/jurisdiction", "Germany".into()),
+            ("/references/0/retrieved_at", "2026-13-01".into()),
+            ("/references/0/sources/0/url", "file:///etc/passwd".into()),
+            ("/references/0/constraints/0/constraint_type", "least".into()),
+            ("/references/0/constraints/0/confidence", "sure".into()),
+            ("/references/0/constraints/0/value", serde_json::json!({"min": 2.0, "max": 1.0})),
+            ("/references/0/constraints/0/source_ids", serde_json::json!([])),
+            ("/references/0/constraints/0/unit", " ".into()),
+        ];
+        for (path, wrong) in cases {
+            let mut document = sample();
+            *document.pointer_mut(path).expect("the sample has the field") = wrong.clone();
+            match KnowledgeBase::from_value(document) {
+                Err(crate::Error::Invalid { problems, .. }) => {
+                    assert!(problems.iter().any(|p| p.path.starts_with(path)), "{path}: {problems:?}");
+                }
+                other => panic!("{path} = {wrong}: {other:?}"),
+            }
+        }
+    }
+
+    #[test]
+    fn places_have_codes() {
+        for code in ["DE", "US-NC", "AT-1", "EU", "INT", "LOCAL", "AE-DU"] {
+            assert!(is_jurisdiction(code), "{code}");
+        }
+        for code in ["", "de", "D", "DEU", "DE-", "DE-ABCD", "DE_BY", "INTL"] {
+            assert!(!is_jurisdiction(code), "{code}");
+        }
     }
 }

@@ -18,6 +18,7 @@ pub mod report;
 pub mod scenario;
 pub mod scene_graph;
 pub mod seed;
+pub mod units;
 pub mod world;
 
 pub use document::{Document, Problem};
