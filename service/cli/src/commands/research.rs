@@ -42,7 +42,11 @@ fn extract(file: &Path, out: Option<&Path>) -> Result<(), Error> {
         let name = if path == Path::new("-") { "standard input".into() } else { path.display().to_string() };
         let lines: Vec<String> = errors
             .iter()
-            .map(|d3dgen_research::Error::Line { line, reason }| format!("{name}:{line}: {reason}"))
+            .map(|e| match e {
+                d3dgen_research::Error::Line { line, reason } => format!("{name}:{line}: {reason}"),
+                #[allow(unreachable_patterns)] // the crate's other errors are of documents and addresses
+                other => format!("{name}: {other}"),
+            })
             .collect();
         Error::Input(lines.join("\n"))
     })?;
