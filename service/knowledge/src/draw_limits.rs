@@ -1,10 +1,12 @@
 //! From the constraints that apply to the figures a floorplan must keep.
 //!
 //! A figure is taken from the nearest jurisdiction that has one, the strictest there. Regulations and standards count,
-//! and the least figures of guidelines; rules about robots are added on top wherever they come from. A figure that the
-//! scene graph's own sizes cannot meet is left to the report.
+//! and the least figures of guidelines; rules about robots and those of the building's owner are added on top wherever
+//! they come from. A figure that the scene graph's own sizes cannot meet is left to the report.
 
 use std::collections::BTreeSet;
+
+use d3dgen_model::knowledge::{AMENDMENT, LOCAL};
 
 use crate::conditions::Guard;
 use crate::limits::{AreaLimit, Limit, Limits, RoomLimits};
@@ -13,7 +15,7 @@ use crate::query::Query;
 use crate::retrieve::{Applicable, Rule, Scope};
 
 /// Source types whose least figures a plan keeps.
-const PLANNED_BY: [&str; 3] = ["regulation", "standard", "guideline"];
+const PLANNED_BY: [&str; 4] = ["regulation", "standard", "guideline", AMENDMENT];
 /// Topic of the rules about robots.
 const ROBOT_TOPIC: &str = "robot_placement_charging_circulation";
 /// Widest door that a limit may ask of an ordinary room, m: wider ones are gates with rules of their own.
@@ -107,7 +109,8 @@ fn advised_area(usable: &[(&Applicable, &Rule)], about: &dyn Fn(&Applicable) -> 
     (least.is_some() || largest.is_some()).then(|| [least.unwrap_or(0.0), largest.unwrap_or(most).min(most)])
 }
 
-/// Returns the strictest least figure of the nearest jurisdiction, or of the rules about robots when that is stricter.
+/// Returns the strictest least figure of the nearest jurisdiction, or of the rules about robots and of the owner when
+/// that is stricter.
 fn strictest(
     usable: &[(&Applicable, &Rule)],
     chain: &[String],
@@ -116,13 +119,13 @@ fn strictest(
 ) -> Option<Limit> {
     let candidates: Vec<(&Applicable, f64)> =
         usable.iter().filter(|(a, _)| is_planned(a, query)).filter_map(|(a, r)| Some((*a, wanted(a, r)?))).collect();
-    let about_robots = |a: &Applicable| robot_rule(a, query);
+    let on_top = |a: &Applicable| robot_rule(a, query) || a.citation.jurisdiction == LOCAL;
     let places: BTreeSet<&str> =
-        candidates.iter().filter(|(a, _)| !about_robots(a)).map(|(a, _)| a.citation.jurisdiction.as_str()).collect();
+        candidates.iter().filter(|(a, _)| !on_top(a)).map(|(a, _)| a.citation.jurisdiction.as_str()).collect();
     let nearest = chain.iter().find(|c| places.contains(c.as_str()));
     candidates
         .iter()
-        .filter(|(a, _)| about_robots(a) || Some(&a.citation.jurisdiction) == nearest)
+        .filter(|(a, _)| on_top(a) || Some(&a.citation.jurisdiction) == nearest)
         .max_by(|(a, x), (b, y)| {
             x.total_cmp(y).then_with(|| b.constraint.constraint_id.cmp(&a.constraint.constraint_id))
         })

@@ -1,5 +1,7 @@
 //! Which rules apply in a place: subdivision, country, region, international, nearest first.
 
+use d3dgen_model::knowledge::LOCAL;
+
 /// Regions whose rules their member states follow, with ISO 3166-1 codes.
 const REGIONS: [(&str, &[&str]); 1] = [(
     "EU",
@@ -12,11 +14,12 @@ const REGIONS: [(&str, &[&str]); 1] = [(
 /// Code of rules that hold everywhere.
 pub const INTERNATIONAL: &str = "INT";
 
-/// Returns the jurisdictions of a place, nearest first: `US-CA` gives `US-CA`, `US`, `INT`.
+/// Returns the jurisdictions of a place, nearest first: `US-CA` gives `LOCAL`, `US-CA`, `US`, `INT`.
 ///
+/// Rules that the owner of the building sets (`LOCAL`) hold everywhere.
 /// `None` (no country known) gives international rules only.
 pub fn chain(country_code: Option<&str>) -> Vec<String> {
-    let mut out = Vec::new();
+    let mut out = vec![LOCAL.to_owned()];
     if let Some(code) = country_code.map(str::to_ascii_uppercase).filter(|c| !c.is_empty() && c != INTERNATIONAL) {
         let country = code.split('-').next().unwrap_or(&code).to_owned();
         if country != code {
@@ -38,11 +41,11 @@ mod tests {
     #[test]
     fn nearest_first() {
         let cases: [(Option<&str>, &[&str]); 5] = [
-            (None, &["INT"]),
-            (Some("US"), &["US", "INT"]),
-            (Some("US-NC"), &["US-NC", "US", "INT"]),
-            (Some("de"), &["DE", "EU", "INT"]),
-            (Some("EU"), &["EU", "INT"]),
+            (None, &["LOCAL", "INT"]),
+            (Some("US"), &["LOCAL", "US", "INT"]),
+            (Some("US-NC"), &["LOCAL", "US-NC", "US", "INT"]),
+            (Some("de"), &["LOCAL", "DE", "EU", "INT"]),
+            (Some("EU"), &["LOCAL", "EU", "INT"]),
         ];
         for (code, expected) in cases {
             assert_eq!(chain(code), expected, "{code:?}");

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use d3dgen_model::domain::Shape;
-use d3dgen_model::knowledge::{Constraint, KnowledgeBase, Reference, Value};
+use d3dgen_model::knowledge::{AMENDMENT, Constraint, KnowledgeBase, Reference, Value};
 use d3dgen_model::report::Citation;
 
 use crate::conditions::{self, Conditions, Guard};
@@ -13,6 +13,7 @@ use crate::jurisdiction;
 use crate::limits::Limits;
 use crate::measure::Measure;
 use crate::query::Query;
+use crate::resolve::{self, Conflict, Policy};
 use crate::tables::{QuantityRow, SpaceKind, TABLES};
 
 /// The constraints of a building.
@@ -32,6 +33,8 @@ pub struct Retrieval {
     pub persons_stated: bool,
     /// Number of robots.
     pub robots: u32,
+    /// Where mandatory constraints contradict each other, and which one is kept.
+    pub conflicts: Vec<Conflict>,
 }
 
 impl Retrieval {
@@ -64,7 +67,7 @@ pub struct Applicable {
     pub guards: Vec<Guard>,
     /// How it is measured and what it requires, or why it cannot be decided.
     pub decision: Result<Rule, String>,
-    /// Id of the constraint of a nearer jurisdiction that goes before this one.
+    /// Id of the constraint that goes before this one: of a nearer jurisdiction, or by the policy asked for.
     pub superseded_by: Option<String>,
     /// True when reports judge it and plans do not aim at it.
     pub reported_only: bool,
@@ -98,8 +101,14 @@ pub struct Rule {
     pub to: BTreeSet<String>,
 }
 
-/// Returns the constraints that apply to a building, nearest jurisdiction first when they contradict each other.
+/// Returns the constraints that apply to a building; where they contradict each other, the nearest jurisdiction goes
+/// first, and in it the strictest figure.
 pub fn retrieve(knowledge: &KnowledgeBase, query: &Query) -> Retrieval {
+    retrieve_with(knowledge, query, &Policy::Strictest)
+}
+
+/// As [`retrieve`], with another rule for sources of one jurisdiction that contradict each other.
+pub fn retrieve_with(knowledge: &KnowledgeBase, query: &Query, policy: &Policy) -> Retrieval {
     let chain = jurisdiction::chain(query.country_code.as_deref());
     let mut constraints = Vec::new();
     let mut not_applicable = 0;
@@ -116,9 +125,9 @@ pub fn retrieve(knowledge: &KnowledgeBase, query: &Query) -> Retrieval {
         }
     }
     let mut planned: Vec<Applicable> = constraints.iter().filter(|a| !a.reported_only).cloned().collect();
-    supersede(&mut planned, &chain);
+    resolve::settle(&mut planned, &chain, policy);
     let limits = draw_limits::draw(&planned, &chain, query);
-    supersede(&mut constraints, &chain);
+    let conflicts = resolve::settle(&mut constraints, &chain, policy);
     let used = |code: &String| {
         code == jurisdiction::INTERNATIONAL || constraints.iter().any(|c| &c.citation.jurisdiction == code)
     };
@@ -130,6 +139,7 @@ pub fn retrieve(knowledge: &KnowledgeBase, query: &Query) -> Retrieval {
         persons_stated: query.persons_stated,
         robots: query.robot_count(),
         constraints,
+        conflicts,
     }
 }
 
@@ -231,25 +241,6 @@ fn citation(c: &Constraint, reference: &Reference) -> Option<Citation> {
 
 fn is_mandatory(c: &Constraint, reference: &Reference) -> bool {
     let source = c.source_ids.iter().find_map(|id| reference.sources.iter().find(|s| &s.source_id == id));
-    source.is_some_and(|s| matches!(s.source_type.as_str(), "regulation" | "standard"))
+    source.is_some_and(|s| matches!(s.source_type.as_str(), "regulation" | "standard" | AMENDMENT))
         && !matches!(c.constraint_type.as_str(), "recommendation" | "rule_of_thumb")
-}
-
-/// Marks what a mandatory constraint of a nearer jurisdiction on the same quantity of the same space goes before.
-fn supersede(constraints: &mut [Applicable], chain: &[String]) {
-    let rank = |a: &Applicable| chain.iter().position(|c| *c == a.citation.jurisdiction).unwrap_or(chain.len());
-    let key = |a: &Applicable| {
-        a.decision.as_ref().ok().map(|r| (r.quantity.measure, a.constraint.space_type.clone(), r.bounds.min.is_some()))
-    };
-    let nearer: Vec<_> = constraints
-        .iter()
-        .filter(|a| a.mandatory && a.guards.is_empty())
-        .filter_map(|a| Some((key(a)?, rank(a), a.constraint.constraint_id.clone())))
-        .collect();
-    for a in constraints.iter_mut().filter(|a| a.mandatory) {
-        let Some(own) = key(a) else { continue };
-        let here = rank(a);
-        a.superseded_by = nearer.iter().find(|(k, r, _)| *k == own && *r < here).map(|(_, _, id)| id.clone());
-        a.mandatory = a.superseded_by.is_none();
-    }
 }

@@ -126,3 +126,67 @@ fn advised_areas_lie_between_the_least_figure_and_what_the_room_may_have() {
     }
     assert!(seen > 0);
 }
+
+/// A knowledge base of two sources and a rule of the owner on the width of corridors.
+fn corridors() -> KnowledgeBase {
+    let reference = |ref_id: &str, place: &str, kind: &str, year: &str, width: f64| {
+        serde_json::json!({
+            "ref_id": ref_id, "building_type": "office", "jurisdiction": place, "retrieved_at": "2026-11-21",
+            "sources": [{"source_id": "s", "title": ref_id, "publisher": "P", "edition_or_year": year, "type": kind}],
+            "constraints": [{
+                "constraint_id": format!("{ref_id}_width"), "name": "corridor_clear_width",
+                "topic": "fire_safety_evacuation", "constraint_type": "minimum", "value": width, "unit": "m",
+                "measurement_basis": "clear_width", "space_type": "corridor", "confidence": "high", "verified": "seen",
+                "source_ids": ["s"]
+            }]
+        })
+    };
+    KnowledgeBase::from_value(serde_json::json!({
+        "metadata": {"version": 1, "domain": "office", "generated_by": "test", "date": "2026-11-21"},
+        "references": [
+            reference("old_strict", "DE", "standard", "1999", 2.0),
+            reference("new_loose", "DE", "regulation", "2015 (2020 am.)", 1.5),
+            reference("world", "INT", "standard", "2021", 1.2),
+            reference("owner", "LOCAL", "amendment", "2026-11-21", 1.8),
+        ]
+    }))
+    .expect("valid")
+}
+
+#[test]
+fn sources_that_contradict_each_other_are_settled_as_asked() {
+    let planned = |knowledge: &KnowledgeBase, policy: &Policy| {
+        let found = retrieve_with(knowledge, &query("office", Some("DE")), policy);
+        let width = found.limits.corridor_width.clone().map(|l| (l.value, l.constraint_id));
+        let all: Vec<_> = found.conflicts.into_iter().map(|c| (c.kept, c.against, c.by)).collect();
+        (width, all)
+    };
+    let by = |id: &str, against: &str, why| (format!("{id}_width"), format!("{against}_width"), why);
+    let (width, conflicts) = planned(&corridors(), &Policy::Strictest);
+    assert_eq!(width, Some((2.0, "old_strict_width".into())));
+    assert!(conflicts.contains(&by("old_strict", "world", "nearest jurisdiction")), "{conflicts:?}");
+    assert!(conflicts.contains(&by("old_strict", "new_loose", "strictest")), "{conflicts:?}");
+    assert!(conflicts.contains(&by("old_strict", "owner", "strictest")), "{conflicts:?}");
+
+    let mut law = corridors();
+    law.references.retain(|r| r.jurisdiction != "LOCAL");
+    assert_eq!(planned(&law, &Policy::Newest).0, Some((1.5, "new_loose_width".into())));
+    let preferred = Policy::Preferred(vec!["nothing".into(), "old_STRICT".into()]);
+    assert_eq!(planned(&law, &preferred).0, Some((2.0, "old_strict_width".into())));
+}
+
+#[test]
+fn the_owners_rules_stand_beside_the_law_everywhere() {
+    let width = |owner: f64, country| {
+        let mut knowledge = corridors();
+        let rule =
+            &mut knowledge.references.iter_mut().find(|r| r.jurisdiction == "LOCAL").expect("there").constraints[0];
+        rule.value = d3dgen_model::knowledge::Value::Number(owner);
+        let found = retrieve(&knowledge, &query("office", country));
+        found.limits.corridor_width.map(|l| l.value)
+    };
+    assert_eq!(width(2.6, Some("DE")), Some(2.6), "stricter than the law: planned for");
+    assert_eq!(width(1.0, Some("DE")), Some(2.0), "looser than the law: the law stays");
+    assert_eq!(width(2.6, None), Some(2.6));
+    assert_eq!(width(1.0, None), Some(1.2));
+}
