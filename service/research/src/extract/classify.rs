@@ -9,6 +9,10 @@ use super::{Confidence, ConstraintType};
 const AFTER_REACH: usize = 9;
 /// How far before a comparator the word may stand that makes it a condition, in tokens.
 const OPENER_REACH: usize = 6;
+/// Where the subject's noun may stand at the latest, in tokens.
+const MAX_ADJECTIVES_OF_SUBJECT: usize = 3;
+/// Longest note without a verb, in words.
+const MAX_NOTE: usize = 14;
 /// How far before a figure "within" and the like may stand, in tokens.
 const CLOSE_REACH: usize = 3;
 
@@ -94,10 +98,22 @@ impl Sentence<'_> {
             advice: any("advice"),
             habit: any("habit"),
             reckoned: any("reckoned"),
-            report: any("report"),
+            report: self.tokens.iter().enumerate().any(|(k, _)| self.cue("report", k) && !self.in_noun(k)),
             past: any("past"),
-            plain: any("plain"),
+            plain: any("plain") && !any("announces"),
         }
+    }
+
+    /// Whether a token belongs to a longer name of a thing: "phone booth", "call button".
+    fn in_noun(&self, at: usize) -> bool {
+        (at.saturating_sub(2)..=at).any(|k| {
+            let ends = [
+                self.lexicon.thing.at(self.tokens, k).map(|e| e.0),
+                self.lexicon.space.at(self.tokens, k).map(|e| e.0),
+                self.lexicon.object.at(self.tokens, k).map(|e| e.0),
+            ];
+            ends.into_iter().flatten().any(|end| end > at && end > k + 1)
+        })
     }
 
     /// Whether a report word is outweighed: duty, and a length or an area.
@@ -298,8 +314,9 @@ impl Sentence<'_> {
         let mention = self.mentions.get(i)?;
         let to_type = |bound| if bound == Bound::Min { ConstraintType::Minimum } else { ConstraintType::Maximum };
         let form = self.is_form(mention);
-        let normative = tone.duty || tone.advice || tone.habit || tone.reckoned || form && !tone.plain;
-        let reported = tone.plain && !tone.duty && !tone.advice && !tone.habit && !tone.reckoned;
+        let generic = mention.unit.is_some() && !tone.past && !tone.report && self.is_generic();
+        let normative = tone.duty || tone.advice || tone.habit || tone.reckoned || form && !tone.plain || generic;
+        let reported = tone.plain && !tone.duty && !tone.advice && !tone.habit && !tone.reckoned && !generic;
         match &mention.figure {
             Figure::Range(..) if normative || any_strong => return Some((ConstraintType::Range, Medium)),
             Figure::Range(..) => return None,
@@ -332,8 +349,7 @@ impl Sentence<'_> {
             return (tone.habit || tone.duty).then_some((ConstraintType::RuleOfThumb, Low));
         }
         let quantity = self.quantity(i);
-        let should = (0..self.tokens.len())
-            .any(|k| matches!(self.tokens[k].text.as_str(), "should" | "sollte" | "sollten" | "soll" | "sollen"));
+        let should = self.lexicon.cues.get("soft_duty").any(self.tokens);
         if tone.advice || should {
             return Some((ConstraintType::Recommendation, Medium));
         }
@@ -344,7 +360,33 @@ impl Sentence<'_> {
         if mention.thing.is_some() && !form {
             return None;
         }
+        if generic {
+            return Some((ConstraintType::Recommendation, Low));
+        }
         (form && !reported || any_strong && mention.thing.is_none()).then_some((ConstraintType::Recommendation, Low))
+    }
+
+    /// Whether the sentence speaks of all things of a kind ("Worktops are fixed 85 to 90 cm above the floor"): its first
+    /// noun is in the plural without an article, or one of "each" and "a" stands before it, and nothing dates it.
+    fn is_generic(&self) -> bool {
+        let year = |t: &Token| t.text.len() == 4 && t.number().is_some_and(|n| (1500.0..2100.0).contains(&n));
+        if self.tokens.iter().any(year) || self.lexicon.cues.get("average").any(self.tokens) {
+            return false;
+        }
+        let opener = self.lexicon.cues.get("generic_openers").at(self.tokens, 0).map_or(0, |c| c.0);
+        let noun = |k: usize| {
+            [self.lexicon.space.at(self.tokens, k), self.lexicon.object.at(self.tokens, k)]
+                .into_iter()
+                .flatten()
+                .map(|n| n.0)
+                .max()
+        };
+        let Some(end) = (opener..opener + MAX_ADJECTIVES_OF_SUBJECT).find_map(noun) else { return false };
+        if (0..end).any(|k| self.cue("definite", k)) {
+            return false;
+        }
+        let last = end.checked_sub(1).and_then(|k| self.tokens.get(k));
+        opener > 0 || last.is_some_and(|t| t.text.ends_with('s') || t.text.ends_with("en"))
     }
 
     /// Whether the sentence is a note ("Corridors: 1.5 m", "Window area 10 %") up to this figure.
@@ -362,7 +404,8 @@ impl Sentence<'_> {
             head.iter().any(|t| matches!(t.text.as_str(), ":" | "：" | "=" | "≥" | "≤" | ">=" | "<=" | "–" | "—"));
         let bound = self.side_before(0, mention).is_some_and(|s| s.strong);
         let counted = matches!(mention.figure, Figure::Per(..)) || mention.basis.is_some();
-        (known || bound) && (colon || bound || words <= 8) || counted && words <= 12
+        let verbless = mention.unit.is_some() && words <= MAX_NOTE && !self.lexicon.cues.get("plain").any(self.tokens);
+        (known || bound) && (colon || bound || words <= 8 || verbless) || counted && words <= 12
     }
 }
 

@@ -9,6 +9,8 @@ const MAX_ADJECTIVES: usize = 2;
 const MAX_RATIO_GAP: usize = 8;
 /// Words that may stand between "for every 25 employees" and what they get.
 const MAX_AHEAD_GAP: usize = 8;
+/// A unit this long, in letters, is a word and not an abbreviation.
+const MIN_SPELLED_UNIT: usize = 3;
 /// Two figures side by side, one in brackets, are the same one converted when they differ by less.
 const CONVERSION_TOLERANCE: f64 = 0.04;
 
@@ -108,7 +110,9 @@ impl Finder<'_> {
         let numbers = &self.lexicon.numbers;
         let token = self.tokens.get(i)?;
         if let Some((to, (a, b))) = self.lexicon.fractions.at(self.tokens, i) {
-            return Some((to, Figure::Ratio(format!("{a}/{b}")), false));
+            let length = self.unit_after(to).is_some_and(|u| self.dimension(u.0) != "share");
+            let figure = if length { Figure::Number(a / b) } else { Figure::Ratio(format!("{a}/{b}")) };
+            return Some((to, figure, false));
         }
         if let Some(n) = token.number() {
             let (mut value, mut to) = (n, i + 1);
@@ -229,10 +233,7 @@ impl Finder<'_> {
             let noun = follows.is_some_and(|t| t.kind == Kind::Word && !t.glued)
                 && (self.lexicon.space.is_at(self.tokens, next)
                     || self.lexicon.cues.get("stops").is_at(self.tokens, next)
-                        && follows.is_some_and(|t| {
-                            ["the", "a", "an", "each", "every", "this", "these", "those", "all", "any"]
-                                .contains(&t.text.as_str())
-                        }));
+                        && self.cue("determiners", next).is_some());
             if noun || follows.is_some_and(|t| t.number().is_some()) {
                 return None;
             }
@@ -248,7 +249,9 @@ impl Finder<'_> {
             return;
         }
         let Some((unit, to)) = self.unit_after(mention.to) else { return };
-        if mention.weak && self.dimension(unit) != "length" {
+        // "one m" may be an article and a name; "one hour" is a figure.
+        let spelled = self.tokens.get(mention.to).map_or(0, |t| t.text.chars().count());
+        if mention.weak && self.dimension(unit) != "length" && spelled < MIN_SPELLED_UNIT {
             return;
         }
         if let Figure::Ratio(_) = mention.figure {
@@ -419,7 +422,11 @@ impl Finder<'_> {
                 ..whole
             }));
         }
-        let ahead = (1..=3).any(|n| a.from.checked_sub(n).is_some_and(|k| self.cue("plain_per", k) == Some(a.from)));
+        let ahead = (1..=MAX_ADJECTIVES + 2).any(|n| {
+            a.from
+                .checked_sub(n)
+                .is_some_and(|k| self.cue("plain_per", k) == Some(a.from) || self.cue("ahead_per", k) == Some(a.from))
+        });
         if ahead
             && a.unit.is_none()
             && a.thing.is_some()
@@ -438,6 +445,10 @@ impl Finder<'_> {
     fn ratio(&self, a: &Mention, b: &Mention, between: &[Token], whole: Mention, x: f64, y: f64) -> Option<Joined> {
         if a.unit.is_some() || between.len() > MAX_RATIO_GAP || y <= 0.0 {
             return None;
+        }
+        let bare = a.thing.is_none() && b.thing.is_none() && b.unit.is_none();
+        if bare && x == 1.0 && y > 1.0 && self.cue("one_in", a.to) == Some(b.from) {
+            return Some(Joined::One(Mention { figure: Figure::Ratio(format!("{x}:{y}")), ..whole }));
         }
         let per = (a.to..b.from).find(|&k| self.cue("per", k) == Some(b.from))?;
         let plain = self.cue("plain_per", per) == Some(b.from);

@@ -3,6 +3,7 @@
 mod classify;
 mod lexicon;
 mod mention;
+mod passage;
 mod sentence;
 mod subject;
 mod table;
@@ -13,9 +14,8 @@ use std::ops::Range;
 use d3dgen_model::knowledge::Value;
 use serde::Serialize;
 
-use classify::Sentence;
 use lexicon::Lexicon;
-use mention::{Figure, Finder, Mention};
+use mention::{Figure, Mention};
 
 /// On which side of the figure things may be, or how binding it is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -92,55 +92,26 @@ impl Extractor {
     }
 
     /// Returns the constraints of a text in its order; `lang` is an ISO 639-1 code or empty.
+    ///
+    /// The text may be a sentence or a passage of several with headings, lists and tables: a list item is read with the
+    /// sentence that leads in, a table with its caption, and a sentence that names no space with the space before it.
     pub fn extract(&self, text: &str, lang: &str) -> Vec<Finding> {
         let lang = lang.get(..2).unwrap_or_default().to_lowercase();
         let mut findings = Vec::new();
+        let mut caption = String::new();
         for (range, is_table) in table::split(text) {
             let Some(part) = text.get(range.clone()) else { continue };
-            let found = if is_table { table::extract(self.lexicon, part, &lang) } else { self.prose(part, &lang) };
+            let found = if is_table {
+                table::extract(self.lexicon, part, &caption, &lang)
+            } else {
+                caption = passage::caption(self.lexicon, part, &lang);
+                passage::extract(self.lexicon, part, &lang)
+            };
             findings.extend(found.into_iter().map(|f| Finding {
                 evidence: f.evidence.start + range.start..f.evidence.end + range.start,
                 printed: f.printed.start + range.start..f.printed.end + range.start,
                 ..f
             }));
-        }
-        findings
-    }
-
-    fn prose(&self, text: &str, lang: &str) -> Vec<Finding> {
-        let tokens = token::tokens(text, lang);
-        let mut findings = Vec::new();
-        for (from, to) in sentence::sentences(&tokens, self.lexicon) {
-            let tokens = tokens.get(from..to).unwrap_or_default();
-            let mentions = Finder { lexicon: self.lexicon, text, lang, tokens }.mentions();
-            if mentions.is_empty() {
-                continue;
-            }
-            let sentence = Sentence { lexicon: self.lexicon, text, lang, tokens, mentions: &mentions };
-            let verdicts = sentence.verdicts();
-            let conditions = sentence.conditions();
-            for (i, verdict) in verdicts.into_iter().enumerate() {
-                let (Some((constraint_type, confidence)), Some(mention)) = (verdict, mentions.get(i)) else { continue };
-                let constraint = Constraint {
-                    name: sentence.name(i),
-                    constraint_type,
-                    value: value(mention),
-                    unit: unit(self.lexicon, mention),
-                    space: sentence.space(i),
-                    conditions: conditions.clone(),
-                    confidence,
-                };
-                let place = |a: usize, b: usize| {
-                    let start = tokens.get(a).map_or(0, |t| t.start);
-                    start..b.checked_sub(1).and_then(|k| tokens.get(k)).map_or(start, |t| t.end)
-                };
-                findings.push(Finding {
-                    si: si(self.lexicon, mention),
-                    evidence: place(0, tokens.len()),
-                    printed: place(mention.from, mention.to),
-                    constraint,
-                });
-            }
         }
         findings
     }

@@ -19,9 +19,29 @@ pub fn sentences(tokens: &[Token], lexicon: &Lexicon) -> Vec<(usize, usize)> {
     out
 }
 
+/// Returns how many tokens the mark of a list item takes: "-", "•", "3.", "b)"; 0 where a line begins without one.
+pub fn marker(line: &[Token]) -> usize {
+    let Some(first) = line.first() else { return 0 };
+    let closes = |t: &Token| t.glued && matches!(t.text.as_str(), "." | ")");
+    match line.get(1) {
+        Some(next) if is_bullet(first) && !next.glued => 1,
+        Some(next) if closes(next) && line.get(2).is_some_and(|t| !t.glued && !t.new_line) => {
+            let letter = first.kind == Kind::Word && first.text.chars().count() == 1;
+            let small = first.number().is_some_and(|n| n.fract() == 0.0 && n < 100.0);
+            2 * usize::from(letter || small)
+        }
+        _ => 0,
+    }
+}
+
+fn is_bullet(token: &Token) -> bool {
+    matches!(token.text.as_str(), "-" | "–" | "—" | "•" | "*" | "·" | "▪" | "‣" | "◦" | "+")
+}
+
 fn ends(tokens: &[Token], i: usize, lexicon: &Lexicon) -> bool {
     let (Some(token), Some(next)) = (tokens.get(i), tokens.get(i + 1)) else { return true };
-    if next.new_line && (next.kind == Kind::Symbol || next.capital) && !token.is(",") {
+    let marked = next.new_line && marker(tokens.get(i + 1..).unwrap_or_default()) > 0;
+    if next.paragraph || marked || next.new_line && (next.kind == Kind::Symbol || next.capital) && !token.is(",") {
         return true;
     }
     match token.text.as_str() {

@@ -1,13 +1,33 @@
 //! What a figure limits, in which space, and when.
 
 use super::classify::Sentence;
-use super::lexicon::{Phrases, Quantity};
+use super::lexicon::Quantity;
 use super::mention::{Figure, Mention};
+use super::token::Kind;
 
 /// How far behind a figure its quantity may stand ("1.8 m wide"), in tokens.
 const BEHIND: usize = 3;
 /// Longest condition that is kept, in tokens.
 const MAX_CONDITION: usize = 24;
+/// How far before a noun its preposition may stand, in tokens.
+const GOVERNOR_REACH: usize = 3;
+/// Past so many figures what a sentence is about is looked up no further back.
+const MAX_CARRIED: usize = 8;
+
+/// A space or object that a sentence names.
+#[derive(Debug, Clone)]
+struct Noun {
+    from: usize,
+    to: usize,
+    name: String,
+    is_space: bool,
+    /// Mostly named as part of a space ("ceilings in bedrooms").
+    is_part: bool,
+    /// A preposition stands before it.
+    governed: bool,
+    /// It belongs to the name of a quantity ("floor area").
+    covered: bool,
+}
 
 impl Sentence<'_> {
     fn dimension(&self, mention: &Mention) -> &str {
@@ -65,27 +85,125 @@ impl Sentence<'_> {
     }
 
     /// Returns the space or object a figure is about, empty when none is named.
+    ///
+    /// The noun right before the figure wins, then the subject of its clause, then a space that the clause names
+    /// elsewhere ("beds are spaced 3.6 m in wards"), then what the figure before it is about.
     pub fn space(&self, i: usize) -> String {
         let Some(mention) = self.mentions.get(i) else { return String::new() };
-        let since = i.checked_sub(1).and_then(|k| self.mentions.get(k)).map_or(0, |m| m.to);
-        let end = self.tokens.len();
-        let (space, object) = (&self.lexicon.space, &self.lexicon.object);
-        let near = self.first(space, since, mention.from).or_else(|| self.first(space, 0, mention.from));
-        near.or_else(|| self.first(object, 0, mention.from).filter(|_| self.first(space, mention.to, end).is_none()))
-            .or_else(|| self.first(space, mention.to, end))
-            .or_else(|| self.first(object, 0, end))
+        let previous = i.checked_sub(1);
+        let since = previous.and_then(|k| self.mentions.get(k)).map_or(0, |m| m.to);
+        let next = self.mentions.get(i + 1).map_or(self.tokens.len(), |m| m.from);
+        let nouns = self.nouns();
+        let within = |from: usize, to: usize| nouns.iter().filter(move |n| n.from >= from && n.to <= to);
+        let name = |n: &Noun| n.name.clone();
+        if let Some(touching) = within(since, mention.from).find(|n| self.touches(n.to, mention.from)) {
+            return name(touching);
+        }
+        if matches!(mention.figure, Figure::Per(..)) {
+            // What is given, not what it is given for.
+            let given = within(mention.from, mention.to).find(|n| !self.lexicon.basis.is_at(self.tokens, n.from));
+            if let Some(given) = given {
+                return name(given);
+            }
+        }
+        let behind = || within(mention.to, next).find(|n| n.is_space);
+        let ahead = || within(since, mention.from);
+        let subject =
+            || ahead().find(|n| !n.governed && !n.covered && (n.is_space || !n.is_part && behind().is_none()));
+        let carried = || previous.map(|k| self.space(k)).filter(|s| !s.is_empty() && i < MAX_CARRIED);
+        subject()
+            .or_else(|| ahead().find(|n| n.is_space && !n.covered))
+            .map(name)
+            .or_else(|| behind().filter(|_| i == 0 || mention.side.is_none()).map(name))
+            .or_else(|| ahead().find(|n| !n.covered).map(name))
+            .or_else(carried)
+            .or_else(|| within(mention.to, self.tokens.len()).find(|n| n.is_space && !n.covered).map(name))
+            .or_else(|| within(mention.from, mention.to).next().map(name))
+            .or_else(|| within(0, self.tokens.len()).next().map(name))
             .unwrap_or_default()
     }
 
-    fn first(&self, phrases: &Phrases<String>, from: usize, to: usize) -> Option<String> {
-        (from..to).find_map(|k| {
-            let known = phrases.at(self.tokens, k).map(|p| p.1);
-            let part = || {
-                let token = self.tokens.get(k).filter(|_| self.lang == "de")?;
-                phrases.part(token, true).or_else(|| phrases.part(token, false))
+    /// Returns what the sentence as a whole is about, empty when it names no space.
+    pub fn topic(&self) -> String {
+        let nouns = self.nouns();
+        let free = nouns.iter().find(|n| n.is_space && !n.governed && !n.covered);
+        free.or_else(|| nouns.iter().find(|n| n.is_space && !n.covered)).map(|n| n.name.clone()).unwrap_or_default()
+    }
+
+    /// Whether only "of" and comparators stand between a noun and the figure.
+    fn touches(&self, from: usize, to: usize) -> bool {
+        let mut k = from;
+        while k < to {
+            let linked = self.lexicon.cues.get("touching").at(self.tokens, k).map(|c| c.0);
+            let Some(end) = linked.or_else(|| self.lexicon.before.at(self.tokens, k).map(|c| c.0)) else {
+                return false;
             };
-            known.or_else(part)
-        })
+            k = end;
+        }
+        from < to
+    }
+
+    /// Returns the spaces and objects that the sentence names, in its order.
+    fn nouns(&self) -> Vec<Noun> {
+        let mut out: Vec<Noun> = Vec::new();
+        let mut covered = 0;
+        let mut k = 0;
+        while k < self.tokens.len() {
+            if let Some((end, _)) = self.lexicon.quantity.at(self.tokens, k).filter(|q| q.0 > k + 1) {
+                covered = covered.max(end);
+            }
+            let space = self.lexicon.space.at(self.tokens, k);
+            let object = self.lexicon.object.at(self.tokens, k);
+            let object_wins = object.as_ref().is_some_and(|o| space.as_ref().is_none_or(|s| o.0 > s.0));
+            let whole = if object_wins { object } else { space };
+            let whole = whole.filter(|w| !self.is_label(k, w.0));
+            let found = whole.map(|(end, name)| (end, name, !object_wins)).or_else(|| self.compound(k));
+            let Some((to, name, is_space)) = found else {
+                k += 1;
+                continue;
+            };
+            let is_part = self.lexicon.cues.get("parts").is_at(self.tokens, k);
+            let governed = self.governed(k, out.last().map_or(0, |n| n.to));
+            // "bathroom door": the last of a row of nouns is meant.
+            if let Some(last) = out.last_mut().filter(|n| n.to == k && !is_part && k >= covered && self.lang != "de") {
+                *last = Noun { to, name, is_space, ..last.clone() };
+            } else {
+                out.push(Noun { from: k, to, name, is_space, is_part, governed, covered: k < covered });
+            }
+            k = to;
+        }
+        out
+    }
+
+    /// Returns the noun that a German compound ends or begins with.
+    fn compound(&self, k: usize) -> Option<(usize, String, bool)> {
+        let token = self.tokens.get(k).filter(|_| self.lang == "de" && !self.lexicon.thing.is_at(self.tokens, k))?;
+        let (space, object) = (&self.lexicon.space, &self.lexicon.object);
+        [(space, true), (object, true), (space, false), (object, false)]
+            .into_iter()
+            .find_map(|(list, end)| list.part(token, end).map(|name| (k + 1, name, std::ptr::eq(list, space))))
+    }
+
+    /// Whether a noun only says which one by its number: "Table 3".
+    fn is_label(&self, from: usize, to: usize) -> bool {
+        let numbered = self.tokens.get(to).is_some_and(|t| matches!(t.kind, Kind::Number(_) | Kind::Label));
+        numbered
+            && self.lexicon.cues.get("labels").is_at(self.tokens, from)
+            && !self.mentions.iter().any(|m| m.from == to)
+    }
+
+    /// Whether a preposition stands before a noun, articles and adjectives aside.
+    fn governed(&self, at: usize, since: usize) -> bool {
+        for k in (since.max(at.saturating_sub(GOVERNOR_REACH))..at).rev() {
+            if self.lexicon.cues.get("governors").at(self.tokens, k).is_some_and(|c| c.0 <= at) {
+                return true;
+            }
+            let verb = ["duty", "plain"].iter().any(|c| self.lexicon.cues.get(c).is_at(self.tokens, k));
+            if verb || self.tokens.get(k).is_none_or(|t| t.kind != Kind::Word) {
+                return false;
+            }
+        }
+        false
     }
 
     /// Returns the clauses that say when the sentence holds, as printed.

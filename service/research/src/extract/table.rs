@@ -8,6 +8,9 @@ use super::mention::{Figure, Finder};
 use super::token::{Kind, tokens};
 use super::{Confidence, Constraint, ConstraintType, Finding, si, unit, value};
 
+/// A longer cell is prose and not a figure with its name, in bytes.
+const MAX_CELL: usize = 240;
+
 /// Returns the parts of a text, each with whether it is a table: lines in a row with `|` in them.
 pub fn split(text: &str) -> Vec<(Range<usize>, bool)> {
     let mut parts: Vec<(Range<usize>, bool)> = Vec::new();
@@ -24,8 +27,8 @@ pub fn split(text: &str) -> Vec<(Range<usize>, bool)> {
     parts
 }
 
-/// Returns the constraints of a table.
-pub fn extract(lexicon: &Lexicon, text: &str, lang: &str) -> Vec<Finding> {
+/// Returns the constraints of a table; the caption may name the quantity and the side.
+pub fn extract(lexicon: &Lexicon, text: &str, caption: &str, lang: &str) -> Vec<Finding> {
     let mut rows: Vec<(Range<usize>, Vec<Range<usize>>)> = Vec::new();
     let mut at = 0;
     for line in text.split_inclusive('\n') {
@@ -42,7 +45,11 @@ pub fn extract(lexicon: &Lexicon, text: &str, lang: &str) -> Vec<Finding> {
         for (column, cell) in row.iter().enumerate().skip(1) {
             let title = head.get(column).and_then(|c| text.get(c.clone())).unwrap_or_default();
             let printed = text.get(cell.clone()).unwrap_or_default();
-            findings.extend(read(lexicon, lang, label, title, printed).into_iter().map(|c| Finding {
+            if label.len().max(title.len()).max(printed.len()) > MAX_CELL {
+                continue;
+            }
+            let head = format!("{caption} {}", title.trim());
+            findings.extend(read(lexicon, lang, label, head.trim(), printed).into_iter().map(|c| Finding {
                 evidence: line.clone(),
                 printed: cell.clone(),
                 ..c
@@ -114,6 +121,12 @@ fn unit_in(lexicon: &Lexicon, text: &str, lang: &str) -> Option<String> {
     for (k, token) in all.iter().enumerate() {
         let figure = token.number().is_some();
         let opens = matches!(token.text.as_str(), "(" | "[" | "," | "/") || token.is("in") && k > 0;
+        if k == 0 && found.is_none() {
+            // The whole head is a unit: "Lux".
+            found = lexicon
+                .unit_at(text, token.start, lang)
+                .filter(|u| u.1 >= text.trim_end().len() && u.1 > token.end.min(token.start + 1));
+        }
         if figure || opens {
             found = found.or_else(|| lexicon.unit_at(text, token.end, lang)).filter(|u| u.1 > token.end);
         }

@@ -22,6 +22,8 @@ pub struct Token {
     pub glued: bool,
     /// Whether a line ends before it.
     pub new_line: bool,
+    /// Whether a blank line stands before it.
+    pub paragraph: bool,
     /// Whether it begins with a capital.
     pub capital: bool,
 }
@@ -51,10 +53,10 @@ pub fn tokens(text: &str, lang: &str) -> Vec<Token> {
     let at = |i: usize| chars.get(i).map(|c| c.1);
     let byte = |i: usize| chars.get(i).map_or(text.len(), |c| c.0);
     let mut out: Vec<Token> = Vec::new();
-    let (mut i, mut glued, mut new_line) = (0, false, false);
+    let (mut i, mut glued, mut lines) = (0, false, 0_usize);
     while let Some(c) = at(i) {
         if is_blank(c) {
-            new_line |= c == '\n';
+            lines += usize::from(c == '\n');
             glued = false;
             i += 1;
             continue;
@@ -88,9 +90,10 @@ pub fn tokens(text: &str, lang: &str) -> Vec<Token> {
         }
         let piece = text.get(byte(start)..byte(i)).unwrap_or_default();
         let (text, capital) = (piece.to_lowercase(), c.is_uppercase());
-        out.push(Token { text, start: byte(start), end: byte(i), kind, glued, new_line, capital });
+        let (new_line, paragraph) = (lines > 0, lines > 1);
+        out.push(Token { text, start: byte(start), end: byte(i), kind, glued, new_line, paragraph, capital });
         glued = true;
-        new_line = false;
+        lines = 0;
     }
     out
 }
