@@ -3,8 +3,10 @@
 //! What it is not for: reading files or the network, and judging whether a rule is law. It uses no language model. All
 //! words it knows (units, comparators, spaces, quantities, cues of duty and of report) are data: `data/*.toml`.
 
+pub mod corpus;
 mod error;
 pub mod extract;
 pub mod jsonl;
+pub mod synthesis;
 
 pub use error::Error;
