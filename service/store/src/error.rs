@@ -118,6 +118,30 @@ pub enum Error {
         /// Value and limit.
         what: String,
     },
+    /// A document or a filter names a field that the index does not have.
+    #[error("no {kind} of the index is called {name}: it has {known}")]
+    UnknownField {
+        /// Text field, facet or number.
+        kind: &'static str,
+        /// The name.
+        name: String,
+        /// The names there are.
+        known: String,
+    },
+    /// An index cannot be made, written or searched.
+    #[error("{what}")]
+    Index {
+        /// What went wrong.
+        what: String,
+    },
+    /// An embedder cannot be loaded, or failed.
+    #[error("embedder {id}: {what}")]
+    Embedder {
+        /// Which one.
+        id: String,
+        /// What went wrong, and what to do.
+        what: String,
+    },
     /// The caller asked to stop.
     #[error("cancelled")]
     Cancelled,

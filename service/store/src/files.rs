@@ -1,0 +1,62 @@
+//! Files that are there whole or not at all.
+
+use std::fs::File;
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use tempfile::{Builder, NamedTempFile};
+
+use crate::error::{Error, Result};
+
+/// How the names of files begin that are not finished yet.
+pub(crate) const UNFINISHED: &str = ".unfinished-";
+
+/// Writes `path` with what `fill` writes: beside it first, then in its place in one step that a crash cannot halve.
+/// `replace` says whether a file of that name may be there.
+pub(crate) fn write_whole(
+    path: &Path,
+    replace: bool,
+    fill: impl FnOnce(&mut BufWriter<&mut NamedTempFile>) -> Result<()>,
+) -> Result<()> {
+    let dir = folder_of(path);
+    if !replace && path.symlink_metadata().is_ok() {
+        return Err(Error::Exists { path: path.to_path_buf() });
+    }
+    let mut unfinished = new_file(&dir).map_err(Error::io(path))?;
+    let mut writer = BufWriter::with_capacity(1 << 16, &mut unfinished);
+    fill(&mut writer)?;
+    writer.flush().map_err(Error::io(path))?;
+    drop(writer);
+    unfinished.as_file().sync_all().map_err(Error::io(path))?;
+    let put = if replace { unfinished.persist(path) } else { unfinished.persist_noclobber(path) };
+    put.map_err(|e| match e.error.kind() {
+        std::io::ErrorKind::AlreadyExists => Error::Exists { path: path.to_path_buf() },
+        _ => Error::Io { path: path.to_path_buf(), source: e.error },
+    })?;
+    sync_folder(&dir)
+}
+
+/// Makes the names in a folder durable: a renamed file may otherwise be gone after a power failure.
+pub(crate) fn sync_folder(dir: &Path) -> Result<()> {
+    // Other systems do not open folders as files, and write names through.
+    if cfg!(unix) {
+        File::open(dir).and_then(|d| d.sync_all()).map_err(Error::io(dir))?;
+    }
+    Ok(())
+}
+
+fn folder_of(path: &Path) -> PathBuf {
+    match path.parent() {
+        Some(dir) if !dir.as_os_str().is_empty() => dir.to_path_buf(),
+        _ => PathBuf::from("."),
+    }
+}
+
+fn new_file(dir: &Path) -> std::io::Result<NamedTempFile> {
+    let mut builder = Builder::new();
+    builder.prefix(UNFINISHED);
+    // A temporary file would be private; this one becomes a file like any other.
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    builder.tempfile_in(dir)
+}

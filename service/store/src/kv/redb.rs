@@ -1,0 +1,187 @@
+//! Records in a `redb` file: copy on write, checksummed pages, two-phase commits.
+//!
+//! One process writes, any number read beside it (`ConcurrencyMode::SingleWriter`).
+
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+
+use redb::{
+    Builder, ConcurrencyMode, Database, DatabaseError, ReadOnlyDatabase, ReadOnlyTable, ReadTransaction,
+    ReadableDatabase, StorageError, TableDefinition, TableError, TableHandle, TransactionError, WriteTransaction,
+};
+
+use super::{Batch, KeyRange, KeyValue, Mode, Opened, View, Visit, shielded};
+use crate::error::{Error, Result};
+
+type Table = ReadOnlyTable<&'static [u8], &'static [u8]>;
+
+fn definition(table: &str) -> TableDefinition<'_, &'static [u8], &'static [u8]> {
+    TableDefinition::new(table)
+}
+
+/// Opens or makes the file at `path`.
+pub(super) fn open(path: &Path, mode: Mode, cache_bytes: u64) -> Result<Opened> {
+    let mut builder = Builder::new();
+    builder.set_concurrency_mode(ConcurrencyMode::SingleWriter);
+    builder.set_cache_size(usize::try_from(cache_bytes).unwrap_or(usize::MAX));
+    let opened = shielded(path, || {
+        Ok(match mode {
+            Mode::Read => builder.open_read_only(path).map(Handle::Reader),
+            Mode::Write => builder.open(path).map(Handle::Writer),
+            Mode::Create => builder.create(path).map(Handle::Writer),
+        })
+    })?;
+    match opened {
+        Ok(handle) => Ok(Opened::Ready(Box::new(Redb { handle: Some(handle), path: path.to_path_buf() }))),
+        Err(DatabaseError::DatabaseAlreadyOpen | DatabaseError::LockProtocolMismatch) => Ok(Opened::Busy),
+        Err(DatabaseError::RepairAborted) => Ok(Opened::NeedsRepair),
+        Err(other) => Err(said(path, other.into())),
+    }
+}
+
+enum Handle {
+    Writer(Database),
+    Reader(ReadOnlyDatabase),
+}
+
+struct Redb {
+    /// Taken when dropped only.
+    handle: Option<Handle>,
+    path: PathBuf,
+}
+
+impl Redb {
+    fn begin_read(&self) -> Result<ReadTransaction> {
+        let begun = match &self.handle {
+            Some(Handle::Writer(database)) => database.begin_read(),
+            Some(Handle::Reader(database)) => database.begin_read(),
+            None => Err(TransactionError::Storage(StorageError::DatabaseClosed)),
+        };
+        begun.map_err(|e| said(&self.path, e.into()))
+    }
+
+    fn begin_write(&self) -> Result<WriteTransaction> {
+        let Some(Handle::Writer(database)) = &self.handle else {
+            let dir = self.path.parent().unwrap_or(&self.path).to_path_buf();
+            return Err(Error::ReadOnly { dir });
+        };
+        database.begin_write().map_err(|e| said(&self.path, e.into()))
+    }
+}
+
+impl Drop for Redb {
+    fn drop(&mut self) {
+        let handle = self.handle.take();
+        // What a close has to say (a file that was damaged meanwhile) the next open says again.
+        let _ = shielded(&self.path, || {
+            drop(handle);
+            Ok(())
+        });
+    }
+}
+
+impl KeyValue for Redb {
+    fn view(&self) -> Result<Box<dyn View + '_>> {
+        let transaction = shielded(&self.path, || self.begin_read())?;
+        Ok(Box::new(RedbView { transaction, path: &self.path }))
+    }
+
+    fn apply(&self, batch: &Batch) -> Result<()> {
+        shielded(&self.path, || {
+            let transaction = self.begin_write()?;
+            write(transaction, batch).map_err(|e| said(&self.path, e))
+        })
+    }
+}
+
+struct RedbView<'a> {
+    transaction: ReadTransaction,
+    path: &'a Path,
+}
+
+impl RedbView<'_> {
+    fn table(&self, name: &str) -> Result<Option<Table>> {
+        match self.transaction.open_table(definition(name)) {
+            Ok(table) => Ok(Some(table)),
+            Err(TableError::TableDoesNotExist(_)) => Ok(None),
+            Err(other) => Err(said(self.path, other.into())),
+        }
+    }
+}
+
+impl View for RedbView<'_> {
+    fn get(&self, table: &str, key: &[u8]) -> Result<Option<Vec<u8>>> {
+        shielded(self.path, || {
+            let Some(table) = self.table(table)? else { return Ok(None) };
+            let value = table.get(key).map_err(|e| said(self.path, e.into()))?;
+            Ok(value.map(|v| v.value().to_vec()))
+        })
+    }
+
+    fn contains(&self, table: &str, key: &[u8]) -> Result<bool> {
+        shielded(self.path, || {
+            let Some(table) = self.table(table)? else { return Ok(false) };
+            Ok(table.get(key).map_err(|e| said(self.path, e.into()))?.is_some())
+        })
+    }
+
+    fn scan(&self, table: &str, range: &KeyRange, visit: &mut Visit<'_>) -> Result<()> {
+        if range.is_empty() {
+            return Ok(());
+        }
+        let found = shielded(self.path, || {
+            let Some(table) = self.table(table)? else { return Ok(None) };
+            table.range::<&[u8]>(range.bounds()).map(Some).map_err(|e| said(self.path, e.into()))
+        })?;
+        let Some(mut entries) = found else { return Ok(()) };
+        while let Some(entry) =
+            shielded(self.path, || entries.next().transpose().map_err(|e| said(self.path, e.into())))?
+        {
+            let (key, value) = entry;
+            if visit(key.value(), value.value())? == ControlFlow::Break(()) {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    fn tables(&self) -> Result<Vec<String>> {
+        shielded(self.path, || {
+            let tables = self.transaction.list_tables().map_err(|e| said(self.path, e.into()))?;
+            let mut names: Vec<_> = tables.map(|t| t.name().to_owned()).collect();
+            names.sort();
+            Ok(names)
+        })
+    }
+}
+
+/// Commits with `Durability::Immediate`, redb's default; a transaction that is dropped changes nothing.
+fn write(transaction: WriteTransaction, batch: &Batch) -> Result<(), redb::Error> {
+    for (name, changes) in batch.tables() {
+        let mut table = transaction.open_table(definition(name))?;
+        for (key, value) in changes {
+            match value {
+                Some(value) => drop(table.insert(key.as_slice(), value.as_slice())?),
+                None => drop(table.remove(key.as_slice())?),
+            }
+        }
+    }
+    Ok(transaction.commit()?)
+}
+
+/// What redb reports, in our words.
+fn said(path: &Path, error: redb::Error) -> Error {
+    use std::io::ErrorKind::{InvalidData, UnexpectedEof};
+    let path = path.to_path_buf();
+    match error {
+        redb::Error::Io(source) if !matches!(source.kind(), InvalidData | UnexpectedEof) => Error::Io { path, source },
+        redb::Error::PreviousIo => {
+            let source = std::io::Error::other("an earlier write failed: make room, then open the store again");
+            Error::Io { path, source }
+        }
+        redb::Error::ValueTooLarge(bytes) => {
+            Error::Limit { what: format!("value has {bytes} bytes, too many for redb") }
+        }
+        other => Error::Corrupt { path, reason: other.to_string() },
+    }
+}
