@@ -1,0 +1,106 @@
+//! Keys, facets and numbers of all rows, kept in memory: they answer filters without touching the other indexes.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use super::document::{Document, IndexSpec, known};
+use super::filter::Filter;
+use super::row_set::RowSet;
+use crate::error::Result;
+
+/// One row a document, in the order of the keys.
+#[derive(Debug, Default, Serialize, Deserialize)]
+pub(crate) struct Columns {
+    keys: Vec<String>,
+    /// For each facet and value the rows that have it, ascending.
+    facets: BTreeMap<String, BTreeMap<String, Vec<u32>>>,
+    /// For each number one value a row; not a number where the document has none.
+    numbers: BTreeMap<String, Vec<f64>>,
+}
+
+impl Columns {
+    pub(crate) fn new(spec: &IndexSpec, documents: &[Document]) -> Self {
+        let mut columns = Self {
+            keys: documents.iter().map(|d| d.key.clone()).collect(),
+            facets: spec.facets.iter().map(|f| (f.clone(), BTreeMap::new())).collect(),
+            numbers: spec.numbers.iter().map(|n| (n.clone(), vec![f64::NAN; documents.len()])).collect(),
+        };
+        for (row, document) in (0..).zip(documents) {
+            for (name, values) in &document.facets {
+                let Some(column) = columns.facets.get_mut(name) else { continue };
+                for value in values {
+                    let rows = column.entry(value.clone()).or_default();
+                    if rows.last() != Some(&row) {
+                        rows.push(row);
+                    }
+                }
+            }
+            for (name, &number) in &document.numbers {
+                let cell = columns.numbers.get_mut(name).and_then(|column| column.get_mut(row as usize));
+                if let Some(cell) = cell {
+                    *cell = number;
+                }
+            }
+        }
+        columns
+    }
+
+    pub(crate) fn rows(&self) -> u32 {
+        u32::try_from(self.keys.len()).unwrap_or(u32::MAX)
+    }
+
+    pub(crate) fn key(&self, row: u32) -> Option<&str> {
+        self.keys.get(row as usize).map(String::as_str)
+    }
+
+    /// Returns each value of a facet with how many rows have it.
+    pub(crate) fn counts(&self, facet: &str) -> Option<BTreeMap<String, usize>> {
+        Some(self.facets.get(facet)?.iter().map(|(value, rows)| (value.clone(), rows.len())).collect())
+    }
+
+    /// Returns the rows that fulfill a filter.
+    ///
+    /// # Errors
+    /// [`Error::UnknownField`](crate::Error::UnknownField) when it names a facet or number that the index does not have.
+    pub(crate) fn matching(&self, filter: &Filter) -> Result<RowSet> {
+        Ok(match filter {
+            Filter::Everything => RowSet::all(self.rows()),
+            Filter::Facet { name, any_of } => {
+                known("facet", [name].into_iter(), &self.facets.keys().collect::<Vec<_>>())?;
+                let column = self.facets.get(name).into_iter();
+                let mut set = RowSet::none(self.rows());
+                let rows = column.flat_map(|column| any_of.iter().filter_map(|value| column.get(value))).flatten();
+                rows.for_each(|&row| set.insert(row));
+                set
+            }
+            Filter::Number { name, min, max } => {
+                known("number", [name].into_iter(), &self.numbers.keys().collect::<Vec<_>>())?;
+                let mut set = RowSet::none(self.rows());
+                let inside = |x: f64| !x.is_nan() && min.is_none_or(|min| x >= min) && max.is_none_or(|max| x <= max);
+                let rows = (0..).zip(self.numbers.get(name).into_iter().flatten());
+                rows.filter(|(_, x)| inside(**x)).for_each(|(row, _)| set.insert(row));
+                set
+            }
+            Filter::All(filters) => {
+                let mut set = RowSet::all(self.rows());
+                for filter in filters {
+                    set.intersect(&self.matching(filter)?);
+                }
+                set
+            }
+            Filter::Any(filters) => {
+                let mut set = RowSet::none(self.rows());
+                for filter in filters {
+                    set.unite(&self.matching(filter)?);
+                }
+                set
+            }
+            Filter::Not(filter) => {
+                let mut set = self.matching(filter)?;
+                set.invert();
+                set
+            }
+        })
+    }
+}

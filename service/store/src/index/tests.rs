@@ -1,0 +1,150 @@
+//! Searching as callers do, on an index in memory.
+
+use std::sync::Arc;
+
+use super::*;
+use crate::embed::StaticTable;
+
+fn spec() -> IndexSpec {
+    IndexSpec::default().field("name", 3.0).field("text", 1.0).facets(&["country", "room"]).numbers(&["value"])
+}
+
+fn document(key: &str, name: &str, text: &str, country: &str, rooms: &[&str], value: Option<f64>) -> Document {
+    Document {
+        key: key.to_owned(),
+        texts: [("name", name), ("text", text)].map(|(n, t)| (n.to_owned(), t.to_owned())).into(),
+        facets: [
+            ("country".to_owned(), vec![country.to_owned()]),
+            ("room".to_owned(), rooms.iter().map(|r| (*r).to_owned()).collect()),
+        ]
+        .into(),
+        numbers: value.map(|v| ("value".to_owned(), v)).into_iter().collect(),
+        embed_text: format!("{name}. {text}").replace('_', " "),
+    }
+}
+
+fn index() -> Index {
+    let documents = [
+        document("de_corridor", "corridor_width", "clear width of corridors, 1.50 m", "DE", &["corridor"], Some(1.5)),
+        document("us_corridor", "corridor_width", "clear width of corridors, 44 in", "US", &["corridor"], Some(1.118)),
+        document("de_door", "door_clear_width", "Lichte Türbreite mindestens 0,90 m", "DE", &["door", "corridor"], Some(0.9)),
+        document("de_kitchen", "kitchen_area", "Grundfläche der Küche in m²", "DE", &["kitchen"], Some(8.0)),
+        document("at_height", "ceiling_height", "clear height of habitable rooms", "AT", &["bedroom", "kitchen"], Some(2.5)),
+        document("de_smoke", "smoke_alarm", "a smoke alarm in each bedroom", "DE", &["bedroom"], None),
+        document("de_flur", "flur", "Flur und Breite", "DE", &["corridor"], None),
+    ];
+    Index::in_memory(&spec(), Arc::new(StaticTable::new()), 1, documents, Watch::nobody()).unwrap()
+}
+
+#[track_caller]
+fn keys(index: &Index, text: &str, filter: &Filter, mode: Mode) -> Vec<String> {
+    index.search(text, filter, 10, mode).unwrap().into_iter().map(|hit| hit.key).collect()
+}
+
+#[test]
+fn words_are_found_in_their_forms_languages_and_with_slips() {
+    let index = index();
+    for (text, best) in [
+        ("corridors width", "de_corridor"),
+        ("kitchen", "de_kitchen"),
+        ("KITCHEN_AREA", "de_kitchen"),
+        ("Türbreiten", "de_door"),
+        ("Tuerbreite", "de_door"),
+        ("kuche", "de_kitchen"),
+        ("Kuechen", "de_kitchen"),
+        ("smoke alarms", "de_smoke"),
+        ("celing", "at_height"),
+        ("0.9", "de_door"),
+        ("44 in", "us_corridor"),
+        ("Flurbreite", "de_flur"),
+        ("the area of the kitchen?", "de_kitchen"),
+    ] {
+        let found = keys(&index, text, &Filter::Everything, Mode::Text);
+        assert_eq!(found.first().map(String::as_str), Some(best), "{text}: {found:?}");
+    }
+    assert!(keys(&index, "zzzzzzz", &Filter::Everything, Mode::Text).is_empty());
+}
+
+#[test]
+fn meaning_finds_what_no_word_does() {
+    let index = index();
+    let found = keys(&index, "hallway", &Filter::Everything, Mode::Vector);
+    assert!(found[..3].iter().any(|key| key.ends_with("corridor")), "{found:?}");
+    assert!(keys(&index, "hallway", &Filter::Everything, Mode::Text).is_empty());
+    let hits = index.search("fire detector where people sleep", &Filter::Everything, 3, Mode::Hybrid).unwrap();
+    assert_eq!(hits[0].key, "de_smoke");
+    assert!(hits[0].similarity.is_some_and(|s| s > 0.2));
+}
+
+#[test]
+fn filters_leave_what_they_say() {
+    let index = index();
+    let german = Filter::facet("country", ["DE"]);
+    let check = |filter: Filter, expected: &[&str]| {
+        for mode in [Mode::Hybrid, Mode::Text, Mode::Vector] {
+            assert_eq!(keys(&index, "", &filter, mode), expected, "{filter:?}");
+            let found = keys(&index, "clear width of corridors in the kitchen", &filter, mode);
+            assert!(found.iter().all(|key| expected.contains(&key.as_str())), "{filter:?}: {found:?}");
+        }
+        assert_eq!(index.count(&filter).unwrap(), expected.len());
+    };
+    check(german.clone().and(Filter::facet("room", ["corridor"])), &["de_corridor", "de_door", "de_flur"]);
+    check(Filter::facet("room", ["kitchen", "bedroom"]), &["at_height", "de_kitchen", "de_smoke"]);
+    check(Filter::number("value", Some(0.9), Some(1.5)), &["de_corridor", "de_door", "us_corridor"]);
+    check(Filter::number("value", Some(2.5), None), &["at_height", "de_kitchen"]);
+    check(Filter::number("value", None, None).negate(), &["de_flur", "de_smoke"]);
+    check(german.negate(), &["at_height", "us_corridor"]);
+    check(Filter::facet("country", ["FR"]), &[]);
+    check(Filter::Any(vec![Filter::facet("country", ["US"]), Filter::facet("room", ["door"])]), &["de_door", "us_corridor"]);
+    check(Filter::Any(Vec::new()), &[]);
+    assert_eq!(index.facet_counts("country").unwrap()["DE"], 5);
+}
+
+#[test]
+fn unknown_fields_are_named() {
+    let index = index();
+    let error = index.search("x", &Filter::facet("jurisdiction", ["DE"]), 5, Mode::Hybrid).unwrap_err();
+    assert_eq!(error.to_string(), "no facet of the index is called jurisdiction: it has country, room");
+    assert!(index.search("x", &Filter::number("price", None, None).negate(), 5, Mode::Text).is_err());
+    let strange = Document { key: "k".to_owned(), numbers: [("weight".to_owned(), 1.0)].into(), ..Document::default() };
+    let made = Index::in_memory(&spec(), Arc::new(StaticTable::new()), 1, [strange], Watch::nobody());
+    assert!(matches!(made, Err(Error::UnknownField { kind: "number", .. })));
+    let twice = || Document { key: "k".to_owned(), ..Document::default() };
+    assert!(Index::in_memory(&spec(), Arc::new(StaticTable::new()), 1, [twice(), twice()], Watch::nobody()).is_err());
+}
+
+#[test]
+fn any_text_is_a_question() {
+    let index = index();
+    let long = "corridor ".repeat(20_000);
+    for text in ["\"", "a AND (b OR", "name:x^", "*", "\u{0}", "\u{202e}\u{200d}", "👩‍⚕️", "-", "[a TO b]", "病房", "\u{301}", &long] {
+        for mode in [Mode::Hybrid, Mode::Text, Mode::Vector] {
+            index.search(text, &Filter::Everything, 5, mode).unwrap();
+        }
+    }
+}
+
+#[test]
+fn limits_ranks_and_ties_are_as_said() {
+    let index = index();
+    for limit in [0, 1, 3, 7, usize::MAX] {
+        let hits = index.search("corridor width", &Filter::Everything, limit, Mode::Hybrid).unwrap();
+        assert_eq!(hits.len(), limit.min(7));
+        assert!(hits.is_sorted_by(|a, b| a.score > b.score || (a.score == b.score && a.key < b.key)));
+        assert_eq!(hits, index.search("corridor width", &Filter::Everything, limit, Mode::Hybrid).unwrap());
+    }
+    let same = ["b", "c", "a"].map(|key| document(key, "corridor", "same", "DE", &[], None));
+    let index = Index::in_memory(&spec(), Arc::new(StaticTable::new()), 1, same, Watch::nobody()).unwrap();
+    for mode in [Mode::Hybrid, Mode::Text, Mode::Vector] {
+        assert_eq!(keys(&index, "corridor", &Filter::Everything, mode), ["a", "b", "c"]);
+    }
+}
+
+#[test]
+fn an_empty_index_answers() {
+    let index = Index::in_memory(&spec(), Arc::new(StaticTable::new()), 0, [], Watch::nobody()).unwrap();
+    assert!(index.is_empty());
+    for mode in [Mode::Hybrid, Mode::Text, Mode::Vector] {
+        assert!(keys(&index, "corridor", &Filter::facet("country", ["DE"]), mode).is_empty());
+    }
+}
