@@ -6,7 +6,9 @@
 pub mod corpus;
 mod error;
 pub mod extract;
+pub mod fetch;
 pub mod jsonl;
+pub mod read;
 pub mod synthesis;
 
 pub use error::Error;
