@@ -7,6 +7,7 @@
 pub mod clearance;
 pub mod compliance;
 mod conditions;
+pub mod database;
 mod draw_limits;
 pub mod error;
 mod expression;

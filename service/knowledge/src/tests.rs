@@ -8,7 +8,7 @@ use d3dgen_model::knowledge::KnowledgeBase;
 
 use crate::*;
 
-fn knowledge(domain: &str) -> KnowledgeBase {
+pub(crate) fn knowledge(domain: &str) -> KnowledgeBase {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../domains").join(domain).join("knowledge.json");
     KnowledgeBase::from_json(&std::fs::read_to_string(path).expect("every domain has a knowledge base"))
         .expect("shipped knowledge bases are valid")

@@ -177,6 +177,11 @@ impl Document for KnowledgeBase {
             let message = format!("is {}, this release reads version 1", self.metadata.version);
             problems.push(Problem::new("/metadata/version", message));
         }
+        let domain = &self.metadata.domain;
+        if domain.is_empty() || !domain.bytes().all(|b| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'_') {
+            let message = format!("`{domain}` is no id of a domain: lower-case letters, digits and underscores");
+            problems.push(Problem::new("/metadata/domain", message));
+        }
         check_date("/metadata/date", &self.metadata.date, &mut problems);
         check_unique("/references", self.references.iter().map(|r| r.ref_id.as_str()), &mut problems);
         let mut seen = BTreeSet::new();
@@ -321,6 +326,7 @@ mod tests {
         assert!(KnowledgeBase::from_value(sample()).is_ok());
         let cases: &[(&str, serde_json::Value)] = &[
             ("/metadata/version", 2.into()),
+            ("/metadata/domain", "my/office".into()),
             ("/metadata/date", "yesterday".into()),
             ("/references/0/ref_id", "".into()),
             ("/references/0/jurisdiction", "Germany".into()),
