@@ -29,6 +29,11 @@ pub trait Plugin: Send + Sync {
     fn knowledge(&self) -> &KnowledgeBase;
 }
 
+/// Returns true for the ids of the domains in the program.
+pub fn is_shipped(id: &str) -> bool {
+    all().iter().any(|b| b.id() == id)
+}
+
 /// All domains a process knows, in a stable order: built-in ones first, then folders as they were added.
 pub struct Registry {
     plugins: Vec<Box<dyn Plugin>>,
@@ -54,6 +59,14 @@ impl Registry {
         Ok(self.plugins.last().expect("just pushed").as_ref())
     }
 
+    /// Gives a domain other rules than it brings; false when no such domain is registered.
+    pub fn set_knowledge(&mut self, id: &str, knowledge: KnowledgeBase) -> bool {
+        let Some(at) = self.plugins.iter().position(|p| p.id() == id) else { return false };
+        let domain = self.plugins.remove(at);
+        self.plugins.insert(at, Box::new(OtherRules { domain, knowledge }));
+        true
+    }
+
     /// Returns the domain with this id.
     pub fn get(&self, id: &str) -> Option<&dyn Plugin> {
         self.iter().find(|p| p.id() == id)
@@ -62,5 +75,25 @@ impl Registry {
     /// Returns all domains in order.
     pub fn iter(&self) -> impl Iterator<Item = &dyn Plugin> {
         self.plugins.iter().map(AsRef::as_ref)
+    }
+}
+
+/// A domain whose rules come from elsewhere.
+struct OtherRules {
+    domain: Box<dyn Plugin>,
+    knowledge: KnowledgeBase,
+}
+
+impl Plugin for OtherRules {
+    fn id(&self) -> &str {
+        self.domain.id()
+    }
+
+    fn domain(&self) -> &Domain {
+        self.domain.domain()
+    }
+
+    fn knowledge(&self) -> &KnowledgeBase {
+        &self.knowledge
     }
 }

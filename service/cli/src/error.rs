@@ -36,6 +36,9 @@ pub enum Error {
     /// A domain folder cannot be used.
     #[error(transparent)]
     Domain(#[from] d3dgen_plugins::Error),
+    /// The knowledge database refused.
+    #[error(transparent)]
+    Knowledge(#[from] d3dgen_knowledge::Error),
     /// A stage refused.
     #[error(transparent)]
     Stage(#[from] d3dgen_pipeline::Error),
@@ -55,7 +58,9 @@ impl Error {
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Unsound(_) => 1,
-            Self::Interrupted | Self::Stage(d3dgen_pipeline::Error::Cancelled) => 130,
+            Self::Interrupted
+            | Self::Knowledge(d3dgen_knowledge::Error::Store(d3dgen_store::Error::Cancelled))
+            | Self::Stage(d3dgen_pipeline::Error::Cancelled) => 130,
             _ => 2,
         }
     }

@@ -5,6 +5,7 @@
 mod bundle;
 mod cli;
 mod commands;
+mod database;
 mod error;
 mod input;
 mod interrupt;

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use d3dgen_plugins::{Plugin, Registry};
 
+use crate::database::StoreArgs;
 use crate::error::Error;
 
 /// Flag for further domains.
@@ -12,14 +13,31 @@ pub struct RegistryArgs {
     /// Folder of a custom domain, or of several; may be given more than once
     #[arg(long, value_name = "DIR")]
     pub domains_dir: Vec<PathBuf>,
+    #[command(flatten)]
+    pub store: StoreArgs,
 }
 
 impl RegistryArgs {
-    /// Returns the built-in domains with those of the folders added.
+    /// Returns the built-in domains with those of the folders added, with the rules that the knowledge database has
+    /// changed.
     ///
     /// # Errors
-    /// `Read` or `Input` when a folder holds no domain, `Domain` with every problem of one that is broken.
+    /// `Read` or `Input` when a folder holds no domain, `Domain` with every problem of one that is broken; `Knowledge`
+    /// when the database cannot be read.
     pub fn load(&self) -> Result<Registry, Error> {
+        let mut registry = self.load_as_brought()?;
+        let folders = registry.iter().filter(|p| !d3dgen_plugins::is_shipped(p.id()));
+        let own_rules: Vec<String> =
+            folders.filter(|p| !p.knowledge().references.is_empty()).map(|p| p.id().to_owned()).collect();
+        self.store.overlay(&mut registry, &own_rules)?;
+        Ok(registry)
+    }
+
+    /// Returns the built-in domains with those of the folders added, each with the rules it brings.
+    ///
+    /// # Errors
+    /// As [`RegistryArgs::load`], the database aside.
+    pub fn load_as_brought(&self) -> Result<Registry, Error> {
         let mut registry = Registry::builtin();
         for dir in &self.domains_dir {
             for folder in domain_folders(dir)? {

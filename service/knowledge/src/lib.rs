@@ -4,6 +4,8 @@
 //! What it is not for: deciding whether a world is sound (hard rules live in the pipeline's `world` stage) and reading
 //! files. Which measurable quantity a constraint speaks of, and what its conditions mean, is data: `data/*.toml`.
 
+pub mod amend;
+pub mod classify;
 pub mod clearance;
 pub mod compliance;
 mod conditions;

@@ -75,6 +75,11 @@ impl Query {
         }
     }
 
+    /// Returns how many people a floor area is reckoned with, m^2.
+    pub(crate) fn persons_of_area(area_m2: f64) -> u32 {
+        (area_m2 / AREA_PER_PERSON_M2).ceil() as u32
+    }
+
     /// Returns what formulas may ask about the building.
     pub(crate) fn facts(&self) -> Facts {
         let robot_radius = self.robots.iter().map(|r| r.radius_m).reduce(f64::max);
@@ -116,7 +121,7 @@ fn persons(graph: &SceneGraph) -> (u32, bool) {
     let held: u32 = graph.rooms.iter().filter_map(|r| r.occupants).sum();
     let area: f64 = graph.rooms.iter().map(|r| r.target_area_m2).sum();
     match stated.max(held) {
-        0 => ((area / AREA_PER_PERSON_M2).ceil() as u32, false),
+        0 => (Query::persons_of_area(area), false),
         n => (n, true),
     }
 }

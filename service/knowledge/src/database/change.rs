@@ -77,7 +77,7 @@ pub enum Entry {
     /// A document, its list of constraints left empty.
     Reference(Reference),
     /// A rule with the id of its document.
-    Constraint(String, Constraint),
+    Constraint(String, Box<Constraint>),
 }
 
 /// What an edit is about.
@@ -168,6 +168,36 @@ pub fn difference(before: &KnowledgeBase, after: &KnowledgeBase, keep: bool) -> 
     edits
 }
 
+/// Makes edits in a knowledge base; new entries come last.
+pub fn apply(knowledge: &mut KnowledgeBase, edits: &[Edit]) {
+    for edit in edits {
+        let id = edit.target.id();
+        match (&edit.target, &edit.after) {
+            (Target::Reference(_), Some(Entry::Reference(new))) => {
+                match knowledge.references.iter_mut().find(|r| r.ref_id == id) {
+                    Some(old) => *old = Reference { constraints: std::mem::take(&mut old.constraints), ..new.clone() },
+                    None => knowledge.references.push(new.clone()),
+                }
+            }
+            (Target::Constraint(_), Some(Entry::Constraint(ref_id, new))) => {
+                for reference in &mut knowledge.references {
+                    let old = reference.constraints.iter().position(|c| c.constraint_id == id);
+                    match (old, reference.ref_id == *ref_id) {
+                        (Some(at), true) => reference.constraints[at] = (**new).clone(),
+                        (Some(at), false) => drop(reference.constraints.remove(at)),
+                        (None, true) => reference.constraints.push((**new).clone()),
+                        (None, false) => {}
+                    }
+                }
+            }
+            (Target::Reference(_), _) => knowledge.references.retain(|r| r.ref_id != id),
+            (Target::Constraint(_), _) => {
+                knowledge.references.iter_mut().for_each(|r| r.constraints.retain(|c| c.constraint_id != id));
+            }
+        }
+    }
+}
+
 /// Returns all references, then all constraints.
 fn entries(knowledge: &KnowledgeBase) -> Vec<(Target, Entry)> {
     let references = knowledge.references.iter().map(|r| {
@@ -175,9 +205,9 @@ fn entries(knowledge: &KnowledgeBase) -> Vec<(Target, Entry)> {
         (Target::Reference(r.ref_id.clone()), Entry::Reference(head))
     });
     let constraints = knowledge.references.iter().flat_map(|r| {
-        r.constraints
-            .iter()
-            .map(|c| (Target::Constraint(c.constraint_id.clone()), Entry::Constraint(r.ref_id.clone(), c.clone())))
+        r.constraints.iter().map(|c| {
+            (Target::Constraint(c.constraint_id.clone()), Entry::Constraint(r.ref_id.clone(), Box::new(c.clone())))
+        })
     });
     references.chain(constraints).collect()
 }

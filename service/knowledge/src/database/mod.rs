@@ -18,9 +18,9 @@ use d3dgen_store::{Access, KeyRange, Options, Store};
 use crate::error::Error;
 use records::{CHANGES, DOMAINS, DomainRecord, EDITS, REFERENCES, Stored, each, get};
 
-pub use change::{Change, Edit, Entry, FieldChange, Kind, Provenance, Target, difference};
+pub use change::{Change, Edit, Entry, FieldChange, Kind, Provenance, Target, apply, difference};
 pub use search::{Found, SearchQuery, Searcher, filter_names};
-pub use write::Shipped;
+pub use write::digest;
 
 /// An open database. Clones share it.
 #[derive(Clone)]

@@ -3,6 +3,7 @@
 use d3dgen_model::Document;
 use d3dgen_model::knowledge::{KnowledgeBase, Reference};
 use d3dgen_store::{Batch, View};
+use sha2::{Digest, Sha256};
 
 use super::Database;
 use super::change::{Change, Edit, Entry, Kind, Provenance, Target, difference};
@@ -15,13 +16,10 @@ use crate::error::Error;
 /// Edits kept in one record of the history.
 const PAGE: usize = 200;
 
-/// A knowledge base that comes with this release.
-#[derive(Debug, Clone, Copy)]
-pub struct Shipped<'a> {
-    /// The text's digest; another one means another release.
-    pub digest: &'a str,
-    /// The rules.
-    pub knowledge: &'a KnowledgeBase,
+/// Returns the digest of a knowledge base: another one means another release.
+pub fn digest(knowledge: &KnowledgeBase) -> String {
+    let hash = Sha256::digest(knowledge.to_json());
+    hash.iter().take(16).map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// A change about to be stored.
@@ -63,13 +61,14 @@ impl Database {
     ///
     /// # Errors
     /// `Store`.
-    pub fn bring_shipped(&self, shipped: &[Shipped<'_>], by: &Provenance) -> Result<Vec<Change>, Error> {
+    pub fn bring_shipped(&self, shipped: &[&KnowledgeBase], by: &Provenance) -> Result<Vec<Change>, Error> {
         let mut changes = Vec::new();
-        for Shipped { digest, knowledge } in shipped {
+        for &knowledge in shipped {
+            let digest = digest(knowledge);
             let stored = Stored::read(&self.store.view()?, &knowledge.metadata.domain)?;
             let created = stored.is_none();
             let mut stored = match stored {
-                Some(stored) if stored.domain.shipped.as_deref().is_none_or(|d| d == *digest) => continue,
+                Some(stored) if stored.domain.shipped.as_deref().is_none_or(|d| d == digest) => continue,
                 Some(stored) => stored,
                 None => fresh(knowledge),
             };
@@ -81,7 +80,7 @@ impl Database {
             };
             let mut edits = difference(&stored.assemble(), knowledge, false);
             edits.retain(untouched);
-            stored.domain.shipped = Some((*digest).to_owned());
+            stored.domain.shipped = Some(digest);
             stored.domain.metadata = knowledge.metadata.clone();
             changes.push(self.write(
                 stored,
@@ -225,7 +224,7 @@ fn held(stored: &Stored, target: &Target) -> Option<Entry> {
     match target {
         Target::Reference(id) => stored.references.get(id).map(|r| Entry::Reference(r.reference.clone())),
         Target::Constraint(id) => {
-            stored.constraints.get(id).map(|c| Entry::Constraint(c.ref_id.clone(), c.constraint.clone()))
+            stored.constraints.get(id).map(|c| Entry::Constraint(c.ref_id.clone(), Box::new(c.constraint.clone())))
         }
     }
 }
@@ -249,7 +248,7 @@ fn put(stored: &mut Stored, batch: &mut Batch, domain: &str, edit: &Edit, change
         }
         (Target::Constraint(_), Some(Entry::Constraint(ref_id, constraint))) => {
             let place = place(stored.constraints.get(id).map(|c| c.place), &mut stored.domain.next_place);
-            let record = ConstraintRecord { place, change, ref_id: ref_id.clone(), constraint: constraint.clone() };
+            let record = ConstraintRecord { place, change, ref_id: ref_id.clone(), constraint: (**constraint).clone() };
             batch.put(CONSTRAINTS, key(domain, id), encode(&record));
             stored.constraints.insert(id.to_owned(), record);
         }

@@ -1,6 +1,5 @@
-//! `d3dgen knowledge`: what the knowledge bases hold.
+//! `d3dgen knowledge stats`: what the knowledge bases hold.
 
-use clap::Subcommand;
 use d3dgen_knowledge::Stats;
 use d3dgen_model::Document;
 
@@ -12,36 +11,26 @@ use crate::table::table;
 /// Arguments.
 #[derive(clap::Args)]
 pub struct Args {
-    #[command(subcommand)]
-    action: Action,
-}
-
-#[derive(Subcommand)]
-enum Action {
-    /// Counts of each knowledge base, and the share of its rules that worlds can be held against
-    Stats {
-        /// Only this domain, with the reasons why the other rules cannot be decided
-        #[arg(long, value_name = "ID")]
-        domain: Option<String>,
-        /// Print one JSON line for each domain
-        #[arg(long)]
-        json: bool,
-        #[command(flatten)]
-        registry: RegistryArgs,
-    },
+    /// Only this domain, with the reasons why the other rules cannot be decided
+    #[arg(long, value_name = "ID")]
+    domain: Option<String>,
+    /// Print one JSON line for each domain
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    registry: RegistryArgs,
 }
 
 impl Args {
     pub fn run(self) -> Result<(), Error> {
-        let Action::Stats { domain: only, json, registry } = self.action;
-        let registry = registry.load()?;
-        let plugins = match &only {
+        let registry = self.registry.load()?;
+        let plugins = match &self.domain {
             Some(id) => vec![domain(&registry, id)?],
             None => registry.iter().collect(),
         };
         let stats: Vec<Stats> =
             plugins.into_iter().map(|p| Stats::of(p.knowledge(), p.domain(), p.knowledge().to_json().len())).collect();
-        let text = if json { json_lines(&stats)? } else { shown(&stats, only.is_some()) };
+        let text = if self.json { json_lines(&stats)? } else { shown(&stats, self.domain.is_some()) };
         write_text(None, &text)
     }
 }
