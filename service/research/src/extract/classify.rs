@@ -11,6 +11,8 @@ const AFTER_REACH: usize = 9;
 const OPENER_REACH: usize = 6;
 /// Where the subject's noun may stand at the latest, in tokens.
 const MAX_ADJECTIVES_OF_SUBJECT: usize = 3;
+/// Longest head of a note that is not known, in words.
+const MAX_TITLE: usize = 4;
 /// Longest note without a verb, in words.
 const MAX_NOTE: usize = 14;
 /// How far before a figure "within" and the like may stand, in tokens.
@@ -45,6 +47,7 @@ struct Tone {
     habit: bool,
     reckoned: bool,
     report: bool,
+    former: bool,
     past: bool,
     plain: bool,
 }
@@ -53,7 +56,7 @@ impl Sentence<'_> {
     /// Returns for each figure its kind and how plain it is, none where it is no limit.
     pub fn verdicts(&self) -> Vec<Option<(ConstraintType, Confidence)>> {
         let tone = self.tone();
-        if tone.report && !self.is_physical() || tone.past && !tone.duty {
+        if tone.former || tone.report && !self.is_physical() || tone.past && !tone.duty {
             return vec![None; self.mentions.len()];
         }
         let sides = self.sides();
@@ -99,9 +102,21 @@ impl Sentence<'_> {
             habit: any("habit"),
             reckoned: any("reckoned"),
             report: self.tokens.iter().enumerate().any(|(k, _)| self.cue("report", k) && !self.in_noun(k)),
-            past: any("past"),
+            former: any("former"),
+            past: any("past") || self.has_past_verb(),
             plain: any("plain") && !any("announces"),
         }
+    }
+
+    /// Whether a word in "-ed" governs a figure ("travelled 14 km") and is not passive.
+    fn has_past_verb(&self) -> bool {
+        self.lang == "en"
+            && self.mentions.iter().any(|m| {
+                let Some(verb) = m.from.checked_sub(1) else { return false };
+                let passive = verb == 0 || (verb.saturating_sub(2)..verb).any(|k| self.cue("passive", k));
+                let ed = self.tokens.get(verb).is_some_and(|t| t.kind == Kind::Word && t.text.ends_with("ed"));
+                ed && !passive && !self.cue("past_exceptions", verb)
+            })
     }
 
     /// Whether a token belongs to a longer name of a thing: "phone booth", "call button".
@@ -132,6 +147,10 @@ impl Sentence<'_> {
         let mut sides: Vec<Option<Sided>> = Vec::new();
         let mut from = 0;
         for (i, mention) in self.mentions.iter().enumerate() {
+            if self.is_place(mention) {
+                sides.push(None);
+                continue; // the comparator before it belongs to the next figure
+            }
             let mut side = self.side_before(from, mention);
             from = mention.to;
             if side.is_none_or(|s| !s.strong) {
@@ -147,6 +166,13 @@ impl Sentence<'_> {
             sides.push(side);
         }
         sides
+    }
+
+    /// "between two beds" in a sentence about something else, "that two beds can pass".
+    fn is_place(&self, mention: &Mention) -> bool {
+        let before = mention.from.checked_sub(1);
+        let counted = mention.thing.is_some() && matches!(mention.figure, Figure::Number(_)) && self.figures() > 1;
+        counted && before.is_some_and(|k| self.cue("between_only", k) || self.cue("relatives", k))
     }
 
     fn side_before(&self, from: usize, mention: &Mention) -> Option<Sided> {
@@ -184,7 +210,9 @@ impl Sentence<'_> {
         found.map(|s| if forbidden && !s.strong { Sided { bound: opposite(s.bound), strong: true, ..s } } else { s })
     }
 
+    /// Whether a comparator is denied; "never below 19 °C or above 26 °C" denies both.
     fn is_negated(&self, from: usize, at: usize) -> bool {
+        let from = if self.cue("or", from) { 0 } else { from };
         (from..at).any(|k| self.cue("negations", k))
     }
 
@@ -215,7 +243,8 @@ impl Sentence<'_> {
             return false;
         };
         let between = a.to..b.from;
-        between.len() <= OPENER_REACH + 2
+        a.unit.is_some() == b.unit.is_some()
+            && between.len() <= OPENER_REACH + 2
             && between.clone().any(|k| self.cue("links", k))
             && !between.clone().any(|k| {
                 self.cue("duty", k) || self.cue("plain", k) || self.cue("advice", k) || self.cue("hard_openers", k)
@@ -272,10 +301,16 @@ impl Sentence<'_> {
                 break;
             }
             if self.cue("hard_openers", k) {
-                return true;
+                // The opener's own figure stands between: "from 12 m up not lower than 1.10 m".
+                let own = i.checked_sub(1).and_then(|p| self.mentions.get(p)).filter(|p| p.from > k);
+                let linked = own.is_some_and(|p| (p.to..mention.from).any(|j| self.cue("links", j)));
+                return !(own.is_some() && !linked && side.is_some_and(|s| s.strong && !s.behind));
             }
         }
         let preposition = |k: usize| self.cue("soft_openers", k) || self.cue("between_only", k);
+        if self.is_place(mention) {
+            return true;
+        }
         let counted = mention.thing.is_some() && side.is_none() && self.figures() > 1;
         if counted && mention.from.checked_sub(1).is_some_and(preposition) {
             return true; // "between two beds"
@@ -338,6 +373,9 @@ impl Sentence<'_> {
         }
         if matches!(mention.figure, Figure::Ratio(_)) {
             return (normative || any_strong).then_some((ConstraintType::Ratio, Medium));
+        }
+        if mention.thing.is_some() && mention.basis.is_some() && !tone.duty && form {
+            return Some((ConstraintType::Ratio, Low)); // "Bicycle parking: 2 spaces per dwelling"
         }
         if mention.thing.is_some() && mention.weak && !tone.duty && mention.basis.is_none() {
             return None;
@@ -404,8 +442,15 @@ impl Sentence<'_> {
             head.iter().any(|t| matches!(t.text.as_str(), ":" | "：" | "=" | "≥" | "≤" | ">=" | "<=" | "–" | "—"));
         let bound = self.side_before(0, mention).is_some_and(|s| s.strong);
         let counted = matches!(mention.figure, Figure::Per(..)) || mention.basis.is_some();
-        let verbless = mention.unit.is_some() && words <= MAX_NOTE && !self.lexicon.cues.get("plain").any(self.tokens);
-        (known || bound) && (colon || bound || words <= 8 || verbless) || counted && words <= 12
+        let verbless = mention.unit.is_some()
+            && words <= MAX_NOTE
+            && !self.cue("definite", 0)
+            && !self.lexicon.cues.get("plain").any(self.tokens);
+        // "Docking bays: 1.0 m × 1.0 m": a short head that is not known, and right behind it a figure with its unit.
+        let titled = self.mentions.first().is_some_and(|m| {
+            m.unit.is_some() && (1..=MAX_TITLE + 1).contains(&m.from) && self.tokens[m.from - 1].is(":")
+        });
+        (known || bound) && (colon || bound || words <= 8 || verbless) || titled || counted && words <= 12
     }
 }
 

@@ -11,6 +11,8 @@ const BEHIND: usize = 3;
 const MAX_CONDITION: usize = 24;
 /// How far before a noun its preposition may stand, in tokens.
 const GOVERNOR_REACH: usize = 3;
+/// Longest subject that is not known, in words.
+const MAX_SUBJECT: usize = 3;
 /// Past so many figures what a sentence is about is looked up no further back.
 const MAX_CARRIED: usize = 8;
 
@@ -120,14 +122,41 @@ impl Sentence<'_> {
             .or_else(|| within(mention.to, self.tokens.len()).find(|n| n.is_space && !n.covered).map(name))
             .or_else(|| within(mention.from, mention.to).next().map(name))
             .or_else(|| within(0, self.tokens.len()).next().map(name))
+            .or_else(|| self.unknown_noun(mention.from))
             .unwrap_or_default()
+    }
+
+    /// Returns a subject that is not in the vocabulary ("Dormitories shall", "Seating areas:"), English plurals only.
+    fn unknown_noun(&self, to: usize) -> Option<String> {
+        let known = |k: usize| {
+            ["duty", "plain", "stops", "advice", "habit", "soft_openers", "definite", "negations", "hard_openers"]
+                .iter()
+                .any(|c| self.lexicon.cues.get(c).is_at(self.tokens, k))
+                || self.lexicon.quantity.is_at(self.tokens, k)
+                || self.lexicon.before.is_at(self.tokens, k)
+        };
+        let word = |k: usize| self.tokens.get(k).is_some_and(|t| t.kind == Kind::Word) && !known(k);
+        let opener = self.lexicon.cues.get("generic_openers").at(self.tokens, 0).map_or(0, |c| c.0);
+        let end = (opener..to).find(|&k| !word(k)).unwrap_or(to);
+        let run = self.tokens.get(opener..end).filter(|r| (1..=MAX_SUBJECT).contains(&r.len()))?;
+        let last = run.last().filter(|_| matches!(self.lang, "" | "en"))?.text.as_str();
+        let stem = match last.strip_suffix("ies") {
+            Some(stem) => format!("{stem}y"),
+            None => last.strip_suffix('s').filter(|s| s.len() > 2 && !s.ends_with('s'))?.to_owned(),
+        };
+        let mut words: Vec<&str> = run.iter().rev().skip(1).rev().map(|t| t.text.as_str()).collect();
+        words.push(&stem);
+        Some(words.join("_"))
     }
 
     /// Returns what the sentence as a whole is about, empty when it names no space.
     pub fn topic(&self) -> String {
         let nouns = self.nouns();
         let free = nouns.iter().find(|n| n.is_space && !n.governed && !n.covered);
-        free.or_else(|| nouns.iter().find(|n| n.is_space && !n.covered)).map(|n| n.name.clone()).unwrap_or_default()
+        free.or_else(|| nouns.iter().find(|n| n.is_space && !n.covered))
+            .or_else(|| nouns.iter().find(|n| !n.governed && !n.covered))
+            .map(|n| n.name.clone())
+            .unwrap_or_default()
     }
 
     /// Whether only "of" and comparators stand between a noun and the figure.
