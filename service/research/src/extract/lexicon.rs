@@ -75,6 +75,7 @@ pub struct Numbers {
     pub words: BTreeMap<String, f64>,
     pub symbols: BTreeMap<String, f64>,
     fractions: BTreeMap<String, (f64, f64)>,
+    multiples: BTreeMap<String, f64>,
 }
 
 /// Phrases of several tokens by their first, each with what it means.
@@ -206,6 +207,7 @@ pub struct Lexicon {
     pub object: Phrases<String>,
     pub numbers: Numbers,
     pub fractions: Phrases<(f64, f64)>,
+    pub multiples: Phrases<f64>,
     pub cues: Cues,
 }
 
@@ -278,6 +280,7 @@ impl Lexicon {
             space: Phrases::new(named(spaces), true),
             object: Phrases::new(named(objects), true),
             fractions: Phrases::new(numbers.fractions.clone(), false),
+            multiples: Phrases::new(numbers.multiples.clone(), false),
             cues: Cues(
                 cues.into_iter()
                     .map(|(n, words)| (n, Phrases::new(words.into_iter().map(|w| (w, ())), false)))

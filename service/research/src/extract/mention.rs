@@ -89,7 +89,8 @@ impl Finder<'_> {
         let mut out = Vec::new();
         let mut i = 0;
         while i < self.tokens.len() {
-            let Some((to, figure, weak)) = self.number(i) else {
+            let formula = self.formula(i).map(|(to, figure)| (to, figure, false));
+            let Some((to, figure, weak)) = formula.or_else(|| self.number(i)) else {
                 i += 1;
                 continue;
             };
