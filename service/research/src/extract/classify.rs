@@ -11,6 +11,8 @@ const AFTER_REACH: usize = 9;
 const OPENER_REACH: usize = 6;
 /// Where the subject's noun may stand at the latest, in tokens.
 const MAX_ADJECTIVES_OF_SUBJECT: usize = 3;
+/// How far behind a figure "preferred" may stand, in tokens.
+const ADVICE_REACH: usize = 2;
 /// Longest head of a note that is not known, in words.
 const MAX_TITLE: usize = 4;
 /// Longest note without a verb, in words.
@@ -160,7 +162,7 @@ impl Sentence<'_> {
                     from = end;
                 }
             }
-            if side.is_none() && i > 0 && self.goes_with_previous(i) {
+            if side.is_none() && i > 0 && self.goes_with_previous(i) && !self.is_advised(mention) {
                 side = sides.get(i - 1).copied().flatten();
             }
             sides.push(side);
@@ -237,6 +239,11 @@ impl Sentence<'_> {
         None
     }
 
+    /// "24 in. preferred"
+    fn is_advised(&self, mention: &Mention) -> bool {
+        (mention.to..mention.to + ADVICE_REACH).any(|k| self.cue("advice", k))
+    }
+
     /// Whether a figure follows the one before by "and", "by" or a comma alone, without a verb between.
     fn goes_with_previous(&self, i: usize) -> bool {
         let (Some(a), Some(b)) = (i.checked_sub(1).and_then(|k| self.mentions.get(k)), self.mentions.get(i)) else {
@@ -282,7 +289,8 @@ impl Sentence<'_> {
 
     fn is_condition(&self, i: usize, side: Option<Sided>) -> bool {
         let Some(mention) = self.mentions.get(i) else { return true };
-        if self.condition_thing(i) && side.is_none_or(|s| !s.strong) {
+        let permitted = side.is_some_and(|s| s.fixed && s.at == 0) && self.permits(mention);
+        if self.condition_thing(i) && side.is_none_or(|s| !s.strong) && !permitted {
             return true;
         }
         if matches!(mention.figure, Figure::Per(..)) {
@@ -364,6 +372,11 @@ impl Sentence<'_> {
         }
         if tone.reckoned && mention.basis.is_some() {
             return Some((ConstraintType::Ratio, Medium));
+        }
+        let article = mention.weak
+            && self.tokens.get(mention.from).is_some_and(|t| self.lexicon.numbers.articles.contains(&t.text));
+        if article && mention.unit.is_none() && mention.basis.is_none() && side.is_none_or(|s| !s.strong) {
+            return None; // "ein Aufzug ist erforderlich" counts nothing
         }
         if let Some(side) = side {
             if side.strong || tone.duty || tone.advice || !tone.plain && form {

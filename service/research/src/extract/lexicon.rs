@@ -68,6 +68,8 @@ pub struct Thing {
 #[derive(Debug, Deserialize)]
 pub struct Numbers {
     pub weak: Vec<String>,
+    /// Those of them that are articles far more often than figures.
+    pub articles: Vec<String>,
     pub hundred: Vec<String>,
     pub thousand: Vec<String>,
     pub joiner: Vec<String>,

@@ -6,7 +6,7 @@ use super::token::{Kind, Token};
 /// Words that may stand between a number and the thing counted.
 const MAX_ADJECTIVES: usize = 2;
 /// Words that may stand between the thing counted and "per".
-const MAX_RATIO_GAP: usize = 8;
+const MAX_RATIO_GAP: usize = 10;
 /// Words that may stand between "for every 25 employees" and what they get.
 const MAX_AHEAD_GAP: usize = 8;
 /// A unit this long, in letters, is a word and not an abbreviation.
@@ -291,8 +291,10 @@ impl Finder<'_> {
         if self.tokens.get(mention.to).is_some_and(|t| t.glued && t.kind != Kind::Word) {
             return;
         }
+        let whole = self.cue("partitive", mention.to).filter(|_| !mention.weak);
+        let whole = whole.filter(|&at| self.lexicon.thing.is_at(self.tokens, at)).unwrap_or(mention.to);
         for skip in 0..=MAX_ADJECTIVES {
-            let at = mention.to + skip;
+            let at = whole + skip;
             if let Some((to, thing)) = self.lexicon.thing.at(self.tokens, at) {
                 // The last noun of a row is the thing: "exit doors".
                 let (to, thing) = self.lexicon.thing.at(self.tokens, to).unwrap_or((to, thing));
@@ -477,7 +479,7 @@ impl Finder<'_> {
         let per = (a.to..b.from).find(|&k| self.cue("per", k) == Some(b.from) && !foreign(k) && !shared_out(k))?;
         let plain = self.cue("plain_per", per) == Some(b.from);
         if (a.to..per).any(|k| {
-            self.tokens.get(k).is_some_and(|t| t.kind != Kind::Word)
+            self.tokens.get(k).is_some_and(|t| t.kind != Kind::Word && !matches!(t.text.as_str(), "'" | "’" | "-"))
                 || !plain && self.lexicon.cues.get("duty").is_at(self.tokens, k)
         }) {
             return None;

@@ -5,6 +5,8 @@ use super::lexicon::Quantity;
 use super::mention::{Figure, Mention};
 use super::token::Kind;
 
+/// The name of a length that the sentence does not name.
+pub const UNNAMED: &str = "dimension";
 /// How far behind a figure its quantity may stand ("1.8 m wide"), in tokens.
 const BEHIND: usize = 3;
 /// Longest condition that is kept, in tokens.
@@ -81,7 +83,7 @@ impl Sentence<'_> {
         if let Some(thing) = mention.thing.and_then(|t| self.lexicon.things.get(t)) {
             return thing.name.clone();
         }
-        let name = self.quantity(i).map_or("dimension", |q| q.name.as_str());
+        let name = self.quantity(i).map_or(UNNAMED, |q| q.name.as_str());
         let per = mention.basis.as_ref().filter(|_| self.dimension(mention) == "area");
         per.map_or_else(|| name.to_owned(), |basis| format!("area_per_{basis}"))
     }
@@ -95,6 +97,8 @@ impl Sentence<'_> {
         let previous = i.checked_sub(1);
         let since = previous.and_then(|k| self.mentions.get(k)).map_or(0, |m| m.to);
         let next = self.mentions.get(i + 1).map_or(self.tokens.len(), |m| m.from);
+        let stop = |k: &usize| self.tokens.get(*k).is_some_and(|t| matches!(t.text.as_str(), "," | ";"));
+        let next = (mention.to..next).find(stop).unwrap_or(next);
         let nouns = self.nouns();
         let within = |from: usize, to: usize| nouns.iter().filter(move |n| n.from >= from && n.to <= to);
         let name = |n: &Noun| n.name.clone();
@@ -107,6 +111,12 @@ impl Sentence<'_> {
             if let Some(given) = given {
                 return name(given);
             }
+        }
+        // "1.2 m (offices), 1.8 m (schools)"
+        if self.tokens.get(mention.to).is_some_and(|t| t.is("("))
+            && let Some(bracketed) = nouns.iter().find(|n| n.from == mention.to + 1)
+        {
+            return name(bracketed);
         }
         let behind = || within(mention.to, next).find(|n| n.is_space);
         let ahead = || within(since, mention.from);
@@ -169,7 +179,7 @@ impl Sentence<'_> {
             };
             k = end;
         }
-        from < to
+        from <= to
     }
 
     /// Returns the spaces and objects that the sentence names, in its order.

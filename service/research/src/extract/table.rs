@@ -148,7 +148,12 @@ fn unit_in(lexicon: &Lexicon, text: &str, lang: &str) -> Option<String> {
         if k == 0 {
             // The head begins with its unit: "Lux", "m² per person".
             let per = |end: usize| {
-                all.iter().position(|t| t.start >= end).is_some_and(|j| lexicon.cues.get("plain_per").is_at(&all, j))
+                let next = all.iter().position(|t| t.start >= end);
+                next.is_some_and(|j| {
+                    lexicon.cues.get("plain_per").is_at(&all, j)
+                        || lexicon.before.is_at(&all, j)
+                        || all.get(j).is_some_and(|t| t.is("("))
+                })
             };
             found = lexicon.unit_at(text, token.start, lang).filter(|u| u.1 >= text.trim_end().len() || per(u.1));
         }
