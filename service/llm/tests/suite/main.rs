@@ -1,5 +1,8 @@
 //! The clients against a loopback server: every provider's answers and errors, retries, budget, recordings, noise.
 
+// A panic is how a test says no.
+#![allow(clippy::unwrap_used)]
+
 mod cases;
 mod check;
 mod fixtures;
