@@ -1,4 +1,5 @@
-//! Every fixture through the real client: the project's own, and those of the shared reference material where it is.
+//! Every fixture through the real client: the project's own, and those of the shared reference material where it is
+//! (or of the folder that `D3DGEN_LLM_FIXTURES` names).
 
 use std::path::{Path, PathBuf};
 
@@ -41,13 +42,22 @@ async fn play_all(cases: Vec<Case>) -> usize {
     // The answer that a paused turn goes on to.
     let end = cases.iter().find(|c| c.fixture["expect"]["n_citations"].is_number() && c.name.starts_with("anthropic/"));
     let end: Option<Reply> = end.map(|c| c.replies[0].clone());
+    let mut failed = Vec::new();
     for mut case in cases {
         if case.fixture["expect"].get("continue").is_some() {
             case.replies.push(end.clone().expect("a paused turn needs an answer to go on to"));
         }
-        let outcome = case.play().await;
-        check(&case, &outcome);
+        let name = case.name.clone();
+        // In a task of its own, so that one that fails does not hide the others.
+        let task = tokio::spawn(async move {
+            let outcome = case.play().await;
+            check(&case, &outcome);
+        });
+        if task.await.is_err() {
+            failed.push(name);
+        }
     }
+    assert!(failed.is_empty(), "{} of {count} fixtures are not as expected: {failed:?}", failed.len());
     count
 }
 

@@ -5,6 +5,7 @@
 
 mod cases;
 mod check;
+mod fake_server;
 mod fixtures;
 mod limits;
 mod mutations;
