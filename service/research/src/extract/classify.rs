@@ -1,7 +1,10 @@
 //! Which figures of a sentence are limits, of what kind, and which only say when a limit holds or report a fact.
 
+use std::cell::OnceCell;
+
 use super::lexicon::{Bound, Lexicon};
 use super::mention::{Figure, Mention};
+use super::subject::Noun;
 use super::token::{Kind, Token};
 use super::{Confidence, ConstraintType};
 
@@ -27,6 +30,21 @@ pub struct Sentence<'a> {
     pub lang: &'a str,
     pub tokens: &'a [Token],
     pub mentions: &'a [Mention],
+    /// What is asked again for each figure.
+    pub memo: Memo,
+}
+
+/// Answers about the whole sentence.
+#[derive(Debug, Default)]
+pub struct Memo {
+    pub nouns: OnceCell<Vec<Noun>>,
+    /// For each token the end and index of the quantity that begins there, or that the word ends with.
+    pub quantities: OnceCell<Vec<Option<(usize, usize)>>>,
+    generic: OnceCell<bool>,
+    /// The first token with which a note is about something known.
+    known_from: OnceCell<usize>,
+    plain: OnceCell<bool>,
+    soft_duty: OnceCell<bool>,
 }
 
 /// What stands at a figure.
@@ -232,6 +250,9 @@ impl Sentence<'_> {
                 ));
             }
             let token = self.tokens.get(k)?;
+            if token.is(",") && self.ends_with_bound(k + 1) {
+                continue; // "36 inches wide, minimum."
+            }
             if matches!(token.text.as_str(), "," | ";" | ":" | ")") || self.cue("and", k) || self.cue("duty", k) {
                 return None;
             }
@@ -242,6 +263,14 @@ impl Sentence<'_> {
     /// "24 in. preferred"
     fn is_advised(&self, mention: &Mention) -> bool {
         (mention.to..mention.to + ADVICE_REACH).any(|k| self.cue("advice", k))
+    }
+
+    /// Whether nothing but "minimum" or "or more" follows in the clause.
+    fn ends_with_bound(&self, at: usize) -> bool {
+        self.lexicon.after.at(self.tokens, at).is_some_and(|(end, index)| {
+            self.lexicon.comparators.get(index).is_some_and(|c| c.strong)
+                && self.tokens.get(end).is_none_or(|t| t.kind == Kind::Symbol)
+        })
     }
 
     /// Whether a figure follows the one before by "and", "by" or a comma alone, without a verb between.
@@ -357,7 +386,10 @@ impl Sentence<'_> {
         let mention = self.mentions.get(i)?;
         let to_type = |bound| if bound == Bound::Min { ConstraintType::Minimum } else { ConstraintType::Maximum };
         let form = self.is_form(mention);
-        let generic = mention.unit.is_some() && !tone.past && !tone.report && self.is_generic();
+        let generic = mention.unit.is_some()
+            && !tone.past
+            && !tone.report
+            && *self.memo.generic.get_or_init(|| self.is_generic());
         let normative = tone.duty || tone.advice || tone.habit || tone.reckoned || form && !tone.plain || generic;
         let reported = tone.plain && !tone.duty && !tone.advice && !tone.habit && !tone.reckoned && !generic;
         match &mention.figure {
@@ -400,7 +432,7 @@ impl Sentence<'_> {
             return (tone.habit || tone.duty).then_some((ConstraintType::RuleOfThumb, Low));
         }
         let quantity = self.quantity(i);
-        let should = self.lexicon.cues.get("soft_duty").any(self.tokens);
+        let should = *self.memo.soft_duty.get_or_init(|| self.lexicon.cues.get("soft_duty").any(self.tokens));
         if tone.advice || should {
             return Some((ConstraintType::Recommendation, Medium));
         }
@@ -443,13 +475,16 @@ impl Sentence<'_> {
     /// Whether the sentence is a note ("Corridors: 1.5 m", "Window area 10 %") up to this figure.
     fn is_form(&self, mention: &Mention) -> bool {
         let head = self.tokens.get(..mention.from).unwrap_or_default();
-        let known = (0..head.len()).any(|k| {
-            self.lexicon.space.is_at(head, k)
-                || self.lexicon.object.is_at(head, k)
-                || self.lexicon.quantity.is_at(head, k)
-                || self.lexicon.thing.is_at(head, k)
-                || head.get(k).is_some_and(|t| self.lexicon.quantity.part(t, true).is_some())
+        let known_from = self.memo.known_from.get_or_init(|| {
+            let known = |k: &usize| {
+                self.lexicon.space.is_at(self.tokens, *k)
+                    || self.lexicon.object.is_at(self.tokens, *k)
+                    || self.lexicon.thing.is_at(self.tokens, *k)
+                    || self.quantity_at(*k).is_some()
+            };
+            (0..self.tokens.len()).find(known).unwrap_or(usize::MAX)
         });
+        let known = *known_from < mention.from;
         let words = self.tokens.iter().filter(|t| t.kind == Kind::Word).count();
         let colon =
             head.iter().any(|t| matches!(t.text.as_str(), ":" | "：" | "=" | "≥" | "≤" | ">=" | "<=" | "–" | "—"));
@@ -458,7 +493,7 @@ impl Sentence<'_> {
         let verbless = mention.unit.is_some()
             && words <= MAX_NOTE
             && !self.cue("definite", 0)
-            && !self.lexicon.cues.get("plain").any(self.tokens);
+            && !self.memo.plain.get_or_init(|| self.lexicon.cues.get("plain").any(self.tokens));
         // "Docking bays: 1.0 m × 1.0 m": a short head that is not known, and right behind it a figure with its unit.
         let titled = self.mentions.first().is_some_and(|m| {
             m.unit.is_some() && (1..=MAX_TITLE + 1).contains(&m.from) && self.tokens[m.from - 1].is(":")

@@ -424,7 +424,7 @@ impl Finder<'_> {
                 return Some(Joined::One(Mention { figure: Figure::Range(round(low), y), ..whole }));
             }
         }
-        if at("by") && b.unit.is_some() {
+        if at("by") && b.unit.is_some() && a.thing.is_none() {
             let side = a.side.unwrap_or(0);
             let first = Mention { unit: a.unit.or(b.unit), side: Some(side), thing: None, basis: None, ..a.clone() };
             return Some(Joined::Two(first, Mention { side: Some(side + 1), basis: None, ..b.clone() }));
@@ -441,6 +441,8 @@ impl Finder<'_> {
                 .checked_sub(n)
                 .is_some_and(|k| self.cue("plain_per", k) == Some(a.from) || self.cue("ahead_per", k) == Some(a.from))
         });
+        let on = (1..=2).any(|n| a.from.checked_sub(n).is_some_and(|k| self.cue("ahead_on", k) == Some(a.from)));
+        let ahead = ahead || on && (a.to..b.from).any(|k| self.cue("falls_to", k).is_some());
         if ahead
             && a.unit.is_none()
             && self.names_something(a)
@@ -492,7 +494,8 @@ impl Finder<'_> {
         let basis = self
             .basis_before(b.to)
             .or_else(|| self.lexicon.basis.at(self.tokens, b.to).map(|b| b.1))
-            .or(b.basis.clone());
+            .or(b.basis.clone())
+            .or_else(|| b.unit.and_then(|u| self.lexicon.units.get(u)).map(|u| u.id.clone()));
         Some(Joined::One(Mention { figure: Figure::Per(x, y), thing: a.thing, basis, unit: None, ..whole }))
     }
 

@@ -2,7 +2,7 @@
 //!
 //! What it is not for: deciding what a sentence says; that is `classify` and `subject`.
 
-use super::classify::Sentence;
+use super::classify::{Memo, Sentence};
 use super::lexicon::Lexicon;
 use super::mention::Finder;
 use super::sentence::{marker, sentences};
@@ -12,6 +12,8 @@ use super::{Constraint, Finding, si, unit, value};
 
 /// A longer lead-in is cut to its end: what it says of the list stands there.
 const MAX_LEAD: usize = 60;
+/// No real sentence has more figures, and nonsense must not cost more than its length.
+const MAX_FIGURES: usize = 24;
 /// A longer line above a table is no caption, in bytes.
 const MAX_CAPTION: usize = 160;
 
@@ -78,8 +80,9 @@ struct Part<'a> {
 impl Part<'_> {
     fn findings(&self, context: &mut Context) -> Vec<Finding> {
         let (lexicon, text, lang, tokens) = (self.lexicon, self.text, self.lang, self.tokens);
-        let mentions = Finder { lexicon, text, lang, tokens }.mentions();
-        let sentence = Sentence { lexicon, text, lang, tokens, mentions: &mentions };
+        let mut mentions = Finder { lexicon, text, lang, tokens }.mentions();
+        mentions.truncate(MAX_FIGURES);
+        let sentence = Sentence { lexicon, text, lang, tokens, mentions: &mentions, memo: Memo::default() };
         if mentions.is_empty() {
             context.about = sentence.topic();
             return Vec::new();

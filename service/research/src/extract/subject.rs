@@ -20,7 +20,7 @@ const MAX_CARRIED: usize = 8;
 
 /// A space or object that a sentence names.
 #[derive(Debug, Clone)]
-struct Noun {
+pub struct Noun {
     from: usize,
     to: usize,
     name: String,
@@ -47,10 +47,7 @@ impl Sentence<'_> {
         let mention = self.mentions.get(i)?;
         let dimension = self.dimension(mention);
         let fits = |k: usize| {
-            let token = self.tokens.get(k)?;
-            let known = self.lexicon.quantity.at(self.tokens, k).map(|q| q.1);
-            let index = known.or_else(|| self.lexicon.quantity.part(token, true))?;
-            self.lexicon.quantities.get(index).filter(|q| q.dimensions.iter().any(|d| d == dimension))
+            self.lexicon.quantities.get(self.quantity_at(k)?.1).filter(|q| q.dimensions.iter().any(|d| d == dimension))
         };
         let next = self.mentions.get(i + 1).map_or(self.tokens.len(), |m| m.from);
         let behind = (mention.to..next.min(mention.to + BEHIND)).find_map(fits);
@@ -61,7 +58,7 @@ impl Sentence<'_> {
                 if let Some(quantity) = fits(k) {
                     best = Some((k, quantity));
                 }
-                k = self.lexicon.quantity.at(self.tokens, k).map_or(k + 1, |q| q.0);
+                k = self.quantity_at(k).map_or(k + 1, |q| q.0);
             }
             best.map(|b| b.1)
         };
@@ -72,6 +69,16 @@ impl Sentence<'_> {
             .or_else(before)
             .or_else(|| (mention.to..next).find_map(fits))
             .or_else(|| default().filter(|_| dimension != "length"))
+    }
+
+    /// Returns the end and index of the quantity that begins at a token, or that its word ends with.
+    pub fn quantity_at(&self, k: usize) -> Option<(usize, usize)> {
+        let find = |(k, token)| {
+            let whole = self.lexicon.quantity.at(self.tokens, k);
+            whole.or_else(|| self.lexicon.quantity.part(token, true).map(|q| (k + 1, q)))
+        };
+        let all = self.memo.quantities.get_or_init(|| self.tokens.iter().enumerate().map(find).collect());
+        all.get(k).copied().flatten()
     }
 
     /// Returns the name of what is limited.
@@ -96,10 +103,10 @@ impl Sentence<'_> {
         let Some(mention) = self.mentions.get(i) else { return String::new() };
         let previous = i.checked_sub(1);
         let since = previous.and_then(|k| self.mentions.get(k)).map_or(0, |m| m.to);
-        let next = self.mentions.get(i + 1).map_or(self.tokens.len(), |m| m.from);
+        let next = self.mentions.iter().skip(i + 1).find(|m| !m.weak).map_or(self.tokens.len(), |m| m.from);
         let stop = |k: &usize| self.tokens.get(*k).is_some_and(|t| matches!(t.text.as_str(), "," | ";"));
         let next = (mention.to..next).find(stop).unwrap_or(next);
-        let nouns = self.nouns();
+        let nouns = self.memo.nouns.get_or_init(|| self.nouns());
         let within = |from: usize, to: usize| nouns.iter().filter(move |n| n.from >= from && n.to <= to);
         let name = |n: &Noun| n.name.clone();
         if let Some(touching) = within(since, mention.from).find(|n| self.touches(n.to, mention.from)) {
@@ -118,11 +125,13 @@ impl Sentence<'_> {
         {
             return name(bracketed);
         }
-        let behind = || within(mention.to, next).find(|n| n.is_space);
+        // "six toilets on each floor": where something is counted, an object can be the place as well.
+        let counted = mention.thing.is_some();
+        let behind = || within(mention.to, next).find(|n| n.is_space || counted && n.governed);
         let ahead = || within(since, mention.from);
         let subject =
             || ahead().find(|n| !n.governed && !n.covered && (n.is_space || !n.is_part && behind().is_none()));
-        let carried = || previous.map(|k| self.space(k)).filter(|s| !s.is_empty() && i < MAX_CARRIED);
+        let carried = || previous.filter(|_| i < MAX_CARRIED).map(|k| self.space(k)).filter(|s| !s.is_empty());
         subject()
             .or_else(|| ahead().find(|n| n.is_space && !n.covered))
             .map(name)
@@ -161,7 +170,7 @@ impl Sentence<'_> {
 
     /// Returns what the sentence as a whole is about, empty when it names no space.
     pub fn topic(&self) -> String {
-        let nouns = self.nouns();
+        let nouns = self.memo.nouns.get_or_init(|| self.nouns());
         let free = nouns.iter().find(|n| n.is_space && !n.governed && !n.covered);
         free.or_else(|| nouns.iter().find(|n| n.is_space && !n.covered))
             .or_else(|| nouns.iter().find(|n| !n.governed && !n.covered))

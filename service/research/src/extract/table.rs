@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::classify::Sentence;
+use super::classify::{Memo, Sentence};
 use super::lexicon::{Bound, Lexicon};
 use super::mention::{Figure, Finder};
 use super::token::{Kind, tokens};
@@ -88,7 +88,7 @@ fn read(lexicon: &Lexicon, lang: &str, label: &str, title: &str, cell: &str) -> 
     let mentions = Finder { lexicon, text: &text, lang, tokens: &all }.mentions();
     let head_end = label.trim().len() + title.trim().len() + 2;
     let index = mentions.iter().position(|m| all.get(m.from).is_some_and(|t| t.start >= head_end));
-    let sentence = Sentence { lexicon, text: &text, lang, tokens: &all, mentions: &mentions };
+    let sentence = Sentence { lexicon, text: &text, lang, tokens: &all, mentions: &mentions, memo: Memo::default() };
     let index = index?;
     let mention = mentions.get(index)?;
     // "up to 100 persons" in the label says when; "minimum width" there is the rule itself.
