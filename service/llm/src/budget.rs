@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::answer::Usage;
 use crate::error::Error;
-use crate::request::Request;
+use crate::request::{Request, estimated_tokens};
 
 /// What a run may use at most; nothing means no limit.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -211,14 +211,14 @@ impl Budget {
         rows
     }
 
-    /// Sets aside what a call may use at most.
+    /// Sets aside what a call may use at most. `resumed_bytes` are sent back to a provider that has paused.
     ///
     /// # Errors
     /// [`Error::Budget`] if that is more than what is left; [`Error::Config`] if money is limited and the model has no
     /// price.
-    pub(crate) fn reserve(&self, model: &str, request: &Request) -> Result<Reservation, Error> {
+    pub(crate) fn reserve(&self, model: &str, request: &Request, resumed_bytes: usize) -> Result<Reservation, Error> {
         let most = Usage {
-            input: request.estimated_input_tokens(),
+            input: request.estimated_input_tokens() + estimated_tokens(resumed_bytes),
             output: u64::from(request.max_output_tokens),
             searches: request.grounding.as_ref().map_or(0, |g| u64::from(g.max_searches)),
             ..Usage::default()

@@ -100,7 +100,7 @@ impl Client {
 
     async fn tries(&self, run: &mut Run) -> Result<Answer, Error> {
         loop {
-            let reserved = match self.budget.reserve(self.provider.model(), &run.request) {
+            let reserved = match self.budget.reserve(self.provider.model(), &run.request, run.resumed_bytes()) {
                 Ok(reserved) => reserved,
                 // A second chance that does not fit the budget leaves the first result.
                 Err(error) => return Err(run.fallback.take().unwrap_or(error)),
@@ -243,6 +243,11 @@ impl Run {
             repaired: false,
             fallback: None,
         }
+    }
+
+    /// Returns the length of what is sent back to a provider that has paused.
+    fn resumed_bytes(&self) -> usize {
+        self.tweaks.resume.iter().map(|block| block.to_string().len()).sum()
     }
 
     /// Lets a provider go on that has paused.

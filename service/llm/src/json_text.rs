@@ -11,12 +11,15 @@ const MAX_STARTS: usize = 64;
 pub fn json_candidates(text: &str) -> Vec<Value> {
     let mut found = Vec::new();
     let trimmed = text.trim_start_matches('\u{feff}').trim();
+    // Some models write their JSON into a JSON text.
+    let unquoted: Option<String> = trimmed.starts_with('"').then(|| serde_json::from_str(trimmed).ok()).flatten();
+    let trimmed = unquoted.as_deref().map_or(trimmed, str::trim);
     if let Some(value) = parse(trimmed) {
-        return vec![value];
+        return with_inner(value);
     }
     let said = without_thoughts(trimmed);
     if let Some(value) = parse(said) {
-        return vec![value];
+        return with_inner(value);
     }
     for block in fenced(said) {
         push(&mut found, parse(block));
@@ -38,6 +41,13 @@ pub fn json_candidates(text: &str) -> Vec<Value> {
         }
     }
     found
+}
+
+/// Returns the object, and the one inside if it only wraps another, as in `{"result": {...}}`.
+fn with_inner(value: Value) -> Vec<Value> {
+    let fields = value.as_object().into_iter().flatten();
+    let inner = fields.clone().map(|(_, v)| v).find(|v| v.is_object() && fields.clone().count() == 1).cloned();
+    [Some(value.clone()), inner].into_iter().flatten().collect()
 }
 
 fn push(found: &mut Vec<Value>, value: Option<Value>) {
@@ -216,6 +226,9 @@ mod tests {
         check("see [1] and {x}: {\"a\":1} or {\"b\":[1,2,],}", &[a(), json!({"b": [1, 2]})]);
         check("{\"a\": /* } \" */ 1}", &[a()]);
         check("{ see {\"a\":1} }", &[a()]);
+        check("[{\"a\":1}]", &[a()]);
+        check("\"{\\\"a\\\":1}\"", &[a()]);
+        check("{\"result\": {\"a\":1}}", &[json!({"result": {"a": 1}}), a()]);
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! The one error type of this crate.
 
 /// Why text cannot be worked on.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum Error {
     /// A line is not `{"id", "text", "lang"}`.
     #[error("line {line}: {reason}")]
@@ -51,6 +51,17 @@ pub enum Error {
         code: &'static str,
         /// Why, for persons.
         reason: String,
+    },
+    /// The user stopped; finished files are kept and the next run goes on from them.
+    #[error("interrupted; what was finished is kept, and the same command goes on from there")]
+    Interrupted,
+    /// A language model could not be asked, or gave nothing that can be used.
+    #[error("{stage}: {source}")]
+    Model {
+        /// What was asked.
+        stage: String,
+        /// Why.
+        source: Box<d3dgen_llm::Error>,
     },
 }
 

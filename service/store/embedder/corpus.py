@@ -4,6 +4,7 @@
 meaning), so that the English teacher can teach German words. Everything is sorted, so the same inputs give the same lists.
 """
 
+import hashlib
 import json
 import random
 import tomllib
@@ -30,10 +31,27 @@ def wordnet(folder):
 
 
 def general(folder, glosses=60000, lemmas=60000, seed=3):
-    """A sample of both, in the order of the sample."""
+    """A sample of both, in the order of the sample; held-out glosses are left out."""
     all_glosses, all_lemmas = wordnet(folder)
     rng = random.Random(seed)
     return rng.sample(all_glosses, glosses), rng.sample([w for w in all_lemmas if not any(c.isdigit() for c in w)], lemmas)
+
+
+def heldout_synsets(folder, count=2000, seed=11):
+    """(glosses, first lemmas) of nouns that `general` never yields: see there."""
+    pairs = []
+    for line in (Path(folder) / "data.noun").read_text(encoding="utf-8").splitlines():
+        if not line.startswith(" "):
+            head, _, gloss = line.partition(" | ")
+            pairs.append((gloss.split('; "')[0].strip(), head.split(" ")[4].replace("_", " ")))
+    pairs = [p for p in sorted(set(pairs)) if is_held_out(p[0])]
+    chosen = random.Random(seed).sample(pairs, min(count, len(pairs)))
+    return [g for g, _ in chosen], [w for _, w in chosen]
+
+
+def is_held_out(gloss):
+    """One gloss in twenty is kept for measuring."""
+    return int(hashlib.sha256(gloss.encode()).hexdigest(), 16) % 20 == 0
 
 
 def words_of(identifier):

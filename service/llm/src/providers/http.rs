@@ -2,8 +2,8 @@
 
 use serde_json::Value;
 
-use crate::answer::{Answer, Usage};
-use crate::classify::Fault;
+use crate::answer::{Answer, Finish, Usage};
+use crate::classify::{Fault, shortened};
 use crate::error::Error;
 use crate::providers::{BoxFuture, Config, Failure, Fix, Provider, Turn, Tweaks};
 use crate::request::{Request, estimated_tokens};
@@ -66,7 +66,7 @@ impl<W: Wire + 'static> Http<W> {
             self.wire.amend(request, &fault, &mut failure);
             return Err(self.useful_fix(request, tweaks, &call, failure));
         }
-        let documents = documents(&response)?;
+        let documents = documents(&response).map_err(|e| spent_prompt(e, request))?;
         let fault = documents.items.iter().find_map(|d| Fault::of_body(d).filter(|_| is_fault(d)));
         if let Some(fault) = fault {
             let mut failure = fault.failure(&self.model, Some(&response));
@@ -130,9 +130,9 @@ fn is_fault(document: &Value) -> bool {
     error.is_some_and(|e| !e.is_null()) || document.get("object").and_then(Value::as_str) == Some("error")
 }
 
-/// Counts the prompt of a call that reached the provider and was given up.
+/// Counts the prompt of a call that reached the provider without a word about its usage.
 fn spent_prompt(error: Error, request: &Request) -> Failure {
-    let reached = matches!(error, Error::Timeout { .. } | Error::TooLarge { .. });
+    let reached = matches!(error, Error::Timeout { .. } | Error::TooLarge { .. } | Error::BadResponse { .. });
     let input = if reached { request.estimated_input_tokens() } else { 0 };
     Failure::from(error).with_usage(Usage { input, estimated: reached, ..Usage::default() })
 }
@@ -150,6 +150,7 @@ fn names(documents: &Documents) -> Option<Vec<String>> {
 
 /// Makes the failure of an answer that was cut off, with what had been said.
 pub(crate) fn truncated(request: &Request, answer: Answer) -> Failure {
+    let answer = with_guess(request, answer);
     let usage = answer.usage;
     let partial = (!answer.text.trim().is_empty()).then(|| Box::new(answer));
     Failure::from(Error::Truncated { limit: request.max_output_tokens, partial }).with_usage(usage)
@@ -157,29 +158,40 @@ pub(crate) fn truncated(request: &Request, answer: Answer) -> Failure {
 
 /// Makes the failure of a declined request.
 pub(crate) fn refused(reason: &str, usage: Usage) -> Failure {
-    let reason =
-        if reason.trim().is_empty() { "no reason given".to_owned() } else { crate::classify::shortened(reason) };
+    let reason = if reason.trim().is_empty() { "no reason given".to_owned() } else { shortened(reason) };
     Failure::from(Error::Refused { reason }).with_usage(usage)
 }
 
 /// Makes the failure of a filtered exchange.
 pub(crate) fn blocked(reason: &str, usage: Usage) -> Failure {
-    Failure::from(Error::Blocked { reason: crate::classify::shortened(reason) }).with_usage(usage)
+    Failure::from(Error::Blocked { reason: shortened(reason) }).with_usage(usage)
 }
 
-/// Finishes an answer: guesses usage where there is none, and refuses an empty one.
-pub(crate) fn done(request: &Request, model: &str, mut answer: Answer) -> Result<Turn, Failure> {
+/// Guesses usage where there is none.
+fn with_guess(request: &Request, mut answer: Answer) -> Answer {
     if answer.usage.tokens() == 0 {
         answer.usage.input = request.estimated_input_tokens();
         answer.usage.output = estimated_tokens(answer.text.len());
         answer.usage.estimated = true;
     }
+    answer
+}
+
+/// Finishes an answer: guesses usage where there is none, and refuses an empty one.
+pub(crate) fn done(request: &Request, model: &str, answer: Answer) -> Result<Turn, Failure> {
+    let mut answer = with_guess(request, answer);
     if answer.model.is_empty() {
         answer.model = model.to_owned();
     }
     answer.grounded = !answer.citations.is_empty();
     if answer.text.trim().is_empty() && answer.json.is_none() {
-        return Err(Failure::from(Error::bad_response("the answer is empty")).with_usage(answer.usage));
+        let reason = if let Finish::Other(reason) = &answer.finish {
+            format!(" ({})", shortened(reason))
+        } else {
+            String::new()
+        };
+        let error = Error::bad_response(format!("the answer is empty{reason}"));
+        return Err(Failure::from(error).with_usage(answer.usage));
     }
     Ok(Turn::Done(Box::new(answer)))
 }

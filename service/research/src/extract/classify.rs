@@ -1,7 +1,10 @@
 //! Which figures of a sentence are limits, of what kind, and which only say when a limit holds or report a fact.
 
+use std::cell::OnceCell;
+
 use super::lexicon::{Bound, Lexicon};
 use super::mention::{Figure, Mention};
+use super::subject::Noun;
 use super::token::{Kind, Token};
 use super::{Confidence, ConstraintType};
 
@@ -11,6 +14,10 @@ const AFTER_REACH: usize = 9;
 const OPENER_REACH: usize = 6;
 /// Where the subject's noun may stand at the latest, in tokens.
 const MAX_ADJECTIVES_OF_SUBJECT: usize = 3;
+/// How far behind a figure "preferred" may stand, in tokens.
+const ADVICE_REACH: usize = 2;
+/// Longest head of a note that is not known, in words.
+const MAX_TITLE: usize = 4;
 /// Longest note without a verb, in words.
 const MAX_NOTE: usize = 14;
 /// How far before a figure "within" and the like may stand, in tokens.
@@ -23,6 +30,21 @@ pub struct Sentence<'a> {
     pub lang: &'a str,
     pub tokens: &'a [Token],
     pub mentions: &'a [Mention],
+    /// What is asked again for each figure.
+    pub memo: Memo,
+}
+
+/// Answers about the whole sentence.
+#[derive(Debug, Default)]
+pub struct Memo {
+    pub nouns: OnceCell<Vec<Noun>>,
+    /// For each token the end and index of the quantity that begins there, or that the word ends with.
+    pub quantities: OnceCell<Vec<Option<(usize, usize)>>>,
+    generic: OnceCell<bool>,
+    /// The first token with which a note is about something known.
+    known_from: OnceCell<usize>,
+    plain: OnceCell<bool>,
+    soft_duty: OnceCell<bool>,
 }
 
 /// What stands at a figure.
@@ -45,6 +67,7 @@ struct Tone {
     habit: bool,
     reckoned: bool,
     report: bool,
+    former: bool,
     past: bool,
     plain: bool,
 }
@@ -53,7 +76,7 @@ impl Sentence<'_> {
     /// Returns for each figure its kind and how plain it is, none where it is no limit.
     pub fn verdicts(&self) -> Vec<Option<(ConstraintType, Confidence)>> {
         let tone = self.tone();
-        if tone.report && !self.is_physical() || tone.past && !tone.duty {
+        if tone.former || tone.report && !self.is_physical() || tone.past && !tone.duty {
             return vec![None; self.mentions.len()];
         }
         let sides = self.sides();
@@ -99,9 +122,21 @@ impl Sentence<'_> {
             habit: any("habit"),
             reckoned: any("reckoned"),
             report: self.tokens.iter().enumerate().any(|(k, _)| self.cue("report", k) && !self.in_noun(k)),
-            past: any("past"),
+            former: any("former"),
+            past: any("past") || self.has_past_verb(),
             plain: any("plain") && !any("announces"),
         }
+    }
+
+    /// Whether a word in "-ed" governs a figure ("travelled 14 km") and is not passive.
+    fn has_past_verb(&self) -> bool {
+        self.lang == "en"
+            && self.mentions.iter().any(|m| {
+                let Some(verb) = m.from.checked_sub(1) else { return false };
+                let passive = verb == 0 || (verb.saturating_sub(2)..verb).any(|k| self.cue("passive", k));
+                let ed = self.tokens.get(verb).is_some_and(|t| t.kind == Kind::Word && t.text.ends_with("ed"));
+                ed && !passive && !self.cue("past_exceptions", verb)
+            })
     }
 
     /// Whether a token belongs to a longer name of a thing: "phone booth", "call button".
@@ -132,6 +167,10 @@ impl Sentence<'_> {
         let mut sides: Vec<Option<Sided>> = Vec::new();
         let mut from = 0;
         for (i, mention) in self.mentions.iter().enumerate() {
+            if self.is_place(mention) {
+                sides.push(None);
+                continue; // the comparator before it belongs to the next figure
+            }
             let mut side = self.side_before(from, mention);
             from = mention.to;
             if side.is_none_or(|s| !s.strong) {
@@ -141,12 +180,19 @@ impl Sentence<'_> {
                     from = end;
                 }
             }
-            if side.is_none() && i > 0 && self.goes_with_previous(i) {
+            if side.is_none() && i > 0 && self.goes_with_previous(i) && !self.is_advised(mention) {
                 side = sides.get(i - 1).copied().flatten();
             }
             sides.push(side);
         }
         sides
+    }
+
+    /// "between two beds" in a sentence about something else, "that two beds can pass".
+    fn is_place(&self, mention: &Mention) -> bool {
+        let before = mention.from.checked_sub(1);
+        let counted = mention.thing.is_some() && matches!(mention.figure, Figure::Number(_)) && self.figures() > 1;
+        counted && before.is_some_and(|k| self.cue("between_only", k) || self.cue("relatives", k))
     }
 
     fn side_before(&self, from: usize, mention: &Mention) -> Option<Sided> {
@@ -184,7 +230,9 @@ impl Sentence<'_> {
         found.map(|s| if forbidden && !s.strong { Sided { bound: opposite(s.bound), strong: true, ..s } } else { s })
     }
 
+    /// Whether a comparator is denied; "never below 19 °C or above 26 °C" denies both.
     fn is_negated(&self, from: usize, at: usize) -> bool {
+        let from = if self.cue("or", from) { 0 } else { from };
         (from..at).any(|k| self.cue("negations", k))
     }
 
@@ -202,11 +250,27 @@ impl Sentence<'_> {
                 ));
             }
             let token = self.tokens.get(k)?;
+            if token.is(",") && self.ends_with_bound(k + 1) {
+                continue; // "36 inches wide, minimum."
+            }
             if matches!(token.text.as_str(), "," | ";" | ":" | ")") || self.cue("and", k) || self.cue("duty", k) {
                 return None;
             }
         }
         None
+    }
+
+    /// "24 in. preferred"
+    fn is_advised(&self, mention: &Mention) -> bool {
+        (mention.to..mention.to + ADVICE_REACH).any(|k| self.cue("advice", k))
+    }
+
+    /// Whether nothing but "minimum" or "or more" follows in the clause.
+    fn ends_with_bound(&self, at: usize) -> bool {
+        self.lexicon.after.at(self.tokens, at).is_some_and(|(end, index)| {
+            self.lexicon.comparators.get(index).is_some_and(|c| c.strong)
+                && self.tokens.get(end).is_none_or(|t| t.kind == Kind::Symbol)
+        })
     }
 
     /// Whether a figure follows the one before by "and", "by" or a comma alone, without a verb between.
@@ -215,7 +279,8 @@ impl Sentence<'_> {
             return false;
         };
         let between = a.to..b.from;
-        between.len() <= OPENER_REACH + 2
+        a.unit.is_some() == b.unit.is_some()
+            && between.len() <= OPENER_REACH + 2
             && between.clone().any(|k| self.cue("links", k))
             && !between.clone().any(|k| {
                 self.cue("duty", k) || self.cue("plain", k) || self.cue("advice", k) || self.cue("hard_openers", k)
@@ -253,7 +318,8 @@ impl Sentence<'_> {
 
     fn is_condition(&self, i: usize, side: Option<Sided>) -> bool {
         let Some(mention) = self.mentions.get(i) else { return true };
-        if self.condition_thing(i) && side.is_none_or(|s| !s.strong) {
+        let permitted = side.is_some_and(|s| s.fixed && s.at == 0) && self.permits(mention);
+        if self.condition_thing(i) && side.is_none_or(|s| !s.strong) && !permitted {
             return true;
         }
         if matches!(mention.figure, Figure::Per(..)) {
@@ -272,10 +338,16 @@ impl Sentence<'_> {
                 break;
             }
             if self.cue("hard_openers", k) {
-                return true;
+                // The opener's own figure stands between: "from 12 m up not lower than 1.10 m".
+                let own = i.checked_sub(1).and_then(|p| self.mentions.get(p)).filter(|p| p.from > k);
+                let linked = own.is_some_and(|p| (p.to..mention.from).any(|j| self.cue("links", j)));
+                return !(own.is_some() && !linked && side.is_some_and(|s| s.strong && !s.behind));
             }
         }
         let preposition = |k: usize| self.cue("soft_openers", k) || self.cue("between_only", k);
+        if self.is_place(mention) {
+            return true;
+        }
         let counted = mention.thing.is_some() && side.is_none() && self.figures() > 1;
         if counted && mention.from.checked_sub(1).is_some_and(preposition) {
             return true; // "between two beds"
@@ -314,7 +386,10 @@ impl Sentence<'_> {
         let mention = self.mentions.get(i)?;
         let to_type = |bound| if bound == Bound::Min { ConstraintType::Minimum } else { ConstraintType::Maximum };
         let form = self.is_form(mention);
-        let generic = mention.unit.is_some() && !tone.past && !tone.report && self.is_generic();
+        let generic = mention.unit.is_some()
+            && !tone.past
+            && !tone.report
+            && *self.memo.generic.get_or_init(|| self.is_generic());
         let normative = tone.duty || tone.advice || tone.habit || tone.reckoned || form && !tone.plain || generic;
         let reported = tone.plain && !tone.duty && !tone.advice && !tone.habit && !tone.reckoned && !generic;
         match &mention.figure {
@@ -330,6 +405,11 @@ impl Sentence<'_> {
         if tone.reckoned && mention.basis.is_some() {
             return Some((ConstraintType::Ratio, Medium));
         }
+        let article = mention.weak
+            && self.tokens.get(mention.from).is_some_and(|t| self.lexicon.numbers.articles.contains(&t.text));
+        if article && mention.unit.is_none() && mention.basis.is_none() && side.is_none_or(|s| !s.strong) {
+            return None; // "ein Aufzug ist erforderlich" counts nothing
+        }
         if let Some(side) = side {
             if side.strong || tone.duty || tone.advice || !tone.plain && form {
                 return Some((to_type(side.bound), if side.strong { High } else { Medium }));
@@ -338,6 +418,9 @@ impl Sentence<'_> {
         }
         if matches!(mention.figure, Figure::Ratio(_)) {
             return (normative || any_strong).then_some((ConstraintType::Ratio, Medium));
+        }
+        if mention.thing.is_some() && mention.basis.is_some() && !tone.duty && form {
+            return Some((ConstraintType::Ratio, Low)); // "Bicycle parking: 2 spaces per dwelling"
         }
         if mention.thing.is_some() && mention.weak && !tone.duty && mention.basis.is_none() {
             return None;
@@ -349,7 +432,7 @@ impl Sentence<'_> {
             return (tone.habit || tone.duty).then_some((ConstraintType::RuleOfThumb, Low));
         }
         let quantity = self.quantity(i);
-        let should = self.lexicon.cues.get("soft_duty").any(self.tokens);
+        let should = *self.memo.soft_duty.get_or_init(|| self.lexicon.cues.get("soft_duty").any(self.tokens));
         if tone.advice || should {
             return Some((ConstraintType::Recommendation, Medium));
         }
@@ -392,20 +475,30 @@ impl Sentence<'_> {
     /// Whether the sentence is a note ("Corridors: 1.5 m", "Window area 10 %") up to this figure.
     fn is_form(&self, mention: &Mention) -> bool {
         let head = self.tokens.get(..mention.from).unwrap_or_default();
-        let known = (0..head.len()).any(|k| {
-            self.lexicon.space.is_at(head, k)
-                || self.lexicon.object.is_at(head, k)
-                || self.lexicon.quantity.is_at(head, k)
-                || self.lexicon.thing.is_at(head, k)
-                || head.get(k).is_some_and(|t| self.lexicon.quantity.part(t, true).is_some())
+        let known_from = self.memo.known_from.get_or_init(|| {
+            let known = |k: &usize| {
+                self.lexicon.space.is_at(self.tokens, *k)
+                    || self.lexicon.object.is_at(self.tokens, *k)
+                    || self.lexicon.thing.is_at(self.tokens, *k)
+                    || self.quantity_at(*k).is_some()
+            };
+            (0..self.tokens.len()).find(known).unwrap_or(usize::MAX)
         });
+        let known = *known_from < mention.from;
         let words = self.tokens.iter().filter(|t| t.kind == Kind::Word).count();
         let colon =
             head.iter().any(|t| matches!(t.text.as_str(), ":" | "：" | "=" | "≥" | "≤" | ">=" | "<=" | "–" | "—"));
         let bound = self.side_before(0, mention).is_some_and(|s| s.strong);
         let counted = matches!(mention.figure, Figure::Per(..)) || mention.basis.is_some();
-        let verbless = mention.unit.is_some() && words <= MAX_NOTE && !self.lexicon.cues.get("plain").any(self.tokens);
-        (known || bound) && (colon || bound || words <= 8 || verbless) || counted && words <= 12
+        let verbless = mention.unit.is_some()
+            && words <= MAX_NOTE
+            && !self.cue("definite", 0)
+            && !self.memo.plain.get_or_init(|| self.lexicon.cues.get("plain").any(self.tokens));
+        // "Docking bays: 1.0 m × 1.0 m": a short head that is not known, and right behind it a figure with its unit.
+        let titled = self.mentions.first().is_some_and(|m| {
+            m.unit.is_some() && (1..=MAX_TITLE + 1).contains(&m.from) && self.tokens[m.from - 1].is(":")
+        });
+        (known || bound) && (colon || bound || words <= 8 || verbless) || titled || counted && words <= 12
     }
 }
 

@@ -9,6 +9,8 @@ use super::token::{Kind, Token, is_dense, tokens};
 
 /// Shortest word that stands for itself at an end of a German compound.
 const MIN_COMPOUND_PART: usize = 3;
+/// A longer word is no compound but nonsense, in letters.
+const MAX_COMPOUND: usize = 60;
 
 #[derive(Debug, Deserialize)]
 pub struct Unit {
@@ -68,6 +70,8 @@ pub struct Thing {
 #[derive(Debug, Deserialize)]
 pub struct Numbers {
     pub weak: Vec<String>,
+    /// Those of them that are articles far more often than figures.
+    pub articles: Vec<String>,
     pub hundred: Vec<String>,
     pub thousand: Vec<String>,
     pub joiner: Vec<String>,
@@ -75,6 +79,7 @@ pub struct Numbers {
     pub words: BTreeMap<String, f64>,
     pub symbols: BTreeMap<String, f64>,
     fractions: BTreeMap<String, (f64, f64)>,
+    multiples: BTreeMap<String, f64>,
 }
 
 /// Phrases of several tokens by their first, each with what it means.
@@ -134,18 +139,21 @@ impl<T: Clone> Phrases<T> {
 
     /// Returns the meaning of the longest known word that a compound begins or ends with.
     pub fn part(&self, token: &Token, ends: bool) -> Option<T> {
-        if token.kind != Kind::Word || token.text.chars().count() < 2 * MIN_COMPOUND_PART {
+        let length = token.text.chars().count();
+        if token.kind != Kind::Word || !(2 * MIN_COMPOUND_PART..=MAX_COMPOUND).contains(&length) {
             return None;
         }
         let forms = if ends { singulars(&token.text) } else { vec![token.text.clone()] };
-        let fits = |word: &String| {
-            word.chars().count() >= MIN_COMPOUND_PART
-                && !word.starts_with(is_dense)
-                && forms.iter().any(|f| f != word && if ends { f.ends_with(word) } else { f.starts_with(word) })
+        let single = |part: &str| {
+            let fits = part.chars().count() >= MIN_COMPOUND_PART && !part.starts_with(is_dense);
+            let list = self.by_first.get(part).filter(|_| fits)?;
+            list.iter().find(|e| e.0.len() == 1).map(|e| (part.len(), e.1.clone()))
         };
-        let candidates = self.by_first.iter().filter(|(word, _)| fits(word));
-        let single = candidates.filter_map(|(word, list)| list.iter().find(|e| e.0.len() == 1).map(|e| (word, &e.1)));
-        single.max_by_key(|(word, _)| word.len()).map(|(_, meaning)| meaning.clone())
+        let longest = |form: &String| {
+            let mut cuts = form.char_indices().map(|c| c.0).filter(|at| *at > 0);
+            if ends { cuts.find_map(|at| single(&form[at..])) } else { cuts.rev().find_map(|at| single(&form[..at])) }
+        };
+        forms.iter().filter_map(longest).max_by_key(|found| found.0).map(|found| found.1)
     }
 
     /// Whether a phrase begins at `i`.
@@ -192,7 +200,8 @@ impl Cues {
 #[derive(Debug)]
 pub struct Lexicon {
     pub units: Vec<Unit>,
-    spellings: Vec<(Vec<char>, usize)>,
+    /// Spellings of units by their first letter, the longest first.
+    spellings: BTreeMap<char, Vec<(Vec<char>, usize)>>,
     pub comparators: Vec<Comparator>,
     pub before: Phrases<usize>,
     pub after: Phrases<usize>,
@@ -206,6 +215,7 @@ pub struct Lexicon {
     pub object: Phrases<String>,
     pub numbers: Numbers,
     pub fractions: Phrases<(f64, f64)>,
+    pub multiples: Phrases<f64>,
     pub cues: Cues,
 }
 
@@ -256,11 +266,17 @@ impl Lexicon {
         cues.insert("negations".into(), negations.words);
         cues.insert("forbidden".into(), negations.forbidden);
 
-        let mut spellings: Vec<(Vec<char>, usize)> = Vec::new();
+        let mut spellings: BTreeMap<char, Vec<(Vec<char>, usize)>> = BTreeMap::new();
         for (i, unit) in units.iter().enumerate() {
-            spellings.extend(unit.spellings.iter().map(|s| (s.to_lowercase().chars().collect(), i)));
+            for spelling in &unit.spellings {
+                let letters: Vec<char> = spelling.to_lowercase().chars().collect();
+                let Some(first) = letters.first().copied() else { continue };
+                spellings.entry(first).or_default().push((letters, i));
+            }
         }
-        spellings.sort_by_key(|s| std::cmp::Reverse(s.0.len()));
+        for list in spellings.values_mut() {
+            list.sort_by_key(|s| std::cmp::Reverse(s.0.len()));
+        }
         fn indexed<'a, T>(list: &'a [T], words: fn(&T) -> &[String]) -> impl Iterator<Item = (String, usize)> + 'a {
             list.iter().enumerate().flat_map(move |(i, e)| words(e).iter().map(move |w| (w.to_lowercase(), i)))
         }
@@ -278,6 +294,7 @@ impl Lexicon {
             space: Phrases::new(named(spaces), true),
             object: Phrases::new(named(objects), true),
             fractions: Phrases::new(numbers.fractions.clone(), false),
+            multiples: Phrases::new(numbers.multiples.clone(), false),
             cues: Cues(
                 cues.into_iter()
                     .map(|(n, words)| (n, Phrases::new(words.into_iter().map(|w| (w, ())), false)))
@@ -299,7 +316,8 @@ impl Lexicon {
         let skipped: usize =
             rest.chars().take(2).take_while(|c| c.is_whitespace() || matches!(c, '-' | '‑')).map(char::len_utf8).sum();
         let rest: Vec<(usize, char)> = rest.get(skipped..)?.char_indices().take(40).collect();
-        for (spelling, unit) in &self.spellings {
+        let first = rest.first()?.1.to_lowercase().next()?;
+        for (spelling, unit) in self.spellings.get(&first)? {
             let langs = &self.units.get(*unit)?.langs;
             if !langs.is_empty() && !langs.iter().any(|l| l == lang) {
                 continue;

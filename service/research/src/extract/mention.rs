@@ -6,7 +6,7 @@ use super::token::{Kind, Token};
 /// Words that may stand between a number and the thing counted.
 const MAX_ADJECTIVES: usize = 2;
 /// Words that may stand between the thing counted and "per".
-const MAX_RATIO_GAP: usize = 8;
+const MAX_RATIO_GAP: usize = 10;
 /// Words that may stand between "for every 25 employees" and what they get.
 const MAX_AHEAD_GAP: usize = 8;
 /// A unit this long, in letters, is a word and not an abbreviation.
@@ -89,7 +89,8 @@ impl Finder<'_> {
         let mut out = Vec::new();
         let mut i = 0;
         while i < self.tokens.len() {
-            let Some((to, figure, weak)) = self.number(i) else {
+            let formula = self.formula(i).map(|(to, figure)| (to, figure, false));
+            let Some((to, figure, weak)) = formula.or_else(|| self.number(i)) else {
                 i += 1;
                 continue;
             };
@@ -116,8 +117,11 @@ impl Finder<'_> {
         }
         if let Some(n) = token.number() {
             let (mut value, mut to) = (n, i + 1);
+            let hyphen = self.tokens.get(i + 1).is_some_and(|t| t.glued && matches!(t.text.as_str(), "-" | "‑"));
             if let Some(part) = self.tokens.get(i + 1).and_then(|t| numbers.symbols.get(&t.text)) {
                 (value, to) = (n + part, i + 2);
+            } else if let Some((over, end)) = self.over(i + 2).filter(|_| hyphen) {
+                (value, to) = (n + over, end);
             } else if let Some((over, end)) = self.over(i + 1)
                 && self.tokens.get(i + 1).is_some_and(|t| !t.glued)
             {
@@ -234,7 +238,7 @@ impl Finder<'_> {
                 && (self.lexicon.space.is_at(self.tokens, next)
                     || self.lexicon.cues.get("stops").is_at(self.tokens, next)
                         && self.cue("determiners", next).is_some());
-            if noun || follows.is_some_and(|t| t.number().is_some()) {
+            if noun || self.number(next).is_some_and(|n| !n.2) {
                 return None;
             }
         }
@@ -279,6 +283,7 @@ impl Finder<'_> {
             && let Figure::Number(n) = mention.figure
         {
             mention.figure = Figure::Number(-n);
+            mention.from -= 1;
         }
     }
 
@@ -286,12 +291,21 @@ impl Finder<'_> {
         if self.tokens.get(mention.to).is_some_and(|t| t.glued && t.kind != Kind::Word) {
             return;
         }
+        let whole = self.cue("partitive", mention.to).filter(|_| !mention.weak);
+        let whole = whole.filter(|&at| self.lexicon.thing.is_at(self.tokens, at)).unwrap_or(mention.to);
         for skip in 0..=MAX_ADJECTIVES {
-            let at = mention.to + skip;
+            let at = whole + skip;
             if let Some((to, thing)) = self.lexicon.thing.at(self.tokens, at) {
                 // The last noun of a row is the thing: "exit doors".
                 let (to, thing) = self.lexicon.thing.at(self.tokens, to).unwrap_or((to, thing));
                 (mention.thing, mention.to) = (Some(thing), to);
+                return;
+            }
+            if skip == 0
+                && let Some((end, _)) = self.lexicon.after.at(self.tokens, at)
+                && let Some((_, thing)) = (end..=end + 1).find_map(|k| self.lexicon.thing.at(self.tokens, k))
+            {
+                mention.thing = Some(thing); // "five or more charging points": the comparator is read later
                 return;
             }
             let between = self.tokens.get(at);
@@ -410,10 +424,10 @@ impl Finder<'_> {
                 return Some(Joined::One(Mention { figure: Figure::Range(round(low), y), ..whole }));
             }
         }
-        if at("by") && b.unit.is_some() {
+        if at("by") && b.unit.is_some() && a.thing.is_none() {
             let side = a.side.unwrap_or(0);
-            let first = Mention { unit: a.unit.or(b.unit), side: Some(side), thing: None, ..a.clone() };
-            return Some(Joined::Two(first, Mention { side: Some(side + 1), ..b.clone() }));
+            let first = Mention { unit: a.unit.or(b.unit), side: Some(side), thing: None, basis: None, ..a.clone() };
+            return Some(Joined::Two(first, Mention { side: Some(side + 1), basis: None, ..b.clone() }));
         }
         if self.lexicon.cues.get("hard_plus").is_at(self.tokens, a.to) && a.to + 1 == b.from && b.basis.is_some() {
             return Some(Joined::One(Mention {
@@ -427,10 +441,12 @@ impl Finder<'_> {
                 .checked_sub(n)
                 .is_some_and(|k| self.cue("plain_per", k) == Some(a.from) || self.cue("ahead_per", k) == Some(a.from))
         });
+        let on = (1..=2).any(|n| a.from.checked_sub(n).is_some_and(|k| self.cue("ahead_on", k) == Some(a.from)));
+        let ahead = ahead || on && (a.to..b.from).any(|k| self.cue("falls_to", k).is_some());
         if ahead
             && a.unit.is_none()
-            && a.thing.is_some()
-            && b.thing.is_some()
+            && self.names_something(a)
+            && self.names_something(b)
             && b.basis.is_none()
             && x > 0.0
             && between.len() <= MAX_AHEAD_GAP
@@ -443,17 +459,29 @@ impl Finder<'_> {
 
     /// Joins "one toilet for every 25 employees", "1 per 10", "1 in 12".
     fn ratio(&self, a: &Mention, b: &Mention, between: &[Token], whole: Mention, x: f64, y: f64) -> Option<Joined> {
-        if a.unit.is_some() || between.len() > MAX_RATIO_GAP || y <= 0.0 {
+        if between.len() > MAX_RATIO_GAP || y <= 0.0 {
             return None;
+        }
+        if let Some(unit) = a.unit {
+            // "1 m² of storage for every 10 m² of floor"
+            let per = (a.to..b.from).any(|k| self.cue("plain_per", k) == Some(b.from));
+            let share = per && b.unit == Some(unit);
+            return share.then(|| Joined::One(Mention { figure: Figure::Per(x, y), unit: None, thing: None, ..whole }));
+        }
+        let noun = self.tokens.get(b.to).is_some_and(|t| t.kind == Kind::Word && self.cue("stops", b.to).is_none());
+        if a.weak && x == 1.0 && (b.thing.is_some() || noun) && self.cue("one_in", a.to) == Some(b.from) {
+            return Some(Joined::One(Mention { figure: Figure::Per(x, y), thing: b.thing, unit: None, ..whole }));
         }
         let bare = a.thing.is_none() && b.thing.is_none() && b.unit.is_none();
         if bare && x == 1.0 && y > 1.0 && self.cue("one_in", a.to) == Some(b.from) {
             return Some(Joined::One(Mention { figure: Figure::Ratio(format!("{x}:{y}")), ..whole }));
         }
-        let per = (a.to..b.from).find(|&k| self.cue("per", k) == Some(b.from))?;
+        let foreign = |k: usize| self.cue("english_per", k).is_some() && !matches!(self.lang, "" | "en");
+        let shared_out = |k: usize| k > 0 && self.cue("distributive", k - 1) == Some(b.from);
+        let per = (a.to..b.from).find(|&k| self.cue("per", k) == Some(b.from) && !foreign(k) && !shared_out(k))?;
         let plain = self.cue("plain_per", per) == Some(b.from);
         if (a.to..per).any(|k| {
-            self.tokens.get(k).is_some_and(|t| t.kind != Kind::Word)
+            self.tokens.get(k).is_some_and(|t| t.kind != Kind::Word && !matches!(t.text.as_str(), "'" | "’" | "-"))
                 || !plain && self.lexicon.cues.get("duty").is_at(self.tokens, k)
         }) {
             return None;
@@ -466,8 +494,16 @@ impl Finder<'_> {
         let basis = self
             .basis_before(b.to)
             .or_else(|| self.lexicon.basis.at(self.tokens, b.to).map(|b| b.1))
-            .or(b.basis.clone());
+            .or(b.basis.clone())
+            .or_else(|| b.unit.and_then(|u| self.lexicon.units.get(u)).map(|u| u.id.clone()));
         Some(Joined::One(Mention { figure: Figure::Per(x, y), thing: a.thing, basis, unit: None, ..whole }))
+    }
+
+    /// Whether a noun follows a bare number, known or not.
+    fn names_something(&self, mention: &Mention) -> bool {
+        let noun = self.tokens.get(mention.to).is_some_and(|t| t.kind == Kind::Word && !t.glued)
+            && self.cue("stops", mention.to).is_none();
+        mention.unit.is_none() && (mention.thing.is_some() || noun)
     }
 
     /// Returns the basis whose words end at a token.

@@ -1,6 +1,7 @@
 //! Constraints of sentences and tables: find the figures, tell limits from conditions and reports, name what is limited.
 
 mod classify;
+mod formula;
 mod lexicon;
 mod mention;
 mod passage;
@@ -130,6 +131,7 @@ fn value(mention: &Mention) -> Value {
 fn unit(lexicon: &Lexicon, mention: &Mention) -> String {
     let plain = match (&mention.figure, mention.unit.and_then(|u| lexicon.units.get(u))) {
         (Figure::Ratio(_), _) => return "ratio".into(),
+        (Figure::Formula(_), None) if mention.thing.is_none() => return "ratio".into(),
         (_, Some(unit)) => unit.id.as_str(),
         (_, None) => "count",
     };

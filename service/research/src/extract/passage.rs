@@ -2,15 +2,18 @@
 //!
 //! What it is not for: deciding what a sentence says; that is `classify` and `subject`.
 
-use super::classify::Sentence;
+use super::classify::{Memo, Sentence};
 use super::lexicon::Lexicon;
 use super::mention::Finder;
 use super::sentence::{marker, sentences};
+use super::subject::UNNAMED;
 use super::token::{Token, tokens};
 use super::{Constraint, Finding, si, unit, value};
 
 /// A longer lead-in is cut to its end: what it says of the list stands there.
 const MAX_LEAD: usize = 60;
+/// No real sentence has more figures, and nonsense must not cost more than its length.
+const MAX_FIGURES: usize = 24;
 /// A longer line above a table is no caption, in bytes.
 const MAX_CAPTION: usize = 160;
 
@@ -21,6 +24,8 @@ struct Context {
     lead: Vec<Token>,
     /// The space spoken of last.
     about: String,
+    /// The quantity limited last.
+    measured: String,
 }
 
 /// Returns the constraints of sentences, headings and lists.
@@ -42,7 +47,7 @@ pub fn extract(lexicon: &Lexicon, text: &str, lang: &str) -> Vec<Finding> {
         let shift = read.len();
         read.extend_from_slice(item);
         let part = Part { lexicon, text, lang, tokens: &read, shift };
-        let found = part.findings(&mut context.about);
+        let found = part.findings(&mut context);
         if found.is_empty() && leads && mark == 0 {
             context.lead = item.get(item.len().saturating_sub(MAX_LEAD)..).unwrap_or_default().to_vec();
         }
@@ -73,12 +78,13 @@ struct Part<'a> {
 }
 
 impl Part<'_> {
-    fn findings(&self, about: &mut String) -> Vec<Finding> {
+    fn findings(&self, context: &mut Context) -> Vec<Finding> {
         let (lexicon, text, lang, tokens) = (self.lexicon, self.text, self.lang, self.tokens);
-        let mentions = Finder { lexicon, text, lang, tokens }.mentions();
-        let sentence = Sentence { lexicon, text, lang, tokens, mentions: &mentions };
+        let mut mentions = Finder { lexicon, text, lang, tokens }.mentions();
+        mentions.truncate(MAX_FIGURES);
+        let sentence = Sentence { lexicon, text, lang, tokens, mentions: &mentions, memo: Memo::default() };
         if mentions.is_empty() {
-            sentence.topic().clone_into(about);
+            context.about = sentence.topic();
             return Vec::new();
         }
         let conditions = sentence.conditions();
@@ -88,14 +94,15 @@ impl Part<'_> {
             if mention.from < self.shift {
                 continue; // said of the list as a whole, and found when the lead-in was read
             }
-            let named = sentence.space(i);
-            let space = if named.is_empty() { about.clone() } else { named };
+            let (named, name) = (sentence.space(i), sentence.name(i));
+            // "It should preferably be 1.8 m": neither a space nor a quantity.
+            let elliptic = named.is_empty() && name == UNNAMED && !context.measured.is_empty();
             let constraint = Constraint {
-                name: sentence.name(i),
+                name: if elliptic { context.measured.clone() } else { name },
                 constraint_type,
                 value: value(mention),
                 unit: unit(lexicon, mention),
-                space,
+                space: if named.is_empty() { context.about.clone() } else { named },
                 conditions: conditions.clone(),
                 confidence,
             };
@@ -107,7 +114,8 @@ impl Part<'_> {
             });
         }
         if let Some(last) = findings.last().filter(|f| !f.constraint.space.is_empty()) {
-            about.clone_from(&last.constraint.space);
+            context.about.clone_from(&last.constraint.space);
+            context.measured.clone_from(&last.constraint.name);
         }
         findings
     }

@@ -5,18 +5,22 @@ use super::lexicon::Quantity;
 use super::mention::{Figure, Mention};
 use super::token::Kind;
 
+/// The name of a length that the sentence does not name.
+pub const UNNAMED: &str = "dimension";
 /// How far behind a figure its quantity may stand ("1.8 m wide"), in tokens.
 const BEHIND: usize = 3;
 /// Longest condition that is kept, in tokens.
 const MAX_CONDITION: usize = 24;
 /// How far before a noun its preposition may stand, in tokens.
 const GOVERNOR_REACH: usize = 3;
+/// Longest subject that is not known, in words.
+const MAX_SUBJECT: usize = 3;
 /// Past so many figures what a sentence is about is looked up no further back.
 const MAX_CARRIED: usize = 8;
 
 /// A space or object that a sentence names.
 #[derive(Debug, Clone)]
-struct Noun {
+pub struct Noun {
     from: usize,
     to: usize,
     name: String,
@@ -43,10 +47,7 @@ impl Sentence<'_> {
         let mention = self.mentions.get(i)?;
         let dimension = self.dimension(mention);
         let fits = |k: usize| {
-            let token = self.tokens.get(k)?;
-            let known = self.lexicon.quantity.at(self.tokens, k).map(|q| q.1);
-            let index = known.or_else(|| self.lexicon.quantity.part(token, true))?;
-            self.lexicon.quantities.get(index).filter(|q| q.dimensions.iter().any(|d| d == dimension))
+            self.lexicon.quantities.get(self.quantity_at(k)?.1).filter(|q| q.dimensions.iter().any(|d| d == dimension))
         };
         let next = self.mentions.get(i + 1).map_or(self.tokens.len(), |m| m.from);
         let behind = (mention.to..next.min(mention.to + BEHIND)).find_map(fits);
@@ -57,7 +58,7 @@ impl Sentence<'_> {
                 if let Some(quantity) = fits(k) {
                     best = Some((k, quantity));
                 }
-                k = self.lexicon.quantity.at(self.tokens, k).map_or(k + 1, |q| q.0);
+                k = self.quantity_at(k).map_or(k + 1, |q| q.0);
             }
             best.map(|b| b.1)
         };
@@ -70,6 +71,16 @@ impl Sentence<'_> {
             .or_else(|| default().filter(|_| dimension != "length"))
     }
 
+    /// Returns the end and index of the quantity that begins at a token, or that its word ends with.
+    pub fn quantity_at(&self, k: usize) -> Option<(usize, usize)> {
+        let find = |(k, token)| {
+            let whole = self.lexicon.quantity.at(self.tokens, k);
+            whole.or_else(|| self.lexicon.quantity.part(token, true).map(|q| (k + 1, q)))
+        };
+        let all = self.memo.quantities.get_or_init(|| self.tokens.iter().enumerate().map(find).collect());
+        all.get(k).copied().flatten()
+    }
+
     /// Returns the name of what is limited.
     pub fn name(&self, i: usize) -> String {
         let Some(mention) = self.mentions.get(i) else { return String::new() };
@@ -79,7 +90,7 @@ impl Sentence<'_> {
         if let Some(thing) = mention.thing.and_then(|t| self.lexicon.things.get(t)) {
             return thing.name.clone();
         }
-        let name = self.quantity(i).map_or("dimension", |q| q.name.as_str());
+        let name = self.quantity(i).map_or(UNNAMED, |q| q.name.as_str());
         let per = mention.basis.as_ref().filter(|_| self.dimension(mention) == "area");
         per.map_or_else(|| name.to_owned(), |basis| format!("area_per_{basis}"))
     }
@@ -92,8 +103,10 @@ impl Sentence<'_> {
         let Some(mention) = self.mentions.get(i) else { return String::new() };
         let previous = i.checked_sub(1);
         let since = previous.and_then(|k| self.mentions.get(k)).map_or(0, |m| m.to);
-        let next = self.mentions.get(i + 1).map_or(self.tokens.len(), |m| m.from);
-        let nouns = self.nouns();
+        let next = self.mentions.iter().skip(i + 1).find(|m| !m.weak).map_or(self.tokens.len(), |m| m.from);
+        let stop = |k: &usize| self.tokens.get(*k).is_some_and(|t| matches!(t.text.as_str(), "," | ";"));
+        let next = (mention.to..next).find(stop).unwrap_or(next);
+        let nouns = self.memo.nouns.get_or_init(|| self.nouns());
         let within = |from: usize, to: usize| nouns.iter().filter(move |n| n.from >= from && n.to <= to);
         let name = |n: &Noun| n.name.clone();
         if let Some(touching) = within(since, mention.from).find(|n| self.touches(n.to, mention.from)) {
@@ -106,11 +119,19 @@ impl Sentence<'_> {
                 return name(given);
             }
         }
-        let behind = || within(mention.to, next).find(|n| n.is_space);
+        // "1.2 m (offices), 1.8 m (schools)"
+        if self.tokens.get(mention.to).is_some_and(|t| t.is("("))
+            && let Some(bracketed) = nouns.iter().find(|n| n.from == mention.to + 1)
+        {
+            return name(bracketed);
+        }
+        // "six toilets on each floor": where something is counted, an object can be the place as well.
+        let counted = mention.thing.is_some();
+        let behind = || within(mention.to, next).find(|n| n.is_space || counted && n.governed);
         let ahead = || within(since, mention.from);
         let subject =
             || ahead().find(|n| !n.governed && !n.covered && (n.is_space || !n.is_part && behind().is_none()));
-        let carried = || previous.map(|k| self.space(k)).filter(|s| !s.is_empty() && i < MAX_CARRIED);
+        let carried = || previous.filter(|_| i < MAX_CARRIED).map(|k| self.space(k)).filter(|s| !s.is_empty());
         subject()
             .or_else(|| ahead().find(|n| n.is_space && !n.covered))
             .map(name)
@@ -120,14 +141,41 @@ impl Sentence<'_> {
             .or_else(|| within(mention.to, self.tokens.len()).find(|n| n.is_space && !n.covered).map(name))
             .or_else(|| within(mention.from, mention.to).next().map(name))
             .or_else(|| within(0, self.tokens.len()).next().map(name))
+            .or_else(|| self.unknown_noun(mention.from))
             .unwrap_or_default()
+    }
+
+    /// Returns a subject that is not in the vocabulary ("Dormitories shall", "Seating areas:"), English plurals only.
+    fn unknown_noun(&self, to: usize) -> Option<String> {
+        let known = |k: usize| {
+            ["duty", "plain", "stops", "advice", "habit", "soft_openers", "definite", "negations", "hard_openers"]
+                .iter()
+                .any(|c| self.lexicon.cues.get(c).is_at(self.tokens, k))
+                || self.lexicon.quantity.is_at(self.tokens, k)
+                || self.lexicon.before.is_at(self.tokens, k)
+        };
+        let word = |k: usize| self.tokens.get(k).is_some_and(|t| t.kind == Kind::Word) && !known(k);
+        let opener = self.lexicon.cues.get("generic_openers").at(self.tokens, 0).map_or(0, |c| c.0);
+        let end = (opener..to).find(|&k| !word(k)).unwrap_or(to);
+        let run = self.tokens.get(opener..end).filter(|r| (1..=MAX_SUBJECT).contains(&r.len()))?;
+        let last = run.last().filter(|_| matches!(self.lang, "" | "en"))?.text.as_str();
+        let stem = match last.strip_suffix("ies") {
+            Some(stem) => format!("{stem}y"),
+            None => last.strip_suffix('s').filter(|s| s.len() > 2 && !s.ends_with('s'))?.to_owned(),
+        };
+        let mut words: Vec<&str> = run.iter().rev().skip(1).rev().map(|t| t.text.as_str()).collect();
+        words.push(&stem);
+        Some(words.join("_"))
     }
 
     /// Returns what the sentence as a whole is about, empty when it names no space.
     pub fn topic(&self) -> String {
-        let nouns = self.nouns();
+        let nouns = self.memo.nouns.get_or_init(|| self.nouns());
         let free = nouns.iter().find(|n| n.is_space && !n.governed && !n.covered);
-        free.or_else(|| nouns.iter().find(|n| n.is_space && !n.covered)).map(|n| n.name.clone()).unwrap_or_default()
+        free.or_else(|| nouns.iter().find(|n| n.is_space && !n.covered))
+            .or_else(|| nouns.iter().find(|n| !n.governed && !n.covered))
+            .map(|n| n.name.clone())
+            .unwrap_or_default()
     }
 
     /// Whether only "of" and comparators stand between a noun and the figure.
@@ -140,7 +188,7 @@ impl Sentence<'_> {
             };
             k = end;
         }
-        from < to
+        from <= to
     }
 
     /// Returns the spaces and objects that the sentence names, in its order.

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::classify::Sentence;
+use super::classify::{Memo, Sentence};
 use super::lexicon::{Bound, Lexicon};
 use super::mention::{Figure, Finder};
 use super::token::{Kind, tokens};
@@ -77,20 +77,24 @@ fn cells(line: &str, offset: usize) -> Vec<Range<usize>> {
 fn read(lexicon: &Lexicon, lang: &str, label: &str, title: &str, cell: &str) -> Option<Finding> {
     let figures = tokens(cell, lang);
     figures.iter().find(|t| matches!(t.kind, Kind::Number(_)))?;
-    let printed_unit = [cell, title, label].iter().find_map(|t| unit_in(lexicon, t, lang));
     let cell = cell.trim();
     let own = unit_in(lexicon, cell, lang).is_some();
-    let spelled = if own { String::new() } else { printed_unit.clone().unwrap_or_default() };
+    let printed_unit = [title, label].iter().find_map(|t| unit_in(lexicon, t, lang)).filter(|_| !own);
+    let counted = || thing_in(lexicon, title, lang).filter(|_| !own);
+    let spelled = printed_unit.map(|u| u + &basis_in(lexicon, title, lang)).or_else(counted).unwrap_or_default();
     // Column heads name the things counted where there is no unit.
     let text = format!("{} {}: {cell} {spelled}", label.trim(), title.trim());
     let all = tokens(&text, lang);
     let mentions = Finder { lexicon, text: &text, lang, tokens: &all }.mentions();
     let head_end = label.trim().len() + title.trim().len() + 2;
     let index = mentions.iter().position(|m| all.get(m.from).is_some_and(|t| t.start >= head_end));
-    let sentence = Sentence { lexicon, text: &text, lang, tokens: &all, mentions: &mentions };
+    let sentence = Sentence { lexicon, text: &text, lang, tokens: &all, mentions: &mentions, memo: Memo::default() };
     let index = index?;
     let mention = mentions.get(index)?;
-    let bound = all.iter().enumerate().find_map(|(k, t)| {
+    // "up to 100 persons" in the label says when; "minimum width" there is the rule itself.
+    let numbered = tokens(label, lang).iter().any(|t| t.number().is_some());
+    let from = if numbered { label.trim().len() } else { 0 };
+    let bound = all.iter().enumerate().filter(|(_, t)| t.start >= from).find_map(|(k, t)| {
         let known = lexicon.before.at(&all, k).or_else(|| lexicon.prefixes.part(t, false).map(|p| (k + 1, p)));
         known.and_then(|(_, c)| lexicon.comparators.get(c)).map(|c| c.bound)
     });
@@ -108,10 +112,30 @@ fn read(lexicon: &Lexicon, lang: &str, label: &str, title: &str, cell: &str) -> 
         value: value(mention),
         unit: unit(lexicon, mention),
         space: sentence.space(index),
-        conditions: Vec::new(),
+        conditions: if numbered { vec![label.trim().to_owned()] } else { Vec::new() },
         confidence: if bound.is_some() { Confidence::High } else { Confidence::Medium },
     };
     Some(Finding { si: si(lexicon, mention), constraint, evidence: 0..0, printed: 0..0 })
+}
+
+/// Returns the name of a thing that a head says is counted.
+fn thing_in(lexicon: &Lexicon, title: &str, lang: &str) -> Option<String> {
+    let all = tokens(title, lang);
+    (0..all.len()).find_map(|k| {
+        let (end, _) = lexicon.thing.at(&all, k)?;
+        title.get(all.get(k)?.start..all.get(end.checked_sub(1)?)?.end).map(str::to_owned)
+    })
+}
+
+/// Returns "per person" when a head gives its figures per something.
+fn basis_in(lexicon: &Lexicon, title: &str, lang: &str) -> String {
+    let all = tokens(title, lang);
+    let found = (0..all.len()).find_map(|k| {
+        let at = lexicon.cues.get("plain_per").at(&all, k)?.0;
+        let end = lexicon.basis.at(&all, at)?.0;
+        title.get(all.get(k)?.start..all.get(end.checked_sub(1)?)?.end)
+    });
+    found.map(|f| format!(" {f}")).unwrap_or_default()
 }
 
 /// Returns the unit that stands in brackets, behind a figure, or at the end of a head ("Width in m").
@@ -121,14 +145,30 @@ fn unit_in(lexicon: &Lexicon, text: &str, lang: &str) -> Option<String> {
     for (k, token) in all.iter().enumerate() {
         let figure = token.number().is_some();
         let opens = matches!(token.text.as_str(), "(" | "[" | "," | "/") || token.is("in") && k > 0;
-        if k == 0 && found.is_none() {
-            // The whole head is a unit: "Lux".
-            found = lexicon
-                .unit_at(text, token.start, lang)
-                .filter(|u| u.1 >= text.trim_end().len() && u.1 > token.end.min(token.start + 1));
+        if k == 0 {
+            // The head begins with its unit: "Lux", "m² per person".
+            let per = |end: usize| {
+                let next = all.iter().position(|t| t.start >= end);
+                next.is_some_and(|j| {
+                    lexicon.cues.get("plain_per").is_at(&all, j)
+                        || lexicon.before.is_at(&all, j)
+                        || all.get(j).is_some_and(|t| t.is("("))
+                })
+            };
+            found = lexicon.unit_at(text, token.start, lang).filter(|u| u.1 >= text.trim_end().len() || per(u.1));
+        }
+        let ends_head = found.is_none()
+            && !lexicon.before.is_at(&all, k)
+            && !lexicon.cues.get("stops").is_at(&all, k)
+            && !figure
+            && k > 0;
+        if ends_head {
+            found = lexicon.unit_at(text, token.start, lang).filter(|u| u.1 >= text.trim_end().len());
         }
         if figure || opens {
-            found = found.or_else(|| lexicon.unit_at(text, token.end, lang)).filter(|u| u.1 > token.end);
+            let abbreviated = |end: usize| text.get(end..).is_some_and(|rest| rest.starts_with('.')) && !figure;
+            let unit = lexicon.unit_at(text, token.end, lang).filter(|u| u.1 > token.end && !abbreviated(u.1));
+            found = found.or(unit);
         }
     }
     found.and_then(|(unit, _)| lexicon.units.get(unit)).map(|u| u.id.clone())

@@ -4,12 +4,23 @@
 //! What it is not for: getting the bytes (`fetch`) and finding rules in them (`extract`). Nothing that a document says is
 //! followed: no link, no style sheet, no script, no include.
 
+mod blocks;
 mod charset;
+mod html;
 mod kind;
+mod language;
+mod layout;
+mod markdown;
+mod passages;
+pub mod pdf;
+mod text;
 
 pub use kind::{Declared, Kind};
 
 use serde::{Deserialize, Serialize};
+
+use crate::Error;
+use blocks::Reading;
 
 /// What a passage is made of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -67,4 +78,53 @@ impl Document {
     pub fn text(&self) -> String {
         self.passages.iter().map(|p| p.text.as_str()).collect::<Vec<_>>().join("\n\n")
     }
+}
+
+/// How documents are read.
+#[derive(Debug, Clone)]
+pub struct Options {
+    /// The program that reads PDF files in a process of its own; without it PDF files are refused.
+    pub pdf: Option<pdf::Program>,
+    /// The most bytes that a document may have.
+    pub max_bytes: usize,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { pdf: None, max_bytes: 64 << 20 }
+    }
+}
+
+/// Returns what a document says. `content_type` is the header it came with, if any; `name` (file name or URL) appears in
+/// errors, and its ending helps to tell what the bytes are.
+///
+/// # Errors
+///
+/// [`Error::Read`] when the bytes are no document of a known kind, are too many, or cannot be read.
+pub fn read(bytes: &[u8], content_type: Option<&str>, name: &str, options: &Options) -> Result<Document, Error> {
+    let fail = |code: &'static str, reason: String| Error::Read { name: name.to_owned(), code, reason };
+    if bytes.len() > options.max_bytes {
+        let reason = format!("has {} bytes, the limit is {}", bytes.len(), options.max_bytes);
+        return Err(fail("too_large", reason));
+    }
+    let kind = Kind::of(bytes, content_type, name).map_err(|reason| fail("unsupported_type", reason))?;
+    let reading = match kind {
+        Kind::Pdf => {
+            let Some(program) = &options.pdf else {
+                return Err(fail("pdf_unavailable", "PDF files need the program that reads them; none is set".into()));
+            };
+            pdf::read(bytes, program).map_err(|fault| fail(fault.code(), fault.to_string()))?
+        }
+        Kind::Html => with_text(bytes, content_type, kind, html::read),
+        Kind::Markdown => with_text(bytes, content_type, kind, markdown::read),
+        Kind::Text => with_text(bytes, content_type, kind, text::read),
+    };
+    Ok(passages::document(name, kind, reading))
+}
+
+fn with_text(bytes: &[u8], content_type: Option<&str>, kind: Kind, read: impl Fn(&str) -> Reading) -> Reading {
+    let decoded = charset::decode(bytes, content_type, kind == Kind::Html);
+    let mut reading = read(&decoded.text);
+    reading.warnings.splice(0..0, decoded.warnings);
+    reading
 }

@@ -117,14 +117,14 @@ fn is_punctuation(c: char) -> bool {
 }
 
 fn is_cjk(c: char) -> bool {
-    // The blocks of BERT's own tokenizer.
+    // The blocks of the teacher's tokenizer, with the gap it has from U+2B820 on.
     const BLOCKS: [(u32, u32); 8] = [
         (0x4E00, 0x9FFF),
         (0x3400, 0x4DBF),
         (0x20000, 0x2A6DF),
         (0x2A700, 0x2B73F),
         (0x2B740, 0x2B81F),
-        (0x2B820, 0x2CEAF),
+        (0x2B920, 0x2CEAF),
         (0xF900, 0xFAFF),
         (0x2F800, 0x2FA1F),
     ];

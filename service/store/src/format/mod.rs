@@ -161,7 +161,9 @@ pub(crate) fn is_free(dir: &Path) -> Result<bool> {
     };
     for entry in entries {
         let name = entry.map_err(Error::io(dir))?.file_name();
-        let ours = name == crate::lock::FILE || name.to_string_lossy().starts_with(files::UNFINISHED);
+        let ours = name == crate::lock::FILE
+            || name == crate::records::WITNESS
+            || name.to_string_lossy().starts_with(files::UNFINISHED);
         if !ours {
             return Ok(false);
         }

@@ -78,7 +78,8 @@ impl Analyzer {
 /// Whether a word says nothing about what is looked for.
 pub(crate) fn is_stop_word(word: &str) -> bool {
     static WORDS: OnceLock<BTreeSet<&'static str>> = OnceLock::new();
-    let all = include_str!("stop_words.txt").lines().filter(|line| !line.starts_with('#')).flat_map(str::split_whitespace);
+    let all =
+        include_str!("stop_words.txt").lines().filter(|line| !line.starts_with('#')).flat_map(str::split_whitespace);
     WORDS.get_or_init(|| all.collect()).contains(word)
 }
 
@@ -159,7 +160,8 @@ fn without_written_umlauts(word: &str) -> Option<String> {
     let mut short = String::with_capacity(word.len());
     for (i, &c) in letters.iter().enumerate() {
         let before = |back: usize| i.checked_sub(back).and_then(|j| letters.get(j)).copied().unwrap_or(' ');
-        let umlaut = c == 'e' && matches!(before(1), 'a' | 'o' | 'u') && !matches!(before(2), 'a' | 'e' | 'i' | 'o' | 'q');
+        let umlaut =
+            c == 'e' && matches!(before(1), 'a' | 'o' | 'u') && !matches!(before(2), 'a' | 'e' | 'i' | 'o' | 'q');
         if !umlaut {
             short.push(c);
         }
@@ -216,7 +218,9 @@ mod tests {
     #[test]
     fn stop_words_are_written_as_terms() {
         let mut analyzer = Analyzer::new();
-        for word in include_str!("stop_words.txt").lines().filter(|l| !l.starts_with('#')).flat_map(str::split_whitespace) {
+        for word in
+            include_str!("stop_words.txt").lines().filter(|l| !l.starts_with('#')).flat_map(str::split_whitespace)
+        {
             assert_eq!(analyzer.words(word)[0].text(), word);
             assert!(is_stop_word(word));
         }

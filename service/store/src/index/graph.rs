@@ -84,7 +84,8 @@ impl Graph {
 
     /// Writes the files of the graph into a folder.
     pub(crate) fn write(&self, dir: &Path) -> Result<()> {
-        let failed = |reason: String| Error::Index { what: format!("the graph of neighbors was not written: {reason}") };
+        let failed =
+            |reason: String| Error::Index { what: format!("the graph of neighbors was not written: {reason}") };
         let name = self.hnsw.file_dump(dir, BASENAME).map_err(|e| failed(e.to_string()))?;
         if name == BASENAME { Ok(()) } else { Err(failed(format!("its files were named {name}"))) }
     }

@@ -92,7 +92,10 @@ pub(super) fn open_or_rebuild<E: From<Error>>(
     watch: Watch<'_>,
 ) -> Result<Found, E> {
     let mut reason = match open(dir, wanted) {
-        Ok(parts) => return Ok(Found { parts, rebuilt: None, unsaved: None }),
+        Ok(parts) => {
+            tidy(dir);
+            return Ok(Found { parts, rebuilt: None, unsaved: None });
+        }
         Err(reason) => reason,
     };
     let lock = match lock(dir, watch) {
@@ -207,6 +210,21 @@ fn save(dir: &Path, wanted: &Wanted<'_>, parts: &Parts, lock: File, watch: Watch
     remove_all_but(dir, &name);
     drop(lock);
     Ok(())
+}
+
+/// Removes what a killed rebuild left, unless somebody is rebuilding.
+fn tidy(dir: &Path) {
+    let folders = std::fs::read_dir(dir).into_iter().flatten().flatten();
+    let folders = folders.filter(|entry| entry.file_name().to_str().is_some_and(|name| name.starts_with(FOLDER)));
+    if folders.count() < 2 {
+        return;
+    }
+    let Ok(lock) = OpenOptions::new().write(true).open(dir.join(LOCK)) else { return };
+    if lock.try_lock().is_ok()
+        && let Ok(manifest) = Manifest::read(dir)
+    {
+        remove_all_but(dir, &manifest.folder);
+    }
 }
 
 /// Removes folders of files that no manifest names, and files that a killed rebuild began. What cannot be removed stays:

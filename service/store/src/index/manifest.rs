@@ -73,9 +73,7 @@ impl Manifest {
     pub(crate) fn write(self, dir: &Path) -> Result<()> {
         let path = dir.join(FILE);
         let text = self.sealed().text()?;
-        write_whole(&path, true, |writer| {
-            std::io::Write::write_all(writer, text.as_bytes()).map_err(Error::io(&path))
-        })
+        write_whole(&path, true, |writer| std::io::Write::write_all(writer, text.as_bytes()).map_err(Error::io(&path)))
     }
 
     pub(crate) fn new(spec: String, embedder: &str, revision: u64, documents: u32) -> Self {

@@ -36,6 +36,8 @@ mod graph;
 mod guess;
 mod lifecycle;
 mod manifest;
+#[doc(hidden)]
+pub mod measuring;
 mod parts;
 mod row_set;
 #[cfg(test)]

@@ -27,9 +27,23 @@ fn index() -> Index {
     let documents = [
         document("de_corridor", "corridor_width", "clear width of corridors, 1.50 m", "DE", &["corridor"], Some(1.5)),
         document("us_corridor", "corridor_width", "clear width of corridors, 44 in", "US", &["corridor"], Some(1.118)),
-        document("de_door", "door_clear_width", "Lichte Türbreite mindestens 0,90 m", "DE", &["door", "corridor"], Some(0.9)),
+        document(
+            "de_door",
+            "door_clear_width",
+            "Lichte Türbreite mindestens 0,90 m",
+            "DE",
+            &["door", "corridor"],
+            Some(0.9),
+        ),
         document("de_kitchen", "kitchen_area", "Grundfläche der Küche in m²", "DE", &["kitchen"], Some(8.0)),
-        document("at_height", "ceiling_height", "clear height of habitable rooms", "AT", &["bedroom", "kitchen"], Some(2.5)),
+        document(
+            "at_height",
+            "ceiling_height",
+            "clear height of habitable rooms",
+            "AT",
+            &["bedroom", "kitchen"],
+            Some(2.5),
+        ),
         document("de_smoke", "smoke_alarm", "a smoke alarm in each bedroom", "DE", &["bedroom"], None),
         document("de_flur", "flur", "Flur und Breite", "DE", &["corridor"], None),
     ];
@@ -95,7 +109,10 @@ fn filters_leave_what_they_say() {
     check(Filter::number("value", None, None).negate(), &["de_flur", "de_smoke"]);
     check(german.negate(), &["at_height", "us_corridor"]);
     check(Filter::facet("country", ["FR"]), &[]);
-    check(Filter::Any(vec![Filter::facet("country", ["US"]), Filter::facet("room", ["door"])]), &["de_door", "us_corridor"]);
+    check(
+        Filter::Any(vec![Filter::facet("country", ["US"]), Filter::facet("room", ["door"])]),
+        &["de_door", "us_corridor"],
+    );
     check(Filter::Any(Vec::new()), &[]);
     assert_eq!(index.facet_counts("country").unwrap()["DE"], 5);
 }
@@ -117,7 +134,20 @@ fn unknown_fields_are_named() {
 fn any_text_is_a_question() {
     let index = index();
     let long = "corridor ".repeat(20_000);
-    for text in ["\"", "a AND (b OR", "name:x^", "*", "\u{0}", "\u{202e}\u{200d}", "👩‍⚕️", "-", "[a TO b]", "病房", "\u{301}", &long] {
+    for text in [
+        "\"",
+        "a AND (b OR",
+        "name:x^",
+        "*",
+        "\u{0}",
+        "\u{202e}\u{200d}",
+        "👩‍⚕️",
+        "-",
+        "[a TO b]",
+        "病房",
+        "\u{301}",
+        &long,
+    ] {
         for mode in [Mode::Hybrid, Mode::Text, Mode::Vector] {
             index.search(text, &Filter::Everything, 5, mode).unwrap();
         }

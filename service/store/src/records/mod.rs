@@ -10,6 +10,7 @@ mod state;
 mod store;
 mod verify;
 mod view;
+mod witness;
 
 pub(crate) use envelope::wrap;
 pub(crate) use loader::Loader;
@@ -18,6 +19,7 @@ pub use store::{Access, Options, Store};
 pub(crate) use verify::Steps;
 pub use verify::{Problem, Progress};
 pub use view::{Record, Records, View};
+pub(crate) use witness::FILE as WITNESS;
 
 use crate::error::{Error, Result};
 

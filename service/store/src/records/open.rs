@@ -7,6 +7,8 @@ use std::time::Duration;
 
 use super::loader::Loader;
 use super::store::{Access, Options, Store};
+use super::witness::Witness;
+use super::{state, witness};
 use crate::error::{Error, Result};
 use crate::files;
 use crate::format::{self, Found, Manifest};
@@ -58,7 +60,7 @@ pub(crate) fn fill(dir: &Path, options: &Options, load: impl FnOnce(&dyn KeyValu
         // What is left counts as free anyhow; this gives its space back.
         let _ = format::remove(&manifest.records_path(dir)).and_then(|()| format::remove(&dir.join(format::FILE)));
     }
-    Ok(Store::new(dir, backend, Access::Write, made?, Some(lock)))
+    Ok(Store::new(dir, backend, Access::Write, made?, Some(lock), Some(Witness::open(dir)?)))
 }
 
 fn make(
@@ -71,6 +73,7 @@ fn make(
     manifest.write(dir)?;
     let path = manifest.records_path(dir);
     format::remove(&path)?;
+    format::remove(&dir.join(witness::FILE))?;
     format::sweep(dir, manifest)?;
     let records = ready(backend.open(&path, Mode::Create, options.cache_bytes)?, dir, backend)?;
     load(&*records)?;
@@ -92,7 +95,12 @@ fn open_to_write(dir: &Path, options: &Options) -> Result<Store> {
     format::sweep(dir, &manifest)?;
     let backend = Backend::from_name(&manifest.backend)?;
     let records = ready(backend.open(&manifest.records_path(dir), Mode::Write, options.cache_bytes)?, dir, backend)?;
-    Ok(Store::new(dir, backend, Access::Write, records, Some(lock)))
+    let revision = check_loss(dir, &*records, witness::noted(dir), options)?;
+    let mut witness = Witness::open(dir)?;
+    if let (true, Some(revision)) = (options.accept_loss, revision) {
+        witness.note(revision);
+    }
+    Ok(Store::new(dir, backend, Access::Write, records, Some(lock), Some(witness)))
 }
 
 fn open_to_read(dir: &Path, options: &Options) -> Result<Store> {
@@ -107,10 +115,16 @@ fn open_to_read(dir: &Path, options: &Options) -> Result<Store> {
         if !backend.shares() {
             let lock = lock_to_change(dir, options.wait, "has a backend that writes even to read")?;
             let records = ready(backend.open(&path, Mode::Write, options.cache_bytes)?, dir, backend)?;
-            return Ok(Store::new(dir, backend, Access::Read, records, Some(lock)));
+            check_loss(dir, &*records, witness::noted(dir), options)?;
+            return Ok(Store::new(dir, backend, Access::Read, records, Some(lock), None));
         }
+        // Before the records: a writer may be ahead of what it has noted, but not behind.
+        let noted = witness::noted(dir);
         match backend.open(&path, Mode::Read, options.cache_bytes) {
-            Ok(Opened::Ready(records)) => return Ok(Store::new(dir, backend, Access::Read, records, None)),
+            Ok(Opened::Ready(records)) => {
+                check_loss(dir, &*records, noted, options)?;
+                return Ok(Store::new(dir, backend, Access::Read, records, None, None));
+            }
             Ok(Opened::NeedsRepair) if repair(dir, backend, &path, options)? => {}
             Ok(_) if left == 0 => return Err(in_use(dir, backend)),
             Ok(_) => std::thread::sleep(lock::PAUSE),
@@ -119,6 +133,22 @@ fn open_to_read(dir: &Path, options: &Options) -> Result<Store> {
             Err(other) => return Err(other),
         }
         left = left.saturating_sub(1);
+    }
+}
+
+/// Compares the records with what was noted, and returns their revision. What is damaged is left to those who read it.
+fn check_loss(dir: &Path, records: &dyn KeyValue, noted: Option<u64>, options: &Options) -> Result<Option<u64>> {
+    let revision = match state::revision(&*records.view()?) {
+        Ok(revision) => revision,
+        Err(Error::Damaged { .. }) => return Ok(None),
+        Err(other) => return Err(other),
+    };
+    match noted {
+        Some(noted) if noted > revision && !options.accept_loss => {
+            let reason = format!("{noted} changes were acknowledged and only {revision} are there");
+            Err(Error::Corrupt { path: dir.to_path_buf(), reason })
+        }
+        _ => Ok(Some(revision)),
     }
 }
 

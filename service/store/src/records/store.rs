@@ -8,6 +8,7 @@ use std::time::Duration;
 use super::state::{self, State};
 use super::verify::{self, Problem, Progress};
 use super::view::{self, View};
+use super::witness::Witness;
 use super::{check_record, check_table, envelope, open};
 use crate::error::{Error, Result};
 use crate::kv::{Backend, Batch, KeyValue};
@@ -33,6 +34,8 @@ pub struct Options {
     pub cache_bytes: u64,
     /// What a new store says it was made by.
     pub written_by: String,
+    /// Opens a store that has lost changes which it had acknowledged, and goes on with what is there.
+    pub accept_loss: bool,
 }
 
 impl Default for Options {
@@ -42,6 +45,7 @@ impl Default for Options {
             wait: Duration::from_secs(2),
             cache_bytes: 64 << 20,
             written_by: concat!("d3dgen ", env!("CARGO_PKG_VERSION")).to_owned(),
+            accept_loss: false,
         }
     }
 }
@@ -82,10 +86,17 @@ struct Inner {
     backend: Backend,
     access: Access,
     records: Box<dyn KeyValue>,
-    /// What the last batch left; none before the first one and after one that failed.
-    state: Mutex<Option<State>>,
+    writing: Mutex<Writing>,
     /// Let go of after the records: fields are dropped in their order.
     _lock: Option<Lock>,
+}
+
+/// What the writer keeps from one batch to the next.
+pub(super) struct Writing {
+    /// What the last batch left; none before the first one and after one that failed.
+    state: Option<State>,
+    /// None when the store is open for reading.
+    witness: Option<Witness>,
 }
 
 impl Store {
@@ -93,7 +104,8 @@ impl Store {
     ///
     /// # Errors
     /// [`Error::NotFound`], [`Error::NotAStore`], [`Error::Newer`], [`Error::InUse`] after [`Options::wait`],
-    /// [`Error::NeedsWriter`], [`Error::Corrupt`], [`Error::NoBackend`].
+    /// [`Error::NeedsWriter`], [`Error::NoBackend`]; [`Error::Corrupt`], also when the records are sound but lack
+    /// changes that were acknowledged, unless [`Options::accept_loss`].
     pub fn open(dir: impl AsRef<Path>, access: Access, options: &Options) -> Result<Self> {
         open::open(dir.as_ref(), access, options)
     }
@@ -120,9 +132,10 @@ impl Store {
         access: Access,
         records: Box<dyn KeyValue>,
         lock: Option<Lock>,
+        witness: Option<Witness>,
     ) -> Self {
-        let dir = dir.to_path_buf();
-        Self { inner: Arc::new(Inner { dir, backend, access, records, state: Mutex::new(None), _lock: lock }) }
+        let (dir, writing) = (dir.to_path_buf(), Mutex::new(Writing { state: None, witness }));
+        Self { inner: Arc::new(Inner { dir, backend, access, records, writing, _lock: lock }) }
     }
 
     /// Stores all changes of `batch` or none; when it returns, not even a power failure undoes them. Returns the new
@@ -140,23 +153,26 @@ impl Store {
             return Err(Error::StillReading { dir: inner.dir.clone() });
         }
         // A panic while it was held has left none or the last good state in it.
-        let mut slot = inner.state.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut writing = inner.writing.lock().unwrap_or_else(PoisonError::into_inner);
         let (changes, state) = {
             let view = inner.records.view()?;
-            let state = match slot.take() {
+            let state = match writing.state.take() {
                 Some(state) => state,
                 None => State::read(&*view)?,
             };
             if batch.is_empty() {
                 let revision = state.revision;
-                *slot = Some(state);
+                writing.state = Some(state);
                 return Ok(revision);
             }
             enveloped(batch, state, &*view)?
         };
         inner.records.apply(&changes)?;
         let revision = state.revision;
-        *slot = Some(state);
+        writing.state = Some(state);
+        if let Some(witness) = &mut writing.witness {
+            witness.note(revision);
+        }
         Ok(revision)
     }
 

@@ -1,0 +1,10 @@
+//! Records as their users see them: folders, processes, crashes, damage. One binary, run with every built-in backend.
+
+mod common;
+mod damage;
+mod full_disk;
+mod kill;
+mod open;
+mod processes;
+mod snapshots;
+mod upgrade;
