@@ -48,7 +48,9 @@ impl StoreArgs {
     /// # Errors
     /// `Input` when nothing says where it is.
     pub fn folder(&self) -> Result<PathBuf, Error> {
-        self.dir().ok_or_else(|| Error::Input("there is no folder for the knowledge database: name one with --store DIR".into()))
+        self.dir().ok_or_else(|| {
+            Error::Input("there is no folder for the knowledge database: name one with --store DIR".into())
+        })
     }
 
     /// Opens the database for changes, made if it is not there, with the rules of this release in it.
@@ -111,7 +113,10 @@ impl StoreArgs {
     pub fn overlay(&self, registry: &mut Registry, own_rules: &[String]) -> Result<(), Error> {
         let Some(mut database) = self.existing()? else {
             return match &self.store {
-                Some(dir) => Err(Error::Input(format!("{} holds no knowledge database; `knowledge import` makes one", dir.display()))),
+                Some(dir) => Err(Error::Input(format!(
+                    "{} holds no knowledge database; `knowledge import` makes one",
+                    dir.display()
+                ))),
                 None => Ok(()),
             };
         };

@@ -37,7 +37,10 @@ pub struct Statement {
 /// `Input` when the statement names no space.
 pub fn state(knowledge: &KnowledgeBase, said: &Statement, by: &Provenance) -> Result<Vec<Edit>, Error> {
     if said.space.is_empty() {
-        return Err(Error::Input("the sentence does not say which space it is about; name one, as in `corridors are at least 2.6 m wide`".into()));
+        return Err(Error::Input(
+            "the sentence does not say which space it is about; name one, as in `corridors are at least 2.6 m wide`"
+                .into(),
+        ));
     }
     let domain = &knowledge.metadata.domain;
     let mut after = knowledge.clone();
@@ -57,7 +60,11 @@ pub fn state(knowledge: &KnowledgeBase, said: &Statement, by: &Provenance) -> Re
     let local = &mut after.references[at];
     rule.source_ids = vec![add_source(local, by)];
     rule.constraint_id = format!("{domain}_local_{}_{}", rule.name, rule.space_type);
-    let same = |c: &Constraint| c.constraint_id.starts_with(&rule.constraint_id) && c.conditions == rule.conditions && c.constraint_type == rule.constraint_type;
+    let same = |c: &Constraint| {
+        c.constraint_id.starts_with(&rule.constraint_id)
+            && c.conditions == rule.conditions
+            && c.constraint_type == rule.constraint_type
+    };
     match local.constraints.iter().position(same) {
         Some(old) => {
             rule.constraint_id.clone_from(&local.constraints[old].constraint_id);
@@ -80,7 +87,12 @@ pub fn state(knowledge: &KnowledgeBase, said: &Statement, by: &Provenance) -> Re
 ///
 /// # Errors
 /// `Input` when there is no such rule, or the figure is the one it has.
-pub fn correct(knowledge: &KnowledgeBase, constraint_id: &str, value: Value, by: &Provenance) -> Result<Vec<Edit>, Error> {
+pub fn correct(
+    knowledge: &KnowledgeBase,
+    constraint_id: &str,
+    value: Value,
+    by: &Provenance,
+) -> Result<Vec<Edit>, Error> {
     let mut after = knowledge.clone();
     let found = after.references.iter_mut().find_map(|r| {
         let at = r.constraints.iter().position(|c| c.constraint_id == constraint_id)?;
@@ -88,7 +100,9 @@ pub fn correct(knowledge: &KnowledgeBase, constraint_id: &str, value: Value, by:
     });
     let Some((reference, at)) = found else {
         let domain = &knowledge.metadata.domain;
-        return Err(Error::Input(format!("domain `{domain}` has no rule `{constraint_id}`; `knowledge search` finds ids")));
+        return Err(Error::Input(format!(
+            "domain `{domain}` has no rule `{constraint_id}`; `knowledge search` finds ids"
+        )));
     };
     if reference.constraints[at].value == value {
         return Err(Error::Input(format!("`{constraint_id}` has this figure already")));
@@ -125,7 +139,8 @@ fn day(by: &Provenance) -> String {
 fn drafted(knowledge: &KnowledgeBase, said: &Statement) -> Constraint {
     let (value, unit, original_value) = in_si(&said.value, &said.unit);
     let like = alike(knowledge, said, &unit);
-    let or_said = |word: fn(&Constraint) -> &String, said: &str| like.map_or_else(|| said.to_owned(), |c| word(c).clone());
+    let or_said =
+        |word: fn(&Constraint) -> &String, said: &str| like.map_or_else(|| said.to_owned(), |c| word(c).clone());
     Constraint {
         constraint_id: String::new(),
         name: or_said(|c| &c.name, &said.name),
@@ -163,23 +178,106 @@ fn in_si(value: &Value, unit: &str) -> (Value, String, Option<String>) {
     (converted, to.unit, Some(printed))
 }
 
-/// Returns the rule that asks the same of the same space: one that is measured goes before one that is not, then the one
-/// whose name has most words of the statement's, then one that holds always.
+/// Names that say no more than the unit does: which extent of a space they mean is told by what its rules ask of it.
+const GENERIC: [&str; 5] = ["dimension", "length", "distance", "size", "value"];
+
+/// Topic whose rules are about robots rather than the building.
+const ROBOTS: &str = "robot_placement_charging_circulation";
+
+/// Returns the rule that asks the same of the same space: of those that share most words with the statement, the one
+/// whose quantity most rules of the space are about.
 fn alike<'a>(knowledge: &'a KnowledgeBase, said: &Statement, unit: &str) -> Option<&'a Constraint> {
     let words = |text: &str| -> Vec<String> { text.split('_').filter(|w| w.len() > 2).map(str::to_owned).collect() };
-    let asked: Vec<String> = words(&said.name);
     let space = words(&said.space);
+    let mut asked = words(&said.name);
+    asked.retain(|w| !space.contains(w) && !GENERIC.contains(&w.as_str()));
     let all = knowledge.references.iter().flat_map(|r| &r.constraints);
-    let candidates = all.filter(|c| {
-        c.unit == unit && (c.space_type == said.space || space.last().is_some_and(|last| *last == c.space_type))
-    });
+    let candidates: Vec<&Constraint> = all
+        .filter(|c| {
+            let named = c.space_type == said.space || space.last().is_some_and(|last| *last == c.space_type);
+            c.unit == unit && named && c.topic != ROBOTS
+        })
+        .collect();
+    let measure = |c: &Constraint| TABLES.quantity(c).map(|q| q.measure);
     let rank = |c: &&Constraint| {
-        let own = format!("{}_{}", c.name, c.measurement_basis);
-        let shared = asked.iter().filter(|w| words(&own).contains(w) && !space.contains(w)).count();
-        let measured = TABLES.quantity(c).is_some();
-        (shared, measured, c.space_type == said.space, c.conditions.is_empty(), c.constraint_type == said.constraint_type)
+        let own = words(&format!("{}_{}", c.name, c.measurement_basis));
+        let shared = asked.iter().filter(|w| own.contains(w)).count();
+        let usual = measure(c).map_or(0, |m| candidates.iter().filter(|other| measure(other) == Some(m)).count());
+        (shared, usual, c.space_type == said.space, c.constraint_type == said.constraint_type, c.conditions.is_empty())
     };
     // the first of the best, in the order of the file
-    let best = candidates.rev().max_by_key(rank)?;
-    (rank(&best).0 > 0 || asked.iter().all(|w| space.contains(w))).then_some(best)
+    let best = candidates.iter().copied().rev().max_by_key(rank)?;
+    (asked.is_empty() || rank(&best).0 > 0).then_some(best)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tests::knowledge;
+
+    fn by() -> Provenance {
+        Provenance { who: "head nurse".into(), when: "2026-11-21T12:00:00Z".into(), why: "our beds are wide".into() }
+    }
+
+    fn said(name: &str, space: &str, value: f64, unit: &str) -> Statement {
+        Statement {
+            name: name.into(),
+            constraint_type: "minimum".into(),
+            value: Value::Number(value),
+            unit: unit.into(),
+            space: space.into(),
+            conditions: Vec::new(),
+        }
+    }
+
+    fn rule(edits: &[Edit]) -> &Constraint {
+        let rules = edits.iter().filter_map(|e| match &e.after {
+            Some(crate::database::Entry::Constraint(_, c)) => Some(&**c),
+            _ => None,
+        });
+        rules.last().expect("a rule")
+    }
+
+    #[test]
+    fn what_is_said_of_a_space_is_measured_as_its_rules_are() {
+        let hospital = knowledge("hospital");
+        for (name, space, unit, measure) in [
+            ("dimension", "corridor", "m", Some(crate::Measure::CirculationWidth)),
+            ("corridor_width", "corridor", "cm", Some(crate::Measure::CirculationWidth)),
+            ("width", "ward_corridor", "m", Some(crate::Measure::CirculationWidth)),
+            ("area", "patient_room_single", "m^2", Some(crate::Measure::RoomArea)),
+            ("smell", "corridor", "lx", None),
+        ] {
+            let edits = state(&hospital, &said(name, space, 2.5, unit), &by()).expect("edits");
+            let found = rule(&edits);
+            assert_eq!(TABLES.quantity(found).map(|q| q.measure), measure, "{name} of {space}: {found:?}");
+        }
+    }
+
+    #[test]
+    fn the_owner_changes_his_mind_in_place() {
+        let mut office = knowledge("office");
+        let first = state(&office, &said("width", "corridor", 180.0, "cm"), &by()).expect("edits");
+        assert_eq!(rule(&first).value, Value::Number(1.8));
+        assert_eq!(rule(&first).original_value.as_deref(), Some("180 cm"));
+        crate::database::apply(&mut office, &first);
+        let second = state(&office, &said("width", "corridor", 2.0, "m"), &by()).expect("edits");
+        assert_eq!(rule(&second).constraint_id, rule(&first).constraint_id);
+        crate::database::apply(&mut office, &second);
+        let local = office.references.iter().find(|r| r.jurisdiction == LOCAL).expect("the owner's rules");
+        assert_eq!((local.constraints.len(), local.sources.len()), (1, 2));
+        assert!(state(&office, &said("width", "", 2.0, "m"), &by()).is_err());
+    }
+
+    #[test]
+    fn a_corrected_rule_says_who_and_what_it_was() {
+        let hospital = knowledge("hospital");
+        let id = "hospital_de_bed_corridor_width_corridor";
+        let edits = correct(&hospital, id, Value::Number(2.3), &by()).expect("edits");
+        let rule = rule(&edits);
+        assert_eq!((rule.source_ids[0].as_str(), &rule.value), ("amendment_1", &Value::Number(2.3)));
+        assert!(rule.note.ends_with("was at least 2.25 m before 2026-11-21"), "{}", rule.note);
+        assert!(correct(&hospital, "nothing", Value::Number(1.0), &by()).is_err());
+        assert!(correct(&hospital, id, Value::Number(2.25), &by()).is_err(), "nothing changes");
+    }
 }

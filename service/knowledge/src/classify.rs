@@ -28,9 +28,8 @@ pub fn classify(labels: &[String], domains: &[&Domain]) -> Vec<Classified> {
     let readings: Vec<Vec<Option<&RoomType>>> =
         domains.iter().map(|d| labels.iter().map(|l| room_type(l, d)).collect()).collect();
     // a label that many domains know tells little about which one it is
-    let weights: Vec<f64> = (0..labels.len())
-        .map(|n| 1.0 / readings.iter().filter(|r| r[n].is_some()).count().max(1) as f64)
-        .collect();
+    let weights: Vec<f64> =
+        (0..labels.len()).map(|n| 1.0 / readings.iter().filter(|r| r[n].is_some()).count().max(1) as f64).collect();
     let all: f64 = weights.iter().sum();
     let mut out: Vec<Classified> = domains
         .iter()
@@ -84,7 +83,8 @@ fn holds(label: &[String], name: &[String]) -> bool {
 /// Returns true for two forms of one word: `Büros` and `buro`, `offices` and `office`, `Betten` and `Bett`.
 fn same_word(a: &str, b: &str) -> bool {
     let (short, long) = if a.len() <= b.len() { (a, b) } else { (b, a) };
-    short == long || short.len() >= 3 && long.strip_prefix(short).is_some_and(|e| matches!(e, "s" | "es" | "n" | "en" | "e"))
+    short == long
+        || short.len() >= 3 && long.strip_prefix(short).is_some_and(|e| matches!(e, "s" | "es" | "n" | "en" | "e"))
 }
 
 /// Returns the words of a text in lower case without accents; numbers are left out.

@@ -239,8 +239,10 @@ fn citation(c: &Constraint, reference: &Reference) -> Option<Citation> {
     })
 }
 
+/// Returns true for rules of law, of standards and of the owner; a rule that was amended keeps the force of its source.
 fn is_mandatory(c: &Constraint, reference: &Reference) -> bool {
-    let source = c.source_ids.iter().find_map(|id| reference.sources.iter().find(|s| &s.source_id == id));
+    let sources = || c.source_ids.iter().filter_map(|id| reference.sources.iter().find(|s| &s.source_id == id));
+    let source = sources().find(|s| s.source_type != AMENDMENT).or_else(|| sources().next());
     source.is_some_and(|s| matches!(s.source_type.as_str(), "regulation" | "standard" | AMENDMENT))
         && !matches!(c.constraint_type.as_str(), "recommendation" | "rule_of_thumb")
 }

@@ -122,7 +122,8 @@ impl Args {
         let languages = self.lang.as_deref().map_or(vec!["en", "de"], |l| vec![l]);
         let readings = languages.into_iter().map(|lang| extractor.extract(sentence, lang));
         // the reading that names most; the first language of equals
-        let named = |found: &Vec<Finding>| (found.iter().filter(|f| !f.constraint.space.is_empty()).count(), found.len());
+        let named =
+            |found: &Vec<Finding>| (found.iter().filter(|f| !f.constraint.space.is_empty()).count(), found.len());
         readings.rev().max_by_key(named).unwrap_or_default()
     }
 }
@@ -146,7 +147,9 @@ fn statement(found: &Finding) -> Result<Statement, Error> {
 
 fn figure(text: &str) -> Result<Value, Error> {
     let value: Result<Value, _> = serde_json::from_str(text);
-    value.map_err(|_| Error::Input(format!("--value {text}: no number, and no JSON like {{\"min\": 1.2, \"max\": 1.5}}")))
+    value.map_err(|_| {
+        Error::Input(format!("--value {text}: no number, and no JSON like {{\"min\": 1.2, \"max\": 1.5}}"))
+    })
 }
 
 /// Asks on a terminal; without one, nobody has agreed.

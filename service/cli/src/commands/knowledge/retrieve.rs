@@ -92,7 +92,13 @@ impl Args {
         for id in reading.rooms.iter().filter_map(|(_, t)| t.clone()) {
             *rooms.entry(id).or_insert(0) += 1;
         }
-        let robot = self.robot_radius.map(|radius_m| Robot { kind: "service".into(), count: 1, radius_m, height_m: ROBOT_HEIGHT_M, charging: true });
+        let robot = self.robot_radius.map(|radius_m| Robot {
+            kind: "service".into(),
+            count: 1,
+            radius_m,
+            height_m: ROBOT_HEIGHT_M,
+            charging: true,
+        });
         Building {
             country_code: self.country.as_ref().map(|c| c.to_ascii_uppercase()),
             building_type: reading.building_type.clone(),
@@ -161,7 +167,9 @@ fn shown(reading: &Classified, found: &Retrieval, policy: &Policy) -> String {
     let rooms: Vec<String> = reading
         .rooms
         .iter()
-        .map(|(label, t)| t.as_ref().map_or_else(|| format!("{label} (not known, left out)"), |t| format!("{label} = {t}")))
+        .map(|(label, t)| {
+            t.as_ref().map_or_else(|| format!("{label} (not known, left out)"), |t| format!("{label} = {t}"))
+        })
         .collect();
     let rows: Vec<Vec<String>> = limits(found)
         .into_iter()

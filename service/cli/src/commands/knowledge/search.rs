@@ -89,7 +89,10 @@ impl Args {
         if let Some(country) = &self.country {
             let places: BTreeSet<String> = jurisdiction::chain(Some(country)).into_iter().collect();
             let asked = filters.remove("jurisdiction");
-            filters.insert("jurisdiction".into(), asked.map_or(places.clone(), |a| a.intersection(&places).cloned().collect()));
+            filters.insert(
+                "jurisdiction".into(),
+                asked.map_or(places.clone(), |a| a.intersection(&places).cloned().collect()),
+            );
         }
         if !self.room_type.is_empty() {
             let among = |id: &String| self.domain.is_empty() || self.domain.contains(id);

@@ -103,9 +103,8 @@ impl SnapshotArgs {
         let registry = self.registry.load_as_brought()?;
         let database = self.registry.store.read(&registry)?;
         let by = Options::default().written_by;
-        let summary = with_progress(|observe, cancelled| {
-            snapshot::write(database.store(), &self.file, &by, observe, cancelled)
-        })?;
+        let summary =
+            with_progress(|observe, cancelled| snapshot::write(database.store(), &self.file, &by, observe, cancelled))?;
         eprintln!("wrote {}: {} records", self.file.display(), summary.records);
         Ok(())
     }

@@ -21,11 +21,13 @@ impl Args {
         let database = self.registry.store.open_as_it_is()?;
         interrupt::listen();
         let progress = Progress::of(1);
-        let damage = database.verify(&mut |done, all| progress.doing(&format!("records: {done} of {all}")), interrupt::flag());
+        let damage =
+            database.verify(&mut |done, all| progress.doing(&format!("records: {done} of {all}")), interrupt::flag());
         progress.finish();
         let damage = damage?;
         if self.json {
-            let listed: Vec<_> = damage.iter().map(|d| serde_json::json!({"place": d.place, "reason": d.reason})).collect();
+            let listed: Vec<_> =
+                damage.iter().map(|d| serde_json::json!({"place": d.place, "reason": d.reason})).collect();
             let (constraints, references) = database.counts()?;
             let line = serde_json::json!({
                 "sound": damage.is_empty(), "constraints": constraints, "references": references, "damage": listed,
