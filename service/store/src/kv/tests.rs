@@ -107,6 +107,8 @@ fn ranges_begin_and_end_where_they_say() {
             (KeyRange::all().from("a").until("a"), &[]),
         ];
         for (range, expected) in cases {
+            let inside: Vec<_> = (0..stored.len()).filter(|i| range.contains(stored[*i])).collect();
+            assert_eq!(inside, *expected, "{range:?}");
             let expected: Vec<_> = expected.iter().map(|i| stored[*i].to_vec()).collect();
             assert_eq!(keys(&*view, "t", range), expected, "{backend:?} {range:?}");
         }
