@@ -9,6 +9,8 @@ const MAX_ADJECTIVES: usize = 2;
 const MAX_RATIO_GAP: usize = 10;
 /// Words that may stand between "for every 25 employees" and what they get.
 const MAX_AHEAD_GAP: usize = 8;
+/// Words that may stand between a figure and "per bed".
+const MAX_BASIS_GAP: usize = 5;
 /// A unit this long, in letters, is a word and not an abbreviation.
 const MIN_SPELLED_UNIT: usize = 3;
 /// Two figures side by side, one in brackets, are the same one converted when they differ by less.
@@ -325,13 +327,34 @@ impl Finder<'_> {
         if mention.unit.is_none() && mention.thing.is_none() {
             return;
         }
-        let Some(mut at) = self.cue("plain_per", mention.to) else { return };
+        let Some(mut at) = self.cue("plain_per", mention.to) else {
+            mention.basis = self.basis_behind(mention);
+            return;
+        };
         if let Some(end) = self.cue("additional", at) {
             at = end;
         }
         if let Some((to, basis)) = self.lexicon.basis.at(self.tokens, at) {
             (mention.basis, mention.to) = (Some(basis), to);
         }
+    }
+
+    /// Reads "per bed" behind what is measured: "18.5 m² of clear floor area per bed".
+    fn basis_behind(&self, mention: &Mention) -> Option<String> {
+        mention.unit?;
+        for k in mention.to..mention.to + MAX_BASIS_GAP {
+            if let Some(at) = self.cue("plain_per", k).filter(|_| self.cue("english_per", k).is_none()) {
+                return self.lexicon.basis.at(self.tokens, at).map(|b| b.1);
+            }
+            let measured = k > mention.to
+                || self.tokens.get(k).is_some_and(|t| t.is("of"))
+                || self.lexicon.quantity.is_at(self.tokens, k)
+                || self.tokens.get(k).is_some_and(|t| self.lexicon.quantity.part(t, true).is_some());
+            if !measured || self.cue("duty", k).is_some() || self.tokens.get(k).is_none_or(|t| t.kind != Kind::Word) {
+                return None;
+            }
+        }
+        None
     }
 
     /// Leaves out numbers that name something, and parts of dates.
@@ -466,7 +489,12 @@ impl Finder<'_> {
             // "1 m² of storage for every 10 m² of floor"
             let per = (a.to..b.from).any(|k| self.cue("plain_per", k) == Some(b.from));
             let share = per && b.unit == Some(unit);
-            return share.then(|| Joined::One(Mention { figure: Figure::Per(x, y), unit: None, thing: None, ..whole }));
+            return share.then_some(Joined::One(Mention {
+                figure: Figure::Per(x, y),
+                unit: None,
+                thing: None,
+                ..whole
+            }));
         }
         let noun = self.tokens.get(b.to).is_some_and(|t| t.kind == Kind::Word && self.cue("stops", b.to).is_none());
         if a.weak && x == 1.0 && (b.thing.is_some() || noun) && self.cue("one_in", a.to) == Some(b.from) {

@@ -51,12 +51,19 @@ pub fn extract(lexicon: &Lexicon, text: &str, caption: &str, lang: &str) -> Vec<
             let head = format!("{caption} {}", title.trim());
             findings.extend(read(lexicon, lang, label, head.trim(), printed).into_iter().map(|c| Finding {
                 evidence: line.clone(),
-                printed: cell.clone(),
+                printed: trimmed(text, cell),
                 ..c
             }));
         }
     }
     findings
+}
+
+/// Returns the range without blanks at its ends.
+fn trimmed(text: &str, range: &Range<usize>) -> Range<usize> {
+    let piece = text.get(range.clone()).unwrap_or_default();
+    let start = range.start + piece.len() - piece.trim_start().len();
+    start..start + piece.trim().len()
 }
 
 fn cells(line: &str, offset: usize) -> Vec<Range<usize>> {
