@@ -408,25 +408,19 @@ impl Finder<'_> {
         };
         let (x, y) = (*x, *y);
         let (fa, fb) = (self.factor(a.unit), self.factor(b.unit));
-        let same = |p: usize, q: usize| self.dimension(p) == self.dimension(q);
         let whole = Mention { from: a.from, to: b.to, weak: false, ..b.clone() };
         if let (Some(p), Some(q)) = (a.unit, b.unit) {
-            let converted = self.is_conversion(a, b, between);
-            if converted && same(p, q) && (x * fa - y * fb).abs() <= CONVERSION_TOLERANCE * (x * fa).abs() {
-                let close = usize::from(self.tokens.get(b.to).is_some_and(|t| matches!(t.text.as_str(), ")" | "]")));
-                let mut kept = Mention { to: b.to + close, ..a.clone() };
-                self.add_basis(&mut kept);
-                return Some(Joined::One(kept));
+            let same = self.dimension(p) == self.dimension(q);
+            let equal = (x * fa - y * fb).abs() <= CONVERSION_TOLERANCE * (x * fa).abs();
+            if same && equal && self.is_conversion(a, b, between) {
+                return Some(Joined::One(self.converted(a, b)));
             }
-            if !same(p, q) {
+            if !same {
                 return None;
             }
         }
-        if at("tolerance")
-            || between.first().is_some_and(|t| t.is("+"))
-                && between.get(1).is_some_and(|t| t.is("/"))
-                && between.len() == 3
-        {
+        let signs: Vec<&str> = between.iter().map(|t| t.text.as_str()).collect();
+        if at("tolerance") || matches!(signs.as_slice(), ["+", "/", _]) {
             let unit = b.unit.or(a.unit)?;
             let x = if a.unit.is_some() { x * fa / self.factor(Some(unit)) } else { x };
             let (low, high) = (round(x - y), round(x + y));
@@ -478,6 +472,14 @@ impl Finder<'_> {
             return Some(Joined::One(Mention { figure: Figure::Per(y, x), basis, ..whole }));
         }
         self.ratio(a, b, between, whole, x, y)
+    }
+
+    /// Returns the first of two figures of which the second is the same converted, with the bracket that closes.
+    fn converted(&self, a: &Mention, b: &Mention) -> Mention {
+        let close = usize::from(self.tokens.get(b.to).is_some_and(|t| matches!(t.text.as_str(), ")" | "]")));
+        let mut kept = Mention { to: b.to + close, ..a.clone() };
+        self.add_basis(&mut kept);
+        kept
     }
 
     /// Joins "one toilet for every 25 employees", "1 per 10", "1 in 12".
