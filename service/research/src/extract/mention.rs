@@ -415,6 +415,10 @@ impl Finder<'_> {
             if same && equal && self.is_conversion(a, b, between) {
                 return Some(Joined::One(self.converted(a, b)));
             }
+            let bracket = between.last().is_some_and(|t| t.is("("));
+            if same && equal && bracket && self.lexicon.after.is_at(self.tokens, a.to) {
+                return Some(Joined::One(a.clone())); // "44 in. min. (1118 mm)": the comparator is read later
+            }
             if !same {
                 return None;
             }
