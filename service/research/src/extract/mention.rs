@@ -457,15 +457,7 @@ impl Finder<'_> {
                 ..whole
             }));
         }
-        let ahead = (1..=MAX_ADJECTIVES + 2).any(|n| {
-            a.from
-                .checked_sub(n)
-                .is_some_and(|k| self.cue("plain_per", k) == Some(a.from) || self.cue("ahead_per", k) == Some(a.from))
-        });
-        let on = (1..=2).any(|n| a.from.checked_sub(n).is_some_and(|k| self.cue("ahead_on", k) == Some(a.from)));
-        let ahead = ahead || on && (a.to..b.from).any(|k| self.cue("falls_to", k).is_some());
-        if ahead
-            && a.unit.is_none()
+        if self.is_ahead(a, b)
             && self.names_something(a)
             && self.names_something(b)
             && b.basis.is_none()
@@ -476,6 +468,17 @@ impl Finder<'_> {
             return Some(Joined::One(Mention { figure: Figure::Per(y, x), basis, ..whole }));
         }
         self.ratio(a, b, between, whole, x, y)
+    }
+
+    /// Whether the first figure says for how many the second is given: "each group of 12 desks".
+    fn is_ahead(&self, a: &Mention, b: &Mention) -> bool {
+        let ahead = (1..=MAX_ADJECTIVES + 2).any(|n| {
+            a.from
+                .checked_sub(n)
+                .is_some_and(|k| self.cue("plain_per", k) == Some(a.from) || self.cue("ahead_per", k) == Some(a.from))
+        });
+        let on = (1..=2).any(|n| a.from.checked_sub(n).is_some_and(|k| self.cue("ahead_on", k) == Some(a.from)));
+        ahead || on && (a.to..b.from).any(|k| self.cue("falls_to", k).is_some())
     }
 
     /// Returns the first of two figures of which the second is the same converted, with the bracket that closes.
