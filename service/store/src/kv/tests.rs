@@ -192,6 +192,29 @@ fn readers_never_see_half_a_batch() {
 }
 
 #[test]
+fn nobody_waits_in_a_circle() {
+    check(|backend, path| {
+        let records = opened(backend, path, Mode::Create);
+        put(&*records, &[("t", b"a", b"old")]);
+        let view = records.view().unwrap();
+        std::thread::scope(|scope| {
+            let writer = scope.spawn(|| put(&*records, &[("t", b"a", b"new")]));
+            // Long enough that it waits, where the backend lets it wait.
+            std::thread::sleep(std::time::Duration::from_millis(50));
+            for _ in 0..200 {
+                records.view().unwrap().get("t", b"a").unwrap().unwrap();
+            }
+            let helper = scope.spawn(|| records.view().unwrap().get("t", b"a").unwrap());
+            assert!(helper.join().unwrap().is_some());
+            assert_eq!(view.get("t", b"a").unwrap().as_deref(), Some(&b"old"[..]));
+            drop(view);
+            writer.join().unwrap();
+        });
+        assert_eq!(records.view().unwrap().get("t", b"a").unwrap().as_deref(), Some(&b"new"[..]));
+    });
+}
+
+#[test]
 fn large_values_and_odd_keys_survive() {
     check(|backend, path| {
         let large: Vec<u8> = (0..crate::records::PAYLOAD_LIMIT).map(|i| (i * 31 % 251) as u8).collect();
