@@ -1,7 +1,7 @@
 //! The key-value trait that records are stored through, and its backends.
 //!
 //! A backend knows tables, keys and values as bytes. It does not know checksums, revisions, formats or locks between
-//! processes: [`crate::records`] and [`crate::lock`] do, so that all backends behave alike.
+//! processes: [`crate::records`] and `lock` do, so that all backends behave alike.
 
 mod change;
 #[cfg(feature = "sled")]

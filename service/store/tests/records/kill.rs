@@ -13,11 +13,11 @@ const ROUNDS: u64 = 20;
 
 /// How many records batch `n` has.
 fn size(n: u64) -> u64 {
-    if n % 17 == 0 { 400 } else { 3 + n % 20 }
+    if n.is_multiple_of(17) { 400 } else { 3 + n % 20 }
 }
 
 fn payload(n: u64, i: u64) -> Vec<u8> {
-    let length = if (n + i) % 97 == 0 { 70_000 } else { 100 + (n * 31 + i * 7) % 1500 };
+    let length = if (n + i).is_multiple_of(97) { 70_000 } else { 100 + (n * 31 + i * 7) % 1500 };
     format!("{n}/{i} ").into_bytes().into_iter().cycle().take(length as usize).collect()
 }
 
