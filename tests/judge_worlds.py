@@ -23,6 +23,7 @@ from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
+os.environ["D3DGEN_STORE"] = ""  # worlds of the shipped rules, whatever database the user has
 SHARED_REFEREE = ROOT.parent / "shared" / "referee" / "referee.py"
 
 CASES = [  # domain, rooms (None: as the prompt says), prompt

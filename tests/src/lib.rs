@@ -71,8 +71,11 @@ pub fn program() -> &'static Path {
     static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
     PROGRAM.get_or_init(|| {
         // Cargo builds a package's programs for its own tests only, so it is asked for this one.
-        let args = ["build", "-q", "--offline", "-p", "d3dgen-cli", "--bin", "d3dgen", "--message-format", "json"];
-        let built = Command::new(env!("CARGO")).args(args).current_dir(workspace()).output().expect("cargo runs");
+        // With all features, as the tests beside it are built: the crates below are then compiled once.
+        let args = ["build", "-q", "--offline", "-p", "d3dgen-cli", "--bin", "d3dgen", "--all-features"];
+        let format = ["--message-format", "json"];
+        let built =
+            Command::new(env!("CARGO")).args(args).args(format).current_dir(workspace()).output().expect("cargo runs");
         assert!(built.status.success(), "{}", String::from_utf8_lossy(&built.stderr));
         let messages = String::from_utf8_lossy(&built.stdout).into_owned();
         let mut program = messages.lines().filter_map(|line| {
@@ -83,12 +86,22 @@ pub fn program() -> &'static Path {
     })
 }
 
+/// Returns the program without the knowledge database of whoever runs the tests; `--store` names another one.
+///
+/// # Panics
+/// When it does not build.
+pub fn command() -> Command {
+    let mut command = Command::new(program());
+    command.env("D3DGEN_STORE", "");
+    command
+}
+
 /// Runs `d3dgen` in a folder.
 ///
 /// # Panics
 /// When it cannot be started.
 pub fn run(folder: &Path, args: &[&str]) -> Output {
-    Command::new(program()).args(args).current_dir(folder).output().expect("the program starts")
+    command().args(args).current_dir(folder).output().expect("the program starts")
 }
 
 /// Runs `d3dgen` and returns its standard output.

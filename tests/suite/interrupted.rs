@@ -8,14 +8,14 @@ use std::time::{Duration, Instant};
 
 use d3dgen_model::document::Document;
 use d3dgen_model::world::World;
-use d3dgen_tests::{files, program, run_well};
+use d3dgen_tests::{command, files, run_well};
 
 const MANY: &[&str] = &["generate", "hotel with 8 rooms", "--no-png", "--out", "many", "--count", "200"];
 
 /// Starts many worlds and returns when the first ones are there.
 fn start(home: &Path) -> Child {
-    let mut command = Command::new(program());
-    let child = command.args(MANY).current_dir(home).stderr(Stdio::null()).spawn().unwrap();
+    let mut start = command();
+    let child = start.args(MANY).current_dir(home).stderr(Stdio::null()).spawn().unwrap();
     let begun = Instant::now();
     while !home.join("many/1/report.json").exists() {
         assert!(begun.elapsed() < Duration::from_secs(120), "no world in two minutes");

@@ -8,6 +8,7 @@ mod errors;
 mod goldens;
 #[cfg(unix)]
 mod interrupted;
+mod knowledge;
 mod pins;
 mod same_bytes;
 mod schemas;

@@ -160,7 +160,7 @@ impl Client {
         }
         run.tweaks.fixes.extend(self.provider.fix_for_invalid());
         run.tweaks.resume.clear();
-        run.show(&answer.text, &problems);
+        run.show(&answer.text, &problems, schema.wire());
         run.fallback = Some(error);
         Next::Again
     }
@@ -261,8 +261,9 @@ impl Run {
         Next::Again
     }
 
-    /// Adds what was said and what is wrong with it to the conversation.
-    fn show(&mut self, said: &str, problems: &[String]) {
+    /// Adds what was said and what is wrong with it to the conversation. The schema goes along: some servers take a
+    /// response format and ignore it.
+    fn show(&mut self, said: &str, problems: &[String], schema: &serde_json::Value) {
         let mut end = said.len().min(MAX_SHOWN_BYTES);
         while !said.is_char_boundary(end) {
             end -= 1;
@@ -271,7 +272,9 @@ impl Run {
         // Providers refuse an empty turn.
         let said = if said.is_empty() { "(no JSON)" } else { said };
         let problems: Vec<String> = problems.iter().map(|p| format!("- {p}")).collect();
-        let text = include_str!("prompts/repair.txt").replace("{problems}", &problems.join("\n"));
+        let template = include_str!("prompts/repair.txt").replace("{schema}", &schema.to_string());
+        // Problems quote the answer, so they go in last.
+        let text = template.replace("{problems}", &problems.join("\n"));
         self.request.messages.push(Message { role: Role::Assistant, text: said.to_owned() });
         self.request.messages.push(Message { role: Role::User, text: text.trim().to_owned() });
     }

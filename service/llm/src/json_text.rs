@@ -1,6 +1,6 @@
-//! Finds the JSON object in what a model wrote: fences, prose around it, leaked thoughts, comments, trailing commas.
+//! Finds the JSON object in what a model wrote: fences, prose around it, leaked thoughts, comments, Python.
 //!
-//! It is careful: it never invents a bracket, a quote or a value, so an answer that was cut off stays broken.
+//! It is careful: it never invents a bracket or a value, so an answer that was cut off stays broken.
 
 use serde_json::Value;
 
@@ -115,8 +115,47 @@ fn parse(text: &str) -> Option<Value> {
     if !text.starts_with('{') {
         return None;
     }
-    let value = serde_json::from_str(text).or_else(|_| serde_json::from_str(&repaired(text))).ok();
-    value.filter(Value::is_object)
+    let value = serde_json::from_str(text).or_else(|_| serde_json::from_str(&repaired(text)));
+    let value = value.or_else(|_| serde_json::from_str(&repaired(&from_python(text))));
+    value.ok().filter(Value::is_object)
+}
+
+/// Returns the text with strings and constants as JSON has them, where it is written as Python: `{'a': None}`.
+fn from_python(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    let mut quote = None;
+    let mut word = String::new();
+    let mut chars = text.chars();
+    while let Some(c) = chars.next() {
+        if quote.is_none() && c.is_alphabetic() {
+            word.push(c);
+            continue;
+        }
+        out.push_str(match word.as_str() {
+            "True" => "true",
+            "False" => "false",
+            "None" => "null",
+            other => other,
+        });
+        word.clear();
+        match (quote, c) {
+            (None, '\'' | '"') => {
+                quote = Some(c);
+                out.push('"');
+            }
+            (Some(open), c) if c == open => {
+                quote = None;
+                out.push('"');
+            }
+            (Some(_), '"') => out.push_str("\\\""),
+            (Some(_), '\\') => match chars.next() {
+                Some('\'') => out.push('\''),
+                next => out.extend([Some('\\'), next].into_iter().flatten()),
+            },
+            _ => out.push(c),
+        }
+    }
+    out
 }
 
 /// Returns the text without comments and trailing commas, with control characters in strings escaped.
@@ -227,6 +266,11 @@ mod tests {
         check("{\"a\": /* } \" */ 1}", &[a()]);
         check("{ see {\"a\":1} }", &[a()]);
         check("[{\"a\":1}]", &[a()]);
+        check("{'a': 1,}", &[a()]);
+        check(
+            r#"{'u': 'http://a.test/"x"', "it's": None, 'b': [True, 'it\'s \n']}"#,
+            &[json!({"u": "http://a.test/\"x\"", "it's": null, "b": [true, "it's \n"]})],
+        );
         check("\"{\\\"a\\\":1}\"", &[a()]);
         check("{\"result\": {\"a\":1}}", &[json!({"result": {"a": 1}}), a()]);
     }
@@ -250,7 +294,9 @@ mod tests {
             "[1,2]",
             "<think>{\"a\":1}",
             "{\"a\":}",
-            "{'a':1}",
+            "{'a':1",
+            "{'a':'b}",
+            "{a:1}",
             "{\"a\":[{\"b\":1},",
         ] {
             check(text, &[]);

@@ -4,6 +4,25 @@
 //! what it cites, what it used. Trouble is one of the categories of [`Error`], whoever the provider is. Names of models,
 //! base URLs, keys and prices are values of the [`Config`] and the [`Budget`].
 //!
+//! ```
+//! use d3dgen_llm::{Budget, Client, Request, RetryPolicy, Schema, providers::Replay};
+//!
+//! # tokio::runtime::Builder::new_current_thread().build().expect("a runtime without drivers").block_on(async {
+//! let recording = r#"{"stage": "infer", "answer": {"text": "Sure: {'domain': 'office',}"}}"#;
+//! let client = Client::new(Box::new(Replay::new(recording)?), RetryPolicy::default(), Budget::unlimited());
+//! let schema = Schema::new("domain", serde_json::json!({
+//!     "type": "object",
+//!     "properties": {"domain": {"type": "string", "enum": ["office", "hospital"]}},
+//!     "required": ["domain"],
+//!     "additionalProperties": false,
+//! }))?;
+//! let answer = client.complete(&Request::new("infer", "desks for ten").with_schema(schema)).await?;
+//! assert_eq!(answer.json, Some(serde_json::json!({"domain": "office"})));
+//! assert!(!answer.grounded);
+//! # Ok::<(), d3dgen_llm::Error>(())
+//! # }).expect("the recording fits");
+//! ```
+//!
 //! What it is not: it knows nothing of buildings or of where a key, a file or the date comes from; it follows no link
 //! that an answer names; and it does not believe an answer. Whoever asks checks what was said against the evidence.
 

@@ -9,6 +9,7 @@ pub mod extract;
 pub mod fetch;
 pub mod jsonl;
 pub mod read;
+pub mod run;
 pub mod synthesis;
 
 pub use error::Error;

@@ -1,4 +1,5 @@
 //! A process that is killed while it rebuilds an index leaves one that opens and answers.
+#![allow(clippy::unwrap_used)] // helpers of tests are tests
 
 use std::path::Path;
 use std::process::{Command, Stdio};

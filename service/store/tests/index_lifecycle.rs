@@ -1,4 +1,5 @@
 //! Whatever happens to the files of an index, it is noticed, made anew when needed, and answers.
+#![allow(clippy::unwrap_used)] // helpers of tests are tests
 
 use std::cell::Cell;
 use std::collections::BTreeMap;

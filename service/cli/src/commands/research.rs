@@ -1,18 +1,27 @@
-//! `d3dgen research`: building rules out of text.
+//! `d3dgen research`: building rules out of documents, out of a model's search, and out of single sentences.
+
+mod model;
+mod run;
 
 use std::path::{Path, PathBuf};
 
 use clap::Subcommand;
-use d3dgen_research::jsonl;
+use d3dgen_research::{jsonl, read};
 
 use crate::error::Error;
 use crate::input::{text, write_text};
 
 /// Arguments.
 #[derive(clap::Args)]
+#[command(
+    args_conflicts_with_subcommands = true,
+    after_help = run::AFTER_HELP,
+)]
 pub struct Args {
     #[command(subcommand)]
-    action: Action,
+    action: Option<Action>,
+    #[command(flatten)]
+    run: Box<run::Args>,
 }
 
 #[derive(Subcommand)]
@@ -26,12 +35,26 @@ enum Action {
         #[arg(long, value_name = "FILE")]
         out: Option<PathBuf>,
     },
+    /// Read a PDF file from standard input; the process that `research` starts for each, with limits
+    #[command(hide = true, name = run::READ_PDF)]
+    ReadPdf {
+        /// Most memory of the process
+        memory_bytes: u64,
+        /// Longest time of the process
+        seconds: u64,
+    },
 }
 
 impl Args {
     pub fn run(self) -> Result<(), Error> {
         match self.action {
-            Action::Extract { file, out } => extract(&file, out.as_deref()),
+            Some(Action::Extract { file, out }) => extract(&file, out.as_deref()),
+            Some(Action::ReadPdf { memory_bytes, seconds }) => {
+                let (input, output) = (std::io::stdin().lock(), std::io::stdout().lock());
+                read::pdf::run_child(input, output, memory_bytes, seconds)
+                    .map_err(|source| Error::Read { path: "standard input".into(), source })
+            }
+            None => self.run.run(),
         }
     }
 }
@@ -44,7 +67,6 @@ fn extract(file: &Path, out: Option<&Path>) -> Result<(), Error> {
             .iter()
             .map(|e| match e {
                 d3dgen_research::Error::Line { line, reason } => format!("{name}:{line}: {reason}"),
-                #[allow(unreachable_patterns)] // the crate's other errors are of documents and addresses
                 other => format!("{name}: {other}"),
             })
             .collect();

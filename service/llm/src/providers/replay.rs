@@ -124,6 +124,8 @@ impl Provider for Replay {
 type Sink = Box<dyn FnMut(&str) + Send>;
 
 /// Passes requests on and writes a recording of what comes back. Trouble that passes by itself is left out.
+///
+/// Gemini's terms forbid to keep grounded results: whoever records them has to ask the user first.
 pub struct Recorder {
     inner: Box<dyn Provider>,
     sink: Mutex<Sink>,

@@ -140,7 +140,7 @@ async fn a_key_is_in_a_header_and_nowhere_else() {
         assert!(!seen[0].path.contains(KEY) && !seen[0].body.to_string().contains(KEY), "{}", entry.name);
     }
     let mut config = Config::new("openai", "m");
-    config.key = Some(Secret::new("two\nlines"));
+    (config.base_url, config.key) = (Some("http://127.0.0.1:1".to_owned()), Some(Secret::new("two\nlines")));
     let error = providers::build(config).err().unwrap();
     assert!(error.to_string().contains("line breaks") && !error.to_string().contains("two"), "{error}");
 }

@@ -131,7 +131,10 @@ async fn an_answer_that_does_not_fit_is_repaired_once() {
     let messages = seen[1].body["messages"].as_array().unwrap();
     assert_eq!((messages[1]["role"].as_str(), messages[1]["content"].as_str()), (Some("assistant"), Some(wrong)));
     let shown = messages[2]["content"].as_str().unwrap();
-    assert!(shown.contains("/kind") && shown.contains("/area_m2") && shown.contains("castle"), "{shown}");
+    assert!(
+        shown.contains("/kind") && shown.contains("/area_m2") && shown.contains("castle") && shown.contains("\"enum\""),
+        "{shown}"
+    );
 
     let (answer, seen, _) = script.play(vec![chat("I would rather not.", "stop")]).await;
     let Err(Error::InvalidAnswer { problems, text }) = answer else { panic!("{answer:?}") };

@@ -16,7 +16,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 pub use address::canonical_url;
-pub use merge::merge;
+pub use merge::{document_id_of_url, merge};
 use record::Evidence;
 pub use si::{SiFigure, si};
 

@@ -18,6 +18,8 @@ const MAX_ADJECTIVES_OF_SUBJECT: usize = 3;
 const ADVICE_REACH: usize = 2;
 /// Longest head of a note that is not known, in words.
 const MAX_TITLE: usize = 4;
+/// Longest note that may hold a verb that is not known, in words.
+const MAX_SHORT_NOTE: usize = 8;
 /// Longest note without a verb, in words.
 const MAX_NOTE: usize = 14;
 /// How far before a figure "within" and the like may stand, in tokens.
@@ -70,6 +72,20 @@ struct Tone {
     former: bool,
     past: bool,
     plain: bool,
+}
+
+/// What speaks for a figure being a rule.
+struct Weight {
+    /// The sentence is a note.
+    form: bool,
+    /// It speaks of all things of a kind.
+    generic: bool,
+    /// A comparator stands at one of its figures.
+    any_strong: bool,
+    /// Duty, advice or the form make it a rule.
+    normative: bool,
+    /// It only describes.
+    reported: bool,
 }
 
 impl Sentence<'_> {
@@ -390,13 +406,19 @@ impl Sentence<'_> {
             && !tone.past
             && !tone.report
             && *self.memo.generic.get_or_init(|| self.is_generic());
-        let normative = tone.duty || tone.advice || tone.habit || tone.reckoned || form && !tone.plain || generic;
-        let reported = tone.plain && !tone.duty && !tone.advice && !tone.habit && !tone.reckoned && !generic;
+        let ruled = tone.duty || tone.advice || tone.habit || tone.reckoned || generic;
+        let weight = Weight {
+            form,
+            generic,
+            any_strong,
+            normative: ruled || form && !tone.plain,
+            reported: tone.plain && !ruled,
+        };
         match &mention.figure {
-            Figure::Range(..) if normative || any_strong => return Some((ConstraintType::Range, Medium)),
+            Figure::Range(..) if weight.normative || any_strong => return Some((ConstraintType::Range, Medium)),
             Figure::Range(..) => return None,
             Figure::Per(..) if tone.habit => return Some((ConstraintType::RuleOfThumb, Low)),
-            Figure::Per(..) if !reported || side.is_some_and(|s| s.strong) => {
+            Figure::Per(..) if !weight.reported || side.is_some_and(|s| s.strong) => {
                 return Some((ConstraintType::Ratio, Medium));
             }
             Figure::Per(..) => return None,
@@ -416,6 +438,14 @@ impl Sentence<'_> {
             }
             return None;
         }
+        self.bare_verdict(i, tone, &weight)
+    }
+
+    /// Returns the kind of a figure without a comparator.
+    fn bare_verdict(&self, i: usize, tone: &Tone, weight: &Weight) -> Option<(ConstraintType, Confidence)> {
+        use Confidence::{Low, Medium};
+        let mention = self.mentions.get(i)?;
+        let Weight { form, generic, any_strong, normative, reported } = *weight;
         if matches!(mention.figure, Figure::Ratio(_)) {
             return (normative || any_strong).then_some((ConstraintType::Ratio, Medium));
         }
@@ -498,7 +528,9 @@ impl Sentence<'_> {
         let titled = self.mentions.first().is_some_and(|m| {
             m.unit.is_some() && (1..=MAX_TITLE + 1).contains(&m.from) && self.tokens[m.from - 1].is(":")
         });
-        (known || bound) && (colon || bound || words <= 8 || verbless) || titled || counted && words <= 12
+        (known || bound) && (colon || bound || words <= MAX_SHORT_NOTE && !self.cue("definite", 0) || verbless)
+            || titled
+            || counted && words <= 12
     }
 }
 

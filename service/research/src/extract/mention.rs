@@ -9,6 +9,8 @@ const MAX_ADJECTIVES: usize = 2;
 const MAX_RATIO_GAP: usize = 10;
 /// Words that may stand between "for every 25 employees" and what they get.
 const MAX_AHEAD_GAP: usize = 8;
+/// Words that may stand between a figure and "per bed".
+const MAX_BASIS_GAP: usize = 5;
 /// A unit this long, in letters, is a word and not an abbreviation.
 const MIN_SPELLED_UNIT: usize = 3;
 /// Two figures side by side, one in brackets, are the same one converted when they differ by less.
@@ -325,13 +327,34 @@ impl Finder<'_> {
         if mention.unit.is_none() && mention.thing.is_none() {
             return;
         }
-        let Some(mut at) = self.cue("plain_per", mention.to) else { return };
+        let Some(mut at) = self.cue("plain_per", mention.to) else {
+            mention.basis = self.basis_behind(mention);
+            return;
+        };
         if let Some(end) = self.cue("additional", at) {
             at = end;
         }
         if let Some((to, basis)) = self.lexicon.basis.at(self.tokens, at) {
             (mention.basis, mention.to) = (Some(basis), to);
         }
+    }
+
+    /// Reads "per bed" behind what is measured: "18.5 m² of clear floor area per bed".
+    fn basis_behind(&self, mention: &Mention) -> Option<String> {
+        mention.unit?;
+        for k in mention.to..mention.to + MAX_BASIS_GAP {
+            if let Some(at) = self.cue("plain_per", k).filter(|_| self.cue("english_per", k).is_none()) {
+                return self.lexicon.basis.at(self.tokens, at).map(|b| b.1);
+            }
+            let measured = k > mention.to
+                || self.tokens.get(k).is_some_and(|t| t.is("of"))
+                || self.lexicon.quantity.is_at(self.tokens, k)
+                || self.tokens.get(k).is_some_and(|t| self.lexicon.quantity.part(t, true).is_some());
+            if !measured || self.cue("duty", k).is_some() || self.tokens.get(k).is_none_or(|t| t.kind != Kind::Word) {
+                return None;
+            }
+        }
+        None
     }
 
     /// Leaves out numbers that name something, and parts of dates.
@@ -385,25 +408,23 @@ impl Finder<'_> {
         };
         let (x, y) = (*x, *y);
         let (fa, fb) = (self.factor(a.unit), self.factor(b.unit));
-        let same = |p: usize, q: usize| self.dimension(p) == self.dimension(q);
         let whole = Mention { from: a.from, to: b.to, weak: false, ..b.clone() };
         if let (Some(p), Some(q)) = (a.unit, b.unit) {
-            let converted = self.is_conversion(a, b, between);
-            if converted && same(p, q) && (x * fa - y * fb).abs() <= CONVERSION_TOLERANCE * (x * fa).abs() {
-                let close = usize::from(self.tokens.get(b.to).is_some_and(|t| matches!(t.text.as_str(), ")" | "]")));
-                let mut kept = Mention { to: b.to + close, ..a.clone() };
-                self.add_basis(&mut kept);
-                return Some(Joined::One(kept));
+            let same = self.dimension(p) == self.dimension(q);
+            let equal = (x * fa - y * fb).abs() <= CONVERSION_TOLERANCE * (x * fa).abs();
+            if same && equal && self.is_conversion(a, b, between) {
+                return Some(Joined::One(self.converted(a, b)));
             }
-            if !same(p, q) {
+            let bracket = between.last().is_some_and(|t| t.is("("));
+            if same && equal && bracket && self.lexicon.after.is_at(self.tokens, a.to) {
+                return Some(Joined::One(a.clone())); // "44 in. min. (1118 mm)": the comparator is read later
+            }
+            if !same {
                 return None;
             }
         }
-        if at("tolerance")
-            || between.first().is_some_and(|t| t.is("+"))
-                && between.get(1).is_some_and(|t| t.is("/"))
-                && between.len() == 3
-        {
+        let signs: Vec<&str> = between.iter().map(|t| t.text.as_str()).collect();
+        if at("tolerance") || matches!(signs.as_slice(), ["+", "/", _]) {
             let unit = b.unit.or(a.unit)?;
             let x = if a.unit.is_some() { x * fa / self.factor(Some(unit)) } else { x };
             let (low, high) = (round(x - y), round(x + y));
@@ -436,15 +457,7 @@ impl Finder<'_> {
                 ..whole
             }));
         }
-        let ahead = (1..=MAX_ADJECTIVES + 2).any(|n| {
-            a.from
-                .checked_sub(n)
-                .is_some_and(|k| self.cue("plain_per", k) == Some(a.from) || self.cue("ahead_per", k) == Some(a.from))
-        });
-        let on = (1..=2).any(|n| a.from.checked_sub(n).is_some_and(|k| self.cue("ahead_on", k) == Some(a.from)));
-        let ahead = ahead || on && (a.to..b.from).any(|k| self.cue("falls_to", k).is_some());
-        if ahead
-            && a.unit.is_none()
+        if self.is_ahead(a, b)
             && self.names_something(a)
             && self.names_something(b)
             && b.basis.is_none()
@@ -457,6 +470,25 @@ impl Finder<'_> {
         self.ratio(a, b, between, whole, x, y)
     }
 
+    /// Whether the first figure says for how many the second is given: "each group of 12 desks".
+    fn is_ahead(&self, a: &Mention, b: &Mention) -> bool {
+        let ahead = (1..=MAX_ADJECTIVES + 2).any(|n| {
+            a.from
+                .checked_sub(n)
+                .is_some_and(|k| self.cue("plain_per", k) == Some(a.from) || self.cue("ahead_per", k) == Some(a.from))
+        });
+        let on = (1..=2).any(|n| a.from.checked_sub(n).is_some_and(|k| self.cue("ahead_on", k) == Some(a.from)));
+        ahead || on && (a.to..b.from).any(|k| self.cue("falls_to", k).is_some())
+    }
+
+    /// Returns the first of two figures of which the second is the same converted, with the bracket that closes.
+    fn converted(&self, a: &Mention, b: &Mention) -> Mention {
+        let close = usize::from(self.tokens.get(b.to).is_some_and(|t| matches!(t.text.as_str(), ")" | "]")));
+        let mut kept = Mention { to: b.to + close, ..a.clone() };
+        self.add_basis(&mut kept);
+        kept
+    }
+
     /// Joins "one toilet for every 25 employees", "1 per 10", "1 in 12".
     fn ratio(&self, a: &Mention, b: &Mention, between: &[Token], whole: Mention, x: f64, y: f64) -> Option<Joined> {
         if between.len() > MAX_RATIO_GAP || y <= 0.0 {
@@ -466,7 +498,12 @@ impl Finder<'_> {
             // "1 m² of storage for every 10 m² of floor"
             let per = (a.to..b.from).any(|k| self.cue("plain_per", k) == Some(b.from));
             let share = per && b.unit == Some(unit);
-            return share.then(|| Joined::One(Mention { figure: Figure::Per(x, y), unit: None, thing: None, ..whole }));
+            return share.then_some(Joined::One(Mention {
+                figure: Figure::Per(x, y),
+                unit: None,
+                thing: None,
+                ..whole
+            }));
         }
         let noun = self.tokens.get(b.to).is_some_and(|t| t.kind == Kind::Word && self.cue("stops", b.to).is_none());
         if a.weak && x == 1.0 && (b.thing.is_some() || noun) && self.cue("one_in", a.to) == Some(b.from) {

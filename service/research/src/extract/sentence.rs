@@ -47,6 +47,10 @@ fn ends(tokens: &[Token], i: usize, lexicon: &Lexicon) -> bool {
     match token.text.as_str() {
         "!" | "?" | "。" | "；" | ";" => true,
         "." if !next.glued => {
+            let mark = i == 1 || i.checked_sub(1).and_then(|k| tokens.get(k)).is_some_and(|t| t.new_line);
+            if mark && i.checked_sub(1).is_some_and(|k| marker(tokens.get(k..).unwrap_or_default()) == 2) {
+                return false; // "1. Corridors"
+            }
             let short = i.checked_sub(1).is_some_and(|k| lexicon.cues.get("abbreviations").is_at(tokens, k));
             let is_unit = i.checked_sub(2).and_then(|k| tokens.get(k)).is_some_and(|t| t.number().is_some());
             (next.capital || next.number().is_some()) && (!short || is_unit && next.capital)

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::classify::{Memo, Sentence};
 use super::lexicon::{Bound, Lexicon};
-use super::mention::{Figure, Finder};
+use super::mention::{Figure, Finder, Mention};
 use super::token::{Kind, tokens};
 use super::{Confidence, Constraint, ConstraintType, Finding, si, unit, value};
 
@@ -51,12 +51,19 @@ pub fn extract(lexicon: &Lexicon, text: &str, caption: &str, lang: &str) -> Vec<
             let head = format!("{caption} {}", title.trim());
             findings.extend(read(lexicon, lang, label, head.trim(), printed).into_iter().map(|c| Finding {
                 evidence: line.clone(),
-                printed: cell.clone(),
+                printed: trimmed(text, cell),
                 ..c
             }));
         }
     }
     findings
+}
+
+/// Returns the range without blanks at its ends.
+fn trimmed(text: &str, range: &Range<usize>) -> Range<usize> {
+    let piece = text.get(range.clone()).unwrap_or_default();
+    let start = range.start + piece.len() - piece.trim_start().len();
+    start..start + piece.trim().len()
 }
 
 fn cells(line: &str, offset: usize) -> Vec<Range<usize>> {
@@ -74,9 +81,10 @@ fn cells(line: &str, offset: usize) -> Vec<Range<usize>> {
 }
 
 /// Reads a cell as the sentence "row, column: figure unit".
-fn read(lexicon: &Lexicon, lang: &str, label: &str, title: &str, cell: &str) -> Option<Finding> {
-    let figures = tokens(cell, lang);
-    figures.iter().find(|t| matches!(t.kind, Kind::Number(_)))?;
+fn read(lexicon: &Lexicon, lang: &str, label: &str, title: &str, cell: &str) -> Vec<Finding> {
+    if !tokens(cell, lang).iter().any(|t| matches!(t.kind, Kind::Number(_))) {
+        return Vec::new();
+    }
     let cell = cell.trim();
     let own = unit_in(lexicon, cell, lang).is_some();
     let printed_unit = [title, label].iter().find_map(|t| unit_in(lexicon, t, lang)).filter(|_| !own);
@@ -87,10 +95,8 @@ fn read(lexicon: &Lexicon, lang: &str, label: &str, title: &str, cell: &str) -> 
     let all = tokens(&text, lang);
     let mentions = Finder { lexicon, text: &text, lang, tokens: &all }.mentions();
     let head_end = label.trim().len() + title.trim().len() + 2;
-    let index = mentions.iter().position(|m| all.get(m.from).is_some_and(|t| t.start >= head_end));
+    let first = mentions.iter().position(|m| all.get(m.from).is_some_and(|t| t.start >= head_end));
     let sentence = Sentence { lexicon, text: &text, lang, tokens: &all, mentions: &mentions, memo: Memo::default() };
-    let index = index?;
-    let mention = mentions.get(index)?;
     // "up to 100 persons" in the label says when; "minimum width" there is the rule itself.
     let numbered = tokens(label, lang).iter().any(|t| t.number().is_some());
     let from = if numbered { label.trim().len() } else { 0 };
@@ -98,7 +104,7 @@ fn read(lexicon: &Lexicon, lang: &str, label: &str, title: &str, cell: &str) -> 
         let known = lexicon.before.at(&all, k).or_else(|| lexicon.prefixes.part(t, false).map(|p| (k + 1, p)));
         known.and_then(|(_, c)| lexicon.comparators.get(c)).map(|c| c.bound)
     });
-    let constraint_type = match (&mention.figure, bound) {
+    let constraint_type = |figure: &Figure| match (figure, bound) {
         (Figure::Range(..), _) => ConstraintType::Range,
         (_, Some(Bound::Min)) => ConstraintType::Minimum,
         (_, Some(Bound::Max)) => ConstraintType::Maximum,
@@ -106,16 +112,22 @@ fn read(lexicon: &Lexicon, lang: &str, label: &str, title: &str, cell: &str) -> 
         _ if lexicon.cues.get("duty").any(&all) => ConstraintType::Minimum,
         _ => ConstraintType::Recommendation,
     };
-    let constraint = Constraint {
-        name: sentence.name(index),
-        constraint_type,
-        value: value(mention),
-        unit: unit(lexicon, mention),
-        space: sentence.space(index),
-        conditions: if numbered { vec![label.trim().to_owned()] } else { Vec::new() },
-        confidence: if bound.is_some() { Confidence::High } else { Confidence::Medium },
+    let found = |(index, mention): (usize, &Mention)| {
+        let constraint = Constraint {
+            name: sentence.name(index),
+            constraint_type: constraint_type(&mention.figure),
+            value: value(mention),
+            unit: unit(lexicon, mention),
+            space: sentence.space(index),
+            conditions: if numbered { vec![label.trim().to_owned()] } else { Vec::new() },
+            confidence: if bound.is_some() { Confidence::High } else { Confidence::Medium },
+        };
+        Finding { si: si(lexicon, mention), constraint, evidence: 0..0, printed: 0..0 }
     };
-    Some(Finding { si: si(lexicon, mention), constraint, evidence: 0..0, printed: 0..0 })
+    // The cell's first figure, and the others where it gives both sides: "0.9 m × 1.5 m".
+    let of_cell =
+        mentions.iter().enumerate().filter(|(k, m)| first.is_some_and(|f| *k == f || *k > f && m.side.is_some()));
+    of_cell.map(found).collect()
 }
 
 /// Returns the name of a thing that a head says is counted.

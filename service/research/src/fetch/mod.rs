@@ -159,7 +159,8 @@ impl Fetcher {
         };
         let path = url.query().map_or_else(|| url.path().to_owned(), |query| format!("{}?{query}", url.path()));
         if !robots.allows(&path) {
-            return Err(Fault::new(Code::Robots, format!("robots.txt of {} forbids it", url.authority())));
+            let reason = if robots.is_failure() { "cannot be had, which counts as forbidden" } else { "forbids it" };
+            return Err(Fault::new(Code::Robots, format!("robots.txt of {} {reason}", url.authority())));
         }
         let delay =
             robots.crawl_delay().unwrap_or_default().min(self.options.max_crawl_delay).max(self.options.crawl_delay);
@@ -176,8 +177,11 @@ impl Fetcher {
         let unusable = |_| Fault::new(Code::InvalidUrl, "has no robots.txt");
         let mut at = url.join("/robots.txt").map_err(unusable)?;
         for _ in 0..=self.options.max_redirects {
-            let Ok(answer) = self.get(&at, Body::FirstBytes(robots::MAX_BYTES)).await else {
-                return Ok(Robots::disallow_all());
+            let answer = match self.get(&at, Body::FirstBytes(robots::MAX_BYTES)).await {
+                Ok(answer) => answer,
+                // A name that leads elsewhere than a moment ago is an attack, not a failing server.
+                Err(fault) if fault.code == Code::BlockedAddress => return Err(fault),
+                Err(_) => return Ok(Robots::disallow_all()),
             };
             match answer.status {
                 200 => return Ok(Robots::parse(&answer.body, self.options.robot())),
@@ -196,5 +200,32 @@ impl Fetcher {
     async fn get(&self, url: &Url, body: Body) -> Result<Answer, Fault> {
         let addresses = target::addresses(url, &self.options, self.resolver.as_ref()).await?;
         exchange::get(url, &addresses, &self.options, body).await
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn redirects_are_checked_like_new_addresses() {
+        let fetcher = Fetcher::new(Options::default(), None, Arc::new(|| 0));
+        let cases = [
+            ("https://a.test/x", Some("/y"), Ok("https://a.test/y")),
+            ("http://a.test/x", Some("https://b.test/#part"), Ok("https://b.test/")),
+            ("https://a.test/x", Some("http://a.test/y"), Err(Code::InsecureRedirect)),
+            ("http://a.test/x", Some("//10.0.0.1/"), Err(Code::BlockedAddress)),
+            ("http://a.test/x", Some("http://0x7f.1/"), Err(Code::BlockedAddress)),
+            ("http://a.test/x", Some("file:///etc/passwd"), Err(Code::UnsupportedScheme)),
+            ("http://a.test/x", Some("http://u:p@b.test/"), Err(Code::CredentialsInUrl)),
+            ("http://a.test/x", Some("http://b.test:22/"), Err(Code::BlockedPort)),
+            ("http://a.test/x", Some("http://[::bad"), Err(Code::BadRedirect)),
+            ("http://a.test/x", None, Err(Code::BadRedirect)),
+        ];
+        for (from, location, expected) in cases {
+            let found = fetcher.redirected(&Url::parse(from).expect("cases are valid"), location);
+            let found = found.as_ref().map(Url::as_str).map_err(|f| f.code);
+            assert_eq!(found, expected, "{from} to {location:?}");
+        }
     }
 }

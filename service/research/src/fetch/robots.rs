@@ -29,6 +29,7 @@ struct Group {
 pub struct Robots {
     rules: Vec<Rule>,
     delay: Option<Duration>,
+    is_failure: bool,
 }
 
 impl Robots {
@@ -37,14 +38,21 @@ impl Robots {
         Self::default()
     }
 
-    /// Returns one that forbids everything.
+    /// Returns one that forbids everything, for a server whose file cannot be had.
     pub fn disallow_all() -> Self {
-        Self { rules: vec![Rule { pattern: "/".into(), allow: false }], delay: None }
+        Self { rules: vec![Rule { pattern: "/".into(), allow: false }], delay: None, is_failure: true }
+    }
+
+    /// Tells whether this stands for a file that cannot be had.
+    pub fn is_failure(&self) -> bool {
+        self.is_failure
     }
 
     /// Returns what a file says to the robot of a name. Lines that mean nothing are passed over, as the RFC asks.
     pub fn parse(bytes: &[u8], robot: &str) -> Self {
-        let bytes = bytes.get(..MAX_BYTES).unwrap_or(bytes);
+        // Half a rule would forbid more than the whole one.
+        let whole = |cut: &'_ [u8]| cut.iter().rposition(|b| *b == b'\n').unwrap_or(0);
+        let bytes = bytes.get(..MAX_BYTES).map_or(bytes, |cut| cut.get(..whole(cut)).unwrap_or(cut));
         let text = String::from_utf8_lossy(bytes);
         let groups = groups(text.trim_start_matches('\u{feff}'));
         let named = |g: &&Group| g.agents.iter().any(|a| a.eq_ignore_ascii_case(robot));
@@ -56,6 +64,7 @@ impl Robots {
         Self {
             rules: chosen.iter().flat_map(|g| g.rules.iter().cloned()).collect(),
             delay: chosen.iter().filter_map(|g| g.delay).max(),
+            is_failure: false,
         }
     }
 

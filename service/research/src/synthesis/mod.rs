@@ -102,7 +102,7 @@ fn source(document: &CorpusDocument) -> Source {
 }
 
 fn constraint_of(domain: &str, found: &CorpusConstraint, cited: &[&CorpusDocument]) -> Constraint {
-    let (space, said_by_space) = space_type(&found.space);
+    let (space, said_by_space) = space_type(domain, &found.space);
     let name = if found.space.is_empty() || found.name.starts_with(&found.space) {
         found.name.clone()
     } else {

@@ -59,6 +59,7 @@ struct SourceTypes {
 #[serde(deny_unknown_fields)]
 struct Spaces {
     space_types: BTreeMap<String, String>,
+    by_domain: BTreeMap<String, BTreeMap<String, String>>,
     conditions: BTreeMap<String, String>,
 }
 
@@ -134,11 +135,14 @@ pub fn rank_and_confidence(kind: Option<&str>) -> (usize, &'static str) {
 }
 
 /// Returns the `space_type` of a space as found, and what its name says beyond that.
-pub fn space_type(space: &str) -> (&str, Option<&'static str>) {
+pub fn space_type<'a>(domain: &str, space: &'a str) -> (&'a str, Option<&'static str>) {
     if space.is_empty() {
         return ("unspecified", None);
     }
     let spaces = &shared().spaces;
+    if let Some(own) = spaces.by_domain.get(domain).and_then(|d| d.get(space)) {
+        return (own, None);
+    }
     (spaces.space_types.get(space).map_or(space, String::as_str), spaces.conditions.get(space).map(String::as_str))
 }
 
@@ -224,8 +228,13 @@ mod tests {
 
     #[test]
     fn topics_and_bases() {
-        let traits =
-            |name, space, unit, per, words| Traits { name, spaces: [space, space_type(space).0], unit, per, words };
+        let traits = |name, space, unit, per, words| Traits {
+            name,
+            spaces: [space, space_type("hospital", space).0],
+            unit,
+            per,
+            words,
+        };
         for (given, topic, basis) in [
             (
                 traits("width", "corridor", "m", "", "Corridors are 1.5 m wide."),

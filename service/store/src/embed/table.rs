@@ -99,8 +99,13 @@ mod tests {
 
     #[test]
     fn similar_meanings_are_near() {
-        for (near, far) in [("couch", "bathtub"), ("settee", "forklift")] {
-            assert!(cosine("sofa", near) > cosine("sofa", far) + 0.1, "{near} {far}");
+        for (text, near, far) in [
+            ("sofa", "couch", "bathtub"),
+            ("sofa", "settee", "forklift"),
+            ("Breite des Flurs", "corridor width", "kitchen sink"),
+            ("Krankenzimmer", "patient room", "parking space"),
+        ] {
+            assert!(cosine(text, near) > cosine(text, far) + 0.1, "{text}: {near} {far}");
         }
         assert!((cosine("Corridor, WIDTH!", "corridor , width !") - 1.0).abs() < 1e-5);
     }

@@ -17,7 +17,7 @@ pub(crate) use upgrade::upgrade;
 /// Name of the file.
 pub(crate) const FILE: &str = "store.json";
 
-/// The format that is written. What changed with each is told by [`upgrade::UPGRADES`].
+/// The format that is written. What changed with each is told by `format/upgrade.rs`.
 pub const FORMAT: u32 = 2;
 
 /// A store of today.

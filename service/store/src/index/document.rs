@@ -142,8 +142,10 @@ pub enum Phase {
     Waiting,
     /// The documents are being read.
     Reading,
-    /// Words and vectors are being indexed.
-    Indexing,
+    /// Words are being indexed; beside [`Phase::Meaning`], so that reports of both mix.
+    Words,
+    /// Vectors are being made.
+    Meaning,
     /// The graph of neighbors is being made; only large indexes have one.
     Linking,
     /// The files are being written.

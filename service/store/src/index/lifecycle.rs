@@ -75,6 +75,8 @@ pub(super) struct Wanted<'a> {
     pub(super) spec: &'a IndexSpec,
     pub(super) embedder: &'a Arc<dyn Embedder>,
     pub(super) revision: u64,
+    /// From how many rows on there is a graph: [`graph::FROM_ROWS`](super::graph::FROM_ROWS), but in tests.
+    pub(super) graph_from: u32,
 }
 
 /// The parts of an index, and how they came to be.
@@ -130,7 +132,7 @@ pub(super) fn build(wanted: &Wanted<'_>, mut documents: Vec<Document>, watch: Wa
     if u32::try_from(documents.len()).is_err() {
         return Err(Error::Index { what: format!("{} documents, the limit is {}", documents.len(), u32::MAX) });
     }
-    Parts::new(wanted.spec, wanted.embedder.as_ref(), &documents, watch)
+    Parts::new(wanted, &documents, watch)
 }
 
 fn open(dir: &Path, wanted: &Wanted<'_>) -> Result<Parts, Reason> {

@@ -118,7 +118,7 @@ impl Index {
         D: IntoIterator<Item = Document>,
         E: From<Error>,
     {
-        let wanted = Wanted { spec, embedder: &embedder, revision };
+        let wanted = Wanted { spec, embedder: &embedder, revision, graph_from: graph::FROM_ROWS };
         let documents = || -> Result<Vec<Document>, E> { Ok(documents()?.into_iter().collect()) };
         let found = lifecycle::open_or_rebuild(dir, &wanted, documents, watch)?;
         let index = Self { inner: Arc::new(Inner { parts: found.parts, embedder, revision }) };
@@ -136,7 +136,7 @@ impl Index {
         documents: impl IntoIterator<Item = Document>,
         watch: Watch<'_>,
     ) -> Result<Self> {
-        let wanted = Wanted { spec, embedder: &embedder, revision };
+        let wanted = Wanted { spec, embedder: &embedder, revision, graph_from: graph::FROM_ROWS };
         let parts = lifecycle::build(&wanted, documents.into_iter().collect(), watch)?;
         Ok(Self { inner: Arc::new(Inner { parts, embedder, revision }) })
     }

@@ -6,7 +6,8 @@ use std::sync::OnceLock;
 
 use super::columns::Columns;
 use super::document::{Document, IndexSpec, Phase, Watch};
-use super::graph::{self, Graph};
+use super::graph::Graph;
+use super::lifecycle::Wanted;
 use super::manifest::Sum;
 use super::text::TextIndex;
 use super::vectors::Vectors;
@@ -40,12 +41,8 @@ struct LazyGraph {
 
 impl Parts {
     /// Makes the parts of documents that are sorted by key.
-    pub(crate) fn new(
-        spec: &IndexSpec,
-        embedder: &dyn Embedder,
-        documents: &[Document],
-        watch: Watch<'_>,
-    ) -> Result<Self> {
+    pub(super) fn new(wanted: &Wanted<'_>, documents: &[Document], watch: Watch<'_>) -> Result<Self> {
+        let (spec, embedder) = (wanted.spec, wanted.embedder.as_ref());
         // Words and vectors are made side by side; neither sees the other, so the result is the same.
         let (text, vectors) = std::thread::scope(|scope| {
             let text = scope.spawn(|| TextIndex::new(spec, documents, watch));
@@ -55,7 +52,7 @@ impl Parts {
         });
         let (text, vectors, columns) = (text?, vectors?, Columns::new(spec, documents));
         let rows = columns.rows();
-        let graph = if rows >= graph::FROM_ROWS { Some(Graph::new(&vectors, rows, watch)?) } else { None };
+        let graph = if rows >= wanted.graph_from { Some(Graph::new(&vectors, rows, watch)?) } else { None };
         Ok(Self { columns, text, vectors, graph: LazyGraph { files: None, graph: OnceLock::from(graph) } })
     }
 
@@ -131,7 +128,7 @@ fn embed(embedder: &dyn Embedder, documents: &[Document], watch: Watch<'_>) -> R
     let dim = embedder.dim();
     let mut full = Vec::with_capacity(documents.len() * dim);
     for (batch, documents_left) in documents.chunks(EMBED_BATCH).enumerate() {
-        watch.step(Phase::Indexing, batch * EMBED_BATCH, documents.len())?;
+        watch.step(Phase::Meaning, batch * EMBED_BATCH, documents.len())?;
         let texts: Vec<&str> = documents_left.iter().map(|d| d.embed_text.as_str()).collect();
         let vectors = embedder.embed(&texts)?;
         let fits = vectors.len() == texts.len() && vectors.iter().all(|v| v.len() == dim);

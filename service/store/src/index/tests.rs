@@ -178,3 +178,90 @@ fn an_empty_index_answers() {
         assert!(keys(&index, "corridor", &Filter::facet("country", ["DE"]), mode).is_empty());
     }
 }
+
+#[test]
+fn an_index_of_another_format_is_made_anew() {
+    let dir = tempfile::tempdir().unwrap();
+    let open = || {
+        let documents = || Ok::<_, Error>([document("a", "corridor", "", "DE", &[], None)]);
+        let table = Arc::new(StaticTable::new());
+        Index::open_or_rebuild(dir.path(), &spec(), table, 1, documents, Watch::nobody()).unwrap().rebuilt
+    };
+    assert_eq!(open(), Some(Reason::Missing));
+    let mut manifest = manifest::Manifest::read(dir.path()).unwrap_or_else(|_| panic!("it was just written"));
+    manifest.format += 1;
+    let format = manifest.format;
+    manifest.write(dir.path()).unwrap();
+    assert_eq!(open(), Some(Reason::OtherFormat { format }));
+    assert_eq!(open(), None);
+}
+
+#[test]
+fn every_changed_byte_of_a_manifest_is_noticed() {
+    let dir = tempfile::tempdir().unwrap();
+    manifest::Manifest::new(spec().digest(), "table", 7, 12).write(dir.path()).unwrap();
+    let path = dir.path().join(manifest::FILE);
+    let whole = std::fs::read(&path).unwrap();
+    assert!(manifest::Manifest::read(dir.path()).is_ok());
+    for at in 0..whole.len() {
+        let mut changed = whole.clone();
+        changed[at] ^= 1;
+        std::fs::write(&path, changed).unwrap();
+        assert!(manifest::Manifest::read(dir.path()).is_err(), "byte {at}");
+    }
+}
+
+/// Rules that say different things, enough for a graph of neighbors to be worth a test.
+fn many() -> Vec<Document> {
+    let words = ["corridor", "kitchen", "door", "window", "bed", "ramp", "lift", "desk", "stair", "robot", "toilet"];
+    let word = |i: usize, step: usize| words[i / step % words.len()];
+    let one = |i: usize| {
+        document(&format!("{i:04}"), word(i, 1), &format!("{} {} {i}", word(i, 11), word(i, 121)), "DE", &[], None)
+    };
+    (0..1300).map(one).collect()
+}
+
+#[test]
+fn a_graph_of_neighbors_is_kept_checked_and_as_good_as_the_scan() {
+    let dir = tempfile::tempdir().unwrap();
+    let embedder: Arc<dyn Embedder> = Arc::new(StaticTable::new());
+    let open = |graph_from| {
+        let (spec, revision) = (&spec(), u64::from(graph_from));
+        let wanted = Wanted { spec, embedder: &embedder, revision, graph_from };
+        let found =
+            lifecycle::open_or_rebuild(dir.path(), &wanted, || Ok::<_, Error>(many()), Watch::nobody()).unwrap();
+        (Index { inner: Arc::new(Inner { parts: found.parts, embedder: embedder.clone(), revision }) }, found.rebuilt)
+    };
+    let scanned = open(u32::MAX).0;
+    assert!(scanned.inner.parts.graph().is_none());
+    assert!(matches!(open(500).1, Some(Reason::Stale { .. })));
+    let (linked, rebuilt) = open(500);
+    assert!(rebuilt.is_none() && linked.inner.parts.graph().is_some());
+    let (mut same, mut all) = (0, 0);
+    for text in
+        ["width of the door", "where to sleep", "kitchen window", "robot in the lift", "wheelchair", "stairs 77"]
+    {
+        // A filter that leaves nearly all goes by the graph too.
+        for filter in [Filter::Everything, Filter::facet("country", ["DE"])] {
+            let search = |index: &Index| index.search(text, &filter, 10, Mode::Vector).unwrap();
+            let (exact, found) = (search(&scanned), search(&linked));
+            same += found.iter().filter(|hit| exact[9].similarity <= hit.similarity).count();
+            all += exact.len();
+            assert_eq!(search(&linked), found);
+        }
+    }
+    assert!(same * 100 >= all * 98, "recall {same} of {all}");
+    let folder =
+        dir.path().join(manifest::Manifest::read(dir.path()).map(|m| m.folder).unwrap_or_default()).join("graph");
+    let files: Vec<_> = std::fs::read_dir(&folder).unwrap().map(|e| e.unwrap().path()).collect();
+    assert_eq!(files.len(), 2);
+    // Damaged after the index was opened: the scan answers instead.
+    let (late, _) = open(500);
+    let mut content = std::fs::read(&files[0]).unwrap();
+    let middle = content.len() / 2;
+    content[middle] ^= 4;
+    std::fs::write(&files[0], content).unwrap();
+    assert!(late.inner.parts.graph().is_none());
+    assert_eq!(late.search("ramp", &Filter::Everything, 9, Mode::Vector).unwrap().len(), 9);
+    assert!(matches!(open(500).1, Some(Reason::Damaged { .. })));
+}

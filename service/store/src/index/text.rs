@@ -53,7 +53,7 @@ impl TextIndex {
         let mut analyzer = Analyzer::new();
         for (done, document) in documents.iter().enumerate() {
             if done % 1000 == 0 {
-                watch.step(Phase::Indexing, done, documents.len())?;
+                watch.step(Phase::Words, done, documents.len())?;
             }
             let mut row = TantivyDocument::default();
             for (field, (name, _)) in fields.iter().zip(spec.fields.iter().map(|f| (&f.name, f.boost))) {

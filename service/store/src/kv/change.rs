@@ -1,7 +1,7 @@
 //! What is asked of a backend: changes that belong together, and ranges of keys.
 
 use std::collections::BTreeMap;
-use std::ops::Bound;
+use std::ops::{Bound, RangeBounds};
 
 /// Changes that are stored together or not at all. The last change of a key counts.
 #[derive(Debug, Clone, Default)]
@@ -92,6 +92,11 @@ impl KeyRange {
     pub fn until(mut self, key: impl AsRef<[u8]>) -> Self {
         self.end = Bound::Excluded(key.as_ref().to_vec());
         self
+    }
+
+    /// Whether `key` lies in it.
+    pub fn contains(&self, key: &[u8]) -> bool {
+        RangeBounds::<[u8]>::contains(&self.bounds(), key)
     }
 
     /// Whether no key can lie in it; backends differ in how they take such a range, so they are not asked.

@@ -1,9 +1,11 @@
 //! The key-value trait that records are stored through, and its backends.
 //!
 //! A backend knows tables, keys and values as bytes. It does not know checksums, revisions, formats or locks between
-//! processes: [`crate::records`] and [`crate::lock`] do, so that all backends behave alike.
+//! processes: [`crate::records`] and `lock` do, so that all backends behave alike.
 
 mod change;
+#[cfg(feature = "sled")]
+mod gate;
 mod redb;
 #[cfg(feature = "sled")]
 mod sled;
@@ -23,7 +25,7 @@ pub type Visit<'a> = dyn FnMut(&[u8], &[u8]) -> Result<ControlFlow<()>> + 'a;
 
 /// An ordered, durable map of bytes in named tables. One process writes.
 pub trait KeyValue: Send + Sync {
-    /// Returns what is stored now, unchanged by later batches for as long as the view lives.
+    /// Returns what is stored now, unchanged by later batches for as long as the view lives. It stays in its thread.
     ///
     /// A backend may let writers wait meanwhile: a thread that holds a view must not call [`KeyValue::apply`].
     fn view(&self) -> Result<Box<dyn View + '_>>;

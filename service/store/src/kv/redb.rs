@@ -134,10 +134,12 @@ impl View for RedbView<'_> {
             table.range::<&[u8]>(range.bounds()).map(Some).map_err(|e| said(self.path, e.into()))
         })?;
         let Some(mut entries) = found else { return Ok(()) };
-        while let Some(entry) =
-            shielded(self.path, || entries.next().transpose().map_err(|e| said(self.path, e.into())))?
-        {
-            let (key, value) = entry;
+        while let Some((key, value)) = shielded(self.path, || {
+            let entry = entries.next().transpose().map_err(|e| said(self.path, e.into()))?;
+            // In a damaged page this may panic, so it must not happen below for the first time.
+            let _ = entry.as_ref().map(|(key, value)| (key.value(), value.value()));
+            Ok(entry)
+        })? {
             if visit(key.value(), value.value())? == ControlFlow::Break(()) {
                 break;
             }

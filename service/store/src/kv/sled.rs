@@ -6,9 +6,9 @@
 use std::ops::{Bound, ControlFlow};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{PoisonError, RwLock, RwLockReadGuard};
 use std::time::Duration;
 
+use super::gate::{Gate, Reading};
 use super::{Batch, KeyRange, KeyValue, Mode, Opened, View, Visit, shielded};
 use crate::error::{Error, Result};
 
@@ -41,14 +41,14 @@ struct Sled {
     /// Taken when dropped only.
     database: Option<sled::Db>,
     path: PathBuf,
-    gate: RwLock<()>,
+    gate: Gate,
     /// Whether a batch may be in memory that is not on the disk; such a state is not shown to anybody.
     failed: AtomicBool,
 }
 
 impl Sled {
     fn new(database: sled::Db, path: &Path) -> Self {
-        let (gate, failed) = (RwLock::new(()), AtomicBool::new(false));
+        let (gate, failed) = (Gate::default(), AtomicBool::new(false));
         Self { database: Some(database), path: path.to_path_buf(), gate, failed }
     }
 
@@ -76,9 +76,8 @@ impl Drop for Sled {
 
 impl KeyValue for Sled {
     fn view(&self) -> Result<Box<dyn View + '_>> {
-        // The gate guards no data, so that a panic while it was held has spoiled none.
-        let guard = self.gate.read().unwrap_or_else(PoisonError::into_inner);
-        Ok(Box::new(SledView { database: self.database()?, path: &self.path, _guard: guard }))
+        let reading = self.gate.read();
+        Ok(Box::new(SledView { database: self.database()?, path: &self.path, _reading: reading }))
     }
 
     fn apply(&self, batch: &Batch) -> Result<()> {
@@ -91,7 +90,7 @@ impl KeyValue for Sled {
                 }
             }
         }
-        let _guard = self.gate.write().unwrap_or_else(PoisonError::into_inner);
+        let _writing = self.gate.write();
         let database = self.database()?;
         let stored = shielded(&self.path, || {
             database.apply_batch(changes).and_then(|()| database.flush()).map_err(|e| said(&self.path, e))
@@ -106,7 +105,7 @@ impl KeyValue for Sled {
 struct SledView<'a> {
     database: &'a sled::Db,
     path: &'a Path,
-    _guard: RwLockReadGuard<'a, ()>,
+    _reading: Reading<'a>,
 }
 
 impl View for SledView<'_> {

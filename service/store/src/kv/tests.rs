@@ -107,6 +107,8 @@ fn ranges_begin_and_end_where_they_say() {
             (KeyRange::all().from("a").until("a"), &[]),
         ];
         for (range, expected) in cases {
+            let inside: Vec<_> = (0..stored.len()).filter(|i| range.contains(stored[*i])).collect();
+            assert_eq!(inside, *expected, "{range:?}");
             let expected: Vec<_> = expected.iter().map(|i| stored[*i].to_vec()).collect();
             assert_eq!(keys(&*view, "t", range), expected, "{backend:?} {range:?}");
         }
@@ -186,6 +188,29 @@ fn readers_never_see_half_a_batch() {
             (1..=40).for_each(write);
             readers.into_iter().for_each(|r| r.join().unwrap());
         });
+    });
+}
+
+#[test]
+fn nobody_waits_in_a_circle() {
+    check(|backend, path| {
+        let records = opened(backend, path, Mode::Create);
+        put(&*records, &[("t", b"a", b"old")]);
+        let view = records.view().unwrap();
+        std::thread::scope(|scope| {
+            let writer = scope.spawn(|| put(&*records, &[("t", b"a", b"new")]));
+            // Long enough that it waits, where the backend lets it wait.
+            std::thread::sleep(std::time::Duration::from_millis(50));
+            for _ in 0..200 {
+                records.view().unwrap().get("t", b"a").unwrap().unwrap();
+            }
+            let helper = scope.spawn(|| records.view().unwrap().get("t", b"a").unwrap());
+            assert!(helper.join().unwrap().is_some());
+            assert_eq!(view.get("t", b"a").unwrap().as_deref(), Some(&b"old"[..]));
+            drop(view);
+            writer.join().unwrap();
+        });
+        assert_eq!(records.view().unwrap().get("t", b"a").unwrap().as_deref(), Some(&b"new"[..]));
     });
 }
 

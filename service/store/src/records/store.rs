@@ -81,6 +81,13 @@ pub struct Store {
     inner: Arc<Inner>,
 }
 
+impl std::fmt::Debug for Store {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Inner { dir, backend, access, .. } = &*self.inner;
+        f.debug_struct("Store").field("dir", dir).field("backend", backend).field("access", access).finish()
+    }
+}
+
 struct Inner {
     dir: PathBuf,
     backend: Backend,
@@ -143,7 +150,7 @@ impl Store {
     ///
     /// # Errors
     /// [`Error::ReadOnly`]; [`Error::StillReading`] when this thread holds a view of the store; [`Error::Limit`];
-    /// [`Error::Io`] when the disk is full: nothing of the batch is stored then, and the store must be opened again.
+    /// [`Error::Io`] when the disk is full: the store must be opened again then, and has the whole batch or nothing of it.
     pub fn apply(&self, batch: Batch) -> Result<u64> {
         let inner = &*self.inner;
         if inner.access == Access::Read {

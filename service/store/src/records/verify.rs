@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::envelope;
 use super::state::{self, State, Tally};
-use super::view::View;
+use super::view::{OUT_OF_ORDER, View};
 use crate::error::{Error, Result};
 use crate::kv::KeyRange;
 
@@ -119,6 +119,7 @@ pub(super) fn verify(
 /// Looks at each record of a table, both in order and by its key.
 fn walk(view: &View<'_>, table: &str, steps: &mut Steps<'_>, problems: &mut Vec<Problem>) -> Result<Tally> {
     let mut found = Tally::default();
+    let mut last: Option<Vec<u8>> = None;
     view.raw().scan(table, &KeyRange::all(), &mut |key, bytes| {
         found.add(table, key);
         let mut wrong = envelope::unwrap(table, key, bytes).err();
@@ -128,12 +129,18 @@ fn walk(view: &View<'_>, table: &str, steps: &mut Steps<'_>, problems: &mut Vec<
         if wrong.is_none() && !view.raw().contains(table, key)? {
             wrong = Some("it is not found by its key".to_owned());
         }
+        // A damaged file may lead in circles.
+        let circles = last.as_ref().is_some_and(|last| last.as_slice() >= key);
+        if circles {
+            wrong = Some(OUT_OF_ORDER.to_owned());
+        }
         if let Some(reason) = wrong {
             let key = Some(String::from_utf8_lossy(key).into_owned());
             problems.push(Problem { table: table.to_owned(), key, reason });
         }
         steps.step()?;
-        Ok(ControlFlow::Continue(()))
+        last = Some(key.to_vec());
+        Ok(if circles { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
     })?;
     Ok(found)
 }

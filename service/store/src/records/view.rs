@@ -16,6 +16,9 @@ pub type Record = (String, Vec<u8>);
 /// How many records, and bytes of them, an iterator reads ahead.
 const PAGE: (usize, usize) = (256, 1 << 20);
 
+/// What is wrong with a key that lies before its predecessor.
+pub(super) const OUT_OF_ORDER: &str = "it is out of order";
+
 thread_local! {
     /// Which stores this thread is reading, by [`Store::id`].
     static READING: RefCell<Vec<usize>> = const { RefCell::new(Vec::new()) };
@@ -152,12 +155,16 @@ pub struct Records<'a> {
 
 impl Records<'_> {
     fn read_page(&mut self) -> Result<()> {
-        let (mut page, mut bytes) = (Vec::new(), 0);
+        let (mut page, mut bytes): (Vec<Record>, _) = (Vec::new(), 0);
         self.view.scan(&self.table, &self.range, |key, payload| {
+            // A damaged file may lead in circles.
+            if !self.range.contains(key.as_bytes()) || page.last().is_some_and(|(last, _)| last.as_str() >= key) {
+                return Err(damaged(&self.table, key.as_bytes(), OUT_OF_ORDER.to_owned()));
+            }
             bytes += payload.len();
             page.push((key.to_owned(), payload.to_vec()));
             let full = page.len() >= PAGE.0 || bytes >= PAGE.1;
-            Ok::<_, Error>(if full { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
+            Ok(if full { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
         })?;
         match page.last() {
             Some((key, _)) => self.range = self.range.clone().after(key),

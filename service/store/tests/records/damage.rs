@@ -175,7 +175,7 @@ fn foreign_bytes_are_no_records() {
             fs::write(&file, (0..length).map(|_| random.below(256) as u8).collect::<Vec<_>>()).unwrap();
         }
         for access in [Access::Read, Access::Write] {
-            let error = Store::open(dir, access, &patient(backend)).err().expect("rubbish is no store");
+            let error = Store::open(dir, access, &patient(backend)).expect_err("rubbish is no store");
             assert!(error.to_string().contains(dir.to_str().unwrap()), "{error}");
         }
     });

@@ -58,7 +58,8 @@ fn a_full_disk_takes_nothing_that_was_acknowledged() {
             .output()
             .unwrap();
         let said = String::from_utf8_lossy(&output.stdout).into_owned();
-        let stored = said.lines().filter_map(|l| l.strip_prefix("stored ")?.parse::<u64>().ok()).last().unwrap_or(0);
+        let stored =
+            said.lines().filter_map(|l| l.strip_prefix("stored ")?.parse::<u64>().ok()).next_back().unwrap_or(0);
         assert!(said.contains("refused: "), "{backend:?}: {said}{}", String::from_utf8_lossy(&output.stderr));
 
         let store = Store::open(dir, Access::Write, &patient(backend)).unwrap();

@@ -2,21 +2,22 @@
 
 use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
+use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-use d3dgen_store::{Access, Backend, Batch, KeyRange, Store};
+use d3dgen_store::{Access, Backend, Batch, Error, KeyRange, Store, snapshot};
 
-use crate::common::{Random, each, part, part_input, patient, verify};
+use crate::common::{Random, each, filled, part, part_input, patient, verify};
 
 const ROUNDS: u64 = 20;
 
 /// How many records batch `n` has.
 fn size(n: u64) -> u64 {
-    if n % 17 == 0 { 400 } else { 3 + n % 20 }
+    if n.is_multiple_of(17) { 400 } else { 3 + n % 20 }
 }
 
 fn payload(n: u64, i: u64) -> Vec<u8> {
-    let length = if (n + i) % 97 == 0 { 70_000 } else { 100 + (n * 31 + i * 7) % 1500 };
+    let length = if (n + i).is_multiple_of(97) { 70_000 } else { 100 + (n * 31 + i * 7) % 1500 };
     format!("{n}/{i} ").into_bytes().into_iter().cycle().take(length as usize).collect()
 }
 
@@ -124,5 +125,62 @@ fn nothing_acknowledged_is_lost_in_twenty_kills() {
             }
         }
         assert!(acknowledged > ROUNDS, "{backend:?} stored only {acknowledged} batches in all");
+    });
+}
+
+/// Saves a store and restores it elsewhere.
+#[test]
+#[ignore = "a part of another test"]
+fn saves_and_restores() {
+    let input = part_input();
+    let (backend, home) = input.split_once(' ').unwrap();
+    let (home, options) = (Path::new(home), patient(Backend::from_name(backend).unwrap()));
+    println!("\nopen");
+    let go_on = AtomicBool::new(false);
+    let (file, restored) = (home.join("saved.snapshot"), home.join("restored"));
+    if !file.exists() {
+        let store = Store::open(home.join("store"), Access::Read, &options).unwrap();
+        snapshot::write(&store, &file, "a test", &mut |_| {}, &go_on).unwrap();
+    }
+    snapshot::restore(&file, &restored, &options, &mut |_| {}, &go_on).unwrap();
+}
+
+#[test]
+fn what_is_saved_or_restored_when_killed_is_whole_or_not_there() {
+    each(|backend, dir| {
+        filled(dir, backend, 3000);
+        let home = dir.parent().unwrap();
+        let (file, restored) = (home.join("saved.snapshot"), home.join("restored"));
+        let mut random = Random(8);
+        let mut whole = 0;
+        for _ in 0..12 {
+            let mut child = part("kill::saves_and_restores", &format!("{} {}", backend.name(), home.display()));
+            let mut child = child.stderr(std::process::Stdio::null()).spawn().unwrap();
+            let mut lines = BufReader::new(child.stdout.take().unwrap()).lines().map_while(Result::ok);
+            assert!(lines.any(|line| line == "open"));
+            std::thread::sleep(Duration::from_micros(random.below(150_000)));
+            child.kill().unwrap();
+            child.wait().unwrap();
+            if file.exists() {
+                assert_eq!(snapshot::check(&file).unwrap().records, 3000);
+            }
+            match Store::open(&restored, Access::Read, &patient(backend)) {
+                Ok(store) => {
+                    assert_eq!((store.count("things").unwrap(), verify(&store).unwrap()), (3000, vec![]));
+                    drop(store);
+                    std::fs::remove_dir_all(&restored).unwrap();
+                    whole += 1;
+                }
+                Err(Error::NotFound { .. }) => {}
+                Err(error) => assert!(error.to_string().contains("interrupted"), "{error}"),
+            }
+            if random.below(2) == 0 {
+                let _ = std::fs::remove_file(&file);
+            }
+        }
+        // What was interrupted is in nobody's way.
+        let mut last = part("kill::saves_and_restores", &format!("{} {}", backend.name(), home.display()));
+        assert!(last.output().unwrap().status.success(), "{whole} of 12 were whole");
+        assert_eq!(Store::open(&restored, Access::Read, &patient(backend)).unwrap().count("things").unwrap(), 3000);
     });
 }

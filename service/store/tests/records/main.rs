@@ -1,4 +1,5 @@
 //! Records as their users see them: folders, processes, crashes, damage. One binary, run with every built-in backend.
+#![allow(clippy::unwrap_used, reason = "what fails in a test should stop it")]
 
 mod common;
 mod damage;

@@ -118,7 +118,8 @@ fn information(document: &Document, file: &mut File) {
     let Some(info) = resolved.and_then(|o| o.as_dict().ok()) else { return };
     let text = |info: &Dictionary, key: &[u8]| {
         let text = info.get(key).ok().and_then(|o| o.as_str().ok()).map(decoded)?;
-        Some(text.trim().to_owned()).filter(|t| !t.is_empty() && t.len() < 500)
+        // Some writers put "(unspecified)" where they know nothing.
+        Some(text.trim().to_owned()).filter(|t| !t.is_empty() && t.len() < 500 && !t.starts_with('('))
     };
     // "untitled" and file names of word processors are no titles.
     let named = |t: &String| {
