@@ -98,7 +98,8 @@ fn turned_point(p: Point, quarters: u8) -> Point {
     }
 }
 
-fn turned(r: &Rect, quarters: u8) -> Rect {
+/// Returns a rectangle turned back by quarter turns about the origin: what lay ahead lies along +x.
+pub(crate) fn turned(r: &Rect, quarters: u8) -> Rect {
     let (a, b) = (turned_point(Point::new(r.x0, r.y0), quarters), turned_point(Point::new(r.x1, r.y1), quarters));
     Rect::new(a.x, a.y, b.x, b.y)
 }

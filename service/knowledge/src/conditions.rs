@@ -3,7 +3,7 @@
 use d3dgen_model::knowledge::{Constraint, Reference};
 
 use crate::query::Query;
-use crate::tables::{ConditionRow, TABLES, When};
+use crate::tables::{ConditionRow, QuantityRow, TABLES, When};
 
 /// What the conditions of one constraint come to.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -40,15 +40,26 @@ pub enum Guard {
     Named(&'static ConditionRow),
     /// The door opens into the room (true) or out of it.
     OpensInto(bool),
+    /// A figure of the room lies in the row's interval.
+    Room(&'static ConditionRow),
+    /// A figure of the finished building lies in the row's interval.
+    Whole(&'static ConditionRow),
 }
 
-/// Returns what the conditions of a constraint come to.
-pub(crate) fn evaluate(c: &Constraint, query: &Query) -> Conditions {
+impl Guard {
+    /// Returns true when plans aim at a figure although not every room has to keep it.
+    pub(crate) fn is_planned(&self) -> bool {
+        matches!(self, Self::Room(row) | Self::Whole(row) if row.planned)
+    }
+}
+
+/// Returns what the conditions of a constraint come to: those it names, and those its quantity brings along.
+pub(crate) fn evaluate(c: &Constraint, quantity: Option<&QuantityRow>, query: &Query) -> Conditions {
     let mut out = Conditions::default();
-    for phrase in &c.conditions {
+    for phrase in phrases(c, quantity) {
         let Some(row) = TABLES.condition(phrase) else {
             if !is_code(phrase) && out.unknown.is_none() {
-                out.unknown = Some(format!("depends on \"{phrase}\", which the documents do not tell"));
+                out.unknown = Some(not_told(phrase));
             }
             continue;
         };
@@ -56,20 +67,38 @@ pub(crate) fn evaluate(c: &Constraint, query: &Query) -> Conditions {
         out.reported_only |= row.reported_only;
         match guard(row) {
             Some(guard) => out.guards.push(guard),
-            None if holds(row, query) => out.beds |= row.when == When::Beds,
-            None => out.fails = Some(row.reason.clone().unwrap_or_else(|| format!("holds only for \"{phrase}\""))),
+            None if !holds(row, query) => {
+                out.fails = Some(row.reason.clone().unwrap_or_else(|| format!("holds only for \"{phrase}\"")));
+            }
+            None if row.when.is_unknown() => {
+                out.unknown.get_or_insert_with(|| row.reason.clone().unwrap_or_else(|| not_told(phrase)));
+            }
+            None => out.beds |= row.when == When::Beds,
         }
     }
     out
 }
 
 /// Returns why the conditions of a constraint are never known to hold; `None` when some building meets them.
-pub(crate) fn never(c: &Constraint) -> Option<String> {
-    c.conditions.iter().find_map(|phrase| match TABLES.condition(phrase) {
-        None if is_code(phrase) => None,
-        None => Some(format!("depends on \"{phrase}\", which the documents do not tell")),
-        Some(row) => (row.when == When::Never).then(|| row.reason.clone().unwrap_or_default()),
+pub(crate) fn never(c: &Constraint, quantity: Option<&QuantityRow>) -> Option<String> {
+    let rows = phrases(c, quantity).filter_map(|phrase| TABLES.condition(phrase));
+    rows.filter(|row| row.when == When::Never).map(|row| row.reason.clone().unwrap_or_default()).next()
+}
+
+/// Returns which condition no document tells; a world that keeps the figure all the same keeps the constraint.
+pub(crate) fn untold(c: &Constraint, quantity: Option<&QuantityRow>) -> Option<String> {
+    phrases(c, quantity).find_map(|phrase| match TABLES.condition(phrase) {
+        None => (!is_code(phrase)).then(|| not_told(phrase)),
+        Some(row) => row.when.is_unknown().then(|| row.reason.clone().unwrap_or_else(|| not_told(phrase))),
     })
+}
+
+fn phrases<'a>(c: &'a Constraint, quantity: Option<&'a QuantityRow>) -> impl Iterator<Item = &'a String> {
+    c.conditions.iter().chain(quantity.into_iter().flat_map(|q| &q.conditions))
+}
+
+fn not_told(phrase: &str) -> String {
+    format!("depends on \"{phrase}\", which the documents do not tell")
 }
 
 /// Returns true when a document is about buildings such as this one.
@@ -90,6 +119,8 @@ fn guard(row: &'static ConditionRow) -> Option<Guard> {
         When::Named => Some(Guard::Named(row)),
         When::OpensInto => Some(Guard::OpensInto(true)),
         When::OpensOut => Some(Guard::OpensInto(false)),
+        when if when.is_of_room() => Some(Guard::Room(row)),
+        when if when.is_of_building() => Some(Guard::Whole(row)),
         _ => None,
     }
 }
@@ -106,6 +137,10 @@ fn holds(row: &ConditionRow, query: &Query) -> bool {
                 query.rooms.iter().filter(|r| row.room_types.contains(&r.room_type)).map(|r| r.count).sum();
             row.holds(f64::from(count))
         }
+        When::RobotKind | When::Robots | When::RobotModel => {
+            query.robots.iter().any(|r| row.words.is_empty() || row.words.contains(&r.kind))
+        }
+        When::BuildingType => query.building_type.as_ref().is_some_and(|t| row.words.contains(t)),
         _ => true,
     }
 }
@@ -120,9 +155,7 @@ fn fact(when: When, query: &Query) -> Option<bool> {
         When::Beds => Some(beds),
         When::NoBeds => Some(!beds),
         When::TwoRobots => Some(query.robot_count() >= 2),
-        When::Public | When::Persons | When::Area | When::RoomsOf | When::BedsInRoom => None,
-        When::SeatsInRoom | When::ObjectsInRoom | When::Exits | When::Named => None,
-        When::OpensInto | When::OpensOut => None,
+        _ => None,
     }
 }
 

@@ -25,7 +25,7 @@ const WIDEST_DOOR_M: f64 = 2.0;
 pub(crate) fn draw(constraints: &[Applicable], chain: &[String], query: &Query) -> Limits {
     let usable: Vec<(&Applicable, &Rule)> = constraints
         .iter()
-        .filter(|a| a.guards.is_empty() && a.superseded_by.is_none())
+        .filter(|a| a.guards.iter().all(Guard::is_planned) && a.unsure.is_none() && a.superseded_by.is_none())
         .filter_map(|a| Some((a, a.decision.as_ref().ok()?)))
         .collect();
     let pick = |wanted: &dyn Fn(&Applicable, &Rule) -> Option<f64>| strictest(&usable, chain, query, wanted);
@@ -75,7 +75,8 @@ pub(crate) fn draw(constraints: &[Applicable], chain: &[String], query: &Query) 
 
 /// Returns the clear heights that rooms above an area need.
 fn ceilings_by_area(constraints: &[Applicable], about: &dyn Fn(&Applicable) -> bool, query: &Query) -> Vec<AreaLimit> {
-    let candidates = constraints.iter().filter(|a| a.superseded_by.is_none() && about(a) && is_planned(a, query));
+    let candidates = constraints.iter().filter(|a| a.superseded_by.is_none() && a.unsure.is_none());
+    let candidates = candidates.filter(|a| about(a) && is_planned(a, query));
     let steps = candidates.filter_map(|a| {
         let rule = a.decision.as_ref().ok().filter(|r| r.quantity.measure == Measure::CeilingHeight)?;
         let &[Guard::Area(above_m2, up_to_m2)] = a.guards.as_slice() else { return None };

@@ -18,6 +18,8 @@ pub(crate) struct Facts {
     pub robots: u32,
     /// Radius of the circle that the largest robot turns in, m.
     pub robot_radius: Option<f64>,
+    /// Rooms to sleep in.
+    pub bedrooms: u32,
 }
 
 impl Facts {
@@ -29,7 +31,7 @@ impl Facts {
         match name {
             "N" => Some(f64::from(self.persons)),
             "N_robots" => Some(f64::from(self.robots)),
-            "robot_width" | "robot_length" => self.robot_radius.map(|r| r * side),
+            "robot_width" | "robot_length" | "vehicle_width" => self.robot_radius.map(|r| r * side),
             _ => None,
         }
     }
@@ -61,7 +63,6 @@ impl Bounds {
 /// # Errors
 /// Says why the value has no figure that the quantity can be held against.
 pub(crate) fn bounds(c: &Constraint, measure: Measure, facts: &Facts) -> Result<Bounds, String> {
-    let persons = facts.persons;
     match &c.value {
         _ if measure == Measure::ObjectExtents => extents(c).map(|_| Bounds::at_most(0.0)),
         Value::Number(v) if measure.is_extent() && !matches!(c.constraint_type.as_str(), "minimum" | "maximum") => {
@@ -86,9 +87,10 @@ pub(crate) fn bounds(c: &Constraint, measure: Measure, facts: &Facts) -> Result<
         }
         Value::Table(table) => match table.values().filter_map(Json::as_f64).fold(None, least) {
             Some(v) if table.keys().any(|k| k.ends_with("_side")) => Ok(Bounds::at_least(v)),
-            _ => by_persons(table.iter(), persons)
+            _ => by_persons(table.iter(), facts.persons)
+                .or_else(|| by_bedrooms(table.iter(), facts.bedrooms))
                 .map(|v| one(v, c, measure))
-                .ok_or_else(|| "its table is not by number of people".into()),
+                .ok_or_else(|| "its table is not by number of people or bedrooms".into()),
         },
         Value::Expression { expr } => match expression::evaluate(expr, &|name| facts.figure(name, expr)) {
             Some(v) => Ok(one(v, c, measure)),
@@ -122,7 +124,10 @@ pub(crate) fn extents(c: &Constraint) -> Result<Vec<Extent<'_>>, String> {
 }
 
 fn is_rectangle(measure: Measure) -> bool {
-    matches!(measure, Measure::InnerRectangle | Measure::FreeRectangle | Measure::ObjectSize)
+    matches!(
+        measure,
+        Measure::InnerRectangle | Measure::FreeRectangle | Measure::ObjectSize | Measure::ClearFloorAtObject
+    )
 }
 
 fn one(value: f64, c: &Constraint, measure: Measure) -> Bounds {
@@ -162,6 +167,19 @@ fn by_persons<'a>(entries: impl Iterator<Item = (&'a String, &'a Json)>, persons
     rows.iter().find(|(upper, _)| persons <= *upper).map(|r| r.1)
 }
 
+/// Returns the least entry of a table by bedrooms: keys `2b`, `2b3p`, and `3-room`, which counts the living room too.
+fn by_bedrooms<'a>(entries: impl Iterator<Item = (&'a String, &'a Json)>, bedrooms: u32) -> Option<f64> {
+    let rooms = |key: &str| -> Option<u32> {
+        match (key.strip_suffix("-room"), key.split_once('b')) {
+            (Some(n), _) => n.parse::<u32>().ok()?.checked_sub(1),
+            (_, Some((n, _))) => n.parse().ok(),
+            _ => None,
+        }
+    };
+    let fits = entries.filter(|(key, _)| rooms(key) == Some(bedrooms));
+    fits.filter_map(|(_, value)| value.as_f64()).fold(None, least)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -196,6 +214,25 @@ mod tests {
             let found =
                 bounds(&c, Measure::CirculationWidth, &Facts { persons, ..Facts::default() }).ok().and_then(|b| b.min);
             assert_eq!(found, width, "{persons} people");
+        }
+    }
+
+    #[test]
+    fn tables_by_bedrooms() {
+        let storage = [("1b1p", 1.0), ("1b2p", 1.5), ("2b", 2.0)];
+        let bathrooms = [("2-room", 1.0), ("3-room", 2.0), ("3Gen", 3.0)];
+        for (rows, bedrooms, value) in [
+            (storage.as_slice(), 1, Some(1.0)),
+            (&storage, 2, Some(2.0)),
+            (&storage, 3, None),
+            (&bathrooms, 1, Some(1.0)),
+            (&bathrooms, 2, Some(2.0)),
+            (&bathrooms, 0, None),
+        ] {
+            let table = rows.iter().map(|(k, v)| ((*k).to_owned(), (*v).into())).collect();
+            let c = constraint("table", Value::Table(table));
+            let found = bounds(&c, Measure::RoomsCounted, &Facts { bedrooms, ..Facts::default() });
+            assert_eq!(found.ok().and_then(|b| b.min), value, "{bedrooms} bedrooms");
         }
     }
 

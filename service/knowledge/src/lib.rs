@@ -36,7 +36,7 @@ pub use query::{Query, QueryRoom};
 pub use resolve::{Conflict, Policy};
 pub use retrieve::{Applicable, Retrieval, Rule, Scope, retrieve, retrieve_with};
 pub use stats::{Stats, decidable};
-pub use tables::{ConditionRow, QuantityRow};
+pub use tables::{ConditionRow, QuantityRow, Sure};
 
 #[cfg(test)]
 mod tests;

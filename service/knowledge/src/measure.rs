@@ -196,6 +196,82 @@ pub enum Measure {
     NoGlassOrMirrors,
     /// Distance between robots where they start, m.
     RobotsApart,
+    /// Walking speed of people, m/s.
+    WalkingSpeed,
+    /// Free width at each side of the widest robot in the middle of circulation, m.
+    SideClearance,
+    /// Width of circulation beyond that of the widest robot, m.
+    SpareWidth,
+    /// Length of a straight corridor beyond its last way out, in buildings with two exits, m.
+    DeadEnd,
+    /// Longest way to an exit over the row's base, the length that is allowed as the crow flies.
+    WalkingFactor,
+    /// Height of the middle of a thing on a wall, m.
+    MountHeight,
+    /// Height of the underside of a thing on a wall, which hands reach for, m.
+    UndersideHeight,
+    /// Clear height that a share of the net floor area has, the share being the row's base, m.
+    CeilingOfMost,
+    /// Distance from the middle of a thing on a wall to the nearest corner of the room beside it, m.
+    CornerDistance,
+    /// Distance from an object to the nearest door to a room of other kinds, m.
+    ObjectToDoor,
+    /// Worktop beside an appliance, at the side with less of it, m.
+    LandingShorter,
+    /// Worktop beside an appliance, at the side with more of it, m.
+    LandingLonger,
+    /// Length by which something stands in a line between sink, stove and refrigerator, m.
+    TriangleIntrusion,
+    /// The way between the doors of a kitchen passes by the triangle of sink, stove and refrigerator.
+    TriangleClearOfTraffic,
+    /// Free floor behind the edges of a table that people sit at, m.
+    SeatedDepth,
+    /// Edge of a table for each seat at it, where the table is deep enough for knees, m.
+    SeatSpace,
+    /// A rectangle of free floor at the front of an object, in either direction, m.
+    ClearFloorAtObject,
+    /// Width of the free floor in front of an object that is as deep as the constraint asks, m.
+    ClearInFront,
+    /// Width of the floor around an object that is as deep from the wall behind as the constraint asks, m.
+    ClearanceAround,
+    /// Clear extent of the widest room of a kind, m.
+    LargestDimension,
+    /// Number of rooms of a kind that the conditions leave.
+    RoomsCounted,
+    /// Number of rooms of one kind with one of another for themselves.
+    EnsuiteRooms,
+    /// Every room has a way out that passes through no room of a kind.
+    ReachesExitWithout,
+    /// Net floor area of all rooms of a kind together, m^2.
+    RoomKindArea,
+    /// Sides of an object that a person can stand at.
+    AccessibleSides,
+    /// Distance from the head of a bed to the nearest window of its room, m.
+    HeadToWindow,
+    /// Number of beds of the building.
+    BedsInBuilding,
+    /// Doors whose leaf opens out of the room.
+    OpensOutward,
+    /// Gross floor area of the building for each robot of a kind, m^2.
+    BuildingAreaPerRobot,
+    /// Distance from a dock to the farthest floor to be cleaned, m.
+    DockReach,
+    /// Distance from the side of a bed to the wall that no other bed stands before, m.
+    BedToSideWall,
+    /// Free floor at the narrower side of a bed, where the other side has what it needs, m.
+    BedSidePair,
+    /// Gross floor area of the building, m^2.
+    GrossBuildingArea,
+    /// Floor without steps.
+    FloorStep,
+    /// Slope of the floor, degrees.
+    FloorSlope,
+    /// A floor without steps and slopes.
+    FloorFlat,
+    /// Net floor area of all rooms of a kind for each bed of the building, m^2.
+    KindAreaPerBed,
+    /// Area of the windows of a room over its net floor area, of which a part opens.
+    OpenableRatio,
 }
 
 impl Measure {
@@ -222,6 +298,7 @@ impl Measure {
                 | Self::PersonsPerObject
                 | Self::PersonsPer100
                 | Self::RobotRadius
+                | Self::WalkingSpeed
         )
     }
 
@@ -231,11 +308,20 @@ impl Measure {
         matches!(
             self,
             M::ObjectFront | M::ObjectSides | M::ObjectAround | M::ObjectThreeSides | M::ObjectToWall | M::FacingGap
-        ) || matches!(self, M::GapBetweenObjects | M::TableEdgePerSeat)
+        ) || matches!(self, M::GapBetweenObjects | M::TableEdgePerSeat | M::ClearFloorAtObject | M::SeatedDepth)
     }
 
     /// Returns true for an extent of an object, which advice gives as the usual figure.
     pub(crate) fn is_extent(self) -> bool {
-        matches!(self, Self::ObjectWidth | Self::ObjectDepth | Self::ObjectHeight)
+        matches!(self, Self::ObjectWidth | Self::ObjectDepth | Self::ObjectHeight | Self::MountHeight)
+    }
+
+    /// Returns true for figures by the number of people who use a building, which its area does not tell.
+    ///
+    /// Ways out are another matter: building codes reckon the people on them from the area.
+    pub(crate) fn is_by_users(self) -> bool {
+        use Measure as M;
+        matches!(self, M::ToiletsForPersons | M::PersonsPerToilet | M::PersonsPerObject | M::PersonsPerRoom)
+            || matches!(self, M::RoomNeededAbovePersons | M::BuildingAreaPerPerson)
     }
 }

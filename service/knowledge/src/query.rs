@@ -7,6 +7,9 @@ use d3dgen_model::scene_graph::{GraphRoom, Robot, SceneGraph};
 /// Floor area that one person is reckoned with when nothing says how many there are, m^2.
 const AREA_PER_PERSON_M2: f64 = 10.0;
 
+/// Space name of rooms to sleep in.
+const SLEEPING: &str = "bedroom";
+
 /// The building whose rules are wanted.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Query {
@@ -83,7 +86,9 @@ impl Query {
     /// Returns what formulas may ask about the building.
     pub(crate) fn facts(&self) -> Facts {
         let robot_radius = self.robots.iter().map(|r| r.radius_m).reduce(f64::max);
-        Facts { persons: self.persons, robots: self.robot_count(), robot_radius }
+        let sleeps = |r: &&QueryRoom| r.room_type == SLEEPING || r.spaces.iter().any(|s| s == SLEEPING);
+        let bedrooms = self.rooms.iter().filter(sleeps).map(|r| r.count).sum();
+        Facts { persons: self.persons, robots: self.robot_count(), robot_radius, bedrooms }
     }
 
     /// Returns the number of robots.

@@ -42,7 +42,7 @@ impl Retrieval {
     pub fn missing_rooms(&self) -> impl Iterator<Item = (&str, &Applicable)> {
         self.constraints.iter().filter_map(|a| {
             let rule = a.decision.as_ref().ok()?;
-            let asks = matches!(rule.quantity.measure, Measure::RoomsPresent | Measure::RoomNeededAbovePersons);
+            let asks = asks_for_rooms(rule.quantity.measure);
             let none = matches!(&a.scope, Scope::Rooms(types) if types.is_empty());
             let missing = asks && none && a.mandatory && rule.bounds.min.is_some_and(|n| n >= 1.0);
             missing.then_some((a.constraint.space_type.as_str(), a))
@@ -65,6 +65,8 @@ pub struct Applicable {
     pub scope: Scope,
     /// Conditions that remain to be asked of each room.
     pub guards: Vec<Guard>,
+    /// Which condition the documents do not tell: the constraint is kept where its figure is, else nobody can say.
+    pub unsure: Option<String>,
     /// How it is measured and what it requires, or why it cannot be decided.
     pub decision: Result<Rule, String>,
     /// Id of the constraint that goes before this one: of a nearer jurisdiction, or by the policy asked for.
@@ -145,22 +147,20 @@ pub fn retrieve_with(knowledge: &KnowledgeBase, query: &Query, policy: &Policy) 
 
 /// Returns a constraint with its meaning for this building; `None` when it is about nothing there.
 fn applicable(c: &Constraint, reference: &Reference, query: &Query) -> Option<Applicable> {
-    let conditions = conditions::evaluate(c, query);
+    let quantity = TABLES.quantity(c);
+    let conditions = conditions::evaluate(c, quantity, query);
     if conditions.fails.is_some() {
         return None;
     }
-    let quantity = TABLES.quantity(c);
     // a rule that asks for a room speaks of buildings without it too
-    let presence =
-        quantity.is_some_and(|q| matches!(q.measure, Measure::RoomsPresent | Measure::RoomNeededAbovePersons));
+    let presence = quantity.is_some_and(|q| asks_for_rooms(q.measure) || q.measure == Measure::RoomKindArea);
     let scope = match scope(&c.space_type, query) {
         None if presence => Scope::Rooms(BTreeSet::new()),
         found => narrowed(found?, &conditions, query)?,
     };
-    let decision = match (&conditions.unknown, quantity) {
-        (_, None) => Err(TABLES.unknown(c)),
-        (Some(reason), _) => Err(reason.clone()),
-        (None, Some(quantity)) => figure::bounds(c, quantity.measure, &query.facts()).map(|bounds| Rule {
+    let decision = match quantity {
+        None => Err(TABLES.unknown(c)),
+        Some(quantity) => figure::bounds(c, quantity.measure, &query.facts()).map(|bounds| Rule {
             quantity,
             bounds,
             to: quantity.to.iter().flat_map(|s| types_of(s, query)).collect(),
@@ -168,7 +168,7 @@ fn applicable(c: &Constraint, reference: &Reference, query: &Query) -> Option<Ap
     };
     Some(Applicable {
         citation: citation(c, reference)?,
-        mandatory: is_mandatory(c, reference) && !quantity.is_some_and(|q| q.advice),
+        mandatory: is_mandatory(c, reference) && conditions.unknown.is_none() && !quantity.is_some_and(|q| q.advice),
         reported_only: conditions.reported_only
             || quantity.is_some_and(|q| q.reported_only)
             || matches!(c.value, Value::Expression { .. }),
@@ -176,9 +176,15 @@ fn applicable(c: &Constraint, reference: &Reference, query: &Query) -> Option<Ap
         ref_id: reference.ref_id.clone(),
         scope,
         guards: conditions.guards,
+        unsure: conditions.unknown,
         decision,
         superseded_by: None,
     })
+}
+
+/// Returns true for quantities of rooms that a building may lack.
+fn asks_for_rooms(measure: Measure) -> bool {
+    matches!(measure, Measure::RoomsPresent | Measure::RoomNeededAbovePersons)
 }
 
 /// Returns what a space name means in this building; `None` when it has none of it.

@@ -11,7 +11,7 @@ use crate::figure::{self, Facts};
 use crate::tables::{QuantityRow, SpaceKind, TABLES};
 
 /// Facts of a building in which every formula and table has a figure.
-const SOME_BUILDING: Facts = Facts { persons: 4, robots: 2, robot_radius: Some(0.3) };
+const SOME_BUILDING: Facts = Facts { persons: 4, robots: 2, robot_radius: Some(0.3), bedrooms: 2 };
 
 /// Counts of one knowledge base.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -36,7 +36,9 @@ pub struct Stats {
     pub file_bytes: usize,
     /// Rules that some world of the domain can be held against.
     pub decided: usize,
-    /// The same over all rules.
+    /// Those among them of which worlds are sure one way only: a condition is not told, or the figure is a bound.
+    pub decided_one_way: usize,
+    /// Decided rules over all rules.
     pub share_decided: f64,
     /// Rules that no world can be held against, by reason.
     pub not_decidable: BTreeMap<String, usize>,
@@ -48,11 +50,12 @@ impl Stats {
         let all = || knowledge.references.iter().flat_map(|r| &r.constraints);
         let distinct = |word: fn(&Constraint) -> &str| all().map(word).collect::<BTreeSet<_>>().len();
         let (references, constraints) = (knowledge.references.len(), all().count());
-        let (mut confidence, mut not_decidable) = (BTreeMap::new(), BTreeMap::new());
+        let (mut confidence, mut not_decidable, mut decided_one_way) = (BTreeMap::new(), BTreeMap::new(), 0);
         for c in all() {
             *confidence.entry(c.confidence.clone()).or_insert(0) += 1;
-            if let Err(reason) = decidable(c, domain) {
-                *not_decidable.entry(reason).or_insert(0) += 1;
+            match decidable(c, domain) {
+                Err(reason) => *not_decidable.entry(reason).or_insert(0) += 1,
+                Ok(()) => decided_one_way += usize::from(is_one_way(c)),
             }
         }
         let decided = constraints - not_decidable.values().sum::<usize>();
@@ -69,6 +72,7 @@ impl Stats {
             confidence,
             file_bytes,
             decided,
+            decided_one_way,
             share_decided: share(decided, constraints),
             not_decidable,
         }
@@ -82,7 +86,7 @@ impl Stats {
 /// Says what is missing.
 pub fn decidable(c: &Constraint, domain: &Domain) -> Result<(), String> {
     let quantity = TABLES.quantity(c).ok_or_else(|| TABLES.unknown(c))?;
-    if let Some(reason) = conditions::never(c) {
+    if let Some(reason) = conditions::never(c, Some(quantity)) {
         return Err(reason);
     }
     figure::bounds(c, quantity.measure, &SOME_BUILDING)?;
@@ -91,6 +95,12 @@ pub fn decidable(c: &Constraint, domain: &Domain) -> Result<(), String> {
     } else {
         Err(format!("no world of {} has what `{}` is about", domain.id, c.space_type))
     }
+}
+
+/// Returns true when worlds are sure of one verdict only.
+fn is_one_way(c: &Constraint) -> bool {
+    let quantity = TABLES.quantity(c);
+    quantity.is_some_and(|q| q.sure.is_some()) || conditions::untold(c, quantity).is_some()
 }
 
 /// Returns true when worlds of the domain have the space of a constraint, and the objects it is about stand there.

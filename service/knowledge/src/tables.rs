@@ -12,17 +12,21 @@ use crate::measure::Measure;
 pub(crate) static TABLES: LazyLock<Tables> = LazyLock::new(|| {
     let quantities: Quantities = toml::from_str(include_str!("../data/quantities.toml"))
         .expect("data/quantities.toml is part of the crate and read by its tests");
+    let named: Reported = toml::from_str(include_str!("../data/quantities_named.toml"))
+        .expect("data/quantities_named.toml is part of the crate and read by its tests");
     let reported: Reported = toml::from_str(include_str!("../data/quantities_reported.toml"))
         .expect("data/quantities_reported.toml is part of the crate and read by its tests");
     let spaces: Spaces = toml::from_str(include_str!("../data/spaces.toml"))
         .expect("data/spaces.toml is part of the crate and read by its tests");
     let conditions: Conditions = toml::from_str(include_str!("../data/conditions.toml"))
         .expect("data/conditions.toml is part of the crate and read by its tests");
+    let built: Built = toml::from_str(include_str!("../data/conditions_built.toml"))
+        .expect("data/conditions_built.toml is part of the crate and read by its tests");
     Tables {
-        quantities: [reported.quantity, quantities.quantity].concat(),
+        quantities: [named.quantity, reported.quantity, quantities.quantity].concat(),
         unknown: quantities.unknown,
         spaces: spaces.space,
-        conditions: conditions.condition,
+        conditions: conditions.condition.into_iter().chain(built.condition).collect(),
         documents: conditions.document,
     }
 });
@@ -60,6 +64,12 @@ struct Spaces {
 struct Conditions {
     condition: Vec<ConditionRow>,
     document: Vec<DocumentRow>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Built {
+    condition: Vec<ConditionRow>,
 }
 
 /// Which constraints speak of which quantity.
@@ -106,13 +116,30 @@ pub struct QuantityRow {
     /// True when reports judge it and plans do not aim at it.
     #[serde(default)]
     pub reported_only: bool,
+    /// Conditions that the name of the constraint says (`gia_2b3p`), as phrases of the conditions.
+    #[serde(default)]
+    pub conditions: Vec<String>,
+    /// True when it is enough that one of the subjects keeps it.
+    #[serde(default)]
+    pub any: bool,
+    /// The only verdict the quantity is sure of; absent when it is sure of both.
+    #[serde(default)]
+    pub sure: Option<Sure>,
+    /// Why it is not sure of the other.
+    #[serde(default)]
+    pub why: String,
 }
 
 /// Why constraints of a unit cannot be decided.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct UnknownRow {
+    #[serde(default)]
     pub units: Vec<String>,
+    #[serde(default)]
+    pub spaces: Vec<String>,
+    #[serde(default)]
+    pub names: Vec<String>,
     pub reason: String,
 }
 
@@ -179,6 +206,9 @@ pub struct ConditionRow {
     /// True when reports judge what has it and plans do not aim at it.
     #[serde(default)]
     pub(crate) reported_only: bool,
+    /// True when plans aim at the figure for all rooms, though reports ask it of some.
+    #[serde(default)]
+    pub(crate) planned: bool,
 }
 
 /// A document all of whose constraints have one more condition.
@@ -212,6 +242,48 @@ pub(crate) enum When {
     Named,
     OpensInto,
     OpensOut,
+    BedspacesInRoom,
+    Ceiling,
+    Rows,
+    DoorsOfRoom,
+    RoomLength,
+    BothSides,
+    Bedspaces,
+    BuildingArea,
+    ObjectsInBuilding,
+    Robots,
+    RobotKind,
+    RobotModel,
+    BuildingType,
+    Unknown,
+}
+
+impl When {
+    /// Returns true for facts that no document holds.
+    pub(crate) fn is_unknown(self) -> bool {
+        matches!(self, Self::Unknown | Self::RobotModel)
+    }
+
+    /// Returns true for figures of a finished room.
+    pub(crate) fn is_of_room(self) -> bool {
+        matches!(self, Self::BedspacesInRoom | Self::Ceiling | Self::Rows | Self::DoorsOfRoom)
+            || matches!(self, Self::RoomLength | Self::BothSides)
+    }
+
+    /// Returns true for figures of a finished building.
+    pub(crate) fn is_of_building(self) -> bool {
+        matches!(self, Self::Bedspaces | Self::BuildingArea | Self::ObjectsInBuilding)
+    }
+}
+
+/// Which verdict a quantity is sure of, where documents bound it from one side only.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Sure {
+    /// That the constraint is kept.
+    Kept,
+    /// That it is broken.
+    Broken,
 }
 
 impl QuantityRow {
@@ -242,10 +314,23 @@ impl QuantityRow {
     }
 }
 
+impl UnknownRow {
+    fn explains(&self, c: &Constraint) -> bool {
+        self.units.contains(&c.unit)
+            || self.spaces.contains(&c.space_type)
+            || self.names.iter().any(|n| c.name.contains(n.as_str()))
+    }
+}
+
 impl ConditionRow {
     /// Returns true when the row explains this phrase.
     pub(crate) fn explains(&self, phrase: &str) -> bool {
         self.phrases.iter().any(|p| p == phrase) || self.containing.iter().any(|p| phrase.contains(p.as_str()))
+    }
+
+    /// Returns true when the row counts this kind of object.
+    pub(crate) fn counts(&self, kind: &d3dgen_model::domain::ObjectType) -> bool {
+        self.shapes.contains(&kind.shape) || self.objects.contains(&kind.id)
     }
 
     /// Returns true when a figure lies within the row's interval.
@@ -276,7 +361,7 @@ impl Tables {
 
     /// Returns why a constraint of no known quantity cannot be decided.
     pub(crate) fn unknown(&self, c: &Constraint) -> String {
-        match self.unknown.iter().find(|u| u.units.contains(&c.unit)) {
+        match self.unknown.iter().find(|u| u.explains(c)) {
             Some(row) => row.reason.clone(),
             None => format!("how to measure `{}` of `{}` is not known", c.measurement_basis, c.space_type),
         }
@@ -292,7 +377,7 @@ mod tests {
     fn every_phrase_and_general_space_has_one_meaning() {
         let mut seen = BTreeSet::new();
         for phrase in TABLES.conditions.iter().flat_map(|c| &c.phrases) {
-            assert!(seen.insert(phrase), "condition `{phrase}` stands twice in data/conditions.toml");
+            assert!(seen.insert(phrase), "condition `{phrase}` stands twice in data/conditions*.toml");
         }
         let mut seen = BTreeSet::new();
         for name in TABLES.spaces.iter().flat_map(|s| &s.names) {
@@ -301,13 +386,25 @@ mod tests {
     }
 
     #[test]
+    fn conditions_of_quantities_are_known_phrases() {
+        for phrase in TABLES.quantities.iter().flat_map(|q| &q.conditions) {
+            assert!(TABLES.condition(phrase).is_some(), "`{phrase}` is in no data/conditions*.toml");
+        }
+        for row in TABLES.quantities.iter().filter(|q| q.sure.is_some()) {
+            assert!(!row.why.is_empty() && row.reported_only, "{:?} {:?}", row.measure, row.names);
+        }
+    }
+
+    #[test]
     fn rows_that_need_figures_have_them() {
         for row in &TABLES.conditions {
             let figures = row.min.is_some() || row.max.is_some();
             let needs = matches!(row.when, When::Persons | When::Area | When::RoomsOf | When::BedsInRoom)
-                || matches!(row.when, When::SeatsInRoom | When::ObjectsInRoom | When::Exits);
+                || matches!(row.when, When::SeatsInRoom | When::ObjectsInRoom | When::Exits)
+                || row.when.is_of_room()
+                || row.when.is_of_building();
             assert_eq!(figures, needs, "row of {:?}: {:?}", row.when, row.phrases.first());
-            assert_eq!(row.when == When::Never, row.reason.is_some(), "{:?}", row.phrases.first());
+            assert!(row.when != When::Never || row.reason.is_some(), "{:?}", row.phrases.first());
         }
     }
 }

@@ -31,6 +31,7 @@ pub(super) fn read(site: &Site, a: &Applicable, rule: &Rule) -> Vec<Reading> {
         Measure::DoorHeight => Some(d.height_m),
         // the floor of a world is one plane: no document has a sill in a door
         Measure::Threshold => Some(0.0),
+        Measure::OpensOutward => opens_outward(a, site, d),
         // a yes-or-no rule: 1 when the leaf does not stand in the way
         Measure::SwingIntoCirculation => Some(if opens_into_circulation(site, d) { 0.0 } else { 1.0 }),
         _ => None,
@@ -57,6 +58,13 @@ fn concerns(site: &Site, a: &Applicable, door: &Door) -> bool {
         }
         Scope::Building | Scope::Objects(_) => false,
     }
+}
+
+/// Returns 1 when no leaf of a door opens into the room the constraint is about: sliding doors keep it clear too.
+fn opens_outward(a: &Applicable, site: &Site, door: &Door) -> Option<f64> {
+    let room = site.rooms_of(a).find(|r| door.room_ids.contains(&r.plan.room_id))?;
+    let inward = door.swing.as_ref().is_some_and(|s| s.into_room_id.as_ref() == Some(&room.plan.room_id));
+    Some(if inward { 0.0 } else { 1.0 })
 }
 
 fn opens_into_circulation(site: &Site, door: &Door) -> bool {

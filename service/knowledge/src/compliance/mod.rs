@@ -4,9 +4,13 @@
 //! that breaks it, or once with the closest call when all hold.
 
 mod approach;
+mod circle;
 mod counts;
 mod doors;
+mod fixtures;
+mod kitchen;
 mod objects;
+mod robots;
 mod rooms;
 mod routes;
 mod site;
@@ -14,11 +18,13 @@ mod sizes;
 mod spacing;
 
 use d3dgen_model::domain::Domain;
+use d3dgen_model::knowledge::Value;
 use d3dgen_model::report::{ConstraintResult, ConstraintSummary, Status};
 use d3dgen_model::world::World;
 
 use crate::measure::Measure;
 use crate::retrieve::{Applicable, Retrieval, Rule};
+use crate::tables::Sure;
 use site::Site;
 
 /// Lengths and areas closer than this to their limit meet it.
@@ -68,6 +74,7 @@ pub fn evaluate(world: &World, domain: &Domain, retrieval: &Retrieval) -> (Vec<C
         let found = judge(a, rule, &readings, retrieval);
         match found.first().map(|r| r.status) {
             Some(Status::Violated) => summary.violated += 1,
+            Some(Status::NotDecidable) => summary.not_decidable += 1,
             _ => summary.satisfied += 1,
         }
         out.extend(found);
@@ -80,11 +87,12 @@ fn readings(site: &Site, a: &Applicable, rule: &Rule) -> Vec<Reading> {
     if !site.admits(a, rule.quantity.single_exit) {
         return Vec::new();
     }
-    let families = [rooms::read, doors::read, routes::read, counts::read, objects::read];
+    let families = [rooms::read, doors::read, routes::read, counts::read, objects::read, robots::read];
     families.iter().flat_map(|read| read(site, a, rule)).collect()
 }
 
-/// Returns one result for each reading that breaks the rule, or the closest call.
+/// Returns one result for each reading that breaks the rule, or the closest call; one that says why nobody can tell where
+/// the documents bound the figure from one side only, or do not say whether the rule applies.
 fn judge(a: &Applicable, rule: &Rule, readings: &[Reading], retrieval: &Retrieval) -> Vec<ConstraintResult> {
     let (min, max) = required(rule);
     // distance to the nearer limit: negative when broken
@@ -93,40 +101,86 @@ fn judge(a: &Applicable, rule: &Rule, readings: &[Reading], retrieval: &Retrieva
         let high = max.map_or(f64::MAX, |m| m - r.value);
         low.min(high)
     };
-    let note = |extra: String| {
-        let mut parts = vec![extra];
-        if let Some([short, long]) = rule.bounds.sides {
-            parts.push(format!("needs {short} x {long} m; measured is the width at that length"));
-        }
-        if rule.quantity.measure == Measure::ObjectExtents {
-            parts.push("measured is how far an extent lies outside the usual ones, a tenth off allowed".to_owned());
-        }
-        if let Some(id) = &a.superseded_by {
-            parts.push(format!("{id} of a nearer jurisdiction goes before it"));
-        }
-        if by_head_count(a) && rule.quantity.measure != Measure::DocksPerRobot && !retrieval.persons_stated {
-            parts.push(format!("for {} people, reckoned from the area", retrieval.persons));
-        }
-        parts.retain(|p| !p.is_empty());
-        parts.join("; ")
+    let order = |x: &&Reading, y: &&Reading| margin(x).total_cmp(&margin(y));
+    let one = |r: Option<&Reading>, status: Status, extra: String| {
+        let note = note(a, rule, retrieval, extra);
+        r.map(|r| result(a, Some(rule), &r.subject, status, Some(r.value), note)).into_iter().collect()
     };
-    let broken: Vec<&Reading> = readings.iter().filter(|r| margin(r) < -SLACK).collect();
+    let mut broken: Vec<&Reading> = readings.iter().filter(|r| margin(r) < -SLACK).collect();
+    if rule.quantity.any && broken.len() < readings.len() {
+        broken.clear();
+    }
+    let closest = if rule.quantity.any { readings.iter().max_by(order) } else { readings.iter().min_by(order) };
+    if let Some(reason) = nobody_knows(a, rule, retrieval, broken.is_empty()) {
+        return one(closest, Status::NotDecidable, reason);
+    }
+    if rule.quantity.any && !broken.is_empty() {
+        return one(closest, Status::Violated, format!("best of {}", readings.len()));
+    }
     if !broken.is_empty() {
+        let text = note(a, rule, retrieval, String::new());
         let each = broken.into_iter();
         return each
-            .map(|r| result(a, Some(rule), &r.subject, Status::Violated, Some(r.value), note(String::new())))
+            .map(|r| result(a, Some(rule), &r.subject, Status::Violated, Some(r.value), text.clone()))
             .collect();
     }
-    let closest = readings.iter().min_by(|x, y| margin(x).total_cmp(&margin(y)));
     let among = if readings.len() > 1 { format!("closest of {}", readings.len()) } else { String::new() };
-    closest
-        .map(|r| result(a, Some(rule), &r.subject, Status::Satisfied, Some(r.value), note(among)))
-        .into_iter()
-        .collect()
+    let whatever = a.unsure.as_ref().map(|reason| format!("kept either way: {reason}"));
+    let parts: Vec<String> = [Some(among), whatever].into_iter().flatten().filter(|p| !p.is_empty()).collect();
+    one(closest, Status::Satisfied, parts.join("; "))
 }
 
-fn by_head_count(a: &Applicable) -> bool {
-    a.constraint.constraint_type == "table" || a.constraint.unit == "count"
+/// Returns why a verdict would be a guess.
+fn nobody_knows(a: &Applicable, rule: &Rule, retrieval: &Retrieval, kept: bool) -> Option<String> {
+    if by_users(a, rule) && !retrieval.persons_stated {
+        return Some(format!(
+            "the number of people is not stated; measured for {}, reckoned from the area",
+            retrieval.persons
+        ));
+    }
+    match (&a.unsure, rule.quantity.sure) {
+        (Some(reason), _) if !kept => Some(reason.clone()),
+        (_, Some(Sure::Kept)) if !kept => Some(rule.quantity.why.clone()),
+        (_, Some(Sure::Broken)) if kept => Some(rule.quantity.why.clone()),
+        _ => None,
+    }
+}
+
+/// Returns true when the figure goes by the number of people who use the building.
+fn by_users(a: &Applicable, rule: &Rule) -> bool {
+    let by_formula =
+        matches!(&a.constraint.value, Value::Expression { expr } if expr.split(is_no_letter).any(|w| w == "N"));
+    rule.quantity.measure.is_by_users() || by_formula
+}
+
+fn is_no_letter(c: char) -> bool {
+    !c.is_ascii_alphanumeric() && c != '_'
+}
+
+/// Returns what a reader must know to check a verdict.
+fn note(a: &Applicable, rule: &Rule, retrieval: &Retrieval, extra: String) -> String {
+    let mut parts = vec![extra];
+    if let Some([short, long]) = rule.bounds.sides {
+        parts.push(format!("needs {short} x {long} m; measured is the width at that length"));
+    }
+    if rule.quantity.measure == Measure::ObjectExtents {
+        parts.push("measured is how far an extent lies outside the usual ones, a tenth off allowed".to_owned());
+    }
+    if let Some(id) = &a.superseded_by {
+        parts.push(format!("{id} of a nearer jurisdiction goes before it"));
+    }
+    if by_head_count(a, rule) && !by_users(a, rule) && !retrieval.persons_stated {
+        parts.push(format!("for {} people, reckoned from the area", retrieval.persons));
+    }
+    parts.retain(|p| !p.is_empty());
+    parts.join("; ")
+}
+
+/// Returns true for ways out that are as wide as the people on them need.
+fn by_head_count(a: &Applicable, rule: &Rule) -> bool {
+    let of_ways = matches!(rule.quantity.measure, Measure::CirculationWidth | Measure::DoorWidth);
+    let of_people = matches!(rule.quantity.measure, Measure::PersonsBySingleExit | Measure::ExitWidthPerPerson);
+    of_people || (of_ways && a.constraint.constraint_type == "table")
 }
 
 /// Returns the least and largest allowed figures; for a needed room the figure is the head count, not the room count.

@@ -5,18 +5,18 @@ use d3dgen_model::domain::Shape;
 use d3dgen_model::floorplan::Door;
 
 use super::site::{Object, Room, Site};
-use super::{Reading, sizes, spacing};
+use super::{Reading, fixtures, kitchen, sizes, spacing};
 use crate::clearance::{Side, door_zones, free_depth};
 use crate::measure::Measure;
 use crate::retrieve::{Applicable, Rule, Scope};
 
-/// Free depth beyond this does not count as room to move at an object, m.
-const MOVING_DEPTH_M: f64 = 1.5;
-
 /// Reads a quantity of every object the constraint is about.
 pub(super) fn read(site: &Site, a: &Applicable, rule: &Rule) -> Vec<Reading> {
     match rule.quantity.measure {
-        Measure::WorkTriangleLeg | Measure::WorkTriangleTotal => return spacing::work_triangles(site, a, rule),
+        Measure::WorkTriangleLeg
+        | Measure::WorkTriangleTotal
+        | Measure::TriangleIntrusion
+        | Measure::TriangleClearOfTraffic => return kitchen::triangles(site, a, rule),
         Measure::WallProjection => return spacing::projections(site, a),
         Measure::DockKeepsEgress => return docks_keep_egress(site),
         _ => {}
@@ -30,7 +30,8 @@ pub(super) fn read(site: &Site, a: &Applicable, rule: &Rule) -> Vec<Reading> {
         for object in room.objects.iter().filter(|o| concerns(o)) {
             let value = figure(site, room, object, a, rule)
                 .or_else(|| sizes::figure(object, a, rule))
-                .or_else(|| spacing::figure(room, object, rule));
+                .or_else(|| spacing::figure(room, object, rule))
+                .or_else(|| fixtures::figure(site, room, object, a, rule));
             out.extend(value.map(|v| Reading::new(&object.placement.placement_id, v)));
         }
     }
@@ -60,7 +61,6 @@ fn figure(site: &Site, room: &Room, object: &Object, a: &Applicable, rule: &Rule
             let one_side = a.constraint.measurement_basis.contains("one side");
             Some(if one_side { left.max(right) } else { left.min(right) })
         }
-        Measure::FreeAreaAtObject => Some(object.placement.size_m[0] * depth(Side::Front).min(MOVING_DEPTH_M)),
         Measure::GapBetweenObjects => {
             let alike = |o: &&Object| o.kind.is_some_and(|k| rule.quantity.picks(k)) && o.placement != object.placement;
             let others = room.objects.iter().filter(alike);

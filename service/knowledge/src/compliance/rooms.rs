@@ -1,9 +1,9 @@
 //! Sizes, heights and windows of rooms.
 
-use d3dgen_model::TOLERANCE_M;
+use d3dgen_model::{Rect, TOLERANCE_M};
 
-use super::Reading;
 use super::site::{Room, Site};
+use super::{Reading, circle};
 use crate::freespace::FreeSpace;
 use crate::measure::Measure;
 use crate::retrieve::{Applicable, Rule};
@@ -29,14 +29,17 @@ fn figure(site: &Site, room: &Room, rule: &Rule) -> Option<f64> {
         Measure::LeastDimension => bare(room).largest_square(),
         Measure::InnerRectangle => bare(room).width_at_length(rule.bounds.sides?[1]),
         Measure::FreeRectangle => room.space().width_at_length(rule.bounds.sides?[1]),
-        Measure::TurningCircle => room.space().largest_square(),
+        Measure::TurningCircle => {
+            let taken: Vec<Rect> = room.objects.iter().filter(|o| o.blocks).map(|o| o.rect).collect();
+            circle::largest(&room.plan.net_polygon, &taken)
+        }
         Measure::Proportion => {
             let b = room.plan.net_polygon.bounds();
             b.width().max(b.height()) / b.width().min(b.height()).max(TOLERANCE_M)
         }
         Measure::CeilingHeight => room.plan.ceiling_height_m,
         Measure::WindowSill => room.windows.iter().map(|w| w.sill_m).reduce(f64::min)?,
-        Measure::WindowRatio => {
+        Measure::WindowRatio | Measure::OpenableRatio => {
             let glass: f64 = room.windows.iter().map(|w| w.line.length() * (w.head_m - w.sill_m)).sum();
             glass / area.max(TOLERANCE_M)
         }

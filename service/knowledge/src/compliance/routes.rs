@@ -17,7 +17,13 @@ const METERS_A_MINUTE: f64 = 60.0;
 /// Reads a width or distance.
 pub(super) fn read(site: &Site, a: &Applicable, rule: &Rule) -> Vec<Reading> {
     match rule.quantity.measure {
-        Measure::CirculationWidth => widths(site, a),
+        Measure::CirculationWidth => widths(site, a, rule),
+        Measure::DeadEnd => dead_ends(site, a),
+        Measure::WalkingFactor => {
+            let mut ways = farthest_from_exit(site);
+            ways.iter_mut().for_each(|w| w.value /= rule.quantity.base);
+            ways
+        }
         Measure::TravelDistance => farthest_from_exit(site),
         Measure::DistanceToCirculation => to_circulation(site, a),
         Measure::StraightDistance => straight(site),
@@ -38,13 +44,61 @@ pub(super) fn read(site: &Site, a: &Applicable, rule: &Rule) -> Vec<Reading> {
     }
 }
 
-fn widths(site: &Site, a: &Applicable) -> Vec<Reading> {
+fn widths(site: &Site, a: &Applicable, rule: &Rule) -> Vec<Reading> {
     let asked: BTreeSet<&str> = match &a.scope {
         Scope::Rooms(types) => types.iter().map(String::as_str).collect(),
         _ => BTreeSet::new(),
     };
     let rooms = site.rooms.iter().filter(|r| r.plan.circulation || asked.contains(r.plan.room_type.as_str()));
-    rooms.map(|r| Reading::new(&r.plan.room_id, r.space().passage(&r.doors))).collect()
+    let rooms = rooms.filter(|r| a.guards.iter().all(|g| r.passes(g)));
+    let width = |r: &Room| {
+        let doors: Vec<&Door> = r.doors.iter().copied().filter(|d| is_on_way(site, r, d, rule)).collect();
+        (doors.len() > 1 || rule.to.is_empty()).then(|| r.space().passage(&doors))
+    };
+    rooms
+        .filter(|r| rule.to.is_empty() || leads_to(site, r, rule))
+        .filter_map(|r| Some(Reading::new(&r.plan.room_id, width(r)?)))
+        .collect()
+}
+
+/// Returns true for the doors of a passage between which it must be wide: all, or those on the way to rooms of a kind.
+fn is_on_way(site: &Site, room: &Room, door: &Door, rule: &Rule) -> bool {
+    let plan = &site.world.floorplan;
+    let beyond = door.room_ids.iter().find(|id| **id != room.plan.room_id).and_then(|id| plan.room(id));
+    rule.to.is_empty()
+        || beyond.is_none_or(|r| rule.to.contains(&r.room_type) || r.circulation || is_entered(site, &r.room_id))
+}
+
+fn is_entered(site: &Site, room_id: &str) -> bool {
+    site.world.floorplan.doors_of(room_id).any(|d| d.room_ids.len() == 1)
+}
+
+fn leads_to(site: &Site, room: &Room, rule: &Rule) -> bool {
+    let ends = room.doors.iter().flat_map(|d| &d.room_ids).filter_map(|id| site.world.floorplan.room(id));
+    ends.into_iter().any(|r| rule.to.contains(&r.room_type))
+}
+
+/// Returns, for each straight corridor of a building with two exits, how far it goes on beyond its last way out.
+fn dead_ends(site: &Site, a: &Applicable) -> Vec<Reading> {
+    if site.exits().count() < 2 {
+        return Vec::new();
+    }
+    let plan = &site.world.floorplan;
+    let end = |room: &Room| {
+        let [only] = room.plan.net_polygon.rects()[..] else { return None };
+        let lies_east = only.width() >= only.height();
+        let (low, high) = if lies_east { (only.x0, only.x1) } else { (only.y0, only.y1) };
+        let leads_out = |d: &&&Door| {
+            let beyond = d.room_ids.iter().find(|id| **id != room.plan.room_id);
+            beyond.is_none_or(|id| plan.room(id).is_some_and(|r| r.circulation) || is_entered(site, id))
+        };
+        let ways = room.doors.iter().filter(leads_out).map(|d| d.line.middle());
+        let at: Vec<f64> = ways.map(|p| if lies_east { p.x } else { p.y }).collect();
+        let first = at.iter().copied().reduce(f64::min)?;
+        let last = at.iter().copied().reduce(f64::max)?;
+        Some((first - low).max(high - last).max(0.0))
+    };
+    site.rooms_of(a).filter_map(|r| Some(Reading::new(&r.plan.room_id, end(r)?))).collect()
 }
 
 fn exits(site: &Site) -> Vec<Point> {

@@ -1,6 +1,7 @@
 //! A world indexed for measuring: rooms with their doors, windows and objects, free floor worked out when asked for.
 
 use std::cell::OnceCell;
+use std::collections::BTreeSet;
 
 use d3dgen_model::Rect;
 use d3dgen_model::domain::{Domain, ObjectType, RoomType, Shape};
@@ -9,10 +10,16 @@ use d3dgen_model::occupancy::{Occupancy, stops_robot};
 use d3dgen_model::placements::Placement;
 use d3dgen_model::world::World;
 
-use crate::clearance::is_shallow;
+use crate::clearance::{is_shallow, quarter};
 use crate::conditions::Guard;
 use crate::freespace::FreeSpace;
 use crate::retrieve::{Applicable, Retrieval, Scope};
+use crate::tables::{ConditionRow, When};
+
+/// Beds at least this wide are for two, m: the narrowest that is sold so is 1.2 m, and for one the widest is 1.1 m.
+const FOR_TWO_M: f64 = 1.2;
+/// Beds narrower than this are cots, m.
+const FOR_ONE_M: f64 = 0.75;
 
 /// The indexed world.
 pub(super) struct Site<'a> {
@@ -95,8 +102,27 @@ impl<'a> Site<'a> {
     /// Returns true when what a constraint asks of the building as a whole holds.
     pub fn admits(&self, a: &Applicable, single_exit: bool) -> bool {
         let exits = self.exits().count() as f64;
-        let within = |g: &Guard| !matches!(g, Guard::Exits(min, max) if exits < *min || exits > *max);
+        let within = |g: &Guard| match *g {
+            Guard::Exits(min, max) => (min..=max).contains(&exits),
+            Guard::Whole(row) => row.holds(self.figure(row)),
+            _ => true,
+        };
         (!single_exit || exits == 1.0) && a.guards.iter().all(within)
+    }
+
+    /// Returns the figure of the building that a condition asks for.
+    fn figure(&self, row: &ConditionRow) -> f64 {
+        let objects = || self.rooms.iter().flat_map(|r| &r.objects).filter_map(|o| o.kind);
+        match row.when {
+            When::Bedspaces => self.rooms.iter().map(Room::bedspaces).sum::<usize>() as f64,
+            When::BuildingArea => self.rooms.iter().map(|r| r.plan.net_area_m2).sum(),
+            _ => objects().filter(|k| row.counts(k)).count() as f64,
+        }
+    }
+
+    /// Returns the gross floor area on wall center lines, m^2.
+    pub fn gross_area(&self) -> f64 {
+        self.rooms.iter().map(|r| r.plan.polygon.area()).sum()
     }
 
     /// Returns how many objects of these builds the building has.
@@ -132,15 +158,49 @@ impl Room<'_> {
         if desks > 0 { desks } else { self.count(&[Shape::Chair, Shape::SwivelChair, Shape::Stool]) }
     }
 
-    fn passes(&self, guard: &Guard) -> bool {
+    /// Returns how many people the beds are for: two where one is wide enough.
+    pub fn bedspaces(&self) -> usize {
+        let beds = self.objects.iter().filter(|o| o.is(&[Shape::Bed]) && o.placement.size_m[0] >= FOR_ONE_M);
+        let sleep: usize = beds.map(|o| if o.placement.size_m[0] >= FOR_TWO_M { 2 } else { 1 }).sum();
+        sleep + self.count(&[Shape::HospitalBed])
+    }
+
+    /// Returns the figure of the room that a condition asks for.
+    fn figure(&self, row: &ConditionRow) -> f64 {
+        let bounds = self.plan.net_polygon.bounds();
+        match row.when {
+            When::BedspacesInRoom => self.bedspaces() as f64,
+            // a millimeter, so that a height given in centimeters is itself
+            When::Ceiling => (self.plan.ceiling_height_m * 1000.0).round() / 1000.0,
+            When::DoorsOfRoom => self.doors.len() as f64,
+            When::RoomLength => bounds.width().max(bounds.height()),
+            When::BothSides => self.sides_with_doors() as f64,
+            _ => {
+                let counted = self.objects.iter().filter(|o| o.kind.is_some_and(|k| row.counts(k)));
+                counted.map(|o| quarter(o.placement.pose.yaw_rad)).collect::<BTreeSet<_>>().len() as f64
+            }
+        }
+    }
+
+    /// Returns at how many of its long sides a corridor has doors to rooms.
+    fn sides_with_doors(&self) -> usize {
+        let bounds = self.plan.net_polygon.bounds();
+        let lies_east = bounds.width() >= bounds.height();
+        let middle = bounds.center();
+        let along = self.doors.iter().filter(|d| d.room_ids.len() == 2 && d.line.is_vertical() != lies_east);
+        let above = along.map(|d| if lies_east { d.line.middle().y > middle.y } else { d.line.middle().x > middle.x });
+        above.collect::<BTreeSet<bool>>().len()
+    }
+
+    /// Returns true when the room meets a condition.
+    pub fn passes(&self, guard: &Guard) -> bool {
         let (value, min, max, open) = match *guard {
             Guard::Area(min, max) => (self.plan.net_area_m2, min, max, true),
             Guard::Beds(min, max) => (self.beds() as f64, min, max, false),
             Guard::Seats(min, max) => (self.persons() as f64, min, max, false),
             Guard::Objects(row, min, max) => {
-                let kinds = self.objects.iter().filter_map(|o| o.kind);
-                let counted = kinds.filter(|k| row.shapes.contains(&k.shape) || row.objects.contains(&k.id));
-                (counted.count() as f64, min, max, false)
+                let counted = self.objects.iter().filter_map(|o| o.kind).filter(|k| row.counts(k)).count();
+                (counted as f64, min, max, false)
             }
             Guard::Named(row) => {
                 let name = self.plan.name.to_lowercase();
@@ -152,8 +212,9 @@ impl Room<'_> {
                     |d: &&&Door| d.swing.as_ref().is_some_and(|s| s.into_room_id.as_ref() == Some(&self.plan.room_id));
                 return self.doors.len() == 1 && (self.doors.iter().filter(into).count() == 1) == inward;
             }
+            Guard::Room(row) => return row.holds(self.figure(row)),
             // asked of the building once
-            Guard::Exits(..) => return true,
+            Guard::Exits(..) | Guard::Whole(_) => return true,
         };
         (if open { value > min } else { value >= min }) && value <= max
     }

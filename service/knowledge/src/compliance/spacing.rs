@@ -1,7 +1,7 @@
 //! Free floor around objects, and distances between objects, walls and windows.
 
+use d3dgen_model::Rect;
 use d3dgen_model::domain::{Mount, Shape};
-use d3dgen_model::{Point, Rect};
 
 use super::Reading;
 use super::objects::{belong_together, gap};
@@ -80,32 +80,6 @@ pub(super) fn projections(site: &Site, a: &Applicable) -> Vec<Reading> {
     let rooms = site.rooms_of(a).filter(|r| r.plan.circulation);
     let objects = rooms.flat_map(|r| r.objects.iter().filter(in_the_way));
     objects.map(|o| Reading::new(&o.placement.placement_id, o.placement.size_m[1])).collect()
-}
-
-/// Reads the triangle from the front of the sink to that of the stove and of the refrigerator in each kitchen.
-pub(super) fn work_triangles(site: &Site, a: &Applicable, rule: &Rule) -> Vec<Reading> {
-    let mut out = Vec::new();
-    for room in site.rooms_of(a) {
-        let first = |fits: &dyn Fn(&Object) -> bool| room.objects.iter().find(|o| fits(o)).map(front);
-        let sink = first(&|o| o.is(&[Shape::Sink]));
-        let stove = first(&|o| o.is(&[Shape::Stove]));
-        let cold = first(&|o| rule.quantity.objects.contains(&o.placement.object));
-        let (Some(sink), Some(stove), Some(cold)) = (sink, stove, cold) else { continue };
-        let legs = [sink.distance(stove), stove.distance(cold), cold.distance(sink)];
-        match rule.quantity.measure {
-            Measure::WorkTriangleTotal => out.push(Reading::new(&room.plan.room_id, legs.iter().sum())),
-            _ => out.extend(legs.map(|leg| Reading::new(&room.plan.room_id, leg))),
-        }
-    }
-    out
-}
-
-/// Returns the middle of the front edge of an object.
-fn front(object: &Object) -> Point {
-    let (middle, half) = (object.rect.center(), object.placement.size_m[1] / 2.0);
-    let (dx, dy) =
-        [(half, 0.0), (0.0, half), (-half, 0.0), (0.0, -half)][usize::from(quarter(object.placement.pose.yaw_rad) % 4)];
-    Point::new(middle.x + dx, middle.y + dy)
 }
 
 /// Returns the free depth towards a quarter turn up to the next wall or thing that does not belong to the object, m.
