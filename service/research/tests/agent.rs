@@ -60,9 +60,9 @@ impl Run {
         }
     }
 
-    fn client(&self, server: &Server) -> Client {
+    fn client_at(&self, url: &str) -> Client {
         let mut config = Config::new(self.provider, "test-model");
-        config.base_url = Some(server.url());
+        config.base_url = Some(url.to_owned());
         config.key = Some(Secret::new(KEY));
         let sleep: Sleep = Arc::new(|_| Box::pin(async {}));
         let budget = Budget::new(self.limits.clone(), BTreeMap::new());
@@ -70,14 +70,17 @@ impl Run {
     }
 
     fn start(&self, server: &Server) -> Result<Outcome, Error> {
-        let client = self.client(server);
+        self.start_at(&server.url())
+    }
+
+    fn start_with(&self, client: &Client) -> Result<Outcome, Error> {
         let (read, fetch) = (read::Options::default(), Untouched(AtomicBool::new(false)));
         let context =
             Context { date: "2026-11-21", fetch: &fetch, read: &read, stop: Stop(&self.stop), progress: &|_| {} };
         let confirm = |_: &_| self.agree;
         let entry = providers::all().iter().find(|e| e.name == self.provider).unwrap();
         let agent = Agent {
-            client: &client,
+            client,
             request: Some("a two-bedroom flat in Germany".into()),
             domains: vec!["hospital".into(), "residential".into()],
             passes: self.passes,
@@ -102,6 +105,11 @@ impl Run {
         let outcome = runtime.block_on(run(&context, &plan, Some(&agent)));
         assert!(!fetch.0.load(Ordering::SeqCst), "a link was followed");
         outcome
+    }
+
+    /// Runs against the server at an address.
+    fn start_at(&self, url: &str) -> Result<Outcome, Error> {
+        self.start_with(&self.client_at(url))
     }
 
     fn text(&self, name: &str) -> String {
@@ -321,4 +329,64 @@ fn a_run_with_a_model_restarts_from_its_files() {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
     runtime.block_on(d3dgen_research::run::run(&context, &plan, None)).unwrap();
     assert_eq!(run.text("knowledge.json"), first);
+}
+
+/// The fake provider of `../shared/llm`, ended with the test.
+struct Fake(std::process::Child, u16);
+
+impl Drop for Fake {
+    fn drop(&mut self) {
+        let _ = self.0.kill().and_then(|()| self.0.wait());
+    }
+}
+
+impl Fake {
+    /// Returns the fake with a script of fixtures, the last of which repeats; `None` where it is not to be had.
+    fn start(script: &str) -> Option<Self> {
+        let tool = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/llm/tools/fake_llm.py");
+        if !tool.is_file() {
+            return None;
+        }
+        let port = std::net::TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
+        let mut command = std::process::Command::new("python3");
+        let child = command.arg(tool).arg(port.to_string()).args(["--script", script]).spawn().ok()?;
+        let fake = Self(child, port);
+        for _ in 0..400 {
+            if std::net::TcpStream::connect(("127.0.0.1", port)).is_ok() {
+                return Some(fake);
+            }
+            std::thread::sleep(std::time::Duration::from_millis(25));
+        }
+        None
+    }
+}
+
+#[test]
+fn the_agent_runs_against_the_shared_fake_of_every_provider() {
+    for (provider, infer, search) in [
+        ("gemini", "gemini/01_classify_ok", "gemini/11_429_retryinfo,gemini/14_503_overloaded,gemini/02_grounded_ok"),
+        ("gemini_interactions", "gemini_interactions/02_structured_ok", "gemini_interactions/01_grounded_ok"),
+        ("openai_responses", "openai/21_responses_structured_ok", "openai/20_responses_web_search_ok"),
+        ("anthropic", "anthropic/01_structured_ok", "anthropic/06_529_overloaded,anthropic/10_web_search_ok"),
+        ("openai", "openai/01_chat_schema_ok", "openai_compat/06_no_usage"),
+        ("ollama", "ollama/01_chat_format_ok", "ollama/01_chat_format_ok"),
+    ] {
+        let Some(fake) = Fake::start(&format!("{infer},{search}")) else {
+            println!("skipped: ../shared/llm/tools/fake_llm.py or python3 is not there");
+            return;
+        };
+        let run = Run::with(provider);
+        let outcome =
+            run.start_at(&format!("http://127.0.0.1:{}", fake.1)).unwrap_or_else(|e| panic!("{provider}: {e}"));
+        let base = &outcome.knowledge;
+        if SEARCHING.contains(&provider) {
+            let found = |space: &str, value: f64| {
+                rules(base).iter().any(|c| c.space_type == space && c.value == Value::Number(value))
+            };
+            assert!(found("bedroom", 8.0) && found("corridor", 1.5), "{provider}: {base:#?}");
+        } else {
+            assert!(base.references.is_empty(), "{provider}: {base:#?}");
+        }
+        assert!(all_files(run.out.path()).iter().all(|(_, text)| !text.contains(KEY)), "{provider}");
+    }
 }

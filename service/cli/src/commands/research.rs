@@ -21,7 +21,7 @@ pub struct Args {
     #[command(subcommand)]
     action: Option<Action>,
     #[command(flatten)]
-    run: Box<run::Args>,
+    run: Box<run::RunArgs>,
 }
 
 #[derive(Subcommand)]

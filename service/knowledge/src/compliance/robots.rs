@@ -57,7 +57,7 @@ fn beside_robots(site: &Site, a: &Applicable, figure: impl Fn(f64) -> f64) -> Ve
     let widest = site.world.scenario.robots.iter().map(|r| 2.0 * r.robot.radius_m).reduce(f64::max);
     let Some(widest) = widest else { return Vec::new() };
     let rooms = site.rooms_of(a).filter(|r| r.plan.circulation);
-    rooms.map(|r| Reading::new(&r.plan.room_id, figure(r.space().passage(&r.doors) - widest))).collect()
+    rooms.map(|r| Reading::new(&r.plan.room_id, figure(r.space_upright().passage(&r.doors) - widest))).collect()
 }
 
 /// Reads, for each dock, how far the floor to be cleaned reaches from it.

@@ -53,7 +53,7 @@ fn widths(site: &Site, a: &Applicable, rule: &Rule) -> Vec<Reading> {
     let rooms = rooms.filter(|r| a.guards.iter().all(|g| r.passes(g)));
     let width = |r: &Room| {
         let doors: Vec<&Door> = r.doors.iter().copied().filter(|d| is_on_way(site, r, d, rule)).collect();
-        (doors.len() > 1 || rule.to.is_empty()).then(|| r.space().passage(&doors))
+        (doors.len() > 1 || rule.to.is_empty()).then(|| r.space_upright().passage(&doors))
     };
     rooms
         .filter(|r| rule.to.is_empty() || leads_to(site, r, rule))

@@ -4,7 +4,7 @@ use std::cell::OnceCell;
 use std::collections::BTreeSet;
 
 use d3dgen_model::Rect;
-use d3dgen_model::domain::{Domain, ObjectType, RoomType, Shape};
+use d3dgen_model::domain::{Domain, Mount, ObjectType, RoomType, Shape};
 use d3dgen_model::floorplan::{Door, PlanRoom, Window};
 use d3dgen_model::occupancy::{Occupancy, stops_robot};
 use d3dgen_model::placements::Placement;
@@ -18,6 +18,8 @@ use crate::tables::{ConditionRow, When};
 
 /// Beds at least this wide are for two, m: the narrowest that is sold so is 1.2 m, and for one the widest is 1.1 m.
 const FOR_TWO_M: f64 = 1.2;
+/// Height below which people meet what stands out from a wall, m.
+const HEAD_ROOM_M: f64 = 2.03;
 /// Beds narrower than this are cots, m.
 const FOR_ONE_M: f64 = 0.75;
 
@@ -138,6 +140,15 @@ impl Room<'_> {
             let taken: Vec<Rect> = self.objects.iter().filter(|o| o.blocks).map(|o| o.rect).collect();
             FreeSpace::new(&self.plan.net_polygon, &taken)
         })
+    }
+
+    /// Returns the free floor for people upright: what stands out from walls above a robot's head takes some of it too.
+    pub fn space_upright(&self) -> FreeSpace {
+        let stands_out = |o: &Object| {
+            o.placement.mount == Mount::Wall && !is_shallow(o.placement) && o.placement.pose.z < HEAD_ROOM_M
+        };
+        let taken: Vec<Rect> = self.objects.iter().filter(|o| o.blocks || stands_out(o)).map(|o| o.rect).collect();
+        FreeSpace::new(&self.plan.net_polygon, &taken)
     }
 
     pub fn count(&self, shapes: &[Shape]) -> usize {

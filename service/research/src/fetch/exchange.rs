@@ -5,6 +5,7 @@
 use std::net::SocketAddr;
 use std::sync::Once;
 
+use reqwest::dns::{Addrs, Name, Resolve, Resolving};
 use reqwest::header::{ACCEPT, CONTENT_TYPE, HeaderMap, LOCATION};
 use reqwest::{Client, Response, redirect};
 use url::Url;
@@ -43,7 +44,7 @@ pub async fn get(url: &Url, addresses: &[SocketAddr], options: &Options, body: B
 }
 
 async fn exchange(url: &Url, addresses: &[SocketAddr], options: &Options, body: Body) -> Result<Answer, Fault> {
-    let client = client(url, addresses, options)?;
+    let client = client(addresses, options)?;
     let response = client.get(url.clone()).header(ACCEPT, ACCEPTED).send().await.map_err(|e| fault(&e))?;
     // Pinning makes this so; a change of the library below must not undo it unseen.
     if response.remote_addr().is_some_and(|a| !addresses.contains(&a)) {
@@ -66,23 +67,31 @@ async fn exchange(url: &Url, addresses: &[SocketAddr], options: &Options, body: 
     Ok(Answer { status, location, content_type, body })
 }
 
+/// Answers for every name with the checked addresses, so that no spelling of a name is looked up a second time.
+struct Pinned(Vec<SocketAddr>);
+
+impl Resolve for Pinned {
+    fn resolve(&self, _: Name) -> Resolving {
+        let addresses: Addrs = Box::new(self.0.clone().into_iter());
+        Box::pin(std::future::ready(Ok(addresses)))
+    }
+}
+
 /// Returns a client that can reach the checked addresses and nothing else.
-fn client(url: &Url, addresses: &[SocketAddr], options: &Options) -> Result<Client, Fault> {
+fn client(addresses: &[SocketAddr], options: &Options) -> Result<Client, Fault> {
     static TLS: Once = Once::new();
     // Fails when another crate has installed it before, which is as good.
     TLS.call_once(|| drop(rustls::crypto::ring::default_provider().install_default()));
-    let mut builder = Client::builder()
+    let builder = Client::builder()
         .user_agent(&options.user_agent)
         .redirect(redirect::Policy::none())
         .referer(false)
         .no_proxy()
         .pool_max_idle_per_host(0)
         .connect_timeout(options.connect_timeout)
-        .read_timeout(options.read_timeout);
-    // For an address as host the resolver is not asked; that address is the checked one.
-    if let Some(host) = url.domain() {
-        builder = builder.resolve_to_addrs(host, addresses);
-    }
+        .read_timeout(options.read_timeout)
+        // For an address as host the resolver is not asked; that address is the checked one.
+        .dns_resolver(Pinned(addresses.to_vec()));
     builder.build().map_err(|e| Fault::new(Code::ConnectFailed, format!("no client can be made: {}", chain(&e))))
 }
 

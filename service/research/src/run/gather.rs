@@ -221,7 +221,7 @@ pub async fn gather(
             Err(Error::Interrupted) => return Err(Error::Interrupted),
             Err(e) => {
                 out.failed += 1;
-                out.warnings.push(format!("{source}: left out: {e}"));
+                out.warnings.push(left_out(&source, &e));
                 continue;
             }
         };
@@ -237,7 +237,7 @@ pub async fn gather(
             }
             Err(e) => {
                 out.failed += 1;
-                out.warnings.push(format!("{source}: left out: {e}"));
+                out.warnings.push(left_out(&source, &e));
             }
         }
     }
@@ -248,6 +248,13 @@ pub async fn gather(
         out.documents.iter().enumerate().map(|(i, d)| (d.document_id.as_str(), i)).collect();
     out.passages.sort_by_key(|p| order.get(p.document_id.as_str()).copied());
     Ok(out)
+}
+
+/// Says that a document is missing; most errors name it already.
+fn left_out(source: &str, error: &Error) -> String {
+    let said = error.to_string();
+    let reason = said.strip_prefix(source).and_then(|r| r.strip_prefix(": ")).unwrap_or(&said);
+    format!("{source}: left out: {reason}")
 }
 
 /// The bytes of a document.

@@ -139,6 +139,12 @@ fn memory(context: &Context<'_>, plan: &Plan, folder: &Folder, before: Option<Me
     let restart = plan.from > Stage::Documents;
     let kept = before.filter(|_| restart);
     let of_corpus = if plan.from == Stage::Corpus { folder.document::<Corpus>(CORPUS)? } else { None };
+    if let (Some(given), Some(corpus)) = (&plan.domain, &of_corpus)
+        && *given != corpus.domain
+    {
+        let place = shown(&folder.file(CORPUS));
+        problems.push(format!("--domain: `{given}`, but {place} is about `{}`; change it there", corpus.domain));
+    }
     let domain = plan.domain.clone().or_else(|| kept.as_ref().map(|k| k.domain.clone()));
     let domain = domain.or_else(|| of_corpus.as_ref().map(|c| c.domain.clone())).unwrap_or_default();
     if domain.is_empty() || !domain.bytes().all(|b| matches!(b, b'a'..=b'z' | b'0'..=b'9' | b'_')) {

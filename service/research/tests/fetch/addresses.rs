@@ -118,6 +118,21 @@ async fn the_connection_goes_to_the_checked_address() {
 }
 
 #[tokio::test]
+async fn every_spelling_of_a_name_leads_to_the_checked_address() {
+    let server = Server::start(|a| if a.path == "/robots.txt" { not_found() } else { page("<p>x") });
+    for (spelled, resolved) in
+        [("SITE.test", "site.test"), ("site.test.", "site.test."), ("bücher.test", "xn--bcher-kva.test")]
+    {
+        let names = Names::of(resolved, &[&["127.0.0.3"]]);
+        let fetcher = Fetcher::with_resolver(options(server.port), None, Arc::new(|| 0), names);
+        let found = fetcher.fetch(&format!("http://{spelled}:{}/", server.port)).await;
+        assert_eq!(found.unwrap().bytes, b"<p>x", "{spelled}");
+    }
+    let asked = server.asked.lock().unwrap();
+    assert!(asked.iter().all(|a| a.at == IpAddr::from([127, 0, 0, 3])), "{asked:?}");
+}
+
+#[tokio::test]
 async fn loopback_is_reached_only_when_allowed() {
     let server = Server::start(|a| if a.path == "/robots.txt" { not_found() } else { page("<p>x") });
     let closed = Options { ports: vec![server.port], ..Options::default() };

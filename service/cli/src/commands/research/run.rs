@@ -50,7 +50,7 @@ enum From {
 
 /// Arguments of a run.
 #[derive(clap::Args)]
-pub struct Args {
+pub struct RunArgs {
     /// What the rules are for, in a sentence; a model finds domain and country in it
     #[arg(value_name = "REQUEST")]
     request: Option<String>,
@@ -108,7 +108,7 @@ pub struct Args {
     registry: RegistryArgs,
 }
 
-impl Args {
+impl RunArgs {
     /// Runs the stages and prints what came of them.
     ///
     /// # Errors
