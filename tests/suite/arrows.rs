@@ -32,6 +32,7 @@ const OUTSIDE: &[(&str, &[&str])] = &[
     ("tantivy", &["store"]),
     ("hnsw_rs", &["store"]),
     ("fastembed", &["store"]),
+    ("ort", &["store"]),
     ("reqwest", &["llm", "research"]),
     ("scraper", &["research"]),
     ("pdf-extract", &["research"]),
