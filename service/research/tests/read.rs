@@ -1,5 +1,7 @@
 //! Reading documents: our own ones passage by passage, hostile ones within bounds, PDF files in a process of their own.
 
+#![allow(clippy::unwrap_used)] // helpers of tests are tests
+
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -176,7 +178,8 @@ fn charsets_are_found() {
 
 #[test]
 fn kinds_are_told_from_bytes_type_and_name() {
-    let cases: [(&[u8], Option<&str>, &str, Result<Kind, ()>); 10] = [
+    type Case = (&'static [u8], Option<&'static str>, &'static str, Result<Kind, ()>);
+    let cases: [Case; 10] = [
         (b"<!doctype html><p>a", None, "x", Ok(Kind::Html)),
         (b"plain", None, "x.html?y=1", Ok(Kind::Html)),
         (b"# a", Some("text/plain"), "https://h.test/a.md", Ok(Kind::Markdown)),

@@ -280,7 +280,7 @@ fn rows_of_table(lines: &[Line]) -> &[Line] {
     let mut count = 0;
     for (i, line) in lines.iter().enumerate() {
         let columns =
-            line.cells.len() >= 2 && line.page == page && !is_bullet_line(&line.cells.first().map_or("", |c| &c.text));
+            line.cells.len() >= 2 && line.page == page && !is_bullet_line(line.cells.first().map_or("", |c| &c.text));
         if columns {
             count = i + 1;
         } else if count != i || line.gap || i == 0 || line.page != page {

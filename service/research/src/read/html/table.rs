@@ -156,7 +156,7 @@ fn divided(rows: Vec<Row>) -> Parts {
         let figures = |r: &Row| r.cells.iter().skip(1).any(|c| starts_with_figure(c));
         let first_is_words =
             rows.first().is_some_and(|r| !figures(r) && !r.is_band && r.cells.iter().all(|c| !c.is_empty()));
-        count = usize::from(first_is_words && width > 2 || first_is_words && rows.iter().skip(1).all(figures));
+        count = usize::from(first_is_words && (width > 2 || rows.iter().skip(1).all(figures)));
     }
     if count == rows.len() {
         count = 0;
