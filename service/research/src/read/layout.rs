@@ -45,6 +45,11 @@ impl Line {
         Self { page, cells, size, gap }
     }
 
+    /// Returns where it begins.
+    fn from(&self) -> f32 {
+        self.cells.first().map_or(0.0, |c| c.from)
+    }
+
     pub fn text(&self) -> String {
         self.cells.iter().map(|c| c.text.as_str()).collect::<Vec<_>>().join(" ")
     }
@@ -55,16 +60,18 @@ pub fn blocks(lines: &[Line]) -> Vec<(Option<u32>, Block)> {
     let body = body_size(lines);
     let sizes: BTreeSet<u32> = lines.iter().filter(|l| l.size > body * 1.12).map(|l| (l.size * 2.0) as u32).collect();
     let mut maker = Maker { words: words(lines), sizes, body, ..Maker::default() };
-    let mut at = 0;
+    // Lines before `prose` were found to be no table, and are not looked at again for each of them.
+    let (mut at, mut prose) = (0, 0);
     while let Some(line) = lines.get(at) {
-        let rest = lines.get(at..).unwrap_or_default();
-        if let Some((count, head, rows)) = table(rows_of_table(rest)) {
+        let columned = if at < prose { &[] } else { rows_of_table(lines.get(at..).unwrap_or_default()) };
+        if let Some(Table { head, rows }) = table(columned) {
             let caption = maker.caption();
             maker.flush();
             maker.out.push((line.page, Block::Table { caption, head, rows }));
-            at += count;
+            at += columned.len();
             continue;
         }
+        prose = prose.max(at + columned.len());
         maker.line(line, lines.get(at + 1));
         at += 1;
     }
@@ -101,6 +108,10 @@ struct Maker {
     paragraph: Option<(Option<u32>, String)>,
     items: Vec<(usize, String)>,
     items_page: Option<u32>,
+    /// Where the last item begins.
+    item_from: f32,
+    /// The page of the last line, and where that line ends.
+    last: (Option<u32>, f32),
     words: BTreeSet<String>,
     sizes: BTreeSet<u32>,
     body: f32,
@@ -112,9 +123,10 @@ impl Maker {
         if text.trim().is_empty() {
             return self.flush();
         }
-        if line.gap && !self.goes_on(line, &text) {
+        if (line.gap && !self.goes_on(line, &text)) || self.leaves_list(line, &text) {
             self.flush();
         }
+        self.last = (line.page, line.cells.last().map_or(0.0, |c| c.to));
         if let Some(level) = self.heading(line, &text, next) {
             self.flush();
             self.out.push((line.page, Block::Heading { level, text }));
@@ -126,6 +138,7 @@ impl Maker {
                 self.items_page = line.page;
             }
             self.items.push((0, item.to_owned()));
+            self.item_from = line.from();
         } else if let Some((_, last)) = self.items.last_mut() {
             append(last, &text, &self.words);
         } else {
@@ -136,9 +149,19 @@ impl Maker {
 
     /// Tells whether a sentence runs over a gap that is only the end of a page.
     fn goes_on(&self, line: &Line, text: &str) -> bool {
-        let Some((page, paragraph)) = &self.paragraph else { return false };
-        let ended = paragraph.trim_end().ends_with(['.', ':', '!', '?', ';']);
-        page.is_some() && *page != line.page && !ended && text.starts_with(char::is_lowercase)
+        let above = self.paragraph.as_ref().map(|p| &p.1).or(self.items.last().map(|i| &i.1));
+        let ended = above.is_none_or(|t| t.trim_end().ends_with(['.', ':', '!', '?', ';']));
+        line.page.is_some() && self.last.0 != line.page && !ended && text.starts_with(char::is_lowercase)
+    }
+
+    /// Tells whether a line without a bullet is no part of the item above: it is not set in, begins like a sentence, and
+    /// its first word had room in the line above.
+    fn leaves_list(&self, line: &Line, text: &str) -> bool {
+        let Some(last) = line.cells.last().filter(|_| !self.items.is_empty()) else { return false };
+        let set_in = line.from() > self.item_from + 0.5;
+        let first = text.split_whitespace().next().map_or(0, |w| w.chars().count() + 1);
+        let room = (last.to - line.from()) * first as f32 / text.chars().count().max(1) as f32;
+        !set_in && text.starts_with(char::is_uppercase) && self.last.1 + room <= last.to
     }
 
     /// Returns the level of a line that is a heading by its size, or by its number and its standing alone.
@@ -257,7 +280,7 @@ fn rows_of_table(lines: &[Line]) -> &[Line] {
     let mut count = 0;
     for (i, line) in lines.iter().enumerate() {
         let columns =
-            line.cells.len() >= 2 && line.page == page && !is_bullet_line(&line.cells.first().map_or("", |c| &c.text));
+            line.cells.len() >= 2 && line.page == page && !is_bullet_line(line.cells.first().map_or("", |c| &c.text));
         if columns {
             count = i + 1;
         } else if count != i || line.gap || i == 0 || line.page != page {
@@ -267,9 +290,14 @@ fn rows_of_table(lines: &[Line]) -> &[Line] {
     lines.get(..count).unwrap_or_default()
 }
 
-/// Returns how many lines are a table, its head and its rows.
-#[allow(clippy::type_complexity)]
-fn table(lines: &[Line]) -> Option<(usize, Vec<String>, Vec<Vec<String>>)> {
+/// A table; `head` is empty when its first row is like the others.
+struct Table {
+    head: Vec<String>,
+    rows: Vec<Vec<String>>,
+}
+
+/// Returns the table that lines with columns are.
+fn table(lines: &[Line]) -> Option<Table> {
     if lines.len() < 2 {
         return None;
     }
@@ -304,7 +332,7 @@ fn table(lines: &[Line]) -> Option<(usize, Vec<String>, Vec<Vec<String>>)> {
     let figures = |row: &[String]| row.iter().skip(1).any(|c| c.trim_start().starts_with(|c: char| c.is_ascii_digit()));
     let has_head = rows.first().is_some_and(|r| !figures(r)) && rows.iter().skip(1).any(|r| figures(r));
     let head = if has_head { rows.remove(0) } else { Vec::new() };
-    Some((lines.len(), head, rows))
+    Some(Table { head, rows })
 }
 
 /// Returns the columns that cells of lines share; `None` when the gaps are only wide spaces of prose.

@@ -115,6 +115,9 @@ impl State {
     /// Counts a tag, and tells whether it still may be read. `foreign` says that it stands in a drawing or formula, where
     /// an element may close itself.
     fn count(&mut self, tag: &Tag, foreign: bool) -> bool {
+        if self.over {
+            return false;
+        }
         self.tags += 1;
         let name: &str = &tag.name;
         let formatting = FORMATTING.contains(&name);

@@ -56,7 +56,7 @@ pub fn read(text: &str) -> Reading {
     walker.flush();
     let Walker { mut reading, hidden, cut, sheet, .. } = walker;
     if hidden > 0 {
-        reading.warnings.push(format!("{hidden} hidden parts left out"));
+        reading.warnings.push(format!("hidden parts left out: {hidden}"));
     }
     if cut || sheet.exhausted() {
         reading.warnings.push("the page is too deep or too large to be read whole; its end is left out".into());

@@ -39,9 +39,18 @@ struct Declaration {
     important: bool,
 }
 
+struct Rule {
+    selector: Selector,
+    weight: Weight,
+    declarations: Vec<Declaration>,
+}
+
+/// How many ids, classes with attributes, and element names a selector has: the larger one wins over the later one.
+type Weight = (usize, usize, usize);
+
 /// The style rules of a page that can hide text.
 pub struct Sheet {
-    rules: Vec<(Selector, Vec<Declaration>)>,
+    rules: Vec<Rule>,
     tries: usize,
 }
 
@@ -54,6 +63,7 @@ impl Sheet {
             let text: String = style.text().collect();
             collect(&without_comments(&text), 0, &mut rules);
         }
+        rules.sort_by_key(|r| r.weight);
         Self { rules, tries: 0 }
     }
 
@@ -76,7 +86,7 @@ impl Sheet {
         self.tries += self.rules.len();
         let own = attribute("style").map(|s| declarations(&without_comments(s))).unwrap_or_default();
         let fitting: Vec<&Declaration> =
-            self.rules.iter().filter(|(s, _)| s.matches(&element)).flat_map(|(_, d)| d).collect();
+            self.rules.iter().filter(|r| r.selector.matches(&element)).flat_map(|r| &r.declarations).collect();
         let mut seen = Seen::default();
         if let Some(c) = attribute(if value.name() == "body" { "text" } else { "color" }) {
             seen.color = Some(color(c));
@@ -126,7 +136,7 @@ impl Seen {
                 self.opacity = number(value).is_some_and(|n| n < if value.ends_with('%') { 5.0 } else { 0.05 })
             }
             "font-size" => self.tiny = is_tiny(value),
-            "font" => self.tiny = value.split([' ', '/']).any(|v| number(v).is_some() && has_unit(v) && is_tiny(v)),
+            "font" => self.tiny = is_tiny_font(value),
             "clip" => self.clipped = value.starts_with("rect(") && is_empty_rectangle(value),
             "clip-path" => self.clipped = matches!(value, "inset(50%)" | "inset(100%)" | "circle(0)" | "circle(0px)"),
             "text-indent" => self.indented = is_far(value),
@@ -171,8 +181,11 @@ fn number(value: &str) -> Option<f64> {
     value.get(..end)?.parse().ok()
 }
 
-fn has_unit(value: &str) -> bool {
-    value.ends_with(|c: char| c.is_ascii_alphabetic() || c == '%')
+/// Tells whether a whole font, such as `bold 12px/1.5 serif`, is tiny. A figure without unit is a weight, or a size of 0.
+fn is_tiny_font(value: &str) -> bool {
+    let sizes = value.split(' ').filter_map(|part| part.split('/').next());
+    let is_size = |v: &str| number(v) == Some(0.0) || v.ends_with(|c: char| c.is_ascii_alphabetic() || c == '%');
+    sizes.filter(|v| is_size(v)).any(is_tiny)
 }
 
 fn is_tiny(value: &str) -> bool {
@@ -202,7 +215,7 @@ fn is_empty_rectangle(value: &str) -> bool {
 }
 
 /// Adds the rules of a style sheet. Rules for print and for small screens say nothing about what a reader sees.
-fn collect(css: &str, depth: usize, rules: &mut Vec<(Selector, Vec<Declaration>)>) {
+fn collect(css: &str, depth: usize, rules: &mut Vec<Rule>) {
     let mut rest = css;
     while let Some(open) = rest.find('{') {
         if rules.len() >= MAX_RULES {
@@ -229,11 +242,20 @@ fn collect(css: &str, depth: usize, rules: &mut Vec<(Selector, Vec<Declaration>)
         }
         // One bad selector must not lose its neighbors, and states such as :hover are not how a page is first seen.
         for selector in head.split(',').filter(|s| !s.contains(':') && s.len() < 500) {
+            let weight = weight(selector);
             if let Ok(selector) = Selector::parse(selector.trim()) {
-                rules.push((selector, found.clone()));
+                rules.push(Rule { selector, weight, declarations: found.clone() });
             }
         }
     }
+}
+
+/// Returns the weight of a selector without states, which are not kept.
+fn weight(selector: &str) -> Weight {
+    let ids = selector.matches('#').count();
+    let classes = selector.matches(['.', '[']).count();
+    let parts = selector.split([' ', '>', '+', '~']);
+    (ids, classes, parts.filter(|p| p.starts_with(|c: char| c.is_ascii_alphabetic())).count())
 }
 
 fn matters(property: &str) -> bool {

@@ -54,7 +54,8 @@ impl Walker {
             texts.for_each(|text| self.reading.push(Block::Prose(text)));
             return;
         }
-        let (head, rows) = divided(rows);
+        let Parts { title, head, rows } = divided(rows);
+        let caption = caption.filter(|c| !c.is_empty()).or(title);
         self.reading.push(Block::Table { caption, head, rows });
     }
 
@@ -136,23 +137,33 @@ fn filled(rows: Vec<Vec<Cell>>) -> Vec<Row> {
     out
 }
 
-/// Returns the head with its rows joined, and the rows below it; the head is empty when the table has none.
-fn divided(rows: Vec<Row>) -> (Vec<String>, Vec<Vec<String>>) {
+/// A table in its parts.
+struct Parts {
+    /// What stands across all columns above the head, or above the first rows.
+    title: Option<String>,
+    /// The rows of the head joined; empty when the table has none.
+    head: Vec<String>,
+    /// The rows below; what stood across all columns above some of them is in their first cells.
+    rows: Vec<Vec<String>>,
+}
+
+fn divided(rows: Vec<Row>) -> Parts {
     let width = rows.iter().map(|r| r.cells.len()).max().unwrap_or_default();
-    let marked = |r: &Row| r.in_head || (r.heads.iter().all(|h| *h) && r.cells.len() > 1);
-    let mut count = rows.iter().take_while(|r| marked(r) || (r.is_band && r.heads.iter().all(|h| *h))).count();
+    let mut count = head_rows(&rows);
     let no_marks = rows.iter().all(|r| r.heads.iter().all(|h| !*h));
     // Without any mark, a first row of words above rows of figures is the head.
     if count == 0 && no_marks && rows.len() > 1 {
         let figures = |r: &Row| r.cells.iter().skip(1).any(|c| starts_with_figure(c));
         let first_is_words =
             rows.first().is_some_and(|r| !figures(r) && !r.is_band && r.cells.iter().all(|c| !c.is_empty()));
-        count = usize::from(first_is_words && width > 2 || first_is_words && rows.iter().skip(1).all(figures));
+        count = usize::from(first_is_words && (width > 2 || rows.iter().skip(1).all(figures)));
     }
     if count == rows.len() {
         count = 0;
     }
     let mut head = vec![String::new(); if count == 0 { 0 } else { width }];
+    let titles = rows.iter().take(count).filter(|r| r.is_band).filter_map(|r| r.cells.first());
+    let title = titles.map(String::as_str).collect::<Vec<_>>().join(", ");
     for row in rows.iter().take(count).filter(|r| !r.is_band) {
         for (title, cell) in head.iter_mut().zip(&row.cells) {
             if !cell.is_empty() && title != cell {
@@ -174,7 +185,20 @@ fn divided(rows: Vec<Row>) -> (Vec<String>, Vec<Vec<String>>) {
         }
         body.push(cells);
     }
-    (head, body)
+    Parts { title: Some(title).filter(|t| !t.is_empty()), head, rows: body }
+}
+
+/// Returns how many rows are marked as the head. A row of one head cell across the table belongs to it only above the
+/// others; below them it parts the rows.
+fn head_rows(rows: &[Row]) -> usize {
+    let mut named = false;
+    let is_head = |r: &&Row| {
+        let heads = r.heads.iter().all(|h| *h) && r.cells.len() > 1;
+        let is_head = r.in_head || (heads && !(r.is_band && named));
+        named |= is_head && !r.is_band;
+        is_head
+    };
+    rows.iter().take_while(is_head).count()
 }
 
 fn starts_with_figure(text: &str) -> bool {

@@ -33,13 +33,13 @@ pub fn raise(line: &mut String, element: ElementRef<'_>, raised: &str) {
     }
     let unit = line.rsplit(|c: char| !c.is_alphabetic()).next().unwrap_or_default();
     let is_unit = matches!(unit, "m" | "cm" | "mm" | "dm" | "km" | "ft" | "in" | "yd" | "s" | "feet" | "foot" | "inch");
-    let after_digit = line.ends_with(|c: char| c.is_ascii_digit());
+    let after_digit = line.trim_end().ends_with(|c: char| c.is_ascii_digit());
     let exponent = raised.chars().all(|c| c.is_ascii_digit() || matches!(c, '-' | '−' | '+')) && raised.len() <= 5;
     match raised {
         "2" if is_unit => line.push('²'),
         "3" if is_unit => line.push('³'),
         "-1" | "−1" | "-2" | "−2" | "-3" | "−3" if is_unit => line.extend(raised.chars().filter_map(superscript)),
-        "o" | "0" | "°" if after_digit && follows(&['C', 'F', ' ']) => line.push('°'),
+        "o" | "0" | "°" if after_digit && follows(&['C', 'F']) => line.push('°'),
         _ if exponent && line.ends_with("10") => line.extend(raised.chars().filter_map(superscript)),
         // "1st", "2e", "No" are words; all else that is raised marks a note below.
         _ if raised.chars().all(char::is_alphabetic) && raised.chars().count() > 1 => line.push_str(raised),

@@ -9,12 +9,15 @@ use crate::read::layout::{Cell, Line};
 
 /// Lines so near to a page's edge, as a part of its height, may be its header or footer.
 const EDGE: f32 = 0.12;
+/// With fewer lines on a page, the usual distance of lines is that of the whole file.
+const FEW_LINES: usize = 12;
 /// A repeated line stands on so many pages at least.
 const REPEATED: usize = 3;
 
 /// Returns the lines of all pages.
 pub fn lines(pages: Vec<Page>) -> Vec<Line> {
     let repeated = repeated(&pages);
+    let common = leading(pages.iter().flat_map(|p| steps(&p.lines)).collect());
     let mut out: Vec<Line> = Vec::new();
     for page in pages {
         let height = page.height;
@@ -22,7 +25,9 @@ pub fn lines(pages: Vec<Page>) -> Vec<Line> {
         let kept: Vec<Printed> = printed
             .filter(|l| !(at_edge(l, height) && (repeated.contains_key(&shape(l)) || is_page_number(l))))
             .collect();
-        let leading = leading(&kept);
+        let steps = steps(&kept);
+        // A page of few lines may have nothing but gaps.
+        let leading = if steps.len() < FEW_LINES { common } else { leading(steps) };
         let columns = columns(&kept);
         let mut last: Option<(f32, f32)> = None;
         for line in in_order(kept, columns) {
@@ -87,10 +92,14 @@ fn is_page_number(line: &Printed) -> bool {
     text.contains(|c: char| c.is_ascii_digit()) && words.all(known)
 }
 
-/// Returns the usual distance of two lines.
-fn leading(lines: &[Printed]) -> f32 {
+/// Returns the distances between lines.
+fn steps(lines: &[Printed]) -> Vec<f32> {
     let pairs = lines.iter().zip(lines.iter().skip(1));
-    let mut steps: Vec<f32> = pairs.map(|(a, b)| b.y - a.y).filter(|s| *s > 1.0).collect();
+    pairs.map(|(a, b)| b.y - a.y).filter(|s| *s > 1.0).collect()
+}
+
+/// Returns the usual one of distances between lines.
+fn leading(mut steps: Vec<f32>) -> f32 {
     steps.sort_by(f32::total_cmp);
     // The lower half: paragraphs and headings only widen it.
     steps.get(steps.len() / 3).copied().unwrap_or(14.0)

@@ -8,6 +8,9 @@ use super::wire::{Page, Printed};
 
 /// Smaller letters are not read by anybody.
 const LEAST_SIZE: f32 = 2.5;
+/// A gap so wide, in sizes of letters, parts columns: a space has a quarter, in justified lines up to twice that, and a
+/// table made close still leaves more than one.
+const COLUMN_GAP: f32 = 1.0;
 /// No more letters than this are kept of a file.
 const MAX_GLYPHS: usize = 4_000_000;
 
@@ -118,19 +121,22 @@ impl Collector {
 /// Returns the lines of a page from top to bottom.
 fn lines(mut glyphs: Vec<Glyph>) -> Vec<Printed> {
     glyphs.sort_by(|a, b| a.y.total_cmp(&b.y).then(a.x.total_cmp(&b.x)));
-    let mut groups: Vec<Vec<Glyph>> = Vec::new();
+    // Each line with where its largest letter stands, and the size of that.
+    let mut groups: Vec<(f32, f32, Vec<Glyph>)> = Vec::new();
     for glyph in glyphs {
         // Raised and lowered figures belong to the line of the larger letters.
-        let fits = |line: &Vec<Glyph>| {
-            let Some(largest) = line.iter().max_by(|a, b| a.size.total_cmp(&b.size)) else { return false };
-            (glyph.y - largest.y).abs() <= 0.45 * largest.size.max(glyph.size)
-        };
+        let fits = |y: f32, size: f32| (glyph.y - y).abs() <= 0.45 * size.max(glyph.size);
         match groups.last_mut() {
-            Some(line) if fits(line) => line.push(glyph),
-            _ => groups.push(vec![glyph]),
+            Some((y, size, line)) if fits(*y, *size) => {
+                if glyph.size >= *size {
+                    (*y, *size) = (glyph.y, glyph.size);
+                }
+                line.push(glyph);
+            }
+            _ => groups.push((glyph.y, glyph.size, vec![glyph])),
         }
     }
-    groups.into_iter().filter_map(printed).collect()
+    groups.into_iter().filter_map(|(_, _, line)| printed(line)).collect()
 }
 
 fn printed(mut glyphs: Vec<Glyph>) -> Option<Printed> {
@@ -152,7 +158,7 @@ fn printed(mut glyphs: Vec<Glyph>) -> Option<Printed> {
         last = Some((glyph.x, glyph.text.clone()));
         let raised = glyph.size < 0.85 * size && y - glyph.y > 0.15 * size;
         match cells.last_mut() {
-            Some(cell) if glyph.x - cell.1 < 1.4 * size => {
+            Some(cell) if glyph.x - cell.1 < COLUMN_GAP * size => {
                 if glyph.x - cell.1 > 0.15 * size || (spaced && glyph.x - cell.1 > 0.02 * size) {
                     cell.2.push(' ');
                 }
