@@ -139,9 +139,15 @@ impl Sentence<'_> {
             reckoned: any("reckoned"),
             report: self.tokens.iter().enumerate().any(|(k, _)| self.cue("report", k) && !self.in_noun(k)),
             former: any("former"),
-            past: any("past") || self.has_past_verb(),
+            past: self.has_past_cue() || self.has_past_verb(),
             plain: any("plain") && !any("announces"),
         }
+    }
+
+    /// Whether a word of the past stands there, other than in "where beds are moved".
+    fn has_past_cue(&self) -> bool {
+        let present = |k: usize| k.checked_sub(1).is_some_and(|before| self.cue("present_passive", before));
+        (0..self.tokens.len()).any(|k| self.cue("past", k) && !present(k))
     }
 
     /// Whether a word in "-ed" governs a figure ("travelled 14 km") and is not passive.

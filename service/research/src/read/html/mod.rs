@@ -326,9 +326,14 @@ impl Walker {
         let mut paragraph = String::new();
         let lines: Vec<String> = line.split(BREAK).map(tidy).collect();
         let full = || lines.iter().filter(|l| !l.is_empty());
-        let itemized = full().count() > 1 && full().all(|l| words::is_item(l));
+        // "Widths:", then a line an item.
+        let lead = full().next().filter(|l| l.ends_with(':') && full().count() > 2);
+        let skipped = usize::from(lead.is_some());
+        let itemized = full().count() > 1 && full().skip(skipped).all(|l| words::is_item(l));
         for line in &lines {
-            if itemized && !line.is_empty() {
+            if itemized && lead == Some(line) {
+                self.paragraph(&mut line.clone());
+            } else if itemized && !line.is_empty() {
                 items.push((0, without_bullet(line).to_owned()));
             } else if line.is_empty() && !itemized {
                 self.paragraph(&mut paragraph);
