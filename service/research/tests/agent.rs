@@ -369,7 +369,7 @@ fn the_agent_runs_against_the_shared_fake_of_every_provider() {
         ("openai_responses", "openai/21_responses_structured_ok", "openai/20_responses_web_search_ok"),
         ("anthropic", "anthropic/01_structured_ok", "anthropic/06_529_overloaded,anthropic/10_web_search_ok"),
         ("openai", "openai/01_chat_schema_ok", "openai_compat/06_no_usage"),
-        // Not ollama: its fixture counts 61 tokens of prompt, which the client takes for a prompt that was cut.
+        ("ollama", "ollama/01_chat_format_ok", "ollama/01_chat_format_ok"),
     ] {
         let Some(fake) = Fake::start(&format!("{infer},{search}")) else {
             println!("skipped: ../shared/llm/tools/fake_llm.py or python3 is not there");

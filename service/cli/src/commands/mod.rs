@@ -42,9 +42,9 @@ pub enum Command {
     Export(export::Args),
     /// List, show and validate the kinds of building
     Domains(domains::Args),
-    /// Find building rules in text
+    /// Make a knowledge base of documents or of a model's search; find the rules in sentences
     Research(research::Args),
-    /// Count what the knowledge bases hold
+    /// Search, change and look after the database of building rules
     Knowledge(knowledge::Args),
     /// Print a completion script for a shell
     Completions(completions::Args),

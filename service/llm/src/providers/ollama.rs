@@ -18,7 +18,7 @@ const BASE_URL: &str = "http://127.0.0.1:11434";
 const MIN_CONTEXT: u64 = 8192;
 /// Contexts are a multiple of this, so that the model is not loaded anew for every request.
 const CONTEXT_STEP: u64 = 4096;
-/// More bytes a token than any prompt has on the whole; a prompt that counts fewer tokens than that was cut.
+/// More bytes a token than any prompt has on the whole.
 const MAX_BYTES_PER_TOKEN: u64 = 10;
 
 pub(super) const ENTRY: Entry = Entry {
@@ -101,8 +101,9 @@ impl Wire for Chat {
             return Err(broken_off(answer.usage));
         }
         let context = self.context(request);
-        let cut = input + 1 >= context || (input > 0 && input * MAX_BYTES_PER_TOKEN < request.prompt_bytes() as u64);
-        if cut {
+        // A prompt that is too long is cut without a word and then fills the context. A small count is no sign of that:
+        // servers leave out what they still had from the request before.
+        if input + 1 >= context {
             let message = format!("the server read {input} tokens of it, with a context of {context}");
             return Err(Failure::from(Error::TooLong { message }).with_usage(answer.usage));
         }

@@ -118,8 +118,8 @@ impl RunArgs {
             Error::Input("--out is missing: name a folder for the stage files, or see d3dgen research --help".into())
         })?;
         let plan = self.plan(out.clone())?;
-        let now = now_s();
-        let today = date_of(now);
+        let mut today = humantime::format_rfc3339_seconds(SystemTime::now()).to_string();
+        today.truncate("YYYY-MM-DD".len());
         let cache = self.cache.clone().unwrap_or_else(|| out.join("cache"));
         let fetcher =
             self.fetcher(cache, plan.places.iter().any(|p| matches!(p, d3dgen_research::run::Place::Url(_))))?;
@@ -227,20 +227,6 @@ fn now_s() -> u64 {
     SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |d| d.as_secs())
 }
 
-/// Returns the day in UTC as `YYYY-MM-DD`.
-fn date_of(seconds: u64) -> String {
-    // Days since 0000-03-01, in eras of 400 years: leap days come last in such years.
-    let days = (seconds / DAY_S) as i64 + 719_468;
-    let (era, day_of_era) = (days.div_euclid(146_097), days.rem_euclid(146_097));
-    let year_of_era = (day_of_era - day_of_era / 1_460 + day_of_era / 36_524 - day_of_era / 146_096) / 365;
-    let day_of_year = day_of_era - (365 * year_of_era + year_of_era / 4 - year_of_era / 100);
-    let shifted = (5 * day_of_year + 2) / 153;
-    let (day, month) =
-        (day_of_year - (153 * shifted + 2) / 5 + 1, if shifted < 10 { shifted + 3 } else { shifted - 9 });
-    let year = year_of_era + era * 400 + i64::from(month <= 2);
-    format!("{year:04}-{month:02}-{day:02}")
-}
-
 fn counts(outcome: &Outcome) -> (usize, usize) {
     let references = &outcome.knowledge.references;
     (references.len(), references.iter().map(|r| r.constraints.len()).sum())
@@ -284,16 +270,4 @@ fn shown_json(outcome: &Outcome) -> String {
         "unverified": outcome.unverified, "execution": outcome.execution,
     });
     serde_json::to_string_pretty(&value).expect("times are finite") + "\n"
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn days_have_dates() {
-        for (seconds, date) in [(0, "1970-01-01"), (951_782_400, "2000-02-29"), (1_795_219_200, "2026-11-21")] {
-            assert_eq!(date_of(seconds), date);
-        }
-    }
 }
