@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use d3dgen_research::Error;
+use d3dgen_research::extract::Extractor;
 use d3dgen_research::read::pdf::{Limits, Program, run_child};
 use d3dgen_research::read::{Document, Kind, Options, PassageKind, read};
 
@@ -73,6 +74,73 @@ fn our_documents_read_as_expected() {
         assert_eq!(ids.len(), document.passages.len(), "{name}: ids are unique");
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n\n"));
+}
+
+/// Returns the figures with their units that are found in a document, each passage read under its nearest heading.
+fn figures(document: &Document) -> Vec<String> {
+    let language = document.language.as_deref().unwrap_or_default();
+    let texts = document.passages.iter().map(|p| format!("{}\n\n{}", p.heading.last().map_or("", |h| h), p.text));
+    let found = texts.flat_map(|text| Extractor::shared().extract(&text, language));
+    found.map(|f| format!("{} {}", serde_json::to_value(&f.constraint.value).unwrap(), f.constraint.unit)).collect()
+}
+
+#[test]
+fn figures_come_through() {
+    let cases: [(&str, &[&str]); 4] = [
+        (
+            "ward.html",
+            &["2.35 m", "2.6 m", "16.0 m^2", "24.0 m^2", "28.0 m^2", "12.5 m^2", "2.4 m", "1.2 m", "300.0 lx"],
+        ),
+        ("office.md", &["8.0 m^2", "1.4 m", "0.8 m", "1.1 m", "2.0 m^2/person"]),
+        ("wohnung.txt", &["1.2 m", "0.8 m", "9.5 m^2", "7.5 m^2", "4.2 m^2", "1.8 m"]),
+        ("hallen.pdf", &["3.5 m", "0.75 m", "35.0 m", "2.4 m", "4.0 m", "1.8 m", "2.9 m"]),
+    ];
+    for (name, expected) in cases {
+        let document = read(&std::fs::read(documents().join(name)).unwrap(), None, name, &options()).unwrap();
+        let found = figures(&document);
+        let missing: Vec<_> = expected.iter().filter(|e| !found.iter().any(|f| f == *e)).collect();
+        assert!(missing.is_empty(), "{name}: no {missing:?} in {found:?}");
+    }
+}
+
+#[test]
+fn parts_of_pages_and_texts_become_passages_that_stand_alone() {
+    let pages = [
+        ("<p>Widths:<br>- doors 0.9 m<br>- halls 1.5 m</p>", "Widths:\n- doors 0.9 m\n- halls 1.5 m"),
+        ("<p>The doors of<br>the ward are wide.</p>", "The doors of the ward are wide."),
+        (
+            "<table><tr><td>Room</td><td>Area (m²)</td><td>Use</td></tr><tr><td>Office</td><td>9</td><td>-</td></tr></table>",
+            "Room | Area (m²) | Use\nOffice | 9 | -",
+        ),
+        (
+            "<table><tr><th colspan=2>Staff</th></tr><tr><td>Office</td><td>9 m²</td></tr></table>",
+            "Staff:\n- Office: 9 m²",
+        ),
+        ("<pre>Door      0.9 m\nHall      1.5 m</pre>", "- Door: 0.9 m\n- Hall: 1.5 m"),
+    ];
+    for (page, expected) in pages {
+        assert_eq!(texts(&html(page)), [expected], "{page}");
+    }
+    let titled = "<table><tr><th colspan=2>Widths in mm</th></tr><tr><th>Door</th><th>Width</th></tr>\
+                  <tr><td>Bath</td><td>900</td></tr></table>";
+    let document = html(titled);
+    assert_eq!(
+        (texts(&document), &document.passages[0].heading[..]),
+        (vec!["Door | Width\nBath | 900"], &["Widths in mm".to_owned()][..])
+    );
+
+    let text = "1. Scope\n\nMade up.\n\n2. Doors\n\nDoors are at least\n0.9 m wide.\n\n   a) ward doors: 1.2 m\n   b) bath doors: 0.95 m\n      where turned\n\n\
+                Room\tArea\nOffice\t9 m2\nStore\t4 m2\n\nEnd.";
+    let document = read(text.as_bytes(), Some("text/plain"), "x", &options()).unwrap();
+    let expected = [
+        "Made up.",
+        "Doors are at least 0.9 m wide.",
+        "- ward doors: 1.2 m\n- bath doors: 0.95 m where turned",
+        "Room | Area\nOffice | 9 m2\nStore | 4 m2",
+        "End.",
+    ];
+    assert_eq!(texts(&document), expected);
+    assert!(document.passages[1..].iter().all(|p| p.heading == ["2. Doors"]));
 }
 
 #[test]

@@ -144,10 +144,12 @@ impl Sentence<'_> {
         }
     }
 
-    /// Whether a word of the past stands there, other than in "where beds are moved".
+    /// Whether a word of the past stands there, other than in "where beds are moved" and "wo Waren liegen".
     fn has_past_cue(&self) -> bool {
         let present = |k: usize| k.checked_sub(1).is_some_and(|before| self.cue("present_passive", before));
-        (0..self.tokens.len()).any(|k| self.cue("past", k) && !present(k))
+        let named = |t: &Token| t.capital && !t.new_line;
+        let noun = |k: usize| k > 0 && self.lang == "de" && self.tokens.get(k).is_some_and(named);
+        (0..self.tokens.len()).any(|k| self.cue("past", k) && !present(k) && !noun(k))
     }
 
     /// Whether a word in "-ed" governs a figure ("travelled 14 km") and is not passive.

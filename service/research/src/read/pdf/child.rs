@@ -157,8 +157,6 @@ fn reason(error: &OutputError) -> String {
         OutputError::PdfError(error) => error.to_string(),
         OutputError::IoError(error) => error.to_string(),
         OutputError::FormatError(error) => error.to_string(),
-        #[allow(unreachable_patterns)]
-        _ => "the library refuses it".into(),
     }
 }
 
