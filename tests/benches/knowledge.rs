@@ -22,17 +22,52 @@ const SEARCHES: usize = 400;
 const PLACES: [&str; 8] = ["DE", "US", "GB", "FR", "EU", "INT", "SG", "AU"];
 const TOPICS: [&str; 4] = ["room_size", "fire_safety_evacuation", "convenience_accessibility", "energy_hvac_daylight"];
 const SPACES: [&str; 20] = [
-    "corridor", "patient_room", "office", "kitchen", "bathroom", "stairwell", "ward", "lobby", "meeting_room", "laboratory",
-    "pharmacy", "canteen", "archive", "classroom", "garage", "balcony", "laundry", "elevator", "ramp", "toilet",
+    "corridor",
+    "patient_room",
+    "office",
+    "kitchen",
+    "bathroom",
+    "stairwell",
+    "ward",
+    "lobby",
+    "meeting_room",
+    "laboratory",
+    "pharmacy",
+    "canteen",
+    "archive",
+    "classroom",
+    "garage",
+    "balcony",
+    "laundry",
+    "elevator",
+    "ramp",
+    "toilet",
 ];
 const QUANTITIES: [(&str, &str); 12] = [
-    ("clear_width", "m"), ("net_floor_area", "m^2"), ("ceiling_height", "m"), ("door_width", "m"), ("window_area", "m^2"),
-    ("travel_distance", "m"), ("illuminance", "lx"), ("turning_circle", "m"), ("sill_height", "m"), ("bed_spacing", "m"),
-    ("handrail_height", "m"), ("air_changes", "ACH"),
+    ("clear_width", "m"),
+    ("net_floor_area", "m^2"),
+    ("ceiling_height", "m"),
+    ("door_width", "m"),
+    ("window_area", "m^2"),
+    ("travel_distance", "m"),
+    ("illuminance", "lx"),
+    ("turning_circle", "m"),
+    ("sill_height", "m"),
+    ("bed_spacing", "m"),
+    ("handrail_height", "m"),
+    ("air_changes", "ACH"),
 ];
 const CONDITIONS: [&str; 10] = [
-    "new buildings", "existing buildings", "beds are moved", "wheelchair users", "more than 20 people", "two-way traffic",
-    "emergency access", "night operation", "public access", "robots operate",
+    "new buildings",
+    "existing buildings",
+    "beds are moved",
+    "wheelchair users",
+    "more than 20 people",
+    "two-way traffic",
+    "emergency access",
+    "night operation",
+    "public access",
+    "robots operate",
 ];
 
 fn main() {
@@ -105,7 +140,8 @@ fn made_up(rules: usize) -> KnowledgeBase {
             url: None,
             source_type: "regulation".into(),
         };
-        let constraints = (0..RULES_A_DOCUMENT.min(rules - d * RULES_A_DOCUMENT)).map(|n| rule(d, n, &mut stream)).collect();
+        let constraints =
+            (0..RULES_A_DOCUMENT.min(rules - d * RULES_A_DOCUMENT)).map(|n| rule(d, n, &mut stream)).collect();
         knowledge.references.push(Reference {
             ref_id: format!("r{d}"),
             building_type: "bench".into(),

@@ -10,6 +10,8 @@ pub const DOOR_LANE_M: f64 = 0.5;
 /// Depth up to which something on a wall narrows no passage and takes nobody's floor, m: what building codes let project
 /// into a walk.
 pub const PROJECTION_M: f64 = 0.10;
+/// Height under which something on a wall is in the way of people who pass, m (80 in, ADA Standards 307.4).
+pub const HEAD_ROOM_M: f64 = 2.03;
 /// Overlap at which an obstacle counts as beside, not ahead, m.
 const GRAZE_M: f64 = 0.02;
 

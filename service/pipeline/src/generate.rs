@@ -236,7 +236,7 @@ fn attempt(
     observe(Event::Finished(Stage::Floorplan, attempt, Artifact::Floorplan(&plan)));
 
     begin(Stage::Placement, attempt, observe, cancelled)?;
-    let placements = placement::generate(&reseeded, &plan, domain, None)?;
+    let placements = placement::generate(&reseeded, &plan, domain, &retrieved.limits, None)?;
     observe(Event::Finished(Stage::Placement, attempt, Artifact::Placements(&placements)));
 
     begin(Stage::Scenario, attempt, observe, cancelled)?;

@@ -6,6 +6,7 @@ use d3dgen_model::document::Document;
 use d3dgen_model::floorplan::Floorplan;
 use d3dgen_model::placements::Placements;
 use d3dgen_model::scene_graph::SceneGraph;
+use d3dgen_pipeline::generate::retrieve;
 use d3dgen_pipeline::placement;
 
 use crate::error::Error;
@@ -42,7 +43,8 @@ impl Args {
         let registry = self.registry.load()?;
         let plugin = domain(&registry, &graph.domain)?;
         graph.seed = self.seed.unwrap_or(plan.seed);
-        let placements = placement::generate(&graph, &plan, plugin.domain(), pinned.as_ref())?;
+        let limits = retrieve(&graph, plugin).limits;
+        let placements = placement::generate(&graph, &plan, plugin.domain(), &limits, pinned.as_ref())?;
         write_text(self.out.as_deref(), &placements.to_json())
     }
 }

@@ -10,7 +10,7 @@ use d3dgen_model::occupancy::{Occupancy, stops_robot};
 use d3dgen_model::placements::Placement;
 use d3dgen_model::world::World;
 
-use crate::clearance::{is_shallow, quarter};
+use crate::clearance::{HEAD_ROOM_M, is_shallow, quarter};
 use crate::conditions::Guard;
 use crate::freespace::FreeSpace;
 use crate::retrieve::{Applicable, Retrieval, Scope};
@@ -18,8 +18,6 @@ use crate::tables::{ConditionRow, When};
 
 /// Beds at least this wide are for two, m: the narrowest that is sold so is 1.2 m, and for one the widest is 1.1 m.
 const FOR_TWO_M: f64 = 1.2;
-/// Height below which people meet what stands out from a wall, m.
-const HEAD_ROOM_M: f64 = 2.03;
 /// Beds narrower than this are cots, m.
 const FOR_ONE_M: f64 = 0.75;
 

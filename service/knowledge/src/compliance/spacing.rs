@@ -6,14 +6,14 @@ use d3dgen_model::domain::{Mount, Shape};
 use super::Reading;
 use super::objects::{belong_together, gap};
 use super::site::{Object, Room, Site};
-use crate::clearance::{Side, depth_beside, free_depth, quarter};
+use crate::clearance::{HEAD_ROOM_M, Side, depth_beside, free_depth, quarter};
 use crate::measure::Measure;
 use crate::retrieve::{Applicable, Rule};
 
 /// Objects nearer to a wall than this stand against it, m.
 const AGAINST_M: f64 = 0.10;
 /// Heights between which a thing on a wall stands out into the way of people, m.
-const HEAD_ROOM_M: [f64; 2] = [0.685, 2.03];
+const IN_THE_WAY_M: [f64; 2] = [0.685, HEAD_ROOM_M];
 /// Seats belong to a table at most this far from its edge, m.
 const AT_TABLE_M: f64 = 0.5;
 /// Thickness of the panels that a desk stands on, m.
@@ -75,7 +75,7 @@ pub(super) fn back_is_at_wall(room: &Room, object: &Object) -> bool {
 pub(super) fn projections(site: &Site, a: &Applicable) -> Vec<Reading> {
     let in_the_way = |o: &&Object| {
         let z = o.placement.pose.z;
-        o.placement.mount == Mount::Wall && z > HEAD_ROOM_M[0] && z < HEAD_ROOM_M[1]
+        o.placement.mount == Mount::Wall && z > IN_THE_WAY_M[0] && z < IN_THE_WAY_M[1]
     };
     let rooms = site.rooms_of(a).filter(|r| r.plan.circulation);
     let objects = rooms.flat_map(|r| r.objects.iter().filter(in_the_way));

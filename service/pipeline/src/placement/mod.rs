@@ -24,6 +24,7 @@ mod way;
 
 use std::collections::BTreeMap;
 
+use d3dgen_knowledge::Limits;
 use d3dgen_model::domain::{Domain, ObjectType};
 use d3dgen_model::floorplan::{Floorplan, PlanRoom};
 use d3dgen_model::placements::Placement;
@@ -39,7 +40,7 @@ use way::Way;
 /// Least radius of the disc that must find its way, m: a person, or a small robot.
 const LEAST_RADIUS_M: f64 = 0.30;
 
-/// Furnishes every room of a floorplan.
+/// Furnishes every room of a floorplan; ways through circulation stay as wide as the limits ask.
 ///
 /// Locked placements of `pinned` stay exactly as they are and the others go around them. What a room type requires and
 /// the room cannot hold is listed in `unplaced` with `required`, with the rule that stopped it.
@@ -51,6 +52,7 @@ pub fn generate(
     graph: &SceneGraph,
     plan: &Floorplan,
     domain: &Domain,
+    limits: &Limits,
     pinned: Option<&Placements>,
 ) -> Result<Placements, Error> {
     let mut problems = locked::strays(pinned, plan);
@@ -59,7 +61,7 @@ pub fn generate(
     }
     let mut out = Placements { version: 1, seed: graph.seed, placements: Vec::new(), unplaced: Vec::new() };
     for room in &plan.rooms {
-        match furnish_room(graph, plan, room, domain, pinned) {
+        match furnish_room(graph, plan, room, (domain, limits), pinned) {
             Ok((placements, unplaced)) => {
                 out.placements.extend(placements);
                 out.unplaced.extend(unplaced);
@@ -75,7 +77,7 @@ fn furnish_room(
     graph: &SceneGraph,
     plan: &Floorplan,
     room: &PlanRoom,
-    domain: &Domain,
+    (domain, limits): (&Domain, &Limits),
     pinned: Option<&Placements>,
 ) -> Result<(Vec<Placement>, Vec<Unplaced>), Vec<String>> {
     let space = Space::new(plan, room);
@@ -91,7 +93,8 @@ fn furnish_room(
     let sizes = pick_sizes(domain, &mut stream);
     let present = locked::present(&fixed, &tasks, domain);
     let robot_m = graph.robots.iter().map(|r| r.radius_m).fold(LEAST_RADIUS_M, f64::max);
-    let way = Way::new(plan, room, domain, robot_m);
+    let asked_m = limits.corridor_width.as_ref().map_or(0.0, |l| l.value).max(domain.circulation.width_m);
+    let way = Way::new(plan, room, asked_m.max(2.0 * robot_m));
     let job = search::Job {
         domain,
         space: &space,

@@ -2,9 +2,10 @@
 
 use std::rc::Rc;
 
+use d3dgen_knowledge::clearance::HEAD_ROOM_M;
 use d3dgen_model::domain::Mount;
 
-use super::geom::{Box2, Solid, turn};
+use super::geom::{Box2, Solid, mm, turn};
 use super::nav::Nav;
 use super::space::Space;
 use super::unit::{Part, Unit};
@@ -95,6 +96,8 @@ pub(super) struct State<'a, 's> {
     pub clears: Vec<Box2>,
     /// Outlines of what takes floor: not what is flat, hangs high or flat on a wall.
     bodies: Vec<Box2>,
+    /// Outlines of what narrows a way for people.
+    narrowing: Vec<Box2>,
     nav: Nav,
     targets: Vec<Vec<Box2>>,
     /// Clear floor the robot can use, in cells.
@@ -113,6 +116,7 @@ impl<'a, 's> State<'a, 's> {
             solids: Vec::new(),
             clears: Vec::new(),
             bodies: Vec::new(),
+            narrowing: Vec::new(),
             nav,
             targets: Vec::new(),
             free_area,
@@ -193,6 +197,11 @@ impl<'a, 's> State<'a, 's> {
 
     /// Returns how many cells of floor stay reachable once the units stand there, or the rule they break.
     pub fn route(&self, units: &[Placed]) -> Result<usize, Rule> {
+        let narrowing: Vec<Box2> = units.iter().flat_map(narrowing).collect();
+        let open = |way: &Way| narrowing.is_empty() || way.stays_open(&[&self.narrowing[..], &narrowing].concat());
+        if !self.way.is_none_or(open) {
+            return Err(Rule::Route);
+        }
         let obstacles: Vec<Box2> = units.iter().flat_map(obstacles).collect();
         if obstacles.is_empty() {
             let reached = units.iter().filter(|u| needs_reach(u)).all(|u| self.nav.reaches(&u.targets()));
@@ -200,12 +209,7 @@ impl<'a, 's> State<'a, 's> {
         }
         let mut nav = self.nav.clone();
         obstacles.iter().for_each(|o| nav.block(o));
-        let open = |way: &Way| {
-            let new: Vec<Box2> = units.iter().flat_map(bodies).collect();
-            new.is_empty() || way.stays_open(&[&self.bodies[..], &new].concat())
-        };
         let reached = nav.settle()
-            && self.way.is_none_or(open)
             && self.targets.iter().all(|t| nav.reaches(t))
             && units.iter().filter(|u| needs_reach(u)).all(|u| nav.reaches(&u.targets()));
         if reached { Ok(nav.area()) } else { Err(Rule::Route) }
@@ -220,6 +224,7 @@ impl<'a, 's> State<'a, 's> {
             }
             obstacles(&p).for_each(|o| self.nav.block(&o));
             self.bodies.extend(bodies(&p));
+            self.narrowing.extend(narrowing(&p));
             if p.support.is_none() {
                 self.clears.extend(p.unit.clears.iter().map(|c| p.world(c)));
             }
@@ -242,6 +247,14 @@ fn obstacles(p: &Placed) -> impl Iterator<Item = Box2> {
 /// Returns the outlines of what takes floor from people passing by or using something.
 fn bodies(p: &Placed) -> impl Iterator<Item = Box2> {
     p.unit.parts.iter().map(|part| (part, p.solid(part))).filter(|(part, s)| takes_floor(part, s)).map(|(_, s)| s.rect)
+}
+
+/// Returns the outlines of what narrows a way for people: what takes floor, and what stands out from a wall below their
+/// heads.
+fn narrowing(p: &Placed) -> impl Iterator<Item = Box2> {
+    let stands_out = |part: &Part, s: &Solid| part.mount == Mount::Wall && !part.is_shallow() && s.z0 < mm(HEAD_ROOM_M);
+    let parts = p.unit.parts.iter().map(|part| (part, p.solid(part)));
+    parts.filter(move |(part, s)| takes_floor(part, s) || stands_out(part, s)).map(|(_, s)| s.rect)
 }
 
 fn takes_floor(part: &Part, solid: &Solid) -> bool {

@@ -1,5 +1,6 @@
 //! Rooms of the built-in domains furnished by themselves: what the hard rules and good sense ask of them.
 
+use d3dgen_knowledge::Limits;
 use d3dgen_knowledge::clearance::{is_shallow, quarter};
 use d3dgen_knowledge::freespace::FreeSpace;
 use d3dgen_model::domain::{Domain, Materials, Relation, Shape};
@@ -129,7 +130,7 @@ impl<'s> Site<'s> {
             assumptions: Vec::new(),
             conflicts: Vec::new(),
         };
-        super::generate(&graph, &self.plan(domain), domain, None).expect("nothing is locked")
+        super::generate(&graph, &self.plan(domain), domain, &Limits::default(), None).expect("nothing is locked")
     }
 }
 

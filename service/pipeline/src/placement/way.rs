@@ -1,7 +1,6 @@
 //! The way through circulation: how wide it must stay from door to door.
 
 use d3dgen_knowledge::freespace::FreeSpace;
-use d3dgen_model::domain::Domain;
 use d3dgen_model::floorplan::{Door, Floorplan, PlanRoom};
 use d3dgen_model::{Polygon, TOLERANCE_M};
 
@@ -17,14 +16,11 @@ pub(super) struct Way {
 }
 
 impl Way {
-    /// Returns the way through a room; `None` where it is no circulation, or narrower without furniture already (then
+    /// Returns the way of a clear width, m, through a room; `None` where it is no circulation, or narrower without furniture already (then
     /// only robots' own room counts).
-    pub fn new(plan: &Floorplan, room: &PlanRoom, domain: &Domain, radius_m: f64) -> Option<Self> {
-        let out = Self {
-            outline: room.net_polygon.clone(),
-            doors: plan.doors_of(&room.room_id).cloned().collect(),
-            width_m: domain.circulation.width_m.max(2.0 * radius_m),
-        };
+    pub fn new(plan: &Floorplan, room: &PlanRoom, width_m: f64) -> Option<Self> {
+        let out =
+            Self { outline: room.net_polygon.clone(), doors: plan.doors_of(&room.room_id).cloned().collect(), width_m };
         (room.circulation && out.stays_open(&[])).then_some(out)
     }
 
