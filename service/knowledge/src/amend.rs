@@ -231,11 +231,11 @@ mod tests {
     }
 
     fn rule(edits: &[Edit]) -> &Constraint {
-        let rules = edits.iter().filter_map(|e| match &e.after {
+        let mut rules = edits.iter().filter_map(|e| match &e.after {
             Some(crate::database::Entry::Constraint(_, c)) => Some(&**c),
             _ => None,
         });
-        rules.last().expect("a rule")
+        rules.next_back().expect("a rule")
     }
 
     #[test]

@@ -45,7 +45,7 @@ fn json_lines(stats: &[Stats]) -> Result<String, Error> {
 fn shown(stats: &[Stats], reasons: bool) -> String {
     type Figure = fn(&Stats) -> String;
     let level = |s: &Stats, name: &str| s.confidence.get(name).copied().unwrap_or(0).to_string();
-    let figures: [(&str, Figure); 8] = [
+    let figures: [(&str, Figure); 9] = [
         ("references", |s| s.references.to_string()),
         ("constraints", |s| s.constraints.to_string()),
         ("constraints per reference", |s| format!("{:.2}", s.constraints_per_reference)),
@@ -54,6 +54,9 @@ fn shown(stats: &[Stats], reasons: bool) -> String {
         ("jurisdictions", |s| s.jurisdictions.to_string()),
         ("file size, kB", |s| format!("{:.0}", s.file_bytes as f64 / 1000.0)),
         ("share decided, %", |s| format!("{:.1}", s.share_decided * 100.0)),
+        ("decided one way only, %", |s| {
+            format!("{:.1}", s.decided_one_way as f64 / s.constraints.max(1) as f64 * 100.0)
+        }),
     ];
     let mut header = vec![""];
     header.extend(stats.iter().map(|s| s.domain.as_str()));
