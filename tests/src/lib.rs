@@ -71,8 +71,8 @@ pub fn program() -> &'static Path {
     static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
     PROGRAM.get_or_init(|| {
         // Cargo builds a package's programs for its own tests only, so it is asked for this one.
-        // With all features, as the tests beside it are built: the crates below are then compiled once.
-        let args = ["build", "-q", "--offline", "-p", "d3dgen-cli", "--bin", "d3dgen", "--all-features"];
+        // For the workspace with all features, as the tests beside it are built: the crates below are then compiled once.
+        let args = ["build", "-q", "--offline", "--workspace", "--bin", "d3dgen", "--all-features"];
         let format = ["--message-format", "json"];
         let built =
             Command::new(env!("CARGO")).args(args).args(format).current_dir(workspace()).output().expect("cargo runs");
