@@ -14,10 +14,12 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("store", &[]),
     ("llm", &[]),
     ("knowledge", &["model", "store"]),
-    ("pipeline", &["model", "plugins", "knowledge"]),
-    ("export", &["model"]),
+    ("mesh", &["model"]),
+    ("assets", &["model", "store", "mesh"]),
+    ("pipeline", &["model", "plugins", "knowledge", "assets"]),
+    ("export", &["model", "mesh"]),
     ("research", &["model", "llm"]),
-    ("cli", &["model", "store", "llm", "plugins", "knowledge", "pipeline", "export", "research"]),
+    ("cli", &["model", "store", "llm", "plugins", "knowledge", "mesh", "assets", "pipeline", "export", "research"]),
     ("tests", &["model", "plugins", "knowledge", "pipeline", "export"]),
 ];
 

@@ -1,0 +1,8 @@
+//! 3D models of objects: in memory, made from a description, as files, and as pictures.
+//!
+//! Frame of every model: meters, z up, x to the right of somebody who looks at its front, the front at -y, origin in
+//! the middle of the footprint on the underside (of a wall object: in the middle of its box's underside too).
+
+pub mod model3d;
+
+pub use model3d::{Body, Collision, Joint, JointKind, Material, Mesh, Model3d, Texture, Visual};

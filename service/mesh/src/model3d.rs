@@ -1,0 +1,189 @@
+//! What a 3D model is in memory, whichever file it came from or goes to.
+
+/// A 3D model: bodies that joints move against each other, and what they look like.
+///
+/// All geometry is in the frame of the model (see the crate), with every joint at zero.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Model3d {
+    /// Name, `[A-Za-z0-9_]`.
+    pub name: String,
+    /// Rigid bodies; the first is the root, which stands, hangs or is fixed.
+    pub bodies: Vec<Body>,
+    /// How the other bodies move; none for a model without moving parts.
+    pub joints: Vec<Joint>,
+    /// Materials that visuals name by index.
+    pub materials: Vec<Material>,
+    /// Pictures that materials name by index.
+    pub textures: Vec<Texture>,
+}
+
+/// A rigid body.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Body {
+    /// Name, unique in the model.
+    pub name: String,
+    /// What is seen.
+    pub visuals: Vec<Visual>,
+    /// What collides: convex shapes.
+    pub collisions: Vec<Collision>,
+    /// Mass, kg.
+    pub mass_kg: f64,
+}
+
+/// A mesh with its material.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Visual {
+    /// Name, unique in the body.
+    pub name: String,
+    /// Geometry.
+    pub mesh: Mesh,
+    /// Index into the model's materials.
+    pub material: Option<usize>,
+}
+
+/// Triangles.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Mesh {
+    /// Corners, m.
+    pub positions: Vec<[f32; 3]>,
+    /// One unit vector a position, or none at all.
+    pub normals: Vec<[f32; 3]>,
+    /// One texture coordinate a position, v up, or none at all.
+    pub uvs: Vec<[f32; 2]>,
+    /// Three indices into the positions a triangle, counter-clockwise seen from outside.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+/// A convex shape.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Collision {
+    /// An upright box between two corners, m.
+    Box {
+        /// Least x, y, z.
+        min: [f64; 3],
+        /// Largest x, y, z.
+        max: [f64; 3],
+    },
+    /// A round bar along x (0), y (1) or z (2), m.
+    Cylinder {
+        /// Middle of the axis.
+        center: [f64; 3],
+        /// Radius.
+        radius: f64,
+        /// Length along the axis.
+        length: f64,
+        /// Index of the axis.
+        axis: usize,
+    },
+    /// A ball, m.
+    Sphere {
+        /// Middle.
+        center: [f64; 3],
+        /// Radius.
+        radius: f64,
+    },
+}
+
+/// How one body moves against another.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Joint {
+    /// Name, unique in the model.
+    pub name: String,
+    /// What moves.
+    pub kind: JointKind,
+    /// Index of the body it is fixed to.
+    pub parent: usize,
+    /// Index of the body that moves.
+    pub child: usize,
+    /// A point of the axis, m.
+    pub origin: [f64; 3],
+    /// Direction, unit length.
+    pub axis: [f64; 3],
+    /// Least and largest position: rad, or m for a prismatic joint; none for a continuous one.
+    pub limits: Option<[f64; 2]>,
+}
+
+/// What a joint lets its body do.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum JointKind {
+    /// Turn between limits: doors, lids.
+    Revolute,
+    /// Slide between limits: drawers.
+    Prismatic,
+    /// Turn without end: wheels.
+    Continuous,
+}
+
+/// A surface, in the metallic-roughness model of glTF and UsdPreviewSurface.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Material {
+    /// Name.
+    pub name: String,
+    /// Linear red, green, blue, 0 to 1.
+    pub base_color: [f32; 3],
+    /// 1 is solid.
+    pub opacity: f32,
+    /// 0 or 1 for real materials.
+    pub metallic: f32,
+    /// 0 is a mirror.
+    pub roughness: f32,
+    /// Light it gives off, linear red, green, blue.
+    pub emissive: [f32; 3],
+    /// Index of the texture that replaces the base color.
+    pub texture: Option<usize>,
+}
+
+/// A picture file.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Texture {
+    /// Path as the source names it, or the name it is written under.
+    pub path: String,
+    /// Content of the file, when it could be read.
+    pub bytes: Option<Vec<u8>>,
+}
+
+impl Default for Material {
+    fn default() -> Self {
+        Self {
+            name: "Default".to_owned(),
+            base_color: [0.8; 3],
+            opacity: 1.0,
+            metallic: 0.0,
+            roughness: 0.6,
+            emissive: [0.0; 3],
+            texture: None,
+        }
+    }
+}
+
+impl Model3d {
+    /// Returns the meshes of all bodies.
+    pub fn meshes(&self) -> impl Iterator<Item = &Mesh> {
+        self.bodies.iter().flat_map(|b| &b.visuals).map(|v| &v.mesh)
+    }
+
+    /// Returns the box around all corners that triangles use, m; none when there is no triangle.
+    pub fn bounds(&self) -> Option<[[f64; 3]; 2]> {
+        self.meshes().filter_map(Mesh::bounds).reduce(|a, b| {
+            [std::array::from_fn(|i| a[0][i].min(b[0][i])), std::array::from_fn(|i| a[1][i].max(b[1][i]))]
+        })
+    }
+
+    /// Returns the number of triangles.
+    pub fn triangle_count(&self) -> usize {
+        self.meshes().map(|m| m.triangles.len()).sum()
+    }
+}
+
+impl Mesh {
+    /// Returns the box around all corners that triangles use, m; none when there is no triangle.
+    pub fn bounds(&self) -> Option<[[f64; 3]; 2]> {
+        let corner = |i: &u32| self.positions.get(*i as usize).map(|p| p.map(f64::from));
+        self.triangles.iter().flatten().filter_map(corner).fold(None, |bounds, p| match bounds {
+            None => Some([p, p]),
+            Some([min, max]) => {
+                Some([std::array::from_fn(|i| p[i].min(min[i])), std::array::from_fn(|i| p[i].max(max[i]))])
+            }
+        })
+    }
+}
