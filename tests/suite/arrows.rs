@@ -25,6 +25,7 @@ const ARROWS: &[(&str, &[&str])] = &[
 
 /// Other people's file formats and protocols, and the crates that may know them.
 const OUTSIDE: &[(&str, &[&str])] = &[
+    ("image", &["assets"]),
     ("png", &["export"]),
     ("resvg", &["export"]),
     ("svgtypes", &["export"]),
@@ -35,6 +36,8 @@ const OUTSIDE: &[(&str, &[&str])] = &[
     ("hnsw_rs", &["store"]),
     ("fastembed", &["store"]),
     ("ort", &["store"]),
+    ("roxmltree", &["assets"]),
+    ("serde-saphyr", &["assets"]),
     ("reqwest", &["llm", "research"]),
     ("scraper", &["research"]),
     ("pdf-extract", &["research"]),
