@@ -7,7 +7,7 @@ use d3dgen_model::{Document, Problem, units};
 use serde_json::Value as Json;
 
 use crate::error::Error;
-use crate::expression;
+use d3dgen_model::expression;
 
 /// A checked knowledge base, and what was done to it.
 #[derive(Debug, Clone, PartialEq)]
