@@ -71,11 +71,11 @@ fn solids_with_a_box_are_closed_and_touch_it() {
                     assert_touches(&made.surface, &frame, "cone");
                 }
                 let least = frame.size().into_iter().fold(f64::MAX, f64::min);
-                let made = torus(&frame, least * 0.2, axis, detail).unwrap();
+                let made = torus(&frame, least * 0.1, axis, detail).unwrap();
                 assert_touches(&made.surface, &frame, "torus");
                 // Rings much longer than wide cross themselves at their ends.
                 let (a, b) = (frame.size()[(axis + 1) % 3], frame.size()[(axis + 2) % 3]);
-                if a.max(b) < 3.0 * a.min(b) {
+                if a.max(b) < 1.6 * a.min(b) {
                     assert_closed(&made.surface, "torus");
                 }
             }
