@@ -26,7 +26,7 @@ const ARROWS: &[(&str, &[&str])] = &[
 /// Other people's file formats and protocols, and the crates that may know them.
 const OUTSIDE: &[(&str, &[&str])] = &[
     ("image", &["assets"]),
-    ("png", &["export"]),
+    ("png", &["export", "mesh"]),
     ("resvg", &["export"]),
     ("svgtypes", &["export"]),
     ("ttf-parser", &["export"]),
