@@ -25,7 +25,8 @@ const ARROWS: &[(&str, &[&str])] = &[
 
 /// Other people's file formats and protocols, and the crates that may know them.
 const OUTSIDE: &[(&str, &[&str])] = &[
-    ("png", &["export"]),
+    ("image", &["assets"]),
+    ("png", &["export", "mesh"]),
     ("resvg", &["export"]),
     ("svgtypes", &["export"]),
     ("ttf-parser", &["export"]),
@@ -35,6 +36,8 @@ const OUTSIDE: &[(&str, &[&str])] = &[
     ("hnsw_rs", &["store"]),
     ("fastembed", &["store"]),
     ("ort", &["store"]),
+    ("roxmltree", &["assets"]),
+    ("serde-saphyr", &["assets"]),
     ("reqwest", &["llm", "research"]),
     ("scraper", &["research"]),
     ("pdf-extract", &["research"]),

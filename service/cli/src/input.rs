@@ -4,9 +4,11 @@ use std::fs;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
+use d3dgen_knowledge::import::{self, Imported};
 use d3dgen_model::document::Document;
 use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::world::World;
+use serde::Serialize;
 
 use crate::error::Error;
 
@@ -46,6 +48,29 @@ pub fn scene_graph(path: &Path) -> Result<SceneGraph, Error> {
     let is_world = serde_json::from_str::<serde_json::Value>(&text).is_ok_and(|v| v.get("scene_graph").is_some());
     let graph = if is_world { World::from_json(&text).map(|w| w.scene_graph) } else { SceneGraph::from_json(&text) };
     graph.map_err(|source| Error::Document { path, source })
+}
+
+/// Returns a checked knowledge base in SI, and the file it is in; a folder stands for its `knowledge.json`.
+///
+/// # Errors
+/// `Read`, or `Document` with every problem.
+pub fn knowledge_base(path: &Path) -> Result<(PathBuf, Imported), Error> {
+    let (path, text) = text(path, "knowledge.json")?;
+    match import::read(&text) {
+        Ok(imported) => Ok((path, imported)),
+        Err(d3dgen_knowledge::Error::Document(source)) => Err(Error::Document { path, source }),
+        Err(other) => Err(other.into()),
+    }
+}
+
+/// Writes one JSON line for each item to standard output.
+///
+/// # Errors
+/// `Write`.
+pub fn write_lines<T: Serialize>(items: impl IntoIterator<Item = T>) -> Result<(), Error> {
+    let line = |item: T| serde_json::to_string(&item).map(|line| line + "\n");
+    let lines: Result<String, _> = items.into_iter().map(line).collect();
+    write_text(None, &lines.map_err(|e| Error::Input(e.to_string()))?)
 }
 
 /// Writes data to standard output, or to a file when one is named; a reader that has gone away is no error.

@@ -7,6 +7,7 @@ use d3dgen_model::units;
 
 use crate::database::{Edit, Provenance, difference};
 use crate::error::Error;
+use crate::import::scale;
 use crate::phrase;
 use crate::tables::TABLES;
 
@@ -165,17 +166,11 @@ fn in_si(value: &Value, unit: &str) -> (Value, String, Option<String>) {
     if to.is_identity() {
         return (value.clone(), to.unit, None);
     }
-    let converted = match value {
-        Value::Number(v) => Value::Number(to.apply(*v)),
-        Value::Range { min, max } => Value::Range { min: to.apply(*min), max: to.apply(*max) },
-        other => return (other.clone(), unit.to_owned(), None),
-    };
-    let printed = match value {
-        Value::Range { min, max } => format!("{min} to {max} {unit}"),
-        Value::Number(v) => format!("{v} {unit}"),
-        _ => unit.to_owned(),
-    };
-    (converted, to.unit, Some(printed))
+    let mut converted = value.clone();
+    if !scale(&mut converted, &to) {
+        return (converted, unit.to_owned(), None);
+    }
+    (converted, to.unit, Some(format!("{value} {unit}")))
 }
 
 /// Names that say no more than the unit does: which extent of a space they mean is told by what its rules ask of it.

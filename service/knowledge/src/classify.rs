@@ -5,7 +5,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use d3dgen_model::domain::{Domain, RoomType, Shape};
+use d3dgen_model::domain::{Domain, RoomType};
 use d3dgen_model::scene_graph::Robot;
 
 use crate::query::{Query, QueryRoom};
@@ -127,7 +127,7 @@ pub struct Building {
 impl Building {
     /// Returns what to ask a knowledge base; room types that the domain does not know are taken as plain rooms.
     pub fn query(&self, domain: &Domain) -> Query {
-        let rooms: Vec<QueryRoom> = self.rooms.iter().map(|(id, count)| room(id, *count, domain)).collect();
+        let rooms: Vec<QueryRoom> = self.rooms.iter().map(|(id, count)| QueryRoom::of(id, *count, domain)).collect();
         let usual = |id: &str| domain.room_type_or_generic(id).area_m2.target;
         let area: f64 = self.rooms.iter().map(|(id, count)| usual(id) * f64::from(*count)).sum();
         Query {
@@ -140,20 +140,5 @@ impl Building {
             persons_stated: self.persons.is_some(),
             robots: self.robots.clone(),
         }
-    }
-}
-
-fn room(id: &str, count: u32, domain: &Domain) -> QueryRoom {
-    let kind = domain.room_type_or_generic(id);
-    let rolls = |item: &str| domain.anchor(item).is_some_and(|o| o.shape == Shape::HospitalBed);
-    QueryRoom {
-        room_type: id.to_owned(),
-        spaces: domain.room_type(id).map(|t| t.spaces.clone()).unwrap_or_default(),
-        count,
-        circulation: domain.circulation.room_type == id,
-        zone: kind.zone,
-        daylight: kind.daylight,
-        beds: kind.furnishing.iter().any(|f| f.min > 0 && rolls(&f.item)),
-        area_max_m2: kind.area_m2.max,
     }
 }

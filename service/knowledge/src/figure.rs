@@ -3,7 +3,7 @@
 use d3dgen_model::knowledge::{Constraint, Value};
 use serde_json::Value as Json;
 
-use crate::expression;
+use d3dgen_model::expression;
 use crate::measure::Measure;
 
 /// Share by which an object may differ from the usual size that advice gives.

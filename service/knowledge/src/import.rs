@@ -7,7 +7,7 @@ use d3dgen_model::{Document, Problem, units};
 use serde_json::Value as Json;
 
 use crate::error::Error;
-use crate::expression;
+use d3dgen_model::expression;
 
 /// A checked knowledge base, and what was done to it.
 #[derive(Debug, Clone, PartialEq)]
@@ -62,12 +62,21 @@ fn formula_problems(knowledge: &KnowledgeBase) -> Vec<Problem> {
 
 /// Turns a constraint's figures into SI; returns true when figures changed, not only the spelling of the unit.
 fn convert(constraint: &mut Constraint, to: &units::Conversion) -> bool {
-    let printed = printed(&constraint.value, &constraint.unit);
+    let printed = format!("{} {}", constraint.value, constraint.unit);
     constraint.unit.clone_from(&to.unit);
     if to.is_identity() {
         return false;
     }
-    match &mut constraint.value {
+    if !scale(&mut constraint.value, to) {
+        return false;
+    }
+    constraint.original_value.get_or_insert(printed);
+    true
+}
+
+/// Turns figures into another unit; returns false for yes and no, which have none.
+pub(crate) fn scale(value: &mut Value, to: &units::Conversion) -> bool {
+    match value {
         Value::Flag(_) => return false,
         Value::Number(v) => *v = to.apply(*v),
         Value::Range { min, max } => (*min, *max) = (to.apply(*min), to.apply(*max)),
@@ -76,7 +85,6 @@ fn convert(constraint: &mut Constraint, to: &units::Conversion) -> bool {
         Value::List(list) => list.iter_mut().for_each(|v| convert_json(v, to)),
         Value::Table(table) => table.values_mut().for_each(|v| convert_json(v, to)),
     }
-    constraint.original_value.get_or_insert(printed);
     true
 }
 
@@ -91,19 +99,6 @@ fn convert_json(value: &mut Json, to: &units::Conversion) {
         Json::Object(map) => map.values_mut().for_each(|v| convert_json(v, to)),
         _ => {}
     }
-}
-
-/// Returns a figure as it stood in the source.
-fn printed(value: &Value, unit: &str) -> String {
-    let figures = match value {
-        Value::Flag(v) => v.to_string(),
-        Value::Number(v) => v.to_string(),
-        Value::Range { min, max } => format!("{min} to {max}"),
-        Value::Expression { expr } => expr.clone(),
-        Value::List(list) => Json::from(list.clone()).to_string(),
-        Value::Table(table) => serde_json::to_string(table).unwrap_or_default(),
-    };
-    format!("{figures} {unit}")
 }
 
 #[cfg(test)]

@@ -12,7 +12,6 @@ mod conditions;
 pub mod database;
 mod draw_limits;
 pub mod error;
-mod expression;
 mod figure;
 pub mod freespace;
 pub mod import;

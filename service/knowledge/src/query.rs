@@ -1,8 +1,8 @@
 //! What is asked of a knowledge base: a building, where it stands, its rooms and its robots.
 
 use crate::figure::Facts;
-use d3dgen_model::domain::{Daylight, Domain, RoomType, Shape, Zone};
-use d3dgen_model::scene_graph::{GraphRoom, Robot, SceneGraph};
+use d3dgen_model::domain::{Daylight, Domain, Shape, Zone};
+use d3dgen_model::scene_graph::{Robot, SceneGraph};
 
 /// Floor area that one person is reckoned with when nothing says how many there are, m^2.
 const AREA_PER_PERSON_M2: f64 = 10.0;
@@ -62,7 +62,11 @@ impl Query {
                 known.circulation |= room.circulation;
                 known.area_max_m2 = known.area_max_m2.min(room.area_range_m2[1]);
             } else {
-                rooms.push(query_room(room, domain));
+                rooms.push(QueryRoom {
+                    circulation: room.circulation,
+                    area_max_m2: room.area_range_m2[1],
+                    ..QueryRoom::of(&room.room_type, 1, domain)
+                });
             }
         }
         let (persons, persons_stated) = persons(graph);
@@ -97,25 +101,23 @@ impl Query {
     }
 }
 
-fn query_room(room: &GraphRoom, domain: &Domain) -> QueryRoom {
-    let kind = domain.room_type_or_generic(&room.room_type);
-    QueryRoom {
-        room_type: room.room_type.clone(),
-        // the spaces of the generic room type say nothing about a room that only the prompt names
-        spaces: domain.room_type(&room.room_type).map(|t| t.spaces.clone()).unwrap_or_default(),
-        count: 1,
-        circulation: room.circulation,
-        zone: kind.zone,
-        daylight: kind.daylight,
-        beds: has_rolling_beds(kind, domain),
-        area_max_m2: room.area_range_m2[1],
+impl QueryRoom {
+    /// Returns what rules may ask about `count` rooms of a type, whose area is at most the usual.
+    pub(crate) fn of(room_type: &str, count: u32, domain: &Domain) -> Self {
+        let kind = domain.room_type_or_generic(room_type);
+        let on_wheels = |item: &str| domain.anchor(item).is_some_and(|o| o.shape == Shape::HospitalBed);
+        Self {
+            room_type: room_type.to_owned(),
+            // the spaces of the generic room type say nothing about a room that only the prompt names
+            spaces: domain.room_type(room_type).map(|t| t.spaces.clone()).unwrap_or_default(),
+            count,
+            circulation: domain.circulation.room_type == room_type,
+            zone: kind.zone,
+            daylight: kind.daylight,
+            beds: kind.furnishing.iter().any(|f| f.min > 0 && on_wheels(&f.item)),
+            area_max_m2: kind.area_m2.max,
+        }
     }
-}
-
-/// Returns true when a room type is furnished with beds on wheels.
-fn has_rolling_beds(kind: &RoomType, domain: &Domain) -> bool {
-    let rolls = |item: &str| domain.anchor(item).is_some_and(|o| o.shape == Shape::HospitalBed);
-    kind.furnishing.iter().filter(|f| f.min > 0).any(|f| rolls(&f.item))
 }
 
 /// Returns how many people there are at a time, and whether the prompt says so.

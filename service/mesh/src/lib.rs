@@ -3,6 +3,14 @@
 //! Frame of every model: meters, z up, x to the right of somebody who looks at its front, the front at -y, origin in
 //! the middle of the footprint on the underside (of a wall object: in the middle of its box's underside too).
 
+pub mod builds;
+pub mod error;
 pub mod model3d;
+pub mod picture;
 
+mod affine;
+mod surface;
+
+pub use builds::{Library, generate};
+pub use error::Error;
 pub use model3d::{Body, Collision, Joint, JointKind, Material, Mesh, Model3d, Texture, Visual};

@@ -75,6 +75,15 @@ pub enum Collision {
         /// Index of the axis.
         axis: usize,
     },
+    /// A box whose axes are not those of the model, m.
+    TurnedBox {
+        /// Middle.
+        center: [f64; 3],
+        /// Half extents along its axes.
+        half: [f64; 3],
+        /// Its axes: unit vectors, right-handed.
+        axes: [[f64; 3]; 3],
+    },
     /// A ball, m.
     Sphere {
         /// Middle.
@@ -185,5 +194,24 @@ impl Mesh {
                 Some([std::array::from_fn(|i| p[i].min(min[i])), std::array::from_fn(|i| p[i].max(max[i]))])
             }
         })
+    }
+}
+
+impl Collision {
+    /// Returns the upright box around the shape: least and largest corner, m.
+    pub fn bounds(&self) -> [[f64; 3]; 2] {
+        let around = |center: &[f64; 3], half: [f64; 3]| {
+            [std::array::from_fn(|i| center[i] - half[i]), std::array::from_fn(|i| center[i] + half[i])]
+        };
+        match self {
+            Self::Box { min, max } => [*min, *max],
+            Self::Sphere { center, radius } => around(center, [*radius; 3]),
+            Self::Cylinder { center, radius, length, axis } => {
+                around(center, std::array::from_fn(|i| if i == *axis { length / 2.0 } else { *radius }))
+            }
+            Self::TurnedBox { center, half, axes } => {
+                around(center, std::array::from_fn(|k| (0..3).map(|i| axes[i][k].abs() * half[i]).sum()))
+            }
+        }
     }
 }

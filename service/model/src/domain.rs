@@ -3,11 +3,15 @@
 //! `domains/<id>/domain.toml` holds the [`Domain`] (large domains split it over more `*.toml` files, which are merged
 //! table by table); `knowledge.json` beside it holds the constraints. Nothing here names a building type in code.
 
+mod build;
 mod furnishing;
 mod object;
 mod program;
 mod room_type;
 
+pub use build::{
+    Axis, BASE, Build, BuildJoint, BuildJointKind, Formula, Mirror, Part, Repeat, Side, Solid, Tilt, Tone,
+};
 pub use furnishing::{Arrangement, FacingRule, Furnishing, Group, Member, Relation};
 pub use object::{Mount, ObjectType, Shape};
 pub use program::{Adjacency, AdjacencyRelation, Circulation, Occupants, Program, ProgramRoom, Scheme};
@@ -55,6 +59,9 @@ pub struct Domain {
     pub adjacency: Vec<Adjacency>,
     /// Object types that furnishing refers to.
     pub objects: Vec<ObjectType>,
+    /// How the 3D models of its objects are made, beside the shipped builds.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub builds: Vec<Build>,
     /// Objects that stand together as one unit.
     #[serde(default)]
     pub groups: Vec<Group>,
@@ -131,6 +138,7 @@ impl Document for Domain {
         }
         check_unique("/room_types", self.room_types.iter().map(|t| t.id.as_str()), &mut problems);
         check_unique("/objects", self.objects.iter().map(|o| o.id.as_str()), &mut problems);
+        check_unique("/builds", self.builds.iter().map(|b| b.id.as_str()), &mut problems);
         check_unique("/groups", self.groups.iter().map(|g| g.id.as_str()), &mut problems);
         check_unique("/programs", self.programs.iter().map(|p| p.id.as_str()), &mut problems);
         let room = |path: String, id: &str, problems: &mut Vec<Problem>| {
@@ -174,6 +182,9 @@ impl Document for Domain {
         }
         for (i, object) in self.objects.iter().enumerate() {
             object.check(&format!("/objects/{i}"), &mut problems);
+        }
+        for (i, build) in self.builds.iter().enumerate() {
+            build.check(&format!("/builds/{i}"), &mut problems);
         }
         for (i, group) in self.groups.iter().enumerate() {
             group.check(&format!("/groups/{i}"), self, &mut problems);

@@ -4,6 +4,7 @@
 //! and constraints whose `value` is polymorphic.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::fmt;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -139,6 +140,20 @@ pub enum Value {
     List(Vec<serde_json::Value>),
     /// Named dimensions or a table.
     Table(BTreeMap<String, serde_json::Value>),
+}
+
+/// The figure as it is printed, without its unit.
+impl fmt::Display for Value {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Flag(flag) => flag.fmt(f),
+            Self::Number(n) => n.fmt(f),
+            Self::Range { min, max } => write!(f, "{min} to {max}"),
+            Self::Expression { expr } => f.write_str(expr),
+            Self::List(items) => f.write_str(&serde_json::to_string(items).map_err(|_| fmt::Error)?),
+            Self::Table(table) => f.write_str(&serde_json::to_string(table).map_err(|_| fmt::Error)?),
+        }
+    }
 }
 
 impl KnowledgeBase {

@@ -9,6 +9,7 @@
 pub mod document;
 pub mod domain;
 pub mod error;
+pub mod expression;
 pub mod floorplan;
 pub mod geometry;
 pub mod knowledge;

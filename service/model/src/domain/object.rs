@@ -42,6 +42,9 @@ pub struct ObjectType {
     pub surface: bool,
     /// Outline and build of the simple model and of the plan symbol.
     pub shape: Shape,
+    /// Build of its 3D model (`domains/builds/`, or the domain's own); else the one of its id, or of its shape.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub build: Option<String>,
     /// CSS color of the main part.
     pub color: String,
     /// Main material word (`wood`, `metal`, `fabric`, `ceramic`, `plastic`, `glass`).
@@ -146,6 +149,90 @@ pub enum Shape {
     Scanner,
     /// Pallet racking.
     Rack,
+}
+
+impl Shape {
+    /// Returns its snake-case name, which is also the id of the build that stands in for objects without their own.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Box => "box",
+            Self::Cabinet => "cabinet",
+            Self::Shelf => "shelf",
+            Self::Table => "table",
+            Self::RoundTable => "round_table",
+            Self::Desk => "desk",
+            Self::Chair => "chair",
+            Self::SwivelChair => "swivel_chair",
+            Self::Stool => "stool",
+            Self::Sofa => "sofa",
+            Self::Bench => "bench",
+            Self::Bed => "bed",
+            Self::HospitalBed => "hospital_bed",
+            Self::Counter => "counter",
+            Self::Sink => "sink",
+            Self::Basin => "basin",
+            Self::Toilet => "toilet",
+            Self::Bathtub => "bathtub",
+            Self::Shower => "shower",
+            Self::Cubicle => "cubicle",
+            Self::Panel => "panel",
+            Self::Trolley => "trolley",
+            Self::Pole => "pole",
+            Self::Plant => "plant",
+            Self::Lamp => "lamp",
+            Self::Appliance => "appliance",
+            Self::Stove => "stove",
+            Self::Rug => "rug",
+            Self::Curtain => "curtain",
+            Self::Dock => "dock",
+            Self::Cylinder => "cylinder",
+            Self::Vehicle => "vehicle",
+            Self::Scanner => "scanner",
+            Self::Rack => "rack",
+        }
+    }
+
+    /// Returns every shape.
+    pub fn all() -> impl Iterator<Item = Self> {
+        use Shape::*;
+        [
+            Box,
+            Cabinet,
+            Shelf,
+            Table,
+            RoundTable,
+            Desk,
+            Chair,
+            SwivelChair,
+            Stool,
+            Sofa,
+            Bench,
+            Bed,
+            HospitalBed,
+            Counter,
+            Sink,
+            Basin,
+            Toilet,
+            Bathtub,
+            Shower,
+            Cubicle,
+            Panel,
+            Trolley,
+            Pole,
+            Plant,
+            Lamp,
+            Appliance,
+            Stove,
+            Rug,
+            Curtain,
+            Dock,
+            Cylinder,
+            Vehicle,
+            Scanner,
+            Rack,
+        ]
+        .into_iter()
+    }
 }
 
 impl ObjectType {

@@ -70,7 +70,7 @@ pub struct CorpusDocument {
     /// `YYYY-MM-DD`.
     pub retrieved_at: String,
     /// True when only what a model's provider quoted of it was seen, not the page.
-    #[serde(default, skip_serializing_if = "is_false")]
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub quoted_only: bool,
 }
 
@@ -111,10 +111,6 @@ pub struct CorpusConstraint {
     pub found_by: Vec<String>,
     /// Every place that says so.
     pub evidence: Vec<Evidence>,
-}
-
-fn is_false(flag: &bool) -> bool {
-    !flag
 }
 
 impl Document for Corpus {

@@ -112,14 +112,7 @@ fn rounded(n: f64) -> f64 {
 }
 
 fn printed(value: &Value, unit: &str) -> String {
-    let figure = match value {
-        Value::Flag(flag) => flag.to_string(),
-        Value::Number(n) => n.to_string(),
-        Value::Range { min, max } => format!("{min} to {max}"),
-        Value::Expression { expr } => expr.clone(),
-        other => serde_json::to_string(other).expect("values hold only finite numbers and string keys"),
-    };
-    if matches!(unit, "count" | "ratio" | "boolean") { figure } else { format!("{figure} {unit}") }
+    if matches!(unit, "count" | "ratio" | "boolean") { value.to_string() } else { format!("{value} {unit}") }
 }
 
 fn value_key(value: &Value) -> String {

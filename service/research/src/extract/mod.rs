@@ -36,6 +36,20 @@ pub enum ConstraintType {
     RuleOfThumb,
 }
 
+impl ConstraintType {
+    /// Returns the word for it in knowledge bases.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Minimum => "minimum",
+            Self::Maximum => "maximum",
+            Self::Range => "range",
+            Self::Ratio => "ratio",
+            Self::Recommendation => "recommendation",
+            Self::RuleOfThumb => "rule_of_thumb",
+        }
+    }
+}
+
 /// How plainly the sentence says it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -46,6 +60,17 @@ pub enum Confidence {
     Medium,
     /// A comparator stands at the figure.
     High,
+}
+
+impl Confidence {
+    /// Returns the word for it in knowledge bases.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Low => "low",
+            Self::Medium => "medium",
+            Self::High => "high",
+        }
+    }
 }
 
 /// A rule with its figure as printed.

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::corpus::record::{ConstraintRecord, DocumentRecord, Evidence, PassageRecord};
-use crate::extract::{Confidence, ConstraintType, Extractor, Finding};
+use crate::extract::{Extractor, Finding};
 
 /// Headings that are read with a passage: the nearest ones say what a bare sentence is about.
 const HEADINGS: usize = 2;
@@ -59,13 +59,13 @@ fn record(
     let (unit, basis) = split_basis(&found.unit);
     Some(ConstraintRecord {
         name: found.name,
-        constraint_type: type_name(found.constraint_type).to_owned(),
+        constraint_type: found.constraint_type.name().to_owned(),
         value: found.value,
         unit,
         basis,
         space: found.space,
         conditions: found.conditions,
-        confidence: confidence_name(found.confidence).to_owned(),
+        confidence: found.confidence.name().to_owned(),
         topic: passage.topic.clone(),
         found_by: RULES.to_owned(),
         evidence: Evidence {
@@ -88,25 +88,6 @@ fn split_basis(unit: &str) -> (String, String) {
     match thing.filter(|(_, thing)| *thing != "min") {
         Some((plain, thing)) => (plain.to_owned(), format!("per_{thing}")),
         None => (unit.to_owned(), String::new()),
-    }
-}
-
-fn type_name(kind: ConstraintType) -> &'static str {
-    match kind {
-        ConstraintType::Minimum => "minimum",
-        ConstraintType::Maximum => "maximum",
-        ConstraintType::Range => "range",
-        ConstraintType::Ratio => "ratio",
-        ConstraintType::Recommendation => "recommendation",
-        ConstraintType::RuleOfThumb => "rule_of_thumb",
-    }
-}
-
-fn confidence_name(confidence: Confidence) -> &'static str {
-    match confidence {
-        Confidence::Low => "low",
-        Confidence::Medium => "medium",
-        Confidence::High => "high",
     }
 }
 

@@ -5,14 +5,14 @@ use std::path::PathBuf;
 
 use d3dgen_knowledge::amend::{Statement, correct, state};
 use d3dgen_knowledge::database::{Edit, Provenance, difference};
-use d3dgen_knowledge::{import, phrase};
+use d3dgen_knowledge::phrase;
 use d3dgen_model::knowledge::{KnowledgeBase, Value};
 use d3dgen_research::extract::{Extractor, Finding};
 
 use super::history::shown;
 use crate::database::provenance;
 use crate::error::Error;
-use crate::input::{text, write_text};
+use crate::input::{knowledge_base, write_lines};
 use crate::registry::RegistryArgs;
 
 /// Arguments.
@@ -76,8 +76,7 @@ impl Args {
         }
         let change = database.amend(&id, edits, &by)?;
         if self.json {
-            let line = serde_json::to_string(&change).map_err(|e| Error::Input(e.to_string()))?;
-            return write_text(None, &format!("{line}\n"));
+            return write_lines([&change]);
         }
         eprintln!("change {}; `d3dgen knowledge undo {}` takes it back", change.seq, change.seq);
         Ok(())
@@ -85,11 +84,7 @@ impl Args {
 
     fn edited(&self) -> Result<Option<KnowledgeBase>, Error> {
         let Some(file) = &self.file else { return Ok(None) };
-        let (path, text) = text(file, "knowledge.json")?;
-        let imported = import::read(&text).map_err(|error| match error {
-            d3dgen_knowledge::Error::Document(source) => Error::Document { path, source },
-            other => other.into(),
-        })?;
+        let (_, imported) = knowledge_base(file)?;
         if let Some(domain) = self.domain.as_ref().filter(|d| **d != imported.knowledge.metadata.domain) {
             let is = &imported.knowledge.metadata.domain;
             return Err(Error::Input(format!("--domain {domain}: the file is of domain {is}")));
@@ -107,7 +102,7 @@ impl Args {
         }
         let mut after = knowledge.clone();
         for finding in &found {
-            let edits = state(&after, &statement(finding)?, by)?;
+            let edits = state(&after, &statement(finding), by)?;
             d3dgen_knowledge::database::apply(&mut after, &edits);
         }
         let local = after.references.iter().filter(|r| r.jurisdiction == d3dgen_model::knowledge::LOCAL);
@@ -132,17 +127,16 @@ fn is_held(knowledge: &KnowledgeBase, rule: &d3dgen_model::knowledge::Constraint
     knowledge.references.iter().flat_map(|r| &r.constraints).any(|c| c == rule)
 }
 
-fn statement(found: &Finding) -> Result<Statement, Error> {
+fn statement(found: &Finding) -> Statement {
     let c = &found.constraint;
-    let kind = serde_json::to_value(c.constraint_type).ok().and_then(|v| v.as_str().map(str::to_owned));
-    Ok(Statement {
+    Statement {
         name: c.name.clone(),
-        constraint_type: kind.ok_or_else(|| Error::Input("the kind of rule has no name".into()))?,
+        constraint_type: c.constraint_type.name().to_owned(),
         value: c.value.clone(),
         unit: c.unit.clone(),
         space: c.space.clone(),
         conditions: c.conditions.clone(),
-    })
+    }
 }
 
 fn figure(text: &str) -> Result<Value, Error> {

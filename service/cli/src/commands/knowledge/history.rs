@@ -4,7 +4,7 @@ use d3dgen_knowledge::database::{Change, Edit};
 
 use crate::database::provenance;
 use crate::error::Error;
-use crate::input::write_text;
+use crate::input::{write_lines, write_text};
 use crate::registry::RegistryArgs;
 use crate::table::table;
 
@@ -29,12 +29,12 @@ impl HistoryArgs {
         let database = self.registry.store.read(&registry)?;
         if let Some(seq) = self.seq {
             let edits = database.edits(seq)?;
-            return if self.json { lines(&edits) } else { write_text(None, &shown(&edits)) };
+            return if self.json { write_lines(&edits) } else { write_text(None, &shown(&edits)) };
         }
         let mut changes = database.history()?;
         changes.retain(|c| self.domain.as_ref().is_none_or(|d| *d == c.domain));
         if self.json {
-            return lines(&changes);
+            return write_lines(&changes);
         }
         let rows: Vec<Vec<String>> = changes.iter().map(row).collect();
         write_text(None, &table(&["change", "what", "domain", "+", "~", "-", "when", "who", "why"], &rows))
@@ -71,12 +71,6 @@ pub fn shown(edits: &[Edit]) -> String {
         }
     }
     text
-}
-
-fn lines<T: serde::Serialize>(items: &[T]) -> Result<(), Error> {
-    let line = |item: &T| serde_json::to_string(item).map(|l| l + "\n");
-    let text: Result<String, _> = items.iter().map(line).collect();
-    write_text(None, &text.map_err(|e| Error::Input(e.to_string()))?)
 }
 
 /// Arguments of `undo`.

@@ -4,7 +4,7 @@ use d3dgen_knowledge::Stats;
 use d3dgen_model::Document;
 
 use crate::error::Error;
-use crate::input::write_text;
+use crate::input::{write_lines, write_text};
 use crate::registry::{RegistryArgs, domain};
 use crate::table::table;
 
@@ -30,15 +30,8 @@ impl Args {
         };
         let stats: Vec<Stats> =
             plugins.into_iter().map(|p| Stats::of(p.knowledge(), p.domain(), p.knowledge().to_json().len())).collect();
-        let text = if self.json { json_lines(&stats)? } else { shown(&stats, self.domain.is_some()) };
-        write_text(None, &text)
+        if self.json { write_lines(&stats) } else { write_text(None, &shown(&stats, self.domain.is_some())) }
     }
-}
-
-fn json_lines(stats: &[Stats]) -> Result<String, Error> {
-    let line = |s: &Stats| serde_json::to_string(s).map(|line| line + "\n");
-    let lines: Result<String, _> = stats.iter().map(line).collect();
-    lines.map_err(|e| Error::Input(e.to_string()))
 }
 
 /// Returns the table with a column for each domain, as the paper prints it.

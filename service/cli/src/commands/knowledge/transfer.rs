@@ -3,13 +3,12 @@
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
-use d3dgen_knowledge::import;
 use d3dgen_model::Document;
 use d3dgen_store::{Backend, Options, snapshot};
 
 use crate::database::provenance;
 use crate::error::Error;
-use crate::input::{text, write_text};
+use crate::input::{knowledge_base, write_lines, write_text};
 use crate::interrupt;
 use crate::progress::Progress;
 use crate::registry::RegistryArgs;
@@ -40,11 +39,7 @@ pub struct ImportArgs {
 
 impl ImportArgs {
     pub fn run(self) -> Result<(), Error> {
-        let (path, text) = text(&self.file, "knowledge.json")?;
-        let imported = import::read(&text).map_err(|error| match error {
-            d3dgen_knowledge::Error::Document(source) => Error::Document { path: path.clone(), source },
-            other => other.into(),
-        })?;
+        let (path, imported) = knowledge_base(&self.file)?;
         for (unit, id) in &imported.unknown_units {
             eprintln!("warning: unit `{unit}` (of {id}) is not known; its figures stay as printed");
         }
@@ -55,7 +50,7 @@ impl ImportArgs {
         let domain = &imported.knowledge.metadata.domain;
         if self.json {
             let line = serde_json::json!({"domain": domain, "change": change, "converted": imported.converted});
-            return write_text(None, &format!("{line}\n"));
+            return write_lines([line]);
         }
         match change {
             None => eprintln!("{domain}: the database has all of it already"),

@@ -1,7 +1,7 @@
 //! `d3dgen knowledge verify`.
 
 use crate::error::Error;
-use crate::input::write_text;
+use crate::input::write_lines;
 use crate::interrupt;
 use crate::progress::Progress;
 use crate::registry::RegistryArgs;
@@ -25,14 +25,14 @@ impl Args {
             database.verify(&mut |done, all| progress.doing(&format!("records: {done} of {all}")), interrupt::flag());
         progress.finish();
         let damage = damage?;
+        let (constraints, references) = database.counts()?;
         if self.json {
             let listed: Vec<_> =
                 damage.iter().map(|d| serde_json::json!({"place": d.place, "reason": d.reason})).collect();
-            let (constraints, references) = database.counts()?;
             let line = serde_json::json!({
                 "sound": damage.is_empty(), "constraints": constraints, "references": references, "damage": listed,
             });
-            write_text(None, &format!("{line}\n"))?;
+            write_lines([line])?;
         } else {
             for d in &damage {
                 eprintln!("{}: {}", d.place, d.reason);
@@ -45,7 +45,6 @@ impl Args {
             )));
         }
         if !self.json {
-            let (constraints, references) = database.counts()?;
             eprintln!("sound: {constraints} rules of {references} documents");
         }
         Ok(())

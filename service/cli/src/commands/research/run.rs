@@ -132,7 +132,7 @@ impl RunArgs {
             Context { date: &today, fetch: &fetcher, read: &read, stop: Stop(interrupt::flag()), progress: &say };
         let ask = |estimate: &_| confirm(estimate, &self.model);
         let domains = match &client {
-            Some(_) => self.registry.load()?.iter().map(|p| p.id().to_owned()).collect(),
+            Some(_) => self.registry.load_as_brought()?.iter().map(|p| p.id().to_owned()).collect(),
             None => Vec::new(),
         };
         let agent = client.as_ref().map(|client| Agent {

@@ -1,0 +1,94 @@
+//! Convex shapes that collide: those of the parts, moved with them, and merged when a body has too many.
+
+use super::solids::Hull;
+use crate::Collision;
+use crate::affine::{Affine, Vec3, cross, dot, length, unit};
+
+/// Most convex shapes of one body.
+pub(super) const MOST: usize = 24;
+/// A direction closer than this to an axis is that axis.
+const STRAIGHT: f64 = 0.9999;
+
+/// Returns the shape of a hull after a move that may stretch along the axes by a few per mille.
+pub(super) fn moved(hull: &Hull, map: &Affine) -> Collision {
+    let lengths = map.axes.map(length);
+    let axes = map.axes.map(unit);
+    match *hull {
+        Hull::Box { center, half } => turned(map.point(center), std::array::from_fn(|i| half[i] * lengths[i]), axes),
+        Hull::Sphere { center, radius } => Collision::Sphere { center: map.point(center), radius: radius * lengths[0] },
+        Hull::Cylinder { center, radius, half, axis } => {
+            let middle = map.point(center);
+            match (0..3).find(|k| axes[axis][*k].abs() > STRAIGHT) {
+                Some(k) => {
+                    let across = lengths[(axis + 1) % 3].min(lengths[(axis + 2) % 3]);
+                    let length = 2.0 * half * lengths[axis];
+                    Collision::Cylinder { center: middle, radius: radius * across, length, axis: k }
+                }
+                None => {
+                    let half = std::array::from_fn(|i| if i == axis { half } else { radius } * lengths[i]);
+                    turned(middle, half, axes)
+                }
+            }
+        }
+        Hull::Bar { center, direction, half, radius } => {
+            let along = map.vector(direction);
+            let frame = frame_along(unit(along));
+            turned(map.point(center), [half * length(along), radius * lengths[0], radius * lengths[0]], frame)
+        }
+    }
+}
+
+/// Returns a right-handed frame whose first axis is this direction.
+fn frame_along(direction: Vec3) -> [Vec3; 3] {
+    let least = (0..3).min_by(|a, b| direction[*a].abs().total_cmp(&direction[*b].abs())).unwrap_or(0);
+    let mut side = [0.0; 3];
+    side[least] = 1.0;
+    let second = unit(cross(direction, side));
+    [direction, second, cross(direction, second)]
+}
+
+/// Returns a box with these unit axes: upright when they are the axes of the model.
+fn turned(center: Vec3, half: Vec3, axes: [Vec3; 3]) -> Collision {
+    let straight = axes.iter().all(|a| a.iter().any(|v| v.abs() > STRAIGHT));
+    if straight {
+        let extent: Vec3 = std::array::from_fn(|k| (0..3).map(|i| axes[i][k].abs() * half[i]).sum());
+        return Collision::Box {
+            min: std::array::from_fn(|k| center[k] - extent[k]),
+            max: std::array::from_fn(|k| center[k] + extent[k]),
+        };
+    }
+    let mut axes = axes;
+    if dot(cross(axes[0], axes[1]), axes[2]) < 0.0 {
+        axes[2] = axes[2].map(|v| -v);
+    }
+    Collision::TurnedBox { center, half, axes }
+}
+
+/// Merges the shapes of a body until there are few enough: each time the two whose common box adds least.
+pub(super) fn merged(mut shapes: Vec<Collision>) -> Vec<Collision> {
+    while shapes.len() > MOST {
+        let boxes: Vec<[Vec3; 2]> = shapes.iter().map(Collision::bounds).collect();
+        let mut best = (f64::MAX, 0, 1);
+        for a in 0..boxes.len() {
+            for b in a + 1..boxes.len() {
+                let added = volume(&union(&boxes[a], &boxes[b])) - volume(&boxes[a]) - volume(&boxes[b]);
+                if added < best.0 {
+                    best = (added, a, b);
+                }
+            }
+        }
+        let (_, a, b) = best;
+        let [min, max] = union(&boxes[a], &boxes[b]);
+        shapes[a] = Collision::Box { min, max };
+        shapes.remove(b);
+    }
+    shapes
+}
+
+fn union(a: &[Vec3; 2], b: &[Vec3; 2]) -> [Vec3; 2] {
+    [std::array::from_fn(|i| a[0][i].min(b[0][i])), std::array::from_fn(|i| a[1][i].max(b[1][i]))]
+}
+
+fn volume(bounds: &[Vec3; 2]) -> f64 {
+    (0..3).map(|i| bounds[1][i] - bounds[0][i]).product()
+}
