@@ -29,7 +29,7 @@ pub struct Question {
 const AFTER_HEAD: &[&str] = &[
     "for", "with", "in", "on", "at", "to", "that", "which", "who", "where", "of", "from", "by", "near", "under",
     "over", "beside", "when", "without", "into", "fur", "mit", "im", "zum", "zur", "auf", "aus", "am", "bei", "um",
-    "wo", "das", "der", "die", "neben", "unter", "ohne",
+    "wo", "das", "der", "die", "neben", "unter", "uber", "ohne",
 ];
 /// Words that carry nothing.
 const EMPTY: &[&str] = &[
