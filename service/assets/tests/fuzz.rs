@@ -39,7 +39,8 @@ fn main() {
     if arguments.iter().any(|a| a == "--list") {
         return;
     }
-    let option = |name: &str| arguments.iter().position(|a| a == name).and_then(|at| arguments.get(at + 1)?.parse().ok());
+    let option =
+        |name: &str| arguments.iter().position(|a| a == name).and_then(|at| arguments.get(at + 1)?.parse().ok());
     let seconds: u64 = option("--seconds").unwrap_or(9);
     let seed: u64 = option("--seed").unwrap_or(1);
     let each = Duration::from_millis(seconds * 1000 / TARGETS.len() as u64);
@@ -150,7 +151,8 @@ fn zip(name: &str, content: &[u8]) -> Vec<u8> {
     let length = (name.len() as u16).to_le_bytes();
     let pad = 64 - 30 - name.len();
     let common = [[0, 0, 0, 0].as_slice(), &[0, 0, 33, 0], &crc, &size, &size, &length].concat();
-    let local = [b"PK\x03\x04\x14\0".as_slice(), &common, &(pad as u16).to_le_bytes(), name.as_bytes(), &vec![0; pad], content];
+    let local =
+        [b"PK\x03\x04\x14\0".as_slice(), &common, &(pad as u16).to_le_bytes(), name.as_bytes(), &vec![0; pad], content];
     let local = local.concat();
     let entry = [b"PK\x01\x02\x14\0\x14\0".as_slice(), &common, &[0; 16], name.as_bytes()].concat();
     let (entry_size, start) = ((entry.len() as u32).to_le_bytes(), (local.len() as u32).to_le_bytes());
@@ -161,11 +163,25 @@ fn zip(name: &str, content: &[u8]) -> Vec<u8> {
 /// Changes bytes at random: cut, flipped, spliced, doubled, and numbers exchanged for those that break things.
 fn change(bytes: &mut Vec<u8>, seeds: &[Vec<u8>], random: &mut ChaCha8Rng) {
     const NUMBERS: &[&str] = &[
-        "0", "-1", "1e38", "-1e300", "nan", "inf", "2147483647", "-2147483648", "4294967296", "18446744073709551615",
-        "99999999999999999999", "0.0000000001", "1e-44", "",
+        "0",
+        "-1",
+        "1e38",
+        "-1e300",
+        "nan",
+        "inf",
+        "2147483647",
+        "-2147483648",
+        "4294967296",
+        "18446744073709551615",
+        "99999999999999999999",
+        "0.0000000001",
+        "1e-44",
+        "",
     ];
-    const TOKENS: &[&str] =
-        &["(", ")", "[", "]", "{", "}", "\"", "'", "@", "<", ">", "/", "&", "\0", "\n", "\u{feff}", "../", "#", "é", ",", "="];
+    const TOKENS: &[&str] = &[
+        "(", ")", "[", "]", "{", "}", "\"", "'", "@", "<", ">", "/", "&", "\0", "\n", "\u{feff}", "../", "#", "é", ",",
+        "=",
+    ];
     let length = bytes.len();
     let mut pick = |below: usize| if below == 0 { 0 } else { random.next_u64() as usize % below };
     match pick(9) {

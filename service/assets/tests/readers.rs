@@ -38,7 +38,10 @@ fn usd_composes_turns_and_counts() {
     assert_eq!(facts.diffuse_colors, [[1.0, 0.0, 0.0]]);
     assert_eq!(facts.textures[0].path.as_deref(), Some("./cloth.png"));
     assert!(!facts.textures[0].resolves);
-    assert_eq!((count(&facts, "inherits"), count(&facts, "point_instancers"), count(&facts, "geom_subsets")), (1, 1, 1));
+    assert_eq!(
+        (count(&facts, "inherits"), count(&facts, "point_instancers"), count(&facts, "geom_subsets")),
+        (1, 1, 1)
+    );
     // The model has the three studs where the instancer puts them, and the cushion's own material.
     near(model.bounds(), [[0.1, 0.0, -0.2], [0.6, 0.4, 0.46]]);
     let visuals = &model.bodies[0].visuals;

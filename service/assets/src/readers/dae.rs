@@ -70,13 +70,7 @@ fn own(builder: &mut Builder, source: &Source) -> Result<(), Refusal> {
 }
 
 /// Reads a COLLADA file as Gazebo does: its unit counts, its axis does not; put in place by a matrix.
-pub fn fill(
-    builder: &mut Builder,
-    bytes: &[u8],
-    folder: &Folder,
-    place: &Matrix,
-    body: usize,
-) -> Result<(), Refusal> {
+pub fn fill(builder: &mut Builder, bytes: &[u8], folder: &Folder, place: &Matrix, body: usize) -> Result<(), Refusal> {
     let text = super::sdf::text(bytes);
     let document = parsed(&text)?;
     let (unit, _) = unit(&document)?;
@@ -151,7 +145,8 @@ fn scene(
     let visual = child(root, "scene").and_then(|s| child(s, "instance_visual_scene"));
     let visual = visual.and_then(|v| ids.get(local(v.attribute("url"))?).copied());
     let visual = visual.ok_or("has no scene")?;
-    let mut state = Walk { builder, ids: &ids, surfaces: &surfaces, geometries: BTreeMap::new(), body, worn: Vec::new() };
+    let mut state =
+        Walk { builder, ids: &ids, surfaces: &surfaces, geometries: BTreeMap::new(), body, worn: Vec::new() };
     let mut open: Vec<(Node, Matrix, usize)> = vec![(visual, *place, 0)];
     let mut visits = 0;
     while let Some((node, world, depth)) = open.pop() {
@@ -188,7 +183,8 @@ fn note(builder: &mut Builder, root: Node, [animations, controllers, cameras, li
     facts.feature("cameras", Feature::Count(cameras));
     facts.feature("lights", Feature::Count(lights));
     let asset = child(root, "asset");
-    let tool = asset.and_then(|a| child(a, "contributor")).and_then(|c| child(c, "authoring_tool")).and_then(|t| t.text());
+    let tool =
+        asset.and_then(|a| child(a, "contributor")).and_then(|c| child(c, "authoring_tool")).and_then(|t| t.text());
     facts.feature("authoring_tool", Feature::Text(tool.unwrap_or_default().chars().take(200).collect()));
     facts.feature("version", Feature::Text(root.attribute("version").unwrap_or_default().chars().take(20).collect()));
 }

@@ -13,8 +13,8 @@ pub const MAX_PICTURE_BYTES: u64 = 16 << 20;
 const CLIMB: usize = 4;
 /// Endings of files that a model may name above its own folder.
 const ENDINGS: &[&str] = &[
-    "usd", "usda", "usdc", "usdz", "gltf", "glb", "bin", "obj", "mtl", "dae", "stl", "png", "jpg", "jpeg", "tga", "bmp",
-    "tif", "tiff", "webp", "ktx", "ktx2", "exr", "hdr", "dds", "gif", "avif",
+    "usd", "usda", "usdc", "usdz", "gltf", "glb", "bin", "obj", "mtl", "dae", "stl", "png", "jpg", "jpeg", "tga",
+    "bmp", "tif", "tiff", "webp", "ktx", "ktx2", "exr", "hdr", "dds", "gif", "avif",
 ];
 
 /// The folder of a model, and how far around it files may be read.

@@ -57,7 +57,9 @@ impl Matrix {
 
     /// Turns by roll about x, then pitch about y, then yaw about z, in rad, as SDF poses do.
     pub fn roll_pitch_yaw([roll, pitch, yaw]: [f64; 3]) -> Self {
-        Self::axis_angle([0., 0., 1.], yaw) * Self::axis_angle([0., 1., 0.], pitch) * Self::axis_angle([1., 0., 0.], roll)
+        Self::axis_angle([0., 0., 1.], yaw)
+            * Self::axis_angle([0., 1., 0.], pitch)
+            * Self::axis_angle([1., 0., 0.], roll)
     }
 
     /// Turns the axes of a file with this axis up to z up: as is common, y up by a quarter about x, x up about y.
@@ -163,7 +165,8 @@ mod tests {
 
     #[test]
     fn matrices_compose_invert_and_turn_axes_up() {
-        let m = Matrix::translation([1., 2., 3.]) * Matrix::axis_angle([0., 0., 2.], 0.3) * Matrix::scale([2., 3., -4.]);
+        let m =
+            Matrix::translation([1., 2., 3.]) * Matrix::axis_angle([0., 0., 2.], 0.3) * Matrix::scale([2., 3., -4.]);
         assert!(m.determinant() < 0.0);
         let back = m.inverse().unwrap().point(m.point([0.4, -5., 6.]));
         [0.4, -5., 6.].iter().zip(back).for_each(|(a, b)| assert!((a - b).abs() < 1e-12));

@@ -27,8 +27,18 @@ const UNDERSTOOD: &[&str] =
     &["KHR_mesh_quantization", "EXT_meshopt_compression", "EXT_mesh_gpu_instancing", "KHR_node_visibility"];
 /// Beginnings of names of extensions that only change surfaces, lights and the like.
 const HARMLESS: &[&str] = &[
-    "KHR_materials_", "KHR_texture_", "KHR_lights_", "KHR_xmp", "KHR_animation_", "KHR_accessor_float64", "EXT_texture_",
-    "EXT_lights_", "MSFT_texture_", "ADOBE_materials_", "KHR_audio", "EXT_materials_",
+    "KHR_materials_",
+    "KHR_texture_",
+    "KHR_lights_",
+    "KHR_xmp",
+    "KHR_animation_",
+    "KHR_accessor_float64",
+    "EXT_texture_",
+    "EXT_lights_",
+    "MSFT_texture_",
+    "ADOBE_materials_",
+    "KHR_audio",
+    "EXT_materials_",
 ];
 
 /// Reads glTF.
@@ -76,8 +86,8 @@ pub fn fill_into(
 
 fn parsed(bytes: &[u8]) -> Result<(Document, Option<&[u8]>), Refusal> {
     let (json, binary) = chunks(bytes)?;
-    let document: Document = serde_json::from_slice(json.trim_ascii_end())
-        .map_err(|e| format!("its JSON is not that of glTF 2.0: {e}"))?;
+    let document: Document =
+        serde_json::from_slice(json.trim_ascii_end()).map_err(|e| format!("its JSON is not that of glTF 2.0: {e}"))?;
     if !document.asset.version.starts_with("2.") {
         return Err(format!("is glTF {}, only 2.0 is read", super::folder::shortened(&document.asset.version)).into());
     }
@@ -128,7 +138,8 @@ fn fill(
     let places = places(document, place)?;
     let first = builder.materials.len();
     note(builder, document, &places)?;
-    let unknown: Vec<&str> = document.extensions_required.iter().map(String::as_str).filter(|e| !understood(e)).collect();
+    let unknown: Vec<&str> =
+        document.extensions_required.iter().map(String::as_str).filter(|e| !understood(e)).collect();
     surfaces(builder, document, buffers);
     if !unknown.is_empty() {
         corners(builder, document, &places);
@@ -196,7 +207,9 @@ fn note(builder: &mut Builder, document: &Document, places: &[(&Node, Matrix)]) 
         skinned += u64::from(node.skin.is_some());
         for primitive in node.mesh.and_then(|m| document.meshes.get(m)).map_or(&[][..], |m| &m.primitives) {
             morphs += u64::from(!primitive.targets.is_empty());
-            let count = |index: usize| document.accessors.get(index).map(|a| a.count).ok_or("names an accessor that is not there");
+            let count = |index: usize| {
+                document.accessors.get(index).map(|a| a.count).ok_or("names an accessor that is not there")
+            };
             let corners = match (primitive.indices, primitive.attributes.get("POSITION")) {
                 (Some(index), _) | (None, Some(&index)) => count(index)?,
                 (None, None) => 0,
@@ -235,7 +248,8 @@ fn note(builder: &mut Builder, document: &Document, places: &[(&Node, Matrix)]) 
         .collect();
     let mut names = BTreeSet::new();
     for index in worn {
-        let material = document.materials.get(index).ok_or_else(|| format!("names material {index}, which is not there"))?;
+        let material =
+            document.materials.get(index).ok_or_else(|| format!("names material {index}, which is not there"))?;
         names.insert(material.name.clone().filter(|n| !n.is_empty()).unwrap_or_else(|| format!("#{index}")));
         facts.diffuse_colors.push(material.color());
     }
@@ -329,9 +343,7 @@ fn add(
     };
     // glTF counts v from above.
     let uvs = match primitive.attributes.get("TEXCOORD_0") {
-        Some(&index) => {
-            buffers.floats::<2>(index).unwrap_or_default().into_iter().map(|[u, v]| [u, 1.0 - v]).collect()
-        }
+        Some(&index) => buffers.floats::<2>(index).unwrap_or_default().into_iter().map(|[u, v]| [u, 1.0 - v]).collect(),
         None => Vec::new(),
     };
     let material = primitive.material.map(|m| first + m);

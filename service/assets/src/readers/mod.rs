@@ -116,7 +116,9 @@ const OTHERS: &[(&[u8], &str)] = &[
 fn unknown(head: &[u8], ending: &str, known: bool) -> Refusal {
     match OTHERS.iter().find(|(magic, _)| head.starts_with(magic)) {
         Some((_, what)) => format!("is {what}").into(),
-        None if known => format!("does not begin as a .{ending} file does: it is damaged, cut off or something else").into(),
+        None if known => {
+            format!("does not begin as a .{ending} file does: it is damaged, cut off or something else").into()
+        }
         None => {
             let mut endings: Vec<&str> = all().iter().flat_map(|r| r.endings()).copied().collect();
             endings.sort_unstable();

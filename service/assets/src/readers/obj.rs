@@ -59,13 +59,7 @@ struct Text {
 }
 
 /// Reads an OBJ text into a body of a builder, put in place by a matrix.
-pub fn fill(
-    builder: &mut Builder,
-    bytes: &[u8],
-    folder: &Folder,
-    place: &Matrix,
-    body: usize,
-) -> Result<(), Refusal> {
+pub fn fill(builder: &mut Builder, bytes: &[u8], folder: &Folder, place: &Matrix, body: usize) -> Result<(), Refusal> {
     let text = parse(&String::from_utf8_lossy(bytes))?;
     note(builder, &text, place);
     let worn = materials(builder, &text, folder);
@@ -303,7 +297,8 @@ fn picture_path(text: &str) -> &str {
             let trimmed = after.trim_start();
             let end = trimmed.find(char::is_whitespace).unwrap_or(trimmed.len());
             let (word, behind) = trimmed.split_at(end);
-            let numeric = !word.is_empty() && word.bytes().all(|b| b.is_ascii_digit() || matches!(b, b'.' | b'+' | b'-'));
+            let numeric =
+                !word.is_empty() && word.bytes().all(|b| b.is_ascii_digit() || matches!(b, b'.' | b'+' | b'-'));
             if !numeric || behind.is_empty() {
                 after = trimmed;
                 break;
@@ -314,4 +309,3 @@ fn picture_path(text: &str) -> &str {
     }
     text
 }
-

@@ -170,8 +170,7 @@ impl Pool {
         root: Option<&Path>,
         mut each: impl FnMut(usize, Result<ReadModel, Refusal>) -> ControlFlow<()>,
     ) -> Result<(), Error> {
-        let shared =
-            Mutex::new(Shared { next: 0, delivered: 0, done: BTreeMap::new(), stopped: false });
+        let shared = Mutex::new(Shared { next: 0, delivered: 0, done: BTreeMap::new(), stopped: false });
         let changed = Condvar::new();
         let lock = || shared.lock().unwrap_or_else(PoisonError::into_inner);
         let workers = self.workers.min(files.len());

@@ -61,9 +61,10 @@ fn fill(builder: &mut Builder, source: &Source) -> Result<(), Refusal> {
     }
     let (space, warnings) = Space::new(source.folder, source.bytes)?;
     warnings.into_iter().for_each(|w| builder.facts.warn(w));
-    let stage = Stage::builder().resolver(space.clone()).open(space.main()).map_err(|error| {
-        space.refused().into_iter().next().map_or_else(|| reason(&error), Refusal::new)
-    })?;
+    let stage = Stage::builder()
+        .resolver(space.clone())
+        .open(space.main())
+        .map_err(|error| space.refused().into_iter().next().map_or_else(|| reason(&error), Refusal::new))?;
     let word = |field: &str| stage.stage_metadata(field).ok().flatten();
     let up = word("upAxis");
     let unit = word("metersPerUnit");

@@ -44,14 +44,21 @@ impl Args {
             if let Err(refusal) = result {
                 refused.push(format!("{name}: {refusal}"));
             }
-            if written.is_err() || interrupt::check().is_err() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            if written.is_err() || interrupt::check().is_err() {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
+            }
         })?;
         if interrupt::check().is_err() {
             return Err(Error::Interrupted);
         }
         written.map_err(|source| Error::Write { path: "standard output".into(), source })?;
         if !rows.is_empty() {
-            print!("{}", table(&["file", "format", "up", "m per unit", "size m", "meshes", "triangles", "materials"], &rows));
+            print!(
+                "{}",
+                table(&["file", "format", "up", "m per unit", "size m", "meshes", "triangles", "materials"], &rows)
+            );
         }
         match refused.len() {
             0 => Ok(()),

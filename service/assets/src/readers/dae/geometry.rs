@@ -109,7 +109,8 @@ impl Part {
                 let mut at = 0usize;
                 let all = lists.concat();
                 for count in child(element, "vcount").map(integers).transpose()?.unwrap_or_default() {
-                    let Some(corners) = usize::try_from(count).ok().and_then(|c| all.get(at..at.checked_add(c)?)) else {
+                    let Some(corners) = usize::try_from(count).ok().and_then(|c| all.get(at..at.checked_add(c)?))
+                    else {
                         facts.warn("the counts of a polylist are more than its corners");
                         break;
                     };

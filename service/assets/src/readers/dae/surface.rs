@@ -32,7 +32,9 @@ pub fn read(builder: &mut Builder, root: Node, ids: &Ids, folder: &Folder) -> Su
         let Some(from) = child(image, "init_from") else { continue };
         let path = from.text().map(str::trim).filter(|t| !t.is_empty());
         let path = path.or_else(|| child(from, "ref")?.text()).map(str::to_owned);
-        windows |= path.as_deref().is_some_and(|p| p.contains("file:///") || p.get(1..3).is_some_and(|d| d == ":\\" || d == ":/"));
+        windows |= path
+            .as_deref()
+            .is_some_and(|p| p.contains("file:///") || p.get(1..3).is_some_and(|d| d == ":\\" || d == ":/"));
         let resolves = path.as_deref().is_some_and(|p| folder.resolve(&on_disk(p)).is_some());
         if let (Some(id), Some(path)) = (image.attribute("id"), &path) {
             pictures.insert(id.to_owned(), path.clone());
@@ -79,7 +81,8 @@ fn shade(
 ) -> Option<[f64; 3]> {
     let profile = child(effect, "profile_COMMON")?;
     let technique = child(profile, "technique")?;
-    let model = technique.children().find(|c| matches!(c.tag_name().name(), "phong" | "lambert" | "blinn" | "constant"))?;
+    let model =
+        technique.children().find(|c| matches!(c.tag_name().name(), "phong" | "lambert" | "blinn" | "constant"))?;
     let numbers = |name: &str| -> Option<[f64; 3]> {
         let numbers = child(child(model, name)?, "color")?.text()?.split_whitespace();
         let numbers: Vec<f64> = numbers.map_while(|w| w.parse().ok()).collect();
@@ -92,11 +95,15 @@ fn shade(
     }
     let sampler = child(child(model, "diffuse")?, "texture")?.attribute("texture")?;
     let scope = |sid: &str| {
-        let parameters = children(profile, "newparam").chain(children(technique, "newparam")).chain(children(effect, "newparam"));
+        let parameters =
+            children(profile, "newparam").chain(children(technique, "newparam")).chain(children(effect, "newparam"));
         parameters.into_iter().find(|p| p.attribute("sid") == Some(sid))
     };
     let sampled = scope(sampler).and_then(|p| child(p, "sampler2D"));
-    let surface = sampled.and_then(|s| child(s, "source")).and_then(|s| scope(s.text()?.trim())).and_then(|p| child(p, "surface"));
+    let surface = sampled
+        .and_then(|s| child(s, "source"))
+        .and_then(|s| scope(s.text()?.trim()))
+        .and_then(|p| child(p, "surface"));
     let by_surface = surface.and_then(|s| child(s, "init_from")).and_then(|i| i.text()).map(str::trim);
     let by_instance = sampled.and_then(|s| child(s, "instance_image")).and_then(|i| local(i.attribute("url")));
     let image = by_surface.or(by_instance).unwrap_or(sampler);

@@ -173,7 +173,9 @@ impl<'a> Buffers<'a> {
         };
         if let Some(view) = accessor.buffer_view {
             let from = (view, accessor.byte_offset);
-            self.items(from, accessor.component_type, (accessor.count, N), |i, bytes, size| out[i] = read(bytes, size))?;
+            self.items(from, accessor.component_type, (accessor.count, N), |i, bytes, size| {
+                out[i] = read(bytes, size)
+            })?;
         }
         if let Some(sparse) = &accessor.sparse {
             let count = sparse.count.min(accessor.count);
@@ -273,7 +275,8 @@ fn percent_decoded(text: &str) -> Vec<u8> {
     let mut out = Vec::with_capacity(bytes.len());
     let mut at = 0;
     while let Some(&byte) = bytes.get(at) {
-        let code = (byte == b'%').then(|| text.get(at + 1..at + 3)).flatten().and_then(|c| u8::from_str_radix(c, 16).ok());
+        let code =
+            (byte == b'%').then(|| text.get(at + 1..at + 3)).flatten().and_then(|c| u8::from_str_radix(c, 16).ok());
         out.push(code.unwrap_or(byte));
         at += if code.is_some() { 3 } else { 1 };
     }

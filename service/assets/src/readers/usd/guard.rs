@@ -219,8 +219,12 @@ mod tests {
     fn deep_nesting_is_refused_and_brackets_in_strings_are_not_counted() {
         let deep = format!("#usda 1.0\n{}", "def \"a\" {".repeat(300));
         assert!(checked(deep.as_bytes()).unwrap_err().reason.contains("nested deeper"));
-        let text = format!("#usda 1.0\n# {}\ndef \"a\" {{ string s = \"\"\"{}\"\"\"\n string t = '{}' }}\n",
-            "{".repeat(300), "[\"".repeat(300), "(".repeat(300));
+        let text = format!(
+            "#usda 1.0\n# {}\ndef \"a\" {{ string s = \"\"\"{}\"\"\"\n string t = '{}' }}\n",
+            "{".repeat(300),
+            "[\"".repeat(300),
+            "(".repeat(300)
+        );
         assert!(checked(text.as_bytes()).is_ok());
     }
 }

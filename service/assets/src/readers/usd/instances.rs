@@ -66,7 +66,9 @@ impl Places<'_> {
             }
             let id = ids.get(index).copied().unwrap_or(index as i64);
             let path = usize::try_from(prototype).ok().and_then(|p| prototypes.get(p));
-            let (Some(path), Some(position), false) = (path, positions.get(index), hidden.contains(&id)) else { continue };
+            let (Some(path), Some(position), false) = (path, positions.get(index), hidden.contains(&id)) else {
+                continue;
+            };
             let turn = turns.get(index).map_or(Matrix::IDENTITY, |q| Matrix::rotation(unit(*q)));
             let scale = scales.get(index).map_or(Matrix::IDENTITY, |s| Matrix::scale(s.map(f64::from)));
             let mut own = state.clone();

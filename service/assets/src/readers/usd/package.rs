@@ -21,6 +21,7 @@ pub struct Entry {
     pub name: String,
     start: usize,
     length: usize,
+    packed: usize,
     crc: u32,
     /// Whether it is stored, and not compressed or encrypted.
     plain: bool,
@@ -81,7 +82,7 @@ impl Package {
             let (name, extra, comment) = (length(28)?, length(30)?, length(32)?);
             let raw = bytes.get(at + 46..at + 46 + name).ok_or_else(cut)?;
             if let Some(entry) = entry(&data, at, raw, shift, &mut package.warnings)? {
-                total = total.saturating_add(entry.length);
+                total = total.saturating_add(entry.packed);
                 package.entries.push(entry);
             }
             at += 46 + name + extra + comment;
@@ -98,7 +99,9 @@ impl Package {
     ///
     /// When that is no USD layer.
     pub fn root(&self) -> Result<&Entry, Refusal> {
-        let junk = |name: &str| name.starts_with("__MACOSX/") || name.split('/').any(|p| p.starts_with("._") || p == ".DS_Store");
+        let junk = |name: &str| {
+            name.starts_with("__MACOSX/") || name.split('/').any(|p| p.starts_with("._") || p == ".DS_Store")
+        };
         let mut files = self.entries.iter().filter(|e| !e.name.ends_with('/') && !junk(&e.name));
         let first = files.next().ok_or("its package is empty")?;
         if !is_layer(&first.name) {
@@ -123,7 +126,9 @@ impl Entry {
     pub fn content<'a>(&self, bytes: &'a [u8]) -> Result<&'a [u8], Refusal> {
         let name = crate::readers::folder::shortened(&self.name);
         if !self.plain {
-            return Err(format!("`{name}` in its package is compressed or encrypted; USDZ stores files as they are").into());
+            return Err(
+                format!("`{name}` in its package is compressed or encrypted; USDZ stores files as they are").into()
+            );
         }
         let content = self.start.checked_add(self.length).and_then(|end| bytes.get(self.start..end));
         let content = content.ok_or_else(|| format!("`{name}` in its package is longer than the file"))?;
@@ -178,7 +183,7 @@ fn entry(
         (Some(0x0403_4b50), Some(name), Some(extra)) => local + 30 + name + extra,
         _ => return Err(format!("`{shown}` in its package is not where its directory says").into()),
     };
-    if length as usize > data.0.len() || packed as usize > data.0.len() {
+    if packed as usize > data.0.len() || method == 0 && length != packed {
         return Err(format!("`{shown}` in its package is longer than the whole file").into());
     }
     if start % 64 != 0 && !name.ends_with('/') && warnings.is_empty() {
@@ -186,5 +191,5 @@ fn entry(
     }
     let plain = method == 0 && flags & 1 == 0 && packed == length;
     let crc = data.u32(at + 16).ok_or_else(cut)?;
-    Ok(Some(Entry { name: name.to_owned(), start, length: length as usize, crc, plain }))
+    Ok(Some(Entry { name: name.to_owned(), start, length: length as usize, packed: packed as usize, crc, plain }))
 }

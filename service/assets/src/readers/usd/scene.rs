@@ -149,7 +149,9 @@ pub fn read(builder: &mut Builder, stage: &Stage, space: &Space) -> Result<(), R
             }
         }
         let names = prim.child_names().unwrap_or_default();
-        open.extend(names.iter().rev().filter_map(|n| Some((child(path.as_str(), n.as_str())?, state.clone(), depth + 1))));
+        open.extend(
+            names.iter().rev().filter_map(|n| Some((child(path.as_str(), n.as_str())?, state.clone(), depth + 1))),
+        );
     }
     // Also of a scene that is refused: they tell what it is.
     note(builder, stage, tally);
@@ -314,8 +316,21 @@ pub fn add(
 fn note(builder: &mut Builder, stage: &Stage, tally: Tally) {
     let facts = &mut builder.facts;
     const COUNTS: &[&str] = &[
-        "references", "payloads", "inherits", "specializes", "instances", "point_instancers", "cameras", "lights", "curves",
-        "left_handed", "geom_subsets", "invisible_prims", "inactive", "animated_xforms", "animated_points",
+        "references",
+        "payloads",
+        "inherits",
+        "specializes",
+        "instances",
+        "point_instancers",
+        "cameras",
+        "lights",
+        "curves",
+        "left_handed",
+        "geom_subsets",
+        "invisible_prims",
+        "inactive",
+        "animated_xforms",
+        "animated_points",
         "skinned_meshes",
     ];
     for name in COUNTS {
@@ -333,6 +348,9 @@ fn note(builder: &mut Builder, stage: &Stage, tally: Tally) {
         facts.feature("default_prim", Feature::Text(name.as_str().chars().take(200).collect()));
     }
     if tally.broken > 0 {
-        facts.warn(format!("{} meshes whose faces name corners that are not there or are not as many as said", tally.broken));
+        facts.warn(format!(
+            "{} meshes whose faces name corners that are not there or are not as many as said",
+            tally.broken
+        ));
     }
 }

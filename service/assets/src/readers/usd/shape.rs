@@ -5,7 +5,7 @@
 use openusd::sdf::Value;
 use openusd::usd::Prim;
 
-use super::value::{integers, number_of, numbers, token_of, threes, twos, value};
+use super::value::{integers, number_of, numbers, threes, token_of, twos, value};
 use crate::readers::builder::{MAX_POINTS, MAX_TRIANGLES};
 use crate::readers::facts::{Bounds, Refusal};
 use crate::readers::frame::Extent;
@@ -15,8 +15,22 @@ const SIDES: usize = 24;
 
 /// The kinds of prims that have geometry of their own.
 pub const GPRIMS: &[&str] = &[
-    "Mesh", "Cube", "Sphere", "Cylinder", "Cylinder_1", "Cone", "Capsule", "Capsule_1", "Plane", "Points", "BasisCurves",
-    "NurbsCurves", "HermiteCurves", "NurbsPatch", "TetMesh", "Volume",
+    "Mesh",
+    "Cube",
+    "Sphere",
+    "Cylinder",
+    "Cylinder_1",
+    "Cone",
+    "Capsule",
+    "Capsule_1",
+    "Plane",
+    "Points",
+    "BasisCurves",
+    "NurbsCurves",
+    "HermiteCurves",
+    "NurbsPatch",
+    "TetMesh",
+    "Volume",
 ];
 
 /// A mesh as its attributes say.
@@ -222,7 +236,15 @@ fn plane(width: f64, length: f64, axis: usize) -> (Option<Bounds>, Option<Triang
     };
     let (a, b) = ((axis + 1) % 3, (axis + 2) % 3);
     let corner = |x: f64, y: f64| -> [f32; 3] {
-        std::array::from_fn(|i| if i == a { (x * half[a]) as f32 } else if i == b { (y * half[b]) as f32 } else { 0.0 })
+        std::array::from_fn(|i| {
+            if i == a {
+                (x * half[a]) as f32
+            } else if i == b {
+                (y * half[b]) as f32
+            } else {
+                0.0
+            }
+        })
     };
     let positions = vec![corner(-1., -1.), corner(1., -1.), corner(1., 1.), corner(-1., 1.)];
     let shape = Triangles { positions, uvs: Vec::new(), triangles: vec![[0, 1, 2], [0, 2, 3]] };

@@ -194,7 +194,9 @@ const NOWHERE: &str = "<nowhere>/";
 
 impl Resolver for Space {
     fn create_identifier(&self, asset_path: &str, anchor: Option<&ResolvedPath>) -> String {
-        if asset_path.is_empty() || asset_path == self.0.main || asset_path.starts_with(NOWHERE) {
+        // Names of our own come back without an anchor.
+        let own = anchor.is_none() && asset_path.starts_with(&self.0.main) || asset_path.starts_with(NOWHERE);
+        if asset_path.is_empty() || own {
             return asset_path.to_owned();
         }
         // `package.usdz[inner.usd]` names a file in a package.

@@ -211,8 +211,10 @@ impl Surfaces {
         builder.facts.material_names = names.into_iter().cloned().collect();
         builder.facts.diffuse_colors = worn().filter_map(|k| k.color).collect();
         let textures = std::mem::take(&mut self.textures);
-        builder.facts.textures =
-            textures.into_iter().map(|(path, resolves)| TextureFact { path: Some(path), resolves, embedded: None }).collect();
+        builder.facts.textures = textures
+            .into_iter()
+            .map(|(path, resolves)| TextureFact { path: Some(path), resolves, embedded: None })
+            .collect();
     }
 }
 
@@ -266,12 +268,13 @@ fn picture(stage: &Stage, shader: &Path) -> Option<(String, Option<String>)> {
         // Something between the picture and the surface, such as a change of its brightness.
         let prim = stage.prim(shader.clone());
         token_of(&prim, "info:id")?;
-        let next = ["inputs:in", "inputs:input", "inputs:color", "inputs:tex"].iter().find_map(|name| {
-            match producing(stage, &shader, name, 0) {
-                Some(Source::Shader(next)) => Some(next),
-                _ => None,
-            }
-        });
+        let next =
+            ["inputs:in", "inputs:input", "inputs:color", "inputs:tex"].iter().find_map(|name| {
+                match producing(stage, &shader, name, 0) {
+                    Some(Source::Shader(next)) => Some(next),
+                    _ => None,
+                }
+            });
         shader = next?;
     }
     None
