@@ -272,7 +272,8 @@ impl Document for Annotation {
             problems.push(Problem::new("/version", format!("is {}, this release reads version 1", self.version)));
         }
         for (i, ([low, high], size)) in self.bounding_box_m.iter().zip(self.size_m).enumerate() {
-            if !(low <= high) || (high - low - size).abs() > d3dgen_model::TOLERANCE_M {
+            let off = (high - low - size).abs();
+            if low > high || off.is_nan() || off > d3dgen_model::TOLERANCE_M {
                 problems.push(Problem::new(
                     format!("/bounding_box_m/{i}"),
                     format!("is {low} to {high} m, size_m says {size} m"),

@@ -25,6 +25,14 @@ pub enum Error {
         /// What the system said.
         source: std::io::Error,
     },
+    /// The process that reads models cannot be started.
+    #[error("cannot start the process that reads models, {}: {source}", program.display())]
+    Start {
+        /// The file of the program.
+        program: std::path::PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
     /// A filter or argument is not usable.
     #[error("{0}")]
     Input(String),

@@ -98,7 +98,7 @@ pub fn measure(model: &Model3d, map: &Map) -> Measured {
             points = outline(std::mem::take(&mut points));
         }
         let (area, normal) = area_and_normal(corners);
-        if !(area > 0.0) {
+        if area <= 0.0 {
             return;
         }
         m.triangle_count += 1;

@@ -39,6 +39,9 @@ pub enum Error {
     /// The knowledge database refused.
     #[error(transparent)]
     Knowledge(#[from] d3dgen_knowledge::Error),
+    /// The asset database refused.
+    #[error(transparent)]
+    Assets(#[from] d3dgen_assets::Error),
     /// A stage refused.
     #[error(transparent)]
     Stage(#[from] d3dgen_pipeline::Error),

@@ -1,9 +1,11 @@
 //! What a 3D model is in memory, whichever file it came from or goes to.
 
+use serde::{Deserialize, Serialize};
+
 /// A 3D model: bodies that joints move against each other, and what they look like.
 ///
 /// All geometry is in the frame of the model (see the crate), with every joint at zero.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Model3d {
     /// Name, `[A-Za-z0-9_]`.
     pub name: String,
@@ -18,7 +20,7 @@ pub struct Model3d {
 }
 
 /// A rigid body.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Body {
     /// Name, unique in the model.
     pub name: String,
@@ -31,7 +33,7 @@ pub struct Body {
 }
 
 /// A mesh with its material.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Visual {
     /// Name, unique in the body.
     pub name: String,
@@ -42,7 +44,7 @@ pub struct Visual {
 }
 
 /// Triangles.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Mesh {
     /// Corners, m.
     pub positions: Vec<[f32; 3]>,
@@ -55,7 +57,7 @@ pub struct Mesh {
 }
 
 /// A convex shape.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Collision {
     /// An upright box between two corners, m.
     Box {
@@ -94,7 +96,7 @@ pub enum Collision {
 }
 
 /// How one body moves against another.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Joint {
     /// Name, unique in the model.
     pub name: String,
@@ -113,7 +115,7 @@ pub struct Joint {
 }
 
 /// What a joint lets its body do.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum JointKind {
     /// Turn between limits: doors, lids.
     Revolute,
@@ -124,7 +126,7 @@ pub enum JointKind {
 }
 
 /// A surface, in the metallic-roughness model of glTF and UsdPreviewSurface.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Material {
     /// Name.
     pub name: String,
@@ -143,7 +145,7 @@ pub struct Material {
 }
 
 /// A picture file.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Texture {
     /// Path as the source names it, or the name it is written under.
     pub path: String,

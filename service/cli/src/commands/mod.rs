@@ -46,6 +46,8 @@ pub enum Command {
     Research(research::Args),
     /// Search, change and look after the database of building rules
     Knowledge(knowledge::Args),
+    /// Look into files of 3D models, and look after the database of them
+    Assets(crate::assets::Args),
     /// Print a completion script for a shell
     Completions(completions::Args),
     /// Print the version, and the versions of the documents it reads
@@ -70,6 +72,7 @@ impl Command {
             Self::Domains(args) => args.run(),
             Self::Research(args) => args.run(),
             Self::Knowledge(args) => args.run(),
+            Self::Assets(args) => args.run(),
             Self::Completions(args) => args.run(),
             Self::Version => version::run(),
         }

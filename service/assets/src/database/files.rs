@@ -1,0 +1,96 @@
+//! Files of models: one each, named by its digest, whole or not there.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use d3dgen_mesh::Model3d;
+use sha2::{Digest, Sha256};
+
+use crate::error::Error;
+
+/// First bytes: what it is, and the form of what follows.
+const MAGIC: &[u8] = b"d3dgen model 1\n";
+const ENDING: &str = "model";
+
+/// Writes a model and returns its digest. One that is there already is left as it is.
+///
+/// # Errors
+/// `File`.
+pub(super) fn write(dir: &Path, model: &Model3d) -> Result<String, Error> {
+    let mut bytes = MAGIC.to_vec();
+    bytes.extend(postcard::to_allocvec(model).map_err(|e| failed(dir, std::io::Error::other(e)))?);
+    let hash = digest(&bytes);
+    let path = path(dir, &hash);
+    if path.is_file() {
+        return Ok(hash);
+    }
+    let folder = path.parent().unwrap_or(dir);
+    std::fs::create_dir_all(folder).map_err(|e| failed(folder, e))?;
+    let mut file = tempfile::NamedTempFile::new_in(folder).map_err(|e| failed(folder, e))?;
+    file.write_all(&bytes).and_then(|()| file.as_file().sync_data()).map_err(|e| failed(&path, e))?;
+    file.persist(&path).map_err(|e| failed(&path, e.error))?;
+    Ok(hash)
+}
+
+/// Reads a model.
+///
+/// # Errors
+/// `File` when it is missing, or is not what was written.
+pub(super) fn read(dir: &Path, hash: &str) -> Result<Model3d, Error> {
+    let path = path(dir, hash);
+    let bytes = std::fs::read(&path).map_err(|e| failed(&path, e))?;
+    let damaged = |what: &str| failed(&path, std::io::Error::other(format!("is damaged: {what}")));
+    if digest(&bytes) != hash {
+        return Err(damaged("its digest is another"));
+    }
+    let body = bytes.strip_prefix(MAGIC).ok_or_else(|| damaged("it was written by another release"))?;
+    postcard::from_bytes(body).map_err(|e| damaged(&e.to_string()))
+}
+
+/// Removes a model's file, if it is there.
+///
+/// # Errors
+/// `File`.
+pub(super) fn remove(dir: &Path, hash: &str) -> Result<(), Error> {
+    let path = path(dir, hash);
+    match std::fs::remove_file(&path) {
+        Err(e) if e.kind() != std::io::ErrorKind::NotFound => Err(failed(&path, e)),
+        _ => Ok(()),
+    }
+}
+
+/// Returns the digests of all files with their sizes, sorted.
+///
+/// # Errors
+/// `File`.
+pub(super) fn list(dir: &Path) -> Result<Vec<(String, u64)>, Error> {
+    let mut found = Vec::new();
+    let entries = |folder: &Path| -> Result<Vec<PathBuf>, Error> {
+        match std::fs::read_dir(folder) {
+            Err(e) if e.kind() == std::io::ErrorKind::NotFound => Ok(Vec::new()),
+            Err(e) => Err(failed(folder, e)),
+            Ok(all) => all.map(|e| e.map(|e| e.path()).map_err(|e| failed(folder, e))).collect(),
+        }
+    };
+    for folder in entries(dir)?.into_iter().filter(|f| f.is_dir()) {
+        for file in entries(&folder)?.into_iter().filter(|f| f.extension().is_some_and(|e| e == ENDING)) {
+            let bytes = std::fs::metadata(&file).map_err(|e| failed(&file, e))?.len();
+            found.push((file.file_stem().unwrap_or_default().to_string_lossy().into_owned(), bytes));
+        }
+    }
+    found.sort();
+    Ok(found)
+}
+
+/// Returns the SHA-256 of bytes, hexadecimal.
+pub(crate) fn digest(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().map(|b| format!("{b:02x}")).collect()
+}
+
+fn path(dir: &Path, hash: &str) -> PathBuf {
+    dir.join(hash.get(..2).unwrap_or("__")).join(format!("{hash}.{ENDING}"))
+}
+
+fn failed(path: &Path, source: std::io::Error) -> Error {
+    Error::File { path: path.to_path_buf(), source }
+}

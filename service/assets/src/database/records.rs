@@ -1,0 +1,125 @@
+//! What is stored under which key.
+//!
+//! | table | key | payload |
+//! |---|---|---|
+//! | `asset` | asset id | [`AssetRecord`] |
+//! | `content` | digest of the source | asset id |
+//! | `path` | path below the folder that was ingested | [`PathRecord`] |
+//! | `removed` | object id | [`RemovedRecord`] |
+//! | `change` | ten digits | [`Change`] |
+
+use std::ops::ControlFlow;
+
+use d3dgen_store::{KeyRange, View};
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+
+use crate::annotation::Annotation;
+use crate::error::Error;
+
+pub(super) const ASSETS: &str = "asset";
+pub(super) const CONTENTS: &str = "content";
+pub(super) const PATHS: &str = "path";
+pub(super) const REMOVED: &str = "removed";
+pub(super) const CHANGES: &str = "change";
+
+/// An asset that is kept.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(super) struct AssetRecord {
+    /// What is known of it.
+    pub annotation: Annotation,
+    /// Digest of its model's file, when it has one.
+    pub model: Option<String>,
+    /// Change that wrote it.
+    pub change: u64,
+}
+
+/// A file that was ingested.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(super) struct PathRecord {
+    /// Digest of it and of what lies beside it.
+    pub hash: String,
+    /// The asset it became, or is a copy of.
+    pub asset_id: String,
+}
+
+/// An object of the library that is removed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(super) struct RemovedRecord {
+    /// Change that removed it.
+    pub change: u64,
+}
+
+/// Who changes the database, when and why; the clock and the user's name come from outside.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Provenance {
+    /// Name of the person or program.
+    pub who: String,
+    /// Date and time in UTC, `2026-11-21T14:13:00Z`.
+    pub when: String,
+    /// Reason, in a sentence.
+    pub why: String,
+}
+
+/// What sort of change it was.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Kind {
+    /// Models read from files.
+    Ingest,
+    /// Models made here.
+    Generate,
+    /// Annotations changed by a person.
+    Annotate,
+    /// Assets removed.
+    Remove,
+    /// Removed objects of the library brought back.
+    Restore,
+}
+
+/// One change.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Change {
+    /// Number, from 1.
+    pub seq: u64,
+    /// What sort.
+    pub kind: Kind,
+    /// By whom, when, why.
+    #[serde(flatten)]
+    pub provenance: Provenance,
+    /// Assets it concerns.
+    pub assets: Vec<String>,
+}
+
+/// Returns a payload.
+pub(super) fn encode(record: &impl Serialize) -> Vec<u8> {
+    serde_json::to_vec(record).expect("records hold only finite numbers and string keys")
+}
+
+/// Returns the record of a payload.
+///
+/// # Errors
+/// `Damaged` when it is of another form.
+pub(super) fn decode<T: DeserializeOwned>(table: &str, key: &str, payload: &[u8]) -> Result<T, Error> {
+    serde_json::from_slice(payload).map_err(|e| {
+        let reason = format!("not of the form of this table: {e}");
+        d3dgen_store::Error::Damaged { table: table.into(), key: key.into(), reason }.into()
+    })
+}
+
+/// Returns one record.
+pub(super) fn get<T: DeserializeOwned>(view: &View<'_>, table: &str, key: &str) -> Result<Option<T>, Error> {
+    view.get(table, key)?.map(|payload| decode(table, key, &payload)).transpose()
+}
+
+/// Calls `visit` with each record of a table, in the order of keys.
+pub(super) fn each<T: DeserializeOwned>(
+    view: &View<'_>,
+    table: &str,
+    mut visit: impl FnMut(&str, T) -> Result<(), Error>,
+) -> Result<(), Error> {
+    view.scan(table, &KeyRange::all(), |key, payload| {
+        visit(key, decode(table, key, payload)?)?;
+        Ok(ControlFlow::Continue(()))
+    })
+}

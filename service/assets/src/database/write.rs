@@ -1,0 +1,195 @@
+//! Changes going in: each is one batch, stored whole or not at all, together with its entry in the history.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use d3dgen_mesh::Model3d;
+use d3dgen_model::Document;
+use d3dgen_store::Batch;
+
+use super::Database;
+use super::files;
+use super::records::{
+    ASSETS, AssetRecord, CHANGES, CONTENTS, Change, Kind, PATHS, PathRecord, Provenance, REMOVED, RemovedRecord, encode,
+    get,
+};
+use crate::annotation::{Annotation, Origin};
+use crate::error::Error;
+
+/// An asset to be kept.
+#[derive(Debug, Clone)]
+pub struct NewAsset {
+    /// What is known of it. An id that another asset has gets a number.
+    pub annotation: Annotation,
+    /// Its model in its own frame.
+    pub model: Option<Model3d>,
+}
+
+impl Database {
+    /// Keeps assets; one whose path was ingested before takes the place of what was there. Returns their ids.
+    ///
+    /// # Errors
+    /// `Store`; `File`; `Document` when an annotation breaks its rules.
+    pub fn put(&self, kind: Kind, assets: Vec<NewAsset>, by: &Provenance) -> Result<Vec<String>, Error> {
+        if assets.is_empty() {
+            return Ok(Vec::new());
+        }
+        let seq = self.next_change()?;
+        let mut batch = Batch::new();
+        let (mut ids, mut taken, mut orphans) = (Vec::new(), BTreeSet::new(), Vec::new());
+        for NewAsset { mut annotation, model } in assets {
+            let problems = annotation.check();
+            if !problems.is_empty() {
+                return Err(d3dgen_model::Error::Invalid { kind: Annotation::KIND, problems }.into());
+            }
+            let model = model.map(|m| files::write(&self.files_dir(), &m)).transpose()?;
+            let source = match &annotation.origin {
+                Origin::Ingested { path, hash } => Some((path.clone(), hash.clone())),
+                _ => None,
+            };
+            let before = source.as_ref().map(|(path, _)| self.ingested(path)).transpose()?.flatten();
+            let own = before.as_ref().map(|(_, id)| id.clone()).filter(|id| is_variant(id, &annotation.asset_id));
+            if let Some((hash, id)) = &before {
+                batch.delete(CONTENTS, hash.as_str());
+                orphans.extend(self.model_hash(id)?.filter(|old| Some(old) != model.as_ref()));
+            }
+            annotation.asset_id = match own {
+                Some(id) => id,
+                None => self.free_id(&annotation.asset_id, &taken)?,
+            };
+            taken.insert(annotation.asset_id.clone());
+            if let Some((path, hash)) = source {
+                batch.put(CONTENTS, hash.as_str(), encode(&annotation.asset_id));
+                batch.put(PATHS, path, encode(&PathRecord { hash, asset_id: annotation.asset_id.clone() }));
+            }
+            ids.push(annotation.asset_id.clone());
+            let key = annotation.asset_id.clone();
+            batch.put(ASSETS, key, encode(&AssetRecord { annotation, model, change: seq }));
+        }
+        self.finish(batch, Change { seq, kind, provenance: by.clone(), assets: ids.clone() })?;
+        self.clean(orphans)?;
+        Ok(ids)
+    }
+
+    /// Remembers that a path is a copy of an asset that is kept.
+    ///
+    /// # Errors
+    /// `Store`.
+    pub fn note_copies(&self, copies: &[(String, String, String)]) -> Result<(), Error> {
+        let mut batch = Batch::new();
+        for (path, hash, asset_id) in copies {
+            batch.put(PATHS, path.as_str(), encode(&PathRecord { hash: hash.clone(), asset_id: asset_id.clone() }));
+        }
+        self.store.apply(batch)?;
+        Ok(())
+    }
+
+    /// Returns the asset made of a source with this digest.
+    ///
+    /// # Errors
+    /// `Store`.
+    pub fn with_content(&self, hash: &str) -> Result<Option<String>, Error> {
+        get(&self.store.view()?, CONTENTS, hash)
+    }
+
+    /// Puts a changed annotation in the place of an asset's own.
+    ///
+    /// # Errors
+    /// `NoAsset`; `Document` when it breaks its rules; `Store`.
+    pub fn annotate(&self, annotation: Annotation, by: &Provenance) -> Result<(), Error> {
+        let id = annotation.asset_id.clone();
+        let problems = annotation.check();
+        if !problems.is_empty() {
+            return Err(d3dgen_model::Error::Invalid { kind: Annotation::KIND, problems }.into());
+        }
+        let record = get::<AssetRecord>(&self.store.view()?, ASSETS, &id)?;
+        let Some(record) = record else { return Err(Error::NoAsset { asset_id: id, known: Vec::new() }) };
+        let seq = self.next_change()?;
+        let mut batch = Batch::new();
+        batch.put(ASSETS, id.as_str(), encode(&AssetRecord { annotation, change: seq, ..record }));
+        self.finish(batch, Change { seq, kind: Kind::Annotate, provenance: by.clone(), assets: vec![id] })
+    }
+
+    /// Removes assets that are kept here, and objects of the shipped library, which are remembered as removed.
+    ///
+    /// # Errors
+    /// `Store`; `File`.
+    pub fn remove(&self, asset_ids: &[String], objects: &[String], by: &Provenance) -> Result<(), Error> {
+        let seq = self.next_change()?;
+        let (mut batch, mut files) = (Batch::new(), Vec::new());
+        let gone: BTreeSet<&String> = asset_ids.iter().collect();
+        for id in asset_ids {
+            files.extend(self.model_hash(id)?);
+            batch.delete(ASSETS, id.as_str());
+        }
+        let mut paths: BTreeMap<String, PathRecord> = BTreeMap::new();
+        super::records::each(&self.store.view()?, PATHS, |path, record: PathRecord| {
+            if gone.contains(&record.asset_id) {
+                paths.insert(path.to_owned(), record);
+            }
+            Ok(())
+        })?;
+        for (path, record) in paths {
+            batch.delete(PATHS, path);
+            batch.delete(CONTENTS, record.hash);
+        }
+        for object in objects {
+            batch.put(REMOVED, object.as_str(), encode(&RemovedRecord { change: seq }));
+        }
+        let assets = asset_ids.iter().chain(objects).cloned().collect();
+        self.finish(batch, Change { seq, kind: Kind::Remove, provenance: by.clone(), assets })?;
+        self.clean(files)
+    }
+
+    /// Brings removed objects of the library back.
+    ///
+    /// # Errors
+    /// `Store`.
+    pub fn restore(&self, objects: &[String], by: &Provenance) -> Result<(), Error> {
+        let seq = self.next_change()?;
+        let mut batch = Batch::new();
+        objects.iter().for_each(|object| drop(batch.delete(REMOVED, object.as_str())));
+        self.finish(batch, Change { seq, kind: Kind::Restore, provenance: by.clone(), assets: objects.to_vec() })
+    }
+
+    fn finish(&self, mut batch: Batch, change: Change) -> Result<(), Error> {
+        batch.put(CHANGES, format!("{:010}", change.seq), encode(&change));
+        self.store.apply(batch)?;
+        Ok(())
+    }
+
+    fn next_change(&self) -> Result<u64, Error> {
+        Ok(self.store.count(CHANGES)? + 1)
+    }
+
+    fn model_hash(&self, asset_id: &str) -> Result<Option<String>, Error> {
+        Ok(get::<AssetRecord>(&self.store.view()?, ASSETS, asset_id)?.and_then(|r| r.model))
+    }
+
+    /// Returns the id, with a number when another asset has it.
+    fn free_id(&self, wanted: &str, taken: &BTreeSet<String>) -> Result<String, Error> {
+        let there: BTreeSet<String> = self.with_prefix(ASSETS, wanted)?.into_iter().collect();
+        let free = |id: &String| !there.contains(id) && !taken.contains(id);
+        let numbered = (2..).map(|n: u64| format!("{wanted}_{n}"));
+        let mut ids = std::iter::once(wanted.to_owned()).chain(numbered);
+        Ok(ids.find(free).unwrap_or_else(|| wanted.to_owned()))
+    }
+
+    /// Removes files that no asset names any more.
+    fn clean(&self, hashes: Vec<String>) -> Result<(), Error> {
+        if hashes.is_empty() {
+            return Ok(());
+        }
+        let mut used = BTreeSet::new();
+        super::records::each(&self.store.view()?, ASSETS, |_, record: AssetRecord| {
+            used.extend(record.model);
+            Ok(())
+        })?;
+        hashes.iter().filter(|hash| !used.contains(*hash)).try_for_each(|hash| files::remove(&self.files_dir(), hash))
+    }
+}
+
+/// Tells whether an id is another one, perhaps with a number.
+fn is_variant(id: &str, wanted: &str) -> bool {
+    let rest = id.strip_prefix(wanted);
+    rest.is_some_and(|r| r.is_empty() || r.strip_prefix('_').is_some_and(|n| n.bytes().all(|b| b.is_ascii_digit())))
+}
