@@ -11,6 +11,7 @@
 //! --seed N         seed of the variants (0)
 //! --right N        turn of the eye to the right, degrees (33)
 //! --all-sizes      every size of an object, not only its first
+//! --pose SHARE     joints at this share of their range (0 to 1; ones without limits turn by it): doors open
 //! ```
 //! Prints one line an object: id, build, size, triangles, bodies, mass; errors with their place.
 
@@ -18,7 +19,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use d3dgen_mesh::picture::{self, View};
-use d3dgen_mesh::{Library, generate};
+use d3dgen_mesh::{JointKind, Library, Model3d, generate};
 use d3dgen_model::domain::{Build, ObjectType, Shape};
 use serde_json::{Map, Value};
 
@@ -64,7 +65,10 @@ fn main() {
         let sizes = if options.contains_key("all-sizes") { &object.sizes_m[..] } else { &object.sizes_m[..1] };
         for size in sizes {
             match generate(&library, object, *size, number("seed", 0.0) as u64) {
-                Ok(model) => {
+                Ok(mut model) => {
+                    if let Some(share) = options.get("pose").and_then(|v| v.parse().ok()) {
+                        pose(&mut model, share);
+                    }
                     let build = library.of(object).map_or("", |b| b.id.as_str());
                     let mass: f64 = model.bodies.iter().map(|b| b.mass_kg).sum();
                     println!(
@@ -86,6 +90,47 @@ fn main() {
     let bytes = picture::sheet(&tiles, number("columns", 10.0) as usize, 6).png().expect("a sheet is a picture");
     std::fs::write(&out, bytes).unwrap_or_else(|e| panic!("{out}: {e}"));
     println!("{} pictures in {out}, {failed} failed, {} problems", tiles.len(), problems.len());
+}
+
+/// Moves every body to a share of the range of its joint.
+fn pose(model: &mut Model3d, share: f64) {
+    // A joint stands after the one that moves its parent: from the last on, each moves its child with all it carries.
+    for j in (0..model.joints.len()).rev() {
+        let joint = model.joints[j].clone();
+        let [low, high] = joint.limits.unwrap_or([0.0, 1.0]);
+        let value = low + share * (high - low);
+        let mut carried = vec![joint.child];
+        for next in &model.joints[j + 1..] {
+            if carried.contains(&next.parent) {
+                carried.push(next.child);
+            }
+        }
+        for body in carried {
+            for visual in &mut model.bodies[body].visuals {
+                for p in &mut visual.mesh.positions {
+                    let from: [f64; 3] = std::array::from_fn(|k| f64::from(p[k]) - joint.origin[k]);
+                    let to = match joint.kind {
+                        JointKind::Prismatic => std::array::from_fn(|k| from[k] + value * joint.axis[k]),
+                        _ => turned(from, joint.axis, value),
+                    };
+                    *p = std::array::from_fn(|k| (to[k] + joint.origin[k]) as f32);
+                }
+                for n in &mut visual.mesh.normals {
+                    if joint.kind != JointKind::Prismatic {
+                        *n = turned(n.map(f64::from), joint.axis, value).map(|v| v as f32);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Returns a vector turned about a unit axis.
+fn turned(v: [f64; 3], axis: [f64; 3], angle: f64) -> [f64; 3] {
+    let (sin, cos) = angle.sin_cos();
+    let dot: f64 = (0..3).map(|k| v[k] * axis[k]).sum();
+    let cross = |k: usize| axis[(k + 1) % 3] * v[(k + 2) % 3] - axis[(k + 2) % 3] * v[(k + 1) % 3];
+    std::array::from_fn(|k| v[k] * cos + cross(k) * sin + axis[k] * dot * (1.0 - cos))
 }
 
 /// Returns the lists called `key` of every TOML file of a folder whose name begins with `prefix`.
