@@ -186,7 +186,9 @@ impl Database {
                 return Err(d3dgen_store::Error::Cancelled.into());
             }
             let problems = record.annotation.check();
-            damage.extend(problems.into_iter().map(|p| Damage { place: format!("asset {id} {}", p.path), reason: p.message }));
+            damage.extend(
+                problems.into_iter().map(|p| Damage { place: format!("asset {id} {}", p.path), reason: p.message }),
+            );
             if let Some(hash) = record.model {
                 if let Err(error) = files::read(&self.files_dir(), &hash) {
                     damage.push(Damage { place: format!("asset {id}"), reason: error.to_string() });

@@ -3,23 +3,25 @@
 //!
 //! | module | what |
 //! |---|---|
+//! | [`readers`], [`inspect`] | the files of other programs, and one line about each |
 //! | [`annotation`] | what is known of an asset, and how; ASA files |
 //! | [`catalog`] | what a thing can be: the objects of all domains under all their names |
-//! | [`annotate`] | what a model is, by rules |
-//! | [`library`] | the assets that are shipped and made when needed |
-//! | [`readers`] | the files of other programs |
-//! | [`inspect`] | one line about a file |
-//! | [`search`] | finding assets by what they are for |
-//! | [`measure`] | what can be measured on its geometry |
 //! | [`plausibility`] | repair of lying units and axes |
+//! | [`measure`], [`annotate`] | what a model is, by its geometry, its names and rules |
+//! | [`library`] | the assets that are shipped and made when needed |
+//! | [`database`], [`ingest`] | assets that are kept, and how folders of models become such |
+//! | [`search`] | finding assets by what they are for |
 
 pub mod annotate;
 pub mod annotation;
 pub mod catalog;
+pub mod database;
 pub mod error;
+pub mod ingest;
 pub mod inspect;
 pub mod library;
 pub mod measure;
+mod moved;
 pub mod plausibility;
 pub mod readers;
 #[cfg(test)]

@@ -1,12 +1,12 @@
-//! What is stored under which key.
+//! What is stored under which key. The tables of the knowledge base may be in the same store.
 //!
 //! | table | key | payload |
 //! |---|---|---|
 //! | `asset` | asset id | [`AssetRecord`] |
-//! | `content` | digest of the source | asset id |
-//! | `path` | path below the folder that was ingested | [`PathRecord`] |
-//! | `removed` | object id | [`RemovedRecord`] |
-//! | `change` | ten digits | [`Change`] |
+//! | `asset_content` | digest of the source | asset id |
+//! | `asset_path` | path below the folder that was ingested | [`PathRecord`] |
+//! | `asset_removed` | object id | [`RemovedRecord`] |
+//! | `asset_change` | ten digits | [`Change`] |
 
 use std::ops::ControlFlow;
 
@@ -18,10 +18,10 @@ use crate::annotation::Annotation;
 use crate::error::Error;
 
 pub(super) const ASSETS: &str = "asset";
-pub(super) const CONTENTS: &str = "content";
-pub(super) const PATHS: &str = "path";
-pub(super) const REMOVED: &str = "removed";
-pub(super) const CHANGES: &str = "change";
+pub(super) const CONTENTS: &str = "asset_content";
+pub(super) const PATHS: &str = "asset_path";
+pub(super) const REMOVED: &str = "asset_removed";
+pub(super) const CHANGES: &str = "asset_change";
 
 /// An asset that is kept.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -9,8 +9,8 @@ use d3dgen_store::Batch;
 use super::Database;
 use super::files;
 use super::records::{
-    ASSETS, AssetRecord, CHANGES, CONTENTS, Change, Kind, PATHS, PathRecord, Provenance, REMOVED, RemovedRecord, encode,
-    get,
+    ASSETS, AssetRecord, CHANGES, CONTENTS, Change, Kind, PATHS, PathRecord, Provenance, REMOVED, RemovedRecord,
+    encode, get,
 };
 use crate::annotation::{Annotation, Origin};
 use crate::error::Error;
@@ -147,7 +147,9 @@ impl Database {
     pub fn restore(&self, objects: &[String], by: &Provenance) -> Result<(), Error> {
         let seq = self.next_change()?;
         let mut batch = Batch::new();
-        objects.iter().for_each(|object| drop(batch.delete(REMOVED, object.as_str())));
+        for object in objects {
+            batch.delete(REMOVED, object.as_str());
+        }
         self.finish(batch, Change { seq, kind: Kind::Restore, provenance: by.clone(), assets: objects.to_vec() })
     }
 
