@@ -67,6 +67,14 @@ impl Registry {
         true
     }
 
+    /// Gives a domain other objects than it brings; false when no such domain is registered.
+    pub fn set_domain(&mut self, domain: Domain) -> bool {
+        let Some(at) = self.plugins.iter().position(|p| p.id() == domain.id) else { return false };
+        let rules = self.plugins.remove(at);
+        self.plugins.insert(at, Box::new(OtherObjects { rules, domain }));
+        true
+    }
+
     /// Returns the domain with this id.
     pub fn get(&self, id: &str) -> Option<&dyn Plugin> {
         self.iter().find(|p| p.id() == id)
@@ -75,6 +83,26 @@ impl Registry {
     /// Returns all domains in order.
     pub fn iter(&self) -> impl Iterator<Item = &dyn Plugin> {
         self.plugins.iter().map(AsRef::as_ref)
+    }
+}
+
+/// A domain whose objects come from elsewhere.
+struct OtherObjects {
+    rules: Box<dyn Plugin>,
+    domain: Domain,
+}
+
+impl Plugin for OtherObjects {
+    fn id(&self) -> &str {
+        &self.domain.id
+    }
+
+    fn domain(&self) -> &Domain {
+        &self.domain
+    }
+
+    fn knowledge(&self) -> &KnowledgeBase {
+        self.rules.knowledge()
     }
 }
 

@@ -2,6 +2,7 @@
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on panics where it stands")]
 
 mod arrows;
+mod assets;
 mod documents;
 mod domain_guide;
 mod errors;

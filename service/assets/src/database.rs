@@ -136,6 +136,14 @@ impl Database {
         Ok(get::<PathRecord>(&self.store.view()?, PATHS, path)?.map(|r| (r.hash, r.asset_id)))
     }
 
+    /// Returns true when no asset is kept and none of the library removed.
+    ///
+    /// # Errors
+    /// `Store`.
+    pub fn is_empty(&self) -> Result<bool, Error> {
+        Ok(self.store.count(ASSETS)? == 0 && self.store.count(REMOVED)? == 0)
+    }
+
     /// Returns the changes, oldest first.
     ///
     /// # Errors

@@ -11,6 +11,7 @@
 //! | [`library`] | the assets that are shipped and made when needed |
 //! | [`database`], [`ingest`] | assets that are kept, and how folders of models become such |
 //! | [`search`] | finding assets by what they are for |
+//! | [`stock`] | which assets stand for the objects of a domain in worlds |
 
 pub mod annotate;
 pub mod annotation;
@@ -27,6 +28,7 @@ pub mod readers;
 #[cfg(test)]
 mod sample;
 pub mod search;
+pub mod stock;
 pub mod words;
 
 pub use error::Error;

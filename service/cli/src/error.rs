@@ -63,6 +63,7 @@ impl Error {
             Self::Unsound(_) => 1,
             Self::Interrupted
             | Self::Knowledge(d3dgen_knowledge::Error::Store(d3dgen_store::Error::Cancelled))
+            | Self::Assets(d3dgen_assets::Error::Store(d3dgen_store::Error::Cancelled))
             | Self::Stage(d3dgen_pipeline::Error::Cancelled) => 130,
             _ => 2,
         }

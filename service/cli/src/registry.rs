@@ -18,7 +18,7 @@ pub struct RegistryArgs {
 }
 
 impl RegistryArgs {
-    /// Returns the built-in domains with those of the folders added, with the rules that the knowledge database has
+    /// Returns the built-in domains with those of the folders added, with the rules and the assets that the database has
     /// changed.
     ///
     /// # Errors
@@ -30,6 +30,7 @@ impl RegistryArgs {
         let own_rules: Vec<String> =
             folders.filter(|p| !p.knowledge().references.is_empty()).map(|p| p.id().to_owned()).collect();
         self.store.overlay(&mut registry, &own_rules)?;
+        crate::assets::stock(&mut registry, &self.store)?;
         Ok(registry)
     }
 

@@ -72,7 +72,7 @@ pub(super) fn judge(a: Annotation, hit: &Hit, question: &Question, query: &Searc
 
 /// Returns how much of the question one name of the asset is, and that name: the whole head counts fully.
 fn named(question: &Question, a: &Annotation, object: Option<&CatalogObject>) -> Option<(f64, String)> {
-    let own: Vec<String> = words::split(&a.name).iter().map(|w| words::singular(w)).collect();
+    let own = Question::plain(&a.name).words;
     let head = question.words.get(..question.head).unwrap_or_default();
     let terms = object.map(CatalogObject::terms).unwrap_or_default();
     let mut best: Option<(f64, String)> = None;

@@ -4,13 +4,18 @@ use std::io::Write;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
+use d3dgen_assets::annotation::Origin;
+use d3dgen_assets::catalog::Catalog;
+use d3dgen_assets::ingest::{Read, annotate_file, declared};
 use d3dgen_assets::inspect::line;
 use d3dgen_assets::readers::{Bounds, ReadModel, Refusal};
 use serde_json::Value;
 
+use super::common::World;
 use super::reader;
 use crate::error::Error;
 use crate::interrupt;
+use crate::registry::RegistryArgs;
 use crate::table::table;
 
 /// Arguments.
@@ -25,10 +30,13 @@ pub struct Args {
     /// Folder that bounds which other files a model may name; its own and a few above when left out
     #[arg(long, value_name = "DIR")]
     root: Option<PathBuf>,
+    #[command(flatten)]
+    registry: RegistryArgs,
 }
 
 impl Args {
     pub fn run(self) -> Result<(), Error> {
+        let world = World::load(&self.registry)?;
         let mut rows = Vec::new();
         let mut refused = Vec::new();
         let mut written = Ok(());
@@ -36,7 +44,7 @@ impl Args {
             let Some(file) = self.files.get(index) else { return ControlFlow::Break(()) };
             let name = file.display().to_string();
             if self.json {
-                let line = line(&name, &result, annotated(&result, file));
+                let line = line(&name, &result, annotated(&result, file, self.root.as_deref(), &world.catalog));
                 written = writeln!(std::io::stdout().lock(), "{line}");
             } else if let Ok(read) = &result {
                 rows.push(row(&name, read));
@@ -68,9 +76,14 @@ impl Args {
     }
 }
 
-/// Returns what plausibility and rules make of a model. Joined by the annotation; until then nothing.
-fn annotated(_result: &Result<ReadModel, Refusal>, _file: &Path) -> Value {
-    Value::Null
+/// Returns what plausibility and rules make of a model; nothing of one that is refused or shows nothing.
+fn annotated(result: &Result<ReadModel, Refusal>, file: &Path, root: Option<&Path>, catalog: &Catalog) -> Value {
+    let Ok(read) = result else { return Value::Null };
+    let path = file.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+    let origin = Origin::Ingested { path, hash: String::new() };
+    let read = Read { declared: declared(&read.facts), model: read.model.clone() };
+    let annotation = annotate_file(&read, file, root, None, origin, catalog);
+    annotation.map_or(Value::Null, |a| serde_json::to_value(a).unwrap_or_default())
 }
 
 fn row(name: &str, read: &ReadModel) -> Vec<String> {

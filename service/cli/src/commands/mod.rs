@@ -48,6 +48,8 @@ pub enum Command {
     Knowledge(knowledge::Args),
     /// Look into files of 3D models, and look after the database of them
     Assets(crate::assets::Args),
+    /// Put a folder of models into the asset database; as `assets ingest`
+    Ingest(crate::assets::ingest::Command),
     /// Print a completion script for a shell
     Completions(completions::Args),
     /// Print the version, and the versions of the documents it reads
@@ -73,6 +75,7 @@ impl Command {
             Self::Research(args) => args.run(),
             Self::Knowledge(args) => args.run(),
             Self::Assets(args) => args.run(),
+            Self::Ingest(args) => args.run(),
             Self::Completions(args) => args.run(),
             Self::Version => version::run(),
         }

@@ -19,6 +19,21 @@ pub fn asset(domain: &Domain, object: &ObjectType) -> String {
     format!("{}/{}", camel(&domain.id), camel(&object.id))
 }
 
+/// Key of an object's `extra` under which the asset of a size stands, `asset 1600x800x740` in mm, with why it was chosen
+/// behind a colon; and the key that says why an object is made because no asset fits.
+const ASSET: &str = "asset ";
+const MADE: &str = "made";
+
+/// Returns the model reference of an object of a size, mm, and why it is that one, where a database has a say.
+fn stocked(domain: &Domain, object: &ObjectType, [w, d, h]: [i32; 3]) -> (String, Option<String>) {
+    let own = object.extra.get(&format!("{ASSET}{w}x{d}x{h}")).and_then(|text| text.split_once(": "));
+    match (own, object.extra.get(MADE)) {
+        (Some((asset_id, why)), _) => (asset_id.to_owned(), Some(format!("asset {asset_id}: {why}"))),
+        (None, Some(why)) => (asset(domain, object), Some(format!("made: {why}"))),
+        (None, None) => (asset(domain, object), None),
+    }
+}
+
 fn camel(id: &str) -> String {
     let capital = |word: &str| {
         let mut chars = word.chars();
@@ -76,11 +91,12 @@ pub(super) fn placements(
                 (None, Some((i, k))) => ids.get(i).and_then(|parts| parts.get(k)),
                 (None, None) => None,
             };
+            let (asset, why) = stocked(domain, part.object, [w, d, solid.z1 - solid.z0]);
             out.push(Placement {
                 placement_id: own[k].clone(),
                 room_id: room_id.to_owned(),
                 object: part.object.id.clone(),
-                asset: asset(domain, part.object),
+                asset,
                 pose: Pose {
                     x: to_mm(center.x),
                     y: to_mm(center.y),
@@ -95,7 +111,7 @@ pub(super) fn placements(
                 },
                 support: on.cloned(),
                 group: group.clone(),
-                rule: rule.clone(),
+                rule: why.map_or_else(|| rule.clone(), |why| format!("{rule}; {why}")),
                 locked: false,
             });
         }

@@ -31,5 +31,9 @@ pub fn measure(c: &Context) -> BTreeMap<String, f64> {
         ("free_component", c.reach().largest_share),
         ("unplaced_wishes", c.world.placements.unplaced.len() as f64),
     ];
-    figures.map(|(name, value)| (name.to_owned(), (value * 1000.0).round() / 1000.0)).into()
+    // Only where a database of assets has a say: objects that are its assets, and such as are made for want of one.
+    let told = |what: &str| c.objects.iter().filter(|o| o.placement.rule.contains(what)).count() as f64;
+    let stock = [("objects_from_database", told("; asset ")), ("objects_made_for_want_of_an_asset", told("; made: "))];
+    let figures = figures.into_iter().chain(stock.into_iter().filter(|(_, count)| *count > 0.0));
+    figures.map(|(name, value)| (name.to_owned(), (value * 1000.0).round() / 1000.0)).collect()
 }
