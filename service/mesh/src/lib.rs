@@ -5,8 +5,10 @@
 
 pub mod builds;
 pub mod error;
+pub mod mass;
 pub mod model3d;
 pub mod picture;
+pub mod writers;
 
 mod affine;
 mod surface;
