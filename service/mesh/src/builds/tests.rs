@@ -182,3 +182,18 @@ fn shipped_builds_have_no_problem() {
         .collect();
     assert_eq!(problems, Vec::<String>::new());
 }
+
+#[test]
+fn a_shipped_build_at_an_odd_size_has_a_stand_in_and_an_own_one_has_not() {
+    let shipped = Library::shipped();
+    let odd = [0.002, 20.0, 0.002];
+    for shape in Shape::all() {
+        let object = object(json!({"shape": shape.name()}));
+        let model = generate(shipped, &object, odd, 0).unwrap_or_else(|e| panic!("{e}"));
+        assert_eq!(model.bounds().map(|[min, max]| (max[1] - min[1]).round()), Some(20.0));
+    }
+    let narrow = json!([{"id": "thing", "kind": "x",
+        "parts": [{"solid": "box", "x": [0.1, "w - 0.1"], "y": [0, "d"], "z": [0, "h"]}]}]);
+    let own = shipped.with(&serde_json::from_value::<Vec<Build>>(narrow).unwrap());
+    assert!(matches!(generate(&own, &object(json!({})), odd, 0), Err(Error::Build { .. })));
+}
