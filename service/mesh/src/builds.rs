@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
 
 use d3dgen_model::document::Problem;
-use d3dgen_model::domain::{Build, ObjectType, Shape};
+use d3dgen_model::domain::{Build, Domain, ObjectType, Shape};
 
 use crate::{Error, Model3d};
 use solids::Detail;
@@ -185,6 +185,28 @@ pub fn generate_by(build: &Build, object: &ObjectType, size_m: [f64; 3], seed: u
         place: "parts".to_owned(),
         reason: format!("gives {triangles} triangles, the limit is {MOST_TRIANGLES}; use fewer or plainer parts"),
     })
+}
+
+/// Returns every object of a domain whose model cannot be made, by its path in the domain.
+///
+/// Only builds of the domain itself and those its objects name are tried: shipped ones have stand-ins.
+pub fn problems(domain: &Domain) -> Vec<Problem> {
+    let library = Library::shipped().with(&domain.builds);
+    let mut problems = Vec::new();
+    for (i, object) in domain.objects.iter().enumerate() {
+        match library.of(object) {
+            Err(error) => problems.push(Problem::new(format!("/objects/{i}/build"), error.to_string())),
+            Ok(build) if object.build.is_none() && library.is_shipped(&build.id) => {}
+            Ok(build) => {
+                for (j, size) in object.sizes_m.iter().enumerate() {
+                    if let Err(error) = generate_by(build, object, *size, 0) {
+                        problems.push(Problem::new(format!("/objects/{i}/sizes_m/{j}"), error.to_string()));
+                    }
+                }
+            }
+        }
+    }
+    problems
 }
 
 fn size_text(size: [f64; 3]) -> String {
