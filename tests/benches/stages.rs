@@ -10,6 +10,7 @@ use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 use d3dgen_export::exporters::{self, File, plan};
+use d3dgen_export::models::NothingKept;
 use d3dgen_model::document::Document;
 use d3dgen_pipeline::generate::{Event, Generated, Settings, Stage, generate_world};
 use d3dgen_pipeline::scene_graph::Request;
@@ -100,8 +101,10 @@ fn make(domain: &str, prompt: &str, seed: u64, registry: &Registry, folder: &Pat
 fn write(made: &Generated, registry: &Registry, folder: &Path) {
     let world = &made.world;
     let domain = registry.get(&world.scene_graph.domain).expect("the world is of this domain").domain();
-    let mut files =
-        exporters::get("arena").expect("arena is shipped").export(world, domain).expect("it can be exported");
+    let mut files = exporters::get("arena")
+        .expect("arena is shipped")
+        .export(world, domain, &NothingKept)
+        .expect("it can be exported");
     files.push(File::new("plan.svg", plan::svg(world, domain)));
     let documents = [
         ("world.json", world.to_json()),

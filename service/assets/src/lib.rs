@@ -12,6 +12,7 @@
 //! | [`database`], [`ingest`] | assets that are kept, and how folders of models become such |
 //! | [`search`] | finding assets by what they are for |
 //! | [`stock`] | which assets stand for the objects of a domain in worlds |
+//! | [`placed`] | their models as worlds place them |
 
 pub mod annotate;
 pub mod annotation;
@@ -23,6 +24,7 @@ pub mod inspect;
 pub mod library;
 pub mod measure;
 mod moved;
+pub mod placed;
 pub mod plausibility;
 pub mod readers;
 #[cfg(test)]

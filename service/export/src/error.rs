@@ -16,6 +16,14 @@ pub enum Error {
     /// The model of an object could not be made.
     #[error(transparent)]
     Model(#[from] d3dgen_mesh::Error),
+    /// A database of assets could not give a model.
+    #[error("{asset}: {reason}")]
+    Kept {
+        /// Its reference.
+        asset: String,
+        /// What went wrong, and what to do.
+        reason: String,
+    },
     /// The world is larger than the pictures of this format may be.
     #[error("{picture} would be {width} x {height} px, the limit is {limit} px a side")]
     TooLarge {

@@ -1,6 +1,7 @@
-//! The folder of a generated model as Arena and others read it: ASA annotation, USDZ, GLB, SDF with its meshes.
+//! The folder of a model as Arena and others read it: ASA annotation, USDZ, GLB, SDF with its meshes. A model is made of
+//! a build, or one that an asset database keeps.
 
-use d3dgen_mesh::{Library, generate, writers};
+use d3dgen_mesh::{Library, Model3d, generate, writers};
 use d3dgen_model::domain::{Mount, ObjectType};
 use serde_json::{Value, json};
 
@@ -25,19 +26,72 @@ pub struct ModelRequest<'a> {
     pub seed: u64,
 }
 
+/// A model that is kept, not made.
+#[derive(Debug, Clone, PartialEq)]
+pub struct KeptModel {
+    /// The model, its front at -y, with masses and collision shapes.
+    pub model: Model3d,
+    /// What it is, for people.
+    pub description: String,
+    /// Tags of the ASA standard, `key::value`.
+    pub tags: Vec<String>,
+}
+
+/// The models that an asset database keeps.
+pub trait KeptModels: Sync {
+    /// Returns the model of an asset; none when it is to be made of a build.
+    ///
+    /// # Errors
+    /// `Kept` when the database cannot give it.
+    fn model(&self, asset_id: &str) -> Result<Option<KeptModel>, Error>;
+}
+
+/// No database: every model is made.
+pub struct NothingKept;
+
+impl KeptModels for NothingKept {
+    fn model(&self, _: &str) -> Result<Option<KeptModel>, Error> {
+        Ok(None)
+    }
+}
+
 /// Makes a model and returns its files, with paths that begin `<Domain>/Object/<Name>/`.
 ///
 /// # Errors
 /// `Model` when its build cannot be made at this size.
 pub fn files(library: &Library, request: &ModelRequest<'_>) -> Result<Vec<File>, Error> {
-    let name = request.name;
-    let mut model = generate(library, request.object, request.size_m, request.seed)?;
+    let model = generate(library, request.object, request.size_m, request.seed)?;
+    let kind = library.of(request.object).map_or("", |b| b.kind.as_str());
+    folder(request.domain, request.name, model, &annotation(request, kind))
+}
+
+/// Returns the files of a kept model, as [`files`] names them.
+///
+/// # Errors
+/// `Model` when it holds what no file can.
+pub fn kept_files(domain: &str, name: &str, kept: KeptModel) -> Result<Vec<File>, Error> {
+    let round = |v: f64| (v * 1e4).round() / 1e4;
+    let [min, max] = kept.model.bounds().unwrap_or_default();
+    let span = |i: usize| [round(min[i]), round(max[i])];
+    let annotation = json!({
+        "asa": 1,
+        "bounding_box": [span(0), span(1), span(2)],
+        "desc": kept.description,
+        "face": "-y",
+        "name": name,
+        "note": "Kept in the asset database of d3dgen",
+        "path": format!("Object/{name}"),
+        "tags": kept.tags,
+    });
+    folder(domain, name, kept.model, &annotation)
+}
+
+fn folder(domain: &str, name: &str, mut model: Model3d, annotation: &Value) -> Result<Vec<File>, Error> {
     // References may hold dots and dashes, names inside the files may not.
     model.name = name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
-    let kind = library.of(request.object).map_or("", |b| b.kind.as_str());
-    let folder = format!("{}/Object/{name}", request.domain);
+    let folder = format!("{domain}/Object/{name}");
     let mut files = vec![
-        File::new(format!("{folder}/annotation.yaml"), yaml::to_string(&annotation(request, kind))),
+        File::new(format!("{folder}/annotation.yaml"), yaml::to_string(annotation)),
         File::new(format!("{folder}/{name}.usdz"), writers::usdz(&model)?),
         File::new(format!("{folder}/{name}.glb"), writers::glb(&model)?),
     ];

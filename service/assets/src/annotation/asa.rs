@@ -131,6 +131,14 @@ pub fn write(annotation: &Annotation) -> String {
     let _ = writeln!(out, "face: {}", quoted(annotation.front.axis.name()));
     let name = annotation.asset_id.rsplit('/').next().unwrap_or_default();
     let _ = writeln!(out, "name: {name}\nnote: {}\npath: Object/{name}\ntags:", quoted(&note(annotation)));
+    for tag in tags(annotation) {
+        let _ = writeln!(out, "- {tag}");
+    }
+    out
+}
+
+/// Returns the tags of the ASA standard, `key::value`.
+pub fn tags(annotation: &Annotation) -> Vec<String> {
     let mut tags: Vec<String> = Vec::new();
     let mut add = |key: &str, value: &str| {
         let tag = format!("{key}::{}", word(value));
@@ -151,10 +159,7 @@ pub fn write(annotation: &Annotation) -> String {
             None => add("tag", tag),
         }
     }
-    for tag in tags {
-        let _ = writeln!(out, "- {tag}");
-    }
-    out
+    tags
 }
 
 /// Returns the word that ASA uses.

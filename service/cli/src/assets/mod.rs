@@ -12,8 +12,12 @@ mod sheet;
 mod show;
 
 use clap::Subcommand;
+use d3dgen_assets::annotation::asa;
 use d3dgen_assets::catalog::Catalog;
+use d3dgen_assets::database::Database;
+use d3dgen_assets::placed::placed;
 use d3dgen_assets::stock::Stock;
+use d3dgen_export::models::{KeptModel, KeptModels};
 use d3dgen_model::domain::Domain;
 use d3dgen_plugins::Registry;
 
@@ -38,6 +42,32 @@ pub fn stock(registry: &mut Registry, store: &StoreArgs) -> Result<(), Error> {
         }
     }
     Ok(())
+}
+
+/// The models of the database, for the files of worlds.
+pub struct Kept(Option<Database>);
+
+impl Kept {
+    /// Opens the database when there is one.
+    ///
+    /// # Errors
+    /// `Assets` when it is damaged.
+    pub fn of(store: &StoreArgs) -> Result<Self, Error> {
+        common::if_there(store).map(Self)
+    }
+}
+
+impl KeptModels for Kept {
+    fn model(&self, asset_id: &str) -> Result<Option<KeptModel>, d3dgen_export::Error> {
+        let Some(database) = &self.0 else { return Ok(None) };
+        let read = || -> Result<Option<KeptModel>, d3dgen_assets::Error> {
+            let Some(annotation) = database.get(asset_id)? else { return Ok(None) };
+            let Some(model) = database.model(asset_id)? else { return Ok(None) };
+            let model = placed(model, &annotation);
+            Ok(Some(KeptModel { model, tags: asa::tags(&annotation), description: annotation.description }))
+        };
+        read().map_err(|e| d3dgen_export::Error::Kept { asset: asset_id.to_owned(), reason: e.to_string() })
+    }
 }
 
 /// Arguments.

@@ -27,7 +27,7 @@ pub struct Args {
 
 impl Args {
     pub fn run(self) -> Result<(), Error> {
-        let formats = self.formats.chosen()?;
+        let formats = self.formats.chosen(&self.registry.store)?;
         let own = if self.world.is_dir() { Some(self.world.as_path()) } else { self.world.parent() };
         let folder = match (&self.out, own) {
             (Some(out), _) => out.clone(),

@@ -4,6 +4,8 @@ use d3dgen_export::exporters::{self, File, plan};
 use d3dgen_model::domain::Domain;
 use d3dgen_model::world::World;
 
+use crate::assets::Kept;
+use crate::database::StoreArgs;
 use crate::error::Error;
 use crate::interrupt;
 use crate::output::Output;
@@ -23,14 +25,15 @@ pub struct FormatArgs {
 pub struct Formats {
     names: Vec<&'static str>,
     png: bool,
+    kept: Kept,
 }
 
 impl FormatArgs {
-    /// Returns the formats, each once.
+    /// Returns the formats, each once, with the models of the database of assets.
     ///
     /// # Errors
-    /// `Input` with the formats there are.
-    pub fn chosen(&self) -> Result<Formats, Error> {
+    /// `Input` with the formats there are; `Assets` when the database is damaged.
+    pub fn chosen(&self, store: &StoreArgs) -> Result<Formats, Error> {
         let mut names = Vec::new();
         for name in &self.format {
             let exporter = exporters::get(name.trim()).ok_or_else(|| {
@@ -41,7 +44,7 @@ impl FormatArgs {
                 names.push(exporter.name());
             }
         }
-        Ok(Formats { names, png: !self.no_png })
+        Ok(Formats { names, png: !self.no_png, kept: Kept::of(store)? })
     }
 }
 
@@ -56,7 +59,7 @@ impl Formats {
             let files = if exporter.name() == "plan" && !self.png {
                 vec![File::new("plan.svg", plan::svg(world, domain))] // the picture is never drawn
             } else {
-                exporter.export(world, domain)?
+                exporter.export(world, domain, &self.kept)?
             };
             for File { path, bytes } in files {
                 output.write(&path, &bytes)?;

@@ -56,7 +56,7 @@ struct Job {
 impl Args {
     pub fn run(self) -> Result<(), Error> {
         let registry = self.registry.load()?;
-        let (formats, flag) = (self.formats.chosen()?, interrupt::flag());
+        let (formats, flag) = (self.formats.chosen(&self.registry.store)?, interrupt::flag());
         let maker = one::Maker { registry, formats, allow_conflicts: self.allow_conflicts, flag };
         let request = self.request.request(&prompt(&self.prompt)?);
         if self.count == 1 {

@@ -43,7 +43,7 @@ pub struct Args {
 
 impl Args {
     pub fn run(self) -> Result<(), Error> {
-        let formats = self.formats.chosen()?;
+        let formats = self.formats.chosen(&self.registry.store)?;
         let graph: SceneGraph = document(&self.graph)?;
         let registry = self.registry.load()?;
         let plugin = domain(&registry, &graph.domain)?;

@@ -12,7 +12,7 @@ use d3dgen_model::world::World;
 use serde_json::{Value, json};
 
 use super::{Exporter, File};
-use crate::models::snake;
+use crate::models::{KeptModels, snake};
 use crate::{Error, yaml};
 
 /// Writes the Arena bundle.
@@ -27,7 +27,7 @@ impl Exporter for Arena {
         "Arena world folder: world.yaml, occupancy map, default scenario and USDZ, GLB and SDF models of the objects"
     }
 
-    fn export(&self, world: &World, domain: &Domain) -> Result<Vec<File>, Error> {
+    fn export(&self, world: &World, domain: &Domain, kept: &dyn KeptModels) -> Result<Vec<File>, Error> {
         if snake(&world.name) != world.name || world.name.is_empty() {
             let reason = "a world's name is of lower-case letters, digits and underscores".to_owned();
             return Err(Error::Unsupported { exporter: "arena", subject: world.name.clone(), reason });
@@ -40,7 +40,7 @@ impl Exporter for Arena {
             File::new(format!("{root}/0/map.yaml"), yaml::to_string(&map::yaml(&world.floorplan))),
             File::new(format!("{root}/scenarios/default/scenario.yaml"), yaml::to_string(&scenario::scenario(world))),
         ];
-        files.extend(models.files(&format!("{root}/assets"), domain)?);
+        files.extend(models.files(&format!("{root}/assets"), domain, kept)?);
         files.sort_by(|a, b| a.path.cmp(&b.path));
         Ok(files)
     }

@@ -7,6 +7,7 @@ use d3dgen_model::domain::Domain;
 use d3dgen_model::world::World;
 
 use crate::Error;
+use crate::models::KeptModels;
 
 pub use arena::Arena;
 pub use plan::Plan;
@@ -35,11 +36,12 @@ pub trait Exporter: Sync {
     /// Returns one sentence on what it writes and who reads it.
     fn about(&self) -> &'static str;
 
-    /// Returns the files, sorted by path; a pure function of world and domain.
+    /// Returns the files, sorted by path; a pure function of world, domain and kept models.
     ///
     /// # Errors
-    /// `Unsupported` or `TooLarge` when the format cannot hold this world, `Picture` when drawing fails.
-    fn export(&self, world: &World, domain: &Domain) -> Result<Vec<File>, Error>;
+    /// `Unsupported` or `TooLarge` when the format cannot hold this world, `Model` and `Kept` when a model of it cannot be
+    /// had, `Picture` when drawing fails.
+    fn export(&self, world: &World, domain: &Domain, kept: &dyn KeptModels) -> Result<Vec<File>, Error>;
 }
 
 /// Returns every exporter, the default ones first.
@@ -55,6 +57,7 @@ pub fn get(name: &str) -> Option<&'static dyn Exporter> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::models::NothingKept;
     use crate::sample;
 
     #[test]
@@ -72,9 +75,9 @@ mod tests {
     fn every_exporter_is_deterministic_and_writes_relative_sorted_paths() {
         let (world, domain) = (sample::world(), sample::domain());
         for exporter in all() {
-            let files = exporter.export(&world, &domain).unwrap();
+            let files = exporter.export(&world, &domain, &NothingKept).unwrap();
             assert!(!files.is_empty());
-            assert_eq!(files, exporter.export(&world, &domain).unwrap());
+            assert_eq!(files, exporter.export(&world, &domain, &NothingKept).unwrap());
             assert!(files.iter().all(|f| !f.path.starts_with('/') && !f.path.contains("..")));
             assert!(files.windows(2).all(|p| p[0].path < p[1].path), "{} sorts its files", exporter.name());
         }

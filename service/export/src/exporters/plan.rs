@@ -23,6 +23,7 @@ use resvg::{tiny_skia, usvg};
 
 use super::{Exporter, File};
 use crate::Error;
+use crate::models::KeptModels;
 use building::Sides;
 use page::{Frame, Page, Path};
 
@@ -56,7 +57,7 @@ impl Exporter for Plan {
         "an architect's plan to look at and print: plan.svg and plan.png"
     }
 
-    fn export(&self, world: &World, domain: &Domain) -> Result<Vec<File>, Error> {
+    fn export(&self, world: &World, domain: &Domain, _: &dyn KeptModels) -> Result<Vec<File>, Error> {
         let svg = svg(world, domain);
         let png = png(&svg)?;
         Ok(vec![File::new("plan.png", png), File::new("plan.svg", svg)])

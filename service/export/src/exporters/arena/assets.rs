@@ -9,7 +9,7 @@ use d3dgen_model::world::World;
 
 use crate::Error;
 use crate::exporters::File;
-use crate::models::{self, ModelRequest};
+use crate::models::{self, KeptModels, ModelRequest};
 
 /// Size in whole millimeters: what tells two models of one asset apart.
 type SizeMm = [i64; 3];
@@ -75,8 +75,8 @@ impl Models {
     /// Returns the files of every model under `root`.
     ///
     /// # Errors
-    /// `Model` when a build of the domain cannot be made.
-    pub fn files(&self, root: &str, domain: &Domain) -> Result<Vec<File>, Error> {
+    /// `Model` when a build of the domain cannot be made, `Kept` when the database cannot give a model.
+    pub fn files(&self, root: &str, domain: &Domain, kept: &dyn KeptModels) -> Result<Vec<File>, Error> {
         let own;
         let library = if domain.builds.is_empty() {
             Library::shipped()
@@ -85,15 +85,19 @@ impl Models {
             &own
         };
         let mut files = Vec::new();
-        for model in self.by_asset.values() {
-            files.extend(model.files(root, library, domain)?);
+        for ((asset, _), model) in &self.by_asset {
+            let own = match kept.model(asset)? {
+                Some(kept) => models::kept_files(&model.domain, &model.name, kept)?,
+                None => model.files(library, domain)?,
+            };
+            files.extend(own.into_iter().map(|f| File { path: format!("{root}/{}", f.path), ..f }));
         }
         Ok(files)
     }
 }
 
 impl Model {
-    fn files(&self, root: &str, library: &Library, domain: &Domain) -> Result<Vec<File>, Error> {
+    fn files(&self, library: &Library, domain: &Domain) -> Result<Vec<File>, Error> {
         let unknown;
         let object = match domain.object(&self.object) {
             Some(object) => object,
@@ -110,8 +114,7 @@ impl Model {
             mount: self.mount,
             seed: 0,
         };
-        let files = models::files(library, &request)?;
-        Ok(files.into_iter().map(|f| File { path: format!("{root}/{}", f.path), ..f }).collect())
+        models::files(library, &request)
     }
 }
 

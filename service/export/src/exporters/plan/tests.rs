@@ -1,9 +1,10 @@
 use super::*;
+use crate::models::NothingKept;
 use crate::sample;
 
 #[test]
 fn the_picture_decodes_and_shows_the_building() {
-    let files = Plan.export(&sample::world(), &sample::domain()).unwrap();
+    let files = Plan.export(&sample::world(), &sample::domain(), &NothingKept).unwrap();
     assert_eq!(files[0].path, "plan.png");
     let mut reader = png::Decoder::new(std::io::Cursor::new(&files[0].bytes)).read_info().unwrap();
     let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
