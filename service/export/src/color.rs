@@ -13,16 +13,6 @@ impl Rgb {
             .map_or(Self([0.8, 0.8, 0.8]), |c| Self([c.red, c.green, c.blue].map(|v| f64::from(v) / 255.0)))
     }
 
-    /// Returns the mix with another color: 0 keeps this one, 1 gives the other.
-    pub fn mix(self, other: Self, share: f64) -> Self {
-        Self(std::array::from_fn(|i| self.0[i] * (1.0 - share) + other.0[i] * share))
-    }
-
-    /// Returns the color as linear light, which USD expects.
-    pub fn to_linear(self) -> [f64; 3] {
-        self.0.map(|v| if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) })
-    }
-
     /// Returns the nearest word of the ASA color vocabulary.
     pub fn word(self) -> &'static str {
         const WORDS: [(&str, [f64; 3]); 14] = [

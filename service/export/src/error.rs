@@ -13,6 +13,9 @@ pub enum Error {
         /// What the format lacks, and what would be right.
         reason: String,
     },
+    /// The model of an object could not be made.
+    #[error(transparent)]
+    Model(#[from] d3dgen_mesh::Error),
     /// The world is larger than the pictures of this format may be.
     #[error("{picture} would be {width} x {height} px, the limit is {limit} px a side")]
     TooLarge {

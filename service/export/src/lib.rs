@@ -5,7 +5,7 @@
 
 pub mod error;
 pub mod exporters;
-pub mod shapes;
+pub mod models;
 pub mod yaml;
 
 mod color;

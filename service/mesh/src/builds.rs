@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
 
 use d3dgen_model::document::Problem;
-use d3dgen_model::domain::{Build, ObjectType};
+use d3dgen_model::domain::{Build, Domain, ObjectType, Shape};
 
 use crate::{Error, Model3d};
 use solids::Detail;
@@ -25,9 +25,22 @@ pub const MOST_TRIANGLES: usize = 5_000;
 /// The builds that objects can use.
 #[derive(Debug, Clone, Default)]
 pub struct Library {
-    builds: BTreeMap<String, Arc<Build>>,
+    builds: BTreeMap<String, Arc<Entry>>,
     /// Object id -> id of the build whose `for` lists it.
     by_object: BTreeMap<String, String>,
+}
+
+/// A build, read when it is first used: a world uses a few dozen of hundreds.
+#[derive(Debug)]
+struct Entry {
+    json: &'static str,
+    build: OnceLock<Build>,
+}
+
+impl Entry {
+    fn get(&self) -> &Build {
+        self.build.get_or_init(|| serde_json::from_str(self.json).expect("a test reads every shipped build"))
+    }
 }
 
 impl Library {
@@ -35,9 +48,17 @@ impl Library {
     pub fn shipped() -> &'static Self {
         static SHIPPED: OnceLock<Library> = OnceLock::new();
         SHIPPED.get_or_init(|| {
-            let text = include_str!(concat!(env!("OUT_DIR"), "/builds.json"));
-            let builds: Vec<Build> = serde_json::from_str(text).expect("a test reads every shipped build");
-            Self::default().with(&builds)
+            let mut library = Self::default();
+            // A line a build: id, the objects of its `for`, JSON.
+            for line in include_str!(concat!(env!("OUT_DIR"), "/builds.txt")).lines() {
+                let mut fields = line.splitn(3, '\t');
+                let (Some(id), Some(objects), Some(json)) = (fields.next(), fields.next(), fields.next()) else {
+                    continue;
+                };
+                library.builds.insert(id.to_owned(), Arc::new(Entry { json, build: OnceLock::new() }));
+                library.by_object.extend(objects.split_whitespace().map(|o| (o.to_owned(), id.to_owned())));
+            }
+            library
         })
     }
 
@@ -78,7 +99,7 @@ impl Library {
     pub fn with(&self, builds: &[Build]) -> Self {
         let mut library = self.clone();
         for build in builds {
-            library.builds.insert(build.id.clone(), Arc::new(build.clone()));
+            library.builds.insert(build.id.clone(), Arc::new(Entry { json: "", build: build.clone().into() }));
             for object in &build.objects {
                 library.by_object.insert(object.clone(), build.id.clone());
             }
@@ -88,12 +109,17 @@ impl Library {
 
     /// Returns the build with this id.
     pub fn get(&self, id: &str) -> Option<&Build> {
-        self.builds.get(id).map(AsRef::as_ref)
+        self.builds.get(id).map(|e| e.get())
+    }
+
+    /// Returns whether the build of this id is a shipped one.
+    fn is_shipped(&self, id: &str) -> bool {
+        self.builds.get(id).is_some_and(|e| !e.json.is_empty())
     }
 
     /// Returns every build, by id.
     pub fn builds(&self) -> impl Iterator<Item = &Build> {
-        self.builds.values().map(AsRef::as_ref)
+        self.builds.values().map(|e| e.get())
     }
 
     /// Returns the build of an object: the one it names, else that of its id, else one that lists it, else that of its
@@ -119,33 +145,68 @@ impl Library {
 /// Makes the model of an object at `[width, depth, height]`, m.
 ///
 /// The same library, object, size and seed give the same model. Its bounds are the size exactly, the origin is in the
-/// middle of the footprint, the front at -y.
+/// middle of the footprint, the front at -y. Where a shipped build cannot be made at a size it was not written for, the
+/// build of the object's shape stands in, then a plain box; a build that the object or its domain names must do.
 ///
 /// # Errors
 /// `NoBuild` when the object names no build there is, `Size` for a size out of range, `Build` with the part and field
 /// when the build cannot be made at this size.
 pub fn generate(library: &Library, object: &ObjectType, size_m: [f64; 3], seed: u64) -> Result<Model3d, Error> {
+    let build = library.of(object)?;
+    let made = generate_by(build, object, size_m, seed);
+    if made.is_ok() || object.build.is_some() || !library.is_shipped(&build.id) {
+        return made;
+    }
+    let stand_ins = [object.shape.name(), Shape::Box.name()].into_iter().filter_map(|id| library.get(id));
+    let mut others = stand_ins.filter(|b| b.id != build.id).map(|b| generate_by(b, object, size_m, seed));
+    others.find(Result::is_ok).unwrap_or(made)
+}
+
+/// Makes the model of an object by one build; as [`generate`] without stand-ins.
+///
+/// # Errors
+/// As [`generate`].
+pub fn generate_by(build: &Build, object: &ObjectType, size_m: [f64; 3], seed: u64) -> Result<Model3d, Error> {
     if size_m.iter().any(|v| !(0.001..=100.0).contains(v)) {
         return Err(Error::Size { object: object.id.clone(), size: size_text(size_m) });
     }
-    let build = library.of(object)?;
-    let mut made = None;
+    let mut triangles = 0;
     // Builds with many copies are cut more coarsely until they keep the budget.
     for detail in [Detail(1.0), Detail(0.6), Detail(0.4)] {
         let model = make::model(build, object, size_m, seed, detail)?;
-        let triangles = model.triangle_count();
+        triangles = model.triangle_count();
         if triangles <= MOST_TRIANGLES {
             return Ok(model);
         }
-        made = Some(triangles);
     }
-    let triangles = made.unwrap_or_default();
     Err(Error::Build {
         build: build.id.clone(),
         size: size_text(size_m),
         place: "parts".to_owned(),
         reason: format!("gives {triangles} triangles, the limit is {MOST_TRIANGLES}; use fewer or plainer parts"),
     })
+}
+
+/// Returns every object of a domain whose model cannot be made, by its path in the domain.
+///
+/// Only builds of the domain itself and those its objects name are tried: shipped ones have stand-ins.
+pub fn problems(domain: &Domain) -> Vec<Problem> {
+    let library = Library::shipped().with(&domain.builds);
+    let mut problems = Vec::new();
+    for (i, object) in domain.objects.iter().enumerate() {
+        match library.of(object) {
+            Err(error) => problems.push(Problem::new(format!("/objects/{i}/build"), error.to_string())),
+            Ok(build) if object.build.is_none() && library.is_shipped(&build.id) => {}
+            Ok(build) => {
+                for (j, size) in object.sizes_m.iter().enumerate() {
+                    if let Err(error) = generate_by(build, object, *size, 0) {
+                        problems.push(Problem::new(format!("/objects/{i}/sizes_m/{j}"), error.to_string()));
+                    }
+                }
+            }
+        }
+    }
+    problems
 }
 
 fn size_text(size: [f64; 3]) -> String {

@@ -5,12 +5,14 @@
 
 pub mod builds;
 pub mod error;
+pub mod mass;
 pub mod model3d;
 pub mod picture;
+pub mod writers;
 
 mod affine;
 mod surface;
 
-pub use builds::{Library, generate};
+pub use builds::{Library, generate, generate_by};
 pub use error::Error;
 pub use model3d::{Body, Collision, Joint, JointKind, Material, Mesh, Model3d, Texture, Visual};

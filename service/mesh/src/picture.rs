@@ -6,7 +6,8 @@
 mod raster;
 mod shade;
 
-use crate::{Error, Model3d};
+use crate::{Error, Material, Model3d};
+use shade::Light;
 
 /// A picture in memory.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -53,8 +54,10 @@ pub fn thumbnail(model: &Model3d, px: usize) -> Picture {
 /// Returns a square picture of a model.
 pub fn render(model: &Model3d, px: usize, view: &View) -> Picture {
     let px = px.clamp(1, 4096);
-    let samples = raster::draw(model, px * raster::SAMPLES, view);
-    shade::develop(&samples, px, view.ground)
+    let plain = Material::default();
+    let lights: Vec<Light> = model.materials.iter().chain([&plain]).map(Light::new).collect();
+    let samples = raster::draw(model, &lights, px * raster::SAMPLES, view);
+    shade::develop(&samples, &lights, px, view.ground)
 }
 
 /// Returns pictures of one size in rows on white; a `gap` in px lies around each.

@@ -1,12 +1,10 @@
-//! Arena's world folder: `world.yaml`, its map, a default scenario and a simple model of every object used.
+//! Arena's world folder: `world.yaml`, its map, a default scenario and a model of every object used.
 //!
 //! Arena finds the world when `ARENA_WORLD_PATH` names the folder `arena/worlds`. One world has one level, `0`.
 
 mod assets;
 mod map;
 mod scenario;
-mod sdf;
-mod usda;
 mod world_yaml;
 
 use d3dgen_model::domain::Domain;
@@ -14,6 +12,7 @@ use d3dgen_model::world::World;
 use serde_json::{Value, json};
 
 use super::{Exporter, File};
+use crate::models::snake;
 use crate::{Error, yaml};
 
 /// Writes the Arena bundle.
@@ -25,7 +24,7 @@ impl Exporter for Arena {
     }
 
     fn about(&self) -> &'static str {
-        "Arena world folder: world.yaml, occupancy map, default scenario and SDF/USD models of the objects"
+        "Arena world folder: world.yaml, occupancy map, default scenario and USDZ, GLB and SDF models of the objects"
     }
 
     fn export(&self, world: &World, domain: &Domain) -> Result<Vec<File>, Error> {
@@ -41,7 +40,7 @@ impl Exporter for Arena {
             File::new(format!("{root}/0/map.yaml"), yaml::to_string(&map::yaml(&world.floorplan))),
             File::new(format!("{root}/scenarios/default/scenario.yaml"), yaml::to_string(&scenario::scenario(world))),
         ];
-        files.extend(models.files(&format!("{root}/assets"), domain));
+        files.extend(models.files(&format!("{root}/assets"), domain)?);
         files.sort_by(|a, b| a.path.cmp(&b.path));
         Ok(files)
     }
@@ -51,11 +50,6 @@ impl Exporter for Arena {
 fn position(x: f64, y: f64, z: f64) -> Value {
     use d3dgen_model::geometry::to_mm;
     json!({"x": to_mm(x), "y": to_mm(y), "z": to_mm(z)})
-}
-
-/// Returns the text as a lower-case name that Arena accepts (`^[a-z0-9_]+$`).
-fn snake(text: &str) -> String {
-    text.chars().map(|c| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '_' }).collect()
 }
 
 #[cfg(test)]

@@ -1,8 +1,9 @@
 //! Triangles to samples: depth, normal and color where a model is hit.
 
 use super::View;
+use super::shade::Light;
+use crate::Model3d;
 use crate::affine::{Vec3, add, cross, dot, scale, sub, unit};
-use crate::{Material, Model3d};
 
 /// Samples along each side of a pixel.
 pub(super) const SAMPLES: usize = 2;
@@ -18,10 +19,19 @@ pub(super) struct Samples {
     pub near: Vec<f32>,
     /// Unit vector toward the eye's side, in the frame of the eye: right, up, toward it.
     pub normal: Vec<[f32; 3]>,
-    /// Lit color, linear.
-    pub color: Vec<[f32; 3]>,
-    /// How much of the ground is hidden.
-    pub cover: Vec<f32>,
+    /// Number of the material of the solid surface seen, counted from 1; 0 for none.
+    pub material: Vec<u16>,
+    /// Clear surfaces before it, nearest first to last: their light with the share they hide.
+    pub veil: Vec<Veil>,
+    /// The world's up in the frame of the eye.
+    pub up: [f32; 3],
+}
+
+/// Light of the clear surfaces before a sample and the share of what is behind that they hide.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Veil {
+    pub color: [f32; 3],
+    pub hides: f32,
 }
 
 /// A corner as the eye sees it.
@@ -71,35 +81,56 @@ impl Eye {
 }
 
 /// Draws the model, solid parts first, then clear ones from back to front.
-pub(super) fn draw(model: &Model3d, side: usize, view: &View) -> Samples {
+pub(super) fn draw(model: &Model3d, lights: &[Light], side: usize, view: &View) -> Samples {
     let mut samples = Samples {
         side,
         near: vec![0.0; side * side],
         normal: vec![[0.0; 3]; side * side],
-        color: vec![[0.0; 3]; side * side],
-        cover: vec![0.0; side * side],
+        material: vec![0; side * side],
+        veil: Vec::new(),
+        up: [0.0, 1.0, 0.0],
     };
     let Some(eye) = Eye::new(model, view) else { return samples };
-    let plain = Material::default();
+    samples.up = [0.0, eye.up[2] as f32, eye.toward[2] as f32];
     let visuals: Vec<_> = model.bodies.iter().flat_map(|b| &b.visuals).collect();
     let seen: Vec<Vec<[f64; 3]>> =
         visuals.iter().map(|v| v.mesh.positions.iter().map(|p| eye.project(p.map(f64::from))).collect()).collect();
     let Some(place) = placement(&visuals, &seen, side) else { return samples };
-    let mut clear: Vec<(f32, [Seen; 3], &Material)> = Vec::new();
+    let mut clear: Vec<(f32, [Seen; 3], usize)> = Vec::new();
     for (visual, seen) in visuals.iter().zip(&seen) {
-        let material = visual.material.and_then(|m| model.materials.get(m)).unwrap_or(&plain);
+        // The last light is that of surfaces without material.
+        let known = |m: &usize| *m < model.materials.len().min(usize::from(u16::MAX) - 1);
+        let material = visual.material.filter(known).unwrap_or(lights.len() - 1);
         for triangle in &visual.mesh.triangles {
             let Some(corners) = corners(&eye, &visual.mesh, seen, triangle, &place) else { continue };
-            if material.opacity < 0.99 {
+            if lights[material].opacity < 0.99 {
                 clear.push((corners.iter().map(|c| c.near).sum(), corners, material));
             } else {
-                fill(&mut samples, &corners, material, &eye);
+                fill(&corners, side, |at, near, normal| {
+                    if near > samples.near[at] {
+                        samples.near[at] = near;
+                        samples.normal[at] = facing(normal);
+                        samples.material[at] = material as u16 + 1;
+                    }
+                });
             }
         }
     }
+    if !clear.is_empty() {
+        samples.veil = vec![Veil::default(); side * side];
+    }
     clear.sort_by(|a, b| a.0.total_cmp(&b.0));
     for (_, corners, material) in &clear {
-        fill(&mut samples, corners, material, &eye);
+        let light = &lights[*material];
+        let share = light.opacity.clamp(0.05, 1.0);
+        fill(corners, side, |at, near, normal| {
+            if near > samples.near[at] {
+                let color = light.on(facing(normal), &samples.up);
+                let veil = &mut samples.veil[at];
+                veil.color = std::array::from_fn(|k| color[k] * share + veil.color[k] * (1.0 - share));
+                veil.hides = share + veil.hides * (1.0 - share);
+            }
+        });
     }
     samples
 }
@@ -159,58 +190,34 @@ fn corners(eye: &Eye, mesh: &crate::Mesh, seen: &[[f64; 3]], triangle: &[u32; 3]
     Some(out)
 }
 
-/// Fills the samples of a triangle that lie before what is there.
-fn fill(samples: &mut Samples, [a, b, c]: &[Seen; 3], material: &Material, eye: &Eye) {
+/// Visits the samples that a triangle covers, with their nearness and normal (of no particular length).
+fn fill([a, b, c]: &[Seen; 3], side: usize, mut visit: impl FnMut(usize, f32, [f32; 3])) {
     let area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
     if area.abs() < 1e-9 || !area.is_finite() {
         return;
     }
-    let last = samples.side as f32 - 1.0;
-    let range = |v: [f32; 3]| {
-        let low = v[0].min(v[1]).min(v[2]);
-        let high = v[0].max(v[1]).max(v[2]);
-        ((low - 0.5).ceil().clamp(0.0, last) as usize, (high - 0.5).floor().clamp(-1.0, last) as isize)
+    let range = |p: f32, q: f32, r: f32| {
+        let (low, high) = (p.min(q).min(r), p.max(q).max(r));
+        let end = (high + 0.5).floor().clamp(0.0, side as f32) as usize;
+        ((low - 0.5).ceil().clamp(0.0, side as f32) as usize)..end
     };
-    let ((x0, x1), (y0, y1)) = (range([a.x, b.x, c.x]), range([a.y, b.y, c.y]));
+    let (columns, rows) = (range(a.x, b.x, c.x), range(a.y, b.y, c.y));
     let inverse = 1.0 / area;
-    let solid = material.opacity >= 0.99;
-    for y in y0..=(y1.max(-1) + 1) as usize {
-        if y as isize > y1 {
-            break;
-        }
-        let py = y as f32 + 0.5;
-        for x in x0..=(x1.max(-1) + 1) as usize {
-            if x as isize > x1 {
-                break;
-            }
-            let px = x as f32 + 0.5;
-            let wb = ((px - a.x) * (c.y - a.y) - (py - a.y) * (c.x - a.x)) * inverse;
-            let wc = ((b.x - a.x) * (py - a.y) - (b.y - a.y) * (px - a.x)) * inverse;
+    // Shares of b and c change by these from sample to sample.
+    let (step_b, step_c) = ((c.y - a.y) * inverse, -(b.y - a.y) * inverse);
+    for y in rows {
+        let (py, px) = (y as f32 + 0.5 - a.y, columns.start as f32 + 0.5 - a.x);
+        let mut wb = (px * (c.y - a.y) - py * (c.x - a.x)) * inverse;
+        let mut wc = ((b.x - a.x) * py - (b.y - a.y) * px) * inverse;
+        for x in columns.clone() {
             let wa = 1.0 - wb - wc;
-            if wa < -1e-5 || wb < -1e-5 || wc < -1e-5 {
-                continue;
+            if wa >= -1e-4 && wb >= -1e-4 && wc >= -1e-4 {
+                let near = wa * a.near + wb * b.near + wc * c.near;
+                let normal = std::array::from_fn(|k| wa * a.normal[k] + wb * b.normal[k] + wc * c.normal[k]);
+                visit(y * side + x, near, normal);
             }
-            let near = wa * a.near + wb * b.near + wc * c.near;
-            let at = y * samples.side + x;
-            if near <= samples.near[at] {
-                continue;
-            }
-            let mixed: [f32; 3] = std::array::from_fn(|k| wa * a.normal[k] + wb * b.normal[k] + wc * c.normal[k]);
-            let normal = facing(mixed);
-            let color = super::shade::light(normal, material, &eye_up(eye));
-            if solid {
-                samples.near[at] = near;
-                samples.normal[at] = normal;
-                samples.color[at] = color;
-                samples.cover[at] = 1.0;
-            } else {
-                let share = material.opacity.clamp(0.05, 1.0);
-                let (under, cover) = (samples.color[at], samples.cover[at]);
-                let total = share + cover * (1.0 - share);
-                samples.color[at] =
-                    std::array::from_fn(|k| (color[k] * share + under[k] * cover * (1.0 - share)) / total);
-                samples.cover[at] = total;
-            }
+            wb += step_b;
+            wc += step_c;
         }
     }
 }
@@ -220,9 +227,4 @@ fn facing(n: [f32; 3]) -> [f32; 3] {
     let length = (n[0] * n[0] + n[1] * n[1] + n[2] * n[2]).sqrt().max(1e-12);
     let sign = if n[2] < 0.0 { -1.0 } else { 1.0 };
     n.map(|v| v * sign / length)
-}
-
-/// Returns the world's up in the frame of the eye.
-fn eye_up(eye: &Eye) -> [f32; 3] {
-    [0.0, eye.up[2] as f32, eye.toward[2] as f32]
 }

@@ -9,32 +9,59 @@ const KEY: [f32; 3] = [-0.42, 0.62, 0.66];
 /// Steps of nearness, in shares, that draw a line.
 const STEP: f32 = 0.008;
 
-/// Returns the light that a surface sends to the eye; all vectors in the frame of the eye.
-pub(super) fn light(normal: [f32; 3], material: &Material, up: &[f32; 3]) -> [f32; 3] {
-    let dot = |a: [f32; 3], b: [f32; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-    let rise = dot(normal, *up);
-    let key = dot(normal, KEY).max(0.0);
-    let sky = 0.5 + 0.5 * rise;
-    let diffuse = 0.30 + 0.28 * sky + 0.55 * key;
-    // The eye is along z: the half vector is fixed, the mirrored ray is easy.
-    let mirrored = [2.0 * normal[2] * normal[0], 2.0 * normal[2] * normal[1], 2.0 * normal[2] * normal[2] - 1.0];
-    let half = [KEY[0] * 0.55, KEY[1] * 0.55, (KEY[2] + 1.0) * 0.55];
-    let rough = material.roughness.clamp(0.05, 1.0);
-    let sharpness = 2.0 / (rough * rough) - 1.0;
-    let gloss = dot(normal, half).clamp(0.0, 1.0).powf(sharpness.min(200.0)) * (1.0 - rough) * (1.0 - rough) * 0.6;
-    let around = 0.25 + 0.75 * (0.5 + 0.5 * dot(mirrored, *up)).clamp(0.0, 1.0).powi(2) + 0.25 * key;
-    let metal = material.metallic.clamp(0.0, 1.0);
-    let edge = (1.0 - normal[2]).powi(4) * (1.0 - rough) * 0.35;
-    std::array::from_fn(|k| {
-        let base = material.base_color[k];
-        let matte = base * diffuse + edge * around;
-        let shiny = base * (0.2 + 0.9 * around);
-        matte * (1.0 - metal) + shiny * metal + gloss + material.emissive[k]
-    })
+/// Steps of the table of highlights.
+const GLOSS_STEPS: usize = 128;
+
+/// What a material does with light.
+pub(super) struct Light {
+    pub opacity: f32,
+    base: [f32; 3],
+    emissive: [f32; 3],
+    metal: f32,
+    smooth: f32,
+    /// Strength of the highlight by the cosine to it.
+    gloss: [f32; GLOSS_STEPS + 1],
+}
+
+impl Light {
+    pub fn new(material: &Material) -> Self {
+        let rough = material.roughness.clamp(0.05, 1.0);
+        let sharpness = (2.0 / (rough * rough) - 1.0).min(200.0);
+        let strength = (1.0 - rough) * (1.0 - rough) * 0.6;
+        Self {
+            opacity: material.opacity,
+            base: material.base_color,
+            emissive: material.emissive,
+            metal: material.metallic.clamp(0.0, 1.0),
+            smooth: 1.0 - rough,
+            gloss: std::array::from_fn(|i| (i as f32 / GLOSS_STEPS as f32).powf(sharpness) * strength),
+        }
+    }
+
+    /// Returns the light that a surface sends to the eye; all vectors in the frame of the eye.
+    pub fn on(&self, normal: [f32; 3], up: &[f32; 3]) -> [f32; 3] {
+        let dot = |a: [f32; 3], b: [f32; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        let key = dot(normal, KEY).max(0.0);
+        let sky = 0.5 + 0.5 * dot(normal, *up);
+        let diffuse = 0.30 + 0.28 * sky + 0.55 * key;
+        // The eye is along z: the half vector is fixed, the mirrored ray is easy.
+        let mirrored = [2.0 * normal[2] * normal[0], 2.0 * normal[2] * normal[1], 2.0 * normal[2] * normal[2] - 1.0];
+        let half = [KEY[0] * 0.55, KEY[1] * 0.55, (KEY[2] + 1.0) * 0.55];
+        let gloss = self.gloss[(dot(normal, half).clamp(0.0, 1.0) * GLOSS_STEPS as f32) as usize];
+        let rise = (0.5 + 0.5 * dot(mirrored, *up)).clamp(0.0, 1.0);
+        let around = 0.25 + 0.75 * rise * rise + 0.25 * key;
+        let grazing = (1.0 - normal[2]) * (1.0 - normal[2]);
+        let edge = grazing * grazing * self.smooth * 0.35;
+        std::array::from_fn(|k| {
+            let matte = self.base[k] * diffuse + edge * around;
+            let shiny = self.base[k] * (0.2 + 0.9 * around);
+            matte * (1.0 - self.metal) + shiny * self.metal + gloss + self.emissive[k]
+        })
+    }
 }
 
 /// Turns samples into pixels.
-pub(super) fn develop(samples: &Samples, px: usize, ground: Ground) -> Picture {
+pub(super) fn develop(samples: &Samples, lights: &[Light], px: usize, ground: Ground) -> Picture {
     let mut rgba = vec![0; px * px * 4];
     let table = Table::new();
     for y in 0..px {
@@ -44,13 +71,22 @@ pub(super) fn develop(samples: &Samples, px: usize, ground: Ground) -> Picture {
                 for sx in 0..SAMPLES {
                     let (sx, sy) = (x * SAMPLES + sx, y * SAMPLES + sy);
                     let at = sy * samples.side + sx;
-                    let share = samples.cover[at];
+                    let material = samples.material[at];
+                    let veil = samples.veil.get(at).copied().unwrap_or_default();
+                    let solid = if material > 0 { 1.0 } else { 0.0 };
+                    let share = veil.hides + solid * (1.0 - veil.hides);
                     if share <= 0.0 {
                         continue;
                     }
-                    let dark = line(samples, sx, sy);
-                    for (sum, c) in color.iter_mut().zip(samples.color[at]) {
-                        *sum += c * dark * share;
+                    let behind = match material.checked_sub(1) {
+                        Some(material) => {
+                            let dark = line(samples, sx, sy);
+                            lights[usize::from(material)].on(samples.normal[at], &samples.up).map(|c| c * dark)
+                        }
+                        None => [0.0; 3],
+                    };
+                    for k in 0..3 {
+                        color[k] += veil.color[k] + behind[k] * (1.0 - veil.hides);
                     }
                     cover += share;
                 }

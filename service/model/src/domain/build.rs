@@ -8,7 +8,8 @@ mod check;
 use std::collections::BTreeMap;
 
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::de::Visitor;
+use serde::{Deserialize, Deserializer, Serialize};
 
 use crate::expression;
 
@@ -46,7 +47,7 @@ pub struct Build {
 }
 
 /// A figure or a formula (`model::expression`).
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum Formula {
     /// A plain figure.
@@ -356,6 +357,37 @@ impl Formula {
             Self::Number(value) => value.is_finite().then_some(*value),
             Self::Text(text) => expression::evaluate(text, figure),
         }
+    }
+}
+
+/// By hand: the derived reader of untagged enums copies everything first, and builds hold thousands of formulas.
+impl<'de> Deserialize<'de> for Formula {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Reader;
+        impl Visitor<'_> for Reader {
+            type Value = Formula;
+
+            fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.write_str("a figure or a formula in quotes")
+            }
+
+            fn visit_f64<E>(self, value: f64) -> Result<Formula, E> {
+                Ok(Formula::Number(value))
+            }
+
+            fn visit_i64<E>(self, value: i64) -> Result<Formula, E> {
+                Ok(Formula::Number(value as f64))
+            }
+
+            fn visit_u64<E>(self, value: u64) -> Result<Formula, E> {
+                Ok(Formula::Number(value as f64))
+            }
+
+            fn visit_str<E>(self, text: &str) -> Result<Formula, E> {
+                Ok(Formula::Text(text.to_owned()))
+            }
+        }
+        deserializer.deserialize_any(Reader)
     }
 }
 

@@ -1,17 +1,15 @@
-//! A folder for every distinct model in a world: ASA annotation, SDF and USD.
+//! Which distinct models a world has: one folder each.
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use d3dgen_mesh::Library;
 use d3dgen_model::domain::{Domain, Mount, ObjectType, Shape};
 use d3dgen_model::placements::Placement;
 use d3dgen_model::world::World;
-use serde_json::{Value, json};
 
-use super::{sdf, usda};
-use crate::color::Rgb;
+use crate::Error;
 use crate::exporters::File;
-use crate::shapes::{self, Part};
-use crate::{Error, yaml};
+use crate::models::{self, ModelRequest};
 
 /// Size in whole millimeters: what tells two models of one asset apart.
 type SizeMm = [i64; 3];
@@ -31,15 +29,6 @@ struct Model {
     object: String,
     size_m: [f64; 3],
     mount: Mount,
-}
-
-/// What the SDF and USD writers need to know of a model.
-pub(super) struct Look<'a> {
-    pub name: &'a str,
-    pub size_m: [f64; 3],
-    pub parts: Vec<Part>,
-    pub color: Rgb,
-    pub mass_kg: f64,
 }
 
 impl Models {
@@ -84,57 +73,69 @@ impl Models {
     }
 
     /// Returns the files of every model under `root`.
-    pub fn files(&self, root: &str, domain: &Domain) -> Vec<File> {
-        self.by_asset.values().flat_map(|m| m.files(root, domain)).collect()
+    ///
+    /// # Errors
+    /// `Model` when a build of the domain cannot be made.
+    pub fn files(&self, root: &str, domain: &Domain) -> Result<Vec<File>, Error> {
+        let own;
+        let library = if domain.builds.is_empty() {
+            Library::shipped()
+        } else {
+            own = Library::shipped().with(&domain.builds);
+            &own
+        };
+        let mut files = Vec::new();
+        for model in self.by_asset.values() {
+            files.extend(model.files(root, library, domain)?);
+        }
+        Ok(files)
     }
 }
 
 impl Model {
-    fn files(&self, root: &str, domain: &Domain) -> [File; 3] {
-        let object = domain.object(&self.object);
-        let parts = shapes::parts(object.map_or(Shape::Box, |o| o.shape), self.size_m);
-        let material = object.map_or("", |o| o.material.as_str());
-        let look = Look {
-            name: &self.name,
-            size_m: self.size_m,
-            mass_kg: shapes::mass_kg(&parts, material),
-            parts,
-            color: Rgb::from_css(object.map_or("", |o| o.color.as_str())),
-        };
-        let folder = format!("{root}/{}/Object/{}", self.domain, self.name);
-        [
-            File::new(format!("{folder}/annotation.yaml"), yaml::to_string(&self.annotation(object, look.color))),
-            File::new(format!("{folder}/{0}.sdf/{0}.sdf", self.name), sdf::model(&look)),
-            File::new(format!("{folder}/{}.usda", self.name), usda::stage(&look)),
-        ]
-    }
-
-    /// Returns the ASA annotation; the model's front is -y.
-    fn annotation(&self, object: Option<&ObjectType>, color: Rgb) -> Value {
-        let [w, d, h] = self.size_m;
-        let round = |v: f64| (v * 1e4).round() / 1e4;
-        let mut tags = vec![format!("domain::{}", self.domain.to_lowercase())];
-        if let Some(o) = object {
-            tags.push(format!("kind::{}", kind(o.shape)));
-        }
-        tags.push(format!("mount::{}", mount(self.mount)));
-        if let Some(o) = object {
-            tags.extend(o.affordances.iter().map(|a| format!("hoi::{}", super::snake(a))));
-            tags.push(format!("color::{}", color.word()));
-            if !o.material.is_empty() {
-                tags.push(format!("material::{}", super::snake(&o.material)));
+    fn files(&self, root: &str, library: &Library, domain: &Domain) -> Result<Vec<File>, Error> {
+        let unknown;
+        let object = match domain.object(&self.object) {
+            Some(object) => object,
+            None => {
+                unknown = plain(&self.object, self.size_m, self.mount);
+                &unknown
             }
-        }
-        json!({
-            "asa": 1,
-            "bounding_box": [[round(-w / 2.0), round(w / 2.0)], [round(-d / 2.0), round(d / 2.0)], [0.0, round(h)]],
-            "desc": object.map_or(self.object.as_str(), |o| o.label.as_str()),
-            "face": "-y",
-            "name": self.name,
-            "note": "Simple parametric model",
-            "path": format!("Object/{}", self.name),
-            "tags": tags,
-        })
+        };
+        let request = ModelRequest {
+            domain: &self.domain,
+            name: &self.name,
+            object,
+            size_m: self.size_m,
+            mount: self.mount,
+            seed: 0,
+        };
+        let files = models::files(library, &request)?;
+        Ok(files.into_iter().map(|f| File { path: format!("{root}/{}", f.path), ..f }).collect())
+    }
+}
+
+/// Returns the object type of a placement whose object the domain does not know: a plain box.
+fn plain(id: &str, size_m: [f64; 3], mount: Mount) -> ObjectType {
+    ObjectType {
+        id: id.to_owned(),
+        label: id.to_owned(),
+        keywords: BTreeMap::new(),
+        sizes_m: vec![size_m],
+        mount,
+        mount_height_m: None,
+        clearance_front_m: 0.0,
+        clearance_side_m: 0.0,
+        clear_sides: 0,
+        surface: false,
+        shape: Shape::Box,
+        build: None,
+        color: String::new(),
+        material: String::new(),
+        affordances: Vec::new(),
+        tags: Vec::new(),
+        source: String::new(),
+        extra: BTreeMap::new(),
     }
 }
 
@@ -155,38 +156,4 @@ fn split(p: &Placement) -> Result<(&str, &str), Error> {
 
 fn unsupported(p: &Placement, reason: &str) -> Error {
     Error::Unsupported { exporter: "arena", subject: p.placement_id.clone(), reason: reason.to_owned() }
-}
-
-fn mount(mount: Mount) -> &'static str {
-    match mount {
-        Mount::Floor => "floor",
-        Mount::Wall => "wall",
-        Mount::Ceiling => "ceiling",
-        Mount::Surface => "surface",
-    }
-}
-
-/// Returns the `kind` of the ASA vocabulary that a build stands for.
-fn kind(shape: Shape) -> &'static str {
-    match shape {
-        Shape::Box | Shape::Cylinder => "container",
-        Shape::Cabinet => "cabinet",
-        Shape::Shelf | Shape::Rack => "shelf",
-        Shape::Table | Shape::RoundTable => "table",
-        Shape::Desk => "desk",
-        Shape::Chair | Shape::SwivelChair => "chair",
-        Shape::Stool => "stool",
-        Shape::Sofa => "sofa",
-        Shape::Bench => "bench",
-        Shape::Bed | Shape::HospitalBed => "bed",
-        Shape::Counter => "counter",
-        Shape::Sink | Shape::Basin | Shape::Toilet | Shape::Bathtub | Shape::Shower | Shape::Cubicle => "sanitary",
-        Shape::Panel | Shape::Rug => "decor",
-        Shape::Trolley => "cart",
-        Shape::Pole | Shape::Dock | Shape::Vehicle | Shape::Scanner => "equipment",
-        Shape::Plant => "plant",
-        Shape::Lamp => "lamp",
-        Shape::Appliance | Shape::Stove => "appliance",
-        Shape::Curtain => "curtain",
-    }
 }

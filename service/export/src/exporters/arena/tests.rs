@@ -29,7 +29,9 @@ fn the_bundle_has_every_file_arena_reads() {
         "arena/worlds/sample_flat/scenarios/default/scenario.yaml",
         "arena/worlds/sample_flat/assets/Sample/Object/Double_Bed/annotation.yaml",
         "arena/worlds/sample_flat/assets/Sample/Object/Double_Bed/Double_Bed.sdf/Double_Bed.sdf",
-        "arena/worlds/sample_flat/assets/Sample/Object/Double_Bed/Double_Bed.usda",
+        "arena/worlds/sample_flat/assets/Sample/Object/Double_Bed/Double_Bed.sdf/base.obj",
+        "arena/worlds/sample_flat/assets/Sample/Object/Double_Bed/Double_Bed.glb",
+        "arena/worlds/sample_flat/assets/Sample/Object/Double_Bed/Double_Bed.usdz",
     ] {
         assert!(paths.contains(path), "{path} is missing");
     }
@@ -134,7 +136,7 @@ fn an_asset_in_two_sizes_becomes_two_models() {
     chair.size_m[0] = 0.5;
     let files = Arena.export(&world, &sample::domain()).unwrap();
     let chairs: Vec<&str> =
-        files.iter().map(|f| f.path.as_str()).filter(|p| p.contains("/Chair") && p.ends_with(".usda")).collect();
+        files.iter().map(|f| f.path.as_str()).filter(|p| p.contains("/Chair") && p.ends_with(".usdz")).collect();
     assert_eq!(chairs.len(), 2, "{chairs:?}");
     let text =
         files.iter().find(|f| f.path.ends_with("world.yaml")).map(|f| String::from_utf8_lossy(&f.bytes)).unwrap();
