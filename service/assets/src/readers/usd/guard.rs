@@ -1,8 +1,10 @@
 //! Looks at the bytes of a layer before the USD library does: it takes memory for whatever a count says, and recurses as
 //! deep as a layer is nested.
 
+use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, Cursor};
+use std::ops::Range;
 
 use openusd::ar::{Asset, ResolvedPath, Resolver};
 use openusd::sdf::{LayerData, LayerRegistry, ListOp, Path, Value};
@@ -33,7 +35,8 @@ pub fn checked(bytes: &[u8]) -> Result<Vec<u8>, Refusal> {
     if text.len() > MAX_TEXT_BYTES {
         return Err(format!("a layer of it has more than {} MiB of text", MAX_TEXT_BYTES >> 20).into());
     }
-    nesting(text)?;
+    let cleaned = without_comments(text, nesting(text)?);
+    let text = cleaned.as_ref();
     let inherits = |word: &[u8]| text.windows(word.len()).any(|w| w == word);
     if inherits(b"inherits") || inherits(b"specializes") {
         return without_circles(text);
@@ -81,8 +84,10 @@ fn tables(bytes: &[u8]) -> Result<(), Refusal> {
 
 const CUT: &str = "a binary layer of it is cut off";
 
-/// Checks how deep a layer of text is nested, strings, paths of assets and comments aside.
-fn nesting(text: &[u8]) -> Result<(), Refusal> {
+/// Checks how deep a layer of text is nested, strings, paths of assets and comments aside. Returns where comments of C
+/// and C++ are, which USD has and the library has not.
+fn nesting(text: &[u8]) -> Result<Vec<Range<usize>>, Refusal> {
+    let mut comments = Vec::new();
     let mut depth = 0usize;
     let mut at = 0;
     while let Some(&byte) = text.get(at) {
@@ -98,10 +103,30 @@ fn nesting(text: &[u8]) -> Result<(), Refusal> {
             b'}' | b')' | b']' => depth = depth.saturating_sub(1),
             b'#' => at += text.get(at..).unwrap_or_default().iter().take_while(|b| **b != b'\n').count(),
             b'"' | b'\'' | b'@' => at = string_end(text, at, byte),
+            b'/' if matches!(text.get(at), Some(b'/' | b'*')) => {
+                let end: &[u8] = if text.get(at) == Some(&b'/') { b"\n" } else { b"*/" };
+                let rest = text.get(at + 1..).unwrap_or_default();
+                let length = rest.windows(end.len()).position(|w| w == end).map_or(rest.len(), |p| p + end.len());
+                comments.push(at - 1..at + 1 + length);
+                at += 1 + length;
+            }
             _ => {}
         }
     }
-    Ok(())
+    Ok(comments)
+}
+
+/// Returns a text with blanks in place of comments.
+fn without_comments(text: &[u8], comments: Vec<Range<usize>>) -> Cow<'_, [u8]> {
+    if comments.is_empty() {
+        return Cow::Borrowed(text);
+    }
+    let mut text = text.to_vec();
+    for range in comments {
+        let blank = |byte: &mut u8| *byte = if *byte == b'\n' { b'\n' } else { b' ' };
+        text.get_mut(range).unwrap_or_default().iter_mut().for_each(blank);
+    }
+    Cow::Owned(text)
 }
 
 /// Returns where a string ends that began before `at` with a quote, which may be tripled.

@@ -20,7 +20,7 @@ use crate::readers::facts::{Feature, Refusal};
 use crate::readers::frame::Matrix;
 
 /// The most prims of a scene.
-const MAX_PRIMS: usize = 60_000;
+const MAX_PRIMS: usize = 20_000;
 /// The deepest nesting of prims.
 const MAX_DEPTH: usize = 200;
 
@@ -35,7 +35,6 @@ pub struct State {
     /// Whether it is part of what a point instancer repeats.
     pub prototype: bool,
     defined: bool,
-    instance: bool,
 }
 
 impl State {
@@ -48,7 +47,6 @@ impl State {
             bindings: None,
             prototype: false,
             defined: true,
-            instance: false,
         }
     }
 
@@ -136,7 +134,7 @@ pub fn read(builder: &mut Builder, stage: &Stage, space: &Space) -> Result<(), R
             surfaces.material(builder, stage, &path);
         }
         if defined && !is_abstract {
-            count(&mut tally, &prim, &kind, &mut state);
+            count(&mut tally, &prim, &kind);
             if let Err(refusal) = gprim(builder, &mut tally, &mut surfaces, stage, &prim, &kind, &state) {
                 result = Err(refusal);
                 break;
@@ -161,10 +159,8 @@ pub fn read(builder: &mut Builder, stage: &Stage, space: &Space) -> Result<(), R
 }
 
 /// Counts what a prim is.
-fn count(tally: &mut Tally, prim: &Prim, kind: &str, state: &mut State) {
-    let instance = prim.is_instance().unwrap_or(false);
-    tally.add("instances", instance && !state.instance);
-    state.instance |= instance;
+fn count(tally: &mut Tally, prim: &Prim, kind: &str) {
+    tally.add("instances", prim.is_instance().unwrap_or(false));
     if prim.has_composition_arc().unwrap_or(false)
         && let Ok(graph) = prim.prim_index().graph()
     {
