@@ -18,15 +18,24 @@ const MAX_DEPTH: usize = 256;
 /// The most items of a table of a binary layer.
 const MAX_ITEMS: u64 = 20_000_000;
 
+/// The bytes of a layer as the library may read them.
+pub struct Checked {
+    /// The bytes.
+    pub bytes: Vec<u8>,
+    /// What was changed in them.
+    pub warning: Option<&'static str>,
+}
+
 /// Returns the bytes of a layer as the library may read them.
 ///
 /// # Errors
 ///
 /// When the library must not read them.
-pub fn checked(bytes: &[u8]) -> Result<Vec<u8>, Refusal> {
+pub fn checked(bytes: &[u8]) -> Result<Checked, Refusal> {
+    let sound = |bytes: &[u8]| Checked { bytes: bytes.to_vec(), warning: None };
     if bytes.starts_with(b"PXR-USDC") {
         tables(bytes)?;
-        return Ok(bytes.to_vec());
+        return Ok(sound(bytes));
     }
     let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     if !text.starts_with(b"#usda ") && !text.starts_with(b"#sdf ") {
@@ -39,9 +48,12 @@ pub fn checked(bytes: &[u8]) -> Result<Vec<u8>, Refusal> {
     let text = cleaned.as_ref();
     let inherits = |word: &[u8]| text.windows(word.len()).any(|w| w == word);
     if inherits(b"inherits") || inherits(b"specializes") {
-        return without_circles(text);
+        return Ok(match without_circles(text)? {
+            Some(bytes) => Checked { bytes, warning: Some("prims inherit in a circle, which is cut") },
+            None => sound(text),
+        });
     }
-    Ok(text.to_vec())
+    Ok(sound(text))
 }
 
 /// Checks the table of contents of a binary layer, and the count at the beginning of each table.
@@ -175,7 +187,7 @@ impl Resolver for Alone<'_> {
 }
 
 /// Takes away what prims inherit in a circle, which the library would follow without end.
-fn without_circles(text: &[u8]) -> Result<Vec<u8>, Refusal> {
+fn without_circles(text: &[u8]) -> Result<Option<Vec<u8>>, Refusal> {
     let format = LayerRegistry::find_by_id("usda").ok_or("text layers are not read")?;
     let layer = format.read(&Alone(text), &ResolvedPath::new("layer.usda"));
     let mut layer: LayerData = layer.map_err(|e| super::reason(&e))?;
@@ -190,14 +202,14 @@ fn without_circles(text: &[u8]) -> Result<Vec<u8>, Refusal> {
     edges.retain(|_, targets| !targets.is_empty());
     let circular: Vec<&String> = edges.keys().filter(|prim| goes_round(&edges, prim)).collect();
     if circular.is_empty() {
-        return Ok(text.to_vec());
+        return Ok(None);
     }
     for prim in circular {
         let path = Path::new(prim).map_err(|e| super::reason(&e))?;
         FIELDS.iter().for_each(|field| layer.erase_field(&path, field));
     }
     let text = openusd::usda::TextWriter::write_to_string(layer.as_ref()).map_err(|e| super::reason(&e))?;
-    Ok(text.into_bytes())
+    Ok(Some(text.into_bytes()))
 }
 
 fn targets(value: &Value) -> Vec<String> {
@@ -234,16 +246,26 @@ mod tests {
     #[test]
     fn circles_of_inheritance_are_cut_and_other_inheritance_stays() {
         let circle = b"#usda 1.0\ndef \"A\" (inherits = </B>) { def Cube \"x\" {} }\ndef \"B\" (inherits = </A>) {}\n";
-        let text = String::from_utf8(checked(circle).unwrap()).unwrap();
+        let text = String::from_utf8(checked(circle).unwrap().bytes).unwrap();
         assert!(!text.contains("inherits") && text.contains("Cube"), "{text}");
         let fine = b"#usda 1.0\nclass \"C\" { def Cube \"x\" {} }\ndef \"A\" (inherits = </C>) {}\n";
-        assert_eq!(checked(fine).unwrap(), fine);
+        assert_eq!(checked(fine).unwrap().bytes, fine);
+    }
+
+    #[test]
+    fn comments_of_c_are_blanked_where_they_are_comments() {
+        let text = b"#usda 1.0\n// one\ndef \"a\" { /* two\n{{{ */ string s = \"//\" asset a = @http://x@ }\n";
+        let bytes = checked(text).unwrap().bytes;
+        let text = String::from_utf8(bytes).unwrap();
+        assert!(
+            !text.contains("one") && !text.contains("two") && text.contains("\"//\"") && text.contains("@http://x@")
+        );
     }
 
     #[test]
     fn deep_nesting_is_refused_and_brackets_in_strings_are_not_counted() {
         let deep = format!("#usda 1.0\n{}", "def \"a\" {".repeat(300));
-        assert!(checked(deep.as_bytes()).unwrap_err().reason.contains("nested deeper"));
+        assert!(checked(deep.as_bytes()).err().unwrap().reason.contains("nested deeper"));
         let text = format!(
             "#usda 1.0\n# {}\ndef \"a\" {{ string s = \"\"\"{}\"\"\"\n string t = '{}' }}\n",
             "{".repeat(300),

@@ -17,7 +17,7 @@ use super::surface::{Level, Surfaces};
 use super::value::{local_matrix, token_of, tokens, value};
 use crate::readers::builder::{Builder, Piece};
 use crate::readers::facts::{Feature, Refusal};
-use crate::readers::frame::Matrix;
+use crate::readers::frame::{Extent, Matrix};
 
 /// The most prims of a scene.
 const MAX_PRIMS: usize = 20_000;
@@ -87,6 +87,8 @@ struct Tally {
     subdivision: BTreeMap<String, u64>,
     variants: Vec<String>,
     broken: u64,
+    unmoved: u64,
+    wrong_extents: u64,
     varying: bool,
 }
 
@@ -191,6 +193,8 @@ fn count(tally: &mut Tally, prim: &Prim, kind: &str) {
             let name = name.strip_prefix("!invert!").unwrap_or(name);
             prim.attribute(name).value_might_be_time_varying().unwrap_or(false)
         };
+        let there = |name: &String| value(prim, name.strip_prefix("!invert!").unwrap_or(name)).is_some();
+        tally.unmoved += order.iter().filter(|n| n.contains("xformOp:")).filter(|n| !there(n)).count() as u64;
         let moving = order.iter().filter(|n| n.contains("xformOp:")).any(moves);
         tally.add("animated_xforms", moving);
         tally.varying |= moving;
@@ -246,6 +250,7 @@ fn gprim(
     if !state.is_seen() {
         return Ok(());
     }
+    tally.wrong_extents += u64::from(!extent_holds(prim, &mesh.points));
     mesh.points.iter().for_each(|p| builder.extent.add(state.world.point(p.map(f64::from))));
     if state.prototype {
         return Ok(());
@@ -254,6 +259,16 @@ fn gprim(
         add(builder, prim, triangles, material, &state.world)?;
     }
     Ok(())
+}
+
+/// Tells whether the extent that a mesh says is that of its corners, when it says one.
+fn extent_holds(prim: &Prim, points: &[[f32; 3]]) -> bool {
+    let Some(said) = value(prim, "extent").and_then(super::value::threes).filter(|e| e.len() == 2) else { return true };
+    let mut found = Extent::default();
+    points.iter().for_each(|p| found.add(p.map(f64::from)));
+    let Some(found) = found.scaled(1.0) else { return true };
+    let size = (0..3).map(|i| found[1][i] - found[0][i]).fold(1e-9, f64::max);
+    (0..6).all(|i| (f64::from(said[i / 3][i % 3]) - found[i / 3][i % 3]).abs() <= 1e-3 * size)
 }
 
 /// Returns a mesh by materials: one part for each subset of faces with a material of its own, and one for the rest.
@@ -342,6 +357,12 @@ fn note(builder: &mut Builder, stage: &Stage, tally: Tally) {
     facts.feature("gprims", Feature::Counts(tally.gprims));
     if let Some(name) = stage.default_prim() {
         facts.feature("default_prim", Feature::Text(name.as_str().chars().take(200).collect()));
+    }
+    if tally.unmoved > 0 {
+        facts.warn(format!("{} transformations are named that are not there", tally.unmoved));
+    }
+    if tally.wrong_extents > 0 {
+        facts.warn(format!("{} meshes say another extent than their corners have", tally.wrong_extents));
     }
     if tally.broken > 0 {
         facts.warn(format!(
