@@ -123,6 +123,8 @@ def main():
             file = case["file"].replace("<ff fe 80>", "\udcff\udcfe\udc80").replace("\\n", "\n")
             if not os.path.lexists(folder / file) or file.endswith("/"):
                 continue
+            if os.path.isfile(folder / file) and os.geteuid() == 0 and not os.stat(folder / file).st_mode & 0o777:
+                continue  # root reads what nobody may read
             count += 1
             status, out, err, seconds, peak = run([program, "assets", "inspect", "--json", "--", file], folder)
             slowest, largest = max(slowest, seconds), max(largest, peak)
@@ -134,7 +136,7 @@ def main():
                 problem = f"took {seconds:.1f} s"
             elif peak > min(MAX_MIB, case.get("max_rss_mib", MAX_MIB)):
                 problem = f"used {peak:.0f} MiB"
-            elif CANARY in out + err or "root:" in out + err:
+            elif CANARY in out + err or "root:x:" in out + err:
                 problem = "read outside of its folder"
             elif (status == 0) != json.loads(lines[0])["ok"]:
                 problem = f"status {status} does not fit its answer"

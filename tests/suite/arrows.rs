@@ -30,6 +30,7 @@ const OUTSIDE: &[(&str, &[&str])] = &[
     ("resvg", &["export"]),
     ("svgtypes", &["export"]),
     ("ttf-parser", &["export"]),
+    ("openusd", &["assets"]),
     ("redb", &["store"]),
     ("sled", &["store"]),
     ("tantivy", &["store"]),

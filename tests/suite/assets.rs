@@ -105,6 +105,14 @@ fn models_come_in_are_found_and_go() {
     home.ok(&["assets", "show", "Office/Desk_Oslo", "--thumbnail", picture.to_str().expect("UTF-8"), "--px", "64"]);
     assert!(png(&sheet) && png(&picture));
 
+    let out = home.path("out");
+    home.ok(&["assets", "export", "Office/Desk_Oslo", "Hospital/HospitalBed", "--out", out.to_str().expect("UTF-8")]);
+    for file in ["Office/Object/Desk_Oslo/Desk_Oslo.glb", "Hospital/Object/HospitalBed/HospitalBed.usdz"] {
+        assert!(out.join(file).is_file(), "{file}");
+    }
+    let yaml = std::fs::read_to_string(out.join("Office/Object/Desk_Oslo/annotation.yaml")).expect("written");
+    assert!(yaml.contains("- kind::desk") && yaml.contains("name: Desk_Oslo"), "{yaml}");
+
     home.ok(&["assets", "annotate", "Office/Desk_Oslo", "--set", "name=Treasure table", "--set", "front=+x"]);
     assert_eq!(lines(&home.ok(&["assets", "search", "treasure", "--json"]))[0]["asset_id"], "Office/Desk_Oslo");
     assert!(home.refused(&["assets", "annotate", "Office/Desk_Oslo", "--set", "mount=roof"]).contains("floor, wall"));

@@ -58,6 +58,10 @@ pub struct CatalogObject {
     pub purpose: String,
     /// Each name as words.
     terms: Vec<Vec<String>>,
+    /// All words of names and purpose, singular.
+    words: BTreeSet<String>,
+    /// All words of its rooms, singular.
+    room_words: BTreeSet<String>,
 }
 
 /// An object that a name may mean.
@@ -83,7 +87,7 @@ impl Catalog {
             }
         }
         for (index, object) in catalog.objects.iter_mut().enumerate() {
-            object.finish();
+            object.finish(&catalog.labels);
             for (at, term) in object.terms.iter().enumerate() {
                 let keys: BTreeSet<String> = term.first().cloned().into_iter().chain([term.concat()]).collect();
                 keys.into_iter().for_each(|key| catalog.names.entry(key).or_default().push((index, at)));
@@ -199,11 +203,13 @@ impl CatalogObject {
             foreign_names: known.map(|k| list(k.german)).unwrap_or_default(),
             purpose: known.map(|k| k.purpose.to_owned()).unwrap_or_default(),
             terms: Vec::new(),
+            words: BTreeSet::new(),
+            room_words: BTreeSet::new(),
         }
     }
 
     /// Collects the names as words, once all domains have said theirs.
-    fn finish(&mut self) {
+    fn finish(&mut self, labels: &BTreeMap<String, String>) {
         if self.affordances.is_empty() {
             self.affordances = kind_affordances(&self.kind).iter().map(|a| (*a).to_owned()).collect();
         }
@@ -216,7 +222,21 @@ impl CatalogObject {
                 terms.push(term);
             }
         }
+        self.words = terms.iter().flatten().cloned().collect();
+        self.words.extend(singular_words(&self.purpose));
+        let rooms = self.room_types.iter().filter_map(|r| labels.get(r));
+        self.room_words = rooms.flat_map(|label| singular_words(label)).collect();
         self.terms = terms;
+    }
+
+    /// Returns all words of its names and its purpose, singular.
+    pub fn words(&self) -> &BTreeSet<String> {
+        &self.words
+    }
+
+    /// Returns all words of the names of its rooms, singular.
+    pub fn room_words(&self) -> &BTreeSet<String> {
+        &self.room_words
     }
 
     /// Returns its names as words: label, id, other names.
@@ -245,6 +265,10 @@ fn rooms_of(domain: &Domain) -> BTreeMap<&str, BTreeSet<&str>> {
         }
     }
     found
+}
+
+fn singular_words(text: &str) -> impl Iterator<Item = String> + use<> {
+    words::split(text).into_iter().map(|w| words::singular(&w))
 }
 
 fn extend(list: &mut Vec<String>, new: impl Iterator<Item = String>) {

@@ -6,6 +6,8 @@
 
 mod cost;
 
+use d3dgen_model::domain::Mount;
+
 use crate::annotation::Change;
 use crate::catalog::{Catalog, CatalogObject, NameMatch};
 pub use cost::{Trust, misfit};
@@ -123,8 +125,10 @@ pub fn judge<'c>(
     let mut best: Option<Weighed<'c>> = None;
     for way in ways(declared, &trust) {
         let (low, size) = placed(bounds, way, given);
-        let base = way.prior + cost::origin(low[2], size[2]) + cost::bounds(size);
         let (fit, object) = best_object(size, &matches);
+        let stands = object.is_some_and(|(o, _)| o.mount == Mount::Floor);
+        let lying = if stands { cost::lying(low, size) } else { 0.0 };
+        let base = way.prior + cost::origin(low[2], size[2]) + cost::bounds(size) + lying;
         let weighed = Weighed { way, cost: base + fit, object, to_catalog: false };
         if best.as_ref().is_none_or(|b| weighed.cost < b.cost - 1e-9) {
             best = Some(weighed);

@@ -16,6 +16,7 @@ use rand_core::{Rng, SeedableRng};
 /// The readers with the models that are changed; the first word is the ending of the changed file.
 const TARGETS: &[(&str, &[&str])] = &[
     ("usda", &["chair.usda", "rig.usda", "shelf.usda"]),
+    ("usdc", &["chair.usda", "rig.usda"]),
     ("usdz", &["chair.usda"]),
     ("gltf", &["chair.gltf"]),
     ("glb", &["chair.gltf"]),
@@ -132,9 +133,20 @@ fn packed(ending: &str, path: &Path) -> Vec<u8> {
     let bytes = std::fs::read(path).expect("the models are there");
     match ending {
         "glb" => glb(&bytes),
+        "usdc" => binary(path),
         "usdz" => zip("chair.usda", &bytes),
         _ => bytes,
     }
+}
+
+/// Returns a layer of text as a binary one.
+fn binary(path: &Path) -> Vec<u8> {
+    use openusd::{ar, sdf, usdc};
+    let format = sdf::LayerRegistry::find_by_id("usda").expect("the library reads text");
+    let layer = format.read(&ar::DefaultResolver::new(), &ar::ResolvedPath::new(path)).expect("the models are sound");
+    let mut out = std::io::Cursor::new(Vec::new());
+    usdc::CrateWriter::write(layer.as_ref(), &mut out).expect("memory takes bytes");
+    out.into_inner()
 }
 
 fn glb(json: &[u8]) -> Vec<u8> {

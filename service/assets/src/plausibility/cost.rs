@@ -101,6 +101,15 @@ pub fn origin(low: f64, height: f64) -> f64 {
     if centered < 0.03 { 0.45 } else { ((off - 0.05) * 1.2).clamp(0.0, 0.75) }
 }
 
+/// Returns the cost of lying: what stands on floors would have its floor upright, at the origin, and its middle at the
+/// height of the origin.
+pub fn lying(low: [f64; 3], size: [f64; 3]) -> f64 {
+    let centered = |i: usize| (low[i] / size[i] + 0.5).abs() < 0.12;
+    let edge = |i: usize| low[i].abs().min((low[i] + size[i]).abs()) < 0.03 * size[i];
+    let lies = centered(2) && (edge(0) && centered(1) || edge(1) && centered(0));
+    if lies { 1.6 } else { 0.0 }
+}
+
 /// Returns the cost of a size that nothing indoors has, whatever it is.
 pub fn bounds(size: [f64; 3]) -> f64 {
     let largest = size.iter().copied().fold(0.0, f64::max);

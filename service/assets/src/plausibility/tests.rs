@@ -48,6 +48,10 @@ fn lying_axes_are_repaired() {
     check("elevator_01_door_visual", door, &dae, [1.416, 0.085, 2.2698]);
     let fridge = [[-0.3, -1.8, -0.33], [0.3, 0.0, 0.33]];
     check("fridge", fridge, &declared("usdc", Some('Y'), false), [0.6, 0.66, 1.8]);
+    let fallen = [[-0.25, -0.9, -0.26], [0.25, 0.0, 0.26]];
+    check("dining_chair", fallen, &declared("usdc", Some('Y'), true), [0.5, 0.52, 0.9]);
+    let hung = [[-0.3, -0.04, -0.4], [0.3, 0.0, 0.4]];
+    check("mirror", hung, &declared("usdc", Some('Y'), true), [0.6, 0.04, 0.8]);
     let lying = [[-0.3, -0.33, 0.0], [0.3, 0.33, 1.8]];
     let y_up_obj: [[f64; 3]; 2] = [[-0.3, 0.0, -0.33], [0.3, 1.8, 0.33]];
     check("fridge", y_up_obj, &declared("obj", None, false), [0.6, 0.66, 1.8]);

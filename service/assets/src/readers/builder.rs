@@ -22,6 +22,11 @@ const LARGEST_M: f64 = 1e6;
 /// Smaller things are not there, m.
 const SMALLEST_M: f64 = 1e-9;
 
+/// So far from the origin a number of 32 bits is a millimeter off.
+const FAR_M: f64 = 1e4;
+/// The most pixels of a picture that is kept.
+const MAX_PIXELS: u64 = 128 << 20;
+
 /// Triangles as a reader finds them, in a frame of their own.
 #[derive(Debug, Default)]
 pub struct Piece {
@@ -170,6 +175,13 @@ impl Builder {
         }
         let left = MAX_PICTURE_BYTES.min(MAX_PICTURES_BYTES.saturating_sub(self.picture_bytes));
         let bytes = read(left).filter(|b| b.len() as u64 <= left);
+        let bytes = bytes.and_then(|bytes| match strange_picture(&bytes, path) {
+            None => Some(bytes),
+            Some(what) => {
+                self.facts.warn(format!("the picture `{}` {what} and is left out", super::folder::shortened(path)));
+                None
+            }
+        });
         self.picture_bytes += bytes.as_ref().map_or(0, |b| b.len() as u64);
         self.textures.push(Texture { path: path.to_owned(), bytes });
         self.by_path.insert(path.to_owned(), self.textures.len() - 1);
@@ -195,6 +207,23 @@ impl Builder {
             materials: self.materials,
             textures: self.textures,
         };
+        let missing: Vec<&str> =
+            self.facts.textures.iter().filter(|t| !t.resolves).filter_map(|t| t.path.as_deref()).collect();
+        if let Some(first) = missing.first() {
+            let text =
+                format!("{} pictures are not there, such as `{}`", missing.len(), super::folder::shortened(first));
+            self.facts.warn(text);
+        }
+        if let Some([min, max]) = model.bounds() {
+            let size = (0..3).map(|i| max[i] - min[i]);
+            let far = min.iter().chain(&max).fold(0.0, |a: f64, v| a.max(v.abs()));
+            if far > FAR_M && far > 10.0 * size.clone().fold(0.0, f64::max) {
+                self.facts.warn(format!("is {far:.0} m from its origin, where its corners are inexact"));
+            }
+            if size.clone().fold(f64::MAX, f64::min) < SMALLEST_M {
+                self.facts.warn("has no thickness");
+            }
+        }
         match possible(&model) {
             Ok(()) => Ok(ReadModel { model, facts: self.facts }),
             Err(reason) => Err(Refusal { reason, facts: Some(Box::new(self.facts)) }),
@@ -218,6 +247,32 @@ impl Builder {
             self.facts.warn(format!("{} corners left out whose coordinates are no numbers", self.extent.not_finite));
         }
     }
+}
+
+/// Tells why bytes are no picture that can be kept, when they are none.
+fn strange_picture(bytes: &[u8], path: &str) -> Option<&'static str> {
+    const BEGINNINGS: &[&[u8]] = &[
+        b"\x89PNG",
+        b"\xff\xd8\xff",
+        b"RIFF",
+        b"BM",
+        b"II*\0",
+        b"MM\0*",
+        b"GIF8",
+        b"\xabKTX",
+        b"DDS ",
+        b"\x76\x2f\x31\x01",
+        b"#?",
+        b"\0\0\0",
+    ];
+    // TGA begins with nothing of its own.
+    let known = BEGINNINGS.iter().any(|b| bytes.starts_with(b)) || path.to_ascii_lowercase().ends_with(".tga");
+    if !known {
+        return Some("is no picture");
+    }
+    let side = |at: usize| bytes.get(at..at + 4).and_then(|b| b.try_into().ok()).map_or(0, u32::from_be_bytes);
+    let pixels = u64::from(side(16)) * u64::from(side(20));
+    (bytes.starts_with(b"\x89PNG") && pixels > MAX_PIXELS).then_some("says that it has more pixels than can be")
 }
 
 /// Tells why a model is none.

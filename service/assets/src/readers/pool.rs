@@ -28,7 +28,7 @@ pub struct Limits {
 
 impl Default for Limits {
     fn default() -> Self {
-        Self { memory_bytes: 640 << 20, time: Duration::from_secs(8), answer_bytes: 300 << 20 }
+        Self { memory_bytes: 448 << 20, time: Duration::from_secs(8), answer_bytes: 160 << 20 }
     }
 }
 

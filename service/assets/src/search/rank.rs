@@ -104,18 +104,23 @@ fn named(question: &Question, a: &Annotation, object: Option<&CatalogObject>) ->
 
 /// Returns the telling words of the question that the asset's names, purpose, tags or rooms have.
 fn explained(question: &Question, a: &Annotation, object: Option<&CatalogObject>, catalog: &Catalog) -> Vec<String> {
-    let mut have: BTreeSet<String> = BTreeSet::new();
-    let mut add = |text: &str| have.extend(words::split(text).iter().map(|w| words::singular(w)));
+    let mut own: BTreeSet<String> = BTreeSet::new();
+    let mut add = |text: &str| own.extend(words::split(text).iter().map(|w| words::singular(w)));
     add(&a.name);
     add(&a.kind);
     a.tags.iter().chain(&a.affordances).chain(&a.materials).for_each(|t| add(t));
-    a.room_types.iter().filter_map(|r| catalog.room_label(r)).for_each(&mut add);
-    match object {
-        Some(o) => o.names.iter().chain(&o.foreign_names).chain([&o.purpose, &o.label]).for_each(|t| add(t)),
-        None => add(&a.description),
+    let known = object.filter(|o| o.room_types == a.room_types);
+    if known.is_none() {
+        a.room_types.iter().filter_map(|r| catalog.room_label(r)).for_each(&mut add);
     }
+    if object.is_none() {
+        add(&a.description);
+    }
+    let none = BTreeSet::new();
+    let sets = [&own, object.map_or(&none, CatalogObject::words), known.map_or(&none, CatalogObject::room_words)];
     let alike = |word: &String| {
-        have.contains(word) || have.iter().any(|h| word.len() >= 4 && h.len() >= 4 && same_stem(word, h))
+        sets.iter().any(|set| set.contains(word))
+            || word.len() >= 4 && sets.iter().any(|set| set.iter().any(|h| h.len() >= 4 && same_stem(word, h)))
     };
     question.words.iter().filter(|w| alike(w)).cloned().collect()
 }

@@ -167,6 +167,7 @@ impl LookArgs {
             let listed: Vec<String> = values.iter().take(8).map(|(value, count)| format!("{value} {count}")).collect();
             rows.push(vec![facet.to_owned(), values.len().to_string(), listed.join(", ")]);
         }
-        write_text(None, &(text.split_off(0) + &table(&["filter", "values", "most common"], &rows)))
+        text += &table(&["filter", "values", "most common"], &rows);
+        write_text(None, &text)
     }
 }

@@ -2,6 +2,7 @@
 
 mod annotate;
 mod common;
+mod export;
 mod generate;
 pub mod ingest;
 mod inspect;
@@ -91,6 +92,8 @@ enum Action {
     Generate(generate::Args),
     /// Change what is known of an asset
     Annotate(annotate::Args),
+    /// Write models with their annotations as files: USDZ, GLB, SDF
+    Export(export::Args),
     /// Remove assets, also of the shipped library; bring those back
     Remove(keep::RemoveArgs),
     /// Draw assets on a contact sheet
@@ -118,6 +121,7 @@ impl Args {
             Action::Ingest(args) => args.run(),
             Action::Generate(args) => args.run(),
             Action::Annotate(args) => args.run(),
+            Action::Export(args) => args.run(),
             Action::Remove(args) => args.run(),
             Action::Sheet(args) => args.run(),
             Action::Verify(args) => args.verify(),

@@ -1,8 +1,10 @@
 //! Looks at the bytes of a layer before the USD library does: it takes memory for whatever a count says, and recurses as
 //! deep as a layer is nested.
 
+use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, Cursor};
+use std::ops::Range;
 
 use openusd::ar::{Asset, ResolvedPath, Resolver};
 use openusd::sdf::{LayerData, LayerRegistry, ListOp, Path, Value};
@@ -16,15 +18,24 @@ const MAX_DEPTH: usize = 256;
 /// The most items of a table of a binary layer.
 const MAX_ITEMS: u64 = 20_000_000;
 
+/// The bytes of a layer as the library may read them.
+pub struct Checked {
+    /// The bytes.
+    pub bytes: Vec<u8>,
+    /// What was changed in them.
+    pub warning: Option<&'static str>,
+}
+
 /// Returns the bytes of a layer as the library may read them.
 ///
 /// # Errors
 ///
 /// When the library must not read them.
-pub fn checked(bytes: &[u8]) -> Result<Vec<u8>, Refusal> {
+pub fn checked(bytes: &[u8]) -> Result<Checked, Refusal> {
+    let sound = |bytes: &[u8]| Checked { bytes: bytes.to_vec(), warning: None };
     if bytes.starts_with(b"PXR-USDC") {
         tables(bytes)?;
-        return Ok(bytes.to_vec());
+        return Ok(sound(bytes));
     }
     let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     if !text.starts_with(b"#usda ") && !text.starts_with(b"#sdf ") {
@@ -33,12 +44,16 @@ pub fn checked(bytes: &[u8]) -> Result<Vec<u8>, Refusal> {
     if text.len() > MAX_TEXT_BYTES {
         return Err(format!("a layer of it has more than {} MiB of text", MAX_TEXT_BYTES >> 20).into());
     }
-    nesting(text)?;
+    let cleaned = without_comments(text, nesting(text)?);
+    let text = cleaned.as_ref();
     let inherits = |word: &[u8]| text.windows(word.len()).any(|w| w == word);
     if inherits(b"inherits") || inherits(b"specializes") {
-        return without_circles(text);
+        return Ok(match without_circles(text)? {
+            Some(bytes) => Checked { bytes, warning: Some("prims inherit in a circle, which is cut") },
+            None => sound(text),
+        });
     }
-    Ok(text.to_vec())
+    Ok(sound(text))
 }
 
 /// Checks the table of contents of a binary layer, and the count at the beginning of each table.
@@ -81,8 +96,10 @@ fn tables(bytes: &[u8]) -> Result<(), Refusal> {
 
 const CUT: &str = "a binary layer of it is cut off";
 
-/// Checks how deep a layer of text is nested, strings, paths of assets and comments aside.
-fn nesting(text: &[u8]) -> Result<(), Refusal> {
+/// Checks how deep a layer of text is nested, strings, paths of assets and comments aside. Returns where comments of C
+/// and C++ are, which USD has and the library has not.
+fn nesting(text: &[u8]) -> Result<Vec<Range<usize>>, Refusal> {
+    let mut comments = Vec::new();
     let mut depth = 0usize;
     let mut at = 0;
     while let Some(&byte) = text.get(at) {
@@ -98,10 +115,30 @@ fn nesting(text: &[u8]) -> Result<(), Refusal> {
             b'}' | b')' | b']' => depth = depth.saturating_sub(1),
             b'#' => at += text.get(at..).unwrap_or_default().iter().take_while(|b| **b != b'\n').count(),
             b'"' | b'\'' | b'@' => at = string_end(text, at, byte),
+            b'/' if matches!(text.get(at), Some(b'/' | b'*')) => {
+                let end: &[u8] = if text.get(at) == Some(&b'/') { b"\n" } else { b"*/" };
+                let rest = text.get(at + 1..).unwrap_or_default();
+                let length = rest.windows(end.len()).position(|w| w == end).map_or(rest.len(), |p| p + end.len());
+                comments.push(at - 1..at + 1 + length);
+                at += 1 + length;
+            }
             _ => {}
         }
     }
-    Ok(())
+    Ok(comments)
+}
+
+/// Returns a text with blanks in place of comments.
+fn without_comments(text: &[u8], comments: Vec<Range<usize>>) -> Cow<'_, [u8]> {
+    if comments.is_empty() {
+        return Cow::Borrowed(text);
+    }
+    let mut text = text.to_vec();
+    for range in comments {
+        let blank = |byte: &mut u8| *byte = if *byte == b'\n' { b'\n' } else { b' ' };
+        text.get_mut(range).unwrap_or_default().iter_mut().for_each(blank);
+    }
+    Cow::Owned(text)
 }
 
 /// Returns where a string ends that began before `at` with a quote, which may be tripled.
@@ -150,7 +187,7 @@ impl Resolver for Alone<'_> {
 }
 
 /// Takes away what prims inherit in a circle, which the library would follow without end.
-fn without_circles(text: &[u8]) -> Result<Vec<u8>, Refusal> {
+fn without_circles(text: &[u8]) -> Result<Option<Vec<u8>>, Refusal> {
     let format = LayerRegistry::find_by_id("usda").ok_or("text layers are not read")?;
     let layer = format.read(&Alone(text), &ResolvedPath::new("layer.usda"));
     let mut layer: LayerData = layer.map_err(|e| super::reason(&e))?;
@@ -165,14 +202,14 @@ fn without_circles(text: &[u8]) -> Result<Vec<u8>, Refusal> {
     edges.retain(|_, targets| !targets.is_empty());
     let circular: Vec<&String> = edges.keys().filter(|prim| goes_round(&edges, prim)).collect();
     if circular.is_empty() {
-        return Ok(text.to_vec());
+        return Ok(None);
     }
     for prim in circular {
         let path = Path::new(prim).map_err(|e| super::reason(&e))?;
         FIELDS.iter().for_each(|field| layer.erase_field(&path, field));
     }
     let text = openusd::usda::TextWriter::write_to_string(layer.as_ref()).map_err(|e| super::reason(&e))?;
-    Ok(text.into_bytes())
+    Ok(Some(text.into_bytes()))
 }
 
 fn targets(value: &Value) -> Vec<String> {
@@ -209,16 +246,26 @@ mod tests {
     #[test]
     fn circles_of_inheritance_are_cut_and_other_inheritance_stays() {
         let circle = b"#usda 1.0\ndef \"A\" (inherits = </B>) { def Cube \"x\" {} }\ndef \"B\" (inherits = </A>) {}\n";
-        let text = String::from_utf8(checked(circle).unwrap()).unwrap();
+        let text = String::from_utf8(checked(circle).unwrap().bytes).unwrap();
         assert!(!text.contains("inherits") && text.contains("Cube"), "{text}");
         let fine = b"#usda 1.0\nclass \"C\" { def Cube \"x\" {} }\ndef \"A\" (inherits = </C>) {}\n";
-        assert_eq!(checked(fine).unwrap(), fine);
+        assert_eq!(checked(fine).unwrap().bytes, fine);
+    }
+
+    #[test]
+    fn comments_of_c_are_blanked_where_they_are_comments() {
+        let text = b"#usda 1.0\n// one\ndef \"a\" { /* two\n{{{ */ string s = \"//\" asset a = @http://x@ }\n";
+        let bytes = checked(text).unwrap().bytes;
+        let text = String::from_utf8(bytes).unwrap();
+        assert!(
+            !text.contains("one") && !text.contains("two") && text.contains("\"//\"") && text.contains("@http://x@")
+        );
     }
 
     #[test]
     fn deep_nesting_is_refused_and_brackets_in_strings_are_not_counted() {
         let deep = format!("#usda 1.0\n{}", "def \"a\" {".repeat(300));
-        assert!(checked(deep.as_bytes()).unwrap_err().reason.contains("nested deeper"));
+        assert!(checked(deep.as_bytes()).err().unwrap().reason.contains("nested deeper"));
         let text = format!(
             "#usda 1.0\n# {}\ndef \"a\" {{ string s = \"\"\"{}\"\"\"\n string t = '{}' }}\n",
             "{".repeat(300),

@@ -1,5 +1,7 @@
 //! USDZ packages: ZIP archives whose files are stored as they are. Nothing is unpacked to disk.
 
+use std::collections::BTreeSet;
+
 use crate::readers::facts::Refusal;
 
 /// The most entries of a package.
@@ -12,6 +14,7 @@ pub struct Package {
     pub entries: Vec<Entry>,
     /// What is odd about it without being a reason to refuse it.
     pub warnings: Vec<String>,
+    names: BTreeSet<String>,
 }
 
 /// A file in a package.
@@ -68,7 +71,7 @@ impl Package {
         let shift = end.checked_sub(size).and_then(|real| real.checked_sub(start));
         let shift = shift.ok_or("its directory is longer than the file")?;
         let mut at = start + shift;
-        let mut package = Self { entries: Vec::new(), warnings: Vec::new() };
+        let mut package = Self { entries: Vec::new(), names: BTreeSet::new(), warnings: Vec::new() };
         if shift > 0 {
             package.warnings.push("has bytes before its package".into());
         }
@@ -83,7 +86,14 @@ impl Package {
             let raw = bytes.get(at + 46..at + 46 + name).ok_or_else(cut)?;
             if let Some(entry) = entry(&data, at, raw, shift, &mut package.warnings)? {
                 total = total.saturating_add(entry.packed);
-                package.entries.push(entry);
+                if package.names.insert(entry.name.clone()) {
+                    package.entries.push(entry);
+                } else {
+                    package.warnings.push(format!(
+                        "has `{}` twice in its package; the first is read",
+                        crate::readers::folder::shortened(&entry.name)
+                    ));
+                }
             }
             at += 46 + name + extra + comment;
         }
@@ -111,7 +121,7 @@ impl Package {
         Ok(first)
     }
 
-    /// Returns a file by its name; of several with one name, the first.
+    /// Returns a file by its name.
     pub fn find(&self, name: &str) -> Option<&Entry> {
         self.entries.iter().find(|e| e.name == name)
     }

@@ -17,10 +17,10 @@ use super::surface::{Level, Surfaces};
 use super::value::{local_matrix, token_of, tokens, value};
 use crate::readers::builder::{Builder, Piece};
 use crate::readers::facts::{Feature, Refusal};
-use crate::readers::frame::Matrix;
+use crate::readers::frame::{Extent, Matrix};
 
 /// The most prims of a scene.
-const MAX_PRIMS: usize = 60_000;
+const MAX_PRIMS: usize = 20_000;
 /// The deepest nesting of prims.
 const MAX_DEPTH: usize = 200;
 
@@ -35,7 +35,6 @@ pub struct State {
     /// Whether it is part of what a point instancer repeats.
     pub prototype: bool,
     defined: bool,
-    instance: bool,
 }
 
 impl State {
@@ -48,7 +47,6 @@ impl State {
             bindings: None,
             prototype: false,
             defined: true,
-            instance: false,
         }
     }
 
@@ -89,6 +87,8 @@ struct Tally {
     subdivision: BTreeMap<String, u64>,
     variants: Vec<String>,
     broken: u64,
+    unmoved: u64,
+    wrong_extents: u64,
     varying: bool,
 }
 
@@ -136,7 +136,7 @@ pub fn read(builder: &mut Builder, stage: &Stage, space: &Space) -> Result<(), R
             surfaces.material(builder, stage, &path);
         }
         if defined && !is_abstract {
-            count(&mut tally, &prim, &kind, &mut state);
+            count(&mut tally, &prim, &kind);
             if let Err(refusal) = gprim(builder, &mut tally, &mut surfaces, stage, &prim, &kind, &state) {
                 result = Err(refusal);
                 break;
@@ -161,10 +161,8 @@ pub fn read(builder: &mut Builder, stage: &Stage, space: &Space) -> Result<(), R
 }
 
 /// Counts what a prim is.
-fn count(tally: &mut Tally, prim: &Prim, kind: &str, state: &mut State) {
-    let instance = prim.is_instance().unwrap_or(false);
-    tally.add("instances", instance && !state.instance);
-    state.instance |= instance;
+fn count(tally: &mut Tally, prim: &Prim, kind: &str) {
+    tally.add("instances", prim.is_instance().unwrap_or(false));
     if prim.has_composition_arc().unwrap_or(false)
         && let Ok(graph) = prim.prim_index().graph()
     {
@@ -195,6 +193,8 @@ fn count(tally: &mut Tally, prim: &Prim, kind: &str, state: &mut State) {
             let name = name.strip_prefix("!invert!").unwrap_or(name);
             prim.attribute(name).value_might_be_time_varying().unwrap_or(false)
         };
+        let there = |name: &String| value(prim, name.strip_prefix("!invert!").unwrap_or(name)).is_some();
+        tally.unmoved += order.iter().filter(|n| n.contains("xformOp:")).filter(|n| !there(n)).count() as u64;
         let moving = order.iter().filter(|n| n.contains("xformOp:")).any(moves);
         tally.add("animated_xforms", moving);
         tally.varying |= moving;
@@ -250,6 +250,7 @@ fn gprim(
     if !state.is_seen() {
         return Ok(());
     }
+    tally.wrong_extents += u64::from(!extent_holds(prim, &mesh.points));
     mesh.points.iter().for_each(|p| builder.extent.add(state.world.point(p.map(f64::from))));
     if state.prototype {
         return Ok(());
@@ -258,6 +259,16 @@ fn gprim(
         add(builder, prim, triangles, material, &state.world)?;
     }
     Ok(())
+}
+
+/// Tells whether the extent that a mesh says is that of its corners, when it says one.
+fn extent_holds(prim: &Prim, points: &[[f32; 3]]) -> bool {
+    let Some(said) = value(prim, "extent").and_then(super::value::threes).filter(|e| e.len() == 2) else { return true };
+    let mut found = Extent::default();
+    points.iter().for_each(|p| found.add(p.map(f64::from)));
+    let Some(found) = found.scaled(1.0) else { return true };
+    let size = (0..3).map(|i| found[1][i] - found[0][i]).fold(1e-9, f64::max);
+    (0..6).all(|i| (f64::from(said[i / 3][i % 3]) - found[i / 3][i % 3]).abs() <= 1e-3 * size)
 }
 
 /// Returns a mesh by materials: one part for each subset of faces with a material of its own, and one for the rest.
@@ -346,6 +357,12 @@ fn note(builder: &mut Builder, stage: &Stage, tally: Tally) {
     facts.feature("gprims", Feature::Counts(tally.gprims));
     if let Some(name) = stage.default_prim() {
         facts.feature("default_prim", Feature::Text(name.as_str().chars().take(200).collect()));
+    }
+    if tally.unmoved > 0 {
+        facts.warn(format!("{} transformations are named that are not there", tally.unmoved));
+    }
+    if tally.wrong_extents > 0 {
+        facts.warn(format!("{} meshes say another extent than their corners have", tally.wrong_extents));
     }
     if tally.broken > 0 {
         facts.warn(format!(

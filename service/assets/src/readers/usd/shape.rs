@@ -202,7 +202,16 @@ pub fn simple(prim: &Prim, kind: &str) -> (Option<Bounds>, Option<Triangles>) {
         }
         "Capsule_1" => {
             let ends = [number("radiusBottom", 0.5), number("radiusTop", 0.5)];
-            round(ends[0].max(ends[1]), number("height", 1.0) / 2.0, ends, true)
+            let half = number("height", 1.0) / 2.0;
+            // The domes go on along the slope of the side.
+            let slope = if half > 0.0 { (ends[0] - ends[1]) / (2.0 * half) } else { 0.0 };
+            let steep = slope.hypot(1.0);
+            let radius = ends[0].max(ends[1]) * steep;
+            let tips = [-half - ends[0] * (steep + slope), half + ends[1] * (steep - slope)];
+            let corner = |end: usize, side: f64| -> [f64; 3] {
+                std::array::from_fn(|i| if i == axis { tips[end] } else { side * radius })
+            };
+            (Some([corner(0, -1.0), corner(1, 1.0)]), round(radius, half, ends, true).1)
         }
         "Plane" => plane(number("width", 2.0) / 2.0, number("length", 2.0) / 2.0, axis),
         _ => (scattered(prim, kind), None),

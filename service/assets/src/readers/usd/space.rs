@@ -267,11 +267,12 @@ impl Resolver for Space {
         }
         let missing = || io::Error::new(io::ErrorKind::NotFound, "it is not there");
         let checked = self.with(plain(&name), guard::checked, MAX_FILE_BYTES).ok_or_else(missing)?;
-        let bytes = checked.map_err(|refusal| {
+        let checked = checked.map_err(|refusal| {
             self.note(&refusal.reason);
             io::Error::other(refusal.reason)
         })?;
-        Ok(Box::new(Cursor::new(bytes)))
+        checked.warning.into_iter().for_each(|w| self.note(w));
+        Ok(Box::new(Cursor::new(checked.bytes)))
     }
 
     fn identity(&self) -> String {

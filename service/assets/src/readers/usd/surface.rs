@@ -139,8 +139,14 @@ impl Surfaces {
         *self.worn.entry(material.as_str().to_owned()).or_default() += 1;
     }
 
-    /// Reads a material, each once.
+    /// Notes a material at its place in the scene, and reads it.
     pub fn material(&mut self, builder: &mut Builder, stage: &Stage, path: &Path) {
+        self.order.push(path.as_str().to_owned());
+        self.load(builder, stage, path);
+    }
+
+    /// Reads a material, each once.
+    fn load(&mut self, builder: &mut Builder, stage: &Stage, path: &Path) {
         if self.known.contains_key(path.as_str()) {
             return;
         }
@@ -174,20 +180,15 @@ impl Surfaces {
         }
         known.index = builder.materials.len();
         builder.materials.push(material);
-        self.order.push(path.as_str().to_owned());
         self.known.insert(path.as_str().to_owned(), known);
     }
 
     /// Returns the index of the material that a prim wears: the one it is bound to, or one of its display color.
     pub fn index(&mut self, builder: &mut Builder, prim: &Prim, bound: Option<&Path>) -> Option<usize> {
         if let Some(path) = bound {
-            if !self.known.contains_key(path.as_str()) {
-                let stage = prim.stage().clone();
-                // Materials may stand behind what wears them; the order of the facts is kept apart.
-                let order = self.order.clone();
-                self.material(builder, &stage, path);
-                self.order = order;
-            }
+            // Materials may stand behind what wears them.
+            let stage = prim.stage().clone();
+            self.load(builder, &stage, path);
             return self.known.get(path.as_str()).map(|k| k.index);
         }
         let colors = value(prim, "primvars:displayColor").and_then(threes)?;
