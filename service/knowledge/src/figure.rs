@@ -3,8 +3,8 @@
 use d3dgen_model::knowledge::{Constraint, Value};
 use serde_json::Value as Json;
 
-use d3dgen_model::expression;
 use crate::measure::Measure;
+use d3dgen_model::expression;
 
 /// Share by which an object may differ from the usual size that advice gives.
 const USUAL: f64 = 0.1;
