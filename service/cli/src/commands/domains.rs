@@ -109,6 +109,14 @@ fn validate(dirs: &[PathBuf]) -> Result<(), Error> {
     for folder in &folders {
         match Custom::read(folder) {
             Ok(plugin) => {
+                // A build can be well formed and yet not hold at a size of its objects.
+                let problems = d3dgen_mesh::builds::problems(plugin.domain());
+                if !problems.is_empty() {
+                    broken += 1;
+                    let lines: String = problems.iter().map(|p| format!("\n  {p}")).collect();
+                    eprintln!("{}: models cannot be made:{lines}", folder.display());
+                    continue;
+                }
                 let [room_types, programs, objects, constraints] = figures(&plugin);
                 let found = format!(
                     "{room_types} room types, {programs} programs, {objects} objects, {constraints} constraints"
