@@ -145,7 +145,7 @@ def check_sdf(file, box, joints):
     for inertia in root.iter("inertia"):
         xx, xy, xz, yy, yz, zz = (float(inertia.findtext(f"i{k}")) for k in ("xx", "xy", "xz", "yy", "yz", "zz"))
         a, b, c = sorted(np.linalg.eigvalsh([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]))
-        if a <= 0 or a + b < c * (1 - 1e-3):
+        if a <= 0 or a + b < c:
             yield f"has moments of inertia that no body has: {a}, {b}, {c}"
     links = {link.get("name") for link in model.findall("link")}
     points = []

@@ -1,6 +1,9 @@
 //! The folder of a model as Arena and others read it: ASA annotation, USDZ, GLB, SDF with its meshes. A model is made of
 //! a build, or one that an asset database keeps.
 
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, PoisonError};
+
 use d3dgen_mesh::{Library, Model3d, generate, writers};
 use d3dgen_model::domain::{Mount, ObjectType};
 use serde_json::{Value, json};
@@ -100,6 +103,33 @@ fn folder(domain: &str, name: &str, mut model: Model3d, annotation: &Value) -> R
         let own = if file.name == format!("{}.sdf", model.name) { format!("{name}.sdf") } else { file.name };
         files.push(File::new(format!("{folder}/{name}.sdf/{own}"), file.bytes));
     }
+    Ok(files)
+}
+
+/// Models that are remembered for the next world: a few hundred objects of about 0.1 MB.
+const REMEMBERED: usize = 256;
+
+/// Returns the files of a model made by the shipped builds; the last few hundred are remembered, as the next world of a domain
+/// uses mostly the same ones.
+///
+/// # Errors
+/// As [`files`].
+pub(crate) fn remembered_files(request: &ModelRequest<'_>) -> Result<Arc<Vec<File>>, Error> {
+    static MADE: Mutex<BTreeMap<String, Arc<Vec<File>>>> = Mutex::new(BTreeMap::new());
+    let object = serde_json::to_string(request.object).unwrap_or_default();
+    let key = format!(
+        "{}/{} {:?} {:?} {} {object}",
+        request.domain, request.name, request.size_m, request.mount, request.seed
+    );
+    if let Some(files) = MADE.lock().unwrap_or_else(PoisonError::into_inner).get(&key) {
+        return Ok(Arc::clone(files));
+    }
+    let files = Arc::new(files(Library::shipped(), request)?);
+    let mut made = MADE.lock().unwrap_or_else(PoisonError::into_inner);
+    if made.len() >= REMEMBERED {
+        made.clear();
+    }
+    made.insert(key, Arc::clone(&files));
     Ok(files)
 }
 

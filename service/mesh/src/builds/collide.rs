@@ -2,7 +2,7 @@
 
 use super::solids::Hull;
 use crate::Collision;
-use crate::affine::{Affine, Vec3, cross, dot, length, unit};
+use crate::affine::{Affine, Vec3, cross, dot, length, scale, sub, unit};
 
 /// Most convex shapes of one body.
 pub(super) const MOST: usize = 24;
@@ -57,10 +57,9 @@ fn turned(center: Vec3, half: Vec3, axes: [Vec3; 3]) -> Collision {
             max: std::array::from_fn(|k| center[k] + extent[k]),
         };
     }
-    let mut axes = axes;
-    if dot(cross(axes[0], axes[1]), axes[2]) < 0.0 {
-        axes[2] = axes[2].map(|v| -v);
-    }
+    // The fit to the size stretches by per milles, after which turned axes are not quite square to each other.
+    let second = unit(sub(axes[1], scale(axes[0], dot(axes[0], axes[1]))));
+    let axes = [axes[0], second, cross(axes[0], second)];
     Collision::TurnedBox { center, half, axes }
 }
 

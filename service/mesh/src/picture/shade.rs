@@ -6,6 +6,8 @@ use crate::Material;
 
 /// Direction of the light in the frame of the eye: from above left.
 const KEY: [f32; 3] = [-0.42, 0.62, 0.66];
+/// Cosine of the angle below which two normals are one.
+const SAME: f32 = 0.9996;
 /// Steps of nearness, in shares, that draw a line.
 const STEP: f32 = 0.008;
 
@@ -64,6 +66,8 @@ impl Light {
 pub(super) fn develop(samples: &Samples, lights: &[Light], px: usize, ground: Ground) -> Picture {
     let mut rgba = vec![0; px * px * 4];
     let table = Table::new();
+    // Samples side by side mostly belong to one flat face: the light of the last one is theirs too.
+    let mut last = (0_u16, [0.0_f32; 3], [0.0_f32; 3]);
     for y in 0..px {
         for x in 0..px {
             let (mut color, mut cover) = ([0.0_f32; 3], 0.0_f32);
@@ -79,9 +83,14 @@ pub(super) fn develop(samples: &Samples, lights: &[Light], px: usize, ground: Gr
                         continue;
                     }
                     let behind = match material.checked_sub(1) {
-                        Some(material) => {
+                        Some(index) => {
+                            let normal = samples.normal[at];
+                            let same = (0..3).map(|k| normal[k] * last.1[k]).sum::<f32>();
+                            if material != last.0 || same < SAME {
+                                last = (material, normal, lights[usize::from(index)].on(normal, &samples.up));
+                            }
                             let dark = line(samples, sx, sy);
-                            lights[usize::from(material)].on(samples.normal[at], &samples.up).map(|c| c * dark)
+                            last.2.map(|c| c * dark)
                         }
                         None => [0.0; 3],
                     };

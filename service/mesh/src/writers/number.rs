@@ -43,12 +43,13 @@ pub(super) fn n(value: f64) -> String {
     out
 }
 
-/// Returns a figure with six digits that count, for small ones such as inertias.
+/// Returns a figure with nine digits that count: the moments of a thin plate are a sum to the sixth digit, and simulators
+/// refuse moments that no body can have.
 pub(super) fn small(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return "0".to_owned();
     }
-    let digits = (6 - value.abs().log10().ceil() as i32).clamp(0, 15);
+    let digits = (9 - value.abs().log10().ceil() as i32).clamp(0, 18);
     let rounded = format!("{value:.*}", digits as usize);
     if rounded.contains('.') { rounded.trim_end_matches('0').trim_end_matches('.').to_owned() } else { rounded }
 }
@@ -70,9 +71,13 @@ mod tests {
         ] {
             assert_eq!(n(value), expected);
         }
-        for (value, expected) in
-            [(0.0, "0"), (1.0, "1"), (0.000000123456789, "0.000000123457"), (1234.5678, "1234.57"), (-0.02, "-0.02")]
-        {
+        for (value, expected) in [
+            (0.0, "0"),
+            (1.0, "1"),
+            (0.00000012345678912, "0.000000123456789"),
+            (1234.567891234, "1234.56789"),
+            (-0.02, "-0.02"),
+        ] {
             assert_eq!(small(value), expected);
         }
     }

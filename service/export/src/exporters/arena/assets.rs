@@ -77,18 +77,12 @@ impl Models {
     /// # Errors
     /// `Model` when a build of the domain cannot be made, `Kept` when the database cannot give a model.
     pub fn files(&self, root: &str, domain: &Domain, kept: &dyn KeptModels) -> Result<Vec<File>, Error> {
-        let own;
-        let library = if domain.builds.is_empty() {
-            Library::shipped()
-        } else {
-            own = Library::shipped().with(&domain.builds);
-            &own
-        };
+        let library = (!domain.builds.is_empty()).then(|| Library::shipped().with(&domain.builds));
         let mut files = Vec::new();
         for ((asset, _), model) in &self.by_asset {
             let own = match kept.model(asset)? {
                 Some(kept) => models::kept_files(&model.domain, &model.name, kept)?,
-                None => model.files(library, domain)?,
+                None => model.files(library.as_ref(), domain)?,
             };
             files.extend(own.into_iter().map(|f| File { path: format!("{root}/{}", f.path), ..f }));
         }
@@ -97,7 +91,7 @@ impl Models {
 }
 
 impl Model {
-    fn files(&self, library: &Library, domain: &Domain) -> Result<Vec<File>, Error> {
+    fn files(&self, own: Option<&Library>, domain: &Domain) -> Result<Vec<File>, Error> {
         let unknown;
         let object = match domain.object(&self.object) {
             Some(object) => object,
@@ -114,7 +108,10 @@ impl Model {
             mount: self.mount,
             seed: 0,
         };
-        models::files(library, &request)
+        match own {
+            Some(library) => models::files(library, &request),
+            None => Ok(models::remembered_files(&request)?.to_vec()),
+        }
     }
 }
 
