@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::OnceLock;
 
+use d3dgen_assets::annotation::Annotation;
 use d3dgen_model::document::Document;
 use d3dgen_model::domain::Domain;
 use d3dgen_model::floorplan::Floorplan;
@@ -38,6 +39,7 @@ pub fn schemas() -> Vec<(PathBuf, String)> {
         entry::<Scenario>(),
         entry::<World>(),
         entry::<Report>(),
+        entry::<Annotation>(),
     ]
 }
 

@@ -20,7 +20,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("export", &["model", "mesh"]),
     ("research", &["model", "llm"]),
     ("cli", &["model", "store", "llm", "plugins", "knowledge", "mesh", "assets", "pipeline", "export", "research"]),
-    ("tests", &["model", "plugins", "knowledge", "pipeline", "export"]),
+    ("tests", &["model", "assets", "plugins", "knowledge", "pipeline", "export"]),
 ];
 
 /// Other people's file formats and protocols, and the crates that may know them.

@@ -63,7 +63,7 @@ impl Dice {
 
 fn made_up(base: &[Annotation], i: usize, dice: &mut Dice) -> Annotation {
     let mut a = dice.pick(base).clone();
-    let (look, color, scale) = (dice.pick(LOOKS), dice.pick(COLORS), 0.8 + dice.roll(400) as f64 / 1000.0);
+    let (look, color, scale) = (dice.pick::<&str>(LOOKS), dice.pick(COLORS), 0.8 + dice.roll(400) as f64 / 1000.0);
     a.name = format!("{look} {}", a.name.to_lowercase());
     a.asset_id = format!("Office/{look}_{}_{i}", a.object.clone().unwrap_or_default());
     a.size_m = a.size_m.map(|v| (v * scale * 1e6).round() / 1e6);
@@ -111,7 +111,7 @@ fn main() {
             let text = question
                 .replace("{n}", &a.name.to_lowercase())
                 .replace("{c}", dice.pick(COLORS).0)
-                .replace("{l}", dice.pick(LOOKS))
+                .replace("{l}", dice.pick::<&str>(LOOKS))
                 .replace("{r}", &room.to_lowercase());
             let query = SearchQuery { text: text.clone(), limit: 10, one_per_object: true, ..SearchQuery::default() };
             let begun = Instant::now();

@@ -39,7 +39,7 @@ pub struct Subject<'a> {
 }
 
 /// Confidence from which the name and size tell the object.
-const SURE: f64 = 0.3;
+const SURE: f64 = 0.2;
 /// Words of materials, in names of materials and in tags, and the word that is kept.
 const MATERIALS: &[(&str, &str)] = &[
     ("wood", "wood"),
@@ -160,20 +160,12 @@ fn map(model: &Model3d, verdict: &Verdict<'_>) -> Option<Map> {
     Some(map)
 }
 
-/// Returns the names of a model as words, the most telling first.
+/// Returns the names of a model as words, the most telling first. Names of its parts and materials are about other things
+/// too, so they never say how large it is.
 fn names(subject: &Subject<'_>) -> Vec<Vec<String>> {
-    let model = subject.model;
     let given = subject.around.metadata.as_ref().and_then(|a| a.name.as_deref());
-    let around = &subject.around;
-    let parts = model.bodies.iter().flat_map(|b| b.visuals.iter().map(|v| v.name.as_str()).chain([b.name.as_str()]));
-    let all = given
-        .into_iter()
-        .chain([subject.stem])
-        .chain(around.folders.iter().map(String::as_str))
-        .chain(around.description.as_deref())
-        .chain([model.name.as_str()])
-        .chain(parts.take(32))
-        .chain(model.materials.iter().map(|m| m.name.as_str()).take(16));
+    let folders = subject.around.folders.iter().map(String::as_str);
+    let all = given.into_iter().chain([subject.stem]).chain(folders).chain(subject.around.description.as_deref());
     let mut names: Vec<Vec<String>> = Vec::new();
     for name in all {
         let split = words::split(name);

@@ -87,7 +87,9 @@ fn named(question: &Question, a: &Annotation, object: Option<&CatalogObject>) ->
         let share = |from: &[String]| (term.len() as f64 / from.len().max(1) as f64).min(1.0);
         // Other names are a little less sure than its own.
         let sure = if place < 3 { 1.0 } else { 0.92 };
-        let weight = if together(head) {
+        let weight = if term.len() == question.words.len() && together(&question.words) {
+            sure
+        } else if together(head) {
             let ends = head.last().is_some_and(|last| term.last() == Some(last) || *last == whole);
             sure * share(head) * if ends { 1.0 } else { 0.6 }
         } else if together(&question.words) {
