@@ -105,9 +105,9 @@ impl Inertia {
             }
             let angle = 0.5 * (2.0 * m[p][q]).atan2(m[q][q] - m[p][p]);
             let (sin, cos) = angle.sin_cos();
-            for k in 0..3 {
-                let (a, b) = (m[k][p], m[k][q]);
-                (m[k][p], m[k][q]) = (cos * a - sin * b, sin * a + cos * b);
+            for row in &mut m {
+                let (a, b) = (row[p], row[q]);
+                (row[p], row[q]) = (cos * a - sin * b, sin * a + cos * b);
             }
             for k in 0..3 {
                 let (a, b) = (m[p][k], m[q][k]);

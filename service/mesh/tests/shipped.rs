@@ -1,5 +1,7 @@
 //! Every object of every shipped domain, at every size it comes in, has a sound model by its own build.
 
+#![allow(clippy::unwrap_used)] // helpers of tests are tests
+
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 

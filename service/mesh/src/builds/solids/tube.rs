@@ -74,7 +74,7 @@ fn sweep(line: &[Vec3], radius: f64, sides: usize, closed: bool) -> Surface {
     let mut side = unit(sub(side, scale(first, dot(side, first))));
     let mut rings: Vec<Vec<Vec3>> = Vec::new();
     let mut normals: Vec<Vec<Vec3>> = Vec::new();
-    for i in 0..count {
+    for (i, middle) in line.iter().enumerate() {
         let before = if i > 0 { Some(direction(i - 1)) } else { closed.then(|| direction(count - 1)) };
         let after = if i < pieces { Some(direction(i)) } else { None };
         let along = before.or(after).unwrap_or(first);
@@ -93,7 +93,7 @@ fn sweep(line: &[Vec3], radius: f64, sides: usize, closed: bool) -> Surface {
             let out = add(scale(side, clean(cos)), scale(up, clean(sin)));
             // Slides the corner along the bar onto the miter plane.
             let slide = -dot(out, miter) * radius / stretch;
-            ring.push(add(line[i], add(scale(out, radius), scale(along, slide))));
+            ring.push(add(*middle, add(scale(out, radius), scale(along, slide))));
             normal.push(unit(sub(out, scale(miter, dot(out, miter)))));
         }
         rings.push(ring);
