@@ -5,6 +5,8 @@
 //! The readers of this crate must not panic; the library that reads USD may, as long as its process is all that suffers.
 //! A change that a reader does not survive is written to `target/fuzz/` with the name of its reader and its seed.
 
+mod packing;
+
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -132,9 +134,9 @@ fn copy(from: &Path, to: &Path) {
 fn packed(ending: &str, path: &Path) -> Vec<u8> {
     let bytes = std::fs::read(path).expect("the models are there");
     match ending {
-        "glb" => glb(&bytes),
+        "glb" => packing::glb(&bytes),
         "usdc" => binary(path),
-        "usdz" => zip("chair.usda", &bytes),
+        "usdz" => packing::zip(&[("chair.usda", &bytes)]),
         _ => bytes,
     }
 }
@@ -147,29 +149,6 @@ fn binary(path: &Path) -> Vec<u8> {
     let mut out = std::io::Cursor::new(Vec::new());
     usdc::CrateWriter::write(layer.as_ref(), &mut out).expect("memory takes bytes");
     out.into_inner()
-}
-
-fn glb(json: &[u8]) -> Vec<u8> {
-    let mut json = json.to_vec();
-    json.resize(json.len().next_multiple_of(4), b' ');
-    let word = |v: usize| (v as u32).to_le_bytes();
-    [b"glTF".as_slice(), &word(2), &word(json.len() + 20), &word(json.len()), b"JSON", &json].concat()
-}
-
-fn zip(name: &str, content: &[u8]) -> Vec<u8> {
-    let mut crc = flate2::Crc::new();
-    crc.update(content);
-    let (crc, size) = (crc.sum().to_le_bytes(), (content.len() as u32).to_le_bytes());
-    let length = (name.len() as u16).to_le_bytes();
-    let pad = 64 - 30 - name.len();
-    let common = [[0, 0, 0, 0].as_slice(), &[0, 0, 33, 0], &crc, &size, &size, &length].concat();
-    let local =
-        [b"PK\x03\x04\x14\0".as_slice(), &common, &(pad as u16).to_le_bytes(), name.as_bytes(), &vec![0; pad], content];
-    let local = local.concat();
-    let entry = [b"PK\x01\x02\x14\0\x14\0".as_slice(), &common, &[0; 16], name.as_bytes()].concat();
-    let (entry_size, start) = ((entry.len() as u32).to_le_bytes(), (local.len() as u32).to_le_bytes());
-    let end = [b"PK\x05\x06\0\0\0\0\x01\0\x01\0".as_slice(), &entry_size, &start, &[0, 0]].concat();
-    [local, entry, end].concat()
 }
 
 /// Changes bytes at random: cut, flipped, spliced, doubled, and numbers exchanged for those that break things.

@@ -1,6 +1,8 @@
 //! Small models with known figures; those of USD, glTF, OBJ and COLLADA were also found by the tools of others
 //! (`usd-core`, `pycollada`, `trimesh`), but for what these leave out.
 
+mod packing;
+
 use std::path::{Path, PathBuf};
 
 use d3dgen_assets::readers::{Bounds, Facts, Feature, ReadModel, Refusal, all, read};
@@ -132,6 +134,40 @@ fn sdf_has_links_poses_scales_and_joints() {
     assert_eq!((joint.kind, joint.parent, joint.child, joint.limits), (JointKind::Prismatic, 0, 1, Some([0.0, 0.4])));
     assert_eq!(joint.origin, [0.1, 0.0, 0.2]);
     assert_eq!(joint.axis, [1.0, 0.0, 0.0]);
+}
+
+#[test]
+fn packages_hold_their_files_and_nothing_else() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("chair.usdz");
+    let chair = std::fs::read(models().join("chair.usda")).unwrap();
+    let result = |files: &[(&str, &[u8])]| {
+        std::fs::write(&path, packing::zip(files)).unwrap();
+        read(&path, None)
+    };
+    let picture: &[u8] = b"\x89PNG\r\n\x1a\n and so on";
+    let whole = result(&[("chair.usda", &chair), ("cloth.png", picture)]).unwrap();
+    assert_eq!((whole.facts.format.as_str(), whole.facts.triangle_count), ("usdz", 12));
+    assert!(whole.facts.textures[0].resolves);
+    assert_eq!(whole.model.textures[0].bytes.as_deref(), Some(picture));
+    // A package in a package, and a layer beside the root.
+    let inner = packing::zip(&[("shelf.usda", &std::fs::read(models().join("shelf.usda")).unwrap())]);
+    let root = b"#usda 1.0\n(upAxis = \"Z\"\nmetersPerUnit = 1)\ndef \"R\" (references = @./parts/inner.usdz@) {}\n";
+    let nested = result(&[("root.usda", root), ("parts/inner.usdz", &inner)]).unwrap();
+    near(nested.facts.bbox_zup, [[-0.5, -0.15, -0.01], [0.5, 0.15, 0.01]]);
+    for (files, reason) in [
+        (&[("a.png", picture), ("chair.usda", &chair)][..], "no USD layer"),
+        (&[("chair.usda", &chair), ("../evil.png", picture)], "leads out of it"),
+        (&[("chair.usda", &chair), ("/tmp/evil.png", picture)], "leads out of it"),
+        (&[], "empty"),
+    ] {
+        let refusal = result(files).unwrap_err();
+        assert!(refusal.reason.contains(reason), "{refusal}");
+    }
+    let mut cut = packing::zip(&[("chair.usda", &chair)]);
+    cut.truncate(cut.len() / 2);
+    std::fs::write(&path, cut).unwrap();
+    assert!(read(&path, None).unwrap_err().reason.contains("cut off"));
 }
 
 #[test]

@@ -222,6 +222,9 @@ fn note(builder: &mut Builder, document: &Document, places: &[(&Node, Matrix)]) 
         }
     }
     let primitives = || document.meshes.iter().flat_map(|m| &m.primitives);
+    if document.extensions_used.iter().any(|e| e == "EXT_mesh_gpu_instancing") {
+        facts.warn("repeats meshes by EXT_mesh_gpu_instancing; each is read once");
+    }
     let flag = |f: bool| Feature::Flag(f);
     facts.feature("animated", Feature::Count(document.animations.len() as u64));
     facts.feature("skel", flag(!document.skins.is_empty()));
