@@ -1,5 +1,7 @@
 //! Models in the packings of their formats, for tests.
 
+#![allow(dead_code, reason = "each test uses some of it")]
+
 /// Returns JSON as a GLB without a binary chunk.
 pub fn glb(json: &[u8]) -> Vec<u8> {
     let mut json = json.to_vec();

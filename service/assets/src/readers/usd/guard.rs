@@ -115,6 +115,11 @@ fn nesting(text: &[u8]) -> Result<Vec<Range<usize>>, Refusal> {
             b'}' | b')' | b']' => depth = depth.saturating_sub(1),
             b'#' => at += text.get(at..).unwrap_or_default().iter().take_while(|b| **b != b'\n').count(),
             b'"' | b'\'' | b'@' => at = string_end(text, at, byte),
+            b'<' => {
+                let rest = text.get(at..).unwrap_or_default();
+                let end = rest.iter().position(|b| matches!(b, b'>' | b'\n'));
+                at += end.filter(|end| rest[*end] == b'>').ok_or("a path in a layer of it is not closed")?;
+            }
             b'/' if matches!(text.get(at), Some(b'/' | b'*')) => {
                 let end: &[u8] = if text.get(at) == Some(&b'/') { b"\n" } else { b"*/" };
                 let rest = text.get(at + 1..).unwrap_or_default();
