@@ -9,7 +9,7 @@
 ///
 /// What is wrong with the bytes.
 pub fn attributes(data: &[u8], count: usize, stride: usize) -> Result<Vec<u8>, String> {
-    if stride == 0 || stride > 256 || stride % 4 != 0 {
+    if stride == 0 || stride > 256 || !stride.is_multiple_of(4) {
         return Err(format!("a stride of {stride} bytes is not allowed"));
     }
     match data.first() {
@@ -107,7 +107,7 @@ pub fn triangles(data: &[u8], count: usize) -> Result<Vec<u32>, String> {
         Some(byte @ (0xe0 | 0xe1)) => byte & 15,
         _ => return Err("does not begin as meshopt triangles do".into()),
     };
-    if count % 3 != 0 {
+    if !count.is_multiple_of(3) {
         return Err(format!("{count} indices are no whole triangles"));
     }
     let codes = data.get(1..1 + count / 3).ok_or(CUT)?;

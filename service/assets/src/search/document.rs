@@ -3,7 +3,7 @@
 use d3dgen_store::index::{Document, IndexSpec};
 
 use crate::annotation::asa::mount_name;
-use crate::annotation::{Annotation, Origin};
+use crate::annotation::{Annotation, Basis, Origin};
 use crate::catalog::{Catalog, CatalogObject};
 
 /// Facets to filter by.
@@ -26,14 +26,7 @@ pub const NUMBERS: [&str; 6] = ["width", "depth", "height", "triangles", "mass",
 
 /// Returns the fields of the index.
 pub(super) fn spec() -> IndexSpec {
-    IndexSpec::default()
-        .field("name", 4.0)
-        .field("names", 3.0)
-        .field("purpose", 2.0)
-        .field("tags", 1.2)
-        .field("description", 0.6)
-        .facets(&FACETS)
-        .numbers(&NUMBERS)
+    IndexSpec::default().field("name", 3.5).field("text", 1.5).facets(&FACETS).numbers(&NUMBERS)
 }
 
 /// Returns the entry of an asset.
@@ -43,20 +36,21 @@ pub fn document(key: &str, a: &Annotation, catalog: &Catalog) -> Document {
     let name = a.asset_id.rsplit('/').next().unwrap_or_default();
     let names = object.map(|o| format!("{}, {}, {}", o.label, join(&o.names), join(&o.foreign_names)));
     let colors: Vec<String> = a.palette.iter().map(|s| s.name.clone()).collect();
-    let rooms: Vec<String> = a.room_types.iter().filter_map(|r| catalog.room_label(r)).map(str::to_owned).collect();
-    let tags = [join(&a.tags), a.kind.clone(), join(&a.affordances), join(&a.materials), join(&colors), join(&rooms)];
+    let tags = [join(&a.tags), a.kind.clone(), join(&a.affordances), join(&a.materials), join(&colors)];
+    // What a description says beside a person's own words stands in the other fields; rooms are compared afterwards.
+    let given = matches!(a.basis.get("description"), Some(Basis::Given)) || object.is_none();
+    let description = if given { a.description.as_str() } else { "" };
+    let purpose = object.map(|o| o.purpose.as_str()).unwrap_or_default();
     let [width, depth, height] = a.width_depth_height();
     let origin = match a.origin {
         Origin::Ingested { .. } => "ingested",
         Origin::Generated { .. } => "generated",
         Origin::Library { .. } => "library",
     };
+    let own_name = crate::words::split(name).join(" ");
     let texts = [
-        ("name", format!("{} {}", a.name, crate::words::split(name).join(" "))),
-        ("names", names.unwrap_or_default()),
-        ("purpose", object.map(|o| o.purpose.clone()).unwrap_or_default()),
-        ("tags", tags.join(" ")),
-        ("description", a.description.clone()),
+        ("name", format!("{} {own_name}, {}", a.name, names.unwrap_or_default())),
+        ("text", format!("{purpose}. {}. {description}", tags.join(" "))),
     ];
     let facets = [
         ("domain", a.domains.clone()),

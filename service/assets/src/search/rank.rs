@@ -81,7 +81,7 @@ fn named(question: &Question, a: &Annotation, object: Option<&CatalogObject>) ->
         let together = |from: &[String]| {
             let have: BTreeSet<&str> = from.iter().map(String::as_str).collect();
             !term.is_empty() && term.iter().all(|w| have.contains(w.as_str()))
-                || from.iter().any(|w| *w == whole)
+                || from.contains(&whole)
                 || from.windows(2).any(|p| p.concat() == whole)
         };
         let share = |from: &[String]| (term.len() as f64 / from.len().max(1) as f64).min(1.0);
