@@ -19,6 +19,8 @@ pub struct Catalog {
     /// First word, or the whole joined, of each name -> object and name.
     names: BTreeMap<String, Vec<(usize, usize)>>,
     labels: BTreeMap<String, String>,
+    /// The words of each, singular.
+    label_words: BTreeMap<String, Vec<String>>,
 }
 
 /// One object under all its names, of all domains that have it.
@@ -86,6 +88,8 @@ impl Catalog {
                 catalog.add(domain, object, rooms.get(object.id.as_str()));
             }
         }
+        catalog.label_words =
+            catalog.labels.iter().map(|(id, label)| (id.clone(), singular_words(label).collect())).collect();
         for (index, object) in catalog.objects.iter_mut().enumerate() {
             object.finish(&catalog.labels);
             for (at, term) in object.terms.iter().enumerate() {
@@ -111,9 +115,9 @@ impl Catalog {
         self.labels.get(room_type).map(String::as_str)
     }
 
-    /// Returns the ids of all room types.
-    pub fn room_types(&self) -> impl Iterator<Item = &str> {
-        self.labels.keys().map(String::as_str)
+    /// Returns the ids of all room types with the words of their names, singular.
+    pub fn room_types(&self) -> impl Iterator<Item = (&str, &[String])> {
+        self.label_words.iter().map(|(id, words)| (id.as_str(), words.as_slice()))
     }
 
     /// Returns what a name may mean, best first: objects of which one name is wholly in it.

@@ -76,7 +76,7 @@ pub struct AssetIndex {
 
 /// Candidates looked at for each asset asked for, and at least.
 const DEEPER: usize = 4;
-const DEPTH_LEAST: usize = 80;
+const DEPTH_LEAST: usize = 48;
 
 impl AssetIndex {
     /// Makes an index in memory.

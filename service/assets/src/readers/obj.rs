@@ -63,8 +63,10 @@ pub fn fill(builder: &mut Builder, bytes: &[u8], folder: &Folder, place: &Matrix
     let text = parse(&String::from_utf8_lossy(bytes))?;
     note(builder, &text, place);
     let worn = materials(builder, &text, folder);
+    /// Where in a piece a corner stands that is a point with a texture coordinate.
+    type Corners = BTreeMap<(u32, u32), u32>;
     // One piece a material, with the corners it uses.
-    let mut pieces: BTreeMap<usize, (Piece, BTreeMap<(u32, u32), u32>)> = BTreeMap::new();
+    let mut pieces: BTreeMap<usize, (Piece, Corners)> = BTreeMap::new();
     for (corners, material) in &text.corners {
         let (piece, index) = pieces.entry(*material).or_default();
         let triangle = corners.map(|corner| {

@@ -151,12 +151,9 @@ impl Question {
         };
         (question.colors, question.materials) = (named(COLORS), named(MATERIALS));
         let have: BTreeSet<&str> = question.words.iter().map(String::as_str).collect();
-        let in_question = |label: &str| {
-            let label: Vec<String> = words::split(label).iter().map(|w| words::singular(w)).collect();
-            !label.is_empty() && label.iter().all(|w| have.contains(w.as_str()))
-        };
-        let rooms = catalog.room_types().filter(|r| catalog.room_label(r).is_some_and(in_question));
-        question.room_types = rooms.map(str::to_owned).collect();
+        let named = |words: &[String]| !words.is_empty() && words.iter().all(|w| have.contains(w.as_str()));
+        let rooms = catalog.room_types().filter(|(_, words)| named(words)).map(|(room, _)| room.to_owned());
+        question.room_types = rooms.collect();
         question
     }
 
