@@ -208,7 +208,7 @@ fn change(bytes: &mut Vec<u8>, seeds: &[Vec<u8>], random: &mut ChaCha8Rng) {
             // One of the numbers of the text.
             let digit = |b: &u8| b.is_ascii_digit();
             let from = pick(length);
-            if let Some(at) = bytes.iter().skip(from).position(|b| digit(b)).map(|p| p + from) {
+            if let Some(at) = bytes.iter().skip(from).position(digit).map(|p| p + from) {
                 let rest = bytes[at..].iter().take_while(|b| digit(b) || **b == b'.').count();
                 let number = NUMBERS[pick(NUMBERS.len())];
                 bytes.splice(at..at + rest, number.bytes());
