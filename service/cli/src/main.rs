@@ -2,7 +2,6 @@
 //!
 //! What it is not for: deciding anything about buildings. Commands read documents, call a stage, write what comes back.
 
-mod assets;
 mod bundle;
 mod cli;
 mod commands;

@@ -30,7 +30,7 @@ impl RegistryArgs {
         let own_rules: Vec<String> =
             folders.filter(|p| !p.knowledge().references.is_empty()).map(|p| p.id().to_owned()).collect();
         self.store.overlay(&mut registry, &own_rules)?;
-        crate::assets::stock(&mut registry, &self.store)?;
+        crate::commands::assets::stock(&mut registry, &self.store)?;
         Ok(registry)
     }
 

@@ -4,7 +4,7 @@ use d3dgen_export::exporters::{self, File, plan};
 use d3dgen_model::domain::Domain;
 use d3dgen_model::world::World;
 
-use crate::assets::Kept;
+use super::assets::Kept;
 use crate::database::StoreArgs;
 use crate::error::Error;
 use crate::interrupt;

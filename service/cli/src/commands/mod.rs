@@ -1,5 +1,6 @@
 //! The commands, one file each; the order here is the order of the help.
 
+pub mod assets;
 mod check;
 mod completions;
 mod domains;
@@ -47,9 +48,9 @@ pub enum Command {
     /// Search, change and look after the database of building rules
     Knowledge(knowledge::Args),
     /// Look into files of 3D models, and look after the database of them
-    Assets(crate::assets::Args),
+    Assets(assets::Args),
     /// Put a folder of models into the asset database; as `assets ingest`
-    Ingest(crate::assets::ingest::Command),
+    Ingest(assets::ingest::Command),
     /// Print a completion script for a shell
     Completions(completions::Args),
     /// Print the version, and the versions of the documents it reads

@@ -79,7 +79,8 @@ impl RemoveArgs {
             }
         }
         let (own, objects): (Vec<String>, Vec<String>) = (own.into_iter().collect(), objects.into_iter().collect());
-        if !self.dry_run && !(own.is_empty() && objects.is_empty()) {
+        let some = !own.is_empty() || !objects.is_empty();
+        if some && !self.dry_run {
             open(&self.registry.store)?.remove(&own, &objects, &by(None, &self.why))?;
         }
         if self.json {
