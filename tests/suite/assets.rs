@@ -91,7 +91,7 @@ fn models_come_in_are_found_and_go() {
     assert_eq!(found[0]["asset_id"], "Office/Desk_Oslo");
     assert!(!found[0]["reasons"].as_array().expect("a list").is_empty());
     let chair: Value =
-        serde_json::from_str(&home.ok(&["assets", "show", "Residential/dining_chair", "--json"])).expect("JSON");
+        serde_json::from_str(&home.ok(&["assets", "show", "Office/dining_chair", "--json"])).expect("JSON");
     assert_eq!(chair["size_m"], serde_json::json!([0.44, 0.5, 0.88]));
     assert_eq!((&chair["changes"][0]["what"], &chair["basis"]["kind"]), (&"unit".into(), &"given".into()));
     assert!(chair["description"].as_str().expect("a text").starts_with("A chair of kings."));

@@ -266,7 +266,15 @@ mod read_only {
         if fs::metadata(home).unwrap().uid() == 0 {
             command.uid(STRANGER).gid(STRANGER);
         }
-        let output = command.output().unwrap();
+        // A process that another test started meanwhile holds the copy open until it runs its own program.
+        let output = loop {
+            match command.output() {
+                Err(e) if e.kind() == std::io::ErrorKind::ExecutableFileBusy => {
+                    std::thread::sleep(std::time::Duration::from_millis(5));
+                }
+                output => break output.unwrap(),
+            }
+        };
         let said = String::from_utf8_lossy(&output.stdout).into_owned();
         assert!(output.status.success(), "{said}{}", String::from_utf8_lossy(&output.stderr));
         said
