@@ -137,7 +137,7 @@ fn fill(
 ) -> Result<(), Refusal> {
     let places = places(document, place)?;
     let first = builder.materials.len();
-    note(builder, document, &places)?;
+    note(builder, document, buffers, &places)?;
     let unknown: Vec<&str> =
         document.extensions_required.iter().map(String::as_str).filter(|e| !understood(e)).collect();
     surfaces(builder, document, buffers);
@@ -198,7 +198,12 @@ fn places<'d>(document: &'d Document, place: &Matrix) -> Result<Vec<(&'d Node, M
     Ok(out)
 }
 
-fn note(builder: &mut Builder, document: &Document, places: &[(&Node, Matrix)]) -> Result<(), Refusal> {
+fn note(
+    builder: &mut Builder,
+    document: &Document,
+    buffers: &Buffers,
+    places: &[(&Node, Matrix)],
+) -> Result<(), Refusal> {
     let facts = &mut builder.facts;
     let used: BTreeSet<usize> = places.iter().filter_map(|(n, _)| n.mesh).collect();
     facts.mesh_count += places.len() as u64;
@@ -207,9 +212,7 @@ fn note(builder: &mut Builder, document: &Document, places: &[(&Node, Matrix)]) 
         skinned += u64::from(node.skin.is_some());
         for primitive in node.mesh.and_then(|m| document.meshes.get(m)).map_or(&[][..], |m| &m.primitives) {
             morphs += u64::from(!primitive.targets.is_empty());
-            let count = |index: usize| {
-                document.accessors.get(index).map(|a| a.count).ok_or("names an accessor that is not there")
-            };
+            let count = |index: usize| buffers.accessor(index).map(|a| a.count);
             let corners = match (primitive.indices, primitive.attributes.get("POSITION")) {
                 (Some(index), _) | (None, Some(&index)) => count(index)?,
                 (None, None) => 0,

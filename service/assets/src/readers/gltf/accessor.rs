@@ -140,7 +140,8 @@ impl<'a> Buffers<'a> {
         });
         let stride = stride.filter(|s| *s > 0).unwrap_or(size * width);
         let bytes = self.view(view)?;
-        let needed = count.saturating_sub(1).checked_mul(stride).and_then(|n| n.checked_add(offset + size * width));
+        let needed =
+            count.saturating_sub(1).checked_mul(stride).and_then(|n| n.checked_add(offset)?.checked_add(size * width));
         if count > 0 && needed.is_none_or(|n| n > bytes.len()) {
             return Err(format!("reads {count} items past the end of buffer view {view}").into());
         }
@@ -208,7 +209,12 @@ impl<'a> Buffers<'a> {
         Ok(out)
     }
 
-    fn accessor(&self, index: usize) -> Result<&'a Accessor, Refusal> {
+    /// Returns an accessor whose items fit into its buffer view.
+    ///
+    /// # Errors
+    ///
+    /// When it is not there, or says that it has more items than there can be.
+    pub fn accessor(&self, index: usize) -> Result<&'a Accessor, Refusal> {
         let accessor = self.document.accessors.get(index);
         let accessor = accessor.ok_or_else(|| format!("names accessor {index}, which is not there"))?;
         // Without a view all is 0, so that a short text could ask for any amount of memory.
