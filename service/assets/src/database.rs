@@ -85,6 +85,14 @@ impl Database {
         Ok(get::<AssetRecord>(&self.store.view()?, ASSETS, asset_id)?.map(|r| r.annotation))
     }
 
+    /// Returns how many assets are kept here.
+    ///
+    /// # Errors
+    /// `Store`.
+    pub fn count(&self) -> Result<usize, Error> {
+        Ok(usize::try_from(self.store.count(ASSETS)?).unwrap_or(usize::MAX))
+    }
+
     /// Returns the ids of all assets kept here, sorted.
     ///
     /// # Errors

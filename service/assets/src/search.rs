@@ -13,7 +13,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use d3dgen_store::embed::Embedder;
-use d3dgen_store::index::{Document, Filter, Hit, Index, Mode, Opened, Reason, Watch};
+use d3dgen_store::index::{Document, Filter, Hit, Index, Mode, Opened, Reason, Take, Watch};
 use serde::Serialize;
 
 use crate::annotation::Annotation;
@@ -92,18 +92,20 @@ impl AssetIndex {
         Ok(Self { index, rebuilt: None, unsaved: None })
     }
 
-    /// Opens the index in a folder if it is of this revision, else makes it anew.
+    /// Opens the index in a folder if it is of this revision, else makes it anew of the about `expected` documents that
+    /// `feed` gives it.
     ///
     /// # Errors
-    /// `Store`; what `documents` returns.
-    pub fn open<D: IntoIterator<Item = Document>>(
+    /// `Store`; those of `feed`.
+    pub fn open(
         dir: &Path,
         embedder: Arc<dyn Embedder>,
         revision: u64,
-        documents: impl FnOnce() -> Result<D, Error>,
+        expected: usize,
+        feed: impl FnMut(Take<'_>) -> Result<(), Error>,
         watch: Watch<'_>,
     ) -> Result<Self, Error> {
-        let opened = Index::open_or_rebuild(dir, &document::spec(), embedder, revision, documents, watch)?;
+        let opened = Index::open_or_rebuild_from(dir, &document::spec(), embedder, revision, expected, feed, watch)?;
         let Opened { index, rebuilt, unsaved } = opened;
         Ok(Self { index, rebuilt, unsaved: unsaved.map(|e| e.to_string()) })
     }

@@ -1,10 +1,10 @@
 //! All assets as one: those kept in a database, if there is one, and the shipped library without what was removed.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use d3dgen_store::embed::Embedder;
-use d3dgen_store::index::{Document, Reason, Watch};
+use d3dgen_store::index::{Reason, Take, Watch};
 use sha2::{Digest, Sha256};
 
 use super::Database;
@@ -76,21 +76,31 @@ impl<'c> Shelf<'c> {
         Ok(all.filter(close).take(3).collect())
     }
 
-    /// Returns the entries of all assets for an index.
-    fn documents(&self) -> Result<Vec<Document>, Error> {
+    /// Gives the entries of all assets to an index, one by one.
+    fn documents(&self, take: Take<'_>) -> Result<(), Error> {
         let catalog = self.catalog();
-        let mut documents = Vec::new();
+        let mut own = BTreeSet::new();
         if let Some(database) = &self.database {
             database.each(|a| {
-                documents.push(document(&a.asset_id, &a, catalog));
+                take(document(&a.asset_id, &a, catalog))?;
+                // Only what hides an asset of the library has to be known afterwards.
+                if self.library.get(&a.asset_id).is_some() {
+                    own.insert(a.asset_id);
+                }
                 Ok(())
             })?;
         }
-        let own: std::collections::BTreeSet<String> = documents.iter().map(|d| d.key.clone()).collect();
         let assets = self.library.assets().filter(|a| !self.is_removed(&a.object.object_id));
-        let library = assets.map(|a| a.annotation(catalog)).filter(|a| !own.contains(&a.asset_id));
-        documents.extend(library.map(|a| document(&a.asset_id, &a, catalog)));
-        Ok(documents)
+        for asset in assets.map(|a| a.annotation(catalog)).filter(|a| !own.contains(&a.asset_id)) {
+            take(document(&asset.asset_id, &asset, catalog))?;
+        }
+        Ok(())
+    }
+
+    /// Returns how many assets there are at most: some of the library may be hidden by others of their name.
+    fn count(&self) -> Result<usize, Error> {
+        let own = self.database.as_ref().map(Database::count).transpose()?.unwrap_or_default();
+        Ok(own + self.library.assets().count())
     }
 
     /// Returns a number that changes with the database and with the objects of the domains.
@@ -134,9 +144,17 @@ impl<'c> Searcher<'c> {
         let index = match &shelf.database {
             Some(database) => {
                 let dir = database.store().index_dir().join("assets");
-                AssetIndex::open(&dir, embedder, shelf.revision()?, || shelf.documents(), watch)?
+                let feed = |take: Take<'_>| shelf.documents(take);
+                AssetIndex::open(&dir, embedder, shelf.revision()?, shelf.count()?, feed, watch)?
             }
-            None => AssetIndex::in_memory(embedder, shelf.documents()?, watch)?,
+            None => {
+                let mut documents = Vec::new();
+                shelf.documents(&mut |document| {
+                    documents.push(document);
+                    Ok(())
+                })?;
+                AssetIndex::in_memory(embedder, documents, watch)?
+            }
         };
         Ok(Self { shelf, index })
     }

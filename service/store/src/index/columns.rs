@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::document::{Document, IndexSpec, known};
 use super::filter::Filter;
 use super::row_set::RowSet;
-use crate::error::Result;
+use crate::error::{Error, Result};
 
 /// One row a document, in the order of the keys.
 #[derive(Debug, Default, Serialize, Deserialize)]
@@ -20,30 +20,58 @@ pub(crate) struct Columns {
 }
 
 impl Columns {
-    pub(crate) fn new(spec: &IndexSpec, documents: &[Document]) -> Self {
-        let mut columns = Self {
-            keys: documents.iter().map(|d| d.key.clone()).collect(),
+    pub(crate) fn new(spec: &IndexSpec) -> Self {
+        Self {
+            keys: Vec::new(),
             facets: spec.facets.iter().map(|f| (f.clone(), BTreeMap::new())).collect(),
-            numbers: spec.numbers.iter().map(|n| (n.clone(), vec![f64::NAN; documents.len()])).collect(),
-        };
-        for (row, document) in (0..).zip(documents) {
-            for (name, values) in &document.facets {
-                let Some(column) = columns.facets.get_mut(name) else { continue };
-                for value in values {
-                    let rows = column.entry(value.clone()).or_default();
-                    if rows.last() != Some(&row) {
-                        rows.push(row);
-                    }
-                }
-            }
-            for (name, &number) in &document.numbers {
-                let cell = columns.numbers.get_mut(name).and_then(|column| column.get_mut(row as usize));
-                if let Some(cell) = cell {
-                    *cell = number;
+            numbers: spec.numbers.iter().map(|n| (n.clone(), Vec::new())).collect(),
+        }
+    }
+
+    /// Adds a document as the last row.
+    pub(crate) fn push(&mut self, document: Document) {
+        let row = self.rows();
+        self.keys.push(document.key);
+        for (name, values) in document.facets {
+            let Some(column) = self.facets.get_mut(&name) else { continue };
+            for value in values {
+                let rows = column.entry(value).or_default();
+                if rows.last() != Some(&row) {
+                    rows.push(row);
                 }
             }
         }
-        columns
+        for (name, column) in &mut self.numbers {
+            column.push(document.numbers.get(name).copied().unwrap_or(f64::NAN));
+        }
+    }
+
+    /// Brings the rows into the order of their keys, and returns for each old row its new one.
+    ///
+    /// # Errors
+    /// [`Error::Index`] when two rows have one key.
+    pub(crate) fn sort_by_key(&mut self) -> Result<Vec<u32>> {
+        let mut order: Vec<u32> = (0..self.rows()).collect();
+        order.sort_by(|a, b| self.key(*a).cmp(&self.key(*b)));
+        let mut places = vec![0; order.len()];
+        for (place, row) in (0..).zip(&order) {
+            if let Some(cell) = places.get_mut(*row as usize) {
+                *cell = place;
+            }
+        }
+        self.keys.sort();
+        if let Some([twice, _]) = self.keys.array_windows().find(|[a, b]| a == b) {
+            return Err(Error::Index { what: format!("two documents have the key {twice}") });
+        }
+        for rows in self.facets.values_mut().flat_map(BTreeMap::values_mut) {
+            rows.iter_mut().for_each(|row| *row = places.get(*row as usize).copied().unwrap_or_default());
+            rows.sort_unstable();
+            rows.shrink_to_fit();
+        }
+        for column in self.numbers.values_mut() {
+            *column = order.iter().map(|row| column.get(*row as usize).copied().unwrap_or(f64::NAN)).collect();
+        }
+        Ok(places)
     }
 
     pub(crate) fn rows(&self) -> u32 {

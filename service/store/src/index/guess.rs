@@ -3,6 +3,7 @@
 
 use std::collections::BTreeMap;
 use std::io;
+use std::sync::OnceLock;
 
 use tantivy::termdict::TermDictionary;
 
@@ -16,14 +17,57 @@ const JOINTS: [&str; 5] = ["", "s", "n", "en", "es"];
 /// Most words that one is replaced with; the more frequent ones.
 const GUESSES_MOST: usize = 6;
 
+/// The words of all fields that a guess may end in, by their length in bytes, with how many documents have each.
+#[derive(Default)]
+pub(crate) struct Vocabulary {
+    by_length: Vec<BTreeMap<String, u32>>,
+}
+
+impl Vocabulary {
+    /// Reads the dictionaries through; numbers and codes are left out, nobody means them by a word.
+    pub(crate) fn new(dictionaries: &[&TermDictionary]) -> io::Result<Self> {
+        let mut vocabulary = Self::default();
+        for dictionary in dictionaries {
+            let mut terms = dictionary.stream()?;
+            while terms.advance() {
+                let Ok(term) = std::str::from_utf8(terms.key()) else { continue };
+                if !term.chars().all(char::is_alphabetic) {
+                    continue;
+                }
+                if vocabulary.by_length.len() <= term.len() {
+                    vocabulary.by_length.resize_with(term.len() + 1, BTreeMap::new);
+                }
+                if let Some(words) = vocabulary.by_length.get_mut(term.len()) {
+                    *words.entry(term.to_owned()).or_default() += terms.value().doc_freq;
+                }
+            }
+        }
+        Ok(vocabulary)
+    }
+
+    /// Returns the most frequent words one slip away. The first letter may be wrong too, so all words of about this
+    /// length are looked at.
+    fn similar(&self, text: &str) -> Vec<String> {
+        let wanted: Vec<char> = text.chars().collect();
+        // One letter is at most four bytes.
+        let lengths = text.len().saturating_sub(4)..(text.len() + 5).min(self.by_length.len());
+        let words = self.by_length.get(lengths).unwrap_or_default().iter().flatten();
+        let mut found: Vec<(&String, &u32)> = words.filter(|(term, _)| one_slip(&wanted, term)).collect();
+        found.sort_by(|a, b| b.1.cmp(a.1).then_with(|| a.0.cmp(b.0)));
+        found.into_iter().take(GUESSES_MOST).map(|(term, _)| term.clone()).collect()
+    }
+}
+
 /// Looks words up in the dictionaries of all fields.
 pub(crate) struct Guesser<'a> {
     dictionaries: Vec<&'a TermDictionary>,
+    vocabulary: &'a OnceLock<Vocabulary>,
 }
 
 impl<'a> Guesser<'a> {
-    pub(crate) fn new(dictionaries: Vec<&'a TermDictionary>) -> Self {
-        Self { dictionaries }
+    /// `vocabulary` is filled when the first word has to be guessed: most questions need none.
+    pub(crate) fn new(dictionaries: Vec<&'a TermDictionary>, vocabulary: &'a OnceLock<Vocabulary>) -> Self {
+        Self { dictionaries, vocabulary }
     }
 
     pub(crate) fn occurs(&self, term: &str) -> io::Result<bool> {
@@ -41,33 +85,15 @@ impl<'a> Guesser<'a> {
         if text.chars().count() < SHORTEST_FUZZY || !text.chars().all(char::is_alphabetic) {
             return Ok(Vec::new());
         }
-        let similar = self.similar(text)?;
-        if similar.is_empty() { self.parts(text) } else { Ok(similar) }
-    }
-
-    /// Returns the most frequent terms one slip away. The first letter may be wrong too, so all terms are looked at:
-    /// some 10,000 a millisecond, and only for words that no document has.
-    fn similar(&self, text: &str) -> io::Result<Vec<String>> {
-        let wanted: Vec<char> = text.chars().collect();
-        let mut found: BTreeMap<String, u32> = BTreeMap::new();
-        for dictionary in &self.dictionaries {
-            let mut terms = dictionary.stream()?;
-            while terms.advance() {
-                let key = terms.key();
-                // One letter is at most four bytes.
-                if key.len().abs_diff(text.len()) > 4 {
-                    continue;
-                }
-                if let Ok(term) = std::str::from_utf8(key)
-                    && one_slip(&wanted, term)
-                {
-                    *found.entry(term.to_owned()).or_default() += terms.value().doc_freq;
-                }
+        let vocabulary = match self.vocabulary.get() {
+            Some(vocabulary) => vocabulary,
+            None => {
+                let read = Vocabulary::new(&self.dictionaries)?;
+                self.vocabulary.get_or_init(|| read)
             }
-        }
-        let mut found: Vec<(String, u32)> = found.into_iter().collect();
-        found.sort_by(|a, b| b.1.cmp(&a.1).then_with(|| a.0.cmp(&b.0)));
-        Ok(found.into_iter().take(GUESSES_MOST).map(|(term, _)| term).collect())
+        };
+        let similar = vocabulary.similar(text);
+        if similar.is_empty() { self.parts(text) } else { Ok(similar) }
     }
 
     /// Returns the two parts of a compound that both occur; of several ways to cut, the one with the longest first part.

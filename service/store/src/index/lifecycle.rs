@@ -10,7 +10,8 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
-use super::document::{Document, IndexSpec, Phase, Watch};
+use super::document::{IndexSpec, Phase, Watch};
+use super::gather::Feed;
 use super::manifest::{FORMAT, Manifest, Unreadable};
 use super::parts::Parts;
 use crate::embed::Embedder;
@@ -90,7 +91,8 @@ pub(super) struct Found {
 pub(super) fn open_or_rebuild<E: From<Error>>(
     dir: &Path,
     wanted: &Wanted<'_>,
-    documents: impl FnOnce() -> Result<Vec<Document>, E>,
+    expected: usize,
+    feed: Feed<'_, E>,
     watch: Watch<'_>,
 ) -> Result<Found, E> {
     let mut reason = match open(dir, wanted) {
@@ -111,28 +113,13 @@ pub(super) fn open_or_rebuild<E: From<Error>>(
             Err(now) => reason = now,
         }
     }
-    watch.step(Phase::Reading, 0, 0)?;
-    let parts = build(wanted, documents()?, watch)?;
+    let parts = Parts::new(wanted, expected, feed, watch)?;
     let saved = lock.and_then(|lock| save(dir, wanted, &parts, lock, watch));
     match saved {
         Ok(()) => Ok(Found { parts, rebuilt: Some(reason), unsaved: None }),
         Err(Error::Cancelled) => Err(Error::Cancelled.into()),
         Err(error) => Ok(Found { parts, rebuilt: Some(reason), unsaved: Some(error) }),
     }
-}
-
-/// Makes the parts of documents in any order.
-pub(super) fn build(wanted: &Wanted<'_>, mut documents: Vec<Document>, watch: Watch<'_>) -> Result<Parts> {
-    watch.step(Phase::Reading, documents.len(), documents.len())?;
-    documents.iter().try_for_each(|document| wanted.spec.check(document))?;
-    documents.sort_by(|a, b| a.key.cmp(&b.key));
-    if let Some([twice, _]) = documents.array_windows().find(|[a, b]| a.key == b.key) {
-        return Err(Error::Index { what: format!("two documents have the key {}", twice.key) });
-    }
-    if u32::try_from(documents.len()).is_err() {
-        return Err(Error::Index { what: format!("{} documents, the limit is {}", documents.len(), u32::MAX) });
-    }
-    Parts::new(wanted, &documents, watch)
 }
 
 fn open(dir: &Path, wanted: &Wanted<'_>) -> Result<Parts, Reason> {

@@ -32,6 +32,7 @@ mod columns;
 mod document;
 mod filter;
 mod fuse;
+mod gather;
 mod graph;
 mod guess;
 mod lifecycle;
@@ -70,6 +71,9 @@ const FUSED_DEPTH: usize = 50;
 pub struct Index {
     inner: Arc<Inner>,
 }
+
+/// Takes a document into an index; what it returns ends the giving.
+pub type Take<'a> = &'a mut dyn FnMut(Document) -> Result<()>;
 
 struct Inner {
     parts: Parts,
@@ -118,9 +122,31 @@ impl Index {
         D: IntoIterator<Item = Document>,
         E: From<Error>,
     {
+        let mut documents = Some(documents);
+        let feed = |take: Take<'_>| match documents.take() {
+            Some(documents) => Ok(documents()?.into_iter().try_for_each(take)?),
+            None => Ok(()),
+        };
+        Self::open_or_rebuild_from(dir, spec, embedder, revision, 0, feed, watch)
+    }
+
+    /// As [`Index::open_or_rebuild`], for more documents than should be in memory at once: `feed` gives them to the
+    /// index one by one, and ends with the error that this returns. `expected` is how many there will be, for progress;
+    /// 0 when that is not known.
+    ///
+    /// # Errors
+    /// As [`Index::open_or_rebuild`]; those of `feed`.
+    pub fn open_or_rebuild_from<E: From<Error>>(
+        dir: &Path,
+        spec: &IndexSpec,
+        embedder: Arc<dyn Embedder>,
+        revision: u64,
+        expected: usize,
+        mut feed: impl FnMut(Take<'_>) -> Result<(), E>,
+        watch: Watch<'_>,
+    ) -> Result<Opened, E> {
         let wanted = Wanted { spec, embedder: &embedder, revision, graph_from: graph::FROM_ROWS };
-        let documents = || -> Result<Vec<Document>, E> { Ok(documents()?.into_iter().collect()) };
-        let found = lifecycle::open_or_rebuild(dir, &wanted, documents, watch)?;
+        let found = lifecycle::open_or_rebuild(dir, &wanted, expected, &mut feed, watch)?;
         let index = Self { inner: Arc::new(Inner { parts: found.parts, embedder, revision }) };
         Ok(Opened { index, rebuilt: found.rebuilt, unsaved: found.unsaved })
     }
@@ -137,7 +163,9 @@ impl Index {
         watch: Watch<'_>,
     ) -> Result<Self> {
         let wanted = Wanted { spec, embedder: &embedder, revision, graph_from: graph::FROM_ROWS };
-        let parts = lifecycle::build(&wanted, documents.into_iter().collect(), watch)?;
+        let mut documents = documents.into_iter();
+        let expected = documents.size_hint().0;
+        let parts = Parts::new(&wanted, expected, &mut |take: Take<'_>| documents.try_for_each(take), watch)?;
         Ok(Self { inner: Arc::new(Inner { parts, embedder, revision }) })
     }
 

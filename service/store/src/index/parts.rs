@@ -1,17 +1,18 @@
 //! The parts of an index and their files: made of documents, written to a folder, read back from it.
 
 use std::collections::BTreeMap;
+use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use super::columns::Columns;
-use super::document::{Document, IndexSpec, Phase, Watch};
+use super::document::{IndexSpec, Phase, Watch};
+use super::gather::{Feed, Gathered, gather};
 use super::graph::Graph;
 use super::lifecycle::Wanted;
 use super::manifest::Sum;
 use super::text::TextIndex;
 use super::vectors::Vectors;
-use crate::embed::Embedder;
 use crate::error::{Error, Result};
 use crate::files::sync_folder;
 
@@ -19,9 +20,6 @@ const COLUMNS: &str = "columns.postcard";
 const VECTORS: &str = "vectors.f32";
 const TEXT: &str = "text";
 const GRAPH: &str = "graph";
-
-/// Documents embedded at a time.
-const EMBED_BATCH: usize = 256;
 
 /// All that answers a search.
 #[derive(Debug)]
@@ -40,17 +38,19 @@ struct LazyGraph {
 }
 
 impl Parts {
-    /// Makes the parts of documents that are sorted by key.
-    pub(super) fn new(wanted: &Wanted<'_>, documents: &[Document], watch: Watch<'_>) -> Result<Self> {
-        let (spec, embedder) = (wanted.spec, wanted.embedder.as_ref());
-        // Words and vectors are made side by side; neither sees the other, so the result is the same.
-        let (text, vectors) = std::thread::scope(|scope| {
-            let text = scope.spawn(|| TextIndex::new(spec, documents, watch));
-            let vectors = embed(embedder, documents, watch);
-            let text = text.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
-            (text, vectors)
-        });
-        let (text, vectors, columns) = (text?, vectors?, Columns::new(spec, documents));
+    /// Makes the parts of documents.
+    ///
+    /// # Errors
+    /// Those of [`gather`]; [`Error::Index`].
+    pub(super) fn new<E: From<Error>>(
+        wanted: &Wanted<'_>,
+        expected: usize,
+        feed: Feed<'_, E>,
+        watch: Watch<'_>,
+    ) -> Result<Self, E> {
+        let gathered = gather(wanted.spec, wanted.embedder.as_ref(), expected, feed, watch)?;
+        let Gathered { columns, vectors, texts } = gathered;
+        let text = TextIndex::new(wanted.spec, texts, watch)?;
         let rows = columns.rows();
         let graph = if rows >= wanted.graph_from { Some(Graph::new(&vectors, rows, watch)?) } else { None };
         Ok(Self { columns, text, vectors, graph: LazyGraph { files: None, graph: OnceLock::from(graph) } })
@@ -70,10 +70,12 @@ impl Parts {
     pub(crate) fn write(&self, dir: &Path, watch: Watch<'_>) -> Result<BTreeMap<String, Sum>> {
         watch.step(Phase::Writing, 0, 0)?;
         let columns = postcard::to_stdvec(&self.columns).map_err(|e| corrupt(&dir.join(COLUMNS), &e))?;
-        for (name, content) in [(COLUMNS, columns), (VECTORS, self.vectors.bytes())] {
-            let path = dir.join(name);
-            std::fs::write(&path, content).map_err(Error::io(&path))?;
-        }
+        let path = dir.join(COLUMNS);
+        std::fs::write(&path, columns).map_err(Error::io(&path))?;
+        let path = dir.join(VECTORS);
+        let file = std::fs::File::create(&path).map(BufWriter::new);
+        file.and_then(|mut file| self.vectors.write(&mut file).and_then(|()| file.flush()))
+            .map_err(Error::io(&path))?;
         let text = dir.join(TEXT);
         std::fs::create_dir(&text).map_err(Error::io(&text))?;
         self.text.write(&text)?;
@@ -122,27 +124,6 @@ impl Parts {
         let files = (!graph_sums.is_empty()).then(|| (dir.to_path_buf(), graph_sums));
         Ok(Self { columns, text, vectors, graph: LazyGraph { files, graph: OnceLock::new() } })
     }
-}
-
-fn embed(embedder: &dyn Embedder, documents: &[Document], watch: Watch<'_>) -> Result<Vectors> {
-    let dim = embedder.dim();
-    let mut full = Vec::with_capacity(documents.len() * dim);
-    for (batch, documents_left) in documents.chunks(EMBED_BATCH).enumerate() {
-        watch.step(Phase::Meaning, batch * EMBED_BATCH, documents.len())?;
-        let texts: Vec<&str> = documents_left.iter().map(|d| d.embed_text.as_str()).collect();
-        let vectors = embedder.embed(&texts)?;
-        let fits = vectors.len() == texts.len() && vectors.iter().all(|v| v.len() == dim);
-        if !fits {
-            let what = format!("{} vectors for {} texts, or of another length than {dim}", vectors.len(), texts.len());
-            return Err(Error::Embedder { id: embedder.id().to_owned(), what });
-        }
-        for (text, vector) in texts.iter().zip(vectors) {
-            // A transformer has a vector for the empty text too, near to anything.
-            let kept = !text.trim().is_empty();
-            full.extend(vector.into_iter().map(|x| if kept { x } else { 0.0 }));
-        }
-    }
-    Ok(Vectors::new(dim, full))
 }
 
 fn read_checked(dir: &Path, name: &str, sum: &Sum) -> Result<Vec<u8>> {

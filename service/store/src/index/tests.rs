@@ -228,8 +228,8 @@ fn a_graph_of_neighbors_is_kept_checked_and_as_good_as_the_scan() {
     let open = |graph_from| {
         let (spec, revision) = (&spec(), u64::from(graph_from));
         let wanted = Wanted { spec, embedder: &embedder, revision, graph_from };
-        let found =
-            lifecycle::open_or_rebuild(dir.path(), &wanted, || Ok::<_, Error>(many()), Watch::nobody()).unwrap();
+        let mut feed = |take: Take<'_>| many().into_iter().try_for_each(take);
+        let found = lifecycle::open_or_rebuild::<Error>(dir.path(), &wanted, 0, &mut feed, Watch::nobody()).unwrap();
         (Index { inner: Arc::new(Inner { parts: found.parts, embedder: embedder.clone(), revision }) }, found.rebuilt)
     };
     let scanned = open(u32::MAX).0;

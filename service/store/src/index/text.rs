@@ -5,7 +5,7 @@
 //! language, so that no text can be refused. Row numbers are tantivy's document numbers: there is one segment.
 
 use std::path::Path;
-use std::sync::Mutex;
+use std::sync::{Mutex, OnceLock};
 
 use tantivy::directory::{Directory, MmapDirectory, RamDirectory};
 use tantivy::query::{BooleanQuery, BoostQuery, EnableScoring, Occur, Query, TermQuery};
@@ -14,8 +14,8 @@ use tantivy::tokenizer::{PreTokenizedString, Token};
 use tantivy::{Index, IndexSettings, ReloadPolicy, Searcher, TantivyDocument, TantivyError, Term};
 
 use super::analyze::{Analyzer, Word, is_stop_word};
-use super::document::{Document, IndexSpec, Phase, Watch};
-use super::guess::Guesser;
+use super::document::{IndexSpec, Phase, Watch};
+use super::guess::{Guesser, Vocabulary};
 use super::row_set::RowSet;
 use super::top::{Scored, Top};
 use crate::error::{Error, Result};
@@ -35,6 +35,7 @@ pub(crate) struct TextIndex {
     searcher: Searcher,
     fields: Vec<(Field, f32)>,
     analyzer: Mutex<Analyzer>,
+    vocabulary: OnceLock<Vocabulary>,
 }
 
 impl std::fmt::Debug for TextIndex {
@@ -44,22 +45,21 @@ impl std::fmt::Debug for TextIndex {
 }
 
 impl TextIndex {
-    /// Indexes documents, which become the rows 0, 1, ... in this order.
-    pub(crate) fn new(spec: &IndexSpec, documents: &[Document], watch: Watch<'_>) -> Result<Self> {
+    /// Indexes the texts of rows, each in the order of the fields.
+    pub(crate) fn new(spec: &IndexSpec, rows: Vec<Box<[Box<str>]>>, watch: Watch<'_>) -> Result<Self> {
         let (schema, fields) = schema(spec);
         let directory = RamDirectory::create();
         let builder = Index::builder().schema(schema).settings(IndexSettings::default());
         let mut writer = builder.single_segment_index_writer(directory.clone(), WRITER_BYTES).map_err(failed)?;
         let mut analyzer = Analyzer::new();
-        for (done, document) in documents.iter().enumerate() {
+        let count = rows.len();
+        for (done, texts) in rows.into_iter().enumerate() {
             if done % 1000 == 0 {
-                watch.step(Phase::Words, done, documents.len())?;
+                watch.step(Phase::Words, done, count)?;
             }
             let mut row = TantivyDocument::default();
-            for (field, (name, _)) in fields.iter().zip(spec.fields.iter().map(|f| (&f.name, f.boost))) {
-                if let Some(text) = document.texts.get(name) {
-                    row.add_pre_tokenized_text(field.0, tokens(&mut analyzer, text));
-                }
+            for ((field, _), text) in fields.iter().zip(&texts) {
+                row.add_pre_tokenized_text(*field, tokens(&mut analyzer, text));
             }
             writer.add_document(row).map_err(failed)?;
         }
@@ -94,7 +94,7 @@ impl TextIndex {
         if searcher.segment_readers().len() > 1 {
             return Err(Error::Index { what: "the full text has several segments".to_owned() });
         }
-        Ok(Self { directory, searcher, fields, analyzer: Mutex::new(Analyzer::new()) })
+        Ok(Self { directory, searcher, fields, analyzer: Mutex::new(Analyzer::new()), vocabulary: OnceLock::new() })
     }
 
     /// Returns how many rows there are.
@@ -126,7 +126,7 @@ impl TextIndex {
         let Some(reader) = self.searcher.segment_readers().first() else { return Ok(None) };
         let fields = self.fields.iter().map(|(field, boost)| Ok((*field, *boost, reader.inverted_index(*field)?)));
         let fields = fields.collect::<Result<Vec<_>, TantivyError>>().map_err(failed)?;
-        let guesser = Guesser::new(fields.iter().map(|(_, _, index)| index.terms()).collect());
+        let guesser = Guesser::new(fields.iter().map(|(_, _, index)| index.terms()).collect(), &self.vocabulary);
         let telling = words.iter().any(|word| !is_stop_word(word.text()));
         let mut alternatives: Vec<(Occur, Box<dyn Query>)> = Vec::new();
         let mut asked = Vec::new();
