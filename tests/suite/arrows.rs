@@ -19,6 +19,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("pipeline", &["model", "plugins", "knowledge", "assets"]),
     ("export", &["model", "mesh"]),
     ("research", &["model", "llm"]),
+    ("proto", &["model"]),
     ("cli", &["model", "store", "llm", "plugins", "knowledge", "mesh", "assets", "pipeline", "export", "research"]),
     ("tests", &["model", "assets", "plugins", "knowledge", "pipeline", "export"]),
 ];

@@ -1,0 +1,23 @@
+//! Generates messages, clients and servers from `proto/`, without protoc; keeps the descriptors for reflection.
+
+use std::error::Error;
+use std::path::{Path, PathBuf};
+
+use prost::Message;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../proto");
+    let mut files: Vec<PathBuf> = std::fs::read_dir(root.join("d3dgen/v1"))?
+        .map(|entry| Ok(entry?.path()))
+        .collect::<Result<_, std::io::Error>>()?;
+    files.retain(|file| file.extension().is_some_and(|e| e == "proto"));
+    files.sort();
+    println!("cargo::rerun-if-changed={}", root.join("d3dgen").display());
+    let descriptors = protox::compile(&files, [&root])?;
+    let out = PathBuf::from(std::env::var("OUT_DIR")?);
+    std::fs::write(out.join("descriptors.bin"), descriptors.encode_to_vec())?;
+    let mut messages = tonic_prost_build::Config::new();
+    messages.enable_type_names().btree_map(["."]);
+    tonic_prost_build::configure().compile_fds_with_config(descriptors, messages)?;
+    Ok(())
+}
