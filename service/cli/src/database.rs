@@ -151,8 +151,8 @@ pub fn provenance(by: Option<&str>, why: &str) -> Provenance {
     }
 }
 
-/// Returns the embedder that this machine is set up for: a transformer when its library and model are named, else the
-/// table that is in the program.
+/// Returns the embedder that this machine is set up for: the table that is in the program, and a
+/// transformer with it when its library and model are named.
 ///
 /// # Errors
 /// `Knowledge` when what is named cannot be used.
@@ -161,7 +161,7 @@ pub fn embedder() -> Result<Arc<dyn Embedder>, Error> {
     if let [Some(library), Some(folder)] = EMBEDDER_VARIABLES.map(std::env::var_os) {
         let files = d3dgen_store::embed::TransformerFiles { runtime: library.into(), model_dir: folder.into() };
         let transformer = d3dgen_store::embed::Transformer::load(&files).map_err(d3dgen_knowledge::Error::from)?;
-        return Ok(Arc::new(transformer));
+        return Ok(Arc::new(d3dgen_store::embed::Ensemble::of_table_and(Arc::new(transformer))));
     }
     Ok(Arc::new(d3dgen_store::embed::StaticTable::new()))
 }

@@ -1,13 +1,16 @@
-//! Texts to vectors: the trait, the static table that is always there, and a transformer behind feature `fastembed`.
+//! Texts to vectors: the trait, the static table that is always there, a transformer behind feature `fastembed`, and
+//! both together.
 //!
 //! Vectors of two embedders cannot be compared: an index remembers which one made it by [`Embedder::id`]. What texts
 //! mean to a domain is not known here.
 
+mod ensemble;
 pub mod table;
 #[cfg(feature = "fastembed")]
 pub mod transformer;
 mod word_piece;
 
+pub use ensemble::Ensemble;
 pub use table::StaticTable;
 #[cfg(feature = "fastembed")]
 pub use transformer::{Transformer, TransformerFiles};
