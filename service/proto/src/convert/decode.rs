@@ -30,9 +30,6 @@ impl fmt::Display for Place<'_> {
     }
 }
 
-/// Largest whole number that a figure holds exactly.
-const EXACT: f64 = 9_007_199_254_740_992.0;
-
 type Problems = Vec<Problem>;
 
 /// Returns a message as JSON.
@@ -60,7 +57,7 @@ pub fn message(plan: &Plan, own: &Message, bytes: &[u8], place: &Place<'_>, prob
             Some((field, value)) if field.name == EXPRESSION.0 => {
                 Value::Object(Map::from_iter([(EXPRESSION.1.to_owned(), value)]))
             }
-            Some((_, value)) => whole(own, value),
+            Some((_, value)) => value,
             None => missing(own, place, problems),
         },
         Form::Tagged(tag) => match own.fields.iter().zip(slots).find_map(|(f, slot)| Some((f, slot?))) {
@@ -71,14 +68,6 @@ pub fn message(plan: &Plan, own: &Message, bytes: &[u8], place: &Place<'_>, prob
             }
             _ => missing(own, place, problems),
         },
-    }
-}
-
-/// Returns a figure without fraction as the whole number it is, where documents do not say which of the two they mean.
-fn whole(own: &Message, value: Value) -> Value {
-    match value.as_f64() {
-        Some(n) if own.name == "ConstraintValue" && n.fract() == 0.0 && n.abs() < EXACT => Value::from(n as i64),
-        _ => value,
     }
 }
 
@@ -127,7 +116,14 @@ fn slots(
     slots
 }
 
-fn packed(plan: &Plan, field: &Field, mut row: &[u8], place: &Place<'_>, list: &mut Vec<Value>, problems: &mut Problems) {
+fn packed(
+    plan: &Plan,
+    field: &Field,
+    mut row: &[u8],
+    place: &Place<'_>,
+    list: &mut Vec<Value>,
+    problems: &mut Problems,
+) {
     while !row.is_empty() {
         let content = if field.kind == Kind::Double {
             wire::take(&mut row, 8).and_then(|b| b.try_into().ok()).map(Content::Fixed64)

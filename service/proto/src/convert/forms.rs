@@ -64,6 +64,7 @@ pub fn plain(message: &str, value: &serde_json::Value) -> Option<&'static str> {
     use serde_json::Value;
     let formula = message == "Formula";
     Some(match value {
+        Value::Number(n) if !formula && n.is_i64() => "whole_number",
         Value::Number(_) => "number",
         Value::String(_) => "text",
         Value::Bool(_) if !formula => "flag",

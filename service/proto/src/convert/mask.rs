@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 
 use d3dgen_model::Problem;
-use prost::encoding::{WireType, encode_key, encode_varint};
 use prost::Name;
+use prost::encoding::{WireType, encode_key, encode_varint};
 
 use super::Error;
 use super::plan::{Count, Field, Kind, Message, PLAN, Plan};

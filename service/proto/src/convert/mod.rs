@@ -53,7 +53,10 @@ pub enum Error {
 }
 
 fn listed(problems: &[Problem]) -> String {
-    problems.iter().map(|p| format!("\n  {}: {}", if p.path.is_empty() { "message" } else { &p.path }, p.message)).collect()
+    problems
+        .iter()
+        .map(|p| format!("\n  {}: {}", if p.path.is_empty() { "message" } else { &p.path }, p.message))
+        .collect()
 }
 
 /// A document with a message of its own.
@@ -130,10 +133,8 @@ pub fn to_message<M: Message + Name + Default>(value: &impl Serialize) -> Result
 /// # Errors
 /// `Invalid` with every problem and its path in the message.
 pub fn from_message<T: DeserializeOwned, M: Message + Name>(message: &M) -> Result<T, Error> {
-    serde_json::from_value(value(message)?).map_err(|e| Error::Invalid {
-        message: M::NAME.to_owned(),
-        problems: vec![Problem::new("", e.to_string())],
-    })
+    serde_json::from_value(value(message)?)
+        .map_err(|e| Error::Invalid { message: M::NAME.to_owned(), problems: vec![Problem::new("", e.to_string())] })
 }
 
 /// Returns a message in the JSON form of its document.

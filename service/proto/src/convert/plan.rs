@@ -204,10 +204,7 @@ fn words(list: &EnumDescriptorProto) -> Words {
     let said = list.value.iter().filter(|v| v.number() != 0);
     let pairs: Vec<(String, i32)> =
         said.map(|v| (forms::word(v.name().trim_start_matches(prefix)), v.number())).collect();
-    Words {
-        by_number: pairs.iter().map(|(w, n)| (*n, w.clone())).collect(),
-        by_word: pairs.into_iter().collect(),
-    }
+    Words { by_number: pairs.iter().map(|(w, n)| (*n, w.clone())).collect(), by_word: pairs.into_iter().collect() }
 }
 
 /// Returns the JSON name that protobuf gives a field by itself.

@@ -5,6 +5,8 @@ use d3dgen_model::scene_graph::SceneGraph;
 
 use super::*;
 
+type Spoil = Box<dyn Fn(&mut v1::SceneGraph)>;
+
 fn room() -> v1::GraphRoom {
     v1::GraphRoom {
         room_id: "hall".into(),
@@ -41,19 +43,25 @@ fn absence_stays_absence() {
 
 #[test]
 fn problems_have_the_path_of_the_message() {
-    let cases: Vec<(&str, Box<dyn Fn(&mut v1::SceneGraph)>)> = vec![
+    let cases: Vec<(&str, Spoil)> = vec![
         ("version", Box::new(|g| g.version = 7)),
         ("rooms[0].area_range_m2", Box::new(|g| g.rooms[0].area_range_m2 = None)),
         ("rooms[0].room_id", Box::new(|g| g.rooms[0].room_id = "No Id".into())),
         ("rooms[0].target_area_m2", Box::new(|g| g.rooms[0].target_area_m2 = 99.0)),
         ("rooms[0].target_area_m2", Box::new(|g| g.rooms[0].target_area_m2 = f64::NAN)),
-        ("apart[0].b_room_id", Box::new(|g| {
-            g.apart.push(v1::RoomPair { a_room_id: "hall".into(), b_room_id: "attic".into() });
-        })),
-        ("edges[0].connector", Box::new(|g| {
-            let (a, b) = ("hall".to_owned(), "hall".to_owned());
-            g.edges.push(v1::GraphEdge { a_room_id: a, b_room_id: b, connector: 99, ..Default::default() });
-        })),
+        (
+            "apart[0].b_room_id",
+            Box::new(|g| {
+                g.apart.push(v1::RoomPair { a_room_id: "hall".into(), b_room_id: "attic".into() });
+            }),
+        ),
+        (
+            "edges[0].connector",
+            Box::new(|g| {
+                let (a, b) = ("hall".to_owned(), "hall".to_owned());
+                g.edges.push(v1::GraphEdge { a_room_id: a, b_room_id: b, connector: 99, ..Default::default() });
+            }),
+        ),
     ];
     for (wanted, spoil) in cases {
         let mut message = graph();
@@ -82,7 +90,8 @@ fn values_of_constraints_keep_their_kind() {
 
 #[test]
 fn what_the_contract_does_not_know_is_named() {
-    let json = serde_json::json!({"a": "x", "b": "y", "connector": "tunnel", "required": true, "reason": "", "color": 3});
+    let json =
+        serde_json::json!({"a": "x", "b": "y", "connector": "tunnel", "required": true, "reason": "", "color": 3});
     let Err(Error::Contract { problems, .. }) = to_message::<v1::GraphEdge>(&json) else { panic!("it has a color") };
     let paths: Vec<&str> = problems.iter().map(|p| p.path.as_str()).collect();
     assert_eq!(paths, ["/connector", "/color"]);
