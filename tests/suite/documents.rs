@@ -1,6 +1,7 @@
 //! Reading an invalid document reports every problem with its path. `documents/broken/<kind>.json` holds one for each
 //! kind, `<kind>.expected` what is wrong with it.
 
+use d3dgen_assets::annotation::Annotation;
 use d3dgen_model::document::{Document, Problem};
 use d3dgen_model::domain::Domain;
 use d3dgen_model::floorplan::Floorplan;
@@ -35,6 +36,7 @@ fn every_problem_of_a_broken_document_is_reported() {
     check::<Scenario>();
     check::<World>();
     check::<Report>();
+    check::<Annotation>();
 }
 
 #[test]

@@ -284,6 +284,29 @@ impl Document for Annotation {
         if share > 1.01 {
             problems.push(Problem::new("/palette", format!("shares add up to {share:.2}, at most 1 is possible")));
         }
+        for (i, swatch) in self.palette.iter().enumerate() {
+            let digits = swatch.hex.strip_prefix('#').unwrap_or_default();
+            if digits.len() != 6 || !digits.bytes().all(|b| b.is_ascii_hexdigit()) {
+                let path = format!("/palette/{i}/hex");
+                problems.push(Problem::new(path, format!("is `{}`, should be like #a02525", swatch.hex)));
+            }
+        }
+        for (i, joint) in self.joints.iter().enumerate() {
+            if let Some([least, most]) = joint.limits
+                && least > most
+            {
+                problems.push(Problem::new(format!("/joints/{i}/limits"), format!("{least} is above {most}")));
+            }
+        }
+        if let Some(mass) = &self.mass {
+            if mass.mass_kg <= 0.0 {
+                problems.push(Problem::new("/mass/mass_kg", format!("is {} kg, must be above 0", mass.mass_kg)));
+            }
+            let outside = |(center, [low, high]): (&f64, &[f64; 2])| center < low || center > high;
+            if mass.center_m.iter().zip(&self.bounding_box_m).any(outside) {
+                problems.push(Problem::new("/mass/center_m", "is outside of the bounding box"));
+            }
+        }
         problems
     }
 }

@@ -19,9 +19,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::annotation::Annotation;
 use crate::error::Error;
-use records::{ASSETS, AssetRecord, CHANGES, PATHS, PathRecord, REMOVED, RemovedRecord, each, get};
+use records::{ASSETS, AssetRecord, CHANGES, PATHS, REMOVED, RemovedRecord, each, get};
 
-pub use records::{Change, Kind, Provenance};
+pub use records::{Change, IngestedFile, Kind, Provenance};
 pub use shelf::{Searcher, Shelf};
 pub use write::NewAsset;
 
@@ -140,8 +140,8 @@ impl Database {
     ///
     /// # Errors
     /// `Store`.
-    pub fn ingested(&self, path: &str) -> Result<Option<(String, String)>, Error> {
-        Ok(get::<PathRecord>(&self.store.view()?, PATHS, path)?.map(|r| (r.hash, r.asset_id)))
+    pub fn ingested(&self, path: &str) -> Result<Option<IngestedFile>, Error> {
+        get(&self.store.view()?, PATHS, path)
     }
 
     /// Returns true when no asset is kept and none of the library removed.

@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 use crate::annotate::{Subject, annotate, look_around};
 use crate::annotation::{Annotation, Origin};
 use crate::catalog::Catalog;
-use crate::database::{Database, Kind, NewAsset, Provenance};
+use crate::database::{Database, IngestedFile, Kind, NewAsset, Provenance};
 use crate::error::Error;
 use crate::plausibility::Declared;
 use crate::readers::{Facts, Pool, ReadModel};
@@ -34,6 +34,8 @@ pub struct Read {
     pub model: Model3d,
     /// What the file says about itself.
     pub declared: Declared,
+    /// The other files that it is made of.
+    pub companions: Vec<PathBuf>,
 }
 
 /// Reads models, several at once if it can.
@@ -53,7 +55,7 @@ pub trait Reads {
 
 impl From<ReadModel> for Read {
     fn from(read: ReadModel) -> Self {
-        Self { declared: declared(&read.facts), model: read.model }
+        Self { declared: declared(&read.facts), model: read.model, companions: read.companions }
     }
 }
 
@@ -189,21 +191,23 @@ pub fn ingest(
     let (wanted, later) = sift(database, &root, models, &mut summary, options)?;
     summary.cancelled = (options.cancelled)();
     if !summary.cancelled {
-        keep_all(database, &root, &wanted, total, catalog, reads, options, &mut summary)?;
+        keep_all(database, &root, &wanted, total - later.len(), catalog, reads, options, &mut summary)?;
     }
-    copies(database, later, &mut summary)?;
+    let others = copies(database, &root, later, &mut summary)?;
+    if !others.is_empty() && !summary.cancelled {
+        keep_all(database, &root, &others, total, catalog, reads, options, &mut summary)?;
+    }
     Ok(summary)
 }
 
-/// Parts what has to be read from what is there already and from copies of others, which wait for these.
-#[allow(clippy::type_complexity)]
+/// Parts what has to be read from what is there already and from what may be copies of others, which wait for these.
 fn sift(
     database: &Database,
     root: &Path,
     models: Vec<(String, PathBuf)>,
     summary: &mut Summary,
     options: &Options<'_>,
-) -> Result<(Vec<Wanted>, Vec<(String, String)>), Error> {
+) -> Result<(Vec<Wanted>, Vec<Wanted>), Error> {
     let (mut wanted, mut later, mut seen) = (Vec::new(), Vec::new(), BTreeSet::new());
     for (path, file) in models {
         if (options.cancelled)() {
@@ -217,37 +221,55 @@ fn sift(
             }
         };
         let before = database.ingested(&path)?;
-        if let Some((old, asset_id)) = &before
-            && *old == hash
-            && database.get(asset_id)?.is_some()
+        let as_it_was = before.as_ref().is_some_and(|b| b.hash == hash);
+        let file = Wanted { file, path, hash, is_update: before.is_some() };
+        if let Some(before) = before
+            && as_it_was
+            && database.get(&before.asset_id)?.is_some()
         {
-            summary.files.insert(path, Outcome::Unchanged { asset_id: asset_id.clone() });
-        } else if !seen.insert(hash.clone()) || database.with_content(&hash)?.is_some() {
-            later.push((path, hash));
+            if walk::are_unchanged(&before.companions, root) {
+                summary.files.insert(file.path, Outcome::Unchanged { asset_id: before.asset_id });
+            } else {
+                wanted.push(file);
+            }
+        } else if !seen.insert(file.hash.clone()) || database.with_content(&file.hash)?.is_some() {
+            later.push(file);
         } else {
-            wanted.push(Wanted { file, path, hash, is_update: before.is_some() });
+            wanted.push(file);
         }
     }
     Ok((wanted, later))
 }
 
-/// Notes copies of files that are kept.
-fn copies(database: &Database, later: Vec<(String, String)>, summary: &mut Summary) -> Result<(), Error> {
-    let mut notes = Vec::new();
-    for (path, hash) in later {
-        match database.with_content(&hash)? {
-            Some(asset_id) => {
-                summary.files.insert(path.clone(), Outcome::Unchanged { asset_id: asset_id.clone() });
-                notes.push((path, hash, asset_id));
-            }
-            None if summary.cancelled => {}
-            None => {
+/// Notes copies of files that are kept, and returns those that only look like it: beside them lie other materials or
+/// pictures of the same names.
+fn copies(database: &Database, root: &Path, later: Vec<Wanted>, summary: &mut Summary) -> Result<Vec<Wanted>, Error> {
+    let (mut notes, mut others) = (Vec::new(), Vec::new());
+    for copy in later {
+        let Some(asset_id) = database.with_content(&copy.hash)? else {
+            if !summary.cancelled {
                 let reason = "is a copy of a file that was refused".to_owned();
-                summary.files.insert(path, Outcome::Refused { reason });
+                summary.files.insert(copy.path, Outcome::Refused { reason });
             }
+            continue;
+        };
+        let original = match database.get(&asset_id)?.map(|a| a.origin) {
+            Some(Origin::Ingested { path, .. }) => database.ingested(&path)?.map(|record| (path, record.companions)),
+            _ => None,
+        };
+        let (path, companions) = original.unwrap_or_default();
+        let companions = walk::beside(&companions, &path, &copy.path);
+        if walk::are_unchanged(&companions, root) {
+            summary.files.insert(copy.path.clone(), Outcome::Unchanged { asset_id: asset_id.clone() });
+            notes.push((copy.path, IngestedFile { hash: copy.hash, asset_id, companions }));
+        } else {
+            others.push(copy);
         }
     }
-    if notes.is_empty() { Ok(()) } else { database.note_copies(&notes) }
+    if !notes.is_empty() {
+        database.note_copies(&notes)?;
+    }
+    Ok(others)
 }
 
 /// Reads, judges and keeps: readers hand models to judges, which hand them to this thread, which keeps them in order.
@@ -308,10 +330,11 @@ fn judge(w: &Wanted, read: Read, root: &Path, catalog: &Catalog, options: &Optio
     let origin = Origin::Ingested { path: w.path.clone(), hash: w.hash.clone() };
     let annotation = annotate_file(&read, &w.file, Some(root), options.domain, origin, catalog);
     let annotation = annotation.ok_or("has no triangle: there is nothing to see")?;
+    let companions = walk::digests(&read.companions, root);
     let mut model = read.model;
     model.name = annotation.asset_id.rsplit('/').next().unwrap_or_default().to_owned();
     crate::moved::move_by(&mut model, &annotation.model_from_file);
-    Ok(NewAsset { annotation, model: Some(model) })
+    Ok(NewAsset { annotation, model: Some(model), companions })
 }
 
 /// Annotates a model that was read from a file, with what lies beside it; none without a triangle.

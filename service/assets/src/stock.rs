@@ -6,7 +6,7 @@
 
 use std::collections::BTreeMap;
 
-use d3dgen_model::domain::{Domain, ObjectType};
+use d3dgen_model::domain::{Domain, ObjectType, StockedAsset};
 
 use crate::annotation::Annotation;
 use crate::catalog::Catalog;
@@ -14,10 +14,6 @@ use crate::database::{Database, Shelf};
 use crate::error::Error;
 use crate::plausibility::misfit;
 
-/// Key of `ObjectType::extra` under which an asset of a size stands: `asset 1600x800x740`, in mm.
-pub const ASSET: &str = "asset ";
-/// Key of `ObjectType::extra` that says that an object is made because no asset fits.
-pub const MADE: &str = "made";
 /// How far the size of an asset may be from the nearest one of the object, see [`misfit`].
 const SAME_OBJECT: f64 = 0.8;
 const SAME_KIND: f64 = 0.45;
@@ -75,7 +71,7 @@ impl<'c> Stock<'c> {
             changed = true;
             if choices.is_empty() {
                 let why = "the library's own is removed and no asset of the database fits".to_owned();
-                object.extra.insert(MADE.to_owned(), why);
+                object.stock.made_because = Some(why);
                 continue;
             }
             let mut sizes: Vec<[f64; 3]> = Vec::new();
@@ -83,7 +79,8 @@ impl<'c> Stock<'c> {
                 let size = choice.asset.width_depth_height().map(|v| (v * 1000.0).round().max(1.0) / 1000.0);
                 if !sizes.contains(&size) {
                     sizes.push(size);
-                    object.extra.insert(key(size), format!("{}: {}", choice.asset.asset_id, choice.reason));
+                    let asset = choice.asset.asset_id.clone();
+                    object.stock.assets.push(StockedAsset { size_m: size, asset, reason: choice.reason });
                 }
             }
             if !removed {
@@ -132,12 +129,6 @@ fn choose<'a>(all: &'a [Annotation], object: &ObjectType, domain: &str, most_off
     choices
 }
 
-/// Returns the key of `ObjectType::extra` for a size.
-fn key(size_m: [f64; 3]) -> String {
-    let [w, d, h] = size_m.map(|v| (v * 1000.0).round() as i64);
-    format!("{ASSET}{w}x{d}x{h}")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -155,7 +146,7 @@ mod tests {
         annotation.size_m = size;
         annotation.bounding_box_m = [[-x / 2.0, x / 2.0], [-y / 2.0, y / 2.0], [0.0, z]];
         annotation.origin = Origin::Ingested { path: id.into(), hash: id.into() };
-        NewAsset { annotation, model: None }
+        NewAsset { annotation, model: None, companions: BTreeMap::new() }
     }
 
     #[test]
@@ -177,7 +168,8 @@ mod tests {
         let stocked = stock.stocked(office).expect("changed");
         let object = |id: &str| stocked.objects.iter().find(|o| o.id == id).expect("there");
         assert_eq!(object("desk").sizes_m[0], [1.7, 0.82, 0.73]);
-        assert!(object("desk").extra["asset 1700x820x730"].starts_with("Own/Desk: the same object"));
+        let first = |id: &str| object(id).stock.assets[0].clone();
+        assert!(first("desk").asset == "Own/Desk" && first("desk").reason.starts_with("the same object"));
         assert!(!object("desk").sizes_m.contains(&[0.1, 0.1, 0.1]));
         let before = office.objects.iter().find(|o| o.id == "cafe_chair").expect("there");
         assert_eq!(object("cafe_chair"), before);
@@ -186,7 +178,7 @@ mod tests {
         let stocked = stock.stocked(office).expect("changed");
         let object = |id: &str| stocked.objects.iter().find(|o| o.id == id).expect("there");
         assert_eq!(object("cafe_chair").sizes_m, [[0.45, 0.5, 0.87]]);
-        assert!(object("cafe_chair").extra["asset 450x500x870"].contains("same kind and use"));
-        assert!(object("whiteboard").extra.contains_key(MADE));
+        assert!(object("cafe_chair").stock.assets[0].reason.contains("same kind and use"));
+        assert!(object("whiteboard").stock.made_because.is_some());
     }
 }

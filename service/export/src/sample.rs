@@ -381,6 +381,7 @@ pub fn place(room: &str, object: &str, n: usize, at: (f64, f64, f64), quarters: 
         room_id: room.into(),
         object: object.into(),
         asset: format!("Sample/{}", object.split('_').map(capital).collect::<Vec<_>>().join("_")),
+        asset_choice: None,
         pose: Pose { x: at.0, y: at.1, z: at.2, yaw_rad: f64::from(quarters) * std::f64::consts::FRAC_PI_2 },
         size_m: entry.2,
         mount: serde_json::from_value(json!(entry.3)).unwrap(),

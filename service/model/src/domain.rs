@@ -13,7 +13,7 @@ pub use build::{
     Axis, BASE, Build, BuildJoint, BuildJointKind, Formula, Mirror, Part, Repeat, Side, Solid, Tilt, Tone,
 };
 pub use furnishing::{Arrangement, FacingRule, Furnishing, Group, Member, Relation};
-pub use object::{Mount, ObjectType, Shape};
+pub use object::{Mount, ObjectType, Shape, Stock, StockedAsset};
 pub use program::{Adjacency, AdjacencyRelation, Circulation, Occupants, Program, ProgramRoom, Scheme};
 pub use room_type::{Access, AreaRange, Daylight, Materials, Privacy, RobotUse, RoomType, Zone};
 

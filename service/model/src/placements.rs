@@ -35,6 +35,9 @@ pub struct Placement {
     pub object: String,
     /// Model reference `Domain/Name`, one for all simulators.
     pub asset: String,
+    /// Where the model comes from, when a database of assets has a say; else it is the library's own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub asset_choice: Option<AssetChoice>,
     /// Center of the footprint, underside height, heading of the front.
     pub pose: Pose,
     /// `[width, depth, height]`, m; width across the front.
@@ -52,6 +55,26 @@ pub struct Placement {
     /// True keeps it when the document is fed back.
     #[serde(default)]
     pub locked: bool,
+}
+
+/// The choice of a model among those of a database of assets.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AssetChoice {
+    /// Where the model comes from.
+    pub source: AssetSource,
+    /// Why it was chosen, for people.
+    pub reason: String,
+}
+
+/// Where the model of a placement comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum AssetSource {
+    /// An asset of the database.
+    Database,
+    /// Made, for want of an asset that fits.
+    Generated,
 }
 
 impl Placement {

@@ -4,10 +4,11 @@
 //! |---|---|---|
 //! | `asset` | asset id | [`AssetRecord`] |
 //! | `asset_content` | digest of the source | asset id |
-//! | `asset_path` | path below the folder that was ingested | [`PathRecord`] |
+//! | `asset_path` | path below the folder that was ingested | [`IngestedFile`] |
 //! | `asset_removed` | object id | [`RemovedRecord`] |
 //! | `asset_change` | ten digits | [`Change`] |
 
+use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 
 use d3dgen_store::{KeyRange, View};
@@ -35,12 +36,15 @@ pub(super) struct AssetRecord {
 }
 
 /// A file that was ingested.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(super) struct PathRecord {
-    /// Digest of it and of what lies beside it.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct IngestedFile {
+    /// Digest of it and of what speaks of it.
     pub hash: String,
     /// The asset it became, or is a copy of.
     pub asset_id: String,
+    /// Digests of the other files it is made of, by their paths below the folder that was ingested.
+    #[serde(default)]
+    pub companions: BTreeMap<String, String>,
 }
 
 /// An object of the library that is removed.

@@ -9,7 +9,7 @@ use d3dgen_store::Batch;
 use super::Database;
 use super::files;
 use super::records::{
-    ASSETS, AssetRecord, CHANGES, CONTENTS, Change, Kind, PATHS, PathRecord, Provenance, REMOVED, RemovedRecord,
+    ASSETS, AssetRecord, CHANGES, CONTENTS, Change, IngestedFile, Kind, PATHS, Provenance, REMOVED, RemovedRecord,
     encode, get,
 };
 use crate::annotation::{Annotation, Origin};
@@ -22,6 +22,8 @@ pub struct NewAsset {
     pub annotation: Annotation,
     /// Its model in its own frame.
     pub model: Option<Model3d>,
+    /// Digests of the files it was read from beside its own, by their paths below the folder that was ingested.
+    pub companions: BTreeMap<String, String>,
 }
 
 impl Database {
@@ -36,7 +38,7 @@ impl Database {
         let seq = self.next_change()?;
         let mut batch = Batch::new();
         let (mut ids, mut taken, mut orphans) = (Vec::new(), BTreeSet::new(), Vec::new());
-        for NewAsset { mut annotation, model } in assets {
+        for NewAsset { mut annotation, model, companions } in assets {
             let problems = annotation.check();
             if !problems.is_empty() {
                 return Err(d3dgen_model::Error::Invalid { kind: Annotation::KIND, problems }.into());
@@ -47,10 +49,10 @@ impl Database {
                 _ => None,
             };
             let before = source.as_ref().map(|(path, _)| self.ingested(path)).transpose()?.flatten();
-            let own = before.as_ref().map(|(_, id)| id.clone()).filter(|id| is_variant(id, &annotation.asset_id));
-            if let Some((hash, id)) = &before {
-                batch.delete(CONTENTS, hash.as_str());
-                orphans.extend(self.model_hash(id)?.filter(|old| Some(old) != model.as_ref()));
+            let own = before.as_ref().map(|b| b.asset_id.clone()).filter(|id| is_variant(id, &annotation.asset_id));
+            if let Some(before) = &before {
+                self.forget_content(before, &mut batch)?;
+                orphans.extend(self.model_hash(&before.asset_id)?.filter(|old| Some(old) != model.as_ref()));
             }
             annotation.asset_id = match own {
                 Some(id) => id,
@@ -58,8 +60,12 @@ impl Database {
             };
             taken.insert(annotation.asset_id.clone());
             if let Some((path, hash)) = source {
-                batch.put(CONTENTS, hash.as_str(), encode(&annotation.asset_id));
-                batch.put(PATHS, path, encode(&PathRecord { hash, asset_id: annotation.asset_id.clone() }));
+                let asset_id = annotation.asset_id.clone();
+                // Of two with other companions the first stands for the content.
+                if self.with_content(&hash)?.is_none_or(|id| before.as_ref().is_some_and(|b| b.asset_id == id)) {
+                    batch.put(CONTENTS, hash.as_str(), encode(&asset_id));
+                }
+                batch.put(PATHS, path, encode(&IngestedFile { hash, asset_id, companions }));
             }
             ids.push(annotation.asset_id.clone());
             let key = annotation.asset_id.clone();
@@ -74,12 +80,20 @@ impl Database {
     ///
     /// # Errors
     /// `Store`.
-    pub fn note_copies(&self, copies: &[(String, String, String)]) -> Result<(), Error> {
+    pub fn note_copies(&self, copies: &[(String, IngestedFile)]) -> Result<(), Error> {
         let mut batch = Batch::new();
-        for (path, hash, asset_id) in copies {
-            batch.put(PATHS, path.as_str(), encode(&PathRecord { hash: hash.clone(), asset_id: asset_id.clone() }));
+        for (path, copy) in copies {
+            batch.put(PATHS, path.as_str(), encode(copy));
         }
         self.store.apply(batch)?;
+        Ok(())
+    }
+
+    /// No longer says that the content of a file is its asset's, if it does.
+    fn forget_content(&self, file: &IngestedFile, batch: &mut Batch) -> Result<(), Error> {
+        if self.with_content(&file.hash)?.as_ref() == Some(&file.asset_id) {
+            batch.delete(CONTENTS, file.hash.as_str());
+        }
         Ok(())
     }
 
@@ -121,16 +135,16 @@ impl Database {
             files.extend(self.model_hash(id)?);
             batch.delete(ASSETS, id.as_str());
         }
-        let mut paths: BTreeMap<String, PathRecord> = BTreeMap::new();
-        super::records::each(&self.store.view()?, PATHS, |path, record: PathRecord| {
+        let mut paths: BTreeMap<String, IngestedFile> = BTreeMap::new();
+        super::records::each(&self.store.view()?, PATHS, |path, record: IngestedFile| {
             if gone.contains(&record.asset_id) {
                 paths.insert(path.to_owned(), record);
             }
             Ok(())
         })?;
         for (path, record) in paths {
+            self.forget_content(&record, &mut batch)?;
             batch.delete(PATHS, path);
-            batch.delete(CONTENTS, record.hash);
         }
         for object in objects {
             batch.put(REMOVED, object.as_str(), encode(&RemovedRecord { change: seq }));

@@ -24,7 +24,11 @@ impl Reads for Boxes {
             let text = std::fs::read_to_string(file).expect("readable");
             let figures: Vec<f32> = text.split_whitespace().filter_map(|f| f.parse().ok()).collect();
             let read = match figures[..] {
-                [x, y, z] => Ok(Read { model: boxes(&[[[0.0; 3], [x, y, z]]]), declared: Declared::default() }),
+                [x, y, z] => Ok(Read {
+                    model: boxes(&[[[0.0; 3], [x, y, z]]]),
+                    declared: Declared::default(),
+                    companions: [file.with_file_name("paint.mtl")].into_iter().filter(|f| f.is_file()).collect(),
+                }),
                 _ => Err("is no box".to_owned()),
             };
             if each(place, read).is_break() {
@@ -94,6 +98,42 @@ fn folders_are_ingested_once_and_again() {
     let annotation = home.database.get("Test/desk").expect("readable").expect("there");
     assert_eq!(annotation.size_m, [1.6, 0.8, 0.72]);
     assert_eq!(annotation.object.as_deref(), Some("desk"));
+    assert_eq!(home.database.verify(&mut |_, _| (), &AtomicBool::new(false)).expect("readable"), []);
+}
+
+#[test]
+fn other_materials_make_another_model() {
+    let home = Home::new(&[
+        ("red/chair.obj", "0.5 0.5 0.9"),
+        ("red/paint.mtl", "red"),
+        ("red_copy/chair.obj", "0.5 0.5 0.9"),
+        ("red_copy/paint.mtl", "red"),
+        ("blue/chair.obj", "0.5 0.5 0.9"),
+        ("blue/paint.mtl", "blue"),
+    ]);
+    let first = home.ingest(&|| false);
+    assert_eq!(first.counts(), [2, 0, 1, 0], "{first:?}");
+    let ids = |summary: &Summary| -> Vec<String> {
+        let id = |o: &Outcome| {
+            match o {
+                Outcome::Added { asset_id } | Outcome::Updated { asset_id } | Outcome::Unchanged { asset_id } => {
+                    asset_id
+                }
+                Outcome::Refused { reason } => reason,
+            }
+            .clone()
+        };
+        summary.files.values().map(id).collect()
+    };
+    // blue, red, red_copy: two look alike and are not.
+    let [blue, red, copy] = ids(&first).try_into().expect("three files");
+    assert!(blue != red && (copy == red || copy == blue));
+    assert_eq!(home.ingest(&|| false).counts(), [0, 0, 3, 0]);
+    let reads = home.reads();
+    home.write("red/paint.mtl", "dark red");
+    let repainted = home.ingest(&|| false);
+    assert_eq!((repainted.counts(), home.reads()), ([0, 1, 2, 0], reads + 1), "{repainted:?}");
+    assert_eq!(ids(&repainted)[1], red);
     assert_eq!(home.database.verify(&mut |_, _| (), &AtomicBool::new(false)).expect("readable"), []);
 }
 

@@ -1,5 +1,6 @@
 //! Which files of a folder are models, and what tells whether they are known already.
 
+use std::collections::BTreeMap;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
@@ -81,20 +82,61 @@ pub(super) fn digest(file: &Path, root: &Path) -> Result<String, String> {
     let mut hash = Sha256::new();
     let beside = look_around(file, Some(root)).files;
     for path in std::iter::once(file).chain(beside.iter().map(PathBuf::as_path)) {
-        let handle = std::fs::File::open(path).map_err(|e| format!("cannot be read: {e}"))?;
-        let length = handle.metadata().map_err(|e| format!("cannot be read: {e}"))?.len();
-        if length > LARGEST {
-            return Err(format!("is {} MiB large, at most {} MiB are read", length >> 20, LARGEST >> 20));
-        }
-        hash.update(length.to_le_bytes());
-        let (mut handle, mut page) = (handle.take(LARGEST), vec![0; 1 << 16]);
-        loop {
-            let n = handle.read(&mut page).map_err(|e| format!("cannot be read: {e}"))?;
-            if n == 0 {
-                break;
-            }
-            hash.update(&page[..n]);
-        }
+        add(&mut hash, path)?;
     }
-    Ok(hash.finalize().iter().map(|b| format!("{b:02x}")).collect())
+    Ok(hexadecimal(hash))
+}
+
+/// Returns the digests of the files that a model is made of beside its own, by their paths below the root; those that
+/// are elsewhere or cannot be read are left out.
+pub(super) fn digests(companions: &[PathBuf], root: &Path) -> BTreeMap<String, String> {
+    let Ok(root) = root.canonicalize() else { return BTreeMap::new() };
+    let one = |file: &PathBuf| Some((slashed(file.strip_prefix(&root).ok()?)?, of_file(file).ok()?));
+    companions.iter().filter_map(one).collect()
+}
+
+/// Tells whether files below the root are as they were.
+pub(super) fn are_unchanged(companions: &BTreeMap<String, String>, root: &Path) -> bool {
+    companions.iter().all(|(path, digest)| of_file(&root.join(path)).is_ok_and(|now| now == *digest))
+}
+
+/// Returns the companions of a model as a copy of it elsewhere names them: what lies in the model's folder is looked for
+/// in the copy's.
+pub(super) fn beside(companions: &BTreeMap<String, String>, model: &str, copy: &str) -> BTreeMap<String, String> {
+    let folder = |path: &str| path.rsplit_once('/').map_or(String::new(), |(folder, _)| format!("{folder}/"));
+    let (from, to) = (folder(model), folder(copy));
+    let moved = |path: &String| path.strip_prefix(&from).map_or_else(|| path.clone(), |rest| format!("{to}{rest}"));
+    companions.iter().map(|(path, digest)| (moved(path), digest.clone())).collect()
+}
+
+fn of_file(file: &Path) -> Result<String, String> {
+    let mut hash = Sha256::new();
+    add(&mut hash, file)?;
+    Ok(hexadecimal(hash))
+}
+
+fn add(hash: &mut Sha256, path: &Path) -> Result<(), String> {
+    let handle = std::fs::File::open(path).map_err(|e| format!("cannot be read: {e}"))?;
+    let length = handle.metadata().map_err(|e| format!("cannot be read: {e}"))?.len();
+    if length > LARGEST {
+        return Err(format!("is {} MiB large, at most {} MiB are read", length >> 20, LARGEST >> 20));
+    }
+    hash.update(length.to_le_bytes());
+    let (mut handle, mut page) = (handle.take(LARGEST), vec![0; 1 << 16]);
+    loop {
+        let n = handle.read(&mut page).map_err(|e| format!("cannot be read: {e}"))?;
+        if n == 0 {
+            return Ok(());
+        }
+        hash.update(&page[..n]);
+    }
+}
+
+fn hexadecimal(hash: Sha256) -> String {
+    hash.finalize().iter().map(|b| format!("{b:02x}")).collect()
+}
+
+fn slashed(path: &Path) -> Option<String> {
+    let parts: Option<Vec<&str>> = path.iter().map(|part| part.to_str()).collect();
+    Some(parts?.join("/"))
 }

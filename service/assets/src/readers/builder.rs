@@ -225,7 +225,7 @@ impl Builder {
             }
         }
         match possible(&model) {
-            Ok(()) => Ok(ReadModel { model, facts: self.facts }),
+            Ok(()) => Ok(ReadModel { model, facts: self.facts, companions: Vec::new() }),
             Err(reason) => Err(Refusal { reason, facts: Some(Box::new(self.facts)) }),
         }
     }

@@ -3,6 +3,7 @@
 //! What it is not for: what the object is or how large it really is; that is the annotation.
 
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 
 use d3dgen_mesh::Model3d;
 use serde::{Deserialize, Serialize};
@@ -19,6 +20,8 @@ pub struct ReadModel {
     pub model: Model3d,
     /// What the file says.
     pub facts: Facts,
+    /// The other files that it is made of: materials, buffers, pictures, layers.
+    pub companions: Vec<PathBuf>,
 }
 
 /// What a file says about itself.

@@ -1,7 +1,9 @@
 //! The only way to a file: inside of a folder, of a bounded size, never a pipe, a device or a link out of the folder.
 
+use std::collections::BTreeSet;
 use std::io::Read;
 use std::path::{Component, Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use super::facts::Refusal;
 
@@ -24,6 +26,8 @@ pub struct Folder {
     base: PathBuf,
     /// No file outside of it is read.
     root: PathBuf,
+    /// The files that were asked for and are there.
+    used: Arc<Mutex<BTreeSet<PathBuf>>>,
 }
 
 impl Folder {
@@ -52,13 +56,13 @@ impl Folder {
         if !base.starts_with(&root) {
             return Err(format!("is outside of {}", root.display()).into());
         }
-        Ok((Self { base, root }, PathBuf::from(name)))
+        Ok((Self { base, root, used: Arc::default() }, PathBuf::from(name)))
     }
 
     /// Returns the folder that a file named in this one is in.
     pub fn of_named(&self, path: &str) -> Option<Self> {
         let file = self.resolve(path)?;
-        Some(Self { base: file.parent()?.to_path_buf(), root: self.root.clone() })
+        Some(Self { base: file.parent()?.to_path_buf(), ..self.clone() })
     }
 
     /// Returns where relative paths begin.
@@ -104,7 +108,16 @@ impl Folder {
             return None;
         }
         let real = path.canonicalize().ok()?;
-        (within(&real) && real.metadata().is_ok_and(|m| m.is_file())).then_some(real)
+        if !within(&real) || !real.metadata().is_ok_and(|m| m.is_file()) {
+            return None;
+        }
+        self.used.lock().unwrap_or_else(PoisonError::into_inner).insert(real.clone());
+        Some(real)
+    }
+
+    /// Returns the files that a model, and what it names, asked for so far, its own among them.
+    pub fn used(&self) -> Vec<PathBuf> {
+        self.used.lock().unwrap_or_else(PoisonError::into_inner).iter().cloned().collect()
     }
 
     /// Returns the content of a file that a model names.

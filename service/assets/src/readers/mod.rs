@@ -74,7 +74,11 @@ pub fn is_model(path: &Path) -> bool {
 pub fn read(path: &Path, root: Option<&Path>) -> Result<ReadModel, Refusal> {
     let (folder, name) = Folder::of(path, root)?;
     let bytes = folder.read_own(&name)?;
-    read_bytes(&bytes, name, &folder)
+    let own = folder.file(&name);
+    let mut read = read_bytes(&bytes, name, &folder)?;
+    // A name that is no text cannot cross to another process.
+    read.companions = folder.used().into_iter().filter(|f| own.as_ref() != Some(f) && f.to_str().is_some()).collect();
+    Ok(read)
 }
 
 /// Reads a model from the content of a file.

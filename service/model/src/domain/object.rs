@@ -61,6 +61,29 @@ pub struct ObjectType {
     /// Anything else a later release or a custom domain wants to say about it.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub extra: BTreeMap<String, String>,
+    /// What a database of assets says of it while worlds are furnished; never part of a manifest.
+    #[serde(skip)]
+    pub stock: Stock,
+}
+
+/// Which assets of a database stand for an object.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Stock {
+    /// The asset of each size that one has; sizes that none has are made.
+    pub assets: Vec<StockedAsset>,
+    /// Why the object is made, when the library's own is removed and no asset fits.
+    pub made_because: Option<String>,
+}
+
+/// An asset that stands for an object of a size.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StockedAsset {
+    /// The size, one of the object's.
+    pub size_m: [f64; 3],
+    /// Model reference of the asset.
+    pub asset: String,
+    /// Why it was chosen, for people.
+    pub reason: String,
 }
 
 /// Where an object is fixed.

@@ -6,7 +6,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use d3dgen_model::Pose;
 use d3dgen_model::domain::{Domain, Mount, ObjectType};
 use d3dgen_model::geometry::to_mm;
-use d3dgen_model::placements::{Placement, Unplaced};
+use d3dgen_model::placements::{AssetChoice, AssetSource, Placement, Unplaced};
 
 use super::demand::Task;
 use super::search::{LEVELS, Outcome};
@@ -19,19 +19,15 @@ pub fn asset(domain: &Domain, object: &ObjectType) -> String {
     format!("{}/{}", camel(&domain.id), camel(&object.id))
 }
 
-/// Key of an object's `extra` under which the asset of a size stands, `asset 1600x800x740` in mm, with why it was chosen
-/// behind a colon; and the key that says why an object is made because no asset fits.
-const ASSET: &str = "asset ";
-const MADE: &str = "made";
-
 /// Returns the model reference of an object of a size, mm, and why it is that one, where a database has a say.
-fn stocked(domain: &Domain, object: &ObjectType, [w, d, h]: [i32; 3]) -> (String, Option<String>) {
-    let own = object.extra.get(&format!("{ASSET}{w}x{d}x{h}")).and_then(|text| text.split_once(": "));
-    match (own, object.extra.get(MADE)) {
-        (Some((asset_id, why)), _) => (asset_id.to_owned(), Some(format!("asset {asset_id}: {why}"))),
-        (None, Some(why)) => (asset(domain, object), Some(format!("made: {why}"))),
-        (None, None) => (asset(domain, object), None),
+fn stocked(domain: &Domain, object: &ObjectType, size: [i32; 3]) -> (String, Option<AssetChoice>) {
+    let same = |size_m: &[f64; 3]| size_m.iter().zip(size).all(|(m, mm)| (m * 1000.0).round() == f64::from(mm));
+    if let Some(own) = object.stock.assets.iter().find(|a| same(&a.size_m)) {
+        let choice = AssetChoice { source: AssetSource::Database, reason: own.reason.clone() };
+        return (own.asset.clone(), Some(choice));
     }
+    let made = object.stock.made_because.clone();
+    (asset(domain, object), made.map(|reason| AssetChoice { source: AssetSource::Generated, reason }))
 }
 
 fn camel(id: &str) -> String {
@@ -91,12 +87,13 @@ pub(super) fn placements(
                 (None, Some((i, k))) => ids.get(i).and_then(|parts| parts.get(k)),
                 (None, None) => None,
             };
-            let (asset, why) = stocked(domain, part.object, [w, d, solid.z1 - solid.z0]);
+            let (asset, asset_choice) = stocked(domain, part.object, [w, d, solid.z1 - solid.z0]);
             out.push(Placement {
                 placement_id: own[k].clone(),
                 room_id: room_id.to_owned(),
                 object: part.object.id.clone(),
                 asset,
+                asset_choice,
                 pose: Pose {
                     x: to_mm(center.x),
                     y: to_mm(center.y),
@@ -111,7 +108,7 @@ pub(super) fn placements(
                 },
                 support: on.cloned(),
                 group: group.clone(),
-                rule: why.map_or_else(|| rule.clone(), |why| format!("{rule}; {why}")),
+                rule: rule.clone(),
                 locked: false,
             });
         }

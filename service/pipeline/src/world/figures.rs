@@ -2,6 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use d3dgen_model::placements::AssetSource;
+
 use super::context::Context;
 
 /// Returns the figures of a world by name; areas in m^2, shares 0 to 1.
@@ -32,8 +34,12 @@ pub fn measure(c: &Context) -> BTreeMap<String, f64> {
         ("unplaced_wishes", c.world.placements.unplaced.len() as f64),
     ];
     // Only where a database of assets has a say: objects that are its assets, and such as are made for want of one.
-    let told = |what: &str| c.objects.iter().filter(|o| o.placement.rule.contains(what)).count() as f64;
-    let stock = [("objects_from_database", told("; asset ")), ("objects_made_for_want_of_an_asset", told("; made: "))];
+    let choices = || c.objects.iter().filter_map(|o| o.placement.asset_choice.as_ref());
+    let from = |source: AssetSource| choices().filter(|choice| choice.source == source).count() as f64;
+    let stock = [
+        ("objects_from_database", from(AssetSource::Database)),
+        ("objects_made_for_want_of_an_asset", from(AssetSource::Generated)),
+    ];
     let figures = figures.into_iter().chain(stock.into_iter().filter(|(_, count)| *count > 0.0));
     figures.map(|(name, value)| (name.to_owned(), (value * 1000.0).round() / 1000.0)).collect()
 }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use d3dgen_assets::annotation::Origin;
 use d3dgen_assets::catalog::Catalog;
-use d3dgen_assets::ingest::{Read, annotate_file, declared};
+use d3dgen_assets::ingest::{Read, annotate_file};
 use d3dgen_assets::inspect::line;
 use d3dgen_assets::readers::{Bounds, ReadModel, Refusal};
 use serde_json::Value;
@@ -81,7 +81,7 @@ fn annotated(result: &Result<ReadModel, Refusal>, file: &Path, root: Option<&Pat
     let Ok(read) = result else { return Value::Null };
     let path = file.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
     let origin = Origin::Ingested { path, hash: String::new() };
-    let read = Read { declared: declared(&read.facts), model: read.model.clone() };
+    let read = Read::from(read.clone());
     let annotation = annotate_file(&read, file, root, None, origin, catalog);
     annotation.map_or(Value::Null, |a| serde_json::to_value(a).unwrap_or_default())
 }

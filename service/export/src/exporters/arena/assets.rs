@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use d3dgen_mesh::Library;
-use d3dgen_model::domain::{Domain, Mount, ObjectType, Shape};
+use d3dgen_model::domain::{Domain, Mount, ObjectType, Shape, Stock};
 use d3dgen_model::placements::Placement;
 use d3dgen_model::world::World;
 
@@ -136,6 +136,7 @@ fn plain(id: &str, size_m: [f64; 3], mount: Mount) -> ObjectType {
         tags: Vec::new(),
         source: String::new(),
         extra: BTreeMap::new(),
+        stock: Stock::default(),
     }
 }
 
