@@ -298,14 +298,8 @@ impl Document for Annotation {
                 problems.push(Problem::new(format!("/joints/{i}/limits"), format!("{least} is above {most}")));
             }
         }
-        if let Some(mass) = &self.mass {
-            if mass.mass_kg <= 0.0 {
-                problems.push(Problem::new("/mass/mass_kg", format!("is {} kg, must be above 0", mass.mass_kg)));
-            }
-            let outside = |(center, [low, high]): (&f64, &[f64; 2])| center < low || center > high;
-            if mass.center_m.iter().zip(&self.bounding_box_m).any(outside) {
-                problems.push(Problem::new("/mass/center_m", "is outside of the bounding box"));
-            }
+        if let Some(mass) = self.mass.as_ref().filter(|m| m.mass_kg < 0.0) {
+            problems.push(Problem::new("/mass/mass_kg", format!("is {} kg, must not be below 0", mass.mass_kg)));
         }
         problems
     }

@@ -13,6 +13,7 @@ use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::sync::{Mutex, PoisonError};
 
 use d3dgen_mesh::Model3d;
+use d3dgen_model::Document;
 use serde::{Deserialize, Serialize};
 
 use crate::annotate::{Subject, annotate, look_around};
@@ -193,9 +194,13 @@ pub fn ingest(
     if !summary.cancelled {
         keep_all(database, &root, &wanted, total - later.len(), catalog, reads, options, &mut summary)?;
     }
-    let others = copies(database, &root, later, &mut summary)?;
-    if !others.is_empty() && !summary.cancelled {
-        keep_all(database, &root, &others, total, catalog, reads, options, &mut summary)?;
+    let mut others = copies(database, &root, later, &mut summary)?;
+    while !others.is_empty() && !summary.cancelled {
+        // One of each content at a time: the next may be a copy of it.
+        let mut seen = BTreeSet::new();
+        let (first, rest): (Vec<_>, Vec<_>) = others.into_iter().partition(|o| seen.insert(o.hash.clone()));
+        keep_all(database, &root, &first, total - rest.len(), catalog, reads, options, &mut summary)?;
+        others = copies(database, &root, rest, &mut summary)?;
     }
     Ok(summary)
 }
@@ -232,7 +237,7 @@ fn sift(
             } else {
                 wanted.push(file);
             }
-        } else if !seen.insert(file.hash.clone()) || database.with_content(&file.hash)?.is_some() {
+        } else if !seen.insert(file.hash.clone()) || !database.with_content(&file.hash)?.is_empty() {
             later.push(file);
         } else {
             wanted.push(file);
@@ -246,24 +251,30 @@ fn sift(
 fn copies(database: &Database, root: &Path, later: Vec<Wanted>, summary: &mut Summary) -> Result<Vec<Wanted>, Error> {
     let (mut notes, mut others) = (Vec::new(), Vec::new());
     for copy in later {
-        let Some(asset_id) = database.with_content(&copy.hash)? else {
-            if !summary.cancelled {
-                let reason = "is a copy of a file that was refused".to_owned();
-                summary.files.insert(copy.path, Outcome::Refused { reason });
-            }
+        let originals = database.with_content(&copy.hash)?;
+        if originals.is_empty() && !summary.cancelled {
+            let reason = "is a copy of a file that was refused".to_owned();
+            summary.files.insert(copy.path.clone(), Outcome::Refused { reason });
+        }
+        if originals.is_empty() {
             continue;
-        };
-        let original = match database.get(&asset_id)?.map(|a| a.origin) {
-            Some(Origin::Ingested { path, .. }) => database.ingested(&path)?.map(|record| (path, record.companions)),
-            _ => None,
-        };
-        let (path, companions) = original.unwrap_or_default();
-        let companions = walk::beside(&companions, &path, &copy.path);
-        if walk::are_unchanged(&companions, root) {
-            summary.files.insert(copy.path.clone(), Outcome::Unchanged { asset_id: asset_id.clone() });
-            notes.push((copy.path, IngestedFile { hash: copy.hash, asset_id, companions }));
-        } else {
-            others.push(copy);
+        }
+        let mut note = None;
+        for asset_id in originals {
+            let Some(Origin::Ingested { path, .. }) = database.get(&asset_id)?.map(|a| a.origin) else { continue };
+            let Some(original) = database.ingested(&path)? else { continue };
+            let companions = walk::beside(&original.companions, &path, &copy.path);
+            if walk::are_unchanged(&companions, root) {
+                note = Some(IngestedFile { hash: copy.hash.clone(), asset_id, companions });
+                break;
+            }
+        }
+        match note {
+            Some(note) => {
+                summary.files.insert(copy.path.clone(), Outcome::Unchanged { asset_id: note.asset_id.clone() });
+                notes.push((copy.path, note));
+            }
+            None => others.push(copy),
         }
     }
     if !notes.is_empty() {
@@ -330,6 +341,9 @@ fn judge(w: &Wanted, read: Read, root: &Path, catalog: &Catalog, options: &Optio
     let origin = Origin::Ingested { path: w.path.clone(), hash: w.hash.clone() };
     let annotation = annotate_file(&read, &w.file, Some(root), options.domain, origin, catalog);
     let annotation = annotation.ok_or("has no triangle: there is nothing to see")?;
+    if let Some(problem) = annotation.check().first() {
+        return Err(format!("cannot be described: {problem}"));
+    }
     let companions = walk::digests(&read.companions, root);
     let mut model = read.model;
     model.name = annotation.asset_id.rsplit('/').next().unwrap_or_default().to_owned();

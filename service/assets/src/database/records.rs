@@ -3,7 +3,7 @@
 //! | table | key | payload |
 //! |---|---|---|
 //! | `asset` | asset id | [`AssetRecord`] |
-//! | `asset_content` | digest of the source | asset id |
+//! | `asset_content` | digest of the source, asset id | asset id |
 //! | `asset_path` | path below the folder that was ingested | [`IngestedFile`] |
 //! | `asset_removed` | object id | [`RemovedRecord`] |
 //! | `asset_change` | ten digits | [`Change`] |

@@ -1,16 +1,17 @@
 //! Changes going in: each is one batch, stored whole or not at all, together with its entry in the history.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::ops::ControlFlow;
 
 use d3dgen_mesh::Model3d;
 use d3dgen_model::Document;
-use d3dgen_store::Batch;
+use d3dgen_store::{Batch, KeyRange};
 
 use super::Database;
 use super::files;
 use super::records::{
     ASSETS, AssetRecord, CHANGES, CONTENTS, Change, IngestedFile, Kind, PATHS, Provenance, REMOVED, RemovedRecord,
-    encode, get,
+    decode, encode, get,
 };
 use crate::annotation::{Annotation, Origin};
 use crate::error::Error;
@@ -51,7 +52,7 @@ impl Database {
             let before = source.as_ref().map(|(path, _)| self.ingested(path)).transpose()?.flatten();
             let own = before.as_ref().map(|b| b.asset_id.clone()).filter(|id| is_variant(id, &annotation.asset_id));
             if let Some(before) = &before {
-                self.forget_content(before, &mut batch)?;
+                batch.delete(CONTENTS, content_key(&before.hash, &before.asset_id));
                 orphans.extend(self.model_hash(&before.asset_id)?.filter(|old| Some(old) != model.as_ref()));
             }
             annotation.asset_id = match own {
@@ -61,10 +62,7 @@ impl Database {
             taken.insert(annotation.asset_id.clone());
             if let Some((path, hash)) = source {
                 let asset_id = annotation.asset_id.clone();
-                // Of two with other companions the first stands for the content.
-                if self.with_content(&hash)?.is_none_or(|id| before.as_ref().is_some_and(|b| b.asset_id == id)) {
-                    batch.put(CONTENTS, hash.as_str(), encode(&asset_id));
-                }
+                batch.put(CONTENTS, content_key(&hash, &asset_id), encode(&asset_id));
                 batch.put(PATHS, path, encode(&IngestedFile { hash, asset_id, companions }));
             }
             ids.push(annotation.asset_id.clone());
@@ -89,20 +87,17 @@ impl Database {
         Ok(())
     }
 
-    /// No longer says that the content of a file is its asset's, if it does.
-    fn forget_content(&self, file: &IngestedFile, batch: &mut Batch) -> Result<(), Error> {
-        if self.with_content(&file.hash)?.as_ref() == Some(&file.asset_id) {
-            batch.delete(CONTENTS, file.hash.as_str());
-        }
-        Ok(())
-    }
-
-    /// Returns the asset made of a source with this digest.
+    /// Returns the assets made of a source with this digest; several when other files are with it.
     ///
     /// # Errors
     /// `Store`.
-    pub fn with_content(&self, hash: &str) -> Result<Option<String>, Error> {
-        get(&self.store.view()?, CONTENTS, hash)
+    pub fn with_content(&self, hash: &str) -> Result<Vec<String>, Error> {
+        let mut found = Vec::new();
+        self.store.view()?.scan(CONTENTS, &KeyRange::prefix(hash), |key, payload| {
+            found.push(decode(CONTENTS, key, payload)?);
+            Ok::<_, Error>(ControlFlow::Continue(()))
+        })?;
+        Ok(found)
     }
 
     /// Puts a changed annotation in the place of an asset's own.
@@ -143,7 +138,7 @@ impl Database {
             Ok(())
         })?;
         for (path, record) in paths {
-            self.forget_content(&record, &mut batch)?;
+            batch.delete(CONTENTS, content_key(&record.hash, &record.asset_id));
             batch.delete(PATHS, path);
         }
         for object in objects {
@@ -202,6 +197,10 @@ impl Database {
         })?;
         hashes.iter().filter(|hash| !used.contains(*hash)).try_for_each(|hash| files::remove(&self.files_dir(), hash))
     }
+}
+
+fn content_key(hash: &str, asset_id: &str) -> String {
+    format!("{hash} {asset_id}")
 }
 
 /// Tells whether an id is another one, perhaps with a number.
