@@ -84,3 +84,20 @@ pub fn screaming(name: &str) -> String {
     }
     out
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_stay_and_are_not_used_again() {
+        let mut numbers = Numbers::default();
+        let first = numbers.give("Size", &["width_m", "depth_m", "height_m"]);
+        assert_eq!(first.numbers["height_m"], 3);
+        numbers.by_type.insert("Size".into(), first);
+        let next = numbers.give("Size", &["height_m", "color", "width_m"]);
+        let found: Vec<(&str, i32)> = next.numbers.iter().map(|(n, i)| (n.as_str(), *i)).collect();
+        assert_eq!(found, [("color", 4), ("height_m", 3), ("width_m", 1)]);
+        assert_eq!((next.reserved, next.reserved_names), ([2].into(), ["depth_m".to_owned()].into()));
+    }
+}
