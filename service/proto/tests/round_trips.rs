@@ -7,6 +7,7 @@ use d3dgen_assets::annotation::Annotation;
 use d3dgen_assets::catalog::Catalog;
 use d3dgen_assets::library::Library;
 use d3dgen_model::Document;
+use d3dgen_model::seed::Stream;
 use d3dgen_pipeline::generate::{Settings, generate_world};
 use d3dgen_pipeline::scene_graph::Request;
 use d3dgen_plugins::Registry;
@@ -96,4 +97,35 @@ fn a_world_takes_milliseconds() {
         world.to_json().len() / 1024
     );
     assert!(out.as_millis() < 100 && shape.as_millis() < 100, "a document takes milliseconds, not {out:?}, {shape:?}");
+}
+
+#[test]
+fn changed_bytes_are_refused_or_read_and_never_break_the_reader() {
+    let request = Request { prompt: "flat with four rooms".into(), ..Default::default() };
+    let registry = Registry::builtin();
+    let world = generate_world(&request, &registry, &Settings::default(), &mut |_| {}, &false.into()).unwrap().world;
+    let whole = to_proto(&world).unwrap().encode_to_vec();
+    let knowledge = to_proto(registry.get("office").unwrap().knowledge()).unwrap().encode_to_vec();
+    let mut chance = Stream::new(7, "changed_bytes");
+    let (mut read, mut refused) = (0, 0);
+    for round in 0..400 {
+        let mut bytes = if round % 4 == 0 { knowledge.clone() } else { whole.clone() };
+        for _ in 0..=chance.below(3) {
+            let at = chance.below(bytes.len());
+            bytes[at] = u8::try_from(chance.below(256)).unwrap();
+        }
+        if round % 5 == 0 {
+            bytes.truncate(chance.below(bytes.len()));
+        }
+        let outcome = if round % 4 == 0 {
+            v1::KnowledgeBase::decode(bytes.as_slice()).ok().map(|m| convert::value(&m).is_ok())
+        } else {
+            v1::World::decode(bytes.as_slice()).ok().map(|m| convert::value(&m).is_ok())
+        };
+        match outcome {
+            Some(true) => read += 1,
+            Some(false) | None => refused += 1,
+        }
+    }
+    assert!(read > 20 && refused > 20, "{read} read, {refused} refused: the changes try little");
 }
