@@ -1,6 +1,6 @@
 """Runs client programs, generated from proto/ alone, against real servers on loopback: without TLS, and with TLS and a token.
 
-    .venv/bin/python tests/clients/run.py [--server target/release/d3dgen] [--only python|typescript]
+    .venv/bin/python tests/clients/run.py [--server target/debug/d3dgen] [--only python|typescript]
 
 Every run has a server of its own with a new folder of databases. Generated code and packages go to target/clients. Where npm
 is missing, the TypeScript client is left out and said so. The last line counts the runs; exit status 1 when one failed.
@@ -164,7 +164,7 @@ def one_run(program, prepared, secure, example):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--server", type=Path, default=WORKSPACE / "target" / "release" / "d3dgen")
+    parser.add_argument("--server", type=Path, default=WORKSPACE / "target" / "debug" / "d3dgen")
     parser.add_argument("--only", choices=CLIENTS)
     arguments = parser.parse_args()
     program = arguments.server.resolve()
