@@ -1,0 +1,86 @@
+//! What each RPC needs, from `data/methods.toml`: scope and kind of call.
+
+use std::collections::BTreeMap;
+use std::time::Duration;
+
+use serde::Deserialize;
+
+use crate::access::Scope;
+use crate::config::Limits;
+
+const METHODS: &str = include_str!("../data/methods.toml");
+
+/// What bounds the time of a call.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Kind {
+    /// Looks something up.
+    Lookup,
+    /// Makes or checks something.
+    Work,
+    /// Goes on for long.
+    Stream,
+}
+
+/// What a call needs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Need {
+    /// Least scope; none for everybody.
+    #[serde(default)]
+    pub scope: Option<Scope>,
+    /// What bounds its time.
+    pub kind: Kind,
+}
+
+/// The needs of all methods, by path: `/d3dgen.v1.DomainService/ListDomains`.
+#[derive(Debug)]
+pub struct Methods(BTreeMap<String, Need>);
+
+/// Protocols beside the contract, which libraries serve.
+const OTHERS: &[(&str, Need)] = &[
+    ("/grpc.health.v1.Health/Check", Need { scope: None, kind: Kind::Lookup }),
+    ("/grpc.health.v1.Health/Watch", Need { scope: None, kind: Kind::Stream }),
+    ("/grpc.health.v1.Health/List", Need { scope: None, kind: Kind::Lookup }),
+    ("/grpc.reflection.v1.ServerReflection/ServerReflectionInfo", Need { scope: Some(Scope::Read), kind: Kind::Stream }),
+    ("/healthz", Need { scope: None, kind: Kind::Lookup }),
+    ("/metrics", Need { scope: Some(Scope::Read), kind: Kind::Lookup }),
+];
+
+impl Methods {
+    /// Returns the list of this release.
+    pub fn shipped() -> Self {
+        let services: BTreeMap<String, BTreeMap<String, Need>> =
+            toml::from_str(METHODS).expect("a test reads the list of methods");
+        let own = services.into_iter().flat_map(|(service, methods)| {
+            methods.into_iter().map(move |(method, need)| (format!("/d3dgen.v1.{service}/{method}"), need))
+        });
+        Self(own.chain(OTHERS.iter().map(|(path, need)| ((*path).to_owned(), *need))).collect())
+    }
+
+    /// Returns what a call needs; one that nobody listed needs the most.
+    pub fn need(&self, path: &str) -> Need {
+        self.0.get(path).copied().unwrap_or(Need { scope: Some(Scope::Admin), kind: Kind::Work })
+    }
+
+    /// Returns the path as it was listed, for counters; calls of anything else are counted as one.
+    pub fn label(&self, path: &str) -> &str {
+        self.0.get_key_value(path).map_or("other", |(known, _)| known.as_str())
+    }
+
+    /// Returns all paths of the contract.
+    pub fn paths(&self) -> impl Iterator<Item = &str> {
+        self.0.keys().map(String::as_str)
+    }
+}
+
+impl Kind {
+    /// Returns the longest time of such a call.
+    pub fn limit(self, limits: &Limits) -> Duration {
+        match self {
+            Self::Lookup => limits.lookup,
+            Self::Work => limits.work,
+            Self::Stream => limits.stream,
+        }
+    }
+}
