@@ -1,10 +1,11 @@
 //! A domain from any folder: data only, no rebuild.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
-use d3dgen_model::Document;
 use d3dgen_model::domain::Domain;
 use d3dgen_model::knowledge::KnowledgeBase;
+use d3dgen_model::{Document, Problem};
 
 use crate::{Error, Plugin, merge};
 
@@ -35,6 +36,37 @@ impl Custom {
             KnowledgeBase::empty(&domain.id)
         };
         Ok(Self { domain, knowledge })
+    }
+
+    /// Reads a domain from the texts of its files by name, as [`Custom::read`] does from a folder; problems name the file.
+    ///
+    /// # Errors
+    /// Every problem of the first file that has any; JSON pointers of `domain.toml` are into the merged tables.
+    pub fn from_texts(files: &BTreeMap<String, String>) -> Result<Self, (String, d3dgen_model::Error)> {
+        let main = "domain.toml";
+        let not = |file: &str, reason: String| {
+            (
+                file.to_owned(),
+                d3dgen_model::Error::Invalid { kind: Domain::KIND, problems: vec![Problem::new("", reason)] },
+            )
+        };
+        let Some(first) = files.get(main) else {
+            return Err(not(main, "is missing; a domain has a domain.toml".into()));
+        };
+        let others = files.iter().filter(|(name, _)| *name != main && name.ends_with(".toml"));
+        let texts = std::iter::once((main, first.as_str())).chain(others.map(|(n, t)| (n.as_str(), t.as_str())));
+        let table = merge::texts(texts).map_err(|(file, reason)| not(&file, reason))?;
+        let domain = Domain::from_value(table).map_err(|source| (main.to_owned(), source))?;
+        let knowledge = match files.get("knowledge.json") {
+            Some(text) => KnowledgeBase::from_json(text).map_err(|source| ("knowledge.json".to_owned(), source))?,
+            None => KnowledgeBase::empty(&domain.id),
+        };
+        Ok(Self { domain, knowledge })
+    }
+
+    /// Returns a domain of its two documents, both checked before.
+    pub fn of(domain: Domain, knowledge: KnowledgeBase) -> Self {
+        Self { domain, knowledge }
     }
 }
 
@@ -76,6 +108,23 @@ mod tests {
         assert_eq!(registry.add_folder(dir.path()).unwrap().id(), "academy");
         let (academy, school) = (registry.get("academy").unwrap(), registry.get("school").unwrap());
         assert_eq!(academy.domain().room_types, school.domain().room_types);
+    }
+
+    #[test]
+    fn texts_are_read_as_their_folder_is() {
+        let mut files: BTreeMap<String, String> = fs::read_dir(shipped("school"))
+            .unwrap()
+            .map(|e| e.unwrap().path())
+            .map(|p| (p.file_name().unwrap().to_string_lossy().into_owned(), fs::read_to_string(&p).unwrap()))
+            .collect();
+        let (texts, folder) = (Custom::from_texts(&files).ok().unwrap(), Custom::read(&shipped("school")).unwrap());
+        assert_eq!((texts.domain(), texts.knowledge()), (folder.domain(), folder.knowledge()));
+        files.insert("more.toml".into(), "id = \"x\"".into());
+        assert_eq!(Custom::from_texts(&files).err().unwrap().0, "more.toml");
+        files.remove("more.toml");
+        files.insert("knowledge.json".into(), "{}".into());
+        assert_eq!(Custom::from_texts(&files).err().unwrap().0, "knowledge.json");
+        assert_eq!(Custom::from_texts(&BTreeMap::new()).err().unwrap().0, "domain.toml");
     }
 
     #[test]

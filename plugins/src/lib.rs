@@ -9,6 +9,7 @@ mod error;
 mod merge;
 
 use std::path::Path;
+use std::sync::Arc;
 
 use d3dgen_model::domain::Domain;
 use d3dgen_model::knowledge::KnowledgeBase;
@@ -34,15 +35,17 @@ pub fn is_shipped(id: &str) -> bool {
     all().iter().any(|b| b.id() == id)
 }
 
-/// All domains a process knows, in a stable order: built-in ones first, then folders as they were added.
+/// All domains a process knows, in a stable order: built-in ones first, then others as they were added. Clones share the
+/// domains.
+#[derive(Clone)]
 pub struct Registry {
-    plugins: Vec<Box<dyn Plugin>>,
+    plugins: Vec<Arc<dyn Plugin>>,
 }
 
 impl Registry {
     /// Returns the built-in domains; each is parsed when it is first used.
     pub fn builtin() -> Self {
-        Self { plugins: all().into_iter().map(|b| Box::new(b) as Box<dyn Plugin>).collect() }
+        Self { plugins: all().into_iter().map(|b| Arc::new(b) as Arc<dyn Plugin>).collect() }
     }
 
     /// Adds the domain in a folder and returns it.
@@ -55,15 +58,24 @@ impl Registry {
         if self.get(plugin.id()).is_some() {
             return Err(Error::Taken { folder: folder.to_path_buf(), id: plugin.id().to_owned() });
         }
-        self.plugins.push(Box::new(plugin));
+        self.plugins.push(Arc::new(plugin));
         Ok(self.plugins.last().expect("just pushed").as_ref())
+    }
+
+    /// Adds a domain; false when its id is in use.
+    pub fn add(&mut self, plugin: Arc<dyn Plugin>) -> bool {
+        let free = self.get(plugin.id()).is_none();
+        if free {
+            self.plugins.push(plugin);
+        }
+        free
     }
 
     /// Gives a domain other rules than it brings; false when no such domain is registered.
     pub fn set_knowledge(&mut self, id: &str, knowledge: KnowledgeBase) -> bool {
         let Some(at) = self.plugins.iter().position(|p| p.id() == id) else { return false };
         let domain = self.plugins.remove(at);
-        self.plugins.insert(at, Box::new(OtherRules { domain, knowledge }));
+        self.plugins.insert(at, Arc::new(OtherRules { domain, knowledge }));
         true
     }
 
@@ -71,7 +83,7 @@ impl Registry {
     pub fn set_domain(&mut self, domain: Domain) -> bool {
         let Some(at) = self.plugins.iter().position(|p| p.id() == domain.id) else { return false };
         let rules = self.plugins.remove(at);
-        self.plugins.insert(at, Box::new(OtherObjects { rules, domain }));
+        self.plugins.insert(at, Arc::new(OtherObjects { rules, domain }));
         true
     }
 
@@ -88,7 +100,7 @@ impl Registry {
 
 /// A domain whose objects come from elsewhere.
 struct OtherObjects {
-    rules: Box<dyn Plugin>,
+    rules: Arc<dyn Plugin>,
     domain: Domain,
 }
 
@@ -108,7 +120,7 @@ impl Plugin for OtherObjects {
 
 /// A domain whose rules come from elsewhere.
 struct OtherRules {
-    domain: Box<dyn Plugin>,
+    domain: Arc<dyn Plugin>,
     knowledge: KnowledgeBase,
 }
 

@@ -21,12 +21,26 @@ pub fn domain_folder(folder: &Path) -> Result<Value, String> {
         .filter(|p| *p != main && p.extension().is_some_and(|x| x == "toml"))
         .collect();
     files.sort();
-    let mut whole = Map::new();
+    let mut all = Vec::new();
     for file in std::iter::once(main).chain(files) {
         let text = std::fs::read_to_string(&file).map_err(|e| format!("{}: {e}", file.display()))?;
-        let table: Map<String, Value> = toml::from_str(&text).map_err(|e| format!("{}: {e}", file.display()))?;
+        all.push((file.display().to_string(), text));
+    }
+    texts(all.iter().map(|(file, text)| (file.as_str(), text.as_str())))
+        .map_err(|(file, reason)| format!("{file}: {reason}"))
+}
+
+/// Merges the texts of files, each with its name, in their order.
+///
+/// # Errors
+/// The file and what is wrong with it.
+pub fn texts<'a>(files: impl Iterator<Item = (&'a str, &'a str)>) -> Result<Value, (String, String)> {
+    let mut whole = Map::new();
+    for (file, text) in files {
+        let failed = |reason: String| (file.to_owned(), reason);
+        let table: Map<String, Value> = toml::from_str(text).map_err(|e| failed(e.to_string()))?;
         for (key, value) in table {
-            join(&mut whole, key, value).map_err(|key| format!("{}: `{key}` is given twice", file.display()))?;
+            join(&mut whole, key, value).map_err(|key| failed(format!("`{key}` is given twice")))?;
         }
     }
     Ok(Value::Object(whole))

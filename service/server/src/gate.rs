@@ -102,12 +102,8 @@ impl Rules {
             return Err((refused, peer.to_owned()));
         };
         if caller.scope < least {
-            let message = format!(
-                "token `{}` has scope {}, this call needs {}",
-                caller.name,
-                caller.scope.name(),
-                least.name()
-            );
+            let message =
+                format!("token `{}` has scope {}, this call needs {}", caller.name, caller.scope.name(), least.name());
             return Err((Status::permission_denied(message), caller.name));
         }
         match self.rates.take(&caller.name) {
@@ -218,7 +214,8 @@ where
             Err(status) => return Box::pin(async move { Ok(refusal(status, is_grpc, call)) }),
         };
         let kind = rules.methods.need(&path).kind;
-        let time = asked_time(request.headers()).map_or(kind.limit(&rules.limits), |t| t.min(kind.limit(&rules.limits)));
+        let time =
+            asked_time(request.headers()).map_or(kind.limit(&rules.limits), |t| t.min(kind.limit(&rules.limits)));
         request.extensions_mut().insert(caller);
         request.extensions_mut().insert(RequestId(id));
         request.extensions_mut().insert(kind);

@@ -5,6 +5,11 @@
 //! | [`config`] | what a server is told: file, variables and flags in layers |
 //! | [`access`], [`methods`], [`gate`] | who may call what, how much and how long |
 //! | [`connection`] | TCP and TLS |
+//! | [`databases`], [`own`] | rules, assets, indexes; the server's own records |
+//! | [`domains`] | the domains at run time |
+//! | [`core`] | what all services work with |
+//! | [`jobs`] | long work that survives a restart |
+//! | [`names`] | names and paths that clients send |
 //! | [`pool`] | threads for what takes the processor, with cancellation |
 //! | [`status`], [`metrics`] | answers when something goes wrong; counters |
 //!
@@ -12,12 +17,19 @@
 //! its caller.
 
 pub mod access;
+pub mod clock;
 pub mod config;
 pub mod connection;
+pub mod core;
+pub mod databases;
+pub mod domains;
 pub mod error;
 pub mod gate;
+pub mod jobs;
 pub mod methods;
 pub mod metrics;
+pub mod names;
+pub mod own;
 pub mod pool;
 pub mod status;
 

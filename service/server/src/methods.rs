@@ -42,7 +42,10 @@ const OTHERS: &[(&str, Need)] = &[
     ("/grpc.health.v1.Health/Check", Need { scope: None, kind: Kind::Lookup }),
     ("/grpc.health.v1.Health/Watch", Need { scope: None, kind: Kind::Stream }),
     ("/grpc.health.v1.Health/List", Need { scope: None, kind: Kind::Lookup }),
-    ("/grpc.reflection.v1.ServerReflection/ServerReflectionInfo", Need { scope: Some(Scope::Read), kind: Kind::Stream }),
+    (
+        "/grpc.reflection.v1.ServerReflection/ServerReflectionInfo",
+        Need { scope: Some(Scope::Read), kind: Kind::Stream },
+    ),
     ("/healthz", Need { scope: None, kind: Kind::Lookup }),
     ("/metrics", Need { scope: Some(Scope::Read), kind: Kind::Lookup }),
 ];

@@ -60,7 +60,8 @@ impl Metrics {
             let _ = writeln!(text, "# HELP d3dgen_{name} {help}.\n# TYPE d3dgen_{name} gauge\nd3dgen_{name} {value}");
         }
         let calls = self.calls.lock().unwrap_or_else(PoisonError::into_inner).clone();
-        text += "# HELP d3dgen_call_seconds Time of calls by method and status.\n# TYPE d3dgen_call_seconds histogram\n";
+        text +=
+            "# HELP d3dgen_call_seconds Time of calls by method and status.\n# TYPE d3dgen_call_seconds histogram\n";
         for ((method, status), times) in &calls {
             let labels = format!("method=\"{method}\",status=\"{status}\"");
             for (within, bound) in times.within.iter().zip(BOUNDS) {

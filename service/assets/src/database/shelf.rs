@@ -103,6 +103,21 @@ impl<'c> Shelf<'c> {
         Ok(own + self.library.assets().count())
     }
 
+    /// Opens the index of these assets; it is kept beside the database and made anew when it is stale. Without a database
+    /// it lives in memory.
+    ///
+    /// # Errors
+    /// `Store`: cancelled, or not readable.
+    pub fn open_index(&self, embedder: Arc<dyn Embedder>, watch: Watch<'_>) -> Result<AssetIndex, Error> {
+        match &self.database {
+            Some(database) => {
+                let dir = database.store().index_dir().join("assets");
+                AssetIndex::open(&dir, embedder, self.revision()?, || self.documents(), watch)
+            }
+            None => AssetIndex::in_memory(embedder, self.documents()?, watch),
+        }
+    }
+
     /// Returns a number that changes with the database and with the objects of the domains.
     fn revision(&self) -> Result<u64, Error> {
         let mut hash = Sha256::new();
@@ -135,12 +150,12 @@ pub struct Searcher<'c> {
 }
 
 impl<'c> Searcher<'c> {
-    /// Opens the index; it is kept beside the database and made anew when it is stale. Without a database it lives in
-    /// memory.
+    /// Opens the index, see [`Shelf::open_index`].
     ///
     /// # Errors
-    /// `Store`: cancelled, or not readable.
+    /// As it does.
     pub fn open(shelf: Shelf<'c>, embedder: Arc<dyn Embedder>, watch: Watch<'_>) -> Result<Self, Error> {
+<<<<<<< HEAD
         let index = match &shelf.database {
             Some(database) => {
                 let dir = database.store().index_dir().join("assets");
@@ -156,6 +171,9 @@ impl<'c> Searcher<'c> {
                 AssetIndex::in_memory(embedder, documents, watch)?
             }
         };
+=======
+        let index = shelf.open_index(embedder, watch)?;
+>>>>>>> 3f29c51 (Keep jobs, domains and databases of the server)
         Ok(Self { shelf, index })
     }
 

@@ -67,6 +67,11 @@ impl Database {
         Ok(Self { store: Store::open_or_create(dir, options)? })
     }
 
+    /// Returns the database of rules in a store that is open, which may hold others too.
+    pub fn of_store(store: Store) -> Self {
+        Self { store }
+    }
+
     /// Returns the store below, for snapshots.
     pub fn store(&self) -> &Store {
         &self.store

@@ -174,7 +174,8 @@ impl Raw {
                 return Err(wrong("listen", format!("{outside}: give tokens, or listen on 127.0.0.1")));
             }
             if tls.is_none() && !self.allow_plain_text {
-                let ways = "give tls.certificate_file and tls.key_file, or allow_plain_text = true where a proxy does TLS";
+                let ways =
+                    "give tls.certificate_file and tls.key_file, or allow_plain_text = true where a proxy does TLS";
                 return Err(wrong("listen", format!("{outside}: {ways}")));
             }
         }
@@ -185,7 +186,9 @@ impl Raw {
         if let Some(origin) = self.cors_origins.iter().find(|o| !is_origin(o)) {
             return Err(wrong("cors_origins", format!("`{origin}` is no origin; write https://example.org")));
         }
-        for (key, value) in [("jobs.workers", self.jobs.workers), ("jobs.batch_worlds", self.jobs.batch_worlds as usize)] {
+        for (key, value) in
+            [("jobs.workers", self.jobs.workers), ("jobs.batch_worlds", self.jobs.batch_worlds as usize)]
+        {
             at_least_one(key, value)?;
         }
         Ok(Config {

@@ -1,0 +1,190 @@
+//! A batch: worlds of one request, the seed counted up, each in files and in a record as soon as it is made.
+
+use std::collections::BTreeMap;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+
+use d3dgen_model::Document;
+use d3dgen_model::report::Report;
+use d3dgen_model::world::World;
+use d3dgen_pipeline::generate::{Generated, Settings, furnish_and_check};
+use d3dgen_pipeline::scene_graph::{self, Request};
+use d3dgen_store::{KeyRange, Store};
+use serde::{Deserialize, Serialize};
+use tonic::Status;
+
+use super::{Level, Run};
+use crate::error::Error;
+use crate::{own, status};
+
+/// Worlds of batches, by job and seed.
+pub const WORLDS: &str = "job_worlds";
+
+/// What to build, as it is stored.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Building {
+    /// The sentence.
+    pub prompt: String,
+    /// Seed of the first world.
+    pub seed: u64,
+    /// Domain id.
+    pub domain: Option<String>,
+    /// Country.
+    pub country: Option<String>,
+    /// Rooms in total.
+    pub rooms: Option<u32>,
+    /// Net floor area, m2.
+    pub area_m2: Option<f64>,
+    /// Radius of the largest robot, m.
+    pub robot_radius_m: Option<f64>,
+}
+
+impl From<Request> for Building {
+    fn from(r: Request) -> Self {
+        let Request { prompt, seed, domain, country, rooms, area_m2, robot_radius_m } = r;
+        Self { prompt, seed, domain, country, rooms, area_m2, robot_radius_m }
+    }
+}
+
+impl Building {
+    /// Returns the request for one of its seeds.
+    pub fn request(&self, seed: u64) -> Request {
+        let Self { prompt, domain, country, rooms, area_m2, robot_radius_m, .. } = self.clone();
+        Request { prompt, seed, domain, country, rooms, area_m2, robot_radius_m }
+    }
+}
+
+/// A batch to make.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Batch {
+    /// The building of the first world.
+    pub building: Building,
+    /// How many worlds.
+    pub count: u32,
+}
+
+/// A world of a batch, in short.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Made {
+    /// Its seed.
+    pub seed: u64,
+    /// Its name; empty when there is none.
+    pub name: String,
+    /// True when every hard rule holds.
+    pub sound: bool,
+    /// Counts and measures.
+    pub figures: BTreeMap<String, f64>,
+    /// Why there is no sound world.
+    pub reason: Option<String>,
+}
+
+/// What is finished.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Done {
+    /// Worlds tried.
+    pub tried: u32,
+    /// Sound ones among them.
+    pub sound: u32,
+    /// Seeds without a sound world, with the reason.
+    pub failed: BTreeMap<u64, String>,
+}
+
+/// Makes the worlds that are not there yet.
+///
+/// # Errors
+/// `CANCELLED`; `INVALID_ARGUMENT` when the request cannot be honored with any seed.
+pub(super) fn run(run: &Run, spec: &Batch) -> Result<serde_json::Value, Status> {
+    let mut done: Done = serde_json::from_value(run.job.checkpoint.clone()).unwrap_or_default();
+    let dir = run.dir()?;
+    while done.tried < spec.count {
+        run.check()?;
+        let seed = spec.building.seed + u64::from(done.tried);
+        run.step("worlds", f64::from(done.tried) / f64::from(spec.count), &format!("{} of {}", done.tried, spec.count));
+        let made = match make(run, spec, seed) {
+            Ok(generated) => {
+                write(&dir, seed, &generated.world, &generated.report).map_err(|e| status::internal(&e))?;
+                let figures = generated.report.figures.iter().map(|(k, v)| (k.clone(), *v)).collect();
+                let first = generated.report.rules.iter().find(|r| !r.violations.is_empty());
+                let sound = generated.report.sound;
+                let reason = (!sound).then(|| format!("breaks {}", first.map_or("a hard rule", |r| r.rule.as_str())));
+                Made { seed, name: generated.world.name, sound, figures, reason }
+            }
+            Err(d3dgen_pipeline::Error::Infeasible { stage, message }) => {
+                let reason = Some(format!("{stage}: {message}"));
+                Made { seed, name: String::new(), sound: false, figures: BTreeMap::new(), reason }
+            }
+            Err(error) => return Err(status::stage(error)),
+        };
+        done.tried += 1;
+        done.sound += u32::from(made.sound);
+        if let Some(reason) = &made.reason {
+            done.failed.insert(seed, reason.clone());
+            run.log(Level::Warning, &format!("seed {seed}: {reason}"));
+        }
+        run.checkpoint(&done, |batch| own::put(batch, WORLDS, &key(&run.job.id, seed), &made))?;
+    }
+    serde_json::to_value(&done).map_err(|e| status::internal(&e))
+}
+
+fn make(run: &Run, spec: &Batch, seed: u64) -> Result<Generated, d3dgen_pipeline::Error> {
+    let now = run.core.domains.now();
+    let graph = scene_graph::generate(&spec.building.request(seed), &now.registry)?;
+    furnish_and_check(&graph, &now.registry, &Settings::default(), &mut |_| {}, run.flag())
+}
+
+/// Writes a world's folder, whole or not at all.
+fn write(dir: &Path, seed: u64, world: &World, report: &Report) -> std::io::Result<()> {
+    let folder = folder(dir, seed);
+    if folder.exists() {
+        std::fs::remove_dir_all(&folder)?; // of a run that was cut short: the same bytes
+    }
+    let fresh = tempfile::tempdir_in(dir)?;
+    for (name, text) in [("world.json", world.to_json()), ("report.json", report.to_json())] {
+        let file = std::fs::File::create(fresh.path().join(name))?;
+        std::io::Write::write_all(&mut &file, text.as_bytes())?;
+        file.sync_data()?;
+    }
+    std::fs::rename(fresh.keep(), folder)
+}
+
+fn folder(dir: &Path, seed: u64) -> PathBuf {
+    dir.join(format!("world-{seed}"))
+}
+
+fn key(id: &str, seed: u64) -> String {
+    format!("{id}/{seed:020}")
+}
+
+/// Returns worlds of a batch with seeds above `after`.
+///
+/// # Errors
+/// `Store`.
+pub fn list(store: &Store, id: &str, after: Option<u64>, most: usize) -> Result<Vec<Made>, Error> {
+    let range = KeyRange::prefix(format!("{id}/"));
+    let range = after.map_or(range.clone(), |seed| range.after(&key(id, seed)));
+    let mut found = Vec::new();
+    own::each(store, WORLDS, &range, |_, made: Made| {
+        found.push(made);
+        Ok(if found.len() < most { ControlFlow::Continue(()) } else { ControlFlow::Break(()) })
+    })?;
+    Ok(found)
+}
+
+/// Reads a world of a batch.
+///
+/// # Errors
+/// `NOT_FOUND`; `DATA_LOSS` when its files are not what they were.
+pub fn read(dir: &Path, seed: u64) -> Result<(World, Report), Status> {
+    let folder = folder(dir, seed);
+    let text = |name: &str| {
+        std::fs::read_to_string(folder.join(name))
+            .map_err(|_| Status::not_found(format!("there is no world of seed {seed} in this batch")))
+    };
+    let damaged = |e: d3dgen_model::Error| Status::data_loss(format!("the files of seed {seed} are damaged: {e}"));
+    Ok((
+        World::from_json(&text("world.json")?).map_err(damaged)?,
+        Report::from_json(&text("report.json")?).map_err(damaged)?,
+    ))
+}
