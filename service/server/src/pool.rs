@@ -14,7 +14,7 @@ use crate::status;
 /// How long to wait before trying again when too many wait.
 const RETRY: Duration = Duration::from_millis(500);
 /// Lookups at a time for each thread that works: they are short and mostly wait for memory.
-const LOOKUPS: usize = 4;
+pub(crate) const LOOKUPS: usize = 4;
 
 /// Set when nobody waits for an answer any more; work looks at it now and then.
 pub type Stop = Arc<AtomicBool>;

@@ -1,0 +1,176 @@
+//! A running server: listens, answers, works on jobs, and stops in order.
+
+use std::future::Future;
+use std::sync::Arc;
+use std::time::Duration;
+
+use axum::Router;
+use axum::extract::State;
+use axum::routing::get;
+use http::{HeaderName, HeaderValue, Method};
+use tokio::net::TcpListener;
+use tonic::service::Routes;
+use tonic::transport::Server;
+use tower_http::cors::{AllowOrigin, CorsLayer};
+
+use crate::access::Access;
+use crate::connection::{self, Peer};
+use crate::core::Core;
+use crate::error::Error;
+use crate::gate::{GateLayer, Rules};
+use crate::jobs::Run;
+use crate::{grpc, pool};
+
+/// How often a client is asked whether it is still there, and how long it may take to say so.
+const ALIVE: (Duration, Duration) = (Duration::from_secs(30), Duration::from_secs(20));
+/// Streams of one connection at a time.
+const STREAMS: u32 = 256;
+/// How often the end of running jobs is looked for while the server stops.
+const POLL: Duration = Duration::from_millis(20);
+/// Threads that wait for the disk or for work, beside those of the pool.
+const MORE_THREADS: usize = 16;
+/// Headers of answers that web pages may read.
+const EXPOSED: [&str; 5] =
+    ["grpc-status", "grpc-message", "grpc-status-details-bin", "x-request-id", "retry-after"];
+
+/// Returns the runtime for a server of so many threads.
+///
+/// # Errors
+/// `Transport` when the system gives no threads.
+pub fn runtime(core: &Core) -> Result<tokio::runtime::Runtime, Error> {
+    let threads = core.config.limits.threads;
+    tokio::runtime::Builder::new_multi_thread()
+        .worker_threads(threads.clamp(2, 8))
+        .max_blocking_threads(threads * (pool::LOOKUPS + 1) + core.config.jobs.workers + MORE_THREADS)
+        .enable_all()
+        .build()
+        .map_err(|e| Error::Transport(e.to_string()))
+}
+
+/// Serves until `stop` is done: then takes no new calls, waits for those under way and for jobs to reach what they can go
+/// on from, at most as long as the configuration says. `ready` hears the address once calls are answered.
+///
+/// # Errors
+/// `Listen`, `Tls`, `Transport`.
+pub async fn serve(
+    core: Arc<Core>,
+    ready: impl FnOnce(std::net::SocketAddr),
+    stop: impl Future<Output = ()>,
+) -> Result<(), Error> {
+    let config = &core.config;
+    let failed = |source| Error::Listen { address: config.listen.to_string(), source };
+    let tls = config.tls.as_ref().map(connection::acceptor).transpose()?;
+    let listener = TcpListener::bind(config.listen).await.map_err(failed)?;
+    let address = listener.local_addr().map_err(failed)?;
+    let (health_reporter, health) = tonic_health::server::health_reporter();
+    for service in grpc::NAMES {
+        health_reporter.set_service_status(service, tonic_health::ServingStatus::Serving).await;
+    }
+    let rules = Rules::new(
+        Access::new(config.tokens.clone()),
+        config.limits.clone(),
+        Arc::clone(&core.metrics),
+        core.clock.now_ms(),
+    );
+    let routes = router(&core, rules, health)?;
+    let incoming = connection::accept(listener, tls, config.limits.connections, Arc::clone(&core.metrics));
+    open_indexes(&core);
+    for _ in 0..config.jobs.workers {
+        tokio::spawn(Run::work(Arc::clone(&core)));
+    }
+    let (stopping, stopped) = tokio::sync::oneshot::channel::<()>();
+    let mut server = Server::builder()
+        .accept_http1(true)
+        .http2_keepalive_interval(Some(ALIVE.0))
+        .http2_keepalive_timeout(Some(ALIVE.1))
+        .max_concurrent_streams(Some(STREAMS))
+        .add_routes(Routes::from(routes))
+        .serve_with_incoming_shutdown(incoming, async {
+            let _ = stopped.await;
+        });
+    let mut server = std::pin::pin!(&mut server);
+    ready(address);
+    tracing::info!(%address, tls = config.tls.is_some(), tokens = config.tokens.len(), "serving");
+    tokio::select! {
+        ended = &mut server => return ended.map_err(|e| Error::Transport(e.to_string())),
+        () = stop => {}
+    }
+    tracing::info!("stopping");
+    for service in grpc::NAMES {
+        health_reporter.set_service_status(service, tonic_health::ServingStatus::NotServing).await;
+    }
+    core.jobs.stop();
+    let _ = stopping.send(());
+    let drained = async {
+        let ended = server.await;
+        while core.jobs.running() > 0 {
+            tokio::time::sleep(POLL).await;
+        }
+        ended
+    };
+    match tokio::time::timeout(config.drain, drained).await {
+        Ok(ended) => ended.map_err(|e| Error::Transport(e.to_string()))?,
+        Err(_) => tracing::warn!("calls or jobs were cut short: they took longer than drain_s"),
+    }
+    tracing::info!("stopped");
+    Ok(())
+}
+
+/// Opens the indexes beside the first answers; searches wait for them.
+fn open_indexes(core: &Arc<Core>) {
+    let core = Arc::clone(core);
+    drop(tokio::task::spawn_blocking(move || {
+        if let Err(error) = core.open_indexes() {
+            tracing::error!(reason = %error, "the indexes cannot be made: searches are not answered");
+        }
+    }));
+}
+
+type Health = tonic_health::pb::health_server::HealthServer<tonic_health::server::HealthService>;
+
+/// Returns everything that is answered: gRPC and gRPC-Web behind the gate, and plain pages beside them.
+fn router(core: &Arc<Core>, rules: Arc<Rules>, health: impl Into<Grpc>) -> Result<Router, Error> {
+    let gate = GateLayer(rules);
+    let Grpc(health) = health.into();
+    let reflection = tonic_reflection::server::Builder::configure()
+        .register_encoded_file_descriptor_set(d3dgen_proto::FILE_DESCRIPTOR_SET)
+        .register_encoded_file_descriptor_set(tonic_health::pb::FILE_DESCRIPTOR_SET)
+        .build_v1()
+        .map_err(|e| Error::Transport(e.to_string()))?;
+    let grpc = grpc::routes(core)
+        .add_service(health)
+        .add_service(reflection)
+        .into_axum_router()
+        .layer(gate.clone())
+        .layer(tonic_web::GrpcWebLayer::new());
+    let pages = Router::new()
+        .route("/healthz", get(|| async { "ok\n" }))
+        .route("/metrics", get(metrics))
+        .with_state(Arc::clone(core))
+        .layer(gate);
+    let all = pages.fallback_service(grpc);
+    if core.config.cors_origins.is_empty() {
+        return Ok(all);
+    }
+    let origins: Vec<HeaderValue> =
+        core.config.cors_origins.iter().filter_map(|o| HeaderValue::from_str(o).ok()).collect();
+    let cors = CorsLayer::new()
+        .allow_origin(AllowOrigin::list(origins))
+        .allow_methods([Method::POST, Method::GET])
+        .allow_headers(tower_http::cors::AllowHeaders::mirror_request())
+        .expose_headers(EXPOSED.map(HeaderName::from_static))
+        .max_age(Duration::from_secs(3600));
+    Ok(all.layer(cors))
+}
+
+/// The health service, whatever its type is called.
+struct Grpc(Health);
+
+async fn metrics(State(core): State<Arc<Core>>) -> ([(HeaderName, &'static str); 1], String) {
+    ([(http::header::CONTENT_TYPE, "text/plain; version=0.0.4")], core.metrics.text())
+}
+
+/// Returns the address of the caller, when the connection told it.
+pub fn peer<T>(request: &tonic::Request<T>) -> Option<std::net::SocketAddr> {
+    request.extensions().get::<Peer>().map(|p| p.0)
+}
