@@ -11,6 +11,7 @@ mod write;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use d3dgen_mesh::Model3d;
 use d3dgen_model::Document;
@@ -29,6 +30,8 @@ pub use write::NewAsset;
 #[derive(Debug, Clone)]
 pub struct Database {
     store: Store,
+    /// Held by whoever makes a change: its number is the count of those before it.
+    changing: Arc<Mutex<()>>,
 }
 
 /// Something wrong in the database, and where.
@@ -61,7 +64,7 @@ impl Database {
     /// # Errors
     /// `Store`: there is none, another process writes it, it is damaged or of a later release.
     pub fn open(dir: &Path, access: Access, options: &Options) -> Result<Self, Error> {
-        Ok(Self { store: Store::open(dir, access, options)? })
+        Ok(Self::of_store(Store::open(dir, access, options)?))
     }
 
     /// Opens the database in a folder for changes; makes one when the folder is missing or empty.
@@ -69,12 +72,12 @@ impl Database {
     /// # Errors
     /// As [`Database::open`].
     pub fn open_or_create(dir: &Path, options: &Options) -> Result<Self, Error> {
-        Ok(Self { store: Store::open_or_create(dir, options)? })
+        Ok(Self::of_store(Store::open_or_create(dir, options)?))
     }
 
     /// Returns the database of assets in a store that is open, which may hold others too.
     pub fn of_store(store: Store) -> Self {
-        Self { store }
+        Self { store, changing: Arc::default() }
     }
 
     /// Returns the store below.
@@ -221,6 +224,11 @@ impl Database {
             damage.push(Damage { place: format!("file {hash}"), reason: "no asset names it".into() });
         }
         Ok(damage)
+    }
+
+    /// Waits until no other thread makes a change.
+    fn changing(&self) -> MutexGuard<'_, ()> {
+        self.changing.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn files_dir(&self) -> PathBuf {

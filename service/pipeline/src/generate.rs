@@ -26,11 +26,15 @@ pub struct Settings {
     pub name: Option<String>,
     /// How often plan and furniture are tried, at least 1.
     pub attempts: u32,
+    /// Earlier plan whose locked parts are kept.
+    pub pinned_floorplan: Option<Floorplan>,
+    /// Earlier placements whose locked ones are kept.
+    pub pinned_placements: Option<Placements>,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { name: None, attempts: 6 }
+        Self { name: None, attempts: 6, pinned_floorplan: None, pinned_placements: None }
     }
 }
 
@@ -179,7 +183,7 @@ fn attempts(
     let mut reason = None;
     for attempt in 0..settings.attempts.max(1) {
         let seed = attempt_seed(graph.seed, attempt);
-        match self::attempt(graph, plugin, &retrieved, (&name, seed, attempt), observe, cancelled) {
+        match self::attempt(graph, plugin, &retrieved, (&name, seed, attempt), settings, observe, cancelled) {
             Ok(found) if found.report.sound => return Ok(found),
             Ok(found) => {
                 let (rule, broken) = broken(&found.report);
@@ -196,6 +200,15 @@ fn attempts(
         }
     }
     best.ok_or_else(|| reason.expect("every attempt ends in a world or an error"))
+}
+
+/// Conflicts that leave open what is wanted; all others have a natural way out, which was taken.
+const CONTRADICTIONS: &[&str] = &["wanted_and_forbidden", "contradicting_counts", "apart_but_joined"];
+
+/// Returns what contradicts itself in a request, as its scene graph tells.
+pub fn contradictions(graph: &SceneGraph) -> Vec<&str> {
+    let found = graph.conflicts.iter().filter(|n| CONTRADICTIONS.contains(&n.code.as_str()));
+    found.map(|n| n.message.as_str()).collect()
 }
 
 /// Returns what the knowledge base of the graph's domain says about its building, country and rooms.
@@ -225,6 +238,7 @@ fn attempt(
     plugin: &dyn Plugin,
     retrieved: &Retrieval,
     (name, seed, attempt): (&str, u64, u32),
+    settings: &Settings,
     observe: &mut dyn FnMut(Event<'_>),
     cancelled: &AtomicBool,
 ) -> Result<Generated, Error> {
@@ -232,11 +246,11 @@ fn attempt(
     let reseeded = SceneGraph { seed, ..graph.clone() };
 
     begin(Stage::Floorplan, attempt, observe, cancelled)?;
-    let plan = floorplan::generate(&reseeded, domain, &retrieved.limits, None)?;
+    let plan = floorplan::generate(&reseeded, domain, &retrieved.limits, settings.pinned_floorplan.as_ref())?;
     observe(Event::Finished(Stage::Floorplan, attempt, Artifact::Floorplan(&plan)));
 
     begin(Stage::Placement, attempt, observe, cancelled)?;
-    let placements = placement::generate(&reseeded, &plan, domain, &retrieved.limits, None)?;
+    let placements = placement::generate(&reseeded, &plan, domain, &retrieved.limits, settings.pinned_placements.as_ref())?;
     observe(Event::Finished(Stage::Placement, attempt, Artifact::Placements(&placements)));
 
     begin(Stage::Scenario, attempt, observe, cancelled)?;

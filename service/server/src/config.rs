@@ -28,6 +28,8 @@ pub struct Config {
     pub cors_origins: Vec<String>,
     /// Folders from which clients may have the server read.
     pub read_roots: Vec<PathBuf>,
+    /// Whether clients may have the server fetch documents from public addresses.
+    pub fetch_documents: bool,
     /// Bounds of what one client and all clients may use.
     pub limits: Limits,
     /// Long work.

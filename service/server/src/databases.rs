@@ -140,6 +140,20 @@ impl Databases {
         search.index.search(query, &search.catalog, &shelf).map_err(status::assets)
     }
 
+    /// Returns how many assets there are, and the values of facets with how many assets have each.
+    ///
+    /// # Errors
+    /// `UNAVAILABLE` when the index takes long.
+    #[allow(clippy::type_complexity)]
+    pub fn asset_values(
+        &self,
+        facets: &[&'static str],
+    ) -> Result<(u64, Vec<(&'static str, std::collections::BTreeMap<String, usize>)>), Status> {
+        let search = self.asset_index.wait()?;
+        let values = facets.iter().map(|f| (*f, search.index.values(f))).collect();
+        Ok((search.index.len() as u64, values))
+    }
+
     /// Returns the assets most like one.
     ///
     /// # Errors

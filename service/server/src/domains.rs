@@ -117,6 +117,42 @@ impl Domains {
         Ok(self.now())
     }
 
+    /// Looks at everything about a domain, and changes nothing.
+    ///
+    /// # Errors
+    /// See [`Refusal`].
+    pub fn check(&self, domain: &Domain, knowledge: &KnowledgeBase) -> Result<(), Refusal> {
+        check(domain, knowledge)
+    }
+
+    /// Returns an earlier version of a registered domain.
+    ///
+    /// # Errors
+    /// `Store`; `Record`.
+    pub fn version(
+        &self,
+        databases: &Databases,
+        id: &str,
+        version: u64,
+    ) -> Result<Option<(Entry, Domain, KnowledgeBase)>, Error> {
+        let stored: Option<Version> = own::get(&databases.own, DOMAIN_VERSIONS, &version_key(id, version))?;
+        Ok(stored.map(|s| (s.entry, s.domain, s.knowledge)))
+    }
+
+    /// Returns the versions of a registered domain, oldest first, each with a digest of what was registered.
+    ///
+    /// # Errors
+    /// `Store`; `Record`.
+    pub fn versions(&self, databases: &Databases, id: &str) -> Result<Vec<(Entry, String)>, Error> {
+        let mut found = Vec::new();
+        own::each(&databases.own, DOMAIN_VERSIONS, &KeyRange::prefix(format!("{id}/")), |_, stored: Version| {
+            let both = stored.domain.to_json() + &stored.knowledge.to_json();
+            found.push((stored.entry, crate::access::hex(&crate::access::digest(both.as_bytes()))));
+            Ok(ControlFlow::Continue(()))
+        })?;
+        Ok(found)
+    }
+
     /// Registers a domain, in place of an earlier version of it. `batch` goes to the disk with it. The caller sees to it
     /// that nobody else changes domains meanwhile.
     ///

@@ -9,6 +9,8 @@
 //! | [`domains`] | the domains at run time |
 //! | [`core`] | what all services work with |
 //! | [`jobs`] | long work that survives a restart |
+//! | [`grpc`], [`convert`] | the services of the contract |
+//! | [`serve`], [`backup`] | a running server, and copies of its databases |
 //! | [`names`] | names and paths that clients send |
 //! | [`pool`] | threads for what takes the processor, with cancellation |
 //! | [`status`], [`metrics`] | answers when something goes wrong; counters |
@@ -17,20 +19,24 @@
 //! its caller.
 
 pub mod access;
+pub mod backup;
 pub mod clock;
 pub mod config;
 pub mod connection;
+pub mod convert;
 pub mod core;
 pub mod databases;
 pub mod domains;
 pub mod error;
 pub mod gate;
+pub mod grpc;
 pub mod jobs;
 pub mod methods;
 pub mod metrics;
 pub mod names;
 pub mod own;
 pub mod pool;
+pub mod serve;
 pub mod status;
 
 pub use config::Config;

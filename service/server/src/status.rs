@@ -42,7 +42,13 @@ pub fn invalid(field: &str, reason: impl Into<String>) -> Status {
 
 /// Returns the answer to a document with problems; `field` is where it stands in the request.
 pub fn problems(field: &str, problems: &[Problem]) -> Status {
-    let at = |p: &Problem| format!("{field}{}", p.path.replace('/', "."));
+    // JSON pointers of documents, and paths of messages
+    let at = |p: &Problem| match p.path.strip_prefix('/') {
+        Some(path) => format!("{field}.{}", path.replace('/', ".")),
+        None if p.path.is_empty() => field.to_owned(),
+        None if field.is_empty() => p.path.clone(),
+        None => format!("{field}.{}", p.path),
+    };
     let listed: Vec<FieldViolation> =
         problems.iter().take(LISTED).map(|p| FieldViolation::new(at(p), p.message.clone())).collect();
     let message = match problems {
@@ -73,12 +79,11 @@ pub fn document(field: &str, error: d3dgen_model::Error) -> Status {
     }
 }
 
-/// Returns the answer to what a stage refuses.
-pub fn stage(error: d3dgen_pipeline::Error) -> Status {
+/// Returns the answer to what a stage refuses; `field` is what it was asked with.
+pub fn stage(field: &str, error: d3dgen_pipeline::Error) -> Status {
     use d3dgen_pipeline::Error;
     match error {
-        Error::Refused { .. } => invalid("request", error.to_string()),
-        Error::Mismatch { .. } => invalid("request", error.to_string()),
+        Error::Refused { .. } | Error::Mismatch { .. } => invalid(field, error.to_string()),
         Error::Infeasible { .. } => Status::failed_precondition(error.to_string()),
         Error::Cancelled => Status::cancelled("the call was given up"),
     }

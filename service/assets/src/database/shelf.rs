@@ -112,9 +112,17 @@ impl<'c> Shelf<'c> {
         match &self.database {
             Some(database) => {
                 let dir = database.store().index_dir().join("assets");
-                AssetIndex::open(&dir, embedder, self.revision()?, || self.documents(), watch)
+                let feed = |take: Take<'_>| self.documents(take);
+                AssetIndex::open(&dir, embedder, self.revision()?, self.count()?, feed, watch)
             }
-            None => AssetIndex::in_memory(embedder, self.documents()?, watch),
+            None => {
+                let mut documents = Vec::new();
+                self.documents(&mut |document| {
+                    documents.push(document);
+                    Ok(())
+                })?;
+                AssetIndex::in_memory(embedder, documents, watch)
+            }
         }
     }
 
@@ -155,25 +163,7 @@ impl<'c> Searcher<'c> {
     /// # Errors
     /// As it does.
     pub fn open(shelf: Shelf<'c>, embedder: Arc<dyn Embedder>, watch: Watch<'_>) -> Result<Self, Error> {
-<<<<<<< HEAD
-        let index = match &shelf.database {
-            Some(database) => {
-                let dir = database.store().index_dir().join("assets");
-                let feed = |take: Take<'_>| shelf.documents(take);
-                AssetIndex::open(&dir, embedder, shelf.revision()?, shelf.count()?, feed, watch)?
-            }
-            None => {
-                let mut documents = Vec::new();
-                shelf.documents(&mut |document| {
-                    documents.push(document);
-                    Ok(())
-                })?;
-                AssetIndex::in_memory(embedder, documents, watch)?
-            }
-        };
-=======
         let index = shelf.open_index(embedder, watch)?;
->>>>>>> 3f29c51 (Keep jobs, domains and databases of the server)
         Ok(Self { shelf, index })
     }
 

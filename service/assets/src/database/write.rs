@@ -36,6 +36,7 @@ impl Database {
         if assets.is_empty() {
             return Ok(Vec::new());
         }
+        let _alone = self.changing();
         let seq = self.next_change()?;
         let mut batch = Batch::new();
         let (mut ids, mut taken, mut orphans) = (Vec::new(), BTreeSet::new(), Vec::new());
@@ -112,6 +113,7 @@ impl Database {
         }
         let record = get::<AssetRecord>(&self.store.view()?, ASSETS, &id)?;
         let Some(record) = record else { return Err(Error::NoAsset { asset_id: id, known: Vec::new() }) };
+        let _alone = self.changing();
         let seq = self.next_change()?;
         let mut batch = Batch::new();
         batch.put(ASSETS, id.as_str(), encode(&AssetRecord { annotation, change: seq, ..record }));
@@ -123,6 +125,7 @@ impl Database {
     /// # Errors
     /// `Store`; `File`.
     pub fn remove(&self, asset_ids: &[String], objects: &[String], by: &Provenance) -> Result<(), Error> {
+        let _alone = self.changing();
         let seq = self.next_change()?;
         let (mut batch, mut files) = (Batch::new(), Vec::new());
         let gone: BTreeSet<&String> = asset_ids.iter().collect();
@@ -154,6 +157,7 @@ impl Database {
     /// # Errors
     /// `Store`.
     pub fn restore(&self, objects: &[String], by: &Provenance) -> Result<(), Error> {
+        let _alone = self.changing();
         let seq = self.next_change()?;
         let mut batch = Batch::new();
         for object in objects {

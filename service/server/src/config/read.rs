@@ -33,6 +33,7 @@ struct Raw {
     allow_plain_text: bool,
     read_roots: Vec<PathBuf>,
     cors_origins: Vec<String>,
+    fetch_documents: bool,
     #[serde(default)]
     tls: RawTls,
     #[serde(default)]
@@ -198,6 +199,7 @@ impl Raw {
             tokens,
             cors_origins: self.cors_origins,
             read_roots: self.read_roots,
+            fetch_documents: self.fetch_documents,
             limits: self.limits.check()?,
             jobs: self.jobs,
             drain: seconds("drain_s", self.drain_s)?,

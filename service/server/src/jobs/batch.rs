@@ -115,7 +115,7 @@ pub(super) fn run(run: &Run, spec: &Batch) -> Result<serde_json::Value, Status> 
                 let reason = Some(format!("{stage}: {message}"));
                 Made { seed, name: String::new(), sound: false, figures: BTreeMap::new(), reason }
             }
-            Err(error) => return Err(status::stage(error)),
+            Err(error) => return Err(status::stage("building", error)),
         };
         done.tried += 1;
         done.sound += u32::from(made.sound);

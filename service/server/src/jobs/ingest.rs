@@ -62,7 +62,10 @@ pub(super) fn run(run: &Run, spec: &Ingest) -> Result<serde_json::Value, Status>
         run.log(Level::Warning, &format!("refused {path}: {reason}"));
     }
     run.checkpoint(&summary, |_| ())?;
-    core.changed_assets()?;
+    {
+        let _alone = core.writing();
+        core.changed_assets()?;
+    }
     if summary.cancelled {
         return Err(Status::cancelled("stopped"));
     }

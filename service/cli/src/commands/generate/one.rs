@@ -4,7 +4,7 @@ use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 use d3dgen_model::scene_graph::SceneGraph;
-use d3dgen_pipeline::generate::{Artifact, Event, Settings, Stage, furnish_and_check};
+use d3dgen_pipeline::generate::{Artifact, Event, Settings, Stage, contradictions, furnish_and_check};
 use d3dgen_pipeline::scene_graph;
 use d3dgen_plugins::Registry;
 
@@ -57,13 +57,9 @@ impl Maker {
     }
 }
 
-/// Conflicts that leave open what is wanted; all others have a natural way out, which was taken.
-const CONTRADICTIONS: &[&str] = &["wanted_and_forbidden", "contradicting_counts", "apart_but_joined"];
-
 /// Refuses a request that says two things at once.
 fn refuse_contradictions(graph: &SceneGraph) -> Result<(), Error> {
-    let found = graph.conflicts.iter().filter(|n| CONTRADICTIONS.contains(&n.code.as_str()));
-    let messages: Vec<&str> = found.map(|n| n.message.as_str()).collect();
+    let messages = contradictions(graph);
     if messages.is_empty() {
         return Ok(());
     }

@@ -1,0 +1,66 @@
+//! Between messages and documents: what comes in is checked as a file would be, and said with its field.
+
+use d3dgen_proto::convert::{self, Contract, Error};
+use prost::{Message, Name};
+use prost_types::FieldMask;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use tonic::Status;
+
+use crate::status::{self, invalid};
+
+/// Paths of a mask at most.
+const PATHS: usize = 100;
+
+/// Returns the message of a document, or of a part of one.
+pub fn message<M: Message + Name + Default>(document: &impl Serialize) -> M {
+    convert::to_message(document).expect("the contract is made of the schemas of documents: its tests compare them")
+}
+
+/// Returns the document of a message.
+///
+/// # Errors
+/// `INVALID_ARGUMENT` with every problem and its field; also when the message is missing.
+pub fn document<D: Contract>(field: &str, message: Option<D::Message>) -> Result<D, Status> {
+    let message = message.ok_or_else(|| invalid(field, "is missing"))?;
+    convert::from_proto(&message).map_err(|e| refused(field, e))
+}
+
+/// Returns the part of a document that a message is; only its shape is checked.
+///
+/// # Errors
+/// As [`document`].
+pub fn part<T: DeserializeOwned, M: Message + Name>(field: &str, message: &M) -> Result<T, Status> {
+    convert::from_message(message).map_err(|e| refused(field, e))
+}
+
+/// Returns a message with the fields of another that the mask names. Fields that the other lacks are cleared.
+///
+/// # Errors
+/// `INVALID_ARGUMENT` for an empty mask, a path that is no field, or one of `fixed`.
+pub fn masked<M: Message + Name + Default>(
+    field: &str,
+    mut base: M,
+    update: &M,
+    mask: Option<FieldMask>,
+    fixed: &[&str],
+) -> Result<M, Status> {
+    let paths = mask.unwrap_or_default().paths;
+    if paths.len() > PATHS {
+        return Err(invalid(&at(field, "update_mask"), format!("has {} paths, at most {PATHS}", paths.len())));
+    }
+    convert::apply_mask(&mut base, update, &paths, fixed).map_err(|e| refused(field, e))?;
+    Ok(base)
+}
+
+/// Returns the path of a field in a message that stands in another.
+pub fn at(field: &str, inner: &str) -> String {
+    if field.is_empty() { inner.to_owned() } else { format!("{field}.{inner}") }
+}
+
+fn refused(field: &str, error: Error) -> Status {
+    match error {
+        Error::Invalid { problems, .. } => status::problems(field, &problems),
+        stale => status::internal(&stale),
+    }
+}

@@ -1,0 +1,431 @@
+//! `KnowledgeService`.
+
+mod messages;
+mod research;
+
+use std::collections::BTreeMap;
+
+use d3dgen_knowledge::amend::{Statement, state};
+use d3dgen_knowledge::classify::{Building, Classified, classify};
+use d3dgen_knowledge::database::{Change, Edit, SearchQuery, apply, difference, filter_names};
+use d3dgen_knowledge::{Policy, Stats, retrieve_with};
+use d3dgen_model::Document;
+use d3dgen_model::domain::Domain;
+use d3dgen_model::knowledge::{Constraint, KnowledgeBase, is_jurisdiction};
+use d3dgen_plugins::Plugin;
+use d3dgen_proto::v1::amend_knowledge_request::Change as Wanted;
+use d3dgen_proto::v1::knowledge_service_server::KnowledgeService;
+use d3dgen_proto::v1::{
+    AmendKnowledgeRequest, AmendKnowledgeResponse, ExportKnowledgeRequest, ExportKnowledgeResponse,
+    GetConstraintRequest, GetConstraintResponse, GetKnowledgeChangeRequest, GetKnowledgeChangeResponse,
+    GetKnowledgeStatsRequest, GetKnowledgeStatsResponse, ImportKnowledgeRequest, ImportKnowledgeResponse,
+    ListConstraintFiltersRequest, ListConstraintFiltersResponse, ListKnowledgeChangesRequest,
+    ListKnowledgeChangesResponse, ResearchKnowledgeRequest, ResearchKnowledgeResponse, RetrieveConstraintsRequest,
+    RetrieveConstraintsResponse, SearchConstraintsRequest, SearchConstraintsResponse, SearchFilter,
+    UndoKnowledgeChangeRequest, UndoKnowledgeChangeResponse, source_policy,
+};
+use d3dgen_research::extract::{Extractor, Finding};
+use tonic::{Request, Status};
+
+use super::domain::plugin;
+use super::page::Page;
+use super::{Answer, Api, Once, caller, limits, mode};
+use crate::convert::{document, masked, message, part};
+use crate::core::Core;
+use crate::domains::Snapshot;
+use crate::status::{self, invalid};
+
+/// Longest question, bytes.
+const QUERY_LIMIT: usize = 2000;
+/// Rooms of one question at most.
+const ROOMS: usize = 1000;
+/// Languages that sentences of owners are read in.
+const LANGUAGES: [&str; 2] = ["en", "de"];
+
+#[tonic::async_trait]
+impl KnowledgeService for Api {
+    async fn import_knowledge(&self, request: Request<ImportKnowledgeRequest>) -> Answer<ImportKnowledgeResponse> {
+        let who = caller(&request).name;
+        let id = |q: &ImportKnowledgeRequest| if q.validate_only { "" } else { q.request_id.as_str() };
+        let change = move |core: &Core, asked: ImportKnowledgeRequest, once: &Once| {
+            let given: KnowledgeBase = document("knowledge_base", asked.knowledge_base)?;
+            // once more as a text: formulas and printed units are looked at there
+            let given = d3dgen_knowledge::import::read(&given.to_json()).map_err(status::knowledge)?.knowledge;
+            let domain = given.metadata.domain.clone();
+            plugin(&core.domains.now(), "knowledge_base.metadata.domain", &domain)?;
+            if asked.validate_only {
+                let before = match core.databases.rules.knowledge_base(&domain) {
+                    Err(d3dgen_knowledge::Error::NoDomain { .. }) => KnowledgeBase::empty(&domain),
+                    found => found.map_err(status::knowledge)?,
+                };
+                let by = core.provenance(&who, &asked.why);
+                let edits = difference(&before, &given, asked.keep_others);
+                let planned = messages::planned(&domain, &edits, by);
+                return Ok(ImportKnowledgeResponse { change: (!edits.is_empty()).then(|| messages::change(&planned)) });
+            }
+            let changed = changed_once(core, once, &who, &asked.why, |by| {
+                core.databases.rules.import(&given, asked.keep_others, by)
+            })?;
+            Ok(ImportKnowledgeResponse { change: changed.as_ref().map(messages::change) })
+        };
+        self.change("ImportKnowledge", request, id, change).await
+    }
+
+    async fn export_knowledge(&self, request: Request<ExportKnowledgeRequest>) -> Answer<ExportKnowledgeResponse> {
+        let asked = request.into_inner();
+        self.work(move |core, _| {
+            let now = core.domains.now();
+            let knowledge = plugin(&now, "domain_id", &asked.domain_id)?.knowledge();
+            Ok(ExportKnowledgeResponse { knowledge_base: Some(message(knowledge)) })
+        })
+        .await
+    }
+
+    async fn search_constraints(
+        &self,
+        request: Request<SearchConstraintsRequest>,
+    ) -> Answer<SearchConstraintsResponse> {
+        let mut asked = request.into_inner();
+        let (size, token) = (std::mem::take(&mut asked.page_size), std::mem::take(&mut asked.page_token));
+        let page = Page::new(size, &token, &asked)?;
+        if asked.query.len() > QUERY_LIMIT {
+            return Err(invalid("query", format!("has {} bytes, at most {QUERY_LIMIT}", asked.query.len())));
+        }
+        for name in asked.filters.keys().filter(|n| !filter_names().contains(&n.as_str())) {
+            return Err(invalid("filters", format!("`{name}` is no filter; there are {}", filter_names().join(", "))));
+        }
+        let query = SearchQuery {
+            mode: mode(asked.mode)?,
+            value: limits("value", asked.value)?,
+            filters: asked.filters.into_iter().map(|(k, v)| (k, v.values.into_iter().collect())).collect(),
+            text: asked.query,
+            limit: page.wanted(),
+        };
+        self.lookup(move |core| {
+            let found = core.databases.searcher()?.search(&query).map_err(status::knowledge)?;
+            let now = core.domains.now();
+            let (found, next_page_token) = page.cut(found);
+            let constraints = found.iter().map(|f| messages::found(f, &now)).collect();
+            Ok(SearchConstraintsResponse { constraints, next_page_token })
+        })
+        .await
+    }
+
+    async fn list_constraint_filters(
+        &self,
+        request: Request<ListConstraintFiltersRequest>,
+    ) -> Answer<ListConstraintFiltersResponse> {
+        let asked = request.into_inner();
+        let page = Page::new(asked.page_size, &asked.page_token, &ListConstraintFiltersRequest::default())?;
+        self.lookup(move |core| {
+            let searcher = core.databases.searcher()?;
+            let mut names = filter_names().to_vec();
+            names.sort_unstable();
+            let (names, next_page_token) = page.cut(names);
+            let filter = |name: &str| SearchFilter {
+                name: name.to_owned(),
+                counts: searcher.values(name).into_iter().map(|(value, n)| (value, n as u64)).collect(),
+            };
+            Ok(ListConstraintFiltersResponse { filters: names.into_iter().map(filter).collect(), next_page_token })
+        })
+        .await
+    }
+
+    async fn get_constraint(&self, request: Request<GetConstraintRequest>) -> Answer<GetConstraintResponse> {
+        let asked = request.into_inner();
+        self.lookup(move |core| {
+            let now = core.domains.now();
+            let knowledge = plugin(&now, "domain_id", &asked.domain_id)?.knowledge();
+            let (reference, constraint) = find(knowledge, &asked.constraint_id)?;
+            let found = messages::placed(constraint, reference, &asked.domain_id, 0.0);
+            Ok(GetConstraintResponse { constraint: Some(found) })
+        })
+        .await
+    }
+
+    async fn retrieve_constraints(
+        &self,
+        request: Request<RetrieveConstraintsRequest>,
+    ) -> Answer<RetrieveConstraintsResponse> {
+        let asked = request.into_inner();
+        if asked.room_labels.is_empty() || asked.room_labels.len() > ROOMS {
+            return Err(invalid("room_labels", format!("has {}, needs 1 to {ROOMS}", asked.room_labels.len())));
+        }
+        let country = asked.country_code.as_ref().map(|c| c.to_ascii_uppercase());
+        if let Some(code) = country.as_ref().filter(|c| !is_jurisdiction(c)) {
+            return Err(invalid("country_code", format!("`{code}` is no ISO 3166 code like DE or US-NC")));
+        }
+        self.lookup(move |core| {
+            let now = core.domains.now();
+            let reading = reading(&now, &asked)?;
+            let plugin = plugin(&now, "domain_id", &reading.domain)?;
+            let building = Building {
+                country_code: country,
+                building_type: asked.building_type.clone().or(reading.building_type),
+                accessible: asked.accessible,
+                rooms: counted(&reading.rooms),
+                persons: asked.person_count,
+                robots: asked
+                    .robots
+                    .iter()
+                    .enumerate()
+                    .map(|(i, r)| part(&format!("robots[{i}]"), r))
+                    .collect::<Result<_, _>>()?,
+            };
+            let policy = policy(asked.policy);
+            let found = retrieve_with(plugin.knowledge(), &building.query(plugin.domain()), &policy);
+            Ok(messages::retrieval(&reading.domain, &found))
+        })
+        .await
+    }
+
+    async fn get_knowledge_stats(
+        &self,
+        request: Request<GetKnowledgeStatsRequest>,
+    ) -> Answer<GetKnowledgeStatsResponse> {
+        let asked = request.into_inner();
+        self.work(move |core, _| {
+            let now = core.domains.now();
+            let plugin = plugin(&now, "domain_id", &asked.domain_id)?;
+            Ok(messages::stats(Stats::of(plugin.knowledge(), plugin.domain(), 0)))
+        })
+        .await
+    }
+
+    async fn amend_knowledge(&self, request: Request<AmendKnowledgeRequest>) -> Answer<AmendKnowledgeResponse> {
+        let who = caller(&request).name;
+        let id = |q: &AmendKnowledgeRequest| if q.validate_only { "" } else { q.request_id.as_str() };
+        let change = move |core: &Core, asked: AmendKnowledgeRequest, once: &Once| {
+            plugin(&core.domains.now(), "domain_id", &asked.domain_id)?;
+            let rules = &core.databases.rules;
+            let why = match &asked.change {
+                Some(Wanted::Sentence(said)) if asked.why.is_empty() => said.text.clone(),
+                _ => asked.why.clone(),
+            };
+            let knowledge = rules.knowledge_base(&asked.domain_id).map_err(status::knowledge)?;
+            let wanted = super::required("change", asked.change)?;
+            if asked.validate_only {
+                let edits = edits(&knowledge, wanted, &core.provenance(&who, &why))?;
+                return Ok(AmendKnowledgeResponse { change: None, edits: edits.iter().map(messages::edit).collect() });
+            }
+            let made = |by: &_| edits(&knowledge, wanted, by);
+            let mut kept = Vec::new();
+            let mut refused = None;
+            let changed = changed_once(core, once, &who, &why, |by| match made(by) {
+                Ok(edits) if edits.is_empty() => Ok(None),
+                Ok(edits) => {
+                    kept.clone_from(&edits);
+                    rules.amend(&asked.domain_id, edits, by).map(Some)
+                }
+                Err(status) => {
+                    refused = Some(status);
+                    Ok(None)
+                }
+            })?;
+            if let Some(refused) = refused {
+                return Err(refused);
+            }
+            let changed = changed.ok_or_else(|| invalid("change", "nothing differs from what the database holds"))?;
+            if kept.is_empty() {
+                kept = rules.edits(changed.seq).map_err(status::knowledge)?; // of an attempt that was cut short
+            }
+            Ok(AmendKnowledgeResponse {
+                change: Some(messages::change(&changed)),
+                edits: kept.iter().map(messages::edit).collect(),
+            })
+        };
+        self.change("AmendKnowledge", request, id, change).await
+    }
+
+    async fn list_knowledge_changes(
+        &self,
+        request: Request<ListKnowledgeChangesRequest>,
+    ) -> Answer<ListKnowledgeChangesResponse> {
+        let mut asked = request.into_inner();
+        let (size, token) = (std::mem::take(&mut asked.page_size), std::mem::take(&mut asked.page_token));
+        let page = Page::new(size, &token, &asked)?;
+        self.lookup(move |core| {
+            let all = core.databases.rules.history().map_err(status::knowledge)?;
+            let fits = |c: &Change| asked.domain_id.as_ref().is_none_or(|d| *d == c.domain);
+            let (found, next_page_token) = page.cut(all.into_iter().rev().filter(fits));
+            Ok(ListKnowledgeChangesResponse { changes: found.iter().map(messages::change).collect(), next_page_token })
+        })
+        .await
+    }
+
+    async fn get_knowledge_change(
+        &self,
+        request: Request<GetKnowledgeChangeRequest>,
+    ) -> Answer<GetKnowledgeChangeResponse> {
+        let seq = request.into_inner().seq;
+        self.lookup(move |core| {
+            let edits = core.databases.rules.edits(seq).map_err(status::knowledge)?;
+            let all = core.databases.rules.history().map_err(status::knowledge)?;
+            let change = all.iter().find(|c| c.seq == seq);
+            let change = change.ok_or_else(|| status::knowledge(d3dgen_knowledge::Error::NoChange { seq }))?;
+            Ok(GetKnowledgeChangeResponse {
+                change: Some(messages::change(change)),
+                edits: edits.iter().map(messages::edit).collect(),
+            })
+        })
+        .await
+    }
+
+    async fn undo_knowledge_change(
+        &self,
+        request: Request<UndoKnowledgeChangeRequest>,
+    ) -> Answer<UndoKnowledgeChangeResponse> {
+        let who = caller(&request).name;
+        let change = move |core: &Core, asked: UndoKnowledgeChangeRequest, once: &Once| {
+            let changed = changed_once(core, once, &who, &asked.why, |by| {
+                core.databases.rules.undo(asked.seq, by).map(Some)
+            })?;
+            Ok(UndoKnowledgeChangeResponse { change: changed.as_ref().map(messages::change) })
+        };
+        self.change("UndoKnowledgeChange", request, |q| &q.request_id, change).await
+    }
+
+    async fn research_knowledge(
+        &self,
+        request: Request<ResearchKnowledgeRequest>,
+    ) -> Answer<ResearchKnowledgeResponse> {
+        let who = caller(&request).name;
+        let change = move |core: &Core, asked: ResearchKnowledgeRequest, once: &Once| {
+            let job = research::start(core, &who, asked, once)?;
+            Ok(ResearchKnowledgeResponse { job: Some(super::job::message(&job)) })
+        };
+        self.change("ResearchKnowledge", request, |q| &q.request_id, change).await
+    }
+}
+
+/// Makes a change of rules, or finds it when an attempt was cut short after it; searches know of it when this returns.
+fn changed_once(
+    core: &Core,
+    once: &Once,
+    who: &str,
+    why: &str,
+    change: impl FnOnce(&d3dgen_knowledge::database::Provenance) -> Result<Option<Change>, d3dgen_knowledge::Error>,
+) -> Result<Option<Change>, Status> {
+    let (at_ms, again) = once.intend(core)?;
+    let by = d3dgen_knowledge::database::Provenance {
+        who: who.to_owned(),
+        when: crate::clock::text(at_ms),
+        why: why.to_owned(),
+    };
+    let before = if again {
+        let all = core.databases.rules.history().map_err(status::knowledge)?;
+        all.into_iter().rev().find(|c| c.provenance == by)
+    } else {
+        None
+    };
+    let changed = match before {
+        Some(found) => Some(found),
+        None => change(&by).map_err(status::knowledge)?,
+    };
+    if changed.is_some() {
+        core.changed_rules()?;
+    }
+    Ok(changed)
+}
+
+fn find<'a>(
+    knowledge: &'a KnowledgeBase,
+    id: &str,
+) -> Result<(&'a d3dgen_model::knowledge::Reference, &'a Constraint), Status> {
+    let mut all = knowledge.references.iter().flat_map(|r| r.constraints.iter().map(move |c| (r, c)));
+    all.find(|(_, c)| c.constraint_id == id).ok_or_else(|| {
+        let domain = &knowledge.metadata.domain;
+        Status::not_found(format!("domain `{domain}` has no rule {:?}", id.chars().take(80).collect::<String>()))
+    })
+}
+
+/// Returns the edits that are wanted.
+fn edits(
+    knowledge: &KnowledgeBase,
+    wanted: Wanted,
+    by: &d3dgen_knowledge::database::Provenance,
+) -> Result<Vec<Edit>, Status> {
+    match wanted {
+        Wanted::Sentence(said) => {
+            let found = findings(&said.text, said.language.as_deref());
+            if found.is_empty() {
+                let help = "has no rule with a figure; say it like \"corridors are at least 2.6 m wide\"";
+                return Err(invalid("sentence.text", help));
+            }
+            let mut after = knowledge.clone();
+            for finding in &found {
+                let made = state(&after, &statement(finding), by).map_err(status::knowledge)?;
+                apply(&mut after, &made);
+            }
+            Ok(difference(knowledge, &after, true))
+        }
+        Wanted::Update(update) => {
+            let given = super::required("update.constraint", update.constraint)?;
+            let (_, was) = find(knowledge, &given.constraint_id)?;
+            let base: d3dgen_proto::v1::Constraint = message(was);
+            let changed = masked("update", base, &given, update.update_mask, &["constraint_id"])?;
+            let changed: Constraint = part("update.constraint", &changed)?;
+            let mut after = knowledge.clone();
+            for constraint in after.references.iter_mut().flat_map(|r| &mut r.constraints) {
+                if constraint.constraint_id == changed.constraint_id {
+                    constraint.clone_from(&changed);
+                }
+            }
+            Ok(difference(knowledge, &after, true))
+        }
+        Wanted::Removal(removal) => {
+            let mut after = knowledge.clone();
+            for id in &removal.constraint_ids {
+                find(knowledge, id)?;
+                after.references.iter_mut().for_each(|r| r.constraints.retain(|c| c.constraint_id != *id));
+            }
+            Ok(difference(knowledge, &after, false))
+        }
+    }
+}
+
+/// Returns the rules in a sentence, read in the language that names most.
+fn findings(sentence: &str, language: Option<&str>) -> Vec<Finding> {
+    let extractor = Extractor::shared();
+    let languages = language.map_or(LANGUAGES.to_vec(), |l| vec![l]);
+    let readings = languages.into_iter().map(|lang| extractor.extract(sentence, lang));
+    let named = |found: &Vec<Finding>| (found.iter().filter(|f| !f.constraint.space.is_empty()).count(), found.len());
+    readings.rev().max_by_key(named).unwrap_or_default()
+}
+
+fn statement(found: &Finding) -> Statement {
+    let c = &found.constraint;
+    Statement {
+        name: c.name.clone(),
+        constraint_type: c.constraint_type.name().to_owned(),
+        value: c.value.clone(),
+        unit: c.unit.clone(),
+        space: c.space.clone(),
+        conditions: c.conditions.clone(),
+    }
+}
+
+fn reading(now: &Snapshot, asked: &RetrieveConstraintsRequest) -> Result<Classified, Status> {
+    let domains: Vec<&Domain> = match &asked.domain_id {
+        Some(id) => vec![plugin(now, "domain_id", id)?.domain()],
+        None => now.registry.iter().map(Plugin::domain).collect(),
+    };
+    let best = classify(&asked.room_labels, &domains).into_iter().next().filter(|r| r.score > 0.0);
+    best.ok_or_else(|| invalid("room_labels", "no domain knows any of these rooms"))
+}
+
+fn counted(rooms: &[(String, Option<String>)]) -> BTreeMap<String, u32> {
+    let mut counts = BTreeMap::new();
+    for id in rooms.iter().filter_map(|(_, t)| t.clone()) {
+        *counts.entry(id).or_insert(0) += 1;
+    }
+    counts
+}
+
+fn policy(asked: Option<d3dgen_proto::v1::SourcePolicy>) -> Policy {
+    match asked.and_then(|p| p.kind) {
+        None | Some(source_policy::Kind::Strictest(_)) => Policy::Strictest,
+        Some(source_policy::Kind::Newest(_)) => Policy::Newest,
+        Some(source_policy::Kind::Preferred(p)) => Policy::Preferred(p.words),
+    }
+}

@@ -1,0 +1,98 @@
+//! Worlds and assets as archives.
+
+use std::sync::atomic::AtomicBool;
+
+use d3dgen_assets::annotation::asa;
+use d3dgen_assets::placed::placed;
+use d3dgen_export::exporters;
+use d3dgen_export::models::{KeptModel, KeptModels};
+use d3dgen_model::world::World;
+use d3dgen_plugins::Plugin;
+use tokio::sync::mpsc;
+use tokio_stream::wrappers::ReceiverStream;
+use tonic::{Response, Status};
+
+use super::go_on;
+use crate::core::Core;
+use crate::grpc::domain::plugin;
+use crate::grpc::{Api, zip};
+use crate::names;
+use crate::pool::Lane;
+use crate::status::{self, invalid};
+
+/// Formats that are written when the client names none.
+const USUAL: [&str; 2] = ["arena", "plan"];
+
+/// The models of the database, for the files of worlds.
+struct Kept<'a>(&'a Core);
+
+impl KeptModels for Kept<'_> {
+    fn model(&self, asset_id: &str) -> Result<Option<KeptModel>, d3dgen_export::Error> {
+        let assets = &self.0.databases.assets;
+        let read = || -> Result<Option<KeptModel>, d3dgen_assets::Error> {
+            let Some(annotation) = assets.get(asset_id)? else { return Ok(None) };
+            let Some(model) = assets.model(asset_id)? else { return Ok(None) };
+            let model = placed(model, &annotation);
+            Ok(Some(KeptModel { model, tags: asa::tags(&annotation), description: annotation.description }))
+        };
+        read().map_err(|e| d3dgen_export::Error::Kept { asset: asset_id.to_owned(), reason: e.to_string() })
+    }
+}
+
+/// Returns the files of a world, by path.
+///
+/// # Errors
+/// `INVALID_ARGUMENT` for a format that is none, and for names in the world that lead out of its folder.
+pub(super) fn files(
+    core: &Core,
+    world: &World,
+    formats: &[String],
+    stop: &AtomicBool,
+) -> Result<Vec<(String, Vec<u8>)>, Status> {
+    for (i, placement) in world.placements.placements.iter().enumerate() {
+        names::reference(&format!("world.placements.placements[{i}].asset_id"), &placement.asset)?;
+    }
+    let now = core.domains.now();
+    let plugin: &dyn Plugin = plugin(&now, "world.scene_graph.domain", &world.scene_graph.domain)?;
+    let usual: Vec<String> = USUAL.iter().map(|f| (*f).to_owned()).collect();
+    let mut files = std::collections::BTreeMap::new();
+    for name in if formats.is_empty() { &usual } else { formats } {
+        go_on(stop)?;
+        let exporter = exporters::get(name).ok_or_else(|| {
+            let known: Vec<&str> = exporters::all().iter().map(|e| e.name()).collect();
+            invalid("formats", format!("{:?} is no format; there are {}", short(name), known.join(", ")))
+        })?;
+        let made = exporter.export(world, plugin.domain(), &Kept(core)).map_err(status::export)?;
+        files.extend(made.into_iter().map(|f| (f.path, f.bytes)));
+    }
+    for path in files.keys() {
+        names::upload_path("world", path)?;
+    }
+    Ok(files.into_iter().collect())
+}
+
+fn short(text: &str) -> String {
+    text.chars().take(60).collect()
+}
+
+impl Api {
+    /// Sends files as the pieces of an archive.
+    pub(in crate::grpc) fn archive<T: Send + 'static>(
+        &self,
+        files: Vec<(String, Vec<u8>)>,
+        piece: impl Fn(Vec<u8>) -> T + Send + 'static,
+    ) -> Response<ReceiverStream<Result<T, Status>>> {
+        let (send, receive) = mpsc::channel(4);
+        let core = self.core.clone();
+        tokio::spawn(async move {
+            let pieces = send.clone();
+            let packed = core.pool.run(Lane::Work, move |_| {
+                zip::write(files, |bytes| pieces.blocking_send(Ok(piece(bytes))).is_ok())
+            });
+            if let Err(refused) = packed.await {
+                let _ = send.send(Err(refused)).await;
+            }
+        });
+        Response::new(ReceiverStream::new(receive))
+    }
+}

@@ -1,0 +1,152 @@
+//! All stages in one call, with an event for each.
+
+use std::pin::Pin;
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use std::task::{Context, Poll};
+
+use d3dgen_model::floorplan::Floorplan;
+use d3dgen_model::placements::Placements;
+use d3dgen_model::scene_graph::SceneGraph;
+use d3dgen_pipeline::generate::{Artifact, Event, Settings, Stage, contradictions, furnish_and_check};
+use d3dgen_pipeline::scene_graph;
+use d3dgen_proto::v1::generate_world_request::Start;
+use d3dgen_proto::v1::generate_world_response::Event as Sent;
+use d3dgen_proto::v1::{GenerateWorldRequest, GenerateWorldResponse, Progress, Stage as StageMessage};
+use tokio::sync::mpsc;
+use tonic::Status;
+
+use super::{building, checked, world_named};
+use crate::convert::{document, message};
+use crate::grpc::Api;
+use crate::grpc::domain::plugin;
+use crate::pool::{Lane, Stop, StopOnDrop};
+use crate::status::{self, invalid};
+
+/// Attempts of one call at most.
+const ATTEMPTS: u32 = 100;
+/// Events that wait for a client that reads slowly.
+const EVENTS: usize = 16;
+
+/// What is sent; the work ends when nobody takes it any more.
+pub struct Events {
+    events: mpsc::Receiver<Result<GenerateWorldResponse, Status>>,
+    _stop: StopOnDrop,
+}
+
+impl tokio_stream::Stream for Events {
+    type Item = Result<GenerateWorldResponse, Status>;
+
+    fn poll_next(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<Option<Self::Item>> {
+        self.events.poll_recv(context)
+    }
+}
+
+impl Api {
+    /// Starts the stages and returns what they send.
+    pub(super) fn generate(&self, asked: GenerateWorldRequest) -> Result<Events, Status> {
+        let start = crate::grpc::required("start", asked.start)?;
+        let name = world_named(asked.name)?;
+        if asked.attempt_count > ATTEMPTS {
+            return Err(invalid("attempt_count", format!("is {}, at most {ATTEMPTS}", asked.attempt_count)));
+        }
+        let (send, events) = mpsc::channel(EVENTS);
+        let stop = Stop::default();
+        let guard = StopOnDrop(Arc::clone(&stop));
+        let (pool, core) = (Arc::clone(&self.core), Arc::clone(&self.core));
+        let (pins, attempts, allow) =
+            ((asked.pinned_floorplan, asked.pinned_placements), asked.attempt_count, asked.allow_conflicts);
+        tokio::spawn(async move {
+            let answers = send.clone();
+            let done = pool.pool.run_with(Lane::Work, Arc::clone(&stop), move |_| {
+                let pinned: Option<Floorplan> = pins.0.map(|p| document("pinned_floorplan", Some(p))).transpose()?;
+                let kept: Option<Placements> = pins.1.map(|p| document("pinned_placements", Some(p))).transpose()?;
+                let mut settings = Settings { name, pinned_floorplan: pinned, pinned_placements: kept, ..Settings::default() };
+                if attempts > 0 {
+                    settings.attempts = attempts;
+                }
+                let now = core.domains.now();
+                let mut told = Told { send: answers, stop: Arc::clone(&stop), attempts: settings.attempts, fraction: 0.0 };
+                let graph = match start {
+                    Start::Building(asked) => {
+                        let request = building(Some(asked))?;
+                        told.hear(Event::Started(Stage::SceneGraph, 0));
+                        scene_graph::generate(&request, &now.registry).map_err(|e| status::stage("building", e))?
+                    }
+                    Start::SceneGraph(graph) => document::<SceneGraph>("scene_graph", Some(graph))?,
+                };
+                plugin(&now, "scene_graph.domain", &graph.domain)?;
+                let contradicting = contradictions(&graph);
+                if !allow && !contradicting.is_empty() {
+                    let said = contradicting.join("; ");
+                    return Err(invalid("building.prompt", format!("contradicts itself: {said}; or set allow_conflicts")));
+                }
+                told.hear(Event::Finished(Stage::SceneGraph, 0, Artifact::SceneGraph(&graph)));
+                let made = furnish_and_check(&graph, &now.registry, &settings, &mut |e| told.hear(e), &stop);
+                let made = made.map_err(|e| status::stage("building", e))?;
+                told.end(checked(&made.world, &made.report), made.attempts.saturating_sub(1));
+                Ok(())
+            });
+            if let Err(refused) = done.await {
+                let _ = send.send(Err(refused)).await;
+            }
+        });
+        Ok(Events { events, _stop: guard })
+    }
+}
+
+/// Tells a client what the stages do.
+struct Told {
+    send: mpsc::Sender<Result<GenerateWorldResponse, Status>>,
+    stop: Stop,
+    attempts: u32,
+    fraction: f64,
+}
+
+impl Told {
+    fn hear(&mut self, event: Event<'_>) {
+        let (stage, attempt, sent, text) = match event {
+            Event::Started(stage, attempt) => (stage, attempt, None, format!("{} begins", stage.name())),
+            Event::Rejected(attempt, reason) => {
+                (Stage::World, attempt, Some(Sent::Rejected(reason.to_owned())), reason.to_owned())
+            }
+            Event::Finished(stage, attempt, artifact) => {
+                let sent = match artifact {
+                    Artifact::SceneGraph(graph) => Sent::SceneGraph(message(graph)),
+                    Artifact::Floorplan(plan) => Sent::Floorplan(message(plan)),
+                    Artifact::Placements(placements) => Sent::Placements(message(placements)),
+                    Artifact::Scenario(scenario) => Sent::Scenario(message(scenario)),
+                    // the last one is sent at the end: another attempt may follow
+                    Artifact::World(..) => return,
+                };
+                (stage, attempt, Some(sent), format!("{} is done", stage.name()))
+            }
+        };
+        // Each attempt takes what is left by half of it: most worlds need one.
+        let done = f64::from(stage as u8) + if sent.is_some() { 1.0 } else { 0.0 };
+        let share = done / Stage::ALL.len() as f64;
+        let begun = 1.0 - 0.5_f64.powi(attempt.min(self.attempts) as i32);
+        let now = begun + (1.0 - begun) * share * 0.5;
+        self.send(stage, attempt, sent, text, now);
+    }
+
+    fn end(&mut self, world: d3dgen_proto::v1::CheckedWorld, attempt: u32) {
+        self.send(Stage::World, attempt, Some(Sent::World(world)), "the world is done".into(), 1.0);
+    }
+
+    fn send(&mut self, stage: Stage, attempt: u32, event: Option<Sent>, text: String, fraction: f64) {
+        self.fraction = self.fraction.max(fraction);
+        let progress = Progress { stage: stage.name().into(), fraction: self.fraction, message: text };
+        let stage = match stage {
+            Stage::SceneGraph => StageMessage::SceneGraph,
+            Stage::Floorplan => StageMessage::Floorplan,
+            Stage::Placement => StageMessage::Placement,
+            Stage::Scenario => StageMessage::Scenario,
+            Stage::World => StageMessage::World,
+        };
+        let news = GenerateWorldResponse { progress: Some(progress), stage: stage as i32, attempt, event };
+        if self.send.blocking_send(Ok(news)).is_err() {
+            self.stop.store(true, Ordering::SeqCst);
+        }
+    }
+}
