@@ -250,7 +250,8 @@ fn attempt(
     observe(Event::Finished(Stage::Floorplan, attempt, Artifact::Floorplan(&plan)));
 
     begin(Stage::Placement, attempt, observe, cancelled)?;
-    let placements = placement::generate(&reseeded, &plan, domain, &retrieved.limits, settings.pinned_placements.as_ref())?;
+    let placements =
+        placement::generate(&reseeded, &plan, domain, &retrieved.limits, settings.pinned_placements.as_ref())?;
     observe(Event::Finished(Stage::Placement, attempt, Artifact::Placements(&placements)));
 
     begin(Stage::Scenario, attempt, observe, cancelled)?;

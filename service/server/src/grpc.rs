@@ -17,7 +17,6 @@ use std::sync::atomic::AtomicBool;
 
 use d3dgen_proto::v1;
 use prost::Message;
-use tonic::codec::CompressionEncoding;
 use tonic::service::Routes;
 use tonic::{Request, Response, Status};
 
@@ -41,10 +40,7 @@ pub fn routes(core: &Arc<Core>) -> Routes {
     let limit = core.config.limits.message_bytes;
     macro_rules! service {
         ($module:ident, $server:ident) => {
-            v1::$module::$server::new(api.clone())
-                .max_decoding_message_size(limit)
-                .accept_compressed(CompressionEncoding::Gzip)
-                .send_compressed(CompressionEncoding::Gzip)
+            v1::$module::$server::new(api.clone()).max_decoding_message_size(limit)
         };
     }
     Routes::new(service!(domain_service_server, DomainServiceServer))
@@ -88,7 +84,7 @@ impl Api {
         &self,
         method: &'static str,
         request: Request<Q>,
-        id: impl FnOnce(&Q) -> &str,
+        id: String,
         change: impl FnOnce(&Core, Q, &Once) -> Result<T, Status> + Send + 'static,
     ) -> Answer<T>
     where
@@ -97,7 +93,7 @@ impl Api {
     {
         let caller = caller(&request);
         let request = request.into_inner();
-        let once = Once::new(&caller.name, method, id(&request), &request)?;
+        let once = Once::new(&caller.name, method, &id, &request)?;
         let core = Arc::clone(&self.core);
         let changed = self.core.pool.run(Lane::Work, move |_| {
             let _alone = core.writing();

@@ -30,8 +30,7 @@ const POLL: Duration = Duration::from_millis(20);
 /// Threads that wait for the disk or for work, beside those of the pool.
 const MORE_THREADS: usize = 16;
 /// Headers of answers that web pages may read.
-const EXPOSED: [&str; 5] =
-    ["grpc-status", "grpc-message", "grpc-status-details-bin", "x-request-id", "retry-after"];
+const EXPOSED: [&str; 5] = ["grpc-status", "grpc-message", "grpc-status-details-bin", "x-request-id", "retry-after"];
 
 /// Returns the runtime for a server of so many threads.
 ///
@@ -79,7 +78,7 @@ pub async fn serve(
         tokio::spawn(Run::work(Arc::clone(&core)));
     }
     let (stopping, stopped) = tokio::sync::oneshot::channel::<()>();
-    let mut server = Server::builder()
+    let server = Server::builder()
         .accept_http1(true)
         .http2_keepalive_interval(Some(ALIVE.0))
         .http2_keepalive_timeout(Some(ALIVE.1))
@@ -88,7 +87,7 @@ pub async fn serve(
         .serve_with_incoming_shutdown(incoming, async {
             let _ = stopped.await;
         });
-    let mut server = std::pin::pin!(&mut server);
+    let mut server = std::pin::pin!(server);
     ready(address);
     tracing::info!(%address, tls = config.tls.is_some(), tokens = config.tokens.len(), "serving");
     tokio::select! {
@@ -126,12 +125,13 @@ fn open_indexes(core: &Arc<Core>) {
     }));
 }
 
-type Health = tonic_health::pb::health_server::HealthServer<tonic_health::server::HealthService>;
-
 /// Returns everything that is answered: gRPC and gRPC-Web behind the gate, and plain pages beside them.
-fn router(core: &Arc<Core>, rules: Arc<Rules>, health: impl Into<Grpc>) -> Result<Router, Error> {
+fn router(
+    core: &Arc<Core>,
+    rules: Arc<Rules>,
+    health: tonic_health::pb::health_server::HealthServer<impl tonic_health::pb::health_server::Health>,
+) -> Result<Router, Error> {
     let gate = GateLayer(rules);
-    let Grpc(health) = health.into();
     let reflection = tonic_reflection::server::Builder::configure()
         .register_encoded_file_descriptor_set(d3dgen_proto::FILE_DESCRIPTOR_SET)
         .register_encoded_file_descriptor_set(tonic_health::pb::FILE_DESCRIPTOR_SET)
@@ -162,9 +162,6 @@ fn router(core: &Arc<Core>, rules: Arc<Rules>, health: impl Into<Grpc>) -> Resul
         .max_age(Duration::from_secs(3600));
     Ok(all.layer(cors))
 }
-
-/// The health service, whatever its type is called.
-struct Grpc(Health);
 
 async fn metrics(State(core): State<Arc<Core>>) -> ([(HeaderName, &'static str); 1], String) {
     ([(http::header::CONTENT_TYPE, "text/plain; version=0.0.4")], core.metrics.text())

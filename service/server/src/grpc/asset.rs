@@ -50,7 +50,10 @@ impl AssetService for Api {
             })?;
             Ok(IngestFolderResponse { job: Some(super::job::message(&job)) })
         };
-        self.change("IngestFolder", request, |q| &q.request_id, change).await
+        {
+            let id = request.get_ref().request_id.clone();
+            self.change("IngestFolder", request, id, change).await
+        }
     }
 
     async fn search_assets(&self, request: Request<SearchAssetsRequest>) -> Answer<SearchAssetsResponse> {
@@ -76,11 +79,8 @@ impl AssetService for Api {
                 None => core.databases.search_assets(&query)?,
             };
             let (found, next_page_token) = page.cut(found);
-            let entry = |f: Found| FoundAsset {
-                asset: Some(message(&f.annotation)),
-                score: f.score,
-                reasons: f.reasons,
-            };
+            let entry =
+                |f: Found| FoundAsset { asset: Some(message(&f.annotation)), score: f.score, reasons: f.reasons };
             Ok(SearchAssetsResponse { assets: found.into_iter().map(entry).collect(), next_page_token })
         })
         .await
@@ -129,7 +129,10 @@ impl AssetService for Api {
             let asset = change::annotate(core, &who, asked, once)?;
             Ok(AnnotateAssetResponse { asset: Some(message(&asset)) })
         };
-        self.change("AnnotateAsset", request, |q| &q.request_id, change).await
+        {
+            let id = request.get_ref().request_id.clone();
+            self.change("AnnotateAsset", request, id, change).await
+        }
     }
 
     async fn generate_assets(&self, request: Request<GenerateAssetsRequest>) -> Answer<GenerateAssetsResponse> {
@@ -138,12 +141,16 @@ impl AssetService for Api {
             let assets = change::generate(core, &who, &asked, once)?;
             Ok(GenerateAssetsResponse { assets: assets.iter().map(message).collect() })
         };
-        self.change("GenerateAssets", request, |q| &q.request_id, change).await
+        {
+            let id = request.get_ref().request_id.clone();
+            self.change("GenerateAssets", request, id, change).await
+        }
     }
 
     async fn remove_assets(&self, request: Request<RemoveAssetsRequest>) -> Answer<RemoveAssetsResponse> {
         let who = caller(&request).name;
-        let id = |q: &RemoveAssetsRequest| if q.validate_only { "" } else { q.request_id.as_str() };
+        let q = request.get_ref();
+        let id = if q.validate_only { String::new() } else { q.request_id.clone() };
         let change = move |core: &Core, asked: RemoveAssetsRequest, once: &Once| {
             let asset_ids = change::remove(core, &who, asked, once)?;
             Ok(RemoveAssetsResponse { asset_ids })
@@ -157,7 +164,10 @@ impl AssetService for Api {
             let object_ids = change::restore(core, &who, asked, once)?;
             Ok(RestoreAssetsResponse { object_ids })
         };
-        self.change("RestoreAssets", request, |q| &q.request_id, change).await
+        {
+            let id = request.get_ref().request_id.clone();
+            self.change("RestoreAssets", request, id, change).await
+        }
     }
 
     async fn get_asset_stats(&self, _: Request<GetAssetStatsRequest>) -> Answer<GetAssetStatsResponse> {
@@ -174,7 +184,11 @@ impl AssetService for Api {
                 model_bytes: stats.model_bytes,
                 change_count: stats.changes,
                 // an id has one asset: to filter by, not to count
-                properties: values.into_iter().filter(|(n, _)| *n != "id").map(|(n, v)| (n.into(), counts(v))).collect(),
+                properties: values
+                    .into_iter()
+                    .filter(|(n, _)| *n != "id")
+                    .map(|(n, v)| (n.into(), counts(v)))
+                    .collect(),
             })
         })
         .await
@@ -217,5 +231,9 @@ fn filters(asked: Option<AssetFilter>) -> Result<Filters, Status> {
             numbers.insert(name.to_owned(), Range { min, max });
         }
     }
-    Ok(Filters { facets: values("filter.any_of", asked.any_of)?, not: values("filter.none_of", asked.none_of)?, numbers })
+    Ok(Filters {
+        facets: values("filter.any_of", asked.any_of)?,
+        not: values("filter.none_of", asked.none_of)?,
+        numbers,
+    })
 }

@@ -91,7 +91,8 @@ impl DomainService for Api {
 
     async fn register_domain(&self, request: Request<RegisterDomainRequest>) -> Answer<RegisterDomainResponse> {
         let who = caller(&request).name;
-        let id = |q: &RegisterDomainRequest| if q.validate_only { "" } else { q.request_id.as_str() };
+        let q = request.get_ref();
+        let id = if q.validate_only { String::new() } else { q.request_id.clone() };
         let change = move |core: &Core, asked: RegisterDomainRequest, once: &super::Once| {
             let domain: Domain = document("manifest", asked.manifest)?;
             let knowledge: KnowledgeBase = match asked.knowledge_base {
@@ -143,7 +144,10 @@ impl DomainService for Api {
             core.changed_assets()?;
             Ok(answer)
         };
-        self.change("RemoveDomain", request, |q| &q.request_id, change).await
+        {
+            let id = request.get_ref().request_id.clone();
+            self.change("RemoveDomain", request, id, change).await
+        }
     }
 
     async fn list_domain_versions(
@@ -232,7 +236,9 @@ fn refused(refusal: Refusal) -> Status {
         Refusal::Problems(kind, problems) => {
             status::problems(if kind == "domain" { "manifest" } else { "knowledge_base" }, &problems)
         }
-        Refusal::Shipped => Status::already_exists("the id belongs to a domain that came with the server; choose another"),
+        Refusal::Shipped => {
+            Status::already_exists("the id belongs to a domain that came with the server; choose another")
+        }
         Refusal::Full => Status::resource_exhausted("there are as many registered domains as a server takes"),
         Refusal::Failed(error) => status::internal(&error),
     }
@@ -272,8 +278,8 @@ fn texts(asked: ParseDomainRequest) -> Result<BTreeMap<String, String>, Status> 
         if file.name.contains('/') || !known {
             return Err(invalid(&field, "is no file of a domain: name domain.toml, other *.toml or knowledge.json"));
         }
-        let text = String::from_utf8(file.content)
-            .map_err(|_| invalid(&format!("files[{i}].content"), "is no UTF-8 text"))?;
+        let text =
+            String::from_utf8(file.content).map_err(|_| invalid(&format!("files[{i}].content"), "is no UTF-8 text"))?;
         if files.insert(file.name, text).is_some() {
             return Err(invalid(&field, "is given twice"));
         }

@@ -164,11 +164,7 @@ pub(super) fn message(job: &Job) -> JobMessage {
         kind: job.spec.kind().into(),
         title: job.title.clone(),
         state: state(job.state) as i32,
-        progress: Some(Progress {
-            stage: job.stage.clone(),
-            fraction: job.fraction,
-            message: job.message.clone(),
-        }),
+        progress: Some(Progress { stage: job.stage.clone(), fraction: job.fraction, message: job.message.clone() }),
         error: job.failure.as_ref().map(|f| JobError {
             code: f.code.clone(),
             message: f.message.clone(),

@@ -46,7 +46,8 @@ const LANGUAGES: [&str; 2] = ["en", "de"];
 impl KnowledgeService for Api {
     async fn import_knowledge(&self, request: Request<ImportKnowledgeRequest>) -> Answer<ImportKnowledgeResponse> {
         let who = caller(&request).name;
-        let id = |q: &ImportKnowledgeRequest| if q.validate_only { "" } else { q.request_id.as_str() };
+        let q = request.get_ref();
+        let id = if q.validate_only { String::new() } else { q.request_id.clone() };
         let change = move |core: &Core, asked: ImportKnowledgeRequest, once: &Once| {
             let given: KnowledgeBase = document("knowledge_base", asked.knowledge_base)?;
             // once more as a text: formulas and printed units are looked at there
@@ -194,7 +195,8 @@ impl KnowledgeService for Api {
 
     async fn amend_knowledge(&self, request: Request<AmendKnowledgeRequest>) -> Answer<AmendKnowledgeResponse> {
         let who = caller(&request).name;
-        let id = |q: &AmendKnowledgeRequest| if q.validate_only { "" } else { q.request_id.as_str() };
+        let q = request.get_ref();
+        let id = if q.validate_only { String::new() } else { q.request_id.clone() };
         let change = move |core: &Core, asked: AmendKnowledgeRequest, once: &Once| {
             plugin(&core.domains.now(), "domain_id", &asked.domain_id)?;
             let rules = &core.databases.rules;
@@ -277,12 +279,14 @@ impl KnowledgeService for Api {
     ) -> Answer<UndoKnowledgeChangeResponse> {
         let who = caller(&request).name;
         let change = move |core: &Core, asked: UndoKnowledgeChangeRequest, once: &Once| {
-            let changed = changed_once(core, once, &who, &asked.why, |by| {
-                core.databases.rules.undo(asked.seq, by).map(Some)
-            })?;
+            let changed =
+                changed_once(core, once, &who, &asked.why, |by| core.databases.rules.undo(asked.seq, by).map(Some))?;
             Ok(UndoKnowledgeChangeResponse { change: changed.as_ref().map(messages::change) })
         };
-        self.change("UndoKnowledgeChange", request, |q| &q.request_id, change).await
+        {
+            let id = request.get_ref().request_id.clone();
+            self.change("UndoKnowledgeChange", request, id, change).await
+        }
     }
 
     async fn research_knowledge(
@@ -294,7 +298,10 @@ impl KnowledgeService for Api {
             let job = research::start(core, &who, asked, once)?;
             Ok(ResearchKnowledgeResponse { job: Some(super::job::message(&job)) })
         };
-        self.change("ResearchKnowledge", request, |q| &q.request_id, change).await
+        {
+            let id = request.get_ref().request_id.clone();
+            self.change("ResearchKnowledge", request, id, change).await
+        }
     }
 }
 

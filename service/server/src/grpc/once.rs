@@ -58,8 +58,7 @@ impl Once {
     /// `INVALID_ARGUMENT` when the id was used for another request.
     pub fn answered<T: Message + Default>(&self, core: &Core) -> Result<Option<T>, Status> {
         let Some(key) = &self.key else { return Ok(None) };
-        let record: Option<Record> =
-            own::get(&core.databases.own, REQUESTS, key).map_err(|e| status::internal(&e))?;
+        let record: Option<Record> = own::get(&core.databases.own, REQUESTS, key).map_err(|e| status::internal(&e))?;
         let Some(record) = record else { return Ok(None) };
         if record.digest != self.digest {
             return Err(invalid("request_id", "was used for another request"));

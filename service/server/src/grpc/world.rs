@@ -21,9 +21,9 @@ use d3dgen_proto::v1::{
     CheckedWorld, EditWorldRequest, EditWorldResponse, ExportWorldRequest, ExportWorldResponse, Exporter,
     GenerateBatchRequest, GenerateBatchResponse, GenerateFloorplanRequest, GenerateFloorplanResponse,
     GeneratePlacementsRequest, GeneratePlacementsResponse, GenerateScenarioRequest, GenerateScenarioResponse,
-    GenerateSceneGraphRequest, GenerateSceneGraphResponse, GenerateWorldRequest, GenerateWorldResponse,
-    GetBatchWorldRequest, GetBatchWorldResponse, ListBatchWorldsRequest, ListBatchWorldsResponse,
-    ListExportersRequest, ListExportersResponse, RankedFloorplan,
+    GenerateSceneGraphRequest, GenerateSceneGraphResponse, GenerateWorldRequest, GetBatchWorldRequest,
+    GetBatchWorldResponse, ListBatchWorldsRequest, ListBatchWorldsResponse, ListExportersRequest,
+    ListExportersResponse, RankedFloorplan,
 };
 use tokio_stream::wrappers::ReceiverStream;
 use tonic::{Request, Response, Status};
@@ -160,7 +160,10 @@ impl WorldService for Api {
             })?;
             Ok(GenerateBatchResponse { job: Some(super::job::message(&job)) })
         };
-        self.change("GenerateBatch", request, |q| &q.request_id, change).await
+        {
+            let id = request.get_ref().request_id.clone();
+            self.change("GenerateBatch", request, id, change).await
+        }
     }
 
     async fn list_batch_worlds(&self, request: Request<ListBatchWorldsRequest>) -> Answer<ListBatchWorldsResponse> {
@@ -245,10 +248,9 @@ fn building(asked: Option<BuildingRequest>) -> Result<Asked, Status> {
     if asked.prompt.len() > PROMPT_LIMIT {
         return Err(invalid("building.prompt", format!("has {} bytes, at most {PROMPT_LIMIT}", asked.prompt.len())));
     }
-    for (field, value) in [
-        ("building.floor_area_m2", asked.floor_area_m2),
-        ("building.robot_radius_m", asked.robot_radius_m),
-    ] {
+    for (field, value) in
+        [("building.floor_area_m2", asked.floor_area_m2), ("building.robot_radius_m", asked.robot_radius_m)]
+    {
         if value.is_some_and(|v| !v.is_finite() || v <= 0.0) {
             return Err(invalid(field, "needs a figure above 0"));
         }
@@ -266,9 +268,8 @@ fn building(asked: Option<BuildingRequest>) -> Result<Asked, Status> {
 
 /// Checks the name of a world: it becomes the name of folders.
 fn world_named(name: Option<String>) -> Result<Option<String>, Status> {
-    let fits = |n: &str| {
-        (1..=64).contains(&n.len()) && n.bytes().all(|b| matches!(b, b'a'..=b'z' | b'0'..=b'9' | b'_'))
-    };
+    let fits =
+        |n: &str| (1..=64).contains(&n.len()) && n.bytes().all(|b| matches!(b, b'a'..=b'z' | b'0'..=b'9' | b'_'));
     match name {
         Some(name) if !fits(&name) => Err(invalid("name", "has 1 to 64 of a-z, 0-9 and _")),
         other => Ok(other),

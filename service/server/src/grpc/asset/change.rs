@@ -7,9 +7,7 @@ use d3dgen_assets::annotation::{Annotation, Basis, JointNote, Origin};
 use d3dgen_assets::database::{Kind, NewAsset, Provenance};
 use d3dgen_assets::library::{Library, LibraryAsset};
 use d3dgen_mesh::JointKind;
-use d3dgen_proto::v1::{
-    AnnotateAssetRequest, GenerateAssetsRequest, RemoveAssetsRequest, RestoreAssetsRequest,
-};
+use d3dgen_proto::v1::{AnnotateAssetRequest, GenerateAssetsRequest, RemoveAssetsRequest, RestoreAssetsRequest};
 use tonic::Status;
 
 use super::{files, shelf, size};
@@ -21,8 +19,17 @@ use crate::status::{self, invalid};
 
 /// What a person may say of an asset; all else is measured.
 const FIELDS: [&str; 11] = [
-    "name", "description", "kind", "mount", "front.axis", "object_id", "room_types", "domain_ids", "tags",
-    "affordances", "materials",
+    "name",
+    "description",
+    "kind",
+    "mount",
+    "front.axis",
+    "object_id",
+    "room_types",
+    "domain_ids",
+    "tags",
+    "affordances",
+    "materials",
 ];
 /// Variants of one call at most.
 const VARIANTS: u32 = 100;
@@ -41,12 +48,7 @@ fn begin(core: &Core, once: &Once, who: &str, why: &str) -> Result<(Provenance, 
     Ok((by, made))
 }
 
-pub(super) fn annotate(
-    core: &Core,
-    who: &str,
-    asked: AnnotateAssetRequest,
-    once: &Once,
-) -> Result<Annotation, Status> {
+pub(super) fn annotate(core: &Core, who: &str, asked: AnnotateAssetRequest, once: &Once) -> Result<Annotation, Status> {
     let given = required("asset", asked.asset)?;
     names::reference("asset.asset_id", &given.asset_id)?;
     let was = core.databases.assets.get(&given.asset_id).map_err(status::assets)?;
@@ -136,12 +138,7 @@ pub(super) fn generate(
     ids.iter().filter_map(get).collect::<Result<_, _>>().map_err(status::assets)
 }
 
-pub(super) fn remove(
-    core: &Core,
-    who: &str,
-    asked: RemoveAssetsRequest,
-    once: &Once,
-) -> Result<Vec<String>, Status> {
+pub(super) fn remove(core: &Core, who: &str, asked: RemoveAssetsRequest, once: &Once) -> Result<Vec<String>, Status> {
     if asked.asset_ids.is_empty() || asked.asset_ids.len() > REMOVALS {
         return Err(invalid("asset_ids", format!("has {}, needs 1 to {REMOVALS}", asked.asset_ids.len())));
     }
@@ -175,19 +172,17 @@ pub(super) fn remove(
     Ok(asked.asset_ids)
 }
 
-pub(super) fn restore(
-    core: &Core,
-    who: &str,
-    asked: RestoreAssetsRequest,
-    once: &Once,
-) -> Result<Vec<String>, Status> {
+pub(super) fn restore(core: &Core, who: &str, asked: RestoreAssetsRequest, once: &Once) -> Result<Vec<String>, Status> {
     let removed = core.databases.assets.removed().map_err(status::assets)?;
     let (by, made) = begin(core, once, who, "objects of the library brought back")?;
     if let Some(made) = made {
         return Ok(made);
     }
     if let Some(unknown) = asked.object_ids.iter().find(|id| !removed.contains_key(*id)) {
-        return Err(invalid("object_ids", format!("{:?} is not removed", unknown.chars().take(60).collect::<String>())));
+        return Err(invalid(
+            "object_ids",
+            format!("{:?} is not removed", unknown.chars().take(60).collect::<String>()),
+        ));
     }
     let objects: Vec<String> =
         if asked.object_ids.is_empty() { removed.into_keys().collect() } else { asked.object_ids };

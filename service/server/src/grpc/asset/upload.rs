@@ -93,9 +93,9 @@ impl Api {
             }
             let failed = |e: std::io::Error| match e.kind() {
                 // a file where others have a folder
-                std::io::ErrorKind::NotADirectory | std::io::ErrorKind::AlreadyExists | std::io::ErrorKind::IsADirectory => {
-                    invalid("chunk.path", "is a file and a folder")
-                }
+                std::io::ErrorKind::NotADirectory
+                | std::io::ErrorKind::AlreadyExists
+                | std::io::ErrorKind::IsADirectory => invalid("chunk.path", "is a file and a folder"),
                 std::io::ErrorKind::StorageFull => Status::resource_exhausted("the disk of the server is full"),
                 _ => status::internal(&e),
             };

@@ -90,9 +90,8 @@ fn applicable(a: &Applicable) -> ApplicableConstraint {
 }
 
 fn limits(limits: &Limits) -> PlanLimits {
-    let limit = |l: &Option<Limit>| {
-        l.as_ref().map(|l| PlanLimit { value: l.value, constraint_id: l.constraint_id.clone() })
-    };
+    let limit =
+        |l: &Option<Limit>| l.as_ref().map(|l| PlanLimit { value: l.value, constraint_id: l.constraint_id.clone() });
     let rooms = limits.rooms.iter().map(|(id, r)| {
         let limits = RoomPlanLimits {
             area_min_m2: limit(&r.area_min),
@@ -114,7 +113,8 @@ fn limits(limits: &Limits) -> PlanLimits {
 
 /// Returns the counts of a knowledge base.
 pub(super) fn stats(stats: Stats) -> GetKnowledgeStatsResponse {
-    let counted = |all: std::collections::BTreeMap<String, usize>| all.into_iter().map(|(k, n)| (k, n as u64)).collect();
+    let counted =
+        |all: std::collections::BTreeMap<String, usize>| all.into_iter().map(|(k, n)| (k, n as u64)).collect();
     GetKnowledgeStatsResponse {
         domain_id: stats.domain,
         reference_count: stats.references as u64,

@@ -19,12 +19,7 @@ use crate::status::{self, invalid};
 const DOCUMENTS: usize = 1000;
 
 /// Keeps the documents and starts the job.
-pub(super) fn start(
-    core: &Core,
-    who: &str,
-    asked: ResearchKnowledgeRequest,
-    once: &Once,
-) -> Result<Job, Status> {
+pub(super) fn start(core: &Core, who: &str, asked: ResearchKnowledgeRequest, once: &Once) -> Result<Job, Status> {
     plugin(&core.domains.now(), "domain_id", &asked.domain_id)?;
     if asked.documents.is_empty() || asked.documents.len() > DOCUMENTS {
         return Err(invalid("documents", format!("has {}, needs 1 to {DOCUMENTS}", asked.documents.len())));

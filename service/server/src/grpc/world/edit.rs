@@ -54,8 +54,7 @@ fn one(world: &mut World, field: &str, edit: Edit) -> Result<(), Status> {
         }
         Edit::Placement(u) => {
             let given = required(&at("placement.placement"), u.placement)?;
-            let placement =
-                world.placements.placements.iter_mut().find(|p| p.placement_id == given.placement_id);
+            let placement = world.placements.placements.iter_mut().find(|p| p.placement_id == given.placement_id);
             update(&at("placement"), placement, &given, u.update_mask, "placement_id")
         }
         Edit::AddedPlacement(given) => {

@@ -86,9 +86,9 @@ impl Api {
         let core = self.core.clone();
         tokio::spawn(async move {
             let pieces = send.clone();
-            let packed = core.pool.run(Lane::Work, move |_| {
-                zip::write(files, |bytes| pieces.blocking_send(Ok(piece(bytes))).is_ok())
-            });
+            let packed = core
+                .pool
+                .run(Lane::Work, move |_| zip::write(files, |bytes| pieces.blocking_send(Ok(piece(bytes))).is_ok()));
             if let Err(refused) = packed.await {
                 let _ = send.send(Err(refused)).await;
             }

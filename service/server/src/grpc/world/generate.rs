@@ -61,12 +61,14 @@ impl Api {
             let done = pool.pool.run_with(Lane::Work, Arc::clone(&stop), move |_| {
                 let pinned: Option<Floorplan> = pins.0.map(|p| document("pinned_floorplan", Some(p))).transpose()?;
                 let kept: Option<Placements> = pins.1.map(|p| document("pinned_placements", Some(p))).transpose()?;
-                let mut settings = Settings { name, pinned_floorplan: pinned, pinned_placements: kept, ..Settings::default() };
+                let mut settings =
+                    Settings { name, pinned_floorplan: pinned, pinned_placements: kept, ..Settings::default() };
                 if attempts > 0 {
                     settings.attempts = attempts;
                 }
                 let now = core.domains.now();
-                let mut told = Told { send: answers, stop: Arc::clone(&stop), attempts: settings.attempts, fraction: 0.0 };
+                let mut told =
+                    Told { send: answers, stop: Arc::clone(&stop), attempts: settings.attempts, fraction: 0.0 };
                 let graph = match start {
                     Start::Building(asked) => {
                         let request = building(Some(asked))?;
@@ -79,7 +81,10 @@ impl Api {
                 let contradicting = contradictions(&graph);
                 if !allow && !contradicting.is_empty() {
                     let said = contradicting.join("; ");
-                    return Err(invalid("building.prompt", format!("contradicts itself: {said}; or set allow_conflicts")));
+                    return Err(invalid(
+                        "building.prompt",
+                        format!("contradicts itself: {said}; or set allow_conflicts"),
+                    ));
                 }
                 told.hear(Event::Finished(Stage::SceneGraph, 0, Artifact::SceneGraph(&graph)));
                 let made = furnish_and_check(&graph, &now.registry, &settings, &mut |e| told.hear(e), &stop);
