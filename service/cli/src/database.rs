@@ -38,9 +38,7 @@ impl StoreArgs {
         if let Some(dir) = std::env::var_os(FOLDER_VARIABLE) {
             return (!dir.is_empty()).then(|| dir.into());
         }
-        let data = std::env::var_os("XDG_DATA_HOME").filter(|d| Path::new(d).is_absolute()).map(PathBuf::from);
-        let home = || std::env::var_os("HOME").filter(|h| !h.is_empty()).map(|h| PathBuf::from(h).join(".local/share"));
-        Some(data.or_else(home)?.join("d3dgen/knowledge"))
+        Some(data_folder()?.join("knowledge"))
     }
 
     /// Returns the folder of the database.
@@ -139,6 +137,13 @@ impl StoreArgs {
         }
         Ok(())
     }
+}
+
+/// Returns the folder of d3dgen in the user's data folder.
+pub fn data_folder() -> Option<PathBuf> {
+    let data = std::env::var_os("XDG_DATA_HOME").filter(|d| Path::new(d).is_absolute()).map(PathBuf::from);
+    let home = || std::env::var_os("HOME").filter(|h| !h.is_empty()).map(|h| PathBuf::from(h).join(".local/share"));
+    Some(data.or_else(home)?.join("d3dgen"))
 }
 
 /// Returns who changes the database now, and why.

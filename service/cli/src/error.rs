@@ -48,6 +48,9 @@ pub enum Error {
     /// A world cannot be written in a format.
     #[error(transparent)]
     Export(#[from] d3dgen_export::Error),
+    /// The server cannot start or go on.
+    #[error(transparent)]
+    Server(#[from] d3dgen_server::Error),
     /// A world breaks hard rules.
     #[error("{0}")]
     Unsound(String),

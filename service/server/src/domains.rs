@@ -214,13 +214,6 @@ impl Domains {
     }
 }
 
-impl Snapshot {
-    /// Returns true for a domain that came with the server.
-    pub fn is_shipped(&self, id: &str) -> bool {
-        is_shipped(id)
-    }
-}
-
 /// Looks at everything about a domain: ids, documents, models of its objects.
 fn check(domain: &Domain, knowledge: &KnowledgeBase) -> Result<(), Refusal> {
     if is_shipped(&domain.id) {

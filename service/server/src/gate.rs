@@ -22,7 +22,7 @@ use tower::{Layer, Service};
 use crate::access::{Access, Caller, Scope};
 use crate::config::Limits;
 use crate::connection::Peer;
-use crate::methods::{Kind, Methods};
+use crate::methods::Methods;
 use crate::metrics::Metrics;
 use crate::status;
 use body::{Call, Watched};
@@ -301,13 +301,6 @@ fn watched(response: Response<Body>, is_grpc: bool, mut call: Call, until: tokio
 fn with_id(response: &mut Response<Body>, id: &str) {
     if let Ok(value) = HeaderValue::from_str(id) {
         response.headers_mut().insert(REQUEST_ID, value);
-    }
-}
-
-impl Kind {
-    /// Returns whether a call of this kind may take long.
-    pub fn is_long(self) -> bool {
-        self == Self::Stream
     }
 }
 

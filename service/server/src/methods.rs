@@ -87,3 +87,32 @@ impl Kind {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use prost::Message;
+    use prost_types::FileDescriptorSet;
+
+    use super::*;
+
+    #[test]
+    fn the_list_is_that_of_the_contract() {
+        let contract = FileDescriptorSet::decode(d3dgen_proto::FILE_DESCRIPTOR_SET).unwrap();
+        let mut wanted = BTreeSet::new();
+        for file in contract.file {
+            for service in &file.service {
+                let method = |m: &prost_types::MethodDescriptorProto| {
+                    format!("/{}.{}/{}", file.package(), service.name(), m.name())
+                };
+                wanted.extend(service.method.iter().map(method));
+            }
+        }
+        let methods = Methods::shipped();
+        let listed: BTreeSet<String> =
+            methods.paths().filter(|p| p.starts_with("/d3dgen.v1.")).map(str::to_owned).collect();
+        assert_eq!(listed, wanted);
+        assert!(wanted.iter().all(|path| methods.need(path).scope.is_some()), "every call needs a token");
+    }
+}

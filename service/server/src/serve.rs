@@ -14,7 +14,7 @@ use tonic::transport::Server;
 use tower_http::cors::{AllowOrigin, CorsLayer};
 
 use crate::access::Access;
-use crate::connection::{self, Peer};
+use crate::connection;
 use crate::core::Core;
 use crate::error::Error;
 use crate::gate::{GateLayer, Rules};
@@ -165,9 +165,4 @@ fn router(
 
 async fn metrics(State(core): State<Arc<Core>>) -> ([(HeaderName, &'static str); 1], String) {
     ([(http::header::CONTENT_TYPE, "text/plain; version=0.0.4")], core.metrics.text())
-}
-
-/// Returns the address of the caller, when the connection told it.
-pub fn peer<T>(request: &tonic::Request<T>) -> Option<std::net::SocketAddr> {
-    request.extensions().get::<Peer>().map(|p| p.0)
 }

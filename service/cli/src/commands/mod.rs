@@ -13,6 +13,7 @@ mod placement;
 mod research;
 mod scenario;
 mod scene_graph;
+mod serve;
 mod version;
 mod world;
 
@@ -51,6 +52,8 @@ pub enum Command {
     Assets(assets::Args),
     /// Put a folder of models into the asset database; as `assets ingest`
     Ingest(assets::ingest::Command),
+    /// Answer clients in any language over gRPC: the service
+    Serve(Box<serve::Args>),
     /// Print a completion script for a shell
     Completions(completions::Args),
     /// Print the version, and the versions of the documents it reads
@@ -77,6 +80,7 @@ impl Command {
             Self::Knowledge(args) => args.run(),
             Self::Assets(args) => args.run(),
             Self::Ingest(args) => args.run(),
+            Self::Serve(args) => args.run(),
             Self::Completions(args) => args.run(),
             Self::Version => version::run(),
         }

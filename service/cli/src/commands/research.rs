@@ -11,6 +11,8 @@ use d3dgen_research::{jsonl, read};
 use crate::error::Error;
 use crate::input::{text, write_text};
 
+pub use run::pdf_program;
+
 /// Arguments.
 #[derive(clap::Args)]
 #[command(

@@ -1,6 +1,5 @@
 //! What is stored of a job.
 
-use d3dgen_model::Problem;
 use serde::{Deserialize, Serialize};
 use tonic::Status;
 use tonic_types::StatusExt;
@@ -128,11 +127,6 @@ impl Failure {
             message: status.message().to_owned(),
             problems: fields.into_iter().map(|f| (f.field, f.description)).collect(),
         }
-    }
-
-    /// Returns the problems as documents have them.
-    pub fn listed(&self) -> Vec<Problem> {
-        self.problems.iter().map(|(path, message)| Problem::new(path, message)).collect()
     }
 }
 

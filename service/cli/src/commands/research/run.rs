@@ -210,7 +210,7 @@ impl RunArgs {
 }
 
 /// Returns this very program as the reader of PDF files.
-fn pdf_program() -> Option<read::pdf::Program> {
+pub fn pdf_program() -> Option<read::pdf::Program> {
     let path = std::env::current_exe().ok()?;
     let arguments = vec!["research".to_owned(), READ_PDF.to_owned()];
     Some(read::pdf::Program { path, arguments, limits: read::pdf::Limits::default() })

@@ -1,0 +1,82 @@
+//! Who may do what: with no token, a wrong one, and tokens of each scope.
+
+use d3dgen_proto::v1::{
+    ClassifyDomainRequest, GenerateBatchRequest, IngestFolderRequest, ListDomainsRequest, ListJobsRequest,
+    RegisterDomainRequest, RemoveAssetsRequest, RemoveDomainRequest, UndoKnowledgeChangeRequest,
+};
+use tonic::Code;
+use tonic_health::pb::HealthCheckRequest;
+use tonic_health::pb::health_client::HealthClient;
+
+use crate::support::{Clients, Server, TOKENS, code, flat, page, with};
+
+#[tokio::test(flavor = "multi_thread")]
+async fn without_the_right_token_only_health_answers() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let server = Server::with_tokens(&dir.path().join("data"));
+    let mut clients = Clients::of(&server).await;
+    let list = ListDomainsRequest::default;
+    assert_eq!(code(clients.domains.list_domains(list()).await), Code::Unauthenticated);
+    for wrong in ["wrong", "", "r-secre", "r-secret2", "R-SECRET"] {
+        assert_eq!(code(clients.domains.list_domains(with(wrong, list())).await), Code::Unauthenticated, "{wrong}");
+    }
+    let mut health = HealthClient::new(server.channel().await);
+    let checked = health.check(HealthCheckRequest { service: "d3dgen.v1.WorldService".into() }).await;
+    assert_eq!(checked.expect("health answers").into_inner().status, 1);
+    assert_eq!(page(&server.url, "/healthz", "").0, 200);
+    assert_eq!(page(&server.url, "/metrics", "").0, 401);
+    assert_eq!(page(&server.url, "/nothing", "").0, 401);
+    let (status, text) = page(&server.url, "/metrics", "authorization: Bearer r-secret\r\n");
+    assert!(status == 200 && text.contains("d3dgen_call_seconds_count"), "{text}");
+    assert!(!server.log().contains("secret"), "a token is in the log");
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn scopes_are_kept_apart() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let server = Server::with_tokens(&dir.path().join("data"));
+    let mut c = Clients::of(&server).await;
+    for (scope, token) in TOKENS {
+        let writes = scope != "read";
+        assert_eq!(code(c.domains.list_domains(with(token, ListDomainsRequest::default())).await), Code::Ok);
+        let asked = ClassifyDomainRequest { prompt: "a school in Spain".into(), ..Default::default() };
+        assert_eq!(code(c.domains.classify_domain(with(token, asked)).await), Code::Ok);
+        let got = [
+            code(c.domains.register_domain(with(token, RegisterDomainRequest::default())).await),
+            code(c.domains.remove_domain(with(token, RemoveDomainRequest::default())).await),
+            code(c.knowledge.undo_knowledge_change(with(token, UndoKnowledgeChangeRequest::default())).await),
+            code(c.assets.remove_assets(with(token, RemoveAssetsRequest::default())).await),
+            code(c.assets.ingest_folder(with(token, IngestFolderRequest::default())).await),
+            code(c.worlds.generate_batch(with(token, GenerateBatchRequest::default())).await),
+        ];
+        for (i, got) in got.into_iter().enumerate() {
+            assert_eq!(
+                got == Code::PermissionDenied && i != 4,
+                !writes && i != 4,
+                "call {i} with scope {scope}: {got:?}"
+            );
+            assert!(got != Code::Ok, "call {i} with scope {scope} was empty");
+        }
+    }
+    // what one client started, another does not see, and an administrator does
+    let batch = GenerateBatchRequest { building: flat(1), world_count: 1, request_id: String::new() };
+    assert_eq!(code(c.worlds.generate_batch(with("w-secret", batch)).await), Code::Ok);
+    for (token, sees) in [("r-secret", 0), ("w-secret", 1), ("a-secret", 1)] {
+        let listed = c.jobs.list_jobs(with(token, ListJobsRequest::default())).await.expect("a list");
+        assert_eq!(listed.into_inner().jobs.len(), sees, "{token}");
+    }
+}
+
+#[test]
+fn what_is_open_to_all_is_not_served_without_tokens() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let file = dir.path().join("server.toml");
+    std::fs::write(&file, "listen = \"0.0.0.0:0\"\n").expect("written");
+    let answered = d3dgen_server::config::read(
+        Some(("server.toml", "listen = \"0.0.0.0:0\"")),
+        &[],
+        &[],
+        Some(dir.path().to_path_buf()),
+    );
+    assert!(answered.expect_err("refused").to_string().contains("give tokens"));
+}

@@ -1,0 +1,8 @@
+//! The server as a process of its own, as clients and operators meet it: needs the `d3dgen` command, which is built by
+//! these tests where it is missing.
+
+mod access;
+mod fault;
+mod hostile;
+mod services;
+mod support;

@@ -1,0 +1,277 @@
+//! The way of a client through the services: look, search, make, pin, edit, check, export, change and take back.
+
+use d3dgen_proto::v1::amend_knowledge_request::Change;
+use d3dgen_proto::v1::generate_world_request::Start;
+use d3dgen_proto::v1::generate_world_response::Event;
+use d3dgen_proto::v1::world_edit::Edit;
+use d3dgen_proto::v1::{
+    AmendKnowledgeRequest, AnyOf, AssembleWorldRequest, CheckWorldRequest, CheckedWorld, DomainFile, EditWorldRequest,
+    ExportWorldRequest, GenerateBatchRequest, GenerateFloorplanRequest, GeneratePlacementsRequest,
+    GenerateScenarioRequest, GenerateSceneGraphRequest, GenerateWorldRequest, GetBatchWorldRequest, GetDomainRequest,
+    JobState, ListBatchWorldsRequest, ListConstraintFiltersRequest, ListDomainsRequest, ListExportersRequest,
+    ListJobLogsRequest, LockUpdate, ParseDomainRequest, RegisterDomainRequest, RemoveDomainRequest,
+    RetrieveConstraintsRequest, RuleSentence, SearchAssetsRequest, SearchConstraintsRequest,
+    UndoKnowledgeChangeRequest, WorldEdit,
+};
+use tonic::Code;
+use tonic_types::StatusExt;
+
+use crate::support::{Clients, Server, code, flat};
+
+/// Makes a world and returns it with the names of the events.
+async fn make(c: &mut Clients, asked: GenerateWorldRequest) -> (CheckedWorld, Vec<&'static str>) {
+    let mut stream = c.worlds.generate_world(asked).await.expect("a stream").into_inner();
+    let (mut events, mut last, mut fraction) = (Vec::new(), None, 0.0);
+    while let Some(news) = stream.message().await.expect("news") {
+        let progress = news.progress.expect("progress").fraction;
+        assert!(progress >= fraction, "progress falls from {fraction} to {progress}");
+        fraction = progress;
+        events.push(match news.event {
+            Some(Event::SceneGraph(_)) => "scene_graph",
+            Some(Event::Floorplan(_)) => "floorplan",
+            Some(Event::Placements(_)) => "placements",
+            Some(Event::Scenario(_)) => "scenario",
+            Some(Event::World(world)) => {
+                last = Some(world);
+                "world"
+            }
+            Some(Event::Rejected(_)) => "rejected",
+            None => continue,
+        });
+    }
+    assert!((fraction - 1.0).abs() < 1e-9, "ends at {fraction}");
+    (last.expect("a world"), events)
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn worlds_are_made_pinned_edited_and_written() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let server = Server::start(&dir.path().join("data"), &[]);
+    let mut c = Clients::of(&server).await;
+    let start = |seed| GenerateWorldRequest { start: flat(seed).map(Start::Building), ..Default::default() };
+    let (made, events) = make(&mut c, start(3)).await;
+    assert_eq!(events.first(), Some(&"scene_graph"));
+    assert_eq!(events.last(), Some(&"world"));
+    assert_eq!(make(&mut c, start(3)).await.0, made, "the same request gives the same world");
+    let world = made.world.expect("a world");
+    assert!(made.report.expect("a report").sound);
+
+    // the stages one by one give a world too
+    let graph = c.worlds.generate_scene_graph(GenerateSceneGraphRequest { building: flat(3) }).await;
+    let scene_graph = graph.expect("rooms").into_inner().scene_graph;
+    let asked = GenerateFloorplanRequest { scene_graph: scene_graph.clone(), alternative_count: 3, pinned: None };
+    let plans = c.worlds.generate_floorplan(asked).await.expect("plans").into_inner().alternatives;
+    assert!(plans.len() > 1 && plans.windows(2).all(|p| p[0].cost <= p[1].cost));
+    let floorplan = plans[0].floorplan.clone();
+    let asked =
+        GeneratePlacementsRequest { scene_graph: scene_graph.clone(), floorplan: floorplan.clone(), pinned: None };
+    let placements = c.worlds.generate_placements(asked).await.expect("objects").into_inner().placements;
+    let asked = GenerateScenarioRequest {
+        scene_graph: scene_graph.clone(),
+        floorplan: floorplan.clone(),
+        placements: placements.clone(),
+    };
+    let scenario = c.worlds.generate_scenario(asked).await.expect("a scenario").into_inner().scenario;
+    let asked = AssembleWorldRequest { scene_graph, floorplan, placements, scenario, name: Some("by_hand".into()) };
+    let assembled = c.worlds.assemble_world(asked.clone()).await.expect("a world").into_inner().world.expect("one");
+    assert_eq!(assembled.world.expect("a world").name, "by_hand");
+    let escaping = AssembleWorldRequest { name: Some("../x".into()), ..asked };
+    assert_eq!(code(c.worlds.assemble_world(escaping).await), Code::InvalidArgument);
+
+    // pin all rooms, make another: the plan stays
+    let ids = world.floorplan.as_ref().expect("a plan").rooms.iter().map(|r| r.room_id.clone()).collect();
+    let lock = WorldEdit { edit: Some(Edit::Lock(LockUpdate { ids, include_contents: true, locked: true })) };
+    let edited = c.worlds.edit_world(EditWorldRequest { world: Some(world.clone()), edits: vec![lock] }).await;
+    let pinned = edited.expect("edited").into_inner().world.expect("one").world.expect("a world");
+    let again = GenerateWorldRequest {
+        start: pinned.scene_graph.clone().map(Start::SceneGraph),
+        pinned_floorplan: pinned.floorplan.clone(),
+        ..Default::default()
+    };
+    let (again, _) = make(&mut c, again).await;
+    let rooms = |w: &d3dgen_proto::v1::World| w.floorplan.as_ref().expect("a plan").rooms.clone();
+    assert_eq!(rooms(&again.world.expect("a world")), rooms(&pinned));
+
+    // an unknown part, and an object moved into a wall
+    let lock = WorldEdit { edit: Some(Edit::Lock(LockUpdate { ids: vec!["nothing".into()], ..Default::default() })) };
+    let refused = c.worlds.edit_world(EditWorldRequest { world: Some(world.clone()), edits: vec![lock] }).await;
+    let fields = refused.expect_err("refused").get_details_bad_request().expect("the place").field_violations;
+    assert_eq!(fields[0].field, "edits[0].lock.ids");
+    let mut broken = world.clone();
+    for placement in &mut broken.placements.as_mut().expect("objects").placements {
+        placement.pose.as_mut().expect("a pose").x_m += 50.0;
+    }
+    let report = c.worlds.check_world(CheckWorldRequest { world: Some(broken.clone()) }).await.expect("judged");
+    assert!(!report.into_inner().report.expect("a report").sound);
+    let refused = c.worlds.export_world(ExportWorldRequest { world: Some(broken), formats: Vec::new() }).await;
+    assert_eq!(code(refused), Code::FailedPrecondition);
+
+    // files
+    let exporters = c.worlds.list_exporters(ListExportersRequest::default()).await.expect("a list").into_inner();
+    let formats = exporters.exporters.into_iter().map(|e| e.name).collect();
+    let mut stream =
+        c.worlds.export_world(ExportWorldRequest { world: Some(world), formats }).await.expect("files").into_inner();
+    let mut bytes = Vec::new();
+    while let Some(piece) = stream.message().await.expect("a piece") {
+        bytes.extend(piece.chunk);
+    }
+    let mut archive = zip::ZipArchive::new(std::io::Cursor::new(bytes)).expect("an archive");
+    assert!(archive.by_name("plan.svg").is_ok());
+    assert!((0..archive.len()).all(|i| archive.by_index(i).expect("a file").enclosed_name().is_some()));
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn rules_and_assets_are_found_changed_and_changed_back() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let server = Server::start(&dir.path().join("data"), &[]);
+    let mut c = Clients::of(&server).await;
+    let ask = |query: &str, filters| SearchConstraintsRequest {
+        query: query.into(),
+        filters,
+        page_size: 3,
+        ..Default::default()
+    };
+    let german = [("jurisdiction".to_owned(), AnyOf { values: vec!["DE".into()] })];
+    let found = c.knowledge.search_constraints(ask("corridor width", german.clone().into())).await.expect("found");
+    let found = found.into_inner();
+    assert!(found.constraints.len() == 3 && found.constraints.iter().all(|f| f.jurisdiction == "DE"));
+    assert!(!found.constraints[0].sources.is_empty());
+    let next = SearchConstraintsRequest {
+        page_token: found.next_page_token.clone(),
+        ..ask("corridor width", german.clone().into())
+    };
+    let next = c.knowledge.search_constraints(next).await.expect("more").into_inner();
+    assert!(next.constraints.iter().all(|f| !found.constraints.contains(f)));
+    let foreign = SearchConstraintsRequest { page_token: found.next_page_token, ..ask("doors", german.into()) };
+    assert_eq!(code(c.knowledge.search_constraints(foreign).await), Code::InvalidArgument);
+    let wrong = [("nothing".to_owned(), AnyOf::default())];
+    assert_eq!(code(c.knowledge.search_constraints(ask("", wrong.into())).await), Code::InvalidArgument);
+    let filters = c.knowledge.list_constraint_filters(ListConstraintFiltersRequest::default()).await.expect("a list");
+    assert!(filters.into_inner().filters.iter().any(|f| f.name == "topic" && !f.counts.is_empty()));
+
+    let rooms = RetrieveConstraintsRequest {
+        domain_id: Some("hospital".into()),
+        country_code: Some("DE".into()),
+        room_labels: vec!["patient room".into(), "corridor".into()],
+        ..Default::default()
+    };
+    let width = |answer: d3dgen_proto::v1::RetrieveConstraintsResponse| {
+        answer.limits.and_then(|l| l.corridor_width_m).map(|l| l.value)
+    };
+    let before = width(c.knowledge.retrieve_constraints(rooms.clone()).await.expect("rules").into_inner());
+    let amend = AmendKnowledgeRequest {
+        domain_id: "hospital".into(),
+        change: Some(Change::Sentence(RuleSentence {
+            text: "corridors are at least 3.1 m wide".into(),
+            language: None,
+        })),
+        request_id: "amend-1".into(),
+        ..Default::default()
+    };
+    let changed = c.knowledge.amend_knowledge(amend.clone()).await.expect("changed").into_inner();
+    let repeated = c.knowledge.amend_knowledge(amend.clone()).await.expect("the same answer").into_inner();
+    assert_eq!(changed, repeated);
+    let other = AmendKnowledgeRequest { why: "another".into(), ..amend };
+    assert_eq!(code(c.knowledge.amend_knowledge(other).await), Code::InvalidArgument);
+    let after = width(c.knowledge.retrieve_constraints(rooms.clone()).await.expect("rules").into_inner());
+    assert!(after == Some(3.1) && before != after, "{before:?} {after:?}");
+    let seq = changed.change.expect("a change").seq;
+    let undo = UndoKnowledgeChangeRequest { seq, ..Default::default() };
+    c.knowledge.undo_knowledge_change(undo.clone()).await.expect("undone");
+    assert_eq!(code(c.knowledge.undo_knowledge_change(undo).await), Code::FailedPrecondition);
+    assert_eq!(width(c.knowledge.retrieve_constraints(rooms).await.expect("rules").into_inner()), before);
+
+    let asked = SearchAssetsRequest { query: "office chair".into(), page_size: 5, ..Default::default() };
+    let assets = c.assets.search_assets(asked).await.expect("found").into_inner().assets;
+    assert!(assets.iter().any(|a| a.asset.as_ref().expect("one").kind == "chair"));
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn domains_come_and_go_while_others_work() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let server = Server::start(&dir.path().join("data"), &[]);
+    let mut c = Clients::of(&server).await;
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../domains/school");
+    let files = std::fs::read_dir(folder).expect("shipped").map(|entry| {
+        let path = entry.expect("a file").path();
+        let name = path.file_name().expect("a name").to_string_lossy().into_owned();
+        let text = std::fs::read_to_string(&path).expect("text");
+        DomainFile { content: text.replace("\"school\"", "\"academy\"").into_bytes(), name }
+    });
+    let files: Vec<DomainFile> = files.filter(|f| f.name.ends_with(".toml") || f.name == "knowledge.json").collect();
+    let parsed = c.domains.parse_domain(ParseDomainRequest { files }).await.expect("parsed").into_inner();
+    assert_eq!(parsed.problems, []);
+    let register = RegisterDomainRequest {
+        manifest: parsed.manifest,
+        knowledge_base: parsed.knowledge_base,
+        request_id: "register-1".into(),
+        ..Default::default()
+    };
+    let first = c.domains.register_domain(register.clone()).await.expect("registered").into_inner();
+    assert_eq!(first.domain.as_ref().expect("one").domain_version, 1);
+    assert_eq!(c.domains.register_domain(register.clone()).await.expect("the same").into_inner(), first);
+    let mut building = flat(1).expect("one");
+    building.domain_id = Some("academy".into());
+    building.prompt = "a school with four classrooms".into();
+    let asked = GenerateSceneGraphRequest { building: Some(building) };
+    let graph = c.worlds.generate_scene_graph(asked.clone()).await.expect("at once").into_inner();
+    assert_eq!(graph.scene_graph.expect("rooms").domain_id, "academy");
+
+    // a broken one, a shipped one, a stale one: nothing changes
+    let edit = |change: &dyn Fn(&mut RegisterDomainRequest)| {
+        let mut asked = RegisterDomainRequest { request_id: String::new(), ..register.clone() };
+        change(&mut asked);
+        asked
+    };
+    let wrong = edit(&|r| r.manifest.as_mut().expect("one").room_types[0].area_m2.as_mut().expect("one").min_m2 = -5.0);
+    let refused = c.domains.register_domain(wrong).await.expect_err("refused");
+    assert_eq!(refused.code(), Code::InvalidArgument);
+    let fields = refused.get_details_bad_request().expect("the place").field_violations;
+    assert!(fields.iter().any(|f| f.field.starts_with("manifest.room_types[0].area_m2")), "{fields:?}");
+    let shipped = edit(&|r| {
+        r.manifest.as_mut().expect("one").domain_id = "school".into();
+        r.knowledge_base = None;
+    });
+    assert_eq!(code(c.domains.register_domain(shipped).await), Code::AlreadyExists);
+    let stale = edit(&|r| r.expected_version = Some(0));
+    assert_eq!(code(c.domains.register_domain(stale).await), Code::Aborted);
+    for id in ["../academy", "a/b", "", "ACADEMY"] {
+        let wrong = edit(&|r| r.manifest.as_mut().expect("one").domain_id = id.into());
+        assert_eq!(code(c.domains.register_domain(wrong).await), Code::InvalidArgument, "{id}");
+        let get = GetDomainRequest { domain_id: id.into(), ..Default::default() };
+        assert_eq!(code(c.domains.get_domain(get).await), Code::InvalidArgument, "{id}");
+    }
+    let listed = c.domains.list_domains(ListDomainsRequest::default()).await.expect("a list").into_inner().domains;
+    assert!(listed.iter().any(|d| d.domain_id == "academy" && !d.shipped && d.domain_version == 1));
+    let remove = |id: &str| RemoveDomainRequest { domain_id: id.into(), request_id: String::new() };
+    assert_eq!(code(c.domains.remove_domain(remove("school")).await), Code::FailedPrecondition);
+    c.domains.remove_domain(remove("academy")).await.expect("removed");
+    assert_eq!(code(c.domains.remove_domain(remove("academy")).await), Code::NotFound);
+    assert_eq!(code(c.worlds.generate_scene_graph(asked).await), Code::InvalidArgument);
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_batch_runs_as_a_job() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let server = Server::start(&dir.path().join("data"), &[]);
+    let mut c = Clients::of(&server).await;
+    let asked = GenerateBatchRequest { building: flat(10), world_count: 3, request_id: "batch-1".into() };
+    let job = c.worlds.generate_batch(asked.clone()).await.expect("started").into_inner().job.expect("a job");
+    let again = c.worlds.generate_batch(asked).await.expect("the same").into_inner().job.expect("a job");
+    assert_eq!(job.job_id, again.job_id);
+    let ended = c.ended(&job.job_id).await;
+    assert_eq!(ended.state, JobState::Succeeded as i32, "{ended:?}");
+    let list = ListBatchWorldsRequest { job_id: job.job_id.clone(), page_size: 2, page_token: String::new() };
+    let worlds = c.worlds.list_batch_worlds(list).await.expect("a list").into_inner();
+    assert_eq!(worlds.worlds.iter().map(|w| w.seed).collect::<Vec<_>>(), [10, 11]);
+    let get = |seed| GetBatchWorldRequest { job_id: job.job_id.clone(), seed };
+    let world = c.worlds.get_batch_world(get(12)).await.expect("there").into_inner().world.expect("one");
+    assert!(world.report.expect("a report").sound);
+    assert_eq!(code(c.worlds.get_batch_world(get(13)).await), Code::NotFound);
+    for id in ["../../etc", "job-99999999", ""] {
+        let get = GetBatchWorldRequest { job_id: id.into(), seed: 1 };
+        assert_eq!(code(c.worlds.get_batch_world(get).await), Code::NotFound, "{id}");
+    }
+    let logs = ListJobLogsRequest { job_id: job.job_id, ..Default::default() };
+    assert!(!c.jobs.list_job_logs(logs).await.expect("a log").into_inner().logs.is_empty());
+}
