@@ -29,7 +29,7 @@ const QUESTIONS: [&str; 8] = [
 const THINGS: [&str; 6] = ["office chair", "hospital bed", "lamp on a desk", "shelf under 1 m", "sink", "whiteboard"];
 
 /// What one client saw: milliseconds by kind of call, and errors by kind and code.
-type Seen = (BTreeMap<&'static str, Vec<f64>>, BTreeMap<(&'static str, Code), u64>);
+type Seen = (BTreeMap<&'static str, Vec<f64>>, BTreeMap<(&'static str, String), u64>);
 
 #[tokio::main]
 async fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -110,7 +110,7 @@ async fn client(n: u64, channel: Channel, until: Instant) -> Seen {
         match answer {
             Ok(()) => times.entry(kind).or_default().push(begun.elapsed().as_secs_f64() * 1000.0),
             Err(status) => {
-                *errors.entry((kind, status.code())).or_default() += 1;
+                *errors.entry((kind, format!("{:?}", status.code()))).or_default() += 1;
                 if status.code() == Code::ResourceExhausted {
                     tokio::time::sleep(Duration::from_millis(500)).await; // as the answer asks
                 }

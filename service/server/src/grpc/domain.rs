@@ -120,8 +120,7 @@ impl DomainService for Api {
                     once.also(core, &answer(entry), batch);
                 })
                 .map_err(refused)?;
-            core.changed_rules()?;
-            core.changed_assets()?;
+            core.open_indexes().map_err(|e| status::internal(&e))?;
             Ok(answer(&entry))
         };
         self.change("RegisterDomain", request, id, change).await
@@ -140,8 +139,7 @@ impl DomainService for Api {
             if !removed.map_err(|e| status::internal(&e))? {
                 return Err(no_domain(&core.domains.now(), id));
             }
-            core.changed_rules()?;
-            core.changed_assets()?;
+            core.open_indexes().map_err(|e| status::internal(&e))?;
             Ok(answer)
         };
         {

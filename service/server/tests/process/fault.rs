@@ -63,7 +63,7 @@ async fn nothing_acknowledged_is_lost_and_jobs_go_on() {
             }
             done
         });
-        tokio::time::sleep(Duration::from_millis(400 + 173 * (round % 7))).await;
+        tokio::time::sleep(Duration::from_millis(600 + 370 * (round % 7))).await;
         server.kill();
         registered.extend(work.await.expect("it ended"));
     }
