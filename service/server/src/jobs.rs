@@ -184,7 +184,7 @@ impl Jobs {
     /// `Store`.
     pub fn lines(&self, id: &str, after: u64, most: usize) -> Result<Vec<Line>, Error> {
         let mut found = Vec::new();
-        let range = KeyRange::prefix(format!("{id}/")).after(&line_key(id, after));
+        let range = KeyRange::prefix(format!("{id}/")).after(line_key(id, after));
         own::each(&self.store, JOB_LOGS, &range, |_, line: Line| {
             found.push(line);
             Ok(if found.len() < most { ControlFlow::Continue(()) } else { ControlFlow::Break(()) })

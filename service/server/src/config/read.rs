@@ -291,7 +291,8 @@ mod tests {
     #[test]
     fn what_cannot_be_meant_is_refused_with_its_place() {
         let token = format!("[[tokens]]\nname = \"a\"\nscope = \"read\"\nsha256 = \"{}\"", "0".repeat(64));
-        let cases: [(&str, &[(&str, &str)], &str); 9] = [
+        type Case<'a> = (&'a str, &'a [(&'a str, &'a str)], &'a str);
+        let cases: [Case<'_>; 9] = [
             ("listne = 1", &[], "server.toml: `listne` is no setting"),
             ("[limits]\nspeed = 1", &[], "limits.speed"),
             ("version = 2", &[], "version"),

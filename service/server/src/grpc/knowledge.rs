@@ -92,7 +92,7 @@ impl KnowledgeService for Api {
         if asked.query.len() > QUERY_LIMIT {
             return Err(invalid("query", format!("has {} bytes, at most {QUERY_LIMIT}", asked.query.len())));
         }
-        for name in asked.filters.keys().filter(|n| !filter_names().contains(&n.as_str())) {
+        if let Some(name) = asked.filters.keys().find(|n| !filter_names().contains(&n.as_str())) {
             return Err(invalid("filters", format!("`{name}` is no filter; there are {}", filter_names().join(", "))));
         }
         let query = SearchQuery {

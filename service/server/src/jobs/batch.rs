@@ -163,7 +163,7 @@ fn key(id: &str, seed: u64) -> String {
 /// `Store`.
 pub fn list(store: &Store, id: &str, after: Option<u64>, most: usize) -> Result<Vec<Made>, Error> {
     let range = KeyRange::prefix(format!("{id}/"));
-    let range = after.map_or(range.clone(), |seed| range.after(&key(id, seed)));
+    let range = after.map_or(range.clone(), |seed| range.after(key(id, seed)));
     let mut found = Vec::new();
     own::each(store, WORLDS, &range, |_, made: Made| {
         found.push(made);
