@@ -5,9 +5,11 @@
 
 mod builtin;
 mod custom;
+mod digest;
 mod error;
 mod merge;
 
+use std::any::Any;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -40,12 +42,15 @@ pub fn is_shipped(id: &str) -> bool {
 #[derive(Clone)]
 pub struct Registry {
     plugins: Vec<Arc<dyn Plugin>>,
+    /// Worked out from exactly these domains; clones share it until one of them changes.
+    digests: Arc<digest::Digests>,
 }
 
 impl Registry {
     /// Returns the built-in domains; each is parsed when it is first used.
     pub fn builtin() -> Self {
-        Self { plugins: all().into_iter().map(|b| Arc::new(b) as Arc<dyn Plugin>).collect() }
+        let plugins = all().into_iter().map(|b| Arc::new(b) as Arc<dyn Plugin>).collect();
+        Self { plugins, digests: Arc::default() }
     }
 
     /// Adds the domain in a folder and returns it.
@@ -59,6 +64,7 @@ impl Registry {
             return Err(Error::Taken { folder: folder.to_path_buf(), id: plugin.id().to_owned() });
         }
         self.plugins.push(Arc::new(plugin));
+        self.digests = Arc::default();
         Ok(self.plugins.last().expect("just pushed").as_ref())
     }
 
@@ -67,6 +73,7 @@ impl Registry {
         let free = self.get(plugin.id()).is_none();
         if free {
             self.plugins.push(plugin);
+            self.digests = Arc::default();
         }
         free
     }
@@ -76,6 +83,7 @@ impl Registry {
         let Some(at) = self.plugins.iter().position(|p| p.id() == id) else { return false };
         let domain = self.plugins.remove(at);
         self.plugins.insert(at, Arc::new(OtherRules { domain, knowledge }));
+        self.digests = Arc::default();
         true
     }
 
@@ -84,12 +92,19 @@ impl Registry {
         let Some(at) = self.plugins.iter().position(|p| p.id() == domain.id) else { return false };
         let rules = self.plugins.remove(at);
         self.plugins.insert(at, Arc::new(OtherObjects { rules, domain }));
+        self.digests = Arc::default();
         true
     }
 
     /// Returns the domain with this id.
     pub fn get(&self, id: &str) -> Option<&dyn Plugin> {
         self.iter().find(|p| p.id() == id)
+    }
+
+    /// Returns what `make` works out from the domains, from memory where it was asked for before under this name and
+    /// type; forgotten when a domain changes. Names must be few: nothing that a request says belongs into them.
+    pub fn digest<T: Any + Send + Sync>(&self, name: &str, make: impl FnOnce() -> T) -> Arc<T> {
+        self.digests.get(name, make)
     }
 
     /// Returns all domains in order.

@@ -33,7 +33,7 @@ pub use limits::{AreaLimit, Limit, Limits, RoomLimits};
 pub use measure::Measure;
 pub use query::{Query, QueryRoom};
 pub use resolve::{Conflict, Policy};
-pub use retrieve::{Applicable, Retrieval, Rule, Scope, retrieve, retrieve_with};
+pub use retrieve::{Applicable, Retrieval, Rule, Scope, missing_rooms, retrieve, retrieve_with};
 pub use stats::{Stats, decidable};
 pub use tables::{ConditionRow, QuantityRow, Sure};
 

@@ -37,19 +37,6 @@ pub struct Retrieval {
     pub conflicts: Vec<Conflict>,
 }
 
-impl Retrieval {
-    /// Returns the mandatory constraints that ask for a kind of room the building does not have, with its space name.
-    pub fn missing_rooms(&self) -> impl Iterator<Item = (&str, &Applicable)> {
-        self.constraints.iter().filter_map(|a| {
-            let rule = a.decision.as_ref().ok()?;
-            let asks = asks_for_rooms(rule.quantity.measure);
-            let none = matches!(&a.scope, Scope::Rooms(types) if types.is_empty());
-            let missing = asks && none && a.mandatory && rule.bounds.min.is_some_and(|n| n >= 1.0);
-            missing.then_some((a.constraint.space_type.as_str(), a))
-        })
-    }
-}
-
 /// A constraint that applies.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Applicable {
@@ -107,6 +94,27 @@ pub struct Rule {
 /// first, and in it the strictest figure.
 pub fn retrieve(knowledge: &KnowledgeBase, query: &Query) -> Retrieval {
     retrieve_with(knowledge, query, &Policy::Strictest)
+}
+
+/// Returns the mandatory constraints that ask for a kind of room the building does not have.
+///
+/// Looks at nothing else, for it is asked of a building whose rooms are not settled yet.
+pub fn missing_rooms(knowledge: &KnowledgeBase, query: &Query) -> Vec<Applicable> {
+    let chain = jurisdiction::chain(query.country_code.as_deref());
+    let references = knowledge.references.iter().filter(|r| chain.contains(&r.jurisdiction));
+    let mut asking: Vec<Applicable> = references
+        .flat_map(|r| r.constraints.iter().map(move |c| (r, c)))
+        .filter(|(_, c)| TABLES.quantity(c).is_some_and(|q| asks_for_rooms(q.measure)))
+        .filter(|(reference, _)| conditions::document_holds(reference, query))
+        .filter_map(|(reference, c)| applicable(c, reference, query))
+        .collect();
+    resolve::settle(&mut asking, &chain, &Policy::Strictest);
+    asking.retain(|a| {
+        let none = matches!(&a.scope, Scope::Rooms(types) if types.is_empty());
+        let asks = a.decision.as_ref().is_ok_and(|rule| rule.bounds.min.is_some_and(|n| n >= 1.0));
+        none && asks && a.mandatory
+    });
+    asking
 }
 
 /// As [`retrieve`], with another rule for sources of one jurisdiction that contradict each other.

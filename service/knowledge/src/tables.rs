@@ -1,5 +1,6 @@
 //! The tables that give constraints a meaning: quantities, spaces and conditions, read from `data/*.toml`.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::LazyLock;
 
 use d3dgen_model::domain::Shape;
@@ -22,13 +23,17 @@ pub(crate) static TABLES: LazyLock<Tables> = LazyLock::new(|| {
         .expect("data/conditions.toml is part of the crate and read by its tests");
     let built: Built = toml::from_str(include_str!("../data/conditions_built.toml"))
         .expect("data/conditions_built.toml is part of the crate and read by its tests");
-    Tables {
+    let mut tables = Tables {
         quantities: [named.quantity, reported.quantity, quantities.quantity].concat(),
         unknown: quantities.unknown,
         spaces: spaces.space,
         conditions: conditions.condition.into_iter().chain(built.condition).collect(),
         documents: conditions.document,
-    }
+        by_unit_and_space: BTreeMap::new(),
+        by_phrase: BTreeMap::new(),
+    };
+    tables.index();
+    tables
 });
 
 /// All tables.
@@ -38,6 +43,10 @@ pub(crate) struct Tables {
     pub spaces: Vec<SpaceRow>,
     pub conditions: Vec<ConditionRow>,
     pub documents: Vec<DocumentRow>,
+    /// Rows of `quantities` that may speak of a unit and a space, in their order; `None` stands for those no row names.
+    by_unit_and_space: BTreeMap<Option<String>, BTreeMap<Option<String>, Vec<usize>>>,
+    /// The first row of `conditions` that lists a phrase whole.
+    by_phrase: BTreeMap<String, usize>,
 }
 
 #[derive(Deserialize)]
@@ -323,11 +332,6 @@ impl UnknownRow {
 }
 
 impl ConditionRow {
-    /// Returns true when the row explains this phrase.
-    pub(crate) fn explains(&self, phrase: &str) -> bool {
-        self.phrases.iter().any(|p| p == phrase) || self.containing.iter().any(|p| phrase.contains(p.as_str()))
-    }
-
     /// Returns true when the row counts this kind of object.
     pub(crate) fn counts(&self, kind: &d3dgen_model::domain::ObjectType) -> bool {
         self.shapes.contains(&kind.shape) || self.objects.contains(&kind.id)
@@ -340,9 +344,37 @@ impl ConditionRow {
 }
 
 impl Tables {
-    /// Returns the row that explains a condition.
+    /// Sorts the rows by what a constraint can be looked up with: every building asks hundreds of constraints.
+    fn index(&mut self) {
+        let among =
+            |list: &[String], name: &Option<String>| list.is_empty() || name.as_ref().is_some_and(|n| list.contains(n));
+        let names = |list: fn(&QuantityRow) -> &[String]| -> BTreeSet<Option<String>> {
+            self.quantities.iter().flat_map(list).cloned().map(Some).chain([None]).collect()
+        };
+        let (units, spaces) = (names(|q| &q.units), names(|q| &q.spaces));
+        for unit in units {
+            let of_unit: Vec<usize> =
+                (0..self.quantities.len()).filter(|&i| among(&self.quantities[i].units, &unit)).collect();
+            let by_space = spaces.iter().map(|space| {
+                let rows = of_unit.iter().copied().filter(|&i| among(&self.quantities[i].spaces, space));
+                (space.clone(), rows.collect())
+            });
+            let by_space = by_space.collect();
+            self.by_unit_and_space.insert(unit, by_space);
+        }
+        for (row, condition) in self.conditions.iter().enumerate() {
+            for phrase in &condition.phrases {
+                self.by_phrase.entry(phrase.clone()).or_insert(row);
+            }
+        }
+    }
+
+    /// Returns the row that explains a condition: the first that lists the phrase or a part of it.
     pub(crate) fn condition(&self, phrase: &str) -> Option<&ConditionRow> {
-        self.conditions.iter().find(|c| c.explains(phrase))
+        let whole = self.by_phrase.get(phrase).copied();
+        let before = whole.unwrap_or(self.conditions.len());
+        let part = |c: &&ConditionRow| c.containing.iter().any(|p| phrase.contains(p.as_str()));
+        self.conditions[..before].iter().find(part).or_else(|| whole.map(|row| &self.conditions[row]))
     }
 
     /// Returns what a general space name stands for in a domain.
@@ -356,7 +388,10 @@ impl Tables {
 
     /// Returns the quantity a constraint speaks of.
     pub(crate) fn quantity(&self, c: &Constraint) -> Option<&QuantityRow> {
-        self.quantities.iter().find(|q| q.matches(c))
+        let key = |name: &str| Some(name.to_owned());
+        let by_space = self.by_unit_and_space.get(&key(&c.unit)).or_else(|| self.by_unit_and_space.get(&None))?;
+        let rows = by_space.get(&key(&c.space_type)).or_else(|| by_space.get(&None))?;
+        rows.iter().map(|&row| &self.quantities[row]).find(|q| q.matches(c))
     }
 
     /// Returns why a constraint of no known quantity cannot be decided.
@@ -371,7 +406,6 @@ impl Tables {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::collections::BTreeSet;
 
     #[test]
     fn every_phrase_and_general_space_has_one_meaning() {

@@ -167,11 +167,18 @@ impl Occupancy {
         let clear = self.clear(radius_m);
         let main = clear.components().into_iter().next().unwrap_or_else(|| Bitmap::new(self.frame.nx, self.frame.ny));
         let share = |part: usize, whole: usize| if whole == 0 { 0.0 } else { part as f64 / whole as f64 };
+        // one room after the other in one set: nothing is gone through but the floor around each
+        let mut cells = Bitmap::new(self.frame.nx, self.frame.ny);
         let room_share = plan.rooms.iter().map(|room| {
-            let cells = self.room_cells(room);
-            (room.room_id.clone(), share(main.count_common(&cells), clear.count_common(&cells)))
+            let (i0, i1, j0, j1) = self.frame.span(&room.net_polygon.bounds());
+            self.frame.paint(&mut cells, &room.net_polygon, true);
+            let count = |map: &Bitmap| map.count_common_in(&cells, i0, i1, j0, j1);
+            let found = (room.room_id.clone(), share(count(&main), count(&clear)));
+            cells.fill(i0, i1, j0, j1, false);
+            found
         });
-        Reach { largest_share: share(main.count(), clear.count()), room_share: room_share.collect(), main }
+        let room_share = room_share.collect();
+        Reach { largest_share: share(main.count(), clear.count()), room_share, main }
     }
 }
 

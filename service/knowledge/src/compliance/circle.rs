@@ -1,34 +1,95 @@
 //! The largest circle on the free floor of a room, for wheelchairs and robots that turn on the spot.
 
-use d3dgen_model::{Point, Polygon, Rect, Segment};
+use std::collections::BinaryHeap;
 
-/// Step of the first look, m.
-const STEP_M: f64 = 0.05;
+use d3dgen_model::{Point, Polygon, Rect};
+
+/// A square is not looked into for a gain in radius below this, m.
+const GAIN_M: f64 = 0.004;
 /// Step at which the search for a better middle ends, m.
-const FINEST_M: f64 = 0.002;
+const FINEST_M: f64 = 0.000_5;
+
+/// A square that may hold the middle of a larger circle than is known.
+#[derive(Debug, Clone, Copy)]
+struct Square {
+    /// No circle with its middle in the square is larger, m.
+    most: f64,
+    middle: Point,
+    half: f64,
+}
+
+impl PartialEq for Square {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+
+impl Eq for Square {}
+
+impl PartialOrd for Square {
+    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Square {
+    /// The most promising square is the greatest; of equals the one further south-west.
+    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
+        let place = |s: &Self| (s.middle.y, s.middle.x);
+        let ((y, x), (v, u)) = (place(self), place(other));
+        self.most.total_cmp(&other.most).then(v.total_cmp(&y)).then(u.total_cmp(&x))
+    }
+}
 
 /// Returns the diameter of the largest circle within an outline that meets no obstacle, m; 0 when there is none.
+///
+/// Squares are split in four while one of them may hold something better: the radius around a point is at most that
+/// around another point and the way between them.
 pub(super) fn largest(outline: &Polygon, obstacles: &[Rect]) -> f64 {
-    let bounds = outline.bounds();
-    let walls: Vec<Segment> = outline.edges().collect();
+    let walls: Vec<Rect> = outline.edges().map(|w| Rect::new(w.start.x, w.start.y, w.end.x, w.end.y)).collect();
+    let nearest = |p: Point, list: &[Rect]| list.iter().map(|r| squared(p, r)).fold(f64::MAX, f64::min);
+    // below 0 outside of the outline
     let radius = |p: Point| {
-        let to_walls = walls.iter().map(|w| to_segment(p, w)).fold(f64::MAX, f64::min);
-        obstacles.iter().map(|o| to_rect(p, o)).fold(to_walls, f64::min)
+        let to_walls = nearest(p, &walls);
+        if outline.contains(p) { nearest(p, obstacles).min(to_walls).sqrt() } else { -to_walls.sqrt() }
     };
-    let mut best: Option<(Point, f64)> = None;
-    let steps = |length: f64| 1..(length / STEP_M).ceil().max(1.0) as usize;
-    for i in steps(bounds.width()) {
-        for j in steps(bounds.height()) {
-            let p = Point::new(bounds.x0 + i as f64 * STEP_M, bounds.y0 + j as f64 * STEP_M);
-            let r = radius(p);
-            if best.is_none_or(|b| r > b.1) && outline.contains(p) {
-                best = Some((p, r));
-            }
+    let bounds = outline.bounds();
+    let size = bounds.width().min(bounds.height());
+    if size <= 0.0 {
+        return 0.0;
+    }
+    let mut open = BinaryHeap::new();
+    let mut best = (Point::new(0.0, 0.0), 0.0);
+    let look = |middle: Point, half: f64, open: &mut BinaryHeap<Square>, best: &mut (Point, f64)| {
+        let r = radius(middle);
+        if r > best.1 {
+            *best = (middle, r);
+        }
+        let most = r + half * std::f64::consts::SQRT_2;
+        if most > best.1 + GAIN_M {
+            open.push(Square { most, middle, half });
+        }
+    };
+    let half = size / 2.0;
+    let count = |length: f64| (length / size).ceil() as usize;
+    for i in 0..count(bounds.width()) {
+        for j in 0..count(bounds.height()) {
+            let middle = Point::new(bounds.x0 + (i as f64 + 0.5) * size, bounds.y0 + (j as f64 + 0.5) * size);
+            look(middle, half, &mut open, &mut best);
         }
     }
-    let Some((mut middle, mut found)) = best else { return 0.0 };
-    let mut step = STEP_M / 2.0;
-    while step > FINEST_M {
+    while let Some(square) = open.pop() {
+        if square.most <= best.1 + GAIN_M {
+            break;
+        }
+        let half = square.half / 2.0;
+        for (dx, dy) in [(-half, -half), (half, -half), (-half, half), (half, half)] {
+            look(Point::new(square.middle.x + dx, square.middle.y + dy), half, &mut open, &mut best);
+        }
+    }
+    let (mut middle, mut found) = best;
+    let mut step = 2.0 * GAIN_M;
+    while found > 0.0 && step > FINEST_M {
         let around = [(step, 0.0), (-step, 0.0), (0.0, step), (0.0, -step), (step, step), (-step, -step)];
         let tried = around.map(|(dx, dy)| Point::new(middle.x + dx, middle.y + dy)).map(|p| (p, radius(p)));
         match tried.into_iter().max_by(|x, y| x.1.total_cmp(&y.1)) {
@@ -39,16 +100,11 @@ pub(super) fn largest(outline: &Polygon, obstacles: &[Rect]) -> f64 {
     2.0 * found
 }
 
-/// Returns the distance of a point from an axis-aligned segment, m.
-fn to_segment(p: Point, s: &Segment) -> f64 {
-    to_rect(p, &Rect::new(s.start.x, s.start.y, s.end.x, s.end.y))
-}
-
-/// Returns the distance of a point from a rectangle, m; 0 inside.
-fn to_rect(p: Point, r: &Rect) -> f64 {
+/// Returns the square of the distance of a point from a rectangle, m^2; 0 inside.
+fn squared(p: Point, r: &Rect) -> f64 {
     let dx = (r.x0 - p.x).max(p.x - r.x1).max(0.0);
     let dy = (r.y0 - p.y).max(p.y - r.y1).max(0.0);
-    dx.hypot(dy)
+    dx * dx + dy * dy
 }
 
 #[cfg(test)]

@@ -1,12 +1,24 @@
 //! A rectangular grid of bits in rows of 64-bit words: the set operations, erosion and flood fill that navigation needs.
 
 /// A set of grid cells; cell `(i, j)` is column `i` (east) of row `j` (north). Cells outside the grid are never set.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, PartialEq, Eq)]
 pub struct Bitmap {
     nx: usize,
     ny: usize,
     stride: usize,
     words: Vec<u64>,
+}
+
+impl Clone for Bitmap {
+    fn clone(&self) -> Self {
+        Self { words: self.words.clone(), ..*self }
+    }
+
+    /// Takes over `source` in the memory of `self`.
+    fn clone_from(&mut self, source: &Self) {
+        (self.nx, self.ny, self.stride) = (source.nx, source.ny, source.stride);
+        self.words.clone_from(&source.words);
+    }
 }
 
 impl Bitmap {
@@ -105,6 +117,42 @@ impl Bitmap {
     /// Returns the number of cells in both sets (of one size).
     pub fn count_common(&self, other: &Self) -> usize {
         self.words.iter().zip(&other.words).map(|(a, b)| (a & b).count_ones() as usize).sum()
+    }
+
+    /// Returns the number of cells in both sets (of one size) of columns `i0..i1` and rows `j0..j1`.
+    pub fn count_common_in(&self, other: &Self, i0: i64, i1: i64, j0: i64, j1: i64) -> usize {
+        let (i0, i1) = clip(i0, i1, self.nx);
+        let (j0, j1) = clip(j0, j1, self.ny);
+        if i0 >= i1 {
+            return 0;
+        }
+        let row = |j: usize| {
+            (i0 / 64..=(i1 - 1) / 64).map(move |w| {
+                let k = j * self.stride + w;
+                (self.words[k] & other.words[k] & span_mask(i0, i1, w)).count_ones() as usize
+            })
+        };
+        (j0..j1).flat_map(row).sum()
+    }
+
+    /// Returns columns `i0..i1` and rows `j0..j1`, clipped to the grid, as a set of its own: its cell (0, 0) is cell
+    /// `(i0, j0)` here.
+    pub fn window(&self, i0: i64, i1: i64, j0: i64, j1: i64) -> Self {
+        let (i0, i1) = clip(i0, i1, self.nx);
+        let (j0, j1) = clip(j0, j1, self.ny);
+        let mut out = Self::new(i1.saturating_sub(i0), j1.saturating_sub(j0));
+        let bits = i0 % 64;
+        for j in 0..out.ny {
+            let row = &self.words[(j0 + j) * self.stride..(j0 + j + 1) * self.stride];
+            let at = |k: usize| row.get(k).copied().unwrap_or(0);
+            for w in 0..out.stride {
+                let from = i0 / 64 + w;
+                let high = if bits == 0 { 0 } else { at(from + 1) << (64 - bits) };
+                let word = at(from) >> bits | high;
+                out.words[j * out.stride + w] = word & span_mask(0, out.nx, w);
+            }
+        }
+        out
     }
 
     /// Returns true when no cell is in the set.
@@ -365,6 +413,20 @@ mod tests {
         assert_eq!(map.pieces_around(60, 70, -1, 5), 1);
         map.fill(0, 90, 0, 20, false);
         assert_eq!(map.pieces_around(60, 70, 5, 12), 0);
+    }
+
+    #[test]
+    fn a_window_has_the_cells_of_its_part() {
+        let (map, other) = (noise(200, 30, 0.5, 3), noise(200, 30, 0.5, 4));
+        for (i0, i1, j0, j1) in [(0, 200, 0, 30), (64, 128, 3, 9), (7, 150, -4, 12), (130, 400, 20, 99), (9, 9, 0, 5)] {
+            let window = map.window(i0, i1, j0, j1);
+            let (x, y) = (i0.max(0) as usize, j0.max(0) as usize);
+            let within = |&(i, j): &(usize, usize)| (i0..i1).contains(&(i as i64)) && (j0..j1).contains(&(j as i64));
+            let cells: Vec<_> = map.cells().filter(within).map(|(i, j)| (i - x, j - y)).collect();
+            assert_eq!(window.cells().collect::<Vec<_>>(), cells, "{i0} {i1} {j0} {j1}");
+            let common = map.cells().filter(within).filter(|&(i, j)| other.get(i, j)).count();
+            assert_eq!(map.count_common_in(&other, i0, i1, j0, j1), common);
+        }
     }
 
     #[test]

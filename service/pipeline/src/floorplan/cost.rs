@@ -8,12 +8,17 @@ use d3dgen_model::scene_graph::Connector;
 use d3dgen_model::seed::Stream;
 
 use super::PROPORTION_LIMIT;
-use super::lattice::{Cellbox, INNER_HALF_M, OUTER_HALF_M, meters, up};
+use super::lattice::{Cellbox, INNER_HALF_M, JAMB_M, OUTER_HALF_M, meters, up};
 use super::realize::{Layout, door_need};
 use super::spec::Brief;
 
+/// Number of soft terms.
+const COUNT: usize = 10;
+/// A weight for each soft term.
+pub(super) type Weights = [f64; COUNT];
+
 /// Names of the soft terms, in the order of [`Score::soft`].
-pub(super) const TERMS: [&str; 9] = [
+pub(super) const TERMS: [&str; COUNT] = [
     "area_error",
     "proportion",
     "wished_adjacency",
@@ -23,245 +28,311 @@ pub(super) const TERMS: [&str; 9] = [
     "outline",
     "zoning",
     "narrow_parts",
+    "latch_side",
 ];
 /// Standard weights of the soft terms; each plan's search varies them by its taste.
-pub(super) const WEIGHTS: [f64; 9] = [1.0, 0.6, 1.2, 0.5, 10.0, 0.35, 0.8, 0.5, 0.4];
+pub(super) const WEIGHTS: Weights = [1.0, 0.6, 1.2, 0.5, 10.0, 0.35, 0.8, 0.5, 0.4, 0.8];
 /// Least outer wall of a room that needs a window, m.
 pub(super) const WINDOW_WALL_M: f64 = 1.2;
+
+/// Wall beside the latch of a door that people in wheelchairs pull open, beyond the least one, m (18 in together).
+const LATCH_SIDE_M: f64 = 0.457 - JAMB_M;
 
 /// Share by which the whole may miss the area asked for before it costs.
 const AREA_TOLERANCE: f64 = 0.03;
 
 /// Verdict on a layout.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Score {
     /// Shortfalls against hard rules; 0 for a sound plan.
     pub hard: f64,
     /// Unweighted soft terms, in the order of [`TERMS`].
-    pub soft: [f64; 9],
+    pub soft: [f64; COUNT],
 }
 
 impl Score {
+    /// Returns true when no hard rule is broken.
+    pub(super) fn is_sound(&self) -> bool {
+        self.hard < 1e-9
+    }
+
     /// Returns the figure the search minimizes, under the taste of one plan.
-    pub(super) fn total(&self, weights: &[f64; 9]) -> f64 {
+    pub(super) fn total(&self, weights: &Weights) -> f64 {
         self.hard * 30.0 + self.soft.iter().zip(weights).map(|(s, w)| s * w).sum::<f64>()
     }
 
     /// Returns the soft terms under the standard weights, so that plans can be compared.
-    pub(super) fn weighted(&self) -> [f64; 9] {
+    pub(super) fn weighted(&self) -> Weights {
         std::array::from_fn(|i| self.soft[i] * WEIGHTS[i])
     }
 }
 
 /// Returns the weights one plan is searched with: another architect for every seed.
-pub(super) fn taste(rng: &mut Stream) -> [f64; 9] {
+pub(super) fn taste(rng: &mut Stream) -> Weights {
     WEIGHTS.map(|w| w * (0.5 + rng.unit()))
 }
 
-/// A shared stretch of wall between two rooms.
-#[derive(Debug, Clone, Copy)]
-struct Contact {
-    a: usize,
-    b: usize,
-    len: i32,
+/// Measures layouts of one brief and judges them, in memory of its own that every layout uses again.
+pub(super) struct Judge<'b> {
+    brief: &'b Brief,
+    /// The spine, or a number that no room has.
+    spine: usize,
+    /// By room: wall that its door to the spine needs, 0 for none, lattice units.
+    spine_need: Vec<i32>,
+    /// By room times number of rooms plus room: which pair of interest they are, counted from 1; 0 for none.
+    pair_of: Vec<u16>,
+    /// By link: its pair and the wall it needs, lattice units.
+    link_needs: Vec<(usize, i32)>,
+    apart_pairs: Vec<usize>,
+    /// What the doors to outdoors need, lattice units.
+    entrance_need: i32,
+    wet_rooms: usize,
+    survey: Survey,
 }
 
-/// Lengths of walls per room and pair, computed once a layout.
-pub(super) struct Survey {
-    contacts: Vec<Contact>,
-    /// Outer wall per room: the longest straight piece, and the sum.
-    outer: Vec<(i32, i32)>,
-    gross_m2: Vec<f64>,
-    net_m2: Vec<f64>,
-    /// Largest box of each room.
-    main: Vec<Option<Cellbox>>,
+/// Lengths of walls per room and pair of one layout.
+#[derive(Default)]
+struct Survey {
+    /// Boxes from west to east: west edge and index.
+    by_west: Vec<(i32, usize)>,
+    /// Per box and side: wall shared with any box, and with boxes of the same room.
+    side: Vec<[[i32; 2]; 4]>,
+    /// By pair of interest: the longest shared wall, lattice units.
+    pair: Vec<i32>,
+    rooms: Vec<Measured>,
+}
+
+/// One room of a layout.
+#[derive(Debug, Clone, Copy, Default)]
+struct Measured {
+    /// Longest wall shared with the spine, lattice units.
+    spine: i32,
+    /// Outer wall: the longest straight piece, and the sum.
+    outer: (i32, i32),
+    gross_m2: f64,
+    net_m2: f64,
+    /// Largest box.
+    main: Option<Cellbox>,
     /// Clear width and height of that box, m.
-    clear: Vec<(f64, f64)>,
+    clear: (f64, f64),
+    /// True for a wet room beside another.
+    wet_beside: bool,
 }
 
-impl Survey {
-    pub(super) fn new(brief: &Brief, layout: &Layout) -> Self {
-        let rooms = brief.rooms.len();
-        let boxes = &layout.boxes;
-        let mut side = vec![[0_i32; 4]; boxes.len()];
-        let mut own = vec![[0_i32; 4]; boxes.len()];
-        let mut survey = Self {
-            contacts: Vec::with_capacity(4 * rooms),
-            outer: vec![(0, 0); rooms],
-            gross_m2: vec![0.0; rooms],
-            net_m2: vec![0.0; rooms],
-            main: vec![None; rooms],
-            clear: vec![(0.0, 0.0); rooms],
+impl<'b> Judge<'b> {
+    pub(super) fn new(brief: &'b Brief) -> Self {
+        let n = brief.rooms.len();
+        let mut out = Self {
+            brief,
+            spine: brief.spine.unwrap_or(usize::MAX),
+            spine_need: brief.rooms.iter().map(|r| if r.on_spine { door_need(r.door_width) } else { 0 }).collect(),
+            pair_of: vec![0; n * n],
+            link_needs: Vec::new(),
+            apart_pairs: Vec::new(),
+            entrance_need: door_need(brief.entrance_width),
+            wet_rooms: brief.rooms.iter().filter(|r| r.wet).count(),
+            survey: Survey { rooms: vec![Measured::default(); n], ..Survey::default() },
         };
+        for link in &brief.links {
+            let need = match link.connector {
+                Connector::Door | Connector::Open => door_need(brief.door_width(link.a, link.b)),
+                Connector::Wall | Connector::Near => up(0.6),
+            };
+            let pair = out.pair(link.a, link.b);
+            out.link_needs.push((pair, need));
+        }
+        for [a, b] in &brief.apart {
+            let pair = out.pair(*a, *b);
+            out.apart_pairs.push(pair);
+        }
+        out
+    }
+
+    /// Returns the number of a pair of interest.
+    fn pair(&mut self, a: usize, b: usize) -> usize {
+        let n = self.brief.rooms.len();
+        if self.pair_of[a * n + b] == 0 {
+            self.survey.pair.push(0);
+            let number = self.survey.pair.len() as u16;
+            (self.pair_of[a * n + b], self.pair_of[b * n + a]) = (number, number);
+        }
+        usize::from(self.pair_of[a * n + b]) - 1
+    }
+
+    /// Judges a layout.
+    pub(super) fn score(&mut self, layout: &Layout) -> Score {
+        self.measure(&layout.boxes);
+        let mut score = Score { hard: layout.misfit, ..Score::default() };
+        self.rooms(&mut score);
+        self.links(&mut score);
+        self.whole(layout, &mut score);
+        score
+    }
+
+    fn measure(&mut self, boxes: &[(usize, Cellbox)]) {
+        let n = self.brief.rooms.len();
+        let survey = &mut self.survey;
+        survey.pair.fill(0);
+        survey.rooms.fill(Measured::default());
+        survey.side.clear();
+        survey.side.resize(boxes.len(), [[0; 2]; 4]);
         // A sweep from west to east: only boxes that begin before this one ends can touch it.
-        let mut by_west: Vec<usize> = (0..boxes.len()).collect();
-        by_west.sort_unstable_by_key(|&i| (boxes[i].1.x0, i));
-        for (k, &i) in by_west.iter().enumerate() {
-            let (a, first) = &boxes[i];
-            for &j in &by_west[k + 1..] {
-                let (b, second) = &boxes[j];
-                if second.x0 > first.x1 {
+        survey.by_west.clear();
+        survey.by_west.extend(boxes.iter().enumerate().map(|(i, (_, b))| (b.x0, i)));
+        survey.by_west.sort_unstable();
+        for (k, &(_, i)) in survey.by_west.iter().enumerate() {
+            let (a, first) = boxes[i];
+            for &(x0, j) in &survey.by_west[k + 1..] {
+                if x0 > first.x1 {
                     break;
                 }
-                let Some((s, from, to)) = first.contact(second) else { continue };
-                side[i][s] += to - from;
-                side[j][s ^ 1] += to - from;
+                let (b, second) = boxes[j];
+                let Some((s, from, to)) = first.contact(&second) else { continue };
+                let len = to - from;
+                survey.side[i][s][0] += len;
+                survey.side[j][s ^ 1][0] += len;
                 if a == b {
-                    own[i][s] += to - from;
-                    own[j][s ^ 1] += to - from;
-                } else {
-                    survey.contacts.push(Contact { a: *a, b: *b, len: to - from });
+                    survey.side[i][s][1] += len;
+                    survey.side[j][s ^ 1][1] += len;
+                    continue;
+                }
+                if a == self.spine || b == self.spine {
+                    let room = &mut survey.rooms[if a == self.spine { b } else { a }];
+                    room.spine = room.spine.max(len);
+                }
+                let pair = usize::from(self.pair_of[a * n + b]);
+                if pair > 0 {
+                    survey.pair[pair - 1] = survey.pair[pair - 1].max(len);
+                }
+                if self.brief.rooms[a].wet && self.brief.rooms[b].wet {
+                    (survey.rooms[a].wet_beside, survey.rooms[b].wet_beside) = (true, true);
                 }
             }
         }
-        for (i, (room, shape)) in boxes.iter().enumerate() {
-            survey.gross_m2[*room] += shape.area_m2();
-            let mut net = shape.area_m2();
+        for ((room, shape), side) in boxes.iter().zip(&survey.side) {
+            let room = &mut survey.rooms[*room];
+            let area = shape.area_m2();
+            room.gross_m2 += area;
+            let mut net = area;
             let mut walls = [0.0; 2];
-            for s in 0..4 {
+            for (s, [shared, own]) in side.iter().copied().enumerate() {
                 let len = if s < 2 { shape.height() } else { shape.width() };
-                let free = len - side[i][s];
-                let outer = &mut survey.outer[*room];
-                outer.0 = outer.0.max(free);
-                outer.1 += free;
-                net -= meters(free) * OUTER_HALF_M + meters(len - own[i][s] - free) * INNER_HALF_M;
+                let free = len - shared;
+                room.outer = (room.outer.0.max(free), room.outer.1 + free);
+                net -= meters(free) * OUTER_HALF_M + meters(shared - own) * INNER_HALF_M;
                 // the clear extent ends at the thickest wall of a side
                 let half = if free > 0 { OUTER_HALF_M } else { INNER_HALF_M };
-                walls[s / 2] += if own[i][s] == len { 0.0 } else { half };
+                walls[s / 2] += if own == len { 0.0 } else { half };
             }
-            survey.net_m2[*room] += net;
-            let larger = survey.main[*room].is_none_or(|m| m.area_m2() < shape.area_m2());
-            if larger {
-                survey.main[*room] = Some(*shape);
-                survey.clear[*room] = (meters(shape.width()) - walls[0], meters(shape.height()) - walls[1]);
+            room.net_m2 += net;
+            if room.main.is_none_or(|m| m.area_m2() < area) {
+                room.main = Some(*shape);
+                room.clear = (meters(shape.width()) - walls[0], meters(shape.height()) - walls[1]);
             }
         }
-        for net in &mut survey.net_m2 {
-            *net += 4.0 * INNER_HALF_M * INNER_HALF_M;
-        }
-        survey
-    }
-
-    /// Returns the longest shared wall of two rooms, lattice units.
-    fn contact(&self, a: usize, b: usize) -> i32 {
-        self.contacts.iter().filter(|c| (c.a, c.b) == (a, b) || (c.b, c.a) == (a, b)).map(|c| c.len).max().unwrap_or(0)
-    }
-}
-
-/// Judges a layout.
-pub(super) fn score(brief: &Brief, layout: &Layout) -> Score {
-    let survey = Survey::new(brief, layout);
-    let mut score = Score { hard: layout.misfit, ..Score::default() };
-    rooms(brief, &survey, &mut score);
-    links(brief, &survey, &mut score);
-    whole(brief, layout, &survey, &mut score);
-    score
-}
-
-fn rooms(brief: &Brief, survey: &Survey, score: &mut Score) {
-    let spine = brief.spine.unwrap_or(usize::MAX);
-    for (i, spec) in brief.rooms.iter().enumerate() {
-        if survey.main[i].is_none() {
-            score.hard += 5.0;
-            continue;
-        }
-        let corridor = i == spine && !brief.hub;
-        if !corridor {
-            let net = survey.net_m2[i];
-            score.hard += ((spec.area_min - net) / spec.area_min).max(0.0) * 4.0;
-            score.hard += ((net - spec.area_max) / spec.area_max).max(0.0) * 4.0;
-            // Readers who measure on center lines should find the area in range too.
-            let over = ((survey.gross_m2[i] - spec.area_max) / spec.area_max).max(0.0);
-            // half the area is as wrong as double the area
-            let off = (net - spec.area_target) / net.min(spec.area_target).max(0.1);
-            let [least, most] = spec.limits.area_advised.unwrap_or([0.0, f64::MAX]);
-            let ill_advised = ((least - net).max(net - most) / spec.area_target).max(0.0);
-            score.soft[0] += off.powi(2) + 3.0 * over + 3.0 * ill_advised;
-            let (w, h) = survey.clear[i];
-            score.hard += (spec.min_dimension - w.min(h)).max(0.0);
-            let proportion = w.max(h) / w.min(h).max(0.1);
-            score.hard += (proportion - PROPORTION_LIMIT).max(0.0);
-            score.soft[1] += (proportion - 1.5).max(0.0).powi(2);
-        }
-        if spec.on_spine && i != spine {
-            let short = door_need(spec.door_width) - survey.contact(i, spine);
-            score.hard += meters(short.max(0));
-        }
-        let (longest, total) = survey.outer[i];
-        match spec.daylight {
-            _ if spec.needs_outer_wall() => score.hard += meters((up(WINDOW_WALL_M) - longest).max(0)),
-            Daylight::Preferred if longest < up(WINDOW_WALL_M) && !corridor => score.soft[3] += 1.0,
-            Daylight::None if !spec.circulation => score.soft[3] += 0.03 * meters(total).min(6.0),
-            _ => {}
-        }
-        if spec.entrance {
-            score.hard += meters((door_need(brief.entrance_width) - longest).max(0));
+        for room in &mut survey.rooms {
+            room.net_m2 += 4.0 * INNER_HALF_M * INNER_HALF_M;
         }
     }
-}
 
-fn links(brief: &Brief, survey: &Survey, score: &mut Score) {
-    for link in &brief.links {
-        let len = survey.contact(link.a, link.b);
-        let need = match link.connector {
-            Connector::Door | Connector::Open => door_need(brief.door_width(link.a, link.b)),
-            Connector::Wall | Connector::Near => up(0.6),
-        };
-        let short = meters((need - len).max(0));
-        if link.required && link.connector != Connector::Near {
-            score.hard += short;
-        } else if short > 0.0 {
-            let far = match (survey.main[link.a], survey.main[link.b]) {
-                (Some(a), Some(b)) => distance(a, b),
-                _ => 10.0,
+    fn rooms(&self, score: &mut Score) {
+        for (i, (spec, room)) in self.brief.rooms.iter().zip(&self.survey.rooms).enumerate() {
+            if room.main.is_none() {
+                score.hard += 5.0;
+                continue;
+            }
+            let corridor = i == self.spine && !self.brief.hub;
+            if !corridor {
+                let net = room.net_m2;
+                score.hard += ((spec.area_min - net) / spec.area_min).max(0.0) * 4.0;
+                score.hard += ((net - spec.area_max) / spec.area_max).max(0.0) * 4.0;
+                // Readers who measure on center lines should find the area in range too.
+                let over = ((room.gross_m2 - spec.area_max) / spec.area_max).max(0.0);
+                // half the area is as wrong as double the area
+                let off = (net - spec.area_target) / net.min(spec.area_target).max(0.1);
+                let [least, most] = spec.limits.area_advised.unwrap_or([0.0, f64::MAX]);
+                let ill_advised = ((least - net).max(net - most) / spec.area_target).max(0.0);
+                score.soft[0] += off.powi(2) + 3.0 * over + 3.0 * ill_advised;
+                let (w, h) = room.clear;
+                score.hard += (spec.min_dimension - w.min(h)).max(0.0);
+                let proportion = w.max(h) / w.min(h).max(0.1);
+                score.hard += (proportion - PROPORTION_LIMIT).max(0.0);
+                score.soft[1] += (proportion - 1.5).max(0.0).powi(2);
+            }
+            if i != self.spine {
+                score.hard += meters((self.spine_need[i] - room.spine).max(0));
+                if self.spine_need[i] > 0 && !spec.open_front {
+                    score.soft[9] += meters((self.spine_need[i] + up(LATCH_SIDE_M) - room.spine).max(0));
+                }
+            }
+            let (longest, total) = room.outer;
+            match spec.daylight {
+                _ if spec.needs_outer_wall() => score.hard += meters((up(WINDOW_WALL_M) - longest).max(0)),
+                Daylight::Preferred if longest < up(WINDOW_WALL_M) && !corridor => score.soft[3] += 1.0,
+                Daylight::None if !spec.circulation => score.soft[3] += 0.03 * meters(total).min(6.0),
+                _ => {}
+            }
+            if spec.entrance {
+                score.hard += meters((self.entrance_need - longest).max(0));
+            }
+        }
+    }
+
+    fn links(&self, score: &mut Score) {
+        for (link, &(pair, need)) in self.brief.links.iter().zip(&self.link_needs) {
+            let short = meters((need - self.survey.pair[pair]).max(0));
+            if link.required && link.connector != Connector::Near {
+                score.hard += short;
+            } else if short > 0.0 {
+                let far = match (self.survey.rooms[link.a].main, self.survey.rooms[link.b].main) {
+                    (Some(a), Some(b)) => distance(a, b),
+                    _ => 10.0,
+                };
+                score.soft[2] += 0.3 + 0.04 * far;
+            }
+        }
+        for &pair in &self.apart_pairs {
+            score.hard += meters(self.survey.pair[pair]) * 0.5;
+        }
+        if self.wet_rooms > 1 {
+            let paired = self.survey.rooms.iter().filter(|r| r.wet_beside).count();
+            score.soft[5] += (self.wet_rooms - paired) as f64;
+        }
+    }
+
+    fn whole(&self, layout: &Layout, score: &mut Score) {
+        let (brief, rooms) = (self.brief, &self.survey.rooms);
+        let total: f64 = rooms.iter().map(|r| r.gross_m2).sum();
+        if let Some(spine) = brief.spine
+            && !brief.hub
+        {
+            // From a fifth on, circulation is what a reviewer objects to first.
+            let share = rooms[spine].gross_m2 / total;
+            score.soft[4] += (share - 0.10).max(0.0) + 5.0 * (share - 0.20).max(0.0);
+        }
+        if let Some(area) = brief.area {
+            let net: f64 = rooms.iter().map(|r| r.net_m2).sum();
+            score.soft[0] += 20.0 * ((net - area).abs() / area - AREA_TOLERANCE).max(0.0);
+        }
+        let perimeter: f64 = rooms.iter().map(|r| meters(r.outer.1)).sum();
+        score.soft[6] += perimeter / (4.0 * total.sqrt()) - 1.0 + 0.02 * layout.notch;
+        let entrance = brief.rooms.iter().position(|r| r.entrance).and_then(|i| rooms[i].main);
+        let size = total.sqrt().max(1.0);
+        for (spec, room) in brief.rooms.iter().zip(rooms) {
+            let (Some(main), Some(door)) = (room.main, entrance) else { continue };
+            let far = distance(main, door) / size;
+            score.soft[7] += match spec.zone {
+                Zone::Public | Zone::Day => 0.25 * far,
+                Zone::Night => 0.4 * (1.2 - far).max(0.0),
+                Zone::Staff | Zone::Service | Zone::Circulation | Zone::Outdoor => 0.0,
             };
-            score.soft[2] += 0.3 + 0.04 * far;
         }
-    }
-    for [a, b] in &brief.apart {
-        score.hard += meters(survey.contact(*a, *b)) * 0.5;
-    }
-    let wet = |i: usize| brief.rooms[i].wet;
-    let total = brief.rooms.iter().filter(|r| r.wet).count();
-    let paired = (0..brief.rooms.len())
-        .filter(|&i| wet(i) && survey.contacts.iter().any(|c| wet(c.a) && wet(c.b) && (c.a == i || c.b == i)))
-        .count();
-    if total > 1 {
-        score.soft[5] += (total - paired) as f64;
-    }
-}
-
-fn whole(brief: &Brief, layout: &Layout, survey: &Survey, score: &mut Score) {
-    let total: f64 = survey.gross_m2.iter().sum();
-    if let Some(spine) = brief.spine
-        && !brief.hub
-    {
-        // From a fifth on, circulation is what a reviewer objects to first.
-        let share = survey.gross_m2[spine] / total;
-        score.soft[4] += (share - 0.10).max(0.0) + 5.0 * (share - 0.20).max(0.0);
-    }
-    if let Some(area) = brief.area {
-        let net: f64 = survey.net_m2.iter().sum();
-        score.soft[0] += 20.0 * ((net - area).abs() / area - AREA_TOLERANCE).max(0.0);
-    }
-    let perimeter: f64 = survey.outer.iter().map(|o| meters(o.1)).sum();
-    score.soft[6] += perimeter / (4.0 * total.sqrt()) - 1.0 + 0.02 * layout.notch;
-    let entrance = brief.rooms.iter().position(|r| r.entrance).and_then(|i| survey.main[i]);
-    let size = total.sqrt().max(1.0);
-    for (i, spec) in brief.rooms.iter().enumerate() {
-        let (Some(main), Some(door)) = (survey.main[i], entrance) else { continue };
-        let far = distance(main, door) / size;
-        score.soft[7] += match spec.zone {
-            Zone::Public | Zone::Day => 0.25 * far,
-            Zone::Night => 0.4 * (1.2 - far).max(0.0),
-            Zone::Staff | Zone::Service | Zone::Circulation | Zone::Outdoor => 0.0,
-        };
-    }
-    for (room, shape) in &layout.boxes {
-        if Some(*room) != brief.spine && survey.main[*room] != Some(*shape) {
-            // A leg beside a small room: fine as a lobby, a waste as a corridor.
-            let (w, h) = (meters(shape.width()), meters(shape.height()));
-            score.soft[8] += (w.max(h) / w.min(h).max(0.1) - 1.6).max(0.0) + 0.15;
+        for (room, shape) in &layout.boxes {
+            if Some(*room) != brief.spine && rooms[*room].main != Some(*shape) {
+                // A leg beside a small room: fine as a lobby, a waste as a corridor.
+                let (w, h) = (meters(shape.width()), meters(shape.height()));
+                score.soft[8] += (w.max(h) / w.min(h).max(0.1) - 1.6).max(0.0) + 0.15;
+            }
         }
     }
 }

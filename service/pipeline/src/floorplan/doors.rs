@@ -1,5 +1,6 @@
 //! Doors and open passages: where in the shared wall, how wide, which way the leaf swings.
 
+use d3dgen_model::domain::Zone;
 use d3dgen_model::floorplan::{Door, DoorKind, Swing};
 use d3dgen_model::geometry::{Rect, to_mm};
 use d3dgen_model::scene_graph::Connector;
@@ -19,6 +20,8 @@ const SLIDING_SHARE: f64 = 0.22;
 /// Widest open passage, m, and the piece of wall left on each side of it.
 const OPEN_MAX_M: f64 = 4.0;
 const OPEN_JAMB_M: f64 = 0.3;
+/// What a meter between the entrance and the nearest room for visitors counts against the length of its wall.
+const TO_PUBLIC: f64 = 0.2;
 /// Floor kept free in front of a door, m.
 const APPROACH_M: f64 = 0.6;
 
@@ -215,6 +218,9 @@ impl Site<'_> {
         let spine = Some(room) == self.brief.spine;
         // The end of a corridor is where one looks for its door; a second exit belongs far from the first.
         let mut penalty = if spine && !self.brief.hub { meters(s.len()) } else { 0.1 * f64::from(s.at.abs()) * 0.05 };
+        if main {
+            penalty += TO_PUBLIC * self.to_public(line.middle());
+        }
         if !main {
             let away = doors
                 .iter()
@@ -237,6 +243,16 @@ impl Site<'_> {
         let mut door = self.door(line, kind, clear, s, &[room], swing);
         door.entrance = main;
         vec![Spot { door, zones: vec![(room, zone)], penalty }]
+    }
+
+    /// Returns how far the nearest room for visitors is from a point, m; 0 where there is none.
+    fn to_public(&self, p: Point) -> f64 {
+        let public = self.boxes.iter().filter(|(r, _)| self.brief.rooms[*r].zone == Zone::Public);
+        let far = public.map(|(_, b)| {
+            let c = b.to_rect().center();
+            (c.x - p.x).abs() + (c.y - p.y).abs()
+        });
+        far.reduce(f64::min).unwrap_or(0.0)
     }
 
     fn door(

@@ -7,33 +7,89 @@ use d3dgen_model::seed::Stream;
 use super::lattice::{INNER_HALF_M, up};
 use super::spec::Brief;
 
+/// Small rooms at one end of a cell at most.
+const MOST_NESTS: usize = 7;
+
+/// Small rooms in a row; a list of its own size, for genomes are copied millions of times.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Nests {
+    rooms: [u16; MOST_NESTS],
+    len: u8,
+}
+
+impl Nests {
+    pub(super) fn len(&self) -> usize {
+        usize::from(self.len)
+    }
+
+    pub(super) fn is_full(&self) -> bool {
+        self.len() == MOST_NESTS
+    }
+
+    pub(super) fn iter(&self) -> impl Iterator<Item = usize> + '_ {
+        self.rooms[..self.len()].iter().map(|&r| usize::from(r))
+    }
+
+    /// Adds a room at the end; the list must not be full.
+    pub(super) fn push(&mut self, room: usize) {
+        self.rooms[self.len()] = room as u16;
+        self.len += 1;
+    }
+
+    /// Adds a room at the start; the list must not be full.
+    pub(super) fn push_front(&mut self, room: usize) {
+        self.push(room);
+        self.rooms[..usize::from(self.len)].rotate_right(1);
+    }
+
+    pub(super) fn pop(&mut self) -> Option<usize> {
+        self.len = self.len.checked_sub(1)?;
+        Some(usize::from(self.rooms[self.len()]))
+    }
+}
+
 /// A stretch of a band: a room over the full depth, with small rooms cut out of its corridor side.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Cell {
     pub host: usize,
     /// Small rooms from the start of the cell, along the corridor.
-    pub left: Vec<usize>,
+    pub left: Nests,
     /// Small rooms up to the end of the cell.
-    pub right: Vec<usize>,
+    pub right: Nests,
     /// Depth of the small rooms, lattice units.
     pub nest_depth: i32,
 }
 
 impl Cell {
     pub(super) fn new(host: usize) -> Self {
-        Self { host, left: Vec::new(), right: Vec::new(), nest_depth: 0 }
+        Self { host, left: Nests::default(), right: Nests::default(), nest_depth: 0 }
     }
 
     pub(super) fn nests(&self) -> impl Iterator<Item = usize> + '_ {
-        self.left.iter().chain(&self.right).copied()
+        self.left.iter().chain(self.right.iter())
+    }
+
+    pub(super) fn has_nests(&self) -> bool {
+        self.left.len() + self.right.len() > 0
     }
 }
 
 /// A row of cells along one side of a corridor.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, PartialEq)]
 pub(super) struct Band {
     pub depth: i32,
     pub cells: Vec<Cell>,
+}
+
+impl Clone for Band {
+    fn clone(&self) -> Self {
+        Self { depth: self.depth, cells: self.cells.clone() }
+    }
+
+    fn clone_from(&mut self, source: &Self) {
+        self.depth = source.depth;
+        self.cells.clone_from(&source.cells);
+    }
 }
 
 /// Which bands a room at the end of the corridor covers.
@@ -54,7 +110,7 @@ pub(super) struct Cap {
 }
 
 /// A plan as the search sees it.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, PartialEq)]
 pub(super) struct Genome {
     pub scheme: Scheme,
     pub bands: Vec<Band>,
@@ -64,24 +120,31 @@ pub(super) struct Genome {
     pub corner: bool,
 }
 
-/// Returns the number of bands of a scheme for `rooms` rooms.
-pub(super) fn band_count(scheme: Scheme, rooms: usize) -> usize {
-    match scheme {
-        Scheme::Straight | Scheme::Capped => 2,
-        Scheme::Angle | Scheme::Racetrack => 4,
-        Scheme::Comb => 2 * finger_count(rooms),
+impl Clone for Genome {
+    fn clone(&self) -> Self {
+        Self { bands: self.bands.clone(), ..*self }
+    }
+
+    /// Takes over `source` in the memory of `self`.
+    fn clone_from(&mut self, source: &Self) {
+        (self.scheme, self.caps, self.corner) = (source.scheme, source.caps, source.corner);
+        self.bands.clone_from(&source.bands);
     }
 }
 
-/// Returns how many wings a comb has for `rooms` rooms: about 16 a wing.
-pub(super) fn finger_count(rooms: usize) -> usize {
-    rooms.div_ceil(16).max(2)
+/// Returns the number of bands of a scheme.
+fn band_count(scheme: Scheme) -> usize {
+    match scheme {
+        Scheme::Straight | Scheme::Capped => 2,
+        Scheme::Angle | Scheme::Racetrack => 4,
+        Scheme::Comb => 0,
+    }
 }
 
 impl Genome {
     /// Returns a random start: large rooms as cells, small ones nested or on their own, en suites with their hosts.
     pub(super) fn random(brief: &Brief, scheme: Scheme, rng: &mut Stream) -> Self {
-        let count = band_count(scheme, brief.rooms.len());
+        let count = band_count(scheme);
         let mut genome = Self {
             scheme,
             bands: (0..count).map(|_| Band { depth: 0, cells: Vec::new() }).collect(),
@@ -115,6 +178,7 @@ impl Genome {
         let entrance = free.iter().position(|&r| brief.rooms[r].entrance && brief.rooms[r].area_target >= 8.0);
         if let Some(i) = entrance
             && rng.chance(0.7)
+            && !brief.stem
         {
             self.caps[0] = Some(random_cap(free.remove(i), rng));
         }
@@ -132,19 +196,23 @@ impl Genome {
     /// Puts a small room beside its host, or beside a random large room.
     pub(super) fn nest_somewhere(&mut self, brief: &Brief, room: usize, rng: &mut Stream) {
         let host = brief.rooms[room].host.or_else(|| guest_of(brief, room));
-        let mut places: Vec<(usize, usize)> = Vec::new();
+        // One of those that fit, each as likely.
+        let (mut place, mut count) = (None, 0);
         for (b, band) in self.bands.iter().enumerate() {
             for (c, cell) in band.cells.iter().enumerate() {
                 let fits = match host {
                     Some(h) => cell.host == h,
                     None => brief.rooms[cell.host].area_target >= 1.8 * brief.rooms[room].area_target,
                 };
-                if fits {
-                    places.push((b, c));
+                if fits && !(cell.left.is_full() && cell.right.is_full()) {
+                    count += 1;
+                    if rng.below(count) == 0 {
+                        place = Some((b, c));
+                    }
                 }
             }
         }
-        let Some(&(b, c)) = rng.pick(&places) else {
+        let Some((b, c)) = place else {
             let b = rng.below(self.bands.len());
             let at = rng.below(self.bands[b].cells.len() + 1);
             self.bands[b].cells.insert(at, Cell::new(room));
@@ -154,10 +222,10 @@ impl Genome {
         if cell.nest_depth == 0 {
             cell.nest_depth = nest_depth(brief, room);
         }
-        if rng.chance(0.5) {
+        if rng.chance(0.5) && !cell.left.is_full() || cell.right.is_full() {
             cell.left.push(room);
         } else {
-            cell.right.insert(0, room);
+            cell.right.push_front(room);
         }
     }
 
@@ -188,7 +256,7 @@ pub(super) fn is_nestable(brief: &Brief, room: usize) -> bool {
 
 /// Returns the room that is entered through `room` (an isolation room through its anteroom), if any.
 pub(super) fn guest_of(brief: &Brief, room: usize) -> Option<usize> {
-    brief.rooms.iter().position(|r| r.host == Some(room) && r.area_target > brief.rooms[room].area_target)
+    brief.guests[room]
 }
 
 /// Returns a depth that gives a small room a good proportion, lattice units.

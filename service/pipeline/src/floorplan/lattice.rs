@@ -13,12 +13,16 @@ pub(super) const JAMB_M: f64 = 0.10;
 
 /// Returns meters as lattice units, rounded up.
 pub(super) fn up(meters: f64) -> i32 {
-    (meters / STEP_M - 1e-6).ceil() as i32
+    // By hand: the processor's own way to round is not in every machine, and the library's is slow.
+    let units = meters / STEP_M - 1e-6;
+    let whole = units as i32;
+    whole + i32::from(units > f64::from(whole))
 }
 
 /// Returns meters as the nearest lattice unit.
 pub(super) fn nearest(meters: f64) -> i32 {
-    (meters / STEP_M).round() as i32
+    let units = meters / STEP_M;
+    (if units < 0.0 { units - 0.5 } else { units + 0.5 }) as i32
 }
 
 /// Returns lattice units in meters.

@@ -10,6 +10,7 @@
 //! Schkufza and Koltun 2010.
 
 mod assemble;
+mod compose;
 mod cost;
 mod doors;
 mod genome;
@@ -67,8 +68,9 @@ pub fn generate(
             }
         }
     }
-    let brief = Brief::new(graph, domain, limits)?;
+    let mut brief = Brief::new(graph, domain, limits)?;
     let mut rng = Stream::new(graph.seed, "floorplan");
+    brief.vary(&mut rng);
     let mut last = String::from("no layout was found");
     for _ in 0..ATTEMPTS {
         let schemes = schemes(&brief, domain, &mut rng);
@@ -78,7 +80,7 @@ pub fn generate(
             last = format!("the best layout misses hard rules by {:.2} (sizes, doors or daylight)", found.score.hard);
             continue;
         }
-        let name = format!("{:?}", found.genome.scheme).to_lowercase();
+        let name = format!("{:?}", found.scheme).to_lowercase();
         match assemble(&brief, &found.layout, &found.score, turn, graph.seed, &name, &mut rng) {
             Ok(plan) => return Ok(plan),
             Err(reason) => last = reason,
@@ -112,11 +114,11 @@ fn schemes(brief: &Brief, domain: &Domain, rng: &mut Stream) -> Vec<Scheme> {
         return vec![Scheme::Straight];
     }
     let suits = |s: &Scheme| match s {
-        Scheme::Straight => rooms <= 40,
-        Scheme::Capped => (4..=30).contains(&rooms),
-        Scheme::Angle => (8..=60).contains(&rooms),
-        Scheme::Racetrack => (14..=80).contains(&rooms),
-        Scheme::Comb => rooms >= 28,
+        Scheme::Straight => rooms < compose::LARGE,
+        Scheme::Capped => (4..compose::LARGE).contains(&rooms),
+        Scheme::Angle => (8..=50).contains(&rooms),
+        Scheme::Racetrack => (14..=50).contains(&rooms),
+        Scheme::Comb => rooms >= compose::LARGE,
     };
     let mut list: Vec<Scheme> = domain.circulation.schemes.iter().copied().filter(suits).collect();
     rng.shuffle(&mut list);

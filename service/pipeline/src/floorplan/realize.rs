@@ -10,8 +10,6 @@ use super::spec::Brief;
 pub(super) const MAX_PROPORTION: f64 = 2.4;
 /// A notch in the outline shorter than this is a stagger without a reason, m.
 const MIN_NOTCH_M: f64 = 1.5;
-/// Width of the courtyard between two wings, m.
-const COURTYARD_M: f64 = 7.0;
 
 /// Rectangles of a plan on the lattice; a room may own several.
 #[derive(Debug, Clone, Default)]
@@ -45,51 +43,84 @@ pub(super) fn spine_units(brief: &Brief) -> i32 {
     if entered { width.max(door_need(brief.entrance_width) + 1) } else { width }
 }
 
+/// Working memory of [`realize`], so that a candidate costs no allocation.
+#[derive(Debug, Default)]
+pub(super) struct Scratch {
+    /// Spans of the cells of all rows, row after row.
+    spans: Vec<Span>,
+    widths: Vec<i32>,
+}
+
 /// A band waiting for its length: `len = var + offset`.
 struct Row<'a> {
     cells: &'a [Cell],
     depth: i32,
     offset: i32,
     frame: Frame,
-    spans: Vec<Span>,
+    /// Where its spans begin.
+    spans: usize,
+    sum: Span,
 }
 
 impl<'a> Row<'a> {
-    fn new(brief: &Brief, genome: &'a Genome, band: usize, offset: i32, misfit: &mut f64) -> Self {
-        let band = &genome.bands[band];
-        let spans = band.cells.iter().map(|c| span(brief, c, band.depth, misfit)).collect();
+    fn new(task: &mut Task<'a, '_>, band: usize, offset: i32) -> Self {
+        let band = &task.genome.bands[band];
+        let spans = task.scratch.spans.len();
+        let mut sum = Span { min: 0, target: 0, max: 0 };
+        for cell in &band.cells {
+            let one = span(task.brief, cell, band.depth, &mut task.misfit);
+            sum = Span { min: sum.min + one.min, target: sum.target + one.target, max: sum.max + one.max };
+            task.scratch.spans.push(one);
+        }
         let frame = Frame { origin: (0, 0), u: (1, 0), v: (0, 1) };
-        Self { cells: &band.cells, depth: band.depth, offset, frame, spans }
+        Self { cells: &band.cells, depth: band.depth, offset, frame, spans, sum }
     }
 
     fn at(mut self, origin: (i32, i32), u: (i32, i32), v: (i32, i32)) -> Self {
         self.frame = Frame { origin, u, v };
         self
     }
+}
 
-    fn sum(&self, f: impl Fn(&Span) -> i32) -> i32 {
-        self.spans.iter().map(f).sum()
+/// A genome on its way to rectangles.
+struct Task<'a, 's> {
+    brief: &'a Brief,
+    genome: &'a Genome,
+    spine: usize,
+    scratch: &'s mut Scratch,
+    misfit: f64,
+    layout: &'s mut Layout,
+}
+
+impl Task<'_, '_> {
+    fn spine_box(&mut self, shape: Cellbox) {
+        self.layout.boxes.push((self.spine, shape));
     }
 }
 
-/// Returns the rectangles of a genome.
-pub(super) fn realize(brief: &Brief, genome: &Genome) -> Layout {
-    let mut layout = Layout::default();
-    let Some(spine) = brief.spine else { return layout };
+/// Writes the rectangles of a genome to `layout`.
+pub(super) fn realize(brief: &Brief, genome: &Genome, scratch: &mut Scratch, layout: &mut Layout) {
+    layout.boxes.clear();
+    (layout.misfit, layout.notch) = (0.0, 0.0);
+    scratch.spans.clear();
+    let Some(spine) = brief.spine else { return };
+    let mut task = Task { brief, genome, spine, scratch, misfit: 0.0, layout };
     match genome.scheme {
-        Scheme::Straight | Scheme::Capped => straight(brief, genome, spine, &mut layout),
-        Scheme::Angle => angle(brief, genome, spine, &mut layout),
-        Scheme::Racetrack => racetrack(brief, genome, spine, &mut layout),
-        Scheme::Comb => comb(brief, genome, spine, &mut layout),
+        Scheme::Straight | Scheme::Capped => straight(&mut task),
+        Scheme::Angle => angle(&mut task),
+        Scheme::Racetrack => racetrack(&mut task),
+        // wings are realized one by one
+        Scheme::Comb => {}
     }
-    layout
+    let misfit = task.misfit;
+    layout.misfit += misfit;
 }
 
-fn straight(brief: &Brief, genome: &Genome, spine: usize, layout: &mut Layout) {
+fn straight(task: &mut Task<'_, '_>) {
+    let (brief, genome) = (task.brief, task.genome);
     let (dt, db) = (used_depth(genome, 0), used_depth(genome, 1));
     let mut w = spine_units(brief);
-    let mut misfit = 0.0;
-    let caps = genome.caps.map(|cap| cap.map(|c| (c, cap_box(brief, c, w, dt, db, &mut misfit))));
+    let caps = genome.caps.map(|cap| cap.map(|c| (c, cap_box(brief, c, w, dt, db, &mut task.misfit))));
     let extra = |top: bool| -> [i32; 2] {
         caps.map(|cap| match cap {
             Some((Cap { cover: Cover::Both, .. }, _)) | None => 0,
@@ -98,24 +129,27 @@ fn straight(brief: &Brief, genome: &Genome, spine: usize, layout: &mut Layout) {
         })
     };
     let (et, eb) = (extra(true), extra(false));
-    let top = Row::new(brief, genome, 0, et[0] + et[1], &mut misfit);
-    let bottom = Row::new(brief, genome, 1, eb[0] + eb[1], &mut misfit);
-    let mut len = solve(&[&top, &bottom], &mut misfit);
+    let top = Row::new(task, 0, et[0] + et[1]);
+    let bottom = Row::new(task, 1, eb[0] + eb[1]);
+    let mut len = solve(&[&top, &bottom], &mut task.misfit);
     if brief.hub {
-        (len, w) = hub_size(brief, spine, len, &mut misfit);
+        (len, w) = hub_size(brief, task.spine, len, &mut task.misfit);
     }
     len = len.max(door_need(brief.entrance_width));
-    layout.boxes.push((spine, Cellbox::new(0, 0, len, w)));
-    fill(brief, &top.at((-et[0], w), (1, 0), (0, 1)), len + et[0] + et[1], layout);
-    fill(brief, &bottom.at((-eb[0], 0), (1, 0), (0, -1)), len + eb[0] + eb[1], layout);
+    task.spine_box(Cellbox::new(0, 0, len, w));
+    if brief.stem {
+        // the spine that the wing hangs on
+        task.spine_box(Cellbox::new(-w, -db, 0, w + dt));
+    }
+    fill(task, &top.at((-et[0], w), (1, 0), (0, 1)), len + et[0] + et[1]);
+    fill(task, &bottom.at((-eb[0], 0), (1, 0), (0, -1)), len + eb[0] + eb[1]);
     for (side, cap) in caps.iter().enumerate() {
         let Some((cap, width)) = cap else { continue };
         let (y0, y1) =
             (if cap.cover == Cover::Top { 0 } else { -db }, if cap.cover == Cover::Bottom { w } else { w + dt });
         let (x0, x1) = if side == 0 { (-width, 0) } else { (len, len + width) };
-        layout.boxes.push((cap.room, Cellbox::new(x0, y0, x1, y1)));
+        task.layout.boxes.push((cap.room, Cellbox::new(x0, y0, x1, y1)));
     }
-    layout.misfit += misfit;
 }
 
 /// Returns length and width of a hub room that must be `len` long at least, from its area.
@@ -136,64 +170,44 @@ fn hub_size(brief: &Brief, spine: usize, len: i32, misfit: &mut f64) -> (i32, i3
     (length, width)
 }
 
-fn angle(brief: &Brief, genome: &Genome, spine: usize, layout: &mut Layout) {
+fn angle(task: &mut Task<'_, '_>) {
+    let (brief, genome) = (task.brief, task.genome);
     let w = spine_units(brief);
     let (dt, dr) = (used_depth(genome, 0), used_depth(genome, 2));
-    let mut misfit = 0.0;
     let beyond = if genome.corner { dr } else { 0 };
-    let top = Row::new(brief, genome, 0, 0, &mut misfit);
-    let bottom = Row::new(brief, genome, 1, w + beyond, &mut misfit);
-    let right = Row::new(brief, genome, 2, 0, &mut misfit);
-    let inner = Row::new(brief, genome, 3, -w - dt, &mut misfit);
-    let x = solve(&[&top, &bottom], &mut misfit).max(w);
-    let y = solve(&[&right, &inner], &mut misfit).max(w + dt + up(1.5));
-    layout.boxes.push((spine, Cellbox::new(0, 0, x + w, w)));
-    layout.boxes.push((spine, Cellbox::new(x, w, x + w, y)));
-    fill(brief, &top.at((0, w), (1, 0), (0, 1)), x, layout);
-    fill(brief, &bottom.at((0, 0), (1, 0), (0, -1)), x + w + beyond, layout);
-    fill(brief, &right.at((x + w, 0), (0, 1), (1, 0)), y, layout);
-    fill(brief, &inner.at((x, w + dt), (0, 1), (-1, 0)), y - w - dt, layout);
-    layout.misfit += misfit;
+    let top = Row::new(task, 0, 0);
+    let bottom = Row::new(task, 1, w + beyond);
+    let right = Row::new(task, 2, 0);
+    let inner = Row::new(task, 3, -w - dt);
+    let x = solve(&[&top, &bottom], &mut task.misfit).max(w);
+    let y = solve(&[&right, &inner], &mut task.misfit).max(w + dt + up(1.5));
+    task.spine_box(Cellbox::new(0, 0, x + w, w));
+    task.spine_box(Cellbox::new(x, w, x + w, y));
+    fill(task, &top.at((0, w), (1, 0), (0, 1)), x);
+    fill(task, &bottom.at((0, 0), (1, 0), (0, -1)), x + w + beyond);
+    fill(task, &right.at((x + w, 0), (0, 1), (1, 0)), y);
+    fill(task, &inner.at((x, w + dt), (0, 1), (-1, 0)), y - w - dt);
 }
 
-fn racetrack(brief: &Brief, genome: &Genome, spine: usize, layout: &mut Layout) {
+fn racetrack(task: &mut Task<'_, '_>) {
+    let (brief, genome) = (task.brief, task.genome);
     let w = spine_units(brief);
     let core = used_depth(genome, 2) + used_depth(genome, 3);
-    let mut misfit = if core == 0 { 10.0 } else { 0.0 };
-    let top = Row::new(brief, genome, 0, 0, &mut misfit);
-    let bottom = Row::new(brief, genome, 1, 0, &mut misfit);
-    let lower = Row::new(brief, genome, 2, -w, &mut misfit);
-    let upper = Row::new(brief, genome, 3, -w, &mut misfit);
-    let len = solve(&[&top, &bottom, &lower, &upper], &mut misfit).max(3 * w);
-    layout.boxes.push((spine, Cellbox::new(0, 0, len, w)));
-    layout.boxes.push((spine, Cellbox::new(0, w, w, w + core)));
-    layout.boxes.push((spine, Cellbox::new(0, w + core, len, 2 * w + core)));
-    fill(brief, &top.at((0, 2 * w + core), (1, 0), (0, 1)), len, layout);
-    fill(brief, &bottom.at((0, 0), (1, 0), (0, -1)), len, layout);
-    fill(brief, &lower.at((w, w), (1, 0), (0, 1)), len - w, layout);
-    fill(brief, &upper.at((w, w + core), (1, 0), (0, -1)), len - w, layout);
+    task.misfit += if core == 0 { 10.0 } else { 0.0 };
+    let top = Row::new(task, 0, 0);
+    let bottom = Row::new(task, 1, 0);
+    let lower = Row::new(task, 2, -w);
+    let upper = Row::new(task, 3, -w);
+    let len = solve(&[&top, &bottom, &lower, &upper], &mut task.misfit).max(3 * w);
+    task.spine_box(Cellbox::new(0, 0, len, w));
+    task.spine_box(Cellbox::new(0, w, w, w + core));
+    task.spine_box(Cellbox::new(0, w + core, len, 2 * w + core));
+    fill(task, &top.at((0, 2 * w + core), (1, 0), (0, 1)), len);
+    fill(task, &bottom.at((0, 0), (1, 0), (0, -1)), len);
+    fill(task, &lower.at((w, w), (1, 0), (0, 1)), len - w);
+    fill(task, &upper.at((w, w + core), (1, 0), (0, -1)), len - w);
     // A core that ends short leaves a hole in the building rather than a notch in its outline.
-    layout.misfit += misfit + layout.notch;
-}
-
-fn comb(brief: &Brief, genome: &Genome, spine: usize, layout: &mut Layout) {
-    let w = spine_units(brief);
-    let mut misfit = 0.0;
-    // Where the spine goes on from, and where the last wing ends.
-    let (mut from, mut ceiling) = (0, None);
-    for wing in 0..genome.bands.len() / 2 {
-        let (above, below) = (used_depth(genome, 2 * wing), used_depth(genome, 2 * wing + 1));
-        let top = Row::new(brief, genome, 2 * wing, -w, &mut misfit);
-        let bottom = Row::new(brief, genome, 2 * wing + 1, -w, &mut misfit);
-        let len = solve(&[&top, &bottom], &mut misfit).max(2 * w);
-        let base = ceiling.map_or(0, |c: i32| c + up(COURTYARD_M) + below);
-        layout.boxes.push((spine, Cellbox::new(0, from, w, base + w)));
-        layout.boxes.push((spine, Cellbox::new(w, base, len, base + w)));
-        fill(brief, &top.at((w, base + w), (1, 0), (0, 1)), len - w, layout);
-        fill(brief, &bottom.at((w, base), (1, 0), (0, -1)), len - w, layout);
-        (from, ceiling) = (base + w, Some(base + w + above));
-    }
-    layout.misfit += misfit;
+    task.misfit += task.layout.notch;
 }
 
 /// Returns the depth of a band, 0 when nothing stands in it.
@@ -223,8 +237,8 @@ fn cap_box(brief: &Brief, cap: Cap, w: i32, dt: i32, db: i32, misfit: &mut f64) 
 fn span(brief: &Brief, cell: &Cell, depth: i32, misfit: &mut f64) -> Span {
     let spec = &brief.rooms[cell.host];
     let clear_depth = meters(depth) - INNER_HALF_M - OUTER_HALF_M;
-    let nests: i32 = cell.nests().map(|n| nest_width(brief, n, cell.nest_depth)).sum();
-    let has_nests = nests > 0;
+    let has_nests = cell.has_nests();
+    let nests: i32 = if has_nests { cell.nests().map(|n| nest_width(brief, n, cell.nest_depth)).sum() } else { 0 };
     let main_depth =
         if has_nests { meters(depth - cell.nest_depth) - INNER_HALF_M - OUTER_HALF_M } else { clear_depth };
     if main_depth < spec.min_dimension {
@@ -258,10 +272,10 @@ fn nest_width(brief: &Brief, room: usize, depth: i32) -> i32 {
 
 /// Returns the common variable of rows that share a corridor: as wished on the mean, within what all can do.
 fn solve(rows: &[&Row<'_>], misfit: &mut f64) -> i32 {
-    let used: Vec<&&Row<'_>> = rows.iter().filter(|r| !r.cells.is_empty()).collect();
-    let Some(low) = used.iter().map(|r| r.sum(|s| s.min) - r.offset).max() else { return 0 };
-    let high = used.iter().map(|r| r.sum(|s| s.max) - r.offset).min().unwrap_or(low);
-    let wish: i32 = used.iter().map(|r| r.sum(|s| s.target) - r.offset).sum::<i32>() / used.len() as i32;
+    let used = || rows.iter().filter(|r| !r.cells.is_empty());
+    let Some(low) = used().map(|r| r.sum.min - r.offset).max() else { return 0 };
+    let high = used().map(|r| r.sum.max - r.offset).min().unwrap_or(low);
+    let wish: i32 = used().map(|r| r.sum.target - r.offset).sum::<i32>() / used().count() as i32;
     if high < low {
         // The shorter rows end early; whether that is a notch or a stagger is judged where they are filled.
         return low;
@@ -274,79 +288,84 @@ fn solve(rows: &[&Row<'_>], misfit: &mut f64) -> i32 {
 }
 
 /// Lays the cells of a row along its frame.
-fn fill(brief: &Brief, row: &Row<'_>, len: i32, layout: &mut Layout) {
+fn fill(task: &mut Task<'_, '_>, row: &Row<'_>, len: i32) {
     if row.cells.is_empty() {
         return;
     }
-    let widths = shares(&row.spans, len);
+    let Scratch { spans, widths } = &mut *task.scratch;
+    shares(&spans[row.spans..row.spans + row.cells.len()], len, widths);
     let total: i32 = widths.iter().sum();
     let gap = meters(len - total);
     if gap > 0.0 {
-        layout.notch += gap;
+        task.layout.notch += gap;
         if gap < MIN_NOTCH_M {
-            layout.misfit += gap.min(MIN_NOTCH_M - gap).max(0.05);
+            task.misfit += gap.min(MIN_NOTCH_M - gap).max(0.05);
         }
     } else if gap < 0.0 {
-        layout.misfit -= gap;
+        task.misfit -= gap;
     }
     let mut at = 0;
-    for (cell, &width) in row.cells.iter().zip(&widths) {
-        fill_cell(brief, row, cell, at, width, layout);
+    for (i, cell) in row.cells.iter().enumerate() {
+        let width = task.scratch.widths[i];
+        fill_cell(task, row, cell, at, width);
         at += width;
     }
 }
 
-fn fill_cell(brief: &Brief, row: &Row<'_>, cell: &Cell, at: i32, width: i32, layout: &mut Layout) {
+fn fill_cell(task: &mut Task<'_, '_>, row: &Row<'_>, cell: &Cell, at: i32, width: i32) {
     let depth = row.depth;
-    if cell.left.is_empty() && cell.right.is_empty() {
+    let (brief, layout) = (task.brief, &mut *task.layout);
+    if !cell.has_nests() {
         layout.boxes.push((cell.host, row.frame.place(at, at + width, 0, depth)));
         return;
     }
     let d = cell.nest_depth.min(depth - 1);
-    let mut widths: Vec<i32> = cell.nests().map(|n| nest_width(brief, n, d)).collect();
+    let own = |room: usize| nest_width(brief, room, d);
+    // Where nobody walks past, the small rooms take the whole front.
+    let (mut each, mut more) = (0, 0);
     if !brief.rooms[cell.host].on_spine {
-        // Nobody walks past: the small rooms take the whole front.
-        let spare = width - widths.iter().sum::<i32>();
-        let count = widths.len() as i32;
-        for (i, w) in widths.iter_mut().enumerate() {
-            *w += spare / count + i32::from((i as i32) < spare % count);
-        }
+        let spare = width - cell.nests().map(own).sum::<i32>();
+        let count = cell.nests().count() as i32;
+        (each, more) = (spare / count, spare % count);
     }
-    let left: i32 = widths[..cell.left.len()].iter().sum();
-    let right: i32 = widths[cell.left.len()..].iter().sum();
+    let wide = |(i, room): (usize, usize)| own(room) + each + i32::from((i as i32) < more);
+    let first_right = cell.left.len();
+    let left: i32 = cell.left.iter().enumerate().map(wide).sum();
+    let right: i32 = cell.right.iter().enumerate().map(|(i, room)| wide((first_right + i, room))).sum();
     layout.boxes.push((cell.host, row.frame.place(at, at + width, d, depth)));
     if left + right < width {
         layout.boxes.push((cell.host, row.frame.place(at + left, at + width - right, 0, d)));
     } else if left + right > width {
-        layout.misfit += meters(left + right - width);
+        task.misfit += meters(left + right - width);
     }
     let mut x = at;
-    for (room, w) in cell.nests().zip(&widths) {
-        if x == at + left {
+    for (i, room) in cell.nests().enumerate() {
+        if i == first_right {
             x = at + width - right;
         }
+        let w = wide((i, room));
         layout.boxes.push((room, row.frame.place(x, x + w, 0, d)));
         x += w;
     }
 }
 
-/// Returns widths that add up to `len` where the spans allow it, each within its span, close to its target.
-fn shares(spans: &[Span], len: i32) -> Vec<i32> {
-    let mut widths: Vec<i32> = spans.iter().map(|s| s.target).collect();
+/// Finds widths that add up to `len` where the spans allow it, each within its span, close to its target.
+fn shares(spans: &[Span], len: i32, widths: &mut Vec<i32>) {
+    widths.clear();
+    widths.extend(spans.iter().map(|s| s.target));
     let mut rest = len - widths.iter().sum::<i32>();
     while rest != 0 {
         let sign = rest.signum();
         let room = |i: usize, w: i32| if sign > 0 { spans[i].max - w } else { w - spans[i].min };
-        let open: Vec<usize> = (0..widths.len()).filter(|&i| room(i, widths[i]) > 0).collect();
-        if open.is_empty() {
+        let open = (0..widths.len()).filter(|&i| room(i, widths[i]) > 0).count();
+        if open == 0 {
             break;
         }
-        let each = (rest.abs() / open.len() as i32).max(1);
-        for i in open {
-            let step = each.min(room(i, widths[i])).min(rest.abs());
-            widths[i] += sign * step;
+        let each = (rest.abs() / open as i32).max(1);
+        for (i, width) in widths.iter_mut().enumerate() {
+            let step = each.min(room(i, *width)).min(rest.abs()).max(0);
+            *width += sign * step;
             rest -= sign * step;
         }
     }
-    widths
 }

@@ -3,45 +3,79 @@
 use d3dgen_model::domain::Scheme;
 use d3dgen_model::seed::Stream;
 
-use super::cost::{Score, score, taste};
+use super::compose::{LARGE, compose};
+use super::cost::{Judge, Score, Weights, taste};
 use super::genome::{Cell, Cover, Genome, guest_of, is_nestable};
-use super::realize::{Layout, realize};
+use super::realize::{Layout, Scratch, realize};
 use super::spec::Brief;
 
 /// Steps of one run per room, and the runs at most.
 const STEPS_PER_ROOM: usize = 220;
 const MAX_RUNS: usize = 24;
+/// Steps of one run at most.
+const MAX_STEPS: usize = 12_000;
 /// Sound plans to compare before the best is taken.
 const WANTED: usize = 3;
-/// Rooms from which on the first sound plan is taken: large ones differ less from run to run, and cost more.
-const LARGE: usize = 40;
+/// Most rooms of a large building that is tried in one body before it is composed of wings.
+const MOST_WHOLE: usize = 50;
+/// Rooms up to which so many are compared; larger plans cost more and differ less.
+const SMALL: usize = 14;
 /// Temperature at the start and the end of a run, in cost units.
 const HEAT: (f64, f64) = (1.5, 0.02);
+
+/// The exponential distribution in 32 steps of equal chance, from the most patient to the least.
+const PATIENCE: [f64; 32] = [
+    4.159, 3.060, 2.549, 2.213, 1.962, 1.761, 1.594, 1.451, 1.326, 1.214, 1.114, 1.023, 0.940, 0.863, 0.792, 0.725,
+    0.662, 0.604, 0.548, 0.495, 0.445, 0.398, 0.352, 0.309, 0.267, 0.227, 0.189, 0.152, 0.116, 0.081, 0.048, 0.016,
+];
 
 /// A finished candidate.
 #[derive(Debug, Clone)]
 pub(super) struct Candidate {
-    pub genome: Genome,
+    pub scheme: Scheme,
     pub layout: Layout,
     pub score: Score,
 }
 
 /// Returns the best candidate found; its `score.hard` is above 0 when none is sound.
 pub(super) fn search(brief: &Brief, schemes: &[Scheme], rng: &mut Stream) -> Option<Candidate> {
+    let weights = taste(rng);
+    if brief.rooms.len() < LARGE || brief.hub {
+        let wanted = if brief.rooms.len() > SMALL { WANTED - 1 } else { WANTED };
+        return search_with(brief, schemes, &weights, wanted, rng);
+    }
+    // One body where the seed and the size allow it, else wings.
+    let whole: Vec<Scheme> = schemes.iter().copied().filter(|s| *s != Scheme::Comb).take(1).collect();
+    if brief.rooms.len() <= MOST_WHOLE && schemes.first() != Some(&Scheme::Comb) {
+        let found = anneal(brief, &mut Judge::new(brief), *whole.first()?, &weights, rng);
+        if found.score.is_sound() {
+            return Some(found);
+        }
+    }
+    compose(brief, &weights, rng)
+}
+
+/// Returns the best of several runs, which end when `wanted` sound ones are found.
+pub(super) fn search_with(
+    brief: &Brief,
+    schemes: &[Scheme],
+    weights: &Weights,
+    wanted: usize,
+    rng: &mut Stream,
+) -> Option<Candidate> {
     let mut best: Option<Candidate> = None;
     let mut sound = 0;
-    let wanted = if brief.rooms.len() > LARGE { 1 } else { WANTED };
-    let weights = taste(rng);
+    let mut judge = Judge::new(brief);
     for run in 0..MAX_RUNS {
         // The first choice of the seed gets most runs; the others step in when it does not work out.
         let scheme = if run < 4 { schemes.first() } else { schemes.get(run % schemes.len().max(1)) };
         let Some(&scheme) = scheme else { break };
-        let found = anneal(brief, scheme, &weights, rng);
-        let is_sound = found.score.hard < 1e-9;
+        let found = anneal(brief, &mut judge, scheme, weights, rng);
+        let is_sound = found.score.is_sound();
         sound += usize::from(is_sound);
         let better = best
             .as_ref()
-            .is_none_or(|b| (b.score.hard >= 1e-9, b.score.total(&weights)) > (!is_sound, found.score.total(&weights)));
+            .is_none_or(|b| (!b.score.is_sound(), b.score.total(weights)) > (!is_sound, found.score.total(weights)));
         if better {
             best = Some(found);
         }
@@ -52,34 +86,45 @@ pub(super) fn search(brief: &Brief, schemes: &[Scheme], rng: &mut Stream) -> Opt
     best
 }
 
-fn anneal(brief: &Brief, scheme: Scheme, weights: &[f64; 9], rng: &mut Stream) -> Candidate {
-    let steps = (STEPS_PER_ROOM * brief.rooms.len()).clamp(600, 12_000);
-    let mut current = candidate(brief, Genome::random(brief, scheme, rng));
-    let mut best = current.clone();
-    let cooling = (HEAT.1 / HEAT.0).powf(1.0 / steps as f64);
-    let mut heat = HEAT.0;
-    for _ in 0..steps {
-        heat *= cooling;
-        let mut genome = current.genome.clone();
-        if !mutate(brief, &mut genome, rng) {
+/// One run: from a random start, hot to cold.
+fn anneal(brief: &Brief, judge: &mut Judge<'_>, scheme: Scheme, weights: &Weights, rng: &mut Stream) -> Candidate {
+    let steps = (STEPS_PER_ROOM * brief.rooms.len()).clamp(600, MAX_STEPS);
+    let (mut scratch, mut layout) = (Scratch::default(), Layout::default());
+    let mut value = |genome: &Genome| {
+        realize(brief, genome, &mut scratch, &mut layout);
+        judge.score(&layout).total(weights)
+    };
+    let mut current = Genome::random(brief, scheme, rng);
+    let mut cost = value(&current);
+    let (mut best, mut least) = (current.clone(), cost);
+    let mut trial = current.clone();
+    for step in 0..steps {
+        let left = 1.0 - step as f64 / steps as f64;
+        let heat = HEAT.1 + (HEAT.0 - HEAT.1) * left * left * left;
+        trial.clone_from(&current);
+        if !mutate(brief, &mut trial, rng) {
             continue;
         }
-        let next = candidate(brief, genome);
-        let worse = next.score.total(weights) - current.score.total(weights);
-        if worse <= 0.0 || rng.unit() < (-worse / heat).exp() {
-            current = next;
-            if current.score.total(weights) < best.score.total(weights) {
-                best = current.clone();
+        let next = value(&trial);
+        if next <= cost || next - cost < heat * patience(rng) {
+            std::mem::swap(&mut current, &mut trial);
+            cost = next;
+            if cost < least {
+                best.clone_from(&current);
+                least = cost;
             }
         }
     }
-    best
+    let mut layout = Layout::default();
+    realize(brief, &best, &mut scratch, &mut layout);
+    let score = judge.score(&layout);
+    Candidate { scheme: best.scheme, layout, score }
 }
 
-fn candidate(brief: &Brief, genome: Genome) -> Candidate {
-    let layout = realize(brief, &genome);
-    let score = score(brief, &layout);
-    Candidate { genome, layout, score }
+/// Returns how much worse a step may be, in units of the heat: drawn from the exponential distribution, as annealing
+/// asks, by a table, for logarithms differ between machines.
+fn patience(rng: &mut Stream) -> f64 {
+    PATIENCE[rng.below(PATIENCE.len())]
 }
 
 /// Changes one thing; returns false when the drawn change does not apply.
@@ -122,9 +167,9 @@ fn swap_cells(genome: &mut Genome, rng: &mut Stream) -> bool {
     if x == y {
         return false;
     }
-    let first = genome.bands[x.0].cells[x.1].clone();
-    let second = std::mem::replace(&mut genome.bands[y.0].cells[y.1], first);
+    let (first, second) = (genome.bands[x.0].cells[x.1], genome.bands[y.0].cells[y.1]);
     genome.bands[x.0].cells[x.1] = second;
+    genome.bands[y.0].cells[y.1] = first;
     true
 }
 
@@ -141,7 +186,7 @@ fn move_cell(genome: &mut Genome, rng: &mut Stream) -> bool {
 fn renest(brief: &Brief, genome: &mut Genome, rng: &mut Stream) -> bool {
     let Some((b, c)) = any_cell(genome, rng) else { return false };
     let cell = &genome.bands[b].cells[c];
-    if cell.nests().next().is_some() || !is_nestable(brief, cell.host) {
+    if cell.has_nests() || !is_nestable(brief, cell.host) {
         return false;
     }
     let room = genome.bands[b].cells.remove(c).host;
@@ -158,7 +203,7 @@ fn unnest(brief: &Brief, genome: &mut Genome, rng: &mut Stream) -> bool {
         .or_else(|| cell.left.pop())
         .or_else(|| cell.right.pop());
     let Some(room) = room else { return false };
-    if cell.nests().next().is_none() {
+    if !cell.has_nests() {
         cell.nest_depth = 0;
     }
     let tied = brief.rooms[room].host.is_some() || guest_of(brief, room).is_some();

@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use d3dgen_knowledge::{Limit, Limits, RoomLimits};
 use d3dgen_model::domain::{Daylight, Domain, Materials, RoomType, Zone};
 use d3dgen_model::scene_graph::{Connector, GraphEdge, GraphRoom, Note, SceneGraph};
+use d3dgen_model::seed::Stream;
 
 use crate::Error;
 
@@ -14,6 +15,9 @@ const ACCESSIBLE_DOOR_M: f64 = 0.9;
 
 /// Advice widens a corridor by this factor at most: what asks for more is about another kind of corridor.
 const MOST_ADVISED_WIDTH: f64 = 1.25;
+/// Share by which the area aimed for differs from seed to seed, and the range from which on it may.
+const AREA_VARIATION: f64 = 0.06;
+const FREE_RANGE: f64 = 1.3;
 /// Share of a target area kept from the edges of what is advised, for the search to move in.
 const ADVICE_MARGIN: f64 = 0.03;
 
@@ -77,6 +81,10 @@ pub(super) struct Brief {
     pub area: Option<f64>,
     pub entrance_width: f64,
     pub conflicts: Vec<Note>,
+    /// By room: the larger room that is entered through it (an isolation room through its anteroom), if any.
+    pub guests: Vec<Option<usize>>,
+    /// True for a wing: the spine of the building passes the start of its corridor.
+    pub stem: bool,
 }
 
 impl Brief {
@@ -113,7 +121,10 @@ impl Brief {
             area: graph.area_m2,
             entrance_width: max_limit(domain.circulation.entrance_width_m, limits.entrance_width.as_ref()),
             conflicts,
+            guests: Vec::new(),
+            stem: false,
         };
+        brief.find_guests();
         if let Some(spine) = brief.spine
             && !brief.rooms.iter().any(|r| r.entrance)
         {
@@ -127,6 +138,63 @@ impl Brief {
             brief.apart.push([find(a)?, find(b)?]);
         }
         Ok(brief)
+    }
+
+    /// Fills in which larger room is entered through which.
+    pub(super) fn find_guests(&mut self) {
+        self.guests = vec![None; self.rooms.len()];
+        for (i, room) in self.rooms.iter().enumerate().rev() {
+            if let Some(host) = room.host.filter(|&h| room.area_target > self.rooms[h].area_target) {
+                self.guests[host] = Some(i);
+            }
+        }
+    }
+
+    /// Changes the areas aimed for a little where they are free to change: the same rooms for another family, so that two
+    /// seeds do not end in one best plan.
+    pub(super) fn vary(&mut self, rng: &mut Stream) {
+        for room in &mut self.rooms {
+            let factor = 1.0 + AREA_VARIATION * (2.0 * rng.unit() - 1.0);
+            let [least, most] = room.limits.area_advised.unwrap_or([0.0, f64::MAX]);
+            let (least, most) = (least.max(room.area_min * 1.02), most.min(room.area_max * 0.98));
+            let free = (least..=most).contains(&room.area_target) && most > FREE_RANGE * least;
+            if free {
+                room.area_target = (room.area_target * factor).clamp(least, most);
+            }
+        }
+    }
+
+    /// Returns the task of a wing with some of the rooms, in their order, and the corridor last.
+    pub(super) fn wing(&self, rooms: &[usize]) -> Self {
+        let spine = self.spine.filter(|_| !self.hub);
+        let list: Vec<usize> = rooms.iter().copied().chain(spine).collect();
+        let mut index = vec![None; self.rooms.len()];
+        list.iter().enumerate().for_each(|(i, &r)| index[r] = Some(i));
+        let mut specs: Vec<RoomSpec> = list.iter().map(|&r| self.rooms[r].clone()).collect();
+        for spec in &mut specs {
+            spec.host = spec.host.and_then(|h| index[h]);
+        }
+        let entered = spine.is_some_and(|s| self.rooms[s].entrance);
+        if let Some(corridor) = spine.and_then(|s| index[s]) {
+            specs[corridor].entrance = false;
+        }
+        let link = |l: &Link| Some(Link { a: index[l.a]?, b: index[l.b]?, ..*l });
+        let mut out = Self {
+            rooms: specs,
+            spine: spine.and_then(|s| index[s]),
+            hub: false,
+            links: self.links.iter().filter_map(link).collect(),
+            apart: self.apart.iter().filter_map(|[a, b]| Some([index[*a]?, index[*b]?])).collect(),
+            // its corridor is as wide as the building's
+            second_exit: self.second_exit || entered,
+            area: None,
+            conflicts: Vec::new(),
+            guests: Vec::new(),
+            stem: true,
+            ..*self
+        };
+        out.find_guests();
+        out
     }
 
     fn add_edge(&mut self, a: usize, b: usize, connector: Connector, required: bool) {

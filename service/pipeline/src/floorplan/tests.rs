@@ -41,7 +41,7 @@ fn brief(mut rooms: Vec<RoomSpec>, width: f64, links: &[(usize, usize, Connector
     corridor.on_spine = false;
     corridor.entrance = !rooms.iter().any(|r| r.entrance);
     rooms.push(corridor);
-    Brief {
+    let mut brief = Brief {
         spine: Some(rooms.len() - 1),
         rooms,
         hub: false,
@@ -52,7 +52,11 @@ fn brief(mut rooms: Vec<RoomSpec>, width: f64, links: &[(usize, usize, Connector
         area: None,
         entrance_width: 1.0,
         conflicts: Vec::new(),
-    }
+        guests: Vec::new(),
+        stem: false,
+    };
+    brief.find_guests();
+    brief
 }
 
 fn home() -> Brief {
@@ -166,7 +170,7 @@ fn rooms_of(genome: &Genome) -> Vec<usize> {
 fn no_change_loses_or_doubles_a_room() {
     let brief = ward(5);
     let mut rng = Stream::new(3, "test");
-    for scheme in [Scheme::Straight, Scheme::Capped, Scheme::Angle, Scheme::Racetrack, Scheme::Comb] {
+    for scheme in [Scheme::Straight, Scheme::Capped, Scheme::Angle, Scheme::Racetrack] {
         let mut genome = Genome::random(&brief, scheme, &mut rng);
         let expected: Vec<usize> = (0..brief.rooms.len() - 1).collect();
         for step in 0..2000 {

@@ -18,6 +18,9 @@ const HEAD_M: f64 = 2.2;
 const BALUSTRADE_M: f64 = 1.0;
 /// Wall left between a window and a corner, and between two windows, m.
 const MARGIN_M: f64 = 0.35;
+/// Outer wall of a corridor with one window, and that window's width, m: nobody likes to walk along a blank wall.
+const CORRIDOR_STEP_M: f64 = 5.0;
+const CORRIDOR_PANE_M: f64 = 1.2;
 /// Widest and narrowest single window, m.
 const PANE_M: (f64, f64) = (2.4, 0.6);
 
@@ -30,11 +33,18 @@ pub(super) fn place_windows(brief: &Brief, stretches: &[Stretch], net_m2: &[f64]
         let mut outer: Vec<&Stretch> = stretches.iter().filter(|s| s.only_room() == Some(i)).collect();
         outer.sort_by_key(|s| (-s.len(), s.vertical, s.at, s.from));
         for stretch in outer {
-            if need < 0.05 {
+            if need < 0.05 && !room.circulation {
                 break;
             }
             for (from, to) in free_parts(stretch, doors) {
                 let usable = to - from - 2.0 * MARGIN_M;
+                let count = ((to - from) / CORRIDOR_STEP_M).floor();
+                if room.circulation && count >= 1.0 {
+                    let total = count * CORRIDOR_PANE_M;
+                    need -= total;
+                    add_panes(stretch, from, to, (total, CORRIDOR_PANE_M), sill, room, &mut windows);
+                    continue;
+                }
                 if usable < PANE_M.1 || need < 0.05 {
                     continue;
                 }

@@ -15,7 +15,7 @@ const POCKET_SHARE: f64 = 0.03;
 const POCKET_CELLS: usize = 12;
 
 /// Clear floor of one room for one radius.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub(super) struct Nav {
     shared: Rc<Ground>,
     /// Cells where the disc's center can be; reaches through the doors.
@@ -27,6 +27,22 @@ pub(super) struct Nav {
     total: usize,
     /// True when `main` is what can really be reached.
     whole: bool,
+}
+
+impl Clone for Nav {
+    fn clone(&self) -> Self {
+        Self { shared: Rc::clone(&self.shared), clear: self.clear.clone(), main: self.main.clone(), ..*self }
+    }
+
+    /// Takes over `source` in the memory of `self`: routes are tested thousands of times.
+    fn clone_from(&mut self, source: &Self) {
+        if !Rc::ptr_eq(&self.shared, &source.shared) {
+            self.shared = Rc::clone(&source.shared);
+        }
+        self.clear.clone_from(&source.clear);
+        self.main.clone_from(&source.main);
+        (self.area, self.total, self.whole) = (source.area, source.total, source.whole);
+    }
 }
 
 /// What does not change while a room is furnished.

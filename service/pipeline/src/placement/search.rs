@@ -18,11 +18,11 @@ const ROUTE_TESTS: usize = 40;
 /// Positions with free routes that are weighed against each other.
 const WEIGHED: usize = 4;
 /// Ranks of choice tried for the first, second, ... unit, one departure at a time.
-const DEPARTURES: [(usize, usize); 5] = [(0, 1), (1, 1), (0, 2), (2, 1), (1, 2)];
+const DEPARTURES: [(usize, usize); 3] = [(0, 1), (1, 1), (0, 2)];
 /// Free floor from which two departures are enough, in cells (100 m^2): halls take long and look alike.
 const LARGE: usize = 40_000;
 /// Further departures while something required has no place.
-const RESCUES: [(usize, usize); 6] = [(0, 3), (2, 2), (3, 1), (0, 4), (1, 3), (3, 2)];
+const RESCUES: [(usize, usize); 8] = [(2, 1), (1, 2), (0, 3), (2, 2), (3, 1), (0, 4), (1, 3), (3, 2)];
 
 /// What one room's search needs to know.
 pub(super) struct Job<'a, 's> {

@@ -1,5 +1,6 @@
 //! A room while it is being furnished: what stands where, and whether one more thing may stand there.
 
+use std::cell::RefCell;
 use std::rc::Rc;
 
 use d3dgen_knowledge::clearance::HEAD_ROOM_M;
@@ -99,6 +100,8 @@ pub(super) struct State<'a, 's> {
     /// Outlines of what narrows a way for people.
     narrowing: Vec<Box2>,
     nav: Nav,
+    /// Memory for testing routes.
+    spare: RefCell<Option<Nav>>,
     targets: Vec<Vec<Box2>>,
     /// Clear floor the robot can use, in cells.
     pub free_area: usize,
@@ -118,6 +121,7 @@ impl<'a, 's> State<'a, 's> {
             bodies: Vec::new(),
             narrowing: Vec::new(),
             nav,
+            spare: RefCell::new(None),
             targets: Vec::new(),
             free_area,
             way,
@@ -207,7 +211,14 @@ impl<'a, 's> State<'a, 's> {
             let reached = units.iter().filter(|u| needs_reach(u)).all(|u| self.nav.reaches(&u.targets()));
             return if reached { Ok(self.free_area) } else { Err(Rule::Route) };
         }
-        let mut nav = self.nav.clone();
+        let mut spare = self.spare.borrow_mut();
+        let nav = match spare.as_mut() {
+            Some(nav) => {
+                nav.clone_from(&self.nav);
+                nav
+            }
+            None => spare.insert(self.nav.clone()),
+        };
         obstacles.iter().for_each(|o| nav.block(o));
         let reached = nav.settle()
             && self.targets.iter().all(|t| nav.reaches(t))

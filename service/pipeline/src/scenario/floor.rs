@@ -29,8 +29,10 @@ pub(super) struct Room<'a> {
     pub plan: &'a PlanRoom,
     pub kind: &'a RoomType,
     pub objects: Vec<(&'a Placement, &'a ObjectType)>,
-    /// Reachable cells of the room that are still free of robots and people.
+    /// Reachable cells of the room that are still free of robots and people, in a grid of the room's own.
     spots: Bitmap,
+    /// Its first cell in the grid of the building.
+    corner: (i64, i64),
 }
 
 impl<'a> Floor<'a> {
@@ -38,35 +40,41 @@ impl<'a> Floor<'a> {
         let occupancy = Occupancy::of_world(plan, placements);
         let radius = graph.robots.iter().map(|r| r.radius_m).fold(LEAST_RADIUS_M, f64::max);
         let main = occupancy.reach(plan, radius).main;
-        let room = |room: &'a PlanRoom| {
-            let mut spots = occupancy.room_cells(room);
-            spots.intersect(&main);
+        let mut painted = Bitmap::new(occupancy.frame.nx, occupancy.frame.ny);
+        let mut room = |room: &'a PlanRoom| {
+            let (i0, i1, j0, j1) = occupancy.frame.span(&room.net_polygon.bounds());
+            occupancy.frame.paint(&mut painted, &room.net_polygon, true);
+            let mut spots = painted.window(i0, i1, j0, j1);
+            painted.fill(i0, i1, j0, j1, false);
+            spots.intersect(&main.window(i0, i1, j0, j1));
             let here = placements.placements.iter().filter(|p| p.room_id == room.room_id);
             Room {
                 plan: room,
                 kind: domain.room_type_or_generic(&room.room_type),
                 objects: here.filter_map(|p| Some((p, domain.object(&p.object)?))).collect(),
                 spots,
+                corner: (i0.max(0), j0.max(0)),
             }
         };
-        Self { rooms: plan.rooms.iter().map(room).collect(), plan, domain, radius, occupancy }
+        Self { rooms: plan.rooms.iter().map(&mut room).collect(), plan, domain, radius, occupancy }
     }
 
     /// Returns the reachable spot of a room nearest to a point; `None` when the room has none.
     pub fn spot_near(&self, room: &Room, p: Point) -> Option<Point> {
-        self.occupancy.nearest(&room.spots, p)
+        let squared = |c: &Point| (c.x - p.x).powi(2) + (c.y - p.y).powi(2);
+        // ties go to the southern, then the western spot
+        self.all(room).min_by(|a, b| squared(a).total_cmp(&squared(b)))
     }
 
     /// Returns the reachable spot of a room by its number in a list of them, wrapped around.
     pub fn spot(&self, room: &Room, number: usize) -> Option<Point> {
         let count = room.spots.count();
-        let (i, j) = room.spots.cells().nth(number % count.max(1))?;
-        Some(self.occupancy.frame.center(i, j))
+        self.all(room).nth(number % count.max(1))
     }
 
     /// Returns every so many-th reachable spot of a room.
     pub fn every(&self, room: &Room, step: usize) -> Vec<Point> {
-        room.spots.cells().step_by(step).map(|(i, j)| self.occupancy.frame.center(i, j)).collect()
+        self.all(room).step_by(step).collect()
     }
 
     /// Returns the number of spots of a room.
@@ -79,7 +87,16 @@ impl<'a> Floor<'a> {
         let reach = radius + self.radius;
         let taken = Rect::new(p.x - reach, p.y - reach, p.x + reach, p.y + reach);
         let (i0, i1, j0, j1) = self.occupancy.frame.span(&taken);
-        self.rooms.iter_mut().for_each(|r| r.spots.fill(i0, i1, j0, j1, false));
+        for room in &mut self.rooms {
+            let (i, j) = room.corner;
+            room.spots.fill(i0 - i, i1 - i, j0 - j, j1 - j, false);
+        }
+    }
+
+    /// Returns all spots of a room in rows from south to north.
+    fn all<'r>(&'r self, room: &'r Room) -> impl Iterator<Item = Point> + 'r {
+        let (i0, j0) = (room.corner.0 as usize, room.corner.1 as usize);
+        room.spots.cells().map(move |(i, j)| self.occupancy.frame.center(i0 + i, j0 + j))
     }
 }
 

@@ -1,5 +1,7 @@
 //! Which building a prompt is about: domain, building type, the words that say so, and where its list of rooms begins.
 
+use std::sync::Arc;
+
 use d3dgen_model::domain::{Domain, Words};
 use d3dgen_plugins::Registry;
 
@@ -36,7 +38,7 @@ pub(super) fn recognize(
     let domains: Vec<&Domain> =
         registry.iter().map(|p| p.domain()).filter(|d| only.is_none_or(|o| o == d.id)).collect();
     let list_from = list_start(tokens, spoken, languages);
-    let found = occurrences(tokens, &domains, languages, places);
+    let found = occurrences(tokens, registry, &domains, languages, places);
     let plural = |span: &Span| {
         let counted = |n: &Number| {
             let area = words().area_units.longest_at(tokens, n.span.end).is_some();
@@ -62,7 +64,7 @@ pub(super) fn recognize(
             [] => None,
         }
     };
-    let votes = || room_votes(tokens, &domains, languages);
+    let votes = || room_votes(tokens, registry, &domains, languages);
     let Some((span, meaning)) = pick else {
         let mut votes = votes();
         // "two offices": rooms here, but a word for that building all the same
@@ -140,8 +142,16 @@ fn list_start(tokens: &[Token], spoken: &[&Spoken], languages: &[&str]) -> usize
         .unwrap_or(tokens.len())
 }
 
-fn occurrences(tokens: &[Token], domains: &[&Domain], languages: &[&str], places: &[Span]) -> Vec<(Span, Meaning)> {
-    let vocabularies: Vec<Phrases<Meaning>> = languages.iter().map(|l| vocabulary(domains, l)).collect();
+fn occurrences(
+    tokens: &[Token],
+    registry: &Registry,
+    domains: &[&Domain],
+    languages: &[&str],
+    places: &[Span],
+) -> Vec<(Span, Meaning)> {
+    let ids: Vec<&str> = domains.iter().map(|d| d.id.as_str()).collect();
+    let digest = |l: &&str| registry.digest(&format!("{l}: {}", ids.join(" ")), || vocabulary(domains, l));
+    let vocabularies: Vec<Arc<Phrases<Meaning>>> = languages.iter().map(digest).collect();
     let mut out = Vec::new();
     let mut i = 0;
     while i < tokens.len() {
@@ -194,20 +204,19 @@ fn vocabulary(domains: &[&Domain], language: &str) -> Phrases<Meaning> {
 }
 
 /// Returns how many tokens of the prompt name rooms, by domain.
-fn room_votes(tokens: &[Token], domains: &[&Domain], languages: &[&str]) -> Vec<usize> {
+fn room_votes(tokens: &[Token], registry: &Registry, domains: &[&Domain], languages: &[&str]) -> Vec<usize> {
     domains
         .iter()
         .map(|domain| {
-            let vocabularies: Vec<Phrases<()>> = languages
-                .iter()
-                .map(|l| {
-                    let mut phrases = Phrases::new(l);
-                    for room in &domain.room_types {
-                        room.keywords.get(*l).into_iter().flatten().for_each(|p| phrases.insert(p, ()));
-                    }
-                    phrases
-                })
-                .collect();
+            let words = |l: &str| {
+                let mut phrases = Phrases::new(l);
+                for room in &domain.room_types {
+                    room.keywords.get(l).into_iter().flatten().for_each(|p| phrases.insert(p, ()));
+                }
+                phrases
+            };
+            let digest = |l: &&str| registry.digest(&format!("{l}: {}", domain.id), || words(l));
+            let vocabularies: Vec<Arc<Phrases<()>>> = languages.iter().map(digest).collect();
             let mut votes = 0;
             let mut i = 0;
             while i < tokens.len() {

@@ -64,8 +64,8 @@ pub fn generate(request: &Request, registry: &Registry) -> Result<SceneGraph, Er
     let mut planned = program::complete(&mut reading);
     let draft = assemble(request, reading.clone(), &planned);
     if let Some(plugin) = registry.get(&draft.domain) {
-        let retrieval = d3dgen_knowledge::retrieve(plugin.knowledge(), &Query::of_graph(&draft, plugin.domain()));
-        if program::follow_rules(&mut reading, &mut planned, &retrieval) {
+        let missing = d3dgen_knowledge::missing_rooms(plugin.knowledge(), &Query::of_graph(&draft, plugin.domain()));
+        if program::follow_rules(&mut reading, &mut planned, &missing) {
             return Ok(assemble(request, reading, &planned));
         }
     }

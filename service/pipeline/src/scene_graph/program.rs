@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use d3dgen_knowledge::Retrieval;
+use d3dgen_knowledge::Applicable;
 use d3dgen_model::domain::{Access, Occupants, ProgramRoom, RoomType, Shape, Zone};
 
 use super::places::note;
@@ -76,10 +76,15 @@ pub(super) fn complete<'a>(reading: &mut Reading<'a>) -> Vec<Planned<'a>> {
 }
 
 /// Adds rooms that a building rule asks for; returns true when something was added or said.
-pub(super) fn follow_rules<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned<'a>>, rules: &Retrieval) -> bool {
+pub(super) fn follow_rules<'a>(
+    reading: &mut Reading<'a>,
+    rooms: &mut Vec<Planned<'a>>,
+    missing: &[Applicable],
+) -> bool {
     let mut changed = false;
-    for (space, rule) in rules.missing_rooms() {
-        let speaks = |t: &&RoomType| t.id == space || t.spaces.iter().any(|s| s == space);
+    for rule in missing {
+        let space = &rule.constraint.space_type;
+        let speaks = |t: &&RoomType| &t.id == space || t.spaces.contains(space);
         let Some(kind) = reading.domain.room_types.iter().find(speaks) else { continue };
         let what = format!("{} by {}", kind.label.to_lowercase(), rule.constraint.constraint_id);
         changed = true;

@@ -8,7 +8,7 @@ use super::building::{self, Building};
 use super::mentions::{Mention, Taken, Vocabulary, What, mentions};
 use super::places::{self, note};
 use super::relations;
-use super::text::{MAX_TOKENS, Span, Token, tokens};
+use super::text::{MAX_TOKENS, Phrases, Span, Token, tokens};
 use super::wishes::{self, CHARGING, MANY, Text, Wish, Wishes};
 use super::words::{Spoken, Tag, words};
 use super::{Request, dwelling, language, measures, numbers, robots};
@@ -110,7 +110,8 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     spans.extend(short_forms.iter().map(|f| f.span));
     spans.extend(machines.spans.iter().copied());
     spans.extend(radius.iter().map(|r| r.0));
-    let vocabulary = Vocabulary::new(domain, registry, &languages);
+    let vocabulary =
+        registry.digest(&format!("{languages:?}: {}", domain.id), || Vocabulary::new(domain, registry, &languages));
     let taken = Taken { spans: &spans, head: building.head, list_from: building.list_from };
     let mentions = mentions(&tokens, &numbers, &vocabulary, &spoken, language, &taken);
     let said = relations::read(&tokens, &mentions, &spoken, language, building.head);
@@ -153,7 +154,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         building_type: building.building_type,
         program,
         country_code: flag_country.or(place.country_code),
-        objects: objects_of(&tokens, &mentions, domain, &languages),
+        objects: objects_of(&tokens, &mentions, domain, registry, &languages),
         wishes,
         total,
         closed,
@@ -489,17 +490,22 @@ fn objects_of(
     tokens: &[Token],
     mentions: &[Mention],
     domain: &Domain,
+    registry: &Registry,
     languages: &[&str],
 ) -> Vec<(String, Option<String>)> {
-    let mut out: Vec<(String, Option<String>)> = Vec::new();
-    for language in languages {
-        let mut phrases = super::text::Phrases::new(language);
+    let words = |language: &str| {
+        let mut phrases: Phrases<String> = Phrases::new(language);
         for object in &domain.objects {
-            object.keywords.get(*language).into_iter().flatten().for_each(|p| phrases.insert(p, object.id.clone()));
-            if *language == "en" {
+            object.keywords.get(language).into_iter().flatten().for_each(|p| phrases.insert(p, object.id.clone()));
+            if language == "en" {
                 phrases.insert(&object.label, object.id.clone());
             }
         }
+        phrases
+    };
+    let mut out: Vec<(String, Option<String>)> = Vec::new();
+    for language in languages {
+        let phrases = registry.digest(&format!("{language}: objects of {}", domain.id), || words(language));
         let mut i = 0;
         while i < tokens.len() {
             let inside = mentions.iter().any(|m| m.room_type().is_some() && m.span.contains(i));

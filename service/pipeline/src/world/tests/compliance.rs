@@ -38,7 +38,7 @@ fn everywhere(sample: &Sample) -> Vec<Retrieval> {
 }
 
 /// Worlds with what the common samples lack.
-const MORE: [&str; 8] = [
+const MORE: [&str; 9] = [
     "hospital in the US with two exam rooms, a treatment room, a waiting area and three toilets",
     "office in the US with an open office for 12 people, a storage room next to a robot charging room, two delivery robots \
      and two cleaning robots",
@@ -47,6 +47,7 @@ const MORE: [&str; 8] = [
     "hospital ward in Germany with two four-bed patient rooms, a day room, an assisted bathroom and toilets",
     "intensive care unit in the US with two ICU bays and a nurse station",
     "office in the US with an open office for 70 people and toilets",
+    "office in the US with an open office for 60 people, two meeting rooms, a kitchen, a storage room and toilets",
     "accessible flat in Australia with a bedroom and a toilet for two people",
 ];
 

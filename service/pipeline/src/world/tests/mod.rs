@@ -184,6 +184,7 @@ fn add_thing(world: &mut World, domain: &Domain, room_id: &str, rect: Rect, heig
         room_id: room_id.to_owned(),
         object: object.id.clone(),
         asset: String::new(),
+        asset_choice: None,
         pose: Pose { x: center.x, y: center.y, z: 0.0, yaw_rad: 0.0 },
         size_m: [rect.height(), rect.width(), height],
         mount: Mount::Floor,

@@ -1,0 +1,226 @@
+//! Large buildings: rooms are dealt out to wings first, then each wing is searched by itself, then the wings are set
+//! along a spine, on one side of it or on both.
+//!
+//! Time grows with the number of wings, not with the number of ways to mix all rooms; and what a wing cannot hold fails
+//! in that wing only. Courtyards between wings give every room beside a corridor its outer wall.
+
+use d3dgen_model::domain::{Scheme, Zone};
+use d3dgen_model::scene_graph::Connector;
+use d3dgen_model::seed::Stream;
+
+use super::cost::{Judge, Weights};
+use super::lattice::{Cellbox, up};
+use super::realize::{Layout, spine_units};
+use super::search::{Candidate, search_with};
+use super::spec::Brief;
+
+/// Rooms from which on a building is composed of wings.
+pub(super) const LARGE: usize = 18;
+/// Rooms of a wing at least and at most, where clusters allow it.
+const WING_ROOMS: (f64, f64) = (9.0, 30.0);
+/// Width of the courtyard between two wings, m.
+const COURTYARD_M: f64 = 7.0;
+/// Depth of rooms along a corridor to reckon with, m.
+const USUAL_DEPTH_M: f64 = 5.0;
+/// Ways to deal out the rooms that are tried before the building is given up.
+const DEALS: usize = 4;
+/// Changes tried per cluster while dealing out.
+const CHANGES: usize = 60;
+
+/// Rooms that must adjoin each other, directly or in a chain.
+struct Cluster {
+    rooms: Vec<usize>,
+    /// Corridor wall that they take, m: what fills a wing is fronts, not areas.
+    front: f64,
+}
+
+/// One wing on the lattice: its corridor runs east from x = 0, where the spine passes.
+struct Wing {
+    boxes: Vec<(usize, Cellbox)>,
+    south: i32,
+    north: i32,
+}
+
+/// Returns the best building of wings; its `score.hard` is above 0 when none is sound.
+pub(super) fn compose(brief: &Brief, weights: &Weights, rng: &mut Stream) -> Option<Candidate> {
+    let spine = brief.spine?;
+    let mut judge = Judge::new(brief);
+    let mut best: Option<Candidate> = None;
+    for deal in 0..DEALS {
+        let rooms = brief.rooms.len() as f64;
+        let each = (rooms.sqrt() * (1.2 + 0.5 * rng.unit())).clamp(WING_ROOMS.0, WING_ROOMS.1);
+        // When a deal fails, shorter wings leave more choice.
+        let count = ((rooms / each).round() as usize + deal / 2).max(2);
+        let wings: Vec<Wing> =
+            partition(brief, count, rng).iter().filter_map(|rooms| wing(brief, rooms, weights, rng)).collect();
+        let two_sided = wings.len() > 3 || rng.chance(0.5);
+        let layout = along_spine(brief, spine, wings, two_sided, rng);
+        let score = judge.score(&layout);
+        let found = Candidate { scheme: Scheme::Comb, layout, score };
+        let sound = score.is_sound();
+        if best.as_ref().is_none_or(|b| score.hard < b.score.hard) {
+            best = Some(found);
+        }
+        if sound {
+            break;
+        }
+    }
+    best
+}
+
+/// Searches one wing; `None` for a wing without rooms.
+fn wing(brief: &Brief, rooms: &[usize], weights: &Weights, rng: &mut Stream) -> Option<Wing> {
+    if rooms.is_empty() {
+        return None;
+    }
+    let part = brief.wing(rooms);
+    let schemes = if rng.chance(0.5) { [Scheme::Capped, Scheme::Straight] } else { [Scheme::Straight, Scheme::Capped] };
+    let schemes = if rooms.len() < 5 { &[Scheme::Straight][..] } else { &schemes };
+    let found = search_with(&part, schemes, weights, 1, rng)?;
+    let w = spine_units(brief);
+    let stem = |(room, b): &(usize, Cellbox)| Some(*room) == part.spine && b.x1 <= 0;
+    let boxes: Vec<(usize, Cellbox)> = found.layout.boxes.iter().copied().filter(|b| !stem(b)).collect();
+    let (south, north) = boxes.iter().fold((0, w), |(s, n), (_, b)| (s.min(b.y0), n.max(b.y1)));
+    let whole = |room: usize| if Some(room) == part.spine { brief.spine.unwrap_or(room) } else { rooms[room] };
+    Some(Wing { boxes: boxes.into_iter().map(|(room, b)| (whole(room), b)).collect(), south, north })
+}
+
+/// Sets the wings along a spine that runs north.
+fn along_spine(brief: &Brief, spine: usize, wings: Vec<Wing>, two_sided: bool, rng: &mut Stream) -> Layout {
+    let w = spine_units(brief);
+    let mut layout = Layout::default();
+    // Where the next wing of each side may begin.
+    let mut next = [0, 0];
+    let (mut low, mut high) = (i32::MAX, i32::MIN);
+    let first = rng.below(2);
+    for (i, wing) in wings.into_iter().enumerate() {
+        let side = match (i, two_sided) {
+            (0, _) | (_, false) => first,
+            _ => usize::from(next[1] < next[0]),
+        };
+        let up_by = next[side] - wing.south;
+        for (room, b) in wing.boxes {
+            let (x0, x1) = if side == 0 { (b.x0, b.x1) } else { (-w - b.x1, -w - b.x0) };
+            layout.boxes.push((room, Cellbox::new(x0, b.y0 + up_by, x1, b.y1 + up_by)));
+        }
+        (low, high) = (low.min(wing.south + up_by), high.max(wing.north + up_by));
+        next[side] = wing.north + up_by + up(COURTYARD_M);
+    }
+    layout.boxes.push((spine, Cellbox::new(-w, low, 0, high)));
+    layout
+}
+
+/// Deals the rooms out to wings: what must adjoin stays together, what should be near does where it can, the wings are
+/// of one size, and public rooms come first, where the entrance is.
+fn partition(brief: &Brief, count: usize, rng: &mut Stream) -> Vec<Vec<usize>> {
+    let mut clusters = clusters(brief);
+    rng.shuffle(&mut clusters);
+    clusters.sort_by_cached_key(|c| rank(brief, c, rng));
+    let total: f64 = clusters.iter().map(|c| c.front).sum();
+    let mean = total / count as f64;
+    let mut wing_of: Vec<usize> = Vec::with_capacity(clusters.len());
+    let mut before = 0.0;
+    for cluster in &clusters {
+        wing_of.push((((before + cluster.front / 2.0) / mean) as usize).min(count - 1));
+        before += cluster.front;
+    }
+    improve(brief, &clusters, &mut wing_of, (count, mean), rng);
+    let mut wings = vec![Vec::new(); count];
+    for (cluster, wing) in clusters.iter().zip(wing_of) {
+        wings[wing].extend_from_slice(&cluster.rooms);
+    }
+    wings
+}
+
+/// Moves clusters between wings while fewer wishes are cut and the wings stay of one size.
+fn improve(brief: &Brief, clusters: &[Cluster], wing_of: &mut [usize], (count, mean): (usize, f64), rng: &mut Stream) {
+    let mut cluster_of = vec![usize::MAX; brief.rooms.len()];
+    for (c, cluster) in clusters.iter().enumerate() {
+        cluster.rooms.iter().for_each(|&r| cluster_of[r] = c);
+    }
+    let mut wishes: Vec<Vec<usize>> = vec![Vec::new(); clusters.len()];
+    for link in brief.links.iter().filter(|l| !l.required || l.connector == Connector::Near) {
+        let (a, b) = (cluster_of[link.a], cluster_of[link.b]);
+        if a != b && a != usize::MAX && b != usize::MAX {
+            wishes[a].push(b);
+            wishes[b].push(a);
+        }
+    }
+    let mut load = vec![0.0; count];
+    clusters.iter().zip(&*wing_of).for_each(|(c, &w)| load[w] += c.front);
+    let uneven = |load: f64| 6.0 * (load / mean - 1.0).powi(2);
+    for _ in 0..CHANGES * clusters.len() {
+        let (c, to) = (rng.below(clusters.len()), rng.below(count));
+        let from = wing_of[c];
+        // A near neighbor in rank is exchanged, or the cluster moves alone.
+        let swap = Some((c + 1 + rng.below(6)) % clusters.len()).filter(|&d| d != c && rng.chance(0.5));
+        let to = swap.map_or(to, |d| wing_of[d]);
+        if to == from {
+            continue;
+        }
+        let cut = |wing_of: &[usize]| -> f64 {
+            let of = |c: usize| wishes[c].iter().filter(|&&o| wing_of[o] != wing_of[c]).count() as f64;
+            of(c) + swap.map_or(0.0, of)
+        };
+        let gain = clusters[c].front - swap.map_or(0.0, |d| clusters[d].front);
+        let sizes = |change: f64| uneven(load[from] - change) + uneven(load[to] + change);
+        let before = cut(wing_of) + sizes(0.0);
+        let exchange = |wing_of: &mut [usize], c_to: usize, d_to: usize| {
+            wing_of[c] = c_to;
+            if let Some(d) = swap {
+                wing_of[d] = d_to;
+            }
+        };
+        exchange(wing_of, to, from);
+        if cut(wing_of) + sizes(gain) < before {
+            load[from] -= gain;
+            load[to] += gain;
+        } else {
+            exchange(wing_of, from, to);
+        }
+    }
+}
+
+/// Returns the rooms in clusters of those that must adjoin.
+fn clusters(brief: &Brief) -> Vec<Cluster> {
+    fn root(leader: &mut [usize], mut i: usize) -> usize {
+        while leader[i] != i {
+            leader[i] = leader[leader[i]];
+            i = leader[i];
+        }
+        i
+    }
+    let n = brief.rooms.len();
+    let mut leader: Vec<usize> = (0..n).collect();
+    let hard = brief.links.iter().filter(|l| l.required && l.connector != Connector::Near).map(|l| (l.a, l.b));
+    let hosted = brief.rooms.iter().enumerate().filter_map(|(i, r)| r.host.map(|h| (i, h)));
+    for (a, b) in hard.chain(hosted).filter(|(a, b)| Some(*a) != brief.spine && Some(*b) != brief.spine) {
+        let (a, b) = (root(&mut leader, a), root(&mut leader, b));
+        leader[a.max(b)] = a.min(b);
+    }
+    let mut members: Vec<Vec<usize>> = vec![Vec::new(); n];
+    for room in (0..n).filter(|i| Some(*i) != brief.spine) {
+        members[root(&mut leader, room)].push(room);
+    }
+    let front = |rooms: &[usize]| rooms.iter().map(|&r| 0.8 + brief.rooms[r].area_target / USUAL_DEPTH_M).sum();
+    members.into_iter().filter(|m| !m.is_empty()).map(|rooms| Cluster { front: front(&rooms), rooms }).collect()
+}
+
+/// Returns where a cluster belongs along the way from the entrance; service rooms belong everywhere.
+fn rank(brief: &Brief, cluster: &Cluster, rng: &mut Stream) -> usize {
+    let of = |room: usize| match brief.rooms[room].zone {
+        Zone::Public => 1,
+        Zone::Day => 2,
+        Zone::Staff => 3,
+        Zone::Outdoor | Zone::Night => 4,
+        Zone::Circulation | Zone::Service => 1 + rng.below(4),
+    };
+    // what the cluster is about is its largest room
+    let largest = cluster
+        .rooms
+        .iter()
+        .copied()
+        .max_by(|&a, &b| brief.rooms[a].area_target.total_cmp(&brief.rooms[b].area_target));
+    let entered = cluster.rooms.iter().any(|&r| brief.rooms[r].entrance);
+    if entered { 0 } else { largest.map_or(4, of) }
+}
