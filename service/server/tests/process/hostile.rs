@@ -15,7 +15,7 @@ use crate::support::{Clients, Server, code, page};
 const ESCAPES: [&str; 8] =
     ["../x.usdz", "a/../../x.usdz", "/etc/passwd", "a//x.usdz", "./x.usdz", "..", "a\0b", "a\\..\\x"];
 /// Requests of the ordinary test; `D3DGEN_HOSTILE_REQUESTS` asks for more.
-const REQUESTS: usize = 300;
+const REQUESTS: usize = 10_000;
 
 #[tokio::test(flavor = "multi_thread")]
 async fn no_name_leads_out_of_its_folder() {
