@@ -5,6 +5,7 @@
 //! Times of questions are also given as a multiple of a baseline of the same run: reading and parsing 80 records, which
 //! is what judging the candidates of a question costs without finding them.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 

@@ -31,7 +31,7 @@ fn count(facts: &Facts, name: &str) -> u64 {
 
 #[test]
 fn usd_composes_turns_and_counts() {
-    let ReadModel { model, facts } = model("chair.usda");
+    let ReadModel { model, facts, .. } = model("chair.usda");
     assert_eq!((facts.up_axis.as_deref(), facts.meters_per_unit), (Some("Y"), Some(0.01)));
     assert_eq!((facts.mesh_count, facts.triangle_count), (1, 12));
     // As USD counts: the prototype of the instancer where it stands, and the guide not at all.
@@ -55,7 +55,7 @@ fn usd_composes_turns_and_counts() {
 
 #[test]
 fn usd_follows_sublayers_references_payloads_instances_and_time() {
-    let ReadModel { model, facts } = model("rig.usda");
+    let ReadModel { model, facts, .. } = model("rig.usda");
     near(facts.bbox_stage, [[-0.5, -0.3, -0.01], [2.5, 0.3, 0.01]]);
     near(model.bounds(), [[-0.5, -0.3, -0.01], [2.5, 0.3, 0.01]]);
     assert_eq!((facts.mesh_count, model.triangle_count()), (0, 36));
@@ -65,7 +65,7 @@ fn usd_follows_sublayers_references_payloads_instances_and_time() {
 
 #[test]
 fn gltf_has_sparse_normalized_and_strips() {
-    let ReadModel { model, facts } = model("chair.gltf");
+    let ReadModel { model, facts, .. } = model("chair.gltf");
     near(facts.bbox_zup, [[0.4, 0.0, 0.0], [1.1, 0.5, 2.1]]);
     near(model.bounds(), [[0.4, 0.0, 0.0], [1.1, 0.5, 2.1]]);
     assert_eq!((facts.mesh_count, facts.triangle_count, model.triangle_count()), (2, 5, 5));
@@ -77,7 +77,9 @@ fn gltf_has_sparse_normalized_and_strips() {
 
 #[test]
 fn obj_counts_what_faces_use() {
-    let ReadModel { model, facts } = model("table.obj");
+    let ReadModel { model, facts, companions } = model("table.obj");
+    let names: Vec<_> = companions.iter().filter_map(|f| f.file_name()).collect();
+    assert_eq!(names, ["table.mtl"]);
     assert_eq!((facts.up_axis, facts.meters_per_unit, facts.bbox_zup), (None, None, None));
     near(facts.bbox_stage, [[0.0; 3], [1.2, 0.6, 0.7]]);
     assert_eq!((facts.mesh_count, facts.triangle_count), (2, 3));
@@ -90,7 +92,7 @@ fn obj_counts_what_faces_use() {
 
 #[test]
 fn dae_has_units_instances_and_bound_materials() {
-    let ReadModel { model, facts } = model("lamp.dae");
+    let ReadModel { model, facts, .. } = model("lamp.dae");
     near(facts.bbox_stage, [[0.0, 0.0, -0.2], [0.0, 0.8, 0.0]]);
     assert_eq!((facts.mesh_count, facts.triangle_count, model.triangle_count()), (2, 10, 10));
     assert_eq!(facts.material_names, ["brass", "shade"]);
@@ -123,7 +125,7 @@ fn stl_text_and_binary_are_one() {
 
 #[test]
 fn sdf_has_links_poses_scales_and_joints() {
-    let ReadModel { model, facts } = model("cart/model.sdf");
+    let ReadModel { model, facts, .. } = model("cart/model.sdf");
     // The deck is 1 x 0.5 x 1 m from 0.2 m up, the handle lies along y at 0.7 m, the knob is fixed to the drawer.
     near(model.bounds(), [[-0.02, -0.3, 0.05], [1.0, 0.5, 1.2]]);
     assert_eq!(facts.mesh_count, 4);
