@@ -3,7 +3,6 @@
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
-use std::sync::OnceLock;
 use std::time::Duration;
 
 use d3dgen_proto::v1::asset_service_client::AssetServiceClient;
@@ -13,6 +12,7 @@ use d3dgen_proto::v1::knowledge_service_client::KnowledgeServiceClient;
 use d3dgen_proto::v1::world_service_client::WorldServiceClient;
 use d3dgen_proto::v1::{BuildingRequest, GetJobRequest, Job};
 use d3dgen_server::access::{digest, hex};
+use d3dgen_tests::program;
 use tonic::metadata::MetadataValue;
 use tonic::transport::{Channel, Endpoint};
 use tonic::{Request, Status};
@@ -99,23 +99,6 @@ impl Drop for Server {
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
-}
-
-/// Returns the `d3dgen` command beside the test program; built where it is missing.
-fn program() -> &'static Path {
-    static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
-    PROGRAM.get_or_init(|| {
-        let test = std::env::current_exe().expect("this program has a file");
-        let folder = test.parent().and_then(Path::parent).expect("it lies in target/PROFILE/deps");
-        let program = folder.join(format!("d3dgen{}", std::env::consts::EXE_SUFFIX));
-        let mut build = Command::new(env!("CARGO"));
-        build.args(["build", "-p", "d3dgen-cli", "--bin", "d3dgen"]);
-        if folder.ends_with("release") {
-            build.arg("--release");
-        }
-        assert!(program.exists() || build.status().expect("cargo runs").success(), "the command cannot be built");
-        program
-    })
 }
 
 /// The clients of all services, with a token perhaps.
