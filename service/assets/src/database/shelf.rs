@@ -79,12 +79,13 @@ impl<'c> Shelf<'c> {
     /// Gives the entries of all assets to an index, one by one.
     fn documents(&self, take: Take<'_>) -> Result<(), Error> {
         let catalog = self.catalog();
+        let shipped: BTreeSet<String> = self.library.assets().map(|a| a.asset_id()).collect();
         let mut own = BTreeSet::new();
         if let Some(database) = &self.database {
             database.each(|a| {
                 take(document(&a.asset_id, &a, catalog))?;
                 // Only what hides an asset of the library has to be known afterwards.
-                if self.library.get(&a.asset_id).is_some() {
+                if shipped.contains(&a.asset_id) {
                     own.insert(a.asset_id);
                 }
                 Ok(())
