@@ -252,11 +252,11 @@ fn copies(database: &Database, root: &Path, later: Vec<Wanted>, summary: &mut Su
     let (mut notes, mut others) = (Vec::new(), Vec::new());
     for copy in later {
         let originals = database.with_content(&copy.hash)?;
-        if originals.is_empty() && !summary.cancelled {
-            let reason = "is a copy of a file that was refused".to_owned();
-            summary.files.insert(copy.path.clone(), Outcome::Refused { reason });
-        }
         if originals.is_empty() {
+            if !summary.cancelled {
+                let reason = "is a copy of a file that was refused".to_owned();
+                summary.files.insert(copy.path, Outcome::Refused { reason });
+            }
             continue;
         }
         let mut note = None;

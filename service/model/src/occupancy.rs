@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 
 pub use bitmap::Bitmap;
 
-use crate::floorplan::{Door, Floorplan, PlanRoom};
+use crate::floorplan::{Door, Floorplan};
 use crate::geometry::{Point, Polygon, Rect};
 use crate::placements::{Placement, Placements};
 
@@ -147,13 +147,6 @@ impl Occupancy {
         self.free.eroded(radius_m / CELL_M)
     }
 
-    /// Returns the cells of a room's net floor.
-    pub fn room_cells(&self, room: &PlanRoom) -> Bitmap {
-        let mut map = Bitmap::new(self.frame.nx, self.frame.ny);
-        self.frame.paint(&mut map, &room.net_polygon, true);
-        map
-    }
-
     /// Returns the center of the cell of `map` nearest to a point; `None` when the map is empty.
     ///
     /// Ties go to the southern, then the western cell.
@@ -203,7 +196,7 @@ fn opening(door: &Door) -> Rect {
 mod tests {
     use super::*;
     use crate::domain::Materials;
-    use crate::floorplan::DoorKind;
+    use crate::floorplan::{DoorKind, PlanRoom};
     use crate::geometry::Segment;
 
     fn room(id: &str, x0: f64, x1: f64) -> PlanRoom {

@@ -66,6 +66,11 @@ pub struct Builder {
     meters_per_unit: f64,
 }
 
+/// Returns the triangles of a polygon, as a fan around its first corner; none of fewer than three corners.
+pub fn fan<T: Copy>(corners: &[T]) -> impl Iterator<Item = [T; 3]> {
+    corners.windows(2).skip(1).map(|pair| [corners[0], pair[0], pair[1]])
+}
+
 impl Builder {
     /// Returns an empty one for a format without axis and unit.
     pub fn new(format: &str) -> Self {

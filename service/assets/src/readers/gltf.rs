@@ -14,7 +14,7 @@ use d3dgen_mesh::Material as Surface;
 
 use self::accessor::Buffers;
 use self::document::{Document, Node, Primitive};
-use super::builder::{Builder, Piece};
+use super::builder::{Builder, Piece, fan};
 use super::facts::{Feature, ReadModel, Refusal, TextureFact};
 use super::folder::Folder;
 use super::frame::{Extent, Matrix};
@@ -345,7 +345,7 @@ fn add(
             let strip = corners.windows(3).enumerate();
             strip.map(|(i, t)| if i % 2 == 0 { [t[0], t[1], t[2]] } else { [t[1], t[0], t[2]] }).collect()
         }
-        _ => corners.windows(2).skip(1).map(|t| [corners[0], t[0], t[1]]).collect(),
+        _ => fan(&corners).collect(),
     };
     // glTF counts v from above.
     let uvs = match primitive.attributes.get("TEXCOORD_0") {

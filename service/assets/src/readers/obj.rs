@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use d3dgen_mesh::Material;
 
-use super::builder::{Builder, MAX_POINTS, MAX_TRIANGLES, Piece};
+use super::builder::{Builder, MAX_POINTS, MAX_TRIANGLES, Piece, fan};
 use super::facts::{Feature, ReadModel, Refusal, TextureFact};
 use super::folder::Folder;
 use super::frame::Matrix;
@@ -179,9 +179,7 @@ fn face<'a>(text: &mut Text, words: impl Iterator<Item = &'a str>, material: usi
     }
     text.ngons += u64::from(corners.len() > 4);
     text.triangles += corners.len().saturating_sub(2) as u64;
-    for pair in corners.windows(2).skip(1) {
-        text.corners.push(([corners[0], pair[0], pair[1]], material));
-    }
+    text.corners.extend(fan(&corners).map(|triangle| (triangle, material)));
     Ok(())
 }
 

@@ -4,7 +4,7 @@
 
 use std::collections::HashMap;
 
-use super::builder::{Builder, MAX_TRIANGLES, Piece};
+use super::builder::{Builder, MAX_TRIANGLES, Piece, fan};
 use super::facts::{ReadModel, Refusal};
 use super::frame::Matrix;
 use super::{Reader, Source};
@@ -94,9 +94,7 @@ fn ascii(bytes: &[u8]) -> Result<(Vec<Corners>, u64), Refusal> {
                 corners.push(corner);
             }
             Some("endloop") => {
-                for pair in corners.windows(2).skip(1) {
-                    triangles.push([corners[0], pair[0], pair[1]]);
-                }
+                triangles.extend(fan(&corners));
                 corners.clear();
             }
             _ => {}

@@ -5,7 +5,7 @@ use std::collections::{BTreeSet, HashMap};
 use roxmltree::Node;
 
 use super::{Ids, child, children, local};
-use crate::readers::builder::{MAX_POINTS, MAX_TRIANGLES, Piece};
+use crate::readers::builder::{MAX_POINTS, MAX_TRIANGLES, Piece, fan};
 use crate::readers::facts::{Facts, Refusal};
 
 /// A mesh.
@@ -99,12 +99,9 @@ impl Part {
         let lists: Vec<Vec<(u32, u32)>> = children(element, "p")
             .map(|p| integers(p).map(|all| all.chunks_exact(stride).map(corner).collect()))
             .collect::<Result<_, _>>()?;
-        let mut fan = |corners: &[(u32, u32)]| {
-            let pairs = corners.windows(2).skip(1);
-            part.triangles.extend(pairs.map(|pair| [corners[0], pair[0], pair[1]]));
-        };
+        let mut add = |corners: &[(u32, u32)]| part.triangles.extend(fan(corners));
         match element.tag_name().name() {
-            "triangles" => lists.iter().flat_map(|l| l.chunks_exact(3)).for_each(fan),
+            "triangles" => lists.iter().flat_map(|l| l.chunks_exact(3)).for_each(add),
             "polylist" => {
                 let mut at = 0usize;
                 let all = lists.concat();
@@ -114,14 +111,14 @@ impl Part {
                         facts.warn("the counts of a polylist are more than its corners");
                         break;
                     };
-                    fan(corners);
+                    add(corners);
                     at += corners.len();
                 }
             }
-            "polygons" | "trifans" => lists.iter().for_each(|l| fan(l)),
+            "polygons" | "trifans" => lists.iter().for_each(|l| add(l)),
             "tristrips" => {
                 for (index, three) in lists.iter().flat_map(|l| l.windows(3).enumerate()) {
-                    fan(&if index % 2 == 0 { [three[0], three[1], three[2]] } else { [three[1], three[0], three[2]] });
+                    add(&if index % 2 == 0 { [three[0], three[1], three[2]] } else { [three[1], three[0], three[2]] });
                 }
             }
             _ => {}

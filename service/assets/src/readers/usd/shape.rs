@@ -6,7 +6,7 @@ use openusd::sdf::Value;
 use openusd::usd::Prim;
 
 use super::value::{integers, number_of, numbers, threes, token_of, twos, value};
-use crate::readers::builder::{MAX_POINTS, MAX_TRIANGLES};
+use crate::readers::builder::{MAX_POINTS, MAX_TRIANGLES, fan};
 use crate::readers::facts::{Bounds, Refusal};
 use crate::readers::frame::Extent;
 
@@ -120,10 +120,8 @@ impl MeshShape {
                     (first..first + count as u32).collect()
                 }
             };
-            for pair in corners.windows(2).skip(1) {
-                let (b, c) = if self.left_handed { (pair[1], pair[0]) } else { (pair[0], pair[1]) };
-                out.triangles.push([corners[0], b, c]);
-            }
+            let turned = |[a, b, c]: [u32; 3]| if self.left_handed { [a, c, b] } else { [a, b, c] };
+            out.triangles.extend(fan(&corners).map(turned));
             if out.triangles.len() > MAX_TRIANGLES || out.positions.len() > 2 * MAX_POINTS {
                 return Err(format!("has more than {MAX_TRIANGLES} triangles; simplify it first").into());
             }
