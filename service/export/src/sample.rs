@@ -232,6 +232,7 @@ pub fn floorplan() -> Floorplan {
                     ceiling: "Mortar_White".into(),
                 },
                 locked: false,
+                level: 0,
             }
         })
         .collect();
@@ -245,6 +246,8 @@ pub fn floorplan() -> Floorplan {
         windows,
         cost: vec![],
         conflicts: vec![],
+        levels: vec![],
+        links: vec![],
     }
 }
 

@@ -14,7 +14,9 @@ pub use build::{
 };
 pub use furnishing::{Arrangement, FacingRule, Furnishing, Group, Member, Relation};
 pub use object::{Mount, ObjectType, Shape, Stock, StockedAsset};
-pub use program::{Adjacency, AdjacencyRelation, Circulation, Occupants, Program, ProgramRoom, Scheme};
+pub use program::{
+    Adjacency, AdjacencyRelation, Circulation, Elevator, Occupants, Program, ProgramRoom, Scheme, Stairs, Storeys,
+};
 pub use room_type::{Access, AreaRange, Daylight, Materials, Privacy, RobotUse, RoomType, Zone};
 
 use std::collections::BTreeMap;
@@ -153,6 +155,30 @@ impl Document for Domain {
         }
         for (i, id) in self.circulation.entrance_room_types.iter().enumerate() {
             room(format!("/circulation/entrance_room_types/{i}"), id, &mut problems);
+        }
+        if let Some(storeys) = &self.circulation.storeys {
+            let at = "/circulation/storeys";
+            room(format!("{at}/stairs/room_type"), &storeys.stairs.room_type, &mut problems);
+            if let Some(elevator) = &storeys.elevator {
+                room(format!("{at}/elevator/room_type"), &elevator.room_type, &mut problems);
+            }
+            if self.object(&storeys.stairs.object).is_none() {
+                let message = format!("object `{}` is not in objects", storeys.stairs.object);
+                problems.push(Problem::new(format!("{at}/stairs/object"), message));
+            }
+            for (key, list) in [
+                ("ground_room_types", &storeys.ground_room_types),
+                ("upper_room_types", &storeys.upper_room_types),
+                ("each_level_room_types", &storeys.each_level_room_types),
+            ] {
+                for (i, id) in list.iter().enumerate() {
+                    room(format!("{at}/{key}/{i}"), id, &mut problems);
+                }
+            }
+            if !(0.1..=0.3).contains(&storeys.stairs.rise_m) || !(0.15..=0.6).contains(&storeys.stairs.going_m) {
+                let message = "a rise is 0.1-0.3 m and a going 0.15-0.6 m";
+                problems.push(Problem::new(format!("{at}/stairs"), message));
+            }
         }
         if self.programs.is_empty() {
             problems.push(Problem::new("/programs", "is empty; a domain needs at least one program"));

@@ -9,8 +9,9 @@ use serde::{Deserialize, Serialize};
 use crate::document::{Document, Problem, check_unique};
 use crate::domain::Materials;
 use crate::geometry::{Polygon, Segment};
+use crate::storeys::{Level, VerticalLink, check_links, is_ground};
 
-/// A plan of one storey.
+/// A plan of one storey or several; all storeys share one frame, so what has the same coordinates lies above each other.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Floorplan {
@@ -34,6 +35,12 @@ pub struct Floorplan {
     /// Requests the plan could not honor, and the least change that was made.
     #[serde(default)]
     pub conflicts: Vec<crate::scene_graph::Note>,
+    /// Storeys from the lowest to the highest; empty for a plan of one storey.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub levels: Vec<Level>,
+    /// Stairs and elevators, whose rooms have the same outline on every storey.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub links: Vec<VerticalLink>,
 }
 
 /// A room with its outline.
@@ -62,6 +69,9 @@ pub struct PlanRoom {
     /// True keeps the room as it is when the plan is fed back.
     #[serde(default)]
     pub locked: bool,
+    /// Storey it lies on: 0 at the ground, 1 above it, -1 below it.
+    #[serde(default, skip_serializing_if = "is_ground")]
+    pub level: i32,
 }
 
 /// A straight piece of wall.
@@ -207,6 +217,8 @@ impl Document for Floorplan {
                 }
             }
         }
+        check_links(&self.links, |id| self.room(id).map(|r| r.level), &mut problems);
+        self.check_levels(&mut problems);
         let known = |id: &String| self.room(id).is_some();
         for (i, wall) in self.walls.iter().enumerate() {
             if wall.room_ids.is_empty() || wall.room_ids.len() > 2 || !wall.room_ids.iter().all(known) {

@@ -19,6 +19,7 @@ pub mod report;
 pub mod scenario;
 pub mod scene_graph;
 pub mod seed;
+pub mod storeys;
 pub mod units;
 pub mod world;
 

@@ -213,6 +213,7 @@ mod tests {
             ceiling_height_m: 2.5,
             materials: Materials { floor: String::new(), wall: String::new(), ceiling: String::new() },
             locked: false,
+            level: 0,
         }
     }
 
@@ -238,6 +239,8 @@ mod tests {
             windows: Vec::new(),
             cost: Vec::new(),
             conflicts: Vec::new(),
+            levels: Vec::new(),
+            links: Vec::new(),
         }
     }
 

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::document::{Document, Problem, check_unique};
 use crate::geometry::{Polygon, Pose};
 use crate::scene_graph::Robot;
+use crate::storeys::is_ground;
 
 /// What happens in a world.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -85,6 +86,9 @@ pub struct RobotTask {
     /// POI id of its dock.
     #[serde(default)]
     pub dock: Option<String>,
+    /// Storey it starts on.
+    #[serde(default, skip_serializing_if = "is_ground")]
+    pub level: i32,
 }
 
 /// A person.
@@ -103,6 +107,9 @@ pub struct Agent {
     pub start: Pose,
     /// Room ids visited in turn.
     pub waypoints: Vec<String>,
+    /// Storey of the start and the rooms.
+    #[serde(default, skip_serializing_if = "is_ground")]
+    pub level: i32,
 }
 
 impl Document for Scenario {

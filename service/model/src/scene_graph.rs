@@ -4,6 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::document::{Document, Problem, check_unique};
+use crate::storeys::{VerticalLink, check_links, is_ground};
 
 /// What was asked for, understood.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -38,6 +39,9 @@ pub struct SceneGraph {
     pub rooms: Vec<GraphRoom>,
     /// Connections; every `door` and `open` edge is walkable in the finished world.
     pub edges: Vec<GraphEdge>,
+    /// Stairs and elevators of a building with several storeys.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub links: Vec<VerticalLink>,
     /// Pairs of rooms that share no door and no wall.
     #[serde(default)]
     pub apart: Vec<[String; 2]>,
@@ -107,6 +111,9 @@ pub struct GraphRoom {
     /// True keeps the room as it is when the graph is fed back.
     #[serde(default)]
     pub locked: bool,
+    /// Storey it lies on: 0 at the ground, 1 above it, -1 below it.
+    #[serde(default, skip_serializing_if = "is_ground")]
+    pub level: i32,
 }
 
 /// A relation between two rooms.
@@ -212,6 +219,7 @@ impl Document for SceneGraph {
                 problems.push(Problem::new(format!("/edges/{i}"), format!("connects `{}` to itself", edge.a)));
             }
         }
+        check_links(&self.links, |id| self.room(id).map(|r| r.level), &mut problems);
         for (i, pair) in self.apart.iter().enumerate() {
             for (j, id) in pair.iter().enumerate() {
                 if self.room(id).is_none() {

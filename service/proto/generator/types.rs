@@ -135,6 +135,7 @@ impl Reader<'_> {
             ("number", _) => "double",
             ("integer", "uint64" | "uint") => "uint64",
             ("integer", "int64") => "int64",
+            ("integer", "int32") => "int32",
             ("integer", _) => "uint32",
             ("array", _) => return self.array(path, property, nullable),
             ("object", _) => return self.map(path, property),

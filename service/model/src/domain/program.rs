@@ -124,7 +124,85 @@ pub struct Circulation {
     pub second_exit: bool,
     /// Layout schemes that suit the domain, best first.
     pub schemes: Vec<Scheme>,
+    /// How buildings with several storeys are made; without it the domain has one storey only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub storeys: Option<Storeys>,
 }
+
+/// How a building with several storeys is divided and joined.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Storeys {
+    /// Stairs, on every storey.
+    pub stairs: Stairs,
+    /// Elevator, where one is needed.
+    #[serde(default)]
+    pub elevator: Option<Elevator>,
+    /// Floor structure between a ceiling and the floor above it, m.
+    pub slab_m: f64,
+    /// Room types that belong on the ground floor.
+    #[serde(default)]
+    pub ground_room_types: Vec<String>,
+    /// Room types that belong on the upper floors.
+    #[serde(default)]
+    pub upper_room_types: Vec<String>,
+    /// Room types that every storey should have one of before any has two (toilets).
+    #[serde(default)]
+    pub each_level_room_types: Vec<String>,
+}
+
+/// Stairs of two flights side by side with a landing between.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Stairs {
+    /// Room type of the stairwell.
+    pub room_type: String,
+    /// Object that stands for both flights.
+    pub object: String,
+    /// Clear width of a flight, m.
+    pub flight_width_m: f64,
+    /// Depth of the landings, m.
+    pub landing_m: f64,
+    /// Greatest rise of a step, m.
+    pub rise_m: f64,
+    /// Going of a step, m.
+    pub going_m: f64,
+    /// Where the figures come from.
+    pub source: String,
+}
+
+/// An elevator.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Elevator {
+    /// Room type of the shaft.
+    pub room_type: String,
+    /// Clear width of the shaft, along the wall with the door, m.
+    pub shaft_width_m: f64,
+    /// Clear depth of the shaft, m.
+    pub shaft_depth_m: f64,
+    /// Storeys from which on a building has one even unasked; absent where it must be asked for.
+    #[serde(default)]
+    pub from_levels: Option<u32>,
+    /// Where the figures come from.
+    pub source: String,
+}
+
+impl Stairs {
+    /// Returns the number of rises between two floors, always even: two flights of the same length.
+    pub fn rises(&self, height_m: f64) -> u32 {
+        2 * (height_m / (2.0 * self.rise_m) - 1e-6).ceil().max(1.0) as u32
+    }
+
+    /// Returns the clear width and depth of the stairwell for floors this far apart, m.
+    pub fn size_m(&self, height_m: f64) -> (f64, f64) {
+        let treads = f64::from(self.rises(height_m) / 2 - 1);
+        (2.0 * self.flight_width_m + WELL_M, 2.0 * self.landing_m + treads * self.going_m)
+    }
+}
+
+/// Gap between two flights, m.
+const WELL_M: f64 = 0.1;
 
 /// A family of plans.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]

@@ -8,11 +8,10 @@ use d3dgen_model::geometry::to_mm;
 use d3dgen_model::seed::Stream;
 
 use super::PROPORTION_LIMIT;
-use super::cost::{Score, TERMS};
+use super::cost::{OVERHANG, Score, TERMS};
 use super::doors::{Site, place_doors};
 use super::lattice::{Cellbox, INNER_HALF_M, OUTER_HALF_M, meters};
 use super::outline::{Mosaic, Stretch, outline};
-use super::realize::Layout;
 use super::spec::Brief;
 use super::windows::place_windows;
 
@@ -26,15 +25,7 @@ pub(super) struct Turn {
 
 /// Returns the boxes turned and moved so that the building's south-west corner is the origin.
 pub(super) fn turned(boxes: &[(usize, Cellbox)], turn: Turn) -> Vec<(usize, Cellbox)> {
-    let mut out: Vec<(usize, Cellbox)> = boxes
-        .iter()
-        .map(|(room, b)| {
-            let (xa, xb) = if turn.flip_x { (-b.x1, -b.x0) } else { (b.x0, b.x1) };
-            let (ya, yb) = if turn.flip_y { (-b.y1, -b.y0) } else { (b.y0, b.y1) };
-            let b = if turn.swap { Cellbox::new(ya, xa, yb, xb) } else { Cellbox::new(xa, ya, xb, yb) };
-            (*room, b)
-        })
-        .collect();
+    let mut out = turned_in_place(boxes, turn);
     let x0 = out.iter().map(|(_, b)| b.x0).min().unwrap_or(0);
     let y0 = out.iter().map(|(_, b)| b.y0).min().unwrap_or(0);
     for (_, b) in &mut out {
@@ -43,18 +34,29 @@ pub(super) fn turned(boxes: &[(usize, Cellbox)], turn: Turn) -> Vec<(usize, Cell
     out
 }
 
+/// Returns the boxes turned about the origin.
+pub(super) fn turned_in_place(boxes: &[(usize, Cellbox)], turn: Turn) -> Vec<(usize, Cellbox)> {
+    boxes
+        .iter()
+        .map(|(room, b)| {
+            let (xa, xb) = if turn.flip_x { (-b.x1, -b.x0) } else { (b.x0, b.x1) };
+            let (ya, yb) = if turn.flip_y { (-b.y1, -b.y0) } else { (b.y0, b.y1) };
+            let b = if turn.swap { Cellbox::new(ya, xa, yb, xb) } else { Cellbox::new(xa, ya, xb, yb) };
+            (*room, b)
+        })
+        .collect()
+}
+
 /// Returns the finished plan, or why this layout cannot become one.
 pub(super) fn assemble(
     brief: &Brief,
-    layout: &Layout,
+    boxes: &[(usize, Cellbox)],
     score: &Score,
-    turn: Turn,
     seed: u64,
     scheme: &str,
     rng: &mut Stream,
 ) -> Result<Floorplan, String> {
-    let boxes = turned(&layout.boxes, turn);
-    let stretches = Mosaic::new(&boxes).stretches();
+    let stretches = Mosaic::new(boxes).stretches();
     let mut rooms = Vec::with_capacity(brief.rooms.len());
     for (i, spec) in brief.rooms.iter().enumerate() {
         let ring = outline(i, &stretches).ok_or_else(|| format!("{} is not one simple polygon", spec.id))?;
@@ -75,16 +77,31 @@ pub(super) fn assemble(
             ceiling_height_m: spec.ceiling_height.max(spec.limits.ceiling_height(net_area_m2).unwrap_or(0.0)),
             materials: spec.materials.clone(),
             locked: false,
+            level: 0,
         });
     }
     let net_m2: Vec<f64> = rooms.iter().map(|r| r.net_area_m2).collect();
-    let doors = place_doors(&Site { brief, boxes: &boxes, stretches: &stretches, net_m2: &net_m2 }, rng)?;
+    let doors = place_doors(&Site { brief, boxes, stretches: &stretches, net_m2: &net_m2 }, rng)?;
     let windows = place_windows(brief, &stretches, &net_m2, &doors);
     let walls = walls(brief, &stretches, &doors);
-    let cost =
-        TERMS.iter().zip(score.weighted()).map(|(t, c)| CostTerm { term: (*t).into(), cost: to_mm(c) }).collect();
+    let cost = TERMS.iter().zip(score.weighted()).map(|(t, c)| CostTerm { term: (*t).into(), cost: to_mm(c) });
     let conflicts = brief.conflicts.clone();
-    Ok(Floorplan { version: 1, seed, scheme: scheme.into(), rooms, walls, doors, windows, cost, conflicts })
+    let hangs = brief.core.as_ref().is_some_and(|c| c.below.is_some());
+    let overhang = CostTerm { term: "overhang".into(), cost: to_mm(OVERHANG * score.overhang) };
+    let cost = cost.chain(hangs.then_some(overhang)).collect();
+    Ok(Floorplan {
+        version: 1,
+        seed,
+        scheme: scheme.into(),
+        rooms,
+        walls,
+        doors,
+        windows,
+        cost,
+        conflicts,
+        levels: Vec::new(),
+        links: Vec::new(),
+    })
 }
 
 /// Returns wall pieces with the doors cut out; windows stay part of their wall, which goes on below the sill.

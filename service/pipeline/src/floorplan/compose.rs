@@ -8,8 +8,9 @@ use d3dgen_model::domain::{Scheme, Zone};
 use d3dgen_model::scene_graph::Connector;
 use d3dgen_model::seed::Stream;
 
+use super::core::{Below, Comb, out_of_core};
 use super::cost::{Judge, Weights};
-use super::lattice::{Cellbox, up};
+use super::lattice::{Cellbox, Frame, meters, up};
 use super::realize::{Layout, spine_units};
 use super::search::{Candidate, search_with};
 use super::spec::Brief;
@@ -20,6 +21,10 @@ pub(super) const LARGE: usize = 18;
 const WING_ROOMS: (f64, f64) = (9.0, 30.0);
 /// Width of the courtyard between two wings, m.
 const COURTYARD_M: f64 = 7.0;
+/// Least width of a courtyard where wings stand on those of the storey below, m.
+const LEAST_COURTYARD_M: f64 = 6.0;
+/// Spine between the last wing and the second stairs, for upper storeys to grow into, m.
+const SLACK_M: f64 = 1.5;
 /// Depth of rooms along a corridor to reckon with, m.
 const USUAL_DEPTH_M: f64 = 5.0;
 /// Ways to deal out the rooms that are tried before the building is given up.
@@ -46,13 +51,20 @@ pub(super) fn compose(brief: &Brief, weights: &Weights, rng: &mut Stream) -> Opt
     let spine = brief.spine?;
     let mut judge = Judge::new(brief);
     let mut best: Option<Candidate> = None;
+    let core = brief.core.as_ref();
+    let given = core.and_then(|c| c.below.as_ref()).and_then(|b| b.comb.as_ref());
     for deal in 0..DEALS {
         let rooms = brief.rooms.len() as f64;
         let each = (rooms.sqrt() * (1.2 + 0.5 * rng.unit())).clamp(WING_ROOMS.0, WING_ROOMS.1);
         // When a deal fails, shorter wings leave more choice.
         let count = ((rooms / each).round() as usize + deal / 2).max(2);
-        let wings: Vec<Wing> =
-            partition(brief, count, rng).iter().filter_map(|rooms| wing(brief, rooms, weights, rng)).collect();
+        // the wings of an upper storey stand on those below
+        let count = given.map_or(count, |c| c.slots.len());
+        let mut wings: Vec<Wing> = Vec::new();
+        for rooms in &partition(brief, count, rng) {
+            let below = given.and_then(|c| below_wing(brief, c, wings.len()));
+            wings.extend(wing(brief, rooms, weights, below.as_ref(), rng));
+        }
         let two_sided = wings.len() > 3 || rng.chance(0.5);
         let layout = along_spine(brief, spine, wings, two_sided, rng);
         let score = judge.score(&layout);
@@ -69,20 +81,42 @@ pub(super) fn compose(brief: &Brief, weights: &Weights, rng: &mut Stream) -> Opt
 }
 
 /// Searches one wing; `None` for a wing without rooms.
-fn wing(brief: &Brief, rooms: &[usize], weights: &Weights, rng: &mut Stream) -> Option<Wing> {
+fn wing(brief: &Brief, rooms: &[usize], weights: &Weights, below: Option<&Below>, rng: &mut Stream) -> Option<Wing> {
     if rooms.is_empty() {
         return None;
     }
     let part = brief.wing(rooms);
     let schemes = if rng.chance(0.5) { [Scheme::Capped, Scheme::Straight] } else { [Scheme::Straight, Scheme::Capped] };
     let schemes = if rooms.len() < 5 { &[Scheme::Straight][..] } else { &schemes };
-    let found = search_with(&part, schemes, weights, 1, rng)?;
+    let found = search_with(&part, schemes, weights, 1, below, rng)?;
     let w = spine_units(brief);
     let stem = |(room, b): &(usize, Cellbox)| Some(*room) == part.spine && b.x1 <= 0;
     let boxes: Vec<(usize, Cellbox)> = found.layout.boxes.iter().copied().filter(|b| !stem(b)).collect();
     let (south, north) = boxes.iter().fold((0, w), |(s, n), (_, b)| (s.min(b.y0), n.max(b.y1)));
     let whole = |room: usize| if Some(room) == part.spine { brief.spine.unwrap_or(room) } else { rooms[room] };
     Some(Wing { boxes: boxes.into_iter().map(|(room, b)| (whole(room), b)).collect(), south, north })
+}
+
+/// Returns what is below a wing, as the wing sees it.
+fn below_wing(brief: &Brief, comb: &Comb, wing: usize) -> Option<Below> {
+    let (side, up_by) = *comb.slots.get(wing)?;
+    let core = brief.core.as_ref()?;
+    let w = spine_units(brief);
+    let outline = out_of_core(&core.below.as_ref()?.outline, &core_frame(comb.first, w));
+    let seen = |b: &Cellbox| {
+        let (x0, x1) = if side == 0 { (b.x0, b.x1) } else { (-w - b.x1, -w - b.x0) };
+        Cellbox::new(x0, b.y0 - up_by, x1, b.y1 - up_by)
+    };
+    Some(Below { outline: outline.iter().map(seen).collect(), by_core: false, comb: None })
+}
+
+/// Returns where the core stands: at the start of the spine, across from the first wing.
+fn core_frame(first: usize, w: i32) -> Frame {
+    if first == 1 {
+        Frame { origin: (0, 0), u: (0, 1), v: (1, 0) }
+    } else {
+        Frame { origin: (-w, 0), u: (0, 1), v: (-1, 0) }
+    }
 }
 
 /// Sets the wings along a spine that runs north.
@@ -93,18 +127,44 @@ fn along_spine(brief: &Brief, spine: usize, wings: Vec<Wing>, two_sided: bool, r
     let mut next = [0, 0];
     let (mut low, mut high) = (i32::MAX, i32::MIN);
     let first = rng.below(2);
+    let core = brief.core.as_ref();
+    let given = core.and_then(|c| c.below.as_ref()).and_then(|b| b.comb.as_ref());
+    let first = given.map_or(first, |c| c.first);
+    layout.comb.first = first;
+    let courtyard = up(if given.is_some() { LEAST_COURTYARD_M } else { COURTYARD_M });
+    if let Some(core) = core {
+        let frame = core_frame(first, w);
+        layout.boxes.extend(core.boxes.iter().map(|(r, b)| (*r, frame.place(b.x0, b.x1, b.y0, b.y1))));
+        layout.core = Some(frame);
+        next[1 - first] = core.width + courtyard;
+        (low, high) = (0, core.width);
+    }
     for (i, wing) in wings.into_iter().enumerate() {
         let side = match (i, two_sided) {
             (0, _) | (_, false) => first,
             _ => usize::from(next[1] < next[0]),
         };
-        let up_by = next[side] - wing.south;
+        let slot = given.and_then(|c| c.slots.get(i));
+        let side = slot.map_or(side, |s| s.0);
+        let up_by = (next[side] - wing.south).max(slot.map_or(i32::MIN, |s| s.1));
+        layout.comb.slots.push((side, up_by));
         for (room, b) in wing.boxes {
             let (x0, x1) = if side == 0 { (b.x0, b.x1) } else { (-w - b.x1, -w - b.x0) };
             layout.boxes.push((room, Cellbox::new(x0, b.y0 + up_by, x1, b.y1 + up_by)));
         }
         (low, high) = (low.min(wing.south + up_by), high.max(wing.north + up_by));
-        next[side] = wing.north + up_by + up(COURTYARD_M);
+        next[side] = wing.north + up_by + courtyard;
+    }
+    if let Some((stairs, width)) = core.and_then(|c| c.far) {
+        // across from the first stairs' end of the spine, clear of the last wing
+        let free = next[1 - first] - courtyard + up(SLACK_M);
+        let from = given.and_then(|c| c.far).unwrap_or_else(|| free.max(high - width));
+        layout.misfit += meters((free - up(SLACK_M) - from).max(0));
+        let frame = core_frame(first, w);
+        let depth = core.map_or(0, |c| c.depth);
+        layout.boxes.push((stairs, frame.place(from, from + width, 0, depth)));
+        layout.comb.far = Some(from);
+        high = high.max(from + width);
     }
     layout.boxes.push((spine, Cellbox::new(-w, low, 0, high)));
     layout
@@ -199,7 +259,7 @@ fn clusters(brief: &Brief) -> Vec<Cluster> {
         leader[a.max(b)] = a.min(b);
     }
     let mut members: Vec<Vec<usize>> = vec![Vec::new(); n];
-    for room in (0..n).filter(|i| Some(*i) != brief.spine) {
+    for room in (0..n).filter(|i| Some(*i) != brief.spine && !brief.in_core(*i)) {
         members[root(&mut leader, room)].push(room);
     }
     let front = |rooms: &[usize]| rooms.iter().map(|&r| 0.8 + brief.rooms[r].area_target / USUAL_DEPTH_M).sum();

@@ -8,6 +8,7 @@ use d3dgen_model::scene_graph::Connector;
 use d3dgen_model::seed::Stream;
 
 use super::PROPORTION_LIMIT;
+use super::core::{Below, overhang};
 use super::lattice::{Cellbox, INNER_HALF_M, JAMB_M, OUTER_HALF_M, meters, up};
 use super::realize::{Layout, door_need};
 use super::spec::Brief;
@@ -38,6 +39,9 @@ pub(super) const WINDOW_WALL_M: f64 = 1.2;
 /// Wall beside the latch of a door that people in wheelchairs pull open, beyond the least one, m (18 in together).
 const LATCH_SIDE_M: f64 = 0.457 - JAMB_M;
 
+/// Weight of what hangs in the air.
+pub(super) const OVERHANG: f64 = 14.0;
+
 /// Share by which the whole may miss the area asked for before it costs.
 const AREA_TOLERANCE: f64 = 0.03;
 
@@ -48,6 +52,8 @@ pub(super) struct Score {
     pub hard: f64,
     /// Unweighted soft terms, in the order of [`TERMS`].
     pub soft: [f64; COUNT],
+    /// Share of the storey that hangs in the air beyond the one below.
+    pub overhang: f64,
 }
 
 impl Score {
@@ -58,7 +64,7 @@ impl Score {
 
     /// Returns the figure the search minimizes, under the taste of one plan.
     pub(super) fn total(&self, weights: &Weights) -> f64 {
-        self.hard * 30.0 + self.soft.iter().zip(weights).map(|(s, w)| s * w).sum::<f64>()
+        self.hard * 30.0 + OVERHANG * self.overhang + self.soft.iter().zip(weights).map(|(s, w)| s * w).sum::<f64>()
     }
 
     /// Returns the soft terms under the standard weights, so that plans can be compared.
@@ -88,6 +94,8 @@ pub(super) struct Judge<'b> {
     entrance_need: i32,
     wet_rooms: usize,
     survey: Survey,
+    /// The storey below, for one that stands on another.
+    pub(super) below: Option<&'b Below>,
 }
 
 /// Lengths of walls per room and pair of one layout.
@@ -132,6 +140,7 @@ impl<'b> Judge<'b> {
             entrance_need: door_need(brief.entrance_width),
             wet_rooms: brief.rooms.iter().filter(|r| r.wet).count(),
             survey: Survey { rooms: vec![Measured::default(); n], ..Survey::default() },
+            below: brief.core.as_ref().and_then(|c| c.below.as_ref()),
         };
         for link in &brief.links {
             let need = match link.connector {
@@ -166,6 +175,12 @@ impl<'b> Judge<'b> {
         self.rooms(&mut score);
         self.links(&mut score);
         self.whole(layout, &mut score);
+        if let Some(below) = &self.below {
+            let origin = layout.core.filter(|_| below.by_core).map_or((0, 0), |c| c.origin);
+            let total: f64 = self.survey.rooms.iter().map(|r| r.gross_m2).sum();
+            let free = overhang(&layout.boxes, &below.outline, origin) as f64 * 0.0025;
+            score.overhang = free / total.max(1.0);
+        }
         score
     }
 
@@ -316,7 +331,9 @@ impl<'b> Judge<'b> {
         }
         let perimeter: f64 = rooms.iter().map(|r| meters(r.outer.1)).sum();
         score.soft[6] += perimeter / (4.0 * total.sqrt()) - 1.0 + 0.02 * layout.notch;
-        let entrance = brief.rooms.iter().position(|r| r.entrance).and_then(|i| rooms[i].main);
+        // one comes up the stairs
+        let stairs = brief.core.as_ref().map(|c| c.host);
+        let entrance = brief.rooms.iter().position(|r| r.entrance).or(stairs).and_then(|i| rooms[i].main);
         let size = total.sqrt().max(1.0);
         for (spec, room) in brief.rooms.iter().zip(rooms) {
             let (Some(main), Some(door)) = (room.main, entrance) else { continue };

@@ -57,7 +57,11 @@ pub(super) fn place_doors(site: &Site<'_>, rng: &mut Stream) -> Result<Vec<Door>
     let walkable = |c: Connector| matches!(c, Connector::Door | Connector::Open);
     wanted.extend(brief.links.iter().filter(|l| walkable(l.connector)).map(|l| (l.a, l.b, l.connector, l.required)));
     for (a, b, connector, required) in wanted {
-        let spots = site.stretches.iter().filter(|s| s.joins(a, b)).flat_map(|s| site.spots(s, a, b, connector, rng));
+        let spots = site
+            .stretches
+            .iter()
+            .filter(|s| s.joins(a, b) && site.is_front(s, a))
+            .flat_map(|s| site.spots(s, a, b, connector, rng));
         take_best(spots.collect(), &mut doors, &mut zones, || {
             if required {
                 missing.push(format!("{} to {}", brief.rooms[a].id, brief.rooms[b].id));
@@ -109,6 +113,9 @@ impl Site<'_> {
     /// Returns rooms that need a door to outdoors; the main one first.
     fn entrances(&self) -> Vec<(usize, bool)> {
         let brief = self.brief;
+        if brief.upper {
+            return Vec::new();
+        }
         let main = brief.rooms.iter().position(|r| r.entrance).or(brief.spine);
         let mut list: Vec<(usize, bool)> = main.map(|m| (m, true)).into_iter().collect();
         if let Some(spine) = brief.spine
@@ -117,6 +124,16 @@ impl Site<'_> {
             list.push((spine, false));
         }
         list
+    }
+
+    /// Returns true for walls where a room may have its door: a stairwell has it at the end of its flights.
+    fn is_front(&self, s: &Stretch, room: usize) -> bool {
+        let spec = &self.brief.rooms[room];
+        if !spec.fixed || spec.elevator {
+            return true;
+        }
+        let shape = self.boxes.iter().find(|b| b.0 == room).map(|b| b.1);
+        shape.is_none_or(|b| s.vertical == (b.height() < b.width()))
     }
 
     /// Returns the free part of a stretch in meters: clear of the walls that meet its ends.
@@ -189,7 +206,8 @@ impl Site<'_> {
         let double = clear >= DOUBLE_FROM_M;
         let leaf = if double { opening / 2.0 } else { opening };
         let swept = self.zone(s, into, start, opening, leaf.max(APPROACH_M));
-        let slides = leaf * leaf > SLIDING_SHARE * self.net_m2[into] || !self.inside(into, &swept);
+        let elevator = rooms.iter().any(|&r| self.brief.rooms[r].elevator);
+        let slides = elevator || leaf * leaf > SLIDING_SHARE * self.net_m2[into] || !self.inside(into, &swept);
         let mut zones: Vec<(usize, Rect)> =
             rooms.iter().map(|&r| (r, self.zone(s, r, start, opening, APPROACH_M))).collect();
         let (kind, swing) = if slides {

@@ -74,6 +74,9 @@ impl Cell {
     }
 }
 
+/// Band in which the stairs of a building with several storeys stand: all have it on the same side.
+pub(super) const CORE_BAND: usize = 0;
+
 /// A row of cells along one side of a corridor.
 #[derive(Debug, PartialEq)]
 pub(super) struct Band {
@@ -151,7 +154,8 @@ impl Genome {
             caps: [None, None],
             corner: rng.chance(0.7),
         };
-        let mut free: Vec<usize> = (0..brief.rooms.len()).filter(|i| Some(*i) != brief.spine).collect();
+        let mut free: Vec<usize> =
+            (0..brief.rooms.len()).filter(|i| Some(*i) != brief.spine && !brief.in_core(*i)).collect();
         rng.shuffle(&mut free);
         if scheme == Scheme::Capped {
             genome.choose_caps(brief, &mut free, rng);
@@ -170,6 +174,14 @@ impl Genome {
             let area: f64 = band.cells.iter().map(|c| brief.rooms[c.host].area_target).sum::<f64>();
             let mean = area / band.cells.len().max(1) as f64;
             band.depth = up((mean.sqrt() * (0.85 + 0.5 * rng.unit())).clamp(2.0, 9.0) + 0.18);
+        }
+        if let Some(core) = &brief.core
+            && count > 0
+        {
+            let band = &mut genome.bands[CORE_BAND];
+            band.depth = core.depth;
+            let at = rng.below(band.cells.len() + 1);
+            band.cells.insert(at, Cell::new(core.host));
         }
         genome
     }
@@ -202,7 +214,10 @@ impl Genome {
             for (c, cell) in band.cells.iter().enumerate() {
                 let fits = match host {
                     Some(h) => cell.host == h,
-                    None => brief.rooms[cell.host].area_target >= 1.8 * brief.rooms[room].area_target,
+                    None => {
+                        !brief.in_core(cell.host)
+                            && brief.rooms[cell.host].area_target >= 1.8 * brief.rooms[room].area_target
+                    }
                 };
                 if fits && !(cell.left.is_full() && cell.right.is_full()) {
                     count += 1;
@@ -251,7 +266,7 @@ fn random_cap(room: usize, rng: &mut Stream) -> Cap {
 /// Returns true for rooms small enough to be cut out of a larger one's corridor side.
 pub(super) fn is_nestable(brief: &Brief, room: usize) -> bool {
     let spec = &brief.rooms[room];
-    spec.area_target <= 9.0 && !spec.needs_outer_wall() && !spec.entrance
+    spec.area_target <= 9.0 && !spec.fixed && !spec.needs_outer_wall() && !spec.entrance
 }
 
 /// Returns the room that is entered through `room` (an isolation room through its anteroom), if any.

@@ -11,6 +11,7 @@
 
 mod assemble;
 mod compose;
+mod core;
 mod cost;
 mod doors;
 mod genome;
@@ -19,6 +20,7 @@ mod outline;
 mod realize;
 mod search;
 mod spec;
+mod storeys;
 #[cfg(test)]
 mod tests;
 mod windows;
@@ -30,7 +32,7 @@ use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::seed::Stream;
 
 use crate::Error;
-use assemble::{Turn, assemble};
+use assemble::{Turn, assemble, turned};
 use search::search;
 use spec::Brief;
 
@@ -68,6 +70,9 @@ pub fn generate(
             }
         }
     }
+    if graph.level_numbers().len() > 1 {
+        return storeys::generate(graph, domain, limits);
+    }
     let mut brief = Brief::new(graph, domain, limits)?;
     let mut rng = Stream::new(graph.seed, "floorplan");
     brief.vary(&mut rng);
@@ -81,7 +86,7 @@ pub fn generate(
             continue;
         }
         let name = format!("{:?}", found.scheme).to_lowercase();
-        match assemble(&brief, &found.layout, &found.score, turn, graph.seed, &name, &mut rng) {
+        match assemble(&brief, &turned(&found.layout.boxes, turn), &found.score, graph.seed, &name, &mut rng) {
             Ok(plan) => return Ok(plan),
             Err(reason) => last = reason,
         }

@@ -2,6 +2,7 @@
 
 use d3dgen_model::domain::Scheme;
 
+use super::core::Comb;
 use super::genome::{Cap, Cell, Cover, Genome};
 use super::lattice::{Cellbox, Frame, INNER_HALF_M, JAMB_M, OUTER_HALF_M, meters, nearest, up};
 use super::spec::Brief;
@@ -11,6 +12,9 @@ pub(super) const MAX_PROPORTION: f64 = 2.4;
 /// A notch in the outline shorter than this is a stagger without a reason, m.
 const MIN_NOTCH_M: f64 = 1.5;
 
+/// What a meter between the depth of the core and that of its band counts, in meters of notch.
+const CORE_STEP: f64 = 6.0;
+
 /// Rectangles of a plan on the lattice; a room may own several.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Layout {
@@ -19,6 +23,10 @@ pub(super) struct Layout {
     pub misfit: f64,
     /// Total length of notches, m.
     pub notch: f64,
+    /// Where the core is: its corner at the corridor, along the corridor, away from it.
+    pub core: Option<Frame>,
+    /// How the wings stand, in a building of wings.
+    pub comb: Comb,
 }
 
 /// Least, wished and largest width of a cell for a band depth, lattice units.
@@ -39,7 +47,7 @@ pub(super) fn spine_units(brief: &Brief) -> i32 {
     // wings and courtyards put outer walls on both sides
     let width = up(brief.spine_width + 2.0 * OUTER_HALF_M);
     // The entrance door stands in the corridor's end wall, between two corners with outer walls.
-    let entered = brief.spine.is_some_and(|s| brief.rooms[s].entrance) || brief.second_exit;
+    let entered = brief.spine.is_some_and(|s| brief.rooms[s].entrance) || brief.second_exit || brief.upper;
     if entered { width.max(door_need(brief.entrance_width) + 1) } else { width }
 }
 
@@ -101,7 +109,7 @@ impl Task<'_, '_> {
 /// Writes the rectangles of a genome to `layout`.
 pub(super) fn realize(brief: &Brief, genome: &Genome, scratch: &mut Scratch, layout: &mut Layout) {
     layout.boxes.clear();
-    (layout.misfit, layout.notch) = (0.0, 0.0);
+    (layout.misfit, layout.notch, layout.core) = (0.0, 0.0, None);
     scratch.spans.clear();
     let Some(spine) = brief.spine else { return };
     let mut task = Task { brief, genome, spine, scratch, misfit: 0.0, layout };
@@ -235,6 +243,9 @@ fn cap_box(brief: &Brief, cap: Cap, w: i32, dt: i32, db: i32, misfit: &mut f64) 
 
 /// Returns the widths a cell can have at this band depth.
 fn span(brief: &Brief, cell: &Cell, depth: i32, misfit: &mut f64) -> Span {
+    if let Some(core) = brief.core.as_ref().filter(|c| c.host == cell.host) {
+        return Span { min: core.width, target: core.width, max: core.width };
+    }
     let spec = &brief.rooms[cell.host];
     let clear_depth = meters(depth) - INNER_HALF_M - OUTER_HALF_M;
     let has_nests = cell.has_nests();
@@ -315,6 +326,16 @@ fn fill(task: &mut Task<'_, '_>, row: &Row<'_>, len: i32) {
 fn fill_cell(task: &mut Task<'_, '_>, row: &Row<'_>, cell: &Cell, at: i32, width: i32) {
     let depth = row.depth;
     let (brief, layout) = (task.brief, &mut *task.layout);
+    if let Some(core) = brief.core.as_ref().filter(|c| c.host == cell.host) {
+        let corner = row.frame.place(at, at, 0, 0);
+        layout.core = Some(Frame { origin: (corner.x0, corner.y0), ..row.frame });
+        layout.boxes.extend(core.boxes.iter().map(|(r, b)| (*r, row.frame.place(at + b.x0, at + b.x1, b.y0, b.y1))));
+        // a step in the facade between the core and its neighbors needs a reason
+        let step = meters((depth - core.depth).abs());
+        layout.notch += CORE_STEP * step.min(3.0);
+        task.misfit += if step < MIN_NOTCH_M { step.min(MIN_NOTCH_M - step) } else { 0.0 };
+        return;
+    }
     if !cell.has_nests() {
         layout.boxes.push((cell.host, row.frame.place(at, at + width, 0, depth)));
         return;

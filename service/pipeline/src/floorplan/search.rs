@@ -4,6 +4,7 @@ use d3dgen_model::domain::Scheme;
 use d3dgen_model::seed::Stream;
 
 use super::compose::{LARGE, compose};
+use super::core::Below;
 use super::cost::{Judge, Score, Weights, taste};
 use super::genome::{Cell, Cover, Genome, guest_of, is_nestable};
 use super::realize::{Layout, Scratch, realize};
@@ -40,9 +41,12 @@ pub(super) struct Candidate {
 /// Returns the best candidate found; its `score.hard` is above 0 when none is sound.
 pub(super) fn search(brief: &Brief, schemes: &[Scheme], rng: &mut Stream) -> Option<Candidate> {
     let weights = taste(rng);
-    if brief.rooms.len() < LARGE || brief.hub {
+    if brief.core.as_ref().is_some_and(|c| c.far.is_some()) {
+        return compose(brief, &weights, rng);
+    }
+    if brief.core.is_some() || brief.rooms.len() < LARGE || brief.hub {
         let wanted = if brief.rooms.len() > SMALL { WANTED - 1 } else { WANTED };
-        return search_with(brief, schemes, &weights, wanted, rng);
+        return search_with(brief, schemes, &weights, wanted, None, rng);
     }
     // One body where the seed and the size allow it, else wings.
     let whole: Vec<Scheme> = schemes.iter().copied().filter(|s| *s != Scheme::Comb).take(1).collect();
@@ -61,11 +65,13 @@ pub(super) fn search_with(
     schemes: &[Scheme],
     weights: &Weights,
     wanted: usize,
+    below: Option<&Below>,
     rng: &mut Stream,
 ) -> Option<Candidate> {
     let mut best: Option<Candidate> = None;
     let mut sound = 0;
     let mut judge = Judge::new(brief);
+    judge.below = judge.below.or(below);
     for run in 0..MAX_RUNS {
         // The first choice of the seed gets most runs; the others step in when it does not work out.
         let scheme = if run < 4 { schemes.first() } else { schemes.get(run % schemes.len().max(1)) };
@@ -131,8 +137,8 @@ fn patience(rng: &mut Stream) -> f64 {
 pub(super) fn mutate(brief: &Brief, genome: &mut Genome, rng: &mut Stream) -> bool {
     match rng.below(100) {
         0..25 => change_depth(genome, rng),
-        25..45 => swap_cells(genome, rng),
-        45..62 => move_cell(genome, rng),
+        25..45 => swap_cells(brief, genome, rng),
+        45..62 => move_cell(brief, genome, rng),
         62..72 => renest(brief, genome, rng),
         72..80 => unnest(brief, genome, rng),
         80..88 => change_nest(genome, rng),
@@ -162,21 +168,24 @@ fn any_cell(genome: &Genome, rng: &mut Stream) -> Option<(usize, usize)> {
     None
 }
 
-fn swap_cells(genome: &mut Genome, rng: &mut Stream) -> bool {
+fn swap_cells(brief: &Brief, genome: &mut Genome, rng: &mut Stream) -> bool {
     let (Some(x), Some(y)) = (any_cell(genome, rng), any_cell(genome, rng)) else { return false };
     if x == y {
         return false;
     }
     let (first, second) = (genome.bands[x.0].cells[x.1], genome.bands[y.0].cells[y.1]);
+    if x.0 != y.0 && (brief.in_core(first.host) || brief.in_core(second.host)) {
+        return false;
+    }
     genome.bands[x.0].cells[x.1] = second;
     genome.bands[y.0].cells[y.1] = first;
     true
 }
 
-fn move_cell(genome: &mut Genome, rng: &mut Stream) -> bool {
+fn move_cell(brief: &Brief, genome: &mut Genome, rng: &mut Stream) -> bool {
     let Some((b, c)) = any_cell(genome, rng) else { return false };
     let cell = genome.bands[b].cells.remove(c);
-    let to = rng.below(genome.bands.len());
+    let to = if brief.in_core(cell.host) { b } else { rng.below(genome.bands.len()) };
     let at = rng.below(genome.bands[to].cells.len() + 1);
     genome.bands[to].cells.insert(at, cell);
     true
@@ -264,7 +273,11 @@ fn change_caps(brief: &Brief, genome: &mut Genome, rng: &mut Stream) -> bool {
             // Another large room takes the end.
             let Some((b, c)) = cell else { return false };
             let cell = &mut genome.bands[b].cells[c];
-            if !brief.rooms[cell.host].on_spine || brief.rooms[cell.host].area_target < 8.0 || cell.nest_depth > 0 {
+            if !brief.rooms[cell.host].on_spine
+                || brief.in_core(cell.host)
+                || brief.rooms[cell.host].area_target < 8.0
+                || cell.nest_depth > 0
+            {
                 return false;
             }
             std::mem::swap(&mut cell.host, &mut cap.room);

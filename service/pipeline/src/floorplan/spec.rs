@@ -7,7 +7,9 @@ use d3dgen_knowledge::{Limit, Limits, RoomLimits};
 use d3dgen_model::domain::{Daylight, Domain, Materials, RoomType, Zone};
 use d3dgen_model::scene_graph::{Connector, GraphEdge, GraphRoom, Note, SceneGraph};
 use d3dgen_model::seed::Stream;
+use d3dgen_model::storeys::LinkKind;
 
+use super::core::Core;
 use crate::Error;
 
 /// Clear width that a wheelchair and most robots need through a door, m; used when the prompt asks for access.
@@ -46,6 +48,10 @@ pub(super) struct RoomSpec {
     pub on_spine: bool,
     /// Room that it is entered from, for en suites and the like.
     pub host: Option<usize>,
+    /// True for stairwells and elevators, whose size follows from what they hold.
+    pub fixed: bool,
+    /// True for elevators: their doors slide and they have no windows.
+    pub elevator: bool,
 }
 
 impl RoomSpec {
@@ -85,6 +91,10 @@ pub(super) struct Brief {
     pub guests: Vec<Option<usize>>,
     /// True for a wing: the spine of the building passes the start of its corridor.
     pub stem: bool,
+    /// True for a storey that one does not enter from outdoors.
+    pub upper: bool,
+    /// Stairs and elevator of a building with several storeys.
+    pub core: Option<Core>,
 }
 
 impl Brief {
@@ -117,15 +127,18 @@ impl Brief {
             spine_width: circulation_width,
             links: Vec::new(),
             apart: Vec::new(),
-            second_exit: domain.circulation.second_exit,
-            area: graph.area_m2,
+            second_exit: domain.circulation.second_exit && graph.rooms.iter().all(|r| r.level == 0),
+            area: graph.area_m2.filter(|_| graph.links.is_empty()),
             entrance_width: max_limit(domain.circulation.entrance_width_m, limits.entrance_width.as_ref()),
             conflicts,
             guests: Vec::new(),
             stem: false,
+            upper: graph.rooms.iter().any(|r| r.level != 0),
+            core: None,
         };
         brief.find_guests();
         if let Some(spine) = brief.spine
+            && !brief.upper
             && !brief.rooms.iter().any(|r| r.entrance)
         {
             brief.rooms[spine].entrance = true;
@@ -138,6 +151,11 @@ impl Brief {
             brief.apart.push([find(a)?, find(b)?]);
         }
         Ok(brief)
+    }
+
+    /// Returns true for a room that stands where the core puts it.
+    pub(super) fn in_core(&self, room: usize) -> bool {
+        self.core.as_ref().is_some_and(|c| c.has(room, self.spine))
     }
 
     /// Fills in which larger room is entered through which.
@@ -191,6 +209,7 @@ impl Brief {
             conflicts: Vec::new(),
             guests: Vec::new(),
             stem: true,
+            core: None,
             ..*self
         };
         out.find_guests();
@@ -291,6 +310,8 @@ fn room_spec(
         materials: kind.materials.clone(),
         on_spine: false,
         host: None,
+        fixed: false,
+        elevator: graph.links.iter().any(|l| l.kind == LinkKind::Elevator && l.room_ids.contains(&room.id)),
     }
 }
 

@@ -5,7 +5,7 @@ use d3dgen_model::domain::{Daylight, Materials, Scheme, Zone};
 use d3dgen_model::scene_graph::Connector;
 use d3dgen_model::seed::Stream;
 
-use super::assemble::{Turn, assemble};
+use super::assemble::{Turn, assemble, turned};
 use super::genome::Genome;
 use super::search::{mutate, search};
 use super::spec::{Brief, Link, RoomSpec};
@@ -31,6 +31,8 @@ fn room(id: &str, area: [f64; 3], min_dimension: f64, daylight: Daylight, zone: 
         materials: Materials { floor: material(), wall: material(), ceiling: material() },
         on_spine: true,
         host: None,
+        fixed: false,
+        elevator: false,
         limits: d3dgen_knowledge::RoomLimits::default(),
     }
 }
@@ -54,6 +56,8 @@ fn brief(mut rooms: Vec<RoomSpec>, width: f64, links: &[(usize, usize, Connector
         conflicts: Vec::new(),
         guests: Vec::new(),
         stem: false,
+        upper: false,
+        core: None,
     };
     brief.find_guests();
     brief
@@ -122,7 +126,7 @@ fn sound(brief: &Brief, schemes: &[Scheme], seed: u64) -> bool {
         return false;
     }
     let turn = Turn { flip_x: seed % 2 == 1, flip_y: seed % 3 == 1, swap: seed % 5 == 1 };
-    match assemble(brief, &found.layout, &found.score, turn, seed, "test", &mut rng) {
+    match assemble(brief, &turned(&found.layout.boxes, turn), &found.score, seed, "test", &mut rng) {
         Ok(plan) => {
             assert_eq!(plan.check(), vec![], "seed {seed}");
             for (room, spec) in plan.rooms.iter().zip(&brief.rooms) {

@@ -66,6 +66,9 @@ fn glass(room: &RoomSpec, net_m2: f64) -> Option<(f64, f64)> {
         // a balustrade, open above: all there is
         return Some((BALUSTRADE_M, f64::MAX));
     }
+    if room.elevator {
+        return None;
+    }
     let head = HEAD_M.min(room.ceiling_height - 0.2);
     match room.daylight {
         Daylight::Required | Daylight::Preferred => Some((SILL_M, net_m2 * GLASS_PER_FLOOR / (head - SILL_M))),

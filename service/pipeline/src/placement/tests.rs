@@ -60,6 +60,7 @@ impl<'s> Site<'s> {
             ceiling_height_m: kind.ceiling_height_m,
             materials: Materials { floor: material(), wall: material(), ceiling: material() },
             locked: false,
+            level: 0,
         };
         let door = |(i, x): (usize, &f64)| Door {
             door_id: format!("door_{i}"),
@@ -92,6 +93,8 @@ impl<'s> Site<'s> {
             windows: self.windows.iter().enumerate().map(window).collect(),
             cost: Vec::new(),
             conflicts: Vec::new(),
+            levels: Vec::new(),
+            links: Vec::new(),
         }
     }
 
@@ -110,6 +113,7 @@ impl<'s> Site<'s> {
             requested: true,
             entrance: false,
             locked: false,
+            level: 0,
         };
         let graph = SceneGraph {
             version: 1,
@@ -125,6 +129,7 @@ impl<'s> Site<'s> {
             rooms: vec![room],
             edges: Vec::new(),
             apart: Vec::new(),
+            links: Vec::new(),
             forbidden_room_types: Vec::new(),
             robots: Vec::new(),
             assumptions: Vec::new(),

@@ -54,5 +54,6 @@ fn person(floor: &mut Floor, role: &Role, agent_id: String, stream: &mut Stream)
         speed_m_s: role.speed_m_s,
         start,
         waypoints,
+        level: 0,
     })
 }

@@ -27,6 +27,7 @@ pub(super) fn all(floor: &mut Floor, graph: &SceneGraph, pois: &[Poi]) -> Vec<Ro
                 robot: Robot { count: 1, ..robot.clone() },
                 start,
                 dock: dock.map(|d| d.poi_id.clone()),
+                level: 0,
             });
         }
     }

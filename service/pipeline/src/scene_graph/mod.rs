@@ -90,6 +90,7 @@ fn assemble(request: &Request, mut reading: Reading, planned: &[Planned]) -> Sce
         rooms,
         edges: web.edges,
         apart: web.apart,
+        links: Vec::new(),
         forbidden_room_types: reading.wishes.forbidden,
         robots: reading.robots,
         assumptions: reading.assumptions,

@@ -47,6 +47,7 @@ pub(super) fn describe(reading: &mut Reading, planned: &[Planned]) -> Vec<GraphR
             requested: room.requested,
             entrance: false,
             locked: false,
+            level: 0,
         });
     }
     rooms
@@ -68,6 +69,7 @@ pub(super) fn circulation(reading: &Reading) -> GraphRoom {
         requested: reading.wishes.wishes.iter().any(|w| w.room_type == kind.id),
         entrance: false,
         locked: false,
+        level: 0,
     }
 }
 

@@ -1,0 +1,188 @@
+//! The core of a building with several storeys: stairs and elevator side by side, the same on every storey, and what a
+//! storey must know of the one below it.
+//!
+//! A core is a block of fixed boxes in a frame of its own: along the corridor, and away from it. The stairwell is as deep
+//! as the core; the elevator stands at its back, behind an alcove of the corridor where people and robots wait. All
+//! storeys are turned and moved so that their cores coincide, so a storey is planned without knowing where it will stand.
+
+use d3dgen_model::domain::{Domain, Stairs};
+use d3dgen_model::scene_graph::SceneGraph;
+use d3dgen_model::storeys::LinkKind;
+
+use super::lattice::{Cellbox, Frame, INNER_HALF_M, OUTER_HALF_M, up};
+use super::spec::Brief;
+
+/// Stairs and elevator as one storey sees them.
+#[derive(Debug, Clone)]
+pub(super) struct Core {
+    /// The stairwell; stands for the whole core in a genome.
+    pub host: usize,
+    /// Boxes in the core's frame: `x` along the corridor, `y` away from it.
+    pub boxes: Vec<(usize, Cellbox)>,
+    pub width: i32,
+    pub depth: i32,
+    /// Second stairwell, at the other end of a building of wings, and its width.
+    pub far: Option<(usize, i32)>,
+    /// The storey below.
+    pub below: Option<Below>,
+}
+
+/// What is below a storey.
+#[derive(Debug, Clone)]
+pub(super) struct Below {
+    /// Its boxes, in the core's frame where `by_core`, else in the layout's own.
+    pub outline: Vec<Cellbox>,
+    pub by_core: bool,
+    pub comb: Option<Comb>,
+}
+
+/// How the wings of a storey stand along its spine.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Comb {
+    /// Side of the first wing: 0 east, 1 west of the spine.
+    pub first: usize,
+    /// Side and corridor of each wing.
+    pub slots: Vec<(usize, i32)>,
+    /// Where the second stairwell begins.
+    pub far: Option<i32>,
+}
+
+impl Core {
+    /// Returns the core of a storey, or `None` where nothing leads up or down. Areas of its rooms are set in `brief`.
+    ///
+    /// `height_m` is the greatest height of a storey: all have the same stairwell.
+    pub(super) fn new(brief: &mut Brief, graph: &SceneGraph, domain: &Domain, height_m: f64) -> Option<Self> {
+        let storeys = domain.circulation.storeys.as_ref()?;
+        let room = |ids: &[String]| brief.rooms.iter().position(|r| ids.contains(&r.id));
+        let of_kind = |kind: LinkKind| {
+            graph.links.iter().filter(|l| l.kind == kind).filter_map(|l| room(&l.room_ids)).collect::<Vec<usize>>()
+        };
+        let (stairs, lifts) = (of_kind(LinkKind::Stairs), of_kind(LinkKind::Elevator));
+        let host = *stairs.first()?;
+        let (width, depth) = stairwell(&storeys.stairs, height_m);
+        let spine = brief.spine?;
+        let mut boxes = vec![(host, Cellbox::new(0, 0, width, depth))];
+        let mut along = width;
+        if let Some(elevator) = &storeys.elevator {
+            let walls = INNER_HALF_M + OUTER_HALF_M;
+            let wide = up(elevator.shaft_width_m.max(brief.spine_width) + walls);
+            let deep = up(elevator.shaft_depth_m + walls).min(depth - 1);
+            for &lift in &lifts {
+                boxes.push((spine, Cellbox::new(along, 0, along + wide, depth - deep)));
+                boxes.push((lift, Cellbox::new(along, depth - deep, along + wide, depth)));
+                along += wide;
+            }
+        }
+        for &(r, b) in &boxes {
+            if r != spine {
+                set_area(brief, r, b);
+            }
+        }
+        let far = stairs.get(1).copied();
+        if let Some(far) = far {
+            set_area(brief, far, Cellbox::new(0, 0, width, depth));
+        }
+        Some(Self { host, boxes, width: along, depth, far: far.map(|f| (f, width)), below: None })
+    }
+
+    /// Returns true for rooms that stand where the core puts them.
+    pub(super) fn has(&self, room: usize, spine: Option<usize>) -> bool {
+        Some(room) != spine && (self.far.is_some_and(|f| f.0 == room) || self.boxes.iter().any(|b| b.0 == room))
+    }
+}
+
+/// The stairwell has the size it needs, whatever others of its type have.
+fn set_area(brief: &mut Brief, room: usize, b: Cellbox) {
+    let spec = &mut brief.rooms[room];
+    let area = b.area_m2();
+    (spec.area_min, spec.area_target, spec.area_max) = (0.4 * area, 0.88 * area, 1.1 * area);
+    spec.min_dimension = spec.min_dimension.min(1.0);
+    spec.fixed = true;
+}
+
+/// Returns width and depth of a stairwell between wall center lines, lattice units.
+fn stairwell(stairs: &Stairs, height_m: f64) -> (i32, i32) {
+    let (width, depth) = stairs.size_m(height_m);
+    let walls = INNER_HALF_M + OUTER_HALF_M;
+    (up(width + walls), up(depth + walls))
+}
+
+/// Returns boxes of a layout as the core sees them.
+pub(super) fn in_core(boxes: &[(usize, Cellbox)], frame: &Frame) -> Vec<(usize, Cellbox)> {
+    let at = |x: i32, y: i32| {
+        let (dx, dy) = (x - frame.origin.0, y - frame.origin.1);
+        (dx * frame.u.0 + dy * frame.u.1, dx * frame.v.0 + dy * frame.v.1)
+    };
+    let turn = |b: &Cellbox| {
+        let ((xa, ya), (xb, yb)) = (at(b.x0, b.y0), at(b.x1, b.y1));
+        Cellbox::new(xa, ya, xb, yb)
+    };
+    boxes.iter().map(|(room, b)| (*room, turn(b))).collect()
+}
+
+/// Returns boxes that the core sees as the layout with this core has them.
+pub(super) fn out_of_core(boxes: &[Cellbox], frame: &Frame) -> Vec<Cellbox> {
+    boxes.iter().map(|b| frame.place(b.x0, b.x1, b.y0, b.y1)).collect()
+}
+
+/// Returns the area of the boxes that nothing of the outline supports, lattice units squared.
+pub(super) fn overhang(boxes: &[(usize, Cellbox)], outline: &[Cellbox], (dx, dy): (i32, i32)) -> i64 {
+    let mut free = 0;
+    for (_, b) in boxes {
+        let (x0, y0, x1, y1) = (b.x0 - dx, b.y0 - dy, b.x1 - dx, b.y1 - dy);
+        free += i64::from(x1 - x0) * i64::from(y1 - y0);
+        for o in outline {
+            let (w, h) = (x1.min(o.x1) - x0.max(o.x0), y1.min(o.y1) - y0.max(o.y0));
+            if w > 0 && h > 0 {
+                free -= i64::from(w) * i64::from(h);
+            }
+        }
+    }
+    free
+}
+
+/// Returns the same outline in fewer boxes: neighbors that make a rectangle are joined, again and again.
+pub(super) fn merged(boxes: &[(usize, Cellbox)]) -> Vec<Cellbox> {
+    let mut out: Vec<Cellbox> = boxes.iter().map(|b| b.1).collect();
+    let joins = |a: &Cellbox, b: &Cellbox| {
+        let beside = a.y0 == b.y0 && a.y1 == b.y1 && (a.x1 == b.x0 || b.x1 == a.x0);
+        let above = a.x0 == b.x0 && a.x1 == b.x1 && (a.y1 == b.y0 || b.y1 == a.y0);
+        beside || above
+    };
+    let mut i = 0;
+    while i < out.len() {
+        let Some(j) = (i + 1..out.len()).find(|&j| joins(&out[i], &out[j])) else {
+            i += 1;
+            continue;
+        };
+        let b = out.remove(j);
+        let a = out[i];
+        out[i] = Cellbox { x0: a.x0.min(b.x0), y0: a.y0.min(b.y0), x1: a.x1.max(b.x1), y1: a.y1.max(b.y1) };
+        i = 0;
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_goes_into_the_core_comes_out_again() {
+        let boxes = [(0, Cellbox::new(3, 4, 10, 20)), (1, Cellbox::new(-5, 4, 3, 9))];
+        for (u, v) in [((1, 0), (0, 1)), ((0, 1), (-1, 0)), ((0, 1), (1, 0)), ((-1, 0), (0, 1))] {
+            let frame = Frame { origin: (7, -2), u, v };
+            let inside: Vec<Cellbox> = in_core(&boxes, &frame).into_iter().map(|b| b.1).collect();
+            assert_eq!(out_of_core(&inside, &frame), boxes.map(|b| b.1));
+        }
+    }
+
+    #[test]
+    fn overhang_is_what_nothing_stands_under() {
+        let below = merged(&[(0, Cellbox::new(0, 0, 10, 10)), (1, Cellbox::new(10, 0, 20, 10))]);
+        assert_eq!(below, [Cellbox::new(0, 0, 20, 10)]);
+        let above = [(0, Cellbox::new(5, 0, 25, 10))];
+        assert_eq!(overhang(&above, &below, (0, 0)), 50);
+        assert_eq!(overhang(&above, &below, (5, 0)), 0);
+    }
+}

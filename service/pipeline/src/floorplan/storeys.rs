@@ -1,0 +1,201 @@
+//! Several storeys: each is planned by itself around the common core, the ground floor first, the others above it.
+
+use d3dgen_knowledge::Limits;
+use d3dgen_model::domain::{Domain, Storeys};
+use d3dgen_model::floorplan::{CostTerm, Floorplan};
+use d3dgen_model::geometry::to_mm;
+use d3dgen_model::scene_graph::{Note, SceneGraph};
+use d3dgen_model::seed::Stream;
+use d3dgen_model::storeys::{Level, LinkKind};
+
+use super::assemble::{Turn, assemble, turned_in_place};
+use super::core::{Below, Core, in_core, merged};
+use super::lattice::Cellbox;
+use super::search::search;
+use super::spec::Brief;
+use super::{ATTEMPTS, schemes};
+use crate::Error;
+
+/// Share of a storey that may jut out over the one below without a word.
+const OVERHANG_SHARE: f64 = 0.10;
+/// Plans of a storey that are compared when the first ones jut out further.
+const COMPARED: usize = 4;
+/// Heights of storeys are whole multiples of this, m.
+const HEIGHT_STEP_M: f64 = 0.05;
+
+/// A planned storey.
+struct Planned {
+    plan: Floorplan,
+    below: Below,
+    overhang: f64,
+}
+
+/// Plans a building of several storeys.
+///
+/// # Errors
+/// As [`super::generate`]; `Mismatch` for storeys that nothing joins.
+pub(super) fn generate(graph: &SceneGraph, domain: &Domain, limits: &Limits) -> Result<Floorplan, Error> {
+    let mismatch = |message: String| Error::Mismatch { stage: "floorplan", message };
+    let storeys = domain.circulation.storeys.as_ref().ok_or_else(|| {
+        mismatch(format!("domain `{}` says nothing of stairs; its buildings have one storey", domain.id))
+    })?;
+    let mut rng = Stream::new(graph.seed, "floorplan");
+    let turn = Turn { flip_x: rng.chance(0.5), flip_y: rng.chance(0.5), swap: rng.chance(0.3) };
+    let numbers = graph.level_numbers();
+    let mut briefs = Vec::new();
+    for &level in &numbers {
+        let mut brief = Brief::new(&graph.storey(level), domain, limits)?;
+        brief.vary(&mut rng);
+        briefs.push(brief);
+    }
+    let heights: Vec<f64> = briefs.iter().map(|b| height(b, storeys)).collect();
+    let tallest = heights.iter().copied().fold(0.0, f64::max);
+    for (i, brief) in briefs.iter_mut().enumerate() {
+        let core = Core::new(brief, graph, domain, tallest);
+        let missing = || mismatch(format!("level {} has no stairs in `links`", numbers[i]));
+        brief.core = Some(core.ok_or_else(missing)?);
+        raise_stairwells(brief, graph, (i + 1 < numbers.len()).then(|| heights[i] - 0.01));
+    }
+    let ground = numbers.iter().position(|&l| l == 0).unwrap_or(0);
+    let mut planned: Vec<Option<Planned>> = numbers.iter().map(|_| None).collect();
+    let order = (ground..numbers.len()).map(|i| (i, i.checked_sub(1).filter(|_| i > ground)));
+    let order = order.chain((0..ground).rev().map(|i| (i, Some(i + 1))));
+    for (i, next_to) in order {
+        if let Some(core) = &mut briefs[i].core {
+            core.below = next_to.and_then(|n| planned[n].as_ref()).map(|p| p.below.clone());
+        }
+        let mut rng = Stream::new(graph.seed, &format!("floorplan/level/{}", numbers[i]));
+        let found = storey(&briefs[i], domain, turn, graph.seed, &mut rng);
+        let infeasible = |reason: String| Error::Infeasible {
+            stage: "floorplan",
+            message: format!("level {}: {reason}", numbers[i]),
+        };
+        planned[i] = Some(found.map_err(infeasible)?);
+    }
+    let planned: Vec<Planned> = planned.into_iter().flatten().collect();
+    Ok(stacked(graph, planned, &numbers, &heights, ground))
+}
+
+/// Returns the height of a storey from floor to floor, m.
+fn height(brief: &Brief, storeys: &Storeys) -> f64 {
+    let ceiling = brief.rooms.iter().map(|r| {
+        let by_rule = r.limits.ceiling_height(r.area_max).unwrap_or(0.0);
+        r.ceiling_height.max(if r.circulation { 0.0 } else { by_rule })
+    });
+    let clear = ceiling.fold(0.0, f64::max) + storeys.slab_m;
+    to_mm((clear / HEIGHT_STEP_M - 1e-6).ceil() * HEIGHT_STEP_M)
+}
+
+/// Flights go up through the ceiling; over those of the highest storey it is a usual one.
+fn raise_stairwells(brief: &mut Brief, graph: &SceneGraph, height_m: Option<f64>) {
+    let Some(height) = height_m else { return };
+    let stairs = |id: &String| graph.links.iter().any(|l| l.kind == LinkKind::Stairs && l.room_ids.contains(id));
+    for room in brief.rooms.iter_mut().filter(|r| stairs(&r.id)) {
+        room.ceiling_height = to_mm(height + 0.01);
+    }
+}
+
+/// Plans one storey around its core; of several plans the one that juts out least.
+fn storey(brief: &Brief, domain: &Domain, turn: Turn, seed: u64, rng: &mut Stream) -> Result<Planned, String> {
+    let mut last = String::from("no layout was found");
+    let mut best: Option<Planned> = None;
+    let mut compared = 0;
+    for _ in 0..ATTEMPTS {
+        let schemes = schemes(brief, domain, rng);
+        let Some(found) = search(brief, &schemes, rng) else { break };
+        let Some(frame) = found.layout.core.filter(|_| found.score.is_sound()) else {
+            last = format!("the best layout misses hard rules by {:.2} (sizes, doors or daylight)", found.score.hard);
+            continue;
+        };
+        let boxes: Vec<(usize, Cellbox)> = in_core(&found.layout.boxes, &frame);
+        let name = format!("{:?}", found.scheme).to_lowercase();
+        match assemble(brief, &turned_in_place(&boxes, turn), &found.score, seed, &name, rng) {
+            Ok(plan) => {
+                let comb = brief.core.as_ref().is_some_and(|c| c.far.is_some()).then_some(found.layout.comb);
+                let below = Below { outline: merged(&boxes), by_core: true, comb };
+                let overhang = found.score.overhang;
+                if best.as_ref().is_none_or(|b| overhang < b.overhang) {
+                    best = Some(Planned { plan, below, overhang });
+                }
+                compared += 1;
+                if overhang <= OVERHANG_SHARE || compared == COMPARED {
+                    break;
+                }
+            }
+            Err(reason) => last = reason,
+        }
+    }
+    best.ok_or(last)
+}
+
+/// Puts the storeys into one document, the building's south-west corner at the origin.
+fn stacked(graph: &SceneGraph, planned: Vec<Planned>, numbers: &[i32], heights: &[f64], ground: usize) -> Floorplan {
+    let corners = || planned.iter().flat_map(|p| &p.plan.rooms).map(|r| r.polygon.bounds());
+    let west = corners().map(|b| b.x0).fold(f64::MAX, f64::min);
+    let south = corners().map(|b| b.y0).fold(f64::MAX, f64::min);
+    let basement: f64 = heights[..ground].iter().sum();
+    let mut elevation_m = -basement;
+    let mut levels = Vec::new();
+    for (&level, &height_m) in numbers.iter().zip(heights) {
+        levels.push(Level { level, elevation_m: to_mm(elevation_m), height_m });
+        elevation_m += height_m;
+    }
+    let mut out = Floorplan {
+        version: 1,
+        seed: graph.seed,
+        scheme: planned.get(ground).map_or(String::new(), |p| p.plan.scheme.clone()),
+        rooms: Vec::new(),
+        walls: Vec::new(),
+        doors: Vec::new(),
+        windows: Vec::new(),
+        cost: Vec::new(),
+        conflicts: Vec::new(),
+        levels,
+        links: graph.links.clone(),
+    };
+    for (storey, &level) in planned.into_iter().zip(numbers) {
+        if storey.overhang > OVERHANG_SHARE {
+            let share = 100.0 * storey.overhang;
+            out.conflicts.push(Note {
+                code: "overhang".into(),
+                message: format!("{share:.0} % of level {level} juts out over the level below it"),
+            });
+        }
+        add(&mut out, storey.plan.moved(-west, -south), level);
+    }
+    let order = |id: &str| graph.rooms.iter().position(|r| r.id == id);
+    out.rooms.sort_by_key(|r| order(&r.room_id));
+    out
+}
+
+/// Adds a storey, whose walls, doors and windows are counted on.
+fn add(out: &mut Floorplan, storey: Floorplan, level: i32) {
+    let (walls, doors, windows) = (out.walls.len(), out.doors.len(), out.windows.len());
+    for (i, mut wall) in storey.walls.into_iter().enumerate() {
+        wall.wall_id = format!("wall_{}", walls + i + 1);
+        out.walls.push(wall);
+    }
+    for (i, mut door) in storey.doors.into_iter().enumerate() {
+        door.door_id = format!("door_{}", doors + i + 1);
+        out.doors.push(door);
+    }
+    for (i, mut window) in storey.windows.into_iter().enumerate() {
+        window.window_id = format!("window_{}", windows + i + 1);
+        out.windows.push(window);
+    }
+    out.rooms.extend(storey.rooms.into_iter().map(|mut room| {
+        room.level = level;
+        room
+    }));
+    for CostTerm { term, cost } in storey.cost {
+        match out.cost.iter_mut().find(|c| c.term == term) {
+            Some(known) => known.cost = to_mm(known.cost + cost),
+            None => out.cost.push(CostTerm { term, cost }),
+        }
+    }
+    for conflict in storey.conflicts {
+        if !out.conflicts.contains(&conflict) {
+            out.conflicts.push(conflict);
+        }
+    }
+}
