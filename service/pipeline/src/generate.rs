@@ -16,6 +16,7 @@ use d3dgen_model::seed::Stream;
 use d3dgen_model::world::World;
 use d3dgen_plugins::{Plugin, Registry};
 
+use crate::placement::Furnished;
 use crate::scene_graph::{BY_PROMPT, Request};
 use crate::{Error, floorplan, placement, scenario, scene_graph, world};
 
@@ -89,6 +90,8 @@ pub enum Artifact<'a> {
 pub enum Event<'a> {
     /// A stage begins, in an attempt counted from 0.
     Started(Stage, u32),
+    /// A room is furnished, in an attempt counted from 0.
+    Furnished(u32, Furnished<'a>),
     /// A stage is done.
     Finished(Stage, u32, Artifact<'a>),
     /// An attempt (counted from 0) came to nothing, and why; another one follows unless it was the last.
@@ -108,7 +111,7 @@ pub struct Generated {
 
 /// Makes and checks a world.
 ///
-/// `observe` hears of every stage; `cancelled` is looked at before each. When no attempt is sound, the one with the
+/// `observe` hears of every stage; `cancelled` is looked at before each and every few steps of the searches in them. When no attempt is sound, the one with the
 /// fewest broken rules is returned, its report saying so.
 ///
 /// # Errors
@@ -246,12 +249,25 @@ fn attempt(
     let reseeded = SceneGraph { seed, ..graph.clone() };
 
     begin(Stage::Floorplan, attempt, observe, cancelled)?;
-    let plan = floorplan::generate(&reseeded, domain, &retrieved.limits, settings.pinned_floorplan.as_ref())?;
+    let plan = floorplan::generate_until(
+        &reseeded,
+        domain,
+        &retrieved.limits,
+        settings.pinned_floorplan.as_ref(),
+        cancelled.into(),
+    )?;
     observe(Event::Finished(Stage::Floorplan, attempt, Artifact::Floorplan(&plan)));
 
     begin(Stage::Placement, attempt, observe, cancelled)?;
-    let placements =
-        placement::generate(&reseeded, &plan, domain, &retrieved.limits, settings.pinned_placements.as_ref())?;
+    let placements = placement::generate_until(
+        &reseeded,
+        &plan,
+        domain,
+        &retrieved.limits,
+        settings.pinned_placements.as_ref(),
+        &mut |room| observe(Event::Furnished(attempt, room)),
+        cancelled.into(),
+    )?;
     observe(Event::Finished(Stage::Placement, attempt, Artifact::Placements(&placements)));
 
     begin(Stage::Scenario, attempt, observe, cancelled)?;

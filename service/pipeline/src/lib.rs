@@ -8,6 +8,8 @@ pub mod generate;
 pub mod placement;
 pub mod scenario;
 pub mod scene_graph;
+pub mod stop;
 pub mod world;
 
 pub use error::Error;
+pub use stop::Stop;

@@ -27,8 +27,10 @@ const LIMIT: usize = 500;
 
 /// The domains at one moment.
 pub struct Snapshot {
-    /// All domains, with the rules and assets that the databases have changed.
+    /// All domains, with the rules and assets that the databases have changed: what worlds are made of.
     pub registry: Registry,
+    /// All domains with the changed rules, and objects as they were shipped or registered: what clients are shown.
+    pub as_given: Registry,
     /// Their objects.
     pub catalog: Arc<Catalog>,
     /// Registered ones, by id.
@@ -311,6 +313,7 @@ fn snapshot(databases: &Databases, shipped: &Registry) -> Result<Snapshot, Error
             registry.set_knowledge(&entry.domain, knowledge);
         }
     }
+    let as_given = registry.clone();
     let catalog = Arc::new(Catalog::new(registry.iter().map(Plugin::domain)));
     if !databases.assets.is_empty()?
         && let Some(stock) = Stock::read(&databases.assets, &catalog)?
@@ -320,7 +323,7 @@ fn snapshot(databases: &Databases, shipped: &Registry) -> Result<Snapshot, Error
             registry.set_domain(domain);
         }
     }
-    Ok(Snapshot { registry, catalog, registered: entries })
+    Ok(Snapshot { registry, as_given, catalog, registered: entries })
 }
 
 #[cfg(test)]

@@ -14,6 +14,7 @@ use super::lattice::{Cellbox, Frame, meters, up};
 use super::realize::{Layout, spine_units};
 use super::search::{Candidate, search_with};
 use super::spec::Brief;
+use crate::Stop;
 
 /// Rooms from which on a building is composed of wings.
 pub(super) const LARGE: usize = 18;
@@ -47,7 +48,7 @@ struct Wing {
 }
 
 /// Returns the best building of wings; its `score.hard` is above 0 when none is sound.
-pub(super) fn compose(brief: &Brief, weights: &Weights, rng: &mut Stream) -> Option<Candidate> {
+pub(super) fn compose(brief: &Brief, weights: &Weights, rng: &mut Stream, stop: Stop<'_>) -> Option<Candidate> {
     let spine = brief.spine?;
     let mut judge = Judge::new(brief);
     let mut best: Option<Candidate> = None;
@@ -63,7 +64,10 @@ pub(super) fn compose(brief: &Brief, weights: &Weights, rng: &mut Stream) -> Opt
         let mut wings: Vec<Wing> = Vec::new();
         for rooms in &partition(brief, count, rng) {
             let below = given.and_then(|c| below_wing(brief, c, wings.len()));
-            wings.extend(wing(brief, rooms, weights, below.as_ref(), rng));
+            wings.extend(wing(brief, rooms, weights, below.as_ref(), rng, stop));
+        }
+        if stop.is_set() {
+            break;
         }
         let two_sided = wings.len() > 3 || rng.chance(0.5);
         let layout = along_spine(brief, spine, wings, two_sided, rng);
@@ -81,14 +85,21 @@ pub(super) fn compose(brief: &Brief, weights: &Weights, rng: &mut Stream) -> Opt
 }
 
 /// Searches one wing; `None` for a wing without rooms.
-fn wing(brief: &Brief, rooms: &[usize], weights: &Weights, below: Option<&Below>, rng: &mut Stream) -> Option<Wing> {
-    if rooms.is_empty() {
+fn wing(
+    brief: &Brief,
+    rooms: &[usize],
+    weights: &Weights,
+    below: Option<&Below>,
+    rng: &mut Stream,
+    stop: Stop<'_>,
+) -> Option<Wing> {
+    if rooms.is_empty() || stop.is_set() {
         return None;
     }
     let part = brief.wing(rooms);
     let schemes = if rng.chance(0.5) { [Scheme::Capped, Scheme::Straight] } else { [Scheme::Straight, Scheme::Capped] };
     let schemes = if rooms.len() < 5 { &[Scheme::Straight][..] } else { &schemes };
-    let found = search_with(&part, schemes, weights, 1, below, rng)?;
+    let found = search_with(&part, schemes, (weights, 1), below, rng, stop)?;
     let w = spine_units(brief);
     let stem = |(room, b): &(usize, Cellbox)| Some(*room) == part.spine && b.x1 <= 0;
     let boxes: Vec<(usize, Cellbox)> = found.layout.boxes.iter().copied().filter(|b| !stem(b)).collect();

@@ -31,7 +31,7 @@ use d3dgen_model::floorplan::Floorplan;
 use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::seed::Stream;
 
-use crate::Error;
+use crate::{Error, Stop};
 use assemble::{Turn, assemble, turned};
 use search::search;
 use spec::Brief;
@@ -55,6 +55,20 @@ pub fn generate(
     limits: &Limits,
     pinned: Option<&Floorplan>,
 ) -> Result<Floorplan, Error> {
+    generate_until(graph, domain, limits, pinned, Stop::never())
+}
+
+/// Plans as [`generate`] does, until the caller asks to stop.
+///
+/// # Errors
+/// As [`generate`]; `Cancelled`.
+pub fn generate_until(
+    graph: &SceneGraph,
+    domain: &Domain,
+    limits: &Limits,
+    pinned: Option<&Floorplan>,
+    stop: Stop<'_>,
+) -> Result<Floorplan, Error> {
     if let Some(plan) = pinned {
         match plan.rooms.iter().filter(|r| r.locked).count() {
             0 => {}
@@ -71,7 +85,7 @@ pub fn generate(
         }
     }
     if graph.level_numbers().len() > 1 {
-        return storeys::generate(graph, domain, limits);
+        return storeys::generate(graph, domain, limits, stop);
     }
     let mut brief = Brief::new(graph, domain, limits)?;
     let mut rng = Stream::new(graph.seed, "floorplan");
@@ -80,7 +94,9 @@ pub fn generate(
     for _ in 0..ATTEMPTS {
         let schemes = schemes(&brief, domain, &mut rng);
         let turn = Turn { flip_x: rng.chance(0.5), flip_y: rng.chance(0.5), swap: rng.chance(0.3) };
-        let Some(found) = search(&brief, &schemes, &mut rng) else { break };
+        let found = search(&brief, &schemes, &mut rng, stop);
+        stop.check()?;
+        let Some(found) = found else { break };
         if found.score.hard > 1e-9 {
             last = format!("the best layout misses hard rules by {:.2} (sizes, doors or daylight)", found.score.hard);
             continue;

@@ -9,6 +9,7 @@ use super::cost::{Judge, Score, Weights, taste};
 use super::genome::{Cell, Cover, Genome, guest_of, is_nestable};
 use super::realize::{Layout, Scratch, realize};
 use super::spec::Brief;
+use crate::Stop;
 
 /// Steps of one run per room, and the runs at most.
 const STEPS_PER_ROOM: usize = 220;
@@ -24,6 +25,9 @@ const SMALL: usize = 14;
 /// Temperature at the start and the end of a run, in cost units.
 const HEAT: (f64, f64) = (1.5, 0.02);
 
+/// Steps from one look at the wish to stop to the next.
+const LOOK: usize = 64;
+
 /// The exponential distribution in 32 steps of equal chance, from the most patient to the least.
 const PATIENCE: [f64; 32] = [
     4.159, 3.060, 2.549, 2.213, 1.962, 1.761, 1.594, 1.451, 1.326, 1.214, 1.114, 1.023, 0.940, 0.863, 0.792, 0.725,
@@ -38,35 +42,35 @@ pub(super) struct Candidate {
     pub score: Score,
 }
 
-/// Returns the best candidate found; its `score.hard` is above 0 when none is sound.
-pub(super) fn search(brief: &Brief, schemes: &[Scheme], rng: &mut Stream) -> Option<Candidate> {
+/// Returns the best candidate found, of few steps when asked to stop; its `score.hard` is above 0 when none is sound.
+pub(super) fn search(brief: &Brief, schemes: &[Scheme], rng: &mut Stream, stop: Stop<'_>) -> Option<Candidate> {
     let weights = taste(rng);
     if brief.core.as_ref().is_some_and(|c| c.far.is_some()) {
-        return compose(brief, &weights, rng);
+        return compose(brief, &weights, rng, stop);
     }
     if brief.core.is_some() || brief.rooms.len() < LARGE || brief.hub {
         let wanted = if brief.rooms.len() > SMALL { WANTED - 1 } else { WANTED };
-        return search_with(brief, schemes, &weights, wanted, None, rng);
+        return search_with(brief, schemes, (&weights, wanted), None, rng, stop);
     }
     // One body where the seed and the size allow it, else wings.
     let whole: Vec<Scheme> = schemes.iter().copied().filter(|s| *s != Scheme::Comb).take(1).collect();
     if brief.rooms.len() <= MOST_WHOLE && schemes.first() != Some(&Scheme::Comb) {
-        let found = anneal(brief, &mut Judge::new(brief), *whole.first()?, &weights, rng);
+        let found = anneal(brief, &mut Judge::new(brief), *whole.first()?, &weights, rng, stop);
         if found.score.is_sound() {
             return Some(found);
         }
     }
-    compose(brief, &weights, rng)
+    compose(brief, &weights, rng, stop)
 }
 
 /// Returns the best of several runs, which end when `wanted` sound ones are found.
 pub(super) fn search_with(
     brief: &Brief,
     schemes: &[Scheme],
-    weights: &Weights,
-    wanted: usize,
+    (weights, wanted): (&Weights, usize),
     below: Option<&Below>,
     rng: &mut Stream,
+    stop: Stop<'_>,
 ) -> Option<Candidate> {
     let mut best: Option<Candidate> = None;
     let mut sound = 0;
@@ -76,7 +80,7 @@ pub(super) fn search_with(
         // The first choice of the seed gets most runs; the others step in when it does not work out.
         let scheme = if run < 4 { schemes.first() } else { schemes.get(run % schemes.len().max(1)) };
         let Some(&scheme) = scheme else { break };
-        let found = anneal(brief, &mut judge, scheme, weights, rng);
+        let found = anneal(brief, &mut judge, scheme, weights, rng, stop);
         let is_sound = found.score.is_sound();
         sound += usize::from(is_sound);
         let better = best
@@ -85,7 +89,7 @@ pub(super) fn search_with(
         if better {
             best = Some(found);
         }
-        if sound >= wanted {
+        if sound >= wanted || stop.is_set() {
             break;
         }
     }
@@ -93,7 +97,14 @@ pub(super) fn search_with(
 }
 
 /// One run: from a random start, hot to cold.
-fn anneal(brief: &Brief, judge: &mut Judge<'_>, scheme: Scheme, weights: &Weights, rng: &mut Stream) -> Candidate {
+fn anneal(
+    brief: &Brief,
+    judge: &mut Judge<'_>,
+    scheme: Scheme,
+    weights: &Weights,
+    rng: &mut Stream,
+    stop: Stop<'_>,
+) -> Candidate {
     let steps = (STEPS_PER_ROOM * brief.rooms.len()).clamp(600, MAX_STEPS);
     let (mut scratch, mut layout) = (Scratch::default(), Layout::default());
     let mut value = |genome: &Genome| {
@@ -105,6 +116,9 @@ fn anneal(brief: &Brief, judge: &mut Judge<'_>, scheme: Scheme, weights: &Weight
     let (mut best, mut least) = (current.clone(), cost);
     let mut trial = current.clone();
     for step in 0..steps {
+        if step % LOOK == 0 && stop.is_set() {
+            break;
+        }
         let left = 1.0 - step as f64 / steps as f64;
         let heat = HEAT.1 + (HEAT.0 - HEAT.1) * left * left * left;
         trial.clone_from(&current);

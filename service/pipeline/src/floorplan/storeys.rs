@@ -14,7 +14,7 @@ use super::lattice::Cellbox;
 use super::search::search;
 use super::spec::Brief;
 use super::{ATTEMPTS, schemes};
-use crate::Error;
+use crate::{Error, Stop};
 
 /// Share of a storey that may jut out over the one below without a word.
 const OVERHANG_SHARE: f64 = 0.10;
@@ -34,7 +34,12 @@ struct Planned {
 ///
 /// # Errors
 /// As [`super::generate`]; `Mismatch` for storeys that nothing joins.
-pub(super) fn generate(graph: &SceneGraph, domain: &Domain, limits: &Limits) -> Result<Floorplan, Error> {
+pub(super) fn generate(
+    graph: &SceneGraph,
+    domain: &Domain,
+    limits: &Limits,
+    stop: Stop<'_>,
+) -> Result<Floorplan, Error> {
     let mismatch = |message: String| Error::Mismatch { stage: "floorplan", message };
     let storeys = domain.circulation.storeys.as_ref().ok_or_else(|| {
         mismatch(format!("domain `{}` says nothing of stairs; its buildings have one storey", domain.id))
@@ -65,7 +70,8 @@ pub(super) fn generate(graph: &SceneGraph, domain: &Domain, limits: &Limits) -> 
             core.below = next_to.and_then(|n| planned[n].as_ref()).map(|p| p.below.clone());
         }
         let mut rng = Stream::new(graph.seed, &format!("floorplan/level/{}", numbers[i]));
-        let found = storey(&briefs[i], domain, turn, graph.seed, &mut rng);
+        let found = storey(&briefs[i], domain, (turn, graph.seed), &mut rng, stop);
+        stop.check()?;
         let infeasible = |reason: String| Error::Infeasible {
             stage: "floorplan",
             message: format!("level {}: {reason}", numbers[i]),
@@ -96,13 +102,22 @@ fn raise_stairwells(brief: &mut Brief, graph: &SceneGraph, height_m: Option<f64>
 }
 
 /// Plans one storey around its core; of several plans the one that juts out least.
-fn storey(brief: &Brief, domain: &Domain, turn: Turn, seed: u64, rng: &mut Stream) -> Result<Planned, String> {
+fn storey(
+    brief: &Brief,
+    domain: &Domain,
+    (turn, seed): (Turn, u64),
+    rng: &mut Stream,
+    stop: Stop<'_>,
+) -> Result<Planned, String> {
     let mut last = String::from("no layout was found");
     let mut best: Option<Planned> = None;
     let mut compared = 0;
     for _ in 0..ATTEMPTS {
         let schemes = schemes(brief, domain, rng);
-        let Some(found) = search(brief, &schemes, rng) else { break };
+        let Some(found) = search(brief, &schemes, rng, stop) else { break };
+        if stop.is_set() {
+            break;
+        }
         let Some(frame) = found.layout.core.filter(|_| found.score.is_sound()) else {
             last = format!("the best layout misses hard rules by {:.2} (sizes, doors or daylight)", found.score.hard);
             continue;

@@ -9,6 +9,7 @@ use super::assemble::{Turn, assemble, turned};
 use super::genome::Genome;
 use super::search::{mutate, search};
 use super::spec::{Brief, Link, RoomSpec};
+use crate::Stop;
 
 fn room(id: &str, area: [f64; 3], min_dimension: f64, daylight: Daylight, zone: Zone) -> RoomSpec {
     let material = || "Concrete_Smooth".to_owned();
@@ -121,7 +122,7 @@ fn hall() -> Brief {
 
 fn sound(brief: &Brief, schemes: &[Scheme], seed: u64) -> bool {
     let mut rng = Stream::new(seed, "floorplan");
-    let Some(found) = search(brief, schemes, &mut rng) else { return false };
+    let Some(found) = search(brief, schemes, &mut rng, Stop::never()) else { return false };
     if found.score.hard > 1e-9 {
         return false;
     }
@@ -188,7 +189,7 @@ fn no_change_loses_or_doubles_a_room() {
 fn one_seed_gives_one_plan_and_two_seeds_give_two() {
     let brief = home();
     let boxes = |seed: u64| {
-        let found = search(&brief, &[Scheme::Capped], &mut Stream::new(seed, "floorplan"));
+        let found = search(&brief, &[Scheme::Capped], &mut Stream::new(seed, "floorplan"), Stop::never());
         found.map(|f| f.layout.boxes)
     };
     assert_eq!(boxes(1), boxes(1));

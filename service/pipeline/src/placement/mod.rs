@@ -32,7 +32,7 @@ use d3dgen_model::placements::{Placements, Unplaced};
 use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::seed::Stream;
 
-use crate::Error;
+use crate::{Error, Stop};
 use geom::mm;
 use space::Space;
 use way::Way;
@@ -55,14 +55,47 @@ pub fn generate(
     limits: &Limits,
     pinned: Option<&Placements>,
 ) -> Result<Placements, Error> {
+    generate_until(graph, plan, domain, limits, pinned, &mut |_| (), Stop::never())
+}
+
+/// A room that is furnished.
+#[derive(Debug, Clone, Copy)]
+pub struct Furnished<'a> {
+    /// Its id.
+    pub room_id: &'a str,
+    /// What stands in it.
+    pub placements: &'a [Placement],
+    /// Rooms furnished, this one included.
+    pub done: usize,
+    /// Rooms of the plan.
+    pub total: usize,
+}
+
+/// Furnishes as [`generate`] does, until the caller asks to stop; `observe` hears of each room.
+///
+/// # Errors
+/// As [`generate`]; `Cancelled`.
+pub fn generate_until(
+    graph: &SceneGraph,
+    plan: &Floorplan,
+    domain: &Domain,
+    limits: &Limits,
+    pinned: Option<&Placements>,
+    observe: &mut dyn FnMut(Furnished<'_>),
+    stop: Stop<'_>,
+) -> Result<Placements, Error> {
     let mut problems = locked::strays(pinned, plan);
     for room in plan.rooms.iter().filter(|r| graph.room(&r.room_id).is_none()) {
         problems.push(format!("room `{}` of the floorplan is not in the scene graph", room.room_id));
     }
     let mut out = Placements { version: 1, seed: graph.seed, placements: Vec::new(), unplaced: Vec::new() };
-    for room in &plan.rooms {
-        match furnish_room(graph, plan, room, (domain, limits), pinned) {
+    for (at, room) in plan.rooms.iter().enumerate() {
+        let furnished = furnish_room(graph, plan, room, (domain, limits), pinned, stop);
+        stop.check()?;
+        match furnished {
             Ok((placements, unplaced)) => {
+                let (done, total) = (at + 1, plan.rooms.len());
+                observe(Furnished { room_id: &room.room_id, placements: &placements, done, total });
                 out.placements.extend(placements);
                 out.unplaced.extend(unplaced);
             }
@@ -79,6 +112,7 @@ fn furnish_room(
     room: &PlanRoom,
     (domain, limits): (&Domain, &Limits),
     pinned: Option<&Placements>,
+    stop: Stop<'_>,
 ) -> Result<(Vec<Placement>, Vec<Unplaced>), Vec<String>> {
     let space = Space::new(plan, room);
     let kind = domain.room_type_or_generic(&room.room_type);
@@ -105,6 +139,7 @@ fn furnish_room(
         salt,
         radius: radius(graph, &space),
         way: way.as_ref(),
+        stop,
     };
     let outcome = search::furnish(&job);
     let placements = assemble::placements(domain, &room.room_id, &tasks, &outcome, &fixed);

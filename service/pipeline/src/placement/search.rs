@@ -12,6 +12,7 @@ use super::space::Space;
 use super::state::{Placed, Rule, State};
 use super::unit::{Unit, variants};
 use super::way::Way;
+use crate::Stop;
 
 /// Positions whose routes are looked at before a unit counts as unplaceable.
 const ROUTE_TESTS: usize = 40;
@@ -40,6 +41,8 @@ pub(super) struct Job<'a, 's> {
     pub radius: i32,
     /// In circulation, what must stay open.
     pub way: Option<&'s Way>,
+    /// When to give up; the outcome is then of no use.
+    pub stop: Stop<'s>,
 }
 
 /// How strict a pass is: clearances as a share, and a margin around the robot, mm.
@@ -66,7 +69,7 @@ pub(super) fn furnish<'a>(job: &Job<'a, '_>) -> Outcome<'a> {
         if best.as_ref().is_none_or(|b| outcome.required_missing < b.required_missing) {
             best = Some(outcome);
         }
-        if done {
+        if done || job.stop.is_set() {
             break;
         }
     }
@@ -135,7 +138,11 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
         let hopeless = best.outcome.required_missing > 0 && self.hopeless();
         for (n, departure) in DEPARTURES.into_iter().chain(RESCUES).enumerate() {
             let looks = if empty > LARGE { 2 } else { DEPARTURES.len() };
-            if hopeless || departure.0 >= best.steps || n >= looks && best.outcome.required_missing == 0 {
+            if self.job.stop.is_set()
+                || hopeless
+                || departure.0 >= best.steps
+                || n >= looks && best.outcome.required_missing == 0
+            {
                 continue;
             }
             let other = draft(departure);
@@ -175,7 +182,7 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
             let task = &self.job.tasks[index];
             let present = self.job.present[index];
             let count = task.count.saturating_sub(present);
-            if count == 0 {
+            if count == 0 || self.job.stop.is_set() {
                 continue;
             }
             let mut tally = Tally::default();
@@ -192,7 +199,7 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
                     state.add(units);
                 }
             } else {
-                while placed < count {
+                while placed < count && !self.job.stop.is_set() {
                     let Some((unit, score)) = self.single(state, index, rank(steps), &mut tally) else { break };
                     outcome.score += score + if task.required > 0 { 2.0 } else { 1.0 };
                     state.add(vec![unit]);
@@ -274,7 +281,7 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
         tally: &mut Tally,
     ) -> Option<(Vec<Placed<'a>>, f64)> {
         let mut best: Option<(Vec<Placed>, f64)> = None;
-        for forms in &self.forms[index] {
+        for forms in self.forms[index].iter().take_while(|_| !self.job.stop.is_set()) {
             let unit = &forms[0];
             let batches = if task.arrangement == Arrangement::Overhead {
                 over(state, task, index, unit, tally)
@@ -282,7 +289,7 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
                 rows(state, task, index, unit, terms, tally)
             };
             let most = batches.iter().skip(rank).map(|b| b.placed.len()).max().unwrap_or(0);
-            for batch in batches.into_iter().skip(rank) {
+            for batch in batches.into_iter().skip(rank).take_while(|_| !self.job.stop.is_set()) {
                 let mut kept: Vec<Placed> = Vec::new();
                 keep_passable(state, &batch.placed, &mut kept, tally);
                 kept.iter_mut().for_each(|p| p.first_line = task.line == 0);
@@ -304,7 +311,7 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
 
     fn single(&self, state: &State<'a, 's>, index: usize, rank: usize, tally: &mut Tally) -> Option<(Placed<'a>, f64)> {
         let (task, aisle) = (&self.job.tasks[index], self.aisle());
-        for forms in &self.forms[index] {
+        for forms in self.forms[index].iter().take_while(|_| !self.job.stop.is_set()) {
             let mut candidates: Vec<Candidate> = Vec::new();
             for unit in forms {
                 candidates.extend(Find::new(state, task, index, self.job.salt, aisle, tally).run(unit));

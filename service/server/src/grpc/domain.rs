@@ -36,7 +36,7 @@ impl DomainService for Api {
         let page = Page::new(asked.page_size, &asked.page_token, &ListDomainsRequest::default())?;
         self.lookup(move |core| {
             let now = core.domains.now();
-            let (page, next_page_token) = page.cut(now.registry.iter());
+            let (page, next_page_token) = page.cut(now.as_given.iter());
             Ok(ListDomainsResponse { domains: page.into_iter().map(|p| short(p, &now)).collect(), next_page_token })
         })
         .await
@@ -46,7 +46,8 @@ impl DomainService for Api {
         let asked = request.into_inner();
         self.lookup(move |core| {
             let now = core.domains.now();
-            let plugin = plugin(&now, "domain_id", &asked.domain_id)?;
+            plugin(&now, "domain_id", &asked.domain_id)?;
+            let plugin = now.as_given.get(&asked.domain_id).ok_or_else(|| no_domain(&now, &asked.domain_id))?;
             let in_force = now.registered.get(&asked.domain_id).map_or(1, |e| e.version);
             if let Some(version) = asked.domain_version.filter(|v| *v != in_force) {
                 let found = core.domains.version(&core.databases, &asked.domain_id, version);

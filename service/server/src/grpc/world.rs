@@ -97,8 +97,15 @@ impl WorldService for Api {
             let plugin = plugin(&now, "scene_graph.domain", &graph.domain)?;
             let limits = retrieve(&graph, plugin).limits;
             let graph = SceneGraph { seed: plan.seed, ..graph };
-            go_on(stop)?;
-            let made = placement::generate(&graph, &plan, plugin.domain(), &limits, pinned.as_ref());
+            let made = placement::generate_until(
+                &graph,
+                &plan,
+                plugin.domain(),
+                &limits,
+                pinned.as_ref(),
+                &mut |_| (),
+                stop.into(),
+            );
             let placements = made.map_err(|e| status::stage("floorplan", e))?;
             Ok(GeneratePlacementsResponse { placements: Some(message(&placements)) })
         })
@@ -303,9 +310,8 @@ fn plans(
     let limits = retrieve(graph, plugin).limits;
     let (mut found, mut refused): (Vec<(f64, Floorplan)>, _) = (Vec::new(), None);
     for attempt in 0..count * SEEDS {
-        go_on(stop)?;
         let graph = SceneGraph { seed: attempt_seed(graph.seed, attempt), ..graph.clone() };
-        match floorplan::generate(&graph, plugin.domain(), &limits, pinned) {
+        match floorplan::generate_until(&graph, plugin.domain(), &limits, pinned, stop.into()) {
             Ok(plan) => {
                 if !found.iter().any(|(_, other)| other.rooms == plan.rooms) {
                     found.push((plan.cost.iter().map(|term| term.cost).sum(), plan));

@@ -1,16 +1,22 @@
 //! The process is killed in the middle of its work: what it has acknowledged is there after the next start.
 
+use std::collections::BTreeSet;
+use std::path::Path;
 use std::time::Duration;
 
+use d3dgen_mesh::{builds, writers};
+use d3dgen_plugins::Registry;
 use d3dgen_proto::v1::{
-    GenerateBatchRequest, GetDomainRequest, GetJobRequest, JobState, KnowledgeBase, ListBatchWorldsRequest,
-    ListDomainsRequest, RegisterDomainRequest,
+    AnyOf, AssetFilter, GenerateBatchRequest, GetJobRequest, IngestFolderRequest, JobState, KnowledgeBase,
+    ListAssetsRequest, ListBatchWorldsRequest, ListDomainsRequest, RegisterDomainRequest, job,
 };
 
-use crate::support::{Clients, Server, flat};
+use crate::support::{self, Clients, Server, flat};
 
 /// Rounds of the ordinary test; `D3DGEN_KILL_ROUNDS` asks for more.
 const ROUNDS: u64 = 4;
+/// Models of the ingest of a round.
+const MODELS: usize = 60;
 
 #[tokio::test(flavor = "multi_thread")]
 async fn nothing_acknowledged_is_lost_and_jobs_go_on() {
@@ -19,8 +25,11 @@ async fn nothing_acknowledged_is_lost_and_jobs_go_on() {
     let rounds = std::env::var("D3DGEN_KILL_ROUNDS").ok().and_then(|n| n.parse().ok()).unwrap_or(ROUNDS);
     let (mut registered, mut jobs): (Vec<(String, u64)>, Vec<String>) = (Vec::new(), Vec::new());
     let mut manifest = None;
+    let root = dir.path().join("models");
+    let settings = ["jobs.kept=1000", "jobs.workers=2", &format!("read_roots=[{:?}]", root.display().to_string())];
+    let (mut ingests, mut assets, mut in_the_middle): (Vec<String>, BTreeSet<String>, u64) = Default::default();
     for round in 0..rounds {
-        let server = Server::start(&data, &["jobs.kept=1000"]);
+        let server = Server::start(&data, &settings);
         let mut c = Clients::of(&server).await;
         // all that was acknowledged is there
         let listed = c.domains.list_domains(ListDomainsRequest { page_size: 500, ..Default::default() }).await;
@@ -29,19 +38,25 @@ async fn nothing_acknowledged_is_lost_and_jobs_go_on() {
             let found = listed.iter().find(|d| d.domain_id == *id).unwrap_or_else(|| panic!("{id} is lost"));
             assert!(found.domain_version >= *version, "{id}: {} < {version}", found.domain_version);
         }
-        for id in &jobs {
+        let kept = kept_assets(&mut c).await;
+        assert!(assets.is_subset(&kept), "lost: {:?}", assets.difference(&kept));
+        for id in jobs.iter().chain(&ingests) {
             let job = c.jobs.get_job(GetJobRequest { job_id: id.clone() }).await.expect("kept").into_inner().job;
             let job = job.expect("a job");
             assert_ne!(job.state, JobState::Failed as i32, "{job:?}");
         }
         if manifest.is_none() {
-            let get = GetDomainRequest { domain_id: "warehouse".into(), include_manifest: true, ..Default::default() };
-            manifest = c.domains.get_domain(get).await.expect("shipped").into_inner().manifest;
+            manifest = Some(support::manifest(&mut c, "warehouse").await);
         }
         let asked =
             GenerateBatchRequest { building: flat(round * 100), world_count: 5, request_id: format!("b{round}") };
         let job = c.worlds.generate_batch(asked).await.expect("started").into_inner().job.expect("a job");
         jobs.push(job.job_id);
+        let folder = root.join(format!("round_{round}"));
+        write_models(&folder, round);
+        let asked = IngestFolderRequest { server_path: folder.display().to_string(), ..Default::default() };
+        let ingest = c.assets.ingest_folder(asked).await.expect("started").into_inner().job.expect("a job").job_id;
+        ingests.push(ingest.clone());
         // registrations go on until the process is gone
         let mut domains = c.domains.clone();
         let mine = manifest.clone().expect("a manifest");
@@ -63,13 +78,25 @@ async fn nothing_acknowledged_is_lost_and_jobs_go_on() {
             }
             done
         });
-        tokio::time::sleep(Duration::from_millis(600 + 370 * (round % 7))).await;
+        in_the_middle += u64::from(wait_for_part(&mut c, &ingest, 0.1 + 0.12 * (round % 7) as f64).await);
+        assets.extend(kept_assets(&mut c).await);
         server.kill();
         registered.extend(work.await.expect("it ended"));
     }
     // at last every job comes to its end
-    let server = Server::start(&data, &["jobs.kept=1000"]);
+    let server = Server::start(&data, &settings);
     let mut c = Clients::of(&server).await;
+    for (round, id) in ingests.iter().enumerate() {
+        let job = c.ended(id).await;
+        assert_eq!(job.state, JobState::Succeeded as i32, "{job:?}");
+        let Some(job::Result::Ingest(result)) = job.result else { panic!("round {round}: no result") };
+        let found: BTreeSet<String> = result.files.iter().filter_map(|f| f.asset_id.clone()).collect();
+        assert_eq!((found.len(), result.refused_count), (MODELS, 0), "round {round}: {result:?}");
+        assets.extend(found);
+    }
+    let kept = kept_assets(&mut c).await;
+    assert!(kept.len() == MODELS * ingests.len() && assets == kept, "{} of {} assets", kept.len(), assets.len());
+    assert!(in_the_middle > 0, "no ingest was cut short: make MODELS larger");
     for id in &jobs {
         let job = c.ended(id).await;
         assert_eq!(job.state, JobState::Succeeded as i32, "{job:?}");
@@ -79,7 +106,60 @@ async fn nothing_acknowledged_is_lost_and_jobs_go_on() {
         seeds.dedup();
         assert_eq!(seeds.len(), 5, "{id}: each world once");
     }
-    println!("{rounds} rounds: {} registrations acknowledged, {} jobs ended", registered.len(), jobs.len());
+    println!(
+        "{rounds} rounds, {in_the_middle} of them in the middle of an ingest: {} registrations acknowledged, {} jobs ended, {} assets",
+        registered.len(),
+        jobs.len() + ingests.len(),
+        kept.len()
+    );
+}
+
+/// Writes models for an ingest, each of a size of its own.
+fn write_models(folder: &Path, round: u64) {
+    std::fs::create_dir_all(folder).expect("a folder");
+    let registry = Registry::builtin();
+    let office = registry.get("office").expect("shipped").domain();
+    let desk = office.objects.iter().find(|o| o.id == "desk").expect("an object");
+    let library = builds::Library::shipped().with(&office.builds);
+    for n in 0..MODELS {
+        let size = [1.2 + 0.01 * n as f64, 0.7 + 0.001 * round as f64, 0.73];
+        let mut model = builds::generate(&library, desk, size, round).expect("a desk");
+        model.name = format!("desk_{round}_{n}");
+        std::fs::write(folder.join(format!("{}.glb", model.name)), writers::glb(&model).expect("bytes"))
+            .expect("written");
+    }
+}
+
+/// Waits until a job has done a part; returns false when it ended before it was seen at work.
+async fn wait_for_part(c: &mut Clients, job_id: &str, part: f64) -> bool {
+    loop {
+        let job = c.jobs.get_job(GetJobRequest { job_id: job_id.into() }).await.expect("there").into_inner().job;
+        let job = job.expect("a job");
+        if job.ended_at.is_some() {
+            return false;
+        }
+        if job.progress.is_some_and(|p| p.fraction >= part) {
+            return true;
+        }
+        tokio::time::sleep(Duration::from_millis(2)).await;
+    }
+}
+
+/// Returns the ids of the assets that are kept in the database.
+async fn kept_assets(c: &mut Clients) -> BTreeSet<String> {
+    let any_of = [("origin".to_owned(), AnyOf { values: vec!["ingested".into()] })].into();
+    let ingested = AssetFilter { any_of, ..Default::default() };
+    let (mut found, mut page_token) = (BTreeSet::new(), String::new());
+    loop {
+        let list =
+            ListAssetsRequest { filter: Some(ingested.clone()), page_size: 1000, page_token, ..Default::default() };
+        let page = c.assets.list_assets(list).await.expect("a list").into_inner();
+        found.extend(page.assets.into_iter().map(|a| a.asset_id));
+        page_token = page.next_page_token;
+        if page_token.is_empty() {
+            return found;
+        }
+    }
 }
 
 #[cfg(unix)]

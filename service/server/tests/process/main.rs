@@ -2,6 +2,7 @@
 //! these tests where it is missing.
 
 mod access;
+mod assets;
 mod fault;
 mod hostile;
 mod services;

@@ -10,7 +10,7 @@ use d3dgen_proto::v1::domain_service_client::DomainServiceClient;
 use d3dgen_proto::v1::job_service_client::JobServiceClient;
 use d3dgen_proto::v1::knowledge_service_client::KnowledgeServiceClient;
 use d3dgen_proto::v1::world_service_client::WorldServiceClient;
-use d3dgen_proto::v1::{BuildingRequest, GetJobRequest, Job};
+use d3dgen_proto::v1::{BuildingRequest, DomainManifest, GetDomainRequest, GetJobRequest, Job};
 use d3dgen_server::access::{digest, hex};
 use d3dgen_tests::program;
 use tonic::metadata::MetadataValue;
@@ -50,8 +50,8 @@ impl Server {
         Self { url: format!("http://{address}"), child, data: data.to_path_buf() }
     }
 
-    /// Starts a server that knows [`TOKENS`].
-    pub fn with_tokens(data: &Path) -> Self {
+    /// Starts a server that knows [`TOKENS`], with further settings.
+    pub fn with_tokens(data: &Path, settings: &[&str]) -> Self {
         let tokens: Vec<String> = TOKENS
             .iter()
             .map(|(scope, token)| {
@@ -59,7 +59,8 @@ impl Server {
                 format!("{{ name = \"{scope}-client\", scope = \"{scope}\", sha256 = \"{sha256}\" }}")
             })
             .collect();
-        Self::start(data, &[&format!("tokens=[{}]", tokens.join(", "))])
+        let tokens = format!("tokens=[{}]", tokens.join(", "));
+        Self::start(data, &[&[tokens.as_str()], settings].concat())
     }
 
     /// Returns a connection.
@@ -151,6 +152,12 @@ pub fn with<T>(token: &str, message: T) -> Request<T> {
 pub fn flat(seed: u64) -> Option<BuildingRequest> {
     let prompt = "apartment with a kitchen, a bathroom and two bedrooms in Germany".into();
     Some(BuildingRequest { prompt, seed, ..BuildingRequest::default() })
+}
+
+/// Returns the manifest of a domain that is there.
+pub async fn manifest(clients: &mut Clients, domain_id: &str) -> DomainManifest {
+    let get = GetDomainRequest { domain_id: domain_id.into(), include_manifest: true, ..Default::default() };
+    clients.domains.get_domain(get).await.expect("there").into_inner().manifest.expect("a manifest")
 }
 
 /// Returns the code of an answer.

@@ -87,6 +87,7 @@ impl Clock {
                     self.spent[*stage as usize] += self.last;
                 }
             }
+            Event::Furnished(..) => {}
             Event::Rejected(..) => self.begun = None,
         }
     }
@@ -99,6 +100,7 @@ impl Clock {
 fn talk(event: &Event<'_>, clock: &Clock, progress: &Progress) {
     match event {
         Event::Started(stage, _) => progress.doing(stage.name()),
+        Event::Furnished(..) => {}
         Event::Rejected(attempt, reason) => progress.done(&format!("attempt {}: {reason}", attempt + 1)),
         Event::Finished(stage, _, artifact) => {
             let found = match artifact {

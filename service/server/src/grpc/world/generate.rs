@@ -25,6 +25,10 @@ use crate::status::{self, invalid};
 
 /// Attempts of one call at most.
 const ATTEMPTS: u32 = 100;
+/// Shares of an attempt's time that the stages take, about.
+const SHARES: [f64; Stage::ALL.len()] = [0.05, 0.25, 0.5, 0.05, 0.15];
+/// Share of the way that the attempt under way takes of what is left.
+const ATTEMPT: f64 = 0.9;
 /// Events that wait for a client that reads slowly.
 const EVENTS: usize = 16;
 
@@ -67,8 +71,7 @@ impl Api {
                     settings.attempts = attempts;
                 }
                 let now = core.domains.now();
-                let mut told =
-                    Told { send: answers, stop: Arc::clone(&stop), attempts: settings.attempts, fraction: 0.0 };
+                let mut told = Told { send: answers, stop: Arc::clone(&stop), seed: 0, begun: 0.0, fraction: 0.0 };
                 let graph = match start {
                     Start::Building(asked) => {
                         let request = building(Some(asked))?;
@@ -104,7 +107,10 @@ impl Api {
 struct Told {
     send: mpsc::Sender<Result<GenerateWorldResponse, Status>>,
     stop: Stop,
-    attempts: u32,
+    /// Seed of the attempt under way.
+    seed: u64,
+    /// Fraction at which the attempt under way began.
+    begun: f64,
     fraction: f64,
 }
 
@@ -112,13 +118,31 @@ impl Told {
     fn hear(&mut self, event: Event<'_>) {
         let (stage, attempt, sent, text) = match event {
             Event::Started(stage, attempt) => (stage, attempt, None, format!("{} begins", stage.name())),
+            Event::Furnished(attempt, room) => {
+                let share = room.done as f64 / room.total.max(1) as f64;
+                let placements = room.placements.to_vec();
+                let placements = Placements { version: 1, seed: self.seed, placements, unplaced: Vec::new() };
+                let sent = Sent::Placements(message(&placements));
+                let text = format!("{} is furnished, {} of {} rooms", room.room_id, room.done, room.total);
+                return self.send(Stage::Placement, attempt, Some(sent), text, self.at(Stage::Placement, share));
+            }
             Event::Rejected(attempt, reason) => {
-                (Stage::World, attempt, Some(Sent::Rejected(reason.to_owned())), reason.to_owned())
+                self.begun = self.fraction;
+                return self.send(
+                    Stage::World,
+                    attempt,
+                    Some(Sent::Rejected(reason.to_owned())),
+                    reason.to_owned(),
+                    self.begun,
+                );
             }
             Event::Finished(stage, attempt, artifact) => {
                 let sent = match artifact {
                     Artifact::SceneGraph(graph) => Sent::SceneGraph(message(graph)),
-                    Artifact::Floorplan(plan) => Sent::Floorplan(message(plan)),
+                    Artifact::Floorplan(plan) => {
+                        self.seed = plan.seed;
+                        Sent::Floorplan(message(plan))
+                    }
                     Artifact::Placements(placements) => Sent::Placements(message(placements)),
                     Artifact::Scenario(scenario) => Sent::Scenario(message(scenario)),
                     // the last one is sent at the end: another attempt may follow
@@ -127,12 +151,16 @@ impl Told {
                 (stage, attempt, Some(sent), format!("{} is done", stage.name()))
             }
         };
-        // Each attempt takes what is left by half of it: most worlds need one.
-        let done = f64::from(stage as u8) + if sent.is_some() { 1.0 } else { 0.0 };
-        let share = done / Stage::ALL.len() as f64;
-        let begun = 1.0 - 0.5_f64.powi(attempt.min(self.attempts) as i32);
-        let now = begun + (1.0 - begun) * share * 0.5;
+        let now = self.at(stage, if sent.is_some() { 1.0 } else { 0.0 });
         self.send(stage, attempt, sent, text, now);
+    }
+
+    /// Returns how far the call is when a share of a stage is done.
+    ///
+    /// An attempt takes most of what the ones before it have left: most worlds need one.
+    fn at(&self, stage: Stage, share: f64) -> f64 {
+        let before: f64 = SHARES[..stage as usize].iter().sum();
+        self.begun + (1.0 - self.begun) * ATTEMPT * (before + share * SHARES[stage as usize])
     }
 
     fn end(&mut self, world: d3dgen_proto::v1::CheckedWorld, attempt: u32) {
