@@ -14,6 +14,18 @@ use crate::output::Output;
 /// # Errors
 /// `Write`, `Export`, or `Interrupted` between two formats.
 pub fn write(world: &World, report: &Report, domain: &Domain, formats: &Formats, output: &Output) -> Result<(), Error> {
+    write_documents(world, report, output)?;
+    if report.sound {
+        formats.write(world, domain, output)?;
+    }
+    Ok(())
+}
+
+/// Writes the documents of the folder; of an unsound world not the world itself.
+///
+/// # Errors
+/// `Write`.
+pub fn write_documents(world: &World, report: &Report, output: &Output) -> Result<(), Error> {
     output.write("report.json", report.to_json().as_bytes())?;
     output.write("scene_graph.json", world.scene_graph.to_json().as_bytes())?;
     output.write("floorplan.json", world.floorplan.to_json().as_bytes())?;
@@ -21,7 +33,6 @@ pub fn write(world: &World, report: &Report, domain: &Domain, formats: &Formats,
     output.write("scenario.json", world.scenario.to_json().as_bytes())?;
     if report.sound {
         output.write("world.json", world.to_json().as_bytes())?;
-        formats.write(world, domain, output)?;
     }
     Ok(())
 }

@@ -51,6 +51,9 @@ pub enum Error {
     /// The server cannot start or go on.
     #[error(transparent)]
     Server(#[from] d3dgen_server::Error),
+    /// A server refused, cannot be reached, or answers in another way than it should.
+    #[error("server: {0}")]
+    Remote(String),
     /// A world breaks hard rules.
     #[error("{0}")]
     Unsound(String),

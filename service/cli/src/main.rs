@@ -12,6 +12,7 @@ mod interrupt;
 mod output;
 mod progress;
 mod registry;
+mod remote;
 mod request;
 mod summary;
 mod table;

@@ -286,6 +286,11 @@ fn refusal(status: Status, is_grpc: bool, mut call: Call) -> Response<Body> {
 }
 
 fn watched(response: Response<Body>, is_grpc: bool, mut call: Call, until: tokio::time::Instant) -> Response<Body> {
+    let refused = is_grpc.then(|| Status::from_header_map(response.headers())).flatten();
+    let response = match refused.as_ref().and_then(status::of_transport) {
+        Some(meant) => meant.into_http(),
+        None => response,
+    };
     // Answers without a body, and those that are no gRPC, say how they ended at once.
     call.code = body::code(response.headers()).or((!is_grpc).then_some(match response.status().as_u16() {
         200..300 => Code::Ok,

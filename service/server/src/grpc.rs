@@ -3,6 +3,7 @@
 //! A handler reads its request, hands the work to a thread of the pool, and answers with messages. What is wrong with a
 //! request is said with its field ([`crate::status`]).
 
+mod admin;
 mod asset;
 mod domain;
 mod job;
@@ -26,12 +27,13 @@ use crate::pool::Lane;
 use once::Once;
 
 /// Names of the services.
-pub const NAMES: [&str; 5] = [
+pub const NAMES: [&str; 6] = [
     "d3dgen.v1.DomainService",
     "d3dgen.v1.KnowledgeService",
     "d3dgen.v1.AssetService",
     "d3dgen.v1.WorldService",
     "d3dgen.v1.JobService",
+    "d3dgen.v1.AdminService",
 ];
 
 /// Returns the services.
@@ -48,6 +50,7 @@ pub fn routes(core: &Arc<Core>) -> Routes {
         .add_service(service!(asset_service_server, AssetServiceServer))
         .add_service(service!(world_service_server, WorldServiceServer))
         .add_service(service!(job_service_server, JobServiceServer))
+        .add_service(service!(admin_service_server, AdminServiceServer))
 }
 
 /// All services.

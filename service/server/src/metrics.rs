@@ -19,6 +19,8 @@ pub struct Metrics {
     pub connections: AtomicI64,
     /// Calls that wait for a thread.
     pub waiting: AtomicI64,
+    /// Threads at work.
+    pub threads_busy: AtomicI64,
     /// Jobs that wait.
     pub jobs_waiting: AtomicI64,
     /// Jobs that run.
@@ -52,6 +54,7 @@ impl Metrics {
             ("calls_in_flight", "Calls under way", &self.in_flight),
             ("connections", "Connections that are open", &self.connections),
             ("calls_waiting", "Calls that wait for a thread", &self.waiting),
+            ("threads_busy", "Threads of the pool at work", &self.threads_busy),
             ("jobs_waiting", "Jobs that wait", &self.jobs_waiting),
             ("jobs_running", "Jobs that run", &self.jobs_running),
         ];

@@ -96,7 +96,9 @@ impl Pool {
                 permit.map_err(|_| Status::unavailable("the server is stopping"))?
             }
         };
+        let metrics = Arc::clone(&self.metrics);
         let done = tokio::task::spawn_blocking(move || {
+            let _busy = Raised::new(&metrics.threads_busy);
             let _permit = permit; // until the work is done, whoever waits for it
             if stop.load(Ordering::SeqCst) {
                 return Err(Status::cancelled("the call was given up"));

@@ -134,6 +134,32 @@ pub fn export(error: d3dgen_export::Error) -> Status {
     Status::failed_precondition(error.to_string())
 }
 
+/// How the transport begins to say that a message is no message: not Protobuf, cut off, packed in an unknown way.
+const UNREADABLE: [&str; 5] = [
+    "failed to decode Protobuf message",
+    "protocol error: received message",
+    "Unexpected EOF decoding stream",
+    "Error decompressing",
+    "Missing request message",
+];
+/// How it begins to say that a message is above the limit.
+const TOO_LARGE: &str = "Error, decoded message length too large";
+
+/// Returns what an answer of the transport means where its code blames the server for what a client sent: it has INTERNAL
+/// for a message that cannot be read, and OUT_OF_RANGE for one above the limit.
+pub fn of_transport(said: &Status) -> Option<Status> {
+    let text = said.message();
+    match said.code() {
+        Code::Internal if UNREADABLE.iter().any(|begin| text.starts_with(begin)) => {
+            Some(Status::invalid_argument(format!("the message cannot be read: {text}")))
+        }
+        Code::OutOfRange if text.starts_with(TOO_LARGE) => {
+            Some(Status::resource_exhausted(format!("the message is too large: {text}")))
+        }
+        _ => None,
+    }
+}
+
 /// Returns the answer to what is nobody's fault but the server's: the log has the reason, the client none of it.
 pub fn internal(error: &dyn std::fmt::Display) -> Status {
     tracing::error!(reason = %error, "internal");

@@ -4,11 +4,12 @@ use std::path::PathBuf;
 
 use clap::Subcommand;
 use d3dgen_model::domain::Domain;
-use d3dgen_plugins::{Custom, Plugin, Registry};
+use d3dgen_plugins::{Custom, Plugin};
 
 use crate::error::Error;
 use crate::input::write_text;
 use crate::registry::{RegistryArgs, domain, domain_folders};
+use crate::remote::{self, ServerArgs};
 use crate::table::table;
 
 /// Arguments.
@@ -27,6 +28,8 @@ enum Action {
         json: bool,
         #[command(flatten)]
         registry: RegistryArgs,
+        #[command(flatten)]
+        server: ServerArgs,
     },
     /// Rooms, programs and objects of one domain
     Show {
@@ -37,6 +40,23 @@ enum Action {
         json: bool,
         #[command(flatten)]
         registry: RegistryArgs,
+        #[command(flatten)]
+        server: ServerArgs,
+    },
+    /// Register the domain of a folder with a server (--server), with effect at once
+    Register {
+        /// Folder of the domain
+        #[arg(value_name = "DIR")]
+        dir: PathBuf,
+        #[command(flatten)]
+        server: ServerArgs,
+    },
+    /// Remove a domain that was registered with a server (--server)
+    Remove {
+        /// Id of the domain
+        id: String,
+        #[command(flatten)]
+        server: ServerArgs,
     },
     /// Read domain folders and report every problem
     Validate {
@@ -49,11 +69,31 @@ enum Action {
 impl Args {
     pub fn run(self) -> Result<(), Error> {
         match self.action {
-            Action::List { json, registry } => list(&registry.load()?, json),
-            Action::Show { id, json, registry } => {
+            Action::List { json, registry, server } => match server.instead_of(&registry)? {
+                Some(remote) => {
+                    let all = remote::domains::list(&remote)?;
+                    let row = |(listed, domain): &(_, Domain)| Row::of_server(listed, domain);
+                    list(all.iter().map(row).collect(), json)
+                }
+                None => list(registry.load()?.iter().map(Row::of).collect(), json),
+            },
+            Action::Show { id, json, registry, server } => {
+                if let Some(remote) = server.instead_of(&registry)? {
+                    let domain = remote::domains::manifest(&remote, &id)?;
+                    let text = if json { d3dgen_model::Document::to_json(&domain) } else { shown(&domain) };
+                    return write_text(None, &text);
+                }
                 let registry = registry.load()?;
                 let domain = domain(&registry, &id)?.domain();
                 write_text(None, &if json { d3dgen_model::Document::to_json(domain) } else { shown(domain) })
+            }
+            Action::Register { dir, server } => {
+                let kept = remote::domains::register(&server.required()?, &dir)?;
+                write_text(None, &format!("{}: registered, version {}\n", kept.domain_id, kept.domain_version))
+            }
+            Action::Remove { id, server } => {
+                remote::domains::remove(&server.required()?, &id)?;
+                write_text(None, &format!("{id}: removed\n"))
             }
             Action::Validate { dirs } => validate(&dirs),
         }
@@ -66,18 +106,44 @@ fn figures(plugin: &dyn Plugin) -> [usize; 4] {
     [domain.room_types.len(), domain.programs.len(), domain.objects.len(), constraints]
 }
 
-fn list(registry: &Registry, json: bool) -> Result<(), Error> {
+/// A domain in a list.
+struct Row {
+    id: String,
+    title: String,
+    description: String,
+    figures: [usize; 4],
+}
+
+impl Row {
+    fn of(plugin: &dyn Plugin) -> Self {
+        let domain = plugin.domain();
+        let (id, title, description) = (domain.id.clone(), domain.title.clone(), domain.description.clone());
+        Self { id, title, description, figures: figures(plugin) }
+    }
+
+    fn of_server(listed: &d3dgen_proto::v1::Domain, domain: &Domain) -> Self {
+        let (id, title, description) = (domain.id.clone(), domain.title.clone(), domain.description.clone());
+        let figures = [
+            domain.room_types.len(),
+            domain.programs.len(),
+            domain.objects.len(),
+            usize::try_from(listed.constraint_count).unwrap_or(usize::MAX),
+        ];
+        Self { id, title, description, figures }
+    }
+}
+
+fn list(domains: Vec<Row>, json: bool) -> Result<(), Error> {
     let mut text = String::new();
     let mut rows = Vec::new();
-    for plugin in registry.iter() {
-        let (domain, [room_types, programs, objects, constraints]) = (plugin.domain(), figures(plugin));
+    for Row { id, title, description, figures } in domains {
+        let [room_types, programs, objects, constraints] = figures;
         let line = serde_json::json!({
-            "id": domain.id, "title": domain.title, "description": domain.description, "room_types": room_types,
-            "programs": programs, "objects": objects, "constraints": constraints,
+            "id": id, "title": title, "description": description, "room_types": room_types, "programs": programs,
+            "objects": objects, "constraints": constraints,
         });
         text += &format!("{line}\n");
-        let cells = [room_types, programs, objects, constraints].map(|n| n.to_string());
-        rows.push([vec![domain.id.clone()], cells.to_vec(), vec![domain.description.clone()]].concat());
+        rows.push([vec![id], figures.map(|n| n.to_string()).to_vec(), vec![description]].concat());
     }
     let header = ["domain", "room types", "programs", "objects", "constraints", ""];
     write_text(None, &if json { text } else { table(&header, &rows) })

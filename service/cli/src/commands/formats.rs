@@ -34,6 +34,14 @@ impl FormatArgs {
     /// # Errors
     /// `Input` with the formats there are; `Assets` when the database is damaged.
     pub fn chosen(&self, store: &StoreArgs) -> Result<Formats, Error> {
+        Ok(Formats { names: self.names()?, png: self.png(), kept: Kept::of(store)? })
+    }
+
+    /// Returns the names of the formats, each once.
+    ///
+    /// # Errors
+    /// `Input` with the formats there are.
+    pub fn names(&self) -> Result<Vec<&'static str>, Error> {
         let mut names = Vec::new();
         for name in &self.format {
             let exporter = exporters::get(name.trim()).ok_or_else(|| {
@@ -44,7 +52,12 @@ impl FormatArgs {
                 names.push(exporter.name());
             }
         }
-        Ok(Formats { names, png: !self.no_png, kept: Kept::of(store)? })
+        Ok(names)
+    }
+
+    /// Returns true when plans are drawn as PNG too.
+    pub fn png(&self) -> bool {
+        !self.no_png
     }
 }
 

@@ -4,6 +4,7 @@ mod batch;
 mod one;
 
 use std::path::PathBuf;
+use std::time::Instant;
 
 use d3dgen_pipeline::scene_graph::Request;
 
@@ -13,6 +14,7 @@ use crate::interrupt;
 use crate::output::{Output, check_collection, check_free};
 use crate::progress::Progress;
 use crate::registry::RegistryArgs;
+use crate::remote::{self, Remote, ServerArgs};
 use crate::request::{RequestArgs, prompt};
 use crate::summary::{Summary, closing};
 
@@ -44,6 +46,8 @@ pub struct Args {
     formats: formats::FormatArgs,
     #[command(flatten)]
     registry: RegistryArgs,
+    #[command(flatten)]
+    server: ServerArgs,
 }
 
 /// One world to be made.
@@ -55,6 +59,9 @@ struct Job {
 
 impl Args {
     pub fn run(self) -> Result<(), Error> {
+        if let Some(remote) = self.server.instead_of(&self.registry)? {
+            return self.ask(&remote);
+        }
         let registry = self.registry.load()?;
         let (formats, flag) = (self.formats.chosen(&self.registry.store)?, interrupt::flag());
         let maker = one::Maker { registry, formats, allow_conflicts: self.allow_conflicts, flag };
@@ -75,6 +82,46 @@ impl Args {
         let progress = Progress::of(jobs.len());
         let (worlds, failed) = batch::run(&maker, &jobs, &progress, self.json)?;
         eprintln!("{}  {:<12} {}", closing(&worlds), "folder", self.out.display());
+        verdict(&worlds, failed)
+    }
+
+    /// Has a server make the worlds, one after the other.
+    fn ask(&self, remote: &Remote) -> Result<(), Error> {
+        let formats = self.formats.names()?;
+        let (png, allow_conflicts) = (self.formats.png(), self.allow_conflicts);
+        let maker = remote::generate::Maker { remote, formats: &formats, png, allow_conflicts };
+        let request = self.request.request(&prompt(&self.prompt)?);
+        let jobs = match self.count {
+            1 => vec![Job { request, name: self.name.clone(), path: self.out.clone() }],
+            _ => self.jobs(&request)?,
+        };
+        let progress = Progress::of(jobs.len());
+        let (mut worlds, mut failed) = (Vec::new(), 0);
+        for job in &jobs {
+            let output = Output::new(&job.path)?;
+            let begun = Instant::now();
+            match maker.make(&job.request, job.name.as_deref(), &output, &progress) {
+                Ok(made) => {
+                    output.commit()?;
+                    let summary = Summary::new(&made, &job.path, vec![("server", begun.elapsed())]);
+                    if self.json {
+                        one::print_json(&summary)?;
+                    }
+                    worlds.push(summary);
+                }
+                Err(Error::Stage(error)) if jobs.len() > 1 => {
+                    failed += 1;
+                    progress.say(&format!("seed {}: {error}", job.request.seed));
+                }
+                Err(error) => return Err(error),
+            }
+            progress.count();
+        }
+        progress.finish();
+        match (&worlds[..], jobs.len()) {
+            ([made], 1) => eprint!("{}", made.page()),
+            _ => eprintln!("{}  {:<12} {}", closing(&worlds), "folder", self.out.display()),
+        }
         verdict(&worlds, failed)
     }
 

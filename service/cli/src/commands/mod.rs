@@ -8,6 +8,7 @@ mod export;
 mod floorplan;
 mod formats;
 mod generate;
+mod jobs;
 mod knowledge;
 mod placement;
 mod research;
@@ -54,6 +55,8 @@ pub enum Command {
     Ingest(assets::ingest::Command),
     /// Answer clients in any language over gRPC: the service
     Serve(Box<serve::Args>),
+    /// List, watch and cancel the jobs of a server
+    Jobs(jobs::Args),
     /// Print a completion script for a shell
     Completions(completions::Args),
     /// Print the version, and the versions of the documents it reads
@@ -81,6 +84,7 @@ impl Command {
             Self::Assets(args) => args.run(),
             Self::Ingest(args) => args.run(),
             Self::Serve(args) => args.run(),
+            Self::Jobs(args) => args.run(),
             Self::Completions(args) => args.run(),
             Self::Version => version::run(),
         }

@@ -106,7 +106,10 @@ impl WorldService for Api {
                 &mut |_| (),
                 stop.into(),
             );
-            let placements = made.map_err(|e| status::stage("floorplan", e))?;
+            // rooms that the graph lacks are the plan's fault, all else that of what was pinned
+            let fits = plan.rooms.iter().all(|r| graph.room(&r.room_id).is_some());
+            let field = if pinned.is_some() && fits { "pinned" } else { "floorplan" };
+            let placements = made.map_err(|e| status::stage(field, e))?;
             Ok(GeneratePlacementsResponse { placements: Some(message(&placements)) })
         })
         .await
@@ -290,6 +293,11 @@ fn batch_of(job: Job) -> Result<Job, Status> {
     }
 }
 
+/// Returns true when a plan is to be kept.
+fn has_locked_rooms(plan: &Floorplan) -> bool {
+    plan.rooms.iter().any(|r| r.locked)
+}
+
 /// Returns an error once nobody waits for the answer.
 fn go_on(stop: &std::sync::atomic::AtomicBool) -> Result<(), Status> {
     match stop.load(std::sync::atomic::Ordering::SeqCst) {
@@ -318,7 +326,10 @@ fn plans(
                 }
             }
             Err(error @ d3dgen_pipeline::Error::Infeasible { .. }) => refused = Some(error),
-            Err(error) => return Err(status::stage("scene_graph", error)),
+            Err(error) => {
+                let field = if pinned.is_some_and(has_locked_rooms) { "pinned" } else { "scene_graph" };
+                return Err(status::stage(field, error));
+            }
         }
         if found.len() as u32 >= count {
             break;

@@ -139,8 +139,19 @@ async fn broken_requests_have_answers_and_break_nothing() {
         let known = matches!(answer, (200, Some(0..=16)) | (400..500, _));
         assert!(known || answer.0 == 0, "{method}, kind {}: {answer:?}", n % 5);
         assert!(!matches!(answer.1, Some(2 | 15)), "{method}, kind {}: {answer:?}", n % 5);
+        // what a client sends is never the server's failure
+        assert_ne!(answer.1, Some(13), "{method}, kind {}: {answer:?}", n % 5);
+        let wanted = match n % 5 {
+            0 => None,
+            2 | 3 => Some(8), // RESOURCE_EXHAUSTED
+            _ => Some(3),     // INVALID_ARGUMENT
+        };
+        if let (Some(_), Some(said)) = (wanted, answer.1) {
+            assert_eq!(Some(said), wanted, "{method}, kind {}: {answer:?}", n % 5);
+        }
         *tally.entry(answer).or_default() += 1;
     }
+    assert!(!server.log().contains("ERROR"), "an error in the log: {}", server.log());
     println!("{count} broken requests: {tally:?}");
     assert!(server.runs());
     let mut c = Clients::of(&server).await;

@@ -3,6 +3,8 @@
 
 mod access;
 mod assets;
+mod command;
+mod edge;
 mod fault;
 mod hostile;
 mod services;

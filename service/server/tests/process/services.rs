@@ -21,10 +21,11 @@ use crate::support::{Clients, Server, code, flat};
 /// Makes a world and returns it with the names of the events.
 async fn make(c: &mut Clients, asked: GenerateWorldRequest) -> (CheckedWorld, Vec<&'static str>) {
     let mut stream = c.worlds.generate_world(asked).await.expect("a stream").into_inner();
-    let (mut events, mut last, mut fraction) = (Vec::new(), None, 0.0);
+    let (mut events, mut last, mut fraction, mut steepest) = (Vec::new(), None, 0.0, 0.0);
     while let Some(news) = stream.message().await.expect("news") {
         let progress = news.progress.expect("progress").fraction;
         assert!(progress >= fraction, "progress falls from {fraction} to {progress}");
+        steepest = f64::max(steepest, progress - fraction);
         fraction = progress;
         events.push(match news.event {
             Some(Event::SceneGraph(_)) => "scene_graph",
@@ -40,6 +41,7 @@ async fn make(c: &mut Clients, asked: GenerateWorldRequest) -> (CheckedWorld, Ve
         });
     }
     assert!((fraction - 1.0).abs() < 1e-9, "ends at {fraction}");
+    assert!(steepest < 0.35, "progress jumps by {steepest}");
     (last.expect("a world"), events)
 }
 
@@ -52,6 +54,7 @@ async fn worlds_are_made_pinned_edited_and_written() {
     let (made, events) = make(&mut c, start(3)).await;
     assert_eq!(events.first(), Some(&"scene_graph"));
     assert_eq!(events.last(), Some(&"world"));
+    assert!(events.iter().filter(|e| **e == "placements").count() > 4, "a room at a time: {events:?}");
     assert_eq!(make(&mut c, start(3)).await.0, made, "the same request gives the same world");
     let world = made.world.expect("a world");
     assert!(made.report.expect("a report").sound);
@@ -91,6 +94,26 @@ async fn worlds_are_made_pinned_edited_and_written() {
     let (again, _) = make(&mut c, again).await;
     let rooms = |w: &d3dgen_proto::v1::World| w.floorplan.as_ref().expect("a plan").rooms.clone();
     assert_eq!(rooms(&again.world.expect("a world")), rooms(&pinned));
+
+    // a plan that is pinned in part, or that is of another building, is refused at its field
+    let mut part = pinned.floorplan.clone().expect("a plan");
+    part.rooms[0].locked = false;
+    let half = GenerateWorldRequest { pinned_floorplan: Some(part.clone()), ..start(3) };
+    let mut stream = c.worlds.generate_world(half).await.expect("a stream").into_inner();
+    let refused = loop {
+        match stream.message().await {
+            Ok(news) => assert!(news.expect("refused before the end").progress.is_some()),
+            Err(refused) => break refused,
+        }
+    };
+    assert_eq!(refused.code(), Code::InvalidArgument);
+    let fields = refused.get_details_bad_request().expect("the place").field_violations;
+    assert_eq!(fields[0].field, "pinned_floorplan", "{refused}");
+    let asked =
+        GenerateFloorplanRequest { scene_graph: pinned.scene_graph.clone(), alternative_count: 1, pinned: Some(part) };
+    let refused = c.worlds.generate_floorplan(asked).await.expect_err("refused");
+    let fields = refused.get_details_bad_request().expect("the place").field_violations;
+    assert_eq!(fields[0].field, "pinned", "{refused}");
 
     // an unknown part, and an object moved into a wall
     let lock = WorldEdit { edit: Some(Edit::Lock(LockUpdate { ids: vec!["nothing".into()], ..Default::default() })) };

@@ -165,14 +165,19 @@ pub fn code<T>(answer: Result<T, Status>) -> tonic::Code {
     answer.err().map_or(tonic::Code::Ok, |s| s.code())
 }
 
-/// Asks for a page over plain HTTP/1 and returns status and body.
-pub fn page(url: &str, path: &str, headers: &str) -> (u16, String) {
+/// Sends bytes over plain TCP and returns the whole answer.
+pub fn raw(url: &str, request: &str) -> String {
     use std::io::{Read, Write};
-    let address = url.trim_start_matches("http://");
-    let mut stream = std::net::TcpStream::connect(address).expect("a connection");
-    write!(stream, "GET {path} HTTP/1.1\r\nhost: x\r\nconnection: close\r\n{headers}\r\n").expect("sent");
+    let mut stream = std::net::TcpStream::connect(url.trim_start_matches("http://")).expect("a connection");
+    stream.write_all(request.as_bytes()).expect("sent");
     let mut text = String::new();
     stream.read_to_string(&mut text).expect("an answer");
+    text
+}
+
+/// Asks for a page over plain HTTP/1 and returns status and body.
+pub fn page(url: &str, path: &str, headers: &str) -> (u16, String) {
+    let text = raw(url, &format!("GET {path} HTTP/1.1\r\nhost: x\r\nconnection: close\r\n{headers}\r\n"));
     let status = text.split(' ').nth(1).and_then(|s| s.parse().ok()).unwrap_or_default();
     (status, text.split("\r\n\r\n").nth(1).unwrap_or_default().to_owned())
 }

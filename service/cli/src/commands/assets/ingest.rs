@@ -13,6 +13,7 @@ use crate::input::write_text;
 use crate::interrupt;
 use crate::progress::Progress;
 use crate::registry::RegistryArgs;
+use crate::remote::{self, ServerArgs};
 
 /// Refused files that are printed in full.
 const SHOWN: usize = 40;
@@ -37,6 +38,8 @@ pub struct Args {
     json: bool,
     #[command(flatten)]
     registry: RegistryArgs,
+    #[command(flatten)]
+    server: ServerArgs,
 }
 
 /// Arguments of `d3dgen ingest`.
@@ -62,6 +65,13 @@ impl Command {
 
 impl Args {
     pub fn run(self) -> Result<(), Error> {
+        if let Some(remote) = self.server.instead_of(&self.registry)? {
+            let (begun, progress) = (Instant::now(), Progress::of(1));
+            let asked = (self.domain.as_deref(), self.why.as_str());
+            let summary = remote::assets::ingest(&remote, &self.folder, asked, &progress);
+            progress.finish();
+            return self.print(&summary?, begun.elapsed().as_secs_f64());
+        }
         let world = World::load(&self.registry)?;
         std::fs::metadata(&self.folder).map_err(|source| Error::Read { path: self.folder.clone(), source })?;
         let database = open(&self.registry.store)?;
@@ -79,12 +89,14 @@ impl Args {
         };
         let summary = ingest(&database, &self.folder, &world.catalog, &reader::pool()?, &options);
         progress.finish();
-        let summary = summary?;
-        let seconds = begun.elapsed().as_secs_f64();
+        self.print(&summary?, begun.elapsed().as_secs_f64())
+    }
+
+    fn print(&self, summary: &Summary, seconds: f64) -> Result<(), Error> {
         if self.json {
-            write_text(None, &json(&summary, seconds))?;
+            write_text(None, &json(summary, seconds))?;
         } else {
-            write_text(None, &shown(&summary, seconds))?;
+            write_text(None, &shown(summary, seconds))?;
         }
         if summary.cancelled { Err(Error::Interrupted) } else { Ok(()) }
     }

@@ -11,6 +11,7 @@ use super::sheet;
 use crate::error::Error;
 use crate::input::write_text;
 use crate::registry::RegistryArgs;
+use crate::remote::{self, ServerArgs};
 use crate::table::table;
 
 /// Arguments of `search`.
@@ -47,6 +48,8 @@ pub struct Args {
     json: bool,
     #[command(flatten)]
     registry: RegistryArgs,
+    #[command(flatten)]
+    server: ServerArgs,
 }
 
 /// Arguments of `list`.
@@ -69,8 +72,7 @@ pub struct ListArgs {
 
 impl Args {
     pub fn run(self) -> Result<(), Error> {
-        let world = World::load(&self.registry)?;
-        let searcher = world.searcher(&self.registry.store)?;
+        let remote = self.server.instead_of(&self.registry)?;
         let mode = match self.mode.as_str() {
             "text" => Mode::Text,
             "vector" => Mode::Vector,
@@ -86,6 +88,16 @@ impl Args {
             mode,
             one_per_object: !self.all_sizes,
         };
+        if let Some(remote) = remote {
+            if self.sheet.is_some() {
+                return Err(Error::Input(
+                    "--sheet and --server: contact sheets are drawn of a database here only".into(),
+                ));
+            }
+            return print(&remote::assets::search(&remote, &query, self.like.as_deref())?, self.json);
+        }
+        let world = World::load(&self.registry)?;
+        let searcher = world.searcher(&self.registry.store)?;
         let found = match &self.like {
             Some(id) => searcher.like(id, &query)?,
             None => searcher.search(&query)?,

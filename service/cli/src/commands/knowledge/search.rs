@@ -12,6 +12,7 @@ use crate::error::Error;
 use crate::input::write_text;
 use crate::interrupt;
 use crate::registry::{RegistryArgs, domain};
+use crate::remote::{self, ServerArgs};
 
 /// Arguments.
 #[derive(clap::Args)]
@@ -63,37 +64,29 @@ pub struct Args {
     json: bool,
     #[command(flatten)]
     registry: RegistryArgs,
+    #[command(flatten)]
+    server: ServerArgs,
 }
+
+/// Values by filter: one of each must be the rule's.
+type Filters = BTreeMap<String, BTreeSet<String>>;
 
 impl Args {
     pub fn run(self) -> Result<(), Error> {
+        if let Some(remote) = self.server.instead_of(&self.registry)? {
+            if !self.room_type.is_empty() {
+                return Err(Error::Input(
+                    "--room-type and --server: a server finds rules by words; give the room among them".into(),
+                ));
+            }
+            let there = remote::knowledge::filter_values(&remote)?;
+            let filters = self.filters(&|name| there.get(name).cloned().unwrap_or_default())?;
+            return self.print(&remote::knowledge::search(&remote, &self.query(filters))?);
+        }
         let registry = self.registry.load_as_brought()?;
         let database = self.registry.store.read(&registry)?;
         let searcher = open(&database)?;
-        let mut filters: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
-        for (name, values) in [
-            ("domain", &self.domain),
-            ("jurisdiction", &self.jurisdiction),
-            ("topic", &self.topic),
-            ("constraint_type", &self.constraint_type),
-            ("unit", &self.unit),
-            ("confidence", &self.confidence),
-            ("source_type", &self.source_type),
-        ] {
-            if values.is_empty() {
-                continue;
-            }
-            known(&searcher, name, values)?;
-            filters.insert(name.to_owned(), values.iter().cloned().collect());
-        }
-        if let Some(country) = &self.country {
-            let places: BTreeSet<String> = jurisdiction::chain(Some(country)).into_iter().collect();
-            let asked = filters.remove("jurisdiction");
-            filters.insert(
-                "jurisdiction".into(),
-                asked.map_or(places.clone(), |a| a.intersection(&places).cloned().collect()),
-            );
-        }
+        let mut filters = self.filters(&|name| searcher.values(name).into_keys().map(|v| v.to_string()).collect())?;
         if !self.room_type.is_empty() {
             let among = |id: &String| self.domain.is_empty() || self.domain.contains(id);
             let mut spaces = BTreeSet::new();
@@ -105,14 +98,48 @@ impl Args {
             }
             filters.insert("space_type".into(), spaces);
         }
+        self.print(&searcher.search(&self.query(filters))?)
+    }
+
+    /// Returns what every rule must be, by filter; `values` are those that the rules have.
+    fn filters(&self, values: &dyn Fn(&str) -> BTreeSet<String>) -> Result<Filters, Error> {
+        let mut filters = Filters::new();
+        for (name, asked) in [
+            ("domain", &self.domain),
+            ("jurisdiction", &self.jurisdiction),
+            ("topic", &self.topic),
+            ("constraint_type", &self.constraint_type),
+            ("unit", &self.unit),
+            ("confidence", &self.confidence),
+            ("source_type", &self.source_type),
+        ] {
+            if asked.is_empty() {
+                continue;
+            }
+            known(&values(name), name, asked)?;
+            filters.insert(name.to_owned(), asked.iter().cloned().collect());
+        }
+        if let Some(country) = &self.country {
+            let places: BTreeSet<String> = jurisdiction::chain(Some(country)).into_iter().collect();
+            let asked = filters.remove("jurisdiction");
+            filters.insert(
+                "jurisdiction".into(),
+                asked.map_or(places.clone(), |a| a.intersection(&places).cloned().collect()),
+            );
+        }
+        Ok(filters)
+    }
+
+    fn query(&self, filters: Filters) -> SearchQuery {
         let mode = match self.mode.as_str() {
             "text" => Mode::Text,
             "vector" => Mode::Vector,
             _ => Mode::Hybrid,
         };
-        let query =
-            SearchQuery { text: self.words.join(" "), filters, value: (self.min, self.max), limit: self.limit, mode };
-        let found = searcher.search(&query)?;
+        SearchQuery { text: self.words.join(" "), filters, value: (self.min, self.max), limit: self.limit, mode }
+    }
+
+    fn print(&self, found: &[Found]) -> Result<(), Error> {
         if self.json {
             return write_text(None, &found.iter().map(|f| format!("{}\n", json(f))).collect::<String>());
         }
@@ -145,12 +172,11 @@ fn open(database: &d3dgen_knowledge::database::Database) -> Result<Searcher, Err
 }
 
 /// Refuses a filter value that no rule has, with those there are.
-fn known(searcher: &Searcher, filter: &str, values: &[String]) -> Result<(), Error> {
-    let there = searcher.values(filter);
-    match values.iter().find(|v| !there.contains_key(*v)) {
+fn known(there: &BTreeSet<String>, filter: &str, values: &[String]) -> Result<(), Error> {
+    match values.iter().find(|v| !there.contains(*v)) {
         None => Ok(()),
         Some(value) => {
-            let names: Vec<&str> = there.keys().map(String::as_str).collect();
+            let names: Vec<&str> = there.iter().map(String::as_str).collect();
             let flag = if filter == "constraint_type" { "type".into() } else { filter.replace('_', "-") };
             Err(Error::Input(format!("--{flag} {value}: no rule has it; there are {}", names.join(", "))))
         }

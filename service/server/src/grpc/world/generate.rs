@@ -9,14 +9,14 @@ use d3dgen_model::floorplan::Floorplan;
 use d3dgen_model::placements::Placements;
 use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_pipeline::generate::{Artifact, Event, Settings, Stage, contradictions, furnish_and_check};
-use d3dgen_pipeline::scene_graph;
+use d3dgen_pipeline::{Error, scene_graph};
 use d3dgen_proto::v1::generate_world_request::Start;
 use d3dgen_proto::v1::generate_world_response::Event as Sent;
 use d3dgen_proto::v1::{GenerateWorldRequest, GenerateWorldResponse, Progress, Stage as StageMessage};
 use tokio::sync::mpsc;
 use tonic::Status;
 
-use super::{building, checked, world_named};
+use super::{building, checked, has_locked_rooms, world_named};
 use crate::convert::{document, message};
 use crate::grpc::Api;
 use crate::grpc::domain::plugin;
@@ -70,6 +70,10 @@ impl Api {
                 if attempts > 0 {
                     settings.attempts = attempts;
                 }
+                let from = match &start {
+                    Start::Building(_) => "building",
+                    Start::SceneGraph(_) => "scene_graph",
+                };
                 let now = core.domains.now();
                 let mut told = Told { send: answers, stop: Arc::clone(&stop), seed: 0, begun: 0.0, fraction: 0.0 };
                 let graph = match start {
@@ -84,14 +88,12 @@ impl Api {
                 let contradicting = contradictions(&graph);
                 if !allow && !contradicting.is_empty() {
                     let said = contradicting.join("; ");
-                    return Err(invalid(
-                        "building.prompt",
-                        format!("contradicts itself: {said}; or set allow_conflicts"),
-                    ));
+                    let field = if from == "building" { "building.prompt" } else { "scene_graph.conflicts" };
+                    return Err(invalid(field, format!("contradicts itself: {said}; or set allow_conflicts")));
                 }
                 told.hear(Event::Finished(Stage::SceneGraph, 0, Artifact::SceneGraph(&graph)));
                 let made = furnish_and_check(&graph, &now.registry, &settings, &mut |e| told.hear(e), &stop);
-                let made = made.map_err(|e| status::stage("building", e))?;
+                let made = made.map_err(|e| status::stage(at_fault(&e, from, &settings), e))?;
                 told.end(checked(&made.world, &made.report), made.attempts.saturating_sub(1));
                 Ok(())
             });
@@ -100,6 +102,16 @@ impl Api {
             }
         });
         Ok(Events { events, _stop: guard })
+    }
+}
+
+/// Returns the field of the request that a stage refuses.
+fn at_fault(error: &Error, from: &'static str, settings: &Settings) -> &'static str {
+    let (Error::Refused { stage, .. } | Error::Mismatch { stage, .. }) = error else { return from };
+    match *stage {
+        "floorplan" if settings.pinned_floorplan.as_ref().is_some_and(has_locked_rooms) => "pinned_floorplan",
+        "placement" if settings.pinned_placements.is_some() => "pinned_placements",
+        _ => from,
     }
 }
 
