@@ -2,6 +2,8 @@
 
 use std::collections::BTreeSet;
 use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
 use d3dgen_mesh::{builds, writers};
@@ -52,14 +54,11 @@ async fn nothing_acknowledged_is_lost_and_jobs_go_on() {
             GenerateBatchRequest { building: flat(round * 100), world_count: 5, request_id: format!("b{round}") };
         let job = c.worlds.generate_batch(asked).await.expect("started").into_inner().job.expect("a job");
         jobs.push(job.job_id);
-        let folder = root.join(format!("round_{round}"));
-        write_models(&folder, round);
-        let asked = IngestFolderRequest { server_path: folder.display().to_string(), ..Default::default() };
-        let ingest = c.assets.ingest_folder(asked).await.expect("started").into_inner().job.expect("a job").job_id;
-        ingests.push(ingest.clone());
         // registrations go on until the process is gone
         let mut domains = c.domains.clone();
         let mine = manifest.clone().expect("a manifest");
+        let acknowledged = Arc::new(AtomicU64::new(0));
+        let counter = Arc::clone(&acknowledged);
         let work = tokio::spawn(async move {
             let mut done = Vec::new();
             for n in 0_u64.. {
@@ -72,12 +71,23 @@ async fn nothing_acknowledged_is_lost_and_jobs_go_on() {
                     ..Default::default()
                 };
                 match domains.register_domain(asked).await {
-                    Ok(answer) => done.push((id, answer.into_inner().domain.expect("one").domain_version)),
+                    Ok(answer) => {
+                        done.push((id, answer.into_inner().domain.expect("one").domain_version));
+                        counter.fetch_add(1, Ordering::SeqCst);
+                    }
                     Err(_) => break,
                 }
             }
             done
         });
+        while acknowledged.load(Ordering::SeqCst) < 1 + round % 3 {
+            tokio::time::sleep(Duration::from_millis(2)).await;
+        }
+        let folder = root.join(format!("round_{round}"));
+        write_models(&folder, round);
+        let asked = IngestFolderRequest { server_path: folder.display().to_string(), ..Default::default() };
+        let ingest = c.assets.ingest_folder(asked).await.expect("started").into_inner().job.expect("a job").job_id;
+        ingests.push(ingest.clone());
         in_the_middle += u64::from(wait_for_part(&mut c, &ingest, 0.1 + 0.12 * (round % 7) as f64).await);
         assets.extend(kept_assets(&mut c).await);
         server.kill();
