@@ -2,7 +2,8 @@
 """Makes worlds with the release binary and has every one judged from outside.
 
 The full run makes 290 worlds: residential, office and hospital with 5, 8 and 10 rooms and 30 seeds each, school and
-warehouse with 10 seeds each. `--sample` makes the same kinds with fewer seeds. Judges: tests/referee/check_world.py, the
+warehouse with 10 seeds each. `--sample` makes the same kinds with fewer seeds; `--paper` makes the 450 worlds of
+`d3dgen bench paper` instead (with `--sample` 18 of them). Judges: tests/referee/check_world.py, the
 referee of ../shared where that folder exists, and `contents` below: required objects, areas within the domain's ranges,
 rooms that must or must not adjoin. Exit status 0 when no judge finds anything and every world asked for was made.
 
@@ -139,6 +140,25 @@ def make(binary, out, domain, rooms, prompt, seeds):
     return sound, seeds - len(sound)
 
 
+def make_paper(binary, out, each):
+    """Returns the sound worlds of the paper's benchmark by domain and number of rooms, and how many were not made."""
+    command = [binary, "bench", "paper", "--each", str(each), "--out", out]
+    done = subprocess.run(command, capture_output=True, text=True)
+    print(done.stderr.strip().splitlines()[-1] if done.stderr.strip() else "")
+    if done.returncode not in (0, 1):
+        sys.exit(done.stderr)
+    cases = {}
+    for world in json.loads((out / "evaluation.json").read_text())["worlds"]:
+        line = {
+            "path": out / world["path"], "stage_ms": world["stage_ms"], "area_m2": world["layout"]["floor_area_m2"],
+            "rooms": world["fidelity"]["rooms_built"], "sound": world["sound"],
+            "constraints": {k: sum(world["compliance"][f][k] for f in ("mandatory", "advice")) for k in ("satisfied", "violated")},
+        }
+        cases.setdefault((world["domain"], world["fidelity"]["rooms_asked"]), []).append(line)
+    made = {key: [line for line in lines if line["sound"]] for key, lines in cases.items()}
+    return made, 9 * each - sum(map(len, made.values()))
+
+
 def row(domain, rooms, seeds, worlds, verdicts):
     """Returns the line of one case."""
     count = max(1, len(worlds))
@@ -153,9 +173,19 @@ def row(domain, rooms, seeds, worlds, verdicts):
     )
 
 
+def seeded(binary, base, sample, causes):
+    """Makes the worlds of CASES one case after the other."""
+    for domain, rooms, prompt in CASES:
+        seeds = (4 if sample else 30) if domain in CORE else (2 if sample else 10)
+        worlds, missing = make(binary, base / f"{domain}_{rooms or 'default'}", domain, rooms, prompt, seeds)
+        causes["not made"] += missing
+        yield domain, rooms, seeds, worlds
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--sample", action="store_true", help="4 seeds a case (2 of the custom ones) instead of 30 and 10")
+    parser.add_argument("--paper", action="store_true", help="the worlds of `d3dgen bench paper`: 450, or 18 with --sample")
     parser.add_argument("--binary", type=Path, default=ROOT / "target" / "release" / "d3dgen")
     parser.add_argument("--out", type=Path, help="keep the worlds in this folder, which must be new or empty")
     args = parser.parse_args()
@@ -170,10 +200,15 @@ def main():
     begun = time.monotonic()
     with tempfile.TemporaryDirectory() as scratch, ProcessPoolExecutor() as pool:
         base = args.out or Path(scratch)
-        for domain, rooms, prompt in CASES:
-            seeds = (4 if args.sample else 30) if domain in CORE else (2 if args.sample else 10)
-            worlds, missing = make(args.binary, base / f"{domain}_{rooms or 'default'}", domain, rooms, prompt, seeds)
+        if args.paper:
+            base = args.out or base / "paper"
+            made, missing = make_paper(args.binary, base, 2 if args.sample else 50)
             causes["not made"] += missing
+            total += missing
+            runs = ((domain, rooms, len(worlds), worlds) for (domain, rooms), worlds in sorted(made.items()))
+        else:
+            runs = seeded(args.binary, base, args.sample, causes)
+        for domain, rooms, seeds, worlds in runs:
             verdicts = list(pool.map(judge, [(Path(w["path"]), args.binary, domain) for w in worlds]))
             for folder, found, figures in verdicts:
                 causes.update(f"{domain}: {': '.join(f.split(': ')[:2])}" for f in found)

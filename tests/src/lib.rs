@@ -8,6 +8,7 @@ use std::process::{Command, Output};
 use std::sync::OnceLock;
 
 use d3dgen_assets::annotation::Annotation;
+use d3dgen_eval::Evaluation;
 use d3dgen_model::document::Document;
 use d3dgen_model::domain::Domain;
 use d3dgen_model::floorplan::Floorplan;
@@ -40,6 +41,7 @@ pub fn schemas() -> Vec<(PathBuf, String)> {
         entry::<World>(),
         entry::<Report>(),
         entry::<Annotation>(),
+        entry::<Evaluation>(),
     ]
 }
 

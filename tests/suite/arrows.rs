@@ -18,6 +18,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("assets", &["model", "store", "mesh"]),
     ("pipeline", &["model", "plugins", "knowledge", "assets"]),
     ("export", &["model", "mesh"]),
+    ("eval", &["model"]),
     ("research", &["model", "llm"]),
     ("proto", &["model"]),
     (
@@ -36,12 +37,13 @@ const ARROWS: &[(&str, &[&str])] = &[
             "assets",
             "pipeline",
             "export",
+            "eval",
             "research",
             "proto",
             "server",
         ],
     ),
-    ("tests", &["model", "assets", "plugins", "knowledge", "pipeline", "export"]),
+    ("tests", &["model", "assets", "plugins", "knowledge", "pipeline", "export", "eval"]),
 ];
 
 /// Other people's file formats and protocols, and the crates that may know them.

@@ -2,6 +2,7 @@
 //! kind, `<kind>.expected` what is wrong with it.
 
 use d3dgen_assets::annotation::Annotation;
+use d3dgen_eval::Evaluation;
 use d3dgen_model::document::{Document, Problem};
 use d3dgen_model::domain::Domain;
 use d3dgen_model::floorplan::Floorplan;
@@ -37,6 +38,7 @@ fn every_problem_of_a_broken_document_is_reported() {
     check::<World>();
     check::<Report>();
     check::<Annotation>();
+    check::<Evaluation>();
 }
 
 #[test]

@@ -6,6 +6,7 @@ mod assets;
 mod documents;
 mod domain_guide;
 mod errors;
+mod eval;
 mod goldens;
 #[cfg(unix)]
 mod interrupted;

@@ -48,6 +48,9 @@ pub enum Error {
     /// A world cannot be written in a format.
     #[error(transparent)]
     Export(#[from] d3dgen_export::Error),
+    /// A list of the measures cannot be used.
+    #[error(transparent)]
+    Eval(#[from] d3dgen_eval::Error),
     /// The server cannot start or go on.
     #[error(transparent)]
     Server(#[from] d3dgen_server::Error),

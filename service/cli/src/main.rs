@@ -10,10 +10,12 @@ mod error;
 mod input;
 mod interrupt;
 mod output;
+mod parallel;
 mod progress;
 mod registry;
 mod remote;
 mod request;
+mod stage_clock;
 mod summary;
 mod table;
 

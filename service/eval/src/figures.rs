@@ -160,6 +160,13 @@ pub const FIGURES: &[Figure] = &[
         "door sides with an object before them",
     ),
     figure(
+        "oc_doors_full",
+        "OC full width",
+        Percent,
+        |w| Some(w.openings.door_sides_blocked_full_width),
+        "the same with boxes as deep as the opening is wide, whatever fills it",
+    ),
+    figure(
         "oc_windows",
         "OC windows",
         Percent,

@@ -4,8 +4,8 @@ use d3dgen_model::{Point, Rect};
 
 use crate::solid::Solid;
 
-/// Edge of a cell, m.
-pub const CELL_M: f64 = 0.05;
+/// Edge of a cell, m: five make the robot of SceneEval exactly.
+pub const CELL_M: f64 = 0.04;
 
 /// A set of cells over a rectangle.
 #[derive(Debug, Clone)]
@@ -64,9 +64,9 @@ impl Grid {
         self.cells.iter().filter(|c| **c).count()
     }
 
-    /// Returns the cells around which a square of this width (m, rounded up to whole cells) is in the set.
+    /// Returns the cells around which a square of this width (m, rounded up to an odd number of cells) is in the set.
     pub fn eroded_by_square(&self, width_m: f64) -> Self {
-        let half = (width_m / 2.0 / CELL_M - 1e-6).ceil() as usize;
+        let half = ((width_m / CELL_M - 1.0) / 2.0 - 1e-6).ceil().max(0.0) as usize;
         let mut rows = self.clone();
         for j in 0..self.ny {
             let row = &self.cells[j * self.nx..(j + 1) * self.nx];
@@ -203,10 +203,10 @@ mod tests {
     fn a_square_shrinks_by_the_robot_on_each_side() {
         let mut grid = Grid::over(&Rect::new(0.0, 0.0, 1.0, 1.0));
         grid.paint(&Rect::new(0.0, 0.0, 1.0, 1.0), true);
-        assert_eq!(grid.count(), 400);
-        assert_eq!(grid.eroded_by_square(0.2).count(), 16 * 16);
-        assert_eq!(grid.eroded_by_square(0.0).count(), 400);
-        assert_eq!(grid.eroded_by_disc(0.051).count(), 18 * 18);
+        assert_eq!(grid.count(), 25 * 25);
+        assert_eq!(grid.eroded_by_square(0.2).count(), 21 * 21, "its center stays 0.1 m from each edge");
+        assert_eq!(grid.eroded_by_square(0.0).count(), 25 * 25);
+        assert_eq!(grid.eroded_by_disc(0.041).count(), 23 * 23);
         assert_eq!(grid.largest_share(), 1.0);
     }
 
@@ -216,10 +216,10 @@ mod tests {
         grid.paint(&Rect::new(0.0, 0.0, 1.0, 1.0), true);
         grid.paint(&Rect::new(1.0, 1.0, 2.0, 2.0), true);
         assert_eq!(grid.largest_share(), 1.0);
-        grid.paint(&Rect::new(0.9, 0.9, 1.0, 1.0), false);
-        assert!((grid.largest_share() - 400.0 / 796.0).abs() < 1e-9);
+        grid.paint(&Rect::new(0.88, 0.88, 1.0, 1.0), false);
+        assert!((grid.largest_share() - 625.0 / (1250.0 - 9.0)).abs() < 1e-9);
         let (part, distance) = grid.part_at(Point::new(1.5, 1.5)).unwrap();
-        assert!(part.count() == 400 && distance < CELL_M);
+        assert!(part.count() == 625 && distance < CELL_M);
         assert_eq!(part.count_in(&[Rect::new(0.0, 0.0, 1.0, 1.0)]), 0);
     }
 }

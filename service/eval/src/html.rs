@@ -32,7 +32,10 @@ const TABLES: [(&str, &[&str]); 3] = [
             "room_count_fidelity",
         ],
     ),
-    ("The field's measures", &["col", "col_scene", "oob", "sup", "nav", "nav_rooms", "acc", "oc_doors", "oc_windows"]),
+    (
+        "The field's measures",
+        &["col", "col_scene", "oob", "sup", "nav", "nav_rooms", "acc", "oc_doors", "oc_doors_full", "oc_windows"],
+    ),
     (
         "Further measures",
         &["adjacency", "public", "mandatory", "advice", "robots", "not_rectangular", "sound", "time_ms"],

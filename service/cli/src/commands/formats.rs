@@ -29,6 +29,11 @@ pub struct Formats {
 }
 
 impl FormatArgs {
+    /// Returns the flags for these formats, plan.png left out.
+    pub fn without_png(format: Vec<String>) -> Self {
+        Self { format, no_png: true }
+    }
+
     /// Returns the formats, each once, with the models of the database of assets.
     ///
     /// # Errors

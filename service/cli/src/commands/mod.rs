@@ -1,9 +1,11 @@
 //! The commands, one file each; the order here is the order of the help.
 
 pub mod assets;
+mod bench;
 mod check;
 mod completions;
 mod domains;
+mod eval;
 mod export;
 mod floorplan;
 mod formats;
@@ -41,6 +43,10 @@ pub enum Command {
     World(world::Args),
     /// Judge worlds: every hard rule and every constraint that applies
     Check(check::Args),
+    /// Measure worlds: layout, collisions, navigability, compliance, diversity
+    Eval(eval::Args),
+    /// Make the worlds of a published benchmark and measure them
+    Bench(bench::Args),
     /// Write a world in other formats
     Export(export::Args),
     /// List, show and validate the kinds of building
@@ -77,6 +83,8 @@ impl Command {
             Self::Scenario(args) => args.run(),
             Self::World(args) => args.run(),
             Self::Check(args) => args.run(),
+            Self::Eval(args) => args.run(),
+            Self::Bench(args) => args.run(),
             Self::Export(args) => args.run(),
             Self::Domains(args) => args.run(),
             Self::Research(args) => args.run(),

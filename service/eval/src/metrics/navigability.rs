@@ -3,7 +3,7 @@
 //! As there: boxes whose middle is no higher than 2 m are drawn on a top view, the floor is shrunk by a robot 0.2 m wide,
 //! and the largest part connected by edges and corners is divided by all parts. SceneEval leaves walls and doors out
 //! ("TODO: Support for doors"), so that a house is overstated; here both are drawn, for the house (rooms joined by doors as
-//! wide as they are clear) and for each room by itself. Cells are 5 cm instead of a 256th of the building. Rugs and mats
+//! wide as they are clear) and for each room by itself. Cells are 4 cm instead of a 256th of the building. Rugs and mats
 //! no thicker than 3 cm are floor.
 
 use std::collections::BTreeSet;

@@ -2,8 +2,10 @@
 //!
 //! As there: a box before each side of an opening that is in a room, as wide and high as the opening and as deep as a door
 //! is wide (windows 0.5 m); a side is blocked when an object reaches into the box, and the occluded share is the part of
-//! the opening's area that objects in the box hide. What differs: a passage without a leaf needs no room to swing and gets
-//! the depth of a window; curtains and blinds belong before windows; rugs and mats no thicker than 3 cm are floor.
+//! the opening's area that objects in the box hide. What differs: the box is as deep as a leaf is wide, half the opening
+//! where there are two; what slides or has no leaf needs no room to swing and gets the depth of a window. The share by
+//! the letter, as deep as the opening is wide, stands beside it. Curtains and blinds belong before windows; rugs and mats
+//! no thicker than 3 cm are floor.
 
 use d3dgen_model::floorplan::DoorKind;
 use d3dgen_model::{Point, Segment, TOLERANCE_M};
@@ -27,6 +29,8 @@ pub struct Openings {
     pub door_sides: u32,
     /// Share of them with an object before them.
     pub door_sides_blocked: f64,
+    /// The same with boxes as deep as the opening is wide, whatever fills it: SceneEval's definition by the letter.
+    pub door_sides_blocked_full_width: f64,
     /// Mean share of a door's area that is hidden.
     pub doors_occluded: f64,
     /// Windows.
@@ -46,6 +50,8 @@ struct Opening<'a> {
     /// Outward direction from the wall into the room.
     out: (f64, f64),
     depth: f64,
+    /// Depth when a single leaf filled it.
+    full_depth: f64,
     z: (f64, f64),
     window: bool,
 }
@@ -65,11 +71,13 @@ pub(crate) fn measure(scene: &Scene<'_>) -> Openings {
         let part = if openings.is_empty() { 0.0 } else { share(sides, openings.len()) };
         (part, round(hidden / openings.len().max(1) as f64))
     };
+    let full = doors.iter().filter(|d| !before(scene, &Opening { depth: d.full_depth, ..**d }).0.is_empty()).count();
     let (door_sides_blocked, doors_occluded) = look(&doors);
     let (windows_blocked, windows_occluded) = look(&windows);
     Openings {
         door_sides: doors.len() as u32,
         door_sides_blocked,
+        door_sides_blocked_full_width: if doors.is_empty() { 0.0 } else { share(full, doors.len()) },
         doors_occluded,
         windows: windows.len() as u32,
         windows_blocked,
@@ -81,7 +89,12 @@ pub(crate) fn measure(scene: &Scene<'_>) -> Openings {
 fn doors<'a>(scene: &Scene<'a>) -> Vec<Opening<'a>> {
     let mut sides = Vec::new();
     for door in &scene.world.floorplan.doors {
-        let depth = if door.kind == DoorKind::Open { NO_LEAF_M } else { door.line.length() };
+        let length = door.line.length();
+        let depth = match door.kind {
+            DoorKind::Hinged => length,
+            DoorKind::DoubleHinged => length / 2.0,
+            DoorKind::Sliding | DoorKind::Open => NO_LEAF_M,
+        };
         for out in normals(&door.line) {
             let probe = at(&door.line.middle(), out, door.wall_thickness_m / 2.0 + 0.01);
             if scene
@@ -90,9 +103,16 @@ fn doors<'a>(scene: &Scene<'a>) -> Vec<Opening<'a>> {
                 .flatten()
                 .any(|r| r.x0 <= probe.x && probe.x <= r.x1 && r.y0 <= probe.y && probe.y <= r.y1)
             {
-                let depth = depth + door.wall_thickness_m / 2.0;
-                let z = (0.0, door.height_m);
-                sides.push(Opening { id: &door.door_id, line: door.line, out, depth, z, window: false });
+                let half = door.wall_thickness_m / 2.0;
+                sides.push(Opening {
+                    id: &door.door_id,
+                    line: door.line,
+                    out,
+                    depth: depth + half,
+                    full_depth: length + half,
+                    z: (0.0, door.height_m),
+                    window: false,
+                });
             }
         }
     }
@@ -111,7 +131,15 @@ fn windows<'a>(scene: &Scene<'a>) -> Vec<Opening<'a>> {
             {
                 let depth = NO_LEAF_M + window.wall_thickness_m / 2.0;
                 let z = (window.sill_m, window.head_m);
-                sides.push(Opening { id: &window.window_id, line: window.line, out, depth, z, window: true });
+                sides.push(Opening {
+                    id: &window.window_id,
+                    line: window.line,
+                    out,
+                    depth,
+                    full_depth: depth,
+                    z,
+                    window: true,
+                });
             }
         }
     }
@@ -178,6 +206,13 @@ mod tests {
         assert_eq!(found.blocked, [["door_1".to_owned(), "crate_1".to_owned()]]);
         assert!((found.door_sides_blocked - 1.0 / 3.0).abs() < 1e-6);
         assert!((found.doors_occluded - 0.25 / 3.0).abs() < 1e-6, "{found:?}");
+        // two leaves are half as wide: at x from 4.65 the crate is clear of them, and still before a full leaf
+        world.placements.placements.last_mut().unwrap().pose.x = 4.9;
+        world.floorplan.doors[0].kind = DoorKind::DoubleHinged;
+        let found = measure(&Scene::new(&world));
+        assert_eq!(found.door_sides_blocked, 0.0);
+        assert!((found.door_sides_blocked_full_width - 1.0 / 3.0).abs() < 1e-6);
+        world.placements.placements.last_mut().unwrap().pose.x = 4.6;
         // a passage without a leaf needs 0.5 m from its wall only
         world.floorplan.doors[0].kind = DoorKind::Open;
         assert!(!measure(&Scene::new(&world)).blocked.is_empty());

@@ -2,7 +2,8 @@
 //!
 //! As there, an object is supported in the direction its kind asks for: down for floor and surface (at least 4 contacts
 //! nearer than 1 cm, and the center above their convex hull), up for the ceiling and back for a wall (at least one
-//! contact nearer than 1 cm). SceneEval asks a language model for the kind; here the document says it.
+//! contact nearer than 1 cm). SceneEval asks a language model for the kind; here the document says it. The wall above a
+//! door holds what hangs there; curtains and blinds hang on the frame of their window.
 
 use d3dgen_model::Point;
 use d3dgen_model::domain::Mount;
@@ -10,6 +11,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::share;
+use crate::kinds::Kinds;
 use crate::solid::{Scene, Solid, along};
 
 /// How near a contact is, m.
@@ -61,9 +63,17 @@ fn hangs(scene: &Scene<'_>, s: &Solid<'_>) -> bool {
     let near = s.bounds.grown(NEAR_M);
     let walls: Vec<_> =
         plan.walls.iter().map(|w| along(&w.line, w.thickness_m / 2.0)).filter(|r| r.overlaps(&near)).collect();
+    let lintels: Vec<_> = plan
+        .doors
+        .iter()
+        .map(|d| (along(&d.line, d.wall_thickness_m / 2.0), d.height_m))
+        .filter(|(r, _)| r.overlaps(&near))
+        .collect();
+    let covering = Kinds::builtin().covers_windows(&s.placement.object);
     let holes: Vec<_> = plan
         .windows
         .iter()
+        .filter(|_| !covering)
         .map(|w| (along(&w.line, w.wall_thickness_m / 2.0), w.sill_m, w.head_m))
         .filter(|(r, ..)| r.overlaps(&near))
         .collect();
@@ -76,7 +86,8 @@ fn hangs(scene: &Scene<'_>, s: &Solid<'_>) -> bool {
             let hole = holes.iter().any(|(r, sill, head)| inside(r) && *sill < z && z < *head);
             let other =
                 |o: &Solid<'_>| !std::ptr::eq(o.placement, s.placement) && o.z0 <= z && z <= o.z1 && o.covers(p, 0.0);
-            let wall = !hole && walls.iter().any(inside) && z <= scene.ceiling(&s.placement.room_id);
+            let above = lintels.iter().any(|(r, head)| inside(r) && *head <= z);
+            let wall = (above || !hole && walls.iter().any(inside)) && z <= scene.ceiling(&s.placement.room_id);
             wall || scene.solids.iter().any(other)
         })
     })
@@ -150,5 +161,22 @@ mod tests {
         };
         assert_eq!(sign(1.2), ["sign_1"]);
         assert_eq!(sign(0.7), [""; 0], "its lower half hangs on the wall below");
+        let hung = |object: &str| {
+            let mut thing = sample::thing(object, (6.0, 2.85), [0.5, 0.1, 0.3]);
+            (thing.mount, thing.pose.z, thing.pose.yaw_rad) = (Mount::Wall, 1.2, -std::f64::consts::FRAC_PI_2);
+            loose(|w| w.placements.placements.push(thing))
+        };
+        assert_eq!((hung("blind"), hung("picture")), (Vec::new(), vec!["picture_1".to_owned()]));
+    }
+
+    #[test]
+    fn the_wall_above_a_door_holds_a_camera() {
+        // the door runs from y = 1 to 2 at x = 4, 2 m high; the second room's wall face is at x = 4.1
+        let camera = |z: f64| {
+            let mut camera = sample::thing("camera", (4.175, 1.5), [0.1, 0.15, 0.1]);
+            (camera.mount, camera.pose.z) = (Mount::Wall, z);
+            loose(|w| w.placements.placements.push(camera))
+        };
+        assert_eq!((camera(2.2), camera(1.8)), (Vec::new(), vec!["camera_1".to_owned()]));
     }
 }

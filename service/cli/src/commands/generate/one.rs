@@ -1,7 +1,7 @@
 //! One world: made, timed, written.
 
 use std::sync::atomic::AtomicBool;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_pipeline::generate::{Artifact, Event, Settings, Stage, contradictions, furnish_and_check};
@@ -17,6 +17,7 @@ use crate::interrupt;
 use crate::output::Output;
 use crate::progress::Progress;
 use crate::registry::domain;
+use crate::stage_clock::StageClock;
 use crate::summary::Summary;
 
 /// What all worlds of a run share.
@@ -32,7 +33,7 @@ impl Maker {
     pub fn make(&self, job: &Job, progress: &Progress) -> Result<Summary, Error> {
         let output = Output::new(&job.path)?;
         let settings = Settings { name: job.name.clone(), ..Settings::default() };
-        let mut clock = Clock::default();
+        let mut clock = StageClock::default();
         let mut observe = |event: Event<'_>| {
             clock.hear(&event);
             talk(&event, &clock, progress);
@@ -69,35 +70,7 @@ fn refuse_contradictions(graph: &SceneGraph) -> Result<(), Error> {
     )))
 }
 
-/// Time spent in each stage, all attempts together.
-#[derive(Default)]
-struct Clock {
-    begun: Option<Instant>,
-    last: Duration,
-    spent: [Duration; Stage::ALL.len()],
-}
-
-impl Clock {
-    fn hear(&mut self, event: &Event<'_>) {
-        match event {
-            Event::Started(..) => self.begun = Some(Instant::now()),
-            Event::Finished(stage, ..) => {
-                if let Some(begun) = self.begun.take() {
-                    self.last = begun.elapsed();
-                    self.spent[*stage as usize] += self.last;
-                }
-            }
-            Event::Furnished(..) => {}
-            Event::Rejected(..) => self.begun = None,
-        }
-    }
-
-    fn times(&self) -> Vec<(&'static str, Duration)> {
-        Stage::ALL.iter().map(|s| (s.name(), self.spent[*s as usize])).collect()
-    }
-}
-
-fn talk(event: &Event<'_>, clock: &Clock, progress: &Progress) {
+fn talk(event: &Event<'_>, clock: &StageClock, progress: &Progress) {
     match event {
         Event::Started(stage, _) => progress.doing(stage.name()),
         Event::Furnished(..) => {}
@@ -114,7 +87,7 @@ fn talk(event: &Event<'_>, clock: &Clock, progress: &Progress) {
                 }
                 Artifact::World(_, report) => format!("{} rules checked", report.rules.len()),
             };
-            progress.done(&format!("{}: {found} ({:.0} ms)", stage.name(), clock.last.as_secs_f64() * 1000.0));
+            progress.done(&format!("{}: {found} ({:.0} ms)", stage.name(), clock.last().as_secs_f64() * 1000.0));
         }
     }
 }
