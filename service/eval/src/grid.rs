@@ -60,6 +60,7 @@ impl Grid {
     }
 
     /// Returns the number of cells in the set.
+    #[cfg(test)]
     pub fn count(&self) -> usize {
         self.cells.iter().filter(|c| **c).count()
     }
@@ -109,6 +110,12 @@ impl Grid {
 
     /// Returns the share of the set in its largest part connected by edges and corners; 0 for the empty set.
     pub fn largest_share(&self) -> f64 {
+        let (largest, all) = self.largest_and_all();
+        if all == 0 { 0.0 } else { largest as f64 / all as f64 }
+    }
+
+    /// Returns the size of the largest part connected by edges and corners, and of the set.
+    pub fn largest_and_all(&self) -> (usize, usize) {
         let mut left = self.clone();
         let (mut largest, mut all) = (0, 0);
         for k in 0..left.cells.len() {
@@ -118,7 +125,7 @@ impl Grid {
                 all += size;
             }
         }
-        if all == 0 { 0.0 } else { largest as f64 / all as f64 }
+        (largest, all)
     }
 
     /// Returns the part that is connected with the cell of the set nearest to a point, and how far that is, m.

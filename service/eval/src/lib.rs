@@ -19,6 +19,7 @@ pub mod picture;
 
 mod grid;
 mod solid;
+mod storeys;
 
 #[cfg(test)]
 mod sample;

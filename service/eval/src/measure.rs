@@ -11,6 +11,7 @@ use crate::metrics::{
     robots, support,
 };
 use crate::solid::Scene;
+use crate::storeys::side_by_side;
 
 /// What whoever made a world knows of it beside its documents.
 #[derive(Debug, Clone, Default)]
@@ -23,7 +24,8 @@ pub struct Known {
 
 /// Measures a world that has passed [`d3dgen_model::Document::check`]; `path` is how it is called in the results.
 pub fn measure(world: &World, report: Option<&Report>, path: &str, known: &Known) -> WorldMeasures {
-    let scene = Scene::new(world);
+    let laid_out = side_by_side(world);
+    let scene = Scene::new(&laid_out);
     let graph = &world.scene_graph;
     WorldMeasures {
         path: path.to_owned(),

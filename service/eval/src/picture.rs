@@ -12,13 +12,15 @@ use crate::evaluation::WorldMeasures;
 use crate::html::escape;
 use crate::metrics::navigability::around;
 use crate::solid::{Scene, Solid, along};
+use crate::storeys::side_by_side;
 
 /// Free space around the building, cm.
 const MARGIN: f64 = 30.0;
 
 /// Returns the plan of a world; objects and doors that a measure found fault with are marked.
 pub fn svg(world: &World, measures: &WorldMeasures) -> String {
-    let scene = Scene::new(world);
+    let laid_out = side_by_side(world);
+    let (scene, world) = (Scene::new(&laid_out), &*laid_out);
     let outer: Vec<Rect> = world.floorplan.walls.iter().map(|w| along(&w.line, w.thickness_m / 2.0)).collect();
     let bounds = around(outer.iter().chain(scene.floor()));
     let (width, height) = (bounds.width() * 100.0 + 2.0 * MARGIN, bounds.height() * 100.0 + 2.0 * MARGIN);

@@ -55,6 +55,7 @@ fn room(id: &str, x0: f64) -> PlanRoom {
         room_type: "room".into(),
         name: id.into(),
         circulation: false,
+        level: 0,
         polygon: rectangle(x0, 0.0, x0 + 4.0, 3.0),
         net_polygon: rectangle(x0 + 0.1, 0.1, x0 + 3.9, 2.9),
         net_area_m2: 3.8 * 2.8,
@@ -89,6 +90,8 @@ fn plan() -> Floorplan {
         version: 1,
         seed: 7,
         scheme: "hand".into(),
+        levels: Vec::new(),
+        links: Vec::new(),
         rooms: vec![room("a_1", 0.0), room("b_1", 4.0)],
         walls: vec![
             wall("wall_1", line(0.0, 0.0, 4.0, 0.0), &["a_1"]),
@@ -144,6 +147,7 @@ fn graph(robot: &Robot) -> SceneGraph {
         wished_assets: Vec::new(),
         occupants: None,
         circulation: false,
+        level: 0,
         requested: true,
         entrance: id == "a_1",
         locked: false,
@@ -160,6 +164,7 @@ fn graph(robot: &Robot) -> SceneGraph {
         occupancy: Default::default(),
         accessible: false,
         rooms: vec![room("a_1"), room("b_1")],
+        links: Vec::new(),
         edges: vec![GraphEdge {
             a: "a_1".into(),
             b: "b_1".into(),
@@ -192,6 +197,7 @@ pub fn world() -> World {
         robots: vec![RobotTask {
             robot_id: "delivery_robot_1".into(),
             robot: robot.clone(),
+            level: 0,
             start: Pose { x: 3.2, y: 2.4, z: 0.0, yaw_rad: 0.0 },
             goals: vec!["point_a".into(), "point_b".into()],
             dock: None,

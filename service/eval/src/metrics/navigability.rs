@@ -65,7 +65,11 @@ pub(crate) fn free_floor(scene: &Scene<'_>, is_obstacle: impl Fn(&Solid<'_>) -> 
 
 /// Measures a world.
 pub(crate) fn measure(scene: &Scene<'_>) -> Navigability {
-    let house = free_floor(scene, is_drawn).eroded_by_square(ROBOT_M).largest_share();
+    // a robot of this width climbs no stairs: storeys count one by one
+    let plan = &scene.world.floorplan;
+    let parts = plan.level_numbers().into_iter().map(|level| storey(scene, level).largest_and_all());
+    let (largest, all) = parts.fold((0, 0), |sum, part| (sum.0 + part.0, sum.1 + part.1));
+    let house = if all == 0 { 0.0 } else { largest as f64 / all as f64 };
     let shares: Vec<f64> = scene.rooms.iter().map(|rects| room(scene, rects)).collect();
     let rooms = &scene.world.floorplan.rooms;
     let least = shares.iter().copied().enumerate().min_by(|a, b| a.1.total_cmp(&b.1));
@@ -78,6 +82,20 @@ pub(crate) fn measure(scene: &Scene<'_>) -> Navigability {
         reached_in_public: share(rooms.len() - behind_private.len(), rooms.len()),
         behind_private,
     }
+}
+
+/// Returns where the robot can be on a storey.
+fn storey(scene: &Scene<'_>, level: i32) -> Grid {
+    let plan = &scene.world.floorplan;
+    let here = |id: &String| plan.room(id).is_some_and(|r| r.level == level);
+    let rooms = plan.rooms.iter().zip(&scene.rooms).filter(|(r, _)| r.level == level).flat_map(|(_, rects)| rects);
+    let doors = plan.doors.iter().zip(&scene.thresholds).filter(|(d, _)| d.room_ids.iter().any(here));
+    let floor: Vec<Rect> = rooms.chain(doors.map(|(_, rect)| rect)).copied().collect();
+    let bounds = around(floor.iter());
+    let mut grid = Grid::over(&bounds);
+    floor.iter().for_each(|r| grid.paint(r, true));
+    scene.solids.iter().filter(|s| is_drawn(s) && s.bounds.overlaps(&bounds)).for_each(|s| grid.block(s));
+    grid.eroded_by_square(ROBOT_M)
 }
 
 fn room(scene: &Scene<'_>, rects: &[Rect]) -> f64 {
@@ -98,7 +116,9 @@ fn behind_private(plan: &Floorplan, kinds: &Kinds) -> Vec<String> {
         if private(room) {
             continue;
         }
-        for next in plan.doors_of(room).flat_map(|d| &d.room_ids) {
+        let doors = plan.doors_of(room).flat_map(|d| &d.room_ids);
+        let stairs = plan.link_of(room).into_iter().flat_map(|l| &l.room_ids);
+        for next in doors.chain(stairs) {
             if reached.insert(next) {
                 ahead.push(next);
             }

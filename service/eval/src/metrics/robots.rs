@@ -3,7 +3,7 @@
 //! No peer measures this for a chosen robot with walls and doors drawn (SceneEval's
 //! robot is 0.2 m wide and knows no doors). A robot is a disc of its turning radius; what is higher than 3 cm and begins
 //! below its height stops it; doors are as wide as they are clear. A point is reached when the disc's center can come
-//! within 0.25 m of it.
+//! within 0.25 m of it. Only the storey it starts on is judged.
 
 use d3dgen_model::Point;
 use schemars::JsonSchema;
@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use super::navigability::free_floor;
 use super::{round, share};
+use crate::grid::Grid;
 use crate::solid::{COVERING_M, Scene};
 
 /// How near the center must come to a point, m.
@@ -43,7 +44,11 @@ pub(crate) fn measure(scene: &Scene<'_>) -> Vec<RobotFit> {
         let robot = &task.robot;
         let clear = free_floor(scene, |s| s.z1 > COVERING_M && s.z0 < robot.height_m).eroded_by_disc(robot.radius_m);
         let start = Point::new(task.start.x, task.start.y);
-        let goals: Vec<&String> = task.goals.iter().chain(&task.dock).collect();
+        let level_of = |room: &str| scene.world.floorplan.room(room).map_or(0, |r| r.level);
+        let elsewhere = |id: &str| scenario.pois.iter().any(|p| p.poi_id == id && level_of(&p.room_id) != task.level);
+        let goals: Vec<&String> = task.goals.iter().chain(&task.dock).filter(|id| !elsewhere(id)).collect();
+        let storey: Vec<_> =
+            scene.world.floorplan.rooms.iter().zip(&scene.rooms).filter(|(r, _)| r.level == task.level).collect();
         let Some((part, _)) = clear.part_at(start).filter(|(_, distance)| *distance <= NEAR_M) else {
             return RobotFit {
                 robot_id: task.robot_id.clone(),
@@ -61,13 +66,14 @@ pub(crate) fn measure(scene: &Scene<'_>) -> Vec<RobotFit> {
             distance.is_some_and(|d| d <= NEAR_M)
         };
         let missed: Vec<String> = goals.iter().filter(|id| !reached(id)).map(|id| (*id).clone()).collect();
-        let entered = scene.rooms.iter().filter(|rects| part.count_in(rects) > 0).count();
+        let cells = |grid: &Grid| storey.iter().map(|(_, rects)| grid.count_in(rects)).sum::<usize>();
+        let entered = storey.iter().filter(|(_, rects)| part.count_in(rects) > 0).count();
         RobotFit {
             robot_id: task.robot_id.clone(),
             radius_m: robot.radius_m,
             goals_share: share(goals.len() - missed.len(), goals.len()),
-            rooms_share: share(entered, scene.rooms.len()),
-            floor_share: round(part.count() as f64 / clear.count().max(1) as f64),
+            rooms_share: share(entered, storey.len()),
+            floor_share: round(cells(&part) as f64 / cells(&clear).max(1) as f64),
             fits: missed.is_empty(),
             missed,
         }
