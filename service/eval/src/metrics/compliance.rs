@@ -78,10 +78,15 @@ pub struct SourceTally {
     pub violated: Vec<(String, u32)>,
 }
 
+/// Advice, jurisdiction, title, publisher: law comes first.
+type Key<'a> = (bool, &'a str, &'a str, &'a str);
+/// Results of a source, and how often each constraint of it is violated.
+type Found<'a> = (Tally, BTreeMap<&'a str, u32>);
+
 /// Measures a report.
 pub(crate) fn measure(report: &Report) -> Compliance {
     let mut out = Compliance::default();
-    let mut sources: BTreeMap<(bool, &str, &str, &str), (Tally, BTreeMap<&str, u32>)> = BTreeMap::new();
+    let mut sources: BTreeMap<Key, Found> = BTreeMap::new();
     for c in report.constraints.iter().filter(|c| c.status != Status::NotApplicable) {
         if c.mandatory { &mut out.mandatory } else { &mut out.advice }.count(c.status);
         let source = &c.citation.source;
@@ -92,8 +97,7 @@ pub(crate) fn measure(report: &Report) -> Compliance {
             *violated.entry(&c.name).or_default() += 1;
         }
     }
-    type Entry<'a> = ((bool, &'a str, &'a str, &'a str), (Tally, BTreeMap<&'a str, u32>));
-    let entry = |(key, (tally, violated)): Entry<'_>| SourceTally {
+    let entry = |(key, (tally, violated)): (Key, Found)| SourceTally {
         jurisdiction: key.1.to_owned(),
         title: key.2.to_owned(),
         publisher: key.3.to_owned(),
