@@ -54,9 +54,8 @@ impl Args {
                 |i: &usize| Ok(Picture { world: *i, svg: worlds::picture(&self.folder, &evaluation.worlds[*i])? });
             write_text(Some(file), &html::page(&evaluation, &title, &parallel::map(&chosen, threads, draw)?))?;
         }
-        match &self.json {
-            Some(file) => write_text(Some(file), &evaluation.to_json())?,
-            None => {}
+        if let Some(file) = &self.json {
+            write_text(Some(file), &evaluation.to_json())?;
         }
         if self.json.as_deref().is_none_or(|f| f != "-") {
             print(&evaluation)?;
