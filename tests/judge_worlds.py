@@ -33,6 +33,9 @@ CASES = [  # domain, rooms (None: as the prompt says), prompt
     *[("hospital", n, "hospital ward in Germany, for a delivery robot") for n in (5, 8, 10)],
     ("school", None, "primary school with a cleaning robot"),
     ("warehouse", None, "warehouse with a delivery robot"),
+    ("residential", None, "two-storey house in Germany: ground floor with kitchen, living room and toilet; upper floor with 3 bedrooms and a bathroom"),
+    ("office", 24, "office in the United States on 3 storeys, for a service robot"),
+    ("hospital", 24, "hospital in Germany with 2 storeys, for a delivery robot"),
 ]
 CORE = {"residential", "office", "hospital"}
 AREAS_IN_RANGE = 0.98  # least share of rooms with an area in the range of their type
@@ -116,14 +119,28 @@ def judge(task):
     found, rooms, in_range = contents(folder, domain_of(binary, name))
     found = [f"contents: {line}" for line in found]
     figures = {"rooms": rooms, "in_range": in_range}
-    (file,) = folder.rglob("world.yaml")
+    files = sorted(folder.rglob("world.yaml"))
+    if len(files) != len(json.loads((folder / "floorplan.json").read_text()).get("levels", [0])):
+        found.append(f"contents: level_missing: {len(files)} world.yaml")
     judges = [("own", ROOT / "tests" / "referee" / "check_world.py")]
     judges += [("shared", SHARED_REFEREE)] if SHARED_REFEREE.exists() else []
     for label, path in judges:
-        broken, seen = load(f"{label}_referee", path).judge(file, graph)
-        found += [f"{label}: {b['rule']}: {b['subject']}" for b in broken]
-        figures = seen | figures
+        sums = Counter()
+        for file in files:
+            broken, seen = load(f"{label}_referee", path).judge(file, on_level(folder, graph, int(file.parent.name)))
+            found += [f"{label}: {b['rule']}: {b['subject']}" for b in broken]
+            sums.update({key: value for key, value in seen.items() if isinstance(value, (int, float))})
+        figures = sums | figures
     return folder, found, figures
+
+
+def on_level(folder, graph, level):
+    """Returns the part of a simple graph that a level's world shows: above the ground without stairwells and shafts."""
+    full = json.loads((folder / "scene_graph.json").read_text())
+    shafts = {room for link in full.get("links", []) for room in link["room_ids"]} if level else set()
+    here = {r["id"] for r in full["rooms"] if r.get("level", 0) == level} - shafts
+    rooms = [r for r in graph["rooms"] if r["id"] in here]
+    return {"rooms": rooms, "edges": [e for e in graph["edges"] if {e["a"], e["b"]} <= here]}
 
 
 def make(binary, out, domain, rooms, prompt, seeds):

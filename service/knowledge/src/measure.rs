@@ -190,8 +190,16 @@ pub enum Measure {
     LegRoom,
     /// Height of the threshold of a door, m.
     Threshold,
-    /// Circulation without stairs.
+    /// Circulation without stairs, apart from stairwells beside an elevator.
     NoStairs,
+    /// Clear width of a flight of stairs, m.
+    FlightWidth,
+    /// Rise of a step, m.
+    StepRise,
+    /// Going of a step, m.
+    StepGoing,
+    /// Pitch of stairs, degrees.
+    StairsPitch,
     /// Circulation without glass down to the floor and without mirrors.
     NoGlassOrMirrors,
     /// Distance between robots where they start, m.

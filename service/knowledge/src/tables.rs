@@ -259,6 +259,7 @@ pub(crate) enum When {
     BothSides,
     Bedspaces,
     BuildingArea,
+    Storeys,
     ObjectsInBuilding,
     Robots,
     RobotKind,
@@ -281,7 +282,7 @@ impl When {
 
     /// Returns true for figures of a finished building.
     pub(crate) fn is_of_building(self) -> bool {
-        matches!(self, Self::Bedspaces | Self::BuildingArea | Self::ObjectsInBuilding)
+        matches!(self, Self::Bedspaces | Self::BuildingArea | Self::Storeys | Self::ObjectsInBuilding)
     }
 }
 

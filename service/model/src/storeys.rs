@@ -239,7 +239,11 @@ impl World {
         let plan = &mut world.floorplan;
         plan.rooms.retain(|r| !shafts.contains(&r.room_id));
         plan.windows.retain(|w| !shafts.contains(&w.room_id));
-        plan.walls.iter_mut().for_each(|w| out(&mut w.room_ids));
+        for wall in &mut plan.walls {
+            let sides = wall.room_ids.len();
+            out(&mut wall.room_ids);
+            wall.exterior |= wall.room_ids.len() < sides;
+        }
         plan.walls.retain(|w| !w.room_ids.is_empty());
         plan.doors.retain(|d| d.room_ids.iter().any(|id| !shafts.contains(id)));
         let mut entered = None;

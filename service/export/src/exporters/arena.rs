@@ -1,6 +1,7 @@
 //! Arena's world folder: `world.yaml`, its map, a default scenario and a model of every object used.
 //!
-//! Arena finds the world when `ARENA_WORLD_PATH` names the folder `arena/worlds`. One world has one level, `0`.
+//! Arena finds the world when `ARENA_WORLD_PATH` names the folder `arena/worlds`. Every storey is a level: `0`
+//! is the ground floor, and stairwells and shafts above it are no zones but the ways in.
 
 mod assets;
 mod map;
@@ -34,12 +35,21 @@ impl Exporter for Arena {
         }
         let root = format!("arena/worlds/{}", world.name);
         let models = assets::Models::of(world)?;
-        let mut files = vec![
-            File::new(format!("{root}/0/world.yaml"), yaml::to_string(&world_yaml::level(world, domain, &models)?)),
-            File::new(format!("{root}/0/map.png"), map::png(&world.floorplan)?),
-            File::new(format!("{root}/0/map.yaml"), yaml::to_string(&map::yaml(&world.floorplan))),
-            File::new(format!("{root}/scenarios/default/scenario.yaml"), yaml::to_string(&scenario::scenario(world))),
-        ];
+        let storeys = world.storeys();
+        let ground = storeys.iter().find(|(level, _)| *level == 0).map_or(world, |(_, storey)| storey);
+        let default = yaml::to_string(&scenario::scenario(ground));
+        let mut files = vec![File::new(format!("{root}/scenarios/default/scenario.yaml"), default)];
+        for (level, storey) in &storeys {
+            let (at, plan) = (format!("{root}/{level}"), &storey.floorplan);
+            let document = yaml::to_string(&world_yaml::level(storey, domain, &models)?);
+            files.push(File::new(format!("{at}/world.yaml"), document));
+            files.push(File::new(format!("{at}/map.png"), map::png(plan)?));
+            files.push(File::new(format!("{at}/map.yaml"), yaml::to_string(&map::yaml(plan))));
+            if *level != 0 {
+                let document = yaml::to_string(&scenario::scenario(storey));
+                files.push(File::new(format!("{root}/scenarios/level_{level}/scenario.yaml"), document));
+            }
+        }
         files.extend(models.files(&format!("{root}/assets"), domain, kept)?);
         files.sort_by(|a, b| a.path.cmp(&b.path));
         Ok(files)

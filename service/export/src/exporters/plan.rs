@@ -10,6 +10,7 @@ mod page;
 mod panel;
 mod pen;
 mod robots;
+mod storeys;
 mod style;
 mod symbols;
 
@@ -66,6 +67,9 @@ impl Exporter for Plan {
 
 /// Returns the plan as SVG.
 pub fn svg(world: &World, domain: &Domain) -> String {
+    let size = building::outer_bounds(&world.floorplan);
+    let (laid_out, storeys) = storeys::laid_out(world);
+    let world = &laid_out;
     let plan = &world.floorplan;
     let around = building::outer_bounds(plan);
     let beside = around.width() < 1.5 * around.height();
@@ -73,7 +77,10 @@ pub fn svg(world: &World, domain: &Domain) -> String {
     // The drawing's scale follows from the sheet; weights and type follow from the scale, within limits.
     let scale = scale(&around, if beside { panel::WIDTH + GAP } else { 0.0 });
     let k = (scale / 55.0).clamp(0.7, 1.15);
-    let (margins, offsets) = margins(plan, &around, scale);
+    let (mut margins, offsets) = margins(plan, &around, scale);
+    if !storeys.is_empty() {
+        margins.north += 2.0 * UNIT;
+    }
     let frame =
         Frame { scale, origin: Point::new(around.x0, around.y1), at: (EDGE + margins.west, EDGE + margins.north) };
     let on_sheet = frame.rect(&around);
@@ -90,12 +97,16 @@ pub fn svg(world: &World, domain: &Domain) -> String {
         building::windows(page, &frame, plan);
         building::doors(page, &frame, plan);
         building::entrances(page, &frame, plan, UNIT);
-        building::dimensions(page, &frame, &around, offsets, UNIT);
+        storeys::elevators(page, &frame, plan);
+        if storeys.is_empty() {
+            building::dimensions(page, &frame, &around, offsets, UNIT);
+        }
+        storeys::titles(page, &frame, &storeys, UNIT);
         let marks = robots::marks(page, &frame, &world.scenario, 17.0 * k.max(0.85));
         numbers = label(page, &frame, (world, domain), &shown, marks, 18.0 * k.clamp(0.8, 1.1));
         drawing.y1
     });
-    let facts = panel::Facts { world, domain, numbers: &numbers, around: &around, scale, k };
+    let facts = panel::Facts { world, domain, numbers: &numbers, around: &size, scale, k };
     let (width, height) = facts.draw(&mut page, &drawing, beside);
     // A title block larger than the drawing leaves space around it: the drawing stands in its middle.
     let spare = if beside { (0.0, height - EDGE - drawing.y1) } else { (width - EDGE - drawing.x1, 0.0) };

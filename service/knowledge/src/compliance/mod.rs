@@ -16,6 +16,7 @@ mod routes;
 mod site;
 mod sizes;
 mod spacing;
+mod stairs;
 
 use d3dgen_model::domain::Domain;
 use d3dgen_model::knowledge::Value;
@@ -54,7 +55,11 @@ impl Reading {
 ///
 /// What has no subject in this world is counted in the summary and not listed.
 pub fn evaluate(world: &World, domain: &Domain, retrieval: &Retrieval) -> (Vec<ConstraintResult>, ConstraintSummary) {
+    // figures of the building are of all storeys, what is measured on a floor is of one after the other
     let site = Site::new(world, domain, retrieval);
+    let several = world.floorplan.level_numbers().len() > 1;
+    let storeys = if several { world.storeys() } else { Vec::new() };
+    let storeys: Vec<Site> = storeys.iter().map(|(_, storey)| Site::new(storey, domain, retrieval)).collect();
     let mut summary = ConstraintSummary { not_applicable: retrieval.not_applicable, ..ConstraintSummary::default() };
     let mut out = Vec::new();
     for a in &retrieval.constraints {
@@ -66,7 +71,7 @@ pub fn evaluate(world: &World, domain: &Domain, retrieval: &Retrieval) -> (Vec<C
                 continue;
             }
         };
-        let readings = readings(&site, a, rule);
+        let readings = readings(&site, &storeys, a, rule);
         if readings.is_empty() {
             summary.not_applicable += 1;
             continue;
@@ -83,12 +88,17 @@ pub fn evaluate(world: &World, domain: &Domain, retrieval: &Retrieval) -> (Vec<C
 }
 
 /// Reads the quantity wherever the world has it; each family of quantities answers for its own.
-fn readings(site: &Site, a: &Applicable, rule: &Rule) -> Vec<Reading> {
-    if !site.admits(a, rule.quantity.single_exit) {
+fn readings(site: &Site, storeys: &[Site], a: &Applicable, rule: &Rule) -> Vec<Reading> {
+    let ground = storeys.first().unwrap_or(site);
+    if !ground.admits(a, rule.quantity.single_exit) {
         return Vec::new();
     }
-    let families = [rooms::read, doors::read, routes::read, counts::read, objects::read, robots::read];
-    families.iter().flat_map(|read| read(site, a, rule)).collect()
+    let floors = if storeys.is_empty() { std::slice::from_ref(site) } else { storeys };
+    let each = |read: fn(&Site, &Applicable, &Rule) -> Vec<Reading>| floors.iter().flat_map(move |f| read(f, a, rule));
+    let measured = [rooms::read, doors::read, routes::read].into_iter().flat_map(each);
+    let counted = counts::read(site, a, rule);
+    let used = [objects::read, robots::read].into_iter().flat_map(each);
+    measured.chain(counted).chain(used).collect()
 }
 
 /// Returns one result for each reading that breaks the rule, or the closest call; one that says why nobody can tell where

@@ -5,7 +5,7 @@ use d3dgen_model::domain::Shape;
 use d3dgen_model::floorplan::Door;
 
 use super::site::{Object, Room, Site};
-use super::{Reading, fixtures, kitchen, sizes, spacing};
+use super::{Reading, fixtures, kitchen, sizes, spacing, stairs};
 use crate::clearance::{Side, door_zones, free_depth};
 use crate::measure::Measure;
 use crate::retrieve::{Applicable, Rule, Scope};
@@ -31,6 +31,7 @@ pub(super) fn read(site: &Site, a: &Applicable, rule: &Rule) -> Vec<Reading> {
             let value = figure(site, room, object, a, rule)
                 .or_else(|| sizes::figure(object, a, rule))
                 .or_else(|| spacing::figure(room, object, rule))
+                .or_else(|| stairs::figure(site, object, rule))
                 .or_else(|| fixtures::figure(site, room, object, a, rule));
             out.extend(value.map(|v| Reading::new(&object.placement.placement_id, v)));
         }

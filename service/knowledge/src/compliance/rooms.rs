@@ -1,5 +1,6 @@
 //! Sizes, heights and windows of rooms.
 
+use d3dgen_model::storeys::LinkKind;
 use d3dgen_model::{Rect, TOLERANCE_M};
 
 use super::site::{Room, Site};
@@ -48,8 +49,12 @@ fn figure(site: &Site, room: &Room, rule: &Rule) -> Option<f64> {
         Measure::WindowHeight => room.windows.iter().map(|w| w.head_m - w.sill_m).reduce(f64::max)?,
         Measure::WindowArea => room.windows.iter().map(|w| w.line.length() * (w.head_m - w.sill_m)).reduce(f64::max)?,
         Measure::DepthToHeight => depth_behind_windows(room)? / room.plan.ceiling_height_m.max(TOLERANCE_M),
-        // a world is one storey: its circulation has no steps
-        Measure::NoStairs => 1.0,
+        // a storey has no steps but those of its stairwells, which robots need not climb beside an elevator
+        Measure::NoStairs => {
+            let links = &site.world.floorplan.links;
+            let lift = links.is_empty() || links.iter().any(|l| l.kind == LinkKind::Elevator);
+            if lift { 1.0 } else { 0.0 }
+        }
         Measure::NoGlassOrMirrors => {
             let glass = room.windows.iter().any(|w| w.sill_m < FLOOR_GLASS_M);
             let mirrors = |o: &&super::site::Object| o.kind.is_some_and(|k| k.tags.iter().any(|t| t == "mirror"));

@@ -81,7 +81,10 @@ impl<'a> Site<'a> {
         self.rooms.iter().filter(move |room| {
             let about = match &a.scope {
                 Scope::Rooms(types) => types.contains(&room.plan.room_type),
-                Scope::Circulation => room.plan.circulation,
+                // stairwells and shafts are as wide as what they hold
+                Scope::Circulation => {
+                    room.plan.circulation && self.world.floorplan.link_of(&room.plan.room_id).is_none()
+                }
                 Scope::Objects(shapes) => room.has(shapes),
                 Scope::Building | Scope::Doors | Scope::Entrance => false,
             };
@@ -115,6 +118,7 @@ impl<'a> Site<'a> {
         let objects = || self.rooms.iter().flat_map(|r| &r.objects).filter_map(|o| o.kind);
         match row.when {
             When::Bedspaces => self.rooms.iter().map(Room::bedspaces).sum::<usize>() as f64,
+            When::Storeys => self.world.floorplan.levels.len().max(1) as f64,
             When::BuildingArea => self.rooms.iter().map(|r| r.plan.net_area_m2).sum(),
             _ => objects().filter(|k| row.counts(k)).count() as f64,
         }

@@ -172,6 +172,8 @@ pub enum Shape {
     Scanner,
     /// Pallet racking.
     Rack,
+    /// Two flights of steps side by side.
+    Stairs,
 }
 
 impl Shape {
@@ -212,6 +214,7 @@ impl Shape {
             Self::Vehicle => "vehicle",
             Self::Scanner => "scanner",
             Self::Rack => "rack",
+            Self::Stairs => "stairs",
         }
     }
 
@@ -253,6 +256,7 @@ impl Shape {
             Vehicle,
             Scanner,
             Rack,
+            Stairs,
         ]
         .into_iter()
     }

@@ -194,6 +194,11 @@ impl Stairs {
         2 * (height_m / (2.0 * self.rise_m) - 1e-6).ceil().max(1.0) as u32
     }
 
+    /// Returns the clear width of each of two flights that are `width_m` together.
+    pub fn flight_width_of(&self, width_m: f64) -> f64 {
+        (width_m - WELL_M) / 2.0
+    }
+
     /// Returns the clear width and depth of the stairwell for floors this far apart, m.
     pub fn size_m(&self, height_m: f64) -> (f64, f64) {
         let treads = f64::from(self.rises(height_m) / 2 - 1);

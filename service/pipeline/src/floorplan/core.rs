@@ -93,11 +93,16 @@ impl Core {
 
 /// The stairwell has the size it needs, whatever others of its type have.
 fn set_area(brief: &mut Brief, room: usize, b: Cellbox) {
+    let entrance_width = brief.entrance_width;
     let spec = &mut brief.rooms[room];
     let area = b.area_m2();
     (spec.area_min, spec.area_target, spec.area_max) = (0.4 * area, 0.88 * area, 1.1 * area);
     spec.min_dimension = spec.min_dimension.min(1.0);
     spec.fixed = true;
+    // stairs are a way out
+    if !spec.elevator && !spec.open_front {
+        spec.door_width = spec.door_width.max(entrance_width);
+    }
 }
 
 /// Returns width and depth of a stairwell between wall center lines, lattice units.

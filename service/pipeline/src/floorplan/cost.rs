@@ -8,7 +8,7 @@ use d3dgen_model::scene_graph::Connector;
 use d3dgen_model::seed::Stream;
 
 use super::PROPORTION_LIMIT;
-use super::core::{Below, overhang};
+use super::core::{Below, in_core, overhang};
 use super::lattice::{Cellbox, INNER_HALF_M, JAMB_M, OUTER_HALF_M, meters, up};
 use super::realize::{Layout, door_need};
 use super::spec::Brief;
@@ -40,7 +40,7 @@ pub(super) const WINDOW_WALL_M: f64 = 1.2;
 const LATCH_SIDE_M: f64 = 0.457 - JAMB_M;
 
 /// Weight of what hangs in the air.
-pub(super) const OVERHANG: f64 = 14.0;
+pub(super) const OVERHANG: f64 = 30.0;
 
 /// Share by which the whole may miss the area asked for before it costs.
 const AREA_TOLERANCE: f64 = 0.03;
@@ -176,9 +176,13 @@ impl<'b> Judge<'b> {
         self.links(&mut score);
         self.whole(layout, &mut score);
         if let Some(below) = &self.below {
-            let origin = layout.core.filter(|_| below.by_core).map_or((0, 0), |c| c.origin);
             let total: f64 = self.survey.rooms.iter().map(|r| r.gross_m2).sum();
-            let free = overhang(&layout.boxes, &below.outline, origin) as f64 * 0.0025;
+            let free = match layout.core.filter(|_| below.by_core) {
+                Some(core) if core.u == (1, 0) => overhang(&layout.boxes, &below.outline, core.origin),
+                Some(core) => overhang(&in_core(&layout.boxes, &core), &below.outline, (0, 0)),
+                None => overhang(&layout.boxes, &below.outline, (0, 0)),
+            } as f64
+                * 0.0025;
             score.overhang = free / total.max(1.0);
         }
         score

@@ -130,7 +130,9 @@ fn kept(graph: &SceneGraph, plan: &Floorplan) -> Result<Floorplan, Error> {
 
 /// Returns the schemes that suit the domain and the number of rooms, the seed's choice first.
 fn schemes(brief: &Brief, domain: &Domain, rng: &mut Stream) -> Vec<Scheme> {
-    let rooms = brief.rooms.len();
+    // a storey with one core is one body, whatever its size
+    let most = if brief.core.is_some() { compose::LARGE - 1 } else { usize::MAX };
+    let rooms = brief.rooms.len().min(most);
     if brief.hub {
         return vec![Scheme::Straight];
     }

@@ -15,6 +15,7 @@ mod locked;
 mod nav;
 mod search;
 mod space;
+mod stairs;
 mod state;
 mod style;
 #[cfg(test)]
@@ -89,8 +90,12 @@ pub fn generate_until(
         problems.push(format!("room `{}` of the floorplan is not in the scene graph", room.room_id));
     }
     let mut out = Placements { version: 1, seed: graph.seed, placements: Vec::new(), unplaced: Vec::new() };
+    let levels = plan.level_numbers();
+    let storeys: BTreeMap<i32, Floorplan> =
+        levels.iter().filter(|_| levels.len() > 1).map(|&level| (level, plan.storey(level))).collect();
     for (at, room) in plan.rooms.iter().enumerate() {
-        let furnished = furnish_room(graph, plan, room, (domain, limits), pinned, stop);
+        let storey = storeys.get(&room.level).unwrap_or(plan);
+        let furnished = furnish_room(graph, storey, room, (domain, limits), pinned, stop);
         stop.check()?;
         match furnished {
             Ok((placements, unplaced)) => {
@@ -117,7 +122,10 @@ fn furnish_room(
     let space = Space::new(plan, room);
     let kind = domain.room_type_or_generic(&room.room_type);
     let tasks = demand::tasks(domain, kind, graph.room(&room.room_id), room.net_area_m2, space.windows.len() as u32);
-    let fixed = locked::of_room(pinned, &room.room_id);
+    let flights = stairs::flights(plan, room, domain);
+    let pinned = locked::of_room(pinned, &room.room_id);
+    let own = flights.iter().filter(|f| !pinned.iter().any(|p| p.placement_id == f.placement_id));
+    let fixed: Vec<&Placement> = pinned.iter().copied().chain(own).collect();
     let (units, problems) = locked::placed(&fixed, domain, &space);
     if !problems.is_empty() {
         return Err(problems);

@@ -8,6 +8,7 @@ mod people;
 mod points;
 mod regions;
 mod robots;
+mod storeys;
 
 use d3dgen_model::domain::Domain;
 use d3dgen_model::floorplan::Floorplan;
@@ -31,6 +32,14 @@ pub fn generate(
     domain: &Domain,
 ) -> Result<Scenario, Error> {
     fits(graph, plan, placements)?;
+    if plan.level_numbers().len() > 1 {
+        return Ok(storeys::generate(graph, plan, placements, domain));
+    }
+    Ok(one_storey(graph, plan, placements, domain))
+}
+
+/// Fills one storey.
+fn one_storey(graph: &SceneGraph, plan: &Floorplan, placements: &Placements, domain: &Domain) -> Scenario {
     let mut floor = Floor::new(graph, plan, placements, domain);
     let mut scenario = Scenario {
         version: 1,
@@ -42,7 +51,7 @@ pub fn generate(
     };
     scenario.robots = robots::all(&mut floor, graph, &scenario.pois);
     scenario.agents = people::all(&mut floor, graph);
-    Ok(scenario)
+    scenario
 }
 
 fn fits(graph: &SceneGraph, plan: &Floorplan, placements: &Placements) -> Result<(), Error> {

@@ -32,6 +32,27 @@ pub(super) fn connect(reading: &mut Reading, planned: &[Planned], rooms: &mut Ve
     web
 }
 
+/// Connects the rooms of one storey of several around its own corridor, which becomes the last of them.
+pub(super) fn connect_storey(
+    reading: &mut Reading,
+    planned: &[Planned],
+    rooms: &mut Vec<GraphRoom>,
+    corridor: GraphRoom,
+    ground: bool,
+) -> Web {
+    let mut web = Web::default();
+    rooms.push(corridor);
+    let hub = rooms.len() - 1;
+    web.circulate(planned, rooms, hub);
+    if ground {
+        choose_entrance(reading, rooms, hub);
+    }
+    keep_apart(reading, rooms, &mut web);
+    web.follow_prompt(reading, planned, rooms);
+    web.follow_rules(reading, rooms);
+    web
+}
+
 /// Returns the index of the room all others open to: a hub of the domain, a new corridor, or the only room.
 fn hub(reading: &mut Reading, planned: &[Planned], rooms: &mut Vec<GraphRoom>) -> usize {
     let circulation = &reading.domain.circulation;

@@ -5,6 +5,7 @@
 //! connects them.
 
 mod building;
+mod deal;
 mod dwelling;
 mod edges;
 mod language;
@@ -17,6 +18,7 @@ mod reading;
 mod relations;
 mod robots;
 mod rooms;
+mod storeys;
 mod text;
 mod unknown;
 mod wishes;
@@ -75,7 +77,18 @@ pub fn generate(request: &Request, registry: &Registry) -> Result<SceneGraph, Er
 /// Describes and connects the rooms.
 fn assemble(request: &Request, mut reading: Reading, planned: &[Planned]) -> SceneGraph {
     let mut rooms = rooms::describe(&mut reading, planned);
-    let web = edges::connect(&mut reading, planned, &mut rooms);
+    let levels = deal::levels(&mut reading);
+    let (web, links) = if levels.len() > 1 {
+        let areas: Vec<f64> = rooms.iter().map(|r| r.target_area_m2).collect();
+        let dealt = deal::deal(&mut reading, planned, &areas, &levels);
+        rooms.iter_mut().zip(dealt).for_each(|(room, level)| room.level = level);
+        deal::even_out(planned, &mut rooms, &levels);
+        let (all, web, links) = deal::connect(&mut reading, planned, rooms, &levels);
+        rooms = all;
+        (web, links)
+    } else {
+        (edges::connect(&mut reading, planned, &mut rooms), Vec::new())
+    };
     SceneGraph {
         version: 1,
         prompt: request.prompt.clone(),
@@ -90,7 +103,7 @@ fn assemble(request: &Request, mut reading: Reading, planned: &[Planned]) -> Sce
         rooms,
         edges: web.edges,
         apart: web.apart,
-        links: Vec::new(),
+        links,
         forbidden_room_types: reading.wishes.forbidden,
         robots: reading.robots,
         assumptions: reading.assumptions,

@@ -69,10 +69,36 @@ pub(super) fn complete<'a>(reading: &mut Reading<'a>) -> Vec<Planned<'a>> {
         (None, false) => build.fill_usual(),
     }
     let mut rooms = build.rooms;
+    wash_on_every_storey(reading, &mut rooms);
     hold_people(reading, &mut rooms);
     hang_on_hosts(reading, &mut rooms);
     state_additions(reading, &rooms);
     rooms
+}
+
+/// Sees to it that there are as many toilets and bathrooms as storeys, where the prompt leaves the rooms open.
+fn wash_on_every_storey<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
+    let storeys = reading.storeys.levels.iter().filter(|l| **l >= 0).count();
+    let Some(rules) = reading.domain.circulation.storeys.as_ref().filter(|_| storeys > 1 && !reading.closed) else {
+        return;
+    };
+    let kinds = rules.each_level_room_types.iter().filter_map(|id| reading.domain.room_type(id));
+    let wet: Vec<&RoomType> =
+        kinds.filter(|k| k.wet && !reading.wishes.forbidden.contains(&k.id) && k.access != Access::Host).collect();
+    let usual = wet.iter().copied().find(|k| words().dwelling.toilets.contains(&k.id));
+    let Some(kind) = usual.or(wet.first().copied()) else { return };
+    let is_wet =
+        |r: &Planned| words().dwelling.toilets.contains(&r.room_type) || r.room_type == words().dwelling.bathroom;
+    for _ in rooms.iter().filter(|r| is_wet(r)).count()..storeys {
+        if reading.total.is_none() {
+            rooms.push(Planned::new(&kind.id, kind));
+            continue;
+        }
+        // what comes last in the program gives way
+        let spare = rooms.iter().rposition(|r| !r.requested && !is_wet(r) && r.kind.access != Access::Host);
+        let Some(spare) = spare.filter(|s| *s > storeys) else { return };
+        rooms[spare] = Planned::new(&kind.id, kind);
+    }
 }
 
 /// Adds rooms that a building rule asks for; returns true when something was added or said.

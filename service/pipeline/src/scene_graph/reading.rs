@@ -8,6 +8,7 @@ use super::building::{self, Building};
 use super::mentions::{Mention, Taken, Vocabulary, What, mentions};
 use super::places::{self, note};
 use super::relations;
+use super::storeys::{self, Storeys, Where};
 use super::text::{MAX_TOKENS, Phrases, Span, Token, tokens};
 use super::wishes::{self, CHARGING, MANY, Text, Wish, Wishes};
 use super::words::{Spoken, Tag, words};
@@ -46,6 +47,7 @@ pub(super) struct Reading<'a> {
     pub residents: Option<u32>,
     pub accessible: bool,
     pub robots: Vec<Robot>,
+    pub storeys: Storeys,
     /// Objects that the prompt names, each with the room type it is named with.
     pub objects: Vec<(String, Option<String>)>,
     pub assumptions: Vec<Note>,
@@ -110,6 +112,8 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     spans.extend(short_forms.iter().map(|f| f.span));
     spans.extend(machines.spans.iter().copied());
     spans.extend(radius.iter().map(|r| r.0));
+    let storey_phrases = storeys::phrases(&tokens, &spoken);
+    spans.extend(storey_phrases.iter().map(|p| p.span));
     let vocabulary =
         registry.digest(&format!("{languages:?}: {}", domain.id), || Vocabulary::new(domain, registry, &languages));
     let taken = Taken { spans: &spans, head: building.head, list_from: building.list_from };
@@ -126,6 +130,9 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         robots: machines.named,
     };
     let mut wishes = wishes::gather(&text, &mut conflicts);
+    let country = flag_country.as_deref().or(place.country_code.as_deref());
+    let storeys = storeys::read(&tokens, &numbers, &mentions, &storey_phrases, &spoken, country, &mut conflicts);
+    wish_for_storeys(&storeys, &mut wishes, domain);
     name_private_bathrooms(&mut wishes, domain);
     let robots = machines_of(&machines, &wishes, radius.map(|r| r.1), request, &mut assumptions, &mut conflicts);
     let area_m2 = total_area(&text, request, &mut conflicts);
@@ -138,11 +145,6 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
             "the prompt asks for {listed} rooms; one world has {MAX_ROOMS} at most, ask for fewer"
         )));
     }
-    let storeys = |n: &&numbers::Number| spoken.iter().any(|s| s.tag_at(&tokens, n.span.end, Tag::Storeys).is_some());
-    if let Some(n) = numbers.iter().filter(storeys).find(|n| n.value > 1.0) {
-        let message = format!("{} floors were asked for; all rooms were planned on one", n.value);
-        conflicts.push(note("one_floor", message));
-    }
     let closed = is_closed(&wishes, &text, &building, is_dwelling(program));
     if closed && total.is_none() {
         let named = building.head.and_then(|h| vocabulary.room_named(&tokens[h.start..h.end]));
@@ -154,6 +156,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         building_type: building.building_type,
         program,
         country_code: flag_country.or(place.country_code),
+        storeys,
         objects: objects_of(&tokens, &mentions, domain, registry, &languages),
         wishes,
         total,
@@ -243,6 +246,34 @@ fn program_of<'a>(domain: &'a Domain, building_type: Option<&str>) -> &'a Progra
         .and_then(|b| domain.program(&b.program))
         .or_else(|| domain.programs.first())
         .expect("a domain's check demands a program")
+}
+
+/// Counts rooms on every storey for each of them, and leaves stairs and elevators to what joins the storeys.
+fn wish_for_storeys(storeys: &Storeys, wishes: &mut Wishes, domain: &Domain) {
+    if storeys.levels.len() < 2 {
+        return;
+    }
+    let above = storeys.levels.iter().filter(|l| **l >= 0).count() as u32;
+    let mut sums: Vec<(&str, u32)> = Vec::new();
+    for wanted in &storeys.wanted {
+        let count = if wanted.at == Where::Each { wanted.count * above } else { wanted.count };
+        match sums.iter_mut().find(|s| s.0 == wanted.room_type) {
+            Some(sum) => sum.1 += count,
+            None => sums.push((&wanted.room_type, count)),
+        }
+    }
+    for wish in &mut wishes.wishes {
+        if let Some((_, sum)) = sums.iter().find(|s| s.0 == wish.room_type) {
+            wish.count = wish.count.max(*sum);
+        }
+    }
+    if let Some(rules) = &domain.circulation.storeys {
+        let joins =
+            |id: &String| *id == rules.stairs.room_type || rules.elevator.as_ref().is_some_and(|e| e.room_type == *id);
+        wishes.wishes.retain(|w| !joins(&w.room_type));
+        wishes.pairs.retain(|p| !joins(&p.a) && !joins(&p.b));
+        wishes.forbidden.retain(|f| !joins(f));
+    }
 }
 
 /// Head counts of a prompt.

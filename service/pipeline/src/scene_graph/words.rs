@@ -5,6 +5,7 @@ use std::sync::LazyLock;
 
 use serde::Deserialize;
 
+use super::storeys::Where;
 use super::text::{Phrases, Token};
 
 /// What a phrase does in a sentence.
@@ -37,6 +38,7 @@ pub(super) enum Tag {
     Entrance,
     Total,
     Storeys,
+    Lift,
     Habitable,
     Accessible,
     Staff,
@@ -79,6 +81,12 @@ pub(super) struct Language {
     pub quantities: BTreeMap<String, f64>,
     /// Adjectives of nationality by country code.
     pub demonyms: BTreeMap<String, Vec<String>>,
+    /// Words that name a storey, with which one they mean.
+    #[serde(default)]
+    pub levels: BTreeMap<String, String>,
+    /// Words that say how many storeys a building has.
+    #[serde(default)]
+    pub storey_counts: BTreeMap<String, f64>,
     #[serde(flatten)]
     pub phrases: BTreeMap<Tag, Vec<String>>,
 }
@@ -114,6 +122,8 @@ pub(super) struct Dwelling {
 
 #[derive(Debug, Deserialize)]
 struct File {
+    /// Countries where the ground floor is the first floor.
+    first_is_ground: Vec<String>,
     area_units: BTreeMap<String, f64>,
     length_units: BTreeMap<String, f64>,
     robot_kinds: BTreeMap<String, Body>,
@@ -129,6 +139,7 @@ pub(super) struct Words {
     pub length_units: Phrases<f64>,
     pub robot_kinds: BTreeMap<String, Body>,
     pub dwelling: Dwelling,
+    pub first_is_ground: Vec<String>,
 }
 
 /// One language ready for matching.
@@ -136,6 +147,8 @@ pub(super) struct Spoken {
     pub words: Language,
     pub tags: Phrases<Vec<Tag>>,
     pub quantities: Phrases<f64>,
+    pub levels: Phrases<Where>,
+    pub storey_counts: Phrases<f64>,
     /// Number words, folded.
     pub numbers: BTreeMap<String, f64>,
     pub multipliers: BTreeMap<String, f64>,
@@ -163,6 +176,7 @@ pub(super) fn words() -> &'static Words {
             languages: file.languages.into_iter().map(|(code, words)| (code.clone(), spoken(&code, words))).collect(),
             robot_kinds: file.robot_kinds,
             dwelling: file.dwelling,
+            first_is_ground: file.first_is_ground,
         }
     });
     &WORDS
@@ -184,7 +198,13 @@ fn spoken(code: &str, words: Language) -> Spoken {
     let folded =
         |map: &BTreeMap<String, f64>| map.iter().map(|(word, value)| (super::text::fold(word), *value)).collect();
     let (numbers, multipliers) = (folded(&words.numbers), folded(&words.multipliers));
-    Spoken { numbers, multipliers, words, tags, quantities }
+    let mut levels = Phrases::new("");
+    for (phrase, text) in &words.levels {
+        levels.insert(phrase, Where::of(text).expect("a test reads words.toml"));
+    }
+    let mut storey_counts = Phrases::new("");
+    words.storey_counts.iter().for_each(|(phrase, value)| storey_counts.insert(phrase, *value));
+    Spoken { numbers, multipliers, words, tags, quantities, levels, storey_counts }
 }
 
 #[cfg(test)]

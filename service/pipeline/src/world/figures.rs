@@ -6,8 +6,12 @@ use d3dgen_model::placements::AssetSource;
 
 use super::context::Context;
 
-/// Returns the figures of a world by name; areas in m^2, shares 0 to 1.
-pub fn measure(c: &Context) -> BTreeMap<String, f64> {
+/// Returns the figures of a world by name; areas in m^2, shares 0 to 1. `storeys` are those of a world with several.
+pub fn measure(c: &Context, storeys: &[Context]) -> BTreeMap<String, f64> {
+    let connected = match storeys {
+        [] => c.reach().largest_share,
+        storeys => storeys.iter().map(|s| s.reach().largest_share).fold(1.0, f64::min),
+    };
     let area = |only_circulation: bool| -> f64 {
         let rooms = c.rooms.iter().filter(|r| r.plan.circulation || !only_circulation);
         rooms.map(|r| r.plan.net_area_m2).sum()
@@ -30,7 +34,7 @@ pub fn measure(c: &Context) -> BTreeMap<String, f64> {
         ("circulation_share", share(area(true), area(false))),
         ("floor_covered", share(taken, area(false))),
         ("rooms_not_rectangular", l_shaped),
-        ("free_component", c.reach().largest_share),
+        ("free_component", connected),
         ("unplaced_wishes", c.world.placements.unplaced.len() as f64),
     ];
     // Only where a database of assets has a say: objects that are its assets, and such as are made for want of one.
@@ -40,6 +44,8 @@ pub fn measure(c: &Context) -> BTreeMap<String, f64> {
         ("objects_from_database", from(AssetSource::Database)),
         ("objects_made_for_want_of_an_asset", from(AssetSource::Generated)),
     ];
-    let figures = figures.into_iter().chain(stock.into_iter().filter(|(_, count)| *count > 0.0));
+    let levels = ("storeys", storeys.len() as f64);
+    let stock = stock.into_iter().chain(std::iter::once(levels));
+    let figures = figures.into_iter().chain(stock.filter(|(_, count)| *count > 0.0));
     figures.map(|(name, value)| (name.to_owned(), (value * 1000.0).round() / 1000.0)).collect()
 }

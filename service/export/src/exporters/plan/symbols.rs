@@ -70,5 +70,6 @@ fn symbol_of(shape: Shape) -> fn(&mut Pen<'_>) {
         Shape::Cylinder => machines::cylinder,
         Shape::Vehicle => machines::vehicle,
         Shape::Scanner => machines::scanner,
+        Shape::Stairs => storage::stairs,
     }
 }

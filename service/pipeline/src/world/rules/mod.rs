@@ -11,6 +11,7 @@ mod navigation;
 mod objects;
 mod robots;
 mod rooms;
+mod storeys;
 mod walls;
 mod windows;
 mod zones;
@@ -25,25 +26,31 @@ pub struct Rule {
     pub id: &'static str,
     /// What it demands, one sentence.
     pub title: &'static str,
+    /// True for rules that look at all storeys at once; the others see one after the other.
+    pub whole: bool,
     pub(crate) check: fn(&Context, &mut Findings),
 }
 
 const fn rule(id: &'static str, title: &'static str, check: fn(&Context, &mut Findings)) -> Rule {
-    Rule { id, title, check }
+    Rule { id, title, whole: false, check }
+}
+
+const fn whole(id: &'static str, title: &'static str, check: fn(&Context, &mut Findings)) -> Rule {
+    Rule { id, title, whole: true, check }
 }
 
 /// Every hard rule.
 pub const RULES: &[Rule] = &[
-    rule("not_finite", "every number is finite", zones::not_finite),
-    rule(
+    whole("not_finite", "every number is finite", zones::not_finite),
+    whole(
         "zone_invalid",
         "room outlines have three corners or more, do not cross themselves and enclose an area",
         zones::invalid,
     ),
-    rule("zone_clockwise", "room outlines run counter-clockwise without repeating the first corner", zones::clockwise),
+    whole("zone_clockwise", "room outlines run counter-clockwise without repeating the first corner", zones::clockwise),
     rule("zone_overlap", "two rooms share no floor", zones::overlap),
-    rule("zone_net", "the net outline of a room lies within its outline and has the stated area", zones::net),
-    rule("name_duplicate", "every room, door, window and placement id is unique in the world", zones::names),
+    whole("zone_net", "the net outline of a room lies within its outline and has the stated area", zones::net),
+    whole("name_duplicate", "every room, door, window and placement id is unique in the world", zones::names),
     rule("wall_gap", "every stretch of a room's outline is a wall, a door or an open passage", walls::gap),
     rule("wall_stray", "every wall lies on the outlines of the rooms it names", walls::stray),
     rule("door_floating", "a door lies on the outlines of its rooms, and no wall crosses it", doors::floating),
@@ -74,25 +81,34 @@ pub const RULES: &[Rule] = &[
     ),
     rule("free_space_split", "at least 95 % of the free floor is connected", navigation::split),
     rule("corridor_narrow", "circulation keeps its clear width from door to door", navigation::corridors),
-    rule("graph_room_missing", "the rooms are exactly those of the scene graph", graph::rooms),
-    rule("graph_edge_missing", "every required door or passage of the scene graph is there", graph::edges),
+    whole("graph_room_missing", "the rooms are exactly those of the scene graph", graph::rooms),
+    whole("graph_edge_missing", "every required door or passage of the scene graph is there", graph::edges),
     rule("adjacency_missing", "rooms that must be next to each other are", graph::must),
     rule("adjacency_forbidden", "rooms that must be kept apart share no door or wall", graph::must_not),
-    rule("room_forbidden", "no room is of a kind that was ruled out", graph::forbidden),
+    whole("room_forbidden", "no room is of a kind that was ruled out", graph::forbidden),
     rule("private_passage", "no room is reached only through a private room", building::private_passage),
-    rule("room_area", "net areas lie within the range asked for", rooms::area),
-    rule("room_dimension", "rooms keep their least clear extent", rooms::dimension),
+    whole("room_area", "net areas lie within the range asked for", rooms::area),
+    whole("room_dimension", "rooms keep their least clear extent", rooms::dimension),
     rule("room_proportion", "rooms are at most 2.5 times as long as wide", rooms::proportion),
-    rule("room_height", "rooms keep their least clear height", rooms::height),
+    whole("room_height", "rooms keep their least clear height", rooms::height),
     rule("object_missing", "every room has what makes it that room", furniture::required),
     rule("object_facing", "members of a group face as their use needs", furniture::facing),
     rule("object_back", "what belongs against a wall has its back to one", furniture::back),
     rule("object_clearance", "objects keep the free floor in front that their use needs", furniture::clearance),
     rule("dock_blocked", "docks are clear of doors and furniture", robots::docks),
-    rule("dock_missing", "robots that charge have a dock", robots::dock_missing),
+    whole("dock_missing", "robots that charge have a dock", robots::dock_missing),
     rule("robot_stuck", "every robot reaches each of its goals from where it starts", robots::tasks),
     rule("pose_taken", "points and people of the scenario stand on free floor of their room", robots::poses),
     rule("region_outside", "regions of the scenario lie in their room", robots::regions),
+];
+
+/// Hard rules of buildings with several storeys, beside the others.
+pub const STOREY_RULES: &[Rule] = &[
+    whole("stairs_missing", "every storey has stairs to the one below, or above it from a basement", storeys::stairs),
+    whole("link_offset", "stairs and elevators lie above each other, within 0.05 m", storeys::offset),
+    whole("link_closed", "one gets into stairs and elevators on every storey", storeys::closed),
+    whole("elevator_missing", "buildings that need an elevator have one that stops at every storey", storeys::elevator),
+    whole("storey_cut_off", "one gets from the entrance to every room, by stairs where need be", storeys::reach),
 ];
 
 /// What a rule has looked at and found.

@@ -44,7 +44,9 @@ pub fn corridors(c: &Context, out: &mut Findings) {
     let domain = c.domain.circulation.width_m;
     let limit = c.retrieval.limits.corridor_width.as_ref();
     let robots = 2.0 * c.radius.max(LEAST_RADIUS_M);
-    for room in c.rooms.iter().filter(|r| r.plan.circulation) {
+    // stairwells and shafts are as wide as what they hold
+    let passed = |r: &&Room| r.plan.circulation && c.plan().link_of(&r.plan.room_id).is_none();
+    for room in c.rooms.iter().filter(passed) {
         out.look();
         let width = |space: d3dgen_knowledge::freespace::FreeSpace| space.passage(&room.doors);
         let bare = width(room.space(std::iter::empty()));

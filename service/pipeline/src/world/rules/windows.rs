@@ -49,7 +49,8 @@ pub fn blocked(c: &Context, out: &mut Findings) {
         out.look();
         let strip = light(window);
         for object in c.objects_in(&window.room_id) {
-            let curtain = object.kind.is_some_and(|k| k.shape == Shape::Curtain);
+            // daylight falls on flights of stairs; they are no piece of furniture
+            let curtain = object.kind.is_some_and(|k| matches!(k.shape, Shape::Curtain | Shape::Stairs));
             let (low, high) = (object.placement.pose.z, object.placement.top_m());
             let in_light = high > window.sill_m + ON_LINE_M && low < window.head_m - ON_LINE_M;
             let hides = common_area(&object.rect, &strip) > HIDDEN_SHARE * LIGHT_M * window.line.length();

@@ -81,3 +81,25 @@ pub(super) fn trolley(p: &mut Pen<'_>) {
         ],
     );
 }
+
+/// Two flights with their treads, the landing at the rear, and an arrow along the way up.
+pub(super) fn stairs(p: &mut Pen<'_>) {
+    let (u, v) = p.half();
+    p.outline("b", 0.0);
+    let landing = (u - 0.05).min(0.4 * p.d);
+    let rear = -v + landing;
+    let run = p.d - landing;
+    let treads = (run / 0.28).round().max(1.0) as usize;
+    let mut lines: Vec<Vec<(f64, f64)>> = Vec::new();
+    for k in 1..=treads {
+        let y = rear + run * (k as f64 - 1.0) / treads as f64;
+        lines.push(vec![(-u, y), (-0.05, y)]);
+        lines.push(vec![(0.05, y), (u, y)]);
+    }
+    lines.push(vec![(-0.05, v), (-0.05, rear), (0.05, rear), (0.05, v)]);
+    let (way, head) = (u / 2.0 + 0.025, 0.12);
+    lines.push(vec![(way, v), (way, -v + landing / 2.0), (-way, -v + landing / 2.0), (-way, v - 0.05)]);
+    lines.push(vec![(-way - head, v - 0.05 - 1.6 * head), (-way, v - 0.05), (-way + head, v - 0.05 - 1.6 * head)]);
+    let lines: Vec<&[(f64, f64)]> = lines.iter().map(Vec::as_slice).collect();
+    p.lines("f", &lines);
+}
