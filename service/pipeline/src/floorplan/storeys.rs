@@ -20,6 +20,7 @@ use crate::{Error, Stop};
 const OVERHANG_SHARE: f64 = 0.10;
 /// Plans of a storey that are compared when the first ones jut out further.
 const COMPARED: usize = 4;
+const COMPARED_LARGE: usize = 2;
 /// Heights of storeys are whole multiples of this, m.
 const HEIGHT_STEP_M: f64 = 0.05;
 
@@ -127,13 +128,15 @@ fn storey(
         match assemble(brief, &turned_in_place(&boxes, turn), &found.score, seed, &name, rng) {
             Ok(plan) => {
                 let comb = brief.core.as_ref().is_some_and(|c| c.far.is_some()).then_some(found.layout.comb);
+                let comb_built = comb.is_some();
                 let below = Below { outline: merged(&boxes), by_core: true, comb };
                 let overhang = found.score.overhang;
                 if best.as_ref().is_none_or(|b| overhang < b.overhang) {
                     best = Some(Planned { plan, below, overhang });
                 }
                 compared += 1;
-                if overhang <= OVERHANG_SHARE || compared == COMPARED {
+                let most = if comb_built { COMPARED_LARGE } else { COMPARED };
+                if overhang <= OVERHANG_SHARE || compared == most {
                     break;
                 }
             }

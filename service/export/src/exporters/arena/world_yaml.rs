@@ -1,7 +1,8 @@
 //! `world.yaml`: rooms as zones with their walls, doors and things.
 //!
 //! What Arena has no word for is left out: windows (walls run through them) and door leaves that swing (its readers turn
-//! hinged doors into teleporting ones, so every door slides). An open passage is a stretch without wall.
+//! hinged doors into teleporting ones, so every door slides). An open passage is a stretch without wall; one that leads off the
+//! level, to open stairs, is a door.
 
 use d3dgen_model::TOLERANCE_M;
 use d3dgen_model::domain::{Domain, RobotUse, RoomType, Zone};
@@ -48,7 +49,10 @@ fn zone(room: &PlanRoom, world: &World, domain: &Domain, models: &Models, walls:
         .floorplan
         .doors
         .iter()
-        .filter(|d| d.kind != DoorKind::Open && owner(&d.room_ids, &world.floorplan) == Some(id.as_str()))
+        .filter(|d| {
+            (d.kind != DoorKind::Open || d.room_ids.len() == 1)
+                && owner(&d.room_ids, &world.floorplan) == Some(id.as_str())
+        })
         .map(door)
         .collect::<Vec<Value>>();
     let things = world

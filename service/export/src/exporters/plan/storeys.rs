@@ -33,7 +33,9 @@ pub(super) fn laid_out(world: &World) -> (World, Vec<Storey>) {
     let shape = |columns: usize| {
         let rows = levels.len().div_ceil(columns);
         let ratio = columns as f64 * w / (rows as f64 * h);
-        (ratio / SHEET).max(SHEET / ratio)
+        // places left over look forgotten
+        let left = (rows * columns - levels.len()) as f64;
+        (ratio / SHEET).max(SHEET / ratio) * (1.0 + 0.3 * left)
     };
     let columns = (1..=levels.len()).min_by(|a, b| shape(*a).total_cmp(&shape(*b))).unwrap_or(1);
     let rows = levels.len().div_ceil(columns);
