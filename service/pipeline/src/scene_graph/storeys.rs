@@ -5,7 +5,7 @@ use d3dgen_model::scene_graph::Note;
 use super::mentions::{Mention, What};
 use super::numbers::Number;
 use super::places::note;
-use super::text::{Phrases, Span, Token};
+use super::text::{Kind, Phrases, Span, Token};
 use super::words::{Spoken, Tag, words};
 
 /// Storeys above the ground that a prompt may ask for.
@@ -72,6 +72,11 @@ pub(super) fn phrases(tokens: &[Token], spoken: &[&Spoken]) -> Vec<Phrase> {
     let mut out = Vec::new();
     let mut i = 0;
     while i < tokens.len() {
+        if let Some((end, level)) = numbered(tokens, i, spoken) {
+            out.push(Phrase { span: Span { start: i, end }, at: Where::Level(level) });
+            i = end;
+            continue;
+        }
         let found = spoken.iter().filter_map(|s| s.levels.longest_at(tokens, i)).max_by_key(|f| f.0);
         match found {
             Some((end, &at)) => {
@@ -82,6 +87,19 @@ pub(super) fn phrases(tokens: &[Token], spoken: &[&Spoken]) -> Vec<Phrase> {
         }
     }
     out
+}
+
+/// Returns end and number of "2. OG", "3. Stock": a number with a dot before a word for a storey.
+fn numbered(tokens: &[Token], i: usize, spoken: &[&Spoken]) -> Option<(usize, i32)> {
+    let Kind::Number(n) = tokens[i].kind else { return None };
+    if !(1.0..=f64::from(MOST_LEVELS)).contains(&n) || tokens.get(i + 1)?.mark() != Some('.') || i + 2 >= tokens.len() {
+        return None;
+    }
+    let end = spoken.iter().find_map(|s| {
+        let upper = s.levels.longest_at(tokens, i + 2).filter(|f| *f.1 == Where::Upper).map(|f| f.0);
+        upper.or_else(|| s.tag_at(tokens, i + 2, Tag::Storeys))
+    })?;
+    Some((end, n as i32))
 }
 
 /// Returns the number of storeys that the prompt states: "two-storey", "auf 3 Etagen", "zweistöckig".
