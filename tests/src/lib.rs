@@ -11,6 +11,7 @@ use d3dgen_assets::annotation::Annotation;
 use d3dgen_eval::Evaluation;
 use d3dgen_model::document::Document;
 use d3dgen_model::domain::Domain;
+use d3dgen_model::edits::Edits;
 use d3dgen_model::floorplan::Floorplan;
 use d3dgen_model::knowledge::KnowledgeBase;
 use d3dgen_model::placements::Placements;
@@ -40,6 +41,7 @@ pub fn schemas() -> Vec<(PathBuf, String)> {
         entry::<Scenario>(),
         entry::<World>(),
         entry::<Report>(),
+        entry::<Edits>(),
         entry::<Annotation>(),
         entry::<Evaluation>(),
     ]

@@ -3,7 +3,7 @@
 use d3dgen_model::document::Document;
 use d3dgen_model::floorplan::Floorplan;
 use d3dgen_model::placements::{Placement, Placements};
-use d3dgen_tests::run_well;
+use d3dgen_tests::{run, run_well};
 
 #[test]
 fn locked_parts_survive_another_seed() {
@@ -34,4 +34,39 @@ fn locked_parts_survive_another_seed() {
     let mut without = again.placements.clone();
     without.retain(|p| p != &bed);
     assert!(without.iter().any(|p| !placements.placements.contains(p)), "another seed changes nothing else");
+}
+
+#[test]
+fn one_locked_room_stays_while_the_others_are_planned_anew() {
+    let home = tempfile::tempdir().unwrap();
+    let at = |args: &[&str]| run_well(home.path(), args);
+    at(&["generate", "two-bedroom flat in Germany", "--seed", "2", "--no-png", "--out", "flat"]);
+    at(&["edit", "flat", "--do", "lock bathroom_1", "--no-png", "--out", "pinned"]);
+    let read = |text: &str| Floorplan::from_json(text).unwrap();
+    let pinned = read(&std::fs::read_to_string(home.path().join("pinned/floorplan.json")).unwrap());
+    let again = read(&at(&["floorplan", "flat/scene_graph.json", "--seed", "5", "--pin", "pinned/floorplan.json"]));
+    assert_eq!(again.room("bathroom_1"), pinned.room("bathroom_1"));
+    assert!(again.rooms.iter().any(|r| pinned.rooms.iter().all(|old| old.polygon != r.polygon)), "nothing is new");
+}
+
+#[test]
+fn edits_change_a_world_or_say_why_not() {
+    let home = tempfile::tempdir().unwrap();
+    let at = |args: &[&str]| run_well(home.path(), args);
+    at(&["generate", "two-bedroom flat in Germany", "--seed", "2", "--no-png", "--out", "flat"]);
+    at(&["edit", "flat", "--do", "add_room storage 4", "--do", "refurnish bedroom_1", "--no-png", "--out", "more"]);
+    let plan = std::fs::read_to_string(home.path().join("more/floorplan.json")).unwrap();
+    assert!(Floorplan::from_json(&plan).unwrap().room("storage_1").is_some());
+    at(&["check", "more"]);
+
+    let refused = |change: &str| {
+        let output = run(home.path(), &["edit", "flat", "--do", change, "--out", "refused"]);
+        assert_eq!(output.status.code(), Some(2), "{change}");
+        assert!(!home.path().join("refused").exists(), "{change} left something behind");
+        String::from_utf8(output.stderr).unwrap()
+    };
+    assert!(refused("paint bedroom_1 red").contains("`paint` is none of move_wall"));
+    assert!(refused("move_wall wall_1").contains("needs WALL_ID BY_M"));
+    assert!(refused("move_wall wall_999 0.5").contains("no wall `wall_999`"));
+    assert!(refused("remove_room ballroom_1").contains("edit 1: the world has no room `ballroom_1`"));
 }

@@ -92,8 +92,7 @@ fn main() {
     let begun = Instant::now();
     for start in (0..count).step_by(1000) {
         let assets = (start..(start + 1000).min(count)).map(|i| made_up(&base, i, &mut dice));
-        let assets =
-            assets.map(|annotation| NewAsset { annotation, model: None, companions: BTreeMap::new() }).collect();
+        let assets = assets.map(|annotation| NewAsset::new(annotation, None, BTreeMap::new())).collect();
         database.put(Kind::Ingest, assets, &by).expect("stored");
     }
     println!("{count} annotations kept in {:.1} s", begun.elapsed().as_secs_f64());

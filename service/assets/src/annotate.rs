@@ -139,6 +139,7 @@ pub fn annotate(subject: &Subject<'_>, catalog: &Catalog) -> Option<Annotation> 
         triangle_count: subject.model.triangle_count() as u64,
         mass,
         joints: joints(subject.model),
+        thumbnail: None,
         origin: subject.origin.clone(),
         model_from_file: map.rows.map(|row| row.map(|v| (v * 1e9).round() / 1e9 + 0.0)),
         basis,

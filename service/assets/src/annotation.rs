@@ -70,6 +70,9 @@ pub struct Annotation {
     /// Parts that move.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub joints: Vec<JointNote>,
+    /// A small picture of it, kept beside the model; none of the shipped library, whose pictures are drawn when asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub thumbnail: Option<Thumbnail>,
     /// Where the model comes from.
     pub origin: Origin,
     /// How the file's coordinates, turned z up and to meters as it declares, become the model frame: rows of a 3 x 4
@@ -81,6 +84,16 @@ pub struct Annotation {
     /// What was repaired.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub changes: Vec<Change>,
+}
+
+/// A small square picture of a model: PNG with a transparent ground.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Thumbnail {
+    /// Side, px.
+    pub size_px: u32,
+    /// SHA-256 of the file, hexadecimal.
+    pub sha256: String,
 }
 
 /// The side that faces the user.

@@ -131,6 +131,16 @@ impl Database {
         record.and_then(|r| r.model).map(|hash| files::read(&self.files_dir(), &hash)).transpose()
     }
 
+    /// Returns the thumbnail of an asset kept here, PNG; none for such as have no model.
+    ///
+    /// # Errors
+    /// `Store`; `File` when it cannot be read.
+    pub fn thumbnail(&self, asset_id: &str) -> Result<Option<Vec<u8>>, Error> {
+        let record = get::<AssetRecord>(&self.store.view()?, ASSETS, asset_id)?;
+        let hash = record.and_then(|r| r.model);
+        Ok(hash.map(|hash| files::picture(&self.files_dir(), &hash)).transpose()?.flatten())
+    }
+
     /// Returns the objects of the library that are removed, with the change that did it.
     ///
     /// # Errors

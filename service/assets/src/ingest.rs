@@ -348,7 +348,7 @@ fn judge(w: &Wanted, read: Read, root: &Path, catalog: &Catalog, options: &Optio
     let mut model = read.model;
     model.name = annotation.asset_id.rsplit('/').next().unwrap_or_default().to_owned();
     crate::moved::move_by(&mut model, &annotation.model_from_file);
-    Ok(NewAsset { annotation, model: Some(model), companions })
+    Ok(NewAsset::new(annotation, Some(model), companions))
 }
 
 /// Annotates a model that was read from a file, with what lies beside it; none without a triangle.

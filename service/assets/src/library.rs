@@ -114,6 +114,7 @@ impl LibraryAsset<'_> {
             triangle_count: 0,
             mass: Some(mass),
             joints: Vec::new(),
+            thumbnail: None,
             origin: Origin::Library { domain: self.domain.to_owned(), object: object.object_id.clone() },
             model_from_file: [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]],
             basis,

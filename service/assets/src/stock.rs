@@ -146,7 +146,7 @@ mod tests {
         annotation.size_m = size;
         annotation.bounding_box_m = [[-x / 2.0, x / 2.0], [-y / 2.0, y / 2.0], [0.0, z]];
         annotation.origin = Origin::Ingested { path: id.into(), hash: id.into() };
-        NewAsset { annotation, model: None, companions: BTreeMap::new() }
+        NewAsset::new(annotation, None, BTreeMap::new())
     }
 
     #[test]

@@ -8,6 +8,7 @@
 
 pub mod document;
 pub mod domain;
+pub mod edits;
 pub mod error;
 pub mod expression;
 pub mod floorplan;

@@ -2,6 +2,7 @@
 //!
 //! Stages take values and return documents; they read no file, clock or environment.
 
+pub mod edit;
 pub mod error;
 pub mod floorplan;
 pub mod generate;
@@ -9,6 +10,7 @@ pub mod placement;
 pub mod scenario;
 pub mod scene_graph;
 pub mod stop;
+pub mod variations;
 pub mod world;
 
 pub use error::Error;

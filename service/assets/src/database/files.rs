@@ -11,25 +11,45 @@ use crate::error::Error;
 /// First bytes: what it is, and the form of what follows.
 const MAGIC: &[u8] = b"d3dgen model 1\n";
 const ENDING: &str = "model";
+const PICTURE: &str = "png";
 
-/// Writes a model and returns its digest. One that is there already is left as it is.
+/// Writes a model, its picture first, and returns the model's digest. What is there already is left as it is.
 ///
 /// # Errors
 /// `File`.
-pub(super) fn write(dir: &Path, model: &Model3d) -> Result<String, Error> {
+pub(super) fn write(dir: &Path, model: &Model3d, picture: Option<&[u8]>) -> Result<String, Error> {
     let mut bytes = MAGIC.to_vec();
     bytes.extend(postcard::to_allocvec(model).map_err(|e| failed(dir, std::io::Error::other(e)))?);
     let hash = digest(&bytes);
-    let path = path(dir, &hash);
-    if path.is_file() {
-        return Ok(hash);
+    if let Some(picture) = picture {
+        write_whole(&path(dir, &hash, PICTURE), picture)?;
     }
-    let folder = path.parent().unwrap_or(dir);
+    write_whole(&path(dir, &hash, ENDING), &bytes)?;
+    Ok(hash)
+}
+
+fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), Error> {
+    if path.is_file() {
+        return Ok(());
+    }
+    let folder = path.parent().unwrap_or(path);
     std::fs::create_dir_all(folder).map_err(|e| failed(folder, e))?;
     let mut file = tempfile::NamedTempFile::new_in(folder).map_err(|e| failed(folder, e))?;
-    file.write_all(&bytes).and_then(|()| file.as_file().sync_data()).map_err(|e| failed(&path, e))?;
-    file.persist(&path).map_err(|e| failed(&path, e.error))?;
-    Ok(hash)
+    file.write_all(bytes).and_then(|()| file.as_file().sync_data()).map_err(|e| failed(path, e))?;
+    file.persist(path).map_err(|e| failed(path, e.error))?;
+    Ok(())
+}
+
+/// Reads the picture of a model; `None` of one that was kept without.
+///
+/// # Errors
+/// `File` when it is there and cannot be read.
+pub(super) fn picture(dir: &Path, hash: &str) -> Result<Option<Vec<u8>>, Error> {
+    let path = path(dir, hash, PICTURE);
+    match std::fs::read(&path) {
+        Err(e) if e.kind() == std::io::ErrorKind::NotFound => Ok(None),
+        read => read.map(Some).map_err(|e| failed(&path, e)),
+    }
 }
 
 /// Reads a model.
@@ -37,7 +57,7 @@ pub(super) fn write(dir: &Path, model: &Model3d) -> Result<String, Error> {
 /// # Errors
 /// `File` when it is missing, or is not what was written.
 pub(super) fn read(dir: &Path, hash: &str) -> Result<Model3d, Error> {
-    let path = path(dir, hash);
+    let path = path(dir, hash, ENDING);
     let bytes = std::fs::read(&path).map_err(|e| failed(&path, e))?;
     let damaged = |what: &str| failed(&path, std::io::Error::other(format!("is damaged: {what}")));
     if digest(&bytes) != hash {
@@ -47,16 +67,18 @@ pub(super) fn read(dir: &Path, hash: &str) -> Result<Model3d, Error> {
     postcard::from_bytes(body).map_err(|e| damaged(&e.to_string()))
 }
 
-/// Removes a model's file, if it is there.
+/// Removes a model's file and its picture, if they are there.
 ///
 /// # Errors
 /// `File`.
 pub(super) fn remove(dir: &Path, hash: &str) -> Result<(), Error> {
-    let path = path(dir, hash);
-    match std::fs::remove_file(&path) {
-        Err(e) if e.kind() != std::io::ErrorKind::NotFound => Err(failed(&path, e)),
-        _ => Ok(()),
+    for path in [path(dir, hash, ENDING), path(dir, hash, PICTURE)] {
+        match std::fs::remove_file(&path) {
+            Err(e) if e.kind() != std::io::ErrorKind::NotFound => return Err(failed(&path, e)),
+            _ => {}
+        }
     }
+    Ok(())
 }
 
 /// Returns the digests of all files with their sizes, sorted.
@@ -87,8 +109,8 @@ pub(crate) fn digest(bytes: &[u8]) -> String {
     Sha256::digest(bytes).iter().map(|b| format!("{b:02x}")).collect()
 }
 
-fn path(dir: &Path, hash: &str) -> PathBuf {
-    dir.join(hash.get(..2).unwrap_or("__")).join(format!("{hash}.{ENDING}"))
+fn path(dir: &Path, hash: &str, ending: &str) -> PathBuf {
+    dir.join(hash.get(..2).unwrap_or("__")).join(format!("{hash}.{ending}"))
 }
 
 fn failed(path: &Path, source: std::io::Error) -> Error {

@@ -23,6 +23,14 @@ pub struct Shelf<'c> {
 }
 
 impl<'c> Shelf<'c> {
+    /// Returns the thumbnail that is kept with an asset, PNG; none of the shipped library, which is drawn when asked for.
+    ///
+    /// # Errors
+    /// `Store`; `File` when it cannot be read.
+    pub fn thumbnail(&self, asset_id: &str) -> Result<Option<Vec<u8>>, Error> {
+        Ok(self.database.as_ref().map(|d| d.thumbnail(asset_id)).transpose()?.flatten())
+    }
+
     /// Puts the library of a catalog beside a database.
     ///
     /// # Errors

@@ -29,7 +29,7 @@ fn asset(path: &str, hash: &str, size: f32) -> NewAsset {
     annotation.asset_id = "Office/Seat".into();
     annotation.name = "Throne of plywood".into();
     annotation.origin = Origin::Ingested { path: path.into(), hash: hash.into() };
-    NewAsset { annotation, model: Some(boxes(&[[[0.0; 3], [size; 3]]])), companions: BTreeMap::new() }
+    NewAsset::new(annotation, Some(boxes(&[[[0.0; 3], [size; 3]]])), BTreeMap::new())
 }
 
 fn verify(database: &Database) -> Vec<Damage> {

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::ControlFlow;
 
-use d3dgen_mesh::Model3d;
+use d3dgen_mesh::{Model3d, picture};
 use d3dgen_model::Document;
 use d3dgen_store::{Batch, KeyRange};
 
@@ -13,18 +13,33 @@ use super::records::{
     ASSETS, AssetRecord, CHANGES, CONTENTS, Change, IngestedFile, Kind, PATHS, Provenance, REMOVED, RemovedRecord,
     decode, encode, get,
 };
-use crate::annotation::{Annotation, Origin};
+use crate::annotation::{Annotation, Origin, Thumbnail};
 use crate::error::Error;
+
+/// Side of the pictures that are kept, px.
+const THUMBNAIL_PX: usize = 128;
 
 /// An asset to be kept.
 #[derive(Debug, Clone)]
 pub struct NewAsset {
-    /// What is known of it. An id that another asset has gets a number.
-    pub annotation: Annotation,
-    /// Its model in its own frame.
-    pub model: Option<Model3d>,
-    /// Digests of the files it was read from beside its own, by their paths below the folder that was ingested.
-    pub companions: BTreeMap<String, String>,
+    annotation: Annotation,
+    model: Option<Model3d>,
+    companions: BTreeMap<String, String>,
+    thumbnail: Option<Vec<u8>>,
+}
+
+impl NewAsset {
+    /// Returns an asset with its model in its own frame, if there is one, and draws its thumbnail.
+    ///
+    /// An id that another asset has gets a number when it is kept. `companions` are the digests of the files it was read
+    /// from beside its own, by their paths below the folder that was ingested.
+    pub fn new(mut annotation: Annotation, model: Option<Model3d>, companions: BTreeMap<String, String>) -> Self {
+        // A picture that cannot be written is no reason to refuse a model.
+        let thumbnail = model.as_ref().and_then(|m| picture::thumbnail(m, THUMBNAIL_PX).png().ok());
+        annotation.thumbnail =
+            thumbnail.as_ref().map(|png| Thumbnail { size_px: THUMBNAIL_PX as u32, sha256: files::digest(png) });
+        Self { annotation, model, companions, thumbnail }
+    }
 }
 
 impl Database {
@@ -40,12 +55,12 @@ impl Database {
         let seq = self.next_change()?;
         let mut batch = Batch::new();
         let (mut ids, mut taken, mut orphans) = (Vec::new(), BTreeSet::new(), Vec::new());
-        for NewAsset { mut annotation, model, companions } in assets {
+        for NewAsset { mut annotation, model, companions, thumbnail } in assets {
             let problems = annotation.check();
             if !problems.is_empty() {
                 return Err(d3dgen_model::Error::Invalid { kind: Annotation::KIND, problems }.into());
             }
-            let model = model.map(|m| files::write(&self.files_dir(), &m)).transpose()?;
+            let model = model.map(|m| files::write(&self.files_dir(), &m, thumbnail.as_deref())).transpose()?;
             let source = match &annotation.origin {
                 Origin::Ingested { path, hash } => Some((path.clone(), hash.clone())),
                 _ => None,

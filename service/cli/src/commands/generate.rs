@@ -7,6 +7,8 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use d3dgen_pipeline::scene_graph::Request;
+use d3dgen_pipeline::variations;
+use d3dgen_plugins::Registry;
 
 use super::formats;
 use crate::error::Error;
@@ -33,6 +35,9 @@ pub struct Args {
     /// Number of worlds, the seed counted up
     #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     count: u64,
+    /// Number of worlds with truly different plans, chosen among five times as many seeds
+    #[arg(long, value_name = "N", conflicts_with = "count", value_parser = clap::value_parser!(u64).range(2..=1000))]
+    variations: Option<u64>,
     /// Name of the world, lower case with underscores; with --count the seed is added
     #[arg(long, value_name = "NAME", value_parser = super::world_name)]
     name: Option<String>,
@@ -66,7 +71,7 @@ impl Args {
         let (formats, flag) = (self.formats.chosen(&self.registry.store)?, interrupt::flag());
         let maker = one::Maker { registry, formats, allow_conflicts: self.allow_conflicts, flag };
         let request = self.request.request(&prompt(&self.prompt)?);
-        if self.count == 1 {
+        if self.count == 1 && self.variations.is_none() {
             let job = Job { request, name: self.name, path: self.out };
             let progress = Progress::of(1);
             let made = maker.make(&job, &progress);
@@ -78,7 +83,11 @@ impl Args {
             eprint!("{}", made.page());
             return verdict(&[made], 0);
         }
-        let jobs = self.jobs(&request)?;
+        let seeds = match self.variations {
+            Some(count) => different(&request, &maker.registry, count)?,
+            None => self.seeds(&request)?,
+        };
+        let jobs = self.jobs(&request, &seeds)?;
         let progress = Progress::of(jobs.len());
         let (worlds, failed) = batch::run(&maker, &jobs, &progress, self.json)?;
         eprintln!("{}  {:<12} {}", closing(&worlds), "folder", self.out.display());
@@ -87,13 +96,16 @@ impl Args {
 
     /// Has a server make the worlds, one after the other.
     fn ask(&self, remote: &Remote) -> Result<(), Error> {
+        if self.variations.is_some() {
+            return Err(Error::Input("--variations chooses among plans made here; use it without --server".into()));
+        }
         let formats = self.formats.names()?;
         let (png, allow_conflicts) = (self.formats.png(), self.allow_conflicts);
         let maker = remote::generate::Maker { remote, formats: &formats, png, allow_conflicts };
         let request = self.request.request(&prompt(&self.prompt)?);
         let jobs = match self.count {
             1 => vec![Job { request, name: self.name.clone(), path: self.out.clone() }],
-            _ => self.jobs(&request)?,
+            _ => self.jobs(&request, &self.seeds(&request)?)?,
         };
         let progress = Progress::of(jobs.len());
         let (mut worlds, mut failed) = (Vec::new(), 0);
@@ -125,24 +137,39 @@ impl Args {
         verdict(&worlds, failed)
     }
 
-    /// Returns a job for each seed, after a look at all the folders they will write.
-    fn jobs(&self, request: &Request) -> Result<Vec<Job>, Error> {
+    /// Returns the seeds of `--count`.
+    fn seeds(&self, request: &Request) -> Result<Vec<u64>, Error> {
         let last = request.seed.checked_add(self.count - 1);
         let last =
             last.ok_or_else(|| Error::Input(format!("--seed {} leaves no {} seeds", request.seed, self.count)))?;
+        Ok((request.seed..=last).collect())
+    }
+
+    /// Returns a job for each seed, after a look at all the folders they will write.
+    fn jobs(&self, request: &Request, seeds: &[u64]) -> Result<Vec<Job>, Error> {
         check_collection(&self.out)?;
-        let job = |seed: u64| Job {
+        let job = |&seed: &u64| Job {
             request: Request { seed, ..request.clone() },
             name: self.name.as_ref().map(|name| format!("{name}_{seed}")),
             path: self.out.join(seed.to_string()),
         };
-        let jobs: Vec<Job> = (request.seed..=last).map(job).collect();
+        let jobs: Vec<Job> = seeds.iter().map(job).collect();
         for job in &jobs {
             check_free(&job.path)?;
         }
         drop(Output::new(&jobs[0].path)?); // the folder can be written
         Ok(jobs)
     }
+}
+
+/// Returns seeds whose plans differ truly, and says by how much.
+fn different(request: &Request, registry: &Registry, count: u64) -> Result<Vec<u64>, Error> {
+    let found = variations::seeds(request, registry, count as usize, interrupt::flag().into())?;
+    for v in &found {
+        let share = 100.0 * v.difference;
+        eprintln!("seed {}: at least {share:.0} % of the floor is used otherwise than in each other plan", v.plan.seed);
+    }
+    Ok(found.iter().map(|v| v.plan.seed).collect())
 }
 
 /// Returns how the command ends: well only when every world asked for is sound.

@@ -5,6 +5,7 @@ mod bench;
 mod check;
 mod completions;
 mod domains;
+mod edit;
 mod eval;
 mod export;
 mod floorplan;
@@ -41,6 +42,8 @@ pub enum Command {
     Scenario(scenario::Args),
     /// Stage 5: one world of the four documents, checked
     World(world::Args),
+    /// Change a world: move a wall, add a room, swap an object; the rest stays and is checked
+    Edit(edit::Args),
     /// Judge worlds: every hard rule and every constraint that applies
     Check(check::Args),
     /// Measure worlds: layout, collisions, navigability, compliance, diversity
@@ -82,6 +85,7 @@ impl Command {
             Self::Placement(args) => args.run(),
             Self::Scenario(args) => args.run(),
             Self::World(args) => args.run(),
+            Self::Edit(args) => args.run(),
             Self::Check(args) => args.run(),
             Self::Eval(args) => args.run(),
             Self::Bench(args) => args.run(),

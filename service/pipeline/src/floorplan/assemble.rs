@@ -3,7 +3,7 @@
 use d3dgen_knowledge::freespace::FreeSpace;
 use d3dgen_model::Segment;
 use d3dgen_model::domain::Zone;
-use d3dgen_model::floorplan::{CostTerm, Door, Floorplan, PlanRoom, Wall};
+use d3dgen_model::floorplan::{CostTerm, Door, Floorplan, PlanRoom, Wall, Window};
 use d3dgen_model::geometry::to_mm;
 use d3dgen_model::seed::Stream;
 
@@ -47,13 +47,22 @@ pub(super) fn turned_in_place(boxes: &[(usize, Cellbox)], turn: Turn) -> Vec<(us
         .collect()
 }
 
-/// Returns the finished plan, or why this layout cannot become one.
+/// A plan that is being changed: what still stands of it stays, with its ids.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Earlier<'a> {
+    pub plan: &'a Floorplan,
+    /// By room of the brief: true for those that stay to the millimeter.
+    pub kept: &'a [bool],
+}
+
+/// Returns the finished plan, or why these boxes cannot become one.
 pub(super) fn assemble(
     brief: &Brief,
     boxes: &[(usize, Cellbox)],
     score: &Score,
     seed: u64,
     scheme: &str,
+    earlier: Option<&Earlier<'_>>,
     rng: &mut Stream,
 ) -> Result<Floorplan, String> {
     let stretches = Mosaic::new(boxes).stretches();
@@ -66,12 +75,21 @@ pub(super) fn assemble(
         if proportion > PROPORTION_LIMIT && !spec.circulation && spec.zone != Zone::Circulation {
             return Err(format!("{} is {proportion:.1} times as long as wide", spec.id));
         }
+        let polygon = ring.polygon();
+        let old = earlier.and_then(|e| e.plan.room(&spec.id));
+        if let Some(same) = old.filter(|r| r.polygon == polygon && r.net_polygon == net_polygon) {
+            rooms.push(same.clone());
+            continue;
+        }
+        if earlier.is_some_and(|e| e.kept[i]) {
+            return Err(format!("locked {} would not stay as it is", spec.id));
+        }
         rooms.push(PlanRoom {
             room_id: spec.id.clone(),
             room_type: spec.room_type.clone(),
             name: spec.name.clone(),
             circulation: spec.circulation,
-            polygon: ring.polygon(),
+            polygon,
             net_area_m2,
             net_polygon,
             ceiling_height_m: spec.ceiling_height.max(spec.limits.ceiling_height(net_area_m2).unwrap_or(0.0)),
@@ -81,9 +99,14 @@ pub(super) fn assemble(
         });
     }
     let net_m2: Vec<f64> = rooms.iter().map(|r| r.net_area_m2).collect();
-    let doors = place_doors(&Site { brief, boxes, stretches: &stretches, net_m2: &net_m2 }, rng)?;
-    let windows = place_windows(brief, &stretches, &net_m2, &doors);
-    let walls = walls(brief, &stretches, &doors);
+    let standing = earlier.map_or(&[][..], |e| &e.plan.doors);
+    let doors = place_doors(&Site { brief, boxes, stretches: &stretches, net_m2: &net_m2, standing }, rng)?;
+    let mut windows = place_windows(brief, &stretches, &net_m2, &doors);
+    let mut walls = walls(brief, &stretches, &doors);
+    if let Some(earlier) = earlier {
+        keep_windows(&mut windows, &rooms, &doors, earlier.plan);
+        keep_wall_ids(&mut walls, earlier.plan);
+    }
     let cost = TERMS.iter().zip(score.weighted()).map(|(t, c)| CostTerm { term: (*t).into(), cost: to_mm(c) });
     let conflicts = brief.conflicts.clone();
     let hangs = brief.core.as_ref().is_some_and(|c| c.below.is_some());
@@ -102,6 +125,51 @@ pub(super) fn assemble(
         levels: Vec::new(),
         links: Vec::new(),
     })
+}
+
+/// Puts the windows of rooms that did not change back, where no new door stands in them.
+fn keep_windows(windows: &mut Vec<Window>, rooms: &[PlanRoom], doors: &[Door], earlier: &Floorplan) {
+    let same = |id: &str| {
+        let now = rooms.iter().find(|r| r.room_id == id);
+        now.zip(earlier.room(id)).is_some_and(|(a, b)| a.polygon == b.polygon && a.net_polygon == b.net_polygon)
+    };
+    let clear = |w: &Window| {
+        let b = w.line;
+        doors.iter().all(|d| {
+            d.line.is_vertical() != b.is_vertical()
+                || d.line.middle().distance(b.middle()) > (d.line.length() + b.length()) / 2.0
+        })
+    };
+    windows.retain(|w| !same(&w.room_id));
+    let standing = earlier.windows.iter().filter(|w| same(&w.room_id) && clear(w)).cloned();
+    let fresh: Vec<Window> = std::mem::take(windows);
+    windows.extend(standing);
+    let mut next = 1 + highest(earlier.windows.iter().map(|w| w.window_id.as_str()));
+    for mut window in fresh {
+        window.window_id = format!("window_{next}");
+        windows.push(window);
+        next += 1;
+    }
+}
+
+/// Gives walls that stand where they stood their ids and locks back; the others get new ids.
+fn keep_wall_ids(walls: &mut [Wall], earlier: &Floorplan) {
+    let mut next = 1 + highest(earlier.walls.iter().map(|w| w.wall_id.as_str()));
+    for wall in walls {
+        match earlier.walls.iter().find(|w| w.line == wall.line && w.room_ids == wall.room_ids) {
+            Some(same) => wall.clone_from(same),
+            None => {
+                wall.wall_id = format!("wall_{next}");
+                next += 1;
+            }
+        }
+    }
+}
+
+/// Returns the highest number at the end of ids; 0 when none has one.
+pub(super) fn highest<'a>(ids: impl Iterator<Item = &'a str>) -> u32 {
+    let number = |id: &str| id.rsplit('_').next().and_then(|n| n.parse::<u32>().ok());
+    ids.filter_map(number).max().unwrap_or(0)
 }
 
 /// Returns wall pieces with the doors cut out; windows stay part of their wall, which goes on below the sill.

@@ -7,6 +7,7 @@ use d3dgen_model::scene_graph::Connector;
 use d3dgen_model::seed::Stream;
 use d3dgen_model::{Point, Segment};
 
+use super::assemble::highest;
 use super::lattice::{Cellbox, INNER_HALF_M, JAMB_M, OUTER_HALF_M, meters};
 use super::outline::Stretch;
 use super::spec::Brief;
@@ -31,6 +32,8 @@ pub(super) struct Site<'a> {
     pub boxes: &'a [(usize, Cellbox)],
     pub stretches: &'a [Stretch],
     pub net_m2: &'a [f64],
+    /// Doors of an earlier plan, to be kept where their wall still stands.
+    pub standing: &'a [Door],
 }
 
 /// A place for one door.
@@ -57,6 +60,10 @@ pub(super) fn place_doors(site: &Site<'_>, rng: &mut Stream) -> Result<Vec<Door>
     let walkable = |c: Connector| matches!(c, Connector::Door | Connector::Open);
     wanted.extend(brief.links.iter().filter(|l| walkable(l.connector)).map(|l| (l.a, l.b, l.connector, l.required)));
     for (a, b, connector, required) in wanted {
+        if let Some(spot) = site.standing_spot(&[a, b], false) {
+            take_best(vec![spot], &mut doors, &mut zones, || {});
+            continue;
+        }
         let spots = site
             .stretches
             .iter()
@@ -69,6 +76,10 @@ pub(super) fn place_doors(site: &Site<'_>, rng: &mut Stream) -> Result<Vec<Door>
         });
     }
     for (room, main) in site.entrances() {
+        if let Some(spot) = site.standing_spot(&[room], main) {
+            take_best(vec![spot], &mut doors, &mut zones, || {});
+            continue;
+        }
         let spots: Vec<Spot> = site
             .stretches
             .iter()
@@ -84,8 +95,10 @@ pub(super) fn place_doors(site: &Site<'_>, rng: &mut Stream) -> Result<Vec<Door>
     if !missing.is_empty() {
         return Err(format!("no wall long enough for the door from {}", missing.join(", ")));
     }
-    for (i, door) in doors.iter_mut().enumerate() {
-        door.door_id = format!("door_{}", i + 1);
+    let mut next = 1 + highest(site.standing.iter().map(|d| d.door_id.as_str()));
+    for door in doors.iter_mut().filter(|d| d.door_id.is_empty()) {
+        door.door_id = format!("door_{next}");
+        next += 1;
     }
     Ok(doors)
 }
@@ -110,6 +123,45 @@ fn take_best(spots: Vec<Spot>, doors: &mut Vec<Door>, zones: &mut Vec<(usize, Re
 }
 
 impl Site<'_> {
+    /// Returns the place of an earlier door between these rooms (of one: to outdoors) when its wall still stands.
+    fn standing_spot(&self, rooms: &[usize], main: bool) -> Option<Spot> {
+        let ids: Vec<&str> = rooms.iter().map(|&r| self.brief.rooms[r].id.as_str()).collect();
+        let between = |s: &&Stretch| match rooms {
+            [a, b] => s.joins(*a, *b),
+            _ => s.only_room() == rooms.first().copied(),
+        };
+        let same = |d: &&Door| {
+            d.room_ids.len() == ids.len() && d.entrance == main && d.room_ids.iter().all(|r| ids.contains(&r.as_str()))
+        };
+        self.standing.iter().filter(same).find_map(|door| {
+            let vertical = door.line.is_vertical();
+            let along = |p: Point| if vertical { (p.x, p.y) } else { (p.y, p.x) };
+            let ((at, a), (_, b)) = (along(door.line.start), along(door.line.end));
+            let (start, end) = (a.min(b), a.max(b));
+            let stands = |s: &&Stretch| {
+                let (from, to) = self.usable(s);
+                s.vertical == vertical && (meters(s.at) - at).abs() < 1e-6 && from - 1e-6 <= start && end <= to + 1e-6
+            };
+            let s = self.stretches.iter().filter(between).find(stands)?;
+            let leaf = if door.kind == DoorKind::DoubleHinged { (end - start) / 2.0 } else { end - start };
+            let mut zones: Vec<(usize, Rect)> =
+                rooms.iter().map(|&r| (r, self.zone(s, r, start, end - start, APPROACH_M))).collect();
+            let into = door.swing.as_ref().and_then(|w| w.into_room_id.as_deref());
+            if let Some(&room) = rooms.iter().find(|&&r| Some(self.brief.rooms[r].id.as_str()) == into) {
+                let swept = self.zone(s, room, start, end - start, leaf.max(APPROACH_M));
+                if !self.inside(room, &swept) {
+                    return None;
+                }
+                zones.push((room, swept));
+            }
+            rooms.iter().all(|&r| self.inside(r, &self.zone(s, r, start, end - start, 0.5))).then(|| Spot {
+                door: door.clone(),
+                zones,
+                penalty: 0.0,
+            })
+        })
+    }
+
     /// Returns rooms that need a door to outdoors; the main one first.
     fn entrances(&self) -> Vec<(usize, bool)> {
         let brief = self.brief;

@@ -56,6 +56,37 @@ impl Cellbox {
         meters(self.width()) * meters(self.height())
     }
 
+    /// Returns what two rectangles share.
+    pub(super) fn overlap(&self, other: &Self) -> Option<Self> {
+        let (x0, y0) = (self.x0.max(other.x0), self.y0.max(other.y0));
+        let (x1, y1) = (self.x1.min(other.x1), self.y1.min(other.y1));
+        (x0 < x1 && y0 < y1).then_some(Self { x0, y0, x1, y1 })
+    }
+
+    /// Returns what is left of a rectangle without another: up to four rectangles.
+    pub(super) fn without(&self, other: &Self) -> Vec<Self> {
+        let Some(cut) = self.overlap(other) else { return vec![*self] };
+        let pieces = [
+            (self.x0, self.y0, cut.x0, self.y1),
+            (cut.x1, self.y0, self.x1, self.y1),
+            (cut.x0, self.y0, cut.x1, cut.y0),
+            (cut.x0, cut.y1, cut.x1, self.y1),
+        ];
+        let whole = |(x0, y0, x1, y1)| (x0 < x1 && y0 < y1).then_some(Self { x0, y0, x1, y1 });
+        pieces.into_iter().filter_map(whole).collect()
+    }
+
+    /// Returns the strip `deep` units wide along the outside of a side (0 west, 1 east, 2 south, 3 north); along its
+    /// inside for a negative `deep`.
+    pub(super) fn strip(&self, side: usize, deep: i32) -> Self {
+        match side {
+            0 => Self::new(self.x0 - deep, self.y0, self.x0, self.y1),
+            1 => Self::new(self.x1, self.y0, self.x1 + deep, self.y1),
+            2 => Self::new(self.x0, self.y0 - deep, self.x1, self.y0),
+            _ => Self::new(self.x0, self.y1, self.x1, self.y1 + deep),
+        }
+    }
+
     /// Returns the center times two, so that it stays on the lattice.
     pub(super) fn center2(&self) -> (i32, i32) {
         (self.x0 + self.x1, self.y0 + self.y1)

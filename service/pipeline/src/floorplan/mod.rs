@@ -9,15 +9,19 @@
 //! Related: bands and corridors after Marson and Musse 2010, stochastic search over program and topology after Merrell,
 //! Schkufza and Koltun 2010.
 
+mod adjust;
 mod assemble;
+mod board;
 mod compose;
 mod core;
 mod cost;
 mod doors;
 mod genome;
+mod insert;
 mod lattice;
 mod outline;
 mod realize;
+mod revise;
 mod search;
 mod spec;
 mod storeys;
@@ -32,6 +36,7 @@ use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::seed::Stream;
 
 use crate::{Error, Stop};
+pub use adjust::WallMove;
 use assemble::{Turn, assemble, turned};
 use search::search;
 use spec::Brief;
@@ -44,7 +49,8 @@ const ATTEMPTS: u64 = 8;
 /// Plans a scene graph under the limits of the knowledge base.
 ///
 /// Every required `door` and `open` edge is realized, every room has its area range, least dimension and daylight, and
-/// no room is added or dropped. With `pinned`, a plan whose rooms are all locked is returned as it is.
+/// no room is added or dropped. Of `pinned`, locked rooms (and rooms with a locked wall, door or window) stay as they are
+/// and the others are planned anew around them; when all rooms are locked, the plan is returned as it is.
 ///
 /// # Errors
 /// `Mismatch` when the graph names rooms it does not have; `Infeasible` when no plan satisfies all hard rules, with the
@@ -69,20 +75,13 @@ pub fn generate_until(
     pinned: Option<&Floorplan>,
     stop: Stop<'_>,
 ) -> Result<Floorplan, Error> {
-    if let Some(plan) = pinned {
-        match plan.rooms.iter().filter(|r| r.locked).count() {
-            0 => {}
-            n if n == plan.rooms.len() => return kept(graph, plan),
-            n => {
-                return Err(Error::Refused {
-                    stage: "floorplan",
-                    message: format!(
-                        "{n} of {} rooms are locked; this release keeps a plan whole or plans anew: lock all rooms or none",
-                        plan.rooms.len()
-                    ),
-                });
-            }
+    if let Some(plan) = pinned.filter(|p| has_locks(p)) {
+        if plan.rooms.iter().all(|r| r.locked) {
+            return kept(graph, plan);
         }
+        one_storey(plan)?;
+        let brief = Brief::new(graph, domain, limits)?;
+        return adjust::replan(&brief, plan, graph.seed, &mut Stream::new(graph.seed, "floorplan"), stop);
     }
     if graph.level_numbers().len() > 1 {
         return storeys::generate(graph, domain, limits, stop);
@@ -102,12 +101,54 @@ pub fn generate_until(
             continue;
         }
         let name = format!("{:?}", found.scheme).to_lowercase();
-        match assemble(&brief, &turned(&found.layout.boxes, turn), &found.score, graph.seed, &name, &mut rng) {
+        let boxes = turned(&found.layout.boxes, turn);
+        match assemble(&brief, &boxes, &found.score, graph.seed, &name, None, &mut rng) {
             Ok(plan) => return Ok(plan),
             Err(reason) => last = reason,
         }
     }
     Err(Error::Infeasible { stage: "floorplan", message: last })
+}
+
+/// Changes a plan to the rooms of a graph, and moves a wall, with as little else changed as the hard rules allow.
+///
+/// Locked rooms stay as they are. Doors, windows and ids stay where their walls do.
+///
+/// # Errors
+/// `Mismatch` and `Refused` when the change names what is not there or is locked; `Infeasible` when no sound plan was
+/// found beside it; `Cancelled`.
+pub fn change(
+    graph: &SceneGraph,
+    domain: &Domain,
+    limits: &Limits,
+    plan: &Floorplan,
+    moved: Option<&WallMove>,
+    stop: Stop<'_>,
+) -> Result<Floorplan, Error> {
+    one_storey(plan)?;
+    let brief = Brief::new(graph, domain, limits)?;
+    adjust::change(&brief, plan, moved, &mut Stream::new(plan.seed, "floorplan/change"), stop)
+}
+
+/// Refuses a plan of several storeys.
+fn one_storey(plan: &Floorplan) -> Result<(), Error> {
+    if plan.levels.len() < 2 {
+        return Ok(());
+    }
+    Err(Error::Refused {
+        stage: "floorplan",
+        message: format!(
+            "the plan has {} storeys; rooms of such a plan cannot be planned anew one by one: lock all of them or none",
+            plan.levels.len()
+        ),
+    })
+}
+
+fn has_locks(plan: &Floorplan) -> bool {
+    plan.rooms.iter().any(|r| r.locked)
+        || plan.walls.iter().any(|w| w.locked)
+        || plan.doors.iter().any(|d| d.locked)
+        || plan.windows.iter().any(|w| w.locked)
 }
 
 /// Returns a locked plan unchanged when it is a plan of this graph.

@@ -143,7 +143,7 @@ fn anneal(
 
 /// Returns how much worse a step may be, in units of the heat: drawn from the exponential distribution, as annealing
 /// asks, by a table, for logarithms differ between machines.
-fn patience(rng: &mut Stream) -> f64 {
+pub(super) fn patience(rng: &mut Stream) -> f64 {
     PATIENCE[rng.below(PATIENCE.len())]
 }
 

@@ -125,7 +125,7 @@ fn storey(
         };
         let boxes: Vec<(usize, Cellbox)> = in_core(&found.layout.boxes, &frame);
         let name = format!("{:?}", found.scheme).to_lowercase();
-        match assemble(brief, &turned_in_place(&boxes, turn), &found.score, seed, &name, rng) {
+        match assemble(brief, &turned_in_place(&boxes, turn), &found.score, seed, &name, None, rng) {
             Ok(plan) => {
                 let comb = brief.core.as_ref().is_some_and(|c| c.far.is_some()).then_some(found.layout.comb);
                 let comb_built = comb.is_some();

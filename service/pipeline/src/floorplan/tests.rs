@@ -127,7 +127,7 @@ fn sound(brief: &Brief, schemes: &[Scheme], seed: u64) -> bool {
         return false;
     }
     let turn = Turn { flip_x: seed % 2 == 1, flip_y: seed % 3 == 1, swap: seed % 5 == 1 };
-    match assemble(brief, &turned(&found.layout.boxes, turn), &found.score, seed, "test", &mut rng) {
+    match assemble(brief, &turned(&found.layout.boxes, turn), &found.score, seed, "test", None, &mut rng) {
         Ok(plan) => {
             assert_eq!(plan.check(), vec![], "seed {seed}");
             for (room, spec) in plan.rooms.iter().zip(&brief.rooms) {

@@ -20,7 +20,7 @@ pub fn asset(domain: &Domain, object: &ObjectType) -> String {
 }
 
 /// Returns the model reference of an object of a size, mm, and why it is that one, where a database has a say.
-fn stocked(domain: &Domain, object: &ObjectType, size: [i32; 3]) -> (String, Option<AssetChoice>) {
+pub(crate) fn stocked(domain: &Domain, object: &ObjectType, size: [i32; 3]) -> (String, Option<AssetChoice>) {
     let same = |size_m: &[f64; 3]| size_m.iter().zip(size).all(|(m, mm)| (m * 1000.0).round() == f64::from(mm));
     if let Some(own) = object.stock.assets.iter().find(|a| same(&a.size_m)) {
         let choice = AssetChoice { source: AssetSource::Database, reason: own.reason.clone() };

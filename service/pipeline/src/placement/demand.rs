@@ -135,6 +135,13 @@ fn occupied_line(domain: &Domain, kind: &RoomType, graph: Option<&GraphRoom>) ->
     Some((line, units))
 }
 
+/// Returns the task of one object that somebody wants in a room, whatever its type asks for.
+pub(super) fn one_more(object: &ObjectType) -> Task<'_> {
+    let arrangement = natural(object);
+    let rule = format!("added by an edit ({}): {}", object.id, arrangement_name(arrangement));
+    Task { item: &object.id, anchor: object, arrangement, count: 1, required: 1, line: 0, rule }
+}
+
 fn wishes<'a>(domain: &'a Domain, kind: &RoomType, graph: Option<&GraphRoom>) -> Vec<&'a ObjectType> {
     let mut out: Vec<&ObjectType> = Vec::new();
     for id in graph.map_or(&[][..], |g| &g.wished_assets) {

@@ -1,8 +1,9 @@
 //! Placements handed in as locked: kept as they are, checked against the plan, counted towards what a room needs.
 
+use std::f64::consts::FRAC_PI_2;
 use std::rc::Rc;
 
-use d3dgen_model::domain::{Domain, Mount};
+use d3dgen_model::domain::{Domain, Mount, Shape};
 use d3dgen_model::floorplan::Floorplan;
 use d3dgen_model::placements::{Placement, Placements};
 
@@ -10,8 +11,11 @@ use super::demand::Task;
 use super::geom::{Box2, Solid, mm};
 use super::space::Space;
 use super::state::Placed;
-use super::unit::{Part, Unit};
+use super::unit::{Part, Unit, clears_of};
 use crate::Error;
+
+/// Share of its clearance that what stands already keeps from what comes after it.
+const LEAST_CLEARANCE: f64 = 0.5;
 
 /// Returns the locked placements of one room.
 pub(super) fn of_room<'p>(pinned: Option<&'p Placements>, room_id: &str) -> Vec<&'p Placement> {
@@ -55,12 +59,15 @@ pub(super) fn placed<'a>(locked: &[&Placement], domain: &'a Domain, space: &Spac
             }
         }
         let mount = p.mount;
-        let part = Part { object, quarter: 0, solid, mount, support: None, optional: false };
+        let quarter = (p.pose.yaw_rad / FRAC_PI_2).round().rem_euclid(4.0) as u8;
+        let part = Part { object, quarter, solid, mount, support: None, optional: false };
+        let mut clears = Vec::new();
+        clears_of(&part, LEAST_CLEARANCE, &mut clears);
         let unit = Unit {
             item: &object.id,
             group: false,
             parts: vec![part],
-            clears: Vec::new(),
+            clears,
             bbox: solid.rect,
             reach: solid.rect,
             needs_wall: mount == Mount::Wall,
@@ -76,6 +83,13 @@ pub(super) fn placed<'a>(locked: &[&Placement], domain: &'a Domain, space: &Spac
         });
     }
     (units, problems)
+}
+
+/// Returns the things that stand in the light of a window of the room.
+pub(super) fn shading(fixed: &[&Placement], domain: &Domain, space: &Space) -> Vec<String> {
+    let curtain = |p: &Placement| domain.object(&p.object).is_some_and(|o| o.shape == Shape::Curtain);
+    let dark = |p: &&&Placement| !curtain(p) && space.windows.iter().any(|w| w.is_hidden_by(&solid_of(p)));
+    fixed.iter().filter(dark).map(|p| format!("locked `{}` stands in front of a window", p.placement_id)).collect()
 }
 
 fn solid_of(p: &Placement) -> Solid {

@@ -23,7 +23,7 @@ mod tests;
 mod unit;
 mod way;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use d3dgen_knowledge::Limits;
 use d3dgen_model::domain::{Domain, ObjectType};
@@ -95,7 +95,8 @@ pub fn generate_until(
         levels.iter().filter(|_| levels.len() > 1).map(|&level| (level, plan.storey(level))).collect();
     for (at, room) in plan.rooms.iter().enumerate() {
         let storey = storeys.get(&room.level).unwrap_or(plan);
-        let furnished = furnish_room(graph, storey, room, (domain, limits), pinned, stop);
+        let fixed = locked::of_room(pinned, &room.room_id);
+        let furnished = furnish_room(graph, storey, room, (domain, limits), &fixed, Wanted::All, stop);
         stop.check()?;
         match furnished {
             Ok((placements, unplaced)) => {
@@ -111,21 +112,41 @@ pub fn generate_until(
     Ok(out)
 }
 
-fn furnish_room(
+/// What a room is furnished with.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Wanted<'a> {
+    /// What its type and the scene graph ask for.
+    All,
+    /// That, less the lines about objects that somebody took away.
+    Without(&'a BTreeSet<String>),
+    /// One object more.
+    Only(&'a ObjectType),
+}
+
+/// Furnishes one room around the placements that are fixed in it.
+///
+/// # Errors
+/// Everything that keeps the fixed placements from standing where they are.
+pub(crate) fn furnish_room(
     graph: &SceneGraph,
     plan: &Floorplan,
     room: &PlanRoom,
     (domain, limits): (&Domain, &Limits),
-    pinned: Option<&Placements>,
+    fixed: &[&Placement],
+    wanted: Wanted<'_>,
     stop: Stop<'_>,
 ) -> Result<(Vec<Placement>, Vec<Unplaced>), Vec<String>> {
     let space = Space::new(plan, room);
     let kind = domain.room_type_or_generic(&room.room_type);
-    let tasks = demand::tasks(domain, kind, graph.room(&room.room_id), room.net_area_m2, space.windows.len() as u32);
+    let usual = || demand::tasks(domain, kind, graph.room(&room.room_id), room.net_area_m2, space.windows.len() as u32);
+    let tasks = match wanted {
+        Wanted::All => usual(),
+        Wanted::Without(objects) => usual().into_iter().filter(|t| !objects.contains(&t.anchor.id)).collect(),
+        Wanted::Only(object) => vec![demand::one_more(object)],
+    };
     let flights = stairs::flights(plan, room, domain);
-    let pinned = locked::of_room(pinned, &room.room_id);
-    let own = flights.iter().filter(|f| !pinned.iter().any(|p| p.placement_id == f.placement_id));
-    let fixed: Vec<&Placement> = pinned.iter().copied().chain(own).collect();
+    let own = flights.iter().filter(|f| !fixed.iter().any(|p| p.placement_id == f.placement_id));
+    let fixed: Vec<&Placement> = fixed.iter().copied().chain(own).collect();
     let (units, problems) = locked::placed(&fixed, domain, &space);
     if !problems.is_empty() {
         return Err(problems);
@@ -133,7 +154,10 @@ fn furnish_room(
     let mut stream = Stream::new(graph.seed, &format!("placement/{}", room.room_id));
     let salt = (stream.unit() * (1_u64 << 52) as f64) as u64;
     let sizes = pick_sizes(domain, &mut stream);
-    let present = locked::present(&fixed, &tasks, domain);
+    let present = match wanted {
+        Wanted::All | Wanted::Without(_) => locked::present(&fixed, &tasks, domain),
+        Wanted::Only(_) => vec![0; tasks.len()],
+    };
     let robot_m = graph.robots.iter().map(|r| r.radius_m).fold(LEAST_RADIUS_M, f64::max);
     let asked_m = limits.corridor_width.as_ref().map_or(0.0, |l| l.value).max(domain.circulation.width_m);
     let way = Way::new(plan, room, asked_m.max(2.0 * robot_m));
@@ -152,6 +176,14 @@ fn furnish_room(
     let outcome = search::furnish(&job);
     let placements = assemble::placements(domain, &room.room_id, &tasks, &outcome, &fixed);
     Ok((placements, assemble::unplaced(&room.room_id, &tasks, &outcome, &present)))
+}
+
+/// Returns what keeps fixed placements from standing in a room of a plan as they do; nothing when all is well.
+pub(crate) fn misfits(plan: &Floorplan, room: &PlanRoom, domain: &Domain, fixed: &[&Placement]) -> Vec<String> {
+    let space = Space::new(plan, room);
+    let mut problems = locked::placed(fixed, domain, &space).1;
+    problems.extend(locked::shading(fixed, domain, &space));
+    problems
 }
 
 /// Picks one size for each object type of a room, the most common one most often.

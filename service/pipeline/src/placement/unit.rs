@@ -267,7 +267,7 @@ fn finish_with<'a>(item: &'a str, group: bool, parts: Vec<Part<'a>>, clears: Vec
 }
 
 /// Adds the floor in front of and beside a part that must stay free.
-fn clears_of(part: &Part, tightness: f64, out: &mut Vec<Box2>) {
+pub(super) fn clears_of(part: &Part, tightness: f64, out: &mut Vec<Box2>) {
     if part.mount == Mount::Surface || part.mount == Mount::Ceiling || part.solid.z0 > ROBOT_HEIGHT + 400 {
         return;
     }

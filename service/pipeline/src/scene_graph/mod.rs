@@ -30,6 +30,7 @@ use d3dgen_plugins::Registry;
 
 use self::program::Planned;
 use self::reading::Reading;
+pub(crate) use self::rooms::wished_assets;
 use crate::Error;
 
 /// Reason of the edges that a prompt asks for.

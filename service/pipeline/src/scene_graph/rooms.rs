@@ -177,7 +177,8 @@ fn furniture<'a>(domain: &'a Domain, kind: &'a RoomType) -> impl Iterator<Item =
     })
 }
 
-fn wished_assets(domain: &Domain, kind: &RoomType, named: &[String]) -> Vec<String> {
+/// Returns the objects wished for in a room, most important first: those named, then those of its type.
+pub(crate) fn wished_assets(domain: &Domain, kind: &RoomType, named: &[String]) -> Vec<String> {
     let mut out: Vec<String> = Vec::new();
     for object in named.iter().map(String::as_str).chain(furniture(domain, kind)) {
         if out.len() < MOST_WISHES && !out.iter().any(|o| o == object) {

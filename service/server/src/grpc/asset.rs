@@ -109,7 +109,8 @@ impl AssetService for Api {
             names::reference("asset_id", &id)?;
             let now = core.domains.now();
             let asset = shelf(core, &now.catalog)?.get(&id).map_err(status::assets)?;
-            Ok(GetAssetResponse { asset: Some(message(&asset)) })
+            let thumbnail_png = files::thumbnail(core, &now, &asset)?;
+            Ok(GetAssetResponse { asset: Some(message(&asset)), thumbnail_png })
         })
         .await
     }

@@ -13,7 +13,7 @@ use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::world::World;
 use d3dgen_pipeline::generate::{attempt_seed, retrieve, world_name};
 use d3dgen_pipeline::scene_graph::{self, Request as Asked};
-use d3dgen_pipeline::{floorplan, placement, scenario, world};
+use d3dgen_pipeline::{floorplan, placement, scenario, variations, world};
 use d3dgen_plugins::Plugin;
 use d3dgen_proto::v1::world_service_server::WorldService;
 use d3dgen_proto::v1::{
@@ -204,14 +204,14 @@ impl WorldService for Api {
 
     async fn edit_world(&self, request: Request<EditWorldRequest>) -> Answer<EditWorldResponse> {
         let asked = request.into_inner();
-        self.work(move |core, _| {
+        self.work(move |core, stop| {
             let mut world: World = document("world", asked.world)?;
-            edit::apply(&mut world, asked.edits)?;
+            let changed_room_ids = edit::apply(&mut world, asked.edits, &core.domains.now(), stop.into())?;
             let problems = world.check();
             if !problems.is_empty() {
                 return Err(status::problems("world", &problems));
             }
-            Ok(EditWorldResponse { world: Some(judged(core, world)?) })
+            Ok(EditWorldResponse { world: Some(judged(core, world)?), changed_room_ids })
         })
         .await
     }
@@ -316,29 +316,26 @@ fn plans(
 ) -> Result<Vec<(f64, Floorplan)>, Status> {
     let plugin = plugin(now, "scene_graph.domain", &graph.domain)?;
     let limits = retrieve(graph, plugin).limits;
-    let (mut found, mut refused): (Vec<(f64, Floorplan)>, _) = (Vec::new(), None);
-    for attempt in 0..count * SEEDS {
+    let field = if pinned.is_some_and(has_locked_rooms) { "pinned" } else { "scene_graph" };
+    let domain = plugin.domain();
+    let mut refused = None;
+    if count > 1 {
+        let found = variations::variations(graph, domain, &limits, pinned, count as usize, stop.into());
+        let mut found = found.map_err(|e| status::stage(field, e))?;
+        found.sort_by(|a, b| a.cost.total_cmp(&b.cost).then(a.plan.seed.cmp(&b.plan.seed)));
+        return Ok(found.into_iter().map(|v| (v.cost, v.plan)).collect());
+    }
+    for attempt in 0..SEEDS {
         let graph = SceneGraph { seed: attempt_seed(graph.seed, attempt), ..graph.clone() };
-        match floorplan::generate_until(&graph, plugin.domain(), &limits, pinned, stop.into()) {
-            Ok(plan) => {
-                if !found.iter().any(|(_, other)| other.rooms == plan.rooms) {
-                    found.push((plan.cost.iter().map(|term| term.cost).sum(), plan));
-                }
-            }
-            Err(error @ d3dgen_pipeline::Error::Infeasible { .. }) => refused = Some(error),
-            Err(error) => {
-                let field = if pinned.is_some_and(has_locked_rooms) { "pinned" } else { "scene_graph" };
-                return Err(status::stage(field, error));
-            }
-        }
-        if found.len() as u32 >= count {
-            break;
+        match floorplan::generate_until(&graph, domain, &limits, pinned, stop.into()) {
+            Ok(plan) => return Ok(vec![(plan.cost.iter().map(|term| term.cost).sum(), plan)]),
+            Err(error @ d3dgen_pipeline::Error::Infeasible { .. }) => refused = refused.or(Some(error)),
+            Err(error) => return Err(status::stage(field, error)),
         }
     }
-    found.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.seed.cmp(&b.1.seed)));
-    match (found.is_empty(), refused) {
-        (true, Some(error)) => Err(status::stage("scene_graph", error)),
-        _ => Ok(found),
+    match refused {
+        Some(error) => Err(status::stage("scene_graph", error)),
+        None => Ok(Vec::new()),
     }
 }
 

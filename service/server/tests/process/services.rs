@@ -5,12 +5,12 @@ use d3dgen_proto::v1::generate_world_request::Start;
 use d3dgen_proto::v1::generate_world_response::Event;
 use d3dgen_proto::v1::world_edit::Edit;
 use d3dgen_proto::v1::{
-    AmendKnowledgeRequest, AnyOf, AssembleWorldRequest, CheckWorldRequest, CheckedWorld, DomainFile, EditWorldRequest,
-    ExportWorldRequest, GenerateBatchRequest, GenerateFloorplanRequest, GeneratePlacementsRequest,
+    AmendKnowledgeRequest, AnyOf, AssembleWorldRequest, BuildingRequest, CheckWorldRequest, CheckedWorld, DomainFile,
+    EditWorldRequest, ExportWorldRequest, GenerateBatchRequest, GenerateFloorplanRequest, GeneratePlacementsRequest,
     GenerateScenarioRequest, GenerateSceneGraphRequest, GenerateWorldRequest, GetBatchWorldRequest, GetDomainRequest,
     JobState, ListBatchWorldsRequest, ListConstraintFiltersRequest, ListDomainsRequest, ListExportersRequest,
-    ListJobLogsRequest, LockUpdate, ParseDomainRequest, RegisterDomainRequest, RemoveDomainRequest,
-    RetrieveConstraintsRequest, RuleSentence, SearchAssetsRequest, SearchConstraintsRequest,
+    ListJobLogsRequest, LockUpdate, ObjectMove, ParseDomainRequest, RegisterDomainRequest, RemoveDomainRequest,
+    RetrieveConstraintsRequest, RoomAddition, RuleSentence, SearchAssetsRequest, SearchConstraintsRequest,
     UndoKnowledgeChangeRequest, WorldEdit,
 };
 use tonic::Code;
@@ -95,10 +95,12 @@ async fn worlds_are_made_pinned_edited_and_written() {
     let rooms = |w: &d3dgen_proto::v1::World| w.floorplan.as_ref().expect("a plan").rooms.clone();
     assert_eq!(rooms(&again.world.expect("a world")), rooms(&pinned));
 
-    // a plan that is pinned in part, or that is of another building, is refused at its field
+    // a plan that is of another building is refused at its field
     let mut part = pinned.floorplan.clone().expect("a plan");
     part.rooms[0].locked = false;
-    let half = GenerateWorldRequest { pinned_floorplan: Some(part.clone()), ..start(3) };
+    let office = BuildingRequest { prompt: "office with 5 rooms".into(), ..Default::default() };
+    let start_of_another = Some(Start::Building(office));
+    let half = GenerateWorldRequest { start: start_of_another, pinned_floorplan: Some(part.clone()), ..start(3) };
     let mut stream = c.worlds.generate_world(half).await.expect("a stream").into_inner();
     let refused = loop {
         match stream.message().await {
@@ -109,11 +111,32 @@ async fn worlds_are_made_pinned_edited_and_written() {
     assert_eq!(refused.code(), Code::InvalidArgument);
     let fields = refused.get_details_bad_request().expect("the place").field_violations;
     assert_eq!(fields[0].field, "pinned_floorplan", "{refused}");
-    let asked =
-        GenerateFloorplanRequest { scene_graph: pinned.scene_graph.clone(), alternative_count: 1, pinned: Some(part) };
-    let refused = c.worlds.generate_floorplan(asked).await.expect_err("refused");
-    let fields = refused.get_details_bad_request().expect("the place").field_violations;
-    assert_eq!(fields[0].field, "pinned", "{refused}");
+    // of its own building, what is pinned stays and the rest is planned around it
+    let asked = GenerateFloorplanRequest {
+        scene_graph: pinned.scene_graph.clone(),
+        alternative_count: 1,
+        pinned: Some(part.clone()),
+    };
+    let around = c.worlds.generate_floorplan(asked).await.expect("planned").into_inner();
+    let around = around.alternatives[0].floorplan.clone().expect("a plan");
+    assert_eq!(around.rooms[1..], part.rooms[1..]);
+
+    // an edit with repair: the room stands, nothing but what is said changed, and the world is sound
+    let addition = RoomAddition { room_type: "storage".into(), area_m2: Some(4.0), ..Default::default() };
+    let more = WorldEdit { edit: Some(Edit::AddedRoom(addition)) };
+    let edited = c.worlds.edit_world(EditWorldRequest { world: Some(world.clone()), edits: vec![more] }).await;
+    let edited = edited.expect("edited").into_inner();
+    let checked = edited.world.expect("judged");
+    assert!(checked.report.expect("a report").sound);
+    let now = rooms(&checked.world.expect("a world"));
+    assert_eq!(now.len(), rooms(&world).len() + 1);
+    let unchanged = |r: &&d3dgen_proto::v1::PlanRoom| !edited.changed_room_ids.contains(&r.room_id);
+    assert!(now.iter().filter(unchanged).all(|r| rooms(&world).contains(r)));
+    let far = ObjectMove { placement_id: "nothing_1".into(), ..Default::default() };
+    let far = WorldEdit { edit: Some(Edit::MovedObject(far)) };
+    let refused = c.worlds.edit_world(EditWorldRequest { world: Some(world.clone()), edits: vec![far] }).await;
+    let fields = refused.expect_err("refused").get_details_bad_request().expect("the place").field_violations;
+    assert_eq!(fields[0].field, "edits[0]");
 
     // an unknown part, and an object moved into a wall
     let lock = WorldEdit { edit: Some(Edit::Lock(LockUpdate { ids: vec!["nothing".into()], ..Default::default() })) };

@@ -75,7 +75,7 @@ impl Args {
             a.joints = notes
                 .map(|j| JointNote { name: j.name.clone(), kind: kind(j.kind).into(), limits: j.limits })
                 .collect();
-            assets.push(NewAsset { annotation: a, model: Some(model), companions: std::collections::BTreeMap::new() });
+            assets.push(NewAsset::new(a, Some(model), Default::default()));
         }
         let database = open(&self.registry.store)?;
         let ids = database.put(Kind::Generate, assets, &by(None, &format!("{} generated", self.object)))?;

@@ -23,12 +23,12 @@ pub struct Args {
     /// Print the annotation as Arena reads it (annotation.yaml)
     #[arg(long)]
     asa: bool,
-    /// Also draw a picture of it
+    /// Also write a picture of it: the thumbnail that is kept with it, or one drawn now
     #[arg(long, value_name = "FILE.png")]
     thumbnail: Option<PathBuf>,
-    /// Side of the picture, px
-    #[arg(long, default_value_t = 512, value_name = "PX", value_parser = clap::value_parser!(u32).range(16..=2048))]
-    px: u32,
+    /// Draw the picture anew with this side, px; 512 where none is kept
+    #[arg(long, value_name = "PX", value_parser = clap::value_parser!(u32).range(16..=2048))]
+    px: Option<u32>,
     #[command(flatten)]
     registry: RegistryArgs,
 }
@@ -39,8 +39,14 @@ impl Args {
         let shelf = world.shelf(&self.registry.store)?;
         let annotation = shelf.get(&self.asset_id)?;
         if let Some(path) = &self.thumbnail {
-            let model = world.model(&shelf, &self.asset_id)?;
-            write_picture(path, &picture::thumbnail(&model, self.px as usize))?;
+            let kept = if self.px.is_none() { shelf.thumbnail(&self.asset_id)? } else { None };
+            match kept {
+                Some(png) => std::fs::write(path, png).map_err(|source| Error::Write { path: path.clone(), source })?,
+                None => {
+                    let model = world.model(&shelf, &self.asset_id)?;
+                    write_picture(path, &picture::thumbnail(&model, self.px.unwrap_or(512) as usize))?;
+                }
+            }
         }
         let text = match (self.json, self.asa) {
             (true, _) => annotation.to_json(),
@@ -76,6 +82,10 @@ fn shown(a: &Annotation) -> String {
         ("colors", list(&colors)),
         ("mass", format!("{mass}{}", basis("mass"))),
         ("triangles", a.triangle_count.to_string()),
+        (
+            "thumbnail",
+            a.thumbnail.as_ref().map_or("drawn when asked for".into(), |t| format!("{0} x {0} px", t.size_px)),
+        ),
         ("moving parts", list(&joints)),
         ("domains", list(&a.domains)),
         ("rooms", list(&a.room_types)),

@@ -128,7 +128,7 @@ pub(super) fn generate(
                     limits: j.limits,
                 };
                 a.joints = model.joints.iter().map(note).collect();
-                assets.push(NewAsset { annotation: a, model: Some(model), companions: Default::default() });
+                assets.push(NewAsset::new(a, Some(model), Default::default()));
             }
             core.databases.assets.put(Kind::Generate, assets, &by).map_err(status::assets)?
         }

@@ -9,6 +9,8 @@ use crate::core::Core;
 use crate::domains::Snapshot;
 use crate::status::{self, invalid};
 
+/// Side of the pictures that are drawn when asked for, px.
+const THUMBNAIL_PX: usize = 128;
 /// Forms that an asset can be written in.
 const FORMATS: [&str; 4] = ["usdz", "glb", "sdf", "json"];
 
@@ -33,6 +35,7 @@ pub(super) fn of(core: &Core, asset_id: &str, formats: &[String]) -> Result<Vec<
     let folder = format!("{domain}/Object/{name}");
     let failed = |e: d3dgen_mesh::Error| Status::failed_precondition(format!("{asset_id} cannot be written: {e}"));
     let mut files = vec![(format!("{folder}/annotation.yaml"), asa::write(&annotation).into_bytes())];
+    files.push((format!("{folder}/thumbnail.png"), picture(core, &model, asset_id)?));
     let wanted = |format: &str| formats.is_empty() || formats.iter().any(|f| f == format);
     if wanted("usdz") {
         files.push((format!("{folder}/{name}.usdz"), writers::usdz(&model).map_err(failed)?));
@@ -48,6 +51,28 @@ pub(super) fn of(core: &Core, asset_id: &str, formats: &[String]) -> Result<Vec<
         files.push((format!("{folder}/{name}.json"), annotation.to_json().into_bytes()));
     }
     Ok(files)
+}
+
+/// Returns the thumbnail of an asset, PNG: the one kept with it, or one drawn now; empty when its model is not kept.
+///
+/// # Errors
+/// What the database refuses.
+pub(super) fn thumbnail(core: &Core, now: &Snapshot, annotation: &Annotation) -> Result<Vec<u8>, Status> {
+    let id = &annotation.asset_id;
+    if let Some(kept) = core.databases.assets.thumbnail(id).map_err(status::assets)? {
+        return Ok(kept);
+    }
+    match made(now, annotation) {
+        Ok(model) => picture(core, &model, id),
+        Err(_) => Ok(Vec::new()),
+    }
+}
+
+fn picture(core: &Core, model: &Model3d, asset_id: &str) -> Result<Vec<u8>, Status> {
+    if let Some(kept) = core.databases.assets.thumbnail(asset_id).map_err(status::assets)? {
+        return Ok(kept);
+    }
+    d3dgen_mesh::picture::thumbnail(model, THUMBNAIL_PX).png().map_err(|e| status::internal(&e))
 }
 
 /// Makes the model of an asset that has no file.

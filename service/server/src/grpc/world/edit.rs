@@ -2,10 +2,13 @@
 
 use std::collections::BTreeSet;
 
+use d3dgen_model::Document;
+use d3dgen_model::edits::{Edit as Planned, Edits};
 use d3dgen_model::placements::Placement;
 use d3dgen_model::world::World;
-use d3dgen_proto::v1::WorldEdit;
+use d3dgen_pipeline::{Stop, edit};
 use d3dgen_proto::v1::world_edit::Edit;
+use d3dgen_proto::v1::{ObjectMove, WorldEdit};
 use prost::{Message, Name};
 use prost_types::FieldMask;
 use serde::Serialize;
@@ -13,58 +16,93 @@ use serde::de::DeserializeOwned;
 use tonic::Status;
 
 use crate::convert::{masked, message, part};
+use crate::domains::Snapshot;
+use crate::grpc::domain::plugin;
 use crate::grpc::required;
-use crate::status::invalid;
+use crate::status::{self, invalid};
 
 /// Edits of one call at most.
 const EDITS: usize = 1000;
 
-/// Applies edits in their order.
+/// Applies edits in their order; returns the rooms that edits with repair changed.
 ///
 /// # Errors
-/// `INVALID_ARGUMENT` with the edit at fault; the world is then not to be used.
-pub(super) fn apply(world: &mut World, edits: Vec<WorldEdit>) -> Result<(), Status> {
+/// `INVALID_ARGUMENT` with the edit at fault, `FAILED_PRECONDITION` when a repair finds no way; the world is then not to
+/// be used.
+pub(super) fn apply(
+    world: &mut World,
+    edits: Vec<WorldEdit>,
+    now: &Snapshot,
+    stop: Stop<'_>,
+) -> Result<Vec<String>, Status> {
     if edits.is_empty() || edits.len() > EDITS {
         return Err(invalid("edits", format!("has {}, needs 1 to {EDITS}", edits.len())));
     }
+    let mut changed = BTreeSet::new();
     for (i, edit) in edits.into_iter().enumerate() {
         let field = format!("edits[{i}]");
-        one(world, &field, required(&field, edit.edit)?)?;
+        let Some(planned) = one(world, &field, required(&field, edit.edit)?)? else { continue };
+        let problems = [Edits { version: 1, edits: vec![planned.clone()] }.check(), world.check()].concat();
+        if !problems.is_empty() {
+            return Err(status::problems(&field, &problems));
+        }
+        let plugin = plugin(now, "world.scene_graph.domain", &world.scene_graph.domain)?;
+        let edited = edit::apply(world, &[planned], plugin, stop).map_err(|e| status::stage(&field, e))?;
+        *world = edited.world;
+        changed.extend(edited.changed_room_ids);
     }
-    Ok(())
+    Ok(world.floorplan.rooms.iter().map(|r| r.room_id.clone()).filter(|id| changed.contains(id)).collect())
 }
 
-fn one(world: &mut World, field: &str, edit: Edit) -> Result<(), Status> {
+/// Changes the documents as an edit says; returns an edit that repairs what is around it in the pipeline's words instead.
+fn one(world: &mut World, field: &str, edit: Edit) -> Result<Option<Planned>, Status> {
+    let given = |text: String| (!text.is_empty()).then_some(text);
     let at = |name: &str| format!("{field}.{name}");
     match edit {
         Edit::GraphRoom(u) => {
             let given = required(&at("graph_room.room"), u.room)?;
             let room = world.scene_graph.rooms.iter_mut().find(|r| r.id == given.room_id);
-            update(&at("graph_room"), room, &given, u.update_mask, "room_id")
+            update(&at("graph_room"), room, &given, u.update_mask, "room_id")?;
         }
         Edit::PlanRoom(u) => {
             let given = required(&at("plan_room.room"), u.room)?;
             let room = world.floorplan.rooms.iter_mut().find(|r| r.room_id == given.room_id);
-            update(&at("plan_room"), room, &given, u.update_mask, "room_id")
+            update(&at("plan_room"), room, &given, u.update_mask, "room_id")?;
         }
         Edit::Door(u) => {
             let given = required(&at("door.door"), u.door)?;
             let door = world.floorplan.doors.iter_mut().find(|d| d.door_id == given.door_id);
-            update(&at("door"), door, &given, u.update_mask, "door_id")
+            update(&at("door"), door, &given, u.update_mask, "door_id")?;
         }
         Edit::Placement(u) => {
             let given = required(&at("placement.placement"), u.placement)?;
             let placement = world.placements.placements.iter_mut().find(|p| p.placement_id == given.placement_id);
-            update(&at("placement"), placement, &given, u.update_mask, "placement_id")
+            update(&at("placement"), placement, &given, u.update_mask, "placement_id")?;
         }
         Edit::AddedPlacement(given) => {
             let placement: Placement = part(&at("added_placement"), &given)?;
             world.placements.placements.push(placement);
-            Ok(())
         }
-        Edit::RemovedPlacementId(id) => remove(world, &at("removed_placement_id"), &id),
-        Edit::Lock(u) => lock(world, &at("lock.ids"), &u.ids, u.include_contents, u.locked),
+        Edit::RemovedPlacementId(id) => remove(world, &at("removed_placement_id"), &id)?,
+        Edit::Lock(u) => lock(world, &at("lock.ids"), &u.ids, u.include_contents, u.locked)?,
+        Edit::MovedWall(m) => return Ok(Some(Planned::MoveWall { wall_id: m.wall_id, by_m: m.by_m })),
+        Edit::AddedRoom(a) => {
+            let entered_from = given(a.entered_from_room_id);
+            return Ok(Some(Planned::AddRoom { room_type: a.room_type, area_m2: a.area_m2, entered_from }));
+        }
+        Edit::RemovedRoomId(room_id) => return Ok(Some(Planned::RemoveRoom { room_id })),
+        Edit::SwappedObject(s) => {
+            let (object, asset) = (given(s.object), given(s.asset));
+            return Ok(Some(Planned::SwapObject { placement_id: s.placement_id, object, asset }));
+        }
+        Edit::MovedObject(m) => {
+            let ObjectMove { placement_id, x_m: x, y_m: y, yaw_rad } = m;
+            return Ok(Some(Planned::MoveObject { placement_id, x, y, yaw_rad }));
+        }
+        Edit::AddedObject(a) => return Ok(Some(Planned::AddObject { room_id: a.room_id, object: a.object })),
+        Edit::RefurnishedRoomId(room_id) => return Ok(Some(Planned::Refurnish { room_id })),
     }
+    Ok(None)
 }
 
 /// Puts the fields of a mask into a part of the world.

@@ -1,0 +1,127 @@
+//! `d3dgen edit`: changes to a finished world, checked and repaired.
+
+use std::path::PathBuf;
+
+use d3dgen_model::edits::{Edit, Edits};
+use d3dgen_model::world::World;
+use d3dgen_pipeline::{Stop, edit};
+use serde_json::{Map, Value};
+
+use super::formats;
+use crate::bundle;
+use crate::error::Error;
+use crate::input::document;
+use crate::interrupt;
+use crate::output::Output;
+use crate::registry::{RegistryArgs, domain};
+use crate::summary;
+
+/// What can be written after --do: the operation, and its fields in their order; fields in brackets may be left out.
+const FORMS: &[(&str, &[&str])] = &[
+    ("move_wall", &["wall_id", "by_m"]),
+    ("add_room", &["room_type", "[area_m2]", "[entered_from]"]),
+    ("remove_room", &["room_id"]),
+    ("swap_object", &["placement_id", "[object]", "[asset]"]),
+    ("move_object", &["placement_id", "x", "y", "[yaw_rad]"]),
+    ("add_object", &["room_id", "object"]),
+    ("remove_object", &["placement_id"]),
+    ("refurnish", &["room_id"]),
+    ("lock", &["ids..."]),
+    ("unlock", &["ids..."]),
+];
+
+/// Arguments.
+#[derive(clap::Args)]
+#[command(after_help = "Changes for --do, in words:
+  move_wall WALL BY_M                     east or north; negative: west or south
+  add_room TYPE [AREA_M2 [ENTERED_FROM]]
+  remove_room ROOM
+  swap_object OBJECT_ID [TYPE [MODEL]]    another model of the same when no type is given
+  move_object OBJECT_ID X Y [YAW_RAD]
+  add_object ROOM TYPE
+  remove_object OBJECT_ID
+  refurnish ROOM
+  lock ID... | unlock ID...               rooms, walls, doors, windows, objects
+
+Example:
+  d3dgen edit flat --do 'move_wall wall_7 0.4' --do 'add_room storage 4' --out flat_2")]
+pub struct Args {
+    /// world.json, or a world's folder
+    #[arg(value_name = "WORLD")]
+    world: PathBuf,
+    /// A document with changes (schemas/edits.schema.json); they come before those of --do
+    #[arg(long, value_name = "FILE")]
+    edits: Option<PathBuf>,
+    /// A change, in words; may be given more than once
+    #[arg(long = "do", value_name = "CHANGE", allow_hyphen_values = true)]
+    changes: Vec<String>,
+    /// Folder to write: new, empty, or an earlier output, which is replaced
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+    #[command(flatten)]
+    formats: formats::FormatArgs,
+    #[command(flatten)]
+    registry: RegistryArgs,
+}
+
+impl Args {
+    pub fn run(self) -> Result<(), Error> {
+        let formats = self.formats.chosen(&self.registry.store)?;
+        let mut edits: Vec<Edit> = match &self.edits {
+            Some(path) => document::<Edits>(path)?.edits,
+            None => Vec::new(),
+        };
+        for (i, words) in self.changes.iter().enumerate() {
+            let at = |reason: String| Error::Input(format!("--do number {} (`{words}`): {reason}", i + 1));
+            edits.push(change(words).map_err(at)?);
+        }
+        let checked = serde_json::to_value(Edits { version: 1, edits }).map_err(|e| Error::Input(e.to_string()))?;
+        let edits = <Edits as d3dgen_model::Document>::from_value(checked)
+            .map_err(|source| Error::Document { path: "the changes".into(), source })?;
+        let world: World = document(&self.world)?;
+        let registry = self.registry.load()?;
+        let plugin = domain(&registry, &world.scene_graph.domain)?;
+        let output = Output::new(&self.out)?;
+        let edited = edit::apply(&world, &edits.edits, plugin, Stop::from(interrupt::flag()))?;
+        bundle::write(&edited.world, &edited.report, plugin.domain(), &formats, &output)?;
+        output.commit()?;
+        summary::print_broken(&edited.report);
+        let changed =
+            if edited.changed_room_ids.is_empty() { "no room".into() } else { edited.changed_room_ids.join(", ") };
+        eprintln!("wrote {} with {} changes; changed: {changed}", self.out.display(), edits.edits.len());
+        if edited.report.sound { Ok(()) } else { Err(summary::unsound(&edited.report)) }
+    }
+}
+
+/// Reads a change in words.
+fn change(words: &str) -> Result<Edit, String> {
+    let mut given = words.split_whitespace();
+    let op = given.next().unwrap_or_default();
+    let given: Vec<&str> = given.collect();
+    let known = || FORMS.iter().map(|f| f.0).collect::<Vec<_>>().join(", ");
+    let (_, fields) = FORMS.iter().find(|f| f.0 == op).ok_or_else(|| format!("`{op}` is none of {}", known()))?;
+    if fields[0] == "ids..." {
+        if given.is_empty() {
+            return Err("names nothing".into());
+        }
+        let ids = given.into_iter().map(str::to_owned).collect();
+        return Ok(Edit::Lock { ids, locked: op == "lock", contents: false });
+    }
+    let needed = fields.iter().filter(|f| !f.starts_with('[')).count();
+    if given.len() < needed || given.len() > fields.len() {
+        return Err(format!("needs {}", fields.join(" ").to_uppercase()));
+    }
+    let mut object = Map::from_iter([("op".to_owned(), Value::from(op))]);
+    for (field, word) in fields.iter().zip(given) {
+        let field = field.trim_matches(['[', ']']);
+        let value = match field {
+            "by_m" | "area_m2" | "x" | "y" | "yaw_rad" => {
+                let number: f64 = word.parse().map_err(|_| format!("`{word}` is no number"))?;
+                Value::from(number)
+            }
+            _ => Value::from(word),
+        };
+        object.insert(field.to_owned(), value);
+    }
+    serde_json::from_value(Value::Object(object)).map_err(|e| e.to_string())
+}
