@@ -44,6 +44,10 @@ struct Case {
     accessible: bool,
     reject: bool,
     clarify: bool,
+    /// Objects that some room is to have.
+    things: Vec<String>,
+    /// Codes of conflicts that the prompt does not have.
+    no_conflicts: Vec<String>,
     tags: Vec<String>,
 }
 
@@ -96,6 +100,12 @@ fn check_facts(case: &Case, graph: &SceneGraph, misses: &mut Misses) {
         misses.check(expected.is_none() || expected == got, fact, expected, got);
     }
     misses.check(!case.accessible || graph.accessible, "accessible", true, graph.accessible);
+    for thing in &case.things {
+        let right = graph.rooms.iter().any(|r| r.wished_assets.contains(thing));
+        misses.check(right, "things", thing, graph.rooms.iter().map(|r| &r.wished_assets).collect::<Vec<_>>());
+    }
+    let false_ones: Vec<_> = graph.conflicts.iter().filter(|c| case.no_conflicts.contains(&c.code)).collect();
+    misses.check(false_ones.is_empty(), "no_conflicts", &case.no_conflicts, &false_ones);
     let stated = !graph.conflicts.is_empty() || !graph.assumptions.is_empty();
     misses.check(!case.clarify || stated, "clarify", "a conflict or an assumption", "none");
 }

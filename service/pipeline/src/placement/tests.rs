@@ -3,7 +3,7 @@
 use d3dgen_knowledge::Limits;
 use d3dgen_knowledge::clearance::{is_shallow, quarter};
 use d3dgen_knowledge::freespace::FreeSpace;
-use d3dgen_model::domain::{Domain, Materials, Relation, Shape};
+use d3dgen_model::domain::{Domain, Materials, Mount, Relation, Shape};
 use d3dgen_model::floorplan::{Door, DoorKind, Floorplan, PlanRoom, Swing, Window};
 use d3dgen_model::occupancy::stops_robot;
 use d3dgen_model::placements::{Placement, Placements};
@@ -229,6 +229,26 @@ fn curtains_and_blinds_are_no_more_than_windows() {
         assert_eq!(of(&found, "blind").len(), 1);
         assert!(found.unplaced.iter().all(|u| u.item != "blind"));
     });
+}
+
+#[test]
+fn what_hangs_from_a_ceiling_meets_it_at_any_height() {
+    let registry = Registry::builtin();
+    for (id, room_type) in [("office", "meeting_room"), ("residential", "living_room"), ("hospital", "operating_room")]
+    {
+        let domain = registry.get(id).expect("the domain is built in").domain();
+        let mut hung = 0;
+        for (seed, height) in [(0, 2.4), (1, 2.75), (2, 3.6)] {
+            let mut higher = domain.clone();
+            higher.room_types.iter_mut().for_each(|r| r.ceiling_height_m = height);
+            let found = Site::new(room_type, 6.0, 6.4).furnished(&higher, seed);
+            for p in found.placements.iter().filter(|p| p.mount == Mount::Ceiling) {
+                assert!((p.top_m() - height).abs() < 1e-6, "{}: {:.2} of {height} m", p.placement_id, p.top_m());
+                hung += 1;
+            }
+        }
+        assert!(hung > 0, "{id}: nothing hangs in any {room_type}");
+    }
 }
 
 #[test]

@@ -237,11 +237,13 @@ fn size_mm(object: &ObjectType, size: usize) -> [i32; 3] {
     object.sizes_m.get(size).or(object.sizes_m.first()).map_or([500; 3], |s| s.map(|v| mm(v).max(1)))
 }
 
-/// Returns the height of the underside of something `h` high: where its type hangs it, below the ceiling.
+/// Returns the height of the underside of something `h` high: on a wall where its type hangs it, below the ceiling;
+/// from the ceiling, whatever the height of that.
 fn hung(object: &ObjectType, h: i32, ceiling: i32) -> i32 {
     match object.mount {
         Mount::Floor | Mount::Surface => 0,
-        Mount::Wall | Mount::Ceiling => mm(object.mount_height_m.unwrap_or(1.5)).min(ceiling - h).max(0),
+        Mount::Wall => mm(object.mount_height_m.unwrap_or(1.5)).min(ceiling - h).max(0),
+        Mount::Ceiling => (ceiling - h).max(0),
     }
 }
 

@@ -22,6 +22,9 @@ pub(super) struct Building {
     pub by_rooms: bool,
 }
 
+/// Adjectives between a number and what it counts, at most.
+const MOST_ADJECTIVES: usize = 3;
+
 /// A word for a building: domain and, where it is one, building type.
 type Meaning = Vec<(usize, Option<usize>)>;
 
@@ -39,13 +42,16 @@ pub(super) fn recognize(
         registry.iter().map(|p| p.domain()).filter(|d| only.is_none_or(|o| o == d.id)).collect();
     let list_from = list_start(tokens, spoken, languages);
     let found = occurrences(tokens, registry, &domains, languages, places);
+    let rooms = domains.iter().flat_map(|d| room_words(d, registry, languages)).collect::<Vec<_>>();
     let plural = |span: &Span| {
-        let counted = |n: &Number| {
+        numbers.iter().any(|n| {
             let area = words().area_units.longest_at(tokens, n.span.end).is_some();
             let after = spoken.iter().find_map(|s| s.tag_at(tokens, n.span.end, Tag::Counters)).filter(|_| !area);
-            n.span.end == span.start || after == Some(span.start)
-        };
-        numbers.iter().any(|n| n.value > 1.0 && counted(n))
+            [Some(n.span.end), after]
+                .into_iter()
+                .flatten()
+                .any(|from| counts_rooms(tokens, n, from, *span, &rooms, spoken))
+        })
     };
     let head_final = matches!(languages.first(), Some(&("zh" | "ko")));
     let pick = if head_final {
@@ -95,6 +101,31 @@ pub(super) fn recognize(
         head: Some(without_count(*span, numbers)),
         list_from: if head_final { 0 } else { list_from.max(span.end) },
         by_rooms: false,
+    })
+}
+
+/// Returns true for a building word that a number before it makes a word for rooms: "two offices", "two large offices",
+/// and, where a longer word for a room holds it, "one private office".
+fn counts_rooms(
+    tokens: &[Token],
+    number: &Number,
+    from: usize,
+    span: Span,
+    rooms: &[Arc<Phrases<()>>],
+    spoken: &[&Spoken],
+) -> bool {
+    let plain = |i: usize| {
+        let tags = spoken.iter().filter_map(|s| s.tags.longest_at(tokens, i)).flat_map(|f| f.1).collect::<Vec<_>>();
+        !tags.is_empty() && tags.iter().all(|t| matches!(t, Tag::NotNames | Tag::Own | Tag::StyleWords))
+    };
+    let several = number.value > 1.0;
+    let longer = |i: usize| rooms.iter().any(|r| r.longest_at(tokens, i).is_some_and(|f| f.0 >= span.end));
+    // behind adjectives only in the plural: "floor 2 public library" has one library
+    let ends_plural = tokens[span.end - 1].text.ends_with('s');
+    let last = (from + MOST_ADJECTIVES).min(span.start);
+    (from..=last).take_while(|&i| i == from || plain(i - 1)).any(|i| {
+        let counted = several && i == span.start && (i == from || ends_plural);
+        counted || i < span.start && number.value >= 1.0 && !number.article && !number.vague && longer(i)
     })
 }
 
@@ -208,15 +239,7 @@ fn room_votes(tokens: &[Token], registry: &Registry, domains: &[&Domain], langua
     domains
         .iter()
         .map(|domain| {
-            let words = |l: &str| {
-                let mut phrases = Phrases::new(l);
-                for room in &domain.room_types {
-                    room.keywords.get(l).into_iter().flatten().for_each(|p| phrases.insert(p, ()));
-                }
-                phrases
-            };
-            let digest = |l: &&str| registry.digest(&format!("{l}: {}", domain.id), || words(l));
-            let vocabularies: Vec<Arc<Phrases<()>>> = languages.iter().map(digest).collect();
+            let vocabularies = room_words(domain, registry, languages);
             let mut votes = 0;
             let mut i = 0;
             while i < tokens.len() {
@@ -227,4 +250,16 @@ fn room_votes(tokens: &[Token], registry: &Registry, domains: &[&Domain], langua
             votes
         })
         .collect()
+}
+
+/// Returns the words for a domain's rooms, one table a language.
+fn room_words(domain: &Domain, registry: &Registry, languages: &[&str]) -> Vec<Arc<Phrases<()>>> {
+    let words = |l: &str| {
+        let mut phrases = Phrases::new(l);
+        for room in &domain.room_types {
+            room.keywords.get(l).into_iter().flatten().for_each(|p| phrases.insert(p, ()));
+        }
+        phrases
+    };
+    languages.iter().map(|l| registry.digest(&format!("{l}: {}", domain.id), || words(l))).collect()
 }

@@ -114,6 +114,9 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     spans.extend(radius.iter().map(|r| r.0));
     let storey_phrases = storeys::phrases(&tokens, &spoken);
     spans.extend(storey_phrases.iter().map(|p| p.span));
+    // "cleaning robot" and "wheelchair users" name no object
+    let mut not_things = machines.spans.clone();
+    not_things.extend(access_wishes(&tokens, &numbers, &spoken));
     let vocabulary =
         registry.digest(&format!("{languages:?}: {}", domain.id), || Vocabulary::new(domain, registry, &languages));
     let taken = Taken { spans: &spans, head: building.head, list_from: building.list_from };
@@ -157,7 +160,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         program,
         country_code: flag_country.or(place.country_code),
         storeys,
-        objects: objects_of(&tokens, &mentions, domain, registry, &languages),
+        objects: objects_of(&tokens, &mentions, domain, registry, &languages, &not_things),
         wishes,
         total,
         closed,
@@ -517,12 +520,35 @@ fn add_main_room(
     })
 }
 
+/// Returns the words that wish for access, as in "wheelchair users": all but the things of lists, as in "with a bed, two
+/// wheelchairs and a desk".
+fn access_wishes(tokens: &[Token], numbers: &[numbers::Number], spoken: &[&Spoken]) -> Vec<Span> {
+    let tagged = |i: usize, tag| spoken.iter().find_map(|s| s.tag_at(tokens, i, tag));
+    let parted = |i: usize, tags: &[Tag]| {
+        tokens.get(i).is_none_or(Token::is_mark) || tags.iter().any(|&t| tagged(i, t).is_some())
+    };
+    let listed = |i: usize| {
+        let opens = |k: usize| [Tag::Starts, Tag::Joins].iter().any(|&t| tagged(k, t) == Some(i));
+        i == 0 || tokens[i - 1].is_mark() || (i.saturating_sub(3)..i).any(opens)
+    };
+    let is_thing = |start: usize, end: usize| {
+        let number = numbers.iter().find(|n| n.span.end == start);
+        let before = number.map_or_else(|| listed(start), |n| !n.article || listed(n.span.start));
+        before && parted(end, &[Tag::Joins, Tag::Stops])
+    };
+    (0..tokens.len())
+        .filter_map(|start| tagged(start, Tag::Accessible).map(|end| Span { start, end }))
+        .filter(|s| !is_thing(s.start, s.end))
+        .collect()
+}
+
 fn objects_of(
     tokens: &[Token],
     mentions: &[Mention],
     domain: &Domain,
     registry: &Registry,
     languages: &[&str],
+    not_things: &[Span],
 ) -> Vec<(String, Option<String>)> {
     let words = |language: &str| {
         let mut phrases: Phrases<String> = Phrases::new(language);
@@ -540,7 +566,8 @@ fn objects_of(
         let mut i = 0;
         while i < tokens.len() {
             let inside = mentions.iter().any(|m| m.room_type().is_some() && m.span.contains(i));
-            match phrases.longest_at(tokens, i).filter(|_| !inside) {
+            let other = |end: usize| not_things.iter().any(|s| s.start <= i && end <= s.end);
+            match phrases.longest_at(tokens, i).filter(|found| !inside && !other(found.0)) {
                 Some((end, id)) => {
                     let with = mentions.iter().rev().filter(|m| m.span.end <= i).find_map(|m| m.room_type());
                     let near = with.map(str::to_owned);
