@@ -19,6 +19,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("pipeline", &["model", "plugins", "knowledge", "assets"]),
     ("export", &["model", "mesh"]),
     ("eval", &["model"]),
+    ("plans", &["model"]),
     ("research", &["model", "llm"]),
     ("proto", &["model"]),
     (
@@ -36,6 +37,7 @@ const ARROWS: &[(&str, &[&str])] = &[
             "mesh",
             "assets",
             "pipeline",
+            "plans",
             "export",
             "eval",
             "research",
@@ -49,9 +51,9 @@ const ARROWS: &[(&str, &[&str])] = &[
 /// Other people's file formats and protocols, and the crates that may know them.
 const OUTSIDE: &[(&str, &[&str])] = &[
     ("image", &["assets"]),
-    ("png", &["export", "mesh"]),
+    ("png", &["export", "mesh", "plans"]),
     ("resvg", &["export"]),
-    ("svgtypes", &["export"]),
+    ("svgtypes", &["export", "plans"]),
     ("ttf-parser", &["export"]),
     ("openusd", &["assets"]),
     ("redb", &["store"]),
@@ -60,8 +62,8 @@ const OUTSIDE: &[(&str, &[&str])] = &[
     ("hnsw_rs", &["store"]),
     ("fastembed", &["store"]),
     ("ort", &["store"]),
-    ("roxmltree", &["assets"]),
-    ("serde-saphyr", &["assets"]),
+    ("roxmltree", &["assets", "plans"]),
+    ("serde-saphyr", &["assets", "plans"]),
     ("reqwest", &["llm", "research"]),
     ("scraper", &["research"]),
     ("pdf-extract", &["research"]),

@@ -11,6 +11,7 @@ mod goldens;
 #[cfg(unix)]
 mod interrupted;
 mod knowledge;
+mod own_plan;
 mod pins;
 mod same_bytes;
 mod schemas;

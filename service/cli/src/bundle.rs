@@ -9,19 +9,20 @@ use crate::commands::Formats;
 use crate::error::Error;
 use crate::output::Output;
 
-/// Writes the folder; of an unsound world only the report and the documents of the stages.
+/// Writes the folder; of an unsound world only the report and the documents of the stages, unless a brought plan
+/// is all that is wrong with it.
 ///
 /// # Errors
 /// `Write`, `Export`, or `Interrupted` between two formats.
 pub fn write(world: &World, report: &Report, domain: &Domain, formats: &Formats, output: &Output) -> Result<(), Error> {
     write_documents(world, report, output)?;
-    if report.sound {
+    if report.is_writable() {
         formats.write(world, domain, output)?;
     }
     Ok(())
 }
 
-/// Writes the documents of the folder; of an unsound world not the world itself.
+/// Writes the documents of the folder; of an unsound world not the world itself, unless only a brought plan is to blame.
 ///
 /// # Errors
 /// `Write`.
@@ -31,7 +32,7 @@ pub fn write_documents(world: &World, report: &Report, output: &Output) -> Resul
     output.write("floorplan.json", world.floorplan.to_json().as_bytes())?;
     output.write("placements.json", world.placements.to_json().as_bytes())?;
     output.write("scenario.json", world.scenario.to_json().as_bytes())?;
-    if report.sound {
+    if report.is_writable() {
         output.write("world.json", world.to_json().as_bytes())?;
     }
     Ok(())

@@ -33,6 +33,14 @@ pub enum Error {
         /// Every problem found in it.
         source: d3dgen_model::Error,
     },
+    /// A plan cannot be read.
+    #[error("{}: {source}", path.display())]
+    Plan {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it, and where.
+        source: d3dgen_plans::Error,
+    },
     /// A domain folder cannot be used.
     #[error(transparent)]
     Domain(#[from] d3dgen_plugins::Error),

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use d3dgen_model::report::{ConstraintResult, ConstraintSummary, Report, Status};
+use d3dgen_model::report::{ConstraintResult, ConstraintSummary, Report, Status, Violation};
 use d3dgen_model::scene_graph::Note;
 use d3dgen_pipeline::generate::Generated;
 use serde_json::{Value, json};
@@ -24,6 +24,7 @@ pub struct Summary {
     seed: u64,
     path: PathBuf,
     sound: bool,
+    verdict: &'static str,
     rules: usize,
     rooms: usize,
     circulation: usize,
@@ -54,6 +55,7 @@ impl Summary {
             seed: graph.seed,
             path: path.to_path_buf(),
             sound: report.sound,
+            verdict: verdict(report),
             rules: report.rules.len(),
             rooms: world.floorplan.rooms.len() - circulation,
             circulation,
@@ -88,7 +90,8 @@ impl Summary {
         json!({
             "world": self.name, "domain": self.domain, "building_type": self.building_type,
             "country_code": self.country_code, "seed": self.seed, "path": self.path.display().to_string(),
-            "sound": self.sound, "rooms": self.rooms, "circulation_rooms": self.circulation,
+            "sound": self.sound, "verdict": self.verdict.to_lowercase(),
+            "rooms": self.rooms, "circulation_rooms": self.circulation,
             "area_m2": round(self.area_m2, 2), "objects": self.objects, "robots": self.robots, "people": self.people,
             "constraints": self.constraints, "violations": self.broken, "assumptions": self.assumptions,
             "conflicts": self.conflicts, "attempts": self.attempts, "stage_ms": times,
@@ -122,7 +125,7 @@ impl Summary {
             ("time", format!("{:.0} ms: {}{again}", self.total_ms(), stages.join(", "))),
             ("folder", self.path.display().to_string()),
         ];
-        let mut text = format!("\n{}, seed {}: {}\n", self.name, self.seed, verdict(self.sound));
+        let mut text = format!("\n{}, seed {}: {}\n", self.name, self.seed, self.verdict);
         for (label, value) in rows {
             text += &format!("  {label:<12} {value}\n");
         }
@@ -141,7 +144,7 @@ impl Summary {
         let c = &self.constraints;
         vec![
             self.name.clone(),
-            verdict(self.sound).to_owned(),
+            self.verdict.to_owned(),
             self.rooms.to_string(),
             self.circulation.to_string(),
             format!("{:.1}", self.area_m2),
@@ -200,8 +203,15 @@ fn messages(notes: &[Note]) -> Vec<String> {
     notes.iter().map(|n| n.message.clone()).collect()
 }
 
-fn verdict(sound: bool) -> &'static str {
-    if sound { "sound" } else { "UNSOUND" }
+/// Returns the verdict in a word: `given` where only the plan that was brought is to blame.
+pub fn verdict(report: &Report) -> &'static str {
+    if report.sound {
+        "sound"
+    } else if report.is_given() {
+        "given"
+    } else {
+        "UNSOUND"
+    }
 }
 
 /// Returns a line for each violated constraint, mandatory ones first.
@@ -232,7 +242,8 @@ fn violated_line(c: &ConstraintResult) -> String {
 /// Returns a line for each violation of a hard rule.
 pub fn broken_lines(report: &Report) -> Vec<String> {
     let violations = report.rules.iter().flat_map(|r| &r.violations);
-    violations.map(|v| format!("{} {}: {}", v.code, v.subject, v.message)).collect()
+    let given = |v: &Violation| if v.given { " (given plan)" } else { "" };
+    violations.map(|v| format!("{} {}: {}{}", v.code, v.subject, v.message, given(v))).collect()
 }
 
 /// Prints what a world breaks.
@@ -240,10 +251,21 @@ pub fn print_broken(report: &Report) {
     broken_lines(report).iter().for_each(|line| eprintln!("{}: {line}", report.world));
 }
 
-/// Returns the error of an unsound world.
-pub fn unsound(report: &Report) -> Error {
+/// Returns Ok for a sound world.
+///
+/// # Errors
+/// `Unsound`, which says whether the world may be used all the same because only the plan that was brought is to blame.
+pub fn judged(report: &Report) -> Result<(), Error> {
+    if report.sound {
+        return Ok(());
+    }
     let rules: Vec<&str> = report.rules.iter().filter(|r| !r.violations.is_empty()).map(|r| r.rule.as_str()).collect();
-    Error::Unsound(format!("{} breaks {} hard rule(s): {}", report.world, rules.len(), rules.join(", ")))
+    let (count, list) = (rules.len(), rules.join(", "));
+    Err(Error::Unsound(if report.is_given() {
+        format!("{} is written, but its plan as given breaks {count} hard rule(s): {list}", report.world)
+    } else {
+        format!("{} breaks {count} hard rule(s): {list}", report.world)
+    }))
 }
 
 fn ms(time: Duration) -> f64 {

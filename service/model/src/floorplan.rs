@@ -19,7 +19,7 @@ pub struct Floorplan {
     pub version: u32,
     /// Seed it was made with.
     pub seed: u64,
-    /// Which family of plans it belongs to (`straight`, `capped`, `angle`, ...).
+    /// Which family of plans it belongs to (`straight`, `capped`, `angle`, ...); `given` for a plan that somebody brought.
     pub scheme: String,
     /// Rooms in scene-graph order.
     pub rooms: Vec<PlanRoom>,
@@ -178,6 +178,14 @@ pub struct CostTerm {
 }
 
 impl Floorplan {
+    /// Scheme of plans that people brought, which nothing may change.
+    pub const GIVEN: &str = "given";
+
+    /// Returns true for a plan that was brought rather than made here: what is wrong with it is reported, not mended.
+    pub fn is_given(&self) -> bool {
+        self.scheme == Self::GIVEN
+    }
+
     /// Returns the room with this id.
     pub fn room(&self, id: &str) -> Option<&PlanRoom> {
         self.rooms.iter().find(|r| r.room_id == id)

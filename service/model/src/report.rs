@@ -18,6 +18,9 @@ pub struct Report {
     pub world: String,
     /// True when every hard rule holds.
     pub sound: bool,
+    /// True when the plan was brought: what it breaks by itself is marked `given`, and the world is written all the same.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub given_plan: bool,
     /// Every hard rule with what broke it.
     pub rules: Vec<RuleResult>,
     /// Jurisdictions whose constraints were applied, nearest first.
@@ -63,6 +66,10 @@ pub struct Violation {
     pub unit: String,
     /// One sentence for people: `corridor is 1.1 m wide, needs 1.8 m`.
     pub message: String,
+    /// True when the plan that was brought is to blame: it breaks the rule here even with nothing in it, or the room is too
+    /// small for what it lacks.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub given: bool,
 }
 
 /// Counts of constraint results by status.
@@ -142,6 +149,19 @@ pub struct Citation {
     pub printed: Option<String>,
     /// Confidence in the figure.
     pub confidence: String,
+}
+
+impl Report {
+    /// Returns true when the world may be used: sound, or a brought plan is all that is wrong with it.
+    pub fn is_writable(&self) -> bool {
+        self.sound || self.is_given()
+    }
+
+    /// Returns true for a world that breaks rules of which a brought plan alone is to blame.
+    pub fn is_given(&self) -> bool {
+        let mut violations = self.rules.iter().flat_map(|r| &r.violations);
+        !self.sound && self.given_plan && violations.all(|v| v.given)
+    }
 }
 
 impl Document for Report {

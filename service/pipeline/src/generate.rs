@@ -101,7 +101,7 @@ pub enum Event<'a> {
 /// A world with its verdict.
 #[derive(Debug, Clone)]
 pub struct Generated {
-    /// The world; to be used only when `report.sound`.
+    /// The world; to be used only when `report.is_writable()`.
     pub world: World,
     /// Every rule and constraint.
     pub report: Report,
@@ -187,7 +187,8 @@ fn attempts(
     for attempt in 0..settings.attempts.max(1) {
         let seed = attempt_seed(graph.seed, attempt);
         match self::attempt(graph, plugin, &retrieved, (&name, seed, attempt), settings, observe, cancelled) {
-            Ok(found) if found.report.sound => return Ok(found),
+            // of a brought plan nothing better is to be had
+            Ok(found) if found.report.is_writable() => return Ok(found),
             Ok(found) => {
                 let (rule, broken) = broken(&found.report);
                 observe(Event::Rejected(attempt, &format!("breaks {broken} hard rule(s), first {rule}")));
@@ -291,6 +292,6 @@ fn begin(stage: Stage, attempt: u32, observe: &mut dyn FnMut(Event<'_>), cancell
 
 /// Returns the first broken rule and how many there are.
 fn broken(report: &Report) -> (&str, usize) {
-    let mut rules = report.rules.iter().filter(|r| !r.violations.is_empty());
+    let mut rules = report.rules.iter().filter(|r| r.violations.iter().any(|v| !v.given));
     rules.next().map_or(("none", 0), |first| (&first.rule, 1 + rules.count()))
 }

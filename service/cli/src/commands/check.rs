@@ -41,7 +41,7 @@ impl Args {
             summary::print_broken(&report);
             let c = &report.summary;
             let cells = [c.satisfied, c.violated, c.not_decidable].map(|n| n.to_string());
-            let verdict = if report.sound { "sound" } else { "UNSOUND" };
+            let verdict = summary::verdict(&report);
             rows.push(
                 [vec![report.world.clone(), verdict.into(), report.rules.len().to_string()], cells.to_vec()].concat(),
             );

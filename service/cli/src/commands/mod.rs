@@ -10,6 +10,7 @@ mod eval;
 mod export;
 mod floorplan;
 mod formats;
+mod furnish;
 mod generate;
 mod jobs;
 mod knowledge;
@@ -32,6 +33,8 @@ use crate::error::Error;
 pub enum Command {
     /// Make a checked world (or many) from a sentence
     Generate(generate::Args),
+    /// Furnish and judge a plan of yours: floorplan.json, GeoJSON, SVG, DXF, Open-RMF, nav2 map
+    Furnish(Box<furnish::Args>),
     /// Stage 1: rooms and relations of a prompt
     SceneGraph(scene_graph::Args),
     /// Stage 2: room outlines, walls, doors and windows of a scene graph
@@ -80,6 +83,7 @@ impl Command {
     pub fn run(self) -> Result<(), Error> {
         match self {
             Self::Generate(args) => args.run(),
+            Self::Furnish(args) => args.run(),
             Self::SceneGraph(args) => args.run(),
             Self::Floorplan(args) => args.run(),
             Self::Placement(args) => args.run(),

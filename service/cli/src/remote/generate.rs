@@ -64,7 +64,7 @@ impl Maker<'_> {
         progress.done(&format!("the world is here ({:.0} ms)", begun.elapsed().as_secs_f64() * 1000.0));
         let Generated { world, report, .. } = &made;
         crate::bundle::write_documents(world, report, output)?;
-        if report.sound {
+        if report.is_writable() {
             progress.doing("files");
             self.remote.wait(async {
                 tokio::select! {

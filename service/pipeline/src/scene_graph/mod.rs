@@ -8,6 +8,7 @@ mod building;
 mod deal;
 mod dwelling;
 mod edges;
+mod given;
 mod language;
 mod measures;
 mod mentions;
@@ -28,6 +29,7 @@ use d3dgen_knowledge::Query;
 use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_plugins::Registry;
 
+pub use self::given::{Brought, Label, Understood, of_plan, understand};
 use self::program::Planned;
 use self::reading::Reading;
 pub(crate) use self::rooms::wished_assets;

@@ -2,33 +2,26 @@
 
 use d3dgen_knowledge::{Retrieval, compliance};
 use d3dgen_model::domain::Domain;
+use d3dgen_model::placements::Placements;
 use d3dgen_model::report::{Report, RuleResult};
 use d3dgen_model::world::World;
 
 use super::context::Context;
 use super::figures;
-use super::rules::{Findings, RULES, Rule, STOREY_RULES};
+use super::rules::{About, Findings, RULES, Rule, STOREY_RULES, is_cramped};
 
 /// Checks a world against every hard rule and every constraint that applies to it.
 ///
 /// `sound` is true when no hard rule is broken. Constraints are hard where the floorplan had to keep them (the limits of
 /// the retrieval, by the rules that name them); the others are reported with their status.
 pub fn check(world: &World, domain: &Domain, retrieval: &Retrieval) -> Report {
-    let several = world.floorplan.level_numbers().len() > 1;
-    let storeys = if several { world.storeys() } else { Vec::new() };
+    let parts = storeys_of(world);
     let whole = Context::new(world, domain, retrieval);
-    let storeys: Vec<Context> = storeys.iter().map(|(_, storey)| Context::new(storey, domain, retrieval)).collect();
-    // what looks across a floor looks at one storey at a time
-    let seen = |rule: &Rule| if several && !rule.whole { storeys.iter().collect() } else { vec![&whole] };
-    let mut rules: Vec<RuleResult> = Vec::with_capacity(RULES.len());
-    for rule in RULES.iter().chain(if several { STOREY_RULES } else { &[] }) {
-        // what is broken at the root would only be echoed (or crash geometry) further down
-        let hopeless = rules.iter().any(|r| r.rule == "not_finite" && !r.violations.is_empty());
-        let mut findings = Findings::new(rule.id);
-        if !hopeless {
-            seen(rule).into_iter().for_each(|context| (rule.check)(context, &mut findings));
-        }
-        rules.push(findings.into_result(rule.title));
+    let storeys: Vec<Context> = parts.iter().map(|(_, storey)| Context::new(storey, domain, retrieval)).collect();
+    let mut rules = judge(&whole, &storeys);
+    let given_plan = world.floorplan.is_given();
+    if given_plan && rules.iter().any(|r| !r.violations.is_empty()) {
+        mark_given(world, domain, retrieval, &mut rules);
     }
     let finite = rules.iter().all(|r| r.rule != "not_finite" || r.violations.is_empty());
     let (constraints, summary) =
@@ -37,10 +30,68 @@ pub fn check(world: &World, domain: &Domain, retrieval: &Retrieval) -> Report {
         version: 1,
         world: world.name.clone(),
         sound: rules.iter().all(|r| r.violations.is_empty()),
+        given_plan,
         figures: if finite { figures::measure(&whole, &storeys) } else { Default::default() },
         rules,
         jurisdictions: retrieval.jurisdictions.clone(),
         summary,
         constraints,
     }
+}
+
+/// Returns the storeys of a world as worlds of their own; none of a world with one.
+fn storeys_of(world: &World) -> Vec<(i32, World)> {
+    if world.floorplan.level_numbers().len() > 1 { world.storeys() } else { Vec::new() }
+}
+
+/// Returns the rules that apply to a building of one storey, or of several.
+fn rules_for(several: bool) -> impl Iterator<Item = &'static Rule> {
+    RULES.iter().chain(if several { STOREY_RULES } else { &[] })
+}
+
+/// Runs every rule; what looks across a floor looks at one storey at a time.
+fn judge(whole: &Context, storeys: &[Context]) -> Vec<RuleResult> {
+    let several = !storeys.is_empty();
+    let mut rules: Vec<RuleResult> = Vec::with_capacity(RULES.len());
+    for rule in rules_for(several) {
+        // what is broken at the root would only be echoed (or crash geometry) further down
+        let hopeless = rules.iter().any(|r| r.rule == "not_finite" && !r.violations.is_empty());
+        let mut findings = Findings::new(rule.id);
+        if !hopeless && several && !rule.whole {
+            storeys.iter().for_each(|storey| (rule.check)(storey, &mut findings));
+        } else if !hopeless {
+            (rule.check)(whole, &mut findings);
+        }
+        rules.push(findings.into_result(rule.title));
+    }
+    rules
+}
+
+/// Marks the violations that a brought plan has by itself.
+///
+/// Those of rules about plans: what they find with nothing in the rooms, too. Those of rules about furniture: what a room
+/// lacks (the bed of a bedroom) that is smaller than its type needs, and what the building lacks (a dock) when such rooms
+/// are the only ones that lack something. Whatever else is wrong with the furniture is the fault of who placed it.
+fn mark_given(world: &World, domain: &Domain, retrieval: &Retrieval, rules: &mut [RuleResult]) {
+    let nothing = Placements { placements: Vec::new(), ..world.placements.clone() };
+    let bare = World { placements: nothing, ..world.clone() };
+    let parts = storeys_of(&bare);
+    let context = Context::new(&bare, domain, retrieval);
+    let storeys: Vec<Context> = parts.iter().map(|(_, storey)| Context::new(storey, domain, retrieval)).collect();
+    let of_plan = judge(&context, &storeys);
+    let mut lacking: Option<bool> = None;
+    let mut of_building = Vec::new();
+    for ((rule, result), alone) in rules_for(!storeys.is_empty()).zip(rules.iter_mut()).zip(&of_plan) {
+        for violation in &mut result.violations {
+            if rule.about == About::Plan {
+                violation.given = alone.violations.iter().any(|v| v.subject == violation.subject);
+            } else if let Some(room) = context.room(&violation.subject) {
+                violation.given = is_cramped(&context, room);
+                lacking = Some(lacking.unwrap_or(true) && violation.given);
+            } else if !world.placements.placements.iter().any(|p| p.placement_id == violation.subject) {
+                of_building.push(violation);
+            }
+        }
+    }
+    of_building.into_iter().for_each(|v| v.given = lacking == Some(true));
 }

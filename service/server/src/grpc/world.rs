@@ -232,8 +232,8 @@ impl WorldService for Api {
         let files = self.work(move |core, stop| {
             let world: World = document("world", asked.world)?;
             let found = report(core, &world)?;
-            if !found.sound {
-                let broken = found.rules.iter().find(|r| !r.violations.is_empty());
+            if !found.is_writable() {
+                let broken = found.rules.iter().find(|r| r.violations.iter().any(|v| !v.given));
                 let first = broken.map_or("a hard rule", |r| r.rule.as_str());
                 return Err(Status::failed_precondition(format!("the world is not sound: it breaks {first}")));
             }

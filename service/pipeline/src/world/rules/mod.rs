@@ -20,6 +20,17 @@ use d3dgen_model::report::{RuleResult, Violation};
 
 use super::context::Context;
 
+pub(crate) use rooms::is_cramped;
+
+/// What a rule speaks about, which tells whose fault it is when a brought plan is furnished here.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum About {
+    /// Rooms, walls, openings and ways: the plan's fault where it is broken with nothing in the rooms, too.
+    Plan,
+    /// What stands in rooms: the fault of who placed it, except for what a room lacks that is smaller than its type needs.
+    Furniture,
+}
+
 /// A hard rule.
 pub struct Rule {
     /// Snake-case id.
@@ -28,15 +39,21 @@ pub struct Rule {
     pub title: &'static str,
     /// True for rules that look at all storeys at once; the others see one after the other.
     pub whole: bool,
+    /// What it speaks about.
+    pub about: About,
     pub(crate) check: fn(&Context, &mut Findings),
 }
 
 const fn rule(id: &'static str, title: &'static str, check: fn(&Context, &mut Findings)) -> Rule {
-    Rule { id, title, whole: false, check }
+    Rule { id, title, whole: false, about: About::Plan, check }
 }
 
 const fn whole(id: &'static str, title: &'static str, check: fn(&Context, &mut Findings)) -> Rule {
-    Rule { id, title, whole: true, check }
+    Rule { whole: true, ..rule(id, title, check) }
+}
+
+const fn furnishing(id: &'static str, title: &'static str, check: fn(&Context, &mut Findings)) -> Rule {
+    Rule { about: About::Furniture, ..rule(id, title, check) }
 }
 
 /// Every hard rule.
@@ -65,15 +82,15 @@ pub const RULES: &[Rule] = &[
     rule("window_overlap", "windows and doors do not overlap", windows::overlap),
     rule("window_blocked", "nothing taller than its sill stands in front of a window", windows::blocked),
     rule("daylight_missing", "every room that needs daylight has a window", windows::daylight),
-    rule("object_no_size", "every object has positive extents", objects::size),
-    rule("object_outside", "an object stands within its room", objects::outside),
-    rule("object_collision", "two objects do not share space", objects::collision),
-    rule(
+    furnishing("object_no_size", "every object has positive extents", objects::size),
+    furnishing("object_outside", "an object stands within its room", objects::outside),
+    furnishing("object_collision", "two objects do not share space", objects::collision),
+    furnishing(
         "object_unsupported",
         "an object stands on the floor or a surface, or hangs on a wall or the ceiling",
         objects::support,
     ),
-    rule("object_too_high", "an object fits under the ceiling", objects::ceiling),
+    furnishing("object_too_high", "an object fits under the ceiling", objects::ceiling),
     rule(
         "unreachable_zone",
         "a person or robot gets from the entrance to at least half of every room's free floor",
@@ -91,12 +108,12 @@ pub const RULES: &[Rule] = &[
     whole("room_dimension", "rooms keep their least clear extent", rooms::dimension),
     rule("room_proportion", "rooms are at most 2.5 times as long as wide", rooms::proportion),
     whole("room_height", "rooms keep their least clear height", rooms::height),
-    rule("object_missing", "every room has what makes it that room", furniture::required),
-    rule("object_facing", "members of a group face as their use needs", furniture::facing),
-    rule("object_back", "what belongs against a wall has its back to one", furniture::back),
-    rule("object_clearance", "objects keep the free floor in front that their use needs", furniture::clearance),
-    rule("dock_blocked", "docks are clear of doors and furniture", robots::docks),
-    whole("dock_missing", "robots that charge have a dock", robots::dock_missing),
+    furnishing("object_missing", "every room has what makes it that room", furniture::required),
+    furnishing("object_facing", "members of a group face as their use needs", furniture::facing),
+    furnishing("object_back", "what belongs against a wall has its back to one", furniture::back),
+    furnishing("object_clearance", "objects keep the free floor in front that their use needs", furniture::clearance),
+    furnishing("dock_blocked", "docks are clear of doors and furniture", robots::docks),
+    Rule { whole: true, ..furnishing("dock_missing", "robots that charge have a dock", robots::dock_missing) },
     rule("robot_stuck", "every robot reaches each of its goals from where it starts", robots::tasks),
     rule("pose_taken", "points and people of the scenario stand on free floor of their room", robots::poses),
     rule("region_outside", "regions of the scenario lie in their room", robots::regions),
@@ -154,6 +171,7 @@ impl Findings {
             required,
             unit: unit.to_owned(),
             message,
+            given: false,
         });
     }
 

@@ -1,0 +1,220 @@
+//! `d3dgen furnish`: a plan that the user brings becomes a furnished, judged world.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use d3dgen_model::floorplan::Floorplan;
+use d3dgen_model::scene_graph::SceneGraph;
+use d3dgen_pipeline::generate::{Event, Settings, Stage, furnish_and_check};
+use d3dgen_pipeline::scene_graph::{Brought, Label, of_plan, understand};
+use d3dgen_plans::{Options, Plan, Source, assemble, lay_out, read, readers};
+use d3dgen_plugins::Registry;
+
+use super::formats;
+use crate::error::Error;
+use crate::input::{document, write_text};
+use crate::output::Output;
+use crate::registry::{RegistryArgs, domain};
+use crate::summary::Summary;
+use crate::{bundle, interrupt, summary};
+
+/// Arguments.
+#[derive(clap::Args)]
+pub struct Args {
+    /// The plan: floorplan.json of d3dgen, GeoJSON, SVG, DXF, Open-RMF building.yaml, or the map.yaml of a nav2 map
+    #[arg(value_name = "PLAN")]
+    plan: PathBuf,
+    /// Folder to write: new, empty, or an earlier output, which is replaced
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+    /// Format of the plan (floorplan, geojson, svg, dxf, rmf, nav2); otherwise recognized
+    #[arg(long, value_name = "NAME")]
+    plan_format: Option<String>,
+    /// Scene graph of the plan's rooms, for a floorplan.json; otherwise made of its rooms and doors
+    #[arg(long, value_name = "GRAPH", conflicts_with_all = ["domain", "country", "robot", "robot_radius"])]
+    graph: Option<PathBuf>,
+    /// Kind of building (`d3dgen domains list`); otherwise guessed from the names of the rooms
+    #[arg(long, value_name = "ID")]
+    domain: Option<String>,
+    /// Country whose rules apply, as a code (DE) or an English name
+    #[arg(long, value_name = "COUNTRY")]
+    country: Option<String>,
+    /// Robot the world is for: cleaning, delivery, service or transport; may be given more than once
+    #[arg(long, value_name = "KIND")]
+    robot: Vec<String>,
+    /// Radius in m of the largest robot
+    #[arg(long, value_name = "M", allow_negative_numbers = true)]
+    robot_radius: Option<f64>,
+    /// Seed of all choices: the same seed and plan give the same bytes
+    #[arg(long, default_value_t = 0, value_name = "N")]
+    seed: u64,
+    /// Name of the world, lower case with underscores
+    #[arg(long, value_name = "NAME", value_parser = super::world_name)]
+    name: Option<String>,
+    /// Type of a room, by its name on the plan: `--room-type "B1=bedroom"`; may be given more than once
+    #[arg(long, value_name = "NAME=TYPE", value_parser = pair)]
+    room_type: Vec<(String, String)>,
+    #[command(flatten)]
+    reading: ReadingArgs,
+    /// Print one JSON line for the world
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    formats: formats::FormatArgs,
+    #[command(flatten)]
+    registry: RegistryArgs,
+}
+
+/// How the drawing is read.
+#[derive(clap::Args)]
+struct ReadingArgs {
+    /// Length of one unit of the drawing in m (a cell, for a map), where the file does not say it
+    #[arg(long, value_name = "M", allow_negative_numbers = true)]
+    meters_per_unit: Option<f64>,
+    /// Storey to read; otherwise the first one
+    #[arg(long, value_name = "NAME")]
+    level: Option<String>,
+    /// Make slanted walls of steps instead of refusing them
+    #[arg(long)]
+    rectify: bool,
+    /// Thickness in m of inner walls that are drawn as lines
+    #[arg(long, value_name = "M", allow_negative_numbers = true)]
+    inner_wall: Option<f64>,
+    /// Thickness in m of outer walls
+    #[arg(long, value_name = "M", allow_negative_numbers = true)]
+    outer_wall: Option<f64>,
+    /// Add an entrance and doors where rooms cannot be reached
+    #[arg(long)]
+    add_doors: bool,
+    /// Add a window to each room that needs daylight and has none
+    #[arg(long)]
+    add_windows: bool,
+}
+
+/// Returns the parts of `NAME=TYPE`.
+fn pair(text: &str) -> Result<(String, String), String> {
+    let (name, kind) = text.rsplit_once('=').ok_or("needs the form NAME=TYPE")?;
+    Ok((name.trim().to_owned(), kind.trim().to_owned()))
+}
+
+impl Args {
+    pub fn run(self) -> Result<(), Error> {
+        let formats = self.formats.chosen(&self.registry.store)?;
+        let registry = self.registry.load()?;
+        let output = Output::new(&self.out)?;
+        let (graph, plan) = self.given(&registry)?;
+        let settings = Settings { name: self.name.clone(), pinned_floorplan: Some(plan), ..Settings::default() };
+        let mut clock: BTreeMap<Stage, Duration> = BTreeMap::new();
+        let mut begun = Instant::now();
+        let mut observe = |event: Event<'_>| match event {
+            Event::Started(..) => begun = Instant::now(),
+            Event::Finished(stage, ..) => *clock.entry(stage).or_default() += begun.elapsed(),
+            Event::Furnished(..) | Event::Rejected(..) => {}
+        };
+        let made = furnish_and_check(&graph, &registry, &settings, &mut observe, interrupt::flag())?;
+        let writing = Instant::now();
+        let plugin = domain(&registry, &made.world.scene_graph.domain)?;
+        bundle::write(&made.world, &made.report, plugin.domain(), &formats, &output)?;
+        interrupt::check()?;
+        output.commit()?;
+        let mut times: Vec<(&'static str, Duration)> = clock.iter().map(|(stage, t)| (stage.name(), *t)).collect();
+        times.push(("files", writing.elapsed()));
+        let page = Summary::new(&made, &self.out, times);
+        if self.json {
+            write_text(None, &format!("{}\n", page.json()))?;
+        }
+        eprint!("{}", page.page());
+        summary::judged(&made.report)
+    }
+
+    /// Returns the plan with its scene graph.
+    fn given(&self, registry: &Registry) -> Result<(SceneGraph, Floorplan), Error> {
+        let options = Options {
+            format: self.plan_format.clone(),
+            meters_per_unit: self.reading.meters_per_unit,
+            level: self.reading.level.clone(),
+            rectify: self.reading.rectify,
+            inner_wall_m: self.reading.inner_wall,
+            outer_wall_m: self.reading.outer_wall,
+            add_doors: self.reading.add_doors,
+            add_windows: self.reading.add_windows,
+        };
+        let read_error = |source| Error::Read { path: self.plan.clone(), source };
+        let size = fs::metadata(&self.plan).map_err(read_error)?;
+        if size.is_file() && size.len() > readers::MOST_BYTES as u64 {
+            return Err(Error::Input(format!("{} is too large for a floor plan", self.plan.display())));
+        }
+        let bytes = fs::read(&self.plan).map_err(read_error)?;
+        let name = self.plan.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+        let source = Source { name: &name, bytes: &bytes, companion: &|file| companion(&self.plan, file) };
+        let placed = |source| Error::Plan { path: self.plan.clone(), source };
+        let mut brought = Brought {
+            title: format!("furnish {name}"),
+            seed: self.seed,
+            country: self.country.clone(),
+            robots: self.robot.clone(),
+            robot_radius_m: self.robot_radius,
+            ..Brought::default()
+        };
+        let plan = match read(&source, &options).map_err(placed)? {
+            Plan::Document(_) if self.reading.level.is_some() => {
+                return Err(Error::Input(
+                    "--level goes with drawings only; a floorplan.json keeps all its levels".into(),
+                ));
+            }
+            Plan::Document(mut plan) => {
+                plan.seed = self.seed;
+                if let Some(path) = &self.graph {
+                    let graph: SceneGraph = document(path)?;
+                    return Ok((SceneGraph { seed: self.seed, ..graph }, plan));
+                }
+                let label = |r: &d3dgen_model::floorplan::PlanRoom| Label {
+                    text: r.name.clone(),
+                    kind: Some(r.room_type.clone()),
+                };
+                let labels: Vec<Label> = plan.rooms.iter().map(label).collect();
+                let known = understand(&self.typed(labels)?, self.domain.as_deref(), registry)?;
+                plan.rooms.iter_mut().zip(known.room_types).for_each(|(room, kind)| room.room_type = kind);
+                (brought.domain, brought.notes) = (known.domain, known.notes);
+                plan
+            }
+            Plan::Drawing(_) if self.graph.is_some() => {
+                return Err(Error::Input(
+                    "--graph goes with a floorplan.json only; drawings get their own graph".into(),
+                ));
+            }
+            Plan::Drawing(drawing) => {
+                let layout = lay_out(drawing, &options).map_err(placed)?;
+                let label = |r: &d3dgen_plans::LaidRoom| Label { text: r.label.clone(), kind: r.kind.clone() };
+                let labels: Vec<Label> = layout.rooms.iter().map(label).collect();
+                let known = understand(&self.typed(labels)?, self.domain.as_deref(), registry)?;
+                let kinds = domain(registry, &known.domain)?.domain();
+                let (plan, notes) = assemble(layout, &known.room_types, kinds, self.seed, &options);
+                (brought.domain, brought.notes) = (known.domain, [notes, known.notes].concat());
+                plan
+            }
+        };
+        Ok((of_plan(&plan, &brought, registry)?, plan))
+    }
+
+    /// Returns the labels with the types that the user gives.
+    fn typed(&self, mut labels: Vec<Label>) -> Result<Vec<Label>, Error> {
+        for (name, kind) in &self.room_type {
+            let mut named = labels.iter_mut().filter(|l| l.text == *name).peekable();
+            if named.peek().is_none() {
+                return Err(Error::Input(format!("--room-type {name}={kind}: the plan has no room `{name}`")));
+            }
+            named.for_each(|l| l.kind = Some(kind.clone()));
+        }
+        Ok(labels)
+    }
+}
+
+/// Returns a file that the plan names, of its own folder.
+fn companion(plan: &Path, file: &str) -> Option<Vec<u8>> {
+    let path = plan.parent().unwrap_or(Path::new("")).join(file);
+    let small = fs::metadata(&path).is_ok_and(|m| m.is_file() && m.len() <= readers::MOST_BYTES as u64);
+    if small { fs::read(path).ok() } else { None }
+}

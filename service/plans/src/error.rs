@@ -1,0 +1,37 @@
+//! The one error type of this crate.
+
+/// Why a plan cannot be read.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum Error {
+    /// No reader knows the file, or the named format does not exist.
+    #[error("{0}")]
+    UnknownFormat(String),
+    /// The file is not what its format demands.
+    #[error("{format}: {place}: {message}")]
+    Broken {
+        /// Name of the format.
+        format: &'static str,
+        /// Where in the file: a line, a path, a feature, an element.
+        place: String,
+        /// What is wrong and what would be right: lower case, no full stop.
+        message: String,
+    },
+    /// What is drawn cannot be a plan.
+    #[error("{place}: {message}")]
+    Refused {
+        /// Which room, wall, edge or flag.
+        place: String,
+        /// What is wrong and what would work: lower case, no full stop.
+        message: String,
+    },
+}
+
+impl Error {
+    pub(crate) fn refused(place: impl Into<String>, message: impl Into<String>) -> Self {
+        Self::Refused { place: place.into(), message: message.into() }
+    }
+
+    pub(crate) fn broken(format: &'static str, place: impl Into<String>, message: impl Into<String>) -> Self {
+        Self::Broken { format, place: place.into(), message: message.into() }
+    }
+}

@@ -1,0 +1,402 @@
+//! DXF (text form): closed polylines are rooms, lines on a layer named for walls are walls, texts inside rooms their names.
+//!
+//! Read by hand: a plan is six kinds of entities out of some fifty, as pairs of lines. The `dxf` crate builds them all,
+//! with clock and random numbers for the files it writes, which this crate must not have.
+
+use std::str::Lines;
+
+use d3dgen_model::Point;
+
+use super::{Plan, Reader, Source};
+use crate::drawing::{Drawing, DrawnLabel, DrawnOpening, DrawnRoom, DrawnWall, MOST_POINTS, OpeningKind, note};
+use crate::words::{Role, role};
+use crate::{Error, Options};
+
+pub(super) const READER: Reader = Reader { name: "dxf", title: "DXF drawing (text form)", recognizes, read };
+
+const FORMAT: &str = "dxf";
+/// Straight pieces that a bulge is made of.
+const PIECES: usize = 8;
+/// Meters of a unit by `$INSUNITS`.
+const UNITS: [(i64, f64); 11] = [
+    (1, 0.0254),
+    (2, 0.3048),
+    (4, 0.001),
+    (5, 0.01),
+    (6, 1.0),
+    (7, 1000.0),
+    (8, 0.0254e-6),
+    (10, 0.9144),
+    (13, 1e-6),
+    (14, 0.1),
+    (21, 1200.0 / 3937.0),
+];
+
+fn recognizes(source: &Source) -> bool {
+    source.has_ending(&[".dxf"]) || source.head().trim_start().starts_with("0\nSECTION")
+}
+
+/// Group codes and values of a file, in order.
+struct Pairs<'a> {
+    lines: Lines<'a>,
+    line: usize,
+}
+
+impl<'a> Pairs<'a> {
+    fn next(&mut self) -> Result<Option<(i32, &'a str)>, Error> {
+        let Some(code) = self.lines.next() else { return Ok(None) };
+        self.line += 2;
+        let place = || format!("line {}", self.line - 1);
+        if code.trim().is_empty() && self.lines.clone().next().is_none() {
+            return Ok(None);
+        }
+        let number = code.trim().parse().map_err(|_| {
+            Error::broken(FORMAT, place(), format!("`{}` is no group code", code.chars().take(20).collect::<String>()))
+        })?;
+        let value = self.lines.next().ok_or_else(|| Error::broken(FORMAT, place(), "the file ends in a group"))?;
+        Ok(Some((number, value.trim())))
+    }
+}
+
+/// One entity: its kind, the line it begins in, its groups.
+struct Entity<'a> {
+    kind: &'a str,
+    line: usize,
+    groups: Vec<(i32, &'a str)>,
+}
+
+impl Entity<'_> {
+    fn text(&self, code: i32) -> Option<&str> {
+        self.groups.iter().find(|g| g.0 == code).map(|g| g.1)
+    }
+
+    fn number(&self, code: i32) -> Result<Option<f64>, Error> {
+        self.text(code).map(|t| self.parse(code, t)).transpose()
+    }
+
+    fn parse(&self, code: i32, text: &str) -> Result<f64, Error> {
+        text.parse::<f64>().ok().filter(|v| v.is_finite()).ok_or_else(|| {
+            let text: String = text.chars().take(30).collect();
+            Error::broken(FORMAT, self.place(), format!("group {code}: `{text}` is no number"))
+        })
+    }
+
+    fn point(&self, x: i32) -> Result<Point, Error> {
+        let missing = || Error::broken(FORMAT, self.place(), format!("has no coordinates (groups {x} and {})", x + 10));
+        Ok(Point::new(self.number(x)?.ok_or_else(missing)?, self.number(x + 10)?.ok_or_else(missing)?))
+    }
+
+    fn place(&self) -> String {
+        format!("{} in line {}", self.kind, self.line)
+    }
+
+    fn layer(&self) -> &str {
+        self.text(8).unwrap_or("0")
+    }
+}
+
+fn read(source: &Source, options: &Options) -> Result<Plan, Error> {
+    if source.bytes.starts_with(b"AutoCAD Binary DXF") {
+        return Err(Error::broken(FORMAT, source.name, "is the binary form; save it as text (ASCII) DXF"));
+    }
+    // old files are in a code page of one byte a letter
+    let text = match source.text(FORMAT) {
+        Ok(text) => text.to_owned(),
+        Err(_) => source.bytes.iter().map(|&b| char::from(b)).collect(),
+    };
+    let mut pairs = Pairs { lines: text.lines(), line: 0 };
+    let (mut section, mut variable) = ("", "");
+    let mut unit = None;
+    let mut drawing = Drawing::default();
+    let mut state = State::default();
+    let mut entity: Option<Entity> = None;
+    let mut found = false;
+    while let Some((code, value)) = pairs.next()? {
+        match (code, value) {
+            (0, _) => {
+                if let Some(done) = entity.take() {
+                    state.add(&mut drawing, &done)?;
+                }
+                match value {
+                    "ENDSEC" => section = "",
+                    "EOF" => break,
+                    "SECTION" => {}
+                    kind if section == "ENTITIES" => {
+                        entity = Some(Entity { kind, line: pairs.line - 1, groups: Vec::new() });
+                    }
+                    _ => {}
+                }
+            }
+            (2, name) if section.is_empty() && entity.is_none() => {
+                section = name;
+                found = true;
+            }
+            (9, name) if section == "HEADER" => variable = name,
+            (70, value) if section == "HEADER" && variable == "$INSUNITS" => unit = value.parse::<i64>().ok(),
+            _ => {
+                if let Some(e) = &mut entity {
+                    e.groups.push((code, value));
+                }
+            }
+        }
+    }
+    if !found {
+        return Err(Error::broken(
+            FORMAT,
+            "line 1",
+            "holds no section; a DXF begins with the groups 0 SECTION, 2 HEADER",
+        ));
+    }
+    if let Some(done) = entity.take() {
+        state.add(&mut drawing, &done)?;
+    }
+    let named = UNITS.iter().find(|u| Some(u.0) == unit).map(|u| u.1);
+    let scale = match (options.meters_per_unit, named) {
+        (Some(scale), _) => scale,
+        (None, Some(scale)) => {
+            drawing.notes.push(note("scale", format!("one unit of the drawing is {scale} m, as $INSUNITS says")));
+            scale
+        }
+        (None, None) => {
+            let scale = guessed(&mut drawing);
+            let message = format!(
+                "the drawing does not state its unit ($INSUNITS); {scale} m was guessed by its size, say it with --meters-per-unit"
+            );
+            drawing.notes.push(note("unit_assumed", message));
+            scale
+        }
+    };
+    drawing.points_mut().for_each(|p| *p = Point::new(p.x * scale, p.y * scale));
+    for o in &mut drawing.openings {
+        o.width_m = o.width_m.map(|w| if w <= 0.0 { w } else { w * scale }).filter(|w| (0.5..=4.0).contains(w));
+    }
+    Ok(Plan::Drawing(drawing))
+}
+
+/// Returns the unit by the size of the drawing: a building has some tens of meters.
+fn guessed(drawing: &mut Drawing) -> f64 {
+    let mut around: Option<[f64; 4]> = None;
+    for p in drawing.points_mut() {
+        let b = around.get_or_insert([p.x, p.y, p.x, p.y]);
+        *b = [b[0].min(p.x), b[1].min(p.y), b[2].max(p.x), b[3].max(p.y)];
+    }
+    match around.map_or(0.0, |b| (b[2] - b[0]).max(b[3] - b[1])) {
+        side if side > 2000.0 => 0.001,
+        side if side > 250.0 => 0.01,
+        _ => 1.0,
+    }
+}
+
+/// A POLYLINE whose vertices are still to come: points with bulges, whether it is closed, its layer and line.
+type Open = (Vec<(Point, f64)>, bool, String, usize);
+
+/// What goes over several entities.
+#[derive(Default)]
+struct State {
+    /// Corners of a POLYLINE that is still open: points, bulges, whether it is closed, its layer and line.
+    polyline: Option<Open>,
+    points: usize,
+}
+
+impl State {
+    fn add(&mut self, drawing: &mut Drawing, e: &Entity) -> Result<(), Error> {
+        self.points += e.groups.len();
+        if self.points > 40 * MOST_POINTS {
+            return Err(Error::broken(FORMAT, e.place(), "the drawing is too large for a floor plan"));
+        }
+        let role = role(e.layer());
+        match e.kind {
+            "LWPOLYLINE" => {
+                let closed = e.number(70)?.unwrap_or(0.0) as i64 & 1 == 1;
+                let mut corners: Vec<(Point, f64)> = Vec::new();
+                for (code, value) in &e.groups {
+                    match code {
+                        10 => corners.push((Point::new(e.parse(10, value)?, 0.0), 0.0)),
+                        20 => corners.last_mut().map_or(Ok(()), |c| e.parse(20, value).map(|y| c.0.y = y))?,
+                        42 => corners.last_mut().map_or(Ok(()), |c| e.parse(42, value).map(|b| c.1 = b))?,
+                        _ => {}
+                    }
+                }
+                polyline(drawing, &corners, closed, e.layer(), role, e.place());
+            }
+            "POLYLINE" => {
+                let closed = e.number(70)?.unwrap_or(0.0) as i64 & 1 == 1;
+                self.polyline = Some((Vec::new(), closed, e.layer().to_owned(), e.line));
+            }
+            "VERTEX" => {
+                let (at, bulge) = (e.point(10)?, e.number(42)?.unwrap_or(0.0));
+                if let Some(p) = &mut self.polyline {
+                    p.0.push((at, bulge));
+                }
+            }
+            "SEQEND" => {
+                if let Some((corners, closed, layer, line)) = self.polyline.take() {
+                    let role = crate::words::role(&layer);
+                    polyline(drawing, &corners, closed, &layer, role, format!("POLYLINE in line {line}"));
+                }
+            }
+            "LINE" => {
+                let line = vec![e.point(10)?, e.point(11)?];
+                polyline(
+                    drawing,
+                    &line.into_iter().map(|p| (p, 0.0)).collect::<Vec<_>>(),
+                    false,
+                    e.layer(),
+                    role,
+                    e.place(),
+                );
+            }
+            "ARC" => arc(drawing, e, role)?,
+            "INSERT" => {
+                let role = role.filter(|r| *r != Role::Wall).or_else(|| e.text(2).and_then(crate::words::role));
+                if let Some(kind) = opening_of(role) {
+                    let mut o = DrawnOpening::new(kind, vec![e.point(10)?], None, e.place());
+                    o.width_m = e.number(41)?.map(f64::abs);
+                    drawing.openings.push(o);
+                }
+            }
+            "TEXT" | "MTEXT" | "ATTRIB" => {
+                let at = e.point(10)?;
+                // long texts come in pieces; names and areas stand on lines of their own
+                let parts = e.groups.iter().filter(|g| g.0 == 1 || g.0 == 3 && e.kind == "MTEXT").map(|g| g.1);
+                let text = plain(&parts.collect::<String>());
+                if !matches!(role, Some(Role::Skip)) {
+                    let lines = text.lines().map(str::trim).filter(|l| !l.is_empty());
+                    drawing.labels.extend(lines.map(|l| DrawnLabel { text: l.to_owned(), at, level: None }));
+                }
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+}
+
+fn opening_of(role: Option<Role>) -> Option<OpeningKind> {
+    match role {
+        Some(Role::Door) => Some(OpeningKind::Door),
+        Some(Role::Passage) => Some(OpeningKind::Passage),
+        Some(Role::Window) => Some(OpeningKind::Window),
+        _ => None,
+    }
+}
+
+fn polyline(
+    drawing: &mut Drawing,
+    corners: &[(Point, f64)],
+    closed: bool,
+    layer: &str,
+    role: Option<Role>,
+    place: String,
+) {
+    let closed = closed || corners.len() > 3 && corners.first().map(|c| c.0) == corners.last().map(|c| c.0);
+    let mut points: Vec<Point> = Vec::new();
+    for (i, &(a, bulge)) in corners.iter().enumerate() {
+        points.push(a);
+        let next = corners.get(i + 1).or(closed.then(|| &corners[0]));
+        if let (Some(&(b, _)), true) = (next, bulge.abs() > 1e-6) {
+            points.extend(bulged(a, b, bulge));
+        }
+    }
+    if points.len() < 2 || matches!(role, Some(Role::Skip | Role::Outline)) {
+        return;
+    }
+    let place = format!("{place} on layer `{layer}`");
+    if let Some(kind) = opening_of(role) {
+        drawing.openings.push(DrawnOpening::new(kind, points, None, place));
+    } else if role == Some(Role::Wall) || !closed && layer == "0" {
+        if closed {
+            points.push(points[0]);
+        }
+        let line = |p: &[Point]| DrawnWall { line: [p[0], p[1]], level: None, place: place.clone() };
+        drawing.walls.extend(points.windows(2).map(line));
+    } else if closed {
+        drawing.rooms.push(DrawnRoom {
+            label: String::new(),
+            kind: None,
+            corners: points,
+            level: None,
+            height_m: None,
+            place,
+        });
+    }
+}
+
+/// Returns points on the arc between two corners, the ends left out; a bulge is the tangent of a quarter of its angle.
+fn bulged(a: Point, b: Point, bulge: f64) -> Vec<Point> {
+    let angle = 4.0 * bulge.clamp(-1e3, 1e3).atan();
+    let half = angle / 2.0;
+    let (dx, dy) = (b.x - a.x, b.y - a.y);
+    let lift = 1.0 / (2.0 * half.tan());
+    let center = Point::new((a.x + b.x) / 2.0 - dy * lift, (a.y + b.y) / 2.0 + dx * lift);
+    (1..PIECES)
+        .map(|k| {
+            let (sin, cos) = (angle * k as f64 / PIECES as f64).sin_cos();
+            let (x, y) = (a.x - center.x, a.y - center.y);
+            Point::new(center.x + x * cos - y * sin, center.y + x * sin + y * cos)
+        })
+        .collect()
+}
+
+/// Adds a quarter circle: the swing of a door, wherever it is drawn but on layers of other things.
+fn arc(drawing: &mut Drawing, e: &Entity, role: Option<Role>) -> Result<(), Error> {
+    if !matches!(role, None | Some(Role::Door)) {
+        return Ok(());
+    }
+    let (center, radius) = (e.point(10)?, e.number(40)?.unwrap_or(0.0));
+    let (from, to) = (e.number(50)?.unwrap_or(0.0), e.number(51)?.unwrap_or(360.0));
+    let sweep = (to - from).rem_euclid(360.0);
+    if !(60.0..=120.0).contains(&sweep) || radius <= 0.0 {
+        return Ok(());
+    }
+    let end = |degrees: f64| {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        Point::new(center.x + radius * cos, center.y + radius * sin)
+    };
+    let mut o = DrawnOpening::new(OpeningKind::Door, Vec::new(), None, e.place());
+    o.arc = Some([center, end(from), end(to)]);
+    drawing.openings.push(o);
+    Ok(())
+}
+
+/// Returns a text without its formatting codes: `{\fArial|b0;Bath}\P4 m2` is `Bath 4 m2`.
+fn plain(text: &str) -> String {
+    let mut out = String::new();
+    let mut chars = text.chars().peekable();
+    while let Some(c) = chars.next() {
+        match (c, chars.peek().copied()) {
+            ('\\', Some(code @ ('P' | '~'))) => {
+                chars.next();
+                out.push(if code == 'P' { '\n' } else { ' ' });
+            }
+            ('\\', Some('L' | 'l' | 'O' | 'o' | 'K' | 'k' | '\\' | '{' | '}')) => {
+                chars.next();
+            }
+            ('\\', Some('U')) => {
+                let code: String = chars.by_ref().skip(2).take(4).collect();
+                out.extend(u32::from_str_radix(&code, 16).ok().and_then(char::from_u32));
+            }
+            ('\\', Some(_)) => {
+                chars.by_ref().take_while(|c| *c != ';').for_each(drop);
+            }
+            ('{' | '}', _) => {}
+            ('%', Some('%')) => {
+                chars.next();
+                chars.next();
+            }
+            (c, _) => out.push(c),
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::plain;
+
+    #[test]
+    fn formatting_codes_are_no_part_of_a_name() {
+        assert_eq!(plain("{\\fArial|b0|i0;Bath}\\P4.2 m2"), "Bath\n4.2 m2");
+        assert_eq!(plain("K\\U+00FCche"), "Küche");
+        assert_eq!(plain("%%uHall"), "Hall");
+    }
+}

@@ -1,0 +1,169 @@
+//! Open-RMF `building.yaml` of the traffic editor: rooms are what the walls and doors of a level enclose, or its floors.
+//!
+//! Values are pairs of a type and a value; drawings are in pixels with y downwards, unless the coordinate system says
+//! meters; the measurements of a level give its scale. Names of waypoints inside a room are its name.
+
+use std::collections::BTreeMap;
+
+use d3dgen_model::Point;
+use serde::Deserialize;
+use serde_json::Value;
+
+use super::{Plan, Reader, Source};
+use crate::drawing::{Drawing, DrawnLabel, DrawnOpening, DrawnRoom, DrawnWall, OpeningKind, note};
+use crate::{Error, Options};
+
+pub(super) const READER: Reader = Reader { name: "rmf", title: "Open-RMF building.yaml", recognizes, read };
+
+const FORMAT: &str = "rmf";
+/// Meters a pixel of a level that has no measurement, as the traffic editor takes it.
+const DEFAULT_SCALE: f64 = 0.05;
+
+fn recognizes(source: &Source) -> bool {
+    let head = source.head();
+    source.has_ending(&[".building.yaml", ".building.yml"])
+        || source.has_ending(&[".yaml", ".yml"]) && (head.contains("\nlevels:") || head.starts_with("levels:"))
+}
+
+#[derive(Deserialize)]
+struct Building {
+    #[serde(default)]
+    coordinate_system: Option<String>,
+    #[serde(default)]
+    levels: BTreeMap<String, Level>,
+    #[serde(default)]
+    lifts: BTreeMap<String, Value>,
+}
+
+#[derive(Deserialize)]
+struct Level {
+    #[serde(default)]
+    vertices: Vec<Vec<Value>>,
+    #[serde(default)]
+    walls: Vec<Vec<Value>>,
+    #[serde(default)]
+    doors: Vec<Vec<Value>>,
+    #[serde(default)]
+    measurements: Vec<Vec<Value>>,
+    #[serde(default)]
+    floors: Vec<Floor>,
+}
+
+#[derive(Deserialize)]
+struct Floor {
+    #[serde(default)]
+    vertices: Vec<usize>,
+}
+
+fn read(source: &Source, options: &Options) -> Result<Plan, Error> {
+    let building: Building = serde_saphyr::from_str(source.text(FORMAT)?)
+        .map_err(|e| Error::broken(FORMAT, source.name, e.to_string().lines().next().unwrap_or_default().to_owned()))?;
+    let meters = building.coordinate_system.as_deref() == Some("cartesian_meters");
+    let mut drawing = Drawing::default();
+    for (name, level) in &building.levels {
+        add_level(&mut drawing, name, level, meters, options)?;
+    }
+    if !building.lifts.is_empty() {
+        let message = format!("{} lifts were left out; their cabins are no rooms", building.lifts.len());
+        drawing.notes.push(note("lifts_left_out", message));
+    }
+    Ok(Plan::Drawing(drawing))
+}
+
+/// Returns the value of a typed pair `[3, 0.9]` under a name.
+fn parameter<'a>(item: &'a [Value], name: &str) -> Option<&'a Value> {
+    item.iter().find_map(Value::as_object)?.get(name)?.as_array()?.get(1)
+}
+
+fn add_level(drawing: &mut Drawing, name: &str, level: &Level, meters: bool, options: &Options) -> Result<(), Error> {
+    let broken = |place: String, message: &str| Error::broken(FORMAT, format!("levels/{name}/{place}"), message);
+    let mut points = Vec::with_capacity(level.vertices.len());
+    for (i, v) in level.vertices.iter().enumerate() {
+        match (v.first().and_then(Value::as_f64), v.get(1).and_then(Value::as_f64)) {
+            (Some(x), Some(y)) => points.push(Point::new(x, if meters { y } else { -y })),
+            _ => return Err(broken(format!("vertices/{i}"), "needs two numbers, [x, y, z, name]")),
+        }
+    }
+    let ends = |list: &str, i: usize, item: &[Value]| -> Result<[Point; 2], Error> {
+        let end = |k: usize| {
+            let index = item.get(k).and_then(Value::as_u64).and_then(|v| usize::try_from(v).ok());
+            index.and_then(|v| points.get(v)).copied()
+        };
+        match (end(0), end(1)) {
+            (Some(a), Some(b)) => Ok([a, b]),
+            _ => Err(broken(format!("{list}/{i}"), "begins with the indices of two vertices")),
+        }
+    };
+    let scale = scale(drawing, name, level, meters, options, &ends)?;
+    let at = |p: Point| Point::new(p.x * scale, p.y * scale);
+    let here = Some(name.to_owned());
+    for (i, wall) in level.walls.iter().enumerate() {
+        let [a, b] = ends("walls", i, wall)?;
+        let place = format!("levels/{name}/walls/{i}");
+        drawing.walls.push(DrawnWall { line: [at(a), at(b)], level: here.clone(), place });
+    }
+    for (i, door) in level.doors.iter().enumerate() {
+        let [a, b] = ends("doors", i, door)?;
+        let title = parameter(door, "name").and_then(Value::as_str).unwrap_or_default();
+        let mut o = DrawnOpening::new(
+            OpeningKind::Door,
+            vec![at(a), at(b)],
+            here.clone(),
+            format!("levels/{name}/doors/{i} `{title}`"),
+        );
+        o.sliding = parameter(door, "type").and_then(Value::as_str).is_some_and(|t| t.contains("sliding"));
+        drawing.openings.push(o);
+    }
+    for (v, p) in level.vertices.iter().zip(&points) {
+        if let Some(text) = v.get(3).and_then(Value::as_str).filter(|t| !t.trim().is_empty()) {
+            drawing.labels.push(DrawnLabel { text: text.replace('_', " "), at: at(*p), level: here.clone() });
+        }
+    }
+    if level.walls.is_empty() {
+        for (i, floor) in level.floors.iter().enumerate() {
+            let place = format!("levels/{name}/floors/{i}");
+            let corner = |k: &usize| points.get(*k).map(|p| at(*p));
+            let corners: Option<Vec<Point>> = floor.vertices.iter().map(corner).collect();
+            let corners = corners.ok_or_else(|| broken(format!("floors/{i}"), "names a vertex that is not there"))?;
+            let (label, kind) = (String::new(), None);
+            drawing.rooms.push(DrawnRoom { label, kind, corners, level: here.clone(), height_m: None, place });
+        }
+    }
+    Ok(())
+}
+
+/// Returns meters a unit: as asked, 1 for meters, else by the measurements of the level.
+fn scale(
+    drawing: &mut Drawing,
+    name: &str,
+    level: &Level,
+    meters: bool,
+    options: &Options,
+    ends: &impl Fn(&str, usize, &[Value]) -> Result<[Point; 2], Error>,
+) -> Result<f64, Error> {
+    if let Some(scale) = options.meters_per_unit {
+        return Ok(scale);
+    }
+    if meters {
+        return Ok(1.0);
+    }
+    let (mut sum, mut count) = (0.0, 0);
+    for (i, m) in level.measurements.iter().enumerate() {
+        let [a, b] = ends("measurements", i, m)?;
+        let pixels = a.distance(b);
+        if let Some(meters) = parameter(m, "distance").and_then(Value::as_f64).filter(|d| *d > 0.0 && pixels > 0.0) {
+            sum += meters / pixels;
+            count += 1;
+        }
+    }
+    if count == 0 {
+        let message = format!(
+            "level {name} has no measurement; one pixel was taken for {DEFAULT_SCALE} m, as the traffic editor does"
+        );
+        drawing.notes.push(note("unit_assumed", message));
+        return Ok(DEFAULT_SCALE);
+    }
+    let scale = sum / f64::from(count);
+    drawing.notes.push(note("scale", format!("level {name}: one pixel is {scale:.6} m, by {count} measurements")));
+    Ok(scale)
+}

@@ -1,0 +1,349 @@
+//! SVG: closed shapes are rooms; lines and shapes in a layer, class or id named for doors, windows or walls are those.
+//!
+//! What is drawn where is what counts: transforms and the view box are followed, looks (clips, masks, styles) are not.
+
+use std::str::FromStr;
+
+use d3dgen_model::Point;
+use roxmltree::{Document, Node, ParsingOptions};
+use svgtypes::{Length, LengthUnit, SimplePathSegment, SimplifyingPathParser, Transform, ViewBox};
+
+use super::{Plan, Reader, Source};
+use crate::drawing::{Drawing, DrawnLabel, DrawnOpening, DrawnRoom, DrawnWall, MOST_POINTS, OpeningKind, note};
+use crate::words::{Role, is_name, role};
+use crate::{Error, Options};
+
+pub(super) const READER: Reader = Reader { name: "svg", title: "SVG drawing", recognizes, read };
+
+const FORMAT: &str = "svg";
+const SVG: &str = "http://www.w3.org/2000/svg";
+const INKSCAPE: &str = "http://www.inkscape.org/namespaces/inkscape";
+/// Most elements of a file.
+const MOST_NODES: u32 = 500_000;
+/// Straight pieces that a curve is made of.
+const PIECES: usize = 8;
+/// A drawing larger than this at the size it is printed in is drawn in its real size, m.
+const REAL_SIZE_M: f64 = 1.5;
+/// Elements whose content is not drawn where it stands.
+const UNSEEN: [&str; 8] = ["defs", "clipPath", "mask", "pattern", "marker", "symbol", "style", "metadata"];
+
+fn recognizes(source: &Source) -> bool {
+    source.has_ending(&[".svg"]) || source.head().contains("<svg")
+}
+
+/// A shape in the units of the drawing.
+struct Shape {
+    points: Vec<Point>,
+    closed: bool,
+}
+
+/// What an element inherits.
+#[derive(Clone, Copy)]
+struct Scope {
+    transform: Transform,
+    role: Option<Role>,
+}
+
+fn read(source: &Source, options: &Options) -> Result<Plan, Error> {
+    let text = source.text(FORMAT)?;
+    let limits = ParsingOptions { allow_dtd: true, nodes_limit: MOST_NODES, ..ParsingOptions::default() };
+    let document = Document::parse_with_options(text, limits)
+        .map_err(|e| Error::broken(FORMAT, format!("line {}", e.pos().row), e.to_string()))?;
+    let root = document.root_element();
+    if root.tag_name().name() != "svg" {
+        return Err(Error::broken(
+            FORMAT,
+            "line 1",
+            format!("begins with <{}>, not with <svg>", root.tag_name().name()),
+        ));
+    }
+    let mut drawing = Drawing::default();
+    let mut todo = vec![(root, Scope { transform: Transform::default(), role: None })];
+    let mut count = 0_usize;
+    while let Some((node, scope)) = todo.pop() {
+        if !node.is_element() || UNSEEN.contains(&node.tag_name().name()) || is_hidden(&node) {
+            continue;
+        }
+        let scope = Scope { transform: transform(&node, scope.transform)?, role: own_role(&node).or(scope.role) };
+        count += add(&mut drawing, &node, scope)?;
+        if count > MOST_POINTS {
+            return Err(Error::broken(FORMAT, place(&node), format!("the drawing has more than {MOST_POINTS} points")));
+        }
+        let children: Vec<Node> = node.children().filter(Node::is_element).collect();
+        todo.extend(children.into_iter().rev().map(|c| (c, scope)));
+    }
+    scale(&mut drawing, &root, options)?;
+    Ok(Plan::Drawing(drawing))
+}
+
+fn is_hidden(node: &Node) -> bool {
+    let style = node.attribute("style").unwrap_or_default().replace(' ', "");
+    node.attribute("display") == Some("none") || style.contains("display:none")
+}
+
+/// Returns the name of an element for messages.
+fn place(node: &Node) -> String {
+    let row = node.document().text_pos_at(node.range().start).row;
+    format!("line {row}: <{}>", node.tag_name().name())
+}
+
+fn transform(node: &Node, outer: Transform) -> Result<Transform, Error> {
+    let Some(text) = node.attribute("transform") else { return Ok(outer) };
+    let t = Transform::from_str(text)
+        .map_err(|e| Error::broken(FORMAT, place(node), format!("transform `{text}`: {e}")))?;
+    Ok(Transform {
+        a: outer.a * t.a + outer.c * t.b,
+        b: outer.b * t.a + outer.d * t.b,
+        c: outer.a * t.c + outer.c * t.d,
+        d: outer.b * t.c + outer.d * t.d,
+        e: outer.a * t.e + outer.c * t.f + outer.e,
+        f: outer.b * t.e + outer.d * t.f + outer.f,
+    })
+}
+
+/// Returns what the class, layer name, type or id of an element says it is.
+fn own_role(node: &Node) -> Option<Role> {
+    let label = node.attribute((INKSCAPE, "label"));
+    [node.attribute("class"), node.attribute("data-type"), label, node.attribute("id")]
+        .into_iter()
+        .flatten()
+        .filter(|t| !is_automatic(t))
+        .find_map(role)
+}
+
+/// Returns true for names that drawing programs give by themselves.
+fn is_automatic(id: &str) -> bool {
+    const STEMS: [&str; 12] =
+        ["rect", "path", "polygon", "polyline", "line", "g", "group", "text", "tspan", "svg", "layer", "shape"];
+    let stem = id.trim_end_matches(|c: char| c.is_ascii_digit() || matches!(c, '-' | '_'));
+    let counted = id.len() > stem.len() && !stem.eq_ignore_ascii_case("line")
+        || STEMS.contains(&stem.to_ascii_lowercase().as_str());
+    counted && STEMS.contains(&stem.to_ascii_lowercase().as_str())
+}
+
+/// Returns the name that a drawn room carries itself.
+fn label(node: &Node) -> String {
+    let child = |name: &str| {
+        node.children().find(|c| c.has_tag_name((SVG, name)) || c.has_tag_name(name)).and_then(|c| c.text())
+    };
+    let id = node.attribute("id").filter(|id| !is_automatic(id));
+    let found = [
+        child("title"),
+        node.attribute((INKSCAPE, "label")).filter(|l| !is_automatic(l)),
+        node.attribute("aria-label"),
+        node.attribute("data-name"),
+        child("desc"),
+        id,
+    ];
+    let named = found.into_iter().flatten().map(str::trim).find(|t| !t.is_empty());
+    named.map(|t| t.replace('_', " ")).unwrap_or_default()
+}
+
+/// Adds what an element draws; returns how many points.
+fn add(drawing: &mut Drawing, node: &Node, scope: Scope) -> Result<usize, Error> {
+    if node.tag_name().name() == "text" {
+        return Ok(add_text(drawing, node, scope));
+    }
+    let mut count = 0;
+    for shape in shapes(node)? {
+        let t = scope.transform;
+        let points: Vec<Point> =
+            shape.points.iter().map(|p| Point::new(t.a * p.x + t.c * p.y + t.e, t.b * p.x + t.d * p.y + t.f)).collect();
+        count += points.len();
+        let opening = match scope.role {
+            Some(Role::Door) => Some(OpeningKind::Door),
+            Some(Role::Passage) => Some(OpeningKind::Passage),
+            Some(Role::Window) => Some(OpeningKind::Window),
+            _ => None,
+        };
+        match (scope.role, opening) {
+            (_, Some(kind)) => {
+                let mut o = DrawnOpening::new(kind, points, None, place(node));
+                o.sliding = node.attribute("class").is_some_and(|c| c.contains("sliding"));
+                drawing.openings.push(o);
+            }
+            (Some(Role::Skip | Role::Outline), _) => {}
+            (Some(Role::Wall), _) if !shape.closed => {
+                drawing.walls.extend(points.windows(2).map(|p| DrawnWall {
+                    line: [p[0], p[1]],
+                    level: None,
+                    place: place(node),
+                }));
+            }
+            (Some(Role::Wall), _) => {}
+            _ if shape.closed => {
+                let label = label(node);
+                let place = if label.is_empty() { place(node) } else { format!("room `{label}` ({})", place(node)) };
+                let kind = node.attribute("data-room-type").map(str::to_owned);
+                drawing.rooms.push(DrawnRoom { label, kind, corners: points, level: None, height_m: None, place });
+            }
+            _ => {}
+        }
+    }
+    Ok(count)
+}
+
+fn add_text(drawing: &mut Drawing, node: &Node, scope: Scope) -> usize {
+    let words: Vec<&str> = node.descendants().filter(Node::is_text).filter_map(|t| t.text()).map(str::trim).collect();
+    let text = words.into_iter().filter(|t| is_name(t)).take(4).collect::<Vec<_>>().join(" ");
+    let first = |name: &str| {
+        let of = |n: Node| n.attribute(name)?.split([' ', ',']).next()?.trim_end_matches("px").parse::<f64>().ok();
+        of(*node).or_else(|| node.children().filter(Node::is_element).find_map(of)).unwrap_or(0.0)
+    };
+    if text.is_empty() || matches!(scope.role, Some(Role::Skip)) {
+        return 0;
+    }
+    let (x, y, t) = (first("x"), first("y"), scope.transform);
+    let at = Point::new(t.a * x + t.c * y + t.e, t.b * x + t.d * y + t.f);
+    drawing.labels.push(DrawnLabel { text, at, level: None });
+    1
+}
+
+fn shapes(node: &Node) -> Result<Vec<Shape>, Error> {
+    let number = |name: &str| -> Result<f64, Error> {
+        let Some(text) = node.attribute(name) else { return Ok(0.0) };
+        let length = Length::from_str(text)
+            .map_err(|e| Error::broken(FORMAT, place(node), format!("{name}=\"{text}\": {e}")))?;
+        // lengths inside the drawing in CSS pixels, as browsers have them
+        Ok(millimeters(length).map_or(length.number, |mm| mm * 96.0 / 25.4))
+    };
+    let list =
+        |text: &str| svgtypes::PointsParser::from(text).map(|(x, y)| Point::new(x, y)).take(MOST_POINTS).collect();
+    let one = |points: Vec<Point>, closed: bool| Ok(vec![Shape { points, closed }]);
+    match node.tag_name().name() {
+        "rect" => {
+            let (x, y, w, h) = (number("x")?, number("y")?, number("width")?, number("height")?);
+            if w <= 0.0 || h <= 0.0 {
+                return Ok(Vec::new());
+            }
+            one([(x, y), (x + w, y), (x + w, y + h), (x, y + h)].map(|(x, y)| Point::new(x, y)).to_vec(), true)
+        }
+        "line" => {
+            let (a, b) = (Point::new(number("x1")?, number("y1")?), Point::new(number("x2")?, number("y2")?));
+            one(vec![a, b], false)
+        }
+        "polygon" => one(list(node.attribute("points").unwrap_or_default()), true),
+        "polyline" => {
+            let points: Vec<Point> = list(node.attribute("points").unwrap_or_default());
+            let closed = points.len() > 3 && points.first() == points.last();
+            one(points, closed)
+        }
+        "path" => path(node),
+        _ => Ok(Vec::new()),
+    }
+}
+
+fn path(node: &Node) -> Result<Vec<Shape>, Error> {
+    let mut out: Vec<Shape> = Vec::new();
+    let mut total = 0_usize;
+    for segment in SimplifyingPathParser::from(node.attribute("d").unwrap_or_default()) {
+        let segment = segment.map_err(|e| Error::broken(FORMAT, place(node), format!("path: {e}")))?;
+        let here = out.last().and_then(|s| s.points.last().copied()).unwrap_or(Point::new(0.0, 0.0));
+        let mut line = |points: &mut dyn Iterator<Item = Point>| {
+            if out.last().is_none_or(|s| s.closed) {
+                let start = out.last().and_then(|s| s.points.first().copied()).unwrap_or(here);
+                out.push(Shape { points: vec![start], closed: false });
+            }
+            if let Some(shape) = out.last_mut() {
+                shape.points.extend(points);
+            }
+        };
+        let steps = || (1..=PIECES).map(|k| k as f64 / PIECES as f64);
+        match segment {
+            SimplePathSegment::MoveTo { x, y } => out.push(Shape { points: vec![Point::new(x, y)], closed: false }),
+            SimplePathSegment::LineTo { x, y } => line(&mut std::iter::once(Point::new(x, y))),
+            SimplePathSegment::CurveTo { x1, y1, x2, y2, x, y } => line(&mut steps().map(|t| {
+                let u = 1.0 - t;
+                let (a, b, c, d) = (u * u * u, 3.0 * u * u * t, 3.0 * u * t * t, t * t * t);
+                Point::new(a * here.x + b * x1 + c * x2 + d * x, a * here.y + b * y1 + c * y2 + d * y)
+            })),
+            SimplePathSegment::Quadratic { x1, y1, x, y } => line(&mut steps().map(|t| {
+                let u = 1.0 - t;
+                let (a, b, c) = (u * u, 2.0 * u * t, t * t);
+                Point::new(a * here.x + b * x1 + c * x, a * here.y + b * y1 + c * y)
+            })),
+            SimplePathSegment::ClosePath => {
+                if let Some(shape) = out.last_mut() {
+                    shape.closed = true;
+                }
+            }
+        }
+        total += PIECES;
+        if total > 2 * MOST_POINTS {
+            return Err(Error::broken(FORMAT, place(node), format!("the path has more than {MOST_POINTS} points")));
+        }
+    }
+    for shape in &mut out {
+        let back = shape.points.len() > 3 && shape.points.first() == shape.points.last();
+        shape.closed |= back;
+    }
+    out.retain(|s| s.points.len() > 1);
+    Ok(out)
+}
+
+fn millimeters(length: Length) -> Option<f64> {
+    let factor = match length.unit {
+        LengthUnit::Mm => 1.0,
+        LengthUnit::Cm => 10.0,
+        LengthUnit::In => 25.4,
+        LengthUnit::Pt => 25.4 / 72.0,
+        LengthUnit::Pc => 25.4 / 6.0,
+        _ => return None,
+    };
+    Some(length.number * factor)
+}
+
+/// Turns the units of the drawing into meters, and y upwards.
+fn scale(drawing: &mut Drawing, root: &Node, options: &Options) -> Result<(), Error> {
+    let mut around: Option<[f64; 4]> = None;
+    let corners = drawing.rooms.iter().flat_map(|r| &r.corners).chain(drawing.walls.iter().flat_map(|w| &w.line));
+    for p in corners {
+        let b = around.get_or_insert([p.x, p.y, p.x, p.y]);
+        *b = [b[0].min(p.x), b[1].min(p.y), b[2].max(p.x), b[3].max(p.y)];
+    }
+    let Some([x0, y0, x1, y1]) = around else {
+        return Err(Error::refused(
+            "drawing",
+            "holds no closed shapes and no walls; rooms are rect, polygon or closed path",
+        ));
+    };
+    let (width, height) = (x1 - x0, y1 - y0);
+    let unit = match options.meters_per_unit {
+        Some(unit) => unit,
+        None => {
+            let length = |name: &str| root.attribute(name).and_then(|t| Length::from_str(t).ok()).and_then(millimeters);
+            let view = root.attribute("viewBox").and_then(|v| ViewBox::from_str(v).ok());
+            let printed = match (length("width"), length("height"), view) {
+                (Some(mm), _, Some(v)) if v.w > 0.0 => Some(mm / v.w / 1000.0),
+                (None, Some(mm), Some(v)) if v.h > 0.0 => Some(mm / v.h / 1000.0),
+                (Some(_), _, None) | (_, Some(_), None) => Some(0.0254 / 96.0),
+                _ => None,
+            };
+            let hint = |unit: f64| {
+                let guess = 10.0_f64.powf((10.0 / width.max(height).max(1e-12)).log10().round());
+                let guess = if (0.1..10.0).contains(&(guess / unit)) { unit * 100.0 } else { guess };
+                format!(
+                    "say how long one unit is: --meters-per-unit {guess} would make the plan {:.2} m by {:.2} m",
+                    width * guess,
+                    height * guess
+                )
+            };
+            match printed {
+                Some(unit) if width.max(height) * unit >= REAL_SIZE_M => unit,
+                Some(unit) => {
+                    let message = format!(
+                        "the rooms are {:.0} mm by {:.0} mm as printed, too small to be their real size; {}",
+                        width * unit * 1000.0,
+                        height * unit * 1000.0,
+                        hint(unit)
+                    );
+                    return Err(Error::refused("scale", message));
+                }
+                None => return Err(Error::refused("scale", format!("the drawing has no unit; {}", hint(1.0)))),
+            }
+        }
+    };
+    drawing.points_mut().for_each(|p| *p = Point::new((p.x - x0) * unit, (y1 - p.y) * unit));
+    drawing.notes.push(note("scale", format!("one unit of the drawing is {unit} m")));
+    Ok(())
+}

@@ -1,0 +1,224 @@
+//! The same flat of three rooms in every format, and files that are none.
+
+use std::path::{Path, PathBuf};
+
+use d3dgen_model::document::Document;
+use d3dgen_model::floorplan::Floorplan;
+use d3dgen_plans::{Error, Options, Plan, Source, assemble, lay_out, read};
+use d3dgen_plugins::Registry;
+
+fn plans() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/plans")
+}
+
+/// Reads a plan whose rooms are typed by their names: the tests of the words are with the words.
+fn plan_of(name: &str, bytes: &[u8], options: &Options) -> Result<(Floorplan, Vec<String>), Error> {
+    let companion = |file: &str| std::fs::read(plans().join(file)).ok();
+    let registry = Registry::builtin();
+    let domain = registry.get("residential").expect("built in").domain();
+    match read(&Source { name, bytes, companion: &companion }, options)? {
+        Plan::Document(plan) => Ok((plan, Vec::new())),
+        Plan::Drawing(drawing) => {
+            let layout = lay_out(drawing, options)?;
+            let types: Vec<String> = layout
+                .rooms
+                .iter()
+                .map(|r| r.label.to_lowercase().replace(' ', "_").replace("hall", "hallway"))
+                .collect();
+            let (plan, notes) = assemble(layout, &types, domain, 0, options);
+            assert_eq!(plan.check(), Vec::new(), "{name}");
+            Ok((plan, notes.into_iter().map(|n| n.code).collect()))
+        }
+    }
+}
+
+fn flat(name: &str, options: &Options) -> (Floorplan, Vec<String>) {
+    let bytes = std::fs::read(plans().join(name)).expect("a plan of the tests");
+    plan_of(name, &bytes, options).unwrap_or_else(|e| panic!("{name}: {e}"))
+}
+
+/// Walls of the flat are 0.1 m thick; formats that draw lines do not say so.
+fn thin() -> Options {
+    Options { inner_wall_m: Some(0.1), outer_wall_m: Some(0.1), ..Options::default() }
+}
+
+#[test]
+fn the_same_flat_is_the_same_in_every_format() {
+    // name on the plan, net area in m2
+    let rooms = [("Living room", 20.0), ("Bedroom", 17.5), ("Hall", 15.2)];
+    for (name, typed, windows, entrance) in [
+        ("flat.geojson", true, 2, true),
+        ("flat.svg", true, 2, true),
+        ("flat.dxf", true, 2, true),
+        ("flat.building.yaml", true, 0, true),
+        ("flat_map.yaml", false, 0, false),
+    ] {
+        let (plan, _) = flat(name, &thin());
+        assert_eq!(plan.rooms.len(), 3, "{name}");
+        let find = |label: &str, area: f64| {
+            let named = plan.rooms.iter().find(|r| r.name.eq_ignore_ascii_case(label));
+            let near = || {
+                plan.rooms.iter().min_by(|a, b| (a.net_area_m2 - area).abs().total_cmp(&(b.net_area_m2 - area).abs()))
+            };
+            if typed { named } else { near() }.unwrap_or_else(|| panic!("{name} has no {label}"))
+        };
+        for (label, area) in rooms {
+            let room = find(label, area);
+            let off = (room.net_area_m2 - area).abs() / area;
+            assert!(off < 0.02, "{name}: {label} has {} m2, should have {area}", room.net_area_m2);
+            let kind = label.to_lowercase().replace(' ', "_").replace("hall", "hallway");
+            assert!(!typed || room.room_type == kind, "{name}: {label} is a {}", room.room_type);
+            assert!(room.locked);
+        }
+        let hall = &find("Hall", 15.2).room_id;
+        for (label, area) in &rooms[..2] {
+            let room = &find(label, *area).room_id;
+            let joins = |d: &&d3dgen_model::floorplan::Door| d.room_ids.contains(room) && d.room_ids.contains(hall);
+            let doors: Vec<_> = plan.doors.iter().filter(joins).collect();
+            assert_eq!(doors.len(), 1, "{name}: doors of {label}");
+            assert!((doors[0].line.length() - 0.9).abs() < 0.06, "{name}: {}", doors[0].line.length());
+        }
+        assert_eq!(plan.doors.iter().filter(|d| d.entrance).count(), usize::from(entrance), "{name}");
+        assert_eq!(plan.windows.len(), windows, "{name}");
+    }
+}
+
+#[test]
+fn our_own_document_is_kept_as_it_is() {
+    let (mut plan, _) = flat("flat.geojson", &thin());
+    plan.scheme = "straight".into();
+    plan.rooms[0].locked = false;
+    let (back, _) = plan_of("floorplan.json", plan.to_json().as_bytes(), &thin()).expect("our document");
+    assert!(back.is_given() && back.rooms.iter().all(|r| r.locked));
+    plan.rooms[0].locked = true;
+    assert_eq!((back.rooms, back.walls, back.doors, back.windows), (plan.rooms, plan.walls, plan.doors, plan.windows));
+}
+
+#[test]
+fn a_door_drawn_as_an_arc_swings_as_drawn() {
+    let (plan, _) = flat("flat.dxf", &thin());
+    let bedroom = plan.rooms.iter().find(|r| r.name == "Bedroom").expect("a bedroom");
+    let door = plan.doors_of(&bedroom.room_id).next().expect("its door");
+    let swing = door.swing.as_ref().expect("a leaf");
+    assert_eq!((swing.into_room_id.as_ref(), swing.hinge_at_start), (Some(&bedroom.room_id), true));
+}
+
+#[test]
+fn a_plan_at_an_angle_is_turned_upright() {
+    let svg = r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 900 900"><g transform="rotate(17 400 400)">
+        <rect id="kitchen" x="100" y="100" width="400" height="300"/>
+        <rect id="bedroom" x="500" y="100" width="300" height="300"/></g></svg>"#;
+    let options = Options { meters_per_unit: Some(0.01), ..thin() };
+    let (plan, notes) = plan_of("turned.svg", svg.as_bytes(), &options).expect("a plan");
+    assert!(notes.contains(&"turned".into()) && notes.contains(&"no_door".into()), "{notes:?}");
+    assert!((plan.rooms[0].net_area_m2 - 3.9 * 2.9).abs() < 0.02, "{}", plan.rooms[0].net_area_m2);
+    assert!(plan.walls.iter().any(|w| w.room_ids.len() == 2), "the rooms share a wall");
+}
+
+#[test]
+fn missing_doors_and_windows_are_added_when_asked() {
+    let svg = r#"<svg xmlns="http://www.w3.org/2000/svg"><rect id="kitchen" width="400" height="300"/>
+        <rect id="bedroom" x="400" width="300" height="300"/><rect id="hall" y="300" width="700" height="150"/></svg>"#;
+    let options = Options { meters_per_unit: Some(0.01), add_doors: true, add_windows: true, ..Options::default() };
+    let (plan, notes) = plan_of("bare.svg", svg.as_bytes(), &options).expect("a plan");
+    assert_eq!((plan.doors.len(), plan.windows.len()), (3, 1), "{notes:?}");
+    // of these rooms only a bedroom has to have daylight
+    let bedroom = plan.rooms.iter().find(|r| r.room_type == "bedroom").expect("the bedroom");
+    assert_eq!(plan.windows[0].room_id, bedroom.room_id);
+    let hall = plan.rooms.iter().find(|r| r.room_type == "hallway").expect("the hall");
+    assert!(plan.doors.iter().all(|d| d.room_ids.contains(&hall.room_id)));
+    assert!(plan.doors.iter().any(|d| d.entrance));
+}
+
+#[test]
+fn geographic_coordinates_become_meters() {
+    let text = r#"{"type":"Feature","properties":{"name":"kitchen"},"geometry":{"type":"Polygon","coordinates":
+        [[[8.4,49.0],[8.40006,49.0],[8.40006,49.00004],[8.4,49.00004],[8.4,49.0]]]}}"#;
+    let (plan, notes) = plan_of("a.geojson", text.as_bytes(), &thin()).expect("a plan");
+    assert!(notes.contains(&"projected".into()));
+    // 6e-5 degrees of longitude at 49 degrees north, 4e-5 of latitude
+    let b = plan.rooms[0].polygon.bounds();
+    assert!((b.width() - 4.39).abs() < 0.01 && (b.height() - 4.45).abs() < 0.01, "{b:?}");
+}
+
+#[test]
+fn what_is_no_building_is_refused_with_its_place() {
+    let rooms = |shapes: &str| format!(r#"<svg xmlns="http://www.w3.org/2000/svg">{shapes}</svg>"#);
+    let slanted = rooms(r#"<polygon id="attic" points="0,0 500,0 500,300 100,400"/>"#);
+    let bow = rooms(r#"<polygon id="bow" points="0,0 400,300 400,0 0,300"/>"#);
+    let twice =
+        rooms(r#"<rect id="a_room" width="400" height="300"/><rect id="b_room" x="200" width="400" height="300"/>"#);
+    let tiny =
+        rooms(r#"<rect id="shaft" width="15" height="500"/><rect id="kitchen" x="15" width="400" height="500"/>"#);
+    let options = Options { meters_per_unit: Some(0.01), ..Options::default() };
+    for (text, says) in [
+        (&slanted, ["attic", "degrees", "--rectify"]),
+        (&bow, ["bow", "crosses itself", "(0.000"]),
+        (&twice, ["b room", "on top of", "a room"]),
+        (&tiny, ["shaft", "no floor", "0.15 m"]),
+    ] {
+        let message = plan_of("x.svg", text.as_bytes(), &options).expect_err("no building").to_string();
+        assert!(says.iter().all(|s| message.contains(s)), "{message}");
+    }
+    let (_, notes) = plan_of("x.svg", slanted.as_bytes(), &Options { rectify: true, ..options }).expect("steps");
+    assert!(notes.contains(&"rectified".into()));
+    let message = plan_of("x.svg", twice.as_bytes(), &Options::default()).expect_err("no unit").to_string();
+    assert!(message.contains("--meters-per-unit"), "{message}");
+}
+
+#[test]
+fn hostile_files_end_in_a_message() {
+    let bomb = {
+        let mut text = String::from("<!DOCTYPE svg [<!ENTITY a0 \"ha\">");
+        (1..30).for_each(|k| text += &format!("<!ENTITY a{k} \"&a{0};&a{0};&a{0};&a{0};\">", k - 1));
+        text + "]><svg xmlns=\"http://www.w3.org/2000/svg\"><title>&a29;</title></svg>"
+    };
+    let deep = format!("<svg>{}{}</svg>", "<g>".repeat(100_000), "</g>".repeat(100_000));
+    let many = format!("<svg><path d=\"M0 0{}z\"/></svg>", " L1 1 L2 0".repeat(300_000));
+    let nested =
+        format!("{{\"type\":\"FeatureCollection\",\"features\":{}{}}}", "[".repeat(50_000), "]".repeat(50_000));
+    let far = r#"{"type":"Polygon","coordinates":[[[0,0],[1e300,0],[1e300,1e300],[0,1]]]}"#;
+    let wide = r#"{"type":"Polygon","coordinates":[[[0,0],[90000,0],[90000,80000],[0,80000]]]}"#;
+    let yaml_bomb = {
+        let mut text = String::from("levels:\n  a0: &a0 [x, x, x, x]\n");
+        (1..20).for_each(|k| text += &format!("  a{k}: &a{k} [*a{0}, *a{0}, *a{0}, *a{0}]\n", k - 1));
+        text
+    };
+    let huge_map = "image: huge.pgm\nresolution: 0.05\norigin: [0, 0, 0]\n";
+    for (name, text) in [
+        ("bomb.svg", bomb.as_str()),
+        ("deep.svg", &deep),
+        ("many.svg", &many),
+        ("nested.geojson", &nested),
+        ("far.geojson", far),
+        ("wide.geojson", wide),
+        ("bomb.building.yaml", &yaml_bomb),
+        ("map.yaml", huge_map),
+        ("empty.dxf", ""),
+        ("odd.dxf", "0\nSECTION\n2\nENTITIES\n0\nLINE\n10\nNaN\n20\n1\n11\n2\n21\n3\n0\nEOF\n"),
+        ("binary.dxf", "AutoCAD Binary DXF\r\n\u{1a}\u{0}"),
+        ("what.txt", "a plan"),
+    ] {
+        let companion = |_: &str| Some(b"P5\n4000000000 4000000000\n255\n".to_vec());
+        let source = Source { name, bytes: text.as_bytes(), companion: &companion };
+        let options = Options { meters_per_unit: name.ends_with(".svg").then_some(0.01), ..Options::default() };
+        let outcome = read(&source, &options).and_then(|plan| match plan {
+            Plan::Drawing(drawing) => lay_out(drawing, &options).map(|_| ()),
+            Plan::Document(_) => Ok(()),
+        });
+        let message = outcome.expect_err(name).to_string();
+        assert!(!message.is_empty() && message.len() < 600, "{name}: {message}");
+    }
+}
+
+#[test]
+fn truncated_files_never_panic() {
+    for name in ["flat.geojson", "flat.svg", "flat.dxf", "flat.building.yaml", "flat_map.yaml"] {
+        let bytes = std::fs::read(plans().join(name)).expect("a plan of the tests");
+        let mut broken = 0;
+        for end in (0..bytes.len()).step_by(bytes.len() / 60 + 1) {
+            broken += usize::from(plan_of(name, &bytes[..end], &thin()).is_err());
+        }
+        assert!(broken > 10, "{name}: only {broken} of its beginnings are refused");
+    }
+}

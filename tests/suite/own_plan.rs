@@ -1,0 +1,183 @@
+//! `d3dgen furnish`: plans that people bring are furnished as they are, and what they break is blamed on them.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+use d3dgen_model::document::Document;
+use d3dgen_model::floorplan::Floorplan;
+use d3dgen_model::report::Report;
+use d3dgen_tests::{files, run, run_well, workspace};
+
+/// Plans of the readers' tests, the flags that each needs, and what it breaks by itself.
+const PLANS: &[(&str, &[&str], &[&str])] = &[
+    ("flat.geojson", &[], &[]),
+    ("flat.svg", &[], &[]),
+    ("flat.dxf", &[], &[]),
+    ("flat.json", &["--domain", "residential"], &[]),
+    ("flat.building.yaml", &[], &["daylight_missing"]),
+    ("flat_map.yaml", &["--domain", "residential"], &["no_entrance"]),
+];
+
+fn plan(name: &str) -> String {
+    workspace().join("service/plans/tests/plans").join(name).display().to_string()
+}
+
+fn report(folder: &Path) -> Report {
+    Report::from_json(&fs::read_to_string(folder.join("report.json")).unwrap()).unwrap()
+}
+
+/// Returns the rules that a report says are broken; each violation must be blamed on the plan.
+fn given(report: &Report) -> Vec<&str> {
+    let broken: Vec<_> = report.rules.iter().filter(|r| !r.violations.is_empty()).collect();
+    assert!(broken.iter().flat_map(|r| &r.violations).all(|v| v.given), "{broken:#?}");
+    broken.iter().map(|r| r.rule.as_str()).collect()
+}
+
+#[test]
+fn plans_of_every_format_become_worlds_that_other_commands_take() {
+    let home = tempfile::tempdir().unwrap();
+    for (name, flags, breaks) in PLANS {
+        let path = plan(name);
+        let args = [&["furnish", path.as_str(), "--out", name, "--no-png"], *flags].concat();
+        let done = run(home.path(), &args);
+        let told = String::from_utf8_lossy(&done.stderr);
+        let folder = home.path().join(name);
+        assert_eq!(done.status.code(), Some(i32::from(!breaks.is_empty())), "{name}: {told}");
+        let report = report(&folder);
+        assert_eq!((given(&report).as_slice(), report.sound, report.given_plan), (*breaks, breaks.is_empty(), true));
+        assert_eq!(breaks.is_empty(), !told.contains("plan as given breaks"), "{name}: {told}");
+        let written = files(&folder);
+        assert!(written.contains_key("world.json") && written.contains_key("plan.svg"), "{:?}", written.keys());
+        assert!(written.keys().any(|k| k.ends_with("world.yaml")), "{name} has no bundle");
+
+        let code = |args: &[&str]| run(home.path(), args).status.code();
+        assert_eq!(code(&["check", name]), done.status.code());
+        assert_eq!(code(&["export", name, "--no-png", "--out", "exported"]), Some(0));
+        let stages = ["world", name, name, name, name, "--no-png", "--out", "again"];
+        assert_eq!(code(&stages), done.status.code());
+        let again = files(&home.path().join("again"));
+        assert!(again["world.json"] == written["world.json"] && again["report.json"] == written["report.json"]);
+    }
+}
+
+#[test]
+fn the_same_plan_and_seed_give_the_same_bytes_and_the_plan_stays() {
+    let home = tempfile::tempdir().unwrap();
+    let path = plan("flat.geojson");
+    for out in ["first", "second"] {
+        run_well(home.path(), &["furnish", &path, "--seed", "3", "--no-png", "--out", out]);
+    }
+    let of = |out: &str| files(&home.path().join(out));
+    assert!(of("first") == of("second"));
+    run_well(home.path(), &["furnish", &path, "--seed", "4", "--no-png", "--out", "other"]);
+    let (first, other) = (of("first"), of("other"));
+    assert!(first["placements.json"] != other["placements.json"], "another seed furnishes in another way");
+    let rooms = |files: &BTreeMap<String, Vec<u8>>| {
+        Floorplan::from_json(std::str::from_utf8(&files["floorplan.json"]).unwrap()).unwrap().rooms
+    };
+    assert_eq!(rooms(&first), rooms(&other), "the seed changes nothing of the plan");
+}
+
+#[test]
+fn a_plan_that_was_made_here_passes_through_with_all_its_levels() {
+    let home = tempfile::tempdir().unwrap();
+    let request = "office with 12 rooms on 2 floors in France";
+    run_well(home.path(), &["generate", request, "--seed", "1", "--no-png", "--out", "made"]);
+    run_well(home.path(), &["furnish", "made/floorplan.json", "--graph", "made", "--no-png", "--out", "kept"]);
+    run_well(home.path(), &["furnish", "made/floorplan.json", "--domain", "office", "--no-png", "--out", "bare"]);
+    let read = |out: &str| {
+        let text = fs::read_to_string(home.path().join(out).join("floorplan.json")).unwrap();
+        Floorplan::from_json(&text).unwrap()
+    };
+    let (made, kept, bare) = (read("made"), read("kept"), read("bare"));
+    assert_eq!((made.levels.len(), made.links.is_empty()), (2, false));
+    for plan in [&kept, &bare] {
+        assert_eq!((&plan.levels, &plan.links), (&made.levels, &made.links));
+        let outline = |p: &Floorplan| p.rooms.iter().map(|r| (r.room_id.clone(), r.level, r.polygon.clone())).collect();
+        let (is, was): (Vec<_>, Vec<_>) = (outline(plan), outline(&made));
+        assert_eq!(is, was);
+    }
+}
+
+/// A house in GeoJSON: a hall with an entrance, and a room of a size beside it.
+fn house(name: &str, width: f64, depth: f64) -> String {
+    let rect =
+        |x0: f64, y0: f64, x1: f64, y1: f64| format!("[[{x0},{y0}],[{x1},{y0}],[{x1},{y1}],[{x0},{y1}],[{x0},{y0}]]");
+    let room = |name: &str, ring: String| {
+        format!(
+            "{{\"type\":\"Feature\",\"properties\":{{\"name\":\"{name}\"}},\"geometry\":{{\"type\":\"Polygon\",\"coordinates\":[{ring}]}}}}"
+        )
+    };
+    let line = |kind: &str, x0: f64, y0: f64, x1: f64, y1: f64| {
+        format!(
+            "{{\"type\":\"Feature\",\"properties\":{{\"kind\":\"{kind}\"}},\"geometry\":{{\"type\":\"LineString\",\"coordinates\":[[{x0},{y0}],[{x1},{y1}]]}}}}"
+        )
+    };
+    let features = [
+        room("Hall", rect(0.0, 0.0, 2.0, 4.0)),
+        room(name, rect(2.1, 0.0, 2.1 + width, depth)),
+        line("door", 2.05, 0.5, 2.05, 1.4),
+        line("entrance", 0.5, 0.0, 1.5, 0.0),
+        line("window", 2.1 + width, 0.3, 2.1 + width, 1.3),
+    ];
+    format!("{{\"type\":\"FeatureCollection\",\"features\":[{}]}}", features.join(","))
+}
+
+#[test]
+fn what_a_room_lacks_is_the_plans_fault_only_where_the_room_is_too_small() {
+    let home = tempfile::tempdir().unwrap();
+    fs::write(home.path().join("closet.geojson"), house("Bedroom", 1.6, 1.9)).unwrap();
+    let done = run(home.path(), &["furnish", "closet.geojson", "--no-png", "--out", "closet"]);
+    assert_eq!(done.status.code(), Some(1), "{}", String::from_utf8_lossy(&done.stderr));
+    let report = report(&home.path().join("closet"));
+    let broken = given(&report);
+    assert!(broken.contains(&"object_missing") && broken.contains(&"room_area"), "{broken:?}");
+    assert!(home.path().join("closet/world.json").is_file());
+
+    // the same lack in a room that is large enough: its bed is taken out of the finished world's placements
+    fs::write(home.path().join("room.geojson"), house("Bedroom", 3.6, 4.0)).unwrap();
+    run_well(home.path(), &["furnish", "room.geojson", "--no-png", "--out", "room"]);
+    let file = home.path().join("room/placements.json");
+    let mut placements: serde_json::Value = serde_json::from_slice(&fs::read(&file).unwrap()).unwrap();
+    placements["placements"] = serde_json::json!([]);
+    fs::write(home.path().join("empty.json"), placements.to_string()).unwrap();
+    let args = ["world", "room", "room", "empty.json", "room", "--no-png", "--out", "emptied"];
+    assert_eq!(run(home.path(), &args).status.code(), Some(1));
+    let emptied = self::report(&home.path().join("emptied"));
+    let lack = emptied.rules.iter().find(|r| r.rule == "object_missing").unwrap();
+    assert!(!lack.violations.is_empty() && lack.violations.iter().all(|v| !v.given), "{lack:?}");
+    assert!(emptied.given_plan && !home.path().join("emptied/world.json").exists());
+}
+
+#[test]
+fn plans_that_cannot_be_read_are_refused_with_the_place() {
+    let home = tempfile::tempdir().unwrap();
+    let put = |name: &str, text: &str| fs::write(home.path().join(name), text).unwrap();
+    put(
+        "open.geojson",
+        "{\"type\":\"FeatureCollection\",\"features\":[{\"type\":\"Feature\",\"properties\":{},\"geometry\":null}]}",
+    );
+    put("torn.geojson", "{\"type\":\"FeatureCollection\",\"features\":[");
+    put("note.txt", "a plan in words");
+    let flat = plan("flat.geojson");
+    for (args, words) in [
+        (vec!["missing.svg"], vec!["missing.svg"]),
+        (vec!["torn.geojson"], vec!["torn.geojson"]),
+        (vec!["open.geojson"], vec!["open.geojson", "room"]),
+        (vec!["note.txt"], vec!["note.txt", "geojson", "dxf"]),
+        (vec!["note.txt", "--plan-format", "dwg"], vec!["dwg", "geojson"]),
+        (vec![&flat, "--domain", "spaceship"], vec!["spaceship", "residential"]),
+        (vec![&flat, "--room-type", "Attic=bedroom"], vec!["Attic"]),
+        (vec![&flat, "--country", "XQ"], vec!["XQ"]),
+        (vec![&flat, "--robot", "dancing"], vec!["dancing", "delivery"]),
+        (vec![&flat, "--robot-radius", "9"], vec!["9"]),
+        (vec![&flat, "--inner-wall", "-1"], vec!["wall"]),
+    ] {
+        let done = run(home.path(), &[&["furnish", "--out", "o"], args.as_slice()].concat());
+        let told = String::from_utf8_lossy(&done.stderr);
+        assert_eq!(done.status.code(), Some(2), "{args:?}: {told}");
+        assert!(words.iter().all(|w| told.contains(w)), "{args:?}: {told}");
+        assert!(!home.path().join("o").exists(), "{args:?} leaves something behind");
+    }
+}
