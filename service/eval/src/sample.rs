@@ -242,6 +242,7 @@ pub fn report(constraints: &[(&str, &str, bool, Status)]) -> Report {
         version: 1,
         world: "two_rooms".into(),
         sound: true,
+        given_plan: false,
         rules: Vec::new(),
         jurisdictions: vec!["DE".into()],
         summary: ConstraintSummary::default(),

@@ -10,7 +10,7 @@ use d3dgen_model::world::World;
 use serde_json::{Value, json};
 
 /// Every build there is; a test compares it with the schema.
-pub const ALL_SHAPES: [Shape; 34] = {
+pub const ALL_SHAPES: [Shape; 35] = {
     use Shape::*;
     [
         Box,
@@ -47,6 +47,7 @@ pub const ALL_SHAPES: [Shape; 34] = {
         Vehicle,
         Scanner,
         Rack,
+        Stairs,
     ]
 };
 

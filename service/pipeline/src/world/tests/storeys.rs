@@ -37,8 +37,19 @@ fn top_room(world: &World, kind: LinkKind) -> Option<String> {
     world.floorplan.links.iter().find(|l| l.kind == kind)?.room_ids.last().cloned()
 }
 
+/// What a storey breaks by itself when its stairs are no way in any more.
+const CUT_OFF: [&str; 7] = [
+    "stairs_missing",
+    "storey_cut_off",
+    "corridor_narrow",
+    "no_entrance",
+    "private_passage",
+    "unreachable_zone",
+    "free_space_split",
+];
+
 const BREAKS: &[Break] = &[
-    ("stairs_missing", &["storey_cut_off"], |world| {
+    ("stairs_missing", &CUT_OFF, |world| {
         world.floorplan.links.retain(|l| l.kind != LinkKind::Stairs);
         Some("level 1".into())
     }),
@@ -74,7 +85,7 @@ const BREAKS: &[Break] = &[
         world.floorplan.links.retain(|l| l.kind != LinkKind::Elevator);
         had.then(|| "level 1".into())
     }),
-    ("storey_cut_off", &["stairs_missing"], |world| {
+    ("storey_cut_off", &CUT_OFF, |world| {
         world.floorplan.links.iter_mut().for_each(|l| l.room_ids.truncate(1));
         let upper = world.floorplan.rooms.iter().find(|r| r.level == 1 && !r.circulation)?;
         Some(upper.room_id.clone())
