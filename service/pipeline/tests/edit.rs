@@ -187,7 +187,7 @@ fn objects_are_swapped_moved_added_and_removed() {
     let now = done.world.placements.placements.iter().find(|p| p.placement_id == bed.placement_id);
     let now = now.expect("it is still there");
     assert!((now.pose.x - x).abs() < 0.001 && (now.pose.y - y).abs() < 0.001);
-    assert_eq!(done.changed_room_ids, [bed.room_id.clone()]);
+    assert_eq!(done.changed_room_ids, std::slice::from_ref(&bed.room_id));
 
     let add = Edit::AddObject { room_id: bed.room_id.clone(), object: "plant".into() };
     let count = |w: &World| things(w, &bed.room_id).iter().filter(|p| p.object == "plant").count();

@@ -149,7 +149,7 @@ impl<'a> Site<'a> {
             .iter()
             .find(|s| s.vertical == vertical && s.at == nearest(at) && (meters(s.from)..=meters(s.to)).contains(&along))
             .ok_or_else(|| refused(format!("wall `{}` is not where rooms meet", moved.wall_id)))?;
-        for room in [stretch.low, stretch.high].into_iter().flatten().filter(|&r| self.kept[r]) {
+        if let Some(room) = [stretch.low, stretch.high].into_iter().flatten().find(|&r| self.kept[r]) {
             return Err(refused(format!(
                 "wall `{}` belongs to `{}`, which is locked; unlock it first",
                 moved.wall_id, self.brief.rooms[room].id

@@ -144,12 +144,8 @@ fn keep_windows(windows: &mut Vec<Window>, rooms: &[PlanRoom], doors: &[Door], e
     let standing = earlier.windows.iter().filter(|w| same(&w.room_id) && clear(w)).cloned();
     let fresh: Vec<Window> = std::mem::take(windows);
     windows.extend(standing);
-    let mut next = 1 + highest(earlier.windows.iter().map(|w| w.window_id.as_str()));
-    for mut window in fresh {
-        window.window_id = format!("window_{next}");
-        windows.push(window);
-        next += 1;
-    }
+    let next = 1 + highest(earlier.windows.iter().map(|w| w.window_id.as_str()));
+    windows.extend((next..).zip(fresh).map(|(n, window)| Window { window_id: format!("window_{n}"), ..window }));
 }
 
 /// Gives walls that stand where they stood their ids and locks back; the others get new ids.

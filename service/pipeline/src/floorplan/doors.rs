@@ -95,10 +95,9 @@ pub(super) fn place_doors(site: &Site<'_>, rng: &mut Stream) -> Result<Vec<Door>
     if !missing.is_empty() {
         return Err(format!("no wall long enough for the door from {}", missing.join(", ")));
     }
-    let mut next = 1 + highest(site.standing.iter().map(|d| d.door_id.as_str()));
-    for door in doors.iter_mut().filter(|d| d.door_id.is_empty()) {
-        door.door_id = format!("door_{next}");
-        next += 1;
+    let next = 1 + highest(site.standing.iter().map(|d| d.door_id.as_str()));
+    for (n, door) in (next..).zip(doors.iter_mut().filter(|d| d.door_id.is_empty())) {
+        door.door_id = format!("door_{n}");
     }
     Ok(doors)
 }
