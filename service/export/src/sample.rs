@@ -440,7 +440,7 @@ fn furniture() -> Vec<Placement> {
 
 /// Returns a hall with one object of every build, six to a row, turned in all four directions.
 pub fn catalogue() -> World {
-    let sizes: [(Shape, [f64; 3]); 34] = [
+    let sizes: [(Shape, [f64; 3]); 35] = [
         (Shape::Box, [0.8, 0.5, 0.5]),
         (Shape::Cabinet, [1.2, 0.45, 1.8]),
         (Shape::Shelf, [1.2, 0.4, 1.8]),
@@ -475,6 +475,7 @@ pub fn catalogue() -> World {
         (Shape::Vehicle, [1.2, 2.4, 2.1]),
         (Shape::Scanner, [1.9, 2.3, 1.9]),
         (Shape::Rack, [2.7, 1.1, 4.0]),
+        (Shape::Stairs, [1.0, 2.6, 2.6]),
     ];
     let (width, depth) = (18.0, 18.0);
     let hall =
