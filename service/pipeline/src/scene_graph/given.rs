@@ -2,7 +2,6 @@
 //!
 //! What such a plan gets wrong stays as it is: the graph says what there is, and the hard rules say what it breaks.
 
-use std::cmp::Reverse;
 use std::collections::BTreeMap;
 
 use d3dgen_model::domain::{Domain, GENERIC_ROOM_TYPE};
@@ -147,17 +146,16 @@ pub fn understand(labels: &[Label], domain: Option<&str>, registry: &Registry) -
             Names::new(plugin.domain())
         }
         None => {
-            // Of domains that know as many names, the one with fewer rooms of its own is meant: a home, not any building.
-            let mut best: Option<((usize, Reverse<usize>, usize), Names)> = None;
+            let mut best: Option<(usize, usize, Names)> = None;
             for plugin in registry.iter() {
                 let names = Names::new(plugin.domain());
                 let found: Vec<usize> = labels.iter().filter_map(|l| names.room_type(l)).map(|f| f.1).collect();
-                let rank = (found.len(), Reverse(plugin.domain().room_types.len()), found.iter().sum());
-                if best.as_ref().is_none_or(|b| rank > b.0) {
-                    best = Some((rank, names));
+                let (known, letters) = (found.len(), found.iter().sum());
+                if best.as_ref().is_none_or(|b| (known, letters) > (b.0, b.1)) {
+                    best = Some((known, letters, names));
                 }
             }
-            let ((known, _, _), names) = best.ok_or_else(|| refused("no domain is registered".into()))?;
+            let (known, _, names) = best.ok_or_else(|| refused("no domain is registered".into()))?;
             let message = format!(
                 "domain {} knows {known} of {} names of rooms and was taken; choose another with --domain",
                 names.domain.id,
