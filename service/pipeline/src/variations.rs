@@ -28,7 +28,7 @@ pub struct Variation {
 
 /// Returns `count` plans of a graph that differ as much as the pool allows, the best plan of the pool first.
 ///
-/// The pool has [`POOL`] plans for each one wanted, of the graph's seed and those after it; the first is the cheapest, and
+/// The pool has five plans for each one wanted, of the graph's seed and those after it; the first is the cheapest, and
 /// each next one is farthest from those chosen (Gonzalez 1985). Each is the plan that its seed gives by itself. What is
 /// locked in `pinned` stays in all of them.
 ///
