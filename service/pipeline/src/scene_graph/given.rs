@@ -2,6 +2,7 @@
 //!
 //! What such a plan gets wrong stays as it is: the graph says what there is, and the hard rules say what it breaks.
 
+use std::cmp::Reverse;
 use std::collections::BTreeMap;
 
 use d3dgen_model::domain::{Domain, GENERIC_ROOM_TYPE};
@@ -146,16 +147,18 @@ pub fn understand(labels: &[Label], domain: Option<&str>, registry: &Registry) -
             Names::new(plugin.domain())
         }
         None => {
-            let mut best: Option<(usize, usize, Names)> = None;
+            // of domains that know as many names in as many letters, the one that knows fewer rooms besides: it is about less
+            type Rank = (usize, usize, Reverse<usize>);
+            let mut best: Option<(Rank, Names)> = None;
             for plugin in registry.iter() {
                 let names = Names::new(plugin.domain());
                 let found: Vec<usize> = labels.iter().filter_map(|l| names.room_type(l)).map(|f| f.1).collect();
-                let (known, letters) = (found.len(), found.iter().sum());
-                if best.as_ref().is_none_or(|b| (known, letters) > (b.0, b.1)) {
-                    best = Some((known, letters, names));
+                let rank = (found.len(), found.iter().sum(), Reverse(names.domain.room_types.len()));
+                if best.as_ref().is_none_or(|b| rank > b.0) {
+                    best = Some((rank, names));
                 }
             }
-            let (known, _, names) = best.ok_or_else(|| refused("no domain is registered".into()))?;
+            let ((known, ..), names) = best.ok_or_else(|| refused("no domain is registered".into()))?;
             let message = format!(
                 "domain {} knows {known} of {} names of rooms and was taken; choose another with --domain",
                 names.domain.id,
