@@ -19,6 +19,7 @@ use d3dgen_model::report::Report;
 use d3dgen_model::scenario::Scenario;
 use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::world::World;
+use sha2::{Digest, Sha256};
 
 /// Returns the folder with the workspace's `Cargo.toml`.
 pub fn workspace() -> &'static Path {
@@ -140,4 +141,9 @@ pub fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let mut found = BTreeMap::new();
     walk(folder, folder, &mut found);
     found
+}
+
+/// Returns the SHA-256 of bytes, hexadecimal.
+pub fn digest(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().map(|b| format!("{b:02x}")).collect()
 }

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use d3dgen_tests::program;
+use d3dgen_tests::{digest, program};
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -104,6 +104,10 @@ fn models_come_in_are_found_and_go() {
     home.ok(&["assets", "sheet", "--origin", "ingested", "--out", sheet.to_str().expect("UTF-8"), "--px", "48"]);
     home.ok(&["assets", "show", "Office/Desk_Oslo", "--thumbnail", picture.to_str().expect("UTF-8"), "--px", "64"]);
     assert!(png(&sheet) && png(&picture));
+    home.ok(&["assets", "show", "Office/Desk_Oslo", "--thumbnail", picture.to_str().expect("UTF-8")]);
+    let desk: Value = serde_json::from_str(&home.ok(&["assets", "show", "Office/Desk_Oslo", "--json"])).expect("JSON");
+    let kept = std::fs::read(&picture).expect("written");
+    assert_eq!(desk["thumbnail"], serde_json::json!({"size_px": 128, "sha256": digest(&kept)}));
 
     let out = home.path("out");
     home.ok(&["assets", "export", "Office/Desk_Oslo", "Hospital/HospitalBed", "--out", out.to_str().expect("UTF-8")]);

@@ -3,8 +3,7 @@
 
 use std::fmt::Write;
 
-use d3dgen_tests::{files, golden, run_well, workspace};
-use sha2::{Digest, Sha256};
+use d3dgen_tests::{digest, files, golden, run_well, workspace};
 
 /// Name, seed, prompt.
 const CASES: &[(&str, &str, &str)] = &[
@@ -23,7 +22,7 @@ fn worlds_are_what_they_were_byte_for_byte() {
         run_well(home.path(), &["generate", prompt, "--seed", seed, "--name", case, "--out", case]);
         let mut list = String::new();
         for (name, bytes) in files(&home.path().join(case)) {
-            let sum: String = Sha256::digest(&bytes).iter().map(|b| format!("{b:02x}")).collect();
+            let sum = digest(&bytes);
             writeln!(list, "{sum}  {name}").unwrap();
         }
         golden(&workspace().join(format!("tests/golden/{case}.sha256")), &list);

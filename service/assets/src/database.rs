@@ -227,6 +227,13 @@ impl Database {
                 if let Err(error) = files::read(&self.files_dir(), &hash) {
                     damage.push(Damage { place: format!("asset {id}"), reason: error.to_string() });
                 }
+                let picture = files::picture(&self.files_dir(), &hash)?.map(|png| files::digest(&png));
+                if picture.as_ref() != record.annotation.thumbnail.as_ref().map(|t| &t.sha256) {
+                    let reason =
+                        "its thumbnail is not the one that was drawn; remove the asset and ingest its file again"
+                            .into();
+                    damage.push(Damage { place: format!("asset {id}"), reason });
+                }
                 wanted.insert(hash);
             }
         }

@@ -68,7 +68,15 @@ fn lost_and_left_files_are_noticed() {
     let stray = file.with_file_name("0000.model");
     std::fs::write(&stray, "x").expect("written");
     assert_eq!(verify(&database).len(), 1);
-    std::fs::remove_file(&stray).and_then(|()| std::fs::write(&file, "damaged")).expect("changed");
+    std::fs::remove_file(&stray).expect("removed");
+    let (picture, kept) = (file.with_extension("png"), database.thumbnail("Office/Seat").expect("readable"));
+    let annotation = database.get("Office/Seat").expect("readable").expect("kept");
+    let png = kept.expect("a picture");
+    assert_eq!(annotation.thumbnail.map(|t| t.sha256), Some(files::digest(&png)));
+    assert_eq!(png, std::fs::read(&picture).expect("beside the model"));
+    std::fs::write(&picture, "damaged").expect("changed");
+    assert!(verify(&database)[0].reason.contains("thumbnail"), "{:?}", verify(&database));
+    std::fs::write(&picture, png).and_then(|()| std::fs::write(&file, "damaged")).expect("changed");
     assert!(verify(&database)[0].reason.contains("digest"), "{:?}", verify(&database));
     std::fs::remove_file(&file).expect("removed");
     assert_eq!(verify(&database).len(), 1);
