@@ -8,6 +8,7 @@ use std::collections::BTreeSet;
 
 use d3dgen_model::knowledge::{AMENDMENT, LOCAL};
 
+use crate::aims::ObjectAims;
 use crate::conditions::Guard;
 use crate::limits::{AreaLimit, Limit, Limits, RoomLimits};
 use crate::measure::Measure;
@@ -21,24 +22,23 @@ const ROBOT_TOPIC: &str = "robot_placement_charging_circulation";
 /// Widest door that a limit may ask of an ordinary room, m: wider ones are gates with rules of their own.
 const WIDEST_DOOR_M: f64 = 2.0;
 
-/// Returns the limits that the constraints come to.
-pub(crate) fn draw(constraints: &[Applicable], chain: &[String], query: &Query) -> Limits {
-    let usable: Vec<(&Applicable, &Rule)> = constraints
-        .iter()
-        .filter(|a| a.guards.iter().all(Guard::is_planned) && a.unsure.is_none() && a.superseded_by.is_none())
-        .filter_map(|a| Some((a, a.decision.as_ref().ok()?)))
-        .collect();
+/// Returns the limits that the constraints come to; what `all` have beyond these is wished for only.
+pub(crate) fn draw(constraints: &[Applicable], all: &[Applicable], chain: &[String], query: &Query) -> Limits {
+    let usable = usable(constraints);
+    let wished = self::usable(all);
     let pick = |wanted: &dyn Fn(&Applicable, &Rule) -> Option<f64>| strictest(&usable, chain, query, wanted);
     let mut limits = Limits {
         corridor_width: pick(&|a, r| {
             (r.quantity.measure == Measure::CirculationWidth && is_circulation(a, query)).then_some(r.bounds.min?)
         }),
-        corridor_width_advised: advised_width(&usable, query),
+        corridor_width_advised: advised_width(&wished, query),
+        circulation_share_advised: advised_share(&wished),
         entrance_width: pick(&|a, r| {
             let door = r.quantity.measure == Measure::DoorWidth && matches!(a.scope, Scope::Entrance | Scope::Doors);
             door.then_some(r.bounds.min?)
         }),
         rooms: Default::default(),
+        objects: ObjectAims::draw(all),
     };
     for room in &query.rooms {
         let about = |a: &Applicable| match &a.scope {
@@ -57,12 +57,14 @@ pub(crate) fn draw(constraints: &[Applicable], chain: &[String], query: &Query) 
             area_min: least(&[Measure::RoomArea], room.area_max_m2),
             area_max: None,
             area_advised: advised_area(&usable, &about, room.area_max_m2),
+            area_per_person_advised: advised_per_person(&wished, &about),
             dimension_min: least(&[Measure::LeastDimension, Measure::InnerRectangle], side),
             door_width: pick(&|a, r| {
                 let value = r.bounds.min?;
                 let door = r.quantity.measure == Measure::DoorWidth && value <= WIDEST_DOOR_M;
                 (door && (about(a) || a.scope == Scope::Doors)).then_some(value)
             }),
+            door_width_advised: advised_door(&wished, &about),
             ceiling_height_min: least(&[Measure::CeilingHeight], f64::MAX),
             ceiling_heights_by_area: ceilings_by_area(constraints, &about, query),
         };
@@ -71,6 +73,32 @@ pub(crate) fn draw(constraints: &[Applicable], chain: &[String], query: &Query) 
         }
     }
     limits
+}
+
+/// Returns the constraints with a figure that holds for every room they are about.
+fn usable(constraints: &[Applicable]) -> Vec<(&Applicable, &Rule)> {
+    let settled = |a: &&Applicable| a.unsure.is_none() && a.superseded_by.is_none();
+    let settled = constraints.iter().filter(settled).filter(|a| a.guards.iter().all(Guard::is_planned));
+    settled.filter_map(|a| Some((a, a.decision.as_ref().ok()?))).collect()
+}
+
+/// Returns the floor area a person that meets most of the advice, m^2; of several such figures the least.
+fn advised_per_person(wished: &[(&Applicable, &Rule)], about: &dyn Fn(&Applicable) -> bool) -> Option<f64> {
+    let bounds = || {
+        let figures = wished.iter().filter(|(a, r)| r.quantity.measure == Measure::AreaPerPerson && about(a));
+        figures.map(|(_, r)| &r.bounds)
+    };
+    let met = |v: f64| bounds().filter(|b| b.min.is_none_or(|m| m <= v) && b.max.is_none_or(|m| v <= m)).count();
+    let figures = bounds().flat_map(|b| b.min.into_iter().chain(b.max));
+    figures.max_by(|x, y| met(*x).cmp(&met(*y)).then(y.total_cmp(x)))
+}
+
+/// Returns the clear width that all advice on the doors of a room asks for, m; gates are another matter.
+fn advised_door(wished: &[(&Applicable, &Rule)], about: &dyn Fn(&Applicable) -> bool) -> Option<f64> {
+    let doors = wished
+        .iter()
+        .filter(|(a, r)| r.quantity.measure == Measure::DoorWidth && (about(a) || a.scope == Scope::Doors));
+    doors.filter_map(|(_, r)| r.bounds.min).filter(|v| *v <= WIDEST_DOOR_M).reduce(f64::max)
 }
 
 /// Returns the clear heights that rooms above an area need.
@@ -90,6 +118,15 @@ fn ceilings_by_area(constraints: &[Applicable], about: &dyn Fn(&Applicable) -> b
 fn advised_width(usable: &[(&Applicable, &Rule)], query: &Query) -> Option<f64> {
     let about = |a: &Applicable, r: &Rule| r.quantity.measure == Measure::CirculationWidth && is_circulation(a, query);
     usable.iter().filter(|(a, r)| about(a, r)).filter_map(|(_, r)| r.bounds.min).reduce(f64::max)
+}
+
+/// Returns the share of circulation that meets all advice; largest figures go before least ones.
+fn advised_share(wished: &[(&Applicable, &Rule)]) -> Option<[f64; 2]> {
+    let bounds =
+        || wished.iter().filter(|(_, r)| r.quantity.measure == Measure::CirculationShare).map(|(_, r)| &r.bounds);
+    let most = bounds().filter_map(|b| b.max).reduce(f64::min);
+    let least = bounds().filter_map(|b| b.min).filter(|v| most.is_none_or(|m| *v <= m)).reduce(f64::max);
+    (least.is_some() || most.is_some()).then(|| [least.unwrap_or(0.0), most.unwrap_or(1.0)])
 }
 
 /// Returns true for constraints on circulation, whether they call it so or by the room type it has here.

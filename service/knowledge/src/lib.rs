@@ -4,6 +4,7 @@
 //! What it is not for: deciding whether a world is sound (hard rules live in the pipeline's `world` stage) and reading
 //! files. Which measurable quantity a constraint speaks of, and what its conditions mean, is data: `data/*.toml`.
 
+mod aims;
 pub mod amend;
 pub mod classify;
 pub mod clearance;
@@ -26,6 +27,7 @@ mod stats;
 mod tables;
 pub mod travel;
 
+pub use aims::{Aim, Clear, ObjectAims};
 pub use conditions::Guard;
 pub use error::Error;
 pub use figure::Bounds;

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use crate::aims::ObjectAims;
+
 /// Figures for the floorplan stage: the strictest of what applies, hard unless called advised.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Limits {
@@ -9,10 +11,14 @@ pub struct Limits {
     pub corridor_width: Option<Limit>,
     /// Width that advice asks of circulation beyond the hard figure, m; a wish.
     pub corridor_width_advised: Option<f64>,
+    /// Circulation over all net floor area between which advice is met; a wish.
+    pub circulation_share_advised: Option<[f64; 2]>,
     /// Least clear width of the main entrance door, m.
     pub entrance_width: Option<Limit>,
     /// Limits by room type id.
     pub rooms: BTreeMap<String, RoomLimits>,
+    /// What to aim at when objects are chosen and placed; wishes.
+    pub objects: ObjectAims,
 }
 
 /// Limits of one room type.
@@ -24,10 +30,14 @@ pub struct RoomLimits {
     pub area_max: Option<Limit>,
     /// Net floor area between which all advice is met, or most of it where advice contradicts itself, m^2; a wish.
     pub area_advised: Option<[f64; 2]>,
+    /// Net floor area for each person that works or sits in it, m^2; a wish.
+    pub area_per_person_advised: Option<f64>,
     /// Least clear extent in both directions, m.
     pub dimension_min: Option<Limit>,
     /// Least clear width of its door, m.
     pub door_width: Option<Limit>,
+    /// Clear width of its door that all advice asks for, m; a wish.
+    pub door_width_advised: Option<f64>,
     /// Least clear height, m.
     pub ceiling_height_min: Option<Limit>,
     /// Least clear heights that depend on the net floor area, m.

@@ -79,6 +79,16 @@ pub enum Scope {
     Objects(Vec<Shape>),
 }
 
+impl Scope {
+    /// Returns true when something is in both scopes.
+    pub(crate) fn meets(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Rooms(a), Self::Rooms(b)) => !a.is_disjoint(b),
+            _ => self == other,
+        }
+    }
+}
+
 /// A quantity with its required figures.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rule {
@@ -136,8 +146,8 @@ pub fn retrieve_with(knowledge: &KnowledgeBase, query: &Query, policy: &Policy) 
     }
     let mut planned: Vec<Applicable> = constraints.iter().filter(|a| !a.reported_only).cloned().collect();
     resolve::settle(&mut planned, &chain, policy);
-    let limits = draw_limits::draw(&planned, &chain, query);
     let conflicts = resolve::settle(&mut constraints, &chain, policy);
+    let limits = draw_limits::draw(&planned, &constraints, &chain, query);
     let used = |code: &String| {
         code == jurisdiction::INTERNATIONAL || constraints.iter().any(|c| &c.citation.jurisdiction == code)
     };

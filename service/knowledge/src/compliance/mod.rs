@@ -14,7 +14,7 @@ mod robots;
 mod rooms;
 mod routes;
 mod site;
-mod sizes;
+pub(crate) mod sizes;
 mod spacing;
 mod stairs;
 
@@ -29,7 +29,7 @@ use crate::tables::Sure;
 use site::Site;
 
 /// Lengths and areas closer than this to their limit meet it.
-const SLACK: f64 = 1e-3;
+pub(crate) const SLACK: f64 = 1e-3;
 
 /// A measured figure of one thing.
 #[derive(Debug, Clone, PartialEq)]
@@ -128,7 +128,7 @@ fn judge(a: &Applicable, rule: &Rule, readings: &[Reading], retrieval: &Retrieva
         return one(closest, Status::Violated, format!("best of {}", readings.len()));
     }
     if !broken.is_empty() {
-        let text = note(a, rule, retrieval, String::new());
+        let text = note(a, rule, retrieval, against(a, rule, retrieval));
         let each = broken.into_iter();
         return each
             .map(|r| result(a, Some(rule), &r.subject, Status::Violated, Some(r.value), text.clone()))
@@ -138,6 +138,19 @@ fn judge(a: &Applicable, rule: &Rule, readings: &[Reading], retrieval: &Retrieva
     let whatever = a.unsure.as_ref().map(|reason| format!("kept either way: {reason}"));
     let parts: Vec<String> = [Some(among), whatever].into_iter().flatten().filter(|p| !p.is_empty()).collect();
     one(closest, Status::Satisfied, parts.join("; "))
+}
+
+/// Returns why advice is not followed where other constraints on the same thing leave no figure that keeps both.
+fn against(a: &Applicable, rule: &Rule, retrieval: &Retrieval) -> String {
+    let (min, max) = required(rule);
+    let apart = |other: &Applicable, r: &Rule| {
+        let (low, high) = required(r);
+        let disjoint = min.zip(high).is_some_and(|(m, h)| m > h) || max.zip(low).is_some_and(|(m, l)| m < l);
+        disjoint && r.quantity.measure == rule.quantity.measure && r.to == rule.to && a.scope.meets(&other.scope)
+    };
+    let rivals = retrieval.constraints.iter().filter_map(|b| Some((b, b.decision.as_ref().ok()?)));
+    let mut rivals = rivals.filter(|(b, r)| b.superseded_by.is_none() && !a.mandatory && apart(b, r));
+    rivals.next().map_or(String::new(), |(b, _)| format!("no figure keeps this and {}", b.constraint.constraint_id))
 }
 
 /// Returns why a verdict would be a guess.

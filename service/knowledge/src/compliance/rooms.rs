@@ -5,6 +5,7 @@ use d3dgen_model::{Rect, TOLERANCE_M};
 
 use super::site::{Room, Site};
 use super::{Reading, circle};
+use crate::aims::is_mirror;
 use crate::freespace::FreeSpace;
 use crate::measure::Measure;
 use crate::retrieve::{Applicable, Rule};
@@ -57,8 +58,7 @@ fn figure(site: &Site, room: &Room, rule: &Rule) -> Option<f64> {
         }
         Measure::NoGlassOrMirrors => {
             let glass = room.windows.iter().any(|w| w.sill_m < FLOOR_GLASS_M);
-            let mirrors = |o: &&super::site::Object| o.kind.is_some_and(|k| k.tags.iter().any(|t| t == "mirror"));
-            let mirror = room.objects.iter().any(|o| mirrors(&o) || o.placement.object.contains("mirror"));
+            let mirror = room.objects.iter().any(|o| o.kind.is_some_and(is_mirror));
             if glass || mirror { 0.0 } else { 1.0 }
         }
         Measure::AreaPerObject => {

@@ -135,6 +135,14 @@ pub enum FacingRule {
 }
 
 impl Furnishing {
+    /// Returns how many units the line asks for in a room of this net floor area, m^2.
+    pub fn units(&self, area_m2: f64) -> u32 {
+        if self.area_per_item_m2 <= 0.0 {
+            return self.max;
+        }
+        ((area_m2 / self.area_per_item_m2) as u32).clamp(self.min, self.max)
+    }
+
     pub(super) fn check(&self, path: &str, domain: &Domain, problems: &mut Vec<Problem>) {
         if domain.group(&self.item).is_none() && domain.object(&self.item).is_none() {
             problems.push(Problem::new(

@@ -13,6 +13,10 @@ use super::lattice::{Cellbox, INNER_HALF_M, JAMB_M, OUTER_HALF_M, meters, up};
 use super::realize::{Layout, door_need};
 use super::spec::Brief;
 
+/// Cost of a room whose area is outside what is advised, beside that of how far.
+const ILL_ADVISED: f64 = 0.4;
+/// Share by which circulation beyond what is advised counts as larger.
+const ILL_SHARED: f64 = 0.03;
 /// Number of soft terms.
 const COUNT: usize = 10;
 /// A weight for each soft term.
@@ -271,7 +275,8 @@ impl<'b> Judge<'b> {
                 let off = (net - spec.area_target) / net.min(spec.area_target).max(0.1);
                 let [least, most] = spec.limits.area_advised.unwrap_or([0.0, f64::MAX]);
                 let ill_advised = ((least - net).max(net - most) / spec.area_target).max(0.0);
-                score.soft[0] += off.powi(2) + 3.0 * over + 3.0 * ill_advised;
+                score.soft[0] +=
+                    off.powi(2) + 3.0 * over + 5.0 * ill_advised + if ill_advised > 0.0 { ILL_ADVISED } else { 0.0 };
                 let (w, h) = room.clear;
                 score.hard += (spec.min_dimension - w.min(h)).max(0.0);
                 let proportion = w.max(h) / w.min(h).max(0.1);
@@ -328,6 +333,10 @@ impl<'b> Judge<'b> {
             // From a fifth on, circulation is what a reviewer objects to first.
             let share = rooms[spine].gross_m2 / total;
             score.soft[4] += (share - 0.10).max(0.0) + 5.0 * (share - 0.20).max(0.0);
+            if let Some([_, most]) = brief.share_advised {
+                let share = rooms[spine].net_m2 / rooms.iter().map(|r| r.net_m2).sum::<f64>();
+                score.soft[4] += if share > most { ILL_SHARED + 2.0 * (share - most) } else { 0.0 };
+            }
         }
         if let Some(area) = brief.area {
             let net: f64 = rooms.iter().map(|r| r.net_m2).sum();

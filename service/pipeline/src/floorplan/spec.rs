@@ -16,7 +16,9 @@ use crate::Error;
 const ACCESSIBLE_DOOR_M: f64 = 0.9;
 
 /// Advice widens a corridor by this factor at most: what asks for more is about another kind of corridor.
-const MOST_ADVISED_WIDTH: f64 = 1.25;
+const MOST_ADVISED_WIDTH: f64 = 1.4;
+/// Advice widens a door by this much at most, m.
+const MOST_ADVISED_DOOR_M: f64 = 0.1;
 /// Share by which the area aimed for differs from seed to seed, and the range from which on it may.
 const AREA_VARIATION: f64 = 0.06;
 const FREE_RANGE: f64 = 1.3;
@@ -73,6 +75,8 @@ pub(super) struct Link {
 /// The whole task.
 #[derive(Debug, Clone)]
 pub(super) struct Brief {
+    /// Share of the net floor area that circulation should have, least and most.
+    pub share_advised: Option<[f64; 2]>,
     pub rooms: Vec<RoomSpec>,
     /// Index of the corridor, hall or hub room; `None` for a single room.
     pub spine: Option<usize>,
@@ -125,6 +129,7 @@ impl Brief {
             rooms,
             spine,
             spine_width: circulation_width,
+            share_advised: limits.circulation_share_advised.filter(|_| graph.links.is_empty()),
             links: Vec::new(),
             apart: Vec::new(),
             second_exit: domain.circulation.second_exit && graph.rooms.iter().all(|r| r.level == 0),
@@ -288,6 +293,8 @@ fn room_spec(
     if graph.accessible {
         door_width = door_width.max(ACCESSIBLE_DOOR_M);
     }
+    let advised = limit.door_width_advised.unwrap_or(0.0).min(door_width + MOST_ADVISED_DOOR_M);
+    door_width = door_width.max(advised);
     // A robot's circle passes with 5 cm to spare on both sides.
     let robot = graph.robots.iter().map(|r| 2.0 * r.radius_m + 0.1).fold(0.0, f64::max);
     RoomSpec {

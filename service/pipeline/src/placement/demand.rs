@@ -1,10 +1,10 @@
 //! What a room should hold: its type's furnishing lines and the wishes of the scene graph, in the order of placing.
 
-use d3dgen_model::domain::{Arrangement, Domain, Furnishing, Mount, ObjectType, RoomType, Shape};
+use d3dgen_model::domain::{Arrangement, Domain, Mount, ObjectType, RoomType, Shape};
 use d3dgen_model::occupancy::ROBOT_HEIGHT_M;
 use d3dgen_model::scene_graph::GraphRoom;
 
-use super::unit::{Unit, variants};
+use super::unit::{Forms, Unit, variants};
 
 /// Largest number of units of one line in one room.
 const MAX_UNITS: u32 = 400;
@@ -50,13 +50,14 @@ pub(super) fn tasks<'a>(
     kind: &'a RoomType,
     graph: Option<&'a GraphRoom>,
     area_m2: f64,
+    per_person_m2: Option<f64>,
     windows: u32,
 ) -> Vec<Task<'a>> {
     let occupied = occupied_line(domain, kind, graph);
     let mut out: Vec<Task> = Vec::new();
     for (line, f) in kind.furnishing.iter().enumerate() {
         let Some(anchor) = domain.anchor(&f.item) else { continue };
-        let (mut count, mut required) = (count(f, area_m2), if f.required { f.min } else { 0 });
+        let (mut count, mut required) = (f.units(area_m2).min(MAX_UNITS), if f.required { f.min } else { 0 });
         if let Some((steered, units)) = occupied
             && steered == line
         {
@@ -89,10 +90,28 @@ pub(super) fn tasks<'a>(
         let rule = format!("wished for in the scene graph ({}): {}", object.id, arrangement_name(arrangement));
         out.push(Task { item: &object.id, anchor: object, arrangement, count: 1, required: 0, line: lines + i, rule });
     }
+    if let Some(each) = per_person_m2.filter(|_| occupied.is_none()) {
+        thin_out(domain, &mut out, (area_m2 / each).floor().max(1.0) as u32);
+    }
     turn_to_audience(&mut out);
     // corners are few: what cannot do without one comes before what only wants a wall
     out.sort_by_key(|t| (phase(t), t.required == 0 || t.arrangement != Arrangement::Corner, t.line));
     out
+}
+
+/// Takes desks away that the room has no need of, the last line's first, until no more people work there than are advised.
+fn thin_out(domain: &Domain, tasks: &mut Vec<Task>, people: u32) {
+    let desks = |t: &Task| {
+        let unit = variants(domain, t.item, &Forms::plain(i32::MAX / 2)).into_iter().next();
+        unit.map_or(0, |u| u.desks())
+    };
+    let each: Vec<u32> = tasks.iter().map(desks).collect();
+    let mut over = tasks.iter().zip(&each).map(|(t, n)| t.count * n).sum::<u32>().saturating_sub(people);
+    for (task, n) in tasks.iter_mut().zip(&each).rev().filter(|(_, n)| **n > 0) {
+        let gone = (over / n).min(task.count - task.required.max(1).min(task.count));
+        task.count -= gone;
+        over -= gone * n;
+    }
 }
 
 /// Lets a screen or board face the rows of seats a room begins with, where no line says what faces them.
@@ -111,20 +130,12 @@ fn turn_to_audience(tasks: &mut [Task]) {
     }
 }
 
-/// Returns how many units a line asks for in a room of this size.
-fn count(f: &Furnishing, area_m2: f64) -> u32 {
-    if f.area_per_item_m2 <= 0.0 {
-        return f.max.min(MAX_UNITS);
-    }
-    ((area_m2 / f.area_per_item_m2) as u32).clamp(f.min, f.max).min(MAX_UNITS)
-}
-
 /// Returns the line that beds, desks or seats for the room's occupants belong to, and how many units they need.
 fn occupied_line(domain: &Domain, kind: &RoomType, graph: Option<&GraphRoom>) -> Option<(usize, u32)> {
     let people = graph?.occupants.filter(|n| *n > 0)?;
     let capacity = |measure: fn(&Unit) -> u32| {
         kind.furnishing.iter().enumerate().find_map(|(line, f)| {
-            let unit = variants(domain, &f.item, &|_| 0, 1.0, i32::MAX / 2).into_iter().next()?;
+            let unit = variants(domain, &f.item, &Forms::plain(i32::MAX / 2)).into_iter().next()?;
             let each = measure(&unit);
             (each > 0 && f.max > 0).then_some((line, each))
         })

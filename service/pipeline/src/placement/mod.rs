@@ -25,7 +25,7 @@ mod way;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use d3dgen_knowledge::Limits;
+use d3dgen_knowledge::{Aim, Limits};
 use d3dgen_model::domain::{Domain, ObjectType};
 use d3dgen_model::floorplan::{Floorplan, PlanRoom};
 use d3dgen_model::placements::Placement;
@@ -34,6 +34,7 @@ use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::seed::Stream;
 
 use crate::{Error, Stop};
+use demand::Task;
 use geom::mm;
 use space::Space;
 use way::Way;
@@ -138,12 +139,18 @@ pub(crate) fn furnish_room(
 ) -> Result<(Vec<Placement>, Vec<Unplaced>), Vec<String>> {
     let space = Space::new(plan, room);
     let kind = domain.room_type_or_generic(&room.room_type);
-    let usual = || demand::tasks(domain, kind, graph.room(&room.room_id), room.net_area_m2, space.windows.len() as u32);
+    let per_person_m2 = limits.rooms.get(&room.room_type).and_then(|l| l.area_per_person_advised);
+    let windows = space.windows.len() as u32;
+    let usual = || demand::tasks(domain, kind, graph.room(&room.room_id), room.net_area_m2, per_person_m2, windows);
     let tasks = match wanted {
         Wanted::All => usual(),
         Wanted::Without(objects) => usual().into_iter().filter(|t| !objects.contains(&t.anchor.id)).collect(),
         Wanted::Only(object) => vec![demand::one_more(object)],
     };
+    let aims = domain.objects.iter().map(|o| (o.id.as_str(), limits.objects.of(&room.room_type, room.circulation, o)));
+    let aims: BTreeMap<&str, Aim> = aims.collect();
+    let unwanted = |t: &Task| t.required == 0 && aims.get(t.anchor.id.as_str()).is_some_and(|a| a.unwanted);
+    let tasks: Vec<Task> = tasks.into_iter().filter(|t| !unwanted(t)).collect();
     let flights = stairs::flights(plan, room, domain);
     let own = flights.iter().filter(|f| !fixed.iter().any(|p| p.placement_id == f.placement_id));
     let fixed: Vec<&Placement> = fixed.iter().copied().chain(own).collect();
@@ -153,7 +160,7 @@ pub(crate) fn furnish_room(
     }
     let mut stream = Stream::new(graph.seed, &format!("placement/{}", room.room_id));
     let salt = (stream.unit() * (1_u64 << 52) as f64) as u64;
-    let sizes = pick_sizes(domain, &mut stream);
+    let sizes = pick_sizes(domain, &aims, &mut stream);
     let present = match wanted {
         Wanted::All | Wanted::Without(_) => locked::present(&fixed, &tasks, domain),
         Wanted::Only(_) => vec![0; tasks.len()],
@@ -161,6 +168,8 @@ pub(crate) fn furnish_room(
     let robot_m = graph.robots.iter().map(|r| r.radius_m).fold(LEAST_RADIUS_M, f64::max);
     let asked_m = limits.corridor_width.as_ref().map_or(0.0, |l| l.value).max(domain.circulation.width_m);
     let way = Way::new(plan, room, asked_m.max(2.0 * robot_m));
+    let advised_m = limits.corridor_width_advised.unwrap_or(0.0);
+    let wide_way = Way::new(plan, room, advised_m.max(asked_m).max(2.0 * robot_m));
     let job = search::Job {
         domain,
         space: &space,
@@ -168,9 +177,11 @@ pub(crate) fn furnish_room(
         locked: &units,
         present: &present,
         sizes: &|o| sizes.get(o.id.as_str()).copied().unwrap_or(0),
+        aims: &aims,
         salt,
         radius: radius(graph, &space),
         way: way.as_ref(),
+        wide_way: wide_way.as_ref().or(way.as_ref()),
         stop,
     };
     let outcome = search::furnish(&job);
@@ -186,9 +197,15 @@ pub(crate) fn misfits(plan: &Floorplan, room: &PlanRoom, domain: &Domain, fixed:
     problems
 }
 
-/// Picks one size for each object type of a room, the most common one most often.
-fn pick_sizes<'a>(domain: &'a Domain, stream: &mut Stream) -> BTreeMap<&'a str, usize> {
-    let mut pick = |o: &ObjectType| if stream.chance(0.5) { 0 } else { stream.below(o.sizes_m.len()) };
+/// Picks one size for each object type of a room, of those that keep most rules the most common one most often.
+fn pick_sizes<'a>(domain: &'a Domain, aims: &BTreeMap<&str, Aim>, stream: &mut Stream) -> BTreeMap<&'a str, usize> {
+    let mut pick = |o: &ObjectType| {
+        let breaches = aims.get(o.id.as_str()).map_or(&[][..], |a| &a.breaches);
+        let least = breaches.iter().min().copied().unwrap_or(0);
+        let best: Vec<usize> = (0..o.sizes_m.len()).filter(|i| breaches.get(*i).is_none_or(|b| *b == least)).collect();
+        let at = if stream.chance(0.5) { 0 } else { stream.below(best.len()) };
+        best.get(at).copied().unwrap_or(0)
+    };
     domain.objects.iter().map(|o| (o.id.as_str(), pick(o))).collect()
 }
 

@@ -1,16 +1,18 @@
 //! The search: units in order of constraint, the best position each, and other choices for the first ones where that
 //! furnishes the room better (limited discrepancy search).
 
+use std::collections::BTreeMap;
 use std::rc::Rc;
 
-use d3dgen_model::domain::{Arrangement, Domain, ObjectType, Shape};
+use d3dgen_knowledge::Aim;
+use d3dgen_model::domain::{Arrangement, Domain, Shape};
 
 use super::demand::Task;
 use super::find::{Candidate, Find, Tally, Terms, over, rows};
 use super::nav::Nav;
 use super::space::Space;
 use super::state::{Placed, Rule, State};
-use super::unit::{Unit, variants};
+use super::unit::{Forms, Sizes, Unit, variants};
 use super::way::Way;
 use crate::Stop;
 
@@ -18,6 +20,8 @@ use crate::Stop;
 const ROUTE_TESTS: usize = 40;
 /// Positions with free routes that are weighed against each other.
 const WEIGHED: usize = 4;
+/// Share of the units that rows of smaller or closer ones would hold from which those that keep more rules are taken.
+const WORTH: f64 = 0.75;
 /// Ranks of choice tried for the first, second, ... unit, one departure at a time.
 const DEPARTURES: [(usize, usize); 3] = [(0, 1), (1, 1), (0, 2)];
 /// Free floor from which two departures are enough, in cells (100 m^2): halls take long and look alike.
@@ -35,18 +39,23 @@ pub(super) struct Job<'a, 's> {
     /// How many units of each task are among them.
     pub present: &'s [u32],
     /// Size of each object type in this room.
-    pub sizes: &'s dyn Fn(&ObjectType) -> usize,
+    pub sizes: &'s Sizes<'s>,
+    /// What rules ask of the object types, by id.
+    pub aims: &'s BTreeMap<&'s str, Aim>,
     pub salt: u64,
     /// Radius of the robot, mm.
     pub radius: i32,
     /// In circulation, what must stay open.
     pub way: Option<&'s Way>,
+    /// The same with the width that is advised, where the room has it.
+    pub wide_way: Option<&'s Way>,
     /// When to give up; the outcome is then of no use.
     pub stop: Stop<'s>,
 }
 
-/// How strict a pass is: clearances as a share, and a margin around the robot, mm.
-pub(super) const LEVELS: [(f64, i32); 5] = [(1.0, 50), (1.0, 20), (0.75, 20), (0.5, 10), (0.0, 5)];
+/// How strict a pass is: clearances as a share, and a margin around the robot, mm. The first one looks for the free floor
+/// that is advised too.
+pub(super) const LEVELS: [(f64, i32); 6] = [(1.0, 50), (1.0, 50), (1.0, 20), (0.75, 20), (0.5, 10), (0.0, 5)];
 
 /// A furnished room.
 pub(super) struct Outcome<'a> {
@@ -104,10 +113,12 @@ struct Pass<'j, 'a, 's> {
 impl<'j, 'a, 's> Pass<'j, 'a, 's> {
     fn new(job: &'j Job<'a, 's>, level: usize) -> Self {
         let (tightness, margin) = LEVELS[level];
+        let advised = level == 0;
         let forms = job.tasks.iter().map(|task| {
             let tightness = if task.required > 0 { tightness } else { 1.0 };
             let free = matches!(task.arrangement, Arrangement::Center | Arrangement::Rows);
-            variants(job.domain, task.item, job.sizes, tightness, job.space.ceiling)
+            let (sizes, aims, ceiling) = (job.sizes, job.aims, job.space.ceiling);
+            variants(job.domain, task.item, &Forms { sizes, aims, tightness, advised, ceiling })
                 .into_iter()
                 .map(|unit| if free { unit.free_standing() } else { unit })
                 .map(|unit| {
@@ -119,7 +130,11 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
                 .collect()
         });
         let forms = forms.collect();
-        let mut start = State::new(job.space, Nav::new(job.space, job.radius + margin), job.way);
+        let mut start = State::new(
+            job.space,
+            Nav::new(job.space, job.radius + margin),
+            if advised { job.wide_way } else { job.way },
+        );
         start.add(job.locked.to_vec());
         Self { job, level, forms, start }
     }
@@ -280,8 +295,10 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
         terms: &Terms,
         tally: &mut Tally,
     ) -> Option<(Vec<Placed<'a>>, f64)> {
-        let mut best: Option<(Vec<Placed>, f64)> = None;
+        // of each form that one could have; forms come in the order of what they keep of the rules
+        let mut found: Vec<(Vec<Placed>, f64)> = Vec::new();
         for forms in self.forms[index].iter().take_while(|_| !self.job.stop.is_set()) {
+            let mut best: Option<(Vec<Placed>, f64)> = None;
             let unit = &forms[0];
             let batches = if task.arrangement == Arrangement::Overhead {
                 over(state, task, index, unit, tally)
@@ -302,11 +319,15 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
                     break; // the others hold no more and look no better
                 }
             }
-            if best.as_ref().is_some_and(|b| b.0.len() as u32 >= task.count) {
+            let all = best.as_ref().is_some_and(|b| b.0.len() as u32 >= task.count);
+            found.extend(best);
+            if all {
                 break;
             }
         }
-        best
+        let most = found.iter().map(|f| f.0.len()).max()?;
+        let least = (task.required as usize).max((most as f64 * WORTH).ceil() as usize).min(most);
+        found.into_iter().find(|f| f.0.len() >= least)
     }
 
     fn single(&self, state: &State<'a, 's>, index: usize, rank: usize, tally: &mut Tally) -> Option<(Placed<'a>, f64)> {

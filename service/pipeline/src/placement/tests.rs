@@ -254,7 +254,7 @@ fn what_hangs_from_a_ceiling_meets_it_at_any_height() {
 #[test]
 fn a_crowded_top_is_cleared_of_what_is_not_needed() {
     with_domain("residential", |domain| {
-        let unit = variants(domain, "vanity_set", &|_| 0, 1.0, 2500).swap_remove(0);
+        let unit = variants(domain, "vanity_set", &Forms::plain(2500)).swap_remove(0);
         assert_eq!(unit.parts.len(), 4);
         let bare = unit.cleared(|_| true).expect("cup and bottle are optional");
         let left: Vec<&str> = bare.parts.iter().map(|p| p.object.id.as_str()).collect();
@@ -266,7 +266,7 @@ fn a_crowded_top_is_cleared_of_what_is_not_needed() {
 
 #[test]
 fn users_look_over_their_tables_and_ahead_of_their_sofas() {
-    let look = |domain: &Domain, item: &str| variants(domain, item, &|_| 0, 1.0, 2500)[0].look();
+    let look = |domain: &Domain, item: &str| variants(domain, item, &Forms::plain(2500))[0].look();
     with_domain("school", |domain| {
         assert_eq!((look(domain, "pupil_place"), look(domain, "teacher_place")), (2, 2));
         assert_eq!(look(domain, "blackboard"), 0);

@@ -1,7 +1,11 @@
 //! A group or a single object as one rigid unit around its anchor, in the anchor's frame: x forward, y left, origin
 //! at the middle of the anchor's back edge.
 
+use std::collections::BTreeMap;
+
 use d3dgen_knowledge::clearance::PROJECTION_M;
+use d3dgen_knowledge::{Aim, Clear};
+use d3dgen_model::TOLERANCE_M;
 use d3dgen_model::domain::{Domain, FacingRule, Group, Member, Mount, ObjectType, Relation, Shape};
 
 use super::geom::{Box2, ROBOT_HEIGHT, Solid, mm};
@@ -54,6 +58,29 @@ pub(super) struct Unit<'a> {
 
 /// Which size each object has in this room: index into `sizes_m` by object id.
 pub(super) type Sizes<'a> = dyn Fn(&ObjectType) -> usize + 'a;
+
+/// What units of a room have in common.
+#[derive(Clone, Copy)]
+pub(super) struct Forms<'s> {
+    /// Size of each object type.
+    pub sizes: &'s Sizes<'s>,
+    /// What rules ask of the object types, by id.
+    pub aims: &'s BTreeMap<&'s str, Aim>,
+    /// Scale of the clearances; 1 is as the domain says.
+    pub tightness: f64,
+    /// True to begin with forms that have the free floor that is advised.
+    pub advised: bool,
+    /// Things that hang stay below it, mm.
+    pub ceiling: i32,
+}
+
+impl Forms<'static> {
+    /// The first size of everything, under no rules.
+    pub fn plain(ceiling: i32) -> Self {
+        static NONE: BTreeMap<&str, Aim> = BTreeMap::new();
+        Self { sizes: &|_| 0, aims: &NONE, tightness: 1.0, advised: false, ceiling }
+    }
+}
 
 impl<'a> Unit<'a> {
     pub fn anchor(&self) -> &Part<'a> {
@@ -140,26 +167,22 @@ fn width_of(part: &Part) -> i32 {
     if part.quarter.is_multiple_of(2) { part.solid.rect.height() } else { part.solid.rect.width() }
 }
 
-/// Returns the forms of a unit to try in turn: the picked sizes first, then the other sizes from large to small, then
-/// with fewer members on the floor, last of all the smallest with required members only.
+/// Returns the forms of a unit to try in turn: the picked sizes first, then the other sizes, those that keep most rules
+/// and are largest first, then with fewer members on the floor, last of all the smallest with required members only.
 ///
-/// `tightness` scales the clearances (1 is as the domain says); things that hang stay below `ceiling`, mm.
-pub(super) fn variants<'a>(
-    domain: &'a Domain,
-    item: &'a str,
-    sizes: &Sizes,
-    tightness: f64,
-    ceiling: i32,
-) -> Vec<Unit<'a>> {
+/// Where advice asks for more free floor than the domain, whole forms with that come before all others.
+pub(super) fn variants<'a>(domain: &'a Domain, item: &'a str, forms: &Forms) -> Vec<Unit<'a>> {
     let group = domain.group(item);
     let Some(anchor) = domain.anchor(item) else {
         return Vec::new();
     };
-    let plan = Plan { domain, item, group, anchor, tightness, ceiling };
+    let plan = Plan { domain, item, group, anchor, forms };
+    let sizes = forms.sizes;
     let picked = sizes(anchor);
     let mut order: Vec<usize> = (0..anchor.sizes_m.len()).filter(|i| *i != picked).collect();
     let area = |i: usize| anchor.sizes_m[i][0] * anchor.sizes_m[i][1];
-    order.sort_by(|a, b| area(*b).total_cmp(&area(*a)));
+    let breach = |i: usize| forms.aims.get(anchor.id.as_str()).and_then(|a| a.breaches.get(i)).copied().unwrap_or(0);
+    order.sort_by(|a, b| breach(*a).cmp(&breach(*b)).then(area(*b).total_cmp(&area(*a))));
     let smallest = order.iter().copied().chain([picked]).min_by(|a, b| area(*a).total_cmp(&area(*b))).unwrap_or(picked);
     let mut out: Vec<Unit> = Vec::new();
     let mut add = |unit: Unit<'a>| {
@@ -167,9 +190,11 @@ pub(super) fn variants<'a>(
             out.push(unit);
         }
     };
-    for size in [picked].into_iter().chain(order) {
-        add(plan.build(size, sizes, usize::MAX));
+    let whole: Vec<Unit> = [picked].into_iter().chain(order).map(|size| plan.build(size, sizes, usize::MAX)).collect();
+    if forms.advised {
+        whole.iter().filter_map(|unit| advised(unit, forms)).for_each(&mut add);
     }
+    whole.into_iter().for_each(&mut add);
     if let Some(group) = group {
         let optional = group.members.iter().filter(|m| !m.required && takes_floor(domain, m)).count();
         let smallest_size = |o: &ObjectType| {
@@ -186,22 +211,51 @@ pub(super) fn variants<'a>(
     out
 }
 
+/// Returns a unit with the free floor that is advised for its parts; `None` where that is no more than it has.
+fn advised<'a>(unit: &Unit<'a>, forms: &Forms) -> Option<Unit<'a>> {
+    let mut clears = unit.clears.clone();
+    for part in unit.parts.iter().filter(|p| p.mount == Mount::Floor) {
+        if let Some(aim) = forms.aims.get(part.object.id.as_str()) {
+            advised_floor(part, &aim.clear, &mut clears);
+        }
+    }
+    let more = clears.len() > unit.clears.len();
+    more.then(|| finish_with(unit.item, unit.group, unit.parts.clone(), clears))
+}
+
+/// Adds the free floor that is advised for a part where it is more than its type asks for.
+fn advised_floor(part: &Part, clear: &Clear, out: &mut Vec<Box2>) {
+    let own = part.solid.rect.turned((4 - part.quarter) % 4);
+    let usual = [part.object.clearance_front_m, part.object.clearance_side_m];
+    let mut add = |depth: f64, has: f64, b: fn(Box2, i32) -> Box2| {
+        if depth > has + TOLERANCE_M {
+            out.push(b(own, mm(depth)).turned(part.quarter));
+        }
+    };
+    let side = |sides: u8| if part.object.clear_sides >= sides { usual[1] } else { 0.0 };
+    let (front, left) = (clear.front.max(clear.around), clear.sides.max(clear.around));
+    let right = if clear.one_side { clear.around } else { left };
+    add(front, usual[0], |o, d| Box2 { x0: o.x1, x1: o.x1 + d, ..o });
+    add(left, side(1), |o, d| Box2 { y0: o.y1, y1: o.y1 + d, ..o });
+    add(right, side(2), |o, d| Box2 { y0: o.y0 - d, y1: o.y0, ..o });
+    add(clear.around, 0.0, |o, d| Box2 { x0: o.x0 - d, x1: o.x0, ..o });
+}
+
 fn takes_floor(domain: &Domain, member: &Member) -> bool {
     let on_floor = domain.object(&member.object).is_some_and(|o| o.mount == Mount::Floor);
     on_floor && !matches!(member.relation, Relation::On | Relation::Above | Relation::Over | Relation::Under)
 }
 
 /// What all forms of a unit share.
-struct Plan<'a> {
+struct Plan<'a, 'f> {
     domain: &'a Domain,
     item: &'a str,
     group: Option<&'a Group>,
     anchor: &'a ObjectType,
-    tightness: f64,
-    ceiling: i32,
+    forms: &'f Forms<'f>,
 }
 
-impl<'a> Plan<'a> {
+impl<'a> Plan<'a, '_> {
     /// Builds the unit with one size of the anchor and the first so many optional members on the floor.
     fn build(&self, size: usize, sizes: &Sizes, keep_optional: usize) -> Unit<'a> {
         let mut kept = 0;
@@ -219,17 +273,20 @@ impl<'a> Plan<'a> {
 
     fn build_with(&self, size: usize, sizes: &Sizes, mut keep: impl FnMut(&Member) -> bool) -> Unit<'a> {
         let [w, d, h] = size_mm(self.anchor, size);
-        let z = hung(self.anchor, h, self.ceiling);
+        let z = hung(self.anchor, h, self.forms.ceiling);
         let rect = Box2 { x0: 0, y0: -(w / 2), x1: d, y1: w - w / 2 };
         let solid = Solid { rect, z0: z, z1: z + h };
         let mount = if self.anchor.mount == Mount::Surface { Mount::Floor } else { self.anchor.mount };
         let mut parts = vec![Part { object: self.anchor, quarter: 0, solid, mount, support: None, optional: false }];
         for member in self.group.map_or(&[][..], |g| &g.members).iter().filter(|m| keep(m)) {
-            if let Some(object) = self.domain.object(&member.object) {
-                add_member(&mut parts, member, object, sizes(object), self.ceiling);
+            let unwanted = || self.forms.aims.get(member.object.as_str()).is_some_and(|a| a.unwanted);
+            if let Some(object) = self.domain.object(&member.object)
+                && (member.required || !unwanted())
+            {
+                add_member(&mut parts, member, object, sizes(object), self.forms.ceiling);
             }
         }
-        finish(self.item, self.group.is_some(), parts, self.tightness)
+        finish(self.item, self.group.is_some(), parts, self.forms.tightness)
     }
 }
 

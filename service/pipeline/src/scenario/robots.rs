@@ -18,7 +18,7 @@ pub(super) fn all(floor: &mut Floor, graph: &SceneGraph, pois: &[Poi]) -> Vec<Ro
             let known = out.iter().filter(|t| t.robot.kind == robot.kind).count();
             let robot_id = format!("{}_robot_{}", robot.kind, known + 1);
             let docks: Vec<&Poi> = pois.iter().filter(|p| p.kind == "dock").collect();
-            let dock = docks.get(number % docks.len().max(1)).filter(|_| robot.charging).copied();
+            let dock = docks.get(number % docks.len().max(1)).copied();
             let Some(start) = start(floor, pois, dock, &out) else { continue };
             floor.take(Point::new(start.x, start.y), robot.radius_m);
             out.push(RobotTask {

@@ -92,6 +92,7 @@ fn assemble(request: &Request, mut reading: Reading, planned: &[Planned]) -> Sce
     } else {
         (edges::connect(&mut reading, planned, &mut rooms), Vec::new())
     };
+    rooms::add_docks(reading.domain, &reading.robots, &mut rooms);
     SceneGraph {
         version: 1,
         prompt: request.prompt.clone(),

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use d3dgen_model::domain::{Domain, GENERIC_ROOM_TYPE, RoomType};
-use d3dgen_model::scene_graph::GraphRoom;
+use d3dgen_model::domain::{Domain, GENERIC_ROOM_TYPE, RobotUse, RoomType, Shape};
+use d3dgen_model::scene_graph::{GraphRoom, Robot};
 
 use super::places::note;
 use super::program::{Planned, circulation_share};
@@ -186,4 +186,27 @@ pub(crate) fn wished_assets(domain: &Domain, kind: &RoomType, named: &[String]) 
         }
     }
     out
+}
+
+/// Wishes for a dock in rooms that suit one while there are fewer docks than robots: first in rooms, then in circulation.
+pub(super) fn add_docks(domain: &Domain, robots: &[Robot], rooms: &mut [GraphRoom]) {
+    let is_dock = |id: &str| domain.anchor(id).is_some_and(|o| o.shape == Shape::Dock);
+    let Some(dock) = domain.objects.iter().rev().find(|o| o.shape == Shape::Dock) else { return };
+    let held = |room: &GraphRoom| -> u32 {
+        let lines = domain.room_type_or_generic(&room.room_type).furnishing.iter();
+        lines.filter(|f| is_dock(&f.item)).map(|f| f.units(room.target_area_m2)).sum()
+    };
+    let robots: u32 = robots.iter().map(|r| r.count).sum();
+    let mut lacking = robots.saturating_sub(rooms.iter().map(held).sum());
+    for in_circulation in [false, true] {
+        for room in rooms.iter_mut().filter(|r| r.circulation == in_circulation) {
+            let kind = domain.room_type_or_generic(&room.room_type);
+            let suits = kind.robot.contains(&RobotUse::Charging) && !kind.furnishing.iter().any(|f| is_dock(&f.item));
+            if suits && lacking > 0 && !room.wished_assets.contains(&dock.id) {
+                room.wished_assets.insert(0, dock.id.clone());
+                room.wished_assets.truncate(MOST_WISHES);
+                lacking -= 1;
+            }
+        }
+    }
 }
