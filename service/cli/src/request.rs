@@ -2,6 +2,7 @@
 
 use std::io::{self, Read};
 
+use d3dgen_model::style::{Clutter, Style};
 use d3dgen_pipeline::scene_graph::Request;
 
 use crate::error::Error;
@@ -27,6 +28,23 @@ pub struct RequestArgs {
     /// Radius in m of the largest robot
     #[arg(long, value_name = "M", allow_negative_numbers = true)]
     pub robot_radius: Option<f64>,
+    /// How many small everyday things stand on furniture: low, normal or high; otherwise read from the prompt
+    #[arg(long, value_name = "GRADE", value_parser = clutter)]
+    pub clutter: Option<Clutter>,
+    /// How the building is to be, in words with commas between: compact or generous, cellular or open, symmetric or
+    /// asymmetric; otherwise read from the prompt
+    #[arg(long, value_name = "WORDS", value_parser = style)]
+    pub style: Option<Style>,
+}
+
+/// Returns the grade of clutter of a name.
+fn clutter(name: &str) -> Result<Clutter, String> {
+    Clutter::of(name).ok_or_else(|| format!("clutter `{name}` is not known; known are low, normal, high"))
+}
+
+/// Returns the style of words with commas between them.
+fn style(words: &str) -> Result<Style, String> {
+    Style::of_words(words.split(',').map(str::trim).filter(|w| !w.is_empty()))
 }
 
 impl RequestArgs {
@@ -40,6 +58,7 @@ impl RequestArgs {
             rooms: self.rooms,
             area_m2: self.area,
             robot_radius_m: self.robot_radius,
+            style: Style { clutter: self.clutter, ..self.style.unwrap_or_default() },
         }
     }
 }

@@ -163,6 +163,7 @@ fn graph(robot: &Robot) -> SceneGraph {
         area_m2: None,
         occupancy: Default::default(),
         accessible: false,
+        style: d3dgen_model::style::Style::default(),
         rooms: vec![room("a_1"), room("b_1")],
         links: Vec::new(),
         edges: vec![GraphEdge {

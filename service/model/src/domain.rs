@@ -4,6 +4,7 @@
 //! table by table); `knowledge.json` beside it holds the constraints. Nothing here names a building type in code.
 
 mod build;
+mod clutter;
 mod furnishing;
 mod object;
 mod program;
@@ -12,6 +13,7 @@ mod room_type;
 pub use build::{
     Axis, BASE, Build, BuildJoint, BuildJointKind, Formula, Mirror, Part, Repeat, Side, Solid, Tilt, Tone,
 };
+pub use clutter::{ClutterLine, ClutterPattern};
 pub use furnishing::{Arrangement, FacingRule, Furnishing, Group, Member, Relation};
 pub use object::{Mount, ObjectType, Shape, Stock, StockedAsset};
 pub use program::{
@@ -67,6 +69,9 @@ pub struct Domain {
     /// Objects that stand together as one unit.
     #[serde(default)]
     pub groups: Vec<Group>,
+    /// Small things on furniture where clutter is asked for.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub clutter: Vec<ClutterLine>,
     /// Scenario roles: ambient people by role.
     #[serde(default)]
     pub roles: Vec<Role>,
@@ -117,6 +122,11 @@ impl Domain {
     /// Returns the group with this id.
     pub fn group(&self, id: &str) -> Option<&Group> {
         self.groups.iter().find(|g| g.id == id)
+    }
+
+    /// Returns true when things may stand on an object's top: it is a surface, or small things are put there.
+    pub fn holds_things(&self, object: &ObjectType) -> bool {
+        object.surface || self.clutter.iter().any(|line| line.on.iter().any(|id| *id == object.id))
     }
 
     /// Returns the object a furnishing item is about: the anchor of a group, or the object itself.
@@ -214,6 +224,9 @@ impl Document for Domain {
         }
         for (i, group) in self.groups.iter().enumerate() {
             group.check(&format!("/groups/{i}"), self, &mut problems);
+        }
+        for (i, line) in self.clutter.iter().enumerate() {
+            line.check(&format!("/clutter/{i}"), self, &mut problems);
         }
         for (i, role) in self.roles.iter().enumerate() {
             for (j, id) in role.visits.iter().enumerate() {

@@ -21,6 +21,7 @@ pub mod scenario;
 pub mod scene_graph;
 pub mod seed;
 pub mod storeys;
+pub mod style;
 pub mod units;
 pub mod world;
 

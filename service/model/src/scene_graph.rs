@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::document::{Document, Problem, check_unique};
 use crate::storeys::{VerticalLink, check_links, is_ground};
+use crate::style::Style;
 
 /// What was asked for, understood.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -35,6 +36,9 @@ pub struct SceneGraph {
     /// True when the prompt asks for wheelchair access.
     #[serde(default)]
     pub accessible: bool,
+    /// How the building is to be, where the request says.
+    #[serde(default, skip_serializing_if = "Style::is_plain")]
+    pub style: Style,
     /// Rooms; those with `circulation` were added to connect the others and are not counted.
     pub rooms: Vec<GraphRoom>,
     /// Connections; every `door` and `open` edge is walkable in the finished world.

@@ -143,6 +143,8 @@ fn building(request: &Request) -> BuildingRequest {
         room_count: request.rooms,
         floor_area_m2: request.area_m2,
         robot_radius_m: request.robot_radius_m,
+        clutter: request.style.clutter.map(|c| c.name().to_owned()),
+        styles: request.style.words().map(str::to_owned).collect(),
     }
 }
 

@@ -8,6 +8,7 @@
 //! It does not choose 3D models (`asset` names the object type) and does not move walls.
 
 pub mod assemble;
+mod clutter;
 mod demand;
 mod find;
 mod geom;
@@ -32,6 +33,7 @@ use d3dgen_model::placements::Placement;
 use d3dgen_model::placements::{Placements, Unplaced};
 use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::seed::Stream;
+use d3dgen_model::style::Clutter;
 
 use crate::{Error, Stop};
 use demand::Task;
@@ -150,7 +152,11 @@ pub(crate) fn furnish_room(
     let aims = domain.objects.iter().map(|o| (o.id.as_str(), limits.objects.of(&room.room_type, room.circulation, o)));
     let aims: BTreeMap<&str, Aim> = aims.collect();
     let unwanted = |t: &Task| t.required == 0 && aims.get(t.anchor.id.as_str()).is_some_and(|a| a.unwanted);
-    let tasks: Vec<Task> = tasks.into_iter().filter(|t| !unwanted(t)).collect();
+    let mut tasks: Vec<Task> = tasks.into_iter().filter(|t| !unwanted(t)).collect();
+    let grade = graph.style.clutter.unwrap_or(Clutter::Normal);
+    if grade == Clutter::Low && !matches!(wanted, Wanted::Only(_)) {
+        tasks.retain(|task| !clutter::is_spare(task, kind));
+    }
     let flights = stairs::flights(plan, room, domain);
     let own = flights.iter().filter(|f| !fixed.iter().any(|p| p.placement_id == f.placement_id));
     let fixed: Vec<&Placement> = fixed.iter().copied().chain(own).collect();
@@ -184,7 +190,16 @@ pub(crate) fn furnish_room(
         wide_way: wide_way.as_ref().or(way.as_ref()),
         stop,
     };
-    let outcome = search::furnish(&job);
+    let mut outcome = search::furnish(&job);
+    match wanted {
+        Wanted::Only(_) => {}
+        Wanted::All | Wanted::Without(_) if grade == Clutter::Normal => {}
+        Wanted::All | Wanted::Without(_) if grade == Clutter::Low => clutter::tidy(&mut outcome, units.len()),
+        Wanted::All | Wanted::Without(_) => {
+            let more = clutter::strew(&job, &room.room_type, &mut outcome);
+            tasks.extend(more);
+        }
+    }
     let placements = assemble::placements(domain, &room.room_id, &tasks, &outcome, &fixed);
     Ok((placements, assemble::unplaced(&room.room_id, &tasks, &outcome, &present)))
 }

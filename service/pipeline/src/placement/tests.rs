@@ -126,6 +126,7 @@ impl<'s> Site<'s> {
             area_m2: None,
             occupancy: Occupancy::default(),
             accessible: false,
+            style: d3dgen_model::style::Style::default(),
             rooms: vec![room],
             edges: Vec::new(),
             apart: Vec::new(),

@@ -20,6 +20,7 @@ mod relations;
 mod robots;
 mod rooms;
 mod storeys;
+mod styles;
 mod text;
 mod unknown;
 mod wishes;
@@ -27,6 +28,7 @@ mod words;
 
 use d3dgen_knowledge::Query;
 use d3dgen_model::scene_graph::SceneGraph;
+use d3dgen_model::style::Style;
 use d3dgen_plugins::Registry;
 
 pub use self::given::{Brought, Label, Understood, of_plan, understand};
@@ -58,6 +60,8 @@ pub struct Request {
     pub area_m2: Option<f64>,
     /// Radius of the largest robot, m.
     pub robot_radius_m: Option<f64>,
+    /// How the building is to be; what is absent is read from the prompt.
+    pub style: Style,
 }
 
 /// Turns a request into a scene graph.
@@ -104,6 +108,7 @@ fn assemble(request: &Request, mut reading: Reading, planned: &[Planned]) -> Sce
         area_m2: reading.area_m2,
         occupancy: reading.occupancy,
         accessible: reading.accessible,
+        style: reading.style,
         rooms,
         edges: web.edges,
         apart: web.apart,

@@ -2,6 +2,7 @@
 
 use d3dgen_model::domain::{Access, Domain, Occupants, Program, ProgramRoom};
 use d3dgen_model::scene_graph::{Note, Occupancy, Robot};
+use d3dgen_model::style::Style;
 use d3dgen_plugins::Registry;
 
 use super::building::{self, Building};
@@ -9,6 +10,7 @@ use super::mentions::{Mention, Taken, Vocabulary, What, mentions};
 use super::places::{self, note};
 use super::relations;
 use super::storeys::{self, Storeys, Where};
+use super::styles;
 use super::text::{MAX_TOKENS, Phrases, Span, Token, tokens};
 use super::wishes::{self, CHARGING, MANY, Text, Wish, Wishes};
 use super::words::{Spoken, Tag, words};
@@ -46,6 +48,7 @@ pub(super) struct Reading<'a> {
     /// People who live there.
     pub residents: Option<u32>,
     pub accessible: bool,
+    pub style: Style,
     pub robots: Vec<Robot>,
     pub storeys: Storeys,
     /// Objects that the prompt names, each with the room type it is named with.
@@ -114,13 +117,17 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     spans.extend(radius.iter().map(|r| r.0));
     let storey_phrases = storeys::phrases(&tokens, &spoken);
     spans.extend(storey_phrases.iter().map(|p| p.span));
+    let said_styles = styles::said(&tokens, &languages);
+    spans.extend(said_styles.iter().map(|s| s.span));
     // "cleaning robot" and "wheelchair users" name no object
     let mut not_things = machines.spans.clone();
+    not_things.extend(said_styles.iter().map(|s| s.span));
     not_things.extend(access_wishes(&tokens, &numbers, &spoken));
     let vocabulary =
         registry.digest(&format!("{languages:?}: {}", domain.id), || Vocabulary::new(domain, registry, &languages));
     let taken = Taken { spans: &spans, head: building.head, list_from: building.list_from };
     let mentions = mentions(&tokens, &numbers, &vocabulary, &spoken, language, &taken);
+    let said_styles = styles::of_building(said_styles, &mentions, language);
     let said = relations::read(&tokens, &mentions, &spoken, language, building.head);
     let text = Text {
         tokens: &tokens,
@@ -170,6 +177,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         residents: people.residents,
         accessible: (0..tokens.len()).any(|i| spoken.iter().any(|s| s.tag_at(&tokens, i, Tag::Accessible).is_some())),
         robots,
+        style: styles::wished(&said_styles, request.style, &mut conflicts),
         assumptions,
         conflicts,
     })

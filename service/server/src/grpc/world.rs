@@ -10,6 +10,7 @@ use d3dgen_model::placements::Placements;
 use d3dgen_model::report::Report;
 use d3dgen_model::scenario::Scenario;
 use d3dgen_model::scene_graph::SceneGraph;
+use d3dgen_model::style::{Clutter, Style};
 use d3dgen_model::world::World;
 use d3dgen_pipeline::generate::{attempt_seed, retrieve, world_name};
 use d3dgen_pipeline::scene_graph::{self, Request as Asked};
@@ -265,6 +266,11 @@ fn building(asked: Option<BuildingRequest>) -> Result<Asked, Status> {
             return Err(invalid(field, "needs a figure above 0"));
         }
     }
+    let clutter = asked.clutter.as_deref().map(|name| {
+        Clutter::of(name).ok_or_else(|| invalid("building.clutter", format!("`{name}` is none of low, normal, high")))
+    });
+    let clutter = clutter.transpose()?;
+    let style = Style::of_words(asked.styles.iter().map(String::as_str)).map_err(|e| invalid("building.styles", e))?;
     Ok(Asked {
         prompt: asked.prompt,
         seed: asked.seed,
@@ -273,6 +279,7 @@ fn building(asked: Option<BuildingRequest>) -> Result<Asked, Status> {
         rooms: asked.room_count,
         area_m2: asked.floor_area_m2,
         robot_radius_m: asked.robot_radius_m,
+        style: Style { clutter, ..style },
     })
 }
 

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use d3dgen_model::Document;
 use d3dgen_model::report::Report;
+use d3dgen_model::style::Style;
 use d3dgen_model::world::World;
 use d3dgen_pipeline::generate::{Generated, Settings, furnish_and_check};
 use d3dgen_pipeline::scene_graph::{self, Request};
@@ -38,20 +39,22 @@ pub struct Building {
     pub area_m2: Option<f64>,
     /// Radius of the largest robot, m.
     pub robot_radius_m: Option<f64>,
+    /// How the building is to be.
+    pub style: Style,
 }
 
 impl From<Request> for Building {
     fn from(r: Request) -> Self {
-        let Request { prompt, seed, domain, country, rooms, area_m2, robot_radius_m } = r;
-        Self { prompt, seed, domain, country, rooms, area_m2, robot_radius_m }
+        let Request { prompt, seed, domain, country, rooms, area_m2, robot_radius_m, style } = r;
+        Self { prompt, seed, domain, country, rooms, area_m2, robot_radius_m, style }
     }
 }
 
 impl Building {
     /// Returns the request for one of its seeds.
     pub fn request(&self, seed: u64) -> Request {
-        let Self { prompt, domain, country, rooms, area_m2, robot_radius_m, .. } = self.clone();
-        Request { prompt, seed, domain, country, rooms, area_m2, robot_radius_m }
+        let Self { prompt, domain, country, rooms, area_m2, robot_radius_m, style, .. } = self.clone();
+        Request { prompt, seed, domain, country, rooms, area_m2, robot_radius_m, style }
     }
 }
 

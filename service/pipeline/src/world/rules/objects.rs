@@ -126,7 +126,7 @@ fn off_surface(c: &Context, object: &Object) -> Option<String> {
     if base.placement.room_id != p.room_id {
         return Some(format!("stands on `{id}` in another room"));
     }
-    if base.kind.is_some_and(|k| !k.surface) {
+    if base.kind.is_some_and(|k| !c.domain.holds_things(k)) {
         return Some(format!("stands on `{id}`, which has no surface"));
     }
     if (p.pose.z - top).abs() > SLACK_M {
