@@ -78,6 +78,7 @@ fn make(domain: &str, prompt: &str, seed: u64, registry: &Registry, folder: &Pat
         rooms: Some(10),
         area_m2: None,
         robot_radius_m: None,
+        ..Request::default()
     };
     let mut laps = [Duration::ZERO; ROWS];
     let begun = Instant::now();

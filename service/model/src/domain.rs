@@ -6,6 +6,7 @@
 mod build;
 mod clutter;
 mod furnishing;
+mod layouts;
 mod object;
 mod program;
 mod room_type;
@@ -15,6 +16,7 @@ pub use build::{
 };
 pub use clutter::{ClutterLine, ClutterPattern};
 pub use furnishing::{Arrangement, FacingRule, Furnishing, Group, Member, Relation};
+pub use layouts::{LayoutSwap, Layouts};
 pub use object::{Mount, ObjectType, Shape, Stock, StockedAsset};
 pub use program::{
     Adjacency, AdjacencyRelation, Circulation, Elevator, Occupants, Program, ProgramRoom, Scheme, Stairs, Storeys,
@@ -61,6 +63,9 @@ pub struct Domain {
     /// Which rooms belong together or apart.
     #[serde(default)]
     pub adjacency: Vec<Adjacency>,
+    /// What an open or a cellular layout changes.
+    #[serde(default, skip_serializing_if = "Layouts::is_empty")]
+    pub layouts: Layouts,
     /// Object types that furnishing refers to.
     pub objects: Vec<ObjectType>,
     /// How the 3D models of its objects are made, beside the shipped builds.
@@ -126,7 +131,7 @@ impl Domain {
 
     /// Returns true when things may stand on an object's top: it is a surface, or small things are put there.
     pub fn holds_things(&self, object: &ObjectType) -> bool {
-        object.surface || self.clutter.iter().any(|line| line.on.iter().any(|id| *id == object.id))
+        object.surface || self.clutter.iter().any(|line| line.on.contains(&object.id))
     }
 
     /// Returns the object a furnishing item is about: the anchor of a group, or the object itself.
@@ -225,6 +230,7 @@ impl Document for Domain {
         for (i, group) in self.groups.iter().enumerate() {
             group.check(&format!("/groups/{i}"), self, &mut problems);
         }
+        self.layouts.check(self, &mut problems);
         for (i, line) in self.clutter.iter().enumerate() {
             line.check(&format!("/clutter/{i}"), self, &mut problems);
         }

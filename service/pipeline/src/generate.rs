@@ -17,7 +17,7 @@ use d3dgen_model::world::World;
 use d3dgen_plugins::{Plugin, Registry};
 
 use crate::placement::Furnished;
-use crate::scene_graph::{BY_PROMPT, Request};
+use crate::scene_graph::{BY_PROMPT, BY_STYLE, Request};
 use crate::{Error, floorplan, placement, scenario, scene_graph, world};
 
 /// How to make a world, beside the request itself.
@@ -158,9 +158,10 @@ pub fn furnish_and_check(
 /// Returns the graph with what the prompt wants beside each other as wishes, or `None` when there is nothing to relax.
 fn relaxed(graph: &SceneGraph) -> Option<SceneGraph> {
     let mut out = graph.clone();
+    let wished = |reason: &str| reason == BY_PROMPT || reason == BY_STYLE;
     let reached =
-        |room: &str| graph.edges.iter().any(|e| e.required && e.reason != BY_PROMPT && (e.a == room || e.b == room));
-    for edge in out.edges.iter_mut().filter(|e| e.required && e.reason == BY_PROMPT) {
+        |room: &str| graph.edges.iter().any(|e| e.required && !wished(&e.reason) && (e.a == room || e.b == room));
+    for edge in out.edges.iter_mut().filter(|e| e.required && wished(&e.reason)) {
         if reached(&edge.a) && reached(&edge.b) {
             edge.required = false;
             let (a, b) = (&edge.a, &edge.b);

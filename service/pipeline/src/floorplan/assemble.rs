@@ -111,7 +111,8 @@ pub(super) fn assemble(
     let conflicts = brief.conflicts.clone();
     let hangs = brief.core.as_ref().is_some_and(|c| c.below.is_some());
     let overhang = CostTerm { term: "overhang".into(), cost: to_mm(OVERHANG * score.overhang) };
-    let cost = cost.chain(hangs.then_some(overhang)).collect();
+    let symmetry = CostTerm { term: "symmetry".into(), cost: to_mm(score.symmetry) };
+    let cost = cost.chain(hangs.then_some(overhang)).chain(brief.symmetry.map(|_| symmetry)).collect();
     Ok(Floorplan {
         version: 1,
         seed,

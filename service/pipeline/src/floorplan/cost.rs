@@ -10,6 +10,7 @@ use d3dgen_model::seed::Stream;
 use super::PROPORTION_LIMIT;
 use super::core::{Below, in_core, overhang};
 use super::lattice::{Cellbox, INNER_HALF_M, JAMB_M, OUTER_HALF_M, meters, up};
+use super::mirror;
 use super::realize::{Layout, door_need};
 use super::spec::Brief;
 
@@ -58,6 +59,8 @@ pub(super) struct Score {
     pub soft: [f64; COUNT],
     /// Share of the storey that hangs in the air beyond the one below.
     pub overhang: f64,
+    /// What the plan costs under a wish for symmetry or against it, weighted.
+    pub symmetry: f64,
 }
 
 impl Score {
@@ -68,7 +71,10 @@ impl Score {
 
     /// Returns the figure the search minimizes, under the taste of one plan.
     pub(super) fn total(&self, weights: &Weights) -> f64 {
-        self.hard * 30.0 + OVERHANG * self.overhang + self.soft.iter().zip(weights).map(|(s, w)| s * w).sum::<f64>()
+        self.hard * 30.0
+            + OVERHANG * self.overhang
+            + self.symmetry
+            + self.soft.iter().zip(weights).map(|(s, w)| s * w).sum::<f64>()
     }
 
     /// Returns the soft terms under the standard weights, so that plans can be compared.
@@ -347,6 +353,10 @@ impl<'b> Judge<'b> {
         // one comes up the stairs
         let stairs = brief.core.as_ref().map(|c| c.host);
         let entrance = brief.rooms.iter().position(|r| r.entrance).or(stairs).and_then(|i| rooms[i].main);
+        if let Some((wish, door)) = brief.symmetry.zip(entrance) {
+            let boxes: Vec<_> = rooms.iter().filter_map(|r| Some((r.main?, r.gross_m2))).collect();
+            score.symmetry = mirror::cost(wish, &boxes, door);
+        }
         let size = total.sqrt().max(1.0);
         for (spec, room) in brief.rooms.iter().zip(rooms) {
             let (Some(main), Some(door)) = (room.main, entrance) else { continue };
@@ -367,7 +377,7 @@ impl<'b> Judge<'b> {
     }
 }
 
-fn distance(a: Cellbox, b: Cellbox) -> f64 {
+pub(super) fn distance(a: Cellbox, b: Cellbox) -> f64 {
     let ((ax, ay), (bx, by)) = (a.center2(), b.center2());
     (f64::from((ax - bx).abs()) + f64::from((ay - by).abs())) * 0.025
 }

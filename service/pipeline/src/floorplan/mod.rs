@@ -19,6 +19,7 @@ mod doors;
 mod genome;
 mod insert;
 mod lattice;
+mod mirror;
 mod outline;
 mod realize;
 mod revise;

@@ -8,6 +8,7 @@ use d3dgen_model::domain::{Daylight, Domain, Materials, RoomType, Zone};
 use d3dgen_model::scene_graph::{Connector, GraphEdge, GraphRoom, Note, SceneGraph};
 use d3dgen_model::seed::Stream;
 use d3dgen_model::storeys::LinkKind;
+use d3dgen_model::style::Symmetry;
 
 use super::core::Core;
 use crate::Error;
@@ -89,6 +90,8 @@ pub(super) struct Brief {
     pub second_exit: bool,
     /// Net floor area asked for in total, m^2.
     pub area: Option<f64>,
+    /// Whether the plan is to be alike on both sides of an axis.
+    pub symmetry: Option<Symmetry>,
     pub entrance_width: f64,
     pub conflicts: Vec<Note>,
     /// By room: the larger room that is entered through it (an isolation room through its anteroom), if any.
@@ -134,6 +137,7 @@ impl Brief {
             apart: Vec::new(),
             second_exit: domain.circulation.second_exit && graph.rooms.iter().all(|r| r.level == 0),
             area: graph.area_m2.filter(|_| graph.links.is_empty()),
+            symmetry: graph.style.symmetry,
             entrance_width: max_limit(domain.circulation.entrance_width_m, limits.entrance_width.as_ref()),
             conflicts,
             guests: Vec::new(),

@@ -49,6 +49,7 @@ fn brief(mut rooms: Vec<RoomSpec>, width: f64, links: &[(usize, usize, Connector
         rooms,
         hub: false,
         spine_width: width,
+        symmetry: None,
         links: links.iter().map(|&(a, b, connector)| Link { a, b, connector, required: true }).collect(),
         apart: Vec::new(),
         second_exit: false,

@@ -13,7 +13,7 @@ use super::nav::Nav;
 use super::search::{Job, Outcome};
 use super::state::{Placed, State, at_frame};
 use super::style::grain;
-use super::unit::{Part, Unit, variants};
+use super::unit::{Forms, Part, Unit, variants};
 
 /// Distance kept from the edge of a top, mm.
 const EDGE: i32 = 25;
@@ -143,7 +143,9 @@ impl<'a> Strewing<'_, 'a, '_> {
 
     fn unit(&self, id: &str) -> Option<Rc<Unit<'a>>> {
         let object = self.job.domain.object(id)?;
-        let units = variants(self.job.domain, &object.id, self.job.sizes, 1.0, self.job.space.ceiling);
+        let (sizes, aims, ceiling) = (self.job.sizes, self.job.aims, self.job.space.ceiling);
+        let forms = Forms { sizes, aims, tightness: 1.0, advised: false, ceiling };
+        let units = variants(self.job.domain, &object.id, &forms);
         units.into_iter().next().map(Rc::new)
     }
 

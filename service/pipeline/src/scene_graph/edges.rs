@@ -2,13 +2,14 @@
 
 use d3dgen_model::domain::{Adjacency, AdjacencyRelation};
 use d3dgen_model::scene_graph::{Connector, GraphEdge, GraphRoom};
+use d3dgen_model::style::LayoutStyle;
 
 use super::places::note;
 use super::program::Planned;
 use super::reading::Reading;
 use super::relations::Spread;
 use super::rooms;
-use super::{BY_HOST, BY_PROMPT};
+use super::{BY_HOST, BY_PROMPT, BY_STYLE};
 
 /// Walls that one room can be asked to share with others; more are wished for only.
 const MOST_WALLS: usize = 2;
@@ -28,6 +29,7 @@ pub(super) fn connect(reading: &mut Reading, planned: &[Planned], rooms: &mut Ve
     choose_entrance(reading, rooms, hub);
     keep_apart(reading, rooms, &mut web);
     web.follow_prompt(reading, planned, rooms);
+    web.open_up(reading, rooms);
     web.follow_rules(reading, rooms);
     web
 }
@@ -49,6 +51,7 @@ pub(super) fn connect_storey(
     }
     keep_apart(reading, rooms, &mut web);
     web.follow_prompt(reading, planned, rooms);
+    web.open_up(reading, rooms);
     web.follow_rules(reading, rooms);
     web
 }
@@ -150,6 +153,21 @@ impl Web {
         }
     }
 
+    /// Joins the rooms that flow into each other in an open layout.
+    fn open_up(&mut self, reading: &Reading, rooms: &[GraphRoom]) {
+        if reading.style.layout != Some(LayoutStyle::Open) {
+            return;
+        }
+        for [a, b] in &reading.domain.layouts.open_joins {
+            let of = |kind: &str| -> Vec<usize> { (0..rooms.len()).filter(|&i| rooms[i].room_type == kind).collect() };
+            for (i, j) in spread(&of(a), &of(b), Spread::Each) {
+                if !self.has_apart(&rooms[i].id, &rooms[j].id) {
+                    self.put(rooms, (i, j), Connector::Open, true, BY_STYLE);
+                }
+            }
+        }
+    }
+
     /// Adds the domain's rules: `must` as required edges, `should` as wishes.
     fn follow_rules(&mut self, reading: &Reading, rooms: &[GraphRoom]) {
         for rule in &reading.domain.adjacency {
@@ -167,7 +185,10 @@ impl Web {
             if from.is_empty() || to.is_empty() || rule.a == rule.b {
                 continue;
             }
-            let connector = connector(&rule.via);
+            let connector = match connector(&rule.via) {
+                Connector::Open if reading.style.layout == Some(LayoutStyle::Cellular) => Connector::Door,
+                usual => usual,
+            };
             for (i, j) in spread(&from, &to, Spread::Each) {
                 let joined = |e: &GraphEdge| {
                     let walk = matches!(e.connector, Connector::Door | Connector::Open);
@@ -198,6 +219,9 @@ fn connector(via: &str) -> Connector {
 
 /// Returns the pairs of rooms that a pair of room types stands for.
 fn spread(from: &[usize], to: &[usize], how: Spread) -> Vec<(usize, usize)> {
+    if from.is_empty() || to.is_empty() {
+        return Vec::new();
+    }
     let mut out: Vec<(usize, usize)> = match how {
         Spread::All => from.iter().flat_map(|&i| to.iter().map(move |&j| (i, j))).collect(),
         Spread::Between => from.iter().flat_map(|&i| to.iter().take(2).map(move |&j| (i, j))).collect(),

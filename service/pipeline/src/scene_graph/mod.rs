@@ -10,6 +10,7 @@ mod dwelling;
 mod edges;
 mod given;
 mod language;
+mod layout;
 mod measures;
 mod mentions;
 mod numbers;
@@ -39,6 +40,9 @@ use crate::Error;
 
 /// Reason of the edges that a prompt asks for.
 pub(crate) const BY_PROMPT: &str = "prompt";
+
+/// Reason of the openings of an open layout.
+pub(crate) const BY_STYLE: &str = "style";
 
 /// Reason of the edge between a room and the one it is entered from.
 pub(crate) const BY_HOST: &str = "host";

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use d3dgen_knowledge::Applicable;
 use d3dgen_model::domain::{Access, Occupants, ProgramRoom, RoomType, Shape, Zone};
 
+use super::layout;
 use super::places::note;
 use super::reading::{MAX_ROOMS, Reading};
 use super::wishes::{CHARGING, Pair, Wish};
@@ -45,7 +46,7 @@ pub(super) struct Planned<'a> {
 }
 
 impl<'a> Planned<'a> {
-    fn new(room_type: &str, kind: &'a RoomType) -> Self {
+    pub(super) fn new(room_type: &str, kind: &'a RoomType) -> Self {
         Self {
             room_type: room_type.to_owned(),
             kind,
@@ -69,6 +70,7 @@ pub(super) fn complete<'a>(reading: &mut Reading<'a>) -> Vec<Planned<'a>> {
         (None, false) => build.fill_usual(),
     }
     let mut rooms = build.rooms;
+    layout::follow(reading, &mut rooms);
     wash_on_every_storey(reading, &mut rooms);
     hold_people(reading, &mut rooms);
     hang_on_hosts(reading, &mut rooms);
@@ -350,7 +352,7 @@ impl<'r, 'a> Build<'r, 'a> {
 }
 
 /// Returns the head count a program entry speaks of.
-fn head_count(reading: &Reading, of: Occupants) -> Option<u32> {
+pub(super) fn head_count(reading: &Reading, of: Occupants) -> Option<u32> {
     let o = &reading.occupancy;
     match of {
         Occupants::Staff => o.staff.max(o.desks),

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use d3dgen_model::domain::{Domain, GENERIC_ROOM_TYPE, RobotUse, RoomType, Shape};
 use d3dgen_model::scene_graph::{GraphRoom, Robot};
+use d3dgen_model::style::SpaceStyle;
 
 use super::places::note;
 use super::program::{Planned, circulation_share};
@@ -13,6 +14,10 @@ use super::reading::Reading;
 const MOST_WISHES: usize = 15;
 /// Share of the usual area per head that a building short of area leaves.
 const CROWDED: f64 = 0.6;
+/// Share of their usual area that rooms of a compact building have.
+const COMPACT: f64 = 0.8;
+/// The same of a generous building.
+const GENEROUS: f64 = 1.25;
 /// Share by which the areas may miss the one asked for before that is worth a note.
 const AREA_TOLERANCE: f64 = 0.1;
 
@@ -99,11 +104,14 @@ fn area_range(room: &Planned, target: f64) -> [f64; 2] {
 /// Returns target areas, net m^2: the usual ones, scaled together towards the area asked for.
 fn target_areas(reading: &mut Reading, planned: &[Planned]) -> Vec<f64> {
     let mut areas = Vec::with_capacity(planned.len());
+    let scale = space_scale(reading);
     for room in planned {
         let range = room.kind.area_m2;
-        let wished = room.area_m2.or(room.people_area_m2).unwrap_or(range.target);
-        let area = wished.clamp(range.min, range.max);
-        if (area - wished).abs() > 0.05 {
+        let usual = room.people_area_m2.unwrap_or(range.target);
+        let wished = room.area_m2.unwrap_or(usual);
+        let styled = if room.area_m2.is_some() { wished } else { usual * scale };
+        let area = styled.clamp(range.min, range.max);
+        if (wished.clamp(range.min, range.max) - wished).abs() > 0.05 {
             let message = format!(
                 "{} of {wished:.1} m2 is outside the range {}-{} m2 of its type; {area:.1} m2 was planned",
                 label(room),
@@ -143,6 +151,24 @@ fn target_areas(reading: &mut Reading, planned: &[Planned]) -> Vec<f64> {
         reading.conflicts.push(note("area_not_reachable", message));
     }
     scaled.into_iter().map(tenth).collect()
+}
+
+/// Returns the factor that the style asks for; the area that the prompt gives wins over the style.
+fn space_scale(reading: &mut Reading) -> f64 {
+    let (word, scale) = match reading.style.space {
+        None => return 1.0,
+        Some(SpaceStyle::Compact) => ("compact", COMPACT),
+        Some(SpaceStyle::Generous) => ("generous", GENEROUS),
+    };
+    if let Some(area) = reading.area_m2 {
+        let message = format!("{area:.0} m2 are asked for; rooms share them, so that {word} changes nothing");
+        reading.assumptions.push(note("style_without_effect", message));
+        return 1.0;
+    }
+    let percent = 100.0 * scale;
+    let message = format!("{word}: rooms have {percent:.0} % of their usual area, within the ranges of their types");
+    reading.assumptions.push(note("style_space", message));
+    scale
 }
 
 /// Rounds to 0.1 m^2; ranges of the domains have no finer steps that could be left.
