@@ -54,6 +54,7 @@ fn brief(mut rooms: Vec<RoomSpec>, width: f64, links: &[(usize, usize, Connector
         apart: Vec::new(),
         second_exit: false,
         area: None,
+        share_advised: None,
         entrance_width: 1.0,
         conflicts: Vec::new(),
         guests: Vec::new(),

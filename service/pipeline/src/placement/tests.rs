@@ -11,7 +11,7 @@ use d3dgen_model::scene_graph::{GraphRoom, Occupancy, SceneGraph};
 use d3dgen_model::{Point, Polygon, Rect, Segment};
 use d3dgen_plugins::Registry;
 
-use super::unit::variants;
+use super::unit::{Forms, variants};
 
 const OUTER_M: f64 = 0.24;
 
