@@ -17,8 +17,8 @@ use d3dgen_plugins::Registry;
 /// Least objects on a square meter of a cluttered building, its corridors left out; a warehouse is mostly aisles.
 const CASES: [(&str, f64); 6] = [
     ("two-bedroom flat in Germany", 2.0),
-    ("office for 12 people with two meeting rooms", 1.9),
-    ("hospital ward with 8 rooms in Germany", 1.8),
+    ("office for 12 people with two meeting rooms", 1.7),
+    ("hospital ward with 8 rooms in Germany", 1.6),
     ("primary school with four classrooms", 2.0),
     ("hotel with 9 rooms", 1.4),
     ("warehouse with a loading dock, an office and charging for two robots", 0.5),

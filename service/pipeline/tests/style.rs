@@ -61,8 +61,8 @@ fn passages(world: &World) -> f64 {
 fn compact_and_generous_move_the_mean_area_of_rooms() {
     // the rooms of a ward are held by the areas that its guidelines advise
     let cases = [
-        ("two-bedroom flat in Germany", 0.15),
-        ("office for 12 people", 0.15),
+        ("two-bedroom flat in Germany", 0.1),
+        ("office for 12 people", 0.1),
         ("hospital ward with 8 rooms in Germany", 0.03),
     ];
     for (prompt, share) in cases {
@@ -132,7 +132,7 @@ fn symmetric_plans_are_more_alike_on_both_sides() {
     };
     // the fewer rooms are alike in size, the less can be won
     let cases = [
-        ("house with 4 bedrooms and 2 bathrooms", 0.08),
+        ("house with 4 bedrooms and 2 bathrooms", 0.05),
         ("10-room office", 0.15),
         ("hospital ward with 8 rooms in Germany", 0.02),
     ];
