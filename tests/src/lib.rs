@@ -15,6 +15,7 @@ use d3dgen_model::edits::Edits;
 use d3dgen_model::floorplan::Floorplan;
 use d3dgen_model::knowledge::KnowledgeBase;
 use d3dgen_model::placements::Placements;
+use d3dgen_model::proposal::Proposal;
 use d3dgen_model::report::Report;
 use d3dgen_model::scenario::Scenario;
 use d3dgen_model::scene_graph::SceneGraph;
@@ -42,6 +43,7 @@ pub fn schemas() -> Vec<(PathBuf, String)> {
         entry::<Scenario>(),
         entry::<World>(),
         entry::<Report>(),
+        entry::<Proposal>(),
         entry::<Edits>(),
         entry::<Annotation>(),
         entry::<Evaluation>(),

@@ -21,6 +21,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("eval", &["model"]),
     ("plans", &["model"]),
     ("research", &["model", "llm"]),
+    ("propose", &["model", "llm", "plugins", "knowledge", "pipeline"]),
     ("proto", &["model"]),
     (
         "server",
@@ -41,6 +42,7 @@ const ARROWS: &[(&str, &[&str])] = &[
             "export",
             "eval",
             "research",
+            "propose",
             "proto",
             "server",
         ],

@@ -20,6 +20,7 @@ const OURS: &[&str] = &[
     "floorplan.json",
     "placements.json",
     "scenario.json",
+    "proposal.json",
     "plan.svg",
     "plan.png",
     "arena",

@@ -39,6 +39,7 @@ pub struct Summary {
     conflicts: Vec<Note>,
     attempts: u32,
     times: Vec<(&'static str, Duration)>,
+    proposals: Vec<(String, String)>,
 }
 
 impl Summary {
@@ -70,7 +71,13 @@ impl Summary {
             conflicts: graph.conflicts.iter().chain(&world.floorplan.conflicts).cloned().collect(),
             attempts: *attempts,
             times,
+            proposals: Vec::new(),
         }
+    }
+
+    /// Returns the figures with what became of a model's proposals: stage and a line for each.
+    pub fn with_proposals(self, proposals: Vec<(String, String)>) -> Self {
+        Self { proposals, ..self }
     }
 
     /// Returns true when the world holds every hard rule.
@@ -87,7 +94,7 @@ impl Summary {
     pub fn json(&self) -> Value {
         let times: serde_json::Map<String, Value> =
             self.times.iter().map(|(stage, t)| ((*stage).to_owned(), json!(round(ms(*t), 2)))).collect();
-        json!({
+        let mut value = json!({
             "world": self.name, "domain": self.domain, "building_type": self.building_type,
             "country_code": self.country_code, "seed": self.seed, "path": self.path.display().to_string(),
             "sound": self.sound, "verdict": self.verdict.to_lowercase(),
@@ -95,7 +102,13 @@ impl Summary {
             "area_m2": round(self.area_m2, 2), "objects": self.objects, "robots": self.robots, "people": self.people,
             "constraints": self.constraints, "violations": self.broken, "assumptions": self.assumptions,
             "conflicts": self.conflicts, "attempts": self.attempts, "stage_ms": times,
-        })
+        });
+        if !self.proposals.is_empty() {
+            let proposals: serde_json::Map<String, Value> =
+                self.proposals.iter().map(|(stage, line)| (stage.clone(), json!(line))).collect();
+            value["proposals"] = Value::Object(proposals);
+        }
+        value
     }
 
     /// Returns the closing lines of a single world.
@@ -129,7 +142,9 @@ impl Summary {
         for (label, value) in rows {
             text += &format!("  {label:<12} {value}\n");
         }
+        let proposed: Vec<String> = self.proposals.iter().map(|(stage, line)| format!("{stage}: {line}")).collect();
         for (label, lines) in [
+            ("proposed", proposed),
             ("assumed", messages(&self.assumptions)),
             ("changed", messages(&self.conflicts)),
             ("violated", self.violated.clone()),

@@ -16,6 +16,7 @@ pub mod geometry;
 pub mod knowledge;
 pub mod occupancy;
 pub mod placements;
+pub mod proposal;
 pub mod report;
 pub mod scenario;
 pub mod scene_graph;

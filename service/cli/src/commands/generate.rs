@@ -2,6 +2,7 @@
 
 mod batch;
 mod one;
+mod proposals;
 
 use std::path::PathBuf;
 use std::time::Instant;
@@ -52,6 +53,8 @@ pub struct Args {
     #[command(flatten)]
     registry: RegistryArgs,
     #[command(flatten)]
+    proposals: proposals::ProposalArgs,
+    #[command(flatten)]
     server: ServerArgs,
 }
 
@@ -69,7 +72,11 @@ impl Args {
         }
         let registry = self.registry.load()?;
         let (formats, flag) = (self.formats.chosen(&self.registry.store)?, interrupt::flag());
-        let maker = one::Maker { registry, formats, allow_conflicts: self.allow_conflicts, flag };
+        let proposals = self.proposals.proposals()?;
+        if proposals.is_some() && self.variations.is_some() {
+            return Err(Error::Input("--variations chooses among plans made without a model; use it without --propose".into()));
+        }
+        let maker = one::Maker { registry, formats, allow_conflicts: self.allow_conflicts, proposals, flag };
         let request = self.request.request(&prompt(&self.prompt)?);
         if self.count == 1 && self.variations.is_none() {
             let job = Job { request, name: self.name, path: self.out };
@@ -98,6 +105,9 @@ impl Args {
     fn ask(&self, remote: &Remote) -> Result<(), Error> {
         if self.variations.is_some() {
             return Err(Error::Input("--variations chooses among plans made here; use it without --server".into()));
+        }
+        if self.proposals.is_asked() {
+            return Err(Error::Input("--propose asks a model from here; use it without --server".into()));
         }
         let formats = self.formats.names()?;
         let (png, allow_conflicts) = (self.formats.png(), self.allow_conflicts);

@@ -14,6 +14,7 @@ mod furnish;
 mod generate;
 mod jobs;
 mod knowledge;
+mod model;
 mod placement;
 mod research;
 mod scenario;
@@ -25,6 +26,7 @@ mod world;
 use clap::Subcommand;
 
 pub use formats::Formats;
+pub use model::LlmArgs;
 
 use crate::error::Error;
 
@@ -32,7 +34,7 @@ use crate::error::Error;
 #[derive(Subcommand)]
 pub enum Command {
     /// Make a checked world (or many) from a sentence
-    Generate(generate::Args),
+    Generate(Box<generate::Args>),
     /// Furnish and judge a plan of yours: floorplan.json, GeoJSON, SVG, DXF, Open-RMF, nav2 map
     Furnish(Box<furnish::Args>),
     /// Stage 1: rooms and relations of a prompt

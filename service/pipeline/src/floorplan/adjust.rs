@@ -39,7 +39,7 @@ pub(super) fn replan(
 ) -> Result<Floorplan, Error> {
     let site = Site::new(brief, plan)?;
     let start = site.with_the_rooms_asked_for(0)?;
-    let task = Task { brief, kept: &site.kept, pins: &[], aim: Aim::Anew };
+    let task = Task { brief, kept: &site.kept, pins: &[], aim: Aim::Anew, moves_spine: false };
     site.search(&task, &start, seed, rng, stop)
 }
 
@@ -63,7 +63,7 @@ pub(super) fn change(
             (Err(_), Some(_)) => break,
         };
         let pins = moved.map_or(Ok(Vec::new()), |m| site.move_wall(&mut start, m))?;
-        let task = Task { brief, kept: &site.kept, pins: &pins, aim: Aim::Repair };
+        let task = Task { brief, kept: &site.kept, pins: &pins, aim: Aim::Repair, moves_spine: false };
         match site.search(&task, &start, plan.seed, rng, stop) {
             Ok(plan) => return Ok(plan),
             Err(Error::Cancelled) => return Err(Error::Cancelled),

@@ -159,7 +159,7 @@ pub(super) fn units(b: &Cellbox) -> i64 {
 }
 
 /// Returns the same cells as few rectangles, the largest first: it is the one a room is judged by.
-fn tidied(cells: &[Cellbox]) -> Vec<Cellbox> {
+pub(super) fn tidied(cells: &[Cellbox]) -> Vec<Cellbox> {
     if cells.len() < 2 {
         return cells.to_vec();
     }

@@ -21,6 +21,7 @@ mod insert;
 mod lattice;
 mod mirror;
 mod outline;
+mod proposed;
 mod realize;
 mod revise;
 mod search;
@@ -38,6 +39,7 @@ use d3dgen_model::seed::Stream;
 
 use crate::{Error, Stop};
 pub use adjust::WallMove;
+pub use proposed::{Follow, MOST_SKETCHED, Sketch, propose};
 use assemble::{Turn, assemble, turned};
 use search::search;
 use spec::Brief;
@@ -142,6 +144,18 @@ fn one_storey(plan: &Floorplan) -> Result<(), Error> {
             "the plan has {} storeys; rooms of such a plan cannot be planned anew one by one: lock all of them or none",
             plan.levels.len()
         ),
+    })
+}
+
+/// Refuses a graph of several storeys.
+fn one_storey_graph(graph: &SceneGraph) -> Result<(), Error> {
+    let storeys = graph.level_numbers().len();
+    if storeys < 2 {
+        return Ok(());
+    }
+    Err(Error::Refused {
+        stage: "floorplan",
+        message: format!("the building has {storeys} storeys; only plans of one storey can be sketched"),
     })
 }
 

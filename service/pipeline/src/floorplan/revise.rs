@@ -51,6 +51,8 @@ pub(super) struct Task<'a> {
     /// Rectangles that a room must own in the end (a wall that was just moved).
     pub pins: &'a [(usize, Cellbox)],
     pub aim: Aim,
+    /// True when the corridor moves like the other rooms.
+    pub moves_spine: bool,
 }
 
 impl Task<'_> {
@@ -107,7 +109,7 @@ impl Task<'_> {
     }
 
     fn is_free(&self, room: usize) -> bool {
-        !self.kept[room] && (self.brief.hub || Some(room) != self.brief.spine)
+        !self.kept[room] && (self.moves_spine || self.brief.hub || Some(room) != self.brief.spine)
     }
 
     fn cost(&self, board: &Board, start: &Board, judge: &mut Judge<'_>, layout: &mut Layout, weights: &Weights) -> f64 {

@@ -14,6 +14,7 @@ mod find;
 mod geom;
 mod locked;
 mod nav;
+mod proposed;
 mod search;
 mod space;
 mod stairs;
@@ -38,6 +39,7 @@ use d3dgen_model::style::Clutter;
 use crate::{Error, Stop};
 use demand::Task;
 use geom::mm;
+pub use proposed::{Proposed, Refusal, Wish, propose_room};
 use space::Space;
 use way::Way;
 
@@ -149,10 +151,8 @@ pub(crate) fn furnish_room(
         Wanted::Without(objects) => usual().into_iter().filter(|t| !objects.contains(&t.anchor.id)).collect(),
         Wanted::Only(object) => vec![demand::one_more(object)],
     };
-    let aims = domain.objects.iter().map(|o| (o.id.as_str(), limits.objects.of(&room.room_type, room.circulation, o)));
-    let aims: BTreeMap<&str, Aim> = aims.collect();
-    let unwanted = |t: &Task| t.required == 0 && aims.get(t.anchor.id.as_str()).is_some_and(|a| a.unwanted);
-    let mut tasks: Vec<Task> = tasks.into_iter().filter(|t| !unwanted(t)).collect();
+    let aims = aims_of(domain, limits, room);
+    let mut tasks: Vec<Task> = tasks.into_iter().filter(|t| !is_unwanted(t, &aims)).collect();
     let grade = graph.style.clutter.unwrap_or(Clutter::Normal);
     if grade == Clutter::Low && !matches!(wanted, Wanted::Only(_)) {
         tasks.retain(|task| !clutter::is_spare(task, kind));
@@ -164,18 +164,17 @@ pub(crate) fn furnish_room(
     if !problems.is_empty() {
         return Err(problems);
     }
-    let mut stream = Stream::new(graph.seed, &format!("placement/{}", room.room_id));
+    let mut stream = room_stream(graph, room);
     let salt = (stream.unit() * (1_u64 << 52) as f64) as u64;
     let sizes = pick_sizes(domain, &aims, &mut stream);
     let present = match wanted {
         Wanted::All | Wanted::Without(_) => locked::present(&fixed, &tasks, domain),
         Wanted::Only(_) => vec![0; tasks.len()],
     };
-    let robot_m = graph.robots.iter().map(|r| r.radius_m).fold(LEAST_RADIUS_M, f64::max);
-    let asked_m = limits.corridor_width.as_ref().map_or(0.0, |l| l.value).max(domain.circulation.width_m);
-    let way = Way::new(plan, room, asked_m.max(2.0 * robot_m));
+    let asked_m = way_width(graph, domain, limits);
+    let way = Way::new(plan, room, asked_m);
     let advised_m = limits.corridor_width_advised.unwrap_or(0.0);
-    let wide_way = Way::new(plan, room, advised_m.max(asked_m).max(2.0 * robot_m));
+    let wide_way = Way::new(plan, room, advised_m.max(asked_m));
     let job = search::Job {
         domain,
         space: &space,
@@ -210,6 +209,29 @@ pub(crate) fn misfits(plan: &Floorplan, room: &PlanRoom, domain: &Domain, fixed:
     let mut problems = locked::placed(fixed, domain, &space).1;
     problems.extend(locked::shading(fixed, domain, &space));
     problems
+}
+
+/// Returns what rules ask of the object types in a room, by id.
+fn aims_of<'a>(domain: &'a Domain, limits: &Limits, room: &PlanRoom) -> BTreeMap<&'a str, Aim> {
+    let aim = |o: &'a ObjectType| (o.id.as_str(), limits.objects.of(&room.room_type, room.circulation, o));
+    domain.objects.iter().map(aim).collect()
+}
+
+/// Returns true for what rules advise against and the room can do without.
+fn is_unwanted(task: &Task, aims: &BTreeMap<&str, Aim>) -> bool {
+    task.required == 0 && aims.get(task.anchor.id.as_str()).is_some_and(|a| a.unwanted)
+}
+
+/// Returns the random numbers of a room.
+fn room_stream(graph: &SceneGraph, room: &PlanRoom) -> Stream {
+    Stream::new(graph.seed, &format!("placement/{}", room.room_id))
+}
+
+/// Returns the width that ways through circulation keep, m.
+fn way_width(graph: &SceneGraph, domain: &Domain, limits: &Limits) -> f64 {
+    let robot_m = graph.robots.iter().map(|r| r.radius_m).fold(LEAST_RADIUS_M, f64::max);
+    let asked_m = limits.corridor_width.as_ref().map_or(0.0, |l| l.value).max(domain.circulation.width_m);
+    asked_m.max(2.0 * robot_m)
 }
 
 /// Picks one size for each object type of a room, of those that keep most rules the most common one most often.

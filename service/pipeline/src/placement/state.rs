@@ -32,6 +32,19 @@ pub(super) enum Rule {
 }
 
 impl Rule {
+    /// Returns the id of the hard rule of finished worlds that stands behind it.
+    pub fn id(self) -> &'static str {
+        match self {
+            Self::NoPlace => "object_back",
+            Self::Outside => "object_outside",
+            Self::Door => "door_blocked",
+            Self::Window => "window_blocked",
+            Self::Collision => "object_collision",
+            Self::Clearance => "object_clearance",
+            Self::Route => "free_space_split",
+        }
+    }
+
     /// Returns what the rule demands, for people.
     pub fn text(self) -> &'static str {
         match self {

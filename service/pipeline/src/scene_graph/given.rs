@@ -63,13 +63,14 @@ pub struct Brought {
 }
 
 /// The room words of a domain in all languages.
-struct Names<'a> {
+pub(super) struct Names<'a> {
     domain: &'a Domain,
     languages: Vec<Phrases<String>>,
 }
 
 impl<'a> Names<'a> {
-    fn new(domain: &'a Domain) -> Self {
+    /// Returns the words of a domain.
+    pub(super) fn new(domain: &'a Domain) -> Self {
         let of = |language: &String| {
             let mut phrases = Phrases::new(language);
             for room in domain.room_types.iter().filter(|r| r.id != GENERIC_ROOM_TYPE) {
@@ -84,7 +85,7 @@ impl<'a> Names<'a> {
     }
 
     /// Returns the room type that the longest words of a label name, and how many letters they have.
-    fn find(&self, label: &str) -> Option<(&str, usize)> {
+    pub(super) fn find(&self, label: &str) -> Option<(&str, usize)> {
         if self.domain.room_type(label).is_some_and(|r| r.id != GENERIC_ROOM_TYPE) {
             return self.domain.room_type(label).map(|r| (r.id.as_str(), label.len()));
         }

@@ -16,6 +16,7 @@ mod mentions;
 mod numbers;
 mod places;
 mod program;
+mod proposed;
 mod reading;
 mod relations;
 mod robots;
@@ -35,6 +36,8 @@ use d3dgen_plugins::Registry;
 pub use self::given::{Brought, Label, Understood, of_plan, understand};
 use self::program::Planned;
 use self::reading::Reading;
+pub(crate) use self::proposed::suits;
+pub use self::proposed::{BY_PROPOSAL, Draft, DraftEdge, DraftRoom, Settled, propose};
 pub(crate) use self::rooms::wished_assets;
 use crate::Error;
 
@@ -75,14 +78,24 @@ pub struct Request {
 pub fn generate(request: &Request, registry: &Registry) -> Result<SceneGraph, Error> {
     let mut reading = reading::read(request, registry)?;
     let mut planned = program::complete(&mut reading);
-    let draft = assemble(request, reading.clone(), &planned);
+    Ok(settle(request, registry, &mut reading, &mut planned))
+}
+
+/// Returns the graph of rooms, with those that building rules ask for beside them.
+fn settle<'a>(
+    request: &Request,
+    registry: &'a Registry,
+    reading: &mut Reading<'a>,
+    planned: &mut Vec<Planned<'a>>,
+) -> SceneGraph {
+    let draft = assemble(request, reading.clone(), planned);
     if let Some(plugin) = registry.get(&draft.domain) {
         let missing = d3dgen_knowledge::missing_rooms(plugin.knowledge(), &Query::of_graph(&draft, plugin.domain()));
-        if program::follow_rules(&mut reading, &mut planned, &missing) {
-            return Ok(assemble(request, reading, &planned));
+        if program::follow_rules(reading, planned, &missing) {
+            return assemble(request, reading.clone(), planned);
         }
     }
-    Ok(draft)
+    draft
 }
 
 /// Describes and connects the rooms.

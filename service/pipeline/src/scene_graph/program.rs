@@ -38,6 +38,8 @@ pub(super) struct Planned<'a> {
     pub area_m2: Option<f64>,
     /// Area that the people in it ask for, m^2.
     pub people_area_m2: Option<f64>,
+    /// Area that a proposal gives, m^2; within the range of its type.
+    pub proposed_area_m2: Option<f64>,
     pub requested: bool,
     /// Index of the room it is entered from, when that is not the circulation.
     pub host: Option<usize>,
@@ -46,6 +48,7 @@ pub(super) struct Planned<'a> {
 }
 
 impl<'a> Planned<'a> {
+    /// Returns a room of a type that nobody said more about.
     pub(super) fn new(room_type: &str, kind: &'a RoomType) -> Self {
         Self {
             room_type: room_type.to_owned(),
@@ -53,6 +56,7 @@ impl<'a> Planned<'a> {
             name: None,
             area_m2: None,
             people_area_m2: None,
+            proposed_area_m2: None,
             requested: false,
             host: None,
             occupants: None,
@@ -71,11 +75,27 @@ pub(super) fn complete<'a>(reading: &mut Reading<'a>) -> Vec<Planned<'a>> {
     }
     let mut rooms = build.rooms;
     layout::follow(reading, &mut rooms);
+    finish(reading, rooms)
+}
+
+/// Gives rooms that are settled their people and hosts, and states which of them the prompt does not name.
+pub(super) fn finish<'a>(reading: &mut Reading<'a>, mut rooms: Vec<Planned<'a>>) -> Vec<Planned<'a>> {
     wash_on_every_storey(reading, &mut rooms);
     hold_people(reading, &mut rooms);
     hang_on_hosts(reading, &mut rooms);
     state_additions(reading, &rooms);
     rooms
+}
+
+/// Returns true when rooms of a type may be added to those that the prompt names.
+pub(super) fn may_grow(reading: &Reading, room_type: &str) -> bool {
+    Build::new(reading).may_grow(room_type)
+}
+
+/// Returns true when a head count of the prompt says how many rooms of a type there are.
+pub(super) fn is_counted(reading: &Reading, room_type: &str) -> bool {
+    let mut entries = reading.program.rooms.iter().filter(|e| e.room_type == room_type);
+    entries.any(|e| head_count(reading, e.occupants).is_some())
 }
 
 /// Sees to it that there are as many toilets and bathrooms as storeys, where the prompt leaves the rooms open.

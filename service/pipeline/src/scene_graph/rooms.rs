@@ -109,7 +109,11 @@ fn target_areas(reading: &mut Reading, planned: &[Planned]) -> Vec<f64> {
         let range = room.kind.area_m2;
         let usual = room.people_area_m2.unwrap_or(range.target);
         let wished = room.area_m2.unwrap_or(usual);
-        let styled = if room.area_m2.is_some() { wished } else { usual * scale };
+        let styled = match (room.area_m2, room.people_area_m2, room.proposed_area_m2) {
+            (Some(asked), _, _) => asked,
+            (None, None, Some(proposed)) => proposed,
+            _ => usual * scale,
+        };
         let area = styled.clamp(range.min, range.max);
         if (wished.clamp(range.min, range.max) - wished).abs() > 0.05 {
             let message = format!(

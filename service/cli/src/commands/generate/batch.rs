@@ -20,7 +20,9 @@ pub fn run(maker: &Maker, jobs: &[Job], progress: &Progress, json: bool) -> Resu
     let next = AtomicUsize::new(0);
     let stop = AtomicBool::new(false);
     let (send, receive) = mpsc::channel();
-    let threads = thread::available_parallelism().map_or(1, usize::from).min(jobs.len());
+    // a model is asked for one world after the other, so that a recording answers them in their order
+    let most = if maker.proposals.is_some() { 1 } else { jobs.len() };
+    let threads = thread::available_parallelism().map_or(1, usize::from).min(most);
     thread::scope(|scope| {
         for _ in 0..threads {
             let send = send.clone();

@@ -3,12 +3,14 @@
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
+use d3dgen_model::document::Document;
 use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_pipeline::generate::{Artifact, Event, Settings, Stage, contradictions, furnish_and_check};
 use d3dgen_pipeline::scene_graph;
 use d3dgen_plugins::Registry;
 
 use super::Job;
+use super::proposals::{Proposals, lines};
 use crate::bundle;
 use crate::commands::Formats;
 use crate::error::Error;
@@ -25,6 +27,8 @@ pub struct Maker {
     pub registry: Registry,
     pub formats: Formats,
     pub allow_conflicts: bool,
+    /// A language model to ask, with the stages it is asked for.
+    pub proposals: Option<Proposals>,
     pub flag: &'static AtomicBool,
 }
 
@@ -44,17 +48,29 @@ impl Maker {
             refuse_contradictions(&graph)?;
         }
         observe(Event::Finished(Stage::SceneGraph, 0, Artifact::SceneGraph(&graph)));
-        let made = furnish_and_check(&graph, &self.registry, &settings, &mut observe, self.flag)?;
+        let (made, proposal) = match &self.proposals {
+            Some(proposals) => {
+                let asked = (&job.request, &graph);
+                let found =
+                    proposals.make(asked, (&self.registry, &settings), &mut observe, progress, self.flag)?;
+                (found.made, Some(found.proposal))
+            }
+            None => (furnish_and_check(&graph, &self.registry, &settings, &mut observe, self.flag)?, None),
+        };
         let begun = Instant::now();
         progress.doing("files");
         let domain = domain(&self.registry, &made.world.scene_graph.domain)?.domain();
         bundle::write(&made.world, &made.report, domain, &self.formats, &output)?;
+        if let Some(proposal) = &proposal {
+            output.write("proposal.json", proposal.to_json().as_bytes())?;
+        }
         interrupt::check()?;
         output.commit()?;
         let mut times = clock.times();
         times.push(("files", begun.elapsed()));
         progress.done(&format!("files ({:.0} ms)", begun.elapsed().as_secs_f64() * 1000.0));
-        Ok(Summary::new(&made, &job.path, times))
+        let proposed = proposal.as_ref().map(lines).unwrap_or_default();
+        Ok(Summary::new(&made, &job.path, times).with_proposals(proposed))
     }
 }
 

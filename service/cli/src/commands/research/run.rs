@@ -124,7 +124,7 @@ impl RunArgs {
         let fetcher =
             self.fetcher(cache, plan.places.iter().any(|p| matches!(p, d3dgen_research::run::Place::Url(_))))?;
         let read = read::Options { pdf: pdf_program(), ..read::Options::default() };
-        let client = self.model.client()?;
+        let client = self.model.llm.client()?;
         interrupt::listen();
         let progress = Progress::of(1);
         let say = |what: &str| progress.doing(what);
@@ -142,7 +142,7 @@ impl RunArgs {
             passes: self.model.passes,
             parallel: self.model.parallel,
             max_searches: self.model.max_searches,
-            searches: self.model.searches(),
+            searches: self.model.llm.searches(),
             accept_grounding_terms: self.model.accept_grounding_terms,
             confirm: &ask,
         });
@@ -167,7 +167,7 @@ impl RunArgs {
         if from != Stage::Documents && !self.documents.is_empty() {
             return Err(Error::Input("--documents and --from exclude each other: --from starts behind them".into()));
         }
-        if self.request.is_some() && self.model.model.is_none() {
+        if self.request.is_some() && self.model.llm.model.is_none() {
             return Err(Error::Input(
                 "a request in words needs a language model to understand it (--model); without one give --domain and --country"
                     .into(),
