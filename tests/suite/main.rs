@@ -13,5 +13,6 @@ mod interrupted;
 mod knowledge;
 mod own_plan;
 mod pins;
+mod proposals;
 mod same_bytes;
 mod schemas;

@@ -68,11 +68,20 @@ pub fn propose<A: DeserializeOwned, T>(
         items: Vec::new(),
     };
     let mut request = question.request;
-    (desk.proposer.say)(question.stage);
-    let (text, answer) = match ask(desk, &request, &mut record) {
+    let asked = match desk.trouble.clone() {
+        Some(trouble) => Err(trouble),
+        None => {
+            (desk.proposer.say)(question.stage);
+            ask(desk, &request, &mut record)
+        }
+    };
+    let (text, answer) = match asked {
         Ok(found) => found,
         Err(error) => {
             desk.check()?;
+            if lasts(&error) {
+                desk.trouble = Some(error.clone());
+            }
             record.error = Some(error.category().to_owned());
             record.note = format!("there is no usable answer, so the stage is as without a model: {}", plain(&error));
             return Ok((None, record));
@@ -133,6 +142,12 @@ fn ask<A: DeserializeOwned>(
     let text = json.to_string();
     let typed = serde_json::from_value(json).map_err(|e| invalid(e.to_string()))?;
     Ok((text, typed))
+}
+
+/// Returns true for trouble that the next question would meet as well.
+fn lasts(error: &LlmError) -> bool {
+    error.stops_run()
+        || matches!(error, LlmError::Unavailable { .. } | LlmError::Timeout { .. } | LlmError::RateLimited { .. })
 }
 
 /// Returns what went wrong with a model, without what the answer says: it may be anything.

@@ -92,10 +92,7 @@ fn judge(desk: &mut Desk<'_, '_>, base: &Generated, answer: &PlanAnswer) -> Resu
         .rooms
         .iter()
         .take(MOST_ROOMS)
-        .map(|r| Sketch {
-            room_id: r.room_id.clone(),
-            rects: r.rectangles.iter().take(MOST_RECTS).map(rect).collect(),
-        })
+        .map(|r| Sketch { room_id: r.room_id.clone(), rects: r.rectangles.iter().take(MOST_RECTS).map(rect).collect() })
         .collect();
     let limits = retrieve(graph, desk.plugin).limits;
     let mut found = Ok(Err(String::new()));
@@ -133,15 +130,8 @@ fn furnished(desk: &Desk<'_, '_>, base: &Generated, plan: Floorplan) -> Result<R
         let seed = attempt_seed(graph.seed, attempt);
         let reseeded = SceneGraph { seed, ..graph.clone() };
         let plan = Floorplan { seed, ..plan.clone() };
-        let placements = placement::generate_until(
-            &reseeded,
-            &plan,
-            desk.plugin.domain(),
-            &limits,
-            None,
-            &mut |_| (),
-            desk.stop(),
-        )?;
+        let placements =
+            placement::generate_until(&reseeded, &plan, desk.plugin.domain(), &limits, None, &mut |_| (), desk.stop())?;
         let made = desk.judged(graph, plan, placements)?;
         if made.report.is_writable() {
             return Ok(Ok(made));

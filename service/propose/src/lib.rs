@@ -99,7 +99,7 @@ pub fn generate(
         message: format!("the scene graph is of domain `{}`, which is not registered", graph.domain),
     })?;
     let name = settings.name.clone().unwrap_or_else(|| world_name(graph));
-    let mut desk = Desk { request, registry, plugin, settings, proposer, observe, cancelled, name };
+    let mut desk = Desk { request, registry, plugin, settings, proposer, observe, cancelled, name, trouble: None };
     let mut stages = Vec::new();
     let asks = |stage: Stage| proposer.stages.contains(&stage);
     let mut wished = None;
@@ -148,6 +148,8 @@ struct Desk<'d, 'o> {
     observe: &'o mut dyn FnMut(Event<'_>),
     cancelled: &'d AtomicBool,
     name: String,
+    /// Why no further question is worth asking.
+    trouble: Option<LlmError>,
 }
 
 impl Desk<'_, '_> {

@@ -146,12 +146,7 @@ fn judge(desk: &mut Desk<'_, '_>, base: &Generated, answer: &FurnitureAnswer) ->
 }
 
 fn wish(object: &ObjectAnswer) -> Wish {
-    Wish {
-        object: object.object.clone(),
-        x: object.x_m,
-        y: object.y_m,
-        yaw_rad: (object.yaw_deg % 360.0).to_radians(),
-    }
+    Wish { object: object.object.clone(), x: object.x_m, y: object.y_m, yaw_rad: (object.yaw_deg % 360.0).to_radians() }
 }
 
 /// Returns the plan of the storey that a room is on.
@@ -264,11 +259,7 @@ fn heading(yaw_rad: f64) -> f64 {
 }
 
 /// Returns for each wish of a room the object that stands for it: the nearest pairs first.
-fn matched<'p>(
-    all: &[&ObjectAnswer],
-    wanted: &[usize],
-    here: &[&'p Placement],
-) -> Vec<(usize, Option<&'p Placement>)> {
+fn matched<'p>(all: &[&ObjectAnswer], wanted: &[usize], here: &[&'p Placement]) -> Vec<(usize, Option<&'p Placement>)> {
     let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
     for &n in wanted {
         for (k, p) in here.iter().enumerate().filter(|(_, p)| p.object == all[n].object) {

@@ -8,9 +8,9 @@ use d3dgen_model::geometry::Rect;
 use d3dgen_model::proposal::{Fate, FateCounts, ItemKind, ProposedItem, StageProposal};
 use d3dgen_model::scene_graph::{Connector, SceneGraph};
 use d3dgen_model::world::World;
+use d3dgen_pipeline::Error;
 use d3dgen_pipeline::generate::{Generated, Stage, contradictions, furnish_and_check, retrieve};
 use d3dgen_pipeline::scene_graph::{self, BY_PROPOSAL, Draft, DraftEdge, DraftRoom};
-use d3dgen_pipeline::Error;
 
 use crate::ask::{Question, Trial, propose as ask};
 use crate::json::{GraphAnswer, graph_schema, quoted};
@@ -48,8 +48,9 @@ fn question(desk: &Desk<'_, '_>, own: &SceneGraph) -> Question {
         ("circulation", &domain.circulation.room_type),
         ("examples", &examples::graphs(desk.registry, domain)),
     ]);
-    let mut request =
-        LlmRequest::new(Stage::SceneGraph.name(), text).with_system(prompts().system.trim()).with_schema(graph_schema());
+    let mut request = LlmRequest::new(Stage::SceneGraph.name(), text)
+        .with_system(prompts().system.trim())
+        .with_schema(graph_schema());
     request.max_output_tokens = TOKENS.0.saturating_add(TOKENS.1.saturating_mul(own.rooms.len() as u32));
     Question { stage: Stage::SceneGraph, request, constraint_ids }
 }

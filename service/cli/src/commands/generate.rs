@@ -74,7 +74,9 @@ impl Args {
         let (formats, flag) = (self.formats.chosen(&self.registry.store)?, interrupt::flag());
         let proposals = self.proposals.proposals()?;
         if proposals.is_some() && self.variations.is_some() {
-            return Err(Error::Input("--variations chooses among plans made without a model; use it without --propose".into()));
+            return Err(Error::Input(
+                "--variations chooses among plans made without a model; use it without --propose".into(),
+            ));
         }
         let maker = one::Maker { registry, formats, allow_conflicts: self.allow_conflicts, proposals, flag };
         let request = self.request.request(&prompt(&self.prompt)?);

@@ -39,8 +39,8 @@ use d3dgen_model::seed::Stream;
 
 use crate::{Error, Stop};
 pub use adjust::WallMove;
-pub use proposed::{Follow, MOST_SKETCHED, Sketch, propose};
 use assemble::{Turn, assemble, turned};
+pub use proposed::{Follow, MOST_SKETCHED, Sketch, propose};
 use search::search;
 use spec::Brief;
 

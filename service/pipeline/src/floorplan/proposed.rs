@@ -161,9 +161,8 @@ fn pull_together(rooms: &mut [Vec<Cellbox>], pull: i32) {
         }
         groups
     };
-    let to = |groups: &[Vec<i32>], edge: i32| {
-        groups.iter().find(|g| g.contains(&edge)).map_or(edge, |g| g[g.len() / 2])
-    };
+    let to =
+        |groups: &[Vec<i32>], edge: i32| groups.iter().find(|g| g.contains(&edge)).map_or(edge, |g| g[g.len() / 2]);
     let all = || rooms.iter().flatten();
     let xs = lines(all().flat_map(|b| [b.x0, b.x1]).collect());
     let ys = lines(all().flat_map(|b| [b.y0, b.y1]).collect());

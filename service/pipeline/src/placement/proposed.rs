@@ -216,9 +216,8 @@ impl<'a> Table<'a> {
             return Err(refuse(None, "the stairs fill the room".into()));
         }
         let hung = matches!(object.mount, Mount::Surface | Mount::Ceiling);
-        let elsewhere = |t: &Task| {
-            matches!(t.arrangement, Arrangement::OnSurface | Arrangement::Overhead | Arrangement::AtWindow)
-        };
+        let elsewhere =
+            |t: &Task| matches!(t.arrangement, Arrangement::OnSurface | Arrangement::Overhead | Arrangement::AtWindow);
         let mut own = self.tasks.iter().enumerate().filter(|(_, t)| t.anchor.id == object.id).peekable();
         if own.peek().is_some() {
             if hung || own.clone().all(|(_, t)| elsewhere(t)) {
@@ -227,9 +226,10 @@ impl<'a> Table<'a> {
             let free = own.find(|(i, t)| left[*i] > 0 && !elsewhere(t));
             return free.map(|(i, _)| Spot::Task(i)).ok_or_else(|| refuse(None, "the room has as many already".into()));
         }
-        let in_group = self.tasks.iter().any(|t| {
-            self.domain.group(t.item).is_some_and(|g| g.members.iter().any(|m| m.object == object.id))
-        });
+        let in_group = self
+            .tasks
+            .iter()
+            .any(|t| self.domain.group(t.item).is_some_and(|g| g.members.iter().any(|m| m.object == object.id)));
         if in_group || hung {
             return Ok(Spot::Left);
         }

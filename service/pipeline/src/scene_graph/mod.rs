@@ -35,9 +35,9 @@ use d3dgen_plugins::Registry;
 
 pub use self::given::{Brought, Label, Understood, of_plan, understand};
 use self::program::Planned;
-use self::reading::Reading;
 pub(crate) use self::proposed::suits;
 pub use self::proposed::{BY_PROPOSAL, Draft, DraftEdge, DraftRoom, Settled, propose};
+use self::reading::Reading;
 pub(crate) use self::rooms::wished_assets;
 use crate::Error;
 

@@ -288,7 +288,9 @@ fn name_room(item: &mut ProposedItem, draft: &DraftRoom, id: &str, graph: &Scene
     if draft.area_m2.is_some_and(|a| !((a - area).abs() <= SAME_AREA * area.max(1.0))) {
         item.fate = Fate::Moved;
         let [min, max] = room.area_range_m2;
-        said.push(format!("{area} m2 were taken: the range is {min} to {max} m2, and the prompt's own figures go first"));
+        said.push(format!(
+            "{area} m2 were taken: the range is {min} to {max} m2, and the prompt's own figures go first"
+        ));
     }
     item.reason = said.join("; ");
 }
@@ -367,7 +369,8 @@ pub(crate) fn suits(domain: &Domain, kind: &RoomType, object: &str) -> bool {
     let has = |k: &RoomType| {
         k.furnishing.iter().any(|f| {
             let group = domain.group(&f.item);
-            f.item == object || group.is_some_and(|g| g.anchor == object || g.members.iter().any(|m| m.object == object))
+            f.item == object
+                || group.is_some_and(|g| g.anchor == object || g.members.iter().any(|m| m.object == object))
         })
     };
     has(kind) || domain.room_types.iter().any(|k| k.zone == kind.zone && has(k))
@@ -409,7 +412,8 @@ fn wish_for_edges(
 fn judge(item: &mut ProposedItem, graph: &mut SceneGraph, reading: &Reading, (a, b): (&str, &str), wanted: Connector) {
     let walkable = |c: Connector| matches!(c, Connector::Door | Connector::Open);
     let between = |e: &&GraphEdge| e.a == a && e.b == b || e.a == b && e.b == a;
-    let of = |id: &str| graph.room(id).map_or((String::new(), 0, false), |r| (r.room_type.clone(), r.level, r.circulation));
+    let of =
+        |id: &str| graph.room(id).map_or((String::new(), 0, false), |r| (r.room_type.clone(), r.level, r.circulation));
     let ((type_a, level_a, way_a), (type_b, level_b, way_b)) = (of(a), of(b));
     if let Some(known) = graph.edges.iter().find(between) {
         item.fate = if known.connector == wanted { Fate::Kept } else { Fate::Replaced };

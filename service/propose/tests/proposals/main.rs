@@ -31,10 +31,12 @@ pub const BUILDINGS: [&str; 4] = [
 /// Says nothing.
 static RUNNING: AtomicBool = AtomicBool::new(false);
 
+/// Returns the request of a prompt, with one seed for all.
 pub fn request(prompt: &str) -> Request {
     Request { prompt: prompt.to_owned(), seed: 3, ..Request::default() }
 }
 
+/// Returns the scene graph without a model.
 pub fn own_graph(prompt: &str) -> SceneGraph {
     graph_of(&request(prompt), &Registry::builtin()).unwrap()
 }
@@ -55,6 +57,7 @@ pub fn with_recording(prompt: &str, stages: &[Stage], recording: &str) -> Propos
     with_client(prompt, stages, &client)
 }
 
+/// Makes a world with proposals of a client's model, and asserts what holds of every such world.
 pub fn with_client(prompt: &str, stages: &[Stage], client: &Client) -> Proposed {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_time().build().unwrap();
     let ask = |question: &d3dgen_llm::Request| {
@@ -82,6 +85,7 @@ pub fn with_answer(prompt: &str, stage: Stage, answer: &Value) -> Proposed {
     with_recording(prompt, &[stage], &line(stage, &answer.to_string()))
 }
 
+/// Returns the record of the one stage that was asked for.
 pub fn only(found: &Proposed) -> &StageProposal {
     assert_eq!(found.proposal.stages.len(), 1);
     &found.proposal.stages[0]

@@ -63,9 +63,7 @@ fn hopeless_furniture_leaves_the_world_without_a_model() {
     for prompt in BUILDINGS {
         let own = own_world(prompt).world;
         let (room, object) = (&own.floorplan.rooms[0].room_id, &own.placements.placements[0].object);
-        let thing = |room: &str, object: &str, x: f64| {
-            json!({"room_id": room, "object": object, "x_m": x, "y_m": 0.0, "yaw_deg": 1e300})
-        };
+        let thing = |room: &str, object: &str, x: f64| json!({"room_id": room, "object": object, "x_m": x, "y_m": 0.0, "yaw_deg": 1e300});
         for objects in [
             json!([]),
             json!([thing("ballroom_1", object, 1.0), thing(room, "black_hole", 1.0)]),

@@ -42,9 +42,8 @@ fn a_good_proposal_is_mostly_kept() {
 #[test]
 fn what_the_prompt_says_goes_before_what_is_proposed() {
     let prompt = "flat with two bedrooms, one bathroom, a kitchen, a living room, without a balcony, in Germany";
-    let room = |id: &str, kind: &str| {
-        json!({"id": id, "room_type": kind, "name": kind, "area_m2": null, "objects": []})
-    };
+    let room =
+        |id: &str, kind: &str| json!({"id": id, "room_type": kind, "name": kind, "area_m2": null, "objects": []});
     let mut rooms: Vec<_> = (0..9).map(|n| room(&format!("b{n}"), "bedroom")).collect();
     rooms.extend([room("balcony", "balcony"), room("k", "Küche"), room("w", "throne room of the vampire")]);
     let answer = json!({"rooms": rooms, "edges": [

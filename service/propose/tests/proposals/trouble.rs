@@ -67,14 +67,11 @@ fn trouble_with_the_provider_leaves_the_world_without_a_model() {
         LlmError::TooLong { message: "too long".into() },
     ] {
         let fails = |stage: &d3dgen_pipeline::generate::Stage| json!({"stage": stage.name(), "failure": failure});
-        let lines: Vec<String> =
-            STAGES.iter().flat_map(|s| std::iter::repeat_n(fails(s).to_string(), 6)).collect();
-        let sleepless = std::sync::Arc::new(|_| -> d3dgen_llm::providers::BoxFuture<'static, ()> {
-            Box::pin(async {})
-        });
+        let lines: Vec<String> = STAGES.iter().flat_map(|s| std::iter::repeat_n(fails(s).to_string(), 6)).collect();
+        let sleepless =
+            std::sync::Arc::new(|_| -> d3dgen_llm::providers::BoxFuture<'static, ()> { Box::pin(async {}) });
         let replay = Replay::new(&lines.join("\n")).unwrap();
-        let client =
-            Client::new(Box::new(replay), RetryPolicy::default(), Budget::unlimited()).with_sleep(sleepless);
+        let client = Client::new(Box::new(replay), RetryPolicy::default(), Budget::unlimited()).with_sleep(sleepless);
         let found = with_client(prompt, &STAGES, &client);
         for stage in &found.proposal.stages {
             assert_eq!(stage.error.as_deref(), Some(failure.category()), "{stage:?}");

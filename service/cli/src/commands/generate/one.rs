@@ -51,8 +51,7 @@ impl Maker {
         let (made, proposal) = match &self.proposals {
             Some(proposals) => {
                 let asked = (&job.request, &graph);
-                let found =
-                    proposals.make(asked, (&self.registry, &settings), &mut observe, progress, self.flag)?;
+                let found = proposals.make(asked, (&self.registry, &settings), &mut observe, progress, self.flag)?;
                 (found.made, Some(found.proposal))
             }
             None => (furnish_and_check(&graph, &self.registry, &settings, &mut observe, self.flag)?, None),

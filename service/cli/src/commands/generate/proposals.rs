@@ -57,7 +57,8 @@ impl ProposalArgs {
     pub fn proposals(&self) -> Result<Option<Proposals>, Error> {
         if self.propose.is_empty() && self.llm.model.is_some() {
             return Err(Error::Input(
-                "--model: say what it is asked for, with --propose scene_graph,floorplan,placement or some of these".into(),
+                "--model: say what it is asked for, with --propose scene_graph,floorplan,placement or some of these"
+                    .into(),
             ));
         }
         let Some(client) = self.llm.client()? else { return Ok(None) };
