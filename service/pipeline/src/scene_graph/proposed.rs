@@ -285,7 +285,7 @@ fn name_room(item: &mut ProposedItem, draft: &DraftRoom, id: &str, graph: &Scene
         said.push(format!("read as {}", room.room_type));
     }
     let area = room.target_area_m2;
-    if draft.area_m2.is_some_and(|a| !((a - area).abs() <= SAME_AREA * area.max(1.0))) {
+    if draft.area_m2.is_some_and(|a| !a.is_finite() || (a - area).abs() > SAME_AREA * area.max(1.0)) {
         item.fate = Fate::Moved;
         let [min, max] = room.area_range_m2;
         said.push(format!(
