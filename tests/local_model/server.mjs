@@ -11,11 +11,11 @@ const [model_path, modules] = process.argv.slice(2);
 const entry = pathToFileURL(path.join(path.resolve(modules), "node-llama-cpp", "dist", "index.js"));
 const {getLlama, LlamaChatSession} = await import(entry);
 
-const llama = await getLlama({gpu: false, build: "never", progressLogs: false});
+const llama = await getLlama({gpu: false, build: "never", progressLogs: false, maxThreads: 1});
 const model = await llama.loadModel({modelPath: model_path});
-const context_tokens = Math.min(model.trainContextSize ?? 2048, 2048);
-// A small model never ends a list by itself.
-const most_tokens = 256;
+// Short, so that an answer takes seconds on an old processor; and a small model never ends a list by itself.
+const context_tokens = 1024;
+const most_tokens = 300;
 
 // What the grammar takes: no unions of types in one `type`.
 function plain(schema) {
@@ -33,19 +33,19 @@ function plain(schema) {
     return out;
 }
 
-async function answer(request) {
+async function answer(request, signal) {
     const said = request.messages ?? [];
     const system = said.filter((m) => m.role === "system").map((m) => m.content).join("\n");
     // the question is longer than the model's memory: its begin and its end
     const asked = said.filter((m) => m.role === "user").at(-1)?.content ?? "";
-    const half = Math.floor(context_tokens * 1.2);
+    const half = 700;
     const short = asked.length > 2 * half ? asked.slice(0, half) + "\n...\n" + asked.slice(-half) : asked;
     const schema = request.response_format?.json_schema?.schema;
     const grammar = schema ? await llama.createGrammarForJsonSchema(plain(schema)) : undefined;
     const context = await model.createContext({contextSize: context_tokens});
     try {
-        const session = new LlamaChatSession({contextSequence: context.getSequence(), systemPrompt: system.slice(0, 2000)});
-        const text = await session.prompt(short, {grammar, maxTokens: most_tokens, temperature: 0});
+        const session = new LlamaChatSession({contextSequence: context.getSequence(), systemPrompt: system.slice(0, 300)});
+        const text = await session.prompt(short, {grammar, maxTokens: most_tokens, temperature: 0, signal});
         const used = {prompt_tokens: model.tokenize(short).length, completion_tokens: model.tokenize(text).length};
         return {
             id: "local", object: "chat.completion", created: 0, model: path.basename(model_path),
@@ -57,6 +57,7 @@ async function answer(request) {
     }
 }
 
+let last = Promise.resolve();
 const server = http.createServer((req, res) => {
     let body = "";
     req.on("data", (piece) => (body += piece));
@@ -65,8 +66,13 @@ const server = http.createServer((req, res) => {
             res.writeHead(status, {"content-type": "application/json"});
             res.end(JSON.stringify(value));
         };
+        // one after the other; who no longer waits is not answered
+        const gone = new AbortController();
+        res.on("close", () => gone.abort());
+        const turn = last.then(() => answer(JSON.parse(body), gone.signal));
+        last = turn.catch(() => {});
         try {
-            send(200, await answer(JSON.parse(body)));
+            send(200, await turn);
         } catch (error) {
             send(400, {error: {message: String(error), type: "invalid_request_error", code: null}});
         }
