@@ -143,7 +143,7 @@ impl<'a> Table<'a> {
         let mut tasks = demand::tasks(domain, kind, of_graph, room.net_area_m2, per_person_m2, windows);
         let aims = aims_of(domain, limits, room);
         let tidy = graph.style.clutter == Some(Clutter::Low);
-        tasks.retain(|t| !is_unwanted(t, &aims) && !(tidy && clutter::is_spare(t, kind)));
+        tasks.retain(|t| !(is_unwanted(t, &aims) || tidy && clutter::is_spare(t, kind)));
         let mut stream = super::room_stream(graph, room);
         let _salt = stream.unit(); // as furnish_room draws it first
         let sizes = pick_sizes(domain, &aims, &mut stream);
