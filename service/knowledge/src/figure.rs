@@ -72,7 +72,10 @@ pub(crate) fn bounds(c: &Constraint, measure: Measure, facts: &Facts) -> Result<
         Value::Flag(true) => Ok(Bounds::at_least(1.0)),
         Value::Flag(false) => Ok(Bounds::at_most(0.0)),
         Value::Range { min, .. } if measure.is_clearance() => Ok(Bounds::at_least(*min)),
-        Value::Range { max, .. } if measure == Measure::PersonsPerRoom => Ok(Bounds::at_most(*max)),
+        // less circulation than planners reckon with is no defect
+        Value::Range { max, .. } if matches!(measure, Measure::PersonsPerRoom | Measure::CirculationShare) => {
+            Ok(Bounds::at_most(*max))
+        }
         Value::Range { min, max } => Ok(interval(*min, *max, c)),
         Value::Table(table) if table.contains_key("width") => {
             let figure = |key: &str| table.get(key).and_then(Json::as_f64);

@@ -96,7 +96,18 @@ pub(super) const BREAKS: &[Break] = &[
             Some(room.room_id.clone())
         })
     }),
-    somewhere("private_passage", &["graph_edge_missing", "adjacency_missing", "adjacency_forbidden"], through_private),
+    somewhere(
+        "private_passage",
+        &[
+            "graph_edge_missing",
+            "adjacency_missing",
+            "adjacency_forbidden",
+            "door_blocked",
+            "free_space_split",
+            "unreachable_zone",
+        ],
+        through_private,
+    ),
     always("room_area", |s| range(s, |area| [area * 1.1, area * 1.2])),
     always("room_area", |s| range(s, |area| [area * 0.5, area * 0.9])),
     somewhere("room_dimension", &["room_proportion"], slits),

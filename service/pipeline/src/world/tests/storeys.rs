@@ -62,6 +62,7 @@ const BREAKS: &[Break] = &[
             "wall_gap",
             "unreachable_zone",
             "private_passage",
+            "pose_taken",
         ],
         |world| {
             let id = top_room(world, LinkKind::Stairs)?;
