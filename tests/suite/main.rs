@@ -7,6 +7,7 @@ mod documents;
 mod domain_guide;
 mod errors;
 mod eval;
+mod fit_robot;
 mod goldens;
 #[cfg(unix)]
 mod interrupted;

@@ -2,6 +2,7 @@
 
 use std::io::{self, Read};
 
+use d3dgen_model::robot_body::RobotBody;
 use d3dgen_model::style::{Clutter, Style};
 use d3dgen_pipeline::scene_graph::Request;
 
@@ -28,6 +29,27 @@ pub struct RequestArgs {
     /// Radius in m of the largest robot
     #[arg(long, value_name = "M", allow_negative_numbers = true)]
     pub robot_radius: Option<f64>,
+    /// Width in m of the robot that the building is for
+    #[arg(long, value_name = "M", allow_negative_numbers = true)]
+    pub robot_width: Option<f64>,
+    /// Length in m of the robot
+    #[arg(long, value_name = "M", allow_negative_numbers = true)]
+    pub robot_length: Option<f64>,
+    /// Height in m of the robot: what hangs above it does not stop it
+    #[arg(long, value_name = "M", allow_negative_numbers = true)]
+    pub robot_height: Option<f64>,
+    /// Radius in m of the circle that the robot turns in; otherwise half the diagonal of its body
+    #[arg(long, value_name = "M", allow_negative_numbers = true)]
+    pub robot_turning_radius: Option<f64>,
+    /// Highest step in m that the robot drives over
+    #[arg(long, value_name = "M", allow_negative_numbers = true)]
+    pub robot_climb: Option<f64>,
+    /// TOML file with measures of the robot (width_m, length_m, height_m, turning_radius_m, climb_m); flags win
+    #[arg(long, value_name = "FILE", value_parser = robot_file)]
+    pub robot_file: Option<RobotBody>,
+    /// Make doors, corridors and gaps wide enough for the robot, or say which robot would fit
+    #[arg(long)]
+    pub fit_robot: bool,
     /// How many small everyday things stand on furniture: low, normal or high; otherwise read from the prompt
     #[arg(long, value_name = "GRADE", value_parser = clutter)]
     pub clutter: Option<Clutter>,
@@ -35,6 +57,12 @@ pub struct RequestArgs {
     /// asymmetric; otherwise read from the prompt
     #[arg(long, value_name = "WORDS", value_parser = style)]
     pub style: Option<Style>,
+}
+
+/// Returns the robot that a file describes.
+fn robot_file(path: &str) -> Result<RobotBody, String> {
+    let text = std::fs::read_to_string(path).map_err(|e| e.to_string())?;
+    toml::from_str(&text).map_err(|e| e.to_string().trim_end().to_owned())
 }
 
 /// Returns the grade of clutter of a name.
@@ -48,6 +76,19 @@ fn style(words: &str) -> Result<Style, String> {
 }
 
 impl RequestArgs {
+    /// Returns the robot's body: flags, then the file.
+    fn robot(&self) -> RobotBody {
+        let flags = RobotBody {
+            width_m: self.robot_width,
+            length_m: self.robot_length,
+            height_m: self.robot_height,
+            turning_radius_m: self.robot_turning_radius,
+            climb_m: self.robot_climb,
+            fit: self.fit_robot,
+        };
+        flags.or(self.robot_file.unwrap_or_default())
+    }
+
     /// Returns the request for a prompt.
     pub fn request(&self, prompt: &str) -> Request {
         Request {
@@ -58,6 +99,7 @@ impl RequestArgs {
             rooms: self.rooms,
             area_m2: self.area,
             robot_radius_m: self.robot_radius,
+            robot: self.robot(),
             style: Style { clutter: self.clutter, ..self.style.unwrap_or_default() },
         }
     }

@@ -183,7 +183,7 @@ fn graph(robot: &Robot) -> SceneGraph {
 
 /// Returns the world.
 pub fn world() -> World {
-    let robot = Robot { kind: "delivery".into(), count: 1, radius_m: 0.3, height_m: 1.0, charging: false };
+    let robot = Robot { kind: "delivery".into(), count: 1, radius_m: 0.3, height_m: 1.0, charging: false, body: None };
     let poi = |id: &str, room: &str, x: f64, y: f64| Poi {
         poi_id: id.into(),
         kind: "service_point".into(),
@@ -201,6 +201,7 @@ pub fn world() -> World {
             level: 0,
             start: Pose { x: 3.2, y: 2.4, z: 0.0, yaw_rad: 0.0 },
             goals: vec!["point_a".into(), "point_b".into()],
+            ways: Vec::new(),
             dock: None,
         }],
         agents: Vec::new(),
@@ -248,6 +249,7 @@ pub fn report(constraints: &[(&str, &str, bool, Status)]) -> Report {
         jurisdictions: vec!["DE".into()],
         summary: ConstraintSummary::default(),
         constraints: constraints.iter().map(result).collect(),
+        robot_fit: Vec::new(),
         figures: Default::default(),
     }
 }

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::document::{Document, Problem};
 use crate::knowledge::Source;
+use crate::passage::RobotWay;
 
 /// The verdict on one world.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -29,8 +30,29 @@ pub struct Report {
     pub summary: ConstraintSummary,
     /// Every constraint that applies to something in this world.
     pub constraints: Vec<ConstraintResult>,
+    /// For each robot whose body is known: whether and where it fits.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub robot_fit: Vec<RobotFit>,
     /// Counts and measures of the world (`rooms`, `objects_per_room`, `circulation_share`, ...).
     pub figures: BTreeMap<String, f64>,
+}
+
+/// Whether and where a robot fits.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RobotFit {
+    /// Kind of robot: `delivery`.
+    pub kind: String,
+    /// Radius of the circle it turns in, m.
+    pub radius_m: f64,
+    /// Height, m.
+    pub height_m: f64,
+    /// True when it reaches every room and every point that it serves.
+    pub fits: bool,
+    /// The way to each room.
+    pub rooms: Vec<RobotWay>,
+    /// The way to each named point of the scenario.
+    pub points: Vec<RobotWay>,
 }
 
 /// One hard rule.

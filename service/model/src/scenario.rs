@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::document::{Document, Problem, check_unique};
 use crate::geometry::{Polygon, Pose};
+use crate::passage::RobotWay;
 use crate::scene_graph::Robot;
 use crate::storeys::is_ground;
 
@@ -83,6 +84,9 @@ pub struct RobotTask {
     pub start: Pose,
     /// POI ids in the order it visits them.
     pub goals: Vec<String>,
+    /// The way to each goal, where the robot's body is known.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub ways: Vec<RobotWay>,
     /// POI id of its dock.
     #[serde(default)]
     pub dock: Option<String>,

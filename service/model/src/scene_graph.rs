@@ -4,6 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::document::{Document, Problem, check_unique};
+use crate::robot_body::RobotBody;
 use crate::storeys::{VerticalLink, check_links, is_ground};
 use crate::style::Style;
 
@@ -164,6 +165,9 @@ pub struct Robot {
     pub height_m: f64,
     /// True when it needs a charging dock in the building.
     pub charging: bool,
+    /// What more is known of its body, and whether the building is made so that it fits.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub body: Option<RobotBody>,
 }
 
 /// A statement about how the prompt was read.
@@ -174,6 +178,13 @@ pub struct Note {
     pub code: String,
     /// One sentence for people.
     pub message: String,
+}
+
+impl Robot {
+    /// Returns true when the building is made so that it fits.
+    pub fn is_fitted(&self) -> bool {
+        self.body.is_some_and(|b| b.fit)
+    }
 }
 
 impl SceneGraph {

@@ -11,14 +11,14 @@ use d3dgen_model::floorplan::Floorplan;
 use d3dgen_model::placements::Placements;
 use d3dgen_model::report::Report;
 use d3dgen_model::scenario::Scenario;
-use d3dgen_model::scene_graph::{Note, SceneGraph};
+use d3dgen_model::scene_graph::{Note, Robot, SceneGraph};
 use d3dgen_model::seed::Stream;
 use d3dgen_model::world::World;
 use d3dgen_plugins::{Plugin, Registry};
 
 use crate::placement::Furnished;
 use crate::scene_graph::{BY_PROMPT, BY_STYLE, Request};
-use crate::{Error, floorplan, placement, scenario, scene_graph, world};
+use crate::{Error, fit, floorplan, placement, scenario, scene_graph, world};
 
 /// How to make a world, beside the request itself.
 #[derive(Debug, Clone)]
@@ -38,6 +38,9 @@ impl Default for Settings {
         Self { name: None, attempts: 6, pinned_floorplan: None, pinned_placements: None }
     }
 }
+
+/// How often plan and furniture are tried for each smaller robot, when one that was to fit does not.
+const FEW_ATTEMPTS: u32 = 3;
 
 /// A step on the way, in the order of the path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -146,13 +149,18 @@ pub fn furnish_and_check(
         stage: "floorplan",
         message: format!("the scene graph is of domain `{}`, which is not registered", graph.domain),
     })?;
-    match attempts(graph, plugin, settings, observe, cancelled) {
+    let made = match attempts(graph, plugin, settings, observe, cancelled) {
         Err(error @ Error::Infeasible { .. }) => match relaxed(graph) {
             Some(relaxed) => attempts(&relaxed, plugin, settings, observe, cancelled),
             None => Err(error),
         },
         other => other,
+    };
+    if !graph.robots.iter().any(Robot::is_fitted) {
+        return made;
     }
+    let few = Settings { attempts: FEW_ATTEMPTS, ..settings.clone() };
+    fit::or_refused(made, graph, &mut |graph| attempts(graph, plugin, &few, &mut |_| (), cancelled))
 }
 
 /// Returns the graph with what the prompt wants beside each other as wishes, or `None` when there is nothing to relax.

@@ -4,6 +4,7 @@
 
 pub mod edit;
 pub mod error;
+mod fit;
 pub mod floorplan;
 pub mod generate;
 pub mod placement;

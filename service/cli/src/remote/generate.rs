@@ -4,13 +4,14 @@ use std::io::Read;
 use std::time::Instant;
 
 use d3dgen_model::report::Report;
+use d3dgen_model::robot_body::RobotBody;
 use d3dgen_model::world::World;
 use d3dgen_pipeline::generate::Generated;
 use d3dgen_pipeline::scene_graph::Request;
 use d3dgen_proto::v1::generate_world_request::Start;
 use d3dgen_proto::v1::generate_world_response::Event;
 use d3dgen_proto::v1::world_service_client::WorldServiceClient;
-use d3dgen_proto::v1::{BuildingRequest, ExportWorldRequest, GenerateWorldRequest};
+use d3dgen_proto::v1::{self, BuildingRequest, ExportWorldRequest, GenerateWorldRequest};
 use tonic::transport::Channel;
 use tonic::{Code, Status};
 
@@ -144,6 +145,14 @@ fn building(request: &Request) -> BuildingRequest {
         floor_area_m2: request.area_m2,
         robot_radius_m: request.robot_radius_m,
         clutter: request.style.clutter.map(|c| c.name().to_owned()),
+        robot: (request.robot != RobotBody::default()).then_some(v1::RobotBody {
+            width_m: request.robot.width_m,
+            length_m: request.robot.length_m,
+            height_m: request.robot.height_m,
+            turning_radius_m: request.robot.turning_radius_m,
+            climb_m: request.robot.climb_m,
+            fit: request.robot.fit,
+        }),
         styles: request.style.words().map(str::to_owned).collect(),
     }
 }

@@ -64,6 +64,11 @@ impl RoomSpec {
     }
 }
 
+/// What a robot's circle has to spare where it passes, both sides together, m.
+const PASSING_M: f64 = 0.1;
+/// Floor that rooms have for a usual robot to turn on anyway, m^2.
+const TURNING_M2: f64 = 0.6;
+
 /// A relation between two rooms other than the spine.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Link {
@@ -126,7 +131,8 @@ impl Brief {
         }
         let hard_width = max_limit(domain.circulation.width_m, limits.corridor_width.as_ref());
         let advised_width = limits.corridor_width_advised.unwrap_or(0.0).min(MOST_ADVISED_WIDTH * hard_width);
-        let circulation_width = hard_width.max(advised_width);
+        let fitted = fitted_width(graph);
+        let circulation_width = hard_width.max(advised_width).max(fitted);
         let mut brief = Self {
             hub: spine.is_some_and(|s| !rooms[s].circulation),
             rooms,
@@ -138,7 +144,7 @@ impl Brief {
             second_exit: domain.circulation.second_exit && graph.rooms.iter().all(|r| r.level == 0),
             area: graph.area_m2.filter(|_| graph.links.is_empty()),
             symmetry: graph.style.symmetry,
-            entrance_width: max_limit(domain.circulation.entrance_width_m, limits.entrance_width.as_ref()),
+            entrance_width: max_limit(domain.circulation.entrance_width_m, limits.entrance_width.as_ref()).max(fitted),
             conflicts,
             guests: Vec::new(),
             stem: false,
@@ -258,6 +264,12 @@ impl Brief {
     }
 }
 
+/// Returns the width that the robots need to pass which the building is made for, m; 0 without such.
+fn fitted_width(graph: &SceneGraph) -> f64 {
+    let widths = graph.robots.iter().filter(|r| r.is_fitted()).map(|r| 2.0 * r.radius_m + PASSING_M);
+    widths.fold(0.0, f64::max)
+}
+
 fn max_limit(base: f64, limit: Option<&Limit>) -> f64 {
     limit.map_or(base, |l| base.max(l.value))
 }
@@ -293,6 +305,9 @@ fn room_spec(
         let least = least * (1.0 + ADVICE_MARGIN);
         area_target = area_target.clamp(least, (most * (1.0 - ADVICE_MARGIN)).max(least));
     }
+    // a robot that is to fit turns in the room beside what stands there
+    let fitted = fitted_width(graph);
+    area_target = (area_target + (fitted * fitted - TURNING_M2).max(0.0)).min(area_max.max(area_target));
     let mut door_width = max_limit(kind.door_width_m, limit.door_width.as_ref());
     if graph.accessible {
         door_width = door_width.max(ACCESSIBLE_DOOR_M);
@@ -309,7 +324,7 @@ fn room_spec(
         area_min,
         area_target: area_target.clamp((area_min * 1.02).min(area_max), area_max),
         area_max,
-        min_dimension: max_limit(kind.min_dimension_m, limit.dimension_min.as_ref()),
+        min_dimension: max_limit(kind.min_dimension_m, limit.dimension_min.as_ref()).max(fitted),
         daylight: kind.daylight,
         zone: kind.zone,
         wet: kind.wet,

@@ -49,7 +49,7 @@ fn one_storey(graph: &SceneGraph, plan: &Floorplan, placements: &Placements, dom
         robots: Vec::new(),
         agents: Vec::new(),
     };
-    scenario.robots = robots::all(&mut floor, graph, &scenario.pois);
+    scenario.robots = robots::all(&mut floor, graph, (plan, placements), &scenario.pois);
     scenario.agents = people::all(&mut floor, graph);
     scenario
 }

@@ -1,5 +1,8 @@
 //! Robots with where they start and what they visit.
 
+use d3dgen_model::floorplan::Floorplan;
+use d3dgen_model::passage::{Passages, RobotWay};
+use d3dgen_model::placements::Placements;
 use d3dgen_model::scenario::{Poi, RobotTask};
 use d3dgen_model::scene_graph::{Robot, SceneGraph};
 use d3dgen_model::seed::Stream;
@@ -11,7 +14,12 @@ use super::floor::{Floor, looking_at};
 const MOST_GOALS: usize = 6;
 
 /// Returns the robots of the scene graph, each with its own start and goals that it can reach.
-pub(super) fn all(floor: &mut Floor, graph: &SceneGraph, pois: &[Poi]) -> Vec<RobotTask> {
+pub(super) fn all(
+    floor: &mut Floor,
+    graph: &SceneGraph,
+    (plan, placements): (&Floorplan, &Placements),
+    pois: &[Poi],
+) -> Vec<RobotTask> {
     let mut out: Vec<RobotTask> = Vec::new();
     for robot in &graph.robots {
         for number in 0..robot.count as usize {
@@ -28,10 +36,24 @@ pub(super) fn all(floor: &mut Floor, graph: &SceneGraph, pois: &[Poi]) -> Vec<Ro
                 start,
                 dock: dock.map(|d| d.poi_id.clone()),
                 level: 0,
+                ways: Vec::new(),
             });
+            if let Some(task) = out.last_mut().filter(|t| t.robot.body.is_some()) {
+                task.ways = ways(task, (plan, placements), pois);
+            }
         }
     }
     out
+}
+
+/// Returns the widest ways to a robot's goals and dock.
+fn ways(task: &RobotTask, (plan, placements): (&Floorplan, &Placements), pois: &[Poi]) -> Vec<RobotWay> {
+    let robot = &task.robot;
+    let climb = robot.body.and_then(|b| b.climb_m).unwrap_or(0.0);
+    let start = Point::new(task.start.x, task.start.y);
+    let passages = Passages::new(plan, placements, (robot.height_m, climb), start);
+    let goals = task.goals.iter().chain(&task.dock).filter_map(|id| pois.iter().find(|p| &p.poi_id == id));
+    goals.map(|p| passages.to_point(&p.poi_id, Point::new(p.pose.x, p.pose.y), robot.radius_m)).collect()
 }
 
 /// Returns where a robot starts: its dock, else a bay, else the spot nearest to the entrance that is still free.

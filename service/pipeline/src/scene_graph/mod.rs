@@ -29,6 +29,7 @@ mod wishes;
 mod words;
 
 use d3dgen_knowledge::Query;
+use d3dgen_model::robot_body::RobotBody;
 use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::style::Style;
 use d3dgen_plugins::Registry;
@@ -67,6 +68,8 @@ pub struct Request {
     pub area_m2: Option<f64>,
     /// Radius of the largest robot, m.
     pub robot_radius_m: Option<f64>,
+    /// Body of the robot that the building is for, and whether it is made so that it fits.
+    pub robot: RobotBody,
     /// How the building is to be; what is absent is read from the prompt.
     pub style: Style,
 }

@@ -1,6 +1,7 @@
 //! A prompt understood: every fact it states, before rooms are added or connected.
 
 use d3dgen_model::domain::{Access, Domain, Occupants, Program, ProgramRoom};
+use d3dgen_model::robot_body::RobotBody;
 use d3dgen_model::scene_graph::{Note, Occupancy, Robot};
 use d3dgen_model::style::Style;
 use d3dgen_plugins::Registry;
@@ -195,6 +196,9 @@ fn check_flags(request: &Request, registry: &Registry) -> Result<(), Error> {
     {
         return Err(refused(format!("country `{country}` is not known; give an ISO 3166-1 code such as DE or US")));
     }
+    if let Some(problem) = request.robot.problems().into_iter().next() {
+        return Err(refused(problem));
+    }
     if let Some(n) = request.rooms.filter(|n| !(1..=MAX_ROOMS).contains(n)) {
         return Err(refused(format!("{n} rooms were asked for; one world has 1 to {MAX_ROOMS} rooms")));
     }
@@ -369,7 +373,9 @@ fn machines_of(
     conflicts: &mut Vec<Note>,
 ) -> Vec<Robot> {
     let mut wanted = machines.wanted.clone();
-    if wanted.is_empty() && (wishes.charging || request.robot_radius_m.is_some()) {
+    if wanted.is_empty()
+        && (wishes.charging || request.robot_radius_m.is_some() || request.robot != RobotBody::default())
+    {
         wanted.push(robots::Wanted { kind: "service", count: 1 });
     }
     if machines.kind_assumed {
@@ -399,8 +405,16 @@ fn machines_of(
         .iter()
         .filter_map(|w| {
             let body = words().robot_kinds.get(w.kind)?;
-            let radius_m = request.robot_radius_m.or(radius).unwrap_or(body.radius_m);
-            Some(Robot { kind: w.kind.into(), count: w.count, radius_m, height_m: body.height_m, charging })
+            let own = request.robot;
+            let stated = request.robot_radius_m.or(own.radius_m()).or(radius);
+            Some(Robot {
+                kind: w.kind.into(),
+                count: w.count,
+                radius_m: stated.unwrap_or(body.radius_m),
+                height_m: own.height_m.unwrap_or(body.height_m),
+                charging,
+                body: (own != RobotBody::default()).then_some(own),
+            })
         })
         .collect()
 }

@@ -7,8 +7,8 @@ use d3dgen_model::report::{Report, RuleResult};
 use d3dgen_model::world::World;
 
 use super::context::Context;
-use super::figures;
 use super::rules::{About, Findings, RULES, Rule, STOREY_RULES, is_cramped};
+use super::{figures, fit};
 
 /// Checks a world against every hard rule and every constraint that applies to it.
 ///
@@ -32,6 +32,7 @@ pub fn check(world: &World, domain: &Domain, retrieval: &Retrieval) -> Report {
         sound: rules.iter().all(|r| r.violations.is_empty()),
         given_plan,
         figures: if finite { figures::measure(&whole, &storeys) } else { Default::default() },
+        robot_fit: if finite { fit::measure(world, &parts, domain) } else { Vec::new() },
         rules,
         jurisdictions: retrieval.jurisdictions.clone(),
         summary,

@@ -7,6 +7,7 @@ mod assemble;
 mod check;
 mod context;
 mod figures;
+mod fit;
 pub mod rules;
 
 pub use assemble::assemble;

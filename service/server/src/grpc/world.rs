@@ -8,6 +8,7 @@ use d3dgen_model::Document;
 use d3dgen_model::floorplan::Floorplan;
 use d3dgen_model::placements::Placements;
 use d3dgen_model::report::Report;
+use d3dgen_model::robot_body::RobotBody;
 use d3dgen_model::scenario::Scenario;
 use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::style::{Clutter, Style};
@@ -271,6 +272,17 @@ fn building(asked: Option<BuildingRequest>) -> Result<Asked, Status> {
     });
     let clutter = clutter.transpose()?;
     let style = Style::of_words(asked.styles.iter().map(String::as_str)).map_err(|e| invalid("building.styles", e))?;
+    let robot = asked.robot.map_or_else(RobotBody::default, |r| RobotBody {
+        width_m: r.width_m,
+        length_m: r.length_m,
+        height_m: r.height_m,
+        turning_radius_m: r.turning_radius_m,
+        climb_m: r.climb_m,
+        fit: r.fit,
+    });
+    if let Some(problem) = robot.problems().into_iter().next() {
+        return Err(invalid("building.robot", problem));
+    }
     Ok(Asked {
         prompt: asked.prompt,
         seed: asked.seed,
@@ -279,6 +291,7 @@ fn building(asked: Option<BuildingRequest>) -> Result<Asked, Status> {
         rooms: asked.room_count,
         area_m2: asked.floor_area_m2,
         robot_radius_m: asked.robot_radius_m,
+        robot,
         style: Style { clutter, ..style },
     })
 }

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use d3dgen_model::Document;
 use d3dgen_model::report::Report;
+use d3dgen_model::robot_body::RobotBody;
 use d3dgen_model::style::Style;
 use d3dgen_model::world::World;
 use d3dgen_pipeline::generate::{Generated, Settings, furnish_and_check};
@@ -39,22 +40,24 @@ pub struct Building {
     pub area_m2: Option<f64>,
     /// Radius of the largest robot, m.
     pub robot_radius_m: Option<f64>,
+    /// Body of the robot it is for.
+    pub robot: RobotBody,
     /// How the building is to be.
     pub style: Style,
 }
 
 impl From<Request> for Building {
     fn from(r: Request) -> Self {
-        let Request { prompt, seed, domain, country, rooms, area_m2, robot_radius_m, style } = r;
-        Self { prompt, seed, domain, country, rooms, area_m2, robot_radius_m, style }
+        let Request { prompt, seed, domain, country, rooms, area_m2, robot_radius_m, robot, style } = r;
+        Self { prompt, seed, domain, country, rooms, area_m2, robot_radius_m, robot, style }
     }
 }
 
 impl Building {
     /// Returns the request for one of its seeds.
     pub fn request(&self, seed: u64) -> Request {
-        let Self { prompt, domain, country, rooms, area_m2, robot_radius_m, style, .. } = self.clone();
-        Request { prompt, seed, domain, country, rooms, area_m2, robot_radius_m, style }
+        let Self { prompt, domain, country, rooms, area_m2, robot_radius_m, robot, style, .. } = self.clone();
+        Request { prompt, seed, domain, country, rooms, area_m2, robot_radius_m, robot, style }
     }
 }
 

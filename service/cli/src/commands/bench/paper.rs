@@ -8,7 +8,6 @@ use d3dgen_eval::bench::{self, Task};
 use d3dgen_eval::html::{self, Picture};
 use d3dgen_eval::{Known, WorldMeasures, compare, measure, picture};
 use d3dgen_model::document::Document;
-use d3dgen_model::style::Style;
 use d3dgen_pipeline::generate::{Generated, Settings, generate_world};
 use d3dgen_pipeline::scene_graph::Request;
 use d3dgen_plugins::Registry;
@@ -142,7 +141,7 @@ impl Maker<'_> {
             rooms: None,
             area_m2: None,
             robot_radius_m: None,
-            style: Style::default(),
+            ..Request::default()
         };
         let settings = Settings { name: Some(task.path.replace('/', "_")), ..Settings::default() };
         let mut clock = StageClock::default();

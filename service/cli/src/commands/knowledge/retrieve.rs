@@ -97,6 +97,7 @@ impl Args {
             count: 1,
             radius_m,
             height_m: ROBOT_HEIGHT_M,
+            body: None,
             charging: true,
         });
         Building {

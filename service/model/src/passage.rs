@@ -1,0 +1,239 @@
+//! The widest way to every place of a storey: how wide its narrowest place is, and where that is.
+//!
+//! On the 5 cm grid of [`crate::occupancy`]. The width of a place is the diameter of the largest disc whose center can be
+//! there; in a door it is no more than the door's clear width.
+
+use std::collections::BinaryHeap;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::floorplan::Floorplan;
+use crate::geometry::{Point, Rect};
+use crate::occupancy::{CELL_M, FLAT_M, Occupancy};
+use crate::placements::Placements;
+
+/// How far from a point its best cell may lie, m.
+const NEAR_M: f64 = 0.25;
+/// Slack when a width is compared with a robot's, mm.
+const SLACK_MM: u32 = 1;
+
+/// The way of a robot to a room or point.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RobotWay {
+    /// Room id or POI id it leads to.
+    pub to: String,
+    /// True when the robot gets there.
+    pub reachable: bool,
+    /// Clear width of the narrowest place on the widest way there, m; 0 when there is no way at all.
+    pub clear_width_m: f64,
+    /// Door in which the narrowest place is, else the room it lies in; empty when there is no way at all.
+    pub narrowest: String,
+}
+
+/// Widest ways from one place of a storey.
+#[derive(Debug)]
+pub struct Passages<'a> {
+    plan: &'a Floorplan,
+    map: Occupancy,
+    /// By cell: diameter of the largest disc there, mm.
+    wide: Vec<u32>,
+    /// By cell: the narrowest width on the widest way, mm (0: no way), and the cell where it is.
+    best: Vec<(u32, u32)>,
+}
+
+impl<'a> Passages<'a> {
+    /// Finds the ways from a point for a robot that passes under what hangs above its height and over what is no higher
+    /// than it climbs, m.
+    pub fn new(plan: &'a Floorplan, placements: &Placements, (height_m, climb_m): (f64, f64), from: Point) -> Self {
+        let mut map = Occupancy::of_floorplan(plan);
+        let low = climb_m.max(FLAT_M);
+        let stops = placements.placements.iter().filter(|p| p.top_m() > low && p.pose.z < height_m);
+        stops.for_each(|p| map.block(&p.footprint()));
+        let wide = widths(&map, plan);
+        let mut out = Self { plan, best: vec![(0, 0); wide.len()], wide, map };
+        out.spread(from);
+        out
+    }
+
+    /// Returns the way to a room: to the place in it that is reached best.
+    pub fn to_room(&self, room_id: &str, radius_m: f64) -> RobotWay {
+        let mut best = (0, 0);
+        if let Some(room) = self.plan.room(room_id) {
+            for rect in room.net_polygon.rects() {
+                // the middle of a door sill is not yet the room
+                best = best.max(self.best_in(&rect));
+            }
+        }
+        self.way(room_id, best, radius_m)
+    }
+
+    /// Returns the way to a point.
+    pub fn to_point(&self, name: &str, p: Point, radius_m: f64) -> RobotWay {
+        let near = Rect::new(p.x - NEAR_M, p.y - NEAR_M, p.x + NEAR_M, p.y + NEAR_M);
+        self.way(name, self.best_in(&near), radius_m)
+    }
+
+    fn way(&self, to: &str, (width, at): (u32, u32), radius_m: f64) -> RobotWay {
+        let needed = (2000.0 * radius_m).round() as u32;
+        let narrowest = if width == 0 { String::new() } else { self.name(at) };
+        let reachable = width + SLACK_MM >= needed && width > 0;
+        RobotWay { to: to.to_owned(), reachable, clear_width_m: f64::from(width) / 1000.0, narrowest }
+    }
+
+    fn best_in(&self, rect: &Rect) -> (u32, u32) {
+        let (i0, i1, j0, j1) = self.map.frame.span(rect);
+        let (nx, ny) = (self.map.frame.nx as i64, self.map.frame.ny as i64);
+        let rows = (j0.max(0)..j1.min(ny)).flat_map(|j| (i0.max(0)..i1.min(nx)).map(move |i| (j * nx + i) as usize));
+        rows.map(|k| self.best[k]).max_by_key(|b| b.0).unwrap_or((0, 0))
+    }
+
+    /// Returns the door or the room that a cell lies in.
+    fn name(&self, cell: u32) -> String {
+        let nx = self.map.frame.nx;
+        let p = self.map.frame.center(cell as usize % nx, cell as usize / nx);
+        let inside = |r: &Rect| r.x0 <= p.x && p.x <= r.x1 && r.y0 <= p.y && p.y <= r.y1;
+        let door = self.plan.doors.iter().find(|d| inside(&sill(d)));
+        let room = || self.plan.rooms.iter().find(|r| r.net_polygon.contains(p));
+        door.map(|d| d.door_id.clone()).or_else(|| room().map(|r| r.room_id.clone())).unwrap_or_default()
+    }
+
+    /// Goes out from a point, the widest place first.
+    fn spread(&mut self, from: Point) {
+        let near = Rect::new(from.x - NEAR_M, from.y - NEAR_M, from.x + NEAR_M, from.y + NEAR_M);
+        let (i0, i1, j0, j1) = self.map.frame.span(&near);
+        let (nx, ny) = (self.map.frame.nx as i64, self.map.frame.ny as i64);
+        let cells = (j0.max(0)..j1.min(ny)).flat_map(|j| (i0.max(0)..i1.min(nx)).map(move |i| (j * nx + i) as usize));
+        let Some(start) = cells.max_by_key(|k| (self.wide[*k], usize::MAX - k)).filter(|k| self.wide[*k] > 0) else {
+            return;
+        };
+        let mut open = BinaryHeap::from([(self.wide[start], start as u32)]);
+        self.best[start] = (self.wide[start], start as u32);
+        while let Some((width, cell)) = open.pop() {
+            let (best, at) = self.best[cell as usize];
+            if width < best {
+                continue;
+            }
+            let (i, j) = (i64::from(cell) % nx, i64::from(cell) / nx);
+            for (x, y) in [(i - 1, j), (i + 1, j), (i, j - 1), (i, j + 1)] {
+                if x < 0 || y < 0 || x >= nx || y >= ny {
+                    continue;
+                }
+                let next = (y * nx + x) as usize;
+                let narrow = self.wide[next].min(width);
+                if narrow > self.best[next].0 {
+                    self.best[next] = (narrow, if self.wide[next] < width { next as u32 } else { at });
+                    open.push((narrow, next as u32));
+                }
+            }
+        }
+    }
+}
+
+/// Returns the floor of a door between the faces of its wall.
+fn sill(door: &crate::floorplan::Door) -> Rect {
+    let (a, b) = (door.line.start, door.line.end);
+    let half = door.wall_thickness_m / 2.0 + CELL_M;
+    let r = Rect::new(a.x.min(b.x), a.y.min(b.y), a.x.max(b.x), a.y.max(b.y));
+    if door.line.is_vertical() {
+        Rect { x0: r.x0 - half, x1: r.x1 + half, ..r }
+    } else {
+        Rect { y0: r.y0 - half, y1: r.y1 + half, ..r }
+    }
+}
+
+/// Returns the diameter of the largest disc at each cell, mm.
+fn widths(map: &Occupancy, plan: &Floorplan) -> Vec<u32> {
+    let (nx, ny) = (map.frame.nx, map.frame.ny);
+    let mut wide: Vec<u32> = squared_distances(nx, ny, |i, j| map.free.get(i, j))
+        .into_iter()
+        .map(|d| (2.0 * CELL_M * 1000.0 * f64::from(d).sqrt()) as u32)
+        .collect();
+    for door in &plan.doors {
+        let (i0, i1, j0, j1) = map.frame.span(&sill(door));
+        let most = (door.clear_width_m * 1000.0).round() as u32;
+        for j in j0.max(0)..j1.min(ny as i64) {
+            for i in i0.max(0)..i1.min(nx as i64) {
+                let k = j as usize * nx + i as usize;
+                wide[k] = wide[k].min(most);
+            }
+        }
+    }
+    wide
+}
+
+/// Returns the squared distance of each cell to the nearest one that is not free, in cells: exact, in two sweeps.
+fn squared_distances(nx: usize, ny: usize, free: impl Fn(usize, usize) -> bool) -> Vec<u32> {
+    let far = (nx + ny) as i64;
+    let mut up = vec![0_i64; nx * ny];
+    for i in 0..nx {
+        let mut run = 0;
+        for j in 0..ny {
+            run = if free(i, j) { (run + 1).min(far) } else { 0 };
+            up[j * nx + i] = run;
+        }
+        run = 0;
+        for j in (0..ny).rev() {
+            run = if free(i, j) { (run + 1).min(far) } else { 0 };
+            up[j * nx + i] = up[j * nx + i].min(run);
+        }
+    }
+    let mut out = vec![0_u32; nx * ny];
+    // lower envelope of the parabolas of one row
+    let (mut sites, mut starts) = (vec![0_usize; nx], vec![0_i64; nx]);
+    for j in 0..ny {
+        let g = &up[j * nx..(j + 1) * nx];
+        let at = |x: i64, i: usize| (x - i as i64).pow(2) + g[i] * g[i];
+        let mut q = 0_usize;
+        (sites[0], starts[0]) = (0, 0);
+        let mut count = 1;
+        for u in 1..nx {
+            while count > 0 && at(starts[q], sites[q]) > at(starts[q], u) {
+                count -= 1;
+                q = q.saturating_sub(1);
+            }
+            if count == 0 {
+                (q, count) = (0, 1);
+                (sites[0], starts[0]) = (u, 0);
+            } else {
+                let i = sites[q] as i64;
+                let (v, gi) = (u as i64, g[sites[q]]);
+                let w = 1 + (v * v - i * i + g[u] * g[u] - gi * gi).div_euclid(2 * (v - i));
+                if w < nx as i64 {
+                    q += 1;
+                    count += 1;
+                    (sites[q], starts[q]) = (u, w);
+                }
+            }
+        }
+        for u in (0..nx).rev() {
+            out[j * nx + u] = at(u as i64, sites[q]) as u32;
+            if u as i64 == starts[q] && q > 0 {
+                q -= 1;
+            }
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn distances_are_those_of_looking_at_every_cell() {
+        let (nx, ny) = (23, 17);
+        let free = |i: usize, j: usize| {
+            i > 0 && j > 0 && i < nx - 1 && j < ny - 1 && !(i * 7 + j * 13).is_multiple_of(41) && !(i == 11 && j > 5)
+        };
+        let found = squared_distances(nx, ny, free);
+        for j in 0..ny {
+            for i in 0..nx {
+                let blocked = (0..nx * ny).map(|k| (k % nx, k / nx)).filter(|&(x, y)| !free(x, y));
+                let least = blocked.map(|(x, y)| (x.abs_diff(i).pow(2) + y.abs_diff(j).pow(2)) as u32).min();
+                assert_eq!(Some(found[j * nx + i]), least, "({i}, {j})");
+            }
+        }
+    }
+}

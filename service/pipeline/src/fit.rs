@@ -1,0 +1,77 @@
+//! Robots that are to fit: a world in which they do, or a refusal that names the largest robot that does.
+
+use d3dgen_model::scene_graph::SceneGraph;
+
+use crate::Error;
+use crate::generate::Generated;
+
+/// Radius of a robot that every building has room for, m.
+const SMALL_M: f64 = 0.2;
+/// How closely the largest radius that fits is sought, m.
+const STEP_M: f64 = 0.05;
+
+/// Returns the world when the robots that are to fit do; else refuses, with the least change that would help.
+///
+/// # Errors
+/// `Refused` when a smaller robot would fit; what came of the request itself when none would; `Cancelled`.
+pub(crate) fn or_refused(
+    made: Result<Generated, Error>,
+    graph: &SceneGraph,
+    make: &mut dyn FnMut(&SceneGraph) -> Result<Generated, Error>,
+) -> Result<Generated, Error> {
+    let reason = match &made {
+        Ok(found) if fits(found) => return made,
+        Ok(found) => unfit(found),
+        Err(Error::Infeasible { message, .. }) => message.clone(),
+        Err(_) => return made,
+    };
+    let largest = graph.robots.iter().filter(|r| r.is_fitted()).map(|r| r.radius_m).fold(0.0, f64::max);
+    let with = |radius: f64| {
+        let mut smaller = graph.clone();
+        smaller.robots.iter_mut().filter(|r| r.is_fitted()).for_each(|r| r.radius_m = r.radius_m.min(radius));
+        smaller
+    };
+    let mut works = |radius: f64| match make(&with(radius)) {
+        Ok(found) => Ok(fits(&found)),
+        Err(Error::Cancelled) => Err(Error::Cancelled),
+        Err(_) => Ok(false),
+    };
+    // in steps, so that the figure is a round one
+    let (mut low, mut high) = ((SMALL_M / STEP_M).round() as u32, (largest / STEP_M - 1e-6).ceil() as u32);
+    if high <= low || !works(f64::from(low) * STEP_M)? {
+        return made;
+    }
+    while high - low > 1 {
+        let middle = (low + high) / 2;
+        if works(f64::from(middle) * STEP_M)? { low = middle } else { high = middle }
+    }
+    let most = f64::from(low) * STEP_M;
+    let side = most * std::f64::consts::SQRT_2;
+    Err(Error::Refused {
+        stage: "floorplan",
+        message: format!(
+            "a robot that turns within {:.2} m does not fit these rooms: {reason}; one that turns within {:.2} m does \
+             (--robot-turning-radius {most:.2}, or a body of {side:.2} m by {side:.2} m)",
+            2.0 * largest,
+            2.0 * most
+        ),
+    })
+}
+
+fn fits(found: &Generated) -> bool {
+    found.report.is_writable() && found.report.robot_fit.iter().all(|f| f.fits)
+}
+
+/// Returns what keeps a robot from fitting.
+fn unfit(found: &Generated) -> String {
+    let violation = found.report.rules.iter().flat_map(|r| &r.violations).find(|v| !v.given);
+    let missed = || {
+        let mut ways = found.report.robot_fit.iter().flat_map(|f| f.rooms.iter().chain(&f.points));
+        ways.find(|w| !w.reachable)
+            .map(|w| format!("{} is reached through {:.2} m at {}", w.to, w.clear_width_m, w.narrowest))
+    };
+    match violation {
+        Some(v) => format!("{}: {}", v.subject, v.message),
+        None => missed().unwrap_or_else(|| "it does not reach every room".into()),
+    }
+}
