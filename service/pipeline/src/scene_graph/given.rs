@@ -148,7 +148,7 @@ pub fn understand(labels: &[Label], domain: Option<&str>, registry: &Registry) -
             Names::new(plugin.domain())
         }
         None => {
-            // of domains that know as many names in as many letters, the one whose programs have more of them, and of those
+            // of domains that know as many names in as many letters, the one more of whose programs have them, and of those
             // the one that knows fewer rooms besides: it is about less
             type Rank = (usize, usize, usize, Reverse<usize>);
             let mut best: Option<(Rank, Names)> = None;
@@ -156,11 +156,9 @@ pub fn understand(labels: &[Label], domain: Option<&str>, registry: &Registry) -
                 let names = Names::new(plugin.domain());
                 let found: Vec<(&str, usize)> = labels.iter().filter_map(|l| names.room_type(l)).collect();
                 let letters = found.iter().map(|f| f.1).sum();
-                let planned = |id: &str| {
-                    let mut programs = names.domain.programs.iter().flat_map(|p| &p.rooms);
-                    id == names.domain.circulation.room_type || programs.any(|e| e.room_type == id)
-                };
-                let usual = found.iter().filter(|f| planned(f.0)).count();
+                let programs = &names.domain.programs;
+                let with = |id: &str| programs.iter().filter(|p| p.rooms.iter().any(|e| e.room_type == id)).count();
+                let usual = found.iter().map(|f| 1000 * with(f.0) / programs.len().max(1)).sum();
                 let rank = (found.len(), letters, usual, Reverse(names.domain.room_types.len()));
                 if best.as_ref().is_none_or(|b| rank > b.0) {
                     best = Some((rank, names));

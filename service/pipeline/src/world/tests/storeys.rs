@@ -63,6 +63,7 @@ const BREAKS: &[Break] = &[
             "unreachable_zone",
             "private_passage",
             "pose_taken",
+            "door_width",
         ],
         |world| {
             let id = top_room(world, LinkKind::Stairs)?;
