@@ -78,6 +78,7 @@ fn cores_line_up_for_every_seed() {
         "two-storey house in Germany with 7 rooms",
         "office in the US with 21 rooms on 3 floors",
         "hospital with 20 rooms on 2 floors",
+        "three floor office building without an elevator, 12 rooms",
     ];
     for prompt in prompts {
         for seed in 0..5 {
@@ -105,4 +106,10 @@ fn cores_line_up_for_every_seed() {
             }
         }
     }
+}
+
+#[test]
+fn a_single_storey_house_is_a_home() {
+    let graph = generate(&request("single-storey house with two bedrooms", 1), &Registry::builtin()).unwrap();
+    assert_eq!((graph.domain.as_str(), graph.level_numbers()), ("residential", vec![0]));
 }

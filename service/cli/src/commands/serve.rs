@@ -49,7 +49,7 @@ enum Action {
         #[command(flatten)]
         settings: settings::SettingsArgs,
     },
-    /// Copy the databases of a server into a new folder below its backups/; a server that runs is asked by signal instead
+    /// Copy the databases of a server into a new folder below its backups/; a server that runs makes it itself when asked, by call or by file
     Backup {
         #[command(flatten)]
         settings: settings::SettingsArgs,

@@ -45,6 +45,8 @@ struct Wing {
     boxes: Vec<(usize, Cellbox)>,
     south: i32,
     north: i32,
+    /// True when it keeps all hard rules by itself.
+    sound: bool,
 }
 
 /// Returns the best building of wings; its `score.hard` is above 0 when none is sound.
@@ -54,7 +56,7 @@ pub(super) fn compose(brief: &Brief, weights: &Weights, rng: &mut Stream, stop: 
     let mut best: Option<Candidate> = None;
     let core = brief.core.as_ref();
     let given = core.and_then(|c| c.below.as_ref()).and_then(|b| b.comb.as_ref());
-    for deal in 0..DEALS {
+    'deals: for deal in 0..DEALS {
         let rooms = brief.rooms.len() as f64;
         let each = (rooms.sqrt() * (1.2 + 0.5 * rng.unit())).clamp(WING_ROOMS.0, WING_ROOMS.1);
         // When a deal fails, shorter wings leave more choice.
@@ -64,7 +66,12 @@ pub(super) fn compose(brief: &Brief, weights: &Weights, rng: &mut Stream, stop: 
         let mut wings: Vec<Wing> = Vec::new();
         for rooms in &partition(brief, count, rng) {
             let below = given.and_then(|c| below_wing(brief, c, wings.len()));
-            wings.extend(wing(brief, rooms, weights, below.as_ref(), rng, stop));
+            let Some(found) = wing(brief, rooms, weights, below.as_ref(), rng, stop) else { continue };
+            // one wing that cannot be built spoils the deal; the last deal is kept to say by how much
+            if !found.sound && deal + 1 < DEALS {
+                continue 'deals;
+            }
+            wings.push(found);
         }
         if stop.is_set() {
             break;
@@ -105,7 +112,8 @@ fn wing(
     let boxes: Vec<(usize, Cellbox)> = found.layout.boxes.iter().copied().filter(|b| !stem(b)).collect();
     let (south, north) = boxes.iter().fold((0, w), |(s, n), (_, b)| (s.min(b.y0), n.max(b.y1)));
     let whole = |room: usize| if Some(room) == part.spine { brief.spine.unwrap_or(room) } else { rooms[room] };
-    Some(Wing { boxes: boxes.into_iter().map(|(room, b)| (whole(room), b)).collect(), south, north })
+    let sound = found.score.is_sound();
+    Some(Wing { sound, boxes: boxes.into_iter().map(|(room, b)| (whole(room), b)).collect(), south, north })
 }
 
 /// Returns what is below a wing, as the wing sees it.

@@ -332,7 +332,12 @@ fn links(
         let lift = reading.storeys.elevator.unwrap_or(usual || reading.accessible);
         if lift {
             wanted.push((LinkKind::Elevator, &elevator.room_type, "elevator_a"));
-        } else if !reading.robots.is_empty() {
+        } else if usual && !reading.accessible {
+            let message =
+                format!("the prompt wants no elevator, which a building of {} storeys usually has", levels.len());
+            reading.assumptions.push(note("no_elevator", message));
+        }
+        if !lift && !reading.robots.is_empty() {
             let message = "there is no elevator; robots stay on the storey they start on".to_owned();
             reading.assumptions.push(note("robots_stay", message));
         }

@@ -280,7 +280,13 @@ pub(super) fn stem<'a>(word: &'a str, language: &str) -> &'a str {
                 return word;
             }
             let sibilant = ["ches", "shes", "xes", "sses", "zes"].iter().any(|e| word.ends_with(e));
-            if sibilant { strip(word, &["es"], 3) } else { strip(strip(word, &["s"], 3), &["ie", "y"], 3) }
+            if sibilant {
+                return strip(word, &["es"], 3);
+            }
+            let singular = strip(word, &["s"], 3);
+            // "party" and "parties", but "storey" and "storeys"
+            let keeps_y = ["ay", "ey", "oy", "uy"].iter().any(|e| singular.ends_with(e));
+            if keeps_y { singular } else { strip(singular, &["ie", "y"], 3) }
         }
     }
 }
@@ -424,6 +430,13 @@ mod tests {
             let found = tokens(text);
             assert_eq!(found.len(), 1, "{text}");
             assert_eq!(found[0].kind, Kind::Number(value), "{text}");
+        }
+    }
+
+    #[test]
+    fn english_words_of_one_stem() {
+        for (a, b, alike) in [("parties", "party", true), ("storeys", "storey", true), ("storey", "store", false)] {
+            assert_eq!(stem(a, "en") == stem(b, "en"), alike, "{a} and {b}");
         }
     }
 

@@ -119,10 +119,13 @@ pub fn width(c: &Context, out: &mut Findings) {
 /// A door serves the room that hangs on the other one (an en suite, any room off the corridor); between two equal rooms
 /// the lesser need counts.
 fn needed_width(c: &Context, door: &Door) -> (f64, String) {
+    let given = c.plan().is_given();
     let own = |room: &Room| -> (f64, String) {
         let limit = c.retrieval.limits.rooms.get(&room.plan.room_type).and_then(|l| l.door_width.as_ref());
         match limit {
-            Some(l) if l.value > room.kind.door_width_m => (l.value, l.constraint_id.clone()),
+            Some(l) if given || l.value > room.kind.door_width_m => (l.value, l.constraint_id.clone()),
+            // what is usual here is no rule for doors that somebody else drew
+            None if given => (NARROWEST_M, "a door".into()),
             _ => (room.kind.door_width_m, room.plan.room_type.clone()),
         }
     };

@@ -61,7 +61,7 @@ pub fn elevator(c: &Context, out: &mut Findings) {
     let usual = rules.from_levels.is_some_and(|n| levels.len() >= n as usize);
     // what was ruled out, or not asked for where it must be asked for, has no link in the scene graph
     let asked = c.graph().accessible || c.graph().links.iter().any(|l| l.kind == LinkKind::Elevator);
-    let ruled_out = c.graph().conflicts.iter().any(|n| n.code == "no_elevator");
+    let ruled_out = c.graph().assumptions.iter().any(|n| n.code == "no_elevator");
     if !(usual || asked) || ruled_out {
         return;
     }

@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 
 use d3dgen_knowledge::{Measure, Query, Retrieval, Stats, Sure, compliance, retrieve};
 use d3dgen_model::Document;
-use d3dgen_model::Pose;
+use d3dgen_model::{Point, Pose};
 use d3dgen_model::floorplan::Door;
 use d3dgen_model::placements::Placement;
 use d3dgen_model::report::{ConstraintResult, Status};
@@ -99,16 +99,19 @@ fn twin_beds(apart: f64) -> Sample {
     Sample { world, domain: sample.domain, retrieval: sample.retrieval.clone() }
 }
 
-/// Returns a world with a straight corridor whose entrance is there twice, so that the corridor's ends are dead.
+/// Returns the office with a corridor made straight and its entrance there twice, so that the corridor's ends are dead.
 fn two_exits() -> Sample {
-    let straight = |s: &&Sample| {
-        let mut rooms = s.world.floorplan.rooms.iter().filter(|r| r.circulation);
-        rooms.next().is_some_and(|r| r.net_polygon.rects().len() == 1) && s.world.scene_graph.domain != "hospital"
-    };
-    let sample = SAMPLES.iter().find(straight).expect("a sample with a straight corridor");
+    let sample = &SAMPLES[1];
     let mut world = sample.world.clone();
+    let corridor = world.floorplan.rooms.iter_mut().find(|r| r.circulation).unwrap();
+    let b = corridor.net_polygon.bounds();
+    corridor.net_polygon.0 =
+        [(b.x0, b.y0), (b.x1, b.y0), (b.x1, b.y1), (b.x0, b.y1)].map(|(x, y)| Point::new(x, y)).to_vec();
+    let room_ids = vec![corridor.room_id.clone()];
     let entrance = world.floorplan.doors.iter().find(|d| d.room_ids.len() == 1).unwrap().clone();
-    world.floorplan.doors.push(Door { door_id: "second_exit".into(), ..entrance });
+    for door_id in ["exit_a", "exit_b"] {
+        world.floorplan.doors.push(Door { door_id: door_id.into(), room_ids: room_ids.clone(), ..entrance.clone() });
+    }
     Sample { world, domain: sample.domain, retrieval: sample.retrieval.clone() }
 }
 
