@@ -63,7 +63,7 @@ pub struct Verdict<'c> {
 }
 
 /// Cost from which an object is not what the name meant.
-const UNLIKE: f64 = 2.1;
+const UNLIKE: f64 = 2.2;
 /// Names matched this badly say nothing about the size.
 const LEAST_COVERAGE: f64 = 0.3;
 /// The same for names beside the model's own: folders, parts and materials are about other things too.
