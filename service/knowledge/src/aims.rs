@@ -3,7 +3,9 @@
 //! Nothing here is hard. Who furnishes a room takes, of the sizes an object comes in, one that breaks least, and leaves
 //! the free floor that is advised where the room has it; what comes of it is judged by `compliance`.
 
-use d3dgen_model::domain::{Mount, ObjectType};
+use std::collections::BTreeMap;
+
+use d3dgen_model::domain::{Domain, Mount, ObjectType};
 
 use crate::compliance::{SLACK, sizes};
 use crate::conditions::Guard;
@@ -52,28 +54,35 @@ impl ObjectAims {
         Self(constraints.iter().filter(planned).cloned().collect())
     }
 
-    /// Returns what to aim at with an object in a room.
-    pub fn of(&self, room_type: &str, circulation: bool, object: &ObjectType) -> Aim {
-        let mut aim = Aim { breaches: vec![0; object.sizes_m.len()], ..Aim::default() };
-        for a in &self.0 {
-            let Ok(rule) = &a.decision else { continue };
-            if !in_scope(a, room_type, circulation) {
-                continue;
-            }
-            if rule.quantity.measure == Measure::NoGlassOrMirrors {
-                aim.unwanted |= is_mirror(object);
-            }
-            if !concerns(a, rule, object) {
-                continue;
-            }
-            if is_extent(rule.quantity.measure) {
+    /// Returns what to aim at with the objects of a domain in a room, by id; nothing for those that no constraint is about.
+    pub fn in_room<'d>(&self, domain: &'d Domain, room_type: &str, circulation: bool) -> BTreeMap<&'d str, Aim> {
+        let here = self.0.iter().filter(|a| in_scope(a, room_type, circulation));
+        let here: Vec<(&Applicable, &Rule)> = here.filter_map(|a| Some((a, a.decision.as_ref().ok()?))).collect();
+        let aim = |object: &'d ObjectType| {
+            let mut own = here.iter().filter(|(a, rule)| concerns(a, rule, object)).peekable();
+            own.peek()?;
+            Some((object.id.as_str(), Aim::of(object, own.copied())))
+        };
+        domain.objects.iter().filter_map(aim).collect()
+    }
+}
+
+impl Aim {
+    /// Returns what constraints about an object come to.
+    fn of<'c>(object: &ObjectType, constraints: impl Iterator<Item = (&'c Applicable, &'c Rule)>) -> Self {
+        let mut aim = Self { breaches: vec![0; object.sizes_m.len()], ..Self::default() };
+        for (a, rule) in constraints {
+            let measure = rule.quantity.measure;
+            if measure == Measure::NoGlassOrMirrors {
+                aim.unwanted = true;
+            } else if is_extent(measure) {
                 for (breach, size) in aim.breaches.iter_mut().zip(&object.sizes_m) {
                     let off = extents(object, *size).and_then(|e| sizes::of_extents(e, a, rule));
                     let weight = if a.mandatory { LAW } else { 1 };
                     *breach += off.filter(|v| breaks(*v, rule)).map_or(0, |_| weight);
                 }
             } else if let Some(least) = rule.bounds.min {
-                let (measure, width) = (rule.quantity.measure, object.sizes_m.first().map_or(0.0, |s| s[0]));
+                let width = object.sizes_m.first().map_or(0.0, |s| s[0]);
                 let least = if measure == Measure::CentreToSide { (least - width / 2.0).max(0.0) } else { least };
                 aim.clear.raise(measure, least, a.constraint.measurement_basis.contains("one side"));
             }
@@ -99,11 +108,6 @@ impl Clear {
             _ => up(&mut self.around),
         }
     }
-
-    /// Returns true when nothing is asked.
-    pub fn is_none(&self) -> bool {
-        *self == Self::default()
-    }
 }
 
 fn is_extent(measure: Measure) -> bool {
@@ -118,8 +122,8 @@ fn is_floor(measure: Measure) -> bool {
 }
 
 /// Returns true for what robots that see with light mistake for an opening.
-pub(crate) fn is_mirror(object: &ObjectType) -> bool {
-    object.tags.iter().any(|t| t == "mirror") || object.id.contains("mirror")
+pub(crate) fn is_mirror(object_id: &str, kind: Option<&ObjectType>) -> bool {
+    object_id.contains("mirror") || kind.is_some_and(|k| k.tags.iter().any(|t| t == "mirror"))
 }
 
 fn in_scope(a: &Applicable, room_type: &str, circulation: bool) -> bool {
@@ -133,6 +137,7 @@ fn in_scope(a: &Applicable, room_type: &str, circulation: bool) -> bool {
 
 fn concerns(a: &Applicable, rule: &Rule, object: &ObjectType) -> bool {
     match &a.scope {
+        _ if rule.quantity.measure == Measure::NoGlassOrMirrors => is_mirror(&object.id, Some(object)),
         Scope::Objects(shapes) if !rule.quantity.names_objects() => shapes.contains(&object.shape),
         _ => rule.quantity.picks(object),
     }

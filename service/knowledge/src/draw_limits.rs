@@ -120,13 +120,10 @@ fn advised_width(usable: &[(&Applicable, &Rule)], query: &Query) -> Option<f64> 
     usable.iter().filter(|(a, r)| about(a, r)).filter_map(|(_, r)| r.bounds.min).reduce(f64::max)
 }
 
-/// Returns the share of circulation that meets all advice; largest figures go before least ones.
-fn advised_share(wished: &[(&Applicable, &Rule)]) -> Option<[f64; 2]> {
-    let bounds =
-        || wished.iter().filter(|(_, r)| r.quantity.measure == Measure::CirculationShare).map(|(_, r)| &r.bounds);
-    let most = bounds().filter_map(|b| b.max).reduce(f64::min);
-    let least = bounds().filter_map(|b| b.min).filter(|v| most.is_none_or(|m| *v <= m)).reduce(f64::max);
-    (least.is_some() || most.is_some()).then(|| [least.unwrap_or(0.0), most.unwrap_or(1.0)])
+/// Returns the largest share of circulation that all advice allows.
+fn advised_share(wished: &[(&Applicable, &Rule)]) -> Option<f64> {
+    let shares = wished.iter().filter(|(_, r)| r.quantity.measure == Measure::CirculationShare);
+    shares.filter_map(|(_, r)| r.bounds.max).reduce(f64::min)
 }
 
 /// Returns true for constraints on circulation, whether they call it so or by the room type it has here.

@@ -11,8 +11,8 @@ pub struct Limits {
     pub corridor_width: Option<Limit>,
     /// Width that advice asks of circulation beyond the hard figure, m; a wish.
     pub corridor_width_advised: Option<f64>,
-    /// Circulation over all net floor area between which advice is met; a wish.
-    pub circulation_share_advised: Option<[f64; 2]>,
+    /// Largest circulation over all net floor area that all advice allows; a wish.
+    pub circulation_share_advised: Option<f64>,
     /// Least clear width of the main entrance door, m.
     pub entrance_width: Option<Limit>,
     /// Limits by room type id.

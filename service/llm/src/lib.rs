@@ -39,6 +39,7 @@ mod request;
 mod schema;
 mod secret;
 mod stream;
+mod template;
 mod transport;
 
 pub use answer::{Answer, Citation, Finish, Note, Segment, Usage};
@@ -51,3 +52,4 @@ pub use providers::{Config, Entry, Provider, Structured, TokenField};
 pub use request::{Grounding, MIN_OUTPUT_TOKENS, Message, Request, Role};
 pub use schema::{Schema, check_lowest_common};
 pub use secret::Secret;
+pub use template::fill;

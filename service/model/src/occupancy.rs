@@ -60,6 +60,14 @@ impl Frame {
         (first(r.x0, o.x), last(r.x1, o.x), first(r.y0, o.y), last(r.y1, o.y))
     }
 
+    /// Returns the columns and rows of the cells of the grid whose centers lie in the rectangle, row after row.
+    pub fn cells(&self, rect: &Rect) -> impl Iterator<Item = (usize, usize)> + use<> {
+        let (i0, i1, j0, j1) = self.span(rect);
+        let within = |v: i64, n: usize| v.clamp(0, n as i64) as usize;
+        let (columns, rows) = (within(i0, self.nx)..within(i1, self.nx), within(j0, self.ny)..within(j1, self.ny));
+        rows.flat_map(move |j| columns.clone().map(move |i| (i, j)))
+    }
+
     /// Adds to (`value` true) or removes from a bitmap the cells whose centers lie in the polygon.
     pub fn paint(&self, map: &mut Bitmap, polygon: &Polygon, value: bool) {
         if polygon.is_rectilinear() {
@@ -181,7 +189,7 @@ pub fn stops_robot(p: &Placement) -> bool {
 }
 
 /// Returns the floor of a door's opening through its wall, a cell deeper on both sides so that it joins the rooms.
-fn opening(door: &Door) -> Rect {
+pub(crate) fn opening(door: &Door) -> Rect {
     let (a, b) = (door.line.start, door.line.end);
     let half = door.wall_thickness_m / 2.0 + CELL_M;
     let r = Rect::new(a.x, a.y, b.x, b.y);

@@ -10,8 +10,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::floorplan::Floorplan;
 use crate::geometry::{Point, Rect};
-use crate::occupancy::{CELL_M, FLAT_M, Occupancy};
+use crate::occupancy::{CELL_M, FLAT_M, Occupancy, opening};
 use crate::placements::Placements;
+use crate::scene_graph::Robot;
 
 /// How far from a point its best cell may lie, m.
 const NEAR_M: f64 = 0.25;
@@ -44,12 +45,12 @@ pub struct Passages<'a> {
 }
 
 impl<'a> Passages<'a> {
-    /// Finds the ways from a point for a robot that passes under what hangs above its height and over what is no higher
-    /// than it climbs, m.
-    pub fn new(plan: &'a Floorplan, placements: &Placements, (height_m, climb_m): (f64, f64), from: Point) -> Self {
+    /// Finds the ways from a point for a robot: it passes under what hangs above its height and over what is no higher than
+    /// it climbs.
+    pub fn new(plan: &'a Floorplan, placements: &Placements, robot: &Robot, from: Point) -> Self {
         let mut map = Occupancy::of_floorplan(plan);
-        let low = climb_m.max(FLAT_M);
-        let stops = placements.placements.iter().filter(|p| p.top_m() > low && p.pose.z < height_m);
+        let low = robot.body.and_then(|b| b.climb_m).unwrap_or(0.0).max(FLAT_M);
+        let stops = placements.placements.iter().filter(|p| p.top_m() > low && p.pose.z < robot.height_m);
         stops.for_each(|p| map.block(&p.footprint()));
         let wide = widths(&map, plan);
         let mut out = Self { plan, best: vec![(0, 0); wide.len()], wide, map };
@@ -71,8 +72,7 @@ impl<'a> Passages<'a> {
 
     /// Returns the way to a point.
     pub fn to_point(&self, name: &str, p: Point, radius_m: f64) -> RobotWay {
-        let near = Rect::new(p.x - NEAR_M, p.y - NEAR_M, p.x + NEAR_M, p.y + NEAR_M);
-        self.way(name, self.best_in(&near), radius_m)
+        self.way(name, self.best_in(&around(p)), radius_m)
     }
 
     fn way(&self, to: &str, (width, at): (u32, u32), radius_m: f64) -> RobotWay {
@@ -83,10 +83,8 @@ impl<'a> Passages<'a> {
     }
 
     fn best_in(&self, rect: &Rect) -> (u32, u32) {
-        let (i0, i1, j0, j1) = self.map.frame.span(rect);
-        let (nx, ny) = (self.map.frame.nx as i64, self.map.frame.ny as i64);
-        let rows = (j0.max(0)..j1.min(ny)).flat_map(|j| (i0.max(0)..i1.min(nx)).map(move |i| (j * nx + i) as usize));
-        rows.map(|k| self.best[k]).max_by_key(|b| b.0).unwrap_or((0, 0))
+        let frame = &self.map.frame;
+        frame.cells(rect).map(|(i, j)| self.best[j * frame.nx + i]).max_by_key(|b| b.0).unwrap_or((0, 0))
     }
 
     /// Returns the door or the room that a cell lies in.
@@ -94,17 +92,15 @@ impl<'a> Passages<'a> {
         let nx = self.map.frame.nx;
         let p = self.map.frame.center(cell as usize % nx, cell as usize / nx);
         let inside = |r: &Rect| r.x0 <= p.x && p.x <= r.x1 && r.y0 <= p.y && p.y <= r.y1;
-        let door = self.plan.doors.iter().find(|d| inside(&sill(d)));
+        let door = self.plan.doors.iter().find(|d| inside(&opening(d)));
         let room = || self.plan.rooms.iter().find(|r| r.net_polygon.contains(p));
         door.map(|d| d.door_id.clone()).or_else(|| room().map(|r| r.room_id.clone())).unwrap_or_default()
     }
 
     /// Goes out from a point, the widest place first.
     fn spread(&mut self, from: Point) {
-        let near = Rect::new(from.x - NEAR_M, from.y - NEAR_M, from.x + NEAR_M, from.y + NEAR_M);
-        let (i0, i1, j0, j1) = self.map.frame.span(&near);
         let (nx, ny) = (self.map.frame.nx as i64, self.map.frame.ny as i64);
-        let cells = (j0.max(0)..j1.min(ny)).flat_map(|j| (i0.max(0)..i1.min(nx)).map(move |i| (j * nx + i) as usize));
+        let cells = self.map.frame.cells(&around(from)).map(|(i, j)| j * self.map.frame.nx + i);
         let Some(start) = cells.max_by_key(|k| (self.wide[*k], usize::MAX - k)).filter(|k| self.wide[*k] > 0) else {
             return;
         };
@@ -131,16 +127,9 @@ impl<'a> Passages<'a> {
     }
 }
 
-/// Returns the floor of a door between the faces of its wall.
-fn sill(door: &crate::floorplan::Door) -> Rect {
-    let (a, b) = (door.line.start, door.line.end);
-    let half = door.wall_thickness_m / 2.0 + CELL_M;
-    let r = Rect::new(a.x.min(b.x), a.y.min(b.y), a.x.max(b.x), a.y.max(b.y));
-    if door.line.is_vertical() {
-        Rect { x0: r.x0 - half, x1: r.x1 + half, ..r }
-    } else {
-        Rect { y0: r.y0 - half, y1: r.y1 + half, ..r }
-    }
+/// Returns the floor near a point.
+fn around(p: Point) -> Rect {
+    Rect::new(p.x - NEAR_M, p.y - NEAR_M, p.x + NEAR_M, p.y + NEAR_M)
 }
 
 /// Returns the diameter of the largest disc at each cell, mm.
@@ -151,13 +140,9 @@ fn widths(map: &Occupancy, plan: &Floorplan) -> Vec<u32> {
         .map(|d| (2.0 * CELL_M * 1000.0 * f64::from(d).sqrt()) as u32)
         .collect();
     for door in &plan.doors {
-        let (i0, i1, j0, j1) = map.frame.span(&sill(door));
         let most = (door.clear_width_m * 1000.0).round() as u32;
-        for j in j0.max(0)..j1.min(ny as i64) {
-            for i in i0.max(0)..i1.min(nx as i64) {
-                let k = j as usize * nx + i as usize;
-                wide[k] = wide[k].min(most);
-            }
+        for (i, j) in map.frame.cells(&opening(door)) {
+            wide[j * nx + i] = wide[j * nx + i].min(most);
         }
     }
     wide

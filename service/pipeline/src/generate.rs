@@ -7,6 +7,7 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use d3dgen_knowledge::{Query, Retrieval};
+use d3dgen_model::domain::Domain;
 use d3dgen_model::floorplan::Floorplan;
 use d3dgen_model::placements::Placements;
 use d3dgen_model::report::Report;
@@ -289,6 +290,24 @@ fn attempt(
     let report = world::check(&world, domain, retrieved);
     observe(Event::Finished(Stage::World, attempt, Artifact::World(&world, &report)));
     Ok(Generated { world, report, attempts: attempt + 1 })
+}
+
+/// Puts a world together of a plan and its furniture, and judges it; the scenario goes on under the plan's seed.
+///
+/// # Errors
+/// As [`scenario::generate`].
+pub fn finish(
+    name: &str,
+    graph: SceneGraph,
+    (plan, placements): (Floorplan, Placements),
+    domain: &Domain,
+    retrieved: &Retrieval,
+) -> Result<(World, Report), Error> {
+    let reseeded = SceneGraph { seed: plan.seed, ..graph.clone() };
+    let scenario = scenario::generate(&reseeded, &plan, &placements, domain)?;
+    let world = world::assemble(name, graph, plan, placements, scenario);
+    let report = world::check(&world, domain, retrieved);
+    Ok((world, report))
 }
 
 fn begin(stage: Stage, attempt: u32, observe: &mut dyn FnMut(Event<'_>), cancelled: &AtomicBool) -> Result<(), Error> {

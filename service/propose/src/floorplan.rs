@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use d3dgen_knowledge::Retrieval;
 use d3dgen_llm::Request as LlmRequest;
 use d3dgen_model::domain::Daylight;
 use d3dgen_model::floorplan::Floorplan;
@@ -94,11 +95,11 @@ fn judge(desk: &mut Desk<'_, '_>, base: &Generated, answer: &PlanAnswer) -> Resu
         .take(MOST_ROOMS)
         .map(|r| Sketch { room_id: r.room_id.clone(), rects: r.rectangles.iter().take(MOST_RECTS).map(rect).collect() })
         .collect();
-    let limits = retrieve(graph, desk.plugin).limits;
+    let retrieved = retrieve(graph, desk.plugin);
     let mut found = Ok(Err(String::new()));
     for follow in [Follow::Closely, Follow::Roughly] {
-        let plan = floorplan::propose(graph, desk.plugin.domain(), &limits, &sketches, follow, desk.stop());
-        found = plan.and_then(|plan| furnished(desk, base, plan));
+        let plan = floorplan::propose(graph, desk.plugin.domain(), &retrieved.limits, &sketches, follow, desk.stop());
+        found = plan.and_then(|plan| furnished(desk, (graph, &retrieved), plan));
         if !matches!(found, Ok(Err(_)) | Err(Error::Infeasible { .. })) {
             break;
         }
@@ -122,17 +123,19 @@ fn judge(desk: &mut Desk<'_, '_>, base: &Generated, answer: &PlanAnswer) -> Resu
 }
 
 /// Returns a building with another plan, or why it is not sound.
-fn furnished(desk: &Desk<'_, '_>, base: &Generated, plan: Floorplan) -> Result<Result<Generated, String>, Error> {
-    let graph = &base.world.scene_graph;
-    let limits = retrieve(graph, desk.plugin).limits;
+fn furnished(
+    desk: &Desk<'_, '_>,
+    (graph, retrieved): (&SceneGraph, &Retrieval),
+    plan: Floorplan,
+) -> Result<Result<Generated, String>, Error> {
+    let (domain, limits) = (desk.plugin.domain(), &retrieved.limits);
     let mut why = String::new();
     for attempt in 0..SEEDS {
         let seed = attempt_seed(graph.seed, attempt);
         let reseeded = SceneGraph { seed, ..graph.clone() };
         let plan = Floorplan { seed, ..plan.clone() };
-        let placements =
-            placement::generate_until(&reseeded, &plan, desk.plugin.domain(), &limits, None, &mut |_| (), desk.stop())?;
-        let made = desk.judged(graph, plan, placements)?;
+        let placements = placement::generate_until(&reseeded, &plan, domain, limits, None, &mut |_| (), desk.stop())?;
+        let made = desk.judged((graph, retrieved), plan, placements)?;
         if made.report.is_writable() {
             return Ok(Ok(made));
         }

@@ -19,15 +19,15 @@ mod scene_graph;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use d3dgen_knowledge::Retrieval;
 use d3dgen_llm::{Answer, Client, Error as LlmError, Request as LlmRequest};
 use d3dgen_model::floorplan::Floorplan;
 use d3dgen_model::placements::Placements;
 use d3dgen_model::proposal::{Proposal, TokenUsage};
 use d3dgen_model::scene_graph::SceneGraph;
-use d3dgen_model::world::World;
-use d3dgen_pipeline::generate::{Event, Generated, Settings, Stage, furnish_and_check, world_name};
+use d3dgen_pipeline::generate::{Event, Generated, Settings, Stage, finish, furnish_and_check, world_name};
 use d3dgen_pipeline::scene_graph::Request;
-use d3dgen_pipeline::{Error, Stop, scenario, world};
+use d3dgen_pipeline::{Error, Stop};
 use d3dgen_plugins::{Plugin, Registry};
 
 /// The stages that a model can propose something for.
@@ -163,13 +163,14 @@ impl Desk<'_, '_> {
     }
 
     /// Puts a world together and judges it.
-    fn judged(&self, graph: &SceneGraph, plan: Floorplan, placements: Placements) -> Result<Generated, Error> {
+    fn judged(
+        &self,
+        (graph, retrieved): (&SceneGraph, &Retrieval),
+        plan: Floorplan,
+        placements: Placements,
+    ) -> Result<Generated, Error> {
         let domain = self.plugin.domain();
-        let retrieved = d3dgen_pipeline::generate::retrieve(graph, self.plugin);
-        let reseeded = SceneGraph { seed: plan.seed, ..graph.clone() };
-        let scenario = scenario::generate(&reseeded, &plan, &placements, domain)?;
-        let world: World = world::assemble(&self.name, graph.clone(), plan, placements, scenario);
-        let report = world::check(&world, domain, &retrieved);
+        let (world, report) = finish(&self.name, graph.clone(), (plan, placements), domain, retrieved)?;
         Ok(Generated { world, report, attempts: 1 })
     }
 }

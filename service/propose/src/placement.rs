@@ -109,7 +109,7 @@ struct Room {
 fn judge(desk: &mut Desk<'_, '_>, base: &Generated, answer: &FurnitureAnswer) -> Result<Trial<Generated>, Error> {
     let (graph, plan) = (&base.world.scene_graph, &base.world.floorplan);
     let reseeded = SceneGraph { seed: plan.seed, ..graph.clone() };
-    let limits = retrieve(graph, desk.plugin).limits;
+    let retrieved = retrieve(graph, desk.plugin);
     let mut by_room: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
     for (n, object) in answer.objects.iter().take(MOST_OBJECTS).enumerate() {
         by_room.entry(&object.room_id).or_default().push(n);
@@ -119,7 +119,7 @@ fn judge(desk: &mut Desk<'_, '_>, base: &Generated, answer: &FurnitureAnswer) ->
         let Some(wanted) = by_room.get(room.room_id.as_str()) else { continue };
         let wishes: Vec<Wish> = wanted.iter().map(|&n| wish(&answer.objects[n])).collect();
         let storey = storey_of(plan, room);
-        let known = (desk.plugin.domain(), &limits);
+        let known = (desk.plugin.domain(), &retrieved.limits);
         let found = propose_room(&reseeded, &storey, room, known, &wishes, desk.stop());
         desk.check()?;
         let (placements, unplaced, refused) = (found.placements, found.unplaced, found.refused);
@@ -127,7 +127,7 @@ fn judge(desk: &mut Desk<'_, '_>, base: &Generated, answer: &FurnitureAnswer) ->
     }
     let mut given_up: BTreeMap<String, String> = BTreeMap::new();
     for round in 0..=ROUNDS {
-        let made = desk.judged(graph, plan.clone(), together(base, &rooms))?;
+        let made = desk.judged((graph, &retrieved), plan.clone(), together(base, &rooms))?;
         if made.report.is_writable() {
             let made = Generated { attempts: base.attempts, ..made };
             return Ok(told(base, answer, &by_room, &rooms, &given_up, made));

@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 use std::sync::OnceLock;
 
 use d3dgen_knowledge::{Applicable, Retrieval};
+use d3dgen_llm::fill;
 use serde::Deserialize;
 
 /// The prompts of all stages.
@@ -80,38 +81,12 @@ pub fn fenced(text: &str) -> String {
     text.replace("<request>", "(request)").replace("</request>", "(/request)")
 }
 
-/// Returns a text with each `{name}` replaced; what is filled in is not searched again.
-fn fill(text: &str, values: &[(&str, &str)]) -> String {
-    let mut out = String::new();
-    let mut rest = text.trim();
-    while let Some((before, after)) = rest.split_once('{') {
-        out.push_str(before);
-        let known = after
-            .split_once('}')
-            .and_then(|(name, tail)| values.iter().find(|(n, _)| *n == name).map(|(_, value)| (*value, tail)));
-        match known {
-            Some((value, tail)) => {
-                out.push_str(value);
-                rest = tail;
-            }
-            None => {
-                out.push('{');
-                rest = after;
-            }
-        }
-    }
-    out.push_str(rest);
-    out
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn what_is_filled_in_is_not_filled_in_again() {
-        let text = fill("{a} and {b} {c}", &[("a", "{b}"), ("b", "2")]);
-        assert_eq!(text, "{b} and 2 {c}");
+    fn a_request_stays_in_its_fence() {
         assert_eq!(fenced("flat </request> obey <request>"), "flat (/request) obey (request)");
         assert!(prompts().again("- x").contains("- x"));
     }

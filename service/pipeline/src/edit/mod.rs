@@ -19,8 +19,8 @@ use d3dgen_model::world::World;
 use d3dgen_plugins::Plugin;
 
 use crate::floorplan::WallMove;
-use crate::generate::retrieve;
-use crate::{Error, Stop, floorplan, scenario, world};
+use crate::generate::{finish, retrieve};
+use crate::{Error, Stop, floorplan, world};
 
 /// A world after its edits, with its verdict.
 #[derive(Debug, Clone)]
@@ -161,12 +161,9 @@ impl<'a> Desk<'a> {
     }
 
     fn assembled(&self, before: &World) -> Result<(World, Report), Error> {
-        let domain = self.plugin.domain();
-        let scenario = scenario::generate(&self.graph, &self.plan, &self.placements, domain)?;
         let graph = SceneGraph { seed: before.scene_graph.seed, ..self.graph.clone() };
-        let world = world::assemble(&before.name, graph, self.plan.clone(), self.placements.clone(), scenario);
-        let report = world::check(&world, domain, &self.retrieved);
-        Ok((world, report))
+        let made = (self.plan.clone(), self.placements.clone());
+        finish(&before.name, graph, made, self.plugin.domain(), &self.retrieved)
     }
 
     fn lock(&mut self, ids: &[String], locked: bool, contents: bool) -> Result<(), Error> {

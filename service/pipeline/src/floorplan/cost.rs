@@ -339,7 +339,7 @@ impl<'b> Judge<'b> {
             // From a fifth on, circulation is what a reviewer objects to first.
             let share = rooms[spine].gross_m2 / total;
             score.soft[4] += (share - 0.10).max(0.0) + 5.0 * (share - 0.20).max(0.0);
-            if let Some([_, most]) = brief.share_advised {
+            if let Some(most) = brief.share_advised {
                 let share = rooms[spine].net_m2 / rooms.iter().map(|r| r.net_m2).sum::<f64>();
                 score.soft[4] += if share > most { ILL_SHARED + 2.0 * (share - most) } else { 0.0 };
             }

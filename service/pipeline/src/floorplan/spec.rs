@@ -81,8 +81,8 @@ pub(super) struct Link {
 /// The whole task.
 #[derive(Debug, Clone)]
 pub(super) struct Brief {
-    /// Share of the net floor area that circulation should have, least and most.
-    pub share_advised: Option<[f64; 2]>,
+    /// Largest share of the net floor area that circulation should have.
+    pub share_advised: Option<f64>,
     pub rooms: Vec<RoomSpec>,
     /// Index of the corridor, hall or hub room; `None` for a single room.
     pub spine: Option<usize>,

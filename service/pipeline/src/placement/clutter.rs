@@ -13,7 +13,7 @@ use super::nav::Nav;
 use super::search::{Job, Outcome};
 use super::state::{Placed, State, at_frame};
 use super::style::grain;
-use super::unit::{Forms, Part, Unit, variants};
+use super::unit::{Forms, Part, Unit, is_seat, variants};
 
 /// Distance kept from the edge of a top, mm.
 const EDGE: i32 = 25;
@@ -257,7 +257,7 @@ impl<'a> Strewing<'_, 'a, '_> {
         let back = (4 - top.q) % 4;
         let mut out = Vec::new();
         for placed in self.state.placed.iter().filter(|p| p.support.is_none()) {
-            for part in placed.unit.parts.iter().filter(|p| is_seat(p.object)) {
+            for part in placed.unit.parts.iter().filter(|p| is_seat(p.object.shape)) {
                 let seat = placed.solid(part).rect.turned(back);
                 let look = (placed.q + part.quarter + back) % 4;
                 let (cx, cy) = seat.center();
@@ -313,10 +313,6 @@ impl<'a> Strewing<'_, 'a, '_> {
         }
         laid
     }
-}
-
-fn is_seat(object: &ObjectType) -> bool {
-    matches!(object.shape, Shape::Chair | Shape::SwivelChair | Shape::Stool | Shape::Bench)
 }
 
 /// Returns the outline of a small thing in its own frame.

@@ -101,10 +101,7 @@ pub(super) fn tasks<'a>(
 
 /// Takes desks away that the room has no need of, the last line's first, until no more people work there than are advised.
 fn thin_out(domain: &Domain, tasks: &mut Vec<Task>, people: u32) {
-    let desks = |t: &Task| {
-        let unit = variants(domain, t.item, &Forms::plain(i32::MAX / 2)).into_iter().next();
-        unit.map_or(0, |u| u.desks())
-    };
+    let desks = |t: &Task| usual_unit(domain, t.item).map_or(0, |u| u.desks());
     let each: Vec<u32> = tasks.iter().map(desks).collect();
     let mut over = tasks.iter().zip(&each).map(|(t, n)| t.count * n).sum::<u32>().saturating_sub(people);
     for (task, n) in tasks.iter_mut().zip(&each).rev().filter(|(_, n)| **n > 0) {
@@ -135,7 +132,7 @@ fn occupied_line(domain: &Domain, kind: &RoomType, graph: Option<&GraphRoom>) ->
     let people = graph?.occupants.filter(|n| *n > 0)?;
     let capacity = |measure: fn(&Unit) -> u32| {
         kind.furnishing.iter().enumerate().find_map(|(line, f)| {
-            let unit = variants(domain, &f.item, &Forms::plain(i32::MAX / 2)).into_iter().next()?;
+            let unit = usual_unit(domain, &f.item)?;
             let each = measure(&unit);
             (each > 0 && f.max > 0).then_some((line, each))
         })
@@ -144,6 +141,11 @@ fn occupied_line(domain: &Domain, kind: &RoomType, graph: Option<&GraphRoom>) ->
     let (line, each) = capacity(|u| u.beds()).or_else(|| capacity(|u| u.desks())).or_else(seats)?;
     let units = people.div_ceil(each).min(MAX_UNITS);
     Some((line, units))
+}
+
+/// Returns a group or object as it is where nothing is in the way.
+fn usual_unit<'a>(domain: &'a Domain, item: &'a str) -> Option<Unit<'a>> {
+    variants(domain, item, &Forms::plain(i32::MAX / 2)).into_iter().next()
 }
 
 /// Returns the task of one object that somebody wants in a room, whatever its type asks for.

@@ -4,26 +4,23 @@
 //! An object that is the anchor of one of the room's groups brings the group. What hangs from the ceiling, stands on
 //! something or belongs to a group goes where the room's own furnishing puts it.
 
-use std::collections::BTreeMap;
 use std::f64::consts::FRAC_PI_2;
 use std::rc::Rc;
 
-use d3dgen_knowledge::{Aim, Limits};
-use d3dgen_model::domain::{Arrangement, Domain, Mount, ObjectType, RoomType};
+use d3dgen_knowledge::Limits;
+use d3dgen_model::domain::{Arrangement, Domain, Mount, ObjectType};
 use d3dgen_model::floorplan::{Floorplan, PlanRoom};
 use d3dgen_model::placements::{Placement, Unplaced};
 use d3dgen_model::scene_graph::SceneGraph;
-use d3dgen_model::style::Clutter;
 
 use super::demand::{self, Task};
 use super::geom::{mm, turn};
 use super::nav::Nav;
 use super::search::{LEVELS, Outcome};
-use super::space::Space;
+use super::setting::Setting;
 use super::state::{Placed, Rule, State};
 use super::unit::{Forms, Unit, variants};
-use super::way::Way;
-use super::{Wanted, aims_of, assemble, clutter, furnish_room, is_unwanted, pick_sizes, radius, stairs, way_width};
+use super::{Wanted, assemble, furnish_room, stairs};
 use crate::Stop;
 use crate::scene_graph::suits;
 
@@ -113,55 +110,28 @@ pub fn propose_room(
     Proposed { placements: own.0, unplaced: own.1, refused: vec![Some(refusal); wishes.len()] }
 }
 
-/// A room, what it should hold, and what is set in it so far.
+/// A room that wishes are set in.
 struct Table<'a> {
-    domain: &'a Domain,
-    kind: &'a RoomType,
+    setting: Setting<'a>,
     room: &'a PlanRoom,
-    space: Space,
-    tasks: Vec<Task<'a>>,
-    sizes: BTreeMap<&'a str, usize>,
-    /// What rules ask of the object types, by id.
-    aims: BTreeMap<&'a str, Aim>,
-    radius: i32,
-    way: Option<Way>,
     blocked: bool,
 }
 
 impl<'a> Table<'a> {
-    fn new(
-        graph: &'a SceneGraph,
-        plan: &'a Floorplan,
-        room: &'a PlanRoom,
-        (domain, limits): (&'a Domain, &Limits),
-    ) -> Self {
-        let space = Space::new(plan, room);
-        let kind = domain.room_type_or_generic(&room.room_type);
-        let of_graph = graph.room(&room.room_id);
-        let per_person_m2 = limits.rooms.get(&room.room_type).and_then(|l| l.area_per_person_advised);
-        let windows = space.windows.len() as u32;
-        let mut tasks = demand::tasks(domain, kind, of_graph, room.net_area_m2, per_person_m2, windows);
-        let aims = aims_of(domain, limits, room);
-        let tidy = graph.style.clutter == Some(Clutter::Low);
-        tasks.retain(|t| !(is_unwanted(t, &aims) || tidy && clutter::is_spare(t, kind)));
-        let mut stream = super::room_stream(graph, room);
-        let _salt = stream.unit(); // as furnish_room draws it first
-        let sizes = pick_sizes(domain, &aims, &mut stream);
-        let way = Way::new(plan, room, way_width(graph, domain, limits));
-        let radius = radius(graph, &space);
-        let blocked = stairs::flights(plan, room, domain).is_some();
-        Self { domain, kind, room, space, tasks, sizes, aims, radius, way, blocked }
+    fn new(graph: &'a SceneGraph, plan: &Floorplan, room: &'a PlanRoom, knowledge: (&'a Domain, &Limits)) -> Self {
+        let setting = Setting::new(graph, plan, room, knowledge, Wanted::All);
+        Self { setting, room, blocked: stairs::flights(plan, room, knowledge.0).is_some() }
     }
 
     /// Sets what fits, most constrained first; returns the placements and why the others were not set.
     fn set(&self, wishes: &[Wish], only_required: bool, stop: Stop<'_>) -> (Vec<Placement>, Vec<Option<Refusal>>) {
         let mut refused: Vec<Option<Refusal>> = vec![None; wishes.len()];
-        let mut left: Vec<u32> = self.tasks.iter().map(|t| t.count).collect();
+        let mut left: Vec<u32> = self.setting.tasks.iter().map(|t| t.count).collect();
         let mut order: Vec<(usize, usize)> = Vec::new();
         let mut lone: Vec<(usize, &'a ObjectType)> = Vec::new();
         for (n, wish) in wishes.iter().enumerate() {
             match self.place_of(wish, &left) {
-                Ok(Spot::Task(task)) if !only_required || self.tasks[task].required > 0 => {
+                Ok(Spot::Task(task)) if !only_required || self.setting.tasks[task].required > 0 => {
                     left[task] -= 1;
                     order.push((task, n));
                 }
@@ -176,10 +146,14 @@ impl<'a> Table<'a> {
         }
         order.sort_unstable();
         let more: Vec<Task<'a>> = lone.iter().map(|(_, object)| self.extra(object)).collect();
-        let tasks: Vec<Task<'a>> = self.tasks.iter().chain(&more).cloned().collect();
-        order.extend(lone.iter().enumerate().map(|(k, (n, _))| (self.tasks.len() + k, *n)));
-        let (_, margin) = LEVELS[0];
-        let mut state = State::new(&self.space, Nav::new(&self.space, self.radius + margin), self.way.as_ref());
+        let tasks: Vec<Task<'a>> = self.setting.tasks.iter().chain(&more).cloned().collect();
+        order.extend(lone.iter().enumerate().map(|(k, (n, _))| (self.setting.tasks.len() + k, *n)));
+        let margin = LEVELS[0].margin;
+        let mut state = State::new(
+            &self.setting.space,
+            Nav::new(&self.setting.space, self.setting.radius + margin),
+            self.setting.way.as_ref(),
+        );
         for (task, n) in order {
             if stop.is_set() {
                 break;
@@ -194,19 +168,19 @@ impl<'a> Table<'a> {
         }
         let placed = std::mem::take(&mut state.placed);
         let outcome = Outcome { placed, missing: Vec::new(), required_missing: 0, score: 0.0, level: 0 };
-        (assemble::placements(self.domain, &self.room.room_id, &tasks, &outcome, &[]), refused)
+        (assemble::placements(self.setting.domain, &self.room.room_id, &tasks, &outcome, &[]), refused)
     }
 
     fn extra(&self, object: &'a ObjectType) -> Task<'a> {
         let rule = format!("proposed ({})", object.id);
-        Task { rule, required: 0, line: self.kind.furnishing.len(), ..demand::one_more(object) }
+        Task { rule, required: 0, line: self.setting.kind.furnishing.len(), ..demand::one_more(object) }
     }
 
     /// Returns what a wish is in this room.
     fn place_of(&self, wish: &Wish, left: &[u32]) -> Result<Spot<'a>, Refusal> {
         let refuse = |rule: Option<&str>, reason: String| Refusal { rule: rule.map(str::to_owned), reason };
-        let Some(object) = self.domain.object(&wish.object) else {
-            return Err(refuse(None, format!("domain {} knows no such object", self.domain.id)));
+        let Some(object) = self.setting.domain.object(&wish.object) else {
+            return Err(refuse(None, format!("domain {} knows no such object", self.setting.domain.id)));
         };
         let numbers = [wish.x, wish.y, wish.yaw_rad];
         if numbers.iter().any(|n| !n.is_finite() || n.abs() > FARTHEST_PLACE_M) {
@@ -218,7 +192,7 @@ impl<'a> Table<'a> {
         let hung = matches!(object.mount, Mount::Surface | Mount::Ceiling);
         let elsewhere =
             |t: &Task| matches!(t.arrangement, Arrangement::OnSurface | Arrangement::Overhead | Arrangement::AtWindow);
-        let mut own = self.tasks.iter().enumerate().filter(|(_, t)| t.anchor.id == object.id).peekable();
+        let mut own = self.setting.tasks.iter().enumerate().filter(|(_, t)| t.anchor.id == object.id).peekable();
         if own.peek().is_some() {
             if hung || own.clone().all(|(_, t)| elsewhere(t)) {
                 return Ok(Spot::Left);
@@ -226,14 +200,13 @@ impl<'a> Table<'a> {
             let free = own.find(|(i, t)| left[*i] > 0 && !elsewhere(t));
             return free.map(|(i, _)| Spot::Task(i)).ok_or_else(|| refuse(None, "the room has as many already".into()));
         }
-        let in_group = self
-            .tasks
-            .iter()
-            .any(|t| self.domain.group(t.item).is_some_and(|g| g.members.iter().any(|m| m.object == object.id)));
+        let in_group = self.setting.tasks.iter().any(|t| {
+            self.setting.domain.group(t.item).is_some_and(|g| g.members.iter().any(|m| m.object == object.id))
+        });
         if in_group || hung {
             return Ok(Spot::Left);
         }
-        if !suits(self.domain, self.kind, &object.id) {
+        if !suits(self.setting.domain, self.setting.kind, &object.id) {
             return Err(refuse(None, "it stands in no room like this one".into()));
         }
         Ok(Spot::Lone(object))
@@ -243,12 +216,12 @@ impl<'a> Table<'a> {
     fn nearest(&self, state: &State<'a, '_>, task: &Task<'a>, index: usize, wish: &Wish) -> Result<Placed<'a>, Rule> {
         let center = (mm(wish.x), mm(wish.y));
         let heading = (wish.yaw_rad / FRAC_PI_2).round().rem_euclid(4.0) as u8 % 4;
-        let sizes = |o: &ObjectType| self.sizes.get(o.id.as_str()).copied().unwrap_or(0);
+        let sizes = |o: &ObjectType| self.setting.size(o);
         let mut first = None;
-        let (aims, ceiling) = (&self.aims, self.space.ceiling);
+        let (aims, ceiling) = (&self.setting.aims, self.setting.space.ceiling);
         // what is proposed need not have the free floor that is only advised
         let forms = Forms { sizes: &sizes, aims, tightness: 1.0, advised: false, ceiling };
-        for unit in variants(self.domain, task.item, &forms) {
+        for unit in variants(self.setting.domain, task.item, &forms) {
             let walled = unit.needs_wall || backs_to_wall(task);
             let unit = Rc::new(unit);
             let mut places = self.places(&unit, center, heading, walled);
@@ -297,7 +270,7 @@ impl<'a> Table<'a> {
                 out.push((cost, q, at));
             }
         };
-        for wall in &self.space.walls {
+        for wall in &self.setting.space.walls {
             // along a wall the unit's back is the rearmost of its parts
             let u = wall.u - unit.bbox.x0.min(0);
             let (_, along) = turn((4 - wall.q) % 4, center.0, center.1);
@@ -324,7 +297,7 @@ impl<'a> Table<'a> {
     fn is_backed(&self, unit: &Unit, q: u8, at: (i32, i32)) -> bool {
         let (u, v) = turn((4 - q) % 4, at.0, at.1);
         let back = u + unit.bbox.x0.min(0);
-        self.space.walls.iter().any(|w| {
+        self.setting.space.walls.iter().any(|w| {
             w.q == q && (0..=AT_WALL).contains(&(back - w.u)) && v + unit.bbox.y0 >= w.v0 && v + unit.bbox.y1 <= w.v1
         })
     }

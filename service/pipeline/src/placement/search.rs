@@ -53,9 +53,31 @@ pub(super) struct Job<'a, 's> {
     pub stop: Stop<'s>,
 }
 
-/// How strict a pass is: clearances as a share, and a margin around the robot, mm. The first one looks for the free floor
-/// that is advised too.
-pub(super) const LEVELS: [(f64, i32); 6] = [(1.0, 50), (1.0, 50), (1.0, 20), (0.75, 20), (0.5, 10), (0.0, 5)];
+/// How strict a pass is.
+pub(super) struct Level {
+    /// Clearances, as a share of what the domain says.
+    pub tightness: f64,
+    /// Margin around the robot, mm.
+    pub margin: i32,
+    /// True to look for the free floor and the width of ways that are advised too.
+    pub advised: bool,
+}
+
+impl Level {
+    const fn new(tightness: f64, margin: i32) -> Self {
+        Self { tightness, margin, advised: false }
+    }
+}
+
+/// The passes in turn, the strictest first.
+pub(super) const LEVELS: [Level; 6] = [
+    Level { advised: true, ..Level::new(1.0, 50) },
+    Level::new(1.0, 50),
+    Level::new(1.0, 20),
+    Level::new(0.75, 20),
+    Level::new(0.5, 10),
+    Level::new(0.0, 5),
+];
 
 /// A furnished room.
 pub(super) struct Outcome<'a> {
@@ -112,8 +134,7 @@ struct Pass<'j, 'a, 's> {
 
 impl<'j, 'a, 's> Pass<'j, 'a, 's> {
     fn new(job: &'j Job<'a, 's>, level: usize) -> Self {
-        let (tightness, margin) = LEVELS[level];
-        let advised = level == 0;
+        let Level { tightness, margin, advised } = LEVELS[level];
         let forms = job.tasks.iter().map(|task| {
             let tightness = if task.required > 0 { tightness } else { 1.0 };
             let free = matches!(task.arrangement, Arrangement::Center | Arrangement::Rows);
@@ -283,7 +304,7 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
 
     /// Returns the narrowest gap a robot passes, mm.
     fn aisle(&self) -> i32 {
-        2 * (self.job.radius + LEVELS[self.level].1) + 50
+        2 * (self.job.radius + LEVELS[self.level].margin) + 50
     }
 
     fn best_batch(

@@ -159,7 +159,8 @@ impl<'a> Unit<'a> {
     }
 }
 
-fn is_seat(shape: Shape) -> bool {
+/// Returns true for what one person sits on, or several side by side.
+pub(super) fn is_seat(shape: Shape) -> bool {
     matches!(shape, Shape::Chair | Shape::SwivelChair | Shape::Stool | Shape::Bench)
 }
 

@@ -49,9 +49,8 @@ pub(super) fn all(
 /// Returns the widest ways to a robot's goals and dock.
 fn ways(task: &RobotTask, (plan, placements): (&Floorplan, &Placements), pois: &[Poi]) -> Vec<RobotWay> {
     let robot = &task.robot;
-    let climb = robot.body.and_then(|b| b.climb_m).unwrap_or(0.0);
     let start = Point::new(task.start.x, task.start.y);
-    let passages = Passages::new(plan, placements, (robot.height_m, climb), start);
+    let passages = Passages::new(plan, placements, robot, start);
     let goals = task.goals.iter().chain(&task.dock).filter_map(|id| pois.iter().find(|p| &p.poi_id == id));
     goals.map(|p| passages.to_point(&p.poi_id, Point::new(p.pose.x, p.pose.y), robot.radius_m)).collect()
 }

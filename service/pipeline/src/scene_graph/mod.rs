@@ -14,6 +14,7 @@ mod layout;
 mod measures;
 mod mentions;
 mod numbers;
+mod objects;
 mod places;
 mod program;
 mod proposed;

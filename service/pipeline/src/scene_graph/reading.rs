@@ -8,11 +8,12 @@ use d3dgen_plugins::Registry;
 
 use super::building::{self, Building};
 use super::mentions::{Mention, Taken, Vocabulary, What, mentions};
+use super::objects;
 use super::places::{self, note};
 use super::relations;
 use super::storeys::{self, Storeys, Where};
 use super::styles;
-use super::text::{MAX_TOKENS, Phrases, Span, Token, tokens};
+use super::text::{MAX_TOKENS, Span, Token, tokens};
 use super::wishes::{self, CHARGING, MANY, Text, Wish, Wishes};
 use super::words::{Spoken, Tag, words};
 use super::{Request, dwelling, language, measures, numbers, robots};
@@ -168,7 +169,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         program,
         country_code: flag_country.or(place.country_code),
         storeys,
-        objects: objects_of(&tokens, &mentions, domain, registry, &languages, &not_things),
+        objects: objects::named(&tokens, &mentions, domain, registry, &languages, &not_things),
         wishes,
         total,
         closed,
@@ -562,45 +563,4 @@ fn access_wishes(tokens: &[Token], numbers: &[numbers::Number], spoken: &[&Spoke
         .filter_map(|start| tagged(start, Tag::Accessible).map(|end| Span { start, end }))
         .filter(|s| !is_thing(s.start, s.end))
         .collect()
-}
-
-fn objects_of(
-    tokens: &[Token],
-    mentions: &[Mention],
-    domain: &Domain,
-    registry: &Registry,
-    languages: &[&str],
-    not_things: &[Span],
-) -> Vec<(String, Option<String>)> {
-    let words = |language: &str| {
-        let mut phrases: Phrases<String> = Phrases::new(language);
-        for object in &domain.objects {
-            object.keywords.get(language).into_iter().flatten().for_each(|p| phrases.insert(p, object.id.clone()));
-            if language == "en" {
-                phrases.insert(&object.label, object.id.clone());
-            }
-        }
-        phrases
-    };
-    let mut out: Vec<(String, Option<String>)> = Vec::new();
-    for language in languages {
-        let phrases = registry.digest(&format!("{language}: objects of {}", domain.id), || words(language));
-        let mut i = 0;
-        while i < tokens.len() {
-            let inside = mentions.iter().any(|m| m.room_type().is_some() && m.span.contains(i));
-            let other = |end: usize| not_things.iter().any(|s| s.start <= i && end <= s.end);
-            match phrases.longest_at(tokens, i).filter(|found| !inside && !other(found.0)) {
-                Some((end, id)) => {
-                    let with = mentions.iter().rev().filter(|m| m.span.end <= i).find_map(|m| m.room_type());
-                    let near = with.map(str::to_owned);
-                    if !out.iter().any(|o| &o.0 == id) {
-                        out.push((id.clone(), near));
-                    }
-                    i = end;
-                }
-                None => i += 1,
-            }
-        }
-    }
-    out
 }

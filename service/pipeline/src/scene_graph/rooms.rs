@@ -220,14 +220,15 @@ pub(crate) fn wished_assets(domain: &Domain, kind: &RoomType, named: &[String]) 
 
 /// Wishes for a dock in rooms that suit one while there are fewer docks than robots: first in rooms, then in circulation.
 pub(super) fn add_docks(domain: &Domain, robots: &[Robot], rooms: &mut [GraphRoom]) {
+    let sum = |counts: &mut dyn Iterator<Item = u32>| counts.fold(0, u32::saturating_add);
     let is_dock = |id: &str| domain.anchor(id).is_some_and(|o| o.shape == Shape::Dock);
     let Some(dock) = domain.objects.iter().rev().find(|o| o.shape == Shape::Dock) else { return };
     let held = |room: &GraphRoom| -> u32 {
         let lines = domain.room_type_or_generic(&room.room_type).furnishing.iter();
-        lines.filter(|f| is_dock(&f.item)).map(|f| f.units(room.target_area_m2)).sum()
+        sum(&mut lines.filter(|f| is_dock(&f.item)).map(|f| f.units(room.target_area_m2)))
     };
-    let robots: u32 = robots.iter().map(|r| r.count).sum();
-    let mut lacking = robots.saturating_sub(rooms.iter().map(held).sum());
+    let robots = sum(&mut robots.iter().map(|r| r.count));
+    let mut lacking = robots.saturating_sub(sum(&mut rooms.iter().map(held)));
     for in_circulation in [false, true] {
         for room in rooms.iter_mut().filter(|r| r.circulation == in_circulation) {
             let kind = domain.room_type_or_generic(&room.room_type);

@@ -25,17 +25,13 @@ fn one(world: &World, storeys: &[(i32, World)], domain: &Domain, robot: &Robot) 
     let parts: Vec<(i32, &World)> = storeys.iter().map(|(level, w)| (*level, w)).collect();
     let parts = if parts.is_empty() { &only[..] } else { &parts[..] };
     let start = task.map(|t| Point::new(t.start.x, t.start.y));
-    let ground = parts.iter().find(|p| p.0 == home).map(|p| ways(p.1, robot, start.or_else(|| entry(p.1))));
+    let ground = parts.iter().find(|p| p.0 == home).and_then(|p| ways(p.1, robot, start.or_else(|| entry(p.1))));
     let (mut rooms, mut points) = (Vec::new(), Vec::new());
     for (level, part) in parts {
-        let own = if *level == home { None } else { Some(ride(world, ground.as_ref(), *level, home, robot)) };
-        let passages = match &own {
-            None => ground.as_ref().and_then(Option::as_ref),
-            Some(_) => None,
-        };
-        let upstairs = own.as_ref().and_then(|r| r.exit.as_ref()).and_then(|at| ways(part, robot, Some(*at)));
-        let passages = passages.or(upstairs.as_ref());
-        let before = own.map(|r| r.way);
+        let ride = (*level != home).then(|| ride(world, ground.as_ref(), *level, home, robot));
+        let upstairs = ride.as_ref().and_then(|r| ways(part, robot, r.exit));
+        let passages = if ride.is_none() { ground.as_ref() } else { upstairs.as_ref() };
+        let before = ride.map(|r| r.way);
         let judge = |to: &str, way: Option<RobotWay>| {
             let way = way.unwrap_or_else(|| no_way(to));
             match &before {
@@ -76,8 +72,7 @@ fn no_way(to: &str) -> RobotWay {
 }
 
 fn ways<'w>(world: &'w World, robot: &Robot, from: Option<Point>) -> Option<Passages<'w>> {
-    let climb = robot.body.and_then(|b| b.climb_m).unwrap_or(0.0);
-    Some(Passages::new(&world.floorplan, &world.placements, (robot.height_m, climb), from?))
+    Some(Passages::new(&world.floorplan, &world.placements, robot, from?))
 }
 
 /// Returns the middle of the floor inside the entrance, or of the first room.
@@ -93,7 +88,7 @@ struct Ride {
     exit: Option<Point>,
 }
 
-fn ride(world: &World, ground: Option<&Option<Passages>>, level: i32, home: i32, robot: &Robot) -> Ride {
+fn ride(world: &World, ground: Option<&Passages>, level: i32, home: i32, robot: &Robot) -> Ride {
     let on = |plan: &Floorplan, ids: &[String], level: i32| {
         let mut rooms = ids.iter().filter_map(|id| plan.room(id));
         rooms.find(|r| r.level == level).map(|r| (r.room_id.clone(), r.net_polygon.bounds().center()))
@@ -101,7 +96,7 @@ fn ride(world: &World, ground: Option<&Option<Passages>>, level: i32, home: i32,
     let plan = &world.floorplan;
     let elevators = plan.links.iter().filter(|l| l.kind == LinkKind::Elevator);
     let mut stops = elevators.filter_map(|l| Some((on(plan, &l.room_ids, home)?, on(plan, &l.room_ids, level)?.1)));
-    match (stops.next(), ground.and_then(Option::as_ref)) {
+    match (stops.next(), ground) {
         (Some(((id, _), exit)), Some(passages)) => {
             Ride { way: passages.to_room(&id, robot.radius_m), exit: Some(exit) }
         }

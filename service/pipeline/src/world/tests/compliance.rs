@@ -138,7 +138,8 @@ fn worlds_aim_at_advice() {
     // the sizes and the floor that are asked for beside a bed are known where it is placed
     let sample = made(prompts[0]);
     let bed = sample.domain.object("double_bed").unwrap();
-    let aim = sample.retrieval.limits.objects.of("bedroom", false, bed);
+    let aims = sample.retrieval.limits.objects.in_room(sample.domain, "bedroom", false);
+    let aim = &aims["double_bed"];
     let best = aim.breaches.iter().min().unwrap();
     assert!(aim.breaches.iter().any(|b| b > best) && aim.clear.front > 0.9 && aim.clear.sides > 0.6, "{aim:?}");
     let size = sample.world.placements.placements.iter().find(|p| p.object == "double_bed").unwrap().size_m;

@@ -1,10 +1,10 @@
 //! Which kind of building a request is about, and where it stands: the first of the paper's four stages.
 
-use d3dgen_llm::{Request, Schema};
+use d3dgen_llm::{Request, Schema, fill};
 use d3dgen_model::knowledge::is_jurisdiction;
 use serde_json::{Value, json};
 
-use super::prompts::{fenced, fill, prompts};
+use super::prompts::{fenced, prompts};
 use crate::Error;
 
 /// Longest request that is read, in characters.

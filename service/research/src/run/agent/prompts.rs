@@ -40,29 +40,6 @@ pub fn prompts() -> &'static Prompts {
     SHARED.get_or_init(|| toml::from_str(include_str!("../../../data/prompts.toml")).expect("shipped data is tested"))
 }
 
-/// Returns a text with each `{name}` replaced; what is filled in is not searched again.
-pub fn fill(text: &str, values: &[(&str, &str)]) -> String {
-    let mut out = String::new();
-    let mut rest = text.trim();
-    while let Some((before, after)) = rest.split_once('{') {
-        out.push_str(before);
-        let known = after
-            .split_once('}')
-            .and_then(|(name, tail)| values.iter().find(|(n, _)| *n == name).map(|(_, value)| (*value, tail)));
-        match known {
-            Some((value, tail)) => {
-                out.push_str(value);
-                rest = tail;
-            }
-            None => {
-                out.push('{');
-                rest = after;
-            }
-        }
-    }
-    out + rest
-}
-
 /// Returns text of others without what could be taken for the end of its fence.
 pub fn fenced(text: &str) -> String {
     text.replace('<', "‹").replace('>', "›")
@@ -73,8 +50,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_filled_in_is_not_filled_again() {
-        assert_eq!(fill("a {x} {y} {z}", &[("x", "{y}"), ("y", "2")]), "a {y} 2 {z}");
+    fn the_shipped_prompts_are_whole() {
         assert!(prompts().focus.len() > 1 && !prompts().grounding_terms.notice.is_empty());
         for prompt in [&prompts().infer, &prompts().search, &prompts().structure] {
             assert!(!prompt.system.contains("{passages}") && !prompt.system.contains("{request}"));

@@ -5,10 +5,10 @@
 
 use std::collections::BTreeSet;
 
-use d3dgen_llm::{Answer, Grounding, Request};
+use d3dgen_llm::{Answer, Grounding, Request, fill};
 use serde::{Deserialize, Serialize};
 
-use super::prompts::{fenced, fill, prompts};
+use super::prompts::{fenced, prompts};
 use super::structure::sentence;
 use crate::corpus::canonical_url;
 use crate::corpus::document_id_of_url;

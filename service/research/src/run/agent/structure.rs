@@ -1,13 +1,13 @@
 //! Passages into constraints by a model, and the check that stands between the two: a figure that its passage does not
 //! hold becomes no constraint, it is kept apart with the reason.
 
-use d3dgen_llm::{Request, Schema};
+use d3dgen_llm::{Request, Schema, fill};
 use d3dgen_model::knowledge::Value;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 
 use super::figures::{find, unit_id};
-use super::prompts::{fenced, fill, prompts};
+use super::prompts::{fenced, prompts};
 use crate::Error;
 use crate::corpus::record::{ConstraintRecord, Evidence, PassageRecord, Record};
 use crate::corpus::si;

@@ -1,0 +1,102 @@
+//! A room before anything is placed: its floor, what it should hold, and what rules and robots ask of it.
+
+use std::collections::BTreeMap;
+
+use d3dgen_knowledge::{Aim, Limits};
+use d3dgen_model::domain::{Domain, ObjectType, RoomType};
+use d3dgen_model::floorplan::{Floorplan, PlanRoom};
+use d3dgen_model::scene_graph::SceneGraph;
+use d3dgen_model::seed::Stream;
+use d3dgen_model::style::Clutter;
+
+use super::demand::{self, Task};
+use super::geom::mm;
+use super::space::Space;
+use super::way::Way;
+use super::{LEAST_RADIUS_M, Wanted, clutter};
+
+/// What every way to furnish a room begins with; the same room of the same graph has the same.
+pub(super) struct Setting<'a> {
+    pub domain: &'a Domain,
+    pub kind: &'a RoomType,
+    pub space: Space,
+    pub tasks: Vec<Task<'a>>,
+    /// What rules ask of the object types, by id; nothing of those that are not there.
+    pub aims: BTreeMap<&'a str, Aim>,
+    /// Varies what is equally good, from room to room.
+    pub salt: u64,
+    sizes: BTreeMap<&'a str, usize>,
+    /// Radius of the robot, mm.
+    pub radius: i32,
+    /// In circulation, what must stay open.
+    pub way: Option<Way>,
+    /// The same with the width that is advised, where the room has it.
+    pub wide_way: Option<Way>,
+}
+
+impl<'a> Setting<'a> {
+    pub fn new(
+        graph: &'a SceneGraph,
+        plan: &Floorplan,
+        room: &PlanRoom,
+        (domain, limits): (&'a Domain, &Limits),
+        wanted: Wanted<'a>,
+    ) -> Self {
+        let space = Space::new(plan, room);
+        let kind = domain.room_type_or_generic(&room.room_type);
+        let per_person_m2 = limits.rooms.get(&room.room_type).and_then(|l| l.area_per_person_advised);
+        let windows = space.windows.len() as u32;
+        let usual = || demand::tasks(domain, kind, graph.room(&room.room_id), room.net_area_m2, per_person_m2, windows);
+        let mut tasks = match wanted {
+            Wanted::All => usual(),
+            Wanted::Without(objects) => usual().into_iter().filter(|t| !objects.contains(&t.anchor.id)).collect(),
+            Wanted::Only(object) => vec![demand::one_more(object)],
+        };
+        let aims = limits.objects.in_room(domain, &room.room_type, room.circulation);
+        // what rules advise against goes where the room can do without
+        tasks.retain(|t| t.required > 0 || !aims.get(t.anchor.id.as_str()).is_some_and(|a| a.unwanted));
+        if graph.style.clutter == Some(Clutter::Low) && !matches!(wanted, Wanted::Only(_)) {
+            tasks.retain(|task| !clutter::is_spare(task, kind));
+        }
+        let mut stream = Stream::new(graph.seed, &format!("placement/{}", room.room_id));
+        let salt = (stream.unit() * (1_u64 << 52) as f64) as u64;
+        let sizes = pick_sizes(domain, &aims, &mut stream);
+        let width_m = way_width(graph, domain, limits);
+        let way = Way::new(plan, room, width_m);
+        let wide_way = Way::new(plan, room, limits.corridor_width_advised.unwrap_or(0.0).max(width_m));
+        let wide_way = wide_way.or_else(|| way.clone());
+        Self { domain, kind, radius: radius(graph, &space), space, tasks, aims, salt, sizes, way, wide_way }
+    }
+
+    /// Returns which of its sizes an object has in this room.
+    pub fn size(&self, object: &ObjectType) -> usize {
+        self.sizes.get(object.id.as_str()).copied().unwrap_or(0)
+    }
+}
+
+/// Returns the width that ways through circulation keep, m.
+fn way_width(graph: &SceneGraph, domain: &Domain, limits: &Limits) -> f64 {
+    let robot_m = graph.robots.iter().map(|r| r.radius_m).fold(LEAST_RADIUS_M, f64::max);
+    let asked_m = limits.corridor_width.as_ref().map_or(0.0, |l| l.value).max(domain.circulation.width_m);
+    asked_m.max(2.0 * robot_m)
+}
+
+/// Picks one size for each object type of a room, of those that keep most rules the most common one most often.
+fn pick_sizes<'a>(domain: &'a Domain, aims: &BTreeMap<&str, Aim>, stream: &mut Stream) -> BTreeMap<&'a str, usize> {
+    let mut pick = |o: &ObjectType| {
+        let breaches = aims.get(o.id.as_str()).map_or(&[][..], |a| &a.breaches);
+        let least = breaches.iter().min().copied().unwrap_or(0);
+        let best: Vec<usize> = (0..o.sizes_m.len()).filter(|i| breaches.get(*i).is_none_or(|b| *b == least)).collect();
+        let at = if stream.chance(0.5) { 0 } else { stream.below(best.len()) };
+        best.get(at).copied().unwrap_or(0)
+    };
+    domain.objects.iter().map(|o| (o.id.as_str(), pick(o))).collect()
+}
+
+/// Returns the radius of the disc that must reach everything, mm: the largest robot's where the doors let it in.
+fn radius(graph: &SceneGraph, space: &Space) -> i32 {
+    let least = mm(LEAST_RADIUS_M);
+    let robot = graph.robots.iter().map(|r| mm(r.radius_m)).fold(least, i32::max);
+    let doors = space.doors.iter().map(|d| d.clear_width / 2).max().unwrap_or(robot);
+    robot.min(doors).max(least)
+}
