@@ -37,6 +37,7 @@ pub(crate) fn draw(constraints: &[Applicable], all: &[Applicable], chain: &[Stri
             let door = r.quantity.measure == Measure::DoorWidth && matches!(a.scope, Scope::Entrance | Scope::Doors);
             door.then_some(r.bounds.min?)
         }),
+        area_per_workplace_advised: advised_figure(&wished, Measure::BuildingAreaPerWorkplace, &|_| true),
         rooms: Default::default(),
         objects: ObjectAims::draw(all),
     };
@@ -57,7 +58,7 @@ pub(crate) fn draw(constraints: &[Applicable], all: &[Applicable], chain: &[Stri
             area_min: least(&[Measure::RoomArea], room.area_max_m2),
             area_max: None,
             area_advised: advised_area(&usable, &about, room.area_max_m2),
-            area_per_person_advised: advised_per_person(&wished, &about),
+            area_per_person_advised: advised_figure(&wished, Measure::AreaPerPerson, &about),
             dimension_min: least(&[Measure::LeastDimension, Measure::InnerRectangle], side),
             door_width: pick(&|a, r| {
                 let value = r.bounds.min?;
@@ -82,10 +83,14 @@ fn usable(constraints: &[Applicable]) -> Vec<(&Applicable, &Rule)> {
     settled.filter_map(|a| Some((a, a.decision.as_ref().ok()?))).collect()
 }
 
-/// Returns the floor area a person that meets most of the advice, m^2; of several such figures the least.
-fn advised_per_person(wished: &[(&Applicable, &Rule)], about: &dyn Fn(&Applicable) -> bool) -> Option<f64> {
+/// Returns the figure of a measure that meets most of the advice; of several such figures the least.
+fn advised_figure(
+    wished: &[(&Applicable, &Rule)],
+    measure: Measure,
+    about: &dyn Fn(&Applicable) -> bool,
+) -> Option<f64> {
     let bounds = || {
-        let figures = wished.iter().filter(|(a, r)| r.quantity.measure == Measure::AreaPerPerson && about(a));
+        let figures = wished.iter().filter(|(a, r)| r.quantity.measure == measure && about(a));
         figures.map(|(_, r)| &r.bounds)
     };
     let met = |v: f64| bounds().filter(|b| b.min.is_none_or(|m| m <= v) && b.max.is_none_or(|m| v <= m)).count();

@@ -15,6 +15,8 @@ pub struct Limits {
     pub circulation_share_advised: Option<f64>,
     /// Least clear width of the main entrance door, m.
     pub entrance_width: Option<Limit>,
+    /// Net floor area of the whole building for each workplace, m^2; a wish.
+    pub area_per_workplace_advised: Option<f64>,
     /// Limits by room type id.
     pub rooms: BTreeMap<String, RoomLimits>,
     /// What to aim at when objects are chosen and placed; wishes.

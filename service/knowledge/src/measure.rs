@@ -138,6 +138,8 @@ pub enum Measure {
     LargestRoomArea,
     /// Net floor area of the building for each person, m^2.
     BuildingAreaPerPerson,
+    /// Net floor area of the building for each desk, m^2.
+    BuildingAreaPerWorkplace,
     /// Gross floor area of the building for each bed, m^2.
     BuildingAreaPerBed,
     /// People for each room of a kind.

@@ -41,6 +41,7 @@ fn figure(site: &Site, a: &Applicable, rule: &Rule) -> Option<f64> {
         }
         Measure::LargestRoomArea => site.rooms_of(a).map(|r| r.plan.net_area_m2).reduce(f64::max),
         Measure::BuildingAreaPerPerson => each(area(false), persons),
+        Measure::BuildingAreaPerWorkplace => each(area(false), site.count(&[Shape::Desk]) as f64),
         Measure::BuildingAreaPerBed => each(site.gross_area(), beds),
         Measure::PersonsPerRoom => each(persons, site.rooms_of(a).count() as f64),
         Measure::BedsPerRoomKind => each(beds, site.rooms_of(a).count() as f64).filter(|_| beds > 0.0),

@@ -21,6 +21,9 @@ const MARGIN_M: f64 = 0.35;
 /// Outer wall of a corridor with one window, and that window's width, m: nobody likes to walk along a blank wall.
 const CORRIDOR_STEP_M: f64 = 5.0;
 const CORRIDOR_PANE_M: f64 = 1.2;
+/// Outer wall of a wet room that has a tall shower in one corner and its window in the middle, m; on shorter ones the
+/// window makes room for it.
+const SHOWER_AND_WINDOW_M: f64 = 2.9;
 /// Widest and narrowest single window, m.
 const PANE_M: (f64, f64) = (2.4, 0.6);
 
@@ -50,6 +53,7 @@ pub(super) fn place_windows(brief: &Brief, stretches: &[Stretch], net_m2: &[f64]
                 }
                 let total = need.max(PANE_M.1).min(usable);
                 need -= total;
+                let (from, to) = if room.wet { beside_shower(room, stretch, (from, to), doors) } else { (from, to) };
                 add_panes(stretch, from, to, (total, pane), sill, room, &mut windows);
             }
         }
@@ -99,6 +103,19 @@ fn free_parts(stretch: &Stretch, doors: &[Door]) -> Vec<(f64, f64)> {
     }
     parts.push((from, end));
     parts
+}
+
+/// Returns the end of an outer wall of a wet room that its window goes to, m: the one that is nearer to the door, for a
+/// shower needs a corner without either. The whole wall where it is long enough for both.
+fn beside_shower(room: &RoomSpec, stretch: &Stretch, (from, to): (f64, f64), doors: &[Door]) -> (f64, f64) {
+    let width = PANE_M.1 + 2.0 * MARGIN_M;
+    if to - from >= SHOWER_AND_WINDOW_M || to - from <= width {
+        return (from, to);
+    }
+    let along = |p: d3dgen_model::Point| if stretch.vertical { p.y } else { p.x };
+    let door = doors.iter().find(|d| d.room_ids.contains(&room.id));
+    let at_end = door.is_some_and(|d| (along(d.line.start) + along(d.line.end)) / 2.0 > (from + to) / 2.0);
+    if at_end { (to - width, to) } else { (from, from + width) }
 }
 
 fn add_panes(

@@ -339,6 +339,7 @@ fn task_of<'a>(line: &ClutterLine, object: &'a ObjectType, host: &ObjectType, co
         arrangement: Arrangement::OnSurface,
         count,
         required: 0,
+        spare: 0,
         line: 0,
         rule: format!("clutter ({} on {}): {}", line.items.join(", "), host.id, line.pattern.name()),
     }

@@ -21,6 +21,8 @@ pub(super) struct Task<'a> {
     pub count: u32,
     /// How many of them the room type cannot do without.
     pub required: u32,
+    /// How many fewer do as well where that makes full rows.
+    pub spare: u32,
     /// Furnishing line counted from 0; wishes come after the last line.
     pub line: usize,
     /// Why it is wanted, for people.
@@ -36,6 +38,22 @@ impl Task<'_> {
     /// Returns true for seats and what people sit at: a line of rows of them is an audience.
     pub fn is_audience(&self) -> bool {
         matches!(self.anchor.shape, Shape::Bench | Shape::Chair | Shape::Table | Shape::Desk | Shape::Sofa)
+    }
+
+    /// Returns true for rows of what people work or eat at.
+    fn is_seated(&self) -> bool {
+        let seated = matches!(self.anchor.shape, Shape::Desk | Shape::Table | Shape::RoundTable);
+        seated && self.arrangement == Arrangement::Rows
+    }
+
+    /// Lets full rows go before the last few of a number that comes from the room's area alone.
+    fn allow_full_rows(&mut self) {
+        self.spare = (self.count / 7).min(self.count - self.required.max(1).min(self.count));
+    }
+
+    /// Returns how many units count: those beyond what full rows may leave out do not.
+    pub fn counted(&self, units: usize) -> usize {
+        units.min(self.count.saturating_sub(self.spare) as usize)
     }
 
     /// Returns true when all units are found in one go.
@@ -73,8 +91,8 @@ pub(super) fn tasks<'a>(
         }
         let name = arrangement_name(f.arrangement);
         let rule = format!("furnishing line {} ({}): {name}", line + 1, f.item);
-        let whole =
-            Task { item: &f.item, anchor, arrangement: f.arrangement, count, required, line, rule: rule.clone() };
+        let arrangement = f.arrangement;
+        let whole = Task { item: &f.item, anchor, arrangement, count, required, spare: 0, line, rule: rule.clone() };
         let together = whole.is_batch() || required == 0 || required == count || occupied.is_some_and(|o| o.0 == line);
         if together {
             out.push(whole);
@@ -88,15 +106,25 @@ pub(super) fn tasks<'a>(
     for (i, object) in wishes(domain, kind, graph).into_iter().enumerate() {
         let arrangement = natural(object);
         let rule = format!("wished for in the scene graph ({}): {}", object.id, arrangement_name(arrangement));
-        out.push(Task { item: &object.id, anchor: object, arrangement, count: 1, required: 0, line: lines + i, rule });
+        let line = lines + i;
+        out.push(Task { item: &object.id, anchor: object, arrangement, count: 1, required: 0, spare: 0, line, rule });
     }
     if let Some(each) = per_person_m2.filter(|_| occupied.is_none()) {
         thin_out(domain, &mut out, (area_m2 / each).floor().max(1.0) as u32);
+    }
+    if occupied.is_none() {
+        out.iter_mut().filter(|t| t.is_seated()).for_each(Task::allow_full_rows);
     }
     turn_to_audience(&mut out);
     // corners are few: what cannot do without one comes before what only wants a wall
     out.sort_by_key(|t| (phase(t), t.required == 0 || t.arrangement != Arrangement::Corner, t.line));
     out
+}
+
+/// Returns true for rooms that people have desks in.
+pub(super) fn has_desks(domain: &Domain, kind: &RoomType) -> bool {
+    let desk = |item: &str| domain.anchor(item).is_some_and(|o| o.shape == Shape::Desk);
+    kind.furnishing.iter().any(|f| f.min > 0 && desk(&f.item))
 }
 
 /// Takes desks away that the room has no need of, the last line's first, until no more people work there than are advised.
@@ -112,8 +140,11 @@ fn thin_out(domain: &Domain, tasks: &mut Vec<Task>, people: u32) {
 }
 
 /// Lets a screen or board face the rows of seats a room begins with, where no line says what faces them.
+///
+/// People at desks and tables look at their work and at each other.
 fn turn_to_audience(tasks: &mut [Task]) {
-    let audience = tasks.iter().any(|t| t.line == 0 && t.arrangement == Arrangement::Rows && t.is_audience());
+    let seats = |t: &Task| matches!(t.anchor.shape, Shape::Bench | Shape::Chair | Shape::Sofa);
+    let audience = tasks.iter().any(|t| t.line == 0 && t.arrangement == Arrangement::Rows && seats(t));
     if !audience || tasks.iter().any(|t| t.arrangement == Arrangement::Facing) {
         return;
     }
@@ -152,7 +183,7 @@ fn usual_unit<'a>(domain: &'a Domain, item: &'a str) -> Option<Unit<'a>> {
 pub(super) fn one_more(object: &ObjectType) -> Task<'_> {
     let arrangement = natural(object);
     let rule = format!("added by an edit ({}): {}", object.id, arrangement_name(arrangement));
-    Task { item: &object.id, anchor: object, arrangement, count: 1, required: 1, line: 0, rule }
+    Task { item: &object.id, anchor: object, arrangement, count: 1, required: 1, spare: 0, line: 0, rule }
 }
 
 fn wishes<'a>(domain: &'a Domain, kind: &RoomType, graph: Option<&GraphRoom>) -> Vec<&'a ObjectType> {

@@ -242,7 +242,7 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
                     placed += 1;
                 }
             }
-            if placed < count {
+            if placed + task.spare < count {
                 outcome.missing.push((index, count - placed, Self::decisive(&tally)));
                 outcome.required_missing += task.required.saturating_sub(present + placed);
                 // what a room's list names first matters most
@@ -326,21 +326,22 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
             } else {
                 rows(state, task, index, unit, terms, tally)
             };
-            let most = batches.iter().skip(rank).map(|b| b.placed.len()).max().unwrap_or(0);
+            let counted = |placed: &[Placed]| task.counted(placed.len());
+            let most = batches.iter().skip(rank).map(|b| counted(&b.placed)).max().unwrap_or(0);
             for batch in batches.into_iter().skip(rank).take_while(|_| !self.job.stop.is_set()) {
                 let mut kept: Vec<Placed> = Vec::new();
                 keep_passable(state, &batch.placed, &mut kept, tally);
                 kept.iter_mut().for_each(|p| p.first_line = task.line == 0);
                 let score = batch.score + kept.len() as f64;
-                let whole = kept.len() >= most;
-                if !kept.is_empty() && best.as_ref().is_none_or(|b| (kept.len(), score) > (b.0.len(), b.1)) {
+                let whole = counted(&kept) >= most;
+                if !kept.is_empty() && best.as_ref().is_none_or(|b| (counted(&kept), score) > (counted(&b.0), b.1)) {
                     best = Some((kept, score));
                 }
                 if whole {
                     break; // the others hold no more and look no better
                 }
             }
-            let all = best.as_ref().is_some_and(|b| b.0.len() as u32 >= task.count);
+            let all = best.as_ref().is_some_and(|b| b.0.len() as u32 + task.spare >= task.count);
             found.extend(best);
             if all {
                 break;

@@ -45,6 +45,7 @@ impl<'a> Setting<'a> {
         let space = Space::new(plan, room);
         let kind = domain.room_type_or_generic(&room.room_type);
         let per_person_m2 = limits.rooms.get(&room.room_type).and_then(|l| l.area_per_person_advised);
+        let per_person_m2 = per_person_m2.or_else(|| workroom_area(plan, domain, limits));
         let windows = space.windows.len() as u32;
         let usual = || demand::tasks(domain, kind, graph.room(&room.room_id), room.net_area_m2, per_person_m2, windows);
         let mut tasks = match wanted {
@@ -72,6 +73,16 @@ impl<'a> Setting<'a> {
     pub fn size(&self, object: &ObjectType) -> usize {
         self.sizes.get(object.id.as_str()).copied().unwrap_or(0)
     }
+}
+
+/// Returns the floor area of the rooms with desks that each workplace has where the whole building has what is advised, m^2.
+fn workroom_area(plan: &Floorplan, domain: &Domain, limits: &Limits) -> Option<f64> {
+    let advised = limits.area_per_workplace_advised?;
+    let area = |wanted: &dyn Fn(&PlanRoom) -> bool| -> f64 {
+        plan.rooms.iter().filter(|r| wanted(r)).map(|r| r.net_area_m2).sum()
+    };
+    let work = area(&|r| demand::has_desks(domain, domain.room_type_or_generic(&r.room_type)));
+    (work > 0.0).then(|| advised * work / area(&|_| true))
 }
 
 /// Returns the width that ways through circulation keep, m.

@@ -54,6 +54,8 @@ pub(super) struct DoorZone {
     pub rank: u8,
     /// Clear width, mm.
     pub clear_width: i32,
+    /// True for openings without a leaf: the room and what lies before it are in sight of each other.
+    pub open: bool,
 }
 
 /// A window seen from the room.
@@ -125,6 +127,7 @@ impl Space {
                     latch_high,
                     rank,
                     clear_width: mm(door.clear_width_m),
+                    open: door.kind == DoorKind::Open,
                 });
             }
         }

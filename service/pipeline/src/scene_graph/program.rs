@@ -226,8 +226,13 @@ impl<'r, 'a> Build<'r, 'a> {
     }
 
     /// Adds one room of an entry with those that come with it; returns false when there is no place for it.
+    ///
+    /// A room that one enters through one of those (an isolation room through its anteroom) comes with all or not at all.
     fn add(&mut self, entry: &ProgramRoom, limit: usize) -> bool {
-        if !self.may_grow(&entry.room_type) || self.rooms.len() >= limit {
+        let kind = self.reading.domain.room_type_or_generic(&entry.room_type);
+        let entered = entry.with.iter().filter(|w| kind.hosts.contains(w));
+        let whole = 1 + if entered.clone().all(|w| self.may_grow(w)) { entered.count() } else { limit };
+        if !self.may_grow(&entry.room_type) || self.rooms.len() + whole > limit {
             return false;
         }
         self.push(&entry.room_type, None);

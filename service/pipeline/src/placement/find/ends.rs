@@ -45,7 +45,7 @@ impl<'a> Find<'_, 'a, '_> {
                     let off = f64::from((v + middle - axis).abs()) / 1000.0;
                     // a speaker's desk leaves the middle to the board
                     let aside = f64::from((v - low).min(high - v)) / 1000.0;
-                    self.offer(placed, i as u32, |_, _| if look == 0 { 3.0 - 2.0 * off } else { 3.0 - aside });
+                    self.offer(placed, i as u32, |_, _| if look == 0 { 3.0 - 1.2 * off } else { 3.0 - aside });
                 }
             }
         }
@@ -92,8 +92,16 @@ impl<'a> Find<'_, 'a, '_> {
                 let placed = at_frame(unit, q, u, door_axis - middle + side, self.index);
                 let front = f64::from(door_u - u - b.x1) / 1000.0;
                 let off = f64::from(side.abs()) / 1000.0;
-                let lost = if behind > 100 && behind < BEHIND { 1.5 } else { f64::from(behind) / 4000.0 };
-                let near = (1.8 - front).max(0.0) + 0.2 * (front - 4.0).max(0.0);
+                // whoever stands behind a counter that is open to a corridor sees along it from close to the opening only
+                let (far, slope): (f64, f64) = if door.open { (1.6, 0.6) } else { (4.0, 0.2) };
+                let lost = if behind > 100 && behind < BEHIND {
+                    1.5
+                } else if door.open {
+                    0.0
+                } else {
+                    f64::from(behind) / 4000.0
+                };
+                let near = (far.min(1.8) - front).max(0.0) + slope * (front - far).max(0.0);
                 self.offer(placed, 80 + u32::from(behind > 100), |_, _| 2.0 - 0.6 * off - lost - near);
             }
         }

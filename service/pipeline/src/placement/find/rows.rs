@@ -1,5 +1,6 @@
 //! Many equal units at once: parallel rows with aisles, and lamps spread over a ceiling.
 
+use std::collections::BTreeMap;
 use std::rc::Rc;
 
 use d3dgen_model::domain::{Arrangement, Shape};
@@ -18,6 +19,8 @@ const TABLES_APART: i32 = 500;
 /// Steps away from a place on the ceiling that is taken, mm.
 const BESIDE: [(i32, i32); 9] =
     [(0, 0), (500, 0), (-500, 0), (0, 500), (0, -500), (900, 0), (-900, 0), (0, 900), (0, -900)];
+/// Most that aisles between rows of desks widen where the room has the floor, mm.
+const WIDENED: i32 = 700;
 /// Distances of a curtain from the foot of its bed, mm.
 const FOOT_GAPS: [i32; 4] = [300, 450, 150, 50];
 /// Row plans whose every position is tested.
@@ -37,6 +40,8 @@ struct Plan {
     q: u8,
     columns: i32,
     rows: i32,
+    /// Units it is for.
+    count: i32,
     /// Units side by side before a cross aisle.
     run: i32,
     /// From one unit's edge to the next in a row, mm.
@@ -103,9 +108,8 @@ pub(in crate::placement) fn rows<'a>(
     tally: &mut Tally,
 ) -> Vec<Batch<'a>> {
     let aisle = terms.robot.max(AISLE);
-    let count = task.count as i32;
     let focus = state.placed.iter().find(|p| p.first_line && p.unit.item != task.item).map(|p| p.q);
-    let mut plans = plans(state, unit, count, focus, terms);
+    let mut plans = plans(state, unit, task, focus, terms);
     plans.sort_by(|a, b| b.score.total_cmp(&a.score));
     plans.truncate((PLANS * 10 / task.count.max(10) as usize).max(3));
     let mut out: Vec<Batch> = Vec::new();
@@ -126,7 +130,7 @@ pub(in crate::placement) fn rows<'a>(
                 if u0 > spare_u || v0 > spare_v || v0 < 0 {
                     continue;
                 }
-                let mut placed = set_up(state, plan, unit, (wide.x0 + u0, wide.y0 + v0), aisle, index, count, tally);
+                let mut placed = set_up(state, plan, unit, (wide.x0 + u0, wide.y0 + v0), aisle, index, tally);
                 if terms.stage > 0 {
                     // the row that makes up for others must not stand on the stage
                     placed.retain(|p| {
@@ -137,11 +141,12 @@ pub(in crate::placement) fn rows<'a>(
                 if placed.is_empty() {
                     continue;
                 }
-                let share = placed.len() as f64 / f64::from(count.max(1));
+                let share = task.counted(placed.len()) as f64 / task.counted(usize::MAX).max(1) as f64;
                 let tidy = [0.5, 0.3, 0.1, 0.1][ku] + [0.5, 0.25, 0.25, 0.1, 0.1][kv];
+                let raggedness = if task.spare > 0 { ragged(&placed, plan) } else { 0.0 };
                 let noise =
                     0.5 * grain(terms.salt, i64::from(plan.q) * 64 + i64::from(plan.columns), (ku * 8 + kv) as i64);
-                out.push(Batch { placed, score: plan.score + 8.0 * (share - 1.0) + tidy + noise });
+                out.push(Batch { placed, score: plan.score + 8.0 * (share - 1.0) + tidy + noise - raggedness });
             }
         }
     }
@@ -150,7 +155,19 @@ pub(in crate::placement) fn rows<'a>(
     out
 }
 
-fn plans(state: &State, unit: &Unit, count: i32, focus: Option<u8>, terms: &Terms) -> Vec<Plan> {
+/// Returns how many units rows lack of being as long as the longest, over their number.
+fn ragged(placed: &[Placed], plan: &Plan) -> f64 {
+    let mut rows: BTreeMap<i32, i32> = BTreeMap::new();
+    for p in placed {
+        let across = p.world(&p.unit.anchor().solid.rect).turned((4 - plan.q) % 4);
+        *rows.entry(across.x0).or_default() += 1;
+    }
+    let longest = rows.values().max().copied().unwrap_or(0);
+    rows.values().map(|n| f64::from(longest - n)).sum::<f64>() / f64::from(longest.max(1))
+}
+
+fn plans(state: &State, unit: &Unit, task: &Task, focus: Option<u8>, terms: &Terms) -> Vec<Plan> {
+    let count = task.count as i32;
     let (robot, look) = (terms.robot, unit.look());
     let aisle = robot.max(AISLE);
     let (b, r) = (unit.bbox, unit.reach);
@@ -182,8 +199,11 @@ fn plans(state: &State, unit: &Unit, count: i32, focus: Option<u8>, terms: &Term
             for (&gap_u, &gap_v) in gaps.iter().flat_map(|u| sides.iter().map(move |v| (u, v))) {
                 for run in [i32::MAX, 4, 3, 2] {
                     for columns in 1..=count {
+                        // full rows, where those that they leave out may go
+                        let full = count - count % columns;
+                        let count = if full > 0 && count - full <= task.spare as i32 { full } else { count };
                         let rows = (count + columns - 1) / columns;
-                        let mut plan = Plan { q, columns, rows, run, gap_v, gap_u, paired, score: 0.0 };
+                        let mut plan = Plan { q, columns, rows, count, run, gap_v, gap_u, paired, score: 0.0 };
                         if plan.breadth(w, aisle) > wide.height() {
                             break;
                         }
@@ -194,8 +214,15 @@ fn plans(state: &State, unit: &Unit, count: i32, focus: Option<u8>, terms: &Term
                         while plan.rows > 1 && plan.depth(d) + low + high > wide.width() {
                             plan.rows -= 1;
                         }
-                        plan.score = turned + stage + rate(&plan, rows, count, (d, w), &wide, aisle);
+                        plan.score = turned + stage + rate(&plan, rows, task, (d, w), &wide, aisle);
                         out.push(plan);
+                        if shape == Shape::Desk && focus.is_none() && plan.rows > 1 {
+                            // the floor that is left shared out among the aisles
+                            let left = (wide.width() - plan.depth(d) - low - high) / (plan.rows + 1);
+                            plan.gap_u += left.min(WIDENED) / 50 * 50;
+                            plan.score = turned + stage + rate(&plan, rows, task, (d, w), &wide, aisle);
+                            out.push(plan);
+                        }
                     }
                 }
             }
@@ -213,18 +240,21 @@ fn stage_score(state: &State, q: u8) -> f64 {
     -4.0 * f64::from(windows) / f64::from(length.max(1)) - 0.8 * doors as f64
 }
 
-fn rate(plan: &Plan, wished: i32, count: i32, (d, w): (i32, i32), wide: &Box2, aisle: i32) -> f64 {
-    let held = (plan.rows * plan.columns).min(count);
-    let mut s = 8.0 * f64::from(held - count) / f64::from(count);
+fn rate(plan: &Plan, wished: i32, task: &Task, (d, w): (i32, i32), wide: &Box2, aisle: i32) -> f64 {
+    let held = (plan.rows * plan.columns).min(plan.count);
+    let due = task.counted(usize::MAX) as f64;
+    let mut s = 8.0 * (task.counted(held as usize) as f64 - due) / due.max(1.0);
     // a block shaped like its room
     let (pu, pv) = (f64::from(plan.depth(d)), f64::from(plan.breadth(w, aisle)));
     let (ru, rv) = (f64::from(wide.width()), f64::from(wide.height()));
     s -= 2.0 * (pu / ru - pv / rv).abs();
     // full rows, long runs broken by aisles, wide aisles where there is room
-    s -= 0.5 * f64::from(plan.columns * wished - count) / f64::from(plan.columns);
+    s -= 0.5 * f64::from(plan.columns * wished - plan.count) / f64::from(plan.columns);
     s -= if plan.run == i32::MAX && plan.columns > 4 { 0.8 } else { 0.0 };
     s -= if plan.run == 2 { 0.2 } else { 0.0 };
-    s + if plan.paired { 0.6 } else { 0.0 }
+    // people who work together sit face to face
+    let together = if task.spare > 0 { 1.6 } else { 0.6 };
+    s + if plan.paired { together } else { 0.0 }
         + f64::from(plan.gap_v.min(600)) / 1500.0
         + f64::from(plan.gap_u.min(1500)) / 5000.0
 }
@@ -237,7 +267,6 @@ fn set_up<'a>(
     (u0, v0): (i32, i32),
     aisle: i32,
     index: usize,
-    count: i32,
     tally: &mut Tally,
 ) -> Vec<Placed<'a>> {
     let b = unit.bbox;
@@ -246,7 +275,7 @@ fn set_up<'a>(
     // one row more than needed makes up for places that doors take
     for r in 0..=plan.rows {
         for c in 0..plan.columns {
-            if out.len() as i32 >= count {
+            if out.len() as i32 >= plan.count {
                 return out;
             }
             let ((du, around), dv) = (plan.row(r, d), plan.column(c, w, aisle));
