@@ -109,6 +109,8 @@ pub enum Daylight {
     Required,
     /// Good to have.
     Preferred,
+    /// Works inside, with windows where it lies at an outer wall anyway.
+    Optional,
     /// Better inside: dark rooms, stores, wet cells.
     None,
 }

@@ -246,7 +246,7 @@ impl Genome {
 
     fn lightest_band(&self, brief: &Brief, room: usize, rng: &mut Stream) -> usize {
         let load = |b: usize| self.bands[b].cells.iter().map(|c| brief.rooms[c.host].area_target).sum::<f64>();
-        let dark = brief.rooms[room].daylight == Daylight::None;
+        let dark = matches!(brief.rooms[room].daylight, Daylight::None | Daylight::Optional);
         let candidates: Vec<usize> = match self.scheme {
             // Bands 2 and 3 of a racetrack are its core.
             Scheme::Racetrack if dark => vec![2, 3],

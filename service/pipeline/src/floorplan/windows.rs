@@ -75,7 +75,9 @@ fn glass(room: &RoomSpec, net_m2: f64) -> Option<(f64, f64)> {
     }
     let head = HEAD_M.min(room.ceiling_height - 0.2);
     match room.daylight {
-        Daylight::Required | Daylight::Preferred => Some((SILL_M, net_m2 * GLASS_PER_FLOOR / (head - SILL_M))),
+        Daylight::Required | Daylight::Preferred | Daylight::Optional => {
+            Some((SILL_M, net_m2 * GLASS_PER_FLOOR / (head - SILL_M)))
+        }
         Daylight::None if room.circulation => Some((SILL_M, 1.0)),
         Daylight::None if room.wet => Some((HIGH_SILL_M, PANE_M.1)),
         Daylight::None => None,

@@ -259,7 +259,6 @@ fn rate(plan: &Plan, wished: i32, task: &Task, (d, w): (i32, i32), wide: &Box2, 
         + f64::from(plan.gap_u.min(1500)) / 5000.0
 }
 
-#[expect(clippy::too_many_arguments, reason = "the inner step of one search, called once")]
 fn set_up<'a>(
     state: &State<'a, '_>,
     plan: &Plan,
