@@ -1,6 +1,6 @@
 //! Scores the prompt reader: prompts with the facts a sensible person reads in them, and texts that make no sense.
 //!
-//! `prompts/own.jsonl` belongs to this repository. A second set in the same form is scored too where it lies beside the
+//! `prompts/own.jsonl` and `prompts/odd.jsonl` (in keywords, with numbers of many things) belong to this repository. A second set in the same form is scored too where it lies beside the
 //! workspace. Room counts are minima, `n_rooms` counts rooms other than circulation, adjacency means any edge.
 
 use std::collections::BTreeMap;
@@ -46,6 +46,17 @@ struct Case {
     clarify: bool,
     /// Objects that some room is to have.
     things: Vec<String>,
+    /// Robots by kind, exactly.
+    robots: Option<BTreeMap<String, u32>>,
+    /// How many rooms of a type there are, exactly.
+    rooms: BTreeMap<String, usize>,
+    /// Storeys in all.
+    storeys: Option<usize>,
+    /// The storey that all rooms of a type are on.
+    levels: BTreeMap<String, i32>,
+    /// Types of rooms that are to have a dock.
+    docks: Vec<String>,
+    building_type: Option<String>,
     /// Codes of conflicts that the prompt does not have.
     no_conflicts: Vec<String>,
     tags: Vec<String>,
@@ -106,6 +117,8 @@ fn check_facts(case: &Case, graph: &SceneGraph, misses: &mut Misses) {
     }
     let false_ones: Vec<_> = graph.conflicts.iter().filter(|c| case.no_conflicts.contains(&c.code)).collect();
     misses.check(false_ones.is_empty(), "no_conflicts", &case.no_conflicts, &false_ones);
+    let kind = &case.building_type;
+    misses.check(kind.is_none() || kind == &graph.building_type, "building type", kind, &graph.building_type);
     let stated = !graph.conflicts.is_empty() || !graph.assumptions.is_empty();
     misses.check(!case.clarify || stated, "clarify", "a conflict or an assumption", "none");
 }
@@ -118,6 +131,21 @@ fn check_rooms(case: &Case, graph: &SceneGraph, misses: &mut Misses) {
     for (room_type, least) in &case.must_rooms {
         let n = graph.rooms.iter().filter(|r| &r.room_type == room_type).count();
         misses.check(n >= *least, "must_rooms", (room_type, least), (n, &counted));
+    }
+    let of_type = |id: &str| graph.rooms.iter().filter(|r| r.room_type == id).collect::<Vec<_>>();
+    for (room_type, n) in &case.rooms {
+        misses.check(of_type(room_type).len() == *n, "rooms", (room_type, n), &counted);
+    }
+    for (room_type, level) in &case.levels {
+        let levels: Vec<i32> = of_type(room_type).iter().map(|r| r.level).collect();
+        misses.check(!levels.is_empty() && levels.iter().all(|l| l == level), "levels", (room_type, level), &levels);
+    }
+    if let Some(storeys) = case.storeys {
+        misses.check(graph.level_numbers().len() == storeys, "storeys", storeys, graph.level_numbers());
+    }
+    for room_type in &case.docks {
+        let docked = of_type(room_type).iter().any(|r| r.wished_assets.iter().any(|a| a.contains("dock")));
+        misses.check(docked, "docks", room_type, graph.rooms.iter().map(|r| &r.wished_assets).collect::<Vec<_>>());
     }
     for room_type in &case.forbidden_rooms {
         misses.check(!counted.contains(&room_type.as_str()), "forbidden_rooms", room_type, &counted);
@@ -162,6 +190,10 @@ fn check_robots(case: &Case, graph: &SceneGraph, misses: &mut Misses) {
         };
         misses.check(right, "robot", kind, &graph.robots);
     }
+    if let Some(robots) = &case.robots {
+        let got: BTreeMap<String, u32> = graph.robots.iter().map(|r| (r.kind.clone(), r.count)).collect();
+        misses.check(&got == robots, "robots", robots, &got);
+    }
     if let Some(radius) = case.robot_radius_m {
         let right = graph.robots.iter().any(|r| (r.radius_m - radius).abs() < 1e-6);
         misses.check(right, "robot radius", radius, &graph.robots);
@@ -192,6 +224,13 @@ fn reads_our_own_prompts() {
     let (right, all) = score(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/prompts/own.jsonl"));
     assert!(all >= 70, "{all} prompts");
     assert!(right * 100 >= all * 95, "{right} of {all}");
+}
+
+#[test]
+fn reads_odd_prompts() {
+    let (right, all) = score(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/prompts/odd.jsonl"));
+    assert!(all >= 60, "{all} prompts");
+    assert_eq!(right, all);
 }
 
 #[test]

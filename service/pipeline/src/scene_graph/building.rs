@@ -24,6 +24,8 @@ pub(super) struct Building {
 
 /// Adjectives between a number and what it counts, at most.
 const MOST_ADJECTIVES: usize = 3;
+/// Words before a building named late, back to the mark that it stands behind: "..., a small family home".
+const MOST_BEFORE_LATE: usize = 3;
 
 /// A word for a building: domain and, where it is one, building type.
 type Meaning = Vec<(usize, Option<usize>)>;
@@ -41,19 +43,19 @@ pub(super) fn recognize(
     let domains: Vec<&Domain> =
         registry.iter().map(|p| p.domain()).filter(|d| only.is_none_or(|o| o == d.id)).collect();
     let list_from = list_start(tokens, spoken, languages);
-    let found = occurrences(tokens, registry, &domains, languages, places);
+    let found = occurrences(tokens, registry, &domains, languages, spoken, numbers, places);
     let rooms = domains.iter().flat_map(|d| room_words(d, registry, languages)).collect::<Vec<_>>();
+    let head_final = matches!(languages.first(), Some(&("zh" | "ko")));
     let plural = |span: &Span| {
-        numbers.iter().any(|n| {
-            let area = words().area_units.longest_at(tokens, n.span.end).is_some();
-            let after = spoken.iter().find_map(|s| s.tag_at(tokens, n.span.end, Tag::Counters)).filter(|_| !area);
+        let before = numbers.iter().any(|n| {
+            let after = counter(tokens, n, languages, spoken);
             [Some(n.span.end), after]
                 .into_iter()
                 .flatten()
                 .any(|from| counts_rooms(tokens, n, from, *span, &rooms, spoken))
-        })
+        });
+        before || head_final && numbers.iter().any(|n| counts_before(tokens, n, *span, spoken))
     };
-    let head_final = matches!(languages.first(), Some(&("zh" | "ko")));
     let pick = if head_final {
         found.iter().filter(|(s, _)| !plural(s)).max_by_key(|(span, _)| {
             let ends = tokens.get(span.end).is_none_or(Token::is_mark);
@@ -70,7 +72,17 @@ pub(super) fn recognize(
             [] => None,
         }
     };
-    let votes = || room_votes(tokens, registry, &domains, languages);
+    let (pick, list_from) = match pick {
+        None if !head_final => {
+            let late = found
+                .iter()
+                .filter(|(s, _)| !plural(s))
+                .find(|(s, _)| is_late(tokens, *s, numbers, &rooms, spoken, places));
+            (late, if late.is_some() { 0 } else { list_from })
+        }
+        pick => (pick, list_from),
+    };
+    let votes = || room_votes(tokens, registry, &domains, languages, places);
     let Some((span, meaning)) = pick else {
         let mut votes = votes();
         // "two offices": rooms here, but a word for that building all the same
@@ -99,7 +111,7 @@ pub(super) fn recognize(
         domain: domains[domain].id.clone(),
         building_type: kind.map(|k| domains[domain].building_types[k].id.clone()),
         head: Some(without_count(*span, numbers)),
-        list_from: if head_final { 0 } else { list_from.max(span.end) },
+        list_from: if head_final || list_from == 0 { 0 } else { list_from.max(span.end) },
         by_rooms: false,
     })
 }
@@ -127,6 +139,65 @@ fn counts_rooms(
         let counted = several && i == span.start && (i == from || ends_plural);
         counted || i < span.start && number.value >= 1.0 && !number.article && !number.vague && longer(i)
     })
+}
+
+/// Returns the end of the counter behind a number, where what is counted can follow: "两间办公室", but in Korean only
+/// before "의" ("두 개의 사무실"), since a Korean number counts the noun before it. Storeys are no counter of rooms.
+fn counter(tokens: &[Token], number: &Number, languages: &[&str], spoken: &[&Spoken]) -> Option<usize> {
+    let at = number.span.end;
+    let tagged = |tag| spoken.iter().find_map(|s| s.tag_at(tokens, at, tag));
+    if words().area_units.longest_at(tokens, at).is_some() || tagged(Tag::Storeys).is_some() {
+        return None;
+    }
+    let end = tagged(Tag::Counters)?;
+    if languages.first() != Some(&"ko") {
+        return Some(end);
+    }
+    tokens.get(end).filter(|t| t.text == "의").map(|_| end + 1)
+}
+
+/// Returns true for "病房8间", "병실 8개": the number counts the word before it, and nothing else follows it.
+fn counts_before(tokens: &[Token], number: &Number, span: Span, spoken: &[&Spoken]) -> bool {
+    let tagged = |i: usize, tag| spoken.iter().find_map(|s| s.tag_at(tokens, i, tag));
+    let Some(end) = tagged(number.span.end, Tag::RoomCounters).filter(|_| number.span.start == span.end) else {
+        return false;
+    };
+    tokens.get(end).is_none_or(|t| t.is_mark() || t.spaced) || tagged(end, Tag::Joins).is_some()
+}
+
+/// Returns true for a building named behind its rooms, at the head of a phrase: "three bedrooms, a bath, family home in
+/// Leeds". A word that may be a room as well is one unless no other room is named.
+fn is_late(
+    tokens: &[Token],
+    span: Span,
+    numbers: &[Number],
+    rooms: &[Arc<Phrases<()>>],
+    spoken: &[&Spoken],
+    places: &[Span],
+) -> bool {
+    // of "3 bedroom house" the number and its room
+    let count = numbers.iter().find(|n| n.span.end < span.start && n.span.end + MOST_BEFORE_LATE > span.start);
+    let counts =
+        count.filter(|n| rooms.iter().any(|r| r.longest_at(tokens, n.span.end).is_some_and(|f| f.0 == span.start)));
+    let plain = |i: usize| {
+        counts.is_some_and(|n| i >= n.span.start)
+            || [Tag::Articles, Tag::NotNames, Tag::Own]
+                .iter()
+                .any(|&t| spoken.iter().any(|s| s.tag_at(tokens, i, t).is_some()))
+    };
+    let first = (span.start.saturating_sub(MOST_BEFORE_LATE)..span.start).rev().find(|&i| !plain(i));
+    let heads = first.map_or(span.start <= MOST_BEFORE_LATE, |i| tokens[i].is_mark());
+    let room = |i: usize| rooms.iter().filter_map(|r| r.longest_at(tokens, i)).map(|f| f.0).max();
+    let own = room(span.start).is_some_and(|end| end >= span.end);
+    let others = || {
+        let free = |i: &usize| {
+            !counts.is_some_and(|n| *i >= n.span.start && *i < span.start)
+                && !span.contains(*i)
+                && !places.iter().any(|p| p.contains(*i))
+        };
+        (0..tokens.len()).filter(free).any(|i| room(i).is_some())
+    };
+    heads && (!own || !others())
 }
 
 /// Leaves a count in the building's name to the rooms: of "one-bedroom flat" only "flat" is the building.
@@ -178,6 +249,8 @@ fn occurrences(
     registry: &Registry,
     domains: &[&Domain],
     languages: &[&str],
+    spoken: &[&Spoken],
+    numbers: &[Number],
     places: &[Span],
 ) -> Vec<(Span, Meaning)> {
     let ids: Vec<&str> = domains.iter().map(|d| d.id.as_str()).collect();
@@ -186,7 +259,10 @@ fn occurrences(
     let mut out = Vec::new();
     let mut i = 0;
     while i < tokens.len() {
-        if places.iter().any(|p| p.contains(i)) {
+        // "3 bath house" has three baths, and is no bath house
+        let short = words().dwelling.bath_letters.contains(&tokens[i].text)
+            && numbers.iter().any(|n| n.span.end == i && !n.article);
+        if short || places.iter().any(|p| p.contains(i)) {
             i += 1;
             continue;
         }
@@ -198,7 +274,9 @@ fn occurrences(
                 best = Some((end, meaning));
             }
         }
-        if best.is_none() && tokens[i].kind == Kind::Word {
+        // a "Ladestation" charges robots, and is no ward ("Station")
+        let charges = spoken.iter().any(|s| s.tag_at(tokens, i, Tag::Charge).is_some());
+        if best.is_none() && tokens[i].kind == Kind::Word && !charges {
             best = vocabularies.iter().find_map(|v| v.ending(&tokens[i].text, 4)).map(|(m, _)| (i + 1, m));
         }
         match best {
@@ -235,7 +313,13 @@ fn vocabulary(domains: &[&Domain], language: &str) -> Phrases<Meaning> {
 }
 
 /// Returns how many tokens of the prompt name rooms, by domain.
-fn room_votes(tokens: &[Token], registry: &Registry, domains: &[&Domain], languages: &[&str]) -> Vec<usize> {
+fn room_votes(
+    tokens: &[Token],
+    registry: &Registry,
+    domains: &[&Domain],
+    languages: &[&str],
+    taken: &[Span],
+) -> Vec<usize> {
     domains
         .iter()
         .map(|domain| {
@@ -244,12 +328,24 @@ fn room_votes(tokens: &[Token], registry: &Registry, domains: &[&Domain], langua
             let mut i = 0;
             while i < tokens.len() {
                 let end = vocabularies.iter().filter_map(|v| v.longest_at(tokens, i)).map(|f| f.0).max();
+                let end = end.filter(|_| !taken.iter().any(|s| s.contains(i)));
                 votes += end.map_or(0, |e| e - i);
                 i = end.unwrap_or(i + 1);
             }
             votes
         })
         .collect()
+}
+
+/// Returns how many words of the prompt name a building or a room in a language, by the words of all domains.
+pub(super) fn words_known(tokens: &[Token], registry: &Registry, language: &str) -> usize {
+    let domains: Vec<&Domain> = registry.iter().map(|p| p.domain()).collect();
+    let spoken: Vec<&Spoken> = words().languages.get(language).into_iter().collect();
+    let buildings = occurrences(tokens, registry, &domains, &[language], &spoken, &[], &[]);
+    let rooms: Vec<_> = domains.iter().flat_map(|d| room_words(d, registry, &[language])).collect();
+    let ends = |i: usize| rooms.iter().filter_map(|r| r.longest_at(tokens, i)).map(|f| f.0).max();
+    let room = |k: usize| (0..=k).any(|i| ends(i).is_some_and(|end| end > k));
+    (0..tokens.len()).filter(|&k| buildings.iter().any(|b| b.0.contains(k)) || room(k)).count()
 }
 
 /// Returns the words for a domain's rooms, one table a language.

@@ -3,8 +3,13 @@
 use super::text::{Kind, Token};
 use super::words::{Tag, words};
 
+/// Score that tells a language by itself: one of its most usual words.
+const SURE: f64 = 1.0;
+
 /// Returns the ISO 639-1 code of the prompt's language (`en de fr es zh ko`); English when nothing tells.
-pub(super) fn detect(tokens: &[Token]) -> &'static str {
+///
+/// Where the usual words do not tell, `known` is asked how many words of the prompt name rooms or buildings in a language.
+pub(super) fn detect(tokens: &[Token], known: impl Fn(&str) -> usize) -> &'static str {
     let count = |test: fn(&Token) -> bool| tokens.iter().filter(|t| test(t)).count();
     let hangul = count(|t| t.kind == Kind::Hangul);
     let han = count(|t| t.kind == Kind::Han);
@@ -16,7 +21,7 @@ pub(super) fn detect(tokens: &[Token]) -> &'static str {
     if han > 0 && han > latin {
         return "zh";
     }
-    let mut best = ("en", 0.0);
+    let mut scores: Vec<(&'static str, f64)> = Vec::new();
     for code in ["en", "de", "fr", "es"] {
         let Some(spoken) = words().languages.get(code) else { continue };
         let mut score = if code == "en" { 0.01 } else { 0.0 };
@@ -33,11 +38,13 @@ pub(super) fn detect(tokens: &[Token]) -> &'static str {
             let phrase = spoken.tags.longest_at(tokens, i).is_some();
             score += if known { 1.0 } else { 0.0 } + if number { 0.7 } else { 0.0 } + if phrase { 0.3 } else { 0.0 };
         }
-        if score > best.1 {
-            best = (code, score);
-        }
+        scores.push((code, score));
     }
-    best.0
+    if scores.iter().all(|(_, score)| *score < SURE) {
+        scores.iter_mut().for_each(|(code, score)| *score += known(code) as f64);
+    }
+    // of equals the first
+    scores.into_iter().rev().max_by(|a, b| a.1.total_cmp(&b.1)).map_or("en", |best| best.0)
 }
 
 #[cfg(test)]
@@ -57,7 +64,14 @@ mod tests {
             ("", "en"),
             ("???", "en"),
         ] {
-            assert_eq!(detect(&tokens(text)), code, "{text}");
+            assert_eq!(detect(&tokens(text), |_| 0), code, "{text}");
         }
+    }
+
+    #[test]
+    fn words_for_rooms_tell_where_usual_words_do_not() {
+        let known = |code: &str| if code == "de" { 2 } else { 0 };
+        assert_eq!(detect(&tokens("Grundschule 8 Klassenräume Leipzig"), known), "de");
+        assert_eq!(detect(&tokens("the Grundschule of Leipzig"), known), "en", "usual words go first");
     }
 }

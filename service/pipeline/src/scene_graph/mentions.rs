@@ -46,6 +46,8 @@ pub(super) struct Mention {
     pub definite: bool,
     /// First token of the number or article, or of the mention itself.
     pub from: usize,
+    /// Where the number stands.
+    pub number: Option<Span>,
 }
 
 impl Mention {
@@ -126,6 +128,11 @@ impl Vocabulary {
         (0..tokens.len()).find_map(|i| ends(i).map(|f| f.1.id.clone()))
     }
 
+    /// Returns true when a word for a room begins at a token.
+    pub(super) fn names_room(&self, tokens: &[Token], i: usize, numbers: &[Number], spoken: &[&Spoken]) -> bool {
+        i < tokens.len() && self.at(tokens, i, numbers, spoken).is_some()
+    }
+
     /// Returns true when a room word of several tokens begins at a token and reaches an end.
     fn known_to(&self, tokens: &[Token], i: usize, end: usize) -> bool {
         let reaches = |p: &Phrases<RoomWord>| p.longest_at(tokens, i).is_some_and(|f| f.0 >= end && f.0 > i + 1);
@@ -173,6 +180,10 @@ pub(super) struct Taken<'a> {
     /// Words that name the building.
     pub head: Option<Span>,
     pub list_from: usize,
+    /// Things that a number before them counts: robots, areas. No number counts what stands behind them.
+    pub counted: &'a [Span],
+    /// Words for a robot's dock.
+    pub docks: &'a [Span],
 }
 
 /// Returns all mentions in order.
@@ -206,6 +217,7 @@ pub(super) fn mentions(
                     plural,
                     definite: false,
                     from: i,
+                    number: None,
                 });
                 i = end;
             }
@@ -231,6 +243,9 @@ fn noun_at(
 ) -> Option<(usize, What, bool)> {
     if tagged(tokens, i, spoken, Tag::Storeys) {
         return None;
+    }
+    if let Some(dock) = taken.docks.iter().find(|d| d.start == i) {
+        return Some((dock.end, What::Charge, false));
     }
     let free = |end: usize| {
         let span = Span { start: i, end };
@@ -364,6 +379,7 @@ fn count_hosts(tokens: &[Token], spoken: &[&Spoken], out: &mut [Mention]) {
         let own = tagged(tokens, guest.span.start, spoken, Tag::Own) && guest.span.end == host.span.start;
         if own && guest.room_type().is_some() && host.room_type().is_some() && host.count.is_none() {
             (host.count, host.article, host.vague) = (guest.count.take(), guest.article, guest.vague);
+            host.number = guest.number.take();
             host.from = guest.from;
         }
     }
@@ -392,11 +408,17 @@ fn attach_numbers(
     let usable: Vec<&Number> = numbers
         .iter()
         .filter(|n| !taken.spans.iter().chain(&taken.head).chain(&spans).any(|s| s.overlaps(n.span)))
+        // "거실 2층", "三层": so many storeys
+        .filter(|n| !tagged(tokens, n.span.end, spoken, Tag::Storeys))
         .collect();
+    let walls: Vec<Span> = spans.iter().chain(taken.counted).copied().collect();
     let mut used = vec![false; usable.len()];
     for m in out.iter_mut() {
         let after = || number_after(tokens, m.span.end, &usable, spoken, language);
-        let before = || number_before(tokens, m.span.start, &usable, spoken, &spans);
+        // the garage of "2 car garage" is one
+        let holds = m.span.end > m.span.start + 1
+            && spoken.iter().any(|s| s.tag_at(tokens, m.span.start, Tag::Holds) == Some(m.span.start + 1));
+        let before = || number_before(tokens, m.span.start, &usable, spoken, &walls).filter(|_| !holds);
         let found = if language == "ko" { after().or_else(before) } else { before().or_else(after) };
         let special = || {
             let tag = match m.what {
@@ -416,6 +438,7 @@ fn attach_numbers(
         let number = usable[k];
         used[k] = !(number.article || number.vague);
         m.count = Some(number.value.clamp(-1e9, 1e9).trunc() as i64);
+        m.number = Some(number.span);
         m.article = number.article;
         m.vague = number.vague;
         m.from = m.from.min(number.span.start);
@@ -443,6 +466,10 @@ fn number_before(
             return None;
         }
         let has = |tag| spoken.iter().any(|s| s.tag_at(tokens, at, tag) == Some(at + 1));
+        // "6 person meeting room", "2 car garage", "10人会议室": the number is of what one room holds
+        if has(Tag::Holds) && (at == start - 1 || !has(Tag::Counters)) {
+            return None;
+        }
         let parts = [Tag::Stops, Tag::Starts, Tag::No, Tag::Near, Tag::Door, Tag::Joins, Tag::Each, Tag::Definite];
         let joint = matches!(token.text.as_str(), "的" | "의" | "de" | "of");
         if !joint && parts.iter().any(|&tag| has(tag)) && !has(Tag::Counters) {
@@ -453,7 +480,7 @@ fn number_before(
 }
 
 /// Returns the number after a noun: "방 2개", "会议室3间", "bedrooms: 3", "bedroom x 2".
-fn number_after(
+pub(super) fn number_after(
     tokens: &[Token],
     end: usize,
     numbers: &[&Number],
@@ -474,7 +501,7 @@ fn number_after(
         "zh" => number_at(end).filter(|&k| {
             let after = counter(numbers[k].span.end).unwrap_or(numbers[k].span.end);
             let joined = spoken.iter().any(|s| s.tag_at(tokens, after, Tag::Joins).is_some());
-            closes(after) || joined
+            closes(after) || joined || tokens[after].spaced
         }),
         _ => {
             let at = if matches!(next.text.as_str(), "x" | ":" | "," | "-") { end + 1 } else { return None };

@@ -6,6 +6,7 @@
 
 mod building;
 mod deal;
+mod docks;
 mod dwelling;
 mod edges;
 mod given;
@@ -117,7 +118,7 @@ fn assemble(request: &Request, mut reading: Reading, planned: &[Planned]) -> Sce
     } else {
         (edges::connect(&mut reading, planned, &mut rooms), Vec::new())
     };
-    rooms::add_docks(reading.domain, &reading.robots, &mut rooms);
+    rooms::add_docks(reading.domain, &reading.robots, &reading.docked, &mut rooms);
     SceneGraph {
         version: 1,
         prompt: request.prompt.clone(),

@@ -169,7 +169,8 @@ impl<'r, 'a> Build<'r, 'a> {
                 self.bring_host(&wish.room_type);
             }
         }
-        let charging = self.reading.wishes.charging_room || self.reading.wishes.charging && !self.has_dock();
+        let charging = self.reading.wishes.charging_room
+            || self.reading.wishes.charging && self.reading.docked.is_empty() && !self.has_dock();
         if charging && !self.is_forbidden(CHARGING) && self.count(CHARGING) == 0 {
             self.push(CHARGING, None);
             self.rooms.last_mut().expect("just pushed").requested = true;
@@ -383,7 +384,7 @@ pub(super) fn head_count(reading: &Reading, of: Occupants) -> Option<u32> {
         Occupants::Staff => o.staff.max(o.desks),
         Occupants::Visitors => o.visitors,
         // who stays in a ward are its patients, whatever the prompt calls them
-        Occupants::Beds => o.beds.or(o.visitors),
+        Occupants::Beds => o.beds.or(reading.residents).or(o.visitors),
         Occupants::Residents => reading.residents,
     }
 }

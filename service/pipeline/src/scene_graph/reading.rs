@@ -1,7 +1,6 @@
 //! A prompt understood: every fact it states, before rooms are added or connected.
 
-use d3dgen_model::domain::{Access, Domain, Occupants, Program, ProgramRoom};
-use d3dgen_model::robot_body::RobotBody;
+use d3dgen_model::domain::{Access, Domain, Occupants, Program, ProgramRoom, Shape};
 use d3dgen_model::scene_graph::{Note, Occupancy, Robot};
 use d3dgen_model::style::Style;
 use d3dgen_plugins::Registry;
@@ -14,9 +13,9 @@ use super::relations;
 use super::storeys::{self, Storeys, Where};
 use super::styles;
 use super::text::{MAX_TOKENS, Span, Token, tokens};
-use super::wishes::{self, CHARGING, MANY, Text, Wish, Wishes};
+use super::wishes::{self, MANY, Text, Wish, Wishes};
 use super::words::{Spoken, Tag, words};
-use super::{Request, dwelling, language, measures, numbers, robots};
+use super::{Request, docks, dwelling, language, measures, numbers, robots};
 use crate::Error;
 
 /// Most rooms one world is planned for.
@@ -52,6 +51,8 @@ pub(super) struct Reading<'a> {
     pub accessible: bool,
     pub style: Style,
     pub robots: Vec<Robot>,
+    /// Types of the rooms that a dock is to stand in.
+    pub docked: Vec<String>,
     pub storeys: Storeys,
     /// Objects that the prompt names, each with the room type it is named with.
     pub objects: Vec<(String, Option<String>)>,
@@ -75,7 +76,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         let message = "the prompt has no words; describe a building, for instance `two-bedroom flat in Germany`";
         return Err(refused(message.into()));
     }
-    let language = language::detect(&tokens);
+    let language = language::detect(&tokens, |code| building::words_known(&tokens, registry, code));
     let languages: Vec<&str> = if language == "en" { vec!["en"] } else { vec![language, "en"] };
     let spoken: Vec<&Spoken> = languages.iter().filter_map(|l| words().languages.get(*l)).collect();
     let numbers = numbers::numbers(&tokens, language, &spoken);
@@ -93,6 +94,9 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     if flag_country.is_some() {
         conflicts.retain(|n| n.code != "ambiguous_place" && n.code != "unknown_place");
     }
+    let machines = robots::find(&tokens, &spoken);
+    // neither places nor robots and their docks say what is built
+    let elsewhere: Vec<Span> = place.spans.iter().chain(&machines.spans).chain(&machines.docks).copied().collect();
     let building = building_of(
         request,
         registry,
@@ -100,7 +104,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         &languages,
         &spoken,
         &numbers,
-        &place.spans,
+        &elsewhere,
         &mut assumptions,
         &mut conflicts,
     );
@@ -110,14 +114,19 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
 
     let areas = measures::areas(&tokens, &numbers);
     let radius = measures::robot_radius(&tokens, &numbers, &spoken);
-    let machines = robots::read(&tokens, &numbers, &spoken);
     let short_forms = dwelling::short_forms(&tokens, &numbers, domain, &spoken);
+    let place_spans = place.spans.clone();
     let mut spans: Vec<Span> = std::mem::take(&mut place.spans);
     spans.extend(areas.iter().map(|a| a.span));
     spans.extend(short_forms.iter().map(|f| f.span));
+    let mut counted: Vec<Span> = spans.iter().filter(|s| !place_spans.contains(s)).copied().collect();
+    counted.extend(machines.spans.iter().copied());
     spans.extend(machines.spans.iter().copied());
     spans.extend(radius.iter().map(|r| r.0));
-    let storey_phrases = storeys::phrases(&tokens, &spoken);
+    let vocabulary =
+        registry.digest(&format!("{languages:?}: {}", domain.id), || Vocabulary::new(domain, registry, &languages));
+    let is_room = |i: usize| vocabulary.names_room(&tokens, i, &numbers, &spoken);
+    let storey_phrases = storeys::phrases(&tokens, &numbers, &spoken, building.head, is_room);
     spans.extend(storey_phrases.iter().map(|p| p.span));
     let said_styles = styles::said(&tokens, &languages);
     spans.extend(said_styles.iter().map(|s| s.span));
@@ -125,10 +134,15 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     let mut not_things = machines.spans.clone();
     not_things.extend(said_styles.iter().map(|s| s.span));
     not_things.extend(access_wishes(&tokens, &numbers, &spoken));
-    let vocabulary =
-        registry.digest(&format!("{languages:?}: {}", domain.id), || Vocabulary::new(domain, registry, &languages));
-    let taken = Taken { spans: &spans, head: building.head, list_from: building.list_from };
-    let mentions = mentions(&tokens, &numbers, &vocabulary, &spoken, language, &taken);
+    let taken = Taken {
+        spans: &spans,
+        head: building.head,
+        list_from: building.list_from,
+        counted: &counted,
+        docks: &machines.docks,
+    };
+    let mut mentions = mentions(&tokens, &numbers, &vocabulary, &spoken, language, &taken);
+    let docked = docks::inside_rooms(&tokens, &mut mentions, &machines.spans, &spoken);
     let said_styles = styles::of_building(said_styles, &mentions, language);
     let said = relations::read(&tokens, &mentions, &spoken, language, building.head);
     let text = Text {
@@ -143,10 +157,30 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     };
     let mut wishes = wishes::gather(&text, &mut conflicts);
     let country = flag_country.as_deref().or(place.country_code.as_deref());
-    let storeys = storeys::read(&tokens, &numbers, &mentions, &storey_phrases, &spoken, country, &mut conflicts);
+    let said_storeys = storeys::Text {
+        tokens: &tokens,
+        numbers: &numbers,
+        mentions: &mentions,
+        phrases: &storey_phrases,
+        spoken: &spoken,
+        head: building.head,
+        machines: &machines.spans,
+    };
+    let storeys = storeys::read(&said_storeys, country, &mut conflicts);
     wish_for_storeys(&storeys, &mut wishes, domain);
     name_private_bathrooms(&mut wishes, domain);
-    let robots = machines_of(&machines, &wishes, radius.map(|r| r.1), request, &mut assumptions, &mut conflicts);
+    spans.extend(building.head);
+    let fleet = robots::Counting {
+        tokens: &tokens,
+        numbers: &numbers,
+        mentions: &mentions,
+        taken: &spans,
+        spoken: &spoken,
+        language,
+        on_each: (&storeys.robots_on_each, storeys.levels.iter().filter(|l| **l >= 0).count() as u32),
+    };
+    let fleet = machines.counted(&fleet);
+    let robots = robots::of_graph(&fleet, &wishes, radius.map(|r| r.1), request, &mut assumptions, &mut conflicts);
     let area_m2 = total_area(&text, request, &mut conflicts);
     let people = People::read(&mentions, program, domain, &mut conflicts);
     beds_are_rooms(&people, &mentions, &mut wishes);
@@ -162,6 +196,9 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         let named = building.head.and_then(|h| vocabulary.room_named(&tokens[h.start..h.end]));
         assumptions.extend(add_main_room(&mut wishes, program, domain, &people, named.as_deref()));
     }
+    let mut things = objects::named(&tokens, &mentions, domain, registry, &languages, &not_things);
+    // those stand where the prompt puts them
+    things.retain(|(object, _)| docked.is_empty() || !domain.anchor(object).is_some_and(|o| o.shape == Shape::Dock));
     Ok(Reading {
         language,
         domain,
@@ -169,7 +206,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         program,
         country_code: flag_country.or(place.country_code),
         storeys,
-        objects: objects::named(&tokens, &mentions, domain, registry, &languages, &not_things),
+        objects: things,
         wishes,
         total,
         closed,
@@ -179,6 +216,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         residents: people.residents,
         accessible: (0..tokens.len()).any(|i| spoken.iter().any(|s| s.tag_at(&tokens, i, Tag::Accessible).is_some())),
         robots,
+        docked,
         style: styles::wished(&said_styles, request.style, &mut conflicts),
         assumptions,
         conflicts,
@@ -363,61 +401,6 @@ fn name_private_bathrooms(wishes: &mut Wishes, domain: &Domain) {
         }
         pair.a.clone_from(&bathroom.id);
     }
-}
-
-fn machines_of(
-    machines: &robots::Robots,
-    wishes: &Wishes,
-    radius: Option<f64>,
-    request: &Request,
-    assumptions: &mut Vec<Note>,
-    conflicts: &mut Vec<Note>,
-) -> Vec<Robot> {
-    let mut wanted = machines.wanted.clone();
-    if wanted.is_empty()
-        && (wishes.charging || request.robot_radius_m.is_some() || request.robot != RobotBody::default())
-    {
-        wanted.push(robots::Wanted { kind: "service", count: 1 });
-    }
-    if machines.kind_assumed {
-        assumptions
-            .push(note("robot_kind", "the prompt does not say what its robots do; service robots were assumed".into()));
-    }
-    let radius = match radius {
-        Some(r) if !(0.05..=2.0).contains(&r) => {
-            conflicts.push(note(
-                "robot_radius",
-                format!("a robot radius of {r} m is outside 0.05-2 m; the usual one was taken"),
-            ));
-            None
-        }
-        other => other,
-    };
-    if let (Some(flag), Some(named)) = (request.robot_radius_m, radius)
-        && (flag - named).abs() > 1e-9
-    {
-        conflicts.push(note(
-            "radius_flag",
-            format!("the prompt says {named} m robot radius, the request {flag} m; {flag} m was used"),
-        ));
-    }
-    let charging = wishes.charging || wishes.wishes.iter().any(|w| w.room_type == CHARGING);
-    wanted
-        .iter()
-        .filter_map(|w| {
-            let body = words().robot_kinds.get(w.kind)?;
-            let own = request.robot;
-            let stated = request.robot_radius_m.or(own.radius_m()).or(radius);
-            Some(Robot {
-                kind: w.kind.into(),
-                count: w.count,
-                radius_m: stated.unwrap_or(body.radius_m),
-                height_m: own.height_m.unwrap_or(body.height_m),
-                charging,
-                body: (own != RobotBody::default()).then_some(own),
-            })
-        })
-        .collect()
 }
 
 fn total_area(text: &Text, request: &Request, conflicts: &mut Vec<Note>) -> Option<f64> {

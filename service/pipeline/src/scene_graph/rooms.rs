@@ -218,8 +218,14 @@ pub(crate) fn wished_assets(domain: &Domain, kind: &RoomType, named: &[String]) 
     out
 }
 
-/// Wishes for a dock in rooms that suit one while there are fewer docks than robots: first in rooms, then in circulation.
-pub(super) fn add_docks(domain: &Domain, robots: &[Robot], rooms: &mut [GraphRoom]) {
+/// Returns true for the type of the room that joins the others, whatever the plan calls it.
+fn is_way(domain: &Domain, room_type: &str) -> bool {
+    domain.circulation.room_type == room_type || domain.circulation.entrance_room_types.iter().any(|t| t == room_type)
+}
+
+/// Wishes for a dock in the rooms that the prompt wants one in, and in rooms that suit one while there are fewer docks
+/// than robots: first in rooms, then in circulation.
+pub(super) fn add_docks(domain: &Domain, robots: &[Robot], docked: &[String], rooms: &mut [GraphRoom]) {
     let sum = |counts: &mut dyn Iterator<Item = u32>| counts.fold(0, u32::saturating_add);
     let is_dock = |id: &str| domain.anchor(id).is_some_and(|o| o.shape == Shape::Dock);
     let Some(dock) = domain.objects.iter().rev().find(|o| o.shape == Shape::Dock) else { return };
@@ -229,6 +235,15 @@ pub(super) fn add_docks(domain: &Domain, robots: &[Robot], rooms: &mut [GraphRoo
     };
     let robots = sum(&mut robots.iter().map(|r| r.count));
     let mut lacking = robots.saturating_sub(sum(&mut rooms.iter().map(held)));
+    for room_type in docked {
+        let has = |r: &GraphRoom| held(r) > 0 || r.wished_assets.contains(&dock.id);
+        let here = |r: &&mut GraphRoom| &r.room_type == room_type || r.circulation && is_way(domain, room_type);
+        if let Some(room) = rooms.iter_mut().find(here).filter(|r| !has(r)) {
+            room.wished_assets.insert(0, dock.id.clone());
+            room.wished_assets.truncate(MOST_WISHES);
+            lacking = lacking.saturating_sub(1);
+        }
+    }
     for in_circulation in [false, true] {
         for room in rooms.iter_mut().filter(|r| r.circulation == in_circulation) {
             let kind = domain.room_type_or_generic(&room.room_type);

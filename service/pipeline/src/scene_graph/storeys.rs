@@ -65,15 +65,25 @@ pub(super) struct Storeys {
     pub wanted: Vec<Wanted>,
     /// True when an elevator is named, false when it is ruled out.
     pub elevator: Option<bool>,
+    /// Robots that are wanted on every storey.
+    pub robots_on_each: Vec<Span>,
 }
 
-/// Returns the phrases that name storeys, in order.
-pub(super) fn phrases(tokens: &[Token], spoken: &[&Spoken]) -> Vec<Phrase> {
+/// Returns the phrases that name storeys, in order; `is_room` tells whether a word for a room begins at a token.
+pub(super) fn phrases(
+    tokens: &[Token],
+    numbers: &[Number],
+    spoken: &[&Spoken],
+    head: Option<Span>,
+    is_room: impl Fn(usize) -> bool,
+) -> Vec<Phrase> {
     let mut out = Vec::new();
     let mut i = 0;
     while i < tokens.len() {
-        if let Some((end, level)) = numbered(tokens, i, spoken) {
-            out.push(Phrase { span: Span { start: i, end }, at: Where::Level(level) });
+        let eastern = || nth_in_east(tokens, i, numbers, head, &is_room);
+        let level = numbered(tokens, i, spoken).map(|(end, level)| (end, Where::Level(level)));
+        if let Some((end, at)) = level.or_else(eastern) {
+            out.push(Phrase { span: Span { start: i, end }, at });
             i = end;
             continue;
         }
@@ -102,11 +112,64 @@ fn numbered(tokens: &[Token], i: usize, spoken: &[&Spoken]) -> Option<(usize, i3
     Some((end, n as i32))
 }
 
-/// Returns the number of storeys that the prompt states: "two-storey", "auf 3 Etagen", "zweistöckig".
-fn stated(tokens: &[Token], numbers: &[Number], spoken: &[&Spoken]) -> Option<f64> {
-    let counted = |n: &&Number| {
-        !n.article && !n.vague && spoken.iter().any(|s| s.tag_at(tokens, n.span.end, Tag::Storeys).is_some())
+/// Returns end and number of "二楼", "第3层", "1층에", "2층 침실": a storey by its number where rooms or a particle follow;
+/// "三层办公楼" and "2층 주택" have so many.
+fn nth_in_east(
+    tokens: &[Token],
+    i: usize,
+    numbers: &[Number],
+    head: Option<Span>,
+    is_room: &impl Fn(usize) -> bool,
+) -> Option<(usize, Where)> {
+    let ordinal = tokens[i].text == "第";
+    let number = numbers.iter().find(|n| n.span.start == i + usize::from(ordinal))?;
+    if !(1.0..=f64::from(MOST_LEVELS)).contains(&number.value) {
+        return None;
+    }
+    let (at, end) = (number.span.end, number.span.end + 1);
+    let unit = tokens.get(at).filter(|t| matches!(t.kind, Kind::Han | Kind::Hangul))?;
+    let next = tokens.get(end).filter(|t| !t.is_mark());
+    let follows = |words: &[&str]| next.is_some_and(|t| !t.spaced && words.contains(&t.text.as_str()));
+    let of_building = head.is_some_and(|h| h.contains(end) || h.contains(at));
+    let named = match unit.text.as_str() {
+        "楼" => !of_building && !follows(&["房", "宇", "栋", "盘"]),
+        "层" => {
+            let two = tokens[number.span.start].text == "两";
+            let head =
+                tokens.get(end).is_some_and(|t| t.mark() == Some(':')) || follows(&["有", "是", "为", "设", "布"]);
+            // "二层6间办公室", but "办公楼三层 12间办公室"
+            let counted = numbers.iter().find(|n| n.span.start == end).filter(|n| !tokens[n.span.start].spaced);
+            let rooms = counted.is_some_and(|n| is_room(n.span.end) || is_room(n.span.end + 1));
+            ordinal || !two && !of_building && (head || rooms || is_room(end))
+        }
+        "층" => !of_building && (follows(&["에", "은", "는", "엔", "의"]) || is_room(end)),
+        _ => return None,
     };
+    named.then_some((end, Where::Nth(number.value as i32)))
+}
+
+/// Returns the number of storeys that the prompt states: "two-storey", "auf 3 Etagen", "zweistöckig", "three floor bank",
+/// "G+2".
+fn stated(text: &Text) -> Option<f64> {
+    let Text { tokens, numbers, spoken, phrases, head, .. } = *text;
+    let tagged = |i: usize, tag| spoken.iter().find_map(|s| s.tag_at(tokens, i, tag));
+    // "a three floor bank", "library, 3 floor": the singular where nothing but the building follows
+    let singular = |n: &Number| {
+        let after = tagged(n.span.end, Tag::Singular).filter(|_| n.value >= 2.0);
+        after.is_some_and(|end| tokens.get(end).is_none_or(Token::is_mark) || head.is_some_and(|h| h.start == end))
+    };
+    let counted = |n: &&Number| {
+        let nth = phrases.iter().any(|p| p.span.overlaps(n.span));
+        !n.article && !n.vague && !nth && (tagged(n.span.end, Tag::Storeys).is_some() || singular(n))
+    };
+    let ground_plus = (2..tokens.len()).find_map(|i| {
+        let Kind::Number(n) = tokens[i].kind else { return None };
+        let plus = tokens[i - 1].mark() == Some('/') && !tokens[i - 1].spaced && tokens[i - 2].text == "g";
+        plus.then_some(n + 1.0)
+    });
+    if ground_plus.is_some() {
+        return ground_plus;
+    }
     let by_number = numbers.iter().find(counted).map(|n| n.value);
     let by_word = |counts: &Phrases<f64>| (0..tokens.len()).find_map(|i| counts.longest_at(tokens, i).map(|f| *f.1));
     by_number.or_else(|| spoken.iter().find_map(|s| by_word(&s.storey_counts)))
@@ -119,23 +182,32 @@ fn elevator(tokens: &[Token], spoken: &[&Spoken]) -> Option<bool> {
     Some(!(at.saturating_sub(2)..at).any(|k| tagged(k, Tag::No)))
 }
 
+/// What the reading of storeys needs to see.
+pub(super) struct Text<'a> {
+    pub tokens: &'a [Token],
+    pub numbers: &'a [Number],
+    pub mentions: &'a [Mention],
+    pub phrases: &'a [Phrase],
+    pub spoken: &'a [&'a Spoken],
+    /// Words that name the building.
+    pub head: Option<Span>,
+    /// Words for robots.
+    pub machines: &'a [Span],
+}
+
 /// Reads what a prompt says of storeys; contradictions become conflicts.
-pub(super) fn read(
-    tokens: &[Token],
-    numbers: &[Number],
-    mentions: &[Mention],
-    phrases: &[Phrase],
-    spoken: &[&Spoken],
-    country: Option<&str>,
-    conflicts: &mut Vec<Note>,
-) -> Storeys {
-    let stated = stated(tokens, numbers, spoken);
+pub(super) fn read(text: &Text, country: Option<&str>, conflicts: &mut Vec<Note>) -> Storeys {
+    let Text { tokens, mentions, phrases, spoken, .. } = *text;
+    let stated = stated(text);
     if let Some(n) = stated.filter(|n| !(1.0..=f64::from(MOST_LEVELS)).contains(n)) {
         let message = format!("{n} storeys were asked for; one world has 1 to {MOST_LEVELS}");
         conflicts.push(note("impossible_storeys", message));
     }
     let stated = stated.filter(|n| (1.0..=f64::from(MOST_LEVELS)).contains(n)).map(|n| n.floor() as i32);
-    let on = attach(tokens, mentions, phrases, spoken);
+    let of_robots: Vec<(usize, Span)> = (0..phrases.len()).filter_map(|p| Some((p, robot_on(text, p)?))).collect();
+    let mut on = attach(tokens, mentions, phrases, spoken);
+    on.retain(|(_, p)| !of_robots.iter().any(|r| r.0 == *p));
+    let robots_on_each = of_robots.iter().filter(|r| phrases[r.0].at == Where::Each).map(|r| r.1).collect();
     let american = counts_from_one(phrases, stated, country);
     let fixed = |at: Where| match at {
         Where::Level(n) => Some(n),
@@ -178,7 +250,17 @@ pub(super) fn read(
         };
         wanted.push(Wanted { room_type: room_type.to_owned(), count, at });
     }
-    Storeys { levels, wanted, elevator: elevator(tokens, spoken) }
+    Storeys { levels, wanted, elevator: elevator(tokens, spoken), robots_on_each }
+}
+
+/// Returns the robots that a phrase says the storey of: "a cleaning robot on each floor", not "upstairs bedrooms".
+fn robot_on(text: &Text, phrase: usize) -> Option<Span> {
+    let span = text.phrases[phrase].span;
+    let robot = text.machines.iter().rev().find(|m| m.end <= span.start)?;
+    let between = robot.end..span.start;
+    let other = |i: usize| text.tokens[i].is_mark() || text.mentions.iter().any(|m| m.span.contains(i));
+    let follows = text.mentions.iter().any(|m| m.from == span.end || m.span.start == span.end);
+    (between.len() <= 3 && !between.into_iter().any(other) && !follows).then_some(*robot)
 }
 
 /// Returns true where the ground floor is the first floor.
@@ -222,7 +304,14 @@ fn attach(tokens: &[Token], mentions: &[Mention], phrases: &[Phrase], spoken: &[
         let before = |m: &&usize| mentions[**m].span.end == from;
         let follows_room = rooms.iter().any(|m| before(&m));
         let next = tokens.get(phrase.span.end);
-        let opens = next.is_some_and(|t| matches!(t.mark(), Some(':' | '(' | '-')))
+        // "2층 침실", "一楼厨房": the storey stands before its rooms, but "厨房在一楼"
+        let first = &tokens[phrase.span.start];
+        let postposed = phrase.span.start > 0 && matches!(tokens[phrase.span.start - 1].text.as_str(), "在" | "于");
+        let room_next = |m: &usize| (phrase.span.end..phrase.span.end + 2).contains(&mentions[*m].from);
+        let east = matches!(first.kind, Kind::Han | Kind::Hangul) || next.is_some_and(|t| t.kind == Kind::Hangul);
+        let leads = east && first.spaced && !postposed && rooms.iter().any(room_next);
+        let opens = leads
+            || next.is_some_and(|t| matches!(t.mark(), Some(':' | '(' | '-')))
             || next.is_some() && tagged(phrase.span.end, &[Tag::Starts]);
         let stop = phrases.get(p + 1).map_or(tokens.len(), lead);
         let end = (phrase.span.end..stop).find(|&i| ends(i)).unwrap_or(stop);

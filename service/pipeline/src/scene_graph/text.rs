@@ -65,9 +65,12 @@ pub(super) fn tokens(text: &str) -> Vec<Token> {
         if c.is_ascii_digit() {
             let (end, value, digits) = number(&chars, i);
             let ordinal = is_ordinal(&chars, end);
-            let end = if ordinal { skip_letters(&chars, end) } else { end };
+            let after = if ordinal { skip_letters(&chars, end) } else { end };
             let kind = if ordinal { Kind::Word } else { Kind::Number(value) };
-            out.push(Token { text: digits, kind, start, end: at(&chars, end, text), spaced, capital: false });
+            // "2nd floor" is no "2 floor"
+            let letters: String = chars[end..after].iter().map(|c| c.1).collect();
+            let (end, text_of) = (after, digits + &fold(&letters));
+            out.push(Token { text: text_of, kind, start, end: at(&chars, end, text), spaced, capital: false });
             j = end;
             spaced = false;
         } else if c == '㎡' {
@@ -179,10 +182,12 @@ fn number(chars: &[(usize, char)], i: usize) -> (usize, f64, String) {
 
 fn is_ordinal(chars: &[(usize, char)], end: usize) -> bool {
     let tail: String = chars[end.min(chars.len())..].iter().map(|c| c.1).take_while(|c| c.is_alphabetic()).collect();
-    matches!(
-        tail.to_lowercase().as_str(),
-        "st" | "nd" | "rd" | "th" | "er" | "ère" | "ème" | "º" | "ª" | "eme" | "o" | "a"
-    ) && !tail.is_empty()
+    let more = chars.get(end + tail.chars().count()).is_some_and(|c| c.1.is_numeric());
+    !more
+        && matches!(
+            tail.to_lowercase().as_str(),
+            "st" | "nd" | "rd" | "th" | "er" | "e" | "ère" | "ème" | "º" | "ª" | "eme" | "o" | "a"
+        )
 }
 
 fn skip_letters(chars: &[(usize, char)], end: usize) -> usize {

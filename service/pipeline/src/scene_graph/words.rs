@@ -71,6 +71,10 @@ pub(super) enum Tag {
     PlaceBefore,
     Nowhere,
     Inject,
+    Inside,
+    Singular,
+    Holds,
+    RoomCounters,
 }
 
 /// Words of one language.

@@ -1,0 +1,70 @@
+//! Docks that a prompt puts into a room: "robot vacuum dock in the storage room".
+
+use super::mentions::{Mention, What};
+use super::text::{Kind, Span, Token};
+use super::wishes::CHARGING;
+use super::words::{Spoken, Tag};
+
+/// Words between a dock and its room, at most: "charging station for two robots in the".
+const MOST_BETWEEN: usize = 8;
+
+/// Takes docks inside of other rooms for what they are, no rooms of their own; returns the types of those rooms.
+///
+/// `machines` are the words for robots, which may stand between a dock and its room.
+pub(super) fn inside_rooms(
+    tokens: &[Token],
+    mentions: &mut [Mention],
+    machines: &[Span],
+    spoken: &[&Spoken],
+) -> Vec<String> {
+    let mut out: Vec<String> = Vec::new();
+    for m in 0..mentions.len() {
+        let charges = mentions[m].what == What::Charge || mentions[m].room_type() == Some(CHARGING);
+        if !charges || mentions[m].count.is_some_and(|n| n > 1) && mentions[m].room_type().is_some() {
+            continue;
+        }
+        let Some(room) = host(tokens, mentions, m, machines, spoken) else { continue };
+        mentions[m].what = What::Charge;
+        if !out.contains(&room) {
+            out.push(room);
+        }
+    }
+    out
+}
+
+/// Returns the type of the room that a dock stands in.
+fn host(tokens: &[Token], mentions: &[Mention], dock: usize, machines: &[Span], spoken: &[&Spoken]) -> Option<String> {
+    let tagged = |i: usize, tag| spoken.iter().find_map(|s| s.tag_at(tokens, i, tag));
+    let room = |m: &&Mention| m.room_type().is_some_and(|id| id != CHARGING);
+    let marks = |range: std::ops::Range<usize>| range.into_iter().any(|i| tokens[i].is_mark());
+    let span = mentions[dock].span;
+    if matches!(tokens[span.start].kind, Kind::Han | Kind::Hangul) {
+        // "充电站在储藏室里"
+        let at = tokens.get(span.end).is_some_and(|t| matches!(t.text.as_str(), "在" | "位" | "放" | "设"));
+        let next = mentions.get(dock + 1).filter(|m| at && room(m) && !marks(span.end..m.span.start));
+        if let Some(next) = next.filter(|m| tagged(m.span.end, Tag::Inside).is_some()) {
+            return next.room_type().map(str::to_owned);
+        }
+        // "储藏室里有充电座", "창고에 충전 도크": the room stands before
+        let before = mentions[..dock].iter().rev().find(room)?;
+        let gap = before.span.end..span.start;
+        let near = gap.len() <= MOST_BETWEEN && !marks(gap) && tagged(before.span.end, Tag::Inside).is_some();
+        return before.room_type().filter(|_| near).map(str::to_owned);
+    }
+    let after = mentions[dock + 1..].iter().find(room)?;
+    let gap = span.end..after.from.min(after.span.start);
+    if gap.is_empty() || gap.len() > MOST_BETWEEN || marks(gap.clone()) {
+        return None;
+    }
+    // the last words are "in the"; those before them speak of the robots
+    let inside = gap.clone().rev().find(|&i| tagged(i, Tag::Inside).is_some_and(|end| end <= gap.end))?;
+    let lead = (tagged(inside, Tag::Inside)?..gap.end)
+        .all(|i| [Tag::Definite, Tag::Articles, Tag::Own].iter().any(|&t| tagged(i, t).is_some()));
+    let rest = (gap.start..inside).all(|i| {
+        machines.iter().any(|s| s.contains(i))
+            || [Tag::Stops, Tag::Definite, Tag::Articles].iter().any(|&t| tagged(i, t).is_some())
+            || matches!(tokens[i].kind, Kind::Number(_))
+            || spoken.iter().any(|s| s.numbers.contains_key(&tokens[i].text))
+    });
+    after.room_type().filter(|_| lead && rest).map(str::to_owned)
+}
