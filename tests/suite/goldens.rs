@@ -1,4 +1,4 @@
-//! Every byte of a few worlds, one of each shipped domain: `golden/<case>.sha256` lists the files `generate` writes with
+//! Every byte of a few worlds, one of each shipped domain and two of several storeys: `golden/<case>.sha256` lists the files `generate` writes with
 //! their checksums. The documents are named by stage, so the first line that differs says where a change begins.
 
 use std::fmt::Write;
@@ -13,6 +13,8 @@ const CASES: &[(&str, &str, &str)] = &[
     ("school", "4", "primary school with four classrooms and a cleaning robot"),
     ("warehouse", "5", "warehouse with a loading dock, an office and charging for two robots"),
     ("hotel_fr", "6", "hôtel de 9 pièces à Lyon"),
+    ("house_two_storeys", "7", "two-storey house in Germany with 4 bedrooms upstairs, for a cleaning robot"),
+    ("office_three_storeys", "8", "three floor office building in London with 6 offices and 2 meeting rooms"),
 ];
 
 #[test]

@@ -45,7 +45,20 @@ pub fn apply(world: &World, edits: &[Edit], plugin: &dyn Plugin, stop: Stop<'_>)
     for (i, edit) in edits.iter().enumerate() {
         desk.apply(edit).map_err(|e| numbered(i + 1, e))?;
     }
-    desk.finish(world)
+    desk.finish(world).map_err(|e| match blamed(world, edits, plugin, stop) {
+        Some(number) => numbered(number, e),
+        None => e,
+    })
+}
+
+/// Returns the number (from 1) of the first edit that cannot be made sound; all edits together cannot.
+fn blamed(world: &World, edits: &[Edit], plugin: &dyn Plugin, stop: Stop<'_>) -> Option<usize> {
+    if edits.len() == 1 {
+        return Some(1);
+    }
+    let mut desk = Desk::new(world, plugin, stop);
+    let fails = |edit: &Edit| desk.apply(edit).is_err() || desk.clone().finish(world).is_err();
+    edits.iter().position(fails).map(|i| i + 1)
 }
 
 fn numbered(number: usize, error: Error) -> Error {

@@ -10,7 +10,7 @@ use crate::scene_graph::wished_assets;
 /// Reason of edges that an edit adds.
 const BY_EDIT: &str = "edit";
 
-/// Adds a room to the graph; returns its id.
+/// Adds a room to the graph, on the storey of the room that it is entered from; returns its id.
 ///
 /// # Errors
 /// `Mismatch` for a room type that the domain does not have, or a room to enter from that the graph does not have.
@@ -30,10 +30,16 @@ pub(super) fn add(
         None => graph
             .rooms
             .iter()
-            .find(|r| r.circulation)
+            .find(|r| r.circulation && r.level == 0)
             .or_else(|| busiest(graph))
             .ok_or_else(|| mismatch("the world has no room that another could be entered from".to_owned()))?,
     };
+    if graph.links.iter().any(|l| l.room_ids.contains(&from.id)) {
+        return Err(refused(format!(
+            "no room is entered from stairs or elevator `{}`; name the corridor or hall of its storey",
+            from.id
+        )));
+    }
     let (from, level) = (from.id.clone(), from.level);
     let room = GraphRoom { level, ..described(graph, domain, kind, area_m2) };
     let id = room.id.clone();
@@ -50,7 +56,7 @@ pub(super) fn add(
     });
     for rule in apart {
         let other = if rule.a == kind.id { &rule.b } else { &rule.a };
-        for room in graph.rooms.iter().filter(|r| &r.room_type == other && r.id != from) {
+        for room in graph.rooms.iter().filter(|r| &r.room_type == other && r.id != from && r.level == level) {
             graph.apart.push([id.clone(), room.id.clone()]);
         }
     }
@@ -69,13 +75,19 @@ pub(super) fn add(
 /// `Mismatch` when there is none; `Refused` for a locked one, for circulation, and for the last room.
 pub(super) fn remove(graph: &mut SceneGraph, room_id: &str) -> Result<(), Error> {
     let room = graph.room(room_id).ok_or_else(|| mismatch(format!("the world has no room `{room_id}`")))?;
+    if graph.links.iter().any(|l| l.room_ids.iter().any(|id| id == room_id)) {
+        return Err(refused(format!("`{room_id}` joins the storeys of the building")));
+    }
     if room.locked {
         return Err(refused(format!("`{room_id}` is locked; unlock it first")));
     }
-    if room.circulation || room.entrance || graph.rooms.iter().filter(|r| !r.circulation).count() == 1 {
-        return Err(refused(format!("the other rooms are entered through `{room_id}`, or it is the only one")));
+    let others = graph.rooms.iter().filter(|r| !r.circulation && r.level == room.level && r.id != room_id);
+    if room.circulation || room.entrance || others.count() == 0 {
+        return Err(refused(format!(
+            "the other rooms are entered through `{room_id}`, or it is the only one on its storey"
+        )));
     }
-    let name = room.name.clone();
+    let (name, level) = (room.name.clone(), room.level);
     let walkable = |e: &GraphEdge| e.required && matches!(e.connector, Connector::Door | Connector::Open);
     let other = |e: &GraphEdge| if e.a == room_id { e.b.clone() } else { e.a.clone() };
     let guests: Vec<String> =
@@ -83,7 +95,9 @@ pub(super) fn remove(graph: &mut SceneGraph, room_id: &str) -> Result<(), Error>
     graph.edges.retain(|e| e.a != room_id && e.b != room_id);
     graph.apart.retain(|pair| pair.iter().all(|id| id != room_id));
     graph.rooms.retain(|r| r.id != room_id);
-    let hub = graph.rooms.iter().find(|r| r.circulation).or_else(|| busiest(graph)).map(|r| r.id.clone());
+    let is_link = |r: &GraphRoom| graph.links.iter().any(|l| l.room_ids.contains(&r.id));
+    let way = graph.rooms.iter().find(|r| r.circulation && r.level == level && !is_link(r));
+    let hub = way.or_else(|| busiest(graph)).map(|r| r.id.clone());
     for guest in guests {
         let entered = graph.edges.iter().any(|e| walkable(e) && (e.a == guest || e.b == guest));
         if let Some(hub) = hub.as_ref().filter(|h| !entered && **h != guest) {

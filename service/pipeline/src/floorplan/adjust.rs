@@ -96,7 +96,8 @@ impl<'a> Site<'a> {
             .map(String::as_str)
             .collect();
         let kept = |id: &str| plan.room(id).is_some_and(|r| r.locked) || by_parts.contains(&id);
-        let kept = brief.rooms.iter().map(|r| kept(&r.id)).collect();
+        // stairs and shafts line up with those of other storeys
+        let kept = brief.rooms.iter().map(|r| r.fixed || kept(&r.id)).collect();
         Ok(Self { brief, plan, board, kept })
     }
 
@@ -150,6 +151,12 @@ impl<'a> Site<'a> {
             .find(|s| s.vertical == vertical && s.at == nearest(at) && (meters(s.from)..=meters(s.to)).contains(&along))
             .ok_or_else(|| refused(format!("wall `{}` is not where rooms meet", moved.wall_id)))?;
         if let Some(room) = [stretch.low, stretch.high].into_iter().flatten().find(|&r| self.kept[r]) {
+            if self.brief.rooms[room].fixed {
+                return Err(refused(format!(
+                    "wall `{}` belongs to `{}`, which lines up with other storeys",
+                    moved.wall_id, self.brief.rooms[room].id
+                )));
+            }
             return Err(refused(format!(
                 "wall `{}` belongs to `{}`, which is locked; unlock it first",
                 moved.wall_id, self.brief.rooms[room].id
@@ -226,7 +233,18 @@ impl<'a> Site<'a> {
     fn finish(&self, board: &Board, earlier: &Earlier<'_>, seed: u64, rng: &mut Stream) -> Result<Floorplan, String> {
         let layout = board.layout();
         let score = Judge::new(self.brief).score(&layout);
-        assemble(self.brief, &layout.boxes, &score, seed, &self.plan.scheme, Some(earlier), rng)
+        let plan = assemble(self.brief, &layout.boxes, &score, seed, &self.plan.scheme, Some(earlier), rng)?;
+        match self.link_that_opens_elsewhere(&plan) {
+            Some(id) => Err(format!("the door of `{id}` would move away from those of the other storeys")),
+            None => Ok(plan),
+        }
+    }
+
+    /// Names stairs or an elevator whose doors are not where they were.
+    fn link_that_opens_elsewhere(&self, plan: &Floorplan) -> Option<&str> {
+        let doors = |plan: &Floorplan, id: &str| plan.doors_of(id).map(|d| (d.line, d.kind)).collect::<Vec<_>>();
+        let fixed = self.brief.rooms.iter().filter(|r| r.fixed).map(|r| r.id.as_str());
+        fixed.into_iter().find(|id| doors(self.plan, id) != doors(plan, id))
     }
 
     /// Names a room that is in pieces or has lost its place, if that is what is wrong.

@@ -107,12 +107,8 @@ pub(super) fn assemble(
         keep_windows(&mut windows, &rooms, &doors, earlier.plan);
         keep_wall_ids(&mut walls, earlier.plan);
     }
-    let cost = TERMS.iter().zip(score.weighted()).map(|(t, c)| CostTerm { term: (*t).into(), cost: to_mm(c) });
+    let cost = costs(brief, score);
     let conflicts = brief.conflicts.clone();
-    let hangs = brief.core.as_ref().is_some_and(|c| c.below.is_some());
-    let overhang = CostTerm { term: "overhang".into(), cost: to_mm(OVERHANG * score.overhang) };
-    let symmetry = CostTerm { term: "symmetry".into(), cost: to_mm(score.symmetry) };
-    let cost = cost.chain(hangs.then_some(overhang)).chain(brief.symmetry.map(|_| symmetry)).collect();
     Ok(Floorplan {
         version: 1,
         seed,
@@ -126,6 +122,15 @@ pub(super) fn assemble(
         levels: Vec::new(),
         links: Vec::new(),
     })
+}
+
+/// Returns what a plan costs, term by term.
+pub(super) fn costs(brief: &Brief, score: &Score) -> Vec<CostTerm> {
+    let cost = TERMS.iter().zip(score.weighted()).map(|(t, c)| CostTerm { term: (*t).into(), cost: to_mm(c) });
+    let hangs = brief.core.as_ref().is_some_and(|c| c.below.is_some());
+    let overhang = CostTerm { term: "overhang".into(), cost: to_mm(OVERHANG * score.overhang) };
+    let symmetry = CostTerm { term: "symmetry".into(), cost: to_mm(score.symmetry) };
+    cost.chain(hangs.then_some(overhang)).chain(brief.symmetry.map(|_| symmetry)).collect()
 }
 
 /// Puts the windows of rooms that did not change back, where no new door stands in them.

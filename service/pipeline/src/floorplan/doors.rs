@@ -214,8 +214,13 @@ impl Site<'_> {
         let into = self.swing_room(a, b);
         let first = if rng.chance(0.5) { 0.0 } else { 0.2 };
         let mut spots = Vec::new();
+        let middle = (from + to - opening) / 2.0;
+        if [a, b].iter().any(|&r| self.brief.rooms[r].elevator) {
+            // a car has its door in one place for all storeys
+            return self.leaf_spot(s, [a, b], into, middle, clear, true, 0.0).into_iter().collect();
+        }
         for (start, hinge_at_start, penalty) in
-            [(from, true, first), (to - opening, false, 0.2 - first), ((from + to - opening) / 2.0, true, 1.5)]
+            [(from, true, first), (to - opening, false, 0.2 - first), (middle, true, 1.5)]
         {
             spots.extend(self.leaf_spot(s, [a, b], into, start, clear, hinge_at_start, penalty));
         }

@@ -26,6 +26,7 @@ mod realize;
 mod revise;
 mod search;
 mod spec;
+mod storey;
 mod storeys;
 #[cfg(test)]
 mod tests;
@@ -82,7 +83,9 @@ pub fn generate_until(
         if plan.rooms.iter().all(|r| r.locked) {
             return kept(graph, plan);
         }
-        one_storey(plan)?;
+        if plan.levels.len() > 1 || graph.level_numbers().len() > 1 {
+            return storey::replan(graph, domain, limits, plan, stop);
+        }
         let brief = Brief::new(graph, domain, limits)?;
         return adjust::replan(&brief, plan, graph.seed, &mut Stream::new(graph.seed, "floorplan"), stop);
     }
@@ -115,7 +118,8 @@ pub fn generate_until(
 
 /// Changes a plan to the rooms of a graph, and moves a wall, with as little else changed as the hard rules allow.
 ///
-/// Locked rooms stay as they are. Doors, windows and ids stay where their walls do.
+/// Locked rooms stay as they are. Doors, windows and ids stay where their walls do. Of several storeys only that which the
+/// change is on changes; stairs and shafts stay.
 ///
 /// # Errors
 /// `Mismatch` and `Refused` when the change names what is not there or is locked; `Infeasible` when no sound plan was
@@ -128,23 +132,11 @@ pub fn change(
     moved: Option<&WallMove>,
     stop: Stop<'_>,
 ) -> Result<Floorplan, Error> {
-    one_storey(plan)?;
+    if plan.levels.len() > 1 || graph.level_numbers().len() > 1 {
+        return storey::change(graph, domain, limits, plan, moved, stop);
+    }
     let brief = Brief::new(graph, domain, limits)?;
     adjust::change(&brief, plan, moved, &mut Stream::new(plan.seed, "floorplan/change"), stop)
-}
-
-/// Refuses a plan of several storeys.
-fn one_storey(plan: &Floorplan) -> Result<(), Error> {
-    if plan.levels.len() < 2 {
-        return Ok(());
-    }
-    Err(Error::Refused {
-        stage: "floorplan",
-        message: format!(
-            "the plan has {} storeys; rooms of such a plan cannot be planned anew one by one: lock all of them or none",
-            plan.levels.len()
-        ),
-    })
 }
 
 /// Refuses a graph of several storeys.

@@ -17,7 +17,7 @@ use super::{ATTEMPTS, schemes};
 use crate::{Error, Stop};
 
 /// Share of a storey that may jut out over the one below without a word.
-const OVERHANG_SHARE: f64 = 0.10;
+pub(super) const OVERHANG_SHARE: f64 = 0.10;
 /// Plans of a storey that are compared when the first ones jut out further.
 const COMPARED: usize = 4;
 const COMPARED_LARGE: usize = 2;
@@ -84,7 +84,7 @@ pub(super) fn generate(
 }
 
 /// Returns the height of a storey from floor to floor, m.
-fn height(brief: &Brief, storeys: &Storeys) -> f64 {
+pub(super) fn height(brief: &Brief, storeys: &Storeys) -> f64 {
     let ceiling = brief.rooms.iter().map(|r| {
         let by_rule = r.limits.ceiling_height(r.area_max).unwrap_or(0.0);
         r.ceiling_height.max(if r.circulation { 0.0 } else { by_rule })
@@ -94,7 +94,7 @@ fn height(brief: &Brief, storeys: &Storeys) -> f64 {
 }
 
 /// Flights go up through the ceiling; over those of the highest storey it is a usual one.
-fn raise_stairwells(brief: &mut Brief, graph: &SceneGraph, height_m: Option<f64>) {
+pub(super) fn raise_stairwells(brief: &mut Brief, graph: &SceneGraph, height_m: Option<f64>) {
     let Some(height) = height_m else { return };
     let stairs = |id: &String| graph.links.iter().any(|l| l.kind == LinkKind::Stairs && l.room_ids.contains(id));
     for room in brief.rooms.iter_mut().filter(|r| stairs(&r.id)) {
@@ -173,17 +173,19 @@ fn stacked(graph: &SceneGraph, planned: Vec<Planned>, numbers: &[i32], heights: 
     };
     for (storey, &level) in planned.into_iter().zip(numbers) {
         if storey.overhang > OVERHANG_SHARE {
-            let share = 100.0 * storey.overhang;
-            out.conflicts.push(Note {
-                code: "overhang".into(),
-                message: format!("{share:.0} % of level {level} juts out over the level below it"),
-            });
+            out.conflicts.push(overhang_note(level, storey.overhang));
         }
         add(&mut out, storey.plan.moved(-west, -south), level);
     }
     let order = |id: &str| graph.rooms.iter().position(|r| r.id == id);
     out.rooms.sort_by_key(|r| order(&r.room_id));
     out
+}
+
+/// Says how far a storey juts out; `share` of its area, 0 to 1.
+pub(super) fn overhang_note(level: i32, share: f64) -> Note {
+    let message = format!("{:.0} % of level {level} juts out over the level below it", 100.0 * share);
+    Note { code: "overhang".into(), message }
 }
 
 /// Adds a storey, whose walls, doors and windows are counted on.

@@ -198,7 +198,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     }
     let mut things = objects::named(&tokens, &mentions, domain, registry, &languages, &not_things);
     // those stand where the prompt puts them
-    things.retain(|(object, _)| docked.is_empty() || !domain.anchor(object).is_some_and(|o| o.shape == Shape::Dock));
+    things.retain(|(object, _)| docked.is_empty() || domain.anchor(object).is_none_or(|o| o.shape != Shape::Dock));
     Ok(Reading {
         language,
         domain,

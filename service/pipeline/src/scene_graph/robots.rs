@@ -149,10 +149,8 @@ impl Counting<'_> {
     /// Returns the number before robots, or behind them: "机器人三台", "로봇 2대", "robots: 3", "robots x 2".
     fn count(&self, span: Span, free: &[&Number]) -> u32 {
         let behind = || number_after(self.tokens, span.end, free, self.spoken, self.language);
-        let with_counter = || {
-            let counts = |n: &&Number| n.span.start == span.end && self.tagged(n.span.end, Tag::Counters);
-            free.iter().position(|n| counts(n))
-        };
+        let with_counter =
+            || free.iter().position(|n| n.span.start == span.end && self.tagged(n.span.end, Tag::Counters));
         let found = if self.language == "ko" {
             with_counter().or_else(behind).or_else(|| self.before(span.start, free))
         } else {

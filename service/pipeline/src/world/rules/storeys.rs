@@ -42,6 +42,13 @@ pub fn offset(c: &Context, out: &mut Findings) {
                 let message = format!("lies {off:.2} m off `{}`, which it leads to", first.room_id);
                 out.add_figure(&room.room_id, message, off, OFFSET_M, "m");
             }
+            // the car's door is in one place
+            let door = |r: &PlanRoom| c.plan().doors_of(&r.room_id).next().map(|d| d.line.middle());
+            let apart = door(first).zip(door(room)).map_or(0.0, |(a, b)| a.distance(b));
+            if link.kind == LinkKind::Elevator && apart > OFFSET_M + d3dgen_model::TOLERANCE_M {
+                let message = format!("its door is {apart:.2} m off that of `{}`, one car has both", first.room_id);
+                out.add_figure(&room.room_id, message, apart, OFFSET_M, "m");
+            }
         }
     }
 }

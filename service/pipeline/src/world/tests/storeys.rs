@@ -133,3 +133,21 @@ fn storeys_are_worlds_of_their_own() {
         }
     }
 }
+
+#[test]
+fn an_elevator_has_its_doors_in_one_place() {
+    let mut tried = 0;
+    for sample in SAMPLES.iter() {
+        let mut world = sample.world.clone();
+        let Some(id) = top_room(&world, LinkKind::Elevator) else { continue };
+        tried += 1;
+        let door = world.floorplan.doors.iter_mut().find(|d| d.room_ids.contains(&id)).expect("a shaft has a door");
+        let line = &mut door.line;
+        for p in [&mut line.start, &mut line.end] {
+            p.x += 0.2;
+            p.y += 0.2;
+        }
+        assert!(names(&sample.check(&world), "link_offset", &id), "{id} of {}", world.name);
+    }
+    assert!(tried > 0, "no sample has an elevator");
+}
