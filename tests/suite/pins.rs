@@ -70,3 +70,42 @@ fn edits_change_a_world_or_say_why_not() {
     assert!(refused("move_wall wall_999 0.5").contains("no wall `wall_999`"));
     assert!(refused("remove_room ballroom_1").contains("edit 1: the world has no room `ballroom_1`"));
 }
+
+#[test]
+fn a_building_of_several_storeys_is_edited_storey_by_storey() {
+    let home = tempfile::tempdir().unwrap();
+    let at = |args: &[&str]| run_well(home.path(), args);
+    let plan = |folder: &str| {
+        let text = std::fs::read_to_string(home.path().join(folder).join("floorplan.json")).unwrap();
+        Floorplan::from_json(&text).unwrap()
+    };
+    at(&["generate", "three floor office building", "--seed", "1", "--no-png", "--out", "office"]);
+    let edits = ["--do", "add_room storage 4 corridor_2", "--do", "lock corridor_1"];
+    at(&[&["edit", "office"], &edits[..], &["--no-png", "--out", "more"]].concat());
+    let (before, after) = (plan("office"), plan("more"));
+    let new: Vec<_> = after.rooms.iter().filter(|r| before.room(&r.room_id).is_none()).collect();
+    assert_eq!(new.iter().map(|r| (r.room_type.as_str(), r.level)).collect::<Vec<_>>(), [("storage", 1)]);
+    for level in [0, 2] {
+        let (old, new) = (before.storey(level), after.storey(level));
+        assert_eq!((old.walls, old.doors, old.windows), (new.walls, new.doors, new.windows), "storey {level}");
+    }
+    at(&["check", "more"]);
+
+    let pinned = ["floorplan", "more/scene_graph.json", "--seed", "5", "--pin", "more/floorplan.json"];
+    let again = Floorplan::from_json(&at(&pinned)).unwrap();
+    let stay = after.links.iter().flat_map(|l| l.room_ids.iter()).map(String::as_str).chain(["corridor_1"]);
+    for id in stay {
+        assert_eq!(again.room(id).map(|r| &r.polygon), after.room(id).map(|r| &r.polygon), "{id}");
+    }
+    assert_ne!(again.walls, after.walls, "nothing is new");
+
+    let refused = |change: &str| {
+        let output = run(home.path(), &["edit", "office", "--do", "refurnish office_1", "--do", change, "--out", "no"]);
+        assert_eq!(output.status.code(), Some(2), "{change}");
+        assert!(!home.path().join("no").exists(), "{change} left something behind");
+        String::from_utf8(output.stderr).unwrap()
+    };
+    assert!(refused("remove_room stairwell_2").contains("edit 2: `stairwell_2` joins the storeys"));
+    assert!(refused("add_room storage 4 elevator_1").contains("edit 2: no room is entered from stairs or elevator"));
+    assert!(refused("add_room storage 4 corridor_7").contains("edit 2: the world has no room `corridor_7`"));
+}

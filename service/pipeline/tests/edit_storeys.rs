@@ -10,8 +10,9 @@ use d3dgen_model::floorplan::{Floorplan, PlanRoom};
 use d3dgen_model::placements::Placement;
 use d3dgen_model::world::World;
 use d3dgen_pipeline::edit::{self, Edited};
-use d3dgen_pipeline::generate::{Settings, generate_world};
+use d3dgen_pipeline::generate::{Settings, generate_world, retrieve};
 use d3dgen_pipeline::scene_graph::Request;
+use d3dgen_pipeline::variations::variations;
 use d3dgen_pipeline::{Error, Stop};
 use d3dgen_plugins::Registry;
 
@@ -262,6 +263,36 @@ fn locked_rooms_stay_and_all_other_storeys_are_planned_anew_around_the_core() {
         others.sort();
         others.dedup();
         assert!(others.len() > 2, "{prompt}: seeds make {} plans", others.len());
+    }
+}
+
+#[test]
+fn variations_differ_on_several_storeys_and_keep_what_is_locked() {
+    let registry = Registry::builtin();
+    let made = world(&registry, OFFICE, 11, None);
+    let plugin = registry.get(&made.scene_graph.domain).expect("its domain is built in");
+    let limits = retrieve(&made.scene_graph, plugin).limits;
+    let all = |pinned: Option<&Floorplan>| {
+        let found = variations(&made.scene_graph, plugin.domain(), &limits, pinned, 3, Stop::never());
+        let found = found.unwrap_or_else(|e| panic!("{e}"));
+        assert_eq!(found.len(), 3);
+        assert!(found.iter().all(|v| v.plan.level_numbers() == [0, 1, 2]));
+        found
+    };
+    assert!(all(None).iter().all(|v| v.difference > 0.2));
+    let mut pinned = made.floorplan.clone();
+    let kept: Vec<PlanRoom> = pinned
+        .rooms
+        .iter_mut()
+        .filter(|r| r.level == 1)
+        .map(|r| {
+            r.locked = true;
+            r.clone()
+        })
+        .collect();
+    for variation in all(Some(&pinned)) {
+        assert!(variation.difference > 0.0);
+        assert!(kept.iter().all(|room| variation.plan.room(&room.room_id) == Some(room)), "a locked room moved");
     }
 }
 

@@ -1,17 +1,17 @@
 //! Plans that are changed instead of made: some rooms locked, a room more or less, a wall moved.
 
-use d3dgen_model::floorplan::Floorplan;
+use d3dgen_model::floorplan::{Door, Floorplan};
 use d3dgen_model::scene_graph::Note;
 use d3dgen_model::seed::Stream;
 
 use super::assemble::{Earlier, assemble};
-use super::board::{Board, cells};
+use super::board::{Board, cells, units};
 use super::cost::{Judge, WEIGHTS, taste};
 use super::insert::Chooser;
 use super::lattice::{Cellbox, meters, nearest};
 use super::outline::Mosaic;
 use super::revise::{Aim, Task};
-use super::spec::Brief;
+use super::spec::{Brief, RoomSpec};
 use crate::{Error, Stop};
 
 /// Searches of a part before it is given up.
@@ -39,7 +39,8 @@ pub(super) fn replan(
 ) -> Result<Floorplan, Error> {
     let site = Site::new(brief, plan)?;
     let start = site.with_the_rooms_asked_for(0)?;
-    let task = Task { brief, kept: &site.kept, pins: &[], aim: Aim::Anew, moves_spine: false };
+    let pins = site.behind_doors();
+    let task = Task { brief, kept: &site.kept, pins: &pins, aim: Aim::Anew, moves_spine: false };
     site.search(&task, &start, seed, rng, stop)
 }
 
@@ -62,7 +63,8 @@ pub(super) fn change(
             (Err(error), None) => return Err(error),
             (Err(_), Some(_)) => break,
         };
-        let pins = moved.map_or(Ok(Vec::new()), |m| site.move_wall(&mut start, m))?;
+        let mut pins = moved.map_or(Ok(Vec::new()), |m| site.move_wall(&mut start, m))?;
+        pins.extend(site.behind_doors());
         let task = Task { brief, kept: &site.kept, pins: &pins, aim: Aim::Repair, moves_spine: false };
         match site.search(&task, &start, plan.seed, rng, stop) {
             Ok(plan) => return Ok(plan),
@@ -234,17 +236,49 @@ impl<'a> Site<'a> {
         let layout = board.layout();
         let score = Judge::new(self.brief).score(&layout);
         let plan = assemble(self.brief, &layout.boxes, &score, seed, &self.plan.scheme, Some(earlier), rng)?;
-        match self.link_that_opens_elsewhere(&plan) {
-            Some(id) => Err(format!("the door of `{id}` would move away from those of the other storeys")),
+        match self.opens_elsewhere(&plan) {
+            Some(room) if room.fixed => {
+                Err(format!("the door of `{}` would move away from those of the other storeys", room.id))
+            }
+            Some(room) => Err(format!("a door of `{}` would move, which is locked", room.id)),
             None => Ok(plan),
         }
     }
 
-    /// Names stairs or an elevator whose doors are not where they were.
-    fn link_that_opens_elsewhere(&self, plan: &Floorplan) -> Option<&str> {
-        let doors = |plan: &Floorplan, id: &str| plan.doors_of(id).map(|d| (d.line, d.kind)).collect::<Vec<_>>();
-        let fixed = self.brief.rooms.iter().filter(|r| r.fixed).map(|r| r.id.as_str());
-        fixed.into_iter().find(|id| doors(self.plan, id) != doors(plan, id))
+    /// Returns a room that stays as it is but for a door that is not where it was.
+    fn opens_elsewhere(&self, plan: &Floorplan) -> Option<&RoomSpec> {
+        let known = |id: &String| self.brief.rooms.iter().any(|r| &r.id == id);
+        let stays = |id: &str| {
+            let standing = |d: &Door| plan.doors_of(id).any(|n| n.line == d.line && n.kind == d.kind);
+            self.plan.doors_of(id).filter(|d| d.room_ids.iter().all(known)).all(standing)
+        };
+        self.brief.rooms.iter().zip(&self.kept).find(|(room, kept)| **kept && !stays(&room.id)).map(|(room, _)| room)
+    }
+
+    /// Returns the floor right behind the doors of kept rooms, which stays with the room that they lead to.
+    fn behind_doors(&self) -> Vec<(usize, Cellbox)> {
+        let index = |id: &String| self.brief.rooms.iter().position(|r| &r.id == id);
+        let mut pins = Vec::new();
+        for door in &self.plan.doors {
+            let [Some(a), Some(b)] = [0, 1].map(|i| door.room_ids.get(i).and_then(index)) else { continue };
+            let other = match (self.kept[a], self.kept[b]) {
+                (true, false) => b,
+                (false, true) => a,
+                _ => continue,
+            };
+            let (p, q) = (door.line.start, door.line.end);
+            for by in [-1, 1] {
+                let strip = if door.line.is_vertical() {
+                    Cellbox::new(nearest(p.x), nearest(p.y), nearest(p.x) + by, nearest(q.y))
+                } else {
+                    Cellbox::new(nearest(p.x), nearest(p.y), nearest(q.x), nearest(p.y) + by)
+                };
+                if self.board.owners(&strip) == [(other, units(&strip))] {
+                    pins.push((other, strip));
+                }
+            }
+        }
+        pins
     }
 
     /// Names a room that is in pieces or has lost its place, if that is what is wrong.
