@@ -31,6 +31,18 @@ fn the_domain_of_the_guide_makes_worlds() {
     let world = fs::read_to_string(home.path().join("o/0/world.json")).unwrap();
     assert!(world.contains("telescope_room_2") && world.contains("telescope_room_1_telescope_1"));
 
+    // The parts that stand in files of their own.
+    fs::write(folder.join("clutter.toml"), block(&guide, "toml", "[[clutter]]")).unwrap();
+    fs::write(folder.join("layouts.toml"), block(&guide, "toml", "[layouts]")).unwrap();
+    let request = ["generate", "observatory", "--domains-dir", ".", "--no-png", "--clutter", "high", "--style", "open"];
+    run_well(home.path(), &[&request[..], &["--seed", "3", "--out", "lived_in"]].concat());
+    let world = fs::read_to_string(home.path().join("lived_in/world.json")).unwrap();
+    assert!(world.contains("star_atlas_3") && world.contains("_mug_1"), "things lie on shelves and desks");
+    assert!(!world.contains("workshop_1"), "another room took its place");
+    for file in ["clutter.toml", "layouts.toml"] {
+        fs::remove_file(folder.join(file)).unwrap();
+    }
+
     // A mistake is named with its place.
     let broken = block(&guide, "toml", "version = 1").replace("anchor = \"desk\"", "anchor = \"desc\"");
     fs::write(folder.join("domain.toml"), broken).unwrap();

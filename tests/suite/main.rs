@@ -8,6 +8,7 @@ mod domain_guide;
 mod errors;
 mod eval;
 mod fit_robot;
+mod free_floor;
 mod goldens;
 #[cfg(unix)]
 mod interrupted;

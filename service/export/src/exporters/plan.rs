@@ -43,6 +43,11 @@ const LEGIBLE: f64 = 46.0;
 /// Width limits of the PNG, px.
 const PNG_WIDTHS: [f64; 2] = [1600.0, 2400.0];
 
+/// How much it hurts where a name lies on the swing of a door, a robot's zone, a rug or a lamp, as labels weigh it.
+const ON_SWING: u32 = 8;
+const ON_ZONE: u32 = 3;
+const ON_RUG: u32 = 1;
+
 /// Type size of dimensions and entrances, sheet units.
 const UNIT: f64 = 16.0;
 
@@ -65,8 +70,66 @@ impl Exporter for Plan {
     }
 }
 
+/// How legible a drawing's labels are.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Legibility {
+    /// Rooms.
+    pub rooms: usize,
+    /// Rooms that have only a number in the drawing and their name in the list beside it.
+    pub numbered: usize,
+    /// What all labels take, m^2 of the building.
+    pub labels_m2: f64,
+    /// The part of it that lies on furniture, m^2; rugs and what hangs over head are none.
+    pub on_furniture_m2: f64,
+    /// The part of it where leaves of doors swing, m^2.
+    pub on_swings_m2: f64,
+}
+
+impl Legibility {
+    fn of(labels: &labels::Labels, furniture: &[Rect], swings: &[Rect], scale: f64) -> Self {
+        let m2 = |units: f64| units / (scale * scale);
+        let covered = |on: &[Rect]| labels.boxes.iter().map(|b| covered(b, on)).sum::<f64>();
+        Self {
+            rooms: labels.boxes.len(),
+            numbered: labels.numbers.iter().flatten().count(),
+            labels_m2: m2(labels.boxes.iter().map(Rect::area).sum()),
+            on_furniture_m2: m2(covered(furniture)),
+            on_swings_m2: m2(covered(swings)),
+        }
+    }
+}
+
+/// Returns how much of a rectangle others cover, what several cover once.
+fn covered(b: &Rect, others: &[Rect]) -> f64 {
+    let clip = |r: &Rect| Rect { x0: r.x0.max(b.x0), y0: r.y0.max(b.y0), x1: r.x1.min(b.x1), y1: r.y1.min(b.y1) };
+    let parts: Vec<Rect> = others.iter().filter(|r| r.overlaps(b)).map(clip).collect();
+    let mut xs: Vec<f64> = parts.iter().flat_map(|p| [p.x0, p.x1]).collect();
+    xs.sort_by(f64::total_cmp);
+    let mut area = 0.0;
+    for pair in xs.windows(2).filter(|pair| pair[0] < pair[1]) {
+        let mut spans: Vec<(f64, f64)> =
+            parts.iter().filter(|p| p.x0 <= pair[0] && pair[1] <= p.x1).map(|p| (p.y0, p.y1)).collect();
+        spans.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut reached = f64::MIN;
+        for (from, to) in spans {
+            area += (pair[1] - pair[0]) * (to - from.max(reached)).max(0.0);
+            reached = reached.max(to);
+        }
+    }
+    area
+}
+
+/// Returns how legible the labels of a world's plan are.
+pub fn legibility(world: &World, domain: &Domain) -> Legibility {
+    draw(world, domain).1
+}
+
 /// Returns the plan as SVG.
 pub fn svg(world: &World, domain: &Domain) -> String {
+    draw(world, domain).0
+}
+
+fn draw(world: &World, domain: &Domain) -> (String, Legibility) {
     let size = building::outer_bounds(&world.floorplan);
     let (laid_out, storeys) = storeys::laid_out(world);
     let world = &laid_out;
@@ -87,7 +150,7 @@ pub fn svg(world: &World, domain: &Domain) -> String {
     let drawing = Rect { x0: EDGE, y0: EDGE, x1: on_sheet.x1 + margins.east, y1: on_sheet.y1 + margins.south };
 
     let mut page = Page::new();
-    let mut numbers = Vec::new();
+    let (mut numbers, mut legible) = (Vec::new(), Legibility::default());
     let block = page.block(|page| {
         let shown = Shown::of(world, domain);
         building::floors(page, &frame, plan, domain);
@@ -103,7 +166,7 @@ pub fn svg(world: &World, domain: &Domain) -> String {
         }
         storeys::titles(page, &frame, &storeys, UNIT);
         let marks = robots::marks(page, &frame, &world.scenario, 17.0 * k.max(0.85));
-        numbers = label(page, &frame, (world, domain), &shown, marks, 18.0 * k.clamp(0.8, 1.1));
+        (numbers, legible) = label(page, &frame, (world, domain), &shown, marks, 18.0 * k.clamp(0.8, 1.1));
         drawing.y1
     });
     let facts = panel::Facts { world, domain, numbers: &numbers, around: &size, scale, k };
@@ -114,7 +177,9 @@ pub fn svg(world: &World, domain: &Domain) -> String {
     let border = Rect { x0: EDGE, y0: EDGE, x1: width - EDGE, y1: height - EDGE };
     page.path("fr", Path::new().rect(&border));
     let paper = panel::paper(width, height, scale);
-    page.finish((width, height), (paper.width_mm, paper.height_mm), &panel::title(world, domain), &style::sheet(k))
+    let title = panel::title(world, domain);
+    let svg = page.finish((width, height), (paper.width_mm, paper.height_mm), &title, &style::sheet(k));
+    (svg, legible)
 }
 
 /// Returns the scale of the drawing, sheet units per meter; large buildings get a larger sheet.
@@ -235,7 +300,7 @@ fn furniture(page: &mut Page, frame: &Frame, shown: &Shown<'_>) {
     page.close_group();
 }
 
-/// Names the rooms; returns each one's number where there was no space for its name.
+/// Names the rooms; returns each one's number where there was no space for its name, and how legible the names are.
 fn label(
     page: &mut Page,
     frame: &Frame,
@@ -243,19 +308,22 @@ fn label(
     shown: &Shown<'_>,
     marks: Vec<Rect>,
     size: f64,
-) -> Vec<Option<usize>> {
+) -> (Vec<Option<usize>>, Legibility) {
     let plan = &world.floorplan;
-    let mut obstacles = labels::Obstacles { hard: marks, soft: building::swings(frame, plan) };
+    let swings = building::swings(frame, plan);
+    let mut furniture = Vec::new();
+    let mut soft: Vec<(Rect, u32)> = swings.iter().map(|r| (*r, ON_SWING)).collect();
     for thing in &shown.0 {
         let rect = frame.rect(&thing.placement.footprint().bounds());
         match thing.layer {
-            Layer::Floor | Layer::Surface | Layer::Wall => obstacles.hard.push(rect),
-            Layer::Covering | Layer::Overhead => obstacles.soft.push(rect),
+            Layer::Overhead => soft.push((rect, ON_RUG)),
+            Layer::Covering if thing.shape == Shape::Rug => soft.push((rect, ON_RUG)),
+            Layer::Covering | Layer::Floor | Layer::Surface | Layer::Wall => furniture.push(rect),
         }
     }
     // Type across the edge of a small zone is hard to read; zones as large as their room cannot be avoided.
     let small = world.scenario.rois.iter().filter(|r| matches!(r.kind, RoiKind::ServiceZone | RoiKind::ChargingBuffer));
-    obstacles.soft.extend(small.map(|r| frame.rect(&r.polygon.bounds())));
+    soft.extend(small.map(|r| (frame.rect(&r.polygon.bounds()), ON_ZONE)));
     let rooms: Vec<labels::Room<'_>> = plan
         .rooms
         .iter()
@@ -266,7 +334,10 @@ fn label(
             floor: r.net_polygon.rects().iter().map(|rect| frame.rect(rect)).collect(),
         })
         .collect();
-    labels::draw(page, &rooms, &obstacles, size)
+    let hard = [marks, furniture.clone()].concat();
+    let labels = labels::draw(page, &rooms, &labels::Obstacles { hard, soft }, size);
+    let legible = Legibility::of(&labels, &furniture, &swings, frame.scale);
+    (labels.numbers, legible)
 }
 
 fn at(pose: &Pose) -> Point {

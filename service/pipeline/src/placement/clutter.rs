@@ -10,7 +10,7 @@ use d3dgen_model::domain::{Arrangement, ClutterLine, ClutterPattern, Mount, Obje
 use super::demand::Task;
 use super::geom::{Box2, turn};
 use super::nav::Nav;
-use super::search::{Job, Outcome};
+use super::search::{Job, LEVELS, Outcome};
 use super::state::{Placed, State, at_frame};
 use super::style::grain;
 use super::unit::{Forms, Part, Unit, is_seat, variants};
@@ -59,7 +59,7 @@ pub(super) fn strew<'a>(job: &Job<'a, '_>, room_type: &str, outcome: &mut Outcom
         return Vec::new();
     }
     // routes do not matter: nothing here takes floor
-    let mut state = State::new(job.space, Nav::new(job.space, job.radius), None);
+    let mut state = State::new(job.space, Nav::new(job.space, job.radius), None, LEVELS[0].open);
     state.add(std::mem::take(&mut outcome.placed));
     let mut strewing = Strewing { job, state, tasks: Vec::new() };
     let hosts: Vec<(usize, usize)> = strewing.hosts(&lines);

@@ -116,8 +116,10 @@ pub(super) fn tasks<'a>(
         out.iter_mut().filter(|t| t.is_seated()).for_each(Task::allow_full_rows);
     }
     turn_to_audience(&mut out);
-    // corners are few: what cannot do without one comes before what only wants a wall
-    out.sort_by_key(|t| (phase(t), t.required == 0 || t.arrangement != Arrangement::Corner, t.line));
+    // a dock needs more floor than what it stands beside; corners are few: what cannot do without one comes before what
+    // only wants a wall
+    let dock = |t: &Task| t.required == 0 && t.anchor.shape == Shape::Dock;
+    out.sort_by_key(|t| (phase(t), !dock(t), t.required == 0 || t.arrangement != Arrangement::Corner, t.line));
     out
 }
 

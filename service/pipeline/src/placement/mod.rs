@@ -10,10 +10,12 @@
 pub mod assemble;
 mod clutter;
 mod demand;
+mod docks;
 mod find;
 mod geom;
 mod locked;
 mod nav;
+mod pockets;
 mod proposed;
 mod search;
 mod setting;

@@ -153,6 +153,7 @@ impl<'a> Table<'a> {
             &self.setting.space,
             Nav::new(&self.setting.space, self.setting.radius + margin),
             self.setting.way.as_ref(),
+            LEVELS[LEVELS.len() - 1].open,
         );
         for (task, n) in order {
             if stop.is_set() {
@@ -167,7 +168,7 @@ impl<'a> Table<'a> {
             }
         }
         let placed = std::mem::take(&mut state.placed);
-        let outcome = Outcome { placed, missing: Vec::new(), required_missing: 0, score: 0.0, level: 0 };
+        let outcome = Outcome { placed, missing: Vec::new(), required_missing: 0, closed: 0, score: 0.0, level: 0 };
         (assemble::placements(self.setting.domain, &self.room.room_id, &tasks, &outcome, &[]), refused)
     }
 

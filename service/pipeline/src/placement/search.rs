@@ -2,6 +2,7 @@
 //! furnishes the room better (limited discrepancy search).
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::rc::Rc;
 
 use d3dgen_knowledge::Aim;
@@ -10,7 +11,7 @@ use d3dgen_model::domain::{Arrangement, Domain, Shape};
 use super::demand::Task;
 use super::find::{Candidate, Find, Tally, Terms, over, rows};
 use super::nav::Nav;
-use super::space::Space;
+use super::space::{Open, Space};
 use super::state::{Placed, Rule, State};
 use super::unit::{Forms, Sizes, Unit, variants};
 use super::way::Way;
@@ -61,22 +62,28 @@ pub(super) struct Level {
     pub margin: i32,
     /// True to look for the free floor and the width of ways that are advised too.
     pub advised: bool,
+    /// What is kept free before doors and windows.
+    pub open: Open,
 }
 
 impl Level {
     const fn new(tightness: f64, margin: i32) -> Self {
-        Self { tightness, margin, advised: false }
+        Self { tightness, margin, advised: false, open: Open { doors: true, windows: false } }
     }
 }
 
+const NOT_OPEN: Open = Open { doors: false, windows: false };
+
 /// The passes in turn, the strictest first.
-pub(super) const LEVELS: [Level; 6] = [
-    Level { advised: true, ..Level::new(1.0, 50) },
-    Level::new(1.0, 50),
+pub(super) const LEVELS: [Level; 8] = [
+    Level { advised: true, open: Open { doors: true, windows: true }, ..Level::new(1.0, 50) },
+    Level { open: Open { doors: true, windows: true }, ..Level::new(1.0, 50) },
     Level::new(1.0, 20),
     Level::new(0.75, 20),
-    Level::new(0.5, 10),
-    Level::new(0.0, 5),
+    Level { open: NOT_OPEN, ..Level::new(1.0, 20) },
+    Level { open: NOT_OPEN, ..Level::new(0.75, 20) },
+    Level { open: NOT_OPEN, ..Level::new(0.5, 10) },
+    Level { open: NOT_OPEN, ..Level::new(0.0, 5) },
 ];
 
 /// A furnished room.
@@ -86,18 +93,23 @@ pub(super) struct Outcome<'a> {
     pub missing: Vec<(usize, u32, Rule)>,
     /// Missing units the room cannot do without.
     pub required_missing: u32,
+    /// Floor that furniture closes off, as [`super::pockets::Pockets::area`] counts it.
+    pub closed: i64,
     pub score: f64,
     /// Index into [`LEVELS`].
     pub level: usize,
 }
 
-/// Furnishes a room as well as the search can, relaxing clearances only while something required has no place.
+/// Furnishes a room as well as the search can, relaxing clearances only while something required has no place; what is
+/// only advised goes before floor is closed off too.
 pub(super) fn furnish<'a>(job: &Job<'a, '_>) -> Outcome<'a> {
     let mut best: Option<Outcome> = None;
     for level in 0..LEVELS.len() {
         let outcome = Pass::new(job, level).furnish();
-        let done = outcome.required_missing == 0;
-        if best.as_ref().is_none_or(|b| outcome.required_missing < b.required_missing) {
+        let advice_left = LEVELS.get(level + 1).is_some_and(|next| next.tightness >= 1.0 && next.open.doors);
+        let done = outcome.required_missing == 0 && (outcome.closed == 0 || !advice_left);
+        let lacks = |o: &Outcome| (o.required_missing, o.closed);
+        if best.as_ref().is_none_or(|b| lacks(&outcome) < lacks(b)) {
             best = Some(outcome);
         }
         if done || job.stop.is_set() {
@@ -134,7 +146,7 @@ struct Pass<'j, 'a, 's> {
 
 impl<'j, 'a, 's> Pass<'j, 'a, 's> {
     fn new(job: &'j Job<'a, 's>, level: usize) -> Self {
-        let Level { tightness, margin, advised } = LEVELS[level];
+        let Level { tightness, margin, advised, open } = LEVELS[level];
         let forms = job.tasks.iter().map(|task| {
             let tightness = if task.required > 0 { tightness } else { 1.0 };
             let free = matches!(task.arrangement, Arrangement::Center | Arrangement::Rows);
@@ -155,6 +167,7 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
             job.space,
             Nav::new(job.space, job.radius + margin),
             if advised { job.wide_way } else { job.way },
+            open,
         );
         start.add(job.locked.to_vec());
         Self { job, level, forms, start }
@@ -165,12 +178,13 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
         let tasks = self.job.tasks;
         let floor = tasks.iter().position(|t| t.is_decor()).unwrap_or(tasks.len());
         let empty = self.start.free_area;
-        let draft = |departure| {
+        let draft = |departure, whole| {
             let mut draft = self.blank();
-            self.run(&mut draft, 0..floor, departure);
+            self.run(&mut draft, 0..floor, departure, whole);
             draft
         };
-        let mut best = draft((usize::MAX, 0));
+        let mut best = draft((usize::MAX, 0), false);
+        let mut best_of = (usize::MAX, 0);
         let hopeless = best.outcome.required_missing > 0 && self.hopeless();
         for (n, departure) in DEPARTURES.into_iter().chain(RESCUES).enumerate() {
             let looks = if empty > LARGE { 2 } else { DEPARTURES.len() };
@@ -181,18 +195,32 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
             {
                 continue;
             }
-            let other = draft(departure);
+            let other = draft(departure, false);
             if other.cost(empty) < best.cost(empty) {
-                best = other;
+                (best, best_of) = (other, departure);
             }
         }
-        self.run(&mut best, floor..tasks.len(), (usize::MAX, 0));
+        // once more with an eye on every corner, where floor is closed off; few rooms need it
+        let (open, mut closed) = (self.start.pockets.area(), best.state.pockets.area());
+        for departure in [best_of].into_iter().chain(DEPARTURES).chain(RESCUES) {
+            if closed <= open || self.job.stop.is_set() || departure.0 != usize::MAX && departure.0 >= best.steps {
+                break;
+            }
+            let other = draft(departure, true);
+            let lacks = other.outcome.required_missing > best.outcome.required_missing;
+            let still = other.state.pockets.area();
+            if !lacks && still < closed {
+                (best, closed) = (other, still);
+            }
+        }
+        self.run(&mut best, floor..tasks.len(), (usize::MAX, 0), true);
+        best.outcome.closed = (closed - open).max(0);
         Outcome { placed: best.state.placed, ..best.outcome }
     }
 
     fn blank(&self) -> Draft<'a, 's> {
-        let outcome =
-            Outcome { placed: Vec::new(), missing: Vec::new(), required_missing: 0, score: 0.0, level: self.level };
+        let (missing, level) = (Vec::new(), self.level);
+        let outcome = Outcome { placed: Vec::new(), missing, required_missing: 0, closed: 0, score: 0.0, level };
         Draft { state: self.start.clone(), outcome, steps: 0 }
     }
 
@@ -206,14 +234,15 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
                     self.batch(&self.start, index, task.required, 0, &mut tally).is_none()
                 } else {
                     task.arrangement != Arrangement::OnSurface
-                        && self.single(&self.start, index, 0, &mut tally).is_none()
+                        && self.single(&self.start, index, 0, None, &mut tally).is_none()
                 }
             },
         )
     }
 
-    /// Places some of the tasks; the unit counted `departure.0` takes its choice of rank `departure.1`.
-    fn run(&self, draft: &mut Draft<'a, 's>, tasks: std::ops::Range<usize>, departure: (usize, usize)) {
+    /// Places some of the tasks; the unit counted `departure.0` takes its choice of rank `departure.1`. With `whole`
+    /// nothing closes off floor, not even from a small robot, unless it is required and has no other place.
+    fn run(&self, draft: &mut Draft<'a, 's>, tasks: Range<usize>, departure: (usize, usize), whole: bool) {
         for index in tasks {
             let task = &self.job.tasks[index];
             let present = self.job.present[index];
@@ -236,7 +265,8 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
                 }
             } else {
                 while placed < count && !self.job.stop.is_set() {
-                    let Some((unit, score)) = self.single(state, index, rank(steps), &mut tally) else { break };
+                    let open = whole.then_some(task.required > present + placed);
+                    let Some((unit, score)) = self.single(state, index, rank(steps), open, &mut tally) else { break };
                     outcome.score += score + if task.required > 0 { 2.0 } else { 1.0 };
                     state.add(vec![unit]);
                     placed += 1;
@@ -352,7 +382,15 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
         found.into_iter().find(|f| f.0.len() >= least)
     }
 
-    fn single(&self, state: &State<'a, 's>, index: usize, rank: usize, tally: &mut Tally) -> Option<(Placed<'a>, f64)> {
+    /// Returns the best place for one unit of a task; `whole` as [`choose`] has it.
+    fn single(
+        &self,
+        state: &State<'a, 's>,
+        index: usize,
+        rank: usize,
+        whole: Option<bool>,
+        tally: &mut Tally,
+    ) -> Option<(Placed<'a>, f64)> {
         let (task, aisle) = (&self.job.tasks[index], self.aisle());
         for forms in self.forms[index].iter().take_while(|_| !self.job.stop.is_set()) {
             let mut candidates: Vec<Candidate> = Vec::new();
@@ -360,7 +398,7 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
                 candidates.extend(Find::new(state, task, index, self.job.salt, aisle, tally).run(unit));
             }
             candidates.sort_by(|a, b| b.score.total_cmp(&a.score));
-            if let Some((mut placed, score)) = choose(state, &candidates, rank, tally) {
+            if let Some((mut placed, score)) = choose(state, &candidates, rank, whole, tally) {
                 placed.first_line = task.line == 0;
                 return Some((placed, score));
             }
@@ -387,19 +425,29 @@ fn keep_passable<'a>(state: &State<'a, '_>, units: &[Placed<'a>], kept: &mut Vec
 }
 
 /// Returns the best candidate that leaves robots their room, free floor counted; `rank` skips that many classes.
+///
+/// With `whole` it closes off no floor from a small robot either; `Some(true)` takes one that does before none.
 fn choose<'a>(
     state: &State<'a, '_>,
     candidates: &[Candidate<'a>],
     rank: usize,
+    whole: Option<bool>,
     tally: &mut Tally,
 ) -> Option<(Placed<'a>, f64)> {
     let mut passed: Vec<(f64, u32, &Candidate)> = Vec::new();
+    let mut closing: Vec<(f64, u32, &Candidate)> = Vec::new();
     let mut seen: Vec<u32> = Vec::new();
     for candidate in candidates.iter().take(ROUTE_TESTS) {
-        match state.route(std::slice::from_ref(&candidate.placed)) {
+        let unit = std::slice::from_ref(&candidate.placed);
+        match state.route(unit) {
             Ok(area) => {
                 let lost = 1.0 - area as f64 / state.free_area.max(1) as f64;
-                passed.push((candidate.score - 3.0 * lost, candidate.class, candidate));
+                let entry = (candidate.score - 3.0 * lost, candidate.class, candidate);
+                if whole.is_some() && state.is_closed_by(unit) {
+                    closing.push(entry);
+                    continue;
+                }
+                passed.push(entry);
                 if !seen.contains(&candidate.class) {
                     seen.push(candidate.class);
                 }
@@ -408,6 +456,12 @@ fn choose<'a>(
                 }
             }
             Err(rule) => tally[rule as usize] += 1,
+        }
+    }
+    if passed.is_empty() {
+        tally[Rule::Route as usize] += closing.len() as u32;
+        if whole == Some(true) {
+            passed = closing;
         }
     }
     passed.sort_by(|a, b| b.0.total_cmp(&a.0));

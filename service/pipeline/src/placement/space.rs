@@ -9,6 +9,8 @@ use super::geom::{Box2, Solid, mm, turn};
 const DOOR_DEPTH: i32 = 600;
 /// How far from a wall something counts as standing in front of its window, mm.
 const WINDOW_DEPTH: i32 = 300;
+/// The same where the room has the space: what measures of finished worlds look at.
+const WINDOW_DEPTH_OPEN: i32 = 500;
 
 /// One straight side of the net outline, in the frame of an object with its back to it: `u` forward into the room,
 /// `v` to the object's left; both are world coordinates turned back by `q` quarters.
@@ -48,6 +50,10 @@ pub(super) struct DoorZone {
     pub height: i32,
     /// Floor to keep free, with the swing when the leaf opens into the room.
     pub zone: Box2,
+    /// The same as deep as a leaf is wide whichever way it opens.
+    pub open_zone: Box2,
+    /// True when its leaf opens into the room.
+    pub swings_in: bool,
     /// Side of the latch along the wall: `Some(true)` at `v1`.
     pub latch_high: Option<bool>,
     /// How good it is as "the door" of the room: entrance, to circulation, other.
@@ -58,6 +64,13 @@ pub(super) struct DoorZone {
     pub open: bool,
 }
 
+impl DoorZone {
+    /// Returns the floor that is kept free.
+    pub fn kept(&self, open: Open) -> &Box2 {
+        if open.doors { &self.open_zone } else { &self.zone }
+    }
+}
+
 /// A window seen from the room.
 #[derive(Debug, Clone)]
 pub(super) struct WindowZone {
@@ -66,13 +79,31 @@ pub(super) struct WindowZone {
     pub v1: i32,
     pub sill: i32,
     pub head: i32,
+    /// Floor over which nothing may stand higher than the sill.
     pub zone: Box2,
+    /// The same as deep as nothing should.
+    pub open_zone: Box2,
+}
+
+/// How much is kept free before doors and windows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Open {
+    /// On both sides of a door as much as its leaf is wide; otherwise what it needs.
+    pub doors: bool,
+    /// Half a meter before windows; otherwise what takes their light.
+    pub windows: bool,
 }
 
 impl WindowZone {
     /// Returns true when something at this place takes light.
     pub fn is_hidden_by(&self, solid: &Solid) -> bool {
         solid.z1 > self.sill && solid.z0 < self.head && self.zone.overlaps(&solid.rect)
+    }
+
+    /// Returns true when something at this place stands in what is kept free.
+    pub fn is_taken_by(&self, solid: &Solid, open: Open) -> bool {
+        let zone = if open.windows { &self.open_zone } else { &self.zone };
+        solid.z1 > self.sill && solid.z0 < self.head && zone.overlaps(&solid.rect)
     }
 }
 
@@ -112,7 +143,9 @@ impl Space {
         out.main = out.largest_rectangle(&corners);
         for door in plan.doors_of(&room.room_id) {
             if let Some((wall, v0, v1)) = out.locate(&door.line, door.wall_thickness_m) {
-                let zone = door_zone(&out.walls[wall], v0, v1, door, &room.room_id);
+                let swings_in =
+                    door.swing.as_ref().is_some_and(|s| s.into_room_id.as_deref() == Some(room.room_id.as_str()));
+                let (zone, open_zone) = door_zones(&out.walls[wall], v0, v1, door.kind, swings_in);
                 let latch_high = latch(&out.walls[wall], door);
                 let circulation =
                     door.room_ids.iter().any(|id| id != &room.room_id && plan.room(id).is_some_and(|r| r.circulation));
@@ -124,6 +157,8 @@ impl Space {
                     v1,
                     height: mm(door.height_m),
                     zone,
+                    open_zone,
+                    swings_in,
                     latch_high,
                     rank,
                     clear_width: mm(door.clear_width_m),
@@ -135,8 +170,9 @@ impl Space {
         for window in plan.windows.iter().filter(|w| w.room_id == room.room_id) {
             if let Some((wall, v0, v1)) = out.locate(&window.line, window.wall_thickness_m) {
                 let zone = out.walls[wall].strip(v0, v1, 0, WINDOW_DEPTH);
+                let open_zone = out.walls[wall].strip(v0, v1, 0, WINDOW_DEPTH_OPEN);
                 let (sill, head) = (mm(window.sill_m), mm(window.head_m));
-                out.windows.push(WindowZone { wall, v0, v1, sill, head, zone });
+                out.windows.push(WindowZone { wall, v0, v1, sill, head, zone, open_zone });
             }
         }
         out
@@ -150,6 +186,11 @@ impl Space {
     /// Returns rectangles that together cover the net floor.
     pub fn floor_rects(&self) -> &[Box2] {
         &self.floor
+    }
+
+    /// Returns rectangles inside the bounds and outside the outline.
+    pub fn holes(&self) -> &[Box2] {
+        &self.holes
     }
 
     /// Returns the windows of one wall.
@@ -253,11 +294,15 @@ fn holes(bounds: Box2, corners: &[(i32, i32)]) -> Vec<Box2> {
     out
 }
 
-fn door_zone(wall: &WallSide, v0: i32, v1: i32, door: &Door, room_id: &str) -> Box2 {
-    let leaf = if door.kind == DoorKind::DoubleHinged { (v1 - v0 + 1) / 2 } else { v1 - v0 };
-    let swings_in = door.swing.as_ref().is_some_and(|s| s.into_room_id.as_deref() == Some(room_id));
-    let depth = if swings_in { leaf.max(DOOR_DEPTH) } else { DOOR_DEPTH };
-    wall.strip(v0, v1, 0, depth)
+/// Returns the floor a door needs, and that as deep as its leaf is wide.
+fn door_zones(wall: &WallSide, v0: i32, v1: i32, kind: DoorKind, swings_in: bool) -> (Box2, Box2) {
+    let leaf = match kind {
+        DoorKind::Hinged => v1 - v0,
+        DoorKind::DoubleHinged => (v1 - v0 + 1) / 2,
+        DoorKind::Sliding | DoorKind::Open => 0,
+    };
+    let open = wall.strip(v0, v1, 0, leaf.max(DOOR_DEPTH));
+    (if swings_in { open } else { wall.strip(v0, v1, 0, DOOR_DEPTH) }, open)
 }
 
 fn latch(wall: &WallSide, door: &Door) -> Option<bool> {

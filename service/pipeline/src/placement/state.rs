@@ -8,7 +8,8 @@ use d3dgen_model::domain::Mount;
 
 use super::geom::{Box2, Solid, mm, turn};
 use super::nav::Nav;
-use super::space::Space;
+use super::pockets::Pockets;
+use super::space::{Open, Space};
 use super::unit::{Part, Unit};
 use super::way::Way;
 
@@ -113,6 +114,10 @@ pub(super) struct State<'a, 's> {
     /// Outlines of what narrows a way for people.
     narrowing: Vec<Box2>,
     nav: Nav,
+    /// Floor that is free for a small robot.
+    pub pockets: Pockets,
+    /// What is kept free before doors and windows.
+    pub open: Open,
     /// Memory for testing routes.
     spare: RefCell<Option<Nav>>,
     targets: Vec<Vec<Box2>>,
@@ -124,7 +129,7 @@ pub(super) struct State<'a, 's> {
 
 impl<'a, 's> State<'a, 's> {
     /// Returns the empty room.
-    pub fn new(space: &'s Space, nav: Nav, way: Option<&'s Way>) -> Self {
+    pub fn new(space: &'s Space, nav: Nav, way: Option<&'s Way>, open: Open) -> Self {
         let free_area = nav.area();
         Self {
             space,
@@ -134,6 +139,8 @@ impl<'a, 's> State<'a, 's> {
             bodies: Vec::new(),
             narrowing: Vec::new(),
             nav,
+            pockets: Pockets::new(space),
+            open,
             spare: RefCell::new(None),
             targets: Vec::new(),
             free_area,
@@ -170,13 +177,13 @@ impl<'a, 's> State<'a, 's> {
                 return Err(Rule::Collision);
             }
             // a kettle on a counter stands in the light as a tall counter does
-            if !at_window && space.windows.iter().any(|w| w.is_hidden_by(&solid)) {
+            if !at_window && space.windows.iter().any(|w| w.is_taken_by(&solid, self.open)) {
                 return Err(Rule::Window);
             }
             if part.mount == Mount::Surface || p.support.is_some() {
                 continue;
             }
-            if space.doors.iter().any(|d| solid.z0 < d.height && d.zone.overlaps(&solid.rect)) {
+            if space.doors.iter().any(|d| solid.z0 < d.height && d.kept(self.open).overlaps(&solid.rect)) {
                 return Err(Rule::Door);
             }
             if takes_floor(part, &solid) && self.clears.iter().any(|c| c.overlaps(&solid.rect)) {
@@ -202,7 +209,7 @@ impl<'a, 's> State<'a, 's> {
             Err(rule @ (Rule::Window | Rule::Collision)) => {
                 let in_the_way = |part: &Part| {
                     let solid = p.solid(part);
-                    self.space.windows.iter().any(|w| w.is_hidden_by(&solid))
+                    self.space.windows.iter().any(|w| w.is_taken_by(&solid, self.open))
                         || part.mount == Mount::Ceiling && self.solids.iter().any(|s| s.overlaps(&solid))
                 };
                 let lesser = Placed { unit: Rc::new(p.unit.cleared(in_the_way).ok_or(rule)?), ..p.clone() };
@@ -239,6 +246,11 @@ impl<'a, 's> State<'a, 's> {
         if reached { Ok(nav.area()) } else { Err(Rule::Route) }
     }
 
+    /// Returns true when units would close off floor that is open without them, for however small a robot.
+    pub fn is_closed_by(&self, units: &[Placed]) -> bool {
+        self.pockets.is_closed_by(&Pockets::boxes(units))
+    }
+
     /// Puts units down that were tested.
     pub fn add(&mut self, units: Vec<Placed<'a>>) {
         for p in units {
@@ -247,6 +259,7 @@ impl<'a, 's> State<'a, 's> {
                 self.solids.push(solid);
             }
             obstacles(&p).for_each(|o| self.nav.block(&o));
+            self.pockets.add(&p);
             self.bodies.extend(bodies(&p));
             self.narrowing.extend(narrowing(&p));
             if p.support.is_none() {

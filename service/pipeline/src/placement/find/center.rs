@@ -98,7 +98,7 @@ impl<'a> Find<'_, 'a, '_> {
         let grain = GRAIN.max(b.width().max(b.height()) / 80);
         let (nx, ny) = ((b.width() / grain).max(1) as usize, (b.height() / grain).max(1) as usize);
         let blocked: Vec<Box2> = (self.state.solids.iter().filter(|s| s.stops_robot()).map(|s| s.rect))
-            .chain(space.doors.iter().map(|d| d.zone))
+            .chain(space.doors.iter().map(|d| *d.kept(self.state.open)))
             .collect();
         let cell = |i: usize, j: usize| {
             let (x, y) = (b.x0 + i as i32 * grain, b.y0 + j as i32 * grain);

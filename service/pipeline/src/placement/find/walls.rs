@@ -5,6 +5,7 @@ use std::rc::Rc;
 use d3dgen_model::domain::{Arrangement, Mount};
 
 use super::{Find, Rule};
+use crate::placement::docks::door_loss;
 use crate::placement::geom::{Box2, FLAT, turn};
 use crate::placement::space::WallSide;
 use crate::placement::state::{Placed, at_frame};
@@ -80,7 +81,7 @@ impl<'a> Find<'_, 'a, '_> {
             (r.x0 < wall.u + b.width() && r.x1 > wall.u && r.y1 > wall.v0 && r.y0 < wall.v1).then_some((r.y0, r.y1))
         };
         let mut taken: Vec<(i32, i32)> = Vec::new();
-        taken.extend(space.doors.iter().filter(|d| z0 < d.height).filter_map(|d| near(&d.zone)));
+        taken.extend(space.doors.iter().filter(|d| z0 < d.height).filter_map(|d| near(d.kept(self.state.open))));
         let solids = self.state.solids.iter();
         taken.extend(solids.clone().filter(|s| !s.is_flat() && s.z0 < z1 && z0 < s.z1).filter_map(|s| near(&s.rect)));
         let mut marks: Vec<i32> = taken.iter().flat_map(|t| [t.0, t.1]).collect();
@@ -177,6 +178,7 @@ impl<'a> Find<'_, 'a, '_> {
         s += if more { 0.8 * aside } else { -style.centered * aside };
         s -= style.tight * (spare / 3000.0).min(1.0);
         s += self.window_score(index, a, z) + self.door_score(p) + self.sibling_score(p, a, z, index);
+        s -= door_loss(space, p, self.aisle);
         s + self.arrangement_score(p, index, a, z)
     }
 
