@@ -69,8 +69,10 @@ impl Pockets {
 
     /// Returns true when more things close off floor that is open without them.
     pub fn is_closed_by(&self, more: &[Box2]) -> bool {
-        let may = HALVES.iter().any(|half| self.may_part(more, *half));
-        may && HALVES.iter().any(|half| self.closed_off(more, *half) > self.closed_off(&[], *half))
+        HALVES.iter().filter(|half| self.may_part(more, **half)).any(|half| {
+            let closed = self.closed_off(more, *half);
+            closed > 0 && closed > self.closed_off(&[], *half)
+        })
     }
 
     /// Returns the floor that is closed off, mm^2 of places for a robot's center, summed over the widths looked at.

@@ -201,7 +201,9 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
             }
         }
         // once more with an eye on every corner, where floor is closed off; few rooms need it
-        let (open, mut closed) = (self.start.pockets.area(), best.state.pockets.area());
+        let mut closed = best.state.pockets.area();
+        // what stands there for good may close off floor by itself
+        let open = if closed > 0 { self.start.pockets.area() } else { 0 };
         for departure in [best_of].into_iter().chain(DEPARTURES).chain(RESCUES) {
             if closed <= open || self.job.stop.is_set() || departure.0 != usize::MAX && departure.0 >= best.steps {
                 break;

@@ -131,7 +131,7 @@ fn layouts(page: &Page, room: &Room<'_>, area: &str, (usual, share): (f64, f64))
     let mut ways = vec![(names(&[room.name]), 0.0)];
     ways.extend(split.as_ref().map(|(first, second)| (names(&[first, second]), BROKEN)));
     if words.len() == 3 {
-        ways.push((names(&words), 2.0 * BROKEN));
+        ways.push((names(&words), 5.0 * BROKEN));
     }
     let mut layouts = Vec::new();
     for (lines, cost) in ways {
