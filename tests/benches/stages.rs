@@ -103,7 +103,10 @@ fn make(
         if let Event::Finished(stage, ..) = event {
             laps[stage as usize] += last.elapsed();
         }
-        last = Instant::now();
+        // rooms are furnished within their stage
+        if !matches!(event, Event::Furnished(..)) {
+            last = Instant::now();
+        }
     };
     let made = generate_world(&request, registry, &Settings::default(), &mut observe, &AtomicBool::new(false))
         .expect("a building of 10 rooms can be made");

@@ -9,7 +9,6 @@ use super::Reading;
 use super::site::{Room, Site};
 use crate::measure::Measure;
 use crate::retrieve::{Applicable, Rule, Scope};
-use crate::travel::Distances;
 
 /// How far a slow walker gets in a minute, m.
 const METERS_A_MINUTE: f64 = 60.0;
@@ -114,7 +113,7 @@ fn to_circulation(site: &Site, a: &Applicable) -> Vec<Reading> {
     };
     let way = |room: &Room| {
         let doors: Vec<Point> = room.doors.iter().filter(leads).map(|d| d.line.middle()).collect();
-        if doors.is_empty() { None } else { Distances::from(map, &doors).largest_in(map, room.plan) }
+        if doors.is_empty() { None } else { site.distances(&doors).largest_in(map, room.plan) }
     };
     site.rooms_of(a).filter_map(|r| Some(Reading::new(&r.plan.room_id, way(r)?))).collect()
 }
@@ -122,7 +121,7 @@ fn to_circulation(site: &Site, a: &Applicable) -> Vec<Reading> {
 /// Returns, for the room with the longest way out, the length of that way.
 fn farthest_from_exit(site: &Site) -> Vec<Reading> {
     let map = site.occupancy();
-    let distances = Distances::from(map, &exits(site));
+    let distances = site.distances(&exits(site));
     let ways = site.rooms.iter().filter_map(|r| Some((r, distances.largest_in(map, r.plan)?)));
     let longest = ways.max_by(|x, y| x.1.total_cmp(&y.1));
     longest.map(|(r, d)| Reading::new(&r.plan.room_id, d)).into_iter().collect()
@@ -146,7 +145,7 @@ fn room_to_room(site: &Site, from: Vec<&Room>, to: Vec<&Room>) -> Vec<Reading> {
         return Vec::new();
     }
     let map = site.occupancy();
-    let distances = Distances::from(map, &goals);
+    let distances = site.distances(&goals);
     let ways = from.iter().filter_map(|r| {
         let way = doors(r).into_iter().filter_map(|p| distances.at(map, p)).reduce(f64::min)?;
         Some((r, way))

@@ -1,20 +1,23 @@
 //! A world indexed for measuring: rooms with their doors, windows and objects, free floor worked out when asked for.
 
-use std::cell::OnceCell;
-use std::collections::BTreeSet;
+use std::cell::{OnceCell, RefCell};
+use std::collections::{BTreeMap, BTreeSet};
+use std::rc::Rc;
 
-use d3dgen_model::Rect;
 use d3dgen_model::domain::{Domain, Mount, ObjectType, RoomType, Shape};
 use d3dgen_model::floorplan::{Door, PlanRoom, Window};
+use d3dgen_model::geometry::to_mm;
 use d3dgen_model::occupancy::{Occupancy, stops_robot};
 use d3dgen_model::placements::Placement;
 use d3dgen_model::world::World;
+use d3dgen_model::{Point, Rect};
 
 use crate::clearance::{HEAD_ROOM_M, is_shallow, quarter};
 use crate::conditions::Guard;
 use crate::freespace::FreeSpace;
 use crate::retrieve::{Applicable, Retrieval, Scope};
 use crate::tables::{ConditionRow, When};
+use crate::travel::Distances;
 
 /// Beds at least this wide are for two, m: the narrowest that is sold so is 1.2 m, and for one the widest is 1.1 m.
 const FOR_TWO_M: f64 = 1.2;
@@ -28,6 +31,8 @@ pub(super) struct Site<'a> {
     pub retrieval: &'a Retrieval,
     pub rooms: Vec<Room<'a>>,
     occupancy: OnceCell<Occupancy>,
+    /// Ways by the points that they lead to, whole millimeters.
+    ways: RefCell<BTreeMap<Vec<[i64; 2]>, Rc<Distances>>>,
 }
 
 /// A room with what belongs to it.
@@ -73,7 +78,7 @@ impl<'a> Site<'a> {
                 blocks: stops_robot(placement) && !is_shallow(placement),
             });
         }
-        Self { world, domain, retrieval, rooms, occupancy: OnceCell::new() }
+        Self { world, domain, retrieval, rooms, occupancy: OnceCell::new(), ways: RefCell::default() }
     }
 
     /// Returns the rooms a constraint is about, those its conditions leave.
@@ -95,6 +100,14 @@ impl<'a> Site<'a> {
     /// Returns the free floor of the furnished world.
     pub fn occupancy(&self) -> &Occupancy {
         self.occupancy.get_or_init(|| Occupancy::of_world(&self.world.floorplan, &self.world.placements))
+    }
+
+    /// Returns how far it is from everywhere to the nearest of these points; many rules ask for the same ones.
+    pub fn distances(&self, to: &[Point]) -> Rc<Distances> {
+        let mm = |m: f64| (to_mm(m) * 1000.0).round() as i64;
+        let key: Vec<[i64; 2]> = to.iter().map(|p| [mm(p.x), mm(p.y)]).collect();
+        let mut ways = self.ways.borrow_mut();
+        ways.entry(key).or_insert_with(|| Rc::new(Distances::from(self.occupancy(), to))).clone()
     }
 
     /// Returns the doors and openings that lead out of the building.

@@ -1,6 +1,8 @@
 //! A world indexed for the rules: rooms with their types, doors, objects with outlines, free floor when asked for.
 
-use std::cell::OnceCell;
+use std::cell::{OnceCell, RefCell};
+use std::collections::BTreeMap;
+use std::rc::Rc;
 
 use d3dgen_knowledge::Retrieval;
 use d3dgen_knowledge::freespace::FreeSpace;
@@ -28,6 +30,8 @@ pub struct Context<'a> {
     pub radius: f64,
     occupancy: OnceCell<Occupancy>,
     reach: OnceCell<Reach>,
+    /// Where a disc can stand, by its radius in mm.
+    clear: RefCell<BTreeMap<u64, Rc<Bitmap>>>,
 }
 
 /// A room of the plan.
@@ -78,6 +82,7 @@ impl<'a> Context<'a> {
             retrieval,
             occupancy: OnceCell::new(),
             reach: OnceCell::new(),
+            clear: RefCell::default(),
         }
     }
 
@@ -105,6 +110,12 @@ impl<'a> Context<'a> {
     /// Returns what the disc can reach.
     pub fn reach(&self) -> &Reach {
         self.reach.get_or_init(|| self.occupancy().reach(self.plan(), self.radius))
+    }
+
+    /// Returns where the center of a disc of this radius (m) can be; several rules ask for the same one.
+    pub fn clear(&self, radius: f64) -> Rc<Bitmap> {
+        let key = (radius * 1000.0) as u64;
+        self.clear.borrow_mut().entry(key).or_insert_with(|| Rc::new(self.occupancy().clear(radius))).clone()
     }
 
     /// Returns true when a cell of the map lies within `distance` of the line.

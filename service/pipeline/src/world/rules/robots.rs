@@ -1,7 +1,5 @@
 //! Rules about robots, docks and what the scenario says.
 
-use std::collections::BTreeMap;
-
 use d3dgen_knowledge::clearance::{Side, door_zones, free_depth, is_shallow};
 use d3dgen_model::domain::Shape;
 use d3dgen_model::occupancy::Bitmap;
@@ -53,33 +51,15 @@ pub fn dock_missing(c: &Context, out: &mut Findings) {
     }
 }
 
-/// Free floor by radius, each worked out once.
-struct Clear<'c, 'a> {
-    context: &'c Context<'a>,
-    maps: BTreeMap<u64, Bitmap>,
-}
-
-impl<'c, 'a> Clear<'c, 'a> {
-    fn new(context: &'c Context<'a>) -> Self {
-        Self { context, maps: BTreeMap::new() }
-    }
-
-    fn of(&mut self, radius: f64) -> &Bitmap {
-        let key = (radius * 1000.0) as u64;
-        self.maps.entry(key).or_insert_with(|| self.context.occupancy().clear(radius))
-    }
-}
-
 fn point(pose: &Pose) -> Point {
     Point::new(pose.x, pose.y)
 }
 
 pub fn tasks(c: &Context, out: &mut Findings) {
-    let mut clear = Clear::new(c);
     for task in &c.world.scenario.robots {
         out.look();
         let radius = task.robot.radius_m.max(LEAST_RADIUS_M);
-        let map = clear.of(radius);
+        let map = c.clear(radius);
         let frame = &c.occupancy().frame;
         let mut seed = Bitmap::new(frame.nx, frame.ny);
         match frame.cell(point(&task.start)) {
@@ -103,20 +83,19 @@ pub fn tasks(c: &Context, out: &mut Findings) {
 }
 
 pub fn poses(c: &Context, out: &mut Findings) {
-    let mut clear = Clear::new(c);
     let scenario = &c.world.scenario;
     for poi in &scenario.pois {
         out.look();
         let inside = c.room(&poi.room_id).is_some_and(|r| r.plan.net_polygon.contains(point(&poi.pose)));
         if !inside {
             out.add(&poi.poi_id, format!("is not in `{}`", poi.room_id));
-        } else if !c.is_clear(clear.of(LEAST_RADIUS_M), point(&poi.pose)) {
+        } else if !c.is_clear(&c.clear(LEAST_RADIUS_M), point(&poi.pose)) {
             out.add(&poi.poi_id, "nobody can stand there");
         }
     }
     for agent in &scenario.agents {
         out.look();
-        if !c.is_clear(clear.of(PERSON_RADIUS_M), point(&agent.start)) {
+        if !c.is_clear(&c.clear(PERSON_RADIUS_M), point(&agent.start)) {
             out.add(&agent.agent_id, "starts where nobody can stand");
         }
         for room in agent.waypoints.iter().filter(|id| c.room(id).is_none()) {
