@@ -319,12 +319,18 @@ pub(super) struct Phrases<T> {
     language: String,
     exact: HashMap<String, T>,
     stems: HashMap<String, T>,
+    /// Tokens of the longest phrase.
     longest: usize,
+    /// Bytes of the longest phrase.
+    widest: usize,
 }
+
+/// Most bytes that endings, one after the other, add to a word.
+const INFLECTION: usize = 8;
 
 impl<T: Clone> Phrases<T> {
     pub(super) fn new(language: &str) -> Self {
-        Self { language: language.into(), exact: HashMap::new(), stems: HashMap::new(), longest: 0 }
+        Self { language: language.into(), exact: HashMap::new(), stems: HashMap::new(), longest: 0, widest: 0 }
     }
 
     /// Adds a phrase; the first meaning of a phrase stays.
@@ -346,6 +352,7 @@ impl<T: Clone> Phrases<T> {
             return;
         }
         self.longest = self.longest.max(tokens);
+        self.widest = self.widest.max(exact.len());
         for (map, key) in [(&mut self.exact, exact), (&mut self.stems, stems)] {
             let value = map.get(&key).map_or_else(|| meaning.clone(), |old| merge(old, &meaning));
             map.insert(key, value);
@@ -385,7 +392,8 @@ impl<T: Clone> Phrases<T> {
         if self.language != "de" || folded.len() < least + 3 || !folded.is_ascii() {
             return None;
         }
-        (3..=folded.len() - least).find_map(|cut| self.word(&folded[cut..]).map(|meaning| (meaning, cut)))
+        let from = folded.len().saturating_sub(self.widest + INFLECTION).max(3);
+        (from..=folded.len() - least).find_map(|cut| self.word(&folded[cut..]).map(|meaning| (meaning, cut)))
     }
 
     /// Returns the meaning of a whole text.
