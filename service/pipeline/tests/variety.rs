@@ -74,6 +74,7 @@ fn no_two_seeds_give_the_same_plan_and_many_are_no_boxes() {
         "family house in Germany with 8 rooms",
         "office in the United States with 10 rooms",
         "hospital ward with 10 rooms",
+        "Three patient rooms, a nurse station and a medication room",
     ];
     for prompt in prompts {
         let (mut seen, mut shaped, mut made) = (BTreeSet::new(), 0, 0);

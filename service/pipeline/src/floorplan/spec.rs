@@ -187,12 +187,14 @@ impl Brief {
     /// seeds do not end in one best plan.
     pub(super) fn vary(&mut self, rng: &mut Stream) {
         for room in &mut self.rooms {
-            let factor = 1.0 + AREA_VARIATION * (2.0 * rng.unit() - 1.0);
-            let [least, most] = room.limits.area_advised.unwrap_or([0.0, f64::MAX]);
-            let (least, most) = (least.max(room.area_min * 1.02), most.min(room.area_max * 0.98));
+            let at = rng.unit();
+            let (least, most) = (room.area_min * 1.02, room.area_max * 0.98);
             let free = (least..=most).contains(&room.area_target) && most > FREE_RANGE * least;
-            if free {
-                room.area_target = (room.area_target * factor).clamp(least, most);
+            let [advised, too_much] = room.limits.area_advised.unwrap_or([0.0, f64::MAX]);
+            let low = (room.area_target * (1.0 - AREA_VARIATION)).max(least).max(advised);
+            let high = (room.area_target * (1.0 + AREA_VARIATION)).min(most).min(too_much);
+            if free && low < high {
+                room.area_target = low + at * (high - low);
             }
         }
     }

@@ -53,7 +53,8 @@ pub(super) fn place_windows(brief: &Brief, stretches: &[Stretch], net_m2: &[f64]
                 }
                 let total = need.max(PANE_M.1).min(usable);
                 need -= total;
-                let (from, to) = if room.wet { beside_shower(room, stretch, (from, to), doors) } else { (from, to) };
+                let cell = room.wet && room.daylight == Daylight::None;
+                let (from, to) = if cell { beside_shower(room, stretch, (from, to), doors) } else { (from, to) };
                 add_panes(stretch, from, to, (total, pane), sill, room, &mut windows);
             }
         }
@@ -107,7 +108,7 @@ fn free_parts(stretch: &Stretch, doors: &[Door]) -> Vec<(f64, f64)> {
     parts
 }
 
-/// Returns the end of an outer wall of a wet room that its window goes to, m: the one that is nearer to the door, for a
+/// Returns the end of an outer wall of a wet cell that its window goes to, m: the one that is nearer to the door, for a
 /// shower needs a corner without either. The whole wall where it is long enough for both.
 fn beside_shower(room: &RoomSpec, stretch: &Stretch, (from, to): (f64, f64), doors: &[Door]) -> (f64, f64) {
     let width = PANE_M.1 + 2.0 * MARGIN_M;
