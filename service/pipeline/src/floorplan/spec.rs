@@ -21,7 +21,7 @@ const MOST_ADVISED_WIDTH: f64 = 1.4;
 /// Advice widens a door by this much at most, m.
 const MOST_ADVISED_DOOR_M: f64 = 0.1;
 /// Share by which the area aimed for differs from seed to seed, and the range from which on it may.
-const AREA_VARIATION: f64 = 0.06;
+const AREA_VARIATION: f64 = 0.09;
 const FREE_RANGE: f64 = 1.3;
 /// Share of a target area kept from the edges of what is advised, for the search to move in.
 const ADVICE_MARGIN: f64 = 0.03;
