@@ -116,6 +116,14 @@ fn two_exits() -> Sample {
     sample
 }
 
+/// Returns an office that one leaves by its entrance only.
+fn one_exit() -> Sample {
+    let sample = &SAMPLES[1];
+    let mut world = sample.world.clone();
+    world.floorplan.doors.retain(|d| d.room_ids.len() > 1 || d.entrance);
+    Sample { world, domain: sample.domain, retrieval: sample.retrieval.clone() }
+}
+
 #[test]
 fn worlds_aim_at_advice() {
     let prompts = [
@@ -332,7 +340,7 @@ fn every_measure_at_hand_is_kept_by_one_figure_and_broken_by_another() {
     let (mut kept, mut broken) = (BTreeSet::new(), BTreeSet::new());
     let mut wanted = BTreeSet::new();
     let more = MORE.map(made);
-    let moved = [facing_desks(), twin_beds(0.9), two_exits()];
+    let moved = [facing_desks(), twin_beds(0.9), two_exits(), one_exit()];
     for sample in SAMPLES.iter().chain(&more).chain(&moved) {
         for retrieval in everywhere(sample) {
             wanted.extend(asked(&retrieval));
