@@ -270,6 +270,7 @@ fn nonsense_gives_an_answer_and_soon() {
     texts.extend([
         "office ".repeat(long / 7),
         "a".repeat(long),
+        "zzq ".repeat(long / 4),
         "9".repeat(long),
         "两".repeat(long / 3),
         "방".repeat(long / 3),

@@ -343,9 +343,13 @@ pub(super) fn words_known(tokens: &[Token], registry: &Registry, language: &str)
     let spoken: Vec<&Spoken> = words().languages.get(language).into_iter().collect();
     let buildings = occurrences(tokens, registry, &domains, &[language], &spoken, &[], &[]);
     let rooms: Vec<_> = domains.iter().flat_map(|d| room_words(d, registry, &[language])).collect();
-    let ends = |i: usize| rooms.iter().filter_map(|r| r.longest_at(tokens, i)).map(|f| f.0).max();
-    let room = |k: usize| (0..=k).any(|i| ends(i).is_some_and(|end| end > k));
-    (0..tokens.len()).filter(|&k| buildings.iter().any(|b| b.0.contains(k)) || room(k)).count()
+    let mut known = vec![false; tokens.len()];
+    buildings.iter().for_each(|(span, _)| known[span.start..span.end].fill(true));
+    for i in 0..tokens.len() {
+        let end = rooms.iter().filter_map(|r| r.longest_at(tokens, i)).map(|f| f.0).max();
+        known[i..end.unwrap_or(i)].fill(true);
+    }
+    known.into_iter().filter(|k| *k).count()
 }
 
 /// Returns the words for a domain's rooms, one table a language.
