@@ -82,6 +82,14 @@ impl FreeSpace {
         self.connects(&gates(doors), width)
     }
 
+    /// Returns true when a square of this width (m) can be pushed from a door to where a rectangle of floor lies; at the
+    /// door as [`FreeSpace::passage`], at the rectangle half of its shorter side is enough.
+    pub fn leads(&self, door: &Door, to: &Rect, width: f64) -> bool {
+        let goal = (*to, to.height() > to.width(), short_side(to) / 2.0);
+        let gates: Vec<_> = gates(&[door]).into_iter().chain([goal]).collect();
+        self.connects(&gates, width)
+    }
+
     fn connects(&self, gates: &[(Rect, bool, f64)], width: f64) -> bool {
         let wide: Vec<&Rect> = self.rects.iter().filter(|r| short_side(r) >= width - TOLERANCE_M).collect();
         let mut group: Vec<usize> = (0..wide.len()).collect();

@@ -44,6 +44,11 @@ pub(super) const WINDOW_WALL_M: f64 = 1.2;
 /// Wall beside the latch of a door that people in wheelchairs pull open, beyond the least one, m (18 in together).
 const LATCH_SIDE_M: f64 = 0.457 - JAMB_M;
 
+/// Longest piece of outer wall that is looked at as an end of a corridor, lattice units.
+const END_WALL: i32 = 80;
+/// Cost of a sleeping room larger than the room of the day that is to be the largest, beside that of how much.
+const WRONG_ORDER: f64 = 0.3;
+
 /// Weight of what hangs in the air.
 pub(super) const OVERHANG: f64 = 30.0;
 
@@ -352,23 +357,20 @@ impl<'b> Judge<'b> {
         }
         let perimeter: f64 = rooms.iter().map(|r| meters(r.outer.1)).sum();
         score.soft[6] += perimeter / (4.0 * total.sqrt()) - 1.0 + 0.02 * layout.notch;
-        // one comes up the stairs
-        let stairs = brief.core.as_ref().map(|c| c.host);
-        let entrance = brief.rooms.iter().position(|r| r.entrance).or(stairs).and_then(|i| rooms[i].main);
-        if let Some((wish, door)) = brief.symmetry.zip(entrance) {
+        let gates = self.gates(layout);
+        if let Some((wish, entrance)) = brief.symmetry.zip(gates.first().map(|g| g.room)) {
             let boxes: Vec<_> = rooms.iter().filter_map(|r| Some((r.main?, r.gross_m2))).collect();
-            score.symmetry = mirror::cost(wish, &boxes, door);
+            score.symmetry = mirror::cost(wish, &boxes, entrance);
         }
         let size = total.sqrt().max(1.0);
-        for (spec, room) in brief.rooms.iter().zip(rooms) {
-            let (Some(main), Some(door)) = (room.main, entrance) else { continue };
-            let far = distance(main, door) / size;
-            score.soft[7] += match spec.zone {
-                Zone::Public | Zone::Day => 0.25 * far,
-                Zone::Night => 0.4 * (1.2 - far).max(0.0),
-                Zone::Staff | Zone::Service | Zone::Circulation | Zone::Outdoor => 0.0,
-            };
-        }
+        let home = brief.is_home();
+        // the entrance will be where it serves the rooms best
+        let lost = gates.iter().map(|gate| {
+            let far = |m: Cellbox| between(m.center2(), gate.at) / size;
+            brief.rooms.iter().zip(rooms).filter_map(|(spec, r)| Some(ill_placed(spec.zone, far(r.main?), home))).sum::<f64>()
+        });
+        score.soft[7] += lost.reduce(f64::min).unwrap_or(0.0);
+        score.soft[0] += self.wrong_order();
         for (room, shape) in &layout.boxes {
             if Some(*room) != brief.spine && rooms[*room].main != Some(*shape) {
                 // A leg beside a small room: fine as a lobby, a waste as a corridor.
@@ -377,9 +379,75 @@ impl<'b> Judge<'b> {
             }
         }
     }
+
+    /// Returns where one may come in: the middles of outer walls of the room with the entrance that hold a door, of a
+    /// corridor's its ends where it has some; the stairs on upper storeys.
+    fn gates(&self, layout: &Layout) -> Vec<Gate> {
+        let (brief, rooms) = (self.brief, &self.survey.rooms);
+        let stairs = brief.core.as_ref().map(|c| c.host);
+        let Some(entered) = brief.rooms.iter().position(|r| r.entrance).or(stairs) else { return Vec::new() };
+        let Some(main) = rooms[entered].main else { return Vec::new() };
+        let mut out: Vec<(i32, Gate)> = Vec::new();
+        let own = layout.boxes.iter().zip(&self.survey.side).filter(|((r, _), _)| *r == entered && !brief.upper);
+        for ((_, b), sides) in own {
+            let (cx, cy) = b.center2();
+            let ends = [(2 * b.x0, cy), (2 * b.x1, cy), (cx, 2 * b.y0), (cx, 2 * b.y1)];
+            for (s, at) in ends.into_iter().enumerate() {
+                let free = if s < 2 { b.height() } else { b.width() } - sides[s][0];
+                if free >= self.entrance_need {
+                    out.push((free, Gate { at, room: main }));
+                }
+            }
+        }
+        if entered == self.spine && out.iter().any(|(free, _)| *free <= END_WALL) {
+            out.retain(|(free, _)| *free <= END_WALL);
+        }
+        if out.is_empty() {
+            out.push((0, Gate { at: main.center2(), room: main }));
+        }
+        out.into_iter().map(|(_, gate)| gate).collect()
+    }
+
+    /// Returns what it costs that a sleeping room has become larger than the room of the day that was to be the largest.
+    fn wrong_order(&self) -> f64 {
+        let of = |zone: Zone| self.brief.rooms.iter().zip(&self.survey.rooms).filter(move |(s, _)| s.zone == zone);
+        let Some((day, living)) = of(Zone::Day).max_by(|a, b| a.0.area_target.total_cmp(&b.0.area_target)) else {
+            return 0.0;
+        };
+        let Some((night, bedroom)) = of(Zone::Night).max_by(|a, b| a.1.net_m2.total_cmp(&b.1.net_m2)) else {
+            return 0.0;
+        };
+        if night.area_target >= day.area_target || bedroom.net_m2 <= living.net_m2 {
+            return 0.0;
+        }
+        WRONG_ORDER + bedroom.net_m2 / living.net_m2.max(1.0) - 1.0
+    }
+}
+
+/// A place for the entrance.
+struct Gate {
+    /// Twice its coordinates, lattice units.
+    at: (i32, i32),
+    /// Largest box of its room.
+    room: Cellbox,
+}
+
+/// Returns what a room of a zone loses by its distance from the entrance, in sides of the building; in homes the rooms of
+/// the day lie before the bedrooms.
+pub(super) fn ill_placed(zone: Zone, far: f64, home: bool) -> f64 {
+    let (day, night) = if home { (0.7, 0.6) } else { (0.25, 0.4) };
+    match zone {
+        Zone::Public | Zone::Day => day * far,
+        Zone::Night => night * (1.2 - far).max(0.0),
+        Zone::Staff | Zone::Service | Zone::Circulation | Zone::Outdoor => 0.0,
+    }
 }
 
 pub(super) fn distance(a: Cellbox, b: Cellbox) -> f64 {
-    let ((ax, ay), (bx, by)) = (a.center2(), b.center2());
+    between(a.center2(), b.center2())
+}
+
+/// Returns the walking distance between points given by twice their coordinates, m.
+fn between((ax, ay): (i32, i32), (bx, by): (i32, i32)) -> f64 {
     (f64::from((ax - bx).abs()) + f64::from((ay - by).abs())) * 0.025
 }

@@ -8,6 +8,7 @@ use d3dgen_model::seed::Stream;
 use d3dgen_model::{Point, Segment};
 
 use super::assemble::highest;
+use super::cost::ill_placed;
 use super::lattice::{Cellbox, INNER_HALF_M, JAMB_M, OUTER_HALF_M, meters};
 use super::outline::Stretch;
 use super::spec::Brief;
@@ -23,6 +24,8 @@ const OPEN_MAX_M: f64 = 4.0;
 const OPEN_JAMB_M: f64 = 0.3;
 /// What a meter between the entrance and the nearest room for visitors counts against the length of its wall.
 const TO_PUBLIC: f64 = 0.2;
+/// What it counts there that rooms of the day are far from the entrance and bedrooms near.
+const TO_ZONES: f64 = 3.0;
 /// Floor kept free in front of a door, m.
 const APPROACH_M: f64 = 0.6;
 
@@ -293,7 +296,7 @@ impl Site<'_> {
         // The end of a corridor is where one looks for its door; a second exit belongs far from the first.
         let mut penalty = if spine && !self.brief.hub { meters(s.len()) } else { 0.1 * f64::from(s.at.abs()) * 0.05 };
         if main {
-            penalty += TO_PUBLIC * self.to_public(line.middle());
+            penalty += TO_PUBLIC * self.to_public(line.middle()) + TO_ZONES * self.ill_zoned(line.middle());
         }
         if !main {
             let away = doors
@@ -327,6 +330,21 @@ impl Site<'_> {
             (c.x - p.x).abs() + (c.y - p.y).abs()
         });
         far.reduce(f64::min).unwrap_or(0.0)
+    }
+
+    /// Returns what the rooms lose by their distance from an entrance here, as the search for the layout counts it.
+    fn ill_zoned(&self, p: Point) -> f64 {
+        let size = self.net_m2.iter().sum::<f64>().sqrt().max(1.0);
+        let far = |b: &Cellbox| {
+            let c = b.to_rect().center();
+            ((c.x - p.x).abs() + (c.y - p.y).abs()) / size
+        };
+        let largest = |r: usize| {
+            let own = self.boxes.iter().filter(|(room, _)| *room == r).map(|(_, b)| b);
+            own.max_by(|a, b| a.area_m2().total_cmp(&b.area_m2()))
+        };
+        let (rooms, home) = (self.brief.rooms.iter().enumerate(), self.brief.is_home());
+        rooms.filter_map(|(r, spec)| Some(ill_placed(spec.zone, far(largest(r)?), home))).sum()
     }
 
     fn door(

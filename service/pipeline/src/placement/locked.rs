@@ -71,6 +71,7 @@ pub(super) fn placed<'a>(locked: &[&Placement], domain: &'a Domain, space: &Spac
             bbox: solid.rect,
             reach: solid.rect,
             needs_wall: mount == Mount::Wall,
+            parked: Vec::new(),
         };
         units.push(Placed {
             unit: Rc::new(unit),

@@ -3,7 +3,8 @@
 //! `nav` keeps the floor of the robot at hand in one piece on a grid. Here the floor of a small robot, a square 0.2 m
 //! wide, is held exactly, by the same definition as the measure NAV of finished worlds (SceneEval): everything whose
 //! middle is no higher than 2 m is in its way. A gap at the limit of that width is open on one raster and closed on
-//! another, so it is looked at for several widths around it.
+//! another, and a slit between two rows of chairs may be open at one end and closed at the other, so it is looked at for
+//! several widths around it and as several rasters see it.
 
 use d3dgen_model::occupancy::Bitmap;
 
@@ -11,15 +12,62 @@ use super::geom::{Box2, FLAT, Solid};
 use super::space::Space;
 use super::state::Placed;
 
-/// Half widths of the robot that are looked at, mm: 0.2 m, and what rasters of 4 cm make of it at least and at most.
-/// None is a multiple of 5 mm, so that no gap is exactly as wide.
-const HALVES: [i32; 7] = [82, 88, 94, 99, 106, 112, 118];
+/// Ways to look at the floor: half widths of the robot of 0.2 m and what rasters of 4 cm make of it at least and at most,
+/// then rasters of several cells and origins. No half width is a multiple of 5 mm, so that no gap is exactly as wide.
+const VIEWS: [View; 12] = [
+    View::Exact(82),
+    View::Exact(88),
+    View::Exact(94),
+    View::Exact(99),
+    View::Exact(106),
+    View::Exact(112),
+    View::Exact(118),
+    View::Raster { cell: 40, at: (3, 17) },
+    View::Raster { cell: 40, at: (23, 37) },
+    View::Raster { cell: 50, at: (11, 31) },
+    View::Raster { cell: 67, at: (29, 7) },
+    View::Raster { cell: 83, at: (47, 61) },
+];
+/// Width of the robot that rasters look at, mm.
+const ROBOT: i32 = 200;
 /// Height up to which the middle of a thing makes it an obstacle, mm.
 const OVERHEAD: i32 = 2000;
 /// How far floor is looked at through the doors, mm; more than the widest robot.
 const THRESHOLD: i32 = 300;
 /// How far what is no floor reaches around the room, mm; beyond the thresholds.
 const AROUND: i32 = 400;
+
+/// A way to look at the floor.
+#[derive(Debug, Clone, Copy)]
+enum View {
+    /// To the millimeter, for half a width of the robot, mm.
+    Exact(i32),
+    /// In cells of this edge, mm: a cell is taken when its center is. One center lies at `at`.
+    Raster { cell: i32, at: (i32, i32) },
+}
+
+impl View {
+    /// Returns where the robot's center cannot be because of an obstacle; `None` when no cell sees it.
+    fn around(self, o: &Box2) -> Option<Box2> {
+        match self {
+            Self::Exact(half) => Some(o.grown(half)),
+            Self::Raster { cell, at } => {
+                let side = |low: i32, high: i32, at: i32| {
+                    let first = (low - at).div_euclid(cell) + i32::from((low - at).rem_euclid(cell) > 0);
+                    let last = (high - at).div_euclid(cell);
+                    // a robot of an even number of cells has one more on one side of its center than on the other
+                    let cells = (ROBOT + cell / 2) / cell;
+                    let (before, after) = ((cells - 1) / 2, cells / 2);
+                    (first <= last).then(|| {
+                        (cell * (first - before) + at - cell / 2, cell * (last + after + 1) + at - cell / 2)
+                    })
+                };
+                let ((x0, x1), (y0, y1)) = (side(o.x0, o.x1, at.0)?, side(o.y0, o.y1, at.1)?);
+                Some(Box2 { x0, y0, x1, y1 })
+            }
+        }
+    }
+}
 
 /// A room's floor with what stands in the way of a small robot.
 #[derive(Debug, Clone)]
@@ -69,25 +117,24 @@ impl Pockets {
 
     /// Returns true when more things close off floor that is open without them.
     pub fn is_closed_by(&self, more: &[Box2]) -> bool {
-        HALVES.iter().filter(|half| self.may_part(more, **half)).any(|half| {
-            let closed = self.closed_off(more, *half);
-            closed > 0 && closed > self.closed_off(&[], *half)
+        VIEWS.iter().filter(|view| self.may_part(more, **view)).any(|view| {
+            let closed = self.closed_off(more, *view);
+            closed > 0 && closed > self.closed_off(&[], *view)
         })
     }
 
-    /// Returns the floor that is closed off, mm^2 of places for a robot's center, summed over the widths looked at.
+    /// Returns the floor that is closed off, mm^2 of places for a robot's center, summed over the views.
     pub fn area(&self) -> i64 {
-        HALVES.iter().map(|half| self.closed_off(&[], *half)).sum()
+        VIEWS.iter().map(|view| self.closed_off(&[], *view)).sum()
     }
 
     /// Returns true when the free floor along the edge of something new is in several pieces: it may part them.
-    fn may_part(&self, more: &[Box2], half: i32) -> bool {
+    fn may_part(&self, more: &[Box2], view: View) -> bool {
         let mut blocked: Vec<(i32, i32)> = Vec::new();
         more.iter().enumerate().any(|(n, new)| {
-            let ring = new.grown(half);
+            let Some(ring) = view.around(new) else { return false };
             blocked.clear();
-            for other in self.obstacles.iter().chain(&more[..n]) {
-                let o = other.grown(half);
+            for o in self.obstacles.iter().chain(&more[..n]).filter_map(|o| view.around(o)) {
                 if o.x0 <= ring.x1 && o.x1 >= ring.x0 && o.y0 <= ring.y1 && o.y1 >= ring.y0 {
                     along_ring(&ring, &o, &mut blocked);
                 }
@@ -97,8 +144,8 @@ impl Pockets {
     }
 
     /// Returns the floor that cannot be reached from the largest part, mm^2 of places for the robot's center.
-    fn closed_off(&self, more: &[Box2], half: i32) -> i64 {
-        let grown: Vec<Box2> = self.obstacles.iter().chain(more).map(|o| o.grown(half)).collect();
+    fn closed_off(&self, more: &[Box2], view: View) -> i64 {
+        let grown: Vec<Box2> = self.obstacles.iter().chain(more).filter_map(|o| view.around(o)).collect();
         let f = self.frame;
         let marks = |low: i32, high: i32, edges: &dyn Fn(&Box2) -> [i32; 2]| {
             let mut out: Vec<i32> = grown.iter().flat_map(edges).filter(|v| low < *v && *v < high).collect();

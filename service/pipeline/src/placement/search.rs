@@ -14,7 +14,7 @@ use super::nav::Nav;
 use super::space::{Open, Space};
 use super::state::{Placed, Rule, State};
 use super::unit::{Forms, Sizes, Unit, variants};
-use super::way::Way;
+use super::way::{self, Way};
 use crate::Stop;
 
 /// Positions whose routes are looked at before a unit counts as unplaceable.
@@ -46,7 +46,7 @@ pub(super) struct Job<'a, 's> {
     pub salt: u64,
     /// Radius of the robot, mm.
     pub radius: i32,
-    /// In circulation, what must stay open.
+    /// What must stay open from door to door, or for beds.
     pub way: Option<&'s Way>,
     /// The same with the width that is advised, where the room has it.
     pub wide_way: Option<&'s Way>,
@@ -62,28 +62,33 @@ pub(super) struct Level {
     pub margin: i32,
     /// True to look for the free floor and the width of ways that are advised too.
     pub advised: bool,
+    /// True to keep ways outside of circulation too.
+    pub ways: bool,
     /// What is kept free before doors and windows.
     pub open: Open,
 }
 
 impl Level {
     const fn new(tightness: f64, margin: i32) -> Self {
-        Self { tightness, margin, advised: false, open: Open { doors: true, windows: false } }
+        Self { tightness, margin, advised: false, ways: true, open: Open { doors: true, windows: false } }
     }
 }
 
 const NOT_OPEN: Open = Open { doors: false, windows: false };
 
 /// The passes in turn, the strictest first.
-pub(super) const LEVELS: [Level; 8] = [
+pub(super) const LEVELS: [Level; 11] = [
     Level { advised: true, open: Open { doors: true, windows: true }, ..Level::new(1.0, 50) },
     Level { open: Open { doors: true, windows: true }, ..Level::new(1.0, 50) },
     Level::new(1.0, 20),
     Level::new(0.75, 20),
-    Level { open: NOT_OPEN, ..Level::new(1.0, 20) },
-    Level { open: NOT_OPEN, ..Level::new(0.75, 20) },
-    Level { open: NOT_OPEN, ..Level::new(0.5, 10) },
-    Level { open: NOT_OPEN, ..Level::new(0.0, 5) },
+    Level { ways: false, ..Level::new(1.0, 20) },
+    Level { ways: false, ..Level::new(0.75, 20) },
+    Level { ways: false, ..Level::new(0.65, 20) },
+    Level { ways: false, open: NOT_OPEN, ..Level::new(1.0, 20) },
+    Level { ways: false, open: NOT_OPEN, ..Level::new(0.75, 20) },
+    Level { ways: false, open: NOT_OPEN, ..Level::new(0.5, 10) },
+    Level { ways: false, open: NOT_OPEN, ..Level::new(0.0, 5) },
 ];
 
 /// A furnished room.
@@ -146,12 +151,12 @@ struct Pass<'j, 'a, 's> {
 
 impl<'j, 'a, 's> Pass<'j, 'a, 's> {
     fn new(job: &'j Job<'a, 's>, level: usize) -> Self {
-        let Level { tightness, margin, advised, open } = LEVELS[level];
+        let Level { tightness, margin, advised, ways, open } = LEVELS[level];
         let forms = job.tasks.iter().map(|task| {
             let tightness = if task.required > 0 { tightness } else { 1.0 };
             let free = matches!(task.arrangement, Arrangement::Center | Arrangement::Rows);
             let (sizes, aims, ceiling) = (job.sizes, job.aims, job.space.ceiling);
-            variants(job.domain, task.item, &Forms { sizes, aims, tightness, advised, ceiling })
+            variants(job.domain, task.item, &Forms { sizes, aims, tightness, advised, ceiling, robot: 2 * job.radius })
                 .into_iter()
                 .map(|unit| if free { unit.free_standing() } else { unit })
                 .map(|unit| {
@@ -166,7 +171,8 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
         let mut start = State::new(
             job.space,
             Nav::new(job.space, job.radius + margin),
-            if advised { job.wide_way } else { job.way },
+            if advised { job.wide_way } else { job.way }
+                .filter(|way| ways || way.kind == way::Kind::Circulation),
             open,
         );
         start.add(job.locked.to_vec());

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use d3dgen_knowledge::{Aim, Limits};
-use d3dgen_model::domain::{Domain, ObjectType, RoomType};
+use d3dgen_model::domain::{Domain, ObjectType, RoomType, Shape};
 use d3dgen_model::floorplan::{Floorplan, PlanRoom};
 use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::seed::Stream;
@@ -28,7 +28,7 @@ pub(super) struct Setting<'a> {
     sizes: BTreeMap<&'a str, usize>,
     /// Radius of the robot, mm.
     pub radius: i32,
-    /// In circulation, what must stay open.
+    /// What must stay open from door to door, or for beds.
     pub way: Option<Way>,
     /// The same with the width that is advised, where the room has it.
     pub wide_way: Option<Way>,
@@ -63,9 +63,9 @@ impl<'a> Setting<'a> {
         let salt = (stream.unit() * (1_u64 << 52) as f64) as u64;
         let sizes = pick_sizes(domain, &aims, &mut stream);
         let width_m = way_width(graph, domain, limits);
-        let way = Way::new(plan, room, width_m);
-        let wide_way = Way::new(plan, room, limits.corridor_width_advised.unwrap_or(0.0).max(width_m));
-        let wide_way = wide_way.or_else(|| way.clone());
+        let wide_m = limits.corridor_width_advised.unwrap_or(0.0).max(width_m);
+        let beds = tasks.iter().any(|t| t.anchor.shape == Shape::HospitalBed);
+        let [way, wide_way] = Way::of_room(plan, room, [width_m, wide_m], beds);
         Self { domain, kind, radius: radius(graph, &space), space, tasks, aims, salt, sizes, way, wide_way }
     }
 

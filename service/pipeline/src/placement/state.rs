@@ -4,14 +4,14 @@ use std::cell::RefCell;
 use std::rc::Rc;
 
 use d3dgen_knowledge::clearance::HEAD_ROOM_M;
-use d3dgen_model::domain::Mount;
+use d3dgen_model::domain::{Mount, Shape};
 
 use super::geom::{Box2, Solid, mm, turn};
 use super::nav::Nav;
 use super::pockets::Pockets;
 use super::space::{Open, Space};
-use super::unit::{Part, Unit};
-use super::way::Way;
+use super::unit::{Part, Unit, is_seat};
+use super::way::{InTheWay, Way};
 
 /// A hard rule that a position can break.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -111,8 +111,7 @@ pub(super) struct State<'a, 's> {
     pub clears: Vec<Box2>,
     /// Outlines of what takes floor: not what is flat, hangs high or flat on a wall.
     bodies: Vec<Box2>,
-    /// Outlines of what narrows a way for people.
-    narrowing: Vec<Box2>,
+    in_the_way: InTheWay,
     nav: Nav,
     /// Floor that is free for a small robot.
     pub pockets: Pockets,
@@ -123,7 +122,7 @@ pub(super) struct State<'a, 's> {
     targets: Vec<Vec<Box2>>,
     /// Clear floor the robot can use, in cells.
     pub free_area: usize,
-    /// In circulation, what must stay open.
+    /// What must stay open from door to door, or for beds.
     way: Option<&'s Way>,
 }
 
@@ -137,7 +136,7 @@ impl<'a, 's> State<'a, 's> {
             solids: Vec::new(),
             clears: Vec::new(),
             bodies: Vec::new(),
-            narrowing: Vec::new(),
+            in_the_way: InTheWay::default(),
             nav,
             pockets: Pockets::new(space),
             open,
@@ -221,10 +220,13 @@ impl<'a, 's> State<'a, 's> {
 
     /// Returns how many cells of floor stay reachable once the units stand there, or the rule they break.
     pub fn route(&self, units: &[Placed]) -> Result<usize, Rule> {
-        let narrowing: Vec<Box2> = units.iter().flat_map(narrowing).collect();
-        let open = |way: &Way| narrowing.is_empty() || way.stays_open(&[&self.narrowing[..], &narrowing].concat());
-        if !self.way.is_none_or(open) {
-            return Err(Rule::Route);
+        if let Some(way) = self.way {
+            let more = in_the_way(units);
+            let mut there = self.in_the_way.clone();
+            there.extend(&more);
+            if !more.is_empty() && !way.stays_open(&there) {
+                return Err(Rule::Route);
+            }
         }
         let obstacles: Vec<Box2> = units.iter().flat_map(obstacles).collect();
         if obstacles.is_empty() {
@@ -261,7 +263,7 @@ impl<'a, 's> State<'a, 's> {
             obstacles(&p).for_each(|o| self.nav.block(&o));
             self.pockets.add(&p);
             self.bodies.extend(bodies(&p));
-            self.narrowing.extend(narrowing(&p));
+            self.in_the_way.extend(&in_the_way(std::slice::from_ref(&p)));
             if p.support.is_none() {
                 self.clears.extend(p.unit.clears.iter().map(|c| p.world(c)));
             }
@@ -286,12 +288,27 @@ fn bodies(p: &Placed) -> impl Iterator<Item = Box2> {
     p.unit.parts.iter().map(|part| (part, p.solid(part))).filter(|(part, s)| takes_floor(part, s)).map(|(_, s)| s.rect)
 }
 
-/// Returns the outlines of what narrows a way for people: what takes floor, and what stands out from a wall below their
-/// heads.
-fn narrowing(p: &Placed) -> impl Iterator<Item = Box2> {
-    let stands_out = |part: &Part, s: &Solid| part.mount == Mount::Wall && !part.is_shallow() && s.z0 < mm(HEAD_ROOM_M);
-    let parts = p.unit.parts.iter().map(|part| (part, p.solid(part)));
-    parts.filter(move |(part, s)| takes_floor(part, s) || stands_out(part, s)).map(|(_, s)| s.rect)
+/// Returns what units put in the way: what takes floor, what stands out from a wall below people's heads, robots at their
+/// docks. For a bed one moves the chairs, and what came with it goes with it.
+fn in_the_way(units: &[Placed]) -> InTheWay {
+    let mut out = InTheWay::default();
+    for p in units {
+        let stands_out = |part: &Part, s: &Solid| part.mount == Mount::Wall && !part.is_shallow() && s.z0 < mm(HEAD_ROOM_M);
+        let with_bed = p.unit.parts.iter().any(|part| part.object.shape == Shape::HospitalBed);
+        for (part, s) in p.unit.parts.iter().map(|part| (part, p.solid(part))) {
+            if !takes_floor(part, &s) && !stands_out(part, &s) {
+                continue;
+            }
+            out.narrowing.push(s.rect);
+            if part.object.shape == Shape::HospitalBed {
+                out.beds.push(s.rect);
+            } else if !with_bed && !is_seat(part.object.shape) {
+                out.fixed.push(s.rect);
+            }
+        }
+        out.parked.extend(p.unit.parked.iter().map(|b| p.world(b)));
+    }
+    out
 }
 
 fn takes_floor(part: &Part, solid: &Solid) -> bool {

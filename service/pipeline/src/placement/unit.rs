@@ -13,6 +13,9 @@ use super::geom::{Box2, ROBOT_HEIGHT, Solid, mm};
 /// Largest number of members kept around one anchor, whatever a domain says.
 const MAX_MEMBERS: u32 = 40;
 
+/// Depth from the edge of a desk or counter to what stands behind who sits at it, m.
+const SEAT_DEPTH_M: f64 = 1.0;
+
 /// One object of a unit.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Part<'a> {
@@ -54,6 +57,8 @@ pub(super) struct Unit<'a> {
     pub reach: Box2,
     /// True when a part hangs on the wall behind, so the unit cannot stand free.
     pub needs_wall: bool,
+    /// Floor that robots take while they charge at its docks.
+    pub parked: Vec<Box2>,
 }
 
 /// Which size each object has in this room: index into `sizes_m` by object id.
@@ -72,13 +77,15 @@ pub(super) struct Forms<'s> {
     pub advised: bool,
     /// Things that hang stay below it, mm.
     pub ceiling: i32,
+    /// Diameter of the robots that charge, mm; 0 where none is asked after.
+    pub robot: i32,
 }
 
 impl Forms<'static> {
     /// The first size of everything, under no rules.
     pub fn plain(ceiling: i32) -> Self {
         static NONE: BTreeMap<&str, Aim> = BTreeMap::new();
-        Self { sizes: &|_| 0, aims: &NONE, tightness: 1.0, advised: false, ceiling }
+        Self { sizes: &|_| 0, aims: &NONE, tightness: 1.0, advised: false, ceiling, robot: 0 }
     }
 }
 
@@ -94,7 +101,7 @@ impl<'a> Unit<'a> {
             part.solid.rect = part.solid.rect.mirrored();
             part.quarter = (4 - part.quarter) % 4;
         }
-        out.clears.iter_mut().for_each(|c| *c = c.mirrored());
+        out.clears.iter_mut().chain(&mut out.parked).for_each(|c| *c = c.mirrored());
         out.bbox = out.bbox.mirrored();
         out.reach = out.reach.mirrored();
         let key = |u: &Self| {
@@ -113,7 +120,7 @@ impl<'a> Unit<'a> {
             return self;
         }
         let parts = self.parts.into_iter().filter(|p| p.mount != Mount::Wall).collect();
-        finish_with(self.item, self.group, parts, self.clears)
+        finish_with(self.item, self.group, parts, self.clears, self.parked)
     }
 
     /// Returns where its users look, in quarter turns against the anchor's front: pupils at their tables look over the
@@ -139,7 +146,7 @@ impl<'a> Unit<'a> {
             return None;
         }
         let parts: Vec<Part> = self.parts.iter().filter(|p| !gone(p)).cloned().collect();
-        Some(finish_with(self.item, self.group, parts, self.clears.clone()))
+        Some(finish_with(self.item, self.group, parts, self.clears.clone(), self.parked.clone()))
     }
 
     /// Returns how many people can lie on the unit's beds: two on a wide one.
@@ -221,7 +228,7 @@ fn advised<'a>(unit: &Unit<'a>, forms: &Forms) -> Option<Unit<'a>> {
         }
     }
     let more = clears.len() > unit.clears.len();
-    more.then(|| finish_with(unit.item, unit.group, unit.parts.clone(), clears))
+    more.then(|| finish_with(unit.item, unit.group, unit.parts.clone(), clears, unit.parked.clone()))
 }
 
 /// Adds the free floor that is advised for a part where it is more than its type asks for.
@@ -287,7 +294,7 @@ impl<'a> Plan<'a, '_> {
                 add_member(&mut parts, member, object, sizes(object), self.forms.ceiling);
             }
         }
-        finish(self.item, self.group.is_some(), parts, self.forms.tightness)
+        finish(self.item, self.group.is_some(), parts, self.forms)
     }
 }
 
@@ -305,15 +312,48 @@ fn hung(object: &ObjectType, h: i32, ceiling: i32) -> i32 {
     }
 }
 
-fn finish<'a>(item: &'a str, group: bool, parts: Vec<Part<'a>>, tightness: f64) -> Unit<'a> {
+fn finish<'a>(item: &'a str, group: bool, parts: Vec<Part<'a>>, forms: &Forms) -> Unit<'a> {
     let mut clears = Vec::new();
-    parts.iter().for_each(|part| clears_of(part, tightness, &mut clears));
+    parts.iter().for_each(|part| clears_of(part, forms.tightness, &mut clears));
+    seats_behind(&parts, forms.tightness, &mut clears);
+    let docks = parts.iter().filter(|p| p.object.shape == Shape::Dock && forms.robot > 0);
+    let parked: Vec<Box2> = docks.map(|dock| parked_at(dock, forms.robot)).collect();
+    clears.extend(&parked);
     // a strip of free floor that lies under the unit's own anchor says nothing
     clears.retain(|c| !parts.iter().any(|p| p.solid.stops_robot() && p.solid.rect.contains(c)));
-    finish_with(item, group, parts, clears)
+    finish_with(item, group, parts, clears, parked)
 }
 
-fn finish_with<'a>(item: &'a str, group: bool, parts: Vec<Part<'a>>, clears: Vec<Box2>) -> Unit<'a> {
+/// Returns the floor that a robot of this diameter takes at a dock, mm.
+fn parked_at(dock: &Part, robot: i32) -> Box2 {
+    let own = dock.solid.rect.turned((4 - dock.quarter) % 4);
+    let middle = (own.y0 + own.y1) / 2;
+    Box2 { x0: own.x1, x1: own.x1 + robot, y0: middle - robot / 2, y1: middle + robot - robot / 2 }.turned(dock.quarter)
+}
+
+/// Adds the floor to sit down and get up on behind counters and desks that face away from their user: seats of desks with
+/// the user in front have it by the desk's own clearance.
+fn seats_behind(parts: &[Part], tightness: f64, out: &mut Vec<Box2>) {
+    let anchor = &parts[0];
+    let (desk, depth) = (anchor.solid.rect, mm(SEAT_DEPTH_M * tightness));
+    if !matches!(anchor.object.shape, Shape::Desk | Shape::Counter | Shape::Table) {
+        return;
+    }
+    let behind = parts[1..].iter().filter(|p| is_seat(p.object.shape) && p.quarter == 0 && p.solid.rect.x1 <= desk.x0);
+    out.extend(behind.map(|p| p.solid.rect).filter(|seat| seat.x0 > desk.x0 - depth).map(|seat| Box2 {
+        x0: desk.x0 - depth,
+        x1: seat.x0,
+        ..seat
+    }));
+}
+
+fn finish_with<'a>(
+    item: &'a str,
+    group: bool,
+    parts: Vec<Part<'a>>,
+    clears: Vec<Box2>,
+    parked: Vec<Box2>,
+) -> Unit<'a> {
     let mut bbox = parts[0].solid.rect;
     for part in &parts {
         if part.mount != Mount::Ceiling && part.mount != Mount::Surface && !part.solid.is_flat() {
@@ -323,7 +363,7 @@ fn finish_with<'a>(item: &'a str, group: bool, parts: Vec<Part<'a>>, clears: Vec
     let reach = clears.iter().fold(bbox, |r, c| r.union(c));
     let back = bbox.x0;
     let needs_wall = parts.iter().any(|p| p.mount == Mount::Wall && p.solid.rect.x0 <= back + 5);
-    Unit { item, group, parts, clears, bbox, reach, needs_wall }
+    Unit { item, group, parts, clears, bbox, reach, needs_wall, parked }
 }
 
 /// Adds the floor in front of and beside a part that must stay free.

@@ -1,33 +1,115 @@
-//! The way through circulation: how wide it must stay from door to door.
+//! Ways through a room that furniture must leave open: from door to door in circulation and between the entrance and
+//! what lies behind a reception, and for beds from where they stand to the corridor.
 
 use d3dgen_knowledge::freespace::FreeSpace;
 use d3dgen_model::floorplan::{Door, Floorplan, PlanRoom};
-use d3dgen_model::{Polygon, TOLERANCE_M};
+use d3dgen_model::{Polygon, Rect, TOLERANCE_M};
 
 use super::geom::Box2;
 
-/// What has to get through a circulation room.
+/// Width of the way from the entrance through a room, m: what accessible routes have at least (ISO 21542), and what lets
+/// a wheelchair turn. Buildings whose corridors are narrower ask for no more than those have.
+const THROUGH_M: [f64; 2] = [1.2, 1.5];
+/// Floor that a bed takes beside its own width when it is pushed, m, at least and as one would have it.
+const BESIDE_BED_M: [f64; 2] = [0.05, 0.2];
+
+/// What has to get through a room.
 #[derive(Debug, Clone)]
 pub(super) struct Way {
     outline: Polygon,
     doors: Vec<Door>,
-    /// Clear width to keep, m.
+    /// Clear width to keep, m; of a way for beds what goes beyond the width of the bed.
     width_m: f64,
+    pub kind: Kind,
+}
+
+/// Who goes there.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// Everybody, through circulation.
+    Circulation,
+    /// Everybody, from the entrance to circulation, through a room that is something else.
+    Through,
+    /// Beds, to the corridor.
+    Beds,
+}
+
+/// What stands in a room, as ways see it.
+#[derive(Debug, Clone, Default)]
+pub(super) struct InTheWay {
+    /// Outlines of what narrows a way for people.
+    pub narrowing: Vec<Box2>,
+    /// Floor that robots take at their docks.
+    pub parked: Vec<Box2>,
+    /// Outlines of beds on wheels.
+    pub beds: Vec<Box2>,
+    /// Outlines of what nobody moves for a bed.
+    pub fixed: Vec<Box2>,
+}
+
+impl InTheWay {
+    /// Returns true when nothing is in anybody's way.
+    pub fn is_empty(&self) -> bool {
+        self.narrowing.is_empty() && self.parked.is_empty() && self.beds.is_empty()
+    }
+
+    /// Adds what else stands there.
+    pub fn extend(&mut self, more: &Self) {
+        self.narrowing.extend_from_slice(&more.narrowing);
+        self.parked.extend_from_slice(&more.parked);
+        self.beds.extend_from_slice(&more.beds);
+        self.fixed.extend_from_slice(&more.fixed);
+    }
 }
 
 impl Way {
-    /// Returns the way of a clear width, m, through a room; `None` where it is no circulation, or narrower without furniture already (then
-    /// only robots' own room counts).
-    pub fn new(plan: &Floorplan, room: &PlanRoom, width_m: f64) -> Option<Self> {
-        let out =
-            Self { outline: room.net_polygon.clone(), doors: plan.doors_of(&room.room_id).cloned().collect(), width_m };
-        (room.circulation && out.stays_open(&[])).then_some(out)
+    /// Returns the ways that a room keeps, the least one and the one that is advised, where the empty room has them;
+    /// `widths_m` are those of circulation, `beds` tells whether patients are brought in their beds.
+    pub fn of_room(plan: &Floorplan, room: &PlanRoom, widths_m: [f64; 2], beds: bool) -> [Option<Self>; 2] {
+        let circulation = |id: &String| *id != room.room_id && plan.room(id).is_some_and(|r| r.circulation);
+        let doors = || plan.doors_of(&room.room_id);
+        let inward: Vec<Door> = doors().filter(|d| d.room_ids.iter().any(circulation)).cloned().collect();
+        let entrance = doors().find(|d| d.entrance);
+        let (kind, doors, widths): (_, Vec<Door>, _) = if room.circulation {
+            (Kind::Circulation, doors().cloned().collect(), widths_m)
+        } else if let Some(entrance) = entrance.filter(|_| !inward.is_empty()) {
+            let widths = [0, 1].map(|k| THROUGH_M[k].min(widths_m[k]));
+            (Kind::Through, inward.into_iter().chain([entrance.clone()]).collect(), widths)
+        } else if beds && !inward.is_empty() {
+            (Kind::Beds, inward, BESIDE_BED_M)
+        } else {
+            return [None, None];
+        };
+        let way = |width_m: f64| {
+            let out = Self { outline: room.net_polygon.clone(), doors: doors.clone(), width_m, kind };
+            // narrower without furniture already: only robots' own room counts then
+            out.stays_open(&InTheWay::default()).then_some(out)
+        };
+        let least = way(widths[0]);
+        let advised = way(widths[1].max(widths[0])).or_else(|| least.clone());
+        [least, advised]
     }
 
-    /// Returns true when the obstacles leave the width between all doors.
-    pub fn stays_open(&self, obstacles: &[Box2]) -> bool {
-        let taken: Vec<_> = obstacles.iter().map(Box2::meters).collect();
+    /// Returns true when what stands there leaves the width.
+    pub fn stays_open(&self, there: &InTheWay) -> bool {
         let doors: Vec<&Door> = self.doors.iter().collect();
-        FreeSpace::new(&self.outline, &taken).passes(&doors, self.width_m - TOLERANCE_M)
+        let free = |taken: &mut dyn Iterator<Item = &Box2>| {
+            let taken: Vec<Rect> = taken.map(Box2::meters).collect();
+            FreeSpace::new(&self.outline, &taken)
+        };
+        match self.kind {
+            Kind::Circulation => free(&mut there.narrowing.iter()).passes(&doors, self.width_m - TOLERANCE_M),
+            Kind::Through => {
+                let taken = &mut there.narrowing.iter().chain(&there.parked);
+                free(taken).passes(&doors, self.width_m - TOLERANCE_M)
+            }
+            Kind::Beds => there.beds.iter().enumerate().all(|(k, bed)| {
+                let others = there.beds.iter().enumerate().filter(|(n, _)| *n != k).map(|(_, b)| b);
+                let floor = free(&mut there.fixed.iter().chain(others));
+                let bed = bed.meters();
+                let width = bed.width().min(bed.height()) + self.width_m - TOLERANCE_M;
+                self.doors.iter().any(|door| floor.leads(door, &bed, width))
+            }),
+        }
     }
 }
