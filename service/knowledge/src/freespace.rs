@@ -213,6 +213,15 @@ mod tests {
     }
 
     #[test]
+    fn a_square_is_pushed_from_a_door_to_a_piece_of_floor() {
+        let space = FreeSpace::new(&corridor(), &[]);
+        let (door, bed) = (door(-0.06, 0.2, -0.06, 1.2), Rect::new(8.9, 5.0, 9.9, 7.1));
+        assert!(space.leads(&door, &bed, 1.1) && !space.leads(&door, &bed, 1.3), "the arm is 1.2 m wide");
+        let narrowed = FreeSpace::new(&corridor(), &[Rect::new(9.6, 3.0, 10.0, 3.5)]);
+        assert!(!narrowed.leads(&door, &bed, 1.1) && narrowed.leads(&door, &bed, 0.8));
+    }
+
+    #[test]
     fn furniture_narrows_the_way_and_may_close_it() {
         let ends = [door(-0.06, 0.2, -0.06, 1.2), door(8.9, 7.56, 9.9, 7.56)];
         let ends: Vec<&Door> = ends.iter().collect();

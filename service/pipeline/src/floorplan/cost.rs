@@ -12,7 +12,7 @@ use super::core::{Below, in_core, overhang};
 use super::lattice::{Cellbox, INNER_HALF_M, JAMB_M, OUTER_HALF_M, meters, up};
 use super::mirror;
 use super::realize::{Layout, door_need};
-use super::spec::Brief;
+use super::spec::{Brief, RoomSpec};
 
 /// Cost of a room whose area is outside what is advised, beside that of how far.
 const ILL_ADVISED: f64 = 0.4;
@@ -44,6 +44,8 @@ pub(super) const WINDOW_WALL_M: f64 = 1.2;
 /// Wall beside the latch of a door that people in wheelchairs pull open, beyond the least one, m (18 in together).
 const LATCH_SIDE_M: f64 = 0.457 - JAMB_M;
 
+/// Cost of a ward none of whose bedroom doors its station sees.
+const OUT_OF_SIGHT: f64 = 1.0;
 /// Longest piece of outer wall that is looked at as an end of a corridor, lattice units.
 const END_WALL: i32 = 80;
 /// Cost of a sleeping room larger than the room of the day that is to be the largest, beside that of how much.
@@ -370,6 +372,7 @@ impl<'b> Judge<'b> {
             brief.rooms.iter().zip(rooms).filter_map(|(spec, r)| Some(ill_placed(spec.zone, far(r.main?), home))).sum::<f64>()
         });
         score.soft[7] += lost.reduce(f64::min).unwrap_or(0.0);
+        score.soft[7] += OUT_OF_SIGHT * self.out_of_sight();
         score.soft[0] += self.wrong_order();
         for (room, shape) in &layout.boxes {
             if Some(*room) != brief.spine && rooms[*room].main != Some(*shape) {
@@ -406,6 +409,37 @@ impl<'b> Judge<'b> {
             out.push((0, Gate { at: main.center2(), room: main }));
         }
         out.into_iter().map(|(_, gate)| gate).collect()
+    }
+
+    /// Returns the share of bedrooms on the side of the corridor on which all stations with an open front are: from there
+    /// one sees the doors across.
+    fn out_of_sight(&self) -> f64 {
+        let (brief, rooms) = (self.brief, &self.survey.rooms);
+        let Some(corridor) = brief.spine.filter(|_| !brief.hub).and_then(|s| rooms[s].main) else { return 0.0 };
+        let side = |b: Cellbox| {
+            let (cx, cy) = b.center2();
+            let (at, low, high) = if corridor.width() >= corridor.height() {
+                (cy, corridor.y0, corridor.y1)
+            } else {
+                (cx, corridor.x0, corridor.x1)
+            };
+            i32::from(at > 2 * high) - i32::from(at < 2 * low)
+        };
+        let sides = |wanted: fn(&RoomSpec) -> bool| {
+            let of = brief.rooms.iter().zip(rooms).filter(move |(spec, _)| spec.on_spine && wanted(spec));
+            of.filter_map(move |(_, room)| Some(side(room.main?)))
+        };
+        let stations = || sides(|spec| spec.zone == Zone::Staff && spec.open_front);
+        let Some(first) = stations().next() else { return 0.0 };
+        if first == 0 || stations().any(|side| side != first) {
+            return 0.0;
+        }
+        let (mut all, mut hidden) = (0, 0);
+        for side in sides(|spec| spec.zone == Zone::Night) {
+            all += 1;
+            hidden += u32::from(side == first);
+        }
+        f64::from(hidden) / f64::from(all.max(1))
     }
 
     /// Returns what it costs that a sleeping room has become larger than the room of the day that was to be the largest.

@@ -274,6 +274,17 @@ mod tests {
     }
 
     #[test]
+    fn a_slit_that_narrows_is_seen_by_some_raster() {
+        // 0.195 m wide at its mouth and 0.215 m behind it: the robot of 0.2 m stands inside on some rasters, enters on fewer
+        let slit = [Box2::new(0, 1000, 1000, 1200), Box2::new(1195, 1000, 3000, 1200), Box2::new(1215, 1200, 3000, 3000)];
+        let room = room();
+        assert!(room.is_closed_by(&[&slit[..], &[Box2::new(0, 1200, 1000, 3000)]].concat()));
+        let view = View::Raster { cell: 40, at: (0, 0) };
+        assert_eq!(view.around(&Box2::new(-10, -10, 90, 10)), Some(Box2::new(-100, -100, 180, 100)));
+        assert_eq!(view.around(&Box2::new(5, 5, 35, 35)), None, "no center of a cell lies in it");
+    }
+
+    #[test]
     fn the_way_around_a_thing_is_counted_in_pieces() {
         assert_eq!(pieces(&mut [], 100), 1);
         assert_eq!(pieces(&mut [(0, 100)], 100), 0);

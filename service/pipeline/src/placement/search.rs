@@ -77,7 +77,7 @@ impl Level {
 const NOT_OPEN: Open = Open { doors: false, windows: false };
 
 /// The passes in turn, the strictest first.
-pub(super) const LEVELS: [Level; 11] = [
+pub(super) const LEVELS: [Level; 12] = [
     Level { advised: true, open: Open { doors: true, windows: true }, ..Level::new(1.0, 50) },
     Level { open: Open { doors: true, windows: true }, ..Level::new(1.0, 50) },
     Level::new(1.0, 20),
@@ -85,6 +85,7 @@ pub(super) const LEVELS: [Level; 11] = [
     Level { ways: false, ..Level::new(1.0, 20) },
     Level { ways: false, ..Level::new(0.75, 20) },
     Level { ways: false, ..Level::new(0.65, 20) },
+    Level { ways: false, ..Level::new(0.5, 20) },
     Level { ways: false, open: NOT_OPEN, ..Level::new(1.0, 20) },
     Level { ways: false, open: NOT_OPEN, ..Level::new(0.75, 20) },
     Level { ways: false, open: NOT_OPEN, ..Level::new(0.5, 10) },
