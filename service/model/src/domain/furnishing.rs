@@ -33,6 +33,9 @@ pub struct Furnishing {
     /// Only in buildings with beds for at least so many people.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub sleepers: u32,
+    /// Only where step-free access is asked for.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub accessible: bool,
 }
 
 fn is_zero(n: &u32) -> bool {

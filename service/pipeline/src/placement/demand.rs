@@ -71,6 +71,8 @@ pub(super) struct Household<'a> {
     room_types: Vec<&'a str>,
     /// How many people have a bed.
     sleepers: u32,
+    /// True where step-free access is asked for.
+    accessible: bool,
 }
 
 impl<'a> Household<'a> {
@@ -80,12 +82,13 @@ impl<'a> Household<'a> {
             let lines = domain.room_type_or_generic(kind).furnishing.iter().filter(|f| f.required);
             lines.filter_map(|f| Some(f.min * usual_unit(domain, &f.item)?.beds())).sum::<u32>()
         };
-        Self { sleepers: room_types.iter().map(beds).sum(), room_types }
+        Self { sleepers: room_types.iter().map(beds).sum(), room_types, accessible: graph.accessible }
     }
 
     fn wants(&self, line: &Furnishing) -> bool {
         let has = |kind: &String| self.room_types.iter().any(|t| t == kind);
-        !line.unless_rooms.iter().any(has) && self.sleepers >= line.sleepers
+        let reached = self.accessible || !line.accessible;
+        reached && !line.unless_rooms.iter().any(has) && self.sleepers >= line.sleepers
     }
 }
 
@@ -146,10 +149,12 @@ pub(super) fn tasks<'a>(
         out.iter_mut().filter(|t| t.is_seated()).for_each(Task::allow_full_rows);
     }
     turn_to_audience(&mut out);
+    // a household eats before its vacuum robot does
+    let table = |t: &Task| kind.furnishing.get(t.line).is_some_and(|f| !f.unless_rooms.is_empty());
     // a dock needs more floor than what it stands beside; corners are few: what cannot do without one comes before what
     // only wants a wall
     let dock = |t: &Task| t.required == 0 && t.anchor.shape == Shape::Dock;
-    out.sort_by_key(|t| (phase(t), !dock(t), t.required == 0 || t.arrangement != Arrangement::Corner, t.line));
+    out.sort_by_key(|t| (phase(t), !table(t), !dock(t), t.required == 0 || t.arrangement != Arrangement::Corner, t.line));
     out
 }
 

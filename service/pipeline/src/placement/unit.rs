@@ -132,7 +132,11 @@ impl<'a> Unit<'a> {
         if !matches!(self.anchor().object.shape, Shape::Desk | Shape::Table) {
             return 0;
         }
-        let mut seats = self.parts.iter().filter(|p| is_seat(p.object.shape)).map(|p| p.quarter);
+        // whoever works there turns on a chair; those across the desk visit
+        let works = |p: &&Part| p.object.shape == Shape::SwivelChair;
+        let at_work = self.parts.iter().any(|p| works(&p));
+        let seats = self.parts.iter().filter(|p| if at_work { works(p) } else { is_seat(p.object.shape) });
+        let mut seats = seats.map(|p| p.quarter);
         let Some(first) = seats.next() else { return 0 };
         if seats.all(|q| q == first) { first } else { 0 }
     }
