@@ -1,5 +1,7 @@
 //! What a reviewer of plans objects to and geometry can tell, over many seeds: showers that stand about, desks in ragged
 //! rows, nurses far from their corridor, isolation rooms without their anteroom, homes entered by the bedrooms.
+//! rows, nurses far from their corridor, isolation rooms without their anteroom, homes with nowhere to eat, screens beside
+//! the sofa's axis, machines on the sink.
 //!
 //! No rule forbids these; they are what makes a plan look wrong.
 
@@ -8,7 +10,7 @@
 use std::sync::atomic::AtomicBool;
 
 use d3dgen_model::Rect;
-use d3dgen_model::floorplan::{DoorKind, PlanRoom};
+use d3dgen_model::floorplan::{Door, DoorKind, PlanRoom};
 use d3dgen_model::placements::Placement;
 use d3dgen_model::world::World;
 use d3dgen_pipeline::generate::{Settings, generate_world};
@@ -46,6 +48,154 @@ fn to_walls(room: &PlanRoom, body: &Rect) -> [f64; 2] {
         }
     }
     nearest
+}
+
+/// Returns the outline of a body on the floor.
+fn body(p: &Placement) -> Rect {
+    p.footprint().bounds()
+}
+
+/// Returns the distance between two outlines, m.
+fn gap(a: &Rect, b: &Rect) -> f64 {
+    let (dx, dy) = ((a.x0 - b.x1).max(b.x0 - a.x1).max(0.0), (a.y0 - b.y1).max(b.y0 - a.y1).max(0.0));
+    dx.hypot(dy)
+}
+
+/// Returns where a point lies in a body's own frame, m: ahead of its middle, and to its left.
+fn seen_from(p: &Placement, x: f64, y: f64) -> (f64, f64) {
+    let (sin, cos) = p.pose.yaw_rad.sin_cos();
+    let (dx, dy) = (x - p.pose.x, y - p.pose.y);
+    (dx * cos + dy * sin, dy * cos - dx * sin)
+}
+
+/// Counts what holds among what was looked at, and says what share of it must.
+fn most(what: &str, share: f64, held: &[bool]) {
+    let good = held.iter().filter(|h| **h).count();
+    assert!(!held.is_empty(), "{what}: nothing to look at");
+    assert!(good as f64 >= share * held.len() as f64, "{what}: {good} of {}", held.len());
+}
+
+/// Returns the floor on both sides of a door as deep as its leaf is wide.
+fn swept(door: &Door) -> Rect {
+    let (a, b, depth) = (door.line.start, door.line.end, door.clear_width_m);
+    let (dx, dy) = if door.line.is_vertical() { (depth, 0.0) } else { (0.0, depth) };
+    Rect::new(a.x.min(b.x) - dx, a.y.min(b.y) - dy, a.x.max(b.x) + dx, a.y.max(b.y) + dy)
+}
+
+const HOMES: [&str; 4] =
+    ["flat with 5 rooms", "flat with three bedrooms in Vienna", "house with 8 rooms", "home with 5 rooms and a robot"];
+
+#[test]
+fn homes_without_a_dining_room_have_a_table_and_seats() {
+    let mut held = Vec::new();
+    for world in HOMES.iter().flat_map(|prompt| worlds(prompt, 6)) {
+        let room = |kind: &str| world.floorplan.rooms.iter().find(|r| r.room_type == kind);
+        if room("dining_room").is_none() && room("living_room").is_some_and(|r| r.net_area_m2 >= 20.0) {
+            let chairs = world.placements.placements.iter().filter(|p| p.object == "dining_chair").count();
+            held.push(chairs >= 4);
+        }
+    }
+    most("homes with four seats at a table", 0.9, &held);
+}
+
+#[test]
+fn screens_stand_at_a_wall_across_from_the_sofa() {
+    let (mut axis, mut wall) = (Vec::new(), Vec::new());
+    for world in HOMES.iter().flat_map(|prompt| worlds(prompt, 6)) {
+        for room in world.floorplan.rooms.iter().filter(|r| r.room_type == "living_room") {
+            let (Some(sofa), Some(stand)) =
+                (placed(&world, room, "sofa").next(), placed(&world, room, "tv_stand").next())
+            else {
+                continue;
+            };
+            let (ahead, aside) = seen_from(sofa, stand.pose.x, stand.pose.y);
+            axis.push(ahead > 0.0 && aside.abs() <= 0.45);
+            wall.push(to_walls(room, &body(stand)).iter().any(|d| *d < TOUCH_M));
+        }
+    }
+    most("screens on the sofa's axis", 0.9, &axis);
+    most("screens at a wall", 1.0, &wall);
+}
+
+#[test]
+fn nothing_stands_on_bowls_and_rings() {
+    let registry = Registry::builtin();
+    let prompts = ["office with 8 rooms", "office in London with 10 rooms and clutter", "hospital ward with 8 rooms"];
+    let mut held = Vec::new();
+    for world in prompts.iter().flat_map(|prompt| worlds(prompt, 4)) {
+        let domain = &registry.get(&world.scene_graph.domain).unwrap().domain();
+        let all = &world.placements.placements;
+        for thing in all.iter().filter(|p| p.support.is_some()) {
+            let host = all.iter().find(|p| Some(&p.placement_id) == thing.support.as_ref()).unwrap();
+            let Some(kind) = domain.object(&host.object).filter(|o| !o.top_taken.is_empty()) else { continue };
+            // shares of the width from the left of who stands before it, which is its own right
+            let along = body(thing).corners().map(|c| 0.5 + seen_from(host, c.x, c.y).1 / host.size_m[0]);
+            let (from, to) = (along.iter().copied().fold(1.0, f64::min), along.iter().copied().fold(0.0, f64::max));
+            held.push(kind.top_taken.iter().all(|t| to <= t[0] + 0.01 || from >= t[1] - 0.01));
+        }
+    }
+    most("things beside bowls and rings", 1.0, &held);
+}
+
+#[test]
+fn visitors_sit_beside_the_bed() {
+    let mut held = Vec::new();
+    for world in ["hospital ward with 8 rooms in Germany", "ward with ten rooms"].iter().flat_map(|p| worlds(p, 6)) {
+        for room in world.floorplan.rooms.iter().filter(|r| r.room_type.starts_with("patient_room")) {
+            for chair in placed(&world, room, "visitor_chair") {
+                let near = |bed: &Placement| gap(&body(bed), &body(chair)) < 1.5;
+                held.push(placed(&world, room, "hospital_bed").any(near));
+            }
+        }
+    }
+    most("visitor chairs near a bed", 0.9, &held);
+}
+
+#[test]
+fn who_works_in_a_single_office_sees_the_door() {
+    let mut held = Vec::new();
+    let prompts = ["office with three private offices, a meeting room and a reception", "office with 8 rooms"];
+    for world in prompts.iter().flat_map(|prompt| worlds(prompt, 6)) {
+        for room in world.floorplan.rooms.iter().filter(|r| r.room_type == "office") {
+            let door = world.floorplan.doors_of(&room.room_id).next().unwrap().line.middle();
+            let Some(chair) = placed(&world, room, "swivel_chair").next() else { continue };
+            held.push(seen_from(chair, door.x, door.y).0 > 0.0);
+        }
+    }
+    most("people who see their door", 0.8, &held);
+}
+
+#[test]
+fn sofas_in_offices_have_a_table() {
+    let mut held = Vec::new();
+    for world in worlds("office with 8 rooms and a reception", 8) {
+        for room in &world.floorplan.rooms {
+            let tables: Vec<Rect> =
+                ["low_table", "side_table"].iter().flat_map(|t| placed(&world, room, t)).map(body).collect();
+            let near = |sofa: &Placement| tables.iter().any(|t| gap(t, &body(sofa)) < 0.7);
+            held.extend(placed(&world, room, "lounge_sofa").map(near));
+        }
+    }
+    most("sofas with a table", 1.0, &held);
+}
+
+#[test]
+fn halls_of_homes_have_coat_hooks_and_mats_lie_clear_of_doors() {
+    let (mut hooks, mut mats) = (Vec::new(), Vec::new());
+    for world in worlds("home with 6 rooms and a delivery robot 0.6 m wide", 8) {
+        hooks.push(world.placements.placements.iter().any(|p| p.object == "coat_hooks" || p.object == "coat_rack"));
+        for room in &world.floorplan.rooms {
+            let swings: Vec<Rect> = world
+                .floorplan
+                .doors_of(&room.room_id)
+                .filter(|d| d.swing.as_ref().is_some_and(|s| s.into_room_id.as_ref() == Some(&room.room_id)))
+                .map(swept)
+                .collect();
+            mats.extend(placed(&world, room, "bath_mat").map(|mat| swings.iter().all(|s| !s.overlaps(&body(mat)))));
+        }
+    }
+    most("halls with hooks for coats", 0.9, &hooks);
+    most("mats clear of doors", 1.0, &mats);
 }
 
 #[test]
@@ -135,14 +285,16 @@ fn isolation_rooms_have_their_anteroom() {
 #[test]
 fn homes_are_entered_by_the_rooms_of_the_day() {
     let (mut homes, mut first, mut last, mut wrong_order) = (0_u32, 0, 0, 0);
-    for prompt in ["flat with 5 rooms", "family house in Germany with 8 rooms", "house with 4 bedrooms and two bathrooms"]
+    for prompt in
+        ["flat with 5 rooms", "family house in Germany with 8 rooms", "house with 4 bedrooms and two bathrooms"]
     {
         for world in worlds(prompt, 16) {
             let plan = &world.floorplan;
             let Some(entrance) = plan.doors.iter().find(|d| d.entrance) else { continue };
             let walk = |room: &PlanRoom| {
                 let doors = plan.doors_of(&room.room_id).map(|d| d.line.middle());
-                let far = doors.map(|p| (p.x - entrance.line.middle().x).abs() + (p.y - entrance.line.middle().y).abs());
+                let far =
+                    doors.map(|p| (p.x - entrance.line.middle().x).abs() + (p.y - entrance.line.middle().y).abs());
                 far.fold(f64::MAX, f64::min)
             };
             let of = |kind: &'static str| plan.rooms.iter().filter(move |r| r.room_type == kind);

@@ -62,10 +62,8 @@ fn a_bed_can_be_pushed_out_of_its_room() {
                     let seat = |p: &Placement| matches!(shape(domain, p), Some(Shape::Chair | Shape::Stool));
                     let with_bed = |p: &Placement| p.group.is_some() && p.group == bed.group;
                     let fixed = bodies(&world, room).filter(|p| !seat(p) && !with_bed(p));
-                    let fixed: Vec<Rect> = fixed
-                        .filter(|p| p.placement_id != bed.placement_id)
-                        .map(|p| p.footprint().bounds())
-                        .collect();
+                    let fixed: Vec<Rect> =
+                        fixed.filter(|p| p.placement_id != bed.placement_id).map(|p| p.footprint().bounds()).collect();
                     let floor = FreeSpace::new(&room.net_polygon, &fixed);
                     let own = bed.footprint().bounds();
                     let width = own.width().min(own.height()) + 0.05;

@@ -24,6 +24,22 @@ pub struct Furnishing {
     pub required: bool,
     /// How it is arranged.
     pub arrangement: Arrangement,
+    /// Only where none of these items of earlier lines found a place (a small table where the large one does not fit).
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub instead_of: Vec<String>,
+    /// Only in buildings without a room of these types (a dining table in the living room).
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub unless_rooms: Vec<String>,
+    /// Only in buildings with beds for at least so many people.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub sleepers: u32,
+    /// Only where step-free access is asked for.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub accessible: bool,
+}
+
+fn is_zero(n: &u32) -> bool {
+    *n == 0
 }
 
 /// Where in the room an item goes.
@@ -150,9 +166,28 @@ impl Furnishing {
                 format!("`{}` is neither in groups nor in objects", self.item),
             ));
         }
+        for (i, room_type) in self.unless_rooms.iter().enumerate() {
+            if domain.room_type(room_type).is_none() {
+                problems.push(Problem::new(
+                    format!("{path}/unless_rooms/{i}"),
+                    format!("room type `{room_type}` is not in room_types"),
+                ));
+            }
+        }
+        for (i, item) in self.instead_of.iter().enumerate() {
+            if domain.group(item).is_none() && domain.object(item).is_none() {
+                problems.push(Problem::new(
+                    format!("{path}/instead_of/{i}"),
+                    format!("`{item}` is neither in groups nor in objects"),
+                ));
+            }
+        }
         if self.min > self.max || self.max == 0 {
             problems
                 .push(Problem::new(path, format!("needs min <= max and max > 0, has {} and {}", self.min, self.max)));
+        }
+        if self.required && !self.instead_of.is_empty() {
+            problems.push(Problem::new(format!("{path}/required"), "is true though another item does instead"));
         }
         if self.required && self.min == 0 {
             problems.push(Problem::new(format!("{path}/min"), "is 0 though the item is required"));

@@ -40,6 +40,10 @@ pub struct ObjectType {
     /// True when things can stand on its top.
     #[serde(default)]
     pub surface: bool,
+    /// Stretches of its top that are taken, as shares of its width from the left of who stands before it: a bowl, rings.
+    /// Nothing stands there.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub top_taken: Vec<[f64; 2]>,
     /// Outline and build of the simple model and of the plan symbol.
     pub shape: Shape,
     /// Build of its 3D model (`domains/builds/`, or the domain's own); else the one of its id, or of its shape.
@@ -281,6 +285,14 @@ impl ObjectType {
                 format!("{path}/mount_height_m"),
                 "is missing; wall and ceiling mounts need a height above the floor",
             ));
+        }
+        for (i, [from, to]) in self.top_taken.iter().enumerate() {
+            if !(0.0 <= *from && from < to && *to <= 1.0) {
+                problems.push(Problem::new(
+                    format!("{path}/top_taken/{i}"),
+                    format!("goes from {from} to {to}, needs 0 <= from < to <= 1"),
+                ));
+            }
         }
         if self.clear_sides > 2 {
             problems.push(Problem::new(

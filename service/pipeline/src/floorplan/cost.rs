@@ -369,7 +369,12 @@ impl<'b> Judge<'b> {
         // the entrance will be where it serves the rooms best
         let lost = gates.iter().map(|gate| {
             let far = |m: Cellbox| between(m.center2(), gate.at) / size;
-            brief.rooms.iter().zip(rooms).filter_map(|(spec, r)| Some(ill_placed(spec.zone, far(r.main?), home))).sum::<f64>()
+            brief
+                .rooms
+                .iter()
+                .zip(rooms)
+                .filter_map(|(spec, r)| Some(ill_placed(spec.zone, far(r.main?), home)))
+                .sum::<f64>()
         });
         score.soft[7] += lost.reduce(f64::min).unwrap_or(0.0);
         score.soft[7] += OUT_OF_SIGHT * self.out_of_sight();

@@ -1,8 +1,8 @@
 //! What a room should hold: its type's furnishing lines and the wishes of the scene graph, in the order of placing.
 
-use d3dgen_model::domain::{Arrangement, Domain, Mount, ObjectType, RoomType, Shape};
+use d3dgen_model::domain::{Arrangement, Domain, Furnishing, Mount, ObjectType, RoomType, Shape};
 use d3dgen_model::occupancy::ROBOT_HEIGHT_M;
-use d3dgen_model::scene_graph::GraphRoom;
+use d3dgen_model::scene_graph::{GraphRoom, SceneGraph};
 
 use super::unit::{Forms, Unit, variants};
 
@@ -27,6 +27,8 @@ pub(super) struct Task<'a> {
     pub line: usize,
     /// Why it is wanted, for people.
     pub rule: String,
+    /// Items in whose place it comes: not wanted where one of them stands.
+    pub instead_of: &'a [String],
 }
 
 impl Task<'_> {
@@ -62,6 +64,34 @@ impl Task<'_> {
     }
 }
 
+/// What lines about the whole building ask for.
+#[derive(Debug, Default)]
+pub(super) struct Household<'a> {
+    /// Types of its rooms.
+    room_types: Vec<&'a str>,
+    /// How many people have a bed.
+    sleepers: u32,
+    /// True where step-free access is asked for.
+    accessible: bool,
+}
+
+impl<'a> Household<'a> {
+    pub fn new(domain: &Domain, graph: &'a SceneGraph) -> Self {
+        let room_types: Vec<&str> = graph.rooms.iter().map(|r| r.room_type.as_str()).collect();
+        let beds = |kind: &&str| {
+            let lines = domain.room_type_or_generic(kind).furnishing.iter().filter(|f| f.required);
+            lines.filter_map(|f| Some(f.min * usual_unit(domain, &f.item)?.beds())).sum::<u32>()
+        };
+        Self { sleepers: room_types.iter().map(beds).sum(), room_types, accessible: graph.accessible }
+    }
+
+    fn wants(&self, line: &Furnishing) -> bool {
+        let has = |kind: &String| self.room_types.iter().any(|t| t == kind);
+        let reached = self.accessible || !line.accessible;
+        reached && !line.unless_rooms.iter().any(has) && self.sleepers >= line.sleepers
+    }
+}
+
 /// Returns the tasks of a room, most constrained first.
 pub(super) fn tasks<'a>(
     domain: &'a Domain,
@@ -70,10 +100,11 @@ pub(super) fn tasks<'a>(
     area_m2: f64,
     per_person_m2: Option<f64>,
     windows: u32,
+    household: &Household,
 ) -> Vec<Task<'a>> {
     let occupied = occupied_line(domain, kind, graph);
     let mut out: Vec<Task> = Vec::new();
-    for (line, f) in kind.furnishing.iter().enumerate() {
+    for (line, f) in kind.furnishing.iter().enumerate().filter(|(_, f)| household.wants(f)) {
         let Some(anchor) = domain.anchor(&f.item) else { continue };
         let (mut count, mut required) = (f.units(area_m2).min(MAX_UNITS), if f.required { f.min } else { 0 });
         if let Some((steered, units)) = occupied
@@ -92,7 +123,8 @@ pub(super) fn tasks<'a>(
         let name = arrangement_name(f.arrangement);
         let rule = format!("furnishing line {} ({}): {name}", line + 1, f.item);
         let arrangement = f.arrangement;
-        let whole = Task { item: &f.item, anchor, arrangement, count, required, spare: 0, line, rule: rule.clone() };
+        let (rule, instead_of) = (rule.clone(), &f.instead_of[..]);
+        let whole = Task { item: &f.item, anchor, arrangement, count, required, spare: 0, line, rule, instead_of };
         let together = whole.is_batch() || required == 0 || required == count || occupied.is_some_and(|o| o.0 == line);
         if together {
             out.push(whole);
@@ -107,7 +139,18 @@ pub(super) fn tasks<'a>(
         let arrangement = natural(object);
         let rule = format!("wished for in the scene graph ({}): {}", object.id, arrangement_name(arrangement));
         let line = lines + i;
-        out.push(Task { item: &object.id, anchor: object, arrangement, count: 1, required: 0, spare: 0, line, rule });
+        let item = &object.id;
+        out.push(Task {
+            item,
+            anchor: object,
+            arrangement,
+            count: 1,
+            required: 0,
+            spare: 0,
+            line,
+            rule,
+            instead_of: &[],
+        });
     }
     if let Some(each) = per_person_m2.filter(|_| occupied.is_none()) {
         thin_out(domain, &mut out, (area_m2 / each).floor().max(1.0) as u32);
@@ -116,10 +159,14 @@ pub(super) fn tasks<'a>(
         out.iter_mut().filter(|t| t.is_seated()).for_each(Task::allow_full_rows);
     }
     turn_to_audience(&mut out);
+    // a household eats before its vacuum robot does
+    let table = |t: &Task| kind.furnishing.get(t.line).is_some_and(|f| !f.unless_rooms.is_empty());
     // a dock needs more floor than what it stands beside; corners are few: what cannot do without one comes before what
     // only wants a wall
     let dock = |t: &Task| t.required == 0 && t.anchor.shape == Shape::Dock;
-    out.sort_by_key(|t| (phase(t), !dock(t), t.required == 0 || t.arrangement != Arrangement::Corner, t.line));
+    out.sort_by_key(|t| {
+        (phase(t), !table(t), !dock(t), t.required == 0 || t.arrangement != Arrangement::Corner, t.line)
+    });
     out
 }
 
@@ -185,7 +232,8 @@ fn usual_unit<'a>(domain: &'a Domain, item: &'a str) -> Option<Unit<'a>> {
 pub(super) fn one_more(object: &ObjectType) -> Task<'_> {
     let arrangement = natural(object);
     let rule = format!("added by an edit ({}): {}", object.id, arrangement_name(arrangement));
-    Task { item: &object.id, anchor: object, arrangement, count: 1, required: 1, spare: 0, line: 0, rule }
+    let item = &object.id;
+    Task { item, anchor: object, arrangement, count: 1, required: 1, spare: 0, line: 0, rule, instead_of: &[] }
 }
 
 fn wishes<'a>(domain: &'a Domain, kind: &RoomType, graph: Option<&GraphRoom>) -> Vec<&'a ObjectType> {
@@ -221,6 +269,8 @@ fn phase(task: &Task) -> u8 {
         _ if last => 4,
         // what faces the first line comes after it
         (true, Rows | Center | Facing) => 1,
+        // a screen finds its wall before others take it
+        (false, Facing) if takes_floor(task.anchor) => 1,
         (true, _) => 0,
         (false, _) if takes_floor(task.anchor) => 2,
         (false, _) => 3,

@@ -58,9 +58,8 @@ impl View {
                     // a robot of an even number of cells has one more on one side of its center than on the other
                     let cells = (ROBOT + cell / 2) / cell;
                     let (before, after) = ((cells - 1) / 2, cells / 2);
-                    (first <= last).then(|| {
-                        (cell * (first - before) + at - cell / 2, cell * (last + after + 1) + at - cell / 2)
-                    })
+                    (first <= last)
+                        .then(|| (cell * (first - before) + at - cell / 2, cell * (last + after + 1) + at - cell / 2))
                 };
                 let ((x0, x1), (y0, y1)) = (side(o.x0, o.x1, at.0)?, side(o.y0, o.y1, at.1)?);
                 Some(Box2 { x0, y0, x1, y1 })
@@ -276,7 +275,8 @@ mod tests {
     #[test]
     fn a_slit_that_narrows_is_seen_by_some_raster() {
         // 0.195 m wide at its mouth and 0.215 m behind it: the robot of 0.2 m stands inside on some rasters, enters on fewer
-        let slit = [Box2::new(0, 1000, 1000, 1200), Box2::new(1195, 1000, 3000, 1200), Box2::new(1215, 1200, 3000, 3000)];
+        let slit =
+            [Box2::new(0, 1000, 1000, 1200), Box2::new(1195, 1000, 3000, 1200), Box2::new(1215, 1200, 3000, 3000)];
         let room = room();
         assert!(room.is_closed_by(&[&slit[..], &[Box2::new(0, 1200, 1000, 3000)]].concat()));
         let view = View::Raster { cell: 40, at: (0, 0) };

@@ -6,7 +6,7 @@ use std::ops::Range;
 use std::rc::Rc;
 
 use d3dgen_knowledge::Aim;
-use d3dgen_model::domain::{Arrangement, Domain, Shape};
+use d3dgen_model::domain::{Arrangement, Domain, Mount, Shape};
 
 use super::demand::Task;
 use super::find::{Candidate, Find, Tally, Terms, over, rows};
@@ -172,8 +172,7 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
         let mut start = State::new(
             job.space,
             Nav::new(job.space, job.radius + margin),
-            if advised { job.wide_way } else { job.way }
-                .filter(|way| ways || way.kind == way::Kind::Circulation),
+            if advised { job.wide_way } else { job.way }.filter(|way| ways || way.kind == way::Kind::Circulation),
             open,
         );
         start.add(job.locked.to_vec());
@@ -256,7 +255,8 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
             let task = &self.job.tasks[index];
             let present = self.job.present[index];
             let count = task.count.saturating_sub(present);
-            if count == 0 || self.job.stop.is_set() {
+            let replaced = |item: &String| draft.state.placed.iter().any(|p| p.unit.item == item);
+            if count == 0 || self.job.stop.is_set() || task.instead_of.iter().any(replaced) {
                 continue;
             }
             let mut tally = Tally::default();
@@ -341,6 +341,16 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
         depths.max().unwrap_or(0)
     }
 
+    /// Returns what stands on the floor and faces the only unit of the line a room begins with.
+    fn across(&self, task: &Task) -> Option<Rc<Unit<'a>>> {
+        if task.line > 0 || task.count > 1 {
+            return None;
+        }
+        let faces = |t: &Task| t.arrangement == Arrangement::Facing && t.anchor.mount == Mount::Floor;
+        let (_, forms) = self.job.tasks.iter().zip(&self.forms).find(|(t, _)| faces(t))?;
+        forms.first()?.first().cloned()
+    }
+
     /// Returns the narrowest gap a robot passes, mm.
     fn aisle(&self) -> i32 {
         2 * (self.job.radius + LEVELS[self.level].margin) + 50
@@ -404,7 +414,9 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
         for forms in self.forms[index].iter().take_while(|_| !self.job.stop.is_set()) {
             let mut candidates: Vec<Candidate> = Vec::new();
             for unit in forms {
-                candidates.extend(Find::new(state, task, index, self.job.salt, aisle, tally).run(unit));
+                let mut find = Find::new(state, task, index, self.job.salt, aisle, tally);
+                find.across = self.across(task);
+                candidates.extend(find.run(unit));
             }
             candidates.sort_by(|a, b| b.score.total_cmp(&a.score));
             if let Some((mut placed, score)) = choose(state, &candidates, rank, whole, tally) {

@@ -47,7 +47,9 @@ impl<'a> Setting<'a> {
         let per_person_m2 = limits.rooms.get(&room.room_type).and_then(|l| l.area_per_person_advised);
         let per_person_m2 = per_person_m2.or_else(|| workroom_area(plan, domain, limits));
         let windows = space.windows.len() as u32;
-        let usual = || demand::tasks(domain, kind, graph.room(&room.room_id), room.net_area_m2, per_person_m2, windows);
+        let household = demand::Household::new(domain, graph);
+        let (own, area_m2) = (graph.room(&room.room_id), room.net_area_m2);
+        let usual = || demand::tasks(domain, kind, own, area_m2, per_person_m2, windows, &household);
         let mut tasks = match wanted {
             Wanted::All => usual(),
             Wanted::Without(objects) => usual().into_iter().filter(|t| !objects.contains(&t.anchor.id)).collect(),

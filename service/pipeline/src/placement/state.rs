@@ -152,6 +152,13 @@ impl<'a, 's> State<'a, 's> {
     /// `at_window` lets curtains and blinds hang in front of windows.
     pub fn test(&self, p: &Placed, at_window: bool) -> Result<(), Rule> {
         let space = self.space;
+        if let Some((i, k)) = p.support {
+            let host = &self.placed[i];
+            let foot = p.world(&p.unit.bbox);
+            if host.unit.parts[k].taken().any(|t| host.world(&t).overlaps(&foot)) {
+                return Err(Rule::Collision);
+            }
+        }
         if p.support.is_none() && !space.bounds.contains(&p.world(&p.unit.bbox)) {
             return Err(Rule::Outside);
         }
@@ -167,7 +174,7 @@ impl<'a, 's> State<'a, 's> {
                 }
                 // nobody wants to step over the edge of a rug in a door
                 let alone = p.unit.parts.len() == 1;
-                if alone && space.doors.iter().any(|d| d.zone.overlaps(&solid.rect)) {
+                if (alone || part.optional) && self.lies_in_door(&solid) {
                     return Err(Rule::Door);
                 }
                 continue;
@@ -195,6 +202,12 @@ impl<'a, 's> State<'a, 's> {
         Ok(())
     }
 
+    /// Returns true for floor covering that lies on the floor a door needs.
+    fn lies_in_door(&self, solid: &Solid) -> bool {
+        let covers = solid.is_flat() && solid.z0 == 0;
+        covers && self.space.doors.iter().any(|d| d.zone.overlaps(&solid.rect))
+    }
+
     fn test_clears(&self, p: &Placed) -> Result<(), Rule> {
         let free = |c: &Box2| self.space.contains(c) && !self.bodies.iter().any(|b| b.overlaps(c));
         if p.unit.clears.iter().all(|c| free(&p.world(c))) { Ok(()) } else { Err(Rule::Clearance) }
@@ -205,11 +218,12 @@ impl<'a, 's> State<'a, 's> {
     pub fn fit(&self, p: Placed<'a>, at_window: bool) -> Result<Placed<'a>, Rule> {
         match self.test(&p, at_window) {
             Ok(()) => Ok(p),
-            Err(rule @ (Rule::Window | Rule::Collision)) => {
+            Err(rule @ (Rule::Window | Rule::Collision | Rule::Door)) => {
                 let in_the_way = |part: &Part| {
                     let solid = p.solid(part);
                     self.space.windows.iter().any(|w| w.is_taken_by(&solid, self.open))
                         || part.mount == Mount::Ceiling && self.solids.iter().any(|s| s.overlaps(&solid))
+                        || part.mount == Mount::Floor && self.lies_in_door(&solid)
                 };
                 let lesser = Placed { unit: Rc::new(p.unit.cleared(in_the_way).ok_or(rule)?), ..p.clone() };
                 self.test(&lesser, at_window).map(|()| lesser)
@@ -293,7 +307,8 @@ fn bodies(p: &Placed) -> impl Iterator<Item = Box2> {
 fn in_the_way(units: &[Placed]) -> InTheWay {
     let mut out = InTheWay::default();
     for p in units {
-        let stands_out = |part: &Part, s: &Solid| part.mount == Mount::Wall && !part.is_shallow() && s.z0 < mm(HEAD_ROOM_M);
+        let stands_out =
+            |part: &Part, s: &Solid| part.mount == Mount::Wall && !part.is_shallow() && s.z0 < mm(HEAD_ROOM_M);
         let with_bed = p.unit.parts.iter().any(|part| part.object.shape == Shape::HospitalBed);
         for (part, s) in p.unit.parts.iter().map(|part| (part, p.solid(part))) {
             if !takes_floor(part, &s) && !stands_out(part, &s) {

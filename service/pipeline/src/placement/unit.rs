@@ -32,6 +32,14 @@ pub(super) struct Part<'a> {
 }
 
 impl Part<'_> {
+    /// Returns the stretches of its top that a bowl or rings take, in the unit's frame.
+    pub fn taken(&self) -> impl Iterator<Item = Box2> + '_ {
+        let own = self.solid.rect.turned((4 - self.quarter) % 4);
+        let at = move |share: f64| own.y0 + (f64::from(own.height()) * share).round() as i32;
+        let stretches = self.object.top_taken.iter();
+        stretches.map(move |[from, to]| Box2 { y0: at(*from), y1: at(*to), ..own }.turned(self.quarter))
+    }
+
     /// Returns true for what hangs flat on a wall, which narrows no passage.
     pub fn is_shallow(&self) -> bool {
         let r = self.solid.rect;
@@ -97,7 +105,9 @@ impl<'a> Unit<'a> {
     /// Returns the unit mirrored left to right, or `None` when that changes nothing.
     pub fn mirrored(&self) -> Option<Self> {
         let mut out = self.clone();
-        for part in &mut out.parts {
+        let fixed = !self.anchor().object.top_taken.is_empty();
+        // a sink is not made mirrored, so what stands on it stays beside its bowl
+        for part in out.parts.iter_mut().filter(|p| !(fixed && p.support == Some(0))) {
             part.solid.rect = part.solid.rect.mirrored();
             part.quarter = (4 - part.quarter) % 4;
         }
@@ -129,7 +139,11 @@ impl<'a> Unit<'a> {
         if !matches!(self.anchor().object.shape, Shape::Desk | Shape::Table) {
             return 0;
         }
-        let mut seats = self.parts.iter().filter(|p| is_seat(p.object.shape)).map(|p| p.quarter);
+        // whoever works there turns on a chair; those across the desk visit
+        let works = |p: &&Part| p.object.shape == Shape::SwivelChair;
+        let at_work = self.parts.iter().any(|p| works(&p));
+        let seats = self.parts.iter().filter(|p| if at_work { works(p) } else { is_seat(p.object.shape) });
+        let mut seats = seats.map(|p| p.quarter);
         let Some(first) = seats.next() else { return 0 };
         if seats.all(|q| q == first) { first } else { 0 }
     }
@@ -139,9 +153,11 @@ impl<'a> Unit<'a> {
         local.turned((4 - self.look()) % 4)
     }
 
-    /// Returns the unit without the optional things on its top and over it that are in the way; `None` when none is.
+    /// Returns the unit without the optional things on its top, over it and flat on the floor that are in the way; `None`
+    /// when none is.
     pub fn cleared(&self, in_the_way: impl Fn(&Part) -> bool) -> Option<Self> {
-        let gone = |p: &Part| p.optional && matches!(p.mount, Mount::Surface | Mount::Ceiling) && in_the_way(p);
+        let loose = |p: &Part| matches!(p.mount, Mount::Surface | Mount::Ceiling) || p.solid.is_flat();
+        let gone = |p: &Part| p.optional && loose(p) && in_the_way(p);
         if !self.parts.iter().any(gone) {
             return None;
         }
@@ -347,13 +363,7 @@ fn seats_behind(parts: &[Part], tightness: f64, out: &mut Vec<Box2>) {
     }));
 }
 
-fn finish_with<'a>(
-    item: &'a str,
-    group: bool,
-    parts: Vec<Part<'a>>,
-    clears: Vec<Box2>,
-    parked: Vec<Box2>,
-) -> Unit<'a> {
+fn finish_with<'a>(item: &'a str, group: bool, parts: Vec<Part<'a>>, clears: Vec<Box2>, parked: Vec<Box2>) -> Unit<'a> {
     let mut bbox = parts[0].solid.rect;
     for part in &parts {
         if part.mount != Mount::Ceiling && part.mount != Mount::Surface && !part.solid.is_flat() {
@@ -508,7 +518,10 @@ fn on_top(parts: &[Part], wish: Box2) -> Option<Box2> {
         let dy = (top.y0 - b.y0).max(0) - (b.y1 - top.y1).max(0);
         b.shifted(dx, dy)
     };
-    let taken = |b: &Box2| parts.iter().any(|p| p.mount == Mount::Surface && p.solid.rect.overlaps(b));
+    let taken = |b: &Box2| {
+        parts.iter().any(|p| p.mount == Mount::Surface && p.solid.rect.overlaps(b))
+            || parts[0].taken().any(|t| t.overlaps(b))
+    };
     (0..80)
         .map(|k: i32| if k % 2 == 0 { k / 2 } else { -(k + 1) / 2 })
         .map(|k| into(wish.shifted(0, k * 50)))

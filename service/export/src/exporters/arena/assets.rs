@@ -128,6 +128,7 @@ fn plain(id: &str, size_m: [f64; 3], mount: Mount) -> ObjectType {
         clearance_side_m: 0.0,
         clear_sides: 0,
         surface: false,
+        top_taken: Vec::new(),
         shape: Shape::Box,
         build: None,
         color: String::new(),

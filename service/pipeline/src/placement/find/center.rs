@@ -62,10 +62,10 @@ impl<'a> Find<'_, 'a, '_> {
         });
         let turned_alike = self.siblings().next().is_none_or(|o| o.q % 2 == p.q % 2);
         s += if in_line { 0.9 } else { 0.0 } - if turned_alike { 0.0 } else { 1.6 };
-        if let Some((q, focus)) = self.focus() {
+        if let Some((q, _, middle)) = self.focus() {
             // turned to what the room is about, in line with it
             let (_, v) = turn((4 - q) % 4, cx, cy);
-            let (_, w) = turn((4 - q) % 4, focus.center().0, focus.center().1);
+            let (_, w) = turn((4 - q) % 4, middle.0, middle.1);
             s += if (v - w).abs() < 150 { 0.3 } else { 0.0 };
             s += if p.q == (q + 2) % 4 { 0.15 } else { 0.0 };
         }

@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use d3dgen_model::domain::Mount;
+use d3dgen_model::domain::{Mount, Shape};
 
 use super::{Find, Rule};
 use crate::placement::geom::turn;
@@ -13,19 +13,24 @@ use crate::placement::unit::Unit;
 const STEP: i32 = 250;
 /// Positions along a wall to either side of the axis, 0.1 m apart.
 const SIDEWAYS: i32 = 80;
+/// How far beside the axis of those who look at it a screen may stand, m.
+const NEAR_AXIS_M: f64 = 0.4;
+/// Distances from which a screen is looked at, mm.
+const VIEW: (i32, i32) = (1500, 6500);
 /// Floor a person needs behind a free-standing counter, mm.
 const BEHIND: i32 = 900;
 
 impl<'a> Find<'_, 'a, '_> {
     /// Offers positions opposite the first item, facing it: on the wall across first, then free-standing.
     pub(super) fn facing(&mut self, unit: &Rc<Unit<'a>>) {
-        let Some((target_q, target)) = self.focus() else { return self.along_walls(unit) };
+        let Some((target_q, target, seat)) = self.focus() else { return self.along_walls(unit) };
         // all in the frame of the one that faces the target: its users look along x
         let q = (target_q + 2) % 4;
         let look = unit.look();
-        let (_, axis) = turn((4 - q) % 4, target.center().0, target.center().1);
+        let (_, axis) = turn((4 - q) % 4, seat.0, seat.1);
         let (b, r) = (unit.as_looking(&unit.bbox), unit.as_looking(&unit.reach));
-        let middle = (b.y0 + b.y1) / 2;
+        let anchor = unit.as_looking(&unit.anchor().solid.rect);
+        let middle = (anchor.y0 + anchor.y1) / 2;
         let own = (q + 4 - look) % 4;
         let at = |u: i32, v: i32, task: usize| Placed { at: turn(q, u, v), ..at_frame(unit, own, 0, 0, task) };
         // whoever sits before the wall needs room for the chair
@@ -45,11 +50,15 @@ impl<'a> Find<'_, 'a, '_> {
                     let off = f64::from((v + middle - axis).abs()) / 1000.0;
                     // a speaker's desk leaves the middle to the board
                     let aside = f64::from((v - low).min(high - v)) / 1000.0;
-                    self.offer(placed, i as u32, |_, _| if look == 0 { 3.0 - 1.2 * off } else { 3.0 - aside });
+                    // looked at from a little aside is well enough, from the far end of the sofa it is not
+                    let turned = 0.5 * off + 2.5 * (off - NEAR_AXIS_M).max(0.0);
+                    self.offer(placed, i as u32, |_, _| if look == 0 { 3.0 - turned } else { 3.0 - aside });
                 }
             }
         }
-        if self.task.anchor.mount == Mount::Floor && !unit.needs_wall {
+        // a stand has a back that nobody should see
+        let backed = matches!(self.task.anchor.shape, Shape::Cabinet | Shape::Shelf);
+        if self.task.anchor.mount == Mount::Floor && !unit.needs_wall && !backed {
             let wide = self.state.space.bounds.turned((4 - q) % 4);
             let t = target.turned((4 - q) % 4);
             // in front of the target means at smaller u in the frame of the one that faces it
@@ -72,7 +81,27 @@ impl<'a> Find<'_, 'a, '_> {
         }
     }
 
-    /// Offers positions that face the door of the room, with the far wall or a person's width behind.
+    /// Returns true when what will face a unit finds its place on the wall across, near the unit's axis.
+    pub(super) fn has_wall_across(&self, p: &Placed<'a>, unit: &Rc<Unit<'a>>) -> bool {
+        let q = (p.q + p.unit.look() + 2) % 4;
+        let back = (4 - q) % 4;
+        let (seat, reach) = (p.world(&p.unit.anchor().solid.rect), p.world(&p.unit.reach));
+        let (_, axis) = turn(back, seat.center().0, seat.center().1);
+        let front = seat.turned(back).x0;
+        let anchor = unit.anchor().solid.rect;
+        let middle = (anchor.y0 + anchor.y1) / 2;
+        self.state.space.walls.iter().filter(|w| w.q == q && (VIEW.0..VIEW.1).contains(&(front - w.u))).any(|wall| {
+            [0, -200, 200, -400, 400].into_iter().any(|side| {
+                let v = axis - middle + side;
+                let placed = at_frame(unit, q, wall.u - unit.bbox.x0, v, self.index);
+                let inside = v + unit.bbox.y0 >= wall.v0 && v + unit.bbox.y1 <= wall.v1;
+                inside && !placed.world(&unit.bbox).overlaps(&reach) && self.state.test(&placed, false).is_ok()
+            })
+        })
+    }
+
+    /// Offers positions that face the door of the room, with the far wall or a person's width behind: a counter with its
+    /// front, a desk with the person at it.
     pub(super) fn facing_door(&mut self, unit: &Rc<Unit<'a>>) {
         let space = self.state.space;
         let Some(door) = space.doors.first() else { return self.along_walls(unit) };
@@ -81,17 +110,28 @@ impl<'a> Find<'_, 'a, '_> {
         let wide = space.bounds.turned((4 - q) % 4);
         let door_axis = -(door.v0 + door.v1) / 2; // the frame is turned by half a turn against the wall's
         let door_u = -wall.u;
-        let (b, middle) = (unit.bbox, (unit.bbox.y0 + unit.bbox.y1) / 2);
-        let backs = space.walls.iter().filter(|w| w.q == q).map(|w| w.u - b.x0);
+        let look = unit.look();
+        let (b, r) = (unit.as_looking(&unit.bbox), unit.as_looking(&unit.reach));
+        let middle = (b.y0 + b.y1) / 2;
+        let own = (q + 4 - look) % 4;
+        // whoever sits before the wall needs room for the chair
+        let rear = if look == 0 { b.x0 } else { r.x0.min(b.x0) };
+        let backs = space.walls.iter().filter(|w| w.q == q).map(|w| w.u - rear);
         let mut us: Vec<i32> = backs.collect();
-        us.extend((0..30).map(|k| wide.x0 + BEHIND - b.x0 + k * STEP).take_while(|u| u + b.x1 < door_u));
+        us.extend((0..30).map(|k| wide.x0 + BEHIND - rear + k * STEP).take_while(|u| u + b.x1 < door_u));
+        // beside the way in, or close to a wall so that one gets past
+        let mut vs: Vec<i32> = (0..24).map(|k| if k % 2 == 0 { k / 2 } else { -(k + 1) / 2 } * STEP).collect();
+        vs.iter_mut().for_each(|v| *v += door_axis - middle);
+        if look != 0 {
+            vs.extend([wide.y0 - b.y0, wide.y1 - b.y1]);
+        }
         for u in us {
-            let behind = u + b.x0 - wide.x0;
-            for k in 0..24 {
-                let side = if k % 2 == 0 { k / 2 } else { -(k + 1) / 2 } * STEP;
-                let placed = at_frame(unit, q, u, door_axis - middle + side, self.index);
+            let behind = u + rear - wide.x0;
+            for &v in &vs {
+                let placed = Placed { at: turn(q, u, v), ..at_frame(unit, own, 0, 0, self.index) };
                 let front = f64::from(door_u - u - b.x1) / 1000.0;
-                let off = f64::from(side.abs()) / 1000.0;
+                // a desk need not stand in line with the door
+                let off = f64::from((v + middle - door_axis).abs()) / if look == 0 { 1000.0 } else { 4000.0 };
                 // whoever stands behind a counter that is open to a corridor sees along it from close to the opening only
                 let (far, slope): (f64, f64) = if door.open { (1.6, 0.6) } else { (4.0, 0.2) };
                 let lost = if behind > 100 && behind < BEHIND {

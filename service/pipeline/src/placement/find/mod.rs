@@ -41,6 +41,8 @@ pub(super) struct Find<'f, 'a, 's> {
     pub aisle: i32,
     pub out: Vec<Candidate<'a>>,
     pub tally: &'f mut Tally,
+    /// What will face this unit from the wall across.
+    pub across: Option<Rc<Unit<'a>>>,
     style: Style,
 }
 
@@ -55,7 +57,7 @@ impl<'f, 'a, 's> Find<'f, 'a, 's> {
     ) -> Self {
         let both = task.anchor.clear_sides > 1 && task.anchor.clearance_side_m > 0.0;
         let style = style(task.anchor.shape, task.anchor.mount, both);
-        Self { state, task, index, salt, aisle, out: Vec::new(), tally, style }
+        Self { state, task, index, salt, aisle, out: Vec::new(), tally, across: None, style }
     }
 
     /// Collects positions of a unit as the task's arrangement wants it, best first.
@@ -107,14 +109,15 @@ impl<'f, 'a, 's> Find<'f, 'a, 's> {
         self.state.placed.iter().filter(|p| p.unit.item == self.task.item)
     }
 
-    /// Returns what the room turns to, with where its users look: the first furnishing line's units, or whatever was placed first.
-    fn focus(&self) -> Option<(u8, Box2)> {
+    /// Returns what the room turns to: where its users look, its outline, and the middle of what they sit on or lie in.
+    ///
+    /// That is the first furnishing line's units, or whatever was placed first.
+    fn focus(&self) -> Option<(u8, Box2, (i32, i32))> {
         let other = || self.state.placed.iter().filter(|p| p.unit.item != self.task.item);
         let first = other().find(|p| p.first_line).or_else(|| other().next())?;
-        let rect = other()
-            .filter(|p| p.task == first.task && p.q == first.q)
-            .map(|p| p.world(&p.unit.bbox))
-            .reduce(|a, b| a.union(&b))?;
-        Some(((first.q + first.unit.look()) % 4, rect))
+        let alike = || other().filter(|p| p.task == first.task && p.q == first.q);
+        let rect = alike().map(|p| p.world(&p.unit.bbox)).reduce(|a, b| a.union(&b))?;
+        let own = alike().map(|p| p.world(&p.unit.anchor().solid.rect)).reduce(|a, b| a.union(&b))?;
+        Some(((first.q + first.unit.look()) % 4, rect, own.center()))
     }
 }

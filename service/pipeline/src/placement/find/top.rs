@@ -32,7 +32,12 @@ impl<'a> Find<'_, 'a, '_> {
                     continue;
                 }
                 let used = self.state.placed.iter().filter(|p| p.support == Some((i, k))).count();
-                for (n, share) in [50, 15, 85, 30, 70, 0, 100].into_iter().enumerate() {
+                let mut shares = vec![50, 15, 85, 30, 70, 0, 100];
+                if !part.object.top_taken.is_empty() {
+                    // what is left between a bowl and rings is narrow
+                    shares.extend((0..=50).map(|k| 2 * k));
+                }
+                for (n, share) in shares.into_iter().enumerate() {
                     for deep in [35, 60, 0, 100] {
                         let inset = |room: i32, share: i32| {
                             let edge = EDGE.min(room / 2);
@@ -44,7 +49,8 @@ impl<'a> Find<'_, 'a, '_> {
                         placed.at = turn(q, u, v);
                         placed.support = Some((i, k));
                         placed.z = top.z1;
-                        let score = 1.0 - 0.1 * n as f64 - 0.3 * used as f64 - if deep == 35 { 0.0 } else { 0.05 };
+                        let score =
+                            1.0 - 0.1 * n.min(8) as f64 - 0.3 * used as f64 - if deep == 35 { 0.0 } else { 0.05 };
                         offers.push((placed, i as u32, score));
                     }
                 }

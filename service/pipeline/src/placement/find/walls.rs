@@ -2,14 +2,14 @@
 
 use std::rc::Rc;
 
-use d3dgen_model::domain::{Arrangement, Mount};
+use d3dgen_model::domain::{Arrangement, Mount, Shape};
 
 use super::{Find, Rule};
 use crate::placement::docks::door_loss;
 use crate::placement::geom::{Box2, FLAT, turn};
 use crate::placement::space::WallSide;
 use crate::placement::state::{Placed, at_frame};
-use crate::placement::unit::Unit;
+use crate::placement::unit::{Unit, is_seat};
 
 /// Positions nearer than this along a wall are one position, mm.
 const SAME: i32 = 20;
@@ -17,6 +17,9 @@ const SAME: i32 = 20;
 const STEP: i32 = 450;
 /// A gap narrower than this beside furniture collects dust, mm.
 const SLIVER: i32 = 300;
+
+/// A chair nearer than this to a bed or desk belongs to it, mm.
+const CHAIR_REACH: i32 = 1500;
 
 /// What already takes part of a wall.
 struct Front {
@@ -30,8 +33,12 @@ impl<'a> Find<'_, 'a, '_> {
     /// Offers positions with the back to each wall.
     pub(super) fn along_walls(&mut self, unit: &Rc<Unit<'a>>) {
         let before = self.out.len();
+        // what heats belongs to an outer wall with a window, or elsewhere than in this room
+        let heats = self.task.arrangement == Arrangement::WindowWall && self.task.anchor.shape == Shape::Panel;
         for i in 0..self.state.space.walls.len() {
-            self.along_wall(unit, i, 0.0);
+            if !heats || self.state.space.windows_of(i).next().is_some() {
+                self.along_wall(unit, i, 0.0);
+            }
         }
         if self.out.len() == before {
             self.none(Rule::NoPlace);
@@ -179,6 +186,10 @@ impl<'a> Find<'_, 'a, '_> {
         s -= style.tight * (spare / 3000.0).min(1.0);
         s += self.window_score(index, a, z) + self.door_score(p) + self.sibling_score(p, a, z, index);
         s -= door_loss(space, p, self.aisle);
+        s += self.company_score(p);
+        if self.across.as_ref().is_some_and(|unit| !self.has_wall_across(p, unit)) {
+            s -= 2.5;
+        }
         s + self.arrangement_score(p, index, a, z)
     }
 
@@ -248,6 +259,26 @@ impl<'a> Find<'_, 'a, '_> {
             }
         }
         s
+    }
+
+    /// A lone chair belongs beside the bed or desk the room is about, each to its own, and not before the basin.
+    fn company_score(&self, p: &Placed<'a>) -> f64 {
+        if p.unit.parts.len() > 1 || !is_seat(self.task.anchor.shape) {
+            return 0.0;
+        }
+        let rect = p.world(&p.unit.bbox);
+        let standing = |shapes: &'static [Shape]| {
+            let of = move |o: &&Placed<'a>| shapes.contains(&o.unit.anchor().object.shape);
+            self.state.placed.iter().filter(of).map(|o| o.world(&o.unit.anchor().solid.rect))
+        };
+        let has_chair = |host: &Box2| self.siblings().any(|o| o.world(&o.unit.bbox).gap(host) < CHAIR_REACH);
+        let mut hosts: Vec<Box2> = standing(&[Shape::Bed, Shape::HospitalBed, Shape::Desk]).collect();
+        if !hosts.iter().all(has_chair) {
+            hosts.retain(|host| !has_chair(host));
+        }
+        let away = hosts.iter().map(|host| rect.gap(host)).min().unwrap_or(0);
+        let wet = standing(&[Shape::Basin, Shape::Sink, Shape::Toilet]).any(|o| o.gap(&rect) < SLIVER);
+        -1.2 * (f64::from(away) / 1000.0).min(3.0) - if wet { 1.2 } else { 0.0 }
     }
 
     fn arrangement_score(&self, p: &Placed<'a>, index: usize, a: i32, z: i32) -> f64 {

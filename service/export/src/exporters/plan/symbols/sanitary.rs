@@ -7,7 +7,8 @@ pub(super) fn sink(p: &mut Pen<'_>) {
     let (u, v) = p.half();
     p.outline("b", 0.0);
     p.lines("f", &[&[(-u, v - 0.04), (u, v - 0.04)]]);
-    let bowl = (0.26_f64).min(0.8 * u);
+    // the bowl of a long top leaves room for what stands beside it
+    let bowl = if p.w > 1.0 { 0.21 } else { (0.26_f64).min(0.8 * u) };
     let at = if p.w > 1.0 { -u + bowl + 0.1 } else { 0.0 };
     p.rect("s", (at - bowl, -0.55 * v), (at + bowl, 0.62 * v), 0.07);
     p.circle("f", (at, 0.05 * v), 0.035);
