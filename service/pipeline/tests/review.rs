@@ -1,7 +1,6 @@
 //! What a reviewer of plans objects to and geometry can tell, over many seeds: showers that stand about, desks in ragged
-//! rows, nurses far from their corridor, isolation rooms without their anteroom, homes entered by the bedrooms.
-//! rows, nurses far from their corridor, isolation rooms without their anteroom, homes with nowhere to eat, screens beside
-//! the sofa's axis, machines on the sink.
+//! rows, nurses far from their corridor, isolation rooms without their anteroom, homes entered by the bedrooms or with
+//! nowhere to eat, screens beside the sofa's axis, machines on the sink.
 //!
 //! No rule forbids these; they are what makes a plan look wrong.
 
@@ -245,7 +244,7 @@ fn nurses_sit_at_their_corridor() {
     for prompt in ["hospital ward with 8 rooms in Germany", "Medical ward of ten rooms in London"] {
         for world in worlds(prompt, 10) {
             for room in world.floorplan.rooms.iter().filter(|r| r.room_type == "nurse_station") {
-                let open = |d: &&d3dgen_model::floorplan::Door| d.kind == DoorKind::Open;
+                let open = |d: &&Door| d.kind == DoorKind::Open;
                 let Some(opening) = world.floorplan.doors_of(&room.room_id).find(open) else { continue };
                 let from = opening.line.start;
                 let to = opening.line.end;
