@@ -140,7 +140,17 @@ pub(super) fn tasks<'a>(
         let rule = format!("wished for in the scene graph ({}): {}", object.id, arrangement_name(arrangement));
         let line = lines + i;
         let item = &object.id;
-        out.push(Task { item, anchor: object, arrangement, count: 1, required: 0, spare: 0, line, rule, instead_of: &[] });
+        out.push(Task {
+            item,
+            anchor: object,
+            arrangement,
+            count: 1,
+            required: 0,
+            spare: 0,
+            line,
+            rule,
+            instead_of: &[],
+        });
     }
     if let Some(each) = per_person_m2.filter(|_| occupied.is_none()) {
         thin_out(domain, &mut out, (area_m2 / each).floor().max(1.0) as u32);
@@ -154,7 +164,9 @@ pub(super) fn tasks<'a>(
     // a dock needs more floor than what it stands beside; corners are few: what cannot do without one comes before what
     // only wants a wall
     let dock = |t: &Task| t.required == 0 && t.anchor.shape == Shape::Dock;
-    out.sort_by_key(|t| (phase(t), !table(t), !dock(t), t.required == 0 || t.arrangement != Arrangement::Corner, t.line));
+    out.sort_by_key(|t| {
+        (phase(t), !table(t), !dock(t), t.required == 0 || t.arrangement != Arrangement::Corner, t.line)
+    });
     out
 }
 

@@ -49,7 +49,8 @@ impl<'a> Find<'_, 'a, '_> {
                         placed.at = turn(q, u, v);
                         placed.support = Some((i, k));
                         placed.z = top.z1;
-                        let score = 1.0 - 0.1 * n.min(8) as f64 - 0.3 * used as f64 - if deep == 35 { 0.0 } else { 0.05 };
+                        let score =
+                            1.0 - 0.1 * n.min(8) as f64 - 0.3 * used as f64 - if deep == 35 { 0.0 } else { 0.05 };
                         offers.push((placed, i as u32, score));
                     }
                 }
