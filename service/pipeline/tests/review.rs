@@ -9,7 +9,7 @@
 use std::sync::atomic::AtomicBool;
 
 use d3dgen_model::Rect;
-use d3dgen_model::floorplan::{Door, DoorKind, PlanRoom};
+use d3dgen_model::floorplan::{Door, DoorKind, PlanRoom, Window};
 use d3dgen_model::placements::Placement;
 use d3dgen_model::world::World;
 use d3dgen_pipeline::generate::{Settings, generate_world};
@@ -156,7 +156,7 @@ fn kitchens_have_an_aisle_and_radiators_a_window_wall() {
                 }
             }
             for radiator in placed(&world, room, "radiator") {
-                let behind = |w: &d3dgen_model::floorplan::Window| {
+                let behind = |w: &Window| {
                     let (ahead, _) = seen_from(radiator, w.line.middle().x, w.line.middle().y);
                     w.room_id == room.room_id && ahead < 0.0 && ahead > -0.6
                 };
@@ -288,7 +288,7 @@ fn nurses_sit_at_their_corridor() {
     for prompt in ["hospital ward with 8 rooms in Germany", "Medical ward of ten rooms in London"] {
         for world in worlds(prompt, 10) {
             for room in world.floorplan.rooms.iter().filter(|r| r.room_type == "nurse_station") {
-                let open = |d: &&d3dgen_model::floorplan::Door| d.kind == DoorKind::Open;
+                let open = |d: &&Door| d.kind == DoorKind::Open;
                 let Some(opening) = world.floorplan.doors_of(&room.room_id).find(open) else { continue };
                 let from = opening.line.start;
                 let to = opening.line.end;
