@@ -9,7 +9,7 @@
 use std::sync::atomic::AtomicBool;
 
 use d3dgen_model::Rect;
-use d3dgen_model::floorplan::{Door, DoorKind, PlanRoom};
+use d3dgen_model::floorplan::{Door, DoorKind, PlanRoom, Window};
 use d3dgen_model::placements::Placement;
 use d3dgen_model::world::World;
 use d3dgen_pipeline::generate::{Settings, generate_world};
@@ -134,6 +134,50 @@ fn nothing_stands_on_bowls_and_rings() {
         }
     }
     most("things beside bowls and rings", 1.0, &held);
+}
+
+#[test]
+fn kitchens_have_an_aisle_and_radiators_a_window_wall() {
+    let (mut aisles, mut heated) = (Vec::new(), Vec::new());
+    for world in HOMES.iter().flat_map(|prompt| worlds(prompt, 6)) {
+        for room in &world.floorplan.rooms {
+            let runs: Vec<&Placement> =
+                ["sink_unit", "hob", "base_cabinet", "wide_base_cabinet", "fridge", "tall_cabinet"]
+                    .iter()
+                    .flat_map(|kind| placed(&world, room, kind))
+                    .collect();
+            for (i, a) in runs.iter().enumerate() {
+                let turned = |b: &&&Placement| (a.pose.yaw_rad - b.pose.yaw_rad).cos() < -0.9;
+                for b in runs[..i].iter().filter(turned) {
+                    let (ahead, aside) = seen_from(a, b.pose.x, b.pose.y);
+                    if aside.abs() < (a.size_m[0] + b.size_m[0]) / 2.0 - 0.05 {
+                        aisles.push(ahead - (a.size_m[1] + b.size_m[1]) / 2.0 > 0.99);
+                    }
+                }
+            }
+            for radiator in placed(&world, room, "radiator") {
+                let behind = |w: &Window| {
+                    let (ahead, _) = seen_from(radiator, w.line.middle().x, w.line.middle().y);
+                    w.room_id == room.room_id && ahead < 0.0 && ahead > -0.6
+                };
+                heated.push(world.floorplan.windows.iter().any(behind));
+            }
+        }
+    }
+    most("aisles of kitchens", 0.85, &aisles);
+    most("radiators at the wall of a window", 1.0, &heated);
+}
+
+#[test]
+fn toilets_of_a_step_free_office_have_a_wc_for_a_wheelchair() {
+    let mut held = Vec::new();
+    for world in worlds("office with 8 rooms, wheelchair accessible", 8) {
+        let rooms = &world.floorplan.rooms;
+        if !rooms.iter().any(|r| r.room_type == "accessible_toilet") {
+            held.push(rooms.iter().any(|r| placed(&world, r, "accessible_wc").next().is_some()));
+        }
+    }
+    most("offices with a WC for a wheelchair", 0.8, &held);
 }
 
 #[test]

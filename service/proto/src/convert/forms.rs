@@ -34,6 +34,7 @@ const FORMS: &[(&str, Form)] = &[
     ("Polygon", Form::List),
     ("RoomPair", Form::Tuple),
     ("Size", Form::Tuple),
+    ("Stretch", Form::Tuple),
     ("StringList", Form::List),
     ("Transform", Form::Tuple),
     ("TransformRow", Form::Tuple),
