@@ -9,6 +9,7 @@
 use std::sync::atomic::AtomicBool;
 
 use d3dgen_model::Rect;
+use d3dgen_model::domain::Mount;
 use d3dgen_model::floorplan::{Door, DoorKind, PlanRoom, Window};
 use d3dgen_model::placements::Placement;
 use d3dgen_model::world::World;
@@ -86,20 +87,23 @@ const HOMES: [&str; 4] =
 
 #[test]
 fn homes_without_a_dining_room_have_a_table_and_seats() {
-    let mut held = Vec::new();
+    let (mut four, mut some) = (Vec::new(), Vec::new());
     for world in HOMES.iter().flat_map(|prompt| worlds(prompt, 6)) {
         let room = |kind: &str| world.floorplan.rooms.iter().find(|r| r.room_type == kind);
         if room("dining_room").is_none() && room("living_room").is_some_and(|r| r.net_area_m2 >= 20.0) {
             let chairs = world.placements.placements.iter().filter(|p| p.object == "dining_chair").count();
-            held.push(chairs >= 4);
+            four.push(chairs >= 4);
+            some.push(chairs >= 2);
         }
     }
-    most("homes with four seats at a table", 0.9, &held);
+    // no table stands between the sofa and its screen, so small ones do with two seats
+    most("homes with four seats at a table", 0.75, &four);
+    most("homes with seats at a table", 1.0, &some);
 }
 
 #[test]
 fn screens_stand_at_a_wall_across_from_the_sofa() {
-    let (mut axis, mut wall) = (Vec::new(), Vec::new());
+    let (mut axis, mut wall, mut seen) = (Vec::new(), Vec::new(), Vec::new());
     for world in HOMES.iter().flat_map(|prompt| worlds(prompt, 6)) {
         for room in world.floorplan.rooms.iter().filter(|r| r.room_type == "living_room") {
             let (Some(sofa), Some(stand)) =
@@ -110,8 +114,15 @@ fn screens_stand_at_a_wall_across_from_the_sofa() {
             let (ahead, aside) = seen_from(sofa, stand.pose.x, stand.pose.y);
             axis.push(ahead > 0.0 && aside.abs() <= 0.45);
             wall.push(to_walls(room, &body(stand)).iter().any(|d| *d < TOUCH_M));
+            let between = |p: &&Placement| {
+                let (far, off) = seen_from(sofa, p.pose.x, p.pose.y);
+                far > 0.6 && far < ahead - 0.4 && (off - aside).abs() < stand.size_m[0] / 2.0
+            };
+            let tall = world.placements.placements.iter().filter(|p| p.room_id == room.room_id && p.top_m() > 0.5);
+            seen.push(!tall.filter(|p| p.mount == Mount::Floor).any(|p| between(&p)));
         }
     }
+    most("screens seen from the sofa", 1.0, &seen);
     most("screens on the sofa's axis", 0.9, &axis);
     most("screens at a wall", 1.0, &wall);
 }

@@ -275,7 +275,13 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
             } else {
                 while placed < count && !self.job.stop.is_set() {
                     let open = whole.then_some(task.required > present + placed);
-                    let Some((unit, score)) = self.single(state, index, rank(steps), open, &mut tally) else { break };
+                    let Some((mut unit, score)) = self.single(state, index, rank(steps), open, &mut tally) else {
+                        break;
+                    };
+                    unit.first_line = task.line == 0;
+                    if task.arrangement == Arrangement::Facing {
+                        state.watch(&unit);
+                    }
                     outcome.score += score + if task.required > 0 { 2.0 } else { 1.0 };
                     state.add(vec![unit]);
                     placed += 1;
@@ -411,6 +417,8 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
         tally: &mut Tally,
     ) -> Option<(Placed<'a>, f64)> {
         let (task, aisle) = (&self.job.tasks[index], self.aisle());
+        // a form that closes off floor stands only where none leaves it open
+        let mut closing = None;
         for forms in self.forms[index].iter().take_while(|_| !self.job.stop.is_set()) {
             let mut candidates: Vec<Candidate> = Vec::new();
             for unit in forms {
@@ -419,12 +427,15 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
                 candidates.extend(find.run(unit));
             }
             candidates.sort_by(|a, b| b.score.total_cmp(&a.score));
-            if let Some((mut placed, score)) = choose(state, &candidates, rank, whole, tally) {
-                placed.first_line = task.line == 0;
-                return Some((placed, score));
+            let open = choose(state, &candidates, rank, whole.map(|_| false), tally);
+            if open.is_some() {
+                return open;
+            }
+            if whole == Some(true) && closing.is_none() {
+                closing = choose(state, &candidates, rank, whole, tally);
             }
         }
-        None
+        closing
     }
 }
 

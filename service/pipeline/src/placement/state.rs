@@ -13,6 +13,9 @@ use super::space::{Open, Space};
 use super::unit::{Part, Unit, is_seat};
 use super::way::{InTheWay, Way};
 
+/// Height up to which things leave the sight of a screen free, mm: coffee tables.
+const LOW: i32 = 500;
+
 /// A hard rule that a position can break.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Rule {
@@ -112,6 +115,8 @@ pub(super) struct State<'a, 's> {
     /// Outlines of what takes floor: not what is flat, hangs high or flat on a wall.
     bodies: Vec<Box2>,
     in_the_way: InTheWay,
+    /// Floor between screens and boards and those who look at them.
+    sights: Vec<Box2>,
     nav: Nav,
     /// Floor that is free for a small robot.
     pub pockets: Pockets,
@@ -137,6 +142,7 @@ impl<'a, 's> State<'a, 's> {
             clears: Vec::new(),
             bodies: Vec::new(),
             in_the_way: InTheWay::default(),
+            sights: Vec::new(),
             nav,
             pockets: Pockets::new(space),
             open,
@@ -265,6 +271,24 @@ impl<'a, 's> State<'a, 's> {
     /// Returns true when units would close off floor that is open without them, for however small a robot.
     pub fn is_closed_by(&self, units: &[Placed]) -> bool {
         self.pockets.is_closed_by(&Pockets::boxes(units))
+    }
+
+    /// Keeps the floor between a unit and what it faces from what one can do without.
+    pub fn watch(&mut self, unit: &Placed) {
+        let Some(focus) = self.placed.iter().find(|p| p.first_line && p.task != unit.task) else { return };
+        let back = (4 - unit.q) % 4;
+        let own = unit.world(&unit.unit.anchor().solid.rect).turned(back);
+        let seen_from = focus.world(&focus.unit.anchor().solid.rect).turned(back);
+        if own.x1 < seen_from.x0 {
+            self.sights.push(Box2 { x0: own.x1, x1: seen_from.x0, ..own }.turned(unit.q));
+        }
+    }
+
+    /// Returns true for what would stand between a screen or board and those who look at it.
+    pub fn hides(&self, p: &Placed) -> bool {
+        let tall = |part: &&Part| part.mount == Mount::Floor && p.solid(part).z1 > LOW;
+        let parts = || p.unit.parts.iter().filter(tall).map(|part| p.solid(part).rect);
+        p.support.is_none() && self.sights.iter().any(|s| parts().any(|rect| rect.overlaps(s)))
     }
 
     /// Puts units down that were tested.

@@ -193,6 +193,7 @@ fn width_of(part: &Part) -> i32 {
 
 /// Returns the forms of a unit to try in turn: the picked sizes first, then the other sizes, those that keep most rules
 /// and are largest first, then with fewer members on the floor, last of all the smallest with required members only.
+/// Before a size that keeps fewer rules than the picked one, members that one can do without go.
 ///
 /// Where advice asks for more free floor than the domain, whole forms with that come before all others.
 pub(super) fn variants<'a>(domain: &'a Domain, item: &'a str, forms: &Forms) -> Vec<Unit<'a>> {
@@ -214,13 +215,22 @@ pub(super) fn variants<'a>(domain: &'a Domain, item: &'a str, forms: &Forms) -> 
             out.push(unit);
         }
     };
-    let whole: Vec<Unit> = [picked].into_iter().chain(order).map(|size| plan.build(size, sizes, usize::MAX)).collect();
-    if forms.advised {
-        whole.iter().filter_map(|unit| advised(unit, forms)).for_each(&mut add);
+    let members = group.map_or(&[][..], |g| &g.members);
+    let optional = members.iter().filter(|m| !m.required && takes_floor(domain, m)).count();
+    let (lawful, lesser): (Vec<usize>, Vec<usize>) =
+        [picked].into_iter().chain(order).partition(|size| breach(*size) <= breach(picked));
+    let lose_members = !lesser.is_empty();
+    for sizes_left in [lawful, lesser] {
+        let mut whole: Vec<Unit> = sizes_left.iter().map(|size| plan.build(*size, sizes, usize::MAX)).collect();
+        if lose_members {
+            whole.extend((0..optional).rev().map(|keep| plan.build(picked, sizes, keep)));
+        }
+        if forms.advised {
+            whole.iter().filter_map(|unit| advised(unit, forms)).for_each(&mut add);
+        }
+        whole.into_iter().for_each(&mut add);
     }
-    whole.into_iter().for_each(&mut add);
-    if let Some(group) = group {
-        let optional = group.members.iter().filter(|m| !m.required && takes_floor(domain, m)).count();
+    if group.is_some() {
         let smallest_size = |o: &ObjectType| {
             let area = |i: &usize| o.sizes_m[*i][0] * o.sizes_m[*i][1];
             (0..o.sizes_m.len()).min_by(|a, b| area(a).total_cmp(&area(b))).unwrap_or(0)

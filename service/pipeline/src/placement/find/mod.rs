@@ -79,6 +79,9 @@ impl<'f, 'a, 's> Find<'f, 'a, 's> {
 
     /// Tests a position and keeps it when it breaks no rule.
     fn offer(&mut self, placed: Placed<'a>, class: u32, score: impl FnOnce(&Self, &Placed<'a>) -> f64) {
+        if self.task.required == 0 && self.state.hides(&placed) {
+            return self.none(Rule::NoPlace);
+        }
         let at_window = self.task.arrangement == Arrangement::AtWindow;
         let parts = placed.unit.parts.len();
         match self.state.fit(placed, at_window) {
