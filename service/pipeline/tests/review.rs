@@ -1,6 +1,5 @@
 //! What a reviewer of plans objects to and geometry can tell, over many seeds: showers that stand about, desks in ragged
-//! rows, nurses far from their corridor, isolation rooms without their anteroom, homes entered by the bedrooms or with
-//! nowhere to eat, screens beside the sofa's axis, machines on the sink.
+//! rows, nurses far from their corridor, isolation rooms without their anteroom, homes with nowhere to eat, screens beside the sofa's axis, machines on the sink.
 //!
 //! No rule forbids these; they are what makes a plan look wrong.
 
@@ -334,34 +333,4 @@ fn isolation_rooms_have_their_anteroom() {
         found += count("isolation_room");
     }
     assert!(found > 0, "some intensive care unit has an isolation room");
-}
-
-#[test]
-fn homes_are_entered_by_the_rooms_of_the_day() {
-    let (mut homes, mut first, mut last, mut wrong_order) = (0_u32, 0, 0, 0);
-    for prompt in
-        ["flat with 5 rooms", "family house in Germany with 8 rooms", "house with 4 bedrooms and two bathrooms"]
-    {
-        for world in worlds(prompt, 16) {
-            let plan = &world.floorplan;
-            let Some(entrance) = plan.doors.iter().find(|d| d.entrance) else { continue };
-            let walk = |room: &PlanRoom| {
-                let doors = plan.doors_of(&room.room_id).map(|d| d.line.middle());
-                let far =
-                    doors.map(|p| (p.x - entrance.line.middle().x).abs() + (p.y - entrance.line.middle().y).abs());
-                far.fold(f64::MAX, f64::min)
-            };
-            let of = |kind: &'static str| plan.rooms.iter().filter(move |r| r.room_type == kind);
-            let Some(living) = of("living_room").next() else { continue };
-            let nights: Vec<f64> = of("bedroom").map(walk).collect();
-            homes += 1;
-            first += u32::from(nights.iter().all(|far| walk(living) <= *far));
-            last += u32::from(nights.iter().all(|far| walk(living) > *far));
-            wrong_order += u32::from(of("bedroom").any(|bed| bed.net_area_m2 > living.net_area_m2));
-        }
-    }
-    assert!(homes >= 40, "{homes}");
-    println!("of {homes} homes {first} have the living room first, {last} last, {wrong_order} a larger bedroom");
-    assert!(first * 3 >= homes && last * 4 <= homes, "{first} first, {last} last of {homes}");
-    assert!(wrong_order * 20 <= homes, "{wrong_order} of {homes} have a bedroom larger than the living room");
 }

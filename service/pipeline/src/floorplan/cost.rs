@@ -12,7 +12,7 @@ use super::core::{Below, in_core, overhang};
 use super::lattice::{Cellbox, INNER_HALF_M, JAMB_M, OUTER_HALF_M, meters, up};
 use super::mirror;
 use super::realize::{Layout, door_need};
-use super::spec::{Brief, RoomSpec};
+use super::spec::Brief;
 
 /// Cost of a room whose area is outside what is advised, beside that of how far.
 const ILL_ADVISED: f64 = 0.4;
@@ -43,13 +43,6 @@ pub(super) const WINDOW_WALL_M: f64 = 1.2;
 
 /// Wall beside the latch of a door that people in wheelchairs pull open, beyond the least one, m (18 in together).
 const LATCH_SIDE_M: f64 = 0.457 - JAMB_M;
-
-/// Cost of a ward none of whose bedroom doors its station sees.
-const OUT_OF_SIGHT: f64 = 1.0;
-/// Longest piece of outer wall that is looked at as an end of a corridor, lattice units.
-const END_WALL: i32 = 80;
-/// Cost of a sleeping room larger than the room of the day that is to be the largest, beside that of how much.
-const WRONG_ORDER: f64 = 0.3;
 
 /// Weight of what hangs in the air.
 pub(super) const OVERHANG: f64 = 30.0;
@@ -359,26 +352,18 @@ impl<'b> Judge<'b> {
         }
         let perimeter: f64 = rooms.iter().map(|r| meters(r.outer.1)).sum();
         score.soft[6] += perimeter / (4.0 * total.sqrt()) - 1.0 + 0.02 * layout.notch;
-        let gates = self.gates(layout);
-        if let Some((wish, entrance)) = brief.symmetry.zip(gates.first().map(|g| g.room)) {
+        // one comes up the stairs
+        let stairs = brief.core.as_ref().map(|c| c.host);
+        let entrance = brief.rooms.iter().position(|r| r.entrance).or(stairs).and_then(|i| rooms[i].main);
+        if let Some((wish, door)) = brief.symmetry.zip(entrance) {
             let boxes: Vec<_> = rooms.iter().filter_map(|r| Some((r.main?, r.gross_m2))).collect();
-            score.symmetry = mirror::cost(wish, &boxes, entrance);
+            score.symmetry = mirror::cost(wish, &boxes, door);
         }
         let size = total.sqrt().max(1.0);
-        let home = brief.is_home();
-        // the entrance will be where it serves the rooms best
-        let lost = gates.iter().map(|gate| {
-            let far = |m: Cellbox| between(m.center2(), gate.at) / size;
-            brief
-                .rooms
-                .iter()
-                .zip(rooms)
-                .filter_map(|(spec, r)| Some(ill_placed(spec.zone, far(r.main?), home)))
-                .sum::<f64>()
-        });
-        score.soft[7] += lost.reduce(f64::min).unwrap_or(0.0);
-        score.soft[7] += OUT_OF_SIGHT * self.out_of_sight();
-        score.soft[0] += self.wrong_order();
+        for (spec, room) in brief.rooms.iter().zip(rooms) {
+            let (Some(main), Some(door)) = (room.main, entrance) else { continue };
+            score.soft[7] += ill_placed(spec.zone, distance(main, door) / size);
+        }
         for (room, shape) in &layout.boxes {
             if Some(*room) != brief.spine && rooms[*room].main != Some(*shape) {
                 // A leg beside a small room: fine as a lobby, a waste as a corridor.
@@ -387,106 +372,18 @@ impl<'b> Judge<'b> {
             }
         }
     }
-
-    /// Returns where one may come in: the middles of outer walls of the room with the entrance that hold a door, of a
-    /// corridor's its ends where it has some; the stairs on upper storeys.
-    fn gates(&self, layout: &Layout) -> Vec<Gate> {
-        let (brief, rooms) = (self.brief, &self.survey.rooms);
-        let stairs = brief.core.as_ref().map(|c| c.host);
-        let Some(entered) = brief.rooms.iter().position(|r| r.entrance).or(stairs) else { return Vec::new() };
-        let Some(main) = rooms[entered].main else { return Vec::new() };
-        let mut out: Vec<(i32, Gate)> = Vec::new();
-        let own = layout.boxes.iter().zip(&self.survey.side).filter(|((r, _), _)| *r == entered && !brief.upper);
-        for ((_, b), sides) in own {
-            let (cx, cy) = b.center2();
-            let ends = [(2 * b.x0, cy), (2 * b.x1, cy), (cx, 2 * b.y0), (cx, 2 * b.y1)];
-            for (s, at) in ends.into_iter().enumerate() {
-                let free = if s < 2 { b.height() } else { b.width() } - sides[s][0];
-                if free >= self.entrance_need {
-                    out.push((free, Gate { at, room: main }));
-                }
-            }
-        }
-        if entered == self.spine && out.iter().any(|(free, _)| *free <= END_WALL) {
-            out.retain(|(free, _)| *free <= END_WALL);
-        }
-        if out.is_empty() {
-            out.push((0, Gate { at: main.center2(), room: main }));
-        }
-        out.into_iter().map(|(_, gate)| gate).collect()
-    }
-
-    /// Returns the share of bedrooms on the side of the corridor on which all stations with an open front are: from there
-    /// one sees the doors across.
-    fn out_of_sight(&self) -> f64 {
-        let (brief, rooms) = (self.brief, &self.survey.rooms);
-        let Some(corridor) = brief.spine.filter(|_| !brief.hub).and_then(|s| rooms[s].main) else { return 0.0 };
-        let side = |b: Cellbox| {
-            let (cx, cy) = b.center2();
-            let (at, low, high) = if corridor.width() >= corridor.height() {
-                (cy, corridor.y0, corridor.y1)
-            } else {
-                (cx, corridor.x0, corridor.x1)
-            };
-            i32::from(at > 2 * high) - i32::from(at < 2 * low)
-        };
-        let sides = |wanted: fn(&RoomSpec) -> bool| {
-            let of = brief.rooms.iter().zip(rooms).filter(move |(spec, _)| spec.on_spine && wanted(spec));
-            of.filter_map(move |(_, room)| Some(side(room.main?)))
-        };
-        let stations = || sides(|spec| spec.zone == Zone::Staff && spec.open_front);
-        let Some(first) = stations().next() else { return 0.0 };
-        if first == 0 || stations().any(|side| side != first) {
-            return 0.0;
-        }
-        let (mut all, mut hidden) = (0, 0);
-        for side in sides(|spec| spec.zone == Zone::Night) {
-            all += 1;
-            hidden += u32::from(side == first);
-        }
-        f64::from(hidden) / f64::from(all.max(1))
-    }
-
-    /// Returns what it costs that a sleeping room has become larger than the room of the day that was to be the largest.
-    fn wrong_order(&self) -> f64 {
-        let of = |zone: Zone| self.brief.rooms.iter().zip(&self.survey.rooms).filter(move |(s, _)| s.zone == zone);
-        let Some((day, living)) = of(Zone::Day).max_by(|a, b| a.0.area_target.total_cmp(&b.0.area_target)) else {
-            return 0.0;
-        };
-        let Some((night, bedroom)) = of(Zone::Night).max_by(|a, b| a.1.net_m2.total_cmp(&b.1.net_m2)) else {
-            return 0.0;
-        };
-        if night.area_target >= day.area_target || bedroom.net_m2 <= living.net_m2 {
-            return 0.0;
-        }
-        WRONG_ORDER + bedroom.net_m2 / living.net_m2.max(1.0) - 1.0
-    }
 }
 
-/// A place for the entrance.
-struct Gate {
-    /// Twice its coordinates, lattice units.
-    at: (i32, i32),
-    /// Largest box of its room.
-    room: Cellbox,
-}
-
-/// Returns what a room of a zone loses by its distance from the entrance, in sides of the building; in homes the rooms of
-/// the day lie before the bedrooms.
-pub(super) fn ill_placed(zone: Zone, far: f64, home: bool) -> f64 {
-    let (day, night) = if home { (0.7, 0.6) } else { (0.25, 0.4) };
+/// Returns what a room of a zone loses by its distance from the entrance, in sides of the building.
+pub(super) fn ill_placed(zone: Zone, far: f64) -> f64 {
     match zone {
-        Zone::Public | Zone::Day => day * far,
-        Zone::Night => night * (1.2 - far).max(0.0),
+        Zone::Public | Zone::Day => 0.25 * far,
+        Zone::Night => 0.4 * (1.2 - far).max(0.0),
         Zone::Staff | Zone::Service | Zone::Circulation | Zone::Outdoor => 0.0,
     }
 }
 
 pub(super) fn distance(a: Cellbox, b: Cellbox) -> f64 {
-    between(a.center2(), b.center2())
-}
-
-/// Returns the walking distance between points given by twice their coordinates, m.
-fn between((ax, ay): (i32, i32), (bx, by): (i32, i32)) -> f64 {
+    let ((ax, ay), (bx, by)) = (a.center2(), b.center2());
     (f64::from((ax - bx).abs()) + f64::from((ay - by).abs())) * 0.025
 }

@@ -343,8 +343,8 @@ impl Site<'_> {
             let own = self.boxes.iter().filter(|(room, _)| *room == r).map(|(_, b)| b);
             own.max_by(|a, b| a.area_m2().total_cmp(&b.area_m2()))
         };
-        let (rooms, home) = (self.brief.rooms.iter().enumerate(), self.brief.is_home());
-        rooms.filter_map(|(r, spec)| Some(ill_placed(spec.zone, far(largest(r)?), home))).sum()
+        let rooms = self.brief.rooms.iter().enumerate();
+        rooms.filter_map(|(r, spec)| Some(ill_placed(spec.zone, far(largest(r)?)))).sum()
     }
 
     fn door(

@@ -253,12 +253,6 @@ impl Brief {
         ((clear + 0.08) / 0.05 - 1e-6).ceil() * 0.05
     }
 
-    /// Returns true for buildings that people live in: they sleep there, and nobody works or is received.
-    pub(super) fn is_home(&self) -> bool {
-        let any = |zone: Zone| self.rooms.iter().any(|r| r.zone == zone);
-        any(Zone::Night) && !any(Zone::Staff) && !any(Zone::Public)
-    }
-
     /// Returns the clear width of a passage between two rooms: the wider need of the more demanding side that it serves.
     pub(super) fn door_width(&self, a: usize, b: usize) -> f64 {
         match self.spine {

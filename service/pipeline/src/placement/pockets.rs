@@ -36,6 +36,8 @@ const OVERHEAD: i32 = 2000;
 const THRESHOLD: i32 = 300;
 /// How far what is no floor reaches around the room, mm; beyond the thresholds.
 const AROUND: i32 = 400;
+/// What is not looked at of that, mm: more than the edge of a cell.
+const EDGE: i32 = 90;
 
 /// A way to look at the floor.
 #[derive(Debug, Clone, Copy)]
@@ -145,7 +147,8 @@ impl Pockets {
     /// Returns the floor that cannot be reached from the largest part, mm^2 of places for the robot's center.
     fn closed_off(&self, more: &[Box2], view: View) -> i64 {
         let grown: Vec<Box2> = self.obstacles.iter().chain(more).filter_map(|o| view.around(o)).collect();
-        let f = self.frame;
+        // cells at the very edge may lie half outside
+        let f = self.frame.grown(-EDGE);
         let marks = |low: i32, high: i32, edges: &dyn Fn(&Box2) -> [i32; 2]| {
             let mut out: Vec<i32> = grown.iter().flat_map(edges).filter(|v| low < *v && *v < high).collect();
             out.extend([low, high]);

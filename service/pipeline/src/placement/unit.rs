@@ -219,17 +219,16 @@ pub(super) fn variants<'a>(domain: &'a Domain, item: &'a str, forms: &Forms) -> 
     let optional = members.iter().filter(|m| !m.required && takes_floor(domain, m)).count();
     let (lawful, lesser): (Vec<usize>, Vec<usize>) =
         [picked].into_iter().chain(order).partition(|size| breach(*size) <= breach(picked));
-    let lose_members = !lesser.is_empty();
-    for sizes_left in [lawful, lesser] {
-        let mut whole: Vec<Unit> = sizes_left.iter().map(|size| plan.build(*size, sizes, usize::MAX)).collect();
-        if lose_members {
-            whole.extend((0..optional).rev().map(|keep| plan.build(picked, sizes, keep)));
-        }
-        if forms.advised {
-            whole.iter().filter_map(|unit| advised(unit, forms)).for_each(&mut add);
-        }
-        whole.into_iter().for_each(&mut add);
+    let full = |size: usize| plan.build(size, sizes, usize::MAX);
+    let mut whole: Vec<Unit> = lawful.into_iter().map(full).collect();
+    if !lesser.is_empty() {
+        whole.extend((0..optional).rev().map(|keep| plan.build(picked, sizes, keep)));
+        whole.extend(lesser.into_iter().map(full));
     }
+    if forms.advised {
+        whole.iter().filter_map(|unit| advised(unit, forms)).for_each(&mut add);
+    }
+    whole.into_iter().for_each(&mut add);
     if group.is_some() {
         let smallest_size = |o: &ObjectType| {
             let area = |i: &usize| o.sizes_m[*i][0] * o.sizes_m[*i][1];
