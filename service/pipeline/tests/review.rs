@@ -1,5 +1,6 @@
 //! What a reviewer of plans objects to and geometry can tell, over many seeds: showers that stand about, desks in ragged
-//! rows, nurses far from their corridor, isolation rooms without their anteroom, homes with nowhere to eat, screens beside the sofa's axis, machines on the sink.
+//! rows, nurses far from their corridor, isolation rooms without their anteroom, homes with nowhere to eat, screens beside
+//! the sofa's axis, machines on the sink.
 //!
 //! No rule forbids these; they are what makes a plan look wrong.
 
