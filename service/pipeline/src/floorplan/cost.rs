@@ -44,6 +44,9 @@ pub(super) const WINDOW_WALL_M: f64 = 1.2;
 /// Wall beside the latch of a door that people in wheelchairs pull open, beyond the least one, m (18 in together).
 const LATCH_SIDE_M: f64 = 0.457 - JAMB_M;
 
+/// Cost of a sleeping room larger than the room of the day that is to be the largest, beside that of how much.
+const WRONG_SIZES: f64 = 0.5;
+
 /// Weight of what hangs in the air.
 pub(super) const OVERHANG: f64 = 30.0;
 
@@ -90,9 +93,9 @@ pub(super) fn taste(rng: &mut Stream) -> Weights {
 
 /// Measures layouts of one brief and judges them, in memory of its own that every layout uses again.
 pub(super) struct Judge<'b> {
-    brief: &'b Brief,
+    pub(super) brief: &'b Brief,
     /// The spine, or a number that no room has.
-    spine: usize,
+    pub(super) spine: usize,
     /// By room: wall that its door to the spine needs, 0 for none, lattice units.
     spine_need: Vec<i32>,
     /// By room times number of rooms plus room: which pair of interest they are, counted from 1; 0 for none.
@@ -101,36 +104,36 @@ pub(super) struct Judge<'b> {
     link_needs: Vec<(usize, i32)>,
     apart_pairs: Vec<usize>,
     /// What the doors to outdoors need, lattice units.
-    entrance_need: i32,
+    pub(super) entrance_need: i32,
     wet_rooms: usize,
-    survey: Survey,
+    pub(super) survey: Survey,
     /// The storey below, for one that stands on another.
     pub(super) below: Option<&'b Below>,
 }
 
 /// Lengths of walls per room and pair of one layout.
 #[derive(Default)]
-struct Survey {
+pub(super) struct Survey {
     /// Boxes from west to east: west edge and index.
     by_west: Vec<(i32, usize)>,
     /// Per box and side: wall shared with any box, and with boxes of the same room.
-    side: Vec<[[i32; 2]; 4]>,
+    pub(super) side: Vec<[[i32; 2]; 4]>,
     /// By pair of interest: the longest shared wall, lattice units.
     pair: Vec<i32>,
-    rooms: Vec<Measured>,
+    pub(super) rooms: Vec<Measured>,
 }
 
 /// One room of a layout.
 #[derive(Debug, Clone, Copy, Default)]
-struct Measured {
+pub(super) struct Measured {
     /// Longest wall shared with the spine, lattice units.
     spine: i32,
     /// Outer wall: the longest straight piece, and the sum.
     outer: (i32, i32),
     gross_m2: f64,
-    net_m2: f64,
+    pub(super) net_m2: f64,
     /// Largest box.
-    main: Option<Cellbox>,
+    pub(super) main: Option<Cellbox>,
     /// Clear width and height of that box, m.
     clear: (f64, f64),
     /// True for a wet room beside another.
@@ -350,6 +353,7 @@ impl<'b> Judge<'b> {
             let net: f64 = rooms.iter().map(|r| r.net_m2).sum();
             score.soft[0] += 20.0 * ((net - area).abs() / area - AREA_TOLERANCE).max(0.0);
         }
+        score.soft[0] += self.wrong_sizes();
         let perimeter: f64 = rooms.iter().map(|r| meters(r.outer.1)).sum();
         score.soft[6] += perimeter / (4.0 * total.sqrt()) - 1.0 + 0.02 * layout.notch;
         // one comes up the stairs
@@ -372,6 +376,21 @@ impl<'b> Judge<'b> {
             }
         }
     }
+
+    /// Returns what it costs that a sleeping room has become larger than the room of the day that was to be the largest.
+    fn wrong_sizes(&self) -> f64 {
+        let of = |zone: Zone| self.brief.rooms.iter().zip(&self.survey.rooms).filter(move |(s, _)| s.zone == zone);
+        let Some((day, living)) = of(Zone::Day).max_by(|a, b| a.0.area_target.total_cmp(&b.0.area_target)) else {
+            return 0.0;
+        };
+        let Some((night, bedroom)) = of(Zone::Night).max_by(|a, b| a.1.net_m2.total_cmp(&b.1.net_m2)) else {
+            return 0.0;
+        };
+        if night.area_target >= day.area_target || bedroom.net_m2 <= living.net_m2 {
+            return 0.0;
+        }
+        WRONG_SIZES + bedroom.net_m2 / living.net_m2.max(1.0) - 1.0
+    }
 }
 
 /// Returns what a room of a zone loses by its distance from the entrance, in sides of the building.
@@ -384,6 +403,10 @@ pub(super) fn ill_placed(zone: Zone, far: f64) -> f64 {
 }
 
 pub(super) fn distance(a: Cellbox, b: Cellbox) -> f64 {
-    let ((ax, ay), (bx, by)) = (a.center2(), b.center2());
+    between(a.center2(), b.center2())
+}
+
+/// Returns the walking distance between points given by twice their coordinates, m.
+pub(super) fn between((ax, ay): (i32, i32), (bx, by): (i32, i32)) -> f64 {
     (f64::from((ax - bx).abs()) + f64::from((ay - by).abs())) * 0.025
 }

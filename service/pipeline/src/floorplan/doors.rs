@@ -47,57 +47,28 @@ struct Spot {
     penalty: f64,
 }
 
+/// Doors placed so far.
+#[derive(Default)]
+struct Laid {
+    doors: Vec<Door>,
+    /// What they need of the floor, by room.
+    zones: Vec<(usize, Rect)>,
+    /// Passages that found no place.
+    missing: Vec<String>,
+    /// What their places cost.
+    cost: f64,
+}
+
 /// Returns all passages of the plan; the reason for each that finds no place.
 pub(super) fn place_doors(site: &Site<'_>, rng: &mut Stream) -> Result<Vec<Door>, String> {
-    let brief = site.brief;
-    let mut doors: Vec<Door> = Vec::new();
-    let mut zones: Vec<(usize, Rect)> = Vec::new();
-    let mut missing = Vec::new();
-    let mut wanted: Vec<(usize, usize, Connector, bool)> = Vec::new();
-    if let Some(spine) = brief.spine {
-        for (i, room) in brief.rooms.iter().enumerate().filter(|(i, r)| r.on_spine && *i != spine) {
-            let connector = if room.open_front { Connector::Open } else { Connector::Door };
-            wanted.push((i, spine, connector, true));
-        }
-    }
-    let walkable = |c: Connector| matches!(c, Connector::Door | Connector::Open);
-    wanted.extend(brief.links.iter().filter(|l| walkable(l.connector)).map(|l| (l.a, l.b, l.connector, l.required)));
-    for (a, b, connector, required) in wanted {
-        if let Some(spot) = site.standing_spot(&[a, b], false) {
-            take_best(vec![spot], &mut doors, &mut zones, || {});
-            continue;
-        }
-        let spots = site
-            .stretches
-            .iter()
-            .filter(|s| s.joins(a, b) && site.is_front(s, a))
-            .flat_map(|s| site.spots(s, a, b, connector, rng));
-        take_best(spots.collect(), &mut doors, &mut zones, || {
-            if required {
-                missing.push(format!("{} to {}", brief.rooms[a].id, brief.rooms[b].id));
-            }
-        });
-    }
-    for (room, main) in site.entrances() {
-        if let Some(spot) = site.standing_spot(&[room], main) {
-            take_best(vec![spot], &mut doors, &mut zones, || {});
-            continue;
-        }
-        let spots: Vec<Spot> = site
-            .stretches
-            .iter()
-            .filter(|s| s.only_room() == Some(room))
-            .flat_map(|s| site.entrance_spots(s, room, main, &doors))
-            .collect();
-        take_best(spots, &mut doors, &mut zones, || {
-            if main {
-                missing.push(format!("outdoors to {}", brief.rooms[room].id));
-            }
-        });
-    }
+    // the entrance where it serves the rooms best, with the other doors clear of it, or the other way round
+    let [first, last] = [true, false].map(|entrance_first| lay(site, entrance_first, rng));
+    let worse = |l: &Laid| (l.missing.len(), l.cost);
+    let Laid { mut doors, missing, .. } = if worse(&last) < worse(&first) { last } else { first };
     if !missing.is_empty() {
         return Err(format!("no wall long enough for the door from {}", missing.join(", ")));
     }
+    doors.sort_by_key(|d| d.room_ids.len() == 1);
     let next = 1 + highest(site.standing.iter().map(|d| d.door_id.as_str()));
     for (n, door) in (next..).zip(doors.iter_mut().filter(|d| d.door_id.is_empty())) {
         door.door_id = format!("door_{n}");
@@ -105,26 +76,80 @@ pub(super) fn place_doors(site: &Site<'_>, rng: &mut Stream) -> Result<Vec<Door>
     Ok(doors)
 }
 
-/// Takes the spot that disturbs the doors already placed least.
-fn take_best(spots: Vec<Spot>, doors: &mut Vec<Door>, zones: &mut Vec<(usize, Rect)>, none: impl FnOnce()) {
-    let cost = |spot: &Spot| {
-        let clashes = spot
-            .zones
-            .iter()
-            .map(|(room, zone)| zones.iter().filter(|(r, z)| r == room && z.overlaps(zone)).count())
-            .sum::<usize>();
-        spot.penalty + 10.0 * clashes as f64
-    };
-    match spots.into_iter().min_by(|a, b| cost(a).total_cmp(&cost(b))) {
-        Some(spot) => {
-            zones.extend(spot.zones);
-            doors.push(spot.door);
-        }
-        None => none(),
+/// Places doors one after the other.
+fn lay(site: &Site<'_>, entrance_first: bool, rng: &mut Stream) -> Laid {
+    let mut laid = Laid::default();
+    let entrances = site.entrances();
+    let (before, after) = entrances.split_at(if entrance_first { entrances.len().min(1) } else { 0 });
+    site.lay_entrances(before, &mut laid);
+    site.lay_inner(&mut laid, rng);
+    site.lay_entrances(after, &mut laid);
+    laid
+}
+
+impl Laid {
+    /// Takes the spot that disturbs the doors already placed least; returns false when there is none.
+    fn take_best(&mut self, spots: impl IntoIterator<Item = Spot>) -> bool {
+        let cost = |spot: &Spot| {
+            let clashes = |(room, zone): &(usize, Rect)| {
+                self.zones.iter().filter(|(r, z)| r == room && z.overlaps(zone)).count()
+            };
+            spot.penalty + 10.0 * spot.zones.iter().map(clashes).sum::<usize>() as f64
+        };
+        let Some((least, spot)) = spots.into_iter().map(|s| (cost(&s), s)).min_by(|a, b| a.0.total_cmp(&b.0)) else {
+            return false;
+        };
+        self.cost += least;
+        self.zones.extend(spot.zones);
+        self.doors.push(spot.door);
+        true
     }
 }
 
 impl Site<'_> {
+    /// Places the doors between rooms.
+    fn lay_inner(&self, laid: &mut Laid, rng: &mut Stream) {
+        let brief = self.brief;
+        let mut wanted: Vec<(usize, usize, Connector, bool)> = Vec::new();
+        if let Some(spine) = brief.spine {
+            for (i, room) in brief.rooms.iter().enumerate().filter(|(i, r)| r.on_spine && *i != spine) {
+                let connector = if room.open_front { Connector::Open } else { Connector::Door };
+                wanted.push((i, spine, connector, true));
+            }
+        }
+        let walkable = |c: Connector| matches!(c, Connector::Door | Connector::Open);
+        wanted.extend(brief.links.iter().filter(|l| walkable(l.connector)).map(|l| (l.a, l.b, l.connector, l.required)));
+        for (a, b, connector, required) in wanted {
+            let standing = self.standing_spot(&[a, b], false);
+            let stretches = self.stretches.iter().filter(|s| s.joins(a, b) && self.is_front(s, a));
+            let found = match standing {
+                Some(spot) => laid.take_best([spot]),
+                None => laid.take_best(stretches.flat_map(|s| self.spots(s, a, b, connector, rng)).collect::<Vec<_>>()),
+            };
+            if !found && required {
+                laid.missing.push(format!("{} to {}", brief.rooms[a].id, brief.rooms[b].id));
+            }
+        }
+    }
+
+    /// Places doors to outdoors.
+    fn lay_entrances(&self, entrances: &[(usize, bool)], laid: &mut Laid) {
+        for &(room, main) in entrances {
+            let stretches = self.stretches.iter().filter(|s| s.only_room() == Some(room));
+            let found = match self.standing_spot(&[room], main) {
+                Some(spot) => laid.take_best([spot]),
+                None => {
+                    let spots = stretches.flat_map(|s| self.entrance_spots(s, room, main, &laid.doors));
+                    let spots: Vec<Spot> = spots.collect();
+                    laid.take_best(spots)
+                }
+            };
+            if !found && main {
+                laid.missing.push(format!("outdoors to {}", self.brief.rooms[room].id));
+            }
+        }
+    }
+
     /// Returns the place of an earlier door between these rooms (of one: to outdoors) when its wall still stands.
     fn standing_spot(&self, rooms: &[usize], main: bool) -> Option<Spot> {
         let ids: Vec<&str> = rooms.iter().map(|&r| self.brief.rooms[r].id.as_str()).collect();
@@ -210,9 +235,14 @@ impl Site<'_> {
             return Vec::new();
         }
         if connector == Connector::Open {
-            let width = (meters(s.len()) - 2.0 * (OPEN_JAMB_M + INNER_HALF_M)).clamp(opening, OPEN_MAX_M);
-            let start = (from + to - width) / 2.0;
-            return vec![self.open_spot(s, a, b, start, width)];
+            let whole = (meters(s.len()) - 2.0 * (OPEN_JAMB_M + INNER_HALF_M)).clamp(opening, OPEN_MAX_M);
+            if !self.is_open_to_several(a, b) {
+                let start = (from + to - whole) / 2.0;
+                return vec![self.open_spot(s, a, b, start, whole)];
+            }
+            // what stands in the smaller room needs walls too: half of this one, in one piece
+            let width = (meters(s.len()) / 2.0).clamp(opening, whole);
+            return [from, to - width].map(|start| self.open_spot(s, a, b, start, width)).into();
         }
         let into = self.swing_room(a, b);
         let first = if rng.chance(0.5) { 0.0 } else { 0.2 };
@@ -228,6 +258,13 @@ impl Site<'_> {
             spots.extend(self.leaf_spot(s, [a, b], into, start, clear, hinge_at_start, penalty));
         }
         spots
+    }
+
+    /// Returns true when the smaller of two rooms is open to others as well.
+    fn is_open_to_several(&self, a: usize, b: usize) -> bool {
+        let smaller = if self.net_m2[a] < self.net_m2[b] { a } else { b };
+        let links = self.brief.links.iter().filter(|l| l.connector == Connector::Open);
+        links.filter(|l| l.a == smaller || l.b == smaller).count() > 1
     }
 
     /// Returns the room a leaf opens into: never the corridor; of two rooms the one that hangs on the other, else the larger.

@@ -1,12 +1,14 @@
 //! The discrete description of a plan that the search changes: which scheme, which rooms in which band and order, which
 //! small rooms nest beside whom, how deep the bands are.
 
-use d3dgen_model::domain::{Daylight, Scheme};
+use d3dgen_model::domain::{Daylight, Scheme, Zone};
 use d3dgen_model::seed::Stream;
 
 use super::lattice::{INNER_HALF_M, up};
 use super::spec::Brief;
 
+/// Share of homes that begin with a bedroom, and not the largest room, at the end of the hall.
+const AT_THE_END: f64 = 0.8;
 /// Small rooms at one end of a cell at most.
 const MOST_NESTS: usize = 7;
 
@@ -194,12 +196,17 @@ impl Genome {
         {
             self.caps[0] = Some(random_cap(free.remove(i), rng));
         }
-        let largest = free
-            .iter()
-            .enumerate()
-            .filter(|(_, r)| brief.rooms[**r].on_spine && brief.rooms[**r].area_target >= 9.0)
-            .max_by(|a, b| brief.rooms[*a.1].area_target.total_cmp(&brief.rooms[*b.1].area_target))
-            .map(|(i, _)| i);
+        // where a hall ends in a large room, that is seldom the one to which everybody goes
+        let retired = brief.is_home() && rng.chance(AT_THE_END);
+        let largest = |zone: Option<Zone>| {
+            free.iter()
+                .enumerate()
+                .map(|(i, &r)| (i, &brief.rooms[r]))
+                .filter(|(_, r)| r.on_spine && r.area_target >= 9.0 && zone.is_none_or(|z| r.zone == z))
+                .max_by(|a, b| a.1.area_target.total_cmp(&b.1.area_target))
+                .map(|(i, _)| i)
+        };
+        let largest = largest(retired.then_some(Zone::Night)).or_else(|| largest(None));
         if let Some(i) = largest {
             self.caps[1] = Some(random_cap(free.remove(i), rng));
         }

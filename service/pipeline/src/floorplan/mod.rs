@@ -20,6 +20,7 @@ mod genome;
 mod insert;
 mod lattice;
 mod mirror;
+mod order;
 mod outline;
 mod proposed;
 mod realize;

@@ -7,6 +7,7 @@ use super::compose::{LARGE, compose};
 use super::core::Below;
 use super::cost::{Judge, Score, Weights, taste};
 use super::genome::{Cell, Cover, Genome, guest_of, is_nestable};
+use super::order::put_in_order;
 use super::realize::{Layout, Scratch, realize};
 use super::spec::Brief;
 use crate::Stop;
@@ -26,7 +27,7 @@ const SMALL: usize = 14;
 const HEAT: (f64, f64) = (1.5, 0.02);
 
 /// Steps from one look at the wish to stop to the next.
-const LOOK: usize = 64;
+pub(super) const LOOK: usize = 64;
 
 /// The exponential distribution in 32 steps of equal chance, from the most patient to the least.
 const PATIENCE: [f64; 32] = [
@@ -55,7 +56,7 @@ pub(super) fn search(brief: &Brief, schemes: &[Scheme], rng: &mut Stream, stop: 
     // One body where the seed and the size allow it, else wings.
     let whole: Vec<Scheme> = schemes.iter().copied().filter(|s| *s != Scheme::Comb).take(1).collect();
     if brief.rooms.len() <= MOST_WHOLE && schemes.first() != Some(&Scheme::Comb) {
-        let found = anneal(brief, &mut Judge::new(brief), *whole.first()?, &weights, rng, stop);
+        let (_, found) = anneal(brief, &mut Judge::new(brief), *whole.first()?, &weights, rng, stop);
         if found.score.is_sound() {
             return Some(found);
         }
@@ -72,7 +73,7 @@ pub(super) fn search_with(
     rng: &mut Stream,
     stop: Stop<'_>,
 ) -> Option<Candidate> {
-    let mut best: Option<Candidate> = None;
+    let mut best: Option<(Genome, Candidate)> = None;
     let mut sound = 0;
     let mut judge = Judge::new(brief);
     judge.below = judge.below.or(below);
@@ -81,19 +82,16 @@ pub(super) fn search_with(
         let scheme = if run < 4 { schemes.first() } else { schemes.get(run % schemes.len().max(1)) };
         let Some(&scheme) = scheme else { break };
         let found = anneal(brief, &mut judge, scheme, weights, rng, stop);
-        let is_sound = found.score.is_sound();
-        sound += usize::from(is_sound);
-        let better = best
-            .as_ref()
-            .is_none_or(|b| (!b.score.is_sound(), b.score.total(weights)) > (!is_sound, found.score.total(weights)));
-        if better {
+        let rank = |c: &Candidate| (!c.score.is_sound(), c.score.total(weights));
+        sound += usize::from(found.1.score.is_sound());
+        if best.as_ref().is_none_or(|b| rank(&b.1) > rank(&found.1)) {
             best = Some(found);
         }
         if sound >= wanted || stop.is_set() {
             break;
         }
     }
-    best
+    Some(put_in_order(brief, &mut judge, weights, best?, rng, stop))
 }
 
 /// One run: from a random start, hot to cold.
@@ -104,7 +102,7 @@ fn anneal(
     weights: &Weights,
     rng: &mut Stream,
     stop: Stop<'_>,
-) -> Candidate {
+) -> (Genome, Candidate) {
     let steps = (STEPS_PER_ROOM * brief.rooms.len()).clamp(600, MAX_STEPS);
     let (mut scratch, mut layout) = (Scratch::default(), Layout::default());
     let mut value = |genome: &Genome| {
@@ -138,7 +136,8 @@ fn anneal(
     let mut layout = Layout::default();
     realize(brief, &best, &mut scratch, &mut layout);
     let score = judge.score(&layout);
-    Candidate { scheme: best.scheme, layout, score }
+    let found = Candidate { scheme: best.scheme, layout, score };
+    (best, found)
 }
 
 /// Returns how much worse a step may be, in units of the heat: drawn from the exponential distribution, as annealing

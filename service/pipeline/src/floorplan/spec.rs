@@ -248,6 +248,12 @@ impl Brief {
         self.links.push(Link { a, b, connector, required });
     }
 
+    /// Returns true for buildings that people live in: they sleep there, and nobody works or is received.
+    pub(super) fn is_home(&self) -> bool {
+        let any = |zone: Zone| self.rooms.iter().any(|r| r.zone == zone);
+        any(Zone::Night) && !any(Zone::Staff) && !any(Zone::Public)
+    }
+
     /// Returns the structural opening of a door with this clear width, m, on the lattice.
     pub(super) fn opening(clear: f64) -> f64 {
         ((clear + 0.08) / 0.05 - 1e-6).ceil() * 0.05

@@ -30,6 +30,14 @@ const LARGE: usize = 40_000;
 /// Further departures while something required has no place.
 const RESCUES: [(usize, usize); 8] = [(2, 1), (1, 2), (0, 3), (2, 2), (3, 1), (0, 4), (1, 3), (3, 2)];
 
+/// Units in rows or a grid, and what they are worth.
+struct Rows<'a> {
+    units: Vec<Placed<'a>>,
+    score: f64,
+    /// False when they close off floor, where that is looked at.
+    open: bool,
+}
+
 /// What one room's search needs to know.
 pub(super) struct Job<'a, 's> {
     pub domain: &'a Domain,
@@ -239,7 +247,7 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
             |(index, task)| {
                 let mut tally = Tally::default();
                 if task.is_batch() && !self.lines_walls(task) {
-                    self.batch(&self.start, index, task.required, 0, &mut tally).is_none()
+                    self.batch(&self.start, index, task.required, (0, false), &mut tally).is_none()
                 } else {
                     task.arrangement != Arrangement::OnSurface
                         && self.single(&self.start, index, 0, None, &mut tally).is_none()
@@ -267,7 +275,7 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
             };
             let Draft { state, outcome, steps } = draft;
             if task.is_batch() && !self.lines_walls(task) {
-                if let Some((units, score)) = self.batch(state, index, count, rank(steps), &mut tally) {
+                if let Some((units, score)) = self.batch(state, index, count, (rank(steps), whole), &mut tally) {
                     placed = units.len() as u32;
                     outcome.score += score;
                     state.add(units);
@@ -313,7 +321,7 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
         state: &State<'a, 's>,
         index: usize,
         count: u32,
-        rank: usize,
+        (rank, whole): (usize, bool),
         tally: &mut Tally,
     ) -> Option<(Vec<Placed<'a>>, f64)> {
         let task = Task { count, ..self.job.tasks[index].clone() };
@@ -329,7 +337,7 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
         stages.retain(|stage| depth > 0 || *stage == 0);
         let mut best = None;
         for stage in stages {
-            best = self.best_batch(state, &task, index, rank, &terms(stage), tally);
+            best = self.best_batch(state, &task, index, (rank, whole), &terms(stage), tally);
             if best.as_ref().is_some_and(|b| b.0.len() as u32 >= task.required.max(1)) {
                 break;
             }
@@ -367,14 +375,14 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
         state: &State<'a, 's>,
         task: &Task,
         index: usize,
-        rank: usize,
+        (rank, whole): (usize, bool),
         terms: &Terms,
         tally: &mut Tally,
     ) -> Option<(Vec<Placed<'a>>, f64)> {
-        // of each form that one could have; forms come in the order of what they keep of the rules
-        let mut found: Vec<(Vec<Placed>, f64)> = Vec::new();
+        // the best of each form that one could have; forms come in the order of what they keep of the rules
+        let mut found: Vec<Rows> = Vec::new();
         for forms in self.forms[index].iter().take_while(|_| !self.job.stop.is_set()) {
-            let mut best: Option<(Vec<Placed>, f64)> = None;
+            let mut best: Option<Rows> = None;
             let unit = &forms[0];
             let batches = if task.arrangement == Arrangement::Overhead {
                 over(state, task, index, unit, tally)
@@ -382,29 +390,37 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
                 rows(state, task, index, unit, terms, tally)
             };
             let counted = |placed: &[Placed]| task.counted(placed.len());
+            let rank_of = |r: &Rows| (r.units.len() >= task.required as usize, r.open, counted(&r.units), r.score);
             let most = batches.iter().skip(rank).map(|b| counted(&b.placed)).max().unwrap_or(0);
             for batch in batches.into_iter().skip(rank).take_while(|_| !self.job.stop.is_set()) {
-                let mut kept: Vec<Placed> = Vec::new();
-                keep_passable(state, &batch.placed, &mut kept, tally);
-                kept.iter_mut().for_each(|p| p.first_line = task.line == 0);
-                let score = batch.score + kept.len() as f64;
-                let whole = counted(&kept) >= most;
-                if !kept.is_empty() && best.as_ref().is_none_or(|b| (counted(&kept), score) > (counted(&b.0), b.1)) {
-                    best = Some((kept, score));
+                let mut units: Vec<Placed> = Vec::new();
+                keep_passable(state, &batch.placed, &mut units, tally);
+                if units.is_empty() {
+                    continue;
                 }
-                if whole {
+                units.iter_mut().for_each(|p| p.first_line = task.line == 0);
+                let score = batch.score + units.len() as f64;
+                let rows = Rows { score, open: !whole || !state.is_closed_by(&units), units };
+                let no_better = counted(&rows.units) >= most && rows.open;
+                if best.as_ref().is_none_or(|b| rank_of(&rows) > rank_of(b)) {
+                    best = Some(rows);
+                }
+                if no_better {
                     break; // the others hold no more and look no better
                 }
             }
-            let all = best.as_ref().is_some_and(|b| b.0.len() as u32 + task.spare >= task.count);
+            let all = best.as_ref().is_some_and(|b| b.open && b.units.len() as u32 + task.spare >= task.count);
             found.extend(best);
             if all {
                 break;
             }
         }
-        let most = found.iter().map(|f| f.0.len()).max()?;
+        let most = found.iter().map(|f| f.units.len()).max()?;
         let least = (task.required as usize).max((most as f64 * WORTH).ceil() as usize).min(most);
-        found.into_iter().find(|f| f.0.len() >= least)
+        found.retain(|f| f.units.len() >= least);
+        let first = found.iter().position(|f| f.open).unwrap_or(0);
+        let Rows { units, score, .. } = found.into_iter().nth(first)?;
+        Some((units, score))
     }
 
     /// Returns the best place for one unit of a task; `whole` as [`choose`] has it.

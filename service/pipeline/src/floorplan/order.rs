@@ -1,0 +1,180 @@
+//! The order of rooms: what lies before what behind the entrance, what sees what, which room is the largest.
+//!
+//! The search for a layout knows the middle of the room with the entrance only (`cost`). A layout it has found is looked
+//! at once more with the places where the entrance may be, and rooms change places while nothing gets worse. A search
+//! that weighed all of this from its start would end at the same few plans for small programs.
+
+use d3dgen_model::domain::Zone;
+use d3dgen_model::seed::Stream;
+
+use super::cost::{Judge, Weights, between, ill_placed};
+use super::genome::Genome;
+use super::lattice::Cellbox;
+use super::realize::{Layout, Scratch, realize};
+use super::search::{Candidate, LOOK, mutate, patience};
+use super::spec::{Brief, RoomSpec};
+use crate::Stop;
+
+/// Exchanges tried per room, and at most.
+const TRIES_PER_ROOM: usize = 60;
+const MOST_TRIES: usize = 900;
+/// Temperature at the start, in cost units; a plan that is sound is not taken apart.
+const HEAT: f64 = 0.3;
+/// Cost of a ward none of whose bedroom doors its station sees.
+const OUT_OF_SIGHT: f64 = 1.0;
+/// Longest piece of outer wall that is looked at as an end of a corridor, lattice units.
+const END_WALL: i32 = 80;
+/// Cost of a plan in which one comes to all rooms in the wrong order.
+const MISPLACED: f64 = 3.0;
+/// Disorder with which a plan is left as it was found.
+const TOLERABLE: f64 = 0.3;
+
+/// Exchanges rooms of a sound layout while that mends their order more than it costs otherwise.
+pub(super) fn put_in_order(
+    brief: &Brief,
+    judge: &mut Judge<'_>,
+    weights: &Weights,
+    (genome, found): (Genome, Candidate),
+    rng: &mut Stream,
+    stop: Stop<'_>,
+) -> Candidate {
+    let (mut scratch, mut layout) = (Scratch::default(), Layout::default());
+    let mut look = |genome: &Genome| {
+        realize(brief, genome, &mut scratch, &mut layout);
+        let score = judge.score(&layout);
+        (score, judge.disorder(&layout), layout.clone())
+    };
+    let (score, mut order, _) = look(&genome);
+    if !score.is_sound() {
+        return found;
+    }
+    let mut cost = score.total(weights) + order;
+    let (mut least, mut best) = (cost, found);
+    let (mut current, mut trial) = (genome.clone(), genome);
+    let tries = (TRIES_PER_ROOM * brief.rooms.len()).min(MOST_TRIES);
+    for n in 0..tries {
+        if order <= TOLERABLE || n % LOOK == 0 && stop.is_set() {
+            break;
+        }
+        trial.clone_from(&current);
+        if !mutate(brief, &mut trial, rng) {
+            continue;
+        }
+        let (score, disorder, layout) = look(&trial);
+        let total = score.total(weights) + disorder;
+        if total < cost + HEAT * (1.0 - n as f64 / tries as f64) * patience(rng) {
+            std::mem::swap(&mut current, &mut trial);
+            cost = total;
+            if score.is_sound() && total < least {
+                (least, order) = (total, disorder);
+                best = Candidate { scheme: current.scheme, layout, score };
+            }
+        }
+    }
+    best
+}
+
+/// A place for the entrance.
+#[derive(Debug, Clone, Copy)]
+struct Gate {
+    /// Twice its coordinates, lattice units.
+    at: (i32, i32),
+}
+
+impl Judge<'_> {
+    /// Returns what the order of rooms costs in the layout that was judged last.
+    fn disorder(&self, layout: &Layout) -> f64 {
+        MISPLACED * self.misplaced(layout) + OUT_OF_SIGHT * self.out_of_sight()
+    }
+
+    /// Returns the share of pairs of rooms of different rank in which the one that comes later lies nearer the entrance,
+    /// larger rooms counting more; the entrance is where it serves the rooms best.
+    fn misplaced(&self, layout: &Layout) -> f64 {
+        let rooms = || self.brief.rooms.iter().zip(&self.survey.rooms).filter_map(|(spec, r)| Some((spec, r.main?)));
+        let gates = self.gates(layout);
+        let size = rooms().map(|(_, main)| main.area_m2()).sum::<f64>().sqrt().max(1.0);
+        let far = |main: Cellbox, gate: &Gate| between(main.center2(), gate.at);
+        let lost = |gate: &Gate| -> f64 { rooms().map(|(spec, main)| ill_placed(spec.zone, far(main, gate) / size)).sum() };
+        let Some(gate) = gates.iter().min_by(|a, b| lost(a).total_cmp(&lost(b))) else { return 0.0 };
+        let ranked: Vec<(u8, f64, f64)> = rooms()
+            .filter_map(|(spec, main)| Some((rank(spec.zone)?, spec.area_target, far(main, gate))))
+            .collect();
+        let (mut wrong, mut all) = (0.0, 0.0);
+        for (before, area, way) in &ranked {
+            for (_, _, other) in ranked.iter().filter(|(after, ..)| after > before) {
+                all += area;
+                wrong += if way > other { *area } else { 0.0 };
+            }
+        }
+        if all > 0.0 { wrong / all } else { 0.0 }
+    }
+
+    /// Returns where one may come in: the middles of outer walls of the room with the entrance that hold a door, of a
+    /// corridor's its ends where it has some; the stairs on upper storeys.
+    fn gates(&self, layout: &Layout) -> Vec<Gate> {
+        let (brief, rooms) = (self.brief, &self.survey.rooms);
+        let stairs = brief.core.as_ref().map(|c| c.host);
+        let Some(entered) = brief.rooms.iter().position(|r| r.entrance).or(stairs) else { return Vec::new() };
+        let Some(main) = rooms[entered].main else { return Vec::new() };
+        let mut out: Vec<(i32, Gate)> = Vec::new();
+        let own = layout.boxes.iter().zip(&self.survey.side).filter(|((r, _), _)| *r == entered && !brief.upper);
+        for ((_, b), sides) in own {
+            let (cx, cy) = b.center2();
+            let ends = [(2 * b.x0, cy), (2 * b.x1, cy), (cx, 2 * b.y0), (cx, 2 * b.y1)];
+            for (s, at) in ends.into_iter().enumerate() {
+                let free = if s < 2 { b.height() } else { b.width() } - sides[s][0];
+                if free >= self.entrance_need {
+                    out.push((free, Gate { at }));
+                }
+            }
+        }
+        if entered == self.spine && out.iter().any(|(free, _)| *free <= END_WALL) {
+            out.retain(|(free, _)| *free <= END_WALL);
+        }
+        if out.is_empty() {
+            out.push((0, Gate { at: main.center2() }));
+        }
+        out.into_iter().map(|(_, gate)| gate).collect()
+    }
+
+    /// Returns the share of bedrooms on the side of the corridor on which all stations with an open front are: from there
+    /// one sees the doors across.
+    fn out_of_sight(&self) -> f64 {
+        let (brief, rooms) = (self.brief, &self.survey.rooms);
+        let Some(corridor) = brief.spine.filter(|_| !brief.hub).and_then(|s| rooms[s].main) else { return 0.0 };
+        let side = |b: Cellbox| {
+            let (cx, cy) = b.center2();
+            let (at, low, high) = if corridor.width() >= corridor.height() {
+                (cy, corridor.y0, corridor.y1)
+            } else {
+                (cx, corridor.x0, corridor.x1)
+            };
+            i32::from(at > 2 * high) - i32::from(at < 2 * low)
+        };
+        let sides = |wanted: fn(&RoomSpec) -> bool| {
+            let of = brief.rooms.iter().zip(rooms).filter(move |(spec, _)| spec.on_spine && wanted(spec));
+            of.filter_map(move |(_, room)| Some(side(room.main?)))
+        };
+        let stations = || sides(|spec| spec.zone == Zone::Staff && spec.open_front);
+        let Some(first) = stations().next() else { return 0.0 };
+        if first == 0 || stations().any(|side| side != first) {
+            return 0.0;
+        }
+        let (mut all, mut hidden) = (0, 0);
+        for side in sides(|spec| spec.zone == Zone::Night) {
+            all += 1;
+            hidden += u32::from(side == first);
+        }
+        f64::from(hidden) / f64::from(all.max(1))
+    }
+}
+
+/// Returns when one comes to the rooms of a zone, behind the entrance; `None` where that does not matter.
+fn rank(zone: Zone) -> Option<u8> {
+    match zone {
+        Zone::Public => Some(0),
+        Zone::Day => Some(1),
+        Zone::Night => Some(2),
+        Zone::Staff | Zone::Service | Zone::Circulation | Zone::Outdoor => None,
+    }
+}
