@@ -17,7 +17,7 @@ use super::spec::Brief;
 /// Cost of a room whose area is outside what is advised, beside that of how far.
 const ILL_ADVISED: f64 = 0.4;
 /// Share by which circulation beyond what is advised counts as larger.
-const ILL_SHARED: f64 = 0.03;
+const ILL_SHARED: f64 = 0.05;
 /// Number of soft terms.
 const COUNT: usize = 10;
 /// A weight for each soft term.
@@ -37,7 +37,7 @@ pub(super) const TERMS: [&str; COUNT] = [
     "latch_side",
 ];
 /// Standard weights of the soft terms; each plan's search varies them by its taste.
-pub(super) const WEIGHTS: Weights = [1.0, 0.6, 1.2, 0.5, 10.0, 0.35, 0.8, 0.5, 0.4, 0.8];
+pub(super) const WEIGHTS: Weights = [1.0, 0.6, 1.2, 0.9, 10.0, 0.35, 0.8, 0.5, 0.4, 0.8];
 /// Least outer wall of a room that needs a window, m.
 pub(super) const WINDOW_WALL_M: f64 = 1.2;
 
@@ -346,7 +346,7 @@ impl<'b> Judge<'b> {
             score.soft[4] += (share - 0.10).max(0.0) + 5.0 * (share - 0.20).max(0.0);
             if let Some(most) = brief.share_advised {
                 let share = rooms[spine].net_m2 / rooms.iter().map(|r| r.net_m2).sum::<f64>();
-                score.soft[4] += if share > most { ILL_SHARED + 2.0 * (share - most) } else { 0.0 };
+                score.soft[4] += if share > most { ILL_SHARED + 4.0 * (share - most) } else { 0.0 };
             }
         }
         if let Some(area) = brief.area {

@@ -201,7 +201,12 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
         let mut best_of = (usize::MAX, 0);
         let hopeless = best.outcome.required_missing > 0 && self.hopeless();
         for (n, departure) in DEPARTURES.into_iter().chain(RESCUES).enumerate() {
-            let looks = if empty > LARGE { 2 } else { DEPARTURES.len() };
+            // where everything has found its place there is less to gain
+            let looks = match (empty > LARGE, best.outcome.missing.is_empty()) {
+                (_, true) => 1,
+                (true, false) => 2,
+                (false, false) => DEPARTURES.len(),
+            };
             if self.job.stop.is_set()
                 || hopeless
                 || departure.0 >= best.steps
@@ -486,6 +491,9 @@ fn choose<'a>(
     let mut closing: Vec<(f64, u32, &Candidate)> = Vec::new();
     let mut seen: Vec<u32> = Vec::new();
     for candidate in candidates.iter().take(ROUTE_TESTS) {
+        if rank == 0 && passed.iter().any(|p| p.0 >= candidate.score) {
+            break; // the others are worse, however little floor they take
+        }
         let unit = std::slice::from_ref(&candidate.placed);
         match state.route(unit) {
             Ok(area) => {
