@@ -21,7 +21,7 @@ const MOST_TRIES: usize = 900;
 /// Temperature at the start, in cost units; a plan that is sound is not taken apart.
 const HEAT: f64 = 0.3;
 /// Cost of a ward none of whose bedroom doors its station sees.
-const OUT_OF_SIGHT: f64 = 1.0;
+const OUT_OF_SIGHT: f64 = 2.0;
 /// Longest piece of outer wall that is looked at as an end of a corridor, lattice units.
 const END_WALL: i32 = 80;
 /// Cost of a plan in which one comes to all rooms in the wrong order.

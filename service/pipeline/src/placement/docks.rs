@@ -1,10 +1,11 @@
-//! Docks: the floor that a charging robot and its way in take, kept out of the swing of doors.
+//! Docks: the floor that a charging robot and its way in take, kept out of the swing of doors and free of furniture, rugs
+//! and queues.
 
 use d3dgen_model::domain::Shape;
 
-use super::geom::Box2;
+use super::geom::{Box2, Solid};
 use super::space::{DoorZone, Space};
-use super::state::Placed;
+use super::state::{Placed, State};
 
 /// Floor beside a dock that belongs to it, mm; as in the charging buffers of scenarios.
 const BESIDE: i32 = 500;
@@ -12,6 +13,13 @@ const BESIDE: i32 = 500;
 const SWING: f64 = 8.0;
 /// What it loses where people only pass.
 const PASSAGE: f64 = 4.0;
+
+/// What a place loses that takes floor of a dock, or that has something on its own.
+const CROWDED: f64 = 3.0;
+/// What it loses where people stand to use something.
+const USED: f64 = 1.5;
+/// Height up to which something is on the floor, mm.
+const LOW: i32 = 300;
 
 /// Returns the floor before the docks of a unit: as deep as their clearance and as a robot needs, mm.
 pub(super) fn buffers<'p>(p: &'p Placed, robot: i32) -> impl Iterator<Item = Box2> + 'p {
@@ -22,6 +30,24 @@ pub(super) fn buffers<'p>(p: &'p Placed, robot: i32) -> impl Iterator<Item = Box
         let depth = ((part.object.clearance_front_m * 1000.0).round() as i32).max(robot);
         Box2 { x0: own.x0, x1: own.x1 + depth, y0: own.y0 - BESIDE, y1: own.y1 + BESIDE }.turned(q)
     })
+}
+
+/// Returns how much a place for a unit loses because something takes the floor of a dock that stands or of its own, or
+/// because people have to stand in its own.
+pub(super) fn crowding(state: &State, p: &Placed, robot: i32) -> f64 {
+    let taken = |b: &Box2| p.unit.parts.iter().any(|part| is_on_floor(&p.solid(part)) && p.solid(part).rect.overlaps(b));
+    let others = state.docks.iter().filter(|b| taken(b)).count() as f64;
+    let crowded = |b: &Box2| {
+        let there = state.solids.iter().any(|s| is_on_floor(s) && s.rect.overlaps(b));
+        let used = state.clears.iter().any(|c| c.overlaps(b));
+        CROWDED * f64::from(there) + USED * f64::from(used)
+    };
+    CROWDED * others + buffers(p, robot).map(|b| crowded(&b)).sum::<f64>()
+}
+
+/// Returns true for what a wheel or a foot meets: furniture, rugs.
+fn is_on_floor(s: &Solid) -> bool {
+    s.z0 < LOW
 }
 
 /// Returns how much a place for a unit loses by doors that open into the floor of its docks; 0 for other units.

@@ -134,6 +134,11 @@ impl Nav {
         doors && self.area > 0 && self.total - self.area <= allowed
     }
 
+    /// Returns the narrowest gap that the disc passes, mm.
+    pub fn gap(&self) -> i32 {
+        2 * self.shared.radius + 2 * HALF
+    }
+
     /// Returns the number of cells in the room that the disc's center can reach.
     pub fn area(&self) -> usize {
         self.area

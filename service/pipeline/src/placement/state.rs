@@ -6,6 +6,7 @@ use std::rc::Rc;
 use d3dgen_knowledge::clearance::HEAD_ROOM_M;
 use d3dgen_model::domain::{Mount, Shape};
 
+use super::docks::buffers;
 use super::geom::{Box2, Solid, mm, turn};
 use super::nav::Nav;
 use super::pockets::Pockets;
@@ -115,6 +116,8 @@ pub(super) struct State<'a, 's> {
     /// Outlines of what takes floor: not what is flat, hangs high or flat on a wall.
     bodies: Vec<Box2>,
     in_the_way: InTheWay,
+    /// Floor that belongs to docks.
+    pub docks: Vec<Box2>,
     /// Floor between screens and boards and those who look at them.
     sights: Vec<Box2>,
     nav: Nav,
@@ -142,6 +145,7 @@ impl<'a, 's> State<'a, 's> {
             clears: Vec::new(),
             bodies: Vec::new(),
             in_the_way: InTheWay::default(),
+            docks: Vec::new(),
             sights: Vec::new(),
             nav,
             pockets: Pockets::new(space),
@@ -302,6 +306,7 @@ impl<'a, 's> State<'a, 's> {
             self.pockets.add(&p);
             self.bodies.extend(bodies(&p));
             self.in_the_way.extend(&in_the_way(std::slice::from_ref(&p)));
+            self.docks.extend(buffers(&p, self.nav.gap()));
             if p.support.is_none() {
                 self.clears.extend(p.unit.clears.iter().map(|c| p.world(c)));
             }

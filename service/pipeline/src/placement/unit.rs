@@ -15,6 +15,8 @@ const MAX_MEMBERS: u32 = 40;
 
 /// Depth from the edge of a desk or counter to what stands behind who sits at it, m.
 const SEAT_DEPTH_M: f64 = 1.0;
+/// Floor behind a chair at a table to push it back on, m.
+const PUSH_BACK_M: f64 = 0.3;
 
 /// One object of a unit.
 #[derive(Debug, Clone, PartialEq)]
@@ -341,6 +343,7 @@ fn finish<'a>(item: &'a str, group: bool, parts: Vec<Part<'a>>, forms: &Forms) -
     let mut clears = Vec::new();
     parts.iter().for_each(|part| clears_of(part, forms.tightness, &mut clears));
     seats_behind(&parts, forms.tightness, &mut clears);
+    seats_around(&parts, forms.tightness, &mut clears);
     let docks = parts.iter().filter(|p| p.object.shape == Shape::Dock && forms.robot > 0);
     let parked: Vec<Box2> = docks.map(|dock| parked_at(dock, forms.robot)).collect();
     clears.extend(&parked);
@@ -369,6 +372,18 @@ fn seats_behind(parts: &[Part], tightness: f64, out: &mut Vec<Box2>) {
         x0: desk.x0 - depth,
         x1: seat.x0,
         ..seat
+    }));
+}
+
+/// Adds the floor to push chairs back on that stand around a table.
+fn seats_around(parts: &[Part], tightness: f64, out: &mut Vec<Box2>) {
+    if !matches!(parts[0].object.shape, Shape::Table | Shape::RoundTable) || !parts[0].solid.stops_robot() {
+        return;
+    }
+    let depth = mm(PUSH_BACK_M * tightness);
+    out.extend(parts[1..].iter().filter(|p| p.object.shape == Shape::Chair).map(|seat| {
+        let own = seat.solid.rect.turned((4 - seat.quarter) % 4);
+        Box2 { x0: own.x0 - depth, x1: own.x0, ..own }.turned(seat.quarter)
     }));
 }
 

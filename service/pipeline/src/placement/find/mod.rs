@@ -13,6 +13,7 @@ use d3dgen_model::domain::{Arrangement, Mount};
 pub(super) use rows::{Terms, over, rows};
 
 use super::demand::Task;
+use super::docks::crowding;
 use super::geom::Box2;
 use super::state::{Placed, Rule, State};
 use super::style::{Style, grain, style};
@@ -92,7 +93,9 @@ impl<'f, 'a, 's> Find<'f, 'a, 's> {
                     i64::from(placed.at.1 / 50) * 4 + i64::from(placed.q),
                 );
                 let lost = parts - placed.unit.parts.len();
-                let score = score(self, &placed) + 0.25 * grain + 0.6 * self.class_grain(class) - 0.4 * lost as f64;
+                let score = score(self, &placed) + 0.25 * grain + 0.6 * self.class_grain(class)
+                    - 0.4 * lost as f64
+                    - crowding(self.state, &placed, self.aisle);
                 self.out.push(Candidate { placed, score, class });
             }
             Err(rule) => self.tally[rule as usize] += 1,

@@ -299,19 +299,18 @@ impl<'a> Find<'_, 'a, '_> {
         }
     }
 
-    /// Next to a door on its wall, the latch side first; on the wall around the corner next.
+    /// Next to a door on its wall, the latch side first; on the wall around the corner next. The first of its kind belongs
+    /// to the door one comes in by, the others to the other doors.
     fn beside_door(&self, p: &Placed<'a>, index: usize, a: i32, z: i32) -> f64 {
-        let rect = p.world(&p.unit.bbox);
-        let one = |(rank, d): (usize, &super::super::space::DoorZone)| {
-            let later = 0.4 * rank as f64;
-            if d.wall != index {
-                return 0.5 - later - f64::from(rect.gap(&d.zone)) / 800.0;
-            }
-            let above = z >= d.v1;
-            let gap = if above { a - d.v1 } else { d.v0 - z };
-            let latch = d.latch_high.map_or(0.3, |high| if high == above { 0.8 } else { 0.0 });
-            2.0 + latch - later - f64::from((gap - 100).abs()) / 300.0
-        };
-        self.state.space.doors.iter().enumerate().map(one).fold(-2.0, f64::max)
+        let doors = &self.state.space.doors;
+        let Some(d) = doors.get(self.siblings().count() % doors.len().max(1)) else { return 0.0 };
+        let away = f64::from(p.world(&p.unit.bbox).gap(&d.zone));
+        if d.wall != index {
+            return 0.5 - away / 800.0;
+        }
+        let above = z >= d.v1;
+        let gap = if above { a - d.v1 } else { d.v0 - z };
+        let latch = d.latch_high.map_or(0.3, |high| if high == above { 0.8 } else { 0.0 });
+        2.0 + latch - f64::from((gap - 100).abs()) / 300.0
     }
 }
