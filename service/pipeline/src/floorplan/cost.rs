@@ -16,6 +16,8 @@ use super::spec::Brief;
 
 /// Cost of a room whose area is outside what is advised, beside that of how far.
 const ILL_ADVISED: f64 = 0.4;
+/// Cost of a room without the daylight that it is better with, beside those that take a facade and need none.
+const DARK: f64 = 1.8;
 /// Share by which circulation beyond what is advised counts as larger.
 const ILL_SHARED: f64 = 0.05;
 /// Number of soft terms.
@@ -37,7 +39,7 @@ pub(super) const TERMS: [&str; COUNT] = [
     "latch_side",
 ];
 /// Standard weights of the soft terms; each plan's search varies them by its taste.
-pub(super) const WEIGHTS: Weights = [1.0, 0.6, 1.2, 0.9, 10.0, 0.35, 0.8, 0.5, 0.4, 0.8];
+pub(super) const WEIGHTS: Weights = [1.0, 0.6, 1.2, 0.5, 10.0, 0.35, 0.8, 0.5, 0.4, 0.8];
 /// Least outer wall of a room that needs a window, m.
 pub(super) const WINDOW_WALL_M: f64 = 1.2;
 
@@ -45,7 +47,7 @@ pub(super) const WINDOW_WALL_M: f64 = 1.2;
 const LATCH_SIDE_M: f64 = 0.457 - JAMB_M;
 
 /// Cost of a sleeping room larger than the room of the day that is to be the largest, beside that of how much.
-const WRONG_SIZES: f64 = 0.5;
+const WRONG_SIZES: f64 = 1.0;
 
 /// Weight of what hangs in the air.
 pub(super) const OVERHANG: f64 = 30.0;
@@ -301,7 +303,7 @@ impl<'b> Judge<'b> {
             let (longest, total) = room.outer;
             match spec.daylight {
                 _ if spec.needs_outer_wall() => score.hard += meters((up(WINDOW_WALL_M) - longest).max(0)),
-                Daylight::Preferred if longest < up(WINDOW_WALL_M) && !corridor => score.soft[3] += 1.0,
+                Daylight::Preferred if longest < up(WINDOW_WALL_M) && !corridor => score.soft[3] += DARK,
                 Daylight::None | Daylight::Optional if !spec.circulation => {
                     score.soft[3] += 0.03 * meters(total).min(6.0)
                 }

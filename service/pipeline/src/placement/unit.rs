@@ -16,7 +16,7 @@ const MAX_MEMBERS: u32 = 40;
 /// Depth from the edge of a desk or counter to what stands behind who sits at it, m.
 const SEAT_DEPTH_M: f64 = 1.0;
 /// Floor behind a chair at a table to push it back on, m.
-const PUSH_BACK_M: f64 = 0.3;
+const PUSH_BACK_M: f64 = 0.25;
 
 /// One object of a unit.
 #[derive(Debug, Clone, PartialEq)]

@@ -23,6 +23,8 @@ const BESIDE: [(i32, i32); 9] =
 const WIDENED: i32 = 700;
 /// Distances of a curtain from the foot of its bed, mm.
 const FOOT_GAPS: [i32; 4] = [300, 450, 150, 50];
+/// What rows of desks lose all of whose windows are before or behind the screens.
+const GLARE: f64 = 1.0;
 /// Row plans whose every position is tested.
 const PLANS: usize = 20;
 /// Arrangements handed to the search.
@@ -192,6 +194,7 @@ fn plans(state: &State, unit: &Unit, task: &Task, focus: Option<u8>, terms: &Ter
         let wide = state.space.bounds.turned((4 - q) % 4);
         let turned = focus.map_or(0.0, |f| if (q + look) % 4 == (f + 2) % 4 { 1.5 } else { 0.0 });
         let stage = if terms.stage > 0 { stage_score(state, (q + look + 2) % 4) } else { 0.0 };
+        let set = turned + stage - if shape == Shape::Desk && focus.is_none() { glare(state, q) } else { 0.0 };
         for paired in [false, true] {
             if paired && (!pairs || focus.is_some() || count < 2 || back > 0 || terms.stage > 0) {
                 continue;
@@ -214,13 +217,13 @@ fn plans(state: &State, unit: &Unit, task: &Task, focus: Option<u8>, terms: &Ter
                         while plan.rows > 1 && plan.depth(d) + low + high > wide.width() {
                             plan.rows -= 1;
                         }
-                        plan.score = turned + stage + rate(&plan, rows, task, (d, w), &wide, aisle);
+                        plan.score = set + rate(&plan, rows, task, (d, w), &wide, aisle);
                         out.push(plan);
                         if shape == Shape::Desk && focus.is_none() && plan.rows > 1 {
                             // the floor that is left shared out among the aisles
                             let left = (wide.width() - plan.depth(d) - low - high) / (plan.rows + 1);
                             plan.gap_u += left.min(WIDENED) / 50 * 50;
-                            plan.score = turned + stage + rate(&plan, rows, task, (d, w), &wide, aisle);
+                            plan.score = set + rate(&plan, rows, task, (d, w), &wide, aisle);
                             out.push(plan);
                         }
                     }
@@ -238,6 +241,13 @@ fn stage_score(state: &State, q: u8) -> f64 {
     let windows: i32 = walls().flat_map(|(i, _)| state.space.windows_of(i)).map(|w| w.v1 - w.v0).sum();
     let doors = walls().map(|(i, _)| state.space.doors.iter().filter(|d| d.wall == i).count()).sum::<usize>();
     -4.0 * f64::from(windows) / f64::from(length.max(1)) - 0.8 * doors as f64
+}
+
+/// Rates windows before or behind the screens of desks with this heading.
+fn glare(state: &State, q: u8) -> f64 {
+    let space = state.space;
+    let ahead = space.windows.iter().filter(|w| space.walls[w.wall].q % 2 == q % 2).count();
+    GLARE * ahead as f64 / space.windows.len().max(1) as f64
 }
 
 fn rate(plan: &Plan, wished: i32, task: &Task, (d, w): (i32, i32), wide: &Box2, aisle: i32) -> f64 {

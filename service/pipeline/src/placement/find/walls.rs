@@ -207,6 +207,9 @@ impl<'a> Find<'_, 'a, '_> {
             let q = space.walls[index].q;
             let beside = space.windows.iter().any(|w| space.walls[w.wall].q % 2 != q % 2);
             s += if beside { self.style.side_light } else { 0.0 };
+            // the screen would mirror it
+            let across = space.windows.iter().any(|w| space.walls[w.wall].q == (q + 2) % 4);
+            s -= if across { 0.6 * self.style.side_light } else { 0.0 };
         }
         s
     }
