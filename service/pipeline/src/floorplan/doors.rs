@@ -91,9 +91,8 @@ impl Laid {
     /// Takes the spot that disturbs the doors already placed least; returns false when there is none.
     fn take_best(&mut self, spots: impl IntoIterator<Item = Spot>) -> bool {
         let cost = |spot: &Spot| {
-            let clashes = |(room, zone): &(usize, Rect)| {
-                self.zones.iter().filter(|(r, z)| r == room && z.overlaps(zone)).count()
-            };
+            let clashes =
+                |(room, zone): &(usize, Rect)| self.zones.iter().filter(|(r, z)| r == room && z.overlaps(zone)).count();
             spot.penalty + 10.0 * spot.zones.iter().map(clashes).sum::<usize>() as f64
         };
         let Some((least, spot)) = spots.into_iter().map(|s| (cost(&s), s)).min_by(|a, b| a.0.total_cmp(&b.0)) else {
@@ -118,7 +117,8 @@ impl Site<'_> {
             }
         }
         let walkable = |c: Connector| matches!(c, Connector::Door | Connector::Open);
-        wanted.extend(brief.links.iter().filter(|l| walkable(l.connector)).map(|l| (l.a, l.b, l.connector, l.required)));
+        wanted
+            .extend(brief.links.iter().filter(|l| walkable(l.connector)).map(|l| (l.a, l.b, l.connector, l.required)));
         for (a, b, connector, required) in wanted {
             let standing = self.standing_spot(&[a, b], false);
             let stretches = self.stretches.iter().filter(|s| s.joins(a, b) && self.is_front(s, a));

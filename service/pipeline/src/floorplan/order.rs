@@ -94,11 +94,11 @@ impl Judge<'_> {
         let gates = self.gates(layout);
         let size = rooms().map(|(_, main)| main.area_m2()).sum::<f64>().sqrt().max(1.0);
         let far = |main: Cellbox, gate: &Gate| between(main.center2(), gate.at);
-        let lost = |gate: &Gate| -> f64 { rooms().map(|(spec, main)| ill_placed(spec.zone, far(main, gate) / size)).sum() };
+        let lost =
+            |gate: &Gate| -> f64 { rooms().map(|(spec, main)| ill_placed(spec.zone, far(main, gate) / size)).sum() };
         let Some(gate) = gates.iter().min_by(|a, b| lost(a).total_cmp(&lost(b))) else { return 0.0 };
-        let ranked: Vec<(u8, f64, f64)> = rooms()
-            .filter_map(|(spec, main)| Some((rank(spec.zone)?, spec.area_target, far(main, gate))))
-            .collect();
+        let ranked: Vec<(u8, f64, f64)> =
+            rooms().filter_map(|(spec, main)| Some((rank(spec.zone)?, spec.area_target, far(main, gate)))).collect();
         let (mut wrong, mut all) = (0.0, 0.0);
         for (before, area, way) in &ranked {
             for (_, _, other) in ranked.iter().filter(|(after, ..)| after > before) {

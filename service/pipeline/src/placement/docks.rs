@@ -35,7 +35,8 @@ pub(super) fn buffers<'p>(p: &'p Placed, robot: i32) -> impl Iterator<Item = Box
 /// Returns how much a place for a unit loses because something takes the floor of a dock that stands or of its own, or
 /// because people have to stand in its own.
 pub(super) fn crowding(state: &State, p: &Placed, robot: i32) -> f64 {
-    let taken = |b: &Box2| p.unit.parts.iter().any(|part| is_on_floor(&p.solid(part)) && p.solid(part).rect.overlaps(b));
+    let taken =
+        |b: &Box2| p.unit.parts.iter().any(|part| is_on_floor(&p.solid(part)) && p.solid(part).rect.overlaps(b));
     let others = state.docks.iter().filter(|b| taken(b)).count() as f64;
     let crowded = |b: &Box2| {
         let there = state.solids.iter().any(|s| is_on_floor(s) && s.rect.overlaps(b));

@@ -114,8 +114,8 @@ impl<'a> Find<'_, 'a, '_> {
         let (b, r) = (unit.as_looking(&unit.bbox), unit.as_looking(&unit.reach));
         let middle = (b.y0 + b.y1) / 2;
         let own = (q + 4 - look) % 4;
-        // whoever sits before the wall needs room for the chair
-        let rear = if look == 0 { b.x0 } else { r.x0.min(b.x0) };
+        // whoever sits or stands before the wall needs room there
+        let rear = r.x0.min(b.x0);
         let backs = space.walls.iter().filter(|w| w.q == q).map(|w| w.u - rear);
         let mut us: Vec<i32> = backs.collect();
         us.extend((0..30).map(|k| wide.x0 + BEHIND - rear + k * STEP).take_while(|u| u + b.x1 < door_u));
