@@ -65,30 +65,35 @@ impl Task<'_> {
 }
 
 /// What lines about the whole building ask for.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Household<'a> {
+    domain: &'a Domain,
     /// Types of its rooms.
     room_types: Vec<&'a str>,
-    /// How many people have a bed.
-    sleepers: u32,
     /// True where step-free access is asked for.
     accessible: bool,
 }
 
 impl<'a> Household<'a> {
-    pub fn new(domain: &Domain, graph: &'a SceneGraph) -> Self {
-        let room_types: Vec<&str> = graph.rooms.iter().map(|r| r.room_type.as_str()).collect();
+    pub fn new(domain: &'a Domain, graph: &'a SceneGraph) -> Self {
+        let room_types = graph.rooms.iter().map(|r| r.room_type.as_str()).collect();
+        Self { domain, room_types, accessible: graph.accessible }
+    }
+
+    /// Returns how many people have a bed.
+    fn sleepers(&self) -> u32 {
         let beds = |kind: &&str| {
-            let lines = domain.room_type_or_generic(kind).furnishing.iter().filter(|f| f.required);
-            lines.filter_map(|f| Some(f.min * usual_unit(domain, &f.item)?.beds())).sum::<u32>()
+            let lines = self.domain.room_type_or_generic(kind).furnishing.iter().filter(|f| f.required);
+            lines.filter_map(|f| Some(f.min * usual_unit(self.domain, &f.item)?.beds())).sum::<u32>()
         };
-        Self { sleepers: room_types.iter().map(beds).sum(), room_types, accessible: graph.accessible }
+        self.room_types.iter().map(beds).sum()
     }
 
     fn wants(&self, line: &Furnishing) -> bool {
         let has = |kind: &String| self.room_types.iter().any(|t| t == kind);
         let reached = self.accessible || !line.accessible;
-        reached && !line.unless_rooms.iter().any(has) && self.sleepers >= line.sleepers
+        // few lines ask who sleeps there, and to know takes time
+        reached && !line.unless_rooms.iter().any(has) && (line.sleepers == 0 || self.sleepers() >= line.sleepers)
     }
 }
 
