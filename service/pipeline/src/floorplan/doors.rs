@@ -303,7 +303,9 @@ impl Site<'_> {
         let leaf = if double { opening / 2.0 } else { opening };
         let swept = self.zone(s, into, start, opening, leaf.max(APPROACH_M));
         let elevator = rooms.iter().any(|&r| self.brief.rooms[r].elevator);
-        let slides = elevator || leaf * leaf > SLIDING_SHARE * self.net_m2[into] || !self.inside(into, &swept);
+        // robots open no leaf
+        let docks = rooms.iter().any(|&r| self.brief.rooms[r].docks);
+        let slides = elevator || docks || leaf * leaf > SLIDING_SHARE * self.net_m2[into] || !self.inside(into, &swept);
         let mut zones: Vec<(usize, Rect)> =
             rooms.iter().map(|&r| (r, self.zone(s, r, start, opening, APPROACH_M))).collect();
         let (kind, swing) = if slides {

@@ -16,7 +16,7 @@ use super::spec::{Brief, RoomSpec};
 use crate::Stop;
 
 /// Exchanges tried per room, and at most.
-const TRIES_PER_ROOM: usize = 60;
+const TRIES_PER_ROOM: usize = 90;
 const MOST_TRIES: usize = 900;
 /// Temperature at the start, in cost units; a plan that is sound is not taken apart.
 const HEAT: f64 = 0.3;
@@ -25,9 +25,11 @@ const OUT_OF_SIGHT: f64 = 2.0;
 /// Longest piece of outer wall that is looked at as an end of a corridor, lattice units.
 const END_WALL: i32 = 80;
 /// Cost of a plan in which one comes to all rooms in the wrong order.
-const MISPLACED: f64 = 3.0;
+const MISPLACED: f64 = 4.0;
+/// Area up to which a wet room is one for guests, who should find it by the entrance, m^2.
+const WASHROOM_M2: f64 = 3.0;
 /// Disorder with which a plan is left as it was found.
-const TOLERABLE: f64 = 0.3;
+const TOLERABLE: f64 = 0.2;
 
 /// Exchanges rooms of a sound layout while that mends their order more than it costs otherwise.
 pub(super) fn put_in_order(
@@ -98,7 +100,7 @@ impl Judge<'_> {
             |gate: &Gate| -> f64 { rooms().map(|(spec, main)| ill_placed(spec.zone, far(main, gate) / size)).sum() };
         let Some(gate) = gates.iter().min_by(|a, b| lost(a).total_cmp(&lost(b))) else { return 0.0 };
         let ranked: Vec<(u8, f64, f64)> =
-            rooms().filter_map(|(spec, main)| Some((rank(spec.zone)?, spec.area_target, far(main, gate)))).collect();
+            rooms().filter_map(|(spec, main)| Some((rank(spec)?, spec.area_target, far(main, gate)))).collect();
         let (mut wrong, mut all) = (0.0, 0.0);
         for (before, area, way) in &ranked {
             for (_, _, other) in ranked.iter().filter(|(after, ..)| after > before) {
@@ -169,12 +171,14 @@ impl Judge<'_> {
     }
 }
 
-/// Returns when one comes to the rooms of a zone, behind the entrance; `None` where that does not matter.
-fn rank(zone: Zone) -> Option<u8> {
-    match zone {
+/// Returns when one comes to a room, behind the entrance: nobody passes bathrooms on the way to the living room; `None`
+/// where that does not matter.
+fn rank(spec: &RoomSpec) -> Option<u8> {
+    match spec.zone {
         Zone::Public => Some(0),
         Zone::Day => Some(1),
         Zone::Night => Some(2),
+        Zone::Service if spec.wet && spec.private && spec.area_target > WASHROOM_M2 => Some(2),
         Zone::Staff | Zone::Service | Zone::Circulation | Zone::Outdoor => None,
     }
 }

@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use d3dgen_knowledge::{Limit, Limits, RoomLimits};
-use d3dgen_model::domain::{Daylight, Domain, Materials, RoomType, Zone};
+use d3dgen_model::domain::{Daylight, Domain, Materials, Privacy, RoomType, Shape, Zone};
 use d3dgen_model::scene_graph::{Connector, GraphEdge, GraphRoom, Note, SceneGraph};
 use d3dgen_model::seed::Stream;
 use d3dgen_model::storeys::LinkKind;
@@ -40,6 +40,10 @@ pub(super) struct RoomSpec {
     pub daylight: Daylight,
     pub zone: Zone,
     pub wet: bool,
+    /// True for rooms that one locks behind oneself.
+    pub private: bool,
+    /// True for rooms that robots go in and out of by themselves.
+    pub docks: bool,
     pub open_front: bool,
     pub entrance: bool,
     pub door_width: f64,
@@ -336,6 +340,8 @@ fn room_spec(
         daylight: kind.daylight,
         zone: kind.zone,
         wet: kind.wet,
+        private: kind.privacy == Privacy::Private,
+        docks: has_docks(domain, kind),
         open_front: kind.open_front,
         entrance: room.entrance,
         door_width: door_width.max(robot),
@@ -347,6 +353,12 @@ fn room_spec(
         fixed: false,
         elevator: graph.links.iter().any(|l| l.kind == LinkKind::Elevator && l.room_ids.contains(&room.id)),
     }
+}
+
+/// Returns true for rooms that are there to charge robots.
+fn has_docks(domain: &Domain, kind: &RoomType) -> bool {
+    let docks = |item: &str| domain.anchor(item).is_some_and(|o| o.shape == Shape::Dock);
+    kind.furnishing.iter().any(|f| f.required && docks(&f.item))
 }
 
 /// Returns the index of the room that another is entered from when no door leads from the spine into it.

@@ -25,6 +25,8 @@ fn room(id: &str, area: [f64; 3], min_dimension: f64, daylight: Daylight, zone: 
         daylight,
         zone,
         wet: false,
+        private: false,
+        docks: false,
         open_front: false,
         entrance: false,
         door_width: 0.9,

@@ -17,7 +17,7 @@ const PASSAGE: f64 = 4.0;
 /// What a place loses that takes floor of a dock, or that has something on its own.
 const CROWDED: f64 = 3.0;
 /// What it loses where people stand to use something.
-const USED: f64 = 1.5;
+const USED: f64 = 3.0;
 /// Height up to which something is on the floor, mm.
 const LOW: i32 = 300;
 

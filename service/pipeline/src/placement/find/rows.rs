@@ -23,6 +23,8 @@ const BESIDE: [(i32, i32); 9] =
 const WIDENED: i32 = 700;
 /// Distances of a curtain from the foot of its bed, mm.
 const FOOT_GAPS: [i32; 4] = [300, 450, 150, 50];
+/// What rows of desks lose whose users share all of the floor behind them.
+const SHARED: f64 = 3.0;
 /// What rows of desks lose all of whose windows are before or behind the screens.
 const GLARE: f64 = 1.0;
 /// Row plans whose every position is tested.
@@ -74,6 +76,11 @@ impl Plan {
             2 => (back.max(stage), front),
             _ => (back, front),
         }
+    }
+
+    /// Returns what rows lose whose users share the floor behind them, where they could have this much, mm.
+    fn shared(&self, own: i32) -> f64 {
+        if self.rows < 3 || own == 0 { 0.0 } else { SHARED * f64::from((own - self.gap_u).max(0)) / f64::from(own) }
     }
 
     /// Returns the low edge of a column, counted from the first.
@@ -199,6 +206,9 @@ fn plans(state: &State, unit: &Unit, task: &Task, focus: Option<u8>, terms: &Ter
             if paired && (!pairs || focus.is_some() || count < 2 || back > 0 || terms.stage > 0) {
                 continue;
             }
+            // whoever sits back to back has floor of one's own where there is room
+            let own = if paired && shape == Shape::Desk { 2 * need } else { 0 };
+            let gaps: Vec<i32> = gaps.iter().copied().chain((own > 0).then_some(own)).collect();
             for (&gap_u, &gap_v) in gaps.iter().flat_map(|u| sides.iter().map(move |v| (u, v))) {
                 for run in [i32::MAX, 4, 3, 2] {
                     for columns in 1..=count {
@@ -217,13 +227,13 @@ fn plans(state: &State, unit: &Unit, task: &Task, focus: Option<u8>, terms: &Ter
                         while plan.rows > 1 && plan.depth(d) + low + high > wide.width() {
                             plan.rows -= 1;
                         }
-                        plan.score = set + rate(&plan, rows, task, (d, w), &wide, aisle);
+                        plan.score = set - plan.shared(own) + rate(&plan, rows, task, (d, w), &wide, aisle);
                         out.push(plan);
                         if shape == Shape::Desk && focus.is_none() && plan.rows > 1 {
                             // the floor that is left shared out among the aisles
                             let left = (wide.width() - plan.depth(d) - low - high) / (plan.rows + 1);
                             plan.gap_u += left.min(WIDENED) / 50 * 50;
-                            plan.score = set + rate(&plan, rows, task, (d, w), &wide, aisle);
+                            plan.score = set - plan.shared(own) + rate(&plan, rows, task, (d, w), &wide, aisle);
                             out.push(plan);
                         }
                     }

@@ -209,7 +209,7 @@ impl<'a> Find<'_, 'a, '_> {
             s += if beside { self.style.side_light } else { 0.0 };
             // the screen would mirror it
             let across = space.windows.iter().any(|w| space.walls[w.wall].q == (q + 2) % 4);
-            s -= if across { 0.6 * self.style.side_light } else { 0.0 };
+            s -= if across { 1.2 * self.style.side_light } else { 0.0 };
         }
         s
     }
