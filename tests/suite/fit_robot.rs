@@ -61,7 +61,7 @@ fn doors_and_corridors_grow_until_the_robot_fits_and_all_judges_agree() {
 fn a_robot_that_cannot_fit_is_refused_with_one_that_does() {
     let home = tempfile::tempdir().unwrap();
     for prompt in PROMPTS {
-        let flags = ["generate", prompt, "--seed", "2", "--robot-width", "2.5", "--fit-robot", "--out", "w"];
+        let flags = ["generate", prompt, "--seed", "2", "--robot-width", "2.8", "--fit-robot", "--out", "w"];
         let output = run(home.path(), &flags);
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
         assert_eq!(output.status.code(), Some(2), "{prompt}: {said}");

@@ -235,7 +235,7 @@ impl Site<'_> {
             return Vec::new();
         }
         if connector == Connector::Open {
-            let whole = (meters(s.len()) - 2.0 * (OPEN_JAMB_M + INNER_HALF_M)).clamp(opening, OPEN_MAX_M);
+            let whole = (meters(s.len()) - 2.0 * (OPEN_JAMB_M + INNER_HALF_M)).clamp(opening, OPEN_MAX_M.max(opening));
             if !self.is_open_to_several(a, b) {
                 let start = (from + to - whole) / 2.0;
                 return vec![self.open_spot(s, a, b, start, whole)];

@@ -37,6 +37,11 @@ struct Span {
     max: i32,
 }
 
+/// Clear width from which a door is one for beds, m.
+const BED_DOOR_M: f64 = 1.1;
+/// What a passage beside small rooms has beyond such a door, m: a bed 1.0 m wide and 2.2 m long turns from 1.8 m into 1.25 m.
+const BED_TURN_M: f64 = 0.2;
+
 /// Returns the length of wall a door needs between two room corners, lattice units.
 pub(super) fn door_need(clear_m: f64) -> i32 {
     up(Brief::opening(clear_m) + 2.0 * JAMB_M + INNER_HALF_M + OUTER_HALF_M)
@@ -257,7 +262,8 @@ fn span(brief: &Brief, cell: &Cell, depth: i32, misfit: &mut f64) -> Span {
     }
     let carved = meters(nests) * meters(cell.nest_depth);
     let width_for = |area: f64| (area + carved) / clear_depth.max(0.5) + 2.0 * INNER_HALF_M;
-    let leg = if spec.on_spine { door_need(spec.door_width) } else { 0 };
+    let turn = if spec.door_width >= BED_DOOR_M { up(BED_TURN_M) } else { 0 };
+    let leg = if spec.on_spine { door_need(spec.door_width) + turn } else { 0 };
     let proportion_min = main_depth / MAX_PROPORTION + 2.0 * INNER_HALF_M;
     let proportion_max = main_depth * MAX_PROPORTION + 2.0 * INNER_HALF_M;
     let min = up(width_for(spec.area_min * 1.01).max(spec.min_dimension + 2.0 * INNER_HALF_M).max(proportion_min))
