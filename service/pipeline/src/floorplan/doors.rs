@@ -89,7 +89,7 @@ fn lay(site: &Site<'_>, entrance_first: bool, rng: &mut Stream) -> Laid {
 
 impl Laid {
     /// Takes the spot that disturbs the doors already placed least; returns false when there is none.
-    fn take_best(&mut self, spots: impl IntoIterator<Item = Spot>) -> bool {
+    fn take_best(&mut self, spots: Vec<Spot>) -> bool {
         let cost = |spot: &Spot| {
             let clashes =
                 |(room, zone): &(usize, Rect)| self.zones.iter().filter(|(r, z)| r == room && z.overlaps(zone)).count();
@@ -120,13 +120,12 @@ impl Site<'_> {
         wanted
             .extend(brief.links.iter().filter(|l| walkable(l.connector)).map(|l| (l.a, l.b, l.connector, l.required)));
         for (a, b, connector, required) in wanted {
-            let standing = self.standing_spot(&[a, b], false);
             let stretches = self.stretches.iter().filter(|s| s.joins(a, b) && self.is_front(s, a));
-            let found = match standing {
-                Some(spot) => laid.take_best([spot]),
-                None => laid.take_best(stretches.flat_map(|s| self.spots(s, a, b, connector, rng)).collect::<Vec<_>>()),
+            let spots: Vec<Spot> = match self.standing_spot(&[a, b], false) {
+                Some(spot) => vec![spot],
+                None => stretches.flat_map(|s| self.spots(s, a, b, connector, rng)).collect(),
             };
-            if !found && required {
+            if !laid.take_best(spots) && required {
                 laid.missing.push(format!("{} to {}", brief.rooms[a].id, brief.rooms[b].id));
             }
         }
@@ -136,15 +135,11 @@ impl Site<'_> {
     fn lay_entrances(&self, entrances: &[(usize, bool)], laid: &mut Laid) {
         for &(room, main) in entrances {
             let stretches = self.stretches.iter().filter(|s| s.only_room() == Some(room));
-            let found = match self.standing_spot(&[room], main) {
-                Some(spot) => laid.take_best([spot]),
-                None => {
-                    let spots = stretches.flat_map(|s| self.entrance_spots(s, room, main, &laid.doors));
-                    let spots: Vec<Spot> = spots.collect();
-                    laid.take_best(spots)
-                }
+            let spots: Vec<Spot> = match self.standing_spot(&[room], main) {
+                Some(spot) => vec![spot],
+                None => stretches.flat_map(|s| self.entrance_spots(s, room, main, &laid.doors)).collect(),
             };
-            if !found && main {
+            if !laid.take_best(spots) && main {
                 laid.missing.push(format!("outdoors to {}", self.brief.rooms[room].id));
             }
         }

@@ -1,8 +1,8 @@
-//! The order of rooms: what lies before what behind the entrance, what sees what, which room is the largest.
+//! The order of rooms: what lies before what behind the entrance, and what sees what.
 //!
-//! The search for a layout knows the middle of the room with the entrance only (`cost`). A layout it has found is looked
-//! at once more with the places where the entrance may be, and rooms change places while nothing gets worse. A search
-//! that weighed all of this from its start would end at the same few plans for small programs.
+//! The search for a layout knows the middle of the room with the entrance only (`cost`). The layout it has found is
+//! changed a little more, from a low temperature, with the places in view where the entrance may be. A search that
+//! weighed all of this from its start would end at the same few plans for small programs.
 
 use d3dgen_model::domain::Zone;
 use d3dgen_model::seed::Stream;
@@ -15,7 +15,7 @@ use super::search::{Candidate, LOOK, mutate, patience};
 use super::spec::{Brief, RoomSpec};
 use crate::Stop;
 
-/// Exchanges tried per room, and at most.
+/// Changes tried per room, and at most.
 const TRIES_PER_ROOM: usize = 90;
 const MOST_TRIES: usize = 900;
 /// Temperature at the start, in cost units; a plan that is sound is not taken apart.
@@ -31,7 +31,7 @@ const WASHROOM_M2: f64 = 3.0;
 /// Disorder with which a plan is left as it was found.
 const TOLERABLE: f64 = 0.2;
 
-/// Exchanges rooms of a sound layout while that mends their order more than it costs otherwise.
+/// Changes a sound layout where that mends the order of its rooms more than it costs otherwise.
 pub(super) fn put_in_order(
     brief: &Brief,
     judge: &mut Judge<'_>,
@@ -41,12 +41,12 @@ pub(super) fn put_in_order(
     stop: Stop<'_>,
 ) -> Candidate {
     let (mut scratch, mut layout) = (Scratch::default(), Layout::default());
-    let mut look = |genome: &Genome| {
-        realize(brief, genome, &mut scratch, &mut layout);
-        let score = judge.score(&layout);
-        (score, judge.disorder(&layout), layout.clone())
+    let mut look = |genome: &Genome, layout: &mut Layout| {
+        realize(brief, genome, &mut scratch, layout);
+        let score = judge.score(layout);
+        (score, judge.disorder(layout))
     };
-    let (score, mut order, _) = look(&genome);
+    let (score, mut order) = look(&genome, &mut layout);
     if !score.is_sound() {
         return found;
     }
@@ -62,25 +62,18 @@ pub(super) fn put_in_order(
         if !mutate(brief, &mut trial, rng) {
             continue;
         }
-        let (score, disorder, layout) = look(&trial);
+        let (score, disorder) = look(&trial, &mut layout);
         let total = score.total(weights) + disorder;
         if total < cost + HEAT * (1.0 - n as f64 / tries as f64) * patience(rng) {
             std::mem::swap(&mut current, &mut trial);
             cost = total;
             if score.is_sound() && total < least {
                 (least, order) = (total, disorder);
-                best = Candidate { scheme: current.scheme, layout, score };
+                best = Candidate { scheme: current.scheme, layout: layout.clone(), score };
             }
         }
     }
     best
-}
-
-/// A place for the entrance.
-#[derive(Debug, Clone, Copy)]
-struct Gate {
-    /// Twice its coordinates, lattice units.
-    at: (i32, i32),
 }
 
 impl Judge<'_> {
@@ -95,10 +88,11 @@ impl Judge<'_> {
         let rooms = || self.brief.rooms.iter().zip(&self.survey.rooms).filter_map(|(spec, r)| Some((spec, r.main?)));
         let gates = self.gates(layout);
         let size = rooms().map(|(_, main)| main.area_m2()).sum::<f64>().sqrt().max(1.0);
-        let far = |main: Cellbox, gate: &Gate| between(main.center2(), gate.at);
-        let lost =
-            |gate: &Gate| -> f64 { rooms().map(|(spec, main)| ill_placed(spec.zone, far(main, gate) / size)).sum() };
-        let Some(gate) = gates.iter().min_by(|a, b| lost(a).total_cmp(&lost(b))) else { return 0.0 };
+        let far = |main: Cellbox, gate: (i32, i32)| between(main.center2(), gate);
+        let lost = |gate: (i32, i32)| -> f64 {
+            rooms().map(|(spec, main)| ill_placed(spec.zone, far(main, gate) / size)).sum()
+        };
+        let Some(gate) = gates.into_iter().min_by(|a, b| lost(*a).total_cmp(&lost(*b))) else { return 0.0 };
         let ranked: Vec<(u8, f64, f64)> =
             rooms().filter_map(|(spec, main)| Some((rank(spec)?, spec.area_target, far(main, gate)))).collect();
         let (mut wrong, mut all) = (0.0, 0.0);
@@ -112,13 +106,13 @@ impl Judge<'_> {
     }
 
     /// Returns where one may come in: the middles of outer walls of the room with the entrance that hold a door, of a
-    /// corridor's its ends where it has some; the stairs on upper storeys.
-    fn gates(&self, layout: &Layout) -> Vec<Gate> {
+    /// corridor's its ends where it has some; the stairs on upper storeys. Twice the coordinates, lattice units.
+    fn gates(&self, layout: &Layout) -> Vec<(i32, i32)> {
         let (brief, rooms) = (self.brief, &self.survey.rooms);
         let stairs = brief.core.as_ref().map(|c| c.host);
         let Some(entered) = brief.rooms.iter().position(|r| r.entrance).or(stairs) else { return Vec::new() };
         let Some(main) = rooms[entered].main else { return Vec::new() };
-        let mut out: Vec<(i32, Gate)> = Vec::new();
+        let mut out: Vec<(i32, (i32, i32))> = Vec::new();
         let own = layout.boxes.iter().zip(&self.survey.side).filter(|((r, _), _)| *r == entered && !brief.upper);
         for ((_, b), sides) in own {
             let (cx, cy) = b.center2();
@@ -126,7 +120,7 @@ impl Judge<'_> {
             for (s, at) in ends.into_iter().enumerate() {
                 let free = if s < 2 { b.height() } else { b.width() } - sides[s][0];
                 if free >= self.entrance_need {
-                    out.push((free, Gate { at }));
+                    out.push((free, at));
                 }
             }
         }
@@ -134,7 +128,7 @@ impl Judge<'_> {
             out.retain(|(free, _)| *free <= END_WALL);
         }
         if out.is_empty() {
-            out.push((0, Gate { at: main.center2() }));
+            out.push((0, main.center2()));
         }
         out.into_iter().map(|(_, gate)| gate).collect()
     }

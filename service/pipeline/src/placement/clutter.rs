@@ -11,9 +11,10 @@ use super::demand::Task;
 use super::geom::{Box2, turn};
 use super::nav::Nav;
 use super::search::{Job, LEVELS, Outcome};
+use super::seats::is_seat;
 use super::state::{Placed, State, at_frame};
 use super::style::grain;
-use super::unit::{Forms, Part, Unit, is_seat, variants};
+use super::unit::{Forms, Part, Unit, variants};
 
 /// Distance kept from the edge of a top, mm.
 const EDGE: i32 = 25;

@@ -18,6 +18,7 @@ mod nav;
 mod pockets;
 mod proposed;
 mod search;
+mod seats;
 mod setting;
 mod space;
 mod stairs;

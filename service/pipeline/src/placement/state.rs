@@ -10,8 +10,9 @@ use super::docks::buffers;
 use super::geom::{Box2, Solid, mm, turn};
 use super::nav::Nav;
 use super::pockets::Pockets;
+use super::seats::is_seat;
 use super::space::{Open, Space};
-use super::unit::{Part, Unit, is_seat};
+use super::unit::{Part, Unit};
 use super::way::{InTheWay, Way};
 
 /// Height up to which things leave the sight of a screen free, mm: coffee tables.

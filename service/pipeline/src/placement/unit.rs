@@ -9,14 +9,10 @@ use d3dgen_model::TOLERANCE_M;
 use d3dgen_model::domain::{Domain, FacingRule, Group, Member, Mount, ObjectType, Relation, Shape};
 
 use super::geom::{Box2, ROBOT_HEIGHT, Solid, mm};
+use super::seats::{is_seat, seats_around, seats_behind};
 
 /// Largest number of members kept around one anchor, whatever a domain says.
 const MAX_MEMBERS: u32 = 40;
-
-/// Depth from the edge of a desk or counter to what stands behind who sits at it, m.
-const SEAT_DEPTH_M: f64 = 1.0;
-/// Floor behind a chair at a table to push it back on, m.
-const PUSH_BACK_M: f64 = 0.25;
 
 /// One object of a unit.
 #[derive(Debug, Clone, PartialEq)]
@@ -182,11 +178,6 @@ impl<'a> Unit<'a> {
     pub fn seats(&self) -> u32 {
         self.parts.iter().filter(|p| is_seat(p.object.shape)).map(|p| (width_of(p) as u32 / 450).max(1)).sum()
     }
-}
-
-/// Returns true for what one person sits on, or several side by side.
-pub(super) fn is_seat(shape: Shape) -> bool {
-    matches!(shape, Shape::Chair | Shape::SwivelChair | Shape::Stool | Shape::Bench)
 }
 
 fn width_of(part: &Part) -> i32 {
@@ -357,34 +348,6 @@ fn parked_at(dock: &Part, robot: i32) -> Box2 {
     let own = dock.solid.rect.turned((4 - dock.quarter) % 4);
     let middle = (own.y0 + own.y1) / 2;
     Box2 { x0: own.x1, x1: own.x1 + robot, y0: middle - robot / 2, y1: middle + robot - robot / 2 }.turned(dock.quarter)
-}
-
-/// Adds the floor to sit down and get up on behind counters and desks that face away from their user: seats of desks with
-/// the user in front have it by the desk's own clearance.
-fn seats_behind(parts: &[Part], tightness: f64, out: &mut Vec<Box2>) {
-    let anchor = &parts[0];
-    let (desk, depth) = (anchor.solid.rect, mm(SEAT_DEPTH_M * tightness));
-    if !matches!(anchor.object.shape, Shape::Desk | Shape::Counter | Shape::Table) {
-        return;
-    }
-    let behind = parts[1..].iter().filter(|p| is_seat(p.object.shape) && p.quarter == 0 && p.solid.rect.x1 <= desk.x0);
-    out.extend(behind.map(|p| p.solid.rect).filter(|seat| seat.x0 > desk.x0 - depth).map(|seat| Box2 {
-        x0: desk.x0 - depth,
-        x1: seat.x0,
-        ..seat
-    }));
-}
-
-/// Adds the floor to push chairs back on that stand around a table.
-fn seats_around(parts: &[Part], tightness: f64, out: &mut Vec<Box2>) {
-    if !matches!(parts[0].object.shape, Shape::Table | Shape::RoundTable) || !parts[0].solid.stops_robot() {
-        return;
-    }
-    let depth = mm(PUSH_BACK_M * tightness);
-    out.extend(parts[1..].iter().filter(|p| p.object.shape == Shape::Chair).map(|seat| {
-        let own = seat.solid.rect.turned((4 - seat.quarter) % 4);
-        Box2 { x0: own.x0 - depth, x1: own.x0, ..own }.turned(seat.quarter)
-    }));
 }
 
 fn finish_with<'a>(item: &'a str, group: bool, parts: Vec<Part<'a>>, clears: Vec<Box2>, parked: Vec<Box2>) -> Unit<'a> {

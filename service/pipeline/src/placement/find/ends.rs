@@ -143,12 +143,10 @@ impl<'a> Find<'_, 'a, '_> {
                 };
                 // who waits at the counter stands clear of the way in
                 let aside = (v + middle - door_axis).abs() > (b.height() + door.v1 - door.v0) / 2;
-                let least = if door.open {
-                    1.6
-                } else if aside {
-                    1.8
-                } else {
-                    2.6
+                let least = match (door.open, aside) {
+                    (true, _) => 1.6,
+                    (false, true) => 1.8,
+                    (false, false) => 2.6,
                 };
                 let near = (least - front).max(0.0) + slope * (front - far).max(0.0);
                 self.offer(placed, 80 + u32::from(behind > 100), |_, _| 2.0 - 0.6 * off - lost - near);

@@ -7,9 +7,10 @@ use d3dgen_model::domain::{Arrangement, Mount, Shape};
 use super::{Find, Rule};
 use crate::placement::docks::door_loss;
 use crate::placement::geom::{Box2, FLAT, turn};
+use crate::placement::seats::is_seat;
 use crate::placement::space::WallSide;
 use crate::placement::state::{Placed, at_frame};
-use crate::placement::unit::{Unit, is_seat};
+use crate::placement::unit::Unit;
 
 /// Positions nearer than this along a wall are one position, mm.
 const SAME: i32 = 20;
