@@ -27,19 +27,18 @@ impl FreeSpace {
         };
         let xs = cuts(|p| p.x, |r| r.x0, |r| r.x1);
         let ys = cuts(|p| p.y, |r| r.y0, |r| r.y1);
-        let floor = outline.rects();
-        let free: Vec<Vec<bool>> = ys
-            .windows(2)
-            .map(|y| {
-                xs.windows(2)
-                    .map(|x| {
-                        let middle = Rect::new(x[0], y[0], x[1], y[1]).center();
-                        let holds = |r: &Rect| r.x0 < middle.x && middle.x < r.x1 && r.y0 < middle.y && middle.y < r.y1;
-                        floor.iter().any(holds) && !inside.iter().any(|o| holds(o))
-                    })
-                    .collect()
-            })
-            .collect();
+        let mut free = Cells::new(xs.len().saturating_sub(1), ys.len().saturating_sub(1));
+        // cells belong to what their middle lies in
+        let span = |cuts: &[f64], low: f64, high: f64| {
+            let middles = || cuts.windows(2).map(|c| (c[0] + c[1]) / 2.0);
+            middles().take_while(|m| *m <= low).count()..middles().take_while(|m| *m < high).count()
+        };
+        let mut set = |r: &Rect, is_free: bool| {
+            let columns = span(&xs, r.x0, r.x1);
+            span(&ys, r.y0, r.y1).for_each(|j| free.row_mut(j)[columns.clone()].fill(is_free));
+        };
+        outline.rects().iter().for_each(|r| set(r, true));
+        inside.iter().for_each(|o| set(o, false));
         Self { rects: maximal(&free, &xs, &ys) }
     }
 
@@ -141,26 +140,51 @@ fn gate(door: &Door) -> Rect {
     }
 }
 
+/// Which cells between cuts are free.
+struct Cells {
+    columns: usize,
+    free: Vec<bool>,
+}
+
+impl Cells {
+    /// Returns so many cells, none of them free.
+    fn new(columns: usize, rows: usize) -> Self {
+        Self { columns, free: vec![false; columns * rows] }
+    }
+
+    fn rows(&self) -> usize {
+        self.free.len() / self.columns.max(1)
+    }
+
+    fn row(&self, j: usize) -> &[bool] {
+        &self.free[j * self.columns..(j + 1) * self.columns]
+    }
+
+    fn row_mut(&mut self, j: usize) -> &mut [bool] {
+        &mut self.free[j * self.columns..(j + 1) * self.columns]
+    }
+}
+
 /// Returns all maximal rectangles of free cells.
-fn maximal(free: &[Vec<bool>], xs: &[f64], ys: &[f64]) -> Vec<Rect> {
-    let columns = xs.len().saturating_sub(1);
+fn maximal(free: &Cells, xs: &[f64], ys: &[f64]) -> Vec<Rect> {
     let mut out = Vec::new();
-    for low in 0..free.len() {
-        let mut open = vec![true; columns];
-        for high in low..free.len() {
-            open.iter_mut().zip(&free[high]).for_each(|(o, f)| *o &= f);
+    let mut open = vec![true; free.columns];
+    for low in 0..free.rows() {
+        open.fill(true);
+        for high in low..free.rows() {
+            open.iter_mut().zip(free.row(high)).for_each(|(o, f)| *o &= f);
             if !open.contains(&true) {
                 break;
             }
             let mut i = 0;
-            while i < columns {
+            while i < free.columns {
                 let run = open[i..].iter().take_while(|o| **o).count();
                 if run == 0 {
                     i += 1;
                     continue;
                 }
-                let whole = |row: Option<&Vec<bool>>| row.is_some_and(|r| r[i..i + run].iter().all(|f| *f));
-                let grows = whole(low.checked_sub(1).and_then(|j| free.get(j))) || whole(free.get(high + 1));
+                let whole = |j: usize| free.row(j)[i..i + run].iter().all(|f| *f);
+                let grows = low > 0 && whole(low - 1) || high + 1 < free.rows() && whole(high + 1);
                 if !grows {
                     out.push(Rect { x0: xs[i], x1: xs[i + run], y0: ys[low], y1: ys[high + 1] });
                 }

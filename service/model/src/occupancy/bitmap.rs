@@ -74,8 +74,11 @@ impl Bitmap {
         if i0 < i1 && j < self.ny {
             for w in i0 / 64..=(i1 - 1) / 64 {
                 let (mask, k) = (span_mask(i0, i1, w), j * self.stride + w);
-                removed += (self.words[k] & mask & counted.words[k]).count_ones() as usize;
-                self.words[k] &= !mask;
+                let lost = self.words[k] & mask;
+                if lost != 0 {
+                    removed += (lost & counted.words[k]).count_ones() as usize;
+                    self.words[k] ^= lost;
+                }
             }
         }
         removed
@@ -243,18 +246,28 @@ impl Bitmap {
         if stride == 0 {
             return out;
         }
+        // rows that have spread to the next one north or south since they last grew need no look
+        let (mut north, mut south) = (vec![false; ny], vec![false; ny]);
         for j in 0..ny {
-            spread_row(&mut out.words[j * stride..(j + 1) * stride], &self.words[j * stride..(j + 1) * stride]);
+            let row = &mut out.words[j * stride..(j + 1) * stride];
+            if row.iter().any(|w| *w != 0) {
+                spread_row(row, &self.words[j * stride..(j + 1) * stride]);
+                (north[j], south[j]) = (true, true);
+            }
         }
         loop {
-            let mut changed = false;
             for j in 1..ny {
-                changed |= out.spread_from(self, j - 1, j);
+                if std::mem::take(&mut north[j - 1]) && out.spread_from(self, j - 1, j) {
+                    (north[j], south[j]) = (true, true);
+                }
             }
+            let mut grown = false;
             for j in (1..ny).rev() {
-                changed |= out.spread_from(self, j, j - 1);
+                if std::mem::take(&mut south[j]) && out.spread_from(self, j, j - 1) {
+                    (north[j - 1], south[j - 1], grown) = (true, true, true);
+                }
             }
-            if !changed {
+            if !grown {
                 return out;
             }
         }

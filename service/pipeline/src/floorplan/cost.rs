@@ -52,6 +52,9 @@ const WRONG_SIZES: f64 = 1.0;
 /// Weight of what hangs in the air.
 pub(super) const OVERHANG: f64 = 30.0;
 
+/// What sums of costs may lack by rounding.
+const ROUNDING: f64 = 1e-9;
+
 /// Share by which the whole may miss the area asked for before it costs.
 const AREA_TOLERANCE: f64 = 0.03;
 
@@ -185,11 +188,34 @@ impl<'b> Judge<'b> {
 
     /// Judges a layout.
     pub(super) fn score(&mut self, layout: &Layout) -> Score {
-        self.measure(&layout.boxes);
         let mut score = Score { hard: layout.misfit, ..Score::default() };
-        self.rooms(&mut score);
-        self.links(&mut score);
-        self.whole(layout, &mut score);
+        self.judge(layout, &mut score, |_| true);
+        score
+    }
+
+    /// Returns what a layout costs under the weights. Of one that costs more than `most` some costs are left out, so that
+    /// what is returned is too little, yet more than `most`: nothing has a negative cost.
+    pub(super) fn cost_up_to(&mut self, layout: &Layout, weights: &Weights, most: f64) -> f64 {
+        let mut score = Score { hard: layout.misfit, ..Score::default() };
+        self.judge(layout, &mut score, |so_far| so_far.total(weights) <= most + ROUNDING);
+        score.total(weights)
+    }
+
+    /// Adds up what a layout costs while `go_on`, what is cheap to know first.
+    fn judge(&mut self, layout: &Layout, score: &mut Score, go_on: impl Fn(&Score) -> bool) {
+        if !go_on(score) {
+            return;
+        }
+        self.measure(&layout.boxes);
+        self.rooms(score);
+        if !go_on(score) {
+            return;
+        }
+        self.links(score);
+        if !go_on(score) {
+            return;
+        }
+        self.whole(layout, score);
         if let Some(below) = &self.below {
             let total: f64 = self.survey.rooms.iter().map(|r| r.gross_m2).sum();
             let free = match layout.core.filter(|_| below.by_core) {
@@ -200,7 +226,6 @@ impl<'b> Judge<'b> {
                 * 0.0025;
             score.overhang = free / total.max(1.0);
         }
-        score
     }
 
     fn measure(&mut self, boxes: &[(usize, Cellbox)]) {

@@ -105,12 +105,12 @@ fn anneal(
 ) -> (Genome, Candidate) {
     let steps = (STEPS_PER_ROOM * brief.rooms.len()).clamp(600, MAX_STEPS);
     let (mut scratch, mut layout) = (Scratch::default(), Layout::default());
-    let mut value = |genome: &Genome| {
+    let mut value = |genome: &Genome, most: f64| {
         realize(brief, genome, &mut scratch, &mut layout);
-        judge.score(&layout).total(weights)
+        judge.cost_up_to(&layout, weights, most)
     };
     let mut current = Genome::random(brief, scheme, rng);
-    let mut cost = value(&current);
+    let mut cost = value(&current, f64::MAX);
     let (mut best, mut least) = (current.clone(), cost);
     let mut trial = current.clone();
     for step in 0..steps {
@@ -123,7 +123,7 @@ fn anneal(
         if !mutate(brief, &mut trial, rng) {
             continue;
         }
-        let next = value(&trial);
+        let next = value(&trial, cost + heat * PATIENCE[0]);
         if next <= cost || next - cost < heat * patience(rng) {
             std::mem::swap(&mut current, &mut trial);
             cost = next;

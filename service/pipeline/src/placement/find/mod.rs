@@ -61,7 +61,7 @@ impl<'f, 'a, 's> Find<'f, 'a, 's> {
         Self { state, task, index, salt, aisle, out: Vec::new(), tally, across: None, style }
     }
 
-    /// Collects positions of a unit as the task's arrangement wants it, best first.
+    /// Collects positions of a unit as the task's arrangement wants it.
     pub fn run(mut self, unit: &Rc<Unit<'a>>) -> Vec<Candidate<'a>> {
         match self.task.arrangement {
             Arrangement::OnSurface => self.on_surfaces(unit),
@@ -74,7 +74,6 @@ impl<'f, 'a, 's> Find<'f, 'a, 's> {
             _ if self.task.anchor.mount == Mount::Surface => self.on_surfaces(unit),
             _ => self.along_walls(unit),
         }
-        self.out.sort_by(|a, b| b.score.total_cmp(&a.score));
         self.out
     }
 

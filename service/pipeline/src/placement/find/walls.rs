@@ -84,9 +84,12 @@ impl<'a> Find<'_, 'a, '_> {
             .iter()
             .filter(|p| p.mount != Mount::Ceiling && p.mount != Mount::Surface)
             .fold((i32::MAX, FLAT + 1), |(lo, hi), p| (lo.min(p.solid.z0), hi.max(p.solid.z1)));
+        let strip = wall.strip(wall.v0, wall.v1, 0, b.width());
         let near = |r: &Box2| {
-            let r = r.turned((4 - wall.q) % 4);
-            (r.x0 < wall.u + b.width() && r.x1 > wall.u && r.y1 > wall.v0 && r.y0 < wall.v1).then_some((r.y0, r.y1))
+            r.overlaps(&strip).then(|| {
+                let r = r.turned((4 - wall.q) % 4);
+                (r.y0, r.y1)
+            })
         };
         let mut taken: Vec<(i32, i32)> = Vec::new();
         taken.extend(space.doors.iter().filter(|d| z0 < d.height).filter_map(|d| near(d.kept(self.state.open))));
@@ -101,14 +104,12 @@ impl<'a> Find<'_, 'a, '_> {
         }
         marks.extend(self.state.clears.iter().filter_map(near).flat_map(|t| [t.0, t.1]));
         taken.sort_unstable();
-        let mut merged: Vec<(i32, i32)> = Vec::new();
-        for t in taken {
-            match merged.last_mut() {
-                Some(last) if t.0 <= last.1 => last.1 = last.1.max(t.1),
-                _ => merged.push(t),
-            }
-        }
-        Front { taken: merged, marks }
+        taken.dedup_by(|next, last| {
+            let joined = next.0 <= last.1;
+            last.1 = if joined { last.1.max(next.1) } else { last.1 };
+            joined
+        });
+        Front { taken, marks }
     }
 
     /// Returns true for seats nobody gets to: furniture close by on both sides.
@@ -124,7 +125,7 @@ impl<'a> Find<'_, 'a, '_> {
     /// Returns positions of the unit's origin along the wall.
     fn stops(&self, wall: &WallSide, index: usize, unit: &Unit, front: &Front) -> Vec<i32> {
         let (b, r) = (unit.bbox, unit.reach);
-        let mut out = Vec::new();
+        let mut out = Vec::with_capacity(4 * front.marks.len() + 32);
         let marks = [wall.v0, wall.v1].into_iter().chain(front.marks.iter().copied());
         for m in marks {
             out.extend([m - b.y0, m - b.y1, m - r.y0, m - r.y1]);
