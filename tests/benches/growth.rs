@@ -151,14 +151,12 @@ fn make(domain: &str, prompt: &str, rooms: u32, seed: u64, registry: &Registry) 
     let begun = Instant::now();
     let mut last = begun;
     let mut observe = |event: Event<'_>| {
-        if let Event::Finished(stage, _, artifact) = event {
-            made.laps[stage as usize] += last.elapsed();
-            if let Artifact::Floorplan(plan) = artifact {
-                made.cost = plan.cost.iter().map(|t| t.cost).sum();
-            }
-            if let Artifact::Placements(p) = artifact {
-                made.things = p.placements.len();
-            }
+        let Event::Finished(stage, _, artifact) = event else { return };
+        made.laps[stage as usize] += last.elapsed();
+        match artifact {
+            Artifact::Floorplan(plan) => made.cost = plan.cost.iter().map(|t| t.cost).sum(),
+            Artifact::Placements(p) => made.things = p.placements.len(),
+            _ => {}
         }
         last = Instant::now();
     };

@@ -8,7 +8,7 @@ use d3dgen_model::domain::{Scheme, Zone};
 use d3dgen_model::scene_graph::Connector;
 use d3dgen_model::seed::Stream;
 
-use super::core::{Below, Comb, out_of_core};
+use super::core::{Below, Comb, Slot, out_of_core};
 use super::cost::{Judge, Weights};
 use super::lattice::{Cellbox, Frame, meters, up};
 use super::realize::{Layout, spine_units};
@@ -30,6 +30,8 @@ const SLACK_M: f64 = 1.5;
 const USUAL_DEPTH_M: f64 = 5.0;
 /// Ways to deal out the rooms that are tried before the building is given up.
 const DEALS: usize = 4;
+/// Rooms that can be near one room; wishes of more than so many count less each.
+const NEIGHBORS: f64 = 8.0;
 /// Changes tried per cluster while dealing out.
 const CHANGES: usize = 60;
 
@@ -64,12 +66,16 @@ pub(super) fn compose(brief: &Brief, weights: &Weights, rng: &mut Stream, stop: 
         // the wings of an upper storey stand on those below
         let count = given.map_or(count, |c| c.slots.len());
         let mut wings: Vec<Wing> = Vec::new();
+        let mut yard = given.map(|c| Yard::new(brief, c.first));
         for rooms in &partition(brief, count, rng) {
-            let below = given.and_then(|c| below_wing(brief, c, wings.len()));
+            let below = given.zip(yard.as_ref()).and_then(|(c, yard)| below_wing(brief, c, wings.len(), yard));
             let Some(found) = wing(brief, rooms, weights, below.as_ref(), rng, stop) else { continue };
             // one wing that cannot be built spoils the deal; the last deal is kept to say by how much
             if !found.sound && deal + 1 < DEALS {
                 continue 'deals;
+            }
+            if let Some((slot, yard)) = given.and_then(|c| c.slots.get(wings.len())).zip(yard.as_mut()) {
+                yard.take(slot.side, Some(slot), &found);
             }
             wings.push(found);
         }
@@ -116,17 +122,47 @@ fn wing(
     Some(Wing { sound, boxes: boxes.into_iter().map(|(room, b)| (whole(room), b)).collect(), south, north })
 }
 
-/// Returns what is below a wing, as the wing sees it.
-fn below_wing(brief: &Brief, comb: &Comb, wing: usize) -> Option<Below> {
-    let (side, up_by) = *comb.slots.get(wing)?;
+/// Returns what is below a wing, as the wing sees it, and where it may reach between the others.
+fn below_wing(brief: &Brief, comb: &Comb, wing: usize, yard: &Yard) -> Option<Below> {
+    let slot = comb.slots.get(wing)?;
     let core = brief.core.as_ref()?;
     let w = spine_units(brief);
     let outline = out_of_core(&core.below.as_ref()?.outline, &core_frame(comb.first, w));
     let seen = |b: &Cellbox| {
-        let (x0, x1) = if side == 0 { (b.x0, b.x1) } else { (-w - b.x1, -w - b.x0) };
-        Cellbox::new(x0, b.y0 - up_by, x1, b.y1 - up_by)
+        let (x0, x1) = if slot.side == 0 { (b.x0, b.x1) } else { (-w - b.x1, -w - b.x0) };
+        Cellbox::new(x0, b.y0 - slot.at, x1, b.y1 - slot.at)
     };
-    Some(Below { outline: outline.iter().map(seen).collect(), by_core: false, comb: None })
+    let next = comb.slots[wing + 1..].iter().find(|s| s.side == slot.side).map(|s| s.at + s.south - yard.courtyard);
+    let end = next.or(comb.far.filter(|_| slot.side != comb.first)).unwrap_or(i32::MAX / 2);
+    let between = Some((yard.next[slot.side] - slot.at, end - slot.at));
+    Some(Below { outline: outline.iter().map(seen).collect(), by_core: false, comb: None, between })
+}
+
+/// The sides of a spine while wings are set along it.
+struct Yard {
+    /// Where the next wing of each side may begin.
+    next: [i32; 2],
+    /// Width of a courtyard.
+    courtyard: i32,
+}
+
+impl Yard {
+    /// Returns the spine with the core across from the first wing.
+    fn new(brief: &Brief, first: usize) -> Self {
+        let core = brief.core.as_ref();
+        let stacked = core.and_then(|c| c.below.as_ref()).is_some_and(|b| b.comb.is_some());
+        let courtyard = up(if stacked { LEAST_COURTYARD_M } else { COURTYARD_M });
+        let mut next = [0, 0];
+        next[1 - first] = core.map_or(0, |c| c.width + courtyard);
+        Self { next, courtyard }
+    }
+
+    /// Sets the next wing of a side, where the one below stands if that leaves room.
+    fn take(&mut self, side: usize, below: Option<&Slot>, wing: &Wing) -> Slot {
+        let at = (self.next[side] - wing.south).max(below.map_or(i32::MIN, |s| s.at));
+        self.next[side] = at + wing.north + self.courtyard;
+        Slot { side, at, south: wing.south, north: wing.north }
+    }
 }
 
 /// Returns where the core stands: at the start of the spine, across from the first wing.
@@ -142,41 +178,36 @@ fn core_frame(first: usize, w: i32) -> Frame {
 fn along_spine(brief: &Brief, spine: usize, wings: Vec<Wing>, two_sided: bool, rng: &mut Stream) -> Layout {
     let w = spine_units(brief);
     let mut layout = Layout::default();
-    // Where the next wing of each side may begin.
-    let mut next = [0, 0];
     let (mut low, mut high) = (i32::MAX, i32::MIN);
     let first = rng.below(2);
     let core = brief.core.as_ref();
     let given = core.and_then(|c| c.below.as_ref()).and_then(|b| b.comb.as_ref());
     let first = given.map_or(first, |c| c.first);
     layout.comb.first = first;
-    let courtyard = up(if given.is_some() { LEAST_COURTYARD_M } else { COURTYARD_M });
+    let mut yard = Yard::new(brief, first);
     if let Some(core) = core {
         let frame = core_frame(first, w);
         layout.boxes.extend(core.boxes.iter().map(|(r, b)| (*r, frame.place(b.x0, b.x1, b.y0, b.y1))));
         layout.core = Some(frame);
-        next[1 - first] = core.width + courtyard;
         (low, high) = (0, core.width);
     }
     for (i, wing) in wings.into_iter().enumerate() {
         let side = match (i, two_sided) {
             (0, _) | (_, false) => first,
-            _ => usize::from(next[1] < next[0]),
+            _ => usize::from(yard.next[1] < yard.next[0]),
         };
-        let slot = given.and_then(|c| c.slots.get(i));
-        let side = slot.map_or(side, |s| s.0);
-        let up_by = (next[side] - wing.south).max(slot.map_or(i32::MIN, |s| s.1));
-        layout.comb.slots.push((side, up_by));
+        let below = given.and_then(|c| c.slots.get(i));
+        let slot = yard.take(below.map_or(side, |s| s.side), below, &wing);
         for (room, b) in wing.boxes {
-            let (x0, x1) = if side == 0 { (b.x0, b.x1) } else { (-w - b.x1, -w - b.x0) };
-            layout.boxes.push((room, Cellbox::new(x0, b.y0 + up_by, x1, b.y1 + up_by)));
+            let (x0, x1) = if slot.side == 0 { (b.x0, b.x1) } else { (-w - b.x1, -w - b.x0) };
+            layout.boxes.push((room, Cellbox::new(x0, b.y0 + slot.at, x1, b.y1 + slot.at)));
         }
-        (low, high) = (low.min(wing.south + up_by), high.max(wing.north + up_by));
-        next[side] = wing.north + up_by + courtyard;
+        (low, high) = (low.min(slot.at + slot.south), high.max(slot.at + slot.north));
+        layout.comb.slots.push(slot);
     }
     if let Some((stairs, width)) = core.and_then(|c| c.far) {
         // across from the first stairs' end of the spine, clear of the last wing
-        let free = next[1 - first] - courtyard + up(SLACK_M);
+        let free = yard.next[1 - first] - yard.courtyard + up(SLACK_M);
         let from = given.and_then(|c| c.far).unwrap_or_else(|| free.max(high - width));
         layout.misfit += meters((free - up(SLACK_M) - from).max(0));
         let frame = core_frame(first, w);
@@ -228,6 +259,9 @@ fn improve(brief: &Brief, clusters: &[Cluster], wing_of: &mut [usize], (count, m
     let mut load = vec![0.0; count];
     clusters.iter().zip(&*wing_of).for_each(|(c, &w)| load[w] += c.front);
     let uneven = |load: f64| 6.0 * (load / mean - 1.0).powi(2);
+    // of a hundred stores that are wished near one kitchen, few can be
+    let crowd = |c: usize, o: usize| wishes[c].len().max(wishes[o].len());
+    let weight = |c: usize, o: usize| (NEIGHBORS / crowd(c, o) as f64).min(1.0);
     for _ in 0..CHANGES * clusters.len() {
         let (c, to) = (rng.below(clusters.len()), rng.below(count));
         let from = wing_of[c];
@@ -238,7 +272,9 @@ fn improve(brief: &Brief, clusters: &[Cluster], wing_of: &mut [usize], (count, m
             continue;
         }
         let cut = |wing_of: &[usize]| -> f64 {
-            let of = |c: usize| wishes[c].iter().filter(|&&o| wing_of[o] != wing_of[c]).count() as f64;
+            let of = |c: usize| -> f64 {
+                wishes[c].iter().filter(|&&o| wing_of[o] != wing_of[c]).map(|&o| weight(c, o)).sum()
+            };
             of(c) + swap.map_or(0.0, of)
         };
         let gain = clusters[c].front - swap.map_or(0.0, |d| clusters[d].front);

@@ -34,6 +34,8 @@ pub(super) struct Below {
     pub outline: Vec<Cellbox>,
     pub by_core: bool,
     pub comb: Option<Comb>,
+    /// How far south and north a wing may reach before it pushes others away, in its own layout.
+    pub between: Option<(i32, i32)>,
 }
 
 /// How the wings of a storey stand along its spine.
@@ -41,10 +43,21 @@ pub(super) struct Below {
 pub(super) struct Comb {
     /// Side of the first wing: 0 east, 1 west of the spine.
     pub first: usize,
-    /// Side and corridor of each wing.
-    pub slots: Vec<(usize, i32)>,
+    pub slots: Vec<Slot>,
     /// Where the second stairwell begins.
     pub far: Option<i32>,
+}
+
+/// Where a wing stands.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Slot {
+    /// 0 east, 1 west of the spine.
+    pub side: usize,
+    /// Its corridor along the spine.
+    pub at: i32,
+    /// How far it reaches from there.
+    pub south: i32,
+    pub north: i32,
 }
 
 impl Core {

@@ -52,6 +52,9 @@ const WRONG_SIZES: f64 = 1.0;
 /// Weight of what hangs in the air.
 pub(super) const OVERHANG: f64 = 30.0;
 
+/// Weight of a meter by which a wing pushes others away that stand on those below.
+const PUSHED: f64 = 8.0;
+
 /// What sums of costs may lack by rounding.
 const ROUNDING: f64 = 1e-9;
 
@@ -67,6 +70,8 @@ pub(super) struct Score {
     pub soft: [f64; COUNT],
     /// Share of the storey that hangs in the air beyond the one below.
     pub overhang: f64,
+    /// How far a wing reaches where others are to stand, m.
+    pub pushed: f64,
     /// What the plan costs under a wish for symmetry or against it, weighted.
     pub symmetry: f64,
 }
@@ -81,6 +86,7 @@ impl Score {
     pub(super) fn total(&self, weights: &Weights) -> f64 {
         self.hard * 30.0
             + OVERHANG * self.overhang
+            + PUSHED * self.pushed
             + self.symmetry
             + self.soft.iter().zip(weights).map(|(s, w)| s * w).sum::<f64>()
     }
@@ -225,6 +231,11 @@ impl<'b> Judge<'b> {
             } as f64
                 * 0.0025;
             score.overhang = free / total.max(1.0);
+            if let Some((south, north)) = below.between {
+                let most = |beyond: &dyn Fn(&Cellbox) -> i32| layout.boxes.iter().map(|(_, b)| beyond(b)).max();
+                let beyond = [most(&|b| south - b.y0), most(&|b| b.y1 - north)];
+                score.pushed = beyond.into_iter().flatten().map(|b| meters(b.max(0))).sum();
+            }
         }
     }
 

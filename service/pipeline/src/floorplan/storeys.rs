@@ -129,7 +129,7 @@ fn storey(
             Ok(plan) => {
                 let comb = brief.core.as_ref().is_some_and(|c| c.far.is_some()).then_some(found.layout.comb);
                 let comb_built = comb.is_some();
-                let below = Below { outline: merged(&boxes), by_core: true, comb };
+                let below = Below { outline: merged(&boxes), by_core: true, comb, between: None };
                 let overhang = found.score.overhang;
                 if best.as_ref().is_none_or(|b| overhang < b.overhang) {
                     best = Some(Planned { plan, below, overhang });
