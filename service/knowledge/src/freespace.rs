@@ -19,7 +19,9 @@ impl FreeSpace {
         let bounds = outline.bounds();
         let inside: Vec<&Rect> = obstacles.iter().filter(|o| o.overlaps(&bounds)).collect();
         let cuts = |corner: fn(&d3dgen_model::Point) -> f64, lo: fn(&Rect) -> f64, hi: fn(&Rect) -> f64| {
-            let mut v: Vec<f64> = outline.corners().iter().map(corner).collect();
+            let corners = outline.corners();
+            let mut v = Vec::with_capacity(corners.len() + 2 * inside.len());
+            v.extend(corners.iter().map(corner));
             v.extend(inside.iter().flat_map(|o| [lo(o), hi(o)]).filter(|c| *c > lo(&bounds) && *c < hi(&bounds)));
             v.sort_by(f64::total_cmp);
             v.dedup_by(|a, b| (*a - *b).abs() < TOLERANCE_M);
@@ -167,7 +169,7 @@ impl Cells {
 
 /// Returns all maximal rectangles of free cells.
 fn maximal(free: &Cells, xs: &[f64], ys: &[f64]) -> Vec<Rect> {
-    let mut out = Vec::new();
+    let mut out = Vec::with_capacity(2 * (free.columns + free.rows()));
     let mut open = vec![true; free.columns];
     for low in 0..free.rows() {
         open.fill(true);

@@ -113,9 +113,9 @@ pub fn missing_rooms(knowledge: &KnowledgeBase, query: &Query) -> Vec<Applicable
     let chain = jurisdiction::chain(query.country_code.as_deref());
     let references = knowledge.references.iter().filter(|r| chain.contains(&r.jurisdiction));
     let mut asking: Vec<Applicable> = references
+        .filter(|r| conditions::document_holds(r, query))
         .flat_map(|r| r.constraints.iter().map(move |c| (r, c)))
         .filter(|(_, c)| TABLES.quantity(c).is_some_and(|q| asks_for_rooms(q.measure)))
-        .filter(|(reference, _)| conditions::document_holds(reference, query))
         .filter_map(|(reference, c)| applicable(c, reference, query))
         .collect();
     resolve::settle(&mut asking, &chain, &Policy::Strictest);
