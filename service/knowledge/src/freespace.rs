@@ -1,6 +1,7 @@
 //! Exact free floor among right angles: the maximal free rectangles of a room, what fits in it, and how wide one can pass.
 
 use d3dgen_model::floorplan::Door;
+use d3dgen_model::occupancy::Bitmap;
 use d3dgen_model::{Polygon, Rect, TOLERANCE_M};
 
 /// How far beyond the wall faces a door's opening is looked for, m: it must meet the floor on both sides.
@@ -29,15 +30,15 @@ impl FreeSpace {
         };
         let xs = cuts(|p| p.x, |r| r.x0, |r| r.x1);
         let ys = cuts(|p| p.y, |r| r.y0, |r| r.y1);
-        let mut free = Cells::new(xs.len().saturating_sub(1), ys.len().saturating_sub(1));
+        let mut free = Bitmap::new(xs.len().saturating_sub(1), ys.len().saturating_sub(1));
         // cells belong to what their middle lies in
         let span = |cuts: &[f64], low: f64, high: f64| {
             let middles = || cuts.windows(2).map(|c| (c[0] + c[1]) / 2.0);
-            middles().take_while(|m| *m <= low).count()..middles().take_while(|m| *m < high).count()
+            [middles().take_while(|m| *m <= low).count() as i64, middles().take_while(|m| *m < high).count() as i64]
         };
         let mut set = |r: &Rect, is_free: bool| {
-            let columns = span(&xs, r.x0, r.x1);
-            span(&ys, r.y0, r.y1).for_each(|j| free.row_mut(j)[columns.clone()].fill(is_free));
+            let ([i0, i1], [j0, j1]) = (span(&xs, r.x0, r.x1), span(&ys, r.y0, r.y1));
+            free.fill(i0, i1, j0, j1, is_free);
         };
         outline.rects().iter().for_each(|r| set(r, true));
         inside.iter().for_each(|o| set(o, false));
@@ -142,51 +143,27 @@ fn gate(door: &Door) -> Rect {
     }
 }
 
-/// Which cells between cuts are free.
-struct Cells {
-    columns: usize,
-    free: Vec<bool>,
-}
-
-impl Cells {
-    /// Returns so many cells, none of them free.
-    fn new(columns: usize, rows: usize) -> Self {
-        Self { columns, free: vec![false; columns * rows] }
-    }
-
-    fn rows(&self) -> usize {
-        self.free.len() / self.columns.max(1)
-    }
-
-    fn row(&self, j: usize) -> &[bool] {
-        &self.free[j * self.columns..(j + 1) * self.columns]
-    }
-
-    fn row_mut(&mut self, j: usize) -> &mut [bool] {
-        &mut self.free[j * self.columns..(j + 1) * self.columns]
-    }
-}
-
 /// Returns all maximal rectangles of free cells.
-fn maximal(free: &Cells, xs: &[f64], ys: &[f64]) -> Vec<Rect> {
-    let mut out = Vec::with_capacity(2 * (free.columns + free.rows()));
-    let mut open = vec![true; free.columns];
-    for low in 0..free.rows() {
+fn maximal(free: &Bitmap, xs: &[f64], ys: &[f64]) -> Vec<Rect> {
+    let (columns, rows) = (free.nx(), free.ny());
+    let mut out = Vec::with_capacity(2 * (columns + rows));
+    let mut open = vec![true; columns];
+    for low in 0..rows {
         open.fill(true);
-        for high in low..free.rows() {
-            open.iter_mut().zip(free.row(high)).for_each(|(o, f)| *o &= f);
+        for high in low..rows {
+            open.iter_mut().enumerate().for_each(|(i, o)| *o &= free.get(i, high));
             if !open.contains(&true) {
                 break;
             }
             let mut i = 0;
-            while i < free.columns {
+            while i < columns {
                 let run = open[i..].iter().take_while(|o| **o).count();
                 if run == 0 {
                     i += 1;
                     continue;
                 }
-                let whole = |j: usize| free.row(j)[i..i + run].iter().all(|f| *f);
-                let grows = low > 0 && whole(low - 1) || high + 1 < free.rows() && whole(high + 1);
+                let whole = |j: usize| (i..i + run).all(|i| free.get(i, j));
+                let grows = low > 0 && whole(low - 1) || high + 1 < rows && whole(high + 1);
                 if !grows {
                     out.push(Rect { x0: xs[i], x1: xs[i + run], y0: ys[low], y1: ys[high + 1] });
                 }

@@ -66,15 +66,17 @@ pub(super) fn compose(brief: &Brief, weights: &Weights, rng: &mut Stream, stop: 
         // the wings of an upper storey stand on those below
         let count = given.map_or(count, |c| c.slots.len());
         let mut wings: Vec<Wing> = Vec::new();
-        let mut yard = given.map(|c| Yard::new(brief, c.first));
+        let mut stack = given.map(|c| (c, Yard::new(brief, c.first)));
         for rooms in &partition(brief, count, rng) {
-            let below = given.zip(yard.as_ref()).and_then(|(c, yard)| below_wing(brief, c, wings.len(), yard));
+            let below = stack.as_ref().and_then(|(c, yard)| below_wing(brief, c, wings.len(), yard));
             let Some(found) = wing(brief, rooms, weights, below.as_ref(), rng, stop) else { continue };
             // one wing that cannot be built spoils the deal; the last deal is kept to say by how much
             if !found.sound && deal + 1 < DEALS {
                 continue 'deals;
             }
-            if let Some((slot, yard)) = given.and_then(|c| c.slots.get(wings.len())).zip(yard.as_mut()) {
+            if let Some((comb, yard)) = &mut stack
+                && let Some(slot) = comb.slots.get(wings.len())
+            {
                 yard.take(slot.side, Some(slot), &found);
             }
             wings.push(found);

@@ -232,9 +232,9 @@ impl<'b> Judge<'b> {
                 * 0.0025;
             score.overhang = free / total.max(1.0);
             if let Some((south, north)) = below.between {
-                let most = |beyond: &dyn Fn(&Cellbox) -> i32| layout.boxes.iter().map(|(_, b)| beyond(b)).max();
-                let beyond = [most(&|b| south - b.y0), most(&|b| b.y1 - north)];
-                score.pushed = beyond.into_iter().flatten().map(|b| meters(b.max(0))).sum();
+                let low = layout.boxes.iter().map(|(_, b)| b.y0).min().unwrap_or(south);
+                let high = layout.boxes.iter().map(|(_, b)| b.y1).max().unwrap_or(north);
+                score.pushed = meters((south - low).max(0)) + meters((high - north).max(0));
             }
         }
     }

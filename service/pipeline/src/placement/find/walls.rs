@@ -106,7 +106,9 @@ impl<'a> Find<'_, 'a, '_> {
         taken.sort_unstable();
         taken.dedup_by(|next, last| {
             let joined = next.0 <= last.1;
-            last.1 = if joined { last.1.max(next.1) } else { last.1 };
+            if joined {
+                last.1 = last.1.max(next.1);
+            }
             joined
         });
         Front { taken, marks }
