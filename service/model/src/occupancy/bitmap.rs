@@ -66,18 +66,24 @@ impl Bitmap {
         }
     }
 
-    /// Removes the cells of columns `i0..i1` of row `j`, clipped to the grid; returns how many of them `counted` (of one
-    /// size) has.
-    pub fn remove_counting(&mut self, i0: i64, i1: i64, j: usize, counted: &Self) -> usize {
+    /// Removes the cells of columns `i0..i1` and rows `j0..j1`, clipped to the grid; returns how many of them `counted`
+    /// (of one size) has.
+    pub fn remove_counting(&mut self, i0: i64, i1: i64, j0: i64, j1: i64, counted: &Self) -> usize {
         let (i0, i1) = clip(i0, i1, self.nx);
+        let (j0, j1) = clip(j0, j1, self.ny);
         let mut removed = 0;
-        if i0 < i1 && j < self.ny {
-            for w in i0 / 64..=(i1 - 1) / 64 {
-                let (mask, k) = (span_mask(i0, i1, w), j * self.stride + w);
-                let lost = self.words[k] & mask;
+        if i0 >= i1 || j0 >= j1 {
+            return 0;
+        }
+        for w in i0 / 64..=(i1 - 1) / 64 {
+            let mask = span_mask(i0, i1, w);
+            let column = j0 * self.stride + w..(j1 - 1) * self.stride + w + 1;
+            let words = self.words[column.clone()].iter_mut().step_by(self.stride);
+            for (word, counted) in words.zip(counted.words[column].iter().step_by(self.stride)) {
+                let lost = *word & mask;
                 if lost != 0 {
-                    removed += (lost & counted.words[k]).count_ones() as usize;
-                    self.words[k] ^= lost;
+                    removed += (lost & counted).count_ones() as usize;
+                    *word ^= lost;
                 }
             }
         }
@@ -93,23 +99,54 @@ impl Bitmap {
                 .any(|j| (i0 / 64..=(i1 - 1) / 64).any(|w| self.words[j * self.stride + w] & span_mask(i0, i1, w) != 0))
     }
 
-    /// Returns into how many pieces the edge cells of columns `i0..i1` and rows `j0..j1` that are in the set fall,
-    /// going once around.
+    /// Returns into how many pieces the edge cells of columns `i0..i1` and rows `j0..j1`, two or more each, that are in
+    /// the set fall, going once around.
     pub fn pieces_around(&self, i0: i64, i1: i64, j0: i64, j1: i64) -> usize {
-        let at = |i: i64, j: i64| i >= 0 && j >= 0 && self.get(i as usize, j as usize);
-        let south = (i0..i1 - 1).map(|i| (i, j0));
-        let east = (j0..j1 - 1).map(|j| (i1 - 1, j));
-        let north = (i0 + 1..i1).rev().map(|i| (i, j1 - 1));
-        let west = (j0 + 1..j1).rev().map(|j| (i0, j));
-        let (mut pieces, mut first, mut last) = (0, None, false);
-        for (i, j) in south.chain(east).chain(north).chain(west) {
-            let on = at(i, j);
-            pieces += usize::from(on && !last);
-            first.get_or_insert(on);
+        let changes = [j0, j1 - 1].map(|j| self.changes_along_row(i0, i1, j)).iter().sum::<usize>()
+            + [i0, i1 - 1].map(|i| self.changes_along_column(i, j0, j1)).iter().sum::<usize>();
+        let whole = changes == 0 && i0 >= 0 && j0 >= 0 && self.get(i0 as usize, j0 as usize);
+        if whole { 1 } else { changes / 2 }
+    }
+
+    /// Returns how often a walk along columns `i0..i1` of a row steps into the set or out of it.
+    fn changes_along_row(&self, i0: i64, i1: i64, j: i64) -> usize {
+        if j < 0 || j >= self.ny as i64 {
+            return 0;
+        }
+        let row = &self.words[j as usize * self.stride..(j as usize + 1) * self.stride];
+        let entered = usize::from(i0 < 0 && i1 > 0 && row.first().is_some_and(|w| w & 1 == 1));
+        // a bit here stands for the step to the next column
+        let (from, to) = clip(i0, i1 - 1, self.nx);
+        if from >= to {
+            return entered;
+        }
+        let steps = (from / 64..=(to - 1) / 64).map(|w| {
+            let next = row[w] >> 1 | row.get(w + 1).map_or(0, |n| n << 63);
+            ((row[w] ^ next) & span_mask(from, to, w)).count_ones() as usize
+        });
+        entered + steps.sum::<usize>()
+    }
+
+    /// Returns how often a walk along rows `j0..j1` of a column steps into the set or out of it.
+    fn changes_along_column(&self, i: i64, j0: i64, j1: i64) -> usize {
+        if i < 0 || i >= self.nx as i64 {
+            return 0;
+        }
+        let (from, to) = clip(j0, j1, self.ny);
+        let (word, bit) = (i as usize / 64, i as usize % 64);
+        let (mut changes, mut last) = (0, if j0 < 0 { 0 } else { self.bit(word, bit, from) });
+        for j in from..to {
+            let on = self.bit(word, bit, j);
+            changes += (on ^ last) as usize;
             last = on;
         }
-        // the piece at the end goes on at the start
-        if pieces > 1 && last && first == Some(true) { pieces - 1 } else { pieces }
+        // beyond the grid nothing is in the set
+        changes + if j1 > self.ny as i64 { last as usize } else { 0 }
+    }
+
+    /// Returns a bit of a word of row `j`; none beyond the grid.
+    fn bit(&self, word: usize, bit: usize, j: usize) -> u64 {
+        self.words.get(j * self.stride + word).map_or(0, |w| w >> bit & 1)
     }
 
     /// Returns the number of cells in the set.
@@ -429,6 +466,19 @@ mod tests {
     }
 
     #[test]
+    fn pieces_around_are_those_of_a_walk() {
+        let map = noise(150, 40, 0.6, 7);
+        let on = |i: i64, j: i64| i >= 0 && j >= 0 && map.get(i as usize, j as usize);
+        for (i0, i1, j0, j1) in [(3, 70, 2, 30), (-2, 64, -1, 9), (63, 151, 20, 44), (60, 62, 5, 7), (-9, 0, 0, 50)] {
+            let south = (i0..i1 - 1).map(|i| (i, j0)).chain((j0..j1 - 1).map(|j| (i1 - 1, j)));
+            let north = (i0 + 1..i1).rev().map(|i| (i, j1 - 1)).chain((j0 + 1..j1).rev().map(|j| (i0, j)));
+            let walk: Vec<bool> = south.chain(north).map(|(i, j)| on(i, j)).collect();
+            let starts = (0..walk.len()).filter(|&k| walk[k] && !walk[(k + walk.len() - 1) % walk.len()]).count();
+            assert_eq!(map.pieces_around(i0, i1, j0, j1), starts, "{i0} {i1} {j0} {j1}");
+        }
+    }
+
+    #[test]
     fn a_window_has_the_cells_of_its_part() {
         let (map, other) = (noise(200, 30, 0.5, 3), noise(200, 30, 0.5, 4));
         for (i0, i1, j0, j1) in [(0, 200, 0, 30), (64, 128, 3, 9), (7, 150, -4, 12), (130, 400, 20, 99), (9, 9, 0, 5)] {
@@ -452,7 +502,7 @@ mod tests {
         assert_eq!(map.count(), 15);
         let counted = map.clone();
         map.set(30, 1);
-        assert_eq!(map.remove_counting(5, 68, 1, &counted), 8);
+        assert_eq!(map.remove_counting(5, 68, 1, 9, &counted), 8);
         assert_eq!(map.count(), 7);
     }
 }

@@ -99,13 +99,19 @@ impl Nav {
         let last = |v: i32, origin: i32| i64::from((v - origin + HALF).div_euclid(2 * HALF));
         let (j0, j1) = (first(o.y0 - radius, ground.origin.1), last(o.y1 + radius, ground.origin.1));
         let (i0, i1) = (first(o.x0 - radius, ground.origin.0), last(o.x1 + radius, ground.origin.0));
-        for j in j0.max(0)..j1 {
-            let y = ground.origin.1 + (2 * j as i32 + 1) * HALF;
-            let dy = (o.y0 - y).max(y - o.y1).max(0);
+        let mut remove = |a, b, j0, j1| {
+            self.total -= self.clear.remove_counting(a, b, j0, j1, &ground.inside);
+            self.area -= self.main.remove_counting(a, b, j0, j1, &ground.inside);
+        };
+        // beside the obstacle the lost part is straight, before and behind it round
+        let (beside0, beside1) = (first(o.y0, ground.origin.1), last(o.y1, ground.origin.1));
+        remove(i0, i1, beside0, beside1);
+        for j in (j0..beside0).chain(beside1..j1) {
+            let y = i64::from(ground.origin.1) + (2 * j + 1) * i64::from(HALF);
+            let dy = (i64::from(o.y0) - y).max(y - i64::from(o.y1)) as i32;
             let half = f64::from(radius * radius - dy * dy).max(0.0).sqrt() as i32;
             let (a, b) = (first(o.x0 - half, ground.origin.0), last(o.x1 + half, ground.origin.0));
-            self.total -= self.clear.remove_counting(a, b, j as usize, &ground.inside);
-            self.area -= self.main.remove_counting(a, b, j as usize, &ground.inside);
+            remove(a, b, j, j + 1);
         }
         if self.whole {
             self.whole = self.main.pieces_around(i0 - 1, i1 + 1, j0 - 1, j1 + 1) <= 1;
