@@ -2,8 +2,8 @@
 //!
 //! Each room is furnished by itself and from its own random stream, so that locking things in one room leaves the
 //! others as they were. `demand` says what a room should hold, `find` proposes positions, `state` and `nav` hold the
-//! hard rules, `search` chooses, `assemble` writes the document. Positions are whole millimeters and headings quarter
-//! turns; nothing here depends on the platform's floating-point library.
+//! hard rules, `search` chooses among drafts (`draft`), `assemble` writes the document. Positions are whole millimeters
+//! and headings quarter turns; nothing here depends on the platform's floating-point library.
 //!
 //! It does not choose 3D models (`asset` names the object type) and does not move walls.
 
@@ -11,6 +11,7 @@ pub mod assemble;
 mod clutter;
 mod demand;
 mod docks;
+mod draft;
 mod find;
 mod geom;
 mod locked;

@@ -9,6 +9,7 @@ use d3dgen_knowledge::Aim;
 use d3dgen_model::domain::{Arrangement, Domain, Mount, Shape};
 
 use super::demand::Task;
+use super::draft::{DEPARTURES, Departure, Draft, RESCUES, Seen};
 use super::find::{Candidate, Find, Tally, Terms, over, rows};
 use super::nav::Nav;
 use super::space::{Open, Space};
@@ -23,13 +24,8 @@ const ROUTE_TESTS: usize = 40;
 const WEIGHED: usize = 4;
 /// Share of the units that rows of smaller or closer ones would hold from which those that keep more rules are taken.
 const WORTH: f64 = 0.75;
-/// Ranks of choice tried for the first, second, ... unit, one departure at a time.
-const DEPARTURES: [(usize, usize); 3] = [(0, 1), (1, 1), (0, 2)];
 /// Free floor from which two departures are enough, in cells (100 m^2): halls take long and look alike.
 const LARGE: usize = 40_000;
-/// Further departures while something required has no place.
-const RESCUES: [(usize, usize); 8] = [(2, 1), (1, 2), (0, 3), (2, 2), (3, 1), (0, 4), (1, 3), (3, 2)];
-
 /// Units in rows or a grid, and what they are worth.
 struct Rows<'a> {
     units: Vec<Placed<'a>>,
@@ -133,22 +129,6 @@ pub(super) fn furnish<'a>(job: &Job<'a, '_>) -> Outcome<'a> {
     best.expect("there is at least one level")
 }
 
-/// A room half furnished: the state and what is missing so far.
-struct Draft<'a, 's> {
-    state: State<'a, 's>,
-    outcome: Outcome<'a>,
-    /// Units placed or tried so far.
-    steps: usize,
-}
-
-impl Draft<'_, '_> {
-    /// Returns how good the draft is, lower is better: what is missing, then looks and free floor.
-    fn cost(&self, empty: usize) -> (u32, f64) {
-        let free = 3.0 * self.state.free_area as f64 / empty.max(1) as f64;
-        (self.outcome.required_missing, -self.outcome.score - free)
-    }
-}
-
 /// One level of strictness with the units built for it.
 struct Pass<'j, 'a, 's> {
     job: &'j Job<'a, 's>,
@@ -192,13 +172,11 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
         let tasks = self.job.tasks;
         let floor = tasks.iter().position(|t| t.is_decor()).unwrap_or(tasks.len());
         let empty = self.start.free_area;
-        let draft = |departure, whole| {
-            let mut draft = self.blank();
-            self.run(&mut draft, 0..floor, departure, whole);
-            draft
-        };
-        let mut best = draft((usize::MAX, 0), false);
-        let mut best_of = (usize::MAX, 0);
+        let mut best = self.blank();
+        self.run(&mut best, 0..floor, Departure::NONE, false);
+        let mut seen = Seen::default();
+        seen.note(&best, Departure::NONE);
+        let mut best_of = Departure::NONE;
         let hopeless = best.outcome.required_missing > 0 && self.hopeless();
         for (n, departure) in DEPARTURES.into_iter().chain(RESCUES).enumerate() {
             // where everything has found its place there is less to gain
@@ -209,12 +187,12 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
             };
             if self.job.stop.is_set()
                 || hopeless
-                || departure.0 >= best.steps
+                || departure.step >= best.steps.len()
                 || n >= looks && best.outcome.required_missing == 0
             {
                 continue;
             }
-            let other = draft(departure, false);
+            let Some(other) = self.draft(floor, departure, false, &mut seen) else { continue };
             if other.cost(empty) < best.cost(empty) {
                 (best, best_of) = (other, departure);
             }
@@ -223,26 +201,42 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
         let mut closed = best.state.pockets.area();
         // what stands there for good may close off floor by itself
         let open = if closed > 0 { self.start.pockets.area() } else { 0 };
+        let mut seen = Seen::default();
         for departure in [best_of].into_iter().chain(DEPARTURES).chain(RESCUES) {
-            if closed <= open || self.job.stop.is_set() || departure.0 != usize::MAX && departure.0 >= best.steps {
+            let steps = best.steps.len();
+            if closed <= open || self.job.stop.is_set() || departure.step != usize::MAX && departure.step >= steps {
                 break;
             }
-            let other = draft(departure, true);
+            let Some(other) = self.draft(floor, departure, true, &mut seen) else { continue };
             let lacks = other.outcome.required_missing > best.outcome.required_missing;
             let still = other.state.pockets.area();
             if !lacks && still < closed {
                 (best, closed) = (other, still);
             }
         }
-        self.run(&mut best, floor..tasks.len(), (usize::MAX, 0), true);
+        self.run(&mut best, floor..tasks.len(), Departure::NONE, true);
         best.outcome.closed = (closed - open).max(0);
         Outcome { placed: best.state.placed, ..best.outcome }
+    }
+
+    /// Places the first tasks up to `floor`, with one departure; `None` where that leads to what was seen.
+    fn draft(&self, floor: usize, departure: Departure, whole: bool, seen: &mut Seen<'a>) -> Option<Draft<'a, 's>> {
+        let mut draft = self.blank();
+        for index in 0..floor {
+            let departed = draft.steps.len() > departure.step;
+            self.run(&mut draft, index..index + 1, departure, whole);
+            if !departed && draft.chosen(departure.step).is_some_and(|chosen| seen.has(departure.step, chosen)) {
+                return None;
+            }
+        }
+        seen.note(&draft, departure);
+        Some(draft)
     }
 
     fn blank(&self) -> Draft<'a, 's> {
         let (missing, level) = (Vec::new(), self.level);
         let outcome = Outcome { placed: Vec::new(), missing, required_missing: 0, closed: 0, score: 0.0, level };
-        Draft { state: self.start.clone(), outcome, steps: 0 }
+        Draft { state: self.start.clone(), outcome, steps: Vec::new() }
     }
 
     /// Returns true when something required finds no place even in the empty room, so that no order helps.
@@ -261,9 +255,9 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
         )
     }
 
-    /// Places some of the tasks; the unit counted `departure.0` takes its choice of rank `departure.1`. With `whole`
-    /// nothing closes off floor, not even from a small robot, unless it is required and has no other place.
-    fn run(&self, draft: &mut Draft<'a, 's>, tasks: Range<usize>, departure: (usize, usize), whole: bool) {
+    /// Places some of the tasks, with one departure. With `whole` nothing closes off floor, not even from a small robot,
+    /// unless it is required and has no other place.
+    fn run(&self, draft: &mut Draft<'a, 's>, tasks: Range<usize>, departure: Departure, whole: bool) {
         for index in tasks {
             let task = &self.job.tasks[index];
             let present = self.job.present[index];
@@ -274,13 +268,13 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
             }
             let mut tally = Tally::default();
             let mut placed = 0;
-            let rank = |steps: &mut usize| {
-                *steps += 1;
-                if *steps - 1 == departure.0 { departure.1 } else { 0 }
+            let rank = |steps: &mut Vec<usize>, state: &State| {
+                steps.push(state.placed.len());
+                if steps.len() - 1 == departure.step { departure.rank } else { 0 }
             };
             let Draft { state, outcome, steps } = draft;
             if task.is_batch() && !self.lines_walls(task) {
-                if let Some((units, score)) = self.batch(state, index, count, (rank(steps), whole), &mut tally) {
+                if let Some((units, score)) = self.batch(state, index, count, (rank(steps, state), whole), &mut tally) {
                     placed = units.len() as u32;
                     outcome.score += score;
                     state.add(units);
@@ -288,7 +282,8 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
             } else {
                 while placed < count && !self.job.stop.is_set() {
                     let open = whole.then_some(task.required > present + placed);
-                    let Some((mut unit, score)) = self.single(state, index, rank(steps), open, &mut tally) else {
+                    let Some((mut unit, score)) = self.single(state, index, rank(steps, state), open, &mut tally)
+                    else {
                         break;
                     };
                     unit.first_line = task.line == 0;

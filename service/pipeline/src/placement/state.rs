@@ -83,6 +83,12 @@ pub(super) struct Placed<'a> {
 }
 
 impl Placed<'_> {
+    /// Returns true when the other is the same unit at the same position.
+    pub fn is_as(&self, other: &Self) -> bool {
+        let place = |p: &Self| (p.q, p.at, p.z, p.support, p.task);
+        place(self) == place(other) && (Rc::ptr_eq(&self.unit, &other.unit) || self.unit == other.unit)
+    }
+
     /// Returns a rectangle of the unit in the world.
     pub fn world(&self, local: &Box2) -> Box2 {
         local.turned(self.q).shifted(self.at.0, self.at.1)

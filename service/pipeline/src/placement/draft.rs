@@ -1,0 +1,79 @@
+//! Drafts of a room: the best choice for each unit in turn, or another one for one of the first (limited discrepancy
+//! search).
+
+use super::search::Outcome;
+use super::state::{Placed, State};
+
+/// Departures tried in turn, one at a time.
+pub(super) const DEPARTURES: [Departure; 3] = [Departure::of(0, 1), Departure::of(1, 1), Departure::of(0, 2)];
+/// Further departures while something required has no place.
+pub(super) const RESCUES: [Departure; 8] = [
+    Departure::of(2, 1),
+    Departure::of(1, 2),
+    Departure::of(0, 3),
+    Departure::of(2, 2),
+    Departure::of(3, 1),
+    Departure::of(0, 4),
+    Departure::of(1, 3),
+    Departure::of(3, 2),
+];
+
+/// Where a draft leaves the best choices.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Departure {
+    /// The unit counted so, 0 the first, takes another choice; `usize::MAX` where none does.
+    pub step: usize,
+    /// Which one: 0 is the best.
+    pub rank: usize,
+}
+
+impl Departure {
+    pub const NONE: Self = Self::of(usize::MAX, 0);
+
+    const fn of(step: usize, rank: usize) -> Self {
+        Self { step, rank }
+    }
+}
+
+/// A room half furnished: the state and what is missing so far.
+pub(super) struct Draft<'a, 's> {
+    pub state: State<'a, 's>,
+    pub outcome: Outcome<'a>,
+    /// How many units there were before each choice so far.
+    pub steps: Vec<usize>,
+}
+
+impl<'a> Draft<'a, '_> {
+    /// Returns what the choice at a step put there.
+    pub fn chosen(&self, step: usize) -> Option<&[Placed<'a>]> {
+        let end = self.steps.get(step + 1).copied().unwrap_or(self.state.placed.len());
+        Some(&self.state.placed[*self.steps.get(step)?..end])
+    }
+
+    /// Returns how good the draft is, lower is better: what is missing, then looks and free floor.
+    pub fn cost(&self, empty: usize) -> (u32, f64) {
+        let free = 3.0 * self.state.free_area as f64 / empty.max(1) as f64;
+        (self.outcome.required_missing, -self.outcome.score - free)
+    }
+}
+
+/// What drafts chose where they departed, to tell a departure that has no other choice left.
+#[derive(Default)]
+pub(super) struct Seen<'a>(Vec<(usize, Vec<Placed<'a>>)>);
+
+impl<'a> Seen<'a> {
+    /// Takes down what a draft chose: at its departure, or everywhere where it has none.
+    pub fn note(&mut self, draft: &Draft<'a, '_>, departure: Departure) {
+        let steps =
+            if departure.step == usize::MAX { 0..draft.steps.len() } else { departure.step..departure.step + 1 };
+        let chosen = steps.filter_map(|step| Some((step, draft.chosen(step)?.to_vec())));
+        self.0.extend(chosen);
+    }
+
+    /// Returns true when a draft chose the same at this step; all before and after it follows from that.
+    pub fn has(&self, step: usize, chosen: &[Placed]) -> bool {
+        self.0.iter().any(|(s, units)| {
+            *s == step && units.len() == chosen.len() && units.iter().zip(chosen).all(|(a, b)| a.is_as(b))
+        })
+    }
+}
