@@ -17,7 +17,7 @@ use d3dgen_model::seed::Stream;
 use d3dgen_model::world::World;
 use d3dgen_plugins::{Plugin, Registry};
 
-use crate::placement::Furnished;
+use crate::placement::{Furnished, before_openings};
 use crate::scene_graph::{BY_PROMPT, BY_STYLE, Request};
 use crate::{Error, fit, floorplan, placement, scenario, scene_graph, world};
 
@@ -42,6 +42,9 @@ impl Default for Settings {
 
 /// How often plan and furniture are tried for each smaller robot, when one that was to fit does not.
 const FEW_ATTEMPTS: u32 = 3;
+/// Rooms up to which a sound world with something before a door or window is tried again: in a large building there is
+/// always one.
+const FEW_ROOMS: usize = 20;
 
 /// A step on the way, in the order of the path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -192,18 +195,33 @@ fn attempts(
 ) -> Result<Generated, Error> {
     let retrieved = retrieve(graph, plugin);
     let name = settings.name.clone().unwrap_or_else(|| world_name(graph));
-    let mut best: Option<Generated> = None;
+    let pinned = settings.pinned_floorplan.is_some() || settings.pinned_placements.is_some();
+    let picky = !pinned && graph.rooms.len() <= FEW_ROOMS;
+    // the least broken so far: hard rules, then what stands before doors and windows
+    let mut best: Option<((usize, usize), Generated)> = None;
     let mut reason = None;
     for attempt in 0..settings.attempts.max(1) {
+        if attempt >= FEW_ATTEMPTS && best.as_ref().is_some_and(|((broken, _), _)| *broken == 0) {
+            break;
+        }
         let seed = attempt_seed(graph.seed, attempt);
         match self::attempt(graph, plugin, &retrieved, (&name, seed, attempt), settings, observe, cancelled) {
             // of a brought plan nothing better is to be had
-            Ok(found) if found.report.is_writable() => return Ok(found),
+            Ok(found) if found.report.is_given() => return Ok(found),
             Ok(found) => {
                 let (rule, broken) = broken(&found.report);
-                observe(Event::Rejected(attempt, &format!("breaks {broken} hard rule(s), first {rule}")));
-                if best.as_ref().is_none_or(|b| broken < self::broken(&b.report).1) {
-                    best = Some(found);
+                let World { floorplan, placements, .. } = &found.world;
+                let before = if picky { before_openings(floorplan, placements, plugin.domain()) } else { 0 };
+                if (broken, before) == (0, 0) {
+                    return Ok(found);
+                }
+                let why = match broken {
+                    0 => format!("{before} thing(s) before doors or windows"),
+                    _ => format!("breaks {broken} hard rule(s), first {rule}"),
+                };
+                observe(Event::Rejected(attempt, &why));
+                if best.as_ref().is_none_or(|(least, _)| (broken, before) < *least) {
+                    best = Some(((broken, before), found));
                 }
             }
             Err(error @ Error::Infeasible { .. }) => {
@@ -213,7 +231,10 @@ fn attempts(
             Err(error) => return Err(error),
         }
     }
-    best.ok_or_else(|| reason.expect("every attempt ends in a world or an error"))
+    match best {
+        Some((_, found)) => Ok(found),
+        None => Err(reason.expect("every attempt ends in a world or an error")),
+    }
 }
 
 /// Conflicts that leave open what is wanted; all others have a natural way out, which was taken.

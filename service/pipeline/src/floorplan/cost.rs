@@ -129,6 +129,8 @@ pub(super) struct Survey {
     by_west: Vec<(i32, usize)>,
     /// Per box and side: wall shared with any box, and with boxes of the same room.
     pub(super) side: Vec<[[i32; 2]; 4]>,
+    /// Boxes of one room that touch: their indices, and where, as [`Cellbox::contact`] has it.
+    joined: Vec<(usize, usize, (usize, i32, i32))>,
     /// By pair of interest: the longest shared wall, lattice units.
     pair: Vec<i32>,
     pub(super) rooms: Vec<Measured>,
@@ -147,6 +149,8 @@ pub(super) struct Measured {
     pub(super) main: Option<Cellbox>,
     /// Clear width and height of that box, m.
     clear: (f64, f64),
+    /// The same of the largest rectangle, which may go through several boxes.
+    largest: (f64, f64),
     /// True for a wet room beside another.
     wet_beside: bool,
 }
@@ -247,6 +251,7 @@ impl<'b> Judge<'b> {
         survey.side.clear();
         survey.side.resize(boxes.len(), [[0; 2]; 4]);
         // A sweep from west to east: only boxes that begin before this one ends can touch it.
+        survey.joined.clear();
         survey.by_west.clear();
         survey.by_west.extend(boxes.iter().enumerate().map(|(i, (_, b))| (b.x0, i)));
         survey.by_west.sort_unstable();
@@ -264,6 +269,7 @@ impl<'b> Judge<'b> {
                 if a == b {
                     survey.side[i][s][1] += len;
                     survey.side[j][s ^ 1][1] += len;
+                    survey.joined.push((i, j, (s, from, to)));
                     continue;
                 }
                 if a == self.spine || b == self.spine {
@@ -285,23 +291,49 @@ impl<'b> Judge<'b> {
             room.gross_m2 += area;
             let mut net = area;
             let mut walls = [0.0; 2];
+            // mean of the walls on both sides together, east and west, north and south: what they share at the corners
+            let mut taken = [0.0; 2];
             for (s, [shared, own]) in side.iter().copied().enumerate() {
                 let len = if s < 2 { shape.height() } else { shape.width() };
                 let free = len - shared;
                 room.outer = (room.outer.0.max(free), room.outer.1 + free);
-                net -= meters(free) * OUTER_HALF_M + meters(shared - own) * INNER_HALF_M;
+                let lost = meters(free) * OUTER_HALF_M + meters(shared - own) * INNER_HALF_M;
+                net -= lost;
+                taken[s / 2] += lost / meters(len);
                 // the clear extent ends at the thickest wall of a side
                 let half = if free > 0 { OUTER_HALF_M } else { INNER_HALF_M };
                 walls[s / 2] += if own == len { 0.0 } else { half };
             }
-            room.net_m2 += net;
+            room.net_m2 += net + taken[0] * taken[1];
             if room.main.is_none_or(|m| m.area_m2() < area) {
                 room.main = Some(*shape);
                 room.clear = (meters(shape.width()) - walls[0], meters(shape.height()) - walls[1]);
+                room.largest = room.clear;
             }
         }
-        for room in &mut survey.rooms {
-            room.net_m2 += 4.0 * INNER_HALF_M * INNER_HALF_M;
+        self.measure_joined(boxes);
+    }
+
+    /// Looks for the largest rectangle of each room among those that go through two of its boxes.
+    fn measure_joined(&mut self, boxes: &[(usize, Cellbox)]) {
+        let survey = &mut self.survey;
+        for &(i, j, (s, from, to)) in &survey.joined {
+            let ((room, first), (_, second)) = (boxes[i], boxes[j]);
+            let half = |k: usize, s: usize| {
+                let len = if s < 2 { boxes[k].1.height() } else { boxes[k].1.width() };
+                if len > survey.side[k][s][0] { OUTER_HALF_M } else { INNER_HALF_M }
+            };
+            // the first box lies west or south of the other where it touches it with its east or north side
+            let (low, high) = if s % 2 == 1 { (i, j) } else { (j, i) };
+            let (axis, other) = (s / 2 * 2, 2 - s / 2 * 2);
+            let ends = half(low, axis) + half(high, axis + 1);
+            let sides = half(i, other).max(half(j, other)) + half(i, other + 1).max(half(j, other + 1));
+            let length = if axis == 0 { first.width() + second.width() } else { first.height() + second.height() };
+            let (length, width) = (meters(length) - ends, meters(to - from) - sides);
+            let measured = &mut survey.rooms[room];
+            if length * width > measured.largest.0 * measured.largest.1 {
+                measured.largest = (length, width);
+            }
         }
     }
 
@@ -326,6 +358,7 @@ impl<'b> Judge<'b> {
                     off.powi(2) + 3.0 * over + 5.0 * ill_advised + if ill_advised > 0.0 { ILL_ADVISED } else { 0.0 };
                 let (w, h) = room.clear;
                 score.hard += (spec.min_dimension - w.min(h)).max(0.0);
+                let (w, h) = room.largest;
                 let proportion = w.max(h) / w.min(h).max(0.1);
                 score.hard += (proportion - PROPORTION_LIMIT).max(0.0);
                 score.soft[1] += (proportion - 1.5).max(0.0).powi(2);

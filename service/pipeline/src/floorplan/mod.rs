@@ -96,6 +96,7 @@ pub fn generate_until(
     let mut brief = Brief::new(graph, domain, limits)?;
     let mut rng = Stream::new(graph.seed, "floorplan");
     brief.vary(&mut rng);
+    brief.widen(&mut rng);
     let mut last = String::from("no layout was found");
     for _ in 0..ATTEMPTS {
         let schemes = schemes(&brief, domain, &mut rng);

@@ -280,6 +280,7 @@ fn nearest_own(
         let mut rng = Stream::new(seed, &format!("floorplan/proposal/{n}"));
         let mut brief = brief.clone();
         brief.vary(&mut rng);
+        brief.widen(&mut rng);
         let schemes = schemes(&brief, domain, &mut rng);
         let candidate = search(&brief, &schemes, &mut rng, stop);
         stop.check()?;

@@ -53,7 +53,8 @@ pub(super) fn spine_units(brief: &Brief) -> i32 {
     let width = up(brief.spine_width + 2.0 * OUTER_HALF_M);
     // The entrance door stands in the corridor's end wall, between two corners with outer walls.
     let entered = brief.spine.is_some_and(|s| brief.rooms[s].entrance) || brief.second_exit || brief.upper;
-    if entered { width.max(door_need(brief.entrance_width) + 1) } else { width }
+    let least = if entered { width.max(door_need(brief.entrance_width) + 1) } else { width };
+    least + nearest(brief.spine_extra)
 }
 
 /// Working memory of [`realize`], so that a candidate costs no allocation.

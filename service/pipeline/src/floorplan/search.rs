@@ -26,6 +26,11 @@ const SMALL: usize = 14;
 /// Temperature at the start and the end of a run, in cost units.
 const HEAT: (f64, f64) = (1.5, 0.02);
 
+/// Steps from the best plan to one that is nearly as good, and what they may cost: small programs have one best plan
+/// whatever the seed.
+const STROLL: usize = 60;
+const NEARLY: f64 = 0.1;
+
 /// Steps from one look at the wish to stop to the next.
 pub(super) const LOOK: usize = 64;
 
@@ -91,7 +96,38 @@ pub(super) fn search_with(
             break;
         }
     }
-    Some(put_in_order(brief, &mut judge, weights, best?, rng, stop))
+    let best = stroll(brief, &mut judge, weights, best?, rng);
+    Some(put_in_order(brief, &mut judge, weights, best, rng, stop))
+}
+
+/// Changes depths here and there as long as the plan stays nearly as good.
+fn stroll(
+    brief: &Brief,
+    judge: &mut Judge<'_>,
+    weights: &Weights,
+    (mut genome, mut found): (Genome, Candidate),
+    rng: &mut Stream,
+) -> (Genome, Candidate) {
+    // what is to be alike on both sides is better left as it was found
+    if !found.score.is_sound() || brief.symmetry.is_some() {
+        return (genome, found);
+    }
+    let most = found.score.total(weights) + NEARLY;
+    let (mut scratch, mut layout) = (Scratch::default(), Layout::default());
+    let mut trial = genome.clone();
+    for _ in 0..STROLL {
+        trial.clone_from(&genome);
+        if !(if rng.chance(0.6) { change_depth(&mut trial, rng) } else { change_nest(&mut trial, rng) }) {
+            continue;
+        }
+        realize(brief, &trial, &mut scratch, &mut layout);
+        let score = judge.score(&layout);
+        if score.is_sound() && score.total(weights) <= most {
+            std::mem::swap(&mut genome, &mut trial);
+            found = Candidate { layout: layout.clone(), score, ..found };
+        }
+    }
+    (genome, found)
 }
 
 /// One run: from a random start, hot to cold.

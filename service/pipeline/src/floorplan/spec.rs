@@ -20,9 +20,13 @@ const ACCESSIBLE_DOOR_M: f64 = 0.9;
 const MOST_ADVISED_WIDTH: f64 = 1.4;
 /// Advice widens a door by this much at most, m.
 const MOST_ADVISED_DOOR_M: f64 = 0.1;
-/// Share by which the area aimed for differs from seed to seed, and the range from which on it may.
-const AREA_VARIATION: f64 = 0.09;
+/// Share by which the area aimed for differs from seed to seed, what one room has more of it by itself and many share,
+/// and the range from which on an area may differ.
+const AREA_VARIATION: f64 = 0.07;
+const FEW_ROOMS_VARIATION: f64 = 0.3;
 const FREE_RANGE: f64 = 1.3;
+/// Share by which a corridor is wider than it must be, from seed to seed.
+const WIDTH_VARIATION: f64 = 0.1;
 /// Share of a target area kept from the edges of what is advised, for the search to move in.
 const ADVICE_MARGIN: f64 = 0.03;
 
@@ -94,6 +98,8 @@ pub(super) struct Brief {
     pub hub: bool,
     /// Clear corridor width, m.
     pub spine_width: f64,
+    /// What the corridor has beyond that and beyond what its entrance needs, m.
+    pub spine_extra: f64,
     pub links: Vec<Link>,
     pub apart: Vec<[usize; 2]>,
     pub second_exit: bool,
@@ -142,6 +148,7 @@ impl Brief {
             rooms,
             spine,
             spine_width: circulation_width,
+            spine_extra: 0.0,
             share_advised: limits.circulation_share_advised.filter(|_| graph.links.is_empty()),
             links: Vec::new(),
             apart: Vec::new(),
@@ -190,17 +197,27 @@ impl Brief {
     /// Changes the areas aimed for a little where they are free to change: the same rooms for another family, so that two
     /// seeds do not end in one best plan.
     pub(super) fn vary(&mut self, rng: &mut Stream) {
+        let share = AREA_VARIATION + FEW_ROOMS_VARIATION / self.rooms.len().max(1) as f64;
+        let alike = self.symmetry == Some(Symmetry::Symmetric);
+        let mut drawn: BTreeMap<String, f64> = BTreeMap::new();
         for room in &mut self.rooms {
+            // rooms that are to mirror each other change together
             let at = rng.unit();
+            let at = if alike { *drawn.entry(room.room_type.clone()).or_insert(at) } else { at };
             let (least, most) = (room.area_min * 1.02, room.area_max * 0.98);
             let free = (least..=most).contains(&room.area_target) && most > FREE_RANGE * least;
             let [advised, too_much] = room.limits.area_advised.unwrap_or([0.0, f64::MAX]);
-            let low = (room.area_target * (1.0 - AREA_VARIATION)).max(least).max(advised);
-            let high = (room.area_target * (1.0 + AREA_VARIATION)).min(most).min(too_much);
+            let low = (room.area_target * (1.0 - share)).max(least).max(advised);
+            let high = (room.area_target * (1.0 + share)).min(most).min(too_much);
             if free && low < high {
                 room.area_target = low + at * (high - low);
             }
         }
+    }
+
+    /// Makes the corridor a little wider than it must be, as [`Brief::vary`] changes areas.
+    pub(super) fn widen(&mut self, rng: &mut Stream) {
+        self.spine_extra = WIDTH_VARIATION * self.spine_width * rng.unit();
     }
 
     /// Returns the task of a wing with some of the rooms, in their order, and the corridor last.

@@ -51,6 +51,7 @@ fn brief(mut rooms: Vec<RoomSpec>, width: f64, links: &[(usize, usize, Connector
         rooms,
         hub: false,
         spine_width: width,
+        spine_extra: 0.0,
         symmetry: None,
         links: links.iter().map(|&(a, b, connector)| Link { a, b, connector, required: true }).collect(),
         apart: Vec::new(),

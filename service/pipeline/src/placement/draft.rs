@@ -21,15 +21,13 @@ pub(super) const RESCUES: [Departure; 8] = [
 /// Where a draft leaves the best choices.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Departure {
-    /// The unit counted so, 0 the first, takes another choice; `usize::MAX` where none does.
+    /// The unit counted so, 0 the first, takes another choice.
     pub step: usize,
     /// Which one: 0 is the best.
     pub rank: usize,
 }
 
 impl Departure {
-    pub const NONE: Self = Self::of(usize::MAX, 0);
-
     const fn of(step: usize, rank: usize) -> Self {
         Self { step, rank }
     }
@@ -46,8 +44,9 @@ pub(super) struct Draft<'a, 's> {
 impl<'a> Draft<'a, '_> {
     /// Returns what the choice at a step put there.
     pub fn chosen(&self, step: usize) -> Option<&[Placed<'a>]> {
+        let start = *self.steps.get(step)?;
         let end = self.steps.get(step + 1).copied().unwrap_or(self.state.placed.len());
-        Some(&self.state.placed[*self.steps.get(step)?..end])
+        Some(&self.state.placed[start..end])
     }
 
     /// Returns how good the draft is, lower is better: what is missing, then looks and free floor.
@@ -63,9 +62,8 @@ pub(super) struct Seen<'a>(Vec<(usize, Vec<Placed<'a>>)>);
 
 impl<'a> Seen<'a> {
     /// Takes down what a draft chose: at its departure, or everywhere where it has none.
-    pub fn note(&mut self, draft: &Draft<'a, '_>, departure: Departure) {
-        let steps =
-            if departure.step == usize::MAX { 0..draft.steps.len() } else { departure.step..departure.step + 1 };
+    pub fn note(&mut self, draft: &Draft<'a, '_>, departure: Option<Departure>) {
+        let steps = departure.map_or(0..draft.steps.len(), |d| d.step..d.step + 1);
         let chosen = steps.filter_map(|step| Some((step, draft.chosen(step)?.to_vec())));
         self.0.extend(chosen);
     }

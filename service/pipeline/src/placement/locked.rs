@@ -9,7 +9,7 @@ use d3dgen_model::placements::{Placement, Placements};
 
 use super::demand::Task;
 use super::geom::{Box2, Solid, mm};
-use super::space::Space;
+use super::space::{DoorZone, Open, Space};
 use super::state::Placed;
 use super::unit::{Part, Unit, clears_of};
 use crate::Error;
@@ -91,6 +91,20 @@ pub(super) fn shading(fixed: &[&Placement], domain: &Domain, space: &Space) -> V
     let curtain = |p: &Placement| domain.object(&p.object).is_some_and(|o| o.shape == Shape::Curtain);
     let dark = |p: &&&Placement| !curtain(p) && space.windows.iter().any(|w| w.is_hidden_by(&solid_of(p)));
     fixed.iter().filter(dark).map(|p| format!("locked `{}` stands in front of a window", p.placement_id)).collect()
+}
+
+/// Returns how many things stand before a door or a window of the room where one would rather have none: as deep as the
+/// leaf is wide, and what [`Open`] keeps of windows.
+pub(super) fn before_openings(things: &[&Placement], domain: &Domain, space: &Space) -> usize {
+    let open = Open { doors: true, windows: true };
+    let curtain = |p: &Placement| domain.object(&p.object).is_some_and(|o| o.shape == Shape::Curtain);
+    let solids = things.iter().filter(|p| !curtain(p)).map(|p| (p.mount, solid_of(p))).filter(|(_, s)| !s.is_flat());
+    let before = |(mount, solid): &(Mount, Solid)| {
+        let door = |d: &DoorZone| solid.z0 < d.height && d.kept(open).overlaps(&solid.rect);
+        *mount != Mount::Surface && space.doors.iter().any(door)
+            || space.windows.iter().any(|w| w.is_taken_by(solid, open))
+    };
+    solids.filter(before).count()
 }
 
 fn solid_of(p: &Placement) -> Solid {

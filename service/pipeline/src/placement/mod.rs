@@ -182,6 +182,15 @@ pub(crate) fn furnish_room(
     Ok((placements, assemble::unplaced(&room.room_id, tasks, &outcome, &present)))
 }
 
+/// Returns how many things stand before doors and windows where one would rather have none; no hard rule forbids them.
+pub(crate) fn before_openings(plan: &Floorplan, placements: &Placements, domain: &Domain) -> usize {
+    let in_room = |room: &PlanRoom| {
+        let things: Vec<&Placement> = placements.placements.iter().filter(|p| p.room_id == room.room_id).collect();
+        locked::before_openings(&things, domain, &Space::new(plan, room))
+    };
+    plan.rooms.iter().map(in_room).sum()
+}
+
 /// Returns what keeps fixed placements from standing in a room of a plan as they do; nothing when all is well.
 pub(crate) fn misfits(plan: &Floorplan, room: &PlanRoom, domain: &Domain, fixed: &[&Placement]) -> Vec<String> {
     let space = Space::new(plan, room);

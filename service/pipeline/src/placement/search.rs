@@ -173,10 +173,10 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
         let floor = tasks.iter().position(|t| t.is_decor()).unwrap_or(tasks.len());
         let empty = self.start.free_area;
         let mut best = self.blank();
-        self.run(&mut best, 0..floor, Departure::NONE, false);
+        self.run(&mut best, 0..floor, None, false);
         let mut seen = Seen::default();
-        seen.note(&best, Departure::NONE);
-        let mut best_of = Departure::NONE;
+        seen.note(&best, None);
+        let mut best_of = None;
         let hopeless = best.outcome.required_missing > 0 && self.hopeless();
         for (n, departure) in DEPARTURES.into_iter().chain(RESCUES).enumerate() {
             // where everything has found its place there is less to gain
@@ -192,9 +192,9 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
             {
                 continue;
             }
-            let Some(other) = self.draft(floor, departure, false, &mut seen) else { continue };
+            let Some(other) = self.draft(floor, Some(departure), false, &mut seen) else { continue };
             if other.cost(empty) < best.cost(empty) {
-                (best, best_of) = (other, departure);
+                (best, best_of) = (other, Some(departure));
             }
         }
         // once more with an eye on every corner, where floor is closed off; few rooms need it
@@ -202,9 +202,9 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
         // what stands there for good may close off floor by itself
         let open = if closed > 0 { self.start.pockets.area() } else { 0 };
         let mut seen = Seen::default();
-        for departure in [best_of].into_iter().chain(DEPARTURES).chain(RESCUES) {
-            let steps = best.steps.len();
-            if closed <= open || self.job.stop.is_set() || departure.step != usize::MAX && departure.step >= steps {
+        for departure in [best_of].into_iter().chain(DEPARTURES.into_iter().chain(RESCUES).map(Some)) {
+            let too_late = departure.is_some_and(|d| d.step >= best.steps.len());
+            if closed <= open || self.job.stop.is_set() || too_late {
                 break;
             }
             let Some(other) = self.draft(floor, departure, true, &mut seen) else { continue };
@@ -214,18 +214,25 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
                 (best, closed) = (other, still);
             }
         }
-        self.run(&mut best, floor..tasks.len(), Departure::NONE, true);
+        self.run(&mut best, floor..tasks.len(), None, true);
         best.outcome.closed = (closed - open).max(0);
         Outcome { placed: best.state.placed, ..best.outcome }
     }
 
     /// Places the first tasks up to `floor`, with one departure; `None` where that leads to what was seen.
-    fn draft(&self, floor: usize, departure: Departure, whole: bool, seen: &mut Seen<'a>) -> Option<Draft<'a, 's>> {
+    fn draft(
+        &self,
+        floor: usize,
+        departure: Option<Departure>,
+        whole: bool,
+        seen: &mut Seen<'a>,
+    ) -> Option<Draft<'a, 's>> {
         let mut draft = self.blank();
         for index in 0..floor {
-            let departed = draft.steps.len() > departure.step;
+            let before = draft.steps.len();
             self.run(&mut draft, index..index + 1, departure, whole);
-            if !departed && draft.chosen(departure.step).is_some_and(|chosen| seen.has(departure.step, chosen)) {
+            let departed = departure.map(|d| d.step).filter(|step| (before..draft.steps.len()).contains(step));
+            if departed.is_some_and(|step| draft.chosen(step).is_some_and(|chosen| seen.has(step, chosen))) {
                 return None;
             }
         }
@@ -257,7 +264,7 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
 
     /// Places some of the tasks, with one departure. With `whole` nothing closes off floor, not even from a small robot,
     /// unless it is required and has no other place.
-    fn run(&self, draft: &mut Draft<'a, 's>, tasks: Range<usize>, departure: Departure, whole: bool) {
+    fn run(&self, draft: &mut Draft<'a, 's>, tasks: Range<usize>, departure: Option<Departure>, whole: bool) {
         for index in tasks {
             let task = &self.job.tasks[index];
             let present = self.job.present[index];
@@ -270,7 +277,7 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
             let mut placed = 0;
             let rank = |steps: &mut Vec<usize>, state: &State| {
                 steps.push(state.placed.len());
-                if steps.len() - 1 == departure.step { departure.rank } else { 0 }
+                departure.filter(|d| d.step == steps.len() - 1).map_or(0, |d| d.rank)
             };
             let Draft { state, outcome, steps } = draft;
             if task.is_batch() && !self.lines_walls(task) {
