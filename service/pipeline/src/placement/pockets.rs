@@ -13,15 +13,18 @@ use super::space::Space;
 use super::state::Placed;
 
 /// Ways to look at the floor: half widths of the robot of 0.2 m and what rasters of 4 cm make of it at least and at most,
-/// then rasters of several cells and origins. No half width is a multiple of 5 mm, so that no gap is exactly as wide.
-const VIEWS: [View; 12] = [
-    View::Exact(82),
-    View::Exact(88),
-    View::Exact(94),
-    View::Exact(99),
-    View::Exact(106),
-    View::Exact(112),
-    View::Exact(118),
+/// then rasters of several cells and origins. No half width is a multiple of 5 mm, so that no gap is exactly as wide. A
+/// raster may make more of a slit and less of the turn into it: those of different widths east and north stand for that.
+const VIEWS: [View; 14] = [
+    View::Exact { east: 82, north: 82 },
+    View::Exact { east: 88, north: 88 },
+    View::Exact { east: 94, north: 94 },
+    View::Exact { east: 99, north: 99 },
+    View::Exact { east: 106, north: 106 },
+    View::Exact { east: 112, north: 112 },
+    View::Exact { east: 118, north: 118 },
+    View::Exact { east: 82, north: 118 },
+    View::Exact { east: 118, north: 82 },
     View::Raster { cell: 40, at: (3, 17) },
     View::Raster { cell: 40, at: (23, 37) },
     View::Raster { cell: 50, at: (11, 31) },
@@ -42,8 +45,8 @@ const EDGE: i32 = 90;
 /// A way to look at the floor.
 #[derive(Debug, Clone, Copy)]
 enum View {
-    /// To the millimeter, for half a width of the robot, mm.
-    Exact(i32),
+    /// To the millimeter, for half of the robot's widths, mm.
+    Exact { east: i32, north: i32 },
     /// In cells of this edge, mm: a cell is taken when its center is. One center lies at `at`.
     Raster { cell: i32, at: (i32, i32) },
 }
@@ -52,7 +55,9 @@ impl View {
     /// Returns where the robot's center cannot be because of an obstacle; `None` when no cell sees it.
     fn around(self, o: &Box2) -> Option<Box2> {
         match self {
-            Self::Exact(half) => Some(o.grown(half)),
+            Self::Exact { east, north } => {
+                Some(Box2 { x0: o.x0 - east, x1: o.x1 + east, y0: o.y0 - north, y1: o.y1 + north })
+            }
             Self::Raster { cell, at } => {
                 let side = |low: i32, high: i32, at: i32| {
                     let first = (low - at).div_euclid(cell) + i32::from((low - at).rem_euclid(cell) > 0);
