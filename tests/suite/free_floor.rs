@@ -41,16 +41,12 @@ fn worlds(seeds: std::ops::Range<u64>) -> impl Iterator<Item = (String, World)> 
 
 #[test]
 fn no_pocket_of_floor_is_closed_off_and_no_door_side_blocked() {
-    let (mut closed, mut slits, mut windows, mut taken) = (Vec::new(), Vec::new(), 0, 0);
+    let (mut closed, mut windows, mut taken) = (Vec::new(), 0, 0);
     for (name, world) in worlds(0..3) {
         let found = measure(&world, None, "w", &Known::default());
         let nav = &found.navigability;
-        // a slit as wide as the robot (between the chairs of two pupils) is open on one raster and closed on another
-        let share = format!("{name}: {} of the house, {} of {}", nav.house, nav.rooms_least, nav.least_room);
-        if nav.house < 0.999 || nav.rooms_least < 0.999 {
-            closed.push(share);
-        } else if nav.house < 0.9999 {
-            slits.push(share);
+        if nav.house < 1.0 || nav.rooms_least < 1.0 {
+            closed.push(format!("{name}: {} of the house, {} of {}", nav.house, nav.rooms_least, nav.least_room));
         }
         let doors = world.floorplan.doors.iter().map(|d| &d.door_id);
         let before: Vec<_> = found.openings.blocked.iter().filter(|b| doors.clone().any(|id| *id == b[0])).collect();
@@ -58,7 +54,7 @@ fn no_pocket_of_floor_is_closed_off_and_no_door_side_blocked() {
         windows += found.openings.windows;
         taken += (found.openings.windows_blocked * f64::from(found.openings.windows)).round() as u32;
     }
-    assert!(closed.is_empty() && slits.len() <= 1, "{closed:#?} {slits:#?}");
+    assert!(closed.is_empty(), "{closed:#?}");
     assert!(windows > 150 && taken * 50 <= windows, "{taken} of {windows} windows have something before them");
 }
 
