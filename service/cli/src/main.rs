@@ -23,10 +23,6 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
-/// Layouts are made of many small vectors, on as many threads as there are worlds at a time.
-#[global_allocator]
-static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
-
 fn main() -> ExitCode {
     let cli = cli::Cli::parse();
     match cli.command.run() {
