@@ -179,9 +179,9 @@ async fn a_stop_lets_jobs_go_on_at_the_next_start() {
     let data = dir.path().join("data");
     let mut server = Server::start(&data, &[]);
     let mut c = Clients::of(&server).await;
-    let asked = GenerateBatchRequest { building: flat(1), world_count: 40, request_id: String::new() };
+    let asked = GenerateBatchRequest { building: flat(1), world_count: 1000, request_id: String::new() };
     let job = c.worlds.generate_batch(asked).await.expect("started").into_inner().job.expect("a job").job_id;
-    tokio::time::sleep(Duration::from_millis(500)).await;
+    assert!(wait_for_part(&mut c, &job, 0.01).await, "it ended before it could be stopped");
     drop(c); // an open connection would be waited for
     let asked = std::process::Command::new("kill").arg(server.pid().to_string()).status().expect("asked to stop");
     assert!(asked.success());
