@@ -1,6 +1,7 @@
 //! What a reviewer of plans objects to and geometry can tell, over many seeds: showers that stand about, desks in ragged
 //! rows, nurses far from their corridor, isolation rooms without their anteroom, homes with nowhere to eat, screens beside
-//! the sofa's axis, machines on the sink, coats far from the entrance, docks behind rugs, chairs against the wall.
+//! the sofa's axis, machines on the sink, coats far from the entrance, docks behind rugs, chairs against the wall, visitors
+//! behind the counter, robots that stop in a doorway.
 //!
 //! No rule forbids these; they are what makes a plan look wrong.
 
@@ -443,4 +444,59 @@ fn light_comes_from_the_side_of_most_screens() {
         }
     }
     most("screens without a window before or behind them", 0.85, &held);
+}
+
+#[test]
+fn counters_keep_their_staffs_floor_and_visitors_sit_before_them() {
+    let (mut kept, mut before) = (Vec::new(), Vec::new());
+    for world in worlds("office with 8 rooms in Germany", 12) {
+        let all = &world.placements.placements;
+        for counter in all.iter().filter(|p| p.object == "small_reception_desk") {
+            let edge = -counter.size_m[1] / 2.0;
+            let (sin, cos) = counter.pose.yaw_rad.sin_cos();
+            let at = |u: f64, v: f64| (counter.pose.x + u * cos - v * sin, counter.pose.y + u * sin + v * cos);
+            let half = counter.size_m[0] / 2.0 - 0.02;
+            let ((xa, ya), (xb, yb)) = (at(edge - 0.7, -half), at(edge - 0.02, half));
+            let staff = Rect::new(xa.min(xb), ya.min(yb), xa.max(xb), ya.max(yb));
+            let here = all.iter().filter(|p| p.room_id == counter.room_id && p.group != counter.group);
+            let stands = here.filter(|p| p.mount == Mount::Floor && p.support.is_none());
+            kept.push(!stands.clone().any(|p| body(p).overlaps(&staff)));
+            let seats = stands.filter(|p| ["visitor_chair", "lounge_sofa"].contains(&p.object.as_str()));
+            before.extend(seats.map(|p| seen_from(counter, p.pose.x, p.pose.y).0 > edge));
+        }
+    }
+    most("counters with free floor behind them", 0.9, &kept);
+    // a way in or a dock may leave no other wall
+    most("seats of visitors on their side of the counter", 0.7, &before);
+}
+
+#[test]
+fn nobody_squeezes_past_tables_that_could_be_left_out() {
+    let mut held = Vec::new();
+    for world in worlds("office with 10 rooms in the Netherlands", 12) {
+        let all = &world.placements.placements;
+        let tables = all.iter().filter(|p| p.object == "meeting_table_4" && p.room_id.starts_with("open_office"));
+        for table in tables {
+            let others = all.iter().filter(|p| p.room_id == table.room_id && p.group != table.group);
+            let desks = others.filter(|p| ["desk", "small_desk", "printer"].contains(&p.object.as_str()));
+            held.push(desks.map(|p| gap(&body(p), &body(table))).fold(f64::MAX, f64::min) >= 0.295);
+        }
+    }
+    most("tables with floor around them", 1.0, &held);
+}
+
+#[test]
+fn robots_stop_clear_of_walls_and_doorways() {
+    let prompts =
+        ["hospital ward with 8 rooms in Germany, for a delivery robot", "office with 10 rooms, for a mail robot"];
+    let mut held = Vec::new();
+    for world in prompts.iter().flat_map(|prompt| worlds(prompt, 10)) {
+        let radius = world.scene_graph.robots[0].radius_m;
+        for poi in world.scenario.pois.iter().filter(|p| p.kind == "service_point") {
+            let around = Rect::new(poi.pose.x, poi.pose.y, poi.pose.x, poi.pose.y).grown(radius);
+            let room = world.floorplan.room(&poi.room_id).unwrap();
+            held.push(around.corners().iter().all(|c| room.net_polygon.contains(*c)));
+        }
+    }
+    most("stops with the robot inside the room", 0.97, &held);
 }

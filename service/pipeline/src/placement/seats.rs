@@ -3,12 +3,15 @@
 use d3dgen_model::domain::Shape;
 
 use super::geom::{Box2, mm};
+use super::state::{Placed, State};
 use super::unit::Part;
 
 /// Depth from the edge of a desk or counter to what stands behind who sits at it, m.
 const SEAT_DEPTH_M: f64 = 1.0;
 /// Floor behind a chair at a table to push it back on, m.
 const PUSH_BACK_M: f64 = 0.25;
+/// What a place to wait loses behind a counter: about what the best place has to offer.
+const BEHIND_COUNTER: f64 = 3.0;
 
 /// Returns true for what one person sits on, or several side by side.
 pub(super) fn is_seat(shape: Shape) -> bool {
@@ -23,12 +26,40 @@ pub(super) fn seats_behind(parts: &[Part], tightness: f64, out: &mut Vec<Box2>) 
     if !matches!(anchor.object.shape, Shape::Desk | Shape::Counter | Shape::Table) {
         return;
     }
-    let behind = parts[1..].iter().filter(|p| is_seat(p.object.shape) && p.quarter == 0 && p.solid.rect.x1 <= desk.x0);
-    out.extend(behind.map(|p| p.solid.rect).filter(|seat| seat.x0 > desk.x0 - depth).map(|seat| Box2 {
-        x0: desk.x0 - depth,
-        x1: seat.x0,
-        ..seat
-    }));
+    for seat in staffed_from(parts).filter(|seat| seat.x0 > desk.x0 - depth) {
+        let back = desk.x0 - depth;
+        if anchor.object.shape != Shape::Counter {
+            out.push(Box2 { x0: back, x1: seat.x0, ..seat });
+            continue;
+        }
+        // whoever serves at a counter moves along it, to both sides of the chair
+        out.push(Box2 { x0: back, x1: seat.x0, ..desk });
+        out.push(Box2 { x0: seat.x0, x1: desk.x0, y0: desk.y0, y1: seat.y0 });
+        out.push(Box2 { x0: seat.x0, x1: desk.x0, y0: seat.y1, y1: desk.y1 });
+    }
+}
+
+/// Returns the seats of those who sit behind a desk or counter that faces away from them.
+fn staffed_from<'p>(parts: &'p [Part]) -> impl Iterator<Item = Box2> + 'p {
+    let edge = parts[0].solid.rect.x0;
+    let behind = move |p: &&Part| is_seat(p.object.shape) && p.quarter == 0 && p.solid.rect.x1 <= edge;
+    parts[1..].iter().filter(behind).map(|p| p.solid.rect)
+}
+
+/// Returns how much a place for visitors to sit loses because it lies on the staff's side of a counter.
+pub(super) fn behind_counters(state: &State, p: &Placed) -> f64 {
+    let seat = p.unit.anchor().object.shape;
+    if !is_seat(seat) && seat != Shape::Sofa {
+        return 0.0;
+    }
+    let staffed =
+        |c: &&Placed| c.unit.anchor().object.shape == Shape::Counter && staffed_from(&c.unit.parts).next().is_some();
+    let behind = |c: &Placed| {
+        let back = (4 - c.q) % 4;
+        let middle = p.world(&p.unit.bbox).turned(back).center();
+        middle.0 < c.world(&c.unit.anchor().solid.rect).turned(back).x0
+    };
+    if state.placed.iter().filter(staffed).any(behind) { BEHIND_COUNTER } else { 0.0 }
 }
 
 /// Adds the floor to push chairs back on that stand around a table.

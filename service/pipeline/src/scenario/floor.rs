@@ -4,13 +4,15 @@ use d3dgen_knowledge::clearance::quarter;
 use d3dgen_model::domain::{Domain, ObjectType, RobotUse, RoomType};
 use d3dgen_model::floorplan::{Floorplan, PlanRoom};
 use d3dgen_model::geometry::to_mm;
-use d3dgen_model::occupancy::{Bitmap, Occupancy};
+use d3dgen_model::occupancy::{Bitmap, CELL_M, Occupancy};
 use d3dgen_model::placements::{Placement, Placements};
 use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::{Point, Pose, Rect};
 
 /// Least radius of the disc that must find its way, m.
 pub(super) const LEAST_RADIUS_M: f64 = 0.30;
+/// How much farther off a spot may be that is not tight, m.
+const TIGHT_M: f64 = 0.6;
 /// Forward and left of the four headings.
 const FORWARD: [(f64, f64); 4] = [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)];
 
@@ -31,6 +33,8 @@ pub(super) struct Room<'a> {
     pub objects: Vec<(&'a Placement, &'a ObjectType)>,
     /// Reachable cells of the room that are still free of robots and people, in a grid of the room's own.
     spots: Bitmap,
+    /// Cells where the disc lies within the room, clear of all that stands there by a cell.
+    roomy: Bitmap,
     /// Its first cell in the grid of the building.
     corner: (i64, i64),
 }
@@ -46,6 +50,9 @@ impl<'a> Floor<'a> {
             occupancy.frame.paint(&mut painted, &room.net_polygon, true);
             let mut spots = painted.window(i0, i1, j0, j1);
             painted.fill(i0, i1, j0, j1, false);
+            let mut roomy = spots.clone();
+            roomy.intersect(&occupancy.free.window(i0, i1, j0, j1));
+            let roomy = roomy.eroded(radius / CELL_M + 1.0);
             spots.intersect(&main.window(i0, i1, j0, j1));
             let here = placements.placements.iter().filter(|p| p.room_id == room.room_id);
             Room {
@@ -53,17 +60,23 @@ impl<'a> Floor<'a> {
                 kind: domain.room_type_or_generic(&room.room_type),
                 objects: here.filter_map(|p| Some((p, domain.object(&p.object)?))).collect(),
                 spots,
+                roomy,
                 corner: (i0.max(0), j0.max(0)),
             }
         };
         Self { rooms: plan.rooms.iter().map(&mut room).collect(), plan, domain, radius, occupancy }
     }
 
-    /// Returns the reachable spot of a room nearest to a point; `None` when the room has none.
+    /// Returns the reachable spot of a room nearest to a point, a little farther off rather than in a doorway or against
+    /// something; `None` when the room has none.
     pub fn spot_near(&self, room: &Room, p: Point) -> Option<Point> {
-        let squared = |c: &Point| (c.x - p.x).powi(2) + (c.y - p.y).powi(2);
+        let (i0, j0) = (room.corner.0 as usize, room.corner.1 as usize);
+        let spots = room.spots.cells().map(|(i, j)| {
+            let spot = self.occupancy.frame.center(i0 + i, j0 + j);
+            (spot.distance(p) + if room.roomy.get(i, j) { 0.0 } else { TIGHT_M }, spot)
+        });
         // ties go to the southern, then the western spot
-        self.all(room).min_by(|a, b| squared(a).total_cmp(&squared(b)))
+        spots.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, spot)| spot)
     }
 
     /// Returns the reachable spot of a room by its number in a list of them, wrapped around.

@@ -1,7 +1,7 @@
 //! Named points: docks, service points, cleaning points, the entrance, waiting bays.
 
 use d3dgen_model::Point;
-use d3dgen_model::domain::{ObjectType, RobotUse, Shape};
+use d3dgen_model::domain::{Mount, ObjectType, RobotUse, Shape};
 use d3dgen_model::placements::Placement;
 use d3dgen_model::scenario::Poi;
 use d3dgen_model::scene_graph::SceneGraph;
@@ -28,9 +28,9 @@ const SERVED: [Shape; 8] = [
 /// Kind of robot that visits rooms to clean them.
 const CLEANING: &str = "cleaning";
 
-/// Returns what a robot serves in a room: the first object of the most telling build.
+/// Returns what a robot serves in a room: the first object of the most telling build that stands on the floor.
 pub(super) fn served<'r>(room: &'r Room) -> Option<&'r (&'r Placement, &'r ObjectType)> {
-    SERVED.iter().find_map(|shape| room.objects.iter().find(|(p, k)| k.shape == *shape && p.support.is_none()))
+    SERVED.iter().find_map(|shape| room.objects.iter().find(|(_, k)| k.shape == *shape && k.mount == Mount::Floor))
 }
 
 /// Returns all points; each can be reached.

@@ -3,12 +3,15 @@
 use std::rc::Rc;
 
 use super::{Find, Rule};
-use crate::placement::geom::{Box2, turn};
+use crate::placement::geom::{Box2, Solid, turn};
+use crate::placement::seats::is_seat;
 use crate::placement::state::{Placed, at_frame};
 use crate::placement::unit::Unit;
 
 /// Grain of the search for free floor, mm.
 const GRAIN: i32 = 150;
+/// Free floor around tables with seats, mm.
+const BESIDE: i32 = 300;
 
 impl<'a> Find<'_, 'a, '_> {
     /// Offers free-standing positions around the middle of the largest free rectangle.
@@ -16,6 +19,8 @@ impl<'a> Find<'_, 'a, '_> {
         let free = self.largest_free();
         let space = self.state.space;
         let flat = unit.parts[0].solid.is_flat();
+        // seats that nobody asked for stand where one gets at them, or not at all
+        let sits = self.task.required == 0 && unit.parts.iter().any(|p| is_seat(p.object.shape));
         let grid = |lo: i32, hi: i32| {
             let step = ((hi - lo) / 14).max(250);
             (0..).map(move |k| lo + k * step).take_while(move |v| *v < hi)
@@ -32,6 +37,10 @@ impl<'a> Find<'_, 'a, '_> {
             for &(x, y) in &centers {
                 let (u, v) = turn(4 - q, x - du, y - dv);
                 let placed = at_frame(unit, q, u, v, self.index);
+                if sits && !self.is_open_around(&placed, BESIDE) {
+                    self.none(Rule::Clearance);
+                    continue;
+                }
                 self.offer(placed, u32::from(q % 2), |find, p| find.center_score(p, &free, flat));
             }
         }
@@ -48,11 +57,8 @@ impl<'a> Find<'_, 'a, '_> {
         let along = (rect.width() >= rect.height()) == (free.width() >= free.height());
         s += if along { 0.8 } else { 0.0 };
         if !flat {
-            for margin in [300, 600, 900] {
-                let around = rect.grown(margin);
-                let open = self.state.space.contains(&around)
-                    && !self.state.solids.iter().any(|s| s.stops_robot() && s.rect.overlaps(&around));
-                s += if open { 0.5 } else { 0.0 };
+            for margin in [BESIDE, 600, 900] {
+                s += if self.is_open_around(p, margin) { 0.5 } else { 0.0 };
             }
         }
         // equal things in one line, turned alike
@@ -70,6 +76,13 @@ impl<'a> Find<'_, 'a, '_> {
             s += if p.q == (q + 2) % 4 { 0.15 } else { 0.0 };
         }
         s
+    }
+
+    /// Returns true when no wall and no furniture is nearer than a margin, mm.
+    fn is_open_around(&self, p: &Placed<'a>, margin: i32) -> bool {
+        let around = p.world(&p.unit.bbox).grown(margin);
+        let taken = |s: &Solid| s.stops_robot() && s.rect.overlaps(&around);
+        self.state.space.contains(&around) && !self.state.solids.iter().any(taken)
     }
 
     /// Returns places in line with units of the same kind: end to end, and with an aisle between.

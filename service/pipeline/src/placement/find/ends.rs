@@ -17,6 +17,8 @@ const SIDEWAYS: i32 = 80;
 const NEAR_AXIS_M: f64 = 0.4;
 /// Distances from which a screen is looked at, mm.
 const VIEW: (i32, i32) = (1500, 6500);
+/// What a meter less before a counter loses, where people queue in the way in.
+const QUEUE: f64 = 1.6;
 /// Floor a person needs behind a free-standing counter, mm.
 const BEHIND: i32 = 900;
 
@@ -148,7 +150,7 @@ impl<'a> Find<'_, 'a, '_> {
                     (false, true) => 1.8,
                     (false, false) => 2.6,
                 };
-                let near = (least - front).max(0.0) + slope * (front - far).max(0.0);
+                let near = QUEUE * (least - front).max(0.0) + slope * (front - far).max(0.0);
                 self.offer(placed, 80 + u32::from(behind > 100), |_, _| 2.0 - 0.6 * off - lost - near);
             }
         }
