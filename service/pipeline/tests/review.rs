@@ -500,3 +500,29 @@ fn robots_stop_clear_of_walls_and_doorways() {
     }
     most("stops with the robot inside the room", 0.97, &held);
 }
+
+#[test]
+fn both_sides_of_double_beds_can_be_reached() {
+    let mut held = Vec::new();
+    for world in HOMES.iter().flat_map(|prompt| worlds(prompt, 6)) {
+        let all = &world.placements.placements;
+        for bed in all.iter().filter(|p| p.object == "double_bed") {
+            let others = all.iter().filter(|p| p.room_id == bed.room_id && p.placement_id != bed.placement_id);
+            let stands: Vec<&Placement> =
+                others.filter(|p| p.mount == Mount::Floor && p.support.is_none() && p.size_m[2] > 0.1).collect();
+            let [half, foot] = [bed.size_m[0] / 2.0, bed.size_m[1] / 2.0];
+            let (sin, cos) = bed.pose.yaw_rad.sin_cos();
+            for side in [-half, half] {
+                let (x, y) = (bed.pose.x + foot * cos - side * sin, bed.pose.y + foot * sin + side * cos);
+                let corner = Rect::new(x, y, x, y);
+                let mut near = stands.iter().filter(|p| gap(&body(p), &corner) < 0.4);
+                held.push(!near.any(|p| {
+                    let (ahead, left) = seen_from(bed, p.pose.x, p.pose.y);
+                    ahead > foot && left * side.signum() > half
+                }));
+            }
+        }
+    }
+    // a small room may have no other place for its wardrobe
+    most("sides of beds with a way in at the foot", 0.93, &held);
+}

@@ -1,6 +1,6 @@
-//! Seats: the floor that people need to sit down, get up and push a chair back.
+//! Seats and beds: the floor that people need to sit down, get up, push a chair back and get to the side of a bed.
 
-use d3dgen_model::domain::Shape;
+use d3dgen_model::domain::{Mount, Shape};
 
 use super::geom::{Box2, mm};
 use super::state::{Placed, State};
@@ -10,6 +10,10 @@ use super::unit::Part;
 const SEAT_DEPTH_M: f64 = 1.0;
 /// Floor behind a chair at a table to push it back on, m.
 const PUSH_BACK_M: f64 = 0.25;
+/// Floor before the foot of a bed and beside it through which one gets to a long side, m.
+const FOOT_M: f64 = 0.45;
+/// What a place loses that closes one of them.
+const CLOSED_SIDE: f64 = 4.0;
 /// What a place to wait loses behind a counter: about what the best place has to offer.
 const BEHIND_COUNTER: f64 = 3.0;
 
@@ -44,6 +48,21 @@ fn staffed_from<'p>(parts: &'p [Part]) -> impl Iterator<Item = Box2> + 'p {
     let edge = parts[0].solid.rect.x0;
     let behind = move |p: &&Part| is_seat(p.object.shape) && p.quarter == 0 && p.solid.rect.x1 <= edge;
     parts[1..].iter().filter(behind).map(|p| p.solid.rect)
+}
+
+/// Returns how much a place loses that closes the way to a long side of a bed, at its foot.
+pub(super) fn beside_beds(state: &State, p: &Placed) -> f64 {
+    let stands = |part: &&Part| part.mount == Mount::Floor && p.solid(part).stops_robot();
+    let bodies = || p.unit.parts.iter().filter(stands).map(|part| p.solid(part).rect);
+    let beds = state.placed.iter().filter(|b| b.unit.anchor().object.shape == Shape::Bed);
+    let closed = beds.flat_map(|b| {
+        let back = (4 - b.q) % 4;
+        let own = b.world(&b.unit.anchor().solid.rect).turned(back);
+        let (foot, wide) = ((own.x1, own.x1 + mm(FOOT_M)), mm(FOOT_M));
+        [(own.y0 - wide, own.y0), (own.y1, own.y1 + wide)]
+            .map(|(y0, y1)| Box2 { x0: foot.0, x1: foot.1, y0, y1 }.turned(b.q))
+    });
+    CLOSED_SIDE * closed.filter(|mouth| bodies().any(|body| body.overlaps(mouth))).count() as f64
 }
 
 /// Returns how much a place for visitors to sit loses because it lies on the staff's side of a counter.

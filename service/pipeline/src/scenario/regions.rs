@@ -2,14 +2,19 @@
 
 use d3dgen_model::domain::{RobotUse, Shape};
 use d3dgen_model::geometry::to_mm;
+use d3dgen_model::occupancy::stops_robot;
+use d3dgen_model::placements::Placement;
 use d3dgen_model::scenario::{Roi, RoiKind};
 use d3dgen_model::{Polygon, Rect};
 
 use super::floor::{Floor, Room, floor_in_front};
 use super::points::served;
 
-/// Depth of the floor to serve at, m.
+/// Depth of the floor to serve at, m, and the least where something stands across.
 const SERVICE_DEPTH_M: f64 = 1.2;
+const LEAST_SERVICE_DEPTH_M: f64 = 0.6;
+/// Overlap that is none, m.
+const TOUCH_M: f64 = 0.01;
 /// Free floor beside a dock that belongs to it, m.
 const DOCK_BESIDE_M: f64 = 0.5;
 /// Least side of a region, m.
@@ -39,7 +44,7 @@ pub(super) fn all(floor: &Floor) -> Vec<Roi> {
         }
         if room.is_for(RobotUse::Service)
             && let Some((object, _)) = served(room)
-            && let Some(polygon) = clipped(room, &floor_in_front(object, SERVICE_DEPTH_M, 0.0))
+            && let Some(polygon) = clipped(room, &floor_in_front(object, service_depth(room, object), 0.0))
         {
             let note = format!("in front of {}", object.placement_id);
             out.push(Roi {
@@ -61,6 +66,17 @@ pub(super) fn all(floor: &Floor) -> Vec<Roi> {
         }
     }
     out
+}
+
+/// Returns how deep the floor is where robots serve at an object, m: to what stands across, where that is near.
+fn service_depth(room: &Room, object: &Placement) -> f64 {
+    let free = |depth: &f64| {
+        let floor = floor_in_front(object, *depth, 0.0).grown(-TOUCH_M);
+        let others = room.objects.iter().map(|(p, _)| *p).filter(|p| stops_robot(p) && p.group != object.group);
+        !others.filter(|p| p.support.is_none()).any(|p| p.footprint().bounds().overlaps(&floor))
+    };
+    let steps = (0..).map(|k| SERVICE_DEPTH_M - 0.1 * f64::from(k)).take_while(|d| *d >= LEAST_SERVICE_DEPTH_M);
+    to_mm(steps.into_iter().find(free).unwrap_or(SERVICE_DEPTH_M))
 }
 
 /// Returns the largest part of a rectangle that lies on one straight piece of the room's net floor.

@@ -15,6 +15,8 @@ const SIZES: [f64; 5] = [1.0, 0.9, 0.8, 0.72, 0.64];
 const SMALLER: f64 = 4.0;
 /// What a name on several lines, one that runs upwards and one without its area cost.
 const BROKEN: f64 = 0.12;
+/// Cost of a number in a line by itself.
+const TORN: f64 = 0.4;
 const UPRIGHT: f64 = 0.5;
 const NAME_ONLY: f64 = 2.0;
 /// What it costs to be as far from the middle of a room as its diagonal is long.
@@ -129,7 +131,10 @@ fn layouts(page: &Page, room: &Room<'_>, area: &str, (usual, share): (f64, f64))
     let words: Vec<&str> = room.name.split(' ').collect();
     let split = halves(&words, page.font(Weight::SemiBold));
     let mut ways = vec![(names(&[room.name]), 0.0)];
-    ways.extend(split.as_ref().map(|(first, second)| (names(&[first, second]), BROKEN)));
+    ways.extend(split.as_ref().map(|(first, second)| {
+        let torn = second.parse::<u32>().is_ok();
+        (names(&[first, second]), if torn { TORN } else { BROKEN })
+    }));
     if words.len() == 3 {
         ways.push((names(&words), 5.0 * BROKEN));
     }

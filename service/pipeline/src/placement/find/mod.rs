@@ -15,7 +15,7 @@ pub(super) use rows::{Terms, over, rows};
 use super::demand::Task;
 use super::docks::crowding;
 use super::geom::Box2;
-use super::seats::behind_counters;
+use super::seats::{behind_counters, beside_beds};
 use super::state::{Placed, Rule, State};
 use super::style::{Style, grain, style};
 use super::unit::Unit;
@@ -96,7 +96,8 @@ impl<'f, 'a, 's> Find<'f, 'a, 's> {
                 let score = score(self, &placed) + 0.25 * grain + 0.6 * self.class_grain(class)
                     - 0.4 * lost as f64
                     - crowding(self.state, &placed, self.aisle)
-                    - behind_counters(self.state, &placed);
+                    - behind_counters(self.state, &placed)
+                    - beside_beds(self.state, &placed);
                 self.out.push(Candidate { placed, score, class });
             }
             Err(rule) => self.tally[rule as usize] += 1,
