@@ -50,19 +50,23 @@ fn staffed_from<'p>(parts: &'p [Part]) -> impl Iterator<Item = Box2> + 'p {
     parts[1..].iter().filter(behind).map(|p| p.solid.rect)
 }
 
-/// Returns how much a place loses that closes the way to a long side of a bed, at its foot.
+/// Returns the floor at the foot of a bed through which one gets to its long sides.
+pub(super) fn ways_beside(bed: &Placed) -> Option<[Box2; 2]> {
+    let anchor = bed.unit.anchor();
+    if anchor.object.shape != Shape::Bed {
+        return None;
+    }
+    let own = bed.world(&anchor.solid.rect).turned((4 - bed.q) % 4);
+    let wide = mm(FOOT_M);
+    let way = |y0| Box2 { x0: own.x1, x1: own.x1 + wide, y0, y1: y0 + wide }.turned(bed.q);
+    Some([way(own.y0 - wide), way(own.y1)])
+}
+
+/// Returns how much a place loses that closes the way to a long side of a bed.
 pub(super) fn beside_beds(state: &State, p: &Placed) -> f64 {
     let stands = |part: &&Part| part.mount == Mount::Floor && p.solid(part).stops_robot();
-    let bodies = || p.unit.parts.iter().filter(stands).map(|part| p.solid(part).rect);
-    let beds = state.placed.iter().filter(|b| b.unit.anchor().object.shape == Shape::Bed);
-    let closed = beds.flat_map(|b| {
-        let back = (4 - b.q) % 4;
-        let own = b.world(&b.unit.anchor().solid.rect).turned(back);
-        let (foot, wide) = ((own.x1, own.x1 + mm(FOOT_M)), mm(FOOT_M));
-        [(own.y0 - wide, own.y0), (own.y1, own.y1 + wide)]
-            .map(|(y0, y1)| Box2 { x0: foot.0, x1: foot.1, y0, y1 }.turned(b.q))
-    });
-    CLOSED_SIDE * closed.filter(|mouth| bodies().any(|body| body.overlaps(mouth))).count() as f64
+    let closes = |way: &Box2| p.unit.parts.iter().filter(stands).any(|part| p.solid(part).rect.overlaps(way));
+    CLOSED_SIDE * state.beside_beds.iter().filter(|way| closes(way)).count() as f64
 }
 
 /// Returns how much a place for visitors to sit loses because it lies on the staff's side of a counter.

@@ -10,7 +10,7 @@ use super::docks::buffers;
 use super::geom::{Box2, Solid, mm, turn};
 use super::nav::Nav;
 use super::pockets::Pockets;
-use super::seats::is_seat;
+use super::seats::{is_seat, ways_beside};
 use super::space::{Open, Space};
 use super::unit::{Part, Unit};
 use super::way::{InTheWay, Way};
@@ -125,6 +125,8 @@ pub(super) struct State<'a, 's> {
     in_the_way: InTheWay,
     /// Floor that belongs to docks.
     pub docks: Vec<Box2>,
+    /// Floor at the foot of beds through which one gets to their sides.
+    pub beside_beds: Vec<Box2>,
     /// Floor between screens and boards and those who look at them.
     sights: Vec<Box2>,
     nav: Nav,
@@ -153,6 +155,7 @@ impl<'a, 's> State<'a, 's> {
             bodies: Vec::new(),
             in_the_way: InTheWay::default(),
             docks: Vec::new(),
+            beside_beds: Vec::new(),
             sights: Vec::new(),
             nav,
             pockets: Pockets::new(space),
@@ -314,6 +317,7 @@ impl<'a, 's> State<'a, 's> {
             self.bodies.extend(bodies(&p));
             self.in_the_way.extend(&in_the_way(std::slice::from_ref(&p)));
             self.docks.extend(buffers(&p, self.nav.gap()));
+            self.beside_beds.extend(ways_beside(&p).into_iter().flatten());
             if p.support.is_none() {
                 self.clears.extend(p.unit.clears.iter().map(|c| p.world(c)));
             }

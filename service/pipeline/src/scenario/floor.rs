@@ -70,13 +70,11 @@ impl<'a> Floor<'a> {
     /// Returns the reachable spot of a room nearest to a point, a little farther off rather than in a doorway or against
     /// something; `None` when the room has none.
     pub fn spot_near(&self, room: &Room, p: Point) -> Option<Point> {
-        let (i0, j0) = (room.corner.0 as usize, room.corner.1 as usize);
-        let spots = room.spots.cells().map(|(i, j)| {
-            let spot = self.occupancy.frame.center(i0 + i, j0 + j);
+        let loss = |((i, j), spot): ((usize, usize), Point)| {
             (spot.distance(p) + if room.roomy.get(i, j) { 0.0 } else { TIGHT_M }, spot)
-        });
+        };
         // ties go to the southern, then the western spot
-        spots.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, spot)| spot)
+        self.cells(room).map(loss).min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, spot)| spot)
     }
 
     /// Returns the reachable spot of a room by its number in a list of them, wrapped around.
@@ -108,8 +106,13 @@ impl<'a> Floor<'a> {
 
     /// Returns all spots of a room in rows from south to north.
     fn all<'r>(&'r self, room: &'r Room) -> impl Iterator<Item = Point> + 'r {
+        self.cells(room).map(|(_, spot)| spot)
+    }
+
+    /// Returns the same with the cell of each in the grid of the room.
+    fn cells<'r>(&'r self, room: &'r Room) -> impl Iterator<Item = ((usize, usize), Point)> + 'r {
         let (i0, j0) = (room.corner.0 as usize, room.corner.1 as usize);
-        room.spots.cells().map(move |(i, j)| self.occupancy.frame.center(i0 + i, j0 + j))
+        room.spots.cells().map(move |(i, j)| ((i, j), self.occupancy.frame.center(i0 + i, j0 + j)))
     }
 }
 

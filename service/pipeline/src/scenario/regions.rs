@@ -75,8 +75,8 @@ fn service_depth(room: &Room, object: &Placement) -> f64 {
         let others = room.objects.iter().map(|(p, _)| *p).filter(|p| stops_robot(p) && p.group != object.group);
         !others.filter(|p| p.support.is_none()).any(|p| p.footprint().bounds().overlaps(&floor))
     };
-    let steps = (0..).map(|k| SERVICE_DEPTH_M - 0.1 * f64::from(k)).take_while(|d| *d >= LEAST_SERVICE_DEPTH_M);
-    to_mm(steps.into_iter().find(free).unwrap_or(SERVICE_DEPTH_M))
+    let mut steps = (0..).map(|k| SERVICE_DEPTH_M - 0.1 * f64::from(k)).take_while(|d| *d >= LEAST_SERVICE_DEPTH_M);
+    to_mm(steps.find(free).unwrap_or(SERVICE_DEPTH_M))
 }
 
 /// Returns the largest part of a rectangle that lies on one straight piece of the room's net floor.

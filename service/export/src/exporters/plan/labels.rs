@@ -15,10 +15,10 @@ const SIZES: [f64; 5] = [1.0, 0.9, 0.8, 0.72, 0.64];
 const SMALLER: f64 = 4.0;
 /// What a name on several lines, one that runs upwards and one without its area cost.
 const BROKEN: f64 = 0.12;
-/// Cost of a number in a line by itself.
-const TORN: f64 = 0.4;
 const UPRIGHT: f64 = 0.5;
 const NAME_ONLY: f64 = 2.0;
+/// What a number in a line by itself costs.
+const TORN: f64 = 0.4;
 /// What it costs to be as far from the middle of a room as its diagonal is long.
 const ASIDE: f64 = 0.8;
 /// Sizes of the ring around a number, as shares of the type size.
