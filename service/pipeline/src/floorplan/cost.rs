@@ -15,7 +15,7 @@ use super::realize::{Layout, door_need};
 use super::spec::Brief;
 
 /// Cost of a room whose area is outside what is advised, beside that of how far.
-const ILL_ADVISED: f64 = 0.4;
+const ILL_ADVISED: f64 = 0.6;
 /// Cost of a room without the daylight that it is better with, beside those that take a facade and need none.
 const DARK: f64 = 1.8;
 /// Share by which circulation beyond what is advised counts as larger.
@@ -39,7 +39,7 @@ pub(super) const TERMS: [&str; COUNT] = [
     "latch_side",
 ];
 /// Standard weights of the soft terms; each plan's search varies them by its taste.
-pub(super) const WEIGHTS: Weights = [1.0, 0.6, 1.2, 0.5, 10.0, 0.35, 0.8, 0.5, 0.4, 0.8];
+pub(super) const WEIGHTS: Weights = [1.0, 0.6, 1.2, 0.5, 10.0, 0.5, 0.8, 0.5, 0.4, 0.8];
 /// Least outer wall of a room that needs a window, m.
 pub(super) const WINDOW_WALL_M: f64 = 1.2;
 
@@ -448,7 +448,8 @@ impl<'b> Judge<'b> {
         }
     }
 
-    /// Returns what it costs that a sleeping room has become larger than the room of the day that was to be the largest.
+    /// Returns what it costs that a sleeping room or the hall has become larger than the room of the day that was to be
+    /// the largest.
     fn wrong_sizes(&self) -> f64 {
         let of = |zone: Zone| self.brief.rooms.iter().zip(&self.survey.rooms).filter(move |(s, _)| s.zone == zone);
         let Some((day, living)) = of(Zone::Day).max_by(|a, b| a.0.area_target.total_cmp(&b.0.area_target)) else {
@@ -457,10 +458,12 @@ impl<'b> Judge<'b> {
         let Some((night, bedroom)) = of(Zone::Night).max_by(|a, b| a.1.net_m2.total_cmp(&b.1.net_m2)) else {
             return 0.0;
         };
-        if night.area_target >= day.area_target || bedroom.net_m2 <= living.net_m2 {
+        if night.area_target >= day.area_target {
             return 0.0;
         }
-        WRONG_SIZES + bedroom.net_m2 / living.net_m2.max(1.0) - 1.0
+        let hall = self.survey.rooms.get(self.spine).filter(|_| !self.brief.hub);
+        let larger = [Some(bedroom), hall].into_iter().flatten().filter(|room| room.net_m2 > living.net_m2);
+        larger.map(|room| WRONG_SIZES + room.net_m2 / living.net_m2.max(1.0) - 1.0).sum()
     }
 }
 

@@ -26,6 +26,8 @@ const CORRIDOR_PANE_M: f64 = 1.2;
 const SHOWER_AND_WINDOW_M: f64 = 2.9;
 /// Widest and narrowest single window, m.
 const PANE_M: (f64, f64) = (2.4, 0.6);
+/// What a width in steps may lack by rounding.
+const ROUNDING: f64 = 1e-6;
 
 /// Returns the windows of all rooms.
 pub(super) fn place_windows(brief: &Brief, stretches: &[Stretch], net_m2: &[f64], doors: &[Door]) -> Vec<Window> {
@@ -131,9 +133,11 @@ fn add_panes(
     windows: &mut Vec<Window>,
 ) {
     let count = (total / pane).ceil().max(1.0);
-    // Whole centimeters keep the document readable; each pane sits in the middle of its share of the wall.
+    // Steps of 5 cm keep the document readable: up to the glass it takes, down to the wall there is. Each pane sits in
+    // the middle of its share of the wall.
     let share = (to - from) / count;
-    let width = ((total / count).min(share - 2.0 * MARGIN_M).max(PANE_M.1.min(share)) * 20.0).floor() / 20.0;
+    let most = (share - 2.0 * MARGIN_M).max(PANE_M.1.min(share));
+    let width = (total / count * 20.0 - ROUNDING).ceil().max(PANE_M.1 * 20.0).min((most * 20.0 + ROUNDING).floor()) / 20.0;
     for k in 0..count as usize {
         let start = from + share * (k as f64 + 0.5) - width / 2.0;
         windows.push(Window {

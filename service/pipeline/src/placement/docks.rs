@@ -3,12 +3,14 @@
 
 use d3dgen_model::domain::Shape;
 
-use super::geom::{Box2, Solid};
+use super::geom::{Box2, Solid, mm};
 use super::space::{DoorZone, Space};
 use super::state::{Placed, State};
 
 /// Floor beside a dock that belongs to it, mm; as in the charging buffers of scenarios.
 const BESIDE: i32 = 500;
+/// From the front of a dock to the middle of a robot before it, mm.
+const BERTH: i32 = 400;
 /// What a dock loses in whose floor a leaf swings: more than any place has to offer.
 const SWING: f64 = 8.0;
 /// What it loses where people only pass.
@@ -21,14 +23,28 @@ const USED: f64 = 3.0;
 /// Height up to which something is on the floor, mm.
 const LOW: i32 = 300;
 
+/// Returns a spot before each dock of a unit where the robot it is for stands.
+pub(super) fn berths<'p>(p: &'p Placed) -> impl Iterator<Item = Box2> + 'p {
+    fronts(p).map(|(q, own, _)| {
+        let (x, y) = (own.x1 + BERTH, (own.y0 + own.y1) / 2);
+        Box2 { x0: x, y0: y, x1: x, y1: y }.turned(q)
+    })
+}
+
 /// Returns the floor before the docks of a unit: as deep as their clearance and as a robot needs, mm.
 pub(super) fn buffers<'p>(p: &'p Placed, robot: i32) -> impl Iterator<Item = Box2> + 'p {
-    let docks = p.unit.parts.iter().filter(|part| part.object.shape == Shape::Dock);
-    docks.map(move |part| {
-        let q = (p.q + part.quarter) % 4;
-        let own = p.solid(part).rect.turned((4 - q) % 4);
-        let depth = ((part.object.clearance_front_m * 1000.0).round() as i32).max(robot);
+    fronts(p).map(move |(q, own, clearance)| {
+        let depth = clearance.max(robot);
         Box2 { x0: own.x0, x1: own.x1 + depth, y0: own.y0 - BESIDE, y1: own.y1 + BESIDE }.turned(q)
+    })
+}
+
+/// Returns each dock's heading, its outline turned back by it, and the clearance it asks for in front, mm.
+fn fronts<'p>(p: &'p Placed) -> impl Iterator<Item = (u8, Box2, i32)> + 'p {
+    let docks = p.unit.parts.iter().filter(|part| part.object.shape == Shape::Dock);
+    docks.map(|part| {
+        let q = (p.q + part.quarter) % 4;
+        (q, p.solid(part).rect.turned((4 - q) % 4), mm(part.object.clearance_front_m))
     })
 }
 

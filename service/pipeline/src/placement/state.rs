@@ -6,7 +6,7 @@ use std::rc::Rc;
 use d3dgen_knowledge::clearance::HEAD_ROOM_M;
 use d3dgen_model::domain::{Mount, Shape};
 
-use super::docks::buffers;
+use super::docks::{berths, buffers};
 use super::geom::{Box2, Solid, mm, turn};
 use super::nav::Nav;
 use super::pockets::Pockets;
@@ -99,8 +99,13 @@ impl Placed<'_> {
         Solid { rect: self.world(&part.solid.rect), z0: part.solid.z0 + self.z, z1: part.solid.z1 + self.z }
     }
 
-    /// Returns what must be reachable for the unit to be of use: the free floor it asks for, or its outline.
+    /// Returns what must be reachable for the unit to be of use: where robots stand at its docks, the free floor it asks
+    /// for, or its outline.
     pub fn targets(&self) -> Vec<Box2> {
+        let berths: Vec<Box2> = berths(self).collect();
+        if !berths.is_empty() {
+            return berths;
+        }
         if self.unit.clears.is_empty() {
             return vec![self.world(&self.unit.bbox)];
         }

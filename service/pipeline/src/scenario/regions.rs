@@ -26,6 +26,7 @@ pub(super) fn all(floor: &Floor) -> Vec<Roi> {
     let mut docks = 0;
     for room in &floor.rooms {
         let id = &room.plan.room_id;
+        let buffers: Vec<(&Placement, Rect)> = buffers(floor, room).collect();
         let mut whole = |kind, prefix: &str, note: &str| {
             out.push(Roi {
                 roi_id: format!("{prefix}_{id}"),
@@ -44,7 +45,7 @@ pub(super) fn all(floor: &Floor) -> Vec<Roi> {
         }
         if room.is_for(RobotUse::Service)
             && let Some((object, _)) = served(room)
-            && let Some(polygon) = clipped(room, &floor_in_front(object, service_depth(room, object), 0.0))
+            && let Some(polygon) = clipped(room, &floor_in_front(object, service_depth(room, object, &buffers), 0.0))
         {
             let note = format!("in front of {}", object.placement_id);
             out.push(Roi {
@@ -55,10 +56,9 @@ pub(super) fn all(floor: &Floor) -> Vec<Roi> {
                 note,
             });
         }
-        for (dock, kind) in room.objects.iter().filter(|(_, k)| k.shape == Shape::Dock) {
+        for (dock, buffer) in &buffers {
             docks += 1;
-            let depth = kind.clearance_front_m.max(2.0 * floor.radius);
-            if let Some(polygon) = clipped(room, &floor_in_front(dock, depth, DOCK_BESIDE_M)) {
+            if let Some(polygon) = clipped(room, buffer) {
                 let note = format!("free floor of {}", dock.placement_id);
                 let roi_id = format!("charging_buffer_{docks}");
                 out.push(Roi { roi_id, kind: RoiKind::ChargingBuffer, room_id: id.clone(), polygon, note });
@@ -68,12 +68,25 @@ pub(super) fn all(floor: &Floor) -> Vec<Roi> {
     out
 }
 
-/// Returns how deep the floor is where robots serve at an object, m: to what stands across, where that is near.
-fn service_depth(room: &Room, object: &Placement) -> f64 {
+/// Returns the docks of a room with the floor that belongs to each.
+fn buffers<'r>(floor: &'r Floor, room: &'r Room) -> impl Iterator<Item = (&'r Placement, Rect)> {
+    let docks = room.objects.iter().filter(|(_, kind)| kind.shape == Shape::Dock);
+    docks.map(|(dock, kind)| {
+        let depth = kind.clearance_front_m.max(2.0 * floor.radius);
+        (*dock, floor_in_front(dock, depth, DOCK_BESIDE_M))
+    })
+}
+
+/// Returns how deep the floor is where robots serve at an object, m: to what stands across or the floor of a dock, where
+/// that is near.
+fn service_depth(room: &Room, object: &Placement, buffers: &[(&Placement, Rect)]) -> f64 {
+    let together = |p: &Placement| p.placement_id == object.placement_id || p.group.is_some() && p.group == object.group;
+    let standing = room.objects.iter().map(|(p, _)| *p).filter(|p| stops_robot(p) && p.support.is_none());
+    let bodies = standing.filter(|p| !together(p)).map(|p| p.footprint().bounds());
+    let taken: Vec<Rect> = bodies.chain(buffers.iter().map(|(_, r)| *r)).collect();
     let free = |depth: &f64| {
         let floor = floor_in_front(object, *depth, 0.0).grown(-TOUCH_M);
-        let others = room.objects.iter().map(|(p, _)| *p).filter(|p| stops_robot(p) && p.group != object.group);
-        !others.filter(|p| p.support.is_none()).any(|p| p.footprint().bounds().overlaps(&floor))
+        !taken.iter().any(|r| r.overlaps(&floor))
     };
     let mut steps = (0..).map(|k| SERVICE_DEPTH_M - 0.1 * f64::from(k)).take_while(|d| *d >= LEAST_SERVICE_DEPTH_M);
     to_mm(steps.find(free).unwrap_or(SERVICE_DEPTH_M))

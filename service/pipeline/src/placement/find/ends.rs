@@ -5,7 +5,7 @@ use std::rc::Rc;
 use d3dgen_model::domain::{Mount, Shape};
 
 use super::{Find, Rule};
-use crate::placement::geom::turn;
+use crate::placement::geom::{Box2, turn};
 use crate::placement::state::{Placed, at_frame};
 use crate::placement::unit::Unit;
 
@@ -21,6 +21,15 @@ const VIEW: (i32, i32) = (1500, 6500);
 const QUEUE: f64 = 1.6;
 /// Floor a person needs behind a free-standing counter, mm.
 const BEHIND: i32 = 900;
+/// Floor to get past a counter to its staff's side, mm, and what a counter loses that leaves less on both sides.
+const PAST: i32 = 850;
+const SHUT_IN: f64 = 2.0;
+/// What a desk loses with a window right before or behind its user, which the screen mirrors.
+const GLARE: f64 = 1.6;
+/// A window mirrored by a screen begins this near to the axis of the desk's user, and lies this near, mm.
+const MIRRORED: (i32, i32) = (500, 3500);
+/// How far ahead of the wall behind one the middle of a door lies that one sees from a desk before that wall, mm.
+const SIDE_VIEW: i32 = 900;
 
 impl<'a> Find<'_, 'a, '_> {
     /// Offers positions opposite the first item, facing it: on the wall across first, then free-standing.
@@ -103,7 +112,8 @@ impl<'a> Find<'_, 'a, '_> {
     }
 
     /// Offers positions that face the door of the room, with the far wall or a person's width behind: a counter with its
-    /// front, a desk with the person at it.
+    /// front, a desk with the person at it. A desk may also stand across, with its user's back to a side wall and the door
+    /// in view.
     pub(super) fn facing_door(&mut self, unit: &Rc<Unit<'a>>) {
         let space = self.state.space;
         let Some(door) = space.doors.first() else { return self.along_walls(unit) };
@@ -124,9 +134,7 @@ impl<'a> Find<'_, 'a, '_> {
         // beside the way in, or close to a wall so that one gets past
         let mut vs: Vec<i32> = (0..24).map(|k| if k % 2 == 0 { k / 2 } else { -(k + 1) / 2 } * STEP).collect();
         vs.iter_mut().for_each(|v| *v += door_axis - middle);
-        if look != 0 {
-            vs.extend([wide.y0 - b.y0, wide.y1 - b.y1]);
-        }
+        vs.extend([wide.y0 - b.y0, wide.y1 - b.y1]);
         for u in us {
             let behind = u + rear - wide.x0;
             for &v in &vs {
@@ -151,8 +159,18 @@ impl<'a> Find<'_, 'a, '_> {
                     (false, false) => 2.6,
                 };
                 let near = QUEUE * (least - front).max(0.0) + slope * (front - far).max(0.0);
-                self.offer(placed, 80 + u32::from(behind > 100), |_, _| 2.0 - 0.6 * off - lost - near);
+                let score = 2.0 - 0.6 * off - lost - near;
+                let hampered = |find: &Self, p: &Placed<'a>| match look {
+                    0 if find.is_shut_in(p) => SHUT_IN,
+                    0 => 0.0,
+                    _ => find.glare(p),
+                };
+                self.offer(placed, 80 + u32::from(behind > 100), |find, p| score - hampered(find, p));
             }
+        }
+        if look != 0 {
+            self.across_door(unit, (q + 1) % 4);
+            self.across_door(unit, (q + 3) % 4);
         }
         if self.out.is_empty() {
             self.none(Rule::NoPlace);
@@ -160,5 +178,50 @@ impl<'a> Find<'_, 'a, '_> {
                 self.along_wall(unit, i, -1.5);
             }
         }
+    }
+
+    /// Offers positions for a desk whose user sits with the back to a side wall, looks along `q` and has the door ahead.
+    fn across_door(&mut self, unit: &Rc<Unit<'a>>, q: u8) {
+        let space = self.state.space;
+        let back = (4 - q) % 4;
+        let door = space.doors[0].zone.turned(back).center();
+        let (b, r) = (unit.as_looking(&unit.bbox), unit.as_looking(&unit.reach));
+        let own = (q + 4 - unit.look()) % 4;
+        for wall in space.walls.iter().filter(|w| w.q == q && w.u + SIDE_VIEW < door.0) {
+            let u = wall.u - r.x0.min(b.x0);
+            let (low, high) = (wall.v0 - b.y0, wall.v1 - b.y1);
+            let steps = (low..=high).step_by(STEP as usize);
+            for v in steps.chain((low <= high).then_some(high)) {
+                let placed = Placed { at: turn(q, u, v), ..at_frame(unit, own, 0, 0, self.index) };
+                let away = f64::from((v + (b.y0 + b.y1) / 2 - door.1).abs()) / 4000.0;
+                self.offer(placed, 82 + u32::from(q), |find, p| 1.6 + 0.6 * away.min(1.0) - find.glare(p));
+            }
+        }
+    }
+
+    /// Returns what a desk loses by windows right before or behind its user.
+    fn glare(&self, p: &Placed<'a>) -> f64 {
+        let space = self.state.space;
+        let q = (p.q + p.unit.look()) % 4;
+        let back = (4 - q) % 4;
+        let (x, y) = p.world(&p.unit.anchor().solid.rect).turned(back).center();
+        let mirrored = space.windows.iter().filter(|w| space.walls[w.wall].q % 2 == q % 2).any(|w| {
+            let window = w.zone.turned(back);
+            let aside = (window.y0 - y).max(y - window.y1);
+            aside < MIRRORED.0 && (window.center().0 - x).abs() < MIRRORED.1
+        });
+        if mirrored { GLARE } else { 0.0 }
+    }
+
+    /// Returns true when one gets past a counter on neither side, or through a narrow gap only.
+    fn is_shut_in(&self, p: &Placed<'a>) -> bool {
+        let back = (4 - p.q) % 4;
+        let own = p.world(&p.unit.anchor().solid.rect).turned(back);
+        let beside = [(own.y0 - PAST, own.y0), (own.y1, own.y1 + PAST)];
+        let open = |(y0, y1)| {
+            let way = Box2 { y0, y1, ..own }.turned(p.q);
+            self.state.space.contains(&way) && !self.state.solids.iter().any(|s| s.stops_robot() && s.rect.overlaps(&way))
+        };
+        !beside.into_iter().any(open)
     }
 }
