@@ -149,6 +149,6 @@ fn a_robot_at_its_dock_touches_nothing() {
             }
         }
     }
-    assert!(docks >= 24, "{docks}");
+    assert!(docks >= 20, "{docks}");
     assert!(touched.is_empty(), "{touched:#?}");
 }

@@ -24,7 +24,8 @@ pub struct Furnishing {
     pub required: bool,
     /// How it is arranged.
     pub arrangement: Arrangement,
-    /// Only where none of these items of earlier lines found a place (a small table where the large one does not fit).
+    /// Only where none of these items of earlier lines found a place (a small table where the large one does not fit). A
+    /// required line is content with them.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub instead_of: Vec<String>,
     /// Only in buildings without a room of these types (a dining table in the living room).
@@ -36,6 +37,13 @@ pub struct Furnishing {
     /// Only where step-free access is asked for.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub accessible: bool,
+}
+
+impl Furnishing {
+    /// Returns true when the line is for buildings with rooms of these types, with step-free access or without.
+    pub fn is_for<'t>(&self, mut room_types: impl Iterator<Item = &'t str>, accessible: bool) -> bool {
+        (accessible || !self.accessible) && !room_types.any(|t| self.unless_rooms.iter().any(|u| u == t))
+    }
 }
 
 fn is_zero(n: &u32) -> bool {
@@ -185,9 +193,6 @@ impl Furnishing {
         if self.min > self.max || self.max == 0 {
             problems
                 .push(Problem::new(path, format!("needs min <= max and max > 0, has {} and {}", self.min, self.max)));
-        }
-        if self.required && !self.instead_of.is_empty() {
-            problems.push(Problem::new(format!("{path}/required"), "is true though another item does instead"));
         }
         if self.required && self.min == 0 {
             problems.push(Problem::new(format!("{path}/min"), "is 0 though the item is required"));

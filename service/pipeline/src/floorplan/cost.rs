@@ -15,7 +15,7 @@ use super::realize::{Layout, door_need};
 use super::spec::Brief;
 
 /// Cost of a room whose area is outside what is advised, beside that of how far.
-const ILL_ADVISED: f64 = 0.6;
+const ILL_ADVISED: f64 = 0.4;
 /// Cost of a room without the daylight that it is better with, beside those that take a facade and need none.
 const DARK: f64 = 1.8;
 /// Share by which circulation beyond what is advised counts as larger.

@@ -1,6 +1,6 @@
 //! Doors and open passages: where in the shared wall, how wide, which way the leaf swings.
 
-use d3dgen_model::domain::Zone;
+use d3dgen_model::domain::{Daylight, Zone};
 use d3dgen_model::floorplan::{Door, DoorKind, Swing};
 use d3dgen_model::geometry::{Rect, to_mm};
 use d3dgen_model::scene_graph::Connector;
@@ -12,6 +12,7 @@ use super::cost::ill_placed;
 use super::lattice::{Cellbox, INNER_HALF_M, JAMB_M, OUTER_HALF_M, meters};
 use super::outline::Stretch;
 use super::spec::Brief;
+use super::windows::LEAST_WALL_M;
 
 /// Clear height of doors, m.
 const DOOR_HEIGHT_M: f64 = 2.1;
@@ -26,6 +27,8 @@ const OPEN_JAMB_M: f64 = 0.3;
 const TO_PUBLIC: f64 = 0.2;
 /// What it counts there that rooms of the day are far from the entrance and bedrooms near.
 const TO_ZONES: f64 = 3.0;
+/// Wall between an entrance that stands aside and the corner of its room, on center lines, m.
+const ENTRANCE_ASIDE_M: f64 = 0.4;
 /// Floor kept free in front of a door, m.
 const APPROACH_M: f64 = 0.6;
 
@@ -324,9 +327,17 @@ impl Site<'_> {
         if to - from < opening - 1e-9 {
             return Vec::new();
         }
-        let start = (from + to - opening) / 2.0;
-        let line = Segment { start: s.point(start), end: s.point(start + opening) };
         let spine = Some(room) == self.brief.spine;
+        let middle = (from + to - opening) / 2.0;
+        // a little aside in a room where that leaves the wall for a window
+        let aside = meters(s.from) + ENTRANCE_ASIDE_M;
+        let window = |start: f64| {
+            let sides = [start - meters(s.from), meters(s.to) - start - opening];
+            sides.into_iter().any(|wall| wall >= LEAST_WALL_M)
+        };
+        let lit = spine || self.brief.rooms[room].daylight == Daylight::None || window(middle);
+        let start = if !lit && aside >= from && window(aside) { aside } else { middle };
+        let line = Segment { start: s.point(start), end: s.point(start + opening) };
         // The end of a corridor is where one looks for its door; a second exit belongs far from the first.
         let mut penalty = if spine && !self.brief.hub { meters(s.len()) } else { 0.1 * f64::from(s.at.abs()) * 0.05 };
         if main {

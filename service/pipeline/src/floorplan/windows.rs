@@ -24,6 +24,8 @@ const CORRIDOR_PANE_M: f64 = 1.2;
 /// Outer wall of a wet room that has a tall shower in one corner and its window in the middle, m; on shorter ones the
 /// window makes room for it.
 const SHOWER_AND_WINDOW_M: f64 = 2.9;
+/// Outer wall that takes the narrowest window, m.
+pub(super) const LEAST_WALL_M: f64 = PANE_M.1 + 2.0 * MARGIN_M;
 /// Widest and narrowest single window, m.
 const PANE_M: (f64, f64) = (2.4, 0.6);
 /// What a width in steps may lack by rounding.
@@ -113,7 +115,7 @@ fn free_parts(stretch: &Stretch, doors: &[Door]) -> Vec<(f64, f64)> {
 /// Returns the end of an outer wall of a wet cell that its window goes to, m: the one that is nearer to the door, for a
 /// shower needs a corner without either. The whole wall where it is long enough for both.
 fn beside_shower(room: &RoomSpec, stretch: &Stretch, (from, to): (f64, f64), doors: &[Door]) -> (f64, f64) {
-    let width = PANE_M.1 + 2.0 * MARGIN_M;
+    let width = LEAST_WALL_M;
     if to - from >= SHOWER_AND_WINDOW_M || to - from <= width {
         return (from, to);
     }
@@ -137,7 +139,8 @@ fn add_panes(
     // the middle of its share of the wall.
     let share = (to - from) / count;
     let most = (share - 2.0 * MARGIN_M).max(PANE_M.1.min(share));
-    let width = (total / count * 20.0 - ROUNDING).ceil().max(PANE_M.1 * 20.0).min((most * 20.0 + ROUNDING).floor()) / 20.0;
+    let width =
+        (total / count * 20.0 - ROUNDING).ceil().max(PANE_M.1 * 20.0).min((most * 20.0 + ROUNDING).floor()) / 20.0;
     for k in 0..count as usize {
         let start = from + share * (k as f64 + 0.5) - width / 2.0;
         windows.push(Window {

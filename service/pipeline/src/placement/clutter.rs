@@ -343,6 +343,7 @@ fn task_of<'a>(line: &ClutterLine, object: &'a ObjectType, host: &ObjectType, co
         spare: 0,
         line: 0,
         instead_of: &[],
+        first_choice: false,
         rule: format!("clutter ({} on {}): {}", line.items.join(", "), host.id, line.pattern.name()),
     }
 }

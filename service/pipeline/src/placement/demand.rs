@@ -29,12 +29,19 @@ pub(super) struct Task<'a> {
     pub rule: String,
     /// Items in whose place it comes: not wanted where one of them stands.
     pub instead_of: &'a [String],
+    /// True when a required line comes in its place where it finds none.
+    pub first_choice: bool,
 }
 
 impl Task<'_> {
     /// Returns true for what comes after everything that stands on the floor.
     pub fn is_decor(&self) -> bool {
         phase(self) >= 3
+    }
+
+    /// Returns true for what is placed with what the room cannot do without.
+    fn is_needed(&self) -> bool {
+        self.required > 0 || self.first_choice
     }
 
     /// Returns true for seats and what people sit at: a line of rows of them is an audience.
@@ -72,12 +79,13 @@ pub(super) struct Household<'a> {
     room_types: Vec<&'a str>,
     /// True where step-free access is asked for.
     accessible: bool,
+    has_robots: bool,
 }
 
 impl<'a> Household<'a> {
     pub fn new(domain: &'a Domain, graph: &'a SceneGraph) -> Self {
         let room_types = graph.rooms.iter().map(|r| r.room_type.as_str()).collect();
-        Self { domain, room_types, accessible: graph.accessible }
+        Self { domain, room_types, accessible: graph.accessible, has_robots: !graph.robots.is_empty() }
     }
 
     /// Returns how many people have a bed.
@@ -90,10 +98,9 @@ impl<'a> Household<'a> {
     }
 
     fn wants(&self, line: &Furnishing) -> bool {
-        let has = |kind: &String| self.room_types.iter().any(|t| t == kind);
-        let reached = self.accessible || !line.accessible;
         // few lines ask who sleeps there, and to know takes time
-        reached && !line.unless_rooms.iter().any(has) && (line.sleepers == 0 || self.sleepers() >= line.sleepers)
+        line.is_for(self.room_types.iter().copied(), self.accessible)
+            && (line.sleepers == 0 || self.sleepers() >= line.sleepers)
     }
 }
 
@@ -129,7 +136,9 @@ pub(super) fn tasks<'a>(
         let rule = format!("furnishing line {} ({}): {name}", line + 1, f.item);
         let arrangement = f.arrangement;
         let (rule, instead_of) = (rule.clone(), &f.instead_of[..]);
-        let whole = Task { item: &f.item, anchor, arrangement, count, required, spare: 0, line, rule, instead_of };
+        let first_choice = kind.furnishing.iter().any(|other| other.required && other.instead_of.contains(&f.item));
+        let item = &f.item;
+        let whole = Task { item, anchor, arrangement, count, required, spare: 0, line, rule, instead_of, first_choice };
         let together = whole.is_batch() || required == 0 || required == count || occupied.is_some_and(|o| o.0 == line);
         if together {
             out.push(whole);
@@ -155,6 +164,7 @@ pub(super) fn tasks<'a>(
             line,
             rule,
             instead_of: &[],
+            first_choice: false,
         });
     }
     if let Some(each) = per_person_m2.filter(|_| occupied.is_none()) {
@@ -166,11 +176,11 @@ pub(super) fn tasks<'a>(
     turn_to_audience(&mut out);
     // a household eats before its vacuum robot does
     let table = |t: &Task| kind.furnishing.get(t.line).is_some_and(|f| !f.unless_rooms.is_empty());
-    // a dock needs more floor than what it stands beside; corners are few: what cannot do without one comes before what
+    // where robots live a dock comes before what it stands beside, for it needs more floor; corners are few: what cannot do without one comes before what
     // only wants a wall
-    let dock = |t: &Task| t.required == 0 && t.anchor.shape == Shape::Dock;
+    let dock = |t: &Task| household.has_robots && t.required == 0 && t.anchor.shape == Shape::Dock;
     out.sort_by_key(|t| {
-        (phase(t), !table(t), !dock(t), t.required == 0 || t.arrangement != Arrangement::Corner, t.line)
+        (phase(t), !table(t), !dock(t), !t.is_needed() || t.arrangement != Arrangement::Corner, t.line)
     });
     out
 }
@@ -238,7 +248,18 @@ pub(super) fn one_more(object: &ObjectType) -> Task<'_> {
     let arrangement = natural(object);
     let rule = format!("added by an edit ({}): {}", object.id, arrangement_name(arrangement));
     let item = &object.id;
-    Task { item, anchor: object, arrangement, count: 1, required: 1, spare: 0, line: 0, rule, instead_of: &[] }
+    Task {
+        item,
+        anchor: object,
+        arrangement,
+        count: 1,
+        required: 1,
+        spare: 0,
+        line: 0,
+        rule,
+        instead_of: &[],
+        first_choice: false,
+    }
 }
 
 fn wishes<'a>(domain: &'a Domain, kind: &RoomType, graph: Option<&GraphRoom>) -> Vec<&'a ObjectType> {
@@ -270,7 +291,7 @@ fn natural(object: &ObjectType) -> Arrangement {
 fn phase(task: &Task) -> u8 {
     use Arrangement::{AtWindow, Center, Facing, OnSurface, Overhead, Rows};
     let last = matches!(task.arrangement, OnSurface | Overhead | AtWindow);
-    match (task.required > 0, task.arrangement) {
+    match (task.is_needed(), task.arrangement) {
         _ if last => 4,
         // what faces the first line comes after it
         (true, Rows | Center | Facing) => 1,

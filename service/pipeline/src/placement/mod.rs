@@ -16,6 +16,7 @@ mod find;
 mod geom;
 mod locked;
 mod nav;
+mod neighbors;
 mod pockets;
 mod proposed;
 mod search;
@@ -165,6 +166,7 @@ pub(crate) fn furnish_room(
         aims: &setting.aims,
         salt: setting.salt,
         radius: setting.radius,
+        has_robots: !graph.robots.is_empty(),
         way: setting.way.as_ref(),
         wide_way: setting.wide_way.as_ref(),
         stop,

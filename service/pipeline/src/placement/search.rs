@@ -50,6 +50,8 @@ pub(super) struct Job<'a, 's> {
     pub salt: u64,
     /// Radius of the robot, mm.
     pub radius: i32,
+    /// True where robots are asked for.
+    pub has_robots: bool,
     /// What must stay open from door to door, or for beds.
     pub way: Option<&'s Way>,
     /// The same with the width that is advised, where the room has it.
@@ -78,6 +80,8 @@ impl Level {
     }
 }
 
+/// The last pass that tries what has something else in its place.
+const FIRST_CHOICES: usize = 1;
 const NOT_OPEN: Open = Open { doors: false, windows: false };
 
 /// The passes in turn, the strictest first.
@@ -163,6 +167,7 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
             if advised { job.wide_way } else { job.way }.filter(|way| ways || way.kind == way::Kind::Circulation),
             open,
         );
+        start.has_robots = job.has_robots;
         start.add(job.locked.to_vec());
         Self { job, level, forms, start }
     }
@@ -270,7 +275,8 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
             let present = self.job.present[index];
             let count = task.count.saturating_sub(present);
             let replaced = |item: &String| draft.state.placed.iter().any(|p| p.unit.item == item);
-            if count == 0 || self.job.stop.is_set() || task.instead_of.iter().any(replaced) {
+            let given_up = task.first_choice && self.level > FIRST_CHOICES;
+            if count == 0 || given_up || self.job.stop.is_set() || task.instead_of.iter().any(replaced) {
                 continue;
             }
             let mut tally = Tally::default();

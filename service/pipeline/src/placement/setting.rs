@@ -42,7 +42,10 @@ impl<'a> Setting<'a> {
         (domain, limits): (&'a Domain, &Limits),
         wanted: Wanted<'a>,
     ) -> Self {
-        let space = Space::new(plan, room);
+        let mut space = Space::new(plan, room);
+        if graph.accessible {
+            space.keep_latch_sides();
+        }
         let kind = domain.room_type_or_generic(&room.room_type);
         let per_person_m2 = limits.rooms.get(&room.room_type).and_then(|l| l.area_per_person_advised);
         let per_person_m2 = per_person_m2.or_else(|| workroom_area(plan, domain, limits));

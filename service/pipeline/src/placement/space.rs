@@ -7,6 +7,8 @@ use super::geom::{Box2, Solid, mm, turn};
 
 /// Floor kept free in front of every door over its width, mm.
 const DOOR_DEPTH: i32 = 600;
+/// Wall beside the latch of a door that people in wheelchairs open, mm (18 in, ADA 404.2.4).
+const LATCH_SIDE: i32 = 457;
 /// How far from a wall something counts as standing in front of its window, mm.
 const WINDOW_DEPTH: i32 = 300;
 /// The same where the room has the space: what measures of finished worlds look at.
@@ -176,6 +178,21 @@ impl Space {
             }
         }
         out
+    }
+
+    /// Widens what doors should have by the wall beside their latches, for people in wheelchairs.
+    pub fn keep_latch_sides(&mut self) {
+        for door in &mut self.doors {
+            let (Some(high), wall) = (door.latch_high, &self.walls[door.wall]) else { continue };
+            let back = (4 - wall.q) % 4;
+            let mut zone = door.open_zone.turned(back);
+            if high {
+                zone.y1 = (zone.y1 + LATCH_SIDE).min(wall.v1).max(zone.y1);
+            } else {
+                zone.y0 = (zone.y0 - LATCH_SIDE).max(wall.v0).min(zone.y0);
+            }
+            door.open_zone = zone.turned(wall.q);
+        }
     }
 
     /// Returns true when the rectangle lies on the net floor.

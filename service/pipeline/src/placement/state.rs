@@ -128,6 +128,8 @@ pub(super) struct State<'a, 's> {
     /// Outlines of what takes floor: not what is flat, hangs high or flat on a wall.
     bodies: Vec<Box2>,
     in_the_way: InTheWay,
+    /// True where robots are to live: a dock in the way is better than none.
+    pub has_robots: bool,
     /// Floor that belongs to docks.
     pub docks: Vec<Box2>,
     /// Floor at the foot of beds through which one gets to their sides.
@@ -159,6 +161,7 @@ impl<'a, 's> State<'a, 's> {
             clears: Vec::new(),
             bodies: Vec::new(),
             in_the_way: InTheWay::default(),
+            has_robots: false,
             docks: Vec::new(),
             beside_beds: Vec::new(),
             sights: Vec::new(),
@@ -282,7 +285,8 @@ impl<'a, 's> State<'a, 's> {
         };
         obstacles.iter().for_each(|o| nav.block(o));
         let reached = nav.settle()
-            && self.targets.iter().all(|t| nav.reaches(t))
+            // what stands there for good may be out of reach already
+            && self.targets.iter().all(|t| nav.reaches(t) || !self.nav.reaches(t))
             && units.iter().filter(|u| needs_reach(u)).all(|u| nav.reaches(&u.targets()));
         if reached { Ok(nav.area()) } else { Err(Rule::Route) }
     }

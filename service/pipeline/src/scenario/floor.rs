@@ -33,7 +33,8 @@ pub(super) struct Room<'a> {
     pub objects: Vec<(&'a Placement, &'a ObjectType)>,
     /// Reachable cells of the room that are still free of robots and people, in a grid of the room's own.
     spots: Bitmap,
-    /// Cells where the disc lies within the room, clear of all that stands there by a cell.
+    /// Cells where the disc lies within the room, clear of all that stands there by a cell, as also on the way in where
+    /// that is possible.
     roomy: Bitmap,
     /// Its first cell in the grid of the building.
     corner: (i64, i64),
@@ -44,6 +45,8 @@ impl<'a> Floor<'a> {
         let occupancy = Occupancy::of_world(plan, placements);
         let radius = graph.robots.iter().map(|r| r.radius_m).fold(LEAST_RADIUS_M, f64::max);
         let main = occupancy.reach(plan, radius).main;
+        // grids that begin elsewhere see gaps a cell narrower
+        let surely = occupancy.clear(radius + CELL_M).components().into_iter().next();
         let mut painted = Bitmap::new(occupancy.frame.nx, occupancy.frame.ny);
         let mut room = |room: &'a PlanRoom| {
             let (i0, i1, j0, j1) = occupancy.frame.span(&room.net_polygon.bounds());
@@ -52,7 +55,12 @@ impl<'a> Floor<'a> {
             painted.fill(i0, i1, j0, j1, false);
             let mut roomy = spots.clone();
             roomy.intersect(&occupancy.free.window(i0, i1, j0, j1));
-            let roomy = roomy.eroded(radius / CELL_M + 1.0);
+            let mut roomy = roomy.eroded(radius / CELL_M + 1.0);
+            if let Some(surely) = surely.as_ref().map(|map| map.window(i0, i1, j0, j1))
+                && roomy.count_common(&surely) > 0
+            {
+                roomy.intersect(&surely);
+            }
             spots.intersect(&main.window(i0, i1, j0, j1));
             let here = placements.placements.iter().filter(|p| p.room_id == room.room_id);
             Room {

@@ -80,7 +80,8 @@ fn buffers<'r>(floor: &'r Floor, room: &'r Room) -> impl Iterator<Item = (&'r Pl
 /// Returns how deep the floor is where robots serve at an object, m: to what stands across or the floor of a dock, where
 /// that is near.
 fn service_depth(room: &Room, object: &Placement, buffers: &[(&Placement, Rect)]) -> f64 {
-    let together = |p: &Placement| p.placement_id == object.placement_id || p.group.is_some() && p.group == object.group;
+    let together =
+        |p: &Placement| p.placement_id == object.placement_id || p.group.is_some() && p.group == object.group;
     let standing = room.objects.iter().map(|(p, _)| *p).filter(|p| stops_robot(p) && p.support.is_none());
     let bodies = standing.filter(|p| !together(p)).map(|p| p.footprint().bounds());
     let taken: Vec<Rect> = bodies.chain(buffers.iter().map(|(_, r)| *r)).collect();

@@ -10,9 +10,6 @@ use d3dgen_model::{Point, Pose};
 
 use super::floor::{Floor, looking_at};
 
-/// Most goals of one robot.
-const MOST_GOALS: usize = 6;
-
 /// Returns the robots of the scene graph, each with its own start and goals that it can reach.
 pub(super) fn all(
     floor: &mut Floor,
@@ -30,7 +27,7 @@ pub(super) fn all(
             let Some(start) = start(floor, pois, dock, &out) else { continue };
             floor.take(Point::new(start.x, start.y), robot.radius_m);
             out.push(RobotTask {
-                goals: goals(graph, robot, &robot_id, pois),
+                goals: goals(graph, robot, number, pois),
                 robot_id,
                 robot: Robot { count: 1, ..robot.clone() },
                 start,
@@ -71,8 +68,9 @@ fn start(floor: &Floor, pois: &[Poi], dock: Option<&Poi>, others: &[RobotTask]) 
     })
 }
 
-/// Returns the points a robot visits: those of its trade, in an order of its own.
-fn goals(graph: &SceneGraph, robot: &Robot, robot_id: &str, pois: &[Poi]) -> Vec<String> {
+/// Returns the points one of several equal robots visits: its share of those of its trade, in an order of its own; all
+/// where there are fewer than robots.
+fn goals(graph: &SceneGraph, robot: &Robot, number: usize, pois: &[Poi]) -> Vec<String> {
     let own = format!("{}_point", robot.kind);
     let mut of_trade: Vec<&Poi> = pois.iter().filter(|p| p.kind == own).collect();
     if of_trade.is_empty() {
@@ -81,6 +79,7 @@ fn goals(graph: &SceneGraph, robot: &Robot, robot_id: &str, pois: &[Poi]) -> Vec
     if of_trade.is_empty() {
         of_trade = pois.iter().filter(|p| p.kind == "entrance" || p.kind == "waiting_bay").collect();
     }
-    Stream::new(graph.seed, &format!("scenario/{robot_id}")).shuffle(&mut of_trade);
-    of_trade.iter().take(MOST_GOALS).map(|p| p.poi_id.clone()).collect()
+    Stream::new(graph.seed, &format!("scenario/{}", robot.kind)).shuffle(&mut of_trade);
+    let (first, step) = if of_trade.len() < robot.count as usize { (0, 1) } else { (number, robot.count as usize) };
+    of_trade.iter().skip(first).step_by(step).map(|p| p.poi_id.clone()).collect()
 }

@@ -19,6 +19,9 @@ const NEAR_AXIS_M: f64 = 0.4;
 const VIEW: (i32, i32) = (1500, 6500);
 /// What a meter less before a counter loses, where people queue in the way in.
 const QUEUE: f64 = 1.6;
+/// How far aside of the way in a counter stands that looks across it, and the floor before it, m.
+const COUNTER_AWAY_M: f64 = 1.8;
+const COUNTER_FRONT_M: f64 = 1.6;
 /// Floor a person needs behind a free-standing counter, mm.
 const BEHIND: i32 = 900;
 /// Floor to get past a counter to its staff's side, mm, and what a counter loses that leaves less on both sides.
@@ -44,8 +47,12 @@ impl<'a> Find<'_, 'a, '_> {
         let middle = (anchor.y0 + anchor.y1) / 2;
         let own = (q + 4 - look) % 4;
         let at = |u: i32, v: i32, task: usize| Placed { at: turn(q, u, v), ..at_frame(unit, own, 0, 0, task) };
-        // whoever sits before the wall needs room for the chair
-        let back = if look == 0 { b.x0 } else { r.x0.min(b.x0) };
+        // whoever sits before the wall needs room for the chair, and whoever speaks from behind a lectern to stand
+        let back = match (look, self.task.anchor.shape) {
+            (0, Shape::Counter) => b.x0 - BEHIND,
+            (0, _) => b.x0,
+            _ => r.x0.min(b.x0),
+        };
         for i in 0..self.state.space.walls.len() {
             let wall = &self.state.space.walls[i];
             if wall.q != q || wall.length() < b.height() {
@@ -160,15 +167,11 @@ impl<'a> Find<'_, 'a, '_> {
                 };
                 let near = QUEUE * (least - front).max(0.0) + slope * (front - far).max(0.0);
                 let score = 2.0 - 0.6 * off - lost - near;
-                let hampered = |find: &Self, p: &Placed<'a>| match look {
-                    0 if find.is_shut_in(p) => SHUT_IN,
-                    0 => 0.0,
-                    _ => find.glare(p),
-                };
+                let hampered = |find: &Self, p: &Placed<'a>| if look == 0 { find.shut_in(p) } else { find.glare(p) };
                 self.offer(placed, 80 + u32::from(behind > 100), |find, p| score - hampered(find, p));
             }
         }
-        if look != 0 {
+        if look != 0 || !door.open {
             self.across_door(unit, (q + 1) % 4);
             self.across_door(unit, (q + 3) % 4);
         }
@@ -180,11 +183,13 @@ impl<'a> Find<'_, 'a, '_> {
         }
     }
 
-    /// Offers positions for a desk whose user sits with the back to a side wall, looks along `q` and has the door ahead.
+    /// Offers positions for a desk or counter whose user has the back to a side wall, looks along `q` and has the door
+    /// ahead.
     fn across_door(&mut self, unit: &Rc<Unit<'a>>, q: u8) {
         let space = self.state.space;
         let back = (4 - q) % 4;
         let door = space.doors[0].zone.turned(back).center();
+        let wide = space.bounds.turned(back);
         let (b, r) = (unit.as_looking(&unit.bbox), unit.as_looking(&unit.reach));
         let own = (q + 4 - unit.look()) % 4;
         for wall in space.walls.iter().filter(|w| w.q == q && w.u + SIDE_VIEW < door.0) {
@@ -193,8 +198,18 @@ impl<'a> Find<'_, 'a, '_> {
             let steps = (low..=high).step_by(STEP as usize);
             for v in steps.chain((low <= high).then_some(high)) {
                 let placed = Placed { at: turn(q, u, v), ..at_frame(unit, own, 0, 0, self.index) };
-                let away = f64::from((v + (b.y0 + b.y1) / 2 - door.1).abs()) / 4000.0;
-                self.offer(placed, 82 + u32::from(q), |find, p| 1.6 + 0.6 * away.min(1.0) - find.glare(p));
+                let away = f64::from((v + (b.y0 + b.y1) / 2 - door.1).abs()) / 1000.0;
+                let front = f64::from(wide.x1 - u - b.x1) / 1000.0;
+                let score = |find: &Self, p: &Placed<'a>| match unit.look() {
+                    // whoever comes in finds the counter before the way on, and room to stand there
+                    0 => {
+                        2.2 - 0.3 * (away - COUNTER_AWAY_M).abs()
+                            - QUEUE * (COUNTER_FRONT_M - front).max(0.0)
+                            - find.shut_in(p)
+                    }
+                    _ => 1.6 + (0.15 * away).min(0.6) - find.glare(p),
+                };
+                self.offer(placed, 82 + u32::from(q), score);
             }
         }
     }
@@ -213,15 +228,16 @@ impl<'a> Find<'_, 'a, '_> {
         if mirrored { GLARE } else { 0.0 }
     }
 
-    /// Returns true when one gets past a counter on neither side, or through a narrow gap only.
-    fn is_shut_in(&self, p: &Placed<'a>) -> bool {
+    /// Returns what a counter loses past which one gets on neither side, or through a narrow gap only.
+    fn shut_in(&self, p: &Placed<'a>) -> f64 {
         let back = (4 - p.q) % 4;
         let own = p.world(&p.unit.anchor().solid.rect).turned(back);
         let beside = [(own.y0 - PAST, own.y0), (own.y1, own.y1 + PAST)];
         let open = |(y0, y1)| {
             let way = Box2 { y0, y1, ..own }.turned(p.q);
-            self.state.space.contains(&way) && !self.state.solids.iter().any(|s| s.stops_robot() && s.rect.overlaps(&way))
+            self.state.space.contains(&way)
+                && !self.state.solids.iter().any(|s| s.stops_robot() && s.rect.overlaps(&way))
         };
-        !beside.into_iter().any(open)
+        if beside.into_iter().any(open) { 0.0 } else { SHUT_IN }
     }
 }

@@ -15,6 +15,7 @@ pub(super) use rows::{Terms, over, rows};
 use super::demand::Task;
 use super::docks::crowding;
 use super::geom::Box2;
+use super::neighbors::disturbs;
 use super::seats::{behind_counters, beside_beds};
 use super::state::{Placed, Rule, State};
 use super::style::{Style, grain, style};
@@ -80,8 +81,12 @@ impl<'f, 'a, 's> Find<'f, 'a, 's> {
 
     /// Tests a position and keeps it when it breaks no rule.
     fn offer(&mut self, placed: Placed<'a>, class: u32, score: impl FnOnce(&Self, &Placed<'a>) -> f64) {
-        if self.task.required == 0 && self.state.hides(&placed) {
+        let spare = self.task.required == 0;
+        if spare && self.state.hides(&placed) {
             return self.none(Rule::NoPlace);
+        }
+        if spare && disturbs(self.state, &placed, self.aisle) {
+            return self.none(Rule::Clearance);
         }
         let at_window = self.task.arrangement == Arrangement::AtWindow;
         let parts = placed.unit.parts.len();

@@ -16,10 +16,15 @@ const BACK_M: f64 = 0.30;
 const USABLE_SHARE: f64 = 0.5;
 
 pub fn required(c: &Context, out: &mut Findings) {
+    let graph = c.graph();
+    let asked = |line: &&Furnishing| {
+        line.required && line.is_for(graph.rooms.iter().map(|r| r.room_type.as_str()), graph.accessible)
+    };
     for room in &c.rooms {
-        for line in room.kind.furnishing.iter().filter(|f| f.required) {
+        for line in room.kind.furnishing.iter().filter(asked) {
             out.look();
-            let count = instances(c, room, line);
+            let items = std::iter::once(&line.item).chain(&line.instead_of);
+            let count: u32 = items.map(|item| instances(c, room, item)).sum();
             if count < line.min {
                 let message = format!("has {count} {}, needs {}", line.item, line.min);
                 out.add_figure(&room.plan.room_id, message, f64::from(count), f64::from(line.min), "count");
@@ -33,11 +38,11 @@ pub fn required(c: &Context, out: &mut Findings) {
 }
 
 /// Returns how many of an item stand in a room: whole groups, or objects (in groups or not).
-fn instances(c: &Context, room: &Room, line: &Furnishing) -> u32 {
+fn instances(c: &Context, room: &Room, item: &str) -> u32 {
     let here = || c.objects_in(&room.plan.room_id).map(|o| o.placement);
-    match c.domain.group(&line.item) {
+    match c.domain.group(item) {
         Some(group) => members(c, room, group).filter(|m| is_whole(group, m)).count() as u32,
-        None => here().filter(|p| p.object == line.item).count() as u32,
+        None => here().filter(|p| p.object == item).count() as u32,
     }
 }
 

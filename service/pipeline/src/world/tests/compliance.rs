@@ -48,7 +48,7 @@ const MORE: [&str; 9] = [
     "hospital ward in Germany with two four-bed patient rooms, a day room, an assisted bathroom and toilets",
     "intensive care unit in the US with two ICU bays and a nurse station",
     "office in the US with an open office for 70 people and toilets",
-    "office in the US with an open office for 60 people, two meeting rooms, a kitchen, a storage room and toilets",
+    "office in the US with an open office for 60 people, two meeting rooms, a kitchen, a storage room, an archive and toilets",
     "accessible flat in Australia with a bedroom and a toilet for two people",
 ];
 
