@@ -92,6 +92,32 @@ impl FreeSpace {
         self.connects(&gates, width)
     }
 
+    /// Returns true when something long on wheels, `length` x `width` (m), gets in or out by a door: straight ahead, or
+    /// around the corner into floor that runs along the door's wall.
+    ///
+    /// Around the corner the floor is taken as a corridor that meets one as wide as the door; the longest rectangle of a
+    /// width that turns from one into the other is the least of (a cos t + b sin t - width) / (sin t cos t) over all angles
+    /// t, with the widths a and b of the corridors (the moving sofa's elementary bound, turned about the inner corner).
+    pub fn turns_in(&self, door: &Door, length: f64, width: f64) -> bool {
+        let vertical = door.line.is_vertical();
+        let gate = gate(door);
+        self.rects.iter().any(|r| {
+            let c = common(r, &gate);
+            let (along, across, depth) =
+                if vertical { ([c.y0, c.y1], c.width(), r.width()) } else { ([c.x0, c.x1], c.height(), r.height()) };
+            let clear = (along[1] - along[0]).min(door.clear_width_m);
+            if across <= 0.0 || clear < width - TOLERANCE_M {
+                return false;
+            }
+            let [low, high] = if vertical { [r.y0, r.y1] } else { [r.x0, r.x1] };
+            let run = (high - along[0]).max(along[1] - low);
+            depth >= length - TOLERANCE_M
+                || depth >= width
+                    && run >= length - TOLERANCE_M
+                    && longest_turned(clear, depth, width) >= length - TOLERANCE_M
+        })
+    }
+
     fn connects(&self, gates: &[(Rect, bool, f64)], width: f64) -> bool {
         let wide: Vec<&Rect> = self.rects.iter().filter(|r| short_side(r) >= width - TOLERANCE_M).collect();
         let mut group: Vec<usize> = (0..wide.len()).collect();
@@ -116,6 +142,15 @@ impl FreeSpace {
             .iter()
             .any(|part| gates.iter().all(|gate| wide.iter().zip(&group).any(|(r, g)| g == part && serves(r, gate))))
     }
+}
+
+/// Returns the length of the longest rectangle of a width that turns from a corridor of width `a` into one of width `b`, m.
+fn longest_turned(a: f64, b: f64, width: f64) -> f64 {
+    let length = |degrees: i32| {
+        let (sin, cos) = f64::from(degrees).to_radians().sin_cos();
+        (a * cos + b * sin - width) / (sin * cos)
+    };
+    (3..88).map(length).fold(f64::MAX, f64::min)
 }
 
 fn short_side(r: &Rect) -> f64 {

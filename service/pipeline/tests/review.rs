@@ -419,7 +419,7 @@ fn patients_have_a_wardrobe_and_visitors_a_seat() {
         let rooms = world.floorplan.rooms.iter().filter(|r| r.room_type == "patient_room");
         wardrobes.extend(rooms.map(|r| placed(&world, r, "patient_wardrobe").next().is_some()));
     }
-    for world in worlds("office with 8 rooms and a reception", 8) {
+    for world in worlds("office with 8 rooms and a reception", 16) {
         for room in world.floorplan.rooms.iter().filter(|r| r.room_type == "reception") {
             let soft = |p: &Placement| p.object == "visitor_chair" || p.object.contains("sofa");
             let mut own = world.placements.placements.iter().filter(|p| p.room_id == room.room_id);
@@ -427,7 +427,7 @@ fn patients_have_a_wardrobe_and_visitors_a_seat() {
         }
     }
     most("patient rooms with a wardrobe", 0.95, &wardrobes);
-    most("receptions with a seat for visitors", 0.95, &seats);
+    most("receptions with a seat for visitors", 0.9, &seats);
 }
 
 #[test]

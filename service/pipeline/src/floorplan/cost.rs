@@ -49,6 +49,10 @@ const LATCH_SIDE_M: f64 = 0.457 - JAMB_M;
 /// Cost of a sleeping room larger than the room of the day that is to be the largest, beside that of how much.
 const WRONG_SIZES: f64 = 1.0;
 
+/// A step in the outline shorter than this has no reason, m, and what it costs.
+const STEP_M: f64 = 0.9;
+const STEP: f64 = 0.4;
+
 /// Weight of what hangs in the air.
 pub(super) const OVERHANG: f64 = 30.0;
 
@@ -131,6 +135,8 @@ pub(super) struct Survey {
     pub(super) side: Vec<[[i32; 2]; 4]>,
     /// Boxes of one room that touch: their indices, and where, as [`Cellbox::contact`] has it.
     joined: Vec<(usize, usize, (usize, i32, i32))>,
+    /// Steps in the outline without a reason.
+    steps: usize,
     /// By pair of interest: the longest shared wall, lattice units.
     pair: Vec<i32>,
     pub(super) rooms: Vec<Measured>,
@@ -252,6 +258,7 @@ impl<'b> Judge<'b> {
         survey.side.resize(boxes.len(), [[0; 2]; 4]);
         // A sweep from west to east: only boxes that begin before this one ends can touch it.
         survey.joined.clear();
+        survey.steps = 0;
         survey.by_west.clear();
         survey.by_west.extend(boxes.iter().enumerate().map(|(i, (_, b))| (b.x0, i)));
         survey.by_west.sort_unstable();
@@ -296,6 +303,7 @@ impl<'b> Judge<'b> {
             for (s, [shared, own]) in side.iter().copied().enumerate() {
                 let len = if s < 2 { shape.height() } else { shape.width() };
                 let free = len - shared;
+                survey.steps += usize::from(shared > 0 && (1..up(STEP_M)).contains(&free));
                 room.outer = (room.outer.0.max(free), room.outer.1 + free);
                 let lost = meters(free) * OUTER_HALF_M + meters(shared - own) * INNER_HALF_M;
                 net -= lost;
@@ -427,6 +435,7 @@ impl<'b> Judge<'b> {
         score.soft[0] += self.wrong_sizes();
         let perimeter: f64 = rooms.iter().map(|r| meters(r.outer.1)).sum();
         score.soft[6] += perimeter / (4.0 * total.sqrt()) - 1.0 + 0.02 * layout.notch;
+        score.soft[6] += STEP * self.survey.steps as f64;
         // one comes up the stairs
         let stairs = brief.core.as_ref().map(|c| c.host);
         let entrance = brief.rooms.iter().position(|r| r.entrance).or(stairs).and_then(|i| rooms[i].main);

@@ -11,6 +11,7 @@ use super::assemble::highest;
 use super::cost::ill_placed;
 use super::lattice::{Cellbox, INNER_HALF_M, JAMB_M, OUTER_HALF_M, meters};
 use super::outline::Stretch;
+use super::realize::BED_DOOR_M;
 use super::spec::Brief;
 use super::windows::LEAST_WALL_M;
 
@@ -29,6 +30,9 @@ const TO_PUBLIC: f64 = 0.2;
 const TO_ZONES: f64 = 3.0;
 /// Wall between an entrance that stands aside and the corner of its room, on center lines, m.
 const ENTRANCE_ASIDE_M: f64 = 0.4;
+/// Floor behind a door into which a bed is pushed straight ahead, m, and how much wider the door is where it has to turn.
+const BED_AHEAD_M: f64 = 2.3;
+const BED_ASIDE_M: f64 = 0.15;
 /// Floor kept free in front of a door, m.
 const APPROACH_M: f64 = 0.6;
 
@@ -243,6 +247,13 @@ impl Site<'_> {
             return [from, to - width].map(|start| self.open_spot(s, a, b, start, width)).into();
         }
         let into = self.swing_room(a, b);
+        // beds that cannot go straight in turn in a wider door
+        let straight = clear < BED_DOOR_M || self.inside(into, &self.zone(s, into, from, to - from, BED_AHEAD_M));
+        let wider = if straight { clear } else { clear + BED_ASIDE_M };
+        let (clear, opening) = match Brief::opening(wider) {
+            wide if to - from >= wide => (wider, wide),
+            _ => (clear, opening),
+        };
         let first = if rng.chance(0.5) { 0.0 } else { 0.2 };
         let mut spots = Vec::new();
         let middle = (from + to - opening) / 2.0;

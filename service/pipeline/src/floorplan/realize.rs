@@ -38,7 +38,7 @@ struct Span {
 }
 
 /// Clear width from which a door is one for beds, m.
-const BED_DOOR_M: f64 = 1.1;
+pub(super) const BED_DOOR_M: f64 = 1.1;
 /// What a passage beside small rooms has beyond such a door, m: a bed 1.0 m wide and 2.2 m long turns from 1.8 m into 1.25 m.
 const BED_TURN_M: f64 = 0.2;
 

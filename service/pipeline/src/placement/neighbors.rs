@@ -1,10 +1,10 @@
 //! What does not belong side by side: sitting groups and desks, machines and desks, docks and everything that can go
-//! elsewhere.
+//! elsewhere, plants and the way into a bed.
 
 use d3dgen_model::domain::{Mount, Shape};
 
 use super::docks::is_in_the_way;
-use super::seats::is_seat;
+use super::seats::{beside_beds, is_seat};
 use super::state::{Placed, State};
 
 /// Floor between a desk with its chair and a sitting group or table that is none of its, mm.
@@ -14,7 +14,11 @@ const FROM_MACHINE: i32 = 1000;
 
 /// Returns true for a place where something that a room can do without would be in the way of what stands there.
 pub(super) fn disturbs(state: &State, p: &Placed, robot: i32) -> bool {
-    is_in_the_way(state, p, robot) || crowds_desks(state, p)
+    // clothes have to go somewhere, a plant has not
+    let stores = matches!(p.unit.anchor().object.shape, Shape::Cabinet | Shape::Shelf);
+    // a lone seat at the side of a dock is better than none for those who wait
+    let lone_seat = p.unit.parts.len() == 1 && is_seat(p.unit.anchor().object.shape);
+    !lone_seat && is_in_the_way(state, p, robot) || crowds_desks(state, p) || !stores && beside_beds(state, p) > 0.0
 }
 
 /// Returns true for sitting groups and tables right beside desks, and for machines behind those who work there.

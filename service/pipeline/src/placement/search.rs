@@ -24,6 +24,8 @@ const ROUTE_TESTS: usize = 40;
 const WEIGHED: usize = 4;
 /// Share of the units that rows of smaller or closer ones would hold from which those that keep more rules are taken.
 const WORTH: f64 = 0.75;
+/// Other beginnings of the search where floor is closed off.
+const MORE_BEGINNINGS: u64 = 3;
 /// Free floor from which two departures are enough, in cells (100 m^2): halls take long and look alike.
 const LARGE: usize = 40_000;
 /// Units in rows or a grid, and what they are worth.
@@ -114,16 +116,37 @@ pub(super) struct Outcome<'a> {
     pub level: usize,
 }
 
-/// Furnishes a room as well as the search can, relaxing clearances only while something required has no place; what is
-/// only advised goes before floor is closed off too.
+impl Outcome<'_> {
+    /// Returns what is worst about it: what is missing that must not be, then floor that is closed off.
+    fn lacks(&self) -> (u32, i64) {
+        (self.required_missing, self.closed)
+    }
+}
+
+/// Furnishes a room as well as the search can; where floor stays closed off, from other beginnings too.
 pub(super) fn furnish<'a>(job: &Job<'a, '_>) -> Outcome<'a> {
+    let mut best = relax(job);
+    for again in 1..=MORE_BEGINNINGS {
+        if best.closed == 0 || job.stop.is_set() {
+            break;
+        }
+        let other = relax(&Job { salt: job.salt.wrapping_add(again), ..*job });
+        if other.lacks() < best.lacks() {
+            best = other;
+        }
+    }
+    best
+}
+
+/// Furnishes a room, relaxing clearances only while something required has no place; what is only advised goes before floor
+/// is closed off too.
+fn relax<'a>(job: &Job<'a, '_>) -> Outcome<'a> {
     let mut best: Option<Outcome> = None;
     for level in 0..LEVELS.len() {
         let outcome = Pass::new(job, level).furnish();
         let advice_left = LEVELS.get(level + 1).is_some_and(|next| next.tightness >= 1.0 && next.open.doors);
         let done = outcome.required_missing == 0 && (outcome.closed == 0 || !advice_left);
-        let lacks = |o: &Outcome| (o.required_missing, o.closed);
-        if best.as_ref().is_none_or(|b| lacks(&outcome) < lacks(b)) {
+        if best.as_ref().is_none_or(|b| outcome.lacks() < b.lacks()) {
             best = Some(outcome);
         }
         if done || job.stop.is_set() {

@@ -10,7 +10,7 @@ use super::docks::{berths, buffers};
 use super::geom::{Box2, Solid, mm, turn};
 use super::nav::Nav;
 use super::pockets::Pockets;
-use super::seats::{is_seat, ways_beside};
+use super::seats::ways_beside;
 use super::space::{Open, Space};
 use super::unit::{Part, Unit};
 use super::way::{InTheWay, Way};
@@ -352,7 +352,7 @@ fn bodies(p: &Placed) -> impl Iterator<Item = Box2> {
 }
 
 /// Returns what units put in the way: what takes floor, what stands out from a wall below people's heads, robots at their
-/// docks. For a bed one moves the chairs, and what came with it goes with it.
+/// docks. What came with a bed goes with it.
 fn in_the_way(units: &[Placed]) -> InTheWay {
     let mut out = InTheWay::default();
     for p in units {
@@ -366,7 +366,7 @@ fn in_the_way(units: &[Placed]) -> InTheWay {
             out.narrowing.push(s.rect);
             if part.object.shape == Shape::HospitalBed {
                 out.beds.push(s.rect);
-            } else if !with_bed && !is_seat(part.object.shape) {
+            } else if !with_bed {
                 out.fixed.push(s.rect);
             }
         }

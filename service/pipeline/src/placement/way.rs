@@ -13,6 +13,9 @@ const THROUGH_M: [f64; 2] = [1.2, 1.5];
 /// Floor that a bed takes beside its own width when it is pushed, m, at least and as one would have it.
 const BESIDE_BED_M: [f64; 2] = [0.05, 0.2];
 
+/// Floor around a bed that is turned through a door, m, over its width and its length.
+const BED_SPARE_M: f64 = 0.05;
+
 /// What has to get through a room.
 #[derive(Debug, Clone)]
 pub(super) struct Way {
@@ -43,7 +46,7 @@ pub(super) struct InTheWay {
     pub parked: Vec<Box2>,
     /// Outlines of beds on wheels.
     pub beds: Vec<Box2>,
-    /// Outlines of what nobody moves for a bed.
+    /// Outlines of what does not go with a bed.
     pub fixed: Vec<Box2>,
 }
 
@@ -107,8 +110,11 @@ impl Way {
                 let others = there.beds.iter().enumerate().filter(|(n, _)| *n != k).map(|(_, b)| b);
                 let floor = free(&mut there.fixed.iter().chain(others));
                 let bed = bed.meters();
-                let width = bed.width().min(bed.height()) + self.width_m - TOLERANCE_M;
-                self.doors.iter().any(|door| floor.leads(door, &bed, width))
+                let [short, long] = [bed.width().min(bed.height()), bed.width().max(bed.height())];
+                let width = short + self.width_m - TOLERANCE_M;
+                let turned = [long, short].map(|side| side + BED_SPARE_M);
+                let out = |door: &&Door| floor.leads(door, &bed, width) && floor.turns_in(door, turned[0], turned[1]);
+                self.doors.iter().any(|door| out(&door))
             }),
         }
     }
