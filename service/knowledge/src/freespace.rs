@@ -260,6 +260,19 @@ mod tests {
     }
 
     #[test]
+    fn a_bed_turns_through_a_door_where_floor_and_door_are_wide_enough() {
+        // a lobby 4 m long behind a door in its long side
+        let lobby = |depth: f64| FreeSpace::new(&Polygon(Rect::new(0.0, 0.0, 4.0, depth).corners().to_vec()), &[]);
+        let narrow = door(0.1, -0.06, 1.3, -0.06);
+        let wide = door(0.1, -0.06, 1.5, -0.06);
+        assert!(lobby(2.3).turns_in(&narrow, 2.2, 1.0), "straight ahead");
+        assert!(!lobby(1.6).turns_in(&narrow, 2.2, 1.0) && lobby(1.6).turns_in(&wide, 2.2, 1.0));
+        assert!(!lobby(1.4).turns_in(&wide, 2.2, 1.0) && !lobby(2.3).turns_in(&narrow, 2.2, 1.25));
+        // equal corridors: 45 degrees are the worst, 2 (sqrt(2) a - w)
+        assert!((longest_turned(1.5, 1.5, 1.0) - 2.0 * (2.0_f64.sqrt() * 1.5 - 1.0)).abs() < 1e-9);
+    }
+
+    #[test]
     fn furniture_narrows_the_way_and_may_close_it() {
         let ends = [door(-0.06, 0.2, -0.06, 1.2), door(8.9, 7.56, 9.9, 7.56)];
         let ends: Vec<&Door> = ends.iter().collect();

@@ -7,7 +7,7 @@
 
 #![allow(clippy::unwrap_used)] // helpers of tests are tests
 
-use std::sync::atomic::AtomicBool;
+mod common;
 
 use d3dgen_model::Rect;
 use d3dgen_model::domain::Mount;
@@ -15,21 +15,13 @@ use d3dgen_model::floorplan::{Door, DoorKind, PlanRoom, Window};
 use d3dgen_model::placements::Placement;
 use d3dgen_model::scenario::RoiKind;
 use d3dgen_model::world::World;
-use d3dgen_pipeline::generate::{Settings, generate_world};
 use d3dgen_pipeline::scene_graph::{Request, generate};
 use d3dgen_plugins::Registry;
 
+use common::{body, gap, most, worlds};
+
 /// Bodies nearer than this touch, m: skirting and tiles.
 const TOUCH_M: f64 = 0.13;
-
-fn worlds(prompt: &str, seeds: u64) -> Vec<World> {
-    let registry = Registry::builtin();
-    let made = (0..seeds).map(|seed| {
-        let request = Request { prompt: prompt.into(), seed, ..Request::default() };
-        generate_world(&request, &registry, &Settings::default(), &mut |_| (), &AtomicBool::new(false)).unwrap().world
-    });
-    made.collect()
-}
 
 fn placed<'w>(world: &'w World, room: &'w PlanRoom, object: &'w str) -> impl Iterator<Item = &'w Placement> {
     let own = move |p: &&Placement| p.room_id == room.room_id && p.object == object;
@@ -52,29 +44,11 @@ fn to_walls(room: &PlanRoom, body: &Rect) -> [f64; 2] {
     nearest
 }
 
-/// Returns the outline of a body on the floor.
-fn body(p: &Placement) -> Rect {
-    p.footprint().bounds()
-}
-
-/// Returns the distance between two outlines, m.
-fn gap(a: &Rect, b: &Rect) -> f64 {
-    let (dx, dy) = ((a.x0 - b.x1).max(b.x0 - a.x1).max(0.0), (a.y0 - b.y1).max(b.y0 - a.y1).max(0.0));
-    dx.hypot(dy)
-}
-
 /// Returns where a point lies in a body's own frame, m: ahead of its middle, and to its left.
 fn seen_from(p: &Placement, x: f64, y: f64) -> (f64, f64) {
     let (sin, cos) = p.pose.yaw_rad.sin_cos();
     let (dx, dy) = (x - p.pose.x, y - p.pose.y);
     (dx * cos + dy * sin, dy * cos - dx * sin)
-}
-
-/// Counts what holds among what was looked at, and says what share of it must.
-fn most(what: &str, share: f64, held: &[bool]) {
-    let good = held.iter().filter(|h| **h).count();
-    assert!(!held.is_empty(), "{what}: nothing to look at");
-    assert!(good as f64 >= share * held.len() as f64, "{what}: {good} of {}", held.len());
 }
 
 /// Returns the floor on both sides of a door as deep as its leaf is wide.

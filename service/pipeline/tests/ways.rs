@@ -58,16 +58,17 @@ fn a_bed_can_be_pushed_out_of_its_room() {
                 let is_bed = |p: &Placement| shape(domain, p) == Some(Shape::HospitalBed);
                 for bed in bodies(&world, room).filter(|p| is_bed(p)) {
                     beds += 1;
-                    // chairs are moved away, and what belongs to the bed goes with it
-                    let seat = |p: &Placement| matches!(shape(domain, p), Some(Shape::Chair | Shape::Stool));
+                    // what belongs to the bed goes with it
                     let with_bed = |p: &Placement| p.group.is_some() && p.group == bed.group;
-                    let fixed = bodies(&world, room).filter(|p| !seat(p) && !with_bed(p));
+                    let fixed = bodies(&world, room).filter(|p| !with_bed(p));
                     let fixed: Vec<Rect> =
                         fixed.filter(|p| p.placement_id != bed.placement_id).map(|p| p.footprint().bounds()).collect();
                     let floor = FreeSpace::new(&room.net_polygon, &fixed);
                     let own = bed.footprint().bounds();
-                    let width = own.width().min(own.height()) + 0.05;
-                    if !inward(&world, room).iter().any(|door| floor.leads(door, &own, width - 0.01)) {
+                    let (width, length) = (own.width().min(own.height()), own.width().max(own.height()));
+                    let out =
+                        |door: &&Door| floor.leads(door, &own, width + 0.04) && floor.turns_in(door, length, width);
+                    if !inward(&world, room).iter().any(|door| out(&door)) {
                         stuck.push(format!("{prompt}, seed {}: {}", world.scene_graph.seed, bed.placement_id));
                     }
                 }

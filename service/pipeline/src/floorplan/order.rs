@@ -9,7 +9,7 @@ use d3dgen_model::seed::Stream;
 
 use super::cost::{Judge, Weights, between, ill_placed};
 use super::genome::Genome;
-use super::lattice::Cellbox;
+use super::lattice::{Cellbox, up};
 use super::realize::{Layout, Scratch, realize};
 use super::search::{Candidate, LOOK, mutate, patience};
 use super::spec::{Brief, RoomSpec};
@@ -22,6 +22,9 @@ const MOST_TRIES: usize = 900;
 const HEAT: f64 = 0.3;
 /// Cost of a ward none of whose bedroom doors its station sees.
 const OUT_OF_SIGHT: f64 = 2.0;
+/// Width up to which a part of a room is a neck, on center lines, m, and what it costs.
+const NECK_M: f64 = 1.9;
+const NECK: f64 = 0.6;
 /// Longest piece of outer wall that is looked at as an end of a corridor, lattice units.
 const END_WALL: i32 = 80;
 /// Cost of a plan in which one comes to all rooms in the wrong order.
@@ -79,7 +82,17 @@ pub(super) fn put_in_order(
 impl Judge<'_> {
     /// Returns what the order of rooms costs in the layout that was judged last.
     fn disorder(&self, layout: &Layout) -> f64 {
-        MISPLACED * self.misplaced(layout) + OUT_OF_SIGHT * self.out_of_sight()
+        MISPLACED * self.misplaced(layout) + OUT_OF_SIGHT * self.out_of_sight() + NECK * self.necks(layout) as f64
+    }
+
+    /// Returns how many rooms for visitors or by day one enters by a narrow part of them.
+    fn necks(&self, layout: &Layout) -> usize {
+        let (rooms, brief) = (&self.survey.rooms, self.brief);
+        let narrow = |(room, b): &&(usize, Cellbox)| {
+            let by_day = matches!(brief.rooms[*room].zone, Zone::Public | Zone::Day);
+            by_day && rooms[*room].main != Some(*b) && b.width().min(b.height()) < up(NECK_M)
+        };
+        layout.boxes.iter().filter(narrow).count()
     }
 
     /// Returns the share of pairs of rooms of different rank in which the one that comes later lies nearer the entrance,

@@ -1,0 +1,156 @@
+//! What a reviewer of plans objects to in the order of things: rooms larger than they should be, steps in a facade, things
+//! side by side that disturb each other, robots that leave out rooms where they have work.
+
+mod common;
+
+use d3dgen_model::Rect;
+use d3dgen_model::floorplan::{Floorplan, PlanRoom};
+use d3dgen_model::placements::Placement;
+use d3dgen_model::world::World;
+
+use common::{body, gap, most, worlds};
+
+/// Length from which a step in an outline is one that somebody meant, m.
+const STEP_M: f64 = 0.85;
+
+fn rooms<'w>(world: &'w World, kind: &'w str) -> impl Iterator<Item = &'w PlanRoom> {
+    world.floorplan.rooms.iter().filter(move |r| r.room_type == kind)
+}
+
+fn standing<'w>(world: &'w World, room: &'w PlanRoom) -> impl Iterator<Item = &'w Placement> {
+    world.placements.placements.iter().filter(|p| p.room_id == room.room_id && p.support.is_none() && p.pose.z < 1.2)
+}
+
+#[test]
+fn the_living_room_is_larger_than_the_hall() {
+    let homes = ["house with 8 rooms", "house, 10 rooms, UK, service robot", "villa with 10 rooms in Italy"];
+    let mut larger = Vec::new();
+    for world in homes.iter().flat_map(|prompt| worlds(prompt, 8)) {
+        let most = |kind: &str| rooms(&world, kind).map(|r| r.net_area_m2).fold(0.0, f64::max);
+        larger.push(most("living_room") >= most("hallway"));
+    }
+    most("living rooms larger than the hall", 0.9, &larger);
+}
+
+/// Returns the lengths of the straight pieces of a plan's outline, openings closed, m.
+fn outline(plan: &Floorplan) -> Vec<f64> {
+    let mut pieces: Vec<(bool, i64, f64, f64)> = Vec::new();
+    for wall in plan.walls.iter().filter(|w| w.exterior) {
+        let (a, b) = (wall.line.start, wall.line.end);
+        let vertical = wall.line.is_vertical();
+        let (at, from, to) = if vertical { (a.x, a.y, b.y) } else { (a.y, a.x, b.x) };
+        pieces.push((vertical, (at * 1000.0).round() as i64, from.min(to), from.max(to)));
+    }
+    pieces.sort_by(|a, b| (a.0, a.1).cmp(&(b.0, b.1)).then(a.2.total_cmp(&b.2)));
+    let mut lengths: Vec<(bool, i64, f64, f64)> = Vec::new();
+    for piece in pieces {
+        match lengths.last_mut() {
+            // the widest door in a wall
+            Some(last) if (last.0, last.1) == (piece.0, piece.1) && piece.2 - last.3 < 2.5 => {
+                last.3 = last.3.max(piece.3)
+            }
+            _ => lengths.push(piece),
+        }
+    }
+    lengths.into_iter().map(|(_, _, from, to)| to - from).collect()
+}
+
+#[test]
+fn facades_step_back_for_a_reason_or_not_at_all() {
+    let mut held = Vec::new();
+    for prompt in ["house with 8 rooms", "office with 8 rooms", "hospital ward with 8 rooms in Germany"] {
+        for world in worlds(prompt, 8) {
+            held.push(outline(&world.floorplan).iter().all(|length| *length >= STEP_M));
+        }
+    }
+    most("plans without a small step", 0.9, &held);
+}
+
+#[test]
+fn one_gets_past_a_counter_to_the_staffs_side() {
+    let mut held = Vec::new();
+    for prompt in
+        ["hospital ward with 8 rooms in Germany", "office with 8 rooms and a reception", "clinic with 8 rooms"]
+    {
+        for world in worlds(prompt, 8) {
+            for room in &world.floorplan.rooms {
+                let counter =
+                    |p: &&Placement| matches!(p.object.as_str(), "small_nurse_counter" | "small_reception_desk");
+                for p in standing(&world, room).filter(counter) {
+                    let own = body(p);
+                    let (wide, across) = (0.8, p.pose.yaw_rad.cos().abs() > 0.5);
+                    let way = |from: f64| match across {
+                        true => Rect { y0: from, y1: from + wide, ..own },
+                        false => Rect { x0: from, x1: from + wide, ..own },
+                    };
+                    let (low, high) = if across { (own.y0, own.y1) } else { (own.x0, own.x1) };
+                    let free = |way: Rect| {
+                        let inside = way.corners().iter().all(|c| {
+                            let (dx, dy) = (way.center().x - c.x, way.center().y - c.y);
+                            room.net_polygon.contains(d3dgen_model::Point::new(c.x + 0.01 * dx, c.y + 0.01 * dy))
+                        });
+                        let others = standing(&world, room).filter(|o| o.placement_id != p.placement_id);
+                        inside && !others.filter(|o| o.top_m() > 0.03).any(|o| body(o).overlaps(&way.grown(-0.01)))
+                    };
+                    held.push([low - wide, high].into_iter().any(|from| free(way(from))));
+                }
+            }
+        }
+    }
+    assert!(held.len() >= 24, "{}", held.len());
+    most("counters with 0.8 m past them", 0.95, &held);
+}
+
+#[test]
+fn sitting_groups_and_printers_leave_desks_alone() {
+    let mut held = Vec::new();
+    for world in ["office with 8 rooms", "office with 10 rooms"].iter().flat_map(|prompt| worlds(prompt, 8)) {
+        for room in rooms(&world, "open_office") {
+            let of = |names: &'static [&'static str]| {
+                standing(&world, room).filter(move |p| names.contains(&p.object.as_str())).map(body)
+            };
+            let desks: Vec<Rect> = of(&["desk"]).collect();
+            let chairs: Vec<Rect> = of(&["swivel_chair"]).collect();
+            let clear = |thing: Rect, all: &[Rect], least: f64| all.iter().all(|o| gap(&thing, o) >= least - 0.01);
+            held.extend(of(&["low_table", "lounge_sofa", "meeting_table_4"]).map(|p| clear(p, &desks, 0.45)));
+            held.extend(of(&["printer"]).map(|p| clear(p, &chairs, 1.0)));
+        }
+    }
+    assert!(held.len() >= 16, "{}", held.len());
+    most("things that leave desks alone", 1.0, &held);
+}
+
+#[test]
+fn a_toilet_for_wheelchairs_has_a_room_of_its_own() {
+    for world in worlds("Plan an office of eight rooms in Canada where every door suits a wheelchair", 6) {
+        for room in rooms(&world, "toilet") {
+            let count = |object: &str| standing(&world, room).filter(|p| p.object == object).count();
+            assert_eq!((count("accessible_wc"), count("wc_cubicle")), (1, 0), "{}", world.scene_graph.seed);
+        }
+    }
+    let mut two = Vec::new();
+    for world in worlds("office with 8 rooms", 12) {
+        let cubicles = |room: &PlanRoom| standing(&world, room).filter(|p| p.object == "wc_cubicle").count();
+        two.extend(rooms(&world, "toilet").map(|r| cubicles(r) >= 2));
+    }
+    most("toilets of an office with two cubicles", 0.75, &two);
+}
+
+#[test]
+fn robots_go_wherever_they_have_work() {
+    for (prompt, kind) in [
+        ("Government office in Canberra with 10 rooms; the robot must reach them all", "service_point"),
+        ("house with 10 rooms and a cleaning robot", "cleaning_point"),
+        ("office, 8 rooms, Singapore, two cleaning robots with charging", "cleaning_point"),
+    ] {
+        for world in worlds(prompt, 3) {
+            let scenario = &world.scenario;
+            let mut goals: Vec<&String> = scenario.robots.iter().flat_map(|r| &r.goals).collect();
+            let mut points: Vec<&String> = scenario.pois.iter().filter(|p| p.kind == kind).map(|p| &p.poi_id).collect();
+            goals.sort();
+            points.sort();
+            assert!(points.len() >= 6, "{prompt}: {points:?}");
+            assert_eq!(goals, points, "{prompt}");
+        }
+    }
+}
