@@ -68,7 +68,7 @@ fn a_bed_can_be_pushed_out_of_its_room() {
                     let (width, length) = (own.width().min(own.height()), own.width().max(own.height()));
                     let out =
                         |door: &&Door| floor.leads(door, &own, width + 0.04) && floor.turns_in(door, length, width);
-                    if !inward(&world, room).iter().any(|door| out(&door)) {
+                    if !inward(&world, room).iter().any(out) {
                         stuck.push(format!("{prompt}, seed {}: {}", world.scene_graph.seed, bed.placement_id));
                     }
                 }

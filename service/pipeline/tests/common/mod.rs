@@ -14,7 +14,8 @@ pub fn worlds(prompt: &str, seeds: u64) -> Vec<World> {
     let registry = Registry::builtin();
     let made = (0..seeds).map(|seed| {
         let request = Request { prompt: prompt.into(), seed, ..Request::default() };
-        generate_world(&request, &registry, &Settings::default(), &mut |_| (), &AtomicBool::new(false)).unwrap().world
+        let made = generate_world(&request, &registry, &Settings::default(), &mut |_| (), &AtomicBool::new(false));
+        made.expect(prompt).world
     });
     made.collect()
 }
