@@ -204,7 +204,7 @@ impl<'a> Site<'a> {
             // A change that is sound by itself needs no repair.
             let board = match (attempt, task.aim) {
                 (0, Aim::Repair) => start.clone(),
-                _ => task.revise(start, &taste(rng), rng, stop),
+                _ => task.revise(start, &taste(self.brief, rng), rng, stop),
             };
             stop.check()?;
             if task.aim == Aim::Anew && board == *start {

@@ -47,7 +47,7 @@ pub(super) const WINDOW_WALL_M: f64 = 1.2;
 const LATCH_SIDE_M: f64 = 0.457 - JAMB_M;
 
 /// Cost of a sleeping room larger than the room of the day that is to be the largest, beside that of how much.
-const WRONG_SIZES: f64 = 1.0;
+const WRONG_SIZES: f64 = 1.5;
 
 /// A step in the outline shorter than this has no reason, m, and what it costs.
 const STEP_M: f64 = 0.9;
@@ -101,9 +101,15 @@ impl Score {
     }
 }
 
-/// Returns the weights one plan is searched with: another architect for every seed.
-pub(super) fn taste(rng: &mut Stream) -> Weights {
-    WEIGHTS.map(|w| w * (0.5 + rng.unit()))
+/// Returns the weights one plan is searched with: another architect for every seed. None has little regard for how large
+/// the rooms of a home are.
+pub(super) fn taste(brief: &Brief, rng: &mut Stream) -> Weights {
+    let mut weights = WEIGHTS.map(|w| w * (0.5 + rng.unit()));
+    let largest = |zone: Zone| brief.rooms.iter().filter(|r| r.zone == zone).map(|r| r.area_target).fold(0.0, f64::max);
+    if largest(Zone::Night) > 0.0 && largest(Zone::Day) > largest(Zone::Night) {
+        weights[0] = weights[0].max(WEIGHTS[0]);
+    }
+    weights
 }
 
 /// Measures layouts of one brief and judges them, in memory of its own that every layout uses again.
@@ -472,7 +478,7 @@ impl<'b> Judge<'b> {
         }
         let hall = self.survey.rooms.get(self.spine).filter(|_| !self.brief.hub);
         let larger = [Some(bedroom), hall].into_iter().flatten().filter(|room| room.net_m2 > living.net_m2);
-        larger.map(|room| WRONG_SIZES + room.net_m2 / living.net_m2.max(1.0) - 1.0).sum()
+        larger.map(|room| WRONG_SIZES + 2.0 * (room.net_m2 / living.net_m2.max(1.0) - 1.0)).sum()
     }
 }
 
