@@ -284,8 +284,16 @@ impl<'a> Find<'_, 'a, '_> {
             hosts.retain(|host| !has_chair(host));
         }
         let away = hosts.iter().map(|host| rect.gap(host)).min().unwrap_or(0);
+        // visitors sit across the desk or at its ends, not beside who works there
+        let behind = |o: &&Placed<'a>| {
+            let back = (8 - o.q - o.unit.look()) % 4;
+            let desk = o.world(&o.unit.anchor().solid.rect).turned(back);
+            o.unit.anchor().object.shape == Shape::Desk && o.unit.look() != 0 && rect.turned(back).center().0 < desk.x0
+        };
+        let among_staff =
+            self.state.placed.iter().filter(behind).any(|o| o.world(&o.unit.bbox).gap(&rect) < CHAIR_REACH);
         let wet = standing(&[Shape::Basin, Shape::Sink, Shape::Toilet]).any(|o| o.gap(&rect) < SLIVER);
-        -1.2 * (f64::from(away) / 1000.0).min(3.0) - if wet { 1.2 } else { 0.0 }
+        -1.2 * (f64::from(away) / 1000.0).min(3.0) - if wet { 1.2 } else { 0.0 } - if among_staff { 1.5 } else { 0.0 }
     }
 
     fn arrangement_score(&self, p: &Placed<'a>, index: usize, a: i32, z: i32) -> f64 {
