@@ -74,6 +74,20 @@ def domain_of(binary, name):
     return tables | {"adjacency": domain["adjacency"]}
 
 
+def is_for(line, graph):
+    """Tells whether a furnishing line is for a building: one with step-free access, one without some rooms."""
+    if line.get("accessible") and not graph.get("accessible"):
+        return False
+    return not any(room["room_type"] in line.get("unless_rooms", []) for room in graph["rooms"])
+
+
+def has(here, group, item, least):
+    """Tells whether a room has so many of an object, or of a group's anchor with what belongs to it."""
+    anchor = group["anchor"] if group else item
+    members = [m["object"] for m in group["members"] if m.get("required")] if group else []
+    return here[anchor] >= least and all(here[m] for m in members)
+
+
 def contents(folder, domain):
     """Returns what a world lacks of its domain's demands, its rooms, and how many have an area in their type's range."""
     graph, plan, placed = (
@@ -88,11 +102,9 @@ def contents(folder, domain):
         in_range += area["min"] - 0.01 <= room["net_area_m2"] <= area["max"] + 0.01
         here = Counter(p["object"] for p in placed["placements"] if p["room_id"] == room["room_id"])
         for line in kind["furnishing"]:
-            if line.get("required"):
-                group = domain["groups"].get(line["item"])
-                anchor = group["anchor"] if group else line["item"]
-                members = [m["object"] for m in group["members"] if m.get("required")] if group else []
-                if here[anchor] < line["min"] or any(not here[m] for m in members):
+            if line.get("required") and is_for(line, graph):
+                items = [line["item"], *line.get("instead_of", [])]
+                if not any(has(here, domain["groups"].get(item), item, line["min"]) for item in items):
                     found.append(f"object_missing: {room['room_id']} without {line['item']}")
     kinds = {r["room_id"]: r["room_type"] for r in plan["rooms"]}
     links = {frozenset(d["room_ids"]) for d in plan["doors"] if len(d["room_ids"]) == 2}

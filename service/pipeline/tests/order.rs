@@ -154,3 +154,13 @@ fn robots_go_wherever_they_have_work() {
         }
     }
 }
+
+#[test]
+fn staff_rooms_have_a_table_with_seats() {
+    let mut held = Vec::new();
+    for world in worlds("hospital ward with 10 rooms and a staff room", 12) {
+        let seated = |room: &PlanRoom| standing(&world, room).any(|p| p.object == "dining_chair");
+        held.extend(rooms(&world, "staff_room").map(seated));
+    }
+    most("staff rooms with seats at a table", 0.9, &held);
+}

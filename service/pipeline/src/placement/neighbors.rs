@@ -7,8 +7,11 @@ use super::docks::is_in_the_way;
 use super::seats::{beside_beds, is_seat};
 use super::state::{Placed, State};
 
-/// Floor between a desk with its chair and a sitting group or table that is none of its, mm.
-const APART: i32 = 450;
+/// Floor between people at a desk or table and a sitting group or table that is none of theirs, mm.
+const APART: i32 = 700;
+/// Desks from which on a room has aisles, and how wide what stands beside desks leaves them, mm.
+const MANY: usize = 4;
+const AISLE: i32 = 700;
 /// Floor between a chair at a desk and a machine that others use, mm.
 const FROM_MACHINE: i32 = 1000;
 
@@ -21,25 +24,40 @@ pub(super) fn disturbs(state: &State, p: &Placed, robot: i32) -> bool {
     !lone_seat && is_in_the_way(state, p, robot) || crowds_desks(state, p) || !stores && beside_beds(state, p) > 0.0
 }
 
-/// Returns true for sitting groups and tables right beside desks, and for machines behind those who work there.
+/// Returns true for sitting groups and tables right beside people at desks and tables, for machines behind those who work
+/// there, and for all that narrows the aisles between many desks.
 fn crowds_desks(state: &State, p: &Placed) -> bool {
-    let sits = |shape: Shape| is_seat(shape) || matches!(shape, Shape::Sofa | Shape::Table | Shape::RoundTable);
     let shapes = || p.unit.parts.iter().filter(|part| part.mount == Mount::Floor).map(|part| part.object.shape);
+    if shapes().next().is_none() || shapes().any(is_desk) {
+        return false;
+    }
     // a visitor's chair belongs to a desk
-    let lounge = shapes().any(sits) && !(shapes().count() == 1 && shapes().all(is_seat)) && !shapes().any(is_desk);
-    let machine = p.unit.anchor().mount == Mount::Floor && p.unit.anchor().object.shape == Shape::Appliance;
-    if !lounge && !machine {
+    let lone_seat = shapes().count() == 1 && shapes().all(is_seat);
+    let lounge = !lone_seat && shapes().any(|shape| is_seat(shape) || is_table(shape) || shape == Shape::Sofa);
+    let machine = p.unit.anchor().object.shape == Shape::Appliance;
+    let standing = || state.placed.iter().filter(|o| o.support.is_none());
+    let many = standing().filter(|o| is_desk(o.unit.anchor().object.shape)).count() >= MANY;
+    if !lounge && !machine && !many {
         return false;
     }
     let own = p.world(&p.unit.bbox);
-    let desks = state.placed.iter().filter(|o| is_desk(o.unit.anchor().object.shape) && o.support.is_none());
-    desks.flat_map(|o| o.unit.parts.iter().map(move |part| (part.object.shape, o.solid(part).rect))).any(
-        |(shape, rect)| {
-            let near = |least: i32| own.gap(&rect) < least;
-            lounge && (is_desk(shape) || is_seat(shape)) && near(APART)
-                || machine && is_seat(shape) && near(FROM_MACHINE)
-        },
-    )
+    standing().any(|o| {
+        let at_desk = is_desk(o.unit.anchor().object.shape);
+        let at_table =
+            is_table(o.unit.anchor().object.shape) && o.unit.parts.iter().any(|part| is_seat(part.object.shape));
+        (at_desk || at_table)
+            && o.unit.parts.iter().any(|part| {
+                let (shape, gap) = (part.object.shape, own.gap(&o.solid(part).rect));
+                let seat = is_seat(shape);
+                lounge && (seat || is_desk(shape)) && gap < APART
+                    || machine && at_desk && seat && gap < FROM_MACHINE
+                    || many && at_desk && (seat || is_desk(shape)) && gap < AISLE
+            })
+    })
+}
+
+fn is_table(shape: Shape) -> bool {
+    matches!(shape, Shape::Table | Shape::RoundTable)
 }
 
 fn is_desk(shape: Shape) -> bool {

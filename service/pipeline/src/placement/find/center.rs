@@ -11,7 +11,7 @@ use crate::placement::unit::Unit;
 /// Grain of the search for free floor, mm.
 const GRAIN: i32 = 150;
 /// Free floor around tables with seats, mm.
-const BESIDE: i32 = 450;
+const BESIDE: i32 = 300;
 
 impl<'a> Find<'_, 'a, '_> {
     /// Offers free-standing positions around the middle of the largest free rectangle.
@@ -57,7 +57,7 @@ impl<'a> Find<'_, 'a, '_> {
         let along = (rect.width() >= rect.height()) == (free.width() >= free.height());
         s += if along { 0.8 } else { 0.0 };
         if !flat {
-            for margin in [BESIDE, 650, 900] {
+            for margin in [BESIDE, 600, 900] {
                 s += if self.is_open_around(p, margin) { 0.5 } else { 0.0 };
             }
         }
