@@ -62,14 +62,18 @@ pub(super) fn crowding(state: &State, p: &Placed, robot: i32) -> f64 {
     CROWDED * others + buffers(p, robot).map(|b| crowded(&b)).sum::<f64>()
 }
 
-/// Returns true for a place that takes floor of a dock, or for a dock whose floor is taken or used where no robot needs it.
+/// Returns true for a place that takes floor of a dock, or for a dock whose floor is taken or used where no robot needs it;
+/// docks share theirs.
 pub(super) fn is_in_the_way(state: &State, p: &Placed, robot: i32) -> bool {
     let takes =
         |b: &Box2| p.unit.parts.iter().any(|part| is_on_floor(&p.solid(part)) && p.solid(part).rect.overlaps(b));
     let crowded = |b: &Box2| {
         state.solids.iter().any(|s| is_on_floor(s) && s.rect.overlaps(b)) || state.clears.iter().any(|c| c.overlaps(b))
     };
-    state.docks.iter().any(takes) || !state.has_robots && buffers(p, robot).any(|b| crowded(&b))
+    if fronts(p).next().is_some() {
+        return !state.has_robots && buffers(p, robot).any(|b| crowded(&b));
+    }
+    state.docks.iter().any(takes)
 }
 
 /// Returns true for what a wheel or a foot meets: furniture, rugs.

@@ -19,6 +19,9 @@ const STEP: i32 = 450;
 /// A gap narrower than this beside furniture collects dust, mm.
 const SLIVER: i32 = 300;
 
+/// How far from the entrance something that belongs there may stand, mm.
+const BY_ENTRANCE: i32 = 4500;
+
 /// A chair nearer than this to a bed or desk belongs to it, mm.
 const CHAIR_REACH: i32 = 1500;
 
@@ -58,7 +61,7 @@ impl<'a> Find<'_, 'a, '_> {
         let front = self.front(wall, index, unit);
         let u = wall.u - b.x0;
         for v in self.stops(wall, index, unit, &front) {
-            if self.is_wedged(unit, &front, v) {
+            if self.is_wedged(unit, &front, v) || self.is_far_in(wall, unit, v) {
                 self.none(Rule::Clearance);
                 continue;
             }
@@ -122,6 +125,15 @@ impl<'a> Find<'_, 'a, '_> {
         let (a, z) = (v + unit.bbox.y0, v + unit.bbox.y1);
         let near = |gap: i32| (0..SLIVER).contains(&gap);
         front.taken.iter().any(|t| near(a - t.1)) && front.taken.iter().any(|t| near(t.0 - z))
+    }
+
+    /// Returns true for what belongs to the entrance and would stand deep inside.
+    fn is_far_in(&self, wall: &WallSide, unit: &Unit, v: i32) -> bool {
+        let entrance = self.state.space.doors.first().filter(|door| door.rank == 0);
+        let own = wall.strip(v + unit.bbox.y0, v + unit.bbox.y1, 0, unit.bbox.width());
+        self.task.arrangement == Arrangement::BesideDoor
+            && self.task.required == 0
+            && entrance.is_some_and(|door| own.gap(&door.zone) > BY_ENTRANCE)
     }
 
     /// Returns positions of the unit's origin along the wall.
