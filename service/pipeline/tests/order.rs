@@ -26,8 +26,8 @@ fn the_living_room_is_larger_than_the_hall() {
     let homes = ["house with 8 rooms", "house, 10 rooms, UK, service robot", "villa with 10 rooms in Italy"];
     let mut larger = Vec::new();
     for world in homes.iter().flat_map(|prompt| worlds(prompt, 8)) {
-        let most = |kind: &str| rooms(&world, kind).map(|r| r.net_area_m2).fold(0.0, f64::max);
-        larger.push(most("living_room") >= most("hallway"));
+        let largest = |kind: &str| rooms(&world, kind).map(|r| r.net_area_m2).fold(0.0, f64::max);
+        larger.push(largest("living_room") >= largest("hallway"));
     }
     most("living rooms larger than the hall", 0.9, &larger);
 }

@@ -51,29 +51,33 @@ fn fronts<'p>(p: &'p Placed) -> impl Iterator<Item = (u8, Box2, i32)> + 'p {
 /// Returns how much a place for a unit loses because something takes the floor of a dock that stands or of its own, or
 /// because people have to stand in its own.
 pub(super) fn crowding(state: &State, p: &Placed, robot: i32) -> f64 {
-    let taken =
-        |b: &Box2| p.unit.parts.iter().any(|part| is_on_floor(&p.solid(part)) && p.solid(part).rect.overlaps(b));
-    let others = state.docks.iter().filter(|b| taken(b)).count() as f64;
-    let crowded = |b: &Box2| {
-        let there = state.solids.iter().any(|s| is_on_floor(s) && s.rect.overlaps(b));
-        let used = state.clears.iter().any(|c| c.overlaps(b));
-        CROWDED * f64::from(there) + USED * f64::from(used)
-    };
+    let others = state.docks.iter().filter(|b| takes(p, b)).count() as f64;
+    let crowded = |b: &Box2| CROWDED * f64::from(is_taken(state, b)) + USED * f64::from(is_used(state, b));
     CROWDED * others + buffers(p, robot).map(|b| crowded(&b)).sum::<f64>()
 }
 
 /// Returns true for a place that takes floor of a dock, or for a dock whose floor is taken or used where no robot needs it;
 /// docks share theirs.
 pub(super) fn is_in_the_way(state: &State, p: &Placed, robot: i32) -> bool {
-    let takes =
-        |b: &Box2| p.unit.parts.iter().any(|part| is_on_floor(&p.solid(part)) && p.solid(part).rect.overlaps(b));
-    let crowded = |b: &Box2| {
-        state.solids.iter().any(|s| is_on_floor(s) && s.rect.overlaps(b)) || state.clears.iter().any(|c| c.overlaps(b))
-    };
     if fronts(p).next().is_some() {
-        return !state.has_robots && buffers(p, robot).any(|b| crowded(&b));
+        return !state.has_robots && buffers(p, robot).any(|b| is_taken(state, &b) || is_used(state, &b));
     }
-    state.docks.iter().any(takes)
+    state.docks.iter().any(|b| takes(p, b))
+}
+
+/// Returns true for a place that takes some of this floor.
+fn takes(p: &Placed, floor: &Box2) -> bool {
+    p.unit.parts.iter().map(|part| p.solid(part)).any(|s| is_on_floor(&s) && s.rect.overlaps(floor))
+}
+
+/// Returns true where something stands or lies on this floor.
+fn is_taken(state: &State, floor: &Box2) -> bool {
+    state.solids.iter().any(|s| is_on_floor(s) && s.rect.overlaps(floor))
+}
+
+/// Returns true where people have to stand on this floor to use something.
+fn is_used(state: &State, floor: &Box2) -> bool {
+    state.clears.iter().any(|c| c.overlaps(floor))
 }
 
 /// Returns true for what a wheel or a foot meets: furniture, rugs.
