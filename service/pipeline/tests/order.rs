@@ -3,10 +3,11 @@
 
 mod common;
 
-use d3dgen_model::Rect;
-use d3dgen_model::floorplan::{Floorplan, PlanRoom};
+use d3dgen_model::floorplan::{Door, DoorKind, Floorplan, PlanRoom};
 use d3dgen_model::placements::Placement;
+use d3dgen_model::scenario::{Roi, RoiKind};
 use d3dgen_model::world::World;
+use d3dgen_model::{Point, Rect};
 
 use common::{body, gap, most, worlds};
 
@@ -87,7 +88,7 @@ fn one_gets_past_a_counter_to_the_staffs_side() {
                     let free = |way: Rect| {
                         let inside = way.corners().iter().all(|c| {
                             let (dx, dy) = (way.center().x - c.x, way.center().y - c.y);
-                            room.net_polygon.contains(d3dgen_model::Point::new(c.x + 0.01 * dx, c.y + 0.01 * dy))
+                            room.net_polygon.contains(Point::new(c.x + 0.01 * dx, c.y + 0.01 * dy))
                         });
                         let others = standing(&world, room).filter(|o| o.placement_id != p.placement_id);
                         inside && !others.filter(|o| o.top_m() > 0.03).any(|o| body(o).overlaps(&way.grown(-0.01)))
@@ -163,4 +164,136 @@ fn staff_rooms_have_a_table_with_seats() {
         held.extend(rooms(&world, "staff_room").map(seated));
     }
     most("staff rooms with seats at a table", 0.9, &held);
+}
+
+/// Returns the floor before an object, as wide as it and so deep.
+fn before(p: &Placement, deep: f64) -> Rect {
+    let own = body(p);
+    match (p.pose.yaw_rad.cos().round() as i32, p.pose.yaw_rad.sin().round() as i32) {
+        (1, _) => Rect { x0: own.x1, x1: own.x1 + deep, ..own },
+        (-1, _) => Rect { x0: own.x0 - deep, x1: own.x0, ..own },
+        (_, 1) => Rect { y0: own.y1, y1: own.y1 + deep, ..own },
+        _ => Rect { y0: own.y0 - deep, y1: own.y0, ..own },
+    }
+}
+
+/// Returns the floor on both sides of an opening.
+fn landing(door: &Door, deep: f64) -> Rect {
+    let (a, b) = (door.line.start, door.line.end);
+    let own = Rect::new(a.x.min(b.x), a.y.min(b.y), a.x.max(b.x), a.y.max(b.y));
+    match door.line.is_vertical() {
+        true => Rect { x0: own.x0 - deep, x1: own.x1 + deep, ..own },
+        false => Rect { y0: own.y0 - deep, y1: own.y1 + deep, ..own },
+    }
+}
+
+#[test]
+fn nobody_queues_at_a_counter_where_others_come_in() {
+    let mut held = Vec::new();
+    for prompt in ["office with 8 rooms and a reception near the entrance", "law firm office with five rooms in Zurich"]
+    {
+        for world in worlds(prompt, 10) {
+            for room in rooms(&world, "reception") {
+                let entrances =
+                    world.floorplan.doors.iter().filter(|d| d.entrance && d.room_ids.contains(&room.room_id));
+                let landings: Vec<Rect> = entrances.map(|d| landing(d, 1.1)).collect();
+                let desks = standing(&world, room).filter(|p| p.object.ends_with("reception_desk"));
+                held.extend(desks.filter(|_| !landings.is_empty()).map(|p| {
+                    let queue = before(p, 0.9).grown(-0.01);
+                    !landings.iter().any(|l| l.overlaps(&queue))
+                }));
+            }
+        }
+    }
+    assert!(held.len() >= 10, "{}", held.len());
+    most("counters away from the way in", 0.85, &held);
+}
+
+#[test]
+fn one_comes_to_rows_of_desks_through_an_aisle() {
+    let mut held = Vec::new();
+    for world in ["office with 8 rooms", "call center with eight rooms"].iter().flat_map(|prompt| worlds(prompt, 10)) {
+        for room in rooms(&world, "open_office").filter(|r| r.net_polygon.rects().len() == 1) {
+            let desks: Vec<&Placement> = standing(&world, room).filter(|p| p.object.ends_with("desk")).collect();
+            let Some(all) = desks.iter().map(|p| body(p)).reduce(|a, b| Rect {
+                x0: a.x0.min(b.x0),
+                y0: a.y0.min(b.y0),
+                x1: a.x1.max(b.x1),
+                y1: a.y1.max(b.y1),
+            }) else {
+                continue;
+            };
+            let net = room.net_polygon.bounds();
+            let ends = match desks[0].pose.yaw_rad.cos().abs() > 0.5 {
+                true => [all.y0 - net.y0, net.y1 - all.y1],
+                false => [all.x0 - net.x0, net.x1 - all.x1],
+            };
+            held.push(ends.into_iter().any(|end| end >= 0.9 - 1e-6));
+        }
+    }
+    most("open offices with an aisle at one end of the rows", 0.95, &held);
+}
+
+#[test]
+fn robots_dock_behind_doors_that_open_by_themselves() {
+    let mut held = Vec::new();
+    for prompt in ["office with 8 rooms and a cleaning robot", "apartment with 5 rooms and a robot vacuum"] {
+        for world in worlds(prompt, 8) {
+            let docks = world.placements.placements.iter().filter(|p| p.object.contains("dock"));
+            held.extend(docks.map(|dock| {
+                let inner = |d: &&Door| d.room_ids.len() == 2 && d.room_ids.contains(&dock.room_id);
+                let mut doors = world.floorplan.doors.iter().filter(inner).peekable();
+                doors.peek().is_none() || doors.any(|d| matches!(d.kind, DoorKind::Sliding | DoorKind::Open))
+            }));
+        }
+    }
+    assert!(held.len() >= 12, "{}", held.len());
+    most("docks that a robot gets to by itself", 0.95, &held);
+}
+
+#[test]
+fn robots_serve_clear_of_the_swing_of_doors() {
+    let mut held = Vec::new();
+    for prompt in ["house with 8 rooms and a delivery robot", "clinic with 8 rooms and a delivery robot"] {
+        for world in worlds(prompt, 6) {
+            let service = |r: &&Roi| r.kind == RoiKind::ServiceZone;
+            for zone in world.scenario.rois.iter().filter(service) {
+                let own = zone.polygon.bounds().grown(-0.02);
+                let opens =
+                    |d: &&Door| d.swing.as_ref().is_some_and(|s| s.into_room_id.as_ref() == Some(&zone.room_id));
+                let leaf = |d: &Door| match d.kind {
+                    DoorKind::DoubleHinged => d.line.length() / 2.0,
+                    _ => d.line.length(),
+                };
+                let mut doors = world.floorplan.doors.iter().filter(opens);
+                held.push(!doors.any(|d| landing(d, leaf(d)).overlaps(&own)));
+            }
+        }
+    }
+    assert!(held.len() >= 60, "{}", held.len());
+    most("floor to serve at, clear of doors", 0.95, &held);
+}
+
+#[test]
+fn hand_basins_are_at_the_door() {
+    let mut held = Vec::new();
+    for world in ["hospital ward with 8 rooms in Germany", "clinic with 8 rooms"].iter().flat_map(|p| worlds(p, 8)) {
+        for room in
+            world.floorplan.rooms.iter().filter(|r| matches!(r.room_type.as_str(), "patient_room" | "exam_room"))
+        {
+            let basins = world
+                .placements
+                .placements
+                .iter()
+                .filter(|p| p.object == "clinical_basin" && p.room_id == room.room_id);
+            let way = |p: &Placement| {
+                let corridor = |id: &String| world.floorplan.room(id).is_some_and(|r| r.circulation);
+                let doors = world.floorplan.doors_of(&room.room_id).filter(|d| d.room_ids.iter().any(corridor));
+                doors.map(|d| d.line.middle().distance(Point::new(p.pose.x, p.pose.y))).fold(f64::MAX, f64::min)
+            };
+            held.extend(basins.map(way).reduce(f64::min).map(|way| way <= 2.6));
+        }
+    }
+    assert!(held.len() >= 30, "{}", held.len());
+    most("hand basins near the door", 0.85, &held);
 }

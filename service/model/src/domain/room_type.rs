@@ -42,6 +42,12 @@ pub struct RoomType {
     pub wet: bool,
     /// Clear width of its door, m, before constraints raise it.
     pub door_width_m: f64,
+    /// Net floor area that it has at least where step-free access is asked for, m^2; 0 where that changes nothing.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub step_free_m2: f64,
+    /// True when its door slides: into small wet rooms, so that one gets to whoever has fallen behind it, and into galleys.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub sliding_door: bool,
     /// True when it opens to the circulation without a door leaf (a nurse station, a lobby).
     #[serde(default)]
     pub open_front: bool,
@@ -198,4 +204,8 @@ impl RoomType {
             f.check(&format!("{path}/furnishing/{i}"), domain, problems);
         }
     }
+}
+
+fn is_zero(area: &f64) -> bool {
+    *area == 0.0
 }

@@ -48,6 +48,8 @@ const LATCH_SIDE_M: f64 = 0.457 - JAMB_M;
 
 /// Cost of a sleeping room larger than the room of the day that is to be the largest, beside that of how much.
 const WRONG_SIZES: f64 = 1.5;
+/// What it costs that two rooms which the domain advises against putting wall to wall share one.
+const TOUCHING: f64 = 0.35;
 
 /// A step in the outline shorter than this has no reason, m, and what it costs.
 const STEP_M: f64 = 0.9;
@@ -124,6 +126,7 @@ pub(super) struct Judge<'b> {
     /// By link: its pair and the wall it needs, lattice units.
     link_needs: Vec<(usize, i32)>,
     apart_pairs: Vec<usize>,
+    aloof_pairs: Vec<usize>,
     /// What the doors to outdoors need, lattice units.
     pub(super) entrance_need: i32,
     wet_rooms: usize,
@@ -177,6 +180,7 @@ impl<'b> Judge<'b> {
             pair_of: vec![0; n * n],
             link_needs: Vec::new(),
             apart_pairs: Vec::new(),
+            aloof_pairs: Vec::new(),
             entrance_need: door_need(brief.entrance_width),
             wet_rooms: brief.rooms.iter().filter(|r| r.wet).count(),
             survey: Survey { rooms: vec![Measured::default(); n], ..Survey::default() },
@@ -193,6 +197,10 @@ impl<'b> Judge<'b> {
         for [a, b] in &brief.apart {
             let pair = out.pair(*a, *b);
             out.apart_pairs.push(pair);
+        }
+        for [a, b] in &brief.aloof {
+            let pair = out.pair(*a, *b);
+            out.aloof_pairs.push(pair);
         }
         out
     }
@@ -414,6 +422,8 @@ impl<'b> Judge<'b> {
         for &pair in &self.apart_pairs {
             score.hard += meters(self.survey.pair[pair]) * 0.5;
         }
+        let touching = self.aloof_pairs.iter().filter(|&&pair| self.survey.pair[pair] > 0).count();
+        score.soft[2] += TOUCHING * touching as f64;
         if self.wet_rooms > 1 {
             let paired = self.survey.rooms.iter().filter(|r| r.wet_beside).count();
             score.soft[5] += (self.wet_rooms - paired) as f64;

@@ -35,6 +35,13 @@ const BED_AHEAD_M: f64 = 2.3;
 const BED_ASIDE_M: f64 = 0.15;
 /// Floor kept free in front of a door, m.
 const APPROACH_M: f64 = 0.6;
+/// What it costs that the doors of a bathroom and of a room where one sits or eats face each other, how far apart they may
+/// be for that, m, and from which shared width on, m.
+const IN_VIEW: f64 = 1.3;
+const VIEW_M: f64 = 3.0;
+const SEEN_M: f64 = 0.2;
+/// What it costs that a home's entrance opens outwards.
+const OUTWARD: f64 = 0.5;
 
 /// The plan so far, as door placing sees it.
 pub(super) struct Site<'a> {
@@ -46,9 +53,21 @@ pub(super) struct Site<'a> {
     pub standing: &'a [Door],
 }
 
+/// What one looks into through a door.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum View {
+    /// A bathroom or toilet.
+    Retreat,
+    /// A room where people sit, eat, cook or come in.
+    Company,
+    Other,
+}
+
 /// A place for one door.
+#[derive(Clone)]
 struct Spot {
     door: Door,
+    view: View,
     /// Floor the leaf sweeps and floor to stand on, by room.
     zones: Vec<(usize, Rect)>,
     penalty: f64,
@@ -57,9 +76,9 @@ struct Spot {
 /// Doors placed so far.
 #[derive(Default)]
 struct Laid {
-    doors: Vec<Door>,
-    /// What they need of the floor, by room.
-    zones: Vec<(usize, Rect)>,
+    spots: Vec<Spot>,
+    /// For each, the places it may have.
+    choices: Vec<Vec<Spot>>,
     /// Passages that found no place.
     missing: Vec<String>,
     /// What their places cost.
@@ -71,10 +90,11 @@ pub(super) fn place_doors(site: &Site<'_>, rng: &mut Stream) -> Result<Vec<Door>
     // the entrance where it serves the rooms best, with the other doors clear of it, or the other way round
     let [first, last] = [true, false].map(|entrance_first| lay(site, entrance_first, rng));
     let worse = |l: &Laid| (l.missing.len(), l.cost);
-    let Laid { mut doors, missing, .. } = if worse(&last) < worse(&first) { last } else { first };
+    let Laid { spots, missing, .. } = if worse(&last) < worse(&first) { last } else { first };
     if !missing.is_empty() {
         return Err(format!("no wall long enough for the door from {}", missing.join(", ")));
     }
+    let mut doors: Vec<Door> = spots.into_iter().map(|s| s.door).collect();
     doors.sort_by_key(|d| d.room_ids.len() == 1);
     let next = 1 + highest(site.standing.iter().map(|d| d.door_id.as_str()));
     for (n, door) in (next..).zip(doors.iter_mut().filter(|d| d.door_id.is_empty())) {
@@ -83,7 +103,7 @@ pub(super) fn place_doors(site: &Site<'_>, rng: &mut Stream) -> Result<Vec<Door>
     Ok(doors)
 }
 
-/// Places doors one after the other.
+/// Places doors one after the other, then moves those that the later ones disturb.
 fn lay(site: &Site<'_>, entrance_first: bool, rng: &mut Stream) -> Laid {
     let mut laid = Laid::default();
     let entrances = site.entrances();
@@ -91,25 +111,69 @@ fn lay(site: &Site<'_>, entrance_first: bool, rng: &mut Stream) -> Laid {
     site.lay_entrances(before, &mut laid);
     site.lay_inner(&mut laid, rng);
     site.lay_entrances(after, &mut laid);
+    laid.settle();
     laid
 }
 
 impl Laid {
     /// Takes the spot that disturbs the doors already placed least; returns false when there is none.
     fn take_best(&mut self, spots: Vec<Spot>) -> bool {
-        let cost = |spot: &Spot| {
-            let clashes =
-                |(room, zone): &(usize, Rect)| self.zones.iter().filter(|(r, z)| r == room && z.overlaps(zone)).count();
-            spot.penalty + 10.0 * spot.zones.iter().map(clashes).sum::<usize>() as f64
-        };
-        let Some((least, spot)) = spots.into_iter().map(|s| (cost(&s), s)).min_by(|a, b| a.0.total_cmp(&b.0)) else {
-            return false;
-        };
-        self.cost += least;
-        self.zones.extend(spot.zones);
-        self.doors.push(spot.door);
+        let costs = spots.iter().map(|spot| self.disturbance(spot, usize::MAX));
+        let Some((_, best)) = costs.zip(0..).min_by(|a: &(f64, usize), b| a.0.total_cmp(&b.0)) else { return false };
+        self.spots.push(spots[best].clone());
+        self.choices.push(spots);
         true
     }
+
+    /// Moves doors that look into a bathroom, or out of one, where a later door made it so, and adds up what all cost.
+    fn settle(&mut self) {
+        for n in 0..self.spots.len() {
+            if !self.spots.iter().any(|other| self.spots[n].looks_into(other)) {
+                continue;
+            }
+            let costs = self.choices[n].iter().map(|spot| self.disturbance(spot, n));
+            if let Some((_, best)) = costs.zip(0..).min_by(|a: &(f64, usize), b| a.0.total_cmp(&b.0)) {
+                self.spots[n] = self.choices[n][best].clone();
+            }
+        }
+        self.cost = (0..self.spots.len()).map(|n| self.disturbance(&self.spots[n], n)).sum();
+    }
+
+    /// Returns what a spot costs beside the doors placed so far, except one.
+    fn disturbance(&self, spot: &Spot, except: usize) -> f64 {
+        let others = self.spots.iter().enumerate().filter(|(n, _)| *n != except).map(|(_, other)| other);
+        spot.penalty + others.map(|other| spot.disturbs(other)).sum::<f64>()
+    }
+}
+
+impl Spot {
+    /// Returns what it costs that two doors need the same floor, or that one looks from a room into a bathroom.
+    fn disturbs(&self, other: &Self) -> f64 {
+        let clashes =
+            |(room, zone): &(usize, Rect)| other.zones.iter().filter(|(r, z)| r == room && z.overlaps(zone)).count();
+        10.0 * self.zones.iter().map(clashes).sum::<usize>() as f64 + if self.looks_into(other) { IN_VIEW } else { 0.0 }
+    }
+
+    /// Returns true when the doors of a bathroom and of a room with people face each other.
+    fn looks_into(&self, other: &Self) -> bool {
+        let views = (self.view, other.view);
+        matches!(views, (View::Retreat, View::Company) | (View::Company, View::Retreat))
+            && faces(&self.door, &other.door)
+    }
+}
+
+/// Returns true for doors in opposite walls of one room that are not far apart.
+fn faces(a: &Door, b: &Door) -> bool {
+    let extent = |d: &Door| {
+        let (start, end) = (d.line.start, d.line.end);
+        let (at, from, to) = if d.line.is_vertical() { (start.x, start.y, end.y) } else { (start.y, start.x, end.x) };
+        (at, from.min(to), from.max(to))
+    };
+    let ((at, from, to), (other, low, high)) = (extent(a), extent(b));
+    a.line.is_vertical() == b.line.is_vertical()
+        && (SEEN_M..VIEW_M).contains(&(at - other).abs())
+        && to.min(high) - from.max(low) > SEEN_M
+        && a.room_ids.iter().any(|r| b.room_ids.contains(r))
 }
 
 impl Site<'_> {
@@ -144,7 +208,7 @@ impl Site<'_> {
             let stretches = self.stretches.iter().filter(|s| s.only_room() == Some(room));
             let spots: Vec<Spot> = match self.standing_spot(&[room], main) {
                 Some(spot) => vec![spot],
-                None => stretches.flat_map(|s| self.entrance_spots(s, room, main, &laid.doors)).collect(),
+                None => stretches.flat_map(|s| self.entrance_spots(s, room, main, &laid.spots)).collect(),
             };
             if !laid.take_best(spots) && main {
                 laid.missing.push(format!("outdoors to {}", self.brief.rooms[room].id));
@@ -185,6 +249,7 @@ impl Site<'_> {
             }
             rooms.iter().all(|&r| self.inside(r, &self.zone(s, r, start, end - start, 0.5))).then(|| Spot {
                 door: door.clone(),
+                view: View::Other,
                 zones,
                 penalty: 0.0,
             })
@@ -292,7 +357,21 @@ impl Site<'_> {
         let line = Segment { start: s.point(start), end: s.point(start + width) };
         let zones = [a, b].map(|r| (r, self.zone(s, r, start, width, APPROACH_M))).to_vec();
         let door = self.door(line, DoorKind::Open, width, s, &[a, b], None);
-        Spot { door, zones, penalty: 0.0 }
+        Spot { door, view: self.view([a, b]), zones, penalty: 0.0 }
+    }
+
+    /// Returns what one looks into through a door between two rooms from where people pass.
+    fn view(&self, rooms: [usize; 2]) -> View {
+        let [a, b] = rooms.map(|r| &self.brief.rooms[r]);
+        let Some(room) = [(a, b), (b, a)].into_iter().find(|(_, from)| from.circulation).map(|(room, _)| room) else {
+            return View::Other;
+        };
+        match room.zone {
+            _ if room.wet && room.private => View::Retreat,
+            Zone::Day | Zone::Public => View::Company,
+            _ if room.wet => View::Company,
+            _ => View::Other,
+        }
     }
 
     #[expect(clippy::too_many_arguments, reason = "one door is where, between whom, how wide, which way")]
@@ -313,8 +392,12 @@ impl Site<'_> {
         let swept = self.zone(s, into, start, opening, leaf.max(APPROACH_M));
         let elevator = rooms.iter().any(|&r| self.brief.rooms[r].elevator);
         // robots open no leaf
-        let docks = rooms.iter().any(|&r| self.brief.rooms[r].docks);
-        let slides = elevator || docks || leaf * leaf > SLIDING_SHARE * self.net_m2[into] || !self.inside(into, &swept);
+        let docks = rooms.iter().any(|&r| self.brief.rooms[r].docks && !self.brief.rooms[r].circulation);
+        let slides = elevator
+            || docks
+            || self.brief.rooms[into].slides
+            || leaf * leaf > SLIDING_SHARE * self.net_m2[into]
+            || !self.inside(into, &swept);
         let mut zones: Vec<(usize, Rect)> =
             rooms.iter().map(|&r| (r, self.zone(s, r, start, opening, APPROACH_M))).collect();
         let (kind, swing) = if slides {
@@ -328,10 +411,10 @@ impl Site<'_> {
             return None;
         }
         let door = self.door(line, kind, clear, s, &rooms, swing);
-        Some(Spot { door, zones, penalty: penalty + if slides { 0.5 } else { 0.0 } })
+        Some(Spot { door, view: self.view(rooms), zones, penalty: penalty + if slides { 0.5 } else { 0.0 } })
     }
 
-    fn entrance_spots(&self, s: &Stretch, room: usize, main: bool, doors: &[Door]) -> Vec<Spot> {
+    fn entrance_spots(&self, s: &Stretch, room: usize, main: bool, laid: &[Spot]) -> Vec<Spot> {
         let clear = self.brief.entrance_width;
         let opening = Brief::opening(clear);
         let (from, to) = self.usable(s);
@@ -355,10 +438,10 @@ impl Site<'_> {
             penalty += TO_PUBLIC * self.to_public(line.middle()) + TO_ZONES * self.ill_zoned(line.middle());
         }
         if !main {
-            let away = doors
+            let away = laid
                 .iter()
-                .filter(|d| d.entrance)
-                .map(|d| d.line.middle().distance(line.middle()))
+                .filter(|l| l.door.entrance)
+                .map(|l| l.door.line.middle().distance(line.middle()))
                 .fold(f64::MAX, f64::min);
             if away < 5.0 {
                 return Vec::new();
@@ -371,11 +454,24 @@ impl Site<'_> {
             return Vec::new();
         }
         let kind = if double { DoorKind::DoubleHinged } else { DoorKind::Hinged };
-        // Doors on the way out open outwards.
-        let swing = Some(Swing { into_room_id: None, hinge_at_start: true });
-        let mut door = self.door(line, kind, clear, s, &[room], swing);
-        door.entrance = main;
-        vec![Spot { door, zones: vec![(room, zone)], penalty }]
+        let spot = |into: Option<Rect>, penalty: f64| {
+            let swing = Swing {
+                into_room_id: into.map(|_| self.brief.rooms[room].id.clone()),
+                hinge_at_start: into.is_none() || start - from <= to - opening - start,
+            };
+            let mut door = self.door(line, kind, clear, s, &[room], Some(swing));
+            door.entrance = main;
+            let zones = [Some(zone), into].into_iter().flatten().map(|z| (room, z)).collect();
+            Spot { door, view: View::Company, zones, penalty }
+        };
+        // Doors on the way out open outwards, those of homes inwards where the leaf has floor.
+        let swept = self.zone(s, room, start, opening, if double { opening / 2.0 } else { opening });
+        if !self.brief.is_home() || !main {
+            return vec![spot(None, penalty)];
+        }
+        let mut spots = vec![spot(None, penalty + OUTWARD)];
+        spots.extend(self.inside(room, &swept).then(|| spot(Some(swept), penalty)));
+        spots
     }
 
     /// Returns how far the nearest room for visitors is from a point, m; 0 where there is none.

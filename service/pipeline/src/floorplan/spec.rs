@@ -4,7 +4,9 @@
 use std::collections::BTreeMap;
 
 use d3dgen_knowledge::{Limit, Limits, RoomLimits};
-use d3dgen_model::domain::{Daylight, Domain, Materials, Privacy, RoomType, Shape, Zone};
+use d3dgen_model::domain::{
+    Adjacency, AdjacencyRelation, Daylight, Domain, Materials, Privacy, RobotUse, RoomType, Shape, Zone,
+};
 use d3dgen_model::scene_graph::{Connector, GraphEdge, GraphRoom, Note, SceneGraph};
 use d3dgen_model::seed::Stream;
 use d3dgen_model::storeys::LinkKind;
@@ -49,6 +51,8 @@ pub(super) struct RoomSpec {
     /// True for rooms that robots go in and out of by themselves.
     pub docks: bool,
     pub open_front: bool,
+    /// True for rooms into which no leaf opens.
+    pub slides: bool,
     pub entrance: bool,
     pub door_width: f64,
     pub ceiling_height: f64,
@@ -102,6 +106,8 @@ pub(super) struct Brief {
     pub spine_extra: f64,
     pub links: Vec<Link>,
     pub apart: Vec<[usize; 2]>,
+    /// Pairs that the domain would rather not have wall to wall.
+    pub aloof: Vec<[usize; 2]>,
     pub second_exit: bool,
     /// Net floor area asked for in total, m^2.
     pub area: Option<f64>,
@@ -152,6 +158,7 @@ impl Brief {
             share_advised: limits.circulation_share_advised.filter(|_| graph.links.is_empty()),
             links: Vec::new(),
             apart: Vec::new(),
+            aloof: aloof(graph, domain),
             second_exit: domain.circulation.second_exit && graph.rooms.iter().all(|r| r.level == 0),
             area: graph.area_m2.filter(|_| graph.links.is_empty()),
             symmetry: graph.style.symmetry,
@@ -235,12 +242,14 @@ impl Brief {
             specs[corridor].entrance = false;
         }
         let link = |l: &Link| Some(Link { a: index[l.a]?, b: index[l.b]?, ..*l });
+        let both = |pairs: &[[usize; 2]]| pairs.iter().filter_map(|[a, b]| Some([index[*a]?, index[*b]?])).collect();
         let mut out = Self {
             rooms: specs,
             spine: spine.and_then(|s| index[s]),
             hub: false,
             links: self.links.iter().filter_map(link).collect(),
-            apart: self.apart.iter().filter_map(|[a, b]| Some([index[*a]?, index[*b]?])).collect(),
+            apart: both(&self.apart),
+            aloof: both(&self.aloof),
             // its corridor is as wide as the building's
             second_exit: self.second_exit || entered,
             area: None,
@@ -293,6 +302,19 @@ impl Brief {
     }
 }
 
+/// Returns the pairs of rooms that the domain advises against putting wall to wall.
+fn aloof(graph: &SceneGraph, domain: &Domain) -> Vec<[usize; 2]> {
+    let advice = |r: &&Adjacency| r.relation == AdjacencyRelation::ShouldNot && r.via == "wall";
+    let of = |kind: &str| -> Vec<usize> {
+        graph.rooms.iter().enumerate().filter(|(_, r)| r.room_type == kind).map(|(i, _)| i).collect()
+    };
+    let pairs = domain.adjacency.iter().filter(advice).flat_map(|rule| {
+        let others = of(&rule.b);
+        of(&rule.a).into_iter().flat_map(move |a| others.clone().into_iter().map(move |b| [a, b]))
+    });
+    pairs.filter(|[a, b]| a != b).collect()
+}
+
 /// Returns the width that the robots need to pass which the building is made for, m; 0 without such.
 fn fitted_width(graph: &SceneGraph) -> f64 {
     let widths = graph.robots.iter().filter(|r| r.is_fitted()).map(|r| 2.0 * r.radius_m + PASSING_M);
@@ -334,6 +356,9 @@ fn room_spec(
         let least = least * (1.0 + ADVICE_MARGIN);
         area_target = area_target.clamp(least, (most * (1.0 - ADVICE_MARGIN)).max(least));
     }
+    if graph.accessible {
+        area_target = area_target.max(kind.step_free_m2.min(area_max));
+    }
     // a robot that is to fit turns in the room beside what stands there
     let fitted = fitted_width(graph);
     area_target = (area_target + (fitted * fitted - TURNING_M2).max(0.0)).min(area_max.max(area_target));
@@ -358,8 +383,10 @@ fn room_spec(
         zone: kind.zone,
         wet: kind.wet,
         private: kind.privacy == Privacy::Private,
-        docks: has_docks(domain, kind),
+        docks: has_docks(domain, kind) || !graph.robots.is_empty() && kind.robot.contains(&RobotUse::Charging),
         open_front: kind.open_front,
+        // who uses a wheelchair has no floor to spare for a leaf
+        slides: kind.sliding_door || graph.accessible && kind.wet && kind.privacy == Privacy::Private,
         entrance: room.entrance,
         door_width: door_width.max(robot),
         ceiling_height: kind.ceiling_height_m,

@@ -48,12 +48,15 @@ fn fronts<'p>(p: &'p Placed) -> impl Iterator<Item = (u8, Box2, i32)> + 'p {
     })
 }
 
-/// Returns how much a place for a unit loses because something takes the floor of a dock that stands or of its own, or
-/// because people have to stand in its own.
+/// Returns how much a place for a unit loses because something takes the floor of a dock that stands or of its own,
+/// because people have to stand in its own, or because a wall beside its dock leaves the robot no play.
 pub(super) fn crowding(state: &State, p: &Placed, robot: i32) -> f64 {
     let others = state.docks.iter().filter(|b| takes(p, b)).count() as f64;
-    let crowded = |b: &Box2| CROWDED * f64::from(is_taken(state, b)) + USED * f64::from(is_used(state, b));
-    CROWDED * others + buffers(p, robot).map(|b| crowded(&b)).sum::<f64>()
+    let shared = |b: &Box2| state.docks.iter().any(|other| other.overlaps(b));
+    let crowded = |b: &Box2| CROWDED * f64::from(is_taken(state, b) || shared(b)) + USED * f64::from(is_used(state, b));
+    let walled = |berth: &Box2| !state.space.contains(&berth.grown(robot / 2));
+    let corners = berths(p).filter(walled).count() as f64;
+    CROWDED * (others + corners) + buffers(p, robot).map(|b| crowded(&b)).sum::<f64>()
 }
 
 /// Returns true for a place that takes floor of a dock, or for a dock whose floor is taken or used where no robot needs it;

@@ -4,7 +4,8 @@
 use d3dgen_model::domain::{Mount, Shape};
 
 use super::docks::is_in_the_way;
-use super::seats::{beside_beds, is_seat};
+use super::geom::Box2;
+use super::seats::{beside_beds, is_seat, shuts_in_staff};
 use super::state::{Placed, State};
 
 /// Floor between people at a desk or table and a sitting group or table that is none of theirs, mm.
@@ -12,8 +13,10 @@ const APART: i32 = 700;
 /// Desks from which on a room has aisles, and how wide what stands beside desks leaves them, mm.
 const MANY: usize = 4;
 const AISLE: i32 = 700;
-/// Floor between a chair at a desk and a machine that others use, mm.
+/// Floor between a chair at a desk or table and a machine that others use, mm.
 const FROM_MACHINE: i32 = 1000;
+/// Floor between a chair at a table and the swing of a door, mm.
+const FROM_SWING: i32 = 250;
 
 /// Returns true for a place where something that a room can do without would be in the way of what stands there.
 pub(super) fn disturbs(state: &State, p: &Placed, robot: i32) -> bool {
@@ -21,7 +24,19 @@ pub(super) fn disturbs(state: &State, p: &Placed, robot: i32) -> bool {
     let stores = matches!(p.unit.anchor().object.shape, Shape::Cabinet | Shape::Shelf);
     // a lone seat at the side of a dock is better than none for those who wait
     let lone_seat = p.unit.parts.len() == 1 && is_seat(p.unit.anchor().object.shape);
-    !lone_seat && is_in_the_way(state, p, robot) || crowds_desks(state, p) || !stores && beside_beds(state, p) > 0.0
+    !lone_seat && is_in_the_way(state, p, robot)
+        || crowds_desks(state, p)
+        || shuts_in_staff(state, p)
+        || sits_in_swing(state, p)
+        || !stores && beside_beds(state, p) > 0.0
+}
+
+/// Returns true for seats at a table so near to the swing of a door that nobody can push back a chair.
+fn sits_in_swing(state: &State, p: &Placed) -> bool {
+    let at_table = is_table(p.unit.anchor().object.shape);
+    let seats = p.unit.parts.iter().filter(|part| at_table && is_seat(part.object.shape));
+    let near = |seat: &Box2| state.space.doors.iter().any(|door| door.swings_in && door.zone.gap(seat) < FROM_SWING);
+    seats.map(|part| p.solid(part).rect).any(|seat| near(&seat))
 }
 
 /// Returns true for sitting groups and tables right beside people at desks and tables, for machines behind those who work
@@ -50,7 +65,7 @@ fn crowds_desks(state: &State, p: &Placed) -> bool {
                 let (shape, gap) = (part.object.shape, own.gap(&o.solid(part).rect));
                 let seat = is_seat(shape);
                 lounge && (seat || is_desk(shape)) && gap < APART
-                    || machine && at_desk && seat && gap < FROM_MACHINE
+                    || machine && seat && gap < FROM_MACHINE
                     || many && at_desk && (seat || is_desk(shape)) && gap < AISLE
             })
     })

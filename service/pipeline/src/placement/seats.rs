@@ -17,6 +17,11 @@ const CLOSED_SIDE: f64 = 4.0;
 /// What a place to wait loses behind a counter: about what the best place has to offer.
 const BEHIND_COUNTER: f64 = 3.0;
 
+/// Width of a way past a counter to its staff's side, beside a lone seat, and how far behind the counter it goes on, mm.
+pub(super) const PAST: i32 = 850;
+const PAST_SEAT: i32 = 650;
+const PAST_BEHIND: i32 = 500;
+
 /// Returns true for what one person sits on, or several side by side.
 pub(super) fn is_seat(shape: Shape) -> bool {
     matches!(shape, Shape::Chair | Shape::SwivelChair | Shape::Stool | Shape::Bench)
@@ -48,6 +53,31 @@ fn staffed_from<'p>(parts: &'p [Part]) -> impl Iterator<Item = Box2> + 'p {
     let edge = parts[0].solid.rect.x0;
     let behind = move |p: &&Part| is_seat(p.object.shape) && p.quarter == 0 && p.solid.rect.x1 <= edge;
     parts[1..].iter().filter(behind).map(|p| p.solid.rect)
+}
+
+/// Returns the floor on both sides of a counter over which its staff gets behind it, so wide; `None` for other units.
+pub(super) fn ways_past(counter: &Placed, wide: i32) -> Option<[Box2; 2]> {
+    staffed_from(&counter.unit.parts).next()?;
+    let own = counter.world(&counter.unit.anchor().solid.rect).turned((4 - counter.q) % 4);
+    let way = |y0| Box2 { x0: own.x0 - PAST_BEHIND, x1: own.x1, y0, y1: y0 + wide }.turned(counter.q);
+    Some([way(own.y0 - wide), way(own.y1)])
+}
+
+/// Returns true when one gets over this floor.
+pub(super) fn is_way(state: &State, way: &Box2) -> bool {
+    state.space.contains(way) && !state.solids.iter().any(|s| s.stops_robot() && s.rect.overlaps(way))
+}
+
+/// Returns true for a place that closes the last way past a counter.
+pub(super) fn shuts_in_staff(state: &State, p: &Placed) -> bool {
+    let stands = |part: &&Part| part.mount == Mount::Floor && p.solid(part).stops_robot();
+    let closes = |way: &Box2| p.unit.parts.iter().filter(stands).any(|part| p.solid(part).rect.overlaps(way));
+    // a lone seat for those who wait may leave less
+    let wide = if p.unit.parts.len() == 1 && is_seat(p.unit.anchor().object.shape) { PAST_SEAT } else { PAST };
+    state.placed.iter().filter_map(|counter| ways_past(counter, wide)).any(|ways| {
+        let mut open = ways.iter().filter(|way| is_way(state, way)).peekable();
+        open.peek().is_some() && open.all(closes)
+    })
 }
 
 /// Returns the floor at the foot of a bed through which one gets to its long sides.

@@ -181,7 +181,7 @@ fn nothing_stands_in_the_light_of_windows() {
                 let curtain = |p: &&Placement| domain.object(&p.object).is_some_and(|o| o.shape == Shape::Curtain);
                 for p in found.placements.iter().filter(|p| !curtain(p)) {
                     let r = p.footprint().bounds();
-                    let before = r.y1 > depth - 0.25 && r.x0 < width - 0.6 && r.x1 > 0.6;
+                    let before = r.y1 > depth - 0.25 && r.x0 < width - 0.6 - 1e-6 && r.x1 > 0.6 + 1e-6;
                     let lit = p.top_m() <= 0.9 + 1e-6 || p.pose.z >= 2.2 - 1e-6;
                     assert!(!before || lit, "{room_type} {seed}: {} reaches {:.2} m", p.placement_id, p.top_m());
                 }

@@ -2,7 +2,7 @@
 
 use d3dgen_knowledge::clearance::quarter;
 use d3dgen_model::domain::{Domain, ObjectType, RobotUse, RoomType};
-use d3dgen_model::floorplan::{Floorplan, PlanRoom};
+use d3dgen_model::floorplan::{Door, DoorKind, Floorplan, PlanRoom};
 use d3dgen_model::geometry::to_mm;
 use d3dgen_model::occupancy::{Bitmap, CELL_M, Occupancy};
 use d3dgen_model::placements::{Placement, Placements};
@@ -11,8 +11,9 @@ use d3dgen_model::{Point, Pose, Rect};
 
 /// Least radius of the disc that must find its way, m.
 pub(super) const LEAST_RADIUS_M: f64 = 0.30;
-/// How much farther off a spot may be that is not tight, m.
-const TIGHT_M: f64 = 0.6;
+/// How much farther off a spot may be that is not tight, or only clear of the swing of doors, m.
+const TIGHT_M: f64 = 1.2;
+const SWING_M: f64 = 0.6;
 /// Forward and left of the four headings.
 const FORWARD: [(f64, f64); 4] = [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)];
 
@@ -36,6 +37,8 @@ pub(super) struct Room<'a> {
     /// Cells where the disc lies within the room, clear of all that stands there by a cell, as also on the way in where
     /// that is possible.
     roomy: Bitmap,
+    /// Those of them where no door opens against the disc.
+    undisturbed: Bitmap,
     /// Its first cell in the grid of the building.
     corner: (i64, i64),
 }
@@ -53,14 +56,21 @@ impl<'a> Floor<'a> {
             occupancy.frame.paint(&mut painted, &room.net_polygon, true);
             let mut spots = painted.window(i0, i1, j0, j1);
             painted.fill(i0, i1, j0, j1, false);
-            let mut roomy = spots.clone();
-            roomy.intersect(&occupancy.free.window(i0, i1, j0, j1));
-            let mut roomy = roomy.eroded(radius / CELL_M + 1.0);
+            let disc = radius / CELL_M + 1.0;
+            let mut floor = spots.clone();
+            floor.intersect(&occupancy.free.window(i0, i1, j0, j1));
+            let mut roomy = floor.eroded(disc);
             if let Some(surely) = surely.as_ref().map(|map| map.window(i0, i1, j0, j1))
                 && roomy.count_common(&surely) > 0
             {
                 roomy.intersect(&surely);
             }
+            for swing in plan.doors.iter().filter_map(|d| swept(d, &room.room_id)) {
+                let (a0, a1, b0, b1) = occupancy.frame.span(&swing);
+                floor.fill(a0 - i0.max(0), a1 - i0.max(0), b0 - j0.max(0), b1 - j0.max(0), false);
+            }
+            let mut undisturbed = floor.eroded(disc);
+            undisturbed.intersect(&roomy);
             spots.intersect(&main.window(i0, i1, j0, j1));
             let here = placements.placements.iter().filter(|p| p.room_id == room.room_id);
             Room {
@@ -69,6 +79,7 @@ impl<'a> Floor<'a> {
                 objects: here.filter_map(|p| Some((p, domain.object(&p.object)?))).collect(),
                 spots,
                 roomy,
+                undisturbed,
                 corner: (i0.max(0), j0.max(0)),
             }
         };
@@ -79,7 +90,12 @@ impl<'a> Floor<'a> {
     /// something; `None` when the room has none.
     pub fn spot_near(&self, room: &Room, p: Point) -> Option<Point> {
         let loss = |((i, j), spot): ((usize, usize), Point)| {
-            (spot.distance(p) + if room.roomy.get(i, j) { 0.0 } else { TIGHT_M }, spot)
+            let farther = match (room.undisturbed.get(i, j), room.roomy.get(i, j)) {
+                (true, _) => 0.0,
+                (_, true) => SWING_M,
+                _ => TIGHT_M,
+            };
+            (spot.distance(p) + farther, spot)
         };
         // ties go to the southern, then the western spot
         self.cells(room).map(loss).min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, spot)| spot)
@@ -128,6 +144,19 @@ impl Room<'_> {
     pub fn is_for(&self, usage: RobotUse) -> bool {
         self.kind.robot.contains(&usage)
     }
+}
+
+/// Returns the floor that the leaf of a door sweeps in a room, with as much beyond the wall; `None` where it opens elsewhere.
+pub(super) fn swept(door: &Door, room_id: &str) -> Option<Rect> {
+    door.swing.as_ref().filter(|swing| swing.into_room_id.as_deref() == Some(room_id))?;
+    let leaves = if door.kind == DoorKind::DoubleHinged { 2.0 } else { 1.0 };
+    let deep = door.line.length() / leaves + door.wall_thickness_m / 2.0;
+    let (a, b) = (door.line.start, door.line.end);
+    let r = Rect::new(a.x.min(b.x), a.y.min(b.y), a.x.max(b.x), a.y.max(b.y));
+    Some(match door.line.is_vertical() {
+        true => Rect { x0: r.x0 - deep, x1: r.x1 + deep, ..r },
+        false => Rect { y0: r.y0 - deep, y1: r.y1 + deep, ..r },
+    })
 }
 
 /// Returns the point at this distance in front of an object.

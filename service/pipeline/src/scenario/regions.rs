@@ -7,10 +7,10 @@ use d3dgen_model::placements::Placement;
 use d3dgen_model::scenario::{Roi, RoiKind};
 use d3dgen_model::{Polygon, Rect};
 
-use super::floor::{Floor, Room, floor_in_front};
+use super::floor::{Floor, Room, floor_in_front, swept};
 use super::points::served;
 
-/// Depth of the floor to serve at, m, and the least where something stands across.
+/// Depth of the floor to serve at, m, and the least side of it where something takes a part.
 const SERVICE_DEPTH_M: f64 = 1.2;
 const LEAST_SERVICE_DEPTH_M: f64 = 0.6;
 /// Overlap that is none, m.
@@ -45,7 +45,7 @@ pub(super) fn all(floor: &Floor) -> Vec<Roi> {
         }
         if room.is_for(RobotUse::Service)
             && let Some((object, _)) = served(room)
-            && let Some(polygon) = clipped(room, &floor_in_front(object, service_depth(room, object, &buffers), 0.0))
+            && let Some(polygon) = clipped(room, &service_floor(floor, room, object, &buffers))
         {
             let note = format!("in front of {}", object.placement_id);
             out.push(Roi {
@@ -77,20 +77,33 @@ fn buffers<'r>(floor: &'r Floor, room: &'r Room) -> impl Iterator<Item = (&'r Pl
     })
 }
 
-/// Returns how deep the floor is where robots serve at an object, m: to what stands across or the floor of a dock, where
-/// that is near.
-fn service_depth(room: &Room, object: &Placement, buffers: &[(&Placement, Rect)]) -> f64 {
+/// Returns the floor where robots serve at an object, without what stands there, the floor of docks and the swing of doors
+/// where enough is left.
+fn service_floor(floor: &Floor, room: &Room, object: &Placement, buffers: &[(&Placement, Rect)]) -> Rect {
     let together =
         |p: &Placement| p.placement_id == object.placement_id || p.group.is_some() && p.group == object.group;
     let standing = room.objects.iter().map(|(p, _)| *p).filter(|p| stops_robot(p) && p.support.is_none());
     let bodies = standing.filter(|p| !together(p)).map(|p| p.footprint().bounds());
-    let taken: Vec<Rect> = bodies.chain(buffers.iter().map(|(_, r)| *r)).collect();
-    let free = |depth: &f64| {
-        let floor = floor_in_front(object, *depth, 0.0).grown(-TOUCH_M);
-        !taken.iter().any(|r| r.overlaps(&floor))
-    };
-    let mut steps = (0..).map(|k| SERVICE_DEPTH_M - 0.1 * f64::from(k)).take_while(|d| *d >= LEAST_SERVICE_DEPTH_M);
-    to_mm(steps.find(free).unwrap_or(SERVICE_DEPTH_M))
+    let swings = floor.plan.doors.iter().filter_map(|d| swept(d, &room.plan.room_id));
+    let own = object.footprint().bounds().grown(TOUCH_M);
+    let is_wide =
+        |r: &Rect| r.width() >= LEAST_SERVICE_DEPTH_M - TOUCH_M && r.height() >= LEAST_SERVICE_DEPTH_M - TOUCH_M;
+    let mut left = floor_in_front(object, SERVICE_DEPTH_M, 0.0);
+    for taken in bodies.chain(buffers.iter().map(|(_, r)| *r)).chain(swings) {
+        if !taken.overlaps(&left.grown(-TOUCH_M)) {
+            continue;
+        }
+        let beside = [
+            Rect { x1: taken.x0, ..left },
+            Rect { x0: taken.x1, ..left },
+            Rect { y1: taken.y0, ..left },
+            Rect { y0: taken.y1, ..left },
+        ];
+        // what is left still lies before the object
+        let parts = beside.into_iter().filter(|r| is_wide(r) && r.overlaps(&own));
+        left = parts.max_by(|a, b| a.area().total_cmp(&b.area())).unwrap_or(left);
+    }
+    left
 }
 
 /// Returns the largest part of a rectangle that lies on one straight piece of the room's net floor.

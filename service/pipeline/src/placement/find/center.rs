@@ -5,11 +5,15 @@ use std::rc::Rc;
 use super::{Find, Rule};
 use crate::placement::geom::{Box2, Solid, turn};
 use crate::placement::seats::is_seat;
+use crate::placement::space::DoorZone;
 use crate::placement::state::{Placed, at_frame};
 use crate::placement::unit::Unit;
 
 /// Grain of the search for free floor, mm.
 const GRAIN: i32 = 150;
+/// Floor between the swing of a door and what stands free, mm, and what less of it loses.
+const PAST_LEAF: i32 = 600;
+const AT_SWING: f64 = 1.0;
 /// Free floor around tables with seats, mm.
 const BESIDE: i32 = 300;
 
@@ -61,6 +65,9 @@ impl<'a> Find<'_, 'a, '_> {
                 s += if self.is_open_around(p, margin) { 0.5 } else { 0.0 };
             }
         }
+        // one gets past a leaf that stands open
+        let near_swing = |d: &DoorZone| d.swings_in && d.zone.gap(&rect) < PAST_LEAF;
+        s -= if !flat && self.state.space.doors.iter().any(near_swing) { AT_SWING } else { 0.0 };
         // equal things in one line, turned alike
         let in_line = self.siblings().any(|o| {
             let (x, y) = o.world(&o.unit.bbox).center();

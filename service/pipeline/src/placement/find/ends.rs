@@ -6,6 +6,8 @@ use d3dgen_model::domain::{Mount, Shape};
 
 use super::{Find, Rule};
 use crate::placement::geom::{Box2, turn};
+use crate::placement::seats::{PAST, is_way, ways_past};
+use crate::placement::space::WallSide;
 use crate::placement::state::{Placed, at_frame};
 use crate::placement::unit::Unit;
 
@@ -24,11 +26,17 @@ const COUNTER_AWAY_M: f64 = 1.8;
 const COUNTER_FRONT_M: f64 = 1.6;
 /// Floor a person needs behind a free-standing counter, mm.
 const BEHIND: i32 = 900;
-/// Floor to get past a counter to its staff's side, mm, and what a counter loses that leaves less on both sides.
-const PAST: i32 = 850;
+/// What a counter loses past which one does not get to its staff's side.
 const SHUT_IN: f64 = 2.0;
+/// Depth of the floor where people queue at a counter and of that where they come in, mm, and what a counter loses where
+/// these are one.
+const QUEUE_DEPTH: i32 = 900;
+const LANDING: i32 = 1100;
+const IN_THE_WAY_IN: f64 = 4.0;
+/// What a counter loses with a wall in the floor where people queue.
+const FACES_WALL: f64 = 2.0;
 /// What a desk loses with a window right before or behind its user, which the screen mirrors.
-const GLARE: f64 = 1.6;
+const GLARE: f64 = 4.5;
 /// A window mirrored by a screen begins this near to the axis of the desk's user, and lies this near, mm.
 const MIRRORED: (i32, i32) = (500, 3500);
 /// How far ahead of the wall behind one the middle of a door lies that one sees from a desk before that wall, mm.
@@ -99,8 +107,9 @@ impl<'a> Find<'_, 'a, '_> {
         }
     }
 
-    /// Returns true when what will face a unit finds its place on the wall across, near the unit's axis.
-    pub(super) fn has_wall_across(&self, p: &Placed<'a>, unit: &Rc<Unit<'a>>) -> bool {
+    /// Returns how far before a unit, near its axis, the nearest wall is where what will face it finds its place, mm; `None`
+    /// without such a wall.
+    pub(super) fn view(&self, p: &Placed<'a>, unit: &Rc<Unit<'a>>) -> Option<i32> {
         let q = (p.q + p.unit.look() + 2) % 4;
         let back = (4 - q) % 4;
         let (seat, reach) = (p.world(&p.unit.anchor().solid.rect), p.world(&p.unit.reach));
@@ -108,14 +117,16 @@ impl<'a> Find<'_, 'a, '_> {
         let front = seat.turned(back).x0;
         let anchor = unit.anchor().solid.rect;
         let middle = (anchor.y0 + anchor.y1) / 2;
-        self.state.space.walls.iter().filter(|w| w.q == q && (VIEW.0..VIEW.1).contains(&(front - w.u))).any(|wall| {
+        let has_place = |wall: &&WallSide| {
             [0, -200, 200, -400, 400].into_iter().any(|side| {
                 let v = axis - middle + side;
                 let placed = at_frame(unit, q, wall.u - unit.bbox.x0, v, self.index);
                 let inside = v + unit.bbox.y0 >= wall.v0 && v + unit.bbox.y1 <= wall.v1;
                 inside && !placed.world(&unit.bbox).overlaps(&reach) && self.state.test(&placed, false).is_ok()
             })
-        })
+        };
+        let walls = self.state.space.walls.iter().filter(|w| w.q == q && (VIEW.0..VIEW.1).contains(&(front - w.u)));
+        walls.filter(has_place).map(|wall| front - wall.u).min()
     }
 
     /// Offers positions that face the door of the room, with the far wall or a person's width behind: a counter with its
@@ -161,13 +172,14 @@ impl<'a> Find<'_, 'a, '_> {
                 // who waits at the counter stands clear of the way in
                 let aside = (v + middle - door_axis).abs() > (b.height() + door.v1 - door.v0) / 2;
                 let least = match (door.open, aside) {
+                    _ if look != 0 => 0.9,
                     (true, _) => 1.6,
                     (false, true) => 1.8,
                     (false, false) => 2.6,
                 };
                 let near = QUEUE * (least - front).max(0.0) + slope * (front - far).max(0.0);
                 let score = 2.0 - 0.6 * off - lost - near;
-                let hampered = |find: &Self, p: &Placed<'a>| if look == 0 { find.shut_in(p) } else { find.glare(p) };
+                let hampered = |find: &Self, p: &Placed<'a>| if look == 0 { find.hampered(p) } else { find.glare(p) };
                 self.offer(placed, 80 + u32::from(behind > 100), |find, p| score - hampered(find, p));
             }
         }
@@ -205,7 +217,7 @@ impl<'a> Find<'_, 'a, '_> {
                     0 => {
                         2.2 - 0.3 * (away - COUNTER_AWAY_M).abs()
                             - QUEUE * (COUNTER_FRONT_M - front).max(0.0)
-                            - find.shut_in(p)
+                            - find.hampered(p)
                     }
                     _ => 1.6 + (0.15 * away).min(0.6) - find.glare(p),
                 };
@@ -228,16 +240,18 @@ impl<'a> Find<'_, 'a, '_> {
         if mirrored { GLARE } else { 0.0 }
     }
 
-    /// Returns what a counter loses past which one gets on neither side, or through a narrow gap only.
-    fn shut_in(&self, p: &Placed<'a>) -> f64 {
-        let back = (4 - p.q) % 4;
-        let own = p.world(&p.unit.anchor().solid.rect).turned(back);
-        let beside = [(own.y0 - PAST, own.y0), (own.y1, own.y1 + PAST)];
-        let open = |(y0, y1)| {
-            let way = Box2 { y0, y1, ..own }.turned(p.q);
-            self.state.space.contains(&way)
-                && !self.state.solids.iter().any(|s| s.stops_robot() && s.rect.overlaps(&way))
-        };
-        if beside.into_iter().any(open) { 0.0 } else { SHUT_IN }
+    /// Returns what a counter loses past which one gets on neither side, and before which people queue where others come
+    /// in.
+    fn hampered(&self, p: &Placed<'a>) -> f64 {
+        let space = self.state.space;
+        let closed = ways_past(p, PAST).is_some_and(|ways| !ways.iter().any(|way| is_way(self.state, way)));
+        let own = p.world(&p.unit.anchor().solid.rect).turned((4 - p.q) % 4);
+        let queue = Box2 { x0: own.x1, x1: own.x1 + QUEUE_DEPTH, ..own }.turned(p.q);
+        let queues = space.doors.iter().filter(|door| door.rank == 0 && !door.open).any(|door| {
+            let landing = space.walls[door.wall].strip(door.v0, door.v1, 0, LANDING);
+            landing.overlaps(&queue)
+        });
+        let walled = !space.contains(&queue);
+        SHUT_IN * f64::from(closed) + IN_THE_WAY_IN * f64::from(queues) + FACES_WALL * f64::from(walled)
     }
 }

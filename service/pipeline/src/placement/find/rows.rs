@@ -27,6 +27,8 @@ const FOOT_GAPS: [i32; 4] = [300, 450, 150, 50];
 const SHARED: f64 = 3.0;
 /// What rows of desks lose all of whose windows are before or behind the screens.
 const GLARE: f64 = 1.0;
+/// What rows lose past neither end of which people get as through an aisle.
+const NARROW_ENDS: f64 = 1.0;
 /// Row plans whose every position is tested.
 const PLANS: usize = 20;
 /// Arrangements handed to the search.
@@ -153,9 +155,14 @@ pub(in crate::placement) fn rows<'a>(
                 let share = task.counted(placed.len()) as f64 / task.counted(usize::MAX).max(1) as f64;
                 let tidy = [0.5, 0.3, 0.1, 0.1][ku] + [0.5, 0.25, 0.25, 0.1, 0.1][kv];
                 let raggedness = if task.spare > 0 { ragged(&placed, plan) } else { 0.0 };
+                // one comes to the rows past one of their ends
+                let narrow = if plan.rows > 1 && v0.max(spare_v - v0) < aisle { NARROW_ENDS } else { 0.0 };
                 let noise =
                     0.5 * grain(terms.salt, i64::from(plan.q) * 64 + i64::from(plan.columns), (ku * 8 + kv) as i64);
-                out.push(Batch { placed, score: plan.score + 8.0 * (share - 1.0) + tidy + noise - raggedness });
+                out.push(Batch {
+                    placed,
+                    score: plan.score + 8.0 * (share - 1.0) + tidy + noise - raggedness - narrow,
+                });
             }
         }
     }

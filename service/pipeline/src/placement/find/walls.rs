@@ -25,6 +25,15 @@ const BY_ENTRANCE: i32 = 4500;
 /// A chair nearer than this to a bed or desk belongs to it, mm.
 const CHAIR_REACH: i32 = 1500;
 
+/// What a seat loses from whose wall no screen is seen, from which distance a screen is far, mm, and what a meter more loses.
+const NO_VIEW: f64 = 2.5;
+const FAR_VIEW: i32 = 3600;
+const FARTHER: f64 = 0.9;
+/// How far from the screen a sofa stands that leaves its wall for it, mm, the way behind it, mm, and what that loses.
+const NEAR_VIEW: i32 = 2900;
+const WAY_BEHIND: i32 = 900;
+const DRAWN_UP: f64 = 1.0;
+
 /// What already takes part of a wall.
 struct Front {
     /// Stretches along the wall that are taken, merged and in order.
@@ -74,8 +83,21 @@ impl<'a> Find<'_, 'a, '_> {
                 } else {
                     2
                 };
+            if let Some(nearer) = self.drawn_up(&placed, wall) {
+                self.offer(nearer, class / 4 * 4 + 3, |find, p| {
+                    bonus - DRAWN_UP + find.wall_score(p, index, &front, v)
+                });
+            }
             self.offer(placed, class, |find, p| bonus + find.wall_score(p, index, &front, v));
         }
+    }
+
+    /// Returns a sofa moved towards what it looks at where that would be far, with a way behind it.
+    fn drawn_up(&self, p: &Placed<'a>, wall: &WallSide) -> Option<Placed<'a>> {
+        let unit = self.across.as_ref().filter(|_| p.unit.anchor().object.shape == Shape::Sofa)?;
+        let by = self.view(p, unit).filter(|&far| far > FAR_VIEW)? - NEAR_VIEW;
+        let (u, v) = turn((4 - wall.q) % 4, p.at.0, p.at.1);
+        (by >= WAY_BEHIND).then(|| at_frame(&p.unit, wall.q, u + by, v, self.index))
     }
 
     /// Looks along a wall for what is in the way of a unit.
@@ -203,9 +225,7 @@ impl<'a> Find<'_, 'a, '_> {
         s += self.window_score(index, a, z) + self.door_score(p) + self.sibling_score(p, a, z, index);
         s -= door_loss(space, p, self.aisle);
         s += self.company_score(p);
-        if self.across.as_ref().is_some_and(|unit| !self.has_wall_across(p, unit)) {
-            s -= 2.5;
-        }
+        s -= self.across.as_ref().map_or(0.0, |unit| far_view(self.view(p, unit)));
         s + self.arrangement_score(p, index, a, z)
     }
 
@@ -340,4 +360,9 @@ impl<'a> Find<'_, 'a, '_> {
         let latch = d.latch_high.map_or(0.3, |high| if high == above { 0.8 } else { 0.0 });
         2.0 + latch - f64::from((gap - 100).abs()) / 300.0
     }
+}
+
+/// Returns what a seat loses with what it looks at so far away, mm.
+fn far_view(view: Option<i32>) -> f64 {
+    view.map_or(NO_VIEW, |far| FARTHER * (f64::from(far - FAR_VIEW) / 1000.0).max(0.0))
 }

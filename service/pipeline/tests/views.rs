@@ -1,0 +1,151 @@
+//! What a reviewer of plans objects to in what one sees and what opens where: bathrooms one looks into, leaves that shut
+//! someone in, screens at the far end of the room, baths that a wheelchair cannot use.
+
+mod common;
+
+use d3dgen_model::floorplan::{Door, DoorKind};
+use d3dgen_model::placements::Placement;
+use d3dgen_model::world::World;
+
+use common::{gap, most, worlds};
+
+/// Across a corridor no wider than this one looks from one room into the other, m.
+const ACROSS_M: f64 = 2.5;
+/// Distance up to which a sofa looks at its screen, between the bodies, m.
+const VIEW_M: f64 = 4.2;
+
+/// Returns where a door stands: its wall's direction, the wall and the two ends along it.
+fn extent(door: &Door) -> (bool, f64, f64, f64) {
+    let (a, b) = (door.line.start, door.line.end);
+    let vertical = door.line.is_vertical();
+    let (at, from, to) = if vertical { (a.x, a.y, b.y) } else { (a.y, a.x, b.x) };
+    (vertical, at, from.min(to), from.max(to))
+}
+
+/// Returns the doors of rooms of some types.
+fn doors<'w>(world: &'w World, types: &'w [&'w str]) -> impl Iterator<Item = &'w Door> {
+    let is = move |id: &String| world.floorplan.room(id).is_some_and(|r| types.contains(&r.room_type.as_str()));
+    world.floorplan.doors.iter().filter(move |d| d.room_ids.iter().any(is))
+}
+
+#[test]
+fn one_does_not_look_from_the_kitchen_or_the_table_into_a_bathroom() {
+    let mut held = Vec::new();
+    for prompt in ["house with 8 rooms", "apartment with 10 rooms in Berlin", "five rooms, residential, Japan"] {
+        for world in worlds(prompt, 8) {
+            let faces = |a: &Door, b: &Door| {
+                let ((v, at, from, to), (w, other, low, high)) = (extent(a), extent(b));
+                let across = (0.05..ACROSS_M).contains(&(at - other).abs());
+                v == w && across && to.min(high) - from.max(low) > 0.25
+            };
+            let private = |d: &&Door| doors(&world, &["hallway"]).any(|h| h.door_id == d.door_id);
+            let company: Vec<&Door> =
+                doors(&world, &["kitchen", "dining_room", "living_room"]).filter(private).collect();
+            let baths = doors(&world, &["bathroom", "toilet"]).filter(private);
+            held.extend(baths.map(|bath| !company.iter().any(|room| faces(bath, room))));
+        }
+    }
+    assert!(held.len() >= 30, "{}", held.len());
+    most("bathroom doors that face no kitchen, table or sofa", 0.9, &held);
+}
+
+#[test]
+fn no_leaf_shuts_in_who_has_fallen_behind_it() {
+    let sliding = |world: &World, types: &[&str]| -> Vec<bool> {
+        doors(world, types).map(|d| d.kind == DoorKind::Sliding).collect()
+    };
+    let mut held = Vec::new();
+    for world in worlds("hospital ward with 8 rooms and en suites in Germany", 6) {
+        held.extend(sliding(&world, &["ensuite", "accessible_toilet", "assisted_bathroom"]));
+    }
+    for world in worlds("house with 8 rooms in Hamburg, barrier-free", 6) {
+        held.extend(sliding(&world, &["bathroom", "toilet"]));
+    }
+    most("doors of wet rooms that slide", 1.0, &held);
+}
+
+#[test]
+fn step_free_bathrooms_hold_a_toilet_for_wheelchairs() {
+    let mut held = Vec::new();
+    for world in worlds("Haus mit 10 Räumen in Hamburg, barrierefrei", 8) {
+        for room in world.floorplan.rooms.iter().filter(|r| r.room_type == "bathroom") {
+            let own = |p: &&Placement| p.room_id == room.room_id;
+            held.push(world.placements.placements.iter().filter(own).any(|p| p.object == "accessible_wc"));
+        }
+    }
+    most("step-free bathrooms", 0.95, &held);
+}
+
+#[test]
+fn a_sofa_stands_near_its_screen() {
+    let mut held = Vec::new();
+    for prompt in ["house with 8 rooms", "spacious villa with 6 rooms and a large living room"] {
+        for world in worlds(prompt, 10) {
+            let of = |name: &'static str| world.placements.placements.iter().filter(move |p| p.object == name);
+            for sofa in of("sofa") {
+                let own = sofa.footprint().bounds();
+                let screens = of("tv_stand").filter(|tv| tv.room_id == sofa.room_id);
+                held.extend(screens.map(|tv| gap(&own, &tv.footprint().bounds()) <= VIEW_M));
+            }
+        }
+    }
+    assert!(held.len() >= 12, "{}", held.len());
+    most("sofas near their screens", 0.9, &held);
+}
+
+#[test]
+fn the_entrance_of_a_home_opens_inwards() {
+    let mut held = Vec::new();
+    let homes = ["house with 8 rooms", "flat with 5 rooms in Vienna", "residence with ten rooms in New Zealand"];
+    for world in homes.iter().flat_map(|prompt| worlds(prompt, 8)) {
+        let entrances = world.floorplan.doors.iter().filter(|d| d.entrance);
+        held.extend(entrances.map(|d| d.swing.as_ref().is_some_and(|s| s.into_room_id.is_some())));
+    }
+    most("entrances that open inwards", 0.7, &held);
+    for world in worlds("hospital ward with 8 rooms", 4) {
+        let out = world.floorplan.doors.iter().filter(|d| d.room_ids.len() == 1);
+        let open = |d: &Door| d.swing.as_ref().is_none_or(|s| s.into_room_id.is_none());
+        assert!(out.clone().count() > 0 && out.clone().all(open), "a way out opens against those who flee");
+    }
+}
+
+#[test]
+fn clean_and_dirty_utilities_seldom_share_a_wall() {
+    let mut held = Vec::new();
+    for world in worlds("A geriatric ward of 10 rooms in Japan", 12) {
+        let of = |kind: &'static str| world.floorplan.rooms.iter().filter(move |r| r.room_type == kind);
+        for clean in of("clean_utility") {
+            let own = clean.net_polygon.bounds();
+            held.extend(of("dirty_utility").map(|dirty| gap(&own, &dirty.net_polygon.bounds()) > 0.3));
+        }
+    }
+    assert!(held.len() >= 8, "{}", held.len());
+    most("clean and dirty utilities apart", 0.75, &held);
+}
+
+#[test]
+fn screens_of_single_offices_do_not_mirror_a_window() {
+    let mut held = Vec::new();
+    for prompt in ["office with 8 rooms", "four private offices, two meeting rooms, an open office and a reception"] {
+        for world in worlds(prompt, 10) {
+            for room in world.floorplan.rooms.iter().filter(|r| r.room_type == "office") {
+                let screen =
+                    world.placements.placements.iter().find(|p| p.object == "monitor" && p.room_id == room.room_id);
+                let Some(screen) = screen else { continue };
+                // the screen looks along x when its heading is east or west
+                let along_x = screen.pose.yaw_rad.cos().abs() > 0.5;
+                let mirrored = world.floorplan.windows.iter().filter(|w| w.room_id == room.room_id).any(|w| {
+                    let (a, b) = (w.line.start, w.line.end);
+                    let (low, high, across) = match w.line.is_vertical() {
+                        true => (a.y.min(b.y), a.y.max(b.y), screen.pose.y),
+                        false => (a.x.min(b.x), a.x.max(b.x), screen.pose.x),
+                    };
+                    w.line.is_vertical() == along_x && (low..=high).contains(&across)
+                });
+                held.push(!mirrored);
+            }
+        }
+    }
+    assert!(held.len() >= 30, "{}", held.len());
+    most("screens without a window before or behind them", 0.85, &held);
+}
