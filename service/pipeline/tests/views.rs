@@ -7,7 +7,7 @@ use d3dgen_model::floorplan::{Door, DoorKind};
 use d3dgen_model::placements::Placement;
 use d3dgen_model::world::World;
 
-use common::{gap, most, worlds};
+use common::{body, gap, most, worlds};
 
 /// Across a corridor no wider than this one looks from one room into the other, m.
 const ACROSS_M: f64 = 2.5;
@@ -83,9 +83,8 @@ fn a_sofa_stands_near_its_screen() {
         for world in worlds(prompt, 10) {
             let of = |name: &'static str| world.placements.placements.iter().filter(move |p| p.object == name);
             for sofa in of("sofa") {
-                let own = sofa.footprint().bounds();
                 let screens = of("tv_stand").filter(|tv| tv.room_id == sofa.room_id);
-                held.extend(screens.map(|tv| gap(&own, &tv.footprint().bounds()) <= VIEW_M));
+                held.extend(screens.map(|tv| gap(&body(sofa), &body(tv)) <= VIEW_M));
             }
         }
     }
