@@ -81,7 +81,7 @@ pub(super) fn put_in_order(
 
 impl Judge<'_> {
     /// Returns what the order of rooms costs in the layout that was judged last.
-    fn disorder(&self, layout: &Layout) -> f64 {
+    pub(super) fn disorder(&self, layout: &Layout) -> f64 {
         MISPLACED * self.misplaced(layout) + OUT_OF_SIGHT * self.out_of_sight() + NECK * self.necks(layout) as f64
     }
 

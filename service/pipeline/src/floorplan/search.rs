@@ -19,10 +19,16 @@ const MAX_RUNS: usize = 24;
 const MAX_STEPS: usize = 12_000;
 /// Sound plans to compare before the best is taken.
 const WANTED: usize = 3;
+/// Cost of a room up to which a plan is good enough, and the sound plans more to compare where none is.
+const CONTENT: f64 = 0.42;
+const MORE: usize = 2;
 /// Most rooms of a large building that is tried in one body before it is composed of wings.
 const MOST_WHOLE: usize = 50;
 /// Rooms up to which so many are compared; larger plans cost more and differ less.
 const SMALL: usize = 14;
+/// Share of a run that is left when it is compared with others, and what it may cost more than they to go on.
+const LATE: f64 = 0.5;
+const FAR: f64 = 0.6;
 /// Temperature at the start and the end of a run, in cost units.
 const HEAT: (f64, f64) = (1.5, 0.02);
 
@@ -61,7 +67,7 @@ pub(super) fn search(brief: &Brief, schemes: &[Scheme], rng: &mut Stream, stop: 
     // One body where the seed and the size allow it, else wings.
     let whole: Vec<Scheme> = schemes.iter().copied().filter(|s| *s != Scheme::Comb).take(1).collect();
     if brief.rooms.len() <= MOST_WHOLE && schemes.first() != Some(&Scheme::Comb) {
-        let (_, found) = anneal(brief, &mut Judge::new(brief), *whole.first()?, &weights, rng, stop);
+        let (_, found) = anneal(brief, &mut Judge::new(brief), *whole.first()?, (&weights, f64::MAX), rng, stop);
         if found.score.is_sound() {
             return Some(found);
         }
@@ -78,7 +84,7 @@ pub(super) fn search_with(
     rng: &mut Stream,
     stop: Stop<'_>,
 ) -> Option<Candidate> {
-    let mut best: Option<(Genome, Candidate)> = None;
+    let mut best: Option<(bool, f64, (Genome, Candidate))> = None;
     let mut sound = 0;
     let mut judge = Judge::new(brief);
     judge.below = judge.below.or(below);
@@ -86,17 +92,21 @@ pub(super) fn search_with(
         // The first choice of the seed gets most runs; the others step in when it does not work out.
         let scheme = if run < 4 { schemes.first() } else { schemes.get(run % schemes.len().max(1)) };
         let Some(&scheme) = scheme else { break };
-        let found = anneal(brief, &mut judge, scheme, weights, rng, stop);
-        let rank = |c: &Candidate| (!c.score.is_sound(), c.score.total(weights));
-        sound += usize::from(found.1.score.is_sound());
-        if best.as_ref().is_none_or(|b| rank(&b.1) > rank(&found.1)) {
-            best = Some(found);
+        let least = best.as_ref().filter(|b| !b.0).map_or(f64::MAX, |b| b.1);
+        let found = anneal(brief, &mut judge, scheme, (weights, least), rng, stop);
+        let unsound = !found.1.score.is_sound();
+        let cost = found.1.score.total(weights) + judge.disorder(&found.1.layout);
+        sound += usize::from(!unsound);
+        if best.as_ref().is_none_or(|(worse, least, _)| (unsound, cost) < (*worse, *least)) {
+            best = Some((unsound, cost, found));
         }
-        if sound >= wanted || stop.is_set() {
+        let poor = best.as_ref().is_some_and(|(_, least, _)| *least > CONTENT * brief.rooms.len() as f64);
+        if sound >= wanted + if poor { MORE } else { 0 } || stop.is_set() {
             break;
         }
     }
-    let best = stroll(brief, &mut judge, weights, best?, rng);
+    let (_, _, best) = best?;
+    let best = stroll(brief, &mut judge, weights, best, rng);
     Some(put_in_order(brief, &mut judge, weights, best, rng, stop))
 }
 
@@ -130,12 +140,12 @@ fn stroll(
     (genome, found)
 }
 
-/// One run: from a random start, hot to cold.
+/// One run: from a random start, hot to cold; it ends early when it is far from the `known` cost of another.
 fn anneal(
     brief: &Brief,
     judge: &mut Judge<'_>,
     scheme: Scheme,
-    weights: &Weights,
+    (weights, known): (&Weights, f64),
     rng: &mut Stream,
     stop: Stop<'_>,
 ) -> (Genome, Candidate) {
@@ -154,6 +164,9 @@ fn anneal(
             break;
         }
         let left = 1.0 - step as f64 / steps as f64;
+        if step % LOOK == 0 && left < LATE && least > known + FAR {
+            break;
+        }
         let heat = HEAT.1 + (HEAT.0 - HEAT.1) * left * left * left;
         trial.clone_from(&current);
         if !mutate(brief, &mut trial, rng) {
