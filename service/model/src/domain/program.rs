@@ -122,6 +122,9 @@ pub struct Circulation {
     /// True when a corridor needs a second way out at its far end.
     #[serde(default)]
     pub second_exit: bool,
+    /// True where doors to the rooms that robots work in open by themselves, when there are robots; in homes they stand open.
+    #[serde(default)]
+    pub automatic_doors: bool,
     /// Layout schemes that suit the domain, best first.
     pub schemes: Vec<Scheme>,
     /// How buildings with several storeys are made; without it the domain has one storey only.

@@ -370,6 +370,7 @@ fn room_spec(
     door_width = door_width.max(advised);
     // A robot's circle passes with 5 cm to spare on both sides.
     let robot = graph.robots.iter().map(|r| 2.0 * r.radius_m + 0.1).fold(0.0, f64::max);
+    let robots = !graph.robots.is_empty();
     RoomSpec {
         id: room.id.clone(),
         room_type: room.room_type.clone(),
@@ -383,10 +384,12 @@ fn room_spec(
         zone: kind.zone,
         wet: kind.wet,
         private: kind.privacy == Privacy::Private,
-        docks: has_docks(domain, kind) || !graph.robots.is_empty() && kind.robot.contains(&RobotUse::Charging),
+        docks: has_docks(domain, kind) || robots && kind.robot.contains(&RobotUse::Charging),
         open_front: kind.open_front,
         // who uses a wheelchair has no floor to spare for a leaf
-        slides: kind.sliding_door || graph.accessible && kind.wet && kind.privacy == Privacy::Private,
+        slides: kind.sliding_door
+            || graph.accessible && kind.wet && kind.privacy == Privacy::Private
+            || robots && domain.circulation.automatic_doors && kind.robot.iter().any(|u| *u != RobotUse::KeepOut),
         entrance: room.entrance,
         door_width: door_width.max(robot),
         ceiling_height: kind.ceiling_height_m,

@@ -342,6 +342,7 @@ fn task_of<'a>(line: &ClutterLine, object: &'a ObjectType, host: &ObjectType, co
         required: 0,
         spare: 0,
         line: 0,
+        leads: false,
         instead_of: &[],
         first_choice: false,
         rule: format!("clutter ({} on {}): {}", line.items.join(", "), host.id, line.pattern.name()),

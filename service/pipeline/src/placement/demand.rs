@@ -25,6 +25,8 @@ pub(super) struct Task<'a> {
     pub spare: u32,
     /// Furnishing line counted from 0; wishes come after the last line.
     pub line: usize,
+    /// True for the first furnishing line, and for what comes in its place: the room turns to it.
+    pub leads: bool,
     /// Why it is wanted, for people.
     pub rule: String,
     /// Items in whose place it comes: not wanted where one of them stands.
@@ -138,7 +140,9 @@ pub(super) fn tasks<'a>(
         let (rule, instead_of) = (rule.clone(), &f.instead_of[..]);
         let first_choice = kind.furnishing.iter().any(|other| other.required && other.instead_of.contains(&f.item));
         let item = &f.item;
-        let whole = Task { item, anchor, arrangement, count, required, spare: 0, line, rule, instead_of, first_choice };
+        let leads = line == 0 || instead_of.contains(&kind.furnishing[0].item);
+        let whole =
+            Task { item, anchor, arrangement, count, required, spare: 0, line, leads, rule, instead_of, first_choice };
         let together = whole.is_batch() || required == 0 || required == count || occupied.is_some_and(|o| o.0 == line);
         if together {
             out.push(whole);
@@ -162,6 +166,7 @@ pub(super) fn tasks<'a>(
             required: 0,
             spare: 0,
             line,
+            leads: false,
             rule,
             instead_of: &[],
             first_choice: false,
@@ -256,6 +261,7 @@ pub(super) fn one_more(object: &ObjectType) -> Task<'_> {
         required: 1,
         spare: 0,
         line: 0,
+        leads: false,
         rule,
         instead_of: &[],
         first_choice: false,

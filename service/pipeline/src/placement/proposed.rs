@@ -234,7 +234,7 @@ impl<'a> Table<'a> {
                     unit: Rc::clone(&unit),
                     q,
                     at,
-                    first_line: task.line == 0,
+                    first_line: task.leads,
                     task: index,
                     support: None,
                     z: 0,

@@ -322,7 +322,7 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
                     else {
                         break;
                     };
-                    unit.first_line = task.line == 0;
+                    unit.first_line = task.leads;
                     if task.arrangement == Arrangement::Facing {
                         state.watch(&unit);
                     }
@@ -434,7 +434,7 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
                 if units.is_empty() {
                     continue;
                 }
-                units.iter_mut().for_each(|p| p.first_line = task.line == 0);
+                units.iter_mut().for_each(|p| p.first_line = task.leads);
                 let score = batch.score + units.len() as f64;
                 let rows = Rows { score, open: !whole || !state.is_closed_by(&units), units };
                 let no_better = counted(&rows.units) >= most && rows.open;

@@ -58,7 +58,7 @@ pub(super) struct DoorZone {
     pub swings_in: bool,
     /// Side of the latch along the wall: `Some(true)` at `v1`.
     pub latch_high: Option<bool>,
-    /// How good it is as "the door" of the room: entrance, to circulation, other.
+    /// How good it is as "the door" of the room, 0 for the entrance.
     pub rank: u8,
     /// Clear width, mm.
     pub clear_width: i32,
@@ -125,6 +125,19 @@ pub(super) struct Space {
     floor: Vec<Box2>,
 }
 
+/// Returns how good a door is as "the door" of a room: entrance, other way out, to the room with the entrance, to
+/// circulation, other.
+fn rank(plan: &Floorplan, room: &PlanRoom, door: &Door) -> u8 {
+    let other = door.room_ids.iter().find(|id| *id != &room.room_id);
+    match other {
+        _ if door.entrance => 0,
+        None => 1,
+        Some(id) if plan.doors_of(id).any(|d| d.entrance) => 2,
+        Some(id) if plan.room(id).is_some_and(|r| r.circulation) => 3,
+        Some(_) => 4,
+    }
+}
+
 impl Space {
     /// Returns the room of a plan; doors and windows that touch none of its walls are left out.
     pub fn new(plan: &Floorplan, room: &PlanRoom) -> Self {
@@ -149,9 +162,7 @@ impl Space {
                     door.swing.as_ref().is_some_and(|s| s.into_room_id.as_deref() == Some(room.room_id.as_str()));
                 let (zone, open_zone) = door_zones(&out.walls[wall], v0, v1, door.kind, swings_in);
                 let latch_high = latch(&out.walls[wall], door);
-                let circulation =
-                    door.room_ids.iter().any(|id| id != &room.room_id && plan.room(id).is_some_and(|r| r.circulation));
-                let rank = if door.entrance { 0 } else { 2 - u8::from(circulation) };
+                let rank = rank(plan, room, door);
                 out.doors.push(DoorZone {
                     id: door.door_id.clone(),
                     wall,

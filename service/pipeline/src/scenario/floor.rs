@@ -1,7 +1,7 @@
 //! The free floor of a furnished building, and spots on it.
 
 use d3dgen_knowledge::clearance::quarter;
-use d3dgen_model::domain::{Domain, ObjectType, RobotUse, RoomType};
+use d3dgen_model::domain::{Domain, ObjectType, RobotUse, RoomType, Shape};
 use d3dgen_model::floorplan::{Door, DoorKind, Floorplan, PlanRoom};
 use d3dgen_model::geometry::to_mm;
 use d3dgen_model::occupancy::{Bitmap, CELL_M, Occupancy};
@@ -11,9 +11,11 @@ use d3dgen_model::{Point, Pose, Rect};
 
 /// Least radius of the disc that must find its way, m.
 pub(super) const LEAST_RADIUS_M: f64 = 0.30;
-/// How much farther off a spot may be that is not tight, or only clear of the swing of doors, m.
-const TIGHT_M: f64 = 1.2;
-const SWING_M: f64 = 0.6;
+/// How much farther off a spot may be that is not tight, or only clear of the swing of doors and of chairs in use, m.
+const TIGHT_M: f64 = 1.6;
+const SWING_M: f64 = 1.0;
+/// How far a chair is pushed back when one gets up, m.
+const CHAIR_BACK_M: f64 = 0.3;
 /// Forward and left of the four headings.
 const FORWARD: [(f64, f64); 4] = [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)];
 
@@ -37,7 +39,7 @@ pub(super) struct Room<'a> {
     /// Cells where the disc lies within the room, clear of all that stands there by a cell, as also on the way in where
     /// that is possible.
     roomy: Bitmap,
-    /// Those of them where no door opens against the disc.
+    /// Those of them where no door opens against the disc and no chair is pushed back against it.
     undisturbed: Bitmap,
     /// Its first cell in the grid of the building.
     corner: (i64, i64),
@@ -69,14 +71,20 @@ impl<'a> Floor<'a> {
                 let (a0, a1, b0, b1) = occupancy.frame.span(&swing);
                 floor.fill(a0 - i0.max(0), a1 - i0.max(0), b0 - j0.max(0), b1 - j0.max(0), false);
             }
+            let here = || placements.placements.iter().filter(|p| p.room_id == room.room_id);
+            let objects: Vec<_> = here().filter_map(|p| Some((p, domain.object(&p.object)?))).collect();
+            for (chair, _) in objects.iter().filter(|(_, o)| matches!(o.shape, Shape::Chair | Shape::SwivelChair)) {
+                let back = floor_beside(chair, quarter(chair.pose.yaw_rad) + 2, CHAIR_BACK_M, 0.0);
+                let (a0, a1, b0, b1) = occupancy.frame.span(&back);
+                floor.fill(a0 - i0.max(0), a1 - i0.max(0), b0 - j0.max(0), b1 - j0.max(0), false);
+            }
             let mut undisturbed = floor.eroded(disc);
             undisturbed.intersect(&roomy);
             spots.intersect(&main.window(i0, i1, j0, j1));
-            let here = placements.placements.iter().filter(|p| p.room_id == room.room_id);
             Room {
                 plan: room,
                 kind: domain.room_type_or_generic(&room.room_type),
-                objects: here.filter_map(|p| Some((p, domain.object(&p.object)?))).collect(),
+                objects,
                 spots,
                 roomy,
                 undisturbed,
@@ -89,6 +97,11 @@ impl<'a> Floor<'a> {
     /// Returns the reachable spot of a room nearest to a point, a little farther off rather than in a doorway or against
     /// something; `None` when the room has none.
     pub fn spot_near(&self, room: &Room, p: Point) -> Option<Point> {
+        self.best_spot(room, p).map(|(_, spot)| spot)
+    }
+
+    /// Returns the same with how far off it is, m, with what is added for a bad place.
+    pub fn best_spot(&self, room: &Room, p: Point) -> Option<(f64, Point)> {
         let loss = |((i, j), spot): ((usize, usize), Point)| {
             let farther = match (room.undisturbed.get(i, j), room.roomy.get(i, j)) {
                 (true, _) => 0.0,
@@ -98,7 +111,7 @@ impl<'a> Floor<'a> {
             (spot.distance(p) + farther, spot)
         };
         // ties go to the southern, then the western spot
-        self.cells(room).map(loss).min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, spot)| spot)
+        self.cells(room).map(loss).min_by(|a, b| a.0.total_cmp(&b.0))
     }
 
     /// Returns the reachable spot of a room by its number in a list of them, wrapped around.
@@ -159,17 +172,26 @@ pub(super) fn swept(door: &Door, room_id: &str) -> Option<Rect> {
     })
 }
 
-/// Returns the point at this distance in front of an object.
-pub(super) fn in_front(p: &Placement, distance: f64) -> Point {
-    let (dx, dy) = FORWARD[usize::from(quarter(p.pose.yaw_rad) % 4)];
-    let away = p.size_m[1] / 2.0 + distance;
-    Point::new(p.pose.x + dx * away, p.pose.y + dy * away)
+/// Returns the points at this distance before an object and beside it: in front, left, behind, right.
+pub(super) fn around(p: &Placement, distance: f64) -> [Point; 4] {
+    let [width, depth, _] = p.size_m;
+    let side = |turns: u8| {
+        let (dx, dy) = FORWARD[usize::from((quarter(p.pose.yaw_rad) + turns) % 4)];
+        let away = if turns % 2 == 0 { depth } else { width } / 2.0 + distance;
+        Point::new(p.pose.x + dx * away, p.pose.y + dy * away)
+    };
+    [side(0), side(1), side(2), side(3)]
 }
 
 /// Returns the floor in front of an object: its width and `beside` on both sides, `depth` deep.
 pub(super) fn floor_in_front(p: &Placement, depth: f64, beside: f64) -> Rect {
+    floor_beside(p, quarter(p.pose.yaw_rad), depth, beside)
+}
+
+/// Returns the same on the side of an object that looks along one of the four headings.
+fn floor_beside(p: &Placement, heading: u8, depth: f64, beside: f64) -> Rect {
     let r = p.footprint().bounds();
-    match quarter(p.pose.yaw_rad) {
+    match heading % 4 {
         0 => Rect { x0: r.x1, x1: r.x1 + depth, y0: r.y0 - beside, y1: r.y1 + beside },
         1 => Rect { y0: r.y1, y1: r.y1 + depth, x0: r.x0 - beside, x1: r.x1 + beside },
         2 => Rect { x1: r.x0, x0: r.x0 - depth, y0: r.y0 - beside, y1: r.y1 + beside },

@@ -6,10 +6,12 @@ use d3dgen_model::placements::Placement;
 use d3dgen_model::scenario::Poi;
 use d3dgen_model::scene_graph::SceneGraph;
 
-use super::floor::{Floor, Room, in_front, looking_at};
+use super::floor::{Floor, Room, around, looking_at};
 
 /// Gap between a robot's hull and what it serves, m.
 const GAP_M: f64 = 0.10;
+/// How much nearer a spot beside an object must be than one in front of it, m.
+const NOT_IN_FRONT_M: f64 = 0.3;
 /// Most waiting bays.
 const MOST_BAYS: u32 = 4;
 /// Least distance of a waiting bay from a door, m.
@@ -38,14 +40,14 @@ pub(super) fn all(floor: &Floor, graph: &SceneGraph) -> Vec<Poi> {
     let mut out: Vec<Poi> = entrance(floor).into_iter().collect();
     for room in &floor.rooms {
         let docks = room.objects.iter().filter(|(_, k)| k.shape == Shape::Dock);
-        for (dock, _) in docks {
+        for &(dock, kind) in docks {
             let number = out.iter().filter(|p| p.kind == "dock").count() + 1;
-            out.extend(at_object(floor, room, dock).map(|pose| poi(format!("dock_{number}"), "dock", room, pose)));
+            out.extend(at_object(floor, room, (dock, kind)).map(|pose| poi(format!("dock_{number}"), "dock", room, pose)));
         }
     }
     for room in floor.rooms.iter().filter(|r| r.is_for(RobotUse::Service) && !r.is_for(RobotUse::KeepOut)) {
         let pose = match served(room) {
-            Some((object, _)) => at_object(floor, room, object),
+            Some(&(object, kind)) => at_object(floor, room, (object, kind)),
             None => in_the_middle(floor, room),
         };
         let id = format!("service_point_{}", room.plan.room_id);
@@ -66,9 +68,15 @@ fn poi(poi_id: String, kind: &str, room: &Room, pose: d3dgen_model::Pose) -> Poi
     Poi { poi_id, kind: kind.into(), room_id: room.plan.room_id.clone(), pose }
 }
 
-fn at_object(floor: &Floor, room: &Room, object: &Placement) -> Option<d3dgen_model::Pose> {
-    let wanted = in_front(object, floor.radius + GAP_M);
-    let spot = floor.spot_near(room, wanted)?;
+/// Returns where a robot stops at an object: in front of it, or beside a desk or table whose chairs take that floor.
+fn at_object(floor: &Floor, room: &Room, (object, kind): (&Placement, &ObjectType)) -> Option<d3dgen_model::Pose> {
+    let sides = if matches!(kind.shape, Shape::Desk | Shape::Table | Shape::RoundTable) { 4 } else { 1 };
+    let wanted = around(object, floor.radius + GAP_M).into_iter().take(sides).enumerate();
+    let spots = wanted.filter_map(|(side, p)| {
+        let (off, spot) = floor.best_spot(room, p)?;
+        Some((off + if side == 0 { 0.0 } else { NOT_IN_FRONT_M }, spot))
+    });
+    let (_, spot) = spots.min_by(|a, b| a.0.total_cmp(&b.0))?;
     Some(looking_at(spot, Point::new(object.pose.x, object.pose.y)))
 }
 

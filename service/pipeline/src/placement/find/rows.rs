@@ -14,6 +14,8 @@ use crate::placement::unit::Unit;
 
 /// Least width of an aisle people use, mm.
 const AISLE: i32 = 900;
+/// Floor by which two who sit back to back let a third pass, mm.
+const PASSAGE: i32 = 250;
 /// Free floor between tables in a row where there is room, mm.
 const TABLES_APART: i32 = 500;
 /// Steps away from a place on the ceiling that is taken, mm.
@@ -214,7 +216,7 @@ fn plans(state: &State, unit: &Unit, task: &Task, focus: Option<u8>, terms: &Ter
                 continue;
             }
             // whoever sits back to back has floor of one's own where there is room
-            let own = if paired && shape == Shape::Desk { 2 * need } else { 0 };
+            let own = if paired && shape == Shape::Desk { 2 * need + PASSAGE } else { 0 };
             let gaps: Vec<i32> = gaps.iter().copied().chain((own > 0).then_some(own)).collect();
             for (&gap_u, &gap_v) in gaps.iter().flat_map(|u| sides.iter().map(move |v| (u, v))) {
                 for run in [i32::MAX, 4, 3, 2] {
@@ -238,7 +240,8 @@ fn plans(state: &State, unit: &Unit, task: &Task, focus: Option<u8>, terms: &Ter
                         out.push(plan);
                         if shape == Shape::Desk && focus.is_none() && plan.rows > 1 {
                             // the floor that is left shared out among the aisles
-                            let left = (wide.width() - plan.depth(d) - low - high) / (plan.rows + 1);
+                            let between = if paired { (plan.rows - 1) / 2 } else { plan.rows - 1 };
+                            let left = (wide.width() - plan.depth(d) - low - high) / (between + 2);
                             plan.gap_u += left.min(WIDENED) / 50 * 50;
                             plan.score = set - plan.shared(own) + rate(&plan, rows, task, (d, w), &wide, aisle);
                             out.push(plan);
