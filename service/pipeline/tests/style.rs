@@ -59,18 +59,18 @@ fn passages(world: &World) -> f64 {
 
 #[test]
 fn compact_and_generous_move_the_mean_area_of_rooms() {
-    // the rooms of a ward are held by the areas that its guidelines advise
+    // guidelines advise how large the rooms of a ward are; compact ones have no less
     let cases = [
-        ("two-bedroom flat in Germany", 0.1),
-        ("office for 12 people", 0.1),
-        ("hospital ward with 8 rooms in Germany", 0.02),
+        ("two-bedroom flat in Germany", 0.1, 0.1),
+        ("office for 12 people", 0.1, 0.1),
+        ("hospital ward with 8 rooms in Germany", -0.02, 0.02),
     ];
-    for (prompt, share) in cases {
+    for (prompt, less, more) in cases {
         let [compact, usual, generous] =
             [&["compact"][..], &[], &["generous"]].map(|words| mean(prompt, words, mean_room_area));
         println!("{prompt}: compact {compact:.1} m2, usual {usual:.1} m2, generous {generous:.1} m2");
         assert!(
-            compact < (1.0 - share) * usual && usual * (1.0 + share) < generous,
+            compact < (1.0 - less) * usual && usual * (1.0 + more) < generous,
             "{prompt}: {compact} {usual} {generous}"
         );
     }

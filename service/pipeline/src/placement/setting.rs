@@ -15,6 +15,9 @@ use super::space::Space;
 use super::way::Way;
 use super::{LEAST_RADIUS_M, Wanted, clutter};
 
+/// Half the width of a way for a wheelchair past furniture, m (ISO 21542: 0.8 m at the narrowest).
+const WHEELCHAIR_RADIUS_M: f64 = 0.4;
+
 /// What every way to furnish a room begins with; the same room of the same graph has the same.
 pub(super) struct Setting<'a> {
     pub domain: &'a Domain,
@@ -109,9 +112,10 @@ fn pick_sizes<'a>(domain: &'a Domain, aims: &BTreeMap<&str, Aim>, stream: &mut S
     domain.objects.iter().map(|o| (o.id.as_str(), pick(o))).collect()
 }
 
-/// Returns the radius of the disc that must reach everything, mm: the largest robot's where the doors let it in.
+/// Returns the radius of the disc that must reach everything, mm: the largest robot's where the doors let it in, and a
+/// wheelchair's where one is to get about.
 fn radius(graph: &SceneGraph, space: &Space) -> i32 {
-    let least = mm(LEAST_RADIUS_M);
+    let least = mm(if graph.accessible { WHEELCHAIR_RADIUS_M } else { LEAST_RADIUS_M });
     let robot = graph.robots.iter().map(|r| mm(r.radius_m)).fold(least, i32::max);
     let doors = space.doors.iter().map(|d| d.clear_width / 2).max().unwrap_or(robot);
     robot.min(doors).max(least)

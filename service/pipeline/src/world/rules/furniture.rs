@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use d3dgen_knowledge::clearance::{Side, free_depth, is_shallow, quarter};
-use d3dgen_model::domain::{Arrangement, FacingRule, Furnishing, Group, Member, Mount, Relation};
+use d3dgen_model::domain::{Arrangement, FacingRule, Furnishing, Group, Member, Mount, Relation, Shape};
 use d3dgen_model::placements::Placement;
 use d3dgen_model::{Rect, TOLERANCE_M};
 
@@ -12,6 +12,8 @@ use crate::world::context::{Context, Object, Room, bounds};
 
 /// Farthest a back may be from the wall it belongs to, m: a heater, a skirting, a curtain fit between.
 const BACK_M: f64 = 0.30;
+/// Distance from which a sofa with its back to the room leaves a way behind it, m.
+const WAY_BEHIND_M: f64 = 0.90;
 /// Share of its usual free floor that an object must keep to be of use.
 const USABLE_SHARE: f64 = 0.5;
 
@@ -115,7 +117,10 @@ pub fn back(c: &Context, out: &mut Findings) {
                 continue;
             }
             out.look();
-            if let Some(gap) = behind(&rear(c, object), object.placement, room).filter(|gap| *gap > BACK_M) {
+            // a sofa may stand nearer to its screen when one gets past behind it
+            let free = object.kind.is_some_and(|k| k.shape == Shape::Sofa).then_some(WAY_BEHIND_M);
+            let wrong = |gap: &f64| *gap > BACK_M && free.is_none_or(|way| *gap < way - TOLERANCE_M);
+            if let Some(gap) = behind(&rear(c, object), object.placement, room).filter(wrong) {
                 let message = format!("its back is {gap:.2} m from the wall");
                 out.add_figure(&object.placement.placement_id, message, gap, BACK_M, "m");
             }
