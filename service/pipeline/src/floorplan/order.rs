@@ -23,8 +23,8 @@ const HEAT: f64 = 0.3;
 /// Cost of a ward none of whose bedroom doors its station sees.
 const OUT_OF_SIGHT: f64 = 2.0;
 /// Width up to which a part of a room is a neck, on center lines, m, and what it costs.
-const NECK_M: f64 = 1.9;
-const NECK: f64 = 0.6;
+const NECK_M: f64 = 2.4;
+const NECK: f64 = 0.8;
 /// Longest piece of outer wall that is looked at as an end of a corridor, lattice units.
 const END_WALL: i32 = 80;
 /// Cost of a plan in which one comes to all rooms in the wrong order.

@@ -26,6 +26,11 @@ const COUNTER_AWAY_M: f64 = 1.8;
 const COUNTER_FRONT_M: f64 = 1.6;
 /// Floor a person needs behind a free-standing counter, mm.
 const BEHIND: i32 = 900;
+/// Floor more than one must have behind a desk or counter, mm, the floor before it from which on there is some to spare, m,
+/// and what it is worth.
+const EASE: i32 = 250;
+const AT_EASE_M: f64 = 1.7;
+const AT_EASE: f64 = 0.3;
 /// What a counter loses past which one does not get to its staff's side.
 const SHUT_IN: f64 = 2.0;
 /// Depth of the floor where people queue at a counter and of that where they come in, mm, and what a counter loses where
@@ -147,7 +152,7 @@ impl<'a> Find<'_, 'a, '_> {
         // whoever sits or stands before the wall needs room there
         let rear = r.x0.min(b.x0);
         let backs = space.walls.iter().filter(|w| w.q == q).map(|w| w.u - rear);
-        let mut us: Vec<i32> = backs.collect();
+        let mut us: Vec<i32> = backs.flat_map(|u| [u, u + EASE]).collect();
         us.extend((0..30).map(|k| wide.x0 + BEHIND - rear + k * STEP).take_while(|u| u + b.x1 < door_u));
         // beside the way in, or close to a wall so that one gets past
         let mut vs: Vec<i32> = (0..24).map(|k| if k % 2 == 0 { k / 2 } else { -(k + 1) / 2 } * STEP).collect();
@@ -162,7 +167,9 @@ impl<'a> Find<'_, 'a, '_> {
                 let off = f64::from((v + middle - door_axis).abs()) / if look == 0 { 1000.0 } else { 4000.0 };
                 // whoever stands behind a counter that is open to a corridor sees along it from close to the opening only
                 let (far, slope): (f64, f64) = if door.open { (1.6, 0.6) } else { (4.0, 0.2) };
-                let lost = if behind > 100 && behind < BEHIND {
+                let lost = if behind == EASE && front > AT_EASE_M {
+                    -AT_EASE
+                } else if behind > 100 && behind < BEHIND {
                     1.5
                 } else if door.open {
                     0.0
@@ -205,21 +212,27 @@ impl<'a> Find<'_, 'a, '_> {
         let (b, r) = (unit.as_looking(&unit.bbox), unit.as_looking(&unit.reach));
         let own = (q + 4 - unit.look()) % 4;
         for wall in space.walls.iter().filter(|w| w.q == q && w.u + SIDE_VIEW < door.0) {
-            let u = wall.u - r.x0.min(b.x0);
+            let close = wall.u - r.x0.min(b.x0);
             let (low, high) = (wall.v0 - b.y0, wall.v1 - b.y1);
-            let steps = (low..=high).step_by(STEP as usize);
-            for v in steps.chain((low <= high).then_some(high)) {
+            let steps = || (low..=high).step_by(STEP as usize).chain((low <= high).then_some(high));
+            for (u, v) in [close, close + EASE].into_iter().flat_map(|u| steps().map(move |v| (u, v))) {
                 let placed = Placed { at: turn(q, u, v), ..at_frame(unit, own, 0, 0, self.index) };
                 let away = f64::from((v + (b.y0 + b.y1) / 2 - door.1).abs()) / 1000.0;
                 let front = f64::from(wide.x1 - u - b.x1) / 1000.0;
+                let eased = match u > close {
+                    true if front > AT_EASE_M => AT_EASE,
+                    true => -AT_EASE,
+                    false => 0.0,
+                };
                 let score = |find: &Self, p: &Placed<'a>| match unit.look() {
                     // whoever comes in finds the counter before the way on, and room to stand there
                     0 => {
                         2.2 - 0.3 * (away - COUNTER_AWAY_M).abs()
                             - QUEUE * (COUNTER_FRONT_M - front).max(0.0)
                             - find.hampered(p)
+                            + eased
                     }
-                    _ => 1.6 + (0.15 * away).min(0.6) - find.glare(p),
+                    _ => 1.6 + (0.15 * away).min(0.6) - find.glare(p) + eased,
                 };
                 self.offer(placed, 82 + u32::from(q), score);
             }

@@ -19,6 +19,8 @@ const STEP: i32 = 450;
 /// A gap narrower than this beside furniture collects dust, mm.
 const SLIVER: i32 = 300;
 
+/// What hangs this near to a leaf that stands open is behind it, mm.
+const BEHIND_LEAF: f64 = 350.0;
 /// How far from the entrance something that belongs there may stand, mm.
 const BY_ENTRANCE: i32 = 4500;
 
@@ -353,7 +355,12 @@ impl<'a> Find<'_, 'a, '_> {
         let Some(d) = doors.get(self.siblings().count() % doors.len().max(1)) else { return 0.0 };
         let away = f64::from(p.world(&p.unit.bbox).gap(&d.zone));
         if d.wall != index {
-            return 0.5 - away / 800.0;
+            let wall = &self.state.space.walls[d.wall];
+            let (_, along) = p.world(&p.unit.bbox).turned((4 - wall.q) % 4).center();
+            // on the wall that the open leaf stands before
+            let hinge_side = d.latch_high.is_some_and(|high| if high { along < d.v0 } else { along > d.v1 });
+            let behind = d.swings_in && hinge_side && away < BEHIND_LEAF;
+            return 0.5 - away / 800.0 - if behind { 1.5 } else { 0.0 };
         }
         let above = z >= d.v1;
         let gap = if above { a - d.v1 } else { d.v0 - z };
