@@ -34,8 +34,8 @@ const HEAT: (f64, f64) = (1.5, 0.02);
 
 /// Steps from the best plan to one that is nearly as good, and what they may cost: small programs have one best plan
 /// whatever the seed.
-const STROLL: usize = 60;
-const NEARLY: f64 = 0.1;
+const STROLL: usize = 80;
+const NEARLY: f64 = 0.15;
 
 /// Steps from one look at the wish to stop to the next.
 pub(super) const LOOK: usize = 64;

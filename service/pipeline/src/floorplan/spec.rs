@@ -25,7 +25,7 @@ const MOST_ADVISED_DOOR_M: f64 = 0.1;
 /// Share by which the area aimed for differs from seed to seed, what one room has more of it by itself and many share,
 /// and the range from which on an area may differ.
 const AREA_VARIATION: f64 = 0.07;
-const FEW_ROOMS_VARIATION: f64 = 0.3;
+const FEW_ROOMS_VARIATION: f64 = 0.4;
 const FREE_RANGE: f64 = 1.3;
 /// Share by which a corridor is wider than it must be, from seed to seed.
 const WIDTH_VARIATION: f64 = 0.1;
