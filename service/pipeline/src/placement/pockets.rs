@@ -13,9 +13,9 @@ use super::space::Space;
 use super::state::Placed;
 
 /// Ways to look at the floor: half widths of the robot of 0.2 m and what rasters of 4 cm make of it at least and at most,
-/// then rasters of several cells and origins. No half width is a multiple of 5 mm, so that no gap is exactly as wide. A
+/// then rasters of several cells and origins (and one that begins in the room's corner, `Pockets::new`). No half width is a multiple of 5 mm, so that no gap is exactly as wide. A
 /// raster may make more of a slit and less of the turn into it: those of different widths east and north stand for that.
-const VIEWS: [View; 14] = [
+const VIEWS: [View; 13] = [
     View::Exact { east: 82, north: 82 },
     View::Exact { east: 88, north: 88 },
     View::Exact { east: 94, north: 94 },
@@ -25,12 +25,13 @@ const VIEWS: [View; 14] = [
     View::Exact { east: 118, north: 118 },
     View::Exact { east: 82, north: 118 },
     View::Exact { east: 118, north: 82 },
-    View::Raster { cell: 40, at: (3, 17) },
     View::Raster { cell: 40, at: (23, 37) },
     View::Raster { cell: 50, at: (11, 31) },
     View::Raster { cell: 67, at: (29, 7) },
     View::Raster { cell: 83, at: (47, 61) },
 ];
+/// Edge of the cells of the room's own raster, mm.
+const OWN_CELL: i32 = 40;
 /// Width of the robot that rasters look at, mm.
 const ROBOT: i32 = 200;
 /// Height up to which the middle of a thing makes it an obstacle, mm.
@@ -82,6 +83,8 @@ pub(super) struct Pockets {
     frame: Box2,
     /// What is no floor, then what stands on it or hangs over it.
     obstacles: Vec<Box2>,
+    /// The cells of a grid over this room alone, as NAV has them.
+    own_raster: View,
 }
 
 impl Pockets {
@@ -89,11 +92,13 @@ impl Pockets {
     pub fn new(space: &Space) -> Self {
         let b = space.bounds;
         let frame = b.grown(AROUND);
+        // NAV counts a cell whose center lies on the very edge of a room as floor
+        let edge = b.grown(1);
         let mut solid = vec![
-            Box2 { y1: b.y0, ..frame },
-            Box2 { y0: b.y1, ..frame },
-            Box2 { x0: frame.x0, x1: b.x0, ..b },
-            Box2 { x0: b.x1, x1: frame.x1, ..b },
+            Box2 { y1: edge.y0, ..frame },
+            Box2 { y0: edge.y1, ..frame },
+            Box2 { x0: frame.x0, x1: edge.x0, ..edge },
+            Box2 { x0: edge.x1, x1: frame.x1, ..edge },
         ];
         solid.extend(space.holes());
         for door in &space.doors {
@@ -102,7 +107,7 @@ impl Pockets {
             let floor = space.walls[door.wall].strip(middle - half, middle + half, -THRESHOLD, 0);
             solid = solid.iter().flat_map(|s| without(s, &floor)).collect();
         }
-        Self { frame, obstacles: solid }
+        Self { frame, obstacles: solid, own_raster: own_raster(&b) }
     }
 
     /// Returns the outlines of what units put in the way.
@@ -123,15 +128,19 @@ impl Pockets {
 
     /// Returns true when more things close off floor that is open without them.
     pub fn is_closed_by(&self, more: &[Box2]) -> bool {
-        VIEWS.iter().filter(|view| self.may_part(more, **view)).any(|view| {
-            let closed = self.closed_off(more, *view);
-            closed > 0 && closed > self.closed_off(&[], *view)
+        self.views().filter(|view| self.may_part(more, *view)).any(|view| {
+            let closed = self.closed_off(more, view);
+            closed > 0 && closed > self.closed_off(&[], view)
         })
     }
 
     /// Returns the floor that is closed off, mm^2 of places for a robot's center, summed over the views.
     pub fn area(&self) -> i64 {
-        VIEWS.iter().map(|view| self.closed_off(&[], *view)).sum()
+        self.views().map(|view| self.closed_off(&[], view)).sum()
+    }
+
+    fn views(&self) -> impl Iterator<Item = View> {
+        VIEWS.into_iter().chain([self.own_raster])
     }
 
     /// Returns true when the free floor along the edge of something new is in several pieces: it may part them.
@@ -182,6 +191,11 @@ impl Pockets {
         let largest = free.components().iter().map(area).max().unwrap_or(0);
         area(&free) - largest
     }
+}
+
+/// Returns the raster that NAV lays over a room with these bounds.
+fn own_raster(bounds: &Box2) -> View {
+    View::Raster { cell: OWN_CELL, at: (bounds.x0 + OWN_CELL / 2, bounds.y0 + OWN_CELL / 2) }
 }
 
 /// Returns true for what is in the way of a small robot by the definition.
@@ -250,7 +264,8 @@ mod tests {
             [Box2 { y1: 0, ..frame }, Box2 { y0: 3000, ..frame }, Box2 { x1: 0, ..frame }, Box2 { x0: 3000, ..frame }];
         // a door in the south, 0.9 m wide
         let door = Box2::new(1000, -THRESHOLD, 1900, 0);
-        Pockets { frame, obstacles: solid.iter().flat_map(|s| without(s, &door)).collect() }
+        let obstacles = solid.iter().flat_map(|s| without(s, &door)).collect();
+        Pockets { frame, obstacles, own_raster: own_raster(&b) }
     }
 
     #[test]

@@ -230,15 +230,8 @@ impl<'a> Table<'a> {
             places.sort_unstable();
             let mut routes = 0;
             for (_, q, at) in places {
-                let placed = Placed {
-                    unit: Rc::clone(&unit),
-                    q,
-                    at,
-                    first_line: task.leads,
-                    task: index,
-                    support: None,
-                    z: 0,
-                };
+                let placed =
+                    Placed { unit: Rc::clone(&unit), q, at, first_line: task.leads, task: index, support: None, z: 0 };
                 let fits = state.fit(placed, false).and_then(|placed| {
                     routes += 1;
                     state.route(std::slice::from_ref(&placed)).map(|_| placed)

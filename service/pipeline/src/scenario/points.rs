@@ -42,7 +42,9 @@ pub(super) fn all(floor: &Floor, graph: &SceneGraph) -> Vec<Poi> {
         let docks = room.objects.iter().filter(|(_, k)| k.shape == Shape::Dock);
         for &(dock, kind) in docks {
             let number = out.iter().filter(|p| p.kind == "dock").count() + 1;
-            out.extend(at_object(floor, room, (dock, kind)).map(|pose| poi(format!("dock_{number}"), "dock", room, pose)));
+            out.extend(
+                at_object(floor, room, (dock, kind)).map(|pose| poi(format!("dock_{number}"), "dock", room, pose)),
+            );
         }
     }
     for room in floor.rooms.iter().filter(|r| r.is_for(RobotUse::Service) && !r.is_for(RobotUse::KeepOut)) {

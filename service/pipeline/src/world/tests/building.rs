@@ -245,8 +245,18 @@ fn range(s: &Sample, wanted: impl Fn(f64) -> [f64; 2]) -> Vec<Change> {
 /// A thin fin of wall runs through most of a room, at several places of each.
 fn slits(s: &Sample) -> Vec<Change> {
     let rooms = s.world.floorplan.rooms.iter().filter(|r| !r.circulation && r.net_polygon.0.len() == 4);
-    let places =
-        rooms.flat_map(|r| [0.5, 0.4, 0.6, 0.33, 0.67].into_iter().flat_map(move |at| [(r, at, true), (r, at, false)]));
+    let shares = || (0..=20).map(|i| 0.3 + 0.02 * f64::from(i));
+    let all = rooms.flat_map(|r| shares().flat_map(move |at| [(r, at, true), (r, at, false)]));
+    // a slit through furniture would break the rules about furniture too
+    let places = all.filter(|(room, at, upright)| {
+        let b = room.net_polygon.bounds();
+        let in_room = s.world.placements.placements.iter().filter(|p| p.room_id == room.room_id);
+        !in_room.map(|p| p.footprint().bounds()).any(|o| {
+            let (from, to, edge) =
+                if *upright { (o.x0, o.x1, b.x0 + at * b.width()) } else { (o.y0, o.y1, b.y0 + at * b.height()) };
+            from < edge + 0.01 && edge < to
+        })
+    });
     each(s, places, |w, (room, at, upright)| {
         let b = room.net_polygon.bounds();
         let along = if upright { b.x0 + at * b.width() } else { b.y0 + at * b.height() };
