@@ -177,7 +177,7 @@ pub(super) fn around(p: &Placement, distance: f64) -> [Point; 4] {
     let [width, depth, _] = p.size_m;
     let side = |turns: u8| {
         let (dx, dy) = FORWARD[usize::from((quarter(p.pose.yaw_rad) + turns) % 4)];
-        let away = if turns % 2 == 0 { depth } else { width } / 2.0 + distance;
+        let away = if turns.is_multiple_of(2) { depth } else { width } / 2.0 + distance;
         Point::new(p.pose.x + dx * away, p.pose.y + dy * away)
     };
     [side(0), side(1), side(2), side(3)]
