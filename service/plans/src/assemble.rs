@@ -172,13 +172,14 @@ fn windows(layout: &Layout, rooms: &[PlanRoom]) -> Vec<Window> {
     for o in layout.openings.iter().filter(|o| o.kind == OpeningKind::Window) {
         let Some(room) = o.rooms.first().map(|&r| &rooms[r]) else { continue };
         let top = room.ceiling_height_m - LINTEL_M;
-        let head = o.head_m.unwrap_or(HEAD_M.min(top));
-        let sill = o.sill_m.filter(|s| *s < head).unwrap_or(SILL_M.min(head / 2.0));
+        // compared as they are written, to the millimeter
+        let head = o.head_m.map(to_mm).filter(|h| *h > 0.0).unwrap_or_else(|| to_mm(HEAD_M.min(top)));
+        let sill = o.sill_m.map(to_mm).filter(|s| *s < head).unwrap_or(SILL_M.min((head * 500.0).floor() / 1000.0));
         windows.push(Window {
             window_id: format!("window_{}", windows.len() + 1),
             line: segment(layout, o),
-            sill_m: to_mm(sill),
-            head_m: to_mm(head),
+            sill_m: sill,
+            head_m: head,
             wall_thickness_m: to_mm(layout.stretches[o.stretch].thickness() as f64 / 1000.0),
             room_id: room.room_id.clone(),
             locked: true,

@@ -104,6 +104,18 @@ fn a_door_drawn_as_an_arc_swings_as_drawn() {
 }
 
 #[test]
+fn a_sill_as_high_as_the_head_gives_way() {
+    // a ceiling of 2.1 m leaves the head at 1.9 m
+    let text = String::from_utf8(std::fs::read(plans().join("flat.geojson")).expect("the sample")).expect("text");
+    let low = text.replacen("\"Living room\"", "\"Living room\", \"height\": 2.1", 1);
+    let window = "\"sill\": 0.9";
+    let high = low.replace(window, "\"sill\": 1.9");
+    assert!(low != text && high != low, "the sample has such a room and a window");
+    let (plan, _) = plan_of("flat.geojson", high.as_bytes(), &thin()).expect("a plan");
+    assert!(plan.windows.iter().all(|w| w.sill_m < w.head_m), "{:?}", plan.windows);
+}
+
+#[test]
 fn a_plan_at_an_angle_is_turned_upright() {
     let svg = r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 900 900"><g transform="rotate(17 400 400)">
         <rect id="kitchen" x="100" y="100" width="400" height="300"/>

@@ -20,6 +20,9 @@ const PASSAGE: f64 = 4.0;
 const CROWDED: f64 = 3.0;
 /// What it loses where people stand to use something.
 const USED: f64 = 3.0;
+/// Floor ahead of a charging robot on which people pass, mm, and what a dock loses where something stands on it.
+const AHEAD: i32 = 900;
+const NARROW: f64 = 1.5;
 /// Height up to which something is on the floor, mm.
 const LOW: i32 = 300;
 
@@ -39,6 +42,14 @@ pub(super) fn buffers<'p>(p: &'p Placed, robot: i32) -> impl Iterator<Item = Box
     })
 }
 
+/// Returns the floor ahead of that, on which one passes a robot that charges.
+fn passages<'p>(p: &'p Placed, robot: i32) -> impl Iterator<Item = Box2> + 'p {
+    fronts(p).map(move |(q, own, clearance)| {
+        let front = own.x1 + clearance.max(robot);
+        Box2 { x0: front, x1: front + AHEAD, y0: own.y0, y1: own.y1 }.turned(q)
+    })
+}
+
 /// Returns each dock's heading, its outline turned back by it, and the clearance it asks for in front, mm.
 fn fronts<'p>(p: &'p Placed) -> impl Iterator<Item = (u8, Box2, i32)> + 'p {
     let docks = p.unit.parts.iter().filter(|part| part.object.shape == Shape::Dock);
@@ -49,14 +60,16 @@ fn fronts<'p>(p: &'p Placed) -> impl Iterator<Item = (u8, Box2, i32)> + 'p {
 }
 
 /// Returns how much a place for a unit loses because something takes the floor of a dock that stands or of its own,
-/// because people have to stand in its own, or because a wall beside its dock leaves the robot no play.
+/// because people have to stand in its own, because a wall beside its dock leaves the robot no play, or because nobody
+/// passes a robot that charges.
 pub(super) fn crowding(state: &State, p: &Placed, robot: i32) -> f64 {
     let others = state.docks.iter().filter(|b| takes(p, b)).count() as f64;
     let shared = |b: &Box2| state.docks.iter().any(|other| other.overlaps(b));
     let crowded = |b: &Box2| CROWDED * f64::from(is_taken(state, b) || shared(b)) + USED * f64::from(is_used(state, b));
     let walled = |berth: &Box2| !state.space.contains(&berth.grown(robot / 2));
     let corners = berths(p).filter(walled).count() as f64;
-    CROWDED * (others + corners) + buffers(p, robot).map(|b| crowded(&b)).sum::<f64>()
+    let narrow = passages(p, robot).filter(|b| is_taken(state, b) || !state.space.contains(b)).count() as f64;
+    CROWDED * (others + corners) + NARROW * narrow + buffers(p, robot).map(|b| crowded(&b)).sum::<f64>()
 }
 
 /// Returns true for a place that takes floor of a dock, or for a dock whose floor is taken or used where no robot needs it;

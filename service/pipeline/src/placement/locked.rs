@@ -96,7 +96,7 @@ pub(super) fn shading(fixed: &[&Placement], domain: &Domain, space: &Space) -> V
 /// Returns how many things stand before a door or a window of the room where one would rather have none: as deep as the
 /// leaf is wide, and what [`Open`] keeps of windows.
 pub(super) fn before_openings(things: &[&Placement], domain: &Domain, space: &Space) -> usize {
-    let open = Open { doors: true, windows: true };
+    let open = Open { doors: true, deep: false, windows: true };
     let curtain = |p: &Placement| domain.object(&p.object).is_some_and(|o| o.shape == Shape::Curtain);
     let solids = things.iter().filter(|p| !curtain(p)).map(|p| (p.mount, solid_of(p))).filter(|(_, s)| !s.is_flat());
     let before = |(mount, solid): &(Mount, Solid)| {

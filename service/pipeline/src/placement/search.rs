@@ -78,18 +78,19 @@ pub(super) struct Level {
 
 impl Level {
     const fn new(tightness: f64, margin: i32) -> Self {
-        Self { tightness, margin, advised: false, ways: true, open: Open { doors: true, windows: false } }
+        Self { tightness, margin, advised: false, ways: true, open: Open { doors: true, deep: false, windows: false } }
     }
 }
 
 /// The last pass that tries what has something else in its place.
 const FIRST_CHOICES: usize = 1;
-const NOT_OPEN: Open = Open { doors: false, windows: false };
+const NOT_OPEN: Open = Open { doors: false, deep: false, windows: false };
+const WIDE_OPEN: Open = Open { doors: true, deep: true, windows: true };
 
 /// The passes in turn, the strictest first.
 pub(super) const LEVELS: [Level; 12] = [
-    Level { advised: true, open: Open { doors: true, windows: true }, ..Level::new(1.0, 50) },
-    Level { open: Open { doors: true, windows: true }, ..Level::new(1.0, 50) },
+    Level { advised: true, open: WIDE_OPEN, ..Level::new(1.0, 50) },
+    Level { open: WIDE_OPEN, ..Level::new(1.0, 50) },
     Level::new(1.0, 20),
     Level::new(0.75, 20),
     Level { ways: false, ..Level::new(1.0, 20) },

@@ -7,6 +7,8 @@ use super::geom::{Box2, Solid, mm, turn};
 
 /// Floor kept free in front of every door over its width, mm.
 const DOOR_DEPTH: i32 = 600;
+/// The same before doors without a swinging leaf where the room has the space: a leaf would keep as much free.
+const DEEP_DOOR_DEPTH: i32 = 900;
 /// Wall beside the latch of a door that people in wheelchairs open, mm (18 in, ADA 404.2.4).
 const LATCH_SIDE: i32 = 457;
 /// How far from a wall something counts as standing in front of its window, mm.
@@ -54,6 +56,8 @@ pub(super) struct DoorZone {
     pub zone: Box2,
     /// The same as deep as a leaf is wide whichever way it opens.
     pub open_zone: Box2,
+    /// The same as deep as one comes through with ease, leaf or not.
+    deep_zone: Box2,
     /// True when its leaf opens into the room.
     pub swings_in: bool,
     /// Side of the latch along the wall: `Some(true)` at `v1`.
@@ -69,7 +73,11 @@ pub(super) struct DoorZone {
 impl DoorZone {
     /// Returns the floor that is kept free.
     pub fn kept(&self, open: Open) -> &Box2 {
-        if open.doors { &self.open_zone } else { &self.zone }
+        match open {
+            Open { deep: true, .. } => &self.deep_zone,
+            Open { doors: true, .. } => &self.open_zone,
+            _ => &self.zone,
+        }
     }
 }
 
@@ -92,6 +100,8 @@ pub(super) struct WindowZone {
 pub(super) struct Open {
     /// On both sides of a door as much as its leaf is wide; otherwise what it needs.
     pub doors: bool,
+    /// Before doors without a leaf as much as a leaf would take.
+    pub deep: bool,
     /// Half a meter before windows; otherwise what takes their light.
     pub windows: bool,
 }
@@ -160,7 +170,7 @@ impl Space {
             if let Some((wall, v0, v1)) = out.locate(&door.line, door.wall_thickness_m) {
                 let swings_in =
                     door.swing.as_ref().is_some_and(|s| s.into_room_id.as_deref() == Some(room.room_id.as_str()));
-                let (zone, open_zone) = door_zones(&out.walls[wall], v0, v1, door.kind, swings_in);
+                let [zone, open_zone, deep_zone] = door_zones(&out.walls[wall], v0, v1, door.kind, swings_in);
                 let latch_high = latch(&out.walls[wall], door);
                 let rank = rank(plan, room, door);
                 out.doors.push(DoorZone {
@@ -171,6 +181,7 @@ impl Space {
                     height: mm(door.height_m),
                     zone,
                     open_zone,
+                    deep_zone,
                     swings_in,
                     latch_high,
                     rank,
@@ -196,13 +207,15 @@ impl Space {
         for door in &mut self.doors {
             let (Some(high), wall) = (door.latch_high, &self.walls[door.wall]) else { continue };
             let back = (4 - wall.q) % 4;
-            let mut zone = door.open_zone.turned(back);
-            if high {
-                zone.y1 = (zone.y1 + LATCH_SIDE).min(wall.v1).max(zone.y1);
-            } else {
-                zone.y0 = (zone.y0 - LATCH_SIDE).max(wall.v0).min(zone.y0);
+            for kept in [&mut door.open_zone, &mut door.deep_zone] {
+                let mut zone = kept.turned(back);
+                if high {
+                    zone.y1 = (zone.y1 + LATCH_SIDE).min(wall.v1).max(zone.y1);
+                } else {
+                    zone.y0 = (zone.y0 - LATCH_SIDE).max(wall.v0).min(zone.y0);
+                }
+                *kept = zone.turned(wall.q);
             }
-            door.open_zone = zone.turned(wall.q);
         }
     }
 
@@ -322,15 +335,17 @@ fn holes(bounds: Box2, corners: &[(i32, i32)]) -> Vec<Box2> {
     out
 }
 
-/// Returns the floor a door needs, and that as deep as its leaf is wide.
-fn door_zones(wall: &WallSide, v0: i32, v1: i32, kind: DoorKind, swings_in: bool) -> (Box2, Box2) {
+/// Returns the floor a door needs, that as deep as its leaf is wide, and that which lets one in with ease.
+fn door_zones(wall: &WallSide, v0: i32, v1: i32, kind: DoorKind, swings_in: bool) -> [Box2; 3] {
     let leaf = match kind {
         DoorKind::Hinged => v1 - v0,
         DoorKind::DoubleHinged => (v1 - v0 + 1) / 2,
         DoorKind::Sliding | DoorKind::Open => 0,
     };
-    let open = wall.strip(v0, v1, 0, leaf.max(DOOR_DEPTH));
-    (if swings_in { open } else { wall.strip(v0, v1, 0, DOOR_DEPTH) }, open)
+    let deep = |depth: i32| wall.strip(v0, v1, 0, depth);
+    let open = deep(leaf.max(DOOR_DEPTH));
+    let needed = if swings_in { open } else { deep(DOOR_DEPTH) };
+    [needed, open, if leaf == 0 { deep(DEEP_DOOR_DEPTH) } else { open }]
 }
 
 fn latch(wall: &WallSide, door: &Door) -> Option<bool> {

@@ -152,27 +152,52 @@ fn leaf(page: &mut Page, frame: &Frame, o: &Opening, along: f64, sign: f64, leng
     page.path("dl", Path::new().polygon(&[at(0.0, 0.0), at(0.0, length), at(LEAF_M, length), at(LEAF_M, 0.0)]));
 }
 
-/// A panel half drawn back into the longer of the two walls beside it.
+/// A panel half drawn back beside the opening, where the wall goes on for as long as the panel is; two panels where that is
+/// so on neither side but half of it on both.
 fn sliding(page: &mut Page, frame: &Frame, plan: &Floorplan, o: &Opening) {
-    let beside = |p: Point| {
-        let touches = |w: &&Wall| w.line.start.distance(p) < TOLERANCE_M || w.line.end.distance(p) < TOLERANCE_M;
-        plan.walls
-            .iter()
-            .filter(|w| w.line.is_vertical() == o.line.is_vertical())
-            .filter(touches)
-            .map(|w| w.line.length())
-            .fold(0.0, f64::max)
-    };
-    let (from, to) = if beside(o.line.start) >= beside(o.line.end) {
-        (-0.35 * o.length, 0.6 * o.length)
-    } else {
-        (0.4 * o.length, 1.35 * o.length)
-    };
     for across in [-o.half, o.half] {
         let ends = [0.0, o.length].map(|along| frame.map(o.at(along, across)));
         page.path("da", Path::new().segment(ends[0], ends[1]));
     }
-    page.path("dl", o.quad([from, to], [-LEAF_M / 2.0, LEAF_M / 2.0], frame));
+    let [before, after] = walls_beside(plan, o);
+    let panels: &[[f64; 2]] = if before.max(after) < o.length && before.min(after) >= o.length / 2.0 {
+        &[[-0.2, 0.3], [0.7, 1.2]]
+    } else if before >= after {
+        &[[-0.35, 0.6]]
+    } else {
+        &[[0.4, 1.35]]
+    };
+    for panel in panels {
+        page.path("dl", o.quad(panel.map(|share| share * o.length), [-LEAF_M / 2.0, LEAF_M / 2.0], frame));
+    }
+}
+
+/// Returns how far the wall goes on before and after an opening, m: to the next opening or to a wall that meets it.
+fn walls_beside(plan: &Floorplan, o: &Opening) -> [f64; 2] {
+    let upright = o.line.is_vertical();
+    let coordinates = |p: Point| if upright { (p.y, p.x) } else { (p.x, p.y) };
+    let (direction, length) = (coordinates(o.line.end).0 - coordinates(o.line.start).0, o.length);
+    let (start, own) = coordinates(o.line.start);
+    // along the opening from its start, as the panel is drawn
+    let along = |p: Point| (coordinates(p).0 - start) * direction.signum();
+    let openings = plan.doors.iter().map(|d| d.line).chain(plan.windows.iter().map(|w| w.line));
+    let in_line = |line: &Segment| line.is_vertical() == upright && (coordinates(line.start).1 - own).abs() < o.half;
+    let next = openings.filter(in_line).flat_map(|line| [line.start, line.end]).map(|p| (along(p), 0.0));
+    let meets = |w: &&Wall| {
+        let (a, b) = (coordinates(w.line.start).1, coordinates(w.line.end).1);
+        w.line.is_vertical() != upright && a.min(b) < own + 2.0 * o.half && a.max(b) > own - 2.0 * o.half
+    };
+    let crossing = plan.walls.iter().filter(meets).map(|w| (along(w.line.start), w.thickness_m / 2.0));
+    let mut free = [f64::MAX; 2];
+    for (at, half) in next.chain(crossing) {
+        if at < TOLERANCE_M {
+            free[0] = free[0].min(if at > -TOLERANCE_M { f64::MAX } else { -at - half });
+        }
+        if at > length - TOLERANCE_M {
+            free[1] = free[1].min(if at < length + TOLERANCE_M { f64::MAX } else { at - length - half });
+        }
+    }
+    free
 }
 
 /// Returns the floor that leaves sweep, on the sheet, for the labels to avoid.

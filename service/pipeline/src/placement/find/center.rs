@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use super::{Find, Rule};
+use super::{Find, Focus, Rule};
 use crate::placement::geom::{Box2, Solid, turn};
 use crate::placement::seats::is_seat;
 use crate::placement::space::DoorZone;
@@ -75,7 +75,7 @@ impl<'a> Find<'_, 'a, '_> {
         });
         let turned_alike = self.siblings().next().is_none_or(|o| o.q % 2 == p.q % 2);
         s += if in_line { 0.9 } else { 0.0 } - if turned_alike { 0.0 } else { 1.6 };
-        if let Some((q, _, middle)) = self.focus() {
+        if let Some(Focus { q, seat: middle, .. }) = self.focus() {
             // turned to what the room is about, in line with it
             let (_, v) = turn((4 - q) % 4, cx, cy);
             let (_, w) = turn((4 - q) % 4, middle.0, middle.1);

@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use d3dgen_model::domain::{Mount, Shape};
 
-use super::{Find, Rule};
+use super::{Find, Focus, Rule};
 use crate::placement::geom::{Box2, turn};
 use crate::placement::seats::{PAST, is_way, ways_past};
 use crate::placement::space::WallSide;
@@ -40,6 +40,8 @@ const LANDING: i32 = 1100;
 const IN_THE_WAY_IN: f64 = 4.0;
 /// What a counter loses with a wall in the floor where people queue.
 const FACES_WALL: f64 = 2.0;
+/// What a screen loses that half of those at a table have behind their backs.
+const BACKS: f64 = 2.5;
 /// What a desk loses with a window right before or behind its user, which the screen mirrors.
 const GLARE: f64 = 4.5;
 /// A window mirrored by a screen begins this near to the axis of the desk's user, and lies this near, mm.
@@ -48,9 +50,28 @@ const MIRRORED: (i32, i32) = (500, 3500);
 const SIDE_VIEW: i32 = 900;
 
 impl<'a> Find<'_, 'a, '_> {
-    /// Offers positions opposite the first item, facing it: on the wall across first, then free-standing.
+    /// Offers positions opposite the first item, facing it: on the wall across first, then free-standing. Who sits around a
+    /// table looks to its head.
     pub(super) fn facing(&mut self, unit: &Rc<Unit<'a>>) {
-        let Some((target_q, target, seat)) = self.focus() else { return self.along_walls(unit) };
+        let Some(focus) = self.focus() else { return self.along_walls(unit) };
+        if focus.around {
+            for (turns, less) in [(1, 0.0), (3, 0.0), (0, BACKS), (2, BACKS)] {
+                self.facing_side(unit, &Focus { q: (focus.q + turns) % 4, ..focus }, less);
+            }
+        } else {
+            self.facing_side(unit, &focus, 0.0);
+        }
+        if self.out.is_empty() {
+            for i in 0..self.state.space.walls.len() {
+                let opposite = self.state.space.walls[i].q != focus.q;
+                self.along_wall(unit, i, if opposite { -1.0 } else { -2.5 });
+            }
+        }
+    }
+
+    /// Offers positions that face one side of something, worth this much less.
+    fn facing_side(&mut self, unit: &Rc<Unit<'a>>, focus: &Focus, less: f64) {
+        let Focus { q: target_q, rect: target, seat, .. } = *focus;
         // all in the frame of the one that faces the target: its users look along x
         let q = (target_q + 2) % 4;
         let look = unit.look();
@@ -83,7 +104,7 @@ impl<'a> Find<'_, 'a, '_> {
                     let aside = f64::from((v - low).min(high - v)) / 1000.0;
                     // looked at from a little aside is well enough, from the far end of the sofa it is not
                     let turned = 0.5 * off + 2.5 * (off - NEAR_AXIS_M).max(0.0);
-                    self.offer(placed, i as u32, |_, _| if look == 0 { 3.0 - turned } else { 3.0 - aside });
+                    self.offer(placed, i as u32, |_, _| 3.0 - less - if look == 0 { turned } else { aside });
                 }
             }
         }
@@ -99,15 +120,9 @@ impl<'a> Find<'_, 'a, '_> {
                     let placed = at(u, axis - middle + side, self.index);
                     let far = f64::from(t.x0 - u) / 1000.0;
                     let off = f64::from(side.abs()) / 1000.0;
-                    self.offer(placed, 90, |_, _| 1.5 - 2.0 * off - 0.3 * (far - 1.8).abs());
+                    self.offer(placed, 90, |_, _| 1.5 - less - 2.0 * off - 0.3 * (far - 1.8).abs());
                 }
                 u -= STEP;
-            }
-        }
-        if self.out.is_empty() {
-            for i in 0..self.state.space.walls.len() {
-                let opposite = self.state.space.walls[i].q != target_q;
-                self.along_wall(unit, i, if opposite { -1.0 } else { -2.5 });
             }
         }
     }

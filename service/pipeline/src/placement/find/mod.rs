@@ -8,7 +8,7 @@ mod walls;
 
 use std::rc::Rc;
 
-use d3dgen_model::domain::{Arrangement, Mount};
+use d3dgen_model::domain::{Arrangement, Mount, Shape};
 
 pub(super) use rows::{Terms, over, rows};
 
@@ -28,6 +28,19 @@ pub(super) struct Candidate<'a> {
     pub score: f64,
     /// Positions of one class look alike (one wall, one corner): the search tries different classes.
     pub class: u32,
+}
+
+/// What a room turns to.
+#[derive(Debug, Clone, Copy)]
+struct Focus {
+    /// Where its users look, in quarters.
+    q: u8,
+    /// Its outline.
+    rect: Box2,
+    /// The middle of what they sit on, lie in or sit at.
+    seat: (i32, i32),
+    /// True when they sit around it.
+    around: bool,
 }
 
 /// How often each rule turned a position down.
@@ -122,15 +135,15 @@ impl<'f, 'a, 's> Find<'f, 'a, 's> {
         self.state.placed.iter().filter(|p| p.unit.item == self.task.item)
     }
 
-    /// Returns what the room turns to: where its users look, its outline, and the middle of what they sit on or lie in.
-    ///
-    /// That is the first furnishing line's units, or whatever was placed first.
-    fn focus(&self) -> Option<(u8, Box2, (i32, i32))> {
+    /// Returns what the room turns to: the first furnishing line's units, or whatever was placed first.
+    fn focus(&self) -> Option<Focus> {
         let other = || self.state.placed.iter().filter(|p| p.unit.item != self.task.item);
         let first = other().find(|p| p.first_line).or_else(|| other().next())?;
         let alike = || other().filter(|p| p.task == first.task && p.q == first.q);
         let rect = alike().map(|p| p.world(&p.unit.bbox)).reduce(|a, b| a.union(&b))?;
         let own = alike().map(|p| p.world(&p.unit.anchor().solid.rect)).reduce(|a, b| a.union(&b))?;
-        Some(((first.q + first.unit.look()) % 4, rect, own.center()))
+        let round = matches!(first.unit.anchor().object.shape, Shape::Table | Shape::RoundTable);
+        let around = round && alike().count() == 1 && first.unit.parts.len() > 1;
+        Some(Focus { q: (first.q + first.unit.look()) % 4, rect, seat: own.center(), around })
     }
 }

@@ -1,0 +1,200 @@
+//! What a reviewer of plans measures: signs at the way out, tables as large as their rooms, a place to put a cup down, boards
+//! one can write on, floor behind chairs, robots that stop where nobody pushes a chair back.
+
+#![allow(clippy::unwrap_used)] // helpers of tests are tests
+
+mod common;
+
+use d3dgen_model::Rect;
+use d3dgen_model::floorplan::{Door, DoorKind, PlanRoom};
+use d3dgen_model::placements::Placement;
+use d3dgen_model::scenario::Poi;
+use d3dgen_model::world::World;
+
+use common::{body, gap, most, worlds};
+
+const OFFICES: [&str; 3] =
+    ["office with 10 rooms", "office with 8 rooms in the Netherlands", "law firm office with 8 rooms in Zurich"];
+
+fn rooms<'w>(world: &'w World, kind: &'w str) -> impl Iterator<Item = &'w PlanRoom> {
+    world.floorplan.rooms.iter().filter(move |r| r.room_type == kind)
+}
+
+fn inside<'w>(world: &'w World, room_id: &'w str) -> impl Iterator<Item = &'w Placement> {
+    world.placements.placements.iter().filter(move |p| p.room_id == room_id)
+}
+
+/// Returns the floor of a door's opening.
+fn opening(door: &Door) -> Rect {
+    let (a, b) = (door.line.start, door.line.end);
+    Rect::new(a.x.min(b.x), a.y.min(b.y), a.x.max(b.x), a.y.max(b.y))
+}
+
+/// Returns the floor along an open leaf that opens into a room, without thickness.
+fn open_leaf(door: &Door, room: &PlanRoom) -> Option<Rect> {
+    let swing = door.swing.as_ref().filter(|s| s.into_room_id.as_ref() == Some(&room.room_id))?;
+    let hinge = if swing.hinge_at_start { door.line.start } else { door.line.end };
+    let (length, net) = (door.line.length(), room.net_polygon.bounds());
+    let (x, y) = match door.line.is_vertical() {
+        true if net.x0 + net.width() / 2.0 > hinge.x => (hinge.x + length, hinge.y),
+        true => (hinge.x - length, hinge.y),
+        false if net.y0 + net.height() / 2.0 > hinge.y => (hinge.x, hinge.y + length),
+        false => (hinge.x, hinge.y - length),
+    };
+    Some(Rect::new(x.min(hinge.x), y.min(hinge.y), x.max(hinge.x), y.max(hinge.y)))
+}
+
+#[test]
+fn exit_signs_hang_at_the_way_out() {
+    let mut held = Vec::new();
+    for world in OFFICES.iter().flat_map(|prompt| worlds(prompt, 6)) {
+        for sign in world.placements.placements.iter().filter(|p| p.object == "exit_sign") {
+            let own: Vec<&Door> = world.floorplan.doors.iter().filter(|d| d.room_ids.contains(&sign.room_id)).collect();
+            let nearest =
+                own.iter().min_by(|a, b| gap(&body(sign), &opening(a)).total_cmp(&gap(&body(sign), &opening(b))));
+            // a room without a door to the outside has its sign at the way to one
+            let leads_out = own.iter().any(|d| d.room_ids.len() == 1);
+            held.push(!leads_out || nearest.unwrap().room_ids.len() == 1);
+        }
+    }
+    most("exit signs at an exit of their room", 0.85, &held);
+}
+
+#[test]
+fn meeting_rooms_have_the_table_that_their_floor_holds() {
+    let mut held = Vec::new();
+    for world in OFFICES.iter().flat_map(|prompt| worlds(prompt, 6)) {
+        for room in rooms(&world, "meeting_room") {
+            let seats = inside(&world, &room.room_id).filter(|p| p.object == "conference_chair").count();
+            held.push(seats >= 4 && room.net_area_m2 / seats as f64 <= 3.6);
+        }
+    }
+    assert!(held.len() >= 18, "{}", held.len());
+    most("meeting rooms with a seat for each 3.6 m2", 0.95, &held);
+}
+
+#[test]
+fn visitors_have_a_table_beside_their_seats() {
+    let mut held = Vec::new();
+    for world in OFFICES.iter().flat_map(|prompt| worlds(prompt, 6)) {
+        for room in rooms(&world, "reception") {
+            let has = |list: &[&str]| inside(&world, &room.room_id).any(|p| list.contains(&p.object.as_str()));
+            if has(&["visitor_chair", "lounge_chair", "lounge_sofa"]) {
+                held.push(has(&["low_table", "side_table"]));
+            }
+        }
+    }
+    most("receptions with a table beside the seats", 0.85, &held);
+}
+
+#[test]
+fn one_gets_to_the_whiteboard() {
+    let mut held = Vec::new();
+    for world in OFFICES.iter().flat_map(|prompt| worlds(prompt, 6)) {
+        for board in world.placements.placements.iter().filter(|p| p.object == "whiteboard") {
+            let own = body(board);
+            let upright = own.height() > own.width();
+            let along = |r: &Rect| if upright { (r.y0, r.y1) } else { (r.x0, r.x1) };
+            let (from, to) = along(&own);
+            let stands = |p: &&Placement| p.pose.z < 0.6 && p.size_m[2] > 0.25 && gap(&body(p), &own) < 0.35;
+            let covered: f64 = inside(&world, &board.room_id)
+                .filter(|p| p.placement_id != board.placement_id)
+                .filter(stands)
+                .map(|p| (along(&body(p)).1.min(to) - along(&body(p)).0.max(from)).max(0.0))
+                .sum();
+            held.push(covered <= 0.5 * (to - from));
+        }
+    }
+    most("boards with floor before them", 1.0, &held);
+}
+
+/// Returns the floor between the chairs of two rows that turn their backs to each other, the least of a room, m.
+fn least_between_backs(chairs: &[&Placement]) -> Option<f64> {
+    let pairs = chairs.iter().enumerate().flat_map(|(n, a)| chairs[n + 1..].iter().map(move |b| (a, b)));
+    let between = pairs.filter_map(|(a, b)| {
+        let (sin, cos) = a.pose.yaw_rad.sin_cos();
+        let opposite = (a.pose.yaw_rad - b.pose.yaw_rad).cos() < -0.99;
+        let (dx, dy) = (b.pose.x - a.pose.x, b.pose.y - a.pose.y);
+        let (ahead, aside) = (dx * cos + dy * sin, dx * sin - dy * cos);
+        (opposite && ahead < 0.0 && aside.abs() < 0.6).then(|| gap(&body(a), &body(b))).filter(|m| *m < 3.0)
+    });
+    between.min_by(f64::total_cmp)
+}
+
+#[test]
+fn rows_of_chairs_stand_clear_of_each_other() {
+    let mut held = Vec::new();
+    for world in OFFICES.iter().flat_map(|prompt| worlds(prompt, 6)) {
+        for room in rooms(&world, "open_office") {
+            let chairs: Vec<&Placement> =
+                inside(&world, &room.room_id).filter(|p| p.object == "swivel_chair").collect();
+            held.extend(least_between_backs(&chairs).map(|least| least >= 0.95));
+        }
+    }
+    most("rows back to back with 0.95 m between their chairs", 1.0, &held);
+}
+
+/// Returns where robots stop in worlds with robots, with their radius, m.
+fn stops(world: &World) -> impl Iterator<Item = (&Poi, f64)> {
+    let radius = world.scene_graph.robots.iter().map(|r| r.radius_m).fold(0.0, f64::max);
+    let stop = |p: &&Poi| ["service_point", "cleaning_point"].contains(&p.kind.as_str());
+    world.scenario.pois.iter().filter(stop).map(move |p| (p, radius))
+}
+
+#[test]
+fn robots_stop_clear_of_chairs_and_behind_doors_that_open_for_them() {
+    let prompts = ["office with 8 rooms and a delivery robot", "house with 8 rooms and a cleaning robot"];
+    let (mut clear, mut open) = (Vec::new(), Vec::new());
+    for world in prompts.iter().flat_map(|prompt| worlds(prompt, 6)) {
+        for (stop, radius) in stops(&world) {
+            let at = Rect::new(stop.pose.x, stop.pose.y, stop.pose.x, stop.pose.y);
+            let mut chairs = inside(&world, &stop.room_id).filter(|p| p.object.contains("chair"));
+            clear.push(!chairs.any(|p| gap(&body(p), &at) < radius + 0.15));
+            let mut doors = world.floorplan.doors.iter().filter(|d| d.room_ids.contains(&stop.room_id));
+            open.push(doors.any(|d| matches!(d.kind, DoorKind::Sliding | DoorKind::Open)));
+        }
+    }
+    assert!(clear.len() >= 60, "{}", clear.len());
+    most("stops with 0.15 m between robot and chairs", 0.65, &clear);
+    most("stops behind a door that opens by itself", 1.0, &open);
+}
+
+#[test]
+fn coats_hang_clear_of_the_open_entrance() {
+    let mut held = Vec::new();
+    for world in ["flat with 5 rooms", "house with 8 rooms"].iter().flat_map(|prompt| worlds(prompt, 8)) {
+        let entrances = world.floorplan.doors.iter().filter(|d| d.entrance);
+        let leaves = entrances.filter_map(|d| {
+            let room = world.floorplan.room(d.room_ids.first()?)?;
+            Some((room, open_leaf(d, room)?))
+        });
+        held.extend(leaves.map(|(room, leaf)| {
+            let mut coats = inside(&world, &room.room_id).filter(|p| p.object.contains("coat"));
+            !coats.any(|p| gap(&body(p), &leaf) < 0.3)
+        }));
+    }
+    assert!(held.len() >= 12, "{}", held.len());
+    most("entrances whose leaf opens clear of coats", 0.9, &held);
+}
+
+#[test]
+fn rooms_of_the_staff_are_no_larger_than_those_of_patients() {
+    let mut held = Vec::new();
+    for world in ["hospital ward with 5 rooms", "hospital ward with 10 rooms"].iter().flat_map(|p| worlds(p, 8)) {
+        let area = |kind: &'static str| rooms(&world, kind).map(|r| r.net_area_m2).fold(0.0, f64::max);
+        let staff = area("staff_room").max(area("nurse_station"));
+        held.push(staff <= 1.5 * area("patient_room"));
+    }
+    most("wards whose staff has no more than half as much again as a patient", 1.0, &held);
+}
+
+#[test]
+fn bedrooms_have_a_wardrobe() {
+    let mut held = Vec::new();
+    for world in ["flat with 5 rooms", "house with 8 rooms"].iter().flat_map(|prompt| worlds(prompt, 10)) {
+        let bedrooms = rooms(&world, "bedroom");
+        held.extend(bedrooms.map(|r| inside(&world, &r.room_id).any(|p| p.object.ends_with("wardrobe"))));
+    }
+    assert!(held.len() >= 40, "{}", held.len());
+    most("bedrooms with a wardrobe", 0.95, &held);
+}
