@@ -90,7 +90,7 @@ const WIDE_OPEN: Open = Open { doors: true, deep: true, windows: true };
 /// The passes in turn, the strictest first.
 pub(super) const LEVELS: [Level; 12] = [
     Level { advised: true, open: WIDE_OPEN, ..Level::new(1.0, 50) },
-    Level { open: WIDE_OPEN, ..Level::new(1.0, 50) },
+    Level { open: Open { deep: false, ..WIDE_OPEN }, ..Level::new(1.0, 50) },
     Level::new(1.0, 20),
     Level::new(0.75, 20),
     Level { ways: false, ..Level::new(1.0, 20) },
@@ -122,6 +122,11 @@ impl Outcome<'_> {
     fn lacks(&self) -> (u32, i64) {
         (self.required_missing, self.closed)
     }
+
+    /// Returns how many items had no place for which something required comes in their place.
+    fn second_choices(&self, job: &Job) -> usize {
+        self.missing.iter().filter(|(task, ..)| job.tasks[*task].first_choice).count()
+    }
 }
 
 /// Furnishes a room as well as the search can; where floor stays closed off, from other beginnings too.
@@ -146,8 +151,10 @@ fn relax<'a>(job: &Job<'a, '_>) -> Outcome<'a> {
     for level in 0..LEVELS.len() {
         let outcome = Pass::new(job, level).furnish();
         let advice_left = LEVELS.get(level + 1).is_some_and(|next| next.tightness >= 1.0 && next.open.doors);
-        let done = outcome.required_missing == 0 && (outcome.closed == 0 || !advice_left);
-        if best.as_ref().is_none_or(|b| outcome.lacks() < b.lacks()) {
+        let second_choice = level < FIRST_CHOICES && outcome.second_choices(job) > 0;
+        let done = outcome.required_missing == 0 && (outcome.closed == 0 || !advice_left) && !second_choice;
+        let lacks = |o: &Outcome| (o.lacks(), o.second_choices(job));
+        if best.as_ref().is_none_or(|b| lacks(&outcome) < lacks(b)) {
             best = Some(outcome);
         }
         if done || job.stop.is_set() {

@@ -7,8 +7,8 @@ use super::geom::{Box2, Solid, mm, turn};
 
 /// Floor kept free in front of every door over its width, mm.
 const DOOR_DEPTH: i32 = 600;
-/// The same before doors without a swinging leaf where the room has the space: a leaf would keep as much free.
-const DEEP_DOOR_DEPTH: i32 = 900;
+/// The same before sliding doors where the room has the space: a leaf that swings would keep as much free.
+const SLIDING_DEPTH: i32 = 900;
 /// Wall beside the latch of a door that people in wheelchairs open, mm (18 in, ADA 404.2.4).
 const LATCH_SIDE: i32 = 457;
 /// How far from a wall something counts as standing in front of its window, mm.
@@ -56,7 +56,7 @@ pub(super) struct DoorZone {
     pub zone: Box2,
     /// The same as deep as a leaf is wide whichever way it opens.
     pub open_zone: Box2,
-    /// The same as deep as one comes through with ease, leaf or not.
+    /// The same as deep as one comes through with ease, whether the leaf swings or slides.
     deep_zone: Box2,
     /// True when its leaf opens into the room.
     pub swings_in: bool,
@@ -100,7 +100,7 @@ pub(super) struct WindowZone {
 pub(super) struct Open {
     /// On both sides of a door as much as its leaf is wide; otherwise what it needs.
     pub doors: bool,
-    /// Before doors without a leaf as much as a leaf would take.
+    /// Before sliding doors as much as a leaf that swings would take.
     pub deep: bool,
     /// Half a meter before windows; otherwise what takes their light.
     pub windows: bool,
@@ -345,7 +345,7 @@ fn door_zones(wall: &WallSide, v0: i32, v1: i32, kind: DoorKind, swings_in: bool
     let deep = |depth: i32| wall.strip(v0, v1, 0, depth);
     let open = deep(leaf.max(DOOR_DEPTH));
     let needed = if swings_in { open } else { deep(DOOR_DEPTH) };
-    [needed, open, if leaf == 0 { deep(DEEP_DOOR_DEPTH) } else { open }]
+    [needed, open, if kind == DoorKind::Sliding { deep(SLIDING_DEPTH) } else { open }]
 }
 
 fn latch(wall: &WallSide, door: &Door) -> Option<bool> {
