@@ -198,3 +198,18 @@ fn bedrooms_have_a_wardrobe() {
     assert!(held.len() >= 40, "{}", held.len());
     most("bedrooms with a wardrobe", 0.95, &held);
 }
+
+#[test]
+fn one_gets_to_the_tap_of_a_basin() {
+    let mut held = Vec::new();
+    for world in ["hospital ward with 10 rooms", "clinic with 8 rooms"].iter().flat_map(|p| worlds(p, 6)) {
+        for basin in world.placements.placements.iter().filter(|p| p.object.contains("basin") && p.size_m[2] < 1.2) {
+            let (own, rim) = (body(basin), basin.pose.z + basin.size_m[2]);
+            let deep = |p: &&Placement| body(p).width().min(body(p).height()) > 0.15;
+            let over = |p: &&Placement| p.pose.z >= rim - 0.01 && p.pose.z < rim + 0.7 && body(p).overlaps(&own);
+            held.push(!inside(&world, &basin.room_id).filter(deep).any(|p| over(&p)));
+        }
+    }
+    assert!(held.len() >= 40, "{}", held.len());
+    most("basins with nothing deep over them", 1.0, &held);
+}

@@ -17,6 +17,10 @@ use super::way::{InTheWay, Way};
 
 /// Height up to which things leave the sight of a screen free, mm: coffee tables.
 const LOW: i32 = 500;
+/// Room over the rim of a basin for hands and taps, and the depth up to which something may hang there all the same (a
+/// mirror, a dispenser), mm.
+const OVER_BASIN: i32 = 700;
+const BEHIND_TAP: i32 = 150;
 
 /// A hard rule that a position can break.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -124,6 +128,8 @@ pub(super) struct State<'a, 's> {
     pub space: &'s Space,
     pub placed: Vec<Placed<'a>>,
     pub solids: Vec<Solid>,
+    /// Room over basins that nothing deep may take.
+    basins: Vec<Solid>,
     pub clears: Vec<Box2>,
     /// Outlines of what takes floor: not what is flat, hangs high or flat on a wall.
     bodies: Vec<Box2>,
@@ -158,6 +164,7 @@ impl<'a, 's> State<'a, 's> {
             space,
             placed: Vec::new(),
             solids: Vec::new(),
+            basins: Vec::new(),
             clears: Vec::new(),
             bodies: Vec::new(),
             in_the_way: InTheWay::default(),
@@ -210,6 +217,9 @@ impl<'a, 's> State<'a, 's> {
             if self.solids.iter().any(|s| !(s.is_flat() && s.z0 == 0) && s.overlaps(&solid)) {
                 return Err(Rule::Collision);
             }
+            if self.closes_basin(part, &solid) {
+                return Err(Rule::Collision);
+            }
             // a kettle on a counter stands in the light as a tall counter does
             if !at_window && space.windows.iter().any(|w| w.is_taken_by(&solid, self.open)) {
                 return Err(Rule::Window);
@@ -228,6 +238,15 @@ impl<'a, 's> State<'a, 's> {
             self.test_clears(p)?;
         }
         Ok(())
+    }
+
+    /// Returns true for a cabinet over a basin, whichever of them comes later: nobody gets to the tap below it.
+    fn closes_basin(&self, part: &Part, solid: &Solid) -> bool {
+        let deep = |s: &Solid| s.rect.width().min(s.rect.height()) > BEHIND_TAP;
+        match part.object.shape {
+            Shape::Basin => self.solids.iter().any(|s| deep(s) && s.overlaps(&over_basin(solid))),
+            _ => part.mount == Mount::Wall && deep(solid) && self.basins.iter().any(|b| b.overlaps(solid)),
+        }
     }
 
     /// Returns true for floor covering that lies on the floor a door needs.
@@ -320,6 +339,7 @@ impl<'a, 's> State<'a, 's> {
             for part in &p.unit.parts {
                 let solid = p.solid(part);
                 self.solids.push(solid);
+                self.basins.extend((part.object.shape == Shape::Basin).then(|| over_basin(&solid)));
             }
             obstacles(&p).for_each(|o| self.nav.block(&o));
             self.pockets.add(&p);
@@ -338,6 +358,11 @@ impl<'a, 's> State<'a, 's> {
         self.nav.settle();
         self.free_area = self.nav.area();
     }
+}
+
+/// Returns the room over a basin that hands, taps and faces need.
+fn over_basin(basin: &Solid) -> Solid {
+    Solid { z0: basin.z1, z1: basin.z1 + OVER_BASIN, ..*basin }
 }
 
 /// Returns what robots drive around; what stands on a top takes no more floor than what carries it.

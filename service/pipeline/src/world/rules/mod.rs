@@ -96,7 +96,7 @@ pub const RULES: &[Rule] = &[
         "a person or robot gets from the entrance to at least half of every room's free floor",
         navigation::zones,
     ),
-    rule("free_space_split", "at least 95 % of the free floor is connected", navigation::split),
+    rule("free_space_split", "at least 96 % of the free floor is connected", navigation::split),
     rule("corridor_narrow", "circulation keeps its clear width from door to door", navigation::corridors),
     whole("graph_room_missing", "the rooms are exactly those of the scene graph", graph::rooms),
     whole("graph_edge_missing", "every required door or passage of the scene graph is there", graph::edges),

@@ -8,7 +8,7 @@ use d3dgen_model::TOLERANCE_M;
 /// Share of a room's free floor that must be reachable.
 const ROOM_SHARE: f64 = 0.5;
 /// Share of all free floor that must be connected.
-const CONNECTED_SHARE: f64 = 0.95;
+const CONNECTED_SHARE: f64 = 0.96;
 /// How far from the entrance door the disc's center may stop, beside its radius, m.
 const AT_DOOR_M: f64 = 0.4;
 

@@ -7,15 +7,15 @@ pub(super) fn sink(p: &mut Pen<'_>) {
     let (u, v) = p.half();
     p.outline("b", 0.0);
     p.lines("f", &[&[(-u, v - 0.04), (u, v - 0.04)]]);
-    // the bowl of a long top leaves room for what stands beside it
+    // the bowl of a long top leaves room for what stands beside it; as models have it, it is to the left of who stands there
     let bowl = if p.w > 1.0 { 0.21 } else { (0.26_f64).min(0.8 * u) };
-    let at = if p.w > 1.0 { -u + bowl + 0.1 } else { 0.0 };
+    let at = if p.w > 1.0 { u - bowl - 0.1 } else { 0.0 };
     p.rect("s", (at - bowl, -0.55 * v), (at + bowl, 0.62 * v), 0.07);
     p.circle("f", (at, 0.05 * v), 0.035);
     tap(p, at, -0.78 * v);
     if p.w > 1.0 {
-        let left = at + bowl + 0.08;
-        let right = (left + 0.4).min(u - 0.06);
+        let right = at - bowl - 0.08;
+        let left = (right - 0.4).max(0.06 - u);
         let ribs: Vec<[(f64, f64); 2]> =
             (0..5).map(|i| -0.45 + 0.24 * f64::from(i)).map(|y| [(left, y * v), (right, y * v)]).collect();
         let ribs: Vec<&[(f64, f64)]> = ribs.iter().map(|l| l.as_slice()).collect();
