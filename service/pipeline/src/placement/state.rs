@@ -20,7 +20,7 @@ const LOW: i32 = 500;
 /// Room over the rim of a basin for hands and taps, and the depth up to which something may hang there all the same (a
 /// mirror, a dispenser), mm.
 const OVER_BASIN: i32 = 700;
-const BEHIND_TAP: i32 = 150;
+const BEHIND_TAP: i32 = 140;
 
 /// A hard rule that a position can break.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
