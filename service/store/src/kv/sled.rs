@@ -31,10 +31,28 @@ pub(super) fn open(path: &Path, mode: Mode, cache_bytes: u64) -> Result<Opened> 
         match shielded(path, || Ok(config.open()))? {
             Ok(database) => return Ok(Opened::Ready(Box::new(Sled::new(database, path)))),
             Err(sled::Error::Io(e)) if e.to_string().contains("could not acquire lock") => std::thread::sleep(REOPEN.1),
+            Err(sled::Error::Corruption { .. }) if removed_unfinished(path)? => {}
             Err(other) => return Err(said(path, other)),
         }
     }
     Ok(Opened::Busy)
+}
+
+/// Removes the snapshots of the log that an opening process was writing when it was killed, and returns whether there
+/// were any. sled takes them for the latest ones and gives up (https://github.com/spacejam/sled/issues/1527); without
+/// them it reads the log from the snapshot before, as it does after any other crash. Only for a folder that sled has
+/// found damaged: it had the lock by then, so that nobody is writing one.
+fn removed_unfinished(path: &Path) -> Result<bool> {
+    let mut removed = false;
+    for entry in std::fs::read_dir(path).map_err(Error::io(path))? {
+        let name = entry.map_err(Error::io(path))?.file_name();
+        if name.to_str().is_some_and(|n| n.starts_with("snap.") && n.ends_with(".generating")) {
+            let file = path.join(name);
+            std::fs::remove_file(&file).map_err(Error::io(&file))?;
+            removed = true;
+        }
+    }
+    Ok(removed)
 }
 
 struct Sled {
@@ -176,5 +194,46 @@ fn said(path: &Path, error: sled::Error) -> Error {
     match error {
         sled::Error::Io(source) => Error::Io { path, source },
         other => Error::Corrupt { path, reason: other.to_string() },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The value under `key` in the folder at `path`, opened and closed for it.
+    fn stored(path: &Path, key: &[u8]) -> Result<Option<Vec<u8>>> {
+        match open(path, Mode::Write, 8 << 20)? {
+            Opened::Ready(records) => records.view()?.get("rooms", key),
+            Opened::Busy | Opened::NeedsRepair => panic!("nobody else has it"),
+        }
+    }
+
+    #[test]
+    fn a_snapshot_that_a_killed_process_was_writing_does_no_harm() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let path = folder.path().join("records");
+        let Opened::Ready(records) = open(&path, Mode::Create, 8 << 20).expect("a new folder") else {
+            panic!("nobody else has it")
+        };
+        let mut batch = Batch::new();
+        batch.put("rooms", "a", vec![7; 100_000]);
+        records.apply(&batch).expect("a batch that is stored");
+        drop(records);
+        let value = stored(&path, b"a").expect("records that open");
+        assert_eq!(value, Some(vec![7; 100_000]));
+        let names = || std::fs::read_dir(&path).expect("a folder").map(|e| e.expect("an entry").file_name());
+        let snapshot = names().find(|n| n.to_string_lossy().starts_with("snap.")).expect("a snapshot");
+        let whole = std::fs::read(path.join(&snapshot)).expect("a snapshot that is read");
+        let unfinished = path.join("snap.7FFFFFFFFFFFFFFF.generating");
+        for length in [0, 5, 12, whole.len() / 2, whole.len() - 1] {
+            std::fs::write(&unfinished, &whole[..length]).expect("half a snapshot");
+            assert_eq!(stored(&path, b"a").expect("records that open"), value, "{length} bytes of a snapshot");
+            assert!(!unfinished.exists(), "{length} bytes of a snapshot");
+        }
+        // One that was finished and is damaged is still an error.
+        let snapshot = names().find(|n| n.to_string_lossy().starts_with("snap.")).expect("a snapshot");
+        std::fs::write(path.join(snapshot), &whole[..whole.len() / 2]).expect("a spoiled snapshot");
+        assert!(matches!(stored(&path, b"a"), Err(Error::Corrupt { .. })));
     }
 }
