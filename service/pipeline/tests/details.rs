@@ -5,7 +5,9 @@
 
 mod common;
 
+use d3dgen_knowledge::freespace::FreeSpace;
 use d3dgen_model::Rect;
+use d3dgen_model::domain::Mount;
 use d3dgen_model::floorplan::{Door, DoorKind, PlanRoom};
 use d3dgen_model::placements::Placement;
 use d3dgen_model::scenario::Poi;
@@ -212,4 +214,64 @@ fn one_gets_to_the_tap_of_a_basin() {
     }
     assert!(held.len() >= 40, "{}", held.len());
     most("basins with nothing deep over them", 1.0, &held);
+}
+
+/// Returns the chairs of those who work alone in an office, each with its room.
+fn lone_workers(world: &World) -> impl Iterator<Item = (&PlanRoom, &Placement)> {
+    let alone = |room: &&PlanRoom| ["office", "executive_office"].contains(&room.room_type.as_str());
+    world.floorplan.rooms.iter().filter(alone).flat_map(|room| {
+        inside(world, &room.room_id).filter(|p| p.object == "swivel_chair").map(move |chair| (room, chair))
+    })
+}
+
+#[test]
+fn who_works_alone_gets_to_the_seat() {
+    let mut held = Vec::new();
+    for world in OFFICES.iter().flat_map(|prompt| worlds(prompt, 12)) {
+        for (room, chair) in lone_workers(&world) {
+            let stands = |p: &&Placement| p.mount == Mount::Floor && p.size_m[2] > 0.05;
+            let others = inside(&world, &room.room_id).filter(|p| p.placement_id != chair.placement_id);
+            let floor = FreeSpace::new(&room.net_polygon, &others.filter(stands).map(body).collect::<Vec<_>>());
+            held.push(world.floorplan.doors_of(&room.room_id).any(|door| floor.leads(door, &body(chair), 0.65)));
+        }
+    }
+    assert!(held.len() >= 40, "{}", held.len());
+    most("seats in single offices with a way of 0.65 m", 0.97, &held);
+}
+
+#[test]
+fn screens_of_who_works_alone_mirror_no_window() {
+    let mut held = Vec::new();
+    for world in OFFICES.iter().flat_map(|prompt| worlds(prompt, 12)) {
+        for (room, chair) in lone_workers(&world) {
+            let (sin, cos) = chair.pose.yaw_rad.sin_cos();
+            let mirrors = world.floorplan.windows.iter().filter(|w| w.room_id == room.room_id).any(|window| {
+                (0..=10).map(|n| f64::from(n) / 10.0).any(|t| {
+                    let (a, b) = (window.line.start, window.line.end);
+                    let (dx, dy) = (a.x + (b.x - a.x) * t - chair.pose.x, a.y + (b.y - a.y) * t - chair.pose.y);
+                    (dx * sin - dy * cos).abs() < 0.5 && (dx * cos + dy * sin).abs() < 3.5
+                })
+            });
+            held.push(!mirrors);
+        }
+    }
+    most("single offices without a window in line with the screen", 0.93, &held);
+}
+
+#[test]
+fn who_meets_sees_the_screen_past_the_head_of_the_table() {
+    let mut held = Vec::new();
+    for world in OFFICES.iter().flat_map(|prompt| worlds(prompt, 12)) {
+        for room in rooms(&world, "meeting_room") {
+            let table = inside(&world, &room.room_id).find(|p| p.object.starts_with("meeting_table")).unwrap();
+            let long_by_x = body(table).width() > body(table).height();
+            held.push(inside(&world, &room.room_id).filter(|p| p.object == "wall_display").any(|display| {
+                let hangs_by_x = body(display).width() < body(display).height();
+                let (dx, dy) = (display.pose.x - table.pose.x, display.pose.y - table.pose.y);
+                hangs_by_x == long_by_x && if hangs_by_x { dy } else { dx }.abs() < 0.7
+            }));
+        }
+    }
+    assert!(held.len() >= 36, "{}", held.len());
+    most("meeting rooms with the screen at a head of the table", 0.9, &held);
 }

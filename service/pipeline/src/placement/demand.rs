@@ -302,7 +302,7 @@ fn phase(task: &Task) -> u8 {
         // what faces the first line comes after it
         (true, Rows | Center | Facing) => 1,
         // a screen finds its wall before others take it
-        (false, Facing) if takes_floor(task.anchor) => 1,
+        (false, Facing) => 1,
         (true, _) => 0,
         (false, _) if takes_floor(task.anchor) => 2,
         (false, _) => 3,

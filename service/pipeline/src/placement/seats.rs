@@ -18,9 +18,11 @@ const CLOSED_SIDE: f64 = 4.0;
 const BEHIND_COUNTER: f64 = 3.0;
 
 /// Width of a way past a counter to its staff's side, beside a lone seat, and how far behind the counter it goes on, mm.
-pub(super) const PAST: i32 = 850;
+const PAST: i32 = 850;
 const PAST_SEAT: i32 = 650;
 const PAST_BEHIND: i32 = 500;
+/// Width of a way past a desk to its user's seat, before and behind its edge, mm.
+const PAST_DESK: i32 = 750;
 
 /// Returns true for what one person sits on, or several side by side.
 pub(super) fn is_seat(shape: Shape) -> bool {
@@ -55,28 +57,52 @@ fn staffed_from<'p>(parts: &'p [Part]) -> impl Iterator<Item = Box2> + 'p {
     parts[1..].iter().filter(behind).map(|p| p.solid.rect)
 }
 
-/// Returns the floor on both sides of a counter over which its staff gets behind it, so wide; `None` for other units.
-pub(super) fn ways_past(counter: &Placed, wide: i32) -> Option<[Box2; 2]> {
-    staffed_from(&counter.unit.parts).next()?;
-    let own = counter.world(&counter.unit.anchor().solid.rect).turned((4 - counter.q) % 4);
-    let way = |y0| Box2 { x0: own.x0 - PAST_BEHIND, x1: own.x1, y0, y1: y0 + wide }.turned(counter.q);
-    Some([way(own.y0 - wide), way(own.y1)])
+/// The floor over which whoever works at a desk or counter gets to the side to work at.
+struct WayIn {
+    /// Past either end of it and of what stands beside it: one of them is enough.
+    ends: [Box2; 2],
+    /// From the ends on to the seat of a desk.
+    on: Option<Box2>,
+}
+
+/// Returns the way to where one works at a desk or counter; `past` is its width at the ends of a counter. `None` where
+/// nobody works behind it.
+fn way_in(desk: &Placed, past: i32) -> Option<WayIn> {
+    let (unit, look) = (&desk.unit, desk.unit.look());
+    let (wide, behind) = if look == 0 { (past, PAST_BEHIND) } else { (PAST_DESK, PAST_DESK) };
+    if look == 0 {
+        staffed_from(&unit.parts).next()?;
+    }
+    let q = (desk.q + look) % 4;
+    let in_view = |part: &Part| desk.world(&part.solid.rect).turned((4 - q) % 4);
+    let anchor = in_view(unit.anchor());
+    let stands = |part: &&Part| part.mount == Mount::Floor && part.solid.stops_robot();
+    let beside = |rect: &Box2| rect.x0 < anchor.x1 && rect.x1 > anchor.x0;
+    let own = unit.parts.iter().filter(stands).map(in_view).filter(beside).fold(anchor, |own, part| own.union(&part));
+    let end = |y0| Box2 { x0: anchor.x0 - behind, x1: anchor.x1, y0, y1: y0 + wide }.turned(q);
+    let on = Box2 { x0: anchor.x0 - behind, x1: anchor.x0, ..own }.turned(q);
+    Some(WayIn { ends: [end(own.y0 - wide), end(own.y1)], on: (look != 0).then_some(on) })
+}
+
+/// Returns true for a desk or counter past which one gets to its user's side nowhere.
+pub(super) fn has_no_way_past(state: &State, desk: &Placed) -> bool {
+    way_in(desk, PAST).is_some_and(|way| !way.ends.iter().any(|end| is_way(state, end)))
 }
 
 /// Returns true when one gets over this floor.
-pub(super) fn is_way(state: &State, way: &Box2) -> bool {
+fn is_way(state: &State, way: &Box2) -> bool {
     state.space.contains(way) && !state.solids.iter().any(|s| s.stops_robot() && s.rect.overlaps(way))
 }
 
-/// Returns true for a place that closes the last way past a counter.
+/// Returns true for a place that closes the last way past a counter or desk to where one works at it.
 pub(super) fn shuts_in_staff(state: &State, p: &Placed) -> bool {
     let stands = |part: &&Part| part.mount == Mount::Floor && p.solid(part).stops_robot();
     let closes = |way: &Box2| p.unit.parts.iter().filter(stands).any(|part| p.solid(part).rect.overlaps(way));
     // a lone seat for those who wait may leave less
     let wide = if p.unit.parts.len() == 1 && is_seat(p.unit.anchor().object.shape) { PAST_SEAT } else { PAST };
-    state.placed.iter().filter_map(|counter| ways_past(counter, wide)).any(|ways| {
-        let mut open = ways.iter().filter(|way| is_way(state, way)).peekable();
-        open.peek().is_some() && open.all(closes)
+    state.placed.iter().filter_map(|desk| way_in(desk, wide)).any(|way| {
+        let mut open = way.ends.iter().filter(|end| is_way(state, end)).peekable();
+        way.on.as_ref().is_some_and(closes) || open.peek().is_some() && open.all(closes)
     })
 }
 

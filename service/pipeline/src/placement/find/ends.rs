@@ -6,7 +6,7 @@ use d3dgen_model::domain::{Mount, Shape};
 
 use super::{Find, Focus, Rule};
 use crate::placement::geom::{Box2, turn};
-use crate::placement::seats::{PAST, is_way, ways_past};
+use crate::placement::seats::has_no_way_past;
 use crate::placement::space::WallSide;
 use crate::placement::state::{Placed, at_frame};
 use crate::placement::unit::Unit;
@@ -31,7 +31,7 @@ const BEHIND: i32 = 900;
 const EASE: i32 = 250;
 const AT_EASE_M: f64 = 1.7;
 const AT_EASE: f64 = 0.3;
-/// What a counter loses past which one does not get to its staff's side.
+/// What a desk or counter loses past which one does not get to its user's side.
 const SHUT_IN: f64 = 2.0;
 /// Depth of the floor where people queue at a counter and of that where they come in, mm, and what a counter loses where
 /// these are one.
@@ -41,9 +41,9 @@ const IN_THE_WAY_IN: f64 = 4.0;
 /// What a counter loses with a wall in the floor where people queue.
 const FACES_WALL: f64 = 2.0;
 /// What a screen loses that half of those at a table have behind their backs.
-const BACKS: f64 = 2.5;
+const BACKS: f64 = 8.0;
 /// What a desk loses with a window right before or behind its user, which the screen mirrors.
-const GLARE: f64 = 4.5;
+const GLARE: f64 = 10.0;
 /// A window mirrored by a screen begins this near to the axis of the desk's user, and lies this near, mm.
 const MIRRORED: (i32, i32) = (500, 3500);
 /// How far ahead of the wall behind one the middle of a door lies that one sees from a desk before that wall, mm.
@@ -201,7 +201,7 @@ impl<'a> Find<'_, 'a, '_> {
                 };
                 let near = QUEUE * (least - front).max(0.0) + slope * (front - far).max(0.0);
                 let score = 2.0 - 0.6 * off - lost - near;
-                let hampered = |find: &Self, p: &Placed<'a>| if look == 0 { find.hampered(p) } else { find.glare(p) };
+                let hampered = |find: &Self, p: &Placed<'a>| if look == 0 { find.hampered(p) } else { find.unseated(p) };
                 self.offer(placed, 80 + u32::from(behind > 100), |find, p| score - hampered(find, p));
             }
         }
@@ -247,15 +247,15 @@ impl<'a> Find<'_, 'a, '_> {
                             - find.hampered(p)
                             + eased
                     }
-                    _ => 1.6 + (0.15 * away).min(0.6) - find.glare(p) + eased,
+                    _ => 1.6 + (0.15 * away).min(0.6) - find.unseated(p) + eased,
                 };
                 self.offer(placed, 82 + u32::from(q), score);
             }
         }
     }
 
-    /// Returns what a desk loses by windows right before or behind its user.
-    fn glare(&self, p: &Placed<'a>) -> f64 {
+    /// Returns what a desk loses past which its user does not get to the seat, and by windows right before or behind.
+    fn unseated(&self, p: &Placed<'a>) -> f64 {
         let space = self.state.space;
         let q = (p.q + p.unit.look()) % 4;
         let back = (4 - q) % 4;
@@ -265,14 +265,13 @@ impl<'a> Find<'_, 'a, '_> {
             let aside = (window.y0 - y).max(y - window.y1);
             aside < MIRRORED.0 && (window.center().0 - x).abs() < MIRRORED.1
         });
-        if mirrored { GLARE } else { 0.0 }
+        SHUT_IN * f64::from(has_no_way_past(self.state, p)) + GLARE * f64::from(mirrored)
     }
 
     /// Returns what a counter loses past which one gets on neither side, and before which people queue where others come
     /// in.
     fn hampered(&self, p: &Placed<'a>) -> f64 {
         let space = self.state.space;
-        let closed = ways_past(p, PAST).is_some_and(|ways| !ways.iter().any(|way| is_way(self.state, way)));
         let own = p.world(&p.unit.anchor().solid.rect).turned((4 - p.q) % 4);
         let queue = Box2 { x0: own.x1, x1: own.x1 + QUEUE_DEPTH, ..own }.turned(p.q);
         let queues = space.doors.iter().filter(|door| door.rank == 0 && !door.open).any(|door| {
@@ -280,6 +279,6 @@ impl<'a> Find<'_, 'a, '_> {
             landing.overlaps(&queue)
         });
         let walled = !space.contains(&queue);
-        SHUT_IN * f64::from(closed) + IN_THE_WAY_IN * f64::from(queues) + FACES_WALL * f64::from(walled)
+        SHUT_IN * f64::from(has_no_way_past(self.state, p)) + IN_THE_WAY_IN * f64::from(queues) + FACES_WALL * f64::from(walled)
     }
 }
