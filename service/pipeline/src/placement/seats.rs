@@ -147,7 +147,8 @@ pub(super) fn seats_around(parts: &[Part], tightness: f64, out: &mut Vec<Box2>) 
         return;
     }
     let depth = mm(PUSH_BACK_M * tightness);
-    out.extend(parts[1..].iter().filter(|p| p.object.shape == Shape::Chair).map(|seat| {
+    let chair = |p: &&Part| matches!(p.object.shape, Shape::Chair | Shape::SwivelChair);
+    out.extend(parts[1..].iter().filter(chair).map(|seat| {
         let own = seat.solid.rect.turned((4 - seat.quarter) % 4);
         Box2 { x0: own.x0 - depth, x1: own.x0, ..own }.turned(seat.quarter)
     }));
