@@ -201,7 +201,8 @@ impl<'a> Find<'_, 'a, '_> {
                 };
                 let near = QUEUE * (least - front).max(0.0) + slope * (front - far).max(0.0);
                 let score = 2.0 - 0.6 * off - lost - near;
-                let hampered = |find: &Self, p: &Placed<'a>| if look == 0 { find.hampered(p) } else { find.unseated(p) };
+                let hampered =
+                    |find: &Self, p: &Placed<'a>| if look == 0 { find.hampered(p) } else { find.unseated(p) };
                 self.offer(placed, 80 + u32::from(behind > 100), |find, p| score - hampered(find, p));
             }
         }
@@ -279,6 +280,8 @@ impl<'a> Find<'_, 'a, '_> {
             landing.overlaps(&queue)
         });
         let walled = !space.contains(&queue);
-        SHUT_IN * f64::from(has_no_way_past(self.state, p)) + IN_THE_WAY_IN * f64::from(queues) + FACES_WALL * f64::from(walled)
+        SHUT_IN * f64::from(has_no_way_past(self.state, p))
+            + IN_THE_WAY_IN * f64::from(queues)
+            + FACES_WALL * f64::from(walled)
     }
 }
