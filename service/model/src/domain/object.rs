@@ -37,6 +37,9 @@ pub struct ObjectType {
     /// Which sides need `clearance_side_m`: 0, 1 or 2.
     #[serde(default)]
     pub clear_sides: u8,
+    /// Free room at both sides that it has wherever the room holds it, m: for the elbows of who washes.
+    #[serde(default)]
+    pub elbow_room_m: f64,
     /// True when things can stand on its top.
     #[serde(default)]
     pub surface: bool,

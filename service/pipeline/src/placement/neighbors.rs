@@ -5,16 +5,19 @@ use d3dgen_model::domain::{Mount, Shape};
 
 use super::docks::is_in_the_way;
 use super::geom::Box2;
-use super::seats::{beside_beds, is_seat, shuts_in_staff};
+use super::seats::{beside_beds, is_seat, shuts_in_staff, sits_with_staff};
 use super::state::{Placed, State};
 
-/// Floor between people at a desk or table and a sitting group or table that is none of theirs, mm.
+/// Floor between people at a desk or table and a table that is none of theirs, and a sofa with legs before it, mm.
 const APART: i32 = 700;
+const SOFA_APART: i32 = 900;
 /// Desks from which on a room has aisles, and how wide what stands beside desks leaves them, mm.
 const MANY: usize = 4;
 const AISLE: i32 = 700;
 /// Floor between a chair at a desk or table and a machine that others use, mm.
 const FROM_MACHINE: i32 = 1000;
+/// Floor between a sofa and a machine that others use, mm.
+const SOFA_FROM_MACHINE: i32 = 600;
 /// Floor between a chair at a table and the swing of a door, mm.
 const FROM_SWING: i32 = 250;
 
@@ -22,10 +25,11 @@ const FROM_SWING: i32 = 250;
 pub(super) fn disturbs(state: &State, p: &Placed, robot: i32) -> bool {
     // clothes have to go somewhere, a plant has not
     let stores = matches!(p.unit.anchor().object.shape, Shape::Cabinet | Shape::Shelf);
-    // a lone seat at the side of a dock is better than none for those who wait
+    // a lone seat at the side of a dock or beside the staff is better than none for those who wait
     let lone_seat = p.unit.parts.len() == 1 && is_seat(p.unit.anchor().object.shape);
-    !lone_seat && is_in_the_way(state, p, robot)
+    !lone_seat && (is_in_the_way(state, p, robot) || sits_with_staff(state, p))
         || crowds_desks(state, p)
+        || has_machine_beside_sofa(state, p)
         || shuts_in_staff(state, p)
         || sits_in_swing(state, p)
         || !stores && beside_beds(state, p) > 0.0
@@ -49,6 +53,7 @@ fn crowds_desks(state: &State, p: &Placed) -> bool {
     // a visitor's chair belongs to a desk
     let lone_seat = shapes().count() == 1 && shapes().all(is_seat);
     let lounge = !lone_seat && shapes().any(|shape| is_seat(shape) || is_table(shape) || shape == Shape::Sofa);
+    let apart = if shapes().any(|shape| shape == Shape::Sofa) { SOFA_APART } else { APART };
     let machine = p.unit.anchor().object.shape == Shape::Appliance;
     let standing = || state.placed.iter().filter(|o| o.support.is_none());
     let many = standing().filter(|o| is_desk(o.unit.anchor().object.shape)).count() >= MANY;
@@ -64,11 +69,23 @@ fn crowds_desks(state: &State, p: &Placed) -> bool {
             && o.unit.parts.iter().any(|part| {
                 let (shape, gap) = (part.object.shape, own.gap(&o.solid(part).rect));
                 let seat = is_seat(shape);
-                lounge && (seat || is_desk(shape)) && gap < APART
+                lounge && (seat || is_desk(shape)) && gap < apart
                     || machine && seat && gap < FROM_MACHINE
                     || many && at_desk && (seat || is_desk(shape)) && gap < AISLE
             })
     })
+}
+
+/// Returns true for a machine right beside a sofa, and for a sofa right beside a machine.
+fn has_machine_beside_sofa(state: &State, p: &Placed) -> bool {
+    let other = match p.unit.anchor().object.shape {
+        Shape::Appliance if p.support.is_none() => Shape::Sofa,
+        Shape::Sofa => Shape::Appliance,
+        _ => return false,
+    };
+    let own = p.world(&p.unit.bbox);
+    let standing = state.placed.iter().filter(|o| o.on_floor() && o.unit.anchor().object.shape == other);
+    standing.map(|o| o.world(&o.unit.bbox)).any(|rect| rect.gap(&own) < SOFA_FROM_MACHINE)
 }
 
 fn is_table(shape: Shape) -> bool {

@@ -14,8 +14,8 @@ const PUSH_BACK_M: f64 = 0.25;
 const FOOT_M: f64 = 0.45;
 /// What a place loses that closes one of them.
 const CLOSED_SIDE: f64 = 4.0;
-/// What a place to wait loses behind a counter: about what the best place has to offer.
-const BEHIND_COUNTER: f64 = 3.0;
+/// How far aside of a counter one no longer sits on its staff's side, mm.
+const FROM_STAFF: i32 = 1200;
 
 /// Width of a way past a counter to its staff's side, beside a lone seat, and how far behind the counter it goes on, mm.
 const PAST: i32 = 850;
@@ -125,20 +125,21 @@ pub(super) fn beside_beds(state: &State, p: &Placed) -> f64 {
     CLOSED_SIDE * state.beside_beds.iter().filter(|way| closes(way)).count() as f64
 }
 
-/// Returns how much a place for visitors to sit loses because it lies on the staff's side of a counter.
-pub(super) fn behind_counters(state: &State, p: &Placed) -> f64 {
+/// Returns true for a place for visitors to sit that lies on the staff's side of a counter.
+pub(super) fn sits_with_staff(state: &State, p: &Placed) -> bool {
     let seat = p.unit.anchor().object.shape;
     if !is_seat(seat) && seat != Shape::Sofa {
-        return 0.0;
+        return false;
     }
     let staffed =
         |c: &&Placed| c.unit.anchor().object.shape == Shape::Counter && staffed_from(&c.unit.parts).next().is_some();
     let behind = |c: &Placed| {
         let back = (4 - c.q) % 4;
-        let middle = p.world(&p.unit.bbox).turned(back).center();
-        middle.0 < c.world(&c.unit.anchor().solid.rect).turned(back).x0
+        let [own, counter] = [p, c].map(|placed| placed.world(&placed.unit.anchor().solid.rect).turned(back));
+        let aside = (own.y0 - counter.y1).max(counter.y0 - own.y1);
+        own.center().0 < counter.x0 && aside < FROM_STAFF
     };
-    if state.placed.iter().filter(staffed).any(behind) { BEHIND_COUNTER } else { 0.0 }
+    state.placed.iter().filter(staffed).any(behind)
 }
 
 /// Adds the floor to push chairs back on that stand around a table.

@@ -221,6 +221,7 @@ pub(super) fn variants<'a>(domain: &'a Domain, item: &'a str, forms: &Forms) -> 
     if forms.advised {
         whole.iter().filter_map(|unit| advised(unit, forms)).for_each(&mut add);
     }
+    whole.iter().filter_map(with_elbow_room).for_each(&mut add);
     whole.into_iter().for_each(&mut add);
     if group.is_some() {
         let smallest_size = |o: &ObjectType| {
@@ -244,6 +245,17 @@ fn advised<'a>(unit: &Unit<'a>, forms: &Forms) -> Option<Unit<'a>> {
         if let Some(aim) = forms.aims.get(part.object.id.as_str()) {
             advised_floor(part, &aim.clear, &mut clears);
         }
+    }
+    let more = clears.len() > unit.clears.len();
+    more.then(|| finish_with(unit.item, unit.group, unit.parts.clone(), clears, unit.parked.clone()))
+}
+
+/// Returns a unit with room for the elbows of who uses it; `None` where its parts need none.
+fn with_elbow_room<'a>(unit: &Unit<'a>) -> Option<Unit<'a>> {
+    let mut clears = unit.clears.clone();
+    for part in unit.parts.iter().filter(|p| p.object.elbow_room_m > 0.0) {
+        let (own, room) = (part.solid.rect.turned((4 - part.quarter) % 4), mm(part.object.elbow_room_m));
+        clears.push(Box2 { y0: own.y0 - room, y1: own.y1 + room, ..own }.turned(part.quarter));
     }
     let more = clears.len() > unit.clears.len();
     more.then(|| finish_with(unit.item, unit.group, unit.parts.clone(), clears, unit.parked.clone()))

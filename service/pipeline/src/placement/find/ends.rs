@@ -27,9 +27,10 @@ const COUNTER_FRONT_M: f64 = 1.6;
 /// Floor a person needs behind a free-standing counter, mm.
 const BEHIND: i32 = 900;
 /// Floor more than one must have behind a desk or counter, mm, the floor before it from which on there is some to spare, m,
-/// and what it is worth.
+/// and what it is worth. Across a counter those wait who are not yet served.
 const EASE: i32 = 250;
 const AT_EASE_M: f64 = 1.7;
+const AT_EASE_COUNTER_M: f64 = 2.2;
 const AT_EASE: f64 = 0.3;
 /// What a desk or counter loses past which one does not get to its user's side.
 const SHUT_IN: f64 = 2.0;
@@ -48,6 +49,11 @@ const GLARE: f64 = 10.0;
 const MIRRORED: (i32, i32) = (500, 3500);
 /// How far ahead of the wall behind one the middle of a door lies that one sees from a desk before that wall, mm.
 const SIDE_VIEW: i32 = 900;
+
+/// Returns the floor before a desk or counter from which on there is some to spare behind it, m.
+fn ample(look: u8) -> f64 {
+    if look == 0 { AT_EASE_COUNTER_M } else { AT_EASE_M }
+}
 
 impl<'a> Find<'_, 'a, '_> {
     /// Offers positions opposite the first item, facing it: on the wall across first, then free-standing. Who sits around a
@@ -173,6 +179,7 @@ impl<'a> Find<'_, 'a, '_> {
         let mut vs: Vec<i32> = (0..24).map(|k| if k % 2 == 0 { k / 2 } else { -(k + 1) / 2 } * STEP).collect();
         vs.iter_mut().for_each(|v| *v += door_axis - middle);
         vs.extend([wide.y0 - b.y0, wide.y1 - b.y1]);
+        let ample = ample(look);
         for u in us {
             let behind = u + rear - wide.x0;
             for &v in &vs {
@@ -182,7 +189,7 @@ impl<'a> Find<'_, 'a, '_> {
                 let off = f64::from((v + middle - door_axis).abs()) / if look == 0 { 1000.0 } else { 4000.0 };
                 // whoever stands behind a counter that is open to a corridor sees along it from close to the opening only
                 let (far, slope): (f64, f64) = if door.open { (1.6, 0.6) } else { (4.0, 0.2) };
-                let lost = if behind == EASE && front > AT_EASE_M {
+                let lost = if behind == EASE && front > ample {
                     -AT_EASE
                 } else if behind > 100 && behind < BEHIND {
                     1.5
@@ -236,7 +243,7 @@ impl<'a> Find<'_, 'a, '_> {
                 let away = f64::from((v + (b.y0 + b.y1) / 2 - door.1).abs()) / 1000.0;
                 let front = f64::from(wide.x1 - u - b.x1) / 1000.0;
                 let eased = match u > close {
-                    true if front > AT_EASE_M => AT_EASE,
+                    true if front > ample(unit.look()) => AT_EASE,
                     true => -AT_EASE,
                     false => 0.0,
                 };

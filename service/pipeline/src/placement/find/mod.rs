@@ -16,10 +16,13 @@ use super::demand::Task;
 use super::docks::crowding;
 use super::geom::Box2;
 use super::neighbors::disturbs;
-use super::seats::{behind_counters, beside_beds};
+use super::seats::{beside_beds, sits_with_staff};
 use super::state::{Placed, Rule, State};
 use super::style::{Style, grain, style};
 use super::unit::Unit;
+
+/// What a lone seat for visitors loses on the staff's side of a counter: more than all else there can make up for.
+const WITH_STAFF: f64 = 9.0;
 
 /// A valid position, routes not yet looked at.
 #[derive(Debug, Clone)]
@@ -114,7 +117,7 @@ impl<'f, 'a, 's> Find<'f, 'a, 's> {
                 let score = score(self, &placed) + 0.25 * grain + 0.6 * self.class_grain(class)
                     - 0.4 * lost as f64
                     - crowding(self.state, &placed, self.aisle)
-                    - behind_counters(self.state, &placed)
+                    - if sits_with_staff(self.state, &placed) { WITH_STAFF } else { 0.0 }
                     - beside_beds(self.state, &placed);
                 self.out.push(Candidate { placed, score, class });
             }
