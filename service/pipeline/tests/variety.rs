@@ -67,29 +67,51 @@ fn is_shaped(plan: &Floorplan) -> bool {
     notched || plan.rooms.iter().any(|r| !r.circulation && r.polygon.corners().len() > 4)
 }
 
+/// Returns the plans of a prompt that the seeds from 0 give.
+fn plans(prompt: &str) -> Vec<Floorplan> {
+    let registry = Registry::builtin();
+    let plan = |seed| {
+        let request = Request { prompt: prompt.into(), seed, ..Request::default() };
+        let graph = scene_graph::generate(&request, &registry).expect("a plain prompt");
+        let plugin = registry.get(&graph.domain).expect("a shipped domain");
+        floorplan::generate(&graph, plugin.domain(), &retrieve(&graph, plugin).limits, None).ok()
+    };
+    let made: Vec<Floorplan> = (0..SEEDS).filter_map(plan).collect();
+    assert!(made.len() as u64 >= SEEDS - 2, "`{prompt}`: {} of {SEEDS} seeds gave a plan", made.len());
+    made
+}
+
 #[test]
 fn no_two_seeds_give_the_same_plan_and_many_are_no_boxes() {
-    let registry = Registry::builtin();
     let prompts = [
         "family house in Germany with 8 rooms",
         "office in the United States with 10 rooms",
         "hospital ward with 10 rooms",
         "Three patient rooms, a nurse station and a medication room",
+        "one-bedroom flat",
     ];
     for prompt in prompts {
-        let (mut seen, mut shaped, mut made) = (BTreeSet::new(), 0, 0);
-        for seed in 0..SEEDS {
-            let request = Request { prompt: prompt.into(), seed, ..Request::default() };
-            let graph = scene_graph::generate(&request, &registry).expect("a plain prompt");
-            let plugin = registry.get(&graph.domain).expect("a shipped domain");
-            let limits = retrieve(&graph, plugin).limits;
-            let Ok(plan) = floorplan::generate(&graph, plugin.domain(), &limits, None) else { continue };
-            made += 1;
-            shaped += u32::from(is_shaped(&plan));
-            assert!(seen.insert(signature(&plan)), "`{prompt}`: seed {seed} gives a plan that an earlier one gave");
-        }
-        assert!(made >= SEEDS - 2, "`{prompt}`: {made} of {SEEDS} seeds gave a plan");
-        let share = f64::from(shaped) / made as f64;
+        let plans = plans(prompt);
+        let seen: BTreeSet<Signature> = plans.iter().map(signature).collect();
+        assert_eq!(seen.len(), plans.len(), "`{prompt}`: different plans, and plans");
+        let share = plans.iter().filter(|plan| is_shaped(plan)).count() as f64 / plans.len() as f64;
         assert!(share >= SHAPED, "`{prompt}`: {:.0} % of the plans have more than rectangles", 100.0 * share);
+    }
+}
+
+#[test]
+fn tiny_flats_differ_and_have_small_bathrooms() {
+    for prompt in ["studio flat", "flat with 2 rooms"] {
+        let plans = plans(prompt);
+        let area = |plan: &Floorplan, kinds: &[&str]| -> f64 {
+            let named = plan.rooms.iter().filter(|r| kinds.contains(&r.room_type.as_str()));
+            named.map(|r| r.net_polygon.area()).sum()
+        };
+        let small = |plan: &&Floorplan| area(plan, &["bathroom"]) < 0.6 * area(plan, &["studio", "living_room"]);
+        let good = plans.iter().filter(small).count();
+        assert!(good >= plans.len() - 2, "`{prompt}`: {good} of {} bathrooms are small", plans.len());
+        // so few rooms have few arrangements, which two of fifty seeds may share
+        let seen: BTreeSet<Signature> = plans.iter().map(signature).collect();
+        assert!(seen.len() >= plans.len() - 2, "`{prompt}`: {} different ones of {} plans", seen.len(), plans.len());
     }
 }

@@ -366,9 +366,9 @@ impl<'b> Judge<'b> {
                 continue;
             }
             let corridor = i == self.spine && !self.brief.hub;
+            let net = room.net_m2;
+            score.hard += ((spec.area_min - net) / spec.area_min).max(0.0) * 4.0;
             if !corridor {
-                let net = room.net_m2;
-                score.hard += ((spec.area_min - net) / spec.area_min).max(0.0) * 4.0;
                 score.hard += ((net - spec.area_max) / spec.area_max).max(0.0) * 4.0;
                 // Readers who measure on center lines should find the area in range too.
                 let over = ((room.gross_m2 - spec.area_max) / spec.area_max).max(0.0);

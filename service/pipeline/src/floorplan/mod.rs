@@ -188,7 +188,7 @@ fn schemes(brief: &Brief, domain: &Domain, rng: &mut Stream) -> Vec<Scheme> {
     }
     let suits = |s: &Scheme| match s {
         Scheme::Straight => rooms < compose::LARGE,
-        Scheme::Capped => (4..compose::LARGE).contains(&rooms),
+        Scheme::Capped => (3..compose::LARGE).contains(&rooms),
         Scheme::Angle => (8..=50).contains(&rooms),
         Scheme::Racetrack => (14..=50).contains(&rooms),
         Scheme::Comb => rooms >= compose::LARGE,

@@ -106,8 +106,12 @@ impl Judge<'_> {
             rooms().map(|(spec, main)| ill_placed(spec.zone, far(main, gate) / size)).sum()
         };
         let Some(gate) = gates.into_iter().min_by(|a, b| lost(*a).total_cmp(&lost(*b))) else { return 0.0 };
-        let ranked: Vec<(u8, f64, f64)> =
-            rooms().filter_map(|(spec, main)| Some((rank(spec)?, spec.area_target, far(main, gate)))).collect();
+        // of a single room to live or work in nobody minds what else opens to the hall
+        let one_room = rooms().filter(|(spec, _)| rank(spec).is_some() && !spec.wet).count() == 1;
+        let ranked: Vec<(u8, f64, f64)> = rooms()
+            .filter(|(spec, _)| !(one_room && spec.wet))
+            .filter_map(|(spec, main)| Some((rank(spec)?, spec.area_target, far(main, gate))))
+            .collect();
         let (mut wrong, mut all) = (0.0, 0.0);
         for (before, area, way) in &ranked {
             for (_, _, other) in ranked.iter().filter(|(after, ..)| after > before) {

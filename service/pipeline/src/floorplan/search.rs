@@ -22,6 +22,10 @@ const WANTED: usize = 3;
 /// Cost of a room up to which a plan is good enough, and the sound plans more to compare where none is.
 const CONTENT: f64 = 0.42;
 const MORE: usize = 2;
+/// Runs with the scheme that the seed drew, before others step in.
+const OWN_RUNS: usize = 4;
+/// Rooms up to which a building is tiny: few schemes suit so few rooms, which ones only a look at all of them tells.
+const TINY: usize = 5;
 /// Most rooms of a large building that is tried in one body before it is composed of wings.
 const MOST_WHOLE: usize = 50;
 /// Rooms up to which so many are compared; larger plans cost more and differ less.
@@ -36,6 +40,7 @@ const HEAT: (f64, f64) = (1.5, 0.02);
 /// whatever the seed.
 const STROLL: usize = 80;
 const NEARLY: f64 = 0.15;
+const NEARLY_TINY: f64 = 0.3;
 
 /// Steps from one look at the wish to stop to the next.
 pub(super) const LOOK: usize = 64;
@@ -88,9 +93,11 @@ pub(super) fn search_with(
     let mut sound = 0;
     let mut judge = Judge::new(brief);
     judge.below = judge.below.or(below);
+    let tiny = brief.rooms.len() <= TINY;
+    let (own_runs, more) = if tiny { (OWN_RUNS / 2, MAX_RUNS / 2) } else { (OWN_RUNS, MORE) };
     for run in 0..MAX_RUNS {
         // The first choice of the seed gets most runs; the others step in when it does not work out.
-        let scheme = if run < 4 { schemes.first() } else { schemes.get(run % schemes.len().max(1)) };
+        let scheme = if run < own_runs { schemes.first() } else { schemes.get(run % schemes.len().max(1)) };
         let Some(&scheme) = scheme else { break };
         let least = best.as_ref().filter(|b| !b.0).map_or(f64::MAX, |b| b.1);
         let found = anneal(brief, &mut judge, scheme, (weights, least), rng, stop);
@@ -101,7 +108,7 @@ pub(super) fn search_with(
             best = Some((unsound, cost, found));
         }
         let poor = best.as_ref().is_some_and(|(_, least, _)| *least > CONTENT * brief.rooms.len() as f64);
-        if sound >= wanted + if poor { MORE } else { 0 } || stop.is_set() {
+        if sound >= wanted + if poor { more } else { 0 } || stop.is_set() {
             break;
         }
     }
@@ -122,7 +129,7 @@ fn stroll(
     if !found.score.is_sound() || brief.symmetry.is_some() {
         return (genome, found);
     }
-    let most = found.score.total(weights) + NEARLY;
+    let most = found.score.total(weights) + if brief.rooms.len() <= TINY { NEARLY_TINY } else { NEARLY };
     let (mut scratch, mut layout) = (Scratch::default(), Layout::default());
     let mut trial = genome.clone();
     for _ in 0..STROLL {

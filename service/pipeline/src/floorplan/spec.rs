@@ -27,8 +27,10 @@ const MOST_ADVISED_DOOR_M: f64 = 0.1;
 const AREA_VARIATION: f64 = 0.07;
 const FEW_ROOMS_VARIATION: f64 = 0.4;
 const FREE_RANGE: f64 = 1.3;
-/// Share by which a corridor is wider than it must be, from seed to seed.
+/// Share by which a corridor is wider than it must be, from seed to seed, and what one room has more of it by itself and
+/// many share.
 const WIDTH_VARIATION: f64 = 0.1;
+const FEW_ROOMS_WIDTH: f64 = 0.3;
 /// Share of a target area kept from the edges of what is advised, for the search to move in.
 const ADVICE_MARGIN: f64 = 0.03;
 
@@ -224,7 +226,8 @@ impl Brief {
 
     /// Makes the corridor a little wider than it must be, as [`Brief::vary`] changes areas.
     pub(super) fn widen(&mut self, rng: &mut Stream) {
-        self.spine_extra = WIDTH_VARIATION * self.spine_width * rng.unit();
+        let share = WIDTH_VARIATION + FEW_ROOMS_WIDTH / self.rooms.len().pow(2).max(1) as f64;
+        self.spine_extra = share * self.spine_width * rng.unit();
     }
 
     /// Returns the task of a wing with some of the rooms, in their order, and the corridor last.
