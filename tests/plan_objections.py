@@ -1,0 +1,404 @@
+#!/usr/bin/env python3
+"""Counts in finished worlds what a reviewer of plans objects to, as far as the documents decide it.
+
+    d3dgen bench paper --out target/paper && tests/plan_objections.py target/paper
+
+Reads `floorplan.json`, `placements.json` and `scenario.json` of every world below the folder, and nothing of the program. One
+objection of weight A, or three different ones of weight B, send a plan back. Exit status 1 when a tenth of the plans or more
+would be sent back, 2 when there are no worlds. `--list` names the plans of each objection.
+
+This is no referee: what must never be is for `judge_worlds.py`. Lengths in m; figures are those that reviewers named
+(docs/plans.md), less a centimeter or two for rounding.
+"""
+
+import argparse
+import json
+import math
+import sys
+from collections import Counter, defaultdict
+from pathlib import Path
+
+WET = {"accessible_bathroom", "bathroom", "ensuite", "guest_toilet", "kitchen", "kitchenette", "laundry", "shower_room", "toilet"}
+HAND_BASINS = {"accessible_basin", "clinical_basin", "small_basin", "washbasin"}
+DESKS = {"desk", "small_desk"}
+WORK_CHAIRS = {"swivel_chair", "task_chair"}
+VISITOR_SEATS = {"lounge_chair", "lounge_sofa", "visitor_chair"}
+TOILETS = {"accessible_wc", "toilet", "wc_cubicle"}
+EAST, NORTH, WEST, SOUTH = range(4)
+GRAZE = 0.02
+
+OBJECTIONS = []
+
+
+def objection(weight, domain=None):
+    """Registers a function that takes a world and returns whether its docstring is to be objected to."""
+
+    def register(function):
+        OBJECTIONS.append((weight, domain, " ".join(function.__doc__.split()), function))
+        return function
+
+    return register
+
+
+class Body:
+    """Something placed: its outline as (x0, y0, x1, y1) and its heading in quarter turns from east."""
+
+    def __init__(self, placement):
+        self.object, self.mount, self.group = placement["object"], placement["mount"], placement.get("group")
+        (self.width, self.depth, height), pose = placement["size_m"], placement["pose"]
+        self.x, self.y, self.yaw = pose["x"], pose["y"], pose["yaw_rad"]
+        self.low, self.high = pose.get("z", 0.0), pose.get("z", 0.0) + height
+        self.quarter = round(self.yaw / (math.pi / 2)) % 4
+        w, h = (self.depth, self.width) if self.quarter % 2 == 0 else (self.width, self.depth)
+        self.rect = (self.x - w / 2, self.y - h / 2, self.x + w / 2, self.y + h / 2)
+
+    def seen(self, x, y):
+        """A point in this body's own frame: ahead of its middle, and to its left."""
+        dx, dy, cos, sin = x - self.x, y - self.y, math.cos(self.yaw), math.sin(self.yaw)
+        return dx * cos + dy * sin, dy * cos - dx * sin
+
+
+class Room:
+    """A room with what stands and hangs in it, its doors and windows."""
+
+    def __init__(self, room, plan, placements):
+        self.id, self.kind, self.circulation = room["room_id"], room["room_type"], room["circulation"]
+        self.area, self.corners = room["net_area_m2"], [(p["x"], p["y"]) for p in room["net_polygon"]]
+        xs, ys = zip(*self.corners, strict=True)
+        self.rect = (min(xs), min(ys), max(xs), max(ys))
+        self.bodies = [Body(p) for p in placements if p["room_id"] == self.id]
+        self.standing = [b for b in self.bodies if b.mount == "floor" and b.high > 0.05]
+        self.doors = [d for d in plan["doors"] if self.id in d["room_ids"]]
+        self.windows = [w for w in plan["windows"] if w["room_id"] == self.id]
+
+    def named(self, *objects):
+        return [b for b in self.bodies if b.object in objects]
+
+    def free(self, rect, side, obstacles, part=(0.0, 1.0)):
+        """Free depth beside a part of one side of a rectangle, up to the next wall or obstacle."""
+        walls = [(*a, *b) for a, b in zip(self.corners, self.corners[1:] + self.corners[:1], strict=True)]
+        walls = [(min(x0, x1), min(y0, y1), max(x0, x1), max(y0, y1)) for x0, y0, x1, y1 in walls]
+        # seen so that the side looks along the first axis
+        turn = {EAST: lambda r: r, WEST: lambda r: (-r[2], r[1], -r[0], r[3]),
+                NORTH: lambda r: (r[1], r[0], r[3], r[2]), SOUTH: lambda r: (-r[3], r[0], -r[1], r[2])}[side]  # fmt: skip
+        own = turn(rect)
+        low, high = (own[1] + (own[3] - own[1]) * share for share in part)
+        ahead = (r for r in map(turn, walls + obstacles) if r[3] > low + GRAZE and r[1] < high - GRAZE)
+        return max(0.0, min((r[0] - own[2] for r in ahead if r[0] > own[2] - 0.03), default=math.inf))
+
+
+class World:
+    """The documents of one world."""
+
+    def __init__(self, folder):
+        plan, placements, scenario = (
+            json.loads((folder / f"{name}.json").read_text()) for name in ("floorplan", "placements", "scenario")
+        )
+        self.rooms = [Room(r, plan, placements["placements"]) for r in plan["rooms"]]
+        self.robots = scenario.get("robots", [])
+
+    def of(self, *kinds):
+        return [r for r in self.rooms if r.kind in kinds]
+
+    def largest(self, *kinds):
+        return max((r.area for r in self.of(*kinds)), default=math.inf)
+
+    def count(self, objects):
+        return sum(len(r.named(*objects)) for r in self.rooms)
+
+
+def gap(a, b):
+    return math.hypot(max(0.0, a[0] - b[2], b[0] - a[2]), max(0.0, a[1] - b[3], b[1] - a[3]))
+
+
+def outlines(bodies):
+    return [b.rect for b in bodies]
+
+
+@objection("A")
+def no_door(world):
+    """a room without a door"""
+    return any(not room.doors for room in world.rooms)
+
+
+@objection("B")
+def long_room(world):
+    """a room longer than 2.5 times its width"""
+    plain = [r.rect for r in world.rooms if not r.circulation and len(r.corners) == 4]
+    sides = [(x1 - x0, y1 - y0) for x0, y0, x1, y1 in plain]
+    return any(max(s) > 2.5 * min(s) for s in sides)
+
+
+@objection("B")
+def no_dock(world):
+    """a robot without a dock"""
+    return bool(world.robots) and not any("dock" in b.object for room in world.rooms for b in room.bodies)
+
+
+@objection("B")
+def no_elbow_room(world):
+    """a hand basin with less than 0.1 m at a side"""
+    for room in world.rooms:
+        for basin in room.named(*HAND_BASINS):
+            others = [b for b in room.bodies if b is not basin and b.mount in ("floor", "wall")]
+            shallow = [b for b in others if b.mount == "wall" and b.depth <= 0.1]
+            beside = [b for b in others if b not in shallow and b.low < basin.high and b.high > basin.low]
+            sides = [(basin.quarter + 1) % 4, (basin.quarter + 3) % 4]
+            if min(room.free(basin.rect, side, outlines(beside)) for side in sides) < 0.1:
+                return True
+    return False
+
+
+def circulation_share(world):
+    return sum(r.area for r in world.rooms if r.circulation) / sum(r.area for r in world.rooms)
+
+
+@objection("B", "residential")
+def much_hall(world):
+    """more than a fifth of a home as circulation"""
+    return circulation_share(world) > 0.2
+
+
+@objection("B", "office")
+def much_corridor(world):
+    """more than 30 % of an office as circulation"""
+    return circulation_share(world) > 0.3
+
+
+@objection("B", "hospital")
+def much_ward_corridor(world):
+    """more than 30 % of a ward as circulation"""
+    return circulation_share(world) > 0.3
+
+
+@objection("A", "residential")
+def toilet_at_table(world):
+    """a bathroom that opens to a kitchen or dining room"""
+    rooms = {r.id: r.kind for r in world.rooms}
+    pairs = [{rooms[i] for i in d["room_ids"]} for r in world.rooms for d in r.doors]
+    return any(p & {"bathroom", "toilet", "guest_toilet"} and p & {"kitchen", "dining_room"} for p in pairs)
+
+
+@objection("B", "residential")
+def no_wardrobe(world):
+    """a bedroom without a wardrobe"""
+    return any(not any("wardrobe" in b.object for b in room.standing) for room in world.of("bedroom"))
+
+
+@objection("B", "residential")
+def one_sided_bed(world):
+    """a double bed with less than 0.4 m at a long side"""
+    for room in world.rooms:
+        for bed in room.named("double_bed"):
+            others = [b for b in room.standing if b is not bed and "nightstand" not in b.object]
+            foot = (0.35, 1.0) if bed.quarter in (EAST, NORTH) else (0.0, 0.65)
+            sides = [(bed.quarter + 1) % 4, (bed.quarter + 3) % 4]
+            if min(room.free(bed.rect, side, outlines(others), foot) for side in sides) < 0.4:
+                return True
+    return False
+
+
+@objection("B", "residential")
+def few_seats(world):
+    """fewer seats at a table than bedrooms and one more, six at most"""
+    seats = Counter()
+    for room in world.of("living_room", "dining_room", "kitchen", "studio"):
+        seats.update(b.group for b in room.named("dining_chair", "stool", "bar_stool"))
+    return max(seats.values(), default=0) < min(len(world.of("bedroom")) + 1, 6)
+
+
+@objection("B", "residential")
+def no_coats(world):
+    """no place for coats in the hall"""
+    places = ("coat", "hook", "wardrobe")
+    return not any(word in b.object for r in world.rooms if r.circulation for b in r.bodies for word in places)
+
+
+@objection("B", "residential")
+def large_hall(world):
+    """a hall, bedroom or bathroom larger than the living room"""
+    lived = world.largest("living_room", "studio")
+    return any(r.area > lived for r in world.rooms if r.circulation or r.kind in ("bedroom", "bathroom"))
+
+
+@objection("B", "residential")
+def scattered_wet_rooms(world):
+    """wet rooms in three places"""
+    places = []
+    for room in (r for r in world.rooms if r.kind in WET):
+        near = [p for p in places if any(gap(room.rect, other.rect) < 0.35 for other in p)]
+        places = [p for p in places if p not in near] + [[room, *(other for p in near for other in p)]]
+    return len(places) >= 3
+
+
+@objection("A", "office")
+def no_meter_behind_desk(world):
+    """less than 1 m from a desk to what is behind who sits at it"""
+    for room in world.rooms:
+        for chair in room.named(*WORK_CHAIRS):
+            desk = min(room.named(*DESKS), key=lambda d: gap(d.rect, chair.rect), default=None)
+            if desk is None or gap(desk.rect, chair.rect) > 0.3:
+                continue
+            back, axis = (chair.quarter + 2) % 4, 1 if chair.quarter % 2 == 0 else 0
+            low, length = desk.rect[axis], desk.rect[axis + 2] - desk.rect[axis]
+            part = [min(max((chair.rect[k] - low) / length, 0.0), 1.0) for k in (axis, axis + 2)]
+            others = [b for b in room.standing if b is not desk and b is not chair]
+            if room.free(desk.rect, back, outlines(others), part) < 0.98:
+                return True
+    return False
+
+
+@objection("B", "office")
+def mirrored_window(world):
+    """a window before or behind the screen in a single office"""
+    for room in world.of("office", "executive_office"):
+        for chair in room.named(*WORK_CHAIRS):
+            for window in room.windows:
+                a, b = window["line"]["start"], window["line"]["end"]
+                for k in range(11):
+                    ahead, left = chair.seen(*(a[c] + (b[c] - a[c]) * k / 10 for c in ("x", "y")))
+                    if abs(left) < 0.5 and abs(ahead) < 3.5:
+                        return True
+    return False
+
+
+@objection("B", "office")
+def printer_at_sofa(world):
+    """a printer within 0.5 m of a sofa"""
+    pairs = ((p, s) for r in world.rooms for p in r.named("printer") for s in r.standing if "sofa" in s.object)
+    return any(gap(p.rect, s.rect) < 0.5 for p, s in pairs)
+
+
+@objection("B", "office")
+def sofa_at_desks(world):
+    """a sofa within 0.88 m of the desks of an open office"""
+    pairs = ((s, d) for r in world.of("open_office") for s in r.standing if "sofa" in s.object for d in r.named(*DESKS))
+    return any(gap(s.rect, d.rect) < 0.88 for s, d in pairs)
+
+
+@objection("B", "office")
+def no_place_to_wait(world):
+    """a reception with no seat for visitors but among the staff"""
+    for room in world.of("reception"):
+        desks = [b for b in room.standing if "reception_desk" in b.object]
+        seats = room.named(*VISITOR_SEATS)
+        apart = [s for s in seats for d in desks if d.seen(s.x, s.y)[0] > -d.depth / 2 or gap(s.rect, d.rect) > 1.1]
+        if desks and not apart:
+            return True
+    return False
+
+
+def meeting_tables(world):
+    return [(r, b) for r in world.of("meeting_room") for b in r.standing if b.object.startswith("meeting_table")]
+
+
+@objection("B", "office")
+def table_at_wall(world):
+    """a meeting table with less than 0.9 m behind a seat's edge of it"""
+    for room, table in meeting_tables(world):
+        chairs = [b for b in room.standing if "chair" in b.object and gap(b.rect, table.rect) < 0.3]
+        others = [b for b in room.standing if b is not table and "chair" not in b.object]
+        for chair in chairs:
+            if room.free(table.rect, (chair.quarter + 2) % 4, outlines(others)) < 0.88:
+                return True
+    return False
+
+
+@objection("B", "office")
+def screen_behind_backs(world):
+    """a meeting room with no screen at a head of its table"""
+    for room, table in meeting_tables(world):
+        wide = table.rect[2] - table.rect[0] > table.rect[3] - table.rect[1]
+        if not any((display.quarter % 2 == 0) == wide for display in room.named("wall_display")):
+            return True
+    return False
+
+
+@objection("B", "office")
+def no_blind(world):
+    """a meeting room with a window and no blind"""
+    return any(r.windows and not r.named("blind") for r in world.of("meeting_room"))
+
+
+@objection("B", "office")
+def one_toilet(world):
+    """one toilet for more than ten desks"""
+    return bool(world.of("toilet")) and world.count(DESKS) > 10 and world.count(TOILETS) < 2
+
+
+@objection("A", "hospital")
+def narrow_bed(world):
+    """a patient bed with its head off the wall, or less than 0.88 m at a long side"""
+    beside = ("bedside", "iv_", "overbed", "chair")
+    for room in world.of("patient_room", "icu_room", "isolation_room"):
+        for bed in room.named("hospital_bed"):
+            others = [b for b in room.standing if b is not bed and not any(word in b.object for word in beside)]
+            foot = (0.4, 1.0) if bed.quarter in (EAST, NORTH) else (0.0, 0.6)
+            sides = [(bed.quarter + 1) % 4, (bed.quarter + 3) % 4]
+            if room.free(bed.rect, (bed.quarter + 2) % 4, []) > 0.3:
+                return True
+            if min(room.free(bed.rect, side, outlines(others), foot) for side in sides) < 0.88:
+                return True
+    return False
+
+
+@objection("A", "hospital")
+def clean_and_dirty(world):
+    """a door between clean and dirty utility"""
+    rooms = {r.id: r.kind for r in world.rooms}
+    doors = [{rooms[i] for i in d["room_ids"]} for r in world.rooms for d in r.doors]
+    return {"clean_utility", "dirty_utility"} in doors
+
+
+@objection("B", "hospital")
+def no_visitor_seat(world):
+    """a patient room without a seat"""
+    seats = ("chair", "recliner")
+    return any(not any(word in b.object for b in r.standing for word in seats) for r in world.of("patient_room"))
+
+
+@objection("B", "hospital")
+def no_hand_basin(world):
+    """a patient, exam or treatment room without a hand basin"""
+    return any(not r.named(*HAND_BASINS) for r in world.of("patient_room", "exam_room", "treatment_room"))
+
+
+@objection("B", "hospital")
+def lone_nurse(world):
+    """a nurse station of 18 m2 or more with one workplace"""
+    return any(r.area >= 18.0 and len(r.named(*WORK_CHAIRS)) < 2 for r in world.of("nurse_station"))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("folder", type=Path, help="worlds, at any depth; the folder of a set begins with its domain")
+    parser.add_argument("--list", action="store_true", help="name the plans of each objection")
+    options = parser.parse_args()
+    folders = sorted(path.parent for path in options.folder.rglob("floorplan.json"))
+    if not folders:
+        print(f"{options.folder}: no world below it; make some with `d3dgen bench paper --out DIR`", file=sys.stderr)
+        return 2
+    raised, plans, back, clean = defaultdict(list), Counter(), Counter(), Counter()
+    for folder in folders:
+        name = folder.relative_to(options.folder)
+        domain = name.parts[0].split("_")[0]
+        world = World(folder)
+        mine = [(w, text) for w, where, text, holds in OBJECTIONS if where in (None, domain) and holds(world)]
+        for entry in mine:
+            raised[entry].append(str(name))
+        plans[domain] += 1
+        clean[domain] += not mine
+        back[domain] += any(w == "A" for w, _ in mine) or len(mine) >= 3
+    print(f"{'domain':12} {'plans':>6} {'no objection':>13} {'sent back':>10}")
+    for domain, count in sorted(plans.items()):
+        print(f"{domain:12} {count:6} {clean[domain]:13} {back[domain]:10}")
+    print(f"\n{len(OBJECTIONS)} objections looked for; raised:")
+    for (weight, text), names in sorted(raised.items(), key=lambda item: (item[0][0], -len(item[1]))):
+        print(f"{weight} {len(names):4}  {text}")
+        if options.list:
+            print("         " + " ".join(names))
+    return int(10 * back.total() >= plans.total())
+
+
+if __name__ == "__main__":
+    sys.exit(main())
