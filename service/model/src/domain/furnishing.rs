@@ -88,6 +88,10 @@ pub struct Group {
     pub id: String,
     /// Object id of the anchor; the group's front is the anchor's front.
     pub anchor: String,
+    /// Free floor before the anchor, m, where the group needs more than the anchor's type does by itself: a passage at the
+    /// foot of beds that several patients share.
+    #[serde(default)]
+    pub clearance_front_m: f64,
     /// The others, in order.
     pub members: Vec<Member>,
 }

@@ -45,6 +45,9 @@ pub struct ProgramRoom {
     /// Floor area per occupant, m^2, for rooms that grow with the head count (an open office).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub area_per_occupant_m2: Option<f64>,
+    /// In buildings that are to be accessible it comes after so many entries already (the toilet for wheelchairs).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub accessible_after: Option<u32>,
 }
 
 /// A head count of a prompt.

@@ -18,6 +18,8 @@ const AISLE: i32 = 700;
 const FROM_MACHINE: i32 = 1000;
 /// Floor between a sofa and a machine that others use, mm.
 const SOFA_FROM_MACHINE: i32 = 600;
+/// Floor from the edge of a table at which people sit to what one can do without, mm: a chair, and room to push it back.
+const BEHIND_SEATS: i32 = 900;
 /// Floor between a chair at a table and the swing of a door, mm.
 const FROM_SWING: i32 = 250;
 
@@ -32,6 +34,7 @@ pub(super) fn disturbs(state: &State, p: &Placed, robot: i32) -> bool {
         || has_machine_beside_sofa(state, p)
         || shuts_in_staff(state, p)
         || sits_in_swing(state, p)
+        || stands_behind_seats(state, p)
         || !stores && beside_beds(state, p) > 0.0
 }
 
@@ -41,6 +44,33 @@ fn sits_in_swing(state: &State, p: &Placed) -> bool {
     let seats = p.unit.parts.iter().filter(|part| at_table && is_seat(part.object.shape));
     let near = |seat: &Box2| state.space.doors.iter().any(|door| door.swings_in && door.zone.gap(seat) < FROM_SWING);
     seats.map(|part| p.solid(part).rect).any(|seat| near(&seat))
+}
+
+/// Returns true for what narrows the floor on which those who sit at a table push their chairs back.
+fn stands_behind_seats(state: &State, p: &Placed) -> bool {
+    let anchor = p.unit.anchor().object.shape;
+    if !p.on_floor() || is_seat(anchor) || is_table(anchor) {
+        return false;
+    }
+    let own = p.world(&p.unit.bbox);
+    state.placed.iter().filter(|o| is_table(o.unit.anchor().object.shape)).any(|o| {
+        let table = o.solid(o.unit.anchor()).rect;
+        let seats = o.unit.parts.iter().filter(|part| is_seat(part.object.shape)).map(|part| o.solid(part).rect);
+        seats.map(|seat| behind(&table, seat.center())).any(|floor| floor.overlaps(&own))
+    })
+}
+
+/// Returns the floor on the side of a table on which somebody sits.
+fn behind(table: &Box2, (x, y): (i32, i32)) -> Box2 {
+    if x > table.x1 {
+        Box2 { x0: table.x1, x1: table.x1 + BEHIND_SEATS, ..*table }
+    } else if x < table.x0 {
+        Box2 { x0: table.x0 - BEHIND_SEATS, x1: table.x0, ..*table }
+    } else if y > table.y1 {
+        Box2 { y0: table.y1, y1: table.y1 + BEHIND_SEATS, ..*table }
+    } else {
+        Box2 { y0: table.y0 - BEHIND_SEATS, y1: table.y0, ..*table }
+    }
 }
 
 /// Returns true for sitting groups and tables right beside people at desks and tables, for machines behind those who work

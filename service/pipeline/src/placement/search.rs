@@ -24,6 +24,11 @@ const ROUTE_TESTS: usize = 40;
 const WEIGHED: usize = 4;
 /// Share of the units that rows of smaller or closer ones would hold from which those that keep more rules are taken.
 const WORTH: f64 = 0.75;
+/// Furnishing lines that a room should not go without, and how many more drafts are made for them where the room is small,
+/// in cells (15 m^2), so that drafts take little time.
+const EARLY: usize = 4;
+const MORE_DRAFTS: usize = 3;
+const SMALL: usize = 6_000;
 /// Other beginnings of the search where floor is closed off.
 const MORE_BEGINNINGS: u64 = 3;
 /// Free floor from which two departures are enough, in cells (100 m^2): halls take long and look alike.
@@ -219,6 +224,7 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
             let looks = match (empty > LARGE, best.outcome.missing.is_empty()) {
                 (_, true) => 1,
                 (true, false) => 2,
+                (false, false) if empty < SMALL && self.lacks_something_early(&best) => DEPARTURES.len() + MORE_DRAFTS,
                 (false, false) => DEPARTURES.len(),
             };
             if self.job.stop.is_set()
@@ -280,6 +286,16 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
         let (missing, level) = (Vec::new(), self.level);
         let outcome = Outcome { placed: Vec::new(), missing, required_missing: 0, closed: 0, score: 0.0, level };
         Draft { state: self.start.clone(), outcome, steps: Vec::new() }
+    }
+
+    /// Returns true when something of the first lines has no place, nor what may come in its place.
+    fn lacks_something_early(&self, draft: &Draft) -> bool {
+        let tasks = self.job.tasks;
+        let placed = || draft.state.placed.iter().filter_map(|p| tasks.get(p.task));
+        let has_other =
+            |item: &str| placed().any(|task| task.item == item || task.instead_of.iter().any(|of| of == item));
+        let mut missing = draft.outcome.missing.iter().map(|(task, ..)| &tasks[*task]);
+        missing.any(|task| task.line < EARLY && !has_other(task.item))
     }
 
     /// Returns true when something required finds no place even in the empty room, so that no order helps.

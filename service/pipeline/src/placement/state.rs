@@ -140,8 +140,8 @@ pub(super) struct State<'a, 's> {
     pub docks: Vec<Box2>,
     /// Floor at the foot of beds through which one gets to their sides.
     pub beside_beds: Vec<Box2>,
-    /// Floor between screens and boards and those who look at them.
-    sights: Vec<Box2>,
+    /// Floor between screens and boards and those who look at them, and how high what stands there may be, mm.
+    sights: Vec<(Box2, i32)>,
     nav: Nav,
     /// Floor that is free for a small robot.
     pub pockets: Pockets,
@@ -322,15 +322,16 @@ impl<'a, 's> State<'a, 's> {
         let own = unit.world(&unit.unit.anchor().solid.rect).turned(back);
         let seen_from = focus.world(&focus.unit.anchor().solid.rect).turned(back);
         if own.x1 < seen_from.x0 {
-            self.sights.push(Box2 { x0: own.x1, x1: seen_from.x0, ..own }.turned(unit.q));
+            let below = unit.solid(unit.unit.anchor()).z0.max(LOW);
+            self.sights.push((Box2 { x0: own.x1, x1: seen_from.x0, ..own }.turned(unit.q), below));
         }
     }
 
     /// Returns true for what would stand between a screen or board and those who look at it.
     pub fn hides(&self, p: &Placed) -> bool {
-        let tall = |part: &&Part| part.mount == Mount::Floor && p.solid(part).z1 > LOW;
-        let parts = || p.unit.parts.iter().filter(tall).map(|part| p.solid(part).rect);
-        p.support.is_none() && self.sights.iter().any(|s| parts().any(|rect| rect.overlaps(s)))
+        let parts = || p.unit.parts.iter().filter(|part| part.mount == Mount::Floor).map(|part| p.solid(part));
+        let between = |(floor, below): &(Box2, i32)| parts().any(|s| s.z1 > *below && s.rect.overlaps(floor));
+        p.support.is_none() && self.sights.iter().any(between)
     }
 
     /// Puts units down that were tested.

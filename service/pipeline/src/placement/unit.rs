@@ -324,7 +324,10 @@ impl<'a> Plan<'a, '_> {
                 add_member(&mut parts, member, object, sizes(object), self.forms.ceiling);
             }
         }
-        finish(self.item, self.group.is_some(), parts, self.forms)
+        let mut clears = Vec::new();
+        let shared = mm(self.group.map_or(0.0, |g| g.clearance_front_m) * self.forms.tightness);
+        clears.extend((shared > 0).then(|| Box2 { x0: rect.x1, x1: rect.x1 + shared, ..rect }));
+        finish(self.item, self.group.is_some(), parts, clears, self.forms)
     }
 }
 
@@ -342,8 +345,8 @@ fn hung(object: &ObjectType, h: i32, ceiling: i32) -> i32 {
     }
 }
 
-fn finish<'a>(item: &'a str, group: bool, parts: Vec<Part<'a>>, forms: &Forms) -> Unit<'a> {
-    let mut clears = Vec::new();
+/// Finishes a unit that needs this floor beside what its parts need.
+fn finish<'a>(item: &'a str, group: bool, parts: Vec<Part<'a>>, mut clears: Vec<Box2>, forms: &Forms) -> Unit<'a> {
     parts.iter().for_each(|part| clears_of(part, forms.tightness, &mut clears));
     seats_behind(&parts, forms.tightness, &mut clears);
     seats_around(&parts, forms.tightness, &mut clears);

@@ -245,13 +245,26 @@ impl<'r, 'a> Build<'r, 'a> {
         true
     }
 
+    /// Returns the program in the order in which this building needs it.
+    fn entries(&self) -> Vec<&'a ProgramRoom> {
+        let all = &self.reading.program.rooms;
+        let sooner = |e: &ProgramRoom| e.accessible_after.filter(|_| self.reading.accessible);
+        let mut out: Vec<&ProgramRoom> = all.iter().filter(|e| sooner(e).is_none()).collect();
+        for entry in all {
+            if let Some(after) = sooner(entry) {
+                out.insert(out.len().min(after as usize), entry);
+            }
+        }
+        out
+    }
+
     /// Walks through the program as it grows: `min` of every entry, then one more of each below its `max`, again and
     /// again. `visit` returns false to stop.
     fn walk(&mut self, mut visit: impl FnMut(&mut Self, &'a ProgramRoom) -> bool) {
-        let entries = &self.reading.program.rooms;
+        let entries = self.entries();
         let rounds = entries.iter().map(|e| e.max.saturating_sub(e.min)).max().unwrap_or(0);
         for round in 0..=rounds {
-            for entry in entries {
+            for &entry in &entries {
                 let n = if round == 0 { entry.min } else { u32::from(entry.min + round <= entry.max) };
                 for _ in 0..n {
                     if !visit(self, entry) {
