@@ -147,6 +147,7 @@ fn graph(robot: &Robot) -> SceneGraph {
         wished_assets: Vec::new(),
         occupants: None,
         circulation: false,
+        unit: None,
         level: 0,
         requested: true,
         entrance: id == "a_1",

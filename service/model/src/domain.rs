@@ -19,7 +19,7 @@ pub use furnishing::{Arrangement, FacingRule, Furnishing, Group, Member, Relatio
 pub use layouts::{LayoutSwap, Layouts};
 pub use object::{Mount, ObjectType, Shape, Stock, StockedAsset};
 pub use program::{
-    Adjacency, AdjacencyRelation, Circulation, Elevator, Occupants, Program, ProgramRoom, Scheme, Stairs, Storeys,
+    Adjacency, AdjacencyRelation, Circulation, Elevator, Occupants, Program, ProgramRoom, Scheme, Stairs, Storeys, Units,
 };
 pub use room_type::{Access, AreaRange, Daylight, Materials, Privacy, RobotUse, RoomType, Zone};
 
@@ -124,6 +124,11 @@ impl Domain {
         self.objects.iter().find(|o| o.id == id)
     }
 
+    /// Returns the object types by id, for those who look up thousands of them.
+    pub fn objects_by_id(&self) -> BTreeMap<&str, &ObjectType> {
+        self.objects.iter().map(|o| (o.id.as_str(), o)).collect()
+    }
+
     /// Returns the group with this id.
     pub fn group(&self, id: &str) -> Option<&Group> {
         self.groups.iter().find(|g| g.id == id)
@@ -204,6 +209,16 @@ impl Document for Domain {
                 for (k, id) in entry.with.iter().enumerate() {
                     room(format!("/programs/{i}/rooms/{j}/with/{k}"), id, &mut problems);
                 }
+            }
+            let Some(units) = &program.units else { continue };
+            let at = format!("/programs/{i}/units");
+            if units.programs.is_empty() || units.rooms < 2 || units.from_rooms <= units.rooms {
+                let message = "needs a program, 2 rooms a unit, and from_rooms above that";
+                problems.push(Problem::new(at.as_str(), message));
+            }
+            for (j, id) in units.programs.iter().enumerate().filter(|(_, id)| self.program(id).is_none()) {
+                let message = format!("program `{id}` is not in programs");
+                problems.push(Problem::new(format!("{at}/programs/{j}"), message));
             }
         }
         for (i, building) in self.building_types.iter().enumerate() {

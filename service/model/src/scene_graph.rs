@@ -119,6 +119,9 @@ pub struct GraphRoom {
     /// Storey it lies on: 0 at the ground, 1 above it, -1 below it.
     #[serde(default, skip_serializing_if = "is_ground")]
     pub level: i32,
+    /// Unit of a large building that it belongs to (`ward_2`), whose rooms lie together.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unit: Option<String>,
 }
 
 /// A relation between two rooms.

@@ -69,11 +69,13 @@ impl<'a> Site<'a> {
                 space: OnceCell::new(),
             })
             .collect();
+        let kinds = domain.objects_by_id();
+        let at: BTreeMap<&str, usize> = plan.rooms.iter().enumerate().map(|(i, r)| (r.room_id.as_str(), i)).collect();
         for placement in &world.placements.placements {
-            let Some(room) = rooms.iter_mut().find(|r| r.plan.room_id == placement.room_id) else { continue };
-            room.objects.push(Object {
+            let Some(room) = at.get(placement.room_id.as_str()) else { continue };
+            rooms[*room].objects.push(Object {
                 placement,
-                kind: domain.object(&placement.object),
+                kind: kinds.get(placement.object.as_str()).copied(),
                 rect: placement.footprint().bounds(),
                 blocks: stops_robot(placement) && !is_shallow(placement),
             });

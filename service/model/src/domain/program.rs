@@ -18,9 +18,25 @@ pub struct Program {
     pub default_rooms: u32,
     /// Entries, most important first.
     pub rooms: Vec<ProgramRoom>,
+    /// What large buildings are made of; without it they have more of the same.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub units: Option<Units>,
     /// Where the program comes from.
     #[serde(default)]
     pub source: String,
+}
+
+/// The units of a large building: wards of a hospital, departments of an office, each with what it needs at hand.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Units {
+    /// Rooms of a building from which on it is made of units.
+    pub from_rooms: u32,
+    /// Rooms of a unit, about.
+    pub rooms: u32,
+    /// Ids of the programs of the second unit and of those after it, again from the first when there are more; the first unit
+    /// has the program that these belong to.
+    pub programs: Vec<String>,
 }
 
 /// One line of a program.

@@ -136,6 +136,7 @@ fn described(graph: &SceneGraph, domain: &Domain, kind: &RoomType, area_m2: Opti
         requested: true,
         entrance: false,
         level: Default::default(),
+        unit: None,
         locked: false,
     }
 }

@@ -35,9 +35,14 @@ const NEIGHBORS: f64 = 8.0;
 /// Changes tried per cluster while dealing out.
 const CHANGES: usize = 60;
 
+/// Most rooms of a unit that has one wing.
+const WHOLE_UNIT: usize = 28;
+
 /// Rooms that must adjoin each other, directly or in a chain.
 struct Cluster {
     rooms: Vec<usize>,
+    /// Unit of the building that they belong to.
+    unit: Option<usize>,
     /// Corridor wall that they take, m: what fills a wing is fronts, not areas.
     front: f64,
 }
@@ -67,7 +72,7 @@ pub(super) fn compose(brief: &Brief, weights: &Weights, rng: &mut Stream, stop: 
         let count = given.map_or(count, |c| c.slots.len());
         let mut wings: Vec<Wing> = Vec::new();
         let mut stack = given.map(|c| (c, Yard::new(brief, c.first)));
-        for rooms in &partition(brief, count, rng) {
+        for rooms in &partition(brief, count, given.is_some(), rng) {
             let below = stack.as_ref().and_then(|(c, yard)| below_wing(brief, c, wings.len(), yard));
             let Some(found) = wing(brief, rooms, weights, below.as_ref(), rng, stop) else { continue };
             // one wing that cannot be built spoils the deal; the last deal is kept to say by how much
@@ -223,19 +228,29 @@ fn along_spine(brief: &Brief, spine: usize, wings: Vec<Wing>, two_sided: bool, r
 }
 
 /// Deals the rooms out to wings: what must adjoin stays together, what should be near does where it can, the wings are
-/// of one size, and public rooms come first, where the entrance is.
-fn partition(brief: &Brief, count: usize, rng: &mut Stream) -> Vec<Vec<usize>> {
+/// of one size, and public rooms come first, where the entrance is. The units of a building have wings of their own, unless
+/// their number is `given`.
+fn partition(brief: &Brief, count: usize, given: bool, rng: &mut Stream) -> Vec<Vec<usize>> {
     let mut clusters = clusters(brief);
     rng.shuffle(&mut clusters);
-    clusters.sort_by_cached_key(|c| rank(brief, c, rng));
-    let total: f64 = clusters.iter().map(|c| c.front).sum();
-    let mean = total / count as f64;
+    clusters.sort_by_cached_key(|c| (c.unit, rank(brief, c, rng)));
+    let units = || clusters.chunk_by(|a, b| given || a.unit == b.unit);
+    let whole = units().count() == 1;
     let mut wing_of: Vec<usize> = Vec::with_capacity(clusters.len());
-    let mut before = 0.0;
-    for cluster in &clusters {
-        wing_of.push((((before + cluster.front / 2.0) / mean) as usize).min(count - 1));
-        before += cluster.front;
+    let mut wings_before = 0;
+    for unit in units() {
+        let rooms: usize = unit.iter().map(|c| c.rooms.len()).sum();
+        let count = if whole { count } else { rooms.div_ceil(WHOLE_UNIT) };
+        let mean = unit.iter().map(|c| c.front).sum::<f64>() / count as f64;
+        let mut before = 0.0;
+        for cluster in unit {
+            wing_of.push(wings_before + (((before + cluster.front / 2.0) / mean) as usize).min(count - 1));
+            before += cluster.front;
+        }
+        wings_before += count;
     }
+    let count = wings_before;
+    let mean = clusters.iter().map(|c| c.front).sum::<f64>() / count as f64;
     improve(brief, &clusters, &mut wing_of, (count, mean), rng);
     let mut wings = vec![Vec::new(); count];
     for (cluster, wing) in clusters.iter().zip(wing_of) {
@@ -258,6 +273,8 @@ fn improve(brief: &Brief, clusters: &[Cluster], wing_of: &mut [usize], (count, m
             wishes[b].push(a);
         }
     }
+    let mut home = vec![None; count];
+    clusters.iter().zip(&*wing_of).for_each(|(c, &w)| home[w] = c.unit);
     let mut load = vec![0.0; count];
     clusters.iter().zip(&*wing_of).for_each(|(c, &w)| load[w] += c.front);
     let uneven = |load: f64| 6.0 * (load / mean - 1.0).powi(2);
@@ -270,7 +287,8 @@ fn improve(brief: &Brief, clusters: &[Cluster], wing_of: &mut [usize], (count, m
         // A near neighbor in rank is exchanged, or the cluster moves alone.
         let swap = Some((c + 1 + rng.below(6)) % clusters.len()).filter(|&d| d != c && rng.chance(0.5));
         let to = swap.map_or(to, |d| wing_of[d]);
-        if to == from {
+        let apart = |d: usize| clusters[d].unit != clusters[c].unit;
+        if to == from || swap.is_some_and(apart) || swap.is_none() && home[to] != clusters[c].unit {
             continue;
         }
         let cut = |wing_of: &[usize]| -> f64 {
@@ -320,7 +338,9 @@ fn clusters(brief: &Brief) -> Vec<Cluster> {
         members[root(&mut leader, room)].push(room);
     }
     let front = |rooms: &[usize]| rooms.iter().map(|&r| 0.8 + brief.rooms[r].area_target / USUAL_DEPTH_M).sum();
-    members.into_iter().filter(|m| !m.is_empty()).map(|rooms| Cluster { front: front(&rooms), rooms }).collect()
+    let unit = |rooms: &[usize]| rooms.iter().find_map(|&r| brief.rooms[r].unit);
+    let used = members.into_iter().filter(|m| !m.is_empty());
+    used.map(|rooms| Cluster { front: front(&rooms), unit: unit(&rooms), rooms }).collect()
 }
 
 /// Returns where a cluster belongs along the way from the entrance; service rooms belong everywhere.

@@ -69,6 +69,8 @@ pub(super) struct RoomSpec {
     pub fixed: bool,
     /// True for elevators: their doors slide and they have no windows.
     pub elevator: bool,
+    /// Unit of a large building that it belongs to, counted from 0.
+    pub unit: Option<usize>,
 }
 
 impl RoomSpec {
@@ -144,8 +146,18 @@ impl Brief {
         let mut rooms: Vec<RoomSpec> =
             graph.rooms.iter().map(|r| room_spec(r, graph, domain, limits, &mut conflicts)).collect();
         let spine = spine_of(graph, domain, &index);
+        let mut units: Vec<&str> = Vec::new();
         for (spec, room) in rooms.iter_mut().zip(&graph.rooms) {
             spec.host = host_of(room, graph, domain, spine);
+            let Some(unit) = room.unit.as_deref() else { continue };
+            if !units.contains(&unit) {
+                units.push(unit);
+            }
+            spec.unit = units.iter().position(|u| *u == unit);
+        }
+        // what belongs to no unit is by the entrance
+        if !units.is_empty() {
+            rooms.iter_mut().for_each(|spec| spec.unit = spec.unit.or(Some(0)));
         }
         let hard_width = max_limit(domain.circulation.width_m, limits.corridor_width.as_ref());
         let advised_width = limits.corridor_width_advised.unwrap_or(0.0).min(MOST_ADVISED_WIDTH * hard_width);
@@ -402,6 +414,7 @@ fn room_spec(
         host: None,
         fixed: false,
         elevator: graph.links.iter().any(|l| l.kind == LinkKind::Elevator && l.room_ids.contains(&room.id)),
+        unit: None,
     }
 }
 

@@ -37,6 +37,7 @@ fn room(id: &str, area: [f64; 3], min_dimension: f64, daylight: Daylight, zone: 
         host: None,
         fixed: false,
         elevator: false,
+        unit: None,
         limits: d3dgen_knowledge::RoomLimits::default(),
     }
 }

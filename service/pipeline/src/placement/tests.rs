@@ -113,6 +113,7 @@ impl<'s> Site<'s> {
             requested: true,
             entrance: false,
             locked: false,
+            unit: None,
             level: 0,
         };
         let graph = SceneGraph {

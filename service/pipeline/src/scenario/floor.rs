@@ -1,5 +1,7 @@
 //! The free floor of a furnished building, and spots on it.
 
+use std::collections::BTreeMap;
+
 use d3dgen_knowledge::clearance::quarter;
 use d3dgen_model::domain::{Domain, ObjectType, RobotUse, RoomType, Shape};
 use d3dgen_model::floorplan::{Door, DoorKind, Floorplan, PlanRoom};
@@ -52,6 +54,11 @@ impl<'a> Floor<'a> {
         let main = occupancy.reach(plan, radius).main;
         // grids that begin elsewhere see gaps a cell narrower
         let surely = occupancy.clear(radius + CELL_M).components().into_iter().next();
+        let mut by_room: BTreeMap<&str, Vec<&Placement>> = BTreeMap::new();
+        for p in &placements.placements {
+            by_room.entry(&p.room_id).or_default().push(p);
+        }
+        let kinds = domain.objects_by_id();
         let mut painted = Bitmap::new(occupancy.frame.nx, occupancy.frame.ny);
         let mut room = |room: &'a PlanRoom| {
             let (i0, i1, j0, j1) = occupancy.frame.span(&room.net_polygon.bounds());
@@ -71,8 +78,8 @@ impl<'a> Floor<'a> {
                 let (a0, a1, b0, b1) = occupancy.frame.span(&swing);
                 floor.fill(a0 - i0.max(0), a1 - i0.max(0), b0 - j0.max(0), b1 - j0.max(0), false);
             }
-            let here = || placements.placements.iter().filter(|p| p.room_id == room.room_id);
-            let objects: Vec<_> = here().filter_map(|p| Some((p, domain.object(&p.object)?))).collect();
+            let here = by_room.get(room.room_id.as_str()).into_iter().flatten();
+            let objects: Vec<_> = here.filter_map(|p| Some((*p, *kinds.get(p.object.as_str())?))).collect();
             for (chair, _) in objects.iter().filter(|(_, o)| matches!(o.shape, Shape::Chair | Shape::SwivelChair)) {
                 let back = floor_beside(chair, quarter(chair.pose.yaw_rad) + 2, CHAIR_BACK_M, 0.0);
                 let (a0, a1, b0, b1) = occupancy.frame.span(&back);

@@ -14,6 +14,8 @@ const GAP_M: f64 = 0.10;
 const NOT_IN_FRONT_M: f64 = 0.3;
 /// Most waiting bays.
 const MOST_BAYS: u32 = 4;
+/// Spots of a room that are looked at for a waiting bay, about.
+const MOST_BAY_SPOTS: usize = 2000;
 /// Least distance of a waiting bay from a door, m.
 const BAY_FROM_DOOR_M: f64 = 1.0;
 /// Builds of objects at which a robot serves, the telling ones first.
@@ -108,8 +110,8 @@ fn bays(floor: &Floor, graph: &SceneGraph) -> Vec<Poi> {
     let Some(room) = room.or_else(|| floor.rooms.iter().find(|r| entered(&r.plan.room_id))) else { return Vec::new() };
     let doors: Vec<Point> = floor.plan.doors_of(&room.plan.room_id).map(|d| d.line.middle()).collect();
     let mut taken: Vec<Point> = Vec::new();
-    // every tenth spot: the best of many is as good as the best of all
-    let spots = floor.every(room, 10);
+    // the best of many is as good as the best of all
+    let spots = floor.every(room, (floor.spots(room) / MOST_BAY_SPOTS).max(10));
     for _ in 0..robots.clamp(1, MOST_BAYS) {
         let apart = |p: &Point| {
             let others = taken.iter().all(|t| t.distance(*p) >= 2.0 * floor.radius + GAP_M);

@@ -22,8 +22,10 @@ const MOST_SCALE: f64 = 1.3;
 const TWO_STAIRS: usize = 16;
 
 /// Rooms that stay together, with the storey they must or would be on.
-struct Cluster {
+struct Cluster<'p> {
     rooms: Vec<usize>,
+    /// Unit of a large building that they belong to.
+    unit: Option<&'p str>,
     area: f64,
     fixed: Option<i32>,
     likes: Likes,
@@ -69,6 +71,12 @@ pub(super) fn deal(reading: &mut Reading, planned: &[Planned], areas: &[f64], le
     let open = |at: &[Option<i32>], likes: Likes, clusters: &[Cluster]| -> Vec<usize> {
         (0..clusters.len()).filter(|&i| at[i].is_none() && clusters[i].likes == likes).collect()
     };
+    for (rooms, area) in units(&clusters, &at) {
+        let fits = |l: &&i32| load(&at, &clusters, **l) + 0.5 * area <= mean;
+        let level = above.iter().find(fits).copied();
+        let level = level.unwrap_or_else(|| least_loaded(&above, |l| load(&at, &clusters, l)));
+        rooms.iter().for_each(|&i| at[i] = Some(level));
+    }
     for i in open(&at, Likes::Ground, &clusters) {
         let full = load(&at, &clusters, 0) + 0.5 * clusters[i].area > FULL * mean;
         let next = above.get(1).copied().unwrap_or(0);
@@ -107,6 +115,22 @@ pub(super) fn deal(reading: &mut Reading, planned: &[Planned], areas: &[f64], le
         cluster.rooms.iter().for_each(|&r| out[r] = level.unwrap_or(0));
     }
     out
+}
+
+/// Returns the clusters of each unit that are still free, and their area, in the order of the units.
+fn units(clusters: &[Cluster], at: &[Option<i32>]) -> Vec<(Vec<usize>, f64)> {
+    let mut out: Vec<(&str, Vec<usize>, f64)> = Vec::new();
+    for (i, cluster) in clusters.iter().enumerate().filter(|(i, _)| at[*i].is_none()) {
+        let Some(unit) = cluster.unit else { continue };
+        match out.iter_mut().find(|u| u.0 == unit) {
+            Some(known) => {
+                known.1.push(i);
+                known.2 += cluster.area;
+            }
+            None => out.push((unit, vec![i], cluster.area)),
+        }
+    }
+    out.into_iter().map(|(_, rooms, area)| (rooms, area)).collect()
 }
 
 fn least_loaded(levels: &[i32], load: impl Fn(i32) -> f64) -> i32 {
@@ -210,13 +234,13 @@ fn fixed_levels(reading: &mut Reading, planned: &[Planned], levels: &[i32]) -> V
 }
 
 /// Returns the rooms in clusters: what hangs on a room, and what the prompt wants beside it, stays with it.
-fn clusters(
+fn clusters<'p>(
     reading: &Reading,
     rules: &Rules,
-    planned: &[Planned],
+    planned: &'p [Planned],
     areas: &[f64],
     fixed: &[Option<i32>],
-) -> Vec<Cluster> {
+) -> Vec<Cluster<'p>> {
     let mut leader: Vec<usize> = (0..planned.len()).collect();
     fn root(leader: &[usize], mut i: usize) -> usize {
         while leader[i] != i {
@@ -266,7 +290,8 @@ fn clusters(
         };
         let area = rooms.iter().map(|&r| areas[r]).sum();
         let fixed = rooms.iter().find_map(|&r| fixed[r]);
-        out.push(Cluster { rooms, area, fixed, likes });
+        let unit = planned[main].unit.as_deref();
+        out.push(Cluster { rooms, unit, area, fixed, likes });
     }
     out
 }

@@ -140,7 +140,7 @@ impl Web {
                 reading.conflicts.push(note("forbidden_adjacency", message));
                 continue;
             }
-            let pairs = spread(&from, &to, pair.spread);
+            let pairs = spread(rooms, &from, &to, pair.spread);
             let crowded = |i: usize| pairs.iter().filter(|p| p.0 == i || p.1 == i).count() > MOST_WALLS;
             let many = pairs.iter().any(|p| crowded(p.0) || crowded(p.1));
             for (i, j) in pairs.iter().copied() {
@@ -160,7 +160,7 @@ impl Web {
         }
         for [a, b] in &reading.domain.layouts.open_joins {
             let of = |kind: &str| -> Vec<usize> { (0..rooms.len()).filter(|&i| rooms[i].room_type == kind).collect() };
-            for (i, j) in spread(&of(a), &of(b), Spread::Each) {
+            for (i, j) in spread(rooms, &of(a), &of(b), Spread::Each) {
                 if !self.has_apart(&rooms[i].id, &rooms[j].id) {
                     self.put(rooms, (i, j), Connector::Open, true, BY_STYLE);
                 }
@@ -189,7 +189,7 @@ impl Web {
                 Connector::Open if reading.style.layout == Some(LayoutStyle::Cellular) => Connector::Door,
                 usual => usual,
             };
-            for (i, j) in spread(&from, &to, Spread::Each) {
+            for (i, j) in spread(rooms, &from, &to, Spread::Each) {
                 let joined = |e: &GraphEdge| {
                     let walk = matches!(e.connector, Connector::Door | Connector::Open);
                     let other = if e.a == rooms[i].id { &e.b } else { &e.a };
@@ -217,24 +217,32 @@ fn connector(via: &str) -> Connector {
     }
 }
 
-/// Returns the pairs of rooms that a pair of room types stands for.
-fn spread(from: &[usize], to: &[usize], how: Spread) -> Vec<(usize, usize)> {
+/// Returns the pairs of rooms that a pair of room types stands for, those of one unit with each other where they can.
+fn spread(rooms: &[GraphRoom], from: &[usize], to: &[usize], how: Spread) -> Vec<(usize, usize)> {
     if from.is_empty() || to.is_empty() {
         return Vec::new();
     }
     let mut out: Vec<(usize, usize)> = match how {
         Spread::All => from.iter().flat_map(|&i| to.iter().map(move |&j| (i, j))).collect(),
         Spread::Between => from.iter().flat_map(|&i| to.iter().take(2).map(move |&j| (i, j))).collect(),
-        // every room of the first with one of the second, evenly spread
-        Spread::Each => {
-            from.iter().enumerate().map(|(k, &i)| (i, to[k * to.len().min(from.len()) / from.len()])).collect()
-        }
+        Spread::Each => each_with_one(rooms, from, to),
     };
     // rooms of one type beside each other: a chain
     if from == to {
         out = from.windows(2).map(|w| (w[0], w[1])).collect();
     }
     out.retain(|(i, j)| i != j);
+    out
+}
+
+/// Returns every room of the first with one of the second, evenly spread over those of its unit.
+fn each_with_one(rooms: &[GraphRoom], from: &[usize], to: &[usize]) -> Vec<(usize, usize)> {
+    let mut out = Vec::with_capacity(from.len());
+    for part in from.chunk_by(|&a, &b| rooms[a].unit == rooms[b].unit) {
+        let near: Vec<usize> = to.iter().copied().filter(|&j| rooms[j].unit == rooms[part[0]].unit).collect();
+        let to = if near.is_empty() { to } else { &near };
+        out.extend(part.iter().enumerate().map(|(k, &i)| (i, to[k * to.len().min(part.len()) / part.len()])));
+    }
     out
 }
 

@@ -233,6 +233,7 @@ pub fn of_plan(plan: &Floorplan, brought: &Brought, registry: &Registry) -> Resu
                 entrance: entrance == Some(&room.room_id),
                 locked: true,
                 level: room.level,
+                unit: None,
             }
         })
         .collect();

@@ -57,7 +57,7 @@ fn make<'a>(reading: &mut Reading<'a>, swap: &LayoutSwap, kind: &'a RoomType, ro
             continue;
         }
         for _ in 0..each {
-            let mut new = Planned::new(&kind.id, kind);
+            let mut new = Planned { unit: room.unit.clone(), ..Planned::new(&kind.id, kind) };
             if let Some((left, (_, most))) = left.as_mut().zip(people) {
                 new.occupants = Some((*left).min(most)).filter(|n| *n > 0);
                 *left -= (*left).min(most);

@@ -26,6 +26,7 @@ mod rooms;
 mod storeys;
 mod styles;
 mod text;
+mod units;
 mod unknown;
 mod wishes;
 mod words;

@@ -3,11 +3,12 @@
 use std::collections::BTreeMap;
 
 use d3dgen_knowledge::Applicable;
-use d3dgen_model::domain::{Access, Occupants, ProgramRoom, RoomType, Shape, Zone};
+use d3dgen_model::domain::{Access, Occupants, Program, ProgramRoom, RoomType, Shape, Zone};
 
 use super::layout;
 use super::places::note;
 use super::reading::{MAX_ROOMS, Reading};
+use super::units;
 use super::wishes::{CHARGING, Pair, Wish};
 use super::words::words;
 
@@ -45,6 +46,8 @@ pub(super) struct Planned<'a> {
     pub host: Option<usize>,
     /// People, beds or desks it is to hold.
     pub occupants: Option<u32>,
+    /// Unit of a large building that it belongs to.
+    pub unit: Option<String>,
 }
 
 impl<'a> Planned<'a> {
@@ -60,20 +63,21 @@ impl<'a> Planned<'a> {
             requested: false,
             host: None,
             occupants: None,
+            unit: None,
         }
     }
 }
 
 /// Returns the rooms of the building, circulation aside.
 pub(super) fn complete<'a>(reading: &mut Reading<'a>) -> Vec<Planned<'a>> {
-    let mut build = Build::new(reading);
+    let mut build = Build::new(reading, reading.program);
     build.take_wishes();
     match (reading.total, reading.closed) {
         (None, true) => {}
         (Some(total), _) => build.fill_to(total as usize),
         (None, false) => build.fill_usual(),
     }
-    let mut rooms = build.rooms;
+    let mut rooms = units::divide(reading, build.rooms);
     layout::follow(reading, &mut rooms);
     finish(reading, rooms)
 }
@@ -89,7 +93,22 @@ pub(super) fn finish<'a>(reading: &mut Reading<'a>, mut rooms: Vec<Planned<'a>>)
 
 /// Returns true when rooms of a type may be added to those that the prompt names.
 pub(super) fn may_grow(reading: &Reading, room_type: &str) -> bool {
-    Build::new(reading).may_grow(room_type)
+    Build::new(reading, reading.program).may_grow(room_type)
+}
+
+/// Returns the rooms of a unit: those it has already, and what its program adds up to a total, or as usual.
+pub(super) fn fill_unit<'a>(
+    reading: &Reading<'a>,
+    program: &'a Program,
+    rooms: Vec<Planned<'a>>,
+    total: Option<usize>,
+) -> Vec<Planned<'a>> {
+    let mut build = Build { rooms, ..Build::new(reading, program) };
+    match total {
+        Some(total) => build.fill_to(total),
+        None => build.spend_wishes(MAX_ROOMS as usize, program.default_rooms as usize),
+    }
+    build.rooms
 }
 
 /// Returns true when a head count of the prompt says how many rooms of a type there are.
@@ -149,16 +168,17 @@ pub(super) fn follow_rules<'a>(
 
 struct Build<'r, 'a> {
     reading: &'r Reading<'a>,
+    program: &'a Program,
     rooms: Vec<Planned<'a>>,
     /// Zones for sleeping in which the prompt fixes the rooms.
     sleeping_is_fixed: bool,
 }
 
 impl<'r, 'a> Build<'r, 'a> {
-    fn new(reading: &'r Reading<'a>) -> Self {
+    fn new(reading: &'r Reading<'a>, program: &'a Program) -> Self {
         let zone = |w: &Wish| reading.domain.room_type(&w.room_type).map(|t| t.zone);
         let sleeping_is_fixed = reading.wishes.wishes.iter().any(|w| w.exact && zone(w) == Some(Zone::Night));
-        Self { reading, rooms: Vec::new(), sleeping_is_fixed }
+        Self { reading, program, rooms: Vec::new(), sleeping_is_fixed }
     }
 
     fn take_wishes(&mut self) {
@@ -247,7 +267,7 @@ impl<'r, 'a> Build<'r, 'a> {
 
     /// Returns the program in the order in which this building needs it.
     fn entries(&self) -> Vec<&'a ProgramRoom> {
-        let all = &self.reading.program.rooms;
+        let all = &self.program.rooms;
         let sooner = |e: &ProgramRoom| e.accessible_after.filter(|_| self.reading.accessible);
         let mut out: Vec<&ProgramRoom> = all.iter().filter(|e| sooner(e).is_none()).collect();
         for entry in all {
@@ -281,14 +301,14 @@ impl<'r, 'a> Build<'r, 'a> {
         // a program shorter than the count goes on with what it has
         while self.rooms.len() < total {
             let before = self.rooms.len();
-            for entry in &self.reading.program.rooms {
+            for entry in &self.program.rooms {
                 if entry.max > 1 {
                     self.add(entry, total);
                 }
             }
             if self.rooms.len() == before {
                 let growing = self.reading.wishes.wishes.iter().find(|w| !w.exact).map(|w| w.room_type.clone());
-                let kind = growing.unwrap_or_else(|| self.reading.program.rooms[0].room_type.clone());
+                let kind = growing.unwrap_or_else(|| self.program.rooms[0].room_type.clone());
                 self.push(&kind, None);
             }
         }
@@ -323,7 +343,7 @@ impl<'r, 'a> Build<'r, 'a> {
 
     /// Fills with the rooms such a building usually has, as many as the area and the people ask for.
     fn fill_usual(&mut self) {
-        let program = self.reading.program;
+        let program = self.program;
         let most = MAX_ROOMS as usize;
         self.spend_wishes(most, program.default_rooms as usize);
         self.fit_people(most);
@@ -334,7 +354,7 @@ impl<'r, 'a> Build<'r, 'a> {
 
     /// Adds rooms that a head count asks for.
     fn fit_people(&mut self, limit: usize) {
-        for entry in &self.reading.program.rooms {
+        for entry in &self.program.rooms {
             let present = self.count(&entry.room_type);
             let Some(people) = head_count(self.reading, entry.occupants).filter(|_| present > 0) else { continue };
             let kind = self.reading.domain.room_type_or_generic(&entry.room_type);
@@ -351,7 +371,7 @@ impl<'r, 'a> Build<'r, 'a> {
             let wanted = people.saturating_sub(1).max(1) as usize;
             let sleeping =
                 |e: &&ProgramRoom| self.reading.domain.room_type_or_generic(&e.room_type).zone == Zone::Night;
-            if let Some(entry) = self.reading.program.rooms.iter().find(sleeping) {
+            if let Some(entry) = self.program.rooms.iter().find(sleeping) {
                 for _ in self.count(&entry.room_type)..wanted {
                     self.add(entry, limit);
                 }
@@ -457,7 +477,10 @@ fn hang_on_hosts(reading: &mut Reading, rooms: &mut [Planned]) {
         let candidates = |test: &dyn Fn(&Planned) -> bool| {
             (0..rooms.len())
                 .filter(|&h| h != i && test(&rooms[h]) && rooms[h].host != Some(i))
-                .min_by_key(|&h| (guests(h, rooms), rank(&rooms[h]), usize::from(rooms[h].host.is_some()), h))
+                .min_by_key(|&h| {
+                    let elsewhere = rooms[h].unit != room.unit;
+                    (elsewhere, guests(h, rooms), rank(&rooms[h]), usize::from(rooms[h].host.is_some()), h)
+                })
         };
         let host = candidates(&fits).or_else(|| candidates(&by_type));
         // a room the prompt gives to one host only ("bedroom with its own bath and a second bath")

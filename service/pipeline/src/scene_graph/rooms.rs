@@ -53,6 +53,7 @@ pub(super) fn describe(reading: &mut Reading, planned: &[Planned]) -> Vec<GraphR
             entrance: false,
             locked: false,
             level: 0,
+            unit: room.unit.clone(),
         });
     }
     rooms
@@ -75,6 +76,7 @@ pub(super) fn circulation(reading: &Reading) -> GraphRoom {
         entrance: false,
         locked: false,
         level: 0,
+        unit: None,
     }
 }
 

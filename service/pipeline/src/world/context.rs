@@ -26,6 +26,8 @@ pub struct Context<'a> {
     pub retrieval: &'a Retrieval,
     pub rooms: Vec<Room<'a>>,
     pub objects: Vec<Object<'a>>,
+    /// Where a room is in `rooms`, and what stands in it in `objects`, by its id.
+    index: BTreeMap<&'a str, (usize, Vec<usize>)>,
     /// Radius of the disc that must find its way, m.
     pub radius: f64,
     occupancy: OnceCell<Occupancy>,
@@ -66,14 +68,25 @@ impl<'a> Context<'a> {
             net: room.net_polygon.rects(),
             doors: plan.doors_of(&room.room_id).collect(),
         };
+        let kinds = domain.objects_by_id();
         let object = |p: &'a Placement| Object {
             placement: p,
-            kind: domain.object(&p.object),
+            kind: kinds.get(p.object.as_str()).copied(),
             rect: p.footprint().bounds(),
             solid: p.size_m[2] > FLAT_M,
             blocks: stops_robot(p),
         };
+        let mut index: BTreeMap<&str, (usize, Vec<usize>)> = BTreeMap::new();
+        for (i, room) in plan.rooms.iter().enumerate() {
+            index.entry(&room.room_id).or_insert((i, Vec::new()));
+        }
+        for (i, p) in world.placements.placements.iter().enumerate() {
+            if let Some((_, here)) = index.get_mut(p.room_id.as_str()) {
+                here.push(i);
+            }
+        }
         Self {
+            index,
             rooms: plan.rooms.iter().map(room).collect(),
             objects: world.placements.placements.iter().map(object).collect(),
             radius: world.scene_graph.robots.iter().map(|r| r.radius_m).fold(LEAST_RADIUS_M, f64::max),
@@ -95,11 +108,11 @@ impl<'a> Context<'a> {
     }
 
     pub fn room(&self, id: &str) -> Option<&Room<'a>> {
-        self.rooms.iter().find(|r| r.plan.room_id == id)
+        self.index.get(id).map(|(at, _)| &self.rooms[*at])
     }
 
-    pub fn objects_in<'s>(&'s self, room_id: &'s str) -> impl Iterator<Item = &'s Object<'a>> + 's {
-        self.objects.iter().filter(move |o| o.placement.room_id == room_id)
+    pub fn objects_in<'s>(&'s self, room_id: &str) -> impl Iterator<Item = &'s Object<'a>> + 's {
+        self.index.get(room_id).into_iter().flat_map(|(_, here)| here).map(|i| &self.objects[*i])
     }
 
     /// Returns the free floor of the furnished building.

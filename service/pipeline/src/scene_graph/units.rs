@@ -1,0 +1,87 @@
+//! Large buildings are made of units (wards, departments), each with what it needs at hand, as programs of the domain say.
+
+use d3dgen_model::domain::{Program, Units};
+
+use super::places::note;
+use super::program::{Planned, fill_unit, is_counted};
+use super::reading::Reading;
+
+/// A unit to be.
+struct Unit<'a> {
+    program: &'a Program,
+    rooms: Vec<Planned<'a>>,
+}
+
+/// Returns the rooms dealt out to units where the building is large and its program knows units: those that the prompt names
+/// or counts stay, the rest is what each unit's own program has. The rooms of a unit follow each other.
+pub(super) fn divide<'a>(reading: &mut Reading<'a>, rooms: Vec<Planned<'a>>) -> Vec<Planned<'a>> {
+    let program = reading.program;
+    let large = |u: &&Units| !reading.closed && rooms.len() >= u.from_rooms as usize;
+    let Some(rules) = program.units.as_ref().filter(large) else { return rooms };
+    let count = (rooms.len() as f64 / f64::from(rules.rooms)).round().max(2.0) as usize;
+    let later = rules.programs.iter().filter_map(|id| reading.domain.program(id)).cycle();
+    let mut units: Vec<Unit> =
+        [program].into_iter().chain(later).take(count).map(|program| Unit { program, rooms: Vec::new() }).collect();
+    let fixed = fixed_rooms(reading, rooms);
+    let free = reading.total.map(|total| (total as usize).saturating_sub(fixed.len()));
+    spread(fixed, &mut units);
+    let totals = free.map(|free| level_up(free, &units));
+    let mut out = Vec::new();
+    let mut made: Vec<&str> = Vec::new();
+    for (k, unit) in units.into_iter().enumerate() {
+        made.push(&unit.program.id);
+        let id = format!("{}_{}", unit.program.id, made.iter().filter(|m| **m == unit.program.id).count());
+        let filled = fill_unit(reading, unit.program, unit.rooms, totals.as_ref().map(|t| t[k]));
+        out.extend(filled.into_iter().map(|room| Planned { unit: Some(id.clone()), ..room }));
+    }
+    let message = format!("the building was made of {} units: {}", made.len(), made.join(", ").replace('_', " "));
+    reading.assumptions.push(note("units", message));
+    out
+}
+
+/// Returns the rooms that the prompt names, those of which it counts the people, and what comes with these.
+fn fixed_rooms<'a>(reading: &Reading<'a>, rooms: Vec<Planned<'a>>) -> Vec<Planned<'a>> {
+    let comes_with = |room: &Planned| {
+        let mut counted = reading.program.rooms.iter().filter(|e| is_counted(reading, &e.room_type));
+        counted.any(|e| e.with.contains(&room.room_type))
+    };
+    let stays = |room: &Planned| room.requested || is_counted(reading, &room.room_type) || comes_with(room);
+    rooms.into_iter().filter(stays).collect()
+}
+
+/// Deals rooms out to the units whose programs have their type, so many to each; what none has goes to the first.
+fn spread<'a>(rooms: Vec<Planned<'a>>, units: &mut [Unit<'a>]) {
+    let knows = |unit: &Unit, kind: &str| {
+        unit.program.rooms.iter().any(|e| e.room_type == kind || e.with.iter().any(|w| w == kind))
+    };
+    let mut kinds: Vec<(String, Vec<Planned>)> = Vec::new();
+    for room in rooms {
+        match kinds.iter_mut().find(|k| k.0 == room.room_type) {
+            Some(known) => known.1.push(room),
+            None => kinds.push((room.room_type.clone(), vec![room])),
+        }
+    }
+    for (kind, rooms) in kinds {
+        let mut able: Vec<usize> = (0..units.len()).filter(|&u| knows(&units[u], &kind)).collect();
+        if able.is_empty() {
+            able.push(0);
+        }
+        let count = rooms.len();
+        for (k, room) in rooms.into_iter().enumerate() {
+            let at = if count < able.len() { k } else { k * able.len() / count };
+            units[able[at]].rooms.push(room);
+        }
+    }
+}
+
+/// Returns how many rooms each unit is to have so that all have about as many and `free` are added.
+fn level_up(free: usize, units: &[Unit]) -> Vec<usize> {
+    let mut totals: Vec<usize> = units.iter().map(|u| u.rooms.len()).collect();
+    for _ in 0..free {
+        let least = (0..totals.len()).min_by_key(|&u| totals[u]);
+        if let Some(least) = least {
+            totals[least] += 1;
+        }
+    }
+    totals
+}
