@@ -20,6 +20,9 @@ pub struct Style {
     /// Whether plans are alike on both sides of the axis of the entrance.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub symmetry: Option<Symmetry>,
+    /// What form the building has, seen from above.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub form: Option<Form>,
 }
 
 /// How many small everyday things stand on furniture.
@@ -64,6 +67,20 @@ pub enum Symmetry {
     Asymmetric,
 }
 
+/// What form a building has, seen from above.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Form {
+    /// A bar along one corridor.
+    Linear,
+    /// Two wings at a right angle.
+    LShaped,
+    /// Two parallel corridors around a core.
+    Racetrack,
+    /// Wings off a spine, with courtyards between.
+    Wings,
+}
+
 /// One word of style.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StyleWord {
@@ -75,6 +92,8 @@ pub enum StyleWord {
     Layout(LayoutStyle),
     /// Of `symmetry`.
     Symmetry(Symmetry),
+    /// Of `form`.
+    Form(Form),
 }
 
 impl Clutter {
@@ -94,13 +113,17 @@ impl Clutter {
 
 impl StyleWord {
     /// Every word that a flag or request may say, clutter aside.
-    pub const NAMES: [(&'static str, Self); 6] = [
+    pub const NAMES: [(&'static str, Self); 10] = [
         ("compact", Self::Space(SpaceStyle::Compact)),
         ("generous", Self::Space(SpaceStyle::Generous)),
         ("cellular", Self::Layout(LayoutStyle::Cellular)),
         ("open", Self::Layout(LayoutStyle::Open)),
         ("symmetric", Self::Symmetry(Symmetry::Symmetric)),
         ("asymmetric", Self::Symmetry(Symmetry::Asymmetric)),
+        ("linear", Self::Form(Form::Linear)),
+        ("l_shaped", Self::Form(Form::LShaped)),
+        ("racetrack", Self::Form(Form::Racetrack)),
+        ("wings", Self::Form(Form::Wings)),
     ];
 
     /// Returns its name as people say it: `compact`, `low clutter`.
@@ -130,6 +153,7 @@ impl Style {
             self.space.map(StyleWord::Space),
             self.layout.map(StyleWord::Layout),
             self.symmetry.map(StyleWord::Symmetry),
+            self.form.map(StyleWord::Form),
         ];
         own.into_iter().flatten().filter_map(|word| StyleWord::NAMES.iter().find(|n| n.1 == word).map(|n| n.0))
     }
@@ -148,6 +172,7 @@ impl Style {
             StyleWord::Space(v) => put(&mut self.space, v),
             StyleWord::Layout(v) => put(&mut self.layout, v),
             StyleWord::Symmetry(v) => put(&mut self.symmetry, v),
+            StyleWord::Form(v) => put(&mut self.form, v),
         }
     }
 
@@ -158,6 +183,7 @@ impl Style {
             space: self.space.or(other.space),
             layout: self.layout.or(other.layout),
             symmetry: self.symmetry.or(other.symmetry),
+            form: self.form.or(other.form),
         }
     }
 

@@ -6,7 +6,7 @@
 //! storeys are turned and moved so that their cores coincide, so a storey is planned without knowing where it will stand.
 
 use d3dgen_model::domain::{Domain, Stairs};
-use d3dgen_model::scene_graph::SceneGraph;
+use d3dgen_model::scene_graph::{Robot, SceneGraph};
 use d3dgen_model::storeys::LinkKind;
 
 use super::lattice::{Cellbox, Frame, INNER_HALF_M, OUTER_HALF_M, up};
@@ -95,12 +95,28 @@ impl Core {
         if let Some(far) = far {
             set_area(brief, far, Cellbox::new(0, 0, width, depth));
         }
+        if graph.robots.iter().any(Robot::is_fitted) {
+            two_leaves(brief, &stairs, storeys.stairs.landing_m);
+        }
         Some(Self { host, boxes, width: along, depth, far: far.map(|f| (f, width)), below: None })
     }
 
     /// Returns true for rooms that stand where the core puts them.
     pub(super) fn has(&self, room: usize, spine: Option<usize>) -> bool {
         Some(room) != spine && (self.far.is_some_and(|f| f.0 == room) || self.boxes.iter().any(|b| b.0 == room))
+    }
+}
+
+/// Doors of this clear width have two leaves, m.
+const TWO_LEAVES_M: f64 = 1.25;
+
+/// Where doors are as wide as robots need, one leaf would sweep beyond the landing of the stairs: those have two.
+fn two_leaves(brief: &mut Brief, stairs: &[usize], landing_m: f64) {
+    for &room in stairs {
+        let width = &mut brief.rooms[room].door_width;
+        if Brief::opening(*width) > landing_m {
+            *width = width.max(TWO_LEAVES_M);
+        }
     }
 }
 

@@ -21,7 +21,7 @@ const DARK: f64 = 1.8;
 /// Share by which circulation beyond what is advised counts as larger.
 const ILL_SHARED: f64 = 0.05;
 /// Number of soft terms.
-const COUNT: usize = 10;
+const COUNT: usize = 12;
 /// A weight for each soft term.
 pub(super) type Weights = [f64; COUNT];
 
@@ -37,9 +37,11 @@ pub(super) const TERMS: [&str; COUNT] = [
     "zoning",
     "narrow_parts",
     "latch_side",
+    "wall_length",
+    "robot_route",
 ];
 /// Standard weights of the soft terms; each plan's search varies them by its taste.
-pub(super) const WEIGHTS: Weights = [1.0, 0.6, 1.2, 0.5, 10.0, 0.5, 0.8, 0.5, 0.4, 0.8];
+pub(super) const WEIGHTS: Weights = [1.0, 0.6, 1.2, 0.5, 10.0, 0.5, 0.8, 0.5, 0.4, 0.8, 0.3, 0.3];
 /// Least outer wall of a room that needs a window, m.
 pub(super) const WINDOW_WALL_M: f64 = 1.2;
 
@@ -50,6 +52,13 @@ const LATCH_SIDE_M: f64 = 0.457 - JAMB_M;
 const WRONG_SIZES: f64 = 1.5;
 /// What it costs that two rooms which the domain advises against putting wall to wall share one.
 const TOUCHING: f64 = 0.35;
+
+/// Length over width from which on a room looks like a slot, and what that costs beside its proportion.
+const SLOT_FROM: f64 = 1.9;
+const SLOT: f64 = 1.5;
+/// Share of a bedroom beside a small room that was cut out of it from which on that is a waste, and what more of it costs.
+const LEG_SHARE: f64 = 0.2;
+const WASTED_LEG: f64 = 6.0;
 
 /// A step in the outline shorter than this has no reason, m, and what it costs.
 const STEP_M: f64 = 0.9;
@@ -383,7 +392,7 @@ impl<'b> Judge<'b> {
                 let (w, h) = room.largest;
                 let proportion = w.max(h) / w.min(h).max(0.1);
                 score.hard += (proportion - PROPORTION_LIMIT).max(0.0);
-                score.soft[1] += (proportion - 1.5).max(0.0).powi(2);
+                score.soft[1] += (proportion - 1.5).max(0.0).powi(2) + SLOT * (proportion - SLOT_FROM).max(0.0);
             }
             if i != self.spine {
                 score.hard += meters((self.spine_need[i] - room.spine).max(0));
@@ -452,6 +461,9 @@ impl<'b> Judge<'b> {
         let perimeter: f64 = rooms.iter().map(|r| meters(r.outer.1)).sum();
         score.soft[6] += perimeter / (4.0 * total.sqrt()) - 1.0 + 0.02 * layout.notch;
         score.soft[6] += STEP * self.survey.steps as f64;
+        let home = brief.is_home();
+        // where robots come from
+        let base = brief.rooms.iter().position(|r| r.docks).and_then(|i| rooms[i].main);
         // one comes up the stairs
         let stairs = brief.core.as_ref().map(|c| c.host);
         let entrance = brief.rooms.iter().position(|r| r.entrance).or(stairs).and_then(|i| rooms[i].main);
@@ -460,15 +472,28 @@ impl<'b> Judge<'b> {
             score.symmetry = mirror::cost(wish, &boxes, door);
         }
         let size = total.sqrt().max(1.0);
+        let (mut round, mut visited) = (0.0, 0);
         for (spec, room) in brief.rooms.iter().zip(rooms) {
             let (Some(main), Some(door)) = (room.main, entrance) else { continue };
             score.soft[7] += ill_placed(spec.zone, distance(main, door) / size);
+            if spec.on_spine {
+                round += distance(main, base.unwrap_or(door)) / size;
+                visited += 1;
+            }
         }
+        score.soft[11] += round / f64::from(visited.max(1));
+        // walls: outer ones once, inner ones by half for each of the two rooms, against a square cut into squares
+        let walls: f64 = self.survey.side.iter().zip(&layout.boxes).map(|(side, (_, b))| wall_length(side, b)).sum();
+        score.soft[10] += walls / (2.0 * size * ((rooms.len() as f64).sqrt() + 1.0)) - 0.5;
         for (room, shape) in &layout.boxes {
             if Some(*room) != brief.spine && rooms[*room].main != Some(*shape) {
                 // A leg beside a small room: fine as a lobby, a waste as a corridor.
                 let (w, h) = (meters(shape.width()), meters(shape.height()));
                 score.soft[8] += (w.max(h) / w.min(h).max(0.1) - 1.6).max(0.0) + 0.15;
+                if home && brief.rooms[*room].zone == Zone::Night {
+                    let share = shape.area_m2() / rooms[*room].gross_m2.max(1.0);
+                    score.soft[8] += WASTED_LEG * (share - LEG_SHARE).max(0.0);
+                }
             }
         }
     }
@@ -490,6 +515,15 @@ impl<'b> Judge<'b> {
         let larger = [Some(bedroom), hall].into_iter().flatten().filter(|room| room.net_m2 > living.net_m2);
         larger.map(|room| WRONG_SIZES + 2.0 * (room.net_m2 / living.net_m2.max(1.0) - 1.0)).sum()
     }
+}
+
+/// Returns the wall of a box that counts as its own, m.
+fn wall_length(side: &[[i32; 2]; 4], shape: &Cellbox) -> f64 {
+    let of = |(s, [shared, own]): (usize, &[i32; 2])| {
+        let len = if s < 2 { shape.height() } else { shape.width() };
+        meters(len - shared) + 0.5 * meters(shared - own)
+    };
+    side.iter().enumerate().map(of).sum()
 }
 
 /// Returns what a room of a zone loses by its distance from the entrance, in sides of the building.

@@ -33,6 +33,10 @@ const ENTRANCE_ASIDE_M: f64 = 0.4;
 /// Floor behind a door into which a bed is pushed straight ahead, m, and how much wider the door is where it has to turn.
 const BED_AHEAD_M: f64 = 2.3;
 const BED_ASIDE_M: f64 = 0.15;
+/// Way from an end of a corridor to the next exit from which on it has an exit of its own, m, and how much longer than the
+/// corridor is wide its end wall may be.
+const BETWEEN_EXITS_M: f64 = 18.0;
+const END_WALL: f64 = 1.8;
 /// Floor kept free in front of a door, m.
 const APPROACH_M: f64 = 0.6;
 /// What it costs that the doors of a bathroom and of a room where one sits or eats face each other, how far apart they may
@@ -111,6 +115,7 @@ fn lay(site: &Site<'_>, entrance_first: bool, rng: &mut Stream) -> Laid {
     site.lay_entrances(before, &mut laid);
     site.lay_inner(&mut laid, rng);
     site.lay_entrances(after, &mut laid);
+    site.lay_exits(&mut laid);
     laid.settle();
     laid
 }
@@ -213,6 +218,27 @@ impl Site<'_> {
             if !laid.take_best(spots) && main {
                 laid.missing.push(format!("outdoors to {}", self.brief.rooms[room].id));
             }
+        }
+    }
+
+    /// Places exits at the ends of corridors that are far from all others: nobody should have to run back through a wing.
+    fn lay_exits(&self, laid: &mut Laid) {
+        let Some(spine) = self.brief.spine.filter(|_| self.brief.second_exit && !self.brief.upper && !self.brief.hub) else {
+            return;
+        };
+        let is_end = |s: &&Stretch| s.only_room() == Some(spine) && meters(s.len()) <= END_WALL * self.brief.spine_width;
+        let middle = |s: &Stretch| s.point((meters(s.from) + meters(s.to)) / 2.0);
+        let mut ends: Vec<&Stretch> = self.stretches.iter().filter(is_end).collect();
+        for _ in 0..ends.len() {
+            let exits: Vec<Point> =
+                laid.spots.iter().filter(|l| l.door.room_ids.len() == 1).map(|l| l.door.line.middle()).collect();
+            let far = |s: &Stretch| exits.iter().map(|e| e.distance(middle(s))).fold(f64::MAX, f64::min);
+            let Some(at) = (0..ends.len()).max_by(|&a, &b| far(ends[a]).total_cmp(&far(ends[b]))) else { return };
+            if far(ends[at]) < BETWEEN_EXITS_M {
+                return;
+            }
+            let spots = self.entrance_spots(ends.remove(at), spine, false, &laid.spots);
+            laid.take_best(spots);
         }
     }
 

@@ -38,6 +38,7 @@ use d3dgen_model::domain::{Domain, Scheme};
 use d3dgen_model::floorplan::Floorplan;
 use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::seed::Stream;
+use d3dgen_model::style::Form;
 
 use crate::{Error, Stop};
 pub use adjust::WallMove;
@@ -50,6 +51,9 @@ use spec::Brief;
 pub(crate) const PROPORTION_LIMIT: f64 = 2.5;
 /// Plans tried before the stage gives up.
 const ATTEMPTS: u64 = 8;
+/// Rooms up to which a building is tried in one body before it is composed of wings, and up to which it is a bar.
+const MOST_WHOLE: usize = 50;
+const LONGEST_BAR: usize = 30;
 
 /// Plans a scene graph under the limits of the knowledge base.
 ///
@@ -98,7 +102,10 @@ pub fn generate_until(
     brief.vary(&mut rng);
     brief.widen(&mut rng);
     let mut last = String::from("no layout was found");
-    for _ in 0..ATTEMPTS {
+    let form = brief.form;
+    for attempt in 0..ATTEMPTS {
+        // when a form was tried in vain often enough, any is better than no plan
+        brief.form = form.filter(|_| attempt < ATTEMPTS / 2);
         let schemes = schemes(&brief, domain, &mut rng);
         let turn = Turn { flip_x: rng.chance(0.5), flip_y: rng.chance(0.5), swap: rng.chance(0.3) };
         let found = search(&brief, &schemes, &mut rng, stop);
@@ -109,6 +116,7 @@ pub fn generate_until(
             continue;
         }
         let name = format!("{:?}", found.scheme).to_lowercase();
+        brief.tell_form(form, found.scheme);
         let boxes = turned(&found.layout.boxes, turn);
         match assemble(&brief, &boxes, &found.score, graph.seed, &name, None, &mut rng) {
             Ok(plan) => return Ok(plan),
@@ -186,19 +194,37 @@ fn schemes(brief: &Brief, domain: &Domain, rng: &mut Stream) -> Vec<Scheme> {
     if brief.hub {
         return vec![Scheme::Straight];
     }
+    let units = brief.rooms.iter().any(|r| r.unit.is_some_and(|u| u > 0));
     let suits = |s: &Scheme| match s {
-        Scheme::Straight => rooms < compose::LARGE,
-        Scheme::Capped => (3..compose::LARGE).contains(&rooms),
-        Scheme::Angle => (8..=50).contains(&rooms),
-        Scheme::Racetrack => (14..=50).contains(&rooms),
-        Scheme::Comb => rooms >= compose::LARGE,
+        _ if units && *s != Scheme::Comb => false,
+        Scheme::Straight => rooms <= LONGEST_BAR,
+        Scheme::Capped => (3..=LONGEST_BAR).contains(&rooms),
+        Scheme::Angle => (8..=MOST_WHOLE).contains(&rooms),
+        Scheme::Racetrack => (14..=MOST_WHOLE).contains(&rooms),
+        Scheme::Comb => rooms > MOST_WHOLE || units,
     };
     let mut list: Vec<Scheme> = domain.circulation.schemes.iter().copied().filter(suits).collect();
     rng.shuffle(&mut list);
+    if let Some(form) = brief.form {
+        let (asked, [least, most]) = scheme_of(form);
+        if (least..=most).contains(&rooms) {
+            return vec![asked];
+        }
+    }
     for fallback in [Scheme::Straight, Scheme::Comb] {
         if suits(&fallback) && !list.contains(&fallback) {
             list.push(fallback);
         }
     }
     list
+}
+
+/// Returns the scheme of a form, and from how many rooms to how many it can be built.
+fn scheme_of(form: Form) -> (Scheme, [usize; 2]) {
+    match form {
+        Form::Linear => (Scheme::Straight, [1, MOST_WHOLE]),
+        Form::LShaped => (Scheme::Angle, [5, MOST_WHOLE]),
+        Form::Racetrack => (Scheme::Racetrack, [10, MOST_WHOLE + 10]),
+        Form::Wings => (Scheme::Comb, [10, usize::MAX]),
+    }
 }

@@ -22,6 +22,8 @@ const MOST_TRIES: usize = 900;
 const HEAT: f64 = 0.3;
 /// Cost of a ward none of whose bedroom doors its station sees.
 const OUT_OF_SIGHT: f64 = 2.0;
+/// What a way from the stations to the bedrooms as long as the building is wide costs.
+const OFF_CENTER: f64 = 1.5;
 /// Width up to which a part of a room is a neck, on center lines, m, and what it costs.
 const NECK_M: f64 = 2.4;
 const NECK: f64 = 0.8;
@@ -82,7 +84,10 @@ pub(super) fn put_in_order(
 impl Judge<'_> {
     /// Returns what the order of rooms costs in the layout that was judged last.
     pub(super) fn disorder(&self, layout: &Layout) -> f64 {
-        MISPLACED * self.misplaced(layout) + OUT_OF_SIGHT * self.out_of_sight() + NECK * self.necks(layout) as f64
+        MISPLACED * self.misplaced(layout)
+            + OUT_OF_SIGHT * self.out_of_sight()
+            + OFF_CENTER * self.off_center()
+            + NECK * self.necks(layout) as f64
     }
 
     /// Returns how many rooms for visitors or by day one enters by a narrow part of them.
@@ -148,6 +153,22 @@ impl Judge<'_> {
             out.push((0, main.center2()));
         }
         out.into_iter().map(|(_, gate)| gate).collect()
+    }
+
+    /// Returns the mean way from a bedroom to the nearest station with an open front, in sides of the building.
+    fn off_center(&self) -> f64 {
+        let rooms = || self.brief.rooms.iter().zip(&self.survey.rooms).filter_map(|(spec, r)| Some((spec, r.main?)));
+        let stations = || rooms().filter(|(spec, _)| spec.zone == Zone::Staff && spec.open_front);
+        let size = rooms().map(|(_, main)| main.area_m2()).sum::<f64>().sqrt().max(1.0);
+        let beds = rooms().filter(|(spec, _)| spec.zone == Zone::Night && spec.on_spine);
+        let (mut ways, mut count) = (0.0, 0);
+        for (_, bed) in beds {
+            let nearest = stations().map(|(_, s)| between(bed.center2(), s.center2())).reduce(f64::min);
+            let Some(way) = nearest else { return 0.0 };
+            ways += way / size;
+            count += 1;
+        }
+        ways / f64::from(count.max(1))
     }
 
     /// Returns the share of bedrooms on the side of the corridor on which all stations with an open front are: from there

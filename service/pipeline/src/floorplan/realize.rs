@@ -12,6 +12,9 @@ pub(super) const MAX_PROPORTION: f64 = 2.4;
 /// A notch in the outline shorter than this is a stagger without a reason, m.
 const MIN_NOTCH_M: f64 = 1.5;
 
+/// Least width and depth of a court between two corridors, m.
+const COURT_M: f64 = 5.0;
+
 /// What a meter between the depth of the core and that of its band counts, in meters of notch.
 const CORE_STEP: f64 = 6.0;
 
@@ -218,10 +221,17 @@ fn racetrack(task: &mut Task<'_, '_>) {
     task.spine_box(Cellbox::new(0, w + core, len, 2 * w + core));
     fill(task, &top.at((0, 2 * w + core), (1, 0), (0, 1)), len);
     fill(task, &bottom.at((0, 0), (1, 0), (0, -1)), len);
+    let before = task.layout.notch;
     fill(task, &lower.at((w, w), (1, 0), (0, 1)), len - w);
+    let first = task.layout.notch - before;
     fill(task, &upper.at((w, w + core), (1, 0), (0, -1)), len - w);
-    // A core that ends short leaves a hole in the building rather than a notch in its outline.
-    task.misfit += task.layout.notch;
+    let second = task.layout.notch - before - first;
+    // a core that ends short leaves a court between the corridors, or a hole that is none
+    let court = |gap: f64| if gap < COURT_M { gap.min(COURT_M - gap) } else { 0.0 };
+    let step = (first - second).abs();
+    let stagger = if step < MIN_NOTCH_M { step.min(MIN_NOTCH_M - step) } else { 0.0 };
+    let shallow = if first + second > 0.0 { (COURT_M - meters(core)).max(0.0) } else { 0.0 };
+    task.misfit += court(first) + court(second) + stagger + shallow;
 }
 
 /// Returns the depth of a band, 0 when nothing stands in it.

@@ -26,8 +26,9 @@ const MORE: usize = 2;
 const OWN_RUNS: usize = 4;
 /// Rooms up to which a building is tiny: few schemes suit so few rooms, which ones only a look at all of them tells.
 const TINY: usize = 5;
-/// Most rooms of a large building that is tried in one body before it is composed of wings.
-const MOST_WHOLE: usize = 50;
+/// Runs with one scheme for a large building in one body, while none is sound, and what its first choice counts beside others.
+const WHOLE_RUNS: usize = 2;
+const FAVORED: f64 = 0.85;
 /// Rooms up to which so many are compared; larger plans cost more and differ less.
 const SMALL: usize = 14;
 /// Share of a run that is left when it is compared with others, and what it may cost more than they to go on.
@@ -65,19 +66,49 @@ pub(super) fn search(brief: &Brief, schemes: &[Scheme], rng: &mut Stream, stop: 
     if brief.core.as_ref().is_some_and(|c| c.far.is_some()) {
         return compose(brief, &weights, rng, stop);
     }
+    if schemes == [Scheme::Comb] && !brief.hub && brief.core.is_none() {
+        return compose(brief, &weights, rng, stop);
+    }
     if brief.core.is_some() || brief.rooms.len() < LARGE || brief.hub {
         let wanted = if brief.rooms.len() > SMALL { WANTED - 1 } else { WANTED };
         return search_with(brief, schemes, (&weights, wanted), None, rng, stop);
     }
-    // One body where the seed and the size allow it, else wings.
-    let whole: Vec<Scheme> = schemes.iter().copied().filter(|s| *s != Scheme::Comb).take(1).collect();
-    if brief.rooms.len() <= MOST_WHOLE && schemes.first() != Some(&Scheme::Comb) {
-        let (_, found) = anneal(brief, &mut Judge::new(brief), *whole.first()?, (&weights, f64::MAX), rng, stop);
-        if found.score.is_sound() {
-            return Some(found);
-        }
+    // one body where the size allows it and it is the better plan, else wings
+    if schemes.first() != Some(&Scheme::Comb)
+        && let Some(whole) = search_whole(brief, schemes, &weights, rng, stop)
+    {
+        return Some(whole);
     }
     compose(brief, &weights, rng, stop)
+}
+
+/// Returns the best sound plan of a large building in one body: every scheme that suits it is looked at, for what a corridor
+/// costs depends on the rooms; the seed's first choice may cost a little more.
+fn search_whole(
+    brief: &Brief,
+    schemes: &[Scheme],
+    weights: &Weights,
+    rng: &mut Stream,
+    stop: Stop<'_>,
+) -> Option<Candidate> {
+    let mut judge = Judge::new(brief);
+    let mut best: Option<(f64, (Genome, Candidate))> = None;
+    for (n, scheme) in schemes.iter().filter(|s| **s != Scheme::Comb).enumerate() {
+        for _ in 0..WHOLE_RUNS {
+            let least = best.as_ref().map_or(f64::MAX, |b| b.0);
+            let found = anneal(brief, &mut judge, *scheme, (weights, least), rng, stop);
+            if found.1.score.is_sound() {
+                let cost = found.1.score.total(weights) + judge.disorder(&found.1.layout);
+                let cost = if n == 0 { FAVORED * cost } else { cost };
+                if best.as_ref().is_none_or(|(least, _)| cost < *least) {
+                    best = Some((cost, found));
+                }
+                break;
+            }
+        }
+    }
+    let (_, best) = best?;
+    Some(put_in_order(brief, &mut judge, weights, best, rng, stop))
 }
 
 /// Returns the best of several runs, which end when `wanted` sound ones are found.

@@ -5,12 +5,12 @@ use std::collections::BTreeMap;
 
 use d3dgen_knowledge::{Limit, Limits, RoomLimits};
 use d3dgen_model::domain::{
-    Adjacency, AdjacencyRelation, Daylight, Domain, Materials, Privacy, RobotUse, RoomType, Shape, Zone,
+    Adjacency, AdjacencyRelation, Daylight, Domain, Materials, Privacy, RobotUse, RoomType, Scheme, Shape, Zone,
 };
 use d3dgen_model::scene_graph::{Connector, GraphEdge, GraphRoom, Note, SceneGraph};
 use d3dgen_model::seed::Stream;
 use d3dgen_model::storeys::LinkKind;
-use d3dgen_model::style::Symmetry;
+use d3dgen_model::style::{Form, StyleWord, Symmetry};
 
 use super::core::Core;
 use crate::Error;
@@ -117,6 +117,8 @@ pub(super) struct Brief {
     pub area: Option<f64>,
     /// Whether the plan is to be alike on both sides of an axis.
     pub symmetry: Option<Symmetry>,
+    /// Form that is asked for.
+    pub form: Option<Form>,
     pub entrance_width: f64,
     pub conflicts: Vec<Note>,
     /// By room: the larger room that is entered through it (an isolation room through its anteroom), if any.
@@ -176,6 +178,7 @@ impl Brief {
             second_exit: domain.circulation.second_exit && graph.rooms.iter().all(|r| r.level == 0),
             area: graph.area_m2.filter(|_| graph.links.is_empty()),
             symmetry: graph.style.symmetry,
+            form: graph.style.form,
             entrance_width: max_limit(domain.circulation.entrance_width_m, limits.entrance_width.as_ref()).max(fitted),
             conflicts,
             guests: Vec::new(),
@@ -198,6 +201,19 @@ impl Brief {
             brief.apart.push([find(a)?, find(b)?]);
         }
         Ok(brief)
+    }
+
+    /// Says so where another form was built than was asked for.
+    pub(super) fn tell_form(&mut self, asked: Option<Form>, built: Scheme) {
+        let Some(form) = asked.filter(|f| super::scheme_of(*f).0 != built) else { return };
+        let asked = StyleWord::Form(form).label().replace('_', "-");
+        self.conflicts.push(Note {
+            code: "form_not_built".into(),
+            message: format!(
+                "no plan of {} rooms was found in the form asked for ({asked}); another form was built",
+                self.rooms.iter().filter(|r| !r.circulation).count()
+            ),
+        });
     }
 
     /// Returns true for a room that stands where the core puts it.

@@ -54,6 +54,7 @@ fn brief(mut rooms: Vec<RoomSpec>, width: f64, links: &[(usize, usize, Connector
         hub: false,
         spine_width: width,
         spine_extra: 0.0,
+        form: None,
         symmetry: None,
         links: links.iter().map(|&(a, b, connector)| Link { a, b, connector, required: true }).collect(),
         apart: Vec::new(),

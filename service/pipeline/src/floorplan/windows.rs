@@ -21,6 +21,11 @@ const MARGIN_M: f64 = 0.35;
 /// Outer wall of a corridor with one window, and that window's width, m: nobody likes to walk along a blank wall.
 const CORRIDOR_STEP_M: f64 = 5.0;
 const CORRIDOR_PANE_M: f64 = 1.2;
+/// Floor from which on a room by day has windows in every outer wall as long as this, m^2 and m, and the share of these walls
+/// that is glass at least.
+const LARGE_ROOM_M2: f64 = 40.0;
+const LONG_WALL_M: f64 = 4.0;
+const BLANK_SHARE: f64 = 0.35;
 /// Outer wall of a wet room that has a tall shower in one corner and its window in the middle, m; on shorter ones the
 /// window makes room for it.
 const SHOWER_AND_WINDOW_M: f64 = 2.9;
@@ -37,10 +42,12 @@ pub(super) fn place_windows(brief: &Brief, stretches: &[Stretch], net_m2: &[f64]
     for (i, room) in brief.rooms.iter().enumerate() {
         let Some((sill, mut need)) = glass(room, net_m2[i]) else { continue };
         let pane = if room.zone == Zone::Outdoor { f64::MAX } else { PANE_M.0 };
+        // nobody understands a large room by day with a long blank facade
+        let wide = room.daylight == Daylight::Required && net_m2[i] >= LARGE_ROOM_M2;
         let mut outer: Vec<&Stretch> = stretches.iter().filter(|s| s.only_room() == Some(i)).collect();
         outer.sort_by_key(|s| (-s.len(), s.vertical, s.at, s.from));
         for stretch in outer {
-            if need < 0.05 && !room.circulation {
+            if need < 0.05 && !room.circulation && !wide {
                 break;
             }
             for (from, to) in free_parts(stretch, doors) {
@@ -52,10 +59,12 @@ pub(super) fn place_windows(brief: &Brief, stretches: &[Stretch], net_m2: &[f64]
                     add_panes(stretch, from, to, (total, CORRIDOR_PANE_M), sill, room, &mut windows);
                     continue;
                 }
-                if usable < PANE_M.1 || need < 0.05 {
+                let least = if wide { (usable * BLANK_SHARE).min(usable) } else { 0.0 };
+                let wanted = need.max(if usable >= LONG_WALL_M { least } else { 0.0 });
+                if usable < PANE_M.1 || wanted < 0.05 {
                     continue;
                 }
-                let total = need.max(PANE_M.1).min(usable);
+                let total = wanted.max(PANE_M.1).min(usable);
                 need -= total;
                 let cell = room.wet && room.daylight == Daylight::None;
                 let (from, to) = if cell { beside_shower(room, stretch, (from, to), doors) } else { (from, to) };
