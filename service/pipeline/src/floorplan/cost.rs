@@ -41,7 +41,7 @@ pub(super) const TERMS: [&str; COUNT] = [
     "robot_route",
 ];
 /// Standard weights of the soft terms; each plan's search varies them by its taste.
-pub(super) const WEIGHTS: Weights = [1.0, 0.6, 1.2, 0.5, 10.0, 0.5, 0.8, 0.5, 0.4, 0.8, 0.3, 0.3];
+pub(super) const WEIGHTS: Weights = [1.0, 0.6, 1.2, 0.5, 10.0, 0.5, 0.8, 0.5, 0.4, 0.8, 0.1, 0.3];
 /// Least outer wall of a room that needs a window, m.
 pub(super) const WINDOW_WALL_M: f64 = 1.2;
 
@@ -57,8 +57,8 @@ const TOUCHING: f64 = 0.35;
 const SLOT_FROM: f64 = 1.9;
 const SLOT: f64 = 1.5;
 /// Share of a bedroom beside a small room that was cut out of it from which on that is a waste, and what more of it costs.
-const LEG_SHARE: f64 = 0.2;
-const WASTED_LEG: f64 = 6.0;
+const LEG_SHARE: f64 = 0.22;
+const WASTED_LEG: f64 = 4.0;
 
 /// A step in the outline shorter than this has no reason, m, and what it costs.
 const STEP_M: f64 = 0.9;

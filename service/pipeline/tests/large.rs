@@ -1,0 +1,118 @@
+//! Large buildings as their users know them: units with what they need at hand, forms that prompts ask for, ways out.
+
+mod common;
+
+use std::collections::BTreeMap;
+
+use common::{most, worlds};
+use d3dgen_model::Point;
+use d3dgen_model::document::Document;
+use d3dgen_model::scene_graph::SceneGraph;
+use d3dgen_model::world::World;
+use d3dgen_pipeline::scene_graph::{self, Request};
+use d3dgen_plugins::Registry;
+
+fn graph(prompt: &str) -> SceneGraph {
+    let request = Request { prompt: prompt.into(), ..Request::default() };
+    scene_graph::generate(&request, &Registry::builtin()).expect(prompt)
+}
+
+/// Returns rooms of each type by unit.
+fn units(graph: &SceneGraph) -> BTreeMap<&str, BTreeMap<&str, usize>> {
+    let mut out: BTreeMap<&str, BTreeMap<&str, usize>> = BTreeMap::new();
+    for room in graph.rooms.iter().filter(|r| !r.circulation) {
+        let unit = room.unit.as_deref().unwrap_or("none");
+        *out.entry(unit).or_default().entry(&room.room_type).or_default() += 1;
+    }
+    out
+}
+
+fn middle(world: &World, id: &str) -> Point {
+    world.floorplan.room(id).expect(id).polygon.bounds().center()
+}
+
+#[test]
+fn every_unit_of_a_hospital_has_what_it_needs_at_hand() {
+    for (prompt, rooms) in [("hospital with 100 rooms", 100), ("Krankenhausstation mit 60 Räumen", 60)] {
+        let graph = graph(prompt);
+        let counted = graph.rooms.iter().filter(|r| !r.circulation).count();
+        assert_eq!(counted, rooms, "{prompt}");
+        let units = units(&graph);
+        assert!(units.len() >= 2 && !units.contains_key("none"), "{prompt}: {:?}", units.keys());
+        for (unit, has) in units.iter().filter(|(_, has)| has.contains_key("patient_room")) {
+            for needed in ["nurse_station", "clean_utility", "dirty_utility"] {
+                assert!(has.contains_key(needed), "{prompt}: {unit} has no {needed}: {has:?}");
+            }
+        }
+        let json = serde_json::to_string(&graph).unwrap();
+        assert!(SceneGraph::from_json(&json).is_ok(), "{prompt}");
+    }
+}
+
+#[test]
+fn rooms_that_a_prompt_counts_are_dealt_out_and_not_added_to() {
+    let graph = graph("hospital ward with 40 patient rooms and 70 rooms in total");
+    let of = |kind: &str| graph.rooms.iter().filter(|r| r.room_type == kind).count();
+    assert_eq!(graph.rooms.iter().filter(|r| !r.circulation).count(), 70);
+    assert_eq!(of("patient_room"), 40);
+    let units = units(&graph);
+    let beds: Vec<usize> = units.values().map(|has| has.get("patient_room").copied().unwrap_or(0)).collect();
+    assert!(beds.iter().all(|n| (8..=20).contains(n)), "{beds:?}");
+    assert!(of("nurse_station") >= 2);
+}
+
+#[test]
+fn patients_are_near_a_station() {
+    for world in worlds("hospital with 100 rooms", 3) {
+        let plan = &world.floorplan;
+        let of = |kind: &'static str| plan.rooms.iter().filter(move |r| r.room_type == kind);
+        let far: Vec<bool> = of("patient_room")
+            .map(|room| {
+                let p = middle(&world, &room.room_id);
+                of("nurse_station").any(|s| p.distance(middle(&world, &s.room_id)) < 25.0)
+            })
+            .collect();
+        most("patient rooms within 25 m of a station", 0.9, &far);
+    }
+}
+
+#[test]
+fn wards_of_twenty_rooms_spend_little_on_corridors() {
+    for prompt in ["hospital ward with 20 patient rooms", "office with 30 rooms in Germany"] {
+        for world in worlds(prompt, 4) {
+            let area = |circulation: Option<bool>| -> f64 {
+                let rooms = world.floorplan.rooms.iter();
+                rooms.filter(|r| circulation.is_none_or(|c| r.circulation == c)).map(|r| r.net_area_m2).sum()
+            };
+            let share = area(Some(true)) / area(None);
+            assert!(share < 0.29, "{prompt}, seed {}: {share:.2} of the floor is corridor", world.scene_graph.seed);
+        }
+    }
+}
+
+#[test]
+fn forms_that_prompts_ask_for_are_built_or_missed_aloud() {
+    let cases = [
+        ("L-shaped office with 10 rooms", "angle"),
+        ("office with 14 rooms, two wings", "comb"),
+        ("Büro mit 30 Räumen mit zentralem Kern", "racetrack"),
+        ("racetrack ward with 24 patient rooms", "racetrack"),
+    ];
+    for (prompt, scheme) in cases {
+        for world in worlds(prompt, 2) {
+            let plan = &world.floorplan;
+            let told = plan.conflicts.iter().any(|c| c.code == "form_not_built");
+            assert!(plan.scheme == scheme || told, "{prompt}: {} without a word", plan.scheme);
+        }
+    }
+    let built = worlds(cases[0].0, 4).iter().filter(|w| w.floorplan.scheme == "angle").count();
+    assert_eq!(built, 4, "{}", cases[0].0);
+}
+
+#[test]
+fn far_ends_of_corridors_have_exits() {
+    for world in worlds("office with 120 rooms in the United Kingdom", 2) {
+        let exits = world.floorplan.doors.iter().filter(|d| d.room_ids.len() == 1).count();
+        assert!(exits >= 4, "{exits} exits");
+    }
+}
