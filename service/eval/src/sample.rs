@@ -203,6 +203,7 @@ pub fn world() -> World {
             start: Pose { x: 3.2, y: 2.4, z: 0.0, yaw_rad: 0.0 },
             goals: vec!["point_a".into(), "point_b".into()],
             ways: Vec::new(),
+            routes: Vec::new(),
             dock: None,
         }],
         agents: Vec::new(),

@@ -1,16 +1,19 @@
 //! The widest way to every place of a storey: how wide its narrowest place is, and where that is.
 //!
 //! On the 5 cm grid of [`crate::occupancy`]. The width of a place is the diameter of the largest disc whose center can be
-//! there; in a door it is no more than the door's clear width.
+//! there; in a door it is no more than the door's clear width. A long robot ([`crate::robot_body`]) goes as its body does:
+//! straight through what is narrow, turned where there is room for that. What is lower than a robot stops it, doors too.
+
+mod long;
 
 use std::collections::BinaryHeap;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::floorplan::Floorplan;
+use crate::floorplan::{Door, Floorplan};
 use crate::geometry::{Point, Rect};
-use crate::occupancy::{CELL_M, FLAT_M, Occupancy, opening};
+use crate::occupancy::{Bitmap, CELL_M, FLAT_M, Occupancy, opening};
 use crate::placements::Placements;
 use crate::scene_graph::Robot;
 
@@ -18,6 +21,10 @@ use crate::scene_graph::Robot;
 const NEAR_M: f64 = 0.25;
 /// Slack when a width is compared with a robot's, mm.
 const SLACK_MM: u32 = 1;
+/// Width that stands for a door lower than the robot: such ways are found, to be named, where there is no other one, mm.
+const LOW_DOOR_MM: u32 = 1;
+/// Slack when a robot's height is compared with a door's, m.
+const SLACK_M: f64 = 1e-6;
 
 /// The way of a robot to a room or point.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -31,6 +38,17 @@ pub struct RobotWay {
     pub clear_width_m: f64,
     /// Door in which the narrowest place is, else the room it lies in; empty when there is no way at all.
     pub narrowest: String,
+    /// Height of the lowest door on the way where the robot is higher and there is no way around, m.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub clear_height_m: Option<f64>,
+}
+
+impl RobotWay {
+    /// Returns that no way leads there.
+    pub fn none(to: &str) -> Self {
+        let (narrowest, clear_height_m) = (String::new(), None);
+        Self { to: to.to_owned(), reachable: false, clear_width_m: 0.0, narrowest, clear_height_m }
+    }
 }
 
 /// Widest ways from one place of a storey.
@@ -42,6 +60,8 @@ pub struct Passages<'a> {
     wide: Vec<u32>,
     /// By cell: the narrowest width on the widest way, mm (0: no way), and the cell where it is.
     best: Vec<(u32, u32)>,
+    /// Of a long robot: the cells where its middle gets to.
+    driven: Option<Bitmap>,
 }
 
 impl<'a> Passages<'a> {
@@ -52,34 +72,52 @@ impl<'a> Passages<'a> {
         let low = robot.body.and_then(|b| b.climb_m).unwrap_or(0.0).max(FLAT_M);
         let stops = placements.placements.iter().filter(|p| p.top_m() > low && p.pose.z < robot.height_m);
         stops.for_each(|p| map.block(&p.footprint()));
-        let wide = widths(&map, plan);
-        let mut out = Self { plan, best: vec![(0, 0); wide.len()], wide, map };
+        let mut wide = clear_widths(&map, plan);
+        for door in plan.doors.iter().filter(|d| d.height_m < robot.height_m - SLACK_M) {
+            for (i, j) in map.frame.cells(&opening(door)) {
+                let cell = &mut wide[j * map.frame.nx + i];
+                *cell = (*cell).min(LOW_DOOR_MM);
+            }
+        }
+        let mut out = Self { plan, best: vec![(0, 0); wide.len()], wide, map, driven: None };
         out.spread(from);
+        if let Some([width, length]) = robot.body.and_then(|b| b.long_m()) {
+            out.driven = Some(long::driven(&out.map.frame, &out.wide, (width, length), from));
+        }
         out
     }
 
     /// Returns the way to a room: to the place in it that is reached best.
     pub fn to_room(&self, room_id: &str, radius_m: f64) -> RobotWay {
-        let mut best = (0, 0);
-        if let Some(room) = self.plan.room(room_id) {
-            for rect in room.net_polygon.rects() {
-                // the middle of a door sill is not yet the room
-                best = best.max(self.best_in(&rect));
-            }
-        }
-        self.way(room_id, best, radius_m)
+        // the middle of a door sill is not yet the room
+        let rects = self.plan.room(room_id).map_or(Vec::new(), |room| room.net_polygon.rects());
+        self.way(room_id, &rects, radius_m)
     }
 
     /// Returns the way to a point.
     pub fn to_point(&self, name: &str, p: Point, radius_m: f64) -> RobotWay {
-        self.way(name, self.best_in(&around(p)), radius_m)
+        self.way(name, &[around(p)], radius_m)
     }
 
-    fn way(&self, to: &str, (width, at): (u32, u32), radius_m: f64) -> RobotWay {
+    fn way(&self, to: &str, rects: &[Rect], radius_m: f64) -> RobotWay {
+        let (width, at) = rects.iter().map(|r| self.best_in(r)).max().unwrap_or((0, 0));
+        if width == 0 {
+            return RobotWay::none(to);
+        }
+        let place = self.place(at);
+        let low = self.door_at(place).filter(|_| width == LOW_DOOR_MM);
         let needed = (2000.0 * radius_m).round() as u32;
-        let narrowest = if width == 0 { String::new() } else { self.name(at) };
-        let reachable = width + SLACK_MM >= needed && width > 0;
-        RobotWay { to: to.to_owned(), reachable, clear_width_m: f64::from(width) / 1000.0, narrowest }
+        let reachable = match &self.driven {
+            Some(driven) => rects.iter().flat_map(|r| self.map.frame.cells(r)).any(|(i, j)| driven.get(i, j)),
+            None => width + SLACK_MM >= needed && low.is_none(),
+        };
+        RobotWay {
+            to: to.to_owned(),
+            reachable,
+            clear_width_m: low.map_or(f64::from(width) / 1000.0, |d| d.clear_width_m),
+            narrowest: self.name(place),
+            clear_height_m: low.map(|d| d.height_m),
+        }
     }
 
     fn best_in(&self, rect: &Rect) -> (u32, u32) {
@@ -87,14 +125,20 @@ impl<'a> Passages<'a> {
         frame.cells(rect).map(|(i, j)| self.best[j * frame.nx + i]).max_by_key(|b| b.0).unwrap_or((0, 0))
     }
 
-    /// Returns the door or the room that a cell lies in.
-    fn name(&self, cell: u32) -> String {
+    fn place(&self, cell: u32) -> Point {
         let nx = self.map.frame.nx;
-        let p = self.map.frame.center(cell as usize % nx, cell as usize / nx);
+        self.map.frame.center(cell as usize % nx, cell as usize / nx)
+    }
+
+    fn door_at(&self, p: Point) -> Option<&'a Door> {
         let inside = |r: &Rect| r.x0 <= p.x && p.x <= r.x1 && r.y0 <= p.y && p.y <= r.y1;
-        let door = self.plan.doors.iter().find(|d| inside(&opening(d)));
+        self.plan.doors.iter().find(|d| inside(&opening(d)))
+    }
+
+    /// Returns the door or the room that a place lies in.
+    fn name(&self, p: Point) -> String {
         let room = || self.plan.rooms.iter().find(|r| r.net_polygon.contains(p));
-        door.map(|d| d.door_id.clone()).or_else(|| room().map(|r| r.room_id.clone())).unwrap_or_default()
+        self.door_at(p).map(|d| d.door_id.clone()).or_else(|| room().map(|r| r.room_id.clone())).unwrap_or_default()
     }
 
     /// Goes out from a point, the widest place first.
@@ -132,8 +176,9 @@ fn around(p: Point) -> Rect {
     Rect::new(p.x - NEAR_M, p.y - NEAR_M, p.x + NEAR_M, p.y + NEAR_M)
 }
 
-/// Returns the diameter of the largest disc at each cell, mm.
-fn widths(map: &Occupancy, plan: &Floorplan) -> Vec<u32> {
+/// Returns the diameter of the largest disc at each cell, mm, row after row from the south; in a door no more than its
+/// clear width.
+pub fn clear_widths(map: &Occupancy, plan: &Floorplan) -> Vec<u32> {
     let (nx, ny) = (map.frame.nx, map.frame.ny);
     let mut wide: Vec<u32> = squared_distances(nx, ny, |i, j| map.free.get(i, j))
         .into_iter()

@@ -16,7 +16,8 @@ pub struct RobotBody {
     /// Height, m: what hangs above it does not stop it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub height_m: Option<f64>,
-    /// Radius of the circle it turns in, m; else half the diagonal of its body.
+    /// Radius of the circle it turns in, m; else half the diagonal of its body, and a body 1.75 times as long as wide goes
+    /// as its outline does.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub turning_radius_m: Option<f64>,
     /// Highest step it drives over, m.
@@ -29,6 +30,8 @@ pub struct RobotBody {
 
 /// Least and largest measure of a body, m.
 const RANGE_M: [f64; 2] = [0.05, 6.0];
+/// How often as long as wide a body is whose circle says little of where it fits.
+const LONG: f64 = 1.75;
 /// Largest turning radius that a building is planned for, m.
 const MOST_RADIUS_M: f64 = 2.0;
 
@@ -38,8 +41,15 @@ impl RobotBody {
         Self { fit: false, ..*self } == Self::default()
     }
 
-    /// Returns the radius of the circle it turns in, m, rounded up to a millimeter; absent when no measure of it is known.
+    /// Returns the radius of the disc that must find its way, m, rounded up to a millimeter; absent when no measure of it
+    /// is known.
+    ///
+    /// That is the circle it turns in. Of a long one ([`Self::long_m`]) it is half its width: as beds do, it drives straight
+    /// through doors, and turns where there is room for that.
     pub fn radius_m(&self) -> Option<f64> {
+        if let Some([width, _]) = self.long_m() {
+            return Some((width * 500.0 - 1e-6).ceil() / 1000.0);
+        }
         let (a, b) = (self.width_m.or(self.length_m), self.length_m.or(self.width_m));
         let half_diagonal = a.zip(b).map(|(a, b)| a.hypot(b) / 2.0);
         // one that turns about its own middle cannot turn in less than it needs
@@ -48,6 +58,18 @@ impl RobotBody {
             (turning, _) => turning.or(half_diagonal),
         };
         radius.map(|r| (r * 1000.0 - 1e-6).ceil() / 1000.0)
+    }
+
+    /// Returns width and length of a body so long that its way is looked for with its outline, m: [`LONG`] times as long as
+    /// wide, where no turning radius is given.
+    pub fn long_m(&self) -> Option<[f64; 2]> {
+        let (width, length) = self.width_m.zip(self.length_m).filter(|_| self.turning_radius_m.is_none())?;
+        (length >= LONG * width - 1e-9).then_some([width, length])
+    }
+
+    /// Returns the radius of the circle it turns about its own middle in, m; absent when no measure of it is known.
+    pub fn circle_m(&self) -> Option<f64> {
+        self.long_m().map(|[width, length]| width.hypot(length) / 2.0).or_else(|| self.radius_m())
     }
 
     /// Returns what is wrong with it, in sentences that name the measure.
@@ -67,7 +89,7 @@ impl RobotBody {
         if let Some(climb) = self.climb_m.filter(|c| !(0.0..=0.5).contains(c)) {
             out.push(format!("a robot's climb of {climb} m is outside 0-0.5 m"));
         }
-        if let Some(radius) = self.radius_m().filter(|r| out.is_empty() && *r > MOST_RADIUS_M) {
+        if let Some(radius) = self.circle_m().filter(|r| out.is_empty() && *r > MOST_RADIUS_M) {
             out.push(format!(
                 "a robot that turns within {radius:.2} m is too large; {MOST_RADIUS_M} m can be planned for"
             ));
@@ -100,6 +122,10 @@ mod tests {
         assert_eq!(RobotBody { turning_radius_m: Some(0.1), ..body }.radius_m(), Some(0.3), "no narrower than it is");
         assert_eq!(RobotBody { width_m: Some(0.5), ..RobotBody::default() }.radius_m(), Some(0.354));
         assert_eq!(RobotBody::default().radius_m(), None);
+        let long = RobotBody { width_m: Some(0.95), length_m: Some(2.1), ..RobotBody::default() };
+        assert_eq!((long.radius_m(), long.circle_m().map(|c| c > 1.15)), (Some(0.475), Some(true)), "goes straight");
+        let told = RobotBody { turning_radius_m: Some(1.2), ..long };
+        assert_eq!((told.long_m(), told.radius_m()), (None, Some(1.2)), "what is said counts");
         let giant = RobotBody { width_m: Some(4.0), ..RobotBody::default() };
         assert!(giant.problems()[0].contains("too large"), "{:?}", giant.problems());
         assert!(RobotBody { height_m: Some(-1.0), ..body }.problems()[0].contains("height of -1 m"));

@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::document::{Document, Problem, check_unique};
-use crate::geometry::{Polygon, Pose};
+use crate::geometry::{Point, Polygon, Pose};
 use crate::passage::RobotWay;
 use crate::scene_graph::Robot;
 use crate::storeys::is_ground;
@@ -39,9 +39,26 @@ pub struct Roi {
     pub room_id: String,
     /// Outline, counter-clockwise.
     pub polygon: Polygon,
-    /// Cleaning priority (`high`, `low`) or speed limit, for people.
+    /// Cleaning priority (`high`, `low`), or what the area is there for, for people.
     #[serde(default)]
     pub note: String,
+    /// Of floor to be cleaned: its number on a short tour of its storey, from 1.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub order: Option<u32>,
+    /// Of floor to be cleaned: what of it nothing stands on, m^2.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub free_area_m2: Option<f64>,
+    /// Of slow floor: the highest speed of a robot there, m/s.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub max_speed_m_s: Option<f64>,
+}
+
+impl Roi {
+    /// Returns an area of which nothing more is known.
+    pub fn new(roi_id: String, kind: RoiKind, room_id: &str, polygon: Polygon, note: String) -> Self {
+        let room_id = room_id.to_owned();
+        Self { roi_id, kind, room_id, polygon, note, order: None, free_area_m2: None, max_speed_m_s: None }
+    }
 }
 
 /// Kind of robot zone.
@@ -56,6 +73,10 @@ pub enum RoiKind {
     ChargingBuffer,
     /// Where robots may not go.
     KeepOut,
+    /// Where robots drive slowly: before rooms people sleep in, where corridors cross, at counters.
+    SpeedZone,
+    /// Free floor where goods are put down and taken up, out of the way of doors and of those who pass.
+    StagingArea,
 }
 
 /// A point a scenario refers to by name.
@@ -87,12 +108,31 @@ pub struct RobotTask {
     /// The way to each goal, where the robot's body is known.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub ways: Vec<RobotWay>,
+    /// Its round: from where it starts to its first goal, from there to the next, at last to its dock.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub routes: Vec<Route>,
     /// POI id of its dock.
     #[serde(default)]
     pub dock: Option<String>,
     /// Storey it starts on.
     #[serde(default, skip_serializing_if = "is_ground")]
     pub level: i32,
+}
+
+/// A leg of a robot's round on the free floor.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Route {
+    /// POI id it begins at; empty for where the robot starts.
+    pub from: String,
+    /// POI id it ends at.
+    pub to: String,
+    /// Length, m.
+    pub length_m: f64,
+    /// Clear width of its narrowest place, m.
+    pub clear_width_m: f64,
+    /// Corners from start to end; the middle of the robot drives straight between them.
+    pub path: Vec<Point>,
 }
 
 /// A person.
@@ -132,6 +172,13 @@ impl Document for Scenario {
                 if !self.pois.iter().any(|p| &p.poi_id == goal) {
                     problems
                         .push(Problem::new(format!("/robots/{i}/goals/{j}"), format!("poi `{goal}` is not in pois")));
+                }
+            }
+            for (j, route) in robot.routes.iter().enumerate() {
+                let ends = [&route.from, &route.to].into_iter().filter(|id| !id.is_empty());
+                for end in ends.filter(|id| !self.pois.iter().any(|p| &p.poi_id == *id)) {
+                    let message = format!("poi `{end}` is not in pois");
+                    problems.push(Problem::new(format!("/robots/{i}/routes/{j}"), message));
                 }
             }
         }

@@ -1,6 +1,8 @@
 //! Robots that are to fit: a world in which they do, or a refusal that names the largest robot that does.
 
-use d3dgen_model::scene_graph::SceneGraph;
+use d3dgen_model::passage::RobotWay;
+use d3dgen_model::robot_body::RobotBody;
+use d3dgen_model::scene_graph::{Robot, SceneGraph};
 
 use crate::Error;
 use crate::generate::Generated;
@@ -21,14 +23,24 @@ pub(crate) fn or_refused(
 ) -> Result<Generated, Error> {
     let reason = match &made {
         Ok(found) if fits(found) => return made,
+        // no smaller circle would help
+        Ok(found) if too_high(found).is_some() => {
+            let message = too_high(found).unwrap_or_default();
+            return Err(Error::Refused { stage: "floorplan", message });
+        }
         Ok(found) => unfit(found),
         Err(Error::Infeasible { message, .. }) => message.clone(),
         Err(_) => return made,
     };
-    let largest = graph.robots.iter().filter(|r| r.is_fitted()).map(|r| r.radius_m).fold(0.0, f64::max);
+    let circle = |r: &Robot| r.body.and_then(|b| b.circle_m()).map_or(r.radius_m, |c| c.max(r.radius_m));
+    let largest = graph.robots.iter().filter(|r| r.is_fitted()).map(circle).fold(0.0, f64::max);
     let with = |radius: f64| {
         let mut smaller = graph.clone();
-        smaller.robots.iter_mut().filter(|r| r.is_fitted()).for_each(|r| r.radius_m = r.radius_m.min(radius));
+        for robot in smaller.robots.iter_mut().filter(|r| r.is_fitted()) {
+            robot.radius_m = circle(robot).min(radius);
+            // as wide as it is long
+            robot.body = robot.body.map(|b| RobotBody { width_m: None, length_m: None, ..b });
+        }
         smaller
     };
     let mut works = |radius: f64| match make(&with(radius)) {
@@ -60,6 +72,20 @@ pub(crate) fn or_refused(
 
 fn fits(found: &Generated) -> bool {
     found.report.is_writable() && found.report.robot_fit.iter().all(|f| f.fits)
+}
+
+/// Returns what to say of a robot that is higher than a door on its way.
+fn too_high(found: &Generated) -> Option<String> {
+    found.report.robot_fit.iter().find_map(|fit| {
+        let low = |w: &&RobotWay| w.clear_height_m.is_some();
+        let way = fit.rooms.iter().chain(&fit.points).filter(low).find(|w| !w.reachable)?;
+        let (height, door) = (way.clear_height_m?, &way.narrowest);
+        Some(format!(
+            "a robot {:.2} m high does not fit through {door}, which is {height:.2} m high, on the way to {}; one up to \
+             {height:.2} m high does (--robot-height {height})",
+            fit.height_m, way.to
+        ))
+    })
 }
 
 /// Returns what keeps a robot from fitting.

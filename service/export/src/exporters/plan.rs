@@ -322,7 +322,9 @@ fn label(
         }
     }
     // Type across the edge of a small zone is hard to read; zones as large as their room cannot be avoided.
-    let small = world.scenario.rois.iter().filter(|r| matches!(r.kind, RoiKind::ServiceZone | RoiKind::ChargingBuffer));
+    let is_small =
+        |kind: RoiKind| matches!(kind, RoiKind::ServiceZone | RoiKind::ChargingBuffer | RoiKind::StagingArea);
+    let small = world.scenario.rois.iter().filter(|r| is_small(r.kind));
     soft.extend(small.map(|r| (frame.rect(&r.polygon.bounds()), ON_ZONE)));
     let rooms: Vec<labels::Room<'_>> = plan
         .rooms

@@ -28,7 +28,9 @@ pub(super) struct Floor<'a> {
     pub rooms: Vec<Room<'a>>,
     /// Radius that everything here is reachable for, m.
     pub radius: f64,
-    occupancy: Occupancy,
+    pub occupancy: Occupancy,
+    /// Cells where the disc can be that are connected to most of the others.
+    pub main: Bitmap,
 }
 
 /// A room with what stands in it.
@@ -43,8 +45,12 @@ pub(super) struct Room<'a> {
     roomy: Bitmap,
     /// Those of them where no door opens against the disc and no chair is pushed back against it.
     undisturbed: Bitmap,
+    /// Floor that nothing stands on, over which no door opens and no chair is pushed back.
+    pub quiet: Bitmap,
+    /// Floor that nothing stands on, m^2.
+    pub free_m2: f64,
     /// Its first cell in the grid of the building.
-    corner: (i64, i64),
+    pub corner: (i64, i64),
 }
 
 impl<'a> Floor<'a> {
@@ -68,6 +74,7 @@ impl<'a> Floor<'a> {
             let disc = radius / CELL_M + 1.0;
             let mut floor = spots.clone();
             floor.intersect(&occupancy.free.window(i0, i1, j0, j1));
+            let free_m2 = floor.count() as f64 * CELL_M * CELL_M;
             let mut roomy = floor.eroded(disc);
             if let Some(surely) = surely.as_ref().map(|map| map.window(i0, i1, j0, j1))
                 && roomy.count_common(&surely) > 0
@@ -95,10 +102,13 @@ impl<'a> Floor<'a> {
                 spots,
                 roomy,
                 undisturbed,
+                quiet: floor,
+                free_m2,
                 corner: (i0.max(0), j0.max(0)),
             }
         };
-        Self { rooms: plan.rooms.iter().map(&mut room).collect(), plan, domain, radius, occupancy }
+        let rooms = plan.rooms.iter().map(&mut room).collect();
+        Self { rooms, plan, domain, radius, occupancy, main }
     }
 
     /// Returns the reachable spot of a room nearest to a point, a little farther off rather than in a doorway or against
@@ -135,6 +145,13 @@ impl<'a> Floor<'a> {
     /// Returns the number of spots of a room.
     pub fn spots(&self, room: &Room) -> usize {
         room.spots.count()
+    }
+
+    /// Returns true when the disc can be at one of the spots in a rectangle.
+    pub fn is_reached(&self, room: &Room, r: &Rect) -> bool {
+        let (i0, i1, j0, j1) = self.occupancy.frame.span(r);
+        let (i, j) = room.corner;
+        room.spots.any_in(i0 - i, i1 - i, j0 - j, j1 - j)
     }
 
     /// Takes the floor around a robot or person (of this radius) from the spots of all rooms.

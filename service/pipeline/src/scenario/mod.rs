@@ -8,7 +8,11 @@ mod people;
 mod points;
 mod regions;
 mod robots;
+mod routes;
+mod speed;
+mod staging;
 mod storeys;
+mod tour;
 
 use d3dgen_model::domain::Domain;
 use d3dgen_model::floorplan::Floorplan;
@@ -38,17 +42,17 @@ pub fn generate(
     Ok(one_storey(graph, plan, placements, domain))
 }
 
-/// Fills one storey.
+/// Fills one storey. Where no robots were asked for, nothing is said of how they drive and where they put things down.
 fn one_storey(graph: &SceneGraph, plan: &Floorplan, placements: &Placements, domain: &Domain) -> Scenario {
     let mut floor = Floor::new(graph, plan, placements, domain);
-    let mut scenario = Scenario {
-        version: 1,
-        seed: graph.seed,
-        rois: regions::all(&floor),
-        pois: points::all(&floor, graph),
-        robots: Vec::new(),
-        agents: Vec::new(),
-    };
+    let mut rois = regions::all(&floor);
+    if !graph.robots.is_empty() {
+        rois.extend(speed::all(&floor));
+        rois.extend(staging::all(&floor, graph, &rois));
+    }
+    let pois = points::all(&floor, graph, &rois);
+    regions::number(&mut rois, &floor, &pois);
+    let mut scenario = Scenario { version: 1, seed: graph.seed, rois, pois, robots: Vec::new(), agents: Vec::new() };
     scenario.robots = robots::all(&mut floor, graph, (plan, placements), &scenario.pois);
     scenario.agents = people::all(&mut floor, graph);
     scenario

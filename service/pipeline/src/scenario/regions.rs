@@ -4,11 +4,12 @@ use d3dgen_model::domain::{RobotUse, Shape};
 use d3dgen_model::geometry::to_mm;
 use d3dgen_model::occupancy::stops_robot;
 use d3dgen_model::placements::Placement;
-use d3dgen_model::scenario::{Roi, RoiKind};
+use d3dgen_model::scenario::{Poi, Roi, RoiKind};
 use d3dgen_model::{Polygon, Rect};
 
 use super::floor::{Floor, Room, floor_in_front, swept};
 use super::points::served;
+use super::tour::{self, Stop};
 
 /// Depth of the floor to serve at, m, and the least side of it where something takes a part.
 const SERVICE_DEPTH_M: f64 = 1.2;
@@ -28,13 +29,8 @@ pub(super) fn all(floor: &Floor) -> Vec<Roi> {
         let id = &room.plan.room_id;
         let buffers: Vec<(&Placement, Rect)> = buffers(floor, room).collect();
         let mut whole = |kind, prefix: &str, note: &str| {
-            out.push(Roi {
-                roi_id: format!("{prefix}_{id}"),
-                kind,
-                room_id: id.clone(),
-                polygon: room.plan.net_polygon.clone(),
-                note: note.into(),
-            });
+            let polygon = room.plan.net_polygon.clone();
+            out.push(Roi::new(format!("{prefix}_{id}"), kind, id, polygon, note.into()));
         };
         if room.is_for(RobotUse::KeepOut) {
             whole(RoiKind::KeepOut, "keep_out", "robots stay out");
@@ -48,24 +44,45 @@ pub(super) fn all(floor: &Floor) -> Vec<Roi> {
             && let Some(polygon) = clipped(room, &service_floor(floor, room, object, &buffers))
         {
             let note = format!("in front of {}", object.placement_id);
-            out.push(Roi {
-                roi_id: format!("service_zone_{id}"),
-                kind: RoiKind::ServiceZone,
-                room_id: id.clone(),
-                polygon,
-                note,
-            });
+            out.push(Roi::new(format!("service_zone_{id}"), RoiKind::ServiceZone, id, polygon, note));
         }
         for (dock, buffer) in &buffers {
             docks += 1;
             if let Some(polygon) = clipped(room, buffer) {
                 let note = format!("free floor of {}", dock.placement_id);
                 let roi_id = format!("charging_buffer_{docks}");
-                out.push(Roi { roi_id, kind: RoiKind::ChargingBuffer, room_id: id.clone(), polygon, note });
+                out.push(Roi::new(roi_id, RoiKind::ChargingBuffer, id, polygon, note));
             }
         }
     }
     out
+}
+
+/// Numbers the floor to be cleaned along a short tour of the storey, from the first dock or the entrance, and says how much
+/// of it is free.
+pub(super) fn number(rois: &mut [Roi], floor: &Floor, pois: &[Poi]) {
+    let mut zones: Vec<(&mut Roi, &Room)> = Vec::new();
+    for roi in rois.iter_mut().filter(|r| r.kind == RoiKind::CleaningZone) {
+        if let Some(room) = floor.rooms.iter().find(|r| r.plan.room_id == roi.room_id) {
+            zones.push((roi, room));
+        }
+    }
+    let of_kind = |kind: &str| pois.iter().find(|p| p.kind == kind);
+    let start = of_kind("dock").or_else(|| of_kind("entrance")).map(Stop::of_poi);
+    let stops: Vec<Stop> =
+        zones.iter().map(|(_, room)| Stop { room: &room.plan.room_id, at: largest(room).center() }).collect();
+    let order = tour::order(floor.plan, start, &stops);
+    for (number, i) in order.into_iter().enumerate() {
+        let (roi, room) = &mut zones[i];
+        roi.order = Some(number as u32 + 1);
+        roi.free_area_m2 = Some((room.free_m2 * 100.0).round() / 100.0);
+    }
+}
+
+/// Returns the largest straight piece of a room's net floor.
+pub(super) fn largest(room: &Room) -> Rect {
+    let pieces = room.plan.net_polygon.rects().into_iter();
+    pieces.max_by(|a, b| a.area().total_cmp(&b.area())).unwrap_or_else(|| room.plan.net_polygon.bounds())
 }
 
 /// Returns the docks of a room with the floor that belongs to each.
@@ -107,7 +124,7 @@ fn service_floor(floor: &Floor, room: &Room, object: &Placement, buffers: &[(&Pl
 }
 
 /// Returns the largest part of a rectangle that lies on one straight piece of the room's net floor.
-fn clipped(room: &Room, r: &Rect) -> Option<Polygon> {
+pub(super) fn clipped(room: &Room, r: &Rect) -> Option<Polygon> {
     let parts = room.plan.net_polygon.rects().into_iter().map(|n| Rect {
         x0: to_mm(n.x0.max(r.x0)),
         y0: to_mm(n.y0.max(r.y0)),

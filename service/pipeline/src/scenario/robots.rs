@@ -5,12 +5,14 @@ use d3dgen_model::passage::{Passages, RobotWay};
 use d3dgen_model::placements::Placements;
 use d3dgen_model::scenario::{Poi, RobotTask};
 use d3dgen_model::scene_graph::{Robot, SceneGraph};
-use d3dgen_model::seed::Stream;
 use d3dgen_model::{Point, Pose};
 
 use super::floor::{Floor, looking_at};
+use super::routes::Router;
+use super::tour::{self, Stop};
 
-/// Returns the robots of the scene graph, each with its own start and goals that it can reach.
+/// Returns the robots of the scene graph, each with its own start, goals that it can reach, in the order of a short tour,
+/// and the routes from one to the next.
 pub(super) fn all(
     floor: &mut Floor,
     graph: &SceneGraph,
@@ -18,28 +20,32 @@ pub(super) fn all(
     pois: &[Poi],
 ) -> Vec<RobotTask> {
     let mut out: Vec<RobotTask> = Vec::new();
+    let docks: Vec<&Poi> = pois.iter().filter(|p| p.kind == "dock").collect();
     for robot in &graph.robots {
+        let all = of_trade(floor, robot, pois);
         for number in 0..robot.count as usize {
             let known = out.iter().filter(|t| t.robot.kind == robot.kind).count();
             let robot_id = format!("{}_robot_{}", robot.kind, known + 1);
-            let docks: Vec<&Poi> = pois.iter().filter(|p| p.kind == "dock").collect();
             let dock = docks.get(number % docks.len().max(1)).copied();
             let Some(start) = start(floor, pois, dock, &out) else { continue };
             floor.take(Point::new(start.x, start.y), robot.radius_m);
             out.push(RobotTask {
-                goals: goals(graph, robot, number, pois),
+                goals: goals(floor, share(&all, robot, number), dock),
                 robot_id,
                 robot: Robot { count: 1, ..robot.clone() },
                 start,
                 dock: dock.map(|d| d.poi_id.clone()),
                 level: 0,
                 ways: Vec::new(),
+                routes: Vec::new(),
             });
             if let Some(task) = out.last_mut().filter(|t| t.robot.body.is_some()) {
                 task.ways = ways(task, (plan, placements), pois);
             }
         }
     }
+    let mut router = Router::new(floor);
+    out.iter_mut().for_each(|task| task.routes = router.round(task, pois));
     out
 }
 
@@ -68,18 +74,30 @@ fn start(floor: &Floor, pois: &[Poi], dock: Option<&Poi>, others: &[RobotTask]) 
     })
 }
 
-/// Returns the points one of several equal robots visits: its share of those of its trade, in an order of its own; all
-/// where there are fewer than robots.
-fn goals(graph: &SceneGraph, robot: &Robot, number: usize, pois: &[Poi]) -> Vec<String> {
+/// Returns the points that robots of a trade visit, along a short tour of the storey.
+fn of_trade<'p>(floor: &Floor, robot: &Robot, pois: &'p [Poi]) -> Vec<&'p Poi> {
     let own = format!("{}_point", robot.kind);
-    let mut of_trade: Vec<&Poi> = pois.iter().filter(|p| p.kind == own).collect();
-    if of_trade.is_empty() {
-        of_trade = pois.iter().filter(|p| p.kind == "service_point").collect();
+    let of_kinds = |kinds: &[&str]| pois.iter().filter(|p| kinds.contains(&p.kind.as_str())).collect::<Vec<&Poi>>();
+    let known = [&[own.as_str()][..], &["service_point"], &["entrance", "waiting_bay"]];
+    let found = known.into_iter().map(of_kinds).find(|found| !found.is_empty()).unwrap_or_default();
+    toured(floor, found, pois.iter().find(|p| p.kind == "dock"))
+}
+
+/// Returns the part of a tour that one of several equal robots visits; all where there are fewer points than robots.
+fn share<'p>(all: &[&'p Poi], robot: &Robot, number: usize) -> Vec<&'p Poi> {
+    let robots = robot.count as usize;
+    match all.len() < robots {
+        true => all.to_vec(),
+        false => all[number * all.len() / robots..(number + 1) * all.len() / robots].to_vec(),
     }
-    if of_trade.is_empty() {
-        of_trade = pois.iter().filter(|p| p.kind == "entrance" || p.kind == "waiting_bay").collect();
-    }
-    Stream::new(graph.seed, &format!("scenario/{}", robot.kind)).shuffle(&mut of_trade);
-    let (first, step) = if of_trade.len() < robot.count as usize { (0, 1) } else { (number, robot.count as usize) };
-    of_trade.iter().skip(first).step_by(step).map(|p| p.poi_id.clone()).collect()
+}
+
+/// Returns the ids of goals along a short tour from a robot's dock.
+fn goals(floor: &Floor, own: Vec<&Poi>, dock: Option<&Poi>) -> Vec<String> {
+    toured(floor, own, dock).into_iter().map(|p| p.poi_id.clone()).collect()
+}
+
+fn toured<'p>(floor: &Floor, points: Vec<&'p Poi>, from: Option<&Poi>) -> Vec<&'p Poi> {
+    let stops: Vec<Stop> = points.iter().map(|p| Stop::of_poi(p)).collect();
+    tour::order(floor.plan, from.map(Stop::of_poi), &stops).into_iter().map(|i| points[i]).collect()
 }

@@ -55,7 +55,8 @@ fn add(out: &mut Scenario, mut storey: Scenario, level: i32, robots: bool) {
     let pois: BTreeSet<String> = out.pois.iter().map(|p| p.poi_id.clone()).collect();
     for robot in &mut storey.robots {
         let ways = robot.ways.iter_mut().map(|w| &mut w.to);
-        robot.goals.iter_mut().chain(&mut robot.dock).chain(ways).for_each(|goal| free(pois.clone(), goal));
+        let ends = robot.routes.iter_mut().flat_map(|r| [&mut r.from, &mut r.to]).filter(|id| !id.is_empty());
+        robot.goals.iter_mut().chain(&mut robot.dock).chain(ways).chain(ends).for_each(|goal| free(pois.clone(), goal));
         robot.level = level;
     }
     storey.pois.iter_mut().for_each(|p| free(pois.clone(), &mut p.poi_id));

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use d3dgen_model::domain::{Domain, GENERIC_ROOM_TYPE, RobotUse, RoomType, Shape};
+use d3dgen_model::domain::{Domain, Furnishing, GENERIC_ROOM_TYPE, RobotUse, RoomType, Shape};
 use d3dgen_model::scene_graph::{GraphRoom, Robot};
 use d3dgen_model::style::SpaceStyle;
 
@@ -177,6 +177,9 @@ fn space_scale(reading: &mut Reading) -> f64 {
     scale
 }
 
+/// Area of a room to charge robots over what its docks need: a plan that comes out a little smaller still has them all.
+const DOCK_SPARE: f64 = 1.1;
+
 /// Rounds to 0.1 m^2; ranges of the domains have no finer steps that could be left.
 fn tenth(area: f64) -> f64 {
     (area * 10.0).round() / 10.0
@@ -225,6 +228,26 @@ fn is_way(domain: &Domain, room_type: &str) -> bool {
     domain.circulation.room_type == room_type || domain.circulation.entrance_room_types.iter().any(|t| t == room_type)
 }
 
+/// Makes rooms that are there to charge robots large enough for one dock a robot, as far as one such room goes; a size that
+/// the prompt gives stays.
+fn grow_charging(domain: &Domain, robots: u32, rooms: &mut [GraphRoom]) {
+    let mut left = robots;
+    for room in rooms.iter_mut() {
+        let kind = domain.room_type_or_generic(&room.room_type);
+        let charges = kind.robot.contains(&RobotUse::Charging);
+        let is_dock = |f: &&Furnishing| domain.anchor(&f.item).is_some_and(|o| o.shape == Shape::Dock);
+        let Some(line) = kind.furnishing.iter().filter(|f| charges && f.required).find(is_dock) else { continue };
+        let docks = left.min(line.max);
+        left -= docks;
+        let needed = tenth(f64::from(docks) * line.area_per_item_m2);
+        let [least, most] = room.area_range_m2;
+        if most >= kind.area_m2.max && needed > least {
+            room.area_range_m2 = [needed, most.max(tenth(DOCK_SPARE * DOCK_SPARE * needed))];
+            room.target_area_m2 = room.target_area_m2.max(tenth(DOCK_SPARE * needed));
+        }
+    }
+}
+
 /// Wishes for a dock in the rooms that the prompt wants one in, and in rooms that suit one while there are fewer docks
 /// than robots: first in rooms, then in circulation.
 pub(super) fn add_docks(domain: &Domain, robots: &[Robot], docked: &[String], rooms: &mut [GraphRoom]) {
@@ -236,6 +259,7 @@ pub(super) fn add_docks(domain: &Domain, robots: &[Robot], docked: &[String], ro
         sum(&mut lines.filter(|f| is_dock(&f.item)).map(|f| f.units(room.target_area_m2)))
     };
     let robots = sum(&mut robots.iter().map(|r| r.count));
+    grow_charging(domain, robots, rooms);
     let mut lacking = robots.saturating_sub(sum(&mut rooms.iter().map(held)));
     for room_type in docked {
         let has = |r: &GraphRoom| held(r) > 0 || r.wished_assets.contains(&dock.id);

@@ -33,8 +33,10 @@ fn one(world: &World, storeys: &[(i32, World)], domain: &Domain, robot: &Robot) 
         let passages = if ride.is_none() { ground.as_ref() } else { upstairs.as_ref() };
         let before = ride.map(|r| r.way);
         let judge = |to: &str, way: Option<RobotWay>| {
-            let way = way.unwrap_or_else(|| no_way(to));
+            let way = way.unwrap_or_else(|| RobotWay::none(to));
             match &before {
+                // a door that is too low is what there is to say
+                Some(_) if way.clear_height_m.is_some() => way,
                 // no wider than the way to the elevator
                 Some(first) if first.clear_width_m <= way.clear_width_m || !first.reachable => {
                     RobotWay { to: to.to_owned(), reachable: first.reachable && way.reachable, ..first.clone() }
@@ -65,10 +67,6 @@ fn one(world: &World, storeys: &[(i32, World)], domain: &Domain, robot: &Robot) 
         rooms,
         points,
     }
-}
-
-fn no_way(to: &str) -> RobotWay {
-    RobotWay { to: to.to_owned(), reachable: false, clear_width_m: 0.0, narrowest: String::new() }
 }
 
 fn ways<'w>(world: &'w World, robot: &Robot, from: Option<Point>) -> Option<Passages<'w>> {
@@ -102,7 +100,7 @@ fn ride(world: &World, ground: Option<&Passages>, level: i32, home: i32, robot: 
         }
         _ => {
             let stairs = plan.links.iter().find_map(|l| on(plan, &l.room_ids, home)).map_or(String::new(), |s| s.0);
-            Ride { way: RobotWay { narrowest: stairs, ..no_way("") }, exit: None }
+            Ride { way: RobotWay { narrowest: stairs, ..RobotWay::none("") }, exit: None }
         }
     }
 }

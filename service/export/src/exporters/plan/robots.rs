@@ -45,6 +45,29 @@ pub(super) fn area(page: &mut Page, kind: RoiKind, outline: Path, rects: &[Rect]
             );
             page.path_with(&look, lines);
         }
+        RoiKind::SpeedZone => {
+            let look = format!(
+                "fill=\"{fill}\" fill-opacity=\".07\" stroke=\"{stroke}\" stroke-opacity=\".5\" stroke-width=\"{:.2}\" \
+                 stroke-dasharray=\"{:.1} {:.1}\"",
+                0.8 * k,
+                1.5 * k,
+                4.0 * k
+            );
+            page.path_with(&look, outline);
+        }
+        RoiKind::StagingArea => {
+            let look = format!(
+                "fill=\"{fill}\" fill-opacity=\".14\" stroke=\"{stroke}\" stroke-opacity=\".85\" stroke-width=\"{:.2}\"",
+                1.1 * k
+            );
+            page.path_with(&look, outline);
+            // a cross from corner to corner, as pallets are marked on floors
+            let cross =
+                |path: Path, r: &Rect| path.segment((r.x0, r.y0), (r.x1, r.y1)).segment((r.x0, r.y1), (r.x1, r.y0));
+            let look =
+                format!("fill=\"none\" stroke=\"{stroke}\" stroke-opacity=\".45\" stroke-width=\"{:.2}\"", 0.8 * k);
+            page.path_with(&look, rects.iter().fold(Path::new(), cross));
+        }
         RoiKind::ServiceZone | RoiKind::ChargingBuffer => {
             let look = format!(
                 "fill=\"{fill}\" fill-opacity=\".16\" stroke=\"{stroke}\" stroke-opacity=\".8\" stroke-width=\"{:.2}\" \

@@ -61,6 +61,8 @@ pub(super) fn roi_colors(kind: RoiKind) -> (&'static str, &'static str) {
         RoiKind::ServiceZone => ("#f0a04b", "#d9822b"),
         RoiKind::ChargingBuffer => ("#58b37e", "#2e8b57"),
         RoiKind::KeepOut => ("#d9604f", "#c9503f"),
+        RoiKind::SpeedZone => ("#8a6fc0", "#8a6fc0"),
+        RoiKind::StagingArea => ("#b08a4a", "#8f6d34"),
     }
 }
 
@@ -71,6 +73,8 @@ pub(super) fn roi_label(kind: RoiKind) -> &'static str {
         RoiKind::ServiceZone => "Service zone",
         RoiKind::ChargingBuffer => "Charging buffer",
         RoiKind::KeepOut => "Robots keep out",
+        RoiKind::SpeedZone => "Robots drive slowly",
+        RoiKind::StagingArea => "Staging area",
     }
 }
 

@@ -2,11 +2,12 @@
 
 use d3dgen_knowledge::clearance::{Side, door_zones, free_depth, is_shallow};
 use d3dgen_model::domain::Shape;
-use d3dgen_model::occupancy::Bitmap;
-use d3dgen_model::{Point, Pose};
+use d3dgen_model::occupancy::{Bitmap, CELL_M};
+use d3dgen_model::scenario::{Roi, RoiKind};
+use d3dgen_model::{Point, Pose, Rect};
 
 use super::Findings;
-use crate::world::context::{Context, LEAST_RADIUS_M, Object, common_area};
+use crate::world::context::{Context, LEAST_RADIUS_M, Object, Room, common_area};
 
 /// A region may reach beyond its room by rounding, m^2.
 const REGION_SLACK_M2: f64 = 0.01;
@@ -79,7 +80,23 @@ pub fn tasks(c: &Context, out: &mut Findings) {
                 out.add(format!("{}|{goal}", task.robot_id), "the robot cannot get there from its start");
             }
         }
+        // a cell of play: the corners of routes are centers of cells
+        let play = c.clear(radius - CELL_M);
+        for route in task.routes.iter().filter(|r| !is_driven(c, &play, &r.path)) {
+            out.add(format!("{}|{}", task.robot_id, route.to), "its route there leaves the floor that it can drive on");
+        }
     }
+}
+
+/// Returns true when a robot can be all along a line.
+fn is_driven(c: &Context, clear: &Bitmap, path: &[Point]) -> bool {
+    let along = |a: Point, b: Point| {
+        let count = (a.distance(b) / CELL_M).ceil().max(1.0);
+        (0..=count as u32)
+            .map(move |k| f64::from(k) / count)
+            .map(move |t| Point::new(a.x + t * (b.x - a.x), a.y + t * (b.y - a.y)))
+    };
+    path.len() > 1 && path.windows(2).flat_map(|w| along(w[0], w[1])).all(|p| c.is_clear(clear, p))
 }
 
 pub fn poses(c: &Context, out: &mut Findings) {
@@ -123,5 +140,25 @@ pub fn regions(c: &Context, out: &mut Findings) {
                 "m^2",
             );
         }
+        match roi.kind {
+            RoiKind::StagingArea => staging(c, roi, room, out),
+            RoiKind::SpeedZone if !roi.max_speed_m_s.is_some_and(|v| v > 0.0) => {
+                out.add(&roi.roi_id, "says no speed; give it max_speed_m_s");
+            }
+            _ => {}
+        }
+    }
+}
+
+/// Goods are put down where nothing stands and no door opens.
+fn staging(c: &Context, roi: &Roi, room: &Room, out: &mut Findings) {
+    let pieces = roi.polygon.rects();
+    let takes = |r: &Rect| pieces.iter().any(|p| common_area(p, r) > REGION_SLACK_M2);
+    let taken = c.objects_in(&roi.room_id).find(|o| o.blocks && takes(&o.rect));
+    if let Some(object) = taken {
+        out.add(&roi.roi_id, format!("`{}` stands on it", object.placement.placement_id));
+    }
+    if let Some(door) = room.doors.iter().find(|d| door_zones(d).iter().any(takes)) {
+        out.add(&roi.roi_id, format!("lies in the way of `{}`", door.door_id));
     }
 }

@@ -1,0 +1,221 @@
+//! Staging areas: free floor in or beside the circulation where goods are put down, out of the swing of doors and beside
+//! the width that people and robots pass in.
+
+use d3dgen_knowledge::freespace::FreeSpace;
+use d3dgen_model::domain::{RobotUse, Zone};
+use d3dgen_model::floorplan::Door;
+use d3dgen_model::geometry::to_mm;
+use d3dgen_model::occupancy::{Bitmap, CELL_M, stops_robot};
+use d3dgen_model::scenario::{Roi, RoiKind};
+use d3dgen_model::scene_graph::SceneGraph;
+use d3dgen_model::{Polygon, Rect};
+
+use super::floor::{Floor, Room, floor_in_front};
+
+/// Floor for each robot, m^2 (rule `staging_zone_area_per_robot`).
+const PER_ROBOT_M2: f64 = 2.5;
+/// Most robots that bring goods to one area at a time.
+const MOST_ROBOTS: u32 = 4;
+/// Depths of an area that are tried, m.
+const DEPTHS_M: [f64; 3] = [1.0, 1.25, 1.6];
+/// The least area, m: a pallet of 1.2 m by 0.8 m (EN 13698-1).
+const PALLET_M: [f64; 2] = [1.2, 0.8];
+/// Floor before a door that stays free, m.
+const BEFORE_DOOR_M: f64 = 1.0;
+/// Play of a robot that passes, m.
+const PASSING_M: f64 = 0.1;
+/// Places in a room that are looked at closely, and how far they lie apart, cells.
+const PLACES: usize = 6;
+const APART: usize = 8;
+/// Cells of a room's bounds from which on fewer of them are looked at.
+const LARGE: usize = 200_000;
+/// Kind of robot that brings nothing.
+const CLEANING: &str = "cleaning";
+
+/// Returns a staging area for each unit of the storey, or for all of it, where there is floor for one.
+pub(super) fn all(floor: &Floor, graph: &SceneGraph, rois: &[Roi]) -> Vec<Roi> {
+    let robots: u32 = graph.robots.iter().filter(|r| r.kind != CLEANING).map(|r| r.count).sum();
+    if robots == 0 {
+        return Vec::new();
+    }
+    let mut units: Vec<Option<&str>> = Vec::new();
+    for room in &graph.rooms {
+        if room.unit.is_some() && !units.contains(&room.unit.as_deref()) {
+            units.push(room.unit.as_deref());
+        }
+    }
+    if units.is_empty() {
+        units.push(None);
+    }
+    let each = robots.div_ceil(units.len() as u32).min(MOST_ROBOTS);
+    units.into_iter().filter_map(|unit| of_unit(floor, graph, rois, (unit, each))).collect()
+}
+
+fn of_unit(floor: &Floor, graph: &SceneGraph, rois: &[Roi], (unit, robots): (Option<&str>, u32)) -> Option<Roi> {
+    let here = |id: &str| graph.room(id).is_some_and(|r| unit.is_none() || r.unit.as_deref() == unit);
+    let mut rooms: Vec<(u8, &Room)> =
+        floor.rooms.iter().filter(|r| here(&r.plan.room_id)).filter_map(|r| Some((rank(floor, r)?, r))).collect();
+    rooms.sort_by_key(|r| r.0);
+    let yards: Vec<(&Room, Yard)> = rooms.into_iter().map(|(_, r)| (r, Yard::new(floor, r, rois))).collect();
+    let whole = (1..=robots).rev().flat_map(|n| {
+        let area = f64::from(n) * PER_ROBOT_M2;
+        DEPTHS_M.map(|depth| ([area / depth, depth], format!("{area} m2 for {n} robot(s)")))
+    });
+    let pallet = (PALLET_M, format!("a pallet of {} m x {} m", PALLET_M[0], PALLET_M[1]));
+    for (size, what) in whole.chain([pallet]) {
+        for (room, yard) in &yards {
+            let Some(rect) = yard.place(floor, room, size) else { continue };
+            let id = &room.plan.room_id;
+            let note = format!("goods are put down here: {what}");
+            let polygon = Polygon(rect.corners().to_vec());
+            return Some(Roi::new(format!("staging_area_{id}"), RoiKind::StagingArea, id, polygon, note));
+        }
+    }
+    None
+}
+
+/// Returns how well a room suits, 0 best: circulation, then what lies beside it; `None` for rooms of people and wet ones.
+fn rank(floor: &Floor, room: &Room) -> Option<u8> {
+    if room.is_for(RobotUse::KeepOut) || floor.plan.link_of(&room.plan.room_id).is_some() {
+        return None;
+    }
+    if room.plan.circulation {
+        return Some(0);
+    }
+    let circulation = |id: &String| floor.plan.room(id).is_some_and(|r| r.circulation);
+    let mut doors = floor.plan.doors_of(&room.plan.room_id);
+    let beside = doors.any(|d| d.entrance || d.room_ids.iter().any(circulation));
+    match room.kind.zone {
+        _ if !beside || room.kind.wet => None,
+        Zone::Public => Some(1),
+        Zone::Service => Some(2),
+        Zone::Staff => Some(3),
+        Zone::Day => Some(4),
+        Zone::Circulation => Some(0),
+        Zone::Night | Zone::Outdoor => None,
+    }
+}
+
+/// Floor of a room on which goods may stand.
+struct Yard {
+    /// By corner of cells: how many free cells lie south-west of it.
+    sums: Vec<u32>,
+    nx: usize,
+    ny: usize,
+    /// Clear width that must be left between the doors, m.
+    passage: f64,
+}
+
+impl Yard {
+    fn new(floor: &Floor, room: &Room, rois: &[Roi]) -> Self {
+        let mut map = room.quiet.clone();
+        let id = &room.plan.room_id;
+        let lanes = floor.plan.doors_of(id).map(lane);
+        let fronts = room.objects.iter().filter(|(p, _)| p.support.is_none() && stops_robot(p));
+        let fronts = fronts.map(|(p, kind)| floor_in_front(p, kind.clearance_front_m, 0.0));
+        let used = |r: &&Roi| {
+            &r.room_id == id && matches!(r.kind, RoiKind::ServiceZone | RoiKind::ChargingBuffer | RoiKind::StagingArea)
+        };
+        let used = rois.iter().filter(used).map(|r| r.polygon.bounds());
+        let (i, j) = room.corner;
+        for r in lanes.chain(fronts).chain(used) {
+            let (i0, i1, j0, j1) = floor.occupancy.frame.span(&r);
+            map.fill(i0 - i, i1 - i, j0 - j, j1 - j, false);
+        }
+        let width = if room.plan.circulation { floor.domain.circulation.width_m } else { 0.0 };
+        let passage = width.max(2.0 * floor.radius + PASSING_M);
+        Self { sums: sums(&map), nx: map.nx(), ny: map.ny(), passage }
+    }
+
+    /// Returns the place in a room for an area of this size, m, that is tucked away most.
+    fn place(&self, floor: &Floor, room: &Room, [length, depth]: [f64; 2]) -> Option<Rect> {
+        let cells = |m: f64| (m / CELL_M - 1e-6).ceil() as usize + 1;
+        let mut found = self.places(cells(length), cells(depth));
+        found.extend(self.places(cells(depth), cells(length)));
+        // what touches walls and furniture most comes first, ties go to the south-west
+        found.sort_by_key(|(touched, place)| (u32::MAX - touched, place[1], place[0], place[2]));
+        let mut looked: Vec<[usize; 4]> = Vec::new();
+        for (_, place) in found {
+            let near = |o: &[usize; 4]| o[0].abs_diff(place[0]) < APART && o[1].abs_diff(place[1]) < APART;
+            if looked.iter().any(near) {
+                continue;
+            }
+            if looked.len() == PLACES {
+                return None;
+            }
+            looked.push(place);
+            let rect = on_floor(floor, room, place);
+            if floor.is_reached(room, &rect) && self.leaves_way(floor, room, &rect) {
+                return Some(rect);
+            }
+        }
+        None
+    }
+
+    /// Returns free places (first column and row, columns, rows) of a size with how many cells around are not free.
+    fn places(&self, w: usize, h: usize) -> Vec<(u32, [usize; 4])> {
+        let step = if self.nx * self.ny > LARGE { 4 } else { 2 };
+        let mut out = Vec::new();
+        if w > self.nx || h > self.ny {
+            return out;
+        }
+        let ring = (2 * (w + h) + 4) as u32;
+        for j in (0..=self.ny - h).step_by(step) {
+            for i in (0..=self.nx - w).step_by(step) {
+                let inside = self.count([i, j, i + w, j + h]);
+                if inside < (w * h) as u32 {
+                    continue;
+                }
+                let around =
+                    [i.saturating_sub(1), j.saturating_sub(1), (i + w + 1).min(self.nx), (j + h + 1).min(self.ny)];
+                out.push((ring - (self.count(around) - inside), [i, j, w, h]));
+            }
+        }
+        out
+    }
+
+    fn count(&self, [i0, j0, i1, j1]: [usize; 4]) -> u32 {
+        let at = |i: usize, j: usize| self.sums[j * (self.nx + 1) + i];
+        at(i1, j1) + at(i0, j0) - at(i0, j1) - at(i1, j0)
+    }
+
+    /// Returns true when people and robots still pass between the doors of the room.
+    fn leaves_way(&self, floor: &Floor, room: &Room, rect: &Rect) -> bool {
+        let standing = room.objects.iter().map(|(p, _)| *p).filter(|p| stops_robot(p));
+        let mut taken: Vec<Rect> = standing.map(|p| p.footprint().bounds()).collect();
+        taken.push(*rect);
+        let doors: Vec<&Door> = floor.plan.doors_of(&room.plan.room_id).collect();
+        FreeSpace::new(&room.plan.net_polygon, &taken).passes(&doors, self.passage)
+    }
+}
+
+/// Returns how many cells of a set lie south-west of each corner of cells.
+fn sums(map: &Bitmap) -> Vec<u32> {
+    let (nx, ny) = (map.nx(), map.ny());
+    let mut out = vec![0; (nx + 1) * (ny + 1)];
+    for j in 0..ny {
+        let mut row = 0;
+        for i in 0..nx {
+            row += u32::from(map.get(i, j));
+            out[(j + 1) * (nx + 1) + i + 1] = out[j * (nx + 1) + i + 1] + row;
+        }
+    }
+    out
+}
+
+/// Returns the rectangle between the centers of the outer cells of a place.
+fn on_floor(floor: &Floor, room: &Room, [i, j, w, h]: [usize; 4]) -> Rect {
+    let (i, j) = (i + room.corner.0 as usize, j + room.corner.1 as usize);
+    let (a, b) = (floor.occupancy.frame.center(i, j), floor.occupancy.frame.center(i + w - 1, j + h - 1));
+    Rect { x0: to_mm(a.x), y0: to_mm(a.y), x1: to_mm(b.x), y1: to_mm(b.y) }
+}
+
+/// Returns the floor on both sides of a door that people come through on.
+fn lane(door: &Door) -> Rect {
+    let (a, b) = (door.line.start, door.line.end);
+    let r = Rect::new(a.x.min(b.x), a.y.min(b.y), a.x.max(b.x), a.y.max(b.y));
+    match door.line.is_vertical() {
+        true => Rect { x0: r.x0 - BEFORE_DOOR_M, x1: r.x1 + BEFORE_DOOR_M, ..r },
+        false => Rect { y0: r.y0 - BEFORE_DOOR_M, y1: r.y1 + BEFORE_DOOR_M, ..r },
+    }
+}
