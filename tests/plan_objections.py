@@ -69,10 +69,15 @@ class Room:
         self.bodies = [Body(p) for p in placements if p["room_id"] == self.id]
         self.standing = [b for b in self.bodies if b.mount == "floor" and b.high > 0.05]
         self.doors = [d for d in plan["doors"] if self.id in d["room_ids"]]
+        self.swings = [swing(d) for d in self.doors if (d.get("swing") or {}).get("into_room_id") == self.id]
         self.windows = [w for w in plan["windows"] if w["room_id"] == self.id]
 
     def named(self, *objects):
         return [b for b in self.bodies if b.object in objects]
+
+    def having(self, *words):
+        """Bodies with one of these words in their names."""
+        return [b for b in self.bodies if any(word in b.object for word in words)]
 
     def free(self, rect, side, obstacles, part=(0.0, 1.0)):
         """Free depth beside a part of one side of a rectangle, up to the next wall or obstacle."""
@@ -96,6 +101,7 @@ class World:
         )
         self.rooms = [Room(r, plan, placements["placements"]) for r in plan["rooms"]]
         self.robots = scenario.get("robots", [])
+        self.docked = [(z["room_id"], outline(z["polygon"])) for z in scenario["rois"] if z["kind"] == "charging_buffer"]
 
     def of(self, *kinds):
         return [r for r in self.rooms if r.kind in kinds]
@@ -109,6 +115,30 @@ class World:
 
 def gap(a, b):
     return math.hypot(max(0.0, a[0] - b[2], b[0] - a[2]), max(0.0, a[1] - b[3], b[1] - a[3]))
+
+
+def outline(points):
+    xs, ys = [p["x"] for p in points], [p["y"] for p in points]
+    return (min(xs), min(ys), max(xs), max(ys))
+
+
+def swing(door):
+    """The square that a door's leaf sweeps, on both sides of its wall, as far as it is wide."""
+    x0, y0, x1, y1 = outline([door["line"]["start"], door["line"]["end"]])
+    leaf = math.hypot(x1 - x0, y1 - y0) / (2 if door["kind"] == "double_hinged" else 1)
+    return (x0, y0 - leaf, x1, y1 + leaf) if x1 - x0 > y1 - y0 else (x0 - leaf, y0, x1 + leaf, y1)
+
+
+def overlap(a, b, graze=GRAZE):
+    return min(a[2], b[2]) - max(a[0], b[0]) > graze and min(a[3], b[3]) - max(a[1], b[1]) > graze
+
+
+def ahead_of(body, depth):
+    """The floor before a body, as deep as that."""
+    x0, y0, x1, y1 = body.rect
+    return [(x1, y0, x1 + depth, y1), (x0, y1, x1, y1 + depth), (x0 - depth, y0, x0, y1), (x0, y0 - depth, x1, y0)][
+        body.quarter
+    ]
 
 
 def outlines(bodies):
@@ -367,6 +397,231 @@ def no_hand_basin(world):
 def lone_nurse(world):
     """a nurse station of 18 m2 or more with one workplace"""
     return any(r.area >= 18.0 and len(r.named(*WORK_CHAIRS)) < 2 for r in world.of("nurse_station"))
+
+
+def seats_of_toilets(world):
+    """WCs of patients and visitors, each with its room."""
+    kinds = ("ensuite", "bathroom", "accessible_toilet", "assisted_bathroom", "toilet")
+    return [(r, t) for r in world.rooms if r.kind.startswith(kinds) for t in r.named("toilet", "accessible_wc")]
+
+
+@objection("B", "hospital")
+def call_out_of_reach(world):
+    """a WC with no emergency call within 0.6 m"""
+    calls = [(r, t, r.having("emergency_c")) for r, t in seats_of_toilets(world)]
+    return any(min((gap(t.rect, c.rect) for c in found), default=9.0) > 0.6 for _, t, found in calls)
+
+
+@objection("B", "hospital")
+def no_rail(world):
+    """a WC with no rail at a wall beside it, nor rails at both sides"""
+    for room, toilet in seats_of_toilets(world):
+        rails = [toilet.seen(b.x, b.y) + (b.quarter,) for b in room.having("rail") if "towel" not in b.object]
+        beside = [left for ahead, left, _ in rails if abs(ahead) < 0.5 and 0.15 < abs(left) < 0.65]
+        at_wall = [q for ahead, left, q in rails if (q - toilet.quarter) % 2 and abs(left) < 0.65 and abs(ahead) < 0.5]
+        if not at_wall and not (min(beside, default=1) < 0 < max(beside, default=-1)):
+            return True
+    return False
+
+
+def lying(world):
+    """Rooms of patients with a bed in them, each with a bed and the middle of its pillow."""
+    for room in (r for r in world.rooms if "patient_room" in r.kind or r.kind in ("vip_room", "isolation_room")):
+        for bed in room.named("hospital_bed"):
+            back = bed.depth / 2 - 0.3
+            yield room, bed, (bed.x - back * math.cos(bed.yaw), bed.y - back * math.sin(bed.yaw))
+
+
+@objection("B", "hospital")
+def visitor_far_away(world):
+    """a visitor's chair whose middle is more than 1.75 m from the pillow"""
+    for room, _, pillow in lying(world):
+        chairs = room.named("visitor_chair")
+        if chairs and min(math.dist(pillow, (c.x, c.y)) for c in chairs) > 1.75:
+            return True
+    return False
+
+
+@objection("B", "hospital")
+def screen_out_of_sight(world):
+    """a television that a patient does not see from the bed, or far from its axis"""
+    for room, bed, _ in lying(world):
+        for screen in room.having("tv"):
+            ahead, left = bed.seen(screen.x, screen.y)
+            if ahead < 0.3 or abs(left) > ahead + 0.8 or screen.seen(bed.x, bed.y)[0] < 0.3:
+                return True
+    return False
+
+
+@objection("B")
+def stacked_over_basin(world):
+    """something over a hand basin that does not belong to it"""
+    for room in world.rooms:
+        for basin in room.named(*HAND_BASINS):
+            over = [b for b in room.bodies if b.mount == "wall" and b.low > basin.high - 0.3 and b.low < 1.9]
+            if any(b.group != basin.group and overlap(b.rect, basin.rect, 0.01) for b in over):
+                return True
+    return False
+
+
+@objection("A")
+def dock_taken(world):
+    """furniture on the free floor of a charging dock"""
+    for room_id, floor in world.docked:
+        room = next(r for r in world.rooms if r.id == room_id)
+        if any(overlap(b.rect, floor) for b in room.standing if "dock" not in b.object and "robot" not in b.object):
+            return True
+    return False
+
+
+@objection("B")
+def many_bins(world):
+    """two bins within 0.5 m, or two clocks in a room"""
+    for room in world.rooms:
+        bins, clocks = room.having("waste_bin"), room.having("wall_clock")
+        close = any(gap(a.rect, b.rect) < 0.5 for k, a in enumerate(bins) for b in bins[:k])
+        if close or len(clocks) > (0 if room.kind in WET and "kitchen" not in room.kind else 1):
+            return True
+    return False
+
+
+@objection("B", "office")
+def floating_desk(world):
+    """a desk of an open office with neither a desk, a wall nor a screen behind it"""
+    for room in world.of("open_office", "team_office", "coworking_space"):
+        desks = room.named(*DESKS)
+        for desk in desks:
+            screens = [b for b in room.standing if b is not desk and "chair" not in b.object]
+            if room.free(desk.rect, (desk.quarter + 2) % 4, outlines(screens), (0.25, 0.75)) > 0.4:
+                return True
+    return False
+
+
+@objection("B", "office")
+def lone_desk(world):
+    """a desk more than 2 m from the others of an open office"""
+    for room in world.of("open_office", "team_office", "coworking_space"):
+        desks = room.named(*DESKS)
+        if len(desks) > 1 and any(min(gap(a.rect, b.rect) for b in desks if b is not a) > 2.0 for a in desks):
+            return True
+    return False
+
+
+@objection("B", "office")
+def crowded_visitors(world):
+    """visitors' seats right beside a counter, behind it, or touching each other or a shelf"""
+    for room in world.of("reception", "office", "executive_office", "shared_office"):
+        desks = [b for b in room.standing if "reception_desk" in b.object]
+        seats = room.named(*VISITOR_SEATS)
+        if any(s.group != d.group and gap(s.rect, d.rect) < 0.6 for s in seats for d in desks):
+            return True
+        others = seats + room.having("shelf", "cupboard", "cabinet", "rack")
+        lone = [s for s in seats if s.object == "visitor_chair"]
+        apart = ((s, o) for s in lone for o in others if o is not s and (s.group is None or s.group != o.group))
+        if any(gap(s.rect, o.rect) < 0.04 and s.quarter == o.quarter for s, o in apart):
+            return True
+    return False
+
+
+@objection("A", "office")
+def leaf_at_cubicle(world):
+    """a door whose leaf sweeps the floor before a WC cubicle"""
+    cubicles = [(r, c) for r in world.rooms for c in r.having("cubicle")]
+    return any(overlap(ahead_of(c, 0.6), leaf, 0.05) for r, c in cubicles for leaf in r.swings)
+
+
+@objection("B", "residential")
+def armchair_apart(world):
+    """an armchair of a living room more than 1.2 m from the coffee table, or turned away from it"""
+    for room in world.of("living_room", "studio", "family_room"):
+        tables = room.named("coffee_table")
+        for chair in room.named("armchair", "reading_chair") if tables else []:
+            table = min(tables, key=lambda t: gap(t.rect, chair.rect))
+            if gap(table.rect, chair.rect) > 1.2 or chair.seen(table.x, table.y)[0] < 0.2:
+                return True
+    return False
+
+
+@objection("B", "residential")
+def narrow_wardrobe(world):
+    """a bedroom for two with less than 1.2 m of wardrobe"""
+    double = [r for r in world.rooms if r.named("double_bed")]
+    closets = any(r.kind in ("walk_in_closet", "dressing_room") for r in world.rooms)
+    return not closets and any(sum(b.width for b in r.having("wardrobe")) < 1.19 for r in double)
+
+
+@objection("B", "residential")
+def lone_fridge(world):
+    """a fridge more than 0.65 m from the kitchen's run"""
+    run = ("sink_unit", "base_cabinet", "hob", "kitchen_unit", "dishwasher", "tall_cabinet")
+    for room in world.rooms:
+        units = room.having(*run)
+        for fridge in room.having("fridge") if units else []:
+            if min(gap(fridge.rect, b.rect) for b in units) > 0.65:
+                return True
+    return False
+
+
+@objection("A", "residential")
+def hob_at_door(world):
+    """a hob less than 0.9 m from a door"""
+    for room in world.rooms:
+        for hob in room.named("hob"):
+            if any(gap(hob.rect, outline([d["line"]["start"], d["line"]["end"]])) < 0.88 for d in room.doors):
+                return True
+    return False
+
+
+@objection("B")
+def shower_in_the_middle(world):
+    """a shower in no corner"""
+    for room in world.rooms:
+        for shower in room.having("shower"):
+            if "wall" in shower.object or "chair" in shower.object or shower.mount != "floor":
+                continue
+            flush = [side for side in range(4) if room.free(shower.rect, side, []) < 0.06]
+            if not any((side + 1) % 4 in flush for side in flush):
+                return True
+    return False
+
+
+def before_window(body, room):
+    """Whether a window is behind a body, seen along its width."""
+    for window in room.windows:
+        a, b = window["line"]["start"], window["line"]["end"]
+        for k in range(11):
+            ahead, left = body.seen(*(a[c] + (b[c] - a[c]) * k / 10 for c in ("x", "y")))
+            if abs(left) < body.width / 2 - 0.05 and -0.6 < ahead + body.depth / 2 < 0.1:
+                return True
+    return False
+
+
+@objection("B", "residential")
+def bed_under_window(world):
+    """the head of a double bed under a window"""
+    return any(before_window(bed, r) for r in world.rooms for bed in r.named("double_bed"))
+
+
+@objection("B", "residential")
+def screen_between_windows(world):
+    """a television with windows to both sides of it"""
+    for room in world.rooms:
+        for screen in room.named("tv"):
+            sides = set()
+            for window in room.windows:
+                a, b = window["line"]["start"], window["line"]["end"]
+                ahead, left = screen.seen((a["x"] + b["x"]) / 2, (a["y"] + b["y"]) / 2)
+                if -1.0 < ahead < 0.1 and abs(left) < 2.5:
+                    sides.add(left > 0)
+            if len(sides) == 2:
+                return True
+    return False
+
+
+@objection("B", "hospital")
+def dark_room(world):
+    """a room with no lamp at its ceiling"""
+    return any(not any(b.mount == "ceiling" and ("lamp" in b.object or "light" in b.object) for b in r.bodies) for r in world.rooms)
 
 
 def main():

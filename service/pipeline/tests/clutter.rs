@@ -14,13 +14,16 @@ use d3dgen_pipeline::generate::{Settings, generate_world};
 use d3dgen_pipeline::scene_graph::Request;
 use d3dgen_plugins::Registry;
 
-/// Least objects on a square meter of a cluttered building, its corridors left out; a warehouse is mostly aisles.
-const CASES: [(&str, f64); 6] = [
+/// Least objects on a square meter of a whole cluttered building; a warehouse is mostly aisles.
+const CASES: [(&str, f64); 9] = [
     ("two-bedroom flat in Germany", 2.0),
     ("office for 12 people with two meeting rooms", 1.7),
-    ("hospital ward with 8 rooms in Germany", 1.6),
+    ("hospital ward with 8 rooms in Germany", 2.0),
+    ("outpatient clinic with 8 rooms", 2.0),
     ("primary school with four classrooms", 2.0),
-    ("hotel with 9 rooms", 1.4),
+    ("hotel with 9 rooms", 2.0),
+    ("clothing shop", 2.0),
+    ("restaurant", 2.0),
     ("warehouse with a loading dock, an office and charging for two robots", 0.5),
 ];
 
@@ -35,10 +38,8 @@ fn world(prompt: &str, seed: u64, clutter: Option<Clutter>) -> World {
 }
 
 fn per_m2(world: &World) -> f64 {
-    let rooms: BTreeMap<&str, f64> =
-        world.floorplan.rooms.iter().filter(|r| !r.circulation).map(|r| (r.room_id.as_str(), r.net_area_m2)).collect();
-    let inside = world.placements.placements.iter().filter(|p| rooms.contains_key(p.room_id.as_str())).count();
-    inside as f64 / rooms.values().sum::<f64>()
+    let area: f64 = world.floorplan.rooms.iter().map(|r| r.net_area_m2).sum();
+    world.placements.placements.len() as f64 / area
 }
 
 /// Returns what takes floor, wall or ceiling, without names.

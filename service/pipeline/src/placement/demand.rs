@@ -4,6 +4,8 @@ use d3dgen_model::domain::{Arrangement, Domain, Furnishing, Mount, ObjectType, R
 use d3dgen_model::occupancy::ROBOT_HEIGHT_M;
 use d3dgen_model::scene_graph::{GraphRoom, SceneGraph};
 
+use super::seats::is_seat;
+use super::state::Placed;
 use super::unit::{Forms, Unit, variants};
 
 /// Largest number of units of one line in one room.
@@ -57,9 +59,26 @@ impl Task<'_> {
         seated && self.arrangement == Arrangement::Rows
     }
 
-    /// Lets full rows go before the last few of a number that comes from the room's area alone.
+    /// Lets full rows go before the last few of a number that comes from the room's area alone, and pairs before an odd one.
     fn allow_full_rows(&mut self) {
-        self.spare = (self.count / 7).min(self.count - self.required.max(1).min(self.count));
+        let few = (self.count / 7).max(self.count % 2);
+        self.spare = few.min(self.count - self.required.max(1).min(self.count));
+    }
+
+    /// Returns true for a thing of which a room wants so many, whatever else they belong to: seats for visitors, a refrigerator.
+    fn counts_in_groups(&self) -> bool {
+        let shape = self.anchor.shape;
+        self.item == self.anchor.id && (shape == Shape::Appliance || is_seat(shape))
+    }
+
+    /// Returns how many of it stand with other things already; `tasks` are those before it.
+    pub fn standing(&self, tasks: &[Task], placed: &[Placed]) -> u32 {
+        let goes_on = tasks.iter().any(|t| t.line == self.line && t.item == self.item);
+        if !self.counts_in_groups() || goes_on {
+            return 0;
+        }
+        let groups = placed.iter().filter(|p| p.unit.group && p.unit.anchor().object.id != self.item);
+        groups.flat_map(|p| &p.unit.parts[1..]).filter(|part| part.object.id == self.item).count() as u32
     }
 
     /// Returns how many units count: those beyond what full rows may leave out do not.

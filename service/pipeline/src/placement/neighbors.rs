@@ -20,6 +20,8 @@ const FROM_MACHINE: i32 = 1000;
 const SOFA_FROM_MACHINE: i32 = 600;
 /// Floor from the edge of a table at which people sit to what one can do without, mm: a chair, and room to push it back.
 const BEHIND_SEATS: i32 = 900;
+/// Floor between a counter and seats for those who wait, mm.
+const FROM_COUNTER: i32 = 800;
 /// Floor between a chair at a table and the swing of a door, mm.
 const FROM_SWING: i32 = 250;
 
@@ -27,15 +29,29 @@ const FROM_SWING: i32 = 250;
 pub(super) fn disturbs(state: &State, p: &Placed, robot: i32) -> bool {
     // clothes have to go somewhere, a plant has not
     let stores = matches!(p.unit.anchor().object.shape, Shape::Cabinet | Shape::Shelf);
-    // a lone seat at the side of a dock or beside the staff is better than none for those who wait
+    // a lone seat beside the staff is better than none for those who wait
     let lone_seat = p.unit.parts.len() == 1 && is_seat(p.unit.anchor().object.shape);
-    !lone_seat && (is_in_the_way(state, p, robot) || sits_with_staff(state, p))
+    is_in_the_way(state, p, robot)
+        || !lone_seat && sits_with_staff(state, p)
+        || sits_at_counter(state, p)
         || crowds_desks(state, p)
         || has_machine_beside_sofa(state, p)
         || shuts_in_staff(state, p)
         || sits_in_swing(state, p)
         || stands_behind_seats(state, p)
         || !stores && beside_beds(state, p) > 0.0
+}
+
+/// Returns true for seats of those who wait right beside a counter at which others are served.
+fn sits_at_counter(state: &State, p: &Placed) -> bool {
+    let seat = p.unit.anchor().object.shape;
+    if !is_seat(seat) && seat != Shape::Sofa {
+        return false;
+    }
+    let own = p.world(&p.unit.bbox);
+    let counters = state.placed.iter().filter(|o| o.unit.anchor().object.shape == Shape::Counter);
+    let served = |o: &&Placed| o.unit.parts[1..].iter().any(|part| is_seat(part.object.shape));
+    counters.filter(served).any(|o| o.solid(o.unit.anchor()).rect.gap(&own) < FROM_COUNTER)
 }
 
 /// Returns true for seats at a table so near to the swing of a door that nobody can push back a chair.

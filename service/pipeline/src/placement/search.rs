@@ -10,7 +10,7 @@ use d3dgen_model::domain::{Arrangement, Domain, Mount, Shape};
 
 use super::demand::Task;
 use super::draft::{DEPARTURES, Departure, Draft, RESCUES, Seen};
-use super::find::{Candidate, Find, Tally, Terms, over, rows};
+use super::find::{Candidate, Find, Tally, Terms, leave_out_single, over, rows};
 use super::nav::Nav;
 use super::space::{Open, Space};
 use super::state::{Placed, Rule, State};
@@ -320,6 +320,7 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
         for index in tasks {
             let task = &self.job.tasks[index];
             let present = self.job.present[index];
+            let present = present + task.standing(&self.job.tasks[..index], &draft.state.placed);
             let count = task.count.saturating_sub(present);
             let replaced = |item: &String| draft.state.placed.iter().any(|p| p.unit.item == item);
             let given_up = task.first_choice && self.level > FIRST_CHOICES;
@@ -455,6 +456,9 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
             for batch in batches.into_iter().skip(rank).take_while(|_| !self.job.stop.is_set()) {
                 let mut units: Vec<Placed> = Vec::new();
                 keep_passable(state, &batch.placed, &mut units, tally);
+                if batch.in_pairs {
+                    leave_out_single(state.space, task, &mut units);
+                }
                 if units.is_empty() {
                     continue;
                 }

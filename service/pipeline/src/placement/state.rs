@@ -11,16 +11,16 @@ use super::geom::{Box2, Solid, mm, turn};
 use super::nav::Nav;
 use super::pockets::Pockets;
 use super::seats::ways_beside;
-use super::space::{Open, Space};
+use super::space::{DoorZone, Open, Space, WallSide};
 use super::unit::{Part, Unit};
 use super::way::{InTheWay, Way};
 
 /// Height up to which things leave the sight of a screen free, mm: coffee tables.
 const LOW: i32 = 500;
-/// Room over the rim of a basin for hands and taps, and the depth up to which something may hang there all the same (a
-/// mirror, a dispenser), mm.
-const OVER_BASIN: i32 = 700;
-const BEHIND_TAP: i32 = 140;
+/// Height over the rim of a basin up to which nothing hangs but what came with it, mm: hands, taps, and the face in the mirror.
+const OVER_BASIN: i32 = 1200;
+/// How far from a wall what hangs on it may be, mm.
+const AT_WALL: i32 = 5;
 
 /// A hard rule that a position can break.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -128,7 +128,7 @@ pub(super) struct State<'a, 's> {
     pub space: &'s Space,
     pub placed: Vec<Placed<'a>>,
     pub solids: Vec<Solid>,
-    /// Room over basins that nothing deep may take.
+    /// Room over basins that nothing else may take.
     basins: Vec<Solid>,
     pub clears: Vec<Box2>,
     /// Outlines of what takes floor: not what is flat, hangs high or flat on a wall.
@@ -202,6 +202,9 @@ impl<'a, 's> State<'a, 's> {
             if p.support.is_none() && !space.contains(&solid.rect) || solid.z1 > space.ceiling {
                 return Err(Rule::Outside);
             }
+            if part.hangs_aside() && !self.has_wall_behind(&solid.rect, (p.q + part.quarter) % 4) {
+                return Err(Rule::NoPlace);
+            }
             if solid.is_flat() && solid.z0 == 0 {
                 // floor covering may lie anywhere, but not on other floor covering
                 if self.solids.iter().any(|s| s.is_flat() && s.overlaps(&solid)) {
@@ -240,13 +243,20 @@ impl<'a, 's> State<'a, 's> {
         Ok(())
     }
 
-    /// Returns true for a cabinet over a basin, whichever of them comes later: nobody gets to the tap below it.
+    /// Returns true for a cabinet, a screen or a dispenser over the basin of something else, whichever of them comes later:
+    /// nobody gets to the tap below it, or dries hands over it.
     fn closes_basin(&self, part: &Part, solid: &Solid) -> bool {
-        let deep = |s: &Solid| s.rect.width().min(s.rect.height()) > BEHIND_TAP;
         match part.object.shape {
-            Shape::Basin => self.solids.iter().any(|s| deep(s) && s.overlaps(&over_basin(solid))),
-            _ => part.mount == Mount::Wall && deep(solid) && self.basins.iter().any(|b| b.overlaps(solid)),
+            Shape::Basin => self.solids.iter().any(|s| s.overlaps(&over_basin(solid))),
+            _ => part.mount == Mount::Wall && self.basins.iter().any(|b| b.overlaps(solid)),
         }
+    }
+
+    /// Returns true where a wall that faces `q` carries all of what hangs there.
+    fn has_wall_behind(&self, rect: &Box2, q: u8) -> bool {
+        let own = rect.turned((4 - q) % 4);
+        let carries = |w: &WallSide| (own.x0 - w.u).abs() <= AT_WALL && own.y0 >= w.v0 && own.y1 <= w.v1;
+        self.space.walls.iter().any(|w| w.q == q && carries(w))
     }
 
     /// Returns true for floor covering that lies on the floor a door needs.
@@ -260,23 +270,32 @@ impl<'a, 's> State<'a, 's> {
         if p.unit.clears.iter().all(|c| free(&p.world(c))) { Ok(()) } else { Err(Rule::Clearance) }
     }
 
-    /// Tests a unit as [`State::test`]; what stands on it or hangs over it and is no essential part of it is left away
-    /// where it would stand in the light or meet something that hangs there.
+    /// Tests a unit as [`State::test`]; what stands on it, hangs over it or on the wall beside it and is no essential part of it
+    /// is left away where it would stand in the light, meet something that hangs there or have no wall.
     pub fn fit(&self, p: Placed<'a>, at_window: bool) -> Result<Placed<'a>, Rule> {
         match self.test(&p, at_window) {
             Ok(()) => Ok(p),
-            Err(rule @ (Rule::Window | Rule::Collision | Rule::Door)) => {
+            Err(rule @ (Rule::Window | Rule::Collision | Rule::Door | Rule::NoPlace | Rule::Outside)) => {
                 let in_the_way = |part: &Part| {
                     let solid = p.solid(part);
                     self.space.windows.iter().any(|w| w.is_taken_by(&solid, self.open))
                         || part.mount == Mount::Ceiling && self.solids.iter().any(|s| s.overlaps(&solid))
                         || part.mount == Mount::Floor && self.lies_in_door(&solid)
+                        || part.hangs_aside() && self.hangs_badly(&solid, (p.q + part.quarter) % 4)
                 };
                 let lesser = Placed { unit: Rc::new(p.unit.cleared(in_the_way).ok_or(rule)?), ..p.clone() };
                 self.test(&lesser, at_window).map(|()| lesser)
             }
             Err(rule) => Err(rule),
         }
+    }
+
+    /// Returns true for what would hang beside its unit without a wall, in a door or in something else.
+    fn hangs_badly(&self, solid: &Solid, q: u8) -> bool {
+        let in_door = |d: &DoorZone| solid.z0 < d.height && d.kept(self.open).overlaps(&solid.rect);
+        !self.has_wall_behind(&solid.rect, q)
+            || self.space.doors.iter().any(in_door)
+            || self.solids.iter().any(|s| s.overlaps(solid))
     }
 
     /// Returns how many cells of floor stay reachable once the units stand there, or the rule they break.

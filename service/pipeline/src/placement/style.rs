@@ -47,7 +47,7 @@ pub(super) fn style(shape: Shape, mount: Mount, both_sides: bool) -> Style {
         Shape::Bed | Shape::HospitalBed => Style {
             centered: if both_sides { 0.9 } else { 0.0 },
             flush: if both_sides { 0.0 } else { 0.7 },
-            solid_behind: 1.5,
+            solid_behind: 3.0,
             far_from_door: 1.2,
             tight: 0.0,
             ..PLAIN

@@ -38,6 +38,11 @@ impl Part<'_> {
         stretches.map(move |[from, to]| Box2 { y0: at(*from), y1: at(*to), ..own }.turned(self.quarter))
     }
 
+    /// Returns true for what hangs on another wall than the one behind its unit: the rail at the side of a toilet.
+    pub fn hangs_aside(&self) -> bool {
+        self.mount == Mount::Wall && self.support.is_none() && !self.quarter.is_multiple_of(4)
+    }
+
     /// Returns true for what hangs flat on a wall, which narrows no passage.
     pub fn is_shallow(&self) -> bool {
         let r = self.solid.rect;
@@ -151,10 +156,11 @@ impl<'a> Unit<'a> {
         local.turned((4 - self.look()) % 4)
     }
 
-    /// Returns the unit without the optional things on its top, over it and flat on the floor that are in the way; `None`
-    /// when none is.
+    /// Returns the unit without the optional things on its top, over it, on the wall beside it and flat on the floor that are
+    /// in the way; `None` when none is.
     pub fn cleared(&self, in_the_way: impl Fn(&Part) -> bool) -> Option<Self> {
-        let loose = |p: &Part| matches!(p.mount, Mount::Surface | Mount::Ceiling) || p.solid.is_flat();
+        let loose =
+            |p: &Part| matches!(p.mount, Mount::Surface | Mount::Ceiling) || p.solid.is_flat() || p.hangs_aside();
         let gone = |p: &Part| p.optional && loose(p) && in_the_way(p);
         if !self.parts.iter().any(gone) {
             return None;

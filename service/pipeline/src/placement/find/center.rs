@@ -2,6 +2,8 @@
 
 use std::rc::Rc;
 
+use d3dgen_model::domain::Shape;
+
 use super::{Find, Focus, Rule};
 use crate::placement::geom::{Box2, Solid, turn};
 use crate::placement::seats::is_seat;
@@ -16,10 +18,21 @@ const PAST_LEAF: i32 = 600;
 const AT_SWING: f64 = 1.0;
 /// Free floor around tables with seats, mm.
 const BESIDE: i32 = 300;
+/// Height up to which a table is one for those on sofas, mm.
+const LOW_TABLE: i32 = 550;
+/// Floor between such a table and an armchair at its end, and how far from its middle that stands, mm.
+const TO_TABLE: [i32; 4] = [450, 600, 800, 1000];
+const ALONG_TABLE: [i32; 5] = [0, 200, -200, 350, -350];
 
 impl<'a> Find<'_, 'a, '_> {
     /// Offers free-standing positions around the middle of the largest free rectangle.
     pub(super) fn center(&mut self, unit: &Rc<Unit<'a>>) {
+        if self.task.required == 0
+            && unit.anchor().object.shape == Shape::Sofa
+            && let Some((q, table)) = self.low_table()
+        {
+            return self.at_low_table(unit, q, &table);
+        }
         let free = self.largest_free();
         let space = self.state.space;
         let flat = unit.parts[0].solid.is_flat();
@@ -49,6 +62,39 @@ impl<'a> Find<'_, 'a, '_> {
             }
         }
         if self.out.len() == before {
+            self.none(Rule::NoPlace);
+        }
+    }
+
+    /// Returns where the sofa looks that has a low table before it, and the table.
+    fn low_table(&self) -> Option<(u8, Box2)> {
+        let sofas = self.state.placed.iter().filter(|p| p.unit.anchor().object.shape == Shape::Sofa);
+        sofas.filter(|p| p.unit.item != self.task.item).find_map(|p| {
+            let mut low = p.unit.parts.iter().filter(|part| part.solid.stops_robot() && part.solid.z1 <= LOW_TABLE);
+            let table = low.find(|part| matches!(part.object.shape, Shape::Table | Shape::RoundTable))?;
+            Some((p.q, p.solid(table).rect))
+        })
+    }
+
+    /// Offers positions at the ends of the low table before a sofa, facing it: an armchair belongs to those who talk there, or
+    /// is left out.
+    fn at_low_table(&mut self, unit: &Rc<Unit<'a>>, sofa: u8, table: &Box2) {
+        let own = unit.anchor().solid.rect;
+        let (bu, bv) = own.center();
+        let table = table.turned((4 - sofa) % 4);
+        let (tx, ty) = table.center();
+        for (turns, side) in [(3, 1), (1, -1)] {
+            let q = (sofa + turns) % 4;
+            let (du, dv) = turn(q, bu, bv);
+            for (gap, along) in TO_TABLE.into_iter().flat_map(|gap| ALONG_TABLE.map(|along| (gap, along))) {
+                let away = ty + side * (table.height() / 2 + gap + own.width() / 2);
+                let (x, y) = turn(sofa, tx + along, away);
+                let (u, v) = turn(4 - q, x - du, y - dv);
+                let off = f64::from((gap - TO_TABLE[1]).abs() + along.abs()) / 1000.0;
+                self.offer(at_frame(unit, q, u, v, self.index), u32::from(turns), |_, _| 2.0 - off);
+            }
+        }
+        if self.out.is_empty() {
             self.none(Rule::NoPlace);
         }
     }

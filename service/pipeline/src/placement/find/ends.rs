@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use d3dgen_model::domain::{Mount, Shape};
 
-use super::{Find, Focus, Rule};
+use super::{Candidate, Find, Focus, Rule};
 use crate::placement::geom::{Box2, turn};
 use crate::placement::seats::has_no_way_past;
 use crate::placement::space::WallSide;
@@ -41,6 +41,9 @@ const LANDING: i32 = 1100;
 const IN_THE_WAY_IN: f64 = 4.0;
 /// What a counter loses with a wall in the floor where people queue.
 const FACES_WALL: f64 = 2.0;
+/// How far beside a screen windows dazzle who looks at it, mm, and what it and the seat before it lose between two of them.
+const DAZZLED: i32 = 2500;
+pub(super) const BETWEEN_WINDOWS: f64 = 1.5;
 /// What a screen loses that half of those at a table have behind their backs.
 const BACKS: f64 = 8.0;
 /// What a desk loses with a window right before or behind its user, which the screen mirrors.
@@ -67,11 +70,18 @@ impl<'a> Find<'_, 'a, '_> {
         } else {
             self.facing_side(unit, &focus, 0.0);
         }
+        // who lies in bed or sits on a sofa sees no screen behind or far beside
+        let screen = self.task.anchor.shape == Shape::Panel && self.task.required == 0 && !focus.around;
+        let unseen = |c: &Candidate| screen && !focus.sees(&c.placed.world(&c.placed.unit.anchor().solid.rect));
+        self.out.retain(|c| !unseen(c));
         if self.out.is_empty() {
             for i in 0..self.state.space.walls.len() {
                 let opposite = self.state.space.walls[i].q != focus.q;
-                self.along_wall(unit, i, if opposite { -1.0 } else { -2.5 });
+                if opposite || !screen {
+                    self.along_wall(unit, i, if opposite { -1.0 } else { -2.5 });
+                }
             }
+            self.out.retain(|c| !unseen(c));
         }
     }
 
@@ -110,6 +120,7 @@ impl<'a> Find<'_, 'a, '_> {
                     let aside = f64::from((v - low).min(high - v)) / 1000.0;
                     // looked at from a little aside is well enough, from the far end of the sofa it is not
                     let turned = 0.5 * off + 2.5 * (off - NEAR_AXIS_M).max(0.0);
+                    let less = less + if self.is_between_windows(i, v + middle) { BETWEEN_WINDOWS } else { 0.0 };
                     self.offer(placed, i as u32, |_, _| 3.0 - less - if look == 0 { turned } else { aside });
                 }
             }
@@ -133,9 +144,9 @@ impl<'a> Find<'_, 'a, '_> {
         }
     }
 
-    /// Returns how far before a unit, near its axis, the nearest wall is where what will face it finds its place, mm; `None`
-    /// without such a wall.
-    pub(super) fn view(&self, p: &Placed<'a>, unit: &Rc<Unit<'a>>) -> Option<i32> {
+    /// Returns how far before a unit, near its axis, the nearest wall is where what will face it finds its place, mm, and
+    /// whether windows are on both sides of that; `None` without such a wall.
+    pub(super) fn view(&self, p: &Placed<'a>, unit: &Rc<Unit<'a>>) -> Option<(i32, bool)> {
         let q = (p.q + p.unit.look() + 2) % 4;
         let back = (4 - q) % 4;
         let (seat, reach) = (p.world(&p.unit.anchor().solid.rect), p.world(&p.unit.reach));
@@ -143,7 +154,7 @@ impl<'a> Find<'_, 'a, '_> {
         let front = seat.turned(back).x0;
         let anchor = unit.anchor().solid.rect;
         let middle = (anchor.y0 + anchor.y1) / 2;
-        let has_place = |wall: &&WallSide| {
+        let has_place = |(_, wall): &(usize, &WallSide)| {
             [0, -200, 200, -400, 400].into_iter().any(|side| {
                 let v = axis - middle + side;
                 let placed = at_frame(unit, q, wall.u - unit.bbox.x0, v, self.index);
@@ -151,8 +162,15 @@ impl<'a> Find<'_, 'a, '_> {
                 inside && !placed.world(&unit.bbox).overlaps(&reach) && self.state.test(&placed, false).is_ok()
             })
         };
-        let walls = self.state.space.walls.iter().filter(|w| w.q == q && (VIEW.0..VIEW.1).contains(&(front - w.u)));
-        walls.filter(has_place).map(|wall| front - wall.u).min()
+        let walls = self.state.space.walls.iter().enumerate();
+        let seen = walls.filter(|(_, w)| w.q == q && (VIEW.0..VIEW.1).contains(&(front - w.u)));
+        seen.filter(has_place).map(|(i, wall)| (front - wall.u, self.is_between_windows(i, axis))).min()
+    }
+
+    /// Returns true for a place on a wall with windows to both sides, which dazzle who looks there.
+    fn is_between_windows(&self, wall: usize, along: i32) -> bool {
+        let near = |low: i32, high: i32| self.state.space.windows_of(wall).any(|w| w.v1 > low && w.v0 < high);
+        near(along - DAZZLED, along) && near(along, along + DAZZLED)
     }
 
     /// Offers positions that face the door of the room, with the far wall or a person's width behind: a counter with its

@@ -10,11 +10,11 @@ use std::rc::Rc;
 
 use d3dgen_model::domain::{Arrangement, Mount, Shape};
 
-pub(super) use rows::{Terms, over, rows};
+pub(super) use rows::{Terms, leave_out_single, over, rows};
 
 use super::demand::Task;
 use super::docks::crowding;
-use super::geom::Box2;
+use super::geom::{Box2, turn};
 use super::neighbors::disturbs;
 use super::seats::{beside_beds, sits_with_staff};
 use super::state::{Placed, Rule, State};
@@ -23,6 +23,13 @@ use super::unit::Unit;
 
 /// What a lone seat for visitors loses on the staff's side of a counter: more than all else there can make up for.
 const WITH_STAFF: f64 = 9.0;
+/// What a place loses for each small thing that has none there, and for what would hang on the wall beside it.
+const LOST: f64 = 0.4;
+const LOST_ASIDE: f64 = 2.0;
+
+/// How far ahead of the middle of those who look at it a screen hangs at least, and how much farther aside than ahead, mm.
+const AHEAD: i32 = 400;
+const ASIDE: i32 = 600;
 
 /// A valid position, routes not yet looked at.
 #[derive(Debug, Clone)]
@@ -44,6 +51,15 @@ struct Focus {
     seat: (i32, i32),
     /// True when they sit around it.
     around: bool,
+}
+
+impl Focus {
+    /// Returns true for what its users have before them without turning their heads far.
+    fn sees(&self, thing: &Box2) -> bool {
+        let back = (4 - self.q) % 4;
+        let ((x, y), (from, axis)) = (thing.turned(back).center(), turn(back, self.seat.0, self.seat.1));
+        x - from > AHEAD && (y - axis).abs() < x - from + ASIDE
+    }
 }
 
 /// How often each rule turned a position down.
@@ -105,7 +121,7 @@ impl<'f, 'a, 's> Find<'f, 'a, 's> {
             return self.none(Rule::Clearance);
         }
         let at_window = self.task.arrangement == Arrangement::AtWindow;
-        let parts = placed.unit.parts.len();
+        let whole = Rc::clone(&placed.unit);
         match self.state.fit(placed, at_window) {
             Ok(placed) => {
                 let grain = grain(
@@ -113,9 +129,8 @@ impl<'f, 'a, 's> Find<'f, 'a, 's> {
                     i64::from(placed.at.0 / 50),
                     i64::from(placed.at.1 / 50) * 4 + i64::from(placed.q),
                 );
-                let lost = parts - placed.unit.parts.len();
                 let score = score(self, &placed) + 0.25 * grain + 0.6 * self.class_grain(class)
-                    - 0.4 * lost as f64
+                    - loss(&whole, &placed.unit)
                     - crowding(self.state, &placed, self.aisle)
                     - if sits_with_staff(self.state, &placed) { WITH_STAFF } else { 0.0 }
                     - beside_beds(self.state, &placed);
@@ -149,4 +164,11 @@ impl<'f, 'a, 's> Find<'f, 'a, 's> {
         let around = round && alike().count() == 1 && first.unit.parts.len() > 1;
         Some(Focus { q: (first.q + first.unit.look()) % 4, rect, seat: own.center(), around })
     }
+}
+
+/// Returns what a place loses that leaves this much of a whole unit.
+fn loss(whole: &Unit, left: &Unit) -> f64 {
+    let aside = |unit: &Unit| unit.parts.iter().filter(|part| part.hangs_aside()).count() as f64;
+    let gone = (whole.parts.len() - left.parts.len()) as f64;
+    if gone > 0.0 { LOST * gone + (LOST_ASIDE - LOST) * (aside(whole) - aside(left)) } else { 0.0 }
 }

@@ -8,6 +8,7 @@ use d3dgen_model::domain::{Arrangement, Shape};
 use super::{Rule, Tally};
 use crate::placement::demand::Task;
 use crate::placement::geom::{Box2, turn};
+use crate::placement::space::{Space, WallSide};
 use crate::placement::state::{Placed, State, at_frame};
 use crate::placement::style::grain;
 use crate::placement::unit::Unit;
@@ -31,6 +32,11 @@ const SHARED: f64 = 3.0;
 const GLARE: f64 = 1.0;
 /// What rows lose past neither end of which people get as through an aisle.
 const NARROW_ENDS: f64 = 1.0;
+/// What rows of desks lose all of which have open floor behind their screens, before and after places are looked at.
+const OPEN_BACKS: f64 = 4.0;
+const SINGLE: f64 = 6.0;
+/// Floor behind a desk over which it stands against a wall all the same, mm.
+const AT_WALL: i32 = 350;
 /// Row plans whose every position is tested.
 const PLANS: usize = 20;
 /// Arrangements handed to the search.
@@ -39,6 +45,8 @@ const KEPT: usize = 6;
 /// Units in rows, with how good the whole is.
 pub(in crate::placement) struct Batch<'a> {
     pub placed: Vec<Placed<'a>>,
+    /// True for desks that are to stand face to face, or against a wall.
+    pub in_pairs: bool,
     pub score: f64,
 }
 
@@ -74,6 +82,10 @@ impl Plan {
 
     /// Returns the floor to keep before and after the rows, mm: to use them, and for what they look at.
     fn margins(&self, unit: &Unit, front: i32, stage: i32) -> (i32, i32) {
+        // the last of an odd number of rows has its back to the wall
+        if self.paired && self.rows % 2 == 1 {
+            return (front, 0);
+        }
         let back = if self.paired { front } else { 0 };
         match unit.look() {
             0 => (back, front.max(stage)),
@@ -85,6 +97,12 @@ impl Plan {
     /// Returns what rows lose whose users share the floor behind them, where they could have this much, mm.
     fn shared(&self, own: i32) -> f64 {
         if self.rows < 3 || own == 0 { 0.0 } else { SHARED * f64::from((own - self.gap_u).max(0)) / f64::from(own) }
+    }
+
+    /// Returns the share of rows with nobody across and no wall behind.
+    fn open_backs(&self) -> f64 {
+        let alone = if self.paired { self.rows % 2 } else { self.rows - 1 };
+        f64::from(alone) / f64::from(self.rows.max(1))
     }
 
     /// Returns the low edge of a column, counted from the first.
@@ -122,6 +140,7 @@ pub(in crate::placement) fn rows<'a>(
 ) -> Vec<Batch<'a>> {
     let aisle = terms.robot.max(AISLE);
     let focus = state.placed.iter().find(|p| p.first_line && p.unit.item != task.item).map(|p| p.q);
+    let in_pairs = stands_in_pairs(unit, task, focus, terms);
     let mut plans = plans(state, unit, task, focus, terms);
     plans.sort_by(|a, b| b.score.total_cmp(&a.score));
     plans.truncate((PLANS * 10 / task.count.max(10) as usize).max(3));
@@ -151,9 +170,11 @@ pub(in crate::placement) fn rows<'a>(
                         r.x0 >= wide.x0 + back && r.x1 <= wide.x1 - front
                     });
                 }
+                let single = if in_pairs { leave_out_single(state.space, task, &mut placed) } else { 0 };
                 if placed.is_empty() {
                     continue;
                 }
+                let single = SINGLE * single as f64 / placed.len() as f64;
                 let share = task.counted(placed.len()) as f64 / task.counted(usize::MAX).max(1) as f64;
                 let tidy = [0.5, 0.3, 0.1, 0.1][ku] + [0.5, 0.25, 0.25, 0.1, 0.1][kv];
                 let raggedness = if task.spare > 0 { ragged(&placed, plan) } else { 0.0 };
@@ -163,7 +184,8 @@ pub(in crate::placement) fn rows<'a>(
                     0.5 * grain(terms.salt, i64::from(plan.q) * 64 + i64::from(plan.columns), (ku * 8 + kv) as i64);
                 out.push(Batch {
                     placed,
-                    score: plan.score + 8.0 * (share - 1.0) + tidy + noise - raggedness - narrow,
+                    in_pairs,
+                    score: plan.score + 8.0 * (share - 1.0) + tidy + noise - raggedness - narrow - single,
                 });
             }
         }
@@ -171,6 +193,43 @@ pub(in crate::placement) fn rows<'a>(
     out.sort_by(|a, b| b.score.total_cmp(&a.score));
     out.truncate(KEPT);
     out
+}
+
+/// Returns true for desks of people who work together, looking at nothing but their work and each other.
+fn stands_in_pairs(unit: &Unit, task: &Task, focus: Option<u8>, terms: &Terms) -> bool {
+    let free_behind = unit.bbox.x0 > unit.reach.x0;
+    let turned = focus.is_some() || terms.one_way || terms.stage > 0;
+    unit.anchor().object.shape == Shape::Desk && task.count > 1 && !free_behind && !turned
+}
+
+/// Takes desks away with nobody across and no wall behind, where the room may do with fewer and most of them stay; returns how
+/// many there are else.
+pub(in crate::placement) fn leave_out_single(space: &Space, task: &Task, placed: &mut Vec<Placed>) -> usize {
+    let back = |p: &Placed| {
+        let own = p.world(&p.unit.anchor().solid.rect).turned((4 - p.q) % 4);
+        (own.x0, own.y0, own.y1)
+    };
+    // where its back is and its middle along it, in the frame of the lower one of the two headings
+    let place = |p: &Placed| {
+        let (u, v0, v1) = back(p);
+        let sign = if p.q < 2 { 1 } else { -1 };
+        (p.q % 2, sign * u, sign * (v0 + v1))
+    };
+    let mut places: BTreeMap<(u8, i32, i32), usize> = BTreeMap::new();
+    placed.iter().for_each(|p| *places.entry(place(p)).or_default() += 1);
+    let is_single = |p: &Placed| {
+        let (u, v0, v1) = back(p);
+        let at = |w: &WallSide| w.q == p.q && (0..=AT_WALL).contains(&(u - w.u)) && w.v0 <= v0 && w.v1 >= v1;
+        places[&place(p)] < 2 && !space.walls.iter().any(at)
+    };
+    let single = placed.iter().filter(|p| is_single(p)).count();
+    let stay = placed.len() - single;
+    let may_go = task.spare > 0 && stay >= task.required as usize && 3 * stay >= 2 * placed.len();
+    if may_go && single > 0 {
+        placed.retain(|p| !is_single(p));
+        return 0;
+    }
+    single
 }
 
 /// Returns how many units rows lack of being as long as the longest, over their number.
@@ -202,6 +261,7 @@ fn plans(state: &State, unit: &Unit, task: &Task, focus: Option<u8>, terms: &Ter
     };
     let mut sides = vec![apart, least];
     sides.dedup();
+    let in_pairs = stands_in_pairs(unit, task, focus, terms);
     let need = front.max(back);
     let mut gaps = vec![if need > 0 { need } else { robot }, need.max(robot)];
     gaps.dedup();
@@ -232,10 +292,13 @@ fn plans(state: &State, unit: &Unit, task: &Task, focus: Option<u8>, terms: &Ter
                         if run < i32::MAX && columns <= run {
                             continue; // no cross aisle: the same as one long run
                         }
-                        let (low, high) = plan.margins(unit, front, terms.stage);
-                        while plan.rows > 1 && plan.depth(d) + low + high > wide.width() {
+                        let margins = |plan: &Plan| plan.margins(unit, front, terms.stage);
+                        let needs = |plan: &Plan| plan.depth(d) + margins(plan).0 + margins(plan).1;
+                        while plan.rows > 1 && needs(&plan) > wide.width() {
                             plan.rows -= 1;
                         }
+                        let (low, high) = margins(&plan);
+                        let set = set - if in_pairs { OPEN_BACKS * plan.open_backs() } else { 0.0 };
                         plan.score = set - plan.shared(own) + rate(&plan, rows, task, (d, w), &wide, aisle);
                         out.push(plan);
                         if shape == Shape::Desk && focus.is_none() && plan.rows > 1 {
@@ -350,7 +413,7 @@ fn at_feet<'a>(
             None => tally[Rule::Collision as usize] += 1,
         }
     }
-    if placed.is_empty() { Vec::new() } else { vec![Batch { placed, score: 1.0 }] }
+    if placed.is_empty() { Vec::new() } else { vec![Batch { placed, in_pairs: false, score: 1.0 }] }
 }
 
 /// Returns units spread evenly over the ceiling of the room's main part.
@@ -398,5 +461,5 @@ pub(in crate::placement) fn over<'a>(
             Err(rule) => tally[rule as usize] += 1,
         }
     }
-    if placed.is_empty() { Vec::new() } else { vec![Batch { placed, score: 1.0 }] }
+    if placed.is_empty() { Vec::new() } else { vec![Batch { placed, in_pairs: false, score: 1.0 }] }
 }

@@ -4,13 +4,14 @@ use std::rc::Rc;
 
 use d3dgen_model::domain::{Arrangement, Mount, Shape};
 
+use super::ends::BETWEEN_WINDOWS;
 use super::{Find, Rule};
 use crate::placement::docks::door_loss;
 use crate::placement::geom::{Box2, FLAT, turn};
 use crate::placement::seats::is_seat;
-use crate::placement::space::WallSide;
+use crate::placement::space::{DoorZone, WallSide};
 use crate::placement::state::{Placed, at_frame};
-use crate::placement::unit::Unit;
+use crate::placement::unit::{Part, Unit};
 
 /// Positions nearer than this along a wall are one position, mm.
 const SAME: i32 = 20;
@@ -35,6 +36,17 @@ const FARTHER: f64 = 0.9;
 const NEAR_VIEW: i32 = 2900;
 const WAY_BEHIND: i32 = 900;
 const DRAWN_UP: f64 = 1.0;
+
+/// Opening of a door within which no hob stands, mm, and what a place with one there loses (ways past pots).
+const FROM_STOVE: i32 = 900;
+const HOT: f64 = 4.0;
+/// What a place loses with a leaf that sweeps the floor before a toilet or its cubicle.
+const SWEPT: f64 = 4.0;
+/// What a machine loses for each meter from the sink or hob it works with, and from where on it makes no difference, m.
+const FROM_RUN: f64 = 1.5;
+const FAR_FROM_RUN_M: f64 = 2.5;
+/// Part of a bed beside which a visitor sits, from its head, mm.
+const HEAD: i32 = 700;
 
 /// What already takes part of a wall.
 struct Front {
@@ -97,7 +109,7 @@ impl<'a> Find<'_, 'a, '_> {
     /// Returns a sofa moved towards what it looks at where that would be far, with a way behind it.
     fn drawn_up(&self, p: &Placed<'a>, wall: &WallSide) -> Option<Placed<'a>> {
         let unit = self.across.as_ref().filter(|_| p.unit.anchor().object.shape == Shape::Sofa)?;
-        let by = self.view(p, unit).filter(|&far| far > FAR_VIEW)? - NEAR_VIEW;
+        let by = self.view(p, unit).map(|(far, _)| far).filter(|&far| far > FAR_VIEW)? - NEAR_VIEW;
         let (u, v) = turn((4 - wall.q) % 4, p.at.0, p.at.1);
         (by >= WAY_BEHIND).then(|| at_frame(&p.unit, wall.q, u + by, v, self.index))
     }
@@ -226,7 +238,7 @@ impl<'a> Find<'_, 'a, '_> {
         s -= style.tight * (spare / 3000.0).min(1.0);
         s += self.window_score(index, a, z) + self.door_score(p) + self.sibling_score(p, a, z, index);
         s -= door_loss(space, p, self.aisle);
-        s += self.company_score(p);
+        s += self.company_score(p) - self.at_doors(p) - self.apart_from_run(p);
         s -= self.across.as_ref().map_or(0.0, |unit| far_view(self.view(p, unit)));
         s + self.arrangement_score(p, index, a, z)
     }
@@ -250,6 +262,32 @@ impl<'a> Find<'_, 'a, '_> {
             s -= if across { 1.2 * self.style.side_light } else { 0.0 };
         }
         s
+    }
+
+    /// Returns what a place loses with a hob right beside a door, or with a leaf that sweeps the floor before a toilet.
+    fn at_doors(&self, p: &Placed<'a>) -> f64 {
+        let space = self.state.space;
+        let opening = |d: &DoorZone| space.walls[d.wall].strip(d.v0, d.v1, 0, 0);
+        let hot = |rect: Box2| space.doors.iter().any(|d| opening(d).gap(&rect) < FROM_STOVE);
+        let stoves = p.unit.parts.iter().filter(|part| part.object.shape == Shape::Stove);
+        let hobs = stoves.filter(|part| hot(p.solid(part).rect)).count();
+        let closet = matches!(p.unit.anchor().object.shape, Shape::Cubicle | Shape::Toilet);
+        let leaves = || space.doors.iter().filter(|d| d.swings_in);
+        let swept = closet && p.unit.clears.iter().map(|c| p.world(c)).any(|c| leaves().any(|d| d.zone.overlaps(&c)));
+        HOT * hobs as f64 + SWEPT * f64::from(swept)
+    }
+
+    /// Returns what a machine loses away from the sink or hob it works with: a refrigerator belongs to the kitchen's run.
+    fn apart_from_run(&self, p: &Placed<'a>) -> f64 {
+        let anchor = p.unit.anchor();
+        if anchor.object.shape != Shape::Appliance || anchor.mount != Mount::Floor {
+            return 0.0;
+        }
+        let works = |part: &Part| part.mount == Mount::Floor && matches!(part.object.shape, Shape::Sink | Shape::Stove);
+        let runs = self.state.placed.iter().filter(|o| o.support.is_none() && o.unit.parts.iter().any(works));
+        let own = p.world(&p.unit.bbox);
+        let gap = runs.map(|o| o.world(&o.unit.bbox).gap(&own)).min().unwrap_or(0);
+        FROM_RUN * (f64::from(gap) / 1000.0).min(FAR_FROM_RUN_M)
     }
 
     /// Distance to the door of the room, and not having it in one's back.
@@ -313,7 +351,12 @@ impl<'a> Find<'_, 'a, '_> {
             self.state.placed.iter().filter(of).map(|o| o.world(&o.unit.anchor().solid.rect))
         };
         let has_chair = |host: &Box2| self.siblings().any(|o| o.world(&o.unit.bbox).gap(host) < CHAIR_REACH);
-        let mut hosts: Vec<Box2> = standing(&[Shape::Bed, Shape::HospitalBed, Shape::Desk]).collect();
+        let beds = self.state.placed.iter().filter(|o| o.unit.anchor().object.shape == Shape::HospitalBed);
+        let heads = beds.map(|o| {
+            let own = o.unit.anchor().solid.rect;
+            o.world(&Box2 { x1: own.x1.min(own.x0 + HEAD), ..own })
+        });
+        let mut hosts: Vec<Box2> = standing(&[Shape::Bed, Shape::Desk]).chain(heads).collect();
         if !hosts.iter().all(has_chair) {
             hosts.retain(|host| !has_chair(host));
         }
@@ -369,7 +412,11 @@ impl<'a> Find<'_, 'a, '_> {
     }
 }
 
-/// Returns what a seat loses with what it looks at so far away, mm.
-fn far_view(view: Option<i32>) -> f64 {
-    view.map_or(NO_VIEW, |far| FARTHER * (f64::from(far - FAR_VIEW) / 1000.0).max(0.0))
+/// Returns what a seat loses with what it looks at so far away, mm, or between two windows.
+fn far_view(view: Option<(i32, bool)>) -> f64 {
+    let loss = |(far, dazzled): (i32, bool)| {
+        let away = FARTHER * (f64::from(far - FAR_VIEW) / 1000.0).max(0.0);
+        away + if dazzled { BETWEEN_WINDOWS } else { 0.0 }
+    };
+    view.map_or(NO_VIEW, loss)
 }
