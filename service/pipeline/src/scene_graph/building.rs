@@ -20,6 +20,18 @@ pub(super) struct Building {
     pub list_from: usize,
     /// True when the prompt has no word for a building, and its rooms decided.
     pub by_rooms: bool,
+    /// Other buildings and departments that its list names.
+    pub parts: Vec<Part>,
+    /// All words for buildings.
+    pub words: Vec<Span>,
+}
+
+/// A building or department named beside the one that is built: "ward with radiology".
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Part {
+    pub span: Span,
+    pub domain: String,
+    pub building_type: String,
 }
 
 /// Adjectives between a number and what it counts, at most.
@@ -97,6 +109,8 @@ pub(super) fn recognize(
             head: None,
             list_from: 0,
             by_rooms: true,
+            parts: Vec::new(),
+            words: found.iter().map(|f| f.0).collect(),
         });
     };
     let (domain, kind) = if meaning.len() > 1 {
@@ -107,13 +121,36 @@ pub(super) fn recognize(
         *meaning.first()?
     };
     let kind = kind.or_else(|| other_type(&found, domain));
+    let parts = if head_final { Vec::new() } else { parts(&found, *span, list_from, (domain, kind), &domains) };
     Some(Building {
         domain: domains[domain].id.clone(),
         building_type: kind.map(|k| domains[domain].building_types[k].id.clone()),
-        head: Some(without_count(*span, numbers)),
+        head: Some(without_count(tokens, *span, numbers, spoken)),
         list_from: if head_final || list_from == 0 { 0 } else { list_from.max(span.end) },
         by_rooms: false,
+        parts,
+        words: found.iter().map(|f| f.0).collect(),
     })
+}
+
+/// Returns the buildings and departments that the list names, beside the building itself.
+fn parts(
+    found: &[(Span, Meaning)],
+    own: Span,
+    list_from: usize,
+    built: (usize, Option<usize>),
+    domains: &[&Domain],
+) -> Vec<Part> {
+    let listed = found.iter().filter(|(span, _)| *span != own && span.start >= list_from && span.start > own.start);
+    listed
+        .filter_map(|(span, meaning)| {
+            let same = meaning.iter().find(|m| m.0 == built.0);
+            let (domain, kind) = same.or(meaning.first()).copied()?;
+            let kind = kind.filter(|_| (domain, kind) != built)?;
+            let building_type = domains[domain].building_types[kind].id.clone();
+            Some(Part { span: *span, domain: domains[domain].id.clone(), building_type })
+        })
+        .collect()
 }
 
 /// Returns true for a building word that a number before it makes a word for rooms: "two offices", "two large offices",
@@ -130,6 +167,15 @@ fn counts_rooms(
         let tags = spoken.iter().filter_map(|s| s.tags.longest_at(tokens, i)).flat_map(|f| f.1).collect::<Vec<_>>();
         !tags.is_empty() && tags.iter().all(|t| matches!(t, Tag::NotNames | Tag::Own | Tag::StyleWords))
     };
+    // the number of "12-bed ward" is of its beds
+    let held = [Tag::Beds, Tag::Desks, Tag::Holds];
+    let holds = |s: &&Spoken| held.iter().any(|&tag| s.tag_at(tokens, span.start, tag).is_some_and(|end| end < span.end));
+    let inside = |i: usize| {
+        spoken.iter().any(|s| s.tags.word(&tokens[i].text).is_some_and(|t| held.iter().any(|h| t.contains(h))))
+    };
+    if from == span.start && (spoken.iter().any(holds) || span.end > span.start + 1 && inside(span.start)) {
+        return false;
+    }
     let several = number.value > 1.0;
     let longer = |i: usize| rooms.iter().any(|r| r.longest_at(tokens, i).is_some_and(|f| f.0 >= span.end));
     // behind adjectives only in the plural: "floor 2 public library" has one library
@@ -200,9 +246,12 @@ fn is_late(
     heads && (!own || !others())
 }
 
-/// Leaves a count in the building's name to the rooms: of "one-bedroom flat" only "flat" is the building.
-fn without_count(span: Span, numbers: &[Number]) -> Span {
-    let counted = numbers.iter().any(|n| span.start <= n.span.start && n.span.end < span.end);
+/// Leaves a count in the building's name to the rooms: of "one-bedroom flat" only "flat" is the building, of "12-bed ward"
+/// only "ward".
+fn without_count(tokens: &[Token], span: Span, numbers: &[Number], spoken: &[&Spoken]) -> Span {
+    let beds = spoken.iter().any(|s| s.tags.word(&tokens[span.start].text).is_some_and(|t| t.contains(&Tag::Beds)));
+    let of_beds = span.end > span.start + 1 && beds && numbers.iter().any(|n| n.span.end == span.start && !n.article);
+    let counted = of_beds || numbers.iter().any(|n| span.start <= n.span.start && n.span.end < span.end);
     Span { start: if counted { span.end - 1 } else { span.start }, ..span }
 }
 

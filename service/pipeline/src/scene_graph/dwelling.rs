@@ -31,9 +31,18 @@ pub(super) fn short_forms(tokens: &[Token], numbers: &[Number], domain: &Domain,
             .or_else(|| counted(tokens, i, numbers, d, domain, spoken))
             .or_else(|| one_word(tokens, i, d, spoken))
             .or_else(|| chinese(tokens, i, numbers, d));
-        out.extend(found.filter(|f| f.rooms.values().all(|n| (0..=60).contains(n))));
+        out.extend(found.filter(|f| f.rooms.values().all(|n| (0..=60).contains(n))).map(|f| one_room(f, domain, d)));
     }
     out
+}
+
+/// Turns a dwelling of one room to live in into one to live and sleep in, where the domain knows such a room.
+fn one_room(form: ShortForm, domain: &Domain, d: &Dwelling) -> ShortForm {
+    let alone = form.rooms.len() == 1 && form.rooms.get(&d.living) == Some(&1);
+    match domain.room_type(&d.studio).filter(|_| alone) {
+        Some(kind) => ShortForm { rooms: BTreeMap::from([(kind.id.clone(), 1)]), ..form },
+        None => form,
+    }
 }
 
 fn rooms_to_live(n: f64, d: &Dwelling) -> BTreeMap<String, i64> {
@@ -117,6 +126,39 @@ fn counted(
         rooms.retain(|_, n| *n > 0);
         ShortForm { span: Span { start: i, end: at + 1 }, rooms }
     })
+}
+
+/// Returns how many people share the home: "couple", "family of five", "fünfköpfige Familie", "family with two kids".
+pub(super) fn household(tokens: &[Token], numbers: &[Number], spoken: &[&Spoken], children: Option<u32>) -> Option<u32> {
+    let number_at = |i: usize| numbers.iter().find(|n| n.span.start == i && !n.article && n.value >= 1.0);
+    let tagged = |i: usize, tag| spoken.iter().find_map(|s| s.tag_at(tokens, i, tag));
+    let told = (0..tokens.len()).find_map(|i| {
+        let behind = tagged(i, Tag::ResidentsBefore).and_then(number_at).map(|n| n.value);
+        behind.or_else(|| headed(&tokens[i], spoken))
+    });
+    if told.is_some() {
+        return told.map(|n| n as u32);
+    }
+    let adults = (0..tokens.len()).find_map(|i| {
+        let (end, n) = spoken.iter().find_map(|s| s.households.longest_at(tokens, i))?;
+        // "a couple of bedrooms", "ein paar Räume"
+        let longer = numbers.iter().any(|m| m.span.contains(i) && m.span.end > end);
+        let counts = numbers.iter().any(|m| m.span.contains(i))
+            && tokens.get(end).is_some_and(|t| {
+                let parts = [Tag::Stops, Tag::Starts, Tag::Joins].iter().any(|&tag| tagged(end, tag).is_some());
+                !t.is_mark() && !parts
+            });
+        (!longer && !counts).then_some(*n)
+    });
+    let family = (0..tokens.len()).any(|i| tagged(i, Tag::Family).is_some());
+    let parents = adults.or((family && children.is_some()).then_some(2.0))?;
+    Some(parents as u32 + children.unwrap_or(0))
+}
+
+/// Reads the number of "fünfköpfig", "vierköpfige".
+fn headed(token: &Token, spoken: &[&Spoken]) -> Option<f64> {
+    let at = token.text.find("kopfig").filter(|&at| at > 0)?;
+    spoken.iter().find_map(|s| super::numbers::in_one_word(&token.text[..at], s))
 }
 
 /// "Dreizimmerwohnung", "투룸"

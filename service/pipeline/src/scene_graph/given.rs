@@ -2,8 +2,7 @@
 //!
 //! What such a plan gets wrong stays as it is: the graph says what there is, and the hard rules say what it breaks.
 
-use std::cmp::Reverse;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use d3dgen_model::domain::{Domain, GENERIC_ROOM_TYPE};
 use d3dgen_model::floorplan::{DoorKind, Floorplan};
@@ -23,6 +22,18 @@ const BY_PLAN: &str = "given_plan";
 /// Shortest end of a compound word that names a room, letters.
 const LEAST_ENDING: usize = 5;
 
+/// A word names a room when it does with this after it (`exam` is the exam room).
+const ROOM: &str = "room";
+/// How much a name counts for a domain: as one of all names, and by how few domains know it.
+const KNOWN: f64 = 0.5;
+const RARE: f64 = 1.0;
+/// How much it counts that a program of the domain has the same rooms, and that the title names the domain.
+const LIKE_PROGRAM: f64 = 0.8;
+const TITLED: f64 = 0.5;
+const TITLE: f64 = 1.0;
+/// Domains this close to the best one are as good; the first of them is taken.
+const AS_GOOD: f64 = 0.97;
+
 /// What a plan says about a room.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Label {
@@ -30,6 +41,16 @@ pub struct Label {
     pub text: String,
     /// What the file says it is, where it says so beside the name; counts first.
     pub kind: Option<String>,
+    /// Other words that stand in the room; they count when neither of the others names a room.
+    pub also: Vec<String>,
+    /// True when it joins so many rooms that it is circulation, if no words say something else.
+    pub hub: bool,
+}
+
+impl Label {
+    fn words(&self) -> impl Iterator<Item = &str> {
+        self.kind.iter().map(String::as_str).chain([self.text.as_str()]).chain(self.also.iter().map(String::as_str))
+    }
 }
 
 /// Labels understood.
@@ -39,6 +60,8 @@ pub struct Understood {
     pub domain: String,
     /// A room type of the domain for each label; the generic one where the words are not known.
     pub room_types: Vec<String>,
+    /// The name for each label: the words that say its type, or the name on the plan.
+    pub names: Vec<String>,
     /// What was guessed.
     pub notes: Vec<Note>,
 }
@@ -111,9 +134,22 @@ impl<'a> Names<'a> {
         best
     }
 
-    fn room_type(&self, label: &Label) -> Option<(&str, usize)> {
-        label.kind.as_deref().and_then(|k| self.find(k)).or_else(|| self.find(&label.text))
+    /// Returns the room type that a label names, how many letters say so, and which words of it.
+    fn room_type<'l>(&self, label: &'l Label) -> Option<(&str, usize, &'l str)> {
+        let found = label.words().find_map(|w| self.find(w).map(|(id, letters)| (id, letters, w)));
+        // a word that is short for such a room: an exam, a ward
+        found.or_else(|| {
+            let short = |w: &str| !w.trim().is_empty() && !w.to_lowercase().contains(ROOM);
+            let whole = |w: &str| self.find(&format!("{} {ROOM}", bare(w))).filter(|f| f.1 > ROOM.len());
+            label.words().filter(|w| short(w)).find_map(|w| whole(w).map(|(id, letters)| (id, letters - ROOM.len(), w)))
+        })
     }
+}
+
+/// Returns a label without the numbers that count its rooms.
+fn bare(label: &str) -> String {
+    let text = spaced(label);
+    text.split_whitespace().filter(|t| !t.chars().all(|c| c.is_ascii_digit())).collect::<Vec<_>>().join(" ")
 }
 
 /// Returns a label with its words parted: `livingRoom2` is `living Room 2`, underscores are spaces.
@@ -133,11 +169,16 @@ fn spaced(label: &str) -> String {
     out
 }
 
-/// Finds the room types of labels, in a domain or in the one that knows most of them.
+/// Finds the room types of labels, in a domain or in the one that they and the titles of the plan fit best.
 ///
 /// # Errors
 /// `Refused` for a domain that is not registered.
-pub fn understand(labels: &[Label], domain: Option<&str>, registry: &Registry) -> Result<Understood, Error> {
+pub fn understand(
+    labels: &[Label],
+    titles: &[String],
+    domain: Option<&str>,
+    registry: &Registry,
+) -> Result<Understood, Error> {
     let mut notes = Vec::new();
     let names = match domain {
         Some(id) => {
@@ -148,54 +189,116 @@ pub fn understand(labels: &[Label], domain: Option<&str>, registry: &Registry) -
             Names::new(plugin.domain())
         }
         None => {
-            // of domains that know as many names in as many letters, the one more of whose programs have them, and of those
-            // the one that knows fewer rooms besides: it is about less
-            type Rank = (usize, usize, usize, Reverse<usize>);
-            let mut best: Option<(Rank, Names)> = None;
-            for plugin in registry.iter() {
-                let names = Names::new(plugin.domain());
-                let found: Vec<(&str, usize)> = labels.iter().filter_map(|l| names.room_type(l)).collect();
-                let letters = found.iter().map(|f| f.1).sum();
-                let programs = &names.domain.programs;
-                let with = |id: &str| programs.iter().filter(|p| p.rooms.iter().any(|e| e.room_type == id)).count();
-                let usual = found.iter().map(|f| 1000 * with(f.0) / programs.len().max(1)).sum();
-                let rank = (found.len(), letters, usual, Reverse(names.domain.room_types.len()));
-                if best.as_ref().is_none_or(|b| rank > b.0) {
-                    best = Some((rank, names));
-                }
-            }
-            let ((known, ..), names) = best.ok_or_else(|| refused("no domain is registered".into()))?;
-            let message = format!(
-                "domain {} knows {known} of {} names of rooms and was taken; choose another with --domain",
-                names.domain.id,
-                labels.len()
-            );
-            notes.push(note("default_domain", message));
+            let (names, why) = guess(labels, titles, registry)?;
+            notes.push(note("default_domain", why));
             names
         }
     };
+    let circulation = names.domain.room_type(&names.domain.circulation.room_type).map(|r| r.id.clone());
     let mut unknown: Vec<String> = Vec::new();
-    let mut room_types = Vec::with_capacity(labels.len());
+    let mut hubs = 0;
+    let (mut room_types, mut called) = (Vec::with_capacity(labels.len()), Vec::with_capacity(labels.len()));
     for label in labels {
-        match names.room_type(label) {
-            Some((id, _)) => room_types.push(id.to_owned()),
-            None => {
+        let known = names.room_type(label);
+        let of_kind = known.is_some_and(|k| label.kind.as_deref() == Some(k.2));
+        called.push(known.filter(|_| !of_kind).map_or_else(|| label.text.clone(), |k| k.2.to_owned()));
+        match (known, &circulation) {
+            (Some((id, ..)), _) => room_types.push(id.to_owned()),
+            (None, Some(id)) if label.hub => {
+                hubs += 1;
+                room_types.push(id.clone());
+            }
+            _ => {
                 let text = if label.text.is_empty() { label.kind.as_deref().unwrap_or_default() } else { &label.text };
                 unknown.push(if text.is_empty() { "rooms without a name".into() } else { format!("`{text}`") });
                 room_types.push(GENERIC_ROOM_TYPE.to_owned());
             }
         }
     }
+    if let Some(id) = circulation.filter(|_| hubs > 0) {
+        let message = format!("{hubs} rooms without a name join so many others that they were taken for `{id}`");
+        notes.push(note("circulation_guessed", message));
+    }
     unknown.dedup();
     if !unknown.is_empty() {
         let more = unknown.len().saturating_sub(12);
         let more = if more > 0 { format!(" and {more} more") } else { String::new() };
         let list = unknown.iter().take(12).cloned().collect::<Vec<_>>().join(", ");
-        let message =
-            format!("{} names no room of {list}{more}; they are of the type `{GENERIC_ROOM_TYPE}`", names.domain.id);
+        let message = format!(
+            "{} names no room of {list}{more}; they are of the type `{GENERIC_ROOM_TYPE}`, --room-type \"NAME=TYPE\" says better",
+            names.domain.id
+        );
         notes.push(note("unknown_label", message));
     }
-    Ok(Understood { domain: names.domain.id.clone(), room_types, notes })
+    Ok(Understood { domain: names.domain.id.clone(), room_types, names: called, notes })
+}
+
+/// Returns the domain that labels and titles fit best, and why.
+///
+/// A name counts more the fewer domains know it, and a domain more the closer one of its programs is to the rooms there are:
+/// that an office has a meeting room and no loading dock tells it from a warehouse. Titles decide where names say little.
+/// Where nothing is known it is the domain of the most kinds of buildings.
+fn guess<'a>(labels: &[Label], titles: &[String], registry: &'a Registry) -> Result<(Names<'a>, String), Error> {
+    let all: Vec<Names> = registry.iter().map(|p| Names::new(p.domain())).collect();
+    let found: Vec<Vec<Option<(&str, usize, &str)>>> =
+        all.iter().map(|names| labels.iter().map(|l| names.room_type(l)).collect()).collect();
+    let best: Vec<usize> = (0..labels.len())
+        .map(|k| found.iter().filter_map(|list| list[k].map(|f| f.1)).max().unwrap_or(0).max(1))
+        .collect();
+    let rare = |k: usize| RARE / found.iter().filter(|list| list[k].is_some_and(|f| f.1 == best[k])).count().max(1) as f64;
+    let titled: Vec<bool> = all.iter().map(|names| titles.iter().any(|t| is_title(names.domain, t))).collect();
+    let score = |d: usize| {
+        let known = (0..labels.len()).filter_map(|k| found[d][k].map(|f| (k, f.1 as f64 / best[k] as f64)));
+        let names: f64 = known.map(|(k, part)| part * (KNOWN + rare(k))).sum();
+        let types: BTreeSet<&str> = found[d].iter().flatten().map(|f| f.0).collect();
+        let alike = like_program(all[d].domain, &types);
+        let title = if titled[d] { (1.0 + TITLED, TITLE) } else { (1.0, 0.0) };
+        names * (1.0 + LIKE_PROGRAM * alike) * title.0 + title.1
+    };
+    let scores: Vec<f64> = (0..all.len()).map(score).collect();
+    let most = scores.iter().copied().fold(0.0, f64::max);
+    let chosen = if most > 0.0 {
+        scores.iter().position(|s| *s >= AS_GOOD * most)
+    } else {
+        let kinds = |d: &usize| all[*d].domain.building_types.len();
+        (0..all.len()).max_by_key(|d| (kinds(d), usize::MAX - d))
+    };
+    let chosen = chosen.ok_or_else(|| refused("no domain is registered".into()))?;
+    let known = found[chosen].iter().flatten().count();
+    let id = &all[chosen].domain.id;
+    let names = format!("knows {known} of {} names of rooms", labels.len());
+    let why = match (titled[chosen], known) {
+        (true, _) => format!("domain {id} {names}, and a title of the plan names it; it was taken, choose another with --domain"),
+        (false, 0) => format!("no domain knows a name of a room; {id} was taken, choose another with --domain"),
+        (false, _) => format!("domain {id} {names} and was taken; choose another with --domain"),
+    };
+    let names = all.into_iter().nth(chosen).ok_or_else(|| refused("no domain is registered".into()))?;
+    Ok((names, why))
+}
+
+/// Returns how alike room types are to the first rooms of the program that is most like them, 0 to 1.
+fn like_program(domain: &Domain, types: &BTreeSet<&str>) -> f64 {
+    let alike = |program: &d3dgen_model::domain::Program| {
+        let mut rooms: BTreeSet<&str> = BTreeSet::new();
+        for entry in &program.rooms {
+            if rooms.len() < types.len() {
+                rooms.insert(&entry.room_type);
+            }
+        }
+        let both = rooms.intersection(types).count();
+        2.0 * both as f64 / (rooms.len() + types.len()).max(1) as f64
+    };
+    domain.programs.iter().map(alike).fold(0.0, f64::max)
+}
+
+/// Returns true when a title has a word for a building of a domain.
+fn is_title(domain: &Domain, title: &str) -> bool {
+    let list = tokens(&spaced(title));
+    domain.keywords.iter().any(|(language, words)| {
+        let mut phrases = Phrases::new(language);
+        words.iter().for_each(|w| phrases.insert(w, ()));
+        (0..list.len()).any(|i| phrases.longest_at(&list, i).is_some())
+    })
 }
 
 /// Returns the scene graph of a plan as it is: its rooms, and an edge for each pair that a door or passage joins.
@@ -307,8 +410,13 @@ mod tests {
     use super::*;
 
     fn types(labels: &[&str], domain: Option<&str>) -> Understood {
-        let labels: Vec<Label> = labels.iter().map(|t| Label { text: (*t).into(), kind: None }).collect();
-        understand(&labels, domain, &Registry::builtin()).expect("a known domain")
+        titled(labels, &[], domain)
+    }
+
+    fn titled(labels: &[&str], titles: &[&str], domain: Option<&str>) -> Understood {
+        let labels: Vec<Label> = labels.iter().map(|t| Label { text: (*t).into(), ..Label::default() }).collect();
+        let titles: Vec<String> = titles.iter().map(|t| (*t).to_owned()).collect();
+        understand(&labels, &titles, domain, &Registry::builtin()).expect("a known domain")
     }
 
     #[test]
@@ -333,5 +441,44 @@ mod tests {
         assert_eq!(types(&["Kitchen", "Bathroom", "Bedroom 1", "Living room"], None).domain, "residential");
         assert_eq!(types(&["Patient room 1", "Nurse station", "Corridor", "Clean utility"], None).domain, "hospital");
         assert_eq!(types(&["Open office", "Meeting room", "Corridor", "Pantry"], None).domain, "office");
+    }
+
+    #[test]
+    fn names_that_many_domains_know_decide_little() {
+        for (labels, domain) in [
+            (&["Office", "Meeting room", "Corridor", "Toilet", "Kitchenette"][..], "office"),
+            (&["Office 1", "Office 2", "Reception", "WC", "Corridor"], "office"),
+            (&["Kitchen", "Bathroom", "Corridor", "Living room"], "residential"),
+            (&["Warehouse hall", "Loading dock", "Office", "Toilet"], "warehouse"),
+            (&["Classroom 1", "Classroom 2", "Corridor", "Toilet", "Staff room"], "school"),
+            (&["Ward", "Corridor"], "hospital"),
+            (&["xyzzy", ""], "general"),
+            (&[], "general"),
+        ] {
+            assert_eq!(types(labels, None).domain, domain, "{labels:?}");
+        }
+    }
+
+    #[test]
+    fn titles_decide_where_names_say_little() {
+        assert_eq!(titled(&["coe", "lounge", "pantry"], &["office.building.yaml"], None).domain, "office");
+        assert_eq!(titled(&["a", "b"], &["old_school"], None).domain, "school");
+        assert_eq!(titled(&["Bedroom", "Bathroom", "Kitchen"], &["office"], None).domain, "residential");
+    }
+
+    #[test]
+    fn other_words_in_a_room_and_its_place_say_what_it_is() {
+        let label = |text: &str, also: &[&str], hub: bool| Label {
+            text: text.into(),
+            also: also.iter().map(|t| (*t).into()).collect(),
+            hub,
+            ..Label::default()
+        };
+        let labels = [label("B 12", &["meeting room"], false), label("room_2", &[], true), label("Pantry", &[], true)];
+        let known = understand(&labels, &[], Some("office"), &Registry::builtin()).expect("a known domain");
+        assert_eq!(known.room_types[..2], ["meeting_room", "corridor"]);
+        assert_eq!(known.names, ["meeting room", "room_2", "Pantry"]);
+        assert!(known.room_types[2] != "corridor");
+        assert!(known.notes.iter().any(|n| n.code == "circulation_guessed"));
     }
 }

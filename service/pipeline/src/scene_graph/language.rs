@@ -3,6 +3,22 @@
 use super::text::{Kind, Token};
 use super::words::{Tag, words};
 
+/// Letters of a script that tell a language.
+const LEAST_LETTERS: usize = 2;
+
+/// Scripts of languages that are not read.
+const SCRIPTS: &[(&str, &[(char, char)])] = &[
+    ("Japanese", &[('\u{3041}', '\u{30fa}'), ('\u{30fc}', '\u{30ff}')]),
+    ("a language in Cyrillic letters", &[('\u{400}', '\u{52f}')]),
+    ("Greek", &[('\u{370}', '\u{3ff}')]),
+    ("Hebrew", &[('\u{590}', '\u{5ff}')]),
+    ("a language in Arabic letters", &[('\u{600}', '\u{6ff}')]),
+    ("a language of India", &[('\u{900}', '\u{dff}')]),
+    ("Thai", &[('\u{e00}', '\u{e7f}')]),
+    ("Georgian", &[('\u{10a0}', '\u{10ff}')]),
+    ("Armenian", &[('\u{530}', '\u{58f}')]),
+];
+
 /// Score that tells a language by itself: one of its most usual words.
 const SURE: f64 = 1.0;
 
@@ -47,6 +63,30 @@ pub(super) fn detect(tokens: &[Token], known: impl Fn(&str) -> usize) -> &'stati
     scores.into_iter().rev().max_by(|a, b| a.1.total_cmp(&b.1)).map_or("en", |best| best.0)
 }
 
+/// Returns the English name of a language that is not read, where the prompt seems to be in one.
+///
+/// `known` tells which words of the prompt name rooms or buildings in the language that it was taken for.
+pub(super) fn unread(prompt: &str, tokens: &[Token], language: &str, known: usize) -> Option<&'static str> {
+    let script = |range: &[(char, char)]| {
+        prompt.chars().filter(|c| range.iter().any(|(a, b)| (*a..=*b).contains(c))).count() >= LEAST_LETTERS
+    };
+    if let Some((name, _)) = SCRIPTS.iter().find(|(_, range)| script(range)) {
+        return Some(name);
+    }
+    let own = words().languages.get(language)?;
+    let is_own = |t: &Token| {
+        own.numbers.contains_key(&t.text)
+            || own.words.phrases.get(&Tag::Detect).is_some_and(|w| w.iter().any(|w| super::text::fold(w) == t.text))
+    };
+    let latin: Vec<&Token> = tokens.iter().filter(|t| t.kind == Kind::Word).collect();
+    let ours = latin.iter().filter(|t| is_own(t)).count().max(known);
+    let counts = words().unread_languages.iter().map(|(name, words)| {
+        let theirs = latin.iter().filter(|t| words.contains(&t.text)).count();
+        (name.as_str(), theirs)
+    });
+    counts.rev().max_by_key(|c| c.1).filter(|c| c.1 >= 2 && c.1 > ours).map(|c| c.0)
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::text::tokens;
@@ -65,6 +105,23 @@ mod tests {
             ("???", "en"),
         ] {
             assert_eq!(detect(&tokens(text), |_| 0), code, "{text}");
+        }
+    }
+
+    #[test]
+    fn tells_languages_that_are_not_read() {
+        for (text, language, name) in [
+            ("appartamento con due camere da letto e un bagno", "es", Some("Italian")),
+            ("appartement met twee slaapkamers en een badkamer", "fr", Some("Dutch")),
+            ("寝室が2つあるアパート", "zh", Some("Japanese")),
+            ("квартира с двумя спальнями", "en", Some("a language in Cyrillic letters")),
+            ("上海一套三室两厅两卫的住宅", "zh", None),
+            ("Oficina en Madrid con dos salas", "es", None),
+            ("two-bedroom flat in Germany with a home office", "en", None),
+            ("Eine Wohnung mit zwei Zimmern und Bad", "de", None),
+            ("Un appartement avec deux chambres", "fr", None),
+        ] {
+            assert_eq!(unread(text, &tokens(text), language, 0), name, "{text}");
         }
     }
 

@@ -10,6 +10,8 @@ pub(super) struct Area {
     pub span: Span,
     /// m^2.
     pub value: f64,
+    /// True for two lengths, of which only the product is kept.
+    pub sides: bool,
 }
 
 /// Returns all areas: a number and a unit, or two lengths ("4 x 5 m").
@@ -20,7 +22,8 @@ pub(super) fn areas(tokens: &[Token], numbers: &[Number]) -> Vec<Area> {
             continue;
         }
         if let Some((end, factor)) = words().area_units.longest_at(tokens, number.span.end) {
-            out.push(Area { span: Span { start: number.span.start, end }, value: number.value * factor });
+            let span = Span { start: number.span.start, end };
+            out.push(Area { span, value: number.value * factor, sides: false });
             continue;
         }
         // "4 x 5 m"
@@ -29,12 +32,13 @@ pub(super) fn areas(tokens: &[Token], numbers: &[Number]) -> Vec<Area> {
             && let Some((end, unit)) = words().length_units.longest_at(tokens, next.span.end)
         {
             let between = &tokens[number.span.end..next.span.start];
-            let times = between.iter().any(|t| t.text == "x" || t.text == "by" || t.text == "mal")
-                && between.iter().all(|t| matches!(t.text.as_str(), "x" | "by" | "mal" | "m"));
+            let times = between.iter().any(|t| matches!(t.text.as_str(), "x" | "by" | "mal" | "sur" | "por"))
+                && between.iter().all(|t| matches!(t.text.as_str(), "x" | "by" | "mal" | "sur" | "por" | "m" | "meters" | "metres" | "ft" | "feet"));
             if times {
                 out.push(Area {
                     span: Span { start: number.span.start, end },
                     value: number.value * next.value * unit * unit,
+                    sides: true,
                 });
             }
         }
@@ -104,6 +108,8 @@ mod tests {
             ("80 metros cuadrados", 80.0),
             ("4 x 5 m", 20.0),
             ("120m2", 120.0),
+            ("12 m by 8 m", 96.0),
+            ("4×5 m", 20.0),
         ] {
             let tokens = tokens(text);
             let found = areas(&tokens, &numbers(&tokens, "en", &spoken()));

@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use d3dgen_model::domain::{Domain, GENERIC_ROOM_TYPE};
 use d3dgen_plugins::Registry;
 
+use super::beds::BedRoom;
 use super::numbers::Number;
 use super::text::{Kind, Phrases, Span, Token, fold};
 use super::unknown;
@@ -48,6 +49,8 @@ pub(super) struct Mention {
     pub from: usize,
     /// Where the number stands.
     pub number: Option<Span>,
+    /// Beds of each such room, where the prompt says so.
+    pub beds: Option<u32>,
 }
 
 impl Mention {
@@ -128,6 +131,12 @@ impl Vocabulary {
         (0..tokens.len()).find_map(|i| ends(i).map(|f| f.1.id.clone()))
     }
 
+    /// Returns the domain's own room type whose words are exactly these.
+    pub(super) fn own_at(&self, tokens: &[Token], span: Span) -> Option<String> {
+        let found = self.own.iter().find_map(|p| p.longest_at(tokens, span.start).filter(|f| f.0 == span.end));
+        found.map(|f| f.1.id.clone())
+    }
+
     /// Returns true when a word for a room begins at a token.
     pub(super) fn names_room(&self, tokens: &[Token], i: usize, numbers: &[Number], spoken: &[&Spoken]) -> bool {
         i < tokens.len() && self.at(tokens, i, numbers, spoken).is_some()
@@ -184,6 +193,8 @@ pub(super) struct Taken<'a> {
     pub counted: &'a [Span],
     /// Words for a robot's dock.
     pub docks: &'a [Span],
+    /// Rooms that are told by their beds.
+    pub bed_rooms: &'a [BedRoom],
 }
 
 /// Returns all mentions in order.
@@ -206,8 +217,11 @@ pub(super) fn mentions(
             i += 1;
             continue;
         }
-        match noun_at(tokens, i, numbers, vocabulary, spoken, language, taken) {
-            Some((end, what, plural)) => {
+        let told = taken.bed_rooms.iter().find(|b| b.span.start == i);
+        let told = told.map(|b| (b.span.end, What::Room(b.room_type.clone()), b.plural, Some(b.beds)));
+        let noun = || noun_at(tokens, i, numbers, vocabulary, spoken, language, taken).map(|n| (n.0, n.1, n.2, None));
+        match told.or_else(noun) {
+            Some((end, what, plural, beds)) => {
                 out.push(Mention {
                     span: Span { start: i, end },
                     what,
@@ -218,6 +232,7 @@ pub(super) fn mentions(
                     definite: false,
                     from: i,
                     number: None,
+                    beds,
                 });
                 i = end;
             }
@@ -241,7 +256,9 @@ fn noun_at(
     language: &str,
     taken: &Taken,
 ) -> Option<(usize, What, bool)> {
-    if tagged(tokens, i, spoken, Tag::Storeys) {
+    // "a dozen rooms", "ein einzelnes Zimmer": what lies within a number names no room
+    let counts = numbers.iter().any(|n| !n.article && n.span.start < i && i < n.span.end);
+    if counts || tagged(tokens, i, spoken, Tag::Storeys) {
         return None;
     }
     if let Some(dock) = taken.docks.iter().find(|d| d.start == i) {
@@ -305,6 +322,7 @@ fn noun_at(
         (None, people) => {
             let unknown = if people.is_none() || generic {
                 unknown::room_at(tokens, i, spoken, language, taken.list_from)
+                    .filter(|_| !numbers.iter().any(|n| n.span.contains(i)))
                     // "nurse treatment room" is a treatment room
                     .filter(|(end, _)| free(*end) && !(i + 1..*end).any(|k| vocabulary.known_to(tokens, k, *end)))
                     .map(|(end, name)| (end, What::Room(name), false))

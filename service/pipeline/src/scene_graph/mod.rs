@@ -4,6 +4,7 @@
 //! with the modules about words, `program` completes the rooms, `rooms` names, sizes and furnishes them, `edges`
 //! connects them.
 
+mod beds;
 mod building;
 mod deal;
 mod docks;
@@ -16,6 +17,7 @@ mod measures;
 mod mentions;
 mod numbers;
 mod objects;
+mod parts;
 mod places;
 mod program;
 mod proposed;
@@ -23,11 +25,14 @@ mod reading;
 mod relations;
 mod robots;
 mod rooms;
+mod single;
 mod storeys;
 mod styles;
 mod text;
 mod units;
 mod unknown;
+mod unread;
+mod vital;
 mod wishes;
 mod words;
 

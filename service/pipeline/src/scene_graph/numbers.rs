@@ -154,6 +154,11 @@ fn fits(group: f64, value: f64) -> bool {
             || (group == 0.0))
 }
 
+/// Reads a number at the head of a compound: the "sechs" of "Sechsbettzimmer".
+pub(super) fn in_one_word(head: &str, spoken: &Spoken) -> Option<f64> {
+    german(head, spoken)
+}
+
 /// Reads a German number written in one word: "einundzwanzig", "zweihundertfünfzig".
 fn german(text: &str, spoken: &Spoken) -> Option<f64> {
     if let Some(value) = spoken.numbers.get(text) {

@@ -7,7 +7,7 @@ use super::mentions::Mention;
 use super::text::{Phrases, Span, Token};
 
 /// Returns the objects that are named, each with the room type named before it; what is part of a room's name or of the
-/// spans that are no things is none.
+/// spans that are no things is none. Adds the words for them to `spans`.
 pub(super) fn named(
     tokens: &[Token],
     mentions: &[Mention],
@@ -15,6 +15,7 @@ pub(super) fn named(
     registry: &Registry,
     languages: &[&str],
     not_things: &[Span],
+    spans: &mut Vec<Span>,
 ) -> Vec<(String, Option<String>)> {
     let words = |language: &str| {
         let mut phrases: Phrases<String> = Phrases::new(language);
@@ -37,6 +38,7 @@ pub(super) fn named(
                 Some((end, id)) => {
                     let with = mentions.iter().rev().filter(|m| m.span.end <= i).find_map(|m| m.room_type());
                     let near = with.map(str::to_owned);
+                    spans.push(Span { start: i, end });
                     if !out.iter().any(|o| &o.0 == id) {
                         out.push((id.clone(), near));
                     }

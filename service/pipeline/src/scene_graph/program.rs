@@ -8,8 +8,10 @@ use d3dgen_model::domain::{Access, Occupants, Program, ProgramRoom, RoomType, Sh
 use super::layout;
 use super::places::note;
 use super::reading::{MAX_ROOMS, Reading};
+use super::beds::sleeps;
 use super::units;
-use super::wishes::{CHARGING, Pair, Wish};
+use super::vital;
+use super::wishes::{CHARGING, Pair, PerHost, Wish};
 use super::words::words;
 
 /// Rooms of a building planned by area alone.
@@ -77,7 +79,10 @@ pub(super) fn complete<'a>(reading: &mut Reading<'a>) -> Vec<Planned<'a>> {
         (Some(total), _) => build.fill_to(total as usize),
         (None, false) => build.fill_usual(),
     }
-    let mut rooms = units::divide(reading, build.rooms);
+    let mut rooms = build.rooms;
+    equip_hosts(reading, &mut rooms);
+    vital::complete(reading, &mut rooms);
+    let mut rooms = units::divide(reading, rooms);
     layout::follow(reading, &mut rooms);
     finish(reading, rooms)
 }
@@ -89,6 +94,48 @@ pub(super) fn finish<'a>(reading: &mut Reading<'a>, mut rooms: Vec<Planned<'a>>)
     hang_on_hosts(reading, &mut rooms);
     state_additions(reading, &rooms);
     rooms
+}
+
+/// Returns the type of the room that comes with every host: the one that is named, or where that is no room entered through
+/// another the one for the same use that is: "every room has a bathroom" of a hospital means its en suites.
+fn private_kind<'a>(reading: &Reading<'a>, rooms: &[Planned], pair: &PerHost) -> &'a RoomType {
+    let named = reading.domain.room_type_or_generic(&pair.guest);
+    let sleeps = |id: &String| rooms.iter().any(|r| &r.room_type == id && r.kind.zone == Zone::Night);
+    let serves = |kind: &&RoomType| kind.access == Access::Host && kind.wet && kind.hosts.iter().any(sleeps);
+    if named.access == Access::Host || !named.wet || pair.host.is_some() {
+        return named;
+    }
+    reading.domain.room_types.iter().find(serves).unwrap_or(named)
+}
+
+/// Gives each host the room that the prompt wants with every one of them: "every patient room has an en suite".
+fn equip_hosts<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
+    for pair in &reading.wishes.per_host {
+        let kind = private_kind(reading, rooms, pair);
+        let takes = |r: &Planned| match &pair.host {
+            Some(host) => &r.room_type == host,
+            None => r.kind.zone == Zone::Night && r.kind.access != Access::Host && kind.hosts.contains(&r.room_type),
+        };
+        loop {
+            let hosts = rooms.iter().filter(|r| takes(r)).count();
+            if rooms.iter().filter(|r| r.room_type == kind.id).count() >= hosts {
+                break;
+            }
+            let guest = Planned { requested: true, ..Planned::new(&kind.id, kind) };
+            if reading.total.is_none() {
+                rooms.push(guest);
+                continue;
+            }
+            // the number of rooms is fixed: something else gives way, or the last host
+            let own = |r: &Planned| takes(r) || r.room_type == kind.id;
+            let spare = (0..rooms.len())
+                .rev()
+                .find(|&i| !rooms[i].requested && !own(&rooms[i]) && !vital::is_vital(reading, rooms, i))
+                .or_else(|| (0..rooms.len()).rev().find(|&i| takes(&rooms[i]) && !rooms[i].requested));
+            let Some(spare) = spare else { break };
+            rooms[spare] = guest;
+        }
+    }
 }
 
 /// Returns true when rooms of a type may be added to those that the prompt names.
@@ -149,7 +196,8 @@ pub(super) fn follow_rules<'a>(
     missing: &[Applicable],
 ) -> bool {
     let mut changed = false;
-    for rule in missing {
+    // a room by itself is no building
+    for rule in missing.iter().filter(|_| !reading.single) {
         let space = &rule.constraint.space_type;
         let speaks = |t: &&RoomType| &t.id == space || t.spaces.contains(space);
         let Some(kind) = reading.domain.room_types.iter().find(speaks) else { continue };
@@ -381,10 +429,13 @@ impl<'r, 'a> Build<'r, 'a> {
 
     /// Drops or adds rooms until the usual sizes fit an area, net m^2.
     fn fit_area(&mut self, area: f64) {
-        let sum = |build: &Self, size: fn(&RoomType) -> f64| build.rooms.iter().map(|r| size(r.kind)).sum::<f64>();
+        let sum = |build: &Self, size: fn(&RoomType) -> f64| {
+            build.rooms.iter().map(|r| r.area_m2.unwrap_or_else(|| size(r.kind))).sum::<f64>()
+        };
         while sum(self, |k| TIGHT * k.area_m2.min) > area {
             // what comes last in the program goes first
-            let Some(last) = self.rooms.iter().rposition(|r| !r.requested) else { break };
+            let spare = |&i: &usize| !self.rooms[i].requested && !vital::is_vital(self.reading, &self.rooms, i);
+            let Some(last) = (0..self.rooms.len()).rev().find(spare) else { break };
             if self.rooms.len() <= 1 {
                 break;
             }
@@ -424,11 +475,12 @@ pub(super) fn head_count(reading: &Reading, of: Occupants) -> Option<u32> {
 
 /// Spreads the people over the rooms that the program gives them.
 fn hold_people(reading: &mut Reading, rooms: &mut [Planned]) {
+    hold_beds(reading, rooms);
     for entry in &reading.program.rooms {
         let Some(people) = head_count(reading, entry.occupants) else { continue };
         let places: Vec<usize> = (0..rooms.len()).filter(|&i| rooms[i].room_type == entry.room_type).collect();
         let sits = entry.area_per_occupant_m2.is_some() || entry.occupants != Occupants::Staff;
-        if !sits || places.is_empty() || places.iter().any(|&i| rooms[i].occupants.is_some()) {
+        if !sits || places.is_empty() || places.iter().any(|&i| rooms[i].occupants.is_some()) || reading.single {
             continue;
         }
         let n = places.len() as u32;
@@ -450,6 +502,36 @@ fn hold_people(reading: &mut Reading, rooms: &mut [Planned]) {
                 rooms[i].occupants = Some(beds / n + u32::from((k as u32) < beds % n));
             }
         }
+    }
+}
+
+/// Gives rooms to sleep in the beds that the prompt says, and where its beds are those of its rooms the usual ones.
+fn hold_beds(reading: &Reading, rooms: &mut [Planned]) {
+    for held in &reading.held {
+        let free = rooms.iter_mut().filter(|r| r.requested && r.occupants.is_none() && r.room_type == held.room_type);
+        for room in free.take(held.count as usize) {
+            room.occupants = Some(held.beds);
+            let Some([low, high]) = sleeps(reading.domain, room.kind) else { continue };
+            if !(low..=high).contains(&held.beds) || high > low {
+                let range = room.kind.area_m2;
+                let area = range.target * f64::from(held.beds) / f64::from(low.max(1));
+                room.people_area_m2 = room.area_m2.is_none().then(|| area.clamp(range.min, range.max));
+            }
+        }
+    }
+    let o = &reading.occupancy;
+    let heads = o.beds.or(o.staff).or(o.desks).or(o.visitors).or(reading.residents);
+    if let Some(room) = rooms.first_mut().filter(|r| reading.single && r.occupants.is_none()) {
+        room.occupants = heads;
+    }
+    let Some(beds) = o.beds else { return };
+    let held: u32 = rooms.iter().filter_map(|r| r.occupants).sum();
+    let open: Vec<(usize, u32)> = (0..rooms.len())
+        .filter(|&i| rooms[i].requested && rooms[i].occupants.is_none())
+        .filter_map(|i| Some((i, sleeps(reading.domain, rooms[i].kind)?[0])))
+        .collect();
+    if held + open.iter().map(|r| r.1).sum::<u32>() == beds {
+        open.into_iter().for_each(|(i, each)| rooms[i].occupants = Some(each));
     }
 }
 

@@ -1,21 +1,23 @@
 //! A prompt understood: every fact it states, before rooms are added or connected.
 
-use d3dgen_model::domain::{Access, Domain, Occupants, Program, ProgramRoom, Shape};
+use d3dgen_model::domain::{Access, Domain, GENERIC_ROOM_TYPE, Occupants, Program, ProgramRoom, Shape};
 use d3dgen_model::scene_graph::{Note, Occupancy, Robot};
 use d3dgen_model::style::Style;
 use d3dgen_plugins::Registry;
 
+use super::beds::{self, Held};
 use super::building::{self, Building};
 use super::mentions::{Mention, Taken, Vocabulary, What, mentions};
 use super::objects;
+use super::parts;
 use super::places::{self, note};
 use super::relations;
-use super::storeys::{self, Storeys, Where};
+use super::storeys::{self, Storeys, Wanted, Where};
 use super::styles;
 use super::text::{MAX_TOKENS, Span, Token, tokens};
-use super::wishes::{self, MANY, Text, Wish, Wishes};
+use super::wishes::{self, MANY, PerHost, Text, Wish, Wishes};
 use super::words::{Spoken, Tag, words};
-use super::{Request, docks, dwelling, language, measures, numbers, robots};
+use super::{Request, docks, dwelling, language, measures, numbers, robots, single, unread};
 use crate::Error;
 
 /// Most rooms one world is planned for.
@@ -25,7 +27,7 @@ const MAX_AREA_M2: f64 = 200_000.0;
 /// A building's first room that is so many times larger than all listed ones is what it is for.
 const MAIN_ROOM_SHARE: f64 = 1.5;
 /// A room for more people each is no place to work at but one to meet or wash in.
-const MOST_IN_OFFICE: u32 = 4;
+pub(super) const MOST_IN_OFFICE: u32 = 4;
 /// Largest head count that is taken at its word.
 const MAX_HEADS: i64 = 5000;
 
@@ -42,6 +44,10 @@ pub(super) struct Reading<'a> {
     pub total: Option<u32>,
     /// True when the prompt lists all rooms there are to be.
     pub closed: bool,
+    /// True when the prompt asks for one room and no building.
+    pub single: bool,
+    /// Rooms of which the prompt says the beds.
+    pub held: Vec<Held>,
     /// True when the prompt counts the rooms to live in ("3-Zimmer-Wohnung", "2BHK").
     pub habitable_fixed: bool,
     pub area_m2: Option<f64>,
@@ -97,7 +103,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     let machines = robots::find(&tokens, &spoken);
     // neither places nor robots and their docks say what is built
     let elsewhere: Vec<Span> = place.spans.iter().chain(&machines.spans).chain(&machines.docks).copied().collect();
-    let building = building_of(
+    let mut building = building_of(
         request,
         registry,
         &tokens,
@@ -108,6 +114,12 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         &mut assumptions,
         &mut conflicts,
     );
+    let words_known = || building::words_known(&tokens, registry, language);
+    let unread_language = language::unread(prompt, &tokens, language, words_known());
+    if let Some(name) = unread_language {
+        let message = format!("the prompt seems to be in {name}, which is not read; only what looks like a language that is was taken from it (English, German, French, Spanish, Chinese, Korean)");
+        assumptions.push(note("language_not_read", message));
+    }
     let domain =
         registry.get(&building.domain).map(|p| p.domain()).ok_or_else(|| refused("no domain is registered".into()))?;
     let program = program_of(domain, building.building_type.as_deref());
@@ -125,8 +137,14 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     spans.extend(radius.iter().map(|r| r.0));
     let vocabulary =
         registry.digest(&format!("{languages:?}: {}", domain.id), || Vocabulary::new(domain, registry, &languages));
+    single::unname(&mut building, &tokens, &vocabulary, &numbers, &spoken);
+    let lives = is_dwelling(program);
+    let choice = beds::Choice { domain, program, spoken: &spoken };
+    let told = if lives { Vec::new() } else { choice.phrases(&tokens, &numbers, |s| vocabulary.own_at(&tokens, s)) };
     let is_room = |i: usize| vocabulary.names_room(&tokens, i, &numbers, &spoken);
-    let storey_phrases = storeys::phrases(&tokens, &numbers, &spoken, building.head, is_room);
+    let within = |id: &String| words().dwelling.within_a_storey.contains(id);
+    let basements = !building.building_type.as_ref().is_some_and(within);
+    let storey_phrases = storeys::phrases(&tokens, &numbers, &spoken, building.head, basements, is_room);
     spans.extend(storey_phrases.iter().map(|p| p.span));
     let said_styles = styles::said(&tokens, &languages);
     spans.extend(said_styles.iter().map(|s| s.span));
@@ -140,8 +158,14 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         list_from: building.list_from,
         counted: &counted,
         docks: &machines.docks,
+        bed_rooms: &told,
     };
     let mut mentions = mentions(&tokens, &numbers, &vocabulary, &spoken, language, &taken);
+    if !lives {
+        choice.read_lists(&tokens, &mut mentions);
+        beds::of_several_wards(&mut mentions, &numbers, building.head);
+    }
+    let doors = unread::doors(&tokens, &mut mentions, &spoken);
     let docked = docks::inside_rooms(&tokens, &mut mentions, &machines.spans, &spoken);
     let said_styles = styles::of_building(said_styles, &mentions, language);
     let said = relations::read(&tokens, &mentions, &spoken, language, building.head);
@@ -156,6 +180,8 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         robots: machines.named,
     };
     let mut wishes = wishes::gather(&text, &mut conflicts);
+    let area_m2 = total_area(&text, request, &mut conflicts);
+    let list_closed = is_closed(&wishes, &text, &building, lives);
     let country = flag_country.as_deref().or(place.country_code.as_deref());
     let said_storeys = storeys::Text {
         tokens: &tokens,
@@ -166,7 +192,8 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         head: building.head,
         machines: &machines.spans,
     };
-    let storeys = storeys::read(&said_storeys, country, &mut conflicts);
+    let mut storeys = storeys::read(&said_storeys, country, &mut conflicts);
+    furnish_basement(&mut storeys, &mut wishes, domain);
     wish_for_storeys(&storeys, &mut wishes, domain);
     name_private_bathrooms(&mut wishes, domain);
     spans.extend(building.head);
@@ -180,10 +207,21 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         on_each: (&storeys.robots_on_each, storeys.levels.iter().filter(|l| **l >= 0).count() as u32),
     };
     let fleet = machines.counted(&fleet);
-    let robots = robots::of_graph(&fleet, &wishes, radius.map(|r| r.1), request, &mut assumptions, &mut conflicts);
-    let area_m2 = total_area(&text, request, &mut conflicts);
-    let people = People::read(&mentions, program, domain, &mut conflicts);
-    beds_are_rooms(&people, &mentions, &mut wishes);
+    let heard = robots::Prompt { text: prompt, tokens: &tokens };
+    let radius = radius.map(|r| r.1);
+    let robots = robots::of_graph(&fleet, &wishes, radius, request, &heard, &mut assumptions, &mut conflicts);
+    let parts = parts::plan(&building.parts, &tokens, &mut mentions, &mut wishes, (domain, program), &mut assumptions);
+    let mut people = People::read(&mentions, program, domain, &mut conflicts);
+    let mut held = Vec::new();
+    if lives {
+        people.share_a_home(&tokens, &numbers, &mentions, &spoken);
+    } else {
+        let who = people.occupancy.visitors.or(people.residents);
+        let beds = people.occupancy.beds;
+        let sleepers = beds::Sleepers { domain, program, mentions: &mentions, said: &said, beds, people: who };
+        let settled = sleepers.settle(&mut wishes, &mut assumptions, &mut conflicts);
+        (held, people.occupancy.beds) = (settled.held, settled.beds.or(parts.beds));
+    }
     let total = total_rooms(request, &mentions, &wishes, &mut conflicts)?;
     let listed: u64 = wishes.wishes.iter().map(|w| u64::from(w.count)).sum();
     if listed > u64::from(MAX_ROOMS) {
@@ -191,12 +229,39 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
             "the prompt asks for {listed} rooms; one world has {MAX_ROOMS} at most, ask for fewer"
         )));
     }
-    let closed = is_closed(&wishes, &text, &building, is_dwelling(program));
-    if closed && total.is_none() {
+    let alone = storeys.levels.len() == 1 && short_forms.is_empty() && total.is_none_or(|n| n == 1);
+    let alone = alone && unread_language.is_none();
+    let one_room = total == Some(1) && building.head.is_none() && wishes.wishes.is_empty() && request.rooms.is_none();
+    let single = alone && (one_room || request.rooms.is_none() && single::is_single(&building, &mentions, &wishes));
+    if single {
+        assumptions.push(note("single_room", "the prompt asks for one room and no building; it was planned by itself".into()));
+    }
+    if single && one_room {
+        wishes.wishes.push(Wish::one(GENERIC_ROOM_TYPE, "room"));
+    }
+    let total = total.filter(|_| !single);
+    let closed = list_closed || single;
+    if closed && total.is_none() && !single {
         let named = building.head.and_then(|h| vocabulary.room_named(&tokens[h.start..h.end]));
         assumptions.extend(add_main_room(&mut wishes, program, domain, &people, named.as_deref()));
     }
-    let mut things = objects::named(&tokens, &mentions, domain, registry, &languages, &not_things);
+    let mut read: Vec<Span> = spans.iter().chain(&machines.docks).chain(&building.words).copied().collect();
+    let mut things = objects::named(&tokens, &mentions, domain, registry, &languages, &not_things, &mut read);
+    let unread = unread::Text {
+        tokens: &tokens,
+        known_language: unread_language.is_none(),
+        doors: &doors,
+        prompt,
+        numbers: &numbers,
+        mentions: &mentions,
+        spoken: &spoken,
+        areas: &areas,
+        taken: &read,
+        list_from: building.list_from,
+        planned: &parts.planned,
+        parts: &parts.left,
+    };
+    unread::state(&unread, &mut conflicts);
     // those stand where the prompt puts them
     things.retain(|(object, _)| docked.is_empty() || domain.anchor(object).is_none_or(|o| o.shape != Shape::Dock));
     Ok(Reading {
@@ -210,7 +275,9 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         wishes,
         total,
         closed,
-        habitable_fixed: !short_forms.is_empty(),
+        single,
+        held,
+        habitable_fixed: short_forms.iter().any(|f| f.rooms.contains_key(&words().dwelling.living)),
         area_m2,
         occupancy: people.occupancy,
         residents: people.residents,
@@ -274,7 +341,10 @@ fn building_of(
         let list_from = found.as_ref().map_or(0, |b| b.list_from);
         return match recognize(Some(id)) {
             Some(b) => b,
-            None => Building { domain: id.clone(), building_type: None, head, list_from, by_rooms: false },
+            None => {
+                let (parts, words) = (Vec::new(), Vec::new());
+                Building { domain: id.clone(), building_type: None, head, list_from, by_rooms: false, parts, words }
+            }
         };
     }
     match found {
@@ -289,7 +359,8 @@ fn building_of(
             let id = registry.iter().next().map_or(String::new(), |p| p.id().to_owned());
             let message = format!("the prompt does not say what to build; domain {id} was taken");
             assumptions.push(note("default_domain", message));
-            Building { domain: id, building_type: None, head: None, list_from: 0, by_rooms: false }
+            let (parts, words) = (Vec::new(), Vec::new());
+            Building { domain: id, building_type: None, head: None, list_from: 0, by_rooms: false, parts, words }
         }
     }
 }
@@ -369,19 +440,32 @@ impl People {
         }
         Self { occupancy, residents }
     }
+
+    /// Counts those who share a home: "couple", "family of five", "two adults and three children".
+    fn share_a_home(&mut self, tokens: &[Token], numbers: &[numbers::Number], mentions: &[Mention], spoken: &[&Spoken]) {
+        let tagged = |m: &&Mention, tag| spoken.iter().any(|s| s.tag_at(tokens, m.span.start, tag).is_some());
+        let sum = |tag| {
+            let all = mentions.iter().filter(|m| !matches!(m.what, What::Room(_))).filter(|m| tagged(m, tag));
+            let counted = all.filter_map(|m| m.count).filter(|n| (1..=MAX_HEADS).contains(n)).sum::<i64>();
+            u32::try_from(counted).ok().filter(|n| *n > 0)
+        };
+        let (adults, children) = (sum(Tag::Adults), sum(Tag::Children));
+        if children.is_some() {
+            self.occupancy.visitors = None;
+        }
+        let household = dwelling::household(tokens, numbers, spoken, children);
+        self.residents = adults.zip(children).map(|(a, c)| a + c).or(self.residents).or(household);
+    }
 }
 
-/// "10 beds in single rooms" are 10 rooms.
-fn beds_are_rooms(people: &People, mentions: &[Mention], wishes: &mut Wishes) {
-    let Some(beds) = people.occupancy.beds else { return };
-    let Some(at) = mentions.iter().position(|m| m.what == What::Beds && m.count.is_some()) else { return };
-    let Some(next) = mentions.get(at + 1).filter(|m| m.span.start <= mentions[at].span.end + 2) else { return };
-    let (Some(id), None) = (next.room_type(), next.count) else { return };
-    if next.plural
-        && let Some(wish) = wishes.wishes.iter_mut().find(|w| w.room_type == id && !w.exact)
-    {
-        wish.count = beds;
-        wish.exact = true;
+/// Gives a basement of which nothing is said the room that it has for things.
+fn furnish_basement(storeys: &mut Storeys, wishes: &mut Wishes, domain: &Domain) {
+    let kind = words().dwelling.basement.iter().find_map(|id| domain.room_type(id));
+    let Some(kind) = kind.filter(|k| storeys.bare_basement && !wishes.forbidden.contains(&k.id)) else { return };
+    storeys.wanted.push(Wanted { room_type: kind.id.clone(), count: 1, at: Where::Level(-1) });
+    match wishes.wishes.iter_mut().find(|w| w.room_type == kind.id) {
+        Some(wish) => wish.count += 1,
+        None => wishes.wishes.push(Wish::one(&kind.id, &kind.label.to_lowercase())),
     }
 }
 
@@ -465,7 +549,7 @@ fn total_rooms(
 }
 
 /// Returns true for programs of buildings that people live in.
-fn is_dwelling(program: &Program) -> bool {
+pub(super) fn is_dwelling(program: &Program) -> bool {
     program.rooms.iter().any(|r| r.room_type == words().dwelling.bedroom || r.room_type == words().dwelling.living)
 }
 
@@ -481,6 +565,9 @@ fn is_closed(wishes: &Wishes, text: &Text, building: &Building, lives: bool) -> 
     // "3BHK with a balcony", "four bedrooms and a garage": what every dwelling has goes without saying
     let settled = |id: &String| wishes.wishes.iter().any(|w| &w.room_type == id) || wishes.forbidden.contains(id);
     let whole = !lives || words().dwelling.essential.iter().all(|any| any.iter().any(settled));
+    // "each bedroom has an en suite" leaves open how many there are
+    let counted = |p: &PerHost| p.host.as_ref().is_none_or(|h| wishes.wishes.iter().any(|w| &w.room_type == h));
+    let whole = whole && wishes.per_host.iter().all(counted);
     !open && whole && types >= 1 && (items >= 3 || types >= 2 && colon)
 }
 
@@ -511,17 +598,7 @@ fn add_main_room(
         || !placed && (heads || size(&main.room_type) > MAIN_ROOM_SHARE * largest);
     needed.then(|| {
         let label = main.room_type.replace('_', " ");
-        wishes.wishes.insert(
-            0,
-            Wish {
-                room_type: main.room_type.clone(),
-                count: 1,
-                exact: false,
-                name: label.clone(),
-                area_m2: None,
-                listed: false,
-            },
-        );
+        wishes.wishes.insert(0, Wish::one(&main.room_type, &label));
         note("main_room", format!("the list of rooms takes the {label} for granted; it was added"))
     })
 }

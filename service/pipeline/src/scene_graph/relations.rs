@@ -42,6 +42,8 @@ pub(super) struct Said {
     pub subjects: Vec<usize>,
     /// Mentions counted once for each room of another mention: (guest, host).
     pub each: Vec<(usize, usize)>,
+    /// Mentions counted once for every room that can have one: "every room has an en suite".
+    pub each_room: Vec<usize>,
 }
 
 const RELATIONS: [Tag; 7] = [Tag::Near, Tag::Door, Tag::Open, Tag::Together, Tag::Between, Tag::Around, Tag::Apart];
@@ -261,7 +263,8 @@ fn belongings(reader: &Reader, said: &mut Said) {
             continue;
         };
         let host = &reader.mentions[h];
-        if host.room_type().is_none() || guest.room_type().is_none() || said.negated.contains(&g) {
+        let any_room = host.what == What::Total && host.count.is_none();
+        if host.room_type().is_none() && !any_room || guest.room_type().is_none() || said.negated.contains(&g) {
             continue;
         }
         let between = host.span.end..guest.from.min(guest.span.start);
@@ -293,6 +296,10 @@ fn belongings(reader: &Reader, said: &mut Said) {
         let joined = between.clone().any(|i| reader.tagged(i, Tag::Joins));
         let related = RELATIONS.iter().any(|&t| has(t));
         if related || !starts && !each {
+            continue;
+        }
+        if any_room {
+            said.each_room.extend((each_host && starts).then_some(g));
             continue;
         }
         if each && many && (starts || has(Tag::Own)) || starts && !comma && !joined && many && !numbered {

@@ -15,6 +15,10 @@ use super::words::{Spoken, Tag, words};
 const MOST: f64 = 100.0;
 /// Words between a number and the robots that it counts, at most: "two small autonomous delivery robots".
 const MOST_BETWEEN: usize = 3;
+/// Words behind robots that say what they do, at most.
+const MOST_AFTER: usize = 16;
+/// Robots that a plural without a number stands for.
+const SEVERAL: u32 = 2;
 
 /// Robots of one kind.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -31,6 +35,31 @@ struct Named {
     kind: Option<&'static str>,
     /// True for a place of theirs ("robot garage"), which says nothing of how many there are.
     place: bool,
+    /// True for a plural form.
+    plural: bool,
+    /// True where it shares the word for robots with another kind: "cleaning and delivery robots".
+    shared: bool,
+    /// First word of a name that is none of the kinds: "lawn mowing robot".
+    name_from: Option<usize>,
+}
+
+/// A kind of work beside robots: the "2 cleaning" of "robots: 2 cleaning, 3 delivery".
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Work {
+    at: usize,
+    kind: &'static str,
+    own: Option<u32>,
+}
+
+/// What a reader of robots may assume.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Assumed {
+    /// The kind was not said.
+    Kind,
+    /// They do more than one kind of work, and the prompt does not say how many do which.
+    Shares,
+    /// There are several, and the prompt does not say how many.
+    Number,
 }
 
 /// Where a prompt speaks of robots.
@@ -46,11 +75,12 @@ pub(super) struct Robots {
 }
 
 /// Which robots a prompt wants.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Fleet {
     pub wanted: Vec<Wanted>,
-    /// True when the kind was not said.
-    pub kind_assumed: bool,
+    pub assumed: Vec<Assumed>,
+    /// Words for robots of kinds that are not planned.
+    pub unknown: Vec<Span>,
 }
 
 const KINDS: [(Tag, &str); 4] =
@@ -70,20 +100,31 @@ pub(super) fn find(tokens: &[Token], spoken: &[&Spoken]) -> Robots {
         // the longest phrase of any language decides: "robot docking" is no kind of robot
         let found = spoken.iter().filter_map(|s| s.tags.longest_at(tokens, i)).max_by_key(|f| f.0);
         let Some((end, tags)) = found else {
+            out.found.extend(compound(tokens, i, spoken));
             i += 1;
             continue;
         };
         let span = Span { start: i, end };
+        let plural = is_plural(&tokens[i..end]);
+        let named = Named { span, kind: None, place: false, plural, shared: false, name_from: None };
         if let Some((_, kind)) = KINDS.iter().find(|(tag, _)| tags.contains(tag)) {
             let kind = if *kind == "delivery" && serves(tokens, i, spoken) { "service" } else { kind };
-            out.found.push(Named { span, kind: Some(kind), place: false });
+            out.found.push(Named { kind: Some(kind), ..named });
+        } else if tags.contains(&Tag::OtherRobot) {
+            out.found.push(Named { name_from: Some(i), ..named });
         } else if tags.contains(&Tag::Robot) {
-            out.found.push(Named { span, kind: None, place: false });
+            out.found.push(Named { name_from: name_before(tokens, i, spoken), ..named });
         } else if tags.contains(&Tag::ChargePlace) && robot_inside(tokens, i, end, spoken) {
-            out.found.push(Named { span, kind: None, place: true });
+            out.found.push(Named { place: true, ..named });
         }
         i = end.max(i + 1);
     }
+    let shared = elliptic(tokens, &out.found, spoken);
+    for f in &mut out.found {
+        f.shared = shared.iter().any(|s| s.1 == f.span);
+    }
+    out.found.extend(shared.into_iter().map(|s| s.0));
+    out.found.sort_by_key(|f| f.span.start);
     out.spans = out.found.iter().filter(|f| !f.place).map(|f| f.span).collect();
     let dock = |s: &Span| {
         let end = spoken.iter().find_map(|l| l.tag_at(tokens, s.end, Tag::Charge))?;
@@ -118,26 +159,120 @@ impl Robots {
         let free: Vec<&Number> = by.numbers.iter().filter(free).collect();
         let (on_each, storeys) = by.on_each;
         let times = |f: &Named| if on_each.contains(&f.span) { storeys } else { 1 };
-        let count = |f: &Named| if f.place { 1 } else { by.count(f.span, &free) * times(f) };
+        let count = |f: &Named| if f.place { 1 } else { by.count(f.span, &free).unwrap_or(1) * times(f) };
+        // "robots" without a number are two; on every storey one
+        let told = |f: &Named| by.count(f.span, &free).is_some() || f.place || times(f) > 1;
+        let several = |f: &Named| f.plural && !told(f);
         for f in &self.found {
-            if let Some(kind) = f.kind {
-                add(&mut out.wanted, kind, count(f));
+            let Some(kind) = f.kind else { continue };
+            let open = several(f) && !f.shared;
+            if several(f) {
+                out.assume(Assumed::Number);
             }
+            add(&mut out.wanted, kind, if open { SEVERAL } else { count(f) });
         }
         for f in self.found.iter().filter(|f| f.kind.is_none()) {
-            let (kinds, count) = (verbs(by.tokens, f.span.start, by.spoken), count(f));
-            match (kinds.as_slice(), out.wanted.as_mut_slice()) {
-                // "AMR charging area for 4 robots": the same robots again
-                (_, [one]) if !kinds.iter().any(|k| k != &one.kind) => one.count = one.count.max(count),
-                (_, [_, ..]) if kinds.is_empty() => {}
-                ([], _) => {
-                    out.kind_assumed = true;
-                    add(&mut out.wanted, "service", count);
+            let n = if several(f) { SEVERAL } else { count(f) };
+            self.add_generic(f, n, several(f), by, &free, &mut out);
+        }
+        out
+    }
+
+    /// Adds robots whose words do not say the kind: by the work beside them, as the same robots again, or as service robots.
+    fn add_generic(&self, f: &Named, n: u32, several: bool, by: &Counting, free: &[&Number], out: &mut Fleet) {
+        let works = self.works(f, by, free);
+        let mut kinds: Vec<&'static str> = Vec::new();
+        works.iter().for_each(|w| kinds.extend((!kinds.contains(&w.kind)).then_some(w.kind)));
+        match (kinds.as_slice(), out.wanted.as_mut_slice()) {
+            // "AMR charging area for 4 robots": the same robots again
+            (_, [one]) if !kinds.iter().any(|k| k != &one.kind) && works.iter().all(|w| w.own.is_none()) => {
+                if !several {
+                    one.count = one.count.max(n);
                 }
-                (kinds, _) => kinds.iter().for_each(|kind| add(&mut out.wanted, kind, count)),
+            }
+            (_, [_, ..]) if kinds.is_empty() => {}
+            ([], _) => {
+                // places and rooms before robots are no kind of them
+                let other = |s: &Span| s.start < f.span.start && f.name_from.is_some_and(|from| s.end > from);
+                let elsewhere = by.taken.iter().any(other) || by.mentions.iter().any(|m| other(&m.span));
+                match f.name_from.filter(|_| !elsewhere) {
+                    Some(start) => out.unknown.push(Span { start, end: f.span.end }),
+                    None => out.assume(Assumed::Kind),
+                }
+                if several {
+                    out.assume(Assumed::Number);
+                }
+                add(&mut out.wanted, "service", n);
+            }
+            _ => {
+                if several && works.iter().any(|w| w.own.is_none()) {
+                    out.assume(Assumed::Number);
+                }
+                share(&works, n, f.span.end, out);
+            }
+        }
+    }
+
+    /// Returns what robots do by the words beside them, each with its own number: "two for cleaning", "cleaning x2".
+    fn works(&self, f: &Named, by: &Counting, free: &[&Number]) -> Vec<Work> {
+        let range = sentence(by.tokens, f.span.start);
+        let mut out: Vec<Work> = Vec::new();
+        for i in range.start.max(f.span.start.saturating_sub(8))..range.end.min(f.span.start + MOST_AFTER) {
+            let other = by.mentions.iter().any(|m| m.room_type().is_some() && m.span.contains(i));
+            if other || self.found.iter().any(|o| o.span.contains(i)) {
+                continue;
+            }
+            let Some((_, kind)) = VERBS.iter().find(|(tag, _)| by.tagged(i, *tag)) else { continue };
+            let own = by.own_number(i, f.span, free);
+            match out.iter_mut().find(|w| w.kind == *kind) {
+                Some(known) => known.own = known.own.or(own),
+                None => out.push(Work { at: i, kind, own }),
             }
         }
         out
+    }
+}
+
+impl Fleet {
+    fn assume(&mut self, what: Assumed) {
+        if !self.assumed.contains(&what) {
+            self.assumed.push(what);
+        }
+    }
+}
+
+/// Shares robots out to kinds of work: those with a number of their own have it, the others what is left.
+fn share(works: &[Work], n: u32, from: usize, out: &mut Fleet) {
+    let own: u32 = works.iter().filter_map(|w| w.own).sum();
+    let open: Vec<&Work> = works.iter().filter(|w| w.own.is_none()).collect();
+    for w in works {
+        if let Some(count) = w.own {
+            add(&mut out.wanted, w.kind, count);
+        }
+    }
+    let first = works.iter().find(|w| w.at >= from);
+    match open.as_slice() {
+        // "three robots, one of them for cleaning"
+        [] if n > own && works.iter().any(|w| w.own.is_some()) && first.is_some() => {
+            out.assume(Assumed::Kind);
+            add(&mut out.wanted, "service", n - own);
+        }
+        [] => {}
+        // "two robots for delivery and one for cleaning", but "three robots: one for cleaning, the rest for delivery"
+        [one] => {
+            let all = own == 0 || first == Some(*one);
+            add(&mut out.wanted, one.kind, if all { n } else { n.saturating_sub(own).max(1) });
+        }
+        several => {
+            let k = several.len() as u32;
+            let left = n.saturating_sub(own);
+            if left > k || n > 1 {
+                out.assume(Assumed::Shares);
+            }
+            for (i, w) in several.iter().enumerate() {
+                add(&mut out.wanted, w.kind, (left / k + u32::from((i as u32) < left % k)).max(1));
+            }
+        }
     }
 }
 
@@ -147,7 +282,7 @@ impl Counting<'_> {
     }
 
     /// Returns the number before robots, or behind them: "机器人三台", "로봇 2대", "robots: 3", "robots x 2".
-    fn count(&self, span: Span, free: &[&Number]) -> u32 {
+    fn count(&self, span: Span, free: &[&Number]) -> Option<u32> {
         let behind = || number_after(self.tokens, span.end, free, self.spoken, self.language);
         let with_counter =
             || free.iter().position(|n| n.span.start == span.end && self.tagged(n.span.end, Tag::Counters));
@@ -156,7 +291,32 @@ impl Counting<'_> {
         } else {
             self.before(span.start, free).or_else(with_counter).or_else(behind)
         };
-        found.map_or(1, |k| free[k].value.clamp(1.0, MOST) as u32)
+        found.map(|k| free[k].value.clamp(1.0, MOST) as u32)
+    }
+
+    /// Returns the number of a kind of work: "2 cleaning", "one for delivery", "cleaning x2", "cleaning (2)".
+    fn own_number(&self, i: usize, robots: Span, free: &[&Number]) -> Option<u32> {
+        let value = |n: &&&Number| n.value.clamp(1.0, MOST) as u32;
+        let mut at = i;
+        for _ in 0..MOST_BETWEEN {
+            if let Some(n) = free.iter().find(|n| n.span.end == at && !n.vague) {
+                return Some(value(&n));
+            }
+            let before = at.checked_sub(1).filter(|&k| !robots.contains(k) && !self.tokens[k].is_mark());
+            let Some(before) = before else { break };
+            let leads = [Tag::Stops, Tag::Definite, Tag::PlaceBefore].iter().any(|&tag| self.tagged(before, tag));
+            if !leads && self.tokens[before].text != "x" || self.tagged(before, Tag::Joins) {
+                break;
+            }
+            at = before;
+        }
+        let next = self.tokens.get(i + 1)?;
+        let at = if next.text == "x" || matches!(next.mark(), Some(':' | ',')) { i + 2 } else { i + 1 };
+        let bracket = next.mark() != Some(',') || self.tokens.get(i + 3).is_some_and(|t| t.mark() == Some(','));
+        let found = free.iter().find(|n| n.span.start == at && !n.vague && !n.article)?;
+        // "cleaning, 3 delivery": the number is of what follows it
+        let closes = self.tokens.get(found.span.end).is_none_or(|t| t.is_mark() || self.tagged(found.span.end, Tag::Joins));
+        (closes && bracket).then(|| value(&found))
     }
 
     /// Returns the number before robots, over adjectives and counters but no other thing.
@@ -188,6 +348,7 @@ pub(super) fn of_graph(
     wishes: &Wishes,
     radius: Option<f64>,
     request: &Request,
+    prompt: &Prompt,
     assumptions: &mut Vec<Note>,
     conflicts: &mut Vec<Note>,
 ) -> Vec<Robot> {
@@ -197,10 +358,7 @@ pub(super) fn of_graph(
     {
         wanted.push(Wanted { kind: "service", count: 1 });
     }
-    if fleet.kind_assumed {
-        assumptions
-            .push(note("robot_kind", "the prompt does not say what its robots do; service robots were assumed".into()));
-    }
+    state_assumed(fleet, prompt, assumptions);
     let radius = match radius {
         Some(r) if !(0.05..=2.0).contains(&r) => {
             conflicts.push(note(
@@ -238,6 +396,97 @@ pub(super) fn of_graph(
         .collect()
 }
 
+/// A prompt with its tokens.
+pub(super) struct Prompt<'a> {
+    pub text: &'a str,
+    pub tokens: &'a [Token],
+}
+
+impl Prompt<'_> {
+    /// Returns the words of a span as the prompt has them.
+    pub(super) fn words(&self, span: Span) -> &str {
+        let (Some(first), Some(last)) = (self.tokens.get(span.start), self.tokens.get(span.end.saturating_sub(1))) else {
+            return "";
+        };
+        self.text.get(first.start..last.end).unwrap_or("")
+    }
+}
+
+fn state_assumed(fleet: &Fleet, prompt: &Prompt, assumptions: &mut Vec<Note>) {
+    for assumed in &fleet.assumed {
+        let (code, message) = match assumed {
+            Assumed::Kind => ("robot_kind", "the prompt does not say what its robots do; service robots were assumed".into()),
+            Assumed::Shares => ("robot_shares", "the prompt does not say how many robots do which work; they were shared out".into()),
+            Assumed::Number => ("robot_count", format!("the prompt does not say how many robots there are; {SEVERAL} were assumed for robots in the plural, one of each kind where it names several kinds")),
+        };
+        assumptions.push(note(code, message));
+    }
+    for span in &fleet.unknown {
+        let kinds: Vec<&str> = words().robot_kinds.keys().map(String::as_str).collect();
+        let message = format!("`{}` is none of the kinds of robots that are planned ({}); a service robot was taken for it", prompt.words(*span), kinds.join(", "));
+        assumptions.push(note("robot_kind", message));
+    }
+}
+
+/// Returns true for robots in the plural: "cleaning robots", "robots de nettoyage", "Reinigungsrobotern".
+fn is_plural(tokens: &[Token]) -> bool {
+    let plural = |t: &Token| matches!(t.text.as_str(), "robots" | "bots") || t.text.ends_with("robotern");
+    let last = tokens.last().is_some_and(|t| t.kind == Kind::Word && t.text.len() > 3 && t.text.ends_with('s') && !t.text.ends_with("roboters"));
+    tokens.iter().any(plural) || last
+}
+
+/// Returns where the words begin that name a kind of robot which is none of those known: "surgical robot".
+fn name_before(tokens: &[Token], at: usize, spoken: &[&Spoken]) -> Option<usize> {
+    let name = |i: usize| {
+        let token = &tokens[i];
+        let known = spoken.iter().any(|s| s.tags.longest_at(tokens, i).is_some() || s.numbers.contains_key(&token.text) || s.quantities.word(&token.text).is_some());
+        token.kind == Kind::Word && token.text.len() > 2 && !known
+    };
+    let from = (at.saturating_sub(2)..at).rev().take_while(|&i| name(i)).last()?;
+    Some(from)
+}
+
+/// Reads "Mähroboter", a compound of no kind that is known.
+fn compound(tokens: &[Token], i: usize, spoken: &[&Spoken]) -> Option<Named> {
+    let text = &tokens[i].text;
+    let ends = spoken.iter().filter_map(|s| s.words.phrases.get(&Tag::Robot)).flatten();
+    let robot = ends.filter(|w| w.ends_with("er") || w.ends_with("ern")).any(|w| text.len() > w.len() + 2 && text.ends_with(w.as_str()));
+    robot.then(|| {
+        let span = Span { start: i, end: i + 1 };
+        Named { span, kind: None, place: false, plural: is_plural(&tokens[i..=i]), shared: false, name_from: Some(i) }
+    })
+}
+
+/// Returns the kinds that share the word for robots with one behind them: "2 cleaning and 3 delivery robots",
+/// "Reinigungs- und Transportroboter".
+fn elliptic(tokens: &[Token], found: &[Named], spoken: &[&Spoken]) -> Vec<(Named, Span)> {
+    let tagged = |i: usize, tag: Tag| spoken.iter().any(|s| s.tag_at(tokens, i, tag).is_some());
+    let kind_of = |i: usize| {
+        let verb = VERBS.iter().find(|(tag, _)| tagged(i, *tag)).map(|v| v.1);
+        verb.filter(|_| tokens[i].kind == Kind::Word && !found.iter().any(|f| f.span.contains(i)))
+    };
+    let mut out = Vec::new();
+    for f in found.iter().filter(|f| f.kind.is_some() && !f.place) {
+        let mut at = f.span.start;
+        for _ in 0..KINDS.len() {
+            // over the number of the kind behind
+            let numbered = at.checked_sub(1).filter(|&k| {
+                matches!(tokens[k].kind, Kind::Number(_)) || spoken.iter().any(|s| s.numbers.contains_key(&tokens[k].text))
+            });
+            let join = numbered.unwrap_or(at).checked_sub(1);
+            let Some(join) = join.filter(|&k| tokens[k].mark().is_some_and(|m| m == ',' || m == '/') || tagged(k, Tag::Joins)) else {
+                break;
+            };
+            let Some((i, kind)) = join.checked_sub(1).and_then(|i| Some((i, kind_of(i)?))) else { break };
+            let span = Span { start: i, end: i + 1 };
+            let named = Named { span, kind: Some(kind), place: false, plural: true, shared: true, name_from: None };
+            out.push((named, f.span));
+            at = i;
+        }
+    }
+    out
+}
+
 fn add(wanted: &mut Vec<Wanted>, kind: &'static str, count: u32) {
     match wanted.iter_mut().find(|w| w.kind == kind) {
         Some(known) => known.count = known.count.max(count),
@@ -263,19 +512,4 @@ fn sentence(tokens: &[Token], at: usize) -> std::ops::Range<usize> {
 fn serves(tokens: &[Token], at: usize, spoken: &[&Spoken]) -> bool {
     let range = at..sentence(tokens, at).end.min(at + 12);
     range.into_iter().any(|i| spoken.iter().any(|s| s.tag_at(tokens, i, Tag::TableWords).is_some()))
-}
-
-fn verbs(tokens: &[Token], at: usize, spoken: &[&Spoken]) -> Vec<&'static str> {
-    let range = sentence(tokens, at);
-    let from = range.start.max(at.saturating_sub(8));
-    let mut kinds = Vec::new();
-    for i in from..range.end.min(at + 12) {
-        for (tag, kind) in VERBS {
-            let here = spoken.iter().any(|s| s.tag_at(tokens, i, tag).is_some());
-            if here && !kinds.contains(&kind) {
-                kinds.push(kind);
-            }
-        }
-    }
-    kinds
 }

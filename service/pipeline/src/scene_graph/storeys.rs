@@ -47,6 +47,8 @@ impl Where {
 pub(super) struct Phrase {
     pub span: Span,
     pub at: Where,
+    /// True for a storey that the building is to have ("a basement"), not one that something is on.
+    pub noun: bool,
 }
 
 /// Rooms that the prompt wants on a storey.
@@ -67,6 +69,8 @@ pub(super) struct Storeys {
     pub elevator: Option<bool>,
     /// Robots that are wanted on every storey.
     pub robots_on_each: Vec<Span>,
+    /// True for a basement of which the prompt says no room.
+    pub bare_basement: bool,
 }
 
 /// Returns the phrases that name storeys, in order; `is_room` tells whether a word for a room begins at a token.
@@ -75,6 +79,7 @@ pub(super) fn phrases(
     numbers: &[Number],
     spoken: &[&Spoken],
     head: Option<Span>,
+    basements: bool,
     is_room: impl Fn(usize) -> bool,
 ) -> Vec<Phrase> {
     let mut out = Vec::new();
@@ -83,20 +88,34 @@ pub(super) fn phrases(
         let eastern = || nth_in_east(tokens, i, numbers, head, &is_room);
         let level = numbered(tokens, i, spoken).map(|(end, level)| (end, Where::Level(level)));
         if let Some((end, at)) = level.or_else(eastern) {
-            out.push(Phrase { span: Span { start: i, end }, at });
+            out.push(Phrase { span: Span { start: i, end }, at, noun: false });
             i = end;
             continue;
         }
         let found = spoken.iter().filter_map(|s| s.levels.longest_at(tokens, i)).max_by_key(|f| f.0);
-        match found {
-            Some((end, &at)) => {
-                out.push(Phrase { span: Span { start: i, end }, at });
+        let below = spoken.iter().find_map(|s| s.tag_at(tokens, i, Tag::Basement)).filter(|_| basements);
+        match (found, below) {
+            (Some((end, &at)), below) if below.is_none_or(|b| b < end || inside(tokens, i, spoken)) => {
+                out.push(Phrase { span: Span { start: i, end }, at, noun: false });
                 i = end;
             }
-            None => i += 1,
+            (_, Some(end)) => {
+                let noun = !inside(tokens, i, spoken);
+                out.push(Phrase { span: Span { start: i, end }, at: Where::Level(-1), noun });
+                i = end;
+            }
+            _ => i += 1,
         }
     }
     out
+}
+
+/// Returns true behind "in the": what is said lies on the storey, and the storey itself is nothing new.
+fn inside(tokens: &[Token], i: usize, spoken: &[&Spoken]) -> bool {
+    let tagged = |k: usize, tag: Tag| spoken.iter().any(|s| s.tag_at(tokens, k, tag).is_some());
+    let before = |k: usize| i.checked_sub(k);
+    before(1).is_some_and(|k| tagged(k, Tag::Inside))
+        || before(2).is_some_and(|k| tagged(k, Tag::Inside) && tagged(k + 1, Tag::Definite))
 }
 
 /// Returns end and number of "2. OG", "3. Stock": a number with a dot before a word for a storey.
@@ -172,7 +191,10 @@ fn stated(text: &Text) -> Option<f64> {
     }
     let by_number = numbers.iter().find(counted).map(|n| n.value);
     let by_word = |counts: &Phrases<f64>| (0..tokens.len()).find_map(|i| counts.longest_at(tokens, i).map(|f| *f.1));
-    by_number.or_else(|| spoken.iter().find_map(|s| by_word(&s.storey_counts)))
+    // a "ground-floor maisonette" has one storey of its house
+    let placed = phrases.iter().any(|p| !p.noun && head.is_some_and(|h| h.start == p.span.end));
+    let counts = || spoken.iter().find_map(|s| by_word(&s.storey_counts)).filter(|_| !placed);
+    by_number.or_else(counts)
 }
 
 /// Returns whether an elevator is asked for or ruled out.
@@ -215,7 +237,8 @@ pub(super) fn read(text: &Text, country: Option<&str>, conflicts: &mut Vec<Note>
         Where::Upper | Where::Top | Where::Each => None,
     };
     // "flat on the third floor" is where the flat is; rooms on a floor are what it is made of
-    let used: Vec<Where> = on.iter().map(|o| phrases[o.1].at).collect();
+    let below = phrases.iter().filter(|p| p.noun).map(|p| p.at);
+    let used: Vec<Where> = on.iter().map(|o| phrases[o.1].at).chain(below).collect();
     let mut named: Vec<i32> = used.iter().filter_map(|at| fixed(*at)).collect();
     named.sort_unstable();
     named.dedup();
@@ -250,7 +273,8 @@ pub(super) fn read(text: &Text, country: Option<&str>, conflicts: &mut Vec<Note>
         };
         wanted.push(Wanted { room_type: room_type.to_owned(), count, at });
     }
-    Storeys { levels, wanted, elevator: elevator(tokens, spoken), robots_on_each }
+    let bare = (0..phrases.len()).any(|p| phrases[p].noun) && !wanted.iter().any(|w| w.at == Where::Level(-1));
+    Storeys { levels, wanted, elevator: elevator(tokens, spoken), robots_on_each, bare_basement: bare }
 }
 
 /// Returns the robots that a phrase says the storey of: "a cleaning robot on each floor", not "upstairs bedrooms".
@@ -317,6 +341,12 @@ fn attach(tokens: &[Token], mentions: &[Mention], phrases: &[Phrase], spoken: &[
         let end = (phrase.span.end..stop).find(|&i| ends(i)).unwrap_or(stop);
         let after: Vec<usize> =
             rooms.iter().copied().filter(|&m| (phrase.span.end..end).contains(&mentions[m].span.start)).collect();
+        if phrase.noun && !opens {
+            // "a basement garage"
+            let here = after.iter().copied().find(|&m| mentions[m].span.start == phrase.span.end);
+            out.extend(here.map(|m| (m, p)));
+            continue;
+        }
         if opens || !follows_room && !after.is_empty() {
             // "an upstairs bathroom" is one room, "upstairs: a bathroom, ..." a list
             let article = phrase.span.start > 0 && tagged(phrase.span.start - 1, &[Tag::Articles]);

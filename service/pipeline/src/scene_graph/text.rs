@@ -82,7 +82,9 @@ pub(super) fn tokens(text: &str) -> Vec<Token> {
             out.push(Token { text: c.to_string(), kind, start, end: at(&chars, j, text), spaced, capital: false });
             spaced = false;
         } else if c.is_alphabetic() {
-            while j < chars.len() && continues_word(&chars, j) {
+            // "cleaning robot x2", "4x5 m": the x counts, and is no part of a name
+            let times = matches!(c, 'x' | 'X') && chars.get(j).is_some_and(|n| n.1.is_ascii_digit());
+            while !times && j < chars.len() && continues_word(&chars, j) {
                 j += 1;
             }
             let raw: String = chars[i..j].iter().map(|x| x.1).collect();
@@ -125,6 +127,7 @@ fn plain(c: char) -> char {
         '³' => '3',
         '‐' | '‑' | '‒' | '–' | '—' | '−' => '-',
         '’' | '‘' | '`' | '´' => '\'',
+        '×' => 'x',
         '。' => '.',
         '、' => ',',
         _ => c,
@@ -433,6 +436,7 @@ mod tests {
         assert_eq!(texts("dentist's X-ray"), ["dentists", "x", "ray"]);
         assert_eq!(texts("près de l'entrée"), ["pres", "de", "l", "entree"]);
         assert_eq!(texts("방 2개"), ["방", "2", "개"]);
+        assert_eq!(texts("robot x2, 4×5 m"), ["robot", "x", "2", ",", "4", "x", "5", "m"]);
     }
 
     #[test]

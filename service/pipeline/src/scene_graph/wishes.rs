@@ -10,6 +10,7 @@ use super::mentions::{Mention, What};
 use super::places::note;
 use super::relations::{Said, Spread};
 use super::text::Token;
+use super::words::{Tag, words};
 
 /// Rooms of one type that the prompt names.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,6 +27,14 @@ pub(super) struct Wish {
     pub listed: bool,
 }
 
+impl Wish {
+    /// Returns the wish for a room that the prompt does not list by its type.
+    pub(super) fn one(room_type: &str, name: &str) -> Self {
+        let (room_type, name) = (room_type.to_owned(), name.to_owned());
+        Self { room_type, count: 1, exact: false, name, area_m2: None, listed: false }
+    }
+}
+
 /// Two room types that belong together.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Pair {
@@ -37,6 +46,14 @@ pub(super) struct Pair {
     pub belongs: bool,
 }
 
+/// A room that comes with each room of another type.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct PerHost {
+    pub guest: String,
+    /// `None`: with each room that can have one.
+    pub host: Option<String>,
+}
+
 /// Everything the prompt wants in terms of room types.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Wishes {
@@ -45,6 +62,8 @@ pub(super) struct Wishes {
     pub apart: Vec<[String; 2]>,
     pub forbidden: Vec<String>,
     pub entrance: Vec<String>,
+    /// What comes with each room of a type whose number the prompt leaves open.
+    pub per_host: Vec<PerHost>,
     /// True when some charging place near a room is asked for.
     pub charging_room: bool,
     /// True when charging is mentioned at all.
@@ -55,6 +74,8 @@ pub(super) struct Wishes {
 pub(super) const CHARGING: &str = "robot_charging";
 /// A count above this is no plan but a slip; the caller refuses.
 pub(super) const MANY: i64 = 500;
+/// Words between a room and its area, at most: "of at least".
+const MOST_TO_AREA: usize = 4;
 
 /// What the counting needs to see.
 pub(super) struct Text<'a> {
@@ -94,9 +115,23 @@ pub(super) fn gather(text: &Text, conflicts: &mut Vec<Note>) -> Wishes {
     for (_, id, i) in named {
         by_type.entry(id).or_default().push(i);
     }
+    let open = open_hosts(text, &by_type);
+    for &(guest, host) in &open {
+        let guest = text.mentions[guest].room_type().map(str::to_owned);
+        let host = host.and_then(|h| text.mentions[h].room_type()).map(str::to_owned);
+        out.per_host.extend(guest.map(|guest| PerHost { guest, host }));
+    }
+    let per_host = |m: &usize| open.iter().any(|o| o.0 == *m || o.1 == Some(*m));
+    by_type.values_mut().for_each(|list| list.retain(|m| !per_host(m)));
     for id in order {
         let none = Vec::new();
         let list = by_type.get(&id).unwrap_or(&none);
+        if list.is_empty() && out.per_host.iter().any(|p| p.guest == id || p.host.as_ref() == Some(&id)) {
+            let short = text.short_forms.iter().any(|f| f.rooms.contains_key(&id));
+            if !short {
+                continue;
+            }
+        }
         count_type(text, &id, list, &mut out, conflicts);
     }
     each_of_host(text, &mut out);
@@ -128,6 +163,22 @@ pub(super) fn gather(text: &Text, conflicts: &mut Vec<Note>) -> Wishes {
         }
     }
     out
+}
+
+/// Returns guests and hosts of "every patient room has an en suite" where no other words say how many hosts there are.
+fn open_hosts(text: &Text, by_type: &BTreeMap<String, Vec<usize>>) -> Vec<(usize, Option<usize>)> {
+    let short = |id: &str| text.short_forms.iter().any(|f| f.rooms.contains_key(id));
+    let open = |&(guest, host): &(usize, usize)| {
+        let id = text.mentions[host].room_type()?;
+        let all = by_type.get(id)?;
+        let uncounted = |m: &usize| {
+            let mention = &text.mentions[*m];
+            mention.count.is_none() && !mention.plural && text.said.each.iter().any(|e| e.1 == *m)
+        };
+        (all.iter().all(uncounted) && !short(id)).then_some((guest, Some(host)))
+    };
+    let any = text.said.each_room.iter().map(|&guest| (guest, None));
+    text.said.each.iter().filter_map(open).chain(any).collect()
 }
 
 fn count_type(text: &Text, id: &str, list: &[usize], out: &mut Wishes, conflicts: &mut Vec<Note>) {
@@ -290,13 +341,14 @@ fn room_area(text: &Text, mention: &Mention) -> Option<f64> {
             let before = area.span.end..mention.from;
             let short = |range: &std::ops::Range<usize>| {
                 range.start <= range.end
-                    && range.len() <= 2
+                    && range.len() <= MOST_TO_AREA
                     && range.clone().all(|i| {
                         let t = &text.tokens[i];
                         matches!(
                             t.text.as_str(),
                             "of" | "with" | "mit" | "von" | "de" | "d" | "con" | "a" | "à" | "about" | "each" | "etwa"
-                        ) || (t.mark() == Some(',') && text.prompt.as_bytes().get(t.start) == Some(&b'('))
+                        ) || is_measure(text.tokens, i)
+                            || (t.mark() == Some(',') && text.prompt.as_bytes().get(t.start) == Some(&b'('))
                     })
             };
             mention.span.start >= text.list_from.min(text.tokens.len())
@@ -304,6 +356,11 @@ fn room_area(text: &Text, mention: &Mention) -> Option<f64> {
                     || area.span.end <= mention.from && before.is_empty())
         })
         .map(|area| area.value)
+}
+
+/// Returns true for words between a room and its area: "at least".
+fn is_measure(tokens: &[Token], i: usize) -> bool {
+    words().languages.values().any(|s| s.tag_at(tokens, i, Tag::Measure).is_some())
 }
 
 /// Returns true when an area belongs to a room, not to the building.

@@ -1,6 +1,6 @@
 //! How people speak in prompts, from `words.toml`: read once, the same for every request.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::LazyLock;
 
 use serde::Deserialize;
@@ -75,6 +75,35 @@ pub(super) enum Tag {
     Singular,
     Holds,
     RoomCounters,
+    /// What counts the beds of a room: "4-bed room", "Vierbettzimmer", "四人间".
+    BedUnits,
+    /// Words for a room behind these: "six-bed bay".
+    BedRooms,
+    /// Ends of compounds that number the beds of a room: "bettzimmer".
+    BedRoomEnds,
+    /// The storey below the ground.
+    Basement,
+    /// Children who live in a home or visit a place.
+    Children,
+    Adults,
+    /// A family of unknown size.
+    Family,
+    /// "family of" before a number.
+    ResidentsBefore,
+    /// Machines of kinds that are not planned.
+    OtherRobot,
+    /// Words between a thing and its measure: "at least".
+    Measure,
+    /// Wishes that nothing in a plan can follow: "facing south".
+    Unread,
+    /// Things of which a plan has no given number: "two windows".
+    UnreadThings,
+    /// Units of what is no length and no area: "kg", "lux".
+    UnreadUnits,
+    /// Units of time behind a length: "m/s".
+    UnreadRates,
+    /// Words that ask for nothing by themselves: "please".
+    Polite,
 }
 
 /// Words of one language.
@@ -91,6 +120,9 @@ pub(super) struct Language {
     /// Words that say how many storeys a building has.
     #[serde(default)]
     pub storey_counts: BTreeMap<String, f64>,
+    /// Words for people who share a home, with how many they are.
+    #[serde(default)]
+    pub households: BTreeMap<String, f64>,
     #[serde(flatten)]
     pub phrases: BTreeMap<Tag, Vec<String>>,
 }
@@ -110,11 +142,18 @@ pub(super) struct Dwelling {
     pub bedroom: String,
     pub kitchen: String,
     pub bathroom: String,
+    pub studio: String,
     pub toilet: String,
     /// Rooms that a word for a bathroom may mean where no one lives.
     pub toilets: Vec<String>,
     /// Rooms that no dwelling is without, each with what can stand for it.
     pub essential: Vec<Vec<String>>,
+    /// Rooms that every dwelling has whose rooms are left open, each with what can stand for it.
+    pub vital: Vec<Vec<String>>,
+    /// Building types within one storey of a larger house: a word for a basement means a room for things there.
+    pub within_a_storey: Vec<String>,
+    /// Rooms that a basement has when nothing is said of it, the first that the domain knows.
+    pub basement: Vec<String>,
     pub bhk: Vec<String>,
     pub ldk: Vec<String>,
     pub rooms_to_live: Vec<String>,
@@ -126,6 +165,10 @@ pub(super) struct Dwelling {
 
 #[derive(Debug, Deserialize)]
 struct File {
+    /// Rooms that no place to work at is without, each with what can stand for it.
+    work_vital: Vec<Vec<String>>,
+    /// Usual words of languages that are not read, by English name of the language.
+    unread_languages: BTreeMap<String, Vec<String>>,
     /// Countries where the ground floor is the first floor.
     first_is_ground: Vec<String>,
     area_units: BTreeMap<String, f64>,
@@ -144,6 +187,9 @@ pub(super) struct Words {
     pub robot_kinds: BTreeMap<String, Body>,
     pub dwelling: Dwelling,
     pub first_is_ground: Vec<String>,
+    pub work_vital: Vec<Vec<String>>,
+    /// Usual words of languages that are not read, folded, by English name of the language.
+    pub unread_languages: BTreeMap<String, BTreeSet<String>>,
 }
 
 /// One language ready for matching.
@@ -153,6 +199,7 @@ pub(super) struct Spoken {
     pub quantities: Phrases<f64>,
     pub levels: Phrases<Where>,
     pub storey_counts: Phrases<f64>,
+    pub households: Phrases<f64>,
     /// Number words, folded.
     pub numbers: BTreeMap<String, f64>,
     pub multipliers: BTreeMap<String, f64>,
@@ -181,6 +228,12 @@ pub(super) fn words() -> &'static Words {
             robot_kinds: file.robot_kinds,
             dwelling: file.dwelling,
             first_is_ground: file.first_is_ground,
+            work_vital: file.work_vital,
+            unread_languages: file
+                .unread_languages
+                .into_iter()
+                .map(|(name, words)| (name, words.iter().map(|w| super::text::fold(w)).collect()))
+                .collect(),
         }
     });
     &WORDS
@@ -188,9 +241,9 @@ pub(super) fn words() -> &'static Words {
 
 fn spoken(code: &str, words: Language) -> Spoken {
     let mut tags = Phrases::new("");
-    let robots = [Tag::Clean, Tag::Deliver, Tag::Serve, Tag::Transport];
+    let robots = [Tag::Clean, Tag::Deliver, Tag::Serve, Tag::Transport, Tag::OtherRobot];
     for (tag, phrases) in &words.phrases {
-        let plurals = phrases.iter().filter(|_| code == "en" && robots.contains(tag)).map(|p| format!("{p}s"));
+        let plurals = phrases.iter().filter(|_| robots.contains(tag)).flat_map(|p| robot_forms(code, p));
         for phrase in phrases.iter().cloned().chain(plurals) {
             tags.put(&phrase, vec![*tag], |old: &Vec<Tag>, new| {
                 if old.contains(&new[0]) { old.clone() } else { [old.clone(), new.clone()].concat() }
@@ -208,7 +261,18 @@ fn spoken(code: &str, words: Language) -> Spoken {
     }
     let mut storey_counts = Phrases::new("");
     words.storey_counts.iter().for_each(|(phrase, value)| storey_counts.insert(phrase, *value));
-    Spoken { numbers, multipliers, words, tags, quantities, levels, storey_counts }
+    let mut households = Phrases::new("");
+    words.households.iter().for_each(|(phrase, value)| households.insert(phrase, *value));
+    Spoken { numbers, multipliers, words, tags, quantities, levels, storey_counts, households }
+}
+
+/// Returns the further forms of a word for robots: English plurals, German ones of the third case and of the second.
+fn robot_forms(code: &str, phrase: &str) -> Vec<String> {
+    match code {
+        "en" => vec![format!("{phrase}s")],
+        "de" if phrase.ends_with("er") => vec![format!("{phrase}n"), format!("{phrase}s")],
+        _ => Vec::new(),
+    }
 }
 
 #[cfg(test)]

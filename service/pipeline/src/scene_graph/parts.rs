@@ -1,0 +1,95 @@
+//! Departments named beside the building: "emergency department, 3 operating theatres, ICU with 8 beds".
+//!
+//! A department of the same domain is planned by the first rooms of its program; what is none becomes an unread wish.
+
+use d3dgen_model::domain::{Domain, Occupants, Program};
+use d3dgen_model::scene_graph::Note;
+
+use super::building::Part;
+use super::mentions::{Mention, What};
+use super::places::note;
+use super::text::{Span, Token};
+use super::wishes::{Wish, Wishes};
+
+/// Room types that a department is planned with, at most.
+const MOST_TYPES: usize = 4;
+/// Words between a department and its beds, at most: "with".
+const MOST_TO_BEDS: usize = 2;
+
+/// What became of the departments.
+#[derive(Debug, Default)]
+pub(super) struct Parts {
+    pub planned: Vec<Span>,
+    pub left: Vec<Part>,
+    /// Beds of the departments.
+    pub beds: Option<u32>,
+}
+
+/// Adds the rooms of departments to the wishes; their beds are no longer those of the building.
+pub(super) fn plan(
+    parts: &[Part],
+    tokens: &[Token],
+    mentions: &mut [Mention],
+    wishes: &mut Wishes,
+    (domain, program): (&Domain, &Program),
+    assumptions: &mut Vec<Note>,
+) -> Parts {
+    let mut out = Parts::default();
+    for part in parts {
+        if mentions.iter().any(|m| m.span.overlaps(part.span)) {
+            continue;
+        }
+        let kind = domain.building_types.iter().find(|b| part.domain == domain.id && b.id == part.building_type);
+        let own = kind.and_then(|b| domain.program(&b.program)).filter(|p| p.id != program.id);
+        let Some(own) = own else {
+            let same = kind.is_some();
+            out.left.extend((!same).then(|| part.clone()));
+            continue;
+        };
+        let beds = beds_of(part.span, tokens, mentions);
+        let added = add_rooms(own, program, domain, beds, wishes);
+        if added.is_empty() {
+            out.left.push(part.clone());
+            continue;
+        }
+        out.beds = beds.map(|b| b + out.beds.unwrap_or(0)).or(out.beds);
+        out.planned.push(part.span);
+        let message = format!("the {} was planned as {}", own.title.to_lowercase(), added.join(", "));
+        assumptions.push(note("part_planned", message));
+    }
+    out
+}
+
+/// Returns the beds named with a department, and takes them from the building.
+fn beds_of(span: Span, tokens: &[Token], mentions: &mut [Mention]) -> Option<u32> {
+    let near = |m: &&mut Mention| {
+        let gap = span.end..m.from;
+        let behind = m.from >= span.end && gap.len() <= MOST_TO_BEDS && !gap.into_iter().any(|i| tokens[i].is_mark());
+        m.what == What::Beds && (behind || m.span.end == span.start)
+    };
+    let count = mentions.iter_mut().find(near)?.count.take()?;
+    u32::try_from(count).ok().filter(|n| (1..=500).contains(n))
+}
+
+fn add_rooms(own: &Program, main: &Program, domain: &Domain, beds: Option<u32>, wishes: &mut Wishes) -> Vec<String> {
+    let mut seen: Vec<&str> = Vec::new();
+    let mut out = Vec::new();
+    for entry in &own.rooms {
+        let id = entry.room_type.as_str();
+        if seen.contains(&id) || seen.len() == MOST_TYPES {
+            continue;
+        }
+        seen.push(id);
+        let known = main.rooms.iter().any(|e| e.room_type == id) || wishes.wishes.iter().any(|w| w.room_type == id);
+        if known || wishes.forbidden.iter().any(|f| f == id) {
+            continue;
+        }
+        let counted = beds.filter(|_| entry.occupants == Occupants::Beds);
+        let count = counted.map_or(entry.min, |n| n.div_ceil(entry.occupants_per_room.unwrap_or(1).max(1)));
+        let label = domain.room_type_or_generic(id).label.to_lowercase();
+        out.push(format!("{count} x {label}"));
+        let room_type = id.to_owned();
+        wishes.wishes.push(Wish { room_type, count, exact: false, name: label, area_m2: None, listed: false });
+    }
+    out
+}
