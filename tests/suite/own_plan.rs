@@ -107,6 +107,47 @@ fn a_plan_that_was_made_here_passes_through_with_all_its_levels() {
     }
 }
 
+#[test]
+fn maps_of_worlds_made_here_come_back_with_their_rooms() {
+    let home = tempfile::tempdir().unwrap();
+    for (request, seed) in [("a house with 3 bedrooms", "2"), ("office with 10 rooms", "3"), ("ward with 6 patient rooms", "1")] {
+        run_well(home.path(), &["generate", request, "--seed", seed, "--no-png", "--out", "made"]);
+        let map = files(&home.path().join("made")).into_keys().find(|k| k.ends_with("map.yaml")).unwrap();
+        let done = run(home.path(), &["furnish", &format!("made/{map}"), "--no-png", "--out", "back"]);
+        let told = String::from_utf8_lossy(&done.stderr);
+        assert!(matches!(done.status.code(), Some(0 | 1)) && told.contains("approximate"), "{request}: {told}");
+        let read = |out: &str| {
+            let text = fs::read_to_string(home.path().join(out).join("floorplan.json")).unwrap();
+            Floorplan::from_json(&text).unwrap()
+        };
+        let (made, back) = (read("made"), read("back"));
+        assert_eq!(back.rooms.len(), made.rooms.len(), "{request}");
+        assert!(back.doors.iter().any(|d| d.entrance), "{request}: no entrance");
+        let area = |p: &Floorplan| p.rooms.iter().map(|r| r.net_area_m2).sum::<f64>();
+        assert!((area(&back) / area(&made) - 1.0).abs() < 0.05, "{request}: {} of {} m2", area(&back), area(&made));
+    }
+}
+
+#[test]
+fn the_office_of_open_rmf_becomes_an_office_with_its_doors() {
+    // of the examples beside the checkout, where they are there
+    let plan = workspace().join("../shared/formats/examples/real/rmf/office.building.yaml");
+    if !plan.is_file() {
+        return;
+    }
+    let home = tempfile::tempdir().unwrap();
+    let done = run(home.path(), &["furnish", &plan.display().to_string(), "--no-png", "--out", "o"]);
+    assert!(matches!(done.status.code(), Some(0 | 1)), "{}", String::from_utf8_lossy(&done.stderr));
+    let text = fs::read_to_string(home.path().join("o/floorplan.json")).unwrap();
+    let plan = Floorplan::from_json(&text).unwrap();
+    assert!((5..=7).contains(&plan.rooms.len()), "{:?}", plan.rooms.iter().map(|r| &r.name).collect::<Vec<_>>());
+    let hinged = plan.doors.iter().filter(|d| d.kind != d3dgen_model::floorplan::DoorKind::Open);
+    assert_eq!(hinged.count(), 3, "the doors of the plan");
+    assert!(plan.doors.iter().any(|d| d.entrance) && plan.rooms.iter().any(|r| r.name == "lounge"));
+    let graph = fs::read_to_string(home.path().join("o/scene_graph.json")).unwrap();
+    assert!(graph.contains("\"domain\": \"office\"") && graph.contains("straightened"), "{graph}");
+}
+
 /// A house in GeoJSON: a hall with an entrance, and a room of a size beside it.
 fn house(name: &str, width: f64, depth: f64) -> String {
     let rect =

@@ -134,12 +134,13 @@ fn free_parts(layout: &Layout, width: i64, wanted: impl Fn(&[usize]) -> bool) ->
     out
 }
 
-/// Adds a window to each room that needs daylight, has an outer wall and no window.
+/// Adds a window to each room that is better with daylight, has an outer wall and no window.
 pub(crate) fn windows(layout: &mut Layout, types: &[String], domain: &Domain) {
     for (room, room_type) in types.iter().enumerate() {
         let kind = domain.room_type_or_generic(room_type);
         let lit = layout.openings.iter().any(|o| o.kind == OpeningKind::Window && o.rooms.contains(&room));
-        if lit || kind.daylight != Daylight::Required || kind.zone == Zone::Outdoor {
+        let wanted = matches!(kind.daylight, Daylight::Required | Daylight::Preferred);
+        if lit || !wanted || kind.zone == Zone::Outdoor {
             continue;
         }
         let area = layout.rooms[room].net_polygon.area();
@@ -154,6 +155,8 @@ pub(crate) fn windows(layout: &mut Layout, types: &[String], domain: &Domain) {
                 let name = &layout.rooms[room].label;
                 layout.notes.push(note("window_added", format!("a window was added to room `{name}`")));
             }
+            // only a room that must have daylight lacks something without
+            None if kind.daylight != Daylight::Required => {}
             None => {
                 let name = &layout.rooms[room].label;
                 layout.notes.push(note("no_window", format!("no outer wall of room `{name}` takes a window")));

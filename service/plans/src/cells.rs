@@ -135,6 +135,12 @@ impl Cells {
         Some(out)
     }
 
+    /// Returns the owner of the floor at a point, mm.
+    pub(crate) fn owner_at(&self, (x, y): Corner) -> Option<usize> {
+        let index = |list: &[i64], v: i64| list.partition_point(|o| *o <= v).wrapping_sub(1);
+        self.at(index(&self.xs, x), index(&self.ys, y)).map(|o| o as usize)
+    }
+
     /// Returns the same grid with rows and columns exchanged.
     pub(crate) fn transposed(&self) -> Self {
         let mut out = Self { xs: self.ys.clone(), ys: self.xs.clone(), owner: vec![None; self.owner.len()] };

@@ -21,6 +21,10 @@ pub struct Drawing {
     pub openings: Vec<DrawnOpening>,
     /// Words on the plan.
     pub labels: Vec<DrawnLabel>,
+    /// Floors that walls stand on: they bound rooms where no wall is drawn.
+    pub floors: Vec<DrawnFloor>,
+    /// What the file calls the building.
+    pub titles: Vec<String>,
     /// What was assumed while reading.
     pub notes: Vec<Note>,
 }
@@ -34,12 +38,34 @@ pub struct DrawnRoom {
     pub kind: Option<String>,
     /// Corners in either sense, m.
     pub corners: Vec<Point>,
+    /// Outlines inside that are no floor of it: courts, shafts, other rooms.
+    pub holes: Vec<Vec<Point>>,
     /// Storey.
     pub level: Option<String>,
     /// Clear height, m.
     pub height_m: Option<f64>,
+    /// True when it was found rather than drawn: it gives way where it does not fit, and the plan stands without it.
+    pub traced: bool,
     /// Where it stands in the file, for messages.
     pub place: String,
+}
+
+impl DrawnRoom {
+    pub(crate) fn new(label: String, corners: Vec<Point>, place: String) -> Self {
+        let (kind, holes, level, height_m) = (None, Vec::new(), None, None);
+        Self { label, kind, corners, holes, level, height_m, traced: false, place }
+    }
+}
+
+/// A piece of floor under walls.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DrawnFloor {
+    /// Corners in either sense, m.
+    pub corners: Vec<Point>,
+    /// True for a hole in the floor.
+    pub hole: bool,
+    /// Storey.
+    pub level: Option<String>,
 }
 
 /// A wall as a line.
@@ -112,13 +138,15 @@ pub(crate) fn note(code: &str, message: impl Into<String>) -> Note {
 impl Drawing {
     /// Returns every point of the drawing.
     pub(crate) fn points_mut(&mut self) -> impl Iterator<Item = &mut Point> {
-        let rooms = self.rooms.iter_mut().flat_map(|r| r.corners.iter_mut());
+        let rooms =
+            self.rooms.iter_mut().flat_map(|r| r.corners.iter_mut().chain(r.holes.iter_mut().flat_map(|h| h.iter_mut())));
+        let floors = self.floors.iter_mut().flat_map(|f| f.corners.iter_mut());
         let walls = self.walls.iter_mut().flat_map(|w| w.line.iter_mut());
         let openings = self
             .openings
             .iter_mut()
             .flat_map(|o| o.points.iter_mut().chain(o.arc.iter_mut().flat_map(|a| a.iter_mut())));
-        rooms.chain(walls).chain(openings).chain(self.labels.iter_mut().map(|l| &mut l.at))
+        rooms.chain(walls).chain(openings).chain(floors).chain(self.labels.iter_mut().map(|l| &mut l.at))
     }
 
     /// Refuses numbers that are none and drawings beyond any building.
@@ -144,6 +172,7 @@ impl Drawing {
     pub(crate) fn keep_level(&mut self, wanted: Option<&str>) -> Result<(), Error> {
         let mut levels: Vec<String> = Vec::new();
         let all = self.rooms.iter().map(|r| &r.level).chain(self.walls.iter().map(|w| &w.level));
+        let all = all.chain(self.floors.iter().map(|f| &f.level));
         for level in all.flatten() {
             if !levels.contains(level) {
                 levels.push(level.clone());
@@ -159,15 +188,18 @@ impl Drawing {
         };
         let chosen = match wanted {
             None => first.clone(),
-            Some(level) if levels.iter().any(|l| l == level) => level.to_owned(),
+            Some(level) if levels.iter().any(|l| l.trim().eq_ignore_ascii_case(level.trim())) => {
+                levels.iter().find(|l| l.trim().eq_ignore_ascii_case(level.trim())).cloned().unwrap_or_default()
+            }
             Some(level) => {
                 let message = format!("`{level}` is not there; the plan has {}", levels.join(", "));
                 return Err(Error::refused("--level", message));
             }
         };
         if levels.len() > 1 && wanted.is_none() {
+            let other = levels.get(1).cloned().unwrap_or_default();
             let message = format!(
-                "the plan has {} levels ({}); only `{chosen}` was read, choose another with --level",
+                "the plan has {} levels ({}); only `{chosen}` was read: a run with `--level \"{other}\"` reads that one",
                 levels.len(),
                 levels.join(", ")
             );
@@ -178,6 +210,7 @@ impl Drawing {
         self.walls.retain(|w| here(&w.level));
         self.openings.retain(|o| here(&o.level));
         self.labels.retain(|l| here(&l.level));
+        self.floors.retain(|f| here(&f.level));
         Ok(())
     }
 }

@@ -16,13 +16,16 @@ mod drawing;
 mod error;
 mod faces;
 mod layout;
+mod leaves;
+mod pieces;
 pub mod readers;
 mod snap;
+mod straighten;
 mod upright;
 mod words;
 
 pub use assemble::assemble;
-pub use drawing::{Drawing, DrawnLabel, DrawnOpening, DrawnRoom, DrawnWall, OpeningKind};
+pub use drawing::{Drawing, DrawnFloor, DrawnLabel, DrawnOpening, DrawnRoom, DrawnWall, OpeningKind};
 pub use error::Error;
 pub use layout::{LaidOpening, LaidRoom, Layout, lay_out};
 pub use readers::{Plan, Source, read};
@@ -36,7 +39,7 @@ pub struct Options {
     pub meters_per_unit: Option<f64>,
     /// Storey to read; the first one otherwise.
     pub level: Option<String>,
-    /// Makes slanted walls of steps instead of refusing them.
+    /// Makes outlines with slanted walls of steps instead of refusing them; walls drawn as lines are in any case.
     pub rectify: bool,
     /// Thickness of walls that are drawn as lines, m: inner and outer ones.
     pub inner_wall_m: Option<f64>,

@@ -40,6 +40,23 @@ pub(crate) fn role(text: &str) -> Option<Role> {
     ROLES.iter().find(|(name, _)| named(name)).map(|(_, role)| *role)
 }
 
+/// Returns true for the name of a point that means something to robots only: it ends in such a word (`main_door`), or has no
+/// other words but figures (`patrol_D2`, `dock_1`; a `loading_dock` is a room).
+pub(crate) fn is_waypoint(text: &str) -> bool {
+    let folded = fold(text);
+    let is = |list: &str, t: &str| {
+        let known = |w: &String| t.strip_prefix(w.as_str()).is_some_and(|rest| rest.bytes().all(|b| b.is_ascii_digit()));
+        WORDS.get(list).is_some_and(|words| words.iter().any(known))
+    };
+    let tokens = folded.split(|c: char| !c.is_alphanumeric()).filter(|t| !t.is_empty());
+    // figures and single letters only number things
+    let names: Vec<&str> = tokens
+        .filter(|t| is("waypoint", t) || is("waypoint_alone", t) || t.chars().filter(|c| c.is_alphabetic()).count() > 1)
+        .collect();
+    let all = !names.is_empty() && names.iter().all(|t| is("waypoint", t) || is("waypoint_alone", t));
+    all || names.last().is_some_and(|t| is("waypoint", t))
+}
+
 /// Returns lower case without the accents of the languages in `words.toml`.
 fn fold(text: &str) -> String {
     text.chars()
@@ -86,6 +103,12 @@ mod tests {
             assert_eq!(role(text), expected, "{text}");
         }
         assert!(WORDS.values().flatten().all(|w| fold(w) == *w), "words are written folded");
+        for name in ["patrol_D2", "dock_1", "tinyRobot1_charger", "main_door", "lift1", "pickup", "charger"] {
+            assert!(is_waypoint(name), "{name}");
+        }
+        for name in ["lift_lobby", "kitchen", "hardware_2", "coe", "dock office", "loading_dock", "supplies"] {
+            assert!(!is_waypoint(name), "{name}");
+        }
         assert!(is_name("WC") && is_name("卧室") && !is_name("12.5 m2") && !is_name("B1"));
     }
 }

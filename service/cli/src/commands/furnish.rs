@@ -76,7 +76,7 @@ struct ReadingArgs {
     /// Storey to read; otherwise the first one
     #[arg(long, value_name = "NAME")]
     level: Option<String>,
-    /// Make slanted walls of steps instead of refusing them
+    /// Make outlines with slanted walls of steps instead of refusing them (walls drawn as lines are in any case)
     #[arg(long)]
     rectify: bool,
     /// Thickness in m of inner walls that are drawn as lines
@@ -88,7 +88,7 @@ struct ReadingArgs {
     /// Add an entrance and doors where rooms cannot be reached
     #[arg(long)]
     add_doors: bool,
-    /// Add a window to each room that needs daylight and has none
+    /// Add a window to each room that needs daylight, or is better with it, has an outer wall and no window
     #[arg(long)]
     add_windows: bool,
 }
@@ -173,9 +173,11 @@ impl Args {
                 let label = |r: &d3dgen_model::floorplan::PlanRoom| Label {
                     text: r.name.clone(),
                     kind: Some(r.room_type.clone()),
+                    ..Label::default()
                 };
                 let labels: Vec<Label> = plan.rooms.iter().map(label).collect();
-                let known = understand(&self.typed(labels)?, self.domain.as_deref(), registry)?;
+                let titles = [stem(&name)];
+                let known = understand(&self.typed(labels)?, &titles, self.domain.as_deref(), registry)?;
                 plan.rooms.iter_mut().zip(known.room_types).for_each(|(room, kind)| room.room_type = kind);
                 (brought.domain, brought.notes) = (known.domain, known.notes);
                 plan
@@ -186,10 +188,17 @@ impl Args {
                 ));
             }
             Plan::Drawing(drawing) => {
-                let layout = lay_out(drawing, &options).map_err(placed)?;
-                let label = |r: &d3dgen_plans::LaidRoom| Label { text: r.label.clone(), kind: r.kind.clone() };
+                let mut layout = lay_out(drawing, &options).map_err(placed)?;
+                let label = |r: &d3dgen_plans::LaidRoom| Label {
+                    text: r.label.clone(),
+                    kind: r.kind.clone(),
+                    also: r.also.clone(),
+                    hub: r.hub,
+                };
                 let labels: Vec<Label> = layout.rooms.iter().map(label).collect();
-                let known = understand(&self.typed(labels)?, self.domain.as_deref(), registry)?;
+                let titles: Vec<String> = [stem(&name)].into_iter().chain(layout.titles.iter().cloned()).collect();
+                let known = understand(&self.typed(labels)?, &titles, self.domain.as_deref(), registry)?;
+                layout.rooms.iter_mut().zip(&known.names).for_each(|(room, name)| room.label.clone_from(name));
                 let kinds = domain(registry, &known.domain)?.domain();
                 let (plan, notes) = assemble(layout, &known.room_types, kinds, self.seed, &options);
                 (brought.domain, brought.notes) = (known.domain, [notes, known.notes].concat());
@@ -210,6 +219,11 @@ impl Args {
         }
         Ok(labels)
     }
+}
+
+/// Returns the name of a file without its endings.
+fn stem(name: &str) -> String {
+    name.split('.').next().unwrap_or_default().to_owned()
 }
 
 /// Returns a file that the plan names, of its own folder.

@@ -1,8 +1,11 @@
 //! DXF (text form): closed polylines are rooms, lines on a layer named for walls are walls, texts inside rooms their names.
 //!
+//! Blocks are drawn where they are inserted; one named for doors or windows is an opening as large as what is in it.
+//!
 //! Read by hand: a plan is six kinds of entities out of some fifty, as pairs of lines. The `dxf` crate builds them all,
 //! with clock and random numbers for the files it writes, which this crate must not have.
 
+use std::collections::BTreeMap;
 use std::str::Lines;
 
 use d3dgen_model::Point;
@@ -15,6 +18,9 @@ use crate::{Error, Options};
 pub(super) const READER: Reader = Reader { name: "dxf", title: "DXF drawing (text form)", recognizes, read };
 
 const FORMAT: &str = "dxf";
+/// Most levels of blocks in one another, and most blocks drawn.
+const MOST_DEPTH: usize = 8;
+const MOST_INSERTS: usize = 50_000;
 /// Straight pieces that a bulge is made of.
 const PIECES: usize = 8;
 /// Meters of a unit by `$INSUNITS`.
@@ -65,8 +71,8 @@ struct Entity<'a> {
     groups: Vec<(i32, &'a str)>,
 }
 
-impl Entity<'_> {
-    fn text(&self, code: i32) -> Option<&str> {
+impl<'a> Entity<'a> {
+    fn text(&self, code: i32) -> Option<&'a str> {
         self.groups.iter().find(|g| g.0 == code).map(|g| g.1)
     }
 
@@ -111,17 +117,32 @@ fn read(source: &Source, options: &Options) -> Result<Plan, Error> {
     let mut state = State::default();
     let mut entity: Option<Entity> = None;
     let mut found = false;
+    // entities of the drawing, and of the block that is being read
+    let mut blocks: Blocks = BTreeMap::new();
+    let mut block: Option<Block> = None;
+    let mut entities: Vec<Entity> = Vec::new();
     while let Some((code, value)) = pairs.next()? {
         match (code, value) {
             (0, _) => {
                 if let Some(done) = entity.take() {
-                    state.add(&mut drawing, &done)?;
+                    state.count(&done)?;
+                    match (&mut block, done.kind) {
+                        (None, "BLOCK") => block = Some(Block::new(&done)?),
+                        (Some(open), kind) if kind != "BLOCK" => open.entities.push(done),
+                        (None, _) if section == "ENTITIES" => entities.push(done),
+                        _ => {}
+                    }
                 }
                 match value {
-                    "ENDSEC" => section = "",
+                    "ENDSEC" => (section, block) = ("", None),
                     "EOF" => break,
                     "SECTION" => {}
-                    kind if section == "ENTITIES" => {
+                    "ENDBLK" => {
+                        if let Some(done) = block.take() {
+                            blocks.insert(done.name, done);
+                        }
+                    }
+                    kind if matches!(section, "ENTITIES" | "BLOCKS") => {
                         entity = Some(Entity { kind, line: pairs.line - 1, groups: Vec::new() });
                     }
                     _ => {}
@@ -147,8 +168,10 @@ fn read(source: &Source, options: &Options) -> Result<Plan, Error> {
             "holds no section; a DXF begins with the groups 0 SECTION, 2 HEADER",
         ));
     }
-    if let Some(done) = entity.take() {
-        state.add(&mut drawing, &done)?;
+    entities.extend(entity.take().filter(|_| section == "ENTITIES"));
+    let outer = Frame::default();
+    for e in &entities {
+        state.add(&mut drawing, e, &outer, &blocks)?;
     }
     let named = UNITS.iter().find(|u| Some(u.0) == unit).map(|u| u.1);
     let scale = match (options.meters_per_unit, named) {
@@ -190,21 +213,107 @@ fn guessed(drawing: &mut Drawing) -> f64 {
 /// A POLYLINE whose vertices are still to come: points with bulges, whether it is closed, its layer and line.
 type Open = (Vec<(Point, f64)>, bool, String, usize);
 
+/// A group of entities with a name, drawn wherever it is inserted.
+struct Block<'a> {
+    name: &'a str,
+    base: Point,
+    entities: Vec<Entity<'a>>,
+}
+
+type Blocks<'a> = BTreeMap<&'a str, Block<'a>>;
+
+impl<'a> Block<'a> {
+    fn new(head: &Entity<'a>) -> Result<Self, Error> {
+        let base = Point::new(head.number(10)?.unwrap_or(0.0), head.number(20)?.unwrap_or(0.0));
+        Ok(Self { name: head.text(2).unwrap_or_default(), base, entities: Vec::new() })
+    }
+
+    /// Returns true for a block with anything in it that makes rooms or walls: doors and windows are blocks of lines too.
+    fn is_plan(&self, blocks: &Blocks, depth: usize) -> bool {
+        let rooms = |e: &Entity| match e.kind {
+            "INSERT" => e.text(2).and_then(|n| blocks.get(n)).is_some_and(|b| depth > 0 && b.is_plan(blocks, depth - 1)),
+            "LWPOLYLINE" | "POLYLINE" | "LINE" => matches!(role(e.layer()), Some(Role::Wall | Role::Room)),
+            _ => false,
+        };
+        self.entities.iter().any(rooms)
+    }
+}
+
+/// Where entities are drawn: inside of the inserts around them.
+#[derive(Clone)]
+struct Frame {
+    /// x' = a x + c y + e, y' = b x + d y + f.
+    map: [f64; 6],
+    /// Layer of the insert, which entities on layer 0 of a block get.
+    layer: Option<String>,
+    depth: usize,
+}
+
+impl Default for Frame {
+    fn default() -> Self {
+        Self { map: [1.0, 0.0, 0.0, 1.0, 0.0, 0.0], layer: None, depth: 0 }
+    }
+}
+
+impl Frame {
+    fn at(&self, p: Point) -> Point {
+        let [a, b, c, d, e, f] = self.map;
+        Point::new(a * p.x + c * p.y + e, b * p.x + d * p.y + f)
+    }
+
+    /// True when the drawing is turned over, which turns arcs round.
+    fn mirrors(&self) -> bool {
+        self.map[0] * self.map[3] - self.map[1] * self.map[2] < 0.0
+    }
+
+    fn layer_of<'e>(&'e self, e: &'e Entity) -> &'e str {
+        match &self.layer {
+            Some(layer) if e.layer() == "0" => layer,
+            _ => e.layer(),
+        }
+    }
+
+    /// Returns the frame of a block inserted in this one.
+    fn inside(&self, insert: &Entity, block: &Block) -> Result<Self, Error> {
+        let (x, y) = (insert.number(41)?.unwrap_or(1.0), insert.number(42)?.unwrap_or(1.0));
+        let (sin, cos) = insert.number(50)?.unwrap_or(0.0).to_radians().sin_cos();
+        let at = insert.point(10)?;
+        let [a, b, c, d] = [cos * x, sin * x, -sin * y, cos * y];
+        let (e, f) = (at.x - a * block.base.x - c * block.base.y, at.y - b * block.base.x - d * block.base.y);
+        let [oa, ob, oc, od, oe, of] = self.map;
+        let map = [
+            oa * a + oc * b,
+            ob * a + od * b,
+            oa * c + oc * d,
+            ob * c + od * d,
+            oa * e + oc * f + oe,
+            ob * e + od * f + of,
+        ];
+        Ok(Self { map, layer: Some(self.layer_of(insert).to_owned()), depth: self.depth + 1 })
+    }
+}
+
 /// What goes over several entities.
 #[derive(Default)]
 struct State {
     /// Corners of a POLYLINE that is still open: points, bulges, whether it is closed, its layer and line.
     polyline: Option<Open>,
     points: usize,
+    inserted: usize,
 }
 
 impl State {
-    fn add(&mut self, drawing: &mut Drawing, e: &Entity) -> Result<(), Error> {
+    fn count(&mut self, e: &Entity) -> Result<(), Error> {
         self.points += e.groups.len();
         if self.points > 40 * MOST_POINTS {
             return Err(Error::broken(FORMAT, e.place(), "the drawing is too large for a floor plan"));
         }
-        let role = role(e.layer());
+        Ok(())
+    }
+
+    fn add(&mut self, drawing: &mut Drawing, e: &Entity, frame: &Frame, blocks: &Blocks) -> Result<(), Error> {
+        let layer = frame.layer_of(e);
+        let role = role(layer);
         match e.kind {
             "LWPOLYLINE" => {
                 let closed = e.number(70)?.unwrap_or(0.0) as i64 & 1 == 1;
@@ -217,11 +326,11 @@ impl State {
                         _ => {}
                     }
                 }
-                polyline(drawing, &corners, closed, e.layer(), role, e.place());
+                polyline(drawing, &placed(&corners, frame), closed, layer, role, e.place());
             }
             "POLYLINE" => {
                 let closed = e.number(70)?.unwrap_or(0.0) as i64 & 1 == 1;
-                self.polyline = Some((Vec::new(), closed, e.layer().to_owned(), e.line));
+                self.polyline = Some((Vec::new(), closed, layer.to_owned(), e.line));
             }
             "VERTEX" => {
                 let (at, bulge) = (e.point(10)?, e.number(42)?.unwrap_or(0.0));
@@ -232,31 +341,18 @@ impl State {
             "SEQEND" => {
                 if let Some((corners, closed, layer, line)) = self.polyline.take() {
                     let role = crate::words::role(&layer);
-                    polyline(drawing, &corners, closed, &layer, role, format!("POLYLINE in line {line}"));
+                    let place = format!("POLYLINE in line {line}");
+                    polyline(drawing, &placed(&corners, frame), closed, &layer, role, place);
                 }
             }
             "LINE" => {
-                let line = vec![e.point(10)?, e.point(11)?];
-                polyline(
-                    drawing,
-                    &line.into_iter().map(|p| (p, 0.0)).collect::<Vec<_>>(),
-                    false,
-                    e.layer(),
-                    role,
-                    e.place(),
-                );
+                let line = [(frame.at(e.point(10)?), 0.0), (frame.at(e.point(11)?), 0.0)];
+                polyline(drawing, &line, false, layer, role, e.place());
             }
-            "ARC" => arc(drawing, e, role)?,
-            "INSERT" => {
-                let role = role.filter(|r| *r != Role::Wall).or_else(|| e.text(2).and_then(crate::words::role));
-                if let Some(kind) = opening_of(role) {
-                    let mut o = DrawnOpening::new(kind, vec![e.point(10)?], None, e.place());
-                    o.width_m = e.number(41)?.map(f64::abs);
-                    drawing.openings.push(o);
-                }
-            }
+            "ARC" => arc(drawing, e, role, frame)?,
+            "INSERT" => self.insert(drawing, e, role, frame, blocks)?,
             "TEXT" | "MTEXT" | "ATTRIB" => {
-                let at = e.point(10)?;
+                let at = frame.at(e.point(10)?);
                 // long texts come in pieces; names and areas stand on lines of their own
                 let parts = e.groups.iter().filter(|g| g.0 == 1 || g.0 == 3 && e.kind == "MTEXT").map(|g| g.1);
                 let text = plain(&parts.collect::<String>());
@@ -269,6 +365,99 @@ impl State {
         }
         Ok(())
     }
+
+    /// Adds a block: a door or window by its layer or name, otherwise what is in it.
+    fn insert(
+        &mut self,
+        drawing: &mut Drawing,
+        e: &Entity,
+        layer_role: Option<Role>,
+        frame: &Frame,
+        blocks: &Blocks,
+    ) -> Result<(), Error> {
+        let name = e.text(2).unwrap_or_default();
+        let block = blocks.get(name);
+        let plan = block.is_some_and(|b| b.is_plan(blocks, MOST_DEPTH));
+        let said = layer_role.filter(|r| *r != Role::Wall).or_else(|| role(name));
+        if let Some(kind) = opening_of(said).filter(|_| !plan) {
+            let mut inner = Drawing::default();
+            if let Some(block) = block {
+                let layered = Frame { layer: None, ..frame.inside(e, block)? };
+                shape_of(&mut inner, block, &layered, blocks)?;
+            }
+            let arcs = inner.openings.iter().filter_map(|o| o.arc);
+            let mut found: Vec<DrawnOpening> = Vec::new();
+            for arc in arcs {
+                let mut o = DrawnOpening::new(kind, Vec::new(), None, e.place());
+                o.arc = Some(arc);
+                found.push(o);
+            }
+            if found.is_empty() || kind != OpeningKind::Door {
+                let points: Vec<Point> = inner.openings.iter().flat_map(|o| o.points.iter().copied()).collect();
+                let own = if points.len() > 1 { points } else { vec![frame.at(e.point(10)?)] };
+                let mut o = DrawnOpening::new(kind, own, None, e.place());
+                o.width_m = e.number(41)?.map(f64::abs);
+                found = vec![o];
+            }
+            drawing.openings.extend(found);
+            return Ok(());
+        }
+        self.inserted += 1;
+        if matches!(said, Some(Role::Skip)) || frame.depth >= MOST_DEPTH || self.inserted > MOST_INSERTS {
+            return Ok(());
+        }
+        if let Some(block) = block {
+            let inside = frame.inside(e, block)?;
+            // a polyline that the block leaves open ends with it
+            let open = self.polyline.take();
+            for entity in &block.entities {
+                self.count(entity)?;
+                self.add(drawing, entity, &inside, blocks)?;
+            }
+            self.polyline = open;
+        }
+        Ok(())
+    }
+}
+
+/// Adds the lines and arcs of a block of a door or window, whatever layers they are on.
+fn shape_of(drawing: &mut Drawing, block: &Block, frame: &Frame, blocks: &Blocks) -> Result<(), Error> {
+    let mut lines = |points: Vec<Point>| {
+        drawing.openings.push(DrawnOpening::new(OpeningKind::Passage, points, None, String::new()));
+    };
+    for e in &block.entities {
+        match e.kind {
+            "LINE" => lines(vec![frame.at(e.point(10)?), frame.at(e.point(11)?)]),
+            "LWPOLYLINE" => {
+                let xs = e.groups.iter().filter(|g| g.0 == 10).map(|g| e.parse(10, g.1));
+                let ys = e.groups.iter().filter(|g| g.0 == 20).map(|g| e.parse(20, g.1));
+                let points = xs.zip(ys).map(|(x, y)| Ok(frame.at(Point::new(x?, y?))));
+                lines(points.collect::<Result<_, Error>>()?);
+            }
+            _ => {}
+        }
+    }
+    for e in &block.entities {
+        match e.kind {
+            "ARC" => arc(drawing, e, Some(Role::Door), frame)?,
+            "INSERT" if frame.depth < MOST_DEPTH => {
+                if let Some(inner) = e.text(2).and_then(|n| blocks.get(n)) {
+                    shape_of(drawing, inner, &frame.inside(e, inner)?, blocks)?;
+                }
+            }
+            _ => {}
+        }
+        if drawing.openings.len() > MOST_INSERTS {
+            break;
+        }
+    }
+    Ok(())
+}
+
+/// Returns corners where a frame draws them.
+fn placed(corners: &[(Point, f64)], frame: &Frame) -> Vec<(Point, f64)> {
+    let turn = if frame.mirrors() { -1.0 } else { 1.0 };
+    corners.iter().map(|(p, bulge)| (frame.at(*p), bulge * turn)).collect()
 }
 
 fn opening_of(role: Option<Role>) -> Option<OpeningKind> {
@@ -310,14 +499,7 @@ fn polyline(
         let line = |p: &[Point]| DrawnWall { line: [p[0], p[1]], level: None, place: place.clone() };
         drawing.walls.extend(points.windows(2).map(line));
     } else if closed {
-        drawing.rooms.push(DrawnRoom {
-            label: String::new(),
-            kind: None,
-            corners: points,
-            level: None,
-            height_m: None,
-            place,
-        });
+        drawing.rooms.push(DrawnRoom::new(String::new(), points, place));
     }
 }
 
@@ -338,7 +520,7 @@ fn bulged(a: Point, b: Point, bulge: f64) -> Vec<Point> {
 }
 
 /// Adds a quarter circle: the swing of a door, wherever it is drawn but on layers of other things.
-fn arc(drawing: &mut Drawing, e: &Entity, role: Option<Role>) -> Result<(), Error> {
+fn arc(drawing: &mut Drawing, e: &Entity, role: Option<Role>, frame: &Frame) -> Result<(), Error> {
     if !matches!(role, None | Some(Role::Door)) {
         return Ok(());
     }
@@ -350,10 +532,10 @@ fn arc(drawing: &mut Drawing, e: &Entity, role: Option<Role>) -> Result<(), Erro
     }
     let end = |degrees: f64| {
         let (sin, cos) = degrees.to_radians().sin_cos();
-        Point::new(center.x + radius * cos, center.y + radius * sin)
+        frame.at(Point::new(center.x + radius * cos, center.y + radius * sin))
     };
     let mut o = DrawnOpening::new(OpeningKind::Door, Vec::new(), None, e.place());
-    o.arc = Some([center, end(from), end(to)]);
+    o.arc = Some([frame.at(center), end(from), end(to)]);
     drawing.openings.push(o);
     Ok(())
 }

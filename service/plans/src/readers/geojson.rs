@@ -69,6 +69,7 @@ fn read(source: &Source, options: &Options) -> Result<Plan, Error> {
     let broken = |e: String| Error::broken(FORMAT, source.name, e);
     let value: serde_json::Value = serde_json::from_str(text).map_err(|e| broken(e.to_string()))?;
     let crs = value.pointer("/crs/properties/name").and_then(|v| v.as_str()).map(str::to_owned);
+    let value_title = value.get("name").and_then(|v| v.as_str()).map(str::to_owned);
     let wrong = |e: serde_json::Error| broken(e.to_string());
     let features: Vec<Feature> = match value.get("type").and_then(|t| t.as_str()) {
         Some("FeatureCollection") => {
@@ -78,7 +79,8 @@ fn read(source: &Source, options: &Options) -> Result<Plan, Error> {
         Some("Feature") => vec![serde_json::from_value(value).map_err(wrong)?],
         _ => vec![Feature { geometry: Some(serde_json::from_value(value).map_err(wrong)?), properties: None }],
     };
-    let mut drawing = Drawing::default();
+    let titles = value_title.into_iter().collect();
+    let mut drawing = Drawing { titles, ..Drawing::default() };
     for (i, feature) in features.iter().enumerate() {
         if let Some(geometry) = &feature.geometry {
             let place = format!("feature {i}");
@@ -143,15 +145,18 @@ fn add(drawing: &mut Drawing, geometry: &Shape, properties: &JsonObject, place: 
         match shape {
             Shape::GeometryCollection { geometries } => shapes.extend(geometries.iter().rev()),
             Shape::Polygon { coordinates: rings } => {
+                let holes = rings.iter().skip(1).map(|r| points(r)).collect::<Result<Vec<_>, _>>()?;
                 polygon(drawing, points(rings.first().map_or(&[], Vec::as_slice))?, said, &opening, as_opening, || {
-                    room(&name, &kinds, properties, level.clone(), &place)
+                    DrawnRoom { holes, ..room(&name, &kinds, properties, level.clone(), &place) }
                 });
             }
             Shape::MultiPolygon { coordinates: parts } => {
                 for (k, rings) in parts.iter().enumerate() {
                     let ring = points(rings.first().map_or(&[], Vec::as_slice))?;
+                    let holes = rings.iter().skip(1).map(|r| points(r)).collect::<Result<Vec<_>, _>>()?;
                     polygon(drawing, ring, said, &opening, as_opening, || {
-                        let mut room = room(&name, &kinds, properties, level.clone(), &place);
+                        let mut room =
+                            DrawnRoom { holes, ..room(&name, &kinds, properties, level.clone(), &place) };
                         if parts.len() > 1 {
                             room.label = format!("{} {}", room.label, k + 1).trim().to_owned();
                         }
@@ -183,13 +188,12 @@ fn add(drawing: &mut Drawing, geometry: &Shape, properties: &JsonObject, place: 
 fn room(name: &str, kinds: &[String], properties: &JsonObject, level: Option<String>, place: &str) -> DrawnRoom {
     let generic = |k: &&String| role(k).is_none();
     let kind = text_of(properties, &["room", "room_type"]).or_else(|| kinds.iter().find(generic).cloned());
+    let place = if name.is_empty() { place.to_owned() } else { format!("room `{name}`") };
     DrawnRoom {
-        label: name.to_owned(),
         kind: kind.filter(|k| k != "yes"),
-        corners: Vec::new(),
         level,
         height_m: number_of(properties, &["ceiling_height_m", "ceiling_height", "height_m", "height"]),
-        place: if name.is_empty() { place.to_owned() } else { format!("room `{name}`") },
+        ..DrawnRoom::new(name.to_owned(), Vec::new(), place)
     }
 }
 

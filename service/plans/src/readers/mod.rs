@@ -6,6 +6,7 @@ mod geojson;
 mod nav2;
 mod rmf;
 mod svg;
+mod trace;
 
 use d3dgen_model::floorplan::Floorplan;
 

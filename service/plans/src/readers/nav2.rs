@@ -1,16 +1,15 @@
-//! Occupancy map of nav2 (`map.yaml` with its PGM or PNG): free floor, cut at narrow places into rooms.
+//! Occupancy map of nav2 (`map.yaml` with its PGM or PNG): free floor, parted into rooms at the doors (`trace`).
 //!
 //! Approximate by nature: a map knows neither names nor windows, furniture looks like walls, and an open door like a
 //! passage. Every distance is in cells until the rooms are drawn.
 
-use std::collections::VecDeque;
-
 use d3dgen_model::Point;
 use serde::Deserialize;
 
+use super::trace::{DOOR_M, Map as Cells, trace};
 use super::{Plan, Reader, Source};
 use crate::drawing::{Drawing, DrawnOpening, DrawnRoom, OpeningKind, note};
-use crate::{Error, Options};
+use crate::{Error, Options, clean};
 
 pub(super) const READER: Reader = Reader { name: "nav2", title: "nav2 occupancy map (map.yaml)", recognizes, read };
 
@@ -18,15 +17,12 @@ const FORMAT: &str = "nav2";
 /// Most cells of a map, and the largest cell, m.
 const MOST_CELLS: usize = 16_000_000;
 const COARSEST_M: f64 = 0.5;
-/// A passage up to this wide parts two rooms, m; up to the second width it is a door, else an open passage.
-const PARTING_M: f64 = 1.25;
-const DOOR_M: f64 = 1.6;
-/// Least floor of a room, m^2.
-const LEAST_ROOM_M2: f64 = 1.0;
-/// Steps of an outline smaller than this are noise, m.
-const NOISE_M: f64 = 0.3;
+/// Steps of an outline up to this are noise, m.
+const NOISE_M: f64 = 0.15;
 /// Most corners of a traced outline.
 const MOST_CORNERS: usize = 1500;
+/// What a map saver writes for cells that nobody has seen; some maps have a threshold that would make them free.
+const UNSEEN: u8 = 205;
 
 #[derive(Deserialize)]
 struct Map {
@@ -49,13 +45,6 @@ fn recognizes(source: &Source) -> bool {
     source.has_ending(&[".yaml", ".yml"]) && head.contains("image:") && head.contains("resolution:")
 }
 
-/// Free cells, row 0 in the south.
-struct Grid {
-    width: usize,
-    height: usize,
-    free: Vec<bool>,
-}
-
 fn read(source: &Source, options: &Options) -> Result<Plan, Error> {
     let map: Map = serde_saphyr::from_str(source.text(FORMAT)?)
         .map_err(|e| Error::broken(FORMAT, source.name, e.to_string().lines().next().unwrap_or_default().to_owned()))?;
@@ -68,42 +57,47 @@ fn read(source: &Source, options: &Options) -> Result<Plan, Error> {
         .ok_or_else(|| Error::broken(FORMAT, "image", format!("`{}` is not beside the yaml file", map.image)))?;
     let (width, height, gray) = picture(&bytes, &map.image)?;
     let value = |g: u8| if map.negate == 0 { 255 - g } else { g };
+    // a map all in this gray has no other floor
+    let seen = gray.iter().any(|g| *g > 250 || *g == 0) && map.negate == 0;
     let mut free = vec![false; width * height];
     for row in 0..height {
         for column in 0..width {
-            let occupied = f64::from(value(gray[row * width + column])) / 255.0;
-            free[(height - 1 - row) * width + column] = occupied < map.free_thresh;
+            let shade = gray[row * width + column];
+            let occupied = f64::from(value(shade)) / 255.0;
+            free[(height - 1 - row) * width + column] = occupied < map.free_thresh && !(seen && shade == UNSEEN);
         }
     }
-    let grid = Grid { width, height, free };
-    let labels = rooms(&grid, resolution);
     let origin = Point::new(map.origin.first().copied().unwrap_or(0.0), map.origin.get(1).copied().unwrap_or(0.0));
     if map.origin.get(2).is_some_and(|yaw| yaw.abs() > 1e-6) {
         return Err(Error::broken(FORMAT, "origin", "is turned; rooms are traced of maps with a yaw of 0"));
     }
+    let found = trace(Cells { width, height, free, per_meter: 1.0 / resolution });
     let meters = |x: f64, y: f64| Point::new(origin.x + x * resolution, origin.y + y * resolution);
     let mut drawing = Drawing::default();
-    let count = labels.iter().flatten().max().map_or(0, |m| m + 1);
-    for (room, ring) in outlines(&grid, &labels, count)? {
-        drawing.rooms.push(DrawnRoom {
-            label: format!("room_{}", room + 1),
-            kind: None,
-            corners: settle(ring.into_iter().map(|(x, y)| meters(x as f64, y as f64)).collect()),
-            level: None,
-            height_m: None,
-            place: format!("room_{}", room + 1),
-        });
+    for (room, mut loops) in found.rooms.into_iter().enumerate() {
+        let corners = |ring: Vec<(i64, i64)>| ring.into_iter().map(|(x, y)| meters(x as f64, y as f64)).collect();
+        let holes = loops.split_off(1).into_iter().map(corners).collect();
+        let place = format!("room_{}", room + 1);
+        let outline = settle(loops.pop().map(corners).unwrap_or_default(), &place);
+        drawing.rooms.push(DrawnRoom { holes, traced: true, ..DrawnRoom::new(String::new(), outline, place) });
     }
     if drawing.rooms.is_empty() {
         return Err(Error::broken(FORMAT, map.image, "has no free floor as large as a room"));
     }
-    openings(&grid, &labels, resolution, &mut drawing, &meters);
+    for gap in &found.gaps {
+        let [from, to] = gap.ends.map(|(x, y)| meters(x, y));
+        let kind = if from.distance(to) <= DOOR_M { OpeningKind::Door } else { OpeningKind::Passage };
+        let name = |room: Option<usize>| room.map_or("outdoors".to_owned(), |r| format!("room_{}", r + 1));
+        let place = format!("between {} and {}", name(gap.rooms[0]), name(gap.rooms[1]));
+        drawing.openings.push(DrawnOpening::new(kind, vec![from, to], None, place));
+    }
     drawing.notes.push(note(
         "traced",
         format!(
-            "{} rooms were traced of an occupancy map: approximate, without names, windows and closed doors; floor is cut \
-             where it is less than {PARTING_M} m wide",
-            drawing.rooms.len()
+            "{} rooms were traced of an occupancy map: approximate, without names, windows and closed doors; {} things that \
+             stand free were taken for furniture and left out, and what stands at walls was filled up to them",
+            drawing.rooms.len(),
+            found.things
         ),
     ));
     Ok(Plan::Drawing(drawing))
@@ -176,167 +170,9 @@ fn pgm_head(bytes: &[u8]) -> Option<([usize; 3], &[u8])> {
     Some((head, bytes.get(at + 1..)?))
 }
 
-/// Returns for each cell the distance to the nearest cell that is not free, in cells (chessboard).
-fn distances(grid: &Grid) -> Vec<u32> {
-    let (w, h) = (grid.width, grid.height);
-    let mut out: Vec<u32> = grid.free.iter().map(|f| if *f { u32::MAX / 2 } else { 0 }).collect();
-    let relax = |out: &mut Vec<u32>, i: usize, j: usize, from: &[(isize, isize)]| {
-        let k = j * w + i;
-        if out[k] == 0 {
-            return;
-        }
-        for (di, dj) in from {
-            let (x, y) = (i as isize + di, j as isize + dj);
-            let near =
-                if x < 0 || y < 0 || x >= w as isize || y >= h as isize { 0 } else { out[y as usize * w + x as usize] };
-            out[k] = out[k].min(near + 1);
-        }
-    };
-    for j in 0..h {
-        for i in 0..w {
-            relax(&mut out, i, j, &[(-1, 0), (-1, -1), (0, -1), (1, -1)]);
-        }
-    }
-    for j in (0..h).rev() {
-        for i in (0..w).rev() {
-            relax(&mut out, i, j, &[(1, 0), (1, 1), (0, 1), (-1, 1)]);
-        }
-    }
-    out
-}
-
-/// Returns the room of each cell: free floor wider than a door, grown back into the narrow places around it.
-fn rooms(grid: &Grid, resolution: f64) -> Vec<Option<usize>> {
-    let (w, h) = (grid.width, grid.height);
-    let distance = distances(grid);
-    let core = (PARTING_M / 2.0 / resolution).ceil() as u32;
-    let mut labels: Vec<Option<usize>> = vec![None; w * h];
-    let mut seeds: VecDeque<usize> = VecDeque::new();
-    let mut count = 0;
-    let least = (LEAST_ROOM_M2 / resolution / resolution) as usize;
-    let around = |k: usize| {
-        let (i, j) = (k % w, k / w);
-        [(i > 0, k.wrapping_sub(1)), (i + 1 < w, k + 1), (j > 0, k.wrapping_sub(w)), (j + 1 < h, k + w)]
-            .into_iter()
-            .filter(|n| n.0)
-            .map(|n| n.1)
-    };
-    for start in 0..w * h {
-        if labels[start].is_some() || distance[start] <= core {
-            continue;
-        }
-        labels[start] = Some(count);
-        let mut todo = vec![start];
-        while let Some(k) = todo.pop() {
-            seeds.push_back(k);
-            for n in around(k) {
-                if labels[n].is_none() && distance[n] > core {
-                    labels[n] = Some(count);
-                    todo.push(n);
-                }
-            }
-        }
-        count += 1;
-    }
-    // grow back layer by layer: the floor of a room before the doorway beyond it
-    let mut layers: Vec<VecDeque<usize>> = vec![VecDeque::new(); core as usize + 1];
-    layers[core as usize].extend(seeds);
-    for depth in (1..=core as usize).rev() {
-        while let Some(k) = layers[depth].pop_front() {
-            for n in around(k) {
-                if labels[n].is_none() && grid.free[n] {
-                    if distance[n] as usize >= depth {
-                        labels[n] = labels[k];
-                        layers[depth].push_back(n);
-                    } else {
-                        layers[depth - 1].push_back(k);
-                    }
-                }
-            }
-        }
-        let again = std::mem::take(&mut layers[depth - 1]);
-        let mut seen: Vec<usize> = again.into();
-        seen.sort_unstable();
-        seen.dedup();
-        layers[depth - 1] = seen.into();
-    }
-    renumber(&mut labels, count, least);
-    labels
-}
-
-/// Leaves out rooms that are too small and numbers the others from the south-west.
-fn renumber(labels: &mut [Option<usize>], count: usize, least: usize) {
-    let mut sizes = vec![0_usize; count];
-    labels.iter().flatten().for_each(|l| sizes[*l] += 1);
-    let mut names: Vec<Option<usize>> = vec![None; count];
-    let mut next = 0;
-    for label in labels.iter_mut() {
-        let Some(old) = *label else { continue };
-        if sizes[old] < least {
-            *label = None;
-            continue;
-        }
-        let name = *names[old].get_or_insert_with(|| {
-            next += 1;
-            next - 1
-        });
-        *label = Some(name);
-    }
-}
-
-/// A room with the corners of its outline, in cells.
-type Traced = (usize, Vec<(i64, i64)>);
-
-/// Returns the outer outline of each room, counter-clockwise, in cells.
-fn outlines(grid: &Grid, labels: &[Option<usize>], count: usize) -> Result<Vec<Traced>, Error> {
-    let (w, h) = (grid.width as i64, grid.height as i64);
-    let at = |i: i64, j: i64| if i < 0 || j < 0 || i >= w || j >= h { None } else { labels[(j * w + i) as usize] };
-    let mut starts: Vec<Option<(i64, i64)>> = vec![None; count];
-    for j in 0..h {
-        for i in 0..w {
-            if let Some(room) = at(i, j) {
-                starts[room].get_or_insert((i, j));
-            }
-        }
-    }
-    let mut out = Vec::new();
-    for (room, start) in starts.into_iter().enumerate() {
-        let Some(start) = start else { continue };
-        // along the boundary with the room on the left, from the lowest and then westernmost corner eastwards
-        let inside = |i: i64, j: i64| at(i, j) == Some(room);
-        let (mut p, mut d) = (start, (1_i64, 0_i64));
-        let mut ring = Vec::new();
-        for _ in 0..4 * (w + 1) * (h + 1) {
-            let next = (p.0 + d.0, p.1 + d.1);
-            // cells ahead of the next corner, on its left and right
-            let cell = |side: i64| {
-                let (lx, ly) = (-d.1 * side, d.0 * side);
-                ((2 * next.0 + d.0 + lx - 1).div_euclid(2), (2 * next.1 + d.1 + ly - 1).div_euclid(2))
-            };
-            let (left, right) = (cell(1), cell(-1));
-            let turn = if inside(right.0, right.1) && inside(left.0, left.1) {
-                Some((d.1, -d.0))
-            } else if inside(left.0, left.1) {
-                None
-            } else {
-                Some((-d.1, d.0))
-            };
-            p = next;
-            if let Some(turn) = turn {
-                ring.push(p);
-                d = turn;
-            }
-            if p == start && d == (1, 0) {
-                break;
-            }
-        }
-        out.push((room, ring));
-    }
-    Ok(out)
-}
-
-/// Takes the steps out of an outline that are noise: sides close to a longer parallel one move onto it.
-fn settle(ring: Vec<Point>) -> Vec<Point> {
+/// Takes the steps out of an outline that are noise: sides close to a longer parallel one move onto it. An outline that would
+/// cross itself then stays as it is.
+fn settle(ring: Vec<Point>, place: &str) -> Vec<Point> {
     let n = ring.len();
     let mut sides: Vec<(bool, f64, f64)> = (0..n)
         .map(|i| {
@@ -363,8 +199,10 @@ fn settle(ring: Vec<Point>) -> Vec<Point> {
         let p = if after.0 { Point::new(after.1, before.1) } else { Point::new(before.1, after.1) };
         out.push(p);
     }
-    tidy(out)
+    let settled = tidy(out);
+    if clean::ring(&settled, place).is_ok() { settled } else { ring }
 }
+
 
 /// Removes sides of no length and the corners that are then straight, until none is left.
 fn tidy(mut ring: Vec<Point>) -> Vec<Point> {
@@ -383,66 +221,4 @@ fn tidy(mut ring: Vec<Point>) -> Vec<Point> {
             None => return ring,
         }
     }
-}
-
-/// Adds an opening for each run of cells where two rooms meet, or a room meets the floor outdoors.
-fn openings(
-    grid: &Grid,
-    labels: &[Option<usize>],
-    resolution: f64,
-    drawing: &mut Drawing,
-    meters: &impl Fn(f64, f64) -> Point,
-) {
-    use std::collections::BTreeMap;
-    let (w, h) = (grid.width, grid.height);
-    let mut meets: BTreeMap<(usize, usize), Vec<(f64, f64)>> = BTreeMap::new();
-    let mut meet = |a: usize, b: usize, at: (f64, f64)| {
-        if let (Some(p), Some(q)) = (labels[a], labels[b])
-            && p != q
-        {
-            meets.entry((p.min(q), p.max(q))).or_default().push(at);
-        }
-    };
-    for j in 0..h {
-        for i in 0..w {
-            let k = j * w + i;
-            if i + 1 < w {
-                meet(k, k + 1, (i as f64 + 1.0, j as f64 + 0.5));
-            }
-            if j + 1 < h {
-                meet(k, k + w, (i as f64 + 0.5, j as f64 + 1.0));
-            }
-        }
-    }
-    for ((a, b), points) in meets {
-        for group in runs(points, 0.4 / resolution) {
-            let x = group.iter().map(|p| p.0).fold((f64::MAX, f64::MIN), |b, v| (b.0.min(v), b.1.max(v)));
-            let y = group.iter().map(|p| p.1).fold((f64::MAX, f64::MIN), |b, v| (b.0.min(v), b.1.max(v)));
-            let along_x = x.1 - x.0 >= y.1 - y.0;
-            let (mx, my) = ((x.0 + x.1) / 2.0, (y.0 + y.1) / 2.0);
-            let (from, to) = if along_x {
-                (meters(x.0 - 0.5, my), meters(x.1 + 0.5, my))
-            } else {
-                (meters(mx, y.0 - 0.5), meters(mx, y.1 + 0.5))
-            };
-            let kind = if from.distance(to) <= DOOR_M { OpeningKind::Door } else { OpeningKind::Passage };
-            let place = format!("between room_{} and room_{}", a + 1, b + 1);
-            drawing.openings.push(DrawnOpening::new(kind, vec![from, to], None, place));
-        }
-    }
-}
-
-/// Parts points into groups that are connected by steps of at most `reach`; the points come row by row.
-fn runs(points: Vec<(f64, f64)>, reach: f64) -> Vec<Vec<(f64, f64)>> {
-    let mut groups: Vec<Vec<(f64, f64)>> = Vec::new();
-    for p in points {
-        let near = |g: &Vec<(f64, f64)>| {
-            g.iter().rev().take(200).any(|q| (q.0 - p.0).abs() <= reach.max(1.5) && (q.1 - p.1).abs() <= reach.max(1.5))
-        };
-        match groups.iter_mut().find(|g| near(g)) {
-            Some(group) => group.push(p),
-            None => groups.push(vec![p]),
-        }
-    }
-    groups
 }

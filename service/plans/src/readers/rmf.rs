@@ -1,16 +1,18 @@
-//! Open-RMF `building.yaml` of the traffic editor: rooms are what the walls and doors of a level enclose, or its floors.
+//! Open-RMF `building.yaml` of the traffic editor: rooms are what the walls, doors and floors of a level enclose.
 //!
 //! Values are pairs of a type and a value; drawings are in pixels with y downwards, unless the coordinate system says
-//! meters; the measurements of a level give its scale. Names of waypoints inside a room are its name.
+//! meters; the measurements of a level give its scale. Names of waypoints inside a room are its name, but not those of
+//! chargers, docks, doors, lifts and places where robots start: they name a thing for robots.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use d3dgen_model::Point;
 use serde::Deserialize;
 use serde_json::Value;
 
 use super::{Plan, Reader, Source};
-use crate::drawing::{Drawing, DrawnLabel, DrawnOpening, DrawnRoom, DrawnWall, OpeningKind, note};
+use crate::drawing::{Drawing, DrawnFloor, DrawnLabel, DrawnOpening, DrawnWall, OpeningKind, note};
+use crate::words::is_waypoint;
 use crate::{Error, Options};
 
 pub(super) const READER: Reader = Reader { name: "rmf", title: "Open-RMF building.yaml", recognizes, read };
@@ -18,6 +20,8 @@ pub(super) const READER: Reader = Reader { name: "rmf", title: "Open-RMF buildin
 const FORMAT: &str = "rmf";
 /// Meters a pixel of a level that has no measurement, as the traffic editor takes it.
 const DEFAULT_SCALE: f64 = 0.05;
+/// Parameters of a vertex that is a place for robots: any value but false and empty.
+const FOR_ROBOTS: [&str; 5] = ["is_charger", "dock_name", "spawn_robot_name", "spawn_robot_type", "lift_cabin"];
 
 fn recognizes(source: &Source) -> bool {
     let head = source.head();
@@ -27,6 +31,8 @@ fn recognizes(source: &Source) -> bool {
 
 #[derive(Deserialize)]
 struct Building {
+    #[serde(default)]
+    name: Option<Value>,
     #[serde(default)]
     coordinate_system: Option<String>,
     #[serde(default)]
@@ -47,6 +53,8 @@ struct Level {
     measurements: Vec<Vec<Value>>,
     #[serde(default)]
     floors: Vec<Floor>,
+    #[serde(default)]
+    holes: Vec<Floor>,
 }
 
 #[derive(Deserialize)]
@@ -59,9 +67,11 @@ fn read(source: &Source, options: &Options) -> Result<Plan, Error> {
     let building: Building = serde_saphyr::from_str(source.text(FORMAT)?)
         .map_err(|e| Error::broken(FORMAT, source.name, e.to_string().lines().next().unwrap_or_default().to_owned()))?;
     let meters = building.coordinate_system.as_deref() == Some("cartesian_meters");
-    let mut drawing = Drawing::default();
+    let titles = building.name.as_ref().and_then(Value::as_str).map(str::to_owned).into_iter().collect();
+    let mut drawing = Drawing { titles, ..Drawing::default() };
+    let lifts: BTreeSet<String> = building.lifts.keys().map(|n| n.to_lowercase()).collect();
     for (name, level) in &building.levels {
-        add_level(&mut drawing, name, level, meters, options)?;
+        add_level(&mut drawing, name, level, meters, &lifts, options)?;
     }
     if !building.lifts.is_empty() {
         let message = format!("{} lifts were left out; their cabins are no rooms", building.lifts.len());
@@ -75,7 +85,14 @@ fn parameter<'a>(item: &'a [Value], name: &str) -> Option<&'a Value> {
     item.iter().find_map(Value::as_object)?.get(name)?.as_array()?.get(1)
 }
 
-fn add_level(drawing: &mut Drawing, name: &str, level: &Level, meters: bool, options: &Options) -> Result<(), Error> {
+fn add_level(
+    drawing: &mut Drawing,
+    name: &str,
+    level: &Level,
+    meters: bool,
+    lifts: &BTreeSet<String>,
+    options: &Options,
+) -> Result<(), Error> {
     let broken = |place: String, message: &str| Error::broken(FORMAT, format!("levels/{name}/{place}"), message);
     let mut points = Vec::with_capacity(level.vertices.len());
     for (i, v) in level.vertices.iter().enumerate() {
@@ -114,19 +131,25 @@ fn add_level(drawing: &mut Drawing, name: &str, level: &Level, meters: bool, opt
         o.sliding = parameter(door, "type").and_then(Value::as_str).is_some_and(|t| t.contains("sliding"));
         drawing.openings.push(o);
     }
+    let title = |door: &Vec<Value>| parameter(door, "name").and_then(Value::as_str).map(str::to_lowercase);
+    let things: BTreeSet<String> = level.doors.iter().filter_map(title).chain(lifts.iter().cloned()).collect();
     for (v, p) in level.vertices.iter().zip(&points) {
-        if let Some(text) = v.get(3).and_then(Value::as_str).filter(|t| !t.trim().is_empty()) {
+        let Some(text) = v.get(3).and_then(Value::as_str).map(str::trim).filter(|t| !t.is_empty()) else { continue };
+        let set = |key: &&str| match parameter(v, key) {
+            Some(Value::Bool(on)) => *on,
+            Some(Value::String(s)) => !s.is_empty(),
+            _ => false,
+        };
+        if !FOR_ROBOTS.iter().any(|key| set(&key)) && !things.contains(&text.to_lowercase()) && !is_waypoint(text) {
             drawing.labels.push(DrawnLabel { text: text.replace('_', " "), at: at(*p), level: here.clone() });
         }
     }
-    if level.walls.is_empty() {
-        for (i, floor) in level.floors.iter().enumerate() {
-            let place = format!("levels/{name}/floors/{i}");
+    for (list, hole, floors) in [("floors", false, &level.floors), ("holes", true, &level.holes)] {
+        for (i, floor) in floors.iter().enumerate() {
             let corner = |k: &usize| points.get(*k).map(|p| at(*p));
             let corners: Option<Vec<Point>> = floor.vertices.iter().map(corner).collect();
-            let corners = corners.ok_or_else(|| broken(format!("floors/{i}"), "names a vertex that is not there"))?;
-            let (label, kind) = (String::new(), None);
-            drawing.rooms.push(DrawnRoom { label, kind, corners, level: here.clone(), height_m: None, place });
+            let corners = corners.ok_or_else(|| broken(format!("{list}/{i}"), "names a vertex that is not there"))?;
+            drawing.floors.push(DrawnFloor { corners, hole, level: here.clone() });
         }
     }
     Ok(())

@@ -2,6 +2,7 @@
 //!
 //! What is drawn where is what counts: transforms and the view box are followed, looks (clips, masks, styles) are not.
 
+use std::collections::BTreeMap;
 use std::str::FromStr;
 
 use d3dgen_model::Point;
@@ -17,6 +18,7 @@ pub(super) const READER: Reader = Reader { name: "svg", title: "SVG drawing", re
 
 const FORMAT: &str = "svg";
 const SVG: &str = "http://www.w3.org/2000/svg";
+const XLINK: &str = "http://www.w3.org/1999/xlink";
 const INKSCAPE: &str = "http://www.inkscape.org/namespaces/inkscape";
 /// Most elements of a file.
 const MOST_NODES: u32 = 500_000;
@@ -24,6 +26,9 @@ const MOST_NODES: u32 = 500_000;
 const PIECES: usize = 8;
 /// A drawing larger than this at the size it is printed in is drawn in its real size, m.
 const REAL_SIZE_M: f64 = 1.5;
+/// Most levels of `<use>` in one another, and most elements drawn by them.
+const MOST_USES: usize = 8;
+const MOST_USED: usize = 200_000;
 /// Elements whose content is not drawn where it stands.
 const UNSEEN: [&str; 8] = ["defs", "clipPath", "mask", "pattern", "marker", "symbol", "style", "metadata"];
 
@@ -42,6 +47,8 @@ struct Shape {
 struct Scope {
     transform: Transform,
     role: Option<Role>,
+    /// How many `<use>` lie around it.
+    uses: usize,
 }
 
 fn read(source: &Source, options: &Options) -> Result<Plan, Error> {
@@ -58,22 +65,63 @@ fn read(source: &Source, options: &Options) -> Result<Plan, Error> {
         ));
     }
     let mut drawing = Drawing::default();
-    let mut todo = vec![(root, Scope { transform: Transform::default(), role: None })];
-    let mut count = 0_usize;
-    while let Some((node, scope)) = todo.pop() {
-        if !node.is_element() || UNSEEN.contains(&node.tag_name().name()) || is_hidden(&node) {
+    let by_id: BTreeMap<&str, Node> =
+        document.descendants().filter_map(|n| n.attribute("id").map(|id| (id, n))).collect();
+    let mut todo = vec![(root, Scope { transform: Transform::default(), role: None, uses: 0 }, false)];
+    let (mut count, mut used) = (0_usize, 0_usize);
+    while let Some((node, scope, asked)) = todo.pop() {
+        // what a <use> asks for is drawn there, wherever it stands
+        if !node.is_element() || !asked && UNSEEN.contains(&node.tag_name().name()) || is_hidden(&node) {
             continue;
         }
-        let scope = Scope { transform: transform(&node, scope.transform)?, role: own_role(&node).or(scope.role) };
+        let role = own_role(&node).or(scope.role);
+        let scope = Scope { transform: transform(&node, scope.transform)?, role, ..scope };
         count += add(&mut drawing, &node, scope)?;
+        if node.tag_name().name() == "use" {
+            if let Some((target, scope)) = used_by(&node, scope, &by_id).filter(|_| used < MOST_USED) {
+                todo.push((target, scope, true));
+            }
+            continue;
+        }
+        used += usize::from(scope.uses > 0);
         if count > MOST_POINTS {
             return Err(Error::broken(FORMAT, place(&node), format!("the drawing has more than {MOST_POINTS} points")));
         }
         let children: Vec<Node> = node.children().filter(Node::is_element).collect();
-        todo.extend(children.into_iter().rev().map(|c| (c, scope)));
+        todo.extend(children.into_iter().rev().map(|c| (c, scope, false)));
     }
     scale(&mut drawing, &root, options)?;
     Ok(Plan::Drawing(drawing))
+}
+
+/// Returns the element that a `<use>` draws, with where it draws it.
+fn used_by<'a, 'i>(node: &Node<'a, 'i>, scope: Scope, by_id: &BTreeMap<&str, Node<'a, 'i>>) -> Option<(Node<'a, 'i>, Scope)> {
+    let href = node.attribute("href").or_else(|| node.attribute((XLINK, "href")))?;
+    let target = *by_id.get(href.strip_prefix('#')?)?;
+    let number = |n: &Node, name: &str| n.attribute(name).and_then(|t| Length::from_str(t).ok()).map(|l| l.number);
+    let (x, y) = (number(node, "x").unwrap_or(0.0), number(node, "y").unwrap_or(0.0));
+    let mut t = move_by(scope.transform, x, y, 1.0);
+    // a symbol is fitted into the size asked for
+    let view = target.attribute("viewBox").filter(|_| target.tag_name().name() == "symbol");
+    if let Some(view) = view.and_then(|v| ViewBox::from_str(v).ok()).filter(|v| v.w > 0.0 && v.h > 0.0) {
+        let size = |name: &str, whole: f64| number(node, name).map(|l| l / whole);
+        let fit = [size("width", view.w), size("height", view.h)].into_iter().flatten().fold(f64::MAX, f64::min);
+        let fit = if fit == f64::MAX { 1.0 } else { fit };
+        t = move_by(t, -view.x * fit, -view.y * fit, fit);
+    }
+    (scope.uses < MOST_USES).then_some((target, Scope { transform: t, uses: scope.uses + 1, ..scope }))
+}
+
+/// Returns a transform after a shift and a scale inside of it.
+fn move_by(t: Transform, x: f64, y: f64, scale: f64) -> Transform {
+    Transform {
+        a: t.a * scale,
+        b: t.b * scale,
+        c: t.c * scale,
+        d: t.d * scale,
+        e: t.a * x + t.c * y + t.e,
+        f: t.b * x + t.d * y + t.f,
+    }
 }
 
 fn is_hidden(node: &Node) -> bool {
@@ -163,19 +211,21 @@ fn add(drawing: &mut Drawing, node: &Node, scope: Scope) -> Result<usize, Error>
                 drawing.openings.push(o);
             }
             (Some(Role::Skip | Role::Outline), _) => {}
-            (Some(Role::Wall), _) if !shape.closed => {
+            // a filled wall is drawn by its faces
+            (Some(Role::Wall), _) => {
+                let back = shape.closed.then(|| points[0]);
+                let points: Vec<Point> = points.iter().copied().chain(back).collect();
                 drawing.walls.extend(points.windows(2).map(|p| DrawnWall {
                     line: [p[0], p[1]],
                     level: None,
                     place: place(node),
                 }));
             }
-            (Some(Role::Wall), _) => {}
             _ if shape.closed => {
                 let label = label(node);
                 let place = if label.is_empty() { place(node) } else { format!("room `{label}` ({})", place(node)) };
                 let kind = node.attribute("data-room-type").map(str::to_owned);
-                drawing.rooms.push(DrawnRoom { label, kind, corners: points, level: None, height_m: None, place });
+                drawing.rooms.push(DrawnRoom { kind, ..DrawnRoom::new(label, points, place) });
             }
             _ => {}
         }
