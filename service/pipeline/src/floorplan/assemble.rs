@@ -70,6 +70,9 @@ pub(super) fn assemble(
     for (i, spec) in brief.rooms.iter().enumerate() {
         let ring = outline(i, &stretches).ok_or_else(|| format!("{} is not one simple polygon", spec.id))?;
         let net_polygon = ring.net_polygon();
+        if !net_polygon.is_simple() {
+            return Err(format!("a part of {} is no wider than its walls", spec.id));
+        }
         let net_area_m2 = to_mm(net_polygon.signed_area());
         let proportion = FreeSpace::new(&net_polygon, &[]).proportion();
         if proportion > PROPORTION_LIMIT && !spec.circulation && spec.zone != Zone::Circulation {

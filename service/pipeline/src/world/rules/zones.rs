@@ -54,48 +54,11 @@ pub fn invalid(c: &Context, out: &mut Findings) {
         for outline in [&room.plan.polygon, &room.plan.net_polygon] {
             if outline.corners().len() < 3 || outline.area() < 1e-6 {
                 out.add(&room.plan.room_id, "the outline encloses no area");
-            } else if !is_simple(outline) {
+            } else if !outline.is_simple() {
                 out.add(&room.plan.room_id, "the outline crosses or touches itself");
             }
         }
     }
-}
-
-/// Returns true when no two edges meet except neighbors at their common corner.
-fn is_simple(outline: &Polygon) -> bool {
-    let edges: Vec<Segment> = outline.edges().collect();
-    let n = edges.len();
-    (0..n).all(|i| {
-        (i + 1..n).all(|j| {
-            let neighbors = j == i + 1 || (i == 0 && j == n - 1);
-            if neighbors { !folds_back(&edges[i], &edges[j]) } else { !cross(&edges[i], &edges[j]) }
-        })
-    })
-}
-
-fn turn(a: Point, b: Point, p: Point) -> f64 {
-    (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x)
-}
-
-/// Returns true when the edges share a point.
-fn cross(s: &Segment, t: &Segment) -> bool {
-    let on = |a: Point, b: Point, p: Point| {
-        p.x >= a.x.min(b.x) && p.x <= a.x.max(b.x) && p.y >= a.y.min(b.y) && p.y <= a.y.max(b.y)
-    };
-    let (d1, d2) = (turn(s.start, s.end, t.start), turn(s.start, s.end, t.end));
-    let (d3, d4) = (turn(t.start, t.end, s.start), turn(t.start, t.end, s.end));
-    (d1 * d2 < 0.0 && d3 * d4 < 0.0)
-        || (d1 == 0.0 && on(s.start, s.end, t.start))
-        || (d2 == 0.0 && on(s.start, s.end, t.end))
-        || (d3 == 0.0 && on(t.start, t.end, s.start))
-        || (d4 == 0.0 && on(t.start, t.end, s.end))
-}
-
-/// Returns true when an edge runs back over the one before it, or has no length.
-fn folds_back(s: &Segment, t: &Segment) -> bool {
-    let dot = (s.end.x - s.start.x) * (t.end.x - t.start.x) + (s.end.y - s.start.y) * (t.end.y - t.start.y);
-    let parallel = turn(s.start, s.end, t.end).abs() + turn(s.start, s.end, t.start).abs() < 1e-9;
-    s.length() < 1e-6 || t.length() < 1e-6 || (parallel && dot < 0.0)
 }
 
 pub fn clockwise(c: &Context, out: &mut Findings) {
