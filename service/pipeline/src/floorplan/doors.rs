@@ -27,7 +27,7 @@ const OPEN_JAMB_M: f64 = 0.3;
 /// What a meter between the entrance and the nearest room for visitors counts against the length of its wall.
 const TO_PUBLIC: f64 = 0.2;
 /// What it counts there that rooms of the day are far from the entrance and bedrooms near.
-const TO_ZONES: f64 = 3.0;
+const TO_ZONES: f64 = 7.0;
 /// Wall between an entrance that stands aside and the corner of its room, on center lines, m.
 const ENTRANCE_ASIDE_M: f64 = 0.4;
 /// Floor behind a door into which a bed is pushed straight ahead, m, and how much wider the door is where it has to turn.
