@@ -60,8 +60,8 @@ pub struct Passages<'a> {
     wide: Vec<u32>,
     /// By cell: the narrowest width on the widest way, mm (0: no way), and the cell where it is.
     best: Vec<(u32, u32)>,
-    /// Of a long robot: the cells where its middle gets to.
-    driven: Option<Bitmap>,
+    /// Of a long robot: the cells where its middle gets to, and half its length, m.
+    driven: Option<(Bitmap, f64)>,
 }
 
 impl<'a> Passages<'a> {
@@ -82,24 +82,40 @@ impl<'a> Passages<'a> {
         let mut out = Self { plan, best: vec![(0, 0); wide.len()], wide, map, driven: None };
         out.spread(from);
         if let Some([width, length]) = robot.body.and_then(|b| b.long_m()) {
-            out.driven = Some(long::driven(&out.map.frame, &out.wide, (width, length), from));
+            let starts = out.within(from, length / 2.0);
+            out.driven = Some((long::driven(&out.map.frame, &out.wide, (width, length), &starts), length / 2.0));
         }
         out
+    }
+
+    /// Returns the floor of a point's room up to this far from it, m: a long robot stops at it with one end.
+    fn within(&self, p: Point, far: f64) -> Vec<Rect> {
+        let near = Rect::new(p.x - far, p.y - far, p.x + far, p.y + far);
+        let Some(room) = self.plan.rooms.iter().find(|r| r.net_polygon.contains(p)) else { return vec![around(p)] };
+        let common = |r: Rect| Rect {
+            x0: r.x0.max(near.x0),
+            y0: r.y0.max(near.y0),
+            x1: r.x1.min(near.x1),
+            y1: r.y1.min(near.y1),
+        };
+        room.net_polygon.rects().into_iter().map(common).filter(|r| r.x1 > r.x0 && r.y1 > r.y0).collect()
     }
 
     /// Returns the way to a room: to the place in it that is reached best.
     pub fn to_room(&self, room_id: &str, radius_m: f64) -> RobotWay {
         // the middle of a door sill is not yet the room
         let rects = self.plan.room(room_id).map_or(Vec::new(), |room| room.net_polygon.rects());
-        self.way(room_id, &rects, radius_m)
+        self.way(room_id, &rects, &rects, radius_m)
     }
 
     /// Returns the way to a point.
     pub fn to_point(&self, name: &str, p: Point, radius_m: f64) -> RobotWay {
-        self.way(name, &[around(p)], radius_m)
+        let ends = self.driven.as_ref().map_or(Vec::new(), |(_, half)| self.within(p, *half));
+        self.way(name, &[around(p)], &ends, radius_m)
     }
 
-    fn way(&self, to: &str, rects: &[Rect], radius_m: f64) -> RobotWay {
+    /// Returns the way to the best place in some floor; a long robot's middle gets to that in `ends`.
+    fn way(&self, to: &str, rects: &[Rect], ends: &[Rect], radius_m: f64) -> RobotWay {
         let (width, at) = rects.iter().map(|r| self.best_in(r)).max().unwrap_or((0, 0));
         if width == 0 {
             return RobotWay::none(to);
@@ -108,7 +124,7 @@ impl<'a> Passages<'a> {
         let low = self.door_at(place).filter(|_| width == LOW_DOOR_MM);
         let needed = (2000.0 * radius_m).round() as u32;
         let reachable = match &self.driven {
-            Some(driven) => rects.iter().flat_map(|r| self.map.frame.cells(r)).any(|(i, j)| driven.get(i, j)),
+            Some((driven, _)) => ends.iter().flat_map(|r| self.map.frame.cells(r)).any(|(i, j)| driven.get(i, j)),
             None => width + SLACK_MM >= needed && low.is_none(),
         };
         RobotWay {
@@ -195,56 +211,68 @@ pub fn clear_widths(map: &Occupancy, plan: &Floorplan) -> Vec<u32> {
 
 /// Returns the squared distance of each cell to the nearest one that is not free, in cells: exact, in two sweeps.
 fn squared_distances(nx: usize, ny: usize, free: impl Fn(usize, usize) -> bool) -> Vec<u32> {
-    let far = (nx + ny) as i64;
-    let mut up = vec![0_i64; nx * ny];
-    for i in 0..nx {
-        let mut run = 0;
-        for j in 0..ny {
-            run = if free(i, j) { (run + 1).min(far) } else { 0 };
-            up[j * nx + i] = run;
+    let far = (nx + ny) as i32;
+    // rows one after the other, as they lie in memory
+    let mut up = vec![0_i32; nx * ny];
+    for j in 0..ny {
+        for i in 0..nx {
+            let before = if j == 0 { 0 } else { up[(j - 1) * nx + i] };
+            up[j * nx + i] = if free(i, j) { (before + 1).min(far) } else { 0 };
         }
-        run = 0;
-        for j in (0..ny).rev() {
-            run = if free(i, j) { (run + 1).min(far) } else { 0 };
-            up[j * nx + i] = up[j * nx + i].min(run);
+    }
+    for j in (0..ny).rev() {
+        for i in 0..nx {
+            let before = if j + 1 == ny { 0 } else { up[(j + 1) * nx + i] };
+            up[j * nx + i] = up[j * nx + i].min(before + 1);
         }
     }
     let mut out = vec![0_u32; nx * ny];
-    // lower envelope of the parabolas of one row
-    let (mut sites, mut starts) = (vec![0_usize; nx], vec![0_i64; nx]);
+    // lower envelope of the parabolas of one row, stretch by stretch between cells that are not free
+    let (mut sites, mut starts) = (vec![0_usize; nx], vec![0_i32; nx]);
     for j in 0..ny {
         let g = &up[j * nx..(j + 1) * nx];
-        let at = |x: i64, i: usize| (x - i as i64).pow(2) + g[i] * g[i];
-        let mut q = 0_usize;
-        (sites[0], starts[0]) = (0, 0);
-        let mut count = 1;
-        for u in 1..nx {
-            while count > 0 && at(starts[q], sites[q]) > at(starts[q], u) {
-                count -= 1;
-                q = q.saturating_sub(1);
-            }
-            if count == 0 {
-                (q, count) = (0, 1);
-                (sites[0], starts[0]) = (u, 0);
-            } else {
-                let i = sites[q] as i64;
-                let (v, gi) = (u as i64, g[sites[q]]);
-                let w = 1 + (v * v - i * i + g[u] * g[u] - gi * gi).div_euclid(2 * (v - i));
-                if w < nx as i64 {
-                    q += 1;
-                    count += 1;
-                    (sites[q], starts[q]) = (u, w);
-                }
-            }
-        }
-        for u in (0..nx).rev() {
-            out[j * nx + u] = at(u as i64, sites[q]) as u32;
-            if u as i64 == starts[q] && q > 0 {
-                q -= 1;
-            }
+        let row = &mut out[j * nx..(j + 1) * nx];
+        let mut end = 0;
+        while let Some(first) = (end..nx).find(|&i| g[i] > 0) {
+            end = (first..nx).find(|&i| g[i] == 0).unwrap_or(nx);
+            stretch(g, row, (first.saturating_sub(1), (end + 1).min(nx)), (&mut sites, &mut starts));
         }
     }
     out
+}
+
+/// Fills in the squared distances of the cells `low..high` of a row whose cells lie `g` away from what is not free along
+/// their columns.
+fn stretch(g: &[i32], row: &mut [u32], (low, high): (usize, usize), (sites, starts): (&mut [usize], &mut [i32])) {
+    let at = |x: i32, i: usize| (x - i as i32).pow(2) + g[i] * g[i];
+    let mut q = 0_usize;
+    (sites[0], starts[0]) = (low, low as i32);
+    let mut count = 1;
+    for u in low + 1..high {
+        while count > 0 && at(starts[q], sites[q]) > at(starts[q], u) {
+            count -= 1;
+            q = q.saturating_sub(1);
+        }
+        if count == 0 {
+            (q, count) = (0, 1);
+            (sites[0], starts[0]) = (u, low as i32);
+        } else {
+            let i = sites[q] as i32;
+            let (v, gi) = (u as i32, g[sites[q]]);
+            let w = 1 + (v * v - i * i + g[u] * g[u] - gi * gi).div_euclid(2 * (v - i));
+            if w < high as i32 {
+                q += 1;
+                count += 1;
+                (sites[q], starts[q]) = (u, w);
+            }
+        }
+    }
+    for u in (low..high).rev() {
+        row[u] = at(u as i32, sites[q]) as u32;
+        if u as i32 == starts[q] && q > 0 {
+            q -= 1;
+        }
+    }
 }
 
 #[cfg(test)]

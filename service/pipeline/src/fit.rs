@@ -70,7 +70,8 @@ pub(crate) fn or_refused(
     })
 }
 
-fn fits(found: &Generated) -> bool {
+/// Returns true for a world that can be written and that its robots fit into.
+pub(crate) fn fits(found: &Generated) -> bool {
     found.report.is_writable() && found.report.robot_fit.iter().all(|f| f.fits)
 }
 
@@ -92,7 +93,7 @@ fn too_high(found: &Generated) -> Option<String> {
 fn unfit(found: &Generated) -> String {
     let violation = found.report.rules.iter().flat_map(|r| &r.violations).find(|v| !v.given);
     let missed = || {
-        let mut ways = found.report.robot_fit.iter().flat_map(|f| f.rooms.iter().chain(&f.points));
+        let mut ways = found.report.robot_fit.iter().flat_map(|f| f.points.iter().chain(&f.rooms));
         ways.find(|w| !w.reachable)
             .map(|w| format!("{} is reached through {:.2} m at {}", w.to, w.clear_width_m, w.narrowest))
     };

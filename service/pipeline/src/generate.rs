@@ -210,6 +210,9 @@ fn attempts(
             Ok(found) if found.report.is_given() => return Ok(found),
             Ok(found) => {
                 let (rule, broken) = broken(&found.report);
+                // another plan may have the floor that a robot lacks
+                let unfit = graph.robots.iter().any(Robot::is_fitted) && !fit::fits(&found);
+                let (rule, broken) = if broken == 0 && unfit { ("robot_fit", 1) } else { (rule, broken) };
                 let World { floorplan, placements, .. } = &found.world;
                 let before = if picky { before_openings(floorplan, placements, plugin.domain()) } else { 0 };
                 if (broken, before) == (0, 0) {

@@ -1,7 +1,7 @@
 //! Where a long robot gets to: its outline in headings around the half circle, driven along its heading and turned about
 //! its middle, on the grid of the occupancy.
 
-use crate::geometry::Point;
+use crate::geometry::Rect;
 use crate::occupancy::{Bitmap, CELL_M, Frame};
 
 /// Headings in half a turn; forward and backward are the same outline.
@@ -10,8 +10,6 @@ const HEADINGS: usize = 16;
 const APART: f64 = 0.25;
 /// Neighbors of a cell, counter-clockwise through half a turn.
 const AROUND: [(i64, i64); 5] = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0)];
-/// How far from where it starts its middle may be, cells.
-const NEAR_CELLS: i64 = 5;
 
 /// The discs that cover an outline in one heading.
 struct Cover {
@@ -21,9 +19,9 @@ struct Cover {
     steps: Vec<(i64, i64)>,
 }
 
-/// Returns the cells where the middle of a body (width, length, m) gets to from a point; `wide` has the diameter of the
-/// largest disc at each cell, mm.
-pub(super) fn driven(frame: &Frame, wide: &[u32], (width, length): (f64, f64), from: Point) -> Bitmap {
+/// Returns the cells where the middle of a body (width, length, m) gets to from one of the starts; `wide` has the diameter
+/// of the largest disc at each cell, mm.
+pub(super) fn driven(frame: &Frame, wide: &[u32], (width, length): (f64, f64), starts: &[Rect]) -> Bitmap {
     let (nx, ny) = (frame.nx as i64, frame.ny as i64);
     let covers: Vec<Cover> = (0..HEADINGS).map(|h| cover(h, width, length)).collect();
     let disc = width.hypot(width * APART);
@@ -37,13 +35,8 @@ pub(super) fn driven(frame: &Frame, wide: &[u32], (width, length): (f64, f64), f
     };
     let mut seen = vec![0_u16; wide.len()];
     let mut open: Vec<(i64, i64, usize)> = Vec::new();
-    let Some((si, sj)) = frame.cell(from).map(|(i, j)| (i as i64, j as i64)) else {
-        return Bitmap::new(frame.nx, frame.ny);
-    };
-    for (i, j) in
-        (sj - NEAR_CELLS..=sj + NEAR_CELLS).flat_map(|j| (si - NEAR_CELLS..=si + NEAR_CELLS).map(move |i| (i, j)))
-    {
-        open.extend((0..HEADINGS).map(|h| (i, j, h)));
+    for (i, j) in starts.iter().flat_map(|r| frame.cells(r)) {
+        open.extend((0..HEADINGS).map(|h| (i as i64, j as i64, h)));
     }
     let mut out = Bitmap::new(frame.nx, frame.ny);
     while let Some((i, j, h)) = open.pop() {
@@ -80,6 +73,7 @@ fn cover(heading: usize, width: f64, length: f64) -> Cover {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::Point;
 
     /// A corridor from the west and one to the north, meeting in a corner, as widths of the grid in mm.
     fn corner(corridor: usize, branch: usize) -> (Frame, Vec<u32>) {
@@ -97,8 +91,9 @@ mod tests {
     fn a_long_body_turns_a_corner_where_a_bed_does() {
         let north = |corridor: usize, branch: usize| {
             let (frame, wide) = corner(corridor, branch);
-            let from = Point::new(1.5, CELL_M * (5.0 + corridor as f64 / 2.0));
-            let reached = driven(&frame, &wide, (0.6, 1.8), from);
+            let middle = CELL_M * (5.0 + corridor as f64 / 2.0);
+            let starts = [Rect::new(1.4, middle - 0.1, 1.6, middle + 0.1)];
+            let reached = driven(&frame, &wide, (0.6, 1.8), &starts);
             (0..120).any(|i| reached.get(i, 100))
         };
         assert!(north(40, 40), "2 m and 2 m");

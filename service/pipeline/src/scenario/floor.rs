@@ -1,5 +1,6 @@
 //! The free floor of a furnished building, and spots on it.
 
+use std::cell::OnceCell;
 use std::collections::BTreeMap;
 
 use d3dgen_knowledge::clearance::quarter;
@@ -10,6 +11,8 @@ use d3dgen_model::occupancy::{Bitmap, CELL_M, Occupancy};
 use d3dgen_model::placements::{Placement, Placements};
 use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::{Point, Pose, Rect};
+
+use super::tour::Doors;
 
 /// Least radius of the disc that must find its way, m.
 pub(super) const LEAST_RADIUS_M: f64 = 0.30;
@@ -31,6 +34,7 @@ pub(super) struct Floor<'a> {
     pub occupancy: Occupancy,
     /// Cells where the disc can be that are connected to most of the others.
     pub main: Bitmap,
+    doors: OnceCell<Doors<'a>>,
 }
 
 /// A room with what stands in it.
@@ -108,7 +112,7 @@ impl<'a> Floor<'a> {
             }
         };
         let rooms = plan.rooms.iter().map(&mut room).collect();
-        Self { rooms, plan, domain, radius, occupancy, main }
+        Self { rooms, plan, domain, radius, occupancy, main, doors: OnceCell::new() }
     }
 
     /// Returns the reachable spot of a room nearest to a point, a little farther off rather than in a doorway or against
@@ -145,6 +149,11 @@ impl<'a> Floor<'a> {
     /// Returns the number of spots of a room.
     pub fn spots(&self, room: &Room) -> usize {
         room.spots.count()
+    }
+
+    /// Returns the doors that tours lead through.
+    pub fn doors(&self) -> &Doors<'a> {
+        self.doors.get_or_init(|| Doors::new(self.plan))
     }
 
     /// Returns true when the disc can be at one of the spots in a rectangle.

@@ -39,11 +39,18 @@ pub fn generate(
     if plan.level_numbers().len() > 1 {
         return Ok(storeys::generate(graph, plan, placements, domain));
     }
-    Ok(one_storey(graph, plan, placements, domain))
+    Ok(one_storey(graph, plan, placements, domain, true))
 }
 
-/// Fills one storey. Where no robots were asked for, nothing is said of how they drive and where they put things down.
-fn one_storey(graph: &SceneGraph, plan: &Floorplan, placements: &Placements, domain: &Domain) -> Scenario {
+/// Fills one storey. Where no robots were asked for, nothing is said of how they drive and where they put things down;
+/// where they live on another one, their routes here are not looked for.
+fn one_storey(
+    graph: &SceneGraph,
+    plan: &Floorplan,
+    placements: &Placements,
+    domain: &Domain,
+    lived_in: bool,
+) -> Scenario {
     let mut floor = Floor::new(graph, plan, placements, domain);
     let mut rois = regions::all(&floor);
     if !graph.robots.is_empty() {
@@ -54,6 +61,9 @@ fn one_storey(graph: &SceneGraph, plan: &Floorplan, placements: &Placements, dom
     regions::number(&mut rois, &floor, &pois);
     let mut scenario = Scenario { version: 1, seed: graph.seed, rois, pois, robots: Vec::new(), agents: Vec::new() };
     scenario.robots = robots::all(&mut floor, graph, (plan, placements), &scenario.pois);
+    if lived_in {
+        robots::add_routes(&floor, &mut scenario);
+    }
     scenario.agents = people::all(&mut floor, graph);
     scenario
 }

@@ -71,11 +71,13 @@ pub(super) fn number(rois: &mut [Roi], floor: &Floor, pois: &[Poi]) {
     let start = of_kind("dock").or_else(|| of_kind("entrance")).map(Stop::of_poi);
     let stops: Vec<Stop> =
         zones.iter().map(|(_, room)| Stop { room: &room.plan.room_id, at: largest(room).center() }).collect();
-    let order = tour::order(floor.plan, start, &stops);
+    let order = tour::order(floor.doors(), start, &stops);
     for (number, i) in order.into_iter().enumerate() {
         let (roi, room) = &mut zones[i];
         roi.order = Some(number as u32 + 1);
-        roi.free_area_m2 = Some((room.free_m2 * 100.0).round() / 100.0);
+        // cells of a grid can have a little more than the outline
+        let free = room.free_m2.min(room.plan.net_area_m2);
+        roi.free_area_m2 = Some((free * 100.0).floor() / 100.0);
     }
 }
 

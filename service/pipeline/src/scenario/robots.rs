@@ -3,7 +3,7 @@
 use d3dgen_model::floorplan::Floorplan;
 use d3dgen_model::passage::{Passages, RobotWay};
 use d3dgen_model::placements::Placements;
-use d3dgen_model::scenario::{Poi, RobotTask};
+use d3dgen_model::scenario::{Poi, RobotTask, Scenario};
 use d3dgen_model::scene_graph::{Robot, SceneGraph};
 use d3dgen_model::{Point, Pose};
 
@@ -11,8 +11,7 @@ use super::floor::{Floor, looking_at};
 use super::routes::Router;
 use super::tour::{self, Stop};
 
-/// Returns the robots of the scene graph, each with its own start, goals that it can reach, in the order of a short tour,
-/// and the routes from one to the next.
+/// Returns the robots of the scene graph, each with its own start, goals that it can reach, in the order of a short tour.
 pub(super) fn all(
     floor: &mut Floor,
     graph: &SceneGraph,
@@ -44,9 +43,14 @@ pub(super) fn all(
             }
         }
     }
-    let mut router = Router::new(floor);
-    out.iter_mut().for_each(|task| task.routes = router.round(task, pois));
     out
+}
+
+/// Looks for the routes of all robots.
+pub(super) fn add_routes(floor: &Floor, scenario: &mut Scenario) {
+    let mut router = Router::new(floor);
+    let Scenario { robots, pois, .. } = scenario;
+    robots.iter_mut().for_each(|task| task.routes = router.round(task, pois));
 }
 
 /// Returns the widest ways to a robot's goals and dock.
@@ -99,5 +103,5 @@ fn goals(floor: &Floor, own: Vec<&Poi>, dock: Option<&Poi>) -> Vec<String> {
 
 fn toured<'p>(floor: &Floor, points: Vec<&'p Poi>, from: Option<&Poi>) -> Vec<&'p Poi> {
     let stops: Vec<Stop> = points.iter().map(|p| Stop::of_poi(p)).collect();
-    tour::order(floor.plan, from.map(Stop::of_poi), &stops).into_iter().map(|i| points[i]).collect()
+    tour::order(floor.doors(), from.map(Stop::of_poi), &stops).into_iter().map(|i| points[i]).collect()
 }

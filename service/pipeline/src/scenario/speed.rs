@@ -141,8 +141,11 @@ fn crossings(room: &Room) -> Vec<Rect> {
     out
 }
 
-/// Returns the floor where people stand at the counter of a room.
+/// Returns the floor where people stand at the counter of a room for visitors or staff.
 fn at_counter<'f>(room: &'f Room) -> Option<Slow<'f>> {
+    if !matches!(room.kind.zone, Zone::Public | Zone::Staff) {
+        return None;
+    }
     let (counter, _) =
         served(room).filter(|(_, kind)| kind.shape == Shape::Counter && room.is_for(RobotUse::Service))?;
     let rect = clipped(room, &floor_in_front(counter, DEPTH_M, BESIDE_M))?.bounds();

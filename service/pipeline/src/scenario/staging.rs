@@ -2,7 +2,7 @@
 //! the width that people and robots pass in.
 
 use d3dgen_knowledge::freespace::FreeSpace;
-use d3dgen_model::domain::{RobotUse, Zone};
+use d3dgen_model::domain::{Mount, RobotUse, Zone};
 use d3dgen_model::floorplan::Door;
 use d3dgen_model::geometry::to_mm;
 use d3dgen_model::occupancy::{Bitmap, CELL_M, stops_robot};
@@ -17,16 +17,16 @@ const PER_ROBOT_M2: f64 = 2.5;
 /// Most robots that bring goods to one area at a time.
 const MOST_ROBOTS: u32 = 4;
 /// Depths of an area that are tried, m.
-const DEPTHS_M: [f64; 3] = [1.0, 1.25, 1.6];
+const DEPTHS_M: [f64; 2] = [1.0, 1.6];
 /// The least area, m: a pallet of 1.2 m by 0.8 m (EN 13698-1).
 const PALLET_M: [f64; 2] = [1.2, 0.8];
 /// Floor before a door that stays free, m.
 const BEFORE_DOOR_M: f64 = 1.0;
 /// Play of a robot that passes, m.
 const PASSING_M: f64 = 0.1;
-/// Places in a room that are looked at closely, and how far they lie apart, cells.
-const PLACES: usize = 6;
-const APART: usize = 8;
+/// Places in a room that are looked at closely for one size, and how far they lie apart, cells.
+const PLACES: usize = 2;
+const APART: usize = 16;
 /// Cells of a room's bounds from which on fewer of them are looked at.
 const LARGE: usize = 200_000;
 /// Kind of robot that brings nothing.
@@ -57,7 +57,7 @@ fn of_unit(floor: &Floor, graph: &SceneGraph, rois: &[Roi], (unit, robots): (Opt
         floor.rooms.iter().filter(|r| here(&r.plan.room_id)).filter_map(|r| Some((rank(floor, r)?, r))).collect();
     rooms.sort_by_key(|r| r.0);
     let yards: Vec<(&Room, Yard)> = rooms.into_iter().map(|(_, r)| (r, Yard::new(floor, r, rois))).collect();
-    let whole = (1..=robots).rev().flat_map(|n| {
+    let whole = [robots, 1].into_iter().flat_map(|n| {
         let area = f64::from(n) * PER_ROBOT_M2;
         DEPTHS_M.map(|depth| ([area / depth, depth], format!("{area} m2 for {n} robot(s)")))
     });
@@ -74,7 +74,8 @@ fn of_unit(floor: &Floor, graph: &SceneGraph, rois: &[Roi], (unit, robots): (Opt
     None
 }
 
-/// Returns how well a room suits, 0 best: circulation, then what lies beside it; `None` for rooms of people and wet ones.
+/// Returns how well a room suits, 0 best: circulation, then what lies beside it; last rooms to live and work in; `None`
+/// for wet ones and those to sleep in.
 fn rank(floor: &Floor, room: &Room) -> Option<u8> {
     if room.is_for(RobotUse::KeepOut) || floor.plan.link_of(&room.plan.room_id).is_some() {
         return None;
@@ -113,12 +114,14 @@ impl Yard {
         let lanes = floor.plan.doors_of(id).map(lane);
         let fronts = room.objects.iter().filter(|(p, _)| p.support.is_none() && stops_robot(p));
         let fronts = fronts.map(|(p, kind)| floor_in_front(p, kind.clearance_front_m, 0.0));
+        let rugs = room.objects.iter().map(|(p, _)| *p).filter(|p| p.mount == Mount::Floor && !stops_robot(p));
+        let rugs = rugs.map(|p| p.footprint().bounds());
         let used = |r: &&Roi| {
             &r.room_id == id && matches!(r.kind, RoiKind::ServiceZone | RoiKind::ChargingBuffer | RoiKind::StagingArea)
         };
         let used = rois.iter().filter(used).map(|r| r.polygon.bounds());
         let (i, j) = room.corner;
-        for r in lanes.chain(fronts).chain(used) {
+        for r in lanes.chain(fronts).chain(rugs).chain(used) {
             let (i0, i1, j0, j1) = floor.occupancy.frame.span(&r);
             map.fill(i0 - i, i1 - i, j0 - j, j1 - j, false);
         }
@@ -156,7 +159,7 @@ impl Yard {
     fn places(&self, w: usize, h: usize) -> Vec<(u32, [usize; 4])> {
         let step = if self.nx * self.ny > LARGE { 4 } else { 2 };
         let mut out = Vec::new();
-        if w > self.nx || h > self.ny {
+        if w > self.nx || h > self.ny || self.count([0, 0, self.nx, self.ny]) < (w * h) as u32 {
             return out;
         }
         let ring = (2 * (w + h) + 4) as u32;
@@ -181,10 +184,14 @@ impl Yard {
 
     /// Returns true when people and robots still pass between the doors of the room.
     fn leaves_way(&self, floor: &Floor, room: &Room, rect: &Rect) -> bool {
+        let doors: Vec<&Door> = floor.plan.doors_of(&room.plan.room_id).collect();
+        // the floor before a single door is free
+        if doors.len() < 2 {
+            return true;
+        }
         let standing = room.objects.iter().map(|(p, _)| *p).filter(|p| stops_robot(p));
         let mut taken: Vec<Rect> = standing.map(|p| p.footprint().bounds()).collect();
         taken.push(*rect);
-        let doors: Vec<&Door> = floor.plan.doors_of(&room.plan.room_id).collect();
         FreeSpace::new(&room.plan.net_polygon, &taken).passes(&doors, self.passage)
     }
 }

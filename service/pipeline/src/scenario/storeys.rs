@@ -38,7 +38,7 @@ pub(super) fn generate(graph: &SceneGraph, plan: &Floorplan, placements: &Placem
     };
     let docked = storeys.iter().find(|(_, world)| has_dock(world)).map_or(0, |s| s.0);
     for (level, world) in storeys {
-        let storey = one_storey(&world.scene_graph, &world.floorplan, &world.placements, domain);
+        let storey = one_storey(&world.scene_graph, &world.floorplan, &world.placements, domain, level == docked);
         add(&mut out, storey, level, level == docked);
     }
     out

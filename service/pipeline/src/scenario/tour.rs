@@ -32,11 +32,11 @@ impl<'a> Stop<'a> {
 }
 
 /// Returns the places in the order of a short round trip from a start, or from the first of them.
-pub(super) fn order(plan: &Floorplan, start: Option<Stop>, stops: &[Stop]) -> Vec<usize> {
+pub(super) fn order(doors: &Doors, start: Option<Stop>, stops: &[Stop]) -> Vec<usize> {
     let Some(first) = start.or_else(|| stops.first().copied()) else { return Vec::new() };
     // the start is number 0
     let all: Vec<Stop> = std::iter::once(first).chain(stops.iter().copied()).collect();
-    let apart = distances(plan, &all);
+    let apart = distances(doors, &all);
     let mut tour = nearest_next(&apart);
     for _ in 0..ROUNDS {
         if !improved(&mut tour, &apart) {
@@ -75,30 +75,33 @@ fn improved(tour: &mut [usize], apart: &[Vec<f64>]) -> bool {
 }
 
 /// Returns the distance of each place to each other, m.
-fn distances(plan: &Floorplan, stops: &[Stop]) -> Vec<Vec<f64>> {
+fn distances(doors: &Doors, stops: &[Stop]) -> Vec<Vec<f64>> {
     let straight = |a: &Stop| stops.iter().map(|b| a.at.distance(b.at)).collect();
     if stops.len() > MOST_MEASURED {
         return stops.iter().map(straight).collect();
     }
-    let doors = Doors::new(plan);
     stops.iter().map(|a| doors.to_all(a, stops)).collect()
 }
 
-/// The doors of a storey and which of them each room has.
-struct Doors<'a> {
+/// The doors of a storey, which of them each room has, and how far each is from those of its rooms.
+pub(super) struct Doors<'a> {
     middles: Vec<Point>,
-    rooms: Vec<&'a [String]>,
+    next: Vec<Vec<(usize, f64)>>,
     of_room: BTreeMap<&'a str, Vec<usize>>,
 }
 
 impl<'a> Doors<'a> {
-    fn new(plan: &'a Floorplan) -> Self {
+    pub fn new(plan: &'a Floorplan) -> Self {
         let mut of_room: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
         for (i, door) in plan.doors.iter().enumerate() {
             door.room_ids.iter().for_each(|id| of_room.entry(id).or_default().push(i));
         }
-        let middles = plan.doors.iter().map(|d| d.line.middle()).collect();
-        Self { middles, rooms: plan.doors.iter().map(|d| d.room_ids.as_slice()).collect(), of_room }
+        let middles: Vec<Point> = plan.doors.iter().map(|d| d.line.middle()).collect();
+        let next = plan.doors.iter().zip(&middles).map(|(door, at)| {
+            let others = door.room_ids.iter().filter_map(|id| of_room.get(id.as_str())).flatten();
+            others.map(|&d| (d, at.distance(middles[d]))).collect()
+        });
+        Self { next: next.collect(), middles, of_room }
     }
 
     fn of(&self, room: &str) -> &[usize] {
@@ -114,8 +117,8 @@ impl<'a> Doors<'a> {
             if far[here] == f64::MAX {
                 break;
             }
-            for &next in self.rooms[here].iter().flat_map(|room| self.of(room)) {
-                far[next] = far[next].min(far[here] + self.middles[here].distance(self.middles[next]));
+            for &(next, apart) in &self.next[here] {
+                far[next] = far[next].min(far[here] + apart);
             }
         }
         let to = |stop: &Stop| {

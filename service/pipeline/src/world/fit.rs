@@ -12,6 +12,9 @@ use d3dgen_model::scene_graph::Robot;
 use d3dgen_model::storeys::LinkKind;
 use d3dgen_model::world::World;
 
+/// Kind of robot that goes into rooms to clean them; others go where there is something to bring.
+const CLEANING: &str = "cleaning";
+
 /// Measures the fit of every robot whose body is known.
 pub(super) fn measure(world: &World, storeys: &[(i32, World)], domain: &Domain) -> Vec<RobotFit> {
     let known = world.scene_graph.robots.iter().filter(|r| r.body.is_some());
@@ -22,7 +25,9 @@ fn one(world: &World, storeys: &[(i32, World)], domain: &Domain, robot: &Robot) 
     let task = world.scenario.robots.iter().find(|t| t.robot.kind == robot.kind);
     let home = task.map_or(0, |t| t.level);
     let only = [(home, world)];
-    let parts: Vec<(i32, &World)> = storeys.iter().map(|(level, w)| (*level, w)).collect();
+    // robots come out of shafts, which are no floor of the storeys above the ground as people see them
+    let above: Vec<(i32, World)> = storeys.iter().map(|(level, _)| (*level, world.storey(*level))).collect();
+    let parts: Vec<(i32, &World)> = above.iter().map(|(level, w)| (*level, w)).collect();
     let parts = if parts.is_empty() { &only[..] } else { &parts[..] };
     let start = task.map(|t| Point::new(t.start.x, t.start.y));
     let ground = parts.iter().find(|p| p.0 == home).and_then(|p| ways(p.1, robot, start.or_else(|| entry(p.1))));
@@ -54,9 +59,13 @@ fn one(world: &World, storeys: &[(i32, World)], domain: &Domain, robot: &Robot) 
             judge(&poi.poi_id, passages.map(|p| p.to_point(&poi.poi_id, at, r)))
         }));
     }
+    let own: &[RobotUse] = match robot.kind == CLEANING {
+        true => &[RobotUse::CleaningHigh, RobotUse::CleaningLow, RobotUse::Charging],
+        false => &[RobotUse::Service, RobotUse::Charging],
+    };
     let served = |id: &str| {
         let kind = world.floorplan.room(id).map(|r| domain.room_type_or_generic(&r.room_type));
-        kind.is_some_and(|k| !k.robot.is_empty() && !k.robot.contains(&RobotUse::KeepOut))
+        kind.is_some_and(|k| k.robot.iter().any(|u| own.contains(u)) && !k.robot.contains(&RobotUse::KeepOut))
     };
     let missed = rooms.iter().any(|w| served(&w.to) && !w.reachable) || points.iter().any(|w| !w.reachable);
     RobotFit {
