@@ -121,7 +121,8 @@ impl Choice<'_> {
         let unit = self.unit(tokens, number.span.end)?;
         let end = self.tagged(tokens, unit, Tag::BedRooms)?;
         // "10인 회의실" ends in a longer word
-        let whole = tokens[unit].kind == Kind::Word || tokens.get(end).is_none_or(|t| t.spaced || t.kind != tokens[unit].kind);
+        let whole =
+            tokens[unit].kind == Kind::Word || tokens.get(end).is_none_or(|t| t.spaced || t.kind != tokens[unit].kind);
         (whole || tokens[unit].kind == Kind::Han).then_some((end, beds))
     }
 
@@ -170,6 +171,23 @@ impl Choice<'_> {
         }
     }
 
+    /// Takes rooms for several for those of the program: the double rooms of a nursing home are for residents. Variants of
+    /// the program's own room begin with its id.
+    pub(super) fn adopt(&self, mentions: &mut [Mention]) {
+        let own =
+            self.program.rooms.iter().find(|e| e.occupants == Occupants::Beds).map(|e| format!("{}_", e.room_type));
+        let variant = |kind: &RoomType| own.as_ref().is_some_and(|own| kind.id.starts_with(own));
+        let listed = |kind: &RoomType| variant(kind) || self.program.rooms.iter().any(|e| e.room_type == kind.id);
+        for m in mentions.iter_mut() {
+            let kind = m.room_type().and_then(|id| self.domain.room_type(id)).filter(|k| is_bed_room(k) && !listed(k));
+            let beds = kind.and_then(|k| sleeps(self.domain, k)).filter(|[low, _]| *low > 1);
+            let alike = |k: &&RoomType| listed(k) && is_bed_room(k) && sleeps(self.domain, k) == beds;
+            if let Some(other) = beds.and_then(|_| self.domain.room_types.iter().find(alike)) {
+                m.what = What::Room(other.id.clone());
+            }
+        }
+    }
+
     /// Gives a mention of rooms so many beds each; returns false where the domain has no room to sleep in.
     fn give(&self, mention: &mut Mention, beds: u32) -> bool {
         let own = mention.room_type().and_then(|id| self.domain.room_type(id));
@@ -182,7 +200,8 @@ impl Choice<'_> {
 
     /// Returns true for mentions of rooms that could have beds.
     fn may_sleep(&self, mention: &Mention) -> bool {
-        let known = |id: &str| self.domain.room_type(id).is_some_and(|k| is_bed_room(k) && sleeps(self.domain, k).is_some());
+        let known =
+            |id: &str| self.domain.room_type(id).is_some_and(|k| is_bed_room(k) && sleeps(self.domain, k).is_some());
         mention.beds.is_none() && (mention.what == What::Total || mention.room_type().is_some_and(known))
     }
 
@@ -210,11 +229,16 @@ impl Choice<'_> {
         let (beds, rooms) = (&mentions[b], &mentions[q]);
         let gap = beds.span.end..rooms.from.min(rooms.span.start);
         let inside = gap.clone().any(|i| {
-            self.tagged(tokens, i, Tag::Inside).is_some() || matches!(tokens[i].text.as_str(), "auf" | "across" | "over")
+            self.tagged(tokens, i, Tag::Inside).is_some()
+                || matches!(tokens[i].text.as_str(), "auf" | "across" | "over")
         });
         let others = mentions.iter().filter(|m| m.what != What::Total && self.may_sleep(m)).count();
         let joins = gap.clone().any(|i| self.tagged(tokens, i, Tag::Joins).is_some());
-        self.may_sleep(rooms) && inside && !joins && gap.len() <= MOST_BETWEEN && (rooms.what == What::Total || others == 1)
+        self.may_sleep(rooms)
+            && inside
+            && !joins
+            && gap.len() <= MOST_BETWEEN
+            && (rooms.what == What::Total || others == 1)
     }
 }
 
@@ -228,9 +252,12 @@ fn bed_count(value: f64) -> Option<u32> {
 }
 
 /// Multiplies the beds of "two 12-bed wards".
-pub(super) fn of_several_wards(mentions: &mut [Mention], numbers: &[Number], head: Option<Span>) {
-    let Some(head) = head else { return };
-    for m in mentions.iter_mut().filter(|m| m.what == What::Beds && m.span.end == head.start) {
+pub(super) fn of_several_wards(mentions: &mut [Mention], numbers: &[Number], wards: &[Span]) {
+    let of_ward = |m: &Mention| {
+        let holds = |w: &Span| w.start == m.span.end || w.start == m.span.start && w.end > m.span.end;
+        m.what == What::Beds && wards.iter().any(holds)
+    };
+    for m in mentions.iter_mut().filter(|m| of_ward(m)) {
         let Some(number) = m.number else { continue };
         let wards = numbers.iter().find(|n| n.span.end == number.start && !n.article && n.value > 1.0);
         if let (Some(wards), Some(beds)) = (wards, m.count) {
@@ -253,7 +280,12 @@ pub(super) struct Sleepers<'a> {
 impl Sleepers<'_> {
     /// Counts rooms to sleep in by who sleeps there: "16 beds in double rooms" are 8 rooms; the beds that are left over go
     /// to rooms of the program. Returns which rooms have how many beds, and the beds of the building.
-    pub(super) fn settle(&self, wishes: &mut Wishes, assumptions: &mut Vec<Note>, conflicts: &mut Vec<Note>) -> Settled {
+    pub(super) fn settle(
+        &self,
+        wishes: &mut Wishes,
+        assumptions: &mut Vec<Note>,
+        conflicts: &mut Vec<Note>,
+    ) -> Settled {
         let told = self.told(wishes);
         let counts_beds = self.program.rooms.iter().any(|e| e.occupants == Occupants::Beds);
         if told.is_empty() {
@@ -266,7 +298,8 @@ impl Sleepers<'_> {
         let people = self.people.filter(|_| counted && counts_beds);
         let held = self.held(wishes);
         self.note_nearest(&held, assumptions);
-        let [low, high] = told.iter().filter_map(|t| self.capacity(wishes, t)).fold([0, 0], |s, r| [s[0] + r[0], s[1] + r[1]]);
+        let [low, high] =
+            told.iter().filter_map(|t| self.capacity(wishes, t)).fold([0, 0], |s, r| [s[0] + r[0], s[1] + r[1]]);
         let beds = match self.beds.or(people) {
             Some(beds) if beds > high && counts_beds => {
                 self.rest(wishes, beds - high, assumptions);
@@ -287,7 +320,9 @@ impl Sleepers<'_> {
 
     /// Returns the types of rooms to stay in that the prompt names.
     fn told(&self, wishes: &Wishes) -> Vec<String> {
-        let known = |w: &&Wish| self.domain.room_type(&w.room_type).is_some_and(|k| is_bed_room(k) && sleeps(self.domain, k).is_some());
+        let known = |w: &&Wish| {
+            self.domain.room_type(&w.room_type).is_some_and(|k| is_bed_room(k) && sleeps(self.domain, k).is_some())
+        };
         wishes.wishes.iter().filter(known).map(|w| w.room_type.clone()).collect()
     }
 
@@ -305,8 +340,7 @@ impl Sleepers<'_> {
     /// Returns the beds of all rooms of a type, least and most.
     fn capacity(&self, wishes: &Wishes, id: &str) -> Option<[u32; 2]> {
         let count = wishes.wishes.iter().find(|w| w.room_type == id)?.count;
-        let numbered: Vec<(u32, u32)> =
-            self.mentions_of(id).filter_map(|m| Some((counted(m)?, m.beds?))).collect();
+        let numbered: Vec<(u32, u32)> = self.mentions_of(id).filter_map(|m| Some((counted(m)?, m.beds?))).collect();
         let listed: u32 = numbered.iter().map(|n| n.0).sum();
         if listed == count && !numbered.is_empty() {
             let sum = numbered.iter().map(|(n, beds)| n * beds).sum();
@@ -318,7 +352,8 @@ impl Sleepers<'_> {
     /// Gives rooms without a number so many that all have a bed; returns false where there are none.
     fn count_open(&self, wishes: &mut Wishes, told: &[String], sleepers: u32) -> bool {
         let open: Vec<&String> = told.iter().filter(|id| self.mentions_of(id).all(|m| m.count.is_none())).collect();
-        let fixed: u32 = told.iter().filter(|id| !open.contains(id)).filter_map(|id| Some(self.capacity(wishes, id)?[0])).sum();
+        let fixed: u32 =
+            told.iter().filter(|id| !open.contains(id)).filter_map(|id| Some(self.capacity(wishes, id)?[0])).sum();
         let rest = sleepers.saturating_sub(fixed);
         let caps: Vec<u32> = open.iter().map(|id| self.each(id).map_or(1, |r| r[0].max(1))).collect();
         let sum: u32 = caps.iter().sum();
@@ -328,7 +363,11 @@ impl Sleepers<'_> {
         let smallest = (0..caps.len()).min_by_key(|&k| caps[k]).unwrap_or(0);
         let over = (rest % sum).div_ceil(caps[smallest]);
         for (k, id) in open.iter().enumerate() {
-            let count = if open.len() == 1 { rest.div_ceil(caps[0]) } else { rest / sum + if k == smallest { over } else { 0 } };
+            let count = if open.len() == 1 {
+                rest.div_ceil(caps[0])
+            } else {
+                rest / sum + if k == smallest { over } else { 0 }
+            };
             if let Some(wish) = wishes.wishes.iter_mut().find(|w| &w.room_type == *id) {
                 wish.count = count.max(1);
                 wish.exact = true;

@@ -22,6 +22,8 @@ pub(super) struct Building {
     pub by_rooms: bool,
     /// Other buildings and departments that its list names.
     pub parts: Vec<Part>,
+    /// True when its type stands in the list: "hospital: a maternity unit, two operating rooms".
+    pub listed_type: bool,
     /// All words for buildings.
     pub words: Vec<Span>,
 }
@@ -110,6 +112,7 @@ pub(super) fn recognize(
             list_from: 0,
             by_rooms: true,
             parts: Vec::new(),
+            listed_type: false,
             words: found.iter().map(|f| f.0).collect(),
         });
     };
@@ -120,7 +123,9 @@ pub(super) fn recognize(
     } else {
         *meaning.first()?
     };
+    let own_kind = kind;
     let kind = kind.or_else(|| other_type(&found, domain));
+    let listed_type = own_kind.is_none() && kind.is_some() && !head_final;
     let parts = if head_final { Vec::new() } else { parts(&found, *span, list_from, (domain, kind), &domains) };
     Some(Building {
         domain: domains[domain].id.clone(),
@@ -129,6 +134,7 @@ pub(super) fn recognize(
         list_from: if head_final || list_from == 0 { 0 } else { list_from.max(span.end) },
         by_rooms: false,
         parts,
+        listed_type,
         words: found.iter().map(|f| f.0).collect(),
     })
 }
@@ -169,7 +175,8 @@ fn counts_rooms(
     };
     // the number of "12-bed ward" is of its beds
     let held = [Tag::Beds, Tag::Desks, Tag::Holds];
-    let holds = |s: &&Spoken| held.iter().any(|&tag| s.tag_at(tokens, span.start, tag).is_some_and(|end| end < span.end));
+    let holds =
+        |s: &&Spoken| held.iter().any(|&tag| s.tag_at(tokens, span.start, tag).is_some_and(|end| end < span.end));
     let inside = |i: usize| {
         spoken.iter().any(|s| s.tags.word(&tokens[i].text).is_some_and(|t| held.iter().any(|h| t.contains(h))))
     };

@@ -129,7 +129,12 @@ fn counted(
 }
 
 /// Returns how many people share the home: "couple", "family of five", "fünfköpfige Familie", "family with two kids".
-pub(super) fn household(tokens: &[Token], numbers: &[Number], spoken: &[&Spoken], children: Option<u32>) -> Option<u32> {
+pub(super) fn household(
+    tokens: &[Token],
+    numbers: &[Number],
+    spoken: &[&Spoken],
+    children: Option<u32>,
+) -> Option<u32> {
     let number_at = |i: usize| numbers.iter().find(|n| n.span.start == i && !n.article && n.value >= 1.0);
     let tagged = |i: usize, tag| spoken.iter().find_map(|s| s.tag_at(tokens, i, tag));
     let told = (0..tokens.len()).find_map(|i| {

@@ -33,7 +33,12 @@ pub(super) fn areas(tokens: &[Token], numbers: &[Number]) -> Vec<Area> {
         {
             let between = &tokens[number.span.end..next.span.start];
             let times = between.iter().any(|t| matches!(t.text.as_str(), "x" | "by" | "mal" | "sur" | "por"))
-                && between.iter().all(|t| matches!(t.text.as_str(), "x" | "by" | "mal" | "sur" | "por" | "m" | "meters" | "metres" | "ft" | "feet"));
+                && between.iter().all(|t| {
+                    matches!(
+                        t.text.as_str(),
+                        "x" | "by" | "mal" | "sur" | "por" | "m" | "meters" | "metres" | "ft" | "feet"
+                    )
+                });
             if times {
                 out.push(Area {
                     span: Span { start: number.span.start, end },

@@ -137,9 +137,14 @@ impl Vocabulary {
         found.map(|f| f.1.id.clone())
     }
 
+    /// Returns the end of the word for a room that begins at a token.
+    pub(super) fn room_end(&self, tokens: &[Token], i: usize, numbers: &[Number], spoken: &[&Spoken]) -> Option<usize> {
+        if i < tokens.len() { self.at(tokens, i, numbers, spoken).map(|f| f.0) } else { None }
+    }
+
     /// Returns true when a word for a room begins at a token.
     pub(super) fn names_room(&self, tokens: &[Token], i: usize, numbers: &[Number], spoken: &[&Spoken]) -> bool {
-        i < tokens.len() && self.at(tokens, i, numbers, spoken).is_some()
+        self.room_end(tokens, i, numbers, spoken).is_some()
     }
 
     /// Returns true when a room word of several tokens begins at a token and reaches an end.
@@ -270,7 +275,8 @@ fn noun_at(
     };
     let room = vocabulary
         .at(tokens, i, numbers, spoken)
-        .filter(|r| free(r.0))
+        // "für den Transport": a little word of the language names no room of another one
+        .filter(|r| free(r.0) && !(r.0 == i + 1 && is_little(tokens, i, spoken, language)))
         .map(|(end, id, plural)| (end, What::Room(id.into()), plural));
     let entrance = spoken.iter().find_map(|s| s.tag_at(tokens, i, Tag::Entrance)).filter(|&end| free(end));
     if let Some(end) = entrance
@@ -339,6 +345,12 @@ fn noun_at(
             compound().or(unknown).or(people)
         }
     }
+}
+
+/// Returns true for articles of a prompt's language, where that is not English.
+fn is_little(tokens: &[Token], i: usize, spoken: &[&Spoken], language: &str) -> bool {
+    let own = spoken.first().filter(|_| language != "en");
+    own.is_some_and(|s| [Tag::Definite, Tag::Articles].iter().any(|&t| s.tag_at(tokens, i, t) == Some(i + 1)))
 }
 
 /// Completes "clean and dirty utility", "men's and women's toilets", "Wohn- und Esszimmer".

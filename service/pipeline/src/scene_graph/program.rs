@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 use d3dgen_knowledge::Applicable;
 use d3dgen_model::domain::{Access, Occupants, Program, ProgramRoom, RoomType, Shape, Zone};
 
+use super::beds::sleeps;
 use super::layout;
 use super::places::note;
 use super::reading::{MAX_ROOMS, Reading};
-use super::beds::sleeps;
 use super::units;
 use super::vital;
 use super::wishes::{CHARGING, Pair, PerHost, Wish};
@@ -96,6 +96,11 @@ pub(super) fn finish<'a>(reading: &mut Reading<'a>, mut rooms: Vec<Planned<'a>>)
     rooms
 }
 
+/// Returns true for rooms that the prompt does not rule out.
+fn may_add(reading: &Reading, room_type: &str) -> bool {
+    !reading.wishes.forbidden.iter().any(|f| f == room_type)
+}
+
 /// Returns the type of the room that comes with every host: the one that is named, or where that is no room entered through
 /// another the one for the same use that is: "every room has a bathroom" of a hospital means its en suites.
 fn private_kind<'a>(reading: &Reading<'a>, rooms: &[Planned], pair: &PerHost) -> &'a RoomType {
@@ -126,8 +131,22 @@ fn equip_hosts<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
                 rooms.push(guest);
                 continue;
             }
-            // the number of rooms is fixed: something else gives way, or the last host
+            // the number of rooms is fixed: the last host makes room for something else of the program, or else that for it
             let own = |r: &Planned| takes(r) || r.room_type == kind.id;
+            let last = rooms.iter().rposition(|r| takes(r) && !r.requested);
+            let next = reading
+                .program
+                .rooms
+                .iter()
+                .map(|e| Planned::new(&e.room_type, reading.domain.room_type_or_generic(&e.room_type)));
+            let fresh = |p: &Planned| {
+                !own(p) && p.kind.access != Access::Host && !rooms.iter().any(|r| r.room_type == p.room_type)
+            };
+            let next = next.into_iter().find(|p| fresh(p) && may_add(reading, &p.room_type));
+            if let (Some(last), Some(next)) = (last.filter(|_| hosts > 1), next) {
+                rooms[last] = next;
+                continue;
+            }
             let spare = (0..rooms.len())
                 .rev()
                 .find(|&i| !rooms[i].requested && !own(&rooms[i]) && !vital::is_vital(reading, rooms, i))
@@ -557,12 +576,10 @@ fn hang_on_hosts(reading: &mut Reading, rooms: &mut [Planned]) {
         // the usual host first: a terrace lies before the living room
         let rank = |h: &Planned| room.kind.hosts.iter().position(|k| *k == h.room_type);
         let candidates = |test: &dyn Fn(&Planned) -> bool| {
-            (0..rooms.len())
-                .filter(|&h| h != i && test(&rooms[h]) && rooms[h].host != Some(i))
-                .min_by_key(|&h| {
-                    let elsewhere = rooms[h].unit != room.unit;
-                    (elsewhere, guests(h, rooms), rank(&rooms[h]), usize::from(rooms[h].host.is_some()), h)
-                })
+            (0..rooms.len()).filter(|&h| h != i && test(&rooms[h]) && rooms[h].host != Some(i)).min_by_key(|&h| {
+                let elsewhere = rooms[h].unit != room.unit;
+                (elsewhere, guests(h, rooms), rank(&rooms[h]), usize::from(rooms[h].host.is_some()), h)
+            })
         };
         let host = candidates(&fits).or_else(|| candidates(&by_type));
         // a room the prompt gives to one host only ("bedroom with its own bath and a second bath")

@@ -46,6 +46,8 @@ pub(super) struct Reading<'a> {
     pub closed: bool,
     /// True when the prompt asks for one room and no building.
     pub single: bool,
+    /// True when the prompt names the building.
+    pub named: bool,
     /// Rooms of which the prompt says the beds.
     pub held: Vec<Held>,
     /// True when the prompt counts the rooms to live in ("3-Zimmer-Wohnung", "2BHK").
@@ -117,7 +119,9 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     let words_known = || building::words_known(&tokens, registry, language);
     let unread_language = language::unread(prompt, &tokens, language, words_known());
     if let Some(name) = unread_language {
-        let message = format!("the prompt seems to be in {name}, which is not read; only what looks like a language that is was taken from it (English, German, French, Spanish, Chinese, Korean)");
+        let message = format!(
+            "the prompt seems to be in {name}, which is not read; only what looks like a language that is was taken from it (English, German, French, Spanish, Chinese, Korean)"
+        );
         assumptions.push(note("language_not_read", message));
     }
     let domain =
@@ -141,10 +145,10 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     let lives = is_dwelling(program);
     let choice = beds::Choice { domain, program, spoken: &spoken };
     let told = if lives { Vec::new() } else { choice.phrases(&tokens, &numbers, |s| vocabulary.own_at(&tokens, s)) };
-    let is_room = |i: usize| vocabulary.names_room(&tokens, i, &numbers, &spoken);
+    let room_end = |i: usize| vocabulary.room_end(&tokens, i, &numbers, &spoken);
     let within = |id: &String| words().dwelling.within_a_storey.contains(id);
     let basements = !building.building_type.as_ref().is_some_and(within);
-    let storey_phrases = storeys::phrases(&tokens, &numbers, &spoken, building.head, basements, is_room);
+    let storey_phrases = storeys::phrases(&tokens, &numbers, &spoken, building.head, basements, room_end);
     spans.extend(storey_phrases.iter().map(|p| p.span));
     let said_styles = styles::said(&tokens, &languages);
     spans.extend(said_styles.iter().map(|s| s.span));
@@ -163,7 +167,9 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     let mut mentions = mentions(&tokens, &numbers, &vocabulary, &spoken, language, &taken);
     if !lives {
         choice.read_lists(&tokens, &mut mentions);
-        beds::of_several_wards(&mut mentions, &numbers, building.head);
+        choice.adopt(&mut mentions);
+        let wards: Vec<Span> = building.words.iter().chain(&building.head).copied().collect();
+        beds::of_several_wards(&mut mentions, &numbers, &wards);
     }
     let doors = unread::doors(&tokens, &mut mentions, &spoken);
     let docked = docks::inside_rooms(&tokens, &mut mentions, &machines.spans, &spoken);
@@ -181,7 +187,6 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     };
     let mut wishes = wishes::gather(&text, &mut conflicts);
     let area_m2 = total_area(&text, request, &mut conflicts);
-    let list_closed = is_closed(&wishes, &text, &building, lives);
     let country = flag_country.as_deref().or(place.country_code.as_deref());
     let said_storeys = storeys::Text {
         tokens: &tokens,
@@ -210,6 +215,9 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     let heard = robots::Prompt { text: prompt, tokens: &tokens };
     let radius = radius.map(|r| r.1);
     let robots = robots::of_graph(&fleet, &wishes, radius, request, &heard, &mut assumptions, &mut conflicts);
+    // "drei Stockwerken" ends in a word for a factory
+    let storey = |p: &building::Part| spoken.iter().any(|s| s.tag_at(&tokens, p.span.start, Tag::Storeys).is_some());
+    building.parts.retain(|p| !storey(p) && !spans.iter().any(|s| s.overlaps(p.span)));
     let parts = parts::plan(&building.parts, &tokens, &mut mentions, &mut wishes, (domain, program), &mut assumptions);
     let mut people = People::read(&mentions, program, domain, &mut conflicts);
     let mut held = Vec::new();
@@ -234,13 +242,14 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     let one_room = total == Some(1) && building.head.is_none() && wishes.wishes.is_empty() && request.rooms.is_none();
     let single = alone && (one_room || request.rooms.is_none() && single::is_single(&building, &mentions, &wishes));
     if single {
-        assumptions.push(note("single_room", "the prompt asks for one room and no building; it was planned by itself".into()));
+        assumptions
+            .push(note("single_room", "the prompt asks for one room and no building; it was planned by itself".into()));
     }
     if single && one_room {
         wishes.wishes.push(Wish::one(GENERIC_ROOM_TYPE, "room"));
     }
     let total = total.filter(|_| !single);
-    let closed = list_closed || single;
+    let closed = single || is_closed(&wishes, &tokens, &building, lives);
     if closed && total.is_none() && !single {
         let named = building.head.and_then(|h| vocabulary.room_named(&tokens[h.start..h.end]));
         assumptions.extend(add_main_room(&mut wishes, program, domain, &people, named.as_deref()));
@@ -276,6 +285,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         total,
         closed,
         single,
+        named: building.head.is_some(),
         held,
         habitable_fixed: short_forms.iter().any(|f| f.rooms.contains_key(&words().dwelling.living)),
         area_m2,
@@ -343,7 +353,16 @@ fn building_of(
             Some(b) => b,
             None => {
                 let (parts, words) = (Vec::new(), Vec::new());
-                Building { domain: id.clone(), building_type: None, head, list_from, by_rooms: false, parts, words }
+                Building {
+                    domain: id.clone(),
+                    building_type: None,
+                    head,
+                    list_from,
+                    by_rooms: false,
+                    parts,
+                    listed_type: false,
+                    words,
+                }
             }
         };
     }
@@ -360,7 +379,16 @@ fn building_of(
             let message = format!("the prompt does not say what to build; domain {id} was taken");
             assumptions.push(note("default_domain", message));
             let (parts, words) = (Vec::new(), Vec::new());
-            Building { domain: id, building_type: None, head: None, list_from: 0, by_rooms: false, parts, words }
+            Building {
+                domain: id,
+                building_type: None,
+                head: None,
+                list_from: 0,
+                by_rooms: false,
+                parts,
+                listed_type: false,
+                words,
+            }
         }
     }
 }
@@ -442,7 +470,13 @@ impl People {
     }
 
     /// Counts those who share a home: "couple", "family of five", "two adults and three children".
-    fn share_a_home(&mut self, tokens: &[Token], numbers: &[numbers::Number], mentions: &[Mention], spoken: &[&Spoken]) {
+    fn share_a_home(
+        &mut self,
+        tokens: &[Token],
+        numbers: &[numbers::Number],
+        mentions: &[Mention],
+        spoken: &[&Spoken],
+    ) {
         let tagged = |m: &&Mention, tag| spoken.iter().any(|s| s.tag_at(tokens, m.span.start, tag).is_some());
         let sum = |tag| {
             let all = mentions.iter().filter(|m| !matches!(m.what, What::Room(_))).filter(|m| tagged(m, tag));
@@ -450,11 +484,11 @@ impl People {
             u32::try_from(counted).ok().filter(|n| *n > 0)
         };
         let (adults, children) = (sum(Tag::Adults), sum(Tag::Children));
-        if children.is_some() {
+        if children.or(adults).is_some() {
             self.occupancy.visitors = None;
         }
         let household = dwelling::household(tokens, numbers, spoken, children);
-        self.residents = adults.zip(children).map(|(a, c)| a + c).or(self.residents).or(household);
+        self.residents = adults.zip(children).map(|(a, c)| a + c).or(self.residents).or(adults).or(household);
     }
 }
 
@@ -554,10 +588,12 @@ pub(super) fn is_dwelling(program: &Program) -> bool {
 }
 
 /// Returns true when the listed rooms are the whole building.
-fn is_closed(wishes: &Wishes, text: &Text, building: &Building, lives: bool) -> bool {
+fn is_closed(wishes: &Wishes, tokens: &[Token], building: &Building, lives: bool) -> bool {
+    if building.listed_type && building.list_from > 0 {
+        return false;
+    }
     let listed: Vec<_> = wishes.wishes.iter().filter(|w| w.listed).collect();
-    let colon = building.list_from < text.tokens.len()
-        && (building.list_from..(building.list_from + 1)).any(|i| text.tokens[i].mark() == Some(':'));
+    let colon = tokens.get(building.list_from).is_some_and(|t| t.mark() == Some(':'));
     let types = listed.len();
     let open = listed.iter().any(|w| !w.exact);
     // "no kitchen, no bathroom" in a list of rooms are items of it

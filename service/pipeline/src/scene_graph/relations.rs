@@ -42,6 +42,8 @@ pub(super) struct Said {
     pub subjects: Vec<usize>,
     /// Mentions counted once for each room of another mention: (guest, host).
     pub each: Vec<(usize, usize)>,
+    /// Mentions behind "every", "all".
+    pub every: Vec<usize>,
     /// Mentions counted once for every room that can have one: "every room has an en suite".
     pub each_room: Vec<usize>,
 }
@@ -76,6 +78,7 @@ pub(super) fn read(
             None => i += 1,
         }
     }
+    said.every = (0..mentions.len()).filter(|&m| reader.every(m)).collect();
     at_entrance(&reader, &mut said);
     belongings(&reader, &mut said);
     said
@@ -174,6 +177,13 @@ impl Reader<'_> {
         (end..(end + 3).min(self.tokens.len()))
             .take_while(|&i| !self.tokens[i].is_mark() && !self.tagged(i, Tag::Joins))
             .any(|i| RELATIONS.iter().any(|&tag| self.tagged(i, tag)))
+    }
+
+    /// Returns true for "every patient room", "all bedrooms".
+    fn every(&self, m: usize) -> bool {
+        let start = self.mentions[m].span.start;
+        let each = |i: usize| self.spoken.iter().any(|s| s.tag_at(self.tokens, i, Tag::Each) == Some(start));
+        self.mentions[m].count.is_none() && (start.saturating_sub(2)..start).any(each)
     }
 
     fn is_group(&self, m: usize) -> bool {

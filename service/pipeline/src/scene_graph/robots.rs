@@ -315,7 +315,8 @@ impl Counting<'_> {
         let bracket = next.mark() != Some(',') || self.tokens.get(i + 3).is_some_and(|t| t.mark() == Some(','));
         let found = free.iter().find(|n| n.span.start == at && !n.vague && !n.article)?;
         // "cleaning, 3 delivery": the number is of what follows it
-        let closes = self.tokens.get(found.span.end).is_none_or(|t| t.is_mark() || self.tagged(found.span.end, Tag::Joins));
+        let closes =
+            self.tokens.get(found.span.end).is_none_or(|t| t.is_mark() || self.tagged(found.span.end, Tag::Joins));
         (closes && bracket).then(|| value(&found))
     }
 
@@ -405,7 +406,8 @@ pub(super) struct Prompt<'a> {
 impl Prompt<'_> {
     /// Returns the words of a span as the prompt has them.
     pub(super) fn words(&self, span: Span) -> &str {
-        let (Some(first), Some(last)) = (self.tokens.get(span.start), self.tokens.get(span.end.saturating_sub(1))) else {
+        let (Some(first), Some(last)) = (self.tokens.get(span.start), self.tokens.get(span.end.saturating_sub(1)))
+        else {
             return "";
         };
         self.text.get(first.start..last.end).unwrap_or("")
@@ -415,15 +417,28 @@ impl Prompt<'_> {
 fn state_assumed(fleet: &Fleet, prompt: &Prompt, assumptions: &mut Vec<Note>) {
     for assumed in &fleet.assumed {
         let (code, message) = match assumed {
-            Assumed::Kind => ("robot_kind", "the prompt does not say what its robots do; service robots were assumed".into()),
-            Assumed::Shares => ("robot_shares", "the prompt does not say how many robots do which work; they were shared out".into()),
-            Assumed::Number => ("robot_count", format!("the prompt does not say how many robots there are; {SEVERAL} were assumed for robots in the plural, one of each kind where it names several kinds")),
+            Assumed::Kind => {
+                ("robot_kind", "the prompt does not say what its robots do; service robots were assumed".into())
+            }
+            Assumed::Shares => {
+                ("robot_shares", "the prompt does not say how many robots do which work; they were shared out".into())
+            }
+            Assumed::Number => (
+                "robot_count",
+                format!(
+                    "the prompt does not say how many robots there are; {SEVERAL} were assumed for robots in the plural, one of each kind where it names several kinds"
+                ),
+            ),
         };
         assumptions.push(note(code, message));
     }
     for span in &fleet.unknown {
         let kinds: Vec<&str> = words().robot_kinds.keys().map(String::as_str).collect();
-        let message = format!("`{}` is none of the kinds of robots that are planned ({}); a service robot was taken for it", prompt.words(*span), kinds.join(", "));
+        let message = format!(
+            "`{}` is none of the kinds of robots that are planned ({}); a service robot was taken for it",
+            prompt.words(*span),
+            kinds.join(", ")
+        );
         assumptions.push(note("robot_kind", message));
     }
 }
@@ -431,7 +446,9 @@ fn state_assumed(fleet: &Fleet, prompt: &Prompt, assumptions: &mut Vec<Note>) {
 /// Returns true for robots in the plural: "cleaning robots", "robots de nettoyage", "Reinigungsrobotern".
 fn is_plural(tokens: &[Token]) -> bool {
     let plural = |t: &Token| matches!(t.text.as_str(), "robots" | "bots") || t.text.ends_with("robotern");
-    let last = tokens.last().is_some_and(|t| t.kind == Kind::Word && t.text.len() > 3 && t.text.ends_with('s') && !t.text.ends_with("roboters"));
+    let last = tokens.last().is_some_and(|t| {
+        t.kind == Kind::Word && t.text.len() > 3 && t.text.ends_with('s') && !t.text.ends_with("roboters")
+    });
     tokens.iter().any(plural) || last
 }
 
@@ -439,7 +456,11 @@ fn is_plural(tokens: &[Token]) -> bool {
 fn name_before(tokens: &[Token], at: usize, spoken: &[&Spoken]) -> Option<usize> {
     let name = |i: usize| {
         let token = &tokens[i];
-        let known = spoken.iter().any(|s| s.tags.longest_at(tokens, i).is_some() || s.numbers.contains_key(&token.text) || s.quantities.word(&token.text).is_some());
+        let known = spoken.iter().any(|s| {
+            s.tags.longest_at(tokens, i).is_some()
+                || s.numbers.contains_key(&token.text)
+                || s.quantities.word(&token.text).is_some()
+        });
         token.kind == Kind::Word && token.text.len() > 2 && !known
     };
     let from = (at.saturating_sub(2)..at).rev().take_while(|&i| name(i)).last()?;
@@ -450,7 +471,9 @@ fn name_before(tokens: &[Token], at: usize, spoken: &[&Spoken]) -> Option<usize>
 fn compound(tokens: &[Token], i: usize, spoken: &[&Spoken]) -> Option<Named> {
     let text = &tokens[i].text;
     let ends = spoken.iter().filter_map(|s| s.words.phrases.get(&Tag::Robot)).flatten();
-    let robot = ends.filter(|w| w.ends_with("er") || w.ends_with("ern")).any(|w| text.len() > w.len() + 2 && text.ends_with(w.as_str()));
+    let robot = ends
+        .filter(|w| w.ends_with("er") || w.ends_with("ern"))
+        .any(|w| text.len() > w.len() + 2 && text.ends_with(w.as_str()));
     robot.then(|| {
         let span = Span { start: i, end: i + 1 };
         Named { span, kind: None, place: false, plural: is_plural(&tokens[i..=i]), shared: false, name_from: Some(i) }
@@ -471,10 +494,13 @@ fn elliptic(tokens: &[Token], found: &[Named], spoken: &[&Spoken]) -> Vec<(Named
         for _ in 0..KINDS.len() {
             // over the number of the kind behind
             let numbered = at.checked_sub(1).filter(|&k| {
-                matches!(tokens[k].kind, Kind::Number(_)) || spoken.iter().any(|s| s.numbers.contains_key(&tokens[k].text))
+                matches!(tokens[k].kind, Kind::Number(_))
+                    || spoken.iter().any(|s| s.numbers.contains_key(&tokens[k].text))
             });
             let join = numbered.unwrap_or(at).checked_sub(1);
-            let Some(join) = join.filter(|&k| tokens[k].mark().is_some_and(|m| m == ',' || m == '/') || tagged(k, Tag::Joins)) else {
+            let Some(join) =
+                join.filter(|&k| tokens[k].mark().is_some_and(|m| m == ',' || m == '/') || tagged(k, Tag::Joins))
+            else {
                 break;
             };
             let Some((i, kind)) = join.checked_sub(1).and_then(|i| Some((i, kind_of(i)?))) else { break };

@@ -10,8 +10,8 @@ use super::words::{Spoken, Tag};
 /// Words before a room that a building's word is the end of, at most: "a private office".
 const MOST_BEFORE: usize = 3;
 
-/// Takes a word for a building that names a room for that room, where the prompt names nothing else: "a patient room",
-/// "a private office".
+/// Takes a word for a building that is the end of a word for a room for that room, where the prompt names nothing else: "a
+/// private office"; and words for people for no building.
 pub(super) fn unname(
     building: &mut Building,
     tokens: &[Token],
@@ -33,7 +33,8 @@ pub(super) fn unname(
     let same = building.building_type.is_none() && own(head.start).is_some();
     let Some(start) = from.or(same.then_some(head.start)) else { return };
     let here = Span { start, end: head.end };
-    let others = (0..tokens.len()).filter(|i| !here.contains(*i)).any(|i| vocabulary.names_room(tokens, i, numbers, spoken));
+    let others =
+        (0..tokens.len()).filter(|i| !here.contains(*i)).any(|i| vocabulary.names_room(tokens, i, numbers, spoken));
     let several = tokens[head.end - 1].text.ends_with('s') && !tokens[head.end - 1].text.ends_with("ss");
     let counted = numbers.iter().any(|n| n.span.end == start && n.value > 1.0);
     if !others && !several && !counted {

@@ -73,15 +73,16 @@ pub(super) struct Storeys {
     pub bare_basement: bool,
 }
 
-/// Returns the phrases that name storeys, in order; `is_room` tells whether a word for a room begins at a token.
+/// Returns the phrases that name storeys, in order; `room_end` tells where a word for a room ends that begins at a token.
 pub(super) fn phrases(
     tokens: &[Token],
     numbers: &[Number],
     spoken: &[&Spoken],
     head: Option<Span>,
     basements: bool,
-    is_room: impl Fn(usize) -> bool,
+    room_end: impl Fn(usize) -> Option<usize>,
 ) -> Vec<Phrase> {
+    let is_room = |i: usize| room_end(i).is_some();
     let mut out = Vec::new();
     let mut i = 0;
     while i < tokens.len() {
@@ -93,7 +94,9 @@ pub(super) fn phrases(
             continue;
         }
         let found = spoken.iter().filter_map(|s| s.levels.longest_at(tokens, i)).max_by_key(|f| f.0);
-        let below = spoken.iter().find_map(|s| s.tag_at(tokens, i, Tag::Basement)).filter(|_| basements);
+        // a wine cellar is a room
+        let inner = || (i.saturating_sub(3)..i).any(|k| room_end(k).is_some_and(|end| end > i));
+        let below = spoken.iter().find_map(|s| s.tag_at(tokens, i, Tag::Basement)).filter(|_| basements && !inner());
         match (found, below) {
             (Some((end, &at)), below) if below.is_none_or(|b| b < end || inside(tokens, i, spoken)) => {
                 out.push(Phrase { span: Span { start: i, end }, at, noun: false });
@@ -287,6 +290,24 @@ fn robot_on(text: &Text, phrase: usize) -> Option<Span> {
     (between.len() <= 3 && !between.into_iter().any(other) && !follows).then_some(*robot)
 }
 
+/// Returns how many of the rooms behind a basement are its own: "with a laundry and a gym, three bedrooms" has two.
+fn listed_with(
+    tokens: &[Token],
+    mentions: &[Mention],
+    rooms: &[usize],
+    tagged: impl Fn(usize, &[Tag]) -> bool,
+) -> usize {
+    let mut joined = false;
+    for (k, pair) in rooms.windows(2).enumerate() {
+        let mut gap = mentions[pair[0]].span.end..mentions[pair[1]].from;
+        if joined && gap.clone().any(|i| tokens[i].is_mark()) {
+            return k + 1;
+        }
+        joined |= gap.any(|i| tagged(i, &[Tag::Joins]));
+    }
+    rooms.len()
+}
+
 /// Returns true where the ground floor is the first floor.
 fn counts_from_one(phrases: &[Phrase], stated: Option<i32>, country: Option<&str>) -> bool {
     let ground = phrases.iter().any(|p| p.at == Where::Level(0));
@@ -352,7 +373,8 @@ fn attach(tokens: &[Token], mentions: &[Mention], phrases: &[Phrase], spoken: &[
             let article = phrase.span.start > 0 && tagged(phrase.span.start - 1, &[Tag::Articles]);
             let adjective =
                 article && !opens && after.first().is_some_and(|&m| mentions[m].span.start == phrase.span.end);
-            let taken = if adjective { &after[..1] } else { &after[..] };
+            let rooms_of = if phrase.noun { listed_with(tokens, mentions, &after, tagged) } else { after.len() };
+            let taken = if adjective { &after[..1] } else { &after[..rooms_of] };
             out.extend(taken.iter().map(|&m| (m, p)));
             headed = Some(p);
             continue;

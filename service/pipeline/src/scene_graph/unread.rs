@@ -93,7 +93,8 @@ fn measures(text: &Text) -> Vec<Span> {
             continue;
         }
         // "0.5 m/s", "5 km/h"
-        let rate = tokens.get(end).filter(|t| t.mark() == Some('/')).and_then(|_| text.tagged(end + 1, Tag::UnreadRates));
+        let rate =
+            tokens.get(end).filter(|t| t.mark() == Some('/')).and_then(|_| text.tagged(end + 1, Tag::UnreadRates));
         let per = text.tagged(end, Tag::Each).and_then(|each| text.tagged(each, Tag::UnreadRates));
         end = rate.or(per).unwrap_or(end);
         out.push(Span { start: number.span.start, end: tail(text, end) });
@@ -112,7 +113,10 @@ fn tail(text: &Text, end: usize) -> usize {
     let plain = |i: &usize| {
         let token = &text.tokens[*i];
         let mention = text.mentions.iter().any(|m| m.from <= *i && *i < m.span.end && m.room_type().is_some());
-        token.kind == Kind::Word && !text.is_taken(*i) && !mention && !parts.iter().any(|&t| text.tagged(*i, t).is_some())
+        token.kind == Kind::Word
+            && !text.is_taken(*i)
+            && !mention
+            && !parts.iter().any(|&t| text.tagged(*i, t).is_some())
     };
     (end..text.tokens.len().min(end + MOST_AFTER)).take_while(plain).last().map_or(end, |i| i + 1)
 }
@@ -149,9 +153,8 @@ pub(super) fn doors(tokens: &[Token], mentions: &mut [Mention], spoken: &[&Spoke
 /// Items of the list of rooms of which no word says anything to anybody: "a swimming pool", "helipad".
 fn items(text: &Text, known: &[Span]) -> Vec<Span> {
     let tokens = text.tokens;
-    let parts = |i: usize| {
-        tokens[i].is_mark() || [Tag::Starts, Tag::Joins].iter().any(|&tag| text.tagged(i, tag).is_some())
-    };
+    let parts =
+        |i: usize| tokens[i].is_mark() || [Tag::Starts, Tag::Joins].iter().any(|&tag| text.tagged(i, tag).is_some());
     let mut out = Vec::new();
     let mut start = text.list_from;
     while start < tokens.len() {

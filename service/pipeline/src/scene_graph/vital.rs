@@ -31,7 +31,12 @@ fn is_worked_at(program: &Program) -> bool {
 /// Returns true for a room that is the last of its kind, or one of the bedrooms that the people need.
 pub(super) fn is_vital(reading: &Reading, rooms: &[Planned], i: usize) -> bool {
     let id = &rooms[i].room_type;
-    let last = |class: &&Vec<String>| class.contains(id) && rooms.iter().filter(|r| class.contains(&r.room_type)).count() == 1;
+    let main = reading.program.rooms.first().is_some_and(|e| &e.room_type == id);
+    if main && rooms.iter().filter(|r| &r.room_type == id).count() == 1 {
+        return true;
+    }
+    let last =
+        |class: &&Vec<String>| class.contains(id) && rooms.iter().filter(|r| class.contains(&r.room_type)).count() == 1;
     classes(reading).iter().any(|class| last(&class))
         || sleeps_in(reading.domain, &rooms[i]) && bedrooms(reading, rooms) <= bedrooms_needed(reading)
 }
@@ -81,7 +86,9 @@ pub(super) fn complete<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned<'a
         let beds: u32 = rooms.iter().filter_map(|r| Some(sleeps(reading.domain, r.kind)?[1])).sum();
         if full && reading.residents.is_some_and(|n| n > beds) {
             let (people, have) = (reading.residents.unwrap_or(0), bedrooms(reading, rooms));
-            let message = format!("{people} people are to live there, and {have} bedrooms have {beds} beds; the rooms asked for were planned");
+            let message = format!(
+                "{people} people are to live there, and {have} bedrooms have {beds} beds; the rooms asked for were planned"
+            );
             reading.conflicts.push(note("too_few_bedrooms", message));
         }
     }
@@ -91,7 +98,9 @@ pub(super) fn complete<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned<'a
         let what = missing.join(", ");
         let message = match reading.total {
             Some(n) => format!("{n} rooms leave no place for what such a building needs: {what}"),
-            None => format!("the list of rooms has nothing of what such a building needs: {what}; the list was followed"),
+            None => {
+                format!("the list of rooms has nothing of what such a building needs: {what}; the list was followed")
+            }
         };
         reading.conflicts.push(note("vital_room_missing", message));
     }
@@ -100,14 +109,15 @@ pub(super) fn complete<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned<'a
 /// Adds a room, where the number of rooms is fixed in place of one that can be spared; returns false where none can.
 fn put<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>, room: Planned<'a>) -> bool {
     match (reading.total, reading.closed) {
-        (None, true) => false,
-        (None, false) => {
+        (None, true) if !reading.named || is_dwelling(reading.program) => false,
+        (None, _) => {
             rooms.push(room);
             true
         }
         (Some(_), _) => {
             let hosts = |i: usize| rooms[i].kind.access == Access::Host;
-            let spare = (0..rooms.len()).rev().find(|&i| !rooms[i].requested && !hosts(i) && !is_vital(reading, rooms, i));
+            let spare =
+                (0..rooms.len()).rev().find(|&i| !rooms[i].requested && !hosts(i) && !is_vital(reading, rooms, i));
             if let Some(i) = spare {
                 rooms[i] = room;
             }

@@ -122,11 +122,18 @@ pub(super) fn gather(text: &Text, conflicts: &mut Vec<Note>) -> Wishes {
         out.per_host.extend(guest.map(|guest| PerHost { guest, host }));
     }
     let per_host = |m: &usize| open.iter().any(|o| o.0 == *m || o.1 == Some(*m));
-    by_type.values_mut().for_each(|list| list.retain(|m| !per_host(m)));
+    // "every exam room has a sink" says nothing of how many there are
+    let told = |m: &usize| {
+        let mention = &text.mentions[*m];
+        let related = text.said.subjects.contains(m) || text.said.objects.contains(m);
+        text.said.every.contains(m) && !mention.plural && !related && !text.said.each.iter().any(|e| e.1 == *m)
+    };
+    by_type.values_mut().for_each(|list| list.retain(|m| !per_host(m) && !told(m)));
+    let silent: Vec<String> = by_type.iter().filter(|(_, list)| list.is_empty()).map(|(id, _)| id.clone()).collect();
     for id in order {
         let none = Vec::new();
         let list = by_type.get(&id).unwrap_or(&none);
-        if list.is_empty() && out.per_host.iter().any(|p| p.guest == id || p.host.as_ref() == Some(&id)) {
+        if silent.contains(&id) {
             let short = text.short_forms.iter().any(|f| f.rooms.contains_key(&id));
             if !short {
                 continue;
@@ -173,7 +180,8 @@ fn open_hosts(text: &Text, by_type: &BTreeMap<String, Vec<usize>>) -> Vec<(usize
         let all = by_type.get(id)?;
         let uncounted = |m: &usize| {
             let mention = &text.mentions[*m];
-            mention.count.is_none() && !mention.plural && text.said.each.iter().any(|e| e.1 == *m)
+            let every = text.said.every.contains(m);
+            mention.count.is_none() && (every || !mention.plural) && text.said.each.iter().any(|e| e.1 == *m)
         };
         (all.iter().all(uncounted) && !short(id)).then_some((guest, Some(host)))
     };
@@ -351,7 +359,7 @@ fn room_area(text: &Text, mention: &Mention) -> Option<f64> {
                             || (t.mark() == Some(',') && text.prompt.as_bytes().get(t.start) == Some(&b'('))
                     })
             };
-            mention.span.start >= text.list_from.min(text.tokens.len())
+            (area.sides || mention.span.start >= text.list_from.min(text.tokens.len()))
                 && (area.span.start >= mention.span.end && short(&after)
                     || area.span.end <= mention.from && before.is_empty())
         })
