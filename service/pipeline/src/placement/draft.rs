@@ -1,8 +1,17 @@
 //! Drafts of a room: the best choice for each unit in turn, or another one for one of the first (limited discrepancy
 //! search).
 
+use d3dgen_model::domain::{Mount, Shape};
+
+use super::geom::Box2;
 use super::search::Outcome;
 use super::state::{Placed, State};
+use super::unit::Part;
+
+/// What a draft loses for each dock with something on its free floor, beyond what the place of the dock loses, and how far
+/// into that floor something reaches that only touches it, mm.
+const DOCK_TAKEN: f64 = 8.0;
+const GRAZE: i32 = 10;
 
 /// Departures tried in turn, one at a time.
 pub(super) const DEPARTURES: [Departure; 3] = [Departure::of(0, 1), Departure::of(1, 1), Departure::of(0, 2)];
@@ -52,7 +61,19 @@ impl<'a> Draft<'a, '_> {
     /// Returns how good the draft is, lower is better: what is missing, then looks and free floor.
     pub fn cost(&self, empty: usize) -> (u32, f64) {
         let free = 3.0 * self.state.free_area as f64 / empty.max(1) as f64;
-        (self.outcome.required_missing, -self.outcome.score - free)
+        (self.outcome.required_missing, DOCK_TAKEN * f64::from(self.docks_taken()) - self.outcome.score - free)
+    }
+
+    /// Returns how many docks of robots have something on their free floor.
+    pub fn docks_taken(&self) -> u32 {
+        let state = &self.state;
+        let stands = |p: &Placed, part: &Part, floor: &Box2| {
+            let solid = p.solid(part);
+            let own = part.object.shape == Shape::Dock || part.mount != Mount::Floor || solid.is_flat();
+            !own && solid.rect.overlaps(&floor.grown(-GRAZE))
+        };
+        let taken = |floor: &&Box2| state.placed.iter().any(|p| p.unit.parts.iter().any(|part| stands(p, part, floor)));
+        if state.has_robots { state.docks.iter().filter(taken).count() as u32 } else { 0 }
     }
 }
 

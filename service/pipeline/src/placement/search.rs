@@ -25,10 +25,10 @@ const WEIGHED: usize = 4;
 /// Share of the units that rows of smaller or closer ones would hold from which those that keep more rules are taken.
 const WORTH: f64 = 0.75;
 /// Furnishing lines that a room should not go without, and how many more drafts are made for them where the room is small,
-/// in cells (15 m^2), so that drafts take little time.
+/// in cells (19 m^2), so that drafts take little time.
 const EARLY: usize = 4;
 const MORE_DRAFTS: usize = 3;
-const SMALL: usize = 6_000;
+const SMALL: usize = 7_600;
 /// Other beginnings of the search where floor is closed off.
 const MORE_BEGINNINGS: u64 = 3;
 /// Free floor from which two departures are enough, in cells (100 m^2): halls take long and look alike.
@@ -222,6 +222,7 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
         for (n, departure) in DEPARTURES.into_iter().chain(RESCUES).enumerate() {
             // where everything has found its place there is less to gain
             let looks = match (empty > LARGE, best.outcome.missing.is_empty()) {
+                _ if best.docks_taken() > 0 => DEPARTURES.len() + RESCUES.len(),
                 (_, true) => 1,
                 (true, false) => 2,
                 (false, false) if empty < SMALL && self.lacks_something_early(&best) => DEPARTURES.len() + MORE_DRAFTS,
