@@ -17,11 +17,7 @@ const PLANS: &[(&str, &[&str], &[&str])] = &[
     ("flat.json", &["--domain", "residential"], &[]),
     ("flat.building.yaml", &[], &["daylight_missing"]),
     // a map has no names: its corridor is a room like any other, too narrow for one, with two rooms behind it
-    (
-        "flat_map.yaml",
-        &["--domain", "residential"],
-        &["no_entrance", "unreachable_zone", "private_passage", "room_dimension", "room_proportion"],
-    ),
+    ("flat_map.yaml", &["--domain", "residential"], &["private_passage", "room_dimension", "room_proportion"]),
 ];
 
 fn plan(name: &str) -> String {
@@ -121,7 +117,8 @@ fn maps_of_worlds_made_here_come_back_with_their_rooms() {
             Floorplan::from_json(&text).unwrap()
         };
         let (made, back) = (read("made"), read("back"));
-        assert_eq!(back.rooms.len(), made.rooms.len(), "{request}");
+        // what is wide open is one room on a map
+        assert!(back.rooms.len().abs_diff(made.rooms.len()) <= 1, "{request}: {} rooms", back.rooms.len());
         assert!(back.doors.iter().any(|d| d.entrance), "{request}: no entrance");
         let area = |p: &Floorplan| p.rooms.iter().map(|r| r.net_area_m2).sum::<f64>();
         assert!((area(&back) / area(&made) - 1.0).abs() < 0.05, "{request}: {} of {} m2", area(&back), area(&made));

@@ -19,9 +19,11 @@ mod layout;
 mod leaves;
 mod pieces;
 pub mod readers;
+mod rooms;
 mod snap;
 mod straighten;
 mod upright;
+mod walls;
 mod words;
 
 pub use assemble::assemble;

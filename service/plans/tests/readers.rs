@@ -51,7 +51,8 @@ fn the_same_flat_is_the_same_in_every_format() {
         ("flat.svg", true, 2, true),
         ("flat.dxf", true, 2, true),
         ("flat.building.yaml", true, 0, true),
-        ("flat_map.yaml", false, 0, false),
+        // its entrance is a notch in the outer wall
+        ("flat_map.yaml", false, 0, true),
     ] {
         let (plan, _) = flat(name, &thin());
         assert_eq!(plan.rooms.len(), 3, "{name}");
@@ -269,6 +270,35 @@ fn furniture_on_a_map_is_no_wall() {
         assert_eq!(joined.iter().filter(|n| **n == 1).count(), 1, "{:?}", layout.openings);
     }
     assert!(full.notes.iter().any(|n| n.code == "traced" && n.message.contains("approximate")));
+}
+
+#[test]
+fn a_map_at_an_angle_is_turned() {
+    let (width, height) = (260_usize, 200_usize);
+    let boxes = [[20, 20, 240, 24], [20, 176, 240, 180], [20, 20, 24, 180], [236, 20, 240, 180], [128, 24, 131, 80], [128, 100, 131, 176]];
+    // the same walls turned by nine degrees about the middle
+    let (sin, cos) = 9.0_f64.to_radians().sin_cos();
+    let mut gray = vec![0_u8; width * height];
+    for y in 0..height {
+        for x in 0..width {
+            let (dx, dy) = (x as f64 - 130.0, y as f64 - 100.0);
+            let (u, v) = (130.0 + dx * cos + dy * sin, 100.0 - dx * sin + dy * cos);
+            let inside = (20.0..240.0).contains(&u) && (20.0..180.0).contains(&v);
+            let wall = boxes.iter().any(|b| {
+                (b[0] as f64..b[2] as f64).contains(&u) && (b[1] as f64..b[3] as f64).contains(&v)
+            });
+            gray[(height - 1 - y) * width + x] = if inside && !wall { 254 } else { 0 };
+        }
+    }
+    let bytes = [format!("P5\n{width} {height}\n255\n").into_bytes(), gray].concat();
+    let yaml = "image: map.pgm\nresolution: 0.05\norigin: [0, 0, 0]\nfree_thresh: 0.25\n";
+    let source = Source { name: "map.yaml", bytes: yaml.as_bytes(), companion: &|_| Some(bytes.clone()) };
+    let Ok(Plan::Drawing(drawing)) = read(&source, &thin()) else { panic!("a drawing") };
+    let layout = lay_out(drawing, &thin()).expect("a plan");
+    let areas: Vec<f64> = layout.rooms.iter().map(|r| r.net_polygon.area()).collect();
+    assert!(areas.len() == 2 && areas.iter().all(|a| (a - 39.6).abs() < 2.0), "{areas:?}");
+    assert_eq!(layout.openings.iter().filter(|o| o.rooms.len() == 2).count(), 1);
+    assert!(layout.notes.iter().any(|n| n.code == "turned"));
 }
 
 #[test]

@@ -72,20 +72,28 @@ fn read(source: &Source, options: &Options) -> Result<Plan, Error> {
         return Err(Error::broken(FORMAT, "origin", "is turned; rooms are traced of maps with a yaw of 0"));
     }
     let found = trace(Cells { width, height, free, per_meter: 1.0 / resolution });
-    let meters = |x: f64, y: f64| Point::new(origin.x + x * resolution, origin.y + y * resolution);
+    // rooms are found on a map that is turned upright, and drawn where they are on the map as it is
+    let meters = |p: Point| {
+        let (x, y) = (p.x / resolution, p.y / resolution);
+        let (x, y) = found.turn.map_or((x, y), |t| t.back((x, y)));
+        Point::new(origin.x + x * resolution, origin.y + y * resolution)
+    };
+    let upright = |x: f64, y: f64| Point::new(x * resolution, y * resolution);
     let mut drawing = Drawing::default();
     for (room, mut loops) in found.rooms.into_iter().enumerate() {
-        let corners = |ring: Vec<(i64, i64)>| ring.into_iter().map(|(x, y)| meters(x as f64, y as f64)).collect();
-        let holes = loops.split_off(1).into_iter().map(corners).collect();
+        let corners =
+            |ring: Vec<(i64, i64)>| ring.into_iter().map(|(x, y)| upright(x as f64, y as f64)).collect::<Vec<Point>>();
+        let placed = |ring: Vec<Point>| ring.into_iter().map(meters).collect::<Vec<Point>>();
+        let holes = loops.split_off(1).into_iter().map(|hole| placed(corners(hole))).collect();
         let place = format!("room_{}", room + 1);
-        let outline = settle(loops.pop().map(corners).unwrap_or_default(), &place);
+        let outline = placed(settle(loops.pop().map(corners).unwrap_or_default(), &place));
         drawing.rooms.push(DrawnRoom { holes, traced: true, ..DrawnRoom::new(String::new(), outline, place) });
     }
     if drawing.rooms.is_empty() {
         return Err(Error::broken(FORMAT, map.image, "has no free floor as large as a room"));
     }
     for gap in &found.gaps {
-        let [from, to] = gap.ends.map(|(x, y)| meters(x, y));
+        let [from, to] = gap.ends.map(|(x, y)| meters(upright(x, y)));
         let kind = if from.distance(to) <= DOOR_M { OpeningKind::Door } else { OpeningKind::Passage };
         let name = |room: Option<usize>| room.map_or("outdoors".to_owned(), |r| format!("room_{}", r + 1));
         let place = format!("between {} and {}", name(gap.rooms[0]), name(gap.rooms[1]));

@@ -11,6 +11,8 @@ pub(super) const DOOR_M: f64 = 1.75;
 const WIDEST_M: f64 = 4.5;
 /// Thickest wall, m; ends of walls beside doors are up to twice as thick as most walls of the map.
 const WALL_M: f64 = 0.45;
+/// Shortest wall that ends at a gap, m; one of the two at a door may be shorter.
+const STUB_M: f64 = 0.1;
 /// Longest side of something that stands free and is no part of the walls, m.
 const FURNITURE_M: f64 = 2.5;
 /// The same for solid blocks; and the widest solid block of any length (a row of shelves).
@@ -23,15 +25,38 @@ const RECESS_M2: f64 = 3.0;
 const LEAST_ROOM_M2: f64 = 1.0;
 /// Parts of a room narrower than this are no floor, m.
 const NOISE_M: f64 = 0.3;
-/// Deepest notch in an outer wall that is the place of a door, m.
+/// Shallowest and deepest notch in an outer wall that is the place of a door, m.
+const SHALLOW_M: f64 = 0.1;
 const NOTCH_M: f64 = 0.4;
 /// Most of a wall that is notches; more are the gaps between things that stand there.
 const NOTCHED: f64 = 0.4;
 /// An unparted hole in a room up to this size is something that stands there, m^2.
 const HOLE_M2: f64 = 1.0;
 
+/// Most cells by which the direction of walls is found; the least turn, degrees; and how much clearer walls have to be by it.
+const MOST_POINTS: usize = 20_000;
+const LEAST_TURN: f64 = 0.3;
+const SHARPER: f64 = 1.1;
+
 /// A corner in cells.
 pub(super) type At = (i64, i64);
+
+/// How a map was turned before rooms were looked for: about one point, onto another, in cells.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Turn {
+    pub angle_rad: f64,
+    from: (f64, f64),
+    to: (f64, f64),
+}
+
+impl Turn {
+    /// Returns where a place of the turned map lies on the map as it was.
+    pub fn back(&self, (x, y): (f64, f64)) -> (f64, f64) {
+        let (sin, cos) = self.angle_rad.sin_cos();
+        let (x, y) = (x - self.to.0, y - self.to.1);
+        (self.from.0 + x * cos - y * sin, self.from.1 + x * sin + y * cos)
+    }
+}
 
 /// What was found.
 #[derive(Debug, Default)]
@@ -42,6 +67,8 @@ pub(super) struct Found {
     pub gaps: Vec<Gap>,
     /// Things that were taken away.
     pub things: usize,
+    /// How the map was turned, when its walls do not run along its rows and columns; everything is on the turned map.
+    pub turn: Option<Turn>,
 }
 
 /// A door or open passage.
@@ -141,7 +168,8 @@ impl Map {
 }
 
 /// Finds the rooms of a map.
-pub(super) fn trace(mut map: Map) -> Found {
+pub(super) fn trace(map: Map) -> Found {
+    let (mut map, turn) = upright(map);
     let things = take_away(&mut map);
     let openings = openings(&map);
     let (labels, openings) = part(&map, openings);
@@ -155,7 +183,7 @@ pub(super) fn trace(mut map: Map) -> Found {
         *free &= was.is_none() || is.is_some();
     }
     let shapes = smooth(&map, &fill(&map, &wide, count));
-    let mut found = Found { things, ..Found::default() };
+    let mut found = Found { things, turn, ..Found::default() };
     let mut number: Vec<Option<usize>> = vec![None; count];
     for (room, loops) in loops(&map, &shapes, count).into_iter().enumerate() {
         if Some(room) != outdoors && !loops.is_empty() {
@@ -178,6 +206,66 @@ pub(super) fn trace(mut map: Map) -> Found {
     found
 }
 
+/// Returns a map whose walls run along its rows and columns, and how it was turned for that.
+fn upright(map: Map) -> (Map, Option<Turn>) {
+    let Some(angle_rad) = main_angle(&map) else { return (map, None) };
+    let (w, h) = (map.width as f64, map.height as f64);
+    let (sin, cos) = angle_rad.sin_cos();
+    let (width, height) = (w * cos.abs() + h * sin.abs(), w * sin.abs() + h * cos.abs());
+    let turn = Turn { angle_rad, from: (w / 2.0, h / 2.0), to: (width.ceil() / 2.0, height.ceil() / 2.0) };
+    let (width, height) = (width.ceil() as usize, height.ceil() as usize);
+    let is_free = |x: f64, y: f64| {
+        let (i, j) = (x.floor(), y.floor());
+        i >= 0.0 && j >= 0.0 && i < w && j < h && map.free[j as usize * map.width + i as usize]
+    };
+    // a wall one cell thick has to stay whole: a cell is free when it is so all around its middle
+    let sure = |i: usize, j: usize| {
+        [(0.3, 0.3), (0.7, 0.3), (0.3, 0.7), (0.7, 0.7)].into_iter().all(|(dx, dy)| {
+            let (x, y) = turn.back((i as f64 + dx, j as f64 + dy));
+            is_free(x, y)
+        })
+    };
+    let free = (0..width * height).map(|k| sure(k % width, k / width)).collect();
+    (Map { width, height, free, per_meter: map.per_meter }, Some(turn))
+}
+
+/// Returns the direction of most walls, rad, when it is not that of rows and columns: the one in which their cells fall
+/// into the fewest lines.
+fn main_angle(map: &Map) -> Option<f64> {
+    let edge = |k: &usize| !map.free[*k] && map.around(*k, false).any(|n| map.free[n]);
+    let edges: Vec<usize> = (0..map.free.len()).filter(edge).collect();
+    let step = edges.len() / MOST_POINTS + 1;
+    let points: Vec<(f64, f64)> =
+        edges.iter().step_by(step).map(|k| ((k % map.width) as f64, (k / map.width) as f64)).collect();
+    let reach = map.width + map.height + 2;
+    let mut counts = vec![0_u32; 2 * reach];
+    let mut sharp = |degrees: f64| -> u64 {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        let mut sum = 0;
+        for across in [false, true] {
+            counts.fill(0);
+            for (x, y) in &points {
+                let v = if across { y * cos - x * sin } else { x * cos + y * sin };
+                counts[(v.round() + reach as f64).clamp(0.0, (2 * reach - 1) as f64) as usize] += 1;
+            }
+            sum += counts.iter().map(|n| u64::from(*n) * u64::from(*n)).sum::<u64>();
+        }
+        sum
+    };
+    let flat = sharp(0.0);
+    let mut best = (flat, 0.0);
+    let mut hear = |degrees: f64, best: &mut (u64, f64)| {
+        let found = sharp(degrees);
+        if found > best.0 {
+            *best = (found, degrees);
+        }
+    };
+    (-44..=45).for_each(|d| hear(f64::from(d), &mut best));
+    let middle = best.1;
+    (-20..=20).for_each(|d| hear(middle + f64::from(d) / 20.0, &mut best));
+    (best.1.abs() >= LEAST_TURN && best.0 as f64 > SHARPER * flat as f64).then(|| best.1.to_radians())
+}
+
 /// Frees what stands about: groups of blocked cells that are no walls; returns how many.
 fn take_away(map: &mut Map) -> usize {
     let (short, block) = (map.cells_of(FURNITURE_M), map.cells_of(BLOCK_M));
@@ -195,7 +283,7 @@ fn take_away(map: &mut Map) -> usize {
         let small = long <= short && !(narrow <= thin && long >= map.cells_of(0.6) && between_walls(map, (x0, x1, y0, y1)));
         let standing = solid && narrow > thin && (long <= block || narrow <= row);
         if small || standing {
-            count += usize::from(group.len() > 1);
+            count += usize::from(group.len() >= map.area_of(0.04));
             group.into_iter().for_each(|k| map.free[k] = true);
         }
     }
@@ -283,15 +371,17 @@ fn is_gap(map: &Map, along_x: bool, [low, high]: [usize; 2], length: usize, thic
     let (forward, up) = if along_x { ((1, 0), (0, 1)) } else { ((0, 1), (1, 0)) };
     let back = |s: (i64, i64)| (-s.0, -s.1);
     let thick_at = |k: usize| map.run(k, up, thickest + 2) + map.run(k, back(up), thickest + 2) - 1;
+    let shortest = map.cells_of(STUB_M);
     let is_end = |k: usize, outward: (i64, i64)| {
         let thick = thick_at(k);
-        // a stub between two doors of a corridor is longer than thick, and no end of a wall across it, even where such a wall
-        // begins behind it: it is thinner
-        let step = thick as i64 * if along_x { outward.0 } else { outward.1 * map.width as i64 };
-        let behind = k.checked_add_signed(step as isize).filter(|b| *b < map.free.len());
+        let step = if along_x { outward.0 } else { outward.1 * map.width as i64 } as isize;
+        let behind = |n: usize| k.checked_add_signed(step * n as isize).filter(|b| *b < map.free.len() && !map.free[*b]);
+        // noise on a wall is no end of one; a stub between two doors of a corridor is longer than thick, and no end of a wall
+        // across it, even where such a wall begins behind it: it is thinner
         thick <= thickest
             && map.run(k, outward, thick + 1) > thick
-            && behind.is_none_or(|b| map.free[b] || thick_at(b) >= thick)
+            && (1..shortest).all(|n| behind(n).is_some_and(|b| thick_at(b) <= thickest))
+            && behind(thick).is_none_or(|b| thick_at(b) >= thick)
     };
     let ends = [is_end(low, back(forward)), is_end(high, forward)];
     if wide { ends[0] && ends[1] } else { ends[0] || ends[1] }
@@ -523,7 +613,7 @@ fn notches(
     outdoors: Option<usize>,
 ) -> Vec<(usize, Opening)> {
     let lengths = (map.cells_of(0.7) as i64)..=(map.cells_of(3.0) as i64);
-    let deep = map.cells_of(NOTCH_M) as i64;
+    let depths = (map.cells_of(SHALLOW_M) as i64)..=(map.cells_of(NOTCH_M) as i64);
     let mut out = Vec::new();
     for (room, outlines) in loops(map, shapes, count).iter().enumerate().filter(|(room, _)| Some(*room) != outdoors) {
         let Some(ring) = outlines.first() else { continue };
@@ -537,7 +627,7 @@ fn notches(
         for i in 0..n {
             let depth = length(i + n - 1).min(length(i + 1));
             let tab = left(i) && left(i + 1) && !left(i + n - 1) && !left(i + 2);
-            if !tab || depth > deep || !lengths.contains(&length(i)) {
+            if !tab || !depths.contains(&depth) || !lengths.contains(&length(i)) {
                 continue;
             }
             let (a, b) = (at(i), at(i + 1));
