@@ -16,7 +16,8 @@ use d3dgen_model::world::World;
 
 use common::{body, gap, most, worlds};
 
-const WARDS: [&str; 3] = ["hospital ward with 8 rooms", "hospital ward with 10 rooms in Germany", "hospital with 6 rooms"];
+const WARDS: [&str; 3] =
+    ["hospital ward with 8 rooms", "hospital ward with 10 rooms in Germany", "hospital with 6 rooms"];
 const HOMES: [&str; 3] = ["flat with 5 rooms", "house with 8 rooms", "flat with three bedrooms in Vienna"];
 
 fn in_room<'w>(world: &'w World, room: &'w PlanRoom) -> impl Iterator<Item = &'w Placement> {
@@ -73,8 +74,10 @@ fn what_hangs_beside_a_toilet_has_a_wall_behind_it() {
                 let half = rail.size_m[1] / 2.0;
                 let (x, y) = (rail.pose.x - half * cos, rail.pose.y - half * sin);
                 held.push(corners.iter().zip(corners.iter().cycle().skip(1)).any(|(a, b)| {
-                    let on_x = (a.x - b.x).abs() < 1e-6 && (a.x - x).abs() < 0.01 && (a.y.min(b.y)..a.y.max(b.y)).contains(&y);
-                    let on_y = (a.y - b.y).abs() < 1e-6 && (a.y - y).abs() < 0.01 && (a.x.min(b.x)..a.x.max(b.x)).contains(&x);
+                    let on_x =
+                        (a.x - b.x).abs() < 1e-6 && (a.x - x).abs() < 0.01 && (a.y.min(b.y)..a.y.max(b.y)).contains(&y);
+                    let on_y =
+                        (a.y - b.y).abs() < 1e-6 && (a.y - y).abs() < 0.01 && (a.x.min(b.x)..a.x.max(b.x)).contains(&x);
                     on_x || on_y
                 }));
             }
@@ -176,10 +179,18 @@ fn homes_have_armchairs_at_the_table_wide_wardrobes_and_fridges_in_the_kitchen()
 #[test]
 fn rooms_with_a_ceiling_have_a_lamp() {
     let mut lit = Vec::new();
-    for prompt in ["hospital ward with 8 rooms", "outpatient clinic with 8 rooms", "hotel with 9 rooms", "supermarket", "warehouse with 6 rooms"] {
+    for prompt in [
+        "hospital ward with 8 rooms",
+        "outpatient clinic with 8 rooms",
+        "hotel with 9 rooms",
+        "supermarket",
+        "warehouse with 6 rooms",
+    ] {
         for world in worlds(prompt, 2) {
             for room in &world.floorplan.rooms {
-                let lamp = |p: &Placement| p.mount == Mount::Ceiling && (p.object.contains("lamp") || p.object.contains("light"));
+                let lamp = |p: &Placement| {
+                    p.mount == Mount::Ceiling && (p.object.contains("lamp") || p.object.contains("light"))
+                };
                 lit.push(in_room(&world, room).any(lamp));
             }
         }
