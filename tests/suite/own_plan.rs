@@ -106,7 +106,9 @@ fn a_plan_that_was_made_here_passes_through_with_all_its_levels() {
 #[test]
 fn maps_of_worlds_made_here_come_back_with_their_rooms() {
     let home = tempfile::tempdir().unwrap();
-    for (request, seed) in [("a house with 3 bedrooms", "2"), ("office with 10 rooms", "3"), ("ward with 6 patient rooms", "1")] {
+    for (request, seed) in
+        [("a house with 3 bedrooms", "2"), ("office with 10 rooms", "3"), ("ward with 6 patient rooms", "1")]
+    {
         run_well(home.path(), &["generate", request, "--seed", seed, "--no-png", "--out", "made"]);
         let map = files(&home.path().join("made")).into_keys().find(|k| k.ends_with("map.yaml")).unwrap();
         let done = run(home.path(), &["furnish", &format!("made/{map}"), "--no-png", "--out", "back"]);

@@ -138,8 +138,10 @@ pub(crate) fn note(code: &str, message: impl Into<String>) -> Note {
 impl Drawing {
     /// Returns every point of the drawing.
     pub(crate) fn points_mut(&mut self) -> impl Iterator<Item = &mut Point> {
-        let rooms =
-            self.rooms.iter_mut().flat_map(|r| r.corners.iter_mut().chain(r.holes.iter_mut().flat_map(|h| h.iter_mut())));
+        let rooms = self
+            .rooms
+            .iter_mut()
+            .flat_map(|r| r.corners.iter_mut().chain(r.holes.iter_mut().flat_map(|h| h.iter_mut())));
         let floors = self.floors.iter_mut().flat_map(|f| f.corners.iter_mut());
         let walls = self.walls.iter_mut().flat_map(|w| w.line.iter_mut());
         let openings = self

@@ -225,9 +225,15 @@ fn soft(floors: &[FloorRing], hard: &[Line]) -> Vec<Line> {
 
 /// Returns a line whose ends reach the next wall across, where one is near.
 fn drawn_out(vertical: bool, at: i64, from: i64, to: i64, hard: &[Line]) -> Line {
-    let crossing = hard.iter().filter(|l| is_vertical(l) != vertical).map(span).filter(|s| s.1 - 50 <= at && at <= s.2 + 50);
+    let crossing =
+        hard.iter().filter(|l| is_vertical(l) != vertical).map(span).filter(|s| s.1 - 50 <= at && at <= s.2 + 50);
     let near = |end: i64, low: i64, high: i64| {
-        crossing.clone().map(|s| s.0).filter(|v| (low..=high).contains(v)).min_by_key(|v| (v - end).abs()).unwrap_or(end)
+        crossing
+            .clone()
+            .map(|s| s.0)
+            .filter(|v| (low..=high).contains(v))
+            .min_by_key(|v| (v - end).abs())
+            .unwrap_or(end)
     };
     line_of(vertical, at, near(from, from - ALONG_WALL, from), near(to, to, to + ALONG_WALL))
 }
@@ -318,7 +324,8 @@ impl Grid {
             let bare = 2 * covered > total && (floored[face] as f64) < FLOORED * areas[face] as f64;
             if bare {
                 keep[face] = false;
-                let message = format!("the space at {} is enclosed by walls and has no floor; it was left out", place(face));
+                let message =
+                    format!("the space at {} is enclosed by walls and has no floor; it was left out", place(face));
                 notes.push(note("no_floor", message));
             } else if around[face].1 as f64 > OPEN_SHARE * around[face].0 as f64 {
                 keep[face] = false;
@@ -372,7 +379,8 @@ impl Grid {
         let columns = self.cells.columns();
         for vertical in [true, false] {
             let (across, along) = if vertical { (columns, self.cells.rows()) } else { (self.cells.rows(), columns) };
-            let (lines, marks) = if vertical { (&self.cells.xs, &self.cells.ys) } else { (&self.cells.ys, &self.cells.xs) };
+            let (lines, marks) =
+                if vertical { (&self.cells.xs, &self.cells.ys) } else { (&self.cells.ys, &self.cells.xs) };
             for a in 1..across {
                 for b in 0..along {
                     let (k, before) = if vertical {

@@ -49,7 +49,8 @@ fn meet(openings: &mut Vec<DrawnOpening>) {
                 let Some([other, c, d]) = o.arc else { return false };
                 let wide = hinge.distance(other);
                 let both = hinge.distance(a) + other.distance(c);
-                (wide - both).abs() <= ALIKE * both && [a, b].iter().any(|p| [c, d].iter().any(|q| p.distance(*q) <= AT_HINGE_M))
+                (wide - both).abs() <= ALIKE * both
+                    && [a, b].iter().any(|p| [c, d].iter().any(|q| p.distance(*q) <= AT_HINGE_M))
             };
             openings.iter().skip(at + 1).position(joins).map(|k| (at + 1 + k, hinge))
         });
@@ -161,15 +162,19 @@ mod tests {
             assert_eq!(openings.len(), 1);
             assert!(openings[0].arc.is_some_and(|a| a[0].distance(hinge) < 0.01), "{:?}", openings[0].arc);
         }
-        let mut boxed = vec![door([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.0, 0.0)].map(|p| Point::new(p.0, p.1)).to_vec())];
+        let mut boxed = vec![door(
+            [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.0, 0.0)].map(|p| Point::new(p.0, p.1)).to_vec(),
+        )];
         pair(&mut boxed);
         assert_eq!(boxed[0].arc, None);
     }
 
     #[test]
     fn two_leaves_close_the_line_of_their_hinges() {
-        let left = [vec![Point::new(0.0, 0.0)], quarter(Point::new(0.0, 0.0), 0.8, 0.0).into_iter().rev().collect()].concat();
-        let right = quarter(Point::new(1.6, 0.0), 0.8, std::f64::consts::FRAC_PI_2).into_iter().rev().collect::<Vec<_>>();
+        let left =
+            [vec![Point::new(0.0, 0.0)], quarter(Point::new(0.0, 0.0), 0.8, 0.0).into_iter().rev().collect()].concat();
+        let right =
+            quarter(Point::new(1.6, 0.0), 0.8, std::f64::consts::FRAC_PI_2).into_iter().rev().collect::<Vec<_>>();
         let mut openings = vec![door([left, right, vec![Point::new(1.6, 0.0)]].concat())];
         pair(&mut openings);
         assert_eq!(openings[0].points, [Point::new(0.0, 0.0), Point::new(1.6, 0.0)]);

@@ -65,14 +65,17 @@ pub(crate) fn rooms_and_floor(drawing: &mut Drawing, options: &Options) -> Resul
                 continue;
             }
             let place = format!("hole in {}", room.place);
-            let (hole, off) = clean::upright_ring(&clean::ring(&hole, &place)?, options.rectify || room.traced, &place)?;
+            let (hole, off) =
+                clean::upright_ring(&clean::ring(&hole, &place)?, options.rectify || room.traced, &place)?;
             stray = stray.max(off);
             holes.push(hole);
         }
         upright_rooms.push((room, ring, holes));
     }
     if columns > 0 {
-        let message = format!("{columns} holes in rooms are smaller than {COLUMN_M2} m2; they were taken for columns and left out");
+        let message = format!(
+            "{columns} holes in rooms are smaller than {COLUMN_M2} m2; they were taken for columns and left out"
+        );
         drawing.notes.push(note("columns_left_out", message));
     }
     tell_of_steps(drawing, stray);
@@ -119,7 +122,8 @@ fn tell_of_straight(notes: &mut Vec<Note>, done: Option<Done>) -> f64 {
 /// Straightens outlines that lean a little; returns the farthest that a corner moved, m.
 fn straighten_rooms(drawing: &mut Drawing) -> f64 {
     let closed = |points: &Vec<Point>| Chain { points: points.clone(), closed: true, door: false };
-    let rings = |d: &Drawing| d.rooms.iter().flat_map(|r| std::iter::once(&r.corners).chain(&r.holes)).map(closed).collect();
+    let rings =
+        |d: &Drawing| d.rooms.iter().flat_map(|r| std::iter::once(&r.corners).chain(&r.holes)).map(closed).collect();
     let mut chains: Vec<Chain> = rings(drawing);
     let done = straighten(&mut chains, WELD_OUTLINE_M);
     if done.is_some() {
@@ -134,7 +138,8 @@ fn straighten_walls(drawing: &mut Drawing) {
     let open = |points: Vec<Point>, door: bool| Chain { points, closed: false, door };
     let is_line = |o: &DrawnOpening| o.arc.is_none() && o.points.len() == 2;
     let walls = drawing.walls.iter().map(|w| open(w.line.to_vec(), false));
-    let doors = drawing.openings.iter().filter(|o| is_line(o)).map(|o| open(o.points.clone(), o.kind != OpeningKind::Window));
+    let doors =
+        drawing.openings.iter().filter(|o| is_line(o)).map(|o| open(o.points.clone(), o.kind != OpeningKind::Window));
     let floors = drawing.floors.iter().map(|f| Chain { points: f.corners.clone(), closed: true, door: false });
     let mut chains: Vec<Chain> = walls.chain(doors).chain(floors).collect();
     let done = straighten(&mut chains, WELD_WALL_M);

@@ -66,8 +66,7 @@ pub(crate) fn straighten(chains: &mut [Chain], weld: f64) -> Option<Done> {
             lean = lean.max(slope);
         }
     }
-    let moved: Vec<Point> =
-        (0..nodes.points.len()).map(|i| Point::new(axes[1].value(i), axes[0].value(i))).collect();
+    let moved: Vec<Point> = (0..nodes.points.len()).map(|i| Point::new(axes[1].value(i), axes[0].value(i))).collect();
     let shift = nodes.points.iter().zip(&moved).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
     for (chain, run) in chains.iter_mut().zip(runs) {
         chain.points = run.into_iter().map(|i| moved[i]).collect();

@@ -44,7 +44,11 @@ pub(crate) struct Outlines {
 ///
 /// # Errors
 /// `Refused` for a drawn room that its walls leave no floor of.
-pub(crate) fn outlines(drawn: &mut Vec<DrawnRoom>, walls: &mut Walls, notes: &mut Vec<Note>) -> Result<Outlines, Error> {
+pub(crate) fn outlines(
+    drawn: &mut Vec<DrawnRoom>,
+    walls: &mut Walls,
+    notes: &mut Vec<Note>,
+) -> Result<Outlines, Error> {
     let mut origin: Vec<usize> = (0..drawn.len()).collect();
     for round in 0..=ROUNDS {
         let stretches = walls.stretches();
@@ -58,7 +62,8 @@ pub(crate) fn outlines(drawn: &mut Vec<DrawnRoom>, walls: &mut Walls, notes: &mu
             if by_room[i].is_empty() {
                 continue;
             }
-            let found = outline(i, &by_room[i]).ok_or(Fault::NoRing).and_then(|r| net(i, &r, &by_room[i]).map(|n| (r, n)));
+            let found =
+                outline(i, &by_room[i]).ok_or(Fault::NoRing).and_then(|r| net(i, &r, &by_room[i]).map(|n| (r, n)));
             let fault = match found {
                 Ok((ring, net)) => {
                     rooms.push((i, ring, net));

@@ -45,7 +45,8 @@ pub(crate) fn role(text: &str) -> Option<Role> {
 pub(crate) fn is_waypoint(text: &str) -> bool {
     let folded = fold(text);
     let is = |list: &str, t: &str| {
-        let known = |w: &String| t.strip_prefix(w.as_str()).is_some_and(|rest| rest.bytes().all(|b| b.is_ascii_digit()));
+        let known =
+            |w: &String| t.strip_prefix(w.as_str()).is_some_and(|rest| rest.bytes().all(|b| b.is_ascii_digit()));
         WORDS.get(list).is_some_and(|words| words.iter().any(known))
     };
     let tokens = folded.split(|c: char| !c.is_alphanumeric()).filter(|t| !t.is_empty());

@@ -162,7 +162,8 @@ fn walls_that_lean_are_straightened_and_floors_part_rooms() {
     assert_eq!(names, ["meeting room", "lounge", "room_3"], "names of things for robots are no names of rooms");
     let id = |name: &str| plan.rooms.iter().find(|r| r.name == name).map(|r| r.room_id.clone()).expect("a room");
     let (meeting, lounge, hall) = (id("meeting room"), id("lounge"), id("room_3"));
-    let joins = |a: &String, b: &String| plan.doors.iter().filter(|d| d.room_ids.contains(a) && d.room_ids.contains(b)).count();
+    let joins =
+        |a: &String, b: &String| plan.doors.iter().filter(|d| d.room_ids.contains(a) && d.room_ids.contains(b)).count();
     assert_eq!((joins(&meeting, &hall), joins(&lounge, &hall), joins(&meeting, &lounge)), (1, 1, 0));
     assert_eq!(plan.doors.iter().filter(|d| d.entrance).count(), 1);
     assert!((plan.rooms.iter().map(|r| r.net_area_m2).sum::<f64>() - 57.0).abs() < 4.0, "{:?}", plan.rooms);
@@ -275,7 +276,14 @@ fn furniture_on_a_map_is_no_wall() {
 #[test]
 fn a_map_at_an_angle_is_turned() {
     let (width, height) = (260_usize, 200_usize);
-    let boxes = [[20, 20, 240, 24], [20, 176, 240, 180], [20, 20, 24, 180], [236, 20, 240, 180], [128, 24, 131, 80], [128, 100, 131, 176]];
+    let boxes = [
+        [20, 20, 240, 24],
+        [20, 176, 240, 180],
+        [20, 20, 24, 180],
+        [236, 20, 240, 180],
+        [128, 24, 131, 80],
+        [128, 100, 131, 176],
+    ];
     // the same walls turned by nine degrees about the middle
     let (sin, cos) = 9.0_f64.to_radians().sin_cos();
     let mut gray = vec![0_u8; width * height];
@@ -284,9 +292,9 @@ fn a_map_at_an_angle_is_turned() {
             let (dx, dy) = (x as f64 - 130.0, y as f64 - 100.0);
             let (u, v) = (130.0 + dx * cos + dy * sin, 100.0 - dx * sin + dy * cos);
             let inside = (20.0..240.0).contains(&u) && (20.0..180.0).contains(&v);
-            let wall = boxes.iter().any(|b| {
-                (b[0] as f64..b[2] as f64).contains(&u) && (b[1] as f64..b[3] as f64).contains(&v)
-            });
+            let wall = boxes
+                .iter()
+                .any(|b| (b[0] as f64..b[2] as f64).contains(&u) && (b[1] as f64..b[3] as f64).contains(&v));
             gray[(height - 1 - y) * width + x] = if inside && !wall { 254 } else { 0 };
         }
     }

@@ -245,7 +245,8 @@ fn guess<'a>(labels: &[Label], titles: &[String], registry: &'a Registry) -> Res
     let best: Vec<usize> = (0..labels.len())
         .map(|k| found.iter().filter_map(|list| list[k].map(|f| f.1)).max().unwrap_or(0).max(1))
         .collect();
-    let rare = |k: usize| RARE / found.iter().filter(|list| list[k].is_some_and(|f| f.1 == best[k])).count().max(1) as f64;
+    let rare =
+        |k: usize| RARE / found.iter().filter(|list| list[k].is_some_and(|f| f.1 == best[k])).count().max(1) as f64;
     let titled: Vec<bool> = all.iter().map(|names| titles.iter().any(|t| is_title(names.domain, t))).collect();
     let score = |d: usize| {
         let known = (0..labels.len()).filter_map(|k| found[d][k].map(|f| (k, f.1 as f64 / best[k] as f64)));
@@ -268,7 +269,9 @@ fn guess<'a>(labels: &[Label], titles: &[String], registry: &'a Registry) -> Res
     let id = &all[chosen].domain.id;
     let names = format!("knows {known} of {} names of rooms", labels.len());
     let why = match (titled[chosen], known) {
-        (true, _) => format!("domain {id} {names}, and a title of the plan names it; it was taken, choose another with --domain"),
+        (true, _) => {
+            format!("domain {id} {names}, and a title of the plan names it; it was taken, choose another with --domain")
+        }
         (false, 0) => format!("no domain knows a name of a room; {id} was taken, choose another with --domain"),
         (false, _) => format!("domain {id} {names} and was taken; choose another with --domain"),
     };

@@ -231,7 +231,9 @@ impl<'a> Block<'a> {
     /// Returns true for a block with anything in it that makes rooms or walls: doors and windows are blocks of lines too.
     fn is_plan(&self, blocks: &Blocks, depth: usize) -> bool {
         let rooms = |e: &Entity| match e.kind {
-            "INSERT" => e.text(2).and_then(|n| blocks.get(n)).is_some_and(|b| depth > 0 && b.is_plan(blocks, depth - 1)),
+            "INSERT" => {
+                e.text(2).and_then(|n| blocks.get(n)).is_some_and(|b| depth > 0 && b.is_plan(blocks, depth - 1))
+            }
             "LWPOLYLINE" | "POLYLINE" | "LINE" => matches!(role(e.layer()), Some(Role::Wall | Role::Room)),
             _ => false,
         };

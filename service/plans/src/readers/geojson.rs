@@ -155,8 +155,7 @@ fn add(drawing: &mut Drawing, geometry: &Shape, properties: &JsonObject, place: 
                     let ring = points(rings.first().map_or(&[], Vec::as_slice))?;
                     let holes = rings.iter().skip(1).map(|r| points(r)).collect::<Result<Vec<_>, _>>()?;
                     polygon(drawing, ring, said, &opening, as_opening, || {
-                        let mut room =
-                            DrawnRoom { holes, ..room(&name, &kinds, properties, level.clone(), &place) };
+                        let mut room = DrawnRoom { holes, ..room(&name, &kinds, properties, level.clone(), &place) };
                         if parts.len() > 1 {
                             room.label = format!("{} {}", room.label, k + 1).trim().to_owned();
                         }

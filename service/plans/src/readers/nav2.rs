@@ -211,7 +211,6 @@ fn settle(ring: Vec<Point>, place: &str) -> Vec<Point> {
     if clean::ring(&settled, place).is_ok() { settled } else { ring }
 }
 
-
 /// Removes sides of no length and the corners that are then straight, until none is left.
 fn tidy(mut ring: Vec<Point>) -> Vec<Point> {
     loop {

@@ -95,7 +95,11 @@ fn read(source: &Source, options: &Options) -> Result<Plan, Error> {
 }
 
 /// Returns the element that a `<use>` draws, with where it draws it.
-fn used_by<'a, 'i>(node: &Node<'a, 'i>, scope: Scope, by_id: &BTreeMap<&str, Node<'a, 'i>>) -> Option<(Node<'a, 'i>, Scope)> {
+fn used_by<'a, 'i>(
+    node: &Node<'a, 'i>,
+    scope: Scope,
+    by_id: &BTreeMap<&str, Node<'a, 'i>>,
+) -> Option<(Node<'a, 'i>, Scope)> {
     let href = node.attribute("href").or_else(|| node.attribute((XLINK, "href")))?;
     let target = *by_id.get(href.strip_prefix('#')?)?;
     let number = |n: &Node, name: &str| n.attribute(name).and_then(|t| Length::from_str(t).ok()).map(|l| l.number);

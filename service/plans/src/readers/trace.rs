@@ -280,7 +280,8 @@ fn take_away(map: &mut Map) -> usize {
         let (w, h) = (x1 - x0 + 1, y1 - y0 + 1);
         let solid = group.len() as f64 > 0.6 * (w * h) as f64;
         let (long, narrow) = (w.max(h), w.min(h));
-        let small = long <= short && !(narrow <= thin && long >= map.cells_of(0.6) && between_walls(map, (x0, x1, y0, y1)));
+        let small =
+            long <= short && !(narrow <= thin && long >= map.cells_of(0.6) && between_walls(map, (x0, x1, y0, y1)));
         let standing = solid && narrow > thin && (long <= block || narrow <= row);
         if small || standing {
             count += usize::from(group.len() >= map.area_of(0.04));
@@ -346,7 +347,10 @@ fn openings(map: &Map) -> Vec<Opening> {
                 while i < along && map.free[at(line, i)] {
                     i += 1;
                 }
-                if start > 0 && i < along && is_gap(map, along_x, [at(line, start - 1), at(line, i)], i - start, thickest) {
+                if start > 0
+                    && i < along
+                    && is_gap(map, along_x, [at(line, start - 1), at(line, i)], i - start, thickest)
+                {
                     (start..i).for_each(|k| marked[at(line, k)] = true);
                 }
             }
@@ -375,7 +379,8 @@ fn is_gap(map: &Map, along_x: bool, [low, high]: [usize; 2], length: usize, thic
     let is_end = |k: usize, outward: (i64, i64)| {
         let thick = thick_at(k);
         let step = if along_x { outward.0 } else { outward.1 * map.width as i64 } as isize;
-        let behind = |n: usize| k.checked_add_signed(step * n as isize).filter(|b| *b < map.free.len() && !map.free[*b]);
+        let behind =
+            |n: usize| k.checked_add_signed(step * n as isize).filter(|b| *b < map.free.len() && !map.free[*b]);
         // noise on a wall is no end of one; a stub between two doors of a corridor is longer than thick, and no end of a wall
         // across it, even where such a wall begins behind it: it is thinner
         thick <= thickest
@@ -482,7 +487,9 @@ fn fill(map: &Map, labels: &[Option<usize>], count: usize) -> Vec<Option<usize>>
                     && i - k > 1
                     && i - k - 1 <= longest
                 {
-                    (k + 1..i).filter(|m| far(map, labels, at(line, *m), room, wall)).for_each(|m| out[at(line, m)] = Some(room));
+                    (k + 1..i)
+                        .filter(|m| far(map, labels, at(line, *m), room, wall))
+                        .for_each(|m| out[at(line, m)] = Some(room));
                 }
                 last = Some((i, room));
             }
@@ -606,12 +613,7 @@ fn smooth(map: &Map, filled: &[Option<usize>]) -> Vec<Option<usize>> {
 }
 
 /// Returns the shallow notches in the outlines of rooms that lead out of the building, with their rooms: its doors.
-fn notches(
-    map: &Map,
-    shapes: &[Option<usize>],
-    count: usize,
-    outdoors: Option<usize>,
-) -> Vec<(usize, Opening)> {
+fn notches(map: &Map, shapes: &[Option<usize>], count: usize, outdoors: Option<usize>) -> Vec<(usize, Opening)> {
     let lengths = (map.cells_of(0.7) as i64)..=(map.cells_of(3.0) as i64);
     let depths = (map.cells_of(SHALLOW_M) as i64)..=(map.cells_of(NOTCH_M) as i64);
     let mut out = Vec::new();
@@ -653,8 +655,11 @@ fn is_outermost(ring: &[At], (a, b): (At, At), longest: &i64) -> bool {
     let (least, most) = ring.iter().fold((i64::MAX, i64::MIN), |s, p| (s.0.min(across(*p)), s.1.max(across(*p))));
     let side = ring.iter().map(|p| along(*p)).max().unwrap_or(0) - ring.iter().map(|p| along(*p)).min().unwrap_or(0);
     let n = ring.len();
-    let on_line = (0..n).map(|i| (ring[i], ring[(i + 1) % n])).filter(|(p, q)| across(*p) == across(a) && across(*q) == across(a));
-    let total: i64 = on_line.map(|(p, q)| (along(p) - along(q)).abs()).map(|l| if l > *longest { side } else { l }).sum();
+    let on_line = (0..n)
+        .map(|i| (ring[i], ring[(i + 1) % n]))
+        .filter(|(p, q)| across(*p) == across(a) && across(*q) == across(a));
+    let total: i64 =
+        on_line.map(|(p, q)| (along(p) - along(q)).abs()).map(|l| if l > *longest { side } else { l }).sum();
     let single = total == (along(a) - along(b)).abs();
     (across(a) == least || across(a) == most) && (single || (total as f64) < NOTCHED * side as f64)
 }
@@ -664,11 +669,8 @@ fn leads_out(map: &Map, filled: &[Option<usize>], opening: &Opening, room: usize
     let (x0, x1, y0, y1) = map.bounds(&opening.cells);
     let reach = map.cells_of(1.0);
     let grow = |a: usize, b: usize, most: usize| a.saturating_sub(reach)..(b + 1 + reach).min(most);
-    let (xs, ys) = if opening.along_x {
-        (x0..x1 + 1, grow(y0, y1, map.height))
-    } else {
-        (grow(x0, x1, map.width), y0..y1 + 1)
-    };
+    let (xs, ys) =
+        if opening.along_x { (x0..x1 + 1, grow(y0, y1, map.height)) } else { (grow(x0, x1, map.width), y0..y1 + 1) };
     ys.into_iter().all(|j| xs.clone().all(|i| filled[j * map.width + i].is_none_or(|other| other == room)))
 }
 
