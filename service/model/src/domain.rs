@@ -19,7 +19,8 @@ pub use furnishing::{Arrangement, FacingRule, Furnishing, Group, Member, Relatio
 pub use layouts::{LayoutSwap, Layouts};
 pub use object::{Mount, ObjectType, Shape, Stock, StockedAsset};
 pub use program::{
-    Adjacency, AdjacencyRelation, Circulation, Elevator, Occupants, Program, ProgramRoom, Scheme, Stairs, Storeys, Units,
+    Adjacency, AdjacencyRelation, Circulation, Elevator, Occupants, Program, ProgramRoom, Scheme, Stairs, Storeys,
+    Units,
 };
 pub use room_type::{Access, AreaRange, Daylight, Materials, Privacy, RobotUse, RoomType, Zone};
 

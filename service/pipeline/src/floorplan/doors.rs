@@ -223,10 +223,12 @@ impl Site<'_> {
 
     /// Places exits at the ends of corridors that are far from all others: nobody should have to run back through a wing.
     fn lay_exits(&self, laid: &mut Laid) {
-        let Some(spine) = self.brief.spine.filter(|_| self.brief.second_exit && !self.brief.upper && !self.brief.hub) else {
+        let Some(spine) = self.brief.spine.filter(|_| self.brief.second_exit && !self.brief.upper && !self.brief.hub)
+        else {
             return;
         };
-        let is_end = |s: &&Stretch| s.only_room() == Some(spine) && meters(s.len()) <= END_WALL * self.brief.spine_width;
+        let is_end =
+            |s: &&Stretch| s.only_room() == Some(spine) && meters(s.len()) <= END_WALL * self.brief.spine_width;
         let middle = |s: &Stretch| s.point((meters(s.from) + meters(s.to)) / 2.0);
         let mut ends: Vec<&Stretch> = self.stretches.iter().filter(is_end).collect();
         for _ in 0..ends.len() {
