@@ -20,6 +20,8 @@ const MOST_ROBOTS: u32 = 4;
 const DEPTHS_M: [f64; 2] = [1.0, 1.6];
 /// The least area, m: a pallet of 1.2 m by 0.8 m (EN 13698-1).
 const PALLET_M: [f64; 2] = [1.2, 0.8];
+/// Floor from which on a room for visitors has a place for goods too, m^2.
+const LARGE_ROOM_M2: f64 = 25.0;
 /// Floor before a door that stays free, m.
 const BEFORE_DOOR_M: f64 = 1.0;
 /// Play of a robot that passes, m.
@@ -74,8 +76,8 @@ fn of_unit(floor: &Floor, graph: &SceneGraph, rois: &[Roi], (unit, robots): (Opt
     None
 }
 
-/// Returns how well a room suits, 0 best: circulation, then what lies beside it; last rooms to live and work in; `None`
-/// for wet ones and those to sleep in.
+/// Returns how well a room suits, 0 best: circulation, then stores and other rooms of the staff beside it; last rooms to live
+/// in and large ones for visitors; `None` for wet ones, those to sleep in, and counters, which people must get around.
 fn rank(floor: &Floor, room: &Room) -> Option<u8> {
     if room.is_for(RobotUse::KeepOut) || floor.plan.link_of(&room.plan.room_id).is_some() {
         return None;
@@ -88,10 +90,11 @@ fn rank(floor: &Floor, room: &Room) -> Option<u8> {
     let beside = doors.any(|d| d.entrance || d.room_ids.iter().any(circulation));
     match room.kind.zone {
         _ if !beside || room.kind.wet => None,
-        Zone::Public => Some(1),
-        Zone::Service => Some(2),
-        Zone::Staff => Some(3),
-        Zone::Day => Some(4),
+        Zone::Service => Some(1),
+        Zone::Staff if !room.kind.open_front => Some(2),
+        Zone::Day => Some(3),
+        Zone::Public if room.plan.net_area_m2 >= LARGE_ROOM_M2 => Some(4),
+        Zone::Staff | Zone::Public => None,
         Zone::Circulation => Some(0),
         Zone::Night | Zone::Outdoor => None,
     }
@@ -103,8 +106,9 @@ struct Yard {
     sums: Vec<u32>,
     nx: usize,
     ny: usize,
-    /// Clear width that must be left between the doors, m.
+    /// Clear width that must be left between the doors, and from them to where robots go, m.
     passage: f64,
+    goals: Vec<Rect>,
 }
 
 impl Yard {
@@ -119,15 +123,15 @@ impl Yard {
         let used = |r: &&Roi| {
             &r.room_id == id && matches!(r.kind, RoiKind::ServiceZone | RoiKind::ChargingBuffer | RoiKind::StagingArea)
         };
-        let used = rois.iter().filter(used).map(|r| r.polygon.bounds());
+        let goals: Vec<Rect> = rois.iter().filter(used).map(|r| r.polygon.bounds()).collect();
         let (i, j) = room.corner;
-        for r in lanes.chain(fronts).chain(rugs).chain(used) {
+        for r in lanes.chain(fronts).chain(rugs).chain(goals.iter().copied()) {
             let (i0, i1, j0, j1) = floor.occupancy.frame.span(&r);
             map.fill(i0 - i, i1 - i, j0 - j, j1 - j, false);
         }
         let width = if room.plan.circulation { floor.domain.circulation.width_m } else { 0.0 };
         let passage = width.max(2.0 * floor.radius + PASSING_M);
-        Self { sums: sums(&map), nx: map.nx(), ny: map.ny(), passage }
+        Self { sums: sums(&map), nx: map.nx(), ny: map.ny(), passage, goals }
     }
 
     /// Returns the place in a room for an area of this size, m, that is tucked away most.
@@ -182,17 +186,16 @@ impl Yard {
         at(i1, j1) + at(i0, j0) - at(i0, j1) - at(i1, j0)
     }
 
-    /// Returns true when people and robots still pass between the doors of the room.
+    /// Returns true when people and robots still pass between the doors of the room, and to docks and service zones in it.
     fn leaves_way(&self, floor: &Floor, room: &Room, rect: &Rect) -> bool {
         let doors: Vec<&Door> = floor.plan.doors_of(&room.plan.room_id).collect();
-        // the floor before a single door is free
-        if doors.len() < 2 {
-            return true;
-        }
         let standing = room.objects.iter().map(|(p, _)| *p).filter(|p| stops_robot(p));
         let mut taken: Vec<Rect> = standing.map(|p| p.footprint().bounds()).collect();
         taken.push(*rect);
-        FreeSpace::new(&room.plan.net_polygon, &taken).passes(&doors, self.passage)
+        let space = FreeSpace::new(&room.plan.net_polygon, &taken);
+        let leads = |door: &&Door| self.goals.iter().all(|goal| space.leads(door, goal, self.passage));
+        // the floor before a single door is free
+        (doors.len() < 2 || space.passes(&doors, self.passage)) && doors.first().is_none_or(leads)
     }
 }
 

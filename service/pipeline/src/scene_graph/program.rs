@@ -325,11 +325,19 @@ impl<'r, 'a> Build<'r, 'a> {
         }
         self.push(&entry.room_type, None);
         for with in &entry.with {
-            if self.rooms.len() < limit && self.may_grow(with) {
+            if self.rooms.len() < limit && self.may_grow(with) && !self.waits_for_host(with) {
                 self.push(with, None);
             }
         }
         true
+    }
+
+    /// Returns true when there are enough rooms of a type for all that they may be entered from: the prompt names en suites
+    /// before their rooms come.
+    fn waits_for_host(&self, room_type: &str) -> bool {
+        let kind = self.reading.domain.room_type_or_generic(room_type);
+        let hosts = self.rooms.iter().filter(|r| kind.hosts.contains(&r.room_type)).count();
+        kind.access == Access::Host && self.count(room_type) >= hosts
     }
 
     /// Returns the program in the order in which this building needs it.
