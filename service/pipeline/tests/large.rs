@@ -1,5 +1,6 @@
 //! Large buildings as their users know them: units with what they need at hand, forms that prompts ask for, ways out.
 
+#[allow(dead_code, reason = "bodies are for tests of furniture")]
 mod common;
 
 use std::collections::BTreeMap;
