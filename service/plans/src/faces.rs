@@ -381,7 +381,7 @@ impl Grid {
             let (across, along) = if vertical { (columns, self.cells.rows()) } else { (self.cells.rows(), columns) };
             let (lines, marks) =
                 if vertical { (&self.cells.xs, &self.cells.ys) } else { (&self.cells.ys, &self.cells.xs) };
-            for a in 1..across {
+            for (a, at) in lines.iter().copied().enumerate().take(across).skip(1) {
                 for b in 0..along {
                     let (k, before) = if vertical {
                         (b * columns + a, b * columns + a - 1)
@@ -391,7 +391,7 @@ impl Grid {
                     let (low, high) = (self.cells.owner[before], self.cells.owner[k]);
                     if low != high {
                         let wall = if vertical { self.west[k] } else { self.south[k] };
-                        each(low, high, !wall, (vertical, lines[a], marks[b], marks[b + 1]), marks[b + 1] - marks[b]);
+                        each(low, high, !wall, (vertical, at, marks[b], marks[b + 1]), marks[b + 1] - marks[b]);
                     }
                 }
             }
@@ -400,7 +400,7 @@ impl Grid {
 
     /// Returns the sides between two rooms on which no wall stands.
     fn open_sides(&self) -> Vec<Line> {
-        let mut runs: BTreeMap<(u32, u32, bool, i64), Vec<(i64, i64)>> = BTreeMap::new();
+        let mut runs: BTreeMap<_, Vec<(i64, i64)>> = BTreeMap::new();
         self.borders(|low, high, is_soft, (vertical, at, from, to), _| {
             if let (Some(a), Some(b), true) = (low, high, is_soft) {
                 let list = runs.entry((a.min(b), a.max(b), vertical, at)).or_default();

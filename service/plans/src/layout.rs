@@ -125,20 +125,17 @@ pub fn lay_out(mut drawing: Drawing, options: &Options) -> Result<Layout, Error>
 
 /// Marks rooms without a name that join many others: long ones, or those that join more.
 fn mark_hubs(rooms: &mut [LaidRoom], openings: &[LaidOpening]) {
-    for room in 0..rooms.len() {
-        if !rooms[room].label.is_empty() || rooms[room].kind.is_some() {
-            continue;
-        }
+    for (room, laid) in rooms.iter_mut().enumerate().filter(|(_, r)| r.label.is_empty() && r.kind.is_none()) {
         let walkable = openings.iter().filter(|o| o.kind != OpeningKind::Window && o.rooms.contains(&room));
         let mut joined: Vec<usize> = walkable.flat_map(|o| o.rooms.iter().copied()).filter(|r| *r != room).collect();
         joined.sort_unstable();
         joined.dedup();
-        let bounds = rooms[room].net_polygon.bounds();
+        let bounds = laid.net_polygon.bounds();
         let (long, short) = (bounds.width().max(bounds.height()), bounds.width().min(bounds.height()));
         // an angled corridor fills little of the box around it
-        let bent = rooms[room].net_polygon.area() < 0.5 * bounds.width() * bounds.height();
+        let bent = laid.net_polygon.area() < 0.5 * bounds.width() * bounds.height();
         let slender = long >= HUB_LONG * short || bent;
-        rooms[room].hub = joined.len() > HUB_ROOMS || joined.len() == HUB_ROOMS && slender;
+        laid.hub = joined.len() > HUB_ROOMS || joined.len() == HUB_ROOMS && slender;
     }
     // where one comes in through another room, that one is circulation too
     let leads_out = |room: usize| openings.iter().any(|o| o.kind != OpeningKind::Window && o.rooms == [room]);
@@ -146,12 +143,12 @@ fn mark_hubs(rooms: &mut [LaidRoom], openings: &[LaidOpening]) {
     if (0..rooms.len()).any(|r| hubs[r] && leads_out(r)) {
         return;
     }
-    for room in 0..rooms.len() {
-        let unnamed = rooms[room].label.is_empty() && rooms[room].kind.is_none();
+    for (room, laid) in rooms.iter_mut().enumerate() {
+        let unnamed = laid.label.is_empty() && laid.kind.is_none();
         let at_hub = openings.iter().any(|o| {
             o.kind != OpeningKind::Window && o.rooms.contains(&room) && o.rooms.iter().any(|r| *r != room && hubs[*r])
         });
-        rooms[room].hub |= unnamed && at_hub && leads_out(room);
+        laid.hub |= unnamed && at_hub && leads_out(room);
     }
 }
 

@@ -221,7 +221,7 @@ impl Choice<'_> {
         let of = gap.len() == 1 && matches!(tokens[gap.start].text.as_str(), "of" | "a" | "de");
         let open = rooms.count.is_none() || rooms.count == Some(1);
         let comma = gap.clone().any(|i| tokens[i].is_mark());
-        !gap.is_empty() && (each && (starts || of) || (starts || of) && open && !comma || of)
+        !gap.is_empty() && (of || starts && (each || open && !comma))
     }
 
     /// "10 beds in five rooms", "16 Betten, verteilt auf 8 Zimmer"

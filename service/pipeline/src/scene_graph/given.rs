@@ -240,8 +240,7 @@ pub fn understand(
 /// Where nothing is known it is the domain of the most kinds of buildings.
 fn guess<'a>(labels: &[Label], titles: &[String], registry: &'a Registry) -> Result<(Names<'a>, String), Error> {
     let all: Vec<Names> = registry.iter().map(|p| Names::new(p.domain())).collect();
-    let found: Vec<Vec<Option<(&str, usize, &str)>>> =
-        all.iter().map(|names| labels.iter().map(|l| names.room_type(l)).collect()).collect();
+    let found: Vec<Vec<_>> = all.iter().map(|names| labels.iter().map(|l| names.room_type(l)).collect()).collect();
     let best: Vec<usize> = (0..labels.len())
         .map(|k| found.iter().filter_map(|list| list[k].map(|f| f.1)).max().unwrap_or(0).max(1))
         .collect();

@@ -135,12 +135,12 @@ fn add_level(
     let things: BTreeSet<String> = level.doors.iter().filter_map(title).chain(lifts.iter().cloned()).collect();
     for (v, p) in level.vertices.iter().zip(&points) {
         let Some(text) = v.get(3).and_then(Value::as_str).map(str::trim).filter(|t| !t.is_empty()) else { continue };
-        let set = |key: &&str| match parameter(v, key) {
+        let set = |key: &str| match parameter(v, key) {
             Some(Value::Bool(on)) => *on,
             Some(Value::String(s)) => !s.is_empty(),
             _ => false,
         };
-        if !FOR_ROBOTS.iter().any(|key| set(&key)) && !things.contains(&text.to_lowercase()) && !is_waypoint(text) {
+        if !FOR_ROBOTS.iter().any(|key| set(key)) && !things.contains(&text.to_lowercase()) && !is_waypoint(text) {
             drawing.labels.push(DrawnLabel { text: text.replace('_', " "), at: at(*p), level: here.clone() });
         }
     }

@@ -727,8 +727,7 @@ fn around(map: &Map, cells: &[usize]) -> Vec<Vec<At>> {
     let mut out: Vec<Vec<At>> = Vec::new();
     while let Some((&start, _)) = next.iter().next() {
         let (mut ring, mut here, mut from) = (Vec::new(), start, None::<At>);
-        loop {
-            let Some(ways) = next.get_mut(&here) else { break };
+        while let Some(ways) = next.get_mut(&here) {
             // where two outlines touch, the left turn keeps them apart
             let pick = match from {
                 Some(f) if ways.len() > 1 => {
