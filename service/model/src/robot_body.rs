@@ -60,7 +60,7 @@ impl RobotBody {
         radius.map(|r| (r * 1000.0 - 1e-6).ceil() / 1000.0)
     }
 
-    /// Returns width and length of a body so long that its way is looked for with its outline, m: [`LONG`] times as long as
+    /// Returns width and length of a body so long that its way is looked for with its outline, m: `LONG` times as long as
     /// wide, where no turning radius is given.
     pub fn long_m(&self) -> Option<[f64; 2]> {
         let (width, length) = self.width_m.zip(self.length_m).filter(|_| self.turning_radius_m.is_none())?;
