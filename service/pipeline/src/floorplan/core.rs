@@ -9,6 +9,7 @@ use d3dgen_model::domain::{Domain, Stairs};
 use d3dgen_model::scene_graph::{Robot, SceneGraph};
 use d3dgen_model::storeys::LinkKind;
 
+use super::doors::DOUBLE_FROM_M;
 use super::lattice::{Cellbox, Frame, INNER_HALF_M, OUTER_HALF_M, up};
 use super::spec::Brief;
 
@@ -107,15 +108,12 @@ impl Core {
     }
 }
 
-/// Doors of this clear width have two leaves, m.
-const TWO_LEAVES_M: f64 = 1.25;
-
 /// Where doors are as wide as robots need, one leaf would sweep beyond the landing of the stairs: those have two.
 fn two_leaves(brief: &mut Brief, stairs: &[usize], landing_m: f64) {
     for &room in stairs {
         let width = &mut brief.rooms[room].door_width;
         if Brief::opening(*width) > landing_m {
-            *width = width.max(TWO_LEAVES_M);
+            *width = width.max(DOUBLE_FROM_M);
         }
     }
 }

@@ -18,7 +18,7 @@ use super::windows::LEAST_WALL_M;
 /// Clear height of doors, m.
 const DOOR_HEIGHT_M: f64 = 2.1;
 /// Clear width from which a door gets two leaves, m.
-const DOUBLE_FROM_M: f64 = 1.25;
+pub(super) const DOUBLE_FROM_M: f64 = 1.25;
 /// A leaf whose square takes more than this share of the room slides instead.
 const SLIDING_SHARE: f64 = 0.22;
 /// Widest open passage, m, and the piece of wall left on each side of it.
