@@ -5,8 +5,9 @@ use d3dgen_model::domain::{Mount, Shape};
 
 use super::docks::is_in_the_way;
 use super::geom::Box2;
-use super::seats::{beside_beds, is_seat, shuts_in_staff, sits_with_staff};
+use super::seats::{WayIn, beside_beds, is_seat, sits_with_staff, ways_to_staff};
 use super::state::{Placed, State};
+use super::unit::{Part, Unit};
 
 /// Floor between people at a desk or table and a table that is none of theirs, and a sofa with legs before it, mm.
 const APART: i32 = 700;
@@ -25,55 +26,137 @@ const FROM_COUNTER: i32 = 800;
 /// Floor between a chair at a table and the swing of a door, mm.
 const FROM_SWING: i32 = 250;
 
-/// Returns true for a place where something that a room can do without would be in the way of what stands there.
-pub(super) fn disturbs(state: &State, p: &Placed, robot: i32) -> bool {
-    // clothes have to go somewhere, a plant has not
-    let stores = matches!(p.unit.anchor().object.shape, Shape::Cabinet | Shape::Shelf);
-    // a lone seat beside the staff is better than none for those who wait
-    let lone_seat = p.unit.parts.len() == 1 && is_seat(p.unit.anchor().object.shape);
-    is_in_the_way(state, p, robot)
-        || !lone_seat && sits_with_staff(state, p)
-        || sits_at_counter(state, p)
-        || crowds_desks(state, p)
-        || has_machine_beside_sofa(state, p)
-        || shuts_in_staff(state, p)
-        || sits_in_swing(state, p)
-        || stands_behind_seats(state, p)
-        || !stores && beside_beds(state, p) > 0.0
+/// What stands in a room as one unit minds it that the room can do without: looked up once for all places of the unit.
+pub(super) struct Neighbors<'f, 'a, 's> {
+    state: &'f State<'a, 's>,
+    robot: i32,
+    /// What the unit keeps away from, and how far, mm.
+    aloof: Vec<(Box2, i32)>,
+    /// Floor that it stays off.
+    kept: Vec<Box2>,
+    /// Ways past counters and desks that it leaves open.
+    staffed: Vec<WayIn>,
+    /// True for one seat alone, which is better beside the staff than nowhere.
+    lone_seat: bool,
+    /// True for a table with seats.
+    seats_table: bool,
+    /// True for what clothes and files go into: they have to go somewhere, a plant has not.
+    stores: bool,
 }
 
-/// Returns true for seats of those who wait right beside a counter at which others are served.
-fn sits_at_counter(state: &State, p: &Placed) -> bool {
-    let seat = p.unit.anchor().object.shape;
-    if !is_seat(seat) && seat != Shape::Sofa {
-        return false;
+impl<'f, 'a, 's> Neighbors<'f, 'a, 's> {
+    pub fn new(state: &'f State<'a, 's>, unit: &Unit, robot: i32) -> Self {
+        let anchor = unit.anchor().object.shape;
+        let lone_seat = unit.parts.len() == 1 && is_seat(anchor);
+        let mut out = Self {
+            state,
+            robot,
+            aloof: Vec::new(),
+            kept: Vec::new(),
+            staffed: ways_to_staff(state, lone_seat),
+            lone_seat,
+            seats_table: is_table(anchor) && has_seats(unit),
+            stores: matches!(anchor, Shape::Cabinet | Shape::Shelf),
+        };
+        out.note_counters(anchor);
+        out.note_desks(unit);
+        out.note_machines(unit);
+        out.note_seats(unit);
+        out
     }
-    let own = p.world(&p.unit.bbox);
-    let counters = state.placed.iter().filter(|o| o.unit.anchor().object.shape == Shape::Counter);
-    let served = |o: &&Placed| o.unit.parts[1..].iter().any(|part| is_seat(part.object.shape));
-    counters.filter(served).any(|o| o.solid(o.unit.anchor()).rect.gap(&own) < FROM_COUNTER)
+
+    /// Returns true for a place where the unit would be in the way of what stands there.
+    pub fn are_disturbed_by(&self, p: &Placed) -> bool {
+        let own = p.world(&p.unit.bbox);
+        let stands = p.support.is_none();
+        is_in_the_way(self.state, p, self.robot)
+            || stands && self.aloof.iter().any(|(other, gap)| other.gap(&own) < *gap)
+            || stands && self.kept.iter().any(|floor| floor.overlaps(&own))
+            || !self.lone_seat && sits_with_staff(self.state, p)
+            || self.staffed.iter().any(|way| way.is_shut_by(p))
+            || self.seats_table && sits_in_swing(self.state, p)
+            || !self.stores && beside_beds(self.state, p) > 0.0
+    }
+
+    fn standing(&self) -> impl Iterator<Item = &'f Placed<'a>> + use<'f, 'a, 's> {
+        let state = self.state;
+        state.placed.iter().filter(|o| o.support.is_none())
+    }
+
+    /// Seats of those who wait keep away from a counter at which others are served.
+    fn note_counters(&mut self, anchor: Shape) {
+        if is_seat(anchor) || anchor == Shape::Sofa {
+            let counters = self.state.placed.iter().filter(|o| o.unit.anchor().object.shape == Shape::Counter);
+            let served = counters.filter(|o| has_seats(&o.unit));
+            self.aloof.extend(served.map(|o| (o.solid(o.unit.anchor()).rect, FROM_COUNTER)));
+        }
+    }
+
+    /// Sitting groups and tables keep away from people at desks and tables, machines from those who work there, and all that
+    /// stands from the aisles between many desks.
+    fn note_desks(&mut self, unit: &Unit) {
+        let shapes = || unit.parts.iter().filter(|part| part.mount == Mount::Floor).map(|part| part.object.shape);
+        if shapes().next().is_none() || shapes().any(is_desk) {
+            return;
+        }
+        // a visitor's chair belongs to a desk
+        let alone = shapes().count() == 1 && shapes().all(is_seat);
+        let lounge = !alone && shapes().any(|shape| is_seat(shape) || is_table(shape) || shape == Shape::Sofa);
+        let apart = if shapes().any(|shape| shape == Shape::Sofa) { SOFA_APART } else { APART };
+        let machine = unit.anchor().object.shape == Shape::Appliance;
+        let many = self.standing().filter(|o| is_desk(o.unit.anchor().object.shape)).count() >= MANY;
+        if !lounge && !machine && !many {
+            return;
+        }
+        for o in self.standing() {
+            let at_desk = is_desk(o.unit.anchor().object.shape);
+            if !at_desk && !(is_table(o.unit.anchor().object.shape) && o.unit.parts.iter().any(part_is_seat)) {
+                continue;
+            }
+            for part in &o.unit.parts {
+                let (seat, desk) = (part_is_seat(part), is_desk(part.object.shape));
+                let gap = [
+                    (lounge && (seat || desk), apart),
+                    (machine && seat, FROM_MACHINE),
+                    (many && at_desk && (seat || desk), AISLE),
+                ];
+                if let Some(gap) = gap.iter().filter(|(minds, _)| *minds).map(|(_, gap)| *gap).max() {
+                    self.aloof.push((o.solid(part).rect, gap));
+                }
+            }
+        }
+    }
+
+    /// Machines and sofas keep away from each other.
+    fn note_machines(&mut self, unit: &Unit) {
+        let other = match unit.anchor().object.shape {
+            Shape::Appliance => Shape::Sofa,
+            Shape::Sofa => Shape::Appliance,
+            _ => return,
+        };
+        let standing = self.standing().filter(|o| o.on_floor() && o.unit.anchor().object.shape == other);
+        self.aloof.extend(standing.map(|o| (o.world(&o.unit.bbox), SOFA_FROM_MACHINE)));
+    }
+
+    /// All but tables and seats stays off the floor on which those who sit at a table push their chairs back.
+    fn note_seats(&mut self, unit: &Unit) {
+        let anchor = unit.anchor().object.shape;
+        let on_floor = unit.parts.iter().any(|part| part.mount == Mount::Floor && part.solid.stops_robot());
+        if !on_floor || is_seat(anchor) || is_table(anchor) {
+            return;
+        }
+        for o in self.state.placed.iter().filter(|o| is_table(o.unit.anchor().object.shape)) {
+            let table = o.solid(o.unit.anchor()).rect;
+            let seats = o.unit.parts.iter().filter(|part| part_is_seat(part)).map(|part| o.solid(part).rect);
+            self.kept.extend(seats.map(|seat| behind(&table, seat.center())));
+        }
+    }
 }
 
 /// Returns true for seats at a table so near to the swing of a door that nobody can push back a chair.
 fn sits_in_swing(state: &State, p: &Placed) -> bool {
-    let at_table = is_table(p.unit.anchor().object.shape);
-    let seats = p.unit.parts.iter().filter(|part| at_table && is_seat(part.object.shape));
     let near = |seat: &Box2| state.space.doors.iter().any(|door| door.swings_in && door.zone.gap(seat) < FROM_SWING);
-    seats.map(|part| p.solid(part).rect).any(|seat| near(&seat))
-}
-
-/// Returns true for what narrows the floor on which those who sit at a table push their chairs back.
-fn stands_behind_seats(state: &State, p: &Placed) -> bool {
-    let anchor = p.unit.anchor().object.shape;
-    if !p.on_floor() || is_seat(anchor) || is_table(anchor) {
-        return false;
-    }
-    let own = p.world(&p.unit.bbox);
-    state.placed.iter().filter(|o| is_table(o.unit.anchor().object.shape)).any(|o| {
-        let table = o.solid(o.unit.anchor()).rect;
-        let seats = o.unit.parts.iter().filter(|part| is_seat(part.object.shape)).map(|part| o.solid(part).rect);
-        seats.map(|seat| behind(&table, seat.center())).any(|floor| floor.overlaps(&own))
-    })
+    p.unit.parts.iter().filter(|part| part_is_seat(part)).map(|part| p.solid(part).rect).any(|seat| near(&seat))
 }
 
 /// Returns the floor on the side of a table on which somebody sits.
@@ -89,49 +172,13 @@ fn behind(table: &Box2, (x, y): (i32, i32)) -> Box2 {
     }
 }
 
-/// Returns true for sitting groups and tables right beside people at desks and tables, for machines behind those who work
-/// there, and for all that narrows the aisles between many desks.
-fn crowds_desks(state: &State, p: &Placed) -> bool {
-    let shapes = || p.unit.parts.iter().filter(|part| part.mount == Mount::Floor).map(|part| part.object.shape);
-    if shapes().next().is_none() || shapes().any(is_desk) {
-        return false;
-    }
-    // a visitor's chair belongs to a desk
-    let lone_seat = shapes().count() == 1 && shapes().all(is_seat);
-    let lounge = !lone_seat && shapes().any(|shape| is_seat(shape) || is_table(shape) || shape == Shape::Sofa);
-    let apart = if shapes().any(|shape| shape == Shape::Sofa) { SOFA_APART } else { APART };
-    let machine = p.unit.anchor().object.shape == Shape::Appliance;
-    let standing = || state.placed.iter().filter(|o| o.support.is_none());
-    let many = standing().filter(|o| is_desk(o.unit.anchor().object.shape)).count() >= MANY;
-    if !lounge && !machine && !many {
-        return false;
-    }
-    let own = p.world(&p.unit.bbox);
-    standing().any(|o| {
-        let at_desk = is_desk(o.unit.anchor().object.shape);
-        let at_table =
-            is_table(o.unit.anchor().object.shape) && o.unit.parts.iter().any(|part| is_seat(part.object.shape));
-        (at_desk || at_table)
-            && o.unit.parts.iter().any(|part| {
-                let (shape, gap) = (part.object.shape, own.gap(&o.solid(part).rect));
-                let seat = is_seat(shape);
-                lounge && (seat || is_desk(shape)) && gap < apart
-                    || machine && seat && gap < FROM_MACHINE
-                    || many && at_desk && (seat || is_desk(shape)) && gap < AISLE
-            })
-    })
+/// Returns true for what comes with seats beside or around it.
+fn has_seats(unit: &Unit) -> bool {
+    unit.parts[1..].iter().any(part_is_seat)
 }
 
-/// Returns true for a machine right beside a sofa, and for a sofa right beside a machine.
-fn has_machine_beside_sofa(state: &State, p: &Placed) -> bool {
-    let other = match p.unit.anchor().object.shape {
-        Shape::Appliance if p.support.is_none() => Shape::Sofa,
-        Shape::Sofa => Shape::Appliance,
-        _ => return false,
-    };
-    let own = p.world(&p.unit.bbox);
-    let standing = state.placed.iter().filter(|o| o.on_floor() && o.unit.anchor().object.shape == other);
-    standing.map(|o| o.world(&o.unit.bbox)).any(|rect| rect.gap(&own) < SOFA_FROM_MACHINE)
+fn part_is_seat(part: &Part) -> bool {
+    is_seat(part.object.shape)
 }
 
 fn is_table(shape: Shape) -> bool {

@@ -58,11 +58,27 @@ fn staffed_from<'p>(parts: &'p [Part]) -> impl Iterator<Item = Box2> + 'p {
 }
 
 /// The floor over which whoever works at a desk or counter gets to the side to work at.
-struct WayIn {
+pub(super) struct WayIn {
     /// Past either end of it and of what stands beside it: one of them is enough.
-    ends: [Box2; 2],
+    ends: Vec<Box2>,
     /// From the ends on to the seat of a desk.
     on: Option<Box2>,
+}
+
+impl WayIn {
+    /// Returns true for a place that closes what is left of it.
+    pub fn is_shut_by(&self, p: &Placed) -> bool {
+        self.on.as_ref().is_some_and(|on| stands_on(p, on))
+            || !self.ends.is_empty() && self.ends.iter().all(|end| stands_on(p, end))
+    }
+}
+
+/// Returns true for a place that takes some of this floor from people.
+fn stands_on(p: &Placed, floor: &Box2) -> bool {
+    let stands = |part: &&Part| part.mount == Mount::Floor && part.solid.stops_robot();
+    // parts that stand are within the outline
+    p.world(&p.unit.bbox).overlaps(floor)
+        && p.unit.parts.iter().filter(stands).any(|part| p.solid(part).rect.overlaps(floor))
 }
 
 /// Returns the way to where one works at a desk or counter; `past` is its width at the ends of a counter. `None` where
@@ -81,7 +97,7 @@ fn way_in(desk: &Placed, past: i32) -> Option<WayIn> {
     let own = unit.parts.iter().filter(stands).map(in_view).filter(beside).fold(anchor, |own, part| own.union(&part));
     let end = |y0| Box2 { x0: anchor.x0 - behind, x1: anchor.x1, y0, y1: y0 + wide }.turned(q);
     let on = Box2 { x0: anchor.x0 - behind, x1: anchor.x0, ..own }.turned(q);
-    Some(WayIn { ends: [end(own.y0 - wide), end(own.y1)], on: (look != 0).then_some(on) })
+    Some(WayIn { ends: vec![end(own.y0 - wide), end(own.y1)], on: (look != 0).then_some(on) })
 }
 
 /// Returns true for a desk or counter past which one gets to its user's side nowhere.
@@ -94,16 +110,12 @@ fn is_way(state: &State, way: &Box2) -> bool {
     state.space.contains(way) && !state.solids.iter().any(|s| s.stops_robot() && s.rect.overlaps(way))
 }
 
-/// Returns true for a place that closes the last way past a counter or desk to where one works at it.
-pub(super) fn shuts_in_staff(state: &State, p: &Placed) -> bool {
-    let stands = |part: &&Part| part.mount == Mount::Floor && p.solid(part).stops_robot();
-    let closes = |way: &Box2| p.unit.parts.iter().filter(stands).any(|part| p.solid(part).rect.overlaps(way));
-    // a lone seat for those who wait may leave less
-    let wide = if p.unit.parts.len() == 1 && is_seat(p.unit.anchor().object.shape) { PAST_SEAT } else { PAST };
-    state.placed.iter().filter_map(|desk| way_in(desk, wide)).any(|way| {
-        let mut open = way.ends.iter().filter(|end| is_way(state, end)).peekable();
-        way.on.as_ref().is_some_and(closes) || open.peek().is_some() && open.all(closes)
-    })
+/// Returns the ways past counters and desks that are open as things stand; a `lone_seat` for those who wait may leave less.
+pub(super) fn ways_to_staff(state: &State, lone_seat: bool) -> Vec<WayIn> {
+    let wide = if lone_seat { PAST_SEAT } else { PAST };
+    let mut ways: Vec<WayIn> = state.placed.iter().filter_map(|desk| way_in(desk, wide)).collect();
+    ways.iter_mut().for_each(|way| way.ends.retain(|end| is_way(state, end)));
+    ways
 }
 
 /// Returns the floor at the foot of a bed through which one gets to its long sides.
@@ -120,9 +132,7 @@ pub(super) fn ways_beside(bed: &Placed) -> Option<[Box2; 2]> {
 
 /// Returns how much a place loses that closes the way to a long side of a bed.
 pub(super) fn beside_beds(state: &State, p: &Placed) -> f64 {
-    let stands = |part: &&Part| part.mount == Mount::Floor && p.solid(part).stops_robot();
-    let closes = |way: &Box2| p.unit.parts.iter().filter(stands).any(|part| p.solid(part).rect.overlaps(way));
-    CLOSED_SIDE * state.beside_beds.iter().filter(|way| closes(way)).count() as f64
+    CLOSED_SIDE * state.beside_beds.iter().filter(|way| stands_on(p, way)).count() as f64
 }
 
 /// Returns true for a place for visitors to sit that lies on the staff's side of a counter.

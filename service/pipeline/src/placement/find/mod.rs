@@ -15,7 +15,7 @@ pub(super) use rows::{Terms, leave_out_single, over, rows};
 use super::demand::Task;
 use super::docks::crowding;
 use super::geom::{Box2, turn};
-use super::neighbors::disturbs;
+use super::neighbors::Neighbors;
 use super::seats::{beside_beds, sits_with_staff};
 use super::state::{Placed, Rule, State};
 use super::style::{Style, grain, style};
@@ -79,6 +79,8 @@ pub(super) struct Find<'f, 'a, 's> {
     /// What will face this unit from the wall across.
     pub across: Option<Rc<Unit<'a>>>,
     style: Style,
+    /// What the unit must not disturb, where the room can do without it.
+    neighbors: Option<Neighbors<'f, 'a, 's>>,
 }
 
 impl<'f, 'a, 's> Find<'f, 'a, 's> {
@@ -92,11 +94,14 @@ impl<'f, 'a, 's> Find<'f, 'a, 's> {
     ) -> Self {
         let both = task.anchor.clear_sides > 1 && task.anchor.clearance_side_m > 0.0;
         let style = style(task.anchor.shape, task.anchor.mount, both);
-        Self { state, task, index, salt, aisle, out: Vec::new(), tally, across: None, style }
+        Self { state, task, index, salt, aisle, out: Vec::new(), tally, across: None, style, neighbors: None }
     }
 
     /// Collects positions of a unit as the task's arrangement wants it.
     pub fn run(mut self, unit: &Rc<Unit<'a>>) -> Vec<Candidate<'a>> {
+        if self.task.required == 0 {
+            self.neighbors = Some(Neighbors::new(self.state, unit, self.aisle));
+        }
         match self.task.arrangement {
             Arrangement::OnSurface => self.on_surfaces(unit),
             Arrangement::AtWindow => self.at_windows(unit),
@@ -117,7 +122,7 @@ impl<'f, 'a, 's> Find<'f, 'a, 's> {
         if spare && self.state.hides(&placed) {
             return self.none(Rule::NoPlace);
         }
-        if spare && disturbs(self.state, &placed, self.aisle) {
+        if self.neighbors.as_ref().is_some_and(|n| n.are_disturbed_by(&placed)) {
             return self.none(Rule::Clearance);
         }
         let at_window = self.task.arrangement == Arrangement::AtWindow;
