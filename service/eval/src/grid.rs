@@ -155,12 +155,24 @@ impl Grid {
     }
 
     fn nearest(&self, p: Point) -> Option<(Point, usize, f64)> {
-        let cells = self.cells.iter().enumerate().filter(|(_, c)| **c);
-        let found = cells.map(|(k, _)| {
-            let c = self.center(k % self.nx, k / self.nx);
-            (c, k, c.distance(p))
-        });
-        found.min_by(|a, b| a.2.total_cmp(&b.2))
+        let mut best: Option<(Point, usize, f64)> = None;
+        // rows from the nearest outwards, until none can hold a nearer cell
+        let mut rows: Vec<(f64, usize)> = (0..self.ny).map(|j| ((self.center(0, j).y - p.y).abs(), j)).collect();
+        rows.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        for (away, j) in rows {
+            if best.is_some_and(|(_, _, least)| away > least) {
+                break;
+            }
+            let row = &self.cells[j * self.nx..(j + 1) * self.nx];
+            for (i, _) in row.iter().enumerate().filter(|(_, set)| **set) {
+                let (c, k) = (self.center(i, j), j * self.nx + i);
+                let far = c.distance(p);
+                if best.is_none_or(|(_, least_k, least)| (far, k) < (least, least_k)) {
+                    best = Some((c, k, far));
+                }
+            }
+        }
+        best
     }
 
     /// Removes the connected part of cell `k` (by edges and corners), adds it to `into`; returns its size.

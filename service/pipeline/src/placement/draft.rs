@@ -26,6 +26,8 @@ pub(super) const RESCUES: [Departure; 8] = [
     Departure::of(1, 3),
     Departure::of(3, 2),
 ];
+/// The last step at which one of them departs.
+pub(super) const DEEPEST: usize = 3;
 
 /// Where a draft leaves the best choices.
 #[derive(Debug, Clone, Copy)]
@@ -43,6 +45,7 @@ impl Departure {
 }
 
 /// A room half furnished: the state and what is missing so far.
+#[derive(Clone)]
 pub(super) struct Draft<'a, 's> {
     pub state: State<'a, 's>,
     pub outcome: Outcome<'a>,

@@ -9,7 +9,7 @@ use d3dgen_knowledge::Aim;
 use d3dgen_model::domain::{Arrangement, Domain, Mount, Shape};
 
 use super::demand::Task;
-use super::draft::{DEPARTURES, Departure, Draft, RESCUES, Seen};
+use super::draft::{DEEPEST, DEPARTURES, Departure, Draft, RESCUES, Seen};
 use super::find::{Candidate, Find, Tally, Terms, leave_out_single, over, rows};
 use super::nav::Nav;
 use super::space::{Open, Space};
@@ -109,6 +109,7 @@ pub(super) const LEVELS: [Level; 12] = [
 ];
 
 /// A furnished room.
+#[derive(Clone)]
 pub(super) struct Outcome<'a> {
     pub placed: Vec<Placed<'a>>,
     /// Tasks with how many units are missing and the rule that stopped them.
@@ -214,7 +215,14 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
         let floor = tasks.iter().position(|t| t.is_decor()).unwrap_or(tasks.len());
         let empty = self.start.free_area;
         let mut best = self.blank();
-        self.run(&mut best, 0..floor, None, false);
+        // what drafts that depart later begin with
+        let mut begun: Vec<(usize, Draft)> = Vec::new();
+        for index in 0..floor {
+            if best.steps.len() > begun.last().map_or(0, |(_, draft)| draft.steps.len()) && best.steps.len() <= DEEPEST {
+                begun.push((index, best.clone()));
+            }
+            self.run(&mut best, index..index + 1, None, false);
+        }
         let mut seen = Seen::default();
         seen.note(&best, None);
         let mut best_of = None;
@@ -235,7 +243,9 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
             {
                 continue;
             }
-            let Some(other) = self.draft(floor, Some(departure), false, &mut seen) else { continue };
+            let begun = begun.iter().rfind(|(_, draft)| draft.steps.len() <= departure.step).cloned();
+            let begun = begun.unwrap_or_else(|| (0, self.blank()));
+            let Some(other) = self.draft(begun, floor, Some(departure), false, &mut seen) else { continue };
             if other.cost(empty) < best.cost(empty) {
                 (best, best_of) = (other, Some(departure));
             }
@@ -250,7 +260,8 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
             if closed <= open || self.job.stop.is_set() || too_late {
                 break;
             }
-            let Some(other) = self.draft(floor, departure, true, &mut seen) else { continue };
+            let begun = (0, self.blank());
+            let Some(other) = self.draft(begun, floor, departure, true, &mut seen) else { continue };
             let lacks = other.outcome.required_missing > best.outcome.required_missing;
             let still = other.state.pockets.area();
             if !lacks && still < closed {
@@ -262,16 +273,16 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
         Outcome { placed: best.state.placed, ..best.outcome }
     }
 
-    /// Places the first tasks up to `floor`, with one departure; `None` where that leads to what was seen.
+    /// Goes on with a draft from one of the tasks up to `floor`, with one departure; `None` where that leads to what was seen.
     fn draft(
         &self,
+        (from, mut draft): (usize, Draft<'a, 's>),
         floor: usize,
         departure: Option<Departure>,
         whole: bool,
         seen: &mut Seen<'a>,
     ) -> Option<Draft<'a, 's>> {
-        let mut draft = self.blank();
-        for index in 0..floor {
+        for index in from..floor {
             let before = draft.steps.len();
             self.run(&mut draft, index..index + 1, departure, whole);
             let departed = departure.map(|d| d.step).filter(|step| (before..draft.steps.len()).contains(step));

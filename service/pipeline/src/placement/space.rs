@@ -112,10 +112,19 @@ impl WindowZone {
         solid.z1 > self.sill && solid.z0 < self.head && self.zone.overlaps(&solid.rect)
     }
 
+    /// Returns the floor above which nothing stands in the light.
+    pub fn kept(&self, open: Open) -> &Box2 {
+        if open.windows { &self.open_zone } else { &self.zone }
+    }
+
+    /// Returns true for what reaches above the sill and begins below the head.
+    pub fn is_as_high(&self, solid: &Solid) -> bool {
+        solid.z1 > self.sill && solid.z0 < self.head
+    }
+
     /// Returns true when something at this place stands in what is kept free.
     pub fn is_taken_by(&self, solid: &Solid, open: Open) -> bool {
-        let zone = if open.windows { &self.open_zone } else { &self.zone };
-        solid.z1 > self.sill && solid.z0 < self.head && zone.overlaps(&solid.rect)
+        self.is_as_high(solid) && self.kept(open).overlaps(&solid.rect)
     }
 }
 

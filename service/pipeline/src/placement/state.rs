@@ -132,7 +132,7 @@ pub(super) struct State<'a, 's> {
     basins: Vec<Solid>,
     pub clears: Vec<Box2>,
     /// Outlines of what takes floor: not what is flat, hangs high or flat on a wall.
-    bodies: Vec<Box2>,
+    pub bodies: Vec<Box2>,
     in_the_way: InTheWay,
     /// True where robots are to live: a dock in the way is better than none.
     pub has_robots: bool,
@@ -420,7 +420,7 @@ fn in_the_way(units: &[Placed]) -> InTheWay {
     out
 }
 
-fn takes_floor(part: &Part, solid: &Solid) -> bool {
+pub(super) fn takes_floor(part: &Part, solid: &Solid) -> bool {
     solid.stops_robot() && part.mount != Mount::Surface && !part.is_shallow()
 }
 

@@ -43,6 +43,13 @@ impl Part<'_> {
         self.mount == Mount::Wall && self.support.is_none() && !self.quarter.is_multiple_of(4)
     }
 
+    /// Returns true for what its unit can do without where it is in the way: on a top, overhead, flat on the floor or on
+    /// another wall.
+    pub fn may_go(&self) -> bool {
+        let loose = matches!(self.mount, Mount::Surface | Mount::Ceiling) || self.solid.is_flat() || self.hangs_aside();
+        self.optional && loose
+    }
+
     /// Returns true for what hangs flat on a wall, which narrows no passage.
     pub fn is_shallow(&self) -> bool {
         let r = self.solid.rect;
@@ -159,9 +166,7 @@ impl<'a> Unit<'a> {
     /// Returns the unit without the optional things on its top, over it, on the wall beside it and flat on the floor that are
     /// in the way; `None` when none is.
     pub fn cleared(&self, in_the_way: impl Fn(&Part) -> bool) -> Option<Self> {
-        let loose =
-            |p: &Part| matches!(p.mount, Mount::Surface | Mount::Ceiling) || p.solid.is_flat() || p.hangs_aside();
-        let gone = |p: &Part| p.optional && loose(p) && in_the_way(p);
+        let gone = |p: &Part| p.may_go() && in_the_way(p);
         if !self.parts.iter().any(gone) {
             return None;
         }

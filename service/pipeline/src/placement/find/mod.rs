@@ -1,5 +1,6 @@
 //! Positions for one unit, by arrangement: each valid one with how good it is, higher is better.
 
+mod barred;
 mod center;
 mod ends;
 mod rows;

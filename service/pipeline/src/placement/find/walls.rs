@@ -4,6 +4,7 @@ use std::rc::Rc;
 
 use d3dgen_model::domain::{Arrangement, Mount, Shape};
 
+use super::barred::Barred;
 use super::ends::BETWEEN_WINDOWS;
 use super::{Find, Rule};
 use crate::placement::docks::door_loss;
@@ -83,6 +84,8 @@ impl<'a> Find<'_, 'a, '_> {
         }
         let front = self.front(wall, index, unit);
         let u = wall.u - b.x0;
+        let at_window = self.task.arrangement == Arrangement::AtWindow;
+        let barred = Barred::along(self.state, unit, wall, u, at_window);
         for v in self.stops(wall, index, unit, &front) {
             if self.is_wedged(unit, &front, v) || self.is_far_in(wall, unit, v) {
                 self.none(Rule::Clearance);
@@ -102,7 +105,10 @@ impl<'a> Find<'_, 'a, '_> {
                     bonus - DRAWN_UP + find.wall_score(p, index, &front, v)
                 });
             }
-            self.offer(placed, class, |find, p| bonus + find.wall_score(p, index, &front, v));
+            match barred.rule_at(v) {
+                Some(rule) => self.none(rule),
+                None => self.offer(placed, class, |find, p| bonus + find.wall_score(p, index, &front, v)),
+            }
         }
     }
 
