@@ -15,11 +15,17 @@ use super::realize::{Layout, door_need};
 use super::spec::Brief;
 
 /// Cost of a room whose area is outside what is advised, beside that of how far.
-const ILL_ADVISED: f64 = 0.4;
+const ILL_ADVISED: f64 = 0.8;
 /// Cost of a room without the daylight that it is better with, beside those that take a facade and need none.
 const DARK: f64 = 1.8;
 /// Share by which circulation beyond what is advised counts as larger.
 const ILL_SHARED: f64 = 0.05;
+/// Length from which on the hall of a home is a tunnel, m, and what a meter more counts as share of circulation; the length from
+/// which on it is better lit by day, m, and what it counts that it is not.
+const HALL_M: f64 = 9.0;
+const TUNNEL: f64 = 0.02;
+const DARK_HALL_M: f64 = 6.0;
+const DARK_HALL: f64 = 0.03;
 /// Number of soft terms.
 const COUNT: usize = 12;
 /// A weight for each soft term.
@@ -139,6 +145,7 @@ pub(super) struct Judge<'b> {
     /// What the doors to outdoors need, lattice units.
     pub(super) entrance_need: i32,
     wet_rooms: usize,
+    home: bool,
     pub(super) survey: Survey,
     /// The storey below, for one that stands on another.
     pub(super) below: Option<&'b Below>,
@@ -192,6 +199,7 @@ impl<'b> Judge<'b> {
             aloof_pairs: Vec::new(),
             entrance_need: door_need(brief.entrance_width),
             wet_rooms: brief.rooms.iter().filter(|r| r.wet).count(),
+            home: brief.is_home(),
             survey: Survey { rooms: vec![Measured::default(); n], ..Survey::default() },
             below: brief.core.as_ref().and_then(|c| c.below.as_ref()),
         };
@@ -442,12 +450,20 @@ impl<'b> Judge<'b> {
     fn whole(&self, layout: &Layout, score: &mut Score) {
         let (brief, rooms) = (self.brief, &self.survey.rooms);
         let total: f64 = rooms.iter().map(|r| r.gross_m2).sum();
+        let home = self.home;
         if let Some(spine) = brief.spine
             && !brief.hub
         {
             // From a fifth on, circulation is what a reviewer objects to first.
             let share = rooms[spine].gross_m2 / total;
             score.soft[4] += (share - 0.10).max(0.0) + 5.0 * (share - 0.20).max(0.0);
+            if home {
+                let longest = layout.boxes.iter().filter(|(r, _)| *r == spine);
+                let longest = longest.map(|(_, b)| meters(b.width().max(b.height()))).fold(0.0, f64::max);
+                score.soft[4] += TUNNEL * (longest - HALL_M).max(0.0);
+                let dark = longest > DARK_HALL_M && rooms[spine].outer.0 < up(WINDOW_WALL_M);
+                score.soft[4] += if dark { DARK_HALL } else { 0.0 };
+            }
             if let Some(most) = brief.share_advised {
                 let share = rooms[spine].net_m2 / rooms.iter().map(|r| r.net_m2).sum::<f64>();
                 score.soft[4] += if share > most { ILL_SHARED + 4.0 * (share - most) } else { 0.0 };
@@ -461,7 +477,6 @@ impl<'b> Judge<'b> {
         let perimeter: f64 = rooms.iter().map(|r| meters(r.outer.1)).sum();
         score.soft[6] += perimeter / (4.0 * total.sqrt()) - 1.0 + 0.02 * layout.notch;
         score.soft[6] += STEP * self.survey.steps as f64;
-        let home = brief.is_home();
         // where robots come from
         let base = brief.rooms.iter().position(|r| r.docks).and_then(|i| rooms[i].main);
         // one comes up the stairs

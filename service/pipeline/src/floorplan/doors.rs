@@ -11,7 +11,7 @@ use super::assemble::highest;
 use super::cost::ill_placed;
 use super::lattice::{Cellbox, INNER_HALF_M, JAMB_M, OUTER_HALF_M, meters};
 use super::outline::Stretch;
-use super::realize::BED_DOOR_M;
+use super::realize::{BED_DOOR_M, ONE_WAY_M};
 use super::spec::Brief;
 use super::windows::LEAST_WALL_M;
 
@@ -33,10 +33,12 @@ const ENTRANCE_ASIDE_M: f64 = 0.4;
 /// Floor behind a door into which a bed is pushed straight ahead, m, and how much wider the door is where it has to turn.
 const BED_AHEAD_M: f64 = 2.3;
 const BED_ASIDE_M: f64 = 0.15;
-/// Way from an end of a corridor to the next exit from which on it has an exit of its own, m, and how much longer than the
-/// corridor is wide its end wall may be.
-const BETWEEN_EXITS_M: f64 = 18.0;
+/// How much longer than the corridor is wide the wall at its end may be.
 const END_WALL: f64 = 1.8;
+/// Floor area of a room by day from which on it has a second door, m^2, and how far that is from the first at least, m (about
+/// 60 people at 2.5 m^2: Approved Document B, table 2.2).
+const SECOND_DOOR_M2: f64 = 150.0;
+const BETWEEN_DOORS_M: f64 = 6.0;
 /// Floor kept free in front of a door, m.
 const APPROACH_M: f64 = 0.6;
 /// What it costs that the doors of a bathroom and of a room where one sits or eats face each other, how far apart they may
@@ -116,6 +118,7 @@ fn lay(site: &Site<'_>, entrance_first: bool, rng: &mut Stream) -> Laid {
     site.lay_inner(&mut laid, rng);
     site.lay_entrances(after, &mut laid);
     site.lay_exits(&mut laid);
+    site.lay_second_doors(&mut laid, rng);
     laid.settle();
     laid
 }
@@ -221,6 +224,26 @@ impl Site<'_> {
         }
     }
 
+    /// Places second doors from the corridor into large rooms, as far from the first as the wall between them allows.
+    fn lay_second_doors(&self, laid: &mut Laid, rng: &mut Stream) {
+        let brief = self.brief;
+        let Some(spine) = brief.spine.filter(|_| brief.second_exit && !brief.hub) else { return };
+        let large = |r: &usize| brief.rooms[*r].on_spine && *r != spine && self.net_m2[*r] >= SECOND_DOOR_M2;
+        for room in (0..brief.rooms.len()).filter(large) {
+            let ids = [room, spine].map(|r| &brief.rooms[r].id);
+            let first = laid.spots.iter().find(|l| ids.iter().all(|id| l.door.room_ids.contains(id)));
+            let Some(first) = first.map(|l| l.door.clone()).filter(|d| d.kind != DoorKind::Open) else { continue };
+            let away = |spot: &Spot| spot.door.line.middle().distance(first.line.middle());
+            let stretches = self.stretches.iter().filter(|s| s.joins(room, spine));
+            let mut spots: Vec<Spot> =
+                stretches.flat_map(|s| self.spots(s, room, spine, Connector::Door, rng)).collect();
+            spots.retain(|spot| away(spot) >= BETWEEN_DOORS_M);
+            let most = spots.iter().map(away).fold(0.0, f64::max);
+            spots.iter_mut().for_each(|spot| spot.penalty += most - away(spot));
+            laid.take_best(spots);
+        }
+    }
+
     /// Places exits at the ends of corridors that are far from all others: nobody should have to run back through a wing.
     fn lay_exits(&self, laid: &mut Laid) {
         let Some(spine) = self.brief.spine.filter(|_| self.brief.second_exit && !self.brief.upper && !self.brief.hub)
@@ -236,7 +259,7 @@ impl Site<'_> {
                 laid.spots.iter().filter(|l| l.door.room_ids.len() == 1).map(|l| l.door.line.middle()).collect();
             let far = |s: &Stretch| exits.iter().map(|e| e.distance(middle(s))).fold(f64::MAX, f64::min);
             let Some(at) = (0..ends.len()).max_by(|&a, &b| far(ends[a]).total_cmp(&far(ends[b]))) else { return };
-            if far(ends[at]) < BETWEEN_EXITS_M {
+            if far(ends[at]) < ONE_WAY_M {
                 return;
             }
             let spots = self.entrance_spots(ends.remove(at), spine, false, &laid.spots);

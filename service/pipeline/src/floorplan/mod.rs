@@ -186,6 +186,9 @@ fn kept(graph: &SceneGraph, plan: &Floorplan) -> Result<Floorplan, Error> {
     })
 }
 
+/// Rooms up to which a corridor with a room at its end is short enough for one way out.
+const MOST_CAPPED: usize = 10;
+
 /// Returns the schemes that suit the domain and the number of rooms, the seed's choice first.
 fn schemes(brief: &Brief, domain: &Domain, rng: &mut Stream) -> Vec<Scheme> {
     // a storey with one core is one body, whatever its size
@@ -198,6 +201,7 @@ fn schemes(brief: &Brief, domain: &Domain, rng: &mut Stream) -> Vec<Scheme> {
     let suits = |s: &Scheme| match s {
         _ if units && *s != Scheme::Comb => false,
         Scheme::Straight => rooms <= LONGEST_BAR,
+        Scheme::Capped if brief.second_exit && !brief.upper => (3..=MOST_CAPPED).contains(&rooms),
         Scheme::Capped => (3..=LONGEST_BAR).contains(&rooms),
         Scheme::Angle => (8..=MOST_WHOLE).contains(&rooms),
         Scheme::Racetrack => (14..=MOST_WHOLE).contains(&rooms),

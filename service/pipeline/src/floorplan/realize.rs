@@ -15,6 +15,10 @@ const MIN_NOTCH_M: f64 = 1.5;
 /// Least width and depth of a court between two corridors, m.
 const COURT_M: f64 = 5.0;
 
+/// Longest corridor from which there is one way out only, m (Approved Document B, table 2.1: 18 m to walk in one direction, and
+/// a room lies at its end).
+pub(super) const ONE_WAY_M: f64 = 15.0;
+
 /// What a meter between the depth of the core and that of its band counts, in meters of notch.
 const CORE_STEP: f64 = 6.0;
 
@@ -153,6 +157,10 @@ fn straight(task: &mut Task<'_, '_>) {
         (len, w) = hub_size(brief, task.spine, len, &mut task.misfit);
     }
     len = len.max(door_need(brief.entrance_width));
+    if brief.second_exit && !brief.upper && caps.iter().any(Option::is_some) {
+        // a room at its end leaves a corridor one way out
+        task.misfit += (meters(len) - ONE_WAY_M).max(0.0);
+    }
     task.spine_box(Cellbox::new(0, 0, len, w));
     if brief.stem {
         // the spine that the wing hangs on

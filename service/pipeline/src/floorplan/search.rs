@@ -13,14 +13,14 @@ use super::spec::Brief;
 use crate::Stop;
 
 /// Steps of one run per room, and the runs at most.
-const STEPS_PER_ROOM: usize = 220;
+const STEPS_PER_ROOM: usize = 150;
 const MAX_RUNS: usize = 24;
 /// Steps of one run at most.
 const MAX_STEPS: usize = 12_000;
 /// Sound plans to compare before the best is taken.
 const WANTED: usize = 3;
 /// Cost of a room up to which a plan is good enough, and the sound plans more to compare where none is.
-const CONTENT: f64 = 0.42;
+const CONTENT: f64 = 0.6;
 const MORE: usize = 2;
 /// Runs with the scheme that the seed drew, before others step in.
 const OWN_RUNS: usize = 4;
