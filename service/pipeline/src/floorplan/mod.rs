@@ -110,7 +110,7 @@ pub fn generate_until(
         let turn = Turn { flip_x: rng.chance(0.5), flip_y: rng.chance(0.5), swap: rng.chance(0.3) };
         let found = search(&brief, &schemes, &mut rng, stop);
         stop.check()?;
-        let Some(found) = found else { break };
+        let Some(found) = found else { continue };
         if found.score.hard > 1e-9 {
             last = format!("the best layout misses hard rules by {:.2} (sizes, doors or daylight)", found.score.hard);
             continue;

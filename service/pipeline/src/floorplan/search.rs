@@ -79,6 +79,9 @@ pub(super) fn search(brief: &Brief, schemes: &[Scheme], rng: &mut Stream, stop: 
     {
         return Some(whole);
     }
+    if brief.form.is_some() && schemes != [Scheme::Comb] {
+        return None; // wings are not what was asked for
+    }
     compose(brief, &weights, rng, stop)
 }
 
