@@ -90,11 +90,11 @@ impl Judge<'_> {
             + NECK * self.necks(layout) as f64
     }
 
-    /// Returns how many rooms for visitors or by day one enters by a narrow part of them.
+    /// Returns how many rooms for visitors, for work or by day have a narrow part.
     fn necks(&self, layout: &Layout) -> usize {
         let (rooms, brief) = (&self.survey.rooms, self.brief);
         let narrow = |(room, b): &&(usize, Cellbox)| {
-            let by_day = matches!(brief.rooms[*room].zone, Zone::Public | Zone::Day);
+            let by_day = matches!(brief.rooms[*room].zone, Zone::Public | Zone::Day | Zone::Staff);
             by_day && rooms[*room].main != Some(*b) && b.width().min(b.height()) < up(NECK_M)
         };
         layout.boxes.iter().filter(narrow).count()
