@@ -28,6 +28,7 @@ pub(super) struct Setting<'a> {
     pub aims: BTreeMap<&'a str, Aim>,
     /// Varies what is equally good, from room to room.
     pub salt: u64,
+    /// Which of its sizes an object type has, by id, where that is not its first.
     sizes: BTreeMap<&'a str, usize>,
     /// Radius of the robot, mm.
     pub radius: i32,
@@ -100,7 +101,7 @@ fn way_width(graph: &SceneGraph, domain: &Domain, limits: &Limits) -> f64 {
     asked_m.max(2.0 * robot_m)
 }
 
-/// Picks one size for each object type of a room, of those that keep most rules the most common one most often.
+/// Picks one size for each object type of a room, the first where none is said; of those that keep most rules the most common one most often.
 fn pick_sizes<'a>(domain: &'a Domain, aims: &BTreeMap<&str, Aim>, stream: &mut Stream) -> BTreeMap<&'a str, usize> {
     let mut pick = |o: &ObjectType| {
         let breaches = aims.get(o.id.as_str()).map_or(&[][..], |a| &a.breaches);
@@ -109,7 +110,8 @@ fn pick_sizes<'a>(domain: &'a Domain, aims: &BTreeMap<&str, Aim>, stream: &mut S
         let at = if stream.chance(0.5) { 0 } else { stream.below(best.len()) };
         best.get(at).copied().unwrap_or(0)
     };
-    domain.objects.iter().map(|o| (o.id.as_str(), pick(o))).collect()
+    let picked = domain.objects.iter().map(|o| (o.id.as_str(), pick(o)));
+    picked.filter(|(_, size)| *size > 0).collect()
 }
 
 /// Returns the radius of the disc that must reach everything, mm: the largest robot's where the doors let it in, and a
