@@ -218,7 +218,8 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
         // what drafts that depart later begin with
         let mut begun: Vec<(usize, Draft)> = Vec::new();
         for index in 0..floor {
-            if best.steps.len() > begun.last().map_or(0, |(_, draft)| draft.steps.len()) && best.steps.len() <= DEEPEST {
+            if best.steps.len() > begun.last().map_or(0, |(_, draft)| draft.steps.len()) && best.steps.len() <= DEEPEST
+            {
                 begun.push((index, best.clone()));
             }
             self.run(&mut best, index..index + 1, None, false);

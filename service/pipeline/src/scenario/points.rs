@@ -119,7 +119,10 @@ fn bays(floor: &Floor, graph: &SceneGraph, rois: &[Roi]) -> Vec<Poi> {
         let apart = |p: &Point| {
             let others = taken.iter().all(|t| t.distance(*p) >= 2.0 * floor.radius + GAP_M);
             let inside = |r: &Rect| r.x0 <= p.x && p.x <= r.x1 && r.y0 <= p.y && p.y <= r.y1;
-            others && !staging.iter().any(inside) && doors.iter().all(|d| d.distance(*p) >= BAY_FROM_DOOR_M)
+            others
+                && !staging.iter().any(inside)
+                && doors.iter().all(|d| d.distance(*p) >= BAY_FROM_DOOR_M)
+                && floor.touches_nothing(*p)
         };
         let room_around = |p: &Point| doors.iter().chain(&taken).map(|d| d.distance(*p)).fold(f64::MAX, f64::min);
         let best = spots.iter().copied().filter(apart).max_by(|a, b| room_around(a).total_cmp(&room_around(b)));
