@@ -22,8 +22,11 @@ const TIGHT_M: f64 = 1.6;
 const SWING_M: f64 = 1.0;
 /// How far a chair is pushed back when one gets up, m.
 const CHAIR_BACK_M: f64 = 0.3;
-/// Spots of a room that are looked at, the best first, for one at which the disc touches nothing by less than a cell.
+/// Spots of a room that are looked at exactly, at most.
 const MOST_TOUCHED: usize = 400;
+/// Play around a spot that is enough, m, and how much farther off one may be that has it than one that has none.
+const PLAY_M: f64 = 0.08;
+const CLOSE_M: f64 = 0.4;
 /// Slack for points that are rounded to millimeters, m.
 pub(super) const ROUNDING_M: f64 = 0.001;
 /// Forward and left of the four headings.
@@ -73,7 +76,7 @@ impl<'a> Floor<'a> {
         let height = graph.robots.iter().map(|r| r.height_m).fold(0.0, f64::max);
         let main = occupancy.reach(plan, radius).main;
         // grids that begin elsewhere see gaps a cell narrower
-        let surely = occupancy.clear(radius + CELL_M).components().into_iter().next();
+        let surely = occupancy.clear(radius + CELL_M).largest();
         let mut by_room: BTreeMap<&str, Vec<&Placement>> = BTreeMap::new();
         for p in &placements.placements {
             by_room.entry(&p.room_id).or_default().push(p);
@@ -143,16 +146,24 @@ impl<'a> Floor<'a> {
             (spot.distance(p) + farther, spot)
         };
         let mut left: Vec<(f64, Point)> = self.cells(room).map(loss).collect();
-        let mut fallback = None;
+        let mut looked: Vec<(f64, Point)> = Vec::new();
         for _ in 0..MOST_TOUCHED {
             // ties go to the southern, then the western spot
-            let best = (0..left.len()).min_by(|a, b| left[*a].0.total_cmp(&left[*b].0))?;
-            if self.touches_nothing(left[best].1) {
-                return Some(left[best]);
+            let Some(best) = (0..left.len()).min_by(|a, b| left[*a].0.total_cmp(&left[*b].0)) else { break };
+            let least = looked.iter().copied().min_by(|a, b| a.0.total_cmp(&b.0));
+            if least.is_some_and(|known| known.0 <= left[best].0) {
+                return least;
             }
-            fallback = fallback.or(Some(left.remove(best)));
+            let (off, spot) = left.remove(best);
+            let play = self.obstacles().distance(spot, self.radius + PLAY_M) - self.radius;
+            if play >= ROUNDING_M {
+                looked.push((off + CLOSE_M * (1.0 - play / PLAY_M).max(0.0), spot));
+            }
         }
-        fallback
+        looked
+            .into_iter()
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+            .or_else(|| self.cells(room).map(loss).min_by(|a, b| a.0.total_cmp(&b.0)))
     }
 
     /// Returns the reachable spot of a room by its number in a list of them, wrapped around.
@@ -187,9 +198,10 @@ impl<'a> Floor<'a> {
         self.obstacles.get_or_init(|| Obstacles::of_world(self.plan, self.placements, below))
     }
 
-    /// Returns true when a robot at a spot touches nothing by less than a cell either.
-    pub fn touches_nothing(&self, p: Point) -> bool {
-        self.obstacles().distance(p, self.radius + ROUNDING_M) >= self.radius + ROUNDING_M
+    /// Returns true when a robot at a spot has this much play around, m, measured exactly.
+    pub fn has_play(&self, p: Point, play: f64) -> bool {
+        let needed = self.radius + play.max(ROUNDING_M);
+        self.obstacles().distance(p, needed) >= needed
     }
 
     /// Returns true when the disc can be at one of the spots in a rectangle.

@@ -19,6 +19,8 @@ use super::lattice::{LINE_PLAY_M, Lattice, PLAY_M, Room, factor};
 
 /// How far before the faces of its wall a robot turns to a door, beyond its radius, m: the first that is free.
 const BEFORE_DOOR_M: [f64; 3] = [0.2, 0.05, -0.15];
+/// Length of the ends of a stretch where there may be less play because of what it leads to, m.
+const END_M: f64 = 0.4;
 /// Distance between the places of a wide opening that are looked at, m.
 const ABREAST_M: f64 = 0.25;
 /// Most places of an opening on each side of its middle.
@@ -280,7 +282,11 @@ impl<'f, 'a> Router<'f, 'a> {
         let most = self.need + PLAY_M;
         let ends = self.obstacles.distance(a, most).min(self.obstacles.distance(b, most));
         let straight = self.obstacles.along(a, b, most);
-        if straight >= ends.max(self.need) - ROUNDING_M {
+        // little play at the ends is no reason for little play between them
+        let inner = (END_M / a.distance(b).max(END_M)).min(0.5);
+        let at = |t: f64| Point::new(a.x + t * (b.x - a.x), a.y + t * (b.y - a.y));
+        let between = || self.obstacles.along(at(inner), at(1.0 - inner), most) >= self.need + LINE_PLAY_M;
+        if straight >= ends.max(self.need) - ROUNDING_M && (straight >= self.need + LINE_PLAY_M || between()) {
             let cost = a.distance(b) * factor(straight - self.need);
             return Some(Stretch { path: vec![a, b], cost });
         }

@@ -29,9 +29,9 @@ const PASSING_M: f64 = 0.1;
 /// Play on each side of a robot that brings goods, m.
 const CARRYING_M: f64 = 0.15;
 /// Cells of wall or furniture beside a place that outweigh a meter more to the nearest door.
-const FAR_CELLS: f64 = 4.0;
+const FAR_CELLS: f64 = 2.0;
 /// Places in a room that are looked at closely for one size, and how far they lie apart, cells.
-const PLACES: usize = 2;
+const PLACES: usize = 4;
 const APART: usize = 16;
 /// Cells of a room's bounds from which on fewer of them are looked at.
 const LARGE: usize = 200_000;

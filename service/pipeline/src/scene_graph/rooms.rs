@@ -301,7 +301,7 @@ const DOCK_ROOM_M2: f64 = 8.0;
 const MOST_DOCKS: u32 = 3;
 
 /// Returns how well a room that may have a dock suits a robot, 0 best; `None` for rooms to sleep in.
-fn dock_rank(kind: &RoomType, robot: &Robot) -> Option<u8> {
+pub(crate) fn dock_rank(kind: &RoomType, robot: &Robot) -> Option<u8> {
     let soiled = kind.goods == Goods::Soiled;
     match kind.zone {
         Zone::Service if soiled == (robot.kind == "cleaning") => Some(0),
