@@ -7,6 +7,9 @@ use crate::solid::Solid;
 /// Edge of a cell, m: five make the robot of SceneEval exactly.
 pub const CELL_M: f64 = 0.04;
 
+/// Headings of a long body in half a turn; forward and backward are the same outline.
+const HEADINGS: usize = 16;
+
 /// A set of cells over a rectangle.
 #[derive(Debug, Clone)]
 pub struct Grid {
@@ -106,6 +109,52 @@ impl Grid {
             }
         }
         out
+    }
+
+    /// Returns where the middle of a long body (width and length, m) can be in some heading, and where it gets to from within
+    /// `near` (m) of a point: along itself, and turning about its middle. Its outline is a row of discs as wide as it is.
+    pub fn driven(&self, [width, length]: [f64; 2], start: Point, near: f64) -> (Self, Self) {
+        let disc = self.eroded_by_disc(width / 2.0);
+        let (nx, ny) = (self.nx as i64, self.ny as i64);
+        let at = |i: i64, j: i64| (0..nx).contains(&i) && (0..ny).contains(&j) && disc.cells[(j * nx + i) as usize];
+        let reach = ((length - width).max(0.0) / 2.0 / CELL_M).ceil();
+        let row = |h: usize| -> Vec<(i64, i64)> {
+            let (sin, cos) = (std::f64::consts::PI * h as f64 / HEADINGS as f64).sin_cos();
+            let far = |k: i64| ((k as f64 * cos).round() as i64, (k as f64 * sin).round() as i64);
+            (-(reach as i64)..=reach as i64).map(far).collect()
+        };
+        let rows: Vec<Vec<(i64, i64)>> = (0..HEADINGS).map(row).collect();
+        let stands = |i: i64, j: i64, h: usize| at(i, j) && rows[h].iter().all(|(x, y)| at(i + x, j + y));
+        let empty = Self { cells: vec![false; self.cells.len()], ..*self };
+        let (mut all, mut driven) = (empty.clone(), empty);
+        // by cell: headings in which it can be there, and in which it has been
+        let mut can = vec![0_u16; self.cells.len()];
+        for k in (0..self.cells.len()).filter(|k| disc.cells[*k]) {
+            let (i, j) = (k as i64 % nx, k as i64 / nx);
+            can[k] = (0..HEADINGS).filter(|h| stands(i, j, *h)).map(|h| 1 << h).sum();
+            all.cells[k] = can[k] != 0;
+        }
+        let mut seen = vec![0_u16; self.cells.len()];
+        let begins = |k: &usize| self.center(k % self.nx, k / self.nx).distance(start) <= near;
+        let mut open: Vec<(usize, usize)> =
+            (0..self.cells.len()).filter(begins).flat_map(|k| (0..HEADINGS).map(move |h| (k, h))).collect();
+        while let Some((k, h)) = open.pop() {
+            if can[k] & !seen[k] & (1 << h) == 0 {
+                continue;
+            }
+            seen[k] |= 1 << h;
+            driven.cells[k] = true;
+            open.extend([(k, (h + 1) % HEADINGS), (k, (h + HEADINGS - 1) % HEADINGS)]);
+            let (i, j) = (k as i64 % nx, k as i64 / nx);
+            let (sin, cos) = (std::f64::consts::PI * h as f64 / HEADINGS as f64).sin_cos();
+            for far in [-2.0, -1.0, 1.0, 2.0] {
+                let (x, y) = (i + (far * cos).round() as i64, j + (far * sin).round() as i64);
+                if (0..nx).contains(&x) && (0..ny).contains(&y) {
+                    open.push(((y * nx + x) as usize, h));
+                }
+            }
+        }
+        (all, driven)
     }
 
     /// Returns the share of the set in its largest part connected by edges and corners; 0 for the empty set.

@@ -66,6 +66,15 @@ impl<'a> Solid<'a> {
         (dx * cos + dy * sin).abs() <= depth / 2.0 + margin && (dy * cos - dx * sin).abs() <= width / 2.0 + margin
     }
 
+    /// Returns the distance of a point from the outline, m; 0 inside.
+    pub fn distance(&self, p: Point) -> f64 {
+        let (dx, dy) = (p.x - self.center.x, p.y - self.center.y);
+        let (cos, sin) = self.front;
+        let [width, depth, _] = self.placement.size_m;
+        let beyond = |along: f64, half: f64| (along.abs() - half).max(0.0);
+        beyond(dx * cos + dy * sin, depth / 2.0).hypot(beyond(dy * cos - dx * sin, width / 2.0))
+    }
+
     /// Returns how far one would have to be moved to be clear of the other, m; zero or less when they do not overlap.
     pub fn penetration(&self, other: &Self) -> f64 {
         let vertical = self.z1.min(other.z1) - self.z0.max(other.z0);

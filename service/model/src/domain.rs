@@ -22,7 +22,7 @@ pub use program::{
     Adjacency, AdjacencyRelation, Circulation, Elevator, Occupants, Program, ProgramRoom, Scheme, Stairs, Storeys,
     Units,
 };
-pub use room_type::{Access, AreaRange, Daylight, Materials, Privacy, RobotUse, RoomType, Zone};
+pub use room_type::{Access, AreaRange, Daylight, Goods, Materials, Privacy, RobotUse, RoomType, Zone};
 
 use std::collections::BTreeMap;
 

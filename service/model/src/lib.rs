@@ -14,6 +14,7 @@ pub mod expression;
 pub mod floorplan;
 pub mod geometry;
 pub mod knowledge;
+pub mod obstacles;
 pub mod occupancy;
 pub mod passage;
 pub mod placements;

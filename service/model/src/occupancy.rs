@@ -166,7 +166,7 @@ impl Occupancy {
     /// Returns what a disc of this radius (m) can reach, over all and room by room.
     pub fn reach(&self, plan: &Floorplan, radius_m: f64) -> Reach {
         let clear = self.clear(radius_m);
-        let main = clear.components().into_iter().next().unwrap_or_else(|| Bitmap::new(self.frame.nx, self.frame.ny));
+        let main = clear.largest().unwrap_or_else(|| Bitmap::new(self.frame.nx, self.frame.ny));
         let share = |part: usize, whole: usize| if whole == 0 { 0.0 } else { part as f64 / whole as f64 };
         // one room after the other in one set: nothing is gone through but the floor around each
         let mut cells = Bitmap::new(self.frame.nx, self.frame.ny);

@@ -43,7 +43,8 @@ pub struct Report {
 pub struct RobotFit {
     /// Kind of robot: `delivery`.
     pub kind: String,
-    /// Radius of the circle it turns in, m.
+    /// Radius of the disc that must find its way, m: of the circle it turns in; of a long body half its width, for that
+    /// drives straight through what is narrow.
     pub radius_m: f64,
     /// Height, m.
     pub height_m: f64,

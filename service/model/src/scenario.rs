@@ -129,7 +129,7 @@ pub struct Route {
     pub to: String,
     /// Length, m.
     pub length_m: f64,
-    /// Clear width of its narrowest place, m.
+    /// Twice the least distance of its middle line to anything, at its ends too, m.
     pub clear_width_m: f64,
     /// Corners from start to end; the middle of the robot drives straight between them.
     pub path: Vec<Point>,

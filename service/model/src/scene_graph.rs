@@ -162,7 +162,8 @@ pub struct Robot {
     pub kind: String,
     /// How many.
     pub count: u32,
-    /// Radius of the circle it turns in, m.
+    /// Radius of the disc that must find its way, m: of the circle it turns in; of a long body half its width, for that
+    /// drives straight through what is narrow.
     pub radius_m: f64,
     /// Height, m.
     pub height_m: f64,

@@ -58,9 +58,31 @@ pub struct RoomType {
     /// What robots do here.
     #[serde(default)]
     pub robot: Vec<RobotUse>,
+    /// What robots bring there or take away: they visit rooms with clean goods first and those with soiled ones last.
+    #[serde(default, skip_serializing_if = "Goods::is_usual")]
+    pub goods: Goods,
     /// What stands in it, most important first.
     #[serde(default)]
     pub furnishing: Vec<Furnishing>,
+}
+
+/// How clean what robots carry to and from a room is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Goods {
+    /// Must not be soiled: linen, medicine, food, sterile supplies.
+    Clean,
+    /// Neither.
+    #[default]
+    Usual,
+    /// Soils what comes after: waste, used linen, floors of toilets.
+    Soiled,
+}
+
+impl Goods {
+    fn is_usual(&self) -> bool {
+        *self == Self::Usual
+    }
 }
 
 /// Part of the building, used to group rooms and to color plans.
@@ -155,6 +177,8 @@ pub enum RobotUse {
     Service,
     /// Suits a charging dock.
     Charging,
+    /// Has floor for goods that robots put down and take up.
+    Staging,
     /// Robots stay out.
     KeepOut,
 }

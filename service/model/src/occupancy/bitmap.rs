@@ -231,29 +231,58 @@ impl Bitmap {
         })
     }
 
+    /// Returns the largest connected part (by edges), of equal ones that with the southernmost, then westernmost cell.
+    pub fn largest(&self) -> Option<Self> {
+        let mut rest = self.clone();
+        let mut left = rest.count();
+        let mut best: Option<(usize, Self)> = None;
+        // what is left may hold many small parts, of which none can be the one
+        while left > best.as_ref().map_or(0, |(count, _)| *count) {
+            let (i, j) = rest.cells().next()?;
+            let mut seed = Self::new(self.nx, self.ny);
+            seed.set(i, j);
+            let part = rest.flood(&seed);
+            rest.subtract(&part);
+            let count = part.count();
+            left -= count;
+            if best.as_ref().is_none_or(|(most, _)| count > *most) {
+                best = Some((count, part));
+            }
+        }
+        best.map(|(_, part)| part)
+    }
+
     /// Returns the cells whose whole surrounding disc is in the set: no missing cell center, and no cell outside the
     /// grid, is nearer than `radius` (in cells) to the cell's center.
     pub fn eroded(&self, radius: f64) -> Self {
-        let reach = radius.ceil() as i64;
+        let reach = radius.ceil() as usize;
         let mut out = self.clone();
-        for dy in -reach..=reach {
+        let mut rows: Option<(usize, Vec<u64>)> = None;
+        for dy in 0..=reach {
             // half width of the disc in this row: the largest dx with dx^2 + dy^2 < radius^2
             let left = radius * radius - (dy * dy) as f64 - 1e-9;
             if left <= 0.0 {
                 continue;
             }
             let half = (left.sqrt().ceil() as usize).saturating_sub(1);
-            let rows = self.eroded_along_rows(half);
-            for j in 0..self.ny {
-                let from = j as i64 + dy;
-                for w in 0..self.stride {
-                    let other =
-                        if (0..self.ny as i64).contains(&from) { rows[from as usize * self.stride + w] } else { 0 };
-                    out.words[j * self.stride + w] &= other;
-                }
+            // near its middle the disc is as wide in several rows, and those above and below it are the same
+            if rows.as_ref().is_none_or(|(known, _)| *known != half) {
+                rows = Some((half, self.eroded_along_rows(half)));
             }
+            let Some((_, rows)) = &rows else { continue };
+            out.intersect_moved(rows, dy);
         }
         out
+    }
+
+    /// Keeps the cells that have one in `rows` so many rows farther north and so many farther south.
+    fn intersect_moved(&mut self, rows: &[u64], dy: usize) {
+        let shift = (dy * self.stride).min(self.words.len());
+        let kept = self.words.len() - shift;
+        self.words[..kept].iter_mut().zip(&rows[shift..]).for_each(|(word, other)| *word &= other);
+        self.words[kept..].fill(0);
+        self.words[shift..].iter_mut().zip(&rows[..kept]).for_each(|(word, other)| *word &= other);
+        self.words[..shift].fill(0);
     }
 
     /// Returns rows in which a bit stays when all bits within `half` columns are set, by doubling the window.
@@ -451,6 +480,7 @@ mod tests {
             }
         }
         assert!(parts.windows(2).all(|p| p[0].count() >= p[1].count()));
+        assert_eq!(map.largest().as_ref(), parts.first());
     }
 
     #[test]

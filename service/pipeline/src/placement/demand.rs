@@ -172,7 +172,7 @@ pub(super) fn tasks<'a>(
         }
     }
     let lines = kind.furnishing.len();
-    for (i, object) in wishes(domain, kind, graph).into_iter().enumerate() {
+    for (i, (object, count)) in wishes(domain, kind, graph).into_iter().enumerate() {
         let arrangement = natural(object);
         let rule = format!("wished for in the scene graph ({}): {}", object.id, arrangement_name(arrangement));
         let line = lines + i;
@@ -181,7 +181,7 @@ pub(super) fn tasks<'a>(
             item,
             anchor: object,
             arrangement,
-            count: 1,
+            count,
             required: 0,
             spare: 0,
             line,
@@ -287,8 +287,9 @@ pub(super) fn one_more(object: &ObjectType) -> Task<'_> {
     }
 }
 
-fn wishes<'a>(domain: &'a Domain, kind: &RoomType, graph: Option<&GraphRoom>) -> Vec<&'a ObjectType> {
-    let mut out: Vec<&ObjectType> = Vec::new();
+/// Returns what the graph wishes for beyond the lines of the room's type, and how many.
+fn wishes<'a>(domain: &'a Domain, kind: &RoomType, graph: Option<&GraphRoom>) -> Vec<(&'a ObjectType, u32)> {
+    let mut out: Vec<(&ObjectType, u32)> = Vec::new();
     for id in graph.map_or(&[][..], |g| &g.wished_assets) {
         let covered = kind.furnishing.iter().any(|f| {
             &f.item == id
@@ -296,9 +297,11 @@ fn wishes<'a>(domain: &'a Domain, kind: &RoomType, graph: Option<&GraphRoom>) ->
         });
         if let Some(object) = domain.object(id)
             && !covered
-            && !out.iter().any(|o| o.id == object.id)
         {
-            out.push(object);
+            match out.iter_mut().find(|(o, _)| o.id == object.id) {
+                Some((_, count)) => *count += 1,
+                None => out.push((object, 1)),
+            }
         }
     }
     out

@@ -16,6 +16,12 @@ const SWING: f64 = 8.0;
 /// What it loses where people only pass.
 const PASSAGE: f64 = 4.0;
 
+/// How far from the doors out of the building a dock and its floor keep, mm, and what it loses right at one: people with
+/// bags come in there, and leave in a hurry.
+const FROM_EXIT: i32 = 2000;
+const EXIT: f64 = 10.0;
+/// Rank of doors from which on they lead to other rooms.
+const INDOORS: u8 = 2;
 /// What a place loses that takes floor of a dock, or that has something on its own.
 const CROWDED: f64 = 3.0;
 /// What it loses where people stand to use something.
@@ -101,12 +107,21 @@ fn is_on_floor(s: &Solid) -> bool {
     s.z0 < LOW
 }
 
-/// Returns how much a place for a unit loses by doors that open into the floor of its docks; 0 for other units.
+/// Returns how much a place for a unit loses by doors that open into the floor of its docks, and by those out of the building
+/// near it; 0 for other units.
 pub(super) fn door_loss(space: &Space, p: &Placed, robot: i32) -> f64 {
     let loss = |b: &Box2, d: &DoorZone| match d.zone.overlaps(b) {
         true if d.swings_in => SWING,
         true => PASSAGE,
         false => 0.0,
     };
-    buffers(p, robot).map(|b| space.doors.iter().map(|d| loss(&b, d)).fold(0.0, f64::max)).sum()
+    let exit = |b: &Box2, d: &DoorZone| {
+        let gap = space.walls[d.wall].strip(d.v0, d.v1, 0, 1).gap(b);
+        EXIT * f64::from((FROM_EXIT - gap).max(0)) / f64::from(FROM_EXIT)
+    };
+    let exits = || space.doors.iter().filter(|d| d.rank < INDOORS);
+    let of = |b: &Box2| {
+        space.doors.iter().map(|d| loss(b, d)).fold(0.0, f64::max) + exits().map(|d| exit(b, d)).fold(0.0, f64::max)
+    };
+    buffers(p, robot).map(|b| of(&b)).sum()
 }

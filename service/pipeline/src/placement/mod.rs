@@ -8,6 +8,7 @@
 //! It does not choose 3D models (`asset` names the object type) and does not move walls.
 
 pub mod assemble;
+mod berths;
 mod clutter;
 mod demand;
 mod docks;
@@ -117,6 +118,7 @@ pub fn generate_until(
         }
     }
     locked::settle(problems)?;
+    berths::add_missing(graph, plan, (domain, limits), &mut out, stop)?;
     Ok(out)
 }
 

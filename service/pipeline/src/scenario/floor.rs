@@ -4,10 +4,11 @@ use std::cell::OnceCell;
 use std::collections::BTreeMap;
 
 use d3dgen_knowledge::clearance::quarter;
-use d3dgen_model::domain::{Domain, ObjectType, RobotUse, RoomType, Shape};
+use d3dgen_model::domain::{Domain, Goods, ObjectType, RobotUse, RoomType, Shape};
 use d3dgen_model::floorplan::{Door, DoorKind, Floorplan, PlanRoom};
 use d3dgen_model::geometry::to_mm;
-use d3dgen_model::occupancy::{Bitmap, CELL_M, Occupancy};
+use d3dgen_model::obstacles::Obstacles;
+use d3dgen_model::occupancy::{Bitmap, CELL_M, Occupancy, ROBOT_HEIGHT_M};
 use d3dgen_model::placements::{Placement, Placements};
 use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::{Point, Pose, Rect};
@@ -21,20 +22,31 @@ const TIGHT_M: f64 = 1.6;
 const SWING_M: f64 = 1.0;
 /// How far a chair is pushed back when one gets up, m.
 const CHAIR_BACK_M: f64 = 0.3;
+/// Spots of a room that are looked at exactly, at most.
+const MOST_TOUCHED: usize = 400;
+/// Play around a spot that is enough, m, and how much farther off one may be that has it than one that has none.
+const PLAY_M: f64 = 0.08;
+const CLOSE_M: f64 = 0.4;
+/// Slack for points that are rounded to millimeters, m.
+pub(super) const ROUNDING_M: f64 = 0.001;
 /// Forward and left of the four headings.
 const FORWARD: [(f64, f64); 4] = [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)];
 
 /// The building as robots and people find it.
 pub(super) struct Floor<'a> {
     pub plan: &'a Floorplan,
+    placements: &'a Placements,
     pub domain: &'a Domain,
     pub rooms: Vec<Room<'a>>,
     /// Radius that everything here is reachable for, m.
     pub radius: f64,
+    /// Height of the highest robot, m.
+    pub height: f64,
     pub occupancy: Occupancy,
     /// Cells where the disc can be that are connected to most of the others.
     pub main: Bitmap,
     doors: OnceCell<Doors<'a>>,
+    obstacles: OnceCell<Obstacles>,
 }
 
 /// A room with what stands in it.
@@ -61,9 +73,10 @@ impl<'a> Floor<'a> {
     pub fn new(graph: &SceneGraph, plan: &'a Floorplan, placements: &'a Placements, domain: &'a Domain) -> Self {
         let occupancy = Occupancy::of_world(plan, placements);
         let radius = graph.robots.iter().map(|r| r.radius_m).fold(LEAST_RADIUS_M, f64::max);
+        let height = graph.robots.iter().map(|r| r.height_m).fold(0.0, f64::max);
         let main = occupancy.reach(plan, radius).main;
         // grids that begin elsewhere see gaps a cell narrower
-        let surely = occupancy.clear(radius + CELL_M).components().into_iter().next();
+        let surely = occupancy.clear(radius + CELL_M).largest();
         let mut by_room: BTreeMap<&str, Vec<&Placement>> = BTreeMap::new();
         for p in &placements.placements {
             by_room.entry(&p.room_id).or_default().push(p);
@@ -112,7 +125,8 @@ impl<'a> Floor<'a> {
             }
         };
         let rooms = plan.rooms.iter().map(&mut room).collect();
-        Self { rooms, plan, domain, radius, occupancy, main, doors: OnceCell::new() }
+        let (doors, obstacles) = (OnceCell::new(), OnceCell::new());
+        Self { rooms, plan, placements, domain, radius, height, occupancy, main, doors, obstacles }
     }
 
     /// Returns the reachable spot of a room nearest to a point, a little farther off rather than in a doorway or against
@@ -131,8 +145,25 @@ impl<'a> Floor<'a> {
             };
             (spot.distance(p) + farther, spot)
         };
-        // ties go to the southern, then the western spot
-        self.cells(room).map(loss).min_by(|a, b| a.0.total_cmp(&b.0))
+        let mut left: Vec<(f64, Point)> = self.cells(room).map(loss).collect();
+        let mut looked: Vec<(f64, Point)> = Vec::new();
+        for _ in 0..MOST_TOUCHED {
+            // ties go to the southern, then the western spot
+            let Some(best) = (0..left.len()).min_by(|a, b| left[*a].0.total_cmp(&left[*b].0)) else { break };
+            let least = looked.iter().copied().min_by(|a, b| a.0.total_cmp(&b.0));
+            if least.is_some_and(|known| known.0 <= left[best].0) {
+                return least;
+            }
+            let (off, spot) = left.remove(best);
+            let play = self.obstacles().distance(spot, self.radius + PLAY_M) - self.radius;
+            if play >= ROUNDING_M {
+                looked.push((off + CLOSE_M * (1.0 - play / PLAY_M).max(0.0), spot));
+            }
+        }
+        looked
+            .into_iter()
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+            .or_else(|| self.cells(room).map(loss).min_by(|a, b| a.0.total_cmp(&b.0)))
     }
 
     /// Returns the reachable spot of a room by its number in a list of them, wrapped around.
@@ -154,6 +185,23 @@ impl<'a> Floor<'a> {
     /// Returns the doors that tours lead through.
     pub fn doors(&self) -> &Doors<'a> {
         self.doors.get_or_init(|| Doors::new(self.plan))
+    }
+
+    /// Returns how clean what robots carry to and from a room is.
+    pub fn goods(&self, room_id: &str) -> Goods {
+        self.rooms.iter().find(|r| r.plan.room_id == room_id).map_or(Goods::Usual, |r| r.kind.goods)
+    }
+
+    /// Returns what robots must not touch, exactly.
+    pub fn obstacles(&self) -> &Obstacles {
+        let below = self.height.max(ROBOT_HEIGHT_M);
+        self.obstacles.get_or_init(|| Obstacles::of_world(self.plan, self.placements, below))
+    }
+
+    /// Returns true when a robot at a spot has this much play around, m, measured exactly.
+    pub fn has_play(&self, p: Point, play: f64) -> bool {
+        let needed = self.radius + play.max(ROUNDING_M);
+        self.obstacles().distance(p, needed) >= needed
     }
 
     /// Returns true when the disc can be at one of the spots in a rectangle.

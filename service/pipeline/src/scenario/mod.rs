@@ -4,6 +4,7 @@
 //! building. Which rooms are cleaned, served or off limits, and who walks where, is the domain's data.
 
 mod floor;
+mod lattice;
 mod people;
 mod points;
 mod regions;

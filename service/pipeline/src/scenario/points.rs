@@ -122,7 +122,11 @@ fn bays(floor: &Floor, graph: &SceneGraph, rois: &[Roi]) -> Vec<Poi> {
             others && !staging.iter().any(inside) && doors.iter().all(|d| d.distance(*p) >= BAY_FROM_DOOR_M)
         };
         let room_around = |p: &Point| doors.iter().chain(&taken).map(|d| d.distance(*p)).fold(f64::MAX, f64::min);
-        let best = spots.iter().copied().filter(apart).max_by(|a, b| room_around(a).total_cmp(&room_around(b)));
+        // beside the walls rather than at them, where there is room for that
+        let best = [GAP_M, 0.0].into_iter().find_map(|play| {
+            let free = spots.iter().copied().filter(apart).filter(|p| floor.has_play(*p, play));
+            free.max_by(|a, b| room_around(a).total_cmp(&room_around(b)))
+        });
         taken.extend(best);
     }
     let middle = room.plan.net_polygon.bounds().center();

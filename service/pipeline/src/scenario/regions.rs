@@ -1,6 +1,7 @@
 //! Robot zones: floor to be cleaned, floor to serve at, floor around docks, floor to keep out of.
 
-use d3dgen_model::domain::{RobotUse, Shape};
+use d3dgen_model::domain::{Goods, RobotUse, Shape};
+use d3dgen_model::floorplan::Door;
 use d3dgen_model::geometry::to_mm;
 use d3dgen_model::occupancy::stops_robot;
 use d3dgen_model::placements::Placement;
@@ -18,6 +19,8 @@ const LEAST_SERVICE_DEPTH_M: f64 = 0.6;
 const TOUCH_M: f64 = 0.01;
 /// Free floor beside a dock that belongs to it, m.
 const DOCK_BESIDE_M: f64 = 0.5;
+/// Floor inside the doors out of the building on which nobody waits, m.
+const INSIDE_EXIT_M: f64 = 1.5;
 /// Least side of a region, m.
 const LEAST_SIDE_M: f64 = 0.3;
 
@@ -69,9 +72,10 @@ pub(super) fn number(rois: &mut [Roi], floor: &Floor, pois: &[Poi]) {
     }
     let of_kind = |kind: &str| pois.iter().find(|p| p.kind == kind);
     let start = of_kind("dock").or_else(|| of_kind("entrance")).map(Stop::of_poi);
-    let stops: Vec<Stop> =
-        zones.iter().map(|(_, room)| Stop { room: &room.plan.room_id, at: largest(room).center() }).collect();
-    let order = tour::order(floor.doors(), start, &stops);
+    let stops =
+        zones.iter().map(|(_, room)| (room.kind.goods, Stop { room: &room.plan.room_id, at: largest(room).center() }));
+    let stops: Vec<(Goods, Stop)> = stops.collect();
+    let order = tour::in_turn(floor.doors(), start, &stops);
     for (number, i) in order.into_iter().enumerate() {
         let (roi, room) = &mut zones[i];
         roi.order = Some(number as u32 + 1);
@@ -96,8 +100,8 @@ fn buffers<'r>(floor: &'r Floor, room: &'r Room) -> impl Iterator<Item = (&'r Pl
     })
 }
 
-/// Returns the floor where robots serve at an object, without what stands there, the floor of docks and the swing of doors
-/// where enough is left.
+/// Returns the floor where robots serve at an object, without what stands there, the floor of docks, the swing of doors and
+/// the way in from outside, where enough is left.
 fn service_floor(floor: &Floor, room: &Room, object: &Placement, buffers: &[(&Placement, Rect)]) -> Rect {
     let together =
         |p: &Placement| p.placement_id == object.placement_id || p.group.is_some() && p.group == object.group;
@@ -108,7 +112,8 @@ fn service_floor(floor: &Floor, room: &Room, object: &Placement, buffers: &[(&Pl
     let is_wide =
         |r: &Rect| r.width() >= LEAST_SERVICE_DEPTH_M - TOUCH_M && r.height() >= LEAST_SERVICE_DEPTH_M - TOUCH_M;
     let mut left = floor_in_front(object, SERVICE_DEPTH_M, 0.0);
-    for taken in bodies.chain(buffers.iter().map(|(_, r)| *r)).chain(swings) {
+    let exits = floor.plan.doors_of(&room.plan.room_id).filter(|d| d.room_ids.len() == 1).map(inside);
+    for taken in bodies.chain(buffers.iter().map(|(_, r)| *r)).chain(swings).chain(exits) {
         if !taken.overlaps(&left.grown(-TOUCH_M)) {
             continue;
         }
@@ -123,6 +128,17 @@ fn service_floor(floor: &Floor, room: &Room, object: &Placement, buffers: &[(&Pl
         left = parts.max_by(|a, b| a.area().total_cmp(&b.area())).unwrap_or(left);
     }
     left
+}
+
+/// Returns the floor inside a door out of the building, with as much outside.
+fn inside(door: &Door) -> Rect {
+    let (a, b) = (door.line.start, door.line.end);
+    let r = Rect::new(a.x.min(b.x), a.y.min(b.y), a.x.max(b.x), a.y.max(b.y));
+    let deep = INSIDE_EXIT_M + door.wall_thickness_m / 2.0;
+    match door.line.is_vertical() {
+        true => Rect { x0: r.x0 - deep, x1: r.x1 + deep, ..r },
+        false => Rect { y0: r.y0 - deep, y1: r.y1 + deep, ..r },
+    }
 }
 
 /// Returns the largest part of a rectangle that lies on one straight piece of the room's net floor.

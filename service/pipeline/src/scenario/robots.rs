@@ -1,5 +1,6 @@
 //! Robots with where they start and what they visit.
 
+use d3dgen_model::domain::Goods;
 use d3dgen_model::floorplan::Floorplan;
 use d3dgen_model::passage::{Passages, RobotWay};
 use d3dgen_model::placements::Placements;
@@ -11,6 +12,9 @@ use super::floor::{Floor, looking_at};
 use super::routes::Router;
 use super::tour::{self, Stop};
 
+/// Kind of robot that cleans.
+const CLEANING: &str = "cleaning";
+
 /// Returns the robots of the scene graph, each with its own start, goals that it can reach, in the order of a short tour.
 pub(super) fn all(
     floor: &mut Floor,
@@ -19,13 +23,15 @@ pub(super) fn all(
     pois: &[Poi],
 ) -> Vec<RobotTask> {
     let mut out: Vec<RobotTask> = Vec::new();
-    let docks: Vec<&Poi> = pois.iter().filter(|p| p.kind == "dock").collect();
+    let mut docks: Vec<&Poi> = pois.iter().filter(|p| p.kind == "dock").collect();
+    let all_docks = docks.clone();
     for robot in &graph.robots {
         let all = of_trade(floor, robot, pois);
         for number in 0..robot.count as usize {
             let known = out.iter().filter(|t| t.robot.kind == robot.kind).count();
             let robot_id = format!("{}_robot_{}", robot.kind, known + 1);
-            let dock = docks.get(number % docks.len().max(1)).copied();
+            let dock =
+                own_dock(floor, robot, &mut docks).or_else(|| all_docks.get(number % all_docks.len().max(1)).copied());
             let Some(start) = start(floor, pois, dock, &out) else { continue };
             floor.take(Point::new(start.x, start.y), robot.radius_m);
             out.push(RobotTask {
@@ -46,11 +52,31 @@ pub(super) fn all(
     out
 }
 
-/// Looks for the routes of all robots.
+/// Takes the dock that suits a robot best of those that no other one has: cleaning ones charge where soiled things are.
+fn own_dock<'p>(floor: &Floor, robot: &Robot, left: &mut Vec<&'p Poi>) -> Option<&'p Poi> {
+    let suits = |p: &&Poi| (floor.goods(&p.room_id) == Goods::Soiled) == (robot.kind == CLEANING);
+    let at = left.iter().position(suits).or((!left.is_empty()).then_some(0))?;
+    Some(left.remove(at))
+}
+
+/// Looks for the routes of all robots: as the largest of them goes, where a smaller one needs no other way.
 pub(super) fn add_routes(floor: &Floor, scenario: &mut Scenario) {
-    let mut router = Router::new(floor);
+    let mut routers = vec![Router::new(floor, floor.radius)];
     let Scenario { robots, pois, .. } = scenario;
-    robots.iter_mut().for_each(|task| task.routes = router.round(task, pois));
+    for task in robots {
+        let mut legs = routers[0].round(task, pois);
+        let radius = task.robot.radius_m;
+        if radius < floor.radius && legs.iter().any(Option::is_none) {
+            let own = routers.iter().position(|r| r.radius() == radius).unwrap_or(routers.len());
+            if own == routers.len() {
+                routers.push(Router::new(floor, radius));
+            }
+            for (leg, narrow) in legs.iter_mut().zip(routers[own].round(task, pois)) {
+                *leg = leg.take().or(narrow);
+            }
+        }
+        task.routes = legs.into_iter().flatten().collect();
+    }
 }
 
 /// Returns the widest ways to a robot's goals and dock.
@@ -102,6 +128,6 @@ fn goals(floor: &Floor, own: Vec<&Poi>, dock: Option<&Poi>) -> Vec<String> {
 }
 
 fn toured<'p>(floor: &Floor, points: Vec<&'p Poi>, from: Option<&Poi>) -> Vec<&'p Poi> {
-    let stops: Vec<Stop> = points.iter().map(|p| Stop::of_poi(p)).collect();
-    tour::order(floor.doors(), from.map(Stop::of_poi), &stops).into_iter().map(|i| points[i]).collect()
+    let stops: Vec<(Goods, Stop)> = points.iter().map(|p| (floor.goods(&p.room_id), Stop::of_poi(p))).collect();
+    tour::in_turn(floor.doors(), from.map(Stop::of_poi), &stops).into_iter().map(|i| points[i]).collect()
 }

@@ -1,237 +1,318 @@
-//! Routes of robots on the free floor: from where one starts to its goals in turn, and to its dock.
+//! Routes of robots: from where one starts to its goals in turn, and to its dock.
 //!
-//! A short way on the grid of the occupancy, where floor with little play counts more, pulled straight between its corners
-//! where that makes nothing narrower than it is or than a robot passes with ease.
+//! A route goes from door to door, each crossed straight in the middle of what is clear, and through every room between two
+//! doors by a stretch of its own that is looked for once: straight where there is play enough, else along a lattice on which
+//! floor near things costs more, pulled straight again as far as that leaves play. Distances are exact
+//! ([`Obstacles`]): no part of a route is nearer to anything than the robot's radius.
 
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
+use std::collections::BTreeMap;
 
 use d3dgen_model::Point;
+use d3dgen_model::domain::RobotUse;
+use d3dgen_model::floorplan::Door;
 use d3dgen_model::geometry::to_mm;
-use d3dgen_model::passage::clear_widths;
+use d3dgen_model::obstacles::{Obstacles, clear_opening};
 use d3dgen_model::scenario::{Poi, RobotTask, Route};
 
-use super::floor::Floor;
+use super::floor::{Floor, ROUNDING_M};
+use super::lattice::{LINE_PLAY_M, Lattice, PLAY_M, Room, factor};
 
-/// Play beside a robot on both sides that is enough, m.
-const PLAY_M: f64 = 0.2;
-/// Play beside it on straight lines between corners, m.
-const LINE_PLAY_M: f64 = 0.05;
-/// Cost of a step along and across the grid, and on floor with little play.
-const STEPS: [u32; 2] = [10, 14];
-const TIGHT_STEPS: [u32; 2] = [13, 18];
-/// What a step that is still to go is taken for.
-const LEFT_STEPS: [u32; 2] = [16, 22];
-/// Neighbors of a cell.
-const AROUND: [(i64, i64); 8] = [(1, 0), (0, 1), (-1, 0), (0, -1), (1, 1), (-1, 1), (-1, -1), (1, -1)];
+/// How far before the faces of its wall a robot turns to a door, beyond its radius, m: the first that is free.
+const BEFORE_DOOR_M: [f64; 3] = [0.2, 0.05, -0.15];
+/// Length of the ends of a stretch where there may be less play because of what it leads to, m.
+const END_M: f64 = 0.4;
+/// Distance between the places of a wide opening that are looked at, m.
+const ABREAST_M: f64 = 0.25;
+/// Most places of an opening on each side of its middle.
+const MOST_ABREAST: u32 = 12;
+/// How much longer a way may be that stays out of rooms where robots have no business.
+const KEPT_OUT: f64 = 5.0;
+/// What a corner adds to a way, times its length, where it is none, m^2.
+const STRAIGHT_M2: f64 = 1e-4;
+/// Most times that a way is looked for again because a room on it has no stretch as short as its doors lie apart.
+const MOST_TRIES: usize = 100;
 
-/// What a cell is to a robot.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Grade {
-    Closed,
-    Tight,
-    Roomy,
+/// Where routes begin, end and change from room to room.
+struct Node {
+    room: usize,
+    at: Point,
+    /// The other side of a door.
+    through: Option<usize>,
+}
+
+/// Part of a route within a room.
+struct Stretch {
+    path: Vec<Point>,
+    /// Length, m, with what little play adds.
+    cost: f64,
 }
 
 /// Finds routes on one storey.
 pub(super) struct Router<'f, 'a> {
     floor: &'f Floor<'a>,
-    /// Diameter of the largest disc at each cell, mm.
-    wide: Vec<u32>,
-    /// By cell: whether the robot can be there, and with play.
-    grade: Vec<Grade>,
-    /// By cell: search it was reached in, cost of the way there, neighbor it came from, whether it is done.
-    seen: Vec<(u32, u32, u8, bool)>,
-    search: u32,
-    /// Width that has play enough, and that lines may have, mm.
-    roomy: u32,
-    passed: u32,
+    obstacles: &'f Obstacles,
+    radius: f64,
+    /// Least distance of the robot's middle to anything, m.
+    need: f64,
+    nodes: Vec<Node>,
+    /// Sides of doors by room.
+    doors: Vec<Vec<usize>>,
+    /// By nodes, the lower first; absent until looked for, `None` where there is none.
+    stretches: BTreeMap<(usize, usize), Option<Stretch>>,
+    lattices: BTreeMap<usize, Vec<Lattice>>,
 }
 
 impl<'f, 'a> Router<'f, 'a> {
-    pub fn new(floor: &'f Floor<'a>) -> Self {
-        let with = |play: f64| (2000.0 * (floor.radius + play)).round() as u32;
-        let (roomy, passed) = (with(PLAY_M), with(LINE_PLAY_M));
-        Self { floor, wide: Vec::new(), grade: Vec::new(), seen: Vec::new(), search: 0, roomy, passed }
+    /// Returns the router of robots up to this radius, m.
+    pub fn new(floor: &'f Floor<'a>, radius: f64) -> Self {
+        let mut out = Self {
+            floor,
+            obstacles: floor.obstacles(),
+            radius,
+            need: radius + ROUNDING_M,
+            nodes: Vec::new(),
+            doors: vec![Vec::new(); floor.rooms.len()],
+            stretches: BTreeMap::new(),
+            lattices: BTreeMap::new(),
+        };
+        let index: BTreeMap<&str, usize> =
+            floor.rooms.iter().enumerate().map(|(i, r)| (r.plan.room_id.as_str(), i)).collect();
+        for door in floor.plan.doors.iter().filter(|d| d.height_m >= floor.height) {
+            if let [a, b] = &door.room_ids[..]
+                && let (Some(&a), Some(&b)) = (index.get(a.as_str()), index.get(b.as_str()))
+            {
+                out.add_door(door, [a, b]);
+            }
+        }
+        out
     }
 
-    /// Returns the legs of a robot's round that can be driven.
-    pub fn round(&mut self, task: &RobotTask, pois: &[Poi]) -> Vec<Route> {
-        let mut here = (String::new(), Point::new(task.start.x, task.start.y));
-        let mut out: Vec<Route> = Vec::new();
+    /// Adds the two sides of a door where the robot passes it.
+    fn add_door(&mut self, door: &Door, rooms: [usize; 2]) {
+        let clear = clear_opening(door);
+        let (length, middle) = (clear.length(), clear.middle());
+        if length < 2.0 * (self.need - 2.0 * ROUNDING_M) {
+            return;
+        }
+        let along = ((clear.end.x - clear.start.x) / length, (clear.end.y - clear.start.y) / length);
+        let spare = length / 2.0 - self.need;
+        let count = ((spare / ABREAST_M) as u32).min(MOST_ABREAST);
+        let offsets = (0..=count).map(f64::from).flat_map(|k| if k == 0.0 { vec![0.0] } else { vec![k, -k] });
+        let mut best: Option<(f64, [Point; 2])> = None;
+        for offset in offsets.map(|k| k * ABREAST_M) {
+            let at = Point::new(middle.x + offset * along.0, middle.y + offset * along.1);
+            let Some((play, sides)) = self.crossing(door, (at, (-along.1, along.0))) else { continue };
+            // the middle of what is clear unless another place has more room
+            if best.as_ref().is_none_or(|b| play > b.0 + ROUNDING_M) {
+                best = Some((play, sides));
+            }
+        }
+        let Some((_, mut sides)) = best else { return };
+        let in_room = |room: usize, p: Point| self.floor.rooms[room].plan.net_polygon.contains(p);
+        if in_room(rooms[0], sides[1]) || in_room(rooms[1], sides[0]) {
+            sides.reverse();
+        }
+        for (k, (room, at)) in rooms.into_iter().zip(sides).enumerate() {
+            let id = self.nodes.len();
+            self.nodes.push(Node { room, at, through: Some(if k == 0 { id + 1 } else { id - 1 }) });
+            self.doors[room].push(id);
+        }
+    }
+
+    /// Returns the least distance to anything on the way straight through a wall, as far as that counts, and its ends.
+    fn crossing(&self, door: &Door, (at, normal): (Point, (f64, f64))) -> Option<(f64, [Point; 2])> {
+        let most = self.need + PLAY_M;
+        let mut play = most;
+        let mut sides = [at; 2];
+        for (side, sign) in sides.iter_mut().zip([1.0, -1.0]) {
+            let end = |beyond: f64| {
+                let far = sign * (door.wall_thickness_m / 2.0 + (self.need + beyond).max(0.0));
+                Point::new(to_mm(at.x + far * normal.0), to_mm(at.y + far * normal.1))
+            };
+            let tried = BEFORE_DOOR_M.into_iter().chain([-self.need]).map(|beyond| {
+                let end = end(beyond);
+                (self.obstacles.along(at, end, most), end)
+            });
+            // as far before the door as leaves the play that the door itself has
+            let own = self.obstacles.along(at, end(-self.need), most);
+            let found = tried.into_iter().find(|(d, _)| *d >= own - ROUNDING_M)?;
+            (play, *side) = (play.min(found.0), found.1);
+        }
+        (play >= self.need - 2.0 * ROUNDING_M).then_some((play, sides))
+    }
+
+    /// Returns the radius of the robots it is for, m.
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// Returns the legs of a robot's round in turn; `None` for what cannot be driven.
+    pub fn round(&mut self, task: &RobotTask, pois: &[Poi]) -> Vec<Option<Route>> {
+        let start = Point::new(task.start.x, task.start.y);
+        let mut here = (String::new(), self.stop(start));
+        let mut out = Vec::new();
         for id in task.goals.iter().chain(&task.dock) {
             let Some(poi) = pois.iter().find(|p| &p.poi_id == id) else { continue };
-            let there = Point::new(poi.pose.x, poi.pose.y);
-            // the way home from the only goal is the way there
-            let back = out.last().filter(|r| r.path.first() == Some(&there) && r.path.last() == Some(&here.1));
-            let leg = match back.cloned() {
-                Some(mut leg) => {
-                    leg.path.reverse();
-                    Some(Route { from: here.0.clone(), to: id.clone(), ..leg })
-                }
-                None => self.leg((&here.0, here.1), (id, there)),
-            };
-            out.extend(leg);
+            let there = self.stop(Point::new(poi.pose.x, poi.pose.y));
+            let leg = here.1.zip(there).and_then(|(a, b)| self.leg((&here.0, a), (id, b)));
+            out.push(leg);
             here = (id.clone(), there);
         }
         out
     }
 
-    fn leg(&mut self, (from, a): (&str, Point), (to, b): (&str, Point)) -> Option<Route> {
-        if self.wide.is_empty() {
-            self.survey();
+    /// Returns the node at a point that routes begin and end at; `None` outside of all rooms.
+    fn stop(&mut self, at: Point) -> Option<usize> {
+        if let Some(known) = self.nodes.iter().position(|n| n.through.is_none() && n.at == at) {
+            return Some(known);
         }
-        let frame = &self.floor.occupancy.frame;
-        let (start, goal) = (frame.cell(a)?, frame.cell(b)?);
-        // every other cell first: a quarter of them
-        let cells = self.cells(start, goal, 2).or_else(|| self.cells(start, goal, 1))?;
-        let center = |cell: usize| {
-            let c = frame.center(cell % frame.nx, cell / frame.nx);
-            Point::new(to_mm(c.x), to_mm(c.y))
-        };
-        let mut corners = self.corners(&cells).into_iter().map(center).collect::<Vec<Point>>();
-        (corners[0], *corners.last_mut()?) = (a, b);
-        let legs = || corners.windows(2).map(|w| (w[0], w[1]));
-        let narrowest = legs().map(|(p, q)| self.narrowest(p, q)).min()?;
+        let room = self.floor.rooms.iter().position(|r| r.plan.net_polygon.contains(at))?;
+        self.nodes.push(Node { room, at, through: None });
+        Some(self.nodes.len() - 1)
+    }
+
+    fn leg(&mut self, (from, a): (&str, usize), (to, b): (&str, usize)) -> Option<Route> {
+        let mut path: Vec<Point> = self.way(a, b)?;
+        self.shorten(&mut path);
+        if path.len() == 1 {
+            path.push(path[0]);
+        }
+        let most = self.need + self.floor.occupancy.frame.nx.max(self.floor.occupancy.frame.ny) as f64;
+        let clear = self.obstacles.along_path(&path, most);
         Some(Route {
             from: from.to_owned(),
             to: to.to_owned(),
-            length_m: to_mm(legs().map(|(p, q)| p.distance(q)).sum()),
-            clear_width_m: f64::from(narrowest) / 1000.0,
-            path: corners,
+            length_m: to_mm(path.windows(2).map(|w| w[0].distance(w[1])).sum()),
+            clear_width_m: (2000.0 * clear + 1e-6).floor() / 1000.0,
+            path,
         })
     }
 
-    fn survey(&mut self) {
-        self.wide = clear_widths(&self.floor.occupancy, self.floor.plan);
-        self.grade = vec![Grade::Closed; self.wide.len()];
-        self.seen = vec![(0, 0, 0, false); self.wide.len()];
-        let nx = self.floor.occupancy.frame.nx;
-        for (i, j) in self.floor.main.cells() {
-            let cell = j * nx + i;
-            self.grade[cell] = if self.wide[cell] < self.roomy { Grade::Tight } else { Grade::Roomy };
+    /// Returns the corners of the cheapest way. Rooms on it are looked at one after the other, until one is found of which all
+    /// stretches are known.
+    fn way(&mut self, a: usize, b: usize) -> Option<Vec<Point>> {
+        for _ in 0..MOST_TRIES {
+            let nodes = self.nodes_between(a, b)?;
+            let mut all_known = true;
+            for pair in nodes.windows(2) {
+                if self.nodes[pair[0]].through == Some(pair[1]) {
+                    continue;
+                }
+                let key = (pair[0].min(pair[1]), pair[0].max(pair[1]));
+                if !self.stretches.contains_key(&key) {
+                    let found = self.stretch(key.0, key.1);
+                    all_known = false;
+                    self.stretches.insert(key, found);
+                }
+            }
+            if all_known {
+                return Some(self.path_of(&nodes));
+            }
         }
+        None
     }
 
-    /// Returns the cells of a way, every `stride`-th and both ends with it. What is left counts as more
-    /// than tight floor: that looks at few cells, and the way costs no more than that over the cheapest.
-    fn cells(&mut self, a: (usize, usize), b: (usize, usize), stride: i64) -> Option<Vec<usize>> {
-        let (nx, ny) = (self.floor.occupancy.frame.nx as i64, self.floor.occupancy.frame.ny as i64);
-        let (start, goal) = (self.on_stride(a, stride)?, self.on_stride(b, stride)?);
-        let left = |i: i64, j: i64| {
-            let (dx, dy) = ((goal.0 - i).unsigned_abs() as u32, (goal.1 - j).unsigned_abs() as u32);
-            (LEFT_STEPS[0] * dx.max(dy) + (LEFT_STEPS[1] - LEFT_STEPS[0]) * dx.min(dy)) / stride as u32
-        };
-        self.search += 1;
-        let (first, last) = ((start.1 * nx + start.0) as usize, (goal.1 * nx + goal.0) as usize);
-        self.seen[first] = (self.search, 0, 0, false);
-        let mut open = BinaryHeap::from([Reverse((left(start.0, start.1), first as u32))]);
-        while let Some(Reverse((_, cell))) = open.pop() {
-            let (_, cost, _, done) = self.seen[cell as usize];
-            if cell as usize == last {
-                let mut way = self.back(first, last, stride * nx, stride);
-                let ends = [a, b].map(|(i, j)| j * nx as usize + i);
-                way.insert(0, ends[0]);
-                way.push(ends[1]);
-                way.dedup();
-                return Some(way);
+    fn path_of(&self, nodes: &[usize]) -> Vec<Point> {
+        let mut out = vec![self.nodes[nodes[0]].at];
+        for pair in nodes.windows(2) {
+            let key = (pair[0].min(pair[1]), pair[0].max(pair[1]));
+            match self.stretches.get(&key).and_then(Option::as_ref) {
+                Some(s) if pair[0] < pair[1] => out.extend(&s.path),
+                Some(s) => out.extend(s.path.iter().rev()),
+                None => out.push(self.nodes[pair[1]].at),
             }
-            if done {
+        }
+        out.dedup();
+        out
+    }
+
+    /// Returns the nodes of the cheapest way by what is known: stretches not looked for are taken for straight lines.
+    fn nodes_between(&self, a: usize, b: usize) -> Option<Vec<usize>> {
+        let left = |n: usize| self.nodes[n].at.distance(self.nodes[b].at);
+        let mut open: Vec<(f64, usize)> = vec![(left(a), a)];
+        let mut reached: Vec<(f64, usize)> = vec![(f64::INFINITY, a); self.nodes.len()];
+        reached[a].0 = 0.0;
+        while let Some(at) = (0..open.len()).min_by(|i, j| open[*i].0.total_cmp(&open[*j].0)) {
+            let (least, n) = open.swap_remove(at);
+            if n == b {
+                let mut out = vec![b];
+                while out[out.len() - 1] != a {
+                    out.push(reached[out[out.len() - 1]].1);
+                }
+                out.reverse();
+                return Some(out);
+            }
+            let here = &self.nodes[n];
+            let cost = reached[n].0;
+            if least > cost + left(n) + 1e-9 {
                 continue;
             }
-            self.seen[cell as usize].3 = true;
-            let (i, j) = (i64::from(cell) % nx, i64::from(cell) / nx);
-            for (k, (di, dj)) in AROUND.into_iter().enumerate() {
-                let (x, y) = (i + stride * di, j + stride * dj);
-                if x < 0 || y < 0 || x >= nx || y >= ny {
-                    continue;
+            let mut to = |m: usize, step: f64| {
+                if cost + step < reached[m].0 - 1e-9 {
+                    reached[m] = (cost + step, n);
+                    open.push((cost + step + left(m), m));
                 }
-                let next = (y * nx + x) as usize;
-                let (search, known, _, done) = self.seen[next];
-                if self.grade[next] == Grade::Closed || search == self.search && done {
-                    continue;
-                }
-                // what lies beside and between must be open too
-                let open_at = |x: i64, y: i64| self.grade[(y * nx + x) as usize] != Grade::Closed;
-                let slanted = di != 0 && dj != 0;
-                if slanted && !(open_at(i + di, j) && open_at(i, j + dj)) || stride > 1 && !open_at(i + di, j + dj) {
-                    continue;
-                }
-                let steps = if self.grade[next] == Grade::Roomy { STEPS } else { TIGHT_STEPS };
-                let cost = cost + steps[usize::from(slanted)];
-                if search != self.search || cost < known {
-                    self.seen[next] = (self.search, cost, k as u8, false);
-                    open.push(Reverse((cost + left(x, y), next as u32)));
+            };
+            if let Some(m) = here.through.filter(|m| self.leads_on(*m, b)) {
+                to(m, here.at.distance(self.nodes[m].at));
+            }
+            let ends = [b].into_iter().filter(|m| self.nodes[*m].room == here.room);
+            for m in self.doors[here.room].iter().copied().chain(ends).filter(|m| *m != n) {
+                let kept_out = self.floor.rooms[here.room].is_for(RobotUse::KeepOut);
+                let factor = if kept_out { KEPT_OUT } else { 1.0 };
+                match self.stretches.get(&(n.min(m), n.max(m))) {
+                    None => to(m, factor * here.at.distance(self.nodes[m].at)),
+                    Some(Some(known)) => to(m, factor * known.cost),
+                    Some(None) => {}
                 }
             }
         }
         None
     }
 
-    /// Returns the open cell at a cell, or beside it, whose column and row are multiples of the stride.
-    fn on_stride(&self, (i, j): (usize, usize), stride: i64) -> Option<(i64, i64)> {
-        let (nx, ny) = (self.floor.occupancy.frame.nx as i64, self.floor.occupancy.frame.ny as i64);
-        let near = |v: usize| (v as i64 - stride + 1..v as i64 + stride).filter(move |v| v % stride == 0);
-        let open = |(x, y): &(i64, i64)| {
-            *x >= 0 && *y >= 0 && *x < nx && *y < ny && self.grade[(y * nx + x) as usize] != Grade::Closed
-        };
-        let here = open(&(i as i64, j as i64));
-        near(j).flat_map(|y| near(i).map(move |x| (x, y))).find(open).filter(|_| here)
+    /// Returns true when a room one enters has another door, or is where one wants to go.
+    fn leads_on(&self, side: usize, b: usize) -> bool {
+        let room = self.nodes[side].room;
+        room == self.nodes[b].room || self.doors[room].len() > 1
     }
 
-    fn back(&self, first: usize, last: usize, row: i64, column: i64) -> Vec<usize> {
-        let mut out = vec![last];
-        let mut here = last;
-        while here != first {
-            let (di, dj) = AROUND[usize::from(self.seen[here].2)];
-            here = (here as i64 - dj * row - di * column) as usize;
-            out.push(here);
+    /// Looks for the stretch between two nodes of a room.
+    fn stretch(&mut self, a: usize, b: usize) -> Option<Stretch> {
+        let (room, a, b) = (self.nodes[a].room, self.nodes[a].at, self.nodes[b].at);
+        let most = self.need + PLAY_M;
+        let ends = self.obstacles.distance(a, most).min(self.obstacles.distance(b, most));
+        let straight = self.obstacles.along(a, b, most);
+        // little play at the ends is no reason for little play between them
+        let inner = (END_M / a.distance(b).max(END_M)).min(0.5);
+        let at = |t: f64| Point::new(a.x + t * (b.x - a.x), a.y + t * (b.y - a.y));
+        let between = || self.obstacles.along(at(inner), at(1.0 - inner), most) >= self.need + LINE_PLAY_M;
+        if straight >= ends.max(self.need) - ROUNDING_M && (straight >= self.need + LINE_PLAY_M || between()) {
+            let cost = a.distance(b) * factor(straight - self.need);
+            return Some(Stretch { path: vec![a, b], cost });
         }
-        out.reverse();
-        out
+        let bounds = self.floor.rooms[room].plan.net_polygon.bounds();
+        let lattices = self.lattices.entry(room).or_insert_with(|| Lattice::all(&bounds));
+        let inside = Room { obstacles: self.obstacles, need: self.need };
+        lattices.iter_mut().find_map(|l| l.path(&inside, a, b)).map(|(path, cost)| Stretch { path, cost })
     }
 
-    /// Returns the cells of a way where it turns, both ends with them, as few as the floor allows.
-    fn corners(&self, cells: &[usize]) -> Vec<usize> {
-        if cells.len() < 2 {
-            return vec![cells[0]; 2];
-        }
-        let frame = &self.floor.occupancy.frame;
-        let center = |k: usize| frame.center(cells[k] % frame.nx, cells[k] / frame.nx);
-        let end = cells.len() - 1;
-        let turns = (1..end).filter(|&k| cells[k] + cells[k] != cells[k - 1] + cells[k + 1]).chain([end]);
-        let (mut out, mut from, mut before) = (vec![cells[0]], 0, 0);
-        for turn in turns {
-            let width = cells[from..=turn].iter().map(|c| self.wide[*c]).min().unwrap_or(0).min(self.passed);
-            if before > from && !self.is_open(center(from), center(turn), width) {
-                out.push(cells[before]);
-                from = before;
+    /// Leaves out corners that the way does without and loses no play that counts.
+    fn shorten(&self, path: &mut Vec<Point>) {
+        let most = self.need + PLAY_M;
+        let mut k = 1;
+        while k + 1 < path.len() {
+            let (before, here, after) = (path[k - 1], path[k], path[k + 1]);
+            let now = self.obstacles.along(before, here, most).min(self.obstacles.along(here, after, most));
+            let direct = self.obstacles.along(before, after, now);
+            let aside =
+                (before.distance(here) + here.distance(after) - before.distance(after)) * before.distance(after);
+            // a little play at one end is no reason to have no more all along
+            if direct >= now - 1e-9 && (direct >= self.need + LINE_PLAY_M || aside < STRAIGHT_M2) {
+                path.remove(k);
+                k = k.saturating_sub(1).max(1);
+            } else {
+                k += 1;
             }
-            before = turn;
         }
-        out.push(cells[end]);
-        out
     }
-
-    /// Returns true when the robot drives straight between two points and nothing is narrower than this, mm.
-    fn is_open(&self, a: Point, b: Point, width: u32) -> bool {
-        let frame = &self.floor.occupancy.frame;
-        let open = |(i, j): (usize, usize)| self.floor.main.get(i, j) && self.wide[j * frame.nx + i] >= width;
-        between(a, b).all(|p| frame.cell(p).is_some_and(open))
-    }
-
-    fn narrowest(&self, a: Point, b: Point) -> u32 {
-        let frame = &self.floor.occupancy.frame;
-        let widths = between(a, b).filter_map(|p| frame.cell(p)).map(|(i, j)| self.wide[j * frame.nx + i]);
-        widths.min().unwrap_or(0)
-    }
-}
-
-/// Returns points on a line, half a cell apart at most, both ends with them.
-fn between(a: Point, b: Point) -> impl Iterator<Item = Point> {
-    let count = (2.0 * a.distance(b) / d3dgen_model::occupancy::CELL_M).ceil().max(1.0);
-    (0..=count as u32).map(move |k| {
-        let t = f64::from(k) / count;
-        Point::new(a.x + t * (b.x - a.x), a.y + t * (b.y - a.y))
-    })
 }

@@ -1,5 +1,5 @@
-//! Staging areas: free floor in or beside the circulation where goods are put down, out of the swing of doors and beside
-//! the width that people and robots pass in.
+//! Staging areas: free floor in stores and circulation where goods are put down, near a door, out of the swing of doors and
+//! beside the width that people and robots pass in.
 
 use d3dgen_knowledge::freespace::FreeSpace;
 use d3dgen_model::domain::{Mount, RobotUse, Zone};
@@ -8,7 +8,7 @@ use d3dgen_model::geometry::to_mm;
 use d3dgen_model::occupancy::{Bitmap, CELL_M, stops_robot};
 use d3dgen_model::scenario::{Roi, RoiKind};
 use d3dgen_model::scene_graph::SceneGraph;
-use d3dgen_model::{Polygon, Rect};
+use d3dgen_model::{Point, Polygon, Rect};
 
 use super::floor::{Floor, Room, floor_in_front};
 
@@ -26,8 +26,12 @@ const LARGE_ROOM_M2: f64 = 25.0;
 const BEFORE_DOOR_M: f64 = 1.0;
 /// Play of a robot that passes, m.
 const PASSING_M: f64 = 0.1;
+/// Play on each side of a robot that brings goods, m.
+const CARRYING_M: f64 = 0.15;
+/// Cells of wall or furniture beside a place that outweigh a meter more to the nearest door.
+const FAR_CELLS: f64 = 2.0;
 /// Places in a room that are looked at closely for one size, and how far they lie apart, cells.
-const PLACES: usize = 2;
+const PLACES: usize = 4;
 const APART: usize = 16;
 /// Cells of a room's bounds from which on fewer of them are looked at.
 const LARGE: usize = 200_000;
@@ -76,27 +80,22 @@ fn of_unit(floor: &Floor, graph: &SceneGraph, rois: &[Roi], (unit, robots): (Opt
     None
 }
 
-/// Returns how well a room suits, 0 best: circulation, then stores and other rooms of the staff beside it; last rooms to live
-/// in and large ones for visitors; `None` for wet ones, those to sleep in, and counters, which people must get around.
+/// Returns how well a room suits, 0 best: rooms of the staff that have floor for goods, then circulation, last rooms that
+/// others use, as their types say; `None` for rooms that one gets to through others only, and for small ones of visitors.
 fn rank(floor: &Floor, room: &Room) -> Option<u8> {
-    if room.is_for(RobotUse::KeepOut) || floor.plan.link_of(&room.plan.room_id).is_some() {
+    if !room.is_for(RobotUse::Staging) || floor.plan.link_of(&room.plan.room_id).is_some() {
         return None;
-    }
-    if room.plan.circulation {
-        return Some(0);
     }
     let circulation = |id: &String| floor.plan.room(id).is_some_and(|r| r.circulation);
     let mut doors = floor.plan.doors_of(&room.plan.room_id);
-    let beside = doors.any(|d| d.entrance || d.room_ids.iter().any(circulation));
+    let beside = room.plan.circulation || doors.any(|d| d.entrance || d.room_ids.iter().any(circulation));
     match room.kind.zone {
-        _ if !beside || room.kind.wet => None,
-        Zone::Service => Some(1),
-        Zone::Staff if !room.kind.open_front => Some(2),
-        Zone::Day => Some(3),
-        Zone::Public if room.plan.net_area_m2 >= LARGE_ROOM_M2 => Some(4),
-        Zone::Staff | Zone::Public => None,
-        Zone::Circulation => Some(0),
-        Zone::Night | Zone::Outdoor => None,
+        _ if !beside => None,
+        _ if room.plan.circulation => Some(1),
+        Zone::Service | Zone::Staff | Zone::Outdoor => Some(0),
+        Zone::Circulation => Some(1),
+        Zone::Public if room.plan.net_area_m2 < LARGE_ROOM_M2 => None,
+        Zone::Day | Zone::Public | Zone::Night => Some(2),
     }
 }
 
@@ -139,8 +138,15 @@ impl Yard {
         let cells = |m: f64| (m / CELL_M - 1e-6).ceil() as usize + 1;
         let mut found = self.places(cells(length), cells(depth));
         found.extend(self.places(cells(depth), cells(length)));
-        // what touches walls and furniture most comes first, ties go to the south-west
-        found.sort_by_key(|(touched, place)| (u32::MAX - touched, place[1], place[0], place[2]));
+        // what touches walls and furniture most comes first, but near a door; ties go to the south-west
+        let doors: Vec<Point> = floor.plan.doors_of(&room.plan.room_id).map(|d| d.line.middle()).collect();
+        let loss = |touched: u32, place: &[usize; 4]| {
+            let middle = on_floor(floor, room, *place).center();
+            let far = doors.iter().map(|d| d.distance(middle)).fold(f64::INFINITY, f64::min);
+            let far = if far.is_finite() { far } else { 0.0 };
+            (FAR_CELLS * far) as i64 - i64::from(touched)
+        };
+        found.sort_by_cached_key(|(touched, place)| (loss(*touched, place), place[1], place[0], place[2]));
         let mut looked: Vec<[usize; 4]> = Vec::new();
         for (_, place) in found {
             let near = |o: &[usize; 4]| o[0].abs_diff(place[0]) < APART && o[1].abs_diff(place[1]) < APART;
@@ -152,7 +158,8 @@ impl Yard {
             }
             looked.push(place);
             let rect = on_floor(floor, room, place);
-            if floor.is_reached(room, &rect) && self.leaves_way(floor, room, &rect) {
+            if floor.is_reached(room, &rect) && self.is_near(floor, room, &rect) && self.leaves_way(floor, room, &rect)
+            {
                 return Some(rect);
             }
         }
@@ -184,6 +191,15 @@ impl Yard {
     fn count(&self, [i0, j0, i1, j1]: [usize; 4]) -> u32 {
         let at = |i: usize, j: usize| self.sums[j * (self.nx + 1) + i];
         at(i1, j1) + at(i0, j0) - at(i0, j1) - at(i1, j0)
+    }
+
+    /// Returns true when a robot that carries something gets to a place with ease from one of the doors.
+    fn is_near(&self, floor: &Floor, room: &Room, rect: &Rect) -> bool {
+        let standing = room.objects.iter().map(|(p, _)| *p).filter(|p| stops_robot(p));
+        let taken: Vec<Rect> = standing.map(|p| p.footprint().bounds()).collect();
+        let space = FreeSpace::new(&room.plan.net_polygon, &taken);
+        let width = 2.0 * (floor.radius + CARRYING_M);
+        floor.plan.doors_of(&room.plan.room_id).any(|door| space.leads(door, rect, width.min(door.clear_width_m)))
     }
 
     /// Returns true when people and robots still pass between the doors of the room, and to docks and service zones in it.

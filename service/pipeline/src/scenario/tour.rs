@@ -1,11 +1,12 @@
 //! Short tours: in which order a robot visits places, by how far it drives from one to the next.
 //!
 //! Distances go from door to door through the rooms, straight within a room. The nearest place is next, and what can be
-//! turned around to make the tour shorter is (2-opt).
+//! turned around to make the tour shorter is (2-opt). Rooms with clean goods come first and those with soiled ones last.
 
 use std::collections::BTreeMap;
 
 use d3dgen_model::Point;
+use d3dgen_model::domain::Goods;
 use d3dgen_model::floorplan::Floorplan;
 use d3dgen_model::scenario::Poi;
 
@@ -31,8 +32,21 @@ impl<'a> Stop<'a> {
     }
 }
 
+/// Returns the places in the order of short tours from a start: one of those with clean goods, from its end one of the
+/// usual ones, at last one of those with soiled goods.
+pub(super) fn in_turn(doors: &Doors, start: Option<Stop>, stops: &[(Goods, Stop)]) -> Vec<usize> {
+    let mut out: Vec<usize> = Vec::with_capacity(stops.len());
+    for goods in [Goods::Clean, Goods::Usual, Goods::Soiled] {
+        let own: Vec<usize> = (0..stops.len()).filter(|&i| stops[i].0 == goods).collect();
+        let places: Vec<Stop> = own.iter().map(|&i| stops[i].1).collect();
+        let here = out.last().map(|&i| stops[i].1).or(start);
+        out.extend(order(doors, here, &places).into_iter().map(|i| own[i]));
+    }
+    out
+}
+
 /// Returns the places in the order of a short round trip from a start, or from the first of them.
-pub(super) fn order(doors: &Doors, start: Option<Stop>, stops: &[Stop]) -> Vec<usize> {
+fn order(doors: &Doors, start: Option<Stop>, stops: &[Stop]) -> Vec<usize> {
     let Some(first) = start.or_else(|| stops.first().copied()) else { return Vec::new() };
     // the start is number 0
     let all: Vec<Stop> = std::iter::once(first).chain(stops.iter().copied()).collect();
@@ -133,6 +147,20 @@ impl<'a> Doors<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn clean_goods_come_first_and_soiled_ones_last() {
+        let at = |x: f64| Stop { room: "ward_1", at: Point::new(x, 0.0) };
+        let doors = Doors { middles: Vec::new(), next: Vec::new(), of_room: BTreeMap::new() };
+        let stops = [
+            (Goods::Soiled, at(1.0)),
+            (Goods::Usual, at(2.0)),
+            (Goods::Clean, at(9.0)),
+            (Goods::Usual, at(8.0)),
+            (Goods::Clean, at(3.0)),
+        ];
+        assert_eq!(in_turn(&doors, Some(at(0.0)), &stops), [4, 2, 3, 1, 0]);
+    }
 
     #[test]
     fn a_round_trip_crosses_itself_no_more() {

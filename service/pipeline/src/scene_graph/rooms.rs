@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use d3dgen_model::domain::{Domain, Furnishing, GENERIC_ROOM_TYPE, RobotUse, RoomType, Shape};
+use d3dgen_model::domain::{Domain, Furnishing, GENERIC_ROOM_TYPE, Goods, RobotUse, RoomType, Shape, Zone};
 use d3dgen_model::scene_graph::{GraphRoom, Robot};
 use d3dgen_model::style::SpaceStyle;
 
@@ -248,8 +248,9 @@ fn grow_charging(domain: &Domain, robots: u32, rooms: &mut [GraphRoom]) {
     }
 }
 
-/// Wishes for a dock in the rooms that the prompt wants one in, and in rooms that suit one while there are fewer docks
-/// than robots: first in rooms, then in circulation.
+/// Wishes for a dock in the rooms that the prompt wants one in, and for one a robot in rooms that suit one while there are
+/// fewer docks than robots: first one in each room of the staff and in circulation, then several, last in rooms for visitors
+/// and work.
 pub(super) fn add_docks(domain: &Domain, robots: &[Robot], docked: &[String], rooms: &mut [GraphRoom]) {
     let sum = |counts: &mut dyn Iterator<Item = u32>| counts.fold(0, u32::saturating_add);
     let is_dock = |id: &str| domain.anchor(id).is_some_and(|o| o.shape == Shape::Dock);
@@ -258,27 +259,55 @@ pub(super) fn add_docks(domain: &Domain, robots: &[Robot], docked: &[String], ro
         let lines = domain.room_type_or_generic(&room.room_type).furnishing.iter();
         sum(&mut lines.filter(|f| is_dock(&f.item)).map(|f| f.units(room.target_area_m2)))
     };
-    let robots = sum(&mut robots.iter().map(|r| r.count));
-    grow_charging(domain, robots, rooms);
-    let mut lacking = robots.saturating_sub(sum(&mut rooms.iter().map(held)));
+    let wished = |room: &GraphRoom| room.wished_assets.iter().filter(|id| **id == dock.id).count() as u32;
+    let wish = |room: &mut GraphRoom| {
+        room.wished_assets.insert(0, dock.id.clone());
+        room.wished_assets.truncate(MOST_WISHES);
+    };
+    grow_charging(domain, sum(&mut robots.iter().map(|r| r.count)), rooms);
+    let mut present = sum(&mut rooms.iter().map(held));
     for room_type in docked {
-        let has = |r: &GraphRoom| held(r) > 0 || r.wished_assets.contains(&dock.id);
         let here = |r: &&mut GraphRoom| &r.room_type == room_type || r.circulation && is_way(domain, room_type);
-        if let Some(room) = rooms.iter_mut().find(here).filter(|r| !has(r)) {
-            room.wished_assets.insert(0, dock.id.clone());
-            room.wished_assets.truncate(MOST_WISHES);
-            lacking = lacking.saturating_sub(1);
+        if let Some(room) = rooms.iter_mut().find(here).filter(|r| held(r) + wished(r) == 0) {
+            wish(room);
+            present = present.saturating_add(1);
         }
     }
-    for in_circulation in [false, true] {
-        for room in rooms.iter_mut().filter(|r| r.circulation == in_circulation) {
-            let kind = domain.room_type_or_generic(&room.room_type);
-            let suits = kind.robot.contains(&RobotUse::Charging) && !kind.furnishing.iter().any(|f| is_dock(&f.item));
-            if suits && lacking > 0 && !room.wished_assets.contains(&dock.id) {
-                room.wished_assets.insert(0, dock.id.clone());
-                room.wished_assets.truncate(MOST_WISHES);
-                lacking -= 1;
-            }
+    // robots live on one storey
+    let home = rooms.iter().find(|r| held(r) + wished(r) > 0).map_or(0, |r| r.level);
+    for robot in robots {
+        let own = present.min(robot.count);
+        present -= own;
+        for _ in own..robot.count {
+            let suits = |room: &GraphRoom| {
+                let kind = domain.room_type_or_generic(&room.room_type);
+                let charges =
+                    kind.robot.contains(&RobotUse::Charging) && !kind.furnishing.iter().any(|f| is_dock(&f.item));
+                let rank = dock_rank(kind, robot)?;
+                let most = ((room.target_area_m2 / DOCK_ROOM_M2) as u32).clamp(1, MOST_DOCKS);
+                (charges && wished(room) < most).then_some((room.level != home, rank == LAST_RANK, wished(room), rank))
+            };
+            let all = rooms.iter().enumerate().filter_map(|(i, room)| Some((suits(room)?, i)));
+            let Some((_, best)) = all.min() else { return };
+            wish(&mut rooms[best]);
         }
+    }
+}
+
+/// Rooms for visitors and work.
+const LAST_RANK: u8 = 3;
+/// Floor of a room for each dock in it, m^2, and most docks in a room that is there for something else.
+const DOCK_ROOM_M2: f64 = 8.0;
+const MOST_DOCKS: u32 = 3;
+
+/// Returns how well a room that may have a dock suits a robot, 0 best; `None` for rooms to sleep in.
+pub(crate) fn dock_rank(kind: &RoomType, robot: &Robot) -> Option<u8> {
+    let soiled = kind.goods == Goods::Soiled;
+    match kind.zone {
+        Zone::Service if soiled == (robot.kind == "cleaning") => Some(0),
+        Zone::Circulation => Some(1),
+        Zone::Service => Some(2),
+        Zone::Staff | Zone::Day | Zone::Public | Zone::Outdoor => Some(LAST_RANK),
+        Zone::Night => None,
     }
 }

@@ -29,56 +29,49 @@ pub(super) fn area(page: &mut Page, kind: RoiKind, outline: Path, rects: &[Rect]
     match kind {
         RoiKind::CleaningZone => {
             let lines = rects.iter().fold(Path::new(), |path, r| hatch(path, r, 17.0 * k, false));
-            let look = format!(
-                "fill=\"none\" stroke=\"{stroke}\" stroke-opacity=\"{opacity}\" stroke-width=\"{:.2}\"",
-                0.9 * k
-            );
-            page.path_with(&look, lines);
+            page.path_with(&line(stroke, &opacity.to_string(), 0.9 * k), lines);
         }
         RoiKind::KeepOut => {
             let lines =
                 rects.iter().fold(Path::new(), |path, r| hatch(hatch(path, r, 13.0 * k, false), r, 13.0 * k, true));
-            let look = format!(
-                "fill=\"none\" stroke=\"{stroke}\" stroke-opacity=\"{:.2}\" stroke-width=\"{:.2}\"",
-                0.78 * opacity,
-                0.9 * k
-            );
-            page.path_with(&look, lines);
+            page.path_with(&line(stroke, &format!("{:.2}", 0.78 * opacity), 0.9 * k), lines);
         }
         RoiKind::SpeedZone => {
-            let look = format!(
-                "fill=\"{fill}\" fill-opacity=\".07\" stroke=\"{stroke}\" stroke-opacity=\".5\" stroke-width=\"{:.2}\" \
-                 stroke-dasharray=\"{:.1} {:.1}\"",
-                0.8 * k,
-                1.5 * k,
-                4.0 * k
-            );
+            let look = tint(fill, ".07", &stroke_of(stroke, ".5", 0.8 * k)) + &dashes(1.5 * k, 4.0 * k);
             page.path_with(&look, outline);
         }
         RoiKind::StagingArea => {
-            let look = format!(
-                "fill=\"{fill}\" fill-opacity=\".14\" stroke=\"{stroke}\" stroke-opacity=\".85\" stroke-width=\"{:.2}\"",
-                1.1 * k
-            );
-            page.path_with(&look, outline);
+            page.path_with(&tint(fill, ".14", &stroke_of(stroke, ".85", 1.1 * k)), outline);
             // a cross from corner to corner, as pallets are marked on floors
             let cross =
                 |path: Path, r: &Rect| path.segment((r.x0, r.y0), (r.x1, r.y1)).segment((r.x0, r.y1), (r.x1, r.y0));
-            let look =
-                format!("fill=\"none\" stroke=\"{stroke}\" stroke-opacity=\".45\" stroke-width=\"{:.2}\"", 0.8 * k);
-            page.path_with(&look, rects.iter().fold(Path::new(), cross));
+            page.path_with(&line(stroke, ".45", 0.8 * k), rects.iter().fold(Path::new(), cross));
         }
         RoiKind::ServiceZone | RoiKind::ChargingBuffer => {
-            let look = format!(
-                "fill=\"{fill}\" fill-opacity=\".16\" stroke=\"{stroke}\" stroke-opacity=\".8\" stroke-width=\"{:.2}\" \
-                 stroke-dasharray=\"{:.1} {:.1}\"",
-                1.1 * k,
-                5.0 * k,
-                4.0 * k
-            );
+            let look = tint(fill, ".16", &stroke_of(stroke, ".8", 1.1 * k)) + &dashes(5.0 * k, 4.0 * k);
             page.path_with(&look, outline);
         }
     }
+}
+
+/// Returns the look of a line: color, opacity, width on the sheet.
+fn stroke_of(color: &str, opacity: &str, width: f64) -> String {
+    format!("stroke=\"{color}\" stroke-opacity=\"{opacity}\" stroke-width=\"{width:.2}\"")
+}
+
+/// Returns the look of lines around nothing.
+fn line(color: &str, opacity: &str, width: f64) -> String {
+    format!("fill=\"none\" {}", stroke_of(color, opacity, width))
+}
+
+/// Returns the look of an area with a line around it.
+fn tint(color: &str, opacity: &str, stroke: &str) -> String {
+    format!("fill=\"{color}\" fill-opacity=\"{opacity}\" {stroke}")
+}
+
+/// Returns what makes a line one of dashes, this long and this far apart on the sheet.
+fn dashes(length: f64, gap: f64) -> String {
+    format!(" stroke-dasharray=\"{length:.1} {gap:.1}\"")
 }
 
 /// Lines at 45 degrees through a rectangle, on one grid for the whole sheet.

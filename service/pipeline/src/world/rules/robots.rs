@@ -2,15 +2,18 @@
 
 use d3dgen_knowledge::clearance::{Side, door_zones, free_depth, is_shallow};
 use d3dgen_model::domain::Shape;
-use d3dgen_model::occupancy::{Bitmap, CELL_M};
-use d3dgen_model::scenario::{Roi, RoiKind};
-use d3dgen_model::{Point, Pose, Rect};
+use d3dgen_model::obstacles::Obstacles;
+use d3dgen_model::occupancy::{Bitmap, ROBOT_HEIGHT_M};
+use d3dgen_model::scenario::{RobotTask, Roi, RoiKind, Route};
+use d3dgen_model::{Point, Pose, Rect, TOLERANCE_M};
 
 use super::Findings;
 use crate::world::context::{Context, LEAST_RADIUS_M, Object, Room, common_area};
 
 /// A region may reach beyond its room by rounding, m^2.
 const REGION_SLACK_M2: f64 = 0.01;
+/// How far the width of a route may be from what it says, m.
+const WIDTH_M: f64 = 0.01;
 /// Radius of a person standing, m.
 const PERSON_RADIUS_M: f64 = 0.25;
 
@@ -80,23 +83,26 @@ pub fn tasks(c: &Context, out: &mut Findings) {
                 out.add(format!("{}|{goal}", task.robot_id), "the robot cannot get there from its start");
             }
         }
-        // a cell of play: the corners of routes are centers of cells
-        let play = c.clear(radius - CELL_M);
-        for route in task.routes.iter().filter(|r| !is_driven(c, &play, &r.path)) {
-            out.add(format!("{}|{}", task.robot_id, route.to), "its route there leaves the floor that it can drive on");
-        }
+        let obstacles = Obstacles::of_world(c.plan(), &c.world.placements, task.robot.height_m.max(ROBOT_HEIGHT_M));
+        task.routes.iter().for_each(|route| is_driven(&obstacles, task, route, out));
     }
 }
 
-/// Returns true when a robot can be all along a line.
-fn is_driven(c: &Context, clear: &Bitmap, path: &[Point]) -> bool {
-    let along = |a: Point, b: Point| {
-        let count = (a.distance(b) / CELL_M).ceil().max(1.0);
-        (0..=count as u32)
-            .map(move |k| f64::from(k) / count)
-            .map(move |t| Point::new(a.x + t * (b.x - a.x), a.y + t * (b.y - a.y)))
-    };
-    path.len() > 1 && path.windows(2).flat_map(|w| along(w[0], w[1])).all(|p| c.is_clear(clear, p))
+/// A route touches nothing, and says how wide it is.
+fn is_driven(obstacles: &Obstacles, task: &RobotTask, route: &Route, out: &mut Findings) {
+    let (name, radius) = (format!("{}|{}", task.robot_id, route.to), task.robot.radius_m);
+    if route.path.len() < 2 {
+        out.add(name, "its route there has no corners");
+        return;
+    }
+    let clear = obstacles.along_path(&route.path, radius.max(route.clear_width_m / 2.0) + WIDTH_M);
+    if clear < radius - TOLERANCE_M {
+        let message = format!("its route there passes {clear:.3} m from something, needs {radius:.3} m");
+        out.add_figure(name, message, clear, radius, "m");
+    } else if (2.0 * clear - route.clear_width_m).abs() > WIDTH_M {
+        let message = format!("its route there is {:.2} m wide and says {:.2} m", 2.0 * clear, route.clear_width_m);
+        out.add_figure(name, message, route.clear_width_m, 2.0 * clear, "m");
+    }
 }
 
 pub fn poses(c: &Context, out: &mut Findings) {

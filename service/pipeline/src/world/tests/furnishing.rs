@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use d3dgen_knowledge::clearance::quarter;
 use d3dgen_model::domain::{Arrangement, Mount, Shape};
 use d3dgen_model::placements::{Placement, Unplaced};
-use d3dgen_model::{Pose, Rect};
+use d3dgen_model::{Point, Pose, Rect};
 
 use super::{Break, Change, SAMPLES, Sample, add_thing, always, each, ids, one, placement, somewhere};
 
@@ -159,6 +159,39 @@ pub(super) const BREAKS: &[Break] = &[
             Some(task.robot_id.clone())
         })
     }),
+    always("robot_stuck", |s| {
+        each(s, legs(s).into_iter(), |w, (robot, leg)| {
+            // a detour into the nearest wall
+            let task = &mut w.scenario.robots[robot];
+            let path = &mut task.routes[leg].path;
+            let beyond = Point::new(path[0].x + 100.0, path[0].y);
+            path.insert(1, beyond);
+            Some(format!("{}|{}", task.robot_id, task.routes[leg].to))
+        })
+    }),
+    always("robot_stuck", |s| {
+        each(s, legs(s).into_iter(), |w, (robot, leg)| {
+            let task = &mut w.scenario.robots[robot];
+            task.routes[leg].clear_width_m += 0.05;
+            Some(format!("{}|{}", task.robot_id, task.routes[leg].to))
+        })
+    }),
+    always("robot_stuck", |s| {
+        each(s, legs(s).into_iter(), |w, (robot, leg)| {
+            // something narrow 1 cm too near to its first line
+            let (task, plan) = (&w.scenario.robots[robot], &w.floorplan);
+            let path = &task.routes[leg].path;
+            let (a, b) = (path[0], path[1]);
+            let middle = Point::new((a.x + b.x) / 2.0, (a.y + b.y) / 2.0);
+            let room = plan.rooms.iter().find(|r| r.net_polygon.contains(middle))?.room_id.clone();
+            let (long, far) = (a.distance(b), task.robot.radius_m + 0.01);
+            let normal = ((a.y - b.y) / long, (b.x - a.x) / long);
+            let name = format!("{}|{}", task.robot_id, task.routes[leg].to);
+            let at = Point::new(middle.x + far * normal.0, middle.y + far * normal.1);
+            add_thing(w, s.domain, &room, Rect::new(at.x - 0.02, at.y - 0.02, at.x + 0.02, at.y + 0.02), 1.0)?;
+            (long > 0.2).then_some(name)
+        })
+    }),
     always("pose_taken", |s| {
         each(s, 0..s.world.scenario.agents.len(), |w, i| {
             let blocker = w
@@ -191,6 +224,12 @@ pub(super) const BREAKS: &[Break] = &[
         })
     }),
 ];
+
+/// Returns the legs of all robots' rounds.
+fn legs(s: &Sample) -> Vec<(usize, usize)> {
+    let robots = s.world.scenario.robots.iter().enumerate();
+    robots.flat_map(|(i, task)| (0..task.routes.len()).map(move |k| (i, k))).collect()
+}
 
 fn turn_round(p: &mut Placement) {
     p.pose.yaw_rad = if p.pose.yaw_rad > 0.0 { p.pose.yaw_rad - PI } else { p.pose.yaw_rad + PI };

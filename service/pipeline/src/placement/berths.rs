@@ -1,0 +1,84 @@
+//! A dock for every robot: where the rooms that were to have them hold fewer, others do, around what stands in them.
+
+use d3dgen_knowledge::Limits;
+use d3dgen_knowledge::clearance::{Side, door_zones, free_depth, is_shallow};
+use d3dgen_model::Point;
+use d3dgen_model::domain::{Domain, ObjectType, RobotUse, Shape};
+use d3dgen_model::floorplan::{Floorplan, PlanRoom};
+use d3dgen_model::occupancy::stops_robot;
+use d3dgen_model::placements::{Placement, Placements};
+use d3dgen_model::scene_graph::SceneGraph;
+
+use super::{Wanted, furnish_room};
+use crate::scene_graph::dock_rank;
+use crate::{Error, Stop};
+
+/// Least distance of a dock from a way out of the building, m.
+const FROM_EXIT_M: f64 = 2.0;
+
+/// Adds docks until there is one for each robot, or no room that suits has a place.
+///
+/// # Errors
+/// `Cancelled`.
+pub(super) fn add_missing(
+    graph: &SceneGraph,
+    plan: &Floorplan,
+    (domain, limits): (&Domain, &Limits),
+    out: &mut Placements,
+    stop: Stop<'_>,
+) -> Result<(), Error> {
+    let robots: u32 = graph.robots.iter().map(|r| r.count).sum();
+    let Some(robot) = graph.robots.first() else { return Ok(()) };
+    let Some(dock) = domain.objects.iter().rev().find(|o| o.shape == Shape::Dock) else { return Ok(()) };
+    let docks = domain.objects.iter().filter(|o| o.shape == Shape::Dock);
+    let docks: Vec<&str> = docks.map(|o| o.id.as_str()).collect();
+    let standing =
+        |out: &Placements| out.placements.iter().filter(|p| docks.contains(&p.object.as_str())).count() as u32;
+    let first = out.placements.iter().find(|p| docks.contains(&p.object.as_str()));
+    let home = first.and_then(|p| plan.room(&p.room_id)).map_or(0, |r| r.level);
+    let suits = |room: &&PlanRoom| {
+        let kind = domain.room_type_or_generic(&room.room_type);
+        let charges = kind.robot.contains(&RobotUse::Charging) && !kind.robot.contains(&RobotUse::KeepOut);
+        dock_rank(kind, robot).filter(|_| charges && room.level == home)
+    };
+    let mut rooms: Vec<(u8, &PlanRoom)> = plan.rooms.iter().filter_map(|r| Some((suits(&r)?, r))).collect();
+    rooms.sort_by_key(|r| r.0);
+    let storey = if plan.level_numbers().len() > 1 { &plan.storey(home) } else { plan };
+    while standing(out) < robots {
+        let found = rooms.iter().enumerate().find_map(|(at, (_, room))| {
+            let here: Vec<&Placement> = out.placements.iter().filter(|p| p.room_id == room.room_id).collect();
+            let made = furnish_room(graph, storey, room, (domain, limits), &here, Wanted::Only(dock), stop).ok()?.0;
+            let more = made.into_iter().find(|p| !here.iter().any(|h| h.placement_id == p.placement_id))?;
+            is_free(graph, storey, room, (&more, dock), &here).then_some((at, more))
+        });
+        stop.check()?;
+        let Some((at, more)) = found else { break };
+        // those before it have no place for another one either
+        rooms.drain(..at);
+        let wished = out.unplaced.iter().position(|u| docks.contains(&u.item.as_str()) && !u.required);
+        wished.map(|i| out.unplaced.remove(i));
+        let behind = out.placements.iter().rposition(|p| p.room_id == more.room_id).map_or(0, |i| i + 1);
+        out.placements.insert(behind, more);
+    }
+    Ok(())
+}
+
+/// Returns true when a dock has its whole clearance, is in the way of no door and away from the ways out.
+fn is_free(
+    graph: &SceneGraph,
+    plan: &Floorplan,
+    room: &PlanRoom,
+    (p, dock): (&Placement, &ObjectType),
+    here: &[&Placement],
+) -> bool {
+    let own = p.footprint().bounds();
+    let others = here.iter().filter(|o| stops_robot(o) && !is_shallow(o)).map(|o| o.footprint().bounds());
+    let robot = graph.robots.iter().map(|r| r.radius_m).fold(super::LEAST_RADIUS_M, f64::max);
+    let depth = free_depth(p, Side::Front, &room.net_polygon, others);
+    let at = Point::new(p.pose.x, p.pose.y);
+    depth >= dock.clearance_front_m.max(2.0 * robot)
+        && plan.doors_of(&room.room_id).all(|door| {
+            let near = door.room_ids.len() == 1 && door.line.middle().distance(at) < FROM_EXIT_M;
+            !near && !door_zones(door).iter().any(|zone| zone.overlaps(&own))
+        })
+}
