@@ -211,10 +211,8 @@ impl Document for Domain {
                     room(format!("/programs/{i}/rooms/{j}/with/{k}"), id, &mut problems);
                 }
             }
-            for (j, class) in program.vital.iter().enumerate() {
-                for (k, id) in class.iter().enumerate() {
-                    room(format!("/programs/{i}/vital/{j}/{k}"), id, &mut problems);
-                }
+            for (j, id) in program.vital.iter().enumerate() {
+                room(format!("/programs/{i}/vital/{j}"), id, &mut problems);
             }
             let Some(units) = &program.units else { continue };
             let at = format!("/programs/{i}/units");

@@ -18,10 +18,10 @@ pub struct Program {
     pub default_rooms: u32,
     /// Entries, most important first.
     pub rooms: Vec<ProgramRoom>,
-    /// Kinds of rooms that no such building is without, most important first, each with what can stand for it. They join a
-    /// list of rooms that lacks them; where the number of rooms is fixed the program's order decides.
+    /// Room types that no such building is without; one toilet stands for another. They join a list of rooms that lacks them;
+    /// where the number of rooms is fixed the program's order decides.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub vital: Vec<Vec<String>>,
+    pub vital: Vec<String>,
     /// What large buildings are made of; without it they have more of the same.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub units: Option<Units>,

@@ -103,6 +103,15 @@ impl<'a> Names<'a> {
                 }
                 room.keywords.get(language).into_iter().flatten().for_each(|w| phrases.insert(w, room.id.clone()));
             }
+            // on a plan a word for such a building means its room of the same kind: "Büro"
+            for building in domain.building_types.iter().filter(|b| domain.room_type(&b.id).is_some()) {
+                building
+                    .keywords
+                    .get(language)
+                    .into_iter()
+                    .flatten()
+                    .for_each(|w| phrases.insert(w, building.id.clone()));
+            }
             phrases
         };
         Self { domain, languages: words().languages.keys().map(of).collect() }

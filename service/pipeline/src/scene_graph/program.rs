@@ -8,7 +8,7 @@ use d3dgen_model::domain::{Access, Domain, Occupants, Program, ProgramRoom, Room
 use super::beds::sleeps;
 use super::layout;
 use super::places::note;
-use super::reading::{MAX_ROOMS, Reading};
+use super::reading::{MAX_ROOMS, Reading, is_dwelling};
 use super::units;
 use super::vital;
 use super::wishes::{CHARGING, Pair, PerHost, Wish};
@@ -196,7 +196,7 @@ fn wash_on_every_storey<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>)
         kinds.filter(|k| k.wet && !reading.wishes.forbidden.contains(&k.id) && k.access != Access::Host).collect();
     let usual = wet.iter().copied().find(|k| words().dwelling.toilets.contains(&k.id));
     let Some(kind) = usual.or(wet.first().copied()) else { return };
-    let is_wet = |r: &Planned| r.kind.access != Access::Host && vital::has_toilet(reading.domain, r.kind);
+    let is_wet = |r: &Planned| r.kind.access != Access::Host && reading.wet.has_toilet(r.kind);
     for _ in rooms.iter().filter(|r| is_wet(r)).count()..storeys {
         if reading.total.is_none() {
             rooms.push(Planned::new(&kind.id, kind));
@@ -322,7 +322,14 @@ impl<'r, 'a> Build<'r, 'a> {
     fn add(&mut self, entry: &ProgramRoom, limit: usize) -> bool {
         let kind = self.reading.domain.room_type_or_generic(&entry.room_type);
         let entered = entry.with.iter().filter(|w| kind.hosts.contains(w));
-        let whole = 1 + if entered.clone().all(|w| self.may_grow(w)) { entered.count() } else { limit };
+        // beds beyond the first ones have their bathroom or are not there
+        let bathroom = |w: &&String| {
+            let kind = self.reading.domain.room_type_or_generic(w);
+            self.reading.wet.is_bathroom(kind) && self.may_grow(w) && !self.waits_for_host(w)
+        };
+        let bathed = self.count(&entry.room_type) > 0 && !is_dwelling(self.program);
+        let baths = if bathed { entry.with.iter().filter(bathroom).count() } else { 0 };
+        let whole = 1 + baths + if entered.clone().all(|w| self.may_grow(w)) { entered.count() } else { limit };
         if !self.may_grow(&entry.room_type) || self.rooms.len() + whole > limit {
             return false;
         }
@@ -440,7 +447,13 @@ impl<'r, 'a> Build<'r, 'a> {
             let by_area = entry
                 .area_per_occupant_m2
                 .map_or(0, |per| (per * f64::from(people) / kind.area_m2.max).ceil() as usize);
-            for _ in present..by_count.max(by_area) {
+            // each storey has its share of those who work there
+            let storeys = self.reading.storeys.levels.iter().filter(|l| **l >= 0).count();
+            let shares = entry.area_per_occupant_m2.map_or(0, |per| {
+                let most = (per * f64::from(people) / kind.area_m2.min) as usize;
+                if storeys > 1 { most.min(storeys) } else { 0 }
+            });
+            for _ in present..by_count.max(by_area).max(shares) {
                 self.add(entry, limit);
             }
         }

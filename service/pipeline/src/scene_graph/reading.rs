@@ -1,5 +1,7 @@
 //! A prompt understood: every fact it states, before rooms are added or connected.
 
+use std::sync::Arc;
+
 use d3dgen_model::domain::{Access, Domain, GENERIC_ROOM_TYPE, Occupants, Program, ProgramRoom, Shape};
 use d3dgen_model::scene_graph::{Note, Occupancy, Robot};
 use d3dgen_model::style::Style;
@@ -15,6 +17,7 @@ use super::relations;
 use super::storeys::{self, Storeys, Wanted, Where};
 use super::styles;
 use super::text::{MAX_TOKENS, Span, Token, tokens};
+use super::vital::{self, Wet};
 use super::wishes::{self, MANY, PerHost, Text, Wish, Wishes};
 use super::words::{ByBedrooms, Spoken, Tag, words};
 use super::{Request, docks, dwelling, language, measures, numbers, robots, single, umlauts, unread};
@@ -36,6 +39,8 @@ const MAX_HEADS: i64 = 5000;
 pub(super) struct Reading<'a> {
     pub language: &'static str,
     pub domain: &'a Domain,
+    /// Which of its rooms have a toilet.
+    pub wet: Arc<Wet>,
     pub building_type: Option<String>,
     pub program: &'a Program,
     pub country_code: Option<String>,
@@ -162,6 +167,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     let taken = Taken {
         spans: &spans,
         head: building.head,
+        buildings: &building.words,
         list_from: building.list_from,
         counted: &counted,
         docks: &machines.docks,
@@ -204,6 +210,10 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     furnish_basement(&mut storeys, &mut wishes, domain);
     wish_for_storeys(&storeys, &mut wishes, domain);
     name_private_bathrooms(&mut wishes, domain, lives);
+    let wet = registry.digest(&domain.id, || Wet::of(domain));
+    if !lives {
+        vital::rule_out(domain, &wet, &mut wishes);
+    }
     let program = program_by_bedrooms(domain, program, &wishes);
     spans.extend(building.head);
     let fleet = robots::Counting {
@@ -281,6 +291,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     Ok(Reading {
         language,
         domain,
+        wet,
         building_type: building.building_type,
         program,
         country_code: flag_country.or(place.country_code),
@@ -456,6 +467,8 @@ fn wish_for_storeys(storeys: &Storeys, wishes: &mut Wishes, domain: &Domain) {
         wishes.pairs.retain(|p| !joins(&p.a) && !joins(&p.b));
         wishes.forbidden.retain(|f| !joins(f));
     }
+    // what joins the rooms of a storey cannot be ruled out
+    wishes.forbidden.retain(|f| *f != domain.circulation.room_type);
 }
 
 /// Head counts of a prompt.

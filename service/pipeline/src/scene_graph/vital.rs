@@ -2,12 +2,15 @@
 //! to sleep, a place to work at has a toilet, a ward what its program calls vital. Where a number or list of rooms leaves no
 //! place for them, a conflict says so, and which change would.
 
+use std::collections::BTreeSet;
+
 use d3dgen_model::domain::{Access, Domain, Occupants, Program, RoomType, Shape, Zone};
 
 use super::beds::sleeps;
 use super::places::note;
 use super::program::Planned;
 use super::reading::{MOST_IN_OFFICE, Reading, is_dwelling};
+use super::wishes::Wishes;
 use super::words::words;
 
 /// Beds without a bathroom of their own that share one, at most.
@@ -15,15 +18,33 @@ const BEDS_TO_A_BATHROOM: u32 = 4;
 /// Bedrooms from which on a home has a second toilet.
 const BEDROOMS_FOR_TWO_TOILETS: usize = 4;
 
-/// Returns the kinds of rooms that the building is not without, each with what can stand for it.
-fn classes<'a>(reading: &Reading<'a>) -> Vec<&'a [String]> {
-    let of = |list: &'a [Vec<String>]| list.iter().map(Vec::as_slice).collect::<Vec<_>>();
+/// Returns the kinds of rooms that the building is not without, each with what can stand for it: one toilet for another.
+fn classes<'a>(reading: &Reading<'a>) -> Vec<Class<'a>> {
+    let of = |list: &'a [Vec<String>]| list.iter().map(|ids| ids.iter().map(String::as_str).collect());
     if is_dwelling(reading.program) {
-        of(&words().dwelling.vital)
-    } else if is_worked_at(reading.program) {
-        [of(&words().work_vital), of(&reading.program.vital)].concat()
-    } else {
-        of(&reading.program.vital)
+        return of(&words().dwelling.vital).map(|ids| Class { ids, by_program: false }).collect();
+    }
+    let work = is_worked_at(reading.program).then(|| of(&words().work_vital)).into_iter().flatten();
+    let own = reading.program.vital.iter().map(|id| {
+        let flush = |id: &str| reading.domain.room_type(id).is_some_and(|k| reading.wet.has_toilet(k));
+        let others =
+            reading.program.rooms.iter().map(|e| e.room_type.as_str()).filter(|o| flush(id) && flush(o) && o != id);
+        Class { ids: std::iter::once(id.as_str()).chain(others).collect(), by_program: true }
+    });
+    work.map(|ids| Class { ids, by_program: false }).chain(own).collect()
+}
+
+/// Kinds of rooms of which a building has one.
+struct Class<'a> {
+    /// The usual one first.
+    ids: Vec<&'a str>,
+    /// True where the program says so, false for what every such building has.
+    by_program: bool,
+}
+
+impl Class<'_> {
+    fn holds(&self, room: &Planned) -> bool {
+        self.ids.contains(&room.room_type.as_str())
     }
 }
 
@@ -35,24 +56,46 @@ fn is_worked_at(program: &Program) -> bool {
     })
 }
 
+/// Ids of a domain's room types with a toilet, and of those that one can bathe in too.
+#[derive(Debug, Default)]
+pub(super) struct Wet {
+    toilets: BTreeSet<String>,
+    bathrooms: BTreeSet<String>,
+}
+
+impl Wet {
+    /// Finds them by what the rooms are furnished with.
+    pub(super) fn of(domain: &Domain) -> Self {
+        let mut wet = Self::default();
+        for kind in domain.room_types.iter().filter(|k| k.zone != Zone::Night) {
+            if has_shape(domain, kind, &[Shape::Toilet, Shape::Cubicle]) {
+                wet.toilets.insert(kind.id.clone());
+                if has_shape(domain, kind, &[Shape::Shower, Shape::Bathtub]) {
+                    wet.bathrooms.insert(kind.id.clone());
+                }
+            }
+        }
+        wet
+    }
+
+    /// Returns true for rooms to go to the toilet in.
+    pub(super) fn has_toilet(&self, kind: &RoomType) -> bool {
+        self.toilets.contains(&kind.id)
+    }
+
+    /// Returns true for rooms with a toilet and a shower or bathtub.
+    pub(super) fn is_bathroom(&self, kind: &RoomType) -> bool {
+        self.bathrooms.contains(&kind.id)
+    }
+}
+
 /// Returns true for rooms with an object of one of these shapes.
 fn has_shape(domain: &Domain, kind: &RoomType, shapes: &[Shape]) -> bool {
     let of = |id: &str| domain.object(id).is_some_and(|o| shapes.contains(&o.shape));
-    kind.zone != Zone::Night
-        && kind.furnishing.iter().any(|line| match domain.group(&line.item) {
-            Some(group) => of(&group.anchor) || group.members.iter().any(|m| of(&m.object)),
-            None => of(&line.item),
-        })
-}
-
-/// Returns true for rooms to go to the toilet in.
-pub(super) fn has_toilet(domain: &Domain, kind: &RoomType) -> bool {
-    has_shape(domain, kind, &[Shape::Toilet, Shape::Cubicle])
-}
-
-/// Returns true for rooms with a toilet and a shower or bathtub.
-fn is_bathroom(domain: &Domain, kind: &RoomType) -> bool {
-    has_toilet(domain, kind) && has_shape(domain, kind, &[Shape::Shower, Shape::Bathtub])
+    kind.furnishing.iter().any(|line| match domain.group(&line.item) {
+        Some(group) => of(&group.anchor) || group.members.iter().any(|m| of(&m.object)),
+        None => of(&line.item),
+    })
 }
 
 /// Returns true for a room that is the last of its kind, or one of the bedrooms that the people need.
@@ -62,10 +105,9 @@ pub(super) fn is_vital(reading: &Reading, rooms: &[Planned], i: usize) -> bool {
     if main && rooms.iter().filter(|r| &r.room_type == id).count() == 1 {
         return true;
     }
-    let last =
-        |class: &[String]| class.contains(id) && rooms.iter().filter(|r| class.contains(&r.room_type)).count() == 1;
-    let toilet = |r: &Planned| has_toilet(reading.domain, r.kind);
-    classes(reading).into_iter().any(last)
+    let last = |class: &Class| class.holds(&rooms[i]) && rooms.iter().filter(|r| class.holds(r)).count() == 1;
+    let toilet = |r: &Planned| reading.wet.has_toilet(r.kind);
+    classes(reading).iter().any(last)
         || toilet(&rooms[i]) && rooms.iter().filter(|r| toilet(r)).count() == 1
         || sleeps_in(reading.domain, &rooms[i]) && bedrooms(reading, rooms) <= bedrooms_needed(reading)
 }
@@ -91,17 +133,16 @@ pub(super) fn complete<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned<'a
     }
     let mut missing: Vec<String> = Vec::new();
     let lives = is_dwelling(reading.program);
-    for (k, class) in classes(reading).into_iter().enumerate() {
+    for class in classes(reading) {
         // in a number of rooms the order of the program says what goes first
-        let by_program = !lives && k >= classes(reading).len() - reading.program.vital.len();
-        if by_program && (reading.total.is_some() || reading.closed && !reading.may_join) {
+        if class.by_program && (reading.total.is_some() || reading.closed && !reading.may_join) {
             continue;
         }
-        let present = rooms.iter().any(|r| class.contains(&r.room_type));
-        let unwanted = class.iter().any(|id| reading.wishes.forbidden.contains(id));
-        let listed = |id: &&String| reading.program.rooms.iter().any(|e| e.room_type == **id);
-        let known = |id: &&String| reading.domain.room_type(id).is_some();
-        let Some(id) = class.iter().find(listed).or_else(|| class.iter().find(known)) else { continue };
+        let present = rooms.iter().any(|r| class.holds(r));
+        let unwanted = class.ids.iter().any(|id| reading.wishes.forbidden.iter().any(|f| f == id));
+        let listed = |id: &&&str| reading.program.rooms.iter().any(|e| e.room_type == **id);
+        let known = |id: &&&str| reading.domain.room_type(id).is_some();
+        let Some(id) = class.ids.iter().find(listed).or_else(|| class.ids.iter().find(known)) else { continue };
         if present || unwanted {
             continue;
         }
@@ -157,11 +198,11 @@ fn give_bedrooms<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
 
 /// Gives a home of many bedrooms a second toilet, where its rooms are left open.
 fn second_toilet<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
-    let toilets = rooms.iter().filter(|r| has_toilet(reading.domain, r.kind)).count();
+    let toilets = rooms.iter().filter(|r| reading.wet.has_toilet(r.kind)).count();
     let kind = reading.domain.room_type(&words().dwelling.toilet);
     let named = reading.wishes.wishes.iter().any(|w| {
         let kind = reading.domain.room_type(&w.room_type);
-        w.exact && w.listed && kind.is_some_and(|k| has_toilet(reading.domain, k))
+        w.exact && w.listed && kind.is_some_and(|k| reading.wet.has_toilet(k))
     });
     let open = reading.total.is_none() && !reading.closed && !named;
     let few = bedrooms(reading, rooms) >= BEDROOMS_FOR_TWO_TOILETS && toilets < 2;
@@ -173,11 +214,11 @@ fn second_toilet<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
 /// Gives a building whose program has a toilet one at least; returns what found no place.
 fn toilet<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>) -> Option<String> {
     let domain = reading.domain;
-    if rooms.iter().any(|r| has_toilet(domain, r.kind)) {
+    if rooms.iter().any(|r| reading.wet.has_toilet(r.kind)) {
         return None;
     }
     let mut kinds = reading.program.rooms.iter().filter_map(|e| domain.room_type(&e.room_type));
-    let kind = kinds.find(|k| has_toilet(domain, k) && k.access != Access::Host)?;
+    let kind = kinds.find(|k| reading.wet.has_toilet(k) && k.access != Access::Host)?;
     if reading.wishes.forbidden.contains(&kind.id) {
         return None;
     }
@@ -188,7 +229,7 @@ fn toilet<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>) -> Option<Str
 /// Gives beds that have no bathroom of their own one that few of them share; returns what found no place.
 fn bathrooms<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>) -> Option<String> {
     let domain = reading.domain;
-    let own = |k: &&RoomType| k.access == Access::Host && is_bathroom(domain, k);
+    let own = |k: &&RoomType| k.access == Access::Host && reading.wet.is_bathroom(k);
     let bathed: Vec<&RoomType> = domain.room_types.iter().filter(own).collect();
     let mut beds: Vec<u32> = rooms
         .iter()
@@ -199,25 +240,25 @@ fn bathrooms<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>) -> Option<
     let served = rooms.iter().filter(|r| own(&r.kind)).count();
     let unserved: u32 = beds.iter().take(beds.len().saturating_sub(served)).sum();
     let shared = |rooms: &[Planned]| {
-        rooms.iter().filter(|r| r.kind.access != Access::Host && is_bathroom(domain, r.kind)).count() as u32
+        rooms.iter().filter(|r| r.kind.access != Access::Host && reading.wet.is_bathroom(r.kind)).count() as u32
     };
     let needed = unserved.div_ceil(BEDS_TO_A_BATHROOM);
     let named =
-        reading.wishes.wishes.iter().any(|w| domain.room_type(&w.room_type).is_some_and(|k| is_bathroom(domain, k)));
-    let fits = |k: &&RoomType| k.access != Access::Host && k.zone == Zone::Service && is_bathroom(domain, k);
+        reading.wishes.wishes.iter().any(|w| domain.room_type(&w.room_type).is_some_and(|k| reading.wet.is_bathroom(k)));
+    let fits = |k: &&RoomType| k.access != Access::Host && k.zone == Zone::Service && reading.wet.is_bathroom(k);
     let kind = domain.room_types.iter().filter(fits).min_by(|a, b| a.area_m2.target.total_cmp(&b.area_m2.target))?;
     if named || reading.wishes.forbidden.contains(&kind.id) || reading.closed && !reading.may_join {
         return None;
     }
     let plain: Vec<usize> = (0..rooms.len())
-        .filter(|&i| has_toilet(domain, rooms[i].kind) && !is_bathroom(domain, rooms[i].kind) && !rooms[i].requested)
+        .filter(|&i| reading.wet.has_toilet(rooms[i].kind) && !reading.wet.is_bathroom(rooms[i].kind) && !rooms[i].requested)
         .collect();
     while shared(rooms) < needed {
         if put(reading, rooms, Planned::new(&kind.id, kind)) {
             continue;
         }
         // the only toilet becomes a bathroom before there is none
-        match plain.iter().find(|&&i| shared(rooms) == 0 && has_toilet(domain, rooms[i].kind)) {
+        match plain.iter().find(|&&i| shared(rooms) == 0 && reading.wet.has_toilet(rooms[i].kind)) {
             Some(&i) => rooms[i] = Planned::new(&kind.id, kind),
             None => return (shared(rooms) == 0).then(|| kind.label.to_lowercase()),
         }
@@ -229,7 +270,7 @@ fn bathrooms<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>) -> Option<
 /// intensive care unit.
 fn usually_bathes(reading: &Reading, room_type: &str) -> bool {
     let bathes = |e: &d3dgen_model::domain::ProgramRoom| {
-        e.with.iter().any(|w| reading.domain.room_type(w).is_some_and(|k| is_bathroom(reading.domain, k)))
+        e.with.iter().any(|w| reading.domain.room_type(w).is_some_and(|k| reading.wet.is_bathroom(k)))
     };
     reading.domain.programs.iter().flat_map(|p| &p.rooms).any(|e| e.room_type == room_type && bathes(e))
 }
@@ -242,7 +283,7 @@ pub(super) fn accompany<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>)
     {
         return;
     }
-    let wet = |id: &str| domain.room_type(id).is_some_and(|k| is_bathroom(domain, k));
+    let wet = |id: &str| domain.room_type(id).is_some_and(|k| reading.wet.is_bathroom(k));
     // a ward with two bathrooms has no others
     let bathed = reading.wishes.wishes.iter().any(|w| wet(&w.room_type));
     let mut kinds: Vec<String> = Vec::new();
@@ -268,7 +309,7 @@ pub(super) fn accompany<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>)
 
 /// Returns what comes with every room of a type: by the program, else by another one of the domain; rooms to sleep in have
 /// nothing where those of the program have nothing.
-fn guests<'a>(reading: &Reading<'a>, id: &str) -> Vec<&'a RoomType> {
+pub(super) fn guests<'a>(reading: &Reading<'a>, id: &str) -> Vec<&'a RoomType> {
     let (domain, program) = (reading.domain, reading.program);
     let night = |id: &str| domain.room_type(id).is_some_and(|k| k.zone == Zone::Night);
     let mut sleeping = program.rooms.iter().filter(|e| night(&e.room_type)).peekable();
@@ -318,4 +359,19 @@ fn put<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>, room: Planned<'a
             spare.is_some()
         }
     }
+}
+
+/// Rules out every room of a kind that the prompt wants none of, not only the type that its word means: an office without
+/// toilets has none for wheelchairs either, a ward without bathrooms no en suites.
+pub(super) fn rule_out(domain: &Domain, wet: &Wet, wishes: &mut Wishes) {
+    let none = |id: &String| wishes.forbidden.contains(id);
+    let (toilets, bathrooms) = (words().dwelling.toilets.iter().any(none), none(&words().dwelling.bathroom));
+    let alike = |k: &&RoomType| {
+        let bath = wet.is_bathroom(k);
+        wet.has_toilet(k) && (toilets && !bath || bathrooms && bath && k.access == Access::Host)
+    };
+    let wished = |id: &String| wishes.wishes.iter().any(|w| &w.room_type == id);
+    let more: Vec<String> = domain.room_types.iter().filter(alike).map(|k| k.id.clone()).collect();
+    let more: Vec<String> = more.into_iter().filter(|id| !wished(id) && !none(id)).collect();
+    wishes.forbidden.extend(more);
 }
