@@ -211,6 +211,9 @@ impl Document for Domain {
                     room(format!("/programs/{i}/rooms/{j}/with/{k}"), id, &mut problems);
                 }
             }
+            for (j, id) in program.vital.iter().enumerate() {
+                room(format!("/programs/{i}/vital/{j}"), id, &mut problems);
+            }
             let Some(units) = &program.units else { continue };
             let at = format!("/programs/{i}/units");
             if units.programs.is_empty() || units.rooms < 2 || units.from_rooms <= units.rooms {

@@ -18,6 +18,10 @@ pub struct Program {
     pub default_rooms: u32,
     /// Entries, most important first.
     pub rooms: Vec<ProgramRoom>,
+    /// Room types that no such building is without; one toilet stands for another. They join a list of rooms that lacks them;
+    /// where the number of rooms is fixed the program's order decides.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub vital: Vec<String>,
     /// What large buildings are made of; without it they have more of the same.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub units: Option<Units>,
@@ -61,6 +65,9 @@ pub struct ProgramRoom {
     /// Floor area per occupant, m^2, for rooms that grow with the head count (an open office).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub area_per_occupant_m2: Option<f64>,
+    /// Floor area for every person who works there, m^2, of a room that serves them all (a kitchenette, a break room).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub area_per_person_m2: Option<f64>,
     /// In buildings that are to be accessible it comes after so many entries already (the toilet for wheelchairs).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub accessible_after: Option<u32>,

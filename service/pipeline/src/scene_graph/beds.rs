@@ -78,6 +78,48 @@ fn is_bed_room(kind: &RoomType) -> bool {
     kind.zone == Zone::Night && kind.privacy == Privacy::Private && kind.access != Access::Host
 }
 
+/// Returns the beds of a room that the prompt tells by them alone: "a 4-bed room", "Vierbettzimmer", "chambre à 4 lits".
+pub(super) fn told(tokens: &[Token], numbers: &[Number], spoken: &[&Spoken]) -> Option<u32> {
+    let tagged = |i: usize, tag| spoken.iter().find_map(|s| s.tag_at(tokens, i, tag));
+    let unit = |i: usize| {
+        let text = &tokens.get(i)?.text;
+        let known = spoken.iter().any(|s| s.tags.word(text).is_some_and(|tags| tags.contains(&Tag::BedUnits)));
+        tagged(i, Tag::BedUnits).or(known.then_some(i + 1))
+    };
+    let ends = || spoken.iter().filter_map(|s| s.words.phrases.get(&Tag::BedRoomEnds)).flatten();
+    let exact = |n: &&Number| !n.article && !n.vague;
+    for number in numbers.iter().filter(exact) {
+        let Some(beds) = bed_count(number.value).filter(|n| *n > 1) else { continue };
+        let at = number.span.end;
+        if tokens.get(at).is_some_and(|t| !t.spaced && ends().any(|e| *e == t.text)) {
+            return Some(beds);
+        }
+        let Some(unit) = unit(at) else { continue };
+        // "2 bed rooms" are bedrooms
+        let before = numbers.iter().any(|n| n.span.end == number.span.start);
+        let one = |end: usize| tokens[unit].kind != Kind::Word || !tokens[end - 1].text.ends_with('s');
+        if tagged(unit, Tag::BedRooms).is_some_and(|end| before || one(end)) {
+            return Some(beds);
+        }
+        let of = number.span.start.checked_sub(1).is_some_and(|i| tagged(i, Tag::Stops).is_some());
+        let closes = tokens.get(unit).is_none_or(Token::is_mark);
+        if of && closes && beds > 2 && number.span.start <= MOST_BETWEEN {
+            return Some(beds);
+        }
+    }
+    tokens.iter().find_map(|t| {
+        let head = ends().find_map(|e| t.text.strip_suffix(e.as_str())).filter(|h| !h.is_empty())?;
+        let value = spoken.iter().find_map(|s| numbers::in_one_word(head, s))?;
+        bed_count(value).filter(|n| *n > 1)
+    })
+}
+
+/// Returns true for domains with a room for so many beds.
+pub(super) fn has_room_for(domain: &Domain, beds: u32) -> bool {
+    let mut kinds = domain.room_types.iter().filter(|k| is_bed_room(k)).filter_map(|k| sleeps(domain, k));
+    kinds.any(|[low, high]| (low..=high).contains(&beds)) || beds > 2 && domain.room_types.iter().any(is_bed_room)
+}
+
 /// How rooms get their types from beds.
 pub(super) struct Choice<'a> {
     pub domain: &'a Domain,

@@ -28,6 +28,22 @@ pub(super) struct Building {
     pub words: Vec<Span>,
 }
 
+impl Building {
+    /// Returns the building of a prompt without a word for one.
+    pub(super) fn none(domain: &str) -> Self {
+        Self {
+            domain: domain.to_owned(),
+            building_type: None,
+            head: None,
+            list_from: 0,
+            by_rooms: false,
+            parts: Vec::new(),
+            listed_type: false,
+            words: Vec::new(),
+        }
+    }
+}
+
 /// A building or department named beside the one that is built: "ward with radiology".
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Part {

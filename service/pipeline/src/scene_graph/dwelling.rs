@@ -47,10 +47,11 @@ fn one_room(form: ShortForm, domain: &Domain, d: &Dwelling) -> ShortForm {
 
 fn rooms_to_live(n: f64, d: &Dwelling) -> BTreeMap<String, i64> {
     // Half rooms ("2,5-Zimmer-Wohnung") are niches, not rooms.
-    let bedrooms = (n.floor() as i64 - 1).max(0);
-    let mut rooms = BTreeMap::from([(d.living.clone(), 1)]);
-    if bedrooms > 0 {
-        rooms.insert(d.bedroom.clone(), bedrooms);
+    let count = (n.floor() as usize).max(1);
+    let mut rooms = BTreeMap::new();
+    // beyond those that are told one by one there are as many of the last as are left
+    for id in d.live_in.iter().chain(d.live_in.last().into_iter().cycle()).take(count) {
+        *rooms.entry(id.clone()).or_default() += 1;
     }
     rooms
 }

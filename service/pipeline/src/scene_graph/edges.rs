@@ -73,6 +73,8 @@ fn hub(reading: &mut Reading, planned: &[Planned], rooms: &mut Vec<GraphRoom>) -
                     circulation.room_type
                 );
                 reading.conflicts.push(note("circulation_needed", message));
+                // what the building cannot do without is not ruled out any more
+                reading.wishes.forbidden.retain(|f| f != &circulation.room_type);
             }
             rooms.push(rooms::circulation(reading));
             rooms.len() - 1

@@ -12,7 +12,8 @@ use d3dgen_plugins::Registry;
 use super::places::{self, note};
 use super::reading::refused;
 use super::rooms::wished_assets;
-use super::text::{Phrases, fold, tokens};
+use super::text::{Phrases, Token, fold, tokens};
+use super::umlauts;
 use super::wishes::CHARGING;
 use super::words::words;
 use crate::Error;
@@ -102,6 +103,15 @@ impl<'a> Names<'a> {
                 }
                 room.keywords.get(language).into_iter().flatten().for_each(|w| phrases.insert(w, room.id.clone()));
             }
+            // on a plan a word for such a building means its room of the same kind: "Büro"
+            for building in domain.building_types.iter().filter(|b| domain.room_type(&b.id).is_some()) {
+                building
+                    .keywords
+                    .get(language)
+                    .into_iter()
+                    .flatten()
+                    .for_each(|w| phrases.insert(w, building.id.clone()));
+            }
             phrases
         };
         Self { domain, languages: words().languages.keys().map(of).collect() }
@@ -113,6 +123,14 @@ impl<'a> Names<'a> {
             return self.domain.room_type(label).map(|r| (r.id.as_str(), label.len()));
         }
         let list = tokens(&spaced(label));
+        self.hear(&list).or_else(|| {
+            // "Kueche"
+            let respelled = |t: Token| umlauts::plain(&t.text).map_or(t.clone(), |text| Token { text, ..t });
+            self.hear(&list.into_iter().map(respelled).collect::<Vec<_>>())
+        })
+    }
+
+    fn hear(&self, list: &[Token]) -> Option<(&str, usize)> {
         let mut best: Option<(&str, usize)> = None;
         let mut hear = |id: &'_ String, letters: usize| -> Option<()> {
             let known = self.domain.room_type(id)?;
@@ -123,7 +141,7 @@ impl<'a> Names<'a> {
         };
         for phrases in &self.languages {
             for i in 0..list.len() {
-                if let Some((end, id)) = phrases.longest_at(&list, i) {
+                if let Some((end, id)) = phrases.longest_at(list, i) {
                     hear(id, list[i..end].iter().map(|t| t.text.chars().count()).sum());
                 }
                 if let Some((id, cut)) = phrases.ending(&list[i].text, LEAST_ENDING) {

@@ -193,6 +193,8 @@ pub(super) struct Taken<'a> {
     pub spans: &'a [Span],
     /// Words that name the building.
     pub head: Option<Span>,
+    /// All words for buildings.
+    pub buildings: &'a [Span],
     pub list_from: usize,
     /// Things that a number before them counts: robots, areas. No number counts what stands behind them.
     pub counted: &'a [Span],
@@ -415,14 +417,16 @@ fn count_hosts(tokens: &[Token], spoken: &[&Spoken], out: &mut [Mention]) {
     }
 }
 
-/// Drops repeated words for the building outside the list of rooms ("office office office").
+/// Drops repeated words for the building outside the list of rooms ("office office office", "headquarters office").
 fn drop_echoes(tokens: &[Token], taken: &Taken, out: &mut Vec<Mention>) {
     let Some(head) = taken.head else { return };
     let text = |span: Span| tokens[span.start..span.end].iter().map(|t| t.text.as_str()).collect::<String>();
     let name = text(head);
     out.retain(|m| {
         let before_list = m.span.start < taken.list_from;
-        !(m.room_type().is_some() && before_list && m.count.is_none() && name.contains(&text(m.span)))
+        let beside = m.span.start == head.end || m.span.end == head.start;
+        let second = beside && taken.buildings.iter().any(|b| b.overlaps(m.span));
+        !(m.room_type().is_some() && before_list && m.count.is_none() && (second || name.contains(&text(m.span))))
     });
 }
 

@@ -29,6 +29,7 @@ mod single;
 mod storeys;
 mod styles;
 mod text;
+mod umlauts;
 mod units;
 mod unknown;
 mod unread;

@@ -3,12 +3,12 @@
 use std::collections::BTreeMap;
 
 use d3dgen_knowledge::Applicable;
-use d3dgen_model::domain::{Access, Occupants, Program, ProgramRoom, RoomType, Shape, Zone};
+use d3dgen_model::domain::{Access, Domain, Occupants, Program, ProgramRoom, RoomType, Shape, Zone};
 
 use super::beds::sleeps;
 use super::layout;
 use super::places::note;
-use super::reading::{MAX_ROOMS, Reading};
+use super::reading::{MAX_ROOMS, Reading, is_dwelling};
 use super::units;
 use super::vital;
 use super::wishes::{CHARGING, Pair, PerHost, Wish};
@@ -81,6 +81,7 @@ pub(super) fn complete<'a>(reading: &mut Reading<'a>) -> Vec<Planned<'a>> {
     }
     let mut rooms = build.rooms;
     equip_hosts(reading, &mut rooms);
+    vital::accompany(reading, &mut rooms);
     vital::complete(reading, &mut rooms);
     let mut rooms = units::divide(reading, rooms);
     layout::follow(reading, &mut rooms);
@@ -91,6 +92,7 @@ pub(super) fn complete<'a>(reading: &mut Reading<'a>) -> Vec<Planned<'a>> {
 pub(super) fn finish<'a>(reading: &mut Reading<'a>, mut rooms: Vec<Planned<'a>>) -> Vec<Planned<'a>> {
     wash_on_every_storey(reading, &mut rooms);
     hold_people(reading, &mut rooms);
+    serve_people(reading, &mut rooms);
     hang_on_hosts(reading, &mut rooms);
     state_additions(reading, &rooms);
     rooms
@@ -194,8 +196,7 @@ fn wash_on_every_storey<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>)
         kinds.filter(|k| k.wet && !reading.wishes.forbidden.contains(&k.id) && k.access != Access::Host).collect();
     let usual = wet.iter().copied().find(|k| words().dwelling.toilets.contains(&k.id));
     let Some(kind) = usual.or(wet.first().copied()) else { return };
-    let is_wet =
-        |r: &Planned| words().dwelling.toilets.contains(&r.room_type) || r.room_type == words().dwelling.bathroom;
+    let is_wet = |r: &Planned| r.kind.access != Access::Host && reading.wet.has_toilet(r.kind);
     for _ in rooms.iter().filter(|r| is_wet(r)).count()..storeys {
         if reading.total.is_none() {
             rooms.push(Planned::new(&kind.id, kind));
@@ -278,7 +279,9 @@ impl<'r, 'a> Build<'r, 'a> {
             self.reading.domain.programs.iter().flat_map(|p| &p.rooms).filter(|e| e.room_type == room_type);
         let host = entries.find_map(|e| e.with.iter().find(|w| kind.hosts.contains(w)));
         let named = |id: &str| self.reading.wishes.wishes.iter().any(|w| w.room_type == id);
-        if let Some(host) = host.filter(|h| !self.reading.closed && !named(h) && !self.is_forbidden(h)) {
+        if let Some(host) =
+            host.filter(|h| (!self.reading.closed || self.reading.may_join) && !named(h) && !self.is_forbidden(h))
+        {
             self.push(host, None);
         }
     }
@@ -319,7 +322,14 @@ impl<'r, 'a> Build<'r, 'a> {
     fn add(&mut self, entry: &ProgramRoom, limit: usize) -> bool {
         let kind = self.reading.domain.room_type_or_generic(&entry.room_type);
         let entered = entry.with.iter().filter(|w| kind.hosts.contains(w));
-        let whole = 1 + if entered.clone().all(|w| self.may_grow(w)) { entered.count() } else { limit };
+        // beds beyond the first ones have their bathroom or are not there
+        let bathroom = |w: &&String| {
+            let kind = self.reading.domain.room_type_or_generic(w);
+            self.reading.wet.is_bathroom(kind) && self.may_grow(w) && !self.waits_for_host(w)
+        };
+        let bathed = self.count(&entry.room_type) > 0 && !is_dwelling(self.program);
+        let baths = if bathed { entry.with.iter().filter(bathroom).count() } else { 0 };
+        let whole = 1 + baths + if entered.clone().all(|w| self.may_grow(w)) { entered.count() } else { limit };
         if !self.may_grow(&entry.room_type) || self.rooms.len() + whole > limit {
             return false;
         }
@@ -437,7 +447,13 @@ impl<'r, 'a> Build<'r, 'a> {
             let by_area = entry
                 .area_per_occupant_m2
                 .map_or(0, |per| (per * f64::from(people) / kind.area_m2.max).ceil() as usize);
-            for _ in present..by_count.max(by_area) {
+            // each storey has its share of those who work there
+            let storeys = self.reading.storeys.levels.iter().filter(|l| **l >= 0).count();
+            let shares = entry.area_per_occupant_m2.map_or(0, |per| {
+                let most = (per * f64::from(people) / kind.area_m2.min) as usize;
+                if storeys > 1 { most.min(storeys) } else { 0 }
+            });
+            for _ in present..by_count.max(by_area).max(shares) {
                 self.add(entry, limit);
             }
         }
@@ -530,6 +546,46 @@ fn hold_people(reading: &mut Reading, rooms: &mut [Planned]) {
             }
         }
     }
+}
+
+/// Sizes rooms that serve all who work there by how many these are: as many as the prompt says, else as have a desk.
+fn serve_people(reading: &Reading, rooms: &mut [Planned]) {
+    let entries = reading.program.rooms.iter().filter_map(|e| Some((e, e.area_per_person_m2?))).collect::<Vec<_>>();
+    if entries.is_empty() || reading.single {
+        return;
+    }
+    let desks = || rooms.iter().map(|r| workplaces(reading.domain, r)).sum::<u32>();
+    let people = f64::from(head_count(reading, Occupants::Staff).unwrap_or_else(desks));
+    let mut sized: Vec<&str> = Vec::new();
+    for (entry, each) in entries {
+        if sized.contains(&entry.room_type.as_str()) {
+            continue;
+        }
+        sized.push(&entry.room_type);
+        let alike: Vec<usize> = (0..rooms.len()).filter(|&i| rooms[i].room_type == entry.room_type).collect();
+        for &i in &alike {
+            let range = rooms[i].kind.area_m2;
+            let area = (each * people / alike.len() as f64).clamp(range.min, range.max);
+            rooms[i].people_area_m2 = rooms[i].area_m2.is_none().then_some(area);
+        }
+    }
+}
+
+/// Returns how many people have a desk in a room of its usual size.
+fn workplaces(domain: &Domain, room: &Planned) -> u32 {
+    let desks = |item: &str| -> u32 {
+        let is_desk = |id: &str| domain.object(id).is_some_and(|o| o.shape == Shape::Desk);
+        match domain.group(item) {
+            Some(group) => {
+                let more = group.members.iter().filter(|m| is_desk(&m.object)).map(|m| m.count).sum::<u32>();
+                more + u32::from(is_desk(&group.anchor))
+            }
+            None => u32::from(is_desk(item)),
+        }
+    };
+    let area = room.area_m2.or(room.people_area_m2).unwrap_or(room.kind.area_m2.target);
+    let lines = room.kind.furnishing.iter().filter(|line| line.instead_of.is_empty());
+    lines.map(|line| desks(&line.item) * line.units(area)).max().unwrap_or(0)
 }
 
 /// Gives rooms to sleep in the beds that the prompt says, and where its beds are those of its rooms the usual ones.

@@ -15,7 +15,7 @@ use super::given::Names;
 use super::program::{self, Planned, circulation_share};
 use super::reading::{self, MAX_ROOMS, Reading};
 use super::rooms::wished_assets;
-use super::{Request, settle};
+use super::{Request, settle, vital};
 use crate::Error;
 
 /// Reason of the edges that a proposal wishes for.
@@ -84,11 +84,12 @@ pub fn propose(request: &Request, registry: &Registry, draft: &Draft) -> Result<
     chosen.take_what_the_building_needs();
     chosen.take_what_is_proposed();
     chosen.fill_up();
-    let Choice { rooms, sources, mut items, .. } = chosen;
+    let Choice { mut rooms, mut sources, mut items, .. } = chosen;
     if sources.iter().all(Option::is_none) {
         // nothing proposed is of use: the building is the one without a proposal
         return Ok(Settled { graph: super::generate(request, registry)?, items });
     }
+    add_vital(&mut reading, &mut rooms, &mut sources, &mut items);
     let mut planned = program::finish(&mut reading, rooms);
     let mut graph = settle(request, registry, &mut reading, &mut planned);
     let ids = ids(&planned);
@@ -109,6 +110,27 @@ pub fn propose(request: &Request, registry: &Registry, draft: &Draft) -> Result<
     items.append(&mut extra);
     items.extend(edges);
     Ok(Settled { graph, items })
+}
+
+/// Adds what such a building is not without and the proposal left out; where the number of rooms is fixed, in place of what
+/// can be spared.
+fn add_vital<'a>(
+    reading: &mut Reading<'a>,
+    rooms: &mut Vec<Planned<'a>>,
+    sources: &mut Vec<Option<usize>>,
+    items: &mut [ProposedItem],
+) {
+    let before: Vec<String> = rooms.iter().map(|r| r.room_type.clone()).collect();
+    vital::accompany(reading, rooms);
+    vital::complete(reading, rooms);
+    sources.resize(rooms.len(), None);
+    for (room, old) in before.iter().enumerate().filter(|(i, old)| &rooms[*i].room_type != *old) {
+        let Some(item) = sources[room].take().and_then(|s| items.get_mut(s)) else { continue };
+        item.fate = Fate::Dropped;
+        let label = rooms[room].kind.label.to_lowercase();
+        item.reason =
+            format!("such a building is not without a {label}, which takes the place of the {}", old.replace('_', " "));
+    }
 }
 
 fn item(kind: ItemKind, proposed: &str, fate: Fate, reason: impl Into<String>) -> ProposedItem {

@@ -1,5 +1,7 @@
 //! A prompt understood: every fact it states, before rooms are added or connected.
 
+use std::sync::Arc;
+
 use d3dgen_model::domain::{Access, Domain, GENERIC_ROOM_TYPE, Occupants, Program, ProgramRoom, Shape};
 use d3dgen_model::scene_graph::{Note, Occupancy, Robot};
 use d3dgen_model::style::Style;
@@ -15,9 +17,10 @@ use super::relations;
 use super::storeys::{self, Storeys, Wanted, Where};
 use super::styles;
 use super::text::{MAX_TOKENS, Span, Token, tokens};
+use super::vital::{self, Wet};
 use super::wishes::{self, MANY, PerHost, Text, Wish, Wishes};
-use super::words::{Spoken, Tag, words};
-use super::{Request, docks, dwelling, language, measures, numbers, robots, single, unread};
+use super::words::{ByBedrooms, Spoken, Tag, words};
+use super::{Request, docks, dwelling, language, measures, numbers, robots, single, umlauts, unread};
 use crate::Error;
 
 /// Most rooms one world is planned for.
@@ -36,6 +39,8 @@ const MAX_HEADS: i64 = 5000;
 pub(super) struct Reading<'a> {
     pub language: &'static str,
     pub domain: &'a Domain,
+    /// Which of its rooms have a toilet.
+    pub wet: Arc<Wet>,
     pub building_type: Option<String>,
     pub program: &'a Program,
     pub country_code: Option<String>,
@@ -44,6 +49,8 @@ pub(super) struct Reading<'a> {
     pub total: Option<u32>,
     /// True when the prompt lists all rooms there are to be.
     pub closed: bool,
+    /// True for a list behind the name of a building ("ward with ..."), which what such a building is not without may join.
+    pub may_join: bool,
     /// True when the prompt asks for one room and no building.
     pub single: bool,
     /// True when the prompt names the building.
@@ -79,7 +86,8 @@ pub(super) fn refused(message: String) -> Error {
 pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Reading<'a>, Error> {
     check_flags(request, registry)?;
     let prompt = request.prompt.as_str();
-    let tokens = tokens(prompt);
+    let mut tokens = tokens(prompt);
+    umlauts::restore(&mut tokens, registry);
     if tokens.iter().all(Token::is_mark) {
         let message = "the prompt has no words; describe a building, for instance `two-bedroom flat in Germany`";
         return Err(refused(message.into()));
@@ -159,6 +167,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     let taken = Taken {
         spans: &spans,
         head: building.head,
+        buildings: &building.words,
         list_from: building.list_from,
         counted: &counted,
         docks: &machines.docks,
@@ -200,7 +209,12 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     let mut storeys = storeys::read(&said_storeys, country, &mut conflicts);
     furnish_basement(&mut storeys, &mut wishes, domain);
     wish_for_storeys(&storeys, &mut wishes, domain);
-    name_private_bathrooms(&mut wishes, domain);
+    name_private_bathrooms(&mut wishes, domain, lives);
+    let wet = registry.digest(&domain.id, || Wet::of(domain));
+    if !lives {
+        vital::rule_out(domain, &wet, &mut wishes);
+    }
+    let program = program_by_bedrooms(domain, program, &wishes);
     spans.extend(building.head);
     let fleet = robots::Counting {
         tokens: &tokens,
@@ -250,6 +264,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     }
     let total = total.filter(|_| !single);
     let closed = single || is_closed(&wishes, &tokens, &building, lives);
+    let may_join = joins_a_name(&building, &tokens, language);
     if closed && total.is_none() && !single {
         let named = building.head.and_then(|h| vocabulary.room_named(&tokens[h.start..h.end]));
         assumptions.extend(add_main_room(&mut wishes, program, domain, &people, named.as_deref()));
@@ -276,6 +291,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     Ok(Reading {
         language,
         domain,
+        wet,
         building_type: building.building_type,
         program,
         country_code: flag_country.or(place.country_code),
@@ -284,6 +300,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         wishes,
         total,
         closed,
+        may_join,
         single,
         named: building.head.is_some(),
         held,
@@ -340,7 +357,12 @@ fn building_of(
     conflicts: &mut Vec<Note>,
 ) -> Building {
     let recognize = |only| building::recognize(tokens, registry, languages, spoken, numbers, places, only);
-    let found = recognize(None);
+    let mut found = recognize(None);
+    if found.as_ref().is_none_or(|b| b.by_rooms) {
+        // "a 4-bed room" is no home, and who has staff works there
+        let by_words = by_beds_or_staff(registry, tokens, numbers, spoken, found.is_none());
+        found = by_words.map(|domain| Building { by_rooms: true, ..Building::none(domain) }).or(found);
+    }
     if let Some(id) = &request.domain {
         if let Some(other) = found.as_ref().filter(|b| &b.domain != id && !b.by_rooms) {
             let message =
@@ -351,19 +373,7 @@ fn building_of(
         let list_from = found.as_ref().map_or(0, |b| b.list_from);
         return match recognize(Some(id)) {
             Some(b) => b,
-            None => {
-                let (parts, words) = (Vec::new(), Vec::new());
-                Building {
-                    domain: id.clone(),
-                    building_type: None,
-                    head,
-                    list_from,
-                    by_rooms: false,
-                    parts,
-                    listed_type: false,
-                    words,
-                }
-            }
+            None => Building { head, list_from, ..Building::none(id) },
         };
     }
     match found {
@@ -376,21 +386,43 @@ fn building_of(
         }
         None => {
             let id = registry.iter().next().map_or(String::new(), |p| p.id().to_owned());
+            let title = registry.get(&id).map_or(String::new(), |p| p.domain().title.to_lowercase());
             let message = format!("the prompt does not say what to build; domain {id} was taken");
             assumptions.push(note("default_domain", message));
-            let (parts, words) = (Vec::new(), Vec::new());
-            Building {
-                domain: id,
-                building_type: None,
-                head: None,
-                list_from: 0,
-                by_rooms: false,
-                parts,
-                listed_type: false,
-                words,
+            let unread: Vec<&str> = unread::nouns(tokens, numbers, spoken, places)
+                .into_iter()
+                .filter_map(|t| request.prompt.get(t.start..t.end))
+                .collect();
+            if !unread.is_empty() {
+                let message = format!(
+                    "of `{}` no word names a building or room that is known; the usual {title} building was planned, say what it is (a flat, an office, a ward, a school)",
+                    unread.join("`, `")
+                );
+                conflicts.push(note("unknown_building", message));
             }
+            Building::none(&id)
         }
     }
+}
+
+/// Returns the domain of rooms that are told by their beds, and where nothing else tells one that of people who work.
+fn by_beds_or_staff<'a>(
+    registry: &'a Registry,
+    tokens: &[Token],
+    numbers: &[numbers::Number],
+    spoken: &[&Spoken],
+    nothing: bool,
+) -> Option<&'a str> {
+    let domains =
+        || registry.iter().map(|p| p.domain()).filter(|d| d.programs.first().is_some_and(|p| !is_dwelling(p)));
+    let tagged = |tag| (0..tokens.len()).any(|i| spoken.iter().any(|s| s.tag_at(tokens, i, tag).is_some()));
+    if let Some(count) = beds::told(tokens, numbers, spoken) {
+        return domains().find(|d| beds::has_room_for(d, count)).map(|d| d.id.as_str());
+    }
+    let works = nothing && [Tag::Staff, Tag::StaffBefore, Tag::Desks].into_iter().any(tagged);
+    let seats =
+        |d: &&Domain| d.programs.first().is_some_and(|p| p.rooms.iter().any(|r| r.area_per_occupant_m2.is_some()));
+    domains().find(seats).filter(|_| works).map(|d| d.id.as_str())
 }
 
 fn program_of<'a>(domain: &'a Domain, building_type: Option<&str>) -> &'a Program {
@@ -399,6 +431,14 @@ fn program_of<'a>(domain: &'a Domain, building_type: Option<&str>) -> &'a Progra
         .and_then(|b| domain.program(&b.program))
         .or_else(|| domain.programs.first())
         .expect("a domain's check demands a program")
+}
+
+/// Returns the program of a home with as many bedrooms as the prompt gives it.
+fn program_by_bedrooms<'a>(domain: &'a Domain, program: &'a Program, wishes: &Wishes) -> &'a Program {
+    let bedrooms = wishes.wishes.iter().find(|w| w.exact && w.room_type == words().dwelling.bedroom).map(|w| w.count);
+    let own = |b: &&ByBedrooms| b.programs.contains(&program.id) && Some(b.bedrooms) == bedrooms;
+    let other = words().dwelling.by_bedrooms.iter().find(own).and_then(|b| domain.program(&b.program));
+    other.unwrap_or(program)
 }
 
 /// Counts rooms on every storey for each of them, and leaves stairs and elevators to what joins the storeys.
@@ -427,6 +467,8 @@ fn wish_for_storeys(storeys: &Storeys, wishes: &mut Wishes, domain: &Domain) {
         wishes.pairs.retain(|p| !joins(&p.a) && !joins(&p.b));
         wishes.forbidden.retain(|f| !joins(f));
     }
+    // what joins the rooms of a storey cannot be ruled out
+    wishes.forbidden.retain(|f| *f != domain.circulation.room_type);
 }
 
 /// Head counts of a prompt.
@@ -503,8 +545,19 @@ fn furnish_basement(storeys: &mut Storeys, wishes: &mut Wishes, domain: &Domain)
     }
 }
 
-/// Turns "habitaciones con baño" into guest rooms with bathrooms where the word alone means a public toilet.
-fn name_private_bathrooms(wishes: &mut Wishes, domain: &Domain) {
+/// Turns "habitaciones con baño" into guest rooms with bathrooms where the word alone means a public toilet, and "patient
+/// rooms with a bathroom each" into rooms with en suites where the word alone means one that several share.
+fn name_private_bathrooms(wishes: &mut Wishes, domain: &Domain, lives: bool) {
+    let shared = |id: &String| domain.room_type(id).is_some_and(|t| t.wet && t.access != Access::Host);
+    for pair in wishes.pairs.iter_mut().filter(|p| p.belongs && !lives && p.a == words().dwelling.bathroom) {
+        let mut own =
+            domain.room_types.iter().filter(|t| t.wet && t.access == Access::Host && t.hosts.contains(&pair.b));
+        let Some(own) = own.next().filter(|_| shared(&pair.a)) else { continue };
+        if let Some(wish) = wishes.wishes.iter_mut().find(|w| w.room_type == pair.a) {
+            wish.room_type.clone_from(&own.id);
+        }
+        pair.a.clone_from(&own.id);
+    }
     let Some(bathroom) = domain.room_type(&words().dwelling.bathroom).filter(|t| t.access == Access::Host) else {
         return;
     };
@@ -585,6 +638,13 @@ fn total_rooms(
 /// Returns true for programs of buildings that people live in.
 pub(super) fn is_dwelling(program: &Program) -> bool {
     program.rooms.iter().any(|r| r.room_type == words().dwelling.bedroom || r.room_type == words().dwelling.living)
+}
+
+/// Returns true for rooms listed behind the name of a building and no colon: these are what it has, and perhaps not all.
+fn joins_a_name(building: &Building, tokens: &[Token], language: &str) -> bool {
+    let colon = tokens.iter().any(|t| t.mark() == Some(':'));
+    // where the name comes last, a list goes with it all the same
+    building.head.is_some() && !colon && (building.list_from > 0 || matches!(language, "zh" | "ko"))
 }
 
 /// Returns true when the listed rooms are the whole building.

@@ -150,13 +150,29 @@ fn target_areas(reading: &mut Reading, planned: &[Planned]) -> Vec<f64> {
     let scaled = at(high);
     let sum: f64 = scaled.iter().sum();
     if (sum - budget).abs() > AREA_TOLERANCE * budget {
+        let reachable = sum / for_rooms;
+        let change = if sum > budget {
+            format!("{reachable:.0} m2 would do, or {} rooms fewer", rooms_too_many(planned, budget))
+        } else {
+            format!("at most {reachable:.0} m2, or more rooms, would do")
+        };
         let message = format!(
-            "{total:.0} m2 were asked for; the rooms can have about {:.0} m2 within the ranges of their types",
-            sum / for_rooms
+            "{total:.0} m2 were asked for; the rooms can have about {reachable:.0} m2 within the ranges of their types; {change}"
         );
         reading.conflicts.push(note("area_not_reachable", message));
     }
     scaled.into_iter().map(tenth).collect()
+}
+
+/// Returns how many rooms must go, the largest first, before the others fit an area, net m^2.
+fn rooms_too_many(planned: &[Planned], area: f64) -> usize {
+    let mut least: Vec<f64> = planned.iter().map(|r| r.area_m2.unwrap_or(r.kind.area_m2.min)).collect();
+    least.sort_by(f64::total_cmp);
+    let fitting = least.iter().scan(0.0, |sum, a| {
+        *sum += a;
+        Some(*sum)
+    });
+    planned.len() - fitting.take_while(|sum| *sum <= area).count()
 }
 
 /// Returns the factor that the style asks for; the area that the prompt gives wins over the style.

@@ -28,6 +28,11 @@ pub(super) fn unname(
         building.list_from = 0;
         return;
     }
+    // "cellular office with 14 rooms" is a building
+    let total = |n: &Number| spoken.iter().any(|s| s.tag_at(tokens, n.span.end, Tag::Total).is_some());
+    if numbers.iter().any(|n| n.value > 1.0 && total(n)) {
+        return;
+    }
     let own = |start: usize| vocabulary.own_at(tokens, Span { start, end: head.end });
     let from = (head.start.saturating_sub(MOST_BEFORE)..head.start).find(|&i| own(i).is_some());
     let same = building.building_type.is_none() && own(head.start).is_some();

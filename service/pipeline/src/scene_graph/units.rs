@@ -5,6 +5,7 @@ use d3dgen_model::domain::{Program, Units};
 use super::places::note;
 use super::program::{Planned, fill_unit, is_counted};
 use super::reading::Reading;
+use super::vital::guests;
 
 /// A unit to be.
 struct Unit<'a> {
@@ -45,7 +46,10 @@ fn fixed_rooms<'a>(reading: &Reading<'a>, rooms: Vec<Planned<'a>>) -> Vec<Planne
         let mut counted = reading.program.rooms.iter().filter(|e| is_counted(reading, &e.room_type));
         counted.any(|e| e.with.contains(&room.room_type))
     };
-    let stays = |room: &Planned| room.requested || is_counted(reading, &room.room_type) || comes_with(room);
+    let asked = rooms.iter().filter(|r| r.requested).flat_map(|r| guests(reading, &r.room_type)).collect::<Vec<_>>();
+    let belongs = |room: &Planned| asked.iter().any(|k| k.id == room.room_type);
+    let stays =
+        |room: &Planned| room.requested || is_counted(reading, &room.room_type) || comes_with(room) || belongs(room);
     rooms.into_iter().filter(stays).collect()
 }
 

@@ -81,6 +81,16 @@ pub(super) fn state(text: &Text, conflicts: &mut Vec<Note>) {
     }
 }
 
+/// Returns the words of a prompt without a word for a building that could be one.
+pub(super) fn nouns<'t>(tokens: &'t [Token], numbers: &[Number], spoken: &[&Spoken], taken: &[Span]) -> Vec<&'t Token> {
+    let free = |i: usize| !taken.iter().chain(numbers.iter().map(|n| &n.span)).any(|s| s.contains(i));
+    let tagged = |i: usize| spoken.iter().any(|s| s.tags.longest_at(tokens, i).is_some());
+    let noun = |&(i, t): &(usize, &Token)| {
+        t.kind == Kind::Word && t.text.chars().count() >= LEAST_LETTERS && free(i) && !tagged(i)
+    };
+    tokens.iter().enumerate().filter(noun).map(|f| f.1).take(MOST_IN_ITEM).collect()
+}
+
 /// Lengths, speeds, weights and the like that nobody has read.
 fn measures(text: &Text) -> Vec<Span> {
     let tokens = text.tokens;

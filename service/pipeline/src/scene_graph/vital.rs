@@ -1,22 +1,50 @@
 //! Rooms that no building is without, whose list the prompt leaves open: a home has a room to live in, to cook, to wash and
-//! to sleep, a place to work at has a toilet. Where a number or list of rooms leaves no place for them, a conflict says so.
+//! to sleep, a place to work at has a toilet, a ward what its program calls vital. Where a number or list of rooms leaves no
+//! place for them, a conflict says so, and which change would.
 
-use d3dgen_model::domain::{Access, Domain, Occupants, Program, Zone};
+use std::collections::BTreeSet;
+
+use d3dgen_model::domain::{Access, Domain, Occupants, Program, RoomType, Shape, Zone};
 
 use super::beds::sleeps;
 use super::places::note;
 use super::program::Planned;
 use super::reading::{MOST_IN_OFFICE, Reading, is_dwelling};
+use super::wishes::Wishes;
 use super::words::words;
 
-/// Returns the kinds of rooms that the building is not without, each with what can stand for it.
-fn classes(reading: &Reading) -> &'static [Vec<String>] {
+/// Beds without a bathroom of their own that share one, at most.
+const BEDS_TO_A_BATHROOM: u32 = 4;
+/// Bedrooms from which on a home has a second toilet.
+const BEDROOMS_FOR_TWO_TOILETS: usize = 4;
+
+/// Returns the kinds of rooms that the building is not without, each with what can stand for it: one toilet for another.
+fn classes<'a>(reading: &Reading<'a>) -> Vec<Class<'a>> {
+    let of = |list: &'a [Vec<String>]| list.iter().map(|ids| ids.iter().map(String::as_str).collect());
     if is_dwelling(reading.program) {
-        &words().dwelling.vital
-    } else if is_worked_at(reading.program) {
-        &words().work_vital
-    } else {
-        &[]
+        return of(&words().dwelling.vital).map(|ids| Class { ids, by_program: false }).collect();
+    }
+    let work = is_worked_at(reading.program).then(|| of(&words().work_vital)).into_iter().flatten();
+    let own = reading.program.vital.iter().map(|id| {
+        let flush = |id: &str| reading.domain.room_type(id).is_some_and(|k| reading.wet.has_toilet(k));
+        let others =
+            reading.program.rooms.iter().map(|e| e.room_type.as_str()).filter(|o| flush(id) && flush(o) && o != id);
+        Class { ids: std::iter::once(id.as_str()).chain(others).collect(), by_program: true }
+    });
+    work.map(|ids| Class { ids, by_program: false }).chain(own).collect()
+}
+
+/// Kinds of rooms of which a building has one.
+struct Class<'a> {
+    /// The usual one first.
+    ids: Vec<&'a str>,
+    /// True where the program says so, false for what every such building has.
+    by_program: bool,
+}
+
+impl Class<'_> {
+    fn holds(&self, room: &Planned) -> bool {
+        self.ids.contains(&room.room_type.as_str())
     }
 }
 
@@ -28,6 +56,48 @@ fn is_worked_at(program: &Program) -> bool {
     })
 }
 
+/// Ids of a domain's room types with a toilet, and of those that one can bathe in too.
+#[derive(Debug, Default)]
+pub(super) struct Wet {
+    toilets: BTreeSet<String>,
+    bathrooms: BTreeSet<String>,
+}
+
+impl Wet {
+    /// Finds them by what the rooms are furnished with.
+    pub(super) fn of(domain: &Domain) -> Self {
+        let mut wet = Self::default();
+        for kind in domain.room_types.iter().filter(|k| k.zone != Zone::Night) {
+            if has_shape(domain, kind, &[Shape::Toilet, Shape::Cubicle]) {
+                wet.toilets.insert(kind.id.clone());
+                if has_shape(domain, kind, &[Shape::Shower, Shape::Bathtub]) {
+                    wet.bathrooms.insert(kind.id.clone());
+                }
+            }
+        }
+        wet
+    }
+
+    /// Returns true for rooms to go to the toilet in.
+    pub(super) fn has_toilet(&self, kind: &RoomType) -> bool {
+        self.toilets.contains(&kind.id)
+    }
+
+    /// Returns true for rooms with a toilet and a shower or bathtub.
+    pub(super) fn is_bathroom(&self, kind: &RoomType) -> bool {
+        self.bathrooms.contains(&kind.id)
+    }
+}
+
+/// Returns true for rooms with an object of one of these shapes.
+fn has_shape(domain: &Domain, kind: &RoomType, shapes: &[Shape]) -> bool {
+    let of = |id: &str| domain.object(id).is_some_and(|o| shapes.contains(&o.shape));
+    kind.furnishing.iter().any(|line| match domain.group(&line.item) {
+        Some(group) => of(&group.anchor) || group.members.iter().any(|m| of(&m.object)),
+        None => of(&line.item),
+    })
+}
+
 /// Returns true for a room that is the last of its kind, or one of the bedrooms that the people need.
 pub(super) fn is_vital(reading: &Reading, rooms: &[Planned], i: usize) -> bool {
     let id = &rooms[i].room_type;
@@ -35,9 +105,10 @@ pub(super) fn is_vital(reading: &Reading, rooms: &[Planned], i: usize) -> bool {
     if main && rooms.iter().filter(|r| &r.room_type == id).count() == 1 {
         return true;
     }
-    let last =
-        |class: &&Vec<String>| class.contains(id) && rooms.iter().filter(|r| class.contains(&r.room_type)).count() == 1;
-    classes(reading).iter().any(|class| last(&class))
+    let last = |class: &Class| class.holds(&rooms[i]) && rooms.iter().filter(|r| class.holds(r)).count() == 1;
+    let toilet = |r: &Planned| reading.wet.has_toilet(r.kind);
+    classes(reading).iter().any(last)
+        || toilet(&rooms[i]) && rooms.iter().filter(|r| toilet(r)).count() == 1
         || sleeps_in(reading.domain, &rooms[i]) && bedrooms(reading, rooms) <= bedrooms_needed(reading)
 }
 
@@ -61,12 +132,17 @@ pub(super) fn complete<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned<'a
         return;
     }
     let mut missing: Vec<String> = Vec::new();
+    let lives = is_dwelling(reading.program);
     for class in classes(reading) {
-        let present = rooms.iter().any(|r| class.contains(&r.room_type));
-        let unwanted = class.iter().any(|id| reading.wishes.forbidden.contains(id));
-        let listed = |id: &&String| reading.program.rooms.iter().any(|e| e.room_type == **id);
-        let known = |id: &&String| reading.domain.room_type(id).is_some();
-        let Some(id) = class.iter().find(listed).or_else(|| class.iter().find(known)) else { continue };
+        // in a number of rooms the order of the program says what goes first
+        if class.by_program && (reading.total.is_some() || reading.closed && !reading.may_join) {
+            continue;
+        }
+        let present = rooms.iter().any(|r| class.holds(r));
+        let unwanted = class.ids.iter().any(|id| reading.wishes.forbidden.iter().any(|f| f == id));
+        let listed = |id: &&&str| reading.program.rooms.iter().any(|e| e.room_type == **id);
+        let known = |id: &&&str| reading.domain.room_type(id).is_some();
+        let Some(id) = class.ids.iter().find(listed).or_else(|| class.ids.iter().find(known)) else { continue };
         if present || unwanted {
             continue;
         }
@@ -75,41 +151,200 @@ pub(super) fn complete<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned<'a
             missing.push(kind.label.to_lowercase());
         }
     }
-    let needed = bedrooms_needed(reading);
-    let bedroom = reading.domain.room_type(&words().dwelling.bedroom);
-    if let Some(kind) = bedroom.filter(|_| bedrooms(reading, rooms) < needed) {
-        let fixed = reading.wishes.wishes.iter().any(|w| w.exact && w.room_type == kind.id);
-        let mut full = fixed;
-        while !full && bedrooms(reading, rooms) < needed {
-            full = !put(reading, rooms, Planned::new(&kind.id, kind));
-        }
-        let beds: u32 = rooms.iter().filter_map(|r| Some(sleeps(reading.domain, r.kind)?[1])).sum();
-        if full && reading.residents.is_some_and(|n| n > beds) {
-            let (people, have) = (reading.residents.unwrap_or(0), bedrooms(reading, rooms));
-            let message = format!(
-                "{people} people are to live there, and {have} bedrooms have {beds} beds; the rooms asked for were planned"
-            );
-            reading.conflicts.push(note("too_few_bedrooms", message));
-        }
+    if lives {
+        second_toilet(reading, rooms);
+    } else {
+        missing.extend(toilet(reading, rooms));
+        missing.extend(bathrooms(reading, rooms));
     }
+    give_bedrooms(reading, rooms);
     // a home's own list of rooms is its own affair
-    let own_list = reading.closed && reading.total.is_none() && is_dwelling(reading.program);
+    let own_list = reading.closed && reading.total.is_none() && lives;
     if !missing.is_empty() && !own_list {
-        let what = missing.join(", ");
+        missing.dedup();
+        let (what, more) = (missing.join(", "), missing.len());
         let message = match reading.total {
-            Some(n) => format!("{n} rooms leave no place for what such a building needs: {what}"),
-            None => {
-                format!("the list of rooms has nothing of what such a building needs: {what}; the list was followed")
-            }
+            Some(n) => format!(
+                "{n} rooms leave no place for what such a building needs: {what}; {} rooms would, or fewer of those that were named",
+                n as usize + more
+            ),
+            None => format!(
+                "the list of rooms has nothing of what such a building needs: {what}; the list was followed, add these to it"
+            ),
         };
         reading.conflicts.push(note("vital_room_missing", message));
     }
 }
 
+/// Gives the people of a home the bedrooms they need.
+fn give_bedrooms<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
+    let needed = bedrooms_needed(reading);
+    let bedroom = reading.domain.room_type(&words().dwelling.bedroom);
+    let Some(kind) = bedroom.filter(|_| bedrooms(reading, rooms) < needed) else { return };
+    let fixed = reading.wishes.wishes.iter().any(|w| w.exact && w.room_type == kind.id);
+    let mut full = fixed;
+    while !full && bedrooms(reading, rooms) < needed {
+        full = !put(reading, rooms, Planned::new(&kind.id, kind));
+    }
+    let beds: u32 = rooms.iter().filter_map(|r| Some(sleeps(reading.domain, r.kind)?[1])).sum();
+    if full && reading.residents.is_some_and(|n| n > beds) {
+        let (people, have) = (reading.residents.unwrap_or(0), bedrooms(reading, rooms));
+        let message = format!(
+            "{people} people are to live there, and {have} bedrooms have {beds} beds; the rooms asked for were planned, {needed} bedrooms would have enough"
+        );
+        reading.conflicts.push(note("too_few_bedrooms", message));
+    }
+}
+
+/// Gives a home of many bedrooms a second toilet, where its rooms are left open.
+fn second_toilet<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
+    let toilets = rooms.iter().filter(|r| reading.wet.has_toilet(r.kind)).count();
+    let kind = reading.domain.room_type(&words().dwelling.toilet);
+    let named = reading.wishes.wishes.iter().any(|w| {
+        let kind = reading.domain.room_type(&w.room_type);
+        w.exact && w.listed && kind.is_some_and(|k| reading.wet.has_toilet(k))
+    });
+    let open = reading.total.is_none() && !reading.closed && !named;
+    let few = bedrooms(reading, rooms) >= BEDROOMS_FOR_TWO_TOILETS && toilets < 2;
+    if let Some(kind) = kind.filter(|k| open && few && !reading.wishes.forbidden.contains(&k.id)) {
+        rooms.push(Planned::new(&kind.id, kind));
+    }
+}
+
+/// Gives a building whose program has a toilet one at least; returns what found no place.
+fn toilet<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>) -> Option<String> {
+    let domain = reading.domain;
+    if rooms.iter().any(|r| reading.wet.has_toilet(r.kind)) {
+        return None;
+    }
+    let mut kinds = reading.program.rooms.iter().filter_map(|e| domain.room_type(&e.room_type));
+    let kind = kinds.find(|k| reading.wet.has_toilet(k) && k.access != Access::Host)?;
+    if reading.wishes.forbidden.contains(&kind.id) {
+        return None;
+    }
+    let added = put(reading, rooms, Planned::new(&kind.id, kind));
+    (!added).then(|| kind.label.to_lowercase())
+}
+
+/// Gives beds that have no bathroom of their own one that few of them share; returns what found no place.
+fn bathrooms<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>) -> Option<String> {
+    let domain = reading.domain;
+    let own = |k: &&RoomType| k.access == Access::Host && reading.wet.is_bathroom(k);
+    let bathed: Vec<&RoomType> = domain.room_types.iter().filter(own).collect();
+    let mut beds: Vec<u32> = rooms
+        .iter()
+        .filter(|r| bathed.iter().any(|k| k.hosts.contains(&r.room_type)) && usually_bathes(reading, &r.room_type))
+        .map(|r| r.occupants.or_else(|| sleeps(domain, r.kind).map(|s| s[0])).unwrap_or(1))
+        .collect();
+    beds.sort_unstable();
+    let served = rooms.iter().filter(|r| own(&r.kind)).count();
+    let unserved: u32 = beds.iter().take(beds.len().saturating_sub(served)).sum();
+    let shared = |rooms: &[Planned]| {
+        rooms.iter().filter(|r| r.kind.access != Access::Host && reading.wet.is_bathroom(r.kind)).count() as u32
+    };
+    let needed = unserved.div_ceil(BEDS_TO_A_BATHROOM);
+    let named =
+        reading.wishes.wishes.iter().any(|w| domain.room_type(&w.room_type).is_some_and(|k| reading.wet.is_bathroom(k)));
+    let fits = |k: &&RoomType| k.access != Access::Host && k.zone == Zone::Service && reading.wet.is_bathroom(k);
+    let kind = domain.room_types.iter().filter(fits).min_by(|a, b| a.area_m2.target.total_cmp(&b.area_m2.target))?;
+    if named || reading.wishes.forbidden.contains(&kind.id) || reading.closed && !reading.may_join {
+        return None;
+    }
+    let plain: Vec<usize> = (0..rooms.len())
+        .filter(|&i| reading.wet.has_toilet(rooms[i].kind) && !reading.wet.is_bathroom(rooms[i].kind) && !rooms[i].requested)
+        .collect();
+    while shared(rooms) < needed {
+        if put(reading, rooms, Planned::new(&kind.id, kind)) {
+            continue;
+        }
+        // the only toilet becomes a bathroom before there is none
+        match plain.iter().find(|&&i| shared(rooms) == 0 && reading.wet.has_toilet(rooms[i].kind)) {
+            Some(&i) => rooms[i] = Planned::new(&kind.id, kind),
+            None => return (shared(rooms) == 0).then(|| kind.label.to_lowercase()),
+        }
+    }
+    None
+}
+
+/// Returns true where a program of the domain gives rooms of a type a bathroom: the rooms of a ward, not the bays of an
+/// intensive care unit.
+fn usually_bathes(reading: &Reading, room_type: &str) -> bool {
+    let bathes = |e: &d3dgen_model::domain::ProgramRoom| {
+        e.with.iter().any(|w| reading.domain.room_type(w).is_some_and(|k| reading.wet.is_bathroom(k)))
+    };
+    reading.domain.programs.iter().flat_map(|p| &p.rooms).any(|e| e.room_type == room_type && bathes(e))
+}
+
+/// Adds what comes with rooms that the prompt names, where it leaves the rooms open: the en suite of a patient room, the room
+/// to scrub beside an operating room.
+pub(super) fn accompany<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
+    let domain = reading.domain;
+    if reading.single || is_dwelling(reading.program) || reading.total.is_some() || reading.closed && !reading.may_join
+    {
+        return;
+    }
+    let wet = |id: &str| domain.room_type(id).is_some_and(|k| reading.wet.is_bathroom(k));
+    // a ward with two bathrooms has no others
+    let bathed = reading.wishes.wishes.iter().any(|w| wet(&w.room_type));
+    let mut kinds: Vec<String> = Vec::new();
+    for room in rooms.iter().filter(|r| r.requested && !kinds.contains(&r.room_type)).collect::<Vec<_>>() {
+        kinds.push(room.room_type.clone());
+    }
+    for id in kinds {
+        for guest in guests(reading, &id) {
+            let unwanted = reading.wishes.forbidden.contains(&guest.id)
+                || reading.wishes.wishes.iter().any(|w| w.room_type == guest.id)
+                || bathed && wet(&guest.id);
+            if unwanted {
+                continue;
+            }
+            let own = guest.access == Access::Host;
+            let hosts = rooms.iter().filter(|r| guest.hosts.contains(&r.room_type)).count();
+            let have = rooms.iter().filter(|r| r.room_type == guest.id).count();
+            let wanted = if own { hosts } else { 1 };
+            rooms.extend((have..wanted).map(|_| Planned::new(&guest.id, guest)));
+        }
+    }
+}
+
+/// Returns what comes with every room of a type: by the program, else by another one of the domain; rooms to sleep in have
+/// nothing where those of the program have nothing.
+pub(super) fn guests<'a>(reading: &Reading<'a>, id: &str) -> Vec<&'a RoomType> {
+    let (domain, program) = (reading.domain, reading.program);
+    let night = |id: &str| domain.room_type(id).is_some_and(|k| k.zone == Zone::Night);
+    let mut sleeping = program.rooms.iter().filter(|e| night(&e.room_type)).peekable();
+    let with = |p: &'a Program| {
+        let mut own = p.rooms.iter().filter(|e| e.room_type == id).peekable();
+        own.peek()?;
+        own.find(|e| !e.with.is_empty()).map(|e| &e.with)
+    };
+    let known = program.rooms.iter().any(|e| e.room_type == id);
+    let bare = night(id) && !known && sleeping.peek().is_some() && sleeping.all(|e| e.with.is_empty());
+    let found = match (known, bare) {
+        (true, _) => with(program),
+        (false, true) => None,
+        (false, false) => domain.programs.iter().find_map(with),
+    };
+    let mut out: Vec<&RoomType> = found.into_iter().flatten().filter_map(|w| domain.room_type(w)).collect();
+    // rooms of a kind that no program has live like those that it has
+    if out.is_empty() && !known && !bare && night(id) {
+        let usual = program.rooms.iter().filter(|e| night(&e.room_type)).flat_map(|e| &e.with);
+        out.extend(usual.filter_map(|w| domain.room_type(w)).find(|k| k.hosts.iter().any(|h| h == id)));
+    }
+    // what one enters a room through comes before it
+    out.retain(|k| !domain.room_type_or_generic(id).hosts.contains(&k.id));
+    out
+}
+
 /// Adds a room, where the number of rooms is fixed in place of one that can be spared; returns false where none can.
 fn put<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>, room: Planned<'a>) -> bool {
+    let joins_list = if is_dwelling(reading.program) {
+        reading.may_join
+    } else {
+        reading.named && is_worked_at(reading.program) || reading.may_join && !reading.program.vital.is_empty()
+    };
     match (reading.total, reading.closed) {
-        (None, true) if !reading.named || is_dwelling(reading.program) => false,
+        (None, true) if !joins_list => false,
         (None, _) => {
             rooms.push(room);
             true
@@ -124,4 +359,19 @@ fn put<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>, room: Planned<'a
             spare.is_some()
         }
     }
+}
+
+/// Rules out every room of a kind that the prompt wants none of, not only the type that its word means: an office without
+/// toilets has none for wheelchairs either, a ward without bathrooms no en suites.
+pub(super) fn rule_out(domain: &Domain, wet: &Wet, wishes: &mut Wishes) {
+    let none = |id: &String| wishes.forbidden.contains(id);
+    let (toilets, bathrooms) = (words().dwelling.toilets.iter().any(none), none(&words().dwelling.bathroom));
+    let alike = |k: &&RoomType| {
+        let bath = wet.is_bathroom(k);
+        wet.has_toilet(k) && (toilets && !bath || bathrooms && bath && k.access == Access::Host)
+    };
+    let wished = |id: &String| wishes.wishes.iter().any(|w| &w.room_type == id);
+    let more: Vec<String> = domain.room_types.iter().filter(alike).map(|k| k.id.clone()).collect();
+    let more: Vec<String> = more.into_iter().filter(|id| !wished(id) && !none(id)).collect();
+    wishes.forbidden.extend(more);
 }

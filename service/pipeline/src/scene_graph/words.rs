@@ -157,10 +157,23 @@ pub(super) struct Dwelling {
     pub bhk: Vec<String>,
     pub ldk: Vec<String>,
     pub rooms_to_live: Vec<String>,
+    /// Rooms to live in, in the order in which homes of more and more of them have them.
+    pub live_in: Vec<String>,
+    /// Programs of homes by how many bedrooms the prompt gives them, in place of their usual program.
+    pub by_bedrooms: Vec<ByBedrooms>,
     pub zh_units: BTreeMap<String, String>,
     pub bed_letters: Vec<String>,
     pub bath_letters: Vec<String>,
     pub bedroom_words: BTreeMap<String, f64>,
+}
+
+/// A program of homes with so many bedrooms.
+#[derive(Debug, Deserialize)]
+pub(super) struct ByBedrooms {
+    /// Programs that it replaces.
+    pub programs: Vec<String>,
+    pub bedrooms: u32,
+    pub program: String,
 }
 
 #[derive(Debug, Deserialize)]
