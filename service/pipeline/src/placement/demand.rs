@@ -323,6 +323,8 @@ fn phase(task: &Task) -> u8 {
         // a screen finds its wall before others take it
         (false, Facing) => 1,
         (true, _) => 0,
+        // what faces the first line comes after it
+        (false, _) if task.leads && takes_floor(task.anchor) => 1,
         (false, _) if takes_floor(task.anchor) => 2,
         (false, _) => 3,
     }

@@ -59,6 +59,8 @@ pub(super) struct Job<'a, 's> {
     pub radius: i32,
     /// True where robots are asked for.
     pub has_robots: bool,
+    /// Radius of the circle that rules want free for wheelchairs, mm.
+    pub turning: Option<i32>,
     /// What must stay open from door to door, or for beds.
     pub way: Option<&'s Way>,
     /// The same with the width that is advised, where the room has it.
@@ -205,6 +207,7 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
             open,
         );
         start.has_robots = job.has_robots;
+        start.turning = job.turning;
         start.add(job.locked.to_vec());
         Self { job, level, forms, start }
     }
@@ -218,7 +221,8 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
         // what drafts that depart later begin with
         let mut begun: Vec<(usize, Draft)> = Vec::new();
         for index in 0..floor {
-            if best.steps.len() > begun.last().map_or(0, |(_, draft)| draft.steps.len()) && best.steps.len() <= DEEPEST {
+            if best.steps.len() > begun.last().map_or(0, |(_, draft)| draft.steps.len()) && best.steps.len() <= DEEPEST
+            {
                 begun.push((index, best.clone()));
             }
             self.run(&mut best, index..index + 1, None, false);

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use d3dgen_knowledge::{Aim, Limits};
-use d3dgen_model::domain::{Domain, ObjectType, RoomType, Shape};
+use d3dgen_model::domain::{Domain, Mount, ObjectType, RoomType, Shape};
 use d3dgen_model::floorplan::{Floorplan, PlanRoom};
 use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::seed::Stream;
@@ -18,6 +18,13 @@ use super::{LEAST_RADIUS_M, Wanted, clutter};
 /// Half the width of a way for a wheelchair past furniture, m (ISO 21542: 0.8 m at the narrowest).
 const WHEELCHAIR_RADIUS_M: f64 = 0.4;
 
+/// Height above which furniture is for storage alone, m: wardrobes and bookcases, not chests with something on top.
+const EYE_LEVEL_M: f64 = 1.5;
+/// What the circle of a wheelchair is drawn larger by, m: its place is found to the millimeter by none.
+const TURNING_SPARE_M: f64 = 0.005;
+/// Floor at one side of a bed that somebody gets into from a wheelchair, m (ISO 21542, ADA 806.2.3: 36 in).
+const BESIDE_BED_M: f64 = 0.92;
+
 /// What every way to furnish a room begins with; the same room of the same graph has the same.
 pub(super) struct Setting<'a> {
     pub domain: &'a Domain,
@@ -31,6 +38,8 @@ pub(super) struct Setting<'a> {
     sizes: BTreeMap<&'a str, usize>,
     /// Radius of the robot, mm.
     pub radius: i32,
+    /// Radius of the circle that rules want free for wheelchairs, mm.
+    pub turning: Option<i32>,
     /// What must stay open from door to door, or for beds.
     pub way: Option<Way>,
     /// The same with the width that is advised, where the room has it.
@@ -61,7 +70,10 @@ impl<'a> Setting<'a> {
             Wanted::Without(objects) => usual().into_iter().filter(|t| !objects.contains(&t.anchor.id)).collect(),
             Wanted::Only(object) => vec![demand::one_more(object)],
         };
-        let aims = limits.objects.in_room(domain, &room.room_type, room.circulation);
+        let mut aims = limits.objects.in_room(domain, &room.room_type, room.circulation);
+        if graph.accessible {
+            beside_beds(domain, &mut aims);
+        }
         // what rules advise against goes where the room can do without
         tasks.retain(|t| t.required > 0 || !aims.get(t.anchor.id.as_str()).is_some_and(|a| a.unwanted));
         if graph.style.clutter == Some(Clutter::Low) && !matches!(wanted, Wanted::Only(_)) {
@@ -74,7 +86,9 @@ impl<'a> Setting<'a> {
         let wide_m = limits.corridor_width_advised.unwrap_or(0.0).max(width_m);
         let beds = tasks.iter().any(|t| t.anchor.shape == Shape::HospitalBed);
         let [way, wide_way] = Way::of_room(plan, room, [width_m, wide_m], beds);
-        Self { domain, kind, radius: radius(graph, &space), space, tasks, aims, salt, sizes, way, wide_way }
+        let circle = limits.rooms.get(&room.room_type).and_then(|l| l.turning_circle.as_ref());
+        let turning = circle.map(|limit| mm(limit.value / 2.0 + TURNING_SPARE_M));
+        Self { domain, kind, radius: radius(graph, &space), space, tasks, aims, salt, sizes, turning, way, wide_way }
     }
 
     /// Returns which of its sizes an object has in this room.
@@ -100,12 +114,29 @@ fn way_width(graph: &SceneGraph, domain: &Domain, limits: &Limits) -> f64 {
     asked_m.max(2.0 * robot_m)
 }
 
-/// Picks one size for each object type of a room, of those that keep most rules the most common one most often.
+/// Asks for floor at one side of each bed where a wheelchair is to get there, if nobody asks for more.
+fn beside_beds<'a>(domain: &'a Domain, aims: &mut BTreeMap<&'a str, Aim>) {
+    for bed in domain.objects.iter().filter(|o| o.shape == Shape::Bed) {
+        let clear = &mut aims.entry(&bed.id).or_default().clear;
+        if clear.sides < BESIDE_BED_M {
+            (clear.sides, clear.one_side) = (BESIDE_BED_M, true);
+        }
+    }
+}
+
+/// Picks one size for each object type of a room, of those that keep most rules the most common one most often. What things
+/// are stored in is at least as wide as it usually comes; narrower ones are for walls that hold no other.
 fn pick_sizes<'a>(domain: &'a Domain, aims: &BTreeMap<&str, Aim>, stream: &mut Stream) -> BTreeMap<&'a str, usize> {
     let mut pick = |o: &ObjectType| {
         let breaches = aims.get(o.id.as_str()).map_or(&[][..], |a| &a.breaches);
         let least = breaches.iter().min().copied().unwrap_or(0);
-        let best: Vec<usize> = (0..o.sizes_m.len()).filter(|i| breaches.get(*i).is_none_or(|b| *b == least)).collect();
+        let stores = o.mount == Mount::Floor && matches!(o.shape, Shape::Cabinet | Shape::Shelf);
+        let usual = o.sizes_m.first().filter(|s| stores && s[2] > EYE_LEVEL_M).map_or(0.0, |s| s[0]);
+        let lawful = |i: &usize| breaches.get(*i).is_none_or(|b| *b == least);
+        let mut best: Vec<usize> = (0..o.sizes_m.len()).filter(lawful).collect();
+        if best.iter().any(|i| o.sizes_m[*i][0] >= usual) {
+            best.retain(|i| o.sizes_m[*i][0] >= usual);
+        }
         let at = if stream.chance(0.5) { 0 } else { stream.below(best.len()) };
         best.get(at).copied().unwrap_or(0)
     };

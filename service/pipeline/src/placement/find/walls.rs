@@ -37,6 +37,8 @@ const FARTHER: f64 = 0.9;
 const NEAR_VIEW: i32 = 2900;
 const WAY_BEHIND: i32 = 900;
 const DRAWN_UP: f64 = 1.0;
+/// What a meter more than a way behind it loses: nothing else uses that floor.
+const EMPTY_BEHIND: f64 = 0.8;
 
 /// Opening of a door within which no hob stands, mm, and what a place with one there loses (ways past pots).
 const FROM_STOVE: i32 = 900;
@@ -100,10 +102,9 @@ impl<'a> Find<'_, 'a, '_> {
                 } else {
                     2
                 };
-            if let Some(nearer) = self.drawn_up(&placed, wall) {
-                self.offer(nearer, class / 4 * 4 + 3, |find, p| {
-                    bonus - DRAWN_UP + find.wall_score(p, index, &front, v)
-                });
+            if let Some((nearer, by)) = self.drawn_up(&placed, wall) {
+                let less = DRAWN_UP + EMPTY_BEHIND * f64::from(by - WAY_BEHIND) / 1000.0;
+                self.offer(nearer, class / 4 * 4 + 3, |find, p| bonus - less + find.wall_score(p, index, &front, v));
             }
             match barred.rule_at(v) {
                 Some(rule) => self.none(rule),
@@ -112,12 +113,12 @@ impl<'a> Find<'_, 'a, '_> {
         }
     }
 
-    /// Returns a sofa moved towards what it looks at where that would be far, with a way behind it.
-    fn drawn_up(&self, p: &Placed<'a>, wall: &WallSide) -> Option<Placed<'a>> {
+    /// Returns a sofa moved towards what it looks at where that would be far, with a way behind it, and by how much, mm.
+    fn drawn_up(&self, p: &Placed<'a>, wall: &WallSide) -> Option<(Placed<'a>, i32)> {
         let unit = self.across.as_ref().filter(|_| p.unit.anchor().object.shape == Shape::Sofa)?;
         let by = self.view(p, unit).map(|(far, _)| far).filter(|&far| far > FAR_VIEW)? - NEAR_VIEW;
         let (u, v) = turn((4 - wall.q) % 4, p.at.0, p.at.1);
-        (by >= WAY_BEHIND).then(|| at_frame(&p.unit, wall.q, u + by, v, self.index))
+        (by >= WAY_BEHIND).then(|| (at_frame(&p.unit, wall.q, u + by, v, self.index), by))
     }
 
     /// Looks along a wall for what is in the way of a unit.
