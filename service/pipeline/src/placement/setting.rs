@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use d3dgen_knowledge::{Aim, Limits};
-use d3dgen_model::domain::{Domain, Mount, ObjectType, RoomType, Shape};
+use d3dgen_model::domain::{Domain, ObjectType, RoomType, Shape};
 use d3dgen_model::floorplan::{Floorplan, PlanRoom};
 use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::seed::Stream;
@@ -18,8 +18,6 @@ use super::{LEAST_RADIUS_M, Wanted, clutter};
 /// Half the width of a way for a wheelchair past furniture, m (ISO 21542: 0.8 m at the narrowest).
 const WHEELCHAIR_RADIUS_M: f64 = 0.4;
 
-/// Height above which furniture is for storage alone, m: wardrobes and bookcases, not chests with something on top.
-const EYE_LEVEL_M: f64 = 1.5;
 /// What the circle of a wheelchair is drawn larger by, m: its place is found to the millimeter by none.
 const TURNING_SPARE_M: f64 = 0.005;
 /// Floor at one side of a bed that somebody gets into from a wheelchair, m (ISO 21542, ADA 806.2.3: 36 in).
@@ -58,6 +56,7 @@ impl<'a> Setting<'a> {
         if graph.accessible {
             space.keep_latch_sides();
         }
+        note_wet_doors(&mut space, plan, room, domain);
         let kind = domain.room_type_or_generic(&room.room_type);
         let per_person_m2 = limits.rooms.get(&room.room_type).and_then(|l| l.area_per_person_advised);
         let per_person_m2 = per_person_m2.or_else(|| workroom_area(plan, domain, limits));
@@ -114,13 +113,22 @@ fn way_width(graph: &SceneGraph, domain: &Domain, limits: &Limits) -> f64 {
     asked_m.max(2.0 * robot_m)
 }
 
+/// Notes which doors lead to rooms with steam.
+fn note_wet_doors(space: &mut Space, plan: &Floorplan, room: &PlanRoom, domain: &Domain) {
+    let is_wet = |id: &String| {
+        let other = plan.rooms.iter().find(|r| r.room_id == *id && r.room_id != room.room_id);
+        other.is_some_and(|r| domain.room_type_or_generic(&r.room_type).wet)
+    };
+    let wet: Vec<&str> =
+        (plan.doors_of(&room.room_id).filter(|d| d.room_ids.iter().any(is_wet))).map(|d| d.door_id.as_str()).collect();
+    space.doors.iter_mut().for_each(|door| door.wet = wet.contains(&door.id.as_str()));
+}
+
 /// Asks for floor at one side of each bed where a wheelchair is to get there, if nobody asks for more.
 fn beside_beds<'a>(domain: &'a Domain, aims: &mut BTreeMap<&'a str, Aim>) {
     for bed in domain.objects.iter().filter(|o| o.shape == Shape::Bed) {
         let clear = &mut aims.entry(&bed.id).or_default().clear;
-        if clear.sides < BESIDE_BED_M {
-            (clear.sides, clear.one_side) = (BESIDE_BED_M, true);
-        }
+        clear.wide_side = clear.wide_side.max(BESIDE_BED_M);
     }
 }
 
@@ -130,8 +138,7 @@ fn pick_sizes<'a>(domain: &'a Domain, aims: &BTreeMap<&str, Aim>, stream: &mut S
     let mut pick = |o: &ObjectType| {
         let breaches = aims.get(o.id.as_str()).map_or(&[][..], |a| &a.breaches);
         let least = breaches.iter().min().copied().unwrap_or(0);
-        let stores = o.mount == Mount::Floor && matches!(o.shape, Shape::Cabinet | Shape::Shelf);
-        let usual = o.sizes_m.first().filter(|s| stores && s[2] > EYE_LEVEL_M).map_or(0.0, |s| s[0]);
+        let usual = demand::storage_width_m(o).unwrap_or(0.0);
         let lawful = |i: &usize| breaches.get(*i).is_none_or(|b| *b == least);
         let mut best: Vec<usize> = (0..o.sizes_m.len()).filter(lawful).collect();
         if best.iter().any(|i| o.sizes_m[*i][0] >= usual) {

@@ -289,8 +289,8 @@ fn advised_floor(part: &Part, clear: &Clear, out: &mut Vec<Box2>) {
         }
     };
     let side = |sides: u8| if part.object.clear_sides >= sides { usual[1] } else { 0.0 };
-    let (front, left) = (clear.front.max(clear.around), clear.sides.max(clear.around));
-    let right = if clear.one_side { clear.around } else { left };
+    let (front, left) = (clear.front.max(clear.around), clear.sides.max(clear.around).max(clear.wide_side));
+    let right = if clear.one_side { clear.around } else { clear.sides.max(clear.around) };
     add(front, usual[0], |o, d| Box2 { x0: o.x1, x1: o.x1 + d, ..o });
     add(left, side(1), |o, d| Box2 { y0: o.y1, y1: o.y1 + d, ..o });
     add(right, side(2), |o, d| Box2 { y0: o.y0 - d, y1: o.y0, ..o });

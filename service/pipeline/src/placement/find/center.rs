@@ -46,6 +46,9 @@ impl<'a> Find<'_, 'a, '_> {
         let (mx, my) = space.main.center();
         let mut centers = vec![(fx, fy), (mx, my), (fx, my), (mx, fy)];
         centers.extend(grid(free.x0, free.x1).flat_map(|x| grid(free.y0, free.y1).map(move |y| (x, y))));
+        // where one way there is little to spare the middle is the only place
+        centers.extend(grid(free.x0, free.x1).flat_map(|x| [(x, my), (x, fy)]));
+        centers.extend(grid(free.y0, free.y1).flat_map(|y| [(mx, y), (fx, y)]));
         centers.extend(self.beside_siblings(unit));
         let before = self.out.len();
         for q in 0..4_u8 {

@@ -40,6 +40,8 @@ const ASIDE: i32 = 600;
 pub(super) struct Candidate<'a> {
     pub placed: Placed<'a>,
     pub score: f64,
+    /// True for what is wanted in a corner and stands in one.
+    pub in_corner: bool,
     /// Positions of one class look alike (one wall, one corner): the search tries different classes.
     pub class: u32,
 }
@@ -82,6 +84,8 @@ pub(super) struct Find<'f, 'a, 's> {
     pub tally: &'f mut Tally,
     /// What will face this unit from the wall across.
     pub across: Option<Rc<Unit<'a>>>,
+    /// Toward which end of its wall it stands rather than in the middle; 0 for neither.
+    pub aside: i8,
     style: Style,
     /// Radius of the circle that has a place for wheelchairs to turn on so far, mm.
     circle: Option<i32>,
@@ -101,7 +105,20 @@ impl<'f, 'a, 's> Find<'f, 'a, 's> {
         let both = task.anchor.clear_sides > 1 && task.anchor.clearance_side_m > 0.0;
         let style = style(task.anchor.shape, task.anchor.mount, both);
         let circle = state.circle();
-        Self { state, task, index, salt, aisle, out: Vec::new(), tally, across: None, style, circle, neighbors: None }
+        Self {
+            state,
+            task,
+            index,
+            salt,
+            aisle,
+            out: Vec::new(),
+            tally,
+            across: None,
+            aside: 0,
+            style,
+            circle,
+            neighbors: None,
+        }
     }
 
     /// Collects positions of a unit as the task's arrangement wants it.
@@ -151,7 +168,8 @@ impl<'f, 'a, 's> Find<'f, 'a, 's> {
                     - if sits_with_staff(self.state, &placed) { WITH_STAFF } else { 0.0 }
                     - beside_beds(self.state, &placed)
                     - if fills { NO_CIRCLE } else { 0.0 };
-                self.out.push(Candidate { placed, score, class });
+                let in_corner = self.task.arrangement == Arrangement::Corner && self.is_in_corner(&placed);
+                self.out.push(Candidate { placed, score, in_corner, class });
             }
             Err(rule) => self.tally[rule as usize] += 1,
         }
