@@ -20,6 +20,8 @@ const WHEELCHAIR_RADIUS_M: f64 = 0.4;
 
 /// What the circle of a wheelchair is drawn larger by, m: its place is found to the millimeter by none.
 const TURNING_SPARE_M: f64 = 0.005;
+/// Area of a room from which on things of any size leave room for that circle, m^2.
+const AMPLE_M2: f64 = 9.0;
 /// Floor at one side of a bed that somebody gets into from a wheelchair, m (ISO 21542, ADA 806.2.3: 36 in).
 const BESIDE_BED_M: f64 = 0.92;
 
@@ -80,13 +82,14 @@ impl<'a> Setting<'a> {
         }
         let mut stream = Stream::new(graph.seed, &format!("placement/{}", room.room_id));
         let salt = (stream.unit() * (1_u64 << 52) as f64) as u64;
-        let sizes = pick_sizes(domain, &aims, &mut stream);
+        let circle = limits.rooms.get(&room.room_type).and_then(|l| l.turning_circle.as_ref());
+        let turning = circle.map(|limit| mm(limit.value / 2.0 + TURNING_SPARE_M));
+        let usual = turning.is_some() && room.net_area_m2 < AMPLE_M2;
+        let sizes = pick_sizes(domain, &aims, usual, &mut stream);
         let width_m = way_width(graph, domain, limits);
         let wide_m = limits.corridor_width_advised.unwrap_or(0.0).max(width_m);
         let beds = tasks.iter().any(|t| t.anchor.shape == Shape::HospitalBed);
         let [way, wide_way] = Way::of_room(plan, room, [width_m, wide_m], beds);
-        let circle = limits.rooms.get(&room.room_type).and_then(|l| l.turning_circle.as_ref());
-        let turning = circle.map(|limit| mm(limit.value / 2.0 + TURNING_SPARE_M));
         Self { domain, kind, radius: radius(graph, &space), space, tasks, aims, salt, sizes, turning, way, wide_way }
     }
 
@@ -133,8 +136,14 @@ fn beside_beds<'a>(domain: &'a Domain, aims: &mut BTreeMap<&'a str, Aim>) {
 }
 
 /// Picks one size for each object type of a room, of those that keep most rules the most common one most often. What things
-/// are stored in is at least as wide as it usually comes; narrower ones are for walls that hold no other.
-fn pick_sizes<'a>(domain: &'a Domain, aims: &BTreeMap<&str, Aim>, stream: &mut Stream) -> BTreeMap<&'a str, usize> {
+/// are stored in is at least as wide as it usually comes; narrower ones are for walls that hold no other. With `usual` all
+/// things have their most common size.
+fn pick_sizes<'a>(
+    domain: &'a Domain,
+    aims: &BTreeMap<&str, Aim>,
+    usual_only: bool,
+    stream: &mut Stream,
+) -> BTreeMap<&'a str, usize> {
     let mut pick = |o: &ObjectType| {
         let breaches = aims.get(o.id.as_str()).map_or(&[][..], |a| &a.breaches);
         let least = breaches.iter().min().copied().unwrap_or(0);
@@ -144,7 +153,7 @@ fn pick_sizes<'a>(domain: &'a Domain, aims: &BTreeMap<&str, Aim>, stream: &mut S
         if best.iter().any(|i| o.sizes_m[*i][0] >= usual) {
             best.retain(|i| o.sizes_m[*i][0] >= usual);
         }
-        let at = if stream.chance(0.5) { 0 } else { stream.below(best.len()) };
+        let at = if stream.chance(0.5) { 0 } else { stream.below(best.len()) } * usize::from(!usual_only);
         best.get(at).copied().unwrap_or(0)
     };
     domain.objects.iter().map(|o| (o.id.as_str(), pick(o))).collect()

@@ -237,7 +237,9 @@ pub(super) fn variants<'a>(domain: &'a Domain, item: &'a str, forms: &Forms) -> 
         whole.extend(lesser.into_iter().map(full));
     }
     if forms.advised {
-        whole.iter().filter_map(|unit| advised(unit, forms)).for_each(&mut add);
+        whole.iter().filter_map(|unit| advised(unit, forms, true)).for_each(&mut add);
+        // the room for a wheelchair at one side goes before the rest
+        whole.iter().filter_map(|unit| advised(unit, forms, false)).for_each(&mut add);
     }
     whole.iter().filter_map(with_elbow_room).for_each(&mut add);
     whole.into_iter().for_each(&mut add);
@@ -256,12 +258,14 @@ pub(super) fn variants<'a>(domain: &'a Domain, item: &'a str, forms: &Forms) -> 
     out
 }
 
-/// Returns a unit with the free floor that is advised for its parts; `None` where that is no more than it has.
-fn advised<'a>(unit: &Unit<'a>, forms: &Forms) -> Option<Unit<'a>> {
+/// Returns a unit with the free floor that is advised for its parts, with more at a `wide_side` or without; `None` where that is
+/// no more than it has.
+fn advised<'a>(unit: &Unit<'a>, forms: &Forms, wide_side: bool) -> Option<Unit<'a>> {
     let mut clears = unit.clears.clone();
     for part in unit.parts.iter().filter(|p| p.mount == Mount::Floor) {
         if let Some(aim) = forms.aims.get(part.object.id.as_str()) {
-            advised_floor(part, &aim.clear, &mut clears);
+            let clear = if wide_side { aim.clear } else { Clear { wide_side: 0.0, ..aim.clear } };
+            advised_floor(part, &clear, &mut clears);
         }
     }
     let more = clears.len() > unit.clears.len();
