@@ -39,6 +39,8 @@ pub struct Clear {
     pub sides: f64,
     /// True when one side of the two is enough.
     pub one_side: bool,
+    /// At one side, whichever.
+    pub wide_side: f64,
     /// On all sides.
     pub around: f64,
 }
@@ -82,7 +84,7 @@ impl Aim {
                     *breach += off.filter(|v| breaks(*v, rule)).map_or(0, |_| weight);
                 }
             } else if let Some(least) = rule.bounds.min {
-                let width = object.sizes_m.first().map_or(0.0, |s| s[0]);
+                let width = object.sizes_m.iter().map(|s| s[0]).reduce(f64::min).unwrap_or(0.0);
                 let least = if measure == Measure::CentreToSide { (least - width / 2.0).max(0.0) } else { least };
                 aim.clear.raise(measure, least, a.constraint.measurement_basis.contains("one side"));
             }

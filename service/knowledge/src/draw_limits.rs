@@ -60,6 +60,7 @@ pub(crate) fn draw(constraints: &[Applicable], all: &[Applicable], chain: &[Stri
             area_advised: advised_area(&usable, &about, room.area_max_m2),
             area_per_person_advised: advised_figure(&wished, Measure::AreaPerPerson, &about),
             dimension_min: least(&[Measure::LeastDimension, Measure::InnerRectangle], side),
+            turning_circle: least(&[Measure::TurningCircle], side),
             door_width: pick(&|a, r| {
                 let value = r.bounds.min?;
                 let door = r.quantity.measure == Measure::DoorWidth && value <= WIDEST_DOOR_M;

@@ -36,6 +36,8 @@ pub struct RoomLimits {
     pub area_per_person_advised: Option<f64>,
     /// Least clear extent in both directions, m.
     pub dimension_min: Option<Limit>,
+    /// Diameter of the circle that a wheelchair turns on, m.
+    pub turning_circle: Option<Limit>,
     /// Least clear width of its door, m.
     pub door_width: Option<Limit>,
     /// Clear width of its door that all advice asks for, m; a wish.

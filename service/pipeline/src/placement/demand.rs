@@ -10,6 +10,8 @@ use super::unit::{Forms, Unit, variants};
 
 /// Largest number of units of one line in one room.
 const MAX_UNITS: u32 = 400;
+/// Height above which furniture is for storage alone, m: wardrobes and bookcases, not chests with something on top.
+const EYE_LEVEL_M: f64 = 1.5;
 
 /// A number of equal units to place in one way.
 #[derive(Debug, Clone)]
@@ -46,6 +48,12 @@ impl Task<'_> {
     /// Returns true for what is placed with what the room cannot do without.
     fn is_needed(&self) -> bool {
         self.required > 0 || self.first_choice
+    }
+
+    /// Returns how much narrower than usual a unit is in which things are stored, as a share of that; 0 for all others.
+    pub fn narrower(&self, unit: &Unit) -> f64 {
+        let own = f64::from(unit.anchor().solid.rect.height()) / 1000.0;
+        storage_width_m(self.anchor).map_or(0.0, |usual| (1.0 - own / usual).max(0.0))
     }
 
     /// Returns true for seats and what people sit at: a line of rows of them is an audience.
@@ -209,6 +217,12 @@ pub(super) fn tasks<'a>(
     out
 }
 
+/// Returns how wide what things are stored in usually is, m; `None` for all else.
+pub(super) fn storage_width_m(object: &ObjectType) -> Option<f64> {
+    let stores = object.mount == Mount::Floor && matches!(object.shape, Shape::Cabinet | Shape::Shelf);
+    object.sizes_m.first().filter(|size| stores && size[2] > EYE_LEVEL_M).map(|size| size[0])
+}
+
 /// Returns true for rooms that people have desks in.
 pub(super) fn has_desks(domain: &Domain, kind: &RoomType) -> bool {
     let desk = |item: &str| domain.anchor(item).is_some_and(|o| o.shape == Shape::Desk);
@@ -326,6 +340,8 @@ fn phase(task: &Task) -> u8 {
         // a screen finds its wall before others take it
         (false, Facing) => 1,
         (true, _) => 0,
+        // what faces the first line comes after it
+        (false, _) if task.leads && takes_floor(task.anchor) => 1,
         (false, _) if takes_floor(task.anchor) => 2,
         (false, _) => 3,
     }

@@ -12,6 +12,8 @@ use super::unit::Part;
 /// into that floor something reaches that only touches it, mm.
 const DOCK_TAKEN: f64 = 8.0;
 const GRAZE: i32 = 10;
+/// What a draft loses without the circle that wheelchairs are to turn on.
+const NO_CIRCLE: f64 = 6.0;
 
 /// Departures tried in turn, one at a time.
 pub(super) const DEPARTURES: [Departure; 3] = [Departure::of(0, 1), Departure::of(1, 1), Departure::of(0, 2)];
@@ -26,6 +28,8 @@ pub(super) const RESCUES: [Departure; 8] = [
     Departure::of(1, 3),
     Departure::of(3, 2),
 ];
+/// Departures where a bed in the middle of its wall leaves none for a wardrobe as wide as they are.
+pub(super) const ASIDE: [Departure; 2] = [Departure::aside(1), Departure::aside(-1)];
 /// The last step at which one of them departs.
 pub(super) const DEEPEST: usize = 3;
 
@@ -36,11 +40,17 @@ pub(super) struct Departure {
     pub step: usize,
     /// Which one: 0 is the best.
     pub rank: usize,
+    /// Toward which end of its wall it stands rather than in the middle: the lower, -1, or the higher, 1.
+    pub aside: i8,
 }
 
 impl Departure {
     const fn of(step: usize, rank: usize) -> Self {
-        Self { step, rank }
+        Self { step, rank, aside: 0 }
+    }
+
+    const fn aside(aside: i8) -> Self {
+        Self { step: 0, rank: 0, aside }
     }
 }
 
@@ -64,7 +74,13 @@ impl<'a> Draft<'a, '_> {
     /// Returns how good the draft is, lower is better: what is missing, then looks and free floor.
     pub fn cost(&self, empty: usize) -> (u32, f64) {
         let free = 3.0 * self.state.free_area as f64 / empty.max(1) as f64;
-        (self.outcome.required_missing, DOCK_TAKEN * f64::from(self.docks_taken()) - self.outcome.score - free)
+        let taken = DOCK_TAKEN * f64::from(self.docks_taken()) + if self.lacks_circle() { NO_CIRCLE } else { 0.0 };
+        (self.outcome.required_missing, taken - self.outcome.score - free)
+    }
+
+    /// Returns true when the circle is taken that wheelchairs are to turn on.
+    pub fn lacks_circle(&self) -> bool {
+        self.state.turning.is_some() && self.state.circle().is_none()
     }
 
     /// Returns how many docks of robots have something on their free floor.

@@ -29,6 +29,7 @@ mod state;
 mod style;
 #[cfg(test)]
 mod tests;
+mod turning;
 mod unit;
 mod way;
 
@@ -169,6 +170,7 @@ pub(crate) fn furnish_room(
         salt: setting.salt,
         radius: setting.radius,
         has_robots: !graph.robots.is_empty(),
+        turning: setting.turning,
         way: setting.way.as_ref(),
         wide_way: setting.wide_way.as_ref(),
         stop,

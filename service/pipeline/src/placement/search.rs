@@ -8,8 +8,8 @@ use std::rc::Rc;
 use d3dgen_knowledge::Aim;
 use d3dgen_model::domain::{Arrangement, Domain, Mount, Shape};
 
-use super::demand::Task;
-use super::draft::{DEEPEST, DEPARTURES, Departure, Draft, RESCUES, Seen};
+use super::demand::{Task, storage_width_m};
+use super::draft::{ASIDE, DEEPEST, DEPARTURES, Departure, Draft, RESCUES, Seen};
 use super::find::{Candidate, Find, Tally, Terms, leave_out_single, over, rows};
 use super::nav::Nav;
 use super::space::{Open, Space};
@@ -31,6 +31,9 @@ const MORE_DRAFTS: usize = 3;
 const SMALL: usize = 7_600;
 /// Other beginnings of the search where floor is closed off.
 const MORE_BEGINNINGS: u64 = 3;
+/// How much narrower than usual storage is too narrow, and what a draft loses with all of it missing.
+const NARROW: f64 = 0.3;
+const NARROWER: f64 = 3.0;
 /// Free floor from which two departures are enough, in cells (100 m^2): halls take long and look alike.
 const LARGE: usize = 40_000;
 /// Units in rows or a grid, and what they are worth.
@@ -59,6 +62,8 @@ pub(super) struct Job<'a, 's> {
     pub radius: i32,
     /// True where robots are asked for.
     pub has_robots: bool,
+    /// Radius of the circle that rules want free for wheelchairs, mm.
+    pub turning: Option<i32>,
     /// What must stay open from door to door, or for beds.
     pub way: Option<&'s Way>,
     /// The same with the width that is advised, where the room has it.
@@ -205,6 +210,8 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
             open,
         );
         start.has_robots = job.has_robots;
+        start.turning = job.turning;
+        start.turning = start.circle();
         start.add(job.locked.to_vec());
         Self { job, level, forms, start }
     }
@@ -231,7 +238,7 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
         for (n, departure) in DEPARTURES.into_iter().chain(RESCUES).enumerate() {
             // where everything has found its place there is less to gain
             let looks = match (empty > LARGE, best.outcome.missing.is_empty()) {
-                _ if best.docks_taken() > 0 => DEPARTURES.len() + RESCUES.len(),
+                _ if best.docks_taken() > 0 || best.lacks_circle() => DEPARTURES.len() + RESCUES.len(),
                 (_, true) => 1,
                 (true, false) => 2,
                 (false, false) if empty < SMALL && self.lacks_something_early(&best) => DEPARTURES.len() + MORE_DRAFTS,
@@ -247,6 +254,15 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
             let begun = begun.iter().rfind(|(_, draft)| draft.steps.len() <= departure.step).cloned();
             let begun = begun.unwrap_or_else(|| (0, self.blank()));
             let Some(other) = self.draft(begun, floor, Some(departure), false, &mut seen) else { continue };
+            if other.cost(empty) < best.cost(empty) {
+                (best, best_of) = (other, Some(departure));
+            }
+        }
+        for departure in ASIDE {
+            if self.job.stop.is_set() || !self.bed_crowds_out_wardrobe(&best) {
+                break;
+            }
+            let Some(other) = self.draft((0, self.blank()), floor, Some(departure), false, &mut seen) else { continue };
             if other.cost(empty) < best.cost(empty) {
                 (best, best_of) = (other, Some(departure));
             }
@@ -311,6 +327,16 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
         missing.any(|task| task.line < EARLY && !has_other(task.item))
     }
 
+    /// Returns true where a bed came first and what clothes go into has no place, or is narrower than it usually is.
+    fn bed_crowds_out_wardrobe(&self, draft: &Draft) -> bool {
+        let tasks = self.job.tasks;
+        let first = draft.steps.first().and_then(|start| draft.state.placed.get(*start));
+        let narrow = |p: &Placed| tasks.get(p.task).is_some_and(|task| task.narrower(&p.unit) > NARROW);
+        let no_place = |index: usize| tasks[index].first_choice && storage_width_m(tasks[index].anchor).is_some();
+        first.is_some_and(|p| p.unit.anchor().object.shape == Shape::Bed)
+            && (draft.state.placed.iter().any(narrow) || draft.outcome.missing.iter().any(|m| no_place(m.0)))
+    }
+
     /// Returns true when something required finds no place even in the empty room, so that no order helps.
     fn hopeless(&self) -> bool {
         let tasks = self.job.tasks.iter().enumerate();
@@ -321,7 +347,7 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
                     self.batch(&self.start, index, task.required, (0, false), &mut tally).is_none()
                 } else {
                     task.arrangement != Arrangement::OnSurface
-                        && self.single(&self.start, index, 0, None, &mut tally).is_none()
+                        && self.single(&self.start, index, None, None, &mut tally).is_none()
                 }
             },
         )
@@ -342,13 +368,14 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
             }
             let mut tally = Tally::default();
             let mut placed = 0;
-            let rank = |steps: &mut Vec<usize>, state: &State| {
+            let step = |steps: &mut Vec<usize>, state: &State| {
                 steps.push(state.placed.len());
-                departure.filter(|d| d.step == steps.len() - 1).map_or(0, |d| d.rank)
+                departure.filter(|d| d.step == steps.len() - 1)
             };
             let Draft { state, outcome, steps } = draft;
             if task.is_batch() && !self.lines_walls(task) {
-                if let Some((units, score)) = self.batch(state, index, count, (rank(steps, state), whole), &mut tally) {
+                let rank = step(steps, state).map_or(0, |d| d.rank);
+                if let Some((units, score)) = self.batch(state, index, count, (rank, whole), &mut tally) {
                     placed = units.len() as u32;
                     outcome.score += score;
                     state.add(units);
@@ -356,7 +383,7 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
             } else {
                 while placed < count && !self.job.stop.is_set() {
                     let open = whole.then_some(task.required > present + placed);
-                    let Some((mut unit, score)) = self.single(state, index, rank(steps, state), open, &mut tally)
+                    let Some((mut unit, score)) = self.single(state, index, step(steps, state), open, &mut tally)
                     else {
                         break;
                     };
@@ -365,6 +392,7 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
                         state.watch(&unit);
                     }
                     outcome.score += score + if task.required > 0 { 2.0 } else { 1.0 };
+                    outcome.score -= NARROWER * task.narrower(&unit.unit);
                     state.add(vec![unit]);
                     placed += 1;
                 }
@@ -505,20 +533,42 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
         &self,
         state: &State<'a, 's>,
         index: usize,
-        rank: usize,
+        departure: Option<Departure>,
         whole: Option<bool>,
         tally: &mut Tally,
     ) -> Option<(Placed<'a>, f64)> {
+        let (task, forms) = (&self.job.tasks[index], &self.forms[index]);
+        // what cannot do without a corner is rather smaller than away from one
+        if task.required > 0 && task.arrangement == Arrangement::Corner && forms.len() > 1 {
+            let found = self.single_of(state, index, departure, (whole, true), tally);
+            if found.is_some() {
+                return found;
+            }
+        }
+        self.single_of(state, index, departure, (whole, false), tally)
+    }
+
+    /// Returns the best place for one unit of a task; with `in_corner` in a corner only.
+    fn single_of(
+        &self,
+        state: &State<'a, 's>,
+        index: usize,
+        departure: Option<Departure>,
+        (whole, in_corner): (Option<bool>, bool),
+        tally: &mut Tally,
+    ) -> Option<(Placed<'a>, f64)> {
         let (task, aisle) = (&self.job.tasks[index], self.aisle());
+        let (rank, aside) = departure.map_or((0, 0), |d| (d.rank, d.aside));
         // a form that closes off floor stands only where none leaves it open
         let mut closing = None;
         for forms in self.forms[index].iter().take_while(|_| !self.job.stop.is_set()) {
             let mut candidates: Vec<Candidate> = Vec::new();
             for unit in forms {
                 let mut find = Find::new(state, task, index, self.job.salt, aisle, tally);
-                find.across = self.across(task);
+                (find.across, find.aside) = (self.across(task), aside);
                 candidates.extend(find.run(unit));
             }
+            candidates.retain(|c| c.in_corner || !in_corner);
             candidates.sort_by(|a, b| b.score.total_cmp(&a.score));
             let open = choose(state, &candidates, rank, whole.map(|_| false), tally);
             if open.is_some() {

@@ -18,6 +18,13 @@ use super::{LEAST_RADIUS_M, Wanted, clutter};
 /// Half the width of a way for a wheelchair past furniture, m (ISO 21542: 0.8 m at the narrowest).
 const WHEELCHAIR_RADIUS_M: f64 = 0.4;
 
+/// What the circle of a wheelchair is drawn larger by, m: its place is found to the millimeter by none.
+const TURNING_SPARE_M: f64 = 0.005;
+/// Area of a room from which on things of any size leave room for that circle, m^2.
+const AMPLE_M2: f64 = 9.0;
+/// Floor at one side of a bed that somebody gets into from a wheelchair, m (ISO 21542, ADA 806.2.3: 36 in).
+const BESIDE_BED_M: f64 = 0.92;
+
 /// What every way to furnish a room begins with; the same room of the same graph has the same.
 pub(super) struct Setting<'a> {
     pub domain: &'a Domain,
@@ -32,6 +39,8 @@ pub(super) struct Setting<'a> {
     sizes: BTreeMap<&'a str, usize>,
     /// Radius of the robot, mm.
     pub radius: i32,
+    /// Radius of the circle that rules want free for wheelchairs, mm.
+    pub turning: Option<i32>,
     /// What must stay open from door to door, or for beds.
     pub way: Option<Way>,
     /// The same with the width that is advised, where the room has it.
@@ -50,6 +59,7 @@ impl<'a> Setting<'a> {
         if graph.accessible {
             space.keep_latch_sides();
         }
+        note_wet_doors(&mut space, plan, room, domain);
         let kind = domain.room_type_or_generic(&room.room_type);
         let per_person_m2 = limits.rooms.get(&room.room_type).and_then(|l| l.area_per_person_advised);
         let per_person_m2 = per_person_m2.or_else(|| workroom_area(plan, domain, limits));
@@ -62,7 +72,10 @@ impl<'a> Setting<'a> {
             Wanted::Without(objects) => usual().into_iter().filter(|t| !objects.contains(&t.anchor.id)).collect(),
             Wanted::Only(object) => vec![demand::one_more(object)],
         };
-        let aims = limits.objects.in_room(domain, &room.room_type, room.circulation);
+        let mut aims = limits.objects.in_room(domain, &room.room_type, room.circulation);
+        if graph.accessible {
+            beside_beds(domain, &mut aims);
+        }
         // what rules advise against goes where the room can do without
         tasks.retain(|t| t.required > 0 || !aims.get(t.anchor.id.as_str()).is_some_and(|a| a.unwanted));
         if graph.style.clutter == Some(Clutter::Low) && !matches!(wanted, Wanted::Only(_)) {
@@ -70,12 +83,15 @@ impl<'a> Setting<'a> {
         }
         let mut stream = Stream::new(graph.seed, &format!("placement/{}", room.room_id));
         let salt = (stream.unit() * (1_u64 << 52) as f64) as u64;
-        let sizes = pick_sizes(domain, &aims, &mut stream);
+        let circle = limits.rooms.get(&room.room_type).and_then(|l| l.turning_circle.as_ref());
+        let turning = circle.map(|limit| mm(limit.value / 2.0 + TURNING_SPARE_M));
+        let usual = turning.is_some() && room.net_area_m2 < AMPLE_M2;
+        let sizes = pick_sizes(domain, &aims, usual, &mut stream);
         let width_m = way_width(graph, domain, limits);
         let wide_m = limits.corridor_width_advised.unwrap_or(0.0).max(width_m);
         let beds = tasks.iter().any(|t| t.anchor.shape == Shape::HospitalBed);
         let [way, wide_way] = Way::of_room(plan, room, [width_m, wide_m], beds);
-        Self { domain, kind, radius: radius(graph, &space), space, tasks, aims, salt, sizes, way, wide_way }
+        Self { domain, kind, radius: radius(graph, &space), space, tasks, aims, salt, sizes, turning, way, wide_way }
     }
 
     /// Returns which of its sizes an object has in this room.
@@ -101,13 +117,44 @@ fn way_width(graph: &SceneGraph, domain: &Domain, limits: &Limits) -> f64 {
     asked_m.max(2.0 * robot_m)
 }
 
-/// Picks one size for each object type of a room, the first where none is said; of those that keep most rules the most common one most often.
-fn pick_sizes<'a>(domain: &'a Domain, aims: &BTreeMap<&str, Aim>, stream: &mut Stream) -> BTreeMap<&'a str, usize> {
+/// Notes which doors lead to rooms with steam.
+fn note_wet_doors(space: &mut Space, plan: &Floorplan, room: &PlanRoom, domain: &Domain) {
+    let is_wet = |id: &String| {
+        let other = plan.rooms.iter().find(|r| r.room_id == *id && r.room_id != room.room_id);
+        other.is_some_and(|r| domain.room_type_or_generic(&r.room_type).wet)
+    };
+    let wet: Vec<&str> =
+        (plan.doors_of(&room.room_id).filter(|d| d.room_ids.iter().any(is_wet))).map(|d| d.door_id.as_str()).collect();
+    space.doors.iter_mut().for_each(|door| door.wet = wet.contains(&door.id.as_str()));
+}
+
+/// Asks for floor at one side of each bed where a wheelchair is to get there, if nobody asks for more.
+fn beside_beds<'a>(domain: &'a Domain, aims: &mut BTreeMap<&'a str, Aim>) {
+    for bed in domain.objects.iter().filter(|o| o.shape == Shape::Bed) {
+        let clear = &mut aims.entry(&bed.id).or_default().clear;
+        clear.wide_side = clear.wide_side.max(BESIDE_BED_M);
+    }
+}
+
+/// Picks one size for each object type of a room, of those that keep most rules the most common one most often. What things
+/// are stored in is at least as wide as it usually comes; narrower ones are for walls that hold no other. With
+/// `usual_only` all things have their most common size; the first where none is said.
+fn pick_sizes<'a>(
+    domain: &'a Domain,
+    aims: &BTreeMap<&str, Aim>,
+    usual_only: bool,
+    stream: &mut Stream,
+) -> BTreeMap<&'a str, usize> {
     let mut pick = |o: &ObjectType| {
         let breaches = aims.get(o.id.as_str()).map_or(&[][..], |a| &a.breaches);
         let least = breaches.iter().min().copied().unwrap_or(0);
-        let best: Vec<usize> = (0..o.sizes_m.len()).filter(|i| breaches.get(*i).is_none_or(|b| *b == least)).collect();
-        let at = if stream.chance(0.5) { 0 } else { stream.below(best.len()) };
+        let usual = demand::storage_width_m(o).unwrap_or(0.0);
+        let lawful = |i: &usize| breaches.get(*i).is_none_or(|b| *b == least);
+        let mut best: Vec<usize> = (0..o.sizes_m.len()).filter(lawful).collect();
+        if best.iter().any(|i| o.sizes_m[*i][0] >= usual) {
+            best.retain(|i| o.sizes_m[*i][0] >= usual);
+        }
+        let at = if stream.chance(0.5) { 0 } else { stream.below(best.len()) } * usize::from(!usual_only);
         best.get(at).copied().unwrap_or(0)
     };
     let picked = domain.objects.iter().map(|o| (o.id.as_str(), pick(o)));

@@ -68,6 +68,8 @@ pub(super) struct DoorZone {
     pub clear_width: i32,
     /// True for openings without a leaf: the room and what lies before it are in sight of each other.
     pub open: bool,
+    /// True for doors of rooms with steam.
+    pub wet: bool,
 }
 
 impl DoorZone {
@@ -196,6 +198,7 @@ impl Space {
                     rank,
                     clear_width: mm(door.clear_width_m),
                     open: door.kind == DoorKind::Open,
+                    wet: false,
                 });
             }
         }

@@ -12,6 +12,7 @@ use super::nav::Nav;
 use super::pockets::Pockets;
 use super::seats::ways_beside;
 use super::space::{DoorZone, Open, Space, WallSide};
+use super::turning::has_circle;
 use super::unit::{Part, Unit};
 use super::way::{InTheWay, Way};
 
@@ -136,6 +137,8 @@ pub(super) struct State<'a, 's> {
     in_the_way: InTheWay,
     /// True where robots are to live: a dock in the way is better than none.
     pub has_robots: bool,
+    /// Radius of the circle that rules want free for wheelchairs, mm.
+    pub turning: Option<i32>,
     /// Floor that belongs to docks.
     pub docks: Vec<Box2>,
     /// Floor at the foot of beds through which one gets to their sides.
@@ -169,6 +172,7 @@ impl<'a, 's> State<'a, 's> {
             bodies: Vec::new(),
             in_the_way: InTheWay::default(),
             has_robots: false,
+            turning: None,
             docks: Vec::new(),
             beside_beds: Vec::new(),
             sights: Vec::new(),
@@ -202,7 +206,8 @@ impl<'a, 's> State<'a, 's> {
             if p.support.is_none() && !space.contains(&solid.rect) || solid.z1 > space.ceiling {
                 return Err(Rule::Outside);
             }
-            if part.hangs_aside() && !self.has_wall_behind(&solid.rect, (p.q + part.quarter) % 4) {
+            let aside = part.hangs_aside() || part.stands_aside();
+            if aside && !self.has_wall_behind(&solid.rect, (p.q + part.quarter) % 4) {
                 return Err(Rule::NoPlace);
             }
             if solid.is_flat() && solid.z0 == 0 {
@@ -279,9 +284,10 @@ impl<'a, 's> State<'a, 's> {
                 let in_the_way = |part: &Part| {
                     let solid = p.solid(part);
                     self.space.windows.iter().any(|w| w.is_taken_by(&solid, self.open))
-                        || part.mount == Mount::Ceiling && self.solids.iter().any(|s| s.overlaps(&solid))
+                        || part.mount == Mount::Ceiling
+                            && (!self.space.contains(&solid.rect) || self.solids.iter().any(|s| s.overlaps(&solid)))
                         || part.mount == Mount::Floor && self.lies_in_door(&solid)
-                        || part.hangs_aside() && self.hangs_badly(&solid, (p.q + part.quarter) % 4)
+                        || part.mount == Mount::Wall && self.hangs_badly(&solid, (p.q + part.quarter) % 4)
                 };
                 let lesser = Placed { unit: Rc::new(p.unit.cleared(in_the_way).ok_or(rule)?), ..p.clone() };
                 self.test(&lesser, at_window).map(|()| lesser)
@@ -351,6 +357,18 @@ impl<'a, 's> State<'a, 's> {
         let parts = || p.unit.parts.iter().filter(|part| part.mount == Mount::Floor).map(|part| p.solid(part));
         let between = |(floor, below): &(Box2, i32)| parts().any(|s| s.z1 > *below && s.rect.overlaps(floor));
         p.support.is_none() && self.sights.iter().any(between)
+    }
+
+    /// Returns the radius of the circle that wheelchairs turn on as things stand; `None` where none has a place or is asked for.
+    pub fn circle(&self) -> Option<i32> {
+        self.turning.filter(|radius| has_circle(&self.space.bounds, self.space.holes(), &self.bodies, *radius))
+    }
+
+    /// Returns true when a unit leaves no place for a circle of this radius, mm.
+    pub fn fills(&self, p: &Placed, radius: i32) -> bool {
+        let own: Vec<Box2> = bodies(p).collect();
+        let all: Vec<Box2> = self.bodies.iter().copied().chain(own.iter().copied()).collect();
+        !own.is_empty() && !has_circle(&self.space.bounds, self.space.holes(), &all, radius)
     }
 
     /// Puts units down that were tested.

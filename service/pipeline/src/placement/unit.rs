@@ -43,10 +43,17 @@ impl Part<'_> {
         self.mount == Mount::Wall && self.support.is_none() && !self.quarter.is_multiple_of(4)
     }
 
-    /// Returns true for what its unit can do without where it is in the way: on a top, overhead, flat on the floor or on
-    /// another wall.
+    /// Returns true for the leg of a kitchen that turns the corner: its back belongs to the wall beside that of its unit.
+    pub fn stands_aside(&self) -> bool {
+        let built_in = matches!(self.object.shape, Shape::Sink | Shape::Counter | Shape::Stove);
+        built_in && self.mount == Mount::Floor && !self.quarter.is_multiple_of(2)
+    }
+
+    /// Returns true for what its unit can do without where it is in the way: on a top, overhead, flat on the floor or on a
+    /// wall.
     pub fn may_go(&self) -> bool {
-        let loose = matches!(self.mount, Mount::Surface | Mount::Ceiling) || self.solid.is_flat() || self.hangs_aside();
+        let hangs = self.mount == Mount::Wall && self.support.is_none();
+        let loose = matches!(self.mount, Mount::Surface | Mount::Ceiling) || self.solid.is_flat() || hangs;
         self.optional && loose
     }
 
@@ -230,7 +237,9 @@ pub(super) fn variants<'a>(domain: &'a Domain, item: &'a str, forms: &Forms) -> 
         whole.extend(lesser.into_iter().map(full));
     }
     if forms.advised {
-        whole.iter().filter_map(|unit| advised(unit, forms)).for_each(&mut add);
+        whole.iter().filter_map(|unit| advised(unit, forms, true)).for_each(&mut add);
+        // the room for a wheelchair at one side goes before the rest
+        whole.iter().filter_map(|unit| advised(unit, forms, false)).for_each(&mut add);
     }
     whole.iter().filter_map(with_elbow_room).for_each(&mut add);
     whole.into_iter().for_each(&mut add);
@@ -249,12 +258,14 @@ pub(super) fn variants<'a>(domain: &'a Domain, item: &'a str, forms: &Forms) -> 
     out
 }
 
-/// Returns a unit with the free floor that is advised for its parts; `None` where that is no more than it has.
-fn advised<'a>(unit: &Unit<'a>, forms: &Forms) -> Option<Unit<'a>> {
+/// Returns a unit with the free floor that is advised for its parts, with more at a `wide_side` or without; `None` where that is
+/// no more than it has.
+fn advised<'a>(unit: &Unit<'a>, forms: &Forms, wide_side: bool) -> Option<Unit<'a>> {
     let mut clears = unit.clears.clone();
     for part in unit.parts.iter().filter(|p| p.mount == Mount::Floor) {
         if let Some(aim) = forms.aims.get(part.object.id.as_str()) {
-            advised_floor(part, &aim.clear, &mut clears);
+            let clear = if wide_side { aim.clear } else { Clear { wide_side: 0.0, ..aim.clear } };
+            advised_floor(part, &clear, &mut clears);
         }
     }
     let more = clears.len() > unit.clears.len();
@@ -282,8 +293,8 @@ fn advised_floor(part: &Part, clear: &Clear, out: &mut Vec<Box2>) {
         }
     };
     let side = |sides: u8| if part.object.clear_sides >= sides { usual[1] } else { 0.0 };
-    let (front, left) = (clear.front.max(clear.around), clear.sides.max(clear.around));
-    let right = if clear.one_side { clear.around } else { left };
+    let (front, left) = (clear.front.max(clear.around), clear.sides.max(clear.around).max(clear.wide_side));
+    let right = if clear.one_side { clear.around } else { clear.sides.max(clear.around) };
     add(front, usual[0], |o, d| Box2 { x0: o.x1, x1: o.x1 + d, ..o });
     add(left, side(1), |o, d| Box2 { y0: o.y1, y1: o.y1 + d, ..o });
     add(right, side(2), |o, d| Box2 { y0: o.y0 - d, y1: o.y0, ..o });
@@ -436,6 +447,7 @@ fn add_member<'a>(parts: &mut Vec<Part<'a>>, member: &Member, object: &'a Object
     let beside = !matches!(member.relation, Relation::On | Relation::Over | Relation::Under);
     let gap = if beside && base < anchor.z1 && gap < 0 { 0 } else { gap };
     let floor = |rect: Box2| Solid { rect, z0: base, z1: base + h };
+    let apart = gap.max(0);
     let part = |quarter: u8, solid: Solid| Part {
         object,
         quarter,
@@ -452,7 +464,7 @@ fn add_member<'a>(parts: &mut Vec<Part<'a>>, member: &Member, object: &'a Object
             for _ in 0..count {
                 let y = if left { a.y1 + gap } else { a.y0 - gap - ey };
                 let step = if left { (0, 20) } else { (0, -20) };
-                if let Some(solid) = pushed(parts, floor(at(a.x0 + offset, y, q)), step) {
+                if let Some(solid) = pushed(parts, floor(at(a.x0 + offset, y, q)), step, apart) {
                     parts.push(part(q, solid));
                 }
             }
@@ -466,7 +478,7 @@ fn add_member<'a>(parts: &mut Vec<Part<'a>>, member: &Member, object: &'a Object
             for k in 0..count as i32 {
                 let y = offset - ey / 2 + (2 * k - (count as i32 - 1)) * pitch / 2;
                 let step = if front { (20, 0) } else { (-20, 0) };
-                if let Some(solid) = pushed(parts, floor(at(x, y, q)), step) {
+                if let Some(solid) = pushed(parts, floor(at(x, y, q)), step, apart) {
                     parts.push(part(q, solid));
                 }
             }
@@ -497,7 +509,7 @@ fn add_member<'a>(parts: &mut Vec<Part<'a>>, member: &Member, object: &'a Object
             }
             let rect = Box2 { x0: back, y0: offset - w / 2, x1: back + d, y1: offset - w / 2 + w };
             let solid = Solid { rect, z0: z, z1: z + h };
-            if let Some(solid) = pushed(parts, solid, (0, 20)) {
+            if let Some(solid) = pushed(parts, solid, (0, 20), 0) {
                 parts.push(Part { mount: Mount::Wall, ..part(0, solid) });
             }
         }
@@ -514,9 +526,13 @@ fn add_member<'a>(parts: &mut Vec<Part<'a>>, member: &Member, object: &'a Object
     }
 }
 
-/// Moves a solid in steps until it overlaps no part; `None` after 3 m.
-fn pushed(parts: &[Part], solid: Solid, step: (i32, i32)) -> Option<Solid> {
-    let free = |s: &Solid| s.is_flat() || !parts.iter().any(|p| !p.solid.is_flat() && p.solid.overlaps(s));
+/// Moves a solid in steps until it overlaps no part and leaves a gap to those it passed, mm; `None` after 3 m.
+fn pushed(parts: &[Part], solid: Solid, step: (i32, i32), gap: i32) -> Option<Solid> {
+    let with_gap = |s: &Solid| {
+        let (dx, dy) = (gap * step.0.signum(), gap * step.1.signum());
+        Solid { rect: s.rect.union(&s.rect.shifted(-dx, -dy)), ..*s }
+    };
+    let free = |s: &Solid| s.is_flat() || !parts.iter().any(|p| !p.solid.is_flat() && p.solid.overlaps(&with_gap(s)));
     (0..150).map(|k| Solid { rect: solid.rect.shifted(k * step.0, k * step.1), ..solid }).find(free)
 }
 

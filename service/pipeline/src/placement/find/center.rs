@@ -46,12 +46,21 @@ impl<'a> Find<'_, 'a, '_> {
         let (mx, my) = space.main.center();
         let mut centers = vec![(fx, fy), (mx, my), (fx, my), (mx, fy)];
         centers.extend(grid(free.x0, free.x1).flat_map(|x| grid(free.y0, free.y1).map(move |y| (x, y))));
+        // where one way there is little to spare the middle is the only place
+        centers.extend(grid(free.x0, free.x1).flat_map(|x| [(x, my), (x, fy)]));
+        centers.extend(grid(free.y0, free.y1).flat_map(|y| [(mx, y), (fx, y)]));
         centers.extend(self.beside_siblings(unit));
         let before = self.out.len();
         for q in 0..4_u8 {
             let (bu, bv) = unit.bbox.center();
             let (du, dv) = turn(q, bu, bv);
-            for &(x, y) in &centers {
+            // with all the floor it needs right up to a wall, in the middle the other way
+            let reach = unit.reach.turned(q);
+            let xs = [space.main.x0 - reach.x0, space.main.x1 - reach.x1].map(|x| x + du);
+            let ys = [space.main.y0 - reach.y0, space.main.y1 - reach.y1].map(|y| y + dv);
+            let flush = (xs.into_iter().flat_map(|x| [my, fy].map(|y| (x, y))))
+                .chain(ys.into_iter().flat_map(|y| [mx, fx].map(|x| (x, y))));
+            for (x, y) in centers.iter().copied().chain(flush) {
                 let (u, v) = turn(4 - q, x - du, y - dv);
                 let placed = at_frame(unit, q, u, v, self.index);
                 if sits && !self.is_open_around(&placed, BESIDE) {

@@ -24,6 +24,8 @@ const QUEUE: f64 = 1.6;
 /// How far aside of the way in a counter stands that looks across it, and the floor before it, m.
 const COUNTER_AWAY_M: f64 = 1.8;
 const COUNTER_FRONT_M: f64 = 1.6;
+/// Floor between a counter and the open front of its room, m: a robot and a person get past.
+const AT_EDGE_M: f64 = 0.95;
 /// Floor a person needs behind a free-standing counter, mm.
 const BEHIND: i32 = 900;
 /// Floor more than one must have behind a desk or counter, mm, the floor before it from which on there is some to spare, m,
@@ -198,6 +200,8 @@ impl<'a> Find<'_, 'a, '_> {
         vs.iter_mut().for_each(|v| *v += door_axis - middle);
         vs.extend([wide.y0 - b.y0, wide.y1 - b.y1]);
         let ample = ample(look);
+        // who comes to a room with no other way in stands in the corridor, and whoever sits there sees its doors from close by
+        let at_edge = door.open && space.doors.len() == 1;
         for u in us {
             let behind = u + rear - wide.x0;
             for &v in &vs {
@@ -206,7 +210,11 @@ impl<'a> Find<'_, 'a, '_> {
                 // a desk need not stand in line with the door
                 let off = f64::from((v + middle - door_axis).abs()) / if look == 0 { 1000.0 } else { 4000.0 };
                 // whoever stands behind a counter that is open to a corridor sees along it from close to the opening only
-                let (far, slope): (f64, f64) = if door.open { (1.6, 0.6) } else { (4.0, 0.2) };
+                let (far, slope): (f64, f64) = match (at_edge, door.open) {
+                    (true, _) => (AT_EDGE_M, 0.8),
+                    (_, true) => (1.6, 0.6),
+                    _ => (4.0, 0.2),
+                };
                 let lost = if behind == EASE && front > ample {
                     -AT_EASE
                 } else if behind > 100 && behind < BEHIND {
@@ -220,6 +228,7 @@ impl<'a> Find<'_, 'a, '_> {
                 let aside = (v + middle - door_axis).abs() > (b.height() + door.v1 - door.v0) / 2;
                 let least = match (door.open, aside) {
                     _ if look != 0 => 0.9,
+                    _ if at_edge => AT_EDGE_M,
                     (true, _) => 1.6,
                     (false, true) => 1.8,
                     (false, false) => 2.6,

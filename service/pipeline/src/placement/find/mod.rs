@@ -28,6 +28,9 @@ const WITH_STAFF: f64 = 9.0;
 const LOST: f64 = 0.4;
 const LOST_ASIDE: f64 = 2.0;
 
+/// What a place loses that leaves wheelchairs no floor to turn on.
+const NO_CIRCLE: f64 = 6.0;
+
 /// How far ahead of the middle of those who look at it a screen hangs at least, and how much farther aside than ahead, mm.
 const AHEAD: i32 = 400;
 const ASIDE: i32 = 600;
@@ -37,6 +40,8 @@ const ASIDE: i32 = 600;
 pub(super) struct Candidate<'a> {
     pub placed: Placed<'a>,
     pub score: f64,
+    /// True for what is wanted in a corner and stands in one.
+    pub in_corner: bool,
     /// Positions of one class look alike (one wall, one corner): the search tries different classes.
     pub class: u32,
 }
@@ -79,7 +84,11 @@ pub(super) struct Find<'f, 'a, 's> {
     pub tally: &'f mut Tally,
     /// What will face this unit from the wall across.
     pub across: Option<Rc<Unit<'a>>>,
+    /// Toward which end of its wall it stands rather than in the middle; 0 for neither.
+    pub aside: i8,
     style: Style,
+    /// Radius of the circle that has a place for wheelchairs to turn on so far, mm.
+    circle: Option<i32>,
     /// What the unit must not disturb, where the room can do without it.
     neighbors: Option<Neighbors<'f, 'a, 's>>,
 }
@@ -95,7 +104,21 @@ impl<'f, 'a, 's> Find<'f, 'a, 's> {
     ) -> Self {
         let both = task.anchor.clear_sides > 1 && task.anchor.clearance_side_m > 0.0;
         let style = style(task.anchor.shape, task.anchor.mount, both);
-        Self { state, task, index, salt, aisle, out: Vec::new(), tally, across: None, style, neighbors: None }
+        let circle = state.circle();
+        Self {
+            state,
+            task,
+            index,
+            salt,
+            aisle,
+            out: Vec::new(),
+            tally,
+            across: None,
+            aside: 0,
+            style,
+            circle,
+            neighbors: None,
+        }
     }
 
     /// Collects positions of a unit as the task's arrangement wants it.
@@ -130,6 +153,10 @@ impl<'f, 'a, 's> Find<'f, 'a, 's> {
         let whole = Rc::clone(&placed.unit);
         match self.state.fit(placed, at_window) {
             Ok(placed) => {
+                let fills = self.circle.is_some_and(|radius| self.state.fills(&placed, radius));
+                if fills && spare {
+                    return self.none(Rule::Clearance);
+                }
                 let grain = grain(
                     self.salt,
                     i64::from(placed.at.0 / 50),
@@ -139,8 +166,10 @@ impl<'f, 'a, 's> Find<'f, 'a, 's> {
                     - loss(&whole, &placed.unit)
                     - crowding(self.state, &placed, self.aisle)
                     - if sits_with_staff(self.state, &placed) { WITH_STAFF } else { 0.0 }
-                    - beside_beds(self.state, &placed);
-                self.out.push(Candidate { placed, score, class });
+                    - beside_beds(self.state, &placed)
+                    - if fills { NO_CIRCLE } else { 0.0 };
+                let in_corner = self.task.arrangement == Arrangement::Corner && self.is_in_corner(&placed);
+                self.out.push(Candidate { placed, score, in_corner, class });
             }
             Err(rule) => self.tally[rule as usize] += 1,
         }

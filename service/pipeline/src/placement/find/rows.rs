@@ -22,6 +22,11 @@ const TABLES_APART: i32 = 500;
 /// Steps away from a place on the ceiling that is taken, mm.
 const BESIDE: [(i32, i32); 9] =
     [(0, 0), (500, 0), (-500, 0), (0, 500), (0, -500), (900, 0), (-900, 0), (0, 900), (0, -900)];
+/// Floor between doors and what senses smoke below the ceiling, mm (IRC R314.3: 3 ft), and the steps that it is moved by.
+const FROM_DOOR: i32 = 930;
+const ALONG: i32 = 250;
+/// Width below which something on the ceiling is a device and no lamp, mm.
+const DEVICE: i32 = 200;
 /// Most that aisles between rows of desks widen where the room has the floor, mm.
 const WIDENED: i32 = 700;
 /// Distances of a curtain from the foot of its bed, mm.
@@ -416,6 +421,50 @@ fn at_feet<'a>(
     if placed.is_empty() { Vec::new() } else { vec![Batch { placed, in_pairs: false, score: 1.0 }] }
 }
 
+/// Returns true for a small device that watches the air or the room from the ceiling.
+fn senses(unit: &Unit) -> bool {
+    unit.bbox.width() < DEVICE && unit.anchor().object.affordances.iter().any(|a| a == "see")
+}
+
+/// Returns how far apart two rectangles are, mm.
+fn distance(a: &Box2, b: &Box2) -> i32 {
+    let dx = f64::from((a.x0 - b.x1).max(b.x0 - a.x1).max(0));
+    let dy = f64::from((a.y0 - b.y1).max(b.y0 - a.y1).max(0));
+    (dx * dx + dy * dy).sqrt() as i32
+}
+
+/// Moves what senses smoke along the room to the nearest place away from doors through which steam comes; where no place is
+/// far enough, to the farthest.
+fn far_from_doors<'a>(
+    space: &Space,
+    p: &Placed<'a>,
+    test: impl Fn(&Placed<'a>) -> Result<(), Rule>,
+) -> Result<Placed<'a>, Rule> {
+    let openings: Vec<Box2> =
+        space.doors.iter().filter(|d| d.wet).map(|d| space.walls[d.wall].strip(d.v0, d.v1, 0, 0)).collect();
+    let along_x = space.main.width() >= space.main.height();
+    let half = space.main.width().max(space.main.height()) / 2;
+    let steps = (0..=half / ALONG).flat_map(|k| [k * ALONG, -k * ALONG]);
+    let mut best: Result<(i32, Placed), Rule> = Err(Rule::Collision);
+    for step in steps {
+        let at = if along_x { (p.at.0 + step, p.at.1) } else { (p.at.0, p.at.1 + step) };
+        let moved = Placed { at, ..p.clone() };
+        if test(&moved).is_err() {
+            continue;
+        }
+        let body = moved.world(&moved.unit.bbox);
+        let far = openings.iter().map(|o| distance(o, &body)).min().unwrap_or(FROM_DOOR).min(FROM_DOOR);
+        if best.as_ref().is_ok_and(|(most, _)| *most >= far) {
+            continue;
+        }
+        best = Ok((far, moved));
+        if far == FROM_DOOR {
+            break;
+        }
+    }
+    best.map(|(_, moved)| moved)
+}
+
 /// Returns units spread evenly over the ceiling of the room's main part.
 pub(in crate::placement) fn over<'a>(
     state: &State<'a, '_>,
@@ -447,14 +496,17 @@ pub(in crate::placement) fn over<'a>(
         let (du, dv) = turn(q, bx, by);
         let (u, v) = turn(4 - q, x - du, y - dv);
         let p = at_frame(unit, q, u, v, index);
-        // beside its place in line where a lamp or a hood hangs already
         let mut tested = Err(Rule::Collision);
+        if senses(unit) {
+            tested = far_from_doors(state.space, &p, |p| state.test(p, false).and_then(|()| apart(&placed, p)));
+        }
+        // beside its place in line where a lamp or a hood hangs already
         for (du, dv) in BESIDE {
-            let moved = Placed { at: (p.at.0 + du, p.at.1 + dv), ..p.clone() };
-            tested = state.test(&moved, false).and_then(|()| apart(&placed, &moved)).map(|()| moved);
             if tested.is_ok() {
                 break;
             }
+            let moved = Placed { at: (p.at.0 + du, p.at.1 + dv), ..p.clone() };
+            tested = state.test(&moved, false).and_then(|()| apart(&placed, &moved)).map(|()| moved);
         }
         match tested {
             Ok(p) => placed.push(p),

@@ -18,6 +18,10 @@ use crate::placement::unit::{Part, Unit};
 const SAME: i32 = 20;
 /// Regular positions along a wall, beside the telling ones, mm.
 const STEP: i32 = 450;
+/// What all the free wall at one side is worth where a bed is to leave it to a wardrobe.
+const ASIDE: f64 = 3.0;
+/// How far from both walls of a corner something stands in it, mm.
+const IN_CORNER: i32 = 50;
 /// A gap narrower than this beside furniture collects dust, mm.
 const SLIVER: i32 = 300;
 
@@ -37,6 +41,8 @@ const FARTHER: f64 = 0.9;
 const NEAR_VIEW: i32 = 2900;
 const WAY_BEHIND: i32 = 900;
 const DRAWN_UP: f64 = 1.0;
+/// What a meter more than a way behind it loses: nothing else uses that floor.
+const EMPTY_BEHIND: f64 = 0.8;
 
 /// Opening of a door within which no hob stands, mm, and what a place with one there loses (ways past pots).
 const FROM_STOVE: i32 = 900;
@@ -100,10 +106,9 @@ impl<'a> Find<'_, 'a, '_> {
                 } else {
                     2
                 };
-            if let Some(nearer) = self.drawn_up(&placed, wall) {
-                self.offer(nearer, class / 4 * 4 + 3, |find, p| {
-                    bonus - DRAWN_UP + find.wall_score(p, index, &front, v)
-                });
+            if let Some((nearer, by)) = self.drawn_up(&placed, wall) {
+                let less = DRAWN_UP + EMPTY_BEHIND * f64::from(by - WAY_BEHIND) / 1000.0;
+                self.offer(nearer, class / 4 * 4 + 3, |find, p| bonus - less + find.wall_score(p, index, &front, v));
             }
             match barred.rule_at(v) {
                 Some(rule) => self.none(rule),
@@ -112,12 +117,12 @@ impl<'a> Find<'_, 'a, '_> {
         }
     }
 
-    /// Returns a sofa moved towards what it looks at where that would be far, with a way behind it.
-    fn drawn_up(&self, p: &Placed<'a>, wall: &WallSide) -> Option<Placed<'a>> {
+    /// Returns a sofa moved towards what it looks at where that would be far, with a way behind it, and by how much, mm.
+    fn drawn_up(&self, p: &Placed<'a>, wall: &WallSide) -> Option<(Placed<'a>, i32)> {
         let unit = self.across.as_ref().filter(|_| p.unit.anchor().object.shape == Shape::Sofa)?;
         let by = self.view(p, unit).map(|(far, _)| far).filter(|&far| far > FAR_VIEW)? - NEAR_VIEW;
         let (u, v) = turn((4 - wall.q) % 4, p.at.0, p.at.1);
-        (by >= WAY_BEHIND).then(|| at_frame(&p.unit, wall.q, u + by, v, self.index))
+        (by >= WAY_BEHIND).then(|| (at_frame(&p.unit, wall.q, u + by, v, self.index), by))
     }
 
     /// Looks along a wall for what is in the way of a unit.
@@ -240,13 +245,25 @@ impl<'a> Find<'_, 'a, '_> {
         let aside = f64::from((gl - gr).abs()) / (spare + 1.0) * (spare / 2000.0).min(1.0);
         // the first of several beds leaves the rest of the wall to the others
         let more = self.task.required as usize > self.siblings().count() + 1;
-        s += if more { 0.8 * aside } else { -style.centered * aside };
+        s += match self.aside {
+            0 if more => 0.8 * aside,
+            0 => -style.centered * aside,
+            end => ASIDE * f64::from(end) * f64::from(gl - gr) / (spare + 1.0) * (spare / 2000.0).min(1.0),
+        };
         s -= style.tight * (spare / 3000.0).min(1.0);
         s += self.window_score(index, a, z) + self.door_score(p) + self.sibling_score(p, a, z, index);
         s -= door_loss(space, p, self.aisle);
         s += self.company_score(p) - self.at_doors(p) - self.apart_from_run(p);
         s -= self.across.as_ref().map_or(0.0, |unit| far_view(self.view(p, unit)));
         s + self.arrangement_score(p, index, a, z)
+    }
+
+    /// Returns true for what has its back and a side at the walls of a corner.
+    pub(super) fn is_in_corner(&self, p: &Placed<'a>) -> bool {
+        let own = p.world(&p.unit.bbox).turned((4 - p.q) % 4);
+        let near = |a: i32, b: i32| (a - b).abs() < IN_CORNER;
+        let behind = self.state.space.walls.iter().filter(|w| w.q == p.q && near(own.x0, w.u));
+        behind.into_iter().any(|w| w.corner0 && near(own.y0, w.v0) || w.corner1 && near(own.y1, w.v1))
     }
 
     fn is_door_edge(&self, wall: usize, v: i32) -> bool {
