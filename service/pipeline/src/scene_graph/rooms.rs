@@ -321,9 +321,10 @@ pub(crate) fn dock_rank(kind: &RoomType, robot: &Robot) -> Option<u8> {
     let soiled = kind.goods == Goods::Soiled;
     match kind.zone {
         Zone::Service if soiled == (robot.kind == "cleaning") => Some(0),
-        Zone::Circulation => Some(1),
-        Zone::Service => Some(2),
-        Zone::Staff | Zone::Day | Zone::Public | Zone::Outdoor => Some(LAST_RANK),
+        Zone::Service | Zone::Day => Some(1),
+        // a dock takes of its width
+        Zone::Circulation => Some(2),
+        Zone::Staff | Zone::Public | Zone::Outdoor => Some(LAST_RANK),
         Zone::Night => None,
     }
 }
