@@ -312,6 +312,45 @@ fn both_beds_of_a_double_room_find_their_place() {
     });
 }
 
+#[test]
+fn curtains_hang_beside_beds_and_not_over_them() {
+    with_domain("hospital", |domain| {
+        let windows = vec![(0.4, 1.7, 0.9), (2.5, 3.8, 0.9)];
+        let site = Site { doors: vec![3.4], windows, ..Site::new("patient_room_double", 4.25, 6.4) };
+        for seed in 0..4 {
+            let found = site.furnished(domain, seed);
+            let (beds, tracks) = (of(&found, "hospital_bed"), of(&found, "curtain_track"));
+            assert!(tracks.len() >= 2, "{seed}: {} curtains", tracks.len());
+            for (bed, track) in beds.iter().flat_map(|bed| tracks.iter().map(move |track| (bed, track))) {
+                assert!(
+                    !bed.footprint().bounds().overlaps(&track.footprint().bounds()),
+                    "{seed}: {} over a bed",
+                    track.placement_id
+                );
+            }
+        }
+    });
+}
+
+#[test]
+fn a_kitchen_turns_the_corner_with_its_sink_at_the_wall_and_floor_on_both_sides_of_its_hob() {
+    with_domain("residential", |domain| {
+        let site = Site { doors: vec![3.6], windows: vec![(0.6, 2.0, 1.0)], ..Site::new("kitchen", 4.2, 2.7) };
+        for seed in 0..6 {
+            let found = site.furnished(domain, seed);
+            let (sinks, hobs) = (of(&found, "sink_unit"), of(&found, "hob"));
+            let (sink, hob) = (sinks[0], hobs[0]);
+            let r = sink.footprint().bounds();
+            let gap = [r.x0, r.y0, site.width - r.x1, site.depth - r.y1].into_iter().fold(f64::MAX, f64::min);
+            assert!(gap.abs() < 0.01, "{seed}: the sink is {gap:.2} m from the nearest wall");
+            assert!(quarter(sink.pose.yaw_rad) % 2 != quarter(hob.pose.yaw_rad) % 2, "{seed}: no corner");
+            let beside = |p: &&Placement| p.footprint().bounds().grown(0.02).overlaps(&hob.footprint().bounds());
+            let worktop = found.placements.iter().filter(beside).filter(|p| p.object.ends_with("base_cabinet"));
+            assert!(worktop.count() >= 2, "{seed}: no worktop on both sides of the hob");
+        }
+    });
+}
+
 /// Every room type of every domain, at its least and its usual area, holds what makes it that room.
 #[test]
 fn every_room_type_holds_what_it_needs() {

@@ -206,7 +206,7 @@ fn width_of(part: &Part) -> i32 {
 /// and are largest first, then with fewer members on the floor, last of all the smallest with required members only.
 /// Before a size that keeps fewer rules than the picked one, members that one can do without go.
 ///
-/// Where advice asks for more free floor than the domain, whole forms with that come before all others.
+/// Where advice asks for more free floor than the domain, whole forms with that come before all others that keep as many rules.
 pub(super) fn variants<'a>(domain: &'a Domain, item: &'a str, forms: &Forms) -> Vec<Unit<'a>> {
     let group = domain.group(item);
     let Some(anchor) = domain.anchor(item) else {
@@ -231,18 +231,18 @@ pub(super) fn variants<'a>(domain: &'a Domain, item: &'a str, forms: &Forms) -> 
     let (lawful, lesser): (Vec<usize>, Vec<usize>) =
         [picked].into_iter().chain(order).partition(|size| breach(*size) <= breach(picked));
     let full = |size: usize| plan.build(size, sizes, usize::MAX);
-    let mut whole: Vec<Unit> = lawful.into_iter().map(full).collect();
-    if !lesser.is_empty() {
-        whole.extend((0..optional).rev().map(|keep| plan.build(picked, sizes, keep)));
-        whole.extend(lesser.into_iter().map(full));
+    let fewer = (0..optional).rev().filter(|_| !lesser.is_empty());
+    let fewer: Vec<Unit> = fewer.map(|keep| plan.build(picked, sizes, keep)).collect();
+    let whole: Vec<Unit> = lawful.into_iter().map(full).chain(fewer).collect();
+    for whole in [whole, lesser.into_iter().map(full).collect()] {
+        if forms.advised {
+            whole.iter().filter_map(|unit| advised(unit, forms, true)).for_each(&mut add);
+            // the room for a wheelchair at one side goes before the rest
+            whole.iter().filter_map(|unit| advised(unit, forms, false)).for_each(&mut add);
+        }
+        whole.iter().filter_map(with_elbow_room).for_each(&mut add);
+        whole.into_iter().for_each(&mut add);
     }
-    if forms.advised {
-        whole.iter().filter_map(|unit| advised(unit, forms, true)).for_each(&mut add);
-        // the room for a wheelchair at one side goes before the rest
-        whole.iter().filter_map(|unit| advised(unit, forms, false)).for_each(&mut add);
-    }
-    whole.iter().filter_map(with_elbow_room).for_each(&mut add);
-    whole.into_iter().for_each(&mut add);
     if group.is_some() {
         let smallest_size = |o: &ObjectType| {
             let area = |i: &usize| o.sizes_m[*i][0] * o.sizes_m[*i][1];

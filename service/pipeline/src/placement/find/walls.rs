@@ -262,8 +262,8 @@ impl<'a> Find<'_, 'a, '_> {
     pub(super) fn is_in_corner(&self, p: &Placed<'a>) -> bool {
         let own = p.world(&p.unit.bbox).turned((4 - p.q) % 4);
         let near = |a: i32, b: i32| (a - b).abs() < IN_CORNER;
-        let behind = self.state.space.walls.iter().filter(|w| w.q == p.q && near(own.x0, w.u));
-        behind.into_iter().any(|w| w.corner0 && near(own.y0, w.v0) || w.corner1 && near(own.y1, w.v1))
+        let mut behind = self.state.space.walls.iter().filter(|w| w.q == p.q && near(own.x0, w.u));
+        behind.any(|w| w.corner0 && near(own.y0, w.v0) || w.corner1 && near(own.y1, w.v1))
     }
 
     fn is_door_edge(&self, wall: usize, v: i32) -> bool {
