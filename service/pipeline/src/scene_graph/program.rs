@@ -325,7 +325,8 @@ impl<'r, 'a> Build<'r, 'a> {
         // beds beyond the first ones have their bathroom or are not there
         let bathroom = |w: &&String| {
             let kind = self.reading.domain.room_type_or_generic(w);
-            self.reading.wet.is_bathroom(kind) && self.may_grow(w) && !self.waits_for_host(w)
+            let hosts = self.rooms.iter().filter(|r| kind.hosts.contains(&r.room_type)).count();
+            self.reading.wet.is_bathroom(kind) && self.may_grow(w) && self.count(w) <= hosts
         };
         let bathed = self.count(&entry.room_type) > 0 && !is_dwelling(self.program);
         let baths = if bathed { entry.with.iter().filter(bathroom).count() } else { 0 };

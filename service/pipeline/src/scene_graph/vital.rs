@@ -243,15 +243,20 @@ fn bathrooms<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>) -> Option<
         rooms.iter().filter(|r| r.kind.access != Access::Host && reading.wet.is_bathroom(r.kind)).count() as u32
     };
     let needed = unserved.div_ceil(BEDS_TO_A_BATHROOM);
-    let named =
-        reading.wishes.wishes.iter().any(|w| domain.room_type(&w.room_type).is_some_and(|k| reading.wet.is_bathroom(k)));
+    let named = reading
+        .wishes
+        .wishes
+        .iter()
+        .any(|w| domain.room_type(&w.room_type).is_some_and(|k| reading.wet.is_bathroom(k)));
     let fits = |k: &&RoomType| k.access != Access::Host && k.zone == Zone::Service && reading.wet.is_bathroom(k);
     let kind = domain.room_types.iter().filter(fits).min_by(|a, b| a.area_m2.target.total_cmp(&b.area_m2.target))?;
     if named || reading.wishes.forbidden.contains(&kind.id) || reading.closed && !reading.may_join {
         return None;
     }
     let plain: Vec<usize> = (0..rooms.len())
-        .filter(|&i| reading.wet.has_toilet(rooms[i].kind) && !reading.wet.is_bathroom(rooms[i].kind) && !rooms[i].requested)
+        .filter(|&i| {
+            reading.wet.has_toilet(rooms[i].kind) && !reading.wet.is_bathroom(rooms[i].kind) && !rooms[i].requested
+        })
         .collect();
     while shared(rooms) < needed {
         if put(reading, rooms, Planned::new(&kind.id, kind)) {
@@ -292,9 +297,11 @@ pub(super) fn accompany<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>)
     }
     for id in kinds {
         for guest in guests(reading, &id) {
+            // "single and double rooms, each with its own bathroom" tells the number of none of them
+            let each = reading.wishes.pairs.iter().any(|p| p.belongs && p.a == guest.id);
             let unwanted = reading.wishes.forbidden.contains(&guest.id)
-                || reading.wishes.wishes.iter().any(|w| w.room_type == guest.id)
-                || bathed && wet(&guest.id);
+                || !each && reading.wishes.wishes.iter().any(|w| w.room_type == guest.id)
+                || bathed && !each && wet(&guest.id);
             if unwanted {
                 continue;
             }
