@@ -112,7 +112,7 @@ pub(super) fn recognize(
         }
         pick => (pick, list_from),
     };
-    let votes = || room_votes(tokens, registry, &domains, languages, places);
+    let votes = || room_votes(tokens, registry, &domains, languages, spoken, places);
     let Some((span, meaning)) = pick else {
         let mut votes = votes();
         // "two offices": rooms here, but a word for that building all the same
@@ -390,8 +390,12 @@ fn room_votes(
     registry: &Registry,
     domains: &[&Domain],
     languages: &[&str],
+    spoken: &[&Spoken],
     taken: &[Span],
 ) -> Vec<usize> {
+    // "3 Zimmer, Küche, Bad": a word for rooms in total is no guest room
+    let total = |i: usize, end: usize| spoken.iter().any(|s| s.tag_at(tokens, i, Tag::Total) == Some(end));
+
     domains
         .iter()
         .map(|domain| {
@@ -400,7 +404,7 @@ fn room_votes(
             let mut i = 0;
             while i < tokens.len() {
                 let end = vocabularies.iter().filter_map(|v| v.longest_at(tokens, i)).map(|f| f.0).max();
-                let end = end.filter(|_| !taken.iter().any(|s| s.contains(i)));
+                let end = end.filter(|e| !taken.iter().any(|s| s.contains(i)) && !total(i, *e));
                 votes += end.map_or(0, |e| e - i);
                 i = end.unwrap_or(i + 1);
             }

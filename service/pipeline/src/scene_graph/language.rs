@@ -1,7 +1,7 @@
 //! Which language a prompt is in.
 
 use super::text::{Kind, Token};
-use super::words::{Tag, words};
+use super::words::words;
 
 /// Letters of a script that tell a language.
 const LEAST_LETTERS: usize = 2;
@@ -45,11 +45,7 @@ pub(super) fn detect(tokens: &[Token], known: impl Fn(&str) -> usize) -> &'stati
             if token.kind != Kind::Word {
                 continue;
             }
-            let known = spoken
-                .words
-                .phrases
-                .get(&Tag::Detect)
-                .is_some_and(|words| words.iter().any(|w| super::text::fold(w) == token.text));
+            let known = spoken.detect.contains(&token.text);
             let number = spoken.numbers.contains_key(&token.text);
             let phrase = spoken.tags.longest_at(tokens, i).is_some();
             score += if known { 1.0 } else { 0.0 } + if number { 0.7 } else { 0.0 } + if phrase { 0.3 } else { 0.0 };
@@ -74,10 +70,7 @@ pub(super) fn unread(prompt: &str, tokens: &[Token], language: &str, known: usiz
         return Some(name);
     }
     let own = words().languages.get(language)?;
-    let is_own = |t: &Token| {
-        own.numbers.contains_key(&t.text)
-            || own.words.phrases.get(&Tag::Detect).is_some_and(|w| w.iter().any(|w| super::text::fold(w) == t.text))
-    };
+    let is_own = |t: &Token| own.numbers.contains_key(&t.text) || own.detect.contains(&t.text);
     let latin: Vec<&Token> = tokens.iter().filter(|t| t.kind == Kind::Word).collect();
     let ours = latin.iter().filter(|t| is_own(t)).count().max(known);
     let counts = words().unread_languages.iter().map(|(name, words)| {

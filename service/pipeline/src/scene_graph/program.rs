@@ -325,7 +325,8 @@ impl<'r, 'a> Build<'r, 'a> {
         // beds beyond the first ones have their bathroom or are not there
         let bathroom = |w: &&String| {
             let kind = self.reading.domain.room_type_or_generic(w);
-            self.reading.wet.is_bathroom(kind) && self.may_grow(w) && !self.waits_for_host(w)
+            let hosts = self.rooms.iter().filter(|r| kind.hosts.contains(&r.room_type)).count();
+            self.reading.wet.is_bathroom(kind) && self.may_grow(w) && self.count(w) <= hosts
         };
         let bathed = self.count(&entry.room_type) > 0 && !is_dwelling(self.program);
         let baths = if bathed { entry.with.iter().filter(bathroom).count() } else { 0 };
@@ -645,7 +646,10 @@ fn hang_on_hosts(reading: &mut Reading, rooms: &mut [Planned]) {
                 (elsewhere, guests(h, rooms), rank(&rooms[h]), usize::from(rooms[h].host.is_some()), h)
             })
         };
-        let host = candidates(&fits).or_else(|| candidates(&by_type));
+        // en suites beyond those of the rooms that they are told of go to the others that have none
+        let told = candidates(&fits);
+        let bare = |h: &usize| !hosted || guests(*h, rooms) == 0;
+        let host = told.filter(bare).or_else(|| candidates(&by_type)).or(told);
         // a room the prompt gives to one host only ("bedroom with its own bath and a second bath")
         let taken = !hosted && host.is_some_and(|h| guests(h, rooms) > 0);
         if taken {

@@ -501,7 +501,8 @@ impl People {
         // "for 40 people": those who live in a dwelling, work where the program seats staff, visit anywhere else
         let lives = domain.room_type(&words().dwelling.bedroom).is_some()
             && program.rooms.iter().any(|r| r.room_type == words().dwelling.bedroom);
-        let works = program.rooms.iter().any(|r| r.area_per_occupant_m2.is_some() || r.occupants_per_room.is_some());
+        let seats = |r: &ProgramRoom| r.area_per_occupant_m2.is_some() || r.occupants_per_room.is_some();
+        let works = program.rooms.iter().any(|r| r.occupants == Occupants::Staff && seats(r));
         match people {
             Some(n) if lives => residents = residents.or(Some(n)),
             Some(n) if works => occupancy.staff = occupancy.staff.or(Some(n)),

@@ -297,9 +297,11 @@ pub(super) fn accompany<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>)
     }
     for id in kinds {
         for guest in guests(reading, &id) {
+            // "single and double rooms, each with its own bathroom" tells the number of none of them
+            let each = reading.wishes.pairs.iter().any(|p| p.belongs && p.a == guest.id);
             let unwanted = reading.wishes.forbidden.contains(&guest.id)
-                || reading.wishes.wishes.iter().any(|w| w.room_type == guest.id)
-                || bathed && wet(&guest.id);
+                || !each && reading.wishes.wishes.iter().any(|w| w.room_type == guest.id)
+                || bathed && !each && wet(&guest.id);
             if unwanted {
                 continue;
             }

@@ -213,6 +213,8 @@ pub(super) struct Spoken {
     pub levels: Phrases<Where>,
     pub storey_counts: Phrases<f64>,
     pub households: Phrases<f64>,
+    /// Usual words that tell the language, folded.
+    pub detect: BTreeSet<String>,
     /// Number words, folded.
     pub numbers: BTreeMap<String, f64>,
     pub multipliers: BTreeMap<String, f64>,
@@ -276,7 +278,8 @@ fn spoken(code: &str, words: Language) -> Spoken {
     words.storey_counts.iter().for_each(|(phrase, value)| storey_counts.insert(phrase, *value));
     let mut households = Phrases::new("");
     words.households.iter().for_each(|(phrase, value)| households.insert(phrase, *value));
-    Spoken { numbers, multipliers, words, tags, quantities, levels, storey_counts, households }
+    let detect = words.phrases.get(&Tag::Detect).into_iter().flatten().map(|w| super::text::fold(w)).collect();
+    Spoken { detect, numbers, multipliers, words, tags, quantities, levels, storey_counts, households }
 }
 
 /// Returns the further forms of a word for robots: English plurals, German ones of the third case and of the second.
