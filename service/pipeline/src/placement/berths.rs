@@ -10,7 +10,7 @@ use d3dgen_model::placements::{Placement, Placements};
 use d3dgen_model::scene_graph::SceneGraph;
 
 use super::{Wanted, furnish_room};
-use crate::scene_graph::dock_rank;
+use crate::scene_graph::{dock_rank, most_docks};
 use crate::{Error, Stop};
 
 /// Least distance of a dock from a way out of the building, m.
@@ -47,6 +47,10 @@ pub(super) fn add_missing(
     while standing(out) < robots {
         let found = rooms.iter().enumerate().find_map(|(at, (_, room))| {
             let here: Vec<&Placement> = out.placements.iter().filter(|p| p.room_id == room.room_id).collect();
+            let own = here.iter().filter(|p| docks.contains(&p.object.as_str())).count();
+            if own >= most_docks(room.net_area_m2) as usize {
+                return None;
+            }
             let made = furnish_room(graph, storey, room, (domain, limits), &here, Wanted::Only(dock), stop).ok()?.0;
             let more = made.into_iter().find(|p| !here.iter().any(|h| h.placement_id == p.placement_id))?;
             is_free(graph, storey, room, (&more, dock), &here).then_some((at, more))

@@ -22,6 +22,8 @@ const TIGHT_M: f64 = 1.6;
 const SWING_M: f64 = 1.0;
 /// How far a chair is pushed back when one gets up, m.
 const CHAIR_BACK_M: f64 = 0.3;
+/// How far around a point spots are looked for at first, m.
+const FIRST_REACH_M: f64 = 0.8;
 /// Spots of a room that are looked at exactly, at most.
 const MOST_TOUCHED: usize = 400;
 /// Play around a spot that is enough, m, and how much farther off one may be that has it than one that has none.
@@ -43,8 +45,6 @@ pub(super) struct Floor<'a> {
     /// Height of the highest robot, m.
     pub height: f64,
     pub occupancy: Occupancy,
-    /// Cells where the disc can be that are connected to most of the others.
-    pub main: Bitmap,
     doors: OnceCell<Doors<'a>>,
     obstacles: OnceCell<Obstacles>,
 }
@@ -126,7 +126,7 @@ impl<'a> Floor<'a> {
         };
         let rooms = plan.rooms.iter().map(&mut room).collect();
         let (doors, obstacles) = (OnceCell::new(), OnceCell::new());
-        Self { rooms, plan, placements, domain, radius, height, occupancy, main, doors, obstacles }
+        Self { rooms, plan, placements, domain, radius, height, occupancy, doors, obstacles }
     }
 
     /// Returns the reachable spot of a room nearest to a point, a little farther off rather than in a doorway or against
@@ -137,33 +137,50 @@ impl<'a> Floor<'a> {
 
     /// Returns the same with how far off it is, m, with what is added for a bad place.
     pub fn best_spot(&self, room: &Room, p: Point) -> Option<(f64, Point)> {
-        let loss = |((i, j), spot): ((usize, usize), Point)| {
-            let farther = match (room.undisturbed.get(i, j), room.roomy.get(i, j)) {
-                (true, _) => 0.0,
-                (_, true) => SWING_M,
-                _ => TIGHT_M,
-            };
-            (spot.distance(p) + farther, spot)
-        };
-        let mut left: Vec<(f64, Point)> = self.cells(room).map(loss).collect();
-        let mut looked: Vec<(f64, Point)> = Vec::new();
-        for _ in 0..MOST_TOUCHED {
-            // ties go to the southern, then the western spot
-            let Some(best) = (0..left.len()).min_by(|a, b| left[*a].0.total_cmp(&left[*b].0)) else { break };
-            let least = looked.iter().copied().min_by(|a, b| a.0.total_cmp(&b.0));
-            if least.is_some_and(|known| known.0 <= left[best].0) {
-                return least;
+        let bounds = room.plan.net_polygon.bounds();
+        let mut reach = FIRST_REACH_M;
+        loop {
+            let near = Rect { x0: p.x - reach, y0: p.y - reach, x1: p.x + reach, y1: p.y + reach };
+            let best = self.best_spot_in(room, p, &near);
+            // what lies farther away is no better than its distance
+            if best.is_some_and(|(off, _)| off <= reach) || near.contains(&bounds) {
+                return best;
             }
-            let (off, spot) = left.remove(best);
-            let play = self.obstacles().distance(spot, self.radius + PLAY_M) - self.radius;
-            if play >= ROUNDING_M {
-                looked.push((off + CLOSE_M * (1.0 - play / PLAY_M).max(0.0), spot));
+            reach *= 2.0;
+        }
+    }
+
+    /// Returns the best of the spots in a rectangle.
+    fn best_spot_in(&self, room: &Room, p: Point, near: &Rect) -> Option<(f64, Point)> {
+        let mut left: Vec<(f64, Point)> = Vec::new();
+        let (i0, i1, j0, j1) = self.occupancy.frame.span(near);
+        let within = |v: i64, corner: i64, n: usize| (v - corner).clamp(0, n as i64) as usize;
+        for j in within(j0, room.corner.1, room.spots.ny())..within(j1, room.corner.1, room.spots.ny()) {
+            for i in within(i0, room.corner.0, room.spots.nx())..within(i1, room.corner.0, room.spots.nx()) {
+                if room.spots.get(i, j) {
+                    let farther = match (room.undisturbed.get(i, j), room.roomy.get(i, j)) {
+                        (true, _) => 0.0,
+                        (_, true) => SWING_M,
+                        _ => TIGHT_M,
+                    };
+                    let spot = self.occupancy.frame.center(i + room.corner.0 as usize, j + room.corner.1 as usize);
+                    left.push((spot.distance(p) + farther, spot));
+                }
             }
         }
-        looked
-            .into_iter()
-            .min_by(|a, b| a.0.total_cmp(&b.0))
-            .or_else(|| self.cells(room).map(loss).min_by(|a, b| a.0.total_cmp(&b.0)))
+        let any = nearest(&left).map(|k| left[k]);
+        let mut looked: Option<(f64, Point)> = None;
+        for _ in 0..MOST_TOUCHED {
+            let Some(k) = nearest(&left).filter(|&k| looked.is_none_or(|known| left[k].0 < known.0)) else { break };
+            let (off, spot) = left.remove(k);
+            let play = self.obstacles().distance(spot, self.radius + PLAY_M) - self.radius;
+            let off = off + CLOSE_M * (1.0 - play / PLAY_M).max(0.0);
+            if play >= ROUNDING_M && looked.is_none_or(|known| off < known.0) {
+                looked = Some((off, spot));
+            }
+        }
+        // at worst one that touches something by less than a cell
+        looked.or(any)
     }
 
     /// Returns the reachable spot of a room by its number in a list of them, wrapped around.
@@ -232,6 +249,11 @@ impl<'a> Floor<'a> {
         let (i0, j0) = (room.corner.0 as usize, room.corner.1 as usize);
         room.spots.cells().map(move |(i, j)| ((i, j), self.occupancy.frame.center(i0 + i, j0 + j)))
     }
+}
+
+/// Returns which of some spots is the best; of equal ones the southernmost, then the westernmost.
+fn nearest(spots: &[(f64, Point)]) -> Option<usize> {
+    (0..spots.len()).min_by(|a, b| spots[*a].0.total_cmp(&spots[*b].0))
 }
 
 impl Room<'_> {

@@ -18,8 +18,10 @@ const PER_ROBOT_M2: f64 = 2.5;
 const MOST_ROBOTS: u32 = 4;
 /// Depths of an area that are tried, m.
 const DEPTHS_M: [f64; 2] = [1.0, 1.6];
-/// The least area, m: a pallet of 1.2 m by 0.8 m (EN 13698-1).
+/// Less, m: a pallet of 1.2 m by 0.8 m (EN 13698-1).
 const PALLET_M: [f64; 2] = [1.2, 0.8];
+/// What is left for goods in small stores, m: a roll container of 0.72 m by 0.81 m (EN 12674-1).
+const ROLL_M: [f64; 2] = [0.85, 0.75];
 /// Floor from which on a room for visitors has a place for goods too, m^2.
 const LARGE_ROOM_M2: f64 = 25.0;
 /// Floor before a door that stays free, m.
@@ -68,7 +70,8 @@ fn of_unit(floor: &Floor, graph: &SceneGraph, rois: &[Roi], (unit, robots): (Opt
         DEPTHS_M.map(|depth| ([area / depth, depth], format!("{area} m2 for {n} robot(s)")))
     });
     let pallet = (PALLET_M, format!("a pallet of {} m x {} m", PALLET_M[0], PALLET_M[1]));
-    for (size, what) in whole.chain([pallet]) {
+    let roll = (ROLL_M, format!("a roll container on {} m x {} m", ROLL_M[0], ROLL_M[1]));
+    for (size, what) in whole.chain([pallet, roll]) {
         for (room, yard) in &yards {
             let Some(rect) = yard.place(floor, room, size) else { continue };
             let id = &room.plan.room_id;

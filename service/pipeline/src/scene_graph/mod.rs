@@ -48,7 +48,7 @@ use self::program::Planned;
 pub(crate) use self::proposed::suits;
 pub use self::proposed::{BY_PROPOSAL, Draft, DraftEdge, DraftRoom, Settled, propose};
 use self::reading::Reading;
-pub(crate) use self::rooms::{dock_rank, wished_assets};
+pub(crate) use self::rooms::{dock_rank, most_docks, wished_assets};
 use crate::Error;
 
 /// Reason of the edges that a prompt asks for.

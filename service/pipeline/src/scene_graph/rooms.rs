@@ -300,8 +300,8 @@ pub(super) fn add_docks(domain: &Domain, robots: &[Robot], docked: &[String], ro
                 let charges =
                     kind.robot.contains(&RobotUse::Charging) && !kind.furnishing.iter().any(|f| is_dock(&f.item));
                 let rank = dock_rank(kind, robot)?;
-                let most = ((room.target_area_m2 / DOCK_ROOM_M2) as u32).clamp(1, MOST_DOCKS);
-                (charges && wished(room) < most).then_some((room.level != home, rank == LAST_RANK, wished(room), rank))
+                let most = most_docks(room.target_area_m2);
+                (charges && wished(room) < most).then_some((room.level != home, rank >= LAST_RANK, wished(room), rank))
             };
             let all = rooms.iter().enumerate().filter_map(|(i, room)| Some((suits(room)?, i)));
             let Some((_, best)) = all.min() else { return };
@@ -310,21 +310,30 @@ pub(super) fn add_docks(domain: &Domain, robots: &[Robot], docked: &[String], ro
     }
 }
 
-/// Rooms for visitors and work.
-const LAST_RANK: u8 = 3;
+/// From here on rooms for staff, work and visitors.
+const LAST_RANK: u8 = 4;
 /// Floor of a room for each dock in it, m^2, and most docks in a room that is there for something else.
 const DOCK_ROOM_M2: f64 = 8.0;
 const MOST_DOCKS: u32 = 3;
 
-/// Returns how well a room that may have a dock suits a robot, 0 best; `None` for rooms to sleep in.
+/// Returns how many docks a room of this area takes that is there for something else.
+pub(crate) fn most_docks(area_m2: f64) -> u32 {
+    ((area_m2 / DOCK_ROOM_M2) as u32).clamp(1, MOST_DOCKS)
+}
+
+/// Returns how well a room that may have a dock suits a robot, 0 best: stores, rooms to work in, corridors, at last where people wait; robots
+/// that clean charge where soiled things are and no other ones do. `None` for rooms to sleep in.
 pub(crate) fn dock_rank(kind: &RoomType, robot: &Robot) -> Option<u8> {
-    let soiled = kind.goods == Goods::Soiled;
-    match kind.zone {
-        Zone::Service if soiled == (robot.kind == "cleaning") => Some(0),
-        Zone::Service | Zone::Day => Some(1),
+    let cleans = robot.kind == "cleaning";
+    match (kind.zone, kind.goods) {
+        (Zone::Service, Goods::Soiled) if cleans => Some(0),
+        (Zone::Service, Goods::Usual) => Some(if cleans { 1 } else { 0 }),
+        (Zone::Day, _) => Some(2),
         // a dock takes of its width
-        Zone::Circulation => Some(2),
-        Zone::Staff | Zone::Public | Zone::Outdoor => Some(LAST_RANK),
-        Zone::Night => None,
+        (Zone::Circulation, _) => Some(3),
+        (Zone::Service, _) => Some(LAST_RANK),
+        (Zone::Staff, _) => Some(LAST_RANK + 1),
+        (Zone::Public | Zone::Outdoor, _) => Some(LAST_RANK + 2),
+        (Zone::Night, _) => None,
     }
 }

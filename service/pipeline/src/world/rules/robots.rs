@@ -12,7 +12,7 @@ use crate::world::context::{Context, LEAST_RADIUS_M, Object, Room, common_area};
 
 /// A region may reach beyond its room by rounding, m^2.
 const REGION_SLACK_M2: f64 = 0.01;
-/// How far the width of a route may be from what it says, m.
+/// How much wider than it is a route may be called, m.
 const WIDTH_M: f64 = 0.01;
 /// Radius of a person standing, m.
 const PERSON_RADIUS_M: f64 = 0.25;
@@ -99,7 +99,7 @@ fn is_driven(obstacles: &Obstacles, task: &RobotTask, route: &Route, out: &mut F
     if clear < radius - TOLERANCE_M {
         let message = format!("its route there passes {clear:.3} m from something, needs {radius:.3} m");
         out.add_figure(name, message, clear, radius, "m");
-    } else if (2.0 * clear - route.clear_width_m).abs() > WIDTH_M {
+    } else if route.clear_width_m > 2.0 * clear + WIDTH_M {
         let message = format!("its route there is {:.2} m wide and says {:.2} m", 2.0 * clear, route.clear_width_m);
         out.add_figure(name, message, route.clear_width_m, 2.0 * clear, "m");
     }
