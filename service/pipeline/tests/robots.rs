@@ -151,7 +151,8 @@ fn doors_are_crossed_in_their_middle() {
             }
         }
     }
-    assert!(crossed > 30, "{crossed} doors are crossed");
+    // enough of them for that to say something
+    assert!(crossed > 20, "{crossed} doors are crossed");
 }
 
 #[test]
