@@ -132,7 +132,7 @@ fn a_toilet_for_wheelchairs_has_a_room_of_its_own() {
         }
     }
     let mut two = Vec::new();
-    for world in worlds("office with 8 rooms", 12) {
+    for world in worlds("office with 14 rooms", 6) {
         let cubicles = |room: &PlanRoom| standing(&world, room).filter(|p| p.object == "wc_cubicle").count();
         two.extend(rooms(&world, "toilet").map(|r| cubicles(r) >= 2));
     }

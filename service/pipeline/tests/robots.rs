@@ -159,7 +159,7 @@ fn doors_are_crossed_in_their_middle() {
 fn docks_stand_out_of_the_way_of_visitors_and_goods_go_to_stores_and_corridors() {
     let registry = Registry::builtin();
     let prompts = [
-        "hospital with 10 rooms, with reception and waiting area, for a delivery robot",
+        "hospital with 12 rooms, with reception, waiting area and equipment store, for a delivery robot",
         "hospital ward with 6 patient rooms and a nurse station, for a cleaning robot",
         "office with 8 rooms and a reception, two delivery robots",
     ];

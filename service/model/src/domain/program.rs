@@ -34,7 +34,7 @@ pub struct Program {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Units {
-    /// Rooms of a building from which on it is made of units.
+    /// Rooms of a building from which on it is made of units; those entered from another room are not counted.
     pub from_rooms: u32,
     /// Rooms of a unit, about.
     pub rooms: u32,

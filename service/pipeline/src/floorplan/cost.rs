@@ -26,6 +26,8 @@ const HALL_M: f64 = 9.0;
 const TUNNEL: f64 = 0.02;
 const DARK_HALL_M: f64 = 6.0;
 const DARK_HALL: f64 = 0.03;
+/// What a meter of a corridor that is too long for its one way out counts as share of circulation.
+const ONE_WAY: f64 = 0.1;
 /// Number of soft terms.
 const COUNT: usize = 12;
 /// A weight for each soft term.
@@ -457,6 +459,7 @@ impl<'b> Judge<'b> {
             // From a fifth on, circulation is what a reviewer objects to first.
             let share = rooms[spine].gross_m2 / total;
             score.soft[4] += (share - 0.10).max(0.0) + 5.0 * (share - 0.20).max(0.0);
+            score.soft[4] += ONE_WAY * layout.one_way;
             if home {
                 let longest = layout.boxes.iter().filter(|(r, _)| *r == spine);
                 let longest = longest.map(|(_, b)| meters(b.width().max(b.height()))).fold(0.0, f64::max);

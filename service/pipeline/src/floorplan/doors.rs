@@ -47,7 +47,7 @@ const IN_VIEW: f64 = 1.3;
 const VIEW_M: f64 = 3.0;
 const SEEN_M: f64 = 0.2;
 /// What it costs that a home's entrance opens outwards.
-const OUTWARD: f64 = 0.5;
+const OUTWARD: f64 = 1.0;
 
 /// The plan so far, as door placing sees it.
 pub(super) struct Site<'a> {

@@ -194,21 +194,25 @@ fn schemes(brief: &Brief, domain: &Domain, rng: &mut Stream) -> Vec<Scheme> {
     // a storey with one core is one body, whatever its size
     let most = if brief.core.is_some() { compose::LARGE - 1 } else { usize::MAX };
     let rooms = brief.rooms.len().min(most);
+    // en suites and the like make no corridor longer
+    let along = brief.rooms.iter().filter(|r| r.host.is_none()).count().min(most);
     if brief.hub {
         return vec![Scheme::Straight];
     }
     let units = brief.rooms.iter().any(|r| r.unit.is_some_and(|u| u > 0));
     let suits = |s: &Scheme| match s {
         _ if units && *s != Scheme::Comb => false,
-        Scheme::Straight => rooms <= LONGEST_BAR,
-        Scheme::Capped if brief.second_exit && !brief.upper => (3..=MOST_CAPPED).contains(&rooms),
-        Scheme::Capped => (3..=LONGEST_BAR).contains(&rooms),
-        Scheme::Angle => (8..=MOST_WHOLE).contains(&rooms),
-        Scheme::Racetrack => (14..=MOST_WHOLE).contains(&rooms),
-        Scheme::Comb => rooms > MOST_WHOLE || units,
+        Scheme::Straight => along <= LONGEST_BAR,
+        Scheme::Capped => rooms >= 3 && along <= LONGEST_BAR,
+        Scheme::Angle => rooms >= 8 && along <= MOST_WHOLE,
+        Scheme::Racetrack => rooms >= 14 && along <= MOST_WHOLE,
+        Scheme::Comb => along > MOST_WHOLE || units,
     };
     let mut list: Vec<Scheme> = domain.circulation.schemes.iter().copied().filter(suits).collect();
     rng.shuffle(&mut list);
+    if brief.second_exit && !brief.upper && rooms > MOST_CAPPED {
+        list.sort_by_key(|s| *s == Scheme::Capped);
+    }
     if let Some(form) = brief.form {
         let (asked, [least, most]) = scheme_of(form);
         if (least..=most).contains(&rooms) {

@@ -30,6 +30,8 @@ pub(super) struct Layout {
     pub misfit: f64,
     /// Total length of notches, m.
     pub notch: f64,
+    /// How much too long a corridor with one way out is, m.
+    pub one_way: f64,
     /// Where the core is: its corner at the corridor, along the corridor, away from it.
     pub core: Option<Frame>,
     /// How the wings stand, in a building of wings.
@@ -122,7 +124,7 @@ impl Task<'_, '_> {
 /// Writes the rectangles of a genome to `layout`.
 pub(super) fn realize(brief: &Brief, genome: &Genome, scratch: &mut Scratch, layout: &mut Layout) {
     layout.boxes.clear();
-    (layout.misfit, layout.notch, layout.core) = (0.0, 0.0, None);
+    (layout.misfit, layout.notch, layout.one_way, layout.core) = (0.0, 0.0, 0.0, None);
     scratch.spans.clear();
     let Some(spine) = brief.spine else { return };
     let mut task = Task { brief, genome, spine, scratch, misfit: 0.0, layout };
@@ -159,7 +161,7 @@ fn straight(task: &mut Task<'_, '_>) {
     len = len.max(door_need(brief.entrance_width));
     if brief.second_exit && !brief.upper && caps.iter().any(Option::is_some) {
         // a room at its end leaves a corridor one way out
-        task.misfit += (meters(len) - ONE_WAY_M).max(0.0);
+        task.layout.one_way = (meters(len) - ONE_WAY_M).max(0.0);
     }
     task.spine_box(Cellbox::new(0, 0, len, w));
     if brief.stem {

@@ -14,6 +14,7 @@ use super::reading::refused;
 use super::rooms::wished_assets;
 use super::text::{Phrases, Token, fold, tokens};
 use super::umlauts;
+use super::vital::Wet;
 use super::wishes::CHARGING;
 use super::words::words;
 use crate::Error;
@@ -298,14 +299,18 @@ fn guess<'a>(labels: &[Label], titles: &[String], registry: &'a Registry) -> Res
 
 /// Returns how alike room types are to the first rooms of the program that is most like them, 0 to 1.
 fn like_program(domain: &Domain, types: &BTreeSet<&str>) -> f64 {
+    // every building has toilets, and plans seldom say for whom
+    let wet = Wet::of(domain);
+    let tells = |id: &str| domain.room_type(id).is_none_or(|k| !wet.has_toilet(k) || wet.is_bathroom(k));
+    let types: BTreeSet<&str> = types.iter().copied().filter(|id| tells(id)).collect();
     let alike = |program: &d3dgen_model::domain::Program| {
         let mut rooms: BTreeSet<&str> = BTreeSet::new();
-        for entry in &program.rooms {
+        for entry in program.rooms.iter().filter(|e| tells(&e.room_type)) {
             if rooms.len() < types.len() {
                 rooms.insert(&entry.room_type);
             }
         }
-        let both = rooms.intersection(types).count();
+        let both = rooms.intersection(&types).count();
         2.0 * both as f64 / (rooms.len() + types.len()).max(1) as f64
     };
     domain.programs.iter().map(alike).fold(0.0, f64::max)

@@ -1,6 +1,6 @@
 //! Large buildings are made of units (wards, departments), each with what it needs at hand, as programs of the domain say.
 
-use d3dgen_model::domain::{Program, Units};
+use d3dgen_model::domain::{Access, Program, Units};
 
 use super::places::note;
 use super::program::{Planned, fill_unit, is_counted};
@@ -17,7 +17,9 @@ struct Unit<'a> {
 /// or counts stay, the rest is what each unit's own program has. The rooms of a unit follow each other.
 pub(super) fn divide<'a>(reading: &mut Reading<'a>, rooms: Vec<Planned<'a>>) -> Vec<Planned<'a>> {
     let program = reading.program;
-    let large = |u: &&Units| !reading.closed && rooms.len() >= u.from_rooms as usize;
+    // twenty patient rooms with their en suites are one ward
+    let along = rooms.iter().filter(|r| r.kind.access != Access::Host).count();
+    let large = |u: &&Units| !reading.closed && along >= u.from_rooms as usize;
     let Some(rules) = program.units.as_ref().filter(large) else { return rooms };
     let count = (rooms.len() as f64 / f64::from(rules.rooms)).round().max(2.0) as usize;
     let later = rules.programs.iter().filter_map(|id| reading.domain.program(id)).cycle();

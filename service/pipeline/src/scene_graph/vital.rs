@@ -357,9 +357,17 @@ fn put<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>, room: Planned<'a
             true
         }
         (Some(_), _) => {
-            let hosts = |i: usize| rooms[i].kind.access == Access::Host;
-            let spare =
-                (0..rooms.len()).rev().find(|&i| !rooms[i].requested && !hosts(i) && !is_vital(reading, rooms, i));
+            // what one enters another room through stays, as that does
+            let through = |i: usize| {
+                let larger =
+                    |r: &Planned| r.kind.access == Access::Host && r.kind.area_m2.target > rooms[i].kind.area_m2.target;
+                rooms.iter().any(|r| larger(r) && r.kind.hosts.contains(&rooms[i].room_type))
+            };
+            let hosts = |i: usize| rooms[i].kind.access == Access::Host || through(i);
+            let spare = (0..rooms.len()).rev().find(|&i| {
+                let alike = rooms[i].room_type == room.room_type;
+                !rooms[i].requested && !hosts(i) && !alike && !is_vital(reading, rooms, i)
+            });
             if let Some(i) = spare {
                 rooms[i] = room;
             }

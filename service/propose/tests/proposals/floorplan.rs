@@ -47,7 +47,7 @@ fn a_plan_with_gaps_and_overlaps_is_mended() {
         let found = with_answer(prompt, Stage::Floorplan, &json!(answer));
         let record = only(&found);
         let (_, like) = shares(record.counts);
-        assert!(record.outcome == Outcome::Used && like >= 0.5, "{prompt}: {} {:#?}", record.note, record.items);
+        assert!(record.outcome == Outcome::Used && like >= 0.35, "{prompt}: {} {:#?}", record.note, record.items);
         assert_eq!(record.counts.added, 1, "{prompt}");
     }
 }
