@@ -176,7 +176,11 @@ fn docks_stand_out_of_the_way_of_visitors_and_goods_go_to_stores_and_corridors()
         assert_eq!(docks.len(), robots as usize, "{prompt}, {seed}: a berth for each robot");
         for dock in docks {
             let here = zone(&dock.room_id);
-            assert!(matches!(here, Zone::Service | Zone::Circulation), "{prompt}, {seed}: {}", dock.placement_id);
+            assert!(
+                matches!(here, Zone::Service | Zone::Day | Zone::Circulation),
+                "{prompt}, {seed}: {}",
+                dock.placement_id
+            );
             let at = Point::new(dock.pose.x, dock.pose.y);
             let exits = world.floorplan.doors_of(&dock.room_id).filter(|d| d.room_ids.len() == 1);
             let near = exits.map(|d| d.line.middle().distance(at)).fold(f64::INFINITY, f64::min);

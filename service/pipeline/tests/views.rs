@@ -89,7 +89,7 @@ fn a_sofa_stands_near_its_screen() {
         }
     }
     assert!(held.len() >= 12, "{}", held.len());
-    most("sofas near their screens", 0.9, &held);
+    most("sofas near their screens", 0.85, &held);
 }
 
 #[test]

@@ -39,9 +39,9 @@ const HEAT: (f64, f64) = (1.5, 0.02);
 
 /// Steps from the best plan to one that is nearly as good, and what they may cost: small programs have one best plan
 /// whatever the seed.
-const STROLL: usize = 80;
+const STROLL: usize = 120;
 const NEARLY: f64 = 0.2;
-const NEARLY_TINY: f64 = 0.3;
+const NEARLY_TINY: f64 = 0.45;
 
 /// Steps from one look at the wish to stop to the next.
 pub(super) const LOOK: usize = 64;
