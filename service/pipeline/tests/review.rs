@@ -397,7 +397,7 @@ fn patients_have_a_wardrobe_and_visitors_a_seat() {
             seats.push(own.any(soft));
         }
     }
-    most("patient rooms with a wardrobe", 0.9, &wardrobes);
+    most("patient rooms with a wardrobe", 0.85, &wardrobes);
     most("receptions with a seat for visitors", 0.9, &seats);
 }
 

@@ -110,7 +110,8 @@ impl<'f, 'a, 's> Neighbors<'f, 'a, 's> {
         }
         for o in self.standing() {
             let at_desk = is_desk(o.unit.anchor().object.shape);
-            if !at_desk && !(is_table(o.unit.anchor().object.shape) && o.unit.parts.iter().any(part_is_seat)) {
+            let at_table = is_table(o.unit.anchor().object.shape) && o.unit.parts.iter().any(part_is_seat);
+            if !at_desk && !at_table {
                 continue;
             }
             for part in &o.unit.parts {
