@@ -9,12 +9,10 @@ use d3dgen_model::occupancy::stops_robot;
 use d3dgen_model::placements::{Placement, Placements};
 use d3dgen_model::scene_graph::SceneGraph;
 
+use super::docks::FROM_EXIT;
 use super::{Wanted, furnish_room};
 use crate::scene_graph::{dock_rank, most_docks};
 use crate::{Error, Stop};
-
-/// Least distance of a dock from a way out of the building, m.
-const FROM_EXIT_M: f64 = 2.0;
 
 /// Adds docks until there is one for each robot, or no room that suits has a place.
 ///
@@ -82,7 +80,7 @@ fn is_free(
     let at = Point::new(p.pose.x, p.pose.y);
     depth >= dock.clearance_front_m.max(2.0 * robot)
         && plan.doors_of(&room.room_id).all(|door| {
-            let near = door.room_ids.len() == 1 && door.line.middle().distance(at) < FROM_EXIT_M;
+            let near = door.room_ids.len() == 1 && door.line.middle().distance(at) < f64::from(FROM_EXIT) / 1000.0;
             !near && !door_zones(door).iter().any(|zone| zone.overlaps(&own))
         })
 }

@@ -18,7 +18,7 @@ const PASSAGE: f64 = 4.0;
 
 /// How far from the doors out of the building a dock and its floor keep, mm, and what it loses right at one: people with
 /// bags come in there, and leave in a hurry.
-const FROM_EXIT: i32 = 2000;
+pub(super) const FROM_EXIT: i32 = 2000;
 const EXIT: f64 = 10.0;
 /// Rank of doors from which on they lead to other rooms.
 const INDOORS: u8 = 2;

@@ -21,7 +21,10 @@ impl Barred {
         let (x0, x1) = depth.fold((i32::MAX, i32::MIN), |(lo, hi), b| (lo.min(b.x0), hi.max(b.x1)));
         let strip = Box2::new(u + x0, wall.v0, u + x1, wall.v1).turned(wall.q);
         let near = |b: &Box2| b.overlaps(&strip).then(|| b.turned(q));
-        let solids: Vec<Solid> = (state.solids.iter().filter(|s| !(s.is_flat() && s.z0 == 0)))
+        let solids: Vec<Solid> = state
+            .solids
+            .iter()
+            .filter(|s| !(s.is_flat() && s.z0 == 0))
             .filter_map(|s| Some(Solid { rect: near(&s.rect)?, ..*s }))
             .collect();
         let holes: Vec<Box2> = space.holes().iter().filter_map(near).collect();
