@@ -10,6 +10,9 @@ use d3dgen_model::placements::{Placement, Placements};
 use d3dgen_model::scene_graph::SceneGraph;
 
 use super::docks::FROM_EXIT;
+use super::locked::placed;
+use super::pockets::Pockets;
+use super::space::Space;
 use super::{Wanted, furnish_room};
 use crate::scene_graph::{dock_rank, most_docks};
 use crate::{Error, Stop};
@@ -51,7 +54,9 @@ pub(super) fn add_missing(
             }
             let made = furnish_room(graph, storey, room, (domain, limits), &here, Wanted::Only(dock), stop).ok()?.0;
             let more = made.into_iter().find(|p| !here.iter().any(|h| h.placement_id == p.placement_id))?;
-            is_free(graph, storey, room, (&more, dock), &here).then_some((at, more))
+            let stands = is_free(graph, storey, room, (&more, dock), &here)
+                && !closes_floor(&Space::new(storey, room), domain, &more, &here);
+            stands.then_some((at, more))
         });
         stop.check()?;
         let Some((at, more)) = found else { break };
@@ -83,4 +88,11 @@ fn is_free(
             let near = door.room_ids.len() == 1 && door.line.middle().distance(at) < f64::from(FROM_EXIT) / 1000.0;
             !near && !door_zones(door).iter().any(|zone| zone.overlaps(&own))
         })
+}
+
+/// Returns true when a dock closes off floor of its room that is open without it.
+fn closes_floor(space: &Space, domain: &Domain, dock: &Placement, here: &[&Placement]) -> bool {
+    let mut pockets = Pockets::new(space);
+    placed(here, domain, space).0.iter().for_each(|unit| pockets.add(unit));
+    pockets.is_closed_by(&Pockets::boxes(&placed(&[dock], domain, space).0))
 }

@@ -68,7 +68,7 @@ pub(super) struct Robots {
     found: Vec<Named>,
     /// Their words.
     pub spans: Vec<Span>,
-    /// Words for a dock right behind them: "robot vacuum dock".
+    /// Words for a dock right behind them: "robot vacuum dock", "a robot that docks".
     pub docks: Vec<Span>,
     /// True when robots are named at all.
     pub named: bool,
@@ -126,9 +126,11 @@ pub(super) fn find(tokens: &[Token], spoken: &[&Spoken]) -> Robots {
     out.found.extend(shared.into_iter().map(|s| s.0));
     out.found.sort_by_key(|f| f.span.start);
     out.spans = out.found.iter().filter(|f| !f.place).map(|f| f.span).collect();
+    let tagged = |i: usize, tag| spoken.iter().find_map(|l| l.tag_at(tokens, i, tag));
     let dock = |s: &Span| {
-        let end = spoken.iter().find_map(|l| l.tag_at(tokens, s.end, Tag::Charge))?;
-        Some(Span { start: s.end, end })
+        let relative = [Tag::Stops, Tag::Definite].iter().find_map(|&tag| tagged(s.end, tag));
+        let starts = std::iter::once(s.end).chain(relative);
+        starts.filter_map(|start| Some(Span { start, end: tagged(start, Tag::Charge)? })).next()
     };
     out.docks = out.spans.iter().filter_map(dock).collect();
     out.named = !out.found.is_empty();

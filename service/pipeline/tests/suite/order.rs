@@ -1,15 +1,13 @@
 //! What a reviewer of plans objects to in the order of things: rooms larger than they should be, steps in a facade, things
 //! side by side that disturb each other, robots that leave out rooms where they have work.
 
-mod common;
-
 use d3dgen_model::floorplan::{Door, DoorKind, Floorplan, PlanRoom};
 use d3dgen_model::placements::Placement;
 use d3dgen_model::scenario::{Roi, RoiKind};
 use d3dgen_model::world::World;
 use d3dgen_model::{Point, Rect};
 
-use common::{body, gap, most, worlds};
+use crate::common::{body, gap, most, worlds};
 
 /// Length from which a step in an outline is one that somebody meant, m.
 const STEP_M: f64 = 0.85;

@@ -1,10 +1,6 @@
 //! What a reviewer of plans measures: signs at the way out, tables as large as their rooms, a place to put a cup down, boards
 //! one can write on, floor behind chairs, robots that stop where nobody pushes a chair back.
 
-#![allow(clippy::unwrap_used)] // helpers of tests are tests
-
-mod common;
-
 use d3dgen_knowledge::clearance::{Side, free_depth, is_shallow};
 use d3dgen_knowledge::freespace::FreeSpace;
 use d3dgen_model::Rect;
@@ -14,7 +10,7 @@ use d3dgen_model::placements::Placement;
 use d3dgen_model::scenario::Poi;
 use d3dgen_model::world::World;
 
-use common::{body, gap, most, worlds};
+use crate::common::{body, gap, most, worlds};
 
 const OFFICES: [&str; 3] =
     ["office with 10 rooms", "office with 8 rooms in the Netherlands", "law firm office with 8 rooms in Zurich"];

@@ -1,7 +1,5 @@
 //! The knobs of style move what they are named for, over many seeds, and leave worlds sound.
 
-#![allow(clippy::unwrap_used)] // helpers of tests are tests
-
 use std::sync::atomic::AtomicBool;
 
 use d3dgen_model::Rect;

@@ -1,11 +1,8 @@
 //! Large buildings as their users know them: units with what they need at hand, forms that prompts ask for, ways out.
 
-#[allow(dead_code, reason = "bodies are for tests of furniture")]
-mod common;
-
 use std::collections::BTreeMap;
 
-use common::{most, worlds};
+use crate::common::{most, worlds};
 use d3dgen_model::Point;
 use d3dgen_model::document::Document;
 use d3dgen_model::scene_graph::SceneGraph;

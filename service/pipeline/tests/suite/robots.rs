@@ -1,8 +1,6 @@
 //! What a scenario says for robots: slow floor, staging areas, the order of cleaning, rounds and their routes, a dock each,
 //! and whether high and long robots fit.
 
-#![allow(clippy::unwrap_used)] // helpers of tests are tests
-
 use std::collections::BTreeSet;
 use std::sync::atomic::AtomicBool;
 

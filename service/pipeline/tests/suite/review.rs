@@ -5,10 +5,6 @@
 //!
 //! No rule forbids these; they are what makes a plan look wrong.
 
-#![allow(clippy::unwrap_used)] // helpers of tests are tests
-
-mod common;
-
 use d3dgen_model::Rect;
 use d3dgen_model::domain::Mount;
 use d3dgen_model::floorplan::{Door, DoorKind, PlanRoom, Window};
@@ -18,7 +14,7 @@ use d3dgen_model::world::World;
 use d3dgen_pipeline::scene_graph::{Request, generate};
 use d3dgen_plugins::Registry;
 
-use common::{body, gap, most, worlds};
+use crate::common::{body, gap, most, worlds};
 
 /// Bodies nearer than this touch, m: skirting and tiles.
 const TOUCH_M: f64 = 0.13;

@@ -58,7 +58,7 @@ fn misses(case: &Case, graph: &SceneGraph) -> Vec<String> {
 #[test]
 fn prompts_say_which_rooms_are_on_which_storey() {
     let registry = Registry::builtin();
-    let text = include_str!("prompts/storeys.jsonl");
+    let text = include_str!("../prompts/storeys.jsonl");
     let mut wrong = Vec::new();
     for line in text.lines() {
         let case: Case = serde_json::from_str(line).unwrap();

@@ -1,13 +1,11 @@
 //! What a reviewer of plans objects to in what one sees and what opens where: bathrooms one looks into, leaves that shut
 //! someone in, screens at the far end of the room, baths that a wheelchair cannot use.
 
-mod common;
-
 use d3dgen_model::floorplan::{Door, DoorKind};
 use d3dgen_model::placements::Placement;
 use d3dgen_model::world::World;
 
-use common::{body, gap, most, worlds};
+use crate::common::{body, gap, most, worlds};
 
 /// Across a corridor no wider than this one looks from one room into the other, m.
 const ACROSS_M: f64 = 2.5;

@@ -1,6 +1,8 @@
 //! Worlds to look at, and how bodies lie to each other: what tests of plans as a reviewer sees them share.
 
+use std::collections::BTreeMap;
 use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, LazyLock, Mutex, OnceLock};
 
 use d3dgen_model::Rect;
 use d3dgen_model::placements::Placement;
@@ -9,15 +11,23 @@ use d3dgen_pipeline::generate::{Settings, generate_world};
 use d3dgen_pipeline::scene_graph::Request;
 use d3dgen_plugins::Registry;
 
-/// Returns the worlds of a prompt with the seeds from 0.
+/// Worlds by prompt and seed.
+type Made = BTreeMap<(String, u64), Arc<OnceLock<World>>>;
+
+/// Returns the worlds of a prompt with the seeds from 0. Each is made once, however many tests look at it.
 pub fn worlds(prompt: &str, seeds: u64) -> Vec<World> {
+    static MADE: LazyLock<Mutex<Made>> = LazyLock::new(Mutex::default);
     let registry = Registry::builtin();
-    let made = (0..seeds).map(|seed| {
-        let request = Request { prompt: prompt.into(), seed, ..Request::default() };
-        let made = generate_world(&request, &registry, &Settings::default(), &mut |_| (), &AtomicBool::new(false));
-        made.expect(prompt).world
-    });
-    made.collect()
+    let world = |seed| {
+        let kept = MADE.lock().unwrap().entry((prompt.to_owned(), seed)).or_default().clone();
+        let make = || {
+            let request = Request { prompt: prompt.into(), seed, ..Request::default() };
+            let made = generate_world(&request, &registry, &Settings::default(), &mut |_| (), &AtomicBool::new(false));
+            made.expect(prompt).world
+        };
+        kept.get_or_init(make).clone()
+    };
+    (0..seeds).map(world).collect()
 }
 
 /// Returns the outline of a body on the floor.

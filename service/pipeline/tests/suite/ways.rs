@@ -1,7 +1,5 @@
 //! Ways through furnished rooms: beds leave patient rooms, people come through a reception, robots stand at their docks.
 
-#![allow(clippy::unwrap_used)] // helpers of tests are tests
-
 use std::sync::atomic::AtomicBool;
 
 use d3dgen_knowledge::clearance::is_shallow;

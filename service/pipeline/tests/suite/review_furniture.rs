@@ -4,17 +4,13 @@
 //!
 //! No rule forbids these; they are what makes a room look wrong.
 
-#![allow(clippy::unwrap_used)] // helpers of tests are tests
-
-mod common;
-
 use d3dgen_model::Rect;
 use d3dgen_model::domain::Mount;
 use d3dgen_model::floorplan::PlanRoom;
 use d3dgen_model::placements::Placement;
 use d3dgen_model::world::World;
 
-use common::{body, gap, most, worlds};
+use crate::common::{body, gap, most, worlds};
 
 const WARDS: [&str; 3] =
     ["hospital ward with 8 rooms", "hospital ward with 10 rooms in Germany", "hospital with 6 rooms"];

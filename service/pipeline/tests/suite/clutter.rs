@@ -1,8 +1,6 @@
 //! Clutter: tidy, ordinary and lived-in rooms have the same furniture and more and more small things on it, and all of
 //! them are sound.
 
-#![allow(clippy::unwrap_used)] // helpers of tests are tests
-
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::atomic::AtomicBool;
 

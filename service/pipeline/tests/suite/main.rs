@@ -1,0 +1,21 @@
+//! What the pipeline makes, through its public interface.
+
+#![allow(clippy::unwrap_used)] // helpers of tests are tests
+
+mod clutter;
+mod common;
+mod details;
+mod edit;
+mod edit_storeys;
+mod large;
+mod order;
+mod prompts;
+mod review;
+mod review_furniture;
+mod robots;
+mod stop;
+mod storeys;
+mod style;
+mod variety;
+mod views;
+mod ways;
