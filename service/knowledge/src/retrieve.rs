@@ -115,7 +115,7 @@ pub fn missing_rooms(knowledge: &KnowledgeBase, query: &Query) -> Vec<Applicable
     let mut asking: Vec<Applicable> = references
         .filter(|r| conditions::document_holds(r, query))
         .flat_map(|r| r.constraints.iter().map(move |c| (r, c)))
-        .filter(|(_, c)| TABLES.quantity(c).is_some_and(|q| asks_for_rooms(q.measure)))
+        .filter(|(_, c)| TABLES.quantity_of(c, asks_for_rooms).is_some())
         .filter_map(|(reference, c)| applicable(c, reference, query))
         .collect();
     resolve::settle(&mut asking, &chain, &Policy::Strictest);

@@ -36,6 +36,9 @@ pub(crate) static TABLES: LazyLock<Tables> = LazyLock::new(|| {
     tables
 });
 
+/// Key of units and spaces that no row names.
+const OTHER: &str = "";
+
 /// All tables.
 pub(crate) struct Tables {
     pub quantities: Vec<QuantityRow>,
@@ -43,8 +46,8 @@ pub(crate) struct Tables {
     pub spaces: Vec<SpaceRow>,
     pub conditions: Vec<ConditionRow>,
     pub documents: Vec<DocumentRow>,
-    /// Rows of `quantities` that may speak of a unit and a space, in their order; `None` stands for those no row names.
-    by_unit_and_space: BTreeMap<Option<String>, BTreeMap<Option<String>, Vec<usize>>>,
+    /// Rows of `quantities` that may speak of a unit and a space, in their order; [`OTHER`] stands for those no row names.
+    by_unit_and_space: BTreeMap<String, BTreeMap<String, Vec<usize>>>,
     /// The first row of `conditions` that lists a phrase whole.
     by_phrase: BTreeMap<String, usize>,
 }
@@ -347,10 +350,9 @@ impl ConditionRow {
 impl Tables {
     /// Sorts the rows by what a constraint can be looked up with: every building asks hundreds of constraints.
     fn index(&mut self) {
-        let among =
-            |list: &[String], name: &Option<String>| list.is_empty() || name.as_ref().is_some_and(|n| list.contains(n));
-        let names = |list: fn(&QuantityRow) -> &[String]| -> BTreeSet<Option<String>> {
-            self.quantities.iter().flat_map(list).cloned().map(Some).chain([None]).collect()
+        let among = |list: &[String], name: &String| list.is_empty() || list.contains(name);
+        let names = |list: fn(&QuantityRow) -> &[String]| -> BTreeSet<String> {
+            self.quantities.iter().flat_map(list).cloned().chain([OTHER.to_owned()]).collect()
         };
         let (units, spaces) = (names(|q| &q.units), names(|q| &q.spaces));
         for unit in units {
@@ -389,10 +391,20 @@ impl Tables {
 
     /// Returns the quantity a constraint speaks of.
     pub(crate) fn quantity(&self, c: &Constraint) -> Option<&QuantityRow> {
-        let key = |name: &str| Some(name.to_owned());
-        let by_space = self.by_unit_and_space.get(&key(&c.unit)).or_else(|| self.by_unit_and_space.get(&None))?;
-        let rows = by_space.get(&key(&c.space_type)).or_else(|| by_space.get(&None))?;
-        rows.iter().map(|&row| &self.quantities[row]).find(|q| q.matches(c))
+        self.candidates(c).find(|q| q.matches(c))
+    }
+
+    /// Returns the quantity a constraint speaks of where it is one of some measures; most are told by their units alone.
+    pub(crate) fn quantity_of(&self, c: &Constraint, wanted: fn(Measure) -> bool) -> Option<&QuantityRow> {
+        let may_be = self.candidates(c).any(|q| wanted(q.measure));
+        may_be.then(|| self.quantity(c))?.filter(|q| wanted(q.measure))
+    }
+
+    /// Returns the rows that know the unit and the space of a constraint.
+    fn candidates(&self, c: &Constraint) -> impl Iterator<Item = &QuantityRow> {
+        let by_space = self.by_unit_and_space.get(&c.unit).or_else(|| self.by_unit_and_space.get(OTHER));
+        let rows = by_space.and_then(|by_space| by_space.get(&c.space_type).or_else(|| by_space.get(OTHER)));
+        rows.into_iter().flatten().map(|&row| &self.quantities[row])
     }
 
     /// Returns why a constraint of no known quantity cannot be decided.

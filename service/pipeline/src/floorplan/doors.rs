@@ -255,9 +255,12 @@ impl Site<'_> {
         let middle = |s: &Stretch| s.point((meters(s.from) + meters(s.to)) / 2.0);
         let mut ends: Vec<&Stretch> = self.stretches.iter().filter(is_end).collect();
         for _ in 0..ends.len() {
-            let exits: Vec<Point> =
-                laid.spots.iter().filter(|l| l.door.room_ids.len() == 1).map(|l| l.door.line.middle()).collect();
-            let far = |s: &Stretch| exits.iter().map(|e| e.distance(middle(s))).fold(f64::MAX, f64::min);
+            let exits: Vec<(Point, f64)> =
+                laid.spots.iter().filter_map(|l| self.way_out(spine, &l.door, laid)).collect();
+            let far = |s: &Stretch| {
+                let ways = exits.iter().map(|(at, beyond)| self.walk(spine, *at, middle(s)) + beyond);
+                ways.fold(f64::MAX, f64::min)
+            };
             let Some(at) = (0..ends.len()).max_by(|&a, &b| far(ends[a]).total_cmp(&far(ends[b]))) else { return };
             if far(ends[at]) < ONE_WAY_M {
                 return;
@@ -265,6 +268,43 @@ impl Site<'_> {
             let spots = self.entrance_spots(ends.remove(at), spine, false, &laid.spots);
             laid.take_best(spots);
         }
+    }
+
+    /// Returns where one leaves the corridor towards a door to outdoors, and how far that is from there, m.
+    fn way_out(&self, spine: usize, exit: &Door, laid: &Laid) -> Option<(Point, f64)> {
+        let [room] = &exit.room_ids[..] else { return None };
+        let (id, at) = (&self.brief.rooms[spine].id, exit.line.middle());
+        if room == id {
+            return Some((at, 0.0));
+        }
+        let through = laid.spots.iter().find(|l| [room, id].iter().all(|id| l.door.room_ids.contains(id)))?;
+        let door = through.door.line.middle();
+        Some((door, door.distance(at)))
+    }
+
+    /// Returns how far two points of a room are from each other on foot, m: from part to part of it through the middle of
+    /// what they share.
+    fn walk(&self, room: usize, from: Point, to: Point) -> f64 {
+        let parts: Vec<Rect> = self.boxes.iter().filter(|b| b.0 == room).map(|b| b.1.to_rect()).collect();
+        let holds = |part: &Rect, p: Point| part.grown(OUTER_HALF_M).contains(&Rect::new(p.x, p.y, p.x, p.y));
+        let beside = |a: Point, b: Point| parts.iter().any(|part| holds(part, a) && holds(part, b));
+        let mut stops = vec![from, to];
+        for (n, a) in parts.iter().enumerate() {
+            let meet = parts[n + 1..].iter().filter(|b| a.grown(0.01).overlaps(b));
+            stops.extend(
+                meet.map(|b| Rect::new(a.x0.max(b.x0), a.y0.max(b.y0), a.x1.min(b.x1), a.y1.min(b.y1)).center()),
+            );
+        }
+        let mut ways = vec![f64::MAX; stops.len()];
+        ways[0] = 0.0;
+        for _ in 0..stops.len() {
+            for (a, b) in (0..stops.len()).flat_map(|a| (0..stops.len()).map(move |b| (a, b))) {
+                if ways[a] < f64::MAX && beside(stops[a], stops[b]) {
+                    ways[b] = ways[b].min(ways[a] + stops[a].distance(stops[b]));
+                }
+            }
+        }
+        if ways[1] < f64::MAX { ways[1] } else { from.distance(to) }
     }
 
     /// Returns the place of an earlier door between these rooms (of one: to outdoors) when its wall still stands.

@@ -118,8 +118,8 @@ pub(super) fn placements(
 }
 
 fn rule(task: &Task, level: usize) -> String {
-    let tightness = LEVELS[level].tightness;
-    if task.required > 0 && tightness < 1.0 {
+    let tightness = LEVELS[level].tightness_of(task);
+    if tightness < 1.0 {
         return format!("{}, clearances at {:.0} %", task.rule, tightness * 100.0);
     }
     task.rule.clone()

@@ -11,6 +11,8 @@ use super::state::{Placed, State};
 const BESIDE: i32 = 500;
 /// From the front of a dock to the middle of a robot before it, mm.
 const BERTH: i32 = 400;
+/// Floor between two robots that charge side by side, mm.
+const PLAY: i32 = 50;
 /// What a dock loses in whose floor a leaf swings: more than any place has to offer.
 const SWING: f64 = 8.0;
 /// What it loses where people only pass.
@@ -76,6 +78,12 @@ pub(super) fn crowding(state: &State, p: &Placed, robot: i32) -> f64 {
     let corners = berths(p).filter(walled).count() as f64;
     let narrow = passages(p, robot).filter(|b| is_taken(state, b) || !state.space.contains(b)).count() as f64;
     CROWDED * (others + corners) + NARROW * narrow + buffers(p, robot).map(|b| crowded(&b)).sum::<f64>()
+}
+
+/// Returns true for a dock whose robot would touch one that charges beside it.
+pub(super) fn touches_robot(state: &State, p: &Placed, robot: i32) -> bool {
+    let stands = || state.placed.iter().flat_map(berths);
+    berths(p).any(|own| stands().any(|other| other.gap(&own) < robot + PLAY))
 }
 
 /// Returns true for a place that takes floor of a dock, or for a dock whose floor is taken or used where no robot needs it;

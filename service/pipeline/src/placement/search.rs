@@ -76,6 +76,8 @@ pub(super) struct Job<'a, 's> {
 pub(super) struct Level {
     /// Clearances, as a share of what the domain says.
     pub tightness: f64,
+    /// Those of beds on wheels: other things move together before nobody can stand beside a patient.
+    beds: f64,
     /// Margin around the robot, mm.
     pub margin: i32,
     /// True to look for the free floor and the width of ways that are advised too.
@@ -88,7 +90,17 @@ pub(super) struct Level {
 
 impl Level {
     const fn new(tightness: f64, margin: i32) -> Self {
-        Self { tightness, margin, advised: false, ways: true, open: Open { doors: true, deep: false, windows: false } }
+        let open = Open { doors: true, deep: false, windows: false };
+        Self { tightness, beds: tightness, margin, advised: false, ways: true, open }
+    }
+
+    /// Returns the share of its clearances that a task's units keep.
+    pub(super) fn tightness_of(&self, task: &Task) -> f64 {
+        match task.anchor.shape {
+            _ if task.required == 0 => 1.0,
+            Shape::HospitalBed => self.beds,
+            _ => self.tightness,
+        }
     }
 }
 
@@ -102,10 +114,10 @@ pub(super) const LEVELS: [Level; 12] = [
     Level { advised: true, open: WIDE_OPEN, ..Level::new(1.0, 50) },
     Level { open: Open { deep: false, ..WIDE_OPEN }, ..Level::new(1.0, 50) },
     Level::new(1.0, 20),
-    Level::new(0.75, 20),
+    Level { beds: 1.0, ..Level::new(0.75, 20) },
     Level { ways: false, ..Level::new(1.0, 20) },
-    Level { ways: false, ..Level::new(0.75, 20) },
-    Level { ways: false, ..Level::new(0.65, 20) },
+    Level { ways: false, beds: 1.0, ..Level::new(0.75, 20) },
+    Level { ways: false, beds: 0.85, ..Level::new(0.65, 20) },
     Level { ways: false, ..Level::new(0.5, 20) },
     Level { ways: false, open: NOT_OPEN, ..Level::new(1.0, 20) },
     Level { ways: false, open: NOT_OPEN, ..Level::new(0.75, 20) },
@@ -186,9 +198,9 @@ struct Pass<'j, 'a, 's> {
 
 impl<'j, 'a, 's> Pass<'j, 'a, 's> {
     fn new(job: &'j Job<'a, 's>, level: usize) -> Self {
-        let Level { tightness, margin, advised, ways, open } = LEVELS[level];
+        let Level { margin, advised, ways, open, .. } = LEVELS[level];
         let forms = job.tasks.iter().map(|task| {
-            let tightness = if task.required > 0 { tightness } else { 1.0 };
+            let tightness = LEVELS[level].tightness_of(task);
             let free = matches!(task.arrangement, Arrangement::Center | Arrangement::Rows);
             let (sizes, aims, ceiling) = (job.sizes, job.aims, job.space.ceiling);
             variants(job.domain, task.item, &Forms { sizes, aims, tightness, advised, ceiling, robot: 2 * job.radius })
@@ -210,8 +222,7 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
             open,
         );
         start.has_robots = job.has_robots;
-        start.turning = job.turning;
-        start.turning = start.circle();
+        start.keep_circle(job.turning);
         start.add(job.locked.to_vec());
         Self { job, level, forms, start }
     }
@@ -238,7 +249,7 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
         for (n, departure) in DEPARTURES.into_iter().chain(RESCUES).enumerate() {
             // where everything has found its place there is less to gain
             let looks = match (empty > LARGE, best.outcome.missing.is_empty()) {
-                _ if best.docks_taken() > 0 || best.lacks_circle() => DEPARTURES.len() + RESCUES.len(),
+                _ if best.docks_taken() > 0 || best.state.lacks_circle() => DEPARTURES.len() + RESCUES.len(),
                 (_, true) => 1,
                 (true, false) => 2,
                 (false, false) if empty < SMALL && self.lacks_something_early(&best) => DEPARTURES.len() + MORE_DRAFTS,

@@ -12,7 +12,7 @@ use super::nav::Nav;
 use super::pockets::Pockets;
 use super::seats::ways_beside;
 use super::space::{DoorZone, Open, Space, WallSide};
-use super::turning::has_circle;
+use super::turning::Circle;
 use super::unit::{Part, Unit};
 use super::way::{InTheWay, Way};
 
@@ -137,8 +137,10 @@ pub(super) struct State<'a, 's> {
     in_the_way: InTheWay,
     /// True where robots are to live: a dock in the way is better than none.
     pub has_robots: bool,
-    /// Radius of the circle that rules want free for wheelchairs, mm.
-    pub turning: Option<i32>,
+    /// Radius of the circle that rules want free for wheelchairs, mm; none where the empty room has no place for it.
+    turning: Option<i32>,
+    /// Where one is free still.
+    circle: Option<Circle>,
     /// Floor that belongs to docks.
     pub docks: Vec<Box2>,
     /// Floor at the foot of beds through which one gets to their sides.
@@ -173,6 +175,7 @@ impl<'a, 's> State<'a, 's> {
             in_the_way: InTheWay::default(),
             has_robots: false,
             turning: None,
+            circle: None,
             docks: Vec::new(),
             beside_beds: Vec::new(),
             sights: Vec::new(),
@@ -359,16 +362,26 @@ impl<'a, 's> State<'a, 's> {
         p.support.is_none() && self.sights.iter().any(between)
     }
 
-    /// Returns the radius of the circle that wheelchairs turn on as things stand; `None` where none has a place or is asked for.
-    pub fn circle(&self) -> Option<i32> {
-        self.turning.filter(|radius| has_circle(&self.space.bounds, self.space.holes(), &self.bodies, *radius))
+    /// Keeps a circle of this radius free for wheelchairs, mm, where the room has a place for it.
+    pub fn keep_circle(&mut self, radius: Option<i32>) {
+        self.circle = radius.and_then(|radius| self.find_circle(&[], radius));
+        self.turning = radius.filter(|_| self.circle.is_some());
     }
 
-    /// Returns true when a unit leaves no place for a circle of this radius, mm.
-    pub fn fills(&self, p: &Placed, radius: i32) -> bool {
+    fn find_circle(&self, more: &[Box2], radius: i32) -> Option<Circle> {
+        Circle::find(&self.space.bounds, self.space.holes(), &[&self.bodies, more], radius)
+    }
+
+    /// Returns true when the circle is taken that wheelchairs are to turn on.
+    pub fn lacks_circle(&self) -> bool {
+        self.turning.is_some() && self.circle.is_none()
+    }
+
+    /// Returns true when a unit takes the last place for wheelchairs to turn on.
+    pub fn fills_circle(&self, p: &Placed) -> bool {
+        let (Some(circle), Some(radius)) = (self.circle, self.turning) else { return false };
         let own: Vec<Box2> = bodies(p).collect();
-        let all: Vec<Box2> = self.bodies.iter().copied().chain(own.iter().copied()).collect();
-        !own.is_empty() && !has_circle(&self.space.bounds, self.space.holes(), &all, radius)
+        own.iter().any(|body| !circle.is_clear_of(body)) && self.find_circle(&own, radius).is_none()
     }
 
     /// Puts units down that were tested.
@@ -395,6 +408,9 @@ impl<'a, 's> State<'a, 's> {
         }
         self.nav.settle();
         self.free_area = self.nav.area();
+        if self.circle.is_some_and(|circle| self.bodies.iter().any(|body| !circle.is_clear_of(body))) {
+            self.circle = self.turning.and_then(|radius| self.find_circle(&[], radius));
+        }
     }
 }
 

@@ -5,34 +5,48 @@ use super::geom::Box2;
 /// Grain of the places that are looked at, mm.
 const GRAIN: i32 = 50;
 
-/// Returns true when a circle of a radius, mm, has a place within bounds beside what is no floor or takes some of it.
-pub(super) fn has_circle(b: &Box2, holes: &[Box2], bodies: &[Box2], radius: i32) -> bool {
-    let squared = i64::from(radius).pow(2);
-    let clear = |x: i32, y: i32, other: &Box2| {
+/// Free floor to turn on.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Circle {
+    radius: i32,
+    center: (i32, i32),
+}
+
+impl Circle {
+    /// Returns a circle of a radius, mm, that has a place within bounds beside what is no floor or takes some of it.
+    pub(super) fn find(b: &Box2, holes: &[Box2], bodies: &[&[Box2]], radius: i32) -> Option<Self> {
+        let steps = |low: i32, high: i32| {
+            let (low, high) = (low + radius, high - radius);
+            (low..=high).step_by(GRAIN as usize).chain((low <= high).then_some(high))
+        };
+        let at = |x: i32, y: i32| Self { radius, center: (x, y) };
+        let places = || steps(b.x0, b.x1).flat_map(|x| steps(b.y0, b.y1).map(move |y| at(x, y)));
+        places().find(|circle| holes.iter().chain(bodies.iter().copied().flatten()).all(|other| circle.is_clear_of(other)))
+    }
+
+    /// Returns true when a body takes none of it.
+    pub(super) fn is_clear_of(&self, other: &Box2) -> bool {
+        let (x, y) = self.center;
         let dx = i64::from((other.x0 - x).max(x - other.x1).max(0));
         let dy = i64::from((other.y0 - y).max(y - other.y1).max(0));
-        dx * dx + dy * dy >= squared
-    };
-    let steps = |low: i32, high: i32| {
-        let (low, high) = (low + radius, high - radius);
-        (low..=high).step_by(GRAIN as usize).chain((low <= high).then_some(high))
-    };
-    steps(b.x0, b.x1).any(|x| steps(b.y0, b.y1).any(|y| holes.iter().chain(bodies).all(|other| clear(x, y, other))))
+        dx * dx + dy * dy >= i64::from(self.radius).pow(2)
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::geom::Box2;
-    use super::has_circle;
+    use super::Circle;
 
     #[test]
     fn finds_a_circle_beside_what_stands_there() {
         let room = Box2::new(0, 0, 2000, 3000);
         let cabinet = |y0: i32| [Box2::new(0, y0, 1000, y0 + 300)];
-        assert!(has_circle(&room, &[], &[], 750));
-        assert!(has_circle(&room, &[], &cabinet(600), 750));
-        assert!(!has_circle(&room, &[], &cabinet(1350), 750));
-        assert!(!has_circle(&room, &cabinet(1350), &[], 750));
-        assert!(!has_circle(&room, &[], &[], 1010));
+        let has = |holes: &[Box2], bodies: &[Box2], radius| Circle::find(&room, holes, &[bodies], radius).is_some();
+        assert!(has(&[], &[], 750));
+        assert!(has(&[], &cabinet(600), 750));
+        assert!(!has(&[], &cabinet(1350), 750));
+        assert!(!has(&cabinet(1350), &[], 750));
+        assert!(!has(&[], &[], 1010));
     }
 }

@@ -14,7 +14,7 @@ use d3dgen_model::domain::{Arrangement, Mount, Shape};
 pub(super) use rows::{Terms, leave_out_single, over, rows};
 
 use super::demand::Task;
-use super::docks::crowding;
+use super::docks::{crowding, touches_robot};
 use super::geom::{Box2, turn};
 use super::neighbors::Neighbors;
 use super::seats::{beside_beds, sits_with_staff};
@@ -87,8 +87,6 @@ pub(super) struct Find<'f, 'a, 's> {
     /// Toward which end of its wall it stands rather than in the middle; 0 for neither.
     pub aside: i8,
     style: Style,
-    /// Radius of the circle that has a place for wheelchairs to turn on so far, mm.
-    circle: Option<i32>,
     /// What the unit must not disturb, where the room can do without it.
     neighbors: Option<Neighbors<'f, 'a, 's>>,
 }
@@ -104,7 +102,6 @@ impl<'f, 'a, 's> Find<'f, 'a, 's> {
     ) -> Self {
         let both = task.anchor.clear_sides > 1 && task.anchor.clearance_side_m > 0.0;
         let style = style(task.anchor.shape, task.anchor.mount, both);
-        let circle = state.circle();
         Self {
             state,
             task,
@@ -116,7 +113,6 @@ impl<'f, 'a, 's> Find<'f, 'a, 's> {
             across: None,
             aside: 0,
             style,
-            circle,
             neighbors: None,
         }
     }
@@ -146,14 +142,15 @@ impl<'f, 'a, 's> Find<'f, 'a, 's> {
         if spare && self.state.hides(&placed) {
             return self.none(Rule::NoPlace);
         }
-        if self.neighbors.as_ref().is_some_and(|n| n.are_disturbed_by(&placed)) {
+        let disturbed = self.neighbors.as_ref().is_some_and(|n| n.are_disturbed_by(&placed));
+        if disturbed || touches_robot(self.state, &placed, self.aisle) {
             return self.none(Rule::Clearance);
         }
         let at_window = self.task.arrangement == Arrangement::AtWindow;
         let whole = Rc::clone(&placed.unit);
         match self.state.fit(placed, at_window) {
             Ok(placed) => {
-                let fills = self.circle.is_some_and(|radius| self.state.fills(&placed, radius));
+                let fills = self.state.fills_circle(&placed);
                 if fills && spare {
                     return self.none(Rule::Clearance);
                 }
