@@ -20,10 +20,11 @@ const ILL_ADVISED: f64 = 0.8;
 const DARK: f64 = 1.8;
 /// Share by which circulation beyond what is advised counts as larger.
 const ILL_SHARED: f64 = 0.05;
-/// Length from which on the hall of a home is a tunnel, m, and what a meter more counts as share of circulation; the length from
-/// which on it is better lit by day, m, and what it counts that it is not.
+/// Length from which on the hall of a home is a tunnel, m, what a meter more counts as share of circulation, and how many more
+/// make it count double; the length from which on it is better lit by day, m, and what it counts that it is not.
 const HALL_M: f64 = 9.0;
 const TUNNEL: f64 = 0.02;
+const LONG_TUNNEL_M: f64 = 10.0;
 const DARK_HALL_M: f64 = 6.0;
 const DARK_HALL: f64 = 0.03;
 /// What a meter of a corridor that is too long for its one way out counts as share of circulation.
@@ -463,7 +464,8 @@ impl<'b> Judge<'b> {
             if home {
                 let longest = layout.boxes.iter().filter(|(r, _)| *r == spine);
                 let longest = longest.map(|(_, b)| meters(b.width().max(b.height()))).fold(0.0, f64::max);
-                score.soft[4] += TUNNEL * (longest - HALL_M).max(0.0);
+                let over = (longest - HALL_M).max(0.0);
+                score.soft[4] += TUNNEL * over * (1.0 + over / LONG_TUNNEL_M);
                 let dark = longest > DARK_HALL_M && rooms[spine].outer.0 < up(WINDOW_WALL_M);
                 score.soft[4] += if dark { DARK_HALL } else { 0.0 };
             }

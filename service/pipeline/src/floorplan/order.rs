@@ -24,6 +24,9 @@ const HEAT: f64 = 0.3;
 const OUT_OF_SIGHT: f64 = 2.0;
 /// What a way from the stations to the bedrooms as long as the building is wide costs.
 const OFF_CENTER: f64 = 1.5;
+/// Way from a station to a bedroom from which on it is too long, m, and what as much more counts beside its length.
+const LONG_WAY_M: f64 = 18.0;
+const LONG_WAY: f64 = 2.0;
 /// Width up to which a part of a room is a neck, on center lines, m, and what it costs.
 const NECK_M: f64 = 2.4;
 const NECK: f64 = 0.8;
@@ -155,7 +158,8 @@ impl Judge<'_> {
         out.into_iter().map(|(_, gate)| gate).collect()
     }
 
-    /// Returns the mean way from a bedroom to the nearest station with an open front, in sides of the building.
+    /// Returns the mean way from a bedroom to the nearest station with an open front, in sides of the building; long ones
+    /// count more.
     fn off_center(&self) -> f64 {
         let rooms = || self.brief.rooms.iter().zip(&self.survey.rooms).filter_map(|(spec, r)| Some((spec, r.main?)));
         let stations = || rooms().filter(|(spec, _)| spec.zone == Zone::Staff && spec.open_front);
@@ -165,7 +169,7 @@ impl Judge<'_> {
         for (_, bed) in beds {
             let nearest = stations().map(|(_, s)| between(bed.center2(), s.center2())).reduce(f64::min);
             let Some(way) = nearest else { return 0.0 };
-            ways += way / size;
+            ways += way / size + LONG_WAY * (way / LONG_WAY_M - 1.0).max(0.0);
             count += 1;
         }
         ways / f64::from(count.max(1))

@@ -52,7 +52,7 @@ pub(super) fn add_missing(
             if own >= most_docks(room.net_area_m2) as usize {
                 return None;
             }
-            let made = furnish_room(graph, storey, room, (domain, limits), &here, Wanted::Only(dock), stop).ok()?.0;
+            let made = furnish_room(graph, storey, room, (domain, limits), &here, Wanted::IfFree(dock), stop).ok()?.0;
             let more = made.into_iter().find(|p| !here.iter().any(|h| h.placement_id == p.placement_id))?;
             let stands = is_free(graph, storey, room, (&more, dock), &here)
                 && !closes_floor(&Space::new(storey, room), domain, &more, &here);

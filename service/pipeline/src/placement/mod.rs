@@ -132,6 +132,8 @@ pub(crate) enum Wanted<'a> {
     Without(&'a BTreeSet<String>),
     /// One object more.
     Only(&'a ObjectType),
+    /// One object more, where it keeps all of its clearances.
+    IfFree(&'a ObjectType),
 }
 
 /// Furnishes one room around the placements that are fixed in it.
@@ -157,7 +159,7 @@ pub(crate) fn furnish_room(
     }
     let present = match wanted {
         Wanted::All | Wanted::Without(_) => locked::present(&fixed, &setting.tasks, domain),
-        Wanted::Only(_) => vec![0; setting.tasks.len()],
+        Wanted::Only(_) | Wanted::IfFree(_) => vec![0; setting.tasks.len()],
     };
     let job = search::Job {
         domain,
@@ -171,6 +173,7 @@ pub(crate) fn furnish_room(
         radius: setting.radius,
         has_robots: !graph.robots.is_empty(),
         turning: setting.turning,
+        in_comfort: matches!(wanted, Wanted::IfFree(_)),
         way: setting.way.as_ref(),
         wide_way: setting.wide_way.as_ref(),
         stop,
@@ -178,7 +181,7 @@ pub(crate) fn furnish_room(
     let mut outcome = search::furnish(&job);
     let mut more = Vec::new();
     match (wanted, graph.style.clutter) {
-        (Wanted::Only(_), _) | (_, None | Some(Clutter::Normal)) => {}
+        (Wanted::Only(_) | Wanted::IfFree(_), _) | (_, None | Some(Clutter::Normal)) => {}
         (_, Some(Clutter::Low)) => clutter::tidy(&mut outcome, units.len()),
         (_, Some(Clutter::High)) => more = clutter::strew(&job, &room.room_type, &mut outcome),
     }

@@ -68,6 +68,8 @@ pub(super) struct Job<'a, 's> {
     pub way: Option<&'s Way>,
     /// The same with the width that is advised, where the room has it.
     pub wide_way: Option<&'s Way>,
+    /// True for what rather stands nowhere than where clearances have to be less.
+    pub in_comfort: bool,
     /// When to give up; the outcome is then of no use.
     pub stop: Stop<'s>,
 }
@@ -125,6 +127,9 @@ pub(super) const LEVELS: [Level; 12] = [
     Level { ways: false, open: NOT_OPEN, ..Level::new(0.0, 5) },
 ];
 
+/// How many of them leave all clearances whole.
+const IN_COMFORT: usize = 3;
+
 /// A furnished room.
 #[derive(Clone)]
 pub(super) struct Outcome<'a> {
@@ -171,7 +176,8 @@ pub(super) fn furnish<'a>(job: &Job<'a, '_>) -> Outcome<'a> {
 /// is closed off too.
 fn relax<'a>(job: &Job<'a, '_>) -> Outcome<'a> {
     let mut best: Option<Outcome> = None;
-    for level in 0..LEVELS.len() {
+    let levels = if job.in_comfort { IN_COMFORT } else { LEVELS.len() };
+    for level in 0..levels {
         let outcome = Pass::new(job, level).furnish();
         let advice_left = LEVELS.get(level + 1).is_some_and(|next| next.tightness >= 1.0 && next.open.doors);
         let second_choice = level < FIRST_CHOICES && outcome.second_choices(job) > 0;

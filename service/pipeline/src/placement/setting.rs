@@ -70,7 +70,7 @@ impl<'a> Setting<'a> {
         let mut tasks = match wanted {
             Wanted::All => usual(),
             Wanted::Without(objects) => usual().into_iter().filter(|t| !objects.contains(&t.anchor.id)).collect(),
-            Wanted::Only(object) => vec![demand::one_more(object)],
+            Wanted::Only(object) | Wanted::IfFree(object) => vec![demand::one_more(object)],
         };
         let mut aims = limits.objects.in_room(domain, &room.room_type, room.circulation);
         if graph.accessible {
@@ -78,7 +78,7 @@ impl<'a> Setting<'a> {
         }
         // what rules advise against goes where the room can do without
         tasks.retain(|t| t.required > 0 || !aims.get(t.anchor.id.as_str()).is_some_and(|a| a.unwanted));
-        if graph.style.clutter == Some(Clutter::Low) && !matches!(wanted, Wanted::Only(_)) {
+        if graph.style.clutter == Some(Clutter::Low) && !matches!(wanted, Wanted::Only(_) | Wanted::IfFree(_)) {
             tasks.retain(|task| !clutter::is_spare(task, kind));
         }
         let mut stream = Stream::new(graph.seed, &format!("placement/{}", room.room_id));
