@@ -16,7 +16,7 @@ use super::spec::{Brief, RoomSpec};
 use crate::Stop;
 
 /// Changes tried per room, and at most.
-const TRIES_PER_ROOM: usize = 90;
+const TRIES_PER_ROOM: usize = 50;
 const MOST_TRIES: usize = 900;
 /// Temperature at the start, in cost units; a plan that is sound is not taken apart.
 const HEAT: f64 = 0.3;

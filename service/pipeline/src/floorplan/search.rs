@@ -13,14 +13,14 @@ use super::spec::Brief;
 use crate::Stop;
 
 /// Steps of one run per room, and the runs at most.
-const STEPS_PER_ROOM: usize = 150;
+const STEPS_PER_ROOM: usize = 100;
 const MAX_RUNS: usize = 24;
 /// Steps of one run at most.
 const MAX_STEPS: usize = 12_000;
 /// Sound plans to compare before the best is taken.
 const WANTED: usize = 3;
 /// Cost of a room up to which a plan is good enough, and the sound plans more to compare where none is.
-const CONTENT: f64 = 0.6;
+const CONTENT: f64 = 0.75;
 const MORE: usize = 2;
 /// Runs with the scheme that the seed drew, before others step in.
 const OWN_RUNS: usize = 4;
@@ -33,7 +33,7 @@ const FAVORED: f64 = 0.85;
 const SMALL: usize = 14;
 /// Share of a run that is left when it is compared with others, and what it may cost more than they to go on.
 const LATE: f64 = 0.5;
-const FAR: f64 = 0.6;
+const FAR: f64 = 0.3;
 /// Temperature at the start and the end of a run, in cost units.
 const HEAT: (f64, f64) = (1.5, 0.02);
 

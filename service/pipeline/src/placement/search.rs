@@ -34,8 +34,8 @@ const MORE_BEGINNINGS: u64 = 3;
 /// How much narrower than usual storage is too narrow, and what a draft loses with all of it missing.
 const NARROW: f64 = 0.3;
 const NARROWER: f64 = 3.0;
-/// Free floor from which two departures are enough, in cells (100 m^2): halls take long and look alike.
-const LARGE: usize = 40_000;
+/// Departures tried where something has no place that the room can do without.
+const LOOKS: usize = 2;
 /// Units in rows or a grid, and what they are worth.
 struct Rows<'a> {
     units: Vec<Placed<'a>>,
@@ -253,13 +253,12 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
         let mut best_of = None;
         let hopeless = best.outcome.required_missing > 0 && self.hopeless();
         for (n, departure) in DEPARTURES.into_iter().chain(RESCUES).enumerate() {
-            // where everything has found its place there is less to gain
-            let looks = match (empty > LARGE, best.outcome.missing.is_empty()) {
+            let looks = match best.outcome.missing.is_empty() {
                 _ if best.docks_taken() > 0 || best.state.lacks_circle() => DEPARTURES.len() + RESCUES.len(),
-                (_, true) => 1,
-                (true, false) => 2,
-                (false, false) if empty < SMALL && self.lacks_something_early(&best) => DEPARTURES.len() + MORE_DRAFTS,
-                (false, false) => DEPARTURES.len(),
+                // everything has found its place
+                true => 0,
+                false if empty < SMALL && self.lacks_something_early(&best) => DEPARTURES.len() + MORE_DRAFTS,
+                false => LOOKS,
             };
             if self.job.stop.is_set()
                 || hopeless
