@@ -9,6 +9,7 @@ use d3dgen_plugins::Registry;
 
 use super::beds::{self, Held};
 use super::building::{self, Building};
+use super::compounds;
 use super::mentions::{Mention, Taken, Vocabulary, What, mentions};
 use super::objects;
 use super::parts;
@@ -20,7 +21,7 @@ use super::text::{MAX_TOKENS, Span, Token, tokens};
 use super::vital::{self, Wet};
 use super::wishes::{self, MANY, PerHost, Text, Wish, Wishes};
 use super::words::{ByBedrooms, Spoken, Tag, words};
-use super::{Request, docks, dwelling, language, measures, numbers, robots, single, umlauts, unread};
+use super::{Request, docks, dwelling, language, measures, numbers, robots, seated, single, umlauts, unread};
 use crate::Error;
 
 /// Most rooms one world is planned for.
@@ -51,10 +52,10 @@ pub(super) struct Reading<'a> {
     pub closed: bool,
     /// True for a list behind the name of a building ("ward with ..."), which what such a building is not without may join.
     pub may_join: bool,
+    /// True when the prompt says that its list is all there is to be: "only".
+    pub only: bool,
     /// True when the prompt asks for one room and no building.
     pub single: bool,
-    /// True when the prompt names the building.
-    pub named: bool,
     /// Rooms of which the prompt says the beds.
     pub held: Vec<Held>,
     /// True when the prompt counts the rooms to live in ("3-Zimmer-Wohnung", "2BHK").
@@ -158,12 +159,19 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     let basements = !building.building_type.as_ref().is_some_and(within);
     let storey_phrases = storeys::phrases(&tokens, &numbers, &spoken, building.head, basements, room_end);
     spans.extend(storey_phrases.iter().map(|p| p.span));
-    let said_styles = styles::said(&tokens, &languages);
+    // "an agency with open space for 20 people": in a list it is a room
+    let list_from = building.list_from;
+    let is_room = |s: Span| list_from > 0 && s.start >= list_from && vocabulary.own_at(&tokens, s).is_some();
+    let mut said_styles = styles::said(&tokens, &languages);
+    said_styles.retain(|s| !is_room(s.span));
     spans.extend(said_styles.iter().map(|s| s.span));
     // "cleaning robot" and "wheelchair users" name no object
     let mut not_things = machines.spans.clone();
     not_things.extend(said_styles.iter().map(|s| s.span));
     not_things.extend(access_wishes(&tokens, &numbers, &spoken));
+    let compounds = compounds::find(&tokens, prompt, domain, &spoken, |span| {
+        spans.iter().chain(&building.head).any(|s| s.overlaps(span))
+    });
     let taken = Taken {
         spans: &spans,
         head: building.head,
@@ -172,6 +180,8 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         counted: &counted,
         docks: &machines.docks,
         bed_rooms: &told,
+        compounds: &compounds,
+        unread: unread_language.is_some(),
     };
     let mut mentions = mentions(&tokens, &numbers, &vocabulary, &spoken, language, &taken);
     if !lives {
@@ -180,10 +190,12 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         let wards: Vec<Span> = building.words.iter().chain(&building.head).copied().collect();
         beds::of_several_wards(&mut mentions, &numbers, &wards);
     }
+    let seated = if lives { Vec::new() } else { seated::read(&tokens, &mut mentions, domain, &spoken) };
     let doors = unread::doors(&tokens, &mut mentions, &spoken);
     let docked = docks::inside_rooms(&tokens, &mut mentions, &machines.spans, &spoken);
     let said_styles = styles::of_building(said_styles, &mentions, language);
-    let said = relations::read(&tokens, &mentions, &spoken, language, building.head);
+    let mut said = relations::read(&tokens, &mentions, &spoken, language, building.head);
+    compounds::relate(&compounds, &mentions, domain, &mut said);
     let text = Text {
         tokens: &tokens,
         prompt,
@@ -195,6 +207,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         robots: machines.named,
     };
     let mut wishes = wishes::gather(&text, &mut conflicts);
+    wishes.open = compounds::open_rooms(&tokens, &mentions, &numbers, domain, &spoken);
     let area_m2 = total_area(&text, request, &mut conflicts);
     let country = flag_country.as_deref().or(place.country_code.as_deref());
     let said_storeys = storeys::Text {
@@ -243,6 +256,11 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         let sleepers = beds::Sleepers { domain, program, mentions: &mentions, said: &said, beds, people: who };
         let settled = sleepers.settle(&mut wishes, &mut assumptions, &mut conflicts);
         (held, people.occupancy.beds) = (settled.held, settled.beds.or(parts.beds));
+        let desks: u32 = seated.iter().map(|s| s.count.saturating_mul(s.beds)).fold(0, u32::saturating_add);
+        if people.occupancy.desks.is_some() {
+            people.occupancy.desks = people.occupancy.desks.max(Some(desks));
+        }
+        held.extend(seated);
     }
     let total = total_rooms(request, &mentions, &wishes, &mut conflicts)?;
     let listed: u64 = wishes.wishes.iter().map(|w| u64::from(w.count)).sum();
@@ -264,7 +282,11 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     }
     let total = total.filter(|_| !single);
     let closed = single || is_closed(&wishes, &tokens, &building, lives);
+    let only = (0..tokens.len()).any(|i| spoken.iter().any(|s| s.tag_at(&tokens, i, Tag::Only).is_some()));
     let may_join = joins_a_name(&building, &tokens, language);
+    if closed && lives && !single {
+        wishes.open_to(domain);
+    }
     if closed && total.is_none() && !single {
         let named = building.head.and_then(|h| vocabulary.room_named(&tokens[h.start..h.end]));
         assumptions.extend(add_main_room(&mut wishes, program, domain, &people, named.as_deref()));
@@ -300,9 +322,9 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         wishes,
         total,
         closed,
-        may_join,
+        may_join: may_join && !only,
+        only,
         single,
-        named: building.head.is_some(),
         held,
         habitable_fixed: short_forms.iter().any(|f| f.rooms.contains_key(&words().dwelling.living)),
         area_m2,
