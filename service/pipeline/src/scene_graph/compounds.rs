@@ -86,7 +86,7 @@ fn joint(tokens: &[Token], prompt: &str, i: usize, spoken: &[&Spoken]) -> Option
 
 /// Returns true for a word such as "open-plan" that ends at a token (`before` a room) or begins at one (behind it).
 fn is_open(tokens: &[Token], i: usize, spoken: &[&Spoken], before: bool) -> bool {
-    let from = if before { i.saturating_sub(1) } else { i };
+    let from = if before { i.saturating_sub(2) } else { i };
     (from..=i).any(|k| {
         spoken.iter().any(|s| s.tag_at(tokens, k, Tag::OpenPlan).is_some_and(|end| !before && k == i || end == i + 1))
     })

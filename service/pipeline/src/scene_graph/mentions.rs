@@ -87,7 +87,7 @@ impl Mention {
 #[derive(Debug, Clone, PartialEq)]
 struct RoomWord {
     id: String,
-    /// Letters of the phrase; a longer form of the same word is its plural.
+    /// Letters of the phrase, of its first word in languages whose noun comes first; a longer form of it is its plural.
     letters: usize,
 }
 
@@ -166,7 +166,8 @@ impl Vocabulary {
         // a keyword may be a plural itself ("single rooms"): its singular has the same stem
         let singular =
             phrases.by_stems(&tokens[i..end]).filter(|w| w.id == word.id).map_or(word.letters, |w| w.letters);
-        let letters: usize = tokens[i..end].iter().map(|t| t.text.chars().count()).sum();
+        let noun = if phrases.noun_first() { i + 1 } else { end };
+        let letters: usize = tokens[i..noun].iter().map(|t| t.text.chars().count()).sum();
         Some((end, word.id.as_str(), letters > singular.min(word.letters)))
     }
 
@@ -233,7 +234,8 @@ fn phrases<'a>(domains: impl Iterator<Item = &'a Domain>, language: &str) -> Phr
             let id = room.id.replace('_', " ");
             let id = if language == "en" { Some(id.as_str()) } else { None };
             for phrase in words.chain(id) {
-                let letters = phrase.split_whitespace().map(|w| fold(w).chars().count()).sum();
+                let words = phrase.split_whitespace().take(if phrases.noun_first() { 1 } else { usize::MAX });
+                let letters = words.map(|w| fold(w).chars().count()).sum();
                 phrases.put(phrase, RoomWord { id: room.id.clone(), letters }, |old, new| {
                     let letters = if old.id == new.id { old.letters.min(new.letters) } else { old.letters };
                     RoomWord { id: old.id.clone(), letters }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use d3dgen_model::domain::{Access, Domain, GENERIC_ROOM_TYPE, Occupants, Program, ProgramRoom, Shape};
 use d3dgen_model::scene_graph::{Note, Occupancy, Robot};
-use d3dgen_model::style::Style;
+use d3dgen_model::style::{LayoutStyle, Style, StyleWord};
 use d3dgen_plugins::Registry;
 
 use super::beds::{self, Held};
@@ -164,6 +164,12 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     let is_room = |s: Span| list_from > 0 && s.start >= list_from && vocabulary.own_at(&tokens, s).is_some();
     let mut said_styles = styles::said(&tokens, &languages);
     said_styles.retain(|s| !is_room(s.span));
+    // "open-plan flat"
+    if let Some(head) = building.head.filter(|_| lives) {
+        let before = |i: &usize| spoken.iter().any(|s| s.tag_at(&tokens, *i, Tag::OpenPlan) == Some(head.start));
+        let open = (0..head.start).find(before).map(|start| Span { start, end: head.start });
+        said_styles.extend(open.map(|span| styles::Said { span, word: StyleWord::Layout(LayoutStyle::Open) }));
+    }
     spans.extend(said_styles.iter().map(|s| s.span));
     // "cleaning robot" and "wheelchair users" name no object
     let mut not_things = machines.spans.clone();
@@ -190,7 +196,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         let wards: Vec<Span> = building.words.iter().chain(&building.head).copied().collect();
         beds::of_several_wards(&mut mentions, &numbers, &wards);
     }
-    let seated = if lives { Vec::new() } else { seated::read(&tokens, &mut mentions, domain, &spoken) };
+    let seated = if lives { Vec::new() } else { seated::read(&tokens, &mut mentions, (domain, program), &spoken) };
     let doors = unread::doors(&tokens, &mut mentions, &spoken);
     let docked = docks::inside_rooms(&tokens, &mut mentions, &machines.spans, &spoken);
     let said_styles = styles::of_building(said_styles, &mentions, language);
@@ -521,8 +527,7 @@ impl People {
         };
         let mut residents = count(&What::Residents);
         // "for 40 people": those who live in a dwelling, work where the program seats staff, visit anywhere else
-        let lives = domain.room_type(&words().dwelling.bedroom).is_some()
-            && program.rooms.iter().any(|r| r.room_type == words().dwelling.bedroom);
+        let lives = domain.room_type(&words().dwelling.bedroom).is_some() && is_dwelling(program);
         let seats = |r: &ProgramRoom| r.area_per_occupant_m2.is_some() || r.occupants_per_room.is_some();
         let works = program.rooms.iter().any(|r| r.occupants == Occupants::Staff && seats(r));
         match people {
@@ -660,7 +665,9 @@ fn total_rooms(
 
 /// Returns true for programs of buildings that people live in.
 pub(super) fn is_dwelling(program: &Program) -> bool {
-    program.rooms.iter().any(|r| r.room_type == words().dwelling.bedroom || r.room_type == words().dwelling.living)
+    let d = &words().dwelling;
+    let first = program.rooms.first().is_some_and(|r| r.room_type == d.studio);
+    first || program.rooms.iter().any(|r| r.room_type == d.bedroom || r.room_type == d.living)
 }
 
 /// Returns true for rooms listed behind the name of a building and no colon: these are what it has, and perhaps not all.

@@ -315,9 +315,12 @@ fn belongings(reader: &Reader, said: &mut Said) {
             said.each_room.extend((each_host && starts).then_some(g));
             continue;
         }
-        if each && many && (starts || has(Tag::Own)) || starts && !comma && !joined && many && !numbered {
+        // "three bedrooms including a master suite": one of them has it
+        let part = has(Tag::PartOf) && guest.count == Some(1);
+        let of_each = each && many && (starts || has(Tag::Own)) || starts && !comma && !joined && many && !numbered;
+        if of_each && !part {
             said.each.push((g, h));
-        } else if !(starts && !comma && !joined && !numbered) || many {
+        } else if !part && (!(starts && !comma && !joined && !numbered) || many) {
             continue;
         }
         let (connector, spread) = (Connector::Door, Spread::Each);

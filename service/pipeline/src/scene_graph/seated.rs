@@ -1,6 +1,6 @@
 //! Desks of rooms: "two open offices with 20 desks each", "three rooms of 4 desks", "je 6 Arbeitsplätze".
 
-use d3dgen_model::domain::{Domain, RoomType, Shape};
+use d3dgen_model::domain::{Domain, Program, RoomType, Shape};
 
 use super::beds::Held;
 use super::mentions::{Mention, What};
@@ -27,7 +27,12 @@ pub(super) fn desks(domain: &Domain, kind: &RoomType) -> Option<[u32; 2]> {
 }
 
 /// Reads how many desks rooms have; rooms "of 4 desks" become those of the domain that have as many.
-pub(super) fn read(tokens: &[Token], mentions: &mut [Mention], domain: &Domain, spoken: &[&Spoken]) -> Vec<Held> {
+pub(super) fn read(
+    tokens: &[Token],
+    mentions: &mut [Mention],
+    (domain, program): (&Domain, &Program),
+    spoken: &[&Spoken],
+) -> Vec<Held> {
     let mut out: Vec<Held> = Vec::new();
     let tagged = |i: usize, tag| spoken.iter().any(|s| s.tag_at(tokens, i, tag).is_some());
     for d in 1..mentions.len() {
@@ -53,7 +58,9 @@ pub(super) fn read(tokens: &[Token], mentions: &mut [Mention], domain: &Domain, 
             What::Room(id) => id.clone(),
             What::Total if host.count.is_some() && !host.article && (of || per_room) => {
                 let fits = |k: &&RoomType| desks(domain, k).is_some_and(|[low, high]| (low..=high).contains(&each));
-                let Some(kind) = domain.room_types.iter().filter(fits).min_by_key(|k| desks(domain, k)) else { continue };
+                let strange = |k: &&RoomType| !program.rooms.iter().any(|e| e.room_type == k.id);
+                let least = |k: &&RoomType| (strange(k), desks(domain, k));
+                let Some(kind) = domain.room_types.iter().filter(fits).min_by_key(least) else { continue };
                 mentions[d - 1].what = What::Room(kind.id.clone());
                 kind.id.clone()
             }
