@@ -5,7 +5,6 @@ use d3dgen_model::domain::{Access, Domain};
 use d3dgen_model::scene_graph::Connector;
 
 use super::mentions::{Mention, What};
-use super::numbers::Number;
 use super::relations::{Relation, Said, Spread};
 use super::text::{Kind, Span, Token};
 use super::words::{Spoken, Tag};
@@ -81,7 +80,8 @@ fn joint(tokens: &[Token], prompt: &str, i: usize, spoken: &[&Spoken]) -> Option
         types.extend(fresh);
         end = to;
     }
-    (types.len() > 1).then_some((end, types))
+    // "open-plan living"
+    (types.len() > 1 || open).then_some((end, types))
 }
 
 /// Returns true for a word such as "open-plan" that ends at a token (`before` a room) or begins at one (behind it).
@@ -105,8 +105,7 @@ pub(super) fn settle(tokens: &[Token], compounds: &[Compound], spoken: &[&Spoken
         let head = mentions[first].clone();
         let before = mentions[..first].iter().rev().find(|m| m.what == head.what && m.count.is_some_and(|n| n > 1));
         let part = before.is_some_and(|m| {
-            (m.span.end..compound.span.start)
-                .any(|k| spoken.iter().any(|s| s.tag_at(tokens, k, Tag::PartOf).is_some()))
+            (m.span.end..compound.span.start).any(|k| spoken.iter().any(|s| s.tag_at(tokens, k, Tag::PartOf).is_some()))
         });
         let single = head.count.is_none() && !head.plural;
         for m in mentions.iter_mut().filter(|m| m.span == compound.span) {
@@ -145,25 +144,43 @@ pub(super) fn relate(compounds: &[Compound], mentions: &[Mention], domain: &Doma
     }
 }
 
-/// Returns the types of rooms that the prompt calls open and that an open layout of the domain joins to others.
-pub(super) fn open_rooms(
+/// Opens rooms of the day to each other that "living area with open kitchen" puts one into the other.
+pub(super) fn open_belongings(
     tokens: &[Token],
     mentions: &[Mention],
-    numbers: &[Number],
     domain: &Domain,
     spoken: &[&Spoken],
-) -> Vec<String> {
+    said: &mut Said,
+) {
+    let types = |m: usize| mentions[m].room_type();
+    for r in said.relations.iter_mut().filter(|r| r.belongs) {
+        let (Some(a), Some(b)) = (types(r.subject), types(r.object)) else { continue };
+        let joins = domain.layouts.open_joins.iter().any(|j| j.iter().any(|t| t == a) && j.iter().any(|t| t == b));
+        if a != b && joins && is_called_open(tokens, &mentions[r.subject], spoken) {
+            (r.belongs, r.connector) = (false, Connector::Open);
+        }
+    }
+}
+
+/// Returns true for "open kitchen", "cuisine ouverte".
+fn is_called_open(tokens: &[Token], m: &Mention, spoken: &[&Spoken]) -> bool {
+    let before = m.span.start.checked_sub(1).is_some_and(|i| is_open(tokens, i, spoken, true));
+    // "cuisine ouverte", but "kitchen open study"
+    let noun = |i: usize| spoken.iter().any(|s| s.joint.longest_at(tokens, i).is_some());
+    before
+        || tokens.get(m.span.end).is_some_and(|t| !t.is_mark())
+            && is_open(tokens, m.span.end, spoken, false)
+            && !noun(m.span.end + 1)
+}
+
+/// Returns the types of rooms that the prompt calls open and that an open layout of the domain joins to others.
+pub(super) fn open_rooms(tokens: &[Token], mentions: &[Mention], domain: &Domain, spoken: &[&Spoken]) -> Vec<String> {
     let mut out: Vec<String> = Vec::new();
     for m in mentions {
         let Some(id) = m.room_type().filter(|id| domain.layouts.open_joins.iter().flatten().any(|j| j == id)) else {
             continue;
         };
-        let before = m.span.start.checked_sub(1).is_some_and(|i| is_open(tokens, i, spoken, true));
-        let behind = tokens.get(m.span.end).is_some_and(|t| !t.is_mark())
-            && is_open(tokens, m.span.end, spoken, false)
-            && !numbers.iter().any(|n| n.span.start == m.span.end)
-            && !mentions.iter().any(|o| o.span.start == m.span.end + 1);
-        if (before || behind) && !out.iter().any(|o| o == id) {
+        if is_called_open(tokens, m, spoken) && !out.iter().any(|o| o == id) {
             out.push(id.to_owned());
         }
     }

@@ -341,6 +341,11 @@ fn noun_at(
         .at(tokens, i, numbers, spoken)
         // "für den Transport": a little word of the language names no room of another one
         .filter(|r| free(r.0) && !(r.0 == i + 1 && is_little(tokens, i, spoken, language)))
+        // "open-plan" is no office where there are none
+        .filter(|r| {
+            let open = spoken.iter().any(|s| s.tag_at(tokens, i, Tag::OpenPlan) == Some(r.0));
+            !open || vocabulary.ids.contains(r.1)
+        })
         .map(|(end, id, plural)| (end, What::Room(id.into()), plural));
     let entrance = spoken.iter().find_map(|s| s.tag_at(tokens, i, Tag::Entrance)).filter(|&end| free(end));
     if let Some(end) = entrance

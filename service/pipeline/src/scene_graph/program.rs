@@ -321,7 +321,10 @@ impl<'r, 'a> Build<'r, 'a> {
             set.iter().any(|s| s == room_type)
                 && wishes.wishes.iter().any(|w| w.room_type != room_type && set.contains(&w.room_type))
         };
-        let fixed = words().alike.iter().any(|set| met(&set)) || exact || night && self.sleeping_is_fixed || lived_in && self.reading.habitable_fixed;
+        let fixed = words().alike.iter().any(|set| met(&set))
+            || exact
+            || night && self.sleeping_is_fixed
+            || lived_in && self.reading.habitable_fixed;
         !fixed && !self.is_forbidden(room_type)
     }
 
@@ -473,7 +476,7 @@ impl<'r, 'a> Build<'r, 'a> {
             let sleeping =
                 |e: &&ProgramRoom| self.reading.domain.room_type_or_generic(&e.room_type).zone == Zone::Night;
             if let Some(entry) = self.program.rooms.iter().find(sleeping) {
-                for _ in self.count(&entry.room_type)..wanted {
+                for _ in self.count(&entry.room_type) + self.count(&words().dwelling.studio)..wanted {
                     self.add(entry, limit);
                 }
             }
@@ -529,8 +532,13 @@ pub(super) fn head_count(reading: &Reading, of: Occupants) -> Option<u32> {
 /// Spreads the people over the rooms that the program gives them.
 fn hold_people(reading: &mut Reading, rooms: &mut [Planned]) {
     hold_beds(reading, rooms);
+    // who has a desk elsewhere needs none here
+    let at_desks = |r: &&Planned| seated::desks(reading.domain, r.kind).is_some();
+    let seated: u32 = rooms.iter().filter(at_desks).filter_map(|r| r.occupants).sum();
     for entry in &reading.program.rooms {
         let Some(people) = head_count(reading, entry.occupants) else { continue };
+        let elsewhere = if entry.occupants == Occupants::Staff { seated } else { 0 };
+        let Some(people) = people.checked_sub(elsewhere).filter(|n| *n > 0) else { continue };
         let places: Vec<usize> = (0..rooms.len()).filter(|&i| rooms[i].room_type == entry.room_type).collect();
         let sits = entry.area_per_occupant_m2.is_some() || entry.occupants != Occupants::Staff;
         if !sits || places.is_empty() || places.iter().any(|&i| rooms[i].occupants.is_some()) || reading.single {

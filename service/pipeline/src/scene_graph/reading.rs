@@ -202,6 +202,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     let said_styles = styles::of_building(said_styles, &mentions, language);
     let mut said = relations::read(&tokens, &mentions, &spoken, language, building.head);
     compounds::relate(&compounds, &mentions, domain, &mut said);
+    compounds::open_belongings(&tokens, &mentions, domain, &spoken, &mut said);
     let text = Text {
         tokens: &tokens,
         prompt,
@@ -213,7 +214,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         robots: machines.named,
     };
     let mut wishes = wishes::gather(&text, &mut conflicts);
-    wishes.open = compounds::open_rooms(&tokens, &mentions, &numbers, domain, &spoken);
+    wishes.open = compounds::open_rooms(&tokens, &mentions, domain, &spoken);
     let area_m2 = total_area(&text, request, &mut conflicts);
     let country = flag_country.as_deref().or(place.country_code.as_deref());
     let said_storeys = storeys::Text {
@@ -263,8 +264,10 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         let settled = sleepers.settle(&mut wishes, &mut assumptions, &mut conflicts);
         (held, people.occupancy.beds) = (settled.held, settled.beds.or(parts.beds));
         let desks: u32 = seated.iter().map(|s| s.count.saturating_mul(s.beds)).fold(0, u32::saturating_add);
-        if people.occupancy.desks.is_some() {
-            people.occupancy.desks = people.occupancy.desks.max(Some(desks));
+        let heads = &mut people.occupancy;
+        let counted = if heads.desks.is_some() { &mut heads.desks } else { &mut heads.staff };
+        if counted.is_some() {
+            *counted = (*counted).max(Some(desks));
         }
         held.extend(seated);
     }
@@ -288,7 +291,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     }
     let total = total.filter(|_| !single);
     let closed = single || is_closed(&wishes, &tokens, &building, lives);
-    let only = (0..tokens.len()).any(|i| spoken.iter().any(|s| s.tag_at(&tokens, i, Tag::Only).is_some()));
+    let only = says_only(&tokens, &mentions, &spoken);
     let may_join = joins_a_name(&building, &tokens, language);
     if closed && lives && !single {
         wishes.open_to(domain);
@@ -697,6 +700,19 @@ fn is_closed(wishes: &Wishes, tokens: &[Token], building: &Building, lives: bool
     !open && whole && types >= 1 && (items >= 3 || types >= 2 && colon)
 }
 
+/// Returns true for "only three offices", "exactly 5 rooms", "nothing else": no room may be added.
+fn says_only(tokens: &[Token], mentions: &[Mention], spoken: &[&Spoken]) -> bool {
+    (0..tokens.len()).any(|i| {
+        let Some(end) = spoken.iter().find_map(|s| s.tag_at(tokens, i, Tag::Only)) else { return false };
+        let from = |m: &Mention| m.from.min(m.span.start);
+        let next = mentions.iter().filter(|m| from(m) >= end).min_by_key(|m| from(m));
+        let rooms = next.filter(|m| m.room_type().is_some() || m.what == What::Total);
+        // "nothing else", but not "for staff only"
+        let closes = end > i + 1 && tokens.get(end).is_none_or(Token::is_mark);
+        closes || rooms.is_some_and(|m| from(m) <= end + 1)
+    })
+}
+
 /// Adds to a list of rooms the one the building is for where the list takes it for granted: a laboratory's laboratory,
 /// a supermarket's sales floor, the desks of those who work there. A dwelling has no such room.
 fn add_main_room(
@@ -716,7 +732,10 @@ fn add_main_room(
         let seat = r.area_per_occupant_m2.is_some() || r.occupants_per_room.is_some_and(|n| n <= MOST_IN_OFFICE);
         r.occupants == Occupants::Staff && seat
     };
-    let placed = domain.programs.iter().flat_map(|p| &p.rooms).any(|r| works(r) && listed(&r.room_type));
+    let team =
+        |w: &Wish| domain.room_type(&w.room_type).and_then(|k| seated::desks(domain, k)).is_some_and(|d| d[1] > 2);
+    let placed = domain.programs.iter().flat_map(|p| &p.rooms).any(|r| works(r) && listed(&r.room_type))
+        || wishes.wishes.iter().any(team);
     let size = |id: &str| domain.room_type_or_generic(id).area_m2.target;
     let largest = wishes.wishes.iter().map(|w| size(&w.room_type)).fold(0.0, f64::max);
     let heads = people.occupancy.staff.or(people.occupancy.desks).is_some() && works(main);

@@ -1,5 +1,7 @@
 //! Desks of rooms: "two open offices with 20 desks each", "three rooms of 4 desks", "je 6 Arbeitsplätze".
 
+use std::cmp::Reverse;
+
 use d3dgen_model::domain::{Domain, Program, RoomType, Shape};
 
 use super::beds::Held;
@@ -44,7 +46,8 @@ pub(super) fn read(
         let tail = mentions[d].span.end..(mentions[d].span.end + 2).min(tokens.len());
         let per_room = gap.clone().any(|i| tagged(i, Tag::Each))
             || tail.take_while(|&i| !tokens[i].is_mark()).any(|i| tagged(i, Tag::Each));
-        let of = gap.len() == 1 && gap.clone().all(|i| tagged(i, Tag::Stops) || matches!(tokens[i].text.as_str(), "a" | "de"));
+        let of = gap.len() == 1
+            && gap.clone().all(|i| tagged(i, Tag::Stops) || matches!(tokens[i].text.as_str(), "a" | "de"));
         let stops = gap.clone().any(|i| {
             tokens[i].ends_sentence() || tokens[i].is_mark() && !per_room || tagged(i, Tag::Joins) || tagged(i, Tag::No)
         });
@@ -59,7 +62,7 @@ pub(super) fn read(
             What::Total if host.count.is_some() && !host.article && (of || per_room) => {
                 let fits = |k: &&RoomType| desks(domain, k).is_some_and(|[low, high]| (low..=high).contains(&each));
                 let strange = |k: &&RoomType| !program.rooms.iter().any(|e| e.room_type == k.id);
-                let least = |k: &&RoomType| (strange(k), desks(domain, k));
+                let least = |k: &&RoomType| (strange(k), desks(domain, k).map(|[low, high]| (Reverse(low), high)));
                 let Some(kind) = domain.room_types.iter().filter(fits).min_by_key(least) else { continue };
                 mentions[d - 1].what = What::Room(kind.id.clone());
                 kind.id.clone()

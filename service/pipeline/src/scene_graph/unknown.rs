@@ -72,9 +72,8 @@ fn english(tokens: &[Token], i: usize, spoken: &[&Spoken], list_from: usize) -> 
         let room = tokens[at].text == "room" || tokens[at].text == "rooms";
         let space = i >= list_from && tagged(at, Tag::SpaceWords);
         // "model workshop" is a workshop
-        let head = (i + 1..=at).any(|k| {
-            spoken.iter().any(|s| s.heads.longest_at(tokens, k).is_some_and(|(end, ())| end == at + 1))
-        });
+        let head = (i + 1..=at)
+            .any(|k| spoken.iter().any(|s| s.heads.longest_at(tokens, k).is_some_and(|(end, ())| end == at + 1)));
         if !(room || space) || head {
             continue;
         }

@@ -355,7 +355,7 @@ fn put<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>, room: Planned<'a
     let joins_list = if is_dwelling(reading.program) {
         reading.may_join
     } else {
-        !reading.only && is_worked_at(reading.program) || reading.may_join && (!reading.program.vital.is_empty() || reading.wet.has_toilet(room.kind))
+        !reading.only && is_worked_at(reading.program) || reading.may_join && !reading.program.vital.is_empty()
     };
     match (reading.total, reading.closed) {
         (None, true) if !joins_list => false,

@@ -183,7 +183,8 @@ fn check_rooms(case: &Case, graph: &SceneGraph, misses: &mut Misses) {
         misses.check(has_edge(graph, pair), "adjacency", pair, edges());
     }
     for [a, b] in &case.open {
-        let between = |e: &GraphEdge| is(graph, &e.a, a) && is(graph, &e.b, b) || is(graph, &e.a, b) && is(graph, &e.b, a);
+        let between =
+            |e: &GraphEdge| is(graph, &e.a, a) && is(graph, &e.b, b) || is(graph, &e.a, b) && is(graph, &e.b, a);
         let open = graph.edges.iter().any(|e| e.connector == Connector::Open && e.required && between(e));
         misses.check(open, "open", (a, b), edges());
     }
