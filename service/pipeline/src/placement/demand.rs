@@ -3,7 +3,6 @@
 use d3dgen_model::domain::{Arrangement, Domain, Furnishing, Mount, ObjectType, RoomType, Shape};
 use d3dgen_model::occupancy::ROBOT_HEIGHT_M;
 use d3dgen_model::scene_graph::{GraphRoom, SceneGraph};
-use d3dgen_model::style::Clutter;
 
 use super::seats::is_seat;
 use super::state::Placed;
@@ -112,8 +111,6 @@ pub(super) struct Household<'a> {
     has_robots: bool,
     /// Most people that the graph has in one room to sleep in.
     sharing: u32,
-    /// True where docks stand without robots: in worlds full of things.
-    full: bool,
 }
 
 impl<'a> Household<'a> {
@@ -129,7 +126,6 @@ impl<'a> Household<'a> {
             accessible: graph.accessible,
             has_robots: !graph.robots.is_empty(),
             sharing: held.filter(|(kind, _)| sleeps(kind)).map(|h| h.1).max().unwrap_or(0),
-            full: graph.style.clutter == Some(Clutter::High),
         }
     }
 
@@ -144,8 +140,9 @@ impl<'a> Household<'a> {
 
     fn wants(&self, line: &Furnishing) -> bool {
         let dock = || self.domain.anchor(&line.item).is_some_and(|o| o.shape == Shape::Dock);
+        // docks stand where there are robots, or in rooms that are there for them;
         // few lines ask who sleeps there, and to know takes time
-        (line.required || self.has_robots || self.full || !dock())
+        (line.required || self.has_robots || !dock())
             && line.is_for(self.room_types.iter().copied(), self.accessible)
             && (line.sleepers == 0 || self.sleepers() >= line.sleepers)
     }
