@@ -37,6 +37,8 @@ pub(super) struct Task<'a> {
     pub instead_of: &'a [String],
     /// True when a required line comes in its place where it finds none.
     pub first_choice: bool,
+    /// True for what somebody asked for by name, and for the bed of two.
+    pub asked: bool,
 }
 
 impl Task<'_> {
@@ -185,10 +187,23 @@ pub(super) fn tasks<'a>(
         let (rule, instead_of) = (rule.clone(), &f.instead_of[..]);
         let first_choice =
             asked || kind.furnishing.iter().any(|other| other.required && other.instead_of.contains(&f.item));
+        let asked = asked || f.sleepers > 0 && anchor.shape == Shape::Bed;
         let item = &f.item;
         let leads = line == 0 || instead_of.contains(&kind.furnishing[0].item);
-        let whole =
-            Task { item, anchor, arrangement, count, required, spare: 0, line, leads, rule, instead_of, first_choice };
+        let whole = Task {
+            item,
+            anchor,
+            arrangement,
+            count,
+            required,
+            spare: 0,
+            line,
+            leads,
+            rule,
+            instead_of,
+            first_choice,
+            asked,
+        };
         let together = whole.is_batch() || required == 0 || required == count || occupied.is_some_and(|o| o.0 == line);
         if together {
             out.push(whole);
@@ -216,6 +231,7 @@ pub(super) fn tasks<'a>(
             rule,
             instead_of: &[],
             first_choice: named.contains(&&object.id),
+            asked: named.contains(&&object.id),
         });
     }
     if let Some(each) = per_person_m2.filter(|_| occupied.is_none()) {
@@ -322,6 +338,7 @@ pub(super) fn one_more(object: &ObjectType) -> Task<'_> {
         rule,
         instead_of: &[],
         first_choice: false,
+        asked: false,
     }
 }
 

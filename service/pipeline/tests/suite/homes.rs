@@ -59,6 +59,8 @@ fn named_things_stand_where_they_are_asked_for() {
     for (prompt, room_type, object) in [
         ("house with 3 bedrooms, kitchen of 20 m2 with island, living room, 2 bathrooms", "kitchen", "kitchen_island"),
         ("flat with 2 bedrooms, living room with a piano, kitchen, bathroom", "living_room", "piano"),
+        ("tiny house with a desk", "studio", "small_desk"),
+        ("studio of 22 m2 for two people", "studio", "double_bed"),
     ] {
         held.extend(worlds(prompt, 3).iter().map(|w| count(w, room_type, object) == 1));
     }
