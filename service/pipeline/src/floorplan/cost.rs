@@ -413,7 +413,9 @@ impl<'b> Judge<'b> {
             }
             let (longest, total) = room.outer;
             match spec.daylight {
-                _ if spec.needs_outer_wall() => score.hard += meters((up(WINDOW_WALL_M) - longest).max(0)),
+                _ if spec.needs_outer_wall() => {
+                    score.hard += meters((up(spec.least_outer_wall()) - longest).max(0));
+                }
                 Daylight::Preferred if longest < up(WINDOW_WALL_M) && !corridor => score.soft[3] += DARK,
                 Daylight::None | Daylight::Optional if !spec.circulation => {
                     score.soft[3] += 0.03 * meters(total).min(6.0)

@@ -115,6 +115,7 @@ fn lay(site: &Site<'_>, entrance_first: bool, rng: &mut Stream) -> Laid {
     let entrances = site.entrances();
     let (before, after) = entrances.split_at(if entrance_first { entrances.len().min(1) } else { 0 });
     site.lay_entrances(before, &mut laid);
+    site.lay_gates(&mut laid);
     site.lay_inner(&mut laid, rng);
     site.lay_entrances(after, &mut laid);
     site.lay_exits(&mut laid);
@@ -222,6 +223,37 @@ impl Site<'_> {
                 laid.missing.push(format!("outdoors to {}", self.brief.rooms[room].id));
             }
         }
+    }
+
+    /// Places the gates through which vehicles come in, at the end of the room rather than along it.
+    fn lay_gates(&self, laid: &mut Laid) {
+        for (room, spec) in self.brief.rooms.iter().enumerate() {
+            let Some(clear) = spec.gate else { continue };
+            let opening = Brief::opening(clear);
+            let walls = self.stretches.iter().filter(|s| s.only_room() == Some(room));
+            let mut spots: Vec<Spot> = self.standing_spot(&[room], false).into_iter().collect();
+            if spots.is_empty() {
+                spots.extend(walls.flat_map(|s| self.gate_spots(s, room, clear, opening)));
+            }
+            if !laid.take_best(spots) {
+                laid.missing.push(format!("outdoors to {}", spec.id));
+            }
+        }
+    }
+
+    fn gate_spots(&self, s: &Stretch, room: usize, clear: f64, opening: f64) -> Vec<Spot> {
+        let (from, to) = self.usable(s);
+        if to - from < opening - 1e-9 {
+            return Vec::new();
+        }
+        let middle = (from + to - opening) / 2.0;
+        let spots = [(middle, 0.0), (from, 0.5), (to - opening, 0.5)].into_iter().map(|(start, penalty)| {
+            let line = Segment { start: s.point(start), end: s.point(start + opening) };
+            let zone = self.zone(s, room, start, opening, APPROACH_M);
+            let door = self.door(line, DoorKind::Sliding, clear, s, &[room], None);
+            Spot { door, view: View::Other, zones: vec![(room, zone)], penalty: penalty + meters(s.len()) }
+        });
+        spots.filter(|spot| spot.zones.iter().all(|(r, zone)| self.inside(*r, zone))).collect()
     }
 
     /// Places second doors from the corridor into large rooms, as far from the first as the wall between them allows.

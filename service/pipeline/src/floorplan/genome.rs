@@ -222,7 +222,9 @@ impl Genome {
                 let fits = match host {
                     Some(h) => cell.host == h,
                     None => {
+                        // a vehicle needs the whole room
                         !brief.in_core(cell.host)
+                            && brief.rooms[cell.host].gate.is_none()
                             && brief.rooms[cell.host].area_target >= 1.8 * brief.rooms[room].area_target
                     }
                 };

@@ -13,6 +13,8 @@ use d3dgen_model::storeys::LinkKind;
 use d3dgen_model::style::{Form, StyleWord, Symmetry};
 
 use super::core::Core;
+use super::cost::WINDOW_WALL_M;
+use super::lattice::{JAMB_M, OUTER_HALF_M};
 use crate::Error;
 
 /// Clear width that a wheelchair and most robots need through a door, m; used when the prompt asks for access.
@@ -56,6 +58,8 @@ pub(super) struct RoomSpec {
     /// True for rooms into which no leaf opens.
     pub slides: bool,
     pub entrance: bool,
+    /// Clear width of the gate through which its vehicles come in, m.
+    pub gate: Option<f64>,
     pub door_width: f64,
     pub ceiling_height: f64,
     /// Limits of its type, for what depends on the finished room.
@@ -76,10 +80,17 @@ pub(super) struct RoomSpec {
 impl RoomSpec {
     /// Returns true when a hard rule puts it on the facade: daylight rooms and balconies.
     pub(super) fn needs_outer_wall(&self) -> bool {
-        self.daylight == Daylight::Required || self.zone == Zone::Outdoor
+        self.daylight == Daylight::Required || self.zone == Zone::Outdoor || self.gate.is_some()
+    }
+
+    /// Returns the least length of one piece of outer wall that a room on the facade needs, m.
+    pub(super) fn least_outer_wall(&self) -> f64 {
+        self.gate.map_or(WINDOW_WALL_M, |g| Brief::opening(g) + 2.0 * (JAMB_M + OUTER_HALF_M))
     }
 }
 
+/// How much wider than a vehicle its gate is, m.
+const BESIDE_VEHICLE_M: f64 = 0.6;
 /// What a robot's circle has to spare where it passes, both sides together, m.
 const PASSING_M: f64 = 0.1;
 /// Floor that rooms have for a usual robot to turn on anyway, m^2.
@@ -402,6 +413,8 @@ fn room_spec(
     // A robot's circle passes with 5 cm to spare on both sides.
     let robot = graph.robots.iter().map(|r| 2.0 * r.radius_m + 0.1).fold(0.0, f64::max);
     let robots = !graph.robots.is_empty();
+    // what hangs in the air or lies below the ground has no drive
+    let gate = gate(domain, kind).filter(|_| room.level == 0);
     RoomSpec {
         id: room.id.clone(),
         room_type: room.room_type.clone(),
@@ -422,6 +435,7 @@ fn room_spec(
             || graph.accessible && kind.wet && kind.privacy == Privacy::Private
             || robots && domain.circulation.automatic_doors && kind.robot.iter().any(|u| *u != RobotUse::KeepOut),
         entrance: room.entrance,
+        gate,
         door_width: door_width.max(robot),
         ceiling_height: kind.ceiling_height_m,
         limits: limit.clone(),
@@ -432,6 +446,16 @@ fn room_spec(
         elevator: graph.links.iter().any(|l| l.kind == LinkKind::Elevator && l.room_ids.contains(&room.id)),
         unit: None,
     }
+}
+
+/// Returns the clear width of the gate that the vehicles of a room need, m.
+fn gate(domain: &Domain, kind: &RoomType) -> Option<f64> {
+    let wide = |item: &str| {
+        let vehicle = domain.anchor(item).filter(|o| o.shape == Shape::Vehicle)?;
+        vehicle.sizes_m.first().map(|size| size[0])
+    };
+    let parked = kind.furnishing.iter().filter(|f| f.required).filter_map(|f| wide(&f.item));
+    parked.reduce(f64::max).map(|wide| wide + BESIDE_VEHICLE_M)
 }
 
 /// Returns true for rooms that are there to charge robots.

@@ -30,6 +30,7 @@ fn room(id: &str, area: [f64; 3], min_dimension: f64, daylight: Daylight, zone: 
         open_front: false,
         slides: false,
         entrance: false,
+        gate: None,
         door_width: 0.9,
         ceiling_height: 2.6,
         materials: Materials { floor: material(), wall: material(), ceiling: material() },

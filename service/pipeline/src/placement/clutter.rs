@@ -345,6 +345,7 @@ fn task_of<'a>(line: &ClutterLine, object: &'a ObjectType, host: &ObjectType, co
         leads: false,
         instead_of: &[],
         first_choice: false,
+        asked: false,
         rule: format!("clutter ({} on {}): {}", line.items.join(", "), host.id, line.pattern.name()),
     }
 }

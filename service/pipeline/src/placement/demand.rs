@@ -37,6 +37,8 @@ pub(super) struct Task<'a> {
     pub instead_of: &'a [String],
     /// True when a required line comes in its place where it finds none.
     pub first_choice: bool,
+    /// True for what somebody asked for by name, and for the bed of two.
+    pub asked: bool,
 }
 
 impl Task<'_> {
@@ -109,12 +111,24 @@ pub(super) struct Household<'a> {
     /// True where step-free access is asked for.
     accessible: bool,
     has_robots: bool,
+    /// Most people that the graph has in one room to sleep in.
+    sharing: u32,
 }
 
 impl<'a> Household<'a> {
     pub fn new(domain: &'a Domain, graph: &'a SceneGraph) -> Self {
         let room_types = graph.rooms.iter().map(|r| r.room_type.as_str()).collect();
-        Self { domain, room_types, accessible: graph.accessible, has_robots: !graph.robots.is_empty() }
+        let sleeps = |kind: &RoomType| {
+            kind.furnishing.iter().any(|f| f.required && usual_unit(domain, &f.item).is_some_and(|u| u.beds() > 0))
+        };
+        let held = graph.rooms.iter().filter_map(|r| Some((domain.room_type(&r.room_type)?, r.occupants?)));
+        Self {
+            domain,
+            room_types,
+            accessible: graph.accessible,
+            has_robots: !graph.robots.is_empty(),
+            sharing: held.filter(|(kind, _)| sleeps(kind)).map(|h| h.1).max().unwrap_or(0),
+        }
     }
 
     /// Returns how many people have a bed.
@@ -123,12 +137,15 @@ impl<'a> Household<'a> {
             let lines = self.domain.room_type_or_generic(kind).furnishing.iter().filter(|f| f.required);
             lines.filter_map(|f| Some(f.min * usual_unit(self.domain, &f.item)?.beds())).sum::<u32>()
         };
-        self.room_types.iter().map(beds).sum()
+        self.room_types.iter().map(beds).sum::<u32>().max(self.sharing)
     }
 
     fn wants(&self, line: &Furnishing) -> bool {
+        let dock = || self.domain.anchor(&line.item).is_some_and(|o| o.shape == Shape::Dock);
+        // docks stand where there are robots, or in rooms that are there for them;
         // few lines ask who sleeps there, and to know takes time
-        line.is_for(self.room_types.iter().copied(), self.accessible)
+        (line.required || self.has_robots || !dock())
+            && line.is_for(self.room_types.iter().copied(), self.accessible)
             && (line.sleepers == 0 || self.sleepers() >= line.sleepers)
     }
 }
@@ -143,7 +160,8 @@ pub(super) fn tasks<'a>(
     windows: u32,
     household: &Household,
 ) -> Vec<Task<'a>> {
-    let occupied = occupied_line(domain, kind, graph);
+    let occupied = occupied_line(domain, kind, graph, household);
+    let named = named(domain, kind, graph);
     let mut out: Vec<Task> = Vec::new();
     for (line, f) in kind.furnishing.iter().enumerate().filter(|(_, f)| household.wants(f)) {
         let Some(anchor) = domain.anchor(&f.item) else { continue };
@@ -158,6 +176,8 @@ pub(super) fn tasks<'a>(
             count = count.min(windows);
             required = required.min(windows);
         }
+        let asked = named.iter().any(|id| **id == anchor.id);
+        count = count.max(u32::from(asked && f.max > 0));
         if count == 0 {
             continue;
         }
@@ -165,11 +185,25 @@ pub(super) fn tasks<'a>(
         let rule = format!("furnishing line {} ({}): {name}", line + 1, f.item);
         let arrangement = f.arrangement;
         let (rule, instead_of) = (rule.clone(), &f.instead_of[..]);
-        let first_choice = kind.furnishing.iter().any(|other| other.required && other.instead_of.contains(&f.item));
+        let first_choice =
+            asked || kind.furnishing.iter().any(|other| other.required && other.instead_of.contains(&f.item));
+        let asked = asked || f.sleepers > 0 && anchor.shape == Shape::Bed;
         let item = &f.item;
         let leads = line == 0 || instead_of.contains(&kind.furnishing[0].item);
-        let whole =
-            Task { item, anchor, arrangement, count, required, spare: 0, line, leads, rule, instead_of, first_choice };
+        let whole = Task {
+            item,
+            anchor,
+            arrangement,
+            count,
+            required,
+            spare: 0,
+            line,
+            leads,
+            rule,
+            instead_of,
+            first_choice,
+            asked,
+        };
         let together = whole.is_batch() || required == 0 || required == count || occupied.is_some_and(|o| o.0 == line);
         if together {
             out.push(whole);
@@ -196,7 +230,8 @@ pub(super) fn tasks<'a>(
             leads: false,
             rule,
             instead_of: &[],
-            first_choice: false,
+            first_choice: named.contains(&&object.id),
+            asked: named.contains(&&object.id),
         });
     }
     if let Some(each) = per_person_m2.filter(|_| occupied.is_none()) {
@@ -261,10 +296,15 @@ fn turn_to_audience(tasks: &mut [Task]) {
 }
 
 /// Returns the line that beds, desks or seats for the room's occupants belong to, and how many units they need.
-fn occupied_line(domain: &Domain, kind: &RoomType, graph: Option<&GraphRoom>) -> Option<(usize, u32)> {
+fn occupied_line(
+    domain: &Domain,
+    kind: &RoomType,
+    graph: Option<&GraphRoom>,
+    household: &Household,
+) -> Option<(usize, u32)> {
     let people = graph?.occupants.filter(|n| *n > 0)?;
     let capacity = |measure: fn(&Unit) -> u32| {
-        kind.furnishing.iter().enumerate().find_map(|(line, f)| {
+        kind.furnishing.iter().enumerate().filter(|(_, f)| household.wants(f)).find_map(|(line, f)| {
             let unit = usual_unit(domain, &f.item)?;
             let each = measure(&unit);
             (each > 0 && f.max > 0).then_some((line, each))
@@ -298,7 +338,17 @@ pub(super) fn one_more(object: &ObjectType) -> Task<'_> {
         rule,
         instead_of: &[],
         first_choice: false,
+        asked: false,
     }
+}
+
+/// Returns the objects that somebody asked for in a room: they are wished for before what its type begins with.
+fn named<'a>(domain: &Domain, kind: &RoomType, graph: Option<&'a GraphRoom>) -> Vec<&'a String> {
+    let usual = kind.furnishing.first().and_then(|f| domain.anchor(&f.item));
+    let all = graph.map_or(&[][..], |g| &g.wished_assets);
+    let own = all.iter().position(|id| usual.is_some_and(|o| &o.id == id)).unwrap_or(0);
+    let is_dock = |id: &String| domain.object(id).is_some_and(|o| o.shape == Shape::Dock);
+    all[..own].iter().filter(|id| !is_dock(id)).collect()
 }
 
 /// Returns what the graph wishes for beyond the lines of the room's type, and how many.

@@ -106,8 +106,9 @@ impl Level {
     }
 }
 
-/// The last pass that tries what has something else in its place.
+/// The last pass that tries what has something else in its place, and the last that is made for what was asked for by name.
 const FIRST_CHOICES: usize = 1;
+const ASKED_FOR: usize = 5;
 const NOT_OPEN: Open = Open { doors: false, deep: false, windows: false };
 const WIDE_OPEN: Open = Open { doors: true, deep: true, windows: true };
 
@@ -151,6 +152,11 @@ impl Outcome<'_> {
         (self.required_missing, self.closed)
     }
 
+    /// Returns how many items had no place that somebody asked for.
+    fn asked_for(&self, job: &Job) -> usize {
+        self.missing.iter().filter(|(task, ..)| job.tasks[*task].asked).count()
+    }
+
     /// Returns how many items had no place for which something required comes in their place.
     fn second_choices(&self, job: &Job) -> usize {
         self.missing.iter().filter(|(task, ..)| job.tasks[*task].first_choice).count()
@@ -181,8 +187,10 @@ fn relax<'a>(job: &Job<'a, '_>) -> Outcome<'a> {
         let outcome = Pass::new(job, level).furnish();
         let advice_left = LEVELS.get(level + 1).is_some_and(|next| next.tightness >= 1.0 && next.open.doors);
         let second_choice = level < FIRST_CHOICES && outcome.second_choices(job) > 0;
-        let done = outcome.required_missing == 0 && (outcome.closed == 0 || !advice_left) && !second_choice;
-        let lacks = |o: &Outcome| (o.lacks(), o.second_choices(job));
+        let asked_for = level < ASKED_FOR && outcome.asked_for(job) > 0;
+        let done =
+            outcome.required_missing == 0 && (outcome.closed == 0 || !advice_left) && !second_choice && !asked_for;
+        let lacks = |o: &Outcome| (o.lacks(), o.asked_for(job), o.second_choices(job));
         if best.as_ref().is_none_or(|b| lacks(&outcome) < lacks(b)) {
             best = Some(outcome);
         }
@@ -378,7 +386,7 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
             let present = present + task.standing(&self.job.tasks[..index], &draft.state.placed);
             let count = task.count.saturating_sub(present);
             let replaced = |item: &String| draft.state.placed.iter().any(|p| p.unit.item == item);
-            let given_up = task.first_choice && self.level > FIRST_CHOICES;
+            let given_up = task.first_choice && !task.asked && self.level > FIRST_CHOICES;
             if count == 0 || given_up || self.job.stop.is_set() || task.instead_of.iter().any(replaced) {
                 continue;
             }

@@ -187,7 +187,7 @@ fn counts_rooms(
 ) -> bool {
     let plain = |i: usize| {
         let tags = spoken.iter().filter_map(|s| s.tags.longest_at(tokens, i)).flat_map(|f| f.1).collect::<Vec<_>>();
-        !tags.is_empty() && tags.iter().all(|t| matches!(t, Tag::NotNames | Tag::Own | Tag::StyleWords))
+        !tags.is_empty() && tags.iter().all(|t| matches!(t, Tag::NotNames | Tag::Own | Tag::StyleWords | Tag::OpenPlan))
     };
     // the number of "12-bed ward" is of its beds
     let held = [Tag::Beds, Tag::Desks, Tag::Holds];

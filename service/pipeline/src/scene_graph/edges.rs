@@ -29,6 +29,7 @@ pub(super) fn connect(reading: &mut Reading, planned: &[Planned], rooms: &mut Ve
     choose_entrance(reading, rooms, hub);
     keep_apart(reading, rooms, &mut web);
     web.follow_prompt(reading, planned, rooms);
+    web.open_named(reading, planned, rooms);
     web.open_up(reading, rooms);
     web.follow_rules(reading, rooms);
     web
@@ -51,6 +52,7 @@ pub(super) fn connect_storey(
     }
     keep_apart(reading, rooms, &mut web);
     web.follow_prompt(reading, planned, rooms);
+    web.open_named(reading, planned, rooms);
     web.open_up(reading, rooms);
     web.follow_rules(reading, rooms);
     web
@@ -151,6 +153,27 @@ impl Web {
                 }
                 let connector = if many { Connector::Near } else { pair.connector };
                 self.put(rooms, (i, j), connector, connector != Connector::Near, BY_PROMPT);
+            }
+        }
+    }
+
+    /// Opens the rooms that the prompt calls open to the first of those that an open layout joins them to.
+    fn open_named(&mut self, reading: &Reading, planned: &[Planned], rooms: &[GraphRoom]) {
+        let of = |kind: &str| (0..rooms.len()).filter(|&i| rooms[i].room_type == kind).collect::<Vec<_>>();
+        for id in &reading.wishes.open {
+            let joins = reading.domain.layouts.open_joins.iter().filter(|j| j.contains(id));
+            let partners: Vec<&String> = joins.flatten().filter(|p| *p != id).collect();
+            let met = |i: usize| {
+                let joined = |e: &GraphEdge| e.connector == Connector::Open && e.required;
+                self.edges.iter().any(|e| joined(e) && (e.a == rooms[i].id || e.b == rooms[i].id))
+            };
+            let from: Vec<usize> = of(id).into_iter().filter(|&i| !met(i)).collect();
+            let Some(to) = partners.iter().map(|p| of(p)).find(|to| !to.is_empty()) else { continue };
+            for (i, j) in spread(rooms, &from, &to, Spread::Each) {
+                let free = [i, j].iter().all(|&k| planned.get(k).is_none_or(|p| p.host.is_none()));
+                if free && !self.has_apart(&rooms[i].id, &rooms[j].id) {
+                    self.put(rooms, (i, j), Connector::Open, true, BY_PROMPT);
+                }
             }
         }
     }

@@ -2,14 +2,21 @@
 
 use std::collections::BTreeSet;
 
-use d3dgen_model::domain::{Domain, GENERIC_ROOM_TYPE};
+use d3dgen_model::domain::{Access, Domain, GENERIC_ROOM_TYPE, RoomType, Zone};
 use d3dgen_plugins::Registry;
 
 use super::beds::BedRoom;
+use super::compounds::{self, Compound};
 use super::numbers::Number;
+use super::seated;
 use super::text::{Kind, Phrases, Span, Token, fold};
 use super::unknown;
-use super::words::{Spoken, Tag};
+use super::words::{Spoken, Tag, words};
+
+/// Most desks of a room for one team.
+const MOST_IN_TEAM: u32 = 12;
+/// Words between a room and those who say for whom it is, at most: "toilets for men and women".
+const MOST_TO_SEXES: usize = 5;
 
 /// What a mention is about.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -54,6 +61,23 @@ pub(super) struct Mention {
 }
 
 impl Mention {
+    /// Returns a mention of which nothing more is known yet.
+    pub(super) fn plain(span: Span, what: What) -> Self {
+        let from = span.start;
+        Self {
+            span,
+            what,
+            count: None,
+            article: false,
+            vague: false,
+            plural: false,
+            definite: false,
+            from,
+            number: None,
+            beds: None,
+        }
+    }
+
     pub(super) fn room_type(&self) -> Option<&str> {
         if let What::Room(id) = &self.what { Some(id) } else { None }
     }
@@ -63,7 +87,7 @@ impl Mention {
 #[derive(Debug, Clone, PartialEq)]
 struct RoomWord {
     id: String,
-    /// Letters of the phrase; a longer form of the same word is its plural.
+    /// Letters of the phrase, of its first word in languages whose noun comes first; a longer form of it is its plural.
     letters: usize,
 }
 
@@ -73,15 +97,36 @@ pub(super) struct Vocabulary {
     foreign: Vec<Phrases<RoomWord>>,
     /// Room types of the domain itself.
     ids: BTreeSet<String>,
+    /// Those that people have desks in, and the open one of them.
+    desks: BTreeSet<String>,
+    open_office: Option<String>,
+    /// Those of which men and women have one each.
+    parted: BTreeSet<String>,
 }
 
 impl Vocabulary {
     /// Collects the room words of the domain and, for rooms it does not know, of all other domains.
     pub(super) fn new(domain: &Domain, registry: &Registry, languages: &[&str]) -> Self {
         let own = languages.iter().map(|l| phrases(std::iter::once(domain), l)).collect();
-        let others = || registry.iter().map(|p| p.domain()).filter(|d| d.id != domain.id);
+        // what all kinds of buildings have comes before what one kind has
+        let common = |d: &&Domain| d.id == words().common_domain;
+        let all = || registry.iter().map(|p| p.domain()).filter(|d| d.id != domain.id);
+        let others = || all().filter(common).chain(all().filter(|d| !common(d)));
         let foreign = languages.iter().map(|l| phrases(others(), l)).collect();
-        Self { own, foreign, ids: domain.room_types.iter().map(|r| r.id.clone()).collect() }
+        let ids = |test: &dyn Fn(&RoomType) -> bool| -> BTreeSet<String> {
+            domain.room_types.iter().filter(|r| test(r)).map(|r| r.id.clone()).collect()
+        };
+        let desks = |kind: &RoomType| seated::desks(domain, kind);
+        let most = |kind: &&RoomType| desks(kind).map_or(0, |d| d[1]);
+        let open = domain.room_types.iter().filter(|k| desks(k).is_some()).max_by_key(most);
+        Self {
+            own,
+            foreign,
+            ids: ids(&|_| true),
+            desks: ids(&|k| desks(k).is_some()),
+            open_office: open.filter(|k| most(k) > MOST_IN_TEAM).map(|k| k.id.clone()),
+            parted: ids(&|k| k.wet && k.access != Access::Host || k.zone == Zone::Staff),
+        }
     }
 
     /// Returns end, room type and whether it is a plural of the longest room word at a token.
@@ -121,8 +166,21 @@ impl Vocabulary {
         // a keyword may be a plural itself ("single rooms"): its singular has the same stem
         let singular =
             phrases.by_stems(&tokens[i..end]).filter(|w| w.id == word.id).map_or(word.letters, |w| w.letters);
-        let letters: usize = tokens[i..end].iter().map(|t| t.text.chars().count()).sum();
+        let noun = if phrases.noun_first() { i + 1 } else { end };
+        let letters: usize = tokens[i..noun].iter().map(|t| t.text.chars().count()).sum();
         Some((end, word.id.as_str(), letters > singular.min(word.letters)))
+    }
+
+    /// Returns the end and the type of an open room to work in: "open drafting room", "open studio space".
+    fn open_work(&self, tokens: &[Token], i: usize, spoken: &[&Spoken]) -> Option<(usize, String)> {
+        let id = self.open_office.as_ref()?;
+        let from = spoken.iter().find_map(|s| s.tag_at(tokens, i, Tag::OpenPlan))?;
+        let noun = |k: usize| [Tag::RoomWords, Tag::SpaceWords].iter().any(|&t| tagged(tokens, k, spoken, t));
+        let plain = |k: &usize| tokens[*k].kind == Kind::Word && !tagged(tokens, *k, spoken, Tag::Stops);
+        let last = (from + 1..(from + 3).min(tokens.len())).take_while(plain).find(|&k| noun(k))?;
+        let known = self.own.iter().find_map(|p| p.longest_at(tokens, from)).filter(|f| f.0 == last + 1);
+        let works = known.is_none_or(|f| self.desks.contains(&f.1.id));
+        (works && tokens[from].kind == Kind::Word).then(|| (last + 1, id.clone()))
     }
 
     /// Returns the domain's room type that the words for the building end in ("chemistry lab").
@@ -176,7 +234,8 @@ fn phrases<'a>(domains: impl Iterator<Item = &'a Domain>, language: &str) -> Phr
             let id = room.id.replace('_', " ");
             let id = if language == "en" { Some(id.as_str()) } else { None };
             for phrase in words.chain(id) {
-                let letters = phrase.split_whitespace().map(|w| fold(w).chars().count()).sum();
+                let words = phrase.split_whitespace().take(if phrases.noun_first() { 1 } else { usize::MAX });
+                let letters = words.map(|w| fold(w).chars().count()).sum();
                 phrases.put(phrase, RoomWord { id: room.id.clone(), letters }, |old, new| {
                     let letters = if old.id == new.id { old.letters.min(new.letters) } else { old.letters };
                     RoomWord { id: old.id.clone(), letters }
@@ -202,6 +261,10 @@ pub(super) struct Taken<'a> {
     pub docks: &'a [Span],
     /// Rooms that are told by their beds.
     pub bed_rooms: &'a [BedRoom],
+    /// Words for several rooms.
+    pub compounds: &'a [Compound],
+    /// True for a prompt in a language that is not read: no word of it is the name of a room by its form alone.
+    pub unread: bool,
 }
 
 /// Returns all mentions in order.
@@ -224,23 +287,17 @@ pub(super) fn mentions(
             i += 1;
             continue;
         }
+        if let Some(compound) = taken.compounds.iter().find(|c| c.span.start == i) {
+            out.extend(compounds::mentions(compound));
+            i = compound.span.end;
+            continue;
+        }
         let told = taken.bed_rooms.iter().find(|b| b.span.start == i);
         let told = told.map(|b| (b.span.end, What::Room(b.room_type.clone()), b.plural, Some(b.beds)));
         let noun = || noun_at(tokens, i, numbers, vocabulary, spoken, language, taken).map(|n| (n.0, n.1, n.2, None));
         match told.or_else(noun) {
             Some((end, what, plural, beds)) => {
-                out.push(Mention {
-                    span: Span { start: i, end },
-                    what,
-                    count: None,
-                    article: false,
-                    vague: false,
-                    plural,
-                    definite: false,
-                    from: i,
-                    number: None,
-                    beds,
-                });
+                out.push(Mention { plural, beds, ..Mention::plain(Span { start: i, end }, what) });
                 i = end;
             }
             None => i += 1,
@@ -249,6 +306,8 @@ pub(super) fn mentions(
     ellipses(tokens, vocabulary, &mut out);
     drop_modifiers(tokens, vocabulary, &mut out);
     attach_numbers(tokens, numbers, spoken, language, taken, &mut out);
+    compounds::settle(tokens, taken.compounds, spoken, &mut out);
+    part_by_sex(tokens, vocabulary, spoken, &mut out);
     count_hosts(tokens, spoken, &mut out);
     drop_echoes(tokens, taken, &mut out);
     out
@@ -275,10 +334,18 @@ fn noun_at(
         let span = Span { start: i, end };
         !taken.spans.iter().chain(&taken.head).any(|s| s.overlaps(span))
     };
+    if let Some((end, id)) = vocabulary.open_work(tokens, i, spoken).filter(|f| free(f.0)) {
+        return Some((end, What::Room(id), false));
+    }
     let room = vocabulary
         .at(tokens, i, numbers, spoken)
         // "für den Transport": a little word of the language names no room of another one
         .filter(|r| free(r.0) && !(r.0 == i + 1 && is_little(tokens, i, spoken, language)))
+        // "open-plan" is no office where there are none
+        .filter(|r| {
+            let open = spoken.iter().any(|s| s.tag_at(tokens, i, Tag::OpenPlan) == Some(r.0));
+            !open || vocabulary.ids.contains(r.1)
+        })
         .map(|(end, id, plural)| (end, What::Room(id.into()), plural));
     let entrance = spoken.iter().find_map(|s| s.tag_at(tokens, i, Tag::Entrance)).filter(|&end| free(end));
     if let Some(end) = entrance
@@ -328,7 +395,7 @@ fn noun_at(
         }
         (Some(room), _) => Some(room),
         (None, people) => {
-            let unknown = if people.is_none() || generic {
+            let unknown = if !taken.unread && (people.is_none() || generic) {
                 unknown::room_at(tokens, i, spoken, language, taken.list_from)
                     .filter(|_| !numbers.iter().any(|n| n.span.contains(i)))
                     // "nurse treatment room" is a treatment room
@@ -401,6 +468,39 @@ fn drop_modifiers(tokens: &[Token], vocabulary: &Vocabulary, out: &mut Vec<Menti
         let stranger = m.room_type().is_some_and(|id| !vocabulary.ids.contains(id));
         !((person || stranger) && latin && rooms.contains(&m.span.end))
     });
+}
+
+/// Counts rooms of which men and women have their own: "WC Damen und Herren" are two, "Damen-WC und Herren-WC" one each.
+fn part_by_sex(tokens: &[Token], vocabulary: &Vocabulary, spoken: &[&Spoken], out: &mut [Mention]) {
+    let stem = |i: usize| -> Option<String> {
+        let text = &tokens[i].text;
+        if tagged(tokens, i, spoken, Tag::Sexes) {
+            return Some(text.trim_end_matches('s').to_owned());
+        }
+        // "Herrentoilette"
+        let all = spoken.iter().filter_map(|s| s.words.phrases.get(&Tag::Sexes)).flatten().map(|w| fold(w));
+        all.filter(|w| w.len() > 3 && text.len() > w.len() + 1 && tokens[i].kind == Kind::Word)
+            .find(|w| text.starts_with(w.as_str()))
+    };
+    let little = [Tag::Joins, Tag::Stops, Tag::Articles, Tag::Definite, Tag::Each, Tag::NotNames, Tag::Own];
+    let plain = |i: usize| tokens[i].mark() == Some('/') || little.iter().any(|&t| tagged(tokens, i, spoken, t));
+    let spans: Vec<Span> = out.iter().map(|m| m.span).collect();
+    for m in out.iter_mut().filter(|m| m.room_type().is_some_and(|id| vocabulary.parted.contains(id))) {
+        let other = |i: usize| spans.iter().any(|s| *s != m.span && s.contains(i));
+        let reads = |i: &usize| !other(*i) && (stem(*i).is_some() || plain(*i));
+        let before = (m.span.start.saturating_sub(MOST_TO_SEXES)..m.span.start).rev().take_while(reads);
+        let mut sexes: BTreeSet<String> = before.chain(m.span.start..m.span.end).filter_map(stem).collect();
+        let end = (m.span.end..(m.span.end + MOST_TO_SEXES).min(tokens.len())).take_while(reads).last();
+        // what leads on to another room is of that room
+        let behind = m.span.end..end.map_or(m.span.end, |e| e + 1);
+        if !(behind.end < tokens.len() && other(behind.end)) {
+            sexes.extend(behind.filter_map(stem));
+        }
+        let open = m.count.is_none() || m.article || m.count == Some(1);
+        if open && !sexes.is_empty() {
+            (m.count, m.article, m.vague) = (Some(sexes.len().min(2) as i64), false, false);
+        }
+    }
 }
 
 /// Gives the number in "3 ensuite bedrooms" to the bedrooms.

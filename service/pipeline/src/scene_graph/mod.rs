@@ -6,6 +6,7 @@
 
 mod beds;
 mod building;
+mod compounds;
 mod deal;
 mod docks;
 mod dwelling;
@@ -25,6 +26,7 @@ mod reading;
 mod relations;
 mod robots;
 mod rooms;
+mod seated;
 mod single;
 mod storeys;
 mod styles;

@@ -3,12 +3,13 @@
 use std::collections::BTreeMap;
 
 use d3dgen_knowledge::Applicable;
-use d3dgen_model::domain::{Access, Domain, Occupants, Program, ProgramRoom, RoomType, Shape, Zone};
+use d3dgen_model::domain::{Access, Domain, GENERIC_ROOM_TYPE, Occupants, Program, ProgramRoom, RoomType, Shape, Zone};
 
 use super::beds::sleeps;
 use super::layout;
 use super::places::note;
 use super::reading::{MAX_ROOMS, Reading, is_dwelling};
+use super::seated;
 use super::units;
 use super::vital;
 use super::wishes::{CHARGING, Pair, PerHost, Wish};
@@ -18,6 +19,9 @@ use super::words::words;
 const MOST_BY_AREA: usize = 60;
 /// Share of a building's net area that its corridors take, before any plan is drawn.
 const CIRCULATION_SHARE: f64 = 0.14;
+
+/// Floor for a desk of a room whose domain says nothing of it, m^2.
+const DESK_AREA_M2: f64 = 9.0;
 
 /// What rooms need beyond their least area before a building counts as too small for them, as a factor.
 const TIGHT: f64 = 1.1;
@@ -312,7 +316,15 @@ impl<'r, 'a> Build<'r, 'a> {
         let night = zone == Some(Zone::Night);
         let essential = words().dwelling.essential.iter().flatten().any(|e| e == room_type);
         let lived_in = (night || zone == Some(Zone::Day)) && !essential;
-        let fixed = exact || night && self.sleeping_is_fixed || lived_in && self.reading.habitable_fixed;
+        // no kitchenette beside a kitchen that was asked for
+        let met = |set: &&Vec<String>| {
+            set.iter().any(|s| s == room_type)
+                && wishes.wishes.iter().any(|w| w.room_type != room_type && set.contains(&w.room_type))
+        };
+        let fixed = words().alike.iter().any(|set| met(&set))
+            || exact
+            || night && self.sleeping_is_fixed
+            || lived_in && self.reading.habitable_fixed;
         !fixed && !self.is_forbidden(room_type)
     }
 
@@ -464,7 +476,7 @@ impl<'r, 'a> Build<'r, 'a> {
             let sleeping =
                 |e: &&ProgramRoom| self.reading.domain.room_type_or_generic(&e.room_type).zone == Zone::Night;
             if let Some(entry) = self.program.rooms.iter().find(sleeping) {
-                for _ in self.count(&entry.room_type)..wanted {
+                for _ in self.count(&entry.room_type) + self.count(&words().dwelling.studio)..wanted {
                     self.add(entry, limit);
                 }
             }
@@ -520,8 +532,13 @@ pub(super) fn head_count(reading: &Reading, of: Occupants) -> Option<u32> {
 /// Spreads the people over the rooms that the program gives them.
 fn hold_people(reading: &mut Reading, rooms: &mut [Planned]) {
     hold_beds(reading, rooms);
+    // who has a desk elsewhere needs none here
+    let at_desks = |r: &&Planned| seated::desks(reading.domain, r.kind).is_some();
+    let seated: u32 = rooms.iter().filter(at_desks).filter_map(|r| r.occupants).sum();
     for entry in &reading.program.rooms {
         let Some(people) = head_count(reading, entry.occupants) else { continue };
+        let elsewhere = if entry.occupants == Occupants::Staff { seated } else { 0 };
+        let Some(people) = people.checked_sub(elsewhere).filter(|n| *n > 0) else { continue };
         let places: Vec<usize> = (0..rooms.len()).filter(|&i| rooms[i].room_type == entry.room_type).collect();
         let sits = entry.area_per_occupant_m2.is_some() || entry.occupants != Occupants::Staff;
         if !sits || places.is_empty() || places.iter().any(|&i| rooms[i].occupants.is_some()) || reading.single {
@@ -555,8 +572,11 @@ fn serve_people(reading: &Reading, rooms: &mut [Planned]) {
     if entries.is_empty() || reading.single {
         return;
     }
-    let desks = || rooms.iter().map(|r| workplaces(reading.domain, r)).sum::<u32>();
-    let people = f64::from(head_count(reading, Occupants::Staff).unwrap_or_else(desks));
+    // in a home those who sleep there eat there
+    let lives = is_dwelling(reading.program);
+    let beds = rooms.iter().filter_map(|r| Some(sleeps(reading.domain, r.kind)?[0])).sum::<u32>();
+    let people = if lives { reading.residents.unwrap_or(0).max(beds) } else { places_to_work(reading, rooms) };
+    let people = f64::from(people);
     let mut sized: Vec<&str> = Vec::new();
     for (entry, each) in entries {
         if sized.contains(&entry.room_type.as_str()) {
@@ -567,9 +587,19 @@ fn serve_people(reading: &Reading, rooms: &mut [Planned]) {
         for &i in &alike {
             let range = rooms[i].kind.area_m2;
             let area = (each * people / alike.len() as f64).clamp(range.min, range.max);
-            rooms[i].people_area_m2 = rooms[i].area_m2.is_none().then_some(area);
+            // those of a usual size hold a usual number
+            let grows = lives || reading.wet.has_toilet(rooms[i].kind);
+            if !grows || area > range.target {
+                rooms[i].people_area_m2 = rooms[i].area_m2.is_none().then_some(area);
+            }
         }
     }
+}
+
+/// Returns how many people work there: as many as the prompt says, else as have a desk.
+pub(super) fn places_to_work(reading: &Reading, rooms: &[Planned]) -> u32 {
+    let desks = || rooms.iter().map(|r| r.occupants.unwrap_or_else(|| workplaces(reading.domain, r))).sum::<u32>();
+    head_count(reading, Occupants::Staff).unwrap_or_else(desks)
 }
 
 /// Returns how many people have a desk in a room of its usual size.
@@ -589,12 +619,25 @@ fn workplaces(domain: &Domain, room: &Planned) -> u32 {
     lines.map(|line| desks(&line.item) * line.units(area)).max().unwrap_or(0)
 }
 
+/// Returns the floor for each desk of a room type, m^2: as the programs say, else as its furnishing.
+fn desk_area_m2(domain: &Domain, room_type: &str) -> f64 {
+    let entries = domain.programs.iter().flat_map(|p| &p.rooms).filter(|e| e.room_type == room_type);
+    let lines = domain.room_type_or_generic(room_type).furnishing.iter().filter(|f| f.required);
+    let by_program = entries.filter_map(|e| e.area_per_occupant_m2).next();
+    by_program.or_else(|| lines.map(|f| f.area_per_item_m2).find(|a| *a > 0.0)).unwrap_or(DESK_AREA_M2)
+}
+
 /// Gives rooms to sleep in the beds that the prompt says, and where its beds are those of its rooms the usual ones.
 fn hold_beds(reading: &Reading, rooms: &mut [Planned]) {
     for held in &reading.held {
         let free = rooms.iter_mut().filter(|r| r.requested && r.occupants.is_none() && r.room_type == held.room_type);
         for room in free.take(held.count as usize) {
             room.occupants = Some(held.beds);
+            if seated::desks(reading.domain, room.kind).is_some() {
+                let range = room.kind.area_m2;
+                let area = desk_area_m2(reading.domain, &room.room_type) * f64::from(held.beds);
+                room.people_area_m2 = room.area_m2.is_none().then(|| area.clamp(range.min, range.max));
+            }
             let Some([low, high]) = sleeps(reading.domain, room.kind) else { continue };
             if !(low..=high).contains(&held.beds) || high > low {
                 let range = room.kind.area_m2;
@@ -666,6 +709,15 @@ fn hang_on_hosts(reading: &mut Reading, rooms: &mut [Planned]) {
 
 /// States which rooms the prompt does not name.
 fn state_additions(reading: &mut Reading, rooms: &[Planned]) {
+    let mut unknown: Vec<&str> = Vec::new();
+    for room in rooms.iter().filter(|r| r.kind.id == GENERIC_ROOM_TYPE && r.room_type != GENERIC_ROOM_TYPE) {
+        if !unknown.contains(&room.room_type.as_str()) {
+            unknown.push(&room.room_type);
+            let name = room.name.clone().unwrap_or_else(|| room.room_type.replace('_', " "));
+            let message = format!("`{name}` is not known, furnished as `{}`: {}", room.kind.id, room.kind.description);
+            reading.assumptions.push(note("room_unknown", message));
+        }
+    }
     let mut added: Vec<(&str, u32)> = Vec::new();
     for room in rooms.iter().filter(|r| !r.requested) {
         match added.iter_mut().find(|a| a.0 == room.kind.label) {

@@ -4,11 +4,12 @@ use std::sync::Arc;
 
 use d3dgen_model::domain::{Access, Domain, GENERIC_ROOM_TYPE, Occupants, Program, ProgramRoom, Shape};
 use d3dgen_model::scene_graph::{Note, Occupancy, Robot};
-use d3dgen_model::style::Style;
+use d3dgen_model::style::{LayoutStyle, Style, StyleWord};
 use d3dgen_plugins::Registry;
 
 use super::beds::{self, Held};
 use super::building::{self, Building};
+use super::compounds;
 use super::mentions::{Mention, Taken, Vocabulary, What, mentions};
 use super::objects;
 use super::parts;
@@ -20,7 +21,7 @@ use super::text::{MAX_TOKENS, Span, Token, tokens};
 use super::vital::{self, Wet};
 use super::wishes::{self, MANY, PerHost, Text, Wish, Wishes};
 use super::words::{ByBedrooms, Spoken, Tag, words};
-use super::{Request, docks, dwelling, language, measures, numbers, robots, single, umlauts, unread};
+use super::{Request, docks, dwelling, language, measures, numbers, robots, seated, single, umlauts, unread};
 use crate::Error;
 
 /// Most rooms one world is planned for.
@@ -51,10 +52,10 @@ pub(super) struct Reading<'a> {
     pub closed: bool,
     /// True for a list behind the name of a building ("ward with ..."), which what such a building is not without may join.
     pub may_join: bool,
+    /// True when the prompt says that its list is all there is to be: "only".
+    pub only: bool,
     /// True when the prompt asks for one room and no building.
     pub single: bool,
-    /// True when the prompt names the building.
-    pub named: bool,
     /// Rooms of which the prompt says the beds.
     pub held: Vec<Held>,
     /// True when the prompt counts the rooms to live in ("3-Zimmer-Wohnung", "2BHK").
@@ -158,12 +159,25 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     let basements = !building.building_type.as_ref().is_some_and(within);
     let storey_phrases = storeys::phrases(&tokens, &numbers, &spoken, building.head, basements, room_end);
     spans.extend(storey_phrases.iter().map(|p| p.span));
-    let said_styles = styles::said(&tokens, &languages);
+    // "an agency with open space for 20 people": in a list it is a room
+    let list_from = building.list_from;
+    let is_room = |s: Span| list_from > 0 && s.start >= list_from && vocabulary.own_at(&tokens, s).is_some();
+    let mut said_styles = styles::said(&tokens, &languages);
+    said_styles.retain(|s| !is_room(s.span));
+    // "open-plan flat"
+    if let Some(head) = building.head.filter(|_| lives) {
+        let before = |i: &usize| spoken.iter().any(|s| s.tag_at(&tokens, *i, Tag::OpenPlan) == Some(head.start));
+        let open = (0..head.start).find(before).map(|start| Span { start, end: head.start });
+        said_styles.extend(open.map(|span| styles::Said { span, word: StyleWord::Layout(LayoutStyle::Open) }));
+    }
     spans.extend(said_styles.iter().map(|s| s.span));
     // "cleaning robot" and "wheelchair users" name no object
     let mut not_things = machines.spans.clone();
     not_things.extend(said_styles.iter().map(|s| s.span));
     not_things.extend(access_wishes(&tokens, &numbers, &spoken));
+    let compounds = compounds::find(&tokens, prompt, domain, &spoken, |span| {
+        spans.iter().chain(&building.head).any(|s| s.overlaps(span))
+    });
     let taken = Taken {
         spans: &spans,
         head: building.head,
@@ -172,6 +186,8 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         counted: &counted,
         docks: &machines.docks,
         bed_rooms: &told,
+        compounds: &compounds,
+        unread: unread_language.is_some(),
     };
     let mut mentions = mentions(&tokens, &numbers, &vocabulary, &spoken, language, &taken);
     if !lives {
@@ -180,10 +196,13 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         let wards: Vec<Span> = building.words.iter().chain(&building.head).copied().collect();
         beds::of_several_wards(&mut mentions, &numbers, &wards);
     }
+    let seated = if lives { Vec::new() } else { seated::read(&tokens, &mut mentions, (domain, program), &spoken) };
     let doors = unread::doors(&tokens, &mut mentions, &spoken);
     let docked = docks::inside_rooms(&tokens, &mut mentions, &machines.spans, &spoken);
     let said_styles = styles::of_building(said_styles, &mentions, language);
-    let said = relations::read(&tokens, &mentions, &spoken, language, building.head);
+    let mut said = relations::read(&tokens, &mentions, &spoken, language, building.head);
+    compounds::relate(&compounds, &mentions, domain, &mut said);
+    compounds::open_belongings(&tokens, &mentions, domain, &spoken, &mut said);
     let text = Text {
         tokens: &tokens,
         prompt,
@@ -195,6 +214,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         robots: machines.named,
     };
     let mut wishes = wishes::gather(&text, &mut conflicts);
+    wishes.open = compounds::open_rooms(&tokens, &mentions, domain, &spoken);
     let area_m2 = total_area(&text, request, &mut conflicts);
     let country = flag_country.as_deref().or(place.country_code.as_deref());
     let said_storeys = storeys::Text {
@@ -243,6 +263,13 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         let sleepers = beds::Sleepers { domain, program, mentions: &mentions, said: &said, beds, people: who };
         let settled = sleepers.settle(&mut wishes, &mut assumptions, &mut conflicts);
         (held, people.occupancy.beds) = (settled.held, settled.beds.or(parts.beds));
+        let desks: u32 = seated.iter().map(|s| s.count.saturating_mul(s.beds)).fold(0, u32::saturating_add);
+        let heads = &mut people.occupancy;
+        let counted = if heads.desks.is_some() { &mut heads.desks } else { &mut heads.staff };
+        if counted.is_some() {
+            *counted = (*counted).max(Some(desks));
+        }
+        held.extend(seated);
     }
     let total = total_rooms(request, &mentions, &wishes, &mut conflicts)?;
     let listed: u64 = wishes.wishes.iter().map(|w| u64::from(w.count)).sum();
@@ -264,7 +291,11 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     }
     let total = total.filter(|_| !single);
     let closed = single || is_closed(&wishes, &tokens, &building, lives);
+    let only = says_only(&tokens, &mentions, &spoken);
     let may_join = joins_a_name(&building, &tokens, language);
+    if closed && lives && !single {
+        wishes.open_to(domain);
+    }
     if closed && total.is_none() && !single {
         let named = building.head.and_then(|h| vocabulary.room_named(&tokens[h.start..h.end]));
         assumptions.extend(add_main_room(&mut wishes, program, domain, &people, named.as_deref()));
@@ -300,9 +331,9 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         wishes,
         total,
         closed,
-        may_join,
+        may_join: may_join && !only,
+        only,
         single,
-        named: building.head.is_some(),
         held,
         habitable_fixed: short_forms.iter().any(|f| f.rooms.contains_key(&words().dwelling.living)),
         area_m2,
@@ -499,8 +530,7 @@ impl People {
         };
         let mut residents = count(&What::Residents);
         // "for 40 people": those who live in a dwelling, work where the program seats staff, visit anywhere else
-        let lives = domain.room_type(&words().dwelling.bedroom).is_some()
-            && program.rooms.iter().any(|r| r.room_type == words().dwelling.bedroom);
+        let lives = domain.room_type(&words().dwelling.bedroom).is_some() && is_dwelling(program);
         let seats = |r: &ProgramRoom| r.area_per_occupant_m2.is_some() || r.occupants_per_room.is_some();
         let works = program.rooms.iter().any(|r| r.occupants == Occupants::Staff && seats(r));
         match people {
@@ -638,7 +668,9 @@ fn total_rooms(
 
 /// Returns true for programs of buildings that people live in.
 pub(super) fn is_dwelling(program: &Program) -> bool {
-    program.rooms.iter().any(|r| r.room_type == words().dwelling.bedroom || r.room_type == words().dwelling.living)
+    let d = &words().dwelling;
+    let first = program.rooms.first().is_some_and(|r| r.room_type == d.studio);
+    first || program.rooms.iter().any(|r| r.room_type == d.bedroom || r.room_type == d.living)
 }
 
 /// Returns true for rooms listed behind the name of a building and no colon: these are what it has, and perhaps not all.
@@ -668,6 +700,19 @@ fn is_closed(wishes: &Wishes, tokens: &[Token], building: &Building, lives: bool
     !open && whole && types >= 1 && (items >= 3 || types >= 2 && colon)
 }
 
+/// Returns true for "only three offices", "exactly 5 rooms", "nothing else": no room may be added.
+fn says_only(tokens: &[Token], mentions: &[Mention], spoken: &[&Spoken]) -> bool {
+    (0..tokens.len()).any(|i| {
+        let Some(end) = spoken.iter().find_map(|s| s.tag_at(tokens, i, Tag::Only)) else { return false };
+        let from = |m: &Mention| m.from.min(m.span.start);
+        let next = mentions.iter().filter(|m| from(m) >= end).min_by_key(|m| from(m));
+        let rooms = next.filter(|m| m.room_type().is_some() || m.what == What::Total);
+        // "nothing else", but not "for staff only"
+        let closes = end > i + 1 && tokens.get(end).is_none_or(Token::is_mark);
+        closes || rooms.is_some_and(|m| from(m) <= end + 1)
+    })
+}
+
 /// Adds to a list of rooms the one the building is for where the list takes it for granted: a laboratory's laboratory,
 /// a supermarket's sales floor, the desks of those who work there. A dwelling has no such room.
 fn add_main_room(
@@ -687,7 +732,10 @@ fn add_main_room(
         let seat = r.area_per_occupant_m2.is_some() || r.occupants_per_room.is_some_and(|n| n <= MOST_IN_OFFICE);
         r.occupants == Occupants::Staff && seat
     };
-    let placed = domain.programs.iter().flat_map(|p| &p.rooms).any(|r| works(r) && listed(&r.room_type));
+    let team =
+        |w: &Wish| domain.room_type(&w.room_type).and_then(|k| seated::desks(domain, k)).is_some_and(|d| d[1] > 2);
+    let placed = domain.programs.iter().flat_map(|p| &p.rooms).any(|r| works(r) && listed(&r.room_type))
+        || wishes.wishes.iter().any(team);
     let size = |id: &str| domain.room_type_or_generic(id).area_m2.target;
     let largest = wishes.wishes.iter().map(|w| size(&w.room_type)).fold(0.0, f64::max);
     let heads = people.occupancy.staff.or(people.occupancy.desks).is_some() && works(main);

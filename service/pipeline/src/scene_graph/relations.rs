@@ -262,7 +262,10 @@ fn belongings(reader: &Reader, said: &mut Said) {
         let (guest, host) = (&reader.mentions[h - 1], &reader.mentions[h]);
         let rooms = guest.room_type().is_some() && host.room_type().is_some() && !said.negated.contains(&h);
         if rooms && guest.span.end == host.span.start && reader.tagged(guest.span.start, Tag::Own) {
-            said.each.push((h - 1, h));
+            // the "ensuite master bedroom" among others has one
+            if reader.is_group(h) {
+                said.each.push((h - 1, h));
+            }
             let (connector, spread) = (Connector::Door, Spread::Each);
             said.relations.push(Relation { subject: h - 1, object: h, connector, spread, apart: false, belongs: true });
         }
@@ -312,9 +315,12 @@ fn belongings(reader: &Reader, said: &mut Said) {
             said.each_room.extend((each_host && starts).then_some(g));
             continue;
         }
-        if each && many && (starts || has(Tag::Own)) || starts && !comma && !joined && many && !numbered {
+        // "three bedrooms including a master suite": one of them has it
+        let part = has(Tag::PartOf) && guest.count == Some(1);
+        let of_each = each && many && (starts || has(Tag::Own)) || starts && !comma && !joined && many && !numbered;
+        if of_each && !part {
             said.each.push((g, h));
-        } else if !(starts && !comma && !joined && !numbered) || many {
+        } else if !part && (!(starts && !comma && !joined && !numbered) || many) {
             continue;
         }
         let (connector, spread) = (Connector::Door, Spread::Each);

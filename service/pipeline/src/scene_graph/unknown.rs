@@ -71,7 +71,10 @@ fn english(tokens: &[Token], i: usize, spoken: &[&Spoken], list_from: usize) -> 
         }
         let room = tokens[at].text == "room" || tokens[at].text == "rooms";
         let space = i >= list_from && tagged(at, Tag::SpaceWords);
-        if !(room || space) {
+        // "model workshop" is a workshop
+        let head = (i + 1..=at)
+            .any(|k| spoken.iter().any(|s| s.heads.longest_at(tokens, k).is_some_and(|(end, ())| end == at + 1)));
+        if !(room || space) || head {
             continue;
         }
         let mut words: Vec<Token> = tokens[i..=at].to_vec();

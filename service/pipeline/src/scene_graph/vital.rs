@@ -8,23 +8,30 @@ use d3dgen_model::domain::{Access, Domain, Occupants, Program, RoomType, Shape, 
 
 use super::beds::sleeps;
 use super::places::note;
-use super::program::Planned;
+use super::program::{Planned, places_to_work};
 use super::reading::{MOST_IN_OFFICE, Reading, is_dwelling};
 use super::wishes::Wishes;
 use super::words::words;
 
 /// Beds without a bathroom of their own that share one, at most.
 const BEDS_TO_A_BATHROOM: u32 = 4;
+/// Rooms of a place to work at from which on it has a toilet beside that for wheelchairs.
+const ROOMS_FOR_TWO_TOILETS: u32 = 8;
 /// Bedrooms from which on a home has a second toilet.
 const BEDROOMS_FOR_TWO_TOILETS: usize = 4;
 
 /// Returns the kinds of rooms that the building is not without, each with what can stand for it: one toilet for another.
-fn classes<'a>(reading: &Reading<'a>) -> Vec<Class<'a>> {
+fn classes<'a>(reading: &Reading<'a>, rooms: &[Planned]) -> Vec<Class<'a>> {
     let of = |list: &'a [Vec<String>]| list.iter().map(|ids| ids.iter().map(String::as_str).collect());
     if is_dwelling(reading.program) {
         return of(&words().dwelling.vital).map(|ids| Class { ids, by_program: false }).collect();
     }
-    let work = is_worked_at(reading.program).then(|| of(&words().work_vital)).into_iter().flatten();
+    let works = is_worked_at(reading.program);
+    let work = works.then(|| of(&words().work_vital)).into_iter().flatten();
+    let large = works
+        && reading.total.is_none_or(|n| n >= ROOMS_FOR_TWO_TOILETS)
+        && places_to_work(reading, rooms) > words().many_desks;
+    let work = work.chain(large.then(|| of(&words().many_vital)).into_iter().flatten());
     let own = reading.program.vital.iter().map(|id| {
         let flush = |id: &str| reading.domain.room_type(id).is_some_and(|k| reading.wet.has_toilet(k));
         let others =
@@ -107,7 +114,7 @@ pub(super) fn is_vital(reading: &Reading, rooms: &[Planned], i: usize) -> bool {
     }
     let last = |class: &Class| class.holds(&rooms[i]) && rooms.iter().filter(|r| class.holds(r)).count() == 1;
     let toilet = |r: &Planned| reading.wet.has_toilet(r.kind);
-    classes(reading).iter().any(last)
+    classes(reading, rooms).iter().any(last)
         || toilet(&rooms[i]) && rooms.iter().filter(|r| toilet(r)).count() == 1
         || sleeps_in(reading.domain, &rooms[i]) && bedrooms(reading, rooms) <= bedrooms_needed(reading)
 }
@@ -133,7 +140,7 @@ pub(super) fn complete<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned<'a
     }
     let mut missing: Vec<String> = Vec::new();
     let lives = is_dwelling(reading.program);
-    for class in classes(reading) {
+    for class in classes(reading, rooms) {
         // in a number of rooms the order of the program says what goes first
         if class.by_program && (reading.total.is_some() || reading.closed && !reading.may_join) {
             continue;
@@ -348,7 +355,7 @@ fn put<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>, room: Planned<'a
     let joins_list = if is_dwelling(reading.program) {
         reading.may_join
     } else {
-        reading.named && is_worked_at(reading.program) || reading.may_join && !reading.program.vital.is_empty()
+        !reading.only && is_worked_at(reading.program) || reading.may_join && !reading.program.vital.is_empty()
     };
     match (reading.total, reading.closed) {
         (None, true) if !joins_list => false,

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use d3dgen_model::domain::Domain;
 use d3dgen_model::scene_graph::{Connector, Note};
 
 use super::dwelling::ShortForm;
@@ -64,10 +65,27 @@ pub(super) struct Wishes {
     pub entrance: Vec<String>,
     /// What comes with each room of a type whose number the prompt leaves open.
     pub per_host: Vec<PerHost>,
+    /// Types of rooms that are to be open to what they serve: "open kitchen".
+    pub open: Vec<String>,
     /// True when some charging place near a room is asked for.
     pub charging_room: bool,
     /// True when charging is mentioned at all.
     pub charging: bool,
+}
+
+impl Wishes {
+    /// Adds to a list of rooms the one that an "open kitchen" is open to, where it names none.
+    pub(super) fn open_to(&mut self, domain: &Domain) {
+        let listed = |id: &str, all: &[Wish]| all.iter().any(|w| w.room_type == id);
+        for id in &self.open {
+            let joins = domain.layouts.open_joins.iter().filter(|j| j.contains(id));
+            let mut partners = joins.flatten().filter(|p| *p != id).peekable();
+            let Some(first) = partners.peek().map(|p| (*p).clone()) else { continue };
+            if !partners.any(|p| listed(p, &self.wishes)) && !self.forbidden.contains(&first) {
+                self.wishes.push(Wish::one(&first, &first.replace('_', " ")));
+            }
+        }
+    }
 }
 
 /// Room type of a charging place; every domain may have it.

@@ -104,6 +104,14 @@ pub(super) enum Tag {
     UnreadRates,
     /// Words that ask for nothing by themselves: "please".
     Polite,
+    /// Rooms that flow into others: "open-plan", "offene", "abierta".
+    OpenPlan,
+    /// Who uses one of two rooms: "men's and women's toilets".
+    Sexes,
+    /// "Only": a list that is all there is to be.
+    Only,
+    /// "Including": what follows is of the rooms before it.
+    PartOf,
 }
 
 /// Words of one language.
@@ -123,6 +131,15 @@ pub(super) struct Language {
     /// Words for people who share a home, with how many they are.
     #[serde(default)]
     pub households: BTreeMap<String, f64>,
+    /// Words for rooms whose first word only says what for: "model workshop".
+    #[serde(default)]
+    pub heads: Vec<String>,
+    /// Words that name a room of the day or several, with the room types; in a row they name rooms that are open to each other.
+    #[serde(default)]
+    pub joint: BTreeMap<String, Vec<String>>,
+    /// Words for a room and its bathroom, with the room types.
+    #[serde(default)]
+    pub suites: BTreeMap<String, Vec<String>>,
     #[serde(flatten)]
     pub phrases: BTreeMap<Tag, Vec<String>>,
 }
@@ -180,6 +197,14 @@ pub(super) struct ByBedrooms {
 struct File {
     /// Rooms that no place to work at is without, each with what can stand for it.
     work_vital: Vec<Vec<String>>,
+    /// Desks from which on more is vital.
+    many_desks: u32,
+    /// What is vital then.
+    many_vital: Vec<Vec<String>>,
+    /// Rooms of one use: the program adds none beside one that the prompt names.
+    alike: Vec<Vec<String>>,
+    /// Domain whose rooms are of all kinds of buildings.
+    common_domain: String,
     /// Usual words of languages that are not read, by English name of the language.
     unread_languages: BTreeMap<String, Vec<String>>,
     /// Countries where the ground floor is the first floor.
@@ -201,6 +226,10 @@ pub(super) struct Words {
     pub dwelling: Dwelling,
     pub first_is_ground: Vec<String>,
     pub work_vital: Vec<Vec<String>>,
+    pub many_desks: u32,
+    pub many_vital: Vec<Vec<String>>,
+    pub alike: Vec<Vec<String>>,
+    pub common_domain: String,
     /// Usual words of languages that are not read, folded, by English name of the language.
     pub unread_languages: BTreeMap<String, BTreeSet<String>>,
 }
@@ -213,6 +242,9 @@ pub(super) struct Spoken {
     pub levels: Phrases<Where>,
     pub storey_counts: Phrases<f64>,
     pub households: Phrases<f64>,
+    pub heads: Phrases<()>,
+    pub joint: Phrases<Vec<String>>,
+    pub suites: Phrases<Vec<String>>,
     /// Usual words that tell the language, folded.
     pub detect: BTreeSet<String>,
     /// Number words, folded.
@@ -244,6 +276,10 @@ pub(super) fn words() -> &'static Words {
             dwelling: file.dwelling,
             first_is_ground: file.first_is_ground,
             work_vital: file.work_vital,
+            many_desks: file.many_desks,
+            many_vital: file.many_vital,
+            alike: file.alike,
+            common_domain: file.common_domain,
             unread_languages: file
                 .unread_languages
                 .into_iter()
@@ -278,8 +314,29 @@ fn spoken(code: &str, words: Language) -> Spoken {
     words.storey_counts.iter().for_each(|(phrase, value)| storey_counts.insert(phrase, *value));
     let mut households = Phrases::new("");
     words.households.iter().for_each(|(phrase, value)| households.insert(phrase, *value));
+    let mut heads = Phrases::new(code);
+    words.heads.iter().for_each(|phrase| heads.insert(phrase, ()));
+    let table = |map: &BTreeMap<String, Vec<String>>| {
+        let mut phrases = Phrases::new("");
+        map.iter().for_each(|(phrase, types)| phrases.insert(phrase, types.clone()));
+        phrases
+    };
+    let (joint, suites) = (table(&words.joint), table(&words.suites));
     let detect = words.phrases.get(&Tag::Detect).into_iter().flatten().map(|w| super::text::fold(w)).collect();
-    Spoken { detect, numbers, multipliers, words, tags, quantities, levels, storey_counts, households }
+    Spoken {
+        detect,
+        numbers,
+        multipliers,
+        words,
+        tags,
+        quantities,
+        levels,
+        storey_counts,
+        households,
+        heads,
+        joint,
+        suites,
+    }
 }
 
 /// Returns the further forms of a word for robots: English plurals, German ones of the third case and of the second.

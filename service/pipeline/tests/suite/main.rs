@@ -7,6 +7,7 @@ mod common;
 mod details;
 mod edit;
 mod edit_storeys;
+mod homes;
 mod large;
 mod order;
 mod prompts;

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use d3dgen_model::document::Document;
-use d3dgen_model::scene_graph::SceneGraph;
+use d3dgen_model::scene_graph::{Connector, GraphEdge, SceneGraph};
 use d3dgen_pipeline::Error;
 use d3dgen_pipeline::scene_graph::{Request, generate};
 use d3dgen_plugins::Registry;
@@ -33,6 +33,8 @@ struct Case {
     must_rooms: BTreeMap<String, usize>,
     adjacency: Vec<[String; 2]>,
     not_adjacent: Vec<[String; 2]>,
+    /// Pairs that are to be joined by an opening.
+    open: Vec<[String; 2]>,
     forbidden_rooms: Vec<String>,
     /// Robot kinds, and `charging`.
     robot: Vec<String>,
@@ -179,6 +181,12 @@ fn check_rooms(case: &Case, graph: &SceneGraph, misses: &mut Misses) {
     };
     for pair in &case.adjacency {
         misses.check(has_edge(graph, pair), "adjacency", pair, edges());
+    }
+    for [a, b] in &case.open {
+        let between =
+            |e: &GraphEdge| is(graph, &e.a, a) && is(graph, &e.b, b) || is(graph, &e.a, b) && is(graph, &e.b, a);
+        let open = graph.edges.iter().any(|e| e.connector == Connector::Open && e.required && between(e));
+        misses.check(open, "open", (a, b), edges());
     }
     for pair in &case.not_adjacent {
         let listed = graph.apart.iter().any(|[x, y]| {

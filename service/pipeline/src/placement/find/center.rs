@@ -20,6 +20,8 @@ const AT_SWING: f64 = 1.0;
 const BESIDE: i32 = 300;
 /// Height up to which a table is one for those on sofas, mm.
 const LOW_TABLE: i32 = 550;
+/// Floor between a gate and the vehicle behind it, mm.
+const TO_GATE: [i32; 6] = [700, 620, 900, 1200, 1600, 2000];
 /// Floor between such a table and an armchair at its end, and how far from its middle that stands, mm.
 const TO_TABLE: [i32; 4] = [450, 600, 800, 1000];
 const ALONG_TABLE: [i32; 5] = [0, 200, -200, 350, -350];
@@ -32,6 +34,9 @@ impl<'a> Find<'_, 'a, '_> {
             && let Some((q, table)) = self.low_table()
         {
             return self.at_low_table(unit, q, &table);
+        }
+        if unit.anchor().object.shape == Shape::Vehicle && self.at_gate(unit) {
+            return;
         }
         let free = self.largest_free();
         let space = self.state.space;
@@ -73,6 +78,27 @@ impl<'a> Find<'_, 'a, '_> {
         if self.out.len() == before {
             self.none(Rule::NoPlace);
         }
+    }
+
+    /// Offers positions in line with the gate that a vehicle comes through; returns false where none will do.
+    fn at_gate(&mut self, unit: &Rc<Unit<'a>>) -> bool {
+        let own = unit.anchor().solid.rect;
+        let space = self.state.space;
+        let wide = space.doors.iter().filter(|d| d.clear_width > own.height() + BESIDE);
+        let Some(gate) = wide.max_by_key(|d| d.clear_width) else { return false };
+        let wall = &space.walls[gate.wall];
+        let (bu, bv) = own.center();
+        for (turns, gap, along) in
+            [0, 2].into_iter().flat_map(|t| TO_GATE.into_iter().flat_map(move |g| ALONG_TABLE.map(|a| (t, g, a))))
+        {
+            let q = (wall.q + turns) % 4;
+            let (du, dv) = turn(q, bu, bv);
+            let (x, y) = turn(wall.q, wall.u + gap + own.width() / 2, (gate.v0 + gate.v1) / 2 + along);
+            let (u, v) = turn(4 - q, x - du, y - dv);
+            let off = f64::from((gap - TO_GATE[0]).abs() + 2 * along.abs()) / 1000.0;
+            self.offer(at_frame(unit, q, u, v, self.index), u32::from(turns), |_, _| 2.0 - off);
+        }
+        !self.out.is_empty()
     }
 
     /// Returns where the sofa looks that has a low table before it, and the table.

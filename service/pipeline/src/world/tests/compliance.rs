@@ -39,7 +39,7 @@ fn everywhere(sample: &Sample) -> Vec<Retrieval> {
 }
 
 /// Worlds with what the common samples lack.
-const MORE: [&str; 9] = [
+const MORE: [&str; 10] = [
     "hospital in the US with two exam rooms, a treatment room, a waiting area and three toilets",
     "office in the US with an open office for 12 people, a storage room next to a robot charging room, two delivery robots \
      and two cleaning robots",
@@ -50,6 +50,7 @@ const MORE: [&str; 9] = [
     "office in the US with an open office for 70 people and toilets",
     "office in the US with an open office for 60 people, two meeting rooms, a kitchen, a storage room, an archive and toilets",
     "accessible flat in Australia with a bedroom and a toilet for two people",
+    "two-bedroom flat with a robot vacuum that docks in the living room",
 ];
 
 fn made(prompt: &str) -> Sample {
