@@ -270,8 +270,12 @@ fn occupied_line(domain: &Domain, kind: &RoomType, graph: Option<&GraphRoom>) ->
             (each > 0 && f.max > 0).then_some((line, each))
         })
     };
+    // treatment chairs are no seats of a waiting room
+    let lies = kind.furnishing.first().filter(|f| f.required && f.max > 1 && f.area_per_item_m2 > 0.0);
+    let lies = lies.and_then(|f| domain.anchor(&f.item)).is_some_and(|o| o.shape == Shape::Sofa);
+    let lying = || lies.then_some((0, 1));
     let seats = || capacity(|u| u.seats()).filter(|(line, _)| kind.furnishing[*line].max > 1);
-    let (line, each) = capacity(|u| u.beds()).or_else(|| capacity(|u| u.desks())).or_else(seats)?;
+    let (line, each) = capacity(|u| u.beds()).or_else(lying).or_else(|| capacity(|u| u.desks())).or_else(seats)?;
     let units = people.div_ceil(each).min(MAX_UNITS);
     Some((line, units))
 }

@@ -3,12 +3,16 @@
 use std::collections::BTreeMap;
 
 use d3dgen_knowledge::Applicable;
-use d3dgen_model::domain::{Access, Domain, Occupants, Program, ProgramRoom, RoomType, Shape, Zone};
+use d3dgen_model::domain::{
+    Access, AdjacencyRelation, Domain, Occupants, Privacy, Program, ProgramRoom, RobotUse, RoomType, Shape, Zone,
+};
 
 use super::beds::sleeps;
 use super::layout;
 use super::places::note;
 use super::reading::{MAX_ROOMS, Reading, is_dwelling};
+use super::rooms::most_docks;
+use super::stations;
 use super::units;
 use super::vital;
 use super::wishes::{CHARGING, Pair, PerHost, Wish};
@@ -19,6 +23,8 @@ const MOST_BY_AREA: usize = 60;
 /// Share of a building's net area that its corridors take, before any plan is drawn.
 const CIRCULATION_SHARE: f64 = 0.14;
 
+/// Width of one seat of a bench, m.
+const SEAT_M: f64 = 0.5;
 /// What rooms need beyond their least area before a building counts as too small for them, as a factor.
 const TIGHT: f64 = 1.1;
 
@@ -83,6 +89,7 @@ pub(super) fn complete<'a>(reading: &mut Reading<'a>) -> Vec<Planned<'a>> {
     equip_hosts(reading, &mut rooms);
     vital::accompany(reading, &mut rooms);
     vital::complete(reading, &mut rooms);
+    house_robots(reading, &mut rooms);
     let mut rooms = units::divide(reading, rooms);
     layout::follow(reading, &mut rooms);
     finish(reading, rooms)
@@ -93,9 +100,33 @@ pub(super) fn finish<'a>(reading: &mut Reading<'a>, mut rooms: Vec<Planned<'a>>)
     wash_on_every_storey(reading, &mut rooms);
     hold_people(reading, &mut rooms);
     serve_people(reading, &mut rooms);
+    seat_waiting(reading, &mut rooms);
     hang_on_hosts(reading, &mut rooms);
     state_additions(reading, &rooms);
     rooms
+}
+
+/// Adds the room that robots live in, where the rooms are left open and none of them suits that.
+fn house_robots<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
+    let open = reading.total.is_none() && (!reading.closed || reading.may_join) && !reading.single;
+    if !open || reading.robots.is_empty() || !reading.docked.is_empty() {
+        return;
+    }
+    let robots: u32 = reading.robots.iter().map(|r| r.count).fold(0, u32::saturating_add);
+    // rooms that are there to charge robots grow with them
+    let is_dock = |item: &str| reading.domain.anchor(item).is_some_and(|o| o.shape == Shape::Dock);
+    let holds = |kind: &RoomType| match kind.zone == Zone::Service && kind.robot.contains(&RobotUse::Charging) {
+        true if kind.furnishing.iter().any(|f| is_dock(&f.item)) => robots,
+        true => most_docks(kind.area_m2.target),
+        false => 0,
+    };
+    let have: u32 = rooms.iter().map(|r| holds(r.kind)).fold(0, u32::saturating_add);
+    let mut kinds = reading.program.robot_rooms.iter().filter_map(|id| reading.domain.room_type(id));
+    let new = |k: &RoomType| may_add(reading, &k.id) && !rooms.iter().any(|r| r.room_type == k.id);
+    let kind = kinds.find(|k| new(k) && have.saturating_add(holds(k)) >= robots);
+    if let Some(kind) = kind.filter(|_| have < robots) {
+        rooms.push(Planned::new(&kind.id, kind));
+    }
 }
 
 /// Returns true for rooms that the prompt does not rule out.
@@ -520,6 +551,7 @@ pub(super) fn head_count(reading: &Reading, of: Occupants) -> Option<u32> {
 /// Spreads the people over the rooms that the program gives them.
 fn hold_people(reading: &mut Reading, rooms: &mut [Planned]) {
     hold_beds(reading, rooms);
+    hold_stations(reading, rooms);
     for entry in &reading.program.rooms {
         let Some(people) = head_count(reading, entry.occupants) else { continue };
         let places: Vec<usize> = (0..rooms.len()).filter(|&i| rooms[i].room_type == entry.room_type).collect();
@@ -549,6 +581,20 @@ fn hold_people(reading: &mut Reading, rooms: &mut [Planned]) {
     }
 }
 
+/// Gives rooms the places to be treated at that the prompt says, and the floor for them.
+fn hold_stations(reading: &Reading, rooms: &mut [Planned]) {
+    for held in &reading.stationed {
+        let free = rooms.iter_mut().filter(|r| r.requested && r.occupants.is_none() && r.room_type == held.room_type);
+        for room in free.take(held.count as usize) {
+            let Some(line) = stations::line_of(reading.domain, room.kind) else { continue };
+            let range = room.kind.area_m2;
+            room.occupants = Some(held.beds);
+            let area = stations::area_m2(line, held.beds).clamp(range.min, range.max);
+            room.people_area_m2 = room.area_m2.is_none().then_some(area);
+        }
+    }
+}
+
 /// Sizes rooms that serve all who work there by how many these are: as many as the prompt says, else as have a desk.
 fn serve_people(reading: &Reading, rooms: &mut [Planned]) {
     let entries = reading.program.rooms.iter().filter_map(|e| Some((e, e.area_per_person_m2?))).collect::<Vec<_>>();
@@ -568,6 +614,33 @@ fn serve_people(reading: &Reading, rooms: &mut [Planned]) {
             let range = rooms[i].kind.area_m2;
             let area = (each * people / alike.len() as f64).clamp(range.min, range.max);
             rooms[i].people_area_m2 = rooms[i].area_m2.is_none().then_some(area);
+        }
+    }
+}
+
+/// Seats that people find where they wait for each room that sees them one at a time.
+const SEATS_PER_ROOM: u32 = 2;
+
+/// Sizes rooms to wait in by the rooms that people wait for, where these ask for more than usual.
+fn seat_waiting(reading: &Reading, rooms: &mut [Planned]) {
+    let waits = |kind: &RoomType| {
+        let line = kind.furnishing.first().filter(|f| f.required && f.area_per_item_m2 > 0.0)?;
+        let bench = reading.domain.object(&line.item).filter(|o| o.shape == Shape::Bench)?;
+        let seats = bench.sizes_m.first().map_or(1.0, |s| (s[0] / SEAT_M).floor().max(1.0));
+        (kind.privacy == Privacy::Public).then_some(line.area_per_item_m2 / seats)
+    };
+    let sees = |r: &&Planned| r.kind.zone == Zone::Day && r.kind.privacy == Privacy::Private;
+    let seen = rooms.iter().filter(sees).count() as u32;
+    let places: Vec<usize> = (0..rooms.len()).filter(|&i| waits(rooms[i].kind).is_some()).collect();
+    for &i in &places {
+        let Some(each) = waits(rooms[i].kind).filter(|_| rooms[i].area_m2.is_none() && !reading.single) else {
+            continue;
+        };
+        let seats = (SEATS_PER_ROOM * seen).div_ceil(places.len() as u32);
+        let range = rooms[i].kind.area_m2;
+        let area = (each * f64::from(seats)).min(range.max);
+        if area > range.target && rooms[i].people_area_m2.is_none() {
+            rooms[i].people_area_m2 = Some(area);
         }
     }
 }
@@ -621,7 +694,14 @@ fn hold_beds(reading: &Reading, rooms: &mut [Planned]) {
 
 /// Finds for every en suite, closet and the like the room it is entered from.
 fn hang_on_hosts(reading: &mut Reading, rooms: &mut [Planned]) {
-    let pairs: Vec<Pair> = reading.wishes.pairs.iter().filter(|p| p.belongs).cloned().collect();
+    let domain = reading.domain;
+    // the control room of "MRI with control room" has a door to the scanner and one for those who work there
+    let beside = |p: &&Pair| {
+        let of = |id: &String| domain.room_type(id).is_none_or(|k| k.access == Access::Host);
+        let mut rules = domain.adjacency.iter().filter(|r| r.relation == AdjacencyRelation::Must);
+        !of(&p.a) && rules.any(|r| r.a == p.a && r.b == p.b)
+    };
+    let pairs: Vec<Pair> = reading.wishes.pairs.iter().filter(|p| p.belongs && !beside(p)).cloned().collect();
     for i in 0..rooms.len() {
         let room = &rooms[i];
         let belongs = pairs.iter().find(|p| p.a == room.room_type);

@@ -342,6 +342,11 @@ impl<T: Clone> Phrases<T> {
     }
 
     /// Adds a phrase and merges meanings.
+    /// Returns the language of the phrases.
+    pub(super) fn language(&self) -> &str {
+        &self.language
+    }
+
     pub(super) fn put(&mut self, phrase: &str, meaning: T, merge: impl Fn(&T, &T) -> T) {
         let (mut exact, mut stems, mut tokens) = (String::new(), String::new(), 0);
         for word in words(phrase) {

@@ -81,6 +81,8 @@ pub(super) enum Tag {
     BedRooms,
     /// Ends of compounds that number the beds of a room: "bettzimmer".
     BedRoomEnds,
+    /// Places to be treated at, of which one room has several: "stations", "Plätze".
+    Stations,
     /// The storey below the ground.
     Basement,
     /// Children who live in a home or visit a place.
@@ -102,6 +104,8 @@ pub(super) enum Tag {
     UnreadUnits,
     /// Units of time behind a length: "m/s".
     UnreadRates,
+    /// Words that shut a list of rooms: "and nothing else".
+    Only,
     /// Words that ask for nothing by themselves: "please".
     Polite,
 }
