@@ -12,6 +12,8 @@ use super::words::{Spoken, Tag};
 const MOST_BETWEEN: usize = 2;
 /// Words between a room and its places, at most: "recovery room with a total of".
 const MOST_TO_ROOM: usize = 5;
+/// What programs call places to be treated at that are rooms of their own.
+const STATION: &str = "station";
 /// Letters before the word for places in a compound, at least: "Dialyseplätze".
 const LEAST_HEAD: usize = 3;
 /// Most places that are taken at their word.
@@ -176,6 +178,28 @@ impl Reader<'_> {
         true
     }
 
+    /// Returns true for the chairs of a waiting room.
+    fn of_another(&self, mentions: &[Mention], found: &Found) -> bool {
+        let (noun, span) = (found.noun, found.span);
+        let room = |m: &&Mention| m.room_type().is_some_and(|id| self.main() != Some(id));
+        let before = mentions.iter().rev().filter(room).find(|m| m.span.end <= span.start);
+        let after = mentions.iter().filter(room).find(|m| m.from >= noun.end);
+        before.is_some_and(|m| self.joins(m.span.end..span.start, &[Tag::Starts, Tag::Inside]))
+            || before.is_some_and(|m| m.span.end + 1 == span.start && self.tokens[m.span.end].is_mark())
+                && self.tokens.get(noun.end).is_none_or(Token::is_mark)
+            || after.is_some_and(|m| self.joins(noun.end..m.from, &[Tag::Inside]))
+    }
+
+    /// Returns true where words between a room and its places say that they are of it.
+    fn joins(&self, gap: std::ops::Range<usize>, tags: &[Tag]) -> bool {
+        let tagged = |tags: &[Tag]| gap.clone().any(|i| tags.iter().any(|&t| self.tagged(i, t).is_some()));
+        !gap.is_empty()
+            && gap.len() <= MOST_TO_ROOM
+            && !gap.clone().any(|i| self.tokens[i].is_mark())
+            && tagged(tags)
+            && !tagged(&[Tag::Joins])
+    }
+
     /// Returns the mention of the room that places belong to.
     fn room_of(&self, mentions: &[Mention], found: &Found) -> Option<usize> {
         let fits = |m: &usize| {
@@ -197,30 +221,29 @@ impl Reader<'_> {
         }
         let before = (0..mentions.len()).rev().find(|&m| own(m) && mentions[m].span.end <= span.start);
         let after = (0..mentions.len()).find(|&m| own(m) && mentions[m].from >= noun.end);
-        let gap_fits = |gap: std::ops::Range<usize>, tags: &[Tag]| {
-            !gap.is_empty()
-                && gap.len() <= MOST_TO_ROOM
-                && !gap.clone().any(|i| self.tokens[i].is_mark())
-                && gap.clone().any(|i| tags.iter().any(|&t| self.tagged(i, t).is_some()))
-                && !gap.clone().any(|i| self.tagged(i, Tag::Joins).is_some())
-        };
         let with = before.filter(fits).filter(|&m| {
             // "a recovery room (6 bays)"
             let gap = mentions[m].span.end..span.start;
             let bracket =
                 gap.len() == 1 && self.tokens.get(noun.end).is_none_or(Token::is_mark) && found.mention.is_none();
-            bracket && self.tokens[gap.start].is_mark() || gap_fits(gap, &[Tag::Starts, Tag::Stops])
+            bracket && self.tokens[gap.start].is_mark() || self.joins(gap, &[Tag::Starts, Tag::Stops])
         });
         let itself = || found.mention.filter(|m| fits(m));
         let alike = |m: &usize| found.mention.is_none_or(|f| !fits(&f) || mentions[*m].what == mentions[f].what);
         with.filter(alike)
             .or_else(itself)
-            .or_else(|| after.filter(fits).filter(|&m| gap_fits(noun.end..mentions[m].from, &[Tag::Inside])))
+            .or_else(|| after.filter(fits).filter(|&m| self.joins(noun.end..mentions[m].from, &[Tag::Inside])))
     }
 
-    /// Returns the room that the building is for, of which places without a room are.
+    /// Returns the room that the building is for, of which places without a room are, or that each of them is.
     fn alone(&self, mentions: &[Mention], found: &Found) -> Option<String> {
-        let main = self.main()?;
+        if self.of_another(mentions, found) {
+            return None;
+        }
+        let main = self.main().or_else(|| {
+            let each = self.program.means.get(STATION).filter(|_| found.mention.is_none())?;
+            Some(each.as_str())
+        })?;
         let given = mentions.iter().any(|m| m.room_type() == Some(main));
         let heads = found.mention.is_some_and(|m| mentions[m].room_type().is_none());
         let listed = found.mention.is_none_or(|m| matches!(mentions[m].what, What::Visitors) || !heads);
@@ -230,7 +253,12 @@ impl Reader<'_> {
     /// Gives a mention its places, in as many rooms as they need.
     fn settle(&self, mention: &mut Mention, places: u32) {
         let kind = mention.room_type().and_then(|id| self.domain.room_type(id));
-        let Some((kind, line)) = kind.and_then(|k| Some((k, line_of(self.domain, k)?))) else { return };
+        let Some((kind, line)) = kind.and_then(|k| Some((k, line_of(self.domain, k)?))) else {
+            // each of them is a room
+            mention.count = Some(i64::from(places));
+            (mention.plural, mention.article, mention.vague) = (true, false, false);
+            return;
+        };
         let by_area = (kind.area_m2.max / (SPARE * line.area_per_item_m2)) as u32;
         let told = mention.count.filter(|_| mention.number.is_some() && !mention.article && !mention.vague);
         let own = told.filter(|&n| (2..=20).contains(&n) && mention.places.is_none()).map(|n| n as u32);
