@@ -403,7 +403,7 @@ fn put<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>, room: Planned<'a
     };
     let wet = reading.wet.has_toilet(room.kind);
     match (reading.total, reading.closed) {
-        (None, true) if !joins_list && !(wet && joins_wet(reading, rooms)) => false,
+        (None, true) if !(joins_list || wet && joins_wet(reading, rooms)) => false,
         (None, _) => {
             rooms.push(room);
             true
