@@ -19,7 +19,7 @@ const LEAST_HEAD: usize = 3;
 /// Most places that are taken at their word.
 const MOST_PLACES: f64 = 200.0;
 /// Floor of a room over what its places need, as a factor: the way in, the basin, the desk.
-const SPARE: f64 = 1.1;
+const SPARE: f64 = 1.25;
 
 /// Returns the line of what people lie or sit on in a room that has many such places.
 pub(super) fn line_of<'a>(domain: &Domain, kind: &'a RoomType) -> Option<&'a Furnishing> {
