@@ -214,6 +214,12 @@ impl Document for Domain {
             for (j, id) in program.vital.iter().enumerate() {
                 room(format!("/programs/{i}/vital/{j}"), id, &mut problems);
             }
+            for (name, id) in &program.means {
+                room(format!("/programs/{i}/means/{name}"), id, &mut problems);
+            }
+            for (j, id) in program.robot_rooms.iter().enumerate() {
+                room(format!("/programs/{i}/robot_rooms/{j}"), id, &mut problems);
+            }
             let Some(units) = &program.units else { continue };
             let at = format!("/programs/{i}/units");
             if units.programs.is_empty() || units.rooms < 2 || units.from_rooms <= units.rooms {

@@ -1,5 +1,7 @@
 //! Which rooms a building has, how they hang together, and how one moves between them.
 
+use std::collections::BTreeMap;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -25,6 +27,13 @@ pub struct Program {
     /// What large buildings are made of; without it they have more of the same.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub units: Option<Units>,
+    /// What words for rooms of other buildings mean in this one: the treatment room of a dental practice is one with a
+    /// dental chair. Room type or name as the prompt has it, and the room type that it is here.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub means: BTreeMap<String, String>,
+    /// Room types of which there is one where robots work and the rooms are left open, best first: they live there.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub robot_rooms: Vec<String>,
     /// Where the program comes from.
     #[serde(default)]
     pub source: String,

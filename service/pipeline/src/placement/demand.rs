@@ -83,6 +83,10 @@ impl Task<'_> {
 
     /// Returns how many of it stand with other things already; `tasks` are those before it.
     pub fn standing(&self, tasks: &[Task], placed: &[Placed]) -> u32 {
+        let before = |t: &Task| t.item == self.item && t.line < self.line;
+        if self.arrangement == Arrangement::Rows && tasks.iter().any(before) {
+            return placed.iter().filter(|p| p.unit.item == self.item).count() as u32;
+        }
         let goes_on = tasks.iter().any(|t| t.line == self.line && t.item == self.item);
         if !self.counts_in_groups() || goes_on {
             return 0;
@@ -166,8 +170,12 @@ pub(super) fn tasks<'a>(
     for (line, f) in kind.furnishing.iter().enumerate().filter(|(_, f)| household.wants(f)) {
         let Some(anchor) = domain.anchor(&f.item) else { continue };
         let (mut count, mut required) = (f.units(area_m2).min(MAX_UNITS), if f.required { f.min } else { 0 });
+        // what finds no wall of the same stands in rows
+        let goes_on = |of: usize| {
+            line > of && f.arrangement == Arrangement::Rows && kind.furnishing.get(of).is_some_and(|o| o.item == f.item)
+        };
         if let Some((steered, units)) = occupied
-            && steered == line
+            && (steered == line || goes_on(steered))
         {
             count = units.max(f.min);
             required = required.min(count);
@@ -240,6 +248,14 @@ pub(super) fn tasks<'a>(
     if occupied.is_none() {
         out.iter_mut().filter(|t| t.is_seated()).for_each(Task::allow_full_rows);
     }
+    // what finds no wall is not missing where a later line has it in rows
+    for k in 0..out.len() {
+        let (item, line) = (out[k].item, out[k].line);
+        let later = |t: &Task| t.item == item && t.line > line && t.arrangement == Arrangement::Rows;
+        if out.iter().any(later) {
+            out[k].spare = out[k].count - out[k].required.max(1).min(out[k].count);
+        }
+    }
     turn_to_audience(&mut out);
     // a household eats before its vacuum robot does
     let table = |t: &Task| kind.furnishing.get(t.line).is_some_and(|f| !f.unless_rooms.is_empty());
@@ -310,8 +326,12 @@ fn occupied_line(
             (each > 0 && f.max > 0).then_some((line, each))
         })
     };
+    // treatment chairs are no seats of a waiting room
+    let lies = kind.furnishing.first().filter(|f| f.required && f.max > 1 && f.area_per_item_m2 > 0.0);
+    let lies = lies.and_then(|f| domain.anchor(&f.item)).is_some_and(|o| o.shape == Shape::Sofa);
+    let lying = || lies.then_some((0, 1));
     let seats = || capacity(|u| u.seats()).filter(|(line, _)| kind.furnishing[*line].max > 1);
-    let (line, each) = capacity(|u| u.beds()).or_else(|| capacity(|u| u.desks())).or_else(seats)?;
+    let (line, each) = capacity(|u| u.beds()).or_else(lying).or_else(|| capacity(|u| u.desks())).or_else(seats)?;
     let units = people.div_ceil(each).min(MAX_UNITS);
     Some((line, units))
 }

@@ -74,7 +74,8 @@ impl<'a> Draft<'a, '_> {
     /// Returns how good the draft is, lower is better: what is missing, then looks and free floor.
     pub fn cost(&self, empty: usize) -> (u32, f64) {
         let free = 3.0 * self.state.free_area as f64 / empty.max(1) as f64;
-        let taken = DOCK_TAKEN * f64::from(self.docks_taken()) + if self.state.lacks_circle() { NO_CIRCLE } else { 0.0 };
+        let taken =
+            DOCK_TAKEN * f64::from(self.docks_taken()) + if self.state.lacks_circle() { NO_CIRCLE } else { 0.0 };
         (self.outcome.required_missing, taken - self.outcome.score - free)
     }
 

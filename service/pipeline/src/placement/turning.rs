@@ -21,7 +21,8 @@ impl Circle {
         };
         let at = |x: i32, y: i32| Self { radius, center: (x, y) };
         let places = || steps(b.x0, b.x1).flat_map(|x| steps(b.y0, b.y1).map(move |y| at(x, y)));
-        places().find(|circle| holes.iter().chain(bodies.iter().copied().flatten()).all(|other| circle.is_clear_of(other)))
+        places()
+            .find(|circle| holes.iter().chain(bodies.iter().copied().flatten()).all(|other| circle.is_clear_of(other)))
     }
 
     /// Returns true when a body takes none of it.

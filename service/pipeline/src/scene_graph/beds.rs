@@ -1,7 +1,7 @@
 //! Rooms that are told by their beds: "four 4-bed rooms", "Sechsbettzimmer", "4 rooms with 4 beds each", "16 beds in
 //! double rooms"; and beds that contradict the rooms.
 
-use d3dgen_model::domain::{Access, Domain, Occupants, Privacy, Program, RoomType, Shape, Zone};
+use d3dgen_model::domain::{Access, Domain, Occupants, Privacy, Program, ProgramRoom, RoomType, Shape, Zone};
 use d3dgen_model::scene_graph::Note;
 
 use super::mentions::{Mention, What};
@@ -220,8 +220,17 @@ impl Choice<'_> {
             self.program.rooms.iter().find(|e| e.occupants == Occupants::Beds).map(|e| format!("{}_", e.room_type));
         let variant = |kind: &RoomType| own.as_ref().is_some_and(|own| kind.id.starts_with(own));
         let listed = |kind: &RoomType| variant(kind) || self.program.rooms.iter().any(|e| e.room_type == kind.id);
+        // a room to calm down in is no bedroom for several, however wide its couch is
+        let entries = || self.domain.programs.iter().flat_map(|p| &p.rooms);
+        let bedroom = |kind: &RoomType| {
+            let of = |e: &ProgramRoom| e.occupants == Occupants::Beds && kind.id.starts_with(&e.room_type);
+            entries().any(of)
+        };
         for m in mentions.iter_mut() {
-            let kind = m.room_type().and_then(|id| self.domain.room_type(id)).filter(|k| is_bed_room(k) && !listed(k));
+            let kind = m
+                .room_type()
+                .and_then(|id| self.domain.room_type(id))
+                .filter(|k| is_bed_room(k) && bedroom(k) && !listed(k));
             let beds = kind.and_then(|k| sleeps(self.domain, k)).filter(|[low, _]| *low > 1);
             let alike = |k: &&RoomType| listed(k) && is_bed_room(k) && sleeps(self.domain, k) == beds;
             if let Some(other) = beds.and_then(|_| self.domain.room_types.iter().find(alike)) {

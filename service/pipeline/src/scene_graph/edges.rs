@@ -193,6 +193,24 @@ impl Web {
         }
     }
 
+    /// Returns the rooms of the second that have none of the first yet, each with one that serves two: a room to scrub
+    /// between two operating rooms.
+    fn shared(&self, rooms: &[GraphRoom], from: &[usize], to: &[usize]) -> Vec<(usize, usize)> {
+        let joins = |i: usize, j: usize| {
+            let walk = |e: &&GraphEdge| e.required && matches!(e.connector, Connector::Door | Connector::Open);
+            let (a, b) = (&rooms[i].id, &rooms[j].id);
+            self.edges.iter().filter(walk).any(|e| &e.a == a && &e.b == b || &e.a == b && &e.b == a)
+        };
+        let mut out: Vec<(usize, usize)> = Vec::new();
+        for &j in to.iter().filter(|&&j| !from.iter().any(|&i| joins(i, j))) {
+            let serves = |i: usize| to.iter().filter(|&&k| joins(i, k) || out.contains(&(i, k))).count();
+            let free = from.iter().copied().find(|&i| serves(i) < 2 && rooms[i].unit == rooms[j].unit);
+            let free = free.filter(|&i| !self.has_apart(&rooms[i].id, &rooms[j].id));
+            out.extend(free.map(|i| (i, j)));
+        }
+        out
+    }
+
     /// Adds the domain's rules: `must` as required edges, `should` as wishes.
     fn follow_rules(&mut self, reading: &Reading, rooms: &[GraphRoom]) {
         for rule in &reading.domain.adjacency {
@@ -223,6 +241,11 @@ impl Web {
                 };
                 if !self.edges.iter().any(joined) && !self.has_apart(&rooms[i].id, &rooms[j].id) {
                     self.put(rooms, (i, j), connector, required && connector != Connector::Near, &rule.source);
+                }
+            }
+            if required && connector == Connector::Door {
+                for pair in self.shared(rooms, &from, &to) {
+                    self.put(rooms, pair, connector, true, &rule.source);
                 }
             }
         }

@@ -58,6 +58,8 @@ pub(super) struct Mention {
     pub number: Option<Span>,
     /// Beds of each such room, where the prompt says so.
     pub beds: Option<u32>,
+    /// Places to be treated at of each such room, where the prompt says so.
+    pub places: Option<u32>,
 }
 
 impl Mention {
@@ -75,6 +77,7 @@ impl Mention {
             from,
             number: None,
             beds: None,
+            places: None,
         }
     }
 
@@ -89,6 +92,8 @@ struct RoomWord {
     id: String,
     /// Letters of the phrase, of its first word in languages whose noun comes first; a longer form of it is its plural.
     letters: usize,
+    /// Further types with the same word: the control room of either scanner.
+    others: Vec<String>,
 }
 
 /// Words for rooms in the prompt's languages.
@@ -166,8 +171,7 @@ impl Vocabulary {
         // a keyword may be a plural itself ("single rooms"): its singular has the same stem
         let singular =
             phrases.by_stems(&tokens[i..end]).filter(|w| w.id == word.id).map_or(word.letters, |w| w.letters);
-        let noun = if phrases.noun_first() { i + 1 } else { end };
-        let letters: usize = tokens[i..noun].iter().map(|t| t.text.chars().count()).sum();
+        let letters = letters(tokens[i..end].iter().map(|t| t.text.as_str()), phrases.language());
         Some((end, word.id.as_str(), letters > singular.min(word.letters)))
     }
 
@@ -193,6 +197,15 @@ impl Vocabulary {
     pub(super) fn own_at(&self, tokens: &[Token], span: Span) -> Option<String> {
         let found = self.own.iter().find_map(|p| p.longest_at(tokens, span.start).filter(|f| f.0 == span.end));
         found.map(|f| f.1.id.clone())
+    }
+
+    /// Returns the domain's own room types with the word at a span, where there are several.
+    pub(super) fn senses_at(&self, tokens: &[Token], span: Span) -> Vec<String> {
+        let at = |p: &Phrases<RoomWord>| {
+            let (_, word) = p.longest_at(tokens, span.start).filter(|f| f.0 == span.end)?;
+            (!word.others.is_empty()).then(|| std::iter::once(&word.id).chain(&word.others).cloned().collect())
+        };
+        self.own.iter().find_map(at).unwrap_or_default()
     }
 
     /// Returns the end of the word for a room that begins at a token.
@@ -226,6 +239,20 @@ fn tagged(tokens: &[Token], i: usize, spoken: &[&Spoken], tag: Tag) -> bool {
     spoken.iter().any(|s| s.tag_at(tokens, i, tag).is_some())
 }
 
+/// Returns the letters of a phrase that say how many there are: in French and Spanish those of the first word ("salles de
+/// réunion"); in English whose a thing is says nothing of that ("visitors lounge").
+fn letters<'t>(mut words: impl DoubleEndedIterator<Item = &'t str>, language: &str) -> usize {
+    let count = |w: &str| w.chars().filter(|c| c.is_alphanumeric()).count();
+    if matches!(language, "es" | "fr") {
+        return words.next().map_or(0, count);
+    }
+    let mut words = words.rev();
+    let last = words.next().map_or(0, count);
+    // "class" is no plural
+    let whose = |w: &'t str| w.strip_suffix('s').filter(|stem| language == "en" && !stem.ends_with('s')).unwrap_or(w);
+    last + words.map(|w| count(whose(w))).sum::<usize>()
+}
+
 fn phrases<'a>(domains: impl Iterator<Item = &'a Domain>, language: &str) -> Phrases<RoomWord> {
     let mut phrases: Phrases<RoomWord> = Phrases::new(language);
     for domain in domains {
@@ -234,11 +261,16 @@ fn phrases<'a>(domains: impl Iterator<Item = &'a Domain>, language: &str) -> Phr
             let id = room.id.replace('_', " ");
             let id = if language == "en" { Some(id.as_str()) } else { None };
             for phrase in words.chain(id) {
-                let words = phrase.split_whitespace().take(if phrases.noun_first() { 1 } else { usize::MAX });
-                let letters = words.map(|w| fold(w).chars().count()).sum();
-                phrases.put(phrase, RoomWord { id: room.id.clone(), letters }, |old, new| {
-                    let letters = if old.id == new.id { old.letters.min(new.letters) } else { old.letters };
-                    RoomWord { id: old.id.clone(), letters }
+                let folded: Vec<String> = phrase.split_whitespace().map(fold).collect();
+                let letters = letters(folded.iter().map(String::as_str), language);
+                phrases.put(phrase, RoomWord { id: room.id.clone(), letters, others: Vec::new() }, |old, new| {
+                    let mut merged = old.clone();
+                    if old.id == new.id {
+                        merged.letters = old.letters.min(new.letters);
+                    } else if !merged.others.contains(&new.id) {
+                        merged.others.push(new.id.clone());
+                    }
+                    merged
                 });
             }
         }

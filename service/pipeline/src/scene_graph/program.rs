@@ -3,13 +3,17 @@
 use std::collections::BTreeMap;
 
 use d3dgen_knowledge::Applicable;
-use d3dgen_model::domain::{Access, Domain, GENERIC_ROOM_TYPE, Occupants, Program, ProgramRoom, RoomType, Shape, Zone};
+use d3dgen_model::domain::{
+    Access, AdjacencyRelation, Domain, Occupants, Privacy, Program, ProgramRoom, RobotUse, RoomType, Shape, Zone,
+};
 
 use super::beds::sleeps;
 use super::layout;
 use super::places::note;
 use super::reading::{MAX_ROOMS, Reading, is_dwelling};
+use super::rooms::most_docks;
 use super::seated;
+use super::stations;
 use super::units;
 use super::vital;
 use super::wishes::{CHARGING, Pair, PerHost, Wish};
@@ -23,6 +27,8 @@ const CIRCULATION_SHARE: f64 = 0.14;
 /// Floor for a desk of a room whose domain says nothing of it, m^2.
 const DESK_AREA_M2: f64 = 9.0;
 
+/// Width of one seat of a bench, m.
+const SEAT_M: f64 = 0.5;
 /// What rooms need beyond their least area before a building counts as too small for them, as a factor.
 const TIGHT: f64 = 1.1;
 
@@ -87,6 +93,7 @@ pub(super) fn complete<'a>(reading: &mut Reading<'a>) -> Vec<Planned<'a>> {
     equip_hosts(reading, &mut rooms);
     vital::accompany(reading, &mut rooms);
     vital::complete(reading, &mut rooms);
+    house_robots(reading, &mut rooms);
     let mut rooms = units::divide(reading, rooms);
     layout::follow(reading, &mut rooms);
     finish(reading, rooms)
@@ -97,9 +104,33 @@ pub(super) fn finish<'a>(reading: &mut Reading<'a>, mut rooms: Vec<Planned<'a>>)
     wash_on_every_storey(reading, &mut rooms);
     hold_people(reading, &mut rooms);
     serve_people(reading, &mut rooms);
+    seat_waiting(reading, &mut rooms);
     hang_on_hosts(reading, &mut rooms);
     state_additions(reading, &rooms);
     rooms
+}
+
+/// Adds the room that robots live in, where the rooms are left open and none of them suits that.
+fn house_robots<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
+    let open = reading.total.is_none() && (!reading.closed || reading.may_join) && !reading.single;
+    if !open || reading.robots.is_empty() || !reading.docked.is_empty() {
+        return;
+    }
+    let robots: u32 = reading.robots.iter().map(|r| r.count).fold(0, u32::saturating_add);
+    // rooms that are there to charge robots grow with them
+    let is_dock = |item: &str| reading.domain.anchor(item).is_some_and(|o| o.shape == Shape::Dock);
+    let holds = |kind: &RoomType| match kind.zone == Zone::Service && kind.robot.contains(&RobotUse::Charging) {
+        true if kind.furnishing.iter().any(|f| is_dock(&f.item)) => robots,
+        true => most_docks(kind.area_m2.target),
+        false => 0,
+    };
+    let have: u32 = rooms.iter().map(|r| holds(r.kind)).fold(0, u32::saturating_add);
+    let mut kinds = reading.program.robot_rooms.iter().filter_map(|id| reading.domain.room_type(id));
+    let new = |k: &RoomType| may_add(reading, &k.id) && !rooms.iter().any(|r| r.room_type == k.id);
+    let kind = kinds.find(|k| new(k) && have.saturating_add(holds(k)) >= robots);
+    if let Some(kind) = kind.filter(|_| have < robots) {
+        rooms.push(Planned::new(&kind.id, kind));
+    }
 }
 
 /// Returns true for rooms that the prompt does not rule out.
@@ -532,6 +563,7 @@ pub(super) fn head_count(reading: &Reading, of: Occupants) -> Option<u32> {
 /// Spreads the people over the rooms that the program gives them.
 fn hold_people(reading: &mut Reading, rooms: &mut [Planned]) {
     hold_beds(reading, rooms);
+    hold_stations(reading, rooms);
     // who has a desk elsewhere needs none here
     let at_desks = |r: &&Planned| seated::desks(reading.domain, r.kind).is_some();
     let seated: u32 = rooms.iter().filter(at_desks).filter_map(|r| r.occupants).sum();
@@ -562,6 +594,20 @@ fn hold_people(reading: &mut Reading, rooms: &mut [Planned]) {
             for (k, &i) in places.iter().enumerate() {
                 rooms[i].occupants = Some(beds / n + u32::from((k as u32) < beds % n));
             }
+        }
+    }
+}
+
+/// Gives rooms the places to be treated at that the prompt says, and the floor for them.
+fn hold_stations(reading: &Reading, rooms: &mut [Planned]) {
+    for held in &reading.stationed {
+        let free = rooms.iter_mut().filter(|r| r.requested && r.occupants.is_none() && r.room_type == held.room_type);
+        for room in free.take(held.count as usize) {
+            let Some(line) = stations::line_of(reading.domain, room.kind) else { continue };
+            let range = room.kind.area_m2;
+            room.occupants = Some(held.beds);
+            let area = stations::area_m2(line, held.beds).clamp(range.min, range.max);
+            room.people_area_m2 = room.area_m2.is_none().then_some(area);
         }
     }
 }
@@ -600,6 +646,33 @@ fn serve_people(reading: &Reading, rooms: &mut [Planned]) {
 pub(super) fn places_to_work(reading: &Reading, rooms: &[Planned]) -> u32 {
     let desks = || rooms.iter().map(|r| r.occupants.unwrap_or_else(|| workplaces(reading.domain, r))).sum::<u32>();
     head_count(reading, Occupants::Staff).unwrap_or_else(desks)
+}
+
+/// Seats that people find where they wait for each room that sees them one at a time.
+const SEATS_PER_ROOM: u32 = 2;
+
+/// Sizes rooms to wait in by the rooms that people wait for, where these ask for more than usual.
+fn seat_waiting(reading: &Reading, rooms: &mut [Planned]) {
+    let waits = |kind: &RoomType| {
+        let line = kind.furnishing.first().filter(|f| f.required && f.area_per_item_m2 > 0.0)?;
+        let bench = reading.domain.object(&line.item).filter(|o| o.shape == Shape::Bench)?;
+        let seats = bench.sizes_m.first().map_or(1.0, |s| (s[0] / SEAT_M).floor().max(1.0));
+        (kind.privacy == Privacy::Public).then_some(line.area_per_item_m2 / seats)
+    };
+    let sees = |r: &&Planned| r.kind.zone == Zone::Day && r.kind.privacy == Privacy::Private;
+    let seen = rooms.iter().filter(sees).count() as u32;
+    let places: Vec<usize> = (0..rooms.len()).filter(|&i| waits(rooms[i].kind).is_some()).collect();
+    for &i in &places {
+        let Some(each) = waits(rooms[i].kind).filter(|_| rooms[i].area_m2.is_none() && !reading.single) else {
+            continue;
+        };
+        let seats = (SEATS_PER_ROOM * seen).div_ceil(places.len() as u32);
+        let range = rooms[i].kind.area_m2;
+        let area = (each * f64::from(seats)).min(range.max);
+        if area > range.target && rooms[i].people_area_m2.is_none() {
+            rooms[i].people_area_m2 = Some(area);
+        }
+    }
 }
 
 /// Returns how many people have a desk in a room of its usual size.
@@ -664,7 +737,14 @@ fn hold_beds(reading: &Reading, rooms: &mut [Planned]) {
 
 /// Finds for every en suite, closet and the like the room it is entered from.
 fn hang_on_hosts(reading: &mut Reading, rooms: &mut [Planned]) {
-    let pairs: Vec<Pair> = reading.wishes.pairs.iter().filter(|p| p.belongs).cloned().collect();
+    let domain = reading.domain;
+    // the control room of "MRI with control room" has a door to the scanner and one for those who work there
+    let beside = |p: &&Pair| {
+        let of = |id: &String| domain.room_type(id).is_none_or(|k| k.access == Access::Host);
+        let mut rules = domain.adjacency.iter().filter(|r| r.relation == AdjacencyRelation::Must);
+        !of(&p.a) && rules.any(|r| r.a == p.a && r.b == p.b)
+    };
+    let pairs: Vec<Pair> = reading.wishes.pairs.iter().filter(|p| p.belongs && !beside(p)).cloned().collect();
     for i in 0..rooms.len() {
         let room = &rooms[i];
         let belongs = pairs.iter().find(|p| p.a == room.room_type);
@@ -709,15 +789,6 @@ fn hang_on_hosts(reading: &mut Reading, rooms: &mut [Planned]) {
 
 /// States which rooms the prompt does not name.
 fn state_additions(reading: &mut Reading, rooms: &[Planned]) {
-    let mut unknown: Vec<&str> = Vec::new();
-    for room in rooms.iter().filter(|r| r.kind.id == GENERIC_ROOM_TYPE && r.room_type != GENERIC_ROOM_TYPE) {
-        if !unknown.contains(&room.room_type.as_str()) {
-            unknown.push(&room.room_type);
-            let name = room.name.clone().unwrap_or_else(|| room.room_type.replace('_', " "));
-            let message = format!("`{name}` is not known, furnished as `{}`: {}", room.kind.id, room.kind.description);
-            reading.assumptions.push(note("room_unknown", message));
-        }
-    }
     let mut added: Vec<(&str, u32)> = Vec::new();
     for room in rooms.iter().filter(|r| !r.requested) {
         match added.iter_mut().find(|a| a.0 == room.kind.label) {

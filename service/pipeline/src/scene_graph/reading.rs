@@ -15,6 +15,8 @@ use super::objects;
 use super::parts;
 use super::places::{self, note};
 use super::relations;
+use super::senses;
+use super::stations;
 use super::storeys::{self, Storeys, Wanted, Where};
 use super::styles;
 use super::text::{MAX_TOKENS, Span, Token, tokens};
@@ -58,6 +60,8 @@ pub(super) struct Reading<'a> {
     pub single: bool,
     /// Rooms of which the prompt says the beds.
     pub held: Vec<Held>,
+    /// Rooms of which it says the places to be treated at.
+    pub stationed: Vec<Held>,
     /// True when the prompt counts the rooms to live in ("3-Zimmer-Wohnung", "2BHK").
     pub habitable_fixed: bool,
     pub area_m2: Option<f64>,
@@ -196,7 +200,28 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         let wards: Vec<Span> = building.words.iter().chain(&building.head).copied().collect();
         beds::of_several_wards(&mut mentions, &numbers, &wards);
     }
+    senses::settle(&tokens, &mut mentions, &vocabulary, domain, program);
     let seated = if lives { Vec::new() } else { seated::read(&tokens, &mut mentions, (domain, program), &spoken) };
+    let elsewhere: Vec<Span> = machines.spans.iter().chain(&place_spans).chain(&building.head).copied().collect();
+    let stations = stations::Reader {
+        tokens: &tokens,
+        numbers: &numbers,
+        vocabulary: &vocabulary,
+        domain,
+        program,
+        spoken: &spoken,
+        taken: &elsewhere,
+    };
+    let station_words = if lives { Vec::new() } else { stations.read(&mut mentions) };
+    not_things.extend(station_words.iter().copied());
+    let stationed = mentions.iter().filter_map(|m| {
+        Some(Held {
+            room_type: m.room_type()?.to_owned(),
+            count: m.count.map_or(1, |n| n.max(1) as u32),
+            beds: m.places?,
+        })
+    });
+    let stationed: Vec<Held> = stationed.collect();
     let doors = unread::doors(&tokens, &mut mentions, &spoken);
     let docked = docks::inside_rooms(&tokens, &mut mentions, &machines.spans, &spoken);
     let said_styles = styles::of_building(said_styles, &mentions, language);
@@ -290,9 +315,10 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         wishes.wishes.push(Wish::one(GENERIC_ROOM_TYPE, "room"));
     }
     let total = total.filter(|_| !single);
-    let closed = single || is_closed(&wishes, &tokens, &building, lives);
     let only = says_only(&tokens, &mentions, &spoken);
-    let may_join = joins_a_name(&building, &tokens, language);
+    let listed_only = only && !lives && wishes.wishes.iter().any(|w| w.listed);
+    let closed = single || listed_only || is_closed(&wishes, &tokens, &building, lives);
+    let may_join = !only && joins_a_name(&building, &tokens, language);
     if closed && lives && !single {
         wishes.open_to(domain);
     }
@@ -300,6 +326,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         let named = building.head.and_then(|h| vocabulary.room_named(&tokens[h.start..h.end]));
         assumptions.extend(add_main_room(&mut wishes, program, domain, &people, named.as_deref()));
     }
+    spans.extend(station_words);
     let mut read: Vec<Span> = spans.iter().chain(&machines.docks).chain(&building.words).copied().collect();
     let mut things = objects::named(&tokens, &mentions, domain, registry, &languages, &not_things, &mut read);
     let unread = unread::Text {
@@ -331,10 +358,11 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         wishes,
         total,
         closed,
-        may_join: may_join && !only,
+        may_join,
         only,
         single,
         held,
+        stationed,
         habitable_fixed: short_forms.iter().any(|f| f.rooms.contains_key(&words().dwelling.living)),
         area_m2,
         occupancy: people.occupancy,

@@ -12,6 +12,8 @@ use super::reading::Reading;
 
 /// Most objects wished for in one room.
 const MOST_WISHES: usize = 15;
+/// Things named of a room that no domain knows.
+const MOST_NAMED: usize = 3;
 /// Share of the usual area per head that a building short of area leaves.
 const CROWDED: f64 = 0.6;
 /// Share of their usual area that rooms of a compact building have.
@@ -29,6 +31,7 @@ pub(super) fn describe(reading: &mut Reading, planned: &[Planned]) -> Vec<GraphR
     for room in planned {
         *total.entry(&room.room_type).or_default() += 1;
     }
+    state_unknown(reading, planned);
     let mut seen: BTreeMap<&str, u32> = BTreeMap::new();
     let mut rooms = Vec::new();
     for (i, room) in planned.iter().enumerate() {
@@ -57,6 +60,26 @@ pub(super) fn describe(reading: &mut Reading, planned: &[Planned]) -> Vec<GraphR
         });
     }
     rooms
+}
+
+/// States as what rooms are planned that no domain knows.
+fn state_unknown(reading: &mut Reading, planned: &[Planned]) {
+    let mut stated: Vec<&str> = Vec::new();
+    for room in planned {
+        let unknown = room.kind.id == GENERIC_ROOM_TYPE && room.room_type != GENERIC_ROOM_TYPE;
+        if !unknown || stated.contains(&room.room_type.as_str()) {
+            continue;
+        }
+        stated.push(&room.room_type);
+        let words = room.name.clone().unwrap_or_else(|| room.room_type.replace('_', " "));
+        let things: Vec<String> =
+            furniture(reading.domain, room.kind).take(MOST_NAMED).map(|id| id.replace('_', " ")).collect();
+        let message = format!(
+            "`{words}` is no room that is known; it was planned as one for general use, furnished with {}",
+            things.join(", ")
+        );
+        reading.assumptions.push(note("unknown_room", message));
+    }
 }
 
 /// Returns the corridor, hall or lobby that connects the rooms.

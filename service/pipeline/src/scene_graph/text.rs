@@ -336,14 +336,14 @@ impl<T: Clone> Phrases<T> {
         Self { language: language.into(), exact: HashMap::new(), stems: HashMap::new(), longest: 0, widest: 0 }
     }
 
-    /// Returns true for languages where what a thing is for stands behind it: "salle de réunion".
-    pub(super) fn noun_first(&self) -> bool {
-        matches!(self.language.as_str(), "fr" | "es")
-    }
-
     /// Adds a phrase; the first meaning of a phrase stays.
     pub(super) fn insert(&mut self, phrase: &str, meaning: T) {
         self.put(phrase, meaning, |old, _| old.clone());
+    }
+
+    /// Returns the language of the phrases.
+    pub(super) fn language(&self) -> &str {
+        &self.language
     }
 
     /// Adds a phrase and merges meanings.

@@ -4,7 +4,7 @@
 
 use std::collections::BTreeSet;
 
-use d3dgen_model::domain::{Access, Domain, Occupants, Program, RoomType, Shape, Zone};
+use d3dgen_model::domain::{Access, Adjacency, AdjacencyRelation, Domain, Occupants, Program, RoomType, Shape, Zone};
 
 use super::beds::sleeps;
 use super::places::note;
@@ -17,6 +17,8 @@ use super::words::words;
 const BEDS_TO_A_BATHROOM: u32 = 4;
 /// Rooms of a place to work at from which on it has a toilet beside that for wheelchairs.
 const ROOMS_FOR_TWO_TOILETS: u32 = 8;
+/// Rooms of a counted number from which on one of them is a toilet for staff and visitors.
+const LEAST_FOR_A_TOILET: u32 = 10;
 /// Bedrooms from which on a home has a second toilet.
 const BEDROOMS_FOR_TWO_TOILETS: usize = 4;
 
@@ -33,9 +35,13 @@ fn classes<'a>(reading: &Reading<'a>, rooms: &[Planned]) -> Vec<Class<'a>> {
         && places_to_work(reading, rooms) > words().many_desks;
     let work = work.chain(large.then(|| of(&words().many_vital)).into_iter().flatten());
     let own = reading.program.vital.iter().map(|id| {
-        let flush = |id: &str| reading.domain.room_type(id).is_some_and(|k| reading.wet.has_toilet(k));
-        let others =
-            reading.program.rooms.iter().map(|e| e.room_type.as_str()).filter(|o| flush(id) && flush(o) && o != id);
+        // a bath with a hoist is no toilet for staff and visitors
+        let flush = |id: &str| {
+            let kind = reading.domain.room_type(id).filter(|k| reading.wet.has_toilet(k));
+            kind.map(|k| reading.wet.is_bathroom(k))
+        };
+        let alike = |o: &&str| *o != id.as_str() && flush(id).is_some() && flush(o) == flush(id);
+        let others = reading.program.rooms.iter().map(|e| e.room_type.as_str()).filter(alike);
         Class { ids: std::iter::once(id.as_str()).chain(others).collect(), by_program: true }
     });
     work.map(|ids| Class { ids, by_program: false }).chain(own).collect()
@@ -141,8 +147,10 @@ pub(super) fn complete<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned<'a
     let mut missing: Vec<String> = Vec::new();
     let lives = is_dwelling(reading.program);
     for class in classes(reading, rooms) {
-        // in a number of rooms the order of the program says what goes first
-        if class.by_program && (reading.total.is_some() || reading.closed && !reading.may_join) {
+        // in a number of rooms the order of the program says what goes first, but for the toilet of a larger one
+        let few = |n: u32| !flushes(reading, &class) || n < LEAST_FOR_A_TOILET;
+        let listed = reading.closed && !reading.may_join && !(flushes(reading, &class) && joins_wet(reading, rooms));
+        if class.by_program && (reading.total.is_some_and(few) || reading.total.is_none() && listed) {
             continue;
         }
         let present = rooms.iter().any(|r| class.holds(r));
@@ -181,6 +189,19 @@ pub(super) fn complete<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned<'a
         };
         reading.conflicts.push(note("vital_room_missing", message));
     }
+}
+
+/// Returns true for what the program calls vital to go to the toilet in.
+fn flushes(reading: &Reading, class: &Class) -> bool {
+    let first = class.ids.first().and_then(|id| reading.domain.room_type(id));
+    first.is_some_and(|k| reading.wet.has_toilet(k) && !reading.wet.is_bathroom(k))
+}
+
+/// Returns true where toilets and bathrooms join the rooms that the prompt lists: those who sleep in them are washed
+/// whatever it says of the other rooms, unless it wants these and nothing else.
+fn joins_wet(reading: &Reading, rooms: &[Planned]) -> bool {
+    let sleeps = || rooms.iter().any(|r| sleeps_in(reading.domain, r));
+    !is_dwelling(reading.program) && !reading.program.vital.is_empty() && !reading.only && sleeps()
 }
 
 /// Gives the people of a home the bedrooms they need.
@@ -229,7 +250,11 @@ fn toilet<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>) -> Option<Str
     if reading.wishes.forbidden.contains(&kind.id) {
         return None;
     }
-    let added = put(reading, rooms, Planned::new(&kind.id, kind));
+    let mut added = put(reading, rooms, Planned::new(&kind.id, kind));
+    if let Some(i) = least_vital(reading, rooms).filter(|_| !added && rooms.iter().any(|r| sleeps_in(domain, r))) {
+        rooms[i] = Planned::new(&kind.id, kind);
+        added = true;
+    }
     (!added).then(|| kind.label.to_lowercase())
 }
 
@@ -250,14 +275,11 @@ fn bathrooms<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>) -> Option<
         rooms.iter().filter(|r| r.kind.access != Access::Host && reading.wet.is_bathroom(r.kind)).count() as u32
     };
     let needed = unserved.div_ceil(BEDS_TO_A_BATHROOM);
-    let named = reading
-        .wishes
-        .wishes
-        .iter()
-        .any(|w| domain.room_type(&w.room_type).is_some_and(|k| reading.wet.is_bathroom(k)));
+    let named = names_bathrooms(reading);
     let fits = |k: &&RoomType| k.access != Access::Host && k.zone == Zone::Service && reading.wet.is_bathroom(k);
     let kind = domain.room_types.iter().filter(fits).min_by(|a, b| a.area_m2.target.total_cmp(&b.area_m2.target))?;
-    if named || reading.wishes.forbidden.contains(&kind.id) || reading.closed && !reading.may_join {
+    let listed = reading.closed && !reading.may_join && !joins_wet(reading, rooms);
+    if named || reading.wishes.forbidden.contains(&kind.id) || listed {
         return None;
     }
     let plain: Vec<usize> = (0..rooms.len())
@@ -269,13 +291,33 @@ fn bathrooms<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>) -> Option<
         if put(reading, rooms, Planned::new(&kind.id, kind)) {
             continue;
         }
-        // the only toilet becomes a bathroom before there is none
-        match plain.iter().find(|&&i| shared(rooms) == 0 && reading.wet.has_toilet(rooms[i].kind)) {
-            Some(&i) => rooms[i] = Planned::new(&kind.id, kind),
+        // the toilet becomes a bathroom before there is none, and what comes last of what such a building needs before that
+        let toilet = plain.iter().copied().find(|&i| !reading.wet.is_bathroom(rooms[i].kind));
+        match toilet.filter(|_| reading.total.is_some()).or_else(|| least_vital(reading, rooms)) {
+            Some(i) => rooms[i] = Planned::new(&kind.id, kind),
             None => return (shared(rooms) == 0).then(|| kind.label.to_lowercase()),
         }
     }
     None
+}
+
+/// Returns the room that comes last of what the building needs, none of which the prompt names: patients without a toilet
+/// are worse off than without it. The first of all stays.
+fn least_vital(reading: &Reading, rooms: &[Planned]) -> Option<usize> {
+    reading.total?;
+    let of = |id: &String| {
+        let last = rooms.iter().rposition(|r| &r.room_type == id)?;
+        Some(last).filter(|&i| !rooms[i].requested && !reading.wet.has_toilet(rooms[i].kind))
+    };
+    reading.program.vital.iter().skip(1).rev().find_map(of)
+}
+
+/// Returns true where the prompt names the bathrooms; one that such a building has beside them anyway, as a bath with a
+/// hoist, is none for all patients.
+fn names_bathrooms(reading: &Reading) -> bool {
+    let beside = |id: &str| reading.program.rooms.iter().any(|e| e.room_type == id);
+    let bathes = |id: &str| reading.domain.room_type(id).is_some_and(|k| reading.wet.is_bathroom(k));
+    reading.wishes.wishes.iter().any(|w| bathes(&w.room_type) && !beside(&w.room_type))
 }
 
 /// Returns true where a program of the domain gives rooms of a type a bathroom: the rooms of a ward, not the bays of an
@@ -291,13 +333,14 @@ fn usually_bathes(reading: &Reading, room_type: &str) -> bool {
 /// to scrub beside an operating room.
 pub(super) fn accompany<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
     let domain = reading.domain;
-    if reading.single || is_dwelling(reading.program) || reading.total.is_some() || reading.closed && !reading.may_join
+    let listed = reading.closed && !reading.may_join;
+    if reading.single || is_dwelling(reading.program) || reading.total.is_some() || listed && !joins_wet(reading, rooms)
     {
         return;
     }
     let wet = |id: &str| domain.room_type(id).is_some_and(|k| reading.wet.is_bathroom(k));
     // a ward with two bathrooms has no others
-    let bathed = reading.wishes.wishes.iter().any(|w| wet(&w.room_type));
+    let bathed = names_bathrooms(reading);
     let mut kinds: Vec<String> = Vec::new();
     for room in rooms.iter().filter(|r| r.requested && !kinds.contains(&r.room_type)).collect::<Vec<_>>() {
         kinds.push(room.room_type.clone());
@@ -307,6 +350,7 @@ pub(super) fn accompany<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>)
             // "single and double rooms, each with its own bathroom" tells the number of none of them
             let each = reading.wishes.pairs.iter().any(|p| p.belongs && p.a == guest.id);
             let unwanted = reading.wishes.forbidden.contains(&guest.id)
+                || listed && !wet(&guest.id)
                 || !each && reading.wishes.wishes.iter().any(|w| w.room_type == guest.id)
                 || bathed && !each && wet(&guest.id);
             if unwanted {
@@ -315,7 +359,14 @@ pub(super) fn accompany<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>)
             let own = guest.access == Access::Host;
             let hosts = rooms.iter().filter(|r| guest.hosts.contains(&r.room_type)).count();
             let have = rooms.iter().filter(|r| r.room_type == guest.id).count();
-            let wanted = if own { hosts } else { 1 };
+            // one room to scrub serves two operating rooms
+            let shares = |r: &&Adjacency| r.relation == AdjacencyRelation::Must && r.a == guest.id && r.b == id;
+            let served = rooms.iter().filter(|r| r.room_type == id).count();
+            let wanted = match (own, domain.adjacency.iter().any(|r| shares(&r))) {
+                (true, _) => hosts,
+                (false, true) => served.div_ceil(2),
+                (false, false) => 1,
+            };
             rooms.extend((have..wanted).map(|_| Planned::new(&guest.id, guest)));
         }
     }
@@ -357,8 +408,9 @@ fn put<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>, room: Planned<'a
     } else {
         !reading.only && is_worked_at(reading.program) || reading.may_join && !reading.program.vital.is_empty()
     };
+    let wet = reading.wet.has_toilet(room.kind);
     match (reading.total, reading.closed) {
-        (None, true) if !joins_list => false,
+        (None, true) if !(joins_list || wet && joins_wet(reading, rooms)) => false,
         (None, _) => {
             rooms.push(room);
             true
@@ -371,10 +423,19 @@ fn put<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>, room: Planned<'a
                 rooms.iter().any(|r| larger(r) && r.kind.hosts.contains(&rooms[i].room_type))
             };
             let hosts = |i: usize| rooms[i].kind.access == Access::Host || through(i);
-            let spare = (0..rooms.len()).rev().find(|&i| {
-                let alike = rooms[i].room_type == room.room_type;
-                !rooms[i].requested && !hosts(i) && !alike && !is_vital(reading, rooms, i)
-            });
+            let spares: Vec<usize> = (0..rooms.len())
+                .rev()
+                .filter(|&i| {
+                    let alike = rooms[i].room_type == room.room_type;
+                    !rooms[i].requested && !hosts(i) && !alike && !is_vital(reading, rooms, i)
+                })
+                .collect();
+            // a bedroom goes after all others: its bathroom would be left
+            let entered = |i: &usize| {
+                rooms.iter().any(|r| r.kind.access == Access::Host && r.kind.hosts.contains(&rooms[*i].room_type))
+            };
+            let lives = is_dwelling(reading.program);
+            let spare = spares.iter().find(|i| lives || !entered(i)).or_else(|| spares.first()).copied();
             if let Some(i) = spare {
                 rooms[i] = room;
             }

@@ -81,6 +81,8 @@ pub(super) enum Tag {
     BedRooms,
     /// Ends of compounds that number the beds of a room: "bettzimmer".
     BedRoomEnds,
+    /// Places to be treated at, of which one room has several: "stations", "Plätze".
+    Stations,
     /// The storey below the ground.
     Basement,
     /// Children who live in a home or visit a place.
@@ -108,7 +110,7 @@ pub(super) enum Tag {
     OpenPlan,
     /// Who uses one of two rooms: "men's and women's toilets".
     Sexes,
-    /// "Only": a list that is all there is to be.
+    /// "Only", "and nothing else": a list that is all there is to be.
     Only,
     /// "Including": what follows is of the rooms before it.
     PartOf,

@@ -5,10 +5,11 @@
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
 use std::time::{Duration, Instant};
 
 use d3dgen_model::document::Document;
-use d3dgen_model::scene_graph::{Connector, GraphEdge, SceneGraph};
+use d3dgen_model::scene_graph::{Connector, GraphEdge, GraphRoom, SceneGraph};
 use d3dgen_pipeline::Error;
 use d3dgen_pipeline::scene_graph::{Request, generate};
 use d3dgen_plugins::Registry;
@@ -147,7 +148,7 @@ fn check_rooms(case: &Case, graph: &SceneGraph, misses: &mut Misses) {
         misses.check(counted.len() == n, "n_rooms", n, (counted.len(), &counted));
     }
     for (room_type, least) in &case.must_rooms {
-        let n = graph.rooms.iter().filter(|r| &r.room_type == room_type).count();
+        let n = graph.rooms.iter().filter(|r| r.room_type == *room_type || means(graph, room_type, r)).count();
         misses.check(n >= *least, "must_rooms", (room_type, least), (n, &counted));
     }
     let of_type = |id: &str| graph.rooms.iter().filter(|r| r.room_type == id).collect::<Vec<_>>();
@@ -197,7 +198,19 @@ fn check_rooms(case: &Case, graph: &SceneGraph, misses: &mut Misses) {
 }
 
 fn is(graph: &SceneGraph, id: &str, room_type: &str) -> bool {
-    graph.room(id).is_some_and(|r| r.room_type == room_type || room_type == "entrance" && r.entrance)
+    let right =
+        |r: &GraphRoom| r.room_type == room_type || room_type == "entrance" && r.entrance || means(graph, room_type, r);
+    graph.room(id).is_some_and(right)
+}
+
+/// Returns true for a room that is what this building means by words for rooms of a type: the dental rooms of a dental
+/// practice are its treatment rooms.
+fn means(graph: &SceneGraph, room_type: &str, room: &GraphRoom) -> bool {
+    static REGISTRY: LazyLock<Registry> = LazyLock::new(Registry::builtin);
+    let Some(domain) = REGISTRY.get(&graph.domain).map(|p| p.domain()) else { return false };
+    let building = domain.building_types.iter().find(|b| Some(&b.id) == graph.building_type.as_ref());
+    let program = building.and_then(|b| domain.program(&b.program));
+    program.and_then(|p| p.means.get(room_type)).is_some_and(|id| *id == room.room_type)
 }
 
 /// Returns true when some edge joins the two room types; to the entrance, being it is close enough.

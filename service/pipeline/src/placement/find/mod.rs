@@ -102,19 +102,7 @@ impl<'f, 'a, 's> Find<'f, 'a, 's> {
     ) -> Self {
         let both = task.anchor.clear_sides > 1 && task.anchor.clearance_side_m > 0.0;
         let style = style(task.anchor.shape, task.anchor.mount, both);
-        Self {
-            state,
-            task,
-            index,
-            salt,
-            aisle,
-            out: Vec::new(),
-            tally,
-            across: None,
-            aside: 0,
-            style,
-            neighbors: None,
-        }
+        Self { state, task, index, salt, aisle, out: Vec::new(), tally, across: None, aside: 0, style, neighbors: None }
     }
 
     /// Collects positions of a unit as the task's arrangement wants it.

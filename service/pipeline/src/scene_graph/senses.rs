@@ -1,0 +1,43 @@
+//! Words for rooms that mean one thing here and another there: the control room beside a scanner is that scanner's, the
+//! treatment room of a dental practice has a dental chair.
+
+use d3dgen_model::domain::{AdjacencyRelation, Domain, Program};
+
+use super::mentions::{Mention, Vocabulary, What};
+use super::text::Token;
+
+/// Gives every mention of a room the type that its words have in this building.
+pub(super) fn settle(
+    tokens: &[Token],
+    mentions: &mut [Mention],
+    vocabulary: &Vocabulary,
+    domain: &Domain,
+    program: &Program,
+) {
+    for m in 0..mentions.len() {
+        if mentions[m].room_type().is_none() {
+            continue;
+        }
+        let senses = vocabulary.senses_at(tokens, mentions[m].span);
+        let rules = || domain.adjacency.iter().filter(|r| r.relation == AdjacencyRelation::Must);
+        let alone = |s: &&String| !rules().any(|r| r.a == **s || r.b == **s);
+        if let Some(id) = beside(mentions, m, &senses, domain).or_else(|| senses.iter().find(alone).cloned()) {
+            mentions[m].what = What::Room(id);
+        }
+    }
+    for mention in mentions {
+        let meant = mention.room_type().and_then(|id| program.means.get(id)).cloned();
+        mention.what = meant.map_or_else(|| mention.what.clone(), What::Room);
+    }
+}
+
+/// Returns the sense of a word whose room belongs beside one that the prompt names: the nearest before it, else behind it.
+fn beside(mentions: &[Mention], m: usize, senses: &[String], domain: &Domain) -> Option<String> {
+    let rules = || domain.adjacency.iter().filter(|r| r.relation == AdjacencyRelation::Must);
+    let other = |sense: &str, id: &str| rules().any(|r| r.a == sense && r.b == id || r.b == sense && r.a == id);
+    let sense_of = |at: usize| {
+        let id = mentions[at].room_type()?;
+        senses.iter().find(|sense| other(sense, id)).cloned()
+    };
+    (0..m).rev().chain(m + 1..mentions.len()).find_map(sense_of)
+}
