@@ -12,7 +12,7 @@ use super::cost::ill_placed;
 use super::lattice::{Cellbox, INNER_HALF_M, JAMB_M, OUTER_HALF_M, meters};
 use super::outline::Stretch;
 use super::realize::{BED_DOOR_M, ONE_WAY_M};
-use super::spec::Brief;
+use super::spec::{Brief, RoomSpec};
 use super::windows::LEAST_WALL_M;
 
 /// Clear height of doors, m.
@@ -24,6 +24,8 @@ const SLIDING_SHARE: f64 = 0.22;
 /// Widest open passage, m, and the piece of wall left on each side of it.
 const OPEN_MAX_M: f64 = 4.0;
 const OPEN_JAMB_M: f64 = 0.3;
+/// Wall that a room open to several others keeps in one piece beside each opening, as far as that leaves one, m.
+const RUN_M: f64 = 2.7;
 /// What a meter between the entrance and the nearest room for visitors counts against the length of its wall.
 const TO_PUBLIC: f64 = 0.2;
 /// What it counts there that rooms of the day are far from the entrance and bedrooms near.
@@ -199,6 +201,8 @@ impl Site<'_> {
         let walkable = |c: Connector| matches!(c, Connector::Door | Connector::Open);
         wanted
             .extend(brief.links.iter().filter(|l| walkable(l.connector)).map(|l| (l.a, l.b, l.connector, l.required)));
+        // wide openings have one place; leaves keep clear of them
+        wanted.sort_by_key(|w| w.2 != Connector::Open);
         for (a, b, connector, required) in wanted {
             let stretches = self.stretches.iter().filter(|s| s.joins(a, b) && self.is_front(s, a));
             let spots: Vec<Spot> = match self.standing_spot(&[a, b], false) {
@@ -430,8 +434,9 @@ impl Site<'_> {
                 let start = (from + to - whole) / 2.0;
                 return vec![self.open_spot(s, a, b, start, whole)];
             }
-            // what stands in the smaller room needs walls too: half of this one, in one piece
-            let width = (meters(s.len()) / 2.0).clamp(opening, whole);
+            // what stands in the smaller room needs walls too: half of this one, in one piece, or what a kitchen's run takes
+            let length = meters(s.len());
+            let width = (length / 2.0).min(length - RUN_M).clamp(opening, whole);
             return [from, to - width].map(|start| self.open_spot(s, a, b, start, width)).into();
         }
         let into = self.swing_room(a, b);
@@ -597,14 +602,19 @@ impl Site<'_> {
         spots
     }
 
-    /// Returns how far the nearest room for visitors is from a point, m; 0 where there is none.
+    /// Returns how far the nearest room for visitors is from a point, or else the counter of those who see to them, m; 0 where
+    /// there is neither.
     fn to_public(&self, p: Point) -> f64 {
-        let public = self.boxes.iter().filter(|(r, _)| self.brief.rooms[*r].zone == Zone::Public);
-        let far = public.map(|(_, b)| {
-            let c = b.to_rect().center();
-            (c.x - p.x).abs() + (c.y - p.y).abs()
-        });
-        far.reduce(f64::min).unwrap_or(0.0)
+        let nearest = |wanted: fn(&RoomSpec) -> bool| {
+            let rooms = self.boxes.iter().filter(|(r, _)| wanted(&self.brief.rooms[*r]));
+            let far = rooms.map(|(_, b)| {
+                let c = b.to_rect().center();
+                (c.x - p.x).abs() + (c.y - p.y).abs()
+            });
+            far.reduce(f64::min)
+        };
+        let public = nearest(|room| room.zone == Zone::Public);
+        public.or_else(|| nearest(|room| room.zone == Zone::Staff && room.open_front)).unwrap_or(0.0)
     }
 
     /// Returns what the rooms lose by their distance from an entrance here, as the search for the layout counts it.

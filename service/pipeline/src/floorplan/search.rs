@@ -12,8 +12,9 @@ use super::realize::{Layout, Scratch, realize};
 use super::spec::Brief;
 use crate::Stop;
 
-/// Steps of one run per room, and the runs at most.
-const STEPS_PER_ROOM: usize = 100;
+/// Steps of one run per room, of a small plan and of others, and the runs at most.
+const STEPS_OF_SMALL: usize = 100;
+const STEPS_PER_ROOM: usize = 150;
 const MAX_RUNS: usize = 24;
 /// Steps of one run at most.
 const MAX_STEPS: usize = 12_000;
@@ -190,7 +191,8 @@ fn anneal(
     rng: &mut Stream,
     stop: Stop<'_>,
 ) -> (Genome, Candidate) {
-    let steps = (STEPS_PER_ROOM * brief.rooms.len()).clamp(600, MAX_STEPS);
+    let per_room = if brief.rooms.len() > SMALL { STEPS_PER_ROOM } else { STEPS_OF_SMALL };
+    let steps = (per_room * brief.rooms.len()).clamp(600, MAX_STEPS);
     let (mut scratch, mut layout) = (Scratch::default(), Layout::default());
     let mut value = |genome: &Genome, most: f64| {
         realize(brief, genome, &mut scratch, &mut layout);

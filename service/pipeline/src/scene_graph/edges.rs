@@ -11,6 +11,8 @@ use super::relations::Spread;
 use super::rooms;
 use super::{BY_HOST, BY_PROMPT, BY_STYLE};
 
+/// Reason of doors to the corridor or hall.
+const CIRCULATION: &str = "circulation";
 /// Walls that one room can be asked to share with others; more are wished for only.
 const MOST_WALLS: usize = 2;
 
@@ -112,7 +114,7 @@ impl Web {
         for (i, room) in planned.iter().enumerate().filter(|(i, _)| *i != hub) {
             let open = room.kind.open_front && room.host.is_none();
             let connector = if open { Connector::Open } else { Connector::Door };
-            let reason = if room.host.is_some() { BY_HOST } else { "circulation" };
+            let reason = if room.host.is_some() { BY_HOST } else { CIRCULATION };
             self.put(rooms, (i, room.host.unwrap_or(hub)), connector, true, reason);
         }
     }
@@ -193,6 +195,25 @@ impl Web {
         }
     }
 
+    /// Returns true when required doors lead from one room to another past the circulation.
+    fn has_way(&self, from: &str, to: &str) -> bool {
+        let walk = |e: &&GraphEdge| {
+            e.required && e.reason != CIRCULATION && matches!(e.connector, Connector::Door | Connector::Open)
+        };
+        let mut reached = vec![from];
+        let mut next = 0;
+        while let Some(&at) = reached.get(next) {
+            next += 1;
+            for e in self.edges.iter().filter(walk).filter(|e| e.a == at || e.b == at) {
+                let other = if e.a == at { e.b.as_str() } else { e.a.as_str() };
+                if !reached.contains(&other) {
+                    reached.push(other);
+                }
+            }
+        }
+        reached.contains(&to)
+    }
+
     /// Returns the rooms of the second that have none of the first yet, each with one that serves two: a room to scrub
     /// between two operating rooms.
     fn shared(&self, rooms: &[GraphRoom], from: &[usize], to: &[usize]) -> Vec<(usize, usize)> {
@@ -244,8 +265,10 @@ impl Web {
                 }
             }
             if required && connector == Connector::Door {
-                for pair in self.shared(rooms, &from, &to) {
-                    self.put(rooms, pair, connector, true, &rule.source);
+                for (i, j) in self.shared(rooms, &from, &to) {
+                    // doors in a ring seldom have a plan
+                    let open = !self.has_way(&rooms[i].id, &rooms[j].id);
+                    self.put(rooms, (i, j), connector, open, &rule.source);
                 }
             }
         }

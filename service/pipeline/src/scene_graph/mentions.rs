@@ -208,6 +208,12 @@ impl Vocabulary {
         self.own.iter().find_map(at).unwrap_or_default()
     }
 
+    /// Returns the room types of all domains that the word at a span may mean, its own first.
+    pub(super) fn meanings_at(&self, tokens: &[Token], span: Span) -> impl Iterator<Item = &String> {
+        let words = self.own.iter().chain(&self.foreign).filter_map(move |p| p.longest_at(tokens, span.start));
+        words.filter(move |f| f.0 == span.end).flat_map(|(_, word)| std::iter::once(&word.id).chain(&word.others))
+    }
+
     /// Returns the end of the word for a room that begins at a token.
     pub(super) fn room_end(&self, tokens: &[Token], i: usize, numbers: &[Number], spoken: &[&Spoken]) -> Option<usize> {
         if i < tokens.len() { self.at(tokens, i, numbers, spoken).map(|f| f.0) } else { None }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use d3dgen_model::domain::{Access, Domain, GENERIC_ROOM_TYPE, Occupants, Program, ProgramRoom, Shape};
+use d3dgen_model::domain::{Access, Domain, GENERIC_ROOM_TYPE, Occupants, Program, ProgramRoom, Shape, Zone};
 use d3dgen_model::scene_graph::{Note, Occupancy, Robot};
 use d3dgen_model::style::{LayoutStyle, Style, StyleWord};
 use d3dgen_plugins::Registry;
@@ -317,7 +317,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     let total = total.filter(|_| !single);
     let only = says_only(&tokens, &mentions, &spoken);
     let listed_only = only && !lives && wishes.wishes.iter().any(|w| w.listed);
-    let closed = single || listed_only || is_closed(&wishes, &tokens, &building, lives);
+    let closed = single || listed_only || is_closed(&wishes, &tokens, &building, (domain, lives));
     let may_join = !only && joins_a_name(&building, &tokens, language);
     if closed && lives && !single {
         wishes.open_to(domain);
@@ -708,15 +708,21 @@ fn joins_a_name(building: &Building, tokens: &[Token], language: &str) -> bool {
     building.head.is_some() && !colon && (building.list_from > 0 || matches!(language, "zh" | "ko"))
 }
 
+/// Types of rooms from which on a list is a long one: who names so many means no others.
+const LONG_LIST: usize = 4;
+
 /// Returns true when the listed rooms are the whole building.
-fn is_closed(wishes: &Wishes, tokens: &[Token], building: &Building, lives: bool) -> bool {
+fn is_closed(wishes: &Wishes, tokens: &[Token], building: &Building, (domain, lives): (&Domain, bool)) -> bool {
     if building.listed_type && building.list_from > 0 {
         return false;
     }
     let listed: Vec<_> = wishes.wishes.iter().filter(|w| w.listed).collect();
     let colon = tokens.get(building.list_from).is_some_and(|t| t.mark() == Some(':'));
     let types = listed.len();
-    let open = listed.iter().any(|w| !w.exact);
+    // how many toilets a long list has is no news about its other rooms
+    let serves = |w: &Wish| domain.room_type(&w.room_type).is_some_and(|k| k.zone == Zone::Service);
+    let long = !lives && types >= LONG_LIST;
+    let open = listed.iter().any(|w| !w.exact && !(long && serves(w)));
     // "no kitchen, no bathroom" in a list of rooms are items of it
     let items = types + wishes.forbidden.len();
     // "3BHK with a balcony", "four bedrooms and a garage": what every dwelling has goes without saying

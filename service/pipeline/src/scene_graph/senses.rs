@@ -26,8 +26,12 @@ pub(super) fn settle(
         }
     }
     for mention in mentions {
-        let meant = mention.room_type().and_then(|id| program.means.get(id)).cloned();
-        mention.what = meant.map_or_else(|| mention.what.clone(), What::Room);
+        let Some(id) = mention.room_type().map(str::to_owned) else { continue };
+        // what the domain itself has by this name is meant
+        let known = domain.room_type(&id).is_some();
+        let others = vocabulary.meanings_at(tokens, mention.span).filter(|_| !known);
+        let meant = std::iter::once(&id).chain(others).find_map(|id| program.means.get(id));
+        mention.what = What::Room(meant.unwrap_or(&id).clone());
     }
 }
 

@@ -21,6 +21,8 @@ const ROOMS_FOR_TWO_TOILETS: u32 = 8;
 const LEAST_FOR_A_TOILET: u32 = 10;
 /// Bedrooms from which on a home has a second toilet.
 const BEDROOMS_FOR_TWO_TOILETS: usize = 4;
+/// Bedrooms of such a home that share a bathroom, at most.
+const BEDROOMS_TO_A_BATHROOM: usize = 3;
 
 /// Returns the kinds of rooms that the building is not without, each with what can stand for it: one toilet for another.
 fn classes<'a>(reading: &Reading<'a>, rooms: &[Planned]) -> Vec<Class<'a>> {
@@ -224,7 +226,7 @@ fn give_bedrooms<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
     }
 }
 
-/// Gives a home of many bedrooms a second toilet, where its rooms are left open.
+/// Gives a home of many bedrooms a second toilet and bathrooms enough, where its rooms are left open.
 fn second_toilet<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
     let toilets = rooms.iter().filter(|r| reading.wet.has_toilet(r.kind)).count();
     let kind = reading.domain.room_type(&words().dwelling.toilet);
@@ -236,6 +238,13 @@ fn second_toilet<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
     let few = bedrooms(reading, rooms) >= BEDROOMS_FOR_TWO_TOILETS && toilets < 2;
     if let Some(kind) = kind.filter(|k| open && few && !reading.wishes.forbidden.contains(&k.id)) {
         rooms.push(Planned::new(&kind.id, kind));
+    }
+    let asleep = bedrooms(reading, rooms);
+    let bathing = rooms.iter().filter(|r| reading.wet.is_bathroom(r.kind)).count();
+    let needed = if asleep >= BEDROOMS_FOR_TWO_TOILETS { asleep.div_ceil(BEDROOMS_TO_A_BATHROOM) } else { 0 };
+    let kind = reading.domain.room_type(&words().dwelling.bathroom);
+    if let Some(kind) = kind.filter(|k| open && !reading.wishes.forbidden.contains(&k.id)) {
+        rooms.extend((bathing..needed).map(|_| Planned::new(&kind.id, kind)));
     }
 }
 

@@ -137,7 +137,7 @@ fn symmetric_plans_are_more_alike_on_both_sides() {
     for (prompt, gain) in cases {
         let [unlike, usual, alike] = [&["asymmetric"][..], &[], &["symmetric"]].map(|words| mean(prompt, words));
         println!("{prompt}: asymmetric {unlike:.2}, usual {usual:.2}, symmetric {alike:.2}");
-        assert!(alike >= usual + gain && unlike <= usual + 0.02, "{prompt}: {unlike} {usual} {alike}");
+        assert!(alike >= usual + gain && unlike <= usual + 0.03, "{prompt}: {unlike} {usual} {alike}");
     }
     for seed in 0..5 {
         world("house with 4 bedrooms and 2 bathrooms", seed, &["symmetric"]);

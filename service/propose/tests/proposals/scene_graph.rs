@@ -33,7 +33,8 @@ fn a_good_proposal_is_mostly_kept() {
         let rooms = record.items.iter().filter(|i| i.kind == ItemKind::Room);
         assert!(rooms.clone().all(|i| matches!(i.fate, Fate::Kept | Fate::Moved)), "{prompt}: {record:#?}");
         let (kept, _) = shares(record.counts);
-        assert!(kept >= 0.7, "{prompt}: {kept:.2} kept, {:#?}", record.items);
+        // wardrobes that stand in each other's place are among the wishes
+        assert!(kept >= 0.65, "{prompt}: {kept:.2} kept, {:#?}", record.items);
         assert_eq!(record.answered_by, "test-model");
         assert_eq!(record.prompt_sha256.len(), 64);
     }
