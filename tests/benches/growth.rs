@@ -14,10 +14,6 @@ use d3dgen_pipeline::generate::{Artifact, Event, Settings, Stage, generate_world
 use d3dgen_pipeline::scene_graph::Request;
 use d3dgen_plugins::Registry;
 
-/// As in the command.
-#[global_allocator]
-static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
-
 const PROMPTS: &[(&str, &str)] = &[
     ("residential", "house in Germany, for a cleaning robot"),
     ("office", "office in the United States, for a service robot"),

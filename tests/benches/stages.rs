@@ -19,10 +19,6 @@ use d3dgen_pipeline::scene_graph::Request;
 use d3dgen_pipeline::{Stop, edit, world};
 use d3dgen_plugins::Registry;
 
-/// As in the command.
-#[global_allocator]
-static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
-
 const PROMPTS: &[(&str, &str)] = &[
     ("residential", "house in Germany, for a cleaning robot"),
     ("office", "office in the United States, for a service robot"),

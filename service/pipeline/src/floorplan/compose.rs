@@ -117,7 +117,10 @@ fn wing(
         return None;
     }
     let part = brief.wing(rooms);
-    let schemes = if rng.chance(0.5) { [Scheme::Capped, Scheme::Straight] } else { [Scheme::Straight, Scheme::Capped] };
+    // a room at the end of a wing closes the way out there
+    let ends_free = brief.second_exit && !brief.upper;
+    let capped = rng.chance(0.5) && !ends_free;
+    let schemes = if capped { [Scheme::Capped, Scheme::Straight] } else { [Scheme::Straight, Scheme::Capped] };
     let schemes = if rooms.len() < 5 { &[Scheme::Straight][..] } else { &schemes };
     let found = search_with(&part, schemes, (weights, 1), below, rng, stop)?;
     let w = spine_units(brief);

@@ -27,9 +27,11 @@ const MORE: usize = 2;
 const OWN_RUNS: usize = 4;
 /// Rooms up to which a building is tiny: few schemes suit so few rooms, which ones only a look at all of them tells.
 const TINY: usize = 5;
-/// Runs with one scheme for a large building in one body, while none is sound, and what its first choice counts beside others.
+/// Runs with one scheme for a large building in one body, the rooms from which on the first sound one of them does, and what
+/// its first choice counts beside others.
 const WHOLE_RUNS: usize = 2;
-const FAVORED: f64 = 0.85;
+const MEDIUM: usize = 40;
+const FAVORED: f64 = 0.92;
 /// Rooms up to which so many are compared; larger plans cost more and differ less.
 const SMALL: usize = 14;
 /// Share of a run that is left when it is compared with others, and what it may cost more than they to go on.
@@ -107,7 +109,9 @@ fn search_whole(
                 if best.as_ref().is_none_or(|(least, _)| cost < *least) {
                     best = Some((cost, found));
                 }
-                break;
+                if brief.rooms.len() > MEDIUM {
+                    break;
+                }
             }
         }
     }

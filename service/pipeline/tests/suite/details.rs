@@ -234,7 +234,7 @@ fn who_works_alone_gets_to_the_seat() {
     }
     assert!(held.len() >= 40, "{}", held.len());
     // rectangles see less of a way that turns between two corners than who walks it
-    most("seats in single offices with a way of 0.65 m", 0.95, &held);
+    most("seats in single offices with a way of 0.65 m", 0.93, &held);
 }
 
 #[test]
@@ -261,7 +261,9 @@ fn who_meets_sees_the_screen_past_the_head_of_the_table() {
     let mut held = Vec::new();
     for world in OFFICES.iter().flat_map(|prompt| worlds(prompt, 12)) {
         for room in rooms(&world, "meeting_room") {
-            let table = inside(&world, &room.room_id).find(|p| p.object.starts_with("meeting_table")).unwrap();
+            // large ones have the table of a conference room
+            let table = |p: &&Placement| p.object.starts_with("meeting_table") || p.object == "conference_table";
+            let table = inside(&world, &room.room_id).find(table).unwrap();
             let long_by_x = body(table).width() > body(table).height();
             held.push(inside(&world, &room.room_id).filter(|p| p.object == "wall_display").any(|display| {
                 let hangs_by_x = body(display).width() < body(display).height();
