@@ -293,12 +293,9 @@ impl Site<'_> {
         for _ in 0..ends.len() {
             let exits: Vec<(Point, f64)> =
                 laid.spots.iter().filter_map(|l| self.way_out(spine, &l.door, laid)).collect();
-            let far = |s: &Stretch| {
-                let ways = exits.iter().map(|(at, beyond)| self.walk(spine, *at, middle(s)) + beyond);
-                ways.fold(f64::MAX, f64::min)
-            };
-            let Some(at) = (0..ends.len()).max_by(|&a, &b| far(ends[a]).total_cmp(&far(ends[b]))) else { return };
-            if far(ends[at]) < ONE_WAY_M {
+            let far = self.walks(spine, &exits, &ends.iter().map(|s| middle(s)).collect::<Vec<_>>());
+            let Some(at) = (0..ends.len()).max_by(|&a, &b| far[a].total_cmp(&far[b])) else { return };
+            if far[at] < ONE_WAY_M {
                 return;
             }
             let spots = self.entrance_spots(ends.remove(at), spine, false, &laid.spots);
@@ -318,29 +315,49 @@ impl Site<'_> {
         Some((door, door.distance(at)))
     }
 
-    /// Returns how far two points of a room are from each other on foot, m: from part to part of it through the middle of
-    /// what they share.
-    fn walk(&self, room: usize, from: Point, to: Point) -> f64 {
+    /// Returns how far points of a room are on foot from the nearest of some ways out, m: from part to part of it through the
+    /// middle of what they share. Each way out has a length of its own beyond the room.
+    fn walks(&self, room: usize, exits: &[(Point, f64)], points: &[Point]) -> Vec<f64> {
         let parts: Vec<Rect> = self.boxes.iter().filter(|b| b.0 == room).map(|b| b.1.to_rect()).collect();
         let holds = |part: &Rect, p: Point| part.grown(OUTER_HALF_M).contains(&Rect::new(p.x, p.y, p.x, p.y));
-        let beside = |a: Point, b: Point| parts.iter().any(|part| holds(part, a) && holds(part, b));
-        let mut stops = vec![from, to];
+        let mut gates: Vec<Point> = Vec::new();
         for (n, a) in parts.iter().enumerate() {
             let meet = parts[n + 1..].iter().filter(|b| a.grown(0.01).overlaps(b));
-            stops.extend(
+            gates.extend(
                 meet.map(|b| Rect::new(a.x0.max(b.x0), a.y0.max(b.y0), a.x1.min(b.x1), a.y1.min(b.y1)).center()),
             );
         }
-        let mut ways = vec![f64::MAX; stops.len()];
-        ways[0] = 0.0;
-        for _ in 0..stops.len() {
-            for (a, b) in (0..stops.len()).flat_map(|a| (0..stops.len()).map(move |b| (a, b))) {
-                if ways[a] < f64::MAX && beside(stops[a], stops[b]) {
-                    ways[b] = ways[b].min(ways[a] + stops[a].distance(stops[b]));
+        let of_part: Vec<Vec<usize>> =
+            parts.iter().map(|part| (0..gates.len()).filter(|&g| holds(part, gates[g])).collect()).collect();
+        let mut ways = vec![f64::MAX; gates.len()];
+        let from_exits = |part: &Rect, p: Point| {
+            let near = exits.iter().filter(|e| holds(part, e.0)).map(|(at, beyond)| at.distance(p) + beyond);
+            near.fold(f64::MAX, f64::min)
+        };
+        for (part, own) in parts.iter().zip(&of_part) {
+            own.iter().for_each(|&g| ways[g] = ways[g].min(from_exits(part, gates[g])));
+        }
+        let mut changed = true;
+        while changed {
+            changed = false;
+            for (&a, &b) in of_part.iter().flat_map(|own| own.iter().flat_map(move |a| own.iter().map(move |b| (a, b))))
+            {
+                let way = ways[a] + gates[a].distance(gates[b]);
+                if way < ways[b] - 1e-9 {
+                    (ways[b], changed) = (way, true);
                 }
             }
         }
-        if ways[1] < f64::MAX { ways[1] } else { from.distance(to) }
+        let to = |p: Point| {
+            let here = parts.iter().zip(&of_part).filter(|(part, _)| holds(part, p));
+            let walked = here.map(|(part, own)| {
+                let through = own.iter().map(|&g| ways[g] + gates[g].distance(p));
+                through.fold(from_exits(part, p), f64::min)
+            });
+            let straight = exits.iter().map(|(at, beyond)| at.distance(p) + beyond).fold(f64::MAX, f64::min);
+            Some(walked.fold(f64::MAX, f64::min)).filter(|way| *way < f64::MAX).unwrap_or(straight)
+        };
+        points.iter().map(|&p| to(p)).collect()
     }
 
     /// Returns the place of an earlier door between these rooms (of one: to outdoors) when its wall still stands.

@@ -102,7 +102,7 @@ fn search_whole(
     for (n, scheme) in schemes.iter().filter(|s| **s != Scheme::Comb).enumerate() {
         for _ in 0..WHOLE_RUNS {
             let least = best.as_ref().map_or(f64::MAX, |b| b.0);
-            let found = anneal(brief, &mut judge, *scheme, (weights, least), rng, stop);
+            let found = anneal(brief, &mut judge, *scheme, (weights, least, true), rng, stop);
             if found.1.score.is_sound() {
                 let cost = found.1.score.total(weights) + judge.disorder(&found.1.layout);
                 let cost = if n == 0 { FAVORED * cost } else { cost };
@@ -139,7 +139,7 @@ pub(super) fn search_with(
         let scheme = if run < own_runs { schemes.first() } else { schemes.get(run % schemes.len().max(1)) };
         let Some(&scheme) = scheme else { break };
         let least = best.as_ref().filter(|b| !b.0).map_or(f64::MAX, |b| b.1);
-        let found = anneal(brief, &mut judge, scheme, (weights, least), rng, stop);
+        let found = anneal(brief, &mut judge, scheme, (weights, least, run < own_runs || sound > 0), rng, stop);
         let unsound = !found.1.score.is_sound();
         let cost = found.1.score.total(weights) + judge.disorder(&found.1.layout);
         sound += usize::from(!unsound);
@@ -186,16 +186,17 @@ fn stroll(
     (genome, found)
 }
 
-/// One run: from a random start, hot to cold; it ends early when it is far from the `known` cost of another.
+/// One run: from a random start, hot to cold; it ends early when it is far from the `known` cost of another. Where the first
+/// runs found nothing sound a small plan is not `easy` and takes longer.
 fn anneal(
     brief: &Brief,
     judge: &mut Judge<'_>,
     scheme: Scheme,
-    (weights, known): (&Weights, f64),
+    (weights, known, easy): (&Weights, f64, bool),
     rng: &mut Stream,
     stop: Stop<'_>,
 ) -> (Genome, Candidate) {
-    let per_room = if brief.rooms.len() > SMALL { STEPS_PER_ROOM } else { STEPS_OF_SMALL };
+    let per_room = if brief.rooms.len() > SMALL || !easy { STEPS_PER_ROOM } else { STEPS_OF_SMALL };
     let steps = (per_room * brief.rooms.len()).clamp(600, MAX_STEPS);
     let (mut scratch, mut layout) = (Scratch::default(), Layout::default());
     let mut value = |genome: &Genome, most: f64| {

@@ -54,6 +54,8 @@ pub(super) struct Reading<'a> {
     pub closed: bool,
     /// True for a list behind the name of a building ("ward with ..."), which what such a building is not without may join.
     pub may_join: bool,
+    /// True when the prompt names the building, and the rooms behind that: lists that name none are taken at their word.
+    pub named_first: bool,
     /// True when the prompt says that its list is all there is to be: "only".
     pub only: bool,
     /// True when the prompt asks for one room and no building.
@@ -319,6 +321,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     let listed_only = only && !lives && wishes.wishes.iter().any(|w| w.listed);
     let closed = single || listed_only || is_closed(&wishes, &tokens, &building, (domain, lives));
     let may_join = !only && joins_a_name(&building, &tokens, language);
+    let named_first = is_named_first(&building, language);
     if closed && lives && !single {
         wishes.open_to(domain);
     }
@@ -359,6 +362,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         total,
         closed,
         may_join,
+        named_first,
         only,
         single,
         held,
@@ -704,8 +708,13 @@ pub(super) fn is_dwelling(program: &Program) -> bool {
 /// Returns true for rooms listed behind the name of a building and no colon: these are what it has, and perhaps not all.
 fn joins_a_name(building: &Building, tokens: &[Token], language: &str) -> bool {
     let colon = tokens.iter().any(|t| t.mark() == Some(':'));
+    !colon && is_named_first(building, language)
+}
+
+/// Returns true for the name of a building before its rooms.
+fn is_named_first(building: &Building, language: &str) -> bool {
     // where the name comes last, a list goes with it all the same
-    building.head.is_some() && !colon && (building.list_from > 0 || matches!(language, "zh" | "ko"))
+    building.head.is_some() && (building.list_from > 0 || matches!(language, "zh" | "ko"))
 }
 
 /// Types of rooms from which on a list is a long one: who names so many means no others.

@@ -203,7 +203,8 @@ fn flushes(reading: &Reading, class: &Class) -> bool {
 /// whatever it says of the other rooms, unless it wants these and nothing else.
 fn joins_wet(reading: &Reading, rooms: &[Planned]) -> bool {
     let sleeps = || rooms.iter().any(|r| sleeps_in(reading.domain, r));
-    !is_dwelling(reading.program) && !reading.program.vital.is_empty() && !reading.only && sleeps()
+    let joins = reading.named_first && !reading.only && !reading.program.vital.is_empty();
+    joins && !is_dwelling(reading.program) && sleeps()
 }
 
 /// Gives the people of a home the bedrooms they need.
@@ -415,7 +416,8 @@ fn put<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>, room: Planned<'a
     let joins_list = if is_dwelling(reading.program) {
         reading.may_join
     } else {
-        !reading.only && is_worked_at(reading.program) || reading.may_join && !reading.program.vital.is_empty()
+        reading.named_first && !reading.only && is_worked_at(reading.program)
+            || reading.may_join && !reading.program.vital.is_empty()
     };
     let wet = reading.wet.has_toilet(room.kind);
     match (reading.total, reading.closed) {
