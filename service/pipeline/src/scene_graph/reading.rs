@@ -731,7 +731,7 @@ fn is_closed(wishes: &Wishes, tokens: &[Token], building: &Building, (domain, li
     // how many toilets a long list has is no news about its other rooms
     let serves = |w: &Wish| domain.room_type(&w.room_type).is_some_and(|k| k.zone == Zone::Service);
     let long = !lives && types >= LONG_LIST;
-    let open = listed.iter().any(|w| !w.exact && !(long && serves(w)));
+    let open = listed.iter().any(|w| !(w.exact || long && serves(w)));
     // "no kitchen, no bathroom" in a list of rooms are items of it
     let items = types + wishes.forbidden.len();
     // "3BHK with a balcony", "four bedrooms and a garage": what every dwelling has goes without saying
