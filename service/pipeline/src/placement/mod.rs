@@ -136,6 +136,13 @@ pub(crate) enum Wanted<'a> {
     IfFree(&'a ObjectType),
 }
 
+impl Wanted<'_> {
+    /// Returns true for one object beside what stands there.
+    fn is_one_more(self) -> bool {
+        matches!(self, Wanted::Only(_) | Wanted::IfFree(_))
+    }
+}
+
 /// Furnishes one room around the placements that are fixed in it.
 ///
 /// # Errors
@@ -157,9 +164,10 @@ pub(crate) fn furnish_room(
     if !problems.is_empty() {
         return Err(problems);
     }
-    let present = match wanted {
-        Wanted::All | Wanted::Without(_) => locked::present(&fixed, &setting.tasks, domain),
-        Wanted::Only(_) | Wanted::IfFree(_) => vec![0; setting.tasks.len()],
+    let present = if wanted.is_one_more() {
+        vec![0; setting.tasks.len()]
+    } else {
+        locked::present(&fixed, &setting.tasks, domain)
     };
     let job = search::Job {
         domain,
@@ -180,10 +188,10 @@ pub(crate) fn furnish_room(
     };
     let mut outcome = search::furnish(&job);
     let mut more = Vec::new();
-    match (wanted, graph.style.clutter) {
-        (Wanted::Only(_) | Wanted::IfFree(_), _) | (_, None | Some(Clutter::Normal)) => {}
-        (_, Some(Clutter::Low)) => clutter::tidy(&mut outcome, units.len()),
-        (_, Some(Clutter::High)) => more = clutter::strew(&job, &room.room_type, &mut outcome),
+    match graph.style.clutter.filter(|_| !wanted.is_one_more()) {
+        None | Some(Clutter::Normal) => {}
+        Some(Clutter::Low) => clutter::tidy(&mut outcome, units.len()),
+        Some(Clutter::High) => more = clutter::strew(&job, &room.room_type, &mut outcome),
     }
     setting.tasks.extend(more);
     let tasks = &setting.tasks;

@@ -78,7 +78,7 @@ impl<'a> Setting<'a> {
         }
         // what rules advise against goes where the room can do without
         tasks.retain(|t| t.required > 0 || !aims.get(t.anchor.id.as_str()).is_some_and(|a| a.unwanted));
-        if graph.style.clutter == Some(Clutter::Low) && !matches!(wanted, Wanted::Only(_) | Wanted::IfFree(_)) {
+        if graph.style.clutter == Some(Clutter::Low) && !wanted.is_one_more() {
             tasks.retain(|task| !clutter::is_spare(task, kind));
         }
         let mut stream = Stream::new(graph.seed, &format!("placement/{}", room.room_id));

@@ -173,6 +173,11 @@ fn is_called_open(tokens: &[Token], m: &Mention, spoken: &[&Spoken]) -> bool {
             && !noun(m.span.end + 1)
 }
 
+/// Returns the types of rooms that an open layout of the domain joins to one, best first.
+pub(super) fn opens_to<'d>(domain: &'d Domain, id: &'d String) -> impl Iterator<Item = &'d String> {
+    domain.layouts.open_joins.iter().filter(move |join| join.contains(id)).flatten().filter(move |other| *other != id)
+}
+
 /// Returns the types of rooms that the prompt calls open and that an open layout of the domain joins to others.
 pub(super) fn open_rooms(tokens: &[Token], mentions: &[Mention], domain: &Domain, spoken: &[&Spoken]) -> Vec<String> {
     let mut out: Vec<String> = Vec::new();

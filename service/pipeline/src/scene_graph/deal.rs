@@ -4,6 +4,7 @@ use d3dgen_model::domain::{Domain, Storeys as Rules, Zone};
 use d3dgen_model::scene_graph::{Connector, GraphEdge, GraphRoom};
 use d3dgen_model::storeys::{LinkKind, VerticalLink};
 
+use super::BY_CIRCULATION;
 use super::edges::{self, Web};
 use super::places::note;
 use super::program::Planned;
@@ -392,7 +393,7 @@ fn links(
                 b: corridor.id.clone(),
                 connector,
                 required: true,
-                reason: "circulation".into(),
+                reason: BY_CIRCULATION.into(),
             });
             room_ids.push(room.id.clone());
             halls.push(room);

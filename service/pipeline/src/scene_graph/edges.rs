@@ -4,15 +4,14 @@ use d3dgen_model::domain::{Adjacency, AdjacencyRelation};
 use d3dgen_model::scene_graph::{Connector, GraphEdge, GraphRoom};
 use d3dgen_model::style::LayoutStyle;
 
+use super::compounds::opens_to;
 use super::places::note;
 use super::program::Planned;
 use super::reading::Reading;
 use super::relations::Spread;
 use super::rooms;
-use super::{BY_HOST, BY_PROMPT, BY_STYLE};
+use super::{BY_CIRCULATION, BY_HOST, BY_PROMPT, BY_STYLE};
 
-/// Reason of doors to the corridor or hall.
-const CIRCULATION: &str = "circulation";
 /// Walls that one room can be asked to share with others; more are wished for only.
 const MOST_WALLS: usize = 2;
 
@@ -114,7 +113,7 @@ impl Web {
         for (i, room) in planned.iter().enumerate().filter(|(i, _)| *i != hub) {
             let open = room.kind.open_front && room.host.is_none();
             let connector = if open { Connector::Open } else { Connector::Door };
-            let reason = if room.host.is_some() { BY_HOST } else { CIRCULATION };
+            let reason = if room.host.is_some() { BY_HOST } else { BY_CIRCULATION };
             self.put(rooms, (i, room.host.unwrap_or(hub)), connector, true, reason);
         }
     }
@@ -163,14 +162,12 @@ impl Web {
     fn open_named(&mut self, reading: &Reading, planned: &[Planned], rooms: &[GraphRoom]) {
         let of = |kind: &str| (0..rooms.len()).filter(|&i| rooms[i].room_type == kind).collect::<Vec<_>>();
         for id in &reading.wishes.open {
-            let joins = reading.domain.layouts.open_joins.iter().filter(|j| j.contains(id));
-            let partners: Vec<&String> = joins.flatten().filter(|p| *p != id).collect();
             let met = |i: usize| {
                 let joined = |e: &GraphEdge| e.connector == Connector::Open && e.required;
                 self.edges.iter().any(|e| joined(e) && (e.a == rooms[i].id || e.b == rooms[i].id))
             };
             let from: Vec<usize> = of(id).into_iter().filter(|&i| !met(i)).collect();
-            let Some(to) = partners.iter().map(|p| of(p)).find(|to| !to.is_empty()) else { continue };
+            let Some(to) = opens_to(reading.domain, id).map(|p| of(p)).find(|to| !to.is_empty()) else { continue };
             for (i, j) in spread(rooms, &from, &to, Spread::Each) {
                 let free = [i, j].iter().all(|&k| planned.get(k).is_none_or(|p| p.host.is_none()));
                 if free && !self.has_apart(&rooms[i].id, &rooms[j].id) {
@@ -198,7 +195,7 @@ impl Web {
     /// Returns true when required doors lead from one room to another past the circulation.
     fn has_way(&self, from: &str, to: &str) -> bool {
         let walk = |e: &&GraphEdge| {
-            e.required && e.reason != CIRCULATION && matches!(e.connector, Connector::Door | Connector::Open)
+            e.required && e.reason != BY_CIRCULATION && matches!(e.connector, Connector::Door | Connector::Open)
         };
         let mut reached = vec![from];
         let mut next = 0;

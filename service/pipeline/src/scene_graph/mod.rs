@@ -55,6 +55,9 @@ use self::reading::Reading;
 pub(crate) use self::rooms::{dock_rank, most_docks, wished_assets};
 use crate::Error;
 
+/// Reason of the doors to the corridor or hall.
+const BY_CIRCULATION: &str = "circulation";
+
 /// Reason of the edges that a prompt asks for.
 pub(crate) const BY_PROMPT: &str = "prompt";
 

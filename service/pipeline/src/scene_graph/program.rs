@@ -7,7 +7,7 @@ use d3dgen_model::domain::{
     Access, AdjacencyRelation, Domain, Occupants, Privacy, Program, ProgramRoom, RobotUse, RoomType, Shape, Zone,
 };
 
-use super::beds::sleeps;
+use super::beds::{Held, sleeps};
 use super::layout;
 use super::places::note;
 use super::reading::{MAX_ROOMS, Reading, is_dwelling};
@@ -63,6 +63,12 @@ pub(super) struct Planned<'a> {
 }
 
 impl<'a> Planned<'a> {
+    /// Sizes a room by the people it is for, within what its type allows; a size that the prompt gives stays.
+    fn size_for_people(&mut self, area_m2: f64) {
+        let range = self.kind.area_m2;
+        self.people_area_m2 = self.area_m2.is_none().then(|| area_m2.clamp(range.min, range.max));
+    }
+
     /// Returns a room of a type that nobody said more about.
     pub(super) fn new(room_type: &str, kind: &'a RoomType) -> Self {
         Self {
@@ -598,16 +604,19 @@ fn hold_people(reading: &mut Reading, rooms: &mut [Planned]) {
     }
 }
 
+/// Returns the rooms that the prompt gives so many heads, and that have none yet.
+fn rooms_of<'r, 'a>(held: &Held, rooms: &'r mut [Planned<'a>]) -> impl Iterator<Item = &'r mut Planned<'a>> {
+    let free = |r: &&mut Planned| r.requested && r.occupants.is_none() && r.room_type == held.room_type;
+    rooms.iter_mut().filter(free).take(held.count as usize)
+}
+
 /// Gives rooms the places to be treated at that the prompt says, and the floor for them.
 fn hold_stations(reading: &Reading, rooms: &mut [Planned]) {
     for held in &reading.stationed {
-        let free = rooms.iter_mut().filter(|r| r.requested && r.occupants.is_none() && r.room_type == held.room_type);
-        for room in free.take(held.count as usize) {
+        for room in rooms_of(held, rooms) {
             let Some(line) = stations::line_of(reading.domain, room.kind) else { continue };
-            let range = room.kind.area_m2;
             room.occupants = Some(held.beds);
-            let area = stations::area_m2(line, held.beds).clamp(range.min, range.max);
-            room.people_area_m2 = room.area_m2.is_none().then_some(area);
+            room.size_for_people(stations::area_m2(line, held.beds));
         }
     }
 }
@@ -636,7 +645,7 @@ fn serve_people(reading: &Reading, rooms: &mut [Planned]) {
             // those of a usual size hold a usual number
             let grows = lives || reading.wet.has_toilet(rooms[i].kind);
             if !grows || area > range.target {
-                rooms[i].people_area_m2 = rooms[i].area_m2.is_none().then_some(area);
+                rooms[i].size_for_people(area);
             }
         }
     }
@@ -677,19 +686,9 @@ fn seat_waiting(reading: &Reading, rooms: &mut [Planned]) {
 
 /// Returns how many people have a desk in a room of its usual size.
 fn workplaces(domain: &Domain, room: &Planned) -> u32 {
-    let desks = |item: &str| -> u32 {
-        let is_desk = |id: &str| domain.object(id).is_some_and(|o| o.shape == Shape::Desk);
-        match domain.group(item) {
-            Some(group) => {
-                let more = group.members.iter().filter(|m| is_desk(&m.object)).map(|m| m.count).sum::<u32>();
-                more + u32::from(is_desk(&group.anchor))
-            }
-            None => u32::from(is_desk(item)),
-        }
-    };
     let area = room.area_m2.or(room.people_area_m2).unwrap_or(room.kind.area_m2.target);
     let lines = room.kind.furnishing.iter().filter(|line| line.instead_of.is_empty());
-    lines.map(|line| desks(&line.item) * line.units(area)).max().unwrap_or(0)
+    lines.map(|line| seated::desks_of(domain, &line.item) * line.units(area)).max().unwrap_or(0)
 }
 
 /// Returns the floor for each desk of a room type, m^2: as the programs say, else as its furnishing.
@@ -703,19 +702,14 @@ fn desk_area_m2(domain: &Domain, room_type: &str) -> f64 {
 /// Gives rooms to sleep in the beds that the prompt says, and where its beds are those of its rooms the usual ones.
 fn hold_beds(reading: &Reading, rooms: &mut [Planned]) {
     for held in &reading.held {
-        let free = rooms.iter_mut().filter(|r| r.requested && r.occupants.is_none() && r.room_type == held.room_type);
-        for room in free.take(held.count as usize) {
+        for room in rooms_of(held, rooms) {
             room.occupants = Some(held.beds);
             if seated::desks(reading.domain, room.kind).is_some() {
-                let range = room.kind.area_m2;
-                let area = desk_area_m2(reading.domain, &room.room_type) * f64::from(held.beds);
-                room.people_area_m2 = room.area_m2.is_none().then(|| area.clamp(range.min, range.max));
+                room.size_for_people(desk_area_m2(reading.domain, &room.room_type) * f64::from(held.beds));
             }
             let Some([low, high]) = sleeps(reading.domain, room.kind) else { continue };
             if !(low..=high).contains(&held.beds) || high > low {
-                let range = room.kind.area_m2;
-                let area = range.target * f64::from(held.beds) / f64::from(low.max(1));
-                room.people_area_m2 = room.area_m2.is_none().then(|| area.clamp(range.min, range.max));
+                room.size_for_people(room.kind.area_m2.target * f64::from(held.beds) / f64::from(low.max(1)));
             }
         }
     }

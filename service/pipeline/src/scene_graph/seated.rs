@@ -14,18 +14,21 @@ const MOST_BETWEEN: usize = 5;
 
 /// Returns the least and most desks of a room type; `None` where nobody has one.
 pub(super) fn desks(domain: &Domain, kind: &RoomType) -> Option<[u32; 2]> {
-    let each = |item: &str| {
-        let is_desk = |id: &str| domain.object(id).is_some_and(|o| o.shape == Shape::Desk);
-        domain.group(item).map_or_else(
-            || u32::from(is_desk(item)),
-            |g| {
-                u32::from(is_desk(&g.anchor))
-                    + g.members.iter().filter(|m| is_desk(&m.object)).map(|m| m.count).sum::<u32>()
-            },
-        )
-    };
+    let each = |item: &str| desks_of(domain, item);
     let line = kind.furnishing.iter().filter(|f| f.required && each(&f.item) > 0).max_by_key(|f| f.max)?;
     Some([line.min * each(&line.item), line.max * each(&line.item)])
+}
+
+/// Returns how many desks an object or a group has.
+pub(super) fn desks_of(domain: &Domain, item: &str) -> u32 {
+    let is_desk = |id: &str| domain.object(id).is_some_and(|o| o.shape == Shape::Desk);
+    match domain.group(item) {
+        Some(group) => {
+            let more = group.members.iter().filter(|m| is_desk(&m.object)).map(|m| m.count).sum::<u32>();
+            more + u32::from(is_desk(&group.anchor))
+        }
+        None => u32::from(is_desk(item)),
+    }
 }
 
 /// Reads how many desks rooms have; rooms "of 4 desks" become those of the domain that have as many.

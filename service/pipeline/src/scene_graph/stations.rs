@@ -154,19 +154,7 @@ impl Reader<'_> {
                 return true;
             }
             let at = mentions.iter().position(|m| m.span.start >= found.noun.start).unwrap_or(mentions.len());
-            let mut mention = Mention {
-                span: found.noun,
-                what: What::Room(id),
-                count: None,
-                article: false,
-                vague: false,
-                plural: false,
-                definite: false,
-                from: found.span.start,
-                number: None,
-                beds: None,
-                places: None,
-            };
+            let mut mention = Mention { from: found.span.start, ..Mention::plain(found.noun, What::Room(id)) };
             self.settle(&mut mention, found.count);
             mentions.insert(at, mention);
             return true;

@@ -434,19 +434,16 @@ fn put<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>, room: Planned<'a
                 rooms.iter().any(|r| larger(r) && r.kind.hosts.contains(&rooms[i].room_type))
             };
             let hosts = |i: usize| rooms[i].kind.access == Access::Host || through(i);
-            let spares: Vec<usize> = (0..rooms.len())
-                .rev()
-                .filter(|&i| {
-                    let alike = rooms[i].room_type == room.room_type;
-                    !rooms[i].requested && !hosts(i) && !alike && !is_vital(reading, rooms, i)
-                })
-                .collect();
+            let spares = (0..rooms.len()).rev().filter(|&i| {
+                let alike = rooms[i].room_type == room.room_type;
+                !rooms[i].requested && !hosts(i) && !alike && !is_vital(reading, rooms, i)
+            });
             // a bedroom goes after all others: its bathroom would be left
-            let entered = |i: &usize| {
-                rooms.iter().any(|r| r.kind.access == Access::Host && r.kind.hosts.contains(&rooms[*i].room_type))
+            let entered = |i: usize| {
+                rooms.iter().any(|r| r.kind.access == Access::Host && r.kind.hosts.contains(&rooms[i].room_type))
             };
             let lives = is_dwelling(reading.program);
-            let spare = spares.iter().find(|i| lives || !entered(i)).or_else(|| spares.first()).copied();
+            let spare = spares.min_by_key(|&i| !lives && entered(i));
             if let Some(i) = spare {
                 rooms[i] = room;
             }

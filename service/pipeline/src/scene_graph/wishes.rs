@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use d3dgen_model::domain::Domain;
 use d3dgen_model::scene_graph::{Connector, Note};
 
+use super::compounds;
 use super::dwelling::ShortForm;
 use super::measures::Area;
 use super::mentions::{Mention, What};
@@ -78,8 +79,7 @@ impl Wishes {
     pub(super) fn open_to(&mut self, domain: &Domain) {
         let listed = |id: &str, all: &[Wish]| all.iter().any(|w| w.room_type == id);
         for id in &self.open {
-            let joins = domain.layouts.open_joins.iter().filter(|j| j.contains(id));
-            let mut partners = joins.flatten().filter(|p| *p != id).peekable();
+            let mut partners = compounds::opens_to(domain, id).peekable();
             let Some(first) = partners.peek().map(|p| (*p).clone()) else { continue };
             if !partners.any(|p| listed(p, &self.wishes)) && !self.forbidden.contains(&first) {
                 self.wishes.push(Wish::one(&first, &first.replace('_', " ")));
