@@ -115,6 +115,11 @@ fn has_shape(domain: &Domain, kind: &RoomType, shapes: &[Shape]) -> bool {
 
 /// Returns true for a room that is the last of its kind, or one of the bedrooms that the people need.
 pub(super) fn is_vital(reading: &Reading, rooms: &[Planned], i: usize) -> bool {
+    is_vital_of(reading, &classes(reading, rooms), rooms, i)
+}
+
+/// As [`is_vital`], with the classes of these rooms at hand.
+fn is_vital_of(reading: &Reading, classes: &[Class], rooms: &[Planned], i: usize) -> bool {
     let id = &rooms[i].room_type;
     let main = reading.program.rooms.first().is_some_and(|e| &e.room_type == id);
     if main && rooms.iter().filter(|r| &r.room_type == id).count() == 1 {
@@ -122,7 +127,7 @@ pub(super) fn is_vital(reading: &Reading, rooms: &[Planned], i: usize) -> bool {
     }
     let last = |class: &Class| class.holds(&rooms[i]) && rooms.iter().filter(|r| class.holds(r)).count() == 1;
     let toilet = |r: &Planned| reading.wet.has_toilet(r.kind);
-    classes(reading, rooms).iter().any(last)
+    classes.iter().any(last)
         || toilet(&rooms[i]) && rooms.iter().filter(|r| toilet(r)).count() == 1
         || sleeps_in(reading.domain, &rooms[i]) && bedrooms(reading, rooms) <= bedrooms_needed(reading)
 }
@@ -298,12 +303,14 @@ fn bathrooms<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>) -> Option<
         })
         .collect();
     while shared(rooms) < needed {
-        if put(reading, rooms, Planned::new(&kind.id, kind)) {
+        // the toilet becomes a bathroom before there is none, or where all but a few beds have their own; what comes last of
+        // what such a building needs goes before that
+        let toilet = plain.iter().copied().find(|&i| !reading.wet.is_bathroom(rooms[i].kind));
+        let toilet = toilet.filter(|_| reading.total.is_some());
+        if !(toilet.is_some() && served > 0) && put(reading, rooms, Planned::new(&kind.id, kind)) {
             continue;
         }
-        // the toilet becomes a bathroom before there is none, and what comes last of what such a building needs before that
-        let toilet = plain.iter().copied().find(|&i| !reading.wet.is_bathroom(rooms[i].kind));
-        match toilet.filter(|_| reading.total.is_some()).or_else(|| least_vital(reading, rooms)) {
+        match toilet.or_else(|| least_vital(reading, rooms)) {
             Some(i) => rooms[i] = Planned::new(&kind.id, kind),
             None => return (shared(rooms) == 0).then(|| kind.label.to_lowercase()),
         }
@@ -433,17 +440,24 @@ fn put<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>, room: Planned<'a
                     |r: &Planned| r.kind.access == Access::Host && r.kind.area_m2.target > rooms[i].kind.area_m2.target;
                 rooms.iter().any(|r| larger(r) && r.kind.hosts.contains(&rooms[i].room_type))
             };
-            let hosts = |i: usize| rooms[i].kind.access == Access::Host || through(i);
+            let stays = |i: usize| rooms[i].kind.access == Access::Host || through(i);
+            let classes = classes(reading, rooms);
             let spares = (0..rooms.len()).rev().filter(|&i| {
                 let alike = rooms[i].room_type == room.room_type;
-                !rooms[i].requested && !hosts(i) && !alike && !is_vital(reading, rooms, i)
+                !rooms[i].requested && !stays(i) && !alike && !is_vital_of(reading, &classes, rooms, i)
             });
-            // a bedroom goes after all others: its bathroom would be left
-            let entered = |i: usize| {
-                rooms.iter().any(|r| r.kind.access == Access::Host && r.kind.hosts.contains(&rooms[i].room_type))
+            let hangs_on = |guest: &Planned, i: usize| {
+                guest.kind.access == Access::Host && guest.kind.hosts.contains(&rooms[i].room_type)
             };
             let lives = is_dwelling(reading.program);
-            let spare = spares.min_by_key(|&i| !lives && entered(i));
+            // a bedroom goes after all others, and rather its bathroom than the bedroom without it
+            let entered = |i: usize| rooms.iter().any(|r| hangs_on(r, i));
+            let spare = spares.min_by_key(|&i| !lives && entered(i)).map(|i| {
+                let hosts = rooms.iter().filter(|r| r.room_type == rooms[i].room_type).count();
+                let guests = rooms.iter().filter(|r| hangs_on(r, i)).count();
+                let guest = rooms.iter().rposition(|r| !r.requested && hangs_on(r, i));
+                guest.filter(|_| guests >= hosts).unwrap_or(i)
+            });
             if let Some(i) = spare {
                 rooms[i] = room;
             }
