@@ -68,6 +68,8 @@ const SLOT: f64 = 1.5;
 /// Share of a bedroom beside a small room that was cut out of it from which on that is a waste, and what more of it costs.
 const LEG_SHARE: f64 = 0.22;
 const WASTED_LEG: f64 = 4.0;
+/// What a leg costs of a room of another building that cannot spare a corner, unless what was cut out is the room's own.
+const CUT_CELL: f64 = 2.5;
 
 /// A step in the outline shorter than this has no reason, m, and what it costs.
 const STEP_M: f64 = 0.9;
@@ -149,6 +151,8 @@ pub(super) struct Judge<'b> {
     pub(super) entrance_need: i32,
     wet_rooms: usize,
     home: bool,
+    /// By room: whether another one belongs to it.
+    hosts: Vec<bool>,
     pub(super) survey: Survey,
     /// The storey below, for one that stands on another.
     pub(super) below: Option<&'b Below>,
@@ -203,6 +207,7 @@ impl<'b> Judge<'b> {
             entrance_need: door_need(brief.entrance_width),
             wet_rooms: brief.rooms.iter().filter(|r| r.wet).count(),
             home: brief.is_home(),
+            hosts: (0..n).map(|i| brief.rooms.iter().any(|r| r.host == Some(i))).collect(),
             survey: Survey { rooms: vec![Measured::default(); n], ..Survey::default() },
             below: brief.core.as_ref().and_then(|c| c.below.as_ref()),
         };
@@ -512,6 +517,9 @@ impl<'b> Judge<'b> {
                 // A leg beside a small room: fine as a lobby, a waste as a corridor.
                 let (w, h) = (meters(shape.width()), meters(shape.height()));
                 score.soft[8] += (w.max(h) / w.min(h).max(0.1) - 1.6).max(0.0) + 0.15;
+                if !home && !self.hosts[*room] && !brief.rooms[*room].spares_a_corner() {
+                    score.soft[8] += CUT_CELL;
+                }
                 if home && brief.rooms[*room].zone == Zone::Night {
                     let share = shape.area_m2() / rooms[*room].gross_m2.max(1.0);
                     score.soft[8] += WASTED_LEG * (share - LEG_SHARE).max(0.0);
