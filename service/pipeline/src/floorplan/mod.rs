@@ -38,7 +38,7 @@ use d3dgen_model::domain::{Domain, Scheme};
 use d3dgen_model::floorplan::Floorplan;
 use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::seed::Stream;
-use d3dgen_model::style::Form;
+use d3dgen_model::style::{Form, Symmetry};
 
 use crate::{Error, Stop};
 pub use adjust::WallMove;
@@ -204,7 +204,8 @@ fn schemes(brief: &Brief, domain: &Domain, rng: &mut Stream) -> Vec<Scheme> {
         _ if units && *s != Scheme::Comb => false,
         Scheme::Straight => along <= LONGEST_BAR,
         Scheme::Capped => rooms >= 3 && along <= LONGEST_BAR,
-        Scheme::Angle => rooms >= 8 && along <= MOST_WHOLE,
+        // no axis mirrors an angle
+        Scheme::Angle => rooms >= 8 && along <= MOST_WHOLE && brief.symmetry != Some(Symmetry::Symmetric),
         Scheme::Racetrack => rooms >= 14 && along <= MOST_WHOLE,
         Scheme::Comb => along > MOST_WHOLE || units,
     };
