@@ -20,6 +20,7 @@ mod genome;
 mod insert;
 mod lattice;
 mod mirror;
+mod numbers;
 mod order;
 mod outline;
 mod proposed;
@@ -117,7 +118,8 @@ pub fn generate_until(
         }
         let name = format!("{:?}", found.scheme).to_lowercase();
         brief.tell_form(form, found.scheme);
-        let boxes = turned(&found.layout.boxes, turn);
+        let mut boxes = turned(&found.layout.boxes, turn);
+        numbers::along_corridor(graph, &brief, &mut boxes);
         match assemble(&brief, &boxes, &found.score, graph.seed, &name, None, &mut rng) {
             Ok(plan) => return Ok(plan),
             Err(reason) => last = reason,
