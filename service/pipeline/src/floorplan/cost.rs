@@ -13,6 +13,7 @@ use super::lattice::{Cellbox, INNER_HALF_M, JAMB_M, OUTER_HALF_M, meters, up};
 use super::mirror;
 use super::realize::{Layout, door_need};
 use super::spec::Brief;
+use super::windows::LEAST_WALL_M;
 
 /// Cost of a room whose area is outside what is advised, beside that of how far.
 const ILL_ADVISED: f64 = 0.8;
@@ -51,8 +52,6 @@ pub(super) const TERMS: [&str; COUNT] = [
 ];
 /// Standard weights of the soft terms; each plan's search varies them by its taste.
 pub(super) const WEIGHTS: Weights = [1.0, 0.6, 1.2, 0.5, 10.0, 0.5, 0.8, 0.5, 0.4, 0.8, 0.1, 0.3];
-/// Least outer wall of a room that needs a window, m.
-pub(super) const WINDOW_WALL_M: f64 = 1.2;
 
 /// Wall beside the latch of a door that people in wheelchairs pull open, beyond the least one, m (18 in together).
 const LATCH_SIDE_M: f64 = 0.457 - JAMB_M;
@@ -421,7 +420,7 @@ impl<'b> Judge<'b> {
                 _ if spec.needs_outer_wall() => {
                     score.hard += meters((up(spec.least_outer_wall()) - longest).max(0));
                 }
-                Daylight::Preferred if longest < up(WINDOW_WALL_M) && !corridor => score.soft[3] += DARK,
+                Daylight::Preferred if longest < up(LEAST_WALL_M) && !corridor => score.soft[3] += DARK,
                 Daylight::None | Daylight::Optional if !spec.circulation => {
                     score.soft[3] += 0.03 * meters(total).min(6.0)
                 }
@@ -473,7 +472,7 @@ impl<'b> Judge<'b> {
                 let longest = longest.map(|(_, b)| meters(b.width().max(b.height()))).fold(0.0, f64::max);
                 let over = (longest - HALL_M).max(0.0);
                 score.soft[4] += TUNNEL * over * (1.0 + over / LONG_TUNNEL_M);
-                let dark = longest > DARK_HALL_M && rooms[spine].outer.0 < up(WINDOW_WALL_M);
+                let dark = longest > DARK_HALL_M && rooms[spine].outer.0 < up(LEAST_WALL_M);
                 score.soft[4] += if dark { DARK_HALL } else { 0.0 };
             }
             if let Some(most) = brief.share_advised {

@@ -13,8 +13,8 @@ use d3dgen_model::storeys::LinkKind;
 use d3dgen_model::style::{Form, StyleWord, Symmetry};
 
 use super::core::Core;
-use super::cost::WINDOW_WALL_M;
 use super::lattice::{JAMB_M, OUTER_HALF_M};
+use super::windows::LEAST_WALL_M;
 use crate::Error;
 
 /// Clear width that a wheelchair and most robots need through a door, m; used when the prompt asks for access.
@@ -93,7 +93,7 @@ impl RoomSpec {
 
     /// Returns the least length of one piece of outer wall that a room on the facade needs, m.
     pub(super) fn least_outer_wall(&self) -> f64 {
-        self.gate.map_or(WINDOW_WALL_M, |g| Brief::opening(g) + 2.0 * (JAMB_M + OUTER_HALF_M))
+        self.gate.map_or(LEAST_WALL_M, |g| Brief::opening(g) + 2.0 * (JAMB_M + OUTER_HALF_M))
     }
 }
 
