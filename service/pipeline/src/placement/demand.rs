@@ -184,7 +184,13 @@ pub(super) fn tasks<'a>(
             count = count.min(windows);
             required = required.min(windows);
         }
-        let asked = named.iter().any(|id| **id == anchor.id);
+        // a table that is asked for may be the larger one that suits the people and the room
+        let larger = |o: &Furnishing| {
+            let named = domain.anchor(&o.item).is_some_and(|a| named.iter().any(|id| **id == a.id));
+            named && o.instead_of.contains(&f.item) && f.units(area_m2) > 0
+        };
+        let seats = matches!(anchor.shape, Shape::Table | Shape::RoundTable);
+        let asked = named.iter().any(|id| **id == anchor.id) || seats && kind.furnishing.iter().any(larger);
         count = count.max(u32::from(asked && f.max > 0));
         if count == 0 {
             continue;

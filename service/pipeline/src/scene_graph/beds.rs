@@ -472,6 +472,7 @@ impl Sleepers<'_> {
                 exact: true,
                 name: label.clone(),
                 area_m2: None,
+                size: None,
                 listed: false,
             }),
         }

@@ -11,6 +11,7 @@ mod deal;
 mod docks;
 mod dwelling;
 mod edges;
+mod fixtures;
 mod given;
 mod language;
 mod layout;
@@ -22,12 +23,14 @@ mod parts;
 mod places;
 mod program;
 mod proposed;
+mod qualities;
 mod reading;
 mod relations;
 mod robots;
 mod rooms;
 mod seated;
 mod senses;
+mod sharing;
 mod single;
 mod stations;
 mod storeys;
@@ -133,6 +136,7 @@ fn assemble(request: &Request, mut reading: Reading, planned: &[Planned]) -> Sce
         (edges::connect(&mut reading, planned, &mut rooms), Vec::new())
     };
     rooms::add_docks(reading.domain, &reading.robots, &reading.docked, &mut rooms);
+    robots::send(&reading.errand, &rooms, &mut reading.robots);
     SceneGraph {
         version: 1,
         prompt: request.prompt.clone(),

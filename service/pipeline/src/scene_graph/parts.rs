@@ -89,7 +89,15 @@ fn add_rooms(own: &Program, main: &Program, domain: &Domain, beds: Option<u32>, 
         let label = domain.room_type_or_generic(id).label.to_lowercase();
         out.push(format!("{count} x {label}"));
         let room_type = id.to_owned();
-        wishes.wishes.push(Wish { room_type, count, exact: false, name: label, area_m2: None, listed: false });
+        wishes.wishes.push(Wish {
+            room_type,
+            count,
+            exact: false,
+            name: label,
+            area_m2: None,
+            size: None,
+            listed: false,
+        });
     }
     out
 }

@@ -27,6 +27,9 @@ const CIRCULATION_SHARE: f64 = 0.14;
 /// Floor for a desk of a room whose domain says nothing of it, m^2.
 const DESK_AREA_M2: f64 = 9.0;
 
+/// Share of a room's usual area from which on its people need all of it.
+const FULL: f64 = 0.8;
+
 /// Width of one seat of a bench, m.
 const SEAT_M: f64 = 0.5;
 /// What rooms need beyond their least area before a building counts as too small for them, as a factor.
@@ -49,6 +52,8 @@ pub(super) struct Planned<'a> {
     pub name: Option<String>,
     /// Area the prompt gives, m^2.
     pub area_m2: Option<f64>,
+    /// Factor on its usual area that the prompt asks for.
+    pub size: Option<f64>,
     /// Area that the people in it ask for, m^2.
     pub people_area_m2: Option<f64>,
     /// Area that a proposal gives, m^2; within the range of its type.
@@ -76,6 +81,7 @@ impl<'a> Planned<'a> {
             kind,
             name: None,
             area_m2: None,
+            size: None,
             people_area_m2: None,
             proposed_area_m2: None,
             requested: false,
@@ -332,6 +338,7 @@ impl<'r, 'a> Build<'r, 'a> {
         self.rooms.push(Planned {
             name: wish.filter(|_| kind.id != room_type).map(|w| w.name.clone()),
             area_m2: wish.and_then(|w| w.area_m2),
+            size: wish.and_then(|w| w.size),
             requested: wish.is_some(),
             ..Planned::new(room_type, kind)
         });
@@ -509,7 +516,7 @@ impl<'r, 'a> Build<'r, 'a> {
         }
         if let Some(people) = self.reading.residents {
             // two share a bedroom, everyone else has one
-            let wanted = people.saturating_sub(1).max(1) as usize;
+            let wanted = vital::bedrooms_for(people, self.reading.each_alone);
             let sleeping =
                 |e: &&ProgramRoom| self.reading.domain.room_type_or_generic(&e.room_type).zone == Zone::Night;
             if let Some(entry) = self.program.rooms.iter().find(sleeping) {
@@ -630,7 +637,13 @@ fn serve_people(reading: &Reading, rooms: &mut [Planned]) {
     // in a home those who sleep there eat there
     let lives = is_dwelling(reading.program);
     let beds = rooms.iter().filter_map(|r| Some(sleeps(reading.domain, r.kind)?[0])).sum::<u32>();
-    let people = if lives { reading.residents.unwrap_or(0).max(beds) } else { places_to_work(reading, rooms) };
+    // who has a room alone has its double bed alone
+    let rooms_to_sleep = rooms.iter().filter(|r| sleeps(reading.domain, r.kind).is_some()).count() as u32;
+    let people = match reading.each_alone {
+        true if lives => reading.residents.unwrap_or(rooms_to_sleep),
+        _ if lives => reading.residents.unwrap_or(0).max(beds),
+        _ => places_to_work(reading, rooms),
+    };
     let people = f64::from(people);
     let mut sized: Vec<&str> = Vec::new();
     for (entry, each) in entries {
@@ -646,6 +659,9 @@ fn serve_people(reading: &Reading, rooms: &mut [Planned]) {
             let grows = lives || reading.wet.has_toilet(rooms[i].kind);
             if !grows || area > range.target {
                 rooms[i].size_for_people(area);
+            } else if lives && area > FULL * range.target {
+                // as many as the usual size is for: it is not to come out small
+                rooms[i].size_for_people(range.target);
             }
         }
     }

@@ -23,7 +23,10 @@ use super::text::{MAX_TOKENS, Span, Token, tokens};
 use super::vital::{self, Wet};
 use super::wishes::{self, MANY, PerHost, Text, Wish, Wishes};
 use super::words::{ByBedrooms, Spoken, Tag, words};
-use super::{Request, docks, dwelling, language, measures, numbers, robots, seated, single, umlauts, unread};
+use super::{
+    Request, docks, dwelling, fixtures, language, measures, numbers, qualities, robots, seated, sharing, single,
+    umlauts, unread,
+};
 use crate::Error;
 
 /// Most rooms one world is planned for.
@@ -34,6 +37,8 @@ const MAX_AREA_M2: f64 = 200_000.0;
 const MAIN_ROOM_SHARE: f64 = 1.5;
 /// A room for more people each is no place to work at but one to meet or wash in.
 pub(super) const MOST_IN_OFFICE: u32 = 4;
+/// Factor on the usual area of a kitchen that one eats in.
+const EATING: f64 = 1.3;
 /// Largest head count that is taken at its word.
 const MAX_HEADS: i64 = 5000;
 
@@ -70,11 +75,15 @@ pub(super) struct Reading<'a> {
     pub occupancy: Occupancy,
     /// People who live there.
     pub residents: Option<u32>,
+    /// True when all of them have a room of their own.
+    pub each_alone: bool,
     pub accessible: bool,
     pub style: Style,
     pub robots: Vec<Robot>,
     /// Types of the rooms that a dock is to stand in.
     pub docked: Vec<String>,
+    /// Where the robot is to go.
+    pub errand: robots::Errand,
     pub storeys: Storeys,
     /// Objects that the prompt names, each with the room type it is named with.
     pub objects: Vec<(String, Option<String>)>,
@@ -143,9 +152,10 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         registry.get(&building.domain).map(|p| p.domain()).ok_or_else(|| refused("no domain is registered".into()))?;
     let program = program_of(domain, building.building_type.as_deref());
 
+    let shared = building.building_type.as_ref().is_some_and(|b| words().dwelling.shared.contains(b));
     let areas = measures::areas(&tokens, &numbers);
     let radius = measures::robot_radius(&tokens, &numbers, &spoken);
-    let short_forms = dwelling::short_forms(&tokens, &numbers, domain, &spoken);
+    let mut short_forms = dwelling::short_forms(&tokens, &numbers, domain, &spoken, shared);
     let place_spans = place.spans.clone();
     let mut spans: Vec<Span> = std::mem::take(&mut place.spans);
     spans.extend(areas.iter().map(|a| a.span));
@@ -181,7 +191,8 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     let mut not_things = machines.spans.clone();
     not_things.extend(said_styles.iter().map(|s| s.span));
     not_things.extend(access_wishes(&tokens, &numbers, &spoken));
-    let compounds = compounds::find(&tokens, prompt, domain, &spoken, |span| {
+    let names_room = |i: usize| vocabulary.names_room(&tokens, i, &numbers, &spoken);
+    let compounds = compounds::find(&tokens, prompt, domain, &spoken, names_room, |span| {
         spans.iter().chain(&building.head).any(|s| s.overlaps(span))
     });
     let taken = Taken {
@@ -196,6 +207,28 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         unread: unread_language.is_some(),
     };
     let mut mentions = mentions(&tokens, &numbers, &vocabulary, &spoken, language, &taken);
+    let wet = registry.digest(&domain.id, || Wet::of(domain));
+    let mut told_again = compounds::hold_own(&tokens, prompt, &compounds, &mut mentions, domain, &spoken);
+    if lives {
+        fixtures::settle(&tokens, prompt, &mut mentions, domain, &wet, &spoken);
+    }
+    if shared {
+        own_rooms(&mut mentions, domain);
+    }
+    let sleeps = |id: &str| domain.room_type(id).is_some_and(|k| k.zone == Zone::Night);
+    let own_room = lives.then(|| sharing::each_has_a_room(&tokens, &mentions, &spoken, sleeps)).flatten();
+    if let Some(span) = own_room {
+        mentions.retain(|m| !(span.contains(m.span.start) && m.room_type().is_some_and(sleeps)));
+        told_again.push(span);
+    }
+    // "three-room flat: living room with kitchen corner": it is the one that the number counts
+    let habitable_fixed = short_forms.iter().any(|f| f.rooms.contains_key(&words().dwelling.living));
+    let named = |id: &String| mentions.iter().any(|m| m.room_type() == Some(id));
+    if named(&words().dwelling.living_kitchen) && !named(&words().dwelling.living) {
+        short_forms.iter_mut().for_each(|f| {
+            f.rooms.remove(&words().dwelling.living);
+        });
+    }
     if !lives {
         choice.read_lists(&tokens, &mut mentions);
         choice.adopt(&mut mentions);
@@ -225,7 +258,11 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     });
     let stationed: Vec<Held> = stationed.collect();
     let doors = unread::doors(&tokens, &mut mentions, &spoken);
-    let docked = docks::inside_rooms(&tokens, &mut mentions, &machines.spans, &spoken);
+    let mut docked = docks::inside_rooms(&tokens, &mut mentions, &machines.spans, &spoken);
+    let errand = robots::errand(&machines, &tokens, &mentions, &spoken);
+    // what comes through the entrance is fetched there
+    let by_door = errand.entrance && docked.is_empty() && lives;
+    docked.extend(by_door.then(|| domain.circulation.room_type.clone()));
     let said_styles = styles::of_building(said_styles, &mentions, language);
     let mut said = relations::read(&tokens, &mentions, &spoken, language, building.head);
     compounds::relate(&compounds, &mentions, domain, &mut said);
@@ -239,6 +276,8 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         areas: &areas,
         list_from: building.list_from,
         robots: machines.named,
+        language,
+        spoken: &spoken,
     };
     let mut wishes = wishes::gather(&text, &mut conflicts);
     wishes.open = compounds::open_rooms(&tokens, &mentions, domain, &spoken);
@@ -257,7 +296,6 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     furnish_basement(&mut storeys, &mut wishes, domain);
     wish_for_storeys(&storeys, &mut wishes, domain);
     name_private_bathrooms(&mut wishes, domain, lives);
-    let wet = registry.digest(&domain.id, || Wet::of(domain));
     if !lives {
         vital::rule_out(domain, &wet, &mut wishes);
     }
@@ -282,8 +320,12 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     let parts = parts::plan(&building.parts, &tokens, &mut mentions, &mut wishes, (domain, program), &mut assumptions);
     let mut people = People::read(&mentions, program, domain, &mut conflicts);
     let mut held = Vec::new();
+    let each_alone = lives && (shared || own_room.is_some());
     if lives {
         people.share_a_home(&tokens, &numbers, &mentions, &spoken);
+        let head = building.head.filter(|_| shared);
+        let told = head.and_then(|head| sharing::residents(&tokens, &numbers, head, &spoken));
+        people.residents = people.residents.or(told);
     } else {
         let who = people.occupancy.visitors.or(people.residents);
         let beds = people.occupancy.beds;
@@ -297,6 +339,9 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
             *counted = (*counted).max(Some(desks));
         }
         held.extend(seated);
+    }
+    if lives {
+        wishes.join_to_fit(wished_total(request, &mentions), domain);
     }
     let total = total_rooms(request, &mentions, &wishes, &mut conflicts)?;
     let listed: u64 = wishes.wishes.iter().map(|w| u64::from(w.count)).sum();
@@ -330,8 +375,23 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         assumptions.extend(add_main_room(&mut wishes, program, domain, &people, named.as_deref()));
     }
     spans.extend(station_words);
+    spans.extend(told_again);
     let mut read: Vec<Span> = spans.iter().chain(&machines.docks).chain(&building.words).copied().collect();
     let mut things = objects::named(&tokens, &mentions, domain, registry, &languages, &not_things, &mut read);
+    let free = |i: usize| !spans.iter().chain(&building.head).any(|s| s.contains(i));
+    let mut furnished = qualities::furnished(&tokens, &spoken, free);
+    // who shares a home eats in its kitchen
+    let [kitchen, table] = &words().dwelling.shared_meals;
+    furnished.extend(shared.then(|| (table.clone(), kitchen.clone(), Span { start: 0, end: 0 })));
+    for (object, room_type, span) in furnished {
+        let here = domain.object(&object).is_some() && wishes.wishes.iter().any(|w| w.room_type == room_type);
+        if here && !things.iter().any(|t| t.0 == object) {
+            read.push(span);
+            let wish = wishes.wishes.iter_mut().find(|w| w.room_type == room_type);
+            wish.into_iter().for_each(|w| w.size = w.size.or(Some(EATING)));
+            things.push((object, Some(room_type)));
+        }
+    }
     let unread = unread::Text {
         tokens: &tokens,
         known_language: unread_language.is_none(),
@@ -367,13 +427,15 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         single,
         held,
         stationed,
-        habitable_fixed: short_forms.iter().any(|f| f.rooms.contains_key(&words().dwelling.living)),
+        habitable_fixed,
         area_m2,
         occupancy: people.occupancy,
         residents: people.residents,
+        each_alone,
         accessible: (0..tokens.len()).any(|i| spoken.iter().any(|s| s.tag_at(&tokens, i, Tag::Accessible).is_some())),
         robots,
         docked,
+        errand,
         style: styles::wished(&said_styles, request.style, &mut conflicts),
         assumptions,
         conflicts,
@@ -659,6 +721,25 @@ fn total_area(text: &Text, request: &Request, conflicts: &mut Vec<Note>) -> Opti
     }
     // One third of a millimeter squared of noise from unit factors helps nobody.
     request.area_m2.or(named).map(|a| (a * 100.0).round() / 100.0)
+}
+
+/// Returns how many rooms there are to be in total, where the prompt or the request says so.
+fn wished_total(request: &Request, mentions: &[Mention]) -> Option<u32> {
+    let named = mentions.iter().filter(|m| m.what == What::Total && !m.article && !m.vague).find_map(|m| m.count);
+    request.rooms.or(named.and_then(|n| u32::try_from(n).ok()).filter(|n| *n > 0))
+}
+
+/// Takes the rooms of a home that people share for bedrooms where it names none: "student flat with five rooms".
+fn own_rooms(mentions: &mut [Mention], domain: &Domain) {
+    let bedroom = &words().dwelling.bedroom;
+    let sleeps = |id: &str| domain.room_type(id).is_some_and(|k| k.zone == Zone::Night);
+    let listed = mentions.iter().any(|m| m.room_type().is_some());
+    if !listed || mentions.iter().any(|m| m.room_type().is_some_and(sleeps)) {
+        return;
+    }
+    if let Some(m) = mentions.iter_mut().find(|m| m.what == What::Total && m.count.is_some() && !m.article) {
+        m.what = What::Room(bedroom.clone());
+    }
 }
 
 fn total_rooms(

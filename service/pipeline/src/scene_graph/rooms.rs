@@ -8,7 +8,8 @@ use d3dgen_model::style::SpaceStyle;
 
 use super::places::note;
 use super::program::{Planned, circulation_share};
-use super::reading::Reading;
+use super::reading::{Reading, is_dwelling};
+use super::words::words;
 
 /// Most objects wished for in one room.
 const MOST_WISHES: usize = 15;
@@ -20,6 +21,8 @@ const CROWDED: f64 = 0.6;
 const COMPACT: f64 = 0.8;
 /// The same of a generous building.
 const GENEROUS: f64 = 1.25;
+/// Largest share of its usual area that a bedroom has.
+const MOST_ASLEEP: f64 = 1.6;
 /// Share by which the areas may miss the one asked for before that is worth a note.
 const AREA_TOLERANCE: f64 = 0.1;
 
@@ -32,6 +35,7 @@ pub(super) fn describe(reading: &mut Reading, planned: &[Planned]) -> Vec<GraphR
         *total.entry(&room.room_type).or_default() += 1;
     }
     state_unknown(reading, planned);
+    let lives = is_dwelling(reading.program);
     let mut seen: BTreeMap<&str, u32> = BTreeMap::new();
     let mut rooms = Vec::new();
     for (i, room) in planned.iter().enumerate() {
@@ -48,7 +52,7 @@ pub(super) fn describe(reading: &mut Reading, planned: &[Planned]) -> Vec<GraphR
                 None => room.kind.description.clone(),
             },
             target_area_m2: areas[i],
-            area_range_m2: area_range(room, areas[i]),
+            area_range_m2: area_range(room, areas[i], !lives || reading.area_m2.is_some()),
             wished_assets: wished_assets(reading.domain, room.kind, named.get(&i).map_or(&[], Vec::as_slice)),
             occupants: room.occupants.filter(|n| *n > 0),
             circulation: false,
@@ -114,14 +118,19 @@ fn label(room: &Planned) -> String {
 }
 
 /// Returns the areas allowed, net m^2: those of the type; close to the one the prompt gives, enough for the people in it.
-fn area_range(room: &Planned, target: f64) -> [f64; 2] {
+///
+/// Bedrooms do not take what a small plan has left over (`wide` says that rooms may).
+fn area_range(room: &Planned, target: f64, wide: bool) -> [f64; 2] {
     let range = room.kind.area_m2;
     let about = |low: f64, high: f64| {
         [range.min.max(tenth(target * low)).min(target), range.max.min(tenth(target * high)).max(target)]
     };
-    match (room.area_m2, room.people_area_m2) {
+    match (room.area_m2, room.people_area_m2.or(room.size)) {
         (Some(_), _) => about(1.0 - AREA_TOLERANCE, 1.0 + AREA_TOLERANCE),
         (None, Some(_)) => about(1.0 - AREA_TOLERANCE, 1.0 + 3.0 * AREA_TOLERANCE),
+        (None, None) if !wide && room.kind.zone == Zone::Night => {
+            [range.min, range.max.min(tenth(target * MOST_ASLEEP))]
+        }
         (None, None) => [range.min, range.max],
     }
 }
@@ -137,7 +146,7 @@ fn target_areas(reading: &mut Reading, planned: &[Planned]) -> Vec<f64> {
         let styled = match (room.area_m2, room.people_area_m2, room.proposed_area_m2) {
             (Some(asked), _, _) => asked,
             (None, None, Some(proposed)) => proposed,
-            _ => usual * scale,
+            _ => usual * room.size.unwrap_or(scale),
         };
         let area = styled.clamp(range.min, range.max);
         if (wished.clamp(range.min, range.max) - wished).abs() > 0.05 {
@@ -227,6 +236,12 @@ fn tenth(area: f64) -> f64 {
 /// Returns the objects that the prompt names, by index of the room they belong in.
 fn named_objects(reading: &mut Reading, planned: &[Planned]) -> BTreeMap<usize, Vec<String>> {
     let mut out: BTreeMap<usize, Vec<String>> = BTreeMap::new();
+    // who shares a home works in the own room
+    let shared = reading.building_type.as_ref().is_some_and(|b| words().dwelling.shared.contains(b));
+    if shared && reading.domain.object(&words().dwelling.own_desk).is_some() {
+        let own = (0..planned.len()).filter(|&i| planned[i].room_type == words().dwelling.bedroom);
+        own.for_each(|i| out.entry(i).or_default().push(words().dwelling.own_desk.clone()));
+    }
     for (object, room_type) in std::mem::take(&mut reading.objects) {
         let usual = |r: &Planned| furniture(reading.domain, r.kind).any(|o| o == object);
         let with = planned.iter().position(|r| room_type.as_deref() == Some(&r.room_type));

@@ -143,7 +143,12 @@ fn bedrooms(reading: &Reading, rooms: &[Planned]) -> usize {
 /// Returns how many bedrooms the people need: two share one, everyone else has one.
 fn bedrooms_needed(reading: &Reading) -> usize {
     let people = reading.residents.filter(|_| is_dwelling(reading.program));
-    people.map_or(0, |n| n.saturating_sub(1).max(1) as usize)
+    people.map_or(0, |n| bedrooms_for(n, reading.each_alone))
+}
+
+/// Returns how many bedrooms so many people need: two share one where they are a couple, everyone else has one.
+pub(super) fn bedrooms_for(people: u32, each_alone: bool) -> usize {
+    if each_alone { people as usize } else { people.saturating_sub(1).max(1) as usize }
 }
 
 /// Sees to it that the building has what none is without; what finds no place becomes a conflict.
@@ -233,7 +238,7 @@ fn give_bedrooms<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
 }
 
 /// Gives a home of many bedrooms a second toilet and bathrooms enough, where its rooms are left open.
-fn second_toilet<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
+fn second_toilet<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
     let toilets = rooms.iter().filter(|r| reading.wet.has_toilet(r.kind)).count();
     let kind = reading.domain.room_type(&words().dwelling.toilet);
     let named = reading.wishes.wishes.iter().any(|w| {
@@ -242,11 +247,19 @@ fn second_toilet<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
     });
     let open = reading.total.is_none() && !reading.closed && !named;
     let few = bedrooms(reading, rooms) >= BEDROOMS_FOR_TWO_TOILETS && toilets < 2;
-    if let Some(kind) = kind.filter(|k| open && few && !reading.wishes.forbidden.contains(&k.id)) {
+    // toilets that one enters through a bedroom are none for visitors
+    let shared = |r: &Planned| reading.wet.has_toilet(r.kind) && r.kind.access != Access::Host;
+    let private = bedrooms(reading, rooms) >= BEDROOMS_FOR_TWO_TOILETS && !rooms.iter().any(shared);
+    let kind = kind.filter(|k| !reading.wishes.forbidden.contains(&k.id));
+    if let Some(kind) = kind.filter(|_| open && few || private && reading.total.is_none() && !reading.only) {
         rooms.push(Planned::new(&kind.id, kind));
+    } else if private {
+        let message = "all toilets are entered through bedrooms; the rooms asked for were planned, one more for visitors would help";
+        reading.assumptions.push(note("no_visitor_toilet", message.into()));
     }
     let asleep = bedrooms(reading, rooms);
-    let bathing = rooms.iter().filter(|r| reading.wet.is_bathroom(r.kind)).count();
+    let showers = |r: &Planned| r.room_type == words().dwelling.shower;
+    let bathing = rooms.iter().filter(|r| reading.wet.is_bathroom(r.kind) || showers(r)).count();
     let needed = if asleep >= BEDROOMS_FOR_TWO_TOILETS { asleep.div_ceil(BEDROOMS_TO_A_BATHROOM) } else { 0 };
     let kind = reading.domain.room_type(&words().dwelling.bathroom);
     if let Some(kind) = kind.filter(|k| open && !reading.wishes.forbidden.contains(&k.id)) {

@@ -114,6 +114,14 @@ pub(super) enum Tag {
     Only,
     /// "Including": what follows is of the rooms before it.
     PartOf,
+    /// Words for a small kitchen that is a part of the room it is named with: "kitchen corner".
+    Corners,
+    /// A bedroom with its bathroom, whoever it is for: the "suite" of "grandparents' suite".
+    SuiteWords,
+    /// Who has something of their own: "everyone".
+    Everyone,
+    /// All have a room of their own: "a room each".
+    SingleRooms,
 }
 
 /// Words of one language.
@@ -142,6 +150,12 @@ pub(super) struct Language {
     /// Words for a room and its bathroom, with the room types.
     #[serde(default)]
     pub suites: BTreeMap<String, Vec<String>>,
+    /// Words for how large a room is, with the factor on its usual area.
+    #[serde(default)]
+    pub sizes: BTreeMap<String, f64>,
+    /// Words for a room that say what stands in it: its type and the object.
+    #[serde(default)]
+    pub furnished: BTreeMap<String, Vec<String>>,
     #[serde(flatten)]
     pub phrases: BTreeMap<Tag, Vec<String>>,
 }
@@ -163,6 +177,19 @@ pub(super) struct Dwelling {
     pub bathroom: String,
     pub studio: String,
     pub toilet: String,
+    /// A room with a shower and no toilet.
+    pub shower: String,
+    /// One room to live and cook in.
+    pub living_kitchen: String,
+    /// The sitting room of a suite.
+    pub suite_sitting: String,
+    pub ensuite: String,
+    /// Building types of homes that people share who have a room each.
+    pub shared: Vec<String>,
+    /// What those work at in their rooms.
+    pub own_desk: String,
+    /// The room in which they eat, and at what.
+    pub shared_meals: [String; 2],
     /// Rooms that a word for a bathroom may mean where no one lives.
     pub toilets: Vec<String>,
     /// Rooms that no dwelling is without, each with what can stand for it.
@@ -247,6 +274,8 @@ pub(super) struct Spoken {
     pub heads: Phrases<()>,
     pub joint: Phrases<Vec<String>>,
     pub suites: Phrases<Vec<String>>,
+    pub sizes: Phrases<f64>,
+    pub furnished: Phrases<Vec<String>>,
     /// Usual words that tell the language, folded.
     pub detect: BTreeSet<String>,
     /// Number words, folded.
@@ -323,7 +352,9 @@ fn spoken(code: &str, words: Language) -> Spoken {
         map.iter().for_each(|(phrase, types)| phrases.insert(phrase, types.clone()));
         phrases
     };
-    let (joint, suites) = (table(&words.joint), table(&words.suites));
+    let (joint, suites, furnished) = (table(&words.joint), table(&words.suites), table(&words.furnished));
+    let mut sizes = Phrases::new("");
+    words.sizes.iter().for_each(|(phrase, value)| sizes.insert(phrase, *value));
     let detect = words.phrases.get(&Tag::Detect).into_iter().flatten().map(|w| super::text::fold(w)).collect();
     Spoken {
         detect,
@@ -338,6 +369,8 @@ fn spoken(code: &str, words: Language) -> Spoken {
         heads,
         joint,
         suites,
+        sizes,
+        furnished,
     }
 }
 
