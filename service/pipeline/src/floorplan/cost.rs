@@ -86,7 +86,7 @@ const ROUNDING: f64 = 1e-9;
 const AREA_TOLERANCE: f64 = 0.03;
 /// Share from which on the building is plainly not as large as asked for, and the cost beyond.
 const AREA_MISSES: f64 = 0.08;
-const AREA_MISSED: f64 = 200.0;
+const AREA_MISSED: f64 = 100.0;
 
 /// Verdict on a layout.
 #[derive(Debug, Clone, Copy, Default)]

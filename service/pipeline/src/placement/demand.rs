@@ -190,7 +190,12 @@ pub(super) fn tasks<'a>(
             named && o.instead_of.contains(&f.item) && f.units(area_m2) > 0
         };
         let seats = matches!(anchor.shape, Shape::Table | Shape::RoundTable);
-        let asked = named.iter().any(|id| **id == anchor.id) || seats && kind.furnishing.iter().any(larger);
+        // the same table at a wall comes where it finds no place in the middle
+        let second = kind.furnishing[..line]
+            .iter()
+            .any(|o| f.instead_of.contains(&o.item) && domain.anchor(&o.item).is_some_and(|a| a.id == anchor.id));
+        let asked = named.iter().any(|id| **id == anchor.id) && !(seats && second)
+            || seats && kind.furnishing.iter().any(larger);
         count = count.max(u32::from(asked && f.max > 0));
         if count == 0 {
             continue;

@@ -3,12 +3,12 @@
 use d3dgen_model::domain::Domain;
 
 use super::mentions::{Mention, What};
-use super::text::Token;
+use super::text::{Span, Token};
 use super::vital::Wet;
 use super::words::{Spoken, Tag, words};
 
 /// Settles what the word for a shower means: a thing in "bathroom with shower", a bathroom where no other room has a toilet
-/// ("bedroom, kitchen, shower") or in "shower/WC", a room of its own everywhere else.
+/// ("bedroom, kitchen, shower") or in "shower/WC", a room of its own everywhere else. Returns the words for things.
 pub(super) fn settle(
     tokens: &[Token],
     prompt: &str,
@@ -16,10 +16,10 @@ pub(super) fn settle(
     domain: &Domain,
     wet: &Wet,
     spoken: &[&Spoken],
-) {
+) -> Vec<Span> {
     let d = &words().dwelling;
     if domain.room_type(&d.shower).is_none() || !mentions.iter().any(|m| m.room_type() == Some(&d.shower)) {
-        return;
+        return Vec::new();
     }
     let shower = |m: &Mention| m.room_type() == Some(d.shower.as_str());
     let toilet = |m: &Mention| m.room_type().and_then(|id| domain.room_type(id)).is_some_and(|k| wet.has_toilet(k));
@@ -59,9 +59,11 @@ pub(super) fn settle(
             m.what = What::Room(d.bathroom.clone());
         }
     }
+    let spans = things.iter().map(|&i| mentions[i].span).collect();
     let mut at = 0;
     mentions.retain(|_| {
         at += 1;
         !things.contains(&(at - 1))
     });
+    spans
 }

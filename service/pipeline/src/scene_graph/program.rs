@@ -114,6 +114,11 @@ pub(super) fn complete<'a>(reading: &mut Reading<'a>) -> Vec<Planned<'a>> {
 /// Gives rooms that are settled their people and hosts, and states which of them the prompt does not name.
 pub(super) fn finish<'a>(reading: &mut Reading<'a>, mut rooms: Vec<Planned<'a>>) -> Vec<Planned<'a>> {
     wash_on_every_storey(reading, &mut rooms);
+    if reading.building_type.as_ref().is_some_and(|b| words().dwelling.shared.contains(b)) {
+        // a room to sleep and work in is not to come out small
+        let own = |r: &&mut Planned| r.room_type == words().dwelling.bedroom && r.area_m2.is_none();
+        rooms.iter_mut().filter(own).for_each(|r| r.size = r.size.or(Some(1.0)));
+    }
     hold_people(reading, &mut rooms);
     serve_people(reading, &mut rooms);
     seat_waiting(reading, &mut rooms);

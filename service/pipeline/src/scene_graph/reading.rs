@@ -38,7 +38,7 @@ const MAIN_ROOM_SHARE: f64 = 1.5;
 /// A room for more people each is no place to work at but one to meet or wash in.
 pub(super) const MOST_IN_OFFICE: u32 = 4;
 /// Factor on the usual area of a kitchen that one eats in.
-const EATING: f64 = 1.3;
+const EATING: f64 = 1.45;
 /// Largest head count that is taken at its word.
 const MAX_HEADS: i64 = 5000;
 
@@ -210,7 +210,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     let wet = registry.digest(&domain.id, || Wet::of(domain));
     let mut told_again = compounds::hold_own(&tokens, prompt, &compounds, &mut mentions, domain, &spoken);
     if lives {
-        fixtures::settle(&tokens, prompt, &mut mentions, domain, &wet, &spoken);
+        told_again.extend(fixtures::settle(&tokens, prompt, &mut mentions, domain, &wet, &spoken));
     }
     if shared {
         own_rooms(&mut mentions, domain);
@@ -218,7 +218,10 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     let sleeps = |id: &str| domain.room_type(id).is_some_and(|k| k.zone == Zone::Night);
     let own_room = lives.then(|| sharing::each_has_a_room(&tokens, &mentions, &spoken, sleeps)).flatten();
     if let Some(span) = own_room {
-        mentions.retain(|m| !(span.contains(m.span.start) && m.room_type().is_some_and(sleeps)));
+        // "everybody has a private room" names no room of another kind
+        let own = |m: &Mention| spoken.iter().any(|s| s.tag_at(&tokens, m.span.start, Tag::Own).is_some());
+        let said = |m: &Mention| m.room_type().is_some_and(|id| sleeps(id) || own(m));
+        mentions.retain(|m| !(span.contains(m.span.start) && said(m)));
         told_again.push(span);
     }
     // "three-room flat: living room with kitchen corner": it is the one that the number counts
@@ -383,12 +386,13 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     // who shares a home eats in its kitchen
     let [kitchen, table] = &words().dwelling.shared_meals;
     furnished.extend(shared.then(|| (table.clone(), kitchen.clone(), Span { start: 0, end: 0 })));
+    let dines = wishes.wishes.iter().any(|w| w.room_type == words().dwelling.dining);
     for (object, room_type, span) in furnished {
         let here = domain.object(&object).is_some() && wishes.wishes.iter().any(|w| w.room_type == room_type);
         if here && !things.iter().any(|t| t.0 == object) {
             read.push(span);
             let wish = wishes.wishes.iter_mut().find(|w| w.room_type == room_type);
-            wish.into_iter().for_each(|w| w.size = w.size.or(Some(EATING)));
+            wish.into_iter().filter(|_| !dines).for_each(|w| w.size = w.size.or(Some(EATING)));
             things.push((object, Some(room_type)));
         }
     }

@@ -127,6 +127,8 @@ fn area_range(room: &Planned, target: f64, wide: bool) -> [f64; 2] {
     };
     match (room.area_m2, room.people_area_m2.or(room.size)) {
         (Some(_), _) => about(1.0 - AREA_TOLERANCE, 1.0 + AREA_TOLERANCE),
+        // where the rooms share an area they give and take
+        (None, Some(_)) if room.size.is_some() && wide => [range.min, range.max],
         (None, Some(_)) => about(1.0 - AREA_TOLERANCE, 1.0 + 3.0 * AREA_TOLERANCE),
         (None, None) if !wide && room.kind.zone == Zone::Night => {
             [range.min, range.max.min(tenth(target * MOST_ASLEEP))]

@@ -40,9 +40,9 @@ pub(super) fn each_has_a_room(
         if !tagged(i, Tag::Everyone) || of_rooms(i) {
             return None;
         }
-        let owned = goes_on(i + 1, MOST_TO_OWN)
-            .take_while(|&k| !mentions.iter().any(|m| m.room_type().is_some() && m.span.contains(k)))
-            .filter(|&k| tagged(k, Tag::Own));
+        let inside =
+            |k: usize| mentions.iter().any(|m| m.room_type().is_some() && m.span.start < k && m.span.contains(k));
+        let owned = goes_on(i + 1, MOST_TO_OWN).take_while(|&k| !inside(k)).filter(|&k| tagged(k, Tag::Own));
         let at = owned.filter_map(|k| goes_on(k + 1, MOST_TO_ROOM).find(|&r| room(r))).next()?;
         let end = mentions.iter().find(|m| m.span.start == at).map_or(at + 1, |m| m.span.end);
         Some(Span { start: i, end })

@@ -249,9 +249,10 @@ fn second_toilet<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
     let few = bedrooms(reading, rooms) >= BEDROOMS_FOR_TWO_TOILETS && toilets < 2;
     // toilets that one enters through a bedroom are none for visitors
     let shared = |r: &Planned| reading.wet.has_toilet(r.kind) && r.kind.access != Access::Host;
-    let private = bedrooms(reading, rooms) >= BEDROOMS_FOR_TWO_TOILETS && !rooms.iter().any(shared);
+    let joins = !reading.only && (!reading.closed || reading.may_join);
+    let private = toilets > 0 && bedrooms(reading, rooms) >= BEDROOMS_FOR_TWO_TOILETS && !rooms.iter().any(shared);
     let kind = kind.filter(|k| !reading.wishes.forbidden.contains(&k.id));
-    if let Some(kind) = kind.filter(|_| open && few || private && reading.total.is_none() && !reading.only) {
+    if let Some(kind) = kind.filter(|_| open && few || private && reading.total.is_none() && joins) {
         rooms.push(Planned::new(&kind.id, kind));
     } else if private {
         let message = "all toilets are entered through bedrooms; the rooms asked for were planned, one more for visitors would help";

@@ -107,7 +107,7 @@ impl Wishes {
         };
         let one = |id: &str, all: &[Wish]| all.iter().any(|w| w.room_type == id && w.count == 1);
         let open = |id: &String, with: &[&String], all: &Self| {
-            one(id, &all.wishes) && with.iter().any(|o| joined(id, o, &all.pairs)) || self_open(all, id)
+            one(id, &all.wishes) && with.iter().any(|o| joined(id, o, &all.pairs)) || all.open.contains(id)
         };
         let both = one(&d.kitchen, &self.wishes) && one(&d.living, &self.wishes);
         if !both || !open(&d.kitchen, &[&d.living, &d.dining], self) {
@@ -133,11 +133,6 @@ impl Wishes {
         }
         self.pairs.retain(|p| p.a != p.b);
     }
-}
-
-/// Returns true for rooms that the prompt calls open.
-fn self_open(wishes: &Wishes, id: &String) -> bool {
-    wishes.open.contains(id)
 }
 
 /// Room type of a charging place; every domain may have it.
