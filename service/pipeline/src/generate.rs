@@ -209,10 +209,10 @@ fn attempts(
             // of a brought plan nothing better is to be had
             Ok(found) if found.report.is_given() => return Ok(found),
             Ok(found) => {
-                let (rule, broken) = broken(&found.report);
+                let (first, mut broken) = broken(&found.report);
                 // another plan may have the floor that a robot lacks
-                let unfit = graph.robots.iter().any(Robot::is_fitted) && !fit::fits(&found);
-                let (rule, broken) = if broken == 0 && unfit { ("robot_fit", 1) } else { (rule, broken) };
+                let unfit = broken == 0 && graph.robots.iter().any(Robot::is_fitted) && !fit::fits(&found);
+                broken += usize::from(unfit);
                 let World { floorplan, placements, .. } = &found.world;
                 let before = if picky { before_openings(floorplan, placements, plugin.domain()) } else { 0 };
                 if (broken, before) == (0, 0) {
@@ -220,7 +220,8 @@ fn attempts(
                 }
                 let why = match broken {
                     0 => format!("{before} thing(s) before doors or windows"),
-                    _ => format!("breaks {broken} hard rule(s), first {rule}"),
+                    _ if unfit => "a robot does not fit".to_owned(),
+                    _ => format!("breaks {broken} hard rule(s), first {first}"),
                 };
                 observe(Event::Rejected(attempt, &why));
                 if best.as_ref().is_none_or(|(least, _)| (broken, before) < *least) {
@@ -358,8 +359,9 @@ fn begin(stage: Stage, attempt: u32, observe: &mut dyn FnMut(Event<'_>), cancell
     Ok(())
 }
 
-/// Returns the first broken rule and how many there are.
-fn broken(report: &Report) -> (&str, usize) {
-    let mut rules = report.rules.iter().filter(|r| r.violations.iter().any(|v| !v.given));
-    rules.next().map_or(("none", 0), |first| (&first.rule, 1 + rules.count()))
+/// Returns what breaks the first broken rule, in words, and how many there are.
+fn broken(report: &Report) -> (String, usize) {
+    let mut rules = report.rules.iter().filter_map(|r| Some((r, r.violations.iter().find(|v| !v.given)?)));
+    let Some((rule, v)) = rules.next() else { return (String::new(), 0) };
+    (format!("{}: `{}`, {}", rule.rule, v.subject, v.message), 1 + rules.count())
 }

@@ -2,7 +2,7 @@
 
 use d3dgen_knowledge::freespace::FreeSpace;
 use d3dgen_model::Segment;
-use d3dgen_model::domain::Zone;
+use d3dgen_model::domain::{Daylight, Zone};
 use d3dgen_model::floorplan::{CostTerm, Door, Floorplan, PlanRoom, Wall, Window};
 use d3dgen_model::geometry::to_mm;
 use d3dgen_model::seed::Stream;
@@ -105,6 +105,13 @@ pub(super) fn assemble(
     let standing = earlier.map_or(&[][..], |e| &e.plan.doors);
     let doors = place_doors(&Site { brief, boxes, stretches: &stretches, net_m2: &net_m2, standing }, rng)?;
     let mut windows = place_windows(brief, &stretches, &net_m2, &doors);
+    let dark = |i: &usize| {
+        let needs = brief.rooms[*i].daylight == Daylight::Required;
+        needs && !windows.iter().any(|w| w.room_id == brief.rooms[*i].id)
+    };
+    if let Some(i) = (0..brief.rooms.len()).find(dark).filter(|_| earlier.is_none()) {
+        return Err(format!("the outer wall of {} has no place for a window", brief.rooms[i].id));
+    }
     let mut walls = walls(brief, &stretches, &doors);
     if let Some(earlier) = earlier {
         keep_windows(&mut windows, &rooms, &doors, earlier.plan);

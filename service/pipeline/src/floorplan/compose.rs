@@ -82,7 +82,7 @@ pub(super) fn compose(brief: &Brief, weights: &Weights, rng: &mut Stream, stop: 
             if let Some((comb, yard)) = &mut stack
                 && let Some(slot) = comb.slots.get(wings.len())
             {
-                yard.take(slot.side, Some(slot), &found);
+                yard.take(slot.side, slot.at, &found);
             }
             wings.push(found);
         }
@@ -167,9 +167,9 @@ impl Yard {
         Self { next, courtyard }
     }
 
-    /// Sets the next wing of a side, where the one below stands if that leaves room.
-    fn take(&mut self, side: usize, below: Option<&Slot>, wing: &Wing) -> Slot {
-        let at = (self.next[side] - wing.south).max(below.map_or(i32::MIN, |s| s.at));
+    /// Sets the next wing of a side, where its corridor is at `least` if that leaves room.
+    fn take(&mut self, side: usize, least: i32, wing: &Wing) -> Slot {
+        let at = (self.next[side] - wing.south).max(least);
         self.next[side] = at + wing.north + self.courtyard;
         Slot { side, at, south: wing.south, north: wing.north }
     }
@@ -201,13 +201,23 @@ fn along_spine(brief: &Brief, spine: usize, wings: Vec<Wing>, two_sided: bool, r
         layout.core = Some(frame);
         (low, high) = (0, core.width);
     }
+    // without stairs that take a place, wings across from each other share one straight corridor
+    let across = two_sided && core.is_none();
+    let souths: Vec<i32> = wings.iter().map(|wing| wing.south).collect();
+    let mut level = i32::MIN;
     for (i, wing) in wings.into_iter().enumerate() {
         let side = match (i, two_sided) {
             (0, _) | (_, false) => first,
+            _ if across => [first, 1 - first][i % 2],
             _ => usize::from(yard.next[1] < yard.next[0]),
         };
+        if across && i % 2 == 0 {
+            let lowest = |side: usize, i: usize| souths.get(i).map_or(i32::MIN, |south| yard.next[side] - south);
+            level = lowest(first, i).max(lowest(1 - first, i + 1));
+        }
         let below = given.and_then(|c| c.slots.get(i));
-        let slot = yard.take(below.map_or(side, |s| s.side), below, &wing);
+        let least = if across { level } else { below.map_or(i32::MIN, |s| s.at) };
+        let slot = yard.take(below.map_or(side, |s| s.side), least, &wing);
         for (room, b) in wing.boxes {
             let (x0, x1) = if slot.side == 0 { (b.x0, b.x1) } else { (-w - b.x1, -w - b.x0) };
             layout.boxes.push((room, Cellbox::new(x0, b.y0 + slot.at, x1, b.y1 + slot.at)));

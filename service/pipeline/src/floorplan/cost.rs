@@ -13,6 +13,7 @@ use super::lattice::{Cellbox, INNER_HALF_M, JAMB_M, OUTER_HALF_M, meters, up};
 use super::mirror;
 use super::realize::{Layout, door_need};
 use super::spec::Brief;
+use super::windows::LEAST_WALL_M;
 
 /// Cost of a room whose area is outside what is advised, beside that of how far.
 const ILL_ADVISED: f64 = 0.8;
@@ -51,8 +52,6 @@ pub(super) const TERMS: [&str; COUNT] = [
 ];
 /// Standard weights of the soft terms; each plan's search varies them by its taste.
 pub(super) const WEIGHTS: Weights = [1.0, 0.6, 1.2, 0.5, 10.0, 0.5, 0.8, 0.5, 0.4, 0.8, 0.1, 0.3];
-/// Least outer wall of a room that needs a window, m.
-pub(super) const WINDOW_WALL_M: f64 = 1.2;
 
 /// Wall beside the latch of a door that people in wheelchairs pull open, beyond the least one, m (18 in together).
 const LATCH_SIDE_M: f64 = 0.457 - JAMB_M;
@@ -68,6 +67,8 @@ const SLOT: f64 = 1.5;
 /// Share of a bedroom beside a small room that was cut out of it from which on that is a waste, and what more of it costs.
 const LEG_SHARE: f64 = 0.22;
 const WASTED_LEG: f64 = 4.0;
+/// What a leg costs of a room of another building that cannot spare a corner, unless what was cut out is the room's own.
+const CUT_CELL: f64 = 2.5;
 
 /// A step in the outline shorter than this has no reason, m, and what it costs.
 const STEP_M: f64 = 0.9;
@@ -152,6 +153,8 @@ pub(super) struct Judge<'b> {
     pub(super) entrance_need: i32,
     wet_rooms: usize,
     home: bool,
+    /// By room: whether another one belongs to it.
+    hosts: Vec<bool>,
     pub(super) survey: Survey,
     /// The storey below, for one that stands on another.
     pub(super) below: Option<&'b Below>,
@@ -206,6 +209,7 @@ impl<'b> Judge<'b> {
             entrance_need: door_need(brief.entrance_width),
             wet_rooms: brief.rooms.iter().filter(|r| r.wet).count(),
             home: brief.is_home(),
+            hosts: (0..n).map(|i| brief.rooms.iter().any(|r| r.host == Some(i))).collect(),
             survey: Survey { rooms: vec![Measured::default(); n], ..Survey::default() },
             below: brief.core.as_ref().and_then(|c| c.below.as_ref()),
         };
@@ -419,7 +423,7 @@ impl<'b> Judge<'b> {
                 _ if spec.needs_outer_wall() => {
                     score.hard += meters((up(spec.least_outer_wall()) - longest).max(0));
                 }
-                Daylight::Preferred if longest < up(WINDOW_WALL_M) && !corridor => score.soft[3] += DARK,
+                Daylight::Preferred if longest < up(LEAST_WALL_M) && !corridor => score.soft[3] += DARK,
                 Daylight::None | Daylight::Optional if !spec.circulation => {
                     score.soft[3] += 0.03 * meters(total).min(6.0)
                 }
@@ -471,7 +475,7 @@ impl<'b> Judge<'b> {
                 let longest = longest.map(|(_, b)| meters(b.width().max(b.height()))).fold(0.0, f64::max);
                 let over = (longest - HALL_M).max(0.0);
                 score.soft[4] += TUNNEL * over * (1.0 + over / LONG_TUNNEL_M);
-                let dark = longest > DARK_HALL_M && rooms[spine].outer.0 < up(WINDOW_WALL_M);
+                let dark = longest > DARK_HALL_M && rooms[spine].outer.0 < up(LEAST_WALL_M);
                 score.soft[4] += if dark { DARK_HALL } else { 0.0 };
             }
             if let Some(most) = brief.share_advised {
@@ -516,6 +520,9 @@ impl<'b> Judge<'b> {
                 // A leg beside a small room: fine as a lobby, a waste as a corridor.
                 let (w, h) = (meters(shape.width()), meters(shape.height()));
                 score.soft[8] += (w.max(h) / w.min(h).max(0.1) - 1.6).max(0.0) + 0.15;
+                if !home && !self.hosts[*room] && !brief.rooms[*room].spares_a_corner() {
+                    score.soft[8] += CUT_CELL;
+                }
                 if home && brief.rooms[*room].zone == Zone::Night {
                     let share = shape.area_m2() / rooms[*room].gross_m2.max(1.0);
                     score.soft[8] += WASTED_LEG * (share - LEG_SHARE).max(0.0);

@@ -9,6 +9,8 @@ use super::spec::Brief;
 
 /// Share of homes that begin with a bedroom, and not the largest room, at the end of the hall.
 const AT_THE_END: f64 = 0.8;
+/// Share of small rooms that look first for a room large enough to spare a corner.
+const AT_LARGE: f64 = 0.8;
 /// Small rooms at one end of a cell at most.
 const MOST_NESTS: usize = 7;
 
@@ -215,8 +217,9 @@ impl Genome {
     /// Puts a small room beside its host, or beside a random large room.
     pub(super) fn nest_somewhere(&mut self, brief: &Brief, room: usize, rng: &mut Stream) {
         let host = brief.rooms[room].host.or_else(|| guest_of(brief, room));
-        // One of those that fit, each as likely.
-        let (mut place, mut count) = (None, 0);
+        // One of those that fit, each as likely; rather one that stays useful without its corner.
+        let roomy = host.is_none() && !brief.is_home() && rng.chance(AT_LARGE);
+        let (mut place, mut count, mut spares) = (None, 0, false);
         for (b, band) in self.bands.iter().enumerate() {
             for (c, cell) in band.cells.iter().enumerate() {
                 let fits = match host {
@@ -229,7 +232,12 @@ impl Genome {
                     }
                 };
                 if fits && !(cell.left.is_full() && cell.right.is_full()) {
-                    count += 1;
+                    let spared = roomy && brief.rooms[cell.host].spares_a_corner();
+                    if spares && !spared {
+                        continue;
+                    }
+                    count = if spared && !spares { 1 } else { count + 1 };
+                    spares |= spared;
                     if rng.below(count) == 0 {
                         place = Some((b, c));
                     }

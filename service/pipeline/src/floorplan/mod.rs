@@ -20,6 +20,7 @@ mod genome;
 mod insert;
 mod lattice;
 mod mirror;
+mod numbers;
 mod order;
 mod outline;
 mod proposed;
@@ -38,7 +39,7 @@ use d3dgen_model::domain::{Domain, Scheme};
 use d3dgen_model::floorplan::Floorplan;
 use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::seed::Stream;
-use d3dgen_model::style::Form;
+use d3dgen_model::style::{Form, Symmetry};
 
 use crate::{Error, Stop};
 pub use adjust::WallMove;
@@ -126,7 +127,8 @@ pub fn generate_until(
         }
         let name = format!("{:?}", found.scheme).to_lowercase();
         brief.tell_form(form, found.scheme);
-        let boxes = turned(&found.layout.boxes, turn);
+        let mut boxes = turned(&found.layout.boxes, turn);
+        numbers::along_corridor(graph, &brief, &mut boxes);
         match assemble(&brief, &boxes, &found.score, graph.seed, &name, None, &mut rng) {
             Ok(plan) => {
                 let miss = brief.area.map_or(0.0, |area| (net_area_m2(&plan) - area).abs() / area);
@@ -227,7 +229,8 @@ fn schemes(brief: &Brief, domain: &Domain, rng: &mut Stream) -> Vec<Scheme> {
         _ if units && *s != Scheme::Comb => false,
         Scheme::Straight => along <= LONGEST_BAR,
         Scheme::Capped => rooms >= 3 && along <= LONGEST_BAR,
-        Scheme::Angle => rooms >= 8 && along <= MOST_WHOLE,
+        // no axis mirrors an angle
+        Scheme::Angle => rooms >= 8 && along <= MOST_WHOLE && brief.symmetry != Some(Symmetry::Symmetric),
         Scheme::Racetrack => rooms >= 14 && along <= MOST_WHOLE,
         Scheme::Comb => along > MOST_WHOLE || units,
     };

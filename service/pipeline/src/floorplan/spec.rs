@@ -13,8 +13,8 @@ use d3dgen_model::storeys::LinkKind;
 use d3dgen_model::style::{Form, StyleWord, Symmetry};
 
 use super::core::Core;
-use super::cost::WINDOW_WALL_M;
 use super::lattice::{JAMB_M, OUTER_HALF_M};
+use super::windows::LEAST_WALL_M;
 use crate::Error;
 
 /// Clear width that a wheelchair and most robots need through a door, m; used when the prompt asks for access.
@@ -35,6 +35,9 @@ const WIDTH_VARIATION: f64 = 0.1;
 const FEW_ROOMS_WIDTH: f64 = 0.3;
 /// Share of a target area kept from the edges of what is advised, for the search to move in.
 const ADVICE_MARGIN: f64 = 0.03;
+
+/// Area up to which a room of a place to work at is one cell, m^2: without a corner, its desks or beds find no wall.
+const CELL_M2: f64 = 25.0;
 
 /// One room as the search sees it. Areas are net m^2, lengths net m.
 #[derive(Debug, Clone)]
@@ -78,6 +81,11 @@ pub(super) struct RoomSpec {
 }
 
 impl RoomSpec {
+    /// Returns true for rooms of which a corner can be cut out: large ones, and those for water, whose neighbors share its pipes.
+    pub(super) fn spares_a_corner(&self) -> bool {
+        self.wet || self.area_target >= CELL_M2
+    }
+
     /// Returns true when a hard rule puts it on the facade: daylight rooms and balconies.
     pub(super) fn needs_outer_wall(&self) -> bool {
         self.daylight == Daylight::Required || self.zone == Zone::Outdoor || self.gate.is_some()
@@ -85,7 +93,7 @@ impl RoomSpec {
 
     /// Returns the least length of one piece of outer wall that a room on the facade needs, m.
     pub(super) fn least_outer_wall(&self) -> f64 {
-        self.gate.map_or(WINDOW_WALL_M, |g| Brief::opening(g) + 2.0 * (JAMB_M + OUTER_HALF_M))
+        self.gate.map_or(LEAST_WALL_M, |g| Brief::opening(g) + 2.0 * (JAMB_M + OUTER_HALF_M))
     }
 }
 

@@ -29,7 +29,7 @@ const BLANK_SHARE: f64 = 0.35;
 /// Outer wall of a wet room that has a tall shower in one corner and its window in the middle, m; on shorter ones the
 /// window makes room for it.
 const SHOWER_AND_WINDOW_M: f64 = 2.9;
-/// Outer wall that takes the narrowest window, m.
+/// Outer wall that takes the narrowest window, m: the least of a room that needs one.
 pub(super) const LEAST_WALL_M: f64 = PANE_M.1 + 2.0 * MARGIN_M;
 /// Widest and narrowest single window, m.
 const PANE_M: (f64, f64) = (2.4, 0.6);
