@@ -117,6 +117,7 @@ pub fn generate_until(
         }
         let name = format!("{:?}", found.scheme).to_lowercase();
         brief.tell_form(form, found.scheme);
+        brief.tell_symmetry(found.score.symmetry);
         let boxes = turned(&found.layout.boxes, turn);
         match assemble(&brief, &boxes, &found.score, graph.seed, &name, None, &mut rng) {
             Ok(plan) => return Ok(plan),

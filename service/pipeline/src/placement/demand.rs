@@ -39,6 +39,8 @@ pub(super) struct Task<'a> {
     pub first_choice: bool,
     /// True for what somebody asked for by name, and for the bed of two.
     pub asked: bool,
+    /// People who are to sit at it, where it is the one table of its room.
+    pub seats: Option<u32>,
 }
 
 impl Task<'_> {
@@ -211,6 +213,7 @@ pub(super) fn tasks<'a>(
             instead_of,
             first_choice,
             asked,
+            seats: if occupied.is_none() { at_table(domain, f, graph) } else { None },
         };
         let together = whole.is_batch() || required == 0 || required == count || occupied.is_some_and(|o| o.0 == line);
         if together {
@@ -240,6 +243,7 @@ pub(super) fn tasks<'a>(
             instead_of: &[],
             first_choice: named.contains(&&object.id),
             asked: named.contains(&&object.id),
+            seats: None,
         });
     }
     if let Some(each) = per_person_m2.filter(|_| occupied.is_none()) {
@@ -330,10 +334,36 @@ fn occupied_line(
     let lies = kind.furnishing.first().filter(|f| f.required && f.max > 1 && f.area_per_item_m2 > 0.0);
     let lies = lies.and_then(|f| domain.anchor(&f.item)).is_some_and(|o| o.shape == Shape::Sofa);
     let lying = || lies.then_some((0, 1));
-    let seats = || capacity(|u| u.seats()).filter(|(line, _)| kind.furnishing[*line].max > 1);
-    let (line, each) = capacity(|u| u.beds()).or_else(lying).or_else(|| capacity(|u| u.desks())).or_else(seats)?;
+    let counter = || {
+        let is = |f: &Furnishing| f.required && f.max > 1 && is_shape(domain, &f.item, &[Shape::Counter]);
+        kind.furnishing.iter().position(is).map(|line| (line, 1))
+    };
+    // not the chairs for visitors beside what the room is for
+    let seats = || {
+        let many = |f: &Furnishing| f.max > 1 && (f.required || is_shape(domain, &f.item, &[Shape::Bench]));
+        kind.furnishing.iter().enumerate().filter(|(_, f)| household.wants(f) && many(f)).find_map(|(line, f)| {
+            let each = usual_unit(domain, &f.item)?.places();
+            (each > 0).then_some((line, each))
+        })
+    };
+    let (line, each) = capacity(|u| u.beds())
+        .or_else(lying)
+        .or_else(counter)
+        .or_else(|| capacity(|u| u.work_places()))
+        .or_else(seats)?;
     let units = people.div_ceil(each).min(MAX_UNITS);
     Some((line, units))
+}
+
+fn is_shape(domain: &Domain, item: &str, shapes: &[Shape]) -> bool {
+    domain.anchor(item).is_some_and(|o| shapes.contains(&o.shape))
+}
+
+/// Returns how many people a room is for who sit at its one table.
+fn at_table(domain: &Domain, f: &Furnishing, graph: Option<&GraphRoom>) -> Option<u32> {
+    let people = graph?.occupants.filter(|n| *n > 0)?;
+    let table = f.max == 1 && f.arrangement == Arrangement::Center;
+    (table && usual_unit(domain, &f.item)?.seats() > 1).then_some(people)
 }
 
 /// Returns a group or object as it is where nothing is in the way.
@@ -359,6 +389,7 @@ pub(super) fn one_more(object: &ObjectType) -> Task<'_> {
         instead_of: &[],
         first_choice: false,
         asked: false,
+        seats: None,
     }
 }
 

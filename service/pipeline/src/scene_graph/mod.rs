@@ -27,6 +27,7 @@ mod relations;
 mod robots;
 mod rooms;
 mod seated;
+mod seats;
 mod senses;
 mod single;
 mod stations;
@@ -40,6 +41,7 @@ mod unread;
 mod vital;
 mod wishes;
 mod words;
+mod workers;
 
 use d3dgen_knowledge::Query;
 use d3dgen_model::robot_body::RobotBody;

@@ -15,6 +15,7 @@ use super::objects;
 use super::parts;
 use super::places::{self, note};
 use super::relations;
+use super::seats::{self, Called};
 use super::senses;
 use super::stations;
 use super::storeys::{self, Storeys, Wanted, Where};
@@ -23,6 +24,7 @@ use super::text::{MAX_TOKENS, Span, Token, tokens};
 use super::vital::{self, Wet};
 use super::wishes::{self, MANY, PerHost, Text, Wish, Wishes};
 use super::words::{ByBedrooms, Spoken, Tag, words};
+use super::workers;
 use super::{Request, docks, dwelling, language, measures, numbers, robots, seated, single, umlauts, unread};
 use crate::Error;
 
@@ -64,6 +66,12 @@ pub(super) struct Reading<'a> {
     pub held: Vec<Held>,
     /// Rooms of which it says the places to be treated at.
     pub stationed: Vec<Held>,
+    /// Rooms of which it says the seats or counters.
+    pub seats: Vec<Held>,
+    /// Types of rooms that those who work there are shared out to.
+    pub halves: Vec<String>,
+    /// What the prompt calls its rooms.
+    pub called: Vec<Called>,
     /// True when the prompt counts the rooms to live in ("3-Zimmer-Wohnung", "2BHK").
     pub habitable_fixed: bool,
     pub area_m2: Option<f64>,
@@ -145,6 +153,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
 
     let areas = measures::areas(&tokens, &numbers);
     let radius = measures::robot_radius(&tokens, &numbers, &spoken);
+    let length = measures::robot_length(&tokens, &numbers, &spoken).filter(|_| radius.is_some());
     let short_forms = dwelling::short_forms(&tokens, &numbers, domain, &spoken);
     let place_spans = place.spans.clone();
     let mut spans: Vec<Span> = std::mem::take(&mut place.spans);
@@ -153,7 +162,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     let mut counted: Vec<Span> = spans.iter().filter(|s| !place_spans.contains(s)).copied().collect();
     counted.extend(machines.spans.iter().copied());
     spans.extend(machines.spans.iter().copied());
-    spans.extend(radius.iter().map(|r| r.0));
+    spans.extend(radius.iter().chain(&length).map(|r| r.0));
     let vocabulary =
         registry.digest(&format!("{languages:?}: {}", domain.id), || Vocabulary::new(domain, registry, &languages));
     single::unname(&mut building, &tokens, &vocabulary, &numbers, &spoken);
@@ -224,6 +233,12 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         })
     });
     let stationed: Vec<Held> = stationed.collect();
+    let places =
+        seats::Reader { tokens: &tokens, numbers: &numbers, domain, program, spoken: &spoken, taken: &elsewhere };
+    let mut places = if lives { seats::Found::default() } else { places.read(&mut mentions) };
+    not_things.extend(places.spans.iter().copied());
+    let seated: Vec<Held> = seated.into_iter().chain(std::mem::take(&mut places.desks)).collect();
+    let called = seats::called(&tokens, prompt, &mentions, &spoken, language);
     let doors = unread::doors(&tokens, &mut mentions, &spoken);
     let docked = docks::inside_rooms(&tokens, &mut mentions, &machines.spans, &spoken);
     let said_styles = styles::of_building(said_styles, &mentions, language);
@@ -274,8 +289,8 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     };
     let fleet = machines.counted(&fleet);
     let heard = robots::Prompt { text: prompt, tokens: &tokens };
-    let radius = radius.map(|r| r.1);
-    let robots = robots::of_graph(&fleet, &wishes, radius, request, &heard, &mut assumptions, &mut conflicts);
+    let (radius, length) = (radius.map(|r| r.1), length.map(|l| l.1));
+    let robots = robots::of_graph(&fleet, &wishes, (radius, length), request, &heard, &mut assumptions, &mut conflicts);
     // "drei Stockwerken" ends in a word for a factory
     let storey = |p: &building::Part| spoken.iter().any(|s| s.tag_at(&tokens, p.span.start, Tag::Storeys).is_some());
     building.parts.retain(|p| !storey(p) && !spans.iter().any(|s| s.overlaps(p.span)));
@@ -298,7 +313,9 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         }
         held.extend(seated);
     }
-    let total = total_rooms(request, &mentions, &wishes, &mut conflicts)?;
+    let counted = request.rooms.is_none().then(|| said_total(&mentions)).flatten();
+    let beside = workers::beside_rooms(&mut wishes, counted, domain, program);
+    let total = beside.map_or_else(|| total_rooms(request, &mentions, &wishes, &mut conflicts), |n| Ok(Some(n)))?;
     let listed: u64 = wishes.wishes.iter().map(|w| u64::from(w.count)).sum();
     if listed > u64::from(MAX_ROOMS) {
         return Err(refused(format!(
@@ -330,6 +347,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         assumptions.extend(add_main_room(&mut wishes, program, domain, &people, named.as_deref()));
     }
     spans.extend(station_words);
+    spans.extend(places.spans);
     let mut read: Vec<Span> = spans.iter().chain(&machines.docks).chain(&building.words).copied().collect();
     let mut things = objects::named(&tokens, &mentions, domain, registry, &languages, &not_things, &mut read);
     let unread = unread::Text {
@@ -367,6 +385,9 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         single,
         held,
         stationed,
+        seats: places.seats,
+        halves: places.halves,
+        called,
         habitable_fixed: short_forms.iter().any(|f| f.rooms.contains_key(&words().dwelling.living)),
         area_m2,
         occupancy: people.occupancy,
@@ -661,6 +682,12 @@ fn total_area(text: &Text, request: &Request, conflicts: &mut Vec<Note>) -> Opti
     request.area_m2.or(named).map(|a| (a * 100.0).round() / 100.0)
 }
 
+/// Returns the number of rooms that the prompt gives the building by its name.
+fn said_total(mentions: &[Mention]) -> Option<u32> {
+    let said = mentions.iter().find(|m| m.what == What::Total && !m.article && !m.vague && m.count.is_some())?;
+    u32::try_from(said.count?).ok().filter(|n| *n > 0)
+}
+
 fn total_rooms(
     request: &Request,
     mentions: &[Mention],
@@ -768,6 +795,12 @@ fn add_main_room(
     let main = program.rooms.first()?;
     let listed = |id: &str| wishes.wishes.iter().any(|w| w.room_type == id);
     let lives = is_dwelling(program);
+    let heads = &people.occupancy;
+    if let Some(kind) = workers::room_left_out(wishes, program, domain, heads.staff, heads.desks) {
+        wishes.wishes.insert(0, Wish::one(&kind.id, &kind.label.to_lowercase()));
+        let label = kind.label.to_lowercase();
+        return Some(note("main_room", format!("the list of rooms takes the {label} for granted; it was added")));
+    }
     if lives || listed(&main.room_type) || wishes.forbidden.contains(&main.room_type) {
         return None;
     }

@@ -16,6 +16,8 @@ const MOST_WISHES: usize = 15;
 const MOST_NAMED: usize = 3;
 /// Share of the usual area per head that a building short of area leaves.
 const CROWDED: f64 = 0.6;
+/// Most area of a room that serves so many people, as a factor on what they need.
+const ROOMY: f64 = 1.5;
 /// Share of their usual area that rooms of a compact building have.
 const COMPACT: f64 = 0.8;
 /// The same of a generous building.
@@ -33,12 +35,21 @@ pub(super) fn describe(reading: &mut Reading, planned: &[Planned]) -> Vec<GraphR
     }
     state_unknown(reading, planned);
     let mut seen: BTreeMap<&str, u32> = BTreeMap::new();
+    let mut alike: BTreeMap<String, [u32; 2]> = BTreeMap::new();
+    planned.iter().for_each(|room| alike.entry(label(room)).or_default()[0] += 1);
     let mut rooms = Vec::new();
     for (i, room) in planned.iter().enumerate() {
         let number = seen.entry(&room.room_type).or_default();
         *number += 1;
         let label = label(room);
-        let name = if total[room.room_type.as_str()] > 1 { format!("{label} {number}") } else { label };
+        // rooms with a name of their own are counted by that
+        let [same, count] = alike.entry(label.clone()).or_default();
+        *count += 1;
+        let name = match room.called {
+            Some(_) if *same > 1 => format!("{label} {count}"),
+            None if total[room.room_type.as_str()] > 1 && *same > 1 => format!("{label} {count}"),
+            _ => label,
+        };
         rooms.push(GraphRoom {
             id: format!("{}_{number}", room.room_type),
             room_type: room.room_type.clone(),
@@ -105,6 +116,9 @@ pub(super) fn circulation(reading: &Reading) -> GraphRoom {
 
 /// Returns the name on the plan: the domain's label, or the prompt's own word for a room the domain does not know.
 fn label(room: &Planned) -> String {
+    if let Some(called) = &room.called {
+        return called.clone();
+    }
     if room.kind.id == room.room_type && room.room_type != GENERIC_ROOM_TYPE {
         return room.kind.label.clone();
     }
@@ -159,7 +173,12 @@ fn target_areas(reading: &mut Reading, planned: &[Planned]) -> Vec<f64> {
             let range = room.kind.area_m2;
             match (room.area_m2, room.people_area_m2) {
                 (Some(_), _) => *area,
-                (_, Some(people)) => (area * scale).clamp(range.min.max(CROWDED * people).min(range.max), range.max),
+                (_, Some(people)) => {
+                    // what serves so many people is no larger in a building with floor to spare
+                    let serves = room.kind.zone == Zone::Service;
+                    let most = if serves { range.max.min(ROOMY * people.max(range.min)) } else { range.max };
+                    (area * scale).clamp(range.min.max(CROWDED * people).min(most), most)
+                }
                 _ => (area * scale).clamp(range.min, range.max),
             }
         });
@@ -350,6 +369,10 @@ pub(crate) fn dock_rank(kind: &RoomType, robot: &Robot) -> Option<u8> {
     let cleans = robot.kind == "cleaning";
     match (kind.zone, kind.goods) {
         (Zone::Service, Goods::Soiled) if cleans => Some(0),
+        // a mop room is no place for what brings mail or meals
+        (Zone::Service, Goods::Soiled) => Some(LAST_RANK + 3),
+        // it fetches and brings where post, copies and visitors come and go
+        (Zone::Public, _) if !cleans && kind.robot.contains(&RobotUse::Charging) => Some(2),
         (Zone::Service, Goods::Usual) => Some(if cleans { 1 } else { 0 }),
         (Zone::Day, _) => Some(2),
         // a dock takes of its width
