@@ -310,7 +310,9 @@ fn attempt(
     observe(Event::Finished(Stage::Scenario, attempt, Artifact::Scenario(&scenario)));
 
     begin(Stage::World, attempt, observe, cancelled)?;
-    let world = world::assemble(name, graph.clone(), plan, placements, scenario);
+    let mut told = graph.clone();
+    told.conflicts.extend(scene_graph::shortages(domain, graph, &placements));
+    let world = world::assemble(name, told, plan, placements, scenario);
     let report = world::check(&world, domain, retrieved);
     observe(Event::Finished(Stage::World, attempt, Artifact::World(&world, &report)));
     Ok(Generated { world, report, attempts: attempt + 1 })

@@ -181,6 +181,13 @@ pub(super) fn tasks<'a>(
         {
             count = units.max(f.min);
             required = required.min(count);
+        } else if let Some((steered, _)) = occupied
+            && !f.required
+            && f.arrangement != Arrangement::Rows
+            && [&f.item, &kind.furnishing[steered].item].iter().all(|item| works(domain, item))
+        {
+            // a room has as many desks as people
+            count = 0;
         }
         if f.arrangement == Arrangement::AtWindow {
             count = count.min(windows);
@@ -340,7 +347,9 @@ fn occupied_line(
     };
     // not the chairs for visitors beside what the room is for
     let seats = || {
-        let many = |f: &Furnishing| f.max > 1 && (f.required || is_shape(domain, &f.item, &[Shape::Bench]));
+        let many = |f: &Furnishing| {
+            f.max > 1 && (f.required || is_shape(domain, &f.item, &[Shape::Bench, Shape::Table, Shape::RoundTable]))
+        };
         kind.furnishing.iter().enumerate().filter(|(_, f)| household.wants(f) && many(f)).find_map(|(line, f)| {
             let each = usual_unit(domain, &f.item)?.places();
             (each > 0).then_some((line, each))
@@ -353,6 +362,10 @@ fn occupied_line(
         .or_else(seats)?;
     let units = people.div_ceil(each).min(MAX_UNITS);
     Some((line, units))
+}
+
+fn works(domain: &Domain, item: &str) -> bool {
+    usual_unit(domain, item).is_some_and(|u| u.work_places() > 0)
 }
 
 fn is_shape(domain: &Domain, item: &str, shapes: &[Shape]) -> bool {

@@ -55,6 +55,7 @@ pub(crate) use self::proposed::suits;
 pub use self::proposed::{BY_PROPOSAL, Draft, DraftEdge, DraftRoom, Settled, propose};
 use self::reading::Reading;
 pub(crate) use self::rooms::{dock_rank, most_docks, wished_assets};
+pub(crate) use self::seats::shortages;
 use crate::Error;
 
 /// Reason of the doors to the corridor or hall.

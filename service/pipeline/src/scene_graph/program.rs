@@ -673,7 +673,11 @@ fn serve_people(reading: &Reading, rooms: &mut [Planned]) {
 pub(super) fn places_to_work(reading: &Reading, rooms: &[Planned]) -> u32 {
     let own = |r: &Planned| r.occupants.filter(|_| !r.visited).unwrap_or_else(|| workplaces(reading.domain, r));
     let desks = || rooms.iter().map(own).sum::<u32>();
-    head_count(reading, Occupants::Staff).unwrap_or_else(desks)
+    match reading.occupancy.staff {
+        Some(staff) => staff.max(reading.occupancy.desks.unwrap_or(0)),
+        // "10 offices and an open plan with 12 desks"
+        None => head_count(reading, Occupants::Staff).unwrap_or(0).max(desks()),
+    }
 }
 
 /// Seats that people find where they wait for each room that sees them one at a time.

@@ -348,6 +348,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     }
     spans.extend(station_words);
     spans.extend(places.spans);
+    spans.extend(called.iter().map(|c| c.span));
     let mut read: Vec<Span> = spans.iter().chain(&machines.docks).chain(&building.words).copied().collect();
     let mut things = objects::named(&tokens, &mentions, domain, registry, &languages, &not_things, &mut read);
     let unread = unread::Text {

@@ -2,18 +2,23 @@
 //! plan", "counter hall with 6 service windows". They are no staff of the building and no rooms of their own.
 
 use d3dgen_model::domain::{Arrangement, Domain, Furnishing, Program, RoomType, Shape, Zone};
+use d3dgen_model::placements::Placements;
+use d3dgen_model::scene_graph::{GraphRoom, Note, SceneGraph};
 
 use super::beds::Held;
 use super::mentions::{Mention, What};
 use super::numbers::Number;
+use super::places::note;
 use super::seated;
 use super::text::{Kind, Span, Token};
-use super::words::{Spoken, Tag};
+use super::words::{Spoken, Tag, words};
 
 /// Words between a room and the number of its places, at most: "with seating for up to".
 const MOST_BETWEEN: usize = 4;
 /// Words between a number and the counters that it counts, at most: "6 modern service windows".
 const MOST_TO_COUNTERS: usize = 2;
+/// Words before a word for a room that are of its name, at most: "model making workshop".
+const MOST_BEFORE: usize = 2;
 /// Most places of one room that are taken at their word.
 const MOST_PLACES: i64 = 500;
 /// Width of a seat of a bench, m.
@@ -268,7 +273,8 @@ impl Reader<'_> {
             };
             let span = Span { start: i, end };
             // "customer service counter hall" is a room, whatever stands in it
-            let inside = mentions.iter().any(|m| m.room_type().is_some() && m.span.overlaps(span));
+            let is_room = |m: &Mention| m.room_type().is_some_and(|id| self.domain.room_type(id).is_some());
+            let inside = mentions.iter().any(|m| is_room(m) && m.span.overlaps(span));
             i = end;
             if inside || self.overlaps_taken(span) {
                 continue;
@@ -280,7 +286,7 @@ impl Reader<'_> {
                 self.numbers.iter().find(|n| n.span.end == at && !n.article && !n.vague && !parted)
             });
             out.spans.push(Span { start: number.map_or(span.start, |n| n.span.start), end });
-            mentions.retain(|m| m.room_type().is_some() || !m.span.overlaps(span));
+            mentions.retain(|m| is_room(m) || !m.span.overlaps(span));
             let count = number.map(|n| n.value as i64).filter(|n| (1..=MOST_PLACES).contains(n)).map(|n| n as u32);
             let place = |m: &Mention| m.room_type().is_some_and(own);
             let before = mentions.iter().rposition(|m| m.span.end <= span.start && place(m));
@@ -294,6 +300,9 @@ impl Reader<'_> {
                     usual.clone()
                 }
             };
+            // "teller counters": two at least
+            let plural = self.tokens[end - 1].text.ends_with(['s', 'n']);
+            let count = count.or(plural.then_some(2));
             out.seats.extend(count.map(|n| Held { room_type: id, count: 1, beds: n }));
         }
     }
@@ -313,6 +322,7 @@ impl Reader<'_> {
 /// A room as the prompt calls it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Called {
+    pub span: Span,
     pub room_type: String,
     pub name: String,
     /// Rooms with this name.
@@ -341,14 +351,14 @@ pub(super) fn called(
         let Some(id) = m.room_type() else { continue };
         let several = m.count.filter(|n| *n > 1 && !m.article);
         // "billing office" is one word for a room more than is known
-        let free = |i: &usize| {
-            tokens[*i].kind == Kind::Word
-                && !known(*i)
-                && !mentions.iter().any(|o| o.span.contains(*i))
-                && *i >= m.from.min(m.span.start).saturating_sub(1)
-        };
+        let free =
+            |i: &usize| tokens[*i].kind == Kind::Word && !known(*i) && !mentions.iter().any(|o| o.span.contains(*i));
         let qualified = language == "en" && m.count.is_none_or(|n| n == 1 && !m.article);
-        let start = m.span.start.checked_sub(1).filter(|i| qualified && free(i)).unwrap_or(m.span.start);
+        let from = m.span.start.saturating_sub(if qualified { MOST_BEFORE } else { 0 });
+        let start = (from..m.span.start).rev().take_while(free).last().unwrap_or(m.span.start);
+        // "print/plot room"
+        let slash = |at: usize| at.checked_sub(2).filter(|_| tokens[at - 1].mark() == Some('/')).filter(free);
+        let start = slash(start).unwrap_or(start);
         let words = prompt.get(tokens[start].start..tokens[m.span.end - 1].end).unwrap_or("").trim();
         let plural = several.is_some() || m.plural;
         if words.is_empty() || plural && (several.is_none() || language != "en") {
@@ -357,11 +367,37 @@ pub(super) fn called(
         let singular = if plural { words.strip_suffix('s').unwrap_or(words) } else { words };
         let mut letters = singular.chars();
         let name = letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect());
+        let span = Span { start, end: m.span.end };
         out.push(Called {
+            span,
             room_type: id.to_owned(),
             name,
             count: several.map_or(1, |n| n.clamp(1, MOST_PLACES) as u32),
         });
     }
     out
+}
+
+/// Returns what to say of rooms that have fewer desks, seats or counters than they are for.
+pub(crate) fn shortages(domain: &Domain, graph: &SceneGraph, placements: &Placements) -> Vec<Note> {
+    let short = |room: &GraphRoom| {
+        let kind = domain.room_type(&room.room_type)?;
+        // nobody counts the chairs of those who eat in turns
+        let eats = words().eating.contains_key(&room.room_type);
+        let wanted = room.occupants.filter(|_| kind.zone != Zone::Night && !eats)?;
+        let here = || placements.placements.iter().filter(|p| p.room_id == room.id);
+        let count = |shapes: &[Shape]| -> u32 {
+            here().filter(|p| domain.object(&p.object).is_some_and(|o| shapes.contains(&o.shape))).count() as u32
+        };
+        let (have, what) = if works_in(domain, kind) {
+            (count(&[Shape::Desk]), "desks")
+        } else if kind.furnishing.iter().any(|f| is_counter(domain, f)) {
+            (count(&[Shape::Counter]), "counters")
+        } else {
+            places(domain, kind, 1)?;
+            (here().map(|p| seats_of(domain, &p.object)).sum(), "seats")
+        };
+        (have < wanted).then(|| note("too_few_places", format!("{} is for {wanted} and has {have} {what}", room.name)))
+    };
+    graph.rooms.iter().filter_map(short).collect()
 }

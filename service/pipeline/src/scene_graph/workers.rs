@@ -20,6 +20,8 @@ const ROOMS_FOR_ACCESSIBLE: usize = 8;
 const LEAST_OPEN: u32 = 3;
 /// Rooms to work in that the name of a small office counts beside its toilets, at most: "two-room office with a toilet".
 const MOST_COUNTED: u32 = 3;
+/// Floor of the kitchen or counter of a room to eat in, as a share of its least area.
+const KITCHEN_SHARE: f64 = 0.45;
 /// Most single offices that a share of the people gets.
 const MOST_SHARED_OUT: u32 = 60;
 
@@ -142,7 +144,8 @@ fn give_desks<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
     let open = |r: &Planned| most_desks(domain, r.kind) > MOST_IN_TEAM;
     let one_storey = reading.storeys.levels.len() == 1;
     if reading.total.is_none() && one_storey {
-        let sum = |rooms: &[Planned]| rooms.iter().filter(|r| !open(r)).map(|r| desks(domain, r)).sum::<u32>();
+        let counts = |r: &&Planned| !open(r) || r.occupants.is_some();
+        let sum = |rooms: &[Planned]| rooms.iter().filter(counts).map(|r| desks(domain, r)).sum::<u32>();
         while sum(rooms) > people {
             let spare = |&i: &usize| {
                 let r: &Planned = &rooms[i];
@@ -247,7 +250,7 @@ pub(super) fn seat_guests(reading: &mut Reading, rooms: &mut [Planned]) {
             room.visited = true;
             room.size_for_people(area);
             let (wanted, largest) = (held.beds, room.kind.area_m2.max);
-            if wanted > most || area > largest && room.area_m2.is_none() {
+            if area > largest && room.area_m2.is_none() && wanted <= most {
                 let label = room.called.clone().unwrap_or_else(|| room.kind.label.clone());
                 let message = format!(
                     "{label} for {wanted} is more than such a room is planned for (at most {} places, {largest:.0} m2); as many as fit were planned",
@@ -273,7 +276,7 @@ pub(super) fn seat_guests(reading: &mut Reading, rooms: &mut [Planned]) {
             room.occupants = Some(seats);
             room.visited = true;
             // beside the seats there is the kitchen or counter
-            let kitchen = 0.6 * room.kind.area_m2.min;
+            let kitchen = KITCHEN_SHARE * room.kind.area_m2.min;
             room.size_for_people(area + kitchen);
         }
     }
