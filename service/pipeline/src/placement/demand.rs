@@ -1,10 +1,13 @@
 //! What a room should hold: its type's furnishing lines and the wishes of the scene graph, in the order of placing.
 
-use d3dgen_model::domain::{Arrangement, Domain, Furnishing, Mount, ObjectType, RoomType, Shape};
+use d3dgen_model::domain::{Arrangement, Domain, Furnishing, Goods, Mount, ObjectType, RoomType, Shape};
 use d3dgen_model::occupancy::ROBOT_HEIGHT_M;
 use d3dgen_model::scene_graph::{GraphRoom, SceneGraph};
 
+use crate::scene_graph::CLEANING;
+
 use super::seats::is_seat;
+
 use super::state::Placed;
 use super::unit::{Forms, Unit, variants};
 
@@ -117,6 +120,8 @@ pub(super) struct Household<'a> {
     /// True where step-free access is asked for.
     accessible: bool,
     has_robots: bool,
+    /// True when one of them cleans: the docks of rooms for soiled things are theirs.
+    cleans: bool,
     /// Most people that the graph has in one room to sleep in.
     sharing: u32,
 }
@@ -133,6 +138,7 @@ impl<'a> Household<'a> {
             room_types,
             accessible: graph.accessible,
             has_robots: !graph.robots.is_empty(),
+            cleans: graph.robots.iter().any(|r| r.kind == CLEANING),
             sharing: held.filter(|(kind, _)| sleeps(kind)).map(|h| h.1).max().unwrap_or(0),
         }
     }
@@ -146,11 +152,12 @@ impl<'a> Household<'a> {
         self.room_types.iter().map(beds).sum::<u32>().max(self.sharing)
     }
 
-    fn wants(&self, line: &Furnishing) -> bool {
+    fn wants(&self, kind: &RoomType, line: &Furnishing) -> bool {
         let dock = || self.domain.anchor(&line.item).is_some_and(|o| o.shape == Shape::Dock);
         // docks stand where there are robots, or in rooms that are there for them;
         // few lines ask who sleeps there, and to know takes time
-        (line.required || self.has_robots || !dock())
+        let robots = if kind.goods == Goods::Soiled { self.cleans } else { self.has_robots };
+        (line.required || robots || !dock())
             && line.is_for(self.room_types.iter().copied(), self.accessible)
             && (line.sleepers == 0 || self.sleepers() >= line.sleepers)
     }
@@ -169,7 +176,7 @@ pub(super) fn tasks<'a>(
     let occupied = occupied_line(domain, kind, graph, household);
     let named = named(domain, kind, graph);
     let mut out: Vec<Task> = Vec::new();
-    for (line, f) in kind.furnishing.iter().enumerate().filter(|(_, f)| household.wants(f)) {
+    for (line, f) in kind.furnishing.iter().enumerate().filter(|(_, f)| household.wants(kind, f)) {
         let Some(anchor) = domain.anchor(&f.item) else { continue };
         let (mut count, mut required) = (f.units(area_m2).min(MAX_UNITS), if f.required { f.min } else { 0 });
         // what finds no wall of the same stands in rows
@@ -331,7 +338,7 @@ fn occupied_line(
 ) -> Option<(usize, u32)> {
     let people = graph?.occupants.filter(|n| *n > 0)?;
     let capacity = |measure: fn(&Unit) -> u32| {
-        kind.furnishing.iter().enumerate().filter(|(_, f)| household.wants(f)).find_map(|(line, f)| {
+        kind.furnishing.iter().enumerate().filter(|(_, f)| household.wants(kind, f)).find_map(|(line, f)| {
             let unit = usual_unit(domain, &f.item)?;
             let each = measure(&unit);
             (each > 0 && f.max > 0).then_some((line, each))
@@ -350,7 +357,7 @@ fn occupied_line(
         let many = |f: &Furnishing| {
             f.max > 1 && (f.required || is_shape(domain, &f.item, &[Shape::Bench, Shape::Table, Shape::RoundTable]))
         };
-        kind.furnishing.iter().enumerate().filter(|(_, f)| household.wants(f) && many(f)).find_map(|(line, f)| {
+        kind.furnishing.iter().enumerate().filter(|(_, f)| household.wants(kind, f) && many(f)).find_map(|(line, f)| {
             let each = usual_unit(domain, &f.item)?.places();
             (each > 0).then_some((line, each))
         })

@@ -54,7 +54,7 @@ use self::program::Planned;
 pub(crate) use self::proposed::suits;
 pub use self::proposed::{BY_PROPOSAL, Draft, DraftEdge, DraftRoom, Settled, propose};
 use self::reading::Reading;
-pub(crate) use self::rooms::{dock_rank, most_docks, wished_assets};
+pub(crate) use self::rooms::{CLEANING, dock_rank, most_docks, wished_assets};
 pub(crate) use self::seats::shortages;
 use crate::Error;
 

@@ -233,8 +233,15 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         })
     });
     let stationed: Vec<Held> = stationed.collect();
-    let places =
-        seats::Reader { tokens: &tokens, numbers: &numbers, domain, program, spoken: &spoken, taken: &elsewhere };
+    let places = seats::Reader {
+        tokens: &tokens,
+        numbers: &numbers,
+        domain,
+        program,
+        spoken: &spoken,
+        taken: &elsewhere,
+        seated: &seated,
+    };
     let mut places = if lives { seats::Found::default() } else { places.read(&mut mentions) };
     not_things.extend(places.spans.iter().copied());
     let seated: Vec<Held> = seated.into_iter().chain(std::mem::take(&mut places.desks)).collect();

@@ -390,7 +390,8 @@ pub(super) fn of_graph(
             if let Some((width, length)) = radius.map(|r| 2.0 * r).zip(length).filter(|_| own == RobotBody::default()) {
                 (own.width_m, own.length_m) = (Some(width), Some(length));
             }
-            let stated = request.robot_radius_m.or(own.radius_m()).or(radius);
+            // it drives through doors as wide as it is, and turns where there is room for its length
+            let stated = request.robot_radius_m.or(request.robot.radius_m()).or(radius);
             Some(Robot {
                 kind: w.kind.into(),
                 count: w.count,

@@ -10,6 +10,8 @@ use super::places::note;
 use super::program::{Planned, circulation_share};
 use super::reading::Reading;
 
+/// Kind of the robots that clean.
+pub(crate) const CLEANING: &str = "cleaning";
 /// Most objects wished for in one room.
 const MOST_WISHES: usize = 15;
 /// Things named of a room that no domain knows.
@@ -313,7 +315,12 @@ pub(super) fn add_docks(domain: &Domain, robots: &[Robot], docked: &[String], ro
     let sum = |counts: &mut dyn Iterator<Item = u32>| counts.fold(0, u32::saturating_add);
     let is_dock = |id: &str| domain.anchor(id).is_some_and(|o| o.shape == Shape::Dock);
     let Some(dock) = domain.objects.iter().rev().find(|o| o.shape == Shape::Dock) else { return };
+    // the dock of a mop room is for those that clean
+    let cleans = robots.iter().any(|r| r.kind == CLEANING);
     let held = |room: &GraphRoom| -> u32 {
+        if !cleans && domain.room_type_or_generic(&room.room_type).goods == Goods::Soiled {
+            return 0;
+        }
         let lines = domain.room_type_or_generic(&room.room_type).furnishing.iter();
         sum(&mut lines.filter(|f| is_dock(&f.item)).map(|f| f.units(room.target_area_m2)))
     };
@@ -366,20 +373,18 @@ pub(crate) fn most_docks(area_m2: f64) -> u32 {
 /// Returns how well a room that may have a dock suits a robot, 0 best: stores, rooms to work in, corridors, at last where people wait; robots
 /// that clean charge where soiled things are and no other ones do. `None` for rooms to sleep in.
 pub(crate) fn dock_rank(kind: &RoomType, robot: &Robot) -> Option<u8> {
-    let cleans = robot.kind == "cleaning";
+    let cleans = robot.kind == CLEANING;
     match (kind.zone, kind.goods) {
         (Zone::Service, Goods::Soiled) if cleans => Some(0),
         // a mop room is no place for what brings mail or meals
-        (Zone::Service, Goods::Soiled) => Some(LAST_RANK + 3),
-        // it fetches and brings where post, copies and visitors come and go
-        (Zone::Public, _) if !cleans && kind.robot.contains(&RobotUse::Charging) => Some(2),
+        (Zone::Service, Goods::Soiled) => Some(LAST_RANK + 2),
         (Zone::Service, Goods::Usual) => Some(if cleans { 1 } else { 0 }),
         (Zone::Day, _) => Some(2),
         // a dock takes of its width
         (Zone::Circulation, _) => Some(3),
         (Zone::Service, _) => Some(LAST_RANK),
         (Zone::Staff, _) => Some(LAST_RANK + 1),
-        (Zone::Public | Zone::Outdoor, _) => Some(LAST_RANK + 2),
+        (Zone::Public | Zone::Outdoor, _) => Some(LAST_RANK + 3),
         (Zone::Night, _) => None,
     }
 }

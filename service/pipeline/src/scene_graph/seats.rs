@@ -31,7 +31,7 @@ const AT_TABLE_M2: f64 = 2.3;
 const IN_ROWS_M2: f64 = 1.7;
 const AT_TABLES_M2: f64 = 2.6;
 /// Floor for each counter with who serves there and who is served, m^2.
-const AT_COUNTER_M2: f64 = 9.0;
+const AT_COUNTER_M2: f64 = 11.0;
 /// Most desks of a room for one team: rooms with more are open ones.
 pub(super) const MOST_IN_TEAM: u32 = 12;
 
@@ -121,6 +121,8 @@ pub(super) struct Reader<'a> {
     pub spoken: &'a [&'a Spoken],
     /// Places, areas, robots, the name of the building.
     pub taken: &'a [Span],
+    /// Rooms of which the desks are read already: "three team offices for 6 people each".
+    pub seated: &'a [Held],
 }
 
 impl Reader<'_> {
@@ -131,7 +133,8 @@ impl Reader<'_> {
         let mut gone: Vec<usize> = Vec::new();
         for m in 0..mentions.len() {
             let Some(kind) = mentions[m].room_type().and_then(|id| self.domain.room_type(id)) else { continue };
-            if mentions[m].beds.is_some() || mentions[m].places.is_some() {
+            let seated = self.seated.iter().any(|s| s.room_type == kind.id);
+            if seated || mentions[m].beds.is_some() || mentions[m].places.is_some() {
                 continue;
             }
             let (desks, seats) = (most_desks(self.domain, kind), places(self.domain, kind, 1).is_some());

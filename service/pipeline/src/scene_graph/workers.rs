@@ -117,15 +117,18 @@ fn share_halves<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
         let own: Vec<usize> = (0..rooms.len()).filter(|&i| &rooms[i].room_type == id).collect();
         for (n, &i) in own.iter().enumerate() {
             let each = share / own.len() as u32 + u32::from((n as u32) < share % own.len() as u32);
-            seat(reading.domain, &mut rooms[i], each);
+            seat(reading, &mut rooms[i], each);
         }
     }
 }
 
-fn seat(domain: &Domain, room: &mut Planned, desks: u32) {
+fn seat(reading: &Reading, room: &mut Planned, desks: u32) {
     room.occupants = Some(desks);
-    if most_desks(domain, room.kind) > 2 {
-        room.size_for_people(desk_area_m2(domain, &room.room_type) * f64::from(desks));
+    if most_desks(reading.domain, room.kind) > 2 {
+        let mut own = reading.program.rooms.iter().filter(|e| e.room_type == room.room_type);
+        let each = own.find_map(|e| e.area_per_occupant_m2);
+        let each = each.unwrap_or_else(|| desk_area_m2(reading.domain, &room.room_type));
+        room.size_for_people(each * f64::from(desks));
     }
 }
 
@@ -173,7 +176,7 @@ fn give_desks<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
         for (k, &i) in free.iter().enumerate() {
             let each = left / n + u32::from((k as u32) < left % n);
             if each > 0 {
-                seat(domain, &mut rooms[i], each);
+                seat(reading, &mut rooms[i], each);
             }
         }
         return;
@@ -185,7 +188,7 @@ fn give_desks<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
         let [low, high] = super::seated::desks(domain, rooms[i].kind).unwrap_or([0, 0]);
         let more = short.min(high - low.min(high));
         if more > 0 {
-            seat(domain, &mut rooms[i], low + more);
+            seat(reading, &mut rooms[i], low + more);
             short -= more;
         }
     }
