@@ -104,7 +104,7 @@ pub(super) fn works_in(domain: &Domain, kind: &RoomType) -> bool {
             && seated::desks_of(domain, &f.item) > 0
             && group.is_some_and(|g| g.members.iter().any(|m| chair(&m.object)))
     };
-    kind.zone == Zone::Day && kind.furnishing.iter().any(desk)
+    kind.zone == Zone::Day && kind.furnishing.first().is_some_and(desk)
 }
 
 /// Returns the most desks of a room type, 0 for rooms that nobody has a desk in.

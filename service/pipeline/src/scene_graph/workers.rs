@@ -149,17 +149,22 @@ fn give_desks<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
     if reading.total.is_none() && one_storey {
         let counts = |r: &&Planned| !open(r) || r.occupants.is_some();
         let sum = |rooms: &[Planned]| rooms.iter().filter(counts).map(|r| desks(domain, r)).sum::<u32>();
-        while sum(rooms) > people {
-            let spare = |&i: &usize| {
-                let r: &Planned = &rooms[i];
+        let spare = |rooms: &[Planned]| {
+            let may_go = |&i: &usize| {
+                let r = &rooms[i];
                 !r.requested && !open(r) && desks(domain, r) > 0 && !vital::is_vital(reading, rooms, i)
             };
-            let Some(last) = (0..rooms.len()).rev().find(spare) else { break };
+            (0..rooms.len()).rev().find(may_go)
+        };
+        // counted desks are all there are to be; an open office is worth a few of them
+        let counted = reading.occupancy.staff.is_none();
+        let has_open = rooms.iter().any(|r| open(r) && r.occupants.is_none());
+        let most = people.saturating_sub(if has_open { LEAST_OPEN } else { 0 });
+        while counted && has_open || sum(rooms) > most {
+            let Some(last) = spare(rooms) else { break };
             rooms.remove(last);
         }
-        // a remainder of one or two is no open office
-        let others = sum(rooms);
-        if others > 0 && people < others + LEAST_OPEN {
+        if sum(rooms) >= people {
             rooms.retain(|r| r.requested || !open(r) || r.occupants.is_some());
         }
     }
