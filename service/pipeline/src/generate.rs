@@ -314,7 +314,9 @@ fn attempt(
     observe(Event::Finished(Stage::Scenario, attempt, Artifact::Scenario(&scenario)));
 
     begin(Stage::World, attempt, observe, cancelled)?;
-    let world = world::assemble(name, with_area(graph, &plan), plan, placements, scenario);
+    let mut told = with_area(graph, &plan);
+    told.conflicts.extend(scene_graph::shortages(domain, graph, &placements));
+    let world = world::assemble(name, told, plan, placements, scenario);
     let report = world::check(&world, domain, retrieved);
     observe(Event::Finished(Stage::World, attempt, Artifact::World(&world, &report)));
     Ok(Generated { world, report, attempts: attempt + 1 })

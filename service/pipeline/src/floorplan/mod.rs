@@ -127,6 +127,7 @@ pub fn generate_until(
         }
         let name = format!("{:?}", found.scheme).to_lowercase();
         brief.tell_form(form, found.scheme);
+        brief.tell_symmetry(found.score.symmetry);
         let mut boxes = turned(&found.layout.boxes, turn);
         numbers::along_corridor(graph, &brief, &mut boxes);
         match assemble(&brief, &boxes, &found.score, graph.seed, &name, None, &mut rng) {

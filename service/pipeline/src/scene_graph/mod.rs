@@ -29,6 +29,7 @@ mod relations;
 mod robots;
 mod rooms;
 mod seated;
+mod seats;
 mod senses;
 mod sharing;
 mod single;
@@ -43,6 +44,7 @@ mod unread;
 mod vital;
 mod wishes;
 mod words;
+mod workers;
 
 use d3dgen_knowledge::Query;
 use d3dgen_model::robot_body::RobotBody;
@@ -55,7 +57,8 @@ use self::program::Planned;
 pub(crate) use self::proposed::suits;
 pub use self::proposed::{BY_PROPOSAL, Draft, DraftEdge, DraftRoom, Settled, propose};
 use self::reading::Reading;
-pub(crate) use self::rooms::{dock_rank, most_docks, wished_assets};
+pub(crate) use self::rooms::{CLEANING, dock_rank, most_docks, wished_assets};
+pub(crate) use self::seats::shortages;
 use crate::Error;
 
 /// Reason of the doors to the corridor or hall.

@@ -10,14 +10,16 @@ use d3dgen_model::domain::{
 use super::beds::{Held, sleeps};
 use super::layout;
 use super::places::note;
-use super::reading::{MAX_ROOMS, Reading, is_dwelling};
+use super::reading::{MAX_ROOMS, MOST_IN_OFFICE, Reading, is_dwelling};
 use super::rooms::most_docks;
 use super::seated;
+use super::seats;
 use super::stations;
 use super::units;
 use super::vital;
 use super::wishes::{CHARGING, Pair, PerHost, Wish};
 use super::words::words;
+use super::workers;
 
 /// Rooms of a building planned by area alone.
 const MOST_BY_AREA: usize = 60;
@@ -65,11 +67,15 @@ pub(super) struct Planned<'a> {
     pub occupants: Option<u32>,
     /// Unit of a large building that it belongs to.
     pub unit: Option<String>,
+    /// What the prompt calls it, where that is not the label of its type.
+    pub called: Option<String>,
+    /// True where its occupants only meet, wait or eat there.
+    pub visited: bool,
 }
 
 impl<'a> Planned<'a> {
     /// Sizes a room by the people it is for, within what its type allows; a size that the prompt gives stays.
-    fn size_for_people(&mut self, area_m2: f64) {
+    pub(super) fn size_for_people(&mut self, area_m2: f64) {
         let range = self.kind.area_m2;
         self.people_area_m2 = self.area_m2.is_none().then(|| area_m2.clamp(range.min, range.max));
     }
@@ -88,6 +94,8 @@ impl<'a> Planned<'a> {
             host: None,
             occupants: None,
             unit: None,
+            called: None,
+            visited: false,
         }
     }
 }
@@ -119,8 +127,11 @@ pub(super) fn finish<'a>(reading: &mut Reading<'a>, mut rooms: Vec<Planned<'a>>)
         let own = |r: &&mut Planned| r.room_type == words().dwelling.bedroom && r.area_m2.is_none();
         rooms.iter_mut().filter(own).for_each(|r| r.size = r.size.or(Some(1.0)));
     }
+    hold_beds(reading, &mut rooms);
+    workers::settle(reading, &mut rooms);
     hold_people(reading, &mut rooms);
     serve_people(reading, &mut rooms);
+    workers::seat_guests(reading, &mut rooms);
     seat_waiting(reading, &mut rooms);
     hang_on_hosts(reading, &mut rooms);
     state_additions(reading, &rooms);
@@ -505,6 +516,15 @@ impl<'r, 'a> Build<'r, 'a> {
             let present = self.count(&entry.room_type);
             let Some(people) = head_count(self.reading, entry.occupants).filter(|_| present > 0) else { continue };
             let kind = self.reading.domain.room_type_or_generic(&entry.room_type);
+            // who sits in an open office that the prompt names needs no office of their own
+            let seated = entry.occupants_per_room.is_some_and(|n| n <= MOST_IN_OFFICE)
+                && self
+                    .rooms
+                    .iter()
+                    .any(|r| r.requested && seats::most_desks(self.reading.domain, r.kind) > seats::MOST_IN_TEAM);
+            if seated {
+                continue;
+            }
             let by_count = entry.occupants_per_room.map_or(0, |per| people.div_ceil(per.max(1)) as usize);
             let by_area = entry
                 .area_per_occupant_m2
@@ -580,7 +600,6 @@ pub(super) fn head_count(reading: &Reading, of: Occupants) -> Option<u32> {
 
 /// Spreads the people over the rooms that the program gives them.
 fn hold_people(reading: &mut Reading, rooms: &mut [Planned]) {
-    hold_beds(reading, rooms);
     hold_stations(reading, rooms);
     // who has a desk elsewhere needs none here
     let at_desks = |r: &&Planned| seated::desks(reading.domain, r.kind).is_some();
@@ -660,9 +679,8 @@ fn serve_people(reading: &Reading, rooms: &mut [Planned]) {
         for &i in &alike {
             let range = rooms[i].kind.area_m2;
             let area = (each * people / alike.len() as f64).clamp(range.min, range.max);
-            // those of a usual size hold a usual number
-            let grows = lives || reading.wet.has_toilet(rooms[i].kind);
-            if !grows || area > range.target {
+            // those of a usual size hold a usual number; a small office has small toilets
+            if !lives || area > range.target {
                 rooms[i].size_for_people(area);
             } else if lives && area > FULL * range.target {
                 // as many as the usual size is for: it is not to come out small
@@ -674,8 +692,13 @@ fn serve_people(reading: &Reading, rooms: &mut [Planned]) {
 
 /// Returns how many people work there: as many as the prompt says, else as have a desk.
 pub(super) fn places_to_work(reading: &Reading, rooms: &[Planned]) -> u32 {
-    let desks = || rooms.iter().map(|r| r.occupants.unwrap_or_else(|| workplaces(reading.domain, r))).sum::<u32>();
-    head_count(reading, Occupants::Staff).unwrap_or_else(desks)
+    let own = |r: &Planned| r.occupants.filter(|_| !r.visited).unwrap_or_else(|| workplaces(reading.domain, r));
+    let desks = || rooms.iter().map(own).sum::<u32>();
+    match reading.occupancy.staff {
+        Some(staff) => staff.max(reading.occupancy.desks.unwrap_or(0)),
+        // "10 offices and an open plan with 12 desks"
+        None => head_count(reading, Occupants::Staff).unwrap_or(0).max(desks()),
+    }
 }
 
 /// Seats that people find where they wait for each room that sees them one at a time.
@@ -713,7 +736,7 @@ fn workplaces(domain: &Domain, room: &Planned) -> u32 {
 }
 
 /// Returns the floor for each desk of a room type, m^2: as the programs say, else as its furnishing.
-fn desk_area_m2(domain: &Domain, room_type: &str) -> f64 {
+pub(super) fn desk_area_m2(domain: &Domain, room_type: &str) -> f64 {
     let entries = domain.programs.iter().flat_map(|p| &p.rooms).filter(|e| e.room_type == room_type);
     let lines = domain.room_type_or_generic(room_type).furnishing.iter().filter(|f| f.required);
     let by_program = entries.filter_map(|e| e.area_per_occupant_m2).next();

@@ -15,6 +15,7 @@ use super::objects;
 use super::parts;
 use super::places::{self, note};
 use super::relations;
+use super::seats::{self, Called};
 use super::senses;
 use super::stations;
 use super::storeys::{self, Storeys, Wanted, Where};
@@ -23,6 +24,7 @@ use super::text::{MAX_TOKENS, Span, Token, tokens};
 use super::vital::{self, Wet};
 use super::wishes::{self, MANY, PerHost, Text, Wish, Wishes};
 use super::words::{ByBedrooms, Spoken, Tag, words};
+use super::workers;
 use super::{
     Request, docks, dwelling, fixtures, language, measures, numbers, qualities, robots, seated, sharing, single,
     umlauts, unread,
@@ -69,6 +71,12 @@ pub(super) struct Reading<'a> {
     pub held: Vec<Held>,
     /// Rooms of which it says the places to be treated at.
     pub stationed: Vec<Held>,
+    /// Rooms of which it says the seats or counters.
+    pub seats: Vec<Held>,
+    /// Types of rooms that those who work there are shared out to.
+    pub halves: Vec<String>,
+    /// What the prompt calls its rooms.
+    pub called: Vec<Called>,
     /// True when the prompt counts the rooms to live in ("3-Zimmer-Wohnung", "2BHK").
     pub habitable_fixed: bool,
     pub area_m2: Option<f64>,
@@ -155,6 +163,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     let shared = building.building_type.as_ref().is_some_and(|b| words().dwelling.shared.contains(b));
     let areas = measures::areas(&tokens, &numbers);
     let radius = measures::robot_radius(&tokens, &numbers, &spoken);
+    let length = measures::robot_length(&tokens, &numbers, &spoken).filter(|_| radius.is_some());
     let mut short_forms = dwelling::short_forms(&tokens, &numbers, domain, &spoken, shared);
     let place_spans = place.spans.clone();
     let mut spans: Vec<Span> = std::mem::take(&mut place.spans);
@@ -163,7 +172,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     let mut counted: Vec<Span> = spans.iter().filter(|s| !place_spans.contains(s)).copied().collect();
     counted.extend(machines.spans.iter().copied());
     spans.extend(machines.spans.iter().copied());
-    spans.extend(radius.iter().map(|r| r.0));
+    spans.extend(radius.iter().chain(&length).map(|r| r.0));
     let vocabulary =
         registry.digest(&format!("{languages:?}: {}", domain.id), || Vocabulary::new(domain, registry, &languages));
     single::unname(&mut building, &tokens, &vocabulary, &numbers, &spoken);
@@ -260,6 +269,19 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         })
     });
     let stationed: Vec<Held> = stationed.collect();
+    let places = seats::Reader {
+        tokens: &tokens,
+        numbers: &numbers,
+        domain,
+        program,
+        spoken: &spoken,
+        taken: &elsewhere,
+        seated: &seated,
+    };
+    let mut places = if lives { seats::Found::default() } else { places.read(&mut mentions) };
+    not_things.extend(places.spans.iter().copied());
+    let seated: Vec<Held> = seated.into_iter().chain(std::mem::take(&mut places.desks)).collect();
+    let called = seats::called(&tokens, prompt, &mentions, &spoken, language);
     let doors = unread::doors(&tokens, &mut mentions, &spoken);
     let mut docked = docks::inside_rooms(&tokens, &mut mentions, &machines.spans, &spoken);
     let errand = robots::errand(&machines, &tokens, &mentions, &spoken);
@@ -315,8 +337,8 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     };
     let fleet = machines.counted(&fleet);
     let heard = robots::Prompt { text: prompt, tokens: &tokens };
-    let radius = radius.map(|r| r.1);
-    let robots = robots::of_graph(&fleet, &wishes, radius, request, &heard, &mut assumptions, &mut conflicts);
+    let (radius, length) = (radius.map(|r| r.1), length.map(|l| l.1));
+    let robots = robots::of_graph(&fleet, &wishes, (radius, length), request, &heard, &mut assumptions, &mut conflicts);
     // "drei Stockwerken" ends in a word for a factory
     let storey = |p: &building::Part| spoken.iter().any(|s| s.tag_at(&tokens, p.span.start, Tag::Storeys).is_some());
     building.parts.retain(|p| !storey(p) && !spans.iter().any(|s| s.overlaps(p.span)));
@@ -343,10 +365,12 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         }
         held.extend(seated);
     }
+    let said = request.rooms.or_else(|| said_total(&mentions));
     if lives {
-        wishes.join_to_fit(wished_total(request, &mentions), domain);
+        wishes.join_to_fit(said, domain);
     }
-    let total = total_rooms(request, &mentions, &wishes, &mut conflicts)?;
+    let beside = workers::beside_rooms(&mut wishes, said.filter(|_| request.rooms.is_none()), domain, program);
+    let total = beside.map_or_else(|| total_rooms(request, &mentions, &wishes, &mut conflicts), |n| Ok(Some(n)))?;
     let listed: u64 = wishes.wishes.iter().map(|w| u64::from(w.count)).sum();
     if listed > u64::from(MAX_ROOMS) {
         return Err(refused(format!(
@@ -379,6 +403,8 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     }
     spans.extend(station_words);
     spans.extend(told_again);
+    spans.extend(places.spans);
+    spans.extend(called.iter().map(|c| c.span));
     let mut read: Vec<Span> = spans.iter().chain(&machines.docks).chain(&building.words).copied().collect();
     let mut things = objects::named(&tokens, &mentions, domain, registry, &languages, &not_things, &mut read);
     let free = |i: usize| !spans.iter().chain(&building.head).any(|s| s.contains(i));
@@ -431,6 +457,9 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         single,
         held,
         stationed,
+        seats: places.seats,
+        halves: places.halves,
+        called,
         habitable_fixed,
         area_m2,
         occupancy: people.occupancy,
@@ -727,12 +756,6 @@ fn total_area(text: &Text, request: &Request, conflicts: &mut Vec<Note>) -> Opti
     request.area_m2.or(named).map(|a| (a * 100.0).round() / 100.0)
 }
 
-/// Returns how many rooms there are to be in total, where the prompt or the request says so.
-fn wished_total(request: &Request, mentions: &[Mention]) -> Option<u32> {
-    let named = mentions.iter().filter(|m| m.what == What::Total && !m.article && !m.vague).find_map(|m| m.count);
-    request.rooms.or(named.and_then(|n| u32::try_from(n).ok()).filter(|n| *n > 0))
-}
-
 /// Takes the rooms of a home that people share for bedrooms where it names none: "student flat with five rooms".
 fn own_rooms(mentions: &mut [Mention], domain: &Domain) {
     let bedroom = &words().dwelling.bedroom;
@@ -744,6 +767,12 @@ fn own_rooms(mentions: &mut [Mention], domain: &Domain) {
     if let Some(m) = mentions.iter_mut().find(|m| m.what == What::Total && m.count.is_some() && !m.article) {
         m.what = What::Room(bedroom.clone());
     }
+}
+
+/// Returns the number of rooms that the prompt gives the building by its name.
+fn said_total(mentions: &[Mention]) -> Option<u32> {
+    let said = mentions.iter().find(|m| m.what == What::Total && !m.article && !m.vague && m.count.is_some())?;
+    u32::try_from(said.count?).ok().filter(|n| *n > 0)
 }
 
 fn total_rooms(
@@ -853,6 +882,12 @@ fn add_main_room(
     let main = program.rooms.first()?;
     let listed = |id: &str| wishes.wishes.iter().any(|w| w.room_type == id);
     let lives = is_dwelling(program);
+    let heads = &people.occupancy;
+    if let Some(kind) = workers::room_left_out(wishes, program, domain, heads.staff, heads.desks) {
+        wishes.wishes.insert(0, Wish::one(&kind.id, &kind.label.to_lowercase()));
+        let label = kind.label.to_lowercase();
+        return Some(note("main_room", format!("the list of rooms takes the {label} for granted; it was added")));
+    }
     if lives || listed(&main.room_type) || wishes.forbidden.contains(&main.room_type) {
         return None;
     }

@@ -349,7 +349,7 @@ impl Counting<'_> {
 pub(super) fn of_graph(
     fleet: &Fleet,
     wishes: &Wishes,
-    radius: Option<f64>,
+    (radius, length): (Option<f64>, Option<f64>),
     request: &Request,
     prompt: &Prompt,
     assumptions: &mut Vec<Note>,
@@ -385,8 +385,13 @@ pub(super) fn of_graph(
         .iter()
         .filter_map(|w| {
             let body = words().robot_kinds.get(w.kind)?;
-            let own = request.robot;
-            let stated = request.robot_radius_m.or(own.radius_m()).or(radius);
+            let mut own = request.robot;
+            // "0.7 m wide, 0.9 m long"
+            if let Some((width, length)) = radius.map(|r| 2.0 * r).zip(length).filter(|_| own == RobotBody::default()) {
+                (own.width_m, own.length_m) = (Some(width), Some(length));
+            }
+            // it drives through doors as wide as it is, and turns where there is room for its length
+            let stated = request.robot_radius_m.or(request.robot.radius_m()).or(radius);
             Some(Robot {
                 kind: w.kind.into(),
                 count: w.count,

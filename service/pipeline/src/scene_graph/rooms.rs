@@ -11,12 +11,16 @@ use super::program::{Planned, circulation_share};
 use super::reading::{Reading, is_dwelling};
 use super::words::words;
 
+/// Kind of the robots that clean.
+pub(crate) const CLEANING: &str = "cleaning";
 /// Most objects wished for in one room.
 const MOST_WISHES: usize = 15;
 /// Things named of a room that no domain knows.
 const MOST_NAMED: usize = 3;
 /// Share of the usual area per head that a building short of area leaves.
 const CROWDED: f64 = 0.6;
+/// Most area of a room that serves so many people, as a factor on what they need.
+const ROOMY: f64 = 1.5;
 /// Share of their usual area that rooms of a compact building have.
 const COMPACT: f64 = 0.8;
 /// The same of a generous building.
@@ -37,12 +41,21 @@ pub(super) fn describe(reading: &mut Reading, planned: &[Planned]) -> Vec<GraphR
     state_unknown(reading, planned);
     let lives = is_dwelling(reading.program);
     let mut seen: BTreeMap<&str, u32> = BTreeMap::new();
+    let mut alike: BTreeMap<String, [u32; 2]> = BTreeMap::new();
+    planned.iter().for_each(|room| alike.entry(label(room)).or_default()[0] += 1);
     let mut rooms = Vec::new();
     for (i, room) in planned.iter().enumerate() {
         let number = seen.entry(&room.room_type).or_default();
         *number += 1;
         let label = label(room);
-        let name = if total[room.room_type.as_str()] > 1 { format!("{label} {number}") } else { label };
+        // rooms with a name of their own are counted by that
+        let [same, count] = alike.entry(label.clone()).or_default();
+        *count += 1;
+        let name = match room.called {
+            Some(_) if *same > 1 => format!("{label} {count}"),
+            None if total[room.room_type.as_str()] > 1 && *same > 1 => format!("{label} {count}"),
+            _ => label,
+        };
         rooms.push(GraphRoom {
             id: format!("{}_{number}", room.room_type),
             room_type: room.room_type.clone(),
@@ -109,6 +122,9 @@ pub(super) fn circulation(reading: &Reading) -> GraphRoom {
 
 /// Returns the name on the plan: the domain's label, or the prompt's own word for a room the domain does not know.
 fn label(room: &Planned) -> String {
+    if let Some(called) = &room.called {
+        return called.clone();
+    }
     if room.kind.id == room.room_type && room.room_type != GENERIC_ROOM_TYPE {
         return room.kind.label.clone();
     }
@@ -170,7 +186,12 @@ fn target_areas(reading: &mut Reading, planned: &[Planned]) -> Vec<f64> {
             let range = room.kind.area_m2;
             match (room.area_m2, room.people_area_m2) {
                 (Some(_), _) => *area,
-                (_, Some(people)) => (area * scale).clamp(range.min.max(CROWDED * people).min(range.max), range.max),
+                (_, Some(people)) => {
+                    // what serves so many people is no larger in a building with floor to spare
+                    let serves = room.kind.zone == Zone::Service;
+                    let most = if serves { range.max.min(ROOMY * people.max(range.min)) } else { range.max };
+                    (area * scale).clamp(range.min.max(CROWDED * people).min(most), most)
+                }
                 _ => (area * scale).clamp(range.min, range.max),
             }
         });
@@ -311,7 +332,12 @@ pub(super) fn add_docks(domain: &Domain, robots: &[Robot], docked: &[String], ro
     let sum = |counts: &mut dyn Iterator<Item = u32>| counts.fold(0, u32::saturating_add);
     let is_dock = |id: &str| domain.anchor(id).is_some_and(|o| o.shape == Shape::Dock);
     let Some(dock) = domain.objects.iter().rev().find(|o| o.shape == Shape::Dock) else { return };
+    // the dock of a mop room is for those that clean
+    let cleans = robots.iter().any(|r| r.kind == CLEANING);
     let held = |room: &GraphRoom| -> u32 {
+        if !cleans && domain.room_type_or_generic(&room.room_type).goods == Goods::Soiled {
+            return 0;
+        }
         let lines = domain.room_type_or_generic(&room.room_type).furnishing.iter();
         sum(&mut lines.filter(|f| is_dock(&f.item)).map(|f| f.units(room.target_area_m2)))
     };
@@ -364,16 +390,18 @@ pub(crate) fn most_docks(area_m2: f64) -> u32 {
 /// Returns how well a room that may have a dock suits a robot, 0 best: stores, rooms to work in, corridors, at last where people wait; robots
 /// that clean charge where soiled things are and no other ones do. `None` for rooms to sleep in.
 pub(crate) fn dock_rank(kind: &RoomType, robot: &Robot) -> Option<u8> {
-    let cleans = robot.kind == "cleaning";
+    let cleans = robot.kind == CLEANING;
     match (kind.zone, kind.goods) {
         (Zone::Service, Goods::Soiled) if cleans => Some(0),
+        // a mop room is no place for what brings mail or meals
+        (Zone::Service, Goods::Soiled) => Some(LAST_RANK + 2),
         (Zone::Service, Goods::Usual) => Some(if cleans { 1 } else { 0 }),
         (Zone::Day, _) => Some(2),
         // a dock takes of its width
         (Zone::Circulation, _) => Some(3),
         (Zone::Service, _) => Some(LAST_RANK),
         (Zone::Staff, _) => Some(LAST_RANK + 1),
-        (Zone::Public | Zone::Outdoor, _) => Some(LAST_RANK + 2),
+        (Zone::Public | Zone::Outdoor, _) => Some(LAST_RANK + 3),
         (Zone::Night, _) => None,
     }
 }

@@ -122,6 +122,14 @@ pub(super) enum Tag {
     Everyone,
     /// All have a room of their own: "a room each".
     SingleRooms,
+    /// "Half open plan, half offices": those who work there are shared out.
+    Half,
+    /// Counters of a room at which people are served: "service windows", "Schalter".
+    ServicePoints,
+    /// "Separate" of toilets: men and women have their own.
+    Parted,
+    /// How long a robot is: "0.9 m long".
+    Length,
 }
 
 /// Words of one language.
@@ -232,6 +240,10 @@ struct File {
     many_vital: Vec<Vec<String>>,
     /// Rooms of one use: the program adds none beside one that the prompt names.
     alike: Vec<Vec<String>>,
+    /// Share of those who work there that has a seat in a room to eat in, by room type.
+    eating: BTreeMap<String, f64>,
+    /// Whose the toilets of a place to work at are, one word each, as names of rooms begin.
+    sexes: Vec<String>,
     /// Domain whose rooms are of all kinds of buildings.
     common_domain: String,
     /// Usual words of languages that are not read, by English name of the language.
@@ -258,6 +270,8 @@ pub(super) struct Words {
     pub many_desks: u32,
     pub many_vital: Vec<Vec<String>>,
     pub alike: Vec<Vec<String>>,
+    pub eating: BTreeMap<String, f64>,
+    pub sexes: Vec<String>,
     pub common_domain: String,
     /// Usual words of languages that are not read, folded, by English name of the language.
     pub unread_languages: BTreeMap<String, BTreeSet<String>>,
@@ -310,6 +324,8 @@ pub(super) fn words() -> &'static Words {
             many_desks: file.many_desks,
             many_vital: file.many_vital,
             alike: file.alike,
+            eating: file.eating,
+            sexes: file.sexes,
             common_domain: file.common_domain,
             unread_languages: file
                 .unread_languages
