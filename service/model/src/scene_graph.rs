@@ -172,6 +172,9 @@ pub struct Robot {
     /// What more is known of its body, and whether the building is made so that it fits.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub body: Option<RobotBody>,
+    /// Types of the rooms that it works in, where the prompt says so; empty for wherever its kind works.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub room_types: Vec<String>,
 }
 
 /// A statement about how the prompt was read.

@@ -337,6 +337,28 @@ impl Sleepers<'_> {
         assumptions: &mut Vec<Note>,
         conflicts: &mut Vec<Note>,
     ) -> Settled {
+        let apart = self.apart(wishes);
+        let Some(beds) = self.beds.filter(|n| apart > 0 && *n > apart) else {
+            return self.settle_open(wishes, assumptions, conflicts);
+        };
+        let message = format!("of the {beds} beds {apart} are in the isolation rooms");
+        assumptions.push(note("beds_apart", message));
+        let others = Sleepers { beds: Some(beds - apart), ..*self };
+        let settled = others.settle_open(wishes, assumptions, conflicts);
+        Settled { beds: settled.beds.map(|n| n + apart), ..settled }
+    }
+
+    /// Returns the beds of rooms that are entered through a lock: who counts the beds of a ward counts these too.
+    fn apart(&self, wishes: &Wishes) -> u32 {
+        let lock = |w: &Wish| {
+            self.domain.room_type(&w.room_type).filter(|k| k.access == Access::Host && k.zone == Zone::Night)
+        };
+        let beds = |w: &Wish| Some(w.count * sleeps(self.domain, lock(w)?)?[0]);
+        wishes.wishes.iter().filter_map(beds).sum()
+    }
+
+    /// As [`Self::settle`], for the beds of all other rooms.
+    fn settle_open(&self, wishes: &mut Wishes, assumptions: &mut Vec<Note>, conflicts: &mut Vec<Note>) -> Settled {
         let told = self.told(wishes);
         let counts_beds = self.program.rooms.iter().any(|e| e.occupants == Occupants::Beds);
         if told.is_empty() {

@@ -109,6 +109,7 @@ pub(super) fn complete<'a>(reading: &mut Reading<'a>) -> Vec<Planned<'a>> {
 pub(super) fn finish<'a>(reading: &mut Reading<'a>, mut rooms: Vec<Planned<'a>>) -> Vec<Planned<'a>> {
     wash_on_every_storey(reading, &mut rooms);
     hold_people(reading, &mut rooms);
+    make_room_for_companions(reading, &mut rooms);
     serve_people(reading, &mut rooms);
     seat_waiting(reading, &mut rooms);
     hang_on_hosts(reading, &mut rooms);
@@ -224,6 +225,19 @@ pub(super) fn fill_unit<'a>(
 pub(super) fn is_counted(reading: &Reading, room_type: &str) -> bool {
     let mut entries = reading.program.rooms.iter().filter(|e| e.room_type == room_type);
     entries.any(|e| head_count(reading, e.occupants).is_some())
+}
+
+/// Floor of the bed for who stays with a patient, m^2.
+const COMPANION_M2: f64 = 4.0;
+
+/// Makes rooms of patients larger by the bed of who stays with them.
+fn make_room_for_companions(reading: &Reading, rooms: &mut [Planned]) {
+    let domain = reading.domain;
+    let own = |r: &&mut Planned| r.kind.privacy == Privacy::Private && sleeps(domain, r.kind).is_some();
+    for room in rooms.iter_mut().filter(|_| reading.stays).filter(own) {
+        let area = room.people_area_m2.unwrap_or(room.kind.area_m2.target);
+        room.size_for_people(area + COMPANION_M2);
+    }
 }
 
 /// Sees to it that there are as many toilets and bathrooms as storeys, where the prompt leaves the rooms open.
@@ -630,7 +644,13 @@ fn serve_people(reading: &Reading, rooms: &mut [Planned]) {
     // in a home those who sleep there eat there
     let lives = is_dwelling(reading.program);
     let beds = rooms.iter().filter_map(|r| Some(sleeps(reading.domain, r.kind)?[0])).sum::<u32>();
-    let people = if lives { reading.residents.unwrap_or(0).max(beds) } else { places_to_work(reading, rooms) };
+    // and in a ward its patients, for whom the day room is
+    let nurses = reading.program.rooms.iter().any(|e| e.occupants == Occupants::Beds);
+    let people = match (lives, nurses) {
+        (true, _) => reading.residents.unwrap_or(0).max(beds),
+        (false, true) => reading.occupancy.beds.unwrap_or(beds),
+        (false, false) => places_to_work(reading, rooms),
+    };
     let people = f64::from(people);
     let mut sized: Vec<&str> = Vec::new();
     for (entry, each) in entries {

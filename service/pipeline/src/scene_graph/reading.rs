@@ -23,7 +23,9 @@ use super::text::{MAX_TOKENS, Span, Token, tokens};
 use super::vital::{self, Wet};
 use super::wishes::{self, MANY, PerHost, Text, Wish, Wishes};
 use super::words::{ByBedrooms, Spoken, Tag, words};
-use super::{Request, docks, dwelling, language, measures, numbers, robots, seated, single, umlauts, unread};
+use super::{
+    Request, docks, dwelling, keeps, language, measures, numbers, robots, seated, single, stays, umlauts, unread,
+};
 use crate::Error;
 
 /// Most rooms one world is planned for.
@@ -36,6 +38,9 @@ const MAIN_ROOM_SHARE: f64 = 1.5;
 pub(super) const MOST_IN_OFFICE: u32 = 4;
 /// Largest head count that is taken at its word.
 const MAX_HEADS: i64 = 5000;
+
+/// Robots that fetch and bring: corridors are only their way.
+const CARRIES: [&str; 2] = ["delivery", "transport"];
 
 /// Facts of a prompt.
 #[derive(Clone)]
@@ -76,6 +81,8 @@ pub(super) struct Reading<'a> {
     /// Types of the rooms that a dock is to stand in.
     pub docked: Vec<String>,
     pub storeys: Storeys,
+    /// True where someone stays overnight with every patient.
+    pub stays: bool,
     /// Objects that the prompt names, each with the room type it is named with.
     pub objects: Vec<(String, Option<String>)>,
     pub assumptions: Vec<Note>,
@@ -275,7 +282,9 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     let fleet = machines.counted(&fleet);
     let heard = robots::Prompt { text: prompt, tokens: &tokens };
     let radius = radius.map(|r| r.1);
-    let robots = robots::of_graph(&fleet, &wishes, radius, request, &heard, &mut assumptions, &mut conflicts);
+    let mut robots = robots::of_graph(&fleet, &wishes, radius, request, &heard, &mut assumptions, &mut conflicts);
+    let kept = keeps::read(&tokens, &mentions, &machines.spans, &domain.circulation.room_type, &spoken);
+    robots.iter_mut().filter(|r| !CARRIES.contains(&r.kind.as_str())).for_each(|r| r.room_types.clone_from(&kept));
     // "drei Stockwerken" ends in a word for a factory
     let storey = |p: &building::Part| spoken.iter().any(|s| s.tag_at(&tokens, p.span.start, Tag::Storeys).is_some());
     building.parts.retain(|p| !storey(p) && !spans.iter().any(|s| s.overlaps(p.span)));
@@ -330,8 +339,11 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         assumptions.extend(add_main_room(&mut wishes, program, domain, &people, named.as_deref()));
     }
     spans.extend(station_words);
+    let stays = if lives { None } else { stays::read(&tokens, &spoken) };
+    spans.extend(stays);
     let mut read: Vec<Span> = spans.iter().chain(&machines.docks).chain(&building.words).copied().collect();
-    let mut things = objects::named(&tokens, &mentions, domain, registry, &languages, &not_things, &mut read);
+    let mut things =
+        objects::named(&tokens, &mentions, (domain, registry), (&languages, &spoken), &not_things, &mut read);
     let unread = unread::Text {
         tokens: &tokens,
         known_language: unread_language.is_none(),
@@ -357,6 +369,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         program,
         country_code: flag_country.or(place.country_code),
         storeys,
+        stays: stays.is_some(),
         objects: things,
         wishes,
         total,

@@ -394,6 +394,7 @@ pub(super) fn of_graph(
                 height_m: own.height_m.unwrap_or(body.height_m),
                 charging,
                 body: (own != RobotBody::default()).then_some(own),
+                room_types: Vec::new(),
             })
         })
         .collect()

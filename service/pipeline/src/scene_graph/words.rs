@@ -114,6 +114,12 @@ pub(super) enum Tag {
     Only,
     /// "Including": what follows is of the rooms before it.
     PartOf,
+    /// Those who stay with a patient: "parents".
+    Companions,
+    /// What they do there: "stay overnight".
+    Overnight,
+    /// Words that say both: "rooming-in".
+    RoomingIn,
 }
 
 /// Words of one language.
@@ -142,6 +148,9 @@ pub(super) struct Language {
     /// Words for a room and its bathroom, with the room types.
     #[serde(default)]
     pub suites: BTreeMap<String, Vec<String>>,
+    /// Words for rooms of several types that share a noun, with the room types: "single and double rooms".
+    #[serde(default)]
+    pub mixes: BTreeMap<String, Vec<String>>,
     #[serde(flatten)]
     pub phrases: BTreeMap<Tag, Vec<String>>,
 }
@@ -247,6 +256,7 @@ pub(super) struct Spoken {
     pub heads: Phrases<()>,
     pub joint: Phrases<Vec<String>>,
     pub suites: Phrases<Vec<String>>,
+    pub mixes: Phrases<Vec<String>>,
     /// Usual words that tell the language, folded.
     pub detect: BTreeSet<String>,
     /// Number words, folded.
@@ -323,7 +333,7 @@ fn spoken(code: &str, words: Language) -> Spoken {
         map.iter().for_each(|(phrase, types)| phrases.insert(phrase, types.clone()));
         phrases
     };
-    let (joint, suites) = (table(&words.joint), table(&words.suites));
+    let (joint, suites, mixes) = (table(&words.joint), table(&words.suites), table(&words.mixes));
     let detect = words.phrases.get(&Tag::Detect).into_iter().flatten().map(|w| super::text::fold(w)).collect();
     Spoken {
         detect,
@@ -338,6 +348,7 @@ fn spoken(code: &str, words: Language) -> Spoken {
         heads,
         joint,
         suites,
+        mixes,
     }
 }
 
