@@ -744,7 +744,9 @@ fn hold_beds(reading: &Reading, rooms: &mut [Planned]) {
         .filter(|&i| rooms[i].requested && rooms[i].occupants.is_none())
         .filter_map(|i| Some((i, sleeps(reading.domain, rooms[i].kind)?[0])))
         .collect();
-    if held + open.iter().map(|r| r.1).sum::<u32>() == beds {
+    let sum = |rooms: &mut dyn Iterator<Item = &(usize, u32)>| held + rooms.map(|r| r.1).sum::<u32>();
+    let beside = sum(&mut open.iter().filter(|r| rooms[r.0].kind.access != Access::Host));
+    if sum(&mut open.iter()) == beds || beside == beds {
         open.into_iter().for_each(|(i, each)| rooms[i].occupants = Some(each));
     }
 }
