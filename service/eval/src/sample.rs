@@ -192,6 +192,7 @@ pub fn world() -> World {
         charging: false,
         body: None,
         stops: Vec::new(),
+        room_types: Vec::new(),
     };
     let poi = |id: &str, room: &str, x: f64, y: f64| Poi {
         poi_id: id.into(),

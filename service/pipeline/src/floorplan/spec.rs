@@ -53,6 +53,8 @@ pub(super) struct RoomSpec {
     pub area_max: f64,
     pub min_dimension: f64,
     pub daylight: Daylight,
+    /// True for windows above what stands at the outer wall.
+    pub high_windows: bool,
     pub zone: Zone,
     pub wet: bool,
     /// True for rooms that one locks behind oneself.
@@ -446,6 +448,7 @@ fn room_spec(
         area_max,
         min_dimension: max_limit(kind.min_dimension_m, limit.dimension_min.as_ref()).max(fitted),
         daylight: kind.daylight,
+        high_windows: kind.high_windows,
         zone: kind.zone,
         wet: kind.wet,
         private: kind.privacy == Privacy::Private,

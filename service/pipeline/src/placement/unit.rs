@@ -380,6 +380,8 @@ impl<'a> Plan<'a, '_> {
         let mut clears = Vec::new();
         let shared = mm(self.group.map_or(0.0, |g| g.clearance_front_m) * self.forms.tightness);
         clears.extend((shared > 0).then(|| Box2 { x0: rect.x1, x1: rect.x1 + shared, ..rect }));
+        let behind = mm(self.group.map_or(0.0, |g| g.clearance_back_m) * self.forms.tightness);
+        clears.extend((behind > 0).then(|| Box2 { x0: rect.x0 - behind, x1: rect.x0, ..rect }));
         finish(self.item, self.group.is_some(), parts, clears, self.forms)
     }
 }

@@ -119,7 +119,11 @@ fn of_trade<'p>(floor: &Floor, robot: &Robot, pois: &'p [Poi]) -> Vec<&'p Poi> {
     }
     let of_kinds = |kinds: &[&str]| pois.iter().filter(|p| kinds.contains(&p.kind.as_str())).collect::<Vec<&Poi>>();
     let known = [&[own.as_str()][..], &["service_point"], &["entrance", "waiting_bay"]];
-    let found = known.into_iter().map(of_kinds).find(|found| !found.is_empty()).unwrap_or_default();
+    let all: Vec<Vec<&Poi>> = known.into_iter().map(of_kinds).collect();
+    // what the prompt keeps to some rooms visits these, where they have a point of any kind
+    let kept = |p: &&Poi| robot.room_types.iter().any(|t| t == floor.room_type(&p.room_id));
+    let only = all.iter().map(|found| found.iter().copied().filter(kept).collect::<Vec<&Poi>>());
+    let found = only.chain(all.iter().cloned()).find(|found| !found.is_empty()).unwrap_or_default();
     toured(floor, found, pois.iter().find(|p| p.kind == "dock"))
 }
 

@@ -21,6 +21,8 @@ pub(super) struct Compound {
     pub span: Span,
     /// Types of its rooms, no type twice.
     pub room_types: Vec<String>,
+    /// True for rooms that only share a noun: "single and double rooms".
+    pub mixed: bool,
 }
 
 /// Returns the compounds of a prompt whose rooms the domain knows, in order; none overlaps what is taken.
@@ -36,7 +38,9 @@ pub(super) fn find(
     let mut i = 0;
     while i < tokens.len() {
         let suite = spoken.iter().filter_map(|s| s.suites.longest_at(tokens, i)).max_by_key(|f| f.0);
-        let found = match suite {
+        let mix = spoken.iter().filter_map(|s| s.mixes.longest_at(tokens, i)).max_by_key(|f| f.0);
+        let mixed = mix.is_some();
+        let found = match mix.or(suite) {
             Some((end, types)) => Some((end, types.clone())),
             None => with_corner(tokens, i, spoken)
                 .map(|end| (end, vec![words().dwelling.living_kitchen.clone()]))
@@ -46,7 +50,7 @@ pub(super) fn find(
         let known = |t: &String| domain.room_type(t).is_some();
         match found.filter(|(end, types)| types.iter().all(known) && !taken(Span { start: i, end: *end })) {
             Some((end, room_types)) => {
-                out.push(Compound { span: Span { start: i, end }, room_types });
+                out.push(Compound { span: Span { start: i, end }, room_types, mixed });
                 i = end;
             }
             None => i += 1,
@@ -162,6 +166,10 @@ pub(super) fn settle(tokens: &[Token], compounds: &[Compound], spoken: &[&Spoken
     for compound in compounds {
         let Some(first) = mentions.iter().position(|m| m.span == compound.span) else { continue };
         let head = mentions[first].clone();
+        if compound.mixed {
+            share(mentions, compound, &head);
+            continue;
+        }
         let before = mentions[..first].iter().rev().find(|m| m.what == head.what && m.count.is_some_and(|n| n > 1));
         let part = before.is_some_and(|m| {
             (m.span.end..compound.span.start).any(|k| spoken.iter().any(|s| s.tag_at(tokens, k, Tag::PartOf).is_some()))
@@ -180,7 +188,7 @@ pub(super) fn settle(tokens: &[Token], compounds: &[Compound], spoken: &[&Spoken
         }
     }
     // "Wohnküche, Wohnzimmer": what one word names beside the kitchen may be named by itself
-    for compound in compounds.iter().filter(|c| c.span.end == c.span.start + 1) {
+    for compound in compounds.iter().filter(|c| !c.mixed && c.span.end == c.span.start + 1) {
         let own = |m: &Mention| m.span == compound.span;
         let elsewhere = |what: &What| mentions.iter().any(|m| !own(m) && &m.what == what);
         let spare: Vec<What> = mentions.iter().filter(|m| own(m)).skip(1).map(|m| m.what.clone()).collect();
@@ -241,9 +249,21 @@ pub(super) fn hold_own(
     told
 }
 
+/// Shares the number of "12 single and double rooms" out to them; without one their beds say how many there are.
+fn share(mentions: &mut [Mention], compound: &Compound, head: &Mention) {
+    let kinds = compound.room_types.len() as i64;
+    let told = head.count.filter(|n| !head.article && *n >= kinds);
+    for (k, m) in mentions.iter_mut().filter(|m| m.span == compound.span).enumerate() {
+        let k = k as i64;
+        m.from = head.from;
+        m.count = told.map(|n| n / kinds + i64::from(k < n % kinds));
+        (m.plural, m.article, m.vague) = (true, false, head.vague);
+    }
+}
+
 /// Joins the rooms of each compound: an en suite to the room it is entered from, others by openings.
 pub(super) fn relate(compounds: &[Compound], mentions: &[Mention], domain: &Domain, said: &mut Said) {
-    for compound in compounds {
+    for compound in compounds.iter().filter(|c| !c.mixed) {
         let all: Vec<usize> = (0..mentions.len()).filter(|&m| mentions[m].span == compound.span).collect();
         for pair in all.windows(2) {
             let kind = mentions[pair[1]].room_type().and_then(|id| domain.room_type(id));

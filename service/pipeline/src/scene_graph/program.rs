@@ -130,6 +130,7 @@ pub(super) fn finish<'a>(reading: &mut Reading<'a>, mut rooms: Vec<Planned<'a>>)
     hold_beds(reading, &mut rooms);
     workers::settle(reading, &mut rooms);
     hold_people(reading, &mut rooms);
+    make_room_for_companions(reading, &mut rooms);
     serve_people(reading, &mut rooms);
     workers::seat_guests(reading, &mut rooms);
     seat_waiting(reading, &mut rooms);
@@ -246,6 +247,19 @@ pub(super) fn fill_unit<'a>(
 pub(super) fn is_counted(reading: &Reading, room_type: &str) -> bool {
     let mut entries = reading.program.rooms.iter().filter(|e| e.room_type == room_type);
     entries.any(|e| head_count(reading, e.occupants).is_some())
+}
+
+/// Floor of the bed for who stays with a patient, m^2.
+const COMPANION_M2: f64 = 4.0;
+
+/// Makes rooms of patients larger by the bed of who stays with them.
+fn make_room_for_companions(reading: &Reading, rooms: &mut [Planned]) {
+    let domain = reading.domain;
+    let own = |r: &&mut Planned| r.kind.privacy == Privacy::Private && sleeps(domain, r.kind).is_some();
+    for room in rooms.iter_mut().filter(|_| reading.stays).filter(own) {
+        let area = room.people_area_m2.unwrap_or(room.kind.area_m2.target);
+        room.size_for_people(area + COMPANION_M2);
+    }
 }
 
 /// Sees to it that there are as many toilets and bathrooms as storeys, where the prompt leaves the rooms open.
@@ -663,10 +677,13 @@ fn serve_people(reading: &Reading, rooms: &mut [Planned]) {
     let beds = rooms.iter().filter_map(|r| Some(sleeps(reading.domain, r.kind)?[0])).sum::<u32>();
     // who has a room alone has its double bed alone
     let rooms_to_sleep = rooms.iter().filter(|r| sleeps(reading.domain, r.kind).is_some()).count() as u32;
-    let people = match reading.each_alone {
-        true if lives => reading.residents.unwrap_or(rooms_to_sleep),
-        _ if lives => reading.residents.unwrap_or(0).max(beds),
-        _ => places_to_work(reading, rooms),
+    // and in a ward its patients, for whom the day room is
+    let nurses = reading.program.rooms.iter().any(|e| e.occupants == Occupants::Beds);
+    let people = match (lives, reading.each_alone, nurses) {
+        (true, true, _) => reading.residents.unwrap_or(rooms_to_sleep),
+        (true, false, _) => reading.residents.unwrap_or(0).max(beds),
+        (false, _, true) => reading.occupancy.beds.unwrap_or(beds),
+        (false, _, false) => places_to_work(reading, rooms),
     };
     let people = f64::from(people);
     let mut sized: Vec<&str> = Vec::new();
@@ -768,7 +785,9 @@ fn hold_beds(reading: &Reading, rooms: &mut [Planned]) {
         .filter(|&i| rooms[i].requested && rooms[i].occupants.is_none())
         .filter_map(|i| Some((i, sleeps(reading.domain, rooms[i].kind)?[0])))
         .collect();
-    if held + open.iter().map(|r| r.1).sum::<u32>() == beds {
+    let sum = |rooms: &mut dyn Iterator<Item = &(usize, u32)>| held + rooms.map(|r| r.1).sum::<u32>();
+    let beside = sum(&mut open.iter().filter(|r| rooms[r.0].kind.access != Access::Host));
+    if sum(&mut open.iter()) == beds || beside == beds {
         open.into_iter().for_each(|(i, each)| rooms[i].occupants = Some(each));
     }
 }

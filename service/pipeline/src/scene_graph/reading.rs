@@ -26,8 +26,8 @@ use super::wishes::{self, MANY, PerHost, Text, Wish, Wishes};
 use super::words::{ByBedrooms, Spoken, Tag, words};
 use super::workers;
 use super::{
-    Request, docks, dwelling, fixtures, language, measures, numbers, qualities, robots, seated, sharing, single,
-    umlauts, unread,
+    Request, docks, dwelling, fixtures, keeps, language, measures, numbers, qualities, robots, seated, sharing, single,
+    stays, umlauts, unread,
 };
 use crate::Error;
 
@@ -43,6 +43,9 @@ pub(super) const MOST_IN_OFFICE: u32 = 4;
 const EATING: f64 = 1.45;
 /// Largest head count that is taken at its word.
 const MAX_HEADS: i64 = 5000;
+
+/// Robots that fetch and bring: corridors are only their way.
+const CARRIES: [&str; 2] = ["delivery", "transport"];
 
 /// Facts of a prompt.
 #[derive(Clone)]
@@ -93,6 +96,8 @@ pub(super) struct Reading<'a> {
     /// Where the robot is to go.
     pub errand: robots::Errand,
     pub storeys: Storeys,
+    /// True where someone stays overnight with every patient.
+    pub stays: bool,
     /// Objects that the prompt names, each with the room type it is named with.
     pub objects: Vec<(String, Option<String>)>,
     pub assumptions: Vec<Note>,
@@ -338,7 +343,10 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     let fleet = machines.counted(&fleet);
     let heard = robots::Prompt { text: prompt, tokens: &tokens };
     let (radius, length) = (radius.map(|r| r.1), length.map(|l| l.1));
-    let robots = robots::of_graph(&fleet, &wishes, (radius, length), request, &heard, &mut assumptions, &mut conflicts);
+    let size = (radius, length);
+    let mut robots = robots::of_graph(&fleet, &wishes, size, request, &heard, &mut assumptions, &mut conflicts);
+    let kept = keeps::read(&tokens, &mentions, &machines.spans, &domain.circulation.room_type, &spoken);
+    robots.iter_mut().filter(|r| !CARRIES.contains(&r.kind.as_str())).for_each(|r| r.room_types.clone_from(&kept));
     // "drei Stockwerken" ends in a word for a factory
     let storey = |p: &building::Part| spoken.iter().any(|s| s.tag_at(&tokens, p.span.start, Tag::Storeys).is_some());
     building.parts.retain(|p| !storey(p) && !spans.iter().any(|s| s.overlaps(p.span)));
@@ -405,8 +413,11 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     spans.extend(told_again);
     spans.extend(places.spans);
     spans.extend(called.iter().map(|c| c.span));
+    let stays = if lives { None } else { stays::read(&tokens, &spoken) };
+    spans.extend(stays);
     let mut read: Vec<Span> = spans.iter().chain(&machines.docks).chain(&building.words).copied().collect();
-    let mut things = objects::named(&tokens, &mentions, domain, registry, &languages, &not_things, &mut read);
+    let mut things =
+        objects::named(&tokens, &mentions, (domain, registry), (&languages, &spoken), &not_things, &mut read);
     let free = |i: usize| !spans.iter().chain(&building.head).any(|s| s.contains(i));
     let mut furnished = qualities::furnished(&tokens, &spoken, free);
     // who shares a home eats in its kitchen
@@ -447,6 +458,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         program,
         country_code: flag_country.or(place.country_code),
         storeys,
+        stays: stays.is_some(),
         objects: things,
         wishes,
         total,

@@ -401,6 +401,7 @@ pub(super) fn of_graph(
                 body: (own != RobotBody::default()).then_some(own),
                 // its rooms have no ids yet
                 stops: Vec::new(),
+                room_types: Vec::new(),
             })
         })
         .collect()

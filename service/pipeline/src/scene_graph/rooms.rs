@@ -2,10 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use d3dgen_model::domain::{Domain, Furnishing, GENERIC_ROOM_TYPE, Goods, RobotUse, RoomType, Shape, Zone};
+use d3dgen_model::domain::{
+    Domain, Furnishing, GENERIC_ROOM_TYPE, Goods, ObjectType, Privacy, RobotUse, RoomType, Shape, Zone,
+};
 use d3dgen_model::scene_graph::{GraphRoom, Robot};
 use d3dgen_model::style::SpaceStyle;
 
+use super::beds;
 use super::places::note;
 use super::program::{Planned, circulation_share};
 use super::reading::{Reading, is_dwelling};
@@ -30,10 +33,14 @@ const MOST_ASLEEP: f64 = 1.6;
 /// Share by which the areas may miss the one asked for before that is worth a note.
 const AREA_TOLERANCE: f64 = 0.1;
 
+/// Tag of what those sleep on who stay with a patient.
+const COMPANION: &str = "companion";
+
 /// Returns the rooms as the graph states them, in the order they are planned in.
 pub(super) fn describe(reading: &mut Reading, planned: &[Planned]) -> Vec<GraphRoom> {
     let areas = target_areas(reading, planned);
-    let named = named_objects(reading, planned);
+    let mut named = named_objects(reading, planned);
+    add_companions(reading, planned, &mut named);
     let mut total: BTreeMap<&str, u32> = BTreeMap::new();
     for room in planned {
         *total.entry(&room.room_type).or_default() += 1;
@@ -277,6 +284,21 @@ fn named_objects(reading: &mut Reading, planned: &[Planned]) -> BTreeMap<usize, 
         }
     }
     out
+}
+
+/// Wishes for a bed for those who stay with a patient in every room that patients have to themselves.
+fn add_companions(reading: &mut Reading, planned: &[Planned], named: &mut BTreeMap<usize, Vec<String>>) {
+    let is_for = |o: &&ObjectType| o.tags.iter().any(|t| t == COMPANION);
+    let Some(object) = reading.domain.objects.iter().find(is_for).filter(|_| reading.stays) else { return };
+    let patients = |r: &Planned| r.kind.privacy == Privacy::Private && beds::sleeps(reading.domain, r.kind).is_some();
+    let rooms: Vec<usize> = (0..planned.len()).filter(|&i| patients(&planned[i])).collect();
+    if rooms.is_empty() {
+        let message = "no room was found for those who stay overnight with patients; they were left out".into();
+        return reading.conflicts.push(note("object_without_room", message));
+    }
+    rooms.into_iter().for_each(|i| named.entry(i).or_default().push(object.id.clone()));
+    let message = format!("those who stay overnight with patients have a {} in each room", object.label.to_lowercase());
+    reading.assumptions.push(note("companions", message));
 }
 
 /// Returns the objects a room type is furnished with, most important first.

@@ -130,6 +130,12 @@ pub(super) enum Tag {
     Parted,
     /// How long a robot is: "0.9 m long".
     Length,
+    /// Those who stay with a patient: "parents".
+    Companions,
+    /// What they do there: "stay overnight".
+    Overnight,
+    /// Words that say both: "rooming-in".
+    RoomingIn,
 }
 
 /// Words of one language.
@@ -164,6 +170,9 @@ pub(super) struct Language {
     /// Words for a room that say what stands in it: its type and the object.
     #[serde(default)]
     pub furnished: BTreeMap<String, Vec<String>>,
+    /// Words for rooms of several types that share a noun, with the room types: "single and double rooms".
+    #[serde(default)]
+    pub mixes: BTreeMap<String, Vec<String>>,
     #[serde(flatten)]
     pub phrases: BTreeMap<Tag, Vec<String>>,
 }
@@ -290,6 +299,7 @@ pub(super) struct Spoken {
     pub suites: Phrases<Vec<String>>,
     pub sizes: Phrases<f64>,
     pub furnished: Phrases<Vec<String>>,
+    pub mixes: Phrases<Vec<String>>,
     /// Usual words that tell the language, folded.
     pub detect: BTreeSet<String>,
     /// Number words, folded.
@@ -368,7 +378,8 @@ fn spoken(code: &str, words: Language) -> Spoken {
         map.iter().for_each(|(phrase, types)| phrases.insert(phrase, types.clone()));
         phrases
     };
-    let (joint, suites, furnished) = (table(&words.joint), table(&words.suites), table(&words.furnished));
+    let (joint, suites, mixes) = (table(&words.joint), table(&words.suites), table(&words.mixes));
+    let furnished = table(&words.furnished);
     let mut sizes = Phrases::new("");
     words.sizes.iter().for_each(|(phrase, value)| sizes.insert(phrase, *value));
     let detect = words.phrases.get(&Tag::Detect).into_iter().flatten().map(|w| super::text::fold(w)).collect();
@@ -387,6 +398,7 @@ fn spoken(code: &str, words: Language) -> Spoken {
         suites,
         sizes,
         furnished,
+        mixes,
     }
 }
 

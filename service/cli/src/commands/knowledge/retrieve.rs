@@ -100,6 +100,7 @@ impl Args {
             body: None,
             charging: true,
             stops: Vec::new(),
+            room_types: Vec::new(),
         });
         Building {
             country_code: self.country.as_ref().map(|c| c.to_ascii_uppercase()),
