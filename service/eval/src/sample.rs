@@ -184,7 +184,16 @@ fn graph(robot: &Robot) -> SceneGraph {
 
 /// Returns the world.
 pub fn world() -> World {
-    let robot = Robot { kind: "delivery".into(), count: 1, radius_m: 0.3, height_m: 1.0, charging: false, body: None };
+    let robot = Robot {
+        kind: "delivery".into(),
+        count: 1,
+        radius_m: 0.3,
+        height_m: 1.0,
+        charging: false,
+        body: None,
+        stops: Vec::new(),
+        room_types: Vec::new(),
+    };
     let poi = |id: &str, room: &str, x: f64, y: f64| Poi {
         poi_id: id.into(),
         kind: "service_point".into(),

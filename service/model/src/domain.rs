@@ -214,6 +214,11 @@ impl Document for Domain {
             for (j, id) in program.vital.iter().enumerate() {
                 room(format!("/programs/{i}/vital/{j}"), id, &mut problems);
             }
+            for (j, ids) in program.support.iter().enumerate() {
+                for (k, id) in ids.iter().enumerate() {
+                    room(format!("/programs/{i}/support/{j}/{k}"), id, &mut problems);
+                }
+            }
             for (name, id) in &program.means {
                 room(format!("/programs/{i}/means/{name}"), id, &mut problems);
             }

@@ -172,6 +172,12 @@ pub struct Robot {
     /// What more is known of its body, and whether the building is made so that it fits.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub body: Option<RobotBody>,
+    /// Ids of the rooms that the prompt has it go to; none: to all that robots of its kind go to.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub stops: Vec<String>,
+    /// Types of the rooms that it works in, where the prompt says so; empty for wherever its kind works.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub room_types: Vec<String>,
 }
 
 /// A statement about how the prompt was read.

@@ -241,6 +241,9 @@ fn attempts(
     }
 }
 
+/// Code of the conflict that the plan has another area than was asked for.
+const AREA_MISSED: &str = "area_missed";
+
 /// Conflicts that leave open what is wanted; all others have a natural way out, which was taken.
 const CONTRADICTIONS: &[&str] = &["wanted_and_forbidden", "contradicting_counts", "apart_but_joined"];
 
@@ -311,10 +314,25 @@ fn attempt(
     observe(Event::Finished(Stage::Scenario, attempt, Artifact::Scenario(&scenario)));
 
     begin(Stage::World, attempt, observe, cancelled)?;
-    let world = world::assemble(name, graph.clone(), plan, placements, scenario);
+    let mut told = with_area(graph, &plan);
+    told.conflicts.extend(scene_graph::shortages(domain, graph, &placements));
+    let world = world::assemble(name, told, plan, placements, scenario);
     let report = world::check(&world, domain, retrieved);
     observe(Event::Finished(Stage::World, attempt, Artifact::World(&world, &report)));
     Ok(Generated { world, report, attempts: attempt + 1 })
+}
+
+/// Returns the graph with what became of the area asked for, where the plan has plainly another.
+fn with_area(graph: &SceneGraph, plan: &Floorplan) -> SceneGraph {
+    let mut graph = graph.clone();
+    let said = |n: &Note| n.code == "area_not_reachable" || n.code == AREA_MISSED;
+    let Some(area) = graph.area_m2.filter(|_| !graph.conflicts.iter().any(said)) else { return graph };
+    let net = floorplan::net_area_m2(plan);
+    if (net - area).abs() > floorplan::AREA_MISS * area {
+        let message = format!("{area:.0} m2 were asked for; the plan has {net:.0} m2 with its corridors");
+        graph.conflicts.push(Note { code: AREA_MISSED.into(), message });
+    }
+    graph
 }
 
 /// Puts a world together of a plan and its furniture, and judges it; the scenario goes on under the plan's seed.

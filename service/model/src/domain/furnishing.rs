@@ -92,6 +92,9 @@ pub struct Group {
     /// foot of beds that several patients share.
     #[serde(default)]
     pub clearance_front_m: f64,
+    /// Free floor behind the anchor, m: where staff stand at a counter, and the head of a chair that one treats from behind.
+    #[serde(default, skip_serializing_if = "is_nothing")]
+    pub clearance_back_m: f64,
     /// The others, in order.
     pub members: Vec<Member>,
 }
@@ -119,6 +122,10 @@ pub struct Member {
     /// True when the group is useless without it.
     #[serde(default)]
     pub required: bool,
+}
+
+fn is_nothing(m: &f64) -> bool {
+    *m == 0.0
 }
 
 fn one() -> u32 {

@@ -24,6 +24,14 @@ pub struct Program {
     /// where the number of rooms is fixed the program's order decides.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub vital: Vec<String>,
+    /// Rooms that serve the others, each with what can stand for it: they join a list of rooms that names none of them, and
+    /// give way where the number of rooms is fixed or nothing else is wanted.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub support: Vec<Vec<String>>,
+    /// Rooms to be treated in from which on staff have a toilet of their own beside that of patients, in such a list; 0 for
+    /// never.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub staff_toilet_from: u32,
     /// What large buildings are made of; without it they have more of the same.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub units: Option<Units>,
@@ -261,4 +269,8 @@ pub enum Scheme {
     Racetrack,
     /// Several wings off one spine, with courtyards between.
     Comb,
+}
+
+fn is_zero(n: &u32) -> bool {
+    *n == 0
 }

@@ -32,6 +32,9 @@ pub struct RoomType {
     pub min_dimension_m: f64,
     /// Whether it needs an outer wall with a window.
     pub daylight: Daylight,
+    /// True for windows above what stands at the outer wall: places to be treated at have their heads to it.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub high_windows: bool,
     /// Where its door leads.
     pub access: Access,
     /// Room types it may be entered from when `access` is `host` (an en suite: `bedroom`).

@@ -85,6 +85,9 @@ const ROUNDING: f64 = 1e-9;
 
 /// Share by which the whole may miss the area asked for before it costs.
 const AREA_TOLERANCE: f64 = 0.03;
+/// Share from which on the building is plainly not as large as asked for, and the cost beyond.
+const AREA_MISSES: f64 = 0.08;
+const AREA_MISSED: f64 = 100.0;
 
 /// Verdict on a layout.
 #[derive(Debug, Clone, Copy, Default)]
@@ -482,7 +485,8 @@ impl<'b> Judge<'b> {
         }
         if let Some(area) = brief.area {
             let net: f64 = rooms.iter().map(|r| r.net_m2).sum();
-            score.soft[0] += 20.0 * ((net - area).abs() / area - AREA_TOLERANCE).max(0.0);
+            let miss = (net - area).abs() / area;
+            score.soft[0] += 20.0 * (miss - AREA_TOLERANCE).max(0.0) + AREA_MISSED * (miss - AREA_MISSES).max(0.0);
         }
         score.soft[0] += self.wrong_sizes();
         let perimeter: f64 = rooms.iter().map(|r| meters(r.outer.1)).sum();

@@ -50,6 +50,10 @@ use spec::Brief;
 
 /// Longest net length over width of a room: a hard rule.
 pub(crate) const PROPORTION_LIMIT: f64 = 2.5;
+/// Share by which a plan may miss the area that is asked for.
+pub(crate) const AREA_MISS: f64 = 0.1;
+/// Attempts after which a plan that misses it more is taken all the same.
+const AREA_ATTEMPTS: u64 = 5;
 /// Plans tried before the stage gives up.
 const ATTEMPTS: u64 = 8;
 /// Rooms up to which a building is tried in one body before it is composed of wings, and up to which it is a bar.
@@ -104,7 +108,12 @@ pub fn generate_until(
     brief.widen(&mut rng);
     let mut last = String::from("no layout was found");
     let form = brief.form;
+    // the nearest to the area that is asked for
+    let mut best: Option<(f64, Floorplan)> = None;
     for attempt in 0..ATTEMPTS {
+        if best.is_some() && attempt >= AREA_ATTEMPTS {
+            break;
+        }
         // when a form was tried in vain often enough, any is better than no plan
         brief.form = form.filter(|_| attempt < ATTEMPTS / 2);
         let schemes = schemes(&brief, domain, &mut rng);
@@ -118,14 +127,29 @@ pub fn generate_until(
         }
         let name = format!("{:?}", found.scheme).to_lowercase();
         brief.tell_form(form, found.scheme);
+        brief.tell_symmetry(found.score.symmetry);
         let mut boxes = turned(&found.layout.boxes, turn);
         numbers::along_corridor(graph, &brief, &mut boxes);
         match assemble(&brief, &boxes, &found.score, graph.seed, &name, None, &mut rng) {
-            Ok(plan) => return Ok(plan),
+            Ok(plan) => {
+                let miss = brief.area.map_or(0.0, |area| (net_area_m2(&plan) - area).abs() / area);
+                if miss <= AREA_MISS {
+                    return Ok(plan);
+                }
+                // another way to lay it out may have less corridor
+                if best.as_ref().is_none_or(|(least, _)| miss < *least) {
+                    best = Some((miss, plan));
+                }
+            }
             Err(reason) => last = reason,
         }
     }
-    Err(Error::Infeasible { stage: "floorplan", message: last })
+    best.map(|(_, plan)| plan).ok_or(Error::Infeasible { stage: "floorplan", message: last })
+}
+
+/// Returns the net floor area of a plan, corridors and all storeys with it, m^2.
+pub(crate) fn net_area_m2(plan: &Floorplan) -> f64 {
+    plan.rooms.iter().map(|r| r.net_polygon.area()).sum()
 }
 
 /// Changes a plan to the rooms of a graph, and moves a wall, with as little else changed as the hard rules allow.

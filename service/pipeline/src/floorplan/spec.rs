@@ -24,6 +24,8 @@ const ACCESSIBLE_DOOR_M: f64 = 0.9;
 const MOST_ADVISED_WIDTH: f64 = 1.4;
 /// Advice widens a door by this much at most, m.
 const MOST_ADVISED_DOOR_M: f64 = 0.1;
+/// What a plan that looks symmetric costs for not being so, at most.
+const ALIKE: f64 = 0.5;
 /// Share by which the area aimed for differs from seed to seed, what one room has more of it by itself and many share,
 /// and the range from which on an area may differ.
 const AREA_VARIATION: f64 = 0.07;
@@ -51,6 +53,8 @@ pub(super) struct RoomSpec {
     pub area_max: f64,
     pub min_dimension: f64,
     pub daylight: Daylight,
+    /// True for windows above what stands at the outer wall.
+    pub high_windows: bool,
     pub zone: Zone,
     pub wet: bool,
     /// True for rooms that one locks behind oneself.
@@ -232,6 +236,17 @@ impl Brief {
                 "no plan of {} rooms was found in the form asked for ({asked}); another form was built",
                 self.rooms.iter().filter(|r| !r.circulation).count()
             ),
+        });
+    }
+
+    /// Says so where a symmetric plan was asked for and the best one is not alike on both sides.
+    pub(super) fn tell_symmetry(&mut self, cost: f64) {
+        if self.symmetry != Some(Symmetry::Symmetric) || cost <= ALIKE {
+            return;
+        }
+        self.conflicts.push(Note {
+            code: "not_symmetric".into(),
+            message: "a symmetric plan was asked for; the rooms asked for do not pair up, so that only parts of it are alike on both sides".into(),
         });
     }
 
@@ -433,6 +448,7 @@ fn room_spec(
         area_max,
         min_dimension: max_limit(kind.min_dimension_m, limit.dimension_min.as_ref()).max(fitted),
         daylight: kind.daylight,
+        high_windows: kind.high_windows,
         zone: kind.zone,
         wet: kind.wet,
         private: kind.privacy == Privacy::Private,

@@ -28,6 +28,7 @@ fn room(id: &str, area: [f64; 3], min_dimension: f64, daylight: Daylight, zone: 
         private: false,
         docks: false,
         open_front: false,
+        high_windows: false,
         slides: false,
         entrance: false,
         gate: None,

@@ -90,7 +90,8 @@ fn glass(room: &RoomSpec, net_m2: f64) -> Option<(f64, f64)> {
     let head = HEAD_M.min(room.ceiling_height - 0.2);
     match room.daylight {
         Daylight::Required | Daylight::Preferred | Daylight::Optional => {
-            Some((SILL_M, net_m2 * GLASS_PER_FLOOR / (head - SILL_M)))
+            let sill = if room.high_windows { HIGH_SILL_M } else { SILL_M };
+            Some((sill, net_m2 * GLASS_PER_FLOOR / (head - sill)))
         }
         Daylight::None if room.circulation => Some((SILL_M, 1.0)),
         Daylight::None if room.wet => Some((HIGH_SILL_M, PANE_M.1)),

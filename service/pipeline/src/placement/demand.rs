@@ -1,10 +1,13 @@
 //! What a room should hold: its type's furnishing lines and the wishes of the scene graph, in the order of placing.
 
-use d3dgen_model::domain::{Arrangement, Domain, Furnishing, Mount, ObjectType, RoomType, Shape};
+use d3dgen_model::domain::{Arrangement, Domain, Furnishing, Goods, Mount, ObjectType, RoomType, Shape};
 use d3dgen_model::occupancy::ROBOT_HEIGHT_M;
 use d3dgen_model::scene_graph::{GraphRoom, SceneGraph};
 
+use crate::scene_graph::CLEANING;
+
 use super::seats::is_seat;
+
 use super::state::Placed;
 use super::unit::{Forms, Unit, variants};
 
@@ -39,6 +42,8 @@ pub(super) struct Task<'a> {
     pub first_choice: bool,
     /// True for what somebody asked for by name, and for the bed of two.
     pub asked: bool,
+    /// People who are to sit at it, where it is the one table of its room.
+    pub seats: Option<u32>,
 }
 
 impl Task<'_> {
@@ -115,6 +120,8 @@ pub(super) struct Household<'a> {
     /// True where step-free access is asked for.
     accessible: bool,
     has_robots: bool,
+    /// True when one of them cleans: the docks of rooms for soiled things are theirs.
+    cleans: bool,
     /// Most people that the graph has in one room to sleep in.
     sharing: u32,
 }
@@ -131,6 +138,7 @@ impl<'a> Household<'a> {
             room_types,
             accessible: graph.accessible,
             has_robots: !graph.robots.is_empty(),
+            cleans: graph.robots.iter().any(|r| r.kind == CLEANING),
             sharing: held.filter(|(kind, _)| sleeps(kind)).map(|h| h.1).max().unwrap_or(0),
         }
     }
@@ -144,11 +152,12 @@ impl<'a> Household<'a> {
         self.room_types.iter().map(beds).sum::<u32>().max(self.sharing)
     }
 
-    fn wants(&self, line: &Furnishing) -> bool {
+    fn wants(&self, kind: &RoomType, line: &Furnishing) -> bool {
         let dock = || self.domain.anchor(&line.item).is_some_and(|o| o.shape == Shape::Dock);
         // docks stand where there are robots, or in rooms that are there for them;
         // few lines ask who sleeps there, and to know takes time
-        (line.required || self.has_robots || !dock())
+        let robots = if kind.goods == Goods::Soiled { self.cleans } else { self.has_robots };
+        (line.required || robots || !dock())
             && line.is_for(self.room_types.iter().copied(), self.accessible)
             && (line.sleepers == 0 || self.sleepers() >= line.sleepers)
     }
@@ -167,7 +176,7 @@ pub(super) fn tasks<'a>(
     let occupied = occupied_line(domain, kind, graph, household);
     let named = named(domain, kind, graph);
     let mut out: Vec<Task> = Vec::new();
-    for (line, f) in kind.furnishing.iter().enumerate().filter(|(_, f)| household.wants(f)) {
+    for (line, f) in kind.furnishing.iter().enumerate().filter(|(_, f)| household.wants(kind, f)) {
         let Some(anchor) = domain.anchor(&f.item) else { continue };
         let (mut count, mut required) = (f.units(area_m2).min(MAX_UNITS), if f.required { f.min } else { 0 });
         // what finds no wall of the same stands in rows
@@ -179,12 +188,30 @@ pub(super) fn tasks<'a>(
         {
             count = units.max(f.min);
             required = required.min(count);
+        } else if let Some((steered, _)) = occupied
+            && !f.required
+            && f.arrangement != Arrangement::Rows
+            && [&f.item, &kind.furnishing[steered].item].iter().all(|item| works(domain, item))
+        {
+            // a room has as many desks as people
+            count = 0;
         }
         if f.arrangement == Arrangement::AtWindow {
             count = count.min(windows);
             required = required.min(windows);
         }
-        let asked = named.iter().any(|id| **id == anchor.id);
+        // a table that is asked for may be the larger one that suits the people and the room
+        let larger = |o: &Furnishing| {
+            let named = domain.anchor(&o.item).is_some_and(|a| named.iter().any(|id| **id == a.id));
+            named && o.instead_of.contains(&f.item) && f.units(area_m2) > 0
+        };
+        let seats = matches!(anchor.shape, Shape::Table | Shape::RoundTable);
+        // the same table at a wall comes where it finds no place in the middle
+        let second = kind.furnishing[..line]
+            .iter()
+            .any(|o| f.instead_of.contains(&o.item) && domain.anchor(&o.item).is_some_and(|a| a.id == anchor.id));
+        let asked = named.iter().any(|id| **id == anchor.id) && !(seats && second)
+            || seats && kind.furnishing.iter().any(larger);
         count = count.max(u32::from(asked && f.max > 0));
         if count == 0 {
             continue;
@@ -211,6 +238,7 @@ pub(super) fn tasks<'a>(
             instead_of,
             first_choice,
             asked,
+            seats: if occupied.is_none() { at_table(domain, f, graph) } else { None },
         };
         let together = whole.is_batch() || required == 0 || required == count || occupied.is_some_and(|o| o.0 == line);
         if together {
@@ -240,6 +268,7 @@ pub(super) fn tasks<'a>(
             instead_of: &[],
             first_choice: named.contains(&&object.id),
             asked: named.contains(&&object.id),
+            seats: None,
         });
     }
     if let Some(each) = per_person_m2.filter(|_| occupied.is_none()) {
@@ -320,7 +349,7 @@ fn occupied_line(
 ) -> Option<(usize, u32)> {
     let people = graph?.occupants.filter(|n| *n > 0)?;
     let capacity = |measure: fn(&Unit) -> u32| {
-        kind.furnishing.iter().enumerate().filter(|(_, f)| household.wants(f)).find_map(|(line, f)| {
+        kind.furnishing.iter().enumerate().filter(|(_, f)| household.wants(kind, f)).find_map(|(line, f)| {
             let unit = usual_unit(domain, &f.item)?;
             let each = measure(&unit);
             (each > 0 && f.max > 0).then_some((line, each))
@@ -330,10 +359,42 @@ fn occupied_line(
     let lies = kind.furnishing.first().filter(|f| f.required && f.max > 1 && f.area_per_item_m2 > 0.0);
     let lies = lies.and_then(|f| domain.anchor(&f.item)).is_some_and(|o| o.shape == Shape::Sofa);
     let lying = || lies.then_some((0, 1));
-    let seats = || capacity(|u| u.seats()).filter(|(line, _)| kind.furnishing[*line].max > 1);
-    let (line, each) = capacity(|u| u.beds()).or_else(lying).or_else(|| capacity(|u| u.desks())).or_else(seats)?;
+    let counter = || {
+        let is = |f: &Furnishing| f.required && f.max > 1 && is_shape(domain, &f.item, &[Shape::Counter]);
+        kind.furnishing.iter().position(is).map(|line| (line, 1))
+    };
+    // not the chairs for visitors beside what the room is for
+    let seats = || {
+        let many = |f: &Furnishing| {
+            f.max > 1 && (f.required || is_shape(domain, &f.item, &[Shape::Bench, Shape::Table, Shape::RoundTable]))
+        };
+        kind.furnishing.iter().enumerate().filter(|(_, f)| household.wants(kind, f) && many(f)).find_map(|(line, f)| {
+            let each = usual_unit(domain, &f.item)?.places();
+            (each > 0).then_some((line, each))
+        })
+    };
+    let (line, each) = capacity(|u| u.beds())
+        .or_else(lying)
+        .or_else(counter)
+        .or_else(|| capacity(|u| u.work_places()))
+        .or_else(seats)?;
     let units = people.div_ceil(each).min(MAX_UNITS);
     Some((line, units))
+}
+
+fn works(domain: &Domain, item: &str) -> bool {
+    usual_unit(domain, item).is_some_and(|u| u.work_places() > 0)
+}
+
+fn is_shape(domain: &Domain, item: &str, shapes: &[Shape]) -> bool {
+    domain.anchor(item).is_some_and(|o| shapes.contains(&o.shape))
+}
+
+/// Returns how many people a room is for who sit at its one table.
+fn at_table(domain: &Domain, f: &Furnishing, graph: Option<&GraphRoom>) -> Option<u32> {
+    let people = graph?.occupants.filter(|n| *n > 0)?;
+    let table = f.max == 1 && f.arrangement == Arrangement::Center;
+    (table && usual_unit(domain, &f.item)?.seats() > 1).then_some(people)
 }
 
 /// Returns a group or object as it is where nothing is in the way.
@@ -359,6 +420,7 @@ pub(super) fn one_more(object: &ObjectType) -> Task<'_> {
         instead_of: &[],
         first_choice: false,
         asked: false,
+        seats: None,
     }
 }
 

@@ -80,10 +80,25 @@ pub(super) fn crowding(state: &State, p: &Placed, robot: i32) -> f64 {
     CROWDED * (others + corners) + NARROW * narrow + buffers(p, robot).map(|b| crowded(&b)).sum::<f64>()
 }
 
-/// Returns true for a dock whose robot would touch one that charges beside it.
+/// Returns true for a dock whose robot would touch one that charges beside it, or that one of the two could not leave while
+/// the other charges.
 pub(super) fn touches_robot(state: &State, p: &Placed, robot: i32) -> bool {
     let stands = || state.placed.iter().flat_map(berths);
-    berths(p).any(|own| stands().any(|other| other.gap(&own) < robot + PLAY))
+    let touches = berths(p).any(|own| stands().any(|other| other.gap(&own) < robot + PLAY));
+    let shut = |own: &Placed, other: &Placed| {
+        leaving(own, robot, 2).any(|way| leaving(other, robot, 1).any(|parked| parked.overlaps(&way)))
+    };
+    touches || state.placed.iter().any(|other| shut(p, other) || shut(other, p))
+}
+
+/// Returns the floor before each dock of a unit that is so many robots deep: where one stands, and where it drives off.
+fn leaving(p: &Placed, robot: i32, deep: i32) -> impl Iterator<Item = Box2> {
+    let docks: Vec<(u8, Box2, i32)> = fronts(p).collect();
+    docks.into_iter().map(move |(q, own, _)| {
+        let middle = (own.y0 + own.y1) / 2;
+        let side = robot / 2;
+        Box2 { x0: own.x1, x1: own.x1 + deep * robot, y0: middle - side, y1: middle + side }.turned(q)
+    })
 }
 
 /// Returns true for a place that takes floor of a dock, or for a dock whose floor is taken or used where no robot needs it;

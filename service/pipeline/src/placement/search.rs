@@ -201,6 +201,16 @@ fn relax<'a>(job: &Job<'a, '_>) -> Outcome<'a> {
     best.expect("there is at least one level")
 }
 
+/// Returns forms of a table for so many: the smallest with seats enough first, then those with fewer.
+fn seated<'a>(mut forms: Vec<Unit<'a>>, people: Option<u32>) -> Vec<Unit<'a>> {
+    let Some(people) = people else { return forms };
+    forms.sort_by_key(|unit| match unit.seats() {
+        seats if seats >= people => (0, seats),
+        seats => (1, people - seats),
+    });
+    forms.into_iter().map(|unit| unit.with_seats(people)).collect()
+}
+
 /// One level of strictness with the units built for it.
 struct Pass<'j, 'a, 's> {
     job: &'j Job<'a, 's>,
@@ -217,7 +227,8 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
             let tightness = LEVELS[level].tightness_of(task);
             let free = matches!(task.arrangement, Arrangement::Center | Arrangement::Rows);
             let (sizes, aims, ceiling) = (job.sizes, job.aims, job.space.ceiling);
-            variants(job.domain, task.item, &Forms { sizes, aims, tightness, advised, ceiling, robot: 2 * job.radius })
+            let forms = Forms { sizes, aims, tightness, advised, ceiling, robot: 2 * job.radius };
+            seated(variants(job.domain, task.item, &forms), task.seats)
                 .into_iter()
                 .map(|unit| if free { unit.free_standing() } else { unit })
                 .map(|unit| {

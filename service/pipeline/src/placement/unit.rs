@@ -192,6 +192,37 @@ impl<'a> Unit<'a> {
         self.parts.iter().filter(|p| p.object.shape == Shape::Desk).count() as u32
     }
 
+    /// Returns how many people work or learn at the unit's desks: two at a table for two.
+    pub fn work_places(&self) -> u32 {
+        let works = self.parts.iter().any(|p| p.object.shape == Shape::SwivelChair);
+        match self.desks() {
+            0 => 0,
+            desks if works => desks,
+            desks => self.seats().max(desks),
+        }
+    }
+
+    /// Returns how many people sit on the unit's chairs and benches at their ease.
+    pub fn places(&self) -> u32 {
+        let seats = self.parts.iter().filter(|p| is_seat(p.object.shape));
+        seats.map(|p| if p.object.shape == Shape::Bench { (width_of(p) as u32 / 550).max(1) } else { 1 }).sum()
+    }
+
+    /// Returns the unit with so many seats at most.
+    pub fn with_seats(self, most: u32) -> Self {
+        if self.seats() <= most {
+            return self;
+        }
+        let mut seen = 0;
+        let stays = |p: &Part| {
+            seen += u32::from(is_seat(p.object.shape));
+            !is_seat(p.object.shape) || seen <= most
+        };
+        let mut parts = self.parts;
+        parts.retain(stays);
+        finish_with(self.item, self.group, parts, self.clears, self.parked)
+    }
+
     /// Returns how many people can sit on the unit's chairs.
     pub fn seats(&self) -> u32 {
         self.parts.iter().filter(|p| is_seat(p.object.shape)).map(|p| (width_of(p) as u32 / 450).max(1)).sum()
@@ -349,6 +380,8 @@ impl<'a> Plan<'a, '_> {
         let mut clears = Vec::new();
         let shared = mm(self.group.map_or(0.0, |g| g.clearance_front_m) * self.forms.tightness);
         clears.extend((shared > 0).then(|| Box2 { x0: rect.x1, x1: rect.x1 + shared, ..rect }));
+        let behind = mm(self.group.map_or(0.0, |g| g.clearance_back_m) * self.forms.tightness);
+        clears.extend((behind > 0).then(|| Box2 { x0: rect.x0 - behind, x1: rect.x0, ..rect }));
         finish(self.item, self.group.is_some(), parts, clears, self.forms)
     }
 }

@@ -204,6 +204,11 @@ impl<'a> Floor<'a> {
         self.doors.get_or_init(|| Doors::new(self.plan))
     }
 
+    /// Returns the type of a room; empty for rooms that the plan does not know.
+    pub fn room_type(&self, room_id: &str) -> &str {
+        self.rooms.iter().find(|r| r.plan.room_id == room_id).map_or("", |r| r.plan.room_type.as_str())
+    }
+
     /// Returns how clean what robots carry to and from a room is.
     pub fn goods(&self, room_id: &str) -> Goods {
         self.rooms.iter().find(|r| r.plan.room_id == room_id).map_or(Goods::Usual, |r| r.kind.goods)

@@ -107,9 +107,23 @@ fn start(floor: &Floor, pois: &[Poi], dock: Option<&Poi>, others: &[RobotTask]) 
 /// Returns the points that robots of a trade visit, along a short tour of the storey.
 fn of_trade<'p>(floor: &Floor, robot: &Robot, pois: &'p [Poi]) -> Vec<&'p Poi> {
     let own = format!("{}_point", robot.kind);
+    if !robot.stops.is_empty() {
+        // one point a room: where it serves, else any
+        let in_room = |id: &String| {
+            let rank =
+                |p: &&Poi| [own.as_str(), "entrance", "service_point"].iter().position(|k| *k == p.kind).unwrap_or(3);
+            pois.iter().filter(|p| &p.room_id == id && p.kind != "dock").min_by_key(rank)
+        };
+        let found: Vec<&Poi> = robot.stops.iter().filter_map(in_room).collect();
+        return toured(floor, found, pois.iter().find(|p| p.kind == "dock"));
+    }
     let of_kinds = |kinds: &[&str]| pois.iter().filter(|p| kinds.contains(&p.kind.as_str())).collect::<Vec<&Poi>>();
     let known = [&[own.as_str()][..], &["service_point"], &["entrance", "waiting_bay"]];
-    let found = known.into_iter().map(of_kinds).find(|found| !found.is_empty()).unwrap_or_default();
+    let all: Vec<Vec<&Poi>> = known.into_iter().map(of_kinds).collect();
+    // what the prompt keeps to some rooms visits these, where they have a point of any kind
+    let kept = |p: &&Poi| robot.room_types.iter().any(|t| t == floor.room_type(&p.room_id));
+    let only = all.iter().map(|found| found.iter().copied().filter(kept).collect::<Vec<&Poi>>());
+    let found = only.chain(all.iter().cloned()).find(|found| !found.is_empty()).unwrap_or_default();
     toured(floor, found, pois.iter().find(|p| p.kind == "dock"))
 }
 

@@ -68,7 +68,7 @@ fn nearest<'a>(domain: &'a Domain, program: &Program, beds: u32) -> Option<&'a R
     let found = domain.room_types.iter().enumerate().filter(|(_, kind)| is_bed_room(kind)).filter_map(|(i, kind)| {
         let [low, high] = sleeps(domain, kind)?;
         let off = low.saturating_sub(beds) + beds.saturating_sub(high);
-        Some(((off, beds < low, !listed(&kind.id), i), kind))
+        Some(((off, beds < low, !is_for_beds(domain, kind), !listed(&kind.id), i), kind))
     });
     found.min_by_key(|f| f.0).map(|f| f.1)
 }
@@ -76,6 +76,13 @@ fn nearest<'a>(domain: &'a Domain, program: &Program, beds: u32) -> Option<&'a R
 /// Returns true for rooms that people simply stay in: no bays, and none that one enters through another.
 fn is_bed_room(kind: &RoomType) -> bool {
     kind.zone == Zone::Night && kind.privacy == Privacy::Private && kind.access != Access::Host
+}
+
+/// Returns true for rooms of which a program counts the beds, and their variants: a room to calm down in is no bedroom for
+/// several, however wide its couch is.
+fn is_for_beds(domain: &Domain, kind: &RoomType) -> bool {
+    let of = |e: &ProgramRoom| e.occupants == Occupants::Beds && kind.id.starts_with(&e.room_type);
+    domain.programs.iter().flat_map(|p| &p.rooms).any(of)
 }
 
 /// Returns the beds of a room that the prompt tells by them alone: "a 4-bed room", "Vierbettzimmer", "chambre à 4 lits".
@@ -220,19 +227,14 @@ impl Choice<'_> {
             self.program.rooms.iter().find(|e| e.occupants == Occupants::Beds).map(|e| format!("{}_", e.room_type));
         let variant = |kind: &RoomType| own.as_ref().is_some_and(|own| kind.id.starts_with(own));
         let listed = |kind: &RoomType| variant(kind) || self.program.rooms.iter().any(|e| e.room_type == kind.id);
-        // a room to calm down in is no bedroom for several, however wide its couch is
-        let entries = || self.domain.programs.iter().flat_map(|p| &p.rooms);
-        let bedroom = |kind: &RoomType| {
-            let of = |e: &ProgramRoom| e.occupants == Occupants::Beds && kind.id.starts_with(&e.room_type);
-            entries().any(of)
-        };
+        let bedroom = |kind: &RoomType| is_for_beds(self.domain, kind);
         for m in mentions.iter_mut() {
             let kind = m
                 .room_type()
                 .and_then(|id| self.domain.room_type(id))
                 .filter(|k| is_bed_room(k) && bedroom(k) && !listed(k));
             let beds = kind.and_then(|k| sleeps(self.domain, k)).filter(|[low, _]| *low > 1);
-            let alike = |k: &&RoomType| listed(k) && is_bed_room(k) && sleeps(self.domain, k) == beds;
+            let alike = |k: &&RoomType| listed(k) && is_bed_room(k) && bedroom(k) && sleeps(self.domain, k) == beds;
             if let Some(other) = beds.and_then(|_| self.domain.room_types.iter().find(alike)) {
                 m.what = What::Room(other.id.clone());
             }
@@ -337,6 +339,29 @@ impl Sleepers<'_> {
         assumptions: &mut Vec<Note>,
         conflicts: &mut Vec<Note>,
     ) -> Settled {
+        // "10 beds in single rooms, an isolation room": there these are beside the beds
+        let apart = if self.told(wishes).is_empty() { self.apart(wishes) } else { 0 };
+        let Some(beds) = self.beds.filter(|n| apart > 0 && *n > apart) else {
+            return self.settle_open(wishes, assumptions, conflicts);
+        };
+        let message = format!("of the {beds} beds {apart} are in the isolation rooms");
+        assumptions.push(note("beds_apart", message));
+        let others = Sleepers { beds: Some(beds - apart), ..*self };
+        let settled = others.settle_open(wishes, assumptions, conflicts);
+        Settled { beds: settled.beds.map(|n| n + apart), ..settled }
+    }
+
+    /// Returns the beds of rooms that are entered through a lock: who counts the beds of a ward counts these too.
+    fn apart(&self, wishes: &Wishes) -> u32 {
+        let lock = |w: &Wish| {
+            self.domain.room_type(&w.room_type).filter(|k| k.access == Access::Host && k.zone == Zone::Night)
+        };
+        let beds = |w: &Wish| Some(w.count * sleeps(self.domain, lock(w)?)?[0]);
+        wishes.wishes.iter().filter_map(beds).sum()
+    }
+
+    /// As [`Self::settle`], for the beds of all other rooms.
+    fn settle_open(&self, wishes: &mut Wishes, assumptions: &mut Vec<Note>, conflicts: &mut Vec<Note>) -> Settled {
         let told = self.told(wishes);
         let counts_beds = self.program.rooms.iter().any(|e| e.occupants == Occupants::Beds);
         if told.is_empty() {
@@ -472,6 +497,7 @@ impl Sleepers<'_> {
                 exact: true,
                 name: label.clone(),
                 area_m2: None,
+                size: None,
                 listed: false,
             }),
         }

@@ -6,7 +6,7 @@ use d3dgen_model::domain::{Domain, Words};
 use d3dgen_plugins::Registry;
 
 use super::numbers::Number;
-use super::text::{Kind, Phrases, Span, Token};
+use super::text::{Kind, Phrases, Span, Token, fold};
 use super::words::{Spoken, Tag, words};
 
 /// The building a prompt names.
@@ -142,7 +142,11 @@ pub(super) fn recognize(
     let own_kind = kind;
     let kind = kind.or_else(|| other_type(&found, domain));
     let listed_type = own_kind.is_none() && kind.is_some() && !head_final;
-    let parts = if head_final { Vec::new() } else { parts(&found, *span, list_from, (domain, kind), &domains) };
+    let parts = if head_final {
+        Vec::new()
+    } else {
+        parts(&found, *span, list_from, (domain, kind), &domains, (tokens, spoken))
+    };
     Some(Building {
         domain: domains[domain].id.clone(),
         building_type: kind.map(|k| domains[domain].building_types[k].id.clone()),
@@ -162,17 +166,30 @@ fn parts(
     list_from: usize,
     built: (usize, Option<usize>),
     domains: &[&Domain],
+    words: (&[Token], &[&Spoken]),
 ) -> Vec<Part> {
     let listed = found.iter().filter(|(span, _)| *span != own && span.start >= list_from && span.start > own.start);
     listed
         .filter_map(|(span, meaning)| {
             let same = meaning.iter().find(|m| m.0 == built.0);
             let (domain, kind) = same.or(meaning.first()).copied()?;
+            let kind = kind.or_else(|| begun_by(domains[domain], *span, words));
             let kind = kind.filter(|_| (domain, kind) != built)?;
             let building_type = domains[domain].building_types[kind].id.clone();
             Some(Part { span: *span, domain: domains[domain].id.clone(), building_type })
         })
         .collect()
+}
+
+/// Returns the department whose name begins with a word that is an item of the list by itself: "ICU, outpatient".
+fn begun_by(domain: &Domain, span: Span, (tokens, spoken): (&[Token], &[&Spoken])) -> Option<usize> {
+    let parts = |i: usize| {
+        tokens.get(i).is_none_or(|t| t.is_mark() || spoken.iter().any(|s| s.tag_at(tokens, i, Tag::Joins).is_some()))
+    };
+    let whole = span.start > 0 && parts(span.start - 1) && parts(span.end);
+    let name = tokens.get(span.start).filter(|_| whole && span.end == span.start + 1)?.text.as_str();
+    let begins = |phrase: &String| phrase.split_once(' ').is_some_and(|(first, _)| fold(first) == name);
+    domain.building_types.iter().position(|b| b.keywords.values().flatten().any(begins))
 }
 
 /// Returns true for a building word that a number before it makes a word for rooms: "two offices", "two large offices",
@@ -299,7 +316,10 @@ fn is_item(tokens: &[Token], start: usize, spoken: &[&Spoken], first: bool) -> b
 
 /// Returns a building type of the domain named elsewhere ("hospital: an intensive care unit").
 fn other_type(found: &[(Span, Meaning)], domain: usize) -> Option<usize> {
-    found.iter().flat_map(|(_, m)| m).find_map(|(d, kind)| kind.filter(|_| *d == domain))
+    let mut kinds = found.iter().flat_map(|(_, m)| m).filter_map(|(d, kind)| kind.filter(|_| *d == domain));
+    let first = kinds.next()?;
+    // a building with several departments is none of them
+    kinds.all(|kind| kind == first).then_some(first)
 }
 
 /// Returns where a list of rooms begins: after "with", a colon, or the first comma.

@@ -1,5 +1,6 @@
 //! Words for several rooms at once: "kitchen-living room", "Wohn-Essbereich", "salón comedor" are joined by openings, a
-//! "master suite" is a bedroom and the bathroom entered from it. And "open kitchen": open to whatever room it serves.
+//! "master suite" is a bedroom and the bathroom entered from it, a "living room with kitchen corner" one room. And "open
+//! kitchen": open to whatever room it serves.
 
 use d3dgen_model::domain::{Access, Domain};
 use d3dgen_model::scene_graph::Connector;
@@ -7,7 +8,12 @@ use d3dgen_model::scene_graph::Connector;
 use super::mentions::{Mention, What};
 use super::relations::{Relation, Said, Spread};
 use super::text::{Kind, Span, Token};
-use super::words::{Spoken, Tag};
+use super::words::{Spoken, Tag, words};
+
+/// Words before a suite that say whose it is, at most: "elderly grandparents' suite".
+const MOST_OF_SUITE: usize = 2;
+/// Words between a room to live in and the kitchen in it, at most: "living room with a small kitchenette".
+const MOST_TO_CORNER: usize = 4;
 
 /// Words for several rooms.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -15,6 +21,8 @@ pub(super) struct Compound {
     pub span: Span,
     /// Types of its rooms, no type twice.
     pub room_types: Vec<String>,
+    /// True for rooms that only share a noun: "single and double rooms".
+    pub mixed: bool,
 }
 
 /// Returns the compounds of a prompt whose rooms the domain knows, in order; none overlaps what is taken.
@@ -23,26 +31,81 @@ pub(super) fn find(
     prompt: &str,
     domain: &Domain,
     spoken: &[&Spoken],
+    names_room: impl Fn(usize) -> bool,
     taken: impl Fn(Span) -> bool,
 ) -> Vec<Compound> {
     let mut out: Vec<Compound> = Vec::new();
     let mut i = 0;
     while i < tokens.len() {
         let suite = spoken.iter().filter_map(|s| s.suites.longest_at(tokens, i)).max_by_key(|f| f.0);
-        let found = match suite {
+        let mix = spoken.iter().filter_map(|s| s.mixes.longest_at(tokens, i)).max_by_key(|f| f.0);
+        let mixed = mix.is_some();
+        let found = match mix.or(suite) {
             Some((end, types)) => Some((end, types.clone())),
-            None => joint(tokens, prompt, i, spoken),
+            None => with_corner(tokens, i, spoken)
+                .map(|end| (end, vec![words().dwelling.living_kitchen.clone()]))
+                .or_else(|| joint(tokens, prompt, i, spoken))
+                .or_else(|| any_suite(tokens, i, spoken, &names_room)),
         };
         let known = |t: &String| domain.room_type(t).is_some();
         match found.filter(|(end, types)| types.iter().all(known) && !taken(Span { start: i, end: *end })) {
             Some((end, room_types)) => {
-                out.push(Compound { span: Span { start: i, end }, room_types });
+                out.push(Compound { span: Span { start: i, end }, room_types, mixed });
                 i = end;
             }
             None => i += 1,
         }
     }
     out
+}
+
+/// Reads one room to live and cook in: "living room with a kitchen corner", "Kochnische im Wohnzimmer"; returns its end.
+fn with_corner(tokens: &[Token], i: usize, spoken: &[&Spoken]) -> Option<usize> {
+    let living = &words().dwelling.living;
+    let tagged = |k: usize, tag| spoken.iter().find_map(|s| s.tag_at(tokens, k, tag));
+    let lives = |k: usize| {
+        let found = spoken.iter().filter_map(|s| s.joint.longest_at(tokens, k)).max_by_key(|f| f.0);
+        let (end, _) = found.filter(|(_, types)| types.len() == 1 && types[0] == *living)?;
+        // "living area"
+        let noun = tagged(end, Tag::SpaceWords).or_else(|| tagged(end, Tag::RoomWords));
+        Some(noun.filter(|e| *e == end + 1).unwrap_or(end))
+    };
+    let corner = |k: usize| tagged(k, Tag::Corners);
+    let (end, link, second): (usize, Tag, &dyn Fn(usize) -> Option<usize>) = match (lives(i), corner(i)) {
+        (Some(end), _) => (end, Tag::Starts, &corner),
+        (None, Some(end)) => (end, Tag::Inside, &lives),
+        (None, None) => return None,
+    };
+    let from = tagged(end, link)?;
+    (from..(from + MOST_TO_CORNER).min(tokens.len())).take_while(|&k| !tokens[k].is_mark()).find_map(second)
+}
+
+/// Reads a suite by its last word, whoever it is for: "grandparents' suite", "two guest suites".
+fn any_suite(
+    tokens: &[Token],
+    i: usize,
+    spoken: &[&Spoken],
+    names_room: &impl Fn(usize) -> bool,
+) -> Option<(usize, Vec<String>)> {
+    let tagged = |k: usize, tag| spoken.iter().find_map(|s| s.tag_at(tokens, k, tag));
+    // what a phrase for something else begins with is no name of a suite; "en suite" is no suite
+    let part = [Tag::Stops, Tag::Starts, Tag::Joins, Tag::Articles, Tag::Definite, Tag::Own, Tag::Near, Tag::No];
+    let name = |k: usize| {
+        let token = &tokens[k];
+        let number = spoken.iter().any(|s| s.numbers.contains_key(&token.text));
+        let other = part.iter().any(|&t| tagged(k, t).is_some());
+        token.kind == Kind::Word && token.text != "en" && !number && !other && !names_room(k)
+    };
+    let end = |k: usize| tagged(k, Tag::SuiteWords).filter(|_| tokens[k].kind == Kind::Word);
+    let named = (i..(i + MOST_OF_SUITE + 1).min(tokens.len()))
+        .take_while(|&k| k == i || name(k - 1))
+        .find(|&k| end(k).is_some())?;
+    // "bathroom suite", "en suite"
+    if named == i && (i == 0 || tokens[i - 1].text == "en" || names_room(i - 1) || tagged(i - 1, Tag::Own).is_some()) {
+        return None;
+    }
+    let d = &words().dwelling;
+    end(named).map(|end| (end, vec![d.bedroom.clone(), d.ensuite.clone()]))
 }
 
 /// Reads rooms of the day that one phrase names: "open plan kitchen, dining and living area".
@@ -103,6 +166,10 @@ pub(super) fn settle(tokens: &[Token], compounds: &[Compound], spoken: &[&Spoken
     for compound in compounds {
         let Some(first) = mentions.iter().position(|m| m.span == compound.span) else { continue };
         let head = mentions[first].clone();
+        if compound.mixed {
+            share(mentions, compound, &head);
+            continue;
+        }
         let before = mentions[..first].iter().rev().find(|m| m.what == head.what && m.count.is_some_and(|n| n > 1));
         let part = before.is_some_and(|m| {
             (m.span.end..compound.span.start).any(|k| spoken.iter().any(|s| s.tag_at(tokens, k, Tag::PartOf).is_some()))
@@ -121,7 +188,7 @@ pub(super) fn settle(tokens: &[Token], compounds: &[Compound], spoken: &[&Spoken
         }
     }
     // "Wohnküche, Wohnzimmer": what one word names beside the kitchen may be named by itself
-    for compound in compounds.iter().filter(|c| c.span.end == c.span.start + 1) {
+    for compound in compounds.iter().filter(|c| !c.mixed && c.span.end == c.span.start + 1) {
         let own = |m: &Mention| m.span == compound.span;
         let elsewhere = |what: &What| mentions.iter().any(|m| !own(m) && &m.what == what);
         let spare: Vec<What> = mentions.iter().filter(|m| own(m)).skip(1).map(|m| m.what.clone()).collect();
@@ -130,14 +197,78 @@ pub(super) fn settle(tokens: &[Token], compounds: &[Compound], spoken: &[&Spoken
     }
 }
 
+/// Takes the rooms that are told of a suite for its own: "grandparents' suite (bedroom, bathroom, sitting room)" has one
+/// bedroom. Returns the words that name nothing more.
+pub(super) fn hold_own(
+    tokens: &[Token],
+    prompt: &str,
+    compounds: &[Compound],
+    mentions: &mut Vec<Mention>,
+    domain: &Domain,
+    spoken: &[&Spoken],
+) -> Vec<Span> {
+    let d = &words().dwelling;
+    let mut told: Vec<Span> = Vec::new();
+    let at = |k: usize, c: char| tokens.get(k).is_some_and(|t| prompt.get(t.start..).is_some_and(|p| p.starts_with(c)));
+    let tagged = |k: usize, tag| spoken.iter().find_map(|s| s.tag_at(tokens, k, tag));
+    for compound in compounds.iter().filter(|c| c.room_types.len() > 1 && c.room_types[1] == d.ensuite) {
+        let from = compound.span.end;
+        let bracket = at(from, '(');
+        let Some(start) = bracket.then_some(from + 1).or_else(|| tagged(from, Tag::Starts)) else { continue };
+        let mut end = (start..tokens.len()).find(|&k| at(k, ')')).unwrap_or(tokens.len());
+        if !bracket {
+            // "suite with bedroom, bathroom and sitting room": up to what is joined by "and", or the next thing
+            let stop = |k: &usize| tokens[*k].ends_sentence() || tagged(*k, Tag::Starts).is_some();
+            end = (start..tokens.len()).find(stop).unwrap_or(tokens.len());
+        }
+        let mut last = false;
+        let mut count = None;
+        for m in mentions.iter_mut().filter(|m| m.span.start >= start && m.span.end <= end) {
+            let Some(kind) = m.room_type().and_then(|id| domain.room_type(id)) else { break };
+            let sleeps = compound.room_types[0] == kind.id || kind.id == d.bedroom;
+            let washes = kind.id == d.bathroom || kind.id == d.ensuite || kind.id == d.shower;
+            let joined = m.from.checked_sub(1).is_some_and(|k| tagged(k, Tag::Joins).is_some());
+            if last || !(bracket || sleeps || washes || joined) {
+                break;
+            }
+            last = !bracket && joined;
+            if sleeps {
+                count = m.count.filter(|n| *n > 1 && !m.article);
+            }
+            if sleeps || washes {
+                told.push(m.span);
+            } else if kind.id == d.living && domain.room_type(&d.suite_sitting).is_some() {
+                m.what = What::Room(d.suite_sitting.clone());
+            }
+        }
+        if let Some(n) = count.and_then(|n| mentions.iter_mut().find(|m| m.span == compound.span).map(|m| (m, n))) {
+            (n.0.count, n.0.article) = (Some(n.1), false);
+        }
+    }
+    mentions.retain(|m| !told.contains(&m.span));
+    told
+}
+
+/// Shares the number of "12 single and double rooms" out to them; without one their beds say how many there are.
+fn share(mentions: &mut [Mention], compound: &Compound, head: &Mention) {
+    let kinds = compound.room_types.len() as i64;
+    let told = head.count.filter(|n| !head.article && *n >= kinds);
+    for (k, m) in mentions.iter_mut().filter(|m| m.span == compound.span).enumerate() {
+        let k = k as i64;
+        m.from = head.from;
+        m.count = told.map(|n| n / kinds + i64::from(k < n % kinds));
+        (m.plural, m.article, m.vague) = (true, false, head.vague);
+    }
+}
+
 /// Joins the rooms of each compound: an en suite to the room it is entered from, others by openings.
 pub(super) fn relate(compounds: &[Compound], mentions: &[Mention], domain: &Domain, said: &mut Said) {
-    for compound in compounds {
+    for compound in compounds.iter().filter(|c| !c.mixed) {
         let all: Vec<usize> = (0..mentions.len()).filter(|&m| mentions[m].span == compound.span).collect();
         for pair in all.windows(2) {
             let kind = mentions[pair[1]].room_type().and_then(|id| domain.room_type(id));
             let belongs = kind.is_some_and(|k| k.access == Access::Host);
-            let (subject, object) = if belongs { (pair[1], pair[0]) } else { (pair[0], pair[1]) };
+            let (subject, object) = if belongs { (pair[1], all[0]) } else { (pair[0], pair[1]) };
             let connector = if belongs { Connector::Door } else { Connector::Open };
             said.relations.push(Relation { subject, object, connector, spread: Spread::Each, apart: false, belongs });
         }

@@ -17,7 +17,15 @@ pub(super) struct ShortForm {
 }
 
 /// Returns the short forms of a prompt; none in domains without the room types of a dwelling.
-pub(super) fn short_forms(tokens: &[Token], numbers: &[Number], domain: &Domain, spoken: &[&Spoken]) -> Vec<ShortForm> {
+///
+/// In a home that people share each of the rooms to live in is somebody's own (`shared`).
+pub(super) fn short_forms(
+    tokens: &[Token],
+    numbers: &[Number],
+    domain: &Domain,
+    spoken: &[&Spoken],
+    shared: bool,
+) -> Vec<ShortForm> {
     let d = &words().dwelling;
     if [&d.living, &d.bedroom, &d.kitchen].iter().any(|id| domain.room_type(id).is_none()) {
         return Vec::new();
@@ -31,7 +39,8 @@ pub(super) fn short_forms(tokens: &[Token], numbers: &[Number], domain: &Domain,
             .or_else(|| counted(tokens, i, numbers, d, domain, spoken))
             .or_else(|| one_word(tokens, i, d, spoken))
             .or_else(|| chinese(tokens, i, numbers, d));
-        out.extend(found.filter(|f| f.rooms.values().all(|n| (0..=60).contains(n))).map(|f| one_room(f, domain, d)));
+        let form = |f| if shared { own_rooms(f, d) } else { one_room(f, domain, d) };
+        out.extend(found.filter(|f| f.rooms.values().all(|n| (0..=60).contains(n))).map(form));
     }
     out
 }
@@ -43,6 +52,17 @@ fn one_room(form: ShortForm, domain: &Domain, d: &Dwelling) -> ShortForm {
         Some(kind) => ShortForm { rooms: BTreeMap::from([(kind.id.clone(), 1)]), ..form },
         None => form,
     }
+}
+
+/// Turns all rooms to live in into bedrooms: "WG mit 4 Zimmern".
+fn own_rooms(form: ShortForm, d: &Dwelling) -> ShortForm {
+    let lived_in = form.rooms.iter().filter(|(id, _)| d.live_in.contains(id)).map(|r| r.1).sum::<i64>();
+    if !form.rooms.contains_key(&d.living) {
+        return form;
+    }
+    let mut rooms: BTreeMap<String, i64> = form.rooms.into_iter().filter(|(id, _)| !d.live_in.contains(id)).collect();
+    rooms.insert(d.bedroom.clone(), lived_in);
+    ShortForm { rooms, ..form }
 }
 
 fn rooms_to_live(n: f64, d: &Dwelling) -> BTreeMap<String, i64> {

@@ -425,7 +425,16 @@ fn robots(plan: &Floorplan, brought: &Brought) -> Result<Vec<Robot>, Error> {
             refused(format!("robot `{kind}` is not known; known are {}", known.join(", ")))
         })?;
         let radius_m = brought.robot_radius_m.unwrap_or(body.radius_m);
-        Ok(Robot { kind, count: 1, radius_m, height_m: body.height_m, charging, body: None })
+        Ok(Robot {
+            kind,
+            count: 1,
+            radius_m,
+            height_m: body.height_m,
+            charging,
+            body: None,
+            stops: Vec::new(),
+            room_types: Vec::new(),
+        })
     };
     kinds.into_iter().map(robot).collect()
 }

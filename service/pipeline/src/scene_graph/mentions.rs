@@ -534,6 +534,12 @@ fn part_by_sex(tokens: &[Token], vocabulary: &Vocabulary, spoken: &[&Spoken], ou
         if !(behind.end < tokens.len() && other(behind.end)) {
             sexes.extend(behind.filter_map(stem));
         }
+        // "getrennte WCs", "toilettes séparées"
+        let end = m.span.end;
+        let parted = |i: usize| i < tokens.len() && tagged(tokens, i, spoken, Tag::Parted);
+        if m.span.start.checked_sub(1).is_some_and(parted) || parted(end) {
+            sexes = ["", "s"].map(str::to_owned).into();
+        }
         let open = m.count.is_none() || m.article || m.count == Some(1);
         if open && !sexes.is_empty() {
             (m.count, m.article, m.vague) = (Some(sexes.len().min(2) as i64), false, false);

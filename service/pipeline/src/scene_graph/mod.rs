@@ -11,7 +11,9 @@ mod deal;
 mod docks;
 mod dwelling;
 mod edges;
+mod fixtures;
 mod given;
+mod keeps;
 mod language;
 mod layout;
 mod measures;
@@ -22,14 +24,18 @@ mod parts;
 mod places;
 mod program;
 mod proposed;
+mod qualities;
 mod reading;
 mod relations;
 mod robots;
 mod rooms;
 mod seated;
+mod seats;
 mod senses;
+mod sharing;
 mod single;
 mod stations;
+mod stays;
 mod storeys;
 mod styles;
 mod text;
@@ -40,6 +46,7 @@ mod unread;
 mod vital;
 mod wishes;
 mod words;
+mod workers;
 
 use d3dgen_knowledge::Query;
 use d3dgen_model::robot_body::RobotBody;
@@ -52,7 +59,8 @@ use self::program::Planned;
 pub(crate) use self::proposed::suits;
 pub use self::proposed::{BY_PROPOSAL, Draft, DraftEdge, DraftRoom, Settled, propose};
 use self::reading::Reading;
-pub(crate) use self::rooms::{dock_rank, most_docks, wished_assets};
+pub(crate) use self::rooms::{CLEANING, dock_rank, most_docks, wished_assets};
+pub(crate) use self::seats::shortages;
 use crate::Error;
 
 /// Reason of the doors to the corridor or hall.
@@ -133,6 +141,7 @@ fn assemble(request: &Request, mut reading: Reading, planned: &[Planned]) -> Sce
         (edges::connect(&mut reading, planned, &mut rooms), Vec::new())
     };
     rooms::add_docks(reading.domain, &reading.robots, &reading.docked, &mut rooms);
+    robots::send(&reading.errand, &rooms, &mut reading.robots);
     SceneGraph {
         version: 1,
         prompt: request.prompt.clone(),

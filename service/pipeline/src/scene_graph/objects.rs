@@ -5,15 +5,15 @@ use d3dgen_plugins::Registry;
 
 use super::mentions::Mention;
 use super::text::{Phrases, Span, Token};
+use super::words::{Spoken, Tag};
 
 /// Returns the objects that are named, each with the room type named before it; what is part of a room's name or of the
 /// spans that are no things is none. Adds the words for them to `spans`.
 pub(super) fn named(
     tokens: &[Token],
     mentions: &[Mention],
-    domain: &Domain,
-    registry: &Registry,
-    languages: &[&str],
+    (domain, registry): (&Domain, &Registry),
+    (languages, spoken): (&[&str], &[&Spoken]),
     not_things: &[Span],
     spans: &mut Vec<Span>,
 ) -> Vec<(String, Option<String>)> {
@@ -36,8 +36,10 @@ pub(super) fn named(
             let other = |end: usize| not_things.iter().any(|s| s.start <= i && end <= s.end);
             match phrases.longest_at(tokens, i).filter(|found| !inside && !other(found.0)) {
                 Some((end, id)) => {
-                    let with = mentions.iter().rev().filter(|m| m.span.end <= i).find_map(|m| m.room_type());
-                    let near = with.map(str::to_owned);
+                    let with = mentions.iter().rev().filter(|m| m.span.end <= i).find(|m| m.room_type().is_some());
+                    // "a nurse's room, baby changing": an item of its own is in none of the rooms before it
+                    let with = with.filter(|m| !is_item(tokens, m.span.end..i, spoken));
+                    let near = with.and_then(|m| m.room_type()).map(str::to_owned);
                     spans.push(Span { start: i, end });
                     if !out.iter().any(|o| &o.0 == id) {
                         out.push((id.clone(), near));
@@ -49,4 +51,14 @@ pub(super) fn named(
         }
     }
     out
+}
+
+/// Returns true for a thing behind a comma, where nothing before says that it is in a room: "with", a colon, a bracket.
+fn is_item(tokens: &[Token], gap: std::ops::Range<usize>, spoken: &[&Spoken]) -> bool {
+    let opens = |i: usize| {
+        let holds = [Tag::Starts, Tag::Inside, Tag::Each];
+        let tagged = |tag: &Tag| spoken.iter().any(|s| s.tag_at(tokens, i, *tag).is_some());
+        matches!(tokens[i].mark(), Some(':' | '(')) || holds.iter().any(tagged)
+    };
+    gap.clone().any(|i| tokens[i].mark() == Some(',')) && !gap.into_iter().any(opens)
 }

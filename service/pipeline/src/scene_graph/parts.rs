@@ -13,6 +13,8 @@ use super::wishes::{Wish, Wishes};
 
 /// Room types that a department is planned with, at most.
 const MOST_TYPES: usize = 4;
+/// Lines of its program that say how many rooms there are at least that it is for.
+const USUAL: usize = 8;
 /// Words between a department and its beds, at most: "with".
 const MOST_TO_BEDS: usize = 2;
 
@@ -49,7 +51,12 @@ pub(super) fn plan(
         let beds = beds_of(part.span, tokens, mentions);
         let added = add_rooms(own, program, domain, beds, wishes);
         if added.is_empty() {
-            out.left.push(part.clone());
+            let named = own.rooms.first().is_some_and(|e| wishes.wishes.iter().any(|w| w.room_type == e.room_type));
+            if named {
+                out.planned.push(part.span)
+            } else {
+                out.left.push(part.clone())
+            }
             continue;
         }
         out.beds = beds.map(|b| b + out.beds.unwrap_or(0)).or(out.beds);
@@ -80,16 +87,28 @@ fn add_rooms(own: &Program, main: &Program, domain: &Domain, beds: Option<u32>, 
             continue;
         }
         seen.push(id);
-        let known = main.rooms.iter().any(|e| e.room_type == id) || wishes.wishes.iter().any(|w| w.room_type == id);
+        // what the department is for is there whatever the building has
+        let leads = seen.len() == 1;
+        let known =
+            !leads && main.rooms.iter().any(|e| e.room_type == id) || wishes.wishes.iter().any(|w| w.room_type == id);
         if known || wishes.forbidden.iter().any(|f| f == id) {
             continue;
         }
         let counted = beds.filter(|_| entry.occupants == Occupants::Beds);
-        let count = counted.map_or(entry.min, |n| n.div_ceil(entry.occupants_per_room.unwrap_or(1).max(1)));
+        let usual = own.rooms.iter().take(USUAL).filter(|e| leads && e.room_type == id).map(|e| e.min).sum();
+        let count = counted.map_or(entry.min.max(usual), |n| n.div_ceil(entry.occupants_per_room.unwrap_or(1).max(1)));
         let label = domain.room_type_or_generic(id).label.to_lowercase();
         out.push(format!("{count} x {label}"));
         let room_type = id.to_owned();
-        wishes.wishes.push(Wish { room_type, count, exact: false, name: label, area_m2: None, listed: false });
+        wishes.wishes.push(Wish {
+            room_type,
+            count,
+            exact: false,
+            name: label,
+            area_m2: None,
+            size: None,
+            listed: false,
+        });
     }
     out
 }

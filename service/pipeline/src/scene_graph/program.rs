@@ -10,14 +10,16 @@ use d3dgen_model::domain::{
 use super::beds::{Held, sleeps};
 use super::layout;
 use super::places::note;
-use super::reading::{MAX_ROOMS, Reading, is_dwelling};
+use super::reading::{MAX_ROOMS, MOST_IN_OFFICE, Reading, is_dwelling};
 use super::rooms::most_docks;
 use super::seated;
+use super::seats;
 use super::stations;
 use super::units;
 use super::vital;
 use super::wishes::{CHARGING, Pair, PerHost, Wish};
 use super::words::words;
+use super::workers;
 
 /// Rooms of a building planned by area alone.
 const MOST_BY_AREA: usize = 60;
@@ -26,6 +28,9 @@ const CIRCULATION_SHARE: f64 = 0.14;
 
 /// Floor for a desk of a room whose domain says nothing of it, m^2.
 const DESK_AREA_M2: f64 = 9.0;
+
+/// Share of a room's usual area from which on its people need all of it.
+const FULL: f64 = 0.8;
 
 /// Width of one seat of a bench, m.
 const SEAT_M: f64 = 0.5;
@@ -49,6 +54,8 @@ pub(super) struct Planned<'a> {
     pub name: Option<String>,
     /// Area the prompt gives, m^2.
     pub area_m2: Option<f64>,
+    /// Factor on its usual area that the prompt asks for.
+    pub size: Option<f64>,
     /// Area that the people in it ask for, m^2.
     pub people_area_m2: Option<f64>,
     /// Area that a proposal gives, m^2; within the range of its type.
@@ -60,11 +67,15 @@ pub(super) struct Planned<'a> {
     pub occupants: Option<u32>,
     /// Unit of a large building that it belongs to.
     pub unit: Option<String>,
+    /// What the prompt calls it, where that is not the label of its type.
+    pub called: Option<String>,
+    /// True where its occupants only meet, wait or eat there.
+    pub visited: bool,
 }
 
 impl<'a> Planned<'a> {
     /// Sizes a room by the people it is for, within what its type allows; a size that the prompt gives stays.
-    fn size_for_people(&mut self, area_m2: f64) {
+    pub(super) fn size_for_people(&mut self, area_m2: f64) {
         let range = self.kind.area_m2;
         self.people_area_m2 = self.area_m2.is_none().then(|| area_m2.clamp(range.min, range.max));
     }
@@ -76,12 +87,15 @@ impl<'a> Planned<'a> {
             kind,
             name: None,
             area_m2: None,
+            size: None,
             people_area_m2: None,
             proposed_area_m2: None,
             requested: false,
             host: None,
             occupants: None,
             unit: None,
+            called: None,
+            visited: false,
         }
     }
 }
@@ -108,8 +122,17 @@ pub(super) fn complete<'a>(reading: &mut Reading<'a>) -> Vec<Planned<'a>> {
 /// Gives rooms that are settled their people and hosts, and states which of them the prompt does not name.
 pub(super) fn finish<'a>(reading: &mut Reading<'a>, mut rooms: Vec<Planned<'a>>) -> Vec<Planned<'a>> {
     wash_on_every_storey(reading, &mut rooms);
+    if reading.building_type.as_ref().is_some_and(|b| words().dwelling.shared.contains(b)) {
+        // a room to sleep and work in is not to come out small
+        let own = |r: &&mut Planned| r.room_type == words().dwelling.bedroom && r.area_m2.is_none();
+        rooms.iter_mut().filter(own).for_each(|r| r.size = r.size.or(Some(1.0)));
+    }
+    hold_beds(reading, &mut rooms);
+    workers::settle(reading, &mut rooms);
     hold_people(reading, &mut rooms);
+    make_room_for_companions(reading, &mut rooms);
     serve_people(reading, &mut rooms);
+    workers::seat_guests(reading, &mut rooms);
     seat_waiting(reading, &mut rooms);
     hang_on_hosts(reading, &mut rooms);
     state_additions(reading, &rooms);
@@ -226,6 +249,19 @@ pub(super) fn is_counted(reading: &Reading, room_type: &str) -> bool {
     entries.any(|e| head_count(reading, e.occupants).is_some())
 }
 
+/// Floor of the bed for who stays with a patient, m^2.
+const COMPANION_M2: f64 = 4.0;
+
+/// Makes rooms of patients larger by the bed of who stays with them.
+fn make_room_for_companions(reading: &Reading, rooms: &mut [Planned]) {
+    let domain = reading.domain;
+    let own = |r: &&mut Planned| r.kind.privacy == Privacy::Private && sleeps(domain, r.kind).is_some();
+    for room in rooms.iter_mut().filter(|_| reading.stays).filter(own) {
+        let area = room.people_area_m2.unwrap_or(room.kind.area_m2.target);
+        room.size_for_people(area + COMPANION_M2);
+    }
+}
+
 /// Sees to it that there are as many toilets and bathrooms as storeys, where the prompt leaves the rooms open.
 fn wash_on_every_storey<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
     let storeys = reading.storeys.levels.iter().filter(|l| **l >= 0).count();
@@ -332,6 +368,7 @@ impl<'r, 'a> Build<'r, 'a> {
         self.rooms.push(Planned {
             name: wish.filter(|_| kind.id != room_type).map(|w| w.name.clone()),
             area_m2: wish.and_then(|w| w.area_m2),
+            size: wish.and_then(|w| w.size),
             requested: wish.is_some(),
             ..Planned::new(room_type, kind)
         });
@@ -493,6 +530,15 @@ impl<'r, 'a> Build<'r, 'a> {
             let present = self.count(&entry.room_type);
             let Some(people) = head_count(self.reading, entry.occupants).filter(|_| present > 0) else { continue };
             let kind = self.reading.domain.room_type_or_generic(&entry.room_type);
+            // who sits in an open office that the prompt names needs no office of their own
+            let seated = entry.occupants_per_room.is_some_and(|n| n <= MOST_IN_OFFICE)
+                && self
+                    .rooms
+                    .iter()
+                    .any(|r| r.requested && seats::most_desks(self.reading.domain, r.kind) > seats::MOST_IN_TEAM);
+            if seated {
+                continue;
+            }
             let by_count = entry.occupants_per_room.map_or(0, |per| people.div_ceil(per.max(1)) as usize);
             let by_area = entry
                 .area_per_occupant_m2
@@ -509,7 +555,7 @@ impl<'r, 'a> Build<'r, 'a> {
         }
         if let Some(people) = self.reading.residents {
             // two share a bedroom, everyone else has one
-            let wanted = people.saturating_sub(1).max(1) as usize;
+            let wanted = vital::bedrooms_for(people, self.reading.each_alone);
             let sleeping =
                 |e: &&ProgramRoom| self.reading.domain.room_type_or_generic(&e.room_type).zone == Zone::Night;
             if let Some(entry) = self.program.rooms.iter().find(sleeping) {
@@ -568,7 +614,6 @@ pub(super) fn head_count(reading: &Reading, of: Occupants) -> Option<u32> {
 
 /// Spreads the people over the rooms that the program gives them.
 fn hold_people(reading: &mut Reading, rooms: &mut [Planned]) {
-    hold_beds(reading, rooms);
     hold_stations(reading, rooms);
     // who has a desk elsewhere needs none here
     let at_desks = |r: &&Planned| seated::desks(reading.domain, r.kind).is_some();
@@ -630,7 +675,16 @@ fn serve_people(reading: &Reading, rooms: &mut [Planned]) {
     // in a home those who sleep there eat there
     let lives = is_dwelling(reading.program);
     let beds = rooms.iter().filter_map(|r| Some(sleeps(reading.domain, r.kind)?[0])).sum::<u32>();
-    let people = if lives { reading.residents.unwrap_or(0).max(beds) } else { places_to_work(reading, rooms) };
+    // who has a room alone has its double bed alone
+    let rooms_to_sleep = rooms.iter().filter(|r| sleeps(reading.domain, r.kind).is_some()).count() as u32;
+    // and in a ward its patients, for whom the day room is
+    let nurses = reading.program.rooms.iter().any(|e| e.occupants == Occupants::Beds);
+    let people = match (lives, reading.each_alone, nurses) {
+        (true, true, _) => reading.residents.unwrap_or(rooms_to_sleep),
+        (true, false, _) => reading.residents.unwrap_or(0).max(beds),
+        (false, _, true) => reading.occupancy.beds.unwrap_or(beds),
+        (false, _, false) => places_to_work(reading, rooms),
+    };
     let people = f64::from(people);
     let mut sized: Vec<&str> = Vec::new();
     for (entry, each) in entries {
@@ -642,10 +696,12 @@ fn serve_people(reading: &Reading, rooms: &mut [Planned]) {
         for &i in &alike {
             let range = rooms[i].kind.area_m2;
             let area = (each * people / alike.len() as f64).clamp(range.min, range.max);
-            // those of a usual size hold a usual number
-            let grows = lives || reading.wet.has_toilet(rooms[i].kind);
-            if !grows || area > range.target {
+            // those of a usual size hold a usual number; a small office has small toilets
+            if !lives || area > range.target {
                 rooms[i].size_for_people(area);
+            } else if lives && area > FULL * range.target {
+                // as many as the usual size is for: it is not to come out small
+                rooms[i].size_for_people(range.target);
             }
         }
     }
@@ -653,8 +709,13 @@ fn serve_people(reading: &Reading, rooms: &mut [Planned]) {
 
 /// Returns how many people work there: as many as the prompt says, else as have a desk.
 pub(super) fn places_to_work(reading: &Reading, rooms: &[Planned]) -> u32 {
-    let desks = || rooms.iter().map(|r| r.occupants.unwrap_or_else(|| workplaces(reading.domain, r))).sum::<u32>();
-    head_count(reading, Occupants::Staff).unwrap_or_else(desks)
+    let own = |r: &Planned| r.occupants.filter(|_| !r.visited).unwrap_or_else(|| workplaces(reading.domain, r));
+    let desks = || rooms.iter().map(own).sum::<u32>();
+    match reading.occupancy.staff {
+        Some(staff) => staff.max(reading.occupancy.desks.unwrap_or(0)),
+        // "10 offices and an open plan with 12 desks"
+        None => head_count(reading, Occupants::Staff).unwrap_or(0).max(desks()),
+    }
 }
 
 /// Seats that people find where they wait for each room that sees them one at a time.
@@ -692,7 +753,7 @@ fn workplaces(domain: &Domain, room: &Planned) -> u32 {
 }
 
 /// Returns the floor for each desk of a room type, m^2: as the programs say, else as its furnishing.
-fn desk_area_m2(domain: &Domain, room_type: &str) -> f64 {
+pub(super) fn desk_area_m2(domain: &Domain, room_type: &str) -> f64 {
     let entries = domain.programs.iter().flat_map(|p| &p.rooms).filter(|e| e.room_type == room_type);
     let lines = domain.room_type_or_generic(room_type).furnishing.iter().filter(|f| f.required);
     let by_program = entries.filter_map(|e| e.area_per_occupant_m2).next();
@@ -724,7 +785,9 @@ fn hold_beds(reading: &Reading, rooms: &mut [Planned]) {
         .filter(|&i| rooms[i].requested && rooms[i].occupants.is_none())
         .filter_map(|i| Some((i, sleeps(reading.domain, rooms[i].kind)?[0])))
         .collect();
-    if held + open.iter().map(|r| r.1).sum::<u32>() == beds {
+    let sum = |rooms: &mut dyn Iterator<Item = &(usize, u32)>| held + rooms.map(|r| r.1).sum::<u32>();
+    let beside = sum(&mut open.iter().filter(|r| rooms[r.0].kind.access != Access::Host));
+    if sum(&mut open.iter()) == beds || beside == beds {
         open.into_iter().for_each(|(i, each)| rooms[i].occupants = Some(each));
     }
 }

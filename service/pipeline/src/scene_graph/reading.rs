@@ -15,6 +15,7 @@ use super::objects;
 use super::parts;
 use super::places::{self, note};
 use super::relations;
+use super::seats::{self, Called};
 use super::senses;
 use super::stations;
 use super::storeys::{self, Storeys, Wanted, Where};
@@ -23,7 +24,11 @@ use super::text::{MAX_TOKENS, Span, Token, tokens};
 use super::vital::{self, Wet};
 use super::wishes::{self, MANY, PerHost, Text, Wish, Wishes};
 use super::words::{ByBedrooms, Spoken, Tag, words};
-use super::{Request, docks, dwelling, language, measures, numbers, robots, seated, single, umlauts, unread};
+use super::workers;
+use super::{
+    Request, docks, dwelling, fixtures, keeps, language, measures, numbers, qualities, robots, seated, sharing, single,
+    stays, umlauts, unread,
+};
 use crate::Error;
 
 /// Most rooms one world is planned for.
@@ -34,8 +39,13 @@ const MAX_AREA_M2: f64 = 200_000.0;
 const MAIN_ROOM_SHARE: f64 = 1.5;
 /// A room for more people each is no place to work at but one to meet or wash in.
 pub(super) const MOST_IN_OFFICE: u32 = 4;
+/// Factor on the usual area of a kitchen that one eats in.
+const EATING: f64 = 1.45;
 /// Largest head count that is taken at its word.
 const MAX_HEADS: i64 = 5000;
+
+/// Robots that fetch and bring: corridors are only their way.
+const CARRIES: [&str; 2] = ["delivery", "transport"];
 
 /// Facts of a prompt.
 #[derive(Clone)]
@@ -64,18 +74,30 @@ pub(super) struct Reading<'a> {
     pub held: Vec<Held>,
     /// Rooms of which it says the places to be treated at.
     pub stationed: Vec<Held>,
+    /// Rooms of which it says the seats or counters.
+    pub seats: Vec<Held>,
+    /// Types of rooms that those who work there are shared out to.
+    pub halves: Vec<String>,
+    /// What the prompt calls its rooms.
+    pub called: Vec<Called>,
     /// True when the prompt counts the rooms to live in ("3-Zimmer-Wohnung", "2BHK").
     pub habitable_fixed: bool,
     pub area_m2: Option<f64>,
     pub occupancy: Occupancy,
     /// People who live there.
     pub residents: Option<u32>,
+    /// True when all of them have a room of their own.
+    pub each_alone: bool,
     pub accessible: bool,
     pub style: Style,
     pub robots: Vec<Robot>,
     /// Types of the rooms that a dock is to stand in.
     pub docked: Vec<String>,
+    /// Where the robot is to go.
+    pub errand: robots::Errand,
     pub storeys: Storeys,
+    /// True where someone stays overnight with every patient.
+    pub stays: bool,
     /// Objects that the prompt names, each with the room type it is named with.
     pub objects: Vec<(String, Option<String>)>,
     pub assumptions: Vec<Note>,
@@ -143,9 +165,11 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         registry.get(&building.domain).map(|p| p.domain()).ok_or_else(|| refused("no domain is registered".into()))?;
     let program = program_of(domain, building.building_type.as_deref());
 
+    let shared = building.building_type.as_ref().is_some_and(|b| words().dwelling.shared.contains(b));
     let areas = measures::areas(&tokens, &numbers);
     let radius = measures::robot_radius(&tokens, &numbers, &spoken);
-    let short_forms = dwelling::short_forms(&tokens, &numbers, domain, &spoken);
+    let length = measures::robot_length(&tokens, &numbers, &spoken).filter(|_| radius.is_some());
+    let mut short_forms = dwelling::short_forms(&tokens, &numbers, domain, &spoken, shared);
     let place_spans = place.spans.clone();
     let mut spans: Vec<Span> = std::mem::take(&mut place.spans);
     spans.extend(areas.iter().map(|a| a.span));
@@ -153,7 +177,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     let mut counted: Vec<Span> = spans.iter().filter(|s| !place_spans.contains(s)).copied().collect();
     counted.extend(machines.spans.iter().copied());
     spans.extend(machines.spans.iter().copied());
-    spans.extend(radius.iter().map(|r| r.0));
+    spans.extend(radius.iter().chain(&length).map(|r| r.0));
     let vocabulary =
         registry.digest(&format!("{languages:?}: {}", domain.id), || Vocabulary::new(domain, registry, &languages));
     single::unname(&mut building, &tokens, &vocabulary, &numbers, &spoken);
@@ -181,7 +205,8 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     let mut not_things = machines.spans.clone();
     not_things.extend(said_styles.iter().map(|s| s.span));
     not_things.extend(access_wishes(&tokens, &numbers, &spoken));
-    let compounds = compounds::find(&tokens, prompt, domain, &spoken, |span| {
+    let names_room = |i: usize| vocabulary.names_room(&tokens, i, &numbers, &spoken);
+    let compounds = compounds::find(&tokens, prompt, domain, &spoken, names_room, |span| {
         spans.iter().chain(&building.head).any(|s| s.overlaps(span))
     });
     let taken = Taken {
@@ -196,6 +221,31 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         unread: unread_language.is_some(),
     };
     let mut mentions = mentions(&tokens, &numbers, &vocabulary, &spoken, language, &taken);
+    let wet = registry.digest(&domain.id, || Wet::of(domain));
+    let mut told_again = compounds::hold_own(&tokens, prompt, &compounds, &mut mentions, domain, &spoken);
+    if lives {
+        told_again.extend(fixtures::settle(&tokens, prompt, &mut mentions, domain, &wet, &spoken));
+    }
+    if shared {
+        own_rooms(&mut mentions, domain);
+    }
+    let sleeps = |id: &str| domain.room_type(id).is_some_and(|k| k.zone == Zone::Night);
+    let own_room = lives.then(|| sharing::each_has_a_room(&tokens, &mentions, &spoken, sleeps)).flatten();
+    if let Some(span) = own_room {
+        // "everybody has a private room" names no room of another kind
+        let own = |m: &Mention| spoken.iter().any(|s| s.tag_at(&tokens, m.span.start, Tag::Own).is_some());
+        let said = |m: &Mention| m.room_type().is_some_and(|id| sleeps(id) || own(m));
+        mentions.retain(|m| !(span.contains(m.span.start) && said(m)));
+        told_again.push(span);
+    }
+    // "three-room flat: living room with kitchen corner": it is the one that the number counts
+    let habitable_fixed = short_forms.iter().any(|f| f.rooms.contains_key(&words().dwelling.living));
+    let named = |id: &String| mentions.iter().any(|m| m.room_type() == Some(id));
+    if named(&words().dwelling.living_kitchen) && !named(&words().dwelling.living) {
+        short_forms.iter_mut().for_each(|f| {
+            f.rooms.remove(&words().dwelling.living);
+        });
+    }
     if !lives {
         choice.read_lists(&tokens, &mut mentions);
         choice.adopt(&mut mentions);
@@ -224,8 +274,25 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         })
     });
     let stationed: Vec<Held> = stationed.collect();
+    let places = seats::Reader {
+        tokens: &tokens,
+        numbers: &numbers,
+        domain,
+        program,
+        spoken: &spoken,
+        taken: &elsewhere,
+        seated: &seated,
+    };
+    let mut places = if lives { seats::Found::default() } else { places.read(&mut mentions) };
+    not_things.extend(places.spans.iter().copied());
+    let seated: Vec<Held> = seated.into_iter().chain(std::mem::take(&mut places.desks)).collect();
+    let called = seats::called(&tokens, prompt, &mentions, &spoken, language);
     let doors = unread::doors(&tokens, &mut mentions, &spoken);
-    let docked = docks::inside_rooms(&tokens, &mut mentions, &machines.spans, &spoken);
+    let mut docked = docks::inside_rooms(&tokens, &mut mentions, &machines.spans, &spoken);
+    let errand = robots::errand(&machines, &tokens, &mentions, &spoken);
+    // what comes through the entrance is fetched there
+    let by_door = errand.entrance && docked.is_empty() && lives;
+    docked.extend(by_door.then(|| domain.circulation.room_type.clone()));
     let said_styles = styles::of_building(said_styles, &mentions, language);
     let mut said = relations::read(&tokens, &mentions, &spoken, language, building.head);
     compounds::relate(&compounds, &mentions, domain, &mut said);
@@ -239,6 +306,8 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         areas: &areas,
         list_from: building.list_from,
         robots: machines.named,
+        language,
+        spoken: &spoken,
     };
     let mut wishes = wishes::gather(&text, &mut conflicts);
     wishes.open = compounds::open_rooms(&tokens, &mentions, domain, &spoken);
@@ -257,7 +326,6 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     furnish_basement(&mut storeys, &mut wishes, domain);
     wish_for_storeys(&storeys, &mut wishes, domain);
     name_private_bathrooms(&mut wishes, domain, lives);
-    let wet = registry.digest(&domain.id, || Wet::of(domain));
     if !lives {
         vital::rule_out(domain, &wet, &mut wishes);
     }
@@ -274,16 +342,23 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     };
     let fleet = machines.counted(&fleet);
     let heard = robots::Prompt { text: prompt, tokens: &tokens };
-    let radius = radius.map(|r| r.1);
-    let robots = robots::of_graph(&fleet, &wishes, radius, request, &heard, &mut assumptions, &mut conflicts);
+    let (radius, length) = (radius.map(|r| r.1), length.map(|l| l.1));
+    let size = (radius, length);
+    let mut robots = robots::of_graph(&fleet, &wishes, size, request, &heard, &mut assumptions, &mut conflicts);
+    let kept = keeps::read(&tokens, &mentions, &machines.spans, &domain.circulation.room_type, &spoken);
+    robots.iter_mut().filter(|r| !CARRIES.contains(&r.kind.as_str())).for_each(|r| r.room_types.clone_from(&kept));
     // "drei Stockwerken" ends in a word for a factory
     let storey = |p: &building::Part| spoken.iter().any(|s| s.tag_at(&tokens, p.span.start, Tag::Storeys).is_some());
     building.parts.retain(|p| !storey(p) && !spans.iter().any(|s| s.overlaps(p.span)));
     let parts = parts::plan(&building.parts, &tokens, &mut mentions, &mut wishes, (domain, program), &mut assumptions);
     let mut people = People::read(&mentions, program, domain, &mut conflicts);
     let mut held = Vec::new();
+    let each_alone = lives && (shared || own_room.is_some());
     if lives {
         people.share_a_home(&tokens, &numbers, &mentions, &spoken);
+        let head = building.head.filter(|_| shared);
+        let told = head.and_then(|head| sharing::residents(&tokens, &numbers, head, &spoken));
+        people.residents = people.residents.or(told);
     } else {
         let who = people.occupancy.visitors.or(people.residents);
         let beds = people.occupancy.beds;
@@ -298,7 +373,12 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         }
         held.extend(seated);
     }
-    let total = total_rooms(request, &mentions, &wishes, &mut conflicts)?;
+    let said = request.rooms.or_else(|| said_total(&mentions));
+    if lives {
+        wishes.join_to_fit(said, domain);
+    }
+    let beside = workers::beside_rooms(&mut wishes, said.filter(|_| request.rooms.is_none()), domain, program);
+    let total = beside.map_or_else(|| total_rooms(request, &mentions, &wishes, &mut conflicts), |n| Ok(Some(n)))?;
     let listed: u64 = wishes.wishes.iter().map(|w| u64::from(w.count)).sum();
     if listed > u64::from(MAX_ROOMS) {
         return Err(refused(format!(
@@ -330,8 +410,29 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         assumptions.extend(add_main_room(&mut wishes, program, domain, &people, named.as_deref()));
     }
     spans.extend(station_words);
+    spans.extend(told_again);
+    spans.extend(places.spans);
+    spans.extend(called.iter().map(|c| c.span));
+    let stays = if lives { None } else { stays::read(&tokens, &spoken) };
+    spans.extend(stays);
     let mut read: Vec<Span> = spans.iter().chain(&machines.docks).chain(&building.words).copied().collect();
-    let mut things = objects::named(&tokens, &mentions, domain, registry, &languages, &not_things, &mut read);
+    let mut things =
+        objects::named(&tokens, &mentions, (domain, registry), (&languages, &spoken), &not_things, &mut read);
+    let free = |i: usize| !spans.iter().chain(&building.head).any(|s| s.contains(i));
+    let mut furnished = qualities::furnished(&tokens, &spoken, free);
+    // who shares a home eats in its kitchen
+    let [kitchen, table] = &words().dwelling.shared_meals;
+    furnished.extend(shared.then(|| (table.clone(), kitchen.clone(), Span { start: 0, end: 0 })));
+    let dines = wishes.wishes.iter().any(|w| w.room_type == words().dwelling.dining);
+    for (object, room_type, span) in furnished {
+        let here = domain.object(&object).is_some() && wishes.wishes.iter().any(|w| w.room_type == room_type);
+        if here && !things.iter().any(|t| t.0 == object) {
+            read.push(span);
+            let wish = wishes.wishes.iter_mut().find(|w| w.room_type == room_type);
+            wish.into_iter().filter(|_| !dines).for_each(|w| w.size = w.size.or(Some(EATING)));
+            things.push((object, Some(room_type)));
+        }
+    }
     let unread = unread::Text {
         tokens: &tokens,
         known_language: unread_language.is_none(),
@@ -357,6 +458,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         program,
         country_code: flag_country.or(place.country_code),
         storeys,
+        stays: stays.is_some(),
         objects: things,
         wishes,
         total,
@@ -367,13 +469,18 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         single,
         held,
         stationed,
-        habitable_fixed: short_forms.iter().any(|f| f.rooms.contains_key(&words().dwelling.living)),
+        seats: places.seats,
+        halves: places.halves,
+        called,
+        habitable_fixed,
         area_m2,
         occupancy: people.occupancy,
         residents: people.residents,
+        each_alone,
         accessible: (0..tokens.len()).any(|i| spoken.iter().any(|s| s.tag_at(&tokens, i, Tag::Accessible).is_some())),
         robots,
         docked,
+        errand,
         style: styles::wished(&said_styles, request.style, &mut conflicts),
         assumptions,
         conflicts,
@@ -661,6 +768,25 @@ fn total_area(text: &Text, request: &Request, conflicts: &mut Vec<Note>) -> Opti
     request.area_m2.or(named).map(|a| (a * 100.0).round() / 100.0)
 }
 
+/// Takes the rooms of a home that people share for bedrooms where it names none: "student flat with five rooms".
+fn own_rooms(mentions: &mut [Mention], domain: &Domain) {
+    let bedroom = &words().dwelling.bedroom;
+    let sleeps = |id: &str| domain.room_type(id).is_some_and(|k| k.zone == Zone::Night);
+    let listed = mentions.iter().any(|m| m.room_type().is_some());
+    if !listed || mentions.iter().any(|m| m.room_type().is_some_and(sleeps)) {
+        return;
+    }
+    if let Some(m) = mentions.iter_mut().find(|m| m.what == What::Total && m.count.is_some() && !m.article) {
+        m.what = What::Room(bedroom.clone());
+    }
+}
+
+/// Returns the number of rooms that the prompt gives the building by its name.
+fn said_total(mentions: &[Mention]) -> Option<u32> {
+    let said = mentions.iter().find(|m| m.what == What::Total && !m.article && !m.vague && m.count.is_some())?;
+    u32::try_from(said.count?).ok().filter(|n| *n > 0)
+}
+
 fn total_rooms(
     request: &Request,
     mentions: &[Mention],
@@ -768,6 +894,12 @@ fn add_main_room(
     let main = program.rooms.first()?;
     let listed = |id: &str| wishes.wishes.iter().any(|w| w.room_type == id);
     let lives = is_dwelling(program);
+    let heads = &people.occupancy;
+    if let Some(kind) = workers::room_left_out(wishes, program, domain, heads.staff, heads.desks) {
+        wishes.wishes.insert(0, Wish::one(&kind.id, &kind.label.to_lowercase()));
+        let label = kind.label.to_lowercase();
+        return Some(note("main_room", format!("the list of rooms takes the {label} for granted; it was added")));
+    }
     if lives || listed(&main.room_type) || wishes.forbidden.contains(&main.room_type) {
         return None;
     }

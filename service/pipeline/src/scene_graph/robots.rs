@@ -1,10 +1,10 @@
 //! Robots that a prompt names: kind, number, charging.
 
 use d3dgen_model::robot_body::RobotBody;
-use d3dgen_model::scene_graph::{Note, Robot};
+use d3dgen_model::scene_graph::{GraphRoom, Note, Robot};
 
 use super::Request;
-use super::mentions::{Mention, number_after};
+use super::mentions::{Mention, What, number_after};
 use super::numbers::Number;
 use super::places::note;
 use super::text::{Kind, Span, Token, fold};
@@ -349,7 +349,7 @@ impl Counting<'_> {
 pub(super) fn of_graph(
     fleet: &Fleet,
     wishes: &Wishes,
-    radius: Option<f64>,
+    (radius, length): (Option<f64>, Option<f64>),
     request: &Request,
     prompt: &Prompt,
     assumptions: &mut Vec<Note>,
@@ -385,8 +385,13 @@ pub(super) fn of_graph(
         .iter()
         .filter_map(|w| {
             let body = words().robot_kinds.get(w.kind)?;
-            let own = request.robot;
-            let stated = request.robot_radius_m.or(own.radius_m()).or(radius);
+            let mut own = request.robot;
+            // "0.7 m wide, 0.9 m long"
+            if let Some((width, length)) = radius.map(|r| 2.0 * r).zip(length).filter(|_| own == RobotBody::default()) {
+                (own.width_m, own.length_m) = (Some(width), Some(length));
+            }
+            // it drives through doors as wide as it is, and turns where there is room for its length
+            let stated = request.robot_radius_m.or(request.robot.radius_m()).or(radius);
             Some(Robot {
                 kind: w.kind.into(),
                 count: w.count,
@@ -394,9 +399,56 @@ pub(super) fn of_graph(
                 height_m: own.height_m.unwrap_or(body.height_m),
                 charging,
                 body: (own != RobotBody::default()).then_some(own),
+                // its rooms have no ids yet
+                stops: Vec::new(),
+                room_types: Vec::new(),
             })
         })
         .collect()
+}
+
+/// Where the prompt has robots go: room types, and whether to the entrance.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub(super) struct Errand {
+    pub room_types: Vec<String>,
+    pub entrance: bool,
+}
+
+/// Reads what one robot does between rooms: "a delivery robot that brings parcels from the entrance to kitchen and study".
+pub(super) fn errand(robots: &Robots, tokens: &[Token], mentions: &[Mention], spoken: &[&Spoken]) -> Errand {
+    let mut out = Errand::default();
+    let tagged = |i: usize, tag| spoken.iter().any(|s| s.tag_at(tokens, i, tag).is_some());
+    let carries = [Tag::DeliverVerbs, Tag::TransportVerbs, Tag::ServeVerbs];
+    let [robot] = robots.spans.as_slice() else { return out };
+    let ends = |i: &usize| !(tokens[*i].ends_sentence() || tokens[*i].mark() == Some(':'));
+    let clause = robot.start..(robot.end..tokens.len()).take_while(ends).last().map_or(robot.end, |i| i + 1);
+    let Some(verb) = (robot.end..clause.end).find(|&i| carries.iter().any(|&t| tagged(i, t))) else { return out };
+    // "from ... to ...": what stands before such a word is no place that it goes to
+    let leads = |i: usize| tagged(i, Tag::PlaceBefore) || tagged(i, Tag::Stops) && !tagged(i, Tag::Joins);
+    let Some(first) = (verb + 1..clause.end).find(|&i| leads(i)) else { return out };
+    let mut last = first;
+    for m in mentions.iter().filter(|m| m.span.start > first && m.span.end <= clause.end) {
+        let gap = last..m.from.min(m.span.start);
+        // a list of rooms goes on behind the errand
+        let comma = gap.clone().any(|i| tokens[i].is_mark());
+        if comma && out.room_types.len() + usize::from(out.entrance) > 1 || m.count.is_some() && !m.article {
+            break;
+        }
+        match &m.what {
+            What::Entrance => out.entrance = true,
+            What::Room(id) if !out.room_types.contains(id) => out.room_types.push(id.clone()),
+            _ => {}
+        }
+        last = m.span.end;
+    }
+    if out.room_types.len() + usize::from(out.entrance) < 2 { Errand::default() } else { out }
+}
+
+/// Gives the robot of an errand the rooms it goes to.
+pub(super) fn send(errand: &Errand, rooms: &[GraphRoom], robots: &mut [Robot]) {
+    let [robot] = robots else { return };
+    let goes = |r: &&GraphRoom| errand.entrance && r.entrance || errand.room_types.contains(&r.room_type);
+    robot.stops = rooms.iter().filter(goes).map(|r| r.id.clone()).collect();
 }
 
 /// A prompt with its tokens.

@@ -2,43 +2,67 @@
 
 use std::collections::BTreeMap;
 
-use d3dgen_model::domain::{Domain, Furnishing, GENERIC_ROOM_TYPE, Goods, RobotUse, RoomType, Shape, Zone};
+use d3dgen_model::domain::{
+    Domain, Furnishing, GENERIC_ROOM_TYPE, Goods, ObjectType, Privacy, RobotUse, RoomType, Shape, Zone,
+};
 use d3dgen_model::scene_graph::{GraphRoom, Robot};
 use d3dgen_model::style::SpaceStyle;
 
+use super::beds;
 use super::places::note;
 use super::program::{Planned, circulation_share};
-use super::reading::Reading;
+use super::reading::{Reading, is_dwelling};
+use super::words::words;
 
+/// Kind of the robots that clean.
+pub(crate) const CLEANING: &str = "cleaning";
 /// Most objects wished for in one room.
 const MOST_WISHES: usize = 15;
 /// Things named of a room that no domain knows.
 const MOST_NAMED: usize = 3;
 /// Share of the usual area per head that a building short of area leaves.
 const CROWDED: f64 = 0.6;
+/// Most area of a room that serves so many people, as a factor on what they need.
+const ROOMY: f64 = 1.5;
 /// Share of their usual area that rooms of a compact building have.
 const COMPACT: f64 = 0.8;
 /// The same of a generous building.
 const GENEROUS: f64 = 1.25;
+/// Largest share of its usual area that a bedroom has.
+const MOST_ASLEEP: f64 = 1.6;
 /// Share by which the areas may miss the one asked for before that is worth a note.
 const AREA_TOLERANCE: f64 = 0.1;
+
+/// Tag of what those sleep on who stay with a patient.
+const COMPANION: &str = "companion";
 
 /// Returns the rooms as the graph states them, in the order they are planned in.
 pub(super) fn describe(reading: &mut Reading, planned: &[Planned]) -> Vec<GraphRoom> {
     let areas = target_areas(reading, planned);
-    let named = named_objects(reading, planned);
+    let mut named = named_objects(reading, planned);
+    add_companions(reading, planned, &mut named);
     let mut total: BTreeMap<&str, u32> = BTreeMap::new();
     for room in planned {
         *total.entry(&room.room_type).or_default() += 1;
     }
     state_unknown(reading, planned);
+    let lives = is_dwelling(reading.program);
     let mut seen: BTreeMap<&str, u32> = BTreeMap::new();
+    let mut alike: BTreeMap<String, [u32; 2]> = BTreeMap::new();
+    planned.iter().for_each(|room| alike.entry(label(room)).or_default()[0] += 1);
     let mut rooms = Vec::new();
     for (i, room) in planned.iter().enumerate() {
         let number = seen.entry(&room.room_type).or_default();
         *number += 1;
         let label = label(room);
-        let name = if total[room.room_type.as_str()] > 1 { format!("{label} {number}") } else { label };
+        // rooms with a name of their own are counted by that
+        let [same, count] = alike.entry(label.clone()).or_default();
+        *count += 1;
+        let name = match room.called {
+            Some(_) if *same > 1 => format!("{label} {count}"),
+            None if total[room.room_type.as_str()] > 1 && *same > 1 => format!("{label} {count}"),
+            _ => label,
+        };
         rooms.push(GraphRoom {
             id: format!("{}_{number}", room.room_type),
             room_type: room.room_type.clone(),
@@ -48,7 +72,7 @@ pub(super) fn describe(reading: &mut Reading, planned: &[Planned]) -> Vec<GraphR
                 None => room.kind.description.clone(),
             },
             target_area_m2: areas[i],
-            area_range_m2: area_range(room, areas[i]),
+            area_range_m2: area_range(room, areas[i], !lives || reading.area_m2.is_some()),
             wished_assets: wished_assets(reading.domain, room.kind, named.get(&i).map_or(&[], Vec::as_slice)),
             occupants: room.occupants.filter(|n| *n > 0),
             circulation: false,
@@ -105,6 +129,9 @@ pub(super) fn circulation(reading: &Reading) -> GraphRoom {
 
 /// Returns the name on the plan: the domain's label, or the prompt's own word for a room the domain does not know.
 fn label(room: &Planned) -> String {
+    if let Some(called) = &room.called {
+        return called.clone();
+    }
     if room.kind.id == room.room_type && room.room_type != GENERIC_ROOM_TYPE {
         return room.kind.label.clone();
     }
@@ -114,14 +141,21 @@ fn label(room: &Planned) -> String {
 }
 
 /// Returns the areas allowed, net m^2: those of the type; close to the one the prompt gives, enough for the people in it.
-fn area_range(room: &Planned, target: f64) -> [f64; 2] {
+///
+/// Bedrooms do not take what a small plan has left over (`wide` says that rooms may).
+fn area_range(room: &Planned, target: f64, wide: bool) -> [f64; 2] {
     let range = room.kind.area_m2;
     let about = |low: f64, high: f64| {
         [range.min.max(tenth(target * low)).min(target), range.max.min(tenth(target * high)).max(target)]
     };
-    match (room.area_m2, room.people_area_m2) {
+    match (room.area_m2, room.people_area_m2.or(room.size)) {
         (Some(_), _) => about(1.0 - AREA_TOLERANCE, 1.0 + AREA_TOLERANCE),
+        // where the rooms share an area they give and take
+        (None, Some(_)) if room.size.is_some() && wide => [range.min, range.max],
         (None, Some(_)) => about(1.0 - AREA_TOLERANCE, 1.0 + 3.0 * AREA_TOLERANCE),
+        (None, None) if !wide && room.kind.zone == Zone::Night => {
+            [range.min, range.max.min(tenth(target * MOST_ASLEEP))]
+        }
         (None, None) => [range.min, range.max],
     }
 }
@@ -137,7 +171,7 @@ fn target_areas(reading: &mut Reading, planned: &[Planned]) -> Vec<f64> {
         let styled = match (room.area_m2, room.people_area_m2, room.proposed_area_m2) {
             (Some(asked), _, _) => asked,
             (None, None, Some(proposed)) => proposed,
-            _ => usual * scale,
+            _ => usual * room.size.unwrap_or(scale),
         };
         let area = styled.clamp(range.min, range.max);
         if (wished.clamp(range.min, range.max) - wished).abs() > 0.05 {
@@ -159,7 +193,12 @@ fn target_areas(reading: &mut Reading, planned: &[Planned]) -> Vec<f64> {
             let range = room.kind.area_m2;
             match (room.area_m2, room.people_area_m2) {
                 (Some(_), _) => *area,
-                (_, Some(people)) => (area * scale).clamp(range.min.max(CROWDED * people).min(range.max), range.max),
+                (_, Some(people)) => {
+                    // what serves so many people is no larger in a building with floor to spare
+                    let serves = room.kind.zone == Zone::Service;
+                    let most = if serves { range.max.min(ROOMY * people.max(range.min)) } else { range.max };
+                    (area * scale).clamp(range.min.max(CROWDED * people).min(most), most)
+                }
                 _ => (area * scale).clamp(range.min, range.max),
             }
         });
@@ -227,6 +266,12 @@ fn tenth(area: f64) -> f64 {
 /// Returns the objects that the prompt names, by index of the room they belong in.
 fn named_objects(reading: &mut Reading, planned: &[Planned]) -> BTreeMap<usize, Vec<String>> {
     let mut out: BTreeMap<usize, Vec<String>> = BTreeMap::new();
+    // who shares a home works in the own room
+    let shared = reading.building_type.as_ref().is_some_and(|b| words().dwelling.shared.contains(b));
+    if shared && reading.domain.object(&words().dwelling.own_desk).is_some() {
+        let own = (0..planned.len()).filter(|&i| planned[i].room_type == words().dwelling.bedroom);
+        own.for_each(|i| out.entry(i).or_default().push(words().dwelling.own_desk.clone()));
+    }
     for (object, room_type) in std::mem::take(&mut reading.objects) {
         let usual = |r: &Planned| furniture(reading.domain, r.kind).any(|o| o == object);
         let with = planned.iter().position(|r| room_type.as_deref() == Some(&r.room_type));
@@ -239,6 +284,21 @@ fn named_objects(reading: &mut Reading, planned: &[Planned]) -> BTreeMap<usize, 
         }
     }
     out
+}
+
+/// Wishes for a bed for those who stay with a patient in every room that patients have to themselves.
+fn add_companions(reading: &mut Reading, planned: &[Planned], named: &mut BTreeMap<usize, Vec<String>>) {
+    let is_for = |o: &&ObjectType| o.tags.iter().any(|t| t == COMPANION);
+    let Some(object) = reading.domain.objects.iter().find(is_for).filter(|_| reading.stays) else { return };
+    let patients = |r: &Planned| r.kind.privacy == Privacy::Private && beds::sleeps(reading.domain, r.kind).is_some();
+    let rooms: Vec<usize> = (0..planned.len()).filter(|&i| patients(&planned[i])).collect();
+    if rooms.is_empty() {
+        let message = "no room was found for those who stay overnight with patients; they were left out".into();
+        return reading.conflicts.push(note("object_without_room", message));
+    }
+    rooms.into_iter().for_each(|i| named.entry(i).or_default().push(object.id.clone()));
+    let message = format!("those who stay overnight with patients have a {} in each room", object.label.to_lowercase());
+    reading.assumptions.push(note("companions", message));
 }
 
 /// Returns the objects a room type is furnished with, most important first.
@@ -294,7 +354,12 @@ pub(super) fn add_docks(domain: &Domain, robots: &[Robot], docked: &[String], ro
     let sum = |counts: &mut dyn Iterator<Item = u32>| counts.fold(0, u32::saturating_add);
     let is_dock = |id: &str| domain.anchor(id).is_some_and(|o| o.shape == Shape::Dock);
     let Some(dock) = domain.objects.iter().rev().find(|o| o.shape == Shape::Dock) else { return };
+    // the dock of a mop room is for those that clean
+    let cleans = robots.iter().any(|r| r.kind == CLEANING);
     let held = |room: &GraphRoom| -> u32 {
+        if !cleans && domain.room_type_or_generic(&room.room_type).goods == Goods::Soiled {
+            return 0;
+        }
         let lines = domain.room_type_or_generic(&room.room_type).furnishing.iter();
         sum(&mut lines.filter(|f| is_dock(&f.item)).map(|f| f.units(room.target_area_m2)))
     };
@@ -347,16 +412,18 @@ pub(crate) fn most_docks(area_m2: f64) -> u32 {
 /// Returns how well a room that may have a dock suits a robot, 0 best: stores, rooms to work in, corridors, at last where people wait; robots
 /// that clean charge where soiled things are and no other ones do. `None` for rooms to sleep in.
 pub(crate) fn dock_rank(kind: &RoomType, robot: &Robot) -> Option<u8> {
-    let cleans = robot.kind == "cleaning";
+    let cleans = robot.kind == CLEANING;
     match (kind.zone, kind.goods) {
         (Zone::Service, Goods::Soiled) if cleans => Some(0),
+        // a mop room is no place for what brings mail or meals
+        (Zone::Service, Goods::Soiled) => Some(LAST_RANK + 2),
         (Zone::Service, Goods::Usual) => Some(if cleans { 1 } else { 0 }),
         (Zone::Day, _) => Some(2),
         // a dock takes of its width
         (Zone::Circulation, _) => Some(3),
         (Zone::Service, _) => Some(LAST_RANK),
         (Zone::Staff, _) => Some(LAST_RANK + 1),
-        (Zone::Public | Zone::Outdoor, _) => Some(LAST_RANK + 2),
+        (Zone::Public | Zone::Outdoor, _) => Some(LAST_RANK + 3),
         (Zone::Night, _) => None,
     }
 }

@@ -143,7 +143,12 @@ fn bedrooms(reading: &Reading, rooms: &[Planned]) -> usize {
 /// Returns how many bedrooms the people need: two share one, everyone else has one.
 fn bedrooms_needed(reading: &Reading) -> usize {
     let people = reading.residents.filter(|_| is_dwelling(reading.program));
-    people.map_or(0, |n| n.saturating_sub(1).max(1) as usize)
+    people.map_or(0, |n| bedrooms_for(n, reading.each_alone))
+}
+
+/// Returns how many bedrooms so many people need: two share one where they are a couple, everyone else has one.
+pub(super) fn bedrooms_for(people: u32, each_alone: bool) -> usize {
+    if each_alone { people as usize } else { people.saturating_sub(1).max(1) as usize }
 }
 
 /// Sees to it that the building has what none is without; what finds no place becomes a conflict.
@@ -179,6 +184,7 @@ pub(super) fn complete<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned<'a
         missing.extend(toilet(reading, rooms));
         missing.extend(bathrooms(reading, rooms));
     }
+    support(reading, rooms);
     give_bedrooms(reading, rooms);
     // a home's own list of rooms is its own affair
     let own_list = reading.closed && reading.total.is_none() && lives;
@@ -195,6 +201,34 @@ pub(super) fn complete<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned<'a
             ),
         };
         reading.conflicts.push(note("vital_room_missing", message));
+    }
+}
+
+/// Adds to a list of rooms those that serve them: who lists the rooms of a clinic that patients are treated in takes its
+/// reception for granted.
+fn support<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
+    let (domain, program) = (reading.domain, reading.program);
+    let listed = reading.wishes.wishes.iter().any(|w| w.listed);
+    let joins = listed && (!reading.closed || reading.may_join) && !reading.only;
+    if !joins || reading.total.is_some() || reading.area_m2.is_some() {
+        return;
+    }
+    let none = |id: &String| reading.wishes.forbidden.contains(id);
+    for any in &program.support {
+        let kind = any.first().and_then(|id| domain.room_type(id));
+        let served = any.iter().any(none) || rooms.iter().any(|r| any.contains(&r.room_type));
+        if let Some(kind) = kind.filter(|_| !served) {
+            put(reading, rooms, Planned::new(&kind.id, kind));
+        }
+    }
+    let treats = |r: &&Planned| r.kind.zone == Zone::Day;
+    let many = program.staff_toilet_from > 0 && rooms.iter().filter(treats).count() as u32 >= program.staff_toilet_from;
+    let kind = domain.room_type(&words().dwelling.toilet).filter(|k| !none(&k.id) && many);
+    let toilets = rooms.iter().filter(|r| r.kind.access != Access::Host && reading.wet.has_toilet(r.kind)).count();
+    let named = reading.wishes.wishes.iter().filter_map(|w| domain.room_type(&w.room_type).zip(Some(w)));
+    let named = named.filter(|(k, w)| reading.wet.has_toilet(k) && w.exact && w.count > 1).count() > 0;
+    if let Some(kind) = kind.filter(|_| toilets < 2 && !named) {
+        put(reading, rooms, Planned::new(&kind.id, kind));
     }
 }
 
@@ -233,7 +267,7 @@ fn give_bedrooms<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
 }
 
 /// Gives a home of many bedrooms a second toilet and bathrooms enough, where its rooms are left open.
-fn second_toilet<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
+fn second_toilet<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
     let toilets = rooms.iter().filter(|r| reading.wet.has_toilet(r.kind)).count();
     let kind = reading.domain.room_type(&words().dwelling.toilet);
     let named = reading.wishes.wishes.iter().any(|w| {
@@ -242,11 +276,20 @@ fn second_toilet<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
     });
     let open = reading.total.is_none() && !reading.closed && !named;
     let few = bedrooms(reading, rooms) >= BEDROOMS_FOR_TWO_TOILETS && toilets < 2;
-    if let Some(kind) = kind.filter(|k| open && few && !reading.wishes.forbidden.contains(&k.id)) {
+    // toilets that one enters through a bedroom are none for visitors
+    let shared = |r: &Planned| reading.wet.has_toilet(r.kind) && r.kind.access != Access::Host;
+    let joins = !reading.only && (!reading.closed || reading.may_join);
+    let private = toilets > 0 && bedrooms(reading, rooms) >= BEDROOMS_FOR_TWO_TOILETS && !rooms.iter().any(shared);
+    let kind = kind.filter(|k| !reading.wishes.forbidden.contains(&k.id));
+    if let Some(kind) = kind.filter(|_| open && few || private && reading.total.is_none() && joins) {
         rooms.push(Planned::new(&kind.id, kind));
+    } else if private {
+        let message = "all toilets are entered through bedrooms; the rooms asked for were planned, one more for visitors would help";
+        reading.assumptions.push(note("no_visitor_toilet", message.into()));
     }
     let asleep = bedrooms(reading, rooms);
-    let bathing = rooms.iter().filter(|r| reading.wet.is_bathroom(r.kind)).count();
+    let showers = |r: &Planned| r.room_type == words().dwelling.shower;
+    let bathing = rooms.iter().filter(|r| reading.wet.is_bathroom(r.kind) || showers(r)).count();
     let needed = if asleep >= BEDROOMS_FOR_TWO_TOILETS { asleep.div_ceil(BEDROOMS_TO_A_BATHROOM) } else { 0 };
     let kind = reading.domain.room_type(&words().dwelling.bathroom);
     if let Some(kind) = kind.filter(|k| open && !reading.wishes.forbidden.contains(&k.id)) {
@@ -351,8 +394,10 @@ fn usually_bathes(reading: &Reading, room_type: &str) -> bool {
 pub(super) fn accompany<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
     let domain = reading.domain;
     let listed = reading.closed && !reading.may_join;
-    if reading.single || is_dwelling(reading.program) || reading.total.is_some() || listed && !joins_wet(reading, rooms)
-    {
+    if reading.total.is_some() {
+        return accompany_counted(reading, rooms);
+    }
+    if reading.single || is_dwelling(reading.program) || listed && !joins_wet(reading, rooms) {
         return;
     }
     let wet = |id: &str| domain.room_type(id).is_some_and(|k| reading.wet.is_bathroom(k));
@@ -385,6 +430,31 @@ pub(super) fn accompany<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>)
                 (false, false) => 1,
             };
             rooms.extend((have..wanted).map(|_| Planned::new(&guest.id, guest)));
+        }
+    }
+}
+
+/// Exchanges rooms of a fixed number that nobody named for those without which named ones are no use: the control room of a
+/// scanner, the room to scrub beside an operating room.
+fn accompany_counted<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
+    let domain = reading.domain;
+    let mut kinds: Vec<String> = Vec::new();
+    for room in rooms.iter().filter(|r| r.requested) {
+        if !kinds.contains(&room.room_type) {
+            kinds.push(room.room_type.clone());
+        }
+    }
+    for id in kinds.into_iter().filter(|_| !reading.single && !is_dwelling(reading.program)) {
+        let must = |k: &RoomType| {
+            let mut rules = domain.adjacency.iter().filter(|r| r.relation == AdjacencyRelation::Must);
+            rules.any(|r| r.a == k.id && r.b == id)
+        };
+        for guest in guests(reading, &id).into_iter().filter(|k| k.access != Access::Host && must(k)) {
+            let there = rooms.iter().any(|r| r.room_type == guest.id);
+            if !there && !reading.wishes.forbidden.contains(&guest.id) {
+                // as those that the prompt names: units keep it
+                put(reading, rooms, Planned { requested: true, ..Planned::new(&guest.id, guest) });
+            }
         }
     }
 }

@@ -10,9 +10,10 @@ use super::dwelling::ShortForm;
 use super::measures::Area;
 use super::mentions::{Mention, What};
 use super::places::note;
+use super::qualities;
 use super::relations::{Said, Spread};
 use super::text::Token;
-use super::words::{Tag, words};
+use super::words::{Spoken, Tag, words};
 
 /// Rooms of one type that the prompt names.
 #[derive(Debug, Clone, PartialEq)]
@@ -25,6 +26,8 @@ pub(super) struct Wish {
     pub name: String,
     /// Area of one such room, m^2.
     pub area_m2: Option<f64>,
+    /// Factor on the usual area that the prompt asks for: "big kitchen".
+    pub size: Option<f64>,
     /// True when the rooms are listed, not only part of the building's name ("two-bedroom flat").
     pub listed: bool,
 }
@@ -33,7 +36,7 @@ impl Wish {
     /// Returns the wish for a room that the prompt does not list by its type.
     pub(super) fn one(room_type: &str, name: &str) -> Self {
         let (room_type, name) = (room_type.to_owned(), name.to_owned());
-        Self { room_type, count: 1, exact: false, name, area_m2: None, listed: false }
+        Self { room_type, count: 1, exact: false, name, area_m2: None, size: None, listed: false }
     }
 }
 
@@ -88,6 +91,50 @@ impl Wishes {
     }
 }
 
+impl Wishes {
+    /// Makes one room of a kitchen and a living room that are open to each other where a fixed number of rooms has no place
+    /// for both: "three rooms: bedroom, bathroom, living room with open kitchen".
+    pub(super) fn join_to_fit(&mut self, total: Option<u32>, domain: &Domain) {
+        let d = &words().dwelling;
+        let listed: u32 = self.wishes.iter().map(|w| w.count).fold(0, u32::saturating_add);
+        let Some(total) = total.filter(|n| *n < listed && domain.room_type(&d.living_kitchen).is_some()) else {
+            return;
+        };
+        let over = listed - total;
+        let joined = |a: &str, b: &str, pairs: &[Pair]| {
+            let of = |p: &Pair| p.a == a && p.b == b || p.a == b && p.b == a;
+            pairs.iter().any(|p| p.connector == Connector::Open && of(p))
+        };
+        let one = |id: &str, all: &[Wish]| all.iter().any(|w| w.room_type == id && w.count == 1);
+        let open = |id: &String, with: &[&String], all: &Self| {
+            one(id, &all.wishes) && with.iter().any(|o| joined(id, o, &all.pairs)) || all.open.contains(id)
+        };
+        let both = one(&d.kitchen, &self.wishes) && one(&d.living, &self.wishes);
+        if !both || !open(&d.kitchen, &[&d.living, &d.dining], self) {
+            return;
+        }
+        let dining = one(&d.dining, &self.wishes) && open(&d.dining, &[&d.living, &d.kitchen], self);
+        let gone: Vec<&String> = if dining && (over > 1 || !joined(&d.kitchen, &d.living, &self.pairs)) {
+            vec![&d.kitchen, &d.dining]
+        } else {
+            vec![&d.kitchen]
+        };
+        self.wishes.retain(|w| !gone.contains(&&w.room_type));
+        self.open.retain(|id| !gone.contains(&id));
+        if let Some(wish) = self.wishes.iter_mut().find(|w| w.room_type == d.living) {
+            wish.room_type.clone_from(&d.living_kitchen);
+        }
+        for pair in &mut self.pairs {
+            for id in [&mut pair.a, &mut pair.b] {
+                if *id == d.living || gone.contains(&&*id) {
+                    id.clone_from(&d.living_kitchen);
+                }
+            }
+        }
+        self.pairs.retain(|p| p.a != p.b);
+    }
+}
+
 /// Room type of a charging place; every domain may have it.
 pub(super) const CHARGING: &str = "robot_charging";
 /// A count above this is no plan but a slip; the caller refuses.
@@ -106,6 +153,8 @@ pub(super) struct Text<'a> {
     pub list_from: usize,
     /// True when robots are named; then charging is about them.
     pub robots: bool,
+    pub language: &'a str,
+    pub spoken: &'a [&'a Spoken],
 }
 
 /// Counts rooms and gathers pairs; contradictions become conflicts.
@@ -234,6 +283,8 @@ fn count_type(text: &Text, id: &str, list: &[usize], out: &mut Wishes, conflicts
     }
     let Some(counted) = count_mentions(text, &positive, short, &label, conflicts) else { return };
     let area_m2 = positive.iter().find_map(|&m| room_area(text, &text.mentions[m]));
+    let behind = !matches!(text.language, "en" | "de" | "zh" | "ko");
+    let size = positive.iter().find_map(|&m| qualities::size(text.tokens, &text.mentions[m], text.spoken, behind));
     let name = positive.first().map_or(label.clone(), |&m| {
         let span = text.mentions[m].span;
         text.prompt.get(text.tokens[span.start].start..text.tokens[span.end - 1].end).unwrap_or(&label).to_owned()
@@ -244,6 +295,7 @@ fn count_type(text: &Text, id: &str, list: &[usize], out: &mut Wishes, conflicts
         exact: counted.1,
         name,
         area_m2,
+        size,
         listed: counted.2,
     });
 }

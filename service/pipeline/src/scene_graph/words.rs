@@ -114,6 +114,28 @@ pub(super) enum Tag {
     Only,
     /// "Including": what follows is of the rooms before it.
     PartOf,
+    /// Words for a small kitchen that is a part of the room it is named with: "kitchen corner".
+    Corners,
+    /// A bedroom with its bathroom, whoever it is for: the "suite" of "grandparents' suite".
+    SuiteWords,
+    /// Who has something of their own: "everyone".
+    Everyone,
+    /// All have a room of their own: "a room each".
+    SingleRooms,
+    /// "Half open plan, half offices": those who work there are shared out.
+    Half,
+    /// Counters of a room at which people are served: "service windows", "Schalter".
+    ServicePoints,
+    /// "Separate" of toilets: men and women have their own.
+    Parted,
+    /// How long a robot is: "0.9 m long".
+    Length,
+    /// Those who stay with a patient: "parents".
+    Companions,
+    /// What they do there: "stay overnight".
+    Overnight,
+    /// Words that say both: "rooming-in".
+    RoomingIn,
 }
 
 /// Words of one language.
@@ -142,6 +164,15 @@ pub(super) struct Language {
     /// Words for a room and its bathroom, with the room types.
     #[serde(default)]
     pub suites: BTreeMap<String, Vec<String>>,
+    /// Words for how large a room is, with the factor on its usual area.
+    #[serde(default)]
+    pub sizes: BTreeMap<String, f64>,
+    /// Words for a room that say what stands in it: its type and the object.
+    #[serde(default)]
+    pub furnished: BTreeMap<String, Vec<String>>,
+    /// Words for rooms of several types that share a noun, with the room types: "single and double rooms".
+    #[serde(default)]
+    pub mixes: BTreeMap<String, Vec<String>>,
     #[serde(flatten)]
     pub phrases: BTreeMap<Tag, Vec<String>>,
 }
@@ -163,6 +194,19 @@ pub(super) struct Dwelling {
     pub bathroom: String,
     pub studio: String,
     pub toilet: String,
+    /// A room with a shower and no toilet.
+    pub shower: String,
+    /// One room to live and cook in.
+    pub living_kitchen: String,
+    /// The sitting room of a suite.
+    pub suite_sitting: String,
+    pub ensuite: String,
+    /// Building types of homes that people share who have a room each.
+    pub shared: Vec<String>,
+    /// What those work at in their rooms.
+    pub own_desk: String,
+    /// The room in which they eat, and at what.
+    pub shared_meals: [String; 2],
     /// Rooms that a word for a bathroom may mean where no one lives.
     pub toilets: Vec<String>,
     /// Rooms that no dwelling is without, each with what can stand for it.
@@ -205,6 +249,10 @@ struct File {
     many_vital: Vec<Vec<String>>,
     /// Rooms of one use: the program adds none beside one that the prompt names.
     alike: Vec<Vec<String>>,
+    /// Share of those who work there that has a seat in a room to eat in, by room type.
+    eating: BTreeMap<String, f64>,
+    /// Whose the toilets of a place to work at are, one word each, as names of rooms begin.
+    sexes: Vec<String>,
     /// Domain whose rooms are of all kinds of buildings.
     common_domain: String,
     /// Usual words of languages that are not read, by English name of the language.
@@ -231,6 +279,8 @@ pub(super) struct Words {
     pub many_desks: u32,
     pub many_vital: Vec<Vec<String>>,
     pub alike: Vec<Vec<String>>,
+    pub eating: BTreeMap<String, f64>,
+    pub sexes: Vec<String>,
     pub common_domain: String,
     /// Usual words of languages that are not read, folded, by English name of the language.
     pub unread_languages: BTreeMap<String, BTreeSet<String>>,
@@ -247,6 +297,9 @@ pub(super) struct Spoken {
     pub heads: Phrases<()>,
     pub joint: Phrases<Vec<String>>,
     pub suites: Phrases<Vec<String>>,
+    pub sizes: Phrases<f64>,
+    pub furnished: Phrases<Vec<String>>,
+    pub mixes: Phrases<Vec<String>>,
     /// Usual words that tell the language, folded.
     pub detect: BTreeSet<String>,
     /// Number words, folded.
@@ -281,6 +334,8 @@ pub(super) fn words() -> &'static Words {
             many_desks: file.many_desks,
             many_vital: file.many_vital,
             alike: file.alike,
+            eating: file.eating,
+            sexes: file.sexes,
             common_domain: file.common_domain,
             unread_languages: file
                 .unread_languages
@@ -323,7 +378,10 @@ fn spoken(code: &str, words: Language) -> Spoken {
         map.iter().for_each(|(phrase, types)| phrases.insert(phrase, types.clone()));
         phrases
     };
-    let (joint, suites) = (table(&words.joint), table(&words.suites));
+    let (joint, suites, mixes) = (table(&words.joint), table(&words.suites), table(&words.mixes));
+    let furnished = table(&words.furnished);
+    let mut sizes = Phrases::new("");
+    words.sizes.iter().for_each(|(phrase, value)| sizes.insert(phrase, *value));
     let detect = words.phrases.get(&Tag::Detect).into_iter().flatten().map(|w| super::text::fold(w)).collect();
     Spoken {
         detect,
@@ -338,6 +396,9 @@ fn spoken(code: &str, words: Language) -> Spoken {
         heads,
         joint,
         suites,
+        sizes,
+        furnished,
+        mixes,
     }
 }
 

@@ -87,3 +87,50 @@ fn homes_without_robots_have_no_dock() {
     let worlds = worlds("two-bedroom flat", 3);
     assert!(worlds.iter().flat_map(|w| &w.placements.placements).all(|p| !p.object.contains("dock")));
 }
+
+#[test]
+fn those_who_share_a_home_have_a_desk_each_and_eat_in_the_kitchen() {
+    let (mut desks, mut tables) = (Vec::new(), Vec::new());
+    for world in worlds("student shared flat for 5 people, each with own room, shared kitchen, 2 bathrooms", 6) {
+        assert_eq!(world.scene_graph.rooms.iter().filter(|r| r.room_type == "bedroom").count(), 5);
+        let have = count(&world, "bedroom", "small_desk");
+        desks.extend((0..5).map(|i| i < have));
+        tables.push(count(&world, "kitchen", "dining_chair") >= 2);
+    }
+    most("desks in the rooms of shared homes", 0.9, &desks);
+    most("tables in shared kitchens", 0.8, &tables);
+}
+
+#[test]
+fn the_rooms_of_a_suite_hang_together() {
+    for world in worlds("house with grandparents suite (bedroom, bathroom, sitting room), 2 bedrooms, kitchen, bath", 3)
+    {
+        let joined = |id: &str| {
+            let door = world.floorplan.doors.iter().find(|d| d.room_ids.iter().any(|r| r.starts_with(id)));
+            door.is_some_and(|d| d.room_ids.iter().any(|r| r == "bedroom_1"))
+        };
+        assert!(joined("ensuite_") && joined("suite_sitting_room_"), "seed {}", world.floorplan.seed);
+    }
+}
+
+#[test]
+fn robots_go_where_the_prompt_sends_them() {
+    for world in
+        worlds("flat with a delivery robot that brings parcels from the entrance to the kitchen; 2 bedrooms", 3)
+    {
+        let goals = &world.scenario.robots[0].goals;
+        assert!(goals.iter().any(|g| g.starts_with("entrance")), "{goals:?}");
+        assert!(goals.iter().any(|g| g.contains("kitchen")) && goals.len() == 2, "{goals:?}");
+    }
+}
+
+#[test]
+fn an_area_that_is_missed_is_said() {
+    for world in
+        worlds("flat of 90 m2 with three bedrooms, two bathrooms, living room, dining room, kitchen, laundry", 3)
+    {
+        let net: f64 = world.floorplan.rooms.iter().map(|r| r.net_polygon.area()).sum();
+        let said = world.scene_graph.conflicts.iter().any(|n| n.code.starts_with("area_"));
+        assert!((net - 90.0).abs() <= 9.0 || said, "{net:.1} m2, seed {}", world.floorplan.seed);
+    }
+}

@@ -9,6 +9,7 @@ mod edit;
 mod edit_storeys;
 mod homes;
 mod large;
+mod offices;
 mod order;
 mod prompts;
 mod review;

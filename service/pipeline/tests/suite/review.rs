@@ -297,10 +297,10 @@ fn isolation_rooms_have_their_anteroom() {
         let prompt = format!("intensive care unit with {rooms} rooms");
         let graph = generate(&Request { prompt, ..Request::default() }, &registry).unwrap();
         let count = |kind: &str| graph.rooms.iter().filter(|r| r.room_type == kind).count();
-        assert_eq!(count("isolation_room"), count("anteroom"), "{rooms} rooms");
+        assert_eq!(count("icu_isolation_room"), count("anteroom"), "{rooms} rooms");
         let asked = graph.rooms.iter().filter(|r| !r.circulation).count();
         assert_eq!(asked, rooms);
-        found += count("isolation_room");
+        found += count("icu_isolation_room");
     }
     assert!(found > 0, "some intensive care unit has an isolation room");
 }

@@ -99,6 +99,8 @@ impl Args {
             height_m: ROBOT_HEIGHT_M,
             body: None,
             charging: true,
+            stops: Vec::new(),
+            room_types: Vec::new(),
         });
         Building {
             country_code: self.country.as_ref().map(|c| c.to_ascii_uppercase()),

@@ -40,6 +40,10 @@ const NARROW_ENDS: f64 = 1.0;
 /// What rows of desks lose all of which have open floor behind their screens, before and after places are looked at.
 const OPEN_BACKS: f64 = 4.0;
 const SINGLE: f64 = 6.0;
+/// What counters lose for each row behind the first.
+const IN_LINE: f64 = 4.0;
+/// What desks lose for each meter to the windows.
+const FROM_LIGHT: f64 = 0.4;
 /// Floor behind a desk over which it stands against a wall all the same, mm.
 const AT_WALL: i32 = 350;
 /// Row plans whose every position is tested.
@@ -187,10 +191,11 @@ pub(in crate::placement) fn rows<'a>(
                 let narrow = if plan.rows > 1 && v0.max(spare_v - v0) < aisle { NARROW_ENDS } else { 0.0 };
                 let noise =
                     0.5 * grain(terms.salt, i64::from(plan.q) * 64 + i64::from(plan.columns), (ku * 8 + kv) as i64);
+                let dark = if in_pairs { from_windows(state.space, &placed) } else { 0.0 };
                 out.push(Batch {
                     placed,
                     in_pairs,
-                    score: plan.score + 8.0 * (share - 1.0) + tidy + noise - raggedness - narrow - single,
+                    score: plan.score + 8.0 * (share - 1.0) + tidy + noise - raggedness - narrow - single - dark,
                 });
             }
         }
@@ -235,6 +240,18 @@ pub(in crate::placement) fn leave_out_single(space: &Space, task: &Task, placed:
         return 0;
     }
     single
+}
+
+/// Returns what desks lose that stand far from the windows of their room, on average.
+fn from_windows(space: &Space, placed: &[Placed]) -> f64 {
+    let apart = |a: (i32, i32), b: (i32, i32)| (b.0 - a.1).max(a.0 - b.1).max(0);
+    let far = |p: &Placed| {
+        let own = p.world(&p.unit.bbox);
+        let to = |w: &Box2| apart((own.x0, own.x1), (w.x0, w.x1)) + apart((own.y0, own.y1), (w.y0, w.y1));
+        space.windows.iter().map(|w| to(&w.zone)).min().unwrap_or(0)
+    };
+    let sum: i64 = placed.iter().map(|p| i64::from(far(p))).sum();
+    FROM_LIGHT * sum as f64 / 1000.0 / placed.len().max(1) as f64
 }
 
 /// Returns how many units rows lack of being as long as the longest, over their number.
@@ -346,6 +363,10 @@ fn rate(plan: &Plan, wished: i32, task: &Task, (d, w): (i32, i32), wide: &Box2, 
     let (pu, pv) = (f64::from(plan.depth(d)), f64::from(plan.breadth(w, aisle)));
     let (ru, rv) = (f64::from(wide.width()), f64::from(wide.height()));
     s -= 2.0 * (pu / ru - pv / rv).abs();
+    // who is served stands before one line of counters
+    if task.anchor.shape == Shape::Counter {
+        s -= IN_LINE * f64::from(plan.rows - 1);
+    }
     // full rows, long runs broken by aisles, wide aisles where there is room
     s -= 0.5 * f64::from(plan.columns * wished - plan.count) / f64::from(plan.columns);
     s -= if plan.run == i32::MAX && plan.columns > 4 { 0.8 } else { 0.0 };

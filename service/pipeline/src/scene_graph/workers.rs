@@ -1,0 +1,291 @@
+//! Places to work at follow those who work there: desks for as many as the prompt says, toilets for women and men, seats in
+//! break rooms and canteens, and the names that the prompt gives its rooms.
+
+use d3dgen_model::domain::{Domain, Occupants, Privacy, Program, RoomType, Zone};
+
+use super::places::note;
+use super::program::{Planned, desk_area_m2, head_count, places_to_work};
+use super::reading::{Reading, is_dwelling};
+use super::seats::{MOST_IN_TEAM, most_desks, places, works_in};
+use super::vital;
+use super::wishes::{Wish, Wishes};
+use super::words::words;
+
+/// People from which on women and men have a toilet each.
+const PEOPLE_FOR_TWO: u32 = 10;
+/// People and rooms from which on there is a toilet for wheelchairs.
+const PEOPLE_FOR_ACCESSIBLE: u32 = 15;
+const ROOMS_FOR_ACCESSIBLE: usize = 8;
+/// Desks that an open office is worth a room for.
+const LEAST_OPEN: u32 = 3;
+/// Rooms to work in that the name of a small office counts beside its toilets, at most: "two-room office with a toilet".
+const MOST_COUNTED: u32 = 3;
+/// Floor of the kitchen or counter of a room to eat in, as a share of its least area.
+const KITCHEN_SHARE: f64 = 0.45;
+/// Most single offices that a share of the people gets.
+const MOST_SHARED_OUT: u32 = 60;
+
+/// Returns true for programs of offices: rooms that serve all grow with those who work there.
+pub(super) fn is_office(program: &Program) -> bool {
+    !is_dwelling(program) && program.rooms.iter().any(|e| e.area_per_person_m2.is_some())
+}
+
+/// Returns the domain's room type with the most desks.
+fn open_kind(domain: &Domain) -> Option<&RoomType> {
+    domain.room_types.iter().max_by_key(|k| most_desks(domain, k)).filter(|k| most_desks(domain, k) > MOST_IN_TEAM)
+}
+
+/// Returns the room that a list leaves out which names those who work there and no room with desks enough for them.
+pub(super) fn room_left_out<'a>(
+    wishes: &Wishes,
+    program: &Program,
+    domain: &'a Domain,
+    people: Option<u32>,
+    desks: Option<u32>,
+) -> Option<&'a RoomType> {
+    let heads = people.max(desks).filter(|_| is_office(program))?;
+    let kind = open_kind(domain)?;
+    let holds = |w: &Wish| w.count.saturating_mul(domain.room_type(&w.room_type).map_or(0, |k| most_desks(domain, k)));
+    let have = wishes.wishes.iter().map(holds).fold(0, u32::saturating_add);
+    (have < heads && !wishes.forbidden.contains(&kind.id)).then_some(kind)
+}
+
+/// Counts the toilets of "two-room office with a small toilet" beside its rooms, which are to work in.
+pub(super) fn beside_rooms(wishes: &mut Wishes, total: Option<u32>, domain: &Domain, program: &Program) -> Option<u32> {
+    let wet = |w: &Wish| domain.room_type(&w.room_type).is_some_and(|k| k.wet && k.zone == Zone::Service);
+    let rooms = total.filter(|n| *n <= MOST_COUNTED && is_office(program) && !wishes.wishes.is_empty())?;
+    if !wishes.wishes.iter().all(wet) {
+        return None;
+    }
+    let beside: u32 = wishes.wishes.iter().map(|w| w.count).sum();
+    let small = |k: &&RoomType| works_in(domain, k) && k.privacy == Privacy::Private && most_desks(domain, k) > 1;
+    let kind = domain.room_types.iter().filter(small).min_by_key(|k| most_desks(domain, k))?;
+    let wish = Wish { count: rooms, ..Wish::one(&kind.id, &kind.label) };
+    wishes.wishes.insert(0, wish);
+    Some(rooms + beside)
+}
+
+/// Gives the people desks, the rooms that serve them their size, and all rooms their names.
+pub(super) fn settle<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
+    if !is_office(reading.program) || reading.single {
+        return;
+    }
+    call(reading, rooms);
+    share_halves(reading, rooms);
+    give_desks(reading, rooms);
+    part_toilets(reading, rooms);
+}
+
+/// Names rooms as the prompt does.
+fn call(reading: &Reading, rooms: &mut [Planned]) {
+    for called in &reading.called {
+        let own = |r: &&mut Planned| r.requested && r.called.is_none() && r.room_type == called.room_type;
+        for room in rooms.iter_mut().filter(own).take(called.count as usize) {
+            // those that are called as their type are it all the same
+            room.called = Some(called.name.clone());
+        }
+    }
+    let as_type = |r: &Planned| {
+        let toilet = reading.wet.has_toilet(r.kind);
+        let unknown = r.kind.id != r.room_type;
+        toilet || unknown || r.called.as_ref().is_some_and(|c| c.to_lowercase() == r.kind.label.to_lowercase())
+    };
+    rooms.iter_mut().filter(|r| as_type(r)).for_each(|r| r.called = None);
+}
+
+/// Shares out those who work there: "half open plan, half offices".
+fn share_halves<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
+    let Some(people) = head_count(reading, Occupants::Staff).filter(|_| reading.halves.len() == 2) else { return };
+    for (k, id) in reading.halves.iter().enumerate() {
+        let Some(kind) = reading.domain.room_type(id) else { continue };
+        let share = if k == 0 { people.div_ceil(2) } else { people / 2 };
+        let most = most_desks(reading.domain, kind);
+        if most == 0 || share == 0 {
+            continue;
+        }
+        let wanted = share.div_ceil(most).min(MOST_SHARED_OUT) as usize;
+        let mut seen = 0;
+        rooms.retain(|r| {
+            let own = &r.room_type == id;
+            seen += usize::from(own);
+            !own || seen <= wanted
+        });
+        let have = rooms.iter().filter(|r| &r.room_type == id).count();
+        if reading.total.is_none() {
+            rooms.extend((have..wanted).map(|_| Planned { requested: true, ..Planned::new(id, kind) }));
+        }
+        let own: Vec<usize> = (0..rooms.len()).filter(|&i| &rooms[i].room_type == id).collect();
+        for (n, &i) in own.iter().enumerate() {
+            let each = share / own.len() as u32 + u32::from((n as u32) < share % own.len() as u32);
+            seat(reading, &mut rooms[i], each);
+        }
+    }
+}
+
+fn seat(reading: &Reading, room: &mut Planned, desks: u32) {
+    room.occupants = Some(desks);
+    if most_desks(reading.domain, room.kind) > 2 {
+        let mut own = reading.program.rooms.iter().filter(|e| e.room_type == room.room_type);
+        let each = own.find_map(|e| e.area_per_occupant_m2);
+        let each = each.unwrap_or_else(|| desk_area_m2(reading.domain, &room.room_type));
+        room.size_for_people(each * f64::from(desks));
+    }
+}
+
+/// Returns the desks of a room: as many as it is told to have, else the least of its type.
+fn desks(domain: &Domain, room: &Planned) -> u32 {
+    if !works_in(domain, room.kind) {
+        return 0;
+    }
+    room.occupants.or_else(|| super::seated::desks(domain, room.kind).map(|d| d[0])).unwrap_or(0)
+}
+
+/// Gives open offices the people who have no desk elsewhere; rooms to work in that nobody asked for and nobody needs go.
+fn give_desks<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
+    let Some(people) = head_count(reading, Occupants::Staff) else { return };
+    let domain = reading.domain;
+    let open = |r: &Planned| most_desks(domain, r.kind) > MOST_IN_TEAM;
+    let one_storey = reading.storeys.levels.len() == 1;
+    if reading.total.is_none() && one_storey {
+        let counts = |r: &&Planned| !open(r) || r.occupants.is_some();
+        let sum = |rooms: &[Planned]| rooms.iter().filter(counts).map(|r| desks(domain, r)).sum::<u32>();
+        let spare = |rooms: &[Planned]| {
+            let may_go = |&i: &usize| {
+                let r = &rooms[i];
+                !r.requested && !open(r) && desks(domain, r) > 0 && !vital::is_vital(reading, rooms, i)
+            };
+            (0..rooms.len()).rev().find(may_go)
+        };
+        // counted desks are all there are to be; an open office is worth a few of them
+        let counted = reading.occupancy.staff.is_none();
+        let has_open = rooms.iter().any(|r| open(r) && r.occupants.is_none());
+        let most = people.saturating_sub(if has_open { LEAST_OPEN } else { 0 });
+        while counted && has_open || sum(rooms) > most {
+            let Some(last) = spare(rooms) else { break };
+            rooms.remove(last);
+        }
+        if sum(rooms) >= people {
+            rooms.retain(|r| r.requested || !open(r) || r.occupants.is_some());
+        }
+    }
+    let seated: u32 = if reading.occupancy.desks.is_some_and(|n| n >= people) {
+        // "60 workstations, supervisor office": the supervisor has one more
+        rooms.iter().filter(|r| works_in(domain, r.kind)).filter_map(|r| r.occupants).sum()
+    } else {
+        rooms.iter().filter(|r| !(open(r) && r.occupants.is_none())).map(|r| desks(domain, r)).sum()
+    };
+    let free: Vec<usize> = (0..rooms.len()).filter(|&i| open(&rooms[i]) && rooms[i].occupants.is_none()).collect();
+    let left = people.saturating_sub(seated);
+    if left > 0 && !free.is_empty() {
+        let n = free.len() as u32;
+        for (k, &i) in free.iter().enumerate() {
+            let each = left / n + u32::from((k as u32) < left % n);
+            if each > 0 {
+                seat(reading, &mut rooms[i], each);
+            }
+        }
+        return;
+    }
+    let team = |r: &Planned| (3..=MOST_IN_TEAM).contains(&most_desks(domain, r.kind)) && r.occupants.is_none();
+    let teams: Vec<usize> = (0..rooms.len()).filter(|&i| team(&rooms[i])).collect();
+    let mut short = left;
+    for i in teams {
+        let [low, high] = super::seated::desks(domain, rooms[i].kind).unwrap_or([0, 0]);
+        let more = short.min(high - low.min(high));
+        if more > 0 {
+            seat(reading, &mut rooms[i], low + more);
+            short -= more;
+        }
+    }
+    let most: u32 = rooms.iter().map(|r| r.occupants.unwrap_or(most_desks(domain, r.kind))).sum();
+    if short > 0 && most < people {
+        let message = format!(
+            "{people} people are to work there, and the rooms asked for have {most} desks at most; an open office would have the others"
+        );
+        reading.conflicts.push(note("too_few_desks", message));
+    }
+}
+
+/// Gives women and men a toilet each where many work, and a toilet for wheelchairs.
+fn part_toilets<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
+    let domain = reading.domain;
+    let entries = || reading.program.rooms.iter().filter_map(|e| Some((e, domain.room_type(&e.room_type)?)));
+    let flushes = |k: &RoomType| reading.wet.has_toilet(k);
+    let Some((_, kind)) = entries().find(|(e, k)| e.area_per_person_m2.is_some() && flushes(k)) else { return };
+    let wheelchairs = entries().map(|e| e.1).find(|k| k.id != kind.id && flushes(k));
+    let people = places_to_work(reading, rooms);
+    let own = |r: &Planned| r.room_type == kind.id;
+    let fixed = reading.wishes.wishes.iter().any(|w| w.room_type == kind.id && w.exact);
+    let open = reading.total.is_none() && !reading.only && reading.storeys.levels.len() == 1;
+    let may = |k: &RoomType| open && !reading.wishes.forbidden.contains(&k.id);
+    let joins = !reading.closed || reading.may_join;
+    let count = rooms.iter().filter(|r| own(r)).count();
+    let mut added = None;
+    if count == 1 && people > PEOPLE_FOR_TWO && may(kind) && !fixed && rooms.iter().all(|r| r.unit.is_none()) {
+        rooms.push(Planned::new(&kind.id, kind));
+        added = Some(kind);
+    }
+    let many = people > PEOPLE_FOR_ACCESSIBLE || rooms.len() > ROOMS_FOR_ACCESSIBLE;
+    let missing = |k: &&RoomType| many && joins && may(k) && !rooms.iter().any(|r| r.room_type == k.id);
+    if let Some(kind) = wheelchairs.filter(missing) {
+        rooms.push(Planned::new(&kind.id, kind));
+    }
+    let toilets: Vec<usize> = (0..rooms.len()).filter(|&i| own(&rooms[i])).collect();
+    let sexes = &words().sexes;
+    if toilets.len() > 1 && toilets.len().is_multiple_of(sexes.len().max(1)) {
+        for (k, &i) in toilets.iter().enumerate() {
+            let whose = &sexes[k % sexes.len()];
+            let mut letters = whose.chars();
+            let whose: String = letters.next().map(|c| c.to_uppercase().chain(letters).collect()).unwrap_or_default();
+            rooms[i].called = Some(format!("{whose} {}", kind.label.to_lowercase()));
+        }
+    }
+    if let Some(kind) = added {
+        let message = format!("{people} people work there; women and men have {} each", kind.label.to_lowercase());
+        reading.assumptions.push(note("toilets_by_people", message));
+    }
+}
+
+/// Gives rooms to meet, to wait and to be served in the places that the prompt says, and those to eat in seats for a share
+/// of the people.
+pub(super) fn seat_guests(reading: &mut Reading, rooms: &mut [Planned]) {
+    let domain = reading.domain;
+    for held in reading.seats.clone() {
+        let free = |r: &&mut Planned| r.requested && r.occupants.is_none() && r.room_type == held.room_type;
+        for room in rooms.iter_mut().filter(free).take(held.count as usize) {
+            let Some((most, area)) = places(domain, room.kind, held.beds) else { continue };
+            room.occupants = Some(held.beds);
+            room.visited = true;
+            room.size_for_people(area);
+            let (wanted, largest) = (held.beds, room.kind.area_m2.max);
+            if area > largest && room.area_m2.is_none() && wanted <= most {
+                let label = room.called.clone().unwrap_or_else(|| room.kind.label.clone());
+                let message = format!(
+                    "{label} for {wanted} is more than such a room is planned for (at most {} places, {largest:.0} m2); as many as fit were planned",
+                    most.min(wanted)
+                );
+                reading.conflicts.push(note("too_many_seats", message));
+            }
+        }
+    }
+    if !is_office(reading.program) || reading.single {
+        return;
+    }
+    let people = places_to_work(reading, rooms);
+    for (id, share) in &words().eating {
+        let eats: Vec<usize> = (0..rooms.len()).filter(|&i| &rooms[i].room_type == id).collect();
+        for &i in &eats {
+            if rooms[i].occupants.is_some() {
+                continue;
+            }
+            let seats = (share * f64::from(people) / eats.len() as f64).ceil() as u32;
+            let Some((_, area)) = places(domain, rooms[i].kind, seats).filter(|_| seats > 0) else { continue };
+            let room = &mut rooms[i];
+            room.occupants = Some(seats);
+            room.visited = true;
+            // beside the seats there is the kitchen or counter
+            let kitchen = KITCHEN_SHARE * room.kind.area_m2.min;
+            room.size_for_people(area + kitchen);
+        }
+    }
+}
