@@ -20,7 +20,7 @@ pub use layouts::{LayoutSwap, Layouts};
 pub use object::{Mount, ObjectType, Shape, Stock, StockedAsset};
 pub use program::{
     Adjacency, AdjacencyRelation, Circulation, Elevator, Occupants, Program, ProgramRoom, Scheme, Stairs, Storeys,
-    Units,
+    SupportRoom, Units,
 };
 pub use room_type::{Access, AreaRange, Daylight, Goods, Materials, Privacy, RobotUse, RoomType, Zone};
 
@@ -214,9 +214,10 @@ impl Document for Domain {
             for (j, id) in program.vital.iter().enumerate() {
                 room(format!("/programs/{i}/vital/{j}"), id, &mut problems);
             }
-            for (j, ids) in program.support.iter().enumerate() {
-                for (k, id) in ids.iter().enumerate() {
-                    room(format!("/programs/{i}/support/{j}/{k}"), id, &mut problems);
+            for (j, entry) in program.support.iter().enumerate() {
+                room(format!("/programs/{i}/support/{j}/room_type"), &entry.room_type, &mut problems);
+                for (k, id) in entry.or.iter().enumerate() {
+                    room(format!("/programs/{i}/support/{j}/or/{k}"), id, &mut problems);
                 }
             }
             for (name, id) in &program.means {

@@ -24,10 +24,10 @@ pub struct Program {
     /// where the number of rooms is fixed the program's order decides.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub vital: Vec<String>,
-    /// Rooms that serve the others, each with what can stand for it: they join a list of rooms that names none of them, and
+    /// Rooms that serve the others: they join a list of rooms that names none of them, and
     /// give way where the number of rooms is fixed or nothing else is wanted.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub support: Vec<Vec<String>>,
+    pub support: Vec<SupportRoom>,
     /// Rooms to be treated in from which on staff have a toilet of their own beside that of patients, in such a list; 0 for
     /// never.
     #[serde(default, skip_serializing_if = "is_zero")]
@@ -45,6 +45,24 @@ pub struct Program {
     /// Where the program comes from.
     #[serde(default)]
     pub source: String,
+}
+
+/// A room that serves others, and what can stand for it.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SupportRoom {
+    /// Its room type.
+    pub room_type: String,
+    /// Room types that do as well.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub or: Vec<String>,
+}
+
+impl SupportRoom {
+    /// Returns all room types that do, the usual one first.
+    pub fn room_types(&self) -> impl Iterator<Item = &String> {
+        std::iter::once(&self.room_type).chain(&self.or)
+    }
 }
 
 /// The units of a large building: wards of a hospital, departments of an office, each with what it needs at hand.

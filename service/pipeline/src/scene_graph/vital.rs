@@ -215,8 +215,8 @@ fn support<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
     }
     let none = |id: &String| reading.wishes.forbidden.contains(id);
     for any in &program.support {
-        let kind = any.first().and_then(|id| domain.room_type(id));
-        let served = any.iter().any(none) || rooms.iter().any(|r| any.contains(&r.room_type));
+        let kind = domain.room_type(&any.room_type);
+        let served = any.room_types().any(|id| none(id) || rooms.iter().any(|r| &r.room_type == id));
         if let Some(kind) = kind.filter(|_| !served) {
             put(reading, rooms, Planned::new(&kind.id, kind));
         }
