@@ -129,27 +129,36 @@ pub(super) struct Outline {
 
 /// Returns the outline of a room from the stretches around it, or `None` when it is not one simple ring.
 pub(super) fn outline(room: usize, stretches: &[Stretch]) -> Option<Outline> {
-    let ring: Vec<_> = ring(room, stretches)?.into_iter().map(|(at, beyond)| (at, beyond.is_none())).collect();
+    let ring: Vec<_> = ring(room, stretches)?.into_iter().map(|side| (side.from, side.beyond.is_none())).collect();
     Some(merge_straight(&ring))
 }
 
 /// Returns the rooms around a room, clockwise from its south-west corner, each as often as its walls begin; `None` when the
 /// room is not one simple ring.
 pub(super) fn neighbors_around(room: usize, stretches: &[Stretch]) -> Option<Vec<usize>> {
-    Some(ring(room, stretches)?.into_iter().rev().filter_map(|(_, beyond)| beyond).collect())
+    Some(ring(room, stretches)?.into_iter().rev().filter_map(|side| side.beyond).collect())
 }
 
-/// Returns where each stretch of a room's outline begins and what room is beyond it, counterclockwise from the corner that
-/// is south of those farthest west; `None` when it is not one simple ring.
-fn ring(room: usize, stretches: &[Stretch]) -> Option<Vec<((i32, i32), Option<usize>)>> {
-    // Directed edges with the room on the left.
-    let mut next: BTreeMap<(i32, i32), ((i32, i32), Option<usize>)> = BTreeMap::new();
+/// One stretch of a room's outline.
+struct Side {
+    /// Where it begins, on the lattice.
+    from: (i32, i32),
+    /// The room on its other side; `None` outside the building.
+    beyond: Option<usize>,
+}
+
+/// Returns the stretches of a room's outline, counterclockwise from the corner that is south of those farthest west; `None`
+/// when it is not one simple ring.
+fn ring(room: usize, stretches: &[Stretch]) -> Option<Vec<Side>> {
+    // Directed edges with the room on the left, by where they begin, with where they end.
+    let mut next: BTreeMap<(i32, i32), ((i32, i32), Side)> = BTreeMap::new();
     for s in stretches.iter().filter(|s| s.low == Some(room) || s.high == Some(room)) {
         let west_or_south = s.low == Some(room);
         let (a, b) = if s.vertical { ((s.at, s.from), (s.at, s.to)) } else { ((s.from, s.at), (s.to, s.at)) };
         let forward = s.vertical == west_or_south;
         let (start, end) = if forward { (a, b) } else { (b, a) };
-        if next.insert(start, (end, if west_or_south { s.high } else { s.low })).is_some() {
+        let side = Side { from: start, beyond: if west_or_south { s.high } else { s.low } };
+        if next.insert(start, (end, side)).is_some() {
             return None;
         }
     }
@@ -157,8 +166,8 @@ fn ring(room: usize, stretches: &[Stretch]) -> Option<Vec<((i32, i32), Option<us
     let mut ring = Vec::with_capacity(next.len());
     let mut here = first;
     loop {
-        let (to, beyond) = next.remove(&here)?;
-        ring.push((here, beyond));
+        let (to, side) = next.remove(&here)?;
+        ring.push(side);
         here = to;
         if here == first {
             break;

@@ -183,7 +183,7 @@ fn rooms_of_the_program_can_be_taken_out() {
             }
         }
     }
-    assert!(done > 2 * refused, "{done} done, {refused} refused");
+    assert!(done >= 2 * refused, "{done} done, {refused} refused");
 }
 
 /// Returns an object that stands by itself, the only one of its kind in its room, with the room.
