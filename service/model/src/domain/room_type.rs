@@ -40,6 +40,9 @@ pub struct RoomType {
     /// Room types it may be entered from when `access` is `host` (an en suite: `bedroom`).
     #[serde(default)]
     pub hosts: Vec<String>,
+    /// How many rooms of one type are entered from it, each from one of its own where it is not said.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub guests: Option<u32>,
     /// True when it holds plumbing: such rooms are put back to back.
     #[serde(default)]
     pub wet: bool,

@@ -1,6 +1,6 @@
 //! Which room goes on which storey, and the stairs and elevators that join them.
 
-use d3dgen_model::domain::{Domain, Storeys as Rules, Zone};
+use d3dgen_model::domain::{Access, Domain, Storeys as Rules, Zone};
 use d3dgen_model::scene_graph::{Connector, GraphEdge, GraphRoom};
 use d3dgen_model::storeys::{LinkKind, VerticalLink};
 
@@ -90,10 +90,14 @@ pub(super) fn deal(reading: &mut Reading, planned: &[Planned], areas: &[f64], le
         at[i] = Some(free.copied().unwrap_or_else(least));
     }
     for i in open(&at, Likes::Each, &clusters) {
-        let kind = &planned[clusters[i].rooms[0]].room_type;
-        let same = |l: i32| {
-            clusters.iter().zip(&at).filter(|(c, a)| **a == Some(l) && &planned[c.rooms[0]].room_type == kind).count()
+        let room = &planned[clusters[i].rooms[0]];
+        // toilets of every kind are one
+        let alike = |other: &Planned| {
+            other.room_type == room.room_type
+                || [other, room].iter().all(|r| r.kind.access != Access::Host && reading.wet.has_toilet(r.kind))
         };
+        let same =
+            |l: i32| clusters.iter().zip(&at).filter(|(c, a)| **a == Some(l) && alike(&planned[c.rooms[0]])).count();
         let sleeps = |l: i32| {
             let here = clusters.iter().zip(&at).filter(|(_, a)| **a == Some(l)).flat_map(|(c, _)| &c.rooms);
             here.into_iter().any(|&r| planned[r].kind.zone == Zone::Night)

@@ -356,9 +356,12 @@ impl<'r, 'a> Build<'r, 'a> {
             self.reading.domain.programs.iter().flat_map(|p| &p.rooms).filter(|e| e.room_type == room_type);
         let host = entries.find_map(|e| e.with.iter().find(|w| kind.hosts.contains(w)));
         let named = |id: &str| self.reading.wishes.wishes.iter().any(|w| w.room_type == id);
-        if let Some(host) =
-            host.filter(|h| (!self.reading.closed || self.reading.may_join) && !named(h) && !self.is_forbidden(h))
-        {
+        let is_full = |host: &str| {
+            let each = self.reading.domain.room_type(host).and_then(|h| h.guests).unwrap_or(1) as usize;
+            self.count(room_type) > each * self.count(host)
+        };
+        let may_come = !self.reading.closed || self.reading.may_join;
+        if let Some(host) = host.filter(|h| may_come && !named(h) && !self.is_forbidden(h) && is_full(h)) {
             self.push(host, None);
         }
     }

@@ -266,14 +266,6 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     };
     let station_words = if lives { Vec::new() } else { stations.read(&mut mentions) };
     not_things.extend(station_words.iter().copied());
-    let stationed = mentions.iter().filter_map(|m| {
-        Some(Held {
-            room_type: m.room_type()?.to_owned(),
-            count: m.count.map_or(1, |n| n.max(1) as u32),
-            beds: m.places?,
-        })
-    });
-    let stationed: Vec<Held> = stationed.collect();
     let places = seats::Reader {
         tokens: &tokens,
         numbers: &numbers,
@@ -285,6 +277,14 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     };
     let mut places = if lives { seats::Found::default() } else { places.read(&mut mentions) };
     not_things.extend(places.spans.iter().copied());
+    let stationed = mentions.iter().filter_map(|m| {
+        Some(Held {
+            room_type: m.room_type()?.to_owned(),
+            count: m.count.map_or(1, |n| n.max(1) as u32),
+            beds: m.places?,
+        })
+    });
+    let stationed: Vec<Held> = stationed.collect();
     let seated: Vec<Held> = seated.into_iter().chain(std::mem::take(&mut places.desks)).collect();
     let called = seats::called(&tokens, prompt, &mentions, &spoken, language);
     let doors = unread::doors(&tokens, &mut mentions, &spoken);

@@ -24,6 +24,10 @@ const MOST_NAMED: usize = 3;
 const CROWDED: f64 = 0.6;
 /// Most area of a room that serves so many people, as a factor on what they need.
 const ROOMY: f64 = 1.5;
+/// Largest area of a room over its usual one from which on it takes any number of people.
+const OPEN_ENDED: f64 = 8.0;
+/// Most that usual areas are scaled towards the one asked for.
+const MOST_SCALE: f64 = 100.0;
 /// Share of their usual area that rooms of a compact building have.
 const COMPACT: f64 = 0.8;
 /// The same of a generous building.
@@ -188,28 +192,36 @@ fn target_areas(reading: &mut Reading, planned: &[Planned]) -> Vec<f64> {
     let Some(total) = reading.area_m2 else { return areas.into_iter().map(tenth).collect() };
     let for_rooms = 1.0 - circulation_share(reading, planned);
     let budget = total * for_rooms;
-    let at = |scale: f64| -> Vec<f64> {
+    // floor to spare goes to rooms that take any number of people, and only without them to all the others
+    let takes_all = |room: &Planned| {
+        room.kind.zone != Zone::Service && room.kind.area_m2.max >= OPEN_ENDED * room.kind.area_m2.target
+    };
+    let at = |scale: f64, roomy: bool| -> Vec<f64> {
         let sized = planned.iter().zip(&areas).map(|(room, area)| {
             let range = room.kind.area_m2;
+            let serves = room.kind.zone == Zone::Service;
+            let kept = !roomy && !takes_all(room);
             match (room.area_m2, room.people_area_m2) {
                 (Some(_), _) => *area,
                 (_, Some(people)) => {
                     // what serves so many people is no larger in a building with floor to spare
-                    let serves = room.kind.zone == Zone::Service;
-                    let most = if serves { range.max.min(ROOMY * people.max(range.min)) } else { range.max };
+                    let most = if serves || kept { range.max.min(ROOMY * people.max(range.min)) } else { range.max };
                     (area * scale).clamp(range.min.max(CROWDED * people).min(most), most)
                 }
+                _ if kept => (area * scale.min(ROOMY)).clamp(range.min, range.max),
                 _ => (area * scale).clamp(range.min, range.max),
             }
         });
         sized.collect()
     };
-    let (mut low, mut high) = (0.01, 100.0);
+    let sum_at = |scale: f64, roomy: bool| at(scale, roomy).iter().sum::<f64>();
+    let roomy = sum_at(MOST_SCALE, false) < budget;
+    let (mut low, mut high) = (0.01, MOST_SCALE);
     for _ in 0..48 {
         let middle = 0.5 * (low + high);
-        if at(middle).iter().sum::<f64>() < budget { low = middle } else { high = middle }
+        if sum_at(middle, roomy) < budget { low = middle } else { high = middle }
     }
-    let scaled = at(high);
+    let scaled = at(high, roomy);
     let sum: f64 = scaled.iter().sum();
     if (sum - budget).abs() > AREA_TOLERANCE * budget {
         let reachable = sum / for_rooms;

@@ -9,9 +9,9 @@ use super::beds::Held;
 use super::mentions::{Mention, What};
 use super::numbers::Number;
 use super::places::note;
-use super::seated;
 use super::text::{Kind, Span, Token};
 use super::words::{Spoken, Tag, words};
+use super::{seated, stations};
 
 /// Words between a room and the number of its places, at most: "with seating for up to".
 const MOST_BETWEEN: usize = 4;
@@ -135,6 +135,15 @@ impl Reader<'_> {
             let Some(kind) = mentions[m].room_type().and_then(|id| self.domain.room_type(id)) else { continue };
             let seated = self.seated.iter().any(|s| s.room_type == kind.id);
             if seated || mentions[m].beds.is_some() || mentions[m].places.is_some() {
+                continue;
+            }
+            // "recovery for six": they lie there, each at a place of their own
+            if stations::line_of(self.domain, kind).is_some() {
+                let found = self.after(mentions, m).or_else(|| self.before(mentions, m));
+                if let Some((n, noun)) = found.filter(|f| (1..=MOST_PLACES).contains(&f.0)) {
+                    mentions[m].places = Some(n as u32);
+                    gone.extend(noun);
+                }
                 continue;
             }
             let (desks, seats) = (most_desks(self.domain, kind), places(self.domain, kind, 1).is_some());

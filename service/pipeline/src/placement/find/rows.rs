@@ -42,6 +42,8 @@ const OPEN_BACKS: f64 = 4.0;
 const SINGLE: f64 = 6.0;
 /// What counters lose for each row behind the first.
 const IN_LINE: f64 = 4.0;
+/// What counters lose behind which all doors of the room are: who is served comes in before them.
+const BEHIND_COUNTERS: f64 = 6.0;
 /// What desks lose for each meter to the windows.
 const FROM_LIGHT: f64 = 0.4;
 /// Floor behind a desk over which it stands against a wall all the same, mm.
@@ -192,10 +194,16 @@ pub(in crate::placement) fn rows<'a>(
                 let noise =
                     0.5 * grain(terms.salt, i64::from(plan.q) * 64 + i64::from(plan.columns), (ku * 8 + kv) as i64);
                 let dark = if in_pairs { from_windows(state.space, &placed) } else { 0.0 };
+                let behind = if task.anchor.shape == Shape::Counter { doors_behind(state.space, &placed) } else { 0.0 };
                 out.push(Batch {
                     placed,
                     in_pairs,
-                    score: plan.score + 8.0 * (share - 1.0) + tidy + noise - raggedness - narrow - single - dark,
+                    score: plan.score + 8.0 * (share - 1.0) + tidy + noise
+                        - raggedness
+                        - narrow
+                        - single
+                        - dark
+                        - behind,
                 });
             }
         }
@@ -252,6 +260,18 @@ fn from_windows(space: &Space, placed: &[Placed]) -> f64 {
     };
     let sum: i64 = placed.iter().map(|p| i64::from(far(p))).sum();
     FROM_LIGHT * sum as f64 / 1000.0 / placed.len().max(1) as f64
+}
+
+/// Returns what counters lose behind whose fronts the doors of their room are.
+fn doors_behind(space: &Space, placed: &[Placed]) -> f64 {
+    let behind = |p: &Placed, zone: &Box2| {
+        let upright = (4 - p.q) % 4;
+        let (own, door) = (p.world(&p.unit.anchor().solid.rect).turned(upright), zone.turned(upright));
+        door.x0 + door.x1 < 2 * own.x1
+    };
+    let pairs = || placed.iter().flat_map(|p| space.doors.iter().map(move |d| (p, d)));
+    let n = pairs().filter(|(p, d)| behind(p, &d.open_zone)).count();
+    BEHIND_COUNTERS * n as f64 / pairs().count().max(1) as f64
 }
 
 /// Returns how many units rows lack of being as long as the longest, over their number.
