@@ -42,7 +42,8 @@ impl FreeSpace {
         };
         outline.rects().iter().for_each(|r| set(r, true));
         inside.iter().for_each(|o| set(o, false));
-        Self { rects: maximal(&free, &xs, &ys) }
+        let rect = |[i0, i1, j0, j1]: [usize; 4]| Rect { x0: xs[i0], x1: xs[i1], y0: ys[j0], y1: ys[j1] };
+        Self { rects: free.maximal_rectangles().into_iter().map(rect).collect() }
     }
 
     /// Returns the side of the largest free square, m; 0 without free floor.
@@ -176,37 +177,6 @@ fn gate(door: &Door) -> Rect {
     } else {
         Rect { y0: r.y0 - half, y1: r.y1 + half, ..r }
     }
-}
-
-/// Returns all maximal rectangles of free cells.
-fn maximal(free: &Bitmap, xs: &[f64], ys: &[f64]) -> Vec<Rect> {
-    let (columns, rows) = (free.nx(), free.ny());
-    let mut out = Vec::with_capacity(2 * (columns + rows));
-    let mut open = vec![true; columns];
-    for low in 0..rows {
-        open.fill(true);
-        for high in low..rows {
-            open.iter_mut().enumerate().for_each(|(i, o)| *o &= free.get(i, high));
-            if !open.contains(&true) {
-                break;
-            }
-            let mut i = 0;
-            while i < columns {
-                let run = open[i..].iter().take_while(|o| **o).count();
-                if run == 0 {
-                    i += 1;
-                    continue;
-                }
-                let whole = |j: usize| (i..i + run).all(|i| free.get(i, j));
-                let grows = low > 0 && whole(low - 1) || high + 1 < rows && whole(high + 1);
-                if !grows {
-                    out.push(Rect { x0: xs[i], x1: xs[i + run], y0: ys[low], y1: ys[high + 1] });
-                }
-                i += run;
-            }
-        }
-    }
-    out
 }
 
 #[cfg(test)]

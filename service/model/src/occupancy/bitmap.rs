@@ -149,6 +149,32 @@ impl Bitmap {
         self.words.get(j * self.stride + word).map_or(0, |w| w >> bit & 1)
     }
 
+    /// Returns all rectangles of cells in the set that cannot be made larger, as first and last but one column and row
+    /// `[i0, i1, j0, j1]`, by their lowest row, their highest and their first column. They overlap.
+    pub fn maximal_rectangles(&self) -> Vec<[usize; 4]> {
+        let mut out = Vec::with_capacity(2 * (self.nx + self.ny));
+        let row = |j: usize| &self.words[j * self.stride..(j + 1) * self.stride];
+        let mut open = vec![0; self.stride];
+        for low in 0..self.ny {
+            open.copy_from_slice(row(low));
+            for high in low..self.ny {
+                open.iter_mut().zip(row(high)).for_each(|(o, w)| *o &= w);
+                if open.iter().all(|w| *w == 0) {
+                    break;
+                }
+                let mut from = 0;
+                while let Some((i0, i1)) = next_run(&open, from) {
+                    let whole = |j: usize| (i0 / 64..=(i1 - 1) / 64).all(|w| span_mask(i0, i1, w) & !row(j)[w] == 0);
+                    if !(low > 0 && whole(low - 1) || high + 1 < self.ny && whole(high + 1)) {
+                        out.push([i0, i1, low, high + 1]);
+                    }
+                    from = i1;
+                }
+            }
+        }
+        out
+    }
+
     /// Returns the number of cells in the set.
     pub fn count(&self) -> usize {
         self.words.iter().map(|w| w.count_ones() as usize).sum()
@@ -378,6 +404,19 @@ fn clip(a: i64, b: i64, n: usize) -> (usize, usize) {
     (a.clamp(0, n as i64) as usize, b.clamp(0, n as i64) as usize)
 }
 
+/// Returns the first stretch of set bits from a bit on, its end exclusive.
+fn next_run(words: &[u64], from: usize) -> Option<(usize, usize)> {
+    let find = |from: usize, flip: u64| {
+        (from / 64..words.len()).find_map(|w| {
+            let skipped = if w == from / 64 { u64::MAX << (from % 64) } else { u64::MAX };
+            let rest = (words[w] ^ flip) & skipped;
+            (rest != 0).then(|| 64 * w + rest.trailing_zeros() as usize)
+        })
+    };
+    let start = find(from, 0)?;
+    Some((start, find(start, u64::MAX).unwrap_or(64 * words.len())))
+}
+
 /// Returns the bits of word `w` that belong to columns `i0..i1`.
 fn span_mask(i0: usize, i1: usize, w: usize) -> u64 {
     let (lo, hi) = (i0.saturating_sub(w * 64).min(63), (i1 - w * 64).min(64));
@@ -464,6 +503,37 @@ mod tests {
                     assert_eq!(eroded.get(i as usize, j as usize), whole, "radius {radius} at {i} {j}");
                 }
             }
+        }
+    }
+
+    #[test]
+    fn maximal_rectangles_are_those_of_the_plain_definition() {
+        for seed in 0..40 {
+            let map =
+                noise(5 + seed as usize * 4 % 140, 1 + seed as usize % 11, [0.5, 0.8, 0.95][seed as usize % 3], seed);
+            let full = |[i0, i1, j0, j1]: [usize; 4]| (j0..j1).all(|j| (i0..i1).all(|i| map.get(i, j)));
+            let grown = |[i0, i1, j0, j1]: [usize; 4]| {
+                let sides = [
+                    (i0 > 0).then(|| [i0 - 1, i1, j0, j1]),
+                    (i1 < map.nx()).then_some([i0, i1 + 1, j0, j1]),
+                    (j0 > 0).then(|| [i0, i1, j0 - 1, j1]),
+                    (j1 < map.ny()).then_some([i0, i1, j0, j1 + 1]),
+                ];
+                sides.into_iter().flatten().any(full)
+            };
+            let mut plain = Vec::new();
+            for j0 in 0..map.ny() {
+                for j1 in j0 + 1..=map.ny() {
+                    let columns: Vec<bool> = (0..map.nx()).map(|i| full([i, i + 1, j0, j1])).collect();
+                    for run in columns.iter().enumerate().collect::<Vec<_>>().chunk_by(|a, b| a.1 == b.1) {
+                        let rect = [run[0].0, run[0].0 + run.len(), j0, j1];
+                        if *run[0].1 && !grown(rect) {
+                            plain.push(rect);
+                        }
+                    }
+                }
+            }
+            assert_eq!(map.maximal_rectangles(), plain, "seed {seed}");
         }
     }
 

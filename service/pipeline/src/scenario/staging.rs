@@ -1,6 +1,8 @@
 //! Staging areas: free floor in stores and circulation where goods are put down, near a door, out of the swing of doors and
 //! beside the width that people and robots pass in.
 
+use std::cell::OnceCell;
+
 use d3dgen_knowledge::freespace::FreeSpace;
 use d3dgen_model::domain::{Mount, RobotUse, Zone};
 use d3dgen_model::floorplan::Door;
@@ -111,6 +113,10 @@ struct Yard {
     /// Clear width that must be left between the doors, and from them to where robots go, m.
     passage: f64,
     goals: Vec<Rect>,
+    /// Floor under what stands there.
+    taken: Vec<Rect>,
+    /// Free floor around it, once somebody asks.
+    space: OnceCell<FreeSpace>,
 }
 
 impl Yard {
@@ -133,7 +139,9 @@ impl Yard {
         }
         let width = if room.plan.circulation { floor.domain.circulation.width_m } else { 0.0 };
         let passage = width.max(2.0 * floor.radius + PASSING_M);
-        Self { sums: sums(&map), nx: map.nx(), ny: map.ny(), passage, goals }
+        let standing = room.objects.iter().map(|(p, _)| *p).filter(|p| stops_robot(p));
+        let taken = standing.map(|p| p.footprint().bounds()).collect();
+        Self { sums: sums(&map), nx: map.nx(), ny: map.ny(), passage, goals, taken, space: OnceCell::new() }
     }
 
     /// Returns the place in a room for an area of this size, m, that is tucked away most.
@@ -198,9 +206,7 @@ impl Yard {
 
     /// Returns true when a robot that carries something gets to a place with ease from one of the doors.
     fn is_near(&self, floor: &Floor, room: &Room, rect: &Rect) -> bool {
-        let standing = room.objects.iter().map(|(p, _)| *p).filter(|p| stops_robot(p));
-        let taken: Vec<Rect> = standing.map(|p| p.footprint().bounds()).collect();
-        let space = FreeSpace::new(&room.plan.net_polygon, &taken);
+        let space = self.space.get_or_init(|| FreeSpace::new(&room.plan.net_polygon, &self.taken));
         let width = 2.0 * (floor.radius + CARRYING_M);
         floor.plan.doors_of(&room.plan.room_id).any(|door| space.leads(door, rect, width.min(door.clear_width_m)))
     }
@@ -208,9 +214,7 @@ impl Yard {
     /// Returns true when people and robots still pass between the doors of the room, and to docks and service zones in it.
     fn leaves_way(&self, floor: &Floor, room: &Room, rect: &Rect) -> bool {
         let doors: Vec<&Door> = floor.plan.doors_of(&room.plan.room_id).collect();
-        let standing = room.objects.iter().map(|(p, _)| *p).filter(|p| stops_robot(p));
-        let mut taken: Vec<Rect> = standing.map(|p| p.footprint().bounds()).collect();
-        taken.push(*rect);
+        let taken: Vec<Rect> = self.taken.iter().chain([rect]).copied().collect();
         let space = FreeSpace::new(&room.plan.net_polygon, &taken);
         let leads = |door: &&Door| self.goals.iter().all(|goal| space.leads(door, goal, self.passage));
         // the floor before a single door is free
