@@ -74,6 +74,11 @@ const CUT_CELL: f64 = 2.5;
 const STEP_M: f64 = 0.9;
 const STEP: f64 = 0.4;
 
+/// Area over the usual one from which on a room is bloated, as a factor, sooner one that serves the others; and what more of
+/// it costs.
+const BLOATED_FROM: [f64; 2] = [1.6, 1.35];
+const BLOATED: f64 = 6.0;
+
 /// Weight of what hangs in the air.
 pub(super) const OVERHANG: f64 = 30.0;
 
@@ -403,8 +408,13 @@ impl<'b> Judge<'b> {
                 let off = (net - spec.area_target) / net.min(spec.area_target).max(0.1);
                 let [least, most] = spec.limits.area_advised.unwrap_or([0.0, f64::MAX]);
                 let ill_advised = ((least - net).max(net - most) / spec.area_target).max(0.0);
-                score.soft[0] +=
-                    off.powi(2) + 3.0 * over + 5.0 * ill_advised + if ill_advised > 0.0 { ILL_ADVISED } else { 0.0 };
+                let serving = matches!(spec.zone, Zone::Service | Zone::Staff);
+                let bloated = (net / spec.area_target - BLOATED_FROM[usize::from(serving)]).max(0.0);
+                score.soft[0] += BLOATED * bloated
+                    + off.powi(2)
+                    + 3.0 * over
+                    + 5.0 * ill_advised
+                    + if ill_advised > 0.0 { ILL_ADVISED } else { 0.0 };
                 let (w, h) = room.clear;
                 score.hard += (spec.min_dimension - w.min(h)).max(0.0);
                 let (w, h) = room.largest;

@@ -236,9 +236,8 @@ impl Facts<'_> {
                 // A long name may be set a little tighter before it is cut.
                 let long = page.font(Weight::Regular).width(&room.name, size) > space;
                 let size = if long { 0.88 * size } else { size };
-                if let Some(name) = wrap_to(page, &room.name, size, Weight::Regular, 1, space).first() {
-                    page.text(name, (left, y + 16.5), size, style::TEXT, Anchor::Start);
-                }
+                let name = with_number(page, &room.name, size, space);
+                page.text(&name, (left, y + 16.5), size, style::TEXT, Anchor::Start);
             }
             top + per_column as f64 * row
         }))
@@ -355,6 +354,15 @@ fn heading(page: &mut Page, text: &str) -> f64 {
 
 fn wrap(page: &Page, text: &str, size: f64, weight: Weight, limit: usize) -> Vec<String> {
     wrap_to(page, text, size, weight, limit, WIDTH)
+}
+
+/// Returns the name of a room cut to a width; the number that tells it from others stays.
+fn with_number(page: &Page, name: &str, size: f64, width: f64) -> String {
+    let numbered = name.rsplit_once(' ').filter(|(_, n)| n.bytes().all(|b| b.is_ascii_digit()));
+    let (stem, number) = numbered.map_or((name, String::new()), |(stem, n)| (stem, format!(" {n}")));
+    let space = width - page.font(Weight::Regular).width(&number, size);
+    let stem = wrap_to(page, stem, size, Weight::Regular, 1, space).into_iter().next().unwrap_or_default();
+    format!("{stem}{number}")
 }
 
 /// Breaks a text into at most `limit` lines of a width; what does not fit ends in an ellipsis.
