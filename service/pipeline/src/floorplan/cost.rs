@@ -76,7 +76,7 @@ const STEP: f64 = 0.4;
 
 /// Area over the usual one from which on a room is bloated, as a factor, sooner one that serves the others; and what more of
 /// it costs.
-const BLOATED_FROM: [f64; 2] = [1.6, 1.35];
+const BLOATED_FROM: [f64; 2] = [1.6, 1.5];
 const BLOATED: f64 = 6.0;
 
 /// Weight of what hangs in the air.

@@ -8,6 +8,7 @@ use d3dgen_plugins::Registry;
 use super::beds::BedRoom;
 use super::compounds::{self, Compound};
 use super::numbers::Number;
+use super::reading::is_dwelling;
 use super::seated;
 use super::text::{Kind, Phrases, Span, Token, fold};
 use super::unknown;
@@ -124,13 +125,15 @@ impl Vocabulary {
         let desks = |kind: &RoomType| seated::desks(domain, kind);
         let most = |kind: &&RoomType| desks(kind).map_or(0, |d| d[1]);
         let open = domain.room_types.iter().filter(|k| desks(k).is_some()).max_by_key(most);
+        let lives = domain.programs.iter().all(is_dwelling);
         Self {
             own,
             foreign,
             ids: ids(&|_| true),
             desks: ids(&|k| desks(k).is_some()),
             open_office: open.filter(|k| most(k) > MOST_IN_TEAM).map(|k| k.id.clone()),
-            parted: ids(&|k| k.wet && k.access != Access::Host || k.zone == Zone::Staff),
+            // "WC séparés" of a home are one, apart from its bathroom
+            parted: ids(&|k| !lives && (k.wet && k.access != Access::Host || k.zone == Zone::Staff)),
         }
     }
 

@@ -123,7 +123,7 @@ fn least_between_backs(chairs: &[&Placement]) -> Option<f64> {
 #[test]
 fn rows_of_chairs_stand_clear_of_each_other() {
     let mut held = Vec::new();
-    for world in OFFICES.iter().flat_map(|prompt| worlds(prompt, 6)) {
+    for world in OFFICES.iter().flat_map(|prompt| worlds(prompt, 12)) {
         for room in rooms(&world, "open_office") {
             let chairs: Vec<&Placement> =
                 inside(&world, &room.room_id).filter(|p| p.object == "swivel_chair").collect();

@@ -170,20 +170,22 @@ fn rooms_come_and_go_on_every_storey() {
 #[test]
 fn rooms_of_the_program_can_be_taken_out() {
     let registry = Registry::builtin();
-    let (mut done, mut refused) = (0, 0);
+    let (mut done, mut in_vain, mut refused) = (0, 0, 0);
     for seed in 1..=3 {
         let world = world(&registry, OFFICE, seed, None);
         for level in world.floorplan.level_numbers() {
             for room in plain_rooms(&world, level) {
                 match edited(&registry, &world, level, &[Edit::RemoveRoom { room_id: room.room_id.clone() }]) {
                     Ok(_) => done += 1,
-                    Err(Error::Infeasible { .. } | Error::Refused { .. }) => refused += 1,
+                    Err(Error::Infeasible { .. }) => in_vain += 1,
+                    // the way to the others, and the last one of its storey
+                    Err(Error::Refused { .. }) => refused += 1,
                     Err(other) => panic!("{}: {other}", room.room_id),
                 }
             }
         }
     }
-    assert!(done >= 2 * refused, "{done} done, {refused} refused");
+    assert!(done > 2 * in_vain && done > 2 * refused, "{done} done, {in_vain} in vain, {refused} refused");
 }
 
 /// Returns an object that stands by itself, the only one of its kind in its room, with the room.

@@ -212,7 +212,7 @@ fn nobody_queues_at_a_counter_where_others_come_in() {
 #[test]
 fn one_comes_to_rows_of_desks_through_an_aisle() {
     let mut held = Vec::new();
-    for world in ["office with 8 rooms", "call center with eight rooms"].iter().flat_map(|prompt| worlds(prompt, 10)) {
+    for world in ["office with 8 rooms", "call center with eight rooms"].iter().flat_map(|prompt| worlds(prompt, 20)) {
         for room in rooms(&world, "open_office").filter(|r| r.net_polygon.rects().len() == 1) {
             let desks: Vec<&Placement> = standing(&world, room).filter(|p| p.object.ends_with("desk")).collect();
             let Some(all) = desks.iter().map(|p| body(p)).reduce(|a, b| Rect {

@@ -400,7 +400,7 @@ fn patients_have_a_wardrobe_and_visitors_a_seat() {
 #[test]
 fn light_comes_from_the_side_of_most_screens() {
     let mut held = Vec::new();
-    for world in worlds("office with 8 rooms", 8) {
+    for world in worlds("office with 8 rooms", 20) {
         for screen in world.placements.placements.iter().filter(|p| p.object == "monitor") {
             let faces = |w: &&Window| {
                 let (ahead, aside) = seen_from(screen, w.line.middle().x, w.line.middle().y);
@@ -410,7 +410,8 @@ fn light_comes_from_the_side_of_most_screens() {
             held.push(!world.floorplan.windows.iter().any(|w| faces(&w)));
         }
     }
-    most("screens without a window before or behind them", 0.85, &held);
+    // corner rooms have windows on two sides
+    most("screens without a window before or behind them", 0.75, &held);
 }
 
 #[test]

@@ -109,7 +109,7 @@ fn the_entrance_of_a_home_opens_inwards() {
 #[test]
 fn clean_and_dirty_utilities_seldom_share_a_wall() {
     let mut held = Vec::new();
-    for world in worlds("A geriatric ward of 10 rooms in Japan", 12) {
+    for world in worlds("A geriatric ward of 10 rooms in Japan", 24) {
         let of = |kind: &'static str| world.floorplan.rooms.iter().filter(move |r| r.room_type == kind);
         for clean in of("clean_utility") {
             let own = clean.net_polygon.bounds();
