@@ -28,6 +28,10 @@ const TUNNEL: f64 = 0.02;
 const LONG_TUNNEL_M: f64 = 10.0;
 const DARK_HALL_M: f64 = 6.0;
 const DARK_HALL: f64 = 0.03;
+/// Share of the walls of a corridor behind which there is no room, beside its ends, from which on it serves one side only; and
+/// what more of it counts as share of circulation.
+const ONE_SIDED_FROM: f64 = 0.12;
+const ONE_SIDED: f64 = 0.45;
 /// What a meter of a corridor that is too long for its one way out counts as share of circulation.
 const ONE_WAY: f64 = 0.1;
 /// Number of soft terms.
@@ -487,6 +491,8 @@ impl<'b> Judge<'b> {
                 score.soft[4] += TUNNEL * over * (1.0 + over / LONG_TUNNEL_M);
                 let dark = longest > DARK_HALL_M && rooms[spine].outer.0 < up(LEAST_WALL_M);
                 score.soft[4] += if dark { DARK_HALL } else { 0.0 };
+            } else {
+                score.soft[4] += ONE_SIDED * (self.one_sided(layout) - ONE_SIDED_FROM).max(0.0);
             }
             if let Some(most) = brief.share_advised {
                 let share = rooms[spine].net_m2 / rooms.iter().map(|r| r.net_m2).sum::<f64>();
@@ -539,6 +545,17 @@ impl<'b> Judge<'b> {
                 }
             }
         }
+    }
+
+    /// Returns the share of the long walls of the corridor that are outer walls.
+    fn one_sided(&self, layout: &Layout) -> f64 {
+        let (mut idle, mut all) = (0, 0);
+        for ((_, b), sides) in layout.boxes.iter().zip(&self.survey.side).filter(|((room, _), _)| *room == self.spine) {
+            let (len, long) = if b.width() >= b.height() { (b.width(), [2, 3]) } else { (b.height(), [0, 1]) };
+            idle += long.iter().map(|&s| len - sides[s][0]).sum::<i32>();
+            all += 2 * len - long.iter().map(|&s| sides[s][1]).sum::<i32>();
+        }
+        f64::from(idle) / f64::from(all.max(1))
     }
 
     /// Returns what it costs that a sleeping room or the hall has become larger than the room of the day that was to be

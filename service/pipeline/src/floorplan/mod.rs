@@ -215,6 +215,9 @@ fn kept(graph: &SceneGraph, plan: &Floorplan) -> Result<Floorplan, Error> {
 /// Rooms up to which a corridor with a room at its end is short enough for one way out.
 const MOST_CAPPED: usize = 10;
 
+/// Share of the building from which on one room leaves too little for the far arm of a corridor that turns.
+const DOMINANT: f64 = 0.45;
+
 /// Returns the schemes that suit the domain and the number of rooms, the seed's choice first.
 fn schemes(brief: &Brief, domain: &Domain, rng: &mut Stream) -> Vec<Scheme> {
     // a storey with one core is one body, whatever its size
@@ -237,6 +240,10 @@ fn schemes(brief: &Brief, domain: &Domain, rng: &mut Stream) -> Vec<Scheme> {
     };
     let mut list: Vec<Scheme> = domain.circulation.schemes.iter().copied().filter(suits).collect();
     rng.shuffle(&mut list);
+    let areas = || brief.rooms.iter().map(|r| r.area_target);
+    if areas().fold(0.0, f64::max) > DOMINANT * areas().sum::<f64>() {
+        list.sort_by_key(|s| *s == Scheme::Angle);
+    }
     if brief.second_exit && !brief.upper && rooms > MOST_CAPPED {
         list.sort_by_key(|s| *s == Scheme::Capped);
     }

@@ -6,12 +6,21 @@ use d3dgen_propose::examples::graph_answer;
 use d3dgen_propose::json::GraphAnswer;
 use serde_json::json;
 
-use crate::{BUILDINGS, assert_own, only, own_graph, shares, with_answer};
+use crate::{BUILDINGS, assert_own, only, own_graph, own_world, shares, with_answer};
 
-/// Returns what somebody with taste could propose: the rooms of the building, some larger, one connection more.
+/// Returns what somebody with taste could propose: the rooms of the building, some larger, and of the things that a room
+/// may have those that it has floor and walls for.
 fn good(prompt: &str) -> GraphAnswer {
-    let mut answer = graph_answer(&own_graph(prompt));
-    let graph = own_graph(prompt);
+    let own = own_world(prompt).world;
+    let graph = own.scene_graph;
+    let mut answer = graph_answer(&graph);
+    let stands = |room: &str, object: &str| {
+        own.placements.placements.iter().any(|p| p.room_id == room && p.object == object)
+    };
+    for room in &mut answer.rooms {
+        let id = room.id.clone();
+        room.objects.retain(|object| stands(&id, object));
+    }
     for (room, own) in answer.rooms.iter_mut().zip(graph.rooms.iter().filter(|r| !r.circulation)) {
         let [min, max] = own.area_range_m2;
         room.area_m2 = room.area_m2.map(|a| (a * 1.06).clamp(min, max));
@@ -33,8 +42,7 @@ fn a_good_proposal_is_mostly_kept() {
         let rooms = record.items.iter().filter(|i| i.kind == ItemKind::Room);
         assert!(rooms.clone().all(|i| matches!(i.fate, Fate::Kept | Fate::Moved)), "{prompt}: {record:#?}");
         let (kept, _) = shares(record.counts);
-        // wardrobes that stand in each other's place are among the wishes
-        assert!(kept >= 0.65, "{prompt}: {kept:.2} kept, {:#?}", record.items);
+        assert!(kept >= 0.8, "{prompt}: {kept:.2} kept, {:#?}", record.items);
         assert_eq!(record.answered_by, "test-model");
         assert_eq!(record.prompt_sha256.len(), 64);
     }
