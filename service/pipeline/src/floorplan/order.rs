@@ -20,6 +20,8 @@ const TRIES_PER_ROOM: usize = 50;
 const MOST_TRIES: usize = 900;
 /// Temperature at the start, in cost units; a plan that is sound is not taken apart.
 const HEAT: f64 = 0.3;
+/// Wall at a corridor from which on a room has its door there, on center lines, m.
+const LEAST_FRONT_M: f64 = 1.2;
 /// Cost of a ward none of whose bedroom doors its station sees.
 const OUT_OF_SIGHT: f64 = 2.0;
 /// What a way from the stations to the bedrooms as long as the building is wide costs.
@@ -88,7 +90,7 @@ impl Judge<'_> {
     /// Returns what the order of rooms costs in the layout that was judged last.
     pub(super) fn disorder(&self, layout: &Layout) -> f64 {
         MISPLACED * self.misplaced(layout)
-            + OUT_OF_SIGHT * self.out_of_sight()
+            + OUT_OF_SIGHT * self.out_of_sight(layout)
             + OFF_CENTER * self.off_center()
             + NECK * self.necks(layout) as f64
     }
@@ -175,36 +177,42 @@ impl Judge<'_> {
         ways / f64::from(count.max(1))
     }
 
-    /// Returns the share of bedrooms on the side of the corridor on which all stations with an open front are: from there
-    /// one sees the doors across.
-    fn out_of_sight(&self) -> f64 {
-        let (brief, rooms) = (self.brief, &self.survey.rooms);
-        let Some(corridor) = brief.spine.filter(|_| !brief.hub).and_then(|s| rooms[s].main) else { return 0.0 };
-        let side = |b: Cellbox| {
-            let (cx, cy) = b.center2();
-            let (at, low, high) = if corridor.width() >= corridor.height() {
-                (cy, corridor.y0, corridor.y1)
-            } else {
-                (cx, corridor.x0, corridor.x1)
-            };
-            i32::from(at > 2 * high) - i32::from(at < 2 * low)
+    /// Returns the share of bedrooms that no station with an open front sees: from there one sees the doors in the other walls
+    /// of each piece of corridor that it stands at, of an L both arms where it stands in the corner.
+    fn out_of_sight(&self, layout: &Layout) -> f64 {
+        let brief = self.brief;
+        let Some(spine) = brief.spine.filter(|_| !brief.hub) else { return 0.0 };
+        let is_station = |spec: &RoomSpec| spec.on_spine && spec.zone == Zone::Staff && spec.open_front;
+        let pieces: Vec<Cellbox> = layout.boxes.iter().filter(|b| b.0 == spine).map(|b| b.1).collect();
+        let at = |piece: &Cellbox, wanted: &dyn Fn(usize) -> bool| -> u8 {
+            let boxes = layout.boxes.iter().filter(|(room, _)| wanted(*room));
+            boxes.filter_map(|(_, b)| side_of(piece, b)).fold(0, |sides, side| sides | 1 << side)
         };
-        let sides = |wanted: fn(&RoomSpec) -> bool| {
-            let of = brief.rooms.iter().zip(rooms).filter(move |(spec, _)| spec.on_spine && wanted(spec));
-            of.filter_map(move |(_, room)| Some(side(room.main?)))
-        };
-        let stations = || sides(|spec| spec.zone == Zone::Staff && spec.open_front);
-        let Some(first) = stations().next() else { return 0.0 };
-        if first == 0 || stations().any(|side| side != first) {
+        let posts: Vec<u8> = pieces.iter().map(|c| at(c, &|room| is_station(&brief.rooms[room]))).collect();
+        if posts.iter().all(|sides| *sides == 0) {
             return 0.0;
         }
+        let sees = |sides: u8, post: u8| (0..4).any(|s| sides & 1 << s != 0 && post & !(1 << s) != 0);
         let (mut all, mut hidden) = (0, 0);
-        for side in sides(|spec| spec.zone == Zone::Night) {
+        for (bed, _) in brief.rooms.iter().enumerate().filter(|(_, s)| s.on_spine && s.zone == Zone::Night) {
             all += 1;
-            hidden += u32::from(side == first);
+            let seen = pieces.iter().zip(&posts).any(|(c, post)| *post != 0 && sees(at(c, &|room| room == bed), *post));
+            hidden += u32::from(!seen);
         }
         f64::from(hidden) / f64::from(all.max(1))
     }
+}
+
+/// Returns the side of a piece of corridor along which a room stands: west, east, south, north.
+fn side_of(piece: &Cellbox, b: &Cellbox) -> Option<u8> {
+    let beside = |low: i32, high: i32, from: i32, to: i32| high.min(to) - low.max(from) >= up(LEAST_FRONT_M);
+    if beside(b.y0, b.y1, piece.y0, piece.y1) {
+        return if b.x1 == piece.x0 { Some(0) } else { (b.x0 == piece.x1).then_some(1) };
+    }
+    if beside(b.x0, b.x1, piece.x0, piece.x1) {
+        return if b.y1 == piece.y0 { Some(2) } else { (b.y0 == piece.y1).then_some(3) };
+    }
+    None
 }
 
 /// Returns when one comes to a room, behind the entrance: nobody passes bathrooms on the way to the living room; `None`
@@ -213,6 +221,8 @@ fn rank(spec: &RoomSpec) -> Option<u8> {
     match spec.zone {
         Zone::Public => Some(0),
         Zone::Day => Some(1),
+        // one passes no isolation room on the way to the others
+        Zone::Night if spec.host.is_some() => Some(3),
         Zone::Night => Some(2),
         Zone::Service if spec.wet && spec.private && spec.area_target > WASHROOM_M2 => Some(2),
         Zone::Staff | Zone::Service | Zone::Circulation | Zone::Outdoor => None,
