@@ -270,7 +270,8 @@ impl Site<'_> {
     /// rooms on both.
     fn lay_second_fronts(&self, laid: &mut Laid) {
         let brief = self.brief;
-        let Some(spine) = brief.spine.filter(|_| !brief.hub && brief.rooms.iter().any(|r| r.zone == Zone::Night)) else {
+        let Some(spine) = brief.spine.filter(|_| !brief.hub && brief.rooms.iter().any(|r| r.zone == Zone::Night))
+        else {
             return;
         };
         let posts = |r: &usize| {

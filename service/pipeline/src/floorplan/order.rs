@@ -23,9 +23,9 @@ const HEAT: f64 = 0.3;
 /// Wall at a corridor from which on a room has its door there, on center lines, m.
 const LEAST_FRONT_M: f64 = 1.2;
 /// Cost of a ward none of whose bedroom doors its station sees.
-const OUT_OF_SIGHT: f64 = 2.0;
+const OUT_OF_SIGHT: f64 = 8.0;
 /// What a way from the stations to the bedrooms as long as the building is wide costs.
-const OFF_CENTER: f64 = 1.5;
+const OFF_CENTER: f64 = 2.5;
 /// Way from a station to a bedroom from which on it is too long, m, and what as much more counts beside its length.
 const LONG_WAY_M: f64 = 18.0;
 const LONG_WAY: f64 = 2.0;
@@ -203,16 +203,9 @@ impl Judge<'_> {
     }
 }
 
-/// Returns the side of a piece of corridor along which a room stands: west, east, south, north.
-fn side_of(piece: &Cellbox, b: &Cellbox) -> Option<u8> {
-    let beside = |low: i32, high: i32, from: i32, to: i32| high.min(to) - low.max(from) >= up(LEAST_FRONT_M);
-    if beside(b.y0, b.y1, piece.y0, piece.y1) {
-        return if b.x1 == piece.x0 { Some(0) } else { (b.x0 == piece.x1).then_some(1) };
-    }
-    if beside(b.x0, b.x1, piece.x0, piece.x1) {
-        return if b.y1 == piece.y0 { Some(2) } else { (b.y0 == piece.y1).then_some(3) };
-    }
-    None
+/// Returns the side of a piece of corridor along which a room has wall enough for its door.
+fn side_of(piece: &Cellbox, b: &Cellbox) -> Option<usize> {
+    piece.contact(b).filter(|(_, from, to)| to - from >= up(LEAST_FRONT_M)).map(|(side, ..)| side)
 }
 
 /// Returns when one comes to a room, behind the entrance: nobody passes bathrooms on the way to the living room; `None`
