@@ -57,6 +57,10 @@ pub struct RoomType {
     /// True when it opens to the circulation without a door leaf (a nurse station, a lobby).
     #[serde(default)]
     pub open_front: bool,
+    /// Clear width of a door to outdoors that it has beside the building's entrance, m (an ambulance entrance); none where
+    /// it is not said.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub outdoor_door_m: Option<f64>,
     /// Clear height, m.
     pub ceiling_height_m: f64,
     /// Surface materials, Arena names.

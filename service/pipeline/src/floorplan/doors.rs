@@ -41,6 +41,11 @@ const END_WALL: f64 = 1.8;
 /// 60 people at 2.5 m^2: Approved Document B, table 2.2).
 const SECOND_DOOR_M2: f64 = 150.0;
 const BETWEEN_DOORS_M: f64 = 6.0;
+/// Floor area of a station from which on it is open to two corridors, m^2, how far apart these are at least, and the widest
+/// opening to the second, m.
+const TWO_FRONTS_M2: f64 = 12.0;
+const TWO_FRONTS_APART_M: f64 = 1.0;
+const SECOND_FRONT_M: f64 = 2.4;
 /// Floor kept free in front of a door, m.
 const APPROACH_M: f64 = 0.6;
 /// What it costs that the doors of a bathroom and of a room where one sits or eats face each other, how far apart they may
@@ -119,6 +124,7 @@ fn lay(site: &Site<'_>, entrance_first: bool, rng: &mut Stream) -> Laid {
     site.lay_entrances(before, &mut laid);
     site.lay_gates(&mut laid);
     site.lay_inner(&mut laid, rng);
+    site.lay_second_fronts(&mut laid);
     site.lay_entrances(after, &mut laid);
     site.lay_exits(&mut laid);
     site.lay_second_doors(&mut laid, rng);
@@ -258,6 +264,38 @@ impl Site<'_> {
             Spot { door, view: View::Other, zones: vec![(room, zone)], penalty: penalty + meters(s.len()) }
         });
         spots.filter(|spot| spot.zones.iter().all(|(r, zone)| self.inside(*r, zone))).collect()
+    }
+
+    /// Opens stations that lie between two corridors, or in the corner of one, to the second as well: those there watch the
+    /// rooms on both.
+    fn lay_second_fronts(&self, laid: &mut Laid) {
+        let brief = self.brief;
+        let Some(spine) = brief.spine.filter(|_| !brief.hub && brief.rooms.iter().any(|r| r.zone == Zone::Night))
+        else {
+            return;
+        };
+        let posts = |r: &usize| {
+            let spec = &brief.rooms[*r];
+            spec.on_spine && spec.open_front && spec.zone == Zone::Staff && self.net_m2[*r] >= TWO_FRONTS_M2
+        };
+        for room in (0..brief.rooms.len()).filter(posts) {
+            let ids = [room, spine].map(|r| &brief.rooms[r].id);
+            let first = laid.spots.iter().find(|l| ids.iter().all(|id| l.door.room_ids.contains(id)));
+            let Some(first) = first.map(|l| l.door.line) else { continue };
+            let (vertical, middle) = (first.is_vertical(), first.middle());
+            let other = |s: &&Stretch| {
+                let across = if vertical { middle.x } else { middle.y };
+                s.joins(room, spine) && (s.vertical != vertical || (meters(s.at) - across).abs() > TWO_FRONTS_APART_M)
+            };
+            let spots = self.stretches.iter().filter(other).flat_map(|s| {
+                let (from, to) = self.usable(s);
+                let width = ((to - from) / 2.0).min(SECOND_FRONT_M);
+                let enough = width >= Brief::opening(brief.door_width(room, spine));
+                let starts = [from, to - width].into_iter().filter(move |_| enough);
+                starts.map(move |start| self.open_spot(s, room, spine, start, width))
+            });
+            laid.take_best(spots.collect());
+        }
     }
 
     /// Places second doors from the corridor into large rooms, as far from the first as the wall between them allows.

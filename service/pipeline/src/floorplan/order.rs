@@ -20,10 +20,12 @@ const TRIES_PER_ROOM: usize = 50;
 const MOST_TRIES: usize = 900;
 /// Temperature at the start, in cost units; a plan that is sound is not taken apart.
 const HEAT: f64 = 0.3;
+/// Wall at a corridor from which on a room has its door there, on center lines, m.
+const LEAST_FRONT_M: f64 = 1.2;
 /// Cost of a ward none of whose bedroom doors its station sees.
-const OUT_OF_SIGHT: f64 = 2.0;
+const OUT_OF_SIGHT: f64 = 8.0;
 /// What a way from the stations to the bedrooms as long as the building is wide costs.
-const OFF_CENTER: f64 = 1.5;
+const OFF_CENTER: f64 = 2.5;
 /// Way from a station to a bedroom from which on it is too long, m, and what as much more counts beside its length.
 const LONG_WAY_M: f64 = 18.0;
 const LONG_WAY: f64 = 2.0;
@@ -88,7 +90,7 @@ impl Judge<'_> {
     /// Returns what the order of rooms costs in the layout that was judged last.
     pub(super) fn disorder(&self, layout: &Layout) -> f64 {
         MISPLACED * self.misplaced(layout)
-            + OUT_OF_SIGHT * self.out_of_sight()
+            + OUT_OF_SIGHT * self.out_of_sight(layout)
             + OFF_CENTER * self.off_center()
             + NECK * self.necks(layout) as f64
     }
@@ -175,36 +177,35 @@ impl Judge<'_> {
         ways / f64::from(count.max(1))
     }
 
-    /// Returns the share of bedrooms on the side of the corridor on which all stations with an open front are: from there
-    /// one sees the doors across.
-    fn out_of_sight(&self) -> f64 {
-        let (brief, rooms) = (self.brief, &self.survey.rooms);
-        let Some(corridor) = brief.spine.filter(|_| !brief.hub).and_then(|s| rooms[s].main) else { return 0.0 };
-        let side = |b: Cellbox| {
-            let (cx, cy) = b.center2();
-            let (at, low, high) = if corridor.width() >= corridor.height() {
-                (cy, corridor.y0, corridor.y1)
-            } else {
-                (cx, corridor.x0, corridor.x1)
-            };
-            i32::from(at > 2 * high) - i32::from(at < 2 * low)
+    /// Returns the share of bedrooms that no station with an open front sees: from there one sees the doors in the other walls
+    /// of each piece of corridor that it stands at, of an L both arms where it stands in the corner.
+    fn out_of_sight(&self, layout: &Layout) -> f64 {
+        let brief = self.brief;
+        let Some(spine) = brief.spine.filter(|_| !brief.hub) else { return 0.0 };
+        let is_station = |spec: &RoomSpec| spec.on_spine && spec.zone == Zone::Staff && spec.open_front;
+        let pieces: Vec<Cellbox> = layout.boxes.iter().filter(|b| b.0 == spine).map(|b| b.1).collect();
+        let at = |piece: &Cellbox, wanted: &dyn Fn(usize) -> bool| -> u8 {
+            let boxes = layout.boxes.iter().filter(|(room, _)| wanted(*room));
+            boxes.filter_map(|(_, b)| side_of(piece, b)).fold(0, |sides, side| sides | 1 << side)
         };
-        let sides = |wanted: fn(&RoomSpec) -> bool| {
-            let of = brief.rooms.iter().zip(rooms).filter(move |(spec, _)| spec.on_spine && wanted(spec));
-            of.filter_map(move |(_, room)| Some(side(room.main?)))
-        };
-        let stations = || sides(|spec| spec.zone == Zone::Staff && spec.open_front);
-        let Some(first) = stations().next() else { return 0.0 };
-        if first == 0 || stations().any(|side| side != first) {
+        let posts: Vec<u8> = pieces.iter().map(|c| at(c, &|room| is_station(&brief.rooms[room]))).collect();
+        if posts.iter().all(|sides| *sides == 0) {
             return 0.0;
         }
+        let sees = |sides: u8, post: u8| (0..4).any(|s| sides & 1 << s != 0 && post & !(1 << s) != 0);
         let (mut all, mut hidden) = (0, 0);
-        for side in sides(|spec| spec.zone == Zone::Night) {
+        for (bed, _) in brief.rooms.iter().enumerate().filter(|(_, s)| s.on_spine && s.zone == Zone::Night) {
             all += 1;
-            hidden += u32::from(side == first);
+            let seen = pieces.iter().zip(&posts).any(|(c, post)| *post != 0 && sees(at(c, &|room| room == bed), *post));
+            hidden += u32::from(!seen);
         }
         f64::from(hidden) / f64::from(all.max(1))
     }
+}
+
+/// Returns the side of a piece of corridor along which a room has wall enough for its door.
+fn side_of(piece: &Cellbox, b: &Cellbox) -> Option<usize> {
+    piece.contact(b).filter(|(_, from, to)| to - from >= up(LEAST_FRONT_M)).map(|(side, ..)| side)
 }
 
 /// Returns when one comes to a room, behind the entrance: nobody passes bathrooms on the way to the living room; `None`
@@ -213,6 +214,8 @@ fn rank(spec: &RoomSpec) -> Option<u8> {
     match spec.zone {
         Zone::Public => Some(0),
         Zone::Day => Some(1),
+        // one passes no isolation room on the way to the others
+        Zone::Night if spec.host.is_some() => Some(3),
         Zone::Night => Some(2),
         Zone::Service if spec.wet && spec.private && spec.area_target > WASHROOM_M2 => Some(2),
         Zone::Staff | Zone::Service | Zone::Circulation | Zone::Outdoor => None,

@@ -65,7 +65,7 @@ pub(super) struct RoomSpec {
     /// True for rooms into which no leaf opens.
     pub slides: bool,
     pub entrance: bool,
-    /// Clear width of the gate through which its vehicles come in, m.
+    /// Clear width of the gate through which its vehicles come in, or of its own door to outdoors, m.
     pub gate: Option<f64>,
     pub door_width: f64,
     pub ceiling_height: f64,
@@ -472,14 +472,14 @@ fn room_spec(
     }
 }
 
-/// Returns the clear width of the gate that the vehicles of a room need, m.
+/// Returns the clear width of the gate that the vehicles of a room need, or of its own door to outdoors, m.
 fn gate(domain: &Domain, kind: &RoomType) -> Option<f64> {
     let wide = |item: &str| {
         let vehicle = domain.anchor(item).filter(|o| o.shape == Shape::Vehicle)?;
         vehicle.sizes_m.first().map(|size| size[0])
     };
     let parked = kind.furnishing.iter().filter(|f| f.required).filter_map(|f| wide(&f.item));
-    parked.reduce(f64::max).map(|wide| wide + BESIDE_VEHICLE_M)
+    parked.reduce(f64::max).map(|wide| wide + BESIDE_VEHICLE_M).or(kind.outdoor_door_m)
 }
 
 /// Returns true for rooms that are there to charge robots.

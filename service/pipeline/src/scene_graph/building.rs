@@ -57,6 +57,9 @@ const MOST_ADJECTIVES: usize = 3;
 /// Words before a building named late, back to the mark that it stands behind: "..., a small family home".
 const MOST_BEFORE_LATE: usize = 3;
 
+/// Words that join two buildings, at most: "and an".
+const MOST_JOINING: usize = 2;
+
 /// A word for a building: domain and, where it is one, building type.
 type Meaning = Vec<(usize, Option<usize>)>;
 
@@ -168,7 +171,19 @@ fn parts(
     domains: &[&Domain],
     words: (&[Token], &[&Spoken]),
 ) -> Vec<Part> {
-    let listed = found.iter().filter(|(span, _)| *span != own && span.start >= list_from && span.start > own.start);
+    // "hospital pharmacy and outpatient department": as a list of two, without a word that begins one
+    let joined = |span: &Span| {
+        let (tokens, spoken) = words;
+        let tagged = |i: usize, tag| spoken.iter().any(|s| s.tag_at(tokens, i, tag).is_some());
+        built.1.is_some()
+            && (own.end..span.start).len() <= MOST_JOINING
+            && tagged(own.end, Tag::Joins)
+            && (own.end + 1..span.start).all(|i| [Tag::Articles, Tag::Definite].iter().any(|&t| tagged(i, t)))
+    };
+    let typed = |meaning: &Meaning| meaning.iter().any(|m| m.0 == built.0 && m.1.is_some_and(|k| Some(k) != built.1));
+    let listed = found.iter().filter(|(span, meaning)| {
+        *span != own && span.start > own.start && (span.start >= list_from || joined(span) && typed(meaning))
+    });
     listed
         .filter_map(|(span, meaning)| {
             let same = meaning.iter().find(|m| m.0 == built.0);

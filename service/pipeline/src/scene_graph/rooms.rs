@@ -406,10 +406,23 @@ pub(super) fn add_docks(domain: &Domain, robots: &[Robot], docked: &[String], ro
             let all = rooms.iter().enumerate().filter_map(|(i, room)| Some((suits(room)?, i)));
             let Some((_, best)) = all.min() else { return };
             wish(&mut rooms[best]);
+            make_room_for_dock(&mut rooms[best], domain);
         }
     }
 }
 
+/// Lets a room open to where people pass grow by the floor of a dock: what it is there for stays.
+fn make_room_for_dock(room: &mut GraphRoom, domain: &Domain) {
+    let kind = domain.room_type_or_generic(&room.room_type);
+    let [least, most] = room.area_range_m2;
+    if kind.zone == Zone::Staff && kind.open_front && most >= kind.area_m2.max {
+        room.target_area_m2 = tenth((room.target_area_m2 + DOCK_FLOOR_M2).min(most));
+        room.area_range_m2 = [tenth((kind.area_m2.target + DOCK_FLOOR_M2).min(room.target_area_m2).max(least)), most];
+    }
+}
+
+/// Floor of a dock and of the robot before it, m^2.
+const DOCK_FLOOR_M2: f64 = 3.0;
 /// From here on rooms for staff, work and visitors.
 const LAST_RANK: u8 = 4;
 /// Floor of a room for each dock in it, m^2, and most docks in a room that is there for something else.
@@ -430,8 +443,9 @@ pub(crate) fn dock_rank(kind: &RoomType, robot: &Robot) -> Option<u8> {
         // a mop room is no place for what brings mail or meals
         (Zone::Service, Goods::Soiled) => Some(LAST_RANK + 2),
         (Zone::Service, Goods::Usual) => Some(if cleans { 1 } else { 0 }),
+        // a base open to the corridor, where loads are handed over, before the corridor, of whose width a dock takes
         (Zone::Day, _) => Some(2),
-        // a dock takes of its width
+        (Zone::Staff, _) if kind.open_front => Some(2),
         (Zone::Circulation, _) => Some(3),
         (Zone::Service, _) => Some(LAST_RANK),
         (Zone::Staff, _) => Some(LAST_RANK + 1),

@@ -8,6 +8,7 @@ mod details;
 mod edit;
 mod edit_storeys;
 mod homes;
+mod hospitals;
 mod large;
 mod offices;
 mod order;

@@ -242,7 +242,12 @@ pub(super) fn entrances(page: &mut Page, frame: &Frame, plan: &Floorplan, size: 
         let at = |along: f64, across: f64| frame.map(o.at(along, across));
         let arrow = [at(middle, tip), at(middle - 0.55 * unit, tail), at(middle + 0.55 * unit, tail)];
         page.path(if door.entrance { "ea" } else { "ex" }, Path::new().polygon(&arrow));
-        let label = if door.entrance { "Entrance" } else { "Exit" };
+        // ambulances and trucks come in by gates, which slide; they are called after their room
+        let label = match door.kind {
+            _ if door.entrance => "Entrance",
+            DoorKind::Sliding => room.name.as_str(),
+            _ => "Exit",
+        };
         let (x, y) = at(middle, tail + 0.35 * unit);
         let (nx, ny) = (o.n.0, -o.n.1);
         let (anchor, y) = if nx > 0.5 {
