@@ -4,6 +4,7 @@
 
 mod clutter;
 mod common;
+mod corridors;
 mod details;
 mod edit;
 mod edit_storeys;
