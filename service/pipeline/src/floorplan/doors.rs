@@ -9,7 +9,7 @@ use d3dgen_model::{Point, Segment};
 
 use super::assemble::highest;
 use super::cost::ill_placed;
-use super::hall::passed_bedrooms;
+use super::hall::{self, passed_bedrooms};
 use super::lattice::{Cellbox, INNER_HALF_M, JAMB_M, OUTER_HALF_M, meters};
 use super::outline::Stretch;
 use super::realize::{BED_DOOR_M, ONE_WAY_M};
@@ -34,7 +34,9 @@ const TO_ZONES: f64 = 7.0;
 /// What it counts there that one passes a bedroom on the way to the living room, and what a meter counts in a home by which
 /// the door of a room of the day is further from the entrance than it might be, and by which that of a bedroom is nearer.
 const TO_LIVING: f64 = 7.0;
-const FROM_ENTRANCE: f64 = 0.12;
+const FROM_ENTRANCE: f64 = 0.2;
+/// What it costs a home that one passes the door of a bedroom on the way to that of the living room.
+const PASSED: f64 = 2.0;
 /// Wall between an entrance that stands aside and the corner of its room, on center lines, m.
 const ENTRANCE_ASIDE_M: f64 = 0.4;
 /// Floor behind a door into which a bed is pushed straight ahead, m, and how much wider the door is where it has to turn.
@@ -128,6 +130,7 @@ fn lay(site: &Site<'_>, entrance_first: bool, rng: &mut Stream) -> Laid {
     site.lay_exits(&mut laid);
     site.lay_second_doors(&mut laid, rng);
     laid.settle();
+    laid.cost += PASSED * f64::from(site.passed(&laid));
     laid
 }
 
@@ -244,6 +247,24 @@ impl Site<'_> {
         for spot in spots {
             spot.penalty += way(spot) - least;
         }
+    }
+
+    /// Returns how many doors of bedrooms are nearer to the entrance than that of the living room, in a home.
+    fn passed(&self, laid: &Laid) -> u32 {
+        let brief = self.brief;
+        let Some((spine, living)) = brief.spine.zip(hall::room_of_guests(brief)) else { return 0 };
+        let Some(entrance) = laid.spots.iter().find(|l| l.door.entrance).map(|l| l.door.line.middle()) else {
+            return 0;
+        };
+        let way = |room: usize| {
+            let ids = [room, spine].map(|r| &brief.rooms[r].id);
+            let door = laid.spots.iter().find(|l| ids.iter().all(|id| l.door.room_ids.contains(id)))?;
+            let p = door.door.line.middle();
+            Some((p.x - entrance.x).abs() + (p.y - entrance.y).abs())
+        };
+        let Some(to_living) = way(living) else { return 0 };
+        let beds = (0..brief.rooms.len()).filter(|r| brief.rooms[*r].zone == Zone::Night);
+        beds.filter_map(way).filter(|bed| *bed < to_living - hall::PLAINLY_M).count() as u32
     }
 
     /// Places doors to outdoors.

@@ -11,7 +11,7 @@ use super::realize::door_need;
 use super::spec::Brief;
 
 /// How much nearer to the entrance a bedroom's door is at least to count as passed, m.
-const PLAINLY_M: f64 = 0.3;
+pub(super) const PLAINLY_M: f64 = 0.3;
 /// What a bedroom counts that is passed, what a meter more between the doors counts, and up to how many.
 const PASSED: f64 = 0.5;
 const FURTHER: f64 = 0.15;
@@ -46,7 +46,7 @@ pub(super) fn passed_bedrooms(brief: &Brief, boxes: &[(usize, Cellbox)], entranc
 }
 
 /// Returns the largest room of the day that opens to the hall of a home on the storey of its entrance, beside bedrooms.
-fn room_of_guests(brief: &Brief) -> Option<usize> {
+pub(super) fn room_of_guests(brief: &Brief) -> Option<usize> {
     if !brief.is_home() || brief.upper {
         return None;
     }

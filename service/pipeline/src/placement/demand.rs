@@ -42,6 +42,8 @@ pub(super) struct Task<'a> {
     pub first_choice: bool,
     /// True for what somebody asked for by name, and for the bed of two.
     pub asked: bool,
+    /// True for a table that comes with so many people: smaller ones are for want of floor.
+    pub for_many: bool,
     /// How wide what things are stored in usually is, m: of what comes in another's place, the wider of them.
     pub usual_width_m: Option<f64>,
     /// People who are to sit at it, where it is the one table of its room.
@@ -181,7 +183,10 @@ pub(super) fn tasks<'a>(
     // who eats there, whoever sleeps in the building
     let guests = graph.and_then(|g| g.occupants).filter(|_| occupied.is_none());
     let mut out: Vec<Task> = Vec::new();
-    for (line, f) in kind.furnishing.iter().enumerate().filter(|(_, f)| household.wants(kind, f, guests)) {
+    // what is asked for by name comes whoever lives there
+    let called = |f: &Furnishing| domain.anchor(&f.item).is_some_and(|a| named.iter().any(|id| **id == a.id));
+    let wanted = |f: &Furnishing| household.wants(kind, f, guests) || f.sleepers > 0 && called(f);
+    for (line, f) in kind.furnishing.iter().enumerate().filter(|(_, f)| wanted(f)) {
         let Some(anchor) = domain.anchor(&f.item) else { continue };
         let (mut count, mut required) = (f.units(area_m2).min(MAX_UNITS), if f.required { f.min } else { 0 });
         // what finds no wall of the same stands in rows
@@ -243,6 +248,7 @@ pub(super) fn tasks<'a>(
             instead_of,
             first_choice,
             asked,
+            for_many: seats && f.sleepers > 0,
             usual_width_m: usual_width_m(domain, f),
             seats: if occupied.is_none() { at_table(domain, f, graph) } else { None },
         };
@@ -274,6 +280,7 @@ pub(super) fn tasks<'a>(
             instead_of: &[],
             first_choice: named.contains(&&object.id),
             asked: named.contains(&&object.id),
+            for_many: false,
             usual_width_m: storage_width_m(object),
             seats: None,
         });
@@ -436,6 +443,7 @@ pub(super) fn one_more(object: &ObjectType) -> Task<'_> {
         instead_of: &[],
         first_choice: false,
         asked: false,
+        for_many: false,
         usual_width_m: storage_width_m(object),
         seats: None,
     }

@@ -22,6 +22,8 @@ pub(super) fn floors(page: &mut Page, frame: &Frame, plan: &Floorplan, domain: &
     page.close_group();
 }
 
+/// Width from which on a sliding door is the gate of a garage, m.
+const GATE_M: f64 = 2.2;
 /// Width in which the railings of balconies and terraces are drawn, m.
 const RAILING_M: f64 = 0.08;
 
@@ -187,7 +189,10 @@ fn sliding(page: &mut Page, frame: &Frame, plan: &Floorplan, o: &Opening) {
         page.path("da", Path::new().segment(ends[0], ends[1]));
     }
     let [before, after] = walls_beside(plan, o);
-    let panels: &[[f64; 2]] = if before.max(after) < o.length && before.min(after) >= o.length / 2.0 {
+    let panels: &[[f64; 2]] = if o.length > GATE_M {
+        // a gate goes up, not aside
+        &[[0.0, 1.0]]
+    } else if before.max(after) < o.length && before.min(after) >= o.length / 2.0 {
         &[[-0.2, 0.3], [0.7, 1.2]]
     } else if before >= after {
         &[[-0.35, 0.6]]
