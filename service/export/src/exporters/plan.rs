@@ -156,8 +156,8 @@ fn draw(world: &World, domain: &Domain) -> (String, Legibility) {
         building::floors(page, &frame, plan, domain);
         robots::zones(page, &frame, &world.scenario, k);
         furniture(page, &frame, &shown);
-        building::walls(page, &frame, plan);
-        building::windows(page, &frame, plan);
+        building::walls(page, &frame, plan, domain);
+        building::windows(page, &frame, plan, domain);
         building::doors(page, &frame, plan);
         building::entrances(page, &frame, plan, UNIT);
         storeys::elevators(page, &frame, plan);

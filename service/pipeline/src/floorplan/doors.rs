@@ -9,6 +9,7 @@ use d3dgen_model::{Point, Segment};
 
 use super::assemble::highest;
 use super::cost::ill_placed;
+use super::hall::{self, passed_bedrooms};
 use super::lattice::{Cellbox, INNER_HALF_M, JAMB_M, OUTER_HALF_M, meters};
 use super::outline::Stretch;
 use super::realize::{BED_DOOR_M, ONE_WAY_M};
@@ -30,6 +31,12 @@ const RUN_M: f64 = 2.7;
 const TO_PUBLIC: f64 = 0.2;
 /// What it counts there that rooms of the day are far from the entrance and bedrooms near.
 const TO_ZONES: f64 = 7.0;
+/// What it counts there that one passes a bedroom on the way to the living room, and what a meter counts in a home by which
+/// the door of a room of the day is further from the entrance than it might be, and by which that of a bedroom is nearer.
+const TO_LIVING: f64 = 7.0;
+const FROM_ENTRANCE: f64 = 0.2;
+/// What it costs a home that one passes the door of a bedroom on the way to that of the living room.
+const PASSED: f64 = 2.0;
 /// Wall between an entrance that stands aside and the corner of its room, on center lines, m.
 const ENTRANCE_ASIDE_M: f64 = 0.4;
 /// Floor behind a door into which a bed is pushed straight ahead, m, and how much wider the door is where it has to turn.
@@ -129,6 +136,7 @@ fn lay(site: &Site<'_>, entrance_first: bool, rng: &mut Stream) -> Laid {
     site.lay_exits(&mut laid);
     site.lay_second_doors(&mut laid, rng);
     laid.settle();
+    laid.cost += PASSED * f64::from(site.passed(&laid));
     laid
 }
 
@@ -213,12 +221,56 @@ impl Site<'_> {
             let stretches = self.stretches.iter().filter(|s| s.joins(a, b) && self.is_front(s, a));
             let spots: Vec<Spot> = match self.standing_spot(&[a, b], false) {
                 Some(spot) => vec![spot],
-                None => stretches.flat_map(|s| self.spots(s, a, b, connector, rng)).collect(),
+                None => {
+                    let mut spots: Vec<Spot> = stretches.flat_map(|s| self.spots(s, a, b, connector, rng)).collect();
+                    self.prefer_order(&mut spots, a, b, laid);
+                    spots
+                }
             };
             if !laid.take_best(spots) && required {
                 laid.missing.push(format!("{} to {}", brief.rooms[a].id, brief.rooms[b].id));
             }
         }
+    }
+
+    /// Makes doors to the hall of a home dearer that are far from its entrance for a room of the day, near it for a bedroom;
+    /// the best of them costs what it did.
+    fn prefer_order(&self, spots: &mut [Spot], room: usize, other: usize, laid: &Laid) {
+        if !self.brief.is_home() || Some(other) != self.brief.spine {
+            return;
+        }
+        let Some(entrance) = laid.spots.iter().find(|l| l.door.entrance).map(|l| l.door.line.middle()) else { return };
+        let sign = match self.brief.rooms[room].zone {
+            Zone::Day | Zone::Public => 1.0,
+            Zone::Night => -1.0,
+            _ => return,
+        };
+        let way = |spot: &Spot| {
+            let p = spot.door.line.middle();
+            sign * FROM_ENTRANCE * ((p.x - entrance.x).abs() + (p.y - entrance.y).abs())
+        };
+        let least = spots.iter().map(way).fold(f64::MAX, f64::min);
+        for spot in spots {
+            spot.penalty += way(spot) - least;
+        }
+    }
+
+    /// Returns how many doors of bedrooms are nearer to the entrance than that of the living room, in a home.
+    fn passed(&self, laid: &Laid) -> u32 {
+        let brief = self.brief;
+        let Some((spine, living)) = brief.spine.zip(hall::room_of_guests(brief)) else { return 0 };
+        let Some(entrance) = laid.spots.iter().find(|l| l.door.entrance).map(|l| l.door.line.middle()) else {
+            return 0;
+        };
+        let way = |room: usize| {
+            let ids = [room, spine].map(|r| &brief.rooms[r].id);
+            let door = laid.spots.iter().find(|l| ids.iter().all(|id| l.door.room_ids.contains(id)))?;
+            let p = door.door.line.middle();
+            Some((p.x - entrance.x).abs() + (p.y - entrance.y).abs())
+        };
+        let Some(to_living) = way(living) else { return 0 };
+        let beds = (0..brief.rooms.len()).filter(|r| brief.rooms[*r].zone == Zone::Night);
+        beds.filter_map(way).filter(|bed| *bed < to_living - hall::PLAINLY_M).count() as u32
     }
 
     /// Places doors to outdoors.
@@ -618,7 +670,11 @@ impl Site<'_> {
         // The end of a corridor is where one looks for its door; a second exit belongs far from the first.
         let mut penalty = if spine && !self.brief.hub { meters(s.len()) } else { 0.1 * f64::from(s.at.abs()) * 0.05 };
         if main {
-            penalty += TO_PUBLIC * self.to_public(line.middle()) + TO_ZONES * self.ill_zoned(line.middle());
+            let p = line.middle();
+            let at = ((p.x * 40.0).round() as i32, (p.y * 40.0).round() as i32);
+            penalty += TO_PUBLIC * self.to_public(p)
+                + TO_ZONES * self.ill_zoned(p)
+                + TO_LIVING * passed_bedrooms(self.brief, self.boxes, at);
         }
         if !main {
             let away = laid

@@ -17,6 +17,7 @@ mod core;
 mod cost;
 mod doors;
 mod genome;
+mod hall;
 mod insert;
 mod lattice;
 mod mirror;

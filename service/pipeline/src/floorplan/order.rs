@@ -9,6 +9,7 @@ use d3dgen_model::seed::Stream;
 
 use super::cost::{Judge, Weights, between, ill_placed};
 use super::genome::Genome;
+use super::hall::passed_bedrooms;
 use super::lattice::{Cellbox, up};
 use super::realize::{Layout, Scratch, realize};
 use super::search::{Candidate, LOOK, mutate, patience};
@@ -38,6 +39,10 @@ const END_WALL: i32 = 80;
 const MISPLACED: f64 = 4.0;
 /// Area up to which a wet room is one for guests, who should find it by the entrance, m^2.
 const WASHROOM_M2: f64 = 3.0;
+/// Cost of a home in which one passes a bedroom on the way from the entrance to the living room, and how much more that
+/// counts in the choice of the entrance than the distances of all rooms.
+const PASSED: f64 = 1.5;
+const BEFORE_ZONES: f64 = 1.0;
 /// Disorder with which a plan is left as it was found.
 const TOLERABLE: f64 = 0.2;
 
@@ -89,7 +94,9 @@ pub(super) fn put_in_order(
 impl Judge<'_> {
     /// Returns what the order of rooms costs in the layout that was judged last.
     pub(super) fn disorder(&self, layout: &Layout) -> f64 {
-        MISPLACED * self.misplaced(layout)
+        let (misplaced, passed) = self.misplaced(layout);
+        MISPLACED * misplaced
+            + PASSED * passed
             + OUT_OF_SIGHT * self.out_of_sight(layout)
             + OFF_CENTER * self.off_center()
             + NECK * self.necks(layout) as f64
@@ -106,8 +113,8 @@ impl Judge<'_> {
     }
 
     /// Returns the share of pairs of rooms of different rank in which the one that comes later lies nearer the entrance,
-    /// larger rooms counting more; the entrance is where it serves the rooms best.
-    fn misplaced(&self, layout: &Layout) -> f64 {
+    /// larger rooms counting more; and what the bedrooms count that one passes. The entrance is where it serves the rooms best.
+    fn misplaced(&self, layout: &Layout) -> (f64, f64) {
         let rooms = || self.brief.rooms.iter().zip(&self.survey.rooms).filter_map(|(spec, r)| Some((spec, r.main?)));
         let gates = self.gates(layout);
         let size = rooms().map(|(_, main)| main.area_m2()).sum::<f64>().sqrt().max(1.0);
@@ -115,7 +122,9 @@ impl Judge<'_> {
         let lost = |gate: (i32, i32)| -> f64 {
             rooms().map(|(spec, main)| ill_placed(spec.zone, far(main, gate) / size)).sum()
         };
-        let Some(gate) = gates.into_iter().min_by(|a, b| lost(*a).total_cmp(&lost(*b))) else { return 0.0 };
+        let judged = gates.into_iter().map(|gate| (gate, passed_bedrooms(self.brief, &layout.boxes, gate)));
+        let worse = |(gate, passed): &((i32, i32), f64)| lost(*gate) + BEFORE_ZONES * passed;
+        let Some((gate, passed)) = judged.min_by(|a, b| worse(a).total_cmp(&worse(b))) else { return (0.0, 0.0) };
         // of a single room to live or work in nobody minds what else opens to the hall
         let one_room = rooms().filter(|(spec, _)| rank(spec).is_some() && !spec.wet).count() == 1;
         let ranked: Vec<(u8, f64, f64)> = rooms()
@@ -129,7 +138,7 @@ impl Judge<'_> {
                 wrong += if way > other { *area } else { 0.0 };
             }
         }
-        if all > 0.0 { wrong / all } else { 0.0 }
+        (if all > 0.0 { wrong / all } else { 0.0 }, passed)
     }
 
     /// Returns where one may come in: the middles of outer walls of the room with the entrance that hold a door, of a

@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 
 use d3dgen_knowledge::{Limit, Limits, RoomLimits};
 use d3dgen_model::domain::{
-    Adjacency, AdjacencyRelation, Daylight, Domain, Materials, Privacy, RobotUse, RoomType, Scheme, Shape, Zone,
+    Adjacency, AdjacencyRelation, Daylight, Domain, Materials, Privacy, Relation, RobotUse, RoomType, Scheme, Shape,
+    Zone,
 };
 use d3dgen_model::scene_graph::{Connector, GraphEdge, GraphRoom, Note, SceneGraph};
 use d3dgen_model::seed::Stream;
@@ -474,9 +475,16 @@ fn room_spec(
 
 /// Returns the clear width of the gate that the vehicles of a room need, or of its own door to outdoors, m.
 fn gate(domain: &Domain, kind: &RoomType) -> Option<f64> {
-    let wide = |item: &str| {
-        let vehicle = domain.anchor(item).filter(|o| o.shape == Shape::Vehicle)?;
+    let vehicle = |id: &str| {
+        let vehicle = domain.object(id).filter(|o| o.shape == Shape::Vehicle)?;
         vehicle.sizes_m.first().map(|size| size[0])
+    };
+    // those that stand side by side come in side by side
+    let wide = |item: &str| {
+        let Some(group) = domain.group(item) else { return vehicle(item) };
+        let others = group.members.iter().filter(|m| matches!(m.relation, Relation::Left | Relation::Right));
+        let beside = others.filter_map(|m| Some(f64::from(m.count) * (vehicle(&m.object)? + m.gap_m)));
+        Some(vehicle(&group.anchor)? + beside.sum::<f64>())
     };
     let parked = kind.furnishing.iter().filter(|f| f.required).filter_map(|f| wide(&f.item));
     parked.reduce(f64::max).map(|wide| wide + BESIDE_VEHICLE_M).or(kind.outdoor_door_m)

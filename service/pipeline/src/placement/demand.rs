@@ -42,6 +42,10 @@ pub(super) struct Task<'a> {
     pub first_choice: bool,
     /// True for what somebody asked for by name, and for the bed of two.
     pub asked: bool,
+    /// True for a table that comes with so many people: smaller ones are for want of floor.
+    pub for_many: bool,
+    /// How wide what things are stored in usually is, m: of what comes in another's place, the wider of them.
+    pub usual_width_m: Option<f64>,
     /// People who are to sit at it, where it is the one table of its room.
     pub seats: Option<u32>,
 }
@@ -60,7 +64,7 @@ impl Task<'_> {
     /// Returns how much narrower than usual a unit is in which things are stored, as a share of that; 0 for all others.
     pub fn narrower(&self, unit: &Unit) -> f64 {
         let own = f64::from(unit.anchor().solid.rect.height()) / 1000.0;
-        storage_width_m(self.anchor).map_or(0.0, |usual| (1.0 - own / usual).max(0.0))
+        self.usual_width_m.map_or(0.0, |usual| (1.0 - own / usual).max(0.0))
     }
 
     /// Returns true for seats and what people sit at: a line of rows of them is an audience.
@@ -152,14 +156,15 @@ impl<'a> Household<'a> {
         self.room_types.iter().map(beds).sum::<u32>().max(self.sharing)
     }
 
-    fn wants(&self, kind: &RoomType, line: &Furnishing) -> bool {
+    /// Returns true for a line that the building asks for, in a room for so many people.
+    fn wants(&self, kind: &RoomType, line: &Furnishing, people: Option<u32>) -> bool {
         let dock = || self.domain.anchor(&line.item).is_some_and(|o| o.shape == Shape::Dock);
         // docks stand where there are robots, or in rooms that are there for them;
         // few lines ask who sleeps there, and to know takes time
         let robots = if kind.goods == Goods::Soiled { self.cleans } else { self.has_robots };
         (line.required || robots || !dock())
             && line.is_for(self.room_types.iter().copied(), self.accessible)
-            && (line.sleepers == 0 || self.sleepers() >= line.sleepers)
+            && (line.sleepers == 0 || people.unwrap_or(0) >= line.sleepers || self.sleepers() >= line.sleepers)
     }
 }
 
@@ -175,8 +180,13 @@ pub(super) fn tasks<'a>(
 ) -> Vec<Task<'a>> {
     let occupied = occupied_line(domain, kind, graph, household);
     let named = named(domain, kind, graph);
+    // who eats there, whoever sleeps in the building
+    let guests = graph.and_then(|g| g.occupants).filter(|_| occupied.is_none());
     let mut out: Vec<Task> = Vec::new();
-    for (line, f) in kind.furnishing.iter().enumerate().filter(|(_, f)| household.wants(kind, f)) {
+    // what is asked for by name comes whoever lives there
+    let called = |f: &Furnishing| domain.anchor(&f.item).is_some_and(|a| named.iter().any(|id| **id == a.id));
+    let wanted = |f: &Furnishing| household.wants(kind, f, guests) || f.sleepers > 0 && called(f);
+    for (line, f) in kind.furnishing.iter().enumerate().filter(|(_, f)| wanted(f)) {
         let Some(anchor) = domain.anchor(&f.item) else { continue };
         let (mut count, mut required) = (f.units(area_m2).min(MAX_UNITS), if f.required { f.min } else { 0 });
         // what finds no wall of the same stands in rows
@@ -238,6 +248,8 @@ pub(super) fn tasks<'a>(
             instead_of,
             first_choice,
             asked,
+            for_many: seats && f.sleepers > 0,
+            usual_width_m: usual_width_m(domain, f),
             seats: if occupied.is_none() { at_table(domain, f, graph) } else { None },
         };
         let together = whole.is_batch() || required == 0 || required == count || occupied.is_some_and(|o| o.0 == line);
@@ -268,6 +280,8 @@ pub(super) fn tasks<'a>(
             instead_of: &[],
             first_choice: named.contains(&&object.id),
             asked: named.contains(&&object.id),
+            for_many: false,
+            usual_width_m: storage_width_m(object),
             seats: None,
         });
     }
@@ -301,6 +315,13 @@ pub(super) fn tasks<'a>(
 pub(super) fn storage_width_m(object: &ObjectType) -> Option<f64> {
     let stores = object.mount == Mount::Floor && matches!(object.shape, Shape::Cabinet | Shape::Shelf);
     object.sizes_m.first().filter(|size| stores && size[2] > EYE_LEVEL_M).map(|size| size[0])
+}
+
+/// Returns how wide what a line stores things in should be, m: a narrow wardrobe in the place of a wide one is narrow.
+fn usual_width_m(domain: &Domain, line: &Furnishing) -> Option<f64> {
+    let own = storage_width_m(domain.anchor(&line.item)?)?;
+    let instead = line.instead_of.iter().filter_map(|item| storage_width_m(domain.anchor(item)?));
+    Some(instead.fold(own, f64::max))
 }
 
 /// Returns true for rooms that people have desks in.
@@ -349,7 +370,7 @@ fn occupied_line(
 ) -> Option<(usize, u32)> {
     let people = graph?.occupants.filter(|n| *n > 0)?;
     let capacity = |measure: fn(&Unit) -> u32| {
-        kind.furnishing.iter().enumerate().filter(|(_, f)| household.wants(kind, f)).find_map(|(line, f)| {
+        kind.furnishing.iter().enumerate().filter(|(_, f)| household.wants(kind, f, None)).find_map(|(line, f)| {
             let unit = usual_unit(domain, &f.item)?;
             let each = measure(&unit);
             (each > 0 && f.max > 0).then_some((line, each))
@@ -368,10 +389,12 @@ fn occupied_line(
         let many = |f: &Furnishing| {
             f.max > 1 && (f.required || is_shape(domain, &f.item, &[Shape::Bench, Shape::Table, Shape::RoundTable]))
         };
-        kind.furnishing.iter().enumerate().filter(|(_, f)| household.wants(kind, f) && many(f)).find_map(|(line, f)| {
-            let each = usual_unit(domain, &f.item)?.places();
-            (each > 0).then_some((line, each))
-        })
+        kind.furnishing.iter().enumerate().filter(|(_, f)| household.wants(kind, f, None) && many(f)).find_map(
+            |(line, f)| {
+                let each = usual_unit(domain, &f.item)?.places();
+                (each > 0).then_some((line, each))
+            },
+        )
     };
     let (line, each) = capacity(|u| u.beds())
         .or_else(lying)
@@ -420,6 +443,8 @@ pub(super) fn one_more(object: &ObjectType) -> Task<'_> {
         instead_of: &[],
         first_choice: false,
         asked: false,
+        for_many: false,
+        usual_width_m: storage_width_m(object),
         seats: None,
     }
 }

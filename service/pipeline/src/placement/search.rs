@@ -34,6 +34,8 @@ const MORE_BEGINNINGS: u64 = 3;
 /// How much narrower than usual storage is too narrow, and what a draft loses with all of it missing.
 const NARROW: f64 = 0.3;
 const NARROWER: f64 = 3.0;
+/// What a draft is worth more with the table that all who live there sit at.
+const TABLE_FOR_MANY: f64 = 2.5;
 /// Departures tried where something has no place that the room can do without.
 const LOOKS: usize = 2;
 /// Units in rows or a grid, and what they are worth.
@@ -276,6 +278,7 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
                 _ if best.docks_taken() > 0 || best.state.lacks_circle() => DEPARTURES.len() + RESCUES.len(),
                 // everything has found its place
                 true => 0,
+                false if self.lacks_table_for_many(&best) => DEPARTURES.len() + RESCUES.len(),
                 false if empty < SMALL && self.lacks_something_early(&best) => DEPARTURES.len() + MORE_DRAFTS,
                 false => LOOKS,
             };
@@ -362,6 +365,13 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
         missing.any(|task| task.line < EARLY && !has_other(task.item))
     }
 
+    /// Returns true where a table for all who live there has no place, nor a larger one in its place.
+    fn lacks_table_for_many(&self, draft: &Draft) -> bool {
+        let tasks = self.job.tasks;
+        let stands = draft.state.placed.iter().any(|p| tasks.get(p.task).is_some_and(|t| t.for_many));
+        !stands && draft.outcome.missing.iter().any(|(task, ..)| tasks[*task].for_many)
+    }
+
     /// Returns true where a bed came first and what clothes go into has no place, or is narrower than it usually is.
     fn bed_crowds_out_wardrobe(&self, draft: &Draft) -> bool {
         let tasks = self.job.tasks;
@@ -427,6 +437,7 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
                         state.watch(&unit);
                     }
                     outcome.score += score + if task.required > 0 { 2.0 } else { 1.0 };
+                    outcome.score += if task.for_many { TABLE_FOR_MANY } else { 0.0 };
                     outcome.score -= NARROWER * task.narrower(&unit.unit);
                     state.add(vec![unit]);
                     placed += 1;

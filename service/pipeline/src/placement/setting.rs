@@ -22,8 +22,11 @@ const WHEELCHAIR_RADIUS_M: f64 = 0.4;
 const TURNING_SPARE_M: f64 = 0.005;
 /// Area of a room from which on things of any size leave room for that circle, m^2.
 const AMPLE_M2: f64 = 9.0;
-/// Floor at one side of a bed that somebody gets into from a wheelchair, m (ISO 21542, ADA 806.2.3: 36 in).
+/// Floor at one side of a bed that somebody gets into from a wheelchair, m (ISO 21542, ADA 806.2.3: 36 in); and in a room
+/// of so many m^2, where one turns beside it (DIN 18040-2 R: 1.5 m).
 const BESIDE_BED_M: f64 = 0.92;
+const TURNING_BESIDE_BED_M: f64 = 1.5;
+const TURNING_BESIDE_BED_FROM_M2: f64 = 13.0;
 
 /// What every way to furnish a room begins with; the same room of the same graph has the same.
 pub(super) struct Setting<'a> {
@@ -74,7 +77,8 @@ impl<'a> Setting<'a> {
         };
         let mut aims = limits.objects.in_room(domain, &room.room_type, room.circulation);
         if graph.accessible {
-            beside_beds(domain, &mut aims);
+            let turns = area_m2 >= TURNING_BESIDE_BED_FROM_M2;
+            beside_beds(domain, &mut aims, if turns { TURNING_BESIDE_BED_M } else { BESIDE_BED_M });
         }
         // what rules advise against goes where the room can do without
         tasks.retain(|t| t.required > 0 || !aims.get(t.anchor.id.as_str()).is_some_and(|a| a.unwanted));
@@ -129,10 +133,10 @@ fn note_wet_doors(space: &mut Space, plan: &Floorplan, room: &PlanRoom, domain: 
 }
 
 /// Asks for floor at one side of each bed where a wheelchair is to get there, if nobody asks for more.
-fn beside_beds<'a>(domain: &'a Domain, aims: &mut BTreeMap<&'a str, Aim>) {
+fn beside_beds<'a>(domain: &'a Domain, aims: &mut BTreeMap<&'a str, Aim>, floor_m: f64) {
     for bed in domain.objects.iter().filter(|o| o.shape == Shape::Bed) {
         let clear = &mut aims.entry(&bed.id).or_default().clear;
-        clear.wide_side = clear.wide_side.max(BESIDE_BED_M);
+        clear.wide_side = clear.wide_side.max(floor_m);
     }
 }
 

@@ -275,6 +275,17 @@ pub(super) fn relate(compounds: &[Compound], mentions: &[Mention], domain: &Doma
     }
 }
 
+/// Returns true where the name of a living room says that one eats there too: "salón-comedor", "living-dining room".
+pub(super) fn eats_where_one_lives(tokens: &[Token], mentions: &[Mention], spoken: &[&Spoken]) -> bool {
+    let d = &words().dwelling;
+    let dines = |k: usize| {
+        let found = spoken.iter().filter_map(|s| s.joint.longest_at(tokens, k));
+        found.into_iter().any(|(_, types)| types.len() == 1 && types[0] == d.dining)
+    };
+    let living = mentions.iter().filter(|m| m.room_type() == Some(&d.living));
+    living.into_iter().any(|m| (m.span.start..m.span.end).any(dines))
+}
+
 /// Opens rooms of the day to each other that "living area with open kitchen" puts one into the other.
 pub(super) fn open_belongings(
     tokens: &[Token],

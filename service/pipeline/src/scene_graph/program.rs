@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use d3dgen_knowledge::Applicable;
 use d3dgen_model::domain::{
-    Access, AdjacencyRelation, Domain, Occupants, Privacy, Program, ProgramRoom, RobotUse, RoomType, Shape, Zone,
+    Access, AdjacencyRelation, Domain, Furnishing, Occupants, Privacy, Program, ProgramRoom, RobotUse, RoomType, Shape,
+    Zone,
 };
 
 use super::beds::{Held, sleeps};
@@ -31,6 +32,9 @@ const DESK_AREA_M2: f64 = 9.0;
 
 /// Share of a room's usual area from which on its people need all of it.
 const FULL: f64 = 0.8;
+
+/// Floor of a room to live in with a table for many, over the least that such a table comes in.
+const BESIDE_TABLE: f64 = 1.3;
 
 /// Width of one seat of a bench, m.
 const SEAT_M: f64 = 0.5;
@@ -696,9 +700,10 @@ fn serve_people(reading: &Reading, rooms: &mut [Planned]) {
         }
         sized.push(&entry.room_type);
         let alike: Vec<usize> = (0..rooms.len()).filter(|&i| rooms[i].room_type == entry.room_type).collect();
+        let at_table = if lives { table_for(reading, rooms, alike.first().copied(), people) } else { 0.0 };
         for &i in &alike {
             let range = rooms[i].kind.area_m2;
-            let area = (each * people / alike.len() as f64).clamp(range.min, range.max);
+            let area = (each * people / alike.len() as f64).max(at_table).clamp(range.min, range.max);
             // those of a usual size hold a usual number; a small office has small toilets
             if !lives || area > range.target {
                 rooms[i].size_for_people(area);
@@ -708,6 +713,26 @@ fn serve_people(reading: &Reading, rooms: &mut [Planned]) {
             }
         }
     }
+}
+
+/// Returns the floor of a room in which the people of a home eat for want of a room for that, m^2: what the table for all
+/// of them asks for, and the way past it to the rest; 0 where such a table is nothing out of the usual.
+fn table_for(reading: &Reading, rooms: &[Planned], room: Option<usize>, people: f64) -> f64 {
+    let domain = reading.domain;
+    let Some(kind) = room.and_then(|i| rooms.get(i)).map(|r| r.kind) else { return 0.0 };
+    let elsewhere = |line: &Furnishing| rooms.iter().any(|r| line.unless_rooms.contains(&r.room_type));
+    let table = |line: &&Furnishing| {
+        let is = domain.anchor(&line.item).is_some_and(|o| matches!(o.shape, Shape::Table | Shape::RoundTable));
+        is && line.sleepers > 0 && f64::from(line.sleepers) <= people && !line.unless_rooms.is_empty()
+    };
+    let line = kind.furnishing.iter().filter(table).max_by_key(|line| line.sleepers).filter(|line| !elsewhere(line));
+    let of_all = line.map_or(0.0, |line| BESIDE_TABLE * line.area_per_item_m2);
+    // "a dining table for eight"
+    let named = |line: &&Furnishing| {
+        let table = domain.anchor(&line.item).filter(|_| line.sleepers > 0);
+        table.is_some_and(|o| reading.objects.iter().any(|(id, _)| *id == o.id)) && !elsewhere(line)
+    };
+    kind.furnishing.iter().filter(named).map(|line| line.area_per_item_m2).fold(of_all, f64::max)
 }
 
 /// Returns how many people work there: as many as the prompt says, else as have a desk.

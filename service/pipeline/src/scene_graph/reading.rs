@@ -311,6 +311,13 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     };
     let mut wishes = wishes::gather(&text, &mut conflicts);
     wishes.open = compounds::open_rooms(&tokens, &mentions, domain, &spoken);
+    let dining = &words().dwelling.dining;
+    if lives
+        && compounds::eats_where_one_lives(&tokens, &mentions, &spoken)
+        && !wishes.wishes.iter().any(|w| &w.room_type == dining)
+    {
+        wishes.forbidden.push(dining.clone());
+    }
     let area_m2 = total_area(&text, request, &mut conflicts);
     let country = flag_country.as_deref().or(place.country_code.as_deref());
     let said_storeys = storeys::Text {

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use d3dgen_model::domain::{
-    Domain, Furnishing, GENERIC_ROOM_TYPE, Goods, ObjectType, Privacy, RobotUse, RoomType, Shape, Zone,
+    Domain, Furnishing, GENERIC_ROOM_TYPE, Goods, ObjectType, Privacy, Relation, RobotUse, RoomType, Shape, Zone,
 };
 use d3dgen_model::scene_graph::{GraphRoom, Robot};
 use d3dgen_model::style::SpaceStyle;
@@ -287,7 +287,10 @@ fn named_objects(reading: &mut Reading, planned: &[Planned]) -> BTreeMap<usize, 
     for (object, room_type) in std::mem::take(&mut reading.objects) {
         let usual = |r: &Planned| furniture(reading.domain, r.kind).any(|o| o == object);
         let with = planned.iter().position(|r| room_type.as_deref() == Some(&r.room_type));
-        match with.or_else(|| planned.iter().position(usual)) {
+        // "two bedrooms and a dining table": nobody eats there where another room is for that
+        let eats = |r: &Planned| sets_table(reading.domain, r.kind, &object, planned);
+        let with = with.filter(|&i| usual(&planned[i]) || !planned.iter().any(eats));
+        match with.or_else(|| planned.iter().position(eats)).or_else(|| planned.iter().position(usual)) {
             Some(i) => out.entry(i).or_default().push(object),
             None => {
                 let message = format!("no room was found for the object {object}; it was left out");
@@ -296,6 +299,16 @@ fn named_objects(reading: &mut Reading, planned: &[Planned]) -> BTreeMap<usize, 
         }
     }
     out
+}
+
+/// Returns true for a room in which people sit around this table, in a home of these rooms.
+fn sets_table(domain: &Domain, kind: &RoomType, object: &str, planned: &[Planned]) -> bool {
+    kind.furnishing.iter().any(|line| {
+        domain
+            .group(&line.item)
+            .is_some_and(|g| g.anchor == object && g.members.iter().any(|m| m.relation == Relation::Around))
+            && !planned.iter().any(|r| line.unless_rooms.contains(&r.room_type))
+    })
 }
 
 /// Wishes for a bed for those who stay with a patient in every room that patients have to themselves.

@@ -41,7 +41,8 @@ fn numbers_of_patient_rooms_run_along_the_corridor() {
         for world in worlds(prompt, 4) {
             let mut rooms: Vec<(u32, d3dgen_model::Point)> = Vec::new();
             for room in world.floorplan.rooms.iter().filter(|r| r.room_type == "patient_room") {
-                let number = world.scene_graph.room(&room.room_id).and_then(|r| r.name.rsplit(' ').next()?.parse().ok());
+                let number =
+                    world.scene_graph.room(&room.room_id).and_then(|r| r.name.rsplit(' ').next()?.parse().ok());
                 rooms.push((number.unwrap(), room.polygon.bounds().center()));
             }
             rooms.sort_by_key(|(number, _)| *number);
@@ -59,7 +60,8 @@ fn numbers_of_patient_rooms_run_along_the_corridor() {
 fn every_storey_of_an_office_has_a_toilet() {
     for world in worlds("office building with 3 storeys for 40 people in Frankfurt", 2) {
         for level in &world.floorplan.levels {
-            let toilets = world.floorplan.rooms.iter().filter(|r| r.level == level.level && r.room_type.ends_with("toilet"));
+            let toilets =
+                world.floorplan.rooms.iter().filter(|r| r.level == level.level && r.room_type.ends_with("toilet"));
             assert!(toilets.count() > 0, "level {}", level.level);
         }
     }

@@ -134,3 +134,120 @@ fn an_area_that_is_missed_is_said() {
         assert!((net - 90.0).abs() <= 9.0 || said, "{net:.1} m2, seed {}", world.floorplan.seed);
     }
 }
+
+/// Returns how far the doors of rooms of a type are from the entrance, across and along, m: of those to the hall that one
+/// comes into.
+fn ways(world: &World, room_types: &[&str]) -> Vec<f64> {
+    let Some(entrance) = world.floorplan.doors.iter().find(|d| d.entrance) else { return Vec::new() };
+    let (hall, from) = (&entrance.room_ids[0], entrance.line.middle());
+    let is = |id: &String| {
+        world.floorplan.rooms.iter().any(|r| &r.room_id == id && room_types.contains(&r.room_type.as_str()))
+    };
+    let doors = world.floorplan.doors.iter().filter(|d| d.room_ids.contains(hall) && d.room_ids.iter().any(is));
+    doors.map(|d| (d.line.middle().x - from.x).abs() + (d.line.middle().y - from.y).abs()).collect()
+}
+
+#[test]
+fn one_comes_to_the_living_room_before_the_bedrooms() {
+    let mut held = Vec::new();
+    for prompt in ["apartment with 3 bedrooms", "5 room flat", "house with 4 bedrooms, garage and laundry"] {
+        for world in worlds(prompt, 8) {
+            let nearest = |types: &[&str]| ways(&world, types).into_iter().reduce(f64::min);
+            if let Some((bed, living)) = nearest(&["bedroom"]).zip(nearest(&["living_room"])) {
+                held.push(bed > living - 0.5);
+            }
+        }
+    }
+    most("living rooms before bedrooms", 0.85, &held);
+}
+
+#[test]
+fn tables_suit_the_household_where_there_is_no_dining_room() {
+    let (mut seats, mut single) = (Vec::new(), Vec::new());
+    for prompt in [
+        "flat with 3 bedrooms, living room, kitchen, bathroom",
+        "house with 3 bedrooms, kitchen, living room, bathroom",
+    ] {
+        for world in worlds(prompt, 5) {
+            let [living, kitchen] = ["living_room", "kitchen"].map(|room| count(&world, room, "dining_chair"));
+            seats.push(living.max(kitchen) >= 6);
+            single.push(living == 0 || kitchen == 0);
+        }
+    }
+    most("a table for all", 0.7, &seats);
+    most("one table", 0.7, &single);
+}
+
+#[test]
+fn a_table_for_so_many_has_so_many_seats() {
+    let mut held = Vec::new();
+    for (prompt, seats) in [
+        ("80 sqm apartment with two bedrooms and a large dining table for eight", 8),
+        ("flat with 2 bedrooms, living room, dining room with a table for six, kitchen, bathroom", 6),
+    ] {
+        held.extend(worlds(prompt, 4).iter().map(|w| count(w, "dining_room", "dining_chair") >= seats));
+    }
+    most("tables for as many as asked", 0.7, &held);
+}
+
+#[test]
+fn nothing_but_what_one_washes_with_stands_on_washing_machines() {
+    for prompt in ["two-bedroom flat", "house with laundry and 3 bedrooms"] {
+        for world in worlds(prompt, 4) {
+            let all = &world.placements.placements;
+            let washers = all.iter().filter(|p| p.object == "washing_machine" || p.object == "dryer");
+            let washers: Vec<&String> = washers.map(|p| &p.placement_id).collect();
+            assert!(!washers.is_empty(), "{prompt}, seed {}: no washing machine", world.floorplan.seed);
+            let on = all.iter().filter(|p| p.support.as_ref().is_some_and(|s| washers.contains(&s)));
+            on.for_each(|p| assert_eq!(p.object, "detergent", "{prompt}, seed {}", world.floorplan.seed));
+        }
+    }
+}
+
+#[test]
+fn double_garages_hold_two_cars_behind_one_gate() {
+    for prompt in [
+        "house with a double garage, 3 bedrooms, living room, kitchen and 2 bathrooms",
+        "house with two-car garage, 4 bedrooms, family room and laundry",
+        "Einfamilienhaus mit 4 Schlafzimmern und Doppelgarage",
+        "chalet con garaje doble y 3 dormitorios",
+        "maison avec 4 chambres et garage double",
+    ] {
+        for world in worlds(prompt, 2) {
+            let garages = world.floorplan.rooms.iter().filter(|r| r.room_type.contains("garage"));
+            let garages: Vec<_> = garages.collect();
+            assert_eq!(garages.len(), 1, "{prompt}");
+            assert_eq!(count(&world, "double_garage", "car"), 2, "{prompt}, seed {}", world.floorplan.seed);
+            let gate = world.floorplan.doors_of(&garages[0].room_id).find(|d| d.room_ids.len() == 1);
+            assert!(gate.is_some_and(|g| g.clear_width_m >= 4.5), "{prompt}, seed {}", world.floorplan.seed);
+        }
+    }
+}
+
+#[test]
+fn one_room_to_live_and_eat_in_is_one_room() {
+    for prompt in [
+        "piso con dos dormitorios y salón-comedor",
+        "flat with living-dining room, kitchen, bedroom and bathroom",
+        "Wohnung mit Wohn-Esszimmer, Küche, Bad und 2 Schlafzimmern",
+        "appartement avec salon-salle à manger, cuisine, 2 chambres",
+    ] {
+        for world in worlds(prompt, 2) {
+            let of = |id: &str| world.scene_graph.rooms.iter().filter(|r| r.room_type == id).count();
+            assert_eq!((of("living_room"), of("dining_room")), (1, 0), "{prompt}");
+            assert!(count(&world, "living_room", "dining_chair") >= 2, "{prompt}, seed {}", world.floorplan.seed);
+        }
+    }
+}
+
+#[test]
+fn wardrobes_of_double_bedrooms_are_wide() {
+    let mut held = Vec::new();
+    for world in worlds("house with 4 bedrooms, living room, kitchen, 2 bathrooms", 8) {
+        let wide = |p: &&d3dgen_model::placements::Placement| {
+            p.room_id.starts_with("bedroom_") && p.object.ends_with("wardrobe")
+        };
+        held.extend(world.placements.placements.iter().filter(wide).map(|p| p.size_m[0] >= 1.15));
+    }
+    most("wide wardrobes", 0.9, &held);
+}

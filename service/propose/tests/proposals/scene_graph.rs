@@ -14,9 +14,8 @@ fn good(prompt: &str) -> GraphAnswer {
     let own = own_world(prompt).world;
     let graph = own.scene_graph;
     let mut answer = graph_answer(&graph);
-    let stands = |room: &str, object: &str| {
-        own.placements.placements.iter().any(|p| p.room_id == room && p.object == object)
-    };
+    let stands =
+        |room: &str, object: &str| own.placements.placements.iter().any(|p| p.room_id == room && p.object == object);
     for room in &mut answer.rooms {
         let id = room.id.clone();
         room.objects.retain(|object| stands(&id, object));

@@ -1,7 +1,7 @@
 //! Floors, walls, doors, windows and outer dimensions.
 
 use d3dgen_model::TOLERANCE_M;
-use d3dgen_model::domain::Domain;
+use d3dgen_model::domain::{Domain, Zone};
 use d3dgen_model::floorplan::{Door, DoorKind, Floorplan, Wall, Window};
 use d3dgen_model::geometry::{Point, Rect, Segment};
 
@@ -22,11 +22,40 @@ pub(super) fn floors(page: &mut Page, frame: &Frame, plan: &Floorplan, domain: &
     page.close_group();
 }
 
-/// Draws walls as one dark body with a darker edge.
-pub(super) fn walls(page: &mut Page, frame: &Frame, plan: &Floorplan) {
+/// Width from which on a sliding door is the gate of a garage, m.
+const GATE_M: f64 = 2.2;
+/// Width in which the railings of balconies and terraces are drawn, m.
+const RAILING_M: f64 = 0.08;
+
+/// Returns true for a room outdoors: what encloses it there is a railing, no wall.
+fn is_outdoor(room_id: &str, plan: &Floorplan, domain: &Domain) -> bool {
+    plan.room(room_id).is_some_and(|r| domain.room_type_or_generic(&r.room_type).zone == Zone::Outdoor)
+}
+
+/// Draws walls as one dark body with a darker edge, and railings as what they are.
+pub(super) fn walls(page: &mut Page, frame: &Frame, plan: &Floorplan, domain: &Domain) {
     page.open_group("walls");
-    let body =
-        plan.walls.iter().map(|w| frame.rect(&wall_rect(w, plan))).fold(Path::new(), |path, rect| path.rect(&rect));
+    let railing = |w: &&Wall| w.exterior && w.room_ids.iter().all(|id| is_outdoor(id, plan, domain));
+    let (railings, walls): (Vec<&Wall>, Vec<&Wall>) = plan.walls.iter().partition(railing);
+    let body = walls.iter().map(|w| frame.rect(&wall_rect(w, plan))).fold(Path::new(), |path, rect| path.rect(&rect));
+    let posts = railings.iter().map(|w| {
+        let (rect, half) = (wall_rect(w, plan), (w.thickness_m - RAILING_M) / 2.0);
+        let inset = if w.line.is_vertical() {
+            (half, half.min(rect.height() / 2.0))
+        } else {
+            (half.min(rect.width() / 2.0), half)
+        };
+        frame.rect(&Rect { x0: rect.x0 + inset.0, x1: rect.x1 - inset.0, y0: rect.y0 + inset.1, y1: rect.y1 - inset.1 })
+    });
+    let posts = posts.fold(Path::new(), |path, rect| path.rect(&rect));
+    let panels = plan.windows.iter().filter(|w| is_outdoor(&w.room_id, plan, domain)).fold(posts, |path, window| {
+        let half = RAILING_M / 2.0;
+        let (a, b) = (window.line.start, window.line.end);
+        let rect =
+            Rect { x0: a.x.min(b.x) - half, x1: a.x.max(b.x) + half, y0: a.y.min(b.y) - half, y1: a.y.max(b.y) + half };
+        path.rect(&frame.rect(&rect))
+    });
+    page.path("rl", panels);
     // The edge of every piece first, the bodies over it: what stays visible is the edge of their union.
     page.path("wo", body.clone());
     page.path("w", body);
@@ -88,9 +117,9 @@ impl Opening {
 }
 
 /// Draws windows: the faces of the wall and the pane between them.
-pub(super) fn windows(page: &mut Page, frame: &Frame, plan: &Floorplan) {
+pub(super) fn windows(page: &mut Page, frame: &Frame, plan: &Floorplan, domain: &Domain) {
     page.open_group("windows");
-    for window in &plan.windows {
+    for window in plan.windows.iter().filter(|w| !is_outdoor(&w.room_id, plan, domain)) {
         draw_window(page, frame, window);
     }
     page.close_group();
@@ -160,7 +189,10 @@ fn sliding(page: &mut Page, frame: &Frame, plan: &Floorplan, o: &Opening) {
         page.path("da", Path::new().segment(ends[0], ends[1]));
     }
     let [before, after] = walls_beside(plan, o);
-    let panels: &[[f64; 2]] = if before.max(after) < o.length && before.min(after) >= o.length / 2.0 {
+    let panels: &[[f64; 2]] = if o.length > GATE_M {
+        // a gate goes up, not aside
+        &[[0.0, 1.0]]
+    } else if before.max(after) < o.length && before.min(after) >= o.length / 2.0 {
         &[[-0.2, 0.3], [0.7, 1.2]]
     } else if before >= after {
         &[[-0.35, 0.6]]

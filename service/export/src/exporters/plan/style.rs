@@ -97,6 +97,7 @@ pub(super) fn sheet(k: f64) -> String {
         format!(".gd{{fill:{CHARGE}}}"),
         format!(".wo{{fill:none;stroke:#1f2126;stroke-width:{};stroke-linejoin:miter}}", w(2.2)),
         ".w{fill:#3c4048}".to_owned(),
+        format!(".rl{{fill:#8e939b;stroke:#5a5f68;stroke-width:{}}}", w(0.6)),
         format!(".n{{fill:#fff;stroke:#1f2126;stroke-width:{}}}", w(1.2)),
         format!(".nf{{fill:none;stroke:#1f2126;stroke-width:{}}}", w(0.9)),
         format!(".dl{{fill:#fff;stroke:{INK};stroke-width:{}}}", w(1.3)),
