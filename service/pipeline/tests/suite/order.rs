@@ -297,3 +297,23 @@ fn hand_basins_are_at_the_door() {
     assert!(held.len() >= 30, "{}", held.len());
     most("hand basins near the door", 0.85, &held);
 }
+
+#[test]
+fn nobody_is_served_from_behind() {
+    // with eight counters there are two lines: who sits at one has not the customers of the other at the back
+    let mut held = Vec::new();
+    for world in worlds("government service office in Madrid with 8 counters and a waiting hall", 6) {
+        let counters: Vec<&Placement> =
+            world.placements.placements.iter().filter(|p| p.object == "teller_counter").collect();
+        assert!(counters.len() >= 8, "{}", counters.len());
+        let behind = |p: &Placement, other: &Placement| {
+            let (dx, dy) = (other.pose.x - p.pose.x, other.pose.y - p.pose.y);
+            let (c, s) = (p.pose.yaw_rad.cos(), p.pose.yaw_rad.sin());
+            let (ahead, aside) = (dx * c + dy * s, (dy * c - dx * s).abs());
+            let alike = (p.pose.yaw_rad - other.pose.yaw_rad).cos() > 0.9;
+            alike && ahead < -0.9 && aside < 0.9
+        };
+        held.push(!counters.iter().any(|p| counters.iter().any(|other| behind(p, other))));
+    }
+    most("counters with nobody served behind them", 0.8, &held);
+}

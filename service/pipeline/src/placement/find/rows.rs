@@ -42,6 +42,8 @@ const OPEN_BACKS: f64 = 4.0;
 const SINGLE: f64 = 6.0;
 /// What counters lose for each row behind the first.
 const IN_LINE: f64 = 4.0;
+/// How much of that an island of two lines loses, with those who serve between them.
+const ISLAND: f64 = 0.4;
 /// What counters lose behind which all doors of the room are: who is served comes in before them.
 const BEHIND_COUNTERS: f64 = 6.0;
 /// What desks lose for each meter to the windows.
@@ -75,8 +77,10 @@ struct Plan {
     gap_v: i32,
     /// From one row's front to the next row's back, mm.
     gap_u: i32,
-    /// Every second row turned around, backs touching.
+    /// Every second row turned around, back to back.
     paired: bool,
+    /// From the back of a row to that of the one turned around behind it, mm: 0 where they touch.
+    gap_back: i32,
     score: f64,
 }
 
@@ -87,8 +91,8 @@ impl Plan {
     }
 
     fn depth(&self, d: i32) -> i32 {
-        let gaps = if self.paired { (self.rows - 1) / 2 } else { self.rows - 1 };
-        self.rows * d + gaps * self.gap_u
+        let (gaps, backs) = if self.paired { ((self.rows - 1) / 2, self.rows / 2) } else { (self.rows - 1, 0) };
+        self.rows * d + gaps * self.gap_u + backs * self.gap_back
     }
 
     /// Returns the floor to keep before and after the rows, mm: to use them, and for what they look at.
@@ -124,7 +128,10 @@ impl Plan {
 
     /// Returns the low edge of a row, counted from the first, and whether it is turned around.
     fn row(&self, r: i32, d: i32) -> (i32, bool) {
-        if self.paired { (r * d + r.div_euclid(2) * self.gap_u, r % 2 == 0) } else { (r * (d + self.gap_u), false) }
+        if !self.paired {
+            return (r * (d + self.gap_u), false);
+        }
+        (r * d + r.div_euclid(2) * self.gap_u + (r + 1).div_euclid(2) * self.gap_back, r % 2 == 0)
     }
 }
 
@@ -194,7 +201,9 @@ pub(in crate::placement) fn rows<'a>(
                 let noise =
                     0.5 * grain(terms.salt, i64::from(plan.q) * 64 + i64::from(plan.columns), (ku * 8 + kv) as i64);
                 let dark = if in_pairs { from_windows(state.space, &placed) } else { 0.0 };
-                let behind = if task.anchor.shape == Shape::Counter { doors_behind(state.space, &placed) } else { 0.0 };
+                // on an island some counters face the door, whichever way it is turned
+                let one_line = task.anchor.shape == Shape::Counter && !plan.paired;
+                let behind = if one_line { doors_behind(state.space, &placed) } else { 0.0 };
                 out.push(Batch {
                     placed,
                     in_pairs,
@@ -294,7 +303,12 @@ fn plans(state: &State, unit: &Unit, task: &Task, focus: Option<u8>, terms: &Ter
     let (front, back) = (r.x1 - b.x1, b.x0 - r.x0);
     let side = (b.y0 - r.y0).max(r.y1 - b.y1);
     let shape = unit.anchor().object.shape;
-    let pairs = matches!(shape, Shape::Desk | Shape::Rack | Shape::Shelf) || shape == Shape::Bench && !terms.one_way;
+    // those who serve at two lines of counters share the floor between them, as on an island
+    let island = shape == Shape::Counter && b.x0 < unit.anchor().solid.rect.x0;
+    let gap_back = if island { back.max(aisle) } else { 0 };
+    let pairs = matches!(shape, Shape::Desk | Shape::Rack | Shape::Shelf)
+        || shape == Shape::Bench && !terms.one_way
+        || island;
     // tables stand apart where there is room
     let (apart, least) = match shape {
         Shape::Table => (TABLES_APART.max(side), side),
@@ -314,7 +328,7 @@ fn plans(state: &State, unit: &Unit, task: &Task, focus: Option<u8>, terms: &Ter
         let stage = if terms.stage > 0 { stage_score(state, (q + look + 2) % 4) } else { 0.0 };
         let set = turned + stage - if shape == Shape::Desk && focus.is_none() { glare(state, q) } else { 0.0 };
         for paired in [false, true] {
-            if paired && (!pairs || focus.is_some() || count < 2 || back > 0 || terms.stage > 0) {
+            if paired && (!pairs || focus.is_some() || count < 2 || back > gap_back || terms.stage > 0) {
                 continue;
             }
             // whoever sits back to back has floor of one's own where there is room
@@ -327,7 +341,7 @@ fn plans(state: &State, unit: &Unit, task: &Task, focus: Option<u8>, terms: &Ter
                         let full = count - count % columns;
                         let count = if full > 0 && count - full <= task.spare as i32 { full } else { count };
                         let rows = (count + columns - 1) / columns;
-                        let mut plan = Plan { q, columns, rows, count, run, gap_v, gap_u, paired, score: 0.0 };
+                        let mut plan = Plan { q, columns, rows, count, run, gap_v, gap_u, paired, gap_back, score: 0.0 };
                         if plan.breadth(w, aisle) > wide.height() {
                             break;
                         }
@@ -383,9 +397,9 @@ fn rate(plan: &Plan, wished: i32, task: &Task, (d, w): (i32, i32), wide: &Box2, 
     let (pu, pv) = (f64::from(plan.depth(d)), f64::from(plan.breadth(w, aisle)));
     let (ru, rv) = (f64::from(wide.width()), f64::from(wide.height()));
     s -= 2.0 * (pu / ru - pv / rv).abs();
-    // who is served stands before one line of counters
+    // who is served stands before one line of counters, or around an island
     if task.anchor.shape == Shape::Counter {
-        s -= IN_LINE * f64::from(plan.rows - 1);
+        s -= IN_LINE * f64::from(plan.rows - 1) * if plan.paired { ISLAND } else { 1.0 };
     }
     // full rows, long runs broken by aisles, wide aisles where there is room
     s -= 0.5 * f64::from(plan.columns * wished - plan.count) / f64::from(plan.columns);
