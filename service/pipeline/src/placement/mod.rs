@@ -13,6 +13,7 @@ mod clutter;
 mod demand;
 mod docks;
 mod draft;
+mod elsewhere;
 mod find;
 mod geom;
 mod locked;
@@ -119,6 +120,7 @@ pub fn generate_until(
         }
     }
     locked::settle(problems)?;
+    elsewhere::place(graph, plan, (domain, limits), &mut out, stop)?;
     berths::add_missing(graph, plan, (domain, limits), &mut out, stop)?;
     Ok(out)
 }
