@@ -43,7 +43,7 @@ const SINGLE: f64 = 6.0;
 /// What counters lose for each row behind the first.
 const IN_LINE: f64 = 4.0;
 /// How much of that an island of two lines loses, with those who serve between them.
-const ISLAND: f64 = 0.4;
+const ISLAND: f64 = 0.75;
 /// What counters lose behind which all doors of the room are: who is served comes in before them.
 const BEHIND_COUNTERS: f64 = 6.0;
 /// What desks lose for each meter to the windows.
@@ -306,9 +306,8 @@ fn plans(state: &State, unit: &Unit, task: &Task, focus: Option<u8>, terms: &Ter
     // those who serve at two lines of counters share the floor between them, as on an island
     let island = shape == Shape::Counter && b.x0 < unit.anchor().solid.rect.x0;
     let gap_back = if island { back.max(aisle) } else { 0 };
-    let pairs = matches!(shape, Shape::Desk | Shape::Rack | Shape::Shelf)
-        || shape == Shape::Bench && !terms.one_way
-        || island;
+    let pairs =
+        matches!(shape, Shape::Desk | Shape::Rack | Shape::Shelf) || shape == Shape::Bench && !terms.one_way || island;
     // tables stand apart where there is room
     let (apart, least) = match shape {
         Shape::Table => (TABLES_APART.max(side), side),
@@ -341,7 +340,8 @@ fn plans(state: &State, unit: &Unit, task: &Task, focus: Option<u8>, terms: &Ter
                         let full = count - count % columns;
                         let count = if full > 0 && count - full <= task.spare as i32 { full } else { count };
                         let rows = (count + columns - 1) / columns;
-                        let mut plan = Plan { q, columns, rows, count, run, gap_v, gap_u, paired, gap_back, score: 0.0 };
+                        let mut plan =
+                            Plan { q, columns, rows, count, run, gap_v, gap_u, paired, gap_back, score: 0.0 };
                         if plan.breadth(w, aisle) > wide.height() {
                             break;
                         }
