@@ -192,7 +192,9 @@ fn settle(
         let gap = load(at, clusters, from) - load(at, clusters, to);
         let movable = (0..clusters.len()).filter(|&i| {
             let several = at.iter().filter(|l| **l == Some(from)).count() > 1;
-            at[i] == Some(from) && clusters[i].fixed.is_none() && clusters[i].area < gap && several
+            // what every storey has is not there by chance
+            let free = clusters[i].fixed.is_none() && clusters[i].likes != Likes::Each;
+            at[i] == Some(from) && free && clusters[i].area < gap && several
         });
         // what has no reason to be there goes first, and the piece that evens out best
         let best = movable.min_by(|&a, &b| {
