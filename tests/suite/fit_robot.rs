@@ -62,7 +62,7 @@ fn a_robot_that_cannot_fit_is_refused_with_one_that_does() {
     let home = tempfile::tempdir().unwrap();
     // offices have room for it
     for prompt in [PROMPTS[0], "flat with 5 rooms, for a delivery robot", PROMPTS[2]] {
-        let flags = ["generate", prompt, "--seed", "2", "--robot-width", "2.8", "--fit-robot", "--out", "w"];
+        let flags = ["generate", prompt, "--seed", "2", "--robot-width", "3.4", "--fit-robot", "--out", "w"];
         let output = run(home.path(), &flags);
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
         assert_eq!(output.status.code(), Some(2), "{prompt}: {said}");

@@ -38,6 +38,7 @@ mod stations;
 mod stays;
 mod storeys;
 mod styles;
+mod subsets;
 mod text;
 mod umlauts;
 mod units;

@@ -832,8 +832,13 @@ fn hang_on_hosts(reading: &mut Reading, rooms: &mut [Planned]) {
     let pairs: Vec<Pair> = reading.wishes.pairs.iter().filter(|p| p.belongs && !beside(p)).cloned().collect();
     for i in 0..rooms.len() {
         let room = &rooms[i];
-        let belongs = pairs.iter().find(|p| p.a == room.room_type);
         let hosted = room.kind.access == Access::Host;
+        // the closet of a suite is entered from its bedroom, not through the bathroom that the suite has too
+        let through_bath = |p: &&Pair| {
+            let bath = domain.room_type(&p.b).is_some_and(|k| k.access == Access::Host && k.wet);
+            hosted && bath && !room.kind.hosts.contains(&p.b)
+        };
+        let belongs = pairs.iter().find(|p| p.a == room.room_type).filter(|p| !through_bath(p));
         if !hosted && belongs.is_none() {
             continue;
         }

@@ -20,6 +20,7 @@ use super::senses;
 use super::stations;
 use super::storeys::{self, Storeys, Wanted, Where};
 use super::styles;
+use super::subsets;
 use super::text::{MAX_TOKENS, Span, Token, tokens};
 use super::vital::{self, Wet};
 use super::wishes::{self, MANY, PerHost, Text, Wish, Wishes};
@@ -253,6 +254,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         beds::of_several_wards(&mut mentions, &numbers, &wards);
     }
     senses::settle(&tokens, &mut mentions, &vocabulary, domain, program);
+    subsets::settle(&tokens, &spoken, &mut mentions, domain);
     let seated = if lives { Vec::new() } else { seated::read(&tokens, &mut mentions, (domain, program), &spoken) };
     let elsewhere: Vec<Span> = machines.spans.iter().chain(&place_spans).chain(&building.head).copied().collect();
     let stations = stations::Reader {

@@ -286,6 +286,17 @@ impl Reader<'_> {
             let span = Span { start: i, end };
             // "customer service counter hall" is a room, whatever stands in it
             let is_room = |m: &Mention| m.room_type().is_some_and(|id| self.domain.room_type(id).is_some());
+            // "8 Schalter" are in one hall, also where the hall goes by that word
+            let several = |m: &Mention| m.count.is_some_and(|n| (2..=MOST_PLACES).contains(&n));
+            let hall = |m: &Mention| is_room(m) && several(m) && m.span.start >= i && m.span.end <= end;
+            if let Some(m) = mentions.iter_mut().find(|m| hall(m)) {
+                let id = m.room_type().filter(|id| own(id)).unwrap_or(&usual).to_owned();
+                let count = m.count.take().map_or(1, |n| n as u32);
+                (m.what, m.plural) = (What::Room(id.clone()), false);
+                out.seats.push(Held { room_type: id, count: 1, beds: count });
+                i = end;
+                continue;
+            }
             let inside = mentions.iter().any(|m| is_room(m) && m.span.overlaps(span));
             i = end;
             if inside || self.overlaps_taken(span) {

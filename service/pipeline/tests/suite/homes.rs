@@ -251,3 +251,14 @@ fn wardrobes_of_double_bedrooms_are_wide() {
     }
     most("wide wardrobes", 0.9, &held);
 }
+
+#[test]
+fn the_closet_of_a_suite_is_entered_from_its_bedroom() {
+    for world in worlds("house with four bedrooms, master suite with walk-in closet", 2) {
+        let of = |id: &String| world.floorplan.room(id).map(|r| r.room_type.as_str());
+        let closet = |d: &&d3dgen_model::floorplan::Door| d.room_ids.iter().any(|id| of(id) == Some("walk_in_closet"));
+        let doors: Vec<_> = world.floorplan.doors.iter().filter(closet).collect();
+        assert!(!doors.is_empty());
+        assert!(doors.iter().all(|d| d.room_ids.iter().any(|id| of(id) == Some("bedroom"))), "{doors:?}");
+    }
+}

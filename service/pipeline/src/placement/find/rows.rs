@@ -41,9 +41,9 @@ const NARROW_ENDS: f64 = 1.0;
 const OPEN_BACKS: f64 = 4.0;
 const SINGLE: f64 = 6.0;
 /// What counters lose for each row behind the first.
-const IN_LINE: f64 = 4.0;
+const IN_LINE: f64 = 6.0;
 /// How much of that an island of two lines loses, with those who serve between them.
-const ISLAND: f64 = 0.3;
+const ISLAND: f64 = 0.2;
 /// What counters lose behind which all doors of the room are: who is served comes in before them.
 const BEHIND_COUNTERS: f64 = 6.0;
 /// What desks lose for each meter to the windows.
