@@ -16,11 +16,11 @@ use super::spec::Brief;
 use super::windows::LEAST_WALL_M;
 
 /// Cost of a room whose area is outside what is advised, beside that of how far.
-const ILL_ADVISED: f64 = 1.2;
+const ILL_ADVISED: f64 = 0.8;
 /// Cost of a room without the daylight that it is better with, beside those that take a facade and need none.
 const DARK: f64 = 1.8;
 /// Share by which circulation beyond what is advised counts as larger.
-const ILL_SHARED: f64 = 0.08;
+const ILL_SHARED: f64 = 0.05;
 /// Length from which on the hall of a home is a tunnel, m, what a meter more counts as share of circulation, and how many more
 /// make it count double; the length from which on it is better lit by day, m, and what it counts that it is not.
 const HALL_M: f64 = 9.0;
