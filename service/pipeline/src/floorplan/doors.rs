@@ -141,6 +141,17 @@ fn lay(site: &Site<'_>, entrance_first: bool, rng: &mut Stream) -> Laid {
 }
 
 impl Laid {
+    /// Returns the middle of the building's entrance, once it is placed.
+    fn entrance(&self) -> Option<Point> {
+        self.spots.iter().find(|l| l.door.entrance).map(|l| l.door.line.middle())
+    }
+
+    /// Returns the opening between two rooms, by their ids.
+    fn between(&self, ids: [&String; 2]) -> Option<Segment> {
+        let found = self.spots.iter().find(|l| ids.iter().all(|id| l.door.room_ids.contains(id)));
+        found.map(|l| l.door.line)
+    }
+
     /// Takes the spot that disturbs the doors already placed least; returns false when there is none.
     fn take_best(&mut self, spots: Vec<Spot>) -> bool {
         let costs = spots.iter().map(|spot| self.disturbance(spot, usize::MAX));
@@ -239,7 +250,7 @@ impl Site<'_> {
         if !self.brief.is_home() || Some(other) != self.brief.spine {
             return;
         }
-        let Some(entrance) = laid.spots.iter().find(|l| l.door.entrance).map(|l| l.door.line.middle()) else { return };
+        let Some(entrance) = laid.entrance() else { return };
         let sign = match self.brief.rooms[room].zone {
             Zone::Day | Zone::Public => 1.0,
             Zone::Night => -1.0,
@@ -259,13 +270,9 @@ impl Site<'_> {
     fn passed(&self, laid: &Laid) -> u32 {
         let brief = self.brief;
         let Some((spine, living)) = brief.spine.zip(hall::room_of_guests(brief)) else { return 0 };
-        let Some(entrance) = laid.spots.iter().find(|l| l.door.entrance).map(|l| l.door.line.middle()) else {
-            return 0;
-        };
+        let Some(entrance) = laid.entrance() else { return 0 };
         let way = |room: usize| {
-            let ids = [room, spine].map(|r| &brief.rooms[r].id);
-            let door = laid.spots.iter().find(|l| ids.iter().all(|id| l.door.room_ids.contains(id)))?;
-            let p = door.door.line.middle();
+            let p = laid.between([room, spine].map(|r| &brief.rooms[r].id))?.middle();
             Some((p.x - entrance.x).abs() + (p.y - entrance.y).abs())
         };
         let Some(to_living) = way(living) else { return 0 };
@@ -331,9 +338,7 @@ impl Site<'_> {
             spec.on_spine && spec.open_front && spec.zone == Zone::Staff && self.net_m2[*r] >= TWO_FRONTS_M2
         };
         for room in (0..brief.rooms.len()).filter(posts) {
-            let ids = [room, spine].map(|r| &brief.rooms[r].id);
-            let first = laid.spots.iter().find(|l| ids.iter().all(|id| l.door.room_ids.contains(id)));
-            let Some(first) = first.map(|l| l.door.line) else { continue };
+            let Some(first) = laid.between([room, spine].map(|r| &brief.rooms[r].id)) else { continue };
             let (vertical, middle) = (first.is_vertical(), first.middle());
             let other = |s: &&Stretch| {
                 let across = if vertical { middle.x } else { middle.y };

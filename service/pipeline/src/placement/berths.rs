@@ -13,7 +13,7 @@ use super::docks::FROM_EXIT;
 use super::locked::placed;
 use super::pockets::Pockets;
 use super::space::Space;
-use super::{Wanted, furnish_room};
+use super::{Wanted, insert, one_more};
 use crate::scene_graph::{dock_rank, most_docks};
 use crate::{Error, Stop};
 
@@ -52,8 +52,7 @@ pub(super) fn add_missing(
             if own >= most_docks(room.net_area_m2) as usize {
                 return None;
             }
-            let made = furnish_room(graph, storey, room, (domain, limits), &here, Wanted::IfFree(dock), stop).ok()?.0;
-            let more = made.into_iter().find(|p| !here.iter().any(|h| h.placement_id == p.placement_id))?;
+            let more = one_more(graph, storey, room, (domain, limits), &here, Wanted::IfFree(dock), stop)?;
             let stands = is_free(graph, storey, room, (&more, dock), &here)
                 && !closes_floor(&Space::new(storey, room), domain, &more, &here);
             stands.then_some((at, more))
@@ -64,8 +63,7 @@ pub(super) fn add_missing(
         rooms.drain(..at);
         let wished = out.unplaced.iter().position(|u| docks.contains(&u.item.as_str()) && !u.required);
         wished.map(|i| out.unplaced.remove(i));
-        let behind = out.placements.iter().rposition(|p| p.room_id == more.room_id).map_or(0, |i| i + 1);
-        out.placements.insert(behind, more);
+        insert(out, more);
     }
     Ok(())
 }

@@ -9,7 +9,7 @@ use d3dgen_model::floorplan::{Floorplan, PlanRoom};
 use d3dgen_model::placements::{Placement, Placements};
 use d3dgen_model::scene_graph::SceneGraph;
 
-use super::{Wanted, furnish_room};
+use super::{Wanted, insert, one_more};
 use crate::{Error, Stop};
 
 /// Puts what stands in no room, and had no place where it was wanted, into another room whose type knows it.
@@ -34,17 +34,15 @@ pub(super) fn place(
         let found = plan.rooms.iter().filter(knows).find_map(|room| {
             let storey = if plan.level_numbers().len() > 1 { &plan.storey(room.level) } else { plan };
             let here: Vec<&Placement> = out.placements.iter().filter(|p| p.room_id == room.room_id).collect();
-            let one = [Wanted::IfFree(object), Wanted::Only(object)].into_iter().find_map(|wanted| {
-                let made = furnish_room(graph, storey, room, (domain, limits), &here, wanted, stop).ok()?.0;
-                made.into_iter().find(|p| !here.iter().any(|h| h.placement_id == p.placement_id))
-            });
+            let one = [Wanted::IfFree(object), Wanted::Only(object)]
+                .into_iter()
+                .find_map(|wanted| one_more(graph, storey, room, (domain, limits), &here, wanted, stop));
             one.filter(|p| p.object == object.id)
         });
         stop.check()?;
         let Some(more) = found else { continue };
         out.unplaced.retain(|u| u.item != object.id || u.required);
-        let behind = out.placements.iter().rposition(|p| p.room_id == more.room_id).map_or(0, |i| i + 1);
-        out.placements.insert(behind, more);
+        insert(out, more);
     }
     Ok(())
 }

@@ -201,6 +201,26 @@ pub(crate) fn furnish_room(
     Ok((placements, assemble::unplaced(&room.room_id, tasks, &outcome, &present)))
 }
 
+/// Returns the one thing more that a room has a place for around what stands in it, if any.
+fn one_more(
+    graph: &SceneGraph,
+    plan: &Floorplan,
+    room: &PlanRoom,
+    rules: (&Domain, &Limits),
+    here: &[&Placement],
+    wanted: Wanted<'_>,
+    stop: Stop<'_>,
+) -> Option<Placement> {
+    let made = furnish_room(graph, plan, room, rules, here, wanted, stop).ok()?.0;
+    made.into_iter().find(|p| !here.iter().any(|h| h.placement_id == p.placement_id))
+}
+
+/// Adds a placement behind those of its room.
+fn insert(out: &mut Placements, more: Placement) {
+    let behind = out.placements.iter().rposition(|p| p.room_id == more.room_id).map_or(0, |i| i + 1);
+    out.placements.insert(behind, more);
+}
+
 /// Returns how many things stand before doors and windows where one would rather have none; no hard rule forbids them.
 pub(crate) fn before_openings(plan: &Floorplan, placements: &Placements, domain: &Domain) -> usize {
     let in_room = |room: &PlanRoom| {

@@ -2,7 +2,7 @@
 
 use d3dgen_model::domain::{Domain, Zone};
 
-use super::mentions::{Mention, What};
+use super::mentions::Mention;
 use super::text::Token;
 use super::words::{Spoken, Tag};
 
@@ -12,7 +12,7 @@ pub(super) fn settle(tokens: &[Token], spoken: &[&Spoken], mentions: &mut [Menti
         |m: &Mention| m.room_type().and_then(|id| domain.room_type(id)).is_some_and(|kind| kind.zone == Zone::Night);
     for k in 1..mentions.len() {
         let (before, part) = (&mentions[k - 1], &mentions[k]);
-        let both = sleeps(before) && sleeps(part) && before.what != part.what && matches!(part.what, What::Room(_));
+        let both = sleeps(before) && sleeps(part) && before.what != part.what;
         let Some((all, some)) = before.count.zip(part.count).filter(|(all, some)| both && *some > 0 && all > some)
         else {
             continue;
