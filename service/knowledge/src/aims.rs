@@ -28,6 +28,8 @@ pub struct Aim {
     pub unwanted: bool,
     /// Free floor beside it, m.
     pub clear: Clear,
+    /// What laws ask of that, m.
+    pub by_law: Clear,
 }
 
 /// Free floor beside an object, m; 0 where nothing is asked.
@@ -86,7 +88,11 @@ impl Aim {
             } else if let Some(least) = rule.bounds.min {
                 let width = object.sizes_m.iter().map(|s| s[0]).reduce(f64::min).unwrap_or(0.0);
                 let least = if measure == Measure::CentreToSide { (least - width / 2.0).max(0.0) } else { least };
-                aim.clear.raise(measure, least, a.constraint.measurement_basis.contains("one side"));
+                let one_side = a.constraint.measurement_basis.contains("one side");
+                aim.clear.raise(measure, least, one_side);
+                if a.mandatory {
+                    aim.by_law.raise(measure, least, one_side);
+                }
             }
         }
         aim

@@ -180,6 +180,13 @@ impl Report {
         self.sound || self.is_given()
     }
 
+    /// Returns how many laws and how much advice of the knowledge base are not kept.
+    pub fn missed(&self) -> (usize, usize) {
+        let missed = self.constraints.iter().filter(|c| c.status == Status::Violated);
+        let laws = missed.clone().filter(|c| c.mandatory).count();
+        (laws, missed.count() - laws)
+    }
+
     /// Returns true for a world that breaks rules of which a brought plan alone is to blame.
     pub fn is_given(&self) -> bool {
         let mut violations = self.rules.iter().flat_map(|r| &r.violations);

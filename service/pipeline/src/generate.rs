@@ -42,8 +42,8 @@ impl Default for Settings {
 
 /// How often plan and furniture are tried for each smaller robot, when one that was to fit does not.
 const FEW_ATTEMPTS: u32 = 3;
-/// Rooms up to which a sound world with something before a door or window is tried again: in a large building there is
-/// always one.
+/// Rooms up to which a sound world that misses a law, or with something before a door or window, is tried again: in a large
+/// building there is always one.
 const FEW_ROOMS: usize = 20;
 
 /// A step on the way, in the order of the path.
@@ -186,6 +186,19 @@ fn relaxed(graph: &SceneGraph) -> Option<SceneGraph> {
     (out.conflicts.len() > graph.conflicts.len()).then_some(out)
 }
 
+/// What is wrong with a world, the worst first: the order in which attempts are compared.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Faults {
+    /// Hard rules broken, a robot that does not fit among them.
+    broken: usize,
+    /// Laws of the knowledge base that are not kept.
+    laws: usize,
+    /// Things before doors and windows.
+    before: usize,
+    /// Advice of the knowledge base that is not followed.
+    advice: usize,
+}
+
 fn attempts(
     graph: &SceneGraph,
     plugin: &dyn Plugin,
@@ -197,11 +210,10 @@ fn attempts(
     let name = settings.name.clone().unwrap_or_else(|| world_name(graph));
     let pinned = settings.pinned_floorplan.is_some() || settings.pinned_placements.is_some();
     let picky = !pinned && graph.rooms.len() <= FEW_ROOMS;
-    // the least broken so far: hard rules, then what stands before doors and windows
-    let mut best: Option<((usize, usize), Generated)> = None;
+    let mut best: Option<(Faults, Generated)> = None;
     let mut reason = None;
     for attempt in 0..settings.attempts.max(1) {
-        if attempt >= FEW_ATTEMPTS && best.as_ref().is_some_and(|((broken, _), _)| *broken == 0) {
+        if attempt >= FEW_ATTEMPTS && best.as_ref().is_some_and(|(least, _)| least.broken == 0) {
             break;
         }
         let seed = attempt_seed(graph.seed, attempt);
@@ -215,17 +227,20 @@ fn attempts(
                 broken += usize::from(unfit);
                 let World { floorplan, placements, .. } = &found.world;
                 let before = if picky { before_openings(floorplan, placements, plugin.domain()) } else { 0 };
-                if (broken, before) == (0, 0) {
+                let (laws, advice) = found.report.missed();
+                let faults = Faults { broken, laws: if picky { laws } else { 0 }, before, advice };
+                if (faults.broken, faults.laws, faults.before) == (0, 0, 0) {
                     return Ok(found);
                 }
                 let why = match broken {
+                    0 if laws > 0 => format!("{laws} law(s) are not kept"),
                     0 => format!("{before} thing(s) before doors or windows"),
                     _ if unfit => "a robot does not fit".to_owned(),
                     _ => format!("breaks {broken} hard rule(s), first {first}"),
                 };
                 observe(Event::Rejected(attempt, &why));
-                if best.as_ref().is_none_or(|(least, _)| (broken, before) < *least) {
-                    best = Some(((broken, before), found));
+                if best.as_ref().is_none_or(|(least, _)| faults < *least) {
+                    best = Some((faults, found));
                 }
             }
             Err(error @ Error::Infeasible { .. }) => {

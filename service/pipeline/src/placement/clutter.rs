@@ -145,7 +145,7 @@ impl<'a> Strewing<'_, 'a, '_> {
     fn unit(&self, id: &str) -> Option<Rc<Unit<'a>>> {
         let object = self.job.domain.object(id)?;
         let (sizes, aims, ceiling) = (self.job.sizes, self.job.aims, self.job.space.ceiling);
-        let forms = Forms { sizes, aims, tightness: 1.0, advised: false, ceiling, robot: 0 };
+        let forms = Forms { sizes, aims, tightness: 1.0, advised: false, lawful: false, ceiling, robot: 0 };
         let units = variants(self.job.domain, &object.id, &forms);
         units.into_iter().next().map(Rc::new)
     }

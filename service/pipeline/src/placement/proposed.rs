@@ -221,8 +221,15 @@ impl<'a> Table<'a> {
         let mut first = None;
         let (aims, ceiling) = (&self.setting.aims, self.setting.space.ceiling);
         // what is proposed need not have the free floor that is only advised
-        let forms =
-            Forms { sizes: &sizes, aims, tightness: 1.0, advised: false, ceiling, robot: 2 * self.setting.radius };
+        let forms = Forms {
+            sizes: &sizes,
+            aims,
+            tightness: 1.0,
+            advised: false,
+            lawful: false,
+            ceiling,
+            robot: 2 * self.setting.radius,
+        };
         for unit in variants(self.setting.domain, task.item, &forms) {
             let walled = unit.needs_wall || backs_to_wall(task);
             let unit = Rc::new(unit);

@@ -100,6 +100,8 @@ pub(super) struct Forms<'s> {
     pub tightness: f64,
     /// True to begin with forms that have the free floor that is advised.
     pub advised: bool,
+    /// True for what the room can do without: it comes with the free floor of the laws or not at all.
+    pub lawful: bool,
     /// Things that hang stay below it, mm.
     pub ceiling: i32,
     /// Diameter of the robots that charge, mm; 0 where none is asked after.
@@ -110,7 +112,7 @@ impl Forms<'static> {
     /// The first size of everything, under no rules.
     pub fn plain(ceiling: i32) -> Self {
         static NONE: BTreeMap<&str, Aim> = BTreeMap::new();
-        Self { sizes: &|_| 0, aims: &NONE, tightness: 1.0, advised: false, ceiling, robot: 0 }
+        Self { sizes: &|_| 0, aims: &NONE, tightness: 1.0, advised: false, lawful: false, ceiling, robot: 0 }
     }
 }
 
@@ -369,12 +371,18 @@ impl<'a> Plan<'a, '_> {
         let solid = Solid { rect, z0: z, z1: z + h };
         let mount = if self.anchor.mount == Mount::Surface { Mount::Floor } else { self.anchor.mount };
         let mut parts = vec![Part { object: self.anchor, quarter: 0, solid, mount, support: None, optional: false }];
+        let aims = self.forms.aims;
+        let by_law_m = aims.get(self.anchor.id.as_str()).map_or(0.0, |a| a.by_law.front);
         for member in self.group.map_or(&[][..], |g| &g.members).iter().filter(|m| keep(m)) {
-            let unwanted = || self.forms.aims.get(member.object.as_str()).is_some_and(|a| a.unwanted);
+            let unwanted = || aims.get(member.object.as_str()).is_some_and(|a| a.unwanted);
             if let Some(object) = self.domain.object(&member.object)
                 && (member.required || !unwanted())
             {
-                add_member(&mut parts, member, object, sizes(object), self.forms.ceiling);
+                // a chair is pulled away, a table stays
+                let stays =
+                    member.relation == Relation::Front && !is_seat(object.shape) && takes_floor(self.domain, member);
+                let gap_m = if stays { member.gap_m.max(by_law_m) } else { member.gap_m };
+                add_member(&mut parts, &Member { gap_m, ..member.clone() }, object, sizes(object), self.forms.ceiling);
             }
         }
         let mut clears = Vec::new();
@@ -405,6 +413,12 @@ fn finish<'a>(item: &'a str, group: bool, parts: Vec<Part<'a>>, mut clears: Vec<
     parts.iter().for_each(|part| clears_of(part, forms.tightness, &mut clears));
     seats_behind(&parts, forms.tightness, &mut clears);
     seats_around(&parts, forms.tightness, &mut clears);
+    if forms.lawful {
+        let floor = parts.iter().filter(|p| p.mount == Mount::Floor);
+        let by_law = |p: &&Part| forms.aims.get(p.object.id.as_str()).map(|a| a.by_law);
+        let asked: Vec<(&Part, Clear)> = floor.filter_map(|p| Some((p, by_law(&p)?))).collect();
+        asked.into_iter().for_each(|(part, clear)| advised_floor(part, &clear, &mut clears));
+    }
     let docks = parts.iter().filter(|p| p.object.shape == Shape::Dock && forms.robot > 0);
     let parked: Vec<Box2> = docks.map(|dock| parked_at(dock, forms.robot)).collect();
     clears.extend(&parked);
