@@ -49,7 +49,12 @@ pub enum Guard {
 impl Guard {
     /// Returns true when plans aim at a figure although not every room has to keep it.
     pub(crate) fn is_planned(&self) -> bool {
-        matches!(self, Self::Room(row) | Self::Whole(row) if row.planned)
+        match self {
+            Self::Room(row) | Self::Whole(row) => row.planned,
+            // a room that several people work in
+            Self::Seats(least, most) => *least <= 2.0 && *most == f64::MAX,
+            _ => false,
+        }
     }
 }
 

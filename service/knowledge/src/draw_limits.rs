@@ -6,6 +6,7 @@
 
 use std::collections::BTreeSet;
 
+use d3dgen_model::domain::Shape;
 use d3dgen_model::knowledge::{AMENDMENT, LOCAL};
 
 use crate::aims::ObjectAims;
@@ -58,7 +59,7 @@ pub(crate) fn draw(constraints: &[Applicable], all: &[Applicable], chain: &[Stri
             area_min: least(&[Measure::RoomArea], room.area_max_m2),
             area_max: None,
             area_advised: advised_area(&usable, &about, room.area_max_m2),
-            area_per_person_advised: advised_figure(&wished, Measure::AreaPerPerson, &about),
+            area_per_person_advised: advised_figure(&wished, Measure::AreaPerPerson, &|a| about(a) || of_desks(a)),
             dimension_min: least(&[Measure::LeastDimension, Measure::InnerRectangle], side),
             turning_circle: least(&[Measure::TurningCircle], side),
             door_width: pick(&|a, r| {
@@ -75,6 +76,11 @@ pub(crate) fn draw(constraints: &[Applicable], all: &[Applicable], chain: &[Stri
         }
     }
     limits
+}
+
+/// Returns true for what is asked of each workplace, whatever the room is called.
+fn of_desks(a: &Applicable) -> bool {
+    matches!(&a.scope, Scope::Objects(shapes) if shapes.contains(&Shape::Desk))
 }
 
 /// Returns the constraints with a figure that holds for every room they are about.
