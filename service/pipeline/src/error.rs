@@ -27,6 +27,9 @@ pub enum Error {
         /// What does not fit, with ids.
         message: String,
     },
+    /// A plan that somebody brings cannot be read.
+    #[error(transparent)]
+    Plan(#[from] d3dgen_plans::Error),
     /// The caller asked to stop.
     #[error("cancelled")]
     Cancelled,

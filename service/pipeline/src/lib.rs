@@ -2,6 +2,7 @@
 //!
 //! Stages take values and return documents; they read no file, clock or environment.
 
+pub mod bring;
 pub mod edit;
 pub mod error;
 mod fit;

@@ -83,7 +83,7 @@ pub fn document(field: &str, error: d3dgen_model::Error) -> Status {
 pub fn stage(field: &str, error: d3dgen_pipeline::Error) -> Status {
     use d3dgen_pipeline::Error;
     match error {
-        Error::Refused { .. } | Error::Mismatch { .. } => invalid(field, error.to_string()),
+        Error::Refused { .. } | Error::Mismatch { .. } | Error::Plan(_) => invalid(field, error.to_string()),
         Error::Infeasible { .. } => Status::failed_precondition(error.to_string()),
         Error::Cancelled => Status::cancelled("the call was given up"),
     }

@@ -7,9 +7,10 @@ use std::time::{Duration, Instant};
 
 use d3dgen_model::floorplan::Floorplan;
 use d3dgen_model::scene_graph::SceneGraph;
+use d3dgen_pipeline::bring::{Said, bring};
 use d3dgen_pipeline::generate::{Event, Settings, Stage, furnish_and_check};
-use d3dgen_pipeline::scene_graph::{Brought, Label, of_plan, understand};
-use d3dgen_plans::{Options, Plan, Source, assemble, lay_out, read, readers};
+use d3dgen_pipeline::scene_graph::Brought;
+use d3dgen_plans::{Options, Source, readers};
 use d3dgen_plugins::Registry;
 
 use super::formats;
@@ -149,8 +150,8 @@ impl Args {
         let bytes = fs::read(&self.plan).map_err(read_error)?;
         let name = self.plan.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
         let source = Source { name: &name, bytes: &bytes, companion: &|file| companion(&self.plan, file) };
-        let placed = |source| Error::Plan { path: self.plan.clone(), source };
-        let mut brought = Brought {
+        let graph: Option<SceneGraph> = self.graph.as_deref().map(document).transpose()?;
+        let brought = Brought {
             title: format!("furnish {name}"),
             seed: self.seed,
             country: self.country.clone(),
@@ -158,72 +159,13 @@ impl Args {
             robot_radius_m: self.robot_radius,
             ..Brought::default()
         };
-        let plan = match read(&source, &options).map_err(placed)? {
-            Plan::Document(_) if self.reading.level.is_some() => {
-                return Err(Error::Input(
-                    "--level goes with drawings only; a floorplan.json keeps all its levels".into(),
-                ));
-            }
-            Plan::Document(mut plan) => {
-                plan.seed = self.seed;
-                if let Some(path) = &self.graph {
-                    let graph: SceneGraph = document(path)?;
-                    return Ok((SceneGraph { seed: self.seed, ..graph }, plan));
-                }
-                let label = |r: &d3dgen_model::floorplan::PlanRoom| Label {
-                    text: r.name.clone(),
-                    kind: Some(r.room_type.clone()),
-                    ..Label::default()
-                };
-                let labels: Vec<Label> = plan.rooms.iter().map(label).collect();
-                let titles = [stem(&name)];
-                let known = understand(&self.typed(labels)?, &titles, self.domain.as_deref(), registry)?;
-                plan.rooms.iter_mut().zip(known.room_types).for_each(|(room, kind)| room.room_type = kind);
-                (brought.domain, brought.notes) = (known.domain, known.notes);
-                plan
-            }
-            Plan::Drawing(_) if self.graph.is_some() => {
-                return Err(Error::Input(
-                    "--graph goes with a floorplan.json only; drawings get their own graph".into(),
-                ));
-            }
-            Plan::Drawing(drawing) => {
-                let mut layout = lay_out(drawing, &options).map_err(placed)?;
-                let label = |r: &d3dgen_plans::LaidRoom| Label {
-                    text: r.label.clone(),
-                    kind: r.kind.clone(),
-                    also: r.also.clone(),
-                    hub: r.hub,
-                };
-                let labels: Vec<Label> = layout.rooms.iter().map(label).collect();
-                let titles: Vec<String> = [stem(&name)].into_iter().chain(layout.titles.iter().cloned()).collect();
-                let known = understand(&self.typed(labels)?, &titles, self.domain.as_deref(), registry)?;
-                layout.rooms.iter_mut().zip(&known.names).for_each(|(room, name)| room.label.clone_from(name));
-                let kinds = domain(registry, &known.domain)?.domain();
-                let (plan, notes) = assemble(layout, &known.room_types, kinds, self.seed, &options);
-                (brought.domain, brought.notes) = (known.domain, [notes, known.notes].concat());
-                plan
-            }
-        };
-        Ok((of_plan(&plan, &brought, registry)?, plan))
+        let (domain, room_types) = (self.domain.clone(), self.room_type.clone());
+        let said = Said { options, domain, room_types, graph: graph.as_ref(), brought };
+        bring(&source, &said, registry).map_err(|error| match error {
+            d3dgen_pipeline::Error::Plan(source) => Error::Plan { path: self.plan.clone(), source },
+            other => other.into(),
+        })
     }
-
-    /// Returns the labels with the types that the user gives.
-    fn typed(&self, mut labels: Vec<Label>) -> Result<Vec<Label>, Error> {
-        for (name, kind) in &self.room_type {
-            let mut named = labels.iter_mut().filter(|l| l.text == *name).peekable();
-            if named.peek().is_none() {
-                return Err(Error::Input(format!("--room-type {name}={kind}: the plan has no room `{name}`")));
-            }
-            named.for_each(|l| l.kind = Some(kind.clone()));
-        }
-        Ok(labels)
-    }
-}
-
-/// Returns the name of a file without its endings.
-fn stem(name: &str) -> String {
-    name.split('.').next().unwrap_or_default().to_owned()
 }
 
 /// Returns a file that the plan names, of its own folder.

@@ -3,6 +3,7 @@
 mod edit;
 mod export;
 mod generate;
+mod import;
 
 use d3dgen_model::Document;
 use d3dgen_model::floorplan::Floorplan;
@@ -24,8 +25,8 @@ use d3dgen_proto::v1::{
     GenerateBatchRequest, GenerateBatchResponse, GenerateFloorplanRequest, GenerateFloorplanResponse,
     GeneratePlacementsRequest, GeneratePlacementsResponse, GenerateScenarioRequest, GenerateScenarioResponse,
     GenerateSceneGraphRequest, GenerateSceneGraphResponse, GenerateWorldRequest, GetBatchWorldRequest,
-    GetBatchWorldResponse, ListBatchWorldsRequest, ListBatchWorldsResponse, ListExportersRequest,
-    ListExportersResponse, RankedFloorplan,
+    GetBatchWorldResponse, ImportFloorplanRequest, ImportFloorplanResponse, ListBatchWorldsRequest,
+    ListBatchWorldsResponse, ListExportersRequest, ListExportersResponse, RankedFloorplan,
 };
 use tokio_stream::wrappers::ReceiverStream;
 use tonic::{Request, Response, Status};
@@ -130,6 +131,11 @@ impl WorldService for Api {
             Ok(GenerateScenarioResponse { scenario: Some(message(&scenario)) })
         })
         .await
+    }
+
+    async fn import_floorplan(&self, request: Request<ImportFloorplanRequest>) -> Answer<ImportFloorplanResponse> {
+        let asked = request.into_inner();
+        self.work(move |core, _| import::import(&asked, &core.domains.now().registry)).await
     }
 
     async fn assemble_world(&self, request: Request<AssembleWorldRequest>) -> Answer<AssembleWorldResponse> {

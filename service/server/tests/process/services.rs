@@ -8,10 +8,10 @@ use d3dgen_proto::v1::{
     AmendKnowledgeRequest, AnyOf, AssembleWorldRequest, BuildingRequest, CheckWorldRequest, CheckedWorld, DomainFile,
     EditWorldRequest, ExportWorldRequest, GenerateBatchRequest, GenerateFloorplanRequest, GeneratePlacementsRequest,
     GenerateScenarioRequest, GenerateSceneGraphRequest, GenerateWorldRequest, GetBatchWorldRequest, GetDomainRequest,
-    JobState, ListBatchWorldsRequest, ListConstraintFiltersRequest, ListDomainsRequest, ListExportersRequest,
-    ListJobLogsRequest, LockUpdate, ObjectMove, ParseDomainRequest, RegisterDomainRequest, RemoveDomainRequest,
-    RetrieveConstraintsRequest, RoomAddition, RuleSentence, SearchAssetsRequest, SearchConstraintsRequest,
-    UndoKnowledgeChangeRequest, WorldEdit,
+    ImportFloorplanRequest, JobState, ListBatchWorldsRequest, ListConstraintFiltersRequest, ListDomainsRequest,
+    ListExportersRequest, ListJobLogsRequest, LockUpdate, ObjectMove, ParseDomainRequest, RegisterDomainRequest,
+    RemoveDomainRequest, RetrieveConstraintsRequest, RoomAddition, RuleSentence, SearchAssetsRequest,
+    SearchConstraintsRequest, UndoKnowledgeChangeRequest, WorldEdit,
 };
 use tonic::Code;
 use tonic_types::StatusExt;
@@ -164,6 +164,57 @@ async fn worlds_are_made_pinned_edited_and_written() {
     let mut archive = zip::ZipArchive::new(std::io::Cursor::new(bytes)).expect("an archive");
     assert!(archive.by_name("plan.svg").is_ok());
     assert!((0..archive.len()).all(|i| archive.by_index(i).expect("a file").enclosed_name().is_some()));
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_brought_plan_is_furnished_as_it_is() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let server = Server::start(&dir.path().join("data"), &[]);
+    let mut c = Clients::of(&server).await;
+    let plans = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../plans/tests/plans");
+    let file = |name: &str| std::fs::read(plans.join(name)).expect("a plan").into();
+    let asked = |name: &str| ImportFloorplanRequest {
+        file_name: name.into(),
+        content: file(name),
+        country: Some("Germany".into()),
+        robot_kinds: vec!["cleaning".into()],
+        seed: 5,
+        ..Default::default()
+    };
+    let brought = c.worlds.import_floorplan(asked("flat.geojson")).await.expect("read").into_inner();
+    let graph = brought.scene_graph.expect("rooms");
+    assert_eq!((graph.domain_id.as_str(), graph.seed, graph.robots.len()), ("residential", 5, 1));
+    let again = GenerateWorldRequest {
+        start: Some(Start::SceneGraph(graph)),
+        pinned_floorplan: brought.floorplan.clone(),
+        ..Default::default()
+    };
+    let (made, _) = make(&mut c, again).await;
+    let world = made.world.expect("a world");
+    let outlines = |plan: &Option<d3dgen_proto::v1::Floorplan>| {
+        plan.as_ref().expect("a plan").rooms.iter().map(|r| r.polygon.clone()).collect::<Vec<_>>()
+    };
+    assert_eq!(outlines(&world.floorplan), outlines(&brought.floorplan));
+    assert!(world.placements.expect("furniture").placements.len() > 20);
+
+    // a map needs its picture
+    let map = ImportFloorplanRequest { domain_id: Some("residential".into()), ..asked("flat_map.yaml") };
+    let refused = c.worlds.import_floorplan(map.clone()).await.expect_err("no picture");
+    assert!(refused.message().contains("flat_map.pgm"), "{refused}");
+    let companions = [("flat_map.pgm".to_owned(), file("flat_map.pgm"))].into();
+    let traced = c.worlds.import_floorplan(ImportFloorplanRequest { companions, ..map }).await;
+    assert!(traced.expect("traced").into_inner().floorplan.expect("a plan").rooms.len() > 2);
+
+    // refusals name the place
+    let torn = ImportFloorplanRequest { content: b"{".to_vec().into(), ..asked("flat.geojson") };
+    let attic = [("Attic".to_owned(), "bedroom".to_owned())].into();
+    let attic = ImportFloorplanRequest { room_types: attic, ..asked("flat.geojson") };
+    for (request, words) in [(torn, "geojson"), (attic, "Attic"), (ImportFloorplanRequest::default(), "empty")] {
+        let refused = c.worlds.import_floorplan(request).await.expect_err(words);
+        assert_eq!(refused.code(), Code::InvalidArgument);
+        let fields = refused.get_details_bad_request().expect("the place").field_violations;
+        assert!(fields[0].field == "content" && refused.message().contains(words), "{refused}");
+    }
 }
 
 #[tokio::test(flavor = "multi_thread")]
