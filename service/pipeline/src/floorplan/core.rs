@@ -24,6 +24,8 @@ pub(super) struct Core {
     pub depth: i32,
     /// Second stairwell, at the other end of a building of wings, and its width.
     pub far: Option<(usize, i32)>,
+    /// True where the second stairwell stands at the end of the one corridor, outside of the last rooms: a storey is one bar.
+    pub gable: bool,
     /// The storey below.
     pub below: Option<Below>,
 }
@@ -35,6 +37,8 @@ pub(super) struct Below {
     pub outline: Vec<Cellbox>,
     pub by_core: bool,
     pub comb: Option<Comb>,
+    /// Where the second stairwell of a bar begins, along the corridor from the core.
+    pub far: Option<i32>,
     /// How far south and north a wing may reach before it pushes others away, in its own layout.
     pub between: Option<(i32, i32)>,
 }
@@ -99,7 +103,7 @@ impl Core {
         if graph.robots.iter().any(Robot::is_fitted) {
             two_leaves(brief, &stairs, storeys.stairs.landing_m);
         }
-        Some(Self { host, boxes, width: along, depth, far: far.map(|f| (f, width)), below: None })
+        Some(Self { host, boxes, width: along, depth, far: far.map(|f| (f, width)), gable: false, below: None })
     }
 
     /// Returns true for rooms that stand where the core puts them.

@@ -13,7 +13,7 @@ use super::core::{Below, Core, in_core, merged};
 use super::lattice::Cellbox;
 use super::search::search;
 use super::spec::Brief;
-use super::{ATTEMPTS, schemes};
+use super::{ATTEMPTS, LONGEST_BAR, schemes};
 use crate::{Error, Stop};
 
 /// Share of a storey that may jut out over the one below without a word.
@@ -62,6 +62,32 @@ pub(super) fn generate(
         brief.core = Some(core.ok_or_else(missing)?);
         raise_stairwells(brief, graph, (i + 1 < numbers.len()).then(|| heights[i] - 0.01));
     }
+    // two stairs of a storey that is one bar are at its ends; where that does not work out it has wings
+    let mut bars = briefs.iter().all(|b| {
+        let along = b.rooms.iter().filter(|r| r.host.is_none()).count();
+        along <= LONGEST_BAR && b.form.is_none() && b.core.as_ref().is_some_and(|c| c.far.is_some())
+    });
+    loop {
+        briefs.iter_mut().filter_map(|b| b.core.as_mut()).for_each(|c| c.gable = bars);
+        match stack(&mut briefs, graph, domain, (turn, &numbers), stop) {
+            Ok(planned) => {
+                let ground = numbers.iter().position(|&l| l == 0).unwrap_or(0);
+                return Ok(stacked(graph, planned, &numbers, &heights, ground));
+            }
+            Err(Error::Infeasible { .. }) if bars => bars = false,
+            Err(error) => return Err(error),
+        }
+    }
+}
+
+/// Plans the storeys one after the other, from the ground up and then down.
+fn stack(
+    briefs: &mut [Brief],
+    graph: &SceneGraph,
+    domain: &Domain,
+    (turn, numbers): (Turn, &[i32]),
+    stop: Stop<'_>,
+) -> Result<Vec<Planned>, Error> {
     let ground = numbers.iter().position(|&l| l == 0).unwrap_or(0);
     let mut planned: Vec<Option<Planned>> = numbers.iter().map(|_| None).collect();
     let order = (ground..numbers.len()).map(|i| (i, i.checked_sub(1).filter(|_| i > ground)));
@@ -79,8 +105,7 @@ pub(super) fn generate(
         };
         planned[i] = Some(found.map_err(infeasible)?);
     }
-    let planned: Vec<Planned> = planned.into_iter().flatten().collect();
-    Ok(stacked(graph, planned, &numbers, &heights, ground))
+    Ok(planned.into_iter().flatten().collect())
 }
 
 /// Returns the height of a storey from floor to floor, m.
@@ -127,9 +152,11 @@ fn storey(
         let name = format!("{:?}", found.scheme).to_lowercase();
         match assemble(brief, &turned_in_place(&boxes, turn), &found.score, seed, &name, None, rng) {
             Ok(plan) => {
-                let comb = brief.core.as_ref().is_some_and(|c| c.far.is_some()).then_some(found.layout.comb);
+                let wings = brief.core.as_ref().is_some_and(|c| c.far.is_some() && !c.gable);
+                let comb = wings.then_some(found.layout.comb);
                 let comb_built = comb.is_some();
-                let below = Below { outline: merged(&boxes), by_core: true, comb, between: None };
+                let below =
+                    Below { outline: merged(&boxes), by_core: true, comb, far: found.layout.far, between: None };
                 let overhang = found.score.overhang;
                 if best.as_ref().is_none_or(|b| overhang < b.overhang) {
                     best = Some(Planned { plan, below, overhang });

@@ -15,6 +15,7 @@ use super::reading::{MAX_ROOMS, MOST_IN_OFFICE, Reading, is_dwelling};
 use super::rooms::most_docks;
 use super::seated;
 use super::seats;
+use super::spread;
 use super::stations;
 use super::units;
 use super::vital;
@@ -120,7 +121,9 @@ pub(super) fn complete<'a>(reading: &mut Reading<'a>) -> Vec<Planned<'a>> {
     house_robots(reading, &mut rooms);
     let mut rooms = units::divide(reading, rooms);
     layout::follow(reading, &mut rooms);
-    finish(reading, rooms)
+    let mut rooms = finish(reading, rooms);
+    spread::open_offices(reading, &mut rooms);
+    rooms
 }
 
 /// Gives rooms that are settled their people and hosts, and states which of them the prompt does not name.
@@ -269,9 +272,9 @@ fn make_room_for_companions(reading: &Reading, rooms: &mut [Planned]) {
 /// Sees to it that there are as many toilets and bathrooms as storeys, where the prompt leaves the rooms open.
 fn wash_on_every_storey<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
     let storeys = reading.storeys.levels.iter().filter(|l| **l >= 0).count();
-    let Some(rules) = reading.domain.circulation.storeys.as_ref().filter(|_| storeys > 1 && !reading.closed) else {
-        return;
-    };
+    // where people work, a list of rooms that says nothing of that does not mean that one goes to another storey
+    let open = !reading.closed || workers::is_office(reading.program) && !reading.only;
+    let Some(rules) = reading.domain.circulation.storeys.as_ref().filter(|_| storeys > 1 && open) else { return };
     let kinds = rules.each_level_room_types.iter().filter_map(|id| reading.domain.room_type(id));
     let wet: Vec<&RoomType> =
         kinds.filter(|k| k.wet && !reading.wishes.forbidden.contains(&k.id) && k.access != Access::Host).collect();
@@ -758,7 +761,9 @@ fn seat_waiting(reading: &Reading, rooms: &mut [Planned]) {
         (kind.privacy == Privacy::Public).then_some(line.area_per_item_m2 / seats)
     };
     let sees = |r: &&Planned| r.kind.zone == Zone::Day && r.kind.privacy == Privacy::Private;
-    let seen = rooms.iter().filter(sees).count() as u32;
+    let serves = |r: &&Planned| r.occupants.is_some() && seats::has_counters(reading.domain, r.kind);
+    let counters: u32 = rooms.iter().filter(serves).filter_map(|r| r.occupants).sum();
+    let seen = rooms.iter().filter(sees).count() as u32 + counters;
     let places: Vec<usize> = (0..rooms.len()).filter(|&i| waits(rooms[i].kind).is_some()).collect();
     for &i in &places {
         let Some(each) = waits(rooms[i].kind).filter(|_| rooms[i].area_m2.is_none() && !reading.single) else {
@@ -839,6 +844,11 @@ fn hang_on_hosts(reading: &mut Reading, rooms: &mut [Planned]) {
             hosted && bath && !room.kind.hosts.contains(&p.b)
         };
         let belongs = pairs.iter().find(|p| p.a == room.room_type).filter(|p| !through_bath(p));
+        // "management with boardroom": nobody meets behind somebody's office
+        let shared = room.kind.privacy != Privacy::Private && room.kind.zone == Zone::Day && !hosted;
+        let through = |p: &&Pair| domain.room_type(&p.b).is_some_and(|k| k.privacy == Privacy::Private);
+        let works = workers::is_office(reading.program);
+        let belongs = belongs.filter(|p| !(works && shared && through(p)));
         if !hosted && belongs.is_none() {
             continue;
         }

@@ -122,6 +122,8 @@ pub(super) enum Tag {
     Everyone,
     /// All have a room of their own: "a room each".
     SingleRooms,
+    /// Words for a place to work behind a door, that may mean a whole building too: "bureau".
+    OfficeWords,
     /// "Half open plan, half offices": those who work there are shared out.
     Half,
     /// Counters of a room at which people are served: "service windows", "Schalter".
