@@ -162,8 +162,9 @@ fn straight(task: &mut Task<'_, '_>) {
     let bottom = Row::new(task, 1, eb[0] + eb[1]);
     let mut len = solve(&[&top, &bottom], &mut task.misfit);
     let gable = brief.core.as_ref().filter(|c| c.gable && c.far.is_some());
-    if let Some(from) = gable.and_then(|c| c.below.as_ref()?.far) {
-        len = within(&[&top, &bottom], from).unwrap_or(len);
+    if let Some(core) = gable {
+        let wish = core.below.as_ref().and_then(|b| b.far).unwrap_or(len.max(core.least));
+        len = within(&[&top, &bottom], wish).unwrap_or(len);
     }
     if brief.hub {
         (len, w) = hub_size(brief, task.spine, len, &mut task.misfit);

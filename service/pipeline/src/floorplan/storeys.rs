@@ -1,7 +1,7 @@
 //! Several storeys: each is planned by itself around the common core, the ground floor first, the others above it.
 
 use d3dgen_knowledge::Limits;
-use d3dgen_model::domain::{Domain, Storeys};
+use d3dgen_model::domain::{Domain, Scheme, Storeys};
 use d3dgen_model::floorplan::{CostTerm, Floorplan};
 use d3dgen_model::geometry::to_mm;
 use d3dgen_model::scene_graph::{Note, SceneGraph};
@@ -10,7 +10,8 @@ use d3dgen_model::storeys::{Level, LinkKind};
 
 use super::assemble::{Turn, assemble, turned_in_place};
 use super::core::{Below, Core, in_core, merged};
-use super::lattice::Cellbox;
+use super::genome::is_nestable;
+use super::lattice::{Cellbox, INNER_HALF_M, meters, nearest};
 use super::search::search;
 use super::spec::Brief;
 use super::{ATTEMPTS, LONGEST_BAR, schemes};
@@ -19,10 +20,15 @@ use crate::{Error, Stop};
 /// Share of a storey that may jut out over the one below without a word.
 pub(super) const OVERHANG_SHARE: f64 = 0.10;
 /// Plans of a storey that are compared when the first ones jut out further.
-const COMPARED: usize = 4;
+const COMPARED: usize = 6;
 const COMPARED_LARGE: usize = 2;
 /// Heights of storeys are whole multiples of this, m.
 const HEIGHT_STEP_M: f64 = 0.05;
+
+/// Depth of rooms along a corridor by the side of a square of their area, and its range, m.
+const DEPTH_BY_SIDE: f64 = 0.75;
+const USUAL_DEPTH_M: f64 = 4.8;
+const MOST_DEPTH_M: f64 = 10.0;
 
 /// A planned storey.
 struct Planned {
@@ -67,6 +73,8 @@ pub(super) fn generate(
         let along = b.rooms.iter().filter(|r| r.host.is_none()).count();
         along <= LONGEST_BAR && b.form.is_none() && b.core.as_ref().is_some_and(|c| c.far.is_some())
     });
+    let least = briefs.iter().map(bar_length).max().unwrap_or(0);
+    briefs.iter_mut().filter_map(|b| b.core.as_mut()).for_each(|c| c.least = least);
     loop {
         briefs.iter_mut().filter_map(|b| b.core.as_mut()).for_each(|c| c.gable = bars);
         match stack(&mut briefs, graph, domain, (turn, &numbers), stop) {
@@ -78,6 +86,22 @@ pub(super) fn generate(
             Err(error) => return Err(error),
         }
     }
+}
+
+/// Returns about how long a storey is whose rooms stand on both sides of one corridor, lattice units.
+fn bar_length(brief: &Brief) -> i32 {
+    let depth = |area: f64| (DEPTH_BY_SIDE * area.sqrt()).clamp(USUAL_DEPTH_M, MOST_DEPTH_M);
+    let room = |&i: &usize| Some(i) != brief.spine && !brief.in_core(i);
+    let fronts = (0..brief.rooms.len()).filter(room).map(|i| {
+        let spec = &brief.rooms[i];
+        let front = (spec.area_target / depth(spec.area_target)).max(spec.min_dimension) + 2.0 * INNER_HALF_M;
+        // half of the small ones are cut out of larger rooms
+        if is_nestable(brief, i) { 0.5 * front } else { front }
+    });
+    let fronts: Vec<f64> = fronts.collect();
+    let core = brief.core.as_ref().map_or(0.0, |c| meters(c.width));
+    let half = (core + fronts.iter().sum::<f64>()) / 2.0;
+    nearest(fronts.into_iter().fold(half, f64::max))
 }
 
 /// Plans the storeys one after the other, from the ground up and then down.
@@ -139,7 +163,12 @@ fn storey(
     let mut best: Option<Planned> = None;
     let mut compared = 0;
     for _ in 0..ATTEMPTS {
-        let schemes = schemes(brief, domain, rng);
+        let mut schemes = schemes(brief, domain, rng);
+        // storeys whose corridors run alike lie on each other
+        let bar = |s: Scheme| matches!(s, Scheme::Straight | Scheme::Capped);
+        if let Some(below) = brief.core.as_ref().and_then(|c| c.below.as_ref()?.scheme) {
+            schemes.sort_by_key(|s| !(*s == below || bar(*s) && bar(below)));
+        }
         let Some(found) = search(brief, &schemes, rng, stop) else { break };
         if stop.is_set() {
             break;
@@ -155,8 +184,14 @@ fn storey(
                 let wings = brief.core.as_ref().is_some_and(|c| c.far.is_some() && !c.gable);
                 let comb = wings.then_some(found.layout.comb);
                 let comb_built = comb.is_some();
-                let below =
-                    Below { outline: merged(&boxes), by_core: true, comb, far: found.layout.far, between: None };
+                let below = Below {
+                    outline: merged(&boxes),
+                    by_core: true,
+                    comb,
+                    far: found.layout.far,
+                    scheme: Some(found.scheme),
+                    between: None,
+                };
                 let overhang = found.score.overhang;
                 if best.as_ref().is_none_or(|b| overhang < b.overhang) {
                     best = Some(Planned { plan, below, overhang });

@@ -761,9 +761,7 @@ fn seat_waiting(reading: &Reading, rooms: &mut [Planned]) {
         (kind.privacy == Privacy::Public).then_some(line.area_per_item_m2 / seats)
     };
     let sees = |r: &&Planned| r.kind.zone == Zone::Day && r.kind.privacy == Privacy::Private;
-    let serves = |r: &&Planned| r.occupants.is_some() && seats::has_counters(reading.domain, r.kind);
-    let counters: u32 = rooms.iter().filter(serves).filter_map(|r| r.occupants).sum();
-    let seen = rooms.iter().filter(sees).count() as u32 + counters;
+    let seen = rooms.iter().filter(sees).count() as u32;
     let places: Vec<usize> = (0..rooms.len()).filter(|&i| waits(rooms[i].kind).is_some()).collect();
     for &i in &places {
         let Some(each) = waits(rooms[i].kind).filter(|_| rooms[i].area_m2.is_none() && !reading.single) else {
@@ -799,7 +797,8 @@ fn hold_beds(reading: &Reading, rooms: &mut [Planned]) {
         for room in rooms_of(held, rooms) {
             room.occupants = Some(held.beds);
             if seated::desks(reading.domain, room.kind).is_some() {
-                room.size_for_people(desk_area_m2(reading.domain, &room.room_type) * f64::from(held.beds));
+                let area = desk_area_m2(reading.domain, &room.room_type) * f64::from(held.beds);
+                room.size_for_people(area + workers::beside_desks(held.beds));
             }
             let Some([low, high]) = sleeps(reading.domain, room.kind) else { continue };
             if !(low..=high).contains(&held.beds) || high > low {

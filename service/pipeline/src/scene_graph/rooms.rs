@@ -24,7 +24,7 @@ const MOST_NAMED: usize = 3;
 /// Share of the usual area per head that a building short of area leaves.
 const CROWDED: f64 = 0.6;
 /// The same of rooms with desks.
-const CROWDED_DESKS: f64 = 0.9;
+const CROWDED_DESKS: f64 = 1.0;
 /// Most area of a room that serves so many people, as a factor on what they need.
 const ROOMY: f64 = 1.5;
 /// Largest area of a room over its usual one from which on it takes any number of people.

@@ -15,6 +15,8 @@ use super::workers::{self, is_office};
 const LEAST_PART: u32 = 8;
 /// How much larger than the mean a storey may be with all of the open office before its desks are shared out.
 const LARGE: f64 = 1.2;
+/// The same of desks that the prompt gives this room.
+const LARGE_TOLD: f64 = 1.5;
 
 /// Shares the desks of the open office out to the storeys, where the prompt does not say how many it has.
 pub(super) fn open_offices<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
@@ -31,9 +33,11 @@ pub(super) fn open_offices<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planne
     };
     let [first, ..] = open[..] else { return };
     let desks: u32 = open.iter().filter_map(|&i| rooms[i].occupants).sum();
-    if open.iter().any(|&i| told(&rooms[i])) || desks < 2 * LEAST_PART || open.len() >= levels.len() {
+    if desks < 2 * LEAST_PART || open.len() >= levels.len() {
         return;
     }
+    // a number that the prompt gives stays together as long as the storeys can carry it
+    let large = if open.iter().any(|&i| told(&rooms[i])) { LARGE_TOLD } else { LARGE };
     let areas: Vec<f64> = rooms.iter().map(area).collect();
     let dealt = deal::deal(&mut reading.clone(), rooms, &areas, &reading.storeys.levels.clone());
     let others = |level: i32| -> f64 {
@@ -47,7 +51,7 @@ pub(super) fn open_offices<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planne
         .iter()
         .zip(&loads)
         .map(|(l, load)| load + open.iter().filter(|&&i| dealt[i] == *l).map(|&i| areas[i]).sum::<f64>());
-    if largest.fold(0.0, f64::max) < LARGE * mean {
+    if largest.fold(0.0, f64::max) < large * mean {
         return;
     }
     let parts = shares(desks, spare, &loads);

@@ -7,7 +7,7 @@ use d3dgen_model::scene_graph::GraphRoom;
 use super::places::note;
 use super::program::{Planned, desk_area_m2, head_count, places_to_work};
 use super::reading::{Reading, is_dwelling};
-use super::seats::{MOST_IN_TEAM, most_desks, places, works_in};
+use super::seats::{MOST_IN_TEAM, has_counters, most_desks, places, works_in};
 use super::vital;
 use super::wishes::{Wish, Wishes};
 use super::words::words;
@@ -23,6 +23,8 @@ const LEAST_OPEN: u32 = 3;
 const MOST_COUNTED: u32 = 3;
 /// Floor of the kitchen or counter of a room to eat in, as a share of its least area.
 const KITCHEN_SHARE: f64 = 0.45;
+/// Floor of a room for a team beside its desks, m^2.
+const BESIDE_DESKS_M2: f64 = 3.0;
 /// Most single offices that a share of the people gets.
 const MOST_SHARED_OUT: u32 = 60;
 
@@ -123,6 +125,11 @@ fn share_halves<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
     }
 }
 
+/// Returns the floor of a small room beside its desks, m^2: the door and the cupboard.
+pub(super) fn beside_desks(desks: u32) -> f64 {
+    if (3..=MOST_IN_TEAM).contains(&desks) { BESIDE_DESKS_M2 } else { 0.0 }
+}
+
 /// Gives a room so many desks and the floor for them.
 pub(super) fn seat(reading: &Reading, room: &mut Planned, desks: u32) {
     room.occupants = Some(desks);
@@ -130,7 +137,7 @@ pub(super) fn seat(reading: &Reading, room: &mut Planned, desks: u32) {
         let mut own = reading.program.rooms.iter().filter(|e| e.room_type == room.room_type);
         let each = own.find_map(|e| e.area_per_occupant_m2);
         let each = each.unwrap_or_else(|| desk_area_m2(reading.domain, &room.room_type));
-        room.size_for_people(each * f64::from(desks));
+        room.size_for_people(each * f64::from(desks) + beside_desks(desks));
     }
 }
 
@@ -272,6 +279,24 @@ fn part_toilets<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
     }
 }
 
+/// Gives rooms to wait in seats by the counters that people wait for.
+fn seat_waiting(domain: &Domain, rooms: &mut [Planned]) {
+    let served = |r: &&Planned| has_counters(domain, r.kind);
+    let counters: u32 = rooms.iter().filter(served).filter_map(|r| r.occupants).sum();
+    for (id, each) in words().waiting.iter().filter(|_| counters > 0) {
+        let waits: Vec<usize> = (0..rooms.len()).filter(|&i| &rooms[i].room_type == id).collect();
+        for &i in &waits {
+            if rooms[i].occupants.is_some() {
+                continue;
+            }
+            let seats = (each * f64::from(counters) / waits.len() as f64).ceil() as u32;
+            let Some((_, area)) = places(domain, rooms[i].kind, seats) else { continue };
+            (rooms[i].occupants, rooms[i].visited) = (Some(seats), true);
+            rooms[i].size_for_people(area);
+        }
+    }
+}
+
 /// Returns whose toilets these are.
 fn whose(k: usize, label: &str) -> String {
     let sexes = &words().sexes;
@@ -324,6 +349,7 @@ pub(super) fn seat_guests(reading: &mut Reading, rooms: &mut [Planned]) {
     if !is_office(reading.program) || reading.single {
         return;
     }
+    seat_waiting(domain, rooms);
     let people = places_to_work(reading, rooms);
     for (id, share) in &words().eating {
         let eats: Vec<usize> = (0..rooms.len()).filter(|&i| &rooms[i].room_type == id).collect();
