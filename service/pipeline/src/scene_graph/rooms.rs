@@ -12,6 +12,7 @@ use super::beds;
 use super::places::note;
 use super::program::{Planned, circulation_share};
 use super::reading::{Reading, is_dwelling};
+use super::seats::MOST_IN_TEAM;
 use super::words::words;
 use super::workers::is_office;
 
@@ -23,8 +24,6 @@ const MOST_WISHES: usize = 15;
 const MOST_NAMED: usize = 3;
 /// Share of the usual area per head that a building short of area leaves.
 const CROWDED: f64 = 0.6;
-/// The same of rooms with desks.
-const CROWDED_DESKS: f64 = 1.0;
 /// Most area of a room that serves so many people, as a factor on what they need.
 const ROOMY: f64 = 1.5;
 /// Largest area of a room over its usual one from which on it takes any number of people.
@@ -228,8 +227,8 @@ fn target_areas(reading: &mut Reading, planned: &[Planned]) -> Vec<f64> {
                         range.max
                     };
                     // who is told to have a desk there has it
-                    let desks = works && room.occupants.is_some() && !room.visited;
-                    let least = if desks { CROWDED_DESKS } else { CROWDED } * people;
+                    let desks = works && room.occupants.is_some_and(|n| n <= MOST_IN_TEAM) && !room.visited;
+                    let least = if desks { 1.0 } else { CROWDED } * people;
                     (area * scale).clamp(range.min.max(least).min(most), most)
                 }
                 _ if kept => (area * scale.min(ROOMY)).clamp(range.min, range.max),

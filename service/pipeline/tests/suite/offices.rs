@@ -52,7 +52,7 @@ fn misread(case: &Case, graph: &SceneGraph) -> Vec<String> {
         "team_office" | "open_office" => 3,
         _ => 0,
     };
-    let own = |r: &&d3dgen_model::scene_graph::GraphRoom| least(&r.room_type) > 0;
+    let own = |r: &&GraphRoom| least(&r.room_type) > 0;
     let desks: u32 = graph.rooms.iter().filter(own).map(|r| r.occupants.unwrap_or(least(&r.room_type))).sum();
     out.extend(case.desks.filter(|n| *n != desks).map(|n| format!("{desks} desks, not {n}")));
     let staff = graph.occupancy.staff;
