@@ -129,6 +129,7 @@ pub(super) fn complete<'a>(reading: &mut Reading<'a>) -> Vec<Planned<'a>> {
 /// Gives rooms that are settled their people and hosts, and states which of them the prompt does not name.
 pub(super) fn finish<'a>(reading: &mut Reading<'a>, mut rooms: Vec<Planned<'a>>) -> Vec<Planned<'a>> {
     wash_on_every_storey(reading, &mut rooms);
+    serve_every_storey(reading, &mut rooms);
     if reading.building_type.as_ref().is_some_and(|b| words().dwelling.shared.contains(b)) {
         // a room to sleep and work in is not to come out small
         let own = |r: &&mut Planned| r.room_type == words().dwelling.bedroom && r.area_m2.is_none();
@@ -290,6 +291,20 @@ fn wash_on_every_storey<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>)
         let spare = rooms.iter().rposition(|r| !r.requested && !is_wet(r) && r.kind.access != Access::Host);
         let Some(spare) = spare.filter(|s| *s > storeys) else { return };
         rooms[spare] = Planned::new(&kind.id, kind);
+    }
+}
+
+/// Sees to it that who works on a storey has a place for tea there, where the prompt leaves the rooms open.
+fn serve_every_storey<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
+    let storeys = reading.storeys.levels.iter().filter(|l| **l >= 0).count();
+    let open = storeys > 1 && !reading.closed && reading.total.is_none() && workers::is_office(reading.program);
+    let Some(rules) = reading.domain.circulation.storeys.as_ref().filter(|_| open) else { return };
+    let served =
+        |id: &&String| reading.program.rooms.iter().any(|e| &e.room_type == *id && e.area_per_person_m2.is_some());
+    let kinds = rules.each_level_room_types.iter().filter(served).filter_map(|id| reading.domain.room_type(id));
+    for kind in kinds.filter(|k| !reading.wet.has_toilet(k) && may_grow(reading, &k.id)) {
+        let have = rooms.iter().filter(|r| r.room_type == kind.id).count();
+        rooms.extend((have..storeys).filter(|_| have > 0).map(|_| Planned::new(&kind.id, kind)));
     }
 }
 
