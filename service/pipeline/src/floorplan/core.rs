@@ -5,7 +5,7 @@
 //! as the core; the elevator stands at its back, behind an alcove of the corridor where people and robots wait. All
 //! storeys are turned and moved so that their cores coincide, so a storey is planned without knowing where it will stand.
 
-use d3dgen_model::domain::{Domain, Stairs};
+use d3dgen_model::domain::{Domain, Scheme, Stairs};
 use d3dgen_model::scene_graph::{Robot, SceneGraph};
 use d3dgen_model::storeys::LinkKind;
 
@@ -24,6 +24,10 @@ pub(super) struct Core {
     pub depth: i32,
     /// Second stairwell, at the other end of a building of wings, and its width.
     pub far: Option<(usize, i32)>,
+    /// True where the second stairwell stands at the end of the one corridor, outside of the last rooms: a storey is one bar.
+    pub gable: bool,
+    /// Length of the longest storey of such a building, about: the second stairs stand no nearer, lattice units.
+    pub least: i32,
     /// The storey below.
     pub below: Option<Below>,
 }
@@ -35,6 +39,10 @@ pub(super) struct Below {
     pub outline: Vec<Cellbox>,
     pub by_core: bool,
     pub comb: Option<Comb>,
+    /// Where the second stairwell of a bar begins, along the corridor from the core.
+    pub far: Option<i32>,
+    /// How its corridor runs, where that is known.
+    pub scheme: Option<Scheme>,
     /// How far south and north a wing may reach before it pushes others away, in its own layout.
     pub between: Option<(i32, i32)>,
 }
@@ -99,7 +107,16 @@ impl Core {
         if graph.robots.iter().any(Robot::is_fitted) {
             two_leaves(brief, &stairs, storeys.stairs.landing_m);
         }
-        Some(Self { host, boxes, width: along, depth, far: far.map(|f| (f, width)), below: None })
+        Some(Self {
+            host,
+            boxes,
+            width: along,
+            depth,
+            far: far.map(|f| (f, width)),
+            gable: false,
+            least: 0,
+            below: None,
+        })
     }
 
     /// Returns true for rooms that stand where the core puts them.

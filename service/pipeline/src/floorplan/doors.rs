@@ -48,6 +48,10 @@ const END_WALL: f64 = 1.8;
 /// 60 people at 2.5 m^2: Approved Document B, table 2.2).
 const SECOND_DOOR_M2: f64 = 150.0;
 const BETWEEN_DOORS_M: f64 = 6.0;
+/// Farthest that the ways out of a room are told apart by, m.
+const MOST_WAY_M: f64 = 100.0;
+/// People up to whom one way out is enough, in a room and in a building (IBC 1006.2, office_us_single_exit_max_occupants).
+const ONE_EXIT_PEOPLE: u32 = 49;
 /// Floor area of a station from which on it is open to two corridors, m^2, how far apart these are at least, and the widest
 /// opening to the second, m.
 const TWO_FRONTS_M2: f64 = 12.0;
@@ -134,6 +138,7 @@ fn lay(site: &Site<'_>, entrance_first: bool, rng: &mut Stream) -> Laid {
     site.lay_second_fronts(&mut laid);
     site.lay_entrances(after, &mut laid);
     site.lay_exits(&mut laid);
+    site.lay_room_exits(&mut laid);
     site.lay_second_doors(&mut laid, rng);
     laid.settle();
     laid.cost += PASSED * f64::from(site.passed(&laid));
@@ -394,6 +399,38 @@ impl Site<'_> {
                 return;
             }
             let spots = self.entrance_spots(ends.remove(at), spine, false, &laid.spots);
+            laid.take_best(spots);
+        }
+    }
+
+    /// Places a way out of its own for each room of more people than may share one, and for the fullest room of a building of
+    /// so many that has one door to outdoors: as far from the other doors of the room as its walls allow.
+    fn lay_room_exits(&self, laid: &mut Laid) {
+        let brief = self.brief;
+        if !brief.second_exit || brief.upper || brief.hub {
+            return;
+        }
+        let outside = |l: &Laid| l.spots.iter().filter(|s| s.door.room_ids.len() == 1).count();
+        let all: u32 = brief.rooms.iter().map(|r| r.people).fold(0, u32::saturating_add);
+        let fullest =
+            (0..brief.rooms.len()).filter(|&r| brief.rooms[r].people > 0).max_by_key(|&r| brief.rooms[r].people);
+        for room in 0..brief.rooms.len() {
+            let alone = all > ONE_EXIT_PEOPLE && outside(laid) < 2 && fullest == Some(room);
+            if Some(room) == brief.spine || brief.rooms[room].people <= ONE_EXIT_PEOPLE && !alone {
+                continue;
+            }
+            let id = &brief.rooms[room].id;
+            let own: Vec<Point> =
+                laid.spots.iter().filter(|l| l.door.room_ids.contains(id)).map(|l| l.door.line.middle()).collect();
+            if laid.spots.iter().any(|l| l.door.room_ids == [id.clone()]) {
+                continue;
+            }
+            let away = |spot: &Spot| {
+                own.iter().map(|p| p.distance(spot.door.line.middle())).fold(f64::MAX, f64::min).min(MOST_WAY_M)
+            };
+            let walls = self.stretches.iter().filter(|s| s.only_room() == Some(room));
+            let mut spots: Vec<Spot> = walls.flat_map(|s| self.entrance_spots(s, room, false, &laid.spots)).collect();
+            spots.iter_mut().for_each(|spot| spot.penalty = MOST_WAY_M - away(spot));
             laid.take_best(spots);
         }
     }

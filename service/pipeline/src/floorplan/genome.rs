@@ -185,6 +185,7 @@ impl Genome {
             let band = &mut genome.bands[CORE_BAND];
             band.depth = core.depth;
             let at = rng.below(band.cells.len() + 1);
+            let at = if core.gable { 0 } else { at };
             band.cells.insert(at, Cell::new(core.host));
         }
         genome

@@ -226,7 +226,7 @@ fn schemes(brief: &Brief, domain: &Domain, rng: &mut Stream) -> Vec<Scheme> {
     let rooms = brief.rooms.len().min(most);
     // en suites and the like make no corridor longer
     let along = brief.rooms.iter().filter(|r| r.host.is_none()).count().min(most);
-    if brief.hub {
+    if brief.hub || brief.core.as_ref().is_some_and(|c| c.gable) {
         return vec![Scheme::Straight];
     }
     let units = brief.rooms.iter().any(|r| r.unit.is_some_and(|u| u > 0));

@@ -19,6 +19,9 @@ const COURT_M: f64 = 5.0;
 /// a room lies at its end).
 pub(super) const ONE_WAY_M: f64 = 15.0;
 
+/// What a cell between the core and the end of its band misses, in meters, where the other end has stairs too.
+const AT_END: f64 = 2.0;
+
 /// What a meter between the depth of the core and that of its band counts, in meters of notch.
 const CORE_STEP: f64 = 6.0;
 
@@ -36,6 +39,8 @@ pub(super) struct Layout {
     pub core: Option<Frame>,
     /// How the wings stand, in a building of wings.
     pub comb: Comb,
+    /// Where the second stairwell of a bar begins, along the corridor from the core.
+    pub far: Option<i32>,
 }
 
 /// Least, wished and largest width of a cell for a band depth, lattice units.
@@ -125,6 +130,7 @@ impl Task<'_, '_> {
 pub(super) fn realize(brief: &Brief, genome: &Genome, scratch: &mut Scratch, layout: &mut Layout) {
     layout.boxes.clear();
     (layout.misfit, layout.notch, layout.one_way, layout.core) = (0.0, 0.0, 0.0, None);
+    layout.far = None;
     scratch.spans.clear();
     let Some(spine) = brief.spine else { return };
     let mut task = Task { brief, genome, spine, scratch, misfit: 0.0, layout };
@@ -155,6 +161,11 @@ fn straight(task: &mut Task<'_, '_>) {
     let top = Row::new(task, 0, et[0] + et[1]);
     let bottom = Row::new(task, 1, eb[0] + eb[1]);
     let mut len = solve(&[&top, &bottom], &mut task.misfit);
+    let gable = brief.core.as_ref().filter(|c| c.gable && c.far.is_some());
+    if let Some(core) = gable {
+        let wish = core.below.as_ref().and_then(|b| b.far).unwrap_or(len.max(core.least));
+        len = within(&[&top, &bottom], wish).unwrap_or(len);
+    }
     if brief.hub {
         (len, w) = hub_size(brief, task.spine, len, &mut task.misfit);
     }
@@ -170,6 +181,9 @@ fn straight(task: &mut Task<'_, '_>) {
     }
     fill(task, &top.at((-et[0], w), (1, 0), (0, 1)), len + et[0] + et[1]);
     fill(task, &bottom.at((-eb[0], 0), (1, 0), (0, -1)), len + eb[0] + eb[1]);
+    if gable.is_some() {
+        second_stairs(task, len, w);
+    }
     for (side, cap) in caps.iter().enumerate() {
         let Some((cap, width)) = cap else { continue };
         let (y0, y1) =
@@ -177,6 +191,29 @@ fn straight(task: &mut Task<'_, '_>) {
         let (x0, x1) = if side == 0 { (-width, 0) } else { (len, len + width) };
         task.layout.boxes.push((cap.room, Cellbox::new(x0, y0, x1, y1)));
     }
+}
+
+/// Sets the second stairwell at the end of the corridor that the core is not at, where that of the storey below is.
+fn second_stairs(task: &mut Task<'_, '_>, len: i32, w: i32) {
+    let Some(core) = task.brief.core.as_ref() else { return };
+    let (Some((stairs, width)), Some(frame)) = (core.far, task.layout.core) else { return };
+    // the core is at one end, so that the corridor is as long on every storey
+    let place = |cells: &[Cell]| cells.iter().position(|c| c.host == core.host);
+    let before = task.genome.bands.iter().filter_map(|b| place(&b.cells)).sum::<usize>();
+    task.misfit += AT_END * before as f64 + if task.genome.caps.iter().any(Option::is_some) { AT_END } else { 0.0 };
+    let end = len - frame.origin.0;
+    let from = core.below.as_ref().and_then(|b| b.far).unwrap_or(end);
+    // rooms beyond the stairs, or a corridor that goes on alone to them
+    let gap = meters(from - end);
+    task.misfit += (-gap).max(0.0) + if gap > 0.0 { gap.min((MIN_NOTCH_M - gap).max(0.0)) } else { 0.0 };
+    task.layout.notch += 2.0 * gap.max(0.0);
+    if gap > 0.0 {
+        let reach = frame.origin.0 + from;
+        task.spine_box(Cellbox::new(len, 0, reach, w));
+    }
+    let shape = frame.place(from, from + core.depth, -width, 0);
+    task.layout.boxes.push((stairs, shape));
+    task.layout.far = Some(from);
 }
 
 /// Returns length and width of a hub room that must be `len` long at least, from its area.
@@ -323,6 +360,14 @@ fn solve(rows: &[&Row<'_>], misfit: &mut f64) -> i32 {
         *misfit += meters(1 - len);
     }
     len.max(1)
+}
+
+/// Returns the length closest to a wish that the longest row can have; shorter ones end early.
+fn within(rows: &[&Row<'_>], wish: i32) -> Option<i32> {
+    let used = || rows.iter().filter(|r| !r.cells.is_empty());
+    let low = used().map(|r| r.sum.min - r.offset).max()?;
+    let high = used().map(|r| r.sum.max - r.offset).max()?;
+    Some(wish.clamp(low, high.max(low)).max(1))
 }
 
 /// Lays the cells of a row along its frame.

@@ -66,7 +66,7 @@ pub(super) struct Candidate {
 /// Returns the best candidate found, of few steps when asked to stop; its `score.hard` is above 0 when none is sound.
 pub(super) fn search(brief: &Brief, schemes: &[Scheme], rng: &mut Stream, stop: Stop<'_>) -> Option<Candidate> {
     let weights = taste(brief, rng);
-    if brief.core.as_ref().is_some_and(|c| c.far.is_some()) {
+    if brief.core.as_ref().is_some_and(|c| c.far.is_some() && !c.gable) {
         return compose(brief, &weights, rng, stop);
     }
     if schemes == [Scheme::Comb] && !brief.hub && brief.core.is_none() {

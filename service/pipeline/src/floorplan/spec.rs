@@ -66,6 +66,8 @@ pub(super) struct RoomSpec {
     /// True for rooms into which no leaf opens.
     pub slides: bool,
     pub entrance: bool,
+    /// People who work, meet or wait there, as the scene graph says.
+    pub people: u32,
     /// Clear width of the gate through which its vehicles come in, or of its own door to outdoors, m.
     pub gate: Option<f64>,
     pub door_width: f64,
@@ -460,6 +462,7 @@ fn room_spec(
             || graph.accessible && kind.wet && kind.privacy == Privacy::Private
             || robots && domain.circulation.automatic_doors && kind.robot.iter().any(|u| *u != RobotUse::KeepOut),
         entrance: room.entrance,
+        people: room.occupants.filter(|_| kind.zone != Zone::Night).unwrap_or(0),
         gate,
         door_width: door_width.max(robot),
         ceiling_height: kind.ceiling_height_m,

@@ -1,7 +1,7 @@
 //! Several storeys: each is planned by itself around the common core, the ground floor first, the others above it.
 
 use d3dgen_knowledge::Limits;
-use d3dgen_model::domain::{Domain, Storeys};
+use d3dgen_model::domain::{Domain, Scheme, Storeys};
 use d3dgen_model::floorplan::{CostTerm, Floorplan};
 use d3dgen_model::geometry::to_mm;
 use d3dgen_model::scene_graph::{Note, SceneGraph};
@@ -10,19 +10,25 @@ use d3dgen_model::storeys::{Level, LinkKind};
 
 use super::assemble::{Turn, assemble, turned_in_place};
 use super::core::{Below, Core, in_core, merged};
-use super::lattice::Cellbox;
+use super::genome::is_nestable;
+use super::lattice::{Cellbox, INNER_HALF_M, meters, nearest};
 use super::search::search;
 use super::spec::Brief;
-use super::{ATTEMPTS, schemes};
+use super::{ATTEMPTS, LONGEST_BAR, schemes};
 use crate::{Error, Stop};
 
 /// Share of a storey that may jut out over the one below without a word.
 pub(super) const OVERHANG_SHARE: f64 = 0.10;
 /// Plans of a storey that are compared when the first ones jut out further.
-const COMPARED: usize = 4;
+const COMPARED: usize = 6;
 const COMPARED_LARGE: usize = 2;
 /// Heights of storeys are whole multiples of this, m.
 const HEIGHT_STEP_M: f64 = 0.05;
+
+/// Depth of rooms along a corridor by the side of a square of their area, and its range, m.
+const DEPTH_BY_SIDE: f64 = 0.75;
+const USUAL_DEPTH_M: f64 = 4.8;
+const MOST_DEPTH_M: f64 = 10.0;
 
 /// A planned storey.
 struct Planned {
@@ -62,6 +68,50 @@ pub(super) fn generate(
         brief.core = Some(core.ok_or_else(missing)?);
         raise_stairwells(brief, graph, (i + 1 < numbers.len()).then(|| heights[i] - 0.01));
     }
+    // two stairs of a storey that is one bar are at its ends; where that does not work out it has wings
+    let mut bars = briefs.iter().all(|b| {
+        let along = b.rooms.iter().filter(|r| r.host.is_none()).count();
+        along <= LONGEST_BAR && b.form.is_none() && b.core.as_ref().is_some_and(|c| c.far.is_some())
+    });
+    let least = briefs.iter().map(bar_length).max().unwrap_or(0);
+    briefs.iter_mut().filter_map(|b| b.core.as_mut()).for_each(|c| c.least = least);
+    loop {
+        briefs.iter_mut().filter_map(|b| b.core.as_mut()).for_each(|c| c.gable = bars);
+        match stack(&mut briefs, graph, domain, (turn, &numbers), stop) {
+            Ok(planned) => {
+                let ground = numbers.iter().position(|&l| l == 0).unwrap_or(0);
+                return Ok(stacked(graph, planned, &numbers, &heights, ground));
+            }
+            Err(Error::Infeasible { .. }) if bars => bars = false,
+            Err(error) => return Err(error),
+        }
+    }
+}
+
+/// Returns about how long a storey is whose rooms stand on both sides of one corridor, lattice units.
+fn bar_length(brief: &Brief) -> i32 {
+    let depth = |area: f64| (DEPTH_BY_SIDE * area.sqrt()).clamp(USUAL_DEPTH_M, MOST_DEPTH_M);
+    let room = |&i: &usize| Some(i) != brief.spine && !brief.in_core(i);
+    let fronts = (0..brief.rooms.len()).filter(room).map(|i| {
+        let spec = &brief.rooms[i];
+        let front = (spec.area_target / depth(spec.area_target)).max(spec.min_dimension) + 2.0 * INNER_HALF_M;
+        // half of the small ones are cut out of larger rooms
+        if is_nestable(brief, i) { 0.5 * front } else { front }
+    });
+    let fronts: Vec<f64> = fronts.collect();
+    let core = brief.core.as_ref().map_or(0.0, |c| meters(c.width));
+    let half = (core + fronts.iter().sum::<f64>()) / 2.0;
+    nearest(fronts.into_iter().fold(half, f64::max))
+}
+
+/// Plans the storeys one after the other, from the ground up and then down.
+fn stack(
+    briefs: &mut [Brief],
+    graph: &SceneGraph,
+    domain: &Domain,
+    (turn, numbers): (Turn, &[i32]),
+    stop: Stop<'_>,
+) -> Result<Vec<Planned>, Error> {
     let ground = numbers.iter().position(|&l| l == 0).unwrap_or(0);
     let mut planned: Vec<Option<Planned>> = numbers.iter().map(|_| None).collect();
     let order = (ground..numbers.len()).map(|i| (i, i.checked_sub(1).filter(|_| i > ground)));
@@ -79,8 +129,7 @@ pub(super) fn generate(
         };
         planned[i] = Some(found.map_err(infeasible)?);
     }
-    let planned: Vec<Planned> = planned.into_iter().flatten().collect();
-    Ok(stacked(graph, planned, &numbers, &heights, ground))
+    Ok(planned.into_iter().flatten().collect())
 }
 
 /// Returns the height of a storey from floor to floor, m.
@@ -114,7 +163,12 @@ fn storey(
     let mut best: Option<Planned> = None;
     let mut compared = 0;
     for _ in 0..ATTEMPTS {
-        let schemes = schemes(brief, domain, rng);
+        let mut schemes = schemes(brief, domain, rng);
+        // storeys whose corridors run alike lie on each other
+        let bar = |s: Scheme| matches!(s, Scheme::Straight | Scheme::Capped);
+        if let Some(below) = brief.core.as_ref().and_then(|c| c.below.as_ref()?.scheme) {
+            schemes.sort_by_key(|s| !(*s == below || bar(*s) && bar(below)));
+        }
         let Some(found) = search(brief, &schemes, rng, stop) else { break };
         if stop.is_set() {
             break;
@@ -127,9 +181,17 @@ fn storey(
         let name = format!("{:?}", found.scheme).to_lowercase();
         match assemble(brief, &turned_in_place(&boxes, turn), &found.score, seed, &name, None, rng) {
             Ok(plan) => {
-                let comb = brief.core.as_ref().is_some_and(|c| c.far.is_some()).then_some(found.layout.comb);
+                let wings = brief.core.as_ref().is_some_and(|c| c.far.is_some() && !c.gable);
+                let comb = wings.then_some(found.layout.comb);
                 let comb_built = comb.is_some();
-                let below = Below { outline: merged(&boxes), by_core: true, comb, between: None };
+                let below = Below {
+                    outline: merged(&boxes),
+                    by_core: true,
+                    comb,
+                    far: found.layout.far,
+                    scheme: Some(found.scheme),
+                    between: None,
+                };
                 let overhang = found.score.overhang;
                 if best.as_ref().is_none_or(|b| overhang < b.overhang) {
                     best = Some(Planned { plan, below, overhang });

@@ -22,6 +22,11 @@ const MOST_SCALE: f64 = 1.3;
 /// Rooms of a storey from which on a building has two stairs.
 const TWO_STAIRS: usize = 16;
 
+/// The least floor of such a storey beside its corridor, m^2: on less all rooms are within 35 m of one stair (ASR A2.3).
+const TWO_STAIRS_M2: f64 = 300.0;
+/// The same where the prompt asks for two.
+const LEAST_FOR_TWO: usize = 6;
+
 /// Rooms that stay together, with the storey they must or would be on.
 struct Cluster<'p> {
     rooms: Vec<usize>,
@@ -354,10 +359,22 @@ fn links(
 ) -> Vec<VerticalLink> {
     let domain: &Domain = reading.domain;
     let Some(rules) = &domain.circulation.storeys else { return Vec::new() };
-    let most = levels.iter().map(|l| rooms.iter().filter(|r| r.level == *l).count()).max().unwrap_or(0);
+    let here = |level: i32| rooms.iter().filter(move |r| r.level == level);
+    let most = levels.iter().map(|l| here(*l).count()).max().unwrap_or(0);
+    // many small rooms are no long way
+    let large = levels
+        .iter()
+        .any(|l| here(*l).count() >= TWO_STAIRS && here(*l).map(|r| r.target_area_m2).sum::<f64>() >= TWO_STAIRS_M2);
     let mut wanted = vec![(LinkKind::Stairs, &rules.stairs.room_type, "stairs_a")];
-    if most >= TWO_STAIRS {
+    let asked = reading.storeys.stairs;
+    if large || asked > 1 && most >= LEAST_FOR_TWO {
         wanted.push((LinkKind::Stairs, &rules.stairs.room_type, "stairs_b"));
+    }
+    let planned = wanted.len() as u32;
+    if asked > planned {
+        let message =
+            format!("{asked} staircases were asked for; storeys of up to {most} rooms were planned with {planned}");
+        reading.conflicts.push(note("fewer_stairs", message));
     }
     if let Some(elevator) = &rules.elevator {
         let usual = elevator.from_levels.is_some_and(|n| levels.len() >= n as usize);

@@ -4,6 +4,7 @@
 //! with the modules about words, `program` completes the rooms, `rooms` names, sizes and furnishes them, `edges`
 //! connects them.
 
+mod apiece;
 mod beds;
 mod building;
 mod compounds;
@@ -34,6 +35,7 @@ mod seats;
 mod senses;
 mod sharing;
 mod single;
+mod spread;
 mod stations;
 mod stays;
 mod storeys;
@@ -134,6 +136,7 @@ fn assemble(request: &Request, mut reading: Reading, planned: &[Planned]) -> Sce
         let areas: Vec<f64> = rooms.iter().map(|r| r.target_area_m2).collect();
         let dealt = deal::deal(&mut reading, planned, &areas, &levels);
         rooms.iter_mut().zip(dealt).for_each(|(room, level)| room.level = level);
+        workers::name_toilets(reading.domain, &mut rooms);
         deal::even_out(planned, &mut rooms, &levels);
         let (all, web, links) = deal::connect(&mut reading, planned, rooms, &levels);
         rooms = all;

@@ -15,6 +15,7 @@ use super::reading::{MAX_ROOMS, MOST_IN_OFFICE, Reading, is_dwelling};
 use super::rooms::most_docks;
 use super::seated;
 use super::seats;
+use super::spread;
 use super::stations;
 use super::units;
 use super::vital;
@@ -120,12 +121,15 @@ pub(super) fn complete<'a>(reading: &mut Reading<'a>) -> Vec<Planned<'a>> {
     house_robots(reading, &mut rooms);
     let mut rooms = units::divide(reading, rooms);
     layout::follow(reading, &mut rooms);
-    finish(reading, rooms)
+    let mut rooms = finish(reading, rooms);
+    spread::open_offices(reading, &mut rooms);
+    rooms
 }
 
 /// Gives rooms that are settled their people and hosts, and states which of them the prompt does not name.
 pub(super) fn finish<'a>(reading: &mut Reading<'a>, mut rooms: Vec<Planned<'a>>) -> Vec<Planned<'a>> {
     wash_on_every_storey(reading, &mut rooms);
+    serve_every_storey(reading, &mut rooms);
     if reading.building_type.as_ref().is_some_and(|b| words().dwelling.shared.contains(b)) {
         // a room to sleep and work in is not to come out small
         let own = |r: &&mut Planned| r.room_type == words().dwelling.bedroom && r.area_m2.is_none();
@@ -269,9 +273,9 @@ fn make_room_for_companions(reading: &Reading, rooms: &mut [Planned]) {
 /// Sees to it that there are as many toilets and bathrooms as storeys, where the prompt leaves the rooms open.
 fn wash_on_every_storey<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
     let storeys = reading.storeys.levels.iter().filter(|l| **l >= 0).count();
-    let Some(rules) = reading.domain.circulation.storeys.as_ref().filter(|_| storeys > 1 && !reading.closed) else {
-        return;
-    };
+    // where people work, a list of rooms that says nothing of that does not mean that one goes to another storey
+    let open = !reading.closed || workers::is_office(reading.program) && !reading.only;
+    let Some(rules) = reading.domain.circulation.storeys.as_ref().filter(|_| storeys > 1 && open) else { return };
     let kinds = rules.each_level_room_types.iter().filter_map(|id| reading.domain.room_type(id));
     let wet: Vec<&RoomType> =
         kinds.filter(|k| k.wet && !reading.wishes.forbidden.contains(&k.id) && k.access != Access::Host).collect();
@@ -287,6 +291,20 @@ fn wash_on_every_storey<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>)
         let spare = rooms.iter().rposition(|r| !r.requested && !is_wet(r) && r.kind.access != Access::Host);
         let Some(spare) = spare.filter(|s| *s > storeys) else { return };
         rooms[spare] = Planned::new(&kind.id, kind);
+    }
+}
+
+/// Sees to it that who works on a storey has a place for tea there, where the prompt leaves the rooms open.
+fn serve_every_storey<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
+    let storeys = reading.storeys.levels.iter().filter(|l| **l >= 0).count();
+    let open = storeys > 1 && !reading.closed && reading.total.is_none() && workers::is_office(reading.program);
+    let Some(rules) = reading.domain.circulation.storeys.as_ref().filter(|_| open) else { return };
+    let served =
+        |id: &&String| reading.program.rooms.iter().any(|e| &e.room_type == *id && e.area_per_person_m2.is_some());
+    let kinds = rules.each_level_room_types.iter().filter(served).filter_map(|id| reading.domain.room_type(id));
+    for kind in kinds.filter(|k| !reading.wet.has_toilet(k) && may_grow(reading, &k.id)) {
+        let have = rooms.iter().filter(|r| r.room_type == kind.id).count();
+        rooms.extend((have..storeys).filter(|_| have > 0).map(|_| Planned::new(&kind.id, kind)));
     }
 }
 
@@ -794,7 +812,8 @@ fn hold_beds(reading: &Reading, rooms: &mut [Planned]) {
         for room in rooms_of(held, rooms) {
             room.occupants = Some(held.beds);
             if seated::desks(reading.domain, room.kind).is_some() {
-                room.size_for_people(desk_area_m2(reading.domain, &room.room_type) * f64::from(held.beds));
+                let area = desk_area_m2(reading.domain, &room.room_type) * f64::from(held.beds);
+                room.size_for_people(area + workers::beside_desks(held.beds));
             }
             let Some([low, high]) = sleeps(reading.domain, room.kind) else { continue };
             if !(low..=high).contains(&held.beds) || high > low {
@@ -839,6 +858,11 @@ fn hang_on_hosts(reading: &mut Reading, rooms: &mut [Planned]) {
             hosted && bath && !room.kind.hosts.contains(&p.b)
         };
         let belongs = pairs.iter().find(|p| p.a == room.room_type).filter(|p| !through_bath(p));
+        // "management with boardroom": nobody meets behind somebody's office
+        let shared = room.kind.privacy != Privacy::Private && room.kind.zone == Zone::Day && !hosted;
+        let through = |p: &&Pair| domain.room_type(&p.b).is_some_and(|k| k.privacy == Privacy::Private);
+        let works = workers::is_office(reading.program);
+        let belongs = belongs.filter(|p| !(works && shared && through(p)));
         if !hosted && belongs.is_none() {
             continue;
         }

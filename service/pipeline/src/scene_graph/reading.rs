@@ -27,8 +27,8 @@ use super::wishes::{self, MANY, PerHost, Text, Wish, Wishes};
 use super::words::{ByBedrooms, Spoken, Tag, words};
 use super::workers;
 use super::{
-    Request, docks, dwelling, fixtures, keeps, language, measures, numbers, qualities, robots, seated, sharing, single,
-    stays, umlauts, unread,
+    Request, apiece, docks, dwelling, fixtures, keeps, language, measures, numbers, qualities, robots, seated, sharing,
+    single, stays, umlauts, unread,
 };
 use crate::Error;
 
@@ -255,7 +255,11 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     }
     senses::settle(&tokens, &mut mentions, &vocabulary, domain, program);
     subsets::settle(&tokens, &spoken, &mut mentions, domain);
-    let seated = if lives { Vec::new() } else { seated::read(&tokens, &mut mentions, (domain, program), &spoken) };
+    let (mut seated, desk_words) =
+        if lives { Default::default() } else { seated::read(&tokens, &mut mentions, (domain, program), &spoken) };
+    let apiece = apiece::Reader { tokens: &tokens, domain, program, spoken: &spoken, list_from: building.list_from };
+    let (single_offices, apiece_words) = apiece.each_an_office(&mut mentions);
+    seated.extend(single_offices);
     let elsewhere: Vec<Span> = machines.spans.iter().chain(&place_spans).chain(&building.head).copied().collect();
     let stations = stations::Reader {
         tokens: &tokens,
@@ -278,6 +282,9 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         seated: &seated,
     };
     let mut places = if lives { seats::Found::default() } else { places.read(&mut mentions) };
+    let open_desks = apiece.desks_of_the_list(&mut mentions, &desk_words);
+    let counts_desks = open_desks.is_some();
+    seated.extend(open_desks);
     not_things.extend(places.spans.iter().copied());
     let stationed = mentions.iter().filter_map(|m| {
         Some(Held {
@@ -333,7 +340,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     };
     let mut storeys = storeys::read(&said_storeys, country, &mut conflicts);
     furnish_basement(&mut storeys, &mut wishes, domain);
-    wish_for_storeys(&storeys, &mut wishes, domain);
+    wish_for_storeys(&mut storeys, &mut wishes, domain);
     name_private_bathrooms(&mut wishes, domain, lives);
     if !lives {
         vital::rule_out(domain, &wet, &mut wishes);
@@ -376,8 +383,8 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         (held, people.occupancy.beds) = (settled.held, settled.beds.or(parts.beds));
         let desks: u32 = seated.iter().map(|s| s.count.saturating_mul(s.beds)).fold(0, u32::saturating_add);
         let heads = &mut people.occupancy;
-        let counted = if heads.desks.is_some() { &mut heads.desks } else { &mut heads.staff };
-        if counted.is_some() {
+        let counted = if heads.desks.is_some() || counts_desks { &mut heads.desks } else { &mut heads.staff };
+        if counted.is_some() || counts_desks {
             *counted = (*counted).max(Some(desks));
         }
         held.extend(seated);
@@ -420,6 +427,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     }
     spans.extend(station_words);
     spans.extend(told_again);
+    spans.extend(apiece_words);
     spans.extend(places.spans);
     spans.extend(called.iter().map(|c| c.span));
     let stays = if lives { None } else { stays::read(&tokens, &spoken) };
@@ -621,7 +629,7 @@ fn program_by_bedrooms<'a>(domain: &'a Domain, program: &'a Program, wishes: &Wi
 }
 
 /// Counts rooms on every storey for each of them, and leaves stairs and elevators to what joins the storeys.
-fn wish_for_storeys(storeys: &Storeys, wishes: &mut Wishes, domain: &Domain) {
+fn wish_for_storeys(storeys: &mut Storeys, wishes: &mut Wishes, domain: &Domain) {
     if storeys.levels.len() < 2 {
         return;
     }
@@ -640,8 +648,19 @@ fn wish_for_storeys(storeys: &Storeys, wishes: &mut Wishes, domain: &Domain) {
         }
     }
     if let Some(rules) = &domain.circulation.storeys {
-        let joins =
-            |id: &String| *id == rules.stairs.room_type || rules.elevator.as_ref().is_some_and(|e| e.room_type == *id);
+        let spaces = |id: &str| domain.room_type(id).map_or(&[][..], |k| &k.spaces);
+        // "two staircases" are what joins the storeys, whatever room a building of one storey has for that
+        let is = |id: &str, of: &str| {
+            let circulates = domain.room_type(id).is_some_and(|k| k.zone == Zone::Circulation);
+            id == of || circulates && spaces(id).iter().any(|s| spaces(of).contains(s))
+        };
+        let climbs = |id: &str| is(id, &rules.stairs.room_type);
+        let lifts = |id: &str| rules.elevator.as_ref().is_some_and(|e| is(id, &e.room_type));
+        let joins = |id: &String| climbs(id) || lifts(id);
+        let stairs = wishes.wishes.iter().filter(|w| w.exact && climbs(&w.room_type)).map(|w| w.count).max();
+        storeys.stairs = stairs.unwrap_or(0);
+        storeys.elevator = storeys.elevator.or(wishes.wishes.iter().any(|w| lifts(&w.room_type)).then_some(true));
+        storeys.wanted.retain(|w| !joins(&w.room_type));
         wishes.wishes.retain(|w| !joins(&w.room_type));
         wishes.pairs.retain(|p| !joins(&p.a) && !joins(&p.b));
         wishes.forbidden.retain(|f| !joins(f));

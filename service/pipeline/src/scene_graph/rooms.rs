@@ -12,7 +12,9 @@ use super::beds;
 use super::places::note;
 use super::program::{Planned, circulation_share};
 use super::reading::{Reading, is_dwelling};
+use super::seats::MOST_IN_TEAM;
 use super::words::words;
+use super::workers::is_office;
 
 /// Kind of the robots that clean.
 pub(crate) const CLEANING: &str = "cleaning";
@@ -76,7 +78,8 @@ pub(super) fn describe(reading: &mut Reading, planned: &[Planned]) -> Vec<GraphR
                 None => room.kind.description.clone(),
             },
             target_area_m2: areas[i],
-            area_range_m2: area_range(room, areas[i], !lives || reading.area_m2.is_some()),
+            area_range_m2: kept_range(reading, room, areas[i])
+                .unwrap_or_else(|| area_range(room, areas[i], !lives || reading.area_m2.is_some())),
             wished_assets: wished_assets(reading.domain, room.kind, named.get(&i).map_or(&[], Vec::as_slice)),
             occupants: room.occupants.filter(|n| *n > 0),
             circulation: false,
@@ -144,6 +147,16 @@ fn label(room: &Planned) -> String {
     letters.next().map_or(words.clone(), |first| first.to_uppercase().chain(letters).collect())
 }
 
+/// Returns the areas of offices for one and of stores in a building of a given area, whose floor to spare goes elsewhere.
+fn kept_range(reading: &Reading, room: &Planned, target: f64) -> Option<[f64; 2]> {
+    let small = room.kind.privacy == Privacy::Private || room.kind.zone == Zone::Service;
+    let open = room.area_m2.is_none() && room.people_area_m2.is_none() && room.size.is_none();
+    let kept = small && open && is_office(reading.program) && reading.area_m2.is_some();
+    let range = room.kind.area_m2;
+    let most = tenth((ROOMY * range.target).max(target * (1.0 + AREA_TOLERANCE)));
+    kept.then(|| [range.min, range.max.min(most).max(target)])
+}
+
 /// Returns the areas allowed, net m^2: those of the type; close to the one the prompt gives, enough for the people in it.
 ///
 /// Bedrooms do not take what a small plan has left over (`wide` says that rooms may).
@@ -196,17 +209,27 @@ fn target_areas(reading: &mut Reading, planned: &[Planned]) -> Vec<f64> {
     let takes_all = |room: &Planned| {
         room.kind.zone != Zone::Service && room.kind.area_m2.max >= OPEN_ENDED * room.kind.area_m2.target
     };
-    let at = |scale: f64, roomy: bool| -> Vec<f64> {
+    let works = is_office(reading.program);
+    let at = |scale: f64, roomy: usize| -> Vec<f64> {
         let sized = planned.iter().zip(&areas).map(|(room, area)| {
             let range = room.kind.area_m2;
             let serves = room.kind.zone == Zone::Service;
-            let kept = !roomy && !takes_all(room);
+            let small = serves || room.kind.privacy == Privacy::Private;
+            let kept = !takes_all(room) && (roomy < 1 || roomy < 2 && works && small);
             match (room.area_m2, room.people_area_m2) {
                 (Some(_), _) => *area,
                 (_, Some(people)) => {
-                    // what serves so many people is no larger in a building with floor to spare
-                    let most = if serves || kept { range.max.min(ROOMY * people.max(range.min)) } else { range.max };
-                    (area * scale).clamp(range.min.max(CROWDED * people).min(most), most)
+                    // what serves so many people is no larger in a building with floor to spare, nor is a table for them
+                    let at_table = room.visited && room.kind.zone != Zone::Public;
+                    let most = if serves || kept || at_table {
+                        range.max.min(ROOMY * people.max(range.min))
+                    } else {
+                        range.max
+                    };
+                    // who is told to have a desk there has it
+                    let desks = works && room.occupants.is_some_and(|n| n <= MOST_IN_TEAM) && !room.visited;
+                    let least = if desks { 1.0 } else { CROWDED } * people;
+                    (area * scale).clamp(range.min.max(least).min(most), most)
                 }
                 _ if kept => (area * scale.min(ROOMY)).clamp(range.min, range.max),
                 _ => (area * scale).clamp(range.min, range.max),
@@ -214,8 +237,16 @@ fn target_areas(reading: &mut Reading, planned: &[Planned]) -> Vec<f64> {
         });
         sized.collect()
     };
-    let sum_at = |scale: f64, roomy: bool| at(scale, roomy).iter().sum::<f64>();
-    let roomy = sum_at(MOST_SCALE, false) < budget;
+    let sum_at = |scale: f64, roomy: usize| at(scale, roomy).iter().sum::<f64>();
+    // rooms for one and stores come last
+    let roomy = (0..2).find(|&roomy| sum_at(MOST_SCALE, roomy) >= budget).unwrap_or(2);
+    if roomy > 0 {
+        let needed = sum_at(1.0, 0) / for_rooms;
+        let message = format!(
+            "{total:.0} m2 are more than these rooms need (about {needed:.0} m2); they were planned larger than usual"
+        );
+        reading.assumptions.push(note("more_area_than_needed", message));
+    }
     let (mut low, mut high) = (0.01, MOST_SCALE);
     for _ in 0..48 {
         let middle = 0.5 * (low + high);

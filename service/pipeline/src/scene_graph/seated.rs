@@ -6,7 +6,8 @@ use d3dgen_model::domain::{Domain, Program, RoomType, Shape};
 
 use super::beds::Held;
 use super::mentions::{Mention, What};
-use super::text::Token;
+use super::seats::works_in;
+use super::text::{Span, Token};
 use super::words::{Spoken, Tag};
 
 /// Words between a room and the number of its desks, at most: "with up to".
@@ -31,14 +32,14 @@ pub(super) fn desks_of(domain: &Domain, item: &str) -> u32 {
     }
 }
 
-/// Reads how many desks rooms have; rooms "of 4 desks" become those of the domain that have as many.
+/// Reads how many desks rooms have, with the words for them; rooms "of 4 desks" become those of the domain that have as many.
 pub(super) fn read(
     tokens: &[Token],
     mentions: &mut [Mention],
     (domain, program): (&Domain, &Program),
     spoken: &[&Spoken],
-) -> Vec<Held> {
-    let mut out: Vec<Held> = Vec::new();
+) -> (Vec<Held>, Vec<Span>) {
+    let (mut out, mut words): (Vec<Held>, Vec<Span>) = (Vec::new(), Vec::new());
     let tagged = |i: usize, tag| spoken.iter().any(|s| s.tag_at(tokens, i, tag).is_some());
     for d in 1..mentions.len() {
         let people = matches!(mentions[d].what, What::Staff | What::People);
@@ -60,21 +61,29 @@ pub(super) fn read(
         let rooms = host.count.filter(|n| *n > 0).and_then(|n| u32::try_from(n).ok());
         let rooms = rooms.unwrap_or(if host.plural { 2 } else { 1 });
         let each = if per_room || of || rooms == 1 { each } else { each.div_ceil(rooms) };
+        let fits = |k: &&RoomType| desks(domain, k).is_some_and(|[low, high]| (low..=high).contains(&each));
+        let strange = |k: &&RoomType| !program.rooms.iter().any(|e| e.room_type == k.id);
+        let least = |k: &&RoomType| (strange(k), desks(domain, k).map(|[low, high]| (Reverse(low), high)));
         let id = match &host.what {
-            What::Room(id) => id.clone(),
+            What::Room(id) => {
+                // "a shared office with four desks" is larger than such a room is otherwise
+                let own = domain.room_type(id).filter(|k| works_in(domain, k));
+                let small = own.and_then(|k| desks(domain, k)).is_some_and(|[_, high]| each > high);
+                let larger = |k: &&RoomType| works_in(domain, k) && fits(k);
+                let kind = domain.room_types.iter().filter(|_| small).filter(larger).min_by_key(least);
+                kind.map_or_else(|| id.clone(), |k| k.id.clone())
+            }
             What::Total if host.count.is_some() && !host.article && (of || per_room) => {
-                let fits = |k: &&RoomType| desks(domain, k).is_some_and(|[low, high]| (low..=high).contains(&each));
-                let strange = |k: &&RoomType| !program.rooms.iter().any(|e| e.room_type == k.id);
-                let least = |k: &&RoomType| (strange(k), desks(domain, k).map(|[low, high]| (Reverse(low), high)));
                 let Some(kind) = domain.room_types.iter().filter(fits).min_by_key(least) else { continue };
-                mentions[d - 1].what = What::Room(kind.id.clone());
                 kind.id.clone()
             }
             _ => continue,
         };
+        mentions[d - 1].what = What::Room(id.clone());
         if domain.room_type(&id).and_then(|k| desks(domain, k)).is_some() {
             out.push(Held { room_type: id, count: rooms, beds: each });
+            words.push(mentions[d].span);
         }
     }
-    out
+    (out, words)
 }

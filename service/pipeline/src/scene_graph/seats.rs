@@ -11,7 +11,8 @@ use super::numbers::Number;
 use super::places::note;
 use super::text::{Kind, Span, Token};
 use super::words::{Spoken, Tag, words};
-use super::{seated, stations};
+use super::workers::is_office;
+use super::{seated, stations, unknown};
 
 /// Words between a room and the number of its places, at most: "with seating for up to".
 const MOST_BETWEEN: usize = 4;
@@ -21,6 +22,8 @@ const MOST_TO_COUNTERS: usize = 2;
 const MOST_BEFORE: usize = 2;
 /// Most places of one room that are taken at their word.
 const MOST_PLACES: i64 = 500;
+/// Most people at the one table of a room that no domain knows.
+const MOST_AT_TABLE: u32 = 30;
 /// Width of a seat of a bench, m.
 const SEAT_M: f64 = 0.55;
 /// Floor of a room beside what its places need, m^2: the way in, the display, the cupboard.
@@ -66,6 +69,11 @@ pub(super) fn seats_of(domain: &Domain, item: &str) -> u32 {
 /// Returns true for a counter at which several are served side by side.
 fn is_counter(domain: &Domain, line: &Furnishing) -> bool {
     line.required && line.max > 1 && domain.anchor(&line.item).is_some_and(|o| o.shape == Shape::Counter)
+}
+
+/// Returns true for rooms with counters side by side.
+pub(super) fn has_counters(domain: &Domain, kind: &RoomType) -> bool {
+    kind.furnishing.iter().any(|f| is_counter(domain, f))
 }
 
 /// Returns the most places at the one table of a room, or in rows; and the floor that so many places need, m^2. `None` for
@@ -132,6 +140,12 @@ impl Reader<'_> {
         self.counters(mentions, &mut out);
         let mut gone: Vec<usize> = Vec::new();
         for m in 0..mentions.len() {
+            if let Some((kind, n, noun)) = self.meets(mentions, m) {
+                mentions[m].what = What::Room(kind.id.clone());
+                out.seats.push(Held { room_type: kind.id.clone(), count: 1, beds: n });
+                gone.extend(noun);
+                continue;
+            }
             let Some(kind) = mentions[m].room_type().and_then(|id| self.domain.room_type(id)) else { continue };
             let seated = self.seated.iter().any(|s| s.room_type == kind.id);
             if seated || mentions[m].beds.is_some() || mentions[m].places.is_some() {
@@ -147,7 +161,8 @@ impl Reader<'_> {
                 continue;
             }
             let (desks, seats) = (most_desks(self.domain, kind), places(self.domain, kind, 1).is_some());
-            if desks == 0 && !seats {
+            // "an office with workshop for 15 people" is for so many
+            if desks == 0 && (!seats || kind.zone == Zone::Service) {
                 continue;
             }
             let team = |m: &Mention| desks > 2 && !m.plural && self.workers_before(m);
@@ -160,7 +175,7 @@ impl Reader<'_> {
             };
             let Some((n, noun)) = found else { continue };
             let Some(n) = Some(n).filter(|n| (1..=MOST_PLACES).contains(n)).map(|n| n as u32) else { continue };
-            let mention = &mentions[m];
+            let mention = mentions[m].clone();
             let counted = mention.count.filter(|n| *n > 0 && !mention.article).map(|n| n.min(MOST_PLACES) as u32);
             if counted.is_none() && mention.plural && desks == 0 {
                 continue;
@@ -176,6 +191,11 @@ impl Reader<'_> {
                 continue;
             }
             if desks > 2 || each <= desks {
+                // "newsroom for 20" is larger than such a room is otherwise
+                let open = self.domain.room_types.iter().max_by_key(|k| most_desks(self.domain, k));
+                let larger = open.filter(|k| each > desks && most_desks(self.domain, k) >= each);
+                let held = Held { room_type: larger.map_or(held.room_type, |k| k.id.clone()), ..held };
+                mentions[m].what = What::Room(held.room_type.clone());
                 // hot desks are one room
                 if counted.is_none() && mention.plural {
                     (mentions[m].count, mentions[m].plural) = (Some(1), false);
@@ -190,6 +210,28 @@ impl Reader<'_> {
         });
         out.halves = self.halves(mentions);
         out
+    }
+
+    /// Returns the type of room that an unknown one for so many people is, "signing room for 12 people": they sit around
+    /// one table there, and are none who work in the building.
+    fn meets(&self, mentions: &[Mention], m: usize) -> Option<(&RoomType, u32, Option<usize>)> {
+        let mention = &mentions[m];
+        let id = mention.room_type().filter(|id| self.domain.room_type(id).is_none() && is_office(self.program))?;
+        let one = mention.count.is_none_or(|n| n == 1) && !mention.plural;
+        if !one || !unknown::is_name_of(self.tokens, mention.span, id) {
+            return None;
+        }
+        let (n, noun) = self.after(mentions, m).or_else(|| self.before(mentions, m))?;
+        let n = u32::try_from(n).ok().filter(|n| (2..=MOST_AT_TABLE).contains(n))?;
+        let at_table = |k: &&RoomType| {
+            let table = |f: &Furnishing| f.max == 1 && f.required && f.arrangement == Arrangement::Center;
+            k.furnishing.iter().any(table)
+                && places(self.domain, k, n).is_some_and(|(most, _)| (n..500).contains(&most))
+        };
+        let listed = |k: &&RoomType| self.domain.programs.iter().flat_map(|p| &p.rooms).any(|e| e.room_type == k.id);
+        let kinds = self.domain.room_types.iter().filter(listed).filter(at_table);
+        let kind = kinds.min_by_key(|k| places(self.domain, k, n).map(|p| p.0))?;
+        Some((kind, n, noun))
     }
 
     fn tagged(&self, i: usize, tag: Tag) -> Option<usize> {

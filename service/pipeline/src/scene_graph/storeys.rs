@@ -67,6 +67,8 @@ pub(super) struct Storeys {
     pub wanted: Vec<Wanted>,
     /// True when an elevator is named, false when it is ruled out.
     pub elevator: Option<bool>,
+    /// Stairs that are counted: "two staircases"; 0 where none are.
+    pub stairs: u32,
     /// Robots that are wanted on every storey.
     pub robots_on_each: Vec<Span>,
     /// True for a basement of which the prompt says no room.
@@ -277,7 +279,8 @@ pub(super) fn read(text: &Text, country: Option<&str>, conflicts: &mut Vec<Note>
         wanted.push(Wanted { room_type: room_type.to_owned(), count, at });
     }
     let bare = (0..phrases.len()).any(|p| phrases[p].noun) && !wanted.iter().any(|w| w.at == Where::Level(-1));
-    Storeys { levels, wanted, elevator: elevator(tokens, spoken), robots_on_each, bare_basement: bare }
+    let elevator = elevator(tokens, spoken);
+    Storeys { levels, wanted, elevator, stairs: 0, robots_on_each, bare_basement: bare }
 }
 
 /// Returns the robots that a phrase says the storey of: "a cleaning robot on each floor", not "upstairs bedrooms".

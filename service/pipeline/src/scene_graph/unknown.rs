@@ -21,6 +21,14 @@ pub(super) fn room_at(
     }
 }
 
+/// Returns true for a room type that is the words of the prompt for it, and no room of another domain.
+pub(super) fn is_name_of(tokens: &[Token], span: Span, id: &str) -> bool {
+    let words = &tokens[span.start..span.end];
+    let german = ["raum", "zimmer"].iter().any(|end| id.ends_with(end));
+    let own = slug(words);
+    (span.end > span.start + 1 || german) && (id == own || id == own.trim_end_matches('s'))
+}
+
 fn is_name(tokens: &[Token], i: usize, spoken: &[&Spoken]) -> bool {
     let token = &tokens[i];
     let tags = [

@@ -122,6 +122,8 @@ pub(super) enum Tag {
     Everyone,
     /// All have a room of their own: "a room each".
     SingleRooms,
+    /// Words for a place to work behind a door, that may mean a whole building too: "bureau".
+    OfficeWords,
     /// "Half open plan, half offices": those who work there are shared out.
     Half,
     /// Counters of a room at which people are served: "service windows", "Schalter".
@@ -251,6 +253,8 @@ struct File {
     alike: Vec<Vec<String>>,
     /// Share of those who work there that has a seat in a room to eat in, by room type.
     eating: BTreeMap<String, f64>,
+    /// Seats in a room to wait in for each counter of the building, by room type.
+    waiting: BTreeMap<String, f64>,
     /// Whose the toilets of a place to work at are, one word each, as names of rooms begin.
     sexes: Vec<String>,
     /// Domain whose rooms are of all kinds of buildings.
@@ -280,6 +284,7 @@ pub(super) struct Words {
     pub many_vital: Vec<Vec<String>>,
     pub alike: Vec<Vec<String>>,
     pub eating: BTreeMap<String, f64>,
+    pub waiting: BTreeMap<String, f64>,
     pub sexes: Vec<String>,
     pub common_domain: String,
     /// Usual words of languages that are not read, folded, by English name of the language.
@@ -335,6 +340,7 @@ pub(super) fn words() -> &'static Words {
             many_vital: file.many_vital,
             alike: file.alike,
             eating: file.eating,
+            waiting: file.waiting,
             sexes: file.sexes,
             common_domain: file.common_domain,
             unread_languages: file

@@ -2,11 +2,12 @@
 //! break rooms and canteens, and the names that the prompt gives its rooms.
 
 use d3dgen_model::domain::{Domain, Occupants, Privacy, Program, RoomType, Zone};
+use d3dgen_model::scene_graph::GraphRoom;
 
 use super::places::note;
 use super::program::{Planned, desk_area_m2, head_count, places_to_work};
 use super::reading::{Reading, is_dwelling};
-use super::seats::{MOST_IN_TEAM, most_desks, places, works_in};
+use super::seats::{MOST_IN_TEAM, has_counters, most_desks, places, works_in};
 use super::vital;
 use super::wishes::{Wish, Wishes};
 use super::words::words;
@@ -22,6 +23,8 @@ const LEAST_OPEN: u32 = 3;
 const MOST_COUNTED: u32 = 3;
 /// Floor of the kitchen or counter of a room to eat in, as a share of its least area.
 const KITCHEN_SHARE: f64 = 0.45;
+/// Floor of a room for a team beside its desks, m^2.
+const BESIDE_DESKS_M2: f64 = 3.0;
 /// Most single offices that a share of the people gets.
 const MOST_SHARED_OUT: u32 = 60;
 
@@ -122,13 +125,19 @@ fn share_halves<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
     }
 }
 
-fn seat(reading: &Reading, room: &mut Planned, desks: u32) {
+/// Returns the floor of a small room beside its desks, m^2: the door and the cupboard.
+pub(super) fn beside_desks(desks: u32) -> f64 {
+    if (3..=MOST_IN_TEAM).contains(&desks) { BESIDE_DESKS_M2 } else { 0.0 }
+}
+
+/// Gives a room so many desks and the floor for them.
+pub(super) fn seat(reading: &Reading, room: &mut Planned, desks: u32) {
     room.occupants = Some(desks);
     if most_desks(reading.domain, room.kind) > 2 {
         let mut own = reading.program.rooms.iter().filter(|e| e.room_type == room.room_type);
         let each = own.find_map(|e| e.area_per_occupant_m2);
         let each = each.unwrap_or_else(|| desk_area_m2(reading.domain, &room.room_type));
-        room.size_for_people(each * f64::from(desks));
+        room.size_for_people(each * f64::from(desks) + beside_desks(desks));
     }
 }
 
@@ -144,6 +153,7 @@ fn desks(domain: &Domain, room: &Planned) -> u32 {
 fn give_desks<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
     let Some(people) = head_count(reading, Occupants::Staff) else { return };
     let domain = reading.domain;
+    seat_teams(reading, rooms);
     let open = |r: &Planned| most_desks(domain, r.kind) > MOST_IN_TEAM;
     let one_storey = reading.storeys.levels.len() == 1;
     if reading.total.is_none() && one_storey {
@@ -206,6 +216,19 @@ fn give_desks<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
     }
 }
 
+/// Gives the rooms for teams that the program adds as many desks as one of a usual size has: there are no more than are counted.
+fn seat_teams(reading: &Reading, rooms: &mut [Planned]) {
+    let team = |r: &&mut Planned| {
+        let size = most_desks(reading.domain, r.kind);
+        !r.requested && (3..=MOST_IN_TEAM).contains(&size) && r.occupants.is_none() && r.area_m2.is_none()
+    };
+    for room in rooms.iter_mut().filter(team) {
+        let Some([low, high]) = super::seated::desks(reading.domain, room.kind) else { continue };
+        let usual = room.kind.area_m2.target / desk_area_m2(reading.domain, &room.room_type);
+        seat(reading, room, (usual as u32).clamp(low, high));
+    }
+}
+
 /// Gives women and men a toilet each where many work, and a toilet for wheelchairs.
 fn part_toilets<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
     let domain = reading.domain;
@@ -216,33 +239,88 @@ fn part_toilets<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
     let people = places_to_work(reading, rooms);
     let own = |r: &Planned| r.room_type == kind.id;
     let fixed = reading.wishes.wishes.iter().any(|w| w.room_type == kind.id && w.exact);
-    let open = reading.total.is_none() && !reading.only && reading.storeys.levels.len() == 1;
+    let storeys = reading.storeys.levels.iter().filter(|l| **l >= 0).count().max(1);
+    let open = reading.total.is_none() && !reading.only;
     let may = |k: &RoomType| open && !reading.wishes.forbidden.contains(&k.id);
     let joins = !reading.closed || reading.may_join;
     let count = rooms.iter().filter(|r| own(r)).count();
     let mut added = None;
-    if count == 1 && people > PEOPLE_FOR_TWO && may(kind) && !fixed && rooms.iter().all(|r| r.unit.is_none()) {
-        rooms.push(Planned::new(&kind.id, kind));
+    // two on every storey
+    let each = people as usize / storeys;
+    let two = each > PEOPLE_FOR_TWO as usize && (1..2 * storeys).contains(&count);
+    if two && may(kind) && !fixed && rooms.iter().all(|r| r.unit.is_none()) {
+        rooms.extend((count..2 * storeys).map(|_| Planned::new(&kind.id, kind)));
         added = Some(kind);
     }
     let many = people > PEOPLE_FOR_ACCESSIBLE || rooms.len() > ROOMS_FOR_ACCESSIBLE;
+    // as many for the ones as for the others
+    if added.is_none()
+        && storeys == 1
+        && count > 1
+        && !count.is_multiple_of(words().sexes.len().max(1))
+        && may(kind)
+        && !fixed
+    {
+        rooms.push(Planned::new(&kind.id, kind));
+    }
     let missing = |k: &&RoomType| many && joins && may(k) && !rooms.iter().any(|r| r.room_type == k.id);
     if let Some(kind) = wheelchairs.filter(missing) {
         rooms.push(Planned::new(&kind.id, kind));
     }
     let toilets: Vec<usize> = (0..rooms.len()).filter(|&i| own(&rooms[i])).collect();
-    let sexes = &words().sexes;
-    if toilets.len() > 1 && toilets.len().is_multiple_of(sexes.len().max(1)) {
+    if toilets.len() > 1 && toilets.len().is_multiple_of(words().sexes.len().max(1)) {
         for (k, &i) in toilets.iter().enumerate() {
-            let whose = &sexes[k % sexes.len()];
-            let mut letters = whose.chars();
-            let whose: String = letters.next().map(|c| c.to_uppercase().chain(letters).collect()).unwrap_or_default();
-            rooms[i].called = Some(format!("{whose} {}", kind.label.to_lowercase()));
+            rooms[i].called = Some(whose(k, &kind.label));
         }
     }
     if let Some(kind) = added {
         let message = format!("{people} people work there; women and men have {} each", kind.label.to_lowercase());
         reading.assumptions.push(note("toilets_by_people", message));
+    }
+}
+
+/// Gives rooms to wait in seats by the counters that people wait for.
+fn seat_waiting(domain: &Domain, rooms: &mut [Planned]) {
+    let served = |r: &&Planned| has_counters(domain, r.kind);
+    let counters: u32 = rooms.iter().filter(served).filter_map(|r| r.occupants).sum();
+    for (id, each) in words().waiting.iter().filter(|_| counters > 0) {
+        let waits: Vec<usize> = (0..rooms.len()).filter(|&i| &rooms[i].room_type == id).collect();
+        for &i in &waits {
+            if rooms[i].occupants.is_some() {
+                continue;
+            }
+            let seats = (each * f64::from(counters) / waits.len() as f64).ceil() as u32;
+            let Some((_, area)) = places(domain, rooms[i].kind, seats) else { continue };
+            (rooms[i].occupants, rooms[i].visited) = (Some(seats), true);
+            rooms[i].size_for_people(area);
+        }
+    }
+}
+
+/// Returns whose toilets these are.
+fn whose(k: usize, label: &str) -> String {
+    let sexes = &words().sexes;
+    let mut letters = sexes[k % sexes.len()].chars();
+    let whose: String = letters.next().map(|c| c.to_uppercase().chain(letters).collect()).unwrap_or_default();
+    format!("{whose} {}", label.to_lowercase())
+}
+
+/// Names the toilets of women and men by storey, where they are dealt out to several: each of them has both.
+pub(super) fn name_toilets(domain: &Domain, rooms: &mut [GraphRoom]) {
+    let parted = |r: &GraphRoom| {
+        let kind = domain.room_type(&r.room_type)?;
+        let named = (0..words().sexes.len()).any(|k| r.name.starts_with(&whose(k, &kind.label)));
+        named.then_some(&kind.label)
+    };
+    let all: Vec<(usize, i32, &String)> =
+        rooms.iter().enumerate().filter_map(|(i, r)| Some((i, r.level, parted(r)?))).collect();
+    for (n, &(i, level, label)) in all.iter().enumerate() {
+        let here = all.iter().filter(|t| t.1 == level).count();
+        let before = all[..n].iter().filter(|t| t.1 == level).count();
+        rooms[i].name = if here > 1 { whose(before, label) } else { label.clone() };
+        if here > words().sexes.len() {
+            rooms[i].name = format!("{} {}", rooms[i].name, 1 + before / words().sexes.len());
+        }
     }
 }
 
@@ -271,6 +349,7 @@ pub(super) fn seat_guests(reading: &mut Reading, rooms: &mut [Planned]) {
     if !is_office(reading.program) || reading.single {
         return;
     }
+    seat_waiting(domain, rooms);
     let people = places_to_work(reading, rooms);
     for (id, share) in &words().eating {
         let eats: Vec<usize> = (0..rooms.len()).filter(|&i| &rooms[i].room_type == id).collect();

@@ -2,10 +2,14 @@
 
 use std::collections::BTreeMap;
 
-use d3dgen_model::scene_graph::SceneGraph;
+use d3dgen_model::scene_graph::{GraphRoom, SceneGraph};
+use d3dgen_model::storeys::LinkKind;
+use d3dgen_model::world::World;
 use d3dgen_pipeline::scene_graph::{Request, generate};
 use d3dgen_plugins::Registry;
 use serde::Deserialize;
+
+use crate::common::worlds;
 
 /// A prompt and what it says; what is left out is not looked at.
 #[derive(Debug, Default, Deserialize)]
@@ -48,7 +52,7 @@ fn misread(case: &Case, graph: &SceneGraph) -> Vec<String> {
         "team_office" | "open_office" => 3,
         _ => 0,
     };
-    let own = |r: &&d3dgen_model::scene_graph::GraphRoom| least(&r.room_type) > 0;
+    let own = |r: &&GraphRoom| least(&r.room_type) > 0;
     let desks: u32 = graph.rooms.iter().filter(own).map(|r| r.occupants.unwrap_or(least(&r.room_type))).sum();
     out.extend(case.desks.filter(|n| *n != desks).map(|n| format!("{desks} desks, not {n}")));
     let staff = graph.occupancy.staff;
@@ -68,4 +72,76 @@ fn offices_have_the_desks_and_seats_and_rooms_asked_for() {
         wrong.extend(misread(&case, &graph).into_iter().map(|what| format!("{}: {what}", case.prompt)));
     }
     assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+/// Returns the net area of each storey's rooms, corridors and stairs aside, and that of the storey.
+fn storeys(world: &World) -> Vec<[f64; 2]> {
+    let area = |level: i32, all: bool| -> f64 {
+        let here = world.scene_graph.rooms.iter().filter(|r| r.level == level && (all || !r.circulation));
+        here.filter_map(|r| world.floorplan.room(&r.id)).map(|r| r.net_polygon.area()).sum()
+    };
+    world.floorplan.levels.iter().map(|l| [area(l.level, false), area(l.level, true)]).collect()
+}
+
+#[test]
+fn an_open_office_is_shared_out_to_storeys_of_one_size() {
+    let prompt = "Dreigeschossiger Hauptsitz in Stuttgart mit 90 Arbeitsplätzen: Erdgeschoss Empfang, Cafeteria und Schulungsraum, 1. OG Großraumbüro, 2. OG Geschäftsführung mit Vorstandszimmer, Aufzug, zwei Treppenhäuser";
+    for world in worlds(prompt, 2) {
+        let graph = &world.scene_graph;
+        let open = graph.rooms.iter().filter(|r| r.room_type == "open_office").collect::<Vec<_>>();
+        let desks: Vec<u32> = open.iter().filter_map(|r| r.occupants).collect();
+        assert_eq!(desks.iter().sum::<u32>(), 90, "{desks:?}");
+        assert_eq!(open.len(), 3, "one a storey");
+        assert!(graph.assumptions.iter().any(|n| n.code == "open_office_shared_out"));
+        let sizes = storeys(&world);
+        let [least, most] = [f64::min, f64::max].map(|f| sizes.iter().map(|s| s[1]).reduce(f).unwrap());
+        assert!(most < 1.4 * least, "{sizes:?}");
+        let stairs = graph.links.iter().filter(|l| l.kind == LinkKind::Stairs).count();
+        assert_eq!(stairs, 2, "two staircases were asked for");
+        let private = |id: &str| graph.room(id).is_some_and(|r| r.room_type == "executive_office");
+        let boardroom = &graph.rooms.iter().find(|r| r.room_type == "conference_room").unwrap().id;
+        let through = |d: &&d3dgen_model::floorplan::Door| d.room_ids.contains(boardroom);
+        let doors: Vec<_> = world.floorplan.doors.iter().filter(through).collect();
+        assert!(doors.iter().any(|d| !d.room_ids.iter().any(|id| private(id))), "only through somebody's office");
+    }
+}
+
+#[test]
+fn two_stairs_of_a_bar_stand_at_its_ends_with_little_corridor() {
+    let prompt =
+        "Zweigeschossiges Bürogebäude mit zwei Treppenhäusern, Empfang, 16 Einzelbüros, Besprechungsraum, Archiv";
+    for world in worlds(prompt, 2) {
+        let stairs: Vec<_> = world.scene_graph.rooms.iter().filter(|r| r.room_type == "stairwell").collect();
+        assert_eq!(stairs.len(), 4, "two on either storey");
+        let middle = |id: &str| world.floorplan.room(id).unwrap().net_polygon.bounds().center();
+        for level in [0, 1] {
+            let here: Vec<_> = stairs.iter().filter(|r| r.level == level).map(|r| middle(&r.id)).collect();
+            assert!(here[0].distance(here[1]) > 12.0, "far apart");
+        }
+        for [rooms, all] in storeys(&world) {
+            assert!(rooms > 0.62 * all, "{rooms:.0} of {all:.0} m2 are rooms");
+        }
+    }
+}
+
+#[test]
+fn full_rooms_have_a_way_out_of_their_own() {
+    let prompt = "Call centre in Lille on one level, 60 desks, four supervisor offices, a training room, a break room, lockers and toilets";
+    for world in worlds(prompt, 3) {
+        let open = &world.scene_graph.rooms.iter().find(|r| r.room_type == "open_office").unwrap().id;
+        let outside: Vec<_> = world.floorplan.doors.iter().filter(|d| d.room_ids.len() == 1).collect();
+        assert!(outside.len() > 1, "one way out for 60 people");
+        assert!(outside.iter().any(|d| d.room_ids.contains(open)), "no way out of the room of 60");
+    }
+}
+
+#[test]
+fn every_storey_where_people_work_has_toilets() {
+    let prompt = "Two-storey office in Leeds: downstairs reception, two consultation rooms, upstairs open office for 24 people, manager's office, meeting room for 8";
+    for world in worlds(prompt, 2) {
+        for level in [0, 1] {
+            let here = |r: &&GraphRoom| r.level == level && r.room_type.contains("toilet");
+            assert!(world.scene_graph.rooms.iter().any(|r| here(&r)), "no toilet on level {level}");
+        }
+    }
 }

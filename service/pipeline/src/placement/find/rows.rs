@@ -46,6 +46,10 @@ const IN_LINE: f64 = 6.0;
 const ISLAND: f64 = 0.2;
 /// What counters lose behind which all doors of the room are: who is served comes in before them.
 const BEHIND_COUNTERS: f64 = 6.0;
+/// What a line of counters gains with no more than an aisle behind those who serve there, and which of the distances to the
+/// wall that is.
+const BACKED: f64 = 3.0;
+const AISLE_BEHIND: usize = 3;
 /// What desks lose for each meter to the windows.
 const FROM_LIGHT: f64 = 0.4;
 /// Floor behind a desk over which it stands against a wall all the same, mm.
@@ -204,10 +208,12 @@ pub(in crate::placement) fn rows<'a>(
                 // on an island some counters face the door, whichever way it is turned
                 let one_line = task.anchor.shape == Shape::Counter && !plan.paired;
                 let behind = if one_line { doors_behind(state.space, &placed) } else { 0.0 };
+                // who serves has a wall behind and an aisle to it: the rest of the hall is for those who are served
+                let backed = if one_line && ku == AISLE_BEHIND { BACKED } else { 0.0 };
                 out.push(Batch {
                     placed,
                     in_pairs,
-                    score: plan.score + 8.0 * (share - 1.0) + tidy + noise
+                    score: plan.score + 8.0 * (share - 1.0) + tidy + noise + backed
                         - raggedness
                         - narrow
                         - single

@@ -1,0 +1,153 @@
+//! Offices by who works in them: "8 lawyers, each with a private office", "jeder Anwalt ein Einzelbüro", "un bureau par
+//! avocat" are 8 single offices; "24 hot desks, five team offices" has an open area beside the team offices.
+
+use d3dgen_model::domain::{Domain, Program, RoomType};
+
+use super::beds::Held;
+use super::mentions::{Mention, What};
+use super::seats::{MOST_IN_TEAM, most_desks};
+use super::text::{Span, Token};
+use super::words::{Spoken, Tag};
+use super::workers::is_office;
+
+/// Words from those who have an office to the word for it, at most: "each of them with their own spacious private office".
+const MOST_TO_OFFICE: usize = 7;
+/// Words from "with" to "own offices", at most.
+const MOST_TO_OWN: usize = 3;
+/// Words from an office to whose it is, at most: "a private office for each of the 8 lawyers".
+const MOST_TO_WHOM: usize = 6;
+/// Most people who have an office each.
+const MOST: i64 = 60;
+
+/// What the reading needs to see.
+pub(super) struct Reader<'a> {
+    pub tokens: &'a [Token],
+    pub domain: &'a Domain,
+    pub program: &'a Program,
+    pub spoken: &'a [&'a Spoken],
+    pub list_from: usize,
+}
+
+impl Reader<'_> {
+    fn tagged(&self, i: usize, tag: Tag) -> Option<usize> {
+        if i >= self.tokens.len() {
+            return None;
+        }
+        self.spoken.iter().find_map(|s| s.tag_at(self.tokens, i, tag))
+    }
+
+    /// Returns the domain's office for one.
+    fn single(&self) -> Option<&RoomType> {
+        self.domain.room_types.iter().find(|k| most_desks(self.domain, k) == 1)
+    }
+
+    fn is_single(&self, m: &Mention) -> bool {
+        let kind = m.room_type().and_then(|id| self.domain.room_type(id));
+        kind.is_some_and(|k| most_desks(self.domain, k) == 1)
+    }
+
+    /// Gives everyone an office who is said to have one; returns the offices, and the words that say so.
+    pub(super) fn each_an_office(&self, mentions: &mut Vec<Mention>) -> (Vec<Held>, Vec<Span>) {
+        let (mut held, mut spans) = (Vec::new(), Vec::new());
+        if !is_office(self.program) {
+            return (held, spans);
+        }
+        let who = |m: &Mention| matches!(m.what, What::Staff | What::People) && !m.article && !m.vague;
+        let heads = |m: &Mention| m.count.filter(|n| who(m) && (2..=MOST).contains(n));
+        let groups: Vec<(Span, i64)> = mentions.iter().filter_map(|m| Some((m.span, heads(m)?))).collect();
+        for (k, &(group, n)) in groups.iter().enumerate() {
+            let until = groups.get(k + 1).map_or(self.tokens.len(), |g| g.0.start);
+            let Some(office) = self.office_of(mentions, group, until) else { continue };
+            let Some(kind) = self.single() else { continue };
+            spans.push(Span { start: group.start.min(office.start), end: group.end.max(office.end) });
+            let known = mentions.iter_mut().find(|m| m.span == office);
+            let id = match known {
+                Some(m) => {
+                    (m.count, m.article, m.vague, m.plural) = (Some(n), false, false, true);
+                    m.room_type().unwrap_or(&kind.id).to_owned()
+                }
+                None => {
+                    let at = mentions.iter().position(|m| m.span.start > office.start).unwrap_or(mentions.len());
+                    let plain = Mention::plain(office, What::Room(kind.id.clone()));
+                    mentions.insert(at, Mention { count: Some(n), plural: true, ..plain });
+                    kind.id.clone()
+                }
+            };
+            held.push(Held { room_type: id, count: n as u32, beds: 1 });
+        }
+        (held, spans)
+    }
+
+    /// Returns the word for the office that each of a group has.
+    fn office_of(&self, mentions: &[Mention], group: Span, until: usize) -> Option<Span> {
+        let room_at = |i: usize| mentions.iter().find(|m| m.room_type().is_some() && m.span.start == i);
+        // a word for an office that is no room by itself: "chacun son bureau"
+        let office_at = |i: usize| match room_at(i) {
+            Some(m) => self.is_single(m).then_some(m.span),
+            None => self.tagged(i, Tag::OfficeWords).map(|end| Span { start: i, end }),
+        };
+        let other = |i: usize| room_at(i).is_some_and(|m| !self.is_single(m));
+        let counted = |office: Span| mentions.iter().any(|m| m.span == office && m.count.is_some() && !m.article);
+        let office_behind = |from: usize, most: usize| {
+            let words = (from..(from + most).min(until)).take_while(|&i| !self.tokens[i].ends_sentence() && !other(i));
+            words.filter_map(office_at).next().filter(|o| !counted(*o))
+        };
+        // "8 lawyers: each ...": up to the first room that is none of theirs
+        let sentence = (group.end..until).take_while(|&i| !self.tokens[i].ends_sentence() && !other(i));
+        let each = sentence.into_iter().find(|&i| self.is_each(i));
+        if let Some(each) = each {
+            // "for 8 people each" counts the people of a room
+            let office = office_behind(each + 1, MOST_TO_OFFICE);
+            if office.is_some() {
+                return office;
+            }
+        }
+        // "six attorneys with their own offices", "in Einzelbüros"
+        let leads = [Tag::Starts, Tag::Inside].iter().any(|&t| self.tagged(group.end, t).is_some());
+        if let Some(office) = office_behind(group.end, MOST_TO_OWN + 1).filter(|_| leads) {
+            let own = (group.end..office.start).any(|i| self.tagged(i, Tag::Own).is_some());
+            let plural = mentions.iter().any(|m| m.span == office && m.plural && m.count.is_none());
+            if own || plural {
+                return Some(office);
+            }
+        }
+        // "a private office for each of the 8 lawyers", "Einzelbüros für 8 Anwälte", "8 avocats, un bureau par avocat"
+        let from = group.start.saturating_sub(MOST_TO_WHOM);
+        let office = (from..group.start).rev().find_map(office_at).filter(|o| o.end <= group.start && !counted(*o))?;
+        let between = || office.end..group.start;
+        if between().any(|i| self.tokens[i].is_mark() || other(i)) {
+            return None;
+        }
+        let plural = mentions.iter().any(|m| m.span == office && m.plural && m.count.is_none());
+        let whose = self.tagged(office.end, Tag::Stops).is_some();
+        (between().any(|i| self.is_each(i)) || plural && whose).then_some(office)
+    }
+
+    fn is_each(&self, i: usize) -> bool {
+        [Tag::Everyone, Tag::Each].iter().any(|&t| self.tagged(i, t).is_some())
+    }
+
+    /// Gives desks that the list of rooms counts by themselves a room to stand in: they are no sum of the desks of others.
+    /// `taken` are the words for desks of rooms.
+    pub(super) fn desks_of_the_list(&self, mentions: &mut [Mention], taken: &[Span]) -> Option<Held> {
+        let kind = self.domain.room_types.iter().max_by_key(|k| most_desks(self.domain, k))?;
+        if !is_office(self.program) || most_desks(self.domain, kind) <= MOST_IN_TEAM || self.list_from == 0 {
+            return None;
+        }
+        let rooms = mentions.iter().filter(|m| m.room_type().is_some());
+        if rooms.clone().any(|m| m.room_type() == Some(&kind.id)) || rooms.count() == 0 {
+            return None;
+        }
+        let colon = |i: usize| self.tokens.get(i).is_some_and(|t| t.mark() == Some(':'));
+        // "with 90 desks: ..." is of the whole building
+        let item = |m: &Mention| {
+            let number = m.count.is_some_and(|n| (2..=500).contains(&n)) && !m.article && !m.vague;
+            let listed = m.from.min(m.span.start) >= self.list_from && !colon(m.span.end);
+            m.what == What::Desks && number && listed && !taken.contains(&m.span)
+        };
+        let m = mentions.iter_mut().find(|m| item(m))?;
+        let desks = m.count.and_then(|n| u32::try_from(n).ok())?;
+        (m.what, m.count, m.plural) = (What::Room(kind.id.clone()), Some(1), false);
+        Some(Held { room_type: kind.id.clone(), count: 1, beds: desks })
+    }
+}
