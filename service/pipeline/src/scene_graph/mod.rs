@@ -134,7 +134,7 @@ fn assemble(request: &Request, mut reading: Reading, planned: &[Planned]) -> Sce
         let areas: Vec<f64> = rooms.iter().map(|r| r.target_area_m2).collect();
         let dealt = deal::deal(&mut reading, planned, &areas, &levels);
         rooms.iter_mut().zip(dealt).for_each(|(room, level)| room.level = level);
-        deal::even_out(planned, &mut rooms, &levels);
+        deal::even_out(planned, &mut rooms, &levels, reading::is_dwelling(reading.program));
         let (all, web, links) = deal::connect(&mut reading, planned, rooms, &levels);
         rooms = all;
         (web, links)
