@@ -51,6 +51,9 @@ pub struct RoomType {
     /// Net floor area that it has at least where step-free access is asked for, m^2; 0 where that changes nothing.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub step_free_m2: f64,
+    /// Least clear extent in both directions where step-free access is asked for, m; 0 where that changes nothing.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub step_free_dimension_m: f64,
     /// True when its door slides: into small wet rooms, so that one gets to whoever has fallen behind it, and into galleys.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub sliding_door: bool,

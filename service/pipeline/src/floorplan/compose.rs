@@ -147,6 +147,7 @@ fn below_wing(brief: &Brief, comb: &Comb, wing: usize, yard: &Yard) -> Option<Be
     let between = Some((yard.next[slot.side] - slot.at, end - slot.at));
     Some(Below {
         outline: outline.iter().map(seen).collect(),
+        boxes: Vec::new(),
         by_core: false,
         comb: None,
         far: None,

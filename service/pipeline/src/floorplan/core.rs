@@ -37,6 +37,8 @@ pub(super) struct Core {
 pub(super) struct Below {
     /// Its boxes, in the core's frame where `by_core`, else in the layout's own.
     pub outline: Vec<Cellbox>,
+    /// Boxes of its rooms, in the same frame, where walls are to be put over its walls.
+    pub boxes: Vec<Cellbox>,
     pub by_core: bool,
     pub comb: Option<Comb>,
     /// Where the second stairwell of a bar begins, along the corridor from the core.

@@ -481,7 +481,9 @@ impl<'b> Judge<'b> {
             && !brief.hub
         {
             // From a fifth on, circulation is what a reviewer objects to first.
-            let share = rooms[spine].gross_m2 / total;
+            // stairs are of the way too, wherever they stand
+            let stairs = (0..rooms.len()).filter(|&i| home && brief.in_core(i)).map(|i| rooms[i].gross_m2).sum::<f64>();
+            let share = (rooms[spine].gross_m2 + stairs) / total;
             score.soft[4] += (share - 0.10).max(0.0) + 5.0 * (share - 0.20).max(0.0);
             score.soft[4] += ONE_WAY * layout.one_way;
             if home {

@@ -10,6 +10,7 @@
 //! Schkufza and Koltun 2010.
 
 mod adjust;
+mod align;
 mod assemble;
 mod board;
 mod compose;

@@ -23,6 +23,8 @@ const ACCESSIBLE_DOOR_M: f64 = 0.9;
 
 /// Advice widens a corridor by this factor at most: what asks for more is about another kind of corridor.
 const MOST_ADVISED_WIDTH: f64 = 1.4;
+/// The same in a home of several storeys.
+const MOST_ADVISED_WITH_STAIRS: f64 = 1.1;
 /// Advice widens a door by this much at most, m.
 const MOST_ADVISED_DOOR_M: f64 = 0.1;
 /// What a plan that looks symmetric costs for not being so, at most.
@@ -153,6 +155,8 @@ pub(super) struct Brief {
     pub stem: bool,
     /// True for a storey that one does not enter from outdoors.
     pub upper: bool,
+    /// True for a storey of a home, whatever is on it.
+    pub of_home: bool,
     /// Stairs and elevator of a building with several storeys.
     pub core: Option<Core>,
 }
@@ -188,7 +192,10 @@ impl Brief {
             rooms.iter_mut().for_each(|spec| spec.unit = spec.unit.or(Some(0)));
         }
         let hard_width = max_limit(domain.circulation.width_m, limits.corridor_width.as_ref());
-        let advised_width = limits.corridor_width_advised.unwrap_or(0.0).min(MOST_ADVISED_WIDTH * hard_width);
+        // a home with stairs has little floor left for wide halls, unless somebody turns a wheelchair there
+        let stairs_in_home = !graph.links.is_empty() && !graph.accessible && is_for_homes(domain);
+        let most_advised = if stairs_in_home { MOST_ADVISED_WITH_STAIRS } else { MOST_ADVISED_WIDTH };
+        let advised_width = limits.corridor_width_advised.unwrap_or(0.0).min(most_advised * hard_width);
         let fitted = fitted_width(graph);
         let circulation_width = hard_width.max(advised_width).max(fitted);
         let mut brief = Self {
@@ -202,7 +209,7 @@ impl Brief {
             apart: Vec::new(),
             aloof: aloof(graph, domain),
             second_exit: domain.circulation.second_exit && graph.rooms.iter().all(|r| r.level == 0),
-            area: graph.area_m2.filter(|_| graph.links.is_empty()),
+            area: graph.area_m2.filter(|_| graph.links.is_empty()).or_else(|| storey_area(graph, domain)),
             symmetry: graph.style.symmetry,
             form: graph.style.form,
             entrance_width: max_limit(domain.circulation.entrance_width_m, limits.entrance_width.as_ref()).max(fitted),
@@ -210,6 +217,7 @@ impl Brief {
             guests: Vec::new(),
             stem: false,
             upper: graph.rooms.iter().any(|r| r.level != 0),
+            of_home: !graph.links.is_empty() && is_for_homes(domain),
             core: None,
         };
         brief.find_guests();
@@ -349,7 +357,7 @@ impl Brief {
     /// Returns true for buildings that people live in: they sleep there, and nobody works or is received.
     pub(super) fn is_home(&self) -> bool {
         let any = |zone: Zone| self.rooms.iter().any(|r| r.zone == zone);
-        any(Zone::Night) && !any(Zone::Staff) && !any(Zone::Public)
+        self.of_home || any(Zone::Night) && !any(Zone::Staff) && !any(Zone::Public)
     }
 
     /// Returns the structural opening of a door with this clear width, m, on the lattice.
@@ -393,6 +401,17 @@ fn max_limit(base: f64, limit: Option<&Limit>) -> f64 {
     limit.map_or(base, |l| base.max(l.value))
 }
 
+/// Returns true for a domain of homes: in none of its rooms people work or receive anybody but their guests.
+fn is_for_homes(domain: &Domain) -> bool {
+    !domain.room_types.iter().any(|kind| matches!(kind.zone, Zone::Staff | Zone::Public))
+}
+
+/// Returns the net area of a storey of a home whose area the prompt gives: that of its rooms.
+fn storey_area(graph: &SceneGraph, domain: &Domain) -> Option<f64> {
+    let home = !graph.links.is_empty() && is_for_homes(domain);
+    graph.area_m2.filter(|_| home).map(|_| graph.rooms.iter().map(|r| r.target_area_m2).sum())
+}
+
 fn room_spec(
     room: &GraphRoom,
     graph: &SceneGraph,
@@ -427,6 +446,9 @@ fn room_spec(
     if graph.accessible {
         area_target = area_target.max(kind.step_free_m2.min(area_max));
     }
+    // beds need floor beside them for who comes in a wheelchair
+    let step_free = if graph.accessible { kind.step_free_dimension_m } else { 0.0 };
+    let least_dimension = kind.min_dimension_m.max(step_free.min(area_max.sqrt()));
     // a robot that is to fit turns in the room beside what stands there
     let fitted = fitted_width(graph);
     area_target = (area_target + (fitted * fitted - TURNING_M2).max(0.0)).min(area_max.max(area_target));
@@ -449,7 +471,7 @@ fn room_spec(
         area_min,
         area_target: area_target.clamp((area_min * 1.02).min(area_max), area_max),
         area_max,
-        min_dimension: max_limit(kind.min_dimension_m, limit.dimension_min.as_ref()).max(fitted),
+        min_dimension: max_limit(least_dimension, limit.dimension_min.as_ref()).max(fitted),
         daylight: kind.daylight,
         high_windows: kind.high_windows,
         zone: kind.zone,

@@ -8,8 +8,9 @@ use d3dgen_model::scene_graph::{Note, SceneGraph};
 use d3dgen_model::seed::Stream;
 use d3dgen_model::storeys::{Level, LinkKind};
 
+use super::align::align;
 use super::assemble::{Turn, assemble, turned_in_place};
-use super::core::{Below, Core, in_core, merged};
+use super::core::{Below, Core, in_core, merged, overhang};
 use super::genome::is_nestable;
 use super::lattice::{Cellbox, INNER_HALF_M, meters, nearest};
 use super::search::search;
@@ -22,6 +23,11 @@ pub(super) const OVERHANG_SHARE: f64 = 0.10;
 /// Plans of a storey that are compared when the first ones jut out further.
 const COMPARED: usize = 6;
 const COMPARED_LARGE: usize = 2;
+/// How often a home is stacked at most, what a share of a storey counts that the one above leaves open beside one that juts
+/// out, and how ragged a stack may be that is taken at once.
+const STACKS: usize = 4;
+const SET_BACK: f64 = 0.3;
+const WELL_STACKED: f64 = 0.06;
 /// Heights of storeys are whole multiples of this, m.
 const HEIGHT_STEP_M: f64 = 0.05;
 
@@ -35,6 +41,8 @@ struct Planned {
     plan: Floorplan,
     below: Below,
     overhang: f64,
+    /// Share of the storey below that it leaves open.
+    set_back: f64,
 }
 
 /// Plans a building of several storeys.
@@ -113,23 +121,66 @@ fn stack(
     stop: Stop<'_>,
 ) -> Result<Vec<Planned>, Error> {
     let ground = numbers.iter().position(|&l| l == 0).unwrap_or(0);
-    let mut planned: Vec<Option<Planned>> = numbers.iter().map(|_| None).collect();
     let order = (ground..numbers.len()).map(|i| (i, i.checked_sub(1).filter(|_| i > ground)));
-    let order = order.chain((0..ground).rev().map(|i| (i, Some(i + 1))));
-    for (i, next_to) in order {
-        if let Some(core) = &mut briefs[i].core {
-            core.below = next_to.and_then(|n| planned[n].as_ref()).map(|p| p.below.clone());
+    let order: Vec<(usize, Option<usize>)> = order.chain((0..ground).rev().map(|i| (i, Some(i + 1)))).collect();
+    let plan = Plan { graph, domain, turn, numbers, order: &order };
+    // what stands well above depends on what is below: a home is stacked a few times, the best stack is taken
+    let stacks = if briefs.iter().all(|b| b.of_home) { STACKS } else { 1 };
+    let mut best: Option<(f64, Vec<Planned>)> = None;
+    let mut failed = None;
+    for n in 0..stacks {
+        match plan.stack(briefs, n, stop) {
+            Ok(stack) => {
+                let ragged = stack.iter().map(|p| p.overhang + SET_BACK * p.set_back).sum::<f64>();
+                if best.as_ref().is_none_or(|b| ragged < b.0) {
+                    best = Some((ragged, stack));
+                }
+            }
+            Err(error) => failed = failed.or(Some(error)),
         }
-        let mut rng = Stream::new(graph.seed, &format!("floorplan/level/{}", numbers[i]));
-        let found = storey(&briefs[i], domain, (turn, graph.seed), &mut rng, stop);
         stop.check()?;
-        let infeasible = |reason: String| Error::Infeasible {
-            stage: "floorplan",
-            message: format!("level {}: {reason}", numbers[i]),
-        };
-        planned[i] = Some(found.map_err(infeasible)?);
+        if best.as_ref().is_some_and(|b| b.0 <= WELL_STACKED) {
+            break;
+        }
     }
-    Ok(planned.into_iter().flatten().collect())
+    match best {
+        Some((_, planned)) => Ok(planned),
+        None => Err(failed.expect("every stack is planned or fails")),
+    }
+}
+
+/// What the storeys of one building have in common.
+struct Plan<'a> {
+    graph: &'a SceneGraph,
+    domain: &'a Domain,
+    turn: Turn,
+    numbers: &'a [i32],
+    /// Storeys as they are planned, each with the one that it goes by.
+    order: &'a [(usize, Option<usize>)],
+}
+
+impl Plan<'_> {
+    /// Plans all storeys, for the `n`-th time.
+    fn stack(&self, briefs: &mut [Brief], n: usize, stop: Stop<'_>) -> Result<Vec<Planned>, Error> {
+        let mut planned: Vec<Option<Planned>> = self.numbers.iter().map(|_| None).collect();
+        for &(i, next_to) in self.order {
+            if let Some(core) = &mut briefs[i].core {
+                core.below = next_to.and_then(|n| planned[n].as_ref()).map(|p| p.below.clone());
+            }
+            let level = self.numbers[i];
+            let name = format!("floorplan/level/{level}");
+            let name = if n == 0 { name } else { format!("{name}/again/{n}") };
+            let mut rng = Stream::new(self.graph.seed, &name);
+            let found = storey(&briefs[i], self.domain, (self.turn, self.graph.seed), &mut rng, stop);
+            stop.check()?;
+            let infeasible = |reason: String| Error::Infeasible {
+                stage: "floorplan",
+                message: format!("level {level}: {reason}"),
+            };
+            planned[i] = Some(found.map_err(infeasible)?);
+        }
+        Ok(planned.into_iter().flatten().collect())
+    }
 }
 
 /// Returns the height of a storey from floor to floor, m.
@@ -169,7 +220,10 @@ fn storey(
         if let Some(below) = brief.core.as_ref().and_then(|c| c.below.as_ref()?.scheme) {
             schemes.sort_by_key(|s| !(*s == below || bar(*s) && bar(below)));
         }
-        let Some(found) = search(brief, &schemes, rng, stop) else { break };
+        let Some(mut found) = search(brief, &schemes, rng, stop) else { break };
+        if found.score.is_sound() {
+            align(brief, &mut found);
+        }
         if stop.is_set() {
             break;
         }
@@ -184,8 +238,10 @@ fn storey(
                 let wings = brief.core.as_ref().is_some_and(|c| c.far.is_some() && !c.gable);
                 let comb = wings.then_some(found.layout.comb);
                 let comb_built = comb.is_some();
+                let walls = if comb_built { Vec::new() } else { boxes.iter().map(|b| b.1).collect() };
                 let below = Below {
                     outline: merged(&boxes),
+                    boxes: walls,
                     by_core: true,
                     comb,
                     far: found.layout.far,
@@ -193,8 +249,9 @@ fn storey(
                     between: None,
                 };
                 let overhang = found.score.overhang;
+                let set_back = set_back(brief, &boxes);
                 if best.as_ref().is_none_or(|b| overhang < b.overhang) {
-                    best = Some(Planned { plan, below, overhang });
+                    best = Some(Planned { plan, below, overhang, set_back });
                 }
                 compared += 1;
                 let most = if comb_built { COMPARED_LARGE } else { COMPARED };
@@ -206,6 +263,16 @@ fn storey(
         }
     }
     best.ok_or(last)
+}
+
+/// Returns the share of the storey below that boxes in the core's frame leave open.
+fn set_back(brief: &Brief, boxes: &[(usize, Cellbox)]) -> f64 {
+    let below = brief.core.as_ref().and_then(|c| c.below.as_ref()).filter(|b| b.by_core);
+    let Some(below) = below else { return 0.0 };
+    let lower: Vec<(usize, Cellbox)> = below.outline.iter().map(|b| (0, *b)).collect();
+    let own: Vec<Cellbox> = boxes.iter().map(|b| b.1).collect();
+    let area: f64 = below.outline.iter().map(Cellbox::area_m2).sum();
+    overhang(&lower, &own, (0, 0)) as f64 * 0.0025 / area.max(1.0)
 }
 
 /// Puts the storeys into one document, the building's south-west corner at the origin.

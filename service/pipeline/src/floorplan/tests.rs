@@ -70,6 +70,7 @@ fn brief(mut rooms: Vec<RoomSpec>, width: f64, links: &[(usize, usize, Connector
         guests: Vec::new(),
         stem: false,
         upper: false,
+        of_home: false,
         core: None,
     };
     brief.find_guests();

@@ -121,6 +121,8 @@ pub(super) struct Household<'a> {
     domain: &'a Domain,
     /// Types of its rooms.
     room_types: Vec<&'a str>,
+    /// Rooms that are to have a bed in the place of their usual one, with the line of it.
+    other_beds: Vec<(&'a str, &'a Furnishing)>,
     /// True where step-free access is asked for.
     accessible: bool,
     has_robots: bool,
@@ -140,6 +142,7 @@ impl<'a> Household<'a> {
         Self {
             domain,
             room_types,
+            other_beds: graph.rooms.iter().filter_map(|r| Some((r.room_type.as_str(), other_bed(domain, r)?))).collect(),
             accessible: graph.accessible,
             has_robots: !graph.robots.is_empty(),
             cleans: graph.robots.iter().any(|r| r.kind == CLEANING),
@@ -149,11 +152,16 @@ impl<'a> Household<'a> {
 
     /// Returns how many people have a bed.
     fn sleepers(&self) -> u32 {
-        let beds = |kind: &&str| {
+        let each = |item: &str| usual_unit(self.domain, item).map_or(0, |u| u.beds());
+        let usual = |kind: &str| {
             let lines = self.domain.room_type_or_generic(kind).furnishing.iter().filter(|f| f.required);
-            lines.filter_map(|f| Some(f.min * usual_unit(self.domain, &f.item)?.beds())).sum::<u32>()
+            lines.map(|f| f.min * each(&f.item)).sum::<u32>()
         };
-        self.room_types.iter().map(beds).sum::<u32>().max(self.sharing)
+        let all = self.room_types.iter().map(|kind| usual(kind)).sum::<u32>();
+        let (less, more) = self.other_beds.iter().fold((0, 0), |(less, more), (kind, line)| {
+            (less + usual(kind), more + each(&line.item))
+        });
+        (all + more).saturating_sub(less).max(self.sharing)
     }
 
     /// Returns true for a line that the building asks for, in a room for so many people.
@@ -185,10 +193,18 @@ pub(super) fn tasks<'a>(
     let mut out: Vec<Task> = Vec::new();
     // what is asked for by name comes whoever lives there
     let called = |f: &Furnishing| domain.anchor(&f.item).is_some_and(|a| named.iter().any(|id| **id == a.id));
-    let wanted = |f: &Furnishing| household.wants(kind, f, guests) || f.sleepers > 0 && called(f);
+    // a bed that is asked for comes in the place of the usual one
+    let bed = graph.and_then(|g| other_bed(domain, g));
+    let given_up = |f: &Furnishing| bed.is_some_and(|b| b.instead_of.contains(&f.item));
+    let wanted = |f: &Furnishing| {
+        (household.wants(kind, f, guests) || f.sleepers > 0 && called(f)) && !given_up(f)
+    };
     for (line, f) in kind.furnishing.iter().enumerate().filter(|(_, f)| wanted(f)) {
         let Some(anchor) = domain.anchor(&f.item) else { continue };
         let (mut count, mut required) = (f.units(area_m2).min(MAX_UNITS), if f.required { f.min } else { 0 });
+        if bed.is_some_and(|b| std::ptr::eq(b, f)) {
+            required = 1;
+        }
         // what finds no wall of the same stands in rows
         let goes_on = |of: usize| {
             line > of && f.arrangement == Arrangement::Rows && kind.furnishing.get(of).is_some_and(|o| o.item == f.item)
@@ -305,8 +321,12 @@ pub(super) fn tasks<'a>(
     // where robots live a dock comes before what it stands beside, for it needs more floor; corners are few: what cannot do without one comes before what
     // only wants a wall
     let dock = |t: &Task| household.has_robots && t.required == 0 && t.anchor.shape == Shape::Dock;
+    // where one eats the table comes before a desk that is asked for too
+    let eats = out.iter().any(table);
+    let waits = |t: &Task| eats && t.required == 0 && t.anchor.shape == Shape::Desk;
     out.sort_by_key(|t| {
-        (phase(t), !table(t), !dock(t), !t.is_needed() || t.arrangement != Arrangement::Corner, t.line)
+        let phase = if waits(t) { phase(t).max(2) } else { phase(t) };
+        (phase, !table(t), !dock(t), !t.is_needed() || t.arrangement != Arrangement::Corner, t.line)
     });
     out
 }
@@ -456,6 +476,19 @@ fn named<'a>(domain: &Domain, kind: &RoomType, graph: Option<&'a GraphRoom>) -> 
     let own = all.iter().position(|id| usual.is_some_and(|o| &o.id == id)).unwrap_or(0);
     let is_dock = |id: &String| domain.object(id).is_some_and(|o| o.shape == Shape::Dock);
     all[..own].iter().filter(|id| !is_dock(id)).collect()
+}
+
+/// Returns the line of the bed that a room is to have in the place of its usual one, where somebody asked for that.
+pub(crate) fn other_bed<'a>(domain: &'a Domain, room: &GraphRoom) -> Option<&'a Furnishing> {
+    let kind = domain.room_type(&room.room_type)?;
+    let is_bed = |item: &str| domain.anchor(item).is_some_and(|o| o.shape == Shape::Bed);
+    let usual = kind.furnishing.first().filter(|f| f.required && is_bed(&f.item))?;
+    let named = named(domain, kind, Some(room));
+    kind.furnishing.iter().find(|f| {
+        f.instead_of.contains(&usual.item)
+            && is_bed(&f.item)
+            && domain.anchor(&f.item).is_some_and(|a| named.iter().any(|id| **id == a.id))
+    })
 }
 
 /// Returns what the graph wishes for beyond the lines of the room's type, and how many.

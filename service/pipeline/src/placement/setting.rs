@@ -12,6 +12,7 @@ use d3dgen_model::style::Clutter;
 use super::demand::{self, Task};
 use super::geom::mm;
 use super::space::Space;
+use super::unit::TO_GET_THERE_M;
 use super::way::Way;
 use super::{LEAST_RADIUS_M, Wanted, clutter};
 
@@ -24,7 +25,7 @@ const TURNING_SPARE_M: f64 = 0.005;
 const AMPLE_M2: f64 = 9.0;
 /// Floor at one side of a bed that somebody gets into from a wheelchair, m (ISO 21542, ADA 806.2.3: 36 in); and in a room
 /// of so many m^2, where one turns beside it (DIN 18040-2 R: 1.5 m).
-const BESIDE_BED_M: f64 = 0.92;
+const BESIDE_BED_M: f64 = TO_GET_THERE_M;
 const TURNING_BESIDE_BED_M: f64 = 1.5;
 const TURNING_BESIDE_BED_FROM_M2: f64 = 13.0;
 

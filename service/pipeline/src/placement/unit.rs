@@ -11,6 +11,8 @@ use d3dgen_model::domain::{Domain, FacingRule, Group, Member, Mount, ObjectType,
 use super::geom::{Box2, ROBOT_HEIGHT, Solid, mm};
 use super::seats::{is_seat, seats_around, seats_behind};
 
+/// Floor at the one side of a bed that somebody gets into from a wheelchair, m.
+pub(super) const TO_GET_THERE_M: f64 = 0.92;
 /// Largest number of members kept around one anchor, whatever a domain says.
 const MAX_MEMBERS: u32 = 40;
 
@@ -269,9 +271,10 @@ pub(super) fn variants<'a>(domain: &'a Domain, item: &'a str, forms: &Forms) -> 
     let whole: Vec<Unit> = lawful.into_iter().map(full).chain(fewer).collect();
     for whole in [whole, lesser.into_iter().map(full).collect()] {
         if forms.advised {
-            whole.iter().filter_map(|unit| advised(unit, forms, true)).for_each(&mut add);
-            // the room for a wheelchair at one side goes before the rest
-            whole.iter().filter_map(|unit| advised(unit, forms, false)).for_each(&mut add);
+            // the room for a wheelchair to turn at one side goes before that to get there, and this before the rest
+            for wide in [f64::MAX, TO_GET_THERE_M, 0.0] {
+                whole.iter().filter_map(|unit| advised(unit, forms, wide)).for_each(&mut add);
+            }
         }
         whole.iter().filter_map(with_elbow_room).for_each(&mut add);
         whole.into_iter().for_each(&mut add);
@@ -291,13 +294,13 @@ pub(super) fn variants<'a>(domain: &'a Domain, item: &'a str, forms: &Forms) -> 
     out
 }
 
-/// Returns a unit with the free floor that is advised for its parts, with more at a `wide_side` or without; `None` where that is
-/// no more than it has.
-fn advised<'a>(unit: &Unit<'a>, forms: &Forms, wide_side: bool) -> Option<Unit<'a>> {
+/// Returns a unit with the free floor that is advised for its parts, at a wide side up to so much; `None` where that is no more
+/// than it has.
+fn advised<'a>(unit: &Unit<'a>, forms: &Forms, wide_m: f64) -> Option<Unit<'a>> {
     let mut clears = unit.clears.clone();
     for part in unit.parts.iter().filter(|p| p.mount == Mount::Floor) {
         if let Some(aim) = forms.aims.get(part.object.id.as_str()) {
-            let clear = if wide_side { aim.clear } else { Clear { wide_side: 0.0, ..aim.clear } };
+            let clear = Clear { wide_side: aim.clear.wide_side.min(wide_m), ..aim.clear };
             advised_floor(part, &clear, &mut clears);
         }
     }

@@ -12,6 +12,8 @@ use super::words::{Spoken, Tag, words};
 
 /// Words before a suite that say whose it is, at most: "elderly grandparents' suite".
 const MOST_OF_SUITE: usize = 2;
+/// Words between an annexe and what it has, at most: "for the grandmother".
+const MOST_TO_OWNER: usize = 5;
 /// Words between a room to live in and the kitchen in it, at most: "living room with a small kitchenette".
 const MOST_TO_CORNER: usize = 4;
 
@@ -23,6 +25,8 @@ pub(super) struct Compound {
     pub room_types: Vec<String>,
     /// True for rooms that only share a noun: "single and double rooms".
     pub mixed: bool,
+    /// True for rooms of which the first is the way to the others: a suite, an annexe.
+    pub suite: bool,
 }
 
 /// Returns the compounds of a prompt whose rooms the domain knows, in order; none overlaps what is taken.
@@ -40,17 +44,22 @@ pub(super) fn find(
         let suite = spoken.iter().filter_map(|s| s.suites.longest_at(tokens, i)).max_by_key(|f| f.0);
         let mix = spoken.iter().filter_map(|s| s.mixes.longest_at(tokens, i)).max_by_key(|f| f.0);
         let mixed = mix.is_some();
+        let mut suite_of_rooms = !mixed && suite.is_some();
         let found = match mix.or(suite) {
             Some((end, types)) => Some((end, types.clone())),
             None => with_corner(tokens, i, spoken)
                 .map(|end| (end, vec![words().dwelling.living_kitchen.clone()]))
                 .or_else(|| joint(tokens, prompt, i, spoken))
-                .or_else(|| any_suite(tokens, i, spoken, &names_room)),
+                .or_else(|| {
+                    let found = any_suite(tokens, i, spoken, &names_room);
+                    suite_of_rooms = found.is_some();
+                    found
+                }),
         };
         let known = |t: &String| domain.room_type(t).is_some();
         match found.filter(|(end, types)| types.iter().all(known) && !taken(Span { start: i, end: *end })) {
             Some((end, room_types)) => {
-                out.push(Compound { span: Span { start: i, end }, room_types, mixed });
+                out.push(Compound { span: Span { start: i, end }, room_types, mixed, suite: suite_of_rooms });
                 i = end;
             }
             None => i += 1,
@@ -171,10 +180,13 @@ pub(super) fn settle(tokens: &[Token], compounds: &[Compound], spoken: &[&Spoken
             continue;
         }
         let before = mentions[..first].iter().rev().find(|m| m.what == head.what && m.count.is_some_and(|n| n > 1));
-        let part = before.is_some_and(|m| {
-            (m.span.end..compound.span.start).any(|k| spoken.iter().any(|s| s.tag_at(tokens, k, Tag::PartOf).is_some()))
-        });
         let single = head.count.is_none() && !head.plural;
+        let part = before.is_some_and(|m| {
+            let mut gap = m.span.end..compound.span.start;
+            // "four bedrooms, master suite with closet": no article, no number and nothing that adds it
+            let apposed = compound.suite && single && gap.len() == 1 && gap.clone().all(|k| tokens[k].mark() == Some(','));
+            apposed || gap.any(|k| spoken.iter().any(|s| s.tag_at(tokens, k, Tag::PartOf).is_some()))
+        });
         for m in mentions.iter_mut().filter(|m| m.span == compound.span) {
             m.from = head.from;
             if single {
@@ -211,8 +223,12 @@ pub(super) fn hold_own(
     let mut told: Vec<Span> = Vec::new();
     let at = |k: usize, c: char| tokens.get(k).is_some_and(|t| prompt.get(t.start..).is_some_and(|p| p.starts_with(c)));
     let tagged = |k: usize, tag| spoken.iter().find_map(|s| s.tag_at(tokens, k, tag));
-    for compound in compounds.iter().filter(|c| c.room_types.len() > 1 && c.room_types[1] == d.ensuite) {
+    let is_suite = |c: &&Compound| c.suite && c.room_types.len() > 1;
+    for compound in compounds.iter().filter(is_suite) {
+        let annexe = compound.room_types[0] == d.annexe;
         let from = compound.span.end;
+        // "granny annexe for the mother with ..."
+        let from = if annexe { (from..tokens.len().min(from + MOST_TO_OWNER)).find(|&k| tagged(k, Tag::Starts).is_some() || tokens[k].is_mark()).unwrap_or(from) } else { from };
         let bracket = at(from, '(');
         let Some(start) = bracket.then_some(from + 1).or_else(|| tagged(from, Tag::Starts)) else { continue };
         let mut end = (start..tokens.len()).find(|&k| at(k, ')')).unwrap_or(tokens.len());
@@ -228,20 +244,23 @@ pub(super) fn hold_own(
             let sleeps = compound.room_types[0] == kind.id || kind.id == d.bedroom;
             let washes = kind.id == d.bathroom || kind.id == d.ensuite || kind.id == d.shower;
             let joined = m.from.checked_sub(1).is_some_and(|k| tagged(k, Tag::Joins).is_some());
-            if last || !(bracket || sleeps || washes || joined) {
+            let lives = annexe && [&d.living, &d.suite_sitting, &d.kitchen, &d.living_kitchen].contains(&&kind.id);
+            let cooks = annexe && words().alike.iter().any(|set| set.contains(&d.kitchen) && set.contains(&kind.id));
+            if last || !(bracket || sleeps || washes || joined || lives || cooks) {
                 break;
             }
             last = !bracket && joined;
             if sleeps {
                 count = m.count.filter(|n| *n > 1 && !m.article);
             }
-            if sleeps || washes {
+            if sleeps || washes || lives || cooks {
                 told.push(m.span);
             } else if kind.id == d.living && domain.room_type(&d.suite_sitting).is_some() {
                 m.what = What::Room(d.suite_sitting.clone());
             }
         }
-        if let Some(n) = count.and_then(|n| mentions.iter_mut().find(|m| m.span == compound.span).map(|m| (m, n))) {
+        let sleeps = |m: &&mut Mention| m.span == compound.span && m.room_type().is_some_and(|id| id == d.bedroom);
+        if let Some(n) = count.and_then(|n| mentions.iter_mut().find(sleeps).map(|m| (m, n))) {
             (n.0.count, n.0.article) = (Some(n.1), false);
         }
     }
@@ -267,7 +286,7 @@ pub(super) fn relate(compounds: &[Compound], mentions: &[Mention], domain: &Doma
         let all: Vec<usize> = (0..mentions.len()).filter(|&m| mentions[m].span == compound.span).collect();
         for pair in all.windows(2) {
             let kind = mentions[pair[1]].room_type().and_then(|id| domain.room_type(id));
-            let belongs = kind.is_some_and(|k| k.access == Access::Host);
+            let belongs = compound.suite || kind.is_some_and(|k| k.access == Access::Host);
             let (subject, object) = if belongs { (pair[1], all[0]) } else { (pair[0], pair[1]) };
             let connector = if belongs { Connector::Door } else { Connector::Open };
             said.relations.push(Relation { subject, object, connector, spread: Spread::Each, apart: false, belongs });

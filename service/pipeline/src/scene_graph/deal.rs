@@ -1,6 +1,6 @@
 //! Which room goes on which storey, and the stairs and elevators that join them.
 
-use d3dgen_model::domain::{Access, Domain, Storeys as Rules, Zone};
+use d3dgen_model::domain::{Access, Domain, GENERIC_ROOM_TYPE, Storeys as Rules, Zone};
 use d3dgen_model::scene_graph::{Connector, GraphEdge, GraphRoom};
 use d3dgen_model::storeys::{LinkKind, VerticalLink};
 
@@ -8,7 +8,7 @@ use super::BY_CIRCULATION;
 use super::edges::{self, Web};
 use super::places::note;
 use super::program::Planned;
-use super::reading::Reading;
+use super::reading::{Reading, is_dwelling};
 use super::rooms;
 use super::storeys::Where;
 
@@ -17,8 +17,11 @@ const FULL: f64 = 1.3;
 /// How much larger than the one below a storey may be before rooms move down.
 const LARGER: f64 = 1.15;
 /// How far areas are scaled so that storeys carry each other.
-const LEAST_SCALE: f64 = 0.85;
+const LEAST_SCALE: f64 = 0.8;
 const MOST_SCALE: f64 = 1.3;
+/// How much larger a storey of a home may be than the one below, and how often areas are scaled until it is not.
+const EVEN: f64 = 0.01;
+const ROUNDS: usize = 4;
 /// Rooms of a storey from which on a building has two stairs.
 const TWO_STAIRS: usize = 16;
 
@@ -88,9 +91,18 @@ pub(super) fn deal(reading: &mut Reading, planned: &[Planned], areas: &[f64], le
         let next = above.get(1).copied().unwrap_or(0);
         at[i] = Some(if full && load(&at, &clusters, 0) > 0.0 { next } else { 0 });
     }
+    // a home has its bedrooms on all upper storeys alike
+    let up: f64 = clusters
+        .iter()
+        .zip(&at)
+        .filter(|(c, l)| l.map_or(c.likes == Likes::Upper, |l| l > 0))
+        .map(|(c, _)| c.area)
+        .sum();
+    let shared = up / (above.len() - 1).max(1) as f64;
+    let most = if is_dwelling(reading.program) { mean.min(shared) } else { mean };
     for i in open(&at, Likes::Upper, &clusters) {
         // one storey after the other, so that what is alike stays together
-        let free = above.iter().skip(1).find(|&&l| load(&at, &clusters, l) + 0.5 * clusters[i].area <= mean);
+        let free = above.iter().skip(1).find(|&&l| load(&at, &clusters, l) + 0.5 * clusters[i].area <= most);
         let least = || least_loaded(&above[1..], |l| load(&at, &clusters, l));
         at[i] = Some(free.copied().unwrap_or_else(least));
     }
@@ -149,27 +161,31 @@ fn least_loaded(levels: &[i32], load: impl Fn(i32) -> f64) -> i32 {
 
 /// Makes the rooms of a storey larger and those above it smaller where the upper one would jut out, within what their types
 /// and the prompt allow.
-pub(super) fn even_out(planned: &[Planned], rooms: &mut [GraphRoom], levels: &[i32]) {
+pub(super) fn even_out(planned: &[Planned], rooms: &mut [GraphRoom], levels: &[i32], lives: bool) {
     let above: Vec<i32> = levels.iter().copied().filter(|l| *l >= 0).collect();
     let area = |rooms: &[GraphRoom], level: i32| -> f64 {
         rooms.iter().filter(|r| r.level == level).map(|r| r.target_area_m2).sum()
     };
     // from the top down: what a storey carries is settled before it is asked to carry it
     for pair in above.windows(2).rev() {
-        let (lower, upper) = (area(rooms, pair[0]), area(rooms, pair[1]));
-        if upper <= lower || lower <= 0.0 {
-            continue;
-        }
-        let middle = 0.5 * (lower + upper);
-        for (level, factor) in [(pair[0], middle / lower), (pair[1], middle / upper)] {
-            let factor = factor.clamp(LEAST_SCALE, MOST_SCALE);
-            let free =
-                planned.iter().zip(&mut *rooms).filter(|(p, _)| p.area_m2.is_none() && p.people_area_m2.is_none());
-            for (_, room) in free.filter(|(_, r)| r.level == level) {
-                let [min, max] = room.area_range_m2;
-                let (low, high) = (room.target_area_m2.min(1.08 * min), room.target_area_m2.max(0.9 * max));
-                room.target_area_m2 =
-                    (room.target_area_m2 * factor * 10.0).round().clamp(10.0 * low, 10.0 * high) / 10.0;
+        for _ in 0..if lives { ROUNDS } else { 1 } {
+            let (lower, upper) = (area(rooms, pair[0]), area(rooms, pair[1]));
+            if upper <= lower * if lives { 1.0 + EVEN } else { 1.0 } || lower <= 0.0 {
+                break;
+            }
+            let middle = 0.5 * (lower + upper);
+            for (level, factor) in [(pair[0], middle / lower), (pair[1], middle / upper)] {
+                let factor = factor.clamp(LEAST_SCALE, MOST_SCALE);
+                // rooms for so many people may have more floor, never less
+                let free = planned.iter().zip(&mut *rooms).filter(|(p, _)| {
+                    p.area_m2.is_none() && (p.people_area_m2.is_none() || lives && factor > 1.0)
+                });
+                for (_, room) in free.filter(|(_, r)| r.level == level) {
+                    let [min, max] = room.area_range_m2;
+                    let (low, high) = (room.target_area_m2.min(1.08 * min), room.target_area_m2.max(0.9 * max));
+                    room.target_area_m2 =
+                        (room.target_area_m2 * factor * 10.0).round().clamp(10.0 * low, 10.0 * high) / 10.0;
+                }
             }
         }
     }
@@ -287,7 +303,11 @@ fn clusters<'p>(
         let main = rooms.iter().copied().max_by(|a, b| areas[*a].total_cmp(&areas[*b])).unwrap_or(first);
         let entrance = &reading.domain.circulation.entrance_room_types;
         let has = |list: &[String]| rooms.iter().any(|&r| list.contains(&planned[r].room_type));
-        let likes = if has(&rules.ground_room_types) || has(entrance) {
+        // what nobody knows is entered from the street rather than past the bedrooms: a workshop, a place for prams
+        let unknown = rooms.iter().any(|&r| {
+            planned[r].kind.id == GENERIC_ROOM_TYPE && planned[r].room_type != GENERIC_ROOM_TYPE && planned[r].requested
+        });
+        let likes = if has(&rules.ground_room_types) || has(entrance) || unknown && is_dwelling(reading.program) {
             Likes::Ground
         } else if has(&rules.each_level_room_types) && rooms.len() == 1 {
             Likes::Each

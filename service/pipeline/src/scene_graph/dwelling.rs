@@ -4,8 +4,11 @@ use std::collections::BTreeMap;
 
 use d3dgen_model::domain::Domain;
 
+use super::mentions::Mention;
 use super::numbers::Number;
+use super::objects::Thing;
 use super::text::{Kind, Span, Token};
+use super::wishes::Wishes;
 use super::words::{Dwelling, Spoken, Tag, words};
 
 /// Rooms that a short form stands for.
@@ -179,6 +182,27 @@ pub(super) fn household(
     let family = (0..tokens.len()).any(|i| tagged(i, Tag::Family).is_some());
     let parents = adults.or((family && children.is_some()).then_some(2.0))?;
     Some(parents as u32 + children.unwrap_or(0))
+}
+
+/// Returns the bed of a baby who lives in a home without a room for babies: it stands in the room of the parents.
+pub(super) fn cradle(
+    tokens: &[Token],
+    mentions: &[Mention],
+    wishes: &Wishes,
+    (domain, things): (&Domain, &[Thing]),
+    spoken: &[&Spoken],
+    read: &mut Vec<Span>,
+) -> Option<Thing> {
+    let d = &words().dwelling;
+    let taken = |i: usize| mentions.iter().any(|m| m.room_type().is_some() && m.span.contains(i)) || read.iter().any(|s| s.contains(i));
+    let found = (0..tokens.len()).filter(|&i| !taken(i)).find_map(|i| {
+        let end = spoken.iter().find_map(|s| s.tag_at(tokens, i, Tag::Babies))?;
+        Some(Span { start: i, end })
+    });
+    let span = found.filter(|_| domain.object(&d.baby_bed).is_some())?;
+    read.push(span);
+    let has = wishes.wishes.iter().any(|w| w.room_type == d.baby_room) || things.iter().any(|t| t.object == d.baby_bed);
+    (!has).then(|| Thing::of_one(&d.baby_bed, Some(d.bedroom.clone())))
 }
 
 /// Reads the number of "fünfköpfig", "vierköpfige".

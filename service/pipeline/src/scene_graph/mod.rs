@@ -137,7 +137,7 @@ fn assemble(request: &Request, mut reading: Reading, planned: &[Planned]) -> Sce
         let dealt = deal::deal(&mut reading, planned, &areas, &levels);
         rooms.iter_mut().zip(dealt).for_each(|(room, level)| room.level = level);
         workers::name_toilets(reading.domain, &mut rooms);
-        deal::even_out(planned, &mut rooms, &levels);
+        deal::even_out(planned, &mut rooms, &levels, reading::is_dwelling(reading.program));
         let (all, web, links) = deal::connect(&mut reading, planned, rooms, &levels);
         rooms = all;
         (web, links)

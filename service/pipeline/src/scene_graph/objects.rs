@@ -1,11 +1,31 @@
 //! Objects that a prompt names.
 
-use d3dgen_model::domain::Domain;
+use d3dgen_model::domain::{Access, Domain, Zone};
 use d3dgen_plugins::Registry;
 
 use super::mentions::Mention;
 use super::text::{Phrases, Span, Token};
 use super::words::{Spoken, Tag};
+
+/// Words from a thing to the word that gives it to every room, at most: "with a desk and chair each".
+const MOST_TO_EACH: usize = 4;
+
+/// An object that the prompt names.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Thing {
+    pub object: String,
+    /// Type of the room it is named with.
+    pub room_type: Option<String>,
+    /// True where every room of that type is to have one: "six bedrooms with desks".
+    pub each: bool,
+}
+
+impl Thing {
+    /// Returns a thing of one room.
+    pub(super) fn of_one(object: &str, room_type: Option<String>) -> Self {
+        Self { object: object.to_owned(), room_type, each: false }
+    }
+}
 
 /// Returns the objects that are named, each with the room type named before it; what is part of a room's name or of the
 /// spans that are no things is none. Adds the words for them to `spans`.
@@ -16,20 +36,10 @@ pub(super) fn named(
     (languages, spoken): (&[&str], &[&Spoken]),
     not_things: &[Span],
     spans: &mut Vec<Span>,
-) -> Vec<(String, Option<String>)> {
-    let words = |language: &str| {
-        let mut phrases: Phrases<String> = Phrases::new(language);
-        for object in &domain.objects {
-            object.keywords.get(language).into_iter().flatten().for_each(|p| phrases.insert(p, object.id.clone()));
-            if language == "en" {
-                phrases.insert(&object.label, object.id.clone());
-            }
-        }
-        phrases
-    };
-    let mut out: Vec<(String, Option<String>)> = Vec::new();
+) -> Vec<Thing> {
+    let mut out: Vec<Thing> = Vec::new();
     for language in languages {
-        let phrases = registry.digest(&format!("{language}: objects of {}", domain.id), || words(language));
+        let phrases = vocabulary(domain, registry, language);
         let mut i = 0;
         while i < tokens.len() {
             let inside = mentions.iter().any(|m| m.room_type().is_some() && m.span.contains(i));
@@ -41,8 +51,10 @@ pub(super) fn named(
                     let with = with.filter(|m| !is_item(tokens, m.span.end..i, spoken));
                     let near = with.and_then(|m| m.room_type()).map(str::to_owned);
                     spans.push(Span { start: i, end });
-                    if !out.iter().any(|o| &o.0 == id) {
-                        out.push((id.clone(), near));
+                    let each = with.is_some_and(|m| is_each(tokens, m, Span { start: i, end }, spoken));
+                    match out.iter_mut().find(|o| &o.object == id) {
+                        Some(known) => known.each |= each && known.room_type == near,
+                        None => out.push(Thing { object: id.clone(), room_type: near, each }),
                     }
                     i = end;
                 }
@@ -51,6 +63,68 @@ pub(super) fn named(
         }
     }
     out
+}
+
+/// Returns the words for objects of a domain in one language.
+fn vocabulary(domain: &Domain, registry: &Registry, language: &str) -> std::sync::Arc<Phrases<String>> {
+    let words = || {
+        let mut phrases: Phrases<String> = Phrases::new(language);
+        for object in &domain.objects {
+            object.keywords.get(language).into_iter().flatten().for_each(|p| phrases.insert(p, object.id.clone()));
+            if language == "en" {
+                phrases.insert(&object.label, object.id.clone());
+            }
+        }
+        phrases
+    };
+    registry.digest(&format!("{language}: objects of {}", domain.id), words)
+}
+
+/// Takes words for a room that name a thing behind a room to sleep in for that thing: the "bureau" of "chambres avec bureau".
+pub(super) fn of_bedrooms(
+    tokens: &[Token],
+    mentions: &mut Vec<Mention>,
+    (domain, registry): (&Domain, &Registry),
+    (languages, spoken): (&[&str], &[&Spoken]),
+) {
+    let sleeps = |m: &Mention| {
+        m.room_type().and_then(|id| domain.room_type(id)).is_some_and(|k| k.zone == Zone::Night && k.access != Access::Host)
+    };
+    let tagged = |i: usize, tag| spoken.iter().any(|s| s.tag_at(tokens, i, tag).is_some());
+    let is_thing = |span: Span| {
+        let whole = |l: &&str| vocabulary(domain, registry, l).longest_at(tokens, span.start).is_some_and(|f| f.0 == span.end);
+        languages.iter().any(whole)
+    };
+    let mut things = Vec::new();
+    for k in 1..mentions.len() {
+        let (host, m) = (&mentions[k - 1], &mentions[k]);
+        let gap = host.span.end..m.from.min(m.span.start);
+        let of_host = gap.clone().any(|i| tagged(i, Tag::Starts)) && !gap.clone().any(|i| tokens[i].is_mark());
+        if sleeps(host) && m.room_type().is_some() && of_host && is_thing(m.span) {
+            things.push(k);
+        }
+    }
+    let mut at = 0;
+    mentions.retain(|_| {
+        at += 1;
+        !things.contains(&(at - 1))
+    });
+}
+
+/// Returns true for a thing that every one of several rooms is to have: "six bedrooms with desks", "with a desk each".
+fn is_each(tokens: &[Token], room: &Mention, thing: Span, spoken: &[&Spoken]) -> bool {
+    let tagged = |i: usize, tag| spoken.iter().any(|s| s.tag_at(tokens, i, tag).is_some());
+    let several = room.plural || room.count.is_some_and(|n| n > 1 && !room.article);
+    let gap = room.span.end..thing.start;
+    let apart = gap.clone().any(|i| tokens[i].ends_sentence());
+    let told = || gap.clone().any(|i| tagged(i, Tag::Each)) || {
+        let behind = thing.end..tokens.len().min(thing.end + MOST_TO_EACH);
+        behind.take_while(|&i| !tokens[i].is_mark()).any(|i| tagged(i, Tag::Each))
+    };
+    // "one with a desk", "three bedrooms, a dining table"
+    let of_one = gap.clone().any(|i| tagged(i, Tag::OneOfThem));
+    let with = || gap.clone().any(|i| tagged(i, Tag::Starts)) && !gap.clone().any(|i| tokens[i].is_mark());
+    several && !apart && !of_one && (with() || told())
 }
 
 /// Returns true for a thing behind a comma, where nothing before says that it is in a room: "with", a colon, a bracket.

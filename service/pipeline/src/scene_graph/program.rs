@@ -10,6 +10,7 @@ use d3dgen_model::domain::{
 
 use super::beds::{Held, sleeps};
 use super::layout;
+use super::objects::Thing;
 use super::places::note;
 use super::reading::{MAX_ROOMS, MOST_IN_OFFICE, Reading, is_dwelling};
 use super::rooms::most_docks;
@@ -28,6 +29,12 @@ const MOST_BY_AREA: usize = 60;
 /// Share of a building's net area that its corridors take, before any plan is drawn.
 const CIRCULATION_SHARE: f64 = 0.14;
 
+/// The same of a home of several storeys, its stairs aside.
+const HALLS_SHARE: f64 = 0.11;
+/// Height of a storey as stairs are reckoned with before it is known, m, and the most of a home that they are reckoned to take.
+const STOREY_M: f64 = 2.8;
+const MOST_STAIRS: f64 = 0.2;
+
 /// Floor for a desk of a room whose domain says nothing of it, m^2.
 const DESK_AREA_M2: f64 = 9.0;
 
@@ -37,6 +44,14 @@ const FULL: f64 = 0.8;
 /// Floor of a room to live in with a table for many, over the least that such a table comes in.
 const BESIDE_TABLE: f64 = 1.3;
 
+/// Floor of a desk in a room that one lives in, m^2.
+const AT_DESK_M2: f64 = 3.0;
+/// Floor of such a room for who comes to the table in a wheelchair, as a factor.
+const STEP_FREE: f64 = 1.15;
+
+/// Toilets that a home of several storeys has where its list of rooms names fewer: one by day, one by night.
+const TOILETS_GRANTED: usize = 2;
+
 /// Width of one seat of a bench, m.
 const SEAT_M: f64 = 0.5;
 /// What rooms need beyond their least area before a building counts as too small for them, as a factor.
@@ -45,7 +60,21 @@ const TIGHT: f64 = 1.1;
 /// Returns the share of the net area that goes to corridors: none where a hall takes their part.
 pub(super) fn circulation_share(reading: &Reading, rooms: &[Planned]) -> f64 {
     let hubs = &reading.domain.circulation.hub_room_types;
-    if rooms.len() < 2 || rooms.iter().any(|r| hubs.contains(&r.room_type)) { 0.0 } else { CIRCULATION_SHARE }
+    if rooms.len() < 2 || rooms.iter().any(|r| hubs.contains(&r.room_type)) {
+        return 0.0;
+    }
+    let stairs = stairs_share(reading);
+    // halls of a home with stairs are short
+    if stairs > 0.0 { HALLS_SHARE + stairs } else { CIRCULATION_SHARE }
+}
+
+/// Returns the share of the net area that the stairs of a home take: one flight on every storey.
+fn stairs_share(reading: &Reading) -> f64 {
+    let storeys = reading.storeys.levels.len();
+    let rules = reading.domain.circulation.storeys.as_ref().filter(|_| storeys > 1 && is_dwelling(reading.program));
+    let Some((rules, area)) = rules.zip(reading.area_m2) else { return 0.0 };
+    let (width, depth) = rules.stairs.size_m(STOREY_M);
+    (storeys as f64 * width * depth / area).min(MOST_STAIRS)
 }
 
 /// A room to be.
@@ -63,6 +92,8 @@ pub(super) struct Planned<'a> {
     pub size: Option<f64>,
     /// Area that the people in it ask for, m^2.
     pub people_area_m2: Option<f64>,
+    /// Area that the table of those who live there asks for, m^2: what a small home leaves others less for.
+    pub table_area_m2: Option<f64>,
     /// Area that a proposal gives, m^2; within the range of its type.
     pub proposed_area_m2: Option<f64>,
     pub requested: bool,
@@ -94,6 +125,7 @@ impl<'a> Planned<'a> {
             area_m2: None,
             size: None,
             people_area_m2: None,
+            table_area_m2: None,
             proposed_area_m2: None,
             requested: false,
             host: None,
@@ -273,9 +305,15 @@ fn make_room_for_companions(reading: &Reading, rooms: &mut [Planned]) {
 /// Sees to it that there are as many toilets and bathrooms as storeys, where the prompt leaves the rooms open.
 fn wash_on_every_storey<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
     let storeys = reading.storeys.levels.iter().filter(|l| **l >= 0).count();
-    // where people work, a list of rooms that says nothing of that does not mean that one goes to another storey
-    let open = !reading.closed || workers::is_office(reading.program) && !reading.only;
-    let Some(rules) = reading.domain.circulation.storeys.as_ref().filter(|_| storeys > 1 && open) else { return };
+    // where people work, a list of rooms that says nothing of that does not mean that one goes to another storey; nor does
+    // anybody go up to the bedrooms for a toilet, unless the list says that it is all
+    let works = workers::is_office(reading.program) && !reading.only;
+    let lives = is_dwelling(reading.program) && !reading.only && !reading.single;
+    let open = !reading.closed || works || lives && reading.total.is_none();
+    let Some(rules) = reading.domain.circulation.storeys.as_ref().filter(|_| storeys > 1 && open) else {
+        return;
+    };
+    let storeys = if reading.closed && lives { storeys.min(TOILETS_GRANTED) } else { storeys };
     let kinds = rules.each_level_room_types.iter().filter_map(|id| reading.domain.room_type(id));
     let wet: Vec<&RoomType> =
         kinds.filter(|k| k.wet && !reading.wishes.forbidden.contains(&k.id) && k.access != Access::Host).collect();
@@ -721,6 +759,7 @@ fn serve_people(reading: &Reading, rooms: &mut [Planned]) {
         let at_table = if lives { table_for(reading, rooms, alike.first().copied(), people) } else { 0.0 };
         for &i in &alike {
             let range = rooms[i].kind.area_m2;
+            rooms[i].table_area_m2 = (at_table > 0.0).then(|| at_table.min(range.max));
             let area = (each * people / alike.len() as f64).max(at_table).clamp(range.min, range.max);
             // those of a usual size hold a usual number; a small office has small toilets
             if !lives || area > range.target {
@@ -741,14 +780,18 @@ fn table_for(reading: &Reading, rooms: &[Planned], room: Option<usize>, people: 
     let elsewhere = |line: &Furnishing| rooms.iter().any(|r| line.unless_rooms.contains(&r.room_type));
     let table = |line: &&Furnishing| {
         let is = domain.anchor(&line.item).is_some_and(|o| matches!(o.shape, Shape::Table | Shape::RoundTable));
-        is && line.sleepers > 0 && f64::from(line.sleepers) <= people && !line.unless_rooms.is_empty()
+        is && line.sleepers > 0 && f64::from(line.sleepers) <= people.max(2.0) && !line.unless_rooms.is_empty()
     };
     let line = kind.furnishing.iter().filter(table).max_by_key(|line| line.sleepers).filter(|line| !elsewhere(line));
-    let of_all = line.map_or(0.0, |line| BESIDE_TABLE * line.area_per_item_m2);
+    let beside = if reading.accessible { BESIDE_TABLE * STEP_FREE } else { BESIDE_TABLE };
+    // a desk in the room takes floor of its own
+    let desk = |t: &&Thing| t.object == words().dwelling.own_desk && t.room_type.as_deref() == Some(&kind.id);
+    let at_desk = if reading.objects.iter().any(|t| desk(&t)) { AT_DESK_M2 } else { 0.0 };
+    let of_all = line.map_or(0.0, |line| beside * line.area_per_item_m2 + at_desk);
     // "a dining table for eight"
     let named = |line: &&Furnishing| {
         let table = domain.anchor(&line.item).filter(|_| line.sleepers > 0);
-        table.is_some_and(|o| reading.objects.iter().any(|(id, _)| *id == o.id)) && !elsewhere(line)
+        table.is_some_and(|o| reading.objects.iter().any(|t| t.object == o.id)) && !elsewhere(line)
     };
     kind.furnishing.iter().filter(named).map(|line| line.area_per_item_m2).fold(of_all, f64::max)
 }

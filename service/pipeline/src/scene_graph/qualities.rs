@@ -1,6 +1,8 @@
 //! What a prompt says of single rooms: how large they are ("big kitchen"), what their name says stands in them ("eat-in
 //! kitchen").
 
+use d3dgen_model::domain::Domain;
+
 use super::mentions::Mention;
 use super::text::{Span, Token};
 use super::words::Spoken;
@@ -22,6 +24,40 @@ pub(super) fn size(tokens: &[Token], mention: &Mention, spoken: &[&Spoken], behi
     let after = || at(mention.span.end).filter(|_| behind && mention.span.end < tokens.len());
     let own = || (mention.span.start..mention.span.end).find_map(at);
     before.or_else(after).or_else(own).map(|f| *f.1)
+}
+
+/// A place in a room that the prompt names: "home office corner".
+pub(super) struct Nook {
+    pub span: Span,
+    pub object: String,
+    /// Room types it may be in, the usual one first.
+    pub room_types: Vec<String>,
+}
+
+/// Returns the places in rooms that a prompt names and the domain can furnish.
+pub(super) fn nooks(
+    tokens: &[Token],
+    spoken: &[&Spoken],
+    domain: &Domain,
+    taken: impl Fn(usize) -> bool,
+) -> Vec<Nook> {
+    let mut out: Vec<Nook> = Vec::new();
+    let mut i = 0;
+    while i < tokens.len() {
+        let found = spoken.iter().filter_map(|s| s.nooks.longest_at(tokens, i)).max_by_key(|f| f.0);
+        let Some((end, words)) = found.filter(|_| !taken(i)) else {
+            i += 1;
+            continue;
+        };
+        if let [object, room_types @ ..] = words.as_slice()
+            && domain.object(object).is_some()
+        {
+            let room_types = room_types.iter().filter(|id| domain.room_type(id).is_some()).cloned().collect();
+            out.push(Nook { span: Span { start: i, end }, object: object.clone(), room_types });
+        }
+        i = end;
+    }
+    out
 }
 
 /// Returns the objects that the names of rooms say stand in them, each with the type of its room, and their words.

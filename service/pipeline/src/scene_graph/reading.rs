@@ -11,7 +11,7 @@ use super::beds::{self, Held};
 use super::building::{self, Building};
 use super::compounds;
 use super::mentions::{Mention, Taken, Vocabulary, What, mentions};
-use super::objects;
+use super::objects::{self, Thing};
 use super::parts;
 use super::places::{self, note};
 use super::relations;
@@ -100,7 +100,9 @@ pub(super) struct Reading<'a> {
     /// True where someone stays overnight with every patient.
     pub stays: bool,
     /// Objects that the prompt names, each with the room type it is named with.
-    pub objects: Vec<(String, Option<String>)>,
+    pub objects: Vec<Thing>,
+    /// Children who live there.
+    pub children: u32,
     pub assumptions: Vec<Note>,
     pub conflicts: Vec<Note>,
 }
@@ -202,6 +204,9 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         said_styles.extend(open.map(|span| styles::Said { span, word: StyleWord::Layout(LayoutStyle::Open) }));
     }
     spans.extend(said_styles.iter().map(|s| s.span));
+    // "home office corner": a place in a room
+    let nooks = if lives { qualities::nooks(&tokens, &spoken, domain, |i| spans.iter().any(|s| s.contains(i))) } else { Vec::new() };
+    spans.extend(nooks.iter().map(|n| n.span));
     // "cleaning robot" and "wheelchair users" name no object
     let mut not_things = machines.spans.clone();
     not_things.extend(said_styles.iter().map(|s| s.span));
@@ -226,6 +231,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     let mut told_again = compounds::hold_own(&tokens, prompt, &compounds, &mut mentions, domain, &spoken);
     if lives {
         told_again.extend(fixtures::settle(&tokens, prompt, &mut mentions, domain, &wet, &spoken));
+        objects::of_bedrooms(&tokens, &mut mentions, (domain, registry), (&languages, &spoken));
     }
     if shared {
         own_rooms(&mut mentions, domain);
@@ -433,6 +439,11 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     let stays = if lives { None } else { stays::read(&tokens, &spoken) };
     spans.extend(stays);
     let mut read: Vec<Span> = spans.iter().chain(&machines.docks).chain(&building.words).copied().collect();
+    // "ein Geschoss"
+    let storeys_told = |start: usize| {
+        spoken.iter().find_map(|s| s.storey_counts.longest_at(&tokens, start)).map(|f| Span { start, end: f.0 })
+    };
+    read.extend((0..tokens.len()).filter_map(storeys_told));
     let mut things =
         objects::named(&tokens, &mentions, (domain, registry), (&languages, &spoken), &not_things, &mut read);
     let free = |i: usize| !spans.iter().chain(&building.head).any(|s| s.contains(i));
@@ -443,12 +454,22 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     let dines = wishes.wishes.iter().any(|w| w.room_type == words().dwelling.dining);
     for (object, room_type, span) in furnished {
         let here = domain.object(&object).is_some() && wishes.wishes.iter().any(|w| w.room_type == room_type);
-        if here && !things.iter().any(|t| t.0 == object) {
+        if here && !things.iter().any(|t| t.object == object) {
             read.push(span);
             let wish = wishes.wishes.iter_mut().find(|w| w.room_type == room_type);
             wish.into_iter().filter(|_| !dines).for_each(|w| w.size = w.size.or(Some(EATING)));
-            things.push((object, Some(room_type)));
+            things.push(Thing::of_one(&object, Some(room_type)));
         }
+    }
+    for nook in nooks {
+        let wished = |id: &&String| wishes.wishes.iter().any(|w| w.room_type == **id);
+        let room_type = nook.room_types.iter().find(wished).or(nook.room_types.first()).cloned();
+        if !things.iter().any(|t| t.object == nook.object) {
+            things.push(Thing::of_one(&nook.object, room_type));
+        }
+    }
+    if lives {
+        things.extend(dwelling::cradle(&tokens, &mentions, &wishes, (domain, &things), &spoken, &mut read));
     }
     let unread = unread::Text {
         tokens: &tokens,
@@ -466,7 +487,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     };
     unread::state(&unread, &mut conflicts);
     // those stand where the prompt puts them
-    things.retain(|(object, _)| docked.is_empty() || domain.anchor(object).is_none_or(|o| o.shape != Shape::Dock));
+    things.retain(|t| docked.is_empty() || domain.anchor(&t.object).is_none_or(|o| o.shape != Shape::Dock));
     Ok(Reading {
         language,
         domain,
@@ -493,6 +514,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         area_m2,
         occupancy: people.occupancy,
         residents: people.residents,
+        children: people.children,
         each_alone,
         accessible: (0..tokens.len()).any(|i| spoken.iter().any(|s| s.tag_at(&tokens, i, Tag::Accessible).is_some())),
         robots,
@@ -673,6 +695,7 @@ fn wish_for_storeys(storeys: &mut Storeys, wishes: &mut Wishes, domain: &Domain)
 struct People {
     occupancy: Occupancy,
     residents: Option<u32>,
+    children: u32,
 }
 
 impl People {
@@ -706,7 +729,7 @@ impl People {
             Some(n) => occupancy.visitors = occupancy.visitors.or(Some(n)),
             None => {}
         }
-        Self { occupancy, residents }
+        Self { occupancy, residents, children: 0 }
     }
 
     /// Counts those who share a home: "couple", "family of five", "two adults and three children".
@@ -728,6 +751,7 @@ impl People {
             self.occupancy.visitors = None;
         }
         let household = dwelling::household(tokens, numbers, spoken, children);
+        self.children = children.unwrap_or(0);
         self.residents = adults.zip(children).map(|(a, c)| a + c).or(self.residents).or(adults).or(household);
     }
 }

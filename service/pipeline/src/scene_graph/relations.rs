@@ -248,6 +248,12 @@ impl Reader<'_> {
         }
     }
 
+    /// Returns true where one of several is told of: "the main one with".
+    fn one_of_them(&self, i: usize) -> bool {
+        let end = self.spoken.iter().filter_map(|s| s.tag_at(self.tokens, i, Tag::OneOfThem)).max();
+        end.is_some_and(|end| self.tagged(end, Tag::Starts))
+    }
+
     fn both_before(&self, m: usize) -> bool {
         let from = self.mentions[m].from;
         (from.saturating_sub(2)..=from).any(|i| i < self.tokens.len() && self.tagged(i, Tag::Both))
@@ -312,11 +318,14 @@ fn belongings(reader: &Reader, said: &mut Said) {
             continue;
         }
         if any_room {
-            said.each_room.extend((each_host && starts).then_some(g));
+            // "moves between all rooms, with a dock in the laundry" says nothing of what each room has
+            said.each_room.extend((each_host && starts && !comma && !guest.definite).then_some(g));
             continue;
         }
         // "three bedrooms including a master suite": one of them has it
-        let part = has(Tag::PartOf) && guest.count == Some(1);
+        // "four bedrooms, the main one with a bathroom"
+        let one = many && comma && between.clone().any(|i| tokens[i].mark() == Some(',') && reader.one_of_them(i + 1));
+        let part = has(Tag::PartOf) && guest.count == Some(1) || one && guest.count.is_none_or(|n| n == 1);
         let of_each = each && many && (starts || has(Tag::Own)) || starts && !comma && !joined && many && !numbered;
         if of_each && !part {
             said.each.push((g, h));

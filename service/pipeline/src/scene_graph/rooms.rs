@@ -9,6 +9,7 @@ use d3dgen_model::scene_graph::{GraphRoom, Robot};
 use d3dgen_model::style::SpaceStyle;
 
 use super::beds;
+use super::objects::Thing;
 use super::places::note;
 use super::program::{Planned, circulation_share};
 use super::reading::{Reading, is_dwelling};
@@ -28,6 +29,11 @@ const CROWDED: f64 = 0.6;
 const ROOMY: f64 = 1.5;
 /// Largest area of a room over its usual one from which on it takes any number of people.
 const OPEN_ENDED: f64 = 8.0;
+/// What rooms need beyond their least area before a home is too small for its table, as a factor.
+const TIGHT: f64 = 1.04;
+/// Most that rooms grow in a home with floor to spare, as factors: those that serve the others, and those to sleep in.
+const MOST_TO_SERVE: f64 = 1.35;
+const MOST_TO_SLEEP: f64 = 1.75;
 /// Most that usual areas are scaled towards the one asked for.
 const MOST_SCALE: f64 = 100.0;
 /// Share of their usual area that rooms of a compact building have.
@@ -210,9 +216,17 @@ fn target_areas(reading: &mut Reading, planned: &[Planned]) -> Vec<f64> {
         room.kind.zone != Zone::Service && room.kind.area_m2.max >= OPEN_ENDED * room.kind.area_m2.target
     };
     let works = is_office(reading.program);
+    let lives = is_dwelling(reading.program);
+    // people eat together before bedrooms are as large as usual
+    let seated = |room: &Planned| room.table_area_m2.filter(|_| room.area_m2.is_none());
+    let least: f64 = planned.iter().map(|r| r.area_m2.or(seated(r)).unwrap_or(0.0).max(r.kind.area_m2.min)).sum();
+    let keeps_table = TIGHT * least <= budget;
     let at = |scale: f64, roomy: usize| -> Vec<f64> {
         let sized = planned.iter().zip(&areas).map(|(room, area)| {
-            let range = room.kind.area_m2;
+            let mut range = room.kind.area_m2;
+            if let Some(table) = seated(room).filter(|_| keeps_table) {
+                range.min = range.min.max(table);
+            }
             let serves = room.kind.zone == Zone::Service;
             let small = serves || room.kind.privacy == Privacy::Private;
             let kept = !takes_all(room) && (roomy < 1 || roomy < 2 && works && small);
@@ -229,9 +243,12 @@ fn target_areas(reading: &mut Reading, planned: &[Planned]) -> Vec<f64> {
                     // who is told to have a desk there has it
                     let desks = works && room.occupants.is_some_and(|n| n <= MOST_IN_TEAM) && !room.visited;
                     let least = if desks { 1.0 } else { CROWDED } * people;
-                    (area * scale).clamp(range.min.max(least).min(most), most)
+                    (area * scale).clamp(range.min.max(least).min(most), most.max(range.min))
                 }
+                _ if kept && lives => (area * scale.min(ROOMY.min(most_of(room.kind.zone)))).clamp(range.min, range.max),
                 _ if kept => (area * scale.min(ROOMY)).clamp(range.min, range.max),
+                // in a large home one lives in larger rooms; what serves them does not grow with it
+                _ if lives => (area * scale.min(most_of(room.kind.zone))).clamp(range.min, range.max),
                 _ => (area * scale).clamp(range.min, range.max),
             }
         });
@@ -267,6 +284,15 @@ fn target_areas(reading: &mut Reading, planned: &[Planned]) -> Vec<f64> {
         reading.conflicts.push(note("area_not_reachable", message));
     }
     scaled.into_iter().map(tenth).collect()
+}
+
+/// Returns how much larger than usual rooms of a zone become in a home with floor to spare, as a factor.
+fn most_of(zone: Zone) -> f64 {
+    match zone {
+        Zone::Service | Zone::Circulation => MOST_TO_SERVE,
+        Zone::Night => MOST_TO_SLEEP,
+        _ => MOST_SCALE,
+    }
 }
 
 /// Returns how many rooms must go, the largest first, before the others fit an area, net m^2.
@@ -315,7 +341,20 @@ fn named_objects(reading: &mut Reading, planned: &[Planned]) -> BTreeMap<usize, 
         let own = (0..planned.len()).filter(|&i| planned[i].room_type == words().dwelling.bedroom);
         own.for_each(|i| out.entry(i).or_default().push(words().dwelling.own_desk.clone()));
     }
-    for (object, room_type) in std::mem::take(&mut reading.objects) {
+    beds_of_one(reading, planned).into_iter().for_each(|i| {
+        out.entry(i).or_default().push(words().dwelling.own_bed.clone());
+    });
+    for Thing { object, room_type, each } in std::mem::take(&mut reading.objects) {
+        if each {
+            let all = (0..planned.len()).filter(|&i| room_type.as_deref() == Some(&planned[i].room_type));
+            for i in all {
+                let own = out.entry(i).or_default();
+                if !own.contains(&object) {
+                    own.push(object.clone());
+                }
+            }
+            continue;
+        }
         let usual = |r: &Planned| furniture(reading.domain, r.kind).any(|o| o == object);
         let with = planned.iter().position(|r| room_type.as_deref() == Some(&r.room_type));
         // "two bedrooms and a dining table": nobody eats there where another room is for that
@@ -330,6 +369,27 @@ fn named_objects(reading: &mut Reading, planned: &[Planned]) -> BTreeMap<usize, 
         }
     }
     out
+}
+
+/// Returns the bedrooms in which one person sleeps: of those who share a home all, of a family those of the children.
+fn beds_of_one(reading: &Reading, planned: &[Planned]) -> Vec<usize> {
+    let d = &words().dwelling;
+    let rooms: Vec<usize> = (0..planned.len()).filter(|&i| planned[i].room_type == d.bedroom).collect();
+    if reading.domain.object(&d.own_bed).is_none() {
+        return Vec::new();
+    }
+    let shared = reading.building_type.as_ref().is_some_and(|b| d.shared.contains(b));
+    if shared {
+        // where more live than there are rooms, couples do
+        let alone = reading.residents.is_none_or(|n| n as usize <= rooms.len());
+        return if alone { rooms } else { Vec::new() };
+    }
+    let others = planned.iter().filter(|r| r.kind.zone == Zone::Night && r.room_type != d.bedroom);
+    let others = others.filter(|r| beds::sleeps(reading.domain, r.kind).is_some_and(|[least, _]| least == 1)).count();
+    let children = (reading.children as usize).saturating_sub(others);
+    // parents first; guests may sleep in what is left
+    let from = rooms.len().checked_sub(children).filter(|left| *left > 0 && children > 0);
+    from.map_or(Vec::new(), |_| rooms[1..=children].to_vec())
 }
 
 /// Returns true for a room in which people sit around this table, in a home of these rooms.

@@ -138,6 +138,10 @@ pub(super) enum Tag {
     Overnight,
     /// Words that say both: "rooming-in".
     RoomingIn,
+    /// Babies, who sleep in a bed of their own beside their parents.
+    Babies,
+    /// One of the rooms counted before: "four bedrooms, the main one with a bathroom".
+    OneOfThem,
 }
 
 /// Words of one language.
@@ -172,6 +176,9 @@ pub(super) struct Language {
     /// Words for a room that say what stands in it: its type and the object.
     #[serde(default)]
     pub furnished: BTreeMap<String, Vec<String>>,
+    /// Words for a place in a room and not a room: the object that stands there, and the room types, the usual one first.
+    #[serde(default)]
+    pub nooks: BTreeMap<String, Vec<String>>,
     /// Words for rooms of several types that share a noun, with the room types: "single and double rooms".
     #[serde(default)]
     pub mixes: BTreeMap<String, Vec<String>>,
@@ -202,6 +209,13 @@ pub(super) struct Dwelling {
     pub living_kitchen: String,
     /// The sitting room of a suite.
     pub suite_sitting: String,
+    /// The room of an annexe that its bedroom and bathroom are entered from, with its kitchen.
+    pub annexe: String,
+    /// What those sleep in who are alone in their room.
+    pub own_bed: String,
+    /// The room of a baby, and what stands in its parents' room where it has none.
+    pub baby_room: String,
+    pub baby_bed: String,
     pub ensuite: String,
     /// Building types of homes that people share who have a room each.
     pub shared: Vec<String>,
@@ -304,6 +318,7 @@ pub(super) struct Spoken {
     pub suites: Phrases<Vec<String>>,
     pub sizes: Phrases<f64>,
     pub furnished: Phrases<Vec<String>>,
+    pub nooks: Phrases<Vec<String>>,
     pub mixes: Phrases<Vec<String>>,
     /// Usual words that tell the language, folded.
     pub detect: BTreeSet<String>,
@@ -386,6 +401,7 @@ fn spoken(code: &str, words: Language) -> Spoken {
     };
     let (joint, suites, mixes) = (table(&words.joint), table(&words.suites), table(&words.mixes));
     let furnished = table(&words.furnished);
+    let nooks = table(&words.nooks);
     let mut sizes = Phrases::new("");
     words.sizes.iter().for_each(|(phrase, value)| sizes.insert(phrase, *value));
     let detect = words.phrases.get(&Tag::Detect).into_iter().flatten().map(|w| super::text::fold(w)).collect();
@@ -404,6 +420,7 @@ fn spoken(code: &str, words: Language) -> Spoken {
         suites,
         sizes,
         furnished,
+        nooks,
         mixes,
     }
 }

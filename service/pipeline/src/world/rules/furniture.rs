@@ -8,6 +8,7 @@ use d3dgen_model::placements::Placement;
 use d3dgen_model::{Rect, TOLERANCE_M};
 
 use super::Findings;
+use crate::placement::other_bed;
 use crate::world::context::{Context, Object, Room, bounds};
 
 /// Farthest a back may be from the wall it belongs to, m: a heater, a skirting, a curtain fit between.
@@ -23,9 +24,12 @@ pub fn required(c: &Context, out: &mut Findings) {
         line.required && line.is_for(graph.rooms.iter().map(|r| r.room_type.as_str()), graph.accessible)
     };
     for room in &c.rooms {
+        // the bed that somebody asked for stands for the usual one
+        let bed = graph.room(&room.plan.room_id).and_then(|r| other_bed(c.domain, r));
         for line in room.kind.furnishing.iter().filter(asked) {
             out.look();
-            let items = std::iter::once(&line.item).chain(&line.instead_of);
+            let asked_for = bed.filter(|b| b.instead_of.contains(&line.item)).map(|b| &b.item);
+            let items = std::iter::once(&line.item).chain(&line.instead_of).chain(asked_for);
             let count: u32 = items.map(|item| instances(c, room, item)).sum();
             if count < line.min {
                 let message = format!("has {count} {}, needs {}", line.item, line.min);
