@@ -14,6 +14,7 @@ use super::mentions::{Mention, Taken, Vocabulary, What, mentions};
 use super::objects;
 use super::parts;
 use super::places::{self, note};
+use super::practitioners;
 use super::relations;
 use super::seats::{self, Called};
 use super::senses;
@@ -154,6 +155,11 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         &mut assumptions,
         &mut conflicts,
     );
+    if place.country_code.is_none() && conflicts.iter().all(|n| !n.code.ends_with("_place")) {
+        let (code, span) = places::of_building(&tokens, &spoken, (language, &building.words), &mut assumptions).unzip();
+        place.country_code = code;
+        place.spans.extend(span);
+    }
     let words_known = || building::words_known(&tokens, registry, language);
     let unread_language = language::unread(prompt, &tokens, language, words_known());
     if let Some(name) = unread_language {
@@ -254,7 +260,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         beds::of_several_wards(&mut mentions, &numbers, &wards);
     }
     senses::settle(&tokens, &mut mentions, &vocabulary, domain, program);
-    subsets::settle(&tokens, &spoken, &mut mentions, domain);
+    subsets::settle(&tokens, &numbers, &spoken, &mut mentions, domain);
     let seated = if lives { Vec::new() } else { seated::read(&tokens, &mut mentions, (domain, program), &spoken) };
     let elsewhere: Vec<Span> = machines.spans.iter().chain(&place_spans).chain(&building.head).copied().collect();
     let stations = stations::Reader {
@@ -337,6 +343,8 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     name_private_bathrooms(&mut wishes, domain, lives);
     if !lives {
         vital::rule_out(domain, &wet, &mut wishes);
+        let (words, said) = ((&tokens[..], &numbers[..]), (&languages[..], &spoken[..]));
+        spans.extend(practitioners::house(words, said, (domain, program), &mut wishes, &mut assumptions));
     }
     let program = program_by_bedrooms(domain, program, &wishes);
     spans.extend(building.head);
@@ -373,6 +381,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         let beds = people.occupancy.beds;
         let sleepers = beds::Sleepers { domain, program, mentions: &mentions, said: &said, beds, people: who };
         let settled = sleepers.settle(&mut wishes, &mut assumptions, &mut conflicts);
+        wishes::each_of_counted(&mentions, &said.each, &mut wishes);
         (held, people.occupancy.beds) = (settled.held, settled.beds.or(parts.beds));
         let desks: u32 = seated.iter().map(|s| s.count.saturating_mul(s.beds)).fold(0, u32::saturating_add);
         let heads = &mut people.occupancy;
@@ -409,7 +418,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     let only = says_only(&tokens, &mentions, &spoken);
     let listed_only = only && !lives && wishes.wishes.iter().any(|w| w.listed);
     let closed = single || listed_only || is_closed(&wishes, &tokens, &building, (domain, lives));
-    let may_join = !only && joins_a_name(&building, &tokens, language);
+    let may_join = !only && joins_a_name(&building, &tokens, language, program);
     let named_first = is_named_first(&building, language);
     if closed && lives && !single {
         wishes.open_to(domain);
@@ -541,6 +550,10 @@ fn building_of(
         // "a 4-bed room" is no home, and who has staff works there
         let by_words = by_beds_or_staff(registry, tokens, numbers, spoken, found.is_none());
         found = by_words.map(|domain| Building { by_rooms: true, ..Building::none(domain) }).or(found);
+        if let Some((domain, kind)) = practitioners::practice_of(registry, (tokens, numbers), languages) {
+            let building = Building { building_type: Some(kind), ..Building::none(&domain) };
+            found = Some(Building { by_rooms: true, ..building });
+        }
     }
     if let Some(id) = &request.domain {
         if let Some(other) = found.as_ref().filter(|b| &b.domain != id && !b.by_rooms) {
@@ -841,8 +854,9 @@ pub(super) fn is_dwelling(program: &Program) -> bool {
 }
 
 /// Returns true for rooms listed behind the name of a building and no colon: these are what it has, and perhaps not all.
-fn joins_a_name(building: &Building, tokens: &[Token], language: &str) -> bool {
-    let colon = tokens.iter().any(|t| t.mark() == Some(':'));
+/// Behind a colon too where rooms that nobody thinks of serve the others: an emergency department has its utilities.
+fn joins_a_name(building: &Building, tokens: &[Token], language: &str, program: &Program) -> bool {
+    let colon = program.support.is_empty() && tokens.iter().any(|t| t.mark() == Some(':'));
     !colon && is_named_first(building, language)
 }
 
