@@ -36,11 +36,6 @@ const FREE_RANGE: f64 = 1.3;
 /// many share.
 const WIDTH_VARIATION: f64 = 0.1;
 const FEW_ROOMS_WIDTH: f64 = 0.3;
-/// Area of a room to sleep in, at most, over the least that is advised, where no most is.
-const ROOMY_ASLEEP: f64 = 1.15;
-/// Rooms, circulation included, up to which a plan has them near the size that is advised, and how much larger they may be beyond.
-const FEW_ROOMS: usize = 16;
-const ROOMY_IN_ROW: f64 = 1.12;
 /// Share of a target area kept from the edges of what is advised, for the search to move in.
 const ADVICE_MARGIN: f64 = 0.03;
 
@@ -426,13 +421,6 @@ fn room_spec(
     if let Some([least, most]) = limit.area_advised {
         let least = least * (1.0 + ADVICE_MARGIN);
         area_target = area_target.clamp(least, (most * (1.0 - ADVICE_MARGIN)).max(least));
-        // a room to sleep in does not take what a small plan has left over, where its size is advised
-        let most = if most.is_finite() && most < f64::MAX { most } else { ROOMY_ASLEEP * least };
-        // in a long row of them the rooms give and take
-        let most = if graph.rooms.len() > FEW_ROOMS { ROOMY_IN_ROW * most } else { most };
-        if kind.zone == Zone::Night && room.target_area_m2.max(area_min) <= most && least > 0.0 {
-            area_max = area_max.min(most.max(1.05 * area_target));
-        }
     }
     if graph.accessible {
         area_target = area_target.max(kind.step_free_m2.min(area_max));

@@ -5,6 +5,7 @@ use d3dgen_model::domain::{Domain, Practitioner, Program};
 use d3dgen_model::scene_graph::Note;
 use d3dgen_plugins::Registry;
 
+use super::building::Building;
 use super::numbers::Number;
 use super::places::note;
 use super::text::{Kind, Phrases, Span, Token};
@@ -43,9 +44,12 @@ pub(super) fn house(
         let number = numbers.iter().filter(|n| !n.vague && (1.0..=MOST).contains(&n.value)).find(of);
         // "doctor's office", "nurse station": these name rooms
         let names = tokens.get(end).is_some_and(|t| t.kind == Kind::Word && is_noun(tokens, end, spoken));
-        if let Some(number) = number.filter(|_| !names) {
-            people[who] += number.value as u32;
-            spans.push(Span { start: number.span.start, end });
+        // "two doctors and a nurse"
+        let one = i.checked_sub(1).filter(|&k| spoken.iter().any(|s| s.tag_at(tokens, k, Tag::Articles) == Some(i)));
+        let said = number.map(|n| (n.span.start, n.value as u32)).or(one.map(|start| (start, 1)));
+        if let Some((start, count)) = said.filter(|_| !names) {
+            people[who] += count;
+            spans.push(Span { start, end });
         }
         i = end;
     }
@@ -64,28 +68,34 @@ pub(super) fn house(
     spans
 }
 
-/// Returns the domain and the kind of building of a prompt that names neither, and only who sees people there: "practice for
-/// three GPs and a nurse".
+/// Returns the building of a prompt that names none, and only who sees people there: "practice for three GPs and a nurse".
 pub(super) fn practice_of(
     registry: &Registry,
     (tokens, numbers): (&[Token], &[Number]),
     languages: &[&str],
-) -> Option<(String, String)> {
-    registry.iter().map(|p| p.domain()).find_map(|domain| {
+) -> Option<Building> {
+    registry.iter().map(|p| p.domain()).filter(|d| !d.practitioners.is_empty()).find_map(|domain| {
+        let tables: Vec<Phrases<usize>> = languages.iter().map(|l| table(&domain.practitioners, l)).collect();
         let counted = |k: usize| {
-            let tables = languages.iter().map(|l| table(&domain.practitioners, l));
-            let who = tables.into_iter().find_map(|t| t.longest_at(tokens, k).map(|f| *f.1))?;
-            let number = |n: &Number| n.span.end == k && !n.article && !n.vague && n.value > 1.0;
-            numbers.iter().any(number).then_some(who)
+            let (end, who) = tables.iter().find_map(|t| t.longest_at(tokens, k).map(|f| (f.0, *f.1)))?;
+            let number = |n: &&Number| n.span.end == k && !n.article && !n.vague && n.value > 1.0;
+            let number = numbers.iter().find(number)?;
+            Some((Span { start: number.span.start, end }, who))
         };
-        let who = (0..tokens.len()).find_map(counted)?;
+        let (head, who) = (0..tokens.len()).find_map(counted)?;
         let main = |p: &&Program| {
-            let id = &domain.practitioners[who].room_type;
-            p.practice && p.rooms.first().is_some_and(|r| &r.room_type == p.means.get(id).unwrap_or(id))
+            p.practice && p.rooms.first().is_some_and(|r| r.room_type == domain.practitioners[who].room_type)
         };
         let program = domain.programs.iter().filter(main).min_by_key(|p| p.default_rooms)?;
         let kind = domain.building_types.iter().find(|b| b.program == program.id)?;
-        Some((domain.id.clone(), kind.id.clone()))
+        let building_type = Some(kind.id.clone());
+        Some(Building {
+            building_type,
+            head: Some(head),
+            list_from: head.end,
+            by_rooms: true,
+            ..Building::none(&domain.id)
+        })
     })
 }
 

@@ -550,10 +550,7 @@ fn building_of(
         // "a 4-bed room" is no home, and who has staff works there
         let by_words = by_beds_or_staff(registry, tokens, numbers, spoken, found.is_none());
         found = by_words.map(|domain| Building { by_rooms: true, ..Building::none(domain) }).or(found);
-        if let Some((domain, kind)) = practitioners::practice_of(registry, (tokens, numbers), languages) {
-            let building = Building { building_type: Some(kind), ..Building::none(&domain) };
-            found = Some(Building { by_rooms: true, ..building });
-        }
+        found = practitioners::practice_of(registry, (tokens, numbers), languages).or(found);
     }
     if let Some(id) = &request.domain {
         if let Some(other) = found.as_ref().filter(|b| &b.domain != id && !b.by_rooms) {
