@@ -305,6 +305,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     let mut said = relations::read(&tokens, &mentions, &spoken, language, building.head);
     compounds::relate(&compounds, &mentions, domain, &mut said);
     compounds::open_belongings(&tokens, &mentions, domain, &spoken, &mut said);
+    let arranged = said.relations.iter().any(|r| !r.belongs);
     let text = Text {
         tokens: &tokens,
         prompt,
@@ -418,7 +419,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     let only = says_only(&tokens, &mentions, &spoken);
     let listed_only = only && !lives && wishes.wishes.iter().any(|w| w.listed);
     let closed = single || listed_only || is_closed(&wishes, &tokens, &building, (domain, lives));
-    let may_join = !only && joins_a_name(&building, &tokens, language, program);
+    let may_join = !only && joins_a_name(&building, &tokens, language, !program.support.is_empty() && !arranged);
     let named_first = is_named_first(&building, language);
     if closed && lives && !single {
         wishes.open_to(domain);
@@ -851,9 +852,10 @@ pub(super) fn is_dwelling(program: &Program) -> bool {
 }
 
 /// Returns true for rooms listed behind the name of a building and no colon: these are what it has, and perhaps not all.
-/// Behind a colon too where rooms that nobody thinks of serve the others: an emergency department has its utilities.
-fn joins_a_name(building: &Building, tokens: &[Token], language: &str, program: &Program) -> bool {
-    let colon = program.support.is_empty() && tokens.iter().any(|t| t.mark() == Some(':'));
+/// Behind a colon too where rooms that nobody thinks of serve the others (`served`): an emergency department has its utilities;
+/// but not where the prompt says how the rooms lie, for then it has them all in mind.
+fn joins_a_name(building: &Building, tokens: &[Token], language: &str, served: bool) -> bool {
+    let colon = !served && tokens.iter().any(|t| t.mark() == Some(':'));
     !colon && is_named_first(building, language)
 }
 
