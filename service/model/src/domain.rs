@@ -81,6 +81,21 @@ pub struct Domain {
     /// Scenario roles: ambient people by role.
     #[serde(default)]
     pub roles: Vec<Role>,
+    /// Who has a room to work in where the prompt counts them and not their rooms: "practice for three doctors".
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub practitioners: Vec<Practitioner>,
+}
+
+/// Those who see people in a room of their own.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Practitioner {
+    /// Type of their room.
+    pub room_type: String,
+    /// How many of them share one.
+    pub per_room: u32,
+    /// Words that name them.
+    pub keywords: Words,
 }
 
 /// A building type inside a domain.
@@ -264,6 +279,12 @@ impl Document for Domain {
         self.layouts.check(self, &mut problems);
         for (i, line) in self.clutter.iter().enumerate() {
             line.check(&format!("/clutter/{i}"), self, &mut problems);
+        }
+        for (i, who) in self.practitioners.iter().enumerate() {
+            room(format!("/practitioners/{i}/room_type"), &who.room_type, &mut problems);
+            if who.per_room == 0 {
+                problems.push(Problem::new(format!("/practitioners/{i}/per_room"), "needs 1 at least"));
+            }
         }
         for (i, role) in self.roles.iter().enumerate() {
             for (j, id) in role.visits.iter().enumerate() {

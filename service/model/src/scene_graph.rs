@@ -158,7 +158,7 @@ pub enum Connector {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Robot {
-    /// `cleaning`, `delivery`, `service`, `transport`.
+    /// `cleaning`, `disinfection`, `delivery`, `service`, `transport`.
     pub kind: String,
     /// How many.
     pub count: u32,

@@ -124,6 +124,9 @@ fn judge(a: &Applicable, rule: &Rule, readings: &[Reading], retrieval: &Retrieva
     if let Some(reason) = nobody_knows(a, rule, retrieval, broken.is_empty()) {
         return one(closest, Status::NotDecidable, reason);
     }
+    if let Some(reason) = outranked(a, rule, retrieval).filter(|_| !broken.is_empty()) {
+        return one(closest, Status::NotDecidable, reason);
+    }
     if rule.quantity.any && !broken.is_empty() {
         return one(closest, Status::Violated, format!("best of {}", readings.len()));
     }
@@ -142,15 +145,28 @@ fn judge(a: &Applicable, rule: &Rule, readings: &[Reading], retrieval: &Retrieva
 
 /// Returns why advice is not followed where other constraints on the same thing leave no figure that keeps both.
 fn against(a: &Applicable, rule: &Rule, retrieval: &Retrieval) -> String {
+    let first = rivals(a, rule, retrieval).next();
+    first.map_or(String::new(), |b| format!("no figure keeps this and {}", b.constraint.constraint_id))
+}
+
+/// Returns the constraints on the same thing that leave no figure that keeps both them and this advice.
+fn rivals<'r>(a: &'r Applicable, rule: &'r Rule, retrieval: &'r Retrieval) -> impl Iterator<Item = &'r Applicable> {
     let (min, max) = required(rule);
-    let apart = |other: &Applicable, r: &Rule| {
+    let apart = move |other: &Applicable, r: &Rule| {
         let (low, high) = required(r);
         let disjoint = min.zip(high).is_some_and(|(m, h)| m > h) || max.zip(low).is_some_and(|(m, l)| m < l);
         disjoint && r.quantity.measure == rule.quantity.measure && r.to == rule.to && a.scope.meets(&other.scope)
     };
-    let rivals = retrieval.constraints.iter().filter_map(|b| Some((b, b.decision.as_ref().ok()?)));
-    let mut rivals = rivals.filter(|(b, r)| b.superseded_by.is_none() && !a.mandatory && apart(b, r));
-    rivals.next().map_or(String::new(), |(b, _)| format!("no figure keeps this and {}", b.constraint.constraint_id))
+    let all = retrieval.constraints.iter().filter_map(|b| Some((b, b.decision.as_ref().ok()?)));
+    all.filter(move |(b, r)| b.superseded_by.is_none() && !a.mandatory && apart(b, r)).map(|(b, _)| b)
+}
+
+/// Returns why advice says nothing here: a law, or advice of a nearer jurisdiction, asks what rules it out. A single room of
+/// 19 m^2, as advised in the country, is no breach of the 15 to 18 m^2 advised anywhere.
+fn outranked(a: &Applicable, rule: &Rule, retrieval: &Retrieval) -> Option<String> {
+    let rank = |b: &Applicable| retrieval.jurisdictions.iter().position(|j| *j == b.citation.jurisdiction);
+    let first = rivals(a, rule, retrieval).find(|b| b.guards.is_empty() && (b.mandatory || rank(b) < rank(a)))?;
+    Some(format!("no figure keeps this and {}, which goes before it", first.constraint.constraint_id))
 }
 
 /// Returns why a verdict would be a guess.

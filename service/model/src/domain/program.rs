@@ -42,6 +42,9 @@ pub struct Program {
     /// Room types of which there is one where robots work and the rooms are left open, best first: they live there.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub robot_rooms: Vec<String>,
+    /// True where everyone of the domain's practitioners has a room to see people in: practices and outpatient clinics.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub practice: bool,
     /// Where the program comes from.
     #[serde(default)]
     pub source: String,

@@ -17,6 +17,10 @@ use super::windows::LEAST_WALL_M;
 
 /// Cost of a room whose area is outside what is advised, beside that of how far.
 const ILL_ADVISED: f64 = 0.8;
+/// How much more both count for rooms to sleep in of other buildings than homes, up to so many rooms; in a long row of them
+/// the corridor would pay for it.
+const IN_WARDS: f64 = 2.5;
+const FEW_ROOMS: usize = 14;
 /// Cost of a room without the daylight that it is better with, beside those that take a facade and need none.
 const DARK: f64 = 1.8;
 /// Share by which circulation beyond what is advised counts as larger.
@@ -396,6 +400,7 @@ impl<'b> Judge<'b> {
     }
 
     fn rooms(&self, score: &mut Score) {
+        let small = !self.brief.is_home() && self.brief.rooms.len() <= FEW_ROOMS;
         for (i, (spec, room)) in self.brief.rooms.iter().zip(&self.survey.rooms).enumerate() {
             if room.main.is_none() {
                 score.hard += 5.0;
@@ -412,13 +417,14 @@ impl<'b> Judge<'b> {
                 let off = (net - spec.area_target) / net.min(spec.area_target).max(0.1);
                 let [least, most] = spec.limits.area_advised.unwrap_or([0.0, f64::MAX]);
                 let ill_advised = ((least - net).max(net - most) / spec.area_target).max(0.0);
+                // patients' rooms take nothing of what a small plan has left over
+                let wards = if spec.zone == Zone::Night && small { IN_WARDS } else { 1.0 };
                 let serving = matches!(spec.zone, Zone::Service | Zone::Staff);
                 let bloated = (net / spec.area_target - BLOATED_FROM[usize::from(serving)]).max(0.0);
                 score.soft[0] += BLOATED * bloated
                     + off.powi(2)
                     + 3.0 * over
-                    + 5.0 * ill_advised
-                    + if ill_advised > 0.0 { ILL_ADVISED } else { 0.0 };
+                    + wards * (5.0 * ill_advised + if ill_advised > 0.0 { ILL_ADVISED } else { 0.0 });
                 let (w, h) = room.clear;
                 score.hard += (spec.min_dimension - w.min(h)).max(0.0);
                 let (w, h) = room.largest;

@@ -35,6 +35,8 @@ const TO_ZONES: f64 = 7.0;
 /// the door of a room of the day is further from the entrance than it might be, and by which that of a bedroom is nearer.
 const TO_LIVING: f64 = 7.0;
 const FROM_ENTRANCE: f64 = 0.2;
+/// What a meter counts by which the door of an en suite is further from that of its ward room than it might be.
+const FROM_ENTRY: f64 = 0.7;
 /// What it costs a home that one passes the door of a bedroom on the way to that of the living room.
 const PASSED: f64 = 2.0;
 /// Wall between an entrance that stands aside and the corner of its room, on center lines, m.
@@ -240,6 +242,7 @@ impl Site<'_> {
                 None => {
                     let mut spots: Vec<Spot> = stretches.flat_map(|s| self.spots(s, a, b, connector, rng)).collect();
                     self.prefer_order(&mut spots, a, b, laid);
+                    self.prefer_entry(&mut spots, [a, b], laid);
                     spots
                 }
             };
@@ -264,6 +267,25 @@ impl Site<'_> {
         let way = |spot: &Spot| {
             let p = spot.door.line.middle();
             sign * FROM_ENTRANCE * ((p.x - entrance.x).abs() + (p.y - entrance.y).abs())
+        };
+        let least = spots.iter().map(way).fold(f64::MAX, f64::min);
+        for spot in spots {
+            spot.penalty += way(spot) - least;
+        }
+    }
+
+    /// Makes the door of an en suite dearer that is far from where its ward room is entered: one reaches it past no other bed.
+    fn prefer_entry(&self, spots: &mut [Spot], [a, b]: [usize; 2], laid: &Laid) {
+        let rooms = &self.brief.rooms;
+        let hosted = |guest: usize, host: usize| {
+            rooms[guest].host == Some(host) && rooms[guest].wet && rooms[host].zone == Zone::Night
+        };
+        let Some(host) = [(a, b), (b, a)].into_iter().find(|&(g, h)| hosted(g, h)).map(|(_, h)| h) else { return };
+        let entry = self.brief.spine.and_then(|spine| laid.between([&rooms[host].id, &rooms[spine].id]));
+        let Some(entry) = entry.filter(|_| !self.brief.is_home()).map(|line| line.middle()) else { return };
+        let way = |spot: &Spot| {
+            let p = spot.door.line.middle();
+            FROM_ENTRY * ((p.x - entry.x).abs() + (p.y - entry.y).abs())
         };
         let least = spots.iter().map(way).fold(f64::MAX, f64::min);
         for spot in spots {

@@ -7,9 +7,9 @@ use d3dgen_model::{Polygon, Rect, TOLERANCE_M};
 
 use super::geom::Box2;
 
-/// Width of the way from the entrance through a room, m: what accessible routes have at least (ISO 21542), and a little
-/// more, which a room with a counter still has beside those who wait across it. Buildings whose corridors are narrower ask for no more than those have.
-const THROUGH_M: [f64; 2] = [1.2, 1.3];
+/// Width of the way from the entrance through a room, m: what accessible routes have at least (ISO 21542), and what two who
+/// meet need, which a room with a counter still has beside those who wait across it. Buildings whose corridors are narrower ask for no more than those have.
+const THROUGH_M: [f64; 2] = [1.2, 1.5];
 /// Floor that a bed takes beside its own width when it is pushed, m, at least and as one would have it.
 const BESIDE_BED_M: [f64; 2] = [0.05, 0.2];
 

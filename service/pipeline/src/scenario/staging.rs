@@ -39,12 +39,12 @@ const PLACES: usize = 4;
 const APART: usize = 16;
 /// Cells of a room's bounds from which on fewer of them are looked at.
 const LARGE: usize = 200_000;
-/// Kind of robot that brings nothing.
-const CLEANING: &str = "cleaning";
+/// Kinds of robots that bring nothing.
+const BRING_NOTHING: [&str; 2] = ["cleaning", "disinfection"];
 
 /// Returns a staging area for each unit of the storey, or for all of it, where there is floor for one.
 pub(super) fn all(floor: &Floor, graph: &SceneGraph, rois: &[Roi]) -> Vec<Roi> {
-    let robots: u32 = graph.robots.iter().filter(|r| r.kind != CLEANING).map(|r| r.count).sum();
+    let robots: u32 = graph.robots.iter().filter(|r| !BRING_NOTHING.contains(&r.kind.as_str())).map(|r| r.count).sum();
     if robots == 0 {
         return Vec::new();
     }

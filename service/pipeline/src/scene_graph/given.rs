@@ -79,7 +79,7 @@ pub struct Brought {
     pub domain: String,
     /// Country as ISO 3166-1 alpha-2 code or name.
     pub country: Option<String>,
-    /// Kinds of robots, each once (`cleaning`, `delivery`, `service`, `transport`).
+    /// Kinds of robots, each once (`cleaning`, `disinfection`, `delivery`, `service`, `transport`).
     pub robots: Vec<String>,
     /// Radius of the largest robot, m.
     pub robot_radius_m: Option<f64>,

@@ -23,6 +23,7 @@ mod numbers;
 mod objects;
 mod parts;
 mod places;
+mod practitioners;
 mod program;
 mod proposed;
 mod qualities;

@@ -213,6 +213,39 @@ fn nationality(tokens: &[Token], spoken: &[&Spoken], out: &mut Whereabouts) {
     }
 }
 
+/// Takes the country from the adjective beside the word for the building: "deutsches Krankenhaus", "hôpital français".
+pub(super) fn of_building(
+    tokens: &[Token],
+    spoken: &[&Spoken],
+    (language, buildings): (&str, &[Span]),
+    assumptions: &mut Vec<Note>,
+) -> Option<(String, Span)> {
+    // in these languages adjectives follow their noun, at times behind another: "clínica dental española"
+    let behind = if matches!(language, "fr" | "es") { 2 } else { 0 };
+    let tagged = |i: usize, tag| spoken.iter().any(|s| s.tag_at(tokens, i, tag).is_some());
+    for (i, token) in tokens.iter().enumerate() {
+        let follows = |s: &Span| (s.end..s.end + behind).contains(&i) && (s.end..i).all(|k| !tokens[k].is_mark());
+        if !buildings.iter().any(|s| i + 1 == s.start || follows(s)) {
+            continue;
+        }
+        let named = |w: &String| super::text::fold(w) == token.text;
+        let mut all = spoken.iter().flat_map(|s| &s.words.demonyms);
+        let Some((code, _)) = all.find(|(_, words)| words.iter().any(named)) else { continue };
+        let kitchen = |s: &Span| (s.start..s.end).any(|k| tagged(k, Tag::StyleWords));
+        if buildings.iter().any(kitchen) {
+            continue;
+        }
+        let after = (i + 1..(i + 4).min(tokens.len())).take_while(|&j| !tokens[j].is_mark());
+        if after.into_iter().any(|j| tagged(j, Tag::StyleWords)) {
+            continue;
+        }
+        let message = format!("`{}` was read as the country {}", token.text, country_name(code));
+        assumptions.push(note("country_from_adjective", message));
+        return Some((code.clone(), Span { start: i, end: i + 1 }));
+    }
+    None
+}
+
 /// Returns a note on a place that has no building law, or that nobody knows.
 fn nowhere(tokens: &[Token], prompt: &str, spoken: &[&Spoken], known: &[Span]) -> Option<Note> {
     for i in 0..tokens.len() {

@@ -415,10 +415,15 @@ impl<'r, 'a> Build<'r, 'a> {
         let mut entries =
             self.reading.domain.programs.iter().flat_map(|p| &p.rooms).filter(|e| e.room_type == room_type);
         let host = entries.find_map(|e| e.with.iter().find(|w| kind.hosts.contains(w)));
-        let named = |id: &str| self.reading.wishes.wishes.iter().any(|w| w.room_type == id);
+        // one that serves a number of rooms is not enough for more, whether it is named or not
+        let shares = |id: &str| self.reading.domain.room_type(id).is_some_and(|h| h.guests.is_some());
+        let named = |id: &str| !shares(id) && self.reading.wishes.wishes.iter().any(|w| w.room_type == id);
         let is_full = |host: &str| {
             let each = self.reading.domain.room_type(host).and_then(|h| h.guests).unwrap_or(1) as usize;
-            self.count(room_type) > each * self.count(host)
+            // those that the prompt names come behind
+            let told: u32 = self.reading.wishes.wishes.iter().filter(|w| w.room_type == host).map(|w| w.count).sum();
+            let brought = self.rooms.iter().filter(|r| r.room_type == host && !r.requested).count();
+            self.count(room_type) > each * (told as usize + brought)
         };
         let may_come = !self.reading.closed || self.reading.may_join;
         if let Some(host) = host.filter(|h| may_come && !named(h) && !self.is_forbidden(h) && is_full(h)) {

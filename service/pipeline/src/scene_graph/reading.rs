@@ -14,6 +14,7 @@ use super::mentions::{Mention, Taken, Vocabulary, What, mentions};
 use super::objects::{self, Thing};
 use super::parts;
 use super::places::{self, note};
+use super::practitioners;
 use super::relations;
 use super::seats::{self, Called};
 use super::senses;
@@ -156,6 +157,11 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         &mut assumptions,
         &mut conflicts,
     );
+    if place.country_code.is_none() && conflicts.iter().all(|n| !n.code.ends_with("_place")) {
+        let (code, span) = places::of_building(&tokens, &spoken, (language, &building.words), &mut assumptions).unzip();
+        place.country_code = code;
+        place.spans.extend(span);
+    }
     let words_known = || building::words_known(&tokens, registry, language);
     let unread_language = language::unread(prompt, &tokens, language, words_known());
     if let Some(name) = unread_language {
@@ -260,7 +266,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         beds::of_several_wards(&mut mentions, &numbers, &wards);
     }
     senses::settle(&tokens, &mut mentions, &vocabulary, domain, program);
-    subsets::settle(&tokens, &spoken, &mut mentions, domain);
+    subsets::settle(&tokens, &numbers, &spoken, &mut mentions, domain);
     let (mut seated, desk_words) =
         if lives { Default::default() } else { seated::read(&tokens, &mut mentions, (domain, program), &spoken) };
     let apiece = apiece::Reader { tokens: &tokens, domain, program, spoken: &spoken, list_from: building.list_from };
@@ -312,6 +318,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     let mut said = relations::read(&tokens, &mentions, &spoken, language, building.head);
     compounds::relate(&compounds, &mentions, domain, &mut said);
     compounds::open_belongings(&tokens, &mentions, domain, &spoken, &mut said);
+    let arranged = said.relations.iter().any(|r| !r.belongs);
     let text = Text {
         tokens: &tokens,
         prompt,
@@ -350,6 +357,8 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     name_private_bathrooms(&mut wishes, domain, lives);
     if !lives {
         vital::rule_out(domain, &wet, &mut wishes);
+        let (words, said) = ((&tokens[..], &numbers[..]), (&languages[..], &spoken[..]));
+        spans.extend(practitioners::house(words, said, (domain, program), &mut wishes, &mut assumptions));
     }
     let program = program_by_bedrooms(domain, program, &wishes);
     spans.extend(building.head);
@@ -386,6 +395,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         let beds = people.occupancy.beds;
         let sleepers = beds::Sleepers { domain, program, mentions: &mentions, said: &said, beds, people: who };
         let settled = sleepers.settle(&mut wishes, &mut assumptions, &mut conflicts);
+        wishes::each_of_counted(&mentions, &said.each, &mut wishes);
         (held, people.occupancy.beds) = (settled.held, settled.beds.or(parts.beds));
         let desks: u32 = seated.iter().map(|s| s.count.saturating_mul(s.beds)).fold(0, u32::saturating_add);
         let heads = &mut people.occupancy;
@@ -422,7 +432,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     let only = says_only(&tokens, &mentions, &spoken);
     let listed_only = only && !lives && wishes.wishes.iter().any(|w| w.listed);
     let closed = single || listed_only || is_closed(&wishes, &tokens, &building, (domain, lives));
-    let may_join = !only && joins_a_name(&building, &tokens, language);
+    let may_join = !only && joins_a_name(&building, &tokens, language, !program.support.is_empty() && !arranged);
     let named_first = is_named_first(&building, language);
     if closed && lives && !single {
         wishes.open_to(domain);
@@ -571,6 +581,7 @@ fn building_of(
         // "a 4-bed room" is no home, and who has staff works there
         let by_words = by_beds_or_staff(registry, tokens, numbers, spoken, found.is_none());
         found = by_words.map(|domain| Building { by_rooms: true, ..Building::none(domain) }).or(found);
+        found = practitioners::practice_of(registry, (tokens, numbers), languages).or(found);
     }
     if let Some(id) = &request.domain {
         if let Some(other) = found.as_ref().filter(|b| &b.domain != id && !b.by_rooms) {
@@ -884,8 +895,10 @@ pub(super) fn is_dwelling(program: &Program) -> bool {
 }
 
 /// Returns true for rooms listed behind the name of a building and no colon: these are what it has, and perhaps not all.
-fn joins_a_name(building: &Building, tokens: &[Token], language: &str) -> bool {
-    let colon = tokens.iter().any(|t| t.mark() == Some(':'));
+/// Behind a colon too where rooms that nobody thinks of serve the others (`served`): an emergency department has its utilities;
+/// but not where the prompt says how the rooms lie, for then it has them all in mind.
+fn joins_a_name(building: &Building, tokens: &[Token], language: &str, served: bool) -> bool {
+    let colon = !served && tokens.iter().any(|t| t.mark() == Some(':'));
     !colon && is_named_first(building, language)
 }
 

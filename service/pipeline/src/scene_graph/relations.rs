@@ -314,6 +314,16 @@ fn belongings(reader: &Reader, said: &mut Said) {
         let numbered = guest.count.is_some() && !guest.article;
         let joined = between.clone().any(|i| reader.tagged(i, Tag::Joins));
         let related = RELATIONS.iter().any(|&t| has(t));
+        // "single rooms and private bathrooms"
+        let own = |i: usize| reader.tagged(i, Tag::Own);
+        let joins = |i: usize| reader.tagged(i, Tag::Joins) || own(i);
+        let own_too = reader.is_group(h) && guest.plural && guest.count.is_none() && between.clone().all(joins);
+        if own_too && joined && (has(Tag::Own) || own(guest.span.end) || (guest.span.start..guest.span.end).any(own)) {
+            said.each.push((g, h));
+            let (connector, spread) = (Connector::Door, Spread::Each);
+            said.relations.push(Relation { subject: g, object: h, connector, spread, apart: false, belongs: true });
+            continue;
+        }
         if related || !starts && !each {
             continue;
         }

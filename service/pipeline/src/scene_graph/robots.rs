@@ -83,9 +83,15 @@ pub(super) struct Fleet {
     pub unknown: Vec<Span>,
 }
 
-const KINDS: [(Tag, &str); 4] =
-    [(Tag::Clean, "cleaning"), (Tag::Deliver, "delivery"), (Tag::Serve, "service"), (Tag::Transport, "transport")];
-const VERBS: [(Tag, &str); 4] = [
+const KINDS: [(Tag, &str); 5] = [
+    (Tag::Disinfect, "disinfection"),
+    (Tag::Clean, "cleaning"),
+    (Tag::Deliver, "delivery"),
+    (Tag::Serve, "service"),
+    (Tag::Transport, "transport"),
+];
+const VERBS: [(Tag, &str); 5] = [
+    (Tag::DisinfectVerbs, "disinfection"),
     (Tag::CleanVerbs, "cleaning"),
     (Tag::DeliverVerbs, "delivery"),
     (Tag::ServeVerbs, "service"),

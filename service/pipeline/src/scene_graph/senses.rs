@@ -9,21 +9,39 @@ use super::text::Token;
 /// Gives every mention of a room the type that its words have in this building.
 pub(super) fn settle(
     tokens: &[Token],
-    mentions: &mut [Mention],
+    mentions: &mut Vec<Mention>,
     vocabulary: &Vocabulary,
     domain: &Domain,
     program: &Program,
 ) {
+    let mut more: Vec<(usize, Mention)> = Vec::new();
     for m in 0..mentions.len() {
         if mentions[m].room_type().is_none() {
             continue;
         }
         let senses = vocabulary.senses_at(tokens, mentions[m].span);
+        // "MRI, CT and control rooms": each scanner has its own
+        let each = if mentions[m].plural && mentions[m].count.is_none() {
+            partnered(mentions, &senses, domain)
+        } else {
+            Vec::new()
+        };
+        if let [first, others @ ..] = each.as_slice()
+            && !others.is_empty()
+        {
+            mentions[m].plural = false;
+            more.extend(others.iter().map(|id| (m, Mention { what: What::Room(id.clone()), ..mentions[m].clone() })));
+            mentions[m].what = What::Room(first.clone());
+            continue;
+        }
         let rules = || domain.adjacency.iter().filter(|r| r.relation == AdjacencyRelation::Must);
         let alone = |s: &&String| !rules().any(|r| r.a == **s || r.b == **s);
         if let Some(id) = beside(mentions, m, &senses, domain).or_else(|| senses.iter().find(alone).cloned()) {
             mentions[m].what = What::Room(id);
         }
+    }
+    for (m, mention) in more.into_iter().rev() {
+        mentions.insert(m + 1, mention);
     }
     for mention in mentions {
         let Some(id) = mention.room_type().map(str::to_owned) else { continue };
@@ -33,6 +51,13 @@ pub(super) fn settle(
         let meant = std::iter::once(&id).chain(others).find_map(|id| program.means.get(id));
         mention.what = What::Room(meant.unwrap_or(&id).clone());
     }
+}
+
+/// Returns the senses of a word whose rooms belong beside ones that the prompt names.
+fn partnered(mentions: &[Mention], senses: &[String], domain: &Domain) -> Vec<String> {
+    let rules = || domain.adjacency.iter().filter(|r| r.relation == AdjacencyRelation::Must);
+    let named = |id: &str| mentions.iter().any(|m| m.room_type() == Some(id));
+    senses.iter().filter(|s| rules().any(|r| r.a == **s && named(&r.b))).cloned().collect()
 }
 
 /// Returns the sense of a word whose room belongs beside one that the prompt names: the nearest before it, else behind it.

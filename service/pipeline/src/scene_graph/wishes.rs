@@ -410,6 +410,19 @@ fn each_of_host(text: &Text, out: &mut Wishes) {
     }
 }
 
+/// Counts what comes with each of rooms that were counted by those who sleep there: "14 residents in single rooms with private
+/// bathrooms" have 14.
+pub(super) fn each_of_counted(mentions: &[Mention], each: &[(usize, usize)], wishes: &mut Wishes) {
+    for &(guest, host) in each {
+        let open = mentions[guest].count.is_none() && mentions[host].count.is_none();
+        let (Some(g), Some(h)) = (mentions[guest].room_type(), mentions[host].room_type()) else { continue };
+        let hosts = wishes.wishes.iter().find(|w| w.room_type == h && w.exact).map_or(0, |w| w.count);
+        if let Some(wish) = wishes.wishes.iter_mut().find(|w| open && w.room_type == g) {
+            wish.count = wish.count.max(hosts);
+        }
+    }
+}
+
 /// Returns the area that belongs to a mention: "kitchen of 12 m2", "12 m2 kitchen", "living room (30 m2)".
 fn room_area(text: &Text, mention: &Mention) -> Option<f64> {
     text.areas

@@ -50,6 +50,9 @@ pub(super) enum Tag {
     Desks,
     Residents,
     Clean,
+    /// Robots that disinfect rooms, most by ultraviolet light: tall, and none for floors.
+    Disinfect,
+    DisinfectVerbs,
     Deliver,
     Serve,
     Transport,

@@ -74,9 +74,24 @@ pub(super) fn bench(p: &mut Pen<'_>) {
     }
 }
 
+/// Narrowest bed to sleep in, and shortest couch to be treated on, m.
+const NARROWEST_BED_M: f64 = 0.85;
+const SHORTEST_COUCH_M: f64 = 1.7;
+
+/// The padded top of a couch to be examined or treated on, with its head part; nobody sleeps there.
+fn couch(p: &mut Pen<'_>) {
+    let (u, v) = p.half();
+    let head = -v + 0.28 * p.d;
+    p.rect("b", (-u, -v), (u, v), 0.08);
+    p.lines("f", &[&[(-u, head), (u, head)], &[(-0.45 * u, -v + 0.12), (0.45 * u, -v + 0.12)]]);
+}
+
 /// Headboard, mattress, pillows and the blanket with its corner turned back.
 pub(super) fn bed(p: &mut Pen<'_>) {
     let (u, v) = p.half();
+    if p.w < NARROWEST_BED_M && p.d > SHORTEST_COUCH_M {
+        return couch(p);
+    }
     let head = 0.06_f64.min(0.05 * p.d);
     p.rect("b", (-u, -v + head), (u, v), 0.05);
     p.rect("s", (-u, -v), (u, -v + head), 0.0);
