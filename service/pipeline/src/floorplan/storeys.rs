@@ -215,10 +215,10 @@ fn storey(
     let mut compared = 0;
     for _ in 0..ATTEMPTS {
         let mut schemes = schemes(brief, domain, rng);
-        // storeys whose corridors run alike lie on each other
+        // a bar lies best on a bar
         let bar = |s: Scheme| matches!(s, Scheme::Straight | Scheme::Capped);
-        if let Some(below) = brief.core.as_ref().and_then(|c| c.below.as_ref()?.scheme) {
-            schemes.sort_by_key(|s| !(*s == below || bar(*s) && bar(below)));
+        if brief.core.as_ref().and_then(|c| c.below.as_ref()?.scheme).is_some_and(bar) {
+            schemes.sort_by_key(|s| !bar(*s));
         }
         let Some(mut found) = search(brief, &schemes, rng, stop) else { break };
         if found.score.is_sound() {

@@ -5,8 +5,10 @@ use d3dgen_model::domain::{Domain, Program, RoomType};
 
 use super::beds::Held;
 use super::mentions::{Mention, What};
+use super::numbers::Number;
+use super::seated;
 use super::seats::{MOST_IN_TEAM, most_desks};
-use super::text::{Span, Token};
+use super::text::{Kind, Span, Token};
 use super::words::{Spoken, Tag};
 use super::workers::is_office;
 
@@ -16,12 +18,15 @@ const MOST_TO_OFFICE: usize = 7;
 const MOST_TO_OWN: usize = 3;
 /// Words from an office to whose it is, at most: "a private office for each of the 8 lawyers".
 const MOST_TO_WHOM: usize = 6;
+/// Words of a title, at most: "senior team leaders".
+const MOST_OF_TITLE: usize = 3;
 /// Most people who have an office each.
 const MOST: i64 = 60;
 
 /// What the reading needs to see.
 pub(super) struct Reader<'a> {
     pub tokens: &'a [Token],
+    pub numbers: &'a [Number],
     pub domain: &'a Domain,
     pub program: &'a Program,
     pub spoken: &'a [&'a Spoken],
@@ -52,9 +57,7 @@ impl Reader<'_> {
         if !is_office(self.program) {
             return (held, spans);
         }
-        let who = |m: &Mention| matches!(m.what, What::Staff | What::People) && !m.article && !m.vague;
-        let heads = |m: &Mention| m.count.filter(|n| who(m) && (2..=MOST).contains(n));
-        let groups: Vec<(Span, i64)> = mentions.iter().filter_map(|m| Some((m.span, heads(m)?))).collect();
+        let groups = self.groups(mentions);
         for (k, &(group, n)) in groups.iter().enumerate() {
             let until = groups.get(k + 1).map_or(self.tokens.len(), |g| g.0.start);
             let Some(office) = self.office_of(mentions, group, until) else { continue };
@@ -76,6 +79,64 @@ impl Reader<'_> {
             held.push(Held { room_type: id, count: n as u32, beds: 1 });
         }
         (held, spans)
+    }
+
+    /// Gives those who share one room an office with a desk for each: "four paralegals sharing one room".
+    pub(super) fn one_for_all(&self, mentions: &mut Vec<Mention>) -> (Vec<Held>, Vec<Span>) {
+        let (mut held, mut spans) = (Vec::new(), Vec::new());
+        if !is_office(self.program) {
+            return (held, spans);
+        }
+        for (group, n) in self.groups(mentions) {
+            let most = (group.end + MOST_TO_OWN).min(self.tokens.len());
+            let Some(verb) = (group.end..most).find(|&i| self.tagged(i, Tag::Sharing).is_some()) else { continue };
+            let room = |i: &usize| {
+                [Tag::OfficeWords, Tag::Total, Tag::RoomWords].iter().any(|&t| self.tagged(*i, t).is_some())
+            };
+            let until = (verb + 1 + MOST_TO_OFFICE).min(self.tokens.len());
+            let words = (verb + 1..until).take_while(|&i| !self.tokens[i].is_mark());
+            let Some(at) = words.into_iter().find(room) else { continue };
+            let desks = n as u32;
+            let fits = |k: &&RoomType| {
+                let range = seated::desks(self.domain, k).filter(|_| most_desks(self.domain, k) > 0);
+                range.is_some_and(|[low, high]| (low..=high).contains(&desks))
+            };
+            let kind = self.domain.room_types.iter().filter(fits).min_by_key(|k| most_desks(self.domain, k));
+            let Some(kind) = kind else { continue };
+            let own = Span { start: verb, end: at + 1 };
+            mentions.retain(|m| !m.span.overlaps(own));
+            let place = mentions.iter().position(|m| m.span.start > at).unwrap_or(mentions.len());
+            let plain = Mention::plain(own, What::Room(kind.id.clone()));
+            // in the plural it is called as its type is, not "one room"
+            mentions.insert(place, Mention { count: Some(1), plural: true, ..plain });
+            held.push(Held { room_type: kind.id.clone(), count: 1, beds: desks });
+            spans.push(Span { start: group.start, end: own.end });
+        }
+        (held, spans)
+    }
+
+    /// Returns those who may have an office each, and how many they are: people, and whoever is counted by a title that is no
+    /// word for a room: "six team leaders".
+    fn groups(&self, mentions: &[Mention]) -> Vec<(Span, i64)> {
+        let who = |m: &Mention| matches!(m.what, What::Staff | What::People) && !m.article && !m.vague;
+        let heads = |m: &Mention| m.count.filter(|n| who(m) && (2..=MOST).contains(n));
+        let mut groups: Vec<(Span, i64)> = mentions.iter().filter_map(|m| Some((m.span, heads(m)?))).collect();
+        let taken = |i: usize| mentions.iter().any(|m| (m.from..m.span.end).contains(&i));
+        for number in self.numbers.iter().filter(|n| !n.article && !n.vague && n.value.fract() == 0.0) {
+            let n = number.value as i64;
+            let plain = |i: &usize| {
+                let parts = [Tag::Stops, Tag::Starts, Tag::Joins, Tag::Inside, Tag::Each, Tag::Everyone, Tag::Own];
+                let word = self.tokens[*i].kind == Kind::Word && !taken(*i);
+                word && !parts.iter().any(|&t| self.tagged(*i, t).is_some())
+            };
+            let most = (number.span.end + MOST_OF_TITLE).min(self.tokens.len());
+            let end = (number.span.end..most).take_while(plain).last().map(|i| i + 1);
+            if let Some(end) = end.filter(|_| (2..=MOST).contains(&n) && !taken(number.span.start)) {
+                groups.push((Span { start: number.span.start, end }, n));
+            }
+        }
+        groups.sort_by_key(|g| g.0.start);
+        groups
     }
 
     /// Returns the word for the office that each of a group has.

@@ -155,6 +155,7 @@ pub(super) fn complete<'a>(reading: &mut Reading<'a>) -> Vec<Planned<'a>> {
     layout::follow(reading, &mut rooms);
     let mut rooms = finish(reading, rooms);
     spread::open_offices(reading, &mut rooms);
+    spread::fill_ground(reading, &mut rooms);
     rooms
 }
 

@@ -269,9 +269,18 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     subsets::settle(&tokens, &numbers, &spoken, &mut mentions, domain);
     let (mut seated, desk_words) =
         if lives { Default::default() } else { seated::read(&tokens, &mut mentions, (domain, program), &spoken) };
-    let apiece = apiece::Reader { tokens: &tokens, domain, program, spoken: &spoken, list_from: building.list_from };
+    let apiece = apiece::Reader {
+        tokens: &tokens,
+        numbers: &numbers,
+        domain,
+        program,
+        spoken: &spoken,
+        list_from: building.list_from,
+    };
     let (single_offices, apiece_words) = apiece.each_an_office(&mut mentions);
     seated.extend(single_offices);
+    let (shared_offices, sharing_words) = apiece.one_for_all(&mut mentions);
+    seated.extend(shared_offices);
     let elsewhere: Vec<Span> = machines.spans.iter().chain(&place_spans).chain(&building.head).copied().collect();
     let stations = stations::Reader {
         tokens: &tokens,
@@ -444,6 +453,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     spans.extend(station_words);
     spans.extend(told_again);
     spans.extend(apiece_words);
+    spans.extend(sharing_words);
     spans.extend(places.spans);
     spans.extend(called.iter().map(|c| c.span));
     let stays = if lives { None } else { stays::read(&tokens, &spoken) };

@@ -9,6 +9,7 @@ use super::program::Planned;
 use super::reading::Reading;
 use super::seats::{MOST_IN_TEAM, most_desks};
 use super::storeys::{Wanted, Where};
+use super::words::words;
 use super::workers::{self, is_office};
 
 /// Least desks of a part of an open office.
@@ -16,7 +17,10 @@ const LEAST_PART: u32 = 8;
 /// How much larger than the mean a storey may be with all of the open office before its desks are shared out.
 const LARGE: f64 = 1.2;
 /// The same of desks that the prompt gives this room.
-const LARGE_TOLD: f64 = 1.5;
+const LARGE_TOLD: f64 = 1.8;
+/// How much smaller than the storey above the ground floor may be, and rooms that it gets at most.
+const SMALL: f64 = 0.85;
+const MOST_ADDED: usize = 4;
 
 /// Shares the desks of the open office out to the storeys, where the prompt does not say how many it has.
 pub(super) fn open_offices<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
@@ -36,8 +40,12 @@ pub(super) fn open_offices<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planne
     if desks < 2 * LEAST_PART || open.len() >= levels.len() {
         return;
     }
-    // a number that the prompt gives stays together as long as the storeys can carry it
-    let large = if open.iter().any(|&i| told(&rooms[i])) { LARGE_TOLD } else { LARGE };
+    // a number that the prompt gives stays together as long as the storeys can carry it, or where the prompt puts it
+    let told = open.iter().any(|&i| told(&rooms[i]));
+    if told && reading.storeys.wanted.iter().any(|w| w.room_type == rooms[first].room_type) {
+        return;
+    }
+    let large = if told { LARGE_TOLD } else { LARGE };
     let areas: Vec<f64> = rooms.iter().map(area).collect();
     let dealt = deal::deal(&mut reading.clone(), rooms, &areas, &reading.storeys.levels.clone());
     let others = |level: i32| -> f64 {
@@ -77,6 +85,37 @@ pub(super) fn open_offices<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planne
         said.join(", ")
     );
     reading.assumptions.push(note("open_office_shared_out", message));
+}
+
+/// Adds rooms to the ground floor of an office that is smaller than the storey above, which would hang in the air.
+pub(super) fn fill_ground<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
+    let domain = reading.domain;
+    let above = reading.storeys.levels.iter().filter(|l| **l >= 0).count();
+    let settled = reading.total.is_some() || reading.single || reading.only || reading.area_m2.is_some();
+    if above < 2 || settled || domain.circulation.storeys.is_none() || !is_office(reading.program) {
+        return;
+    }
+    let mut added: Vec<String> = Vec::new();
+    for id in &words().fill_ground {
+        let areas: Vec<f64> = rooms.iter().map(area).collect();
+        let dealt = deal::deal(&mut reading.clone(), rooms, &areas, &reading.storeys.levels.clone());
+        let load = |level: i32| (0..rooms.len()).filter(|&i| dealt[i] == level).map(|i| areas[i]).sum::<f64>();
+        let kind = domain.room_type(id).filter(|k| !reading.wishes.forbidden.contains(&k.id));
+        let Some(kind) = kind.filter(|_| added.len() < MOST_ADDED) else { continue };
+        if load(0) >= SMALL * load(1) || load(0) + kind.area_m2.target > load(1) {
+            continue;
+        }
+        rooms.push(Planned::new(&kind.id, kind));
+        // others of the type stay where they are
+        if rooms.iter().filter(|r| r.room_type == kind.id).count() == 1 {
+            reading.storeys.wanted.push(Wanted { room_type: kind.id.clone(), count: 1, at: Where::Level(0) });
+        }
+        added.push(kind.label.to_lowercase());
+    }
+    if !added.is_empty() {
+        let message = format!("the ground floor would be smaller than the storey above; added {}", added.join(", "));
+        reading.assumptions.push(note("ground_floor_filled", message));
+    }
 }
 
 fn is_open(domain: &Domain, room: &Planned) -> bool {

@@ -127,6 +127,8 @@ pub(super) enum Tag {
     SingleRooms,
     /// Words for a place to work behind a door, that may mean a whole building too: "bureau".
     OfficeWords,
+    /// What those do who have one room together: "sharing".
+    Sharing,
     /// "Half open plan, half offices": those who work there are shared out.
     Half,
     /// Counters of a room at which people are served: "service windows", "Schalter".
@@ -270,6 +272,8 @@ struct File {
     alike: Vec<Vec<String>>,
     /// Share of those who work there that has a seat in a room to eat in, by room type.
     eating: BTreeMap<String, f64>,
+    /// Rooms that the ground floor of an office gets that is smaller than the storey above, best first.
+    fill_ground: Vec<String>,
     /// Seats in a room to wait in for each counter of the building, by room type.
     waiting: BTreeMap<String, f64>,
     /// Whose the toilets of a place to work at are, one word each, as names of rooms begin.
@@ -302,6 +306,7 @@ pub(super) struct Words {
     pub alike: Vec<Vec<String>>,
     pub eating: BTreeMap<String, f64>,
     pub waiting: BTreeMap<String, f64>,
+    pub fill_ground: Vec<String>,
     pub sexes: Vec<String>,
     pub common_domain: String,
     /// Usual words of languages that are not read, folded, by English name of the language.
@@ -359,6 +364,7 @@ pub(super) fn words() -> &'static Words {
             alike: file.alike,
             eating: file.eating,
             waiting: file.waiting,
+            fill_ground: file.fill_ground,
             sexes: file.sexes,
             common_domain: file.common_domain,
             unread_languages: file
