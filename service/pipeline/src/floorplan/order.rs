@@ -41,7 +41,7 @@ const MISPLACED: f64 = 4.0;
 const WASHROOM_M2: f64 = 3.0;
 /// Cost of a home in which one passes a bedroom on the way from the entrance to the living room, and how much more that
 /// counts in the choice of the entrance than the distances of all rooms.
-const PASSED: f64 = 2.4;
+const PASSED: f64 = 1.5;
 const BEFORE_ZONES: f64 = 1.0;
 /// Disorder with which a plan is left as it was found.
 const TOLERABLE: f64 = 0.2;
