@@ -180,11 +180,8 @@ pub(super) fn even_out(planned: &[Planned], rooms: &mut [GraphRoom], levels: &[i
                     let [min, max] = room.area_range_m2;
                     // nobody wants a garage as large as the bedrooms above it
                     let serves = lives && p.kind.zone == Zone::Service;
-                    let most = if serves {
-                        (0.9 * max).min(super::rooms::MOST_TO_SERVE * p.kind.area_m2.target)
-                    } else {
-                        0.9 * max
-                    };
+                    let most =
+                        if serves { (0.9 * max).min(rooms::MOST_TO_SERVE * p.kind.area_m2.target) } else { 0.9 * max };
                     let (low, high) = (room.target_area_m2.min(1.08 * min), room.target_area_m2.max(most));
                     room.target_area_m2 =
                         (room.target_area_m2 * factor * 10.0).round().clamp(10.0 * low, 10.0 * high) / 10.0;
