@@ -44,7 +44,9 @@ impl Axis {
 
 /// Puts walls of a storey over those of the one below it, where there is one.
 pub(super) fn align(brief: &Brief, found: &mut Candidate) {
-    let Some(below) = brief.core.as_ref().and_then(|c| c.below.as_ref()).filter(|b| !b.boxes.is_empty()) else { return };
+    let Some(below) = brief.core.as_ref().and_then(|c| c.below.as_ref()).filter(|b| !b.boxes.is_empty()) else {
+        return;
+    };
     let Some(frame) = found.layout.core else { return };
     let boxes = if below.by_core { out_of_core(&below.boxes, &frame) } else { below.boxes.clone() };
     let lower: Vec<(usize, Cellbox)> = boxes.into_iter().map(|b| (0, b)).collect();
@@ -106,10 +108,8 @@ fn is_outer(boxes: &[(usize, Cellbox)], axis: Axis, line: i32) -> bool {
     };
     let (ends, begins) = (side(1), side(0));
     let length = |all: &[[i32; 2]]| all.iter().map(|s| s[1] - s[0]).sum::<i32>();
-    let shared: i32 = ends
-        .iter()
-        .flat_map(|a| begins.iter().map(move |b| (a[1].min(b[1]) - a[0].max(b[0])).max(0)))
-        .sum();
+    let shared: i32 =
+        ends.iter().flat_map(|a| begins.iter().map(move |b| (a[1].min(b[1]) - a[0].max(b[0])).max(0))).sum();
     length(&ends) > shared || length(&begins) > shared
 }
 
@@ -125,7 +125,8 @@ mod tests {
 
     #[test]
     fn lines_with_outer_walls_are_told_from_those_between_rooms() {
-        let boxes = [(0, Cellbox::new(0, 0, 10, 10)), (1, Cellbox::new(10, 0, 20, 10)), (2, Cellbox::new(0, 10, 10, 20))];
+        let boxes =
+            [(0, Cellbox::new(0, 0, 10, 10)), (1, Cellbox::new(10, 0, 20, 10)), (2, Cellbox::new(0, 10, 10, 20))];
         assert!(is_outer(&boxes, Axis::X, 0) && is_outer(&boxes, Axis::X, 10) && is_outer(&boxes, Axis::X, 20));
         assert!(!is_outer(&boxes[..2], Axis::X, 10));
     }

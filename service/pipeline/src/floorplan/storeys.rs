@@ -173,10 +173,8 @@ impl Plan<'_> {
             let mut rng = Stream::new(self.graph.seed, &name);
             let found = storey(&briefs[i], self.domain, (self.turn, self.graph.seed), &mut rng, stop);
             stop.check()?;
-            let infeasible = |reason: String| Error::Infeasible {
-                stage: "floorplan",
-                message: format!("level {level}: {reason}"),
-            };
+            let infeasible =
+                |reason: String| Error::Infeasible { stage: "floorplan", message: format!("level {level}: {reason}") };
             planned[i] = Some(found.map_err(infeasible)?);
         }
         Ok(planned.into_iter().flatten().collect())

@@ -142,7 +142,11 @@ impl<'a> Household<'a> {
         Self {
             domain,
             room_types,
-            other_beds: graph.rooms.iter().filter_map(|r| Some((r.room_type.as_str(), other_bed(domain, r)?))).collect(),
+            other_beds: graph
+                .rooms
+                .iter()
+                .filter_map(|r| Some((r.room_type.as_str(), other_bed(domain, r)?)))
+                .collect(),
             accessible: graph.accessible,
             has_robots: !graph.robots.is_empty(),
             cleans: graph.robots.iter().any(|r| r.kind == CLEANING),
@@ -158,9 +162,10 @@ impl<'a> Household<'a> {
             lines.map(|f| f.min * each(&f.item)).sum::<u32>()
         };
         let all = self.room_types.iter().map(|kind| usual(kind)).sum::<u32>();
-        let (less, more) = self.other_beds.iter().fold((0, 0), |(less, more), (kind, line)| {
-            (less + usual(kind), more + each(&line.item))
-        });
+        let (less, more) = self
+            .other_beds
+            .iter()
+            .fold((0, 0), |(less, more), (kind, line)| (less + usual(kind), more + each(&line.item)));
         (all + more).saturating_sub(less).max(self.sharing)
     }
 
@@ -196,9 +201,7 @@ pub(super) fn tasks<'a>(
     // a bed that is asked for comes in the place of the usual one
     let bed = graph.and_then(|g| other_bed(domain, g));
     let given_up = |f: &Furnishing| bed.is_some_and(|b| b.instead_of.contains(&f.item));
-    let wanted = |f: &Furnishing| {
-        (household.wants(kind, f, guests) || f.sleepers > 0 && called(f)) && !given_up(f)
-    };
+    let wanted = |f: &Furnishing| (household.wants(kind, f, guests) || f.sleepers > 0 && called(f)) && !given_up(f);
     for (line, f) in kind.furnishing.iter().enumerate().filter(|(_, f)| wanted(f)) {
         let Some(anchor) = domain.anchor(&f.item) else { continue };
         let (mut count, mut required) = (f.units(area_m2).min(MAX_UNITS), if f.required { f.min } else { 0 });
@@ -322,7 +325,8 @@ pub(super) fn tasks<'a>(
     // only wants a wall
     let dock = |t: &Task| household.has_robots && t.required == 0 && t.anchor.shape == Shape::Dock;
     // where one eats the table comes before a desk that is asked for too
-    let eats = out.iter().any(table);
+    let sleeps = out.iter().any(|t| t.anchor.shape == Shape::Bed);
+    let eats = !sleeps && out.iter().any(table);
     let waits = |t: &Task| eats && t.required == 0 && t.anchor.shape == Shape::Desk;
     out.sort_by_key(|t| {
         let phase = if waits(t) { phase(t).max(2) } else { phase(t) };

@@ -184,7 +184,8 @@ pub(super) fn settle(tokens: &[Token], compounds: &[Compound], spoken: &[&Spoken
         let part = before.is_some_and(|m| {
             let mut gap = m.span.end..compound.span.start;
             // "four bedrooms, master suite with closet": no article, no number and nothing that adds it
-            let apposed = compound.suite && single && gap.len() == 1 && gap.clone().all(|k| tokens[k].mark() == Some(','));
+            let apposed =
+                compound.suite && single && gap.len() == 1 && gap.clone().all(|k| tokens[k].mark() == Some(','));
             apposed || gap.any(|k| spoken.iter().any(|s| s.tag_at(tokens, k, Tag::PartOf).is_some()))
         });
         for m in mentions.iter_mut().filter(|m| m.span == compound.span) {
@@ -199,8 +200,16 @@ pub(super) fn settle(tokens: &[Token], compounds: &[Compound], spoken: &[&Spoken
             mentions.remove(first);
         }
     }
+    // "house with an annexe: ..., and an annexe with bedroom and bath" has one
+    let annexes = || compounds.iter().filter(|c| c.room_types[0] == words().dwelling.annexe);
+    let last = annexes().last().map(|c| c.span);
+    for earlier in annexes().filter(|c| Some(c.span) != last) {
+        mentions.retain(|m| m.span != earlier.span || m.count.is_some_and(|n| n > 1));
+    }
     // "Wohnküche, Wohnzimmer": what one word names beside the kitchen may be named by itself
-    for compound in compounds.iter().filter(|c| !c.mixed && c.span.end == c.span.start + 1) {
+    let alone = |c: &&Compound| !c.mixed && c.span.end == c.span.start + 1;
+    // an annexe has its own bedroom beside all others
+    for compound in compounds.iter().filter(alone).filter(|c| c.room_types[0] != words().dwelling.annexe) {
         let own = |m: &Mention| m.span == compound.span;
         let elsewhere = |what: &What| mentions.iter().any(|m| !own(m) && &m.what == what);
         let spare: Vec<What> = mentions.iter().filter(|m| own(m)).skip(1).map(|m| m.what.clone()).collect();
@@ -228,7 +237,13 @@ pub(super) fn hold_own(
         let annexe = compound.room_types[0] == d.annexe;
         let from = compound.span.end;
         // "granny annexe for the mother with ..."
-        let from = if annexe { (from..tokens.len().min(from + MOST_TO_OWNER)).find(|&k| tagged(k, Tag::Starts).is_some() || tokens[k].is_mark()).unwrap_or(from) } else { from };
+        let from = if annexe {
+            (from..tokens.len().min(from + MOST_TO_OWNER))
+                .find(|&k| tagged(k, Tag::Starts).is_some() || tokens[k].is_mark())
+                .unwrap_or(from)
+        } else {
+            from
+        };
         let bracket = at(from, '(');
         let Some(start) = bracket.then_some(from + 1).or_else(|| tagged(from, Tag::Starts)) else { continue };
         let mut end = (start..tokens.len()).find(|&k| at(k, ')')).unwrap_or(tokens.len());

@@ -177,12 +177,17 @@ pub(super) fn even_out(planned: &[Planned], rooms: &mut [GraphRoom], levels: &[i
             for (level, factor) in [(pair[0], middle / lower), (pair[1], middle / upper)] {
                 let factor = factor.clamp(LEAST_SCALE, MOST_SCALE);
                 // rooms for so many people may have more floor, never less
-                let free = planned.iter().zip(&mut *rooms).filter(|(p, _)| {
-                    p.area_m2.is_none() && (p.people_area_m2.is_none() || lives && factor > 1.0)
-                });
-                for (_, room) in free.filter(|(_, r)| r.level == level) {
+                let free = planned
+                    .iter()
+                    .zip(&mut *rooms)
+                    .filter(|(p, _)| p.area_m2.is_none() && (p.people_area_m2.is_none() || lives && factor > 1.0));
+                for (p, room) in free.filter(|(_, r)| r.level == level) {
                     let [min, max] = room.area_range_m2;
-                    let (low, high) = (room.target_area_m2.min(1.08 * min), room.target_area_m2.max(0.9 * max));
+                    // nobody wants a garage as large as the bedrooms above it
+                    let serves = lives && p.kind.zone == Zone::Service;
+                    let most =
+                        if serves { (0.9 * max).min(rooms::MOST_TO_SERVE * p.kind.area_m2.target) } else { 0.9 * max };
+                    let (low, high) = (room.target_area_m2.min(1.08 * min), room.target_area_m2.max(most));
                     room.target_area_m2 =
                         (room.target_area_m2 * factor * 10.0).round().clamp(10.0 * low, 10.0 * high) / 10.0;
                 }

@@ -194,7 +194,9 @@ pub(super) fn cradle(
     read: &mut Vec<Span>,
 ) -> Option<Thing> {
     let d = &words().dwelling;
-    let taken = |i: usize| mentions.iter().any(|m| m.room_type().is_some() && m.span.contains(i)) || read.iter().any(|s| s.contains(i));
+    let taken = |i: usize| {
+        mentions.iter().any(|m| m.room_type().is_some() && m.span.contains(i)) || read.iter().any(|s| s.contains(i))
+    };
     let found = (0..tokens.len()).filter(|&i| !taken(i)).find_map(|i| {
         let end = spoken.iter().find_map(|s| s.tag_at(tokens, i, Tag::Babies))?;
         Some(Span { start: i, end })

@@ -150,13 +150,16 @@ impl Vocabulary {
         };
         let (own, foreign) = (longest(&self.own), longest(&self.foreign));
         // "two bedrooms" and "large kitchen" of another domain are numbers and adjectives before a room of this one
-        let loose = numbers.iter().any(|n| n.span.start == i) || tagged(tokens, i, spoken, Tag::NotNames);
+        let sized = spoken.iter().any(|s| s.sizes.longest_at(tokens, i).is_some());
+        let loose = sized || numbers.iter().any(|n| n.span.start == i) || tagged(tokens, i, spoken, Tag::NotNames);
         let inside = |end: usize| {
             (i + 1..end).any(|k| self.own.iter().any(|p| p.longest_at(tokens, k).is_some_and(|o| o.0 >= end)))
         };
         // "salle de bains privée": the own word and an adjective; "Zimmer" anywhere but in a hotel: rooms in total
         let adjective = |from: usize, end: usize| {
-            from > i && (from..end).all(|k| [Tag::Own, Tag::NotNames].iter().any(|&t| tagged(tokens, k, spoken, t)))
+            from > i
+                && (from..end)
+                    .all(|k| [Tag::Own, Tag::NotNames, Tag::Accessible].iter().any(|&t| tagged(tokens, k, spoken, t)))
         };
         let total = |end: usize| spoken.iter().any(|s| s.tag_at(tokens, i, Tag::Total) == Some(end));
         let own_to = own.as_ref().map_or(0, |o| o.0);

@@ -81,18 +81,22 @@ fn vocabulary(domain: &Domain, registry: &Registry, language: &str) -> std::sync
 }
 
 /// Takes words for a room that name a thing behind a room to sleep in for that thing: the "bureau" of "chambres avec bureau".
+/// Returns these words.
 pub(super) fn of_bedrooms(
     tokens: &[Token],
     mentions: &mut Vec<Mention>,
     (domain, registry): (&Domain, &Registry),
     (languages, spoken): (&[&str], &[&Spoken]),
-) {
+) -> Vec<Span> {
     let sleeps = |m: &Mention| {
-        m.room_type().and_then(|id| domain.room_type(id)).is_some_and(|k| k.zone == Zone::Night && k.access != Access::Host)
+        m.room_type()
+            .and_then(|id| domain.room_type(id))
+            .is_some_and(|k| k.zone == Zone::Night && k.access != Access::Host)
     };
     let tagged = |i: usize, tag| spoken.iter().any(|s| s.tag_at(tokens, i, tag).is_some());
     let is_thing = |span: Span| {
-        let whole = |l: &&str| vocabulary(domain, registry, l).longest_at(tokens, span.start).is_some_and(|f| f.0 == span.end);
+        let whole =
+            |l: &&str| vocabulary(domain, registry, l).longest_at(tokens, span.start).is_some_and(|f| f.0 == span.end);
         languages.iter().any(whole)
     };
     let mut things = Vec::new();
@@ -104,11 +108,13 @@ pub(super) fn of_bedrooms(
             things.push(k);
         }
     }
+    let spans = things.iter().map(|&k| mentions[k].span).collect();
     let mut at = 0;
     mentions.retain(|_| {
         at += 1;
         !things.contains(&(at - 1))
     });
+    spans
 }
 
 /// Returns true for a thing that every one of several rooms is to have: "six bedrooms with desks", "with a desk each".
@@ -117,9 +123,11 @@ fn is_each(tokens: &[Token], room: &Mention, thing: Span, spoken: &[&Spoken]) ->
     let several = room.plural || room.count.is_some_and(|n| n > 1 && !room.article);
     let gap = room.span.end..thing.start;
     let apart = gap.clone().any(|i| tokens[i].ends_sentence());
-    let told = || gap.clone().any(|i| tagged(i, Tag::Each)) || {
-        let behind = thing.end..tokens.len().min(thing.end + MOST_TO_EACH);
-        behind.take_while(|&i| !tokens[i].is_mark()).any(|i| tagged(i, Tag::Each))
+    let told = || {
+        gap.clone().any(|i| tagged(i, Tag::Each)) || {
+            let behind = thing.end..tokens.len().min(thing.end + MOST_TO_EACH);
+            behind.take_while(|&i| !tokens[i].is_mark()).any(|i| tagged(i, Tag::Each))
+        }
     };
     // "one with a desk", "three bedrooms, a dining table"
     let of_one = gap.clone().any(|i| tagged(i, Tag::OneOfThem));

@@ -44,8 +44,10 @@ const FULL: f64 = 0.8;
 /// Floor of a room to live in with a table for many, over the least that such a table comes in.
 const BESIDE_TABLE: f64 = 1.3;
 
+/// Floor of a room with a table of a size that is asked for, over the least that such a table comes in.
+const ROUND_NAMED: f64 = 1.15;
 /// Floor of a desk in a room that one lives in, m^2.
-const AT_DESK_M2: f64 = 3.0;
+const AT_DESK_M2: f64 = 5.0;
 /// Floor of such a room for who comes to the table in a wheelchair, as a factor.
 const STEP_FREE: f64 = 1.15;
 
@@ -141,6 +143,7 @@ impl<'a> Planned<'a> {
 pub(super) fn complete<'a>(reading: &mut Reading<'a>) -> Vec<Planned<'a>> {
     let mut build = Build::new(reading, reading.program);
     build.take_wishes();
+    build.house_parents();
     match (reading.total, reading.closed) {
         (None, true) => {}
         (Some(total), _) => build.fill_to(total as usize),
@@ -168,6 +171,7 @@ pub(super) fn finish<'a>(reading: &mut Reading<'a>, mut rooms: Vec<Planned<'a>>)
         let own = |r: &&mut Planned| r.room_type == words().dwelling.bedroom && r.area_m2.is_none();
         rooms.iter_mut().filter(own).for_each(|r| r.size = r.size.or(Some(1.0)));
     }
+    make_room_for_things(reading, &mut rooms);
     hold_beds(reading, &mut rooms);
     workers::settle(reading, &mut rooms);
     hold_people(reading, &mut rooms);
@@ -290,6 +294,22 @@ pub(super) fn is_counted(reading: &Reading, room_type: &str) -> bool {
     entries.any(|e| head_count(reading, e.occupants).is_some())
 }
 
+/// Makes bedrooms of a home larger by the desk or the cot that the prompt wants in them.
+fn make_room_for_things(reading: &Reading, rooms: &mut [Planned]) {
+    let d = &words().dwelling;
+    let larger = |t: &&Thing| t.object == d.own_desk || t.object == d.baby_bed;
+    for thing in reading.objects.iter().filter(larger).filter(|_| is_dwelling(reading.program)) {
+        let asked = |r: &&mut Planned| {
+            r.kind.zone == Zone::Night && thing.room_type.as_deref() == Some(&r.room_type) && r.area_m2.is_none()
+        };
+        let count = if thing.each { rooms.len() } else { 1 };
+        rooms.iter_mut().filter(asked).take(count).for_each(|r| r.size = r.size.or(Some(WITH_THING)));
+    }
+}
+
+/// Factor on the area of a bedroom with a desk or a cot in it.
+const WITH_THING: f64 = 1.12;
+
 /// Floor of the bed for who stays with a patient, m^2.
 const COMPANION_M2: f64 = 4.0;
 
@@ -400,6 +420,19 @@ impl<'r, 'a> Build<'r, 'a> {
         if charging && !self.is_forbidden(CHARGING) && self.count(CHARGING) == 0 {
             self.push(CHARGING, None);
             self.rooms.last_mut().expect("just pushed").requested = true;
+        }
+    }
+
+    /// Gives a home whose rooms are left open, and of whose rooms to sleep in only those of children and guests are named, a
+    /// bedroom for who lives there with them.
+    fn house_parents(&mut self) {
+        let d = &words().dwelling;
+        let open = is_dwelling(self.program) && !self.reading.closed && self.reading.total.is_none();
+        let kind = self.reading.domain.room_type(&d.bedroom).filter(|k| !self.is_forbidden(&k.id));
+        let own = |r: &Planned| r.kind.zone == Zone::Night && !d.of_others.contains(&r.room_type);
+        let bedded = |r: &Planned| own(r) && r.kind.access != Access::Host || r.room_type == d.studio;
+        if let Some(kind) = kind.filter(|_| open && self.sleeping_is_fixed && !self.rooms.iter().any(bedded)) {
+            self.push(&kind.id, None);
         }
     }
 
@@ -766,7 +799,9 @@ fn serve_people(reading: &Reading, rooms: &mut [Planned]) {
         for &i in &alike {
             let range = rooms[i].kind.area_m2;
             rooms[i].table_area_m2 = (at_table > 0.0).then(|| at_table.min(range.max));
-            let area = (each * people / alike.len() as f64).max(at_table).clamp(range.min, range.max);
+            // a table for a few stands in a room of the usual size
+            let table = if at_table > range.target { at_table } else { 0.0 };
+            let area = (each * people / alike.len() as f64).max(table).clamp(range.min, range.max);
             // those of a usual size hold a usual number; a small office has small toilets
             if !lives || area > range.target {
                 rooms[i].size_for_people(area);
@@ -799,7 +834,7 @@ fn table_for(reading: &Reading, rooms: &[Planned], room: Option<usize>, people: 
         let table = domain.anchor(&line.item).filter(|_| line.sleepers > 0);
         table.is_some_and(|o| reading.objects.iter().any(|t| t.object == o.id)) && !elsewhere(line)
     };
-    kind.furnishing.iter().filter(named).map(|line| line.area_per_item_m2).fold(of_all, f64::max)
+    kind.furnishing.iter().filter(named).map(|line| ROUND_NAMED * line.area_per_item_m2).fold(of_all, f64::max)
 }
 
 /// Returns how many people work there: as many as the prompt says, else as have a desk.

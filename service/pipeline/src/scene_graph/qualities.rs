@@ -35,12 +35,7 @@ pub(super) struct Nook {
 }
 
 /// Returns the places in rooms that a prompt names and the domain can furnish.
-pub(super) fn nooks(
-    tokens: &[Token],
-    spoken: &[&Spoken],
-    domain: &Domain,
-    taken: impl Fn(usize) -> bool,
-) -> Vec<Nook> {
+pub(super) fn nooks(tokens: &[Token], spoken: &[&Spoken], domain: &Domain, taken: impl Fn(usize) -> bool) -> Vec<Nook> {
     let mut out: Vec<Nook> = Vec::new();
     let mut i = 0;
     while i < tokens.len() {

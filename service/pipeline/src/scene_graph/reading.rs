@@ -211,7 +211,11 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     }
     spans.extend(said_styles.iter().map(|s| s.span));
     // "home office corner": a place in a room
-    let nooks = if lives { qualities::nooks(&tokens, &spoken, domain, |i| spans.iter().any(|s| s.contains(i))) } else { Vec::new() };
+    let nooks = if lives {
+        qualities::nooks(&tokens, &spoken, domain, |i| spans.iter().any(|s| s.contains(i)))
+    } else {
+        Vec::new()
+    };
     spans.extend(nooks.iter().map(|n| n.span));
     // "cleaning robot" and "wheelchair users" name no object
     let mut not_things = machines.spans.clone();
@@ -237,7 +241,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     let mut told_again = compounds::hold_own(&tokens, prompt, &compounds, &mut mentions, domain, &spoken);
     if lives {
         told_again.extend(fixtures::settle(&tokens, prompt, &mut mentions, domain, &wet, &spoken));
-        objects::of_bedrooms(&tokens, &mut mentions, (domain, registry), (&languages, &spoken));
+        told_again.extend(objects::of_bedrooms(&tokens, &mut mentions, (domain, registry), (&languages, &spoken)));
     }
     if shared {
         own_rooms(&mut mentions, domain);

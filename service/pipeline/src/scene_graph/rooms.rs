@@ -32,7 +32,7 @@ const OPEN_ENDED: f64 = 8.0;
 /// What rooms need beyond their least area before a home is too small for its table, as a factor.
 const TIGHT: f64 = 1.04;
 /// Most that rooms grow in a home with floor to spare, as factors: those that serve the others, and those to sleep in.
-const MOST_TO_SERVE: f64 = 1.35;
+pub(super) const MOST_TO_SERVE: f64 = 1.35;
 const MOST_TO_SLEEP: f64 = 1.75;
 /// Most that usual areas are scaled towards the one asked for.
 const MOST_SCALE: f64 = 100.0;
@@ -245,7 +245,9 @@ fn target_areas(reading: &mut Reading, planned: &[Planned]) -> Vec<f64> {
                     let least = if desks { 1.0 } else { CROWDED } * people;
                     (area * scale).clamp(range.min.max(least).min(most), most.max(range.min))
                 }
-                _ if kept && lives => (area * scale.min(ROOMY.min(most_of(room.kind.zone)))).clamp(range.min, range.max),
+                _ if kept && lives => {
+                    (area * scale.min(ROOMY.min(most_of(room.kind.zone)))).clamp(range.min, range.max)
+                }
                 _ if kept => (area * scale.min(ROOMY)).clamp(range.min, range.max),
                 // in a large home one lives in larger rooms; what serves them does not grow with it
                 _ if lives => (area * scale.min(most_of(room.kind.zone))).clamp(range.min, range.max),

@@ -351,6 +351,12 @@ fn clamp(n: i64) -> u32 {
 fn is_reference(text: &Text, m: usize, first: bool) -> bool {
     let mention = &text.mentions[m];
     let numbered = mention.count.is_some() && !mention.article;
+    // "the main one with a bathroom, and another bathroom"
+    let another =
+        |i: usize| text.spoken.iter().any(|s| s.tag_at(text.tokens, i, Tag::Another) == Some(mention.span.start));
+    if (mention.span.start.saturating_sub(2)..mention.span.start).any(another) {
+        return false;
+    }
     let same = |other: &Mention| other.what == mention.what;
     let others =
         text.mentions.iter().enumerate().any(|(o, other)| {

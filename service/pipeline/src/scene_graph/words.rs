@@ -145,6 +145,8 @@ pub(super) enum Tag {
     RoomingIn,
     /// Babies, who sleep in a bed of their own beside their parents.
     Babies,
+    /// One more of the same: "another bathroom".
+    Another,
     /// One of the rooms counted before: "four bedrooms, the main one with a bathroom".
     OneOfThem,
 }
@@ -218,6 +220,8 @@ pub(super) struct Dwelling {
     pub annexe: String,
     /// What those sleep in who are alone in their room.
     pub own_bed: String,
+    /// Rooms in which those sleep who do not keep the home.
+    pub of_others: Vec<String>,
     /// The room of a baby, and what stands in its parents' room where it has none.
     pub baby_room: String,
     pub baby_bed: String,
