@@ -229,7 +229,7 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
             let tightness = LEVELS[level].tightness_of(task);
             let free = matches!(task.arrangement, Arrangement::Center | Arrangement::Rows);
             let (sizes, aims, ceiling) = (job.sizes, job.aims, job.space.ceiling);
-            let (lawful, robot) = (task.required == 0 && !task.asked, 2 * job.radius);
+            let (lawful, robot) = (task.required == 0 && !task.asked && !task.first_choice, 2 * job.radius);
             let forms = Forms { sizes, aims, tightness, advised, lawful, ceiling, robot };
             seated(variants(job.domain, task.item, &forms), task.seats)
                 .into_iter()
