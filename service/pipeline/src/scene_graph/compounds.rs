@@ -202,7 +202,7 @@ pub(super) fn settle(tokens: &[Token], compounds: &[Compound], spoken: &[&Spoken
     }
     // "house with an annexe: ..., and an annexe with bedroom and bath" has one
     let annexes = || compounds.iter().filter(|c| c.room_types[0] == words().dwelling.annexe);
-    let last = annexes().last().map(|c| c.span);
+    let last = annexes().next_back().map(|c| c.span);
     for earlier in annexes().filter(|c| Some(c.span) != last) {
         mentions.retain(|m| m.span != earlier.span || m.count.is_some_and(|n| n > 1));
     }

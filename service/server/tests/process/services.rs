@@ -172,7 +172,7 @@ async fn a_brought_plan_is_furnished_as_it_is() {
     let server = Server::start(&dir.path().join("data"), &[]);
     let mut c = Clients::of(&server).await;
     let plans = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../plans/tests/plans");
-    let file = |name: &str| std::fs::read(plans.join(name)).expect("a plan").into();
+    let file = |name: &str| std::fs::read(plans.join(name)).expect("a plan");
     let asked = |name: &str| ImportFloorplanRequest {
         file_name: name.into(),
         content: file(name),
@@ -206,7 +206,7 @@ async fn a_brought_plan_is_furnished_as_it_is() {
     assert!(traced.expect("traced").into_inner().floorplan.expect("a plan").rooms.len() > 2);
 
     // refusals name the place
-    let torn = ImportFloorplanRequest { content: b"{".to_vec().into(), ..asked("flat.geojson") };
+    let torn = ImportFloorplanRequest { content: b"{".to_vec(), ..asked("flat.geojson") };
     let attic = [("Attic".to_owned(), "bedroom".to_owned())].into();
     let attic = ImportFloorplanRequest { room_types: attic, ..asked("flat.geojson") };
     for (request, words) in [(torn, "geojson"), (attic, "Attic"), (ImportFloorplanRequest::default(), "empty")] {

@@ -18,7 +18,7 @@ pub(super) fn import(asked: &ImportFloorplanRequest, registry: &Registry) -> Res
     let source = Source {
         name: &asked.file_name,
         bytes: &asked.content,
-        companion: &|file| asked.companions.get(file).map(|bytes| bytes.to_vec()),
+        companion: &|file| asked.companions.get(file).cloned(),
     };
     let options = Options {
         format: asked.format.clone(),
