@@ -1,5 +1,7 @@
 //! Docks that a prompt puts into a room: "robot vacuum dock in the storage room".
 
+use d3dgen_model::domain::Domain;
+
 use super::mentions::{Mention, What};
 use super::text::{Kind, Span, Token};
 use super::wishes::CHARGING;
@@ -7,6 +9,18 @@ use super::words::{Spoken, Tag};
 
 /// Words between a dock and its room, at most: "charging station for two robots in the".
 const MOST_BETWEEN: usize = 8;
+
+/// Takes a word for a room of other buildings that is one for a dock as well for the latter: "a cleaning robot with its dock" has
+/// no loading dock.
+pub(super) fn not_of_goods(tokens: &[Token], mentions: &mut [Mention], domain: &Domain, spoken: &[&Spoken]) {
+    for mention in mentions {
+        let strange = mention.room_type().is_some_and(|id| domain.room_type(id).is_none());
+        let span = mention.span;
+        if strange && spoken.iter().any(|s| s.tag_at(tokens, span.start, Tag::Charge) == Some(span.end)) {
+            mention.what = What::Charge;
+        }
+    }
+}
 
 /// Takes docks inside of other rooms for what they are, no rooms of their own; returns the types of those rooms.
 ///

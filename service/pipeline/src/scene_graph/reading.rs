@@ -237,6 +237,8 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         unread: unread_language.is_some(),
     };
     let mut mentions = mentions(&tokens, &numbers, &vocabulary, &spoken, language, &taken);
+    docks::not_of_goods(&tokens, &mut mentions, domain, &spoken);
+    unread::uncount_measures(&tokens, &mut mentions, &spoken);
     let wet = registry.digest(&domain.id, || Wet::of(domain));
     let mut told_again = compounds::hold_own(&tokens, prompt, &compounds, &mut mentions, domain, &spoken);
     if lives {

@@ -16,8 +16,9 @@ use super::workers::{self, is_office};
 const LEAST_PART: u32 = 8;
 /// How much larger than the mean a storey may be with all of the open office before its desks are shared out.
 const LARGE: f64 = 1.2;
-/// The same of desks that the prompt gives this room.
+/// The same of desks that the prompt gives this room, and the share of the mean storey from which on it takes one by itself.
 const LARGE_TOLD: f64 = 1.8;
+const WHOLE_STOREY: f64 = 0.7;
 /// How much smaller than the storey above the ground floor may be, and rooms that it gets at most.
 const SMALL: f64 = 0.85;
 const MOST_ADDED: usize = 4;
@@ -59,10 +60,14 @@ pub(super) fn open_offices<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planne
         .iter()
         .zip(&loads)
         .map(|(l, load)| load + open.iter().filter(|&&i| dealt[i] == *l).map(|&i| areas[i]).sum::<f64>());
-    if largest.fold(0.0, f64::max) < large * mean {
+    if largest.fold(0.0, f64::max) < large * mean && spare < WHOLE_STOREY * mean {
         return;
     }
-    let parts = shares(desks, spare, &loads);
+    let mut parts = shares(desks, spare, &loads);
+    if spare >= WHOLE_STOREY * mean && parts.iter().filter(|n| **n > 0).count() <= open.len() {
+        // what stands beside it is dealt anew
+        parts = shares(desks, spare, &vec![0.0; levels.len()]);
+    }
     if parts.iter().filter(|n| **n > 0).count() <= open.len() {
         return;
     }

@@ -27,7 +27,8 @@ pub(super) fn line_of<'a>(domain: &Domain, kind: &'a RoomType) -> Option<&'a Fur
     let lies =
         domain.anchor(&line.item).is_some_and(|o| matches!(o.shape, Shape::Bed | Shape::HospitalBed | Shape::Sofa));
     let many = line.required && line.max > 1 && line.area_per_item_m2 > 0.0;
-    (lies && many && kind.privacy != Privacy::Private).then_some(line)
+    // nobody is treated on the sofas of a lounge
+    (lies && many && kind.privacy == Privacy::Shared).then_some(line)
 }
 
 /// Returns the floor that a room with so many places needs, m^2.

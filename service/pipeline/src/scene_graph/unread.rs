@@ -91,6 +91,20 @@ pub(super) fn nouns<'t>(tokens: &'t [Token], numbers: &[Number], spoken: &[&Spok
     tokens.iter().enumerate().filter(noun).map(|f| f.1).take(MOST_IN_ITEM).collect()
 }
 
+/// Takes numbers of hours, kilograms and the like for what they are: a "24-hour ATM area" is one.
+pub(super) fn uncount_measures(tokens: &[Token], mentions: &mut [Mention], spoken: &[&Spoken]) {
+    for mention in mentions {
+        let measured = |number: &Span| {
+            let at =
+                if tokens.get(number.end).is_some_and(|t| t.mark() == Some('-')) { number.end + 1 } else { number.end };
+            spoken.iter().any(|s| s.tag_at(tokens, at, Tag::UnreadUnits).is_some_and(|end| end <= mention.span.start))
+        };
+        if mention.number.as_ref().is_some_and(measured) {
+            (mention.count, mention.number, mention.from) = (None, None, mention.span.start);
+        }
+    }
+}
+
 /// Lengths, speeds, weights and the like that nobody has read.
 fn measures(text: &Text) -> Vec<Span> {
     let tokens = text.tokens;
