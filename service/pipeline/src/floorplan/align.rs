@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 
 use super::core::{out_of_core, overhang};
 use super::cost::{Judge, WEIGHTS};
-use super::lattice::Cellbox;
+use super::lattice::{CELL_M2, Cellbox};
 use super::search::Candidate;
 use super::spec::Brief;
 
@@ -56,7 +56,7 @@ pub(super) fn align(brief: &Brief, found: &mut Candidate) {
         let own: Vec<Cellbox> = found.layout.boxes.iter().map(|b| b.1).collect();
         let area: f64 = own.iter().map(Cellbox::area_m2).sum();
         let apart = overhang(&found.layout.boxes, &outline, (0, 0)) + overhang(&lower, &own, (0, 0));
-        found.score.total(&WEIGHTS) + RAGGED * apart as f64 * 0.0025 / area.max(1.0)
+        found.score.total(&WEIGHTS) + RAGGED * apart as f64 * CELL_M2 / area.max(1.0)
     };
     for axis in [Axis::X, Axis::Y] {
         let fixed = fixed(brief, found, axis);
@@ -72,11 +72,11 @@ pub(super) fn align(brief: &Brief, found: &mut Candidate) {
             }
             let before = cost(found);
             for to in targets {
-                let mut other = found.clone();
-                other.layout.boxes.iter_mut().for_each(|(_, b)| *b = axis.moved(b, from, to));
                 if !keeps_order(&found.layout.boxes, axis, (from, to)) {
                     continue;
                 }
+                let mut other = found.clone();
+                other.layout.boxes.iter_mut().for_each(|(_, b)| *b = axis.moved(b, from, to));
                 other.score = judge.score(&other.layout);
                 if other.score.is_sound() && cost(&other) <= before + WORTH {
                     *found = other;

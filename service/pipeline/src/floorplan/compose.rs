@@ -145,15 +145,7 @@ fn below_wing(brief: &Brief, comb: &Comb, wing: usize, yard: &Yard) -> Option<Be
     let next = comb.slots[wing + 1..].iter().find(|s| s.side == slot.side).map(|s| s.at + s.south - yard.courtyard);
     let end = next.or(comb.far.filter(|_| slot.side != comb.first)).unwrap_or(i32::MAX / 2);
     let between = Some((yard.next[slot.side] - slot.at, end - slot.at));
-    Some(Below {
-        outline: outline.iter().map(seen).collect(),
-        boxes: Vec::new(),
-        by_core: false,
-        comb: None,
-        far: None,
-        scheme: None,
-        between,
-    })
+    Some(Below { outline: outline.iter().map(seen).collect(), between, ..Below::default() })
 }
 
 /// The sides of a spine while wings are set along it.

@@ -33,7 +33,7 @@ pub(super) struct Core {
 }
 
 /// What is below a storey.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Below {
     /// Its boxes, in the core's frame where `by_core`, else in the layout's own.
     pub outline: Vec<Cellbox>,

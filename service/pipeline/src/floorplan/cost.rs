@@ -9,7 +9,7 @@ use d3dgen_model::seed::Stream;
 
 use super::PROPORTION_LIMIT;
 use super::core::{Below, in_core, overhang};
-use super::lattice::{Cellbox, INNER_HALF_M, JAMB_M, OUTER_HALF_M, meters, up};
+use super::lattice::{CELL_M2, Cellbox, INNER_HALF_M, JAMB_M, OUTER_HALF_M, meters, up};
 use super::mirror;
 use super::realize::{Layout, door_need};
 use super::spec::Brief;
@@ -293,7 +293,7 @@ impl<'b> Judge<'b> {
                 Some(core) => overhang(&in_core(&layout.boxes, &core), &below.outline, (0, 0)),
                 None => overhang(&layout.boxes, &below.outline, (0, 0)),
             } as f64
-                * 0.0025;
+                * CELL_M2;
             score.overhang = free / total.max(1.0);
             if let Some((south, north)) = below.between {
                 let low = layout.boxes.iter().map(|(_, b)| b.y0).min().unwrap_or(south);

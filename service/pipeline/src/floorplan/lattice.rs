@@ -39,6 +39,9 @@ pub(super) struct Cellbox {
     pub y1: i32,
 }
 
+/// Area of a cell of the lattice, m^2.
+pub(super) const CELL_M2: f64 = 0.0025;
+
 impl Cellbox {
     pub(super) fn new(xa: i32, ya: i32, xb: i32, yb: i32) -> Self {
         Self { x0: xa.min(xb), y0: ya.min(yb), x1: xa.max(xb), y1: ya.max(yb) }

@@ -193,8 +193,8 @@ impl Brief {
         }
         let hard_width = max_limit(domain.circulation.width_m, limits.corridor_width.as_ref());
         // a home with stairs has little floor left for wide halls, unless somebody turns a wheelchair there
-        let stairs_in_home = !graph.links.is_empty() && !graph.accessible && is_for_homes(domain);
-        let most_advised = if stairs_in_home { MOST_ADVISED_WITH_STAIRS } else { MOST_ADVISED_WIDTH };
+        let of_home = !graph.links.is_empty() && is_for_homes(domain);
+        let most_advised = if of_home && !graph.accessible { MOST_ADVISED_WITH_STAIRS } else { MOST_ADVISED_WIDTH };
         let advised_width = limits.corridor_width_advised.unwrap_or(0.0).min(most_advised * hard_width);
         let fitted = fitted_width(graph);
         let circulation_width = hard_width.max(advised_width).max(fitted);
@@ -209,7 +209,11 @@ impl Brief {
             apart: Vec::new(),
             aloof: aloof(graph, domain),
             second_exit: domain.circulation.second_exit && graph.rooms.iter().all(|r| r.level == 0),
-            area: graph.area_m2.filter(|_| graph.links.is_empty()).or_else(|| storey_area(graph, domain)),
+            // a storey of a home has the area of its rooms
+            area: match graph.area_m2 {
+                Some(_) if of_home => Some(graph.rooms.iter().map(|r| r.target_area_m2).sum()),
+                area => area.filter(|_| graph.links.is_empty()),
+            },
             symmetry: graph.style.symmetry,
             form: graph.style.form,
             entrance_width: max_limit(domain.circulation.entrance_width_m, limits.entrance_width.as_ref()).max(fitted),
@@ -217,7 +221,7 @@ impl Brief {
             guests: Vec::new(),
             stem: false,
             upper: graph.rooms.iter().any(|r| r.level != 0),
-            of_home: !graph.links.is_empty() && is_for_homes(domain),
+            of_home,
             core: None,
         };
         brief.find_guests();
@@ -404,12 +408,6 @@ fn max_limit(base: f64, limit: Option<&Limit>) -> f64 {
 /// Returns true for a domain of homes: in none of its rooms people work or receive anybody but their guests.
 fn is_for_homes(domain: &Domain) -> bool {
     !domain.room_types.iter().any(|kind| matches!(kind.zone, Zone::Staff | Zone::Public))
-}
-
-/// Returns the net area of a storey of a home whose area the prompt gives: that of its rooms.
-fn storey_area(graph: &SceneGraph, domain: &Domain) -> Option<f64> {
-    let home = !graph.links.is_empty() && is_for_homes(domain);
-    graph.area_m2.filter(|_| home).map(|_| graph.rooms.iter().map(|r| r.target_area_m2).sum())
 }
 
 fn room_spec(

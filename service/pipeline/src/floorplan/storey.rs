@@ -212,15 +212,7 @@ fn outline(plan: &Floorplan, level: i32) -> Result<Below, Error> {
     for (i, room) in plan.rooms.iter().enumerate().filter(|(_, r)| r.level == level) {
         boxes.extend(cells(room).map_err(refused)?.into_iter().map(|c| (i, c)));
     }
-    Ok(Below {
-        outline: merged(&boxes),
-        boxes: Vec::new(),
-        by_core: false,
-        comb: None,
-        far: None,
-        scheme: None,
-        between: None,
-    })
+    Ok(Below { outline: merged(&boxes), ..Below::default() })
 }
 
 /// Returns true when a storey has exactly the rooms that the graph has on it.

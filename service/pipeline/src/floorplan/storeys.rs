@@ -12,7 +12,7 @@ use super::align::align;
 use super::assemble::{Turn, assemble, turned_in_place};
 use super::core::{Below, Core, in_core, merged, overhang};
 use super::genome::is_nestable;
-use super::lattice::{Cellbox, INNER_HALF_M, meters, nearest};
+use super::lattice::{CELL_M2, Cellbox, INNER_HALF_M, meters, nearest};
 use super::search::search;
 use super::spec::Brief;
 use super::{ATTEMPTS, LONGEST_BAR, schemes};
@@ -83,13 +83,14 @@ pub(super) fn generate(
     });
     let least = briefs.iter().map(bar_length).max().unwrap_or(0);
     briefs.iter_mut().filter_map(|b| b.core.as_mut()).for_each(|c| c.least = least);
+    let ground = numbers.iter().position(|&l| l == 0).unwrap_or(0);
+    let order = (ground..numbers.len()).map(|i| (i, i.checked_sub(1).filter(|_| i > ground)));
+    let order: Vec<(usize, Option<usize>)> = order.chain((0..ground).rev().map(|i| (i, Some(i + 1)))).collect();
+    let plan = Plan { graph, domain, turn, numbers: &numbers, order: &order };
     loop {
         briefs.iter_mut().filter_map(|b| b.core.as_mut()).for_each(|c| c.gable = bars);
-        match stack(&mut briefs, graph, domain, (turn, &numbers), stop) {
-            Ok(planned) => {
-                let ground = numbers.iter().position(|&l| l == 0).unwrap_or(0);
-                return Ok(stacked(graph, planned, &numbers, &heights, ground));
-            }
+        match plan.best_stack(&mut briefs, stop) {
+            Ok(planned) => return Ok(stacked(graph, planned, &numbers, &heights, ground)),
             Err(Error::Infeasible { .. }) if bars => bars = false,
             Err(error) => return Err(error),
         }
@@ -112,43 +113,6 @@ fn bar_length(brief: &Brief) -> i32 {
     nearest(fronts.into_iter().fold(half, f64::max))
 }
 
-/// Plans the storeys one after the other, from the ground up and then down.
-fn stack(
-    briefs: &mut [Brief],
-    graph: &SceneGraph,
-    domain: &Domain,
-    (turn, numbers): (Turn, &[i32]),
-    stop: Stop<'_>,
-) -> Result<Vec<Planned>, Error> {
-    let ground = numbers.iter().position(|&l| l == 0).unwrap_or(0);
-    let order = (ground..numbers.len()).map(|i| (i, i.checked_sub(1).filter(|_| i > ground)));
-    let order: Vec<(usize, Option<usize>)> = order.chain((0..ground).rev().map(|i| (i, Some(i + 1)))).collect();
-    let plan = Plan { graph, domain, turn, numbers, order: &order };
-    // what stands well above depends on what is below: a home is stacked a few times, the best stack is taken
-    let stacks = if briefs.iter().all(|b| b.of_home) { STACKS } else { 1 };
-    let mut best: Option<(f64, Vec<Planned>)> = None;
-    let mut failed = None;
-    for n in 0..stacks {
-        match plan.stack(briefs, n, stop) {
-            Ok(stack) => {
-                let ragged = stack.iter().map(|p| p.overhang + SET_BACK * p.set_back).sum::<f64>();
-                if best.as_ref().is_none_or(|b| ragged < b.0) {
-                    best = Some((ragged, stack));
-                }
-            }
-            Err(error) => failed = failed.or(Some(error)),
-        }
-        stop.check()?;
-        if best.as_ref().is_some_and(|b| b.0 <= WELL_STACKED) {
-            break;
-        }
-    }
-    match best {
-        Some((_, planned)) => Ok(planned),
-        None => Err(failed.expect("every stack is planned or fails")),
-    }
-}
-
 /// What the storeys of one building have in common.
 struct Plan<'a> {
     graph: &'a SceneGraph,
@@ -160,6 +124,33 @@ struct Plan<'a> {
 }
 
 impl Plan<'_> {
+    /// Plans the storeys one after the other, from the ground up and then down. What stands well above depends on what is
+    /// below: a home is stacked a few times, the best stack is taken.
+    fn best_stack(&self, briefs: &mut [Brief], stop: Stop<'_>) -> Result<Vec<Planned>, Error> {
+        let stacks = if briefs.iter().all(|b| b.of_home) { STACKS } else { 1 };
+        let mut best: Option<(f64, Vec<Planned>)> = None;
+        let mut failed = None;
+        for n in 0..stacks {
+            match self.stack(briefs, n, stop) {
+                Ok(stack) => {
+                    let ragged = stack.iter().map(|p| p.overhang + SET_BACK * p.set_back).sum::<f64>();
+                    if best.as_ref().is_none_or(|b| ragged < b.0) {
+                        best = Some((ragged, stack));
+                    }
+                }
+                Err(error) => failed = failed.or(Some(error)),
+            }
+            stop.check()?;
+            if best.as_ref().is_some_and(|b| b.0 <= WELL_STACKED) {
+                break;
+            }
+        }
+        match best {
+            Some((_, planned)) => Ok(planned),
+            None => Err(failed.expect("every stack is planned or fails")),
+        }
+    }
+
     /// Plans all storeys, for the `n`-th time.
     fn stack(&self, briefs: &mut [Brief], n: usize, stop: Stop<'_>) -> Result<Vec<Planned>, Error> {
         let mut planned: Vec<Option<Planned>> = self.numbers.iter().map(|_| None).collect();
@@ -270,7 +261,7 @@ fn set_back(brief: &Brief, boxes: &[(usize, Cellbox)]) -> f64 {
     let lower: Vec<(usize, Cellbox)> = below.outline.iter().map(|b| (0, *b)).collect();
     let own: Vec<Cellbox> = boxes.iter().map(|b| b.1).collect();
     let area: f64 = below.outline.iter().map(Cellbox::area_m2).sum();
-    overhang(&lower, &own, (0, 0)) as f64 * 0.0025 / area.max(1.0)
+    overhang(&lower, &own, (0, 0)) as f64 * CELL_M2 / area.max(1.0)
 }
 
 /// Puts the storeys into one document, the building's south-west corner at the origin.

@@ -12,7 +12,7 @@ use d3dgen_model::style::Clutter;
 use super::demand::{self, Task};
 use super::geom::mm;
 use super::space::Space;
-use super::unit::TO_GET_THERE_M;
+use super::unit::BESIDE_BED_M;
 use super::way::Way;
 use super::{LEAST_RADIUS_M, Wanted, clutter};
 
@@ -23,9 +23,7 @@ const WHEELCHAIR_RADIUS_M: f64 = 0.4;
 const TURNING_SPARE_M: f64 = 0.005;
 /// Area of a room from which on things of any size leave room for that circle, m^2.
 const AMPLE_M2: f64 = 9.0;
-/// Floor at one side of a bed that somebody gets into from a wheelchair, m (ISO 21542, ADA 806.2.3: 36 in); and in a room
-/// of so many m^2, where one turns beside it (DIN 18040-2 R: 1.5 m).
-const BESIDE_BED_M: f64 = TO_GET_THERE_M;
+/// Floor at one side of such a bed in a room of so many m^2, where one turns beside it, m (DIN 18040-2 R: 1.5 m).
 const TURNING_BESIDE_BED_M: f64 = 1.5;
 const TURNING_BESIDE_BED_FROM_M2: f64 = 13.0;
 

@@ -11,8 +11,8 @@ use d3dgen_model::domain::{Domain, FacingRule, Group, Member, Mount, ObjectType,
 use super::geom::{Box2, ROBOT_HEIGHT, Solid, mm};
 use super::seats::{is_seat, seats_around, seats_behind};
 
-/// Floor at the one side of a bed that somebody gets into from a wheelchair, m.
-pub(super) const TO_GET_THERE_M: f64 = 0.92;
+/// Floor at one side of a bed that somebody gets into from a wheelchair, m (ISO 21542, ADA 806.2.3: 36 in).
+pub(super) const BESIDE_BED_M: f64 = 0.92;
 /// Largest number of members kept around one anchor, whatever a domain says.
 const MAX_MEMBERS: u32 = 40;
 
@@ -272,7 +272,7 @@ pub(super) fn variants<'a>(domain: &'a Domain, item: &'a str, forms: &Forms) -> 
     for whole in [whole, lesser.into_iter().map(full).collect()] {
         if forms.advised {
             // the room for a wheelchair to turn at one side goes before that to get there, and this before the rest
-            for wide in [f64::MAX, TO_GET_THERE_M, 0.0] {
+            for wide in [f64::MAX, BESIDE_BED_M, 0.0] {
                 whole.iter().filter_map(|unit| advised(unit, forms, wide)).for_each(&mut add);
             }
         }
@@ -298,12 +298,8 @@ pub(super) fn variants<'a>(domain: &'a Domain, item: &'a str, forms: &Forms) -> 
 /// than it has.
 fn advised<'a>(unit: &Unit<'a>, forms: &Forms, wide_m: f64) -> Option<Unit<'a>> {
     let mut clears = unit.clears.clone();
-    for part in unit.parts.iter().filter(|p| p.mount == Mount::Floor) {
-        if let Some(aim) = forms.aims.get(part.object.id.as_str()) {
-            let clear = Clear { wide_side: aim.clear.wide_side.min(wide_m), ..aim.clear };
-            advised_floor(part, &clear, &mut clears);
-        }
-    }
+    let clear = |aim: &Aim| Clear { wide_side: aim.clear.wide_side.min(wide_m), ..aim.clear };
+    asked_floor(&unit.parts, forms, clear, &mut clears);
     let more = clears.len() > unit.clears.len();
     more.then(|| finish_with(unit.item, unit.group, unit.parts.clone(), clears, unit.parked.clone()))
 }
@@ -317,6 +313,15 @@ fn with_elbow_room<'a>(unit: &Unit<'a>) -> Option<Unit<'a>> {
     }
     let more = clears.len() > unit.clears.len();
     more.then(|| finish_with(unit.item, unit.group, unit.parts.clone(), clears, unit.parked.clone()))
+}
+
+/// Adds the free floor that rules ask for beside the parts that stand on it.
+fn asked_floor(parts: &[Part], forms: &Forms, clear: impl Fn(&Aim) -> Clear, out: &mut Vec<Box2>) {
+    for part in parts.iter().filter(|p| p.mount == Mount::Floor) {
+        if let Some(aim) = forms.aims.get(part.object.id.as_str()) {
+            advised_floor(part, &clear(aim), out);
+        }
+    }
 }
 
 /// Adds the free floor that is advised for a part where it is more than its type asks for.
@@ -385,7 +390,7 @@ impl<'a> Plan<'a, '_> {
                 let stays =
                     member.relation == Relation::Front && !is_seat(object.shape) && takes_floor(self.domain, member);
                 let gap_m = if stays { member.gap_m.max(by_law_m) } else { member.gap_m };
-                add_member(&mut parts, &Member { gap_m, ..member.clone() }, object, sizes(object), self.forms.ceiling);
+                add_member(&mut parts, (member, gap_m), object, sizes(object), self.forms.ceiling);
             }
         }
         let mut clears = Vec::new();
@@ -417,10 +422,7 @@ fn finish<'a>(item: &'a str, group: bool, parts: Vec<Part<'a>>, mut clears: Vec<
     seats_behind(&parts, forms.tightness, &mut clears);
     seats_around(&parts, forms.tightness, &mut clears);
     if forms.lawful {
-        let floor = parts.iter().filter(|p| p.mount == Mount::Floor);
-        let by_law = |p: &&Part| forms.aims.get(p.object.id.as_str()).map(|a| a.by_law);
-        let asked: Vec<(&Part, Clear)> = floor.filter_map(|p| Some((p, by_law(&p)?))).collect();
-        asked.into_iter().for_each(|(part, clear)| advised_floor(part, &clear, &mut clears));
+        asked_floor(&parts, forms, |aim| aim.by_law, &mut clears);
     }
     let docks = parts.iter().filter(|p| p.object.shape == Shape::Dock && forms.robot > 0);
     let parked: Vec<Box2> = docks.map(|dock| parked_at(dock, forms.robot)).collect();
@@ -475,12 +477,19 @@ pub(super) fn clears_of(part: &Part, tightness: f64, out: &mut Vec<Box2>) {
     }
 }
 
-fn add_member<'a>(parts: &mut Vec<Part<'a>>, member: &Member, object: &'a ObjectType, size: usize, ceiling: i32) {
+/// Adds a member of a group so far from the anchor.
+fn add_member<'a>(
+    parts: &mut Vec<Part<'a>>,
+    (member, gap_m): (&Member, f64),
+    object: &'a ObjectType,
+    size: usize,
+    ceiling: i32,
+) {
     let [w, d, h] = size_mm(object, size);
     let count = member.count.clamp(1, MAX_MEMBERS);
     let anchor = parts[0].solid;
     let a = anchor.rect;
-    let (gap, offset) = (mm(member.gap_m), mm(member.offset_m));
+    let (gap, offset) = (mm(gap_m), mm(member.offset_m));
     let facing = |toward: u8| match member.facing {
         FacingRule::Same => 0,
         FacingRule::Toward => toward,

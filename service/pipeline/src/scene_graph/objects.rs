@@ -109,11 +109,7 @@ pub(super) fn of_bedrooms(
         }
     }
     let spans = things.iter().map(|&k| mentions[k].span).collect();
-    let mut at = 0;
-    mentions.retain(|_| {
-        at += 1;
-        !things.contains(&(at - 1))
-    });
+    things.into_iter().rev().for_each(|k| drop(mentions.remove(k)));
     spans
 }
 

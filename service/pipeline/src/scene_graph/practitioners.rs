@@ -58,10 +58,10 @@ pub(super) fn house(
         let Some(kind) = domain.room_type(id).filter(|_| !wishes.forbidden.contains(id)) else { continue };
         let label = kind.label.to_lowercase();
         let rooms = count.div_ceil(who.per_room.max(1));
-        match wishes.wishes.iter_mut().find(|w| &w.room_type == id) {
-            Some(_) => continue,
-            None => wishes.wishes.push(Wish { count: rooms, exact: true, listed: true, ..Wish::one(id, &label) }),
+        if wishes.wishes.iter().any(|w| &w.room_type == id) {
+            continue;
         }
+        wishes.wishes.push(Wish { count: rooms, exact: true, listed: true, ..Wish::one(id, &label) });
         let message = format!("{rooms} x {label} were planned for those {count} who work in one");
         assumptions.push(note("rooms_of_practitioners", message));
     }

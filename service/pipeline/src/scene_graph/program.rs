@@ -112,6 +112,11 @@ pub(super) struct Planned<'a> {
 }
 
 impl<'a> Planned<'a> {
+    /// Returns the area that it is reckoned with before it is sized, m^2: as asked for, else for its people, else the usual.
+    pub(super) fn reckoned_m2(&self) -> f64 {
+        self.area_m2.or(self.people_area_m2).unwrap_or(self.kind.area_m2.target)
+    }
+
     /// Sizes a room by the people it is for, within what its type allows; a size that the prompt gives stays.
     pub(super) fn size_for_people(&mut self, area_m2: f64) {
         let range = self.kind.area_m2;
@@ -325,7 +330,7 @@ fn make_room_for_companions(reading: &Reading, rooms: &mut [Planned]) {
 
 /// Sees to it that there are as many toilets and bathrooms as storeys, where the prompt leaves the rooms open.
 fn wash_on_every_storey<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
-    let storeys = reading.storeys.levels.iter().filter(|l| **l >= 0).count();
+    let storeys = reading.storeys.above_ground();
     // where people work, a list of rooms that says nothing of that does not mean that one goes to another storey; nor does
     // anybody go up to the bedrooms for a toilet, unless the list says that it is all
     let works = workers::is_office(reading.program) && !reading.only;
@@ -355,7 +360,7 @@ fn wash_on_every_storey<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>)
 
 /// Sees to it that who works on a storey has a place for tea there, where the prompt leaves the rooms open.
 fn serve_every_storey<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
-    let storeys = reading.storeys.levels.iter().filter(|l| **l >= 0).count();
+    let storeys = reading.storeys.above_ground();
     let open = storeys > 1 && !reading.closed && reading.total.is_none() && workers::is_office(reading.program);
     let Some(rules) = reading.domain.circulation.storeys.as_ref().filter(|_| open) else { return };
     let served =
@@ -646,7 +651,7 @@ impl<'r, 'a> Build<'r, 'a> {
                 .area_per_occupant_m2
                 .map_or(0, |per| (per * f64::from(people) / kind.area_m2.max).ceil() as usize);
             // each storey has its share of those who work there
-            let storeys = self.reading.storeys.levels.iter().filter(|l| **l >= 0).count();
+            let storeys = self.reading.storeys.above_ground();
             let shares = entry.area_per_occupant_m2.map_or(0, |per| {
                 let most = (per * f64::from(people) / kind.area_m2.min) as usize;
                 if storeys > 1 { most.min(storeys) } else { 0 }
@@ -877,7 +882,7 @@ fn seat_waiting(reading: &Reading, rooms: &mut [Planned]) {
 
 /// Returns how many people have a desk in a room of its usual size.
 fn workplaces(domain: &Domain, room: &Planned) -> u32 {
-    let area = room.area_m2.or(room.people_area_m2).unwrap_or(room.kind.area_m2.target);
+    let area = room.reckoned_m2();
     let lines = room.kind.furnishing.iter().filter(|line| line.instead_of.is_empty());
     lines.map(|line| seated::desks_of(domain, &line.item) * line.units(area)).max().unwrap_or(0)
 }

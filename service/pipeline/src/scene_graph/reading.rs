@@ -384,7 +384,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         taken: &spans,
         spoken: &spoken,
         language,
-        on_each: (&storeys.robots_on_each, storeys.levels.iter().filter(|l| **l >= 0).count() as u32),
+        on_each: (&storeys.robots_on_each, storeys.above_ground() as u32),
     };
     let fleet = machines.counted(&fleet);
     let heard = robots::Prompt { text: prompt, tokens: &tokens };
@@ -682,7 +682,7 @@ fn wish_for_storeys(storeys: &mut Storeys, wishes: &mut Wishes, domain: &Domain)
     if storeys.levels.len() < 2 {
         return;
     }
-    let above = storeys.levels.iter().filter(|l| **l >= 0).count() as u32;
+    let above = storeys.above_ground() as u32;
     let mut sums: Vec<(&str, u32)> = Vec::new();
     for wanted in &storeys.wanted {
         let count = if wanted.at == Where::Each { wanted.count * above } else { wanted.count };

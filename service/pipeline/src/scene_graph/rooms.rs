@@ -14,6 +14,7 @@ use super::places::note;
 use super::program::{Planned, circulation_share};
 use super::reading::{Reading, is_dwelling};
 use super::seats::MOST_IN_TEAM;
+use super::text::capital;
 use super::words::words;
 use super::workers::is_office;
 
@@ -148,9 +149,7 @@ fn label(room: &Planned) -> String {
     if room.kind.id == room.room_type && room.room_type != GENERIC_ROOM_TYPE {
         return room.kind.label.clone();
     }
-    let words = room.room_type.replace('_', " ");
-    let mut letters = words.chars();
-    letters.next().map_or(words.clone(), |first| first.to_uppercase().chain(letters).collect())
+    capital(&room.room_type.replace('_', " "))
 }
 
 /// Returns the areas of offices for one and of stores in a building of a given area, whose floor to spare goes elsewhere.
@@ -245,13 +244,12 @@ fn target_areas(reading: &mut Reading, planned: &[Planned]) -> Vec<f64> {
                     let least = if desks { 1.0 } else { CROWDED } * people;
                     (area * scale).clamp(range.min.max(least).min(most), most.max(range.min))
                 }
-                _ if kept && lives => {
-                    (area * scale.min(ROOMY.min(most_of(room.kind.zone)))).clamp(range.min, range.max)
+                _ => {
+                    // in a large home one lives in larger rooms; what serves them does not grow with it
+                    let most = if lives { most_of(room.kind.zone) } else { MOST_SCALE };
+                    let most = if kept { most.min(ROOMY) } else { most };
+                    (area * scale.min(most)).clamp(range.min, range.max)
                 }
-                _ if kept => (area * scale.min(ROOMY)).clamp(range.min, range.max),
-                // in a large home one lives in larger rooms; what serves them does not grow with it
-                _ if lives => (area * scale.min(most_of(room.kind.zone))).clamp(range.min, range.max),
-                _ => (area * scale).clamp(range.min, range.max),
             }
         });
         sized.collect()

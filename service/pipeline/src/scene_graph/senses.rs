@@ -1,7 +1,7 @@
 //! Words for rooms that mean one thing here and another there: the control room beside a scanner is that scanner's, the
 //! treatment room of a dental practice has a dental chair.
 
-use d3dgen_model::domain::{AdjacencyRelation, Domain, Program};
+use d3dgen_model::domain::{Adjacency, AdjacencyRelation, Domain, Program};
 
 use super::mentions::{Mention, Vocabulary, What};
 use super::text::Token;
@@ -34,8 +34,7 @@ pub(super) fn settle(
             mentions[m].what = What::Room(first.clone());
             continue;
         }
-        let rules = || domain.adjacency.iter().filter(|r| r.relation == AdjacencyRelation::Must);
-        let alone = |s: &&String| !rules().any(|r| r.a == **s || r.b == **s);
+        let alone = |s: &&String| !musts(domain).any(|r| r.a == **s || r.b == **s);
         if let Some(id) = beside(mentions, m, &senses, domain).or_else(|| senses.iter().find(alone).cloned()) {
             mentions[m].what = What::Room(id);
         }
@@ -53,17 +52,20 @@ pub(super) fn settle(
     }
 }
 
+/// Returns the rules of a domain by which rooms belong beside others.
+fn musts(domain: &Domain) -> impl Iterator<Item = &Adjacency> {
+    domain.adjacency.iter().filter(|r| r.relation == AdjacencyRelation::Must)
+}
+
 /// Returns the senses of a word whose rooms belong beside ones that the prompt names.
 fn partnered(mentions: &[Mention], senses: &[String], domain: &Domain) -> Vec<String> {
-    let rules = || domain.adjacency.iter().filter(|r| r.relation == AdjacencyRelation::Must);
     let named = |id: &str| mentions.iter().any(|m| m.room_type() == Some(id));
-    senses.iter().filter(|s| rules().any(|r| r.a == **s && named(&r.b))).cloned().collect()
+    senses.iter().filter(|s| musts(domain).any(|r| r.a == **s && named(&r.b))).cloned().collect()
 }
 
 /// Returns the sense of a word whose room belongs beside one that the prompt names: the nearest before it, else behind it.
 fn beside(mentions: &[Mention], m: usize, senses: &[String], domain: &Domain) -> Option<String> {
-    let rules = || domain.adjacency.iter().filter(|r| r.relation == AdjacencyRelation::Must);
-    let other = |sense: &str, id: &str| rules().any(|r| r.a == sense && r.b == id || r.b == sense && r.a == id);
+    let other = |sense: &str, id: &str| musts(domain).any(|r| r.a == sense && r.b == id || r.b == sense && r.a == id);
     let sense_of = |at: usize| {
         let id = mentions[at].room_type()?;
         senses.iter().find(|sense| other(sense, id)).cloned()

@@ -23,7 +23,7 @@ const WHOLE_STOREY: f64 = 0.7;
 const SMALL: f64 = 0.85;
 const MOST_ADDED: usize = 4;
 
-/// Shares the desks of the open office out to the storeys, where the prompt does not say how many it has.
+/// Shares the desks of the open office out to the storeys, where it is much larger than one of them is to be.
 pub(super) fn open_offices<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
     let domain = reading.domain;
     let levels: Vec<i32> = reading.storeys.levels.iter().copied().filter(|l| *l >= 0).collect();
@@ -47,7 +47,7 @@ pub(super) fn open_offices<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planne
         return;
     }
     let large = if told { LARGE_TOLD } else { LARGE };
-    let areas: Vec<f64> = rooms.iter().map(area).collect();
+    let areas: Vec<f64> = rooms.iter().map(Planned::reckoned_m2).collect();
     let dealt = deal::deal(&mut reading.clone(), rooms, &areas, &reading.storeys.levels.clone());
     let others = |level: i32| -> f64 {
         let here = |i: &usize| dealt[*i] == level && !open.contains(i);
@@ -63,14 +63,11 @@ pub(super) fn open_offices<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planne
     if largest.fold(0.0, f64::max) < large * mean && spare < WHOLE_STOREY * mean {
         return;
     }
-    let mut parts = shares(desks, spare, &loads);
-    if spare >= WHOLE_STOREY * mean && parts.iter().filter(|n| **n > 0).count() <= open.len() {
-        // what stands beside it is dealt anew
-        parts = shares(desks, spare, &vec![0.0; levels.len()]);
-    }
-    if parts.iter().filter(|n| **n > 0).count() <= open.len() {
-        return;
-    }
+    let more = |parts: &Vec<u32>| parts.iter().filter(|n| **n > 0).count() > open.len();
+    let by_load = Some(shares(desks, spare, &loads)).filter(more);
+    // else what stands beside it is dealt anew
+    let alike = || Some(shares(desks, spare, &vec![0.0; levels.len()])).filter(|_| spare >= WHOLE_STOREY * mean);
+    let Some(parts) = by_load.or_else(|| alike().filter(more)) else { return };
     let id = rooms[first].room_type.clone();
     reading.storeys.wanted.retain(|w| w.room_type != id);
     let mut said = Vec::new();
@@ -95,14 +92,14 @@ pub(super) fn open_offices<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planne
 /// Adds rooms to the ground floor of an office that is smaller than the storey above, which would hang in the air.
 pub(super) fn fill_ground<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
     let domain = reading.domain;
-    let above = reading.storeys.levels.iter().filter(|l| **l >= 0).count();
+    let above = reading.storeys.above_ground();
     let settled = reading.total.is_some() || reading.single || reading.only || reading.area_m2.is_some();
     if above < 2 || settled || domain.circulation.storeys.is_none() || !is_office(reading.program) {
         return;
     }
     let mut added: Vec<String> = Vec::new();
     for id in &words().fill_ground {
-        let areas: Vec<f64> = rooms.iter().map(area).collect();
+        let areas: Vec<f64> = rooms.iter().map(Planned::reckoned_m2).collect();
         let dealt = deal::deal(&mut reading.clone(), rooms, &areas, &reading.storeys.levels.clone());
         let load = |level: i32| (0..rooms.len()).filter(|&i| dealt[i] == level).map(|i| areas[i]).sum::<f64>();
         let kind = domain.room_type(id).filter(|k| !reading.wishes.forbidden.contains(&k.id));
@@ -125,10 +122,6 @@ pub(super) fn fill_ground<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned
 
 fn is_open(domain: &Domain, room: &Planned) -> bool {
     most_desks(domain, room.kind) > MOST_IN_TEAM
-}
-
-fn area(room: &Planned) -> f64 {
-    room.area_m2.or(room.people_area_m2).unwrap_or(room.kind.area_m2.target)
 }
 
 /// Returns the desks of each storey, so that all have about as much floor: `area_m2` is what all desks need, `loads` what the

@@ -75,6 +75,13 @@ pub(super) struct Storeys {
     pub bare_basement: bool,
 }
 
+impl Storeys {
+    /// Returns how many storeys stand above ground.
+    pub(super) fn above_ground(&self) -> usize {
+        self.levels.iter().filter(|l| **l >= 0).count()
+    }
+}
+
 /// Returns the phrases that name storeys, in order; `room_end` tells where a word for a room ends that begins at a token.
 pub(super) fn phrases(
     tokens: &[Token],

@@ -213,6 +213,12 @@ fn mark_of(chars: &[(usize, char)], i: usize, spaced: bool) -> Option<char> {
     }
 }
 
+/// Returns words that begin with a capital letter.
+pub(super) fn capital(words: &str) -> String {
+    let mut letters = words.chars();
+    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
+}
+
 /// Returns a text in lower case without accents, letters and digits only.
 pub(super) fn fold(text: &str) -> String {
     let mut out = String::with_capacity(text.len());

@@ -8,6 +8,7 @@ use super::places::note;
 use super::program::{Planned, desk_area_m2, head_count, places_to_work};
 use super::reading::{Reading, is_dwelling};
 use super::seats::{MOST_IN_TEAM, has_counters, most_desks, places, works_in};
+use super::text::capital;
 use super::vital;
 use super::wishes::{Wish, Wishes};
 use super::words::words;
@@ -239,7 +240,7 @@ fn part_toilets<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
     let people = places_to_work(reading, rooms);
     let own = |r: &Planned| r.room_type == kind.id;
     let fixed = reading.wishes.wishes.iter().any(|w| w.room_type == kind.id && w.exact);
-    let storeys = reading.storeys.levels.iter().filter(|l| **l >= 0).count().max(1);
+    let storeys = reading.storeys.above_ground().max(1);
     let open = reading.total.is_none() && !reading.only;
     let may = |k: &RoomType| open && !reading.wishes.forbidden.contains(&k.id);
     let joins = !reading.closed || reading.may_join;
@@ -300,9 +301,7 @@ fn seat_waiting(domain: &Domain, rooms: &mut [Planned]) {
 /// Returns whose toilets these are.
 fn whose(k: usize, label: &str) -> String {
     let sexes = &words().sexes;
-    let mut letters = sexes[k % sexes.len()].chars();
-    let whose: String = letters.next().map(|c| c.to_uppercase().chain(letters).collect()).unwrap_or_default();
-    format!("{whose} {}", label.to_lowercase())
+    format!("{} {}", capital(&sexes[k % sexes.len()]), label.to_lowercase())
 }
 
 /// Names the toilets of women and men by storey, where they are dealt out to several: each of them has both.

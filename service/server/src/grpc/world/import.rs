@@ -10,7 +10,7 @@ use tonic::Status;
 use crate::convert::message;
 use crate::status::{self, invalid};
 
-/// Reads the plan; a field that is at fault is named in the refusal where it is not the file itself.
+/// Reads the plan; what is refused is put down to its `content`, the message names the place.
 pub(super) fn import(asked: &ImportFloorplanRequest, registry: &Registry) -> Result<ImportFloorplanResponse, Status> {
     if asked.content.is_empty() {
         return Err(invalid("content", "is empty; put the bytes of the plan's file here"));
