@@ -7,12 +7,13 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use d3dgen_knowledge::{Query, Retrieval};
+use d3dgen_model::Rect;
 use d3dgen_model::domain::Domain;
 use d3dgen_model::floorplan::Floorplan;
 use d3dgen_model::placements::Placements;
 use d3dgen_model::report::Report;
 use d3dgen_model::scenario::Scenario;
-use d3dgen_model::scene_graph::{Note, Robot, SceneGraph};
+use d3dgen_model::scene_graph::{Connector, Note, Robot, SceneGraph};
 use d3dgen_model::seed::Stream;
 use d3dgen_model::world::World;
 use d3dgen_plugins::{Plugin, Registry};
@@ -45,6 +46,9 @@ const FEW_ATTEMPTS: u32 = 3;
 /// Rooms up to which a sound world that misses a law, or with something before a door or window, is tried again: in a large
 /// building there is always one.
 const FEW_ROOMS: usize = 20;
+
+/// Floor between rooms up to which they are near each other, m.
+const NEAR_M: f64 = 6.0;
 
 /// A step on the way, in the order of the path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -331,10 +335,28 @@ fn attempt(
     begin(Stage::World, attempt, observe, cancelled)?;
     let mut told = with_area(graph, &plan);
     told.conflicts.extend(scene_graph::shortages(domain, graph, &placements));
+    told.conflicts.extend(far_apart(graph, &plan));
     let world = world::assemble(name, told, plan, placements, scenario);
     let report = world::check(&world, domain, retrieved);
     observe(Event::Finished(Stage::World, attempt, Artifact::World(&world, &report)));
     Ok(Generated { world, report, attempts: attempt + 1 })
+}
+
+/// Returns what to say of rooms that the prompt wants near each other and that are not.
+fn far_apart(graph: &SceneGraph, plan: &Floorplan) -> Option<Note> {
+    let between = |a: Rect, b: Rect| {
+        let apart = [a.x0.max(b.x0) - a.x1.min(b.x1), a.y0.max(b.y0) - a.y1.min(b.y1)];
+        apart[0].max(0.0).hypot(apart[1].max(0.0))
+    };
+    let near = graph.edges.iter().filter(|e| e.connector == Connector::Near && e.reason == BY_PROMPT);
+    let far = near.filter_map(|e| {
+        let (a, b) = (plan.room(&e.a)?, plan.room(&e.b)?);
+        let gap = between(a.polygon.bounds(), b.polygon.bounds());
+        (a.level == b.level && gap > NEAR_M).then(|| format!("{} from {} ({gap:.0} m)", a.name, b.name))
+    });
+    let far: Vec<String> = far.collect();
+    let message = || format!("the prompt wants rooms near each other that are not: {}", far.join(", "));
+    (!far.is_empty()).then(|| Note { code: "not_near".into(), message: message() })
 }
 
 /// Returns the graph with what became of the area asked for, where the plan has plainly another.

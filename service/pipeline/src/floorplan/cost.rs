@@ -69,6 +69,9 @@ const WRONG_SIZES: f64 = 1.5;
 /// What it costs that two rooms which the domain advises against putting wall to wall share one.
 const TOUCHING: f64 = 0.35;
 
+/// How much more a wet room counts that lies beside no other in a home, where there are few of them.
+const PIPES_AT_HOME: f64 = 2.2;
+
 /// Length over width from which on a room looks like a slot, and what that costs beside its proportion.
 const SLOT_FROM: f64 = 1.9;
 const SLOT: f64 = 1.5;
@@ -475,7 +478,8 @@ impl<'b> Judge<'b> {
         score.soft[2] += TOUCHING * touching as f64;
         if self.wet_rooms > 1 {
             let paired = self.survey.rooms.iter().filter(|r| r.wet_beside).count();
-            score.soft[5] += (self.wet_rooms - paired) as f64;
+            let alone = (self.wet_rooms - paired) as f64;
+            score.soft[5] += if self.home { PIPES_AT_HOME * alone } else { alone };
         }
     }
 

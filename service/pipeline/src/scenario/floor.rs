@@ -20,8 +20,8 @@ pub(super) const LEAST_RADIUS_M: f64 = 0.30;
 /// How much farther off a spot may be that is not tight, or only clear of the swing of doors and of chairs in use, m.
 const TIGHT_M: f64 = 1.6;
 const SWING_M: f64 = 1.0;
-/// How far a chair is pushed back when one gets up, m.
-const CHAIR_BACK_M: f64 = 0.3;
+/// Floor behind a chair that whoever sits there takes and gets up on, m.
+const CHAIR_BACK_M: f64 = 0.6;
 /// How far around a point spots are looked for at first, m.
 const FIRST_REACH_M: f64 = 0.8;
 /// Spots of a room that are looked at exactly, at most.
@@ -31,6 +31,8 @@ const PLAY_M: f64 = 0.08;
 const CLOSE_M: f64 = 0.4;
 /// Slack for points that are rounded to millimeters, m.
 pub(super) const ROUNDING_M: f64 = 0.001;
+/// Floor on both sides of a door, from the middle of its wall, on which nobody stops, m.
+const IN_DOORWAY_M: f64 = 0.5;
 /// Forward and left of the four headings.
 const FORWARD: [(f64, f64); 4] = [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)];
 
@@ -59,9 +61,10 @@ pub(super) struct Room<'a> {
     /// Cells where the disc lies within the room, clear of all that stands there by a cell, as also on the way in where
     /// that is possible.
     roomy: Bitmap,
-    /// Those of them where no door opens against the disc and no chair is pushed back against it.
+    /// Those of them where no door opens against the disc, no chair is pushed back against it, and nobody comes through a
+    /// door.
     undisturbed: Bitmap,
-    /// Floor that nothing stands on, over which no door opens and no chair is pushed back.
+    /// Floor that nothing stands on, in no doorway, over which no door opens and no chair is pushed back.
     pub quiet: Bitmap,
     /// Floor that nothing stands on, m^2.
     pub free_m2: f64,
@@ -98,8 +101,9 @@ impl<'a> Floor<'a> {
             {
                 roomy.intersect(&surely);
             }
-            for swing in plan.doors.iter().filter_map(|d| swept(d, &room.room_id)) {
-                let (a0, a1, b0, b1) = occupancy.frame.span(&swing);
+            let swings = plan.doors.iter().filter_map(|d| swept(d, &room.room_id));
+            for taken in swings.chain(plan.doors_of(&room.room_id).map(|d| lane(d, IN_DOORWAY_M))) {
+                let (a0, a1, b0, b1) = occupancy.frame.span(&taken);
                 floor.fill(a0 - i0.max(0), a1 - i0.max(0), b0 - j0.max(0), b1 - j0.max(0), false);
             }
             let here = by_room.get(room.room_id.as_str()).into_iter().flatten();
@@ -271,13 +275,17 @@ impl Room<'_> {
 pub(super) fn swept(door: &Door, room_id: &str) -> Option<Rect> {
     door.swing.as_ref().filter(|swing| swing.into_room_id.as_deref() == Some(room_id))?;
     let leaves = if door.kind == DoorKind::DoubleHinged { 2.0 } else { 1.0 };
-    let deep = door.line.length() / leaves + door.wall_thickness_m / 2.0;
+    Some(lane(door, door.line.length() / leaves + door.wall_thickness_m / 2.0))
+}
+
+/// Returns the floor on both sides of a door that people come through on, this deep.
+pub(super) fn lane(door: &Door, deep: f64) -> Rect {
     let (a, b) = (door.line.start, door.line.end);
     let r = Rect::new(a.x.min(b.x), a.y.min(b.y), a.x.max(b.x), a.y.max(b.y));
-    Some(match door.line.is_vertical() {
+    match door.line.is_vertical() {
         true => Rect { x0: r.x0 - deep, x1: r.x1 + deep, ..r },
         false => Rect { y0: r.y0 - deep, y1: r.y1 + deep, ..r },
-    })
+    }
 }
 
 /// Returns the points at this distance before an object and beside it: in front, left, behind, right.
@@ -297,7 +305,7 @@ pub(super) fn floor_in_front(p: &Placement, depth: f64, beside: f64) -> Rect {
 }
 
 /// Returns the same on the side of an object that looks along one of the four headings.
-fn floor_beside(p: &Placement, heading: u8, depth: f64, beside: f64) -> Rect {
+pub(super) fn floor_beside(p: &Placement, heading: u8, depth: f64, beside: f64) -> Rect {
     let r = p.footprint().bounds();
     match heading % 4 {
         0 => Rect { x0: r.x1, x1: r.x1 + depth, y0: r.y0 - beside, y1: r.y1 + beside },

@@ -6,12 +6,17 @@ use d3dgen_model::scenario::{Poi, Roi, RoiKind};
 use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::{Point, Rect};
 
-use super::floor::{Floor, Room, around, looking_at};
+use super::floor::{Floor, Room, around, floor_in_front, looking_at, swept};
 
 /// Gap between a robot's hull and what it serves, m.
 const GAP_M: f64 = 0.10;
 /// How much nearer a spot beside an object must be than one in front of it, m.
 const NOT_IN_FRONT_M: f64 = 0.3;
+/// How much nearer a spot beside a desk or table must be for each meter that it lies farther from the door, m: on the way
+/// there one passes behind chairs.
+const FROM_DOOR: f64 = 0.15;
+/// Depth of the floor before an object that one stands on to be served, m.
+const FRONT_M: f64 = 0.6;
 /// Most waiting bays.
 const MOST_BAYS: u32 = 4;
 /// Spots of a room that are looked at for a waiting bay, about.
@@ -32,9 +37,26 @@ const SERVED: [Shape; 8] = [
 /// Kind of robot that visits rooms to clean them.
 const CLEANING: &str = "cleaning";
 
-/// Returns what a robot serves in a room: the first object of the most telling build that stands on the floor.
-pub(super) fn served<'r>(room: &'r Room) -> Option<&'r (&'r Placement, &'r ObjectType)> {
-    SERVED.iter().find_map(|shape| room.objects.iter().find(|(_, k)| k.shape == *shape && k.mount == Mount::Floor))
+/// Returns what a robot serves in a room: of the objects of the most telling build that stand on the floor, clear of the
+/// swing of doors where there is such a one, the nearest to a door.
+pub(super) fn served<'r>(floor: &Floor, room: &'r Room) -> Option<&'r (&'r Placement, &'r ObjectType)> {
+    let id = &room.plan.room_id;
+    let swings: Vec<Rect> = floor.plan.doors_of(id).filter_map(|d| swept(d, id)).collect();
+    let standing = room.objects.iter().filter(|(_, k)| k.mount == Mount::Floor);
+    let known = standing.filter_map(|o| Some((SERVED.iter().position(|shape| o.1.shape == *shape)?, o)));
+    let ranked = known.map(|(rank, o)| {
+        let front = floor_in_front(o.0, FRONT_M, 0.0);
+        let swung = swings.iter().any(|s| s.overlaps(&front));
+        ((swung, rank, door_distance(floor, room, Point::new(o.0.pose.x, o.0.pose.y))), o)
+    });
+    let first = ranked.min_by(|(a, _), (b, _)| (a.0, a.1).cmp(&(b.0, b.1)).then(a.2.total_cmp(&b.2)));
+    first.map(|(_, o)| o)
+}
+
+/// Returns how far a point is from the nearest door of a room, m; 0 in rooms without one.
+fn door_distance(floor: &Floor, room: &Room, p: Point) -> f64 {
+    let doors = floor.plan.doors_of(&room.plan.room_id).map(|d| d.line.middle().distance(p));
+    doors.reduce(f64::min).unwrap_or(0.0)
 }
 
 /// Returns all points; each can be reached.
@@ -45,13 +67,15 @@ pub(super) fn all(floor: &Floor, graph: &SceneGraph, rois: &[Roi]) -> Vec<Poi> {
         for &(dock, kind) in docks {
             let number = out.iter().filter(|p| p.kind == "dock").count() + 1;
             out.extend(
-                at_object(floor, room, (dock, kind)).map(|pose| poi(format!("dock_{number}"), "dock", room, pose)),
+                at_object(floor, room, (dock, kind)).map(|(_, pose)| poi(format!("dock_{number}"), "dock", room, pose)),
             );
         }
     }
     for room in floor.rooms.iter().filter(|r| r.is_for(RobotUse::Service) && !r.is_for(RobotUse::KeepOut)) {
-        let pose = match served(room) {
-            Some(&(object, kind)) => at_object(floor, room, (object, kind)),
+        let pose = match served(floor, room) {
+            Some(&(object, kind)) => at_object(floor, room, (object, kind)).map(|(_, pose)| pose),
+            // nobody takes anything over in the middle of a corridor
+            None if room.plan.circulation => None,
             None => in_the_middle(floor, room),
         };
         let id = format!("service_point_{}", room.plan.room_id);
@@ -72,16 +96,22 @@ fn poi(poi_id: String, kind: &str, room: &Room, pose: d3dgen_model::Pose) -> Poi
     Poi { poi_id, kind: kind.into(), room_id: room.plan.room_id.clone(), pose }
 }
 
-/// Returns where a robot stops at an object: in front of it, or beside a desk or table whose chairs take that floor.
-fn at_object(floor: &Floor, room: &Room, (object, kind): (&Placement, &ObjectType)) -> Option<d3dgen_model::Pose> {
-    let sides = if matches!(kind.shape, Shape::Desk | Shape::Table | Shape::RoundTable) { 4 } else { 1 };
-    let wanted = around(object, floor.radius + GAP_M).into_iter().take(sides).enumerate();
-    let spots = wanted.filter_map(|(side, p)| {
+/// Returns where a robot stops at an object: in front of it, or beside a desk or table whose chairs take that floor; and by
+/// how many quarters it stands to the left of the front.
+pub(super) fn at_object(
+    floor: &Floor,
+    room: &Room,
+    (object, kind): (&Placement, &ObjectType),
+) -> Option<(u8, d3dgen_model::Pose)> {
+    let seated = matches!(kind.shape, Shape::Desk | Shape::Table | Shape::RoundTable);
+    let wanted = around(object, floor.radius + GAP_M).into_iter().take(if seated { 4 } else { 1 });
+    let spots = (0..).zip(wanted).filter_map(|(side, p)| {
         let (off, spot) = floor.best_spot(room, p)?;
-        Some((off + if side == 0 { 0.0 } else { NOT_IN_FRONT_M }, spot))
+        let far = if seated { FROM_DOOR * door_distance(floor, room, spot) } else { 0.0 };
+        Some((off + far + if side == 0 { 0.0 } else { NOT_IN_FRONT_M }, side, spot))
     });
-    let (_, spot) = spots.min_by(|a, b| a.0.total_cmp(&b.0))?;
-    Some(looking_at(spot, Point::new(object.pose.x, object.pose.y)))
+    let (_, side, spot) = spots.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    Some((side, looking_at(spot, Point::new(object.pose.x, object.pose.y))))
 }
 
 fn in_the_middle(floor: &Floor, room: &Room) -> Option<d3dgen_model::Pose> {

@@ -1,5 +1,6 @@
 //! Robot zones: floor to be cleaned, floor to serve at, floor around docks, floor to keep out of.
 
+use d3dgen_knowledge::clearance::quarter;
 use d3dgen_model::domain::{Goods, RobotUse, Shape};
 use d3dgen_model::floorplan::Door;
 use d3dgen_model::geometry::to_mm;
@@ -8,8 +9,8 @@ use d3dgen_model::placements::Placement;
 use d3dgen_model::scenario::{Poi, Roi, RoiKind};
 use d3dgen_model::{Polygon, Rect};
 
-use super::floor::{Floor, Room, floor_in_front, swept};
-use super::points::served;
+use super::floor::{Floor, Room, floor_beside, floor_in_front, lane, swept};
+use super::points::{at_object, served};
 use super::tour::{self, Stop};
 
 /// Depth of the floor to serve at, m, and the least side of it where something takes a part.
@@ -43,10 +44,12 @@ pub(super) fn all(floor: &Floor) -> Vec<Roi> {
             whole(RoiKind::CleaningZone, "cleaning_zone", "low");
         }
         if room.is_for(RobotUse::Service)
-            && let Some((object, _)) = served(room)
-            && let Some(polygon) = clipped(room, &service_floor(floor, room, object, &buffers))
+            && let Some(&(object, kind)) = served(floor, room)
+            && let side = at_object(floor, room, (object, kind)).map_or(0, |(side, _)| side)
+            && let Some(polygon) = clipped(room, &service_floor(floor, room, (object, side), &buffers))
         {
-            let note = format!("in front of {}", object.placement_id);
+            let note = if side == 0 { "in front of" } else { "beside" };
+            let note = format!("{note} {}", object.placement_id);
             out.push(Roi::new(format!("service_zone_{id}"), RoiKind::ServiceZone, id, polygon, note));
         }
         for (dock, buffer) in &buffers {
@@ -100,9 +103,9 @@ fn buffers<'r>(floor: &'r Floor, room: &'r Room) -> impl Iterator<Item = (&'r Pl
     })
 }
 
-/// Returns the floor where robots serve at an object, without what stands there, the floor of docks, the swing of doors and
+/// Returns the floor where robots serve at an object, so many quarters left of its front, without what stands there, the floor of docks, the swing of doors and
 /// the way in from outside, where enough is left.
-fn service_floor(floor: &Floor, room: &Room, object: &Placement, buffers: &[(&Placement, Rect)]) -> Rect {
+fn service_floor(floor: &Floor, room: &Room, (object, side): (&Placement, u8), buffers: &[(&Placement, Rect)]) -> Rect {
     let together =
         |p: &Placement| p.placement_id == object.placement_id || p.group.is_some() && p.group == object.group;
     let standing = room.objects.iter().map(|(p, _)| *p).filter(|p| stops_robot(p) && p.support.is_none());
@@ -111,7 +114,7 @@ fn service_floor(floor: &Floor, room: &Room, object: &Placement, buffers: &[(&Pl
     let own = object.footprint().bounds().grown(TOUCH_M);
     let is_wide =
         |r: &Rect| r.width() >= LEAST_SERVICE_DEPTH_M - TOUCH_M && r.height() >= LEAST_SERVICE_DEPTH_M - TOUCH_M;
-    let mut left = floor_in_front(object, SERVICE_DEPTH_M, 0.0);
+    let mut left = floor_beside(object, quarter(object.pose.yaw_rad) + side, SERVICE_DEPTH_M, 0.0);
     let exits = floor.plan.doors_of(&room.plan.room_id).filter(|d| d.room_ids.len() == 1).map(inside);
     for taken in bodies.chain(buffers.iter().map(|(_, r)| *r)).chain(swings).chain(exits) {
         if !taken.overlaps(&left.grown(-TOUCH_M)) {
@@ -132,13 +135,7 @@ fn service_floor(floor: &Floor, room: &Room, object: &Placement, buffers: &[(&Pl
 
 /// Returns the floor inside a door out of the building, with as much outside.
 fn inside(door: &Door) -> Rect {
-    let (a, b) = (door.line.start, door.line.end);
-    let r = Rect::new(a.x.min(b.x), a.y.min(b.y), a.x.max(b.x), a.y.max(b.y));
-    let deep = INSIDE_EXIT_M + door.wall_thickness_m / 2.0;
-    match door.line.is_vertical() {
-        true => Rect { x0: r.x0 - deep, x1: r.x1 + deep, ..r },
-        false => Rect { y0: r.y0 - deep, y1: r.y1 + deep, ..r },
-    }
+    lane(door, INSIDE_EXIT_M + door.wall_thickness_m / 2.0)
 }
 
 /// Returns the largest part of a rectangle that lies on one straight piece of the room's net floor.

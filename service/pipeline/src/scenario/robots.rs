@@ -10,6 +10,7 @@ use d3dgen_model::{Point, Pose};
 
 use super::floor::{Floor, looking_at};
 use super::routes::Router;
+use super::staging::BRING_NOTHING;
 use super::tour::{self, Stop};
 
 /// Kind of robot that cleans.
@@ -119,7 +120,12 @@ fn of_trade<'p>(floor: &Floor, robot: &Robot, pois: &'p [Poi]) -> Vec<&'p Poi> {
     }
     let of_kinds = |kinds: &[&str]| pois.iter().filter(|p| kinds.contains(&p.kind.as_str())).collect::<Vec<&Poi>>();
     let known = [&[own.as_str()][..], &["service_point"], &["entrance", "waiting_bay"]];
-    let all: Vec<Vec<&Poi>> = known.into_iter().map(of_kinds).collect();
+    let mut all: Vec<Vec<&Poi>> = known.into_iter().map(of_kinds).collect();
+    // what brings clean things goes to none of the soiled ones, where it has anything else to do
+    let soiled = |p: &&Poi| floor.goods(&p.room_id) == Goods::Soiled;
+    if !BRING_NOTHING.contains(&robot.kind.as_str()) && robot.room_types.is_empty() {
+        all.iter_mut().filter(|found| !found.iter().all(soiled)).for_each(|found| found.retain(|p| !soiled(p)));
+    }
     // what the prompt keeps to some rooms visits these, where they have a point of any kind
     let kept = |p: &&Poi| robot.room_types.iter().any(|t| t == floor.room_type(&p.room_id));
     let only = all.iter().map(|found| found.iter().copied().filter(kept).collect::<Vec<&Poi>>());

@@ -45,7 +45,7 @@ pub(super) fn all(floor: &Floor) -> Vec<Roi> {
         let new: Vec<Rect> = crossings.into_iter().filter(|r| !known(r)).collect();
         let note = || String::from("where corridors cross");
         slow.extend(new.into_iter().map(|rect| Slow { room, rect, before: Vec::new(), note: note() }));
-        slow.extend(at_counter(room));
+        slow.extend(at_counter(floor, room));
         out.extend(slow.into_iter().enumerate().map(|(i, s)| s.into_roi(floor, i)));
     }
     out
@@ -142,12 +142,12 @@ fn crossings(room: &Room) -> Vec<Rect> {
 }
 
 /// Returns the floor where people stand at the counter of a room for visitors or staff.
-fn at_counter<'f>(room: &'f Room) -> Option<Slow<'f>> {
+fn at_counter<'f>(floor: &Floor, room: &'f Room) -> Option<Slow<'f>> {
     if !matches!(room.kind.zone, Zone::Public | Zone::Staff) {
         return None;
     }
     let (counter, _) =
-        served(room).filter(|(_, kind)| kind.shape == Shape::Counter && room.is_for(RobotUse::Service))?;
+        served(floor, room).filter(|(_, kind)| kind.shape == Shape::Counter && room.is_for(RobotUse::Service))?;
     let rect = clipped(room, &floor_in_front(counter, DEPTH_M, BESIDE_M))?.bounds();
     Some(Slow { room, rect, before: Vec::new(), note: format!("at {}", counter.placement_id) })
 }

@@ -12,7 +12,7 @@ use d3dgen_model::scenario::{Roi, RoiKind};
 use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::{Point, Polygon, Rect};
 
-use super::floor::{Floor, Room, floor_in_front};
+use super::floor::{Floor, Room, floor_in_front, lane};
 
 /// Floor for each robot, m^2 (rule `staging_zone_area_per_robot`).
 const PER_ROBOT_M2: f64 = 2.5;
@@ -40,7 +40,7 @@ const APART: usize = 16;
 /// Cells of a room's bounds from which on fewer of them are looked at.
 const LARGE: usize = 200_000;
 /// Kinds of robots that bring nothing.
-const BRING_NOTHING: [&str; 2] = ["cleaning", "disinfection"];
+pub(super) const BRING_NOTHING: [&str; 2] = ["cleaning", "disinfection"];
 
 /// Returns a staging area for each unit of the storey, or for all of it, where there is floor for one.
 pub(super) fn all(floor: &Floor, graph: &SceneGraph, rois: &[Roi]) -> Vec<Roi> {
@@ -123,7 +123,7 @@ impl Yard {
     fn new(floor: &Floor, room: &Room, rois: &[Roi]) -> Self {
         let mut map = room.quiet.clone();
         let id = &room.plan.room_id;
-        let lanes = floor.plan.doors_of(id).map(lane);
+        let lanes = floor.plan.doors_of(id).map(|d| lane(d, BEFORE_DOOR_M));
         let fronts = room.objects.iter().filter(|(p, _)| p.support.is_none() && stops_robot(p));
         let fronts = fronts.map(|(p, kind)| floor_in_front(p, kind.clearance_front_m, 0.0));
         let rugs = room.objects.iter().map(|(p, _)| *p).filter(|p| p.mount == Mount::Floor && !stops_robot(p));
@@ -241,14 +241,4 @@ fn on_floor(floor: &Floor, room: &Room, [i, j, w, h]: [usize; 4]) -> Rect {
     let (i, j) = (i + room.corner.0 as usize, j + room.corner.1 as usize);
     let (a, b) = (floor.occupancy.frame.center(i, j), floor.occupancy.frame.center(i + w - 1, j + h - 1));
     Rect { x0: to_mm(a.x), y0: to_mm(a.y), x1: to_mm(b.x), y1: to_mm(b.y) }
-}
-
-/// Returns the floor on both sides of a door that people come through on.
-fn lane(door: &Door) -> Rect {
-    let (a, b) = (door.line.start, door.line.end);
-    let r = Rect::new(a.x.min(b.x), a.y.min(b.y), a.x.max(b.x), a.y.max(b.y));
-    match door.line.is_vertical() {
-        true => Rect { x0: r.x0 - BEFORE_DOOR_M, x1: r.x1 + BEFORE_DOOR_M, ..r },
-        false => Rect { y0: r.y0 - BEFORE_DOOR_M, y1: r.y1 + BEFORE_DOOR_M, ..r },
-    }
 }

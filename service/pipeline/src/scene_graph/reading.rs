@@ -995,6 +995,8 @@ fn add_main_room(
     let size = |id: &str| domain.room_type_or_generic(id).area_m2.target;
     let largest = wishes.wishes.iter().map(|w| size(&w.room_type)).fold(0.0, f64::max);
     let heads = people.occupancy.staff.or(people.occupancy.desks).is_some() && works(main);
+    // desks elsewhere stand for the office of the staff, not for the hall of a warehouse
+    let placed = placed && works(main);
     let needed = named == Some(main.room_type.as_str())
         || !placed && (heads || size(&main.room_type) > MAIN_ROOM_SHARE * largest);
     needed.then(|| {

@@ -145,3 +145,36 @@ fn every_storey_where_people_work_has_toilets() {
         }
     }
 }
+
+#[test]
+fn who_sits_back_to_back_has_floor_to_get_up_on() {
+    let (mut backs, mut desks) = (0, 0);
+    for prompt in
+        ["office with 8 rooms and a team office", "office with 10 rooms in Canada", "two team offices, each for 5"]
+    {
+        for world in worlds(prompt, 5) {
+            let here: Vec<_> = world.placements.placements.iter().filter(|p| p.object == "desk").collect();
+            desks += here.len();
+            for (i, a) in here.iter().enumerate() {
+                for b in &here[i + 1..] {
+                    let (sin, cos) = a.pose.yaw_rad.sin_cos();
+                    let (dx, dy) = (b.pose.x - a.pose.x, b.pose.y - a.pose.y);
+                    // ahead of a desk is who works at it
+                    let (ahead, aside) = (dx * cos + dy * sin, (dy * cos - dx * sin).abs());
+                    let facing = (a.pose.yaw_rad - b.pose.yaw_rad).cos() < -0.99;
+                    let between = ahead - (a.size_m[1] + b.size_m[1]) / 2.0;
+                    if a.room_id == b.room_id && facing && aside < 1.0 && (0.1..3.0).contains(&between) {
+                        backs += 1;
+                        assert!(
+                            between >= 1.79,
+                            "{prompt}: {between:.2} m between {} and {}",
+                            a.placement_id,
+                            b.placement_id
+                        );
+                    }
+                }
+            }
+        }
+    }
+    assert!(backs >= 10 && desks > 100, "{backs} pairs of {desks} desks sit back to back");
+}

@@ -181,14 +181,17 @@ fn leaf(page: &mut Page, frame: &Frame, o: &Opening, along: f64, sign: f64, leng
     page.path("dl", Path::new().polygon(&[at(0.0, 0.0), at(0.0, length), at(LEAF_M, length), at(LEAF_M, 0.0)]));
 }
 
-/// A panel half drawn back beside the opening, where the wall goes on for as long as the panel is; two panels where that is
-/// so on neither side but half of it on both.
+/// A panel half drawn back along the face of the wall that goes on for longer beside the opening; two panels where none is
+/// as long as the opening but both parts of a face are half as long.
 fn sliding(page: &mut Page, frame: &Frame, plan: &Floorplan, o: &Opening) {
     for across in [-o.half, o.half] {
         let ends = [0.0, o.length].map(|along| frame.map(o.at(along, across)));
         page.path("da", Path::new().segment(ends[0], ends[1]));
     }
-    let [before, after] = walls_beside(plan, o);
+    let faces = [1.0, -1.0].map(|side| (side, walls_beside(plan, o, side)));
+    let longest = |[before, after]: [f64; 2]| before.max(after).min(o.length);
+    let [inner, outer] = faces;
+    let (side, [before, after]) = if longest(outer.1) > longest(inner.1) + TOLERANCE_M { outer } else { inner };
     let panels: &[[f64; 2]] = if o.length > GATE_M {
         // a gate goes up, not aside
         &[[0.0, 1.0]]
@@ -199,34 +202,41 @@ fn sliding(page: &mut Page, frame: &Frame, plan: &Floorplan, o: &Opening) {
     } else {
         &[[0.4, 1.35]]
     };
+    let face = side * o.half;
     for panel in panels {
-        page.path("dl", o.quad(panel.map(|share| share * o.length), [-LEAF_M / 2.0, LEAF_M / 2.0], frame));
+        page.path("dl", o.quad(panel.map(|share| share * o.length), [face, face + side * LEAF_M], frame));
     }
 }
 
-/// Returns how far the wall goes on before and after an opening, m: to the next opening or to a wall that meets it.
-fn walls_beside(plan: &Floorplan, o: &Opening) -> [f64; 2] {
+/// Returns how far a face of the wall (1: the one `o` looks to, -1: the other) goes on before and after an opening, m: to
+/// the next opening or to a wall that meets that face.
+fn walls_beside(plan: &Floorplan, o: &Opening, side: f64) -> [f64; 2] {
+    let offset = |p: Point| (p.x - o.line.start.x, p.y - o.line.start.y);
+    let dot = |(x, y): (f64, f64), (dx, dy): (f64, f64)| x * dx + y * dy;
+    let (along, across) = (|p: Point| dot(offset(p), o.t), |p: Point| dot(offset(p), o.n) * side);
     let upright = o.line.is_vertical();
-    let coordinates = |p: Point| if upright { (p.y, p.x) } else { (p.x, p.y) };
-    let (direction, length) = (coordinates(o.line.end).0 - coordinates(o.line.start).0, o.length);
-    let (start, own) = coordinates(o.line.start);
-    // along the opening from its start, as the panel is drawn
-    let along = |p: Point| (coordinates(p).0 - start) * direction.signum();
     let openings = plan.doors.iter().map(|d| d.line).chain(plan.windows.iter().map(|w| w.line));
-    let in_line = |line: &Segment| line.is_vertical() == upright && (coordinates(line.start).1 - own).abs() < o.half;
+    let in_line = |line: &Segment| line.is_vertical() == upright && across(line.start).abs() < o.half;
     let next = openings.filter(in_line).flat_map(|line| [line.start, line.end]).map(|p| (along(p), 0.0));
     let meets = |w: &&Wall| {
-        let (a, b) = (coordinates(w.line.start).1, coordinates(w.line.end).1);
-        w.line.is_vertical() != upright && a.min(b) < own + 2.0 * o.half && a.max(b) > own - 2.0 * o.half
+        let (a, b) = (across(w.line.start), across(w.line.end));
+        w.line.is_vertical() != upright && a.min(b) < 2.0 * o.half && a.max(b) > o.half + TOLERANCE_M
     };
     let crossing = plan.walls.iter().filter(meets).map(|w| (along(w.line.start), w.thickness_m / 2.0));
+    // where the wall itself ends
+    let wall = plan.walls.iter().filter(|w| {
+        let ends = [along(w.line.start), along(w.line.end)];
+        let spans = ends[0].min(ends[1]) < TOLERANCE_M && ends[0].max(ends[1]) > o.length - TOLERANCE_M;
+        w.line.is_vertical() == upright && across(w.line.start).abs() < o.half && spans
+    });
+    let ends = wall.flat_map(|w| [w.line.start, w.line.end]).map(|p| (along(p), 0.0));
     let mut free = [f64::MAX; 2];
-    for (at, half) in next.chain(crossing) {
+    for (at, half) in next.chain(crossing).chain(ends) {
         if at < TOLERANCE_M {
             free[0] = free[0].min(if at > -TOLERANCE_M { f64::MAX } else { -at - half });
         }
-        if at > length - TOLERANCE_M {
-            free[1] = free[1].min(if at < length + TOLERANCE_M { f64::MAX } else { at - length - half });
+        if at > o.length - TOLERANCE_M {
+            free[1] = free[1].min(if at < o.length + TOLERANCE_M { f64::MAX } else { at - o.length - half });
         }
     }
     free
@@ -369,4 +379,27 @@ fn dimension(page: &mut Page, ends: [(f64, f64); 2], (dx, dy): (f64, f64), size:
     let (px, py) = (uy.abs() * over, ux.abs() * over);
     page.path("dm", lines.segment((a.0 - px, a.1 - py), (b.0 + px, b.1 + py)));
     page.path("dt", ticks);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sample;
+
+    #[test]
+    fn a_panel_slides_along_the_face_that_no_other_wall_meets() {
+        let mut plan = sample::world().floorplan;
+        let door = plan.doors.iter().find(|d| d.kind == DoorKind::Sliding).unwrap().clone();
+        let (start, end) = (door.line.start, door.line.end);
+        let side = |plan: &Floorplan, side| walls_beside(plan, &opening_of(&door, plan), side);
+        let before = [1.0, -1.0].map(|face| side(&plan, face));
+        // a partition meets one face right behind the door
+        let north = opening_of(&door, &plan).n.1 > 0.0;
+        let line = Segment { start: Point::new(end.x + 0.2, start.y - 2.0), end: Point::new(end.x + 0.2, start.y) };
+        let wall = Wall { line, ..plan.walls[0].clone() };
+        plan.walls.push(wall);
+        let met = if north { -1.0 } else { 1.0 };
+        assert!(side(&plan, met)[1] < 0.2, "{:?}", side(&plan, met));
+        assert_eq!(side(&plan, -met), before[if north { 0 } else { 1 }], "the other face goes on as before");
+    }
 }

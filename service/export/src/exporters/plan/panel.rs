@@ -341,7 +341,7 @@ impl Swatch {
             }
             Self::Dock => robots::dock(page, middle, 9.5),
             Self::Start => robots::robot(page, middle, (1.0, 0.0), 9.5),
-            Self::Goal => robots::goal(page, middle, 1, 9.0),
+            Self::Goal => robots::goal(page, middle, "1", 9.0),
         }
     }
 }

@@ -102,11 +102,11 @@ pub(super) fn marks(page: &mut Page, frame: &Frame, scenario: &Scenario, size: f
         dock(page, at, 0.75 * size);
         around(at, size);
     }
-    for robot in &scenario.robots {
+    for (robot, letter) in scenario.robots.iter().zip(letters(scenario)) {
         for (i, id) in robot.goals.iter().enumerate() {
             let Some(poi) = scenario.pois.iter().find(|p| &p.poi_id == id && p.kind != "dock") else { continue };
             let at = frame.map(super::at(&poi.pose));
-            goal(page, at, i + 1, 0.62 * size);
+            goal(page, at, &format!("{letter}{}", i + 1), 0.62 * size);
             around(at, size);
         }
         let radius = (robot.robot.radius_m * frame.scale).max(0.5 * size);
@@ -124,11 +124,17 @@ pub(super) fn dock(page: &mut Page, (x, y): (f64, f64), r: f64) {
     page.path("wt", Path::new().polygon(&bolt.map(|(a, b)| (x + a * r, y + b * r))));
 }
 
-/// A ring with the goal's number.
-pub(super) fn goal(page: &mut Page, (x, y): (f64, f64), number: usize, r: f64) {
+/// Returns what the stops of each robot are called by before their number: a letter where there are several robots.
+fn letters(scenario: &Scenario) -> impl Iterator<Item = String> {
+    let several = scenario.robots.len() > 1;
+    ('A'..='Z').cycle().map(move |letter| if several { letter.to_string() } else { String::new() })
+}
+
+/// A ring with the goal's name.
+pub(super) fn goal(page: &mut Page, (x, y): (f64, f64), name: &str, r: f64) {
     page.path("ro", Path::new().circle((x, y), r));
-    let size = if number < 10 { 1.25 * r } else { 1.0 * r };
-    page.text(&number.to_string(), (x, y + 0.36 * size), size, MARK, Anchor::Middle);
+    let size = [1.25, 1.0, 0.8].get(name.len().saturating_sub(1)).copied().unwrap_or(0.65) * r;
+    page.text(name, (x, y + 0.36 * size), size, MARK, Anchor::Middle);
 }
 
 /// A robot as large as it is, with its heading.

@@ -17,6 +17,8 @@ use crate::placement::unit::Unit;
 const AISLE: i32 = 900;
 /// Floor by which two who sit back to back let a third pass, mm.
 const PASSAGE: i32 = 250;
+/// Floor of the two behind them that those who sit back to back may share, mm.
+const SHARED_MOST: i32 = 200;
 /// Free floor between tables in a row where there is room, mm.
 const TABLES_APART: i32 = 500;
 /// Steps away from a place on the ceiling that is taken, mm.
@@ -34,7 +36,7 @@ const FOOT_GAPS: [i32; 4] = [300, 450, 150, 50];
 /// What rows of desks lose whose users share all of the floor behind them.
 const SHARED: f64 = 3.0;
 /// What rows of desks lose all of whose windows are before or behind the screens.
-const GLARE: f64 = 1.0;
+const GLARE: f64 = 2.5;
 /// What rows lose past neither end of which people get as through an aisle.
 const NARROW_ENDS: f64 = 1.0;
 /// What rows of desks lose all of which have open floor behind their screens, before and after places are looked at.
@@ -338,7 +340,10 @@ fn plans(state: &State, unit: &Unit, task: &Task, focus: Option<u8>, terms: &Ter
             }
             // whoever sits back to back has floor of one's own where there is room
             let own = if paired && shape == Shape::Desk { 2 * need + PASSAGE } else { 0 };
-            let gaps: Vec<i32> = gaps.iter().copied().chain((own > 0).then_some(own)).collect();
+            // and never shares so much of it that neither could get up while the other sits there
+            let least = own - PASSAGE - SHARED_MOST;
+            let gaps = gaps.iter().copied().filter(|g| *g >= least).chain((own > 0).then_some(own));
+            let gaps: Vec<i32> = gaps.collect();
             for (&gap_u, &gap_v) in gaps.iter().flat_map(|u| sides.iter().map(move |v| (u, v))) {
                 for run in [i32::MAX, 4, 3, 2] {
                     for columns in 1..=count {
