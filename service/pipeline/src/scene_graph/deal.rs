@@ -312,7 +312,8 @@ fn clusters<'p>(
         let unknown = rooms.iter().any(|&r| {
             planned[r].kind.id == GENERIC_ROOM_TYPE && planned[r].room_type != GENERIC_ROOM_TYPE && planned[r].requested
         });
-        let likes = if has(&rules.ground_room_types) || has(entrance) || unknown && is_dwelling(reading.program) {
+        let by_entrance = has(&reading.wishes.by_entrance);
+        let likes = if has(&rules.ground_room_types) || has(entrance) || by_entrance || unknown && is_dwelling(reading.program) {
             Likes::Ground
         } else if has(&rules.each_level_room_types) && rooms.len() == 1 {
             Likes::Each

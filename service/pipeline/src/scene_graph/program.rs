@@ -185,6 +185,7 @@ pub(super) fn finish<'a>(reading: &mut Reading<'a>, mut rooms: Vec<Planned<'a>>)
     workers::seat_guests(reading, &mut rooms);
     seat_waiting(reading, &mut rooms);
     hang_on_hosts(reading, &mut rooms);
+    share_last_bathroom(reading, &mut rooms);
     state_additions(reading, &rooms);
     rooms
 }
@@ -988,6 +989,24 @@ fn hang_on_hosts(reading: &mut Reading, rooms: &mut [Planned]) {
         }
         rooms[i].host = host;
     }
+}
+
+/// Lets the only bathroom of a home open to its hall where those of other bedrooms would have to go through one to it.
+fn share_last_bathroom(reading: &mut Reading, rooms: &mut [Planned]) {
+    if !is_dwelling(reading.program) || reading.single {
+        return;
+    }
+    let bathes = |r: &Planned| reading.wet.is_bathroom(r.kind) || r.room_type == words().dwelling.shower;
+    let sleeps = |r: &Planned| r.kind.zone == Zone::Night && sleeps(reading.domain, r.kind).is_some();
+    let own = |i: usize| rooms.iter().any(|r| bathes(r) && r.host == Some(i));
+    let without = (0..rooms.len()).filter(|&i| sleeps(&rooms[i]) && !own(i)).count();
+    let shared = rooms.iter().any(|r| bathes(r) && r.host.is_none());
+    let last = rooms.iter().rposition(|r| bathes(r) && r.host.is_some() && r.kind.access != Access::Host);
+    let Some(last) = last.filter(|_| without > 0 && !shared) else { return };
+    rooms[last].host = None;
+    let label = rooms[last].kind.label.to_lowercase();
+    let message = format!("no other {label} serves all bedrooms; it opens to the hall and not into one of them");
+    reading.assumptions.push(note("shared_bathroom", message));
 }
 
 /// States which rooms the prompt does not name.

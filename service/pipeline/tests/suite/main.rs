@@ -10,6 +10,7 @@ mod edit;
 mod edit_storeys;
 mod homes;
 mod homes_read;
+mod households;
 mod hospitals;
 mod large;
 mod offices;
