@@ -24,7 +24,8 @@ pub(super) fn all(floor: &mut Floor, graph: &SceneGraph) -> Vec<Agent> {
     let roles: Vec<&Role> = domain.roles.iter().filter(walkable).collect();
     // those who live there are at home
     let told = graph.occupancy.residents.map(|n| n as usize);
-    let wanted = told.unwrap_or(floor.rooms.len() / ROOMS_PER_PERSON).clamp(PEOPLE.0, PEOPLE.1);
+    let usual = || (floor.rooms.len() / ROOMS_PER_PERSON).clamp(PEOPLE.0, PEOPLE.1);
+    let wanted = told.map_or_else(usual, |n| n.min(PEOPLE.1));
     let mut out: Vec<Agent> = Vec::new();
     for role in roles.iter().cycle().take(if roles.is_empty() { 0 } else { wanted }) {
         let number = out.iter().filter(|a| a.role == role.id).count() + 1;

@@ -238,6 +238,21 @@ fn settle(
 fn fixed_levels(reading: &mut Reading, planned: &[Planned], levels: &[i32]) -> Vec<Option<i32>> {
     let mut fixed: Vec<Option<i32>> = vec![None; planned.len()];
     let mut short = Vec::new();
+    // "on the second a bedroom with its own bathroom": that bathroom is entered from the bedroom there
+    let wants = |room_type: &str, n: i32| {
+        let mut wanted = reading.storeys.wanted.iter();
+        wanted.any(|w| w.room_type == room_type && w.at == Where::Level(n))
+    };
+    for wanted in &reading.storeys.wanted {
+        let Where::Level(n) = wanted.at else { continue };
+        let hung = |i: &usize| planned[*i].room_type == wanted.room_type && fixed[*i].is_none();
+        let guests: Vec<usize> = (0..planned.len()).filter(hung).take(wanted.count as usize).collect();
+        for i in guests {
+            if let Some(host) = planned[i].host.filter(|&h| fixed[h].is_none() && wants(&planned[h].room_type, n)) {
+                (fixed[i], fixed[host]) = (Some(n), Some(n));
+            }
+        }
+    }
     for wanted in &reading.storeys.wanted {
         let upper: Vec<i32> = levels.iter().copied().filter(|l| *l > 0).collect();
         let targets: Vec<i32> = match wanted.at {
@@ -248,6 +263,8 @@ fn fixed_levels(reading: &mut Reading, planned: &[Planned], levels: &[i32]) -> V
         };
         let each = matches!(wanted.at, Where::Each);
         let count = if each { wanted.count as usize * targets.len() } else { wanted.count as usize };
+        let placed = |i: &usize| planned[*i].room_type == wanted.room_type && fixed[*i].is_some_and(|l| targets == [l]);
+        let count = count.saturating_sub((0..planned.len()).filter(placed).count());
         let open: Vec<usize> =
             (0..planned.len()).filter(|&i| planned[i].room_type == wanted.room_type && fixed[i].is_none()).collect();
         if open.len() < count {

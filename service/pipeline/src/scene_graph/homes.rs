@@ -24,6 +24,19 @@ fn night(domain: &Domain, m: &Mention) -> bool {
     m.room_type().and_then(|id| domain.room_type(id)).is_some_and(|k| k.zone == Zone::Night)
 }
 
+/// Lets no bathroom that is called shared belong to a bedroom: "two bedrooms with a shared bathroom" have one.
+pub(super) fn share_bathrooms(tokens: &[Token], mentions: &[Mention], domain: &Domain, spoken: &[&Spoken], said: &mut Said) {
+    let tagged = |i: usize| spoken.iter().find_map(|s| s.tag_at(tokens, i, Tag::SharedWords));
+    let shared = |m: usize| {
+        let wet = mentions[m].room_type().and_then(|id| domain.room_type(id)).is_some_and(|k| k.wet);
+        let span = mentions[m].span;
+        let before = span.start.checked_sub(1).and_then(tagged) == Some(span.start);
+        wet && (before || span.end < tokens.len() && tagged(span.end).is_some())
+    };
+    said.relations.retain(|r| !(r.belongs && shared(r.subject)));
+    said.each.retain(|e| !shared(e.0));
+}
+
 /// Tells the bathrooms that belong to a bedroom from those for all, where a prompt names both: "a bedroom with its own
 /// bathroom, two bedrooms, a bathroom". Of "two bathrooms, the main bedroom has its own" one is meant.
 pub(super) fn name_ensuites(mentions: &mut [Mention], said: &Said, domain: &Domain) {
@@ -225,7 +238,15 @@ pub(super) fn house(reading: &Reading, planned: &[Planned], rooms: &mut [GraphRo
     }
     // parents first, then those who have a room alone, then two in every double room that is left
     let adults = residents.saturating_sub(reading.children).min(2);
-    if let Some(k) = free.iter().position(|(_, beds)| *beds >= 2).filter(|_| adults > 0) {
+    // friends have a room each where there are enough
+    let pair = reading.pair || residents as usize > free.len();
+    let adults = if pair { adults } else { adults.min(1) };
+    // rather the bedroom with a bathroom of its own
+    let double = |own: bool| {
+        let has = |i: usize| !own || planned.iter().any(|r| r.host == Some(i) && r.kind.wet);
+        free.iter().position(|(i, beds)| *beds >= 2 && has(*i))
+    };
+    if let Some(k) = double(true).or_else(|| double(false)).filter(|_| adults > 0) {
         rooms[free.remove(k).0].occupants = Some(adults);
         left = left.saturating_sub(adults);
     }

@@ -144,7 +144,9 @@ pub(super) fn of_bedrooms(
         let (host, m) = (&mentions[k - 1], &mentions[k]);
         let gap = host.span.end..m.from.min(m.span.start);
         let of_host = gap.clone().any(|i| tagged(i, Tag::Starts)) && !gap.clone().any(|i| tokens[i].is_mark());
-        if sleeps(host) && m.room_type().is_some() && of_host && is_thing(m.span) {
+        // "a big wardrobe in the entrance": what is a room elsewhere is a thing at home
+        let strange = m.room_type().is_some_and(|id| domain.room_type(id).is_none());
+        if m.room_type().is_some() && (sleeps(host) && of_host || strange) && is_thing(m.span) {
             things.push(k);
         }
     }

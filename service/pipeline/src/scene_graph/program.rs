@@ -304,6 +304,13 @@ pub(super) fn is_counted(reading: &Reading, room_type: &str) -> bool {
 fn make_room_for_things(reading: &Reading, rooms: &mut [Planned]) {
     let d = &words().dwelling;
     let larger = |t: &&Thing| t.object == d.own_desk || t.object == d.baby_bed;
+    // a wardrobe needs floor before it that an entrance hall of the usual size has for the door
+    let halls = &reading.domain.circulation.entrance_room_types;
+    let stores = |t: &&Thing| reading.domain.object(&t.object).is_some_and(|o| o.shape == Shape::Cabinet);
+    for thing in reading.objects.iter().filter(stores) {
+        let hall = |r: &&mut Planned| halls.contains(&r.room_type) && thing.room_type.as_deref() == Some(&r.room_type);
+        rooms.iter_mut().filter(hall).take(1).for_each(|r| r.size = r.size.or(Some(HALL_WITH_WARDROBE)));
+    }
     for thing in reading.objects.iter().filter(larger).filter(|_| is_dwelling(reading.program)) {
         let asked = |r: &&mut Planned| {
             r.kind.zone == Zone::Night && thing.room_type.as_deref() == Some(&r.room_type) && r.area_m2.is_none()
@@ -312,6 +319,9 @@ fn make_room_for_things(reading: &Reading, rooms: &mut [Planned]) {
         rooms.iter_mut().filter(asked).take(count).for_each(|r| r.size = r.size.or(Some(WITH_THING)));
     }
 }
+
+/// Factor on the area of an entrance hall with a wardrobe in it.
+const HALL_WITH_WARDROBE: f64 = 1.35;
 
 /// Factor on the area of a bedroom with a desk or a cot in it.
 const WITH_THING: f64 = 1.12;

@@ -90,6 +90,8 @@ pub(super) struct Reading<'a> {
     pub residents: Option<u32>,
     /// True when all of them have a room of their own.
     pub each_alone: bool,
+    /// True where two of them are a couple.
+    pub pair: bool,
     pub accessible: bool,
     pub style: Style,
     pub robots: Vec<Robot>,
@@ -220,6 +222,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     // "cleaning robot" and "wheelchair users" name no object
     let mut not_things = machines.spans.clone();
     not_things.extend(said_styles.iter().map(|s| s.span));
+    not_things.extend(nooks.iter().map(|n| n.span));
     not_things.extend(access_wishes(&tokens, &numbers, &spoken));
     let names_room = |i: usize| vocabulary.names_room(&tokens, i, &numbers, &spoken);
     let compounds = compounds::find(&tokens, prompt, domain, &spoken, names_room, |span| {
@@ -341,6 +344,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     compounds::relate(&compounds, &mentions, domain, &mut said);
     compounds::open_belongings(&tokens, &mentions, domain, &spoken, &mut said);
     if lives {
+        homes::share_bathrooms(&tokens, &mentions, domain, &spoken, &mut said);
         homes::name_ensuites(&mut mentions, &said, domain);
     }
     let arranged = said.relations.iter().any(|r| !r.belongs);
@@ -568,6 +572,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         occupancy: people.occupancy,
         residents: people.residents,
         children: people.children,
+        pair: people.pair,
         each_alone,
         accessible: says(Tag::Accessible) || lives && says(Tag::Frail),
         robots,
@@ -750,6 +755,8 @@ struct People {
     occupancy: Occupancy,
     residents: Option<u32>,
     children: u32,
+    /// True where two are a couple.
+    pair: bool,
 }
 
 impl People {
@@ -784,7 +791,7 @@ impl People {
             Some(n) => occupancy.visitors = occupancy.visitors.or(Some(n)),
             None => {}
         }
-        Self { occupancy, residents, children: 0 }
+        Self { occupancy, residents, children: 0, pair: false }
     }
 
     /// Counts those who share a home: "couple", "family of five", "two adults and three children".
@@ -802,11 +809,19 @@ impl People {
             u32::try_from(counted).ok().filter(|n| *n > 0)
         };
         let (adults, children) = (sum(Tag::Adults), sum(Tag::Children));
+        // "a couple with one child": the singular is no number of visitors
+        let one = |i: usize| {
+            let inside = mentions.iter().any(|m| matches!(m.what, What::Room(_)) && m.span.contains(i));
+            let article = i.checked_sub(1).is_some_and(|k| numbers.iter().any(|n| n.span.contains(k) && n.value == 1.0));
+            article && !inside && spoken.iter().any(|s| s.tag_at(tokens, i, Tag::Children).is_some())
+        };
+        let children = children.or_else(|| (0..tokens.len()).any(one).then_some(1));
         if children.or(adults).is_some() {
             self.occupancy.visitors = None;
         }
         let household = dwelling::household(tokens, numbers, spoken, children);
         self.children = children.unwrap_or(0);
+        self.pair = household.is_some_and(|n| n > 1) || self.children > 0;
         self.residents = adults.zip(children).map(|(a, c)| a + c).or(self.residents).or(adults).or(household);
     }
 }

@@ -155,6 +155,8 @@ pub(super) enum Tag {
     Frail,
     /// What a robot does where it has nothing to do: "waits".
     Waits,
+    /// Rooms that several have together: "shared bathroom".
+    SharedWords,
     /// Where one sleeps in a room that is for more: "sleeping area", "coin nuit".
     SleepingPlaces,
 }
