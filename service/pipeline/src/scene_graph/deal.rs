@@ -243,6 +243,7 @@ fn fixed_levels(reading: &mut Reading, planned: &[Planned], levels: &[i32]) -> V
         let mut wanted = reading.storeys.wanted.iter();
         wanted.any(|w| w.room_type == room_type && w.at == Where::Level(n))
     };
+    let mut ahead: Vec<usize> = Vec::new();
     for wanted in &reading.storeys.wanted {
         let Where::Level(n) = wanted.at else { continue };
         let hung = |i: &usize| planned[*i].room_type == wanted.room_type && fixed[*i].is_none();
@@ -250,6 +251,7 @@ fn fixed_levels(reading: &mut Reading, planned: &[Planned], levels: &[i32]) -> V
         for i in guests {
             if let Some(host) = planned[i].host.filter(|&h| fixed[h].is_none() && wants(&planned[h].room_type, n)) {
                 (fixed[i], fixed[host]) = (Some(n), Some(n));
+                ahead.extend([i, host]);
             }
         }
     }
@@ -263,8 +265,13 @@ fn fixed_levels(reading: &mut Reading, planned: &[Planned], levels: &[i32]) -> V
         };
         let each = matches!(wanted.at, Where::Each);
         let count = if each { wanted.count as usize * targets.len() } else { wanted.count as usize };
-        let placed = |i: &usize| planned[*i].room_type == wanted.room_type && fixed[*i].is_some_and(|l| targets == [l]);
-        let count = count.saturating_sub((0..planned.len()).filter(placed).count());
+        let mut rest = count;
+        ahead.retain(|&i| {
+            let here = rest > 0 && planned[i].room_type == wanted.room_type && fixed[i].is_some_and(|l| targets == [l]);
+            rest -= usize::from(here);
+            !here
+        });
+        let count = rest;
         let open: Vec<usize> =
             (0..planned.len()).filter(|&i| planned[i].room_type == wanted.room_type && fixed[i].is_none()).collect();
         if open.len() < count {

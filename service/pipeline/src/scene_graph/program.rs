@@ -18,6 +18,7 @@ use super::seated;
 use super::seats;
 use super::spread;
 use super::stations;
+use super::storeys::Where;
 use super::units;
 use super::vital;
 use super::wishes::{CHARGING, Pair, PerHost, Wish};
@@ -949,8 +950,16 @@ fn hang_on_hosts(reading: &mut Reading, rooms: &mut [Planned]) {
         !of(&p.a) && rules.any(|r| r.a == p.a && r.b == p.b)
     };
     let pairs: Vec<Pair> = reading.wishes.pairs.iter().filter(|p| p.belongs && !beside(p)).cloned().collect();
+    // the only storey that the prompt puts rooms of a type on
+    let storey = |id: &str| {
+        let mut on = reading.storeys.wanted.iter().filter(|w| w.room_type == id).map(|w| w.at);
+        on.next().filter(|_| on.next().is_none())
+    };
+    let storeys: Vec<Option<Where>> = rooms.iter().map(|r| storey(&r.room_type)).collect();
     for i in 0..rooms.len() {
         let room = &rooms[i];
+        // "on the second floor a terrace": not that of the living room below
+        let elsewhere = |h: usize| storeys[i].is_some_and(|at| storeys[h].is_some_and(|other| other != at));
         let hosted = room.kind.access == Access::Host;
         // the closet of a suite is entered from its bedroom, not through the bathroom that the suite has too
         let through_bath = |p: &&Pair| {
@@ -978,9 +987,10 @@ fn hang_on_hosts(reading: &mut Reading, rooms: &mut [Planned]) {
         // the usual host first: a terrace lies before the living room
         let rank = |h: &Planned| room.kind.hosts.iter().position(|k| *k == h.room_type);
         let candidates = |test: &dyn Fn(&Planned) -> bool| {
-            (0..rooms.len()).filter(|&h| h != i && test(&rooms[h]) && rooms[h].host != Some(i)).min_by_key(|&h| {
-                let elsewhere = rooms[h].unit != room.unit;
-                (elsewhere, guests(h, rooms), rank(&rooms[h]), usize::from(rooms[h].host.is_some()), h)
+            let free = |h: &usize| *h != i && test(&rooms[*h]) && rooms[*h].host != Some(i) && !elsewhere(*h);
+            (0..rooms.len()).filter(free).min_by_key(|&h| {
+                let apart = rooms[h].unit != room.unit;
+                (apart, guests(h, rooms), rank(&rooms[h]), usize::from(rooms[h].host.is_some()), h)
             })
         };
         // en suites beyond those of the rooms that they are told of go to the others that have none
