@@ -30,8 +30,8 @@ pub(super) fn all(
         for number in 0..robot.count as usize {
             let known = out.iter().filter(|t| t.robot.kind == robot.kind).count();
             let robot_id = format!("{}_robot_{}", robot.kind, known + 1);
-            let dock =
-                own_dock(floor, graph, robot, &mut docks).or_else(|| all_docks.get(number % all_docks.len().max(1)).copied());
+            let dock = own_dock(floor, graph, robot, &mut docks)
+                .or_else(|| all_docks.get(number % all_docks.len().max(1)).copied());
             let Some(start) = start(floor, pois, dock, &out) else { continue };
             floor.take(Point::new(start.x, start.y), robot.radius_m);
             out.push(RobotTask {

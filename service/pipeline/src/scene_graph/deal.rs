@@ -337,19 +337,21 @@ fn clusters<'p>(
             planned[r].kind.id == GENERIC_ROOM_TYPE && planned[r].room_type != GENERIC_ROOM_TYPE && planned[r].requested
         });
         let by_entrance = has(&reading.wishes.by_entrance);
-        let likes = if has(&rules.ground_room_types) || has(entrance) || by_entrance || unknown && is_dwelling(reading.program) {
-            Likes::Ground
-        } else if has(&rules.each_level_room_types) && rooms.len() == 1 {
-            Likes::Each
-        } else if rules.upper_room_types.contains(&planned[main].room_type) {
-            Likes::Upper
-        } else {
-            match planned[main].kind.zone {
-                Zone::Public => Likes::Ground,
-                Zone::Night => Likes::Upper,
-                _ => Likes::Any,
-            }
-        };
+        let likes =
+            if has(&rules.ground_room_types) || has(entrance) || by_entrance || unknown && is_dwelling(reading.program)
+            {
+                Likes::Ground
+            } else if has(&rules.each_level_room_types) && rooms.len() == 1 {
+                Likes::Each
+            } else if rules.upper_room_types.contains(&planned[main].room_type) {
+                Likes::Upper
+            } else {
+                match planned[main].kind.zone {
+                    Zone::Public => Likes::Ground,
+                    Zone::Night => Likes::Upper,
+                    _ => Likes::Any,
+                }
+            };
         let area = rooms.iter().map(|&r| areas[r]).sum();
         let fixed = rooms.iter().find_map(|&r| fixed[r]);
         let unit = planned[main].unit.as_deref();

@@ -25,7 +25,13 @@ fn night(domain: &Domain, m: &Mention) -> bool {
 }
 
 /// Lets no bathroom that is called shared belong to a bedroom: "two bedrooms with a shared bathroom" have one.
-pub(super) fn share_bathrooms(tokens: &[Token], mentions: &[Mention], domain: &Domain, spoken: &[&Spoken], said: &mut Said) {
+pub(super) fn share_bathrooms(
+    tokens: &[Token],
+    mentions: &[Mention],
+    domain: &Domain,
+    spoken: &[&Spoken],
+    said: &mut Said,
+) {
     let tagged = |i: usize| spoken.iter().find_map(|s| s.tag_at(tokens, i, Tag::SharedWords));
     let shared = |m: usize| {
         let wet = mentions[m].room_type().and_then(|id| domain.room_type(id)).is_some_and(|k| k.wet);
@@ -102,9 +108,8 @@ pub(super) fn sleep_where_one_lives(
     spoken: &[&Spoken],
 ) -> Vec<Span> {
     let d = &words().dwelling;
-    let place = |m: &Mention| {
-        spoken.iter().any(|s| s.tag_at(tokens, m.span.start, Tag::SleepingPlaces) == Some(m.span.end))
-    };
+    let place =
+        |m: &Mention| spoken.iter().any(|s| s.tag_at(tokens, m.span.start, Tag::SleepingPlaces) == Some(m.span.end));
     let mut told = Vec::new();
     if !is_studio(program) {
         let sleeps = mentions.iter().any(|m| night(domain, m) && !place(m));

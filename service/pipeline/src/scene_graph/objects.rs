@@ -64,7 +64,8 @@ pub(super) fn named(
                     let place = place_of(tokens, mentions, end, spoken).and_then(room);
                     let near = place.or_else(|| with.and_then(room));
                     spans.push(Span { start: i, end });
-                    let each = with.is_some_and(|m| m.room_type().is_some() && is_each(tokens, m, Span { start: i, end }, spoken));
+                    let each = with
+                        .is_some_and(|m| m.room_type().is_some() && is_each(tokens, m, Span { start: i, end }, spoken));
                     match out.iter_mut().find(|o| &o.object == id) {
                         Some(known) => known.each |= each && known.room_type == near,
                         None => out.push(Thing { object: id.clone(), room_type: near, each }),

@@ -28,8 +28,8 @@ use super::wishes::{self, MANY, PerHost, Text, Wish, Wishes};
 use super::words::{ByBedrooms, Spoken, Tag, words};
 use super::workers;
 use super::{
-    Request, apiece, docks, dwelling, fixtures, homes, keeps, language, measures, numbers, qualities, robots, seated, sharing,
-    single, stays, umlauts, unread,
+    Request, apiece, docks, dwelling, fixtures, homes, keeps, language, measures, numbers, qualities, robots, seated,
+    sharing, single, stays, umlauts, unread,
 };
 use crate::Error;
 
@@ -812,7 +812,8 @@ impl People {
         // "a couple with one child": the singular is no number of visitors
         let one = |i: usize| {
             let inside = mentions.iter().any(|m| matches!(m.what, What::Room(_)) && m.span.contains(i));
-            let article = i.checked_sub(1).is_some_and(|k| numbers.iter().any(|n| n.span.contains(k) && n.value == 1.0));
+            let article =
+                i.checked_sub(1).is_some_and(|k| numbers.iter().any(|n| n.span.contains(k) && n.value == 1.0));
             article && !inside && spoken.iter().any(|s| s.tag_at(tokens, i, Tag::Children).is_some())
         };
         let children = children.or_else(|| (0..tokens.len()).any(one).then_some(1));

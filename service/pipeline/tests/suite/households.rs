@@ -61,9 +61,10 @@ fn bedrooms_say_who_sleeps_there() {
 #[test]
 fn a_home_is_peopled_by_those_who_live_there() {
     let mut held = Vec::new();
-    for (prompt, people) in
-        [("two-bedroom flat for a couple", 2), ("house for a family of five: four bedrooms, kitchen, living room, two bathrooms", 5)]
-    {
+    for (prompt, people) in [
+        ("two-bedroom flat for a couple", 2),
+        ("house for a family of five: four bedrooms, kitchen, living room, two bathrooms", 5),
+    ] {
         held.extend(worlds(prompt, 2).iter().map(|w| w.scenario.agents.len() == people));
     }
     most("people at home", 1.0, &held);
@@ -73,7 +74,11 @@ fn a_home_is_peopled_by_those_who_live_there() {
 fn a_bathroom_of_a_bedroom_is_none_for_the_others() {
     for (prompt, ensuites, bathrooms) in [
         ("trois chambres dont une suite parentale avec salle d'eau, une salle de bains, séjour et cuisine", 1, 1),
-        ("Flat with three bedrooms including a master suite with shower room, one bathroom, kitchen and living room", 1, 1),
+        (
+            "Flat with three bedrooms including a master suite with shower room, one bathroom, kitchen and living room",
+            1,
+            1,
+        ),
         ("House with four bedrooms, one with its own bathroom, and a family bathroom, kitchen, living room", 1, 1),
         ("Piso con dormitorio principal con baño propio, dos dormitorios, un baño, cocina, salón", 1, 1),
         ("3-bedroom flat with two bathrooms, kitchen, living room; the master bedroom has its own bathroom", 1, 1),
@@ -91,7 +96,10 @@ fn rooms_that_are_listed_are_those_that_a_flat_is_counted_by() {
     for (prompt, bedrooms) in [
         ("Dreizimmerwohnung: Wohnzimmer, getrennte Küche, Schlafzimmer, ein Gästezimmer, Bad", 1),
         ("3-Zimmer-Wohnung, 78 m², Schlafzimmer, Kinderzimmer, Wohnzimmer, Küche, Bad, Balkon", 1),
-        ("Vierzimmerwohnung für ein Paar mit einem Kind: Wohnzimmer, Schlafzimmer, Kinderzimmer, Arbeitszimmer, Küche, Bad", 1),
+        (
+            "Vierzimmerwohnung für ein Paar mit einem Kind: Wohnzimmer, Schlafzimmer, Kinderzimmer, Arbeitszimmer, Küche, Bad",
+            1,
+        ),
         ("Dreizimmerwohnung mit Balkon", 2),
     ] {
         assert_eq!(count(&graph(prompt), "bedroom"), bedrooms, "{prompt}");
@@ -137,7 +145,11 @@ fn a_studio_is_one_room_with_a_bed() {
         "Einzimmerwohnung 40 m² mit Schlafbereich, Sofa, Küchenzeile und Bad",
     ] {
         let graph = graph(prompt);
-        assert_eq!((count(&graph, "studio"), count(&graph, "living_room"), count(&graph, "bedroom")), (1, 0, 0), "{prompt}");
+        assert_eq!(
+            (count(&graph, "studio"), count(&graph, "living_room"), count(&graph, "bedroom")),
+            (1, 0, 0),
+            "{prompt}"
+        );
         assert!(graph.conflicts.is_empty(), "{prompt}: {:?}", graph.conflicts);
     }
     let flat = graph("flat with a living room, a sleeping area, a kitchen and a bathroom");
@@ -153,9 +165,7 @@ fn a_separate_kitchen_has_a_door() {
         "Haus mit Wohnzimmer, Esszimmer, geschlossener Küche, zwei Schlafzimmern und Bad",
     ] {
         let graph = graph(prompt);
-        let open = |id: &str| {
-            graph.edges.iter().any(|e| e.connector == Connector::Open && (e.a == id || e.b == id))
-        };
+        let open = |id: &str| graph.edges.iter().any(|e| e.connector == Connector::Open && (e.a == id || e.b == id));
         assert!(!open("kitchen_1"), "{prompt}");
     }
 }
@@ -181,14 +191,30 @@ fn near_the_front_door_is_no_entrance() {
 fn things_stand_where_the_prompt_says() {
     for (prompt, room_type, object) in [
         ("Piso con un dormitorio, cocina, salón, baño y un armario grande en la entrada", "entry", "wardrobe"),
-        ("Appartement avec deux chambres, séjour, cuisine, salle de bains, une entrée avec placard", "entry", "wardrobe"),
+        (
+            "Appartement avec deux chambres, séjour, cuisine, salle de bains, une entrée avec placard",
+            "entry",
+            "wardrobe",
+        ),
         ("Two-bedroom flat, kitchen, bathroom, living room with fireplace", "living_room", "fireplace"),
         ("Haus mit zwei Schlafzimmern, Küche, Bad und Wohnzimmer mit Kaminofen", "living_room", "wood_stove"),
         ("maison avec deux chambres, cuisine, salle de bains, grand salon avec poêle", "living_room", "wood_stove"),
         ("Wohnung mit Wohnzimmer mit Essplatz, Küche, Schlafzimmer und Bad", "living_room", "dining_table_4"),
-        ("appartement avec séjour, deux chambres, cuisine et salle de bains. Le père travaille dans un coin bureau du séjour.", "living_room", "small_desk"),
-        ("Two-bedroom house with kitchen, living room, bathroom and laundry. A robot vacuum; its dock should be in the laundry room.", "laundry", "robot_dock"),
-        ("Two-bedroom house with kitchen, living room, bathroom. One delivery robot waits at the entrance.", "hallway", "robot_dock"),
+        (
+            "appartement avec séjour, deux chambres, cuisine et salle de bains. Le père travaille dans un coin bureau du séjour.",
+            "living_room",
+            "small_desk",
+        ),
+        (
+            "Two-bedroom house with kitchen, living room, bathroom and laundry. A robot vacuum; its dock should be in the laundry room.",
+            "laundry",
+            "robot_dock",
+        ),
+        (
+            "Two-bedroom house with kitchen, living room, bathroom. One delivery robot waits at the entrance.",
+            "hallway",
+            "robot_dock",
+        ),
     ] {
         let graph = graph(prompt);
         assert!(wished(&graph, room_type, object), "{prompt}: {:?}", graph.conflicts);
