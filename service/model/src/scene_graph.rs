@@ -80,6 +80,9 @@ pub struct Occupancy {
     /// Guests, pupils or customers.
     #[serde(default)]
     pub visitors: Option<u32>,
+    /// People who live there.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub residents: Option<u32>,
 }
 
 /// A room to be planned.

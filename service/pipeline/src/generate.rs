@@ -43,9 +43,11 @@ impl Default for Settings {
 
 /// How often plan and furniture are tried for each smaller robot, when one that was to fit does not.
 const FEW_ATTEMPTS: u32 = 3;
-/// Rooms up to which a sound world that misses a law, or with something before a door or window, is tried again: in a large
-/// building there is always one.
-const FEW_ROOMS: usize = 20;
+/// Rooms of a storey up to which a sound world that misses a law, or with something before a door or window, is tried again:
+/// in a large building there is always one.
+const FEW_ROOMS: usize = 26;
+/// The same for all storeys together.
+const FEW_ON_STOREYS: usize = 40;
 
 /// Floor between rooms up to which they are near each other, m.
 const NEAR_M: f64 = 6.0;
@@ -213,7 +215,10 @@ fn attempts(
     let retrieved = retrieve(graph, plugin);
     let name = settings.name.clone().unwrap_or_else(|| world_name(graph));
     let pinned = settings.pinned_floorplan.is_some() || settings.pinned_placements.is_some();
-    let picky = !pinned && graph.rooms.len() <= FEW_ROOMS;
+    let mut levels: Vec<i32> = graph.rooms.iter().map(|r| r.level).collect();
+    levels.sort_unstable();
+    levels.dedup();
+    let picky = !pinned && graph.rooms.len() <= (FEW_ROOMS * levels.len()).min(FEW_ON_STOREYS);
     let mut best: Option<(Faults, Generated)> = None;
     let mut reason = None;
     for attempt in 0..settings.attempts.max(1) {

@@ -12,7 +12,7 @@ use super::core::{Below, in_core, overhang};
 use super::lattice::{CELL_M2, Cellbox, INNER_HALF_M, JAMB_M, OUTER_HALF_M, meters, up};
 use super::mirror;
 use super::realize::{Layout, door_need};
-use super::spec::Brief;
+use super::spec::{Brief, RoomSpec};
 use super::windows::LEAST_WALL_M;
 
 /// Cost of a room whose area is outside what is advised, beside that of how far.
@@ -38,6 +38,8 @@ const ONE_SIDED_FROM: f64 = 0.12;
 const ONE_SIDED: f64 = 0.45;
 /// What a meter of a corridor that is too long for its one way out counts as share of circulation.
 const ONE_WAY: f64 = 0.1;
+/// What a room that is wanted near the entrance loses by each side of the building that it is away from it.
+const BY_ENTRANCE: f64 = 1.5;
 /// Number of soft terms.
 const COUNT: usize = 12;
 /// A weight for each soft term.
@@ -533,7 +535,7 @@ impl<'b> Judge<'b> {
         let (mut round, mut visited) = (0.0, 0);
         for (spec, room) in brief.rooms.iter().zip(rooms) {
             let (Some(main), Some(door)) = (room.main, entrance) else { continue };
-            score.soft[7] += ill_placed(spec.zone, distance(main, door) / size);
+            score.soft[7] += ill_placed(spec, distance(main, door) / size);
             if spec.on_spine {
                 round += distance(main, base.unwrap_or(door)) / size;
                 visited += 1;
@@ -598,9 +600,12 @@ fn wall_length(side: &[[i32; 2]; 4], shape: &Cellbox) -> f64 {
     side.iter().enumerate().map(of).sum()
 }
 
-/// Returns what a room of a zone loses by its distance from the entrance, in sides of the building.
-pub(super) fn ill_placed(zone: Zone, far: f64) -> f64 {
-    match zone {
+/// Returns what a room loses by its distance from the entrance, in sides of the building.
+pub(super) fn ill_placed(spec: &RoomSpec, far: f64) -> f64 {
+    if spec.by_entrance {
+        return BY_ENTRANCE * far;
+    }
+    match spec.zone {
         Zone::Public | Zone::Day => 0.25 * far,
         Zone::Night => 0.4 * (1.2 - far).max(0.0),
         Zone::Staff | Zone::Service | Zone::Circulation | Zone::Outdoor => 0.0,

@@ -804,7 +804,7 @@ impl Site<'_> {
             own.max_by(|a, b| a.area_m2().total_cmp(&b.area_m2()))
         };
         let rooms = self.brief.rooms.iter().enumerate();
-        rooms.filter_map(|(r, spec)| Some(ill_placed(spec.zone, far(largest(r)?)))).sum()
+        rooms.filter_map(|(r, spec)| Some(ill_placed(spec, far(largest(r)?)))).sum()
     }
 
     fn door(

@@ -119,9 +119,8 @@ impl Judge<'_> {
         let gates = self.gates(layout);
         let size = rooms().map(|(_, main)| main.area_m2()).sum::<f64>().sqrt().max(1.0);
         let far = |main: Cellbox, gate: (i32, i32)| between(main.center2(), gate);
-        let lost = |gate: (i32, i32)| -> f64 {
-            rooms().map(|(spec, main)| ill_placed(spec.zone, far(main, gate) / size)).sum()
-        };
+        let lost =
+            |gate: (i32, i32)| -> f64 { rooms().map(|(spec, main)| ill_placed(spec, far(main, gate) / size)).sum() };
         let judged = gates.into_iter().map(|gate| (gate, passed_bedrooms(self.brief, &layout.boxes, gate)));
         let worse = |(gate, passed): &((i32, i32), f64)| lost(*gate) + BEFORE_ZONES * passed;
         let Some((gate, passed)) = judged.min_by(|a, b| worse(a).total_cmp(&worse(b))) else { return (0.0, 0.0) };

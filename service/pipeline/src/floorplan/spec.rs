@@ -17,6 +17,7 @@ use super::core::Core;
 use super::lattice::{JAMB_M, OUTER_HALF_M};
 use super::windows::LEAST_WALL_M;
 use crate::Error;
+use crate::scene_graph::BY_PROMPT;
 
 /// Clear width that a wheelchair and most robots need through a door, m; used when the prompt asks for access.
 const ACCESSIBLE_DOOR_M: f64 = 0.9;
@@ -68,6 +69,8 @@ pub(super) struct RoomSpec {
     /// True for rooms into which no leaf opens.
     pub slides: bool,
     pub entrance: bool,
+    /// True for a room that the prompt wants near the entrance.
+    pub by_entrance: bool,
     /// People who work, meet or wait there, as the scene graph says.
     pub people: u32,
     /// Clear width of the gate through which its vehicles come in, or of its own door to outdoors, m.
@@ -482,6 +485,7 @@ fn room_spec(
             || graph.accessible && kind.wet && kind.privacy == Privacy::Private
             || robots && domain.circulation.automatic_doors && kind.robot.iter().any(|u| *u != RobotUse::KeepOut),
         entrance: room.entrance,
+        by_entrance: is_by_entrance(room, graph),
         people: room.occupants.filter(|_| kind.zone != Zone::Night).unwrap_or(0),
         gate,
         door_width: door_width.max(robot),
@@ -494,6 +498,14 @@ fn room_spec(
         elevator: graph.links.iter().any(|l| l.kind == LinkKind::Elevator && l.room_ids.contains(&room.id)),
         unit: None,
     }
+}
+
+/// Returns true for a room that the prompt wants near the entrance.
+fn is_by_entrance(room: &GraphRoom, graph: &SceneGraph) -> bool {
+    graph.edges.iter().any(|e| {
+        let of = e.a == room.id && e.connector == Connector::Near && e.reason == BY_PROMPT;
+        of && graph.room(&e.b).is_some_and(|r| r.entrance)
+    })
 }
 
 /// Returns the clear width of the gate that the vehicles of a room need, or of its own door to outdoors, m.

@@ -31,6 +31,7 @@ fn room(id: &str, area: [f64; 3], min_dimension: f64, daylight: Daylight, zone: 
         high_windows: false,
         slides: false,
         entrance: false,
+        by_entrance: false,
         people: 0,
         gate: None,
         door_width: 0.9,

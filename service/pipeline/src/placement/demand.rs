@@ -128,7 +128,7 @@ pub(super) struct Household<'a> {
     has_robots: bool,
     /// True when one of them cleans: the docks of rooms for soiled things are theirs.
     cleans: bool,
-    /// Most people that the graph has in one room to sleep in.
+    /// Most people that the graph has in one room to sleep in, or that live there.
     sharing: u32,
 }
 
@@ -150,7 +150,12 @@ impl<'a> Household<'a> {
             accessible: graph.accessible,
             has_robots: !graph.robots.is_empty(),
             cleans: graph.robots.iter().any(|r| r.kind == CLEANING),
-            sharing: held.filter(|(kind, _)| sleeps(kind)).map(|h| h.1).max().unwrap_or(0),
+            sharing: held
+                .filter(|(kind, _)| sleeps(kind))
+                .map(|h| h.1)
+                .chain(graph.occupancy.residents)
+                .max()
+                .unwrap_or(0),
         }
     }
 

@@ -16,13 +16,16 @@ const PERSON_RADIUS_M: f64 = 0.25;
 /// Most rooms a person walks between.
 const MOST_WAYPOINTS: usize = 4;
 
-/// Returns a few people: one of each role that has rooms to visit here, then more of the first roles.
+/// Returns a few people, in a home as many as live there: one of each role that has rooms to visit here, then more of the first roles.
 pub(super) fn all(floor: &mut Floor, graph: &SceneGraph) -> Vec<Agent> {
     let domain = floor.domain;
     let walkable =
         |role: &&Role| floor.rooms.iter().any(|r| role.visits.contains(&r.plan.room_type) && floor.spots(r) > 0);
     let roles: Vec<&Role> = domain.roles.iter().filter(walkable).collect();
-    let wanted = (floor.rooms.len() / ROOMS_PER_PERSON).clamp(PEOPLE.0, PEOPLE.1);
+    // those who live there are at home
+    let told = graph.occupancy.residents.map(|n| n as usize);
+    let usual = || (floor.rooms.len() / ROOMS_PER_PERSON).clamp(PEOPLE.0, PEOPLE.1);
+    let wanted = told.map_or_else(usual, |n| n.min(PEOPLE.1));
     let mut out: Vec<Agent> = Vec::new();
     for role in roles.iter().cycle().take(if roles.is_empty() { 0 } else { wanted }) {
         let number = out.iter().filter(|a| a.role == role.id).count() + 1;

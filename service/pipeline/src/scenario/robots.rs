@@ -1,6 +1,6 @@
 //! Robots with where they start and what they visit.
 
-use d3dgen_model::domain::Goods;
+use d3dgen_model::domain::{Goods, Shape};
 use d3dgen_model::floorplan::Floorplan;
 use d3dgen_model::passage::{Passages, RobotWay};
 use d3dgen_model::placements::Placements;
@@ -31,8 +31,8 @@ pub(super) fn all(
         for number in 0..robot.count as usize {
             let known = out.iter().filter(|t| t.robot.kind == robot.kind).count();
             let robot_id = format!("{}_robot_{}", robot.kind, known + 1);
-            let dock =
-                own_dock(floor, robot, &mut docks).or_else(|| all_docks.get(number % all_docks.len().max(1)).copied());
+            let dock = own_dock(floor, graph, robot, &mut docks)
+                .or_else(|| all_docks.get(number % all_docks.len().max(1)).copied());
             let Some(start) = start(floor, pois, dock, &out) else { continue };
             floor.take(Point::new(start.x, start.y), robot.radius_m);
             out.push(RobotTask {
@@ -53,10 +53,20 @@ pub(super) fn all(
     out
 }
 
-/// Takes the dock that suits a robot best of those that no other one has: cleaning ones charge where soiled things are.
-fn own_dock<'p>(floor: &Floor, robot: &Robot, left: &mut Vec<&'p Poi>) -> Option<&'p Poi> {
+/// Takes the dock that suits a robot best of those that no other one has: where the prompt puts it, else cleaning ones charge
+/// where soiled things are.
+fn own_dock<'p>(floor: &Floor, graph: &SceneGraph, robot: &Robot, left: &mut Vec<&'p Poi>) -> Option<&'p Poi> {
     let suits = |p: &&Poi| (floor.goods(&p.room_id) == Goods::Soiled) == (robot.kind == CLEANING);
-    let at = left.iter().position(suits).or((!left.is_empty()).then_some(0))?;
+    // a dock that its type of room does not come with
+    let wished = |p: &&Poi| {
+        let Some(room) = graph.room(&p.room_id) else { return false };
+        let usual = &floor.domain.room_type_or_generic(&room.room_type).furnishing;
+        let is_dock = |id: &String| floor.domain.object(id).is_some_and(|o| o.shape == Shape::Dock);
+        room.wished_assets.iter().any(|id| is_dock(id) && !usual.iter().any(|f| &f.item == id))
+    };
+    let told = |p: &&Poi| wished(p) && suits(p);
+    let at = left.iter().position(told).or_else(|| left.iter().position(wished));
+    let at = at.or_else(|| left.iter().position(suits)).or((!left.is_empty()).then_some(0))?;
     Some(left.remove(at))
 }
 

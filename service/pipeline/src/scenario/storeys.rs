@@ -37,7 +37,11 @@ pub(super) fn generate(graph: &SceneGraph, plan: &Floorplan, placements: &Placem
         objects.any(|o| o.shape == Shape::Dock)
     };
     let docked = storeys.iter().find(|(_, world)| has_dock(world)).map_or(0, |s| s.0);
-    for (level, world) in storeys {
+    // those who live there are all over the house: one storey after the other has one more of them
+    let count = storeys.len() as u32;
+    for (at, (level, mut world)) in storeys.into_iter().enumerate() {
+        let share = |n: u32| n / count + u32::from((at as u32) < n % count);
+        world.scene_graph.occupancy.residents = graph.occupancy.residents.map(share);
         let storey = one_storey(&world.scene_graph, &world.floorplan, &world.placements, domain, level == docked);
         add(&mut out, storey, level, level == docked);
     }

@@ -252,7 +252,7 @@ pub(super) fn hold_own(
             let stop = |k: &usize| tokens[*k].ends_sentence() || tagged(*k, Tag::Starts).is_some();
             end = (start..tokens.len()).find(stop).unwrap_or(tokens.len());
         }
-        let mut last = false;
+        let (mut last, mut washed) = (false, false);
         let mut count = None;
         for m in mentions.iter_mut().filter(|m| m.span.start >= start && m.span.end <= end) {
             let Some(kind) = m.room_type().and_then(|id| domain.room_type(id)) else { break };
@@ -261,9 +261,11 @@ pub(super) fn hold_own(
             let joined = m.from.checked_sub(1).is_some_and(|k| tagged(k, Tag::Joins).is_some());
             let lives = annexe && [&d.living, &d.suite_sitting, &d.kitchen, &d.living_kitchen].contains(&&kind.id);
             let cooks = annexe && words().alike.iter().any(|set| set.contains(&d.kitchen) && set.contains(&kind.id));
-            if last || !(bracket || sleeps || washes || joined || lives || cooks) {
+            // "master suite with shower room, a bathroom": a suite has one, and the next is for the others
+            if last || !(bracket || sleeps || washes || joined || lives || cooks) || washes && washed && !bracket {
                 break;
             }
+            washed |= washes;
             last = !bracket && joined;
             if sleeps {
                 count = m.count.filter(|n| *n > 1 && !m.article);
@@ -352,6 +354,23 @@ fn is_called_open(tokens: &[Token], m: &Mention, spoken: &[&Spoken]) -> bool {
 /// Returns the types of rooms that an open layout of the domain joins to one, best first.
 pub(super) fn opens_to<'d>(domain: &'d Domain, id: &'d String) -> impl Iterator<Item = &'d String> {
     domain.layouts.open_joins.iter().filter(move |join| join.contains(id)).flatten().filter(move |other| *other != id)
+}
+
+/// Returns the types of rooms that the prompt calls closed or separate and that an open layout of the domain joins to others.
+pub(super) fn closed_rooms(tokens: &[Token], mentions: &[Mention], domain: &Domain, spoken: &[&Spoken]) -> Vec<String> {
+    let tagged = |i: usize| spoken.iter().find_map(|s| s.tag_at(tokens, i, Tag::ClosedPlan));
+    let mut out: Vec<String> = Vec::new();
+    for m in mentions {
+        let joined = |id: &&str| domain.layouts.open_joins.iter().flatten().any(|j| j == id);
+        let Some(id) = m.room_type().filter(joined) else { continue };
+        let before = m.span.start.checked_sub(1).and_then(tagged) == Some(m.span.start);
+        // "cuisine fermée", but "kitchen, separate toilet" and "Küche getrennte Toilette"
+        let next = || tagged(m.span.end).is_some_and(|end| !mentions.iter().any(|o| o.from.min(o.span.start) == end));
+        if (before || m.span.end < tokens.len() && next()) && !out.iter().any(|o| o == id) {
+            out.push(id.to_owned());
+        }
+    }
+    out
 }
 
 /// Returns the types of rooms that the prompt calls open and that an open layout of the domain joins to others.

@@ -238,6 +238,23 @@ fn settle(
 fn fixed_levels(reading: &mut Reading, planned: &[Planned], levels: &[i32]) -> Vec<Option<i32>> {
     let mut fixed: Vec<Option<i32>> = vec![None; planned.len()];
     let mut short = Vec::new();
+    // "on the second a bedroom with its own bathroom": that bathroom is entered from the bedroom there
+    let wants = |room_type: &str, n: i32| {
+        let mut wanted = reading.storeys.wanted.iter();
+        wanted.any(|w| w.room_type == room_type && w.at == Where::Level(n))
+    };
+    let mut ahead: Vec<usize> = Vec::new();
+    for wanted in &reading.storeys.wanted {
+        let Where::Level(n) = wanted.at else { continue };
+        let hung = |i: &usize| planned[*i].room_type == wanted.room_type && fixed[*i].is_none();
+        let guests: Vec<usize> = (0..planned.len()).filter(hung).take(wanted.count as usize).collect();
+        for i in guests {
+            if let Some(host) = planned[i].host.filter(|&h| fixed[h].is_none() && wants(&planned[h].room_type, n)) {
+                (fixed[i], fixed[host]) = (Some(n), Some(n));
+                ahead.extend([i, host]);
+            }
+        }
+    }
     for wanted in &reading.storeys.wanted {
         let upper: Vec<i32> = levels.iter().copied().filter(|l| *l > 0).collect();
         let targets: Vec<i32> = match wanted.at {
@@ -248,6 +265,13 @@ fn fixed_levels(reading: &mut Reading, planned: &[Planned], levels: &[i32]) -> V
         };
         let each = matches!(wanted.at, Where::Each);
         let count = if each { wanted.count as usize * targets.len() } else { wanted.count as usize };
+        let mut rest = count;
+        ahead.retain(|&i| {
+            let here = rest > 0 && planned[i].room_type == wanted.room_type && fixed[i].is_some_and(|l| targets == [l]);
+            rest -= usize::from(here);
+            !here
+        });
+        let count = rest;
         let open: Vec<usize> =
             (0..planned.len()).filter(|&i| planned[i].room_type == wanted.room_type && fixed[i].is_none()).collect();
         if open.len() < count {
@@ -312,19 +336,22 @@ fn clusters<'p>(
         let unknown = rooms.iter().any(|&r| {
             planned[r].kind.id == GENERIC_ROOM_TYPE && planned[r].room_type != GENERIC_ROOM_TYPE && planned[r].requested
         });
-        let likes = if has(&rules.ground_room_types) || has(entrance) || unknown && is_dwelling(reading.program) {
-            Likes::Ground
-        } else if has(&rules.each_level_room_types) && rooms.len() == 1 {
-            Likes::Each
-        } else if rules.upper_room_types.contains(&planned[main].room_type) {
-            Likes::Upper
-        } else {
-            match planned[main].kind.zone {
-                Zone::Public => Likes::Ground,
-                Zone::Night => Likes::Upper,
-                _ => Likes::Any,
-            }
-        };
+        let by_entrance = has(&reading.wishes.by_entrance);
+        let likes =
+            if has(&rules.ground_room_types) || has(entrance) || by_entrance || unknown && is_dwelling(reading.program)
+            {
+                Likes::Ground
+            } else if has(&rules.each_level_room_types) && rooms.len() == 1 {
+                Likes::Each
+            } else if rules.upper_room_types.contains(&planned[main].room_type) {
+                Likes::Upper
+            } else {
+                match planned[main].kind.zone {
+                    Zone::Public => Likes::Ground,
+                    Zone::Night => Likes::Upper,
+                    _ => Likes::Any,
+                }
+            };
         let area = rooms.iter().map(|&r| areas[r]).sum();
         let fixed = rooms.iter().find_map(|&r| fixed[r]);
         let unit = planned[main].unit.as_deref();

@@ -46,6 +46,41 @@ pub(super) fn inside_rooms(
     out
 }
 
+/// Words between a robot and the place where it waits, at most: "that always waits near the".
+const MOST_TO_PLACE: usize = 7;
+
+/// Returns the types of the rooms that robots wait in: "a delivery robot waits in the pantry"; `None` for the entrance, which
+/// is then said of the robot and of no room.
+pub(super) fn where_robots_wait(
+    tokens: &[Token],
+    mentions: &mut Vec<Mention>,
+    machines: &[Span],
+    spoken: &[&Spoken],
+) -> Vec<Option<String>> {
+    let tagged = |i: usize, tag| spoken.iter().find_map(|s| s.tag_at(tokens, i, tag));
+    let mut out = Vec::new();
+    for robot in machines {
+        let Some(m) = mentions.iter().position(|m| m.span.start >= robot.end) else { continue };
+        let gap = robot.end..mentions[m].from.min(mentions[m].span.start);
+        if gap.len() > MOST_TO_PLACE || gap.clone().any(|i| tokens[i].ends_sentence()) {
+            continue;
+        }
+        let Some(end) = gap.clone().find_map(|i| tagged(i, Tag::Waits)) else { continue };
+        // nothing but small words between the verb and the place
+        let little = [Tag::Stops, Tag::Definite, Tag::Articles, Tag::Inside, Tag::Near, Tag::PlaceBefore];
+        let leads = (end..gap.end).all(|i| little.iter().any(|&t| tagged(i, t).is_some()));
+        match &mentions[m].what {
+            What::Entrance if leads => {
+                out.push(None);
+                mentions.remove(m);
+            }
+            What::Room(id) if leads && end < gap.end && mentions[m].definite => out.push(Some(id.clone())),
+            _ => {}
+        }
+    }
+    out
+}
+
 /// Returns the type of the room that a dock stands in.
 fn host(tokens: &[Token], mentions: &[Mention], dock: usize, machines: &[Span], spoken: &[&Spoken]) -> Option<String> {
     let tagged = |i: usize, tag| spoken.iter().find_map(|s| s.tag_at(tokens, i, tag));

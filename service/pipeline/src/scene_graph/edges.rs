@@ -30,6 +30,7 @@ pub(super) fn connect(reading: &mut Reading, planned: &[Planned], rooms: &mut Ve
     choose_entrance(reading, rooms, hub);
     keep_apart(reading, rooms, &mut web);
     web.follow_prompt(reading, planned, rooms);
+    web.stay_near_entrance(reading, rooms);
     web.open_named(reading, planned, rooms);
     web.open_up(reading, rooms);
     web.follow_rules(reading, rooms);
@@ -53,6 +54,7 @@ pub(super) fn connect_storey(
     }
     keep_apart(reading, rooms, &mut web);
     web.follow_prompt(reading, planned, rooms);
+    web.stay_near_entrance(reading, rooms);
     web.open_named(reading, planned, rooms);
     web.open_up(reading, rooms);
     web.follow_rules(reading, rooms);
@@ -158,6 +160,20 @@ impl Web {
         }
     }
 
+    /// Wishes for rooms near the entrance that the prompt wants there, where they are on its storey.
+    fn stay_near_entrance(&mut self, reading: &Reading, rooms: &[GraphRoom]) {
+        let Some(entrance) = rooms.iter().find(|r| r.entrance) else { return };
+        let near = rooms.iter().filter(|r| reading.wishes.by_entrance.contains(&r.room_type) && r.id != entrance.id);
+        let edges = near.map(|r| GraphEdge {
+            a: r.id.clone(),
+            b: entrance.id.clone(),
+            connector: Connector::Near,
+            required: false,
+            reason: BY_PROMPT.into(),
+        });
+        self.edges.extend(edges);
+    }
+
     /// Opens the rooms that the prompt calls open to the first of those that an open layout joins them to.
     fn open_named(&mut self, reading: &Reading, planned: &[Planned], rooms: &[GraphRoom]) {
         let of = |kind: &str| (0..rooms.len()).filter(|&i| rooms[i].room_type == kind).collect::<Vec<_>>();
@@ -182,7 +198,8 @@ impl Web {
         if reading.style.layout != Some(LayoutStyle::Open) {
             return;
         }
-        for [a, b] in &reading.domain.layouts.open_joins {
+        let closed = |id: &String| reading.wishes.closed.contains(id);
+        for [a, b] in reading.domain.layouts.open_joins.iter().filter(|[a, b]| !closed(a) && !closed(b)) {
             let of = |kind: &str| -> Vec<usize> { (0..rooms.len()).filter(|&i| rooms[i].room_type == kind).collect() };
             for (i, j) in spread(rooms, &of(a), &of(b), Spread::Each) {
                 if !self.has_apart(&rooms[i].id, &rooms[j].id) {
@@ -247,7 +264,12 @@ impl Web {
                 continue;
             }
             let connector = match connector(&rule.via) {
-                Connector::Open if reading.style.layout == Some(LayoutStyle::Cellular) => Connector::Door,
+                Connector::Open
+                    if reading.style.layout == Some(LayoutStyle::Cellular)
+                        || [&rule.a, &rule.b].iter().any(|id| reading.wishes.closed.contains(id)) =>
+                {
+                    Connector::Door
+                }
                 usual => usual,
             };
             for (i, j) in spread(rooms, &from, &to, Spread::Each) {

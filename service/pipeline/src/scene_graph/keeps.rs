@@ -8,7 +8,7 @@ use super::words::{Spoken, Tag};
 /// Words between a robot and the corridors that it keeps to, at most: "drives at night through the".
 const MOST_BETWEEN: usize = 6;
 
-/// Returns the types of rooms that robots keep to: corridors that are named behind a robot, with the rooms that go on with
+/// Returns the words for robots that keep to some rooms, and the types of these: corridors that are named behind a robot, with the rooms that go on with
 /// them ("the corridors and the waiting area"); `way` is the type of corridors.
 pub(super) fn read(
     tokens: &[Token],
@@ -16,7 +16,7 @@ pub(super) fn read(
     machines: &[Span],
     way: &str,
     spoken: &[&Spoken],
-) -> Vec<String> {
+) -> Option<(Span, Vec<String>)> {
     let tagged = |i: usize, tag| spoken.iter().any(|s| s.tag_at(tokens, i, tag).is_some());
     let named: Vec<&Mention> = mentions.iter().filter(|m| m.room_type().is_some()).collect();
     for robot in machines {
@@ -37,7 +37,7 @@ pub(super) fn read(
             out.extend(m.room_type().map(str::to_owned));
             end = m.span.end;
         }
-        return out;
+        return Some((*robot, out));
     }
-    Vec::new()
+    None
 }

@@ -14,6 +14,7 @@ mod dwelling;
 mod edges;
 mod fixtures;
 mod given;
+mod homes;
 mod keeps;
 mod language;
 mod layout;
@@ -132,6 +133,7 @@ fn settle<'a>(
 /// Describes and connects the rooms.
 fn assemble(request: &Request, mut reading: Reading, planned: &[Planned]) -> SceneGraph {
     let mut rooms = rooms::describe(&mut reading, planned);
+    reading.occupancy.residents = homes::house(&reading, planned, &mut rooms);
     let levels = deal::levels(&mut reading);
     let (web, links) = if levels.len() > 1 {
         let areas: Vec<f64> = rooms.iter().map(|r| r.target_area_m2).collect();

@@ -3,12 +3,18 @@
 use d3dgen_model::domain::{Access, Domain, Zone};
 use d3dgen_plugins::Registry;
 
-use super::mentions::Mention;
+use super::mentions::{Mention, What};
 use super::text::{Phrases, Span, Token};
 use super::words::{Spoken, Tag};
 
 /// Words from a thing to the word that gives it to every room, at most: "with a desk and chair each".
 const MOST_TO_EACH: usize = 4;
+
+/// Words for a thing, at most: "large dining table for eight".
+const MOST_WORDS: usize = 5;
+
+/// Words between a thing and the word that says where it is, at most: "armario muy grande en".
+const MOST_TO_PLACE: usize = 3;
 
 /// An object that the prompt names.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -38,6 +44,12 @@ pub(super) fn named(
     spans: &mut Vec<Span>,
 ) -> Vec<Thing> {
     let mut out: Vec<Thing> = Vec::new();
+    // what stands in the entrance of a home stands in its entrance hall
+    let hall = domain.circulation.entrance_room_types.first().filter(|id| domain.room_type(id).is_some());
+    let room = |m: &'_ Mention| match &m.what {
+        What::Entrance => hall.cloned(),
+        _ => m.room_type().map(str::to_owned),
+    };
     for language in languages {
         let phrases = vocabulary(domain, registry, language);
         let mut i = 0;
@@ -46,12 +58,14 @@ pub(super) fn named(
             let other = |end: usize| not_things.iter().any(|s| s.start <= i && end <= s.end);
             match phrases.longest_at(tokens, i).filter(|found| !inside && !other(found.0)) {
                 Some((end, id)) => {
-                    let with = mentions.iter().rev().filter(|m| m.span.end <= i).find(|m| m.room_type().is_some());
+                    let with = mentions.iter().rev().filter(|m| m.span.end <= i).find(|m| room(m).is_some());
                     // "a nurse's room, baby changing": an item of its own is in none of the rooms before it
                     let with = with.filter(|m| !is_item(tokens, m.span.end..i, spoken));
-                    let near = with.and_then(|m| m.room_type()).map(str::to_owned);
+                    let place = place_of(tokens, mentions, end, spoken).and_then(room);
+                    let near = place.or_else(|| with.and_then(room));
                     spans.push(Span { start: i, end });
-                    let each = with.is_some_and(|m| is_each(tokens, m, Span { start: i, end }, spoken));
+                    let each = with
+                        .is_some_and(|m| m.room_type().is_some() && is_each(tokens, m, Span { start: i, end }, spoken));
                     match out.iter_mut().find(|o| &o.object == id) {
                         Some(known) => known.each |= each && known.room_type == near,
                         None => out.push(Thing { object: id.clone(), room_type: near, each }),
@@ -63,6 +77,32 @@ pub(super) fn named(
         }
     }
     out
+}
+
+/// Returns the place that a thing is said to be in: "a wardrobe in the entrance".
+fn place_of<'m>(tokens: &[Token], mentions: &'m [Mention], end: usize, spoken: &[&Spoken]) -> Option<&'m Mention> {
+    let tagged = |i: usize, tag| spoken.iter().find_map(|s| s.tag_at(tokens, i, tag));
+    // "a wardrobe, in the hall", but "armario grande en la entrada"
+    let from = (end..(end + MOST_TO_PLACE).min(tokens.len())).take_while(|&i| !tokens[i].is_mark());
+    let start = from.into_iter().find_map(|i| tagged(i, Tag::Inside))?;
+    let place = mentions.iter().find(|m| m.span.start >= start)?;
+    let little = |i: usize| [Tag::Definite, Tag::Articles].iter().any(|&t| tagged(i, t).is_some());
+    let plain = place.count.is_none() || place.article;
+    (plain && (start..place.from.min(place.span.start)).all(little)).then_some(place)
+}
+
+/// Returns true where the words for an object end at a token.
+pub(super) fn ends_at(
+    tokens: &[Token],
+    end: usize,
+    (domain, registry): (&Domain, &Registry),
+    languages: &[&str],
+) -> bool {
+    let from = end.saturating_sub(MOST_WORDS);
+    languages.iter().any(|language| {
+        let phrases = vocabulary(domain, registry, language);
+        (from..end).any(|i| phrases.longest_at(tokens, i).is_some_and(|f| f.0 == end))
+    })
 }
 
 /// Returns the words for objects of a domain in one language.
@@ -80,7 +120,7 @@ fn vocabulary(domain: &Domain, registry: &Registry, language: &str) -> std::sync
     registry.digest(&format!("{language}: objects of {}", domain.id), words)
 }
 
-/// Takes words for a room that name a thing behind a room to sleep in for that thing: the "bureau" of "chambres avec bureau".
+/// Takes words for a room that name a thing behind a room to sleep in or an entrance for that thing: the "bureau" of "chambres avec bureau".
 /// Returns these words.
 pub(super) fn of_bedrooms(
     tokens: &[Token],
@@ -89,9 +129,10 @@ pub(super) fn of_bedrooms(
     (languages, spoken): (&[&str], &[&Spoken]),
 ) -> Vec<Span> {
     let sleeps = |m: &Mention| {
-        m.room_type()
-            .and_then(|id| domain.room_type(id))
-            .is_some_and(|k| k.zone == Zone::Night && k.access != Access::Host)
+        let kind = m.room_type().and_then(|id| domain.room_type(id));
+        // "une entrée avec placard" has no storage room
+        let hall = m.what == What::Entrance || kind.is_some_and(|k| k.zone == Zone::Circulation);
+        hall || kind.is_some_and(|k| k.zone == Zone::Night && k.access != Access::Host)
     };
     let tagged = |i: usize, tag| spoken.iter().any(|s| s.tag_at(tokens, i, tag).is_some());
     let is_thing = |span: Span| {
@@ -104,7 +145,9 @@ pub(super) fn of_bedrooms(
         let (host, m) = (&mentions[k - 1], &mentions[k]);
         let gap = host.span.end..m.from.min(m.span.start);
         let of_host = gap.clone().any(|i| tagged(i, Tag::Starts)) && !gap.clone().any(|i| tokens[i].is_mark());
-        if sleeps(host) && m.room_type().is_some() && of_host && is_thing(m.span) {
+        // "a big wardrobe in the entrance": what is a room elsewhere is a thing at home
+        let strange = m.room_type().is_some_and(|id| domain.room_type(id).is_none());
+        if m.room_type().is_some() && (sleeps(host) && of_host || strange) && is_thing(m.span) {
             things.push(k);
         }
     }

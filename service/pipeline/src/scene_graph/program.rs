@@ -18,6 +18,7 @@ use super::seated;
 use super::seats;
 use super::spread;
 use super::stations;
+use super::storeys::Where;
 use super::units;
 use super::vital;
 use super::wishes::{CHARGING, Pair, PerHost, Wish};
@@ -185,6 +186,7 @@ pub(super) fn finish<'a>(reading: &mut Reading<'a>, mut rooms: Vec<Planned<'a>>)
     workers::seat_guests(reading, &mut rooms);
     seat_waiting(reading, &mut rooms);
     hang_on_hosts(reading, &mut rooms);
+    share_last_bathroom(reading, &mut rooms);
     state_additions(reading, &rooms);
     rooms
 }
@@ -303,6 +305,13 @@ pub(super) fn is_counted(reading: &Reading, room_type: &str) -> bool {
 fn make_room_for_things(reading: &Reading, rooms: &mut [Planned]) {
     let d = &words().dwelling;
     let larger = |t: &&Thing| t.object == d.own_desk || t.object == d.baby_bed;
+    // a wardrobe needs floor before it that an entrance hall of the usual size has for the door
+    let halls = &reading.domain.circulation.entrance_room_types;
+    let stores = |t: &&Thing| reading.domain.object(&t.object).is_some_and(|o| o.shape == Shape::Cabinet);
+    for thing in reading.objects.iter().filter(stores) {
+        let hall = |r: &&mut Planned| halls.contains(&r.room_type) && thing.room_type.as_deref() == Some(&r.room_type);
+        rooms.iter_mut().filter(hall).take(1).for_each(|r| r.size = r.size.or(Some(HALL_WITH_WARDROBE)));
+    }
     for thing in reading.objects.iter().filter(larger).filter(|_| is_dwelling(reading.program)) {
         let asked = |r: &&mut Planned| {
             r.kind.zone == Zone::Night && thing.room_type.as_deref() == Some(&r.room_type) && r.area_m2.is_none()
@@ -311,6 +320,9 @@ fn make_room_for_things(reading: &Reading, rooms: &mut [Planned]) {
         rooms.iter_mut().filter(asked).take(count).for_each(|r| r.size = r.size.or(Some(WITH_THING)));
     }
 }
+
+/// Factor on the area of an entrance hall with a wardrobe in it.
+const HALL_WITH_WARDROBE: f64 = 1.35;
 
 /// Factor on the area of a bedroom with a desk or a cot in it.
 const WITH_THING: f64 = 1.12;
@@ -938,8 +950,16 @@ fn hang_on_hosts(reading: &mut Reading, rooms: &mut [Planned]) {
         !of(&p.a) && rules.any(|r| r.a == p.a && r.b == p.b)
     };
     let pairs: Vec<Pair> = reading.wishes.pairs.iter().filter(|p| p.belongs && !beside(p)).cloned().collect();
+    // the only storey that the prompt puts rooms of a type on
+    let storey = |id: &str| {
+        let mut on = reading.storeys.wanted.iter().filter(|w| w.room_type == id).map(|w| w.at);
+        on.next().filter(|_| on.next().is_none())
+    };
+    let storeys: Vec<Option<Where>> = rooms.iter().map(|r| storey(&r.room_type)).collect();
     for i in 0..rooms.len() {
         let room = &rooms[i];
+        // "on the second floor a terrace": not that of the living room below
+        let elsewhere = |h: usize| storeys[i].is_some_and(|at| storeys[h].is_some_and(|other| other != at));
         let hosted = room.kind.access == Access::Host;
         // the closet of a suite is entered from its bedroom, not through the bathroom that the suite has too
         let through_bath = |p: &&Pair| {
@@ -967,9 +987,10 @@ fn hang_on_hosts(reading: &mut Reading, rooms: &mut [Planned]) {
         // the usual host first: a terrace lies before the living room
         let rank = |h: &Planned| room.kind.hosts.iter().position(|k| *k == h.room_type);
         let candidates = |test: &dyn Fn(&Planned) -> bool| {
-            (0..rooms.len()).filter(|&h| h != i && test(&rooms[h]) && rooms[h].host != Some(i)).min_by_key(|&h| {
-                let elsewhere = rooms[h].unit != room.unit;
-                (elsewhere, guests(h, rooms), rank(&rooms[h]), usize::from(rooms[h].host.is_some()), h)
+            let free = |h: &usize| *h != i && test(&rooms[*h]) && rooms[*h].host != Some(i) && !elsewhere(*h);
+            (0..rooms.len()).filter(free).min_by_key(|&h| {
+                let apart = rooms[h].unit != room.unit;
+                (apart, guests(h, rooms), rank(&rooms[h]), usize::from(rooms[h].host.is_some()), h)
             })
         };
         // en suites beyond those of the rooms that they are told of go to the others that have none
@@ -988,6 +1009,24 @@ fn hang_on_hosts(reading: &mut Reading, rooms: &mut [Planned]) {
         }
         rooms[i].host = host;
     }
+}
+
+/// Lets the only bathroom of a home open to its hall where those of other bedrooms would have to go through one to it.
+fn share_last_bathroom(reading: &mut Reading, rooms: &mut [Planned]) {
+    if !is_dwelling(reading.program) || reading.single {
+        return;
+    }
+    let bathes = |r: &Planned| reading.wet.is_bathroom(r.kind) || r.room_type == words().dwelling.shower;
+    let sleeps = |r: &Planned| r.kind.zone == Zone::Night && sleeps(reading.domain, r.kind).is_some();
+    let own = |i: usize| rooms.iter().any(|r| bathes(r) && r.host == Some(i));
+    let without = (0..rooms.len()).filter(|&i| sleeps(&rooms[i]) && !own(i)).count();
+    let shared = rooms.iter().any(|r| bathes(r) && r.host.is_none());
+    let last = rooms.iter().rposition(|r| bathes(r) && r.host.is_some() && r.kind.access != Access::Host);
+    let Some(last) = last.filter(|_| without > 0 && !shared) else { return };
+    rooms[last].host = None;
+    let label = rooms[last].kind.label.to_lowercase();
+    let message = format!("no other {label} serves all bedrooms; it opens to the hall and not into one of them");
+    reading.assumptions.push(note("shared_bathroom", message));
 }
 
 /// States which rooms the prompt does not name.

@@ -28,8 +28,8 @@ use super::wishes::{self, MANY, PerHost, Text, Wish, Wishes};
 use super::words::{ByBedrooms, Spoken, Tag, words};
 use super::workers;
 use super::{
-    Request, apiece, docks, dwelling, fixtures, keeps, language, measures, numbers, qualities, robots, seated, sharing,
-    single, stays, umlauts, unread,
+    Request, apiece, docks, dwelling, fixtures, homes, keeps, language, measures, numbers, qualities, robots, seated,
+    sharing, single, stays, umlauts, unread,
 };
 use crate::Error;
 
@@ -90,6 +90,8 @@ pub(super) struct Reading<'a> {
     pub residents: Option<u32>,
     /// True when all of them have a room of their own.
     pub each_alone: bool,
+    /// True where two of them are a couple.
+    pub pair: bool,
     pub accessible: bool,
     pub style: Style,
     pub robots: Vec<Robot>,
@@ -220,6 +222,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     // "cleaning robot" and "wheelchair users" name no object
     let mut not_things = machines.spans.clone();
     not_things.extend(said_styles.iter().map(|s| s.span));
+    not_things.extend(nooks.iter().map(|n| n.span));
     not_things.extend(access_wishes(&tokens, &numbers, &spoken));
     let names_room = |i: usize| vocabulary.names_room(&tokens, i, &numbers, &spoken);
     let compounds = compounds::find(&tokens, prompt, domain, &spoken, names_room, |span| {
@@ -244,6 +247,8 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     if lives {
         told_again.extend(fixtures::settle(&tokens, prompt, &mut mentions, domain, &wet, &spoken));
         told_again.extend(objects::of_bedrooms(&tokens, &mut mentions, (domain, registry), (&languages, &spoken)));
+        told_again.extend(homes::sleep_where_one_lives(&tokens, &mut mentions, (domain, program), &spoken));
+        homes::not_of_things(&tokens, &mut mentions, (domain, registry), (&languages, &spoken));
     }
     if shared {
         own_rooms(&mut mentions, domain);
@@ -257,6 +262,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         mentions.retain(|m| !(span.contains(m.span.start) && said(m)));
         told_again.push(span);
     }
+    homes::count_listed(&mut short_forms, &mentions, domain);
     // "three-room flat: living room with kitchen corner": it is the one that the number counts
     let habitable_fixed = short_forms.iter().any(|f| f.rooms.contains_key(&words().dwelling.living));
     let named = |id: &String| mentions.iter().any(|m| m.room_type() == Some(id));
@@ -327,13 +333,22 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     let mut docked = docks::inside_rooms(&tokens, &mut mentions, &machines.spans, &spoken);
     let errand = robots::errand(&machines, &tokens, &mentions, &spoken);
     // what comes through the entrance is fetched there
-    let by_door = errand.entrance && docked.is_empty() && lives;
+    let waits = docks::where_robots_wait(&tokens, &mut mentions, &machines.spans, &spoken);
+    let at_door = waits.iter().any(Option::is_none);
+    let waits_in = waits.into_iter().flatten();
+    docked.extend(waits_in.filter(|id| domain.room_type(id).is_some()));
+    let by_door = errand.entrance && docked.is_empty() && lives || at_door;
     docked.extend(by_door.then(|| domain.circulation.room_type.clone()));
     let said_styles = styles::of_building(said_styles, &mentions, language);
     let mut said = relations::read(&tokens, &mentions, &spoken, language, building.head);
     compounds::relate(&compounds, &mentions, domain, &mut said);
     compounds::open_belongings(&tokens, &mentions, domain, &spoken, &mut said);
+    if lives {
+        homes::share_bathrooms(&tokens, &mentions, domain, &spoken, &mut said);
+        homes::name_ensuites(&mut mentions, &said, domain);
+    }
     let arranged = said.relations.iter().any(|r| !r.belongs);
+    let storey_of = storeys::storey_of(&tokens, &mentions, &storey_phrases, &spoken);
     let text = Text {
         tokens: &tokens,
         prompt,
@@ -345,8 +360,14 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         robots: machines.named,
         language,
         spoken: &spoken,
+        storeys: &storey_of,
     };
     let mut wishes = wishes::gather(&text, &mut conflicts);
+    if lives {
+        homes::add_studio(&mut wishes, program, domain);
+        wishes.closed = compounds::closed_rooms(&tokens, &mentions, domain, &spoken);
+        wishes.enter_through_halls(domain);
+    }
     wishes.open = compounds::open_rooms(&tokens, &mentions, domain, &spoken);
     let dining = &words().dwelling.dining;
     if lives
@@ -392,7 +413,12 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     let size = (radius, length);
     let mut robots = robots::of_graph(&fleet, &wishes, size, request, &heard, &mut assumptions, &mut conflicts);
     let kept = keeps::read(&tokens, &mentions, &machines.spans, &domain.circulation.room_type, &spoken);
-    robots.iter_mut().filter(|r| !CARRIES.contains(&r.kind.as_str())).for_each(|r| r.room_types.clone_from(&kept));
+    if let Some((span, kept)) = kept {
+        // what is said of the one that cleans says nothing of the one that serves
+        let own = machines.kind_at(span);
+        let meant = |r: &Robot| own.is_none_or(|kind| r.kind == kind) && !CARRIES.contains(&r.kind.as_str());
+        robots.iter_mut().filter(|r| meant(r)).for_each(|r| r.room_types.clone_from(&kept));
+    }
     // "drei Stockwerken" ends in a word for a factory
     let storey = |p: &building::Part| spoken.iter().any(|s| s.tag_at(&tokens, p.span.start, Tag::Storeys).is_some());
     building.parts.retain(|p| !storey(p) && !spans.iter().any(|s| s.overlaps(p.span)));
@@ -472,6 +498,9 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     read.extend((0..tokens.len()).filter_map(storeys_told));
     let mut things =
         objects::named(&tokens, &mentions, (domain, registry), (&languages, &spoken), &not_things, &mut read);
+    if lives {
+        homes::furnish_entrance(&things, &mut wishes, domain);
+    }
     let free = |i: usize| !spans.iter().chain(&building.head).any(|s| s.contains(i));
     let mut furnished = qualities::furnished(&tokens, &spoken, free);
     // who shares a home eats in its kitchen
@@ -489,7 +518,8 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     }
     for nook in nooks {
         let wished = |id: &&String| wishes.wishes.iter().any(|w| w.room_type == **id);
-        let room_type = nook.room_types.iter().find(wished).or(nook.room_types.first()).cloned();
+        let said = homes::room_of_nook(&tokens, &mentions, &nook, &spoken);
+        let room_type = said.or(nook.room_types.iter().find(wished)).or(nook.room_types.first()).cloned();
         if !things.iter().any(|t| t.object == nook.object) {
             things.push(Thing::of_one(&nook.object, room_type));
         }
@@ -512,6 +542,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         parts: &parts.left,
     };
     unread::state(&unread, &mut conflicts);
+    let says = |tag| (0..tokens.len()).any(|i| spoken.iter().any(|s| s.tag_at(&tokens, i, tag).is_some()));
     // those stand where the prompt puts them
     things.retain(|t| docked.is_empty() || domain.anchor(&t.object).is_none_or(|o| o.shape != Shape::Dock));
     Ok(Reading {
@@ -541,8 +572,9 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         occupancy: people.occupancy,
         residents: people.residents,
         children: people.children,
+        pair: people.pair,
         each_alone,
-        accessible: (0..tokens.len()).any(|i| spoken.iter().any(|s| s.tag_at(&tokens, i, Tag::Accessible).is_some())),
+        accessible: says(Tag::Accessible) || lives && says(Tag::Frail),
         robots,
         docked,
         errand,
@@ -723,6 +755,8 @@ struct People {
     occupancy: Occupancy,
     residents: Option<u32>,
     children: u32,
+    /// True where two are a couple.
+    pair: bool,
 }
 
 impl People {
@@ -744,6 +778,7 @@ impl People {
             beds: count(&What::Beds),
             desks: count(&What::Desks),
             visitors: count(&What::Visitors),
+            residents: None,
         };
         let mut residents = count(&What::Residents);
         // "for 40 people": those who live in a dwelling, work where the program seats staff, visit anywhere else
@@ -756,7 +791,7 @@ impl People {
             Some(n) => occupancy.visitors = occupancy.visitors.or(Some(n)),
             None => {}
         }
-        Self { occupancy, residents, children: 0 }
+        Self { occupancy, residents, children: 0, pair: false }
     }
 
     /// Counts those who share a home: "couple", "family of five", "two adults and three children".
@@ -774,11 +809,20 @@ impl People {
             u32::try_from(counted).ok().filter(|n| *n > 0)
         };
         let (adults, children) = (sum(Tag::Adults), sum(Tag::Children));
+        // "a couple with one child": the singular is no number of visitors
+        let one = |i: usize| {
+            let inside = mentions.iter().any(|m| matches!(m.what, What::Room(_)) && m.span.contains(i));
+            let article =
+                i.checked_sub(1).is_some_and(|k| numbers.iter().any(|n| n.span.contains(k) && n.value == 1.0));
+            article && !inside && spoken.iter().any(|s| s.tag_at(tokens, i, Tag::Children).is_some())
+        };
+        let children = children.or_else(|| (0..tokens.len()).any(one).then_some(1));
         if children.or(adults).is_some() {
             self.occupancy.visitors = None;
         }
         let household = dwelling::household(tokens, numbers, spoken, children);
         self.children = children.unwrap_or(0);
+        self.pair = household.is_some_and(|n| n > 1) || self.children > 0;
         self.residents = adults.zip(children).map(|(a, c)| a + c).or(self.residents).or(adults).or(household);
     }
 }

@@ -157,6 +157,11 @@ pub(super) struct Counting<'a> {
 }
 
 impl Robots {
+    /// Returns the kind of the robots at a span, where their words say it.
+    pub(super) fn kind_at(&self, span: Span) -> Option<&'static str> {
+        self.found.iter().find(|f| f.span == span)?.kind
+    }
+
     /// Returns the robots with their numbers; a number that counts rooms, people or storeys counts no robots.
     pub(super) fn counted(&self, by: &Counting) -> Fleet {
         let mut out = Fleet::default();

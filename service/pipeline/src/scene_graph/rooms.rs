@@ -223,6 +223,10 @@ fn target_areas(reading: &mut Reading, planned: &[Planned]) -> Vec<f64> {
     let at = |scale: f64, roomy: usize| -> Vec<f64> {
         let sized = planned.iter().zip(&areas).map(|(room, area)| {
             let mut range = room.kind.area_m2;
+            if reading.accessible {
+                // rooms have the floor for a wheelchair whatever is left for the others
+                range.min = range.min.max(room.kind.step_free_m2.min(range.max));
+            }
             if let Some(table) = seated(room).filter(|_| keeps_table) {
                 range.min = range.min.max(table);
             }
@@ -360,8 +364,23 @@ fn named_objects(reading: &mut Reading, planned: &[Planned]) -> BTreeMap<usize, 
         // "two bedrooms and a dining table": nobody eats there where another room is for that
         let eats = |r: &Planned| sets_table(reading.domain, r.kind, &object, planned);
         let with = with.filter(|&i| usual(&planned[i]) || !planned.iter().any(eats));
+        // a sofa of another size
+        let alike = |r: &Planned| {
+            let shape = reading.domain.object(&object).map(|o| o.shape).filter(|s| *s == Shape::Sofa);
+            let of = |id: &&str| shape.is_some() && reading.domain.object(id).map(|o| o.shape) == shape;
+            furniture(reading.domain, r.kind).find(of).map(str::to_owned)
+        };
+        // what nobody furnishes a room with stands there all the same, but the sofa of a studio is its small one
+        let other = |i: usize| if usual(&planned[i]) { None } else { alike(&planned[i]) };
         match with.or_else(|| planned.iter().position(eats)).or_else(|| planned.iter().position(usual)) {
-            Some(i) => out.entry(i).or_default().push(object),
+            Some(i) => {
+                let own = other(i);
+                out.entry(i).or_default().push(own.unwrap_or(object));
+            }
+            None if planned.iter().any(|r| alike(r).is_some()) => {
+                let found = planned.iter().enumerate().find_map(|(i, r)| Some((i, alike(r)?)));
+                found.into_iter().for_each(|(i, other)| out.entry(i).or_default().push(other));
+            }
             None => {
                 let message = format!("no room was found for the object {object}; it was left out");
                 reading.conflicts.push(note("object_without_room", message));

@@ -92,6 +92,19 @@ pub(super) fn phrases(
     room_end: impl Fn(usize) -> Option<usize>,
 ) -> Vec<Phrase> {
     let is_room = |i: usize| room_end(i).is_some();
+    let full = |i: usize| spoken.iter().filter_map(|s| s.levels.longest_at(tokens, i)).max_by_key(|f| f.0);
+    // "on the ground floor ..., on the first ...": the noun is not said again
+    let named = (0..tokens.len()).any(|i| full(i).is_some_and(|f| !matches!(f.1, Where::Each)));
+    let elided = |i: usize| {
+        let found = spoken.iter().filter_map(|s| s.levels_elided.longest_at(tokens, i)).max_by_key(|f| f.0);
+        // "en la primera planta", "in the first bedroom"
+        let whole = |end: usize| (i..end).any(|k| full(k).is_some_and(|f| f.0 > end));
+        let counts_rooms = |end: usize| {
+            let noun = spoken.iter().any(|s| s.tag_at(tokens, end, Tag::Storeys).is_some());
+            noun || room_end(end).is_some_and(|to| tokens.get(to).is_none_or(Token::is_mark))
+        };
+        found.filter(|f| named && !whole(f.0) && !counts_rooms(f.0))
+    };
     let mut out = Vec::new();
     let mut i = 0;
     while i < tokens.len() {
@@ -102,7 +115,7 @@ pub(super) fn phrases(
             i = end;
             continue;
         }
-        let found = spoken.iter().filter_map(|s| s.levels.longest_at(tokens, i)).max_by_key(|f| f.0);
+        let found = full(i).or_else(|| elided(i));
         // a wine cellar is a room
         let inner = || (i.saturating_sub(3)..i).any(|k| room_end(k).is_some_and(|end| end > i));
         let below = spoken.iter().find_map(|s| s.tag_at(tokens, i, Tag::Basement)).filter(|_| basements && !inner());
@@ -255,8 +268,10 @@ pub(super) fn read(text: &Text, country: Option<&str>, conflicts: &mut Vec<Note>
     named.sort_unstable();
     named.dedup();
     let above = used.iter().any(|at| matches!(at, Where::Upper));
-    let several = named.len() > 1 || above || named.iter().any(|n| *n < 0);
-    let highest = named.last().copied().unwrap_or(0).max(i32::from(above));
+    // "ground floor ..., upper floor ..., attic floor ...": the top is above all others that have rooms
+    let topped = (!named.is_empty() || above) && used.contains(&Where::Top);
+    let several = named.len() > 1 || above || topped || named.iter().any(|n| *n < 0);
+    let highest = named.last().copied().unwrap_or(0).max(i32::from(above)) + i32::from(topped);
     let mut top = match stated {
         Some(n) => n - 1,
         None if several => highest,
@@ -274,6 +289,11 @@ pub(super) fn read(text: &Text, country: Option<&str>, conflicts: &mut Vec<Note>
     }
     let lowest = named.first().copied().unwrap_or(0).min(0);
     let levels: Vec<i32> = if several || top > 0 { (lowest..=top).collect() } else { vec![0] };
+    // "im Obergeschoss ..., im Dachgeschoss ...": upper storeys are those that have no name of their own
+    let own = |at: Where| if at == Where::Top { Some(top) } else { fixed(at) };
+    let told: Vec<i32> = used.iter().filter_map(|at| own(*at)).collect();
+    let mut others = (1..=top).filter(|l| !told.contains(l));
+    let upper = others.next().filter(|_| others.next().is_none()).map_or(Where::Upper, Where::Level);
     let mut wanted: Vec<Wanted> = Vec::new();
     for (m, p) in on.into_iter().filter(|_| levels.len() > 1) {
         let mention = &mentions[m];
@@ -281,6 +301,7 @@ pub(super) fn read(text: &Text, country: Option<&str>, conflicts: &mut Vec<Note>
         let count = mention.count.unwrap_or(if mention.plural { 2 } else { 1 }).clamp(0, 500) as u32;
         let at = match phrases[p].at {
             Where::Top => Where::Level(top),
+            Where::Upper => upper,
             at => fixed(at).map_or(at, Where::Level),
         };
         wanted.push(Wanted { room_type: room_type.to_owned(), count, at });
@@ -332,6 +353,20 @@ fn counts_from_one(phrases: &[Phrase], stated: Option<i32>, country: Option<&str
         Some(code) => words().first_is_ground.iter().any(|c| c == code),
         None => !ground,
     }
+}
+
+/// Returns for every mention which storey the prompt puts it on, where it says so.
+pub(super) fn storey_of(
+    tokens: &[Token],
+    mentions: &[Mention],
+    phrases: &[Phrase],
+    spoken: &[&Spoken],
+) -> Vec<Option<Where>> {
+    let mut out = vec![None; mentions.len()];
+    for (m, p) in attach(tokens, mentions, phrases, spoken) {
+        out[m] = Some(phrases[p].at);
+    }
+    out
 }
 
 /// Returns which rooms are on which storey, as pairs of a mention and a phrase.

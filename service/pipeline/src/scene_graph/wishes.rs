@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use d3dgen_model::domain::Domain;
+use d3dgen_model::domain::{Domain, Zone};
 use d3dgen_model::scene_graph::{Connector, Note};
 
 use super::compounds;
@@ -12,6 +12,7 @@ use super::mentions::{Mention, What};
 use super::places::note;
 use super::qualities;
 use super::relations::{Said, Spread};
+use super::storeys::Where;
 use super::text::Token;
 use super::words::{Spoken, Tag, words};
 
@@ -71,6 +72,10 @@ pub(super) struct Wishes {
     pub per_host: Vec<PerHost>,
     /// Types of rooms that are to be open to what they serve: "open kitchen".
     pub open: Vec<String>,
+    /// Types of rooms that are to have doors to those they serve: "separate kitchen".
+    pub closed: Vec<String>,
+    /// Types of rooms that are to be near the entrance of the building.
+    pub by_entrance: Vec<String>,
     /// True when some charging place near a room is asked for.
     pub charging_room: bool,
     /// True when charging is mentioned at all.
@@ -92,6 +97,17 @@ impl Wishes {
 }
 
 impl Wishes {
+    /// Lets one enter a home through its halls: "a bike store near the front door" only says where that is.
+    pub(super) fn enter_through_halls(&mut self, domain: &Domain) {
+        let halls = &domain.circulation;
+        let hall = |id: &String| {
+            let circulates = domain.room_type(id).is_some_and(|k| k.zone == Zone::Circulation);
+            circulates || *id == halls.room_type || halls.entrance_room_types.contains(id)
+        };
+        let (entrance, near) = std::mem::take(&mut self.entrance).into_iter().partition(hall);
+        (self.entrance, self.by_entrance) = (entrance, near);
+    }
+
     /// Makes one room of a kitchen and a living room that are open to each other where a fixed number of rooms has no place
     /// for both: "three rooms: bedroom, bathroom, living room with open kitchen".
     pub(super) fn join_to_fit(&mut self, total: Option<u32>, domain: &Domain) {
@@ -155,6 +171,8 @@ pub(super) struct Text<'a> {
     pub robots: bool,
     pub language: &'a str,
     pub spoken: &'a [&'a Spoken],
+    /// The storey of every mention that the prompt puts on one.
+    pub storeys: &'a [Option<Where>],
 }
 
 /// Counts rooms and gathers pairs; contradictions become conflicts.
@@ -368,6 +386,9 @@ fn is_reference(text: &Text, m: usize, first: bool) -> bool {
         return true;
     }
     let object = text.said.objects.contains(&m);
+    if !first && on_its_own_storey(text, m) {
+        return false;
+    }
     if object && (others || !first) {
         return true;
     }
@@ -384,6 +405,17 @@ fn is_reference(text: &Text, m: usize, first: bool) -> bool {
     // A bare repeated word is a room of its own only as a list item.
     let mark = |i: Option<usize>| i.and_then(|i| text.tokens.get(i)).is_none_or(Token::is_mark);
     !(mark(mention.from.checked_sub(1)) && mark(Some(mention.span.end)))
+}
+
+/// Returns true for a room on a storey where the prompt names no other of its type: "two bedrooms on the first floor, on the
+/// second a bedroom with its own bathroom".
+fn on_its_own_storey(text: &Text, m: usize) -> bool {
+    let mention = &text.mentions[m];
+    let storey = |i: usize| text.storeys.get(i).copied().flatten();
+    let Some(here) = storey(m).filter(|_| !mention.definite || mention.count.is_some()) else { return false };
+    let mut before = (0..m).filter(|&o| text.mentions[o].what == mention.what && !text.said.negated.contains(&o));
+    let beside = text.said.relations.iter().any(|r| r.object == m && !r.belongs);
+    !beside && before.all(|o| storey(o).is_some_and(|other| other != here))
 }
 
 /// Counts rooms that come with each of another: 8 guest rooms with a bathroom each are 8 bathrooms.

@@ -149,6 +149,16 @@ pub(super) enum Tag {
     Another,
     /// One of the rooms counted before: "four bedrooms, the main one with a bathroom".
     OneOfThem,
+    /// Rooms with a door of their own to those they serve: "separate kitchen", "cuisine fermée".
+    ClosedPlan,
+    /// People for whom a home is without steps and with room for a walking frame: "seniors".
+    Frail,
+    /// What a robot does where it has nothing to do: "waits".
+    Waits,
+    /// Rooms that several have together: "shared bathroom".
+    SharedWords,
+    /// Where one sleeps in a room that is for more: "sleeping area", "coin nuit".
+    SleepingPlaces,
 }
 
 /// Words of one language.
@@ -162,6 +172,9 @@ pub(super) struct Language {
     /// Words that name a storey, with which one they mean.
     #[serde(default)]
     pub levels: BTreeMap<String, String>,
+    /// Such words without the noun, in a prompt that names another storey in full: "en la primera", "im zweiten".
+    #[serde(default)]
+    pub levels_elided: BTreeMap<String, String>,
     /// Words that say how many storeys a building has.
     #[serde(default)]
     pub storey_counts: BTreeMap<String, f64>,
@@ -222,6 +235,7 @@ pub(super) struct Dwelling {
     pub own_bed: String,
     /// Rooms in which those sleep who do not keep the home.
     pub of_others: Vec<String>,
+    pub of_guests: Vec<String>,
     /// The room of a baby, and what stands in its parents' room where it has none.
     pub baby_room: String,
     pub baby_bed: String,
@@ -323,6 +337,7 @@ pub(super) struct Spoken {
     pub tags: Phrases<Vec<Tag>>,
     pub quantities: Phrases<f64>,
     pub levels: Phrases<Where>,
+    pub levels_elided: Phrases<Where>,
     pub storey_counts: Phrases<f64>,
     pub households: Phrases<f64>,
     pub heads: Phrases<()>,
@@ -397,10 +412,14 @@ fn spoken(code: &str, words: Language) -> Spoken {
     let folded =
         |map: &BTreeMap<String, f64>| map.iter().map(|(word, value)| (super::text::fold(word), *value)).collect();
     let (numbers, multipliers) = (folded(&words.numbers), folded(&words.multipliers));
-    let mut levels = Phrases::new("");
-    for (phrase, text) in &words.levels {
-        levels.insert(phrase, Where::of(text).expect("a test reads words.toml"));
-    }
+    let storeys = |map: &BTreeMap<String, String>| {
+        let mut phrases = Phrases::new("");
+        for (phrase, text) in map {
+            phrases.insert(phrase, Where::of(text).expect("a test reads words.toml"));
+        }
+        phrases
+    };
+    let (levels, levels_elided) = (storeys(&words.levels), storeys(&words.levels_elided));
     let mut storey_counts = Phrases::new("");
     words.storey_counts.iter().for_each(|(phrase, value)| storey_counts.insert(phrase, *value));
     let mut households = Phrases::new("");
@@ -426,6 +445,7 @@ fn spoken(code: &str, words: Language) -> Spoken {
         tags,
         quantities,
         levels,
+        levels_elided,
         storey_counts,
         households,
         heads,

@@ -11,6 +11,7 @@ mod edit_storeys;
 mod homes;
 mod homes_read;
 mod hospitals;
+mod households;
 mod large;
 mod offices;
 mod order;
