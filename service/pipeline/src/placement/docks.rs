@@ -24,6 +24,10 @@ pub(super) const FROM_EXIT: i32 = 2000;
 const EXIT: f64 = 10.0;
 /// Rank of doors from which on they lead to other rooms.
 const INDOORS: u8 = 2;
+/// What a dock loses where two corridors meet, how far both go on from the robot there, and how wide they are at least, mm.
+const CROSSING: f64 = 6.0;
+const ARM: i32 = 2600;
+const LEAST_ARM: i32 = 400;
 /// What a place loses that takes floor of a dock, or that has something on its own.
 const CROWDED: f64 = 3.0;
 /// What it loses where people stand to use something.
@@ -130,8 +134,21 @@ fn is_on_floor(s: &Solid) -> bool {
     s.z0 < LOW
 }
 
-/// Returns how much a place for a unit loses by doors that open into the floor of its docks, and by those out of the building
-/// near it; 0 for other units.
+/// Returns true for a spot in a room with a corner from which one sees far both along and across it: two ways meet there.
+fn is_crossing(space: &Space, spot: &Box2) -> bool {
+    let (x, y) = spot.center();
+    let arm = |dx: i32, dy: i32| {
+        let along = Box2::new(x, y, x + dx * ARM, y + dy * ARM);
+        let side = LEAST_ARM / 2;
+        let [sx, sy] = [dy.abs() * side, dx.abs() * side];
+        space.contains(&Box2 { x0: along.x0 - sx, x1: along.x1 + sx, y0: along.y0 - sy, y1: along.y1 + sy })
+    };
+    let cornered = space.floor_rects().len() > 1;
+    cornered && (arm(1, 0) || arm(-1, 0)) && (arm(0, 1) || arm(0, -1))
+}
+
+/// Returns how much a place for a unit loses by doors that open into the floor of its docks, by those out of the building
+/// near it, and by ways that meet there; 0 for other units.
 pub(super) fn door_loss(space: &Space, p: &Placed, robot: i32) -> f64 {
     let loss = |b: &Box2, d: &DoorZone| match d.zone.overlaps(b) {
         true if d.swings_in => SWING,
@@ -146,5 +163,6 @@ pub(super) fn door_loss(space: &Space, p: &Placed, robot: i32) -> f64 {
     let of = |b: &Box2| {
         space.doors.iter().map(|d| loss(b, d)).fold(0.0, f64::max) + exits().map(|d| exit(b, d)).fold(0.0, f64::max)
     };
-    buffers(p, robot).map(|b| of(&b)).sum()
+    let crossings = berths(p).filter(|b| is_crossing(space, b)).count() as f64;
+    CROSSING * crossings + buffers(p, robot).map(|b| of(&b)).sum::<f64>()
 }

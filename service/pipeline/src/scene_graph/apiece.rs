@@ -5,6 +5,7 @@ use d3dgen_model::domain::{Domain, Program, RoomType};
 
 use super::beds::Held;
 use super::mentions::{Mention, What};
+use super::named_for;
 use super::numbers::Number;
 use super::seated;
 use super::seats::{MOST_IN_TEAM, most_desks};
@@ -18,6 +19,9 @@ const MOST_TO_OFFICE: usize = 7;
 const MOST_TO_OWN: usize = 3;
 /// Words from an office to whose it is, at most: "a private office for each of the 8 lawyers".
 const MOST_TO_WHOM: usize = 6;
+/// Words before an office that say whose it is, and behind it, at most: "offices for two of the associates".
+const MOST_OF_OWNER: usize = 2;
+const MOST_TO_OWNER: usize = 5;
 /// Words of a title, at most: "senior team leaders".
 const MOST_OF_TITLE: usize = 3;
 /// Most people who have an office each.
@@ -79,6 +83,66 @@ impl Reader<'_> {
             held.push(Held { room_type: id, count: n as u32, beds: 1 });
         }
         (held, spans)
+    }
+
+    /// Gives offices to those whom a title names again: "5 partners, 12 associates: a corner office for each partner, shared
+    /// associate offices for two" are 5 and 6. Returns the offices, and how many work there who are counted by title alone.
+    pub(super) fn by_title(&self, mentions: &mut [Mention]) -> (Vec<Held>, u32) {
+        let (mut held, mut heads) = (Vec::new(), 0);
+        if !is_office(self.program) {
+            return (held, heads);
+        }
+        for (group, n) in self.groups(mentions) {
+            let counted = mentions.iter().any(|m| m.span == group);
+            let people = n as u32;
+            let mut seated = false;
+            for m in mentions.iter_mut() {
+                let open = m.count.is_none() || m.article && m.count == Some(1);
+                let kind = m.room_type().and_then(|id| self.domain.room_type(id)).filter(|_| open);
+                let Some(kind) = kind.filter(|k| most_desks(self.domain, k) > 0 && !m.span.overlaps(group)) else {
+                    continue;
+                };
+                let Some(title) = self.named_again(group, m.span) else { continue };
+                let least = seated::desks(self.domain, kind).map_or(1, |d| d[0]);
+                let each = (m.span.end..title).any(|i| self.is_each(i));
+                let behind = self.numbers.iter().find(|k| k.span.start == m.span.end + 1 && !k.article && !k.vague);
+                let said = behind.filter(|_| self.tagged(m.span.end, Tag::Stops).is_some()).map(|k| k.value as u32);
+                let desks = if each { 1 } else { said.unwrap_or(least).max(1) };
+                if !each && (!m.plural || desks == 1) || desks > most_desks(self.domain, kind) || least > desks {
+                    continue;
+                }
+                let (id, count) = (kind.id.clone(), people.div_ceil(desks));
+                (m.count, m.article, m.vague, m.plural) = (Some(i64::from(count)), false, false, true);
+                held.push(Held { room_type: id, count, beds: desks });
+                seated = true;
+            }
+            if seated && !counted {
+                heads += people;
+            }
+        }
+        (held, heads)
+    }
+
+    /// Returns where a title is named again beside an office: before it, in its name or behind it.
+    fn named_again(&self, group: Span, office: Span) -> Option<usize> {
+        let title = singular(&self.tokens[group.end.checked_sub(1)?].text);
+        let plain = |i: &usize| !self.tokens[*i].is_mark();
+        let before = (office.start.saturating_sub(MOST_OF_OWNER)..office.end).filter(plain);
+        let behind = (office.end..(office.end + MOST_TO_OWNER).min(self.tokens.len())).take_while(plain);
+        let own = |i: &usize| title.len() > 3 && !group.contains(*i) && singular(&self.tokens[*i].text) == title;
+        before.chain(behind).find(own)
+    }
+
+    /// Returns the desks of offices that are called by their number: "six Dreierbüros".
+    pub(super) fn by_number(&self, mentions: &[Mention]) -> Vec<Held> {
+        let desks = |m: &Mention| {
+            let office = named_for::office(self.tokens.get(m.span.start)?, self.spoken)?;
+            let kind = m.room_type().and_then(|id| self.domain.room_type(id))?;
+            let count = m.count.filter(|n| *n > 0).map_or(if office.plural { 2 } else { 1 }, |n| n.min(MOST) as u32);
+            let beds = office.desks?;
+            seated::desks(self.domain, kind).map(|_| Held { room_type: kind.id.clone(), count, beds })
+        };
+        mentions.iter().filter(|m| m.span.end == m.span.start + 1).filter_map(desks).collect()
     }
 
     /// Gives those who share one room an office with a desk for each: "four paralegals sharing one room".
@@ -211,4 +275,10 @@ impl Reader<'_> {
         (m.what, m.count, m.plural) = (What::Room(kind.id.clone()), Some(1), false);
         Some(Held { room_type: kind.id.clone(), count: 1, beds: desks })
     }
+}
+
+/// Returns a title without what makes it a plural or says whose something is.
+fn singular(title: &str) -> &str {
+    let endings = ["'s", "s'", "es", "en", "s", "n", "e"];
+    endings.iter().find_map(|e| title.strip_suffix(e)).unwrap_or(title)
 }

@@ -6,7 +6,7 @@ use d3dgen_model::style::LayoutStyle;
 
 use super::compounds::opens_to;
 use super::places::note;
-use super::program::Planned;
+use super::program::{Planned, are_public};
 use super::reading::Reading;
 use super::relations::Spread;
 use super::rooms;
@@ -131,7 +131,17 @@ impl Web {
             let (from, to) = (of(&pair.a), of(&pair.b));
             let hangs = |i: usize, j: usize| planned.get(i).is_some_and(|p| p.host == Some(j));
             let met = from.iter().all(|&i| to.iter().any(|&j| hangs(i, j) || hangs(j, i)));
-            if from.is_empty() || to.is_empty() || pair.belongs || met {
+            if from.is_empty() || to.is_empty() || met {
+                continue;
+            }
+            if pair.belongs {
+                let pairs =
+                    if are_public(reading, &pair) { spread(rooms, &from, &to, Spread::Each) } else { Vec::new() };
+                for (i, j) in pairs {
+                    if !self.has_apart(&rooms[i].id, &rooms[j].id) {
+                        self.put(rooms, (i, j), Connector::Door, false, BY_PROMPT);
+                    }
+                }
                 continue;
             }
             let forbids =

@@ -1,15 +1,17 @@
 //! Rooms, people and totals that a prompt names, each with its number.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use d3dgen_model::domain::{Access, Domain, GENERIC_ROOM_TYPE, RoomType, Zone};
 use d3dgen_plugins::Registry;
 
 use super::beds::BedRoom;
 use super::compounds::{self, Compound};
+use super::named_for;
 use super::numbers::Number;
 use super::reading::is_dwelling;
 use super::seated;
+use super::seats::works_in;
 use super::text::{Kind, Phrases, Span, Token, fold};
 use super::unknown;
 use super::words::{Spoken, Tag, words};
@@ -106,6 +108,12 @@ pub(super) struct Vocabulary {
     /// Those that people have desks in, and the open one of them.
     desks: BTreeSet<String>,
     open_office: Option<String>,
+    /// Types with a desk for so many, by the number: offices that are called by it.
+    by_desks: BTreeMap<u32, String>,
+    /// Offices of other domains that this one does not know, with the least desks of each.
+    strange_offices: BTreeMap<String, u32>,
+    /// True for homes.
+    lives: bool,
     /// Those of which men and women have one each.
     parted: BTreeSet<String>,
 }
@@ -132,6 +140,13 @@ impl Vocabulary {
             ids: ids(&|_| true),
             desks: ids(&|k| desks(k).is_some()),
             open_office: open.filter(|k| most(k) > MOST_IN_TEAM).map(|k| k.id.clone()),
+            by_desks: (1..=20).filter_map(|n| Some((n, named_for::with_desks(domain, n)?.id.clone()))).collect(),
+            strange_offices: all()
+                .flat_map(|d| d.room_types.iter().filter(|k| works_in(d, k)).map(move |k| (d, k)))
+                .filter(|(_, k)| domain.room_type(&k.id).is_none())
+                .filter_map(|(d, k)| Some((k.id.clone(), seated::desks(d, k)?[0])))
+                .collect(),
+            lives,
             // "WC séparés" of a home are one, apart from its bathroom
             parted: ids(&|k| !lives && (k.wet && k.access != Access::Host || k.zone == Zone::Staff)),
         }
@@ -234,6 +249,33 @@ impl Vocabulary {
     fn known_to(&self, tokens: &[Token], i: usize, end: usize) -> bool {
         let reaches = |p: &Phrases<RoomWord>| p.longest_at(tokens, i).is_some_and(|f| f.0 >= end && f.0 > i + 1);
         self.own.iter().chain(&self.foreign).any(reaches)
+    }
+
+    /// Returns the type and the desks of an office that one word names: "Teamleiterbüro", "Dreierbüros".
+    fn office_at(&self, token: &Token, spoken: &[&Spoken]) -> Option<(&str, Option<u32>, bool)> {
+        let office = named_for::office(token, spoken).filter(|_| !self.lives)?;
+        let for_one = || self.by_desks.get(&1).map(String::as_str);
+        let id = match office.desks {
+            Some(n) => self.by_desks.get(&n).map(String::as_str)?,
+            None => self.own.iter().find_map(|p| p.word(office.head)).map(|w| w.id.as_str()).or_else(for_one)?,
+        };
+        Some((id, office.desks, office.plural))
+    }
+
+    /// Returns the domain's own type for an office that only another one has: as many have their desk there.
+    fn strange_office(&self, id: &str) -> Option<&str> {
+        let desks = self.strange_offices.get(id).filter(|_| !self.lives)?;
+        self.by_desks.get(desks).map(String::as_str)
+    }
+
+    /// Returns the domain's own room type for an unknown room, by what it is for or by a word for a room in its name.
+    fn room_for(&self, tokens: &[Token], span: Span, spoken: &[&Spoken]) -> Option<String> {
+        if self.lives {
+            return None;
+        }
+        let matters = named_for::matters(tokens, span, spoken);
+        let served = matters.into_iter().find(|id| self.ids.contains(*id)).cloned();
+        served.or_else(|| named_for::known_part(tokens, span, &self.own).map(|w| w.id))
     }
 
     /// Returns the room type of a compound's ending ("Damentoilette").
@@ -385,6 +427,16 @@ fn noun_at(
         .at(tokens, i, numbers, spoken)
         // "für den Transport": a little word of the language names no room of another one
         .filter(|r| free(r.0) && !(r.0 == i + 1 && is_little(tokens, i, spoken, language)))
+        // "cuarto de …" is no bedroom where nobody sleeps, "ascensor" the lift of the storeys and no room
+        .filter(|r| {
+            let span = Span { start: i, end: r.0 };
+            let strange = !vocabulary.ids.contains(r.1) && !vocabulary.lives;
+            !(strange && named_for::is_bare_noun(tokens, span, spoken))
+        })
+        // "Zweierbüro" is an office of this domain before it is a room of another
+        .filter(|r| vocabulary.ids.contains(r.1) || vocabulary.office_at(&tokens[i], spoken).is_none())
+        .map(|(end, id, plural)| (end, vocabulary.strange_office(id).unwrap_or(id), plural))
+        .filter(|r| !spoken.iter().any(|s| s.tag_at(tokens, i, Tag::Lift).is_some_and(|end| end >= r.0)))
         // "open-plan" is no office where there are none
         .filter(|r| {
             let open = spoken.iter().any(|s| s.tag_at(tokens, i, Tag::OpenPlan) == Some(r.0));
@@ -444,7 +496,10 @@ fn noun_at(
                     .filter(|_| !numbers.iter().any(|n| n.span.contains(i)))
                     // "nurse treatment room" is a treatment room
                     .filter(|(end, _)| free(*end) && !(i + 1..*end).any(|k| vocabulary.known_to(tokens, k, *end)))
-                    .map(|(end, name)| (end, What::Room(name), false))
+                    .map(|(end, name)| {
+                        let known = vocabulary.room_for(tokens, Span { start: i, end }, spoken);
+                        (end, What::Room(known.unwrap_or(name)), false)
+                    })
             } else {
                 None
             };
@@ -455,7 +510,11 @@ fn noun_at(
                     .flatten()
                     .map(|id| (i + 1, What::Room(id.into()), false))
             };
-            compound().or(unknown).or(people)
+            let office = || {
+                let (id, _, plural) = vocabulary.office_at(&tokens[i], spoken).filter(|_| !taken.unread)?;
+                (i >= taken.list_from || plural).then(|| (i + 1, What::Room(id.into()), plural))
+            };
+            office().or_else(compound).or(unknown).or(people)
         }
     }
 }
@@ -685,7 +744,10 @@ pub(super) fn number_after(
         "zh" => number_at(end).filter(|&k| {
             let after = counter(numbers[k].span.end).unwrap_or(numbers[k].span.end);
             let joined = spoken.iter().any(|s| s.tag_at(tokens, after, Tag::Joins).is_some());
-            closes(after) || joined || tokens[after].spaced
+            // "等候区6人": so many wait there
+            let holds = [Tag::People, Tag::Visitors, Tag::Staff, Tag::Desks, Tag::ServicePoints];
+            let held = |at: usize| at < tokens.len() && holds.iter().any(|&t| tagged(tokens, at, spoken, t));
+            !held(numbers[k].span.end) && !held(after) && (closes(after) || joined || tokens[after].spaced)
         }),
         _ => {
             let at = if matches!(next.text.as_str(), "x" | ":" | "," | "-") { end + 1 } else { return None };

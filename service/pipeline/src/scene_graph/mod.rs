@@ -20,6 +20,7 @@ mod language;
 mod layout;
 mod measures;
 mod mentions;
+mod named_for;
 mod numbers;
 mod objects;
 mod parts;

@@ -940,6 +940,18 @@ fn hold_beds(reading: &Reading, rooms: &mut [Planned]) {
     }
 }
 
+/// Returns true for two rooms of the public, one told with the other, where people work: each of them lies at the
+/// circulation, or the one would be the only way to the other and to all who work behind it.
+pub(super) fn are_public(reading: &Reading, pair: &Pair) -> bool {
+    let public = |id: &String| {
+        let kind = reading.domain.room_type(id)?;
+        (kind.zone == Zone::Public && kind.access != Access::Host).then_some(kind)
+    };
+    let (Some(a), Some(b)) = (public(&pair.a), public(&pair.b)) else { return false };
+    let serves = |k| seats::has_counters(reading.domain, k);
+    workers::is_office(reading.program) || serves(a) || serves(b)
+}
+
 /// Finds for every en suite, closet and the like the room it is entered from.
 fn hang_on_hosts(reading: &mut Reading, rooms: &mut [Planned]) {
     let domain = reading.domain;
@@ -972,6 +984,8 @@ fn hang_on_hosts(reading: &mut Reading, rooms: &mut [Planned]) {
         let through = |p: &&Pair| domain.room_type(&p.b).is_some_and(|k| k.privacy == Privacy::Private);
         let works = workers::is_office(reading.program);
         let belongs = belongs.filter(|p| !(works && shared && through(p)));
+        // "lobby with counters": the public goes on from one to the other, those who work there do not
+        let belongs = belongs.filter(|p| !are_public(reading, p));
         if !hosted && belongs.is_none() {
             continue;
         }

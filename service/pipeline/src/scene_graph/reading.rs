@@ -289,6 +289,9 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         spoken: &spoken,
         list_from: building.list_from,
     };
+    let (titled_offices, titled_heads) = apiece.by_title(&mut mentions);
+    seated.extend(titled_offices);
+    seated.extend(apiece.by_number(&mentions));
     let (single_offices, apiece_words) = apiece.each_an_office(&mut mentions);
     seated.extend(single_offices);
     let (shared_offices, sharing_words) = apiece.one_for_all(&mut mentions);
@@ -438,6 +441,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         let settled = sleepers.settle(&mut wishes, &mut assumptions, &mut conflicts);
         wishes::each_of_counted(&mentions, &said.each, &mut wishes);
         (held, people.occupancy.beds) = (settled.held, settled.beds.or(parts.beds));
+        people.occupancy.staff = people.occupancy.staff.map(|n| n.saturating_add(titled_heads));
         let desks: u32 = seated.iter().map(|s| s.count.saturating_mul(s.beds)).fold(0, u32::saturating_add);
         let heads = &mut people.occupancy;
         let counted = if heads.desks.is_some() || counts_desks { &mut heads.desks } else { &mut heads.staff };

@@ -181,8 +181,10 @@ impl Reader<'_> {
                 continue;
             }
             let (id, rooms) = (kind.id.clone(), counted.unwrap_or(1));
-            // "4 offices for 8 people" share them; "two meeting rooms for 6" have as many each
-            let each = if desks > 0 { n.div_ceil(rooms) } else { n };
+            // "4 offices for 8 people" share them; "two meeting rooms for 6" have as many each, and so have "8 offices for 4"
+            let least = seated::desks(self.domain, kind).map_or(1, |d| d[0]);
+            let shared = desks > 0 && n.div_ceil(rooms) >= least && n >= rooms;
+            let each = if shared { n.div_ceil(rooms) } else { n };
             let held = Held { room_type: id, count: rooms, beds: each };
             if desks == 0 {
                 out.seats.push(held);
@@ -190,14 +192,16 @@ impl Reader<'_> {
                 gone.extend(noun);
                 continue;
             }
-            if desks > 2 || each <= desks {
-                // "newsroom for 20" is larger than such a room is otherwise
-                let open = self.domain.room_types.iter().max_by_key(|k| most_desks(self.domain, k));
-                let larger = open.filter(|k| each > desks && most_desks(self.domain, k) >= each);
+            if desks > 2 || each <= desks || counted.is_some() || !mention.plural {
+                // "newsroom for 20", "private offices for 4" are larger than such rooms are otherwise
+                let larger = self.larger(each).filter(|_| each > desks);
+                if larger.is_none() && each > desks && desks <= 2 {
+                    continue;
+                }
                 let held = Held { room_type: larger.map_or(held.room_type, |k| k.id.clone()), ..held };
                 mentions[m].what = What::Room(held.room_type.clone());
                 // hot desks are one room
-                if counted.is_none() && mention.plural {
+                if desks > 2 && counted.is_none() && mention.plural {
                     (mentions[m].count, mentions[m].plural) = (Some(1), false);
                 }
                 out.desks.push(held);
@@ -243,6 +247,13 @@ impl Reader<'_> {
 
     fn any(&self, i: usize, tags: &[Tag]) -> bool {
         tags.iter().any(|&t| self.tagged(i, t).is_some())
+    }
+
+    /// Returns the smallest type of rooms to work in that holds so many desks, of those that a program of the domain has.
+    fn larger(&self, desks: u32) -> Option<&RoomType> {
+        let kinds = self.domain.room_types.iter().filter(|k| most_desks(self.domain, k) >= desks);
+        let listed = |k: &&RoomType| self.domain.programs.iter().flat_map(|p| &p.rooms).any(|e| e.room_type == k.id);
+        kinds.filter(listed).min_by_key(|k| most_desks(self.domain, k))
     }
 
     /// Returns true for "6 agents open plan": the number counts who works there.

@@ -184,6 +184,9 @@ pub(super) struct Language {
     /// Words for rooms whose first word only says what for: "model workshop".
     #[serde(default)]
     pub heads: Vec<String>,
+    /// What a room is for that no domain knows by name, with the room types that serve it, the best first: "plotter".
+    #[serde(default)]
+    pub matters: BTreeMap<String, Vec<String>>,
     /// Words that name a room of the day or several, with the room types; in a row they name rooms that are open to each other.
     #[serde(default)]
     pub joint: BTreeMap<String, Vec<String>>,
@@ -341,6 +344,7 @@ pub(super) struct Spoken {
     pub storey_counts: Phrases<f64>,
     pub households: Phrases<f64>,
     pub heads: Phrases<()>,
+    pub matters: Phrases<Vec<String>>,
     pub joint: Phrases<Vec<String>>,
     pub suites: Phrases<Vec<String>>,
     pub sizes: Phrases<f64>,
@@ -355,6 +359,11 @@ pub(super) struct Spoken {
 }
 
 impl Spoken {
+    /// Returns the code of the language.
+    pub(super) fn language(&self) -> &str {
+        self.quantities.language()
+    }
+
     /// Returns the end of the longest phrase with this tag that begins at a token.
     pub(super) fn tag_at(&self, tokens: &[Token], i: usize, tag: Tag) -> Option<usize> {
         self.tags.longest_at(tokens, i).filter(|(_, tags)| tags.contains(&tag)).map(|(end, _)| end)
@@ -426,6 +435,8 @@ fn spoken(code: &str, words: Language) -> Spoken {
     words.households.iter().for_each(|(phrase, value)| households.insert(phrase, *value));
     let mut heads = Phrases::new(code);
     words.heads.iter().for_each(|phrase| heads.insert(phrase, ()));
+    let mut matters = Phrases::new(code);
+    words.matters.iter().for_each(|(phrase, types)| matters.insert(phrase, types.clone()));
     let table = |map: &BTreeMap<String, Vec<String>>| {
         let mut phrases = Phrases::new("");
         map.iter().for_each(|(phrase, types)| phrases.insert(phrase, types.clone()));
@@ -449,6 +460,7 @@ fn spoken(code: &str, words: Language) -> Spoken {
         storey_counts,
         households,
         heads,
+        matters,
         joint,
         suites,
         sizes,

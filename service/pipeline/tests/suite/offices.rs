@@ -178,3 +178,41 @@ fn who_sits_back_to_back_has_floor_to_get_up_on() {
     }
     assert!(backs >= 10 && desks > 100, "{backs} pairs of {desks} desks sit back to back");
 }
+
+#[test]
+fn who_serves_at_a_counter_has_room_behind_it() {
+    let prompt = "Tax office on one level: service hall with 6 counters, waiting area for 30, six two-person offices, archive, staff room, toilets";
+    let mut free: Vec<bool> = Vec::new();
+    for world in worlds(prompt, 3) {
+        for p in world.placements.placements.iter().filter(|p| p.object == "teller_counter") {
+            let room = world.floorplan.room(&p.room_id).expect("a counter stands in a room");
+            let back = p.size_m[1].min(p.size_m[0]) / 2.0 + 1.1;
+            let (sin, cos) = p.pose.yaw_rad.sin_cos();
+            let behind = d3dgen_model::Point::new(p.pose.x - back * cos, p.pose.y - back * sin);
+            free.push(room.net_polygon.contains(behind));
+        }
+    }
+    crate::common::most("1.1 m behind counters", 0.95, &free);
+}
+
+#[test]
+fn those_who_work_behind_a_public_hall_do_not_cross_it() {
+    let prompts = [
+        "Agence bancaire de plain-pied : hall d'accueil avec trois guichets, quatre bureaux de conseillers, bureau du directeur, salle de pause, sanitaires",
+        "Law firm on one floor: client waiting area with reception, six private offices, library, conference room, break room, toilets",
+    ];
+    let registry = Registry::builtin();
+    for prompt in prompts {
+        let request = Request { prompt: prompt.into(), seed: 1, ..Request::default() };
+        let graph = generate(&request, &registry).expect("a prompt about an office");
+        let corridor = &graph.rooms.iter().find(|r| r.circulation).expect("rooms at a corridor").id;
+        for id in ["lobby", "counter_hall", "banking_hall", "waiting_area", "reception"] {
+            for room in graph.rooms.iter().filter(|r| r.room_type == id) {
+                let own = |e: &&d3dgen_model::scene_graph::GraphEdge| {
+                    e.required && (e.a == room.id && &e.b == corridor || e.b == room.id && &e.a == corridor)
+                };
+                assert!(graph.edges.iter().any(|e| own(&e)), "{prompt}: {} lies behind another room", room.id);
+            }
+        }
+    }
+}
