@@ -108,7 +108,9 @@ impl Reader<'_> {
                 let behind = self.numbers.iter().find(|k| k.span.start == m.span.end + 1 && !k.article && !k.vague);
                 let said = behind.filter(|_| self.tagged(m.span.end, Tag::Stops).is_some()).map(|k| k.value as u32);
                 let desks = if each { 1 } else { said.unwrap_or(least).max(1) };
-                if !each && (!m.plural || desks == 1) || desks > most_desks(self.domain, kind) || least > desks {
+                // "offices for two": the number is the last word
+                let plural = m.plural || (m.span.start..m.span.end).any(|i| self.tokens[i].text.ends_with('s'));
+                if !each && (!plural || desks == 1) || desks > most_desks(self.domain, kind) || least > desks {
                     continue;
                 }
                 let (id, count) = (kind.id.clone(), people.div_ceil(desks));

@@ -6,6 +6,7 @@ use d3dgen_model::domain::{Domain, RoomType};
 
 use super::numbers;
 use super::seated;
+use super::seats::works_in;
 use super::text::{Kind, Phrases, Span, Token, fold};
 use super::words::{Spoken, Tag};
 
@@ -49,11 +50,15 @@ fn number(owner: &str, german: &Spoken) -> Option<u32> {
     (n.fract() == 0.0 && (1.0..=MOST_DESKS).contains(&n)).then_some(n as u32)
 }
 
-/// Returns the domain's room type with so many desks, the smallest that holds them.
+/// Space of the knowledge base that offices of all kinds are, as a part of its name.
+const OFFICE_SPACE: &str = "office";
+
+/// Returns the domain's office with so many desks, the smallest that holds them: no workshop and no laboratory.
 pub(super) fn with_desks(domain: &Domain, desks: u32) -> Option<&RoomType> {
     let fits = |k: &&RoomType| seated::desks(domain, k).is_some_and(|[low, high]| (low..=high).contains(&desks));
     let most = |k: &&RoomType| seated::desks(domain, k).map_or(0, |d| d[1]);
-    domain.room_types.iter().filter(fits).min_by_key(most)
+    let office = |k: &&RoomType| works_in(domain, k) || k.spaces.iter().any(|s| s.contains(OFFICE_SPACE));
+    domain.room_types.iter().filter(office).filter(fits).min_by_key(most)
 }
 
 /// Returns true where a word is only the noun of "cuarto de …", "sala de …": by itself it names no room of another kind of
