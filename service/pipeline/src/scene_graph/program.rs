@@ -1036,7 +1036,9 @@ fn share_last_bathroom(reading: &mut Reading, rooms: &mut [Planned]) {
     let without = (0..rooms.len()).filter(|&i| sleeps(&rooms[i]) && !own(i)).count();
     let shared = rooms.iter().any(|r| bathes(r) && r.host.is_none());
     let last = rooms.iter().rposition(|r| bathes(r) && r.host.is_some() && r.kind.access != Access::Host);
-    let Some(last) = last.filter(|_| without > 0 && !shared) else { return };
+    // where several rooms have their own, what the others lack is said
+    let hosted = rooms.iter().filter(|r| bathes(r) && r.host.is_some()).count();
+    let Some(last) = last.filter(|_| without > 0 && !shared && hosted == 1) else { return };
     rooms[last].host = None;
     let label = rooms[last].kind.label.to_lowercase();
     let message = format!("no other {label} serves all bedrooms; it opens to the hall and not into one of them");
