@@ -22,6 +22,8 @@ const MOST_TO_WHOM: usize = 6;
 /// Words before an office that say whose it is, and behind it, at most: "offices for two of the associates".
 const MOST_OF_OWNER: usize = 2;
 const MOST_TO_OWNER: usize = 5;
+/// Words between two titles of one list, at most: "and", a comma.
+const LIST_GAP: usize = 2;
 /// Words of a title, at most: "senior team leaders".
 const MOST_OF_TITLE: usize = 3;
 /// Most people who have an office each.
@@ -86,16 +88,21 @@ impl Reader<'_> {
     }
 
     /// Gives offices to those whom a title names again: "5 partners, 12 associates: a corner office for each partner, shared
-    /// associate offices for two" are 5 and 6. Returns the offices, and how many work there who are counted by title alone.
+    /// associate offices for two" are 5 and 6. Returns the offices, and how many they are who are counted in one list with
+    /// those who have them.
     pub(super) fn by_title(&self, mentions: &mut [Mention]) -> (Vec<Held>, u32) {
-        let (mut held, mut heads) = (Vec::new(), 0);
+        let mut held = Vec::new();
         if !is_office(self.program) {
-            return (held, heads);
+            return (held, 0);
         }
+        // the list that one reads on: where it ends, how many are in it, whether one of them has an office
+        let (mut end, mut listed, mut seated, mut heads) = (0, 0, false, 0);
         for (group, n) in self.groups(mentions) {
-            let counted = mentions.iter().any(|m| m.span == group);
             let people = n as u32;
-            let mut seated = false;
+            if group.start > end + LIST_GAP {
+                (listed, seated) = (0, false);
+            }
+            (end, listed) = (group.end, listed + people);
             for m in mentions.iter_mut() {
                 let open = m.count.is_none() || m.article && m.count == Some(1);
                 let kind = m.room_type().and_then(|id| self.domain.room_type(id)).filter(|_| open);
@@ -118,8 +125,8 @@ impl Reader<'_> {
                 held.push(Held { room_type: id, count, beds: desks });
                 seated = true;
             }
-            if seated && !counted {
-                heads += people;
+            if seated {
+                heads = heads.max(listed);
             }
         }
         (held, heads)

@@ -120,15 +120,11 @@ pub(super) fn sleep_where_one_lives(
         });
         return told;
     }
-    let open = |m: &Mention| {
-        let tagged = |i: usize, tag| spoken.iter().any(|s| s.tag_at(tokens, i, tag).is_some());
-        let beside = m.span.start.checked_sub(1).into_iter().chain([m.span.end]).filter(|i| *i < tokens.len());
-        tagged(m.span.start, Tag::Corners) || beside.into_iter().any(|i| tagged(i, Tag::OpenPlan))
-    };
+    let corner = |m: &Mention| spoken.iter().any(|s| s.tag_at(tokens, m.span.start, Tag::Corners).is_some());
     let mut has = false;
     mentions.retain_mut(|m| {
         let Some(id) = m.room_type() else { return true };
-        let (lives, cooks) = (id == d.living || id == d.studio || place(m), id == d.kitchen && open(m));
+        let (lives, cooks) = (id == d.living || id == d.studio || place(m), id == d.kitchen && corner(m));
         if cooks || lives && has {
             told.push(m.span);
             return false;

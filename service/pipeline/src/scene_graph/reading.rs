@@ -441,7 +441,9 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         let settled = sleepers.settle(&mut wishes, &mut assumptions, &mut conflicts);
         wishes::each_of_counted(&mentions, &said.each, &mut wishes);
         (held, people.occupancy.beds) = (settled.held, settled.beds.or(parts.beds));
-        people.occupancy.staff = people.occupancy.staff.map(|n| n.saturating_add(titled_heads));
+        if titled_heads > 0 {
+            people.occupancy.staff = people.occupancy.staff.max(Some(titled_heads));
+        }
         let desks: u32 = seated.iter().map(|s| s.count.saturating_mul(s.beds)).fold(0, u32::saturating_add);
         let heads = &mut people.occupancy;
         let counted = if heads.desks.is_some() || counts_desks { &mut heads.desks } else { &mut heads.staff };
