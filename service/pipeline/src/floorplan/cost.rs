@@ -23,9 +23,6 @@ const IN_WARDS: f64 = 2.5;
 const FEW_ROOMS: usize = 14;
 /// Cost of a room without the daylight that it is better with, beside those that take a facade and need none.
 const DARK: f64 = 1.8;
-/// How much more that counts of a room that people work or meet in, in other buildings than homes: a store behind the facade and
-/// a meeting room inside are the wrong way round.
-const DARK_WORK: f64 = 2.0;
 /// Share by which circulation beyond what is advised counts as larger.
 const ILL_SHARED: f64 = 0.05;
 /// Length from which on the hall of a home is a tunnel, m, what a meter more counts as share of circulation, and how many more
@@ -75,7 +72,7 @@ const WRONG_SIZES: f64 = 1.5;
 const TOUCHING: f64 = 0.35;
 
 /// How much more a wet room counts that lies beside no other in a home, where there are few of them.
-const PIPES_AT_HOME: f64 = 2.2;
+const PIPES_AT_HOME: f64 = 1.6;
 
 /// Length over width from which on a room looks like a slot, and what that costs beside its proportion.
 const SLOT_FROM: f64 = 1.9;
@@ -451,10 +448,7 @@ impl<'b> Judge<'b> {
                 _ if spec.needs_outer_wall() => {
                     score.hard += meters((up(spec.least_outer_wall()) - longest).max(0));
                 }
-                Daylight::Preferred if longest < up(LEAST_WALL_M) && !corridor => {
-                    let works = !self.home && matches!(spec.zone, Zone::Day | Zone::Staff);
-                    score.soft[3] += if works { DARK * DARK_WORK } else { DARK };
-                }
+                Daylight::Preferred if longest < up(LEAST_WALL_M) && !corridor => score.soft[3] += DARK,
                 Daylight::None | Daylight::Optional if !spec.circulation => {
                     score.soft[3] += 0.03 * meters(total).min(6.0)
                 }

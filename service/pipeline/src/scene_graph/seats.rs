@@ -171,7 +171,8 @@ impl Reader<'_> {
                 (mentions[m].count, mentions[m].number) = (None, None);
                 count.map(|n| (n, None))
             } else {
-                self.after(mentions, m).or_else(|| self.before(mentions, m))
+                let found = self.after(mentions, m).or_else(|| self.before(mentions, m));
+                found.or_else(|| self.desks_in(mentions, m).filter(|_| desks > 2))
             };
             let Some((n, noun)) = found else { continue };
             let Some(n) = Some(n).filter(|n| (1..=MOST_PLACES).contains(n)).map(|n| n as u32) else { continue };
@@ -314,6 +315,14 @@ impl Reader<'_> {
             let who = mentions.iter().position(|o| o.span.start == noun && o.room_type().is_none());
             (number.value as i64, who)
         })
+    }
+
+    /// Returns the number in "40 desks in an open space".
+    fn desks_in(&self, mentions: &[Mention], m: usize) -> Option<(i64, Option<usize>)> {
+        let start = mentions[m].from.min(mentions[m].span.start);
+        let beside = |o: &Mention| o.span.end + 1 == start && self.tagged(o.span.end, Tag::Inside).is_some();
+        let desks = mentions.iter().find(|o| o.what == What::Desks && !o.article && !o.vague && beside(o))?;
+        desks.count.map(|n| (n, None))
     }
 
     fn overlaps_taken(&self, span: Span) -> bool {

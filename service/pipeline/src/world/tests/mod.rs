@@ -121,7 +121,9 @@ fn failure(entry: &Break) -> Option<String> {
                 return Some(format!("`{subject}` of {} is not reported, but {:?}", world.name, rule.violations));
             }
             exact |= found && rules.iter().all(|r| *r == entry.rule || entry.also.contains(r));
-            closest = format!("{subject} in {}: found {found}, broke {rules:?}", world.name);
+            if found || !closest.contains("found true") {
+                closest = format!("{subject} in {}: found {found}, broke {rules:?}", world.name);
+            }
         }
     }
     (!exact).then(|| format!("{tried} changes, none breaks this rule alone; last {closest}"))
