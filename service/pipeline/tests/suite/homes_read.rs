@@ -89,7 +89,7 @@ fn a_corner_to_work_in_is_no_room() {
         "flat with two bedrooms, kitchen, living room with a home office corner, bathroom",
         "piso con dos dormitorios, cocina, salón con rincón de trabajo y baño",
     ] {
-        for world in worlds(prompt, 2) {
+        for world in worlds(prompt, 5) {
             assert_eq!(rooms(&world, "home_office"), 0, "{prompt}");
             held.push(things(&world, "living_room", "small_desk") == 1);
         }

@@ -110,8 +110,8 @@ pub(super) const BREAKS: &[Break] = &[
     ),
     always("room_area", |s| range(s, |area| [area * 1.1, area * 1.2])),
     always("room_area", |s| range(s, |area| [area * 0.5, area * 0.9])),
-    somewhere("room_dimension", &["room_proportion", "robot_stuck"], slits),
-    somewhere("room_proportion", &["room_dimension", "robot_stuck"], slits),
+    somewhere("room_dimension", &["room_proportion", "robot_stuck", "unreachable_zone", "object_clearance"], slits),
+    somewhere("room_proportion", &["room_dimension", "robot_stuck", "unreachable_zone", "object_clearance"], slits),
     somewhere("room_height", &["object_too_high", "window_misplaced"], |s| {
         each(s, 0..s.world.floorplan.rooms.len(), |w, i| {
             let room = &mut w.floorplan.rooms[i];
