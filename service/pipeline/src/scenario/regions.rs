@@ -103,8 +103,8 @@ fn buffers<'r>(floor: &'r Floor, room: &'r Room) -> impl Iterator<Item = (&'r Pl
     })
 }
 
-/// Returns the floor where robots serve at an object, so many quarters left of its front, without what stands there, the floor of docks, the swing of doors and
-/// the way in from outside, where enough is left.
+/// Returns the floor where robots serve at an object, so many quarters left of its front, without what stands there, the
+/// floor of docks, the swing of doors and the way in from outside, where enough is left.
 fn service_floor(floor: &Floor, room: &Room, (object, side): (&Placement, u8), buffers: &[(&Placement, Rect)]) -> Rect {
     let together =
         |p: &Placement| p.placement_id == object.placement_id || p.group.is_some() && p.group == object.group;

@@ -6,7 +6,7 @@ use d3dgen_model::floorplan::Door;
 use d3dgen_model::scenario::{Roi, RoiKind};
 use d3dgen_model::{Polygon, Rect};
 
-use super::floor::{Floor, Room, floor_in_front};
+use super::floor::{Floor, Room, floor_in_front, lane};
 use super::points::served;
 use super::regions::clipped;
 
@@ -86,13 +86,12 @@ fn before_doors<'f>(floor: &'f Floor, room: &'f Room) -> Vec<Slow<'f>> {
     slow.collect()
 }
 
-/// Returns the floor before and behind a door.
+/// Returns the floor before and behind a door, and a little beside it.
 fn around(door: &Door, depth: f64) -> Rect {
-    let (a, b) = (door.line.start, door.line.end);
-    let r = Rect::new(a.x.min(b.x), a.y.min(b.y), a.x.max(b.x), a.y.max(b.y));
+    let r = lane(door, depth);
     match door.line.is_vertical() {
-        true => Rect { x0: r.x0 - depth, x1: r.x1 + depth, y0: r.y0 - BESIDE_M, y1: r.y1 + BESIDE_M },
-        false => Rect { y0: r.y0 - depth, y1: r.y1 + depth, x0: r.x0 - BESIDE_M, x1: r.x1 + BESIDE_M },
+        true => Rect { y0: r.y0 - BESIDE_M, y1: r.y1 + BESIDE_M, ..r },
+        false => Rect { x0: r.x0 - BESIDE_M, x1: r.x1 + BESIDE_M, ..r },
     }
 }
 
