@@ -100,6 +100,8 @@ class World:
             json.loads((folder / f"{name}.json").read_text()) for name in ("floorplan", "placements", "scenario")
         )
         self.rooms = [Room(r, plan, placements["placements"]) for r in plan["rooms"]]
+        self.walls = [outline([w["line"]["start"], w["line"]["end"]]) for w in plan["walls"]]
+        self.doors = plan["doors"]
         self.robots = scenario.get("robots", [])
         self.docked = [(z["room_id"], outline(z["polygon"])) for z in scenario["rois"] if z["kind"] == "charging_buffer"]
 
@@ -615,6 +617,109 @@ def screen_between_windows(world):
                     sides.add(left > 0)
             if len(sides) == 2:
                 return True
+    return False
+
+
+def sees(world, eye, point):
+    """Whether no wall is between two points."""
+    (x, y), (u, v) = eye, point
+    for x0, y0, x1, y1 in world.walls:
+        if x1 - x0 < y1 - y0:
+            share, low, high, other = (x0 - x) / (u - x) if u != x else -1, y0, y1, lambda t: y + t * (v - y)
+        else:
+            share, low, high, other = (y0 - y) / (v - y) if v != y else -1, x0, x1, lambda t: x + t * (u - x)
+        if 0 < share < 1 and low < other(share) < high:
+            return False
+    return True
+
+
+@objection("B", "hospital")
+def blind_station(world):
+    """nurse stations from whose seats and counters no door of a patient is seen"""
+    stations = world.of("nurse_station")
+    wards = [r for r in world.rooms if r.kind in ("patient_room", "patient_room_double", "icu_room", "postnatal_room")]
+    if not stations or not wards:
+        return False
+    eyes = [(b.x, b.y) for r in stations for b in r.named(*WORK_CHAIRS)]
+    for counter in (b for r in stations for b in r.having("counter", "reception_desk")):
+        ahead = counter.depth / 2 + 0.4
+        eyes += [(counter.x + side * ahead * math.cos(counter.yaw), counter.y + side * ahead * math.sin(counter.yaw)) for side in (1, -1)]
+    circulation = {r.id: r for r in world.rooms if r.circulation}
+    for room in wards:
+        for door in (d for d in room.doors if any(i in circulation for i in d["room_ids"])):
+            a, b = door["line"]["start"], door["line"]["end"]
+            hall = next(circulation[i] for i in door["room_ids"] if i in circulation)
+            upright = abs(a["x"] - b["x"]) < abs(a["y"] - b["y"])
+            for k in (1, 5, 9):
+                x, y = a["x"] + (b["x"] - a["x"]) * k / 10, a["y"] + (b["y"] - a["y"]) * k / 10
+                faces = [(x + 0.1, y), (x - 0.1, y)] if upright else [(x, y + 0.1), (x, y - 0.1)]
+                if any(sees(world, eye, p) for eye in eyes for p in faces if inside(hall.corners, *p)):
+                    return False
+    return True
+
+
+def inside(corners, x, y):
+    """Whether a point is in a polygon of corners."""
+    odd = False
+    for (x0, y0), (x1, y1) in zip(corners, corners[1:] + corners[:1], strict=True):
+        if (y0 > y) != (y1 > y) and x < x0 + (y - y0) / (y1 - y0) * (x1 - x0):
+            odd = not odd
+    return odd
+
+
+@objection("B")
+def dryer_far_from_basin(world):
+    """a hand dryer more than 1.6 m from every basin"""
+    for room in world.rooms:
+        basins = room.having("basin")
+        for dryer in room.named("hand_dryer"):
+            if basins and min(gap(dryer.rect, b.rect) for b in basins) > 1.6:
+                return True
+    return False
+
+
+@objection("B", "hospital")
+def basin_far_from_entrance(world):
+    """the hand basin of a patient or treatment room more than 2.5 m from where one comes in"""
+    halls = {r.id for r in world.rooms if r.circulation}
+    for room in world.of("patient_room", "exam_room", "treatment_room", "icu_room"):
+        basins = room.named(*HAND_BASINS)
+        ways_in = (d["line"] for d in room.doors if halls & set(d["room_ids"]))
+        lines = [outline([line["start"], line["end"]]) for line in ways_in]
+        if basins and lines and min(gap(b.rect, line) for b in basins for line in lines) > 2.5:
+            return True
+    return False
+
+
+@objection("B")
+def hall_of_a_toilet(world):
+    """a toilet of more than 6.5 m2 with one WC"""
+    kinds = ("toilet", "restroom", "guest_toilet")
+    return any(r.area > 6.5 and len(r.named(*TOILETS)) == 1 for r in world.of(*kinds))
+
+
+@objection("A")
+def no_pocket(world):
+    """a sliding leaf with no wall to go into"""
+    for door in (d for d in world.doors if d["kind"] == "sliding"):
+        x0, y0, x1, y1 = outline([door["line"]["start"], door["line"]["end"]])
+        upright = x1 - x0 < y1 - y0
+        low, high, at = (y0, y1, x0) if upright else (x0, x1, y0)
+        width = high - low
+        start = door["line"]["start"]["y" if upright else "x"]
+        ahead = start < (low + high) / 2
+        before, after = {"beyond_start": (1, 0), "beyond_end": (0, 1), "apart": (0.5, 0.5), "up": (0, 0),
+                         "stacked_beyond_start": (0.5, 0), "stacked_beyond_end": (0, 0.5)}[door["slide"]]  # fmt: skip
+        if not ahead:
+            before, after = after, before
+        own = [(w[1], w[3]) if upright else (w[0], w[2]) for w in world.walls
+               if (w[2] - w[0] < w[3] - w[1]) == upright and abs((w[0] if upright else w[1]) - at) < 0.001]  # fmt: skip
+        for a, b in ((low - before * width, low), (high, high + after * width)):
+            while a < b - 0.001:
+                further = [end for begin, end in own if begin <= a + 0.001 and end > a + 0.001]
+                if not further:
+                    return True
+                a = max(further)
     return False
 
 

@@ -173,10 +173,13 @@ impl Laid {
         true
     }
 
-    /// Moves doors that look into a bathroom, or out of one, where a later door made it so, and adds up what all cost.
+    /// Moves doors that look into a bathroom, or out of one, and leaves without wall to go into, where a later door made it so,
+    /// and adds up what all cost.
     fn settle(&mut self) {
         for n in 0..self.spots.len() {
-            if !self.spots.iter().any(|other| self.spots[n].looks_into(other)) {
+            let own = &self.spots[n];
+            let disturbed = |(k, other): (usize, &Spot)| k != n && (own.looks_into(other) || own.takes_wall_of(other));
+            if !self.spots.iter().enumerate().any(disturbed) {
                 continue;
             }
             let costs = self.choices[n].iter().map(|spot| self.disturbance(spot, n));

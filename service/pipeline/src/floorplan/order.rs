@@ -25,6 +25,8 @@ const HEAT: f64 = 0.3;
 const LEAST_FRONT_M: f64 = 1.2;
 /// Cost of a ward none of whose bedroom doors its station sees.
 const OUT_OF_SIGHT: f64 = 8.0;
+/// How far along the wall across from a station one sees a door beyond the ends of the station, m.
+const ALONG_M: f64 = 0.5;
 /// What a way from the stations to the bedrooms as long as the building is wide costs.
 const OFF_CENTER: f64 = 2.5;
 /// Way from a station to a bedroom from which on it is too long, m, and what as much more counts beside its length.
@@ -185,35 +187,48 @@ impl Judge<'_> {
         ways / f64::from(count.max(1))
     }
 
-    /// Returns the share of bedrooms that no station with an open front sees: from there one sees the doors in the other walls
-    /// of each piece of corridor that it stands at, of an L both arms where it stands in the corner.
+    /// Returns the share of bedrooms that no station with an open front sees: from there one sees the doors not far along in the
+    /// wall across each piece of corridor that it stands at, and in walls at its ends, of an L both arms where it stands in the
+    /// corner.
     fn out_of_sight(&self, layout: &Layout) -> f64 {
         let brief = self.brief;
         let Some(spine) = brief.spine.filter(|_| !brief.hub) else { return 0.0 };
         let is_station = |spec: &RoomSpec| spec.on_spine && spec.zone == Zone::Staff && spec.open_front;
         let pieces: Vec<Cellbox> = layout.boxes.iter().filter(|b| b.0 == spine).map(|b| b.1).collect();
-        let at = |piece: &Cellbox, wanted: &dyn Fn(usize) -> bool| -> u8 {
+        let at = |piece: &Cellbox, wanted: &dyn Fn(usize) -> bool| -> Vec<Front> {
             let boxes = layout.boxes.iter().filter(|(room, _)| wanted(*room));
-            boxes.filter_map(|(_, b)| side_of(piece, b)).fold(0, |sides, side| sides | 1 << side)
+            boxes.filter_map(|(_, b)| front_of(piece, b)).collect()
         };
-        let posts: Vec<u8> = pieces.iter().map(|c| at(c, &|room| is_station(&brief.rooms[room]))).collect();
-        if posts.iter().all(|sides| *sides == 0) {
+        let posts: Vec<Vec<Front>> = pieces.iter().map(|c| at(c, &|room| is_station(&brief.rooms[room]))).collect();
+        if posts.iter().all(Vec::is_empty) {
             return 0.0;
         }
-        let sees = |sides: u8, post: u8| (0..4).any(|s| sides & 1 << s != 0 && post & !(1 << s) != 0);
         let (mut all, mut hidden) = (0, 0);
         for (bed, _) in brief.rooms.iter().enumerate().filter(|(_, s)| s.on_spine && s.zone == Zone::Night) {
             all += 1;
-            let seen = pieces.iter().zip(&posts).any(|(c, post)| *post != 0 && sees(at(c, &|room| room == bed), *post));
+            let seen = pieces.iter().zip(&posts).any(|(c, posts)| {
+                !posts.is_empty()
+                    && at(c, &|room| room == bed).iter().any(|bed| posts.iter().any(|post| sees(post, bed)))
+            });
             hidden += u32::from(!seen);
         }
         f64::from(hidden) / f64::from(all.max(1))
     }
 }
 
-/// Returns the side of a piece of corridor along which a room has wall enough for its door.
-fn side_of(piece: &Cellbox, b: &Cellbox) -> Option<usize> {
-    piece.contact(b).filter(|(_, from, to)| to - from >= up(LEAST_FRONT_M)).map(|(side, ..)| side)
+/// Where a room lies along a piece of corridor: the side of the piece, and from where to where, in lattice units.
+type Front = (usize, i32, i32);
+
+/// Returns true for a room whose door one sees from a station: never in the station's own wall, in the wall across as far
+/// along as the opening lets one look.
+fn sees((side, from, to): &Front, (other, low, high): &Front) -> bool {
+    let along = (low - to).max(from - high);
+    side != other && (side / 2 != other / 2 || along <= up(ALONG_M))
+}
+
+/// Returns where a room lies along a piece of corridor, with wall enough for its door.
+fn front_of(piece: &Cellbox, b: &Cellbox) -> Option<Front> {
+    piece.contact(b).filter(|(_, from, to)| to - from >= up(LEAST_FRONT_M))
 }
 
 /// Returns when one comes to a room, behind the entrance: nobody passes bathrooms on the way to the living room; `None`

@@ -145,6 +145,19 @@ impl Nav {
         2 * self.shared.radius + 2 * HALF
     }
 
+    /// Returns true when a robot can leave each of these spots while others stand on all the rest, mm.
+    pub fn passes_parked(&self, spots: &[Box2]) -> bool {
+        let leaves = |own: usize| {
+            let mut nav = self.clone();
+            let parked = spots.iter().enumerate().filter(|(k, _)| *k != own).map(|(_, spot)| spot);
+            parked.for_each(|spot| nav.block(&spot.grown(nav.shared.radius)));
+            nav.whole = false;
+            nav.settle();
+            nav.reaches(&spots[own..=own])
+        };
+        spots.len() < 2 || (0..spots.len()).all(leaves)
+    }
+
     /// Returns the number of cells in the room that the disc's center can reach.
     pub fn area(&self) -> usize {
         self.area

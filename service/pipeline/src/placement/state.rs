@@ -143,6 +143,9 @@ pub(super) struct State<'a, 's> {
     circle: Option<Circle>,
     /// Floor that belongs to docks.
     pub docks: Vec<Box2>,
+    /// Where robots stand at them, and true while each of them can leave past all others.
+    berths: Vec<Box2>,
+    berths_open: bool,
     /// Floor at the foot of beds through which one gets to their sides.
     pub beside_beds: Vec<Box2>,
     /// Floor between screens and boards and those who look at them, and how high what stands there may be, mm.
@@ -177,6 +180,8 @@ impl<'a, 's> State<'a, 's> {
             turning: None,
             circle: None,
             docks: Vec::new(),
+            berths: Vec::new(),
+            berths_open: true,
             beside_beds: Vec::new(),
             sights: Vec::new(),
             nav,
@@ -335,7 +340,9 @@ impl<'a, 's> State<'a, 's> {
             // what stands there for good may be out of reach already
             && self.targets.iter().all(|t| nav.reaches(t) || !self.nav.reaches(t))
             && units.iter().filter(|u| needs_reach(u)).all(|u| nav.reaches(&u.targets()));
-        if reached { Ok(nav.area()) } else { Err(Rule::Route) }
+        let berths: Vec<Box2> = self.berths.iter().copied().chain(units.iter().flat_map(berths)).collect();
+        let open = !self.berths_open || nav.passes_parked(&berths);
+        if reached && open { Ok(nav.area()) } else { Err(Rule::Route) }
     }
 
     /// Returns true when units would close off floor that is open without them, for however small a robot.
@@ -397,6 +404,7 @@ impl<'a, 's> State<'a, 's> {
             self.bodies.extend(bodies(&p));
             self.in_the_way.extend(&in_the_way(std::slice::from_ref(&p)));
             self.docks.extend(buffers(&p, self.nav.gap()));
+            self.berths.extend(berths(&p));
             self.beside_beds.extend(ways_beside(&p).into_iter().flatten());
             if p.support.is_none() {
                 self.clears.extend(p.unit.clears.iter().map(|c| p.world(c)));
@@ -408,6 +416,7 @@ impl<'a, 's> State<'a, 's> {
         }
         self.nav.settle();
         self.free_area = self.nav.area();
+        self.berths_open = self.nav.passes_parked(&self.berths);
         if self.circle.is_some_and(|circle| self.bodies.iter().any(|body| !circle.is_clear_of(body))) {
             self.circle = self.turning.and_then(|radius| self.find_circle(&[], radius));
         }

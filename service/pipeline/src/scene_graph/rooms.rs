@@ -524,7 +524,9 @@ pub(super) fn add_docks(domain: &Domain, robots: &[Robot], docked: &[String], ro
                     kind.robot.contains(&RobotUse::Charging) && !kind.furnishing.iter().any(|f| is_dock(&f.item));
                 let rank = dock_rank(kind, robot)?;
                 let most = most_docks(room.target_area_m2);
-                (charges && wished(room) < most).then_some((room.level != home, rank >= LAST_RANK, wished(room), rank))
+                // a second one where loads are handed over, before one that takes of the width of a corridor
+                let crowded = wished(room) + u32::from(kind.zone == Zone::Circulation);
+                (charges && wished(room) < most).then_some((room.level != home, rank >= LAST_RANK, crowded, rank))
             };
             let all = rooms.iter().enumerate().filter_map(|(i, room)| Some((suits(room)?, i)));
             let Some((_, best)) = all.min() else { return };
@@ -540,12 +542,14 @@ fn make_room_for_dock(room: &mut GraphRoom, domain: &Domain) {
     let [least, most] = room.area_range_m2;
     if kind.zone == Zone::Staff && kind.open_front && most >= kind.area_m2.max {
         room.target_area_m2 = tenth((room.target_area_m2 + DOCK_FLOOR_M2).min(most));
-        room.area_range_m2 = [tenth((kind.area_m2.target + DOCK_FLOOR_M2).min(room.target_area_m2).max(least)), most];
+        let docks = room.wished_assets.iter().filter(|id| domain.anchor(id).is_some_and(|o| o.shape == Shape::Dock));
+        let floor = DOCK_FLOOR_M2 * docks.count() as f64;
+        room.area_range_m2 = [tenth((kind.area_m2.target + floor).min(room.target_area_m2).max(least)), most];
     }
 }
 
 /// Floor of a dock and of the robot before it, m^2.
-const DOCK_FLOOR_M2: f64 = 3.0;
+const DOCK_FLOOR_M2: f64 = 4.0;
 /// From here on rooms for staff, work and visitors.
 const LAST_RANK: u8 = 4;
 /// Floor of a room for each dock in it, m^2, and most docks in a room that is there for something else.

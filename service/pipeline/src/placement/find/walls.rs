@@ -52,6 +52,8 @@ const SWEPT: f64 = 4.0;
 /// What a machine loses for each meter from the sink or hob it works with, and from where on it makes no difference, m.
 const FROM_RUN: f64 = 1.5;
 const FAR_FROM_RUN_M: f64 = 2.5;
+/// What a hand dryer loses for each meter from the basin.
+const FROM_BASIN: f64 = 3.0;
 /// Part of a bed beside which a visitor sits, from its head, mm.
 const HEAD: i32 = 700;
 
@@ -253,7 +255,7 @@ impl<'a> Find<'_, 'a, '_> {
         s -= style.tight * (spare / 3000.0).min(1.0);
         s += self.window_score(index, a, z) + self.door_score(p) + self.sibling_score(p, a, z, index);
         s -= door_loss(space, p, self.aisle);
-        s += self.company_score(p) - self.at_doors(p) - self.apart_from_run(p);
+        s += self.company_score(p) - self.at_doors(p) - self.apart_from_run(p) - self.apart_from_basin(p);
         s -= self.across.as_ref().map_or(0.0, |unit| far_view(self.view(p, unit)));
         s + self.arrangement_score(p, index, a, z)
     }
@@ -311,6 +313,19 @@ impl<'a> Find<'_, 'a, '_> {
         let own = p.world(&p.unit.bbox);
         let gap = runs.map(|o| o.world(&o.unit.bbox).gap(&own)).min().unwrap_or(0);
         FROM_RUN * (f64::from(gap) / 1000.0).min(FAR_FROM_RUN_M)
+    }
+
+    /// Returns what a machine on the wall loses away from the basin: hands are dried where they were washed.
+    fn apart_from_basin(&self, p: &Placed<'a>) -> f64 {
+        let anchor = p.unit.anchor();
+        if anchor.object.shape != Shape::Appliance || anchor.mount != Mount::Wall {
+            return 0.0;
+        }
+        let parts = self.state.placed.iter().flat_map(|o| o.unit.parts.iter().map(move |part| (o, part)));
+        let basins = parts.filter(|(_, part)| part.object.shape == Shape::Basin).map(|(o, part)| o.solid(part).rect);
+        let own = p.world(&p.unit.bbox);
+        let gap = basins.map(|basin| basin.gap(&own)).min().unwrap_or(0);
+        FROM_BASIN * (f64::from(gap) / 1000.0)
     }
 
     /// Distance to the door of the room, and not having it in one's back.
