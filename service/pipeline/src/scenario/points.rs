@@ -2,7 +2,7 @@
 
 use d3dgen_model::domain::{Mount, ObjectType, RobotUse, Shape};
 use d3dgen_model::placements::Placement;
-use d3dgen_model::scenario::{Poi, Roi, RoiKind};
+use d3dgen_model::scenario::Poi;
 use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::{Point, Rect};
 
@@ -60,7 +60,7 @@ fn door_distance(floor: &Floor, room: &Room, p: Point) -> f64 {
 }
 
 /// Returns all points; each can be reached.
-pub(super) fn all(floor: &Floor, graph: &SceneGraph, rois: &[Roi]) -> Vec<Poi> {
+pub(super) fn all(floor: &Floor, graph: &SceneGraph) -> Vec<Poi> {
     let mut out: Vec<Poi> = entrance(floor).into_iter().collect();
     for room in &floor.rooms {
         let docks = room.objects.iter().filter(|(_, k)| k.shape == Shape::Dock);
@@ -88,7 +88,7 @@ pub(super) fn all(floor: &Floor, graph: &SceneGraph, rois: &[Roi]) -> Vec<Poi> {
             out.extend(in_the_middle(floor, room).map(|pose| poi(id, "cleaning_point", room, pose)));
         }
     }
-    out.extend(bays(floor, graph, rois));
+    out.extend(bays(floor, graph));
     out
 }
 
@@ -132,24 +132,20 @@ fn entrance(floor: &Floor) -> Option<Poi> {
     Some(poi("entrance_1".into(), "entrance", room, looking_at(spot, on)))
 }
 
-/// Returns places in the circulation, or in the room one enters through, where robots wait without standing before a door
-/// or where goods are put down.
-fn bays(floor: &Floor, graph: &SceneGraph, rois: &[Roi]) -> Vec<Poi> {
+/// Returns places in the circulation, or in the room one enters through, where robots wait without standing before a door.
+fn bays(floor: &Floor, graph: &SceneGraph) -> Vec<Poi> {
     let robots: u32 = graph.robots.iter().map(|r| r.count).sum();
     let entered = |id: &str| graph.room(id).is_some_and(|r| r.entrance);
     let room = floor.rooms.iter().find(|r| r.plan.circulation);
     let Some(room) = room.or_else(|| floor.rooms.iter().find(|r| entered(&r.plan.room_id))) else { return Vec::new() };
     let doors: Vec<Point> = floor.plan.doors_of(&room.plan.room_id).map(|d| d.line.middle()).collect();
-    let staging = rois.iter().filter(|r| r.kind == RoiKind::StagingArea && r.room_id == room.plan.room_id);
-    let staging: Vec<Rect> = staging.map(|r| r.polygon.bounds().grown(floor.radius)).collect();
     let mut taken: Vec<Point> = Vec::new();
     // the best of many is as good as the best of all
     let spots = floor.every(room, (floor.spots(room) / MOST_BAY_SPOTS).max(10));
     for _ in 0..robots.clamp(1, MOST_BAYS) {
         let apart = |p: &Point| {
             let others = taken.iter().all(|t| t.distance(*p) >= 2.0 * floor.radius + GAP_M);
-            let inside = |r: &Rect| r.x0 <= p.x && p.x <= r.x1 && r.y0 <= p.y && p.y <= r.y1;
-            others && !staging.iter().any(inside) && doors.iter().all(|d| d.distance(*p) >= BAY_FROM_DOOR_M)
+            others && doors.iter().all(|d| d.distance(*p) >= BAY_FROM_DOOR_M)
         };
         let room_around = |p: &Point| doors.iter().chain(&taken).map(|d| d.distance(*p)).fold(f64::MAX, f64::min);
         // beside the walls rather than at them, where there is room for that

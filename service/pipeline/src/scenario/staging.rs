@@ -1,5 +1,5 @@
-//! Staging areas: free floor in stores and circulation where goods are put down, near a door, out of the swing of doors and
-//! beside the width that people and robots pass in.
+//! Staging areas: free floor in stores and circulation where goods are put down, near a door, out of the swing of doors, off the
+//! routes of robots and beside the width that people and robots pass in.
 
 use std::cell::OnceCell;
 
@@ -8,7 +8,7 @@ use d3dgen_model::domain::{Mount, RobotUse, Zone};
 use d3dgen_model::floorplan::Door;
 use d3dgen_model::geometry::to_mm;
 use d3dgen_model::occupancy::{Bitmap, CELL_M, stops_robot};
-use d3dgen_model::scenario::{Roi, RoiKind};
+use d3dgen_model::scenario::{Roi, RoiKind, Scenario};
 use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::{Point, Polygon, Rect};
 
@@ -30,6 +30,8 @@ const LARGE_ROOM_M2: f64 = 25.0;
 const BEFORE_DOOR_M: f64 = 1.0;
 /// Play of a robot that passes, m.
 const PASSING_M: f64 = 0.1;
+/// Distance between the places of a route at which its floor is taken, m.
+const STEP_M: f64 = 0.1;
 /// Play on each side of a robot that brings goods, m.
 const CARRYING_M: f64 = 0.15;
 /// Cells of wall or furniture beside a place that outweigh a meter more to the nearest door.
@@ -42,8 +44,9 @@ const LARGE: usize = 200_000;
 /// Kinds of robots that bring nothing.
 pub(super) const BRING_NOTHING: [&str; 2] = ["cleaning", "disinfection"];
 
-/// Returns a staging area for each unit of the storey, or for all of it, where there is floor for one.
-pub(super) fn all(floor: &Floor, graph: &SceneGraph, rois: &[Roi]) -> Vec<Roi> {
+/// Returns a staging area for each unit of the storey, or for all of it, where there is floor for one beside the routes and
+/// points of its robots.
+pub(super) fn all(floor: &Floor, graph: &SceneGraph, scenario: &Scenario) -> Vec<Roi> {
     let robots: u32 = graph.robots.iter().filter(|r| !BRING_NOTHING.contains(&r.kind.as_str())).map(|r| r.count).sum();
     if robots == 0 {
         return Vec::new();
@@ -58,15 +61,37 @@ pub(super) fn all(floor: &Floor, graph: &SceneGraph, rois: &[Roi]) -> Vec<Roi> {
         units.push(None);
     }
     let each = robots.div_ceil(units.len() as u32).min(MOST_ROBOTS);
-    units.into_iter().filter_map(|unit| of_unit(floor, graph, rois, (unit, each))).collect()
+    let driven = driven(floor, scenario);
+    units.into_iter().filter_map(|unit| of_unit(floor, graph, (&scenario.rois, &driven), (unit, each))).collect()
 }
 
-fn of_unit(floor: &Floor, graph: &SceneGraph, rois: &[Roi], (unit, robots): (Option<&str>, u32)) -> Option<Roi> {
+/// Returns the floor that robots drive over and wait on.
+fn driven(floor: &Floor, scenario: &Scenario) -> Vec<Rect> {
+    let around = |p: Point, r: f64| Rect { x0: p.x - r, y0: p.y - r, x1: p.x + r, y1: p.y + r };
+    let reach = |radius: f64| radius + PASSING_M / 2.0;
+    let steps = |a: Point, b: Point, radius: f64| {
+        let count = (a.distance(b) / STEP_M).ceil().max(1.0) as u32;
+        let at = move |k: u32| f64::from(k) / f64::from(count);
+        (0..=count).map(move |k| around(Point::new(a.x + at(k) * (b.x - a.x), a.y + at(k) * (b.y - a.y)), reach(radius)))
+    };
+    let legs = scenario.robots.iter().flat_map(|task| task.routes.iter().map(|leg| (&leg.path, task.robot.radius_m)));
+    let routes = legs.flat_map(|(path, radius)| path.windows(2).flat_map(move |w| steps(w[0], w[1], radius)));
+    let points = scenario.pois.iter().filter(|p| matches!(p.kind.as_str(), "waiting_bay" | "service_point"));
+    let points = points.map(|p| around(Point::new(p.pose.x, p.pose.y), reach(floor.radius)));
+    routes.chain(points).collect()
+}
+
+fn of_unit(
+    floor: &Floor,
+    graph: &SceneGraph,
+    (rois, driven): (&[Roi], &[Rect]),
+    (unit, robots): (Option<&str>, u32),
+) -> Option<Roi> {
     let here = |id: &str| graph.room(id).is_some_and(|r| unit.is_none() || r.unit.as_deref() == unit);
     let mut rooms: Vec<(u8, &Room)> =
         floor.rooms.iter().filter(|r| here(&r.plan.room_id)).filter_map(|r| Some((rank(floor, r)?, r))).collect();
     rooms.sort_by_key(|r| r.0);
-    let yards: Vec<(&Room, Yard)> = rooms.into_iter().map(|(_, r)| (r, Yard::new(floor, r, rois))).collect();
+    let yards: Vec<(&Room, Yard)> = rooms.into_iter().map(|(_, r)| (r, Yard::new(floor, r, rois, driven))).collect();
     let whole = [robots, 1].into_iter().flat_map(|n| {
         let area = f64::from(n) * PER_ROBOT_M2;
         DEPTHS_M.map(|depth| ([area / depth, depth], format!("{area} m2 for {n} robot(s)")))
@@ -120,7 +145,7 @@ struct Yard {
 }
 
 impl Yard {
-    fn new(floor: &Floor, room: &Room, rois: &[Roi]) -> Self {
+    fn new(floor: &Floor, room: &Room, rois: &[Roi], driven: &[Rect]) -> Self {
         let mut map = room.quiet.clone();
         let id = &room.plan.room_id;
         let lanes = floor.plan.doors_of(id).map(|d| lane(d, BEFORE_DOOR_M));
@@ -133,7 +158,7 @@ impl Yard {
         };
         let goals: Vec<Rect> = rois.iter().filter(used).map(|r| r.polygon.bounds()).collect();
         let (i, j) = room.corner;
-        for r in lanes.chain(fronts).chain(rugs).chain(goals.iter().copied()) {
+        for r in lanes.chain(fronts).chain(rugs).chain(goals.iter().chain(driven).copied()) {
             let (i0, i1, j0, j1) = floor.occupancy.frame.span(&r);
             map.fill(i0 - i, i1 - i, j0 - j, j1 - j, false);
         }
