@@ -21,6 +21,12 @@ const WHEELCHAIR_RADIUS_M: f64 = 0.4;
 
 /// What the circle of a wheelchair is drawn larger by, m: its place is found to the millimeter by none.
 const TURNING_SPARE_M: f64 = 0.005;
+/// Desks from which on the way into their room stays free.
+const MANY_DESKS: u32 = 4;
+/// Floor of halls, m^2, and most of it that a workplace takes in rooms for a group: what is advised for each is for the aisles of
+/// halls (ASR A1.2: open-plan offices of 400 m^2 and more).
+const HALL_M2: f64 = 400.0;
+const GROUP_M2: f64 = 9.0;
 /// Area of a room from which on things of any size leave room for that circle, m^2.
 const AMPLE_M2: f64 = 9.0;
 /// Floor at one side of such a bed in a room of so many m^2, where one turns beside it, m (DIN 18040-2 R: 1.5 m).
@@ -65,6 +71,7 @@ impl<'a> Setting<'a> {
         let kind = domain.room_type_or_generic(&room.room_type);
         let per_person_m2 = limits.rooms.get(&room.room_type).and_then(|l| l.area_per_person_advised);
         let per_person_m2 = per_person_m2.or_else(|| workroom_area(plan, domain, limits));
+        let per_person_m2 = per_person_m2.map(|each| if room.net_area_m2 < HALL_M2 { each.min(GROUP_M2) } else { each });
         let windows = space.windows.len() as u32;
         let household = demand::Household::new(domain, graph);
         let (own, area_m2) = (graph.room(&room.room_id), room.net_area_m2);
@@ -78,6 +85,9 @@ impl<'a> Setting<'a> {
         if graph.accessible {
             let turns = area_m2 >= TURNING_BESIDE_BED_FROM_M2;
             beside_beds(domain, &mut aims, if turns { TURNING_BESIDE_BED_M } else { BESIDE_BED_M });
+        }
+        if tasks.iter().any(|t| t.anchor.shape == Shape::Desk && t.is_batch() && t.count >= MANY_DESKS) {
+            space.keep_way_in(plan, room);
         }
         // what rules advise against goes where the room can do without
         tasks.retain(|t| t.required > 0 || !aims.get(t.anchor.id.as_str()).is_some_and(|a| a.unwanted));

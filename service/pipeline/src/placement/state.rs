@@ -241,9 +241,17 @@ impl<'a, 's> State<'a, 's> {
             if space.doors.iter().any(|d| solid.z0 < d.height && d.kept(self.open).overlaps(&solid.rect)) {
                 return Err(Rule::Door);
             }
+            if takes_floor(part, &solid) && space.lanes(self.open).iter().any(|lane| lane.overlaps(&solid.rect)) {
+                return Err(Rule::Door);
+            }
             if takes_floor(part, &solid) && self.clears.iter().any(|c| c.overlaps(&solid.rect)) {
                 return Err(Rule::Clearance);
             }
+        }
+        // a robot that charges stands in the way as furniture does
+        let lanes = space.lanes(self.open);
+        if !lanes.is_empty() && buffers(p, self.nav.gap()).any(|b| lanes.iter().any(|lane| lane.overlaps(&b))) {
+            return Err(Rule::Door);
         }
         if p.support.is_none() {
             self.test_clears(p)?;

@@ -10,8 +10,11 @@ use super::floor::{Floor, Room, around, floor_in_front, looking_at, swept};
 
 /// Gap between a robot's hull and what it serves, m.
 const GAP_M: f64 = 0.10;
-/// How much nearer a spot beside an object must be than one in front of it, m.
+/// How much nearer a spot beside an object must be than one in front of it, and one on the side of those who sit at a desk or
+/// table than others, m.
 const NOT_IN_FRONT_M: f64 = 0.3;
+/// How much nearer a spot must be at which a robot stands right behind or beside whoever sits there, m.
+const AT_CHAIR_M: f64 = 1.5;
 /// How much nearer a spot beside a desk or table must be for each meter that it lies farther from the door, m: on the way
 /// there one passes behind chairs.
 const FROM_DOOR: f64 = 0.15;
@@ -108,7 +111,10 @@ pub(super) fn at_object(
     let spots = (0..).zip(wanted).filter_map(|(side, p)| {
         let (off, spot) = floor.best_spot(room, p)?;
         let far = if seated { FROM_DOOR * door_distance(floor, room, spot) } else { 0.0 };
-        Some((off + far + if side == 0 { 0.0 } else { NOT_IN_FRONT_M }, side, spot))
+        // at a desk or table somebody sits there
+        let aside = if seated == (side == 0) { NOT_IN_FRONT_M } else { 0.0 };
+        let crowded = if seated && floor.is_at_chair(room, spot) { AT_CHAIR_M } else { 0.0 };
+        Some((off + far + aside + crowded, side, spot))
     });
     let (_, side, spot) = spots.min_by(|a, b| a.0.total_cmp(&b.0))?;
     Some((side, looking_at(spot, Point::new(object.pose.x, object.pose.y))))

@@ -13,6 +13,7 @@ use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::{Point, Polygon, Rect};
 
 use super::floor::{Floor, Room, floor_in_front, lane};
+use crate::entry::way_in;
 
 /// Floor for each robot, m^2 (rule `staging_zone_area_per_robot`).
 const PER_ROBOT_M2: f64 = 2.5;
@@ -30,6 +31,8 @@ const LARGE_ROOM_M2: f64 = 25.0;
 const BEFORE_DOOR_M: f64 = 1.0;
 /// Play of a robot that passes, m.
 const PASSING_M: f64 = 0.1;
+/// How far a place may lie from the wall that it lies along, m.
+const AT_WALL_M: f64 = 0.2;
 /// Distance between the places of a route at which its floor is taken, m.
 const STEP_M: f64 = 0.1;
 /// Play on each side of a robot that brings goods, m.
@@ -149,6 +152,8 @@ impl Yard {
         let mut map = room.quiet.clone();
         let id = &room.plan.room_id;
         let lanes = floor.plan.doors_of(id).map(|d| lane(d, BEFORE_DOOR_M));
+        let into = floor.plan.doors_of(id).filter(|_| !room.plan.circulation);
+        let into: Vec<Rect> = into.flat_map(|door| way_in(&room.plan.net_polygon, door)).collect();
         let fronts = room.objects.iter().filter(|(p, _)| p.support.is_none() && stops_robot(p));
         let fronts = fronts.map(|(p, kind)| floor_in_front(p, kind.clearance_front_m, 0.0));
         let rugs = room.objects.iter().map(|(p, _)| *p).filter(|p| p.mount == Mount::Floor && !stops_robot(p));
@@ -158,7 +163,7 @@ impl Yard {
         };
         let goals: Vec<Rect> = rois.iter().filter(used).map(|r| r.polygon.bounds()).collect();
         let (i, j) = room.corner;
-        for r in lanes.chain(fronts).chain(rugs).chain(goals.iter().chain(driven).copied()) {
+        for r in lanes.chain(into).chain(fronts).chain(rugs).chain(goals.iter().chain(driven).copied()) {
             let (i0, i1, j0, j1) = floor.occupancy.frame.span(&r);
             map.fill(i0 - i, i1 - i, j0 - j, j1 - j, false);
         }
@@ -189,11 +194,14 @@ impl Yard {
             if looked.iter().any(near) {
                 continue;
             }
+            let rect = on_floor(floor, room, place);
+            if !is_at_wall(&room.plan.net_polygon, &rect) {
+                continue;
+            }
             if looked.len() == PLACES {
                 return None;
             }
             looked.push(place);
-            let rect = on_floor(floor, room, place);
             if floor.is_reached(room, &rect) && self.is_near(floor, room, &rect) && self.leaves_way(floor, room, &rect)
             {
                 return Some(rect);
@@ -245,6 +253,21 @@ impl Yard {
         // the floor before a single door is free
         (doors.len() < 2 || space.passes(&doors, self.passage)) && doors.first().is_none_or(leads)
     }
+}
+
+/// Returns true for a place with a long side at a wall: goods in the middle of a room are in everybody's way.
+fn is_at_wall(outline: &Polygon, r: &Rect) -> bool {
+    let long = r.width() >= r.height();
+    let side = |beyond: f64, high: bool| {
+        [0.1, 0.5, 0.9].into_iter().all(|t| {
+            let (along, across) = match long {
+                true => (r.x0 + t * r.width(), if high { r.y1 + beyond } else { r.y0 - beyond }),
+                false => (r.y0 + t * r.height(), if high { r.x1 + beyond } else { r.x0 - beyond }),
+            };
+            !outline.contains(if long { Point::new(along, across) } else { Point::new(across, along) })
+        })
+    };
+    side(AT_WALL_M, true) || side(AT_WALL_M, false)
 }
 
 /// Returns how many cells of a set lie south-west of each corner of cells.
