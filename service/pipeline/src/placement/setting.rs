@@ -23,6 +23,8 @@ const WHEELCHAIR_RADIUS_M: f64 = 0.4;
 const TURNING_SPARE_M: f64 = 0.005;
 /// Desks from which on the way into their room stays free.
 const MANY_DESKS: u32 = 4;
+/// Width of the way to each of them, mm (DIN EN 527, ASR A1.8: 0.9 m for more than five people).
+const ACCESS: i32 = 900;
 /// Floor of halls, m^2, and most of it that a workplace takes in rooms for a group: what is advised for each is for the aisles of
 /// halls (ASR A1.2: open-plan offices of 400 m^2 and more).
 const HALL_M2: f64 = 400.0;
@@ -49,6 +51,8 @@ pub(super) struct Setting<'a> {
     pub radius: i32,
     /// Radius of the circle that rules want free for wheelchairs, mm.
     pub turning: Option<i32>,
+    /// Width of the way to each of many desks, mm.
+    pub access: Option<i32>,
     /// What must stay open from door to door, or for beds.
     pub way: Option<Way>,
     /// The same with the width that is advised, where the room has it.
@@ -86,7 +90,9 @@ impl<'a> Setting<'a> {
             let turns = area_m2 >= TURNING_BESIDE_BED_FROM_M2;
             beside_beds(domain, &mut aims, if turns { TURNING_BESIDE_BED_M } else { BESIDE_BED_M });
         }
-        if tasks.iter().any(|t| t.anchor.shape == Shape::Desk && t.is_batch() && t.count >= MANY_DESKS) {
+        let many = |t: &Task| t.anchor.shape == Shape::Desk && t.is_batch() && t.count >= MANY_DESKS;
+        let many_desks = if wanted.is_one_more() { usual().iter().any(many) } else { tasks.iter().any(many) };
+        if many_desks {
             space.keep_way_in(plan, room);
         }
         // what rules advise against goes where the room can do without
@@ -104,7 +110,8 @@ impl<'a> Setting<'a> {
         let wide_m = limits.corridor_width_advised.unwrap_or(0.0).max(width_m);
         let beds = tasks.iter().any(|t| t.anchor.shape == Shape::HospitalBed);
         let [way, wide_way] = Way::of_room(plan, room, [width_m, wide_m], beds);
-        Self { domain, kind, radius: radius(graph, &space), space, tasks, aims, salt, sizes, turning, way, wide_way }
+        let (radius, access) = (radius(graph, &space), many_desks.then_some(ACCESS));
+        Self { domain, kind, radius, space, tasks, aims, salt, sizes, turning, access, way, wide_way }
     }
 
     /// Returns which of its sizes an object has in this room.

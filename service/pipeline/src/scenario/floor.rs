@@ -21,7 +21,7 @@ pub(super) const LEAST_RADIUS_M: f64 = 0.30;
 const TIGHT_M: f64 = 1.6;
 const SWING_M: f64 = 1.0;
 /// Floor behind a chair that whoever sits there takes and gets up on, m.
-const CHAIR_BACK_M: f64 = 0.6;
+pub(super) const CHAIR_BACK_M: f64 = 0.6;
 /// Floor between a robot that serves and a chair, m.
 const FROM_CHAIR_M: f64 = 0.35;
 /// How far around a point spots are looked for at first, m.

@@ -7,6 +7,7 @@ use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::{Point, Rect};
 
 use super::floor::{Floor, Room, around, floor_in_front, looking_at, swept};
+use super::regions::buffers;
 
 /// Gap between a robot's hull and what it serves, m.
 const GAP_M: f64 = 0.10;
@@ -15,6 +16,8 @@ const GAP_M: f64 = 0.10;
 const NOT_IN_FRONT_M: f64 = 0.3;
 /// How much nearer a spot must be at which a robot stands right behind or beside whoever sits there, m.
 const AT_CHAIR_M: f64 = 1.5;
+/// How much nearer a spot must be on the floor of a dock that is another's, m.
+const AT_DOCK_M: f64 = 2.0;
 /// How much nearer a spot beside a desk or table must be for each meter that it lies farther from the door, m: on the way
 /// there one passes behind chairs.
 const FROM_DOOR: f64 = 0.15;
@@ -114,7 +117,10 @@ pub(super) fn at_object(
         // at a desk or table somebody sits there
         let aside = if seated == (side == 0) { NOT_IN_FRONT_M } else { 0.0 };
         let crowded = if seated && floor.is_at_chair(room, spot) { AT_CHAIR_M } else { 0.0 };
-        Some((off + far + aside + crowded, side, spot))
+        let mut docks = buffers(floor, room).filter(|(dock, _)| dock.placement_id != object.placement_id);
+        let within = |b: &Rect| b.x0 < spot.x && spot.x < b.x1 && b.y0 < spot.y && spot.y < b.y1;
+        let docked = if docks.any(|(_, b)| within(&b.grown(floor.radius))) { AT_DOCK_M } else { 0.0 };
+        Some((off + far + aside + crowded + docked, side, spot))
     });
     let (_, side, spot) = spots.min_by(|a, b| a.0.total_cmp(&b.0))?;
     Some((side, looking_at(spot, Point::new(object.pose.x, object.pose.y))))

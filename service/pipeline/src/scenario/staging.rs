@@ -3,8 +3,9 @@
 
 use std::cell::OnceCell;
 
+use d3dgen_knowledge::clearance::quarter;
 use d3dgen_knowledge::freespace::FreeSpace;
-use d3dgen_model::domain::{Mount, RobotUse, Zone};
+use d3dgen_model::domain::{Mount, RobotUse, Shape, Zone};
 use d3dgen_model::floorplan::Door;
 use d3dgen_model::geometry::to_mm;
 use d3dgen_model::occupancy::{Bitmap, CELL_M, stops_robot};
@@ -12,7 +13,7 @@ use d3dgen_model::scenario::{Roi, RoiKind, Scenario};
 use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::{Point, Polygon, Rect};
 
-use super::floor::{Floor, Room, floor_in_front, lane};
+use super::floor::{CHAIR_BACK_M, Floor, Room, floor_beside, floor_in_front, lane};
 use crate::entry::way_in;
 
 /// Floor for each robot, m^2 (rule `staging_zone_area_per_robot`).
@@ -33,6 +34,8 @@ const BEFORE_DOOR_M: f64 = 1.0;
 const PASSING_M: f64 = 0.1;
 /// How far a place may lie from the wall that it lies along, m.
 const AT_WALL_M: f64 = 0.2;
+/// Width of the way to desks, m.
+const ACCESS_M: f64 = 0.9;
 /// Distance between the places of a route at which its floor is taken, m.
 const STEP_M: f64 = 0.1;
 /// Play on each side of a robot that brings goods, m.
@@ -143,6 +146,8 @@ struct Yard {
     goals: Vec<Rect>,
     /// Floor under what stands there.
     taken: Vec<Rect>,
+    /// Floor on which people get up from their desks.
+    seats: Vec<Rect>,
     /// Free floor around it, once somebody asks.
     space: OnceCell<FreeSpace>,
 }
@@ -171,7 +176,9 @@ impl Yard {
         let passage = width.max(2.0 * floor.radius + PASSING_M);
         let standing = room.objects.iter().map(|(p, _)| *p).filter(|p| stops_robot(p));
         let taken = standing.map(|p| p.footprint().bounds()).collect();
-        Self { sums: sums(&map), nx: map.nx(), ny: map.ny(), passage, goals, taken, space: OnceCell::new() }
+        let chairs = room.objects.iter().filter(|(_, o)| o.shape == Shape::SwivelChair);
+        let seats = chairs.map(|(p, _)| floor_beside(p, quarter(p.pose.yaw_rad) + 2, CHAIR_BACK_M, 0.0)).collect();
+        Self { sums: sums(&map), nx: map.nx(), ny: map.ny(), passage, goals, taken, seats, space: OnceCell::new() }
     }
 
     /// Returns the place in a room for an area of this size, m, that is tucked away most.
@@ -250,6 +257,11 @@ impl Yard {
         let taken: Vec<Rect> = self.taken.iter().chain([rect]).copied().collect();
         let space = FreeSpace::new(&room.plan.net_polygon, &taken);
         let leads = |door: &&Door| self.goals.iter().all(|goal| space.leads(door, goal, self.passage));
+        let before = self.space.get_or_init(|| FreeSpace::new(&room.plan.net_polygon, &self.taken));
+        let to = |space: &FreeSpace, seat: &Rect| doors.iter().any(|door| space.leads(door, seat, ACCESS_M));
+        if self.seats.iter().any(|seat| !to(&space, seat) && to(before, seat)) {
+            return false;
+        }
         // the floor before a single door is free
         (doors.len() < 2 || space.passes(&doors, self.passage)) && doors.first().is_none_or(leads)
     }
