@@ -157,6 +157,7 @@ pub(super) struct State<'a, 's> {
     targets: Vec<Vec<Box2>>,
     /// Floor that people with bags pass over on their way to many desks, and where each of these is come to.
     access: Option<Nav>,
+    spare_access: RefCell<Option<Nav>>,
     desks: Vec<Vec<Box2>>,
     /// Clear floor the robot can use, in cells.
     pub free_area: usize,
@@ -188,6 +189,7 @@ impl<'a, 's> State<'a, 's> {
             spare: RefCell::new(None),
             targets: Vec::new(),
             access: None,
+            spare_access: RefCell::new(None),
             desks: Vec::new(),
             free_area,
             way,
@@ -361,14 +363,25 @@ impl<'a, 's> State<'a, 's> {
     /// Returns true when units leave the way to all desks that have one.
     fn leaves_access(&self, units: &[Placed]) -> bool {
         let Some(access) = self.access.as_ref().filter(|_| !self.desks.is_empty()) else { return true };
-        let after = with(access, units);
+        let mut spare = self.spare_access.borrow_mut();
+        let after = match spare.as_mut() {
+            Some(nav) => {
+                nav.clone_from(access);
+                nav
+            }
+            None => spare.insert(access.clone()),
+        };
+        units.iter().flat_map(narrows).for_each(|o| after.block(&o));
+        after.settle();
         self.desks.iter().all(|desk| after.reaches(desk) || !access.reaches(desk))
     }
 
     /// Returns to how many of the desks among these units there is no way, once they stand there.
     pub fn without_access(&self, units: &[Placed]) -> usize {
         let Some(access) = &self.access else { return 0 };
-        let after = with(access, units);
+        let mut after = access.clone();
+        units.iter().flat_map(narrows).for_each(|o| after.block(&o));
+        after.settle();
         units.iter().filter(|p| is_desk(p) && !after.reaches(&p.targets())).count()
     }
 
@@ -469,14 +482,6 @@ fn obstacles(p: &Placed) -> impl Iterator<Item = Box2> {
 /// Returns what people walk around: furniture, and robots at their docks.
 fn narrows<'p>(p: &'p Placed) -> impl Iterator<Item = Box2> + 'p {
     obstacles(p).chain(p.unit.parked.iter().map(|b| p.world(b)))
-}
-
-/// Returns the floor that is left with more units on it.
-fn with(floor: &Nav, units: &[Placed]) -> Nav {
-    let mut after = floor.clone();
-    units.iter().flat_map(narrows).for_each(|o| after.block(&o));
-    after.settle();
-    after
 }
 
 fn is_desk(p: &Placed) -> bool {

@@ -21,6 +21,8 @@ const AT_DOCK_M: f64 = 2.0;
 /// How much nearer a spot beside a desk or table must be for each meter that it lies farther from the door, m: on the way
 /// there one passes behind chairs.
 const FROM_DOOR: f64 = 0.15;
+/// Desks or tables of a room that are looked at for one with a stop aside of chairs.
+const MOST_SERVED: usize = 8;
 /// Depth of the floor before an object that one stands on to be served, m.
 const FRONT_M: f64 = 0.6;
 /// Most waiting bays.
@@ -55,8 +57,21 @@ pub(super) fn served<'r>(floor: &Floor, room: &'r Room) -> Option<&'r (&'r Place
         let swung = swings.iter().any(|s| s.overlaps(&front));
         ((swung, rank, door_distance(floor, room, Point::new(o.0.pose.x, o.0.pose.y))), o)
     });
-    let first = ranked.min_by(|(a, _), (b, _)| (a.0, a.1).cmp(&(b.0, b.1)).then(a.2.total_cmp(&b.2)));
-    first.map(|(_, o)| o)
+    let mut ranked: Vec<_> = ranked.collect();
+    ranked.sort_by(|(a, _), (b, _)| (a.0, a.1).cmp(&(b.0, b.1)).then(a.2.total_cmp(&b.2)));
+    let &((swung, rank, _), first) = ranked.first()?;
+    // at the end of a row rather than between those who sit there
+    let mut alike = ranked.iter().take_while(|((s, r, _), _)| (*s, *r) == (swung, rank)).map(|(_, o)| *o).take(MOST_SERVED);
+    let aside = |o: &&(&Placement, &ObjectType)| {
+        let spot = at_object(floor, room, **o).map(|(_, pose)| Point::new(pose.x, pose.y));
+        spot.is_some_and(|spot| !floor.is_at_chair(room, spot))
+    };
+    if is_seated(first.1) { alike.find(aside).or(Some(first)) } else { Some(first) }
+}
+
+/// Returns true for what people sit at.
+fn is_seated(kind: &ObjectType) -> bool {
+    matches!(kind.shape, Shape::Desk | Shape::Table | Shape::RoundTable)
 }
 
 /// Returns how far a point is from the nearest door of a room, m; 0 in rooms without one.
@@ -109,7 +124,7 @@ pub(super) fn at_object(
     room: &Room,
     (object, kind): (&Placement, &ObjectType),
 ) -> Option<(u8, d3dgen_model::Pose)> {
-    let seated = matches!(kind.shape, Shape::Desk | Shape::Table | Shape::RoundTable);
+    let seated = is_seated(kind);
     let wanted = around(object, floor.radius + GAP_M).into_iter().take(if seated { 4 } else { 1 });
     let spots = (0..).zip(wanted).filter_map(|(side, p)| {
         let (off, spot) = floor.best_spot(room, p)?;
