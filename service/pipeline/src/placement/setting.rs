@@ -28,7 +28,7 @@ const ACCESS: i32 = 900;
 /// Floor of halls, m^2, and most of it that a workplace takes in rooms for a group: what is advised for each is for the aisles of
 /// halls (ASR A1.2: open-plan offices of 400 m^2 and more).
 const HALL_M2: f64 = 400.0;
-const GROUP_M2: f64 = 9.0;
+const GROUP_M2: f64 = 8.0;
 /// Area of a room from which on things of any size leave room for that circle, m^2.
 const AMPLE_M2: f64 = 9.0;
 /// Floor at one side of such a bed in a room of so many m^2, where one turns beside it, m (DIN 18040-2 R: 1.5 m).

@@ -255,9 +255,10 @@ impl<'a, 's> State<'a, 's> {
                 return Err(Rule::Clearance);
             }
         }
-        // a robot that charges stands in the way as furniture does
+        // a robot that charges stands in the way as furniture does, and where many work its floor is all free
         let lanes = space.lanes(self.open);
-        if !lanes.is_empty() && buffers(p, self.nav.gap()).any(|b| lanes.iter().any(|lane| lane.overlaps(&b))) {
+        let crowded = |b: &Box2| lanes.iter().chain(&self.bodies).any(|taken| taken.overlaps(b));
+        if !lanes.is_empty() && buffers(p, self.nav.gap()).any(|b| crowded(&b)) {
             return Err(Rule::Door);
         }
         if p.support.is_none() {

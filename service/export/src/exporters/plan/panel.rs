@@ -180,6 +180,11 @@ impl Facts<'_> {
             .collect();
         if !robots.is_empty() {
             rows.push(("Robots", robots.join(", ")));
+            // nobody sees in a drawing whether a robot gets through
+            let slides = world.floorplan.doors.iter().any(|d| d.kind == DoorKind::Sliding);
+            if slides && self.domain.circulation.automatic_doors {
+                rows.push(("Sliding doors", "open by themselves".into()));
+            }
         }
         rows.push(("Building rules", world.scene_graph.country_code.clone().unwrap_or_else(|| "International".into())));
         rows.push(("Seed", world.scene_graph.seed.to_string()));
