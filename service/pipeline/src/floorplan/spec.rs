@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 
 use d3dgen_knowledge::{Limit, Limits, RoomLimits};
 use d3dgen_model::domain::{
-    Adjacency, AdjacencyRelation, Arrangement, Daylight, Domain, Materials, Privacy, Relation, RobotUse, RoomType, Scheme, Shape,
-    Zone,
+    Adjacency, AdjacencyRelation, Arrangement, Daylight, Domain, Materials, Privacy, Relation, RobotUse, RoomType,
+    Scheme, Shape, Zone,
 };
 use d3dgen_model::scene_graph::{Connector, GraphEdge, GraphRoom, Note, SceneGraph};
 use d3dgen_model::seed::Stream;

@@ -75,7 +75,8 @@ impl<'a> Setting<'a> {
         let kind = domain.room_type_or_generic(&room.room_type);
         let per_person_m2 = limits.rooms.get(&room.room_type).and_then(|l| l.area_per_person_advised);
         let per_person_m2 = per_person_m2.or_else(|| workroom_area(plan, domain, limits));
-        let per_person_m2 = per_person_m2.map(|each| if room.net_area_m2 < HALL_M2 { each.min(GROUP_M2) } else { each });
+        let per_person_m2 =
+            per_person_m2.map(|each| if room.net_area_m2 < HALL_M2 { each.min(GROUP_M2) } else { each });
         let windows = space.windows.len() as u32;
         let household = demand::Household::new(domain, graph);
         let (own, area_m2) = (graph.room(&room.room_id), room.net_area_m2);

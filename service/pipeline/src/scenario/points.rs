@@ -61,7 +61,8 @@ pub(super) fn served<'r>(floor: &Floor, room: &'r Room) -> Option<&'r (&'r Place
     ranked.sort_by(|(a, _), (b, _)| (a.0, a.1).cmp(&(b.0, b.1)).then(a.2.total_cmp(&b.2)));
     let &((swung, rank, _), first) = ranked.first()?;
     // at the end of a row rather than between those who sit there
-    let mut alike = ranked.iter().take_while(|((s, r, _), _)| (*s, *r) == (swung, rank)).map(|(_, o)| *o).take(MOST_SERVED);
+    let mut alike =
+        ranked.iter().take_while(|((s, r, _), _)| (*s, *r) == (swung, rank)).map(|(_, o)| *o).take(MOST_SERVED);
     let aside = |o: &&(&Placement, &ObjectType)| {
         let spot = at_object(floor, room, **o).map(|(_, pose)| Point::new(pose.x, pose.y));
         spot.is_some_and(|spot| !floor.is_at_chair(room, spot))

@@ -78,7 +78,8 @@ fn driven(floor: &Floor, scenario: &Scenario) -> Vec<Rect> {
     let steps = |a: Point, b: Point, radius: f64| {
         let count = (a.distance(b) / STEP_M).ceil().max(1.0) as u32;
         let at = move |k: u32| f64::from(k) / f64::from(count);
-        (0..=count).map(move |k| around(Point::new(a.x + at(k) * (b.x - a.x), a.y + at(k) * (b.y - a.y)), reach(radius)))
+        (0..=count)
+            .map(move |k| around(Point::new(a.x + at(k) * (b.x - a.x), a.y + at(k) * (b.y - a.y)), reach(radius)))
     };
     let legs = scenario.robots.iter().flat_map(|task| task.routes.iter().map(|leg| (&leg.path, task.robot.radius_m)));
     let routes = legs.flat_map(|(path, radius)| path.windows(2).flat_map(move |w| steps(w[0], w[1], radius)));

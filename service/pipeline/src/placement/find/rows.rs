@@ -209,7 +209,8 @@ pub(in crate::placement) fn rows<'a>(
                 let narrow = if plan.rows > 1 && v0.max(spare_v - v0) < aisle { NARROW_ENDS } else { 0.0 };
                 let noise =
                     0.5 * grain(terms.salt, i64::from(plan.q) * 64 + i64::from(plan.columns), (ku * 8 + kv) as i64);
-                let dark = if in_pairs { from_windows(state.space, &placed) + mirrors(state.space, &placed) } else { 0.0 };
+                let dark =
+                    if in_pairs { from_windows(state.space, &placed) + mirrors(state.space, &placed) } else { 0.0 };
                 // on an island some counters face the door, whichever way it is turned
                 let one_line = task.anchor.shape == Shape::Counter && !plan.paired;
                 let behind = if one_line { doors_behind(state.space, &placed) } else { 0.0 };
