@@ -103,6 +103,8 @@ class World:
         self.walls = [outline([w["line"]["start"], w["line"]["end"]]) for w in plan["walls"]]
         self.doors = plan["doors"]
         self.robots = scenario.get("robots", [])
+        self.stops = [p for p in scenario["pois"] if p["kind"] == "service_point"]
+        self.staged = [(z["room_id"], outline(z["polygon"])) for z in scenario["rois"] if z["kind"] == "staging_area"]
         self.docked = [(z["room_id"], outline(z["polygon"])) for z in scenario["rois"] if z["kind"] == "charging_buffer"]
 
     def of(self, *kinds):
@@ -727,6 +729,129 @@ def no_pocket(world):
 def dark_room(world):
     """a room with no lamp at its ceiling"""
     return any(not any(b.mount == "ceiling" and ("lamp" in b.object or "light" in b.object) for b in r.bodies) for r in world.rooms)
+
+
+def working(room):
+    """Chairs at the desks of a room."""
+    desks = room.named(*DESKS)
+    return [c for c in room.named(*WORK_CHAIRS) if any(gap(c.rect, d.rect) < 0.3 for d in desks)]
+
+
+@objection("B", "office")
+def parallel_screen(world):
+    """a window before or behind a screen of a room for several"""
+    for room in world.of("open_office", "team_office", "shared_office", "coworking_space"):
+        for chair in working(room):
+            for window in room.windows:
+                a, b = window["line"]["start"], window["line"]["end"]
+                for k in range(11):
+                    ahead, left = chair.seen(*(a[c] + (b[c] - a[c]) * k / 10 for c in ("x", "y")))
+                    if abs(left) < 0.5 and abs(ahead) < 3.5:
+                        return True
+    return False
+
+
+@objection("B", "office")
+def printer_at_chair(world):
+    """a printer within 1.15 m of a chair at a desk"""
+    pairs = ((p, c) for r in world.of("open_office") for p in r.named("printer") for c in working(r))
+    return any(gap(p.rect, c.rect) < 1.15 for p, c in pairs)
+
+
+@objection("B", "office")
+def empty_office(world):
+    """more than 13 m2 of an open office for each desk"""
+    return any(r.area > 13.0 * max(len(r.named(*DESKS)), 1) for r in world.of("open_office"))
+
+
+@objection("B", "office")
+def one_seat(world):
+    """a reception with one seat for visitors"""
+    seats = [[3 if "sofa" in b.object else 1 for b in r.named(*VISITOR_SEATS)] for r in world.of("reception")]
+    return any(sum(room) < 2 for room in seats)
+
+
+@objection("B", "office")
+def stop_at_chair(world):
+    """a robot that stops within 0.2 m of a chair at a desk"""
+    radius = max((r["robot"]["radius_m"] for r in world.robots), default=0.0)
+    for stop in world.stops if world.robots else []:
+        room = next(r for r in world.rooms if r.id == stop["room_id"])
+        spot = (stop["pose"]["x"], stop["pose"]["y"]) * 2
+        if any(gap(spot, c.rect) < radius + 0.2 for c in working(room)):
+            return True
+    return False
+
+
+@objection("B")
+def goods_on_route(world):
+    """a staging area that a robot drives over"""
+    for _, floor in world.staged:
+        for robot in world.robots:
+            radius = robot["robot"]["radius_m"]
+            for route in robot.get("routes", []):
+                path = [(p["x"], p["y"]) for p in route["path"]]
+                for a, b in zip(path, path[1:], strict=False):
+                    steps = max(1, int(math.dist(a, b) / 0.05))
+                    spots = ((a[0] + (b[0] - a[0]) * k / steps, a[1] + (b[1] - a[1]) * k / steps) for k in range(steps + 1))
+                    if any(gap(spot * 2, floor) < radius - 0.01 for spot in spots):
+                        return True
+    return False
+
+
+def reached(room, taken, width, goals):
+    """Which of the goals (outlines) one comes near to from the doors, on a way of this width past what is taken."""
+    cell, half = 0.05, width / 2
+    x0, y0, x1, y1 = room.rect
+    columns, rows = int((x1 - x0) / cell) + 1, int((y1 - y0) / cell) + 1
+    free = [[True] * columns for _ in range(rows)]
+
+    def close(rect, grown):
+        i0, i1 = (rect[0] - grown - x0) / cell - 0.5, (rect[2] + grown - x0) / cell - 0.5
+        j0, j1 = (rect[1] - grown - y0) / cell - 0.5, (rect[3] + grown - y0) / cell - 0.5
+        for j in range(max(math.floor(j0) + 1, 0), min(math.ceil(j1), rows)):
+            beyond = max(rect[1] - (y0 + (j + 0.5) * cell), y0 + (j + 0.5) * cell - rect[3], 0.0)
+            less = (grown - math.sqrt(max(grown**2 - beyond**2, 0.0))) / cell
+            for i in range(max(math.floor(i0 + less) + 1, 0), min(math.ceil(i1 - less), columns)):
+                free[j][i] = False
+
+    walls = [(*a, *b) for a, b in zip(room.corners, room.corners[1:] + room.corners[:1], strict=True)]
+    for a0, b0, a1, b1 in walls:
+        close((min(a0, a1), min(b0, b1), max(a0, a1), max(b0, b1)), half)
+    for rect in taken:
+        close(rect, half)
+    doors = [outline([d["line"]["start"], d["line"]["end"]]) for d in room.doors]
+    inside = [(i, j) for j in range(rows) for i in range(columns) if free[j][i]]
+
+    def near(cells, rect, far):
+        at = [(x0 + (i + 0.5) * cell, y0 + (j + 0.5) * cell) for i, j in cells]
+        return [c for c, spot in zip(cells, at, strict=True) if gap(spot * 2, rect) < far]
+
+    edge = [c for door in doors for c in near(inside, door, half + 0.35)]
+    seen = set(edge)
+    while edge:
+        i, j = edge.pop()
+        for k in ((i + 1, j), (i - 1, j), (i, j + 1), (i, j - 1)):
+            if 0 <= k[0] < columns and 0 <= k[1] < rows and k not in seen and free[k[1]][k[0]]:
+                seen.add(k)
+                edge.append(k)
+    known = list(seen)
+    return [bool(near(known, goal, 0.85)) for goal in goals]
+
+
+@objection("A", "office")
+def pinched(world):
+    """less than 0.85 m on the way to four or more desks, past furniture, charging robots and goods"""
+    for room in world.of("open_office", "team_office", "coworking_space"):
+        chairs = working(room)
+        if len(chairs) < 4:
+            continue
+        starts = [(r["start"]["x"], r["start"]["y"], 0.9 * r["robot"]["radius_m"]) for r in world.robots]
+        parked = [(x - r, y - r, x + r, y + r) for x, y, r in starts]
+        taken = outlines(room.standing) + parked + [floor for id_, floor in world.staged if id_ == room.id]
+        if reached(room, taken, 0.85, outlines(chairs)).count(False) >= 4:
+            return True
+    return False
 
 
 def main():

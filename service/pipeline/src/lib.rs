@@ -4,6 +4,7 @@
 
 pub mod bring;
 pub mod edit;
+mod entry;
 pub mod error;
 mod fit;
 pub mod floorplan;

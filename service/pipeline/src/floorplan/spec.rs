@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 
 use d3dgen_knowledge::{Limit, Limits, RoomLimits};
 use d3dgen_model::domain::{
-    Adjacency, AdjacencyRelation, Daylight, Domain, Materials, Privacy, Relation, RobotUse, RoomType, Scheme, Shape,
-    Zone,
+    Adjacency, AdjacencyRelation, Arrangement, Daylight, Domain, Materials, Privacy, Relation, RobotUse, RoomType,
+    Scheme, Shape, Zone,
 };
 use d3dgen_model::scene_graph::{Connector, GraphEdge, GraphRoom, Note, SceneGraph};
 use d3dgen_model::seed::Stream;
@@ -59,6 +59,8 @@ pub(super) struct RoomSpec {
     pub daylight: Daylight,
     /// True for windows above what stands at the outer wall.
     pub high_windows: bool,
+    /// True for rooms that rows of desks are for: who sits there looks along the windows.
+    pub desk_rows: bool,
     pub zone: Zone,
     pub wet: bool,
     /// True for rooms that one locks behind oneself.
@@ -415,6 +417,12 @@ fn is_for_homes(domain: &Domain) -> bool {
     !domain.room_types.iter().any(|kind| matches!(kind.zone, Zone::Staff | Zone::Public))
 }
 
+/// Returns true for a room that rows of desks are for.
+fn has_desk_rows(domain: &Domain, kind: &RoomType) -> bool {
+    let desk = |item: &str| domain.anchor(item).is_some_and(|o| o.shape == Shape::Desk);
+    kind.furnishing.first().is_some_and(|f| f.required && f.arrangement == Arrangement::Rows && desk(&f.item))
+}
+
 fn room_spec(
     room: &GraphRoom,
     graph: &SceneGraph,
@@ -478,6 +486,7 @@ fn room_spec(
         min_dimension: max_limit(least_dimension, limit.dimension_min.as_ref()).max(fitted),
         daylight: kind.daylight,
         high_windows: kind.high_windows,
+        desk_rows: has_desk_rows(domain, kind),
         zone: kind.zone,
         wet: kind.wet,
         private: kind.privacy == Privacy::Private,

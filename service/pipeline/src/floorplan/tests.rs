@@ -29,6 +29,7 @@ fn room(id: &str, area: [f64; 3], min_dimension: f64, daylight: Daylight, zone: 
         docks: false,
         open_front: false,
         high_windows: false,
+        desk_rows: false,
         slides: false,
         automatic: false,
         entrance: false,

@@ -26,6 +26,9 @@ const CORRIDOR_PANE_M: f64 = 1.2;
 const LARGE_ROOM_M2: f64 = 40.0;
 const LONG_WALL_M: f64 = 4.0;
 const BLANK_SHARE: f64 = 0.35;
+/// Share of its glass that a room for rows of desks may lack in the walls along its main facade: windows in the others would be
+/// before or behind the screens (DIN EN 527, ASR A3.4: lines of sight run along the windows).
+const SPARED_SHARE: f64 = 0.12;
 /// Outer wall of a wet room that has a tall shower in one corner and its window in the middle, m; on shorter ones the
 /// window makes room for it.
 const SHOWER_AND_WINDOW_M: f64 = 2.9;
@@ -46,9 +49,16 @@ pub(super) fn place_windows(brief: &Brief, stretches: &[Stretch], net_m2: &[f64]
         let wide = room.daylight == Daylight::Required && net_m2[i] >= LARGE_ROOM_M2;
         let mut outer: Vec<&Stretch> = stretches.iter().filter(|s| s.only_room() == Some(i)).collect();
         outer.sort_by_key(|s| (-s.len(), s.vertical, s.at, s.from));
+        let along = room.desk_rows.then(|| main_facade(&outer)).flatten();
+        let crosses = |s: &Stretch| along.is_some_and(|vertical| s.vertical != vertical);
+        outer.sort_by_key(|s| crosses(s));
+        let spared = SPARED_SHARE * need;
         for stretch in outer {
             if need < 0.05 && !room.circulation && !wide {
                 break;
+            }
+            if crosses(stretch) && need <= spared {
+                continue;
             }
             for (from, to) in free_parts(stretch, doors) {
                 let usable = to - from - 2.0 * MARGIN_M;
@@ -59,7 +69,7 @@ pub(super) fn place_windows(brief: &Brief, stretches: &[Stretch], net_m2: &[f64]
                     add_panes(stretch, from, to, (total, CORRIDOR_PANE_M), sill, room, &mut windows);
                     continue;
                 }
-                let least = if wide { (usable * BLANK_SHARE).min(usable) } else { 0.0 };
+                let least = if wide && !crosses(stretch) { (usable * BLANK_SHARE).min(usable) } else { 0.0 };
                 let wanted = need.max(if usable >= LONG_WALL_M { least } else { 0.0 });
                 if usable < PANE_M.1 || wanted < 0.05 {
                     continue;
@@ -76,6 +86,16 @@ pub(super) fn place_windows(brief: &Brief, stretches: &[Stretch], net_m2: &[f64]
         window.window_id = format!("window_{}", i + 1);
     }
     windows
+}
+
+/// Returns whether the outer walls that can take most windows of a room run north, of two headings; `None` where all run alike.
+fn main_facade(outer: &[&Stretch]) -> Option<bool> {
+    let length = |vertical: bool| -> f64 {
+        let walls = outer.iter().filter(|s| s.vertical == vertical).map(|s| meters(s.len()) - 2.0 * MARGIN_M);
+        walls.filter(|usable| *usable >= PANE_M.1).sum()
+    };
+    let (north, east) = (length(true), length(false));
+    (north > 0.0 && east > 0.0).then_some(north > east)
 }
 
 /// Returns sill height and total width of glass a room wants, m.

@@ -84,6 +84,14 @@ impl Task<'_> {
         self.spare = few.min(self.count - self.required.max(1).min(self.count));
     }
 
+    /// Looks hard for one of several tables that fill a large room only: the others stand where there is floor for them.
+    fn allow_one_table(&mut self) {
+        let table = matches!(self.anchor.shape, Shape::Table | Shape::RoundTable);
+        if table && self.arrangement == Arrangement::Center && self.required == 0 && !self.asked && self.count > 1 {
+            self.spare = self.count - 1;
+        }
+    }
+
     /// Returns true for a thing of which a room wants so many, whatever else they belong to: seats for visitors, a refrigerator.
     fn counts_in_groups(&self) -> bool {
         let shape = self.anchor.shape;
@@ -323,6 +331,7 @@ pub(super) fn tasks<'a>(
             out[k].spare = out[k].count - out[k].required.max(1).min(out[k].count);
         }
     }
+    out.iter_mut().for_each(Task::allow_one_table);
     turn_to_audience(&mut out);
     // a household eats before its vacuum robot does
     let table = |t: &Task| kind.furnishing.get(t.line).is_some_and(|f| !f.unless_rooms.is_empty());

@@ -56,6 +56,24 @@ impl Box2 {
         i64::from(self.width()) * i64::from(self.height())
     }
 
+    /// Returns true when the straight line between two points meets it.
+    pub fn meets(&self, a: (i32, i32), b: (i32, i32)) -> bool {
+        let (mut from, mut to) = (0.0_f64, 1.0_f64);
+        for (p, q, low, high) in [(a.0, b.0, self.x0, self.x1), (a.1, b.1, self.y0, self.y1)] {
+            let (p, d) = (f64::from(p), f64::from(q - p));
+            let (low, high) = (f64::from(low) - p, f64::from(high) - p);
+            if d == 0.0 {
+                if low > 0.0 || high < 0.0 {
+                    return false;
+                }
+                continue;
+            }
+            let (s, t) = ((low / d).min(high / d), (low / d).max(high / d));
+            (from, to) = (from.max(s), to.min(t));
+        }
+        from < to
+    }
+
     pub fn center(&self) -> (i32, i32) {
         ((self.x0 + self.x1) / 2, (self.y0 + self.y1) / 2)
     }

@@ -15,8 +15,10 @@ const SOFA_APART: i32 = 900;
 /// Desks from which on a room has aisles, and how wide what stands beside desks leaves them, mm.
 const MANY: usize = 4;
 const AISLE: i32 = 700;
-/// Floor between a chair at a desk or table and a machine that others use, mm.
+/// Floor between a chair at a desk or table and a machine that others use, and that of a room with many desks, mm: all of them
+/// come there.
 const FROM_MACHINE: i32 = 1000;
+const FROM_SHARED_MACHINE: i32 = 1200;
 /// Floor between a sofa and a machine that others use, mm.
 const SOFA_FROM_MACHINE: i32 = 600;
 /// Floor from the edge of a table at which people sit to what one can do without, mm: a chair, and room to push it back.
@@ -118,7 +120,7 @@ impl<'f, 'a, 's> Neighbors<'f, 'a, 's> {
                 let (seat, desk) = (part_is_seat(part), is_desk(part.object.shape));
                 let gap = [
                     (lounge && (seat || desk), apart),
-                    (machine && seat, FROM_MACHINE),
+                    (machine && seat, if many { FROM_SHARED_MACHINE } else { FROM_MACHINE }),
                     (many && at_desk && (seat || desk), AISLE),
                 ];
                 if let Some(gap) = gap.iter().filter(|(minds, _)| *minds).map(|(_, gap)| *gap).max() {

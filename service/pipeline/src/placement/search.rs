@@ -44,6 +44,8 @@ struct Rows<'a> {
     score: f64,
     /// False when they close off floor, where that is looked at.
     open: bool,
+    /// How many count that people get to.
+    reached: usize,
 }
 
 /// What one room's search needs to know.
@@ -66,6 +68,8 @@ pub(super) struct Job<'a, 's> {
     pub has_robots: bool,
     /// Radius of the circle that rules want free for wheelchairs, mm.
     pub turning: Option<i32>,
+    /// Width of the way to each of many desks, mm.
+    pub access: Option<i32>,
     /// What must stay open from door to door, or for beds.
     pub way: Option<&'s Way>,
     /// The same with the width that is advised, where the room has it.
@@ -251,6 +255,9 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
         );
         start.has_robots = job.has_robots;
         start.keep_circle(job.turning);
+        if let Some(width) = job.access.filter(|_| open.doors) {
+            start.keep_access(width);
+        }
         start.add(job.locked.to_vec());
         Self { job, level, forms, start }
     }
@@ -539,7 +546,7 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
                 rows(state, task, index, unit, terms, tally)
             };
             let counted = |placed: &[Placed]| task.counted(placed.len());
-            let rank_of = |r: &Rows| (r.units.len() >= task.required as usize, r.open, counted(&r.units), r.score);
+            let rank_of = |r: &Rows| (r.units.len() >= task.required as usize, r.open, r.reached, r.score);
             let most = batches.iter().skip(rank).map(|b| counted(&b.placed)).max().unwrap_or(0);
             for batch in batches.into_iter().skip(rank).take_while(|_| !self.job.stop.is_set()) {
                 let mut units: Vec<Placed> = Vec::new();
@@ -552,8 +559,9 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
                 }
                 units.iter_mut().for_each(|p| p.first_line = task.leads);
                 let score = batch.score + units.len() as f64;
-                let rows = Rows { score, open: !whole || !state.is_closed_by(&units), units };
-                let no_better = counted(&rows.units) >= most && rows.open;
+                let reached = counted(&units).saturating_sub(state.without_access(&units));
+                let rows = Rows { score, open: !whole || !state.is_closed_by(&units), reached, units };
+                let no_better = rows.reached >= most && rows.open;
                 if best.as_ref().is_none_or(|b| rank_of(&rows) > rank_of(b)) {
                     best = Some(rows);
                 }

@@ -21,6 +21,14 @@ const WHEELCHAIR_RADIUS_M: f64 = 0.4;
 
 /// What the circle of a wheelchair is drawn larger by, m: its place is found to the millimeter by none.
 const TURNING_SPARE_M: f64 = 0.005;
+/// Desks from which on the way into their room stays free.
+const MANY_DESKS: u32 = 4;
+/// Width of the way to each of them, mm (DIN EN 527, ASR A1.8: 0.9 m for more than five people).
+const ACCESS: i32 = 900;
+/// Floor of halls, m^2, and most of it that a workplace takes in rooms for a group: what is advised for each is for the aisles of
+/// halls (ASR A1.2: open-plan offices of 400 m^2 and more).
+const HALL_M2: f64 = 400.0;
+const GROUP_M2: f64 = 8.0;
 /// Area of a room from which on things of any size leave room for that circle, m^2.
 const AMPLE_M2: f64 = 9.0;
 /// Floor at one side of such a bed in a room of so many m^2, where one turns beside it, m (DIN 18040-2 R: 1.5 m).
@@ -43,6 +51,8 @@ pub(super) struct Setting<'a> {
     pub radius: i32,
     /// Radius of the circle that rules want free for wheelchairs, mm.
     pub turning: Option<i32>,
+    /// Width of the way to each of many desks, mm.
+    pub access: Option<i32>,
     /// What must stay open from door to door, or for beds.
     pub way: Option<Way>,
     /// The same with the width that is advised, where the room has it.
@@ -65,6 +75,8 @@ impl<'a> Setting<'a> {
         let kind = domain.room_type_or_generic(&room.room_type);
         let per_person_m2 = limits.rooms.get(&room.room_type).and_then(|l| l.area_per_person_advised);
         let per_person_m2 = per_person_m2.or_else(|| workroom_area(plan, domain, limits));
+        let per_person_m2 =
+            per_person_m2.map(|each| if room.net_area_m2 < HALL_M2 { each.min(GROUP_M2) } else { each });
         let windows = space.windows.len() as u32;
         let household = demand::Household::new(domain, graph);
         let (own, area_m2) = (graph.room(&room.room_id), room.net_area_m2);
@@ -78,6 +90,11 @@ impl<'a> Setting<'a> {
         if graph.accessible {
             let turns = area_m2 >= TURNING_BESIDE_BED_FROM_M2;
             beside_beds(domain, &mut aims, if turns { TURNING_BESIDE_BED_M } else { BESIDE_BED_M });
+        }
+        let many = |t: &Task| t.anchor.shape == Shape::Desk && t.is_batch() && t.count >= MANY_DESKS;
+        let many_desks = if wanted.is_one_more() { usual().iter().any(many) } else { tasks.iter().any(many) };
+        if many_desks {
+            space.keep_way_in(plan, room);
         }
         // what rules advise against goes where the room can do without
         tasks.retain(|t| t.required > 0 || !aims.get(t.anchor.id.as_str()).is_some_and(|a| a.unwanted));
@@ -94,7 +111,8 @@ impl<'a> Setting<'a> {
         let wide_m = limits.corridor_width_advised.unwrap_or(0.0).max(width_m);
         let beds = tasks.iter().any(|t| t.anchor.shape == Shape::HospitalBed);
         let [way, wide_way] = Way::of_room(plan, room, [width_m, wide_m], beds);
-        Self { domain, kind, radius: radius(graph, &space), space, tasks, aims, salt, sizes, turning, way, wide_way }
+        let (radius, access) = (radius(graph, &space), many_desks.then_some(ACCESS));
+        Self { domain, kind, radius, space, tasks, aims, salt, sizes, turning, access, way, wide_way }
     }
 
     /// Returns which of its sizes an object has in this room.

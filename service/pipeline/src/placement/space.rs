@@ -4,6 +4,7 @@ use d3dgen_model::floorplan::{Door, DoorKind, Floorplan, PlanRoom};
 use d3dgen_model::geometry::Segment;
 
 use super::geom::{Box2, Solid, mm, turn};
+use crate::entry::way_in;
 
 /// Floor kept free in front of every door over its width, mm.
 const DOOR_DEPTH: i32 = 600;
@@ -144,6 +145,8 @@ pub(super) struct Space {
     holes: Vec<Box2>,
     /// Rectangles that cover the outline.
     floor: Vec<Box2>,
+    /// Floor by which many come in.
+    lanes: Vec<Box2>,
 }
 
 /// Returns how good a door is as "the door" of a room: entrance, other way out, to the room with the entrance, to
@@ -175,6 +178,7 @@ impl Space {
             ceiling: mm(room.ceiling_height_m),
             holes,
             floor: room.net_polygon.rects().iter().map(Box2::from_rect).collect(),
+            lanes: Vec::new(),
         };
         out.main = out.largest_rectangle(&corners);
         for door in plan.doors_of(&room.room_id) {
@@ -212,6 +216,17 @@ impl Space {
             }
         }
         out
+    }
+
+    /// Keeps the way in from the doors free, to where the room is wide.
+    pub fn keep_way_in(&mut self, plan: &Floorplan, room: &PlanRoom) {
+        let ways = plan.doors_of(&room.room_id).flat_map(|door| way_in(&room.net_polygon, door));
+        self.lanes = ways.map(|r| Box2::from_rect(&r)).collect();
+    }
+
+    /// Returns the floor by which many come in.
+    pub fn lanes(&self, open: Open) -> &[Box2] {
+        if open.doors { &self.lanes } else { &[] }
     }
 
     /// Widens what doors should have by the wall beside their latches, for people in wheelchairs.

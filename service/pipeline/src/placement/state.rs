@@ -158,6 +158,10 @@ pub(super) struct State<'a, 's> {
     /// Memory for testing routes.
     spare: RefCell<Option<Nav>>,
     targets: Vec<Vec<Box2>>,
+    /// Floor that people with bags pass over on their way to many desks, and where each of these is come to.
+    access: Option<Nav>,
+    spare_access: RefCell<Option<Nav>>,
+    desks: Vec<Vec<Box2>>,
     /// Clear floor the robot can use, in cells.
     pub free_area: usize,
     /// What must stay open from door to door, or for beds.
@@ -189,6 +193,9 @@ impl<'a, 's> State<'a, 's> {
             open,
             spare: RefCell::new(None),
             targets: Vec::new(),
+            access: None,
+            spare_access: RefCell::new(None),
+            desks: Vec::new(),
             free_area,
             way,
         }
@@ -246,9 +253,18 @@ impl<'a, 's> State<'a, 's> {
             if space.doors.iter().any(|d| solid.z0 < d.height && d.kept(self.open).overlaps(&solid.rect)) {
                 return Err(Rule::Door);
             }
+            if takes_floor(part, &solid) && space.lanes(self.open).iter().any(|lane| lane.overlaps(&solid.rect)) {
+                return Err(Rule::Door);
+            }
             if takes_floor(part, &solid) && self.clears.iter().any(|c| c.overlaps(&solid.rect)) {
                 return Err(Rule::Clearance);
             }
+        }
+        // a robot that charges stands in the way as furniture does, and where many work its floor is all free
+        let lanes = space.lanes(self.open);
+        let crowded = |b: &Box2| lanes.iter().chain(&self.bodies).any(|taken| taken.overlaps(b));
+        if !lanes.is_empty() && buffers(p, self.nav.gap()).any(|b| crowded(&b)) {
+            return Err(Rule::Door);
         }
         if p.support.is_none() {
             self.test_clears(p)?;
@@ -342,7 +358,39 @@ impl<'a, 's> State<'a, 's> {
             && units.iter().filter(|u| needs_reach(u)).all(|u| nav.reaches(&u.targets()));
         let berths: Vec<Box2> = self.berths.iter().copied().chain(units.iter().flat_map(berths)).collect();
         let open = !self.berths_open || nav.passes_parked(&berths);
-        if reached && open { Ok(nav.area()) } else { Err(Rule::Route) }
+        let area = nav.area();
+        drop(spare);
+        if reached && open && self.leaves_access(units) { Ok(area) } else { Err(Rule::Route) }
+    }
+
+    /// Keeps a way of this width to each of many desks, mm, as far as rows leave one.
+    pub fn keep_access(&mut self, width: i32) {
+        self.access = Some(Nav::new(self.space, width / 2));
+    }
+
+    /// Returns true when units leave the way to all desks that have one.
+    fn leaves_access(&self, units: &[Placed]) -> bool {
+        let Some(access) = self.access.as_ref().filter(|_| !self.desks.is_empty()) else { return true };
+        let mut spare = self.spare_access.borrow_mut();
+        let after = match spare.as_mut() {
+            Some(nav) => {
+                nav.clone_from(access);
+                nav
+            }
+            None => spare.insert(access.clone()),
+        };
+        units.iter().flat_map(narrows).for_each(|o| after.block(&o));
+        after.settle();
+        self.desks.iter().all(|desk| after.reaches(desk) || !access.reaches(desk))
+    }
+
+    /// Returns to how many of the desks among these units there is no way, once they stand there.
+    pub fn without_access(&self, units: &[Placed]) -> usize {
+        let Some(access) = &self.access else { return 0 };
+        let mut after = access.clone();
+        units.iter().flat_map(narrows).for_each(|o| after.block(&o));
+        after.settle();
+        units.iter().filter(|p| is_desk(p) && !after.reaches(&p.targets())).count()
     }
 
     /// Returns true when units would close off floor that is open without them, for however small a robot.
@@ -400,6 +448,10 @@ impl<'a, 's> State<'a, 's> {
                 self.basins.extend((part.object.shape == Shape::Basin).then(|| over_basin(&solid)));
             }
             obstacles(&p).for_each(|o| self.nav.block(&o));
+            if let Some(access) = &mut self.access {
+                narrows(&p).for_each(|o| access.block(&o));
+                self.desks.extend(is_desk(&p).then(|| p.targets()));
+            }
             self.pockets.add(&p);
             self.bodies.extend(bodies(&p));
             self.in_the_way.extend(&in_the_way(std::slice::from_ref(&p)));
@@ -415,6 +467,9 @@ impl<'a, 's> State<'a, 's> {
             self.placed.push(p);
         }
         self.nav.settle();
+        if let Some(access) = &mut self.access {
+            access.settle();
+        }
         self.free_area = self.nav.area();
         self.berths_open = self.nav.passes_parked(&self.berths);
         if self.circle.is_some_and(|circle| self.bodies.iter().any(|body| !circle.is_clear_of(body))) {
@@ -432,6 +487,15 @@ fn over_basin(basin: &Solid) -> Solid {
 fn obstacles(p: &Placed) -> impl Iterator<Item = Box2> {
     let parts = p.unit.parts.iter().filter(|part| part.mount != Mount::Surface && p.support.is_none());
     parts.map(|part| p.solid(part)).filter(Solid::stops_robot).map(|s| s.rect)
+}
+
+/// Returns what people walk around: furniture, and robots at their docks.
+fn narrows<'p>(p: &'p Placed) -> impl Iterator<Item = Box2> + 'p {
+    obstacles(p).chain(p.unit.parked.iter().map(|b| p.world(b)))
+}
+
+fn is_desk(p: &Placed) -> bool {
+    p.unit.anchor().object.shape == Shape::Desk
 }
 
 /// Returns the outlines of what takes floor from people passing by or using something.

@@ -21,7 +21,9 @@ pub(super) const LEAST_RADIUS_M: f64 = 0.30;
 const TIGHT_M: f64 = 1.6;
 const SWING_M: f64 = 1.0;
 /// Floor behind a chair that whoever sits there takes and gets up on, m.
-const CHAIR_BACK_M: f64 = 0.6;
+pub(super) const CHAIR_BACK_M: f64 = 0.6;
+/// Floor between a robot that serves and a chair, m.
+const FROM_CHAIR_M: f64 = 0.35;
 /// How far around a point spots are looked for at first, m.
 const FIRST_REACH_M: f64 = 0.8;
 /// Spots of a room that are looked at exactly, at most.
@@ -235,6 +237,16 @@ impl<'a> Floor<'a> {
         let (i0, i1, j0, j1) = self.occupancy.frame.span(r);
         let (i, j) = room.corner;
         room.spots.any_in(i0 - i, i1 - i, j0 - j, j1 - j)
+    }
+
+    /// Returns true for a spot on which the robot is close to a chair at a desk or table.
+    pub fn is_at_chair(&self, room: &Room, p: Point) -> bool {
+        let chairs = room.objects.iter().filter(|(_, o)| matches!(o.shape, Shape::Chair | Shape::SwivelChair));
+        let reach = self.radius + FROM_CHAIR_M;
+        chairs.map(|(chair, _)| chair.footprint().bounds()).any(|r| {
+            let (dx, dy) = ((r.x0 - p.x).max(p.x - r.x1).max(0.0), (r.y0 - p.y).max(p.y - r.y1).max(0.0));
+            dx.hypot(dy) < reach
+        })
     }
 
     /// Takes the floor around a robot or person (of this radius) from the spots of all rooms.

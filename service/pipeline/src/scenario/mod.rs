@@ -56,15 +56,17 @@ fn one_storey(
     let mut rois = regions::all(&floor);
     if !graph.robots.is_empty() {
         rois.extend(speed::all(&floor));
-        rois.extend(staging::all(&floor, graph, &rois));
     }
-    let pois = points::all(&floor, graph, &rois);
+    let pois = points::all(&floor, graph);
     regions::number(&mut rois, &floor, &pois);
     let mut scenario = Scenario { version: 1, seed: graph.seed, rois, pois, robots: Vec::new(), agents: Vec::new() };
     scenario.robots = robots::all(&mut floor, graph, (plan, placements), &scenario.pois);
     if lived_in {
         robots::add_routes(&floor, &mut scenario);
     }
+    // goods stand beside the routes, wherever these lead
+    let staged = staging::all(&floor, graph, &scenario);
+    scenario.rois.extend(staged);
     scenario.agents = people::all(&mut floor, graph);
     scenario
 }

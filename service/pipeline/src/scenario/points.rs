@@ -2,19 +2,27 @@
 
 use d3dgen_model::domain::{Mount, ObjectType, RobotUse, Shape};
 use d3dgen_model::placements::Placement;
-use d3dgen_model::scenario::{Poi, Roi, RoiKind};
+use d3dgen_model::scenario::Poi;
 use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::{Point, Rect};
 
 use super::floor::{Floor, Room, around, floor_in_front, looking_at, swept};
+use super::regions::buffers;
 
 /// Gap between a robot's hull and what it serves, m.
 const GAP_M: f64 = 0.10;
-/// How much nearer a spot beside an object must be than one in front of it, m.
+/// How much nearer a spot beside an object must be than one in front of it, and one on the side of those who sit at a desk or
+/// table than others, m.
 const NOT_IN_FRONT_M: f64 = 0.3;
+/// How much nearer a spot must be at which a robot stands right behind or beside whoever sits there, m.
+const AT_CHAIR_M: f64 = 1.5;
+/// How much nearer a spot must be on the floor of a dock that is another's, m.
+const AT_DOCK_M: f64 = 2.0;
 /// How much nearer a spot beside a desk or table must be for each meter that it lies farther from the door, m: on the way
 /// there one passes behind chairs.
 const FROM_DOOR: f64 = 0.15;
+/// Desks or tables of a room that are looked at for one with a stop aside of chairs.
+const MOST_SERVED: usize = 8;
 /// Depth of the floor before an object that one stands on to be served, m.
 const FRONT_M: f64 = 0.6;
 /// Most waiting bays.
@@ -49,8 +57,22 @@ pub(super) fn served<'r>(floor: &Floor, room: &'r Room) -> Option<&'r (&'r Place
         let swung = swings.iter().any(|s| s.overlaps(&front));
         ((swung, rank, door_distance(floor, room, Point::new(o.0.pose.x, o.0.pose.y))), o)
     });
-    let first = ranked.min_by(|(a, _), (b, _)| (a.0, a.1).cmp(&(b.0, b.1)).then(a.2.total_cmp(&b.2)));
-    first.map(|(_, o)| o)
+    let mut ranked: Vec<_> = ranked.collect();
+    ranked.sort_by(|(a, _), (b, _)| (a.0, a.1).cmp(&(b.0, b.1)).then(a.2.total_cmp(&b.2)));
+    let &((swung, rank, _), first) = ranked.first()?;
+    // at the end of a row rather than between those who sit there
+    let mut alike =
+        ranked.iter().take_while(|((s, r, _), _)| (*s, *r) == (swung, rank)).map(|(_, o)| *o).take(MOST_SERVED);
+    let aside = |o: &&(&Placement, &ObjectType)| {
+        let spot = at_object(floor, room, **o).map(|(_, pose)| Point::new(pose.x, pose.y));
+        spot.is_some_and(|spot| !floor.is_at_chair(room, spot))
+    };
+    if is_seated(first.1) { alike.find(aside).or(Some(first)) } else { Some(first) }
+}
+
+/// Returns true for what people sit at.
+fn is_seated(kind: &ObjectType) -> bool {
+    matches!(kind.shape, Shape::Desk | Shape::Table | Shape::RoundTable)
 }
 
 /// Returns how far a point is from the nearest door of a room, m; 0 in rooms without one.
@@ -60,7 +82,7 @@ fn door_distance(floor: &Floor, room: &Room, p: Point) -> f64 {
 }
 
 /// Returns all points; each can be reached.
-pub(super) fn all(floor: &Floor, graph: &SceneGraph, rois: &[Roi]) -> Vec<Poi> {
+pub(super) fn all(floor: &Floor, graph: &SceneGraph) -> Vec<Poi> {
     let mut out: Vec<Poi> = entrance(floor).into_iter().collect();
     for room in &floor.rooms {
         let docks = room.objects.iter().filter(|(_, k)| k.shape == Shape::Dock);
@@ -88,7 +110,7 @@ pub(super) fn all(floor: &Floor, graph: &SceneGraph, rois: &[Roi]) -> Vec<Poi> {
             out.extend(in_the_middle(floor, room).map(|pose| poi(id, "cleaning_point", room, pose)));
         }
     }
-    out.extend(bays(floor, graph, rois));
+    out.extend(bays(floor, graph));
     out
 }
 
@@ -103,12 +125,18 @@ pub(super) fn at_object(
     room: &Room,
     (object, kind): (&Placement, &ObjectType),
 ) -> Option<(u8, d3dgen_model::Pose)> {
-    let seated = matches!(kind.shape, Shape::Desk | Shape::Table | Shape::RoundTable);
+    let seated = is_seated(kind);
     let wanted = around(object, floor.radius + GAP_M).into_iter().take(if seated { 4 } else { 1 });
     let spots = (0..).zip(wanted).filter_map(|(side, p)| {
         let (off, spot) = floor.best_spot(room, p)?;
         let far = if seated { FROM_DOOR * door_distance(floor, room, spot) } else { 0.0 };
-        Some((off + far + if side == 0 { 0.0 } else { NOT_IN_FRONT_M }, side, spot))
+        // at a desk or table somebody sits there
+        let aside = if seated == (side == 0) { NOT_IN_FRONT_M } else { 0.0 };
+        let crowded = if seated && floor.is_at_chair(room, spot) { AT_CHAIR_M } else { 0.0 };
+        let mut docks = buffers(floor, room).filter(|(dock, _)| dock.placement_id != object.placement_id);
+        let within = |b: &Rect| b.x0 < spot.x && spot.x < b.x1 && b.y0 < spot.y && spot.y < b.y1;
+        let docked = if docks.any(|(_, b)| within(&b.grown(floor.radius))) { AT_DOCK_M } else { 0.0 };
+        Some((off + far + aside + crowded + docked, side, spot))
     });
     let (_, side, spot) = spots.min_by(|a, b| a.0.total_cmp(&b.0))?;
     Some((side, looking_at(spot, Point::new(object.pose.x, object.pose.y))))
@@ -132,24 +160,20 @@ fn entrance(floor: &Floor) -> Option<Poi> {
     Some(poi("entrance_1".into(), "entrance", room, looking_at(spot, on)))
 }
 
-/// Returns places in the circulation, or in the room one enters through, where robots wait without standing before a door
-/// or where goods are put down.
-fn bays(floor: &Floor, graph: &SceneGraph, rois: &[Roi]) -> Vec<Poi> {
+/// Returns places in the circulation, or in the room one enters through, where robots wait without standing before a door.
+fn bays(floor: &Floor, graph: &SceneGraph) -> Vec<Poi> {
     let robots: u32 = graph.robots.iter().map(|r| r.count).sum();
     let entered = |id: &str| graph.room(id).is_some_and(|r| r.entrance);
     let room = floor.rooms.iter().find(|r| r.plan.circulation);
     let Some(room) = room.or_else(|| floor.rooms.iter().find(|r| entered(&r.plan.room_id))) else { return Vec::new() };
     let doors: Vec<Point> = floor.plan.doors_of(&room.plan.room_id).map(|d| d.line.middle()).collect();
-    let staging = rois.iter().filter(|r| r.kind == RoiKind::StagingArea && r.room_id == room.plan.room_id);
-    let staging: Vec<Rect> = staging.map(|r| r.polygon.bounds().grown(floor.radius)).collect();
     let mut taken: Vec<Point> = Vec::new();
     // the best of many is as good as the best of all
     let spots = floor.every(room, (floor.spots(room) / MOST_BAY_SPOTS).max(10));
     for _ in 0..robots.clamp(1, MOST_BAYS) {
         let apart = |p: &Point| {
             let others = taken.iter().all(|t| t.distance(*p) >= 2.0 * floor.radius + GAP_M);
-            let inside = |r: &Rect| r.x0 <= p.x && p.x <= r.x1 && r.y0 <= p.y && p.y <= r.y1;
-            others && !staging.iter().any(inside) && doors.iter().all(|d| d.distance(*p) >= BAY_FROM_DOOR_M)
+            others && doors.iter().all(|d| d.distance(*p) >= BAY_FROM_DOOR_M)
         };
         let room_around = |p: &Point| doors.iter().chain(&taken).map(|d| d.distance(*p)).fold(f64::MAX, f64::min);
         // beside the walls rather than at them, where there is room for that

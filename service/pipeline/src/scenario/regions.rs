@@ -95,7 +95,7 @@ pub(super) fn largest(room: &Room) -> Rect {
 }
 
 /// Returns the docks of a room with the floor that belongs to each.
-fn buffers<'r>(floor: &'r Floor, room: &'r Room) -> impl Iterator<Item = (&'r Placement, Rect)> {
+pub(super) fn buffers<'r>(floor: &'r Floor, room: &'r Room) -> impl Iterator<Item = (&'r Placement, Rect)> {
     let docks = room.objects.iter().filter(|(_, kind)| kind.shape == Shape::Dock);
     docks.map(|(dock, kind)| {
         let depth = kind.clearance_front_m.max(2.0 * floor.radius);

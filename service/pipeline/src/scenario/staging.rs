@@ -1,18 +1,20 @@
-//! Staging areas: free floor in stores and circulation where goods are put down, near a door, out of the swing of doors and
-//! beside the width that people and robots pass in.
+//! Staging areas: free floor in stores and circulation where goods are put down, near a door, out of the swing of doors, off the
+//! routes of robots and beside the width that people and robots pass in.
 
 use std::cell::OnceCell;
 
+use d3dgen_knowledge::clearance::quarter;
 use d3dgen_knowledge::freespace::FreeSpace;
-use d3dgen_model::domain::{Mount, RobotUse, Zone};
+use d3dgen_model::domain::{Mount, RobotUse, Shape, Zone};
 use d3dgen_model::floorplan::Door;
 use d3dgen_model::geometry::to_mm;
 use d3dgen_model::occupancy::{Bitmap, CELL_M, stops_robot};
-use d3dgen_model::scenario::{Roi, RoiKind};
+use d3dgen_model::scenario::{Roi, RoiKind, Scenario};
 use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::{Point, Polygon, Rect};
 
-use super::floor::{Floor, Room, floor_in_front, lane};
+use super::floor::{CHAIR_BACK_M, Floor, Room, floor_beside, floor_in_front, lane};
+use crate::entry::way_in;
 
 /// Floor for each robot, m^2 (rule `staging_zone_area_per_robot`).
 const PER_ROBOT_M2: f64 = 2.5;
@@ -30,6 +32,12 @@ const LARGE_ROOM_M2: f64 = 25.0;
 const BEFORE_DOOR_M: f64 = 1.0;
 /// Play of a robot that passes, m.
 const PASSING_M: f64 = 0.1;
+/// How far a place may lie from the wall that it lies along, m.
+const AT_WALL_M: f64 = 0.2;
+/// Width of the way to desks, m.
+const ACCESS_M: f64 = 0.9;
+/// Distance between the places of a route at which its floor is taken, m.
+const STEP_M: f64 = 0.1;
 /// Play on each side of a robot that brings goods, m.
 const CARRYING_M: f64 = 0.15;
 /// Cells of wall or furniture beside a place that outweigh a meter more to the nearest door.
@@ -42,8 +50,9 @@ const LARGE: usize = 200_000;
 /// Kinds of robots that bring nothing.
 pub(super) const BRING_NOTHING: [&str; 2] = ["cleaning", "disinfection"];
 
-/// Returns a staging area for each unit of the storey, or for all of it, where there is floor for one.
-pub(super) fn all(floor: &Floor, graph: &SceneGraph, rois: &[Roi]) -> Vec<Roi> {
+/// Returns a staging area for each unit of the storey, or for all of it, where there is floor for one beside the routes and
+/// points of its robots.
+pub(super) fn all(floor: &Floor, graph: &SceneGraph, scenario: &Scenario) -> Vec<Roi> {
     let robots: u32 = graph.robots.iter().filter(|r| !BRING_NOTHING.contains(&r.kind.as_str())).map(|r| r.count).sum();
     if robots == 0 {
         return Vec::new();
@@ -58,15 +67,38 @@ pub(super) fn all(floor: &Floor, graph: &SceneGraph, rois: &[Roi]) -> Vec<Roi> {
         units.push(None);
     }
     let each = robots.div_ceil(units.len() as u32).min(MOST_ROBOTS);
-    units.into_iter().filter_map(|unit| of_unit(floor, graph, rois, (unit, each))).collect()
+    let driven = driven(floor, scenario);
+    units.into_iter().filter_map(|unit| of_unit(floor, graph, (&scenario.rois, &driven), (unit, each))).collect()
 }
 
-fn of_unit(floor: &Floor, graph: &SceneGraph, rois: &[Roi], (unit, robots): (Option<&str>, u32)) -> Option<Roi> {
+/// Returns the floor that robots drive over and wait on.
+fn driven(floor: &Floor, scenario: &Scenario) -> Vec<Rect> {
+    let around = |p: Point, r: f64| Rect { x0: p.x - r, y0: p.y - r, x1: p.x + r, y1: p.y + r };
+    let reach = |radius: f64| radius + PASSING_M / 2.0;
+    let steps = |a: Point, b: Point, radius: f64| {
+        let count = (a.distance(b) / STEP_M).ceil().max(1.0) as u32;
+        let at = move |k: u32| f64::from(k) / f64::from(count);
+        (0..=count)
+            .map(move |k| around(Point::new(a.x + at(k) * (b.x - a.x), a.y + at(k) * (b.y - a.y)), reach(radius)))
+    };
+    let legs = scenario.robots.iter().flat_map(|task| task.routes.iter().map(|leg| (&leg.path, task.robot.radius_m)));
+    let routes = legs.flat_map(|(path, radius)| path.windows(2).flat_map(move |w| steps(w[0], w[1], radius)));
+    let points = scenario.pois.iter().filter(|p| matches!(p.kind.as_str(), "waiting_bay" | "service_point"));
+    let points = points.map(|p| around(Point::new(p.pose.x, p.pose.y), reach(floor.radius)));
+    routes.chain(points).collect()
+}
+
+fn of_unit(
+    floor: &Floor,
+    graph: &SceneGraph,
+    (rois, driven): (&[Roi], &[Rect]),
+    (unit, robots): (Option<&str>, u32),
+) -> Option<Roi> {
     let here = |id: &str| graph.room(id).is_some_and(|r| unit.is_none() || r.unit.as_deref() == unit);
     let mut rooms: Vec<(u8, &Room)> =
         floor.rooms.iter().filter(|r| here(&r.plan.room_id)).filter_map(|r| Some((rank(floor, r)?, r))).collect();
     rooms.sort_by_key(|r| r.0);
-    let yards: Vec<(&Room, Yard)> = rooms.into_iter().map(|(_, r)| (r, Yard::new(floor, r, rois))).collect();
+    let yards: Vec<(&Room, Yard)> = rooms.into_iter().map(|(_, r)| (r, Yard::new(floor, r, rois, driven))).collect();
     let whole = [robots, 1].into_iter().flat_map(|n| {
         let area = f64::from(n) * PER_ROBOT_M2;
         DEPTHS_M.map(|depth| ([area / depth, depth], format!("{area} m2 for {n} robot(s)")))
@@ -115,15 +147,19 @@ struct Yard {
     goals: Vec<Rect>,
     /// Floor under what stands there.
     taken: Vec<Rect>,
+    /// Floor on which people get up from their desks.
+    seats: Vec<Rect>,
     /// Free floor around it, once somebody asks.
     space: OnceCell<FreeSpace>,
 }
 
 impl Yard {
-    fn new(floor: &Floor, room: &Room, rois: &[Roi]) -> Self {
+    fn new(floor: &Floor, room: &Room, rois: &[Roi], driven: &[Rect]) -> Self {
         let mut map = room.quiet.clone();
         let id = &room.plan.room_id;
         let lanes = floor.plan.doors_of(id).map(|d| lane(d, BEFORE_DOOR_M));
+        let into = floor.plan.doors_of(id).filter(|_| !room.plan.circulation);
+        let into: Vec<Rect> = into.flat_map(|door| way_in(&room.plan.net_polygon, door)).collect();
         let fronts = room.objects.iter().filter(|(p, _)| p.support.is_none() && stops_robot(p));
         let fronts = fronts.map(|(p, kind)| floor_in_front(p, kind.clearance_front_m, 0.0));
         let rugs = room.objects.iter().map(|(p, _)| *p).filter(|p| p.mount == Mount::Floor && !stops_robot(p));
@@ -133,7 +169,7 @@ impl Yard {
         };
         let goals: Vec<Rect> = rois.iter().filter(used).map(|r| r.polygon.bounds()).collect();
         let (i, j) = room.corner;
-        for r in lanes.chain(fronts).chain(rugs).chain(goals.iter().copied()) {
+        for r in lanes.chain(into).chain(fronts).chain(rugs).chain(goals.iter().chain(driven).copied()) {
             let (i0, i1, j0, j1) = floor.occupancy.frame.span(&r);
             map.fill(i0 - i, i1 - i, j0 - j, j1 - j, false);
         }
@@ -141,7 +177,9 @@ impl Yard {
         let passage = width.max(2.0 * floor.radius + PASSING_M);
         let standing = room.objects.iter().map(|(p, _)| *p).filter(|p| stops_robot(p));
         let taken = standing.map(|p| p.footprint().bounds()).collect();
-        Self { sums: sums(&map), nx: map.nx(), ny: map.ny(), passage, goals, taken, space: OnceCell::new() }
+        let chairs = room.objects.iter().filter(|(_, o)| o.shape == Shape::SwivelChair);
+        let seats = chairs.map(|(p, _)| floor_beside(p, quarter(p.pose.yaw_rad) + 2, CHAIR_BACK_M, 0.0)).collect();
+        Self { sums: sums(&map), nx: map.nx(), ny: map.ny(), passage, goals, taken, seats, space: OnceCell::new() }
     }
 
     /// Returns the place in a room for an area of this size, m, that is tucked away most.
@@ -164,11 +202,14 @@ impl Yard {
             if looked.iter().any(near) {
                 continue;
             }
+            let rect = on_floor(floor, room, place);
+            if !is_at_wall(&room.plan.net_polygon, &rect) {
+                continue;
+            }
             if looked.len() == PLACES {
                 return None;
             }
             looked.push(place);
-            let rect = on_floor(floor, room, place);
             if floor.is_reached(room, &rect) && self.is_near(floor, room, &rect) && self.leaves_way(floor, room, &rect)
             {
                 return Some(rect);
@@ -217,9 +258,29 @@ impl Yard {
         let taken: Vec<Rect> = self.taken.iter().chain([rect]).copied().collect();
         let space = FreeSpace::new(&room.plan.net_polygon, &taken);
         let leads = |door: &&Door| self.goals.iter().all(|goal| space.leads(door, goal, self.passage));
+        let before = self.space.get_or_init(|| FreeSpace::new(&room.plan.net_polygon, &self.taken));
+        let to = |space: &FreeSpace, seat: &Rect| doors.iter().any(|door| space.leads(door, seat, ACCESS_M));
+        if self.seats.iter().any(|seat| !to(&space, seat) && to(before, seat)) {
+            return false;
+        }
         // the floor before a single door is free
         (doors.len() < 2 || space.passes(&doors, self.passage)) && doors.first().is_none_or(leads)
     }
+}
+
+/// Returns true for a place with a long side at a wall: goods in the middle of a room are in everybody's way.
+fn is_at_wall(outline: &Polygon, r: &Rect) -> bool {
+    let long = r.width() >= r.height();
+    let side = |beyond: f64, high: bool| {
+        [0.1, 0.5, 0.9].into_iter().all(|t| {
+            let (along, across) = match long {
+                true => (r.x0 + t * r.width(), if high { r.y1 + beyond } else { r.y0 - beyond }),
+                false => (r.y0 + t * r.height(), if high { r.x1 + beyond } else { r.x0 - beyond }),
+            };
+            !outline.contains(if long { Point::new(along, across) } else { Point::new(across, along) })
+        })
+    };
+    side(AT_WALL_M, true) || side(AT_WALL_M, false)
 }
 
 /// Returns how many cells of a set lie south-west of each corner of cells.

@@ -30,6 +30,7 @@ impl Barred {
         let holes: Vec<Box2> = space.holes().iter().filter_map(near).collect();
         let clears: Vec<Box2> = state.clears.iter().filter_map(near).collect();
         let bodies: Vec<Box2> = state.bodies.iter().filter_map(near).collect();
+        let lanes: Vec<Box2> = space.lanes(state.open).iter().filter_map(near).collect();
         let doors: Vec<(Box2, i32)> =
             space.doors.iter().filter_map(|d| Some((near(d.kept(state.open))?, d.height))).collect();
 
@@ -55,6 +56,7 @@ impl Barred {
             }
             doors.iter().filter(|(_, height)| z0 < height).for_each(|(floor, _)| bar(rect, floor, Rule::Door));
             if takes_floor(part, &part.solid) {
+                lanes.iter().for_each(|floor| bar(rect, floor, Rule::Door));
                 clears.iter().for_each(|floor| bar(rect, floor, Rule::Clearance));
             }
         }

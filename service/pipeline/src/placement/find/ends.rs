@@ -7,7 +7,7 @@ use d3dgen_model::domain::{Mount, Shape};
 use super::{Candidate, Find, Focus, Rule};
 use crate::placement::geom::{Box2, turn};
 use crate::placement::seats::has_no_way_past;
-use crate::placement::space::WallSide;
+use crate::placement::space::{DoorZone, WallSide};
 use crate::placement::state::{Placed, at_frame};
 use crate::placement::unit::Unit;
 
@@ -46,6 +46,10 @@ const FACES_WALL: f64 = 2.0;
 /// How far beside a screen windows dazzle who looks at it, mm, and what it and the seat before it lose between two of them.
 const DAZZLED: i32 = 2500;
 pub(super) const BETWEEN_WINDOWS: f64 = 1.5;
+/// Depth of the floor of those who serve at a counter, mm, and what one loses that stands with it on the straight way from the
+/// entrance to another door: everybody would pass behind their backs.
+const STAFF_DEPTH: i32 = 1100;
+const CROSSED: f64 = 3.0;
 /// What a screen loses that half of those at a table have behind their backs.
 const BACKS: f64 = 8.0;
 /// What a desk loses with a window right before or behind its user, which the screen mirrors.
@@ -314,8 +318,14 @@ impl<'a> Find<'_, 'a, '_> {
             landing.overlaps(&queue)
         });
         let walled = !space.contains(&queue);
+        let crossed = space.doors.first().filter(|door| door.rank == 0).is_some_and(|entrance| {
+            let staff = Box2 { x0: own.x0 - STAFF_DEPTH, ..own }.turned(p.q);
+            let middle = |d: &DoorZone| space.walls[d.wall].strip(d.v0, d.v1, 0, 0).center();
+            space.doors[1..].iter().any(|door| staff.meets(middle(entrance), middle(door)))
+        });
         SHUT_IN * f64::from(has_no_way_past(self.state, p))
             + IN_THE_WAY_IN * f64::from(queues)
             + FACES_WALL * f64::from(walled)
+            + CROSSED * f64::from(crossed)
     }
 }

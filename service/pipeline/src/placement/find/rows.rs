@@ -37,6 +37,9 @@ const FOOT_GAPS: [i32; 4] = [300, 450, 150, 50];
 const SHARED: f64 = 3.0;
 /// What rows of desks lose all of whose windows are before or behind the screens.
 const GLARE: f64 = 2.5;
+/// What they lose all of whose screens mirror one, how near to the axis of its desk that begins and how far away it lies, mm.
+const MIRRORS: f64 = 3.0;
+const MIRRORED: (i32, i32) = (500, 3800);
 /// What rows lose past neither end of which people get as through an aisle.
 const NARROW_ENDS: f64 = 1.0;
 /// What rows of desks lose all of which have open floor behind their screens, before and after places are looked at.
@@ -206,7 +209,8 @@ pub(in crate::placement) fn rows<'a>(
                 let narrow = if plan.rows > 1 && v0.max(spare_v - v0) < aisle { NARROW_ENDS } else { 0.0 };
                 let noise =
                     0.5 * grain(terms.salt, i64::from(plan.q) * 64 + i64::from(plan.columns), (ku * 8 + kv) as i64);
-                let dark = if in_pairs { from_windows(state.space, &placed) } else { 0.0 };
+                let dark =
+                    if in_pairs { from_windows(state.space, &placed) + mirrors(state.space, &placed) } else { 0.0 };
                 // on an island some counters face the door, whichever way it is turned
                 let one_line = task.anchor.shape == Shape::Counter && !plan.paired;
                 let behind = if one_line { doors_behind(state.space, &placed) } else { 0.0 };
@@ -277,6 +281,19 @@ fn from_windows(space: &Space, placed: &[Placed]) -> f64 {
     };
     let sum: i64 = placed.iter().map(|p| i64::from(far(p))).sum();
     FROM_LIGHT * sum as f64 / 1000.0 / placed.len().max(1) as f64
+}
+
+/// Returns what desks lose with windows right before or behind their screens.
+fn mirrors(space: &Space, placed: &[Placed]) -> f64 {
+    let mirrored = |p: &Placed| {
+        let back = (4 - p.q) % 4;
+        let (x, y) = p.world(&p.unit.anchor().solid.rect).turned(back).center();
+        space.windows.iter().filter(|w| space.walls[w.wall].q % 2 == p.q % 2).any(|w| {
+            let window = w.zone.turned(back);
+            (window.y0 - y).max(y - window.y1) < MIRRORED.0 && (window.center().0 - x).abs() < MIRRORED.1
+        })
+    };
+    MIRRORS * placed.iter().filter(|p| mirrored(p)).count() as f64 / placed.len().max(1) as f64
 }
 
 /// Returns what counters lose behind whose fronts the doors of their room are.
