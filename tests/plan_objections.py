@@ -618,6 +618,155 @@ def screen_between_windows(world):
     return False
 
 
+RUN = ("sink_unit", "base_cabinet", "hob", "kitchen_unit", "dishwasher", "tall_cabinet")
+
+
+@objection("A", "residential")
+def no_worktop(world):
+    """less than 0.3 m of worktop between sink and hob"""
+    for room in world.rooms:
+        for hob in room.named("hob"):
+            if any(gap(hob.rect, sink.rect) < 0.28 for sink in room.named("sink_unit")):
+                return True
+    return False
+
+
+@objection("B", "residential")
+def bare_kitchen(world):
+    """a kitchen of 8 m2 or more with less than 1.2 m of worktop beside sink and hob"""
+    tops = ("base_cabinet", "dishwasher", "washing_machine")
+    for room in world.of("kitchen"):
+        hobs = room.named("hob")
+        if room.area >= 8.0 and sum(b.width for b in room.having(*tops) if hobs and b.low < 0.1) < 1.18:
+            return True
+    return False
+
+
+@objection("B", "residential")
+def crowded_sitting(world):
+    """a chair or table to eat at within 0.6 m of a sofa, armchair or coffee table"""
+    for room in world.of("living_room", "living_kitchen", "studio", "family_room"):
+        eat = [b for b in room.standing if b.object.startswith(("dining_", "breakfast_table", "stool"))]
+        sit = [b for b in room.standing if "sofa" in b.object or b.object in ("armchair", "reading_chair", "coffee_table")]
+        if any(gap(a.rect, b.rect) < 0.58 for a in eat for b in sit):
+            return True
+    return False
+
+
+@objection("B", "residential")
+def single_bed_under_window(world):
+    """the head of a single bed under a window"""
+    return any(before_window(bed, r) for r in world.rooms for bed in r.named("single_bed"))
+
+
+@objection("B", "residential")
+def bed_in_swing(world):
+    """a bed with its pillows within 0.3 m of a leaf's swing"""
+    for room in world.rooms:
+        for bed in room.named("double_bed", "single_bed"):
+            x0, y0, x1, y1 = bed.rect
+            head = [(x0, y0, x0 + 0.6, y1), (x0, y0, x1, y0 + 0.6), (x1 - 0.6, y0, x1, y1), (x0, y1 - 0.6, x1, y1)][bed.quarter]
+            if any(gap(head, leaf) < 0.28 for leaf in room.swings):
+                return True
+    return False
+
+
+@objection("B", "residential")
+def no_bedside_table(world):
+    """a double bed without a bedside table at each side"""
+    return any(len(r.named("nightstand")) < 2 for r in world.rooms if r.named("double_bed"))
+
+
+@objection("B", "residential")
+def no_mirror(world):
+    """a basin of a bathroom without a mirror"""
+    return any(not r.having("mirror") for r in world.rooms if r.named("vanity", *HAND_BASINS))
+
+
+def entrance_of(world):
+    """The room behind the entrance, and the middle of its door."""
+    for room in world.rooms:
+        for door in room.doors:
+            if door["entrance"] and len(door["room_ids"]) == 1:
+                return room, middle(door)
+    return None, None
+
+
+def middle(door):
+    a, b = door["line"]["start"], door["line"]["end"]
+    return (a["x"] + b["x"]) / 2, (a["y"] + b["y"]) / 2
+
+
+@objection("B", "residential")
+def entrance_opens_outwards(world):
+    """a home's entrance that opens outwards"""
+    room, _ = entrance_of(world)
+    mains = [d for d in room.doors if d["entrance"]] if room else []
+    return any((d.get("swing") or {"into_room_id": room.id}).get("into_room_id") is None for d in mains)
+
+
+@objection("B", "residential")
+def guest_toilet_far(world):
+    """a guest toilet whose door is more than 8 m from the entrance"""
+    _, entrance = entrance_of(world)
+    doors = [middle(d) for r in world.of("toilet") for d in r.doors]
+    return bool(entrance and doors) and min(abs(x - entrance[0]) + abs(y - entrance[1]) for x, y in doors) > 8.0
+
+
+@objection("B", "residential")
+def one_toilet_for_many(world):
+    """one WC for three bedrooms or more"""
+    return len(world.of("bedroom", "guest_room", "kids_room")) >= 3 and world.count({"toilet", "accessible_wc"}) < 2
+
+
+@objection("B", "residential")
+def machine_behind_door(world):
+    """a leaf that opens within 0.05 m of a machine or basin, or a machine within 0.7 m straight behind a door"""
+    for room in world.rooms:
+        things = room.named("washing_machine", "dryer", "vanity", "fridge", *HAND_BASINS)
+        if any(gap(t.rect, leaf) < 0.05 for t in things for leaf in room.swings):
+            return True
+        for door in room.doors:
+            if len(door["room_ids"]) == 2 and door["kind"] != "open":
+                x0, y0, x1, y1 = outline([door["line"]["start"], door["line"]["end"]])
+                ahead = (x0 + 0.1, y0 - 0.7, x1 - 0.1, y1 + 0.7) if x1 - x0 > y1 - y0 else (x0 - 0.7, y0 + 0.1, x1 + 0.7, y1 - 0.1)
+                if any(overlap(t.rect, ahead) for t in room.named("washing_machine", "dryer")):
+                    return True
+    return False
+
+
+@objection("B")
+def idle_docks(world):
+    """more docks than robots"""
+    return sum("dock" in b.object for r in world.rooms for b in r.bodies) > max(len(world.robots), 1)
+
+
+@objection("B", "residential")
+def lone_wet_room(world):
+    """a wet room beside no other"""
+    wet = [r for r in world.rooms if r.kind in WET]
+    return len(wet) > 1 and any(all(gap(r.rect, o.rect) > 0.35 for o in wet if o is not r) for r in wet)
+
+
+@objection("B", "residential")
+def bath_seen_from_entrance(world):
+    """the door of a bathroom straight across from the entrance, or within 1.5 m of it"""
+    room, entrance = entrance_of(world)
+    for bath in world.of("bathroom", "accessible_bathroom", "shower_room"):
+        for door in bath.doors:
+            if room and room.id in door["room_ids"]:
+                x, y = middle(door)
+                line = outline([door["line"]["start"], door["line"]["end"]])
+                main = next(d for d in room.doors if d["entrance"])
+                other = outline([main["line"]["start"], main["line"]["end"]])
+                upright = [r[3] - r[1] > r[2] - r[0] for r in (line, other)]
+                axis = 1 if upright[0] else 0
+                shared = min(line[axis + 2], other[axis + 2]) - max(line[axis], other[axis])
+                if upright[0] == upright[1] and shared > 0.2 or abs(x - entrance[0]) + abs(y - entrance[1]) < 1.5:
+                    return True
+    return False
+
+
 @objection("B", "hospital")
 def dark_room(world):
     """a room with no lamp at its ceiling"""

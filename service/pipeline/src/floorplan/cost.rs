@@ -40,6 +40,8 @@ const ONE_SIDED: f64 = 0.45;
 const ONE_WAY: f64 = 0.1;
 /// What a room that is wanted near the entrance loses by each side of the building that it is away from it.
 const BY_ENTRANCE: f64 = 1.5;
+/// The same for one that guests use, where there is no entrance hall to put it at.
+const FOR_GUESTS: f64 = 1.0;
 /// Number of soft terms.
 const COUNT: usize = 12;
 /// A weight for each soft term.
@@ -604,6 +606,9 @@ fn wall_length(side: &[[i32; 2]; 4], shape: &Cellbox) -> f64 {
 pub(super) fn ill_placed(spec: &RoomSpec, far: f64) -> f64 {
     if spec.by_entrance {
         return BY_ENTRANCE * far;
+    }
+    if spec.for_guests {
+        return FOR_GUESTS * far;
     }
     match spec.zone {
         Zone::Public | Zone::Day => 0.25 * far,

@@ -67,7 +67,11 @@ const IN_VIEW: f64 = 1.3;
 const VIEW_M: f64 = 3.0;
 const SEEN_M: f64 = 0.2;
 /// What it costs that a home's entrance opens outwards.
-const OUTWARD: f64 = 1.0;
+const OUTWARD: f64 = 4.0;
+/// How far beside the floor of another one a door stands that keeps clear of it, m.
+const ASIDE_M: f64 = 0.05;
+/// What it costs that a door stands clear of the floor of another one rather than in its corner.
+const STEPPED_ASIDE: f64 = 1.2;
 
 /// The plan so far, as door placing sees it.
 pub(super) struct Site<'a> {
@@ -240,7 +244,11 @@ impl Site<'_> {
             let spots: Vec<Spot> = match self.standing_spot(&[a, b], false) {
                 Some(spot) => vec![spot],
                 None => {
-                    let mut spots: Vec<Spot> = stretches.flat_map(|s| self.spots(s, a, b, connector, rng)).collect();
+                    let mut spots: Vec<Spot> =
+                        stretches.clone().flat_map(|s| self.spots(s, a, b, connector, rng)).collect();
+                    if connector == Connector::Door && self.brief.is_home() {
+                        spots.extend(stretches.flat_map(|s| self.spots_aside(s, [a, b], laid)));
+                    }
                     self.prefer_order(&mut spots, a, b, laid);
                     self.prefer_entry(&mut spots, [a, b], laid);
                     spots
@@ -631,6 +639,23 @@ impl Site<'_> {
             spots.extend(self.leaf_spot(s, [a, b], into, start, clear, hinge_at_start, penalty));
         }
         spots
+    }
+
+    /// Returns places for a door right beside the floor that the doors to outdoors need: where one comes in the leaf swings.
+    fn spots_aside(&self, s: &Stretch, rooms: [usize; 2], laid: &Laid) -> Vec<Spot> {
+        let [a, b] = rooms;
+        let clear = self.brief.door_width(a, b);
+        let opening = Brief::opening(clear);
+        let (from, to) = self.usable(s);
+        let outer = laid.spots.iter().filter(|l| l.door.room_ids.len() == 1);
+        let zones = outer.flat_map(|l| &l.zones).filter(|(room, _)| rooms.contains(room)).map(|(_, zone)| zone);
+        let ends = zones.map(|z| if s.vertical { (z.y0, z.y1) } else { (z.x0, z.x1) });
+        let starts = ends.flat_map(|(low, high)| [(high + ASIDE_M, true), (low - ASIDE_M - opening, false)]);
+        let into = self.swing_room(a, b);
+        let fitting = starts.filter(|(start, _)| *start >= from - 1e-9 && start + opening <= to + 1e-9);
+        fitting
+            .filter_map(|(start, at_start)| self.leaf_spot(s, rooms, into, start, clear, at_start, STEPPED_ASIDE))
+            .collect()
     }
 
     /// Returns true when the smaller of two rooms is open to others as well.

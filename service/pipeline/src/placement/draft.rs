@@ -4,6 +4,7 @@
 use d3dgen_model::domain::{Mount, Shape};
 
 use super::geom::Box2;
+use super::neighbors::beside_sofas;
 use super::search::Outcome;
 use super::state::{Placed, State};
 use super::unit::Part;
@@ -77,6 +78,11 @@ impl<'a> Draft<'a, '_> {
         let taken =
             DOCK_TAKEN * f64::from(self.docks_taken()) + if self.state.lacks_circle() { NO_CIRCLE } else { 0.0 };
         (self.outcome.required_missing, taken - self.outcome.score - free)
+    }
+
+    /// Returns true where people eat right beside a sofa.
+    pub fn eats_at_sofa(&self) -> bool {
+        self.state.placed.iter().any(|p| beside_sofas(&self.state, p) > 0.0)
     }
 
     /// Returns how many docks of robots have something on their free floor.

@@ -45,7 +45,7 @@ use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::style::Clutter;
 
 use crate::{Error, Stop};
-pub(crate) use demand::other_bed;
+pub(crate) use demand::{has_docks, other_bed};
 pub use proposed::{Proposed, Refusal, Wish, propose_room};
 use setting::Setting;
 use space::Space;

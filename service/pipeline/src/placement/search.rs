@@ -276,7 +276,9 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
         let hopeless = best.outcome.required_missing > 0 && self.hopeless();
         for (n, departure) in DEPARTURES.into_iter().chain(RESCUES).enumerate() {
             let looks = match best.outcome.missing.is_empty() {
-                _ if best.docks_taken() > 0 || best.state.lacks_circle() => DEPARTURES.len() + RESCUES.len(),
+                _ if best.docks_taken() > 0 || best.state.lacks_circle() || best.eats_at_sofa() => {
+                    DEPARTURES.len() + RESCUES.len()
+                }
                 // everything has found its place
                 true => 0,
                 false if self.lacks_table_for_many(&best) => DEPARTURES.len() + RESCUES.len(),
@@ -606,8 +608,10 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
     ) -> Option<(Placed<'a>, f64)> {
         let (task, aisle) = (&self.job.tasks[index], self.aisle());
         let (rank, aside) = departure.map_or((0, 0), |d| (d.rank, d.aside));
-        // a form that closes off floor stands only where none leaves it open
+        // a form that closes off floor stands only where none leaves it open, and a bed under a window only where the same bed
+        // with less of the floor that is advised finds no other wall
         let mut closing = None;
+        let mut lit: Option<(Placed<'a>, f64)> = None;
         for forms in self.forms[index].iter().take_while(|_| !self.job.stop.is_set()) {
             let mut candidates: Vec<Candidate> = Vec::new();
             for unit in forms {
@@ -618,14 +622,17 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
             candidates.retain(|c| c.in_corner || !in_corner);
             candidates.sort_by(|a, b| b.score.total_cmp(&a.score));
             let open = choose(state, &candidates, rank, whole.map(|_| false), tally);
-            if open.is_some() {
-                return open;
+            match open {
+                Some(found) if lit.is_none() && state.lies_under_window(&found.0) => lit = Some(found),
+                Some(found) if lit.as_ref().is_some_and(|l| found.0.is_less_than(&l.0, state)) => return lit,
+                Some(found) => return Some(found),
+                None => {}
             }
             if whole == Some(true) && closing.is_none() {
                 closing = choose(state, &candidates, rank, whole, tally);
             }
         }
-        closing
+        lit.or(closing)
     }
 }
 

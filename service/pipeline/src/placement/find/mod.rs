@@ -16,7 +16,7 @@ pub(super) use rows::{Terms, leave_out_single, over, rows};
 use super::demand::Task;
 use super::docks::{crowding, touches_robot};
 use super::geom::{Box2, turn};
-use super::neighbors::Neighbors;
+use super::neighbors::{Neighbors, beside_sofas};
 use super::seats::{beside_beds, sits_with_staff};
 use super::state::{Placed, Rule, State};
 use super::style::{Style, grain, style};
@@ -152,6 +152,7 @@ impl<'f, 'a, 's> Find<'f, 'a, 's> {
                     - crowding(self.state, &placed, self.aisle)
                     - if sits_with_staff(self.state, &placed) { WITH_STAFF } else { 0.0 }
                     - beside_beds(self.state, &placed)
+                    - beside_sofas(self.state, &placed)
                     - if fills { NO_CIRCLE } else { 0.0 };
                 let in_corner = self.task.arrangement == Arrangement::Corner && self.is_in_corner(&placed);
                 self.out.push(Candidate { placed, score, in_corner, class });
