@@ -101,6 +101,7 @@ class World:
         )
         self.rooms = [Room(r, plan, placements["placements"]) for r in plan["rooms"]]
         self.robots = scenario.get("robots", [])
+        self.doors, self.walls = plan["doors"], plan["walls"]
         self.docked = [(z["room_id"], outline(z["polygon"])) for z in scenario["rois"] if z["kind"] == "charging_buffer"]
 
     def of(self, *kinds):
@@ -764,6 +765,154 @@ def bath_seen_from_entrance(world):
                 shared = min(line[axis + 2], other[axis + 2]) - max(line[axis], other[axis])
                 if upright[0] == upright[1] and shared > 0.2 or abs(x - entrance[0]) + abs(y - entrance[1]) < 1.5:
                     return True
+    return False
+
+
+def wall_beside(world, door):
+    """How far the wall of a door goes on straight before and after its opening, to the next opening."""
+    x0, y0, x1, y1 = outline([door["line"]["start"], door["line"]["end"]])
+    axis = 1 if y1 - y0 > x1 - x0 else 0
+    at, ends = (x0, y0)[1 - axis], [(x0, y0)[axis], (x1, y1)[axis]]
+    pieces = [outline([w["line"]["start"], w["line"]["end"]]) for w in world.walls if not w["exterior"]]
+    pieces = [(r[axis], r[axis + 2]) for r in pieces if abs(r[1 - axis] - at) < 0.03 and abs(r[3 - axis] - at) < 0.03]
+    low, high = ends
+    for _ in pieces:
+        low = min([a for a, b in pieces if a < low <= b + 0.02], default=low)
+        high = max([b for a, b in pieces if a - 0.02 <= high < b], default=high)
+    return ends[0] - low, high - ends[1], ends[1] - ends[0]
+
+
+@objection("A", "residential")
+def no_pocket(world):
+    """a sliding leaf with no wall as long beside its opening, nor half as long at both sides"""
+    for door in world.doors:
+        if door["kind"] == "sliding" and len(door["room_ids"]) == 2:
+            before, after, width = wall_beside(world, door)
+            if max(before, after) < width - 0.05 and min(before, after) < width / 2 - 0.03:
+                return True
+    return False
+
+
+@objection("B", "residential")
+def pinched_neck(world):
+    """a way into a bedroom or living room with less than 0.88 m past a dresser, wardrobe or desk"""
+    for room in world.of("bedroom", "living_room", "dining_room", "home_office", "guest_room", "single_bedroom"):
+        if len(room.corners) < 5:
+            continue
+        for body in room.standing:
+            x0, y0, x1, y1 = body.rect
+            across = room.free(body.rect, body.quarter, [])
+            depth = x1 - x0 if body.quarter in (EAST, WEST) else y1 - y0
+            if across < 0.88 and across + depth < 1.55:
+                reach = ahead_of(body, across)
+                strip = (min(x0, reach[0]), min(y0, reach[1]), max(x1, reach[2]), max(y1, reach[3]))
+                along = (0.0, 2.5) if body.quarter in (EAST, WEST) else (2.5, 0.0)
+                strip = (strip[0] - along[0], strip[1] - along[1], strip[2] + along[0], strip[3] + along[1])
+                if any(overlap(outline([d["line"]["start"], d["line"]["end"]]), strip, -0.15) for d in room.doors):
+                    return True
+    return False
+
+
+def screens(world):
+    """Sofas with the screen of their room: distance of their middles ahead and aside."""
+    for room in world.of("living_room", "studio", "family_room"):
+        sofas = [b for b in room.standing if "sofa" in b.object]
+        for screen in room.named("tv") if sofas else []:
+            yield min((sofa.seen(screen.x, screen.y) for sofa in sofas), key=lambda at: abs(at[1]))
+
+
+@objection("B", "residential")
+def screen_far(world):
+    """a television more than 4.4 m from the sofa"""
+    return any(ahead > 4.4 for ahead, _ in screens(world))
+
+
+@objection("B", "residential")
+def screen_aside(world):
+    """a television more than 0.8 m beside the axis of the sofa"""
+    return any(abs(aside) > 0.8 for _, aside in screens(world))
+
+
+@objection("B", "residential")
+def seats_for_beds(world):
+    """fewer seats at a table than people with beds, four at most"""
+    seats, beds = Counter(), 0
+    for room in world.rooms:
+        seats.update(b.group for b in room.named("dining_chair", "stool", "bar_stool"))
+        beds += 2 * len(room.named("double_bed")) + len(room.named("single_bed"))
+    return max(seats.values(), default=0) < min(beds, 4)
+
+
+@objection("B", "residential")
+def large_bathroom(world):
+    """a bathroom of more than 10.5 m2"""
+    return any(r.area > 10.5 for r in world.of("bathroom", "accessible_bathroom", "ensuite"))
+
+
+@objection("B", "residential")
+def toilet_at_wall(world):
+    """a WC whose side is less than 0.19 m from a wall"""
+    for room in world.rooms:
+        for wc in room.named("toilet", "accessible_wc"):
+            if min(room.free(wc.rect, (wc.quarter + k) % 4, []) for k in (1, 3)) < 0.19:
+                return True
+    return False
+
+
+@objection("B", "residential")
+def living_room_far(world):
+    """a living room whose door is more than 7 m from the entrance, past a bathroom or bedroom"""
+    hall, entrance = entrance_of(world)
+    way = lambda room: min(
+        (abs(middle(d)[0] - entrance[0]) + abs(middle(d)[1] - entrance[1]) for d in room.doors if hall.id in d["room_ids"]),
+        default=99.0,
+    )
+    if not entrance:
+        return False
+    living = min(map(way, world.of("living_room", "studio")), default=0.0)
+    return 7.0 < living < 99.0 and any(way(r) < living - 1.0 for r in world.of("bathroom", "bedroom", "toilet"))
+
+
+@objection("B", "residential")
+def table_far_from_kitchen(world):
+    """a dining table of a living room more than 9 m from the kitchen's door"""
+    if world.of("dining_room"):
+        return False
+    doors = {r.id: [middle(d) for d in r.doors if not d["entrance"]] for r in world.rooms}
+    ways = [abs(a[0] - b[0]) + abs(a[1] - b[1]) for k in world.of("kitchen") for v in world.of("living_room") for a in doors[k.id] for b in doors[v.id]]
+    return min(ways, default=0.0) > 7.0
+
+
+@objection("B", "residential")
+def dock_before_screen(world):
+    """a dock between a sofa and its screen"""
+    for room in world.of("living_room", "studio", "family_room"):
+        for screen in room.named("tv"):
+            for dock in room.having("dock"):
+                ahead, aside = screen.seen(dock.x, dock.y)
+                sofas = [screen.seen(s.x, s.y) for s in room.standing if "sofa" in s.object]
+                if any(0.3 < ahead < s[0] and abs(aside) < 1.0 and abs(s[1]) < 1.0 for s in sofas):
+                    return True
+    return False
+
+
+@objection("B", "residential")
+def route_behind_chairs(world):
+    """a robot's route over the floor on which a chair at a table is pushed back 0.4 m"""
+    for room in world.of("living_room", "dining_room", "kitchen", "studio"):
+        for chair in room.named("dining_chair"):
+            back = (chair.quarter + 2) % 4
+            x0, y0, x1, y1 = chair.rect
+            pushed = [(x1, y0, x1 + 0.4, y1), (x0, y1, x1, y1 + 0.4), (x0 - 0.4, y0, x0, y1), (x0, y0 - 0.4, x1, y0)][back]
+            for robot in world.robots:
+                radius = robot["robot"]["radius_m"]
+                for route in robot.get("routes") or []:
+                    for a, b in zip(route["path"], route["path"][1:], strict=False):
+                        n = max(1, round(math.hypot(b["x"] - a["x"], b["y"] - a["y"]) / 0.1))
+                        for k in range(n + 1):
+                            x, y = a["x"] + (b["x"] - a["x"]) * k / n, a["y"] + (b["y"] - a["y"]) * k / n
+                            if gap(pushed, (x, y, x, y)) < radius - 0.1:
+                                return True
     return False
 
 

@@ -41,7 +41,7 @@ const ONE_WAY: f64 = 0.1;
 /// What a room that is wanted near the entrance loses by each side of the building that it is away from it.
 const BY_ENTRANCE: f64 = 1.5;
 /// The same for one that guests use, where there is no entrance hall to put it at.
-const FOR_GUESTS: f64 = 1.0;
+const FOR_GUESTS: f64 = 1.8;
 /// Number of soft terms.
 const COUNT: usize = 12;
 /// A weight for each soft term.

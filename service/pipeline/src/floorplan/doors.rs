@@ -12,6 +12,7 @@ use super::cost::ill_placed;
 use super::hall::{self, passed_bedrooms};
 use super::lattice::{Cellbox, INNER_HALF_M, JAMB_M, OUTER_HALF_M, meters};
 use super::outline::Stretch;
+use super::pocket::Pocket;
 use super::realize::{BED_DOOR_M, ONE_WAY_M};
 use super::spec::{Brief, RoomSpec};
 use super::windows::LEAST_WALL_M;
@@ -35,9 +36,10 @@ const TO_ZONES: f64 = 7.0;
 /// the door of a room of the day is further from the entrance than it might be, and by which that of a bedroom is nearer.
 const TO_LIVING: f64 = 7.0;
 const FROM_ENTRANCE: f64 = 0.2;
+const DAY_FROM_ENTRANCE: f64 = 0.4;
 /// What a meter counts by which the door of an en suite is further from that of its ward room than it might be.
 const FROM_ENTRY: f64 = 0.7;
-/// What it costs a home that one passes the door of a bedroom on the way to that of the living room.
+/// What it costs a home that one passes the door of a bedroom or bathroom on the way to that of the living room.
 const PASSED: f64 = 2.0;
 /// Wall between an entrance that stands aside and the corner of its room, on center lines, m.
 const ENTRANCE_ASIDE_M: f64 = 0.4;
@@ -68,6 +70,9 @@ const VIEW_M: f64 = 3.0;
 const SEEN_M: f64 = 0.2;
 /// What it costs that a home's entrance opens outwards.
 const OUTWARD: f64 = 4.0;
+/// How far an entrance stands aside at least where that is of use, m, and what it costs.
+const ENTRANCE_SHIFT_M: f64 = 0.15;
+const ENTRANCE_SHIFTED: f64 = 0.6;
 /// How far beside the floor of another one a door stands that keeps clear of it, m.
 const ASIDE_M: f64 = 0.05;
 /// What it costs that a door stands clear of the floor of another one rather than in its corner.
@@ -100,6 +105,8 @@ struct Spot {
     view: View,
     /// Floor the leaf sweeps and floor to stand on, by room.
     zones: Vec<(usize, Rect)>,
+    /// The wall that the leaf slides into, in a home.
+    pocket: Option<Pocket>,
     penalty: f64,
 }
 
@@ -198,7 +205,13 @@ impl Spot {
     fn disturbs(&self, other: &Self) -> f64 {
         let clashes =
             |(room, zone): &(usize, Rect)| other.zones.iter().filter(|(r, z)| r == room && z.overlaps(zone)).count();
-        10.0 * self.zones.iter().map(clashes).sum::<usize>() as f64 + if self.looks_into(other) { IN_VIEW } else { 0.0 }
+        let beside = |own: &Self, other: &Self| {
+            own.pocket.map_or(0.0, |pocket| pocket.cost_beside(&other.door, other.pocket.as_ref()))
+        };
+        10.0 * self.zones.iter().map(clashes).sum::<usize>() as f64
+            + if self.looks_into(other) { IN_VIEW } else { 0.0 }
+            + beside(self, other)
+            + beside(other, self)
     }
 
     /// Returns true when the doors of a bathroom and of a room with people face each other.
@@ -268,13 +281,13 @@ impl Site<'_> {
         }
         let Some(entrance) = laid.entrance() else { return };
         let sign = match self.brief.rooms[room].zone {
-            Zone::Day | Zone::Public => 1.0,
-            Zone::Night => -1.0,
+            Zone::Day | Zone::Public => DAY_FROM_ENTRANCE,
+            Zone::Night => -FROM_ENTRANCE,
             _ => return,
         };
         let way = |spot: &Spot| {
             let p = spot.door.line.middle();
-            sign * FROM_ENTRANCE * ((p.x - entrance.x).abs() + (p.y - entrance.y).abs())
+            sign * ((p.x - entrance.x).abs() + (p.y - entrance.y).abs())
         };
         let least = spots.iter().map(way).fold(f64::MAX, f64::min);
         for spot in spots {
@@ -301,7 +314,7 @@ impl Site<'_> {
         }
     }
 
-    /// Returns how many doors of bedrooms are nearer to the entrance than that of the living room, in a home.
+    /// Returns how many doors of bedrooms and bathrooms are nearer to the entrance than that of the living room, in a home.
     fn passed(&self, laid: &Laid) -> u32 {
         let brief = self.brief;
         let Some((spine, living)) = brief.spine.zip(hall::room_of_guests(brief)) else { return 0 };
@@ -311,8 +324,11 @@ impl Site<'_> {
             Some((p.x - entrance.x).abs() + (p.y - entrance.y).abs())
         };
         let Some(to_living) = way(living) else { return 0 };
-        let beds = (0..brief.rooms.len()).filter(|r| brief.rooms[*r].zone == Zone::Night);
-        beds.filter_map(way).filter(|bed| *bed < to_living - hall::PLAINLY_M).count() as u32
+        let retreats = (0..brief.rooms.len()).filter(|r| {
+            let room = &brief.rooms[*r];
+            room.zone == Zone::Night || room.wet && room.private && !room.for_guests
+        });
+        retreats.filter_map(way).filter(|bed| *bed < to_living - hall::PLAINLY_M).count() as u32
     }
 
     /// Places doors to outdoors.
@@ -355,7 +371,13 @@ impl Site<'_> {
             let line = Segment { start: s.point(start), end: s.point(start + opening) };
             let zone = self.zone(s, room, start, opening, APPROACH_M);
             let door = self.door(line, DoorKind::Sliding, clear, s, &[room], None);
-            Spot { door, view: View::Other, zones: vec![(room, zone)], penalty: penalty + meters(s.len()) }
+            Spot {
+                door,
+                view: View::Other,
+                zones: vec![(room, zone)],
+                pocket: None,
+                penalty: penalty + meters(s.len()),
+            }
         });
         spots.filter(|spot| spot.zones.iter().all(|(r, zone)| self.inside(*r, zone))).collect()
     }
@@ -557,6 +579,7 @@ impl Site<'_> {
                 door: door.clone(),
                 view: View::Other,
                 zones,
+                pocket: None,
                 penalty: 0.0,
             })
         })
@@ -681,7 +704,7 @@ impl Site<'_> {
         let line = Segment { start: s.point(start), end: s.point(start + width) };
         let zones = [a, b].map(|r| (r, self.zone(s, r, start, width, APPROACH_M))).to_vec();
         let door = self.door(line, DoorKind::Open, width, s, &[a, b], None);
-        Spot { door, view: self.view([a, b]), zones, penalty: 0.0 }
+        Spot { door, view: self.view([a, b]), zones, pocket: None, penalty: 0.0 }
     }
 
     /// Returns what one looks into through a door between two rooms from where people pass.
@@ -735,7 +758,10 @@ impl Site<'_> {
             return None;
         }
         let door = self.door(line, kind, clear, s, &rooms, swing);
-        Some(Spot { door, view: self.view(rooms), zones, penalty: penalty + if slides { 0.5 } else { 0.0 } })
+        let pocket =
+            (slides && !elevator && self.brief.is_home()).then(|| Pocket::new(s, self.stretches, start, opening));
+        let penalty = penalty + if slides { 0.5 } else { 0.0 } + pocket.map_or(0.0, |pocket| pocket.cost());
+        Some(Spot { door, view: self.view(rooms), zones, pocket, penalty })
     }
 
     fn entrance_spots(&self, s: &Stretch, room: usize, main: bool, laid: &[Spot]) -> Vec<Spot> {
@@ -790,7 +816,7 @@ impl Site<'_> {
             let mut door = self.door(line, kind, clear, s, &[room], Some(swing));
             door.entrance = main;
             let zones = [Some(zone), into].into_iter().flatten().map(|z| (room, z)).collect();
-            Spot { door, view: View::Company, zones, penalty }
+            Spot { door, view: View::Company, zones, pocket: None, penalty }
         };
         // Doors on the way out open outwards, those of homes inwards where the leaf has floor.
         let swept = self.zone(s, room, start, opening, if double { opening / 2.0 } else { opening });
@@ -799,6 +825,27 @@ impl Site<'_> {
         }
         let mut spots = vec![spot(None, penalty + OUTWARD)];
         spots.extend(self.inside(room, &swept).then(|| spot(Some(swept), penalty)));
+        // clear of a door in the wall beside it
+        for start in [from, to - opening].into_iter().filter(|start| (start - middle).abs() > ENTRANCE_SHIFT_M) {
+            let line = Segment { start: s.point(start), end: s.point(start + opening) };
+            let [zone, swept] = [APPROACH_M, if double { opening / 2.0 } else { opening }]
+                .map(|d| self.zone(s, room, start, opening, d));
+            let swing = Swing {
+                into_room_id: Some(self.brief.rooms[room].id.clone()),
+                hinge_at_start: start - from <= to - opening - start,
+            };
+            let mut door = self.door(line, kind, clear, s, &[room], Some(swing));
+            door.entrance = main;
+            let zones = vec![(room, zone), (room, swept)];
+            let fits = self.inside(room, &swept);
+            spots.extend(fits.then(|| Spot {
+                door,
+                view: View::Company,
+                zones,
+                pocket: None,
+                penalty: penalty + ENTRANCE_SHIFTED,
+            }));
+        }
         spots
     }
 

@@ -25,6 +25,7 @@ mod mirror;
 mod numbers;
 mod order;
 mod outline;
+mod pocket;
 mod proposed;
 mod realize;
 mod revise;
