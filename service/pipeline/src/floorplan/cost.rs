@@ -9,6 +9,7 @@ use d3dgen_model::seed::Stream;
 
 use super::PROPORTION_LIMIT;
 use super::core::{Below, in_core, overhang};
+use super::hall;
 use super::lattice::{CELL_M2, Cellbox, INNER_HALF_M, JAMB_M, OUTER_HALF_M, meters, up};
 use super::mirror;
 use super::realize::{Layout, door_need};
@@ -72,6 +73,9 @@ const LATCH_SIDE_M: f64 = 0.457 - JAMB_M;
 const WRONG_SIZES: f64 = 1.5;
 /// What it costs that two rooms which the domain advises against putting wall to wall share one.
 const TOUCHING: f64 = 0.35;
+
+/// What a meter counts by which the wall of a room to the hall of a home is too short for its door and half a sliding leaf.
+const SLIDES: f64 = 2.0;
 
 /// How much more a wet room counts that lies beside no other in a home, where there are few of them.
 const PIPES_AT_HOME: f64 = 1.6;
@@ -441,6 +445,11 @@ impl<'b> Judge<'b> {
             }
             if i != self.spine {
                 score.hard += meters((self.spine_need[i] - room.spine).max(0));
+                if self.home && spec.slides && self.spine_need[i] > 0 {
+                    // half a leaf at least goes into the wall beside the opening
+                    let half = up(Brief::opening(spec.door_width) / 2.0);
+                    score.soft[9] += SLIDES * meters((self.spine_need[i] + half - room.spine).max(0));
+                }
                 if self.spine_need[i] > 0 && !spec.open_front {
                     score.soft[9] += meters((self.spine_need[i] + up(LATCH_SIDE_M) - room.spine).max(0));
                 }
@@ -534,10 +543,14 @@ impl<'b> Judge<'b> {
             score.symmetry = mirror::cost(wish, &boxes, door);
         }
         let size = total.sqrt().max(1.0);
+        // from a hall guests go to the room where they sit: at which end of it one comes in is not known yet
+        let in_hall = brief.rooms.iter().position(|r| r.entrance) == brief.spine;
+        let seated = if in_hall { hall::room_of_guests(brief).and_then(|i| rooms[i].main) } else { None };
         let (mut round, mut visited) = (0.0, 0);
         for (spec, room) in brief.rooms.iter().zip(rooms) {
             let (Some(main), Some(door)) = (room.main, entrance) else { continue };
-            score.soft[7] += ill_placed(spec, distance(main, door) / size);
+            let from = seated.filter(|_| spec.for_guests).unwrap_or(door);
+            score.soft[7] += ill_placed(spec, distance(main, from) / size);
             if spec.on_spine {
                 round += distance(main, base.unwrap_or(door)) / size;
                 visited += 1;

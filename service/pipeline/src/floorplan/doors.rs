@@ -70,6 +70,8 @@ const VIEW_M: f64 = 3.0;
 const SEEN_M: f64 = 0.2;
 /// What it costs that a home's entrance opens outwards.
 const OUTWARD: f64 = 4.0;
+/// What it costs that a sliding door stands half its width from a corner.
+const HALVED: f64 = 0.9;
 /// How far an entrance stands aside at least where that is of use, m, and what it costs.
 const ENTRANCE_SHIFT_M: f64 = 0.15;
 const ENTRANCE_SHIFTED: f64 = 0.6;
@@ -179,10 +181,12 @@ impl Laid {
         true
     }
 
-    /// Moves doors that look into a bathroom, or out of one, where a later door made it so, and adds up what all cost.
+    /// Moves doors that look into a bathroom, or out of one, or that leave a sliding leaf no wall, where a later door made it so,
+    /// and adds up what all cost.
     fn settle(&mut self) {
-        for n in 0..self.spots.len() {
-            if !self.spots.iter().any(|other| self.spots[n].looks_into(other)) {
+        for n in (0..self.spots.len()).chain(0..self.spots.len()) {
+            let others = || self.spots.iter().enumerate().filter(|(k, _)| *k != n).map(|(_, other)| other);
+            if !others().any(|other| self.spots[n].looks_into(other) || self.spots[n].shuts(other) > 0.0) {
                 continue;
             }
             let costs = self.choices[n].iter().map(|spot| self.disturbance(spot, n));
@@ -205,13 +209,17 @@ impl Spot {
     fn disturbs(&self, other: &Self) -> f64 {
         let clashes =
             |(room, zone): &(usize, Rect)| other.zones.iter().filter(|(r, z)| r == room && z.overlaps(zone)).count();
+        10.0 * self.zones.iter().map(clashes).sum::<usize>() as f64
+            + if self.looks_into(other) { IN_VIEW } else { 0.0 }
+            + self.shuts(other)
+    }
+
+    /// Returns what it costs that one of two doors takes the wall from the sliding leaf of the other.
+    fn shuts(&self, other: &Self) -> f64 {
         let beside = |own: &Self, other: &Self| {
             own.pocket.map_or(0.0, |pocket| pocket.cost_beside(&other.door, other.pocket.as_ref()))
         };
-        10.0 * self.zones.iter().map(clashes).sum::<usize>() as f64
-            + if self.looks_into(other) { IN_VIEW } else { 0.0 }
-            + beside(self, other)
-            + beside(other, self)
+        beside(self, other) + beside(other, self)
     }
 
     /// Returns true when the doors of a bathroom and of a room with people face each other.
@@ -661,6 +669,12 @@ impl Site<'_> {
         {
             spots.extend(self.leaf_spot(s, [a, b], into, start, clear, hinge_at_start, penalty));
         }
+        // a sliding leaf may part into halves, with half its width of wall on each side
+        let aside = [from + opening / 2.0, to - 1.5 * opening];
+        let slides = |spot: &Option<Spot>| spot.as_ref().is_some_and(|spot| spot.pocket.is_some());
+        let halved = aside.into_iter().filter(|start| *start >= from && start + opening <= to);
+        let halved = halved.map(|start| self.leaf_spot(s, [a, b], into, start, clear, true, HALVED));
+        spots.extend(halved.filter(slides).flatten());
         spots
     }
 

@@ -8,9 +8,11 @@ use d3dgen_model::floorplan::Door;
 use super::lattice::{INNER_HALF_M, meters};
 use super::outline::Stretch;
 
-/// What a sliding door costs that finds no pocket, and what it costs that its leaf parts into two halves.
+/// What a sliding door costs that finds no pocket, what it costs that its leaf parts into two halves, and that both halves slide
+/// into the same short wall.
 const NONE: f64 = 3.0;
-const PARTED: f64 = 0.8;
+const PARTED: f64 = 0.6;
+const TELESCOPE: f64 = 1.2;
 /// What may lack of the length of a leaf, m: the frame.
 const FRAME_M: f64 = 0.05;
 
@@ -72,6 +74,8 @@ impl Pocket {
             0.0
         } else if runs[0].min(runs[1]) >= width / 2.0 {
             PARTED
+        } else if runs[0].max(runs[1]) >= width / 2.0 {
+            TELESCOPE
         } else {
             NONE
         }
@@ -89,7 +93,7 @@ mod tests {
         let walls = [wall(0, 60, 1), wall(60, 120, 2)];
         let corner = Pocket::new(&walls[0], &walls, 0.2, 1.0);
         assert!(corner.cost() < 0.1, "the wall goes on to the east");
-        let alone = Pocket::new(&walls[0], &walls[..1], 1.2, 1.2);
+        let alone = Pocket::new(&walls[0], &walls[..1], 0.9, 1.2);
         assert!((alone.cost() - PARTED).abs() < 1e-9, "half a leaf to each side");
         let narrow = Pocket::new(&walls[0], &walls[..1], 0.3, 2.0);
         assert!((narrow.cost() - NONE).abs() < 1e-9);

@@ -31,6 +31,8 @@ pub(super) const RESCUES: [Departure; 8] = [
 ];
 /// Departures where a bed in the middle of its wall leaves none for a wardrobe as wide as they are.
 pub(super) const ASIDE: [Departure; 2] = [Departure::aside(1), Departure::aside(-1)];
+/// Departures where a sofa in the room leaves no floor for the table.
+pub(super) const AT_WALL: [Departure; 3] = [Departure::at_wall(0), Departure::at_wall(1), Departure::at_wall(2)];
 /// The last step at which one of them departs.
 pub(super) const DEEPEST: usize = 3;
 
@@ -43,15 +45,21 @@ pub(super) struct Departure {
     pub rank: usize,
     /// Toward which end of its wall it stands rather than in the middle: the lower, -1, or the higher, 1.
     pub aside: i8,
+    /// True to leave a sofa at its wall, however far what it looks at is.
+    pub at_wall: bool,
 }
 
 impl Departure {
     const fn of(step: usize, rank: usize) -> Self {
-        Self { step, rank, aside: 0 }
+        Self { step, rank, aside: 0, at_wall: false }
     }
 
     const fn aside(aside: i8) -> Self {
-        Self { step: 0, rank: 0, aside }
+        Self { step: 0, rank: 0, aside, at_wall: false }
+    }
+
+    const fn at_wall(rank: usize) -> Self {
+        Self { step: 0, rank, aside: 0, at_wall: true }
     }
 }
 

@@ -24,8 +24,8 @@ const BEHIND_SEATS: i32 = 900;
 /// Floor between a sofa, its table or an armchair and a table at which people eat with its chairs, mm, what a place loses with
 /// less and what it loses besides with none.
 const FROM_SOFA: i32 = 600;
-const AT_SOFA: f64 = 1.5;
-const ON_SOFA: f64 = 1.5;
+const AT_SOFA: f64 = 2.5;
+const ON_SOFA: f64 = 2.0;
 /// Floor between a counter and seats for those who wait, mm.
 const FROM_COUNTER: i32 = 800;
 /// Floor between a chair at a table and the swing of a door, mm.

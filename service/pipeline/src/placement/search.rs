@@ -9,7 +9,7 @@ use d3dgen_knowledge::Aim;
 use d3dgen_model::domain::{Arrangement, Domain, Mount, Shape};
 
 use super::demand::{Task, storage_width_m};
-use super::draft::{ASIDE, DEEPEST, DEPARTURES, Departure, Draft, RESCUES, Seen};
+use super::draft::{ASIDE, AT_WALL, DEEPEST, DEPARTURES, Departure, Draft, RESCUES, Seen};
 use super::find::{Candidate, Find, Tally, Terms, leave_out_single, over, rows};
 use super::nav::Nav;
 use super::space::{Open, Space};
@@ -36,6 +36,8 @@ const NARROW: f64 = 0.3;
 const NARROWER: f64 = 3.0;
 /// What a draft is worth more with the table that all who live there sit at.
 const TABLE_FOR_MANY: f64 = 2.5;
+/// How far beside the axis of those on a sofa a screen is that they do not see well, mm.
+const FAR_ASIDE: i32 = 700;
 /// Departures tried where something has no place that the room can do without.
 const LOOKS: usize = 2;
 /// Units in rows or a grid, and what they are worth.
@@ -276,7 +278,11 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
         let hopeless = best.outcome.required_missing > 0 && self.hopeless();
         for (n, departure) in DEPARTURES.into_iter().chain(RESCUES).enumerate() {
             let looks = match best.outcome.missing.is_empty() {
-                _ if best.docks_taken() > 0 || best.state.lacks_circle() || best.eats_at_sofa() => {
+                _ if best.docks_taken() > 0
+                    || best.state.lacks_circle()
+                    || best.eats_at_sofa()
+                    || self.looks_aside(&best) =>
+                {
                     DEPARTURES.len() + RESCUES.len()
                 }
                 // everything has found its place
@@ -295,6 +301,15 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
             let begun = begun.iter().rfind(|(_, draft)| draft.steps.len() <= departure.step).cloned();
             let begun = begun.unwrap_or_else(|| (0, self.blank()));
             let Some(other) = self.draft(begun, floor, Some(departure), false, &mut seen) else { continue };
+            if other.cost(empty) < best.cost(empty) {
+                (best, best_of) = (other, Some(departure));
+            }
+        }
+        for departure in AT_WALL {
+            if self.job.stop.is_set() || !self.lacks_table_for_many(&best) && !best.eats_at_sofa() {
+                break;
+            }
+            let Some(other) = self.draft((0, self.blank()), floor, Some(departure), false, &mut seen) else { continue };
             if other.cost(empty) < best.cost(empty) {
                 (best, best_of) = (other, Some(departure));
             }
@@ -368,11 +383,24 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
         missing.any(|task| task.line < EARLY && !has_other(task.item))
     }
 
-    /// Returns true where a table for all who live there has no place, nor a larger one in its place.
+    /// Returns true where the table for all who live there has no place.
     fn lacks_table_for_many(&self, draft: &Draft) -> bool {
         let tasks = self.job.tasks;
-        let stands = draft.state.placed.iter().any(|p| tasks.get(p.task).is_some_and(|t| t.for_many));
-        !stands && draft.outcome.missing.iter().any(|(task, ..)| tasks[*task].for_many)
+        draft.outcome.missing.iter().any(|(task, ..)| tasks[*task].for_many)
+    }
+
+    /// Returns true where what those on the sofa or in bed look at is far beside them.
+    fn looks_aside(&self, draft: &Draft) -> bool {
+        let placed = &draft.state.placed;
+        let Some(first) = placed.iter().find(|p| p.first_line && p.unit.anchor().object.shape == Shape::Sofa) else {
+            return false;
+        };
+        let along = |p: &Placed| p.world(&p.unit.anchor().solid.rect).turned((4 - first.q) % 4).center().1;
+        let faces = |p: &&Placed| {
+            let task = self.job.tasks.get(p.task);
+            p.support.is_none() && task.is_some_and(|t| t.arrangement == Arrangement::Facing)
+        };
+        placed.iter().filter(faces).any(|p| (along(p) - along(first)).abs() > FAR_ASIDE)
     }
 
     /// Returns true where a bed came first and what clothes go into has no place, or is narrower than it usually is.
@@ -607,7 +635,7 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
         tally: &mut Tally,
     ) -> Option<(Placed<'a>, f64)> {
         let (task, aisle) = (&self.job.tasks[index], self.aisle());
-        let (rank, aside) = departure.map_or((0, 0), |d| (d.rank, d.aside));
+        let (rank, aside, at_wall) = departure.map_or((0, 0, false), |d| (d.rank, d.aside, d.at_wall));
         // a form that closes off floor stands only where none leaves it open, and a bed under a window only where the same bed
         // with less of the floor that is advised finds no other wall
         let mut closing = None;
@@ -616,14 +644,17 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
             let mut candidates: Vec<Candidate> = Vec::new();
             for unit in forms {
                 let mut find = Find::new(state, task, index, self.job.salt, aisle, tally);
-                (find.across, find.aside) = (self.across(task), aside);
+                (find.across, find.aside, find.at_wall) = (self.across(task), aside, at_wall);
                 candidates.extend(find.run(unit));
             }
             candidates.retain(|c| c.in_corner || !in_corner);
             candidates.sort_by(|a, b| b.score.total_cmp(&a.score));
             let open = choose(state, &candidates, rank, whole.map(|_| false), tally);
             match open {
-                Some(found) if lit.is_none() && state.lies_under_window(&found.0) => lit = Some(found),
+                // who comes in a wheelchair needs that floor more
+                Some(found) if lit.is_none() && self.job.turning.is_none() && state.lies_under_window(&found.0) => {
+                    lit = Some(found);
+                }
                 Some(found) if lit.as_ref().is_some_and(|l| found.0.is_less_than(&l.0, state)) => return lit,
                 Some(found) => return Some(found),
                 None => {}

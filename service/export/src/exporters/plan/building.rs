@@ -184,7 +184,7 @@ fn leaf(page: &mut Page, frame: &Frame, o: &Opening, along: f64, sign: f64, leng
 }
 
 /// A panel half drawn back into the wall beside the opening, where that is long enough: a pocket door. Two panels where only half
-/// of one goes in on each side. In other places a panel on the face of the wall that goes on for longer.
+/// of one goes in on each side, or where both halves go into the same side. In other places a panel on the face of the wall that goes on for longer.
 fn sliding(page: &mut Page, frame: &Frame, plan: &Floorplan, o: &Opening) {
     for across in [-o.half, o.half] {
         let ends = [0.0, o.length].map(|along| frame.map(o.at(along, across)));
@@ -193,14 +193,15 @@ fn sliding(page: &mut Page, frame: &Frame, plan: &Floorplan, o: &Opening) {
     if o.length <= GATE_M
         && let Some(panels) = in_the_wall(pockets(plan, o), o.length)
     {
-        for [from, to, end] in panels {
+        for (from, to, end, aside) in panels {
             let pocket = [from.min(end), to.max(end)].map(|share| share * o.length);
             for across in [-LEAF_M, LEAF_M] {
                 let ends = pocket.map(|along| frame.map(o.at(along, across)));
                 page.path("pk", Path::new().segment(ends[0], ends[1]));
             }
             let panel = [from, to].map(|share| share * o.length);
-            page.path("dl", o.quad(panel, [-LEAF_M / 2.0, LEAF_M / 2.0], frame));
+            let aside = aside * LEAF_M / 2.0;
+            page.path("dl", o.quad(panel, [aside - LEAF_M / 2.0, aside + LEAF_M / 2.0], frame));
         }
         return;
     }
@@ -224,14 +225,24 @@ fn sliding(page: &mut Page, frame: &Frame, plan: &Floorplan, o: &Opening) {
     }
 }
 
-/// Returns where the panels of a sliding door are drawn, from, to and how far their pockets go, as shares of the opening; `None`
-/// where the wall has no place for them.
-fn in_the_wall([before, after]: [f64; 2], length: f64) -> Option<Vec<[f64; 3]>> {
+/// A panel of a sliding door: from, to and how far its pocket goes, as shares of the opening, and on which side of the middle of the
+/// wall it runs.
+type Panel = (f64, f64, f64, f64);
+
+/// Returns the panels of a sliding door; `None` where the wall has no place for them.
+fn in_the_wall([before, after]: [f64; 2], length: f64) -> Option<Vec<Panel>> {
     let least = length - POCKET_FRAME_M;
-    if before.max(after) >= least {
-        return Some(if before >= after { vec![[-0.4, 0.6, -1.0]] } else { vec![[0.4, 1.4, 2.0]] });
-    }
-    (before.min(after) >= least / 2.0).then(|| vec![[-0.2, 0.3, -0.5], [0.7, 1.2, 1.5]])
+    let mirrored = |panels: Vec<Panel>| panels.into_iter().map(|(a, b, end, side)| (1.0 - b, 1.0 - a, 1.0 - end, side));
+    let panels = if before.max(after) >= least {
+        vec![(-0.4, 0.6, -1.0, 0.0)]
+    } else if before.min(after) >= least / 2.0 {
+        return Some(vec![(-0.2, 0.3, -0.5, 0.0), (0.7, 1.2, 1.5, 0.0)]);
+    } else if before.max(after) >= least / 2.0 {
+        vec![(-0.35, 0.15, -0.5, 1.0), (0.1, 0.6, -0.5, -1.0)]
+    } else {
+        return None;
+    };
+    Some(if before >= after { panels } else { mirrored(panels).collect() })
 }
 
 /// Returns how far the wall of an opening goes on straight before and after it, m: to the next opening or to where it ends.

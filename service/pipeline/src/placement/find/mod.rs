@@ -86,6 +86,8 @@ pub(super) struct Find<'f, 'a, 's> {
     pub across: Option<Rc<Unit<'a>>>,
     /// Toward which end of its wall it stands rather than in the middle; 0 for neither.
     pub aside: i8,
+    /// True where a sofa is not moved from its wall towards what it looks at.
+    pub at_wall: bool,
     style: Style,
     /// What the unit must not disturb, where the room can do without it.
     neighbors: Option<Neighbors<'f, 'a, 's>>,
@@ -102,7 +104,8 @@ impl<'f, 'a, 's> Find<'f, 'a, 's> {
     ) -> Self {
         let both = task.anchor.clear_sides > 1 && task.anchor.clearance_side_m > 0.0;
         let style = style(task.anchor.shape, task.anchor.mount, both);
-        Self { state, task, index, salt, aisle, out: Vec::new(), tally, across: None, aside: 0, style, neighbors: None }
+        let (out, across, neighbors) = (Vec::new(), None, None);
+        Self { state, task, index, salt, aisle, out, tally, across, aside: 0, at_wall: false, style, neighbors }
     }
 
     /// Collects positions of a unit as the task's arrangement wants it.

@@ -129,7 +129,8 @@ impl<'a> Find<'_, 'a, '_> {
 
     /// Returns a sofa moved towards what it looks at where that would be far, with a way behind it, and by how much, mm.
     fn drawn_up(&self, p: &Placed<'a>, wall: &WallSide) -> Option<(Placed<'a>, i32)> {
-        let unit = self.across.as_ref().filter(|_| p.unit.anchor().object.shape == Shape::Sofa)?;
+        let sofa = !self.at_wall && p.unit.anchor().object.shape == Shape::Sofa;
+        let unit = self.across.as_ref().filter(|_| sofa)?;
         let by = self.view(p, unit).map(|(far, _)| far).filter(|&far| far > FAR_VIEW)? - NEAR_VIEW;
         let (u, v) = turn((4 - wall.q) % 4, p.at.0, p.at.1);
         (by >= WAY_BEHIND).then(|| (at_frame(&p.unit, wall.q, u + by, v, self.index), by))
