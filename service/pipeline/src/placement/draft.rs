@@ -4,7 +4,7 @@
 use d3dgen_model::domain::{Mount, Shape};
 
 use super::geom::Box2;
-use super::neighbors::beside_sofas;
+use super::neighbors::{AT_SOFA, beside_sofas};
 use super::search::Outcome;
 use super::state::{Placed, State};
 use super::unit::Part;
@@ -31,8 +31,15 @@ pub(super) const RESCUES: [Departure; 8] = [
 ];
 /// Departures where a bed in the middle of its wall leaves none for a wardrobe as wide as they are.
 pub(super) const ASIDE: [Departure; 2] = [Departure::aside(1), Departure::aside(-1)];
-/// Departures where a sofa in the room leaves no floor for the table.
-pub(super) const AT_WALL: [Departure; 3] = [Departure::at_wall(0), Departure::at_wall(1), Departure::at_wall(2)];
+/// Departures where a sofa in the middle of its wall, or in the room, leaves no floor for the table.
+pub(super) const AT_WALL: [Departure; 6] = [
+    Departure::at_wall(0, 1),
+    Departure::at_wall(0, -1),
+    Departure::at_wall(1, 1),
+    Departure::at_wall(1, -1),
+    Departure::at_wall(0, 0),
+    Departure::at_wall(1, 0),
+];
 /// The last step at which one of them departs.
 pub(super) const DEEPEST: usize = 3;
 
@@ -58,8 +65,8 @@ impl Departure {
         Self { step: 0, rank: 0, aside, at_wall: false }
     }
 
-    const fn at_wall(rank: usize) -> Self {
-        Self { step: 0, rank, aside: 0, at_wall: true }
+    const fn at_wall(rank: usize, aside: i8) -> Self {
+        Self { step: 0, rank, aside, at_wall: true }
     }
 }
 
@@ -90,7 +97,7 @@ impl<'a> Draft<'a, '_> {
 
     /// Returns true where people eat right beside a sofa.
     pub fn eats_at_sofa(&self) -> bool {
-        self.state.placed.iter().any(|p| beside_sofas(&self.state, p) > 0.0)
+        self.state.placed.iter().any(|p| beside_sofas(&self.state, p) >= AT_SOFA)
     }
 
     /// Returns how many docks of robots have something on their free floor.

@@ -184,6 +184,7 @@ pub(crate) fn furnish_room(
         radius: setting.radius,
         has_robots: !graph.robots.is_empty(),
         turning: setting.turning,
+        step_free: graph.accessible,
         in_comfort: matches!(wanted, Wanted::IfFree(_)),
         way: setting.way.as_ref(),
         wide_way: setting.wide_way.as_ref(),

@@ -68,6 +68,8 @@ pub(super) struct Job<'a, 's> {
     pub has_robots: bool,
     /// Radius of the circle that rules want free for wheelchairs, mm.
     pub turning: Option<i32>,
+    /// True where step-free access is asked for.
+    pub step_free: bool,
     /// What must stay open from door to door, or for beds.
     pub way: Option<&'s Way>,
     /// The same with the width that is advised, where the room has it.
@@ -652,7 +654,7 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
             let open = choose(state, &candidates, rank, whole.map(|_| false), tally);
             match open {
                 // who comes in a wheelchair needs that floor more
-                Some(found) if lit.is_none() && self.job.turning.is_none() && state.lies_under_window(&found.0) => {
+                Some(found) if lit.is_none() && !self.job.step_free && state.lies_under_window(&found.0) => {
                     lit = Some(found);
                 }
                 Some(found) if lit.as_ref().is_some_and(|l| found.0.is_less_than(&l.0, state)) => return lit,
