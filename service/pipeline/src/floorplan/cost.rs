@@ -74,9 +74,6 @@ const WRONG_SIZES: f64 = 1.5;
 /// What it costs that two rooms which the domain advises against putting wall to wall share one.
 const TOUCHING: f64 = 0.35;
 
-/// What a meter counts by which the wall of a room to the hall of a home is too short for its door and half a sliding leaf.
-const SLIDES: f64 = 2.0;
-
 /// How much more a wet room counts that lies beside no other in a home, where there are few of them.
 const PIPES_AT_HOME: f64 = 1.6;
 
@@ -445,11 +442,6 @@ impl<'b> Judge<'b> {
             }
             if i != self.spine {
                 score.hard += meters((self.spine_need[i] - room.spine).max(0));
-                if self.home && spec.slides && self.spine_need[i] > 0 {
-                    // half a leaf at least goes into the wall beside the opening
-                    let half = up(Brief::opening(spec.door_width) / 2.0);
-                    score.soft[9] += SLIDES * meters((self.spine_need[i] + half - room.spine).max(0));
-                }
                 if self.spine_need[i] > 0 && !spec.open_front {
                     score.soft[9] += meters((self.spine_need[i] + up(LATCH_SIDE_M) - room.spine).max(0));
                 }

@@ -12,7 +12,6 @@ use super::cost::ill_placed;
 use super::hall::{self, passed_bedrooms};
 use super::lattice::{Cellbox, INNER_HALF_M, JAMB_M, OUTER_HALF_M, meters};
 use super::outline::Stretch;
-use super::pocket::Pocket;
 use super::realize::{BED_DOOR_M, ONE_WAY_M};
 use super::spec::{Brief, RoomSpec};
 use super::windows::LEAST_WALL_M;
@@ -70,8 +69,6 @@ const VIEW_M: f64 = 3.0;
 const SEEN_M: f64 = 0.2;
 /// What it costs that a home's entrance opens outwards.
 const OUTWARD: f64 = 4.0;
-/// What it costs that a sliding door stands half its width from a corner.
-const HALVED: f64 = 0.9;
 /// How far an entrance stands aside at least where that is of use, m, and what it costs.
 const ENTRANCE_SHIFT_M: f64 = 0.15;
 const ENTRANCE_SHIFTED: f64 = 0.6;
@@ -107,8 +104,6 @@ struct Spot {
     view: View,
     /// Floor the leaf sweeps and floor to stand on, by room.
     zones: Vec<(usize, Rect)>,
-    /// The wall that the leaf slides into, in a home.
-    pocket: Option<Pocket>,
     penalty: f64,
 }
 
@@ -181,12 +176,10 @@ impl Laid {
         true
     }
 
-    /// Moves doors that look into a bathroom, or out of one, or that leave a sliding leaf no wall, where a later door made it so,
-    /// and adds up what all cost.
+    /// Moves doors that look into a bathroom, or out of one, where a later door made it so, and adds up what all cost.
     fn settle(&mut self) {
-        for n in (0..self.spots.len()).chain(0..self.spots.len()) {
-            let others = || self.spots.iter().enumerate().filter(|(k, _)| *k != n).map(|(_, other)| other);
-            if !others().any(|other| self.spots[n].looks_into(other) || self.spots[n].shuts(other) > 0.0) {
+        for n in 0..self.spots.len() {
+            if !self.spots.iter().any(|other| self.spots[n].looks_into(other)) {
                 continue;
             }
             let costs = self.choices[n].iter().map(|spot| self.disturbance(spot, n));
@@ -209,17 +202,7 @@ impl Spot {
     fn disturbs(&self, other: &Self) -> f64 {
         let clashes =
             |(room, zone): &(usize, Rect)| other.zones.iter().filter(|(r, z)| r == room && z.overlaps(zone)).count();
-        10.0 * self.zones.iter().map(clashes).sum::<usize>() as f64
-            + if self.looks_into(other) { IN_VIEW } else { 0.0 }
-            + self.shuts(other)
-    }
-
-    /// Returns what it costs that one of two doors takes the wall from the sliding leaf of the other.
-    fn shuts(&self, other: &Self) -> f64 {
-        let beside = |own: &Self, other: &Self| {
-            own.pocket.map_or(0.0, |pocket| pocket.cost_beside(&other.door, other.pocket.as_ref()))
-        };
-        beside(self, other) + beside(other, self)
+        10.0 * self.zones.iter().map(clashes).sum::<usize>() as f64 + if self.looks_into(other) { IN_VIEW } else { 0.0 }
     }
 
     /// Returns true when the doors of a bathroom and of a room with people face each other.
@@ -379,13 +362,7 @@ impl Site<'_> {
             let line = Segment { start: s.point(start), end: s.point(start + opening) };
             let zone = self.zone(s, room, start, opening, APPROACH_M);
             let door = self.door(line, DoorKind::Sliding, clear, s, &[room], None);
-            Spot {
-                door,
-                view: View::Other,
-                zones: vec![(room, zone)],
-                pocket: None,
-                penalty: penalty + meters(s.len()),
-            }
+            Spot { door, view: View::Other, zones: vec![(room, zone)], penalty: penalty + meters(s.len()) }
         });
         spots.filter(|spot| spot.zones.iter().all(|(r, zone)| self.inside(*r, zone))).collect()
     }
@@ -587,7 +564,6 @@ impl Site<'_> {
                 door: door.clone(),
                 view: View::Other,
                 zones,
-                pocket: None,
                 penalty: 0.0,
             })
         })
@@ -669,12 +645,6 @@ impl Site<'_> {
         {
             spots.extend(self.leaf_spot(s, [a, b], into, start, clear, hinge_at_start, penalty));
         }
-        // a sliding leaf may part into halves, with half its width of wall on each side
-        let aside = [from + opening / 2.0, to - 1.5 * opening];
-        let slides = |spot: &Option<Spot>| spot.as_ref().is_some_and(|spot| spot.pocket.is_some());
-        let halved = aside.into_iter().filter(|start| *start >= from && start + opening <= to);
-        let halved = halved.map(|start| self.leaf_spot(s, [a, b], into, start, clear, true, HALVED));
-        spots.extend(halved.filter(slides).flatten());
         spots
     }
 
@@ -718,7 +688,7 @@ impl Site<'_> {
         let line = Segment { start: s.point(start), end: s.point(start + width) };
         let zones = [a, b].map(|r| (r, self.zone(s, r, start, width, APPROACH_M))).to_vec();
         let door = self.door(line, DoorKind::Open, width, s, &[a, b], None);
-        Spot { door, view: self.view([a, b]), zones, pocket: None, penalty: 0.0 }
+        Spot { door, view: self.view([a, b]), zones, penalty: 0.0 }
     }
 
     /// Returns what one looks into through a door between two rooms from where people pass.
@@ -772,10 +742,7 @@ impl Site<'_> {
             return None;
         }
         let door = self.door(line, kind, clear, s, &rooms, swing);
-        let pocket =
-            (slides && !elevator && self.brief.is_home()).then(|| Pocket::new(s, self.stretches, start, opening));
-        let penalty = penalty + if slides { 0.5 } else { 0.0 } + pocket.map_or(0.0, |pocket| pocket.cost());
-        Some(Spot { door, view: self.view(rooms), zones, pocket, penalty })
+        Some(Spot { door, view: self.view(rooms), zones, penalty: penalty + if slides { 0.5 } else { 0.0 } })
     }
 
     fn entrance_spots(&self, s: &Stretch, room: usize, main: bool, laid: &[Spot]) -> Vec<Spot> {
@@ -830,7 +797,7 @@ impl Site<'_> {
             let mut door = self.door(line, kind, clear, s, &[room], Some(swing));
             door.entrance = main;
             let zones = [Some(zone), into].into_iter().flatten().map(|z| (room, z)).collect();
-            Spot { door, view: View::Company, zones, pocket: None, penalty }
+            Spot { door, view: View::Company, zones, penalty }
         };
         // Doors on the way out open outwards, those of homes inwards where the leaf has floor.
         let swept = self.zone(s, room, start, opening, if double { opening / 2.0 } else { opening });
@@ -852,13 +819,7 @@ impl Site<'_> {
             door.entrance = main;
             let zones = vec![(room, zone), (room, swept)];
             let fits = self.inside(room, &swept);
-            spots.extend(fits.then(|| Spot {
-                door,
-                view: View::Company,
-                zones,
-                pocket: None,
-                penalty: penalty + ENTRANCE_SHIFTED,
-            }));
+            spots.extend(fits.then(|| Spot { door, view: View::Company, zones, penalty: penalty + ENTRANCE_SHIFTED }));
         }
         spots
     }

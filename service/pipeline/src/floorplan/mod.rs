@@ -25,7 +25,6 @@ mod mirror;
 mod numbers;
 mod order;
 mod outline;
-mod pocket;
 mod proposed;
 mod realize;
 mod revise;

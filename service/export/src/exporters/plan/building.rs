@@ -24,8 +24,6 @@ pub(super) fn floors(page: &mut Page, frame: &Frame, plan: &Floorplan, domain: &
 
 /// Width from which on a sliding door is the gate of a garage, m.
 const GATE_M: f64 = 2.2;
-/// What may lack of the length of a leaf in its pocket, m: the frame.
-const POCKET_FRAME_M: f64 = 0.05;
 /// Width in which the railings of balconies and terraces are drawn, m.
 const RAILING_M: f64 = 0.08;
 
@@ -183,27 +181,12 @@ fn leaf(page: &mut Page, frame: &Frame, o: &Opening, along: f64, sign: f64, leng
     page.path("dl", Path::new().polygon(&[at(0.0, 0.0), at(0.0, length), at(LEAF_M, length), at(LEAF_M, 0.0)]));
 }
 
-/// A panel half drawn back into the wall beside the opening, where that is long enough: a pocket door. Two panels where only half
-/// of one goes in on each side, or where both halves go into the same side. In other places a panel on the face of the wall that goes on for longer.
+/// A panel half drawn back along the face of the wall that goes on for longer beside the opening; two panels where none is
+/// as long as the opening but both parts of a face are half as long.
 fn sliding(page: &mut Page, frame: &Frame, plan: &Floorplan, o: &Opening) {
     for across in [-o.half, o.half] {
         let ends = [0.0, o.length].map(|along| frame.map(o.at(along, across)));
         page.path("da", Path::new().segment(ends[0], ends[1]));
-    }
-    if o.length <= GATE_M
-        && let Some(panels) = in_the_wall(pockets(plan, o), o.length)
-    {
-        for (from, to, end, aside) in panels {
-            let pocket = [from.min(end), to.max(end)].map(|share| share * o.length);
-            for across in [-LEAF_M, LEAF_M] {
-                let ends = pocket.map(|along| frame.map(o.at(along, across)));
-                page.path("pk", Path::new().segment(ends[0], ends[1]));
-            }
-            let panel = [from, to].map(|share| share * o.length);
-            let aside = aside * LEAF_M / 2.0;
-            page.path("dl", o.quad(panel, [aside - LEAF_M / 2.0, aside + LEAF_M / 2.0], frame));
-        }
-        return;
     }
     let faces = [1.0, -1.0].map(|side| (side, walls_beside(plan, o, side)));
     let longest = |[before, after]: [f64; 2]| before.max(after).min(o.length);
@@ -223,69 +206,6 @@ fn sliding(page: &mut Page, frame: &Frame, plan: &Floorplan, o: &Opening) {
     for panel in panels {
         page.path("dl", o.quad(panel.map(|share| share * o.length), [face, face + side * LEAF_M], frame));
     }
-}
-
-/// A panel of a sliding door: from, to and how far its pocket goes, as shares of the opening, and on which side of the middle of the
-/// wall it runs.
-type Panel = (f64, f64, f64, f64);
-
-/// Returns the panels of a sliding door; `None` where the wall has no place for them.
-fn in_the_wall([before, after]: [f64; 2], length: f64) -> Option<Vec<Panel>> {
-    let least = length - POCKET_FRAME_M;
-    let mirrored = |panels: Vec<Panel>| panels.into_iter().map(|(a, b, end, side)| (1.0 - b, 1.0 - a, 1.0 - end, side));
-    let panels = if before.max(after) >= least {
-        vec![(-0.4, 0.6, -1.0, 0.0)]
-    } else if before.min(after) >= least / 2.0 {
-        return Some(vec![(-0.2, 0.3, -0.5, 0.0), (0.7, 1.2, 1.5, 0.0)]);
-    } else if before.max(after) >= least / 2.0 {
-        vec![(-0.35, 0.15, -0.5, 1.0), (0.1, 0.6, -0.5, -1.0)]
-    } else {
-        return None;
-    };
-    Some(if before >= after { panels } else { mirrored(panels).collect() })
-}
-
-/// Returns how far the wall of an opening goes on straight before and after it, m: to the next opening or to where it ends.
-fn pockets(plan: &Floorplan, o: &Opening) -> [f64; 2] {
-    let offset = |p: Point| (p.x - o.line.start.x, p.y - o.line.start.y);
-    let along = |p: Point| offset(p).0 * o.t.0 + offset(p).1 * o.t.1;
-    let across = |p: Point| offset(p).0 * o.n.0 + offset(p).1 * o.n.1;
-    let upright = o.line.is_vertical();
-    let inner = |w: &&Wall| !w.exterior && w.line.is_vertical() == upright && across(w.line.start).abs() < o.half;
-    let pieces: Vec<[f64; 2]> = plan
-        .walls
-        .iter()
-        .filter(inner)
-        .map(|w| {
-            let ends = [along(w.line.start), along(w.line.end)];
-            [ends[0].min(ends[1]), ends[0].max(ends[1])]
-        })
-        .collect();
-    let (mut low, mut high) = (0.0_f64, o.length);
-    for _ in 0..pieces.len() {
-        for [from, to] in &pieces {
-            if *to >= low - TOLERANCE_M && *from < low {
-                low = *from;
-            }
-            if *from <= high + TOLERANCE_M && *to > high {
-                high = *to;
-            }
-        }
-    }
-    // another wall may stand where it ends
-    let ends = |at: f64| {
-        let meets = |w: &&Wall| w.line.is_vertical() != upright && (along(w.line.start) - at).abs() < TOLERANCE_M;
-        plan.walls
-            .iter()
-            .filter(meets)
-            .filter(|w| {
-                let sides = [across(w.line.start), across(w.line.end)];
-                sides[0].min(sides[1]) < o.half && sides[0].max(sides[1]) > -o.half
-            })
-            .map(|w| w.thickness_m / 2.0)
-            .fold(0.0, f64::max)
-    };
-    [(-low - ends(low)).max(0.0), (high - o.length - ends(high)).max(0.0)]
 }
 
 /// Returns how far a face of the wall (1: the one `o` looks to, -1: the other) goes on before and after an opening, m: to

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use d3dgen_model::domain::{Domain, Zone};
-use d3dgen_model::floorplan::{Door, DoorKind, PlanRoom};
+use d3dgen_model::floorplan::{DoorKind, PlanRoom};
 use d3dgen_model::geometry::Rect;
 use d3dgen_model::scenario::RoiKind;
 use d3dgen_model::world::World;
@@ -254,10 +254,6 @@ impl Facts<'_> {
         let mut rows: Vec<(&str, Swatch)> =
             zones.into_iter().map(|z| (style::zone_label(z), Swatch::Zone(z))).collect();
         rows.extend(rois.into_iter().map(|r| (style::roi_label(r), Swatch::Roi(r))));
-        let slides = |d: &Door| d.kind == DoorKind::Sliding && d.room_ids.len() > 1;
-        if world.floorplan.doors.iter().any(slides) {
-            rows.push(("Door slides into the wall", Swatch::Pocket));
-        }
         if docks {
             rows.push(("Charging dock", Swatch::Dock));
         }
@@ -323,7 +319,6 @@ fn north(page: &mut Page, (x, y): (f64, f64), r: f64) {
 enum Swatch {
     Zone(Zone),
     Roi(RoiKind),
-    Pocket,
     Dock,
     Start,
     Goal,
@@ -343,10 +338,6 @@ impl Swatch {
                 if matches!(kind, RoiKind::CleaningZone | RoiKind::KeepOut) {
                     page.path("fr", Path::new().rect(&r));
                 }
-            }
-            Self::Pocket => {
-                page.path("w", Path::new().rect(&Rect { x1: x + 16.0, y0: y + 4.0, y1: y + 13.0, ..r }));
-                page.path("dl", Path::new().rect(&Rect { x0: x + 6.0, x1: x + 24.0, y0: y + 7.0, y1: y + 10.0 }));
             }
             Self::Dock => robots::dock(page, middle, 9.5),
             Self::Start => robots::robot(page, middle, (1.0, 0.0), 9.5),
