@@ -81,6 +81,8 @@ fn door(id: &str, line: Segment, rooms: &[&str]) -> Door {
         room_ids: rooms.iter().map(|r| (*r).to_owned()).collect(),
         entrance: rooms.len() == 1,
         swing: Some(Swing { into_room_id: Some(rooms[0].into()), hinge_at_start: true }),
+        slide: None,
+        automatic: false,
         locked: false,
     }
 }

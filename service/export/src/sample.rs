@@ -2,7 +2,7 @@
 
 use d3dgen_model::Document;
 use d3dgen_model::domain::{Domain, Materials, Shape};
-use d3dgen_model::floorplan::{Door, DoorKind, Floorplan, PlanRoom, Swing, Wall, Window};
+use d3dgen_model::floorplan::{Door, DoorKind, Floorplan, PlanRoom, Slide, Swing, Wall, Window};
 use d3dgen_model::geometry::{Point, Polygon, Pose, Segment};
 use d3dgen_model::placements::{Placement, Placements};
 use d3dgen_model::scenario::Scenario;
@@ -267,6 +267,8 @@ fn doors() -> Vec<Door> {
         room_ids: rooms.iter().map(|r| (*r).to_owned()).collect(),
         entrance: rooms.len() == 1,
         swing: swing.map(|(room, hinge_at_start)| Swing { into_room_id: Some(room.into()), hinge_at_start }),
+        slide: (kind == DoorKind::Sliding).then_some(Slide::BeyondStart),
+        automatic: false,
         locked: false,
     };
     use DoorKind::*;

@@ -197,6 +197,8 @@ mod tests {
             room_ids: Vec::new(),
             entrance: false,
             swing: None,
+            slide: None,
+            automatic: false,
             locked: false,
         }
     }

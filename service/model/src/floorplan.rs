@@ -117,6 +117,12 @@ pub struct Door {
     /// How the leaf swings; absent for sliding doors and open passages.
     #[serde(default)]
     pub swing: Option<Swing>,
+    /// Where the leaf of a sliding door goes when it opens; absent for all others.
+    #[serde(default)]
+    pub slide: Option<Slide>,
+    /// True for a door that opens by itself for who comes near it: a robot opens none.
+    #[serde(default)]
+    pub automatic: bool,
     /// True keeps it when the plan is fed back.
     #[serde(default)]
     pub locked: bool,
@@ -130,7 +136,7 @@ pub enum DoorKind {
     Hinged,
     /// Two leaves.
     DoubleHinged,
-    /// Slides along the wall.
+    /// Slides, and is out of the way when it is open: see [`Slide`].
     Sliding,
     /// No leaf.
     Open,
@@ -144,6 +150,25 @@ pub struct Swing {
     pub into_room_id: Option<String>,
     /// End of `line` that carries the hinge: true for `start`, false for `end` (both for double leaves).
     pub hinge_at_start: bool,
+}
+
+/// Where the leaf of a sliding door goes when it opens: into a pocket inside the wall, so that things may stand and hang
+/// beside the door, or up.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Slide {
+    /// Into the wall beyond `start` of its line.
+    BeyondStart,
+    /// Into the wall beyond `end` of its line.
+    BeyondEnd,
+    /// Two leaves, one into the wall beyond each end.
+    Apart,
+    /// Two leaves, one behind the other, into half as much wall beyond `start` of its line.
+    StackedBeyondStart,
+    /// Two leaves, one behind the other, into half as much wall beyond `end` of its line.
+    StackedBeyondEnd,
+    /// Up, as the gate of a garage.
+    Up,
 }
 
 /// A window in an outer wall.
@@ -238,6 +263,9 @@ impl Document for Floorplan {
             if door.room_ids.is_empty() || door.room_ids.len() > 2 || !door.room_ids.iter().all(known) {
                 problems
                     .push(Problem::new(format!("/doors/{i}/room_ids"), "needs one or two ids of rooms in this plan"));
+            }
+            if door.slide.is_some() && door.kind != DoorKind::Sliding {
+                problems.push(Problem::new(format!("/doors/{i}/slide"), "is for doors of the kind `sliding`"));
             }
             if door.clear_width_m > door.line.length() + crate::TOLERANCE_M {
                 problems.push(Problem::new(

@@ -24,6 +24,7 @@ pub mod robot_body;
 pub mod scenario;
 pub mod scene_graph;
 pub mod seed;
+pub mod slides;
 pub mod storeys;
 pub mod style;
 pub mod units;

@@ -242,6 +242,8 @@ mod tests {
                 room_ids: vec!["a_1".into(), "b_1".into()],
                 entrance: false,
                 swing: None,
+                slide: None,
+                automatic: false,
                 locked: false,
             }],
             windows: Vec::new(),

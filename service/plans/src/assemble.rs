@@ -7,6 +7,7 @@ use d3dgen_model::domain::{Domain, Zone};
 use d3dgen_model::floorplan::{Door, DoorKind, Floorplan, PlanRoom, Swing, Wall, Window};
 use d3dgen_model::geometry::to_mm;
 use d3dgen_model::scene_graph::Note;
+use d3dgen_model::slides;
 
 use crate::drawing::{OpeningKind, note};
 use crate::layout::{LaidOpening, Layout, point};
@@ -46,6 +47,7 @@ pub fn assemble(
     guess_entrance(&mut doors, &rooms, domain, &mut layout.notes);
     let windows = windows(&layout, &rooms);
     let walls = walls(&layout, &rooms);
+    slides::aim(&mut doors, &walls);
     let plan = Floorplan {
         version: 1,
         seed,
@@ -140,6 +142,8 @@ fn doors(layout: &Layout, rooms: &[PlanRoom]) -> Vec<Door> {
             room_ids: o.rooms.iter().map(|&r| rooms[r].room_id.clone()).collect(),
             entrance: false,
             swing: (!leafless).then(|| Swing { into_room_id: into.map(|r| rooms[r].room_id.clone()), hinge_at_start }),
+            slide: None,
+            automatic: false,
             locked: true,
         });
     }

@@ -6,6 +6,7 @@ use d3dgen_model::domain::{Daylight, Zone};
 use d3dgen_model::floorplan::{CostTerm, Door, Floorplan, PlanRoom, Wall, Window};
 use d3dgen_model::geometry::to_mm;
 use d3dgen_model::seed::Stream;
+use d3dgen_model::slides;
 
 use super::PROPORTION_LIMIT;
 use super::cost::{OVERHANG, Score, TERMS};
@@ -103,7 +104,7 @@ pub(super) fn assemble(
     }
     let net_m2: Vec<f64> = rooms.iter().map(|r| r.net_area_m2).collect();
     let standing = earlier.map_or(&[][..], |e| &e.plan.doors);
-    let doors = place_doors(&Site { brief, boxes, stretches: &stretches, net_m2: &net_m2, standing }, rng)?;
+    let mut doors = place_doors(&Site { brief, boxes, stretches: &stretches, net_m2: &net_m2, standing }, rng)?;
     let mut windows = place_windows(brief, &stretches, &net_m2, &doors);
     let dark = |i: &usize| {
         let needs = brief.rooms[*i].daylight == Daylight::Required;
@@ -113,6 +114,7 @@ pub(super) fn assemble(
         return Err(format!("the outer wall of {} has no place for a window", brief.rooms[i].id));
     }
     let mut walls = walls(brief, &stretches, &doors);
+    slides::aim(&mut doors, &walls);
     if let Some(earlier) = earlier {
         keep_windows(&mut windows, &rooms, &doors, earlier.plan);
         keep_wall_ids(&mut walls, earlier.plan);

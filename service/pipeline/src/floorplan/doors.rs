@@ -67,6 +67,9 @@ const APPROACH_M: f64 = 0.6;
 const IN_VIEW: f64 = 1.3;
 const VIEW_M: f64 = 3.0;
 const SEEN_M: f64 = 0.2;
+/// What it costs that a door slides, and that the leaf of a sliding door has no wall to go into.
+const SLIDING: f64 = 0.5;
+const NO_POCKET: f64 = 4.0;
 /// What it costs that a home's entrance opens outwards.
 const OUTWARD: f64 = 4.0;
 /// How far an entrance stands aside at least where that is of use, m, and what it costs.
@@ -101,6 +104,8 @@ enum View {
 #[derive(Clone)]
 struct Spot {
     door: Door,
+    /// Ends of the wall that a sliding leaf goes into, along it, m.
+    wall: Option<(f64, f64)>,
     view: View,
     /// Floor the leaf sweeps and floor to stand on, by room.
     zones: Vec<(usize, Rect)>,
@@ -198,11 +203,40 @@ impl Laid {
 }
 
 impl Spot {
-    /// Returns what it costs that two doors need the same floor, or that one looks from a room into a bathroom.
+    /// Returns what it costs that two doors need the same floor or the same wall, or that one looks from a room into a
+    /// bathroom.
     fn disturbs(&self, other: &Self) -> f64 {
         let clashes =
             |(room, zone): &(usize, Rect)| other.zones.iter().filter(|(r, z)| r == room && z.overlaps(zone)).count();
-        10.0 * self.zones.iter().map(clashes).sum::<usize>() as f64 + if self.looks_into(other) { IN_VIEW } else { 0.0 }
+        10.0 * self.zones.iter().map(clashes).sum::<usize>() as f64
+            + if self.looks_into(other) { IN_VIEW } else { 0.0 }
+            + if self.takes_wall_of(other) { NO_POCKET } else { 0.0 }
+    }
+
+    /// Returns true for doors in one wall whose leaves, where they slide, do not both find wall to go into.
+    fn takes_wall_of(&self, other: &Self) -> bool {
+        let (own, theirs) = (extent(&self.door), extent(&other.door));
+        let in_line = self.door.line.is_vertical() == other.door.line.is_vertical() && (own.0 - theirs.0).abs() < 1e-6;
+        if !in_line || self.wall.is_none() && other.wall.is_none() {
+            return false;
+        }
+        let (first, second) = if own.1 < theirs.1 { (self, other) } else { (other, self) };
+        let ((_, from, to), (_, low, high)) = (extent(&first.door), extent(&second.door));
+        let between = low - to;
+        // how much of the wall between them each of its two ways takes, for those that fit
+        let ways = |wall: Option<(f64, f64)>, width: f64, outer: f64| match wall {
+            None => vec![0.0],
+            Some(_) => [(outer >= width).then_some(0.0), Some(width)].into_iter().flatten().collect(),
+        };
+        let left = ways(first.wall, to - from, first.wall.map_or(0.0, |w| from - w.0));
+        let right = ways(second.wall, high - low, second.wall.map_or(0.0, |w| w.1 - high));
+        !left.iter().any(|a| right.iter().any(|b| a + b <= between))
+    }
+
+    /// Returns true for a sliding door whose wall is too short for its leaf on both sides.
+    fn has_no_pocket(&self) -> bool {
+        let (_, from, to) = extent(&self.door);
+        self.wall.is_some_and(|(low, high)| (from - low).max(high - to) < to - from - 1e-6)
     }
 
     /// Returns true when the doors of a bathroom and of a room with people face each other.
@@ -213,13 +247,15 @@ impl Spot {
     }
 }
 
+/// Returns where the wall of a door runs, and where the opening begins and ends along it, m.
+fn extent(d: &Door) -> (f64, f64, f64) {
+    let (start, end) = (d.line.start, d.line.end);
+    let (at, from, to) = if d.line.is_vertical() { (start.x, start.y, end.y) } else { (start.y, start.x, end.x) };
+    (at, from.min(to), from.max(to))
+}
+
 /// Returns true for doors in opposite walls of one room that are not far apart.
 fn faces(a: &Door, b: &Door) -> bool {
-    let extent = |d: &Door| {
-        let (start, end) = (d.line.start, d.line.end);
-        let (at, from, to) = if d.line.is_vertical() { (start.x, start.y, end.y) } else { (start.y, start.x, end.x) };
-        (at, from.min(to), from.max(to))
-    };
     let ((at, from, to), (other, low, high)) = (extent(a), extent(b));
     a.line.is_vertical() == b.line.is_vertical()
         && (SEEN_M..VIEW_M).contains(&(at - other).abs())
@@ -361,8 +397,8 @@ impl Site<'_> {
         let spots = [(middle, 0.0), (from, 0.5), (to - opening, 0.5)].into_iter().map(|(start, penalty)| {
             let line = Segment { start: s.point(start), end: s.point(start + opening) };
             let zone = self.zone(s, room, start, opening, APPROACH_M);
-            let door = self.door(line, DoorKind::Sliding, clear, s, &[room], None);
-            Spot { door, view: View::Other, zones: vec![(room, zone)], penalty: penalty + meters(s.len()) }
+            let door = Door { automatic: true, ..self.door(line, DoorKind::Sliding, clear, s, &[room], None) };
+            Spot { door, wall: None, view: View::Other, zones: vec![(room, zone)], penalty: penalty + meters(s.len()) }
         });
         spots.filter(|spot| spot.zones.iter().all(|(r, zone)| self.inside(*r, zone))).collect()
     }
@@ -562,6 +598,7 @@ impl Site<'_> {
             }
             rooms.iter().all(|&r| self.inside(r, &self.zone(s, r, start, end - start, 0.5))).then(|| Spot {
                 door: door.clone(),
+                wall: (door.kind == DoorKind::Sliding).then(|| self.wall_along(s)),
                 view: View::Other,
                 zones,
                 penalty: 0.0,
@@ -597,14 +634,29 @@ impl Site<'_> {
 
     /// Returns the free part of a stretch in meters: clear of the walls that meet its ends.
     fn usable(&self, s: &Stretch) -> (f64, f64) {
-        let end = |at: i32| {
-            let outer = self
-                .stretches
-                .iter()
-                .any(|t| t.vertical != s.vertical && t.is_outer() && t.from <= s.at && s.at <= t.to && t.at == at);
-            JAMB_M + if outer { OUTER_HALF_M } else { INNER_HALF_M }
-        };
+        let end = |at: i32| JAMB_M + self.half_across(s, at);
         (meters(s.from) + end(s.from), meters(s.to) - end(s.to))
+    }
+
+    /// Returns the ends of the inner wall that a stretch is part of, whatever rooms it parts, along it, m.
+    fn wall_along(&self, s: &Stretch) -> (f64, f64) {
+        let inner = || self.stretches.iter().filter(|t| t.vertical == s.vertical && t.at == s.at && !t.is_outer());
+        let (mut from, mut to) = (s.from, s.to);
+        while let Some(before) = inner().find(|t| t.to == from) {
+            from = before.from;
+        }
+        while let Some(after) = inner().find(|t| t.from == to) {
+            to = after.to;
+        }
+        let half = |at: i32| self.half_across(s, at);
+        (meters(from) + half(from), meters(to) - half(to))
+    }
+
+    /// Returns half the thickness of the thickest wall that meets the line of a stretch at a point of it, m.
+    fn half_across(&self, s: &Stretch, at: i32) -> f64 {
+        let meets = |t: &&Stretch| t.vertical != s.vertical && t.from <= s.at && s.at <= t.to && t.at == at;
+        let outer = self.stretches.iter().filter(meets).any(Stretch::is_outer);
+        if outer { OUTER_HALF_M } else { INNER_HALF_M }
     }
 
     fn spots(&self, s: &Stretch, a: usize, b: usize, connector: Connector, rng: &mut Stream) -> Vec<Spot> {
@@ -688,7 +740,7 @@ impl Site<'_> {
         let line = Segment { start: s.point(start), end: s.point(start + width) };
         let zones = [a, b].map(|r| (r, self.zone(s, r, start, width, APPROACH_M))).to_vec();
         let door = self.door(line, DoorKind::Open, width, s, &[a, b], None);
-        Spot { door, view: self.view([a, b]), zones, penalty: 0.0 }
+        Spot { door, wall: None, view: self.view([a, b]), zones, penalty: 0.0 }
     }
 
     /// Returns what one looks into through a door between two rooms from where people pass.
@@ -724,8 +776,8 @@ impl Site<'_> {
         let elevator = rooms.iter().any(|&r| self.brief.rooms[r].elevator);
         // robots open no leaf
         let docks = rooms.iter().any(|&r| self.brief.rooms[r].docks && !self.brief.rooms[r].circulation);
-        let slides = elevator
-            || docks
+        let automatic = elevator || docks || rooms.iter().any(|&r| self.brief.rooms[r].automatic);
+        let slides = automatic
             || self.brief.rooms[into].slides
             || leaf * leaf > SLIDING_SHARE * self.net_m2[into]
             || !self.inside(into, &swept);
@@ -741,8 +793,11 @@ impl Site<'_> {
         if !rooms.iter().all(|&r| self.inside(r, &self.zone(s, r, start, opening, 0.5))) {
             return None;
         }
-        let door = self.door(line, kind, clear, s, &rooms, swing);
-        Some(Spot { door, view: self.view(rooms), zones, penalty: penalty + if slides { 0.5 } else { 0.0 } })
+        let door = Door { automatic, ..self.door(line, kind, clear, s, &rooms, swing) };
+        let wall = slides.then(|| self.wall_along(s));
+        let spot = Spot { door, wall, view: self.view(rooms), zones, penalty };
+        let sliding = if spot.has_no_pocket() { NO_POCKET } else { SLIDING };
+        Some(Spot { penalty: penalty + if slides { sliding } else { 0.0 }, ..spot })
     }
 
     fn entrance_spots(&self, s: &Stretch, room: usize, main: bool, laid: &[Spot]) -> Vec<Spot> {
@@ -797,7 +852,7 @@ impl Site<'_> {
             let mut door = self.door(line, kind, clear, s, &[room], Some(swing));
             door.entrance = main;
             let zones = [Some(zone), into].into_iter().flatten().map(|z| (room, z)).collect();
-            Spot { door, view: View::Company, zones, penalty }
+            Spot { door, wall: None, view: View::Company, zones, penalty }
         };
         // Doors on the way out open outwards, those of homes inwards where the leaf has floor.
         let swept = self.zone(s, room, start, opening, if double { opening / 2.0 } else { opening });
@@ -873,6 +928,8 @@ impl Site<'_> {
             room_ids: rooms.iter().map(|&r| self.brief.rooms[r].id.clone()).collect(),
             entrance: false,
             swing,
+            slide: None,
+            automatic: false,
             locked: false,
         }
     }

@@ -69,6 +69,8 @@ pub(super) struct RoomSpec {
     pub open_front: bool,
     /// True for rooms into which no leaf opens.
     pub slides: bool,
+    /// True for rooms whose doors open by themselves, for robots.
+    pub automatic: bool,
     pub entrance: bool,
     /// True for a room that the prompt wants near the entrance.
     pub by_entrance: bool,
@@ -465,6 +467,8 @@ fn room_spec(
     // A robot's circle passes with 5 cm to spare on both sides.
     let robot = graph.robots.iter().map(|r| 2.0 * r.radius_m + 0.1).fold(0.0, f64::max);
     let robots = !graph.robots.is_empty();
+    let automatic =
+        robots && domain.circulation.automatic_doors && kind.robot.iter().any(|u| *u != RobotUse::KeepOut);
     // what hangs in the air or lies below the ground has no drive
     let gate = gate(domain, kind).filter(|_| room.level == 0);
     RoomSpec {
@@ -484,9 +488,8 @@ fn room_spec(
         docks: has_docks(domain, kind) || robots && kind.robot.contains(&RobotUse::Charging),
         open_front: kind.open_front,
         // who uses a wheelchair has no floor to spare for a leaf
-        slides: kind.sliding_door
-            || graph.accessible && kind.wet && kind.privacy == Privacy::Private
-            || robots && domain.circulation.automatic_doors && kind.robot.iter().any(|u| *u != RobotUse::KeepOut),
+        slides: kind.sliding_door || graph.accessible && kind.wet && kind.privacy == Privacy::Private || automatic,
+        automatic,
         entrance: room.entrance,
         by_entrance: is_by_entrance(room, graph),
         for_guests: is_for_guests(room, graph, domain),

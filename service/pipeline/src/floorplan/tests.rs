@@ -30,6 +30,7 @@ fn room(id: &str, area: [f64; 3], min_dimension: f64, daylight: Daylight, zone: 
         open_front: false,
         high_windows: false,
         slides: false,
+        automatic: false,
         entrance: false,
         by_entrance: false,
         for_guests: false,

@@ -72,6 +72,8 @@ impl<'s> Site<'s> {
             room_ids: vec![self.id()],
             entrance: i == 0,
             swing: Some(Swing { into_room_id: self.leaf_inside.then(|| self.id()), hinge_at_start: true }),
+            slide: None,
+            automatic: false,
             locked: false,
         };
         let window = |(i, w): (usize, &(f64, f64, f64))| Window {

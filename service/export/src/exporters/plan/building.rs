@@ -2,7 +2,7 @@
 
 use d3dgen_model::TOLERANCE_M;
 use d3dgen_model::domain::{Domain, Zone};
-use d3dgen_model::floorplan::{Door, DoorKind, Floorplan, Wall, Window};
+use d3dgen_model::floorplan::{Door, DoorKind, Floorplan, Slide, Wall, Window};
 use d3dgen_model::geometry::{Point, Rect, Segment};
 
 use super::page::{Anchor, Frame, Page, Path, on_sheet};
@@ -10,6 +10,8 @@ use super::style;
 
 /// Thickness of a door leaf as drawn, m.
 const LEAF_M: f64 = 0.045;
+/// Width of the pocket in a wall that a sliding leaf goes into, as drawn, m.
+const POCKET_M: f64 = 0.06;
 
 /// Tints every room by the part of the building it belongs to.
 pub(super) fn floors(page: &mut Page, frame: &Frame, plan: &Floorplan, domain: &Domain) {
@@ -22,8 +24,6 @@ pub(super) fn floors(page: &mut Page, frame: &Frame, plan: &Floorplan, domain: &
     page.close_group();
 }
 
-/// Width from which on a sliding door is the gate of a garage, m.
-const GATE_M: f64 = 2.2;
 /// Width in which the railings of balconies and terraces are drawn, m.
 const RAILING_M: f64 = 0.08;
 
@@ -163,7 +163,7 @@ fn draw_door(page: &mut Page, frame: &Frame, plan: &Floorplan, door: &Door) {
             leaf(page, frame, &o, 0.0, 1.0, o.length / 2.0);
             leaf(page, frame, &o, o.length, -1.0, o.length / 2.0);
         }
-        DoorKind::Sliding => sliding(page, frame, plan, &o),
+        DoorKind::Sliding => sliding(page, frame, &o, door),
         DoorKind::Open => {
             for across in [-o.half, o.half] {
                 let ends = [0.0, o.length].map(|along| frame.map(o.at(along, across)));
@@ -181,65 +181,31 @@ fn leaf(page: &mut Page, frame: &Frame, o: &Opening, along: f64, sign: f64, leng
     page.path("dl", Path::new().polygon(&[at(0.0, 0.0), at(0.0, length), at(LEAF_M, length), at(LEAF_M, 0.0)]));
 }
 
-/// A panel half drawn back along the face of the wall that goes on for longer beside the opening; two panels where none is
-/// as long as the opening but both parts of a face are half as long.
-fn sliding(page: &mut Page, frame: &Frame, plan: &Floorplan, o: &Opening) {
+/// Leaves half drawn back, and the pockets in the wall that they go into; doors that open by themselves have dark leaves.
+fn sliding(page: &mut Page, frame: &Frame, o: &Opening, door: &Door) {
     for across in [-o.half, o.half] {
         let ends = [0.0, o.length].map(|along| frame.map(o.at(along, across)));
         page.path("da", Path::new().segment(ends[0], ends[1]));
     }
-    let faces = [1.0, -1.0].map(|side| (side, walls_beside(plan, o, side)));
-    let longest = |[before, after]: [f64; 2]| before.max(after).min(o.length);
-    let [inner, outer] = faces;
-    let (side, [before, after]) = if longest(outer.1) > longest(inner.1) + TOLERANCE_M { outer } else { inner };
-    let panels: &[[f64; 2]] = if o.length > GATE_M {
-        // a gate goes up, not aside
-        &[[0.0, 1.0]]
-    } else if before.max(after) < o.length && before.min(after) >= o.length / 2.0 {
-        &[[-0.2, 0.3], [0.7, 1.2]]
-    } else if before >= after {
-        &[[-0.35, 0.6]]
-    } else {
-        &[[0.4, 1.35]]
+    // shares of the opening: where each pocket runs, and each leaf, with how far off the middle of the wall it is
+    let (pockets, leaves): (&[[f64; 2]], &[([f64; 2], f64)]) = match door.slide {
+        Some(Slide::BeyondStart) => (&[[-1.0, 0.0]], &[([-0.4, 0.6], 0.0)]),
+        Some(Slide::BeyondEnd) => (&[[1.0, 2.0]], &[([0.4, 1.4], 0.0)]),
+        Some(Slide::Apart) => (&[[-0.5, 0.0], [1.0, 1.5]], &[([-0.2, 0.3], 0.0), ([0.7, 1.2], 0.0)]),
+        Some(Slide::StackedBeyondStart) => (&[[-0.5, 0.0]], &[([-0.1, 0.4], -0.5), ([0.2, 0.7], 0.5)]),
+        Some(Slide::StackedBeyondEnd) => (&[[1.0, 1.5]], &[([0.3, 0.8], -0.5), ([0.6, 1.1], 0.5)]),
+        Some(Slide::Up) | None => (&[], &[([0.0, 1.0], 0.0)]),
     };
-    let face = side * o.half;
-    for panel in panels {
-        page.path("dl", o.quad(panel.map(|share| share * o.length), [face, face + side * LEAF_M], frame));
+    let pocket = o.half.min(POCKET_M / 2.0);
+    for ends in pockets {
+        page.path("dp", o.quad(ends.map(|share| share * o.length), [-pocket, pocket], frame));
     }
-}
-
-/// Returns how far a face of the wall (1: the one `o` looks to, -1: the other) goes on before and after an opening, m: to
-/// the next opening or to a wall that meets that face.
-fn walls_beside(plan: &Floorplan, o: &Opening, side: f64) -> [f64; 2] {
-    let offset = |p: Point| (p.x - o.line.start.x, p.y - o.line.start.y);
-    let dot = |(x, y): (f64, f64), (dx, dy): (f64, f64)| x * dx + y * dy;
-    let (along, across) = (|p: Point| dot(offset(p), o.t), |p: Point| dot(offset(p), o.n) * side);
-    let upright = o.line.is_vertical();
-    let openings = plan.doors.iter().map(|d| d.line).chain(plan.windows.iter().map(|w| w.line));
-    let in_line = |line: &Segment| line.is_vertical() == upright && across(line.start).abs() < o.half;
-    let next = openings.filter(in_line).flat_map(|line| [line.start, line.end]).map(|p| (along(p), 0.0));
-    let meets = |w: &&Wall| {
-        let (a, b) = (across(w.line.start), across(w.line.end));
-        w.line.is_vertical() != upright && a.min(b) < 2.0 * o.half && a.max(b) > o.half + TOLERANCE_M
-    };
-    let crossing = plan.walls.iter().filter(meets).map(|w| (along(w.line.start), w.thickness_m / 2.0));
-    // where the wall itself ends
-    let wall = plan.walls.iter().filter(|w| {
-        let ends = [along(w.line.start), along(w.line.end)];
-        let spans = ends[0].min(ends[1]) < TOLERANCE_M && ends[0].max(ends[1]) > o.length - TOLERANCE_M;
-        w.line.is_vertical() == upright && across(w.line.start).abs() < o.half && spans
-    });
-    let ends = wall.flat_map(|w| [w.line.start, w.line.end]).map(|p| (along(p), 0.0));
-    let mut free = [f64::MAX; 2];
-    for (at, half) in next.chain(crossing).chain(ends) {
-        if at < TOLERANCE_M {
-            free[0] = free[0].min(if at > -TOLERANCE_M { f64::MAX } else { -at - half });
-        }
-        if at > o.length - TOLERANCE_M {
-            free[1] = free[1].min(if at < o.length + TOLERANCE_M { f64::MAX } else { at - o.length - half });
-        }
+    let class = if door.automatic { "dx" } else { "dl" };
+    for (ends, off) in leaves {
+        let middle = off * LEAF_M;
+        let across = [middle - LEAF_M / 2.0, middle + LEAF_M / 2.0];
+        page.path(class, o.quad(ends.map(|share| share * o.length), across, frame));
     }
-    free
 }
 
 /// Returns the floor that leaves sweep, on the sheet, for the labels to avoid.
@@ -379,27 +345,4 @@ fn dimension(page: &mut Page, ends: [(f64, f64); 2], (dx, dy): (f64, f64), size:
     let (px, py) = (uy.abs() * over, ux.abs() * over);
     page.path("dm", lines.segment((a.0 - px, a.1 - py), (b.0 + px, b.1 + py)));
     page.path("dt", ticks);
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::sample;
-
-    #[test]
-    fn a_panel_slides_along_the_face_that_no_other_wall_meets() {
-        let mut plan = sample::world().floorplan;
-        let door = plan.doors.iter().find(|d| d.kind == DoorKind::Sliding).unwrap().clone();
-        let (start, end) = (door.line.start, door.line.end);
-        let side = |plan: &Floorplan, side| walls_beside(plan, &opening_of(&door, plan), side);
-        let before = [1.0, -1.0].map(|face| side(&plan, face));
-        // a partition meets one face right behind the door
-        let north = opening_of(&door, &plan).n.1 > 0.0;
-        let line = Segment { start: Point::new(end.x + 0.2, start.y - 2.0), end: Point::new(end.x + 0.2, start.y) };
-        let wall = Wall { line, ..plan.walls[0].clone() };
-        plan.walls.push(wall);
-        let met = if north { -1.0 } else { 1.0 };
-        assert!(side(&plan, met)[1] < 0.2, "{:?}", side(&plan, met));
-        assert_eq!(side(&plan, -met), before[if north { 0 } else { 1 }], "the other face goes on as before");
-    }
 }

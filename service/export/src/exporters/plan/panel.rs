@@ -254,6 +254,9 @@ impl Facts<'_> {
         let mut rows: Vec<(&str, Swatch)> =
             zones.into_iter().map(|z| (style::zone_label(z), Swatch::Zone(z))).collect();
         rows.extend(rois.into_iter().map(|r| (style::roi_label(r), Swatch::Roi(r))));
+        if world.floorplan.doors.iter().any(|d| d.automatic) {
+            rows.push(("Opens by itself", Swatch::Automatic));
+        }
         if docks {
             rows.push(("Charging dock", Swatch::Dock));
         }
@@ -319,6 +322,7 @@ fn north(page: &mut Page, (x, y): (f64, f64), r: f64) {
 enum Swatch {
     Zone(Zone),
     Roi(RoiKind),
+    Automatic,
     Dock,
     Start,
     Goal,
@@ -338,6 +342,10 @@ impl Swatch {
                 if matches!(kind, RoiKind::CleaningZone | RoiKind::KeepOut) {
                     page.path("fr", Path::new().rect(&r));
                 }
+            }
+            Self::Automatic => {
+                let leaf = Rect { y0: middle.1 - 2.0, y1: middle.1 + 2.0, ..r };
+                page.path("dx", Path::new().rect(&leaf));
             }
             Self::Dock => robots::dock(page, middle, 9.5),
             Self::Start => robots::robot(page, middle, (1.0, 0.0), 9.5),

@@ -101,6 +101,8 @@ pub(super) fn sheet(k: f64) -> String {
         format!(".n{{fill:#fff;stroke:#1f2126;stroke-width:{}}}", w(1.2)),
         format!(".nf{{fill:none;stroke:#1f2126;stroke-width:{}}}", w(0.9)),
         format!(".dl{{fill:#fff;stroke:{INK};stroke-width:{}}}", w(1.3)),
+        ".dp{fill:#a9adb4}".to_owned(),
+        format!(".dx{{fill:{ROBOT};stroke:{ROBOT};stroke-width:{}}}", w(0.9)),
         format!(".da{{fill:none;stroke:#7d828b;stroke-width:{}}}", w(1.0)),
         format!(".do{{fill:none;stroke:#7d828b;stroke-width:{};stroke-dasharray:{} {}}}", w(1.1), w(6.0), w(5.0)),
         format!(".dm{{fill:none;stroke:#9a9ea6;stroke-width:{}}}", w(0.9)),
