@@ -54,7 +54,8 @@ fn best(doors: &[Beside]) -> Vec<Slide> {
     for (n, door) in doors.iter().enumerate() {
         let next = door.choices().into_iter().filter_map(|slide| {
             let longer = paths.iter().map(|(cost, path)| {
-                let shared = n.checked_sub(1).zip(path.last()).map_or(0.0, |(p, last)| door.shares(&doors[p], *last, slide));
+                let shared =
+                    n.checked_sub(1).zip(path.last()).map_or(0.0, |(p, last)| door.shares(&doors[p], *last, slide));
                 (cost + door.cost(slide) + shared, path)
             });
             let (cost, path) = longer.min_by(|a, b| a.0.total_cmp(&b.0))?;
@@ -126,13 +127,8 @@ impl Beside {
     }
 
     fn choices(&self) -> Vec<Slide> {
-        let all = [
-            Slide::BeyondStart,
-            Slide::BeyondEnd,
-            Slide::Apart,
-            Slide::StackedBeyondStart,
-            Slide::StackedBeyondEnd,
-        ];
+        let all =
+            [Slide::BeyondStart, Slide::BeyondEnd, Slide::Apart, Slide::StackedBeyondStart, Slide::StackedBeyondEnd];
         self.given.map_or(all.to_vec(), |slide| vec![slide])
     }
 
@@ -237,7 +233,10 @@ mod tests {
         let slides = aimed(vec![door(1.2, 2.2), door(3.6, 4.6)], &[]);
         let towards = |slide| [Some(slide); 2];
         assert!(slides == towards(Slide::BeyondStart) || slides == towards(Slide::BeyondEnd), "{slides:?}");
-        assert_eq!(aimed(vec![door(0.3, 1.3), door(4.6, 5.6)], &[]), [Some(Slide::BeyondEnd), Some(Slide::BeyondStart)]);
+        assert_eq!(
+            aimed(vec![door(0.3, 1.3), door(4.6, 5.6)], &[]),
+            [Some(Slide::BeyondEnd), Some(Slide::BeyondStart)]
+        );
     }
 
     #[test]

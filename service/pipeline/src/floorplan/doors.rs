@@ -874,7 +874,8 @@ impl Site<'_> {
             door.entrance = main;
             let zones = vec![(room, zone), (room, swept)];
             let fits = self.inside(room, &swept);
-            spots.extend(fits.then(|| Spot { door, view: View::Company, zones, penalty: penalty + ENTRANCE_SHIFTED }));
+            let penalty = penalty + ENTRANCE_SHIFTED;
+            spots.extend(fits.then(|| Spot { door, wall: None, view: View::Company, zones, penalty }));
         }
         spots
     }

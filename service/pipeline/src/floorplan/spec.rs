@@ -467,8 +467,7 @@ fn room_spec(
     // A robot's circle passes with 5 cm to spare on both sides.
     let robot = graph.robots.iter().map(|r| 2.0 * r.radius_m + 0.1).fold(0.0, f64::max);
     let robots = !graph.robots.is_empty();
-    let automatic =
-        robots && domain.circulation.automatic_doors && kind.robot.iter().any(|u| *u != RobotUse::KeepOut);
+    let automatic = robots && domain.circulation.automatic_doors && kind.robot.iter().any(|u| *u != RobotUse::KeepOut);
     // what hangs in the air or lies below the ground has no drive
     let gate = gate(domain, kind).filter(|_| room.level == 0);
     RoomSpec {
