@@ -36,6 +36,8 @@ const NARROW: f64 = 0.3;
 const NARROWER: f64 = 3.0;
 /// What a draft is worth more with the table that all who live there sit at.
 const TABLE_FOR_MANY: f64 = 2.5;
+/// What a draft loses without something that was asked for by name.
+const ASKED: f64 = 3.0;
 /// How far beside the axis of those on a sofa a screen is that they do not see well, mm.
 const FAR_ASIDE: i32 = 700;
 /// Departures tried where something has no place that the room can do without.
@@ -289,6 +291,7 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
                 }
                 // everything has found its place
                 true => 0,
+                false if best.outcome.asked_for(self.job) > 0 => DEPARTURES.len() + RESCUES.len(),
                 false if self.lacks_table_for_many(&best) => DEPARTURES.len() + RESCUES.len(),
                 false if empty < SMALL && self.lacks_something_early(&best) => DEPARTURES.len() + MORE_DRAFTS,
                 false => LOOKS,
@@ -308,7 +311,7 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
             }
         }
         for departure in AT_WALL {
-            if self.job.stop.is_set() || !self.lacks_table_for_many(&best) && !best.eats_at_sofa() {
+            if self.job.stop.is_set() || !self.crowds_out(&best) {
                 break;
             }
             let Some(other) = self.draft((0, self.blank()), floor, Some(departure), false, &mut seen) else { continue };
@@ -389,6 +392,11 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
     fn lacks_table_for_many(&self, draft: &Draft) -> bool {
         let tasks = self.job.tasks;
         draft.outcome.missing.iter().any(|(task, ..)| tasks[*task].for_many)
+    }
+
+    /// Returns true where a sofa leaves too little floor for the table or for what was asked for by name.
+    fn crowds_out(&self, draft: &Draft) -> bool {
+        self.lacks_table_for_many(draft) || draft.eats_at_sofa() || draft.outcome.asked_for(self.job) > 0
     }
 
     /// Returns true where what those on the sofa or in bed look at is far beside them.
@@ -479,8 +487,8 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
             if placed + task.spare < count {
                 outcome.missing.push((index, count - placed, Self::decisive(&tally)));
                 outcome.required_missing += task.required.saturating_sub(present + placed);
-                // what a room's list names first matters most
-                outcome.score -= 1.0 + 3.0 / (1.0 + task.line as f64);
+                // what a room's list names first matters most, and what somebody asked for by name
+                outcome.score -= 1.0 + 3.0 / (1.0 + task.line as f64) + if task.asked { ASKED } else { 0.0 };
             }
         }
     }
