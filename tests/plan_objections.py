@@ -539,7 +539,9 @@ def armchair_apart(world):
     """an armchair of a living room more than 1.2 m from the coffee table, or turned away from it"""
     for room in world.of("living_room", "studio", "family_room"):
         tables = room.named("coffee_table")
-        for chair in room.named("armchair", "reading_chair") if tables else []:
+        # a chair to read in has a table of its own
+        alone = [b for b in room.named("armchair", "reading_chair") if not b.group or "reading_corner" not in b.group]
+        for chair in alone if tables else []:
             table = min(tables, key=lambda t: gap(t.rect, chair.rect))
             if gap(table.rect, chair.rect) > 1.2 or chair.seen(table.x, table.y)[0] < 0.2:
                 return True
@@ -722,6 +724,273 @@ def no_pocket(world):
                 if not further:
                     return True
                 a = max(further)
+    return False
+
+
+@objection("A", "residential")
+def no_worktop(world):
+    """less than 0.3 m of worktop between sink and hob"""
+    for room in world.rooms:
+        for hob in room.named("hob"):
+            if any(gap(hob.rect, sink.rect) < 0.28 for sink in room.named("sink_unit")):
+                return True
+    return False
+
+
+@objection("B", "residential")
+def bare_kitchen(world):
+    """a kitchen of 8 m2 or more with less than 1.2 m of worktop beside sink and hob"""
+    tops = ("base_cabinet", "dishwasher", "washing_machine")
+    for room in world.of("kitchen"):
+        hobs = room.named("hob")
+        if room.area >= 8.0 and sum(b.width for b in room.having(*tops) if hobs and b.low < 0.1) < 1.18:
+            return True
+    return False
+
+
+@objection("B", "residential")
+def crowded_sitting(world):
+    """a chair or table to eat at within 0.6 m of a sofa, armchair or coffee table"""
+    for room in world.of("living_room", "living_kitchen", "studio", "family_room"):
+        eat = [b for b in room.standing if b.object.startswith(("dining_", "breakfast_table", "stool"))]
+        sit = [b for b in room.standing if "sofa" in b.object or b.object in ("armchair", "reading_chair", "coffee_table")]
+        if any(gap(a.rect, b.rect) < 0.58 for a in eat for b in sit):
+            return True
+    return False
+
+
+@objection("B", "residential")
+def single_bed_under_window(world):
+    """the head of a single bed under a window"""
+    return any(before_window(bed, r) for r in world.rooms for bed in r.named("single_bed"))
+
+
+@objection("B", "residential")
+def bed_in_swing(world):
+    """a bed with its pillows within 0.3 m of a leaf's swing"""
+    for room in world.rooms:
+        for bed in room.named("double_bed", "single_bed"):
+            x0, y0, x1, y1 = bed.rect
+            heads = (x0, y0, x0 + 0.6, y1), (x0, y0, x1, y0 + 0.6), (x1 - 0.6, y0, x1, y1), (x0, y1 - 0.6, x1, y1)
+            head = heads[bed.quarter]
+            if any(gap(head, leaf) < 0.28 for leaf in room.swings):
+                return True
+    return False
+
+
+@objection("B", "residential")
+def no_bedside_table(world):
+    """a double bed without a bedside table at each side"""
+    return any(len(r.named("nightstand")) < 2 for r in world.rooms if r.named("double_bed"))
+
+
+@objection("B", "residential")
+def no_mirror(world):
+    """a basin of a bathroom without a mirror"""
+    return any(not r.having("mirror") for r in world.rooms if r.named("vanity", *HAND_BASINS))
+
+
+def entrance_of(world):
+    """The room behind the entrance, and the middle of its door."""
+    for room in world.rooms:
+        for door in room.doors:
+            if door["entrance"] and len(door["room_ids"]) == 1:
+                return room, middle(door)
+    return None, None
+
+
+def middle(door):
+    a, b = door["line"]["start"], door["line"]["end"]
+    return (a["x"] + b["x"]) / 2, (a["y"] + b["y"]) / 2
+
+
+@objection("B", "residential")
+def entrance_opens_outwards(world):
+    """a home's entrance that opens outwards"""
+    room, _ = entrance_of(world)
+    mains = [d for d in room.doors if d["entrance"]] if room else []
+    return any((d.get("swing") or {"into_room_id": room.id}).get("into_room_id") is None for d in mains)
+
+
+@objection("B", "residential")
+def guest_toilet_far(world):
+    """a guest toilet whose door is more than 8 m from the entrance"""
+    _, entrance = entrance_of(world)
+    doors = [middle(d) for r in world.of("toilet") for d in r.doors]
+    return bool(entrance and doors) and min(abs(x - entrance[0]) + abs(y - entrance[1]) for x, y in doors) > 8.0
+
+
+@objection("B", "residential")
+def one_toilet_for_many(world):
+    """one WC for three bedrooms or more"""
+    return len(world.of("bedroom", "guest_room", "kids_room")) >= 3 and world.count({"toilet", "accessible_wc"}) < 2
+
+
+@objection("B", "residential")
+def machine_behind_door(world):
+    """a leaf that opens within 0.05 m of a machine or basin, or a machine within 0.7 m straight behind a door"""
+    for room in world.rooms:
+        things = room.named("washing_machine", "dryer", "vanity", "fridge", *HAND_BASINS)
+        if any(gap(t.rect, leaf) < 0.05 for t in things for leaf in room.swings):
+            return True
+        for door in room.doors:
+            if len(door["room_ids"]) == 2 and door["kind"] != "open":
+                x0, y0, x1, y1 = outline([door["line"]["start"], door["line"]["end"]])
+                wide = x1 - x0 > y1 - y0
+                ahead = (x0 + 0.1, y0 - 0.7, x1 - 0.1, y1 + 0.7) if wide else (x0 - 0.7, y0 + 0.1, x1 + 0.7, y1 - 0.1)
+                if any(overlap(t.rect, ahead) for t in room.named("washing_machine", "dryer")):
+                    return True
+    return False
+
+
+@objection("B")
+def idle_docks(world):
+    """more docks than robots"""
+    return sum("dock" in b.object for r in world.rooms for b in r.bodies) > max(len(world.robots), 1)
+
+
+@objection("B", "residential")
+def bath_seen_from_entrance(world):
+    """the door of a bathroom straight across from the entrance, or within 1.5 m of it"""
+    room, entrance = entrance_of(world)
+    for bath in world.of("bathroom", "accessible_bathroom", "shower_room"):
+        for door in bath.doors:
+            if room and room.id in door["room_ids"]:
+                x, y = middle(door)
+                line = outline([door["line"]["start"], door["line"]["end"]])
+                main = next(d for d in room.doors if d["entrance"])
+                other = outline([main["line"]["start"], main["line"]["end"]])
+                upright = [r[3] - r[1] > r[2] - r[0] for r in (line, other)]
+                axis = 1 if upright[0] else 0
+                shared = min(line[axis + 2], other[axis + 2]) - max(line[axis], other[axis])
+                if upright[0] == upright[1] and shared > 0.2 or abs(x - entrance[0]) + abs(y - entrance[1]) < 1.5:
+                    return True
+    return False
+
+
+@objection("B", "residential")
+def pinched_neck(world):
+    """a way into a bedroom or living room with less than 0.88 m past a dresser, wardrobe or desk"""
+    for room in world.of("bedroom", "living_room", "dining_room", "home_office", "guest_room", "single_bedroom"):
+        if len(room.corners) < 5:
+            continue
+        for body in room.standing:
+            x0, y0, x1, y1 = body.rect
+            across = room.free(body.rect, body.quarter, [])
+            depth = x1 - x0 if body.quarter in (EAST, WEST) else y1 - y0
+            if across < 0.88 and across + depth < 1.55:
+                reach = ahead_of(body, across)
+                strip = (min(x0, reach[0]), min(y0, reach[1]), max(x1, reach[2]), max(y1, reach[3]))
+                along = (0.0, 2.5) if body.quarter in (EAST, WEST) else (2.5, 0.0)
+                strip = (strip[0] - along[0], strip[1] - along[1], strip[2] + along[0], strip[3] + along[1])
+                if any(overlap(outline([d["line"]["start"], d["line"]["end"]]), strip, -0.15) for d in room.doors):
+                    return True
+    return False
+
+
+def screens(world):
+    """Sofas with the screen of their room: distance of their middles ahead and aside."""
+    for room in world.of("living_room", "studio", "family_room"):
+        sofas = [b for b in room.standing if "sofa" in b.object]
+        for screen in room.named("tv") if sofas else []:
+            yield min((sofa.seen(screen.x, screen.y) for sofa in sofas), key=lambda at: abs(at[1]))
+
+
+@objection("B", "residential")
+def screen_far(world):
+    """a television more than 4.4 m from the sofa"""
+    return any(ahead > 4.4 for ahead, _ in screens(world))
+
+
+@objection("B", "residential")
+def screen_aside(world):
+    """a television more than 0.8 m beside the axis of the sofa"""
+    return any(abs(aside) > 0.8 for _, aside in screens(world))
+
+
+@objection("B", "residential")
+def seats_for_beds(world):
+    """fewer seats at a table than people with beds, four at most"""
+    seats, beds = Counter(), 0
+    for room in world.rooms:
+        seats.update(b.group for b in room.named("dining_chair", "stool", "bar_stool"))
+        beds += 2 * len(room.named("double_bed")) + len(room.named("single_bed"))
+    return max(seats.values(), default=0) < min(beds, 4)
+
+
+@objection("B", "residential")
+def large_bathroom(world):
+    """a bathroom of more than 10.5 m2"""
+    return any(r.area > 10.5 for r in world.of("bathroom", "accessible_bathroom", "ensuite"))
+
+
+@objection("B", "residential")
+def toilet_at_wall(world):
+    """a WC whose side is less than 0.19 m from a wall"""
+    for room in world.rooms:
+        for wc in room.named("toilet", "accessible_wc"):
+            if min(room.free(wc.rect, (wc.quarter + k) % 4, []) for k in (1, 3)) < 0.19:
+                return True
+    return False
+
+
+@objection("B", "residential")
+def living_room_far(world):
+    """a living room whose door is more than 7 m from the entrance, past a bathroom or bedroom"""
+    hall, entrance = entrance_of(world)
+    if not entrance:
+        return False
+
+    def way(room):
+        ways = (middle(d) for d in room.doors if hall.id in d["room_ids"])
+        return min((abs(x - entrance[0]) + abs(y - entrance[1]) for x, y in ways), default=99.0)
+
+    living = min(map(way, world.of("living_room", "studio")), default=0.0)
+    return 7.0 < living < 99.0 and any(way(r) < living - 1.0 for r in world.of("bathroom", "bedroom", "toilet"))
+
+
+@objection("B", "residential")
+def table_far_from_kitchen(world):
+    """a living room where one eats with its door more than 7 m from the kitchen's"""
+    if world.of("dining_room"):
+        return False
+    doors = {r.id: [middle(d) for d in r.doors if not d["entrance"]] for r in world.rooms}
+    pairs = ((k.id, v.id) for k in world.of("kitchen") for v in world.of("living_room"))
+    ways = [abs(a[0] - b[0]) + abs(a[1] - b[1]) for k, v in pairs for a in doors[k] for b in doors[v]]
+    return min(ways, default=0.0) > 7.0
+
+
+@objection("B", "residential")
+def dock_before_screen(world):
+    """a dock between a sofa and its screen"""
+    for room in world.of("living_room", "studio", "family_room"):
+        for screen in room.named("tv"):
+            for dock in room.having("dock"):
+                ahead, aside = screen.seen(dock.x, dock.y)
+                sofas = [screen.seen(s.x, s.y) for s in room.standing if "sofa" in s.object]
+                if any(0.3 < ahead < s[0] and abs(aside) < 1.0 and abs(s[1]) < 1.0 for s in sofas):
+                    return True
+    return False
+
+
+@objection("B", "residential")
+def route_behind_chairs(world):
+    """a robot's route over the floor on which a chair at a table is pushed back 0.4 m"""
+    for room in world.of("living_room", "dining_room", "kitchen", "studio"):
+        for chair in room.named("dining_chair"):
+            back = (chair.quarter + 2) % 4
+            x0, y0, x1, y1 = chair.rect
+            sides = (x1, y0, x1 + 0.4, y1), (x0, y1, x1, y1 + 0.4), (x0 - 0.4, y0, x0, y1), (x0, y0 - 0.4, x1, y0)
+            pushed = sides[back]
+            for robot in world.robots:
+                radius = robot["robot"]["radius_m"]
+                for route in robot.get("routes") or []:
+                    for a, b in zip(route["path"], route["path"][1:], strict=False):
+                        n = max(1, round(math.hypot(b["x"] - a["x"], b["y"] - a["y"]) / 0.1))
+                        for k in range(n + 1):
+                            x, y = a["x"] + (b["x"] - a["x"]) * k / n, a["y"] + (b["y"] - a["y"]) * k / n
+                            if gap(pushed, (x, y, x, y)) < radius - 0.1:
+                                return True
     return False
 
 

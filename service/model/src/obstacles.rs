@@ -29,7 +29,14 @@ pub struct Obstacles {
 impl Obstacles {
     /// Returns the obstacles of a storey for a robot: things that are no floor covering and begin below a height, m.
     pub fn of_world(plan: &Floorplan, placements: &Placements, below_m: f64) -> Self {
+        Self::with(plan, placements, below_m, &[])
+    }
+
+    /// Returns the same with floor that is taken now and then.
+    pub fn with(plan: &Floorplan, placements: &Placements, below_m: f64, taken: &[Rect]) -> Self {
         let mut edges = walls(plan);
+        let ring = |c: [Point; 4]| (0..4).map(move |k| Segment { start: c[k], end: c[(k + 1) % 4] });
+        edges.extend(taken.iter().flat_map(|r| ring(r.corners())));
         let things = placements.placements.iter().filter(|p| p.top_m() > FLAT_M && p.pose.z < below_m);
         things.for_each(|p| edges.extend(p.footprint().edges()));
         Self::sorted(edges)

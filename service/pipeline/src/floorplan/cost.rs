@@ -9,6 +9,7 @@ use d3dgen_model::seed::Stream;
 
 use super::PROPORTION_LIMIT;
 use super::core::{Below, in_core, overhang};
+use super::hall;
 use super::lattice::{CELL_M2, Cellbox, INNER_HALF_M, JAMB_M, OUTER_HALF_M, meters, up};
 use super::mirror;
 use super::realize::{Layout, door_need};
@@ -40,6 +41,8 @@ const ONE_SIDED: f64 = 0.45;
 const ONE_WAY: f64 = 0.1;
 /// What a room that is wanted near the entrance loses by each side of the building that it is away from it.
 const BY_ENTRANCE: f64 = 1.5;
+/// The same for one that guests use, where there is no entrance hall to put it at.
+const FOR_GUESTS: f64 = 1.8;
 /// Number of soft terms.
 const COUNT: usize = 12;
 /// A weight for each soft term.
@@ -532,10 +535,14 @@ impl<'b> Judge<'b> {
             score.symmetry = mirror::cost(wish, &boxes, door);
         }
         let size = total.sqrt().max(1.0);
+        // from a hall guests go to the room where they sit: at which end of it one comes in is not known yet
+        let in_hall = brief.rooms.iter().position(|r| r.entrance) == brief.spine;
+        let seated = if in_hall { hall::room_of_guests(brief).and_then(|i| rooms[i].main) } else { None };
         let (mut round, mut visited) = (0.0, 0);
         for (spec, room) in brief.rooms.iter().zip(rooms) {
             let (Some(main), Some(door)) = (room.main, entrance) else { continue };
-            score.soft[7] += ill_placed(spec, distance(main, door) / size);
+            let from = seated.filter(|_| spec.for_guests).unwrap_or(door);
+            score.soft[7] += ill_placed(spec, distance(main, from) / size);
             if spec.on_spine {
                 round += distance(main, base.unwrap_or(door)) / size;
                 visited += 1;
@@ -604,6 +611,9 @@ fn wall_length(side: &[[i32; 2]; 4], shape: &Cellbox) -> f64 {
 pub(super) fn ill_placed(spec: &RoomSpec, far: f64) -> f64 {
     if spec.by_entrance {
         return BY_ENTRANCE * far;
+    }
+    if spec.for_guests {
+        return FOR_GUESTS * far;
     }
     match spec.zone {
         Zone::Public | Zone::Day => 0.25 * far,

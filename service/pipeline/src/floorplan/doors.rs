@@ -35,9 +35,10 @@ const TO_ZONES: f64 = 7.0;
 /// the door of a room of the day is further from the entrance than it might be, and by which that of a bedroom is nearer.
 const TO_LIVING: f64 = 7.0;
 const FROM_ENTRANCE: f64 = 0.2;
+const DAY_FROM_ENTRANCE: f64 = 0.4;
 /// What a meter counts by which the door of an en suite is further from that of its ward room than it might be.
 const FROM_ENTRY: f64 = 0.7;
-/// What it costs a home that one passes the door of a bedroom on the way to that of the living room.
+/// What it costs a home that one passes the door of a bedroom or bathroom on the way to that of the living room.
 const PASSED: f64 = 2.0;
 /// Wall between an entrance that stands aside and the corner of its room, on center lines, m.
 const ENTRANCE_ASIDE_M: f64 = 0.4;
@@ -70,7 +71,14 @@ const SEEN_M: f64 = 0.2;
 const SLIDING: f64 = 0.5;
 const NO_POCKET: f64 = 4.0;
 /// What it costs that a home's entrance opens outwards.
-const OUTWARD: f64 = 1.0;
+const OUTWARD: f64 = 4.0;
+/// How far an entrance stands aside at least where that is of use, m, and what it costs.
+const ENTRANCE_SHIFT_M: f64 = 0.15;
+const ENTRANCE_SHIFTED: f64 = 0.6;
+/// How far beside the floor of another one a door stands that keeps clear of it, m.
+const ASIDE_M: f64 = 0.05;
+/// What it costs that a door stands clear of the floor of another one rather than in its corner.
+const STEPPED_ASIDE: f64 = 1.2;
 
 /// The plan so far, as door placing sees it.
 pub(super) struct Site<'a> {
@@ -279,7 +287,11 @@ impl Site<'_> {
             let spots: Vec<Spot> = match self.standing_spot(&[a, b], false) {
                 Some(spot) => vec![spot],
                 None => {
-                    let mut spots: Vec<Spot> = stretches.flat_map(|s| self.spots(s, a, b, connector, rng)).collect();
+                    let mut spots: Vec<Spot> =
+                        stretches.clone().flat_map(|s| self.spots(s, a, b, connector, rng)).collect();
+                    if connector == Connector::Door && self.brief.is_home() {
+                        spots.extend(stretches.flat_map(|s| self.spots_aside(s, [a, b], laid)));
+                    }
                     self.prefer_order(&mut spots, a, b, laid);
                     self.prefer_entry(&mut spots, [a, b], laid);
                     spots
@@ -299,13 +311,13 @@ impl Site<'_> {
         }
         let Some(entrance) = laid.entrance() else { return };
         let sign = match self.brief.rooms[room].zone {
-            Zone::Day | Zone::Public => 1.0,
-            Zone::Night => -1.0,
+            Zone::Day | Zone::Public => DAY_FROM_ENTRANCE,
+            Zone::Night => -FROM_ENTRANCE,
             _ => return,
         };
         let way = |spot: &Spot| {
             let p = spot.door.line.middle();
-            sign * FROM_ENTRANCE * ((p.x - entrance.x).abs() + (p.y - entrance.y).abs())
+            sign * ((p.x - entrance.x).abs() + (p.y - entrance.y).abs())
         };
         let least = spots.iter().map(way).fold(f64::MAX, f64::min);
         for spot in spots {
@@ -332,7 +344,7 @@ impl Site<'_> {
         }
     }
 
-    /// Returns how many doors of bedrooms are nearer to the entrance than that of the living room, in a home.
+    /// Returns how many doors of bedrooms and bathrooms are nearer to the entrance than that of the living room, in a home.
     fn passed(&self, laid: &Laid) -> u32 {
         let brief = self.brief;
         let Some((spine, living)) = brief.spine.zip(hall::room_of_guests(brief)) else { return 0 };
@@ -342,8 +354,11 @@ impl Site<'_> {
             Some((p.x - entrance.x).abs() + (p.y - entrance.y).abs())
         };
         let Some(to_living) = way(living) else { return 0 };
-        let beds = (0..brief.rooms.len()).filter(|r| brief.rooms[*r].zone == Zone::Night);
-        beds.filter_map(way).filter(|bed| *bed < to_living - hall::PLAINLY_M).count() as u32
+        let retreats = (0..brief.rooms.len()).filter(|r| {
+            let room = &brief.rooms[*r];
+            room.zone == Zone::Night || room.wet && room.private && !room.for_guests
+        });
+        retreats.filter_map(way).filter(|bed| *bed < to_living - hall::PLAINLY_M).count() as u32
     }
 
     /// Places doors to outdoors.
@@ -688,6 +703,23 @@ impl Site<'_> {
         spots
     }
 
+    /// Returns places for a door right beside the floor that the doors to outdoors need: where one comes in the leaf swings.
+    fn spots_aside(&self, s: &Stretch, rooms: [usize; 2], laid: &Laid) -> Vec<Spot> {
+        let [a, b] = rooms;
+        let clear = self.brief.door_width(a, b);
+        let opening = Brief::opening(clear);
+        let (from, to) = self.usable(s);
+        let outer = laid.spots.iter().filter(|l| l.door.room_ids.len() == 1);
+        let zones = outer.flat_map(|l| &l.zones).filter(|(room, _)| rooms.contains(room)).map(|(_, zone)| zone);
+        let ends = zones.map(|z| if s.vertical { (z.y0, z.y1) } else { (z.x0, z.x1) });
+        let starts = ends.flat_map(|(low, high)| [(high + ASIDE_M, true), (low - ASIDE_M - opening, false)]);
+        let into = self.swing_room(a, b);
+        let fitting = starts.filter(|(start, _)| *start >= from - 1e-9 && start + opening <= to + 1e-9);
+        fitting
+            .filter_map(|(start, at_start)| self.leaf_spot(s, rooms, into, start, clear, at_start, STEPPED_ASIDE))
+            .collect()
+    }
+
     /// Returns true when the smaller of two rooms is open to others as well.
     fn is_open_to_several(&self, a: usize, b: usize) -> bool {
         let smaller = if self.net_m2[a] < self.net_m2[b] { a } else { b };
@@ -832,6 +864,22 @@ impl Site<'_> {
         }
         let mut spots = vec![spot(None, penalty + OUTWARD)];
         spots.extend(self.inside(room, &swept).then(|| spot(Some(swept), penalty)));
+        // clear of a door in the wall beside it
+        for start in [from, to - opening].into_iter().filter(|start| (start - middle).abs() > ENTRANCE_SHIFT_M) {
+            let line = Segment { start: s.point(start), end: s.point(start + opening) };
+            let [zone, swept] = [APPROACH_M, if double { opening / 2.0 } else { opening }]
+                .map(|d| self.zone(s, room, start, opening, d));
+            let swing = Swing {
+                into_room_id: Some(self.brief.rooms[room].id.clone()),
+                hinge_at_start: start - from <= to - opening - start,
+            };
+            let mut door = self.door(line, kind, clear, s, &[room], Some(swing));
+            door.entrance = main;
+            let zones = vec![(room, zone), (room, swept)];
+            let fits = self.inside(room, &swept);
+            let penalty = penalty + ENTRANCE_SHIFTED;
+            spots.extend(fits.then(|| Spot { door, wall: None, view: View::Company, zones, penalty }));
+        }
         spots
     }
 

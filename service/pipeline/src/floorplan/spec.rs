@@ -17,6 +17,7 @@ use super::core::Core;
 use super::lattice::{JAMB_M, OUTER_HALF_M};
 use super::windows::LEAST_WALL_M;
 use crate::Error;
+use crate::placement::has_docks;
 use crate::scene_graph::BY_PROMPT;
 
 /// Clear width that a wheelchair and most robots need through a door, m; used when the prompt asks for access.
@@ -75,6 +76,8 @@ pub(super) struct RoomSpec {
     pub entrance: bool,
     /// True for a room that the prompt wants near the entrance.
     pub by_entrance: bool,
+    /// True for a room that the domain wants near an entrance hall, in a building without one.
+    pub for_guests: bool,
     /// People who work, meet or wait there, as the scene graph says.
     pub people: u32,
     /// Clear width of the gate through which its vehicles come in, or of its own door to outdoors, m.
@@ -497,6 +500,7 @@ fn room_spec(
         automatic,
         entrance: room.entrance,
         by_entrance: is_by_entrance(room, graph),
+        for_guests: is_for_guests(room, graph, domain),
         people: room.occupants.filter(|_| kind.zone != Zone::Night).unwrap_or(0),
         gate,
         door_width: door_width.max(robot),
@@ -519,6 +523,15 @@ fn is_by_entrance(room: &GraphRoom, graph: &SceneGraph) -> bool {
     })
 }
 
+/// Returns true for a room that belongs near the entrance hall in a building that has none: it lies near the entrance then.
+fn is_for_guests(room: &GraphRoom, graph: &SceneGraph, domain: &Domain) -> bool {
+    let halls = &domain.circulation.entrance_room_types;
+    let wanted = |rule: &&Adjacency| {
+        rule.relation == AdjacencyRelation::Should && rule.a == room.room_type && halls.contains(&rule.b)
+    };
+    !graph.rooms.iter().any(|r| halls.contains(&r.room_type)) && domain.adjacency.iter().any(|rule| wanted(&rule))
+}
+
 /// Returns the clear width of the gate that the vehicles of a room need, or of its own door to outdoors, m.
 fn gate(domain: &Domain, kind: &RoomType) -> Option<f64> {
     let vehicle = |id: &str| {
@@ -534,12 +547,6 @@ fn gate(domain: &Domain, kind: &RoomType) -> Option<f64> {
     };
     let parked = kind.furnishing.iter().filter(|f| f.required).filter_map(|f| wide(&f.item));
     parked.reduce(f64::max).map(|wide| wide + BESIDE_VEHICLE_M).or(kind.outdoor_door_m)
-}
-
-/// Returns true for rooms that are there to charge robots.
-fn has_docks(domain: &Domain, kind: &RoomType) -> bool {
-    let docks = |item: &str| domain.anchor(item).is_some_and(|o| o.shape == Shape::Dock);
-    kind.furnishing.iter().any(|f| f.required && docks(&f.item))
 }
 
 /// Returns the index of the room that another is entered from when no door leads from the spine into it.

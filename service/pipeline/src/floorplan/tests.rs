@@ -34,6 +34,7 @@ fn room(id: &str, area: [f64; 3], min_dimension: f64, daylight: Daylight, zone: 
         automatic: false,
         entrance: false,
         by_entrance: false,
+        for_guests: false,
         people: 0,
         gate: None,
         door_width: 0.9,

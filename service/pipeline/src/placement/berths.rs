@@ -1,13 +1,13 @@
 //! A dock for every robot: where the rooms that were to have them hold fewer, others do, around what stands in them.
 
 use d3dgen_knowledge::Limits;
-use d3dgen_knowledge::clearance::{Side, door_zones, free_depth, is_shallow};
-use d3dgen_model::Point;
+use d3dgen_knowledge::clearance::{Side, door_zones, free_depth, is_shallow, quarter};
 use d3dgen_model::domain::{Domain, ObjectType, RobotUse, Shape};
 use d3dgen_model::floorplan::{Floorplan, PlanRoom};
 use d3dgen_model::occupancy::stops_robot;
 use d3dgen_model::placements::{Placement, Placements};
 use d3dgen_model::scene_graph::SceneGraph;
+use d3dgen_model::{Point, Rect};
 
 use super::docks::FROM_EXIT;
 use super::locked::placed;
@@ -16,6 +16,9 @@ use super::space::Space;
 use super::{Wanted, insert, one_more};
 use crate::scene_graph::{dock_rank, most_docks};
 use crate::{Error, Stop};
+
+/// Floor beside a dock that belongs to it, m, as in the charging buffers of scenarios.
+const BESIDE_M: f64 = 0.5;
 
 /// Adds docks until there is one for each robot, or no room that suits has a place.
 ///
@@ -30,12 +33,14 @@ pub(super) fn add_missing(
 ) -> Result<(), Error> {
     let robots: u32 = graph.robots.iter().map(|r| r.count).sum();
     let Some(robot) = graph.robots.first() else { return Ok(()) };
-    let Some(dock) = domain.objects.iter().rev().find(|o| o.shape == Shape::Dock) else { return Ok(()) };
+    let Some(usual) = domain.objects.iter().rev().find(|o| o.shape == Shape::Dock) else { return Ok(()) };
     let docks = domain.objects.iter().filter(|o| o.shape == Shape::Dock);
     let docks: Vec<&str> = docks.map(|o| o.id.as_str()).collect();
     let standing =
         |out: &Placements| out.placements.iter().filter(|p| docks.contains(&p.object.as_str())).count() as u32;
     let first = out.placements.iter().find(|p| docks.contains(&p.object.as_str()));
+    // like those that stand already
+    let dock = first.and_then(|p| domain.object(&p.object)).unwrap_or(usual);
     let home = first.and_then(|p| plan.room(&p.room_id)).map_or(0, |r| r.level);
     let suits = |room: &&PlanRoom| {
         let kind = domain.room_type_or_generic(&room.room_type);
@@ -46,17 +51,22 @@ pub(super) fn add_missing(
     rooms.sort_by_key(|r| r.0);
     let storey = if plan.level_numbers().len() > 1 { &plan.storey(home) } else { plan };
     while standing(out) < robots {
-        let found = rooms.iter().enumerate().find_map(|(at, (_, room))| {
-            let here: Vec<&Placement> = out.placements.iter().filter(|p| p.room_id == room.room_id).collect();
-            let own = here.iter().filter(|p| docks.contains(&p.object.as_str())).count();
-            if own >= most_docks(room.net_area_m2) as usize {
-                return None;
-            }
-            let more = one_more(graph, storey, room, (domain, limits), &here, Wanted::IfFree(dock), stop)?;
-            let stands = is_free(graph, storey, room, (&more, dock), &here)
-                && !closes_floor(&Space::new(storey, room), domain, &more, &here);
-            stands.then_some((at, more))
-        });
+        let place = |whole: bool| {
+            rooms.iter().enumerate().find_map(|(at, (_, room))| {
+                let here: Vec<&Placement> = out.placements.iter().filter(|p| p.room_id == room.room_id).collect();
+                let own = here.iter().filter(|p| docks.contains(&p.object.as_str())).count();
+                if own >= most_docks(room.net_area_m2) as usize {
+                    return None;
+                }
+                let more = one_more(graph, storey, room, (domain, limits), &here, Wanted::IfFree(dock), stop)?;
+                let stands = is_free(graph, storey, room, (&more, dock), &here)
+                    && (!whole || !is_crowded(&more, dock, &here))
+                    && !closes_floor(&Space::new(storey, room), domain, &more, &here);
+                stands.then_some((at, more))
+            })
+        };
+        // rather farther off than with a chair on the floor beside the robot
+        let found = place(true).map(|(_, more)| (0, more)).or_else(|| place(false));
         stop.check()?;
         let Some((at, more)) = found else { break };
         // those before it have no place for another one either
@@ -86,6 +96,20 @@ fn is_free(
             let near = door.room_ids.len() == 1 && door.line.middle().distance(at) < f64::from(FROM_EXIT) / 1000.0;
             !near && !door_zones(door).iter().any(|zone| zone.overlaps(&own))
         })
+}
+
+/// Returns true when something stands on the floor beside the robot before a dock.
+fn is_crowded(p: &Placement, dock: &ObjectType, here: &[&Placement]) -> bool {
+    let depth = dock.clearance_front_m.max(2.0 * super::LEAST_RADIUS_M);
+    let r = p.footprint().bounds();
+    let floor = match quarter(p.pose.yaw_rad) {
+        0 => Rect { x0: r.x1, x1: r.x1 + depth, y0: r.y0 - BESIDE_M, y1: r.y1 + BESIDE_M },
+        1 => Rect { y0: r.y1, y1: r.y1 + depth, x0: r.x0 - BESIDE_M, x1: r.x1 + BESIDE_M },
+        2 => Rect { x0: r.x0 - depth, x1: r.x0, y0: r.y0 - BESIDE_M, y1: r.y1 + BESIDE_M },
+        _ => Rect { y0: r.y0 - depth, y1: r.y0, x0: r.x0 - BESIDE_M, x1: r.x1 + BESIDE_M },
+    };
+    let floor = floor.grown(-0.01);
+    here.iter().filter(|o| stops_robot(o) && !is_shallow(o)).any(|o| o.footprint().bounds().overlaps(&floor))
 }
 
 /// Returns true when a dock closes off floor of its room that is open without it.

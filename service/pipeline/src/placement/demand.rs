@@ -136,6 +136,8 @@ pub(super) struct Household<'a> {
     has_robots: bool,
     /// True when one of them cleans: the docks of rooms for soiled things are theirs.
     cleans: bool,
+    /// True where one robot lives in a room that is there for its dock: no other has one.
+    one_berth: bool,
     /// Most people that the graph has in one room to sleep in, or that live there.
     sharing: u32,
 }
@@ -158,6 +160,8 @@ impl<'a> Household<'a> {
             accessible: graph.accessible,
             has_robots: !graph.robots.is_empty(),
             cleans: graph.robots.iter().any(|r| r.kind == CLEANING),
+            one_berth: graph.robots.iter().map(|r| r.count).sum::<u32>() == 1
+                && graph.rooms.iter().any(|r| has_docks(domain, domain.room_type_or_generic(&r.room_type))),
             sharing: held
                 .filter(|(kind, _)| sleeps(kind))
                 .map(|h| h.1)
@@ -188,7 +192,7 @@ impl<'a> Household<'a> {
         // docks stand where there are robots, or in rooms that are there for them;
         // few lines ask who sleeps there, and to know takes time
         let robots = if kind.goods == Goods::Soiled { self.cleans } else { self.has_robots };
-        (line.required || robots || !dock())
+        (line.required || robots && !self.one_berth || !dock())
             && line.is_for(self.room_types.iter().copied(), self.accessible)
             && (line.sleepers == 0 || people.unwrap_or(0) >= line.sleepers || self.sleepers() >= line.sleepers)
     }
@@ -360,6 +364,12 @@ fn usual_width_m(domain: &Domain, line: &Furnishing) -> Option<f64> {
     let own = storage_width_m(domain.anchor(&line.item)?)?;
     let instead = line.instead_of.iter().filter_map(|item| storage_width_m(domain.anchor(item)?));
     Some(instead.fold(own, f64::max))
+}
+
+/// Returns true for rooms that are there to charge robots.
+pub(crate) fn has_docks(domain: &Domain, kind: &RoomType) -> bool {
+    let docks = |item: &str| domain.anchor(item).is_some_and(|o| o.shape == Shape::Dock);
+    kind.furnishing.iter().any(|f| f.required && docks(&f.item))
 }
 
 /// Returns true for rooms that people have desks in.

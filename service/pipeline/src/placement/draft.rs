@@ -4,6 +4,7 @@
 use d3dgen_model::domain::{Mount, Shape};
 
 use super::geom::Box2;
+use super::neighbors::{AT_SOFA, beside_sofas};
 use super::search::Outcome;
 use super::state::{Placed, State};
 use super::unit::Part;
@@ -30,6 +31,15 @@ pub(super) const RESCUES: [Departure; 8] = [
 ];
 /// Departures where a bed in the middle of its wall leaves none for a wardrobe as wide as they are.
 pub(super) const ASIDE: [Departure; 2] = [Departure::aside(1), Departure::aside(-1)];
+/// Departures where a sofa in the middle of its wall, or in the room, leaves no floor for the table.
+pub(super) const AT_WALL: [Departure; 6] = [
+    Departure::at_wall(0, 1),
+    Departure::at_wall(0, -1),
+    Departure::at_wall(1, 1),
+    Departure::at_wall(1, -1),
+    Departure::at_wall(0, 0),
+    Departure::at_wall(1, 0),
+];
 /// The last step at which one of them departs.
 pub(super) const DEEPEST: usize = 3;
 
@@ -42,15 +52,21 @@ pub(super) struct Departure {
     pub rank: usize,
     /// Toward which end of its wall it stands rather than in the middle: the lower, -1, or the higher, 1.
     pub aside: i8,
+    /// True to leave a sofa at its wall, however far what it looks at is.
+    pub at_wall: bool,
 }
 
 impl Departure {
     const fn of(step: usize, rank: usize) -> Self {
-        Self { step, rank, aside: 0 }
+        Self { step, rank, aside: 0, at_wall: false }
     }
 
     const fn aside(aside: i8) -> Self {
-        Self { step: 0, rank: 0, aside }
+        Self { step: 0, rank: 0, aside, at_wall: false }
+    }
+
+    const fn at_wall(rank: usize, aside: i8) -> Self {
+        Self { step: 0, rank, aside, at_wall: true }
     }
 }
 
@@ -77,6 +93,11 @@ impl<'a> Draft<'a, '_> {
         let taken =
             DOCK_TAKEN * f64::from(self.docks_taken()) + if self.state.lacks_circle() { NO_CIRCLE } else { 0.0 };
         (self.outcome.required_missing, taken - self.outcome.score - free)
+    }
+
+    /// Returns true where people eat right beside a sofa.
+    pub fn eats_at_sofa(&self) -> bool {
+        self.state.placed.iter().any(|p| beside_sofas(&self.state, p) >= AT_SOFA)
     }
 
     /// Returns how many docks of robots have something on their free floor.

@@ -45,7 +45,7 @@ use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::style::Clutter;
 
 use crate::{Error, Stop};
-pub(crate) use demand::other_bed;
+pub(crate) use demand::{has_docks, other_bed};
 pub use proposed::{Proposed, Refusal, Wish, propose_room};
 use setting::Setting;
 use space::Space;
@@ -185,6 +185,7 @@ pub(crate) fn furnish_room(
         has_robots: !graph.robots.is_empty(),
         turning: setting.turning,
         access: setting.access,
+        step_free: graph.accessible,
         in_comfort: matches!(wanted, Wanted::IfFree(_)),
         way: setting.way.as_ref(),
         wide_way: setting.wide_way.as_ref(),

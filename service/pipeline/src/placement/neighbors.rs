@@ -23,6 +23,14 @@ const FROM_SHARED_MACHINE: i32 = 1200;
 const SOFA_FROM_MACHINE: i32 = 600;
 /// Floor from the edge of a table at which people sit to what one can do without, mm: a chair, and room to push it back.
 const BEHIND_SEATS: i32 = 900;
+/// Floor between a sofa, its table or an armchair and a table at which people eat with its chairs, mm, what a place loses with
+/// less and what it loses besides with none.
+const FROM_SOFA: i32 = 600;
+pub(super) const AT_SOFA: f64 = 2.5;
+const ON_SOFA: f64 = 2.0;
+/// The same where a robot passes between them while a chair is pushed back, and what a place loses with less.
+const ROBOT_PAST: i32 = 1000;
+const PASSED: f64 = 1.0;
 /// Floor between a counter and seats for those who wait, mm.
 const FROM_COUNTER: i32 = 800;
 /// Floor between a chair at a table and the swing of a door, mm.
@@ -153,6 +161,26 @@ impl<'f, 'a, 's> Neighbors<'f, 'a, 's> {
             let seats = o.unit.parts.iter().filter(|part| part_is_seat(part)).map(|part| o.solid(part).rect);
             self.kept.extend(seats.map(|seat| behind(&table, seat.center())));
         }
+    }
+}
+
+/// Returns what the place of a table with its chairs loses that is squeezed in beside a sofa, its table or an armchair.
+pub(super) fn beside_sofas(state: &State, p: &Placed) -> f64 {
+    if !is_table(p.unit.anchor().object.shape) || !has_seats(&p.unit) {
+        return 0.0;
+    }
+    let stands = |part: &&Part| part.mount == Mount::Floor && part.solid.stops_robot();
+    let rects = |o: &Placed| o.unit.parts.iter().filter(stands).map(|part| o.solid(part).rect).collect::<Vec<_>>();
+    let own = rects(p);
+    let sofas = state.placed.iter().filter(|o| o.unit.anchor().object.shape == Shape::Sofa);
+    let gaps = sofas.flat_map(rects).flat_map(|sofa| own.iter().map(move |r| r.gap(&sofa)).collect::<Vec<_>>());
+    match gaps.min().unwrap_or(ROBOT_PAST) {
+        // a robot passes behind those who eat
+        gap if gap >= FROM_SOFA && state.has_robots => {
+            PASSED * f64::from((ROBOT_PAST - gap).max(0)) / f64::from(ROBOT_PAST - FROM_SOFA)
+        }
+        gap if gap >= FROM_SOFA => 0.0,
+        gap => AT_SOFA + ON_SOFA * f64::from(FROM_SOFA - gap) / f64::from(FROM_SOFA),
     }
 }
 

@@ -9,7 +9,7 @@ use d3dgen_knowledge::Aim;
 use d3dgen_model::domain::{Arrangement, Domain, Mount, Shape};
 
 use super::demand::{Task, storage_width_m};
-use super::draft::{ASIDE, DEEPEST, DEPARTURES, Departure, Draft, RESCUES, Seen};
+use super::draft::{ASIDE, AT_WALL, DEEPEST, DEPARTURES, Departure, Draft, RESCUES, Seen};
 use super::find::{Candidate, Find, Tally, Terms, leave_out_single, over, rows};
 use super::nav::Nav;
 use super::space::{Open, Space};
@@ -36,6 +36,10 @@ const NARROW: f64 = 0.3;
 const NARROWER: f64 = 3.0;
 /// What a draft is worth more with the table that all who live there sit at.
 const TABLE_FOR_MANY: f64 = 2.5;
+/// What a draft loses without something that was asked for by name.
+const ASKED: f64 = 3.0;
+/// How far beside the axis of those on a sofa a screen is that they do not see well, mm.
+const FAR_ASIDE: i32 = 700;
 /// Departures tried where something has no place that the room can do without.
 const LOOKS: usize = 2;
 /// Units in rows or a grid, and what they are worth.
@@ -70,6 +74,8 @@ pub(super) struct Job<'a, 's> {
     pub turning: Option<i32>,
     /// Width of the way to each of many desks, mm.
     pub access: Option<i32>,
+    /// True where step-free access is asked for.
+    pub step_free: bool,
     /// What must stay open from door to door, or for beds.
     pub way: Option<&'s Way>,
     /// The same with the width that is advised, where the room has it.
@@ -283,9 +289,16 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
         let hopeless = best.outcome.required_missing > 0 && self.hopeless();
         for (n, departure) in DEPARTURES.into_iter().chain(RESCUES).enumerate() {
             let looks = match best.outcome.missing.is_empty() {
-                _ if best.docks_taken() > 0 || best.state.lacks_circle() => DEPARTURES.len() + RESCUES.len(),
+                _ if best.docks_taken() > 0
+                    || best.state.lacks_circle()
+                    || best.eats_at_sofa()
+                    || self.looks_aside(&best) =>
+                {
+                    DEPARTURES.len() + RESCUES.len()
+                }
                 // everything has found its place
                 true => 0,
+                false if best.outcome.asked_for(self.job) > 0 => DEPARTURES.len() + RESCUES.len(),
                 false if self.lacks_table_for_many(&best) => DEPARTURES.len() + RESCUES.len(),
                 false if empty < SMALL && self.lacks_something_early(&best) => DEPARTURES.len() + MORE_DRAFTS,
                 false => LOOKS,
@@ -300,6 +313,15 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
             let begun = begun.iter().rfind(|(_, draft)| draft.steps.len() <= departure.step).cloned();
             let begun = begun.unwrap_or_else(|| (0, self.blank()));
             let Some(other) = self.draft(begun, floor, Some(departure), false, &mut seen) else { continue };
+            if other.cost(empty) < best.cost(empty) {
+                (best, best_of) = (other, Some(departure));
+            }
+        }
+        for departure in AT_WALL {
+            if self.job.stop.is_set() || !self.crowds_out(&best) {
+                break;
+            }
+            let Some(other) = self.draft((0, self.blank()), floor, Some(departure), false, &mut seen) else { continue };
             if other.cost(empty) < best.cost(empty) {
                 (best, best_of) = (other, Some(departure));
             }
@@ -373,11 +395,29 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
         missing.any(|task| task.line < EARLY && !has_other(task.item))
     }
 
-    /// Returns true where a table for all who live there has no place, nor a larger one in its place.
+    /// Returns true where the table for all who live there has no place.
     fn lacks_table_for_many(&self, draft: &Draft) -> bool {
         let tasks = self.job.tasks;
-        let stands = draft.state.placed.iter().any(|p| tasks.get(p.task).is_some_and(|t| t.for_many));
-        !stands && draft.outcome.missing.iter().any(|(task, ..)| tasks[*task].for_many)
+        draft.outcome.missing.iter().any(|(task, ..)| tasks[*task].for_many)
+    }
+
+    /// Returns true where a sofa leaves too little floor for the table or for what was asked for by name.
+    fn crowds_out(&self, draft: &Draft) -> bool {
+        self.lacks_table_for_many(draft) || draft.eats_at_sofa() || draft.outcome.asked_for(self.job) > 0
+    }
+
+    /// Returns true where what those on the sofa or in bed look at is far beside them.
+    fn looks_aside(&self, draft: &Draft) -> bool {
+        let placed = &draft.state.placed;
+        let Some(first) = placed.iter().find(|p| p.first_line && p.unit.anchor().object.shape == Shape::Sofa) else {
+            return false;
+        };
+        let along = |p: &Placed| p.world(&p.unit.anchor().solid.rect).turned((4 - first.q) % 4).center().1;
+        let faces = |p: &&Placed| {
+            let task = self.job.tasks.get(p.task);
+            p.support.is_none() && task.is_some_and(|t| t.arrangement == Arrangement::Facing)
+        };
+        placed.iter().filter(faces).any(|p| (along(p) - along(first)).abs() > FAR_ASIDE)
     }
 
     /// Returns true where a bed came first and what clothes go into has no place, or is narrower than it usually is.
@@ -454,8 +494,8 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
             if placed + task.spare < count {
                 outcome.missing.push((index, count - placed, Self::decisive(&tally)));
                 outcome.required_missing += task.required.saturating_sub(present + placed);
-                // what a room's list names first matters most
-                outcome.score -= 1.0 + 3.0 / (1.0 + task.line as f64);
+                // what a room's list names first matters most, and what somebody asked for by name
+                outcome.score -= 1.0 + 3.0 / (1.0 + task.line as f64) + if task.asked { ASKED } else { 0.0 };
             }
         }
     }
@@ -613,27 +653,35 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
         tally: &mut Tally,
     ) -> Option<(Placed<'a>, f64)> {
         let (task, aisle) = (&self.job.tasks[index], self.aisle());
-        let (rank, aside) = departure.map_or((0, 0), |d| (d.rank, d.aside));
-        // a form that closes off floor stands only where none leaves it open
+        let (rank, aside, at_wall) = departure.map_or((0, 0, false), |d| (d.rank, d.aside, d.at_wall));
+        // a form that closes off floor stands only where none leaves it open, and a bed under a window only where the same bed
+        // with less of the floor that is advised finds no other wall
         let mut closing = None;
+        let mut lit: Option<(Placed<'a>, f64)> = None;
         for forms in self.forms[index].iter().take_while(|_| !self.job.stop.is_set()) {
             let mut candidates: Vec<Candidate> = Vec::new();
             for unit in forms {
                 let mut find = Find::new(state, task, index, self.job.salt, aisle, tally);
-                (find.across, find.aside) = (self.across(task), aside);
+                (find.across, find.aside, find.at_wall) = (self.across(task), aside, at_wall);
                 candidates.extend(find.run(unit));
             }
             candidates.retain(|c| c.in_corner || !in_corner);
             candidates.sort_by(|a, b| b.score.total_cmp(&a.score));
             let open = choose(state, &candidates, rank, whole.map(|_| false), tally);
-            if open.is_some() {
-                return open;
+            match open {
+                // who comes in a wheelchair needs that floor more
+                Some(found) if lit.is_none() && !self.job.step_free && state.lies_under_window(&found.0) => {
+                    lit = Some(found);
+                }
+                Some(found) if lit.as_ref().is_some_and(|l| found.0.is_less_than(&l.0, state)) => return lit,
+                Some(found) => return Some(found),
+                None => {}
             }
             if whole == Some(true) && closing.is_none() {
                 closing = choose(state, &candidates, rank, whole, tally);
             }
         }
-        closing
+        lit.or(closing)
     }
 }
 

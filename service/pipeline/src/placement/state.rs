@@ -20,6 +20,8 @@ use super::way::{InTheWay, Way};
 const LOW: i32 = 500;
 /// Height over the rim of a basin up to which nothing hangs but what came with it, mm: hands, taps, and the face in the mirror.
 const OVER_BASIN: i32 = 1200;
+/// How far from the wall behind it the head of a bed is at most, mm.
+const HEAD_TO_WALL: i32 = 300;
 /// How far from a wall what hangs on it may be, mm.
 const AT_WALL: i32 = 5;
 
@@ -92,6 +94,11 @@ impl Placed<'_> {
     pub fn is_as(&self, other: &Self) -> bool {
         let place = |p: &Self| (p.q, p.at, p.z, p.support, p.task);
         place(self) == place(other) && (Rc::ptr_eq(&self.unit, &other.unit) || self.unit == other.unit)
+    }
+
+    /// Returns true for a bed that is no better off: under a window too, or with fewer things beside it.
+    pub fn is_less_than(&self, other: &Self, state: &State) -> bool {
+        self.unit.parts.len() < other.unit.parts.len() || state.lies_under_window(self)
     }
 
     /// Returns a rectangle of the unit in the world.
@@ -326,6 +333,17 @@ impl<'a, 's> State<'a, 's> {
         !self.has_wall_behind(&solid.rect, q)
             || self.space.doors.iter().any(in_door)
             || self.solids.iter().any(|s| s.overlaps(solid))
+    }
+
+    /// Returns true for a bed with its head under a window.
+    pub fn lies_under_window(&self, p: &Placed) -> bool {
+        let anchor = p.unit.anchor();
+        if anchor.object.shape != Shape::Bed {
+            return false;
+        }
+        let own = p.world(&anchor.solid.rect).turned((4 - p.q) % 4);
+        let behind = |w: &WallSide| w.q == p.q && (own.x0 - w.u).abs() <= HEAD_TO_WALL;
+        self.space.windows.iter().any(|w| behind(&self.space.walls[w.wall]) && w.v0 < own.y1 && own.y0 < w.v1)
     }
 
     /// Returns how many cells of floor stay reachable once the units stand there, or the rule they break.

@@ -24,6 +24,8 @@ const SWING_M: f64 = 1.0;
 pub(super) const CHAIR_BACK_M: f64 = 0.6;
 /// Floor between a robot that serves and a chair, m.
 const FROM_CHAIR_M: f64 = 0.35;
+/// Of that, what a chair takes that is pushed back, m: robots go around it where there is a way.
+const PUSHED_BACK_M: f64 = 0.4;
 /// How far around a point spots are looked for at first, m.
 const FIRST_REACH_M: f64 = 0.8;
 /// Spots of a room that are looked at exactly, at most.
@@ -51,6 +53,7 @@ pub(super) struct Floor<'a> {
     pub occupancy: Occupancy,
     doors: OnceCell<Doors<'a>>,
     obstacles: OnceCell<Obstacles>,
+    in_use: OnceCell<Obstacles>,
 }
 
 /// A room with what stands in it.
@@ -131,8 +134,8 @@ impl<'a> Floor<'a> {
             }
         };
         let rooms = plan.rooms.iter().map(&mut room).collect();
-        let (doors, obstacles) = (OnceCell::new(), OnceCell::new());
-        Self { rooms, plan, placements, domain, radius, height, occupancy, doors, obstacles }
+        let (doors, obstacles, in_use) = (OnceCell::new(), OnceCell::new(), OnceCell::new());
+        Self { rooms, plan, placements, domain, radius, height, occupancy, doors, obstacles, in_use }
     }
 
     /// Returns the reachable spot of a room nearest to a point, a little farther off rather than in a doorway or against
@@ -224,6 +227,20 @@ impl<'a> Floor<'a> {
     pub fn obstacles(&self) -> &Obstacles {
         let below = self.height.max(ROBOT_HEIGHT_M);
         self.obstacles.get_or_init(|| Obstacles::of_world(self.plan, self.placements, below))
+    }
+
+    /// Returns the same with the chairs at tables as they stand while somebody gets up.
+    pub fn obstacles_in_use(&self) -> &Obstacles {
+        let below = self.height.max(ROBOT_HEIGHT_M);
+        let chairs = || {
+            let seats = self.rooms.iter().flat_map(|room| &room.objects).filter(|(_, o)| o.shape == Shape::Chair);
+            seats.filter(|(chair, _)| chair.group.is_some())
+        };
+        let back = |chair: &Placement| floor_beside(chair, quarter(chair.pose.yaw_rad) + 2, PUSHED_BACK_M, 0.0);
+        self.in_use.get_or_init(|| {
+            let pushed = chairs().map(|(chair, _)| back(chair)).collect::<Vec<Rect>>();
+            Obstacles::with(self.plan, self.placements, below, &pushed)
+        })
     }
 
     /// Returns true when a robot at a spot has this much play around, m, measured exactly.

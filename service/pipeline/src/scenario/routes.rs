@@ -29,6 +29,9 @@ const MOST_ABREAST: u32 = 12;
 const KEPT_OUT: f64 = 5.0;
 /// What a corner adds to a way, times its length, where it is none, m^2.
 const STRAIGHT_M2: f64 = 1e-4;
+/// How much longer a stretch may be, as a factor and in m, that goes around chairs which somebody may push back.
+const AROUND: f64 = 1.6;
+const AROUND_M: f64 = 1.5;
 /// Most times that a way is looked for again because a room on it has no stretch as short as its doors lie apart.
 const MOST_TRIES: usize = 100;
 
@@ -51,6 +54,8 @@ struct Stretch {
 pub(super) struct Router<'f, 'a> {
     floor: &'f Floor<'a>,
     obstacles: &'f Obstacles,
+    /// The same with chairs pushed back.
+    in_use: &'f Obstacles,
     radius: f64,
     /// Least distance of the robot's middle to anything, m.
     need: f64,
@@ -59,7 +64,7 @@ pub(super) struct Router<'f, 'a> {
     doors: Vec<Vec<usize>>,
     /// By nodes, the lower first; absent until looked for, `None` where there is none.
     stretches: BTreeMap<(usize, usize), Option<Stretch>>,
-    lattices: BTreeMap<usize, Vec<Lattice>>,
+    lattices: BTreeMap<(usize, bool), Vec<Lattice>>,
 }
 
 impl<'f, 'a> Router<'f, 'a> {
@@ -68,6 +73,7 @@ impl<'f, 'a> Router<'f, 'a> {
         let mut out = Self {
             floor,
             obstacles: floor.obstacles(),
+            in_use: floor.obstacles_in_use(),
             radius,
             need: radius + ROUNDING_M,
             nodes: Vec::new(),
@@ -276,23 +282,33 @@ impl<'f, 'a> Router<'f, 'a> {
         room == self.nodes[b].room || self.doors[room].len() > 1
     }
 
-    /// Looks for the stretch between two nodes of a room.
+    /// Looks for the stretch between two nodes of a room: around chairs that somebody may push back, where that is not far.
     fn stretch(&mut self, a: usize, b: usize) -> Option<Stretch> {
+        let near = self.stretch_past(a, b, self.obstacles, false)?;
+        if self.in_use.along_path(&near.path, self.need) >= self.need - ROUNDING_M {
+            return Some(near);
+        }
+        let around = self.stretch_past(a, b, self.in_use, true);
+        around.filter(|s| s.cost <= AROUND * near.cost + AROUND_M).or(Some(near))
+    }
+
+    /// Looks for the stretch between two nodes of a room past some obstacles.
+    fn stretch_past(&mut self, a: usize, b: usize, obstacles: &Obstacles, in_use: bool) -> Option<Stretch> {
         let (room, a, b) = (self.nodes[a].room, self.nodes[a].at, self.nodes[b].at);
         let most = self.need + PLAY_M;
-        let ends = self.obstacles.distance(a, most).min(self.obstacles.distance(b, most));
-        let straight = self.obstacles.along(a, b, most);
+        let ends = obstacles.distance(a, most).min(obstacles.distance(b, most));
+        let straight = obstacles.along(a, b, most);
         // little play at the ends is no reason for little play between them
         let inner = (END_M / a.distance(b).max(END_M)).min(0.5);
         let at = |t: f64| Point::new(a.x + t * (b.x - a.x), a.y + t * (b.y - a.y));
-        let between = || self.obstacles.along(at(inner), at(1.0 - inner), most) >= self.need + LINE_PLAY_M;
+        let between = || obstacles.along(at(inner), at(1.0 - inner), most) >= self.need + LINE_PLAY_M;
         if straight >= ends.max(self.need) - ROUNDING_M && (straight >= self.need + LINE_PLAY_M || between()) {
             let cost = a.distance(b) * factor(straight - self.need);
             return Some(Stretch { path: vec![a, b], cost });
         }
         let bounds = self.floor.rooms[room].plan.net_polygon.bounds();
-        let lattices = self.lattices.entry(room).or_insert_with(|| Lattice::all(&bounds));
-        let inside = Room { obstacles: self.obstacles, need: self.need };
+        let lattices = self.lattices.entry((room, in_use)).or_insert_with(|| Lattice::all(&bounds));
+        let inside = Room { obstacles, need: self.need };
         lattices.iter_mut().find_map(|l| l.path(&inside, a, b)).map(|(path, cost)| Stretch { path, cost })
     }
 
@@ -307,7 +323,9 @@ impl<'f, 'a> Router<'f, 'a> {
             let aside =
                 (before.distance(here) + here.distance(after) - before.distance(after)) * before.distance(after);
             // a little play at one end is no reason to have no more all along
-            if direct >= now - 1e-9 && (direct >= self.need + LINE_PLAY_M || aside < STRAIGHT_M2) {
+            let chairs = |a: Point, b: Point| self.in_use.along(a, b, self.need);
+            let disturbs = || chairs(before, after) < chairs(before, here).min(chairs(here, after)) - 1e-9;
+            if direct >= now - 1e-9 && !disturbs() && (direct >= self.need + LINE_PLAY_M || aside < STRAIGHT_M2) {
                 path.remove(k);
                 k = k.saturating_sub(1).max(1);
             } else {

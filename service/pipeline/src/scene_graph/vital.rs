@@ -186,6 +186,9 @@ pub(super) fn complete<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned<'a
     }
     support(reading, rooms);
     give_bedrooms(reading, rooms);
+    if lives {
+        second_bathroom(reading, rooms);
+    }
     // a home's own list of rooms is its own affair
     let own_list = reading.closed && reading.total.is_none() && lives;
     if !missing.is_empty() && !own_list {
@@ -263,6 +266,21 @@ fn give_bedrooms<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
             "{people} people are to live there, and {have} bedrooms have {beds} beds; the rooms asked for were planned, {needed} bedrooms would have enough"
         );
         reading.conflicts.push(note("too_few_bedrooms", message));
+    }
+}
+
+/// Gives a family in a home of so many rooms a second bathroom rather than a room to dine in.
+fn second_bathroom<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
+    let toilets = rooms.iter().filter(|r| reading.wet.has_toilet(r.kind)).count();
+    let named = reading.wishes.wishes.iter().any(|w| {
+        let kind = reading.domain.room_type(&w.room_type);
+        w.exact && kind.is_some_and(|k| reading.wet.has_toilet(k))
+    });
+    let few = toilets == 1 && bedrooms(reading, rooms) >= BEDROOMS_FOR_TWO_TOILETS && !named;
+    let kind = reading.domain.room_type(&words().dwelling.bathroom);
+    let kind = kind.filter(|k| few && reading.total.is_some() && !reading.wishes.forbidden.contains(&k.id));
+    if let Some(kind) = kind {
+        put(reading, rooms, Planned::new(&kind.id, kind));
     }
 }
 

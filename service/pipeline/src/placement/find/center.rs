@@ -18,6 +18,9 @@ const PAST_LEAF: i32 = 600;
 const AT_SWING: f64 = 1.0;
 /// Free floor around tables with seats, mm.
 const BESIDE: i32 = 300;
+/// Floor beside a table with its chairs on which robots pass while somebody pushes a chair back, mm, and what it is worth.
+const WAY_BEHIND_SEATS: i32 = 1050;
+const BEHIND_SEATS: f64 = 1.6;
 /// Height up to which a table is one for those on sofas, mm.
 const LOW_TABLE: i32 = 550;
 /// Floor between a gate and the vehicle behind it, mm.
@@ -146,6 +149,7 @@ impl<'a> Find<'_, 'a, '_> {
                 s += if self.is_open_around(p, margin) { 0.5 } else { 0.0 };
             }
         }
+        s += if self.state.has_robots && unit_seats(p) && self.has_way_behind_seats(p) { BEHIND_SEATS } else { 0.0 };
         // one gets past a leaf that stands open
         let near_swing = |d: &DoorZone| d.swings_in && d.zone.gap(&rect) < PAST_LEAF;
         s -= if !flat && self.state.space.doors.iter().any(near_swing) { AT_SWING } else { 0.0 };
@@ -164,6 +168,24 @@ impl<'a> Find<'_, 'a, '_> {
             s += if p.q == (q + 2) % 4 { 0.15 } else { 0.0 };
         }
         s
+    }
+
+    /// Returns true when a robot gets past a table on one side at least while chairs there are pushed back.
+    fn has_way_behind_seats(&self, p: &Placed<'a>) -> bool {
+        let r = p.world(&p.unit.bbox);
+        let sides = [
+            Box2 { x0: r.x0 - WAY_BEHIND_SEATS, x1: r.x0, ..r },
+            Box2 { x0: r.x1, x1: r.x1 + WAY_BEHIND_SEATS, ..r },
+            Box2 { y0: r.y0 - WAY_BEHIND_SEATS, y1: r.y0, ..r },
+            Box2 { y0: r.y1, y1: r.y1 + WAY_BEHIND_SEATS, ..r },
+        ];
+        let wide = r.width() >= r.height();
+        let long = if wide { &sides[2..] } else { &sides[..2] };
+        let free = |side: &Box2| {
+            let taken = |s: &Solid| s.stops_robot() && s.rect.overlaps(side);
+            self.state.space.contains(side) && !self.state.solids.iter().any(taken)
+        };
+        long.iter().any(free)
     }
 
     /// Returns true when no wall and no furniture is nearer than a margin, mm.
@@ -220,6 +242,12 @@ impl<'a> Find<'_, 'a, '_> {
         }
         largest(&taken, nx, ny).map_or(space.main, |(i0, i1, j0, j1)| cell(i0, j0).union(&cell(i1 - 1, j1 - 1)))
     }
+}
+
+/// Returns true for a table that comes with seats.
+fn unit_seats(p: &Placed) -> bool {
+    let table = matches!(p.unit.anchor().object.shape, Shape::Table | Shape::RoundTable);
+    table && p.unit.parts[1..].iter().any(|part| is_seat(part.object.shape))
 }
 
 /// Returns the largest rectangle of cells that are not taken, as columns `i0..i1` and rows `j0..j1` (heights of

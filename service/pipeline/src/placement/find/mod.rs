@@ -16,7 +16,7 @@ pub(super) use rows::{Terms, leave_out_single, over, rows};
 use super::demand::Task;
 use super::docks::{crowding, touches_robot};
 use super::geom::{Box2, turn};
-use super::neighbors::Neighbors;
+use super::neighbors::{Neighbors, beside_sofas};
 use super::seats::{beside_beds, sits_with_staff};
 use super::state::{Placed, Rule, State};
 use super::style::{Style, grain, style};
@@ -86,6 +86,8 @@ pub(super) struct Find<'f, 'a, 's> {
     pub across: Option<Rc<Unit<'a>>>,
     /// Toward which end of its wall it stands rather than in the middle; 0 for neither.
     pub aside: i8,
+    /// True where a sofa is not moved from its wall towards what it looks at.
+    pub at_wall: bool,
     style: Style,
     /// What the unit must not disturb, where the room can do without it.
     neighbors: Option<Neighbors<'f, 'a, 's>>,
@@ -102,7 +104,8 @@ impl<'f, 'a, 's> Find<'f, 'a, 's> {
     ) -> Self {
         let both = task.anchor.clear_sides > 1 && task.anchor.clearance_side_m > 0.0;
         let style = style(task.anchor.shape, task.anchor.mount, both);
-        Self { state, task, index, salt, aisle, out: Vec::new(), tally, across: None, aside: 0, style, neighbors: None }
+        let (out, across, neighbors) = (Vec::new(), None, None);
+        Self { state, task, index, salt, aisle, out, tally, across, aside: 0, at_wall: false, style, neighbors }
     }
 
     /// Collects positions of a unit as the task's arrangement wants it.
@@ -152,6 +155,7 @@ impl<'f, 'a, 's> Find<'f, 'a, 's> {
                     - crowding(self.state, &placed, self.aisle)
                     - if sits_with_staff(self.state, &placed) { WITH_STAFF } else { 0.0 }
                     - beside_beds(self.state, &placed)
+                    - beside_sofas(self.state, &placed)
                     - if fills { NO_CIRCLE } else { 0.0 };
                 let in_corner = self.task.arrangement == Arrangement::Corner && self.is_in_corner(&placed);
                 self.out.push(Candidate { placed, score, in_corner, class });

@@ -25,6 +25,12 @@ const IN_CORNER: i32 = 50;
 /// A gap narrower than this beside furniture collects dust, mm.
 const SLIVER: i32 = 300;
 
+/// Width up to which a part of a room is a neck, what furniture leaves of it for the way in, how far from it a door is that one
+/// comes in by, and how wide the room is to which it leads, mm.
+const NECK: i32 = 1550;
+const NECK_WAY: i32 = 900;
+const ALONG_NECK: i32 = 2500;
+const WIDE_ROOM: i32 = 2000;
 /// What hangs this near to a leaf that stands open is behind it, mm.
 const BEHIND_LEAF: f64 = 350.0;
 /// How far from the entrance something that belongs there may stand, mm.
@@ -36,13 +42,13 @@ const CHAIR_REACH: i32 = 1500;
 /// What a seat loses from whose wall no screen is seen, from which distance a screen is far, mm, and what a meter more loses.
 const NO_VIEW: f64 = 2.5;
 const FAR_VIEW: i32 = 3600;
-const FARTHER: f64 = 0.9;
+const FARTHER: f64 = 1.8;
 /// How far from the screen a sofa stands that leaves its wall for it, mm, the way behind it, mm, and what that loses.
 const NEAR_VIEW: i32 = 2900;
 const WAY_BEHIND: i32 = 900;
 const DRAWN_UP: f64 = 1.0;
 /// What a meter more than a way behind it loses: nothing else uses that floor.
-const EMPTY_BEHIND: f64 = 0.8;
+const EMPTY_BEHIND: f64 = 0.4;
 
 /// Opening of a door within which no hob stands, mm, and what a place with one there loses (ways past pots).
 const FROM_STOVE: i32 = 900;
@@ -112,6 +118,10 @@ impl<'a> Find<'_, 'a, '_> {
                 let less = DRAWN_UP + EMPTY_BEHIND * f64::from(by - WAY_BEHIND) / 1000.0;
                 self.offer(nearer, class / 4 * 4 + 3, |find, p| bonus - less + find.wall_score(p, index, &front, v));
             }
+            if self.task.required == 0 && self.pinches_neck(&placed, wall) {
+                self.none(Rule::Clearance);
+                continue;
+            }
             match barred.rule_at(v) {
                 Some(rule) => self.none(rule),
                 None => self.offer(placed, class, |find, p| bonus + find.wall_score(p, index, &front, v)),
@@ -121,10 +131,30 @@ impl<'a> Find<'_, 'a, '_> {
 
     /// Returns a sofa moved towards what it looks at where that would be far, with a way behind it, and by how much, mm.
     fn drawn_up(&self, p: &Placed<'a>, wall: &WallSide) -> Option<(Placed<'a>, i32)> {
-        let unit = self.across.as_ref().filter(|_| p.unit.anchor().object.shape == Shape::Sofa)?;
+        let sofa = !self.at_wall && p.unit.anchor().object.shape == Shape::Sofa;
+        let unit = self.across.as_ref().filter(|_| sofa)?;
         let by = self.view(p, unit).map(|(far, _)| far).filter(|&far| far > FAR_VIEW)? - NEAR_VIEW;
         let (u, v) = turn((4 - wall.q) % 4, p.at.0, p.at.1);
         (by >= WAY_BEHIND).then(|| (at_frame(&p.unit, wall.q, u + by, v, self.index), by))
+    }
+
+    /// Returns true for what would narrow the way in between two walls that are close to each other.
+    fn pinches_neck(&self, p: &Placed<'a>, wall: &WallSide) -> bool {
+        let space = self.state.space;
+        let stands = |part: &Part| part.mount == Mount::Floor && part.solid.stops_robot();
+        if space.main.width().min(space.main.height()) < WIDE_ROOM || !p.unit.parts.iter().any(stands) {
+            return false;
+        }
+        let back = (4 - wall.q) % 4;
+        let own = p.world(&p.unit.bbox).turned(back);
+        let across = |w: &&WallSide| w.q == (wall.q + 2) % 4 && -w.v1 < own.y1 && own.y0 < -w.v0 && -w.u > wall.u;
+        let Some(far) = space.walls.iter().filter(across).map(|w| -w.u).min() else { return false };
+        if far - wall.u > NECK || far - own.x1 >= NECK_WAY {
+            return false;
+        }
+        // nobody goes through a niche
+        let neck = Box2 { x0: wall.u, x1: far, y0: own.y0 - ALONG_NECK, y1: own.y1 + ALONG_NECK }.turned(wall.q);
+        space.doors.iter().any(|door| door.zone.overlaps(&neck))
     }
 
     /// Looks along a wall for what is in the way of a unit.

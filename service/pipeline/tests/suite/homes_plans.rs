@@ -1,0 +1,86 @@
+//! What a reviewer of homes looks at first: room to eat beside the sofa, a screen near it, ways in that furniture leaves open, one
+//! dock for one robot, an entrance that opens inwards.
+
+use d3dgen_model::Rect;
+use d3dgen_model::floorplan::PlanRoom;
+use d3dgen_model::placements::Placement;
+use d3dgen_model::world::World;
+
+use crate::common::{body, gap, most, worlds};
+
+const HOMES: [&str; 4] = [
+    "A flat with five rooms in Berlin, Germany, for a cleaning robot",
+    "A family house with eight rooms in the Netherlands",
+    "Ten-room house in California for a family with a cleaning robot",
+    "house, 10 rooms, UK, service robot",
+];
+
+fn homes() -> impl Iterator<Item = World> {
+    HOMES.iter().flat_map(|prompt| worlds(prompt, 6))
+}
+
+fn in_room<'w>(world: &'w World, room: &'w PlanRoom) -> impl Iterator<Item = &'w Placement> {
+    world.placements.placements.iter().filter(|p| p.room_id == room.room_id)
+}
+
+#[test]
+fn those_who_eat_have_floor_between_them_and_the_sofa() {
+    let mut held = Vec::new();
+    for world in homes() {
+        for room in world.floorplan.rooms.iter().filter(|r| r.room_type == "living_room") {
+            let of = |words: &[&str]| -> Vec<Rect> {
+                in_room(&world, room).filter(|p| words.iter().any(|w| p.object.contains(w))).map(body).collect()
+            };
+            let (eat, sit) = (of(&["dining_", "breakfast_table"]), of(&["sofa", "coffee_table", "armchair"]));
+            if !eat.is_empty() {
+                held.push(eat.iter().all(|a| sit.iter().all(|b| gap(a, b) > 0.58)));
+            }
+        }
+    }
+    most("tables 0.6 m from sofas", 0.8, &held);
+}
+
+#[test]
+fn screens_stand_before_the_sofa_and_near_it() {
+    let mut held = Vec::new();
+    for world in homes() {
+        for room in world.floorplan.rooms.iter().filter(|r| r.room_type == "living_room") {
+            let sofa = in_room(&world, room).find(|p| p.object == "sofa");
+            for (sofa, screen) in
+                sofa.into_iter().flat_map(|s| in_room(&world, room).filter(|p| p.object == "tv").map(move |tv| (s, tv)))
+            {
+                let (sin, cos) = sofa.pose.yaw_rad.sin_cos();
+                let (dx, dy) = (screen.pose.x - sofa.pose.x, screen.pose.y - sofa.pose.y);
+                held.push(dx * cos + dy * sin < 4.6 && (dy * cos - dx * sin).abs() < 0.8);
+            }
+        }
+    }
+    most("screens within 4.6 m of the sofa and before it", 0.8, &held);
+}
+
+#[test]
+fn a_home_with_one_robot_has_one_dock() {
+    let mut held = Vec::new();
+    for world in worlds("8-room apartment in Paris with a cleaning robot that charges at home", 6) {
+        held.push(world.placements.placements.iter().filter(|p| p.object.contains("dock")).count() == 1);
+    }
+    most("homes with one dock for one robot", 1.0, &held);
+}
+
+#[test]
+fn entrances_of_homes_open_inwards() {
+    let mut held = Vec::new();
+    for world in homes() {
+        let main = world.floorplan.doors.iter().filter(|d| d.entrance);
+        held.extend(main.map(|d| d.swing.as_ref().is_some_and(|s| s.into_room_id.is_some())));
+    }
+    most("entrances that open inwards", 0.85, &held);
+}
+
+#[test]
+fn a_family_of_five_has_two_bathrooms() {
+    for world in worlds("A home for a family of five in Spain: eight rooms in all", 2) {
+        let baths = world.floorplan.rooms.iter().filter(|r| r.room_type == "bathroom").count();
+        assert_eq!(baths, 2, "seed {}", world.floorplan.seed);
+    }
+}
