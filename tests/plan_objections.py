@@ -705,7 +705,7 @@ def hall_of_a_toilet(world):
 @objection("A")
 def no_pocket(world):
     """a sliding leaf with no wall to go into"""
-    for door in (d for d in world.doors if d["kind"] == "sliding"):
+    for door in (d for d in world.doors if d["kind"] == "sliding" and len(d["room_ids"]) == 2):
         x0, y0, x1, y1 = outline([door["line"]["start"], door["line"]["end"]])
         upright = x1 - x0 < y1 - y0
         low, high, at = (y0, y1, x0) if upright else (x0, x1, y0)

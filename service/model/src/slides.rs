@@ -4,9 +4,6 @@ use crate::TOLERANCE_M;
 use crate::floorplan::{Door, DoorKind, Slide, Wall};
 use crate::geometry::{Point, Segment};
 
-/// Width of an opening in an outer wall from which on its door goes up, m: the gate of a garage.
-const GATE_M: f64 = 2.2;
-
 /// What it costs that the wall is too short for a leaf, or that two leaves need the same piece of it.
 const NO_WALL: f64 = 10.0;
 /// What it costs that another wall meets this one along the leaf, that there are two leaves, or two behind each other, and
@@ -16,9 +13,13 @@ const TWO_LEAVES: f64 = 1.2;
 const STACKED: f64 = 1.5;
 const SHORTER: f64 = 0.1;
 
-/// Tells sliding doors of one storey which way their leaves go; doors that know it already keep to it.
+/// Tells sliding doors of one storey which way their leaves go; doors that know it already keep to it. Gates that open by
+/// themselves go up; of other doors in outer walls, before the panes beside them, it is not said.
 pub fn aim(doors: &mut [Door], walls: &[Wall]) {
-    let slides = |d: &Door| d.kind == DoorKind::Sliding;
+    for gate in doors.iter_mut().filter(|d| d.kind == DoorKind::Sliding && d.room_ids.len() == 1 && d.automatic) {
+        gate.slide = gate.slide.or(Some(Slide::Up));
+    }
+    let slides = |d: &Door| d.kind == DoorKind::Sliding && d.room_ids.len() > 1;
     let mut order: Vec<usize> = (0..doors.len()).filter(|&i| slides(&doors[i])).collect();
     let place = |d: &Door| {
         let (at, from, _) = extent(&d.line);
@@ -28,12 +29,6 @@ pub fn aim(doors: &mut [Door], walls: &[Wall]) {
         let ((va, ata, froma), (vb, atb, fromb)) = (place(&doors[a]), place(&doors[b]));
         va.cmp(&vb).then(ata.total_cmp(&atb)).then(froma.total_cmp(&fromb))
     });
-    for &i in &order {
-        let door = &mut doors[i];
-        if door.slide.is_none() && door.room_ids.len() == 1 && door.line.length() > GATE_M {
-            door.slide = Some(Slide::Up);
-        }
-    }
     let in_one_line = |a: &usize, b: &usize| {
         let (a, b) = (place(&doors[*a]), place(&doors[*b]));
         a.0 == b.0 && (a.1 - b.1).abs() < TOLERANCE_M
@@ -79,7 +74,7 @@ struct Beside {
     to: f64,
     /// True where the line of the door runs towards higher coordinates.
     upward: bool,
-    /// Wall up to the next opening, corner or outer wall, m.
+    /// Inner wall up to the next opening or corner, m.
     free: [f64; 2],
     /// Wall up to the first other wall that meets it, m.
     plain: [f64; 2],
@@ -90,10 +85,9 @@ impl Beside {
     fn of(door: &Door, walls: &[Wall]) -> Self {
         let (at, from, to) = extent(&door.line);
         let vertical = door.line.is_vertical();
-        let outer = door.room_ids.len() == 1;
         let in_line: Vec<(f64, f64)> = walls
             .iter()
-            .filter(|w| w.line.is_vertical() == vertical && w.exterior == outer)
+            .filter(|w| w.line.is_vertical() == vertical && !w.exterior)
             .map(|w| extent(&w.line))
             .filter(|(other, ..)| (other - at).abs() < TOLERANCE_M)
             .map(|(_, low, high)| (low, high))

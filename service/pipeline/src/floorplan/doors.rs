@@ -67,9 +67,14 @@ const APPROACH_M: f64 = 0.6;
 const IN_VIEW: f64 = 1.3;
 const VIEW_M: f64 = 3.0;
 const SEEN_M: f64 = 0.2;
-/// What it costs that a door slides, and that the leaf of a sliding door has no wall to go into.
+/// What it costs that a door slides, that its leaf has wall only for two halves behind each other, and no wall to go into.
 const SLIDING: f64 = 0.5;
-const NO_POCKET: f64 = 4.0;
+/// What a place for a door costs that is neither at an end of its wall nor in the middle.
+const BETWEEN: f64 = 1.7;
+const TWO_LEAVES: f64 = 1.0;
+const NO_POCKET: f64 = 6.0;
+/// How often doors that disturb each other are moved.
+const MOST_SETTLING: usize = 4;
 /// What it costs that a home's entrance opens outwards.
 const OUTWARD: f64 = 4.0;
 /// How far an entrance stands aside at least where that is of use, m, and what it costs.
@@ -184,18 +189,29 @@ impl Laid {
     /// Moves doors that look into a bathroom, or out of one, and leaves without wall to go into, where a later door made it so,
     /// and adds up what all cost.
     fn settle(&mut self) {
-        for n in 0..self.spots.len() {
-            let own = &self.spots[n];
-            let disturbed = |(k, other): (usize, &Spot)| k != n && (own.looks_into(other) || own.takes_wall_of(other));
-            if !self.spots.iter().enumerate().any(disturbed) {
-                continue;
-            }
-            let costs = self.choices[n].iter().map(|spot| self.disturbance(spot, n));
-            if let Some((_, best)) = costs.zip(0..).min_by(|a: &(f64, usize), b| a.0.total_cmp(&b.0)) {
-                self.spots[n] = self.choices[n][best].clone();
+        for _ in 0..MOST_SETTLING {
+            let moved = (0..self.spots.len()).filter(|&n| self.resettle(n)).count();
+            if moved == 0 {
+                break;
             }
         }
         self.cost = (0..self.spots.len()).map(|n| self.disturbance(&self.spots[n], n)).sum();
+    }
+
+    /// Moves a door that others disturb so to the best of its places; returns true when that is another one.
+    fn resettle(&mut self, n: usize) -> bool {
+        let own = &self.spots[n];
+        let disturbs = |other: &Spot| own.looks_into(other) || own.lacks_wall_beside(other) > 0.0;
+        if !self.spots.iter().enumerate().any(|(k, other)| k != n && disturbs(other)) {
+            return false;
+        }
+        let costs = self.choices[n].iter().map(|spot| self.disturbance(spot, n));
+        let best = costs.zip(0..).min_by(|a: &(f64, usize), b| a.0.total_cmp(&b.0)).map(|(_, best)| best);
+        let Some(best) = best.filter(|&b| self.choices[n][b].door.line != self.spots[n].door.line) else {
+            return false;
+        };
+        self.spots[n] = self.choices[n][best].clone();
+        true
     }
 
     /// Returns what a spot costs beside the doors placed so far, except one.
@@ -213,33 +229,50 @@ impl Spot {
             |(room, zone): &(usize, Rect)| other.zones.iter().filter(|(r, z)| r == room && z.overlaps(zone)).count();
         10.0 * self.zones.iter().map(clashes).sum::<usize>() as f64
             + if self.looks_into(other) { IN_VIEW } else { 0.0 }
-            + if self.takes_wall_of(other) { NO_POCKET } else { 0.0 }
+            + self.lacks_wall_beside(other)
     }
 
-    /// Returns true for doors in one wall whose leaves, where they slide, do not both find wall to go into.
-    fn takes_wall_of(&self, other: &Self) -> bool {
+    /// Returns what it costs that the leaves of two doors in one wall do not both find wall to go into, in one piece or in two.
+    fn lacks_wall_beside(&self, other: &Self) -> f64 {
+        match (self.finds_wall_beside(other, 1.0), self.finds_wall_beside(other, 0.5)) {
+            (true, _) => 0.0,
+            (false, true) => TWO_LEAVES,
+            (false, false) => NO_POCKET,
+        }
+    }
+
+    /// Returns true for doors of different walls, and for those in one wall whose leaves, where they slide, find wall for this
+    /// share of their width each.
+    fn finds_wall_beside(&self, other: &Self, share: f64) -> bool {
         let (own, theirs) = (extent(&self.door), extent(&other.door));
         let in_line = self.door.line.is_vertical() == other.door.line.is_vertical() && (own.0 - theirs.0).abs() < 1e-6;
         if !in_line || self.wall.is_none() && other.wall.is_none() {
-            return false;
+            return true;
         }
         let (first, second) = if own.1 < theirs.1 { (self, other) } else { (other, self) };
         let ((_, from, to), (_, low, high)) = (extent(&first.door), extent(&second.door));
-        let between = low - to;
         // how much of the wall between them each of its two ways takes, for those that fit
-        let ways = |wall: Option<(f64, f64)>, width: f64, outer: f64| match wall {
+        let ways = |wall: Option<(f64, f64)>, takes: f64, outer: f64| match wall {
             None => vec![0.0],
-            Some(_) => [(outer >= width).then_some(0.0), Some(width)].into_iter().flatten().collect(),
+            Some(_) => [(outer >= takes).then_some(0.0), Some(takes)].into_iter().flatten().collect(),
         };
-        let left = ways(first.wall, to - from, first.wall.map_or(0.0, |w| from - w.0));
-        let right = ways(second.wall, high - low, second.wall.map_or(0.0, |w| w.1 - high));
-        !left.iter().any(|a| right.iter().any(|b| a + b <= between))
+        let left = ways(first.wall, share * (to - from), first.wall.map_or(0.0, |w| from - w.0));
+        let right = ways(second.wall, share * (high - low), second.wall.map_or(0.0, |w| w.1 - high));
+        left.iter().any(|a| right.iter().any(|b| a + b <= low - to))
     }
 
-    /// Returns true for a sliding door whose wall is too short for its leaf on both sides.
-    fn has_no_pocket(&self) -> bool {
+    /// Returns what it costs that the wall of a sliding door is too short for its leaf on both sides.
+    fn lacks_pocket(&self) -> f64 {
         let (_, from, to) = extent(&self.door);
-        self.wall.is_some_and(|(low, high)| (from - low).max(high - to) < to - from - 1e-6)
+        let short =
+            |share: f64| self.wall.is_some_and(|(low, high)| (from - low).max(high - to) < share * (to - from) - 1e-6);
+        if short(0.5) {
+            NO_POCKET
+        } else if short(1.0) {
+            TWO_LEAVES
+        } else {
+            0.0
+        }
     }
 
     /// Returns true when the doors of a bathroom and of a room with people face each other.
@@ -700,6 +733,11 @@ impl Site<'_> {
         {
             spots.extend(self.leaf_spot(s, [a, b], into, start, clear, hinge_at_start, penalty));
         }
+        if spots.iter().any(|spot| spot.wall.is_some()) {
+            // a leaf that slides finds wall in other places too
+            let between = [(from + middle) / 2.0, (middle + to - opening) / 2.0];
+            spots.extend(between.iter().filter_map(|&x| self.leaf_spot(s, [a, b], into, x, clear, true, BETWEEN)));
+        }
         spots
     }
 
@@ -799,8 +837,8 @@ impl Site<'_> {
         let door = Door { automatic, ..self.door(line, kind, clear, s, &rooms, swing) };
         let wall = slides.then(|| self.wall_along(s));
         let spot = Spot { door, wall, view: self.view(rooms), zones, penalty };
-        let sliding = if spot.has_no_pocket() { NO_POCKET } else { SLIDING };
-        Some(Spot { penalty: penalty + if slides { sliding } else { 0.0 }, ..spot })
+        let sliding = if slides { SLIDING + spot.lacks_pocket() } else { 0.0 };
+        Some(Spot { penalty: penalty + sliding, ..spot })
     }
 
     fn entrance_spots(&self, s: &Stretch, room: usize, main: bool, laid: &[Spot]) -> Vec<Spot> {

@@ -53,7 +53,6 @@ pub(super) struct Floor<'a> {
     pub occupancy: Occupancy,
     doors: OnceCell<Doors<'a>>,
     obstacles: OnceCell<Obstacles>,
-    in_use: OnceCell<Obstacles>,
 }
 
 /// A room with what stands in it.
@@ -134,8 +133,8 @@ impl<'a> Floor<'a> {
             }
         };
         let rooms = plan.rooms.iter().map(&mut room).collect();
-        let (doors, obstacles, in_use) = (OnceCell::new(), OnceCell::new(), OnceCell::new());
-        Self { rooms, plan, placements, domain, radius, height, occupancy, doors, obstacles, in_use }
+        let (doors, obstacles) = (OnceCell::new(), OnceCell::new());
+        Self { rooms, plan, placements, domain, radius, height, occupancy, doors, obstacles }
     }
 
     /// Returns the reachable spot of a room nearest to a point, a little farther off rather than in a doorway or against
@@ -229,18 +228,16 @@ impl<'a> Floor<'a> {
         self.obstacles.get_or_init(|| Obstacles::of_world(self.plan, self.placements, below))
     }
 
-    /// Returns the same with the chairs at tables as they stand while somebody gets up.
-    pub fn obstacles_in_use(&self) -> &Obstacles {
+    /// Returns the same with the chairs at tables as they stand while somebody gets up, and with floor that others take.
+    pub fn obstacles_in_use(&self, others: &[Rect]) -> Obstacles {
         let below = self.height.max(ROBOT_HEIGHT_M);
         let chairs = || {
             let seats = self.rooms.iter().flat_map(|room| &room.objects).filter(|(_, o)| o.shape == Shape::Chair);
             seats.filter(|(chair, _)| chair.group.is_some())
         };
         let back = |chair: &Placement| floor_beside(chair, quarter(chair.pose.yaw_rad) + 2, PUSHED_BACK_M, 0.0);
-        self.in_use.get_or_init(|| {
-            let pushed = chairs().map(|(chair, _)| back(chair)).collect::<Vec<Rect>>();
-            Obstacles::with(self.plan, self.placements, below, &pushed)
-        })
+        let taken: Vec<Rect> = chairs().map(|(chair, _)| back(chair)).chain(others.iter().copied()).collect();
+        Obstacles::with(self.plan, self.placements, below, &taken)
     }
 
     /// Returns true when a robot at a spot has this much play around, m, measured exactly.

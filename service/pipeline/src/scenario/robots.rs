@@ -2,6 +2,8 @@
 
 use d3dgen_model::domain::{Goods, Shape};
 use d3dgen_model::floorplan::Floorplan;
+use d3dgen_model::geometry::Rect;
+use d3dgen_model::obstacles::Obstacles;
 use d3dgen_model::passage::{Passages, RobotWay};
 use d3dgen_model::placements::Placements;
 use d3dgen_model::scenario::{Poi, RobotTask, Scenario};
@@ -13,6 +15,8 @@ use super::routes::Router;
 use super::staging::BRING_NOTHING;
 use super::tour::{self, Stop};
 
+/// Robots up to whose number each has routes around all others at their docks.
+const MOST_APART: usize = 8;
 /// Kind of robot that cleans.
 const CLEANING: &str = "cleaning";
 
@@ -70,19 +74,39 @@ fn own_dock<'p>(floor: &Floor, graph: &SceneGraph, robot: &Robot, left: &mut Vec
     Some(left.remove(at))
 }
 
-/// Looks for the routes of all robots: as the largest of them goes, where a smaller one needs no other way.
+/// Looks for the routes of all robots, each around the others where these start: as the largest of them goes, where a smaller
+/// one needs no other way.
 pub(super) fn add_routes(floor: &Floor, scenario: &mut Scenario) {
-    let mut routers = vec![Router::new(floor, floor.radius)];
     let Scenario { robots, pois, .. } = scenario;
-    for task in robots {
-        let mut legs = routers[0].round(task, pois);
+    let parked: Vec<Rect> = robots
+        .iter()
+        .map(|task| {
+            let (x, y, radius) = (task.start.x, task.start.y, task.robot.radius_m);
+            Rect::new(x - radius, y - radius, x + radius, y + radius)
+        })
+        .collect();
+    // a fleet has aisles of its own
+    let apart = robots.len() <= MOST_APART;
+    let others = |i: usize| -> Vec<Rect> {
+        let others = parked.iter().enumerate().filter(|(k, _)| apart && *k != i);
+        others.map(|(_, rect)| *rect).collect()
+    };
+    let count = if apart { robots.len() } else { 1 };
+    let in_use: Vec<Obstacles> = (0..count).map(|i| floor.obstacles_in_use(&others(i))).collect();
+    let mut routers: Vec<(usize, Router)> = Vec::new();
+    for (i, task) in robots.iter_mut().enumerate() {
+        let own = i.min(count.saturating_sub(1));
+        let mut round = |radius: f64| {
+            let at = routers.iter().position(|(k, r)| *k == own && r.radius() == radius).unwrap_or(routers.len());
+            if at == routers.len() {
+                routers.push((own, Router::new(floor, radius, &in_use[own])));
+            }
+            routers[at].1.round(task, pois)
+        };
+        let mut legs = round(floor.radius);
         let radius = task.robot.radius_m;
         if radius < floor.radius && legs.iter().any(Option::is_none) {
-            let own = routers.iter().position(|r| r.radius() == radius).unwrap_or(routers.len());
-            if own == routers.len() {
-                routers.push(Router::new(floor, radius));
-            }
-            for (leg, narrow) in legs.iter_mut().zip(routers[own].round(task, pois)) {
+            for (leg, narrow) in legs.iter_mut().zip(round(radius)) {
                 *leg = leg.take().or(narrow);
             }
         }

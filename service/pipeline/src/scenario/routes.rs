@@ -54,7 +54,7 @@ struct Stretch {
 pub(super) struct Router<'f, 'a> {
     floor: &'f Floor<'a>,
     obstacles: &'f Obstacles,
-    /// The same with chairs pushed back.
+    /// The same with chairs pushed back and other robots at their docks.
     in_use: &'f Obstacles,
     radius: f64,
     /// Least distance of the robot's middle to anything, m.
@@ -68,12 +68,12 @@ pub(super) struct Router<'f, 'a> {
 }
 
 impl<'f, 'a> Router<'f, 'a> {
-    /// Returns the router of robots up to this radius, m.
-    pub fn new(floor: &'f Floor<'a>, radius: f64) -> Self {
+    /// Returns the router of robots up to this radius, m, that go around what is there in use where that is not far.
+    pub fn new(floor: &'f Floor<'a>, radius: f64, in_use: &'f Obstacles) -> Self {
         let mut out = Self {
             floor,
             obstacles: floor.obstacles(),
-            in_use: floor.obstacles_in_use(),
+            in_use,
             radius,
             need: radius + ROUNDING_M,
             nodes: Vec::new(),
@@ -282,7 +282,8 @@ impl<'f, 'a> Router<'f, 'a> {
         room == self.nodes[b].room || self.doors[room].len() > 1
     }
 
-    /// Looks for the stretch between two nodes of a room: around chairs that somebody may push back, where that is not far.
+    /// Looks for the stretch between two nodes of a room: around chairs that somebody may push back and robots that charge, where
+    /// that is not far.
     fn stretch(&mut self, a: usize, b: usize) -> Option<Stretch> {
         let near = self.stretch_past(a, b, self.obstacles, false)?;
         if self.in_use.along_path(&near.path, self.need) >= self.need - ROUNDING_M {
