@@ -709,7 +709,7 @@ def no_pocket(world):
         x0, y0, x1, y1 = outline([door["line"]["start"], door["line"]["end"]])
         upright = x1 - x0 < y1 - y0
         low, high, at = (y0, y1, x0) if upright else (x0, x1, y0)
-        width = high - low
+        width = door["clear_width_m"]
         start = door["line"]["start"]["y" if upright else "x"]
         ahead = start < (low + high) / 2
         before, after = {"beyond_start": (1, 0), "beyond_end": (0, 1), "apart": (0.5, 0.5), "up": (0, 0),

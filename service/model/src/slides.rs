@@ -72,6 +72,8 @@ fn extent(line: &Segment) -> (f64, f64, f64) {
 struct Beside {
     from: f64,
     to: f64,
+    /// Width of the leaf, both where there are two, m.
+    leaf: f64,
     /// True where the line of the door runs towards higher coordinates.
     upward: bool,
     /// Inner wall up to the next opening or corner, m.
@@ -117,7 +119,8 @@ impl Beside {
             met.filter(|gap| *gap > -TOLERANCE_M).fold(free[side], f64::min)
         };
         let upward = if vertical { door.line.end.y > door.line.start.y } else { door.line.end.x > door.line.start.x };
-        Self { from, to, upward, free, plain: [first(0), first(1)], given: door.slide }
+        let leaf = door.clear_width_m.min(to - from);
+        Self { from, to, leaf, upward, free, plain: [first(0), first(1)], given: door.slide }
     }
 
     fn choices(&self) -> Vec<Slide> {
@@ -128,7 +131,7 @@ impl Beside {
 
     /// Returns how much wall the leaves take on the lower and the upper side, m.
     fn takes(&self, slide: Slide) -> [f64; 2] {
-        let width = self.to - self.from;
+        let width = self.leaf;
         let (start, end) = match slide {
             Slide::BeyondStart => (width, 0.0),
             Slide::BeyondEnd => (0.0, width),
@@ -144,7 +147,7 @@ impl Beside {
         let takes = self.takes(slide);
         let side = |i: usize| {
             let lacks = (takes[i] - self.free[i]).max(0.0);
-            let short = if lacks > TOLERANCE_M { NO_WALL + lacks } else { 0.0 };
+            let short = if lacks > TOLERANCE_M { NO_WALL * (1.0 + lacks) } else { 0.0 };
             short + if takes[i] > self.plain[i] + TOLERANCE_M { ACROSS } else { 0.0 }
         };
         let leaves = match slide {

@@ -80,6 +80,10 @@ const OUTWARD: f64 = 4.0;
 /// How far an entrance stands aside at least where that is of use, m, and what it costs.
 const ENTRANCE_SHIFT_M: f64 = 0.15;
 const ENTRANCE_SHIFTED: f64 = 0.6;
+/// What it costs that the leaf of an entrance stands open away from the nearer wall, and floor behind it on which one comes out
+/// of another door, m.
+const HINGE_AWAY: f64 = 0.15;
+const BEHIND_LEAF_M: f64 = 0.8;
 /// How far beside the floor of another one a door stands that keeps clear of it, m.
 const ASIDE_M: f64 = 0.05;
 /// What it costs that a door stands clear of the floor of another one rather than in its corner.
@@ -256,8 +260,8 @@ impl Spot {
             None => vec![0.0],
             Some(_) => [(outer >= takes).then_some(0.0), Some(takes)].into_iter().flatten().collect(),
         };
-        let left = ways(first.wall, share * (to - from), first.wall.map_or(0.0, |w| from - w.0));
-        let right = ways(second.wall, share * (high - low), second.wall.map_or(0.0, |w| w.1 - high));
+        let left = ways(first.wall, share * first.door.clear_width_m, first.wall.map_or(0.0, |w| from - w.0));
+        let right = ways(second.wall, share * second.door.clear_width_m, second.wall.map_or(0.0, |w| w.1 - high));
         left.iter().any(|a| right.iter().any(|b| a + b <= low - to))
     }
 
@@ -885,40 +889,53 @@ impl Site<'_> {
             return Vec::new();
         }
         let kind = if double { DoorKind::DoubleHinged } else { DoorKind::Hinged };
-        let spot = |into: Option<Rect>, penalty: f64| {
-            let swing = Swing {
-                into_room_id: into.map(|_| self.brief.rooms[room].id.clone()),
-                hinge_at_start: into.is_none() || start - from <= to - opening - start,
-            };
-            let mut door = self.door(line, kind, clear, s, &[room], Some(swing));
-            door.entrance = main;
-            let zones = [Some(zone), into].into_iter().flatten().map(|z| (room, z)).collect();
-            Spot { door, wall: None, view: View::Company, zones, penalty }
-        };
+        let swing = Swing { into_room_id: None, hinge_at_start: true };
+        let mut outward = self.door(line, kind, clear, s, &[room], Some(swing));
+        outward.entrance = main;
+        let outward = Spot { door: outward, wall: None, view: View::Company, zones: vec![(room, zone)], penalty };
         // Doors on the way out open outwards, those of homes inwards where the leaf has floor.
-        let swept = self.zone(s, room, start, opening, if double { opening / 2.0 } else { opening });
         if !self.brief.is_home() || !main {
-            return vec![spot(None, penalty)];
+            return vec![outward];
         }
-        let mut spots = vec![spot(None, penalty + OUTWARD)];
-        spots.extend(self.inside(room, &swept).then(|| spot(Some(swept), penalty)));
+        let at_hinge = |start: f64, hinge_at_start: bool, penalty: f64| {
+            let near = start - from <= to - opening - start;
+            let penalty = penalty + if near == hinge_at_start { 0.0 } else { HINGE_AWAY };
+            self.inward_entrance(s, room, (start, clear), hinge_at_start, penalty)
+        };
+        let mut spots: Vec<Spot> = [true, false].iter().filter_map(|&hinge| at_hinge(start, hinge, penalty)).collect();
         // clear of a door in the wall beside it
         for start in [from, to - opening].into_iter().filter(|start| (start - middle).abs() > ENTRANCE_SHIFT_M) {
-            let line = Segment { start: s.point(start), end: s.point(start + opening) };
-            let [zone, swept] = [APPROACH_M, if double { opening / 2.0 } else { opening }]
-                .map(|d| self.zone(s, room, start, opening, d));
-            let swing = Swing {
-                into_room_id: Some(self.brief.rooms[room].id.clone()),
-                hinge_at_start: start - from <= to - opening - start,
-            };
-            let mut door = self.door(line, kind, clear, s, &[room], Some(swing));
-            door.entrance = main;
-            let zones = vec![(room, zone), (room, swept)];
-            let fits = self.inside(room, &swept);
-            let penalty = penalty + ENTRANCE_SHIFTED;
-            spots.extend(fits.then(|| Spot { door, wall: None, view: View::Company, zones, penalty }));
+            let shifted = penalty + ENTRANCE_SHIFTED;
+            spots.extend([true, false].iter().filter_map(|&hinge| at_hinge(start, hinge, shifted)));
         }
+        spots.push(Spot { penalty: penalty + OUTWARD, ..outward });
         spots
+    }
+
+    /// Returns the entrance of a home that opens inwards, where its leaf has floor: open, it stands before no other door.
+    fn inward_entrance(
+        &self,
+        s: &Stretch,
+        room: usize,
+        (start, clear): (f64, f64),
+        hinge_at_start: bool,
+        penalty: f64,
+    ) -> Option<Spot> {
+        let opening = Brief::opening(clear);
+        let double = clear >= DOUBLE_FROM_M;
+        let leaf = if double { opening / 2.0 } else { opening };
+        let [zone, swept] = [APPROACH_M, leaf].map(|deep| self.zone(s, room, start, opening, deep));
+        let mut zones = vec![(room, zone), (room, swept)];
+        if !double {
+            let beside = if hinge_at_start { start - BEHIND_LEAF_M } else { start + opening };
+            zones.push((room, self.zone(s, room, beside, BEHIND_LEAF_M, leaf)));
+        }
+        let line = Segment { start: s.point(start), end: s.point(start + opening) };
+        let kind = if double { DoorKind::DoubleHinged } else { DoorKind::Hinged };
+        let swing = Swing { into_room_id: Some(self.brief.rooms[room].id.clone()), hinge_at_start };
+        let mut door = self.door(line, kind, clear, s, &[room], Some(swing));
+        door.entrance = true;
+        self.inside(room, &swept).then_some(Spot { door, wall: None, view: View::Company, zones, penalty })
     }
 
     /// Returns how far the nearest room for visitors is from a point, or else the counter of those who see to them, m; 0 where

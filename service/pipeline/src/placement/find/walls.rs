@@ -55,9 +55,14 @@ const FROM_STOVE: i32 = 900;
 const HOT: f64 = 4.0;
 /// What a place loses with a leaf that sweeps the floor before a toilet or its cubicle.
 const SWEPT: f64 = 4.0;
+/// What it loses where a leaf opens on who uses something else.
+const BY_LEAF: f64 = 0.8;
 /// What a machine loses for each meter from the sink or hob it works with, and from where on it makes no difference, m.
 const FROM_RUN: f64 = 1.5;
 const FAR_FROM_RUN_M: f64 = 2.5;
+/// Elbow room at each side of a basin, mm, and what a place without it loses.
+const ELBOW: i32 = 120;
+const CRAMPED: f64 = 1.5;
 /// What a hand dryer loses for each meter from the basin.
 const FROM_BASIN: f64 = 3.0;
 /// Part of a bed beside which a visitor sits, from its head, mm.
@@ -248,6 +253,10 @@ impl<'a> Find<'_, 'a, '_> {
                 v += STEP;
             }
         }
+        if self.task.anchor.shape == Shape::Basin {
+            let own = unit.anchor().solid.rect;
+            out.extend([wall.v0 + ELBOW - own.y0, wall.v1 - ELBOW - own.y1]);
+        }
         out.retain(|v| v + b.y0 >= wall.v0 && v + b.y1 <= wall.v1);
         out.sort_unstable();
         out.dedup_by(|a, b| *a - *b < SAME && *a != wall.v1 - unit.bbox.y1);
@@ -272,6 +281,11 @@ impl<'a> Find<'_, 'a, '_> {
             } else if floor && gap < self.aisle && !at_door {
                 s -= 0.35;
             }
+        }
+        if self.task.anchor.shape == Shape::Basin {
+            let own = p.unit.anchor().solid.rect;
+            let sides = [v + own.y0 - low, high - v - own.y1];
+            s -= CRAMPED * sides.iter().filter(|gap| **gap < ELBOW).count() as f64;
         }
         let spare = f64::from(gl + gr);
         let aside = f64::from((gl - gr).abs()) / (spare + 1.0) * (spare / 2000.0).min(1.0);
@@ -328,8 +342,8 @@ impl<'a> Find<'_, 'a, '_> {
         let hobs = stoves.filter(|part| hot(p.solid(part).rect)).count();
         let closet = matches!(p.unit.anchor().object.shape, Shape::Cubicle | Shape::Toilet);
         let leaves = || space.doors.iter().filter(|d| d.swings_in);
-        let swept = closet && p.unit.clears.iter().map(|c| p.world(c)).any(|c| leaves().any(|d| d.zone.overlaps(&c)));
-        HOT * hobs as f64 + SWEPT * f64::from(swept)
+        let swept = p.unit.clears.iter().map(|c| p.world(c)).any(|c| leaves().any(|d| d.zone.overlaps(&c)));
+        HOT * hobs as f64 + if closet { SWEPT } else { BY_LEAF } * f64::from(swept)
     }
 
     /// Returns what a machine loses away from the sink or hob it works with: a refrigerator belongs to the kitchen's run.
