@@ -267,7 +267,7 @@ fn doors() -> Vec<Door> {
         room_ids: rooms.iter().map(|r| (*r).to_owned()).collect(),
         entrance: rooms.len() == 1,
         swing: swing.map(|(room, hinge_at_start)| Swing { into_room_id: Some(room.into()), hinge_at_start }),
-        slide: (kind == DoorKind::Sliding).then_some(Slide::BeyondStart),
+        slide: (kind == Sliding).then_some(Slide::BeyondStart),
         automatic: false,
         locked: false,
     };

@@ -74,7 +74,8 @@ fn entrances_of_homes_open_inwards() {
         let main = world.floorplan.doors.iter().filter(|d| d.entrance);
         held.extend(main.map(|d| d.swing.as_ref().is_some_and(|s| s.into_room_id.is_some())));
     }
-    most("entrances that open inwards", 0.85, &held);
+    // some open outwards rather than before the door of a room
+    most("entrances that open inwards", 0.8, &held);
 }
 
 #[test]

@@ -181,30 +181,55 @@ fn leaf(page: &mut Page, frame: &Frame, o: &Opening, along: f64, sign: f64, leng
     page.path("dl", Path::new().polygon(&[at(0.0, 0.0), at(0.0, length), at(LEAF_M, length), at(LEAF_M, 0.0)]));
 }
 
+/// A sliding door half open, along the wall as shares of the opening.
+struct Panels {
+    /// Where its pockets run.
+    pockets: &'static [[f64; 2]],
+    /// Where its leaves are, and how far off the middle of the wall, in their thickness.
+    leaves: &'static [([f64; 2], f64)],
+}
+
+impl Panels {
+    fn of(slide: Option<Slide>) -> Self {
+        match slide {
+            Some(Slide::BeyondStart) => Self { pockets: &[[-1.0, 0.0]], leaves: &[([-0.4, 0.6], 0.0)] },
+            Some(Slide::BeyondEnd) => Self { pockets: &[[1.0, 2.0]], leaves: &[([0.4, 1.4], 0.0)] },
+            Some(Slide::Apart) => {
+                Self { pockets: &[[-0.5, 0.0], [1.0, 1.5]], leaves: &[([-0.2, 0.3], 0.0), ([0.7, 1.2], 0.0)] }
+            }
+            Some(Slide::StackedBeyondStart) => {
+                Self { pockets: &[[-0.5, 0.0]], leaves: &[([-0.1, 0.4], -0.5), ([0.2, 0.7], 0.5)] }
+            }
+            Some(Slide::StackedBeyondEnd) => {
+                Self { pockets: &[[1.0, 1.5]], leaves: &[([0.3, 0.8], -0.5), ([0.6, 1.1], 0.5)] }
+            }
+            Some(Slide::Up) | None => Self { pockets: &[], leaves: &[([0.0, 1.0], 0.0)] },
+        }
+    }
+}
+
 /// Leaves half drawn back, and the pockets in the wall that they go into; doors that open by themselves have dark leaves.
 fn sliding(page: &mut Page, frame: &Frame, o: &Opening, door: &Door) {
     for across in [-o.half, o.half] {
         let ends = [0.0, o.length].map(|along| frame.map(o.at(along, across)));
         page.path("da", Path::new().segment(ends[0], ends[1]));
     }
-    // shares of the opening: where each pocket runs, and each leaf, with how far off the middle of the wall it is
-    let (pockets, leaves): (&[[f64; 2]], &[([f64; 2], f64)]) = match door.slide {
-        Some(Slide::BeyondStart) => (&[[-1.0, 0.0]], &[([-0.4, 0.6], 0.0)]),
-        Some(Slide::BeyondEnd) => (&[[1.0, 2.0]], &[([0.4, 1.4], 0.0)]),
-        Some(Slide::Apart) => (&[[-0.5, 0.0], [1.0, 1.5]], &[([-0.2, 0.3], 0.0), ([0.7, 1.2], 0.0)]),
-        Some(Slide::StackedBeyondStart) => (&[[-0.5, 0.0]], &[([-0.1, 0.4], -0.5), ([0.2, 0.7], 0.5)]),
-        Some(Slide::StackedBeyondEnd) => (&[[1.0, 1.5]], &[([0.3, 0.8], -0.5), ([0.6, 1.1], 0.5)]),
-        Some(Slide::Up) | None => (&[], &[([0.0, 1.0], 0.0)]),
-    };
+    let Panels { pockets, leaves } = Panels::of(door.slide);
     let pocket = o.half.min(POCKET_M / 2.0);
+    // beyond the opening, what is clear of it counts: the frame stays in front of the leaf
+    let along = |share: f64| match share {
+        s if s < 0.0 => s * door.clear_width_m,
+        s if s > 1.0 => o.length + (s - 1.0) * door.clear_width_m,
+        s => s * o.length,
+    };
     for ends in pockets {
-        page.path("dp", o.quad(ends.map(|share| share * o.length), [-pocket, pocket], frame));
+        page.path("dp", o.quad(ends.map(along), [-pocket, pocket], frame));
     }
     let class = if door.automatic { "dx" } else { "dl" };
     for (ends, off) in leaves {
         let middle = off * LEAF_M;
         let across = [middle - LEAF_M / 2.0, middle + LEAF_M / 2.0];
-        page.path(class, o.quad(ends.map(|share| share * o.length), across, frame));
+        page.path(class, o.quad(ends.map(along), across, frame));
     }
 }
 

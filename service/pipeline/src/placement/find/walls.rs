@@ -333,7 +333,8 @@ impl<'a> Find<'_, 'a, '_> {
         s
     }
 
-    /// Returns what a place loses with a hob right beside a door, or with a leaf that sweeps the floor before a toilet.
+    /// Returns what a place loses with a hob right beside a door, with a leaf that sweeps the floor before what is used, or with a
+    /// level shower that one comes in through.
     fn at_doors(&self, p: &Placed<'a>) -> f64 {
         let space = self.state.space;
         let opening = |d: &DoorZone| space.walls[d.wall].strip(d.v0, d.v1, 0, 0);
@@ -343,7 +344,11 @@ impl<'a> Find<'_, 'a, '_> {
         let closet = matches!(p.unit.anchor().object.shape, Shape::Cubicle | Shape::Toilet);
         let leaves = || space.doors.iter().filter(|d| d.swings_in);
         let swept = p.unit.clears.iter().map(|c| p.world(c)).any(|c| leaves().any(|d| d.zone.overlaps(&c)));
-        HOT * hobs as f64 + if closet { SWEPT } else { BY_LEAF } * f64::from(swept)
+        // nobody walks in through a shower
+        let shower = |part: &Part| part.object.shape == Shape::Shower && part.mount == Mount::Floor;
+        let showers = p.unit.parts.iter().filter(|part| shower(part)).map(|part| p.solid(part).rect);
+        let wet = showers.filter(|shower| space.doors.iter().any(|d| d.zone.overlaps(shower))).count();
+        HOT * hobs as f64 + if closet { SWEPT } else { BY_LEAF } * f64::from(swept) + SWEPT * wet as f64
     }
 
     /// Returns what a machine loses away from the sink or hob it works with: a refrigerator belongs to the kitchen's run.
