@@ -100,7 +100,7 @@ class World:
             json.loads((folder / f"{name}.json").read_text()) for name in ("floorplan", "placements", "scenario")
         )
         self.rooms = [Room(r, plan, placements["placements"]) for r in plan["rooms"]]
-        self.walls = [outline([w["line"]["start"], w["line"]["end"]]) for w in plan["walls"]]
+        self.walls = [line_of(w) for w in plan["walls"]]
         self.doors = plan["doors"]
         self.robots = scenario.get("robots", [])
         self.stops = [p for p in scenario["pois"] if p["kind"] == "service_point"]
@@ -126,9 +126,14 @@ def outline(points):
     return (min(xs), min(ys), max(xs), max(ys))
 
 
+def line_of(thing):
+    """The outline of a wall, door or window on the center line of its wall."""
+    return outline([thing["line"]["start"], thing["line"]["end"]])
+
+
 def swing(door):
     """The square that a door's leaf sweeps, on both sides of its wall, as far as it is wide."""
-    x0, y0, x1, y1 = outline([door["line"]["start"], door["line"]["end"]])
+    x0, y0, x1, y1 = line_of(door)
     leaf = math.hypot(x1 - x0, y1 - y0) / (2 if door["kind"] == "double_hinged" else 1)
     return (x0, y0 - leaf, x1, y1 + leaf) if x1 - x0 > y1 - y0 else (x0 - leaf, y0, x1 + leaf, y1)
 
@@ -137,12 +142,15 @@ def overlap(a, b, graze=GRAZE):
     return min(a[2], b[2]) - max(a[0], b[0]) > graze and min(a[3], b[3]) - max(a[1], b[1]) > graze
 
 
+def beside(rect, side, depth):
+    """The floor beside one side of a rectangle, as deep as that."""
+    x0, y0, x1, y1 = rect
+    return [(x1, y0, x1 + depth, y1), (x0, y1, x1, y1 + depth), (x0 - depth, y0, x0, y1), (x0, y0 - depth, x1, y0)][side]
+
+
 def ahead_of(body, depth):
     """The floor before a body, as deep as that."""
-    x0, y0, x1, y1 = body.rect
-    return [(x1, y0, x1 + depth, y1), (x0, y1, x1, y1 + depth), (x0 - depth, y0, x0, y1), (x0, y0 - depth, x1, y0)][
-        body.quarter
-    ]
+    return beside(body.rect, body.quarter, depth)
 
 
 def outlines(bodies):
@@ -573,7 +581,7 @@ def hob_at_door(world):
     """a hob less than 0.9 m from a door"""
     for room in world.rooms:
         for hob in room.named("hob"):
-            if any(gap(hob.rect, outline([d["line"]["start"], d["line"]["end"]])) < 0.88 for d in room.doors):
+            if any(gap(hob.rect, line_of(d)) < 0.88 for d in room.doors):
                 return True
     return False
 
@@ -706,7 +714,7 @@ def hall_of_a_toilet(world):
 def no_pocket(world):
     """a sliding leaf with no wall to go into"""
     for door in (d for d in world.doors if d["kind"] == "sliding" and len(d["room_ids"]) == 2):
-        x0, y0, x1, y1 = outline([door["line"]["start"], door["line"]["end"]])
+        x0, y0, x1, y1 = line_of(door)
         upright = x1 - x0 < y1 - y0
         low, high, at = (y0, y1, x0) if upright else (x0, x1, y0)
         width = door["clear_width_m"]
@@ -835,7 +843,7 @@ def machine_behind_door(world):
             return True
         for door in room.doors:
             if len(door["room_ids"]) == 2 and door["kind"] != "open":
-                x0, y0, x1, y1 = outline([door["line"]["start"], door["line"]["end"]])
+                x0, y0, x1, y1 = line_of(door)
                 wide = x1 - x0 > y1 - y0
                 ahead = (x0 + 0.1, y0 - 0.7, x1 - 0.1, y1 + 0.7) if wide else (x0 - 0.7, y0 + 0.1, x1 + 0.7, y1 - 0.1)
                 if any(overlap(t.rect, ahead) for t in room.named("washing_machine", "dryer")):
@@ -857,9 +865,9 @@ def bath_seen_from_entrance(world):
         for door in bath.doors:
             if room and room.id in door["room_ids"]:
                 x, y = middle(door)
-                line = outline([door["line"]["start"], door["line"]["end"]])
+                line = line_of(door)
                 main = next(d for d in room.doors if d["entrance"])
-                other = outline([main["line"]["start"], main["line"]["end"]])
+                other = line_of(main)
                 upright = [r[3] - r[1] > r[2] - r[0] for r in (line, other)]
                 axis = 1 if upright[0] else 0
                 shared = min(line[axis + 2], other[axis + 2]) - max(line[axis], other[axis])
@@ -883,7 +891,7 @@ def pinched_neck(world):
                 strip = (min(x0, reach[0]), min(y0, reach[1]), max(x1, reach[2]), max(y1, reach[3]))
                 along = (0.0, 2.5) if body.quarter in (EAST, WEST) else (2.5, 0.0)
                 strip = (strip[0] - along[0], strip[1] - along[1], strip[2] + along[0], strip[3] + along[1])
-                if any(overlap(outline([d["line"]["start"], d["line"]["end"]]), strip, -0.15) for d in room.doors):
+                if any(overlap(line_of(d), strip, -0.15) for d in room.doors):
                     return True
     return False
 
@@ -978,10 +986,7 @@ def route_behind_chairs(world):
     """a robot's route over the floor on which a chair at a table is pushed back 0.4 m"""
     for room in world.of("living_room", "dining_room", "kitchen", "studio"):
         for chair in room.named("dining_chair"):
-            back = (chair.quarter + 2) % 4
-            x0, y0, x1, y1 = chair.rect
-            sides = (x1, y0, x1 + 0.4, y1), (x0, y1, x1, y1 + 0.4), (x0 - 0.4, y0, x0, y1), (x0, y0 - 0.4, x1, y0)
-            pushed = sides[back]
+            pushed = beside(chair.rect, (chair.quarter + 2) % 4, 0.4)
             for robot in world.robots:
                 radius = robot["robot"]["radius_m"]
                 for route in robot.get("routes") or []:
@@ -1089,7 +1094,7 @@ def reached(room, taken, width, goals):
         close((min(a0, a1), min(b0, b1), max(a0, a1), max(b0, b1)), half)
     for rect in taken:
         close(rect, half)
-    doors = [outline([d["line"]["start"], d["line"]["end"]]) for d in room.doors]
+    doors = [line_of(d) for d in room.doors]
     inside = [(i, j) for j in range(rows) for i in range(columns) if free[j][i]]
 
     def near(cells, rect, far):

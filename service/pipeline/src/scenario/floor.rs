@@ -22,10 +22,10 @@ const TIGHT_M: f64 = 1.6;
 const SWING_M: f64 = 1.0;
 /// Floor behind a chair that whoever sits there takes and gets up on, m.
 pub(super) const CHAIR_BACK_M: f64 = 0.6;
-/// Floor between a robot that serves and a chair, m.
-const FROM_CHAIR_M: f64 = 0.35;
 /// Of that, what a chair takes that is pushed back, m: robots go around it where there is a way.
 const PUSHED_BACK_M: f64 = 0.4;
+/// Floor between a robot that serves and a chair, m.
+const FROM_CHAIR_M: f64 = 0.35;
 /// How far around a point spots are looked for at first, m.
 const FIRST_REACH_M: f64 = 0.8;
 /// Spots of a room that are looked at exactly, at most.
