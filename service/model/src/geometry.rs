@@ -71,6 +71,13 @@ impl Segment {
     pub fn is_vertical(&self) -> bool {
         (self.start.x - self.end.x).abs() < (self.start.y - self.end.y).abs()
     }
+
+    /// Returns where a segment across x or y runs: its coordinate, and its ends in order, m.
+    pub fn span(&self) -> (f64, f64, f64) {
+        let along = |p: Point| if self.is_vertical() { (p.x, p.y) } else { (p.y, p.x) };
+        let ((at, a), (_, b)) = (along(self.start), along(self.end));
+        (at, a.min(b), a.max(b))
+    }
 }
 
 /// An axis-aligned rectangle, m.

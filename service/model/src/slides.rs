@@ -2,7 +2,6 @@
 
 use crate::TOLERANCE_M;
 use crate::floorplan::{Door, DoorKind, Slide, Wall};
-use crate::geometry::{Point, Segment};
 
 /// What it costs that the wall is too short for a leaf, or that two leaves need the same piece of it.
 const NO_WALL: f64 = 10.0;
@@ -22,7 +21,7 @@ pub fn aim(doors: &mut [Door], walls: &[Wall]) {
     let slides = |d: &Door| d.kind == DoorKind::Sliding && d.room_ids.len() > 1;
     let mut order: Vec<usize> = (0..doors.len()).filter(|&i| slides(&doors[i])).collect();
     let place = |d: &Door| {
-        let (at, from, _) = extent(&d.line);
+        let (at, from, _) = d.line.span();
         (d.line.is_vertical(), at, from)
     };
     order.sort_by(|&a, &b| {
@@ -61,13 +60,6 @@ fn best(doors: &[Beside]) -> Vec<Slide> {
     paths.into_iter().min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, path)| path).unwrap_or_default()
 }
 
-/// Returns where a line across x or y runs: its coordinate, and its ends in order, m.
-fn extent(line: &Segment) -> (f64, f64, f64) {
-    let along = |p: Point| if line.is_vertical() { (p.x, p.y) } else { (p.y, p.x) };
-    let ((at, a), (_, b)) = (along(line.start), along(line.end));
-    (at, a.min(b), a.max(b))
-}
-
 /// A sliding door with the wall at its two ends, lower coordinates first.
 struct Beside {
     from: f64,
@@ -85,12 +77,12 @@ struct Beside {
 
 impl Beside {
     fn of(door: &Door, walls: &[Wall]) -> Self {
-        let (at, from, to) = extent(&door.line);
+        let (at, from, to) = door.line.span();
         let vertical = door.line.is_vertical();
         let in_line: Vec<(f64, f64)> = walls
             .iter()
             .filter(|w| w.line.is_vertical() == vertical && !w.exterior)
-            .map(|w| extent(&w.line))
+            .map(|w| w.line.span())
             .filter(|(other, ..)| (other - at).abs() < TOLERANCE_M)
             .map(|(_, low, high)| (low, high))
             .collect();
@@ -98,7 +90,7 @@ impl Beside {
         let meeting: Vec<(f64, f64)> = walls
             .iter()
             .filter(|w| w.line.is_vertical() != vertical)
-            .map(|w| (extent(&w.line), w.thickness_m / 2.0))
+            .map(|w| (w.line.span(), w.thickness_m / 2.0))
             .filter(|((_, low, high), _)| *low < at + TOLERANCE_M && *high > at - TOLERANCE_M)
             .map(|((across, ..), half)| (across, half))
             .collect();

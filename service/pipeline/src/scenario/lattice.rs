@@ -86,14 +86,15 @@ impl Lattice {
         Point::new(self.origin.x + f64::from(i) * self.step, self.origin.y + f64::from(j) * self.step)
     }
 
-    /// Returns the corners of a way between two points and its cost, m; `None` where the lattice has none.
-    pub fn path(&mut self, room: &Room, a: Point, b: Point) -> Option<(Vec<Point>, f64)> {
+    /// Returns the corners of a way between two points and its cost, m; `None` where the lattice has none that costs at most so
+    /// much.
+    pub fn path(&mut self, room: &Room, a: Point, b: Point, most: f64) -> Option<(Vec<Point>, f64)> {
         if self.clear.is_empty() {
             let count = self.nx as usize * self.ny as usize;
             self.clear = vec![UNKNOWN; count];
             self.seen = vec![Seen { search: 0, cost: 0.0, from: 8, done: false }; count];
         }
-        let found = self.find(room, a, b)?;
+        let found = self.find(room, a, b, most as f32)?;
         let points: Vec<Point> = [a].into_iter().chain(found.iter().map(|&k| self.at(k))).chain([b]).collect();
         let most = room.need + PLAY_M;
         let clear: Vec<f64> = points.iter().map(|p| room.obstacles.distance(*p, most)).collect();
@@ -131,8 +132,8 @@ impl Lattice {
         f64::from(self.clear[k])
     }
 
-    /// Returns the points of the cheapest way, or of one that is little dearer.
-    fn find(&mut self, room: &Room, a: Point, b: Point) -> Option<Vec<usize>> {
+    /// Returns the points of the cheapest way, or of one that is little dearer, if it costs at most so much.
+    fn find(&mut self, room: &Room, a: Point, b: Point, dearest: f32) -> Option<Vec<usize>> {
         let goals = self.beside(room, b);
         let starts = self.beside(room, a);
         if goals.is_empty() {
@@ -187,6 +188,9 @@ impl Lattice {
                     continue;
                 }
                 let cost = cost + (length * factor(there - need)) as f32;
+                if cost + left(x, y) / HASTE > dearest {
+                    continue;
+                }
                 if self.seen[next].search != search || cost < self.seen[next].cost {
                     self.seen[next] = Seen { search, cost, from: n as u8, done: false };
                     open.push(key(cost + left(x, y), next));

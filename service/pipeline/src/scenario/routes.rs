@@ -249,7 +249,7 @@ impl<'f, 'a> Router<'f, 'a> {
                 return Some(out);
             }
             let here = &self.nodes[n];
-            let cost = reached[n].0;
+            let (cost, before) = reached[n];
             if least > cost + left(n) + 1e-9 {
                 continue;
             }
@@ -261,6 +261,10 @@ impl<'f, 'a> Router<'f, 'a> {
             };
             if let Some(m) = here.through.filter(|m| self.leads_on(*m, b)) {
                 to(m, here.at.distance(self.nodes[m].at));
+            }
+            // who crossed the room to get here goes on through the door: on to others the way straight there is no longer
+            if n != a && self.nodes[before].room == here.room {
+                continue;
             }
             let ends = [b].into_iter().filter(|m| self.nodes[*m].room == here.room);
             for m in self.doors[here.room].iter().copied().chain(ends).filter(|m| *m != n) {
@@ -285,16 +289,24 @@ impl<'f, 'a> Router<'f, 'a> {
     /// Looks for the stretch between two nodes of a room: around chairs that somebody may push back and robots that charge, where
     /// that is not far.
     fn stretch(&mut self, a: usize, b: usize) -> Option<Stretch> {
-        let near = self.stretch_past(a, b, self.obstacles, false)?;
+        let near = self.stretch_past(a, b, self.obstacles, false, f64::MAX)?;
         if self.in_use.along_path(&near.path, self.need) >= self.need - ROUNDING_M {
             return Some(near);
         }
-        let around = self.stretch_past(a, b, self.in_use, true);
-        around.filter(|s| s.cost <= AROUND * near.cost + AROUND_M).or(Some(near))
+        let most = AROUND * near.cost + AROUND_M;
+        let around = self.stretch_past(a, b, self.in_use, true, most);
+        around.filter(|s| s.cost <= most).or(Some(near))
     }
 
-    /// Looks for the stretch between two nodes of a room past some obstacles.
-    fn stretch_past(&mut self, a: usize, b: usize, obstacles: &Obstacles, in_use: bool) -> Option<Stretch> {
+    /// Looks for the stretch between two nodes of a room past some obstacles that costs at most so much, m.
+    fn stretch_past(
+        &mut self,
+        a: usize,
+        b: usize,
+        obstacles: &Obstacles,
+        in_use: bool,
+        most_m: f64,
+    ) -> Option<Stretch> {
         let (room, a, b) = (self.nodes[a].room, self.nodes[a].at, self.nodes[b].at);
         let most = self.need + PLAY_M;
         let ends = obstacles.distance(a, most).min(obstacles.distance(b, most));
@@ -310,7 +322,7 @@ impl<'f, 'a> Router<'f, 'a> {
         let bounds = self.floor.rooms[room].plan.net_polygon.bounds();
         let lattices = self.lattices.entry((room, in_use)).or_insert_with(|| Lattice::all(&bounds));
         let inside = Room { obstacles, need: self.need };
-        lattices.iter_mut().find_map(|l| l.path(&inside, a, b)).map(|(path, cost)| Stretch { path, cost })
+        lattices.iter_mut().find_map(|l| l.path(&inside, a, b, most_m)).map(|(path, cost)| Stretch { path, cost })
     }
 
     /// Leaves out corners that the way does without and loses no play that counts.

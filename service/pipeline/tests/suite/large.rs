@@ -114,3 +114,15 @@ fn far_ends_of_corridors_have_exits() {
         assert!(exits >= 4, "{exits} exits");
     }
 }
+
+#[test]
+fn a_robot_finds_all_its_ways_around_a_hall_with_many_doors() {
+    for world in worlds("house in Germany with 100 rooms, for a cleaning robot", 1) {
+        for task in &world.scenario.robots {
+            let wanted: Vec<&String> = task.goals.iter().chain(&task.dock).collect();
+            let found: Vec<&String> = task.routes.iter().map(|r| &r.to).collect();
+            assert!(wanted.len() > 60, "{} stops", wanted.len());
+            assert_eq!(found, wanted, "{}", task.robot_id);
+        }
+    }
+}
