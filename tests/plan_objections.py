@@ -1156,6 +1156,7 @@ def main():
         print(f"{weight} {len(names):4}  {text}")
         if options.list:
             print("         " + " ".join(names))
+    print(f"{back.total()} of {plans.total()} plans sent back")
     return int(10 * back.total() >= plans.total())
 
 

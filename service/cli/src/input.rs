@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use d3dgen_knowledge::import::{self, Imported};
 use d3dgen_model::document::Document;
-use d3dgen_model::scene_graph::SceneGraph;
+use d3dgen_model::scene_graph::{Note, SceneGraph};
 use d3dgen_model::world::World;
 use serde::Serialize;
 
@@ -71,6 +71,11 @@ pub fn write_lines<T: Serialize>(items: impl IntoIterator<Item = T>) -> Result<(
     let line = |item: T| serde_json::to_string(&item).map(|line| line + "\n");
     let lines: Result<String, _> = items.into_iter().map(line).collect();
     write_text(None, &lines.map_err(|e| Error::Input(e.to_string()))?)
+}
+
+/// Says on standard error what is not as it was asked for.
+pub fn tell(conflicts: &[Note]) {
+    conflicts.iter().for_each(|c| eprintln!("changed: {}", c.message));
 }
 
 /// Writes data to standard output, or to a file when one is named; a reader that has gone away is no error.

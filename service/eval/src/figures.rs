@@ -124,8 +124,8 @@ pub const FIGURES: &[Figure] = &[
         "not_rectangular",
         "not rect.",
         Percent,
-        |w| yes(w.layout.rooms_not_rectangular > 0),
-        "worlds with a room or corridor that is no rectangle",
+        |w| yes(w.layout.rooms_not_rectangular + w.layout.outlines_not_rectangular > 0),
+        "worlds with a room, a corridor or an outline that is no rectangle",
     ),
     figure("col", "COL", Percent, |w| Some(w.collisions.object_share), "objects in collision"),
     figure(

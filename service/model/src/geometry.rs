@@ -120,6 +120,16 @@ impl Rect {
         Point::new((self.x0 + self.x1) / 2.0, (self.y0 + self.y1) / 2.0)
     }
 
+    /// Returns the least rectangle around both.
+    pub fn union(&self, other: &Self) -> Self {
+        Self {
+            x0: self.x0.min(other.x0),
+            y0: self.y0.min(other.y0),
+            x1: self.x1.max(other.x1),
+            y1: self.y1.max(other.y1),
+        }
+    }
+
     /// Returns true when the interiors share more than a contact line.
     pub fn overlaps(&self, other: &Self) -> bool {
         let e = crate::TOLERANCE_M;

@@ -113,19 +113,8 @@ pub struct Reach {
 impl Occupancy {
     /// Returns the empty building.
     pub fn of_floorplan(plan: &Floorplan) -> Self {
-        let mut bounds = Rect { x0: f64::MAX, y0: f64::MAX, x1: f64::MIN, y1: f64::MIN };
-        for room in &plan.rooms {
-            let b = room.polygon.bounds();
-            bounds = Rect {
-                x0: bounds.x0.min(b.x0),
-                y0: bounds.y0.min(b.y0),
-                x1: bounds.x1.max(b.x1),
-                y1: bounds.y1.max(b.y1),
-            };
-        }
-        if plan.rooms.is_empty() {
-            bounds = Rect::new(0.0, 0.0, 0.0, 0.0);
-        }
+        let bounds = plan.rooms.iter().map(|r| r.polygon.bounds()).reduce(|a, b| a.union(&b));
+        let bounds = bounds.unwrap_or(Rect::new(0.0, 0.0, 0.0, 0.0));
         let frame = Frame::around(bounds.grown(0.5));
         let mut floor = Bitmap::new(frame.nx, frame.ny);
         for room in &plan.rooms {

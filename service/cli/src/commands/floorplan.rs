@@ -9,7 +9,7 @@ use d3dgen_pipeline::generate::Settings;
 use d3dgen_pipeline::{floorplan, generate};
 
 use crate::error::Error;
-use crate::input::{document, write_text};
+use crate::input::{document, tell, write_text};
 use crate::interrupt;
 use crate::registry::{RegistryArgs, domain};
 
@@ -49,6 +49,7 @@ impl Args {
                 floorplan::generate(&graph, plugin.domain(), &limits, pinned.as_ref())?
             }
         };
+        tell(&plan.conflicts);
         write_text(self.out.as_deref(), &plan.to_json())
     }
 }

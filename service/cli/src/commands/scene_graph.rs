@@ -40,6 +40,7 @@ impl Args {
                 scene_graph::generate(&request, &self.registry.load()?)?
             }
         };
+        input::tell(&graph.conflicts);
         let text = if self.simple { format!("{:#}\n", graph.to_simple()) } else { graph.to_json() };
         write_text(self.out.as_deref(), &text)
     }

@@ -7,13 +7,17 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use d3dgen_model::Polygon;
 use d3dgen_model::domain::Mount;
-use d3dgen_model::floorplan::DoorKind;
+use d3dgen_model::floorplan::{DoorKind, Floorplan};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::round;
 use crate::solid::{Scene, shoelace};
+
+/// Difference between areas that are the same but for rounding, m^2.
+const SAME_M2: f64 = 0.01;
 
 /// Counts, areas, spacing and materials of a world.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -25,6 +29,8 @@ pub struct Layout {
     pub circulation_rooms: u32,
     /// Rooms and circulation that are no rectangles.
     pub rooms_not_rectangular: u32,
+    /// Storeys whose outline is no rectangle.
+    pub outlines_not_rectangular: u32,
     /// Doors with a leaf.
     pub doors: u32,
     /// Open passages.
@@ -85,6 +91,8 @@ pub(crate) fn measure(scene: &Scene<'_>) -> Layout {
         rooms: (plan.rooms.len() - circulation) as u32,
         circulation_rooms: circulation as u32,
         rooms_not_rectangular: plan.rooms.iter().filter(|r| r.polygon.corners().len() > 4).count() as u32,
+        outlines_not_rectangular: plan.level_numbers().into_iter().filter(|l| !fills_its_bounds(plan, *l)).count()
+            as u32,
         doors: (plan.doors.len() - passages) as u32,
         passages: passages as u32,
         windows: plan.windows.len() as u32,
@@ -108,6 +116,14 @@ pub(crate) fn measure(scene: &Scene<'_>) -> Layout {
             .map(|r| placements.iter().filter(|p| p.room_id == r.room_id).count() as u32)
             .collect(),
     }
+}
+
+/// Returns true when the rooms of a storey fill the rectangle around them.
+fn fills_its_bounds(plan: &Floorplan, level: i32) -> bool {
+    let polygons = || plan.rooms.iter().filter(|r| r.level == level).map(|r| &r.polygon);
+    let bounds = polygons().map(Polygon::bounds).reduce(|a, b| a.union(&b));
+    let filled: f64 = polygons().map(|p| shoelace(p.corners())).sum();
+    bounds.is_none_or(|b| (b.area() - filled).abs() < SAME_M2)
 }
 
 fn spacing(scene: &Scene<'_>) -> Option<f64> {

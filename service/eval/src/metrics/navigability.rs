@@ -50,9 +50,7 @@ pub(crate) fn is_drawn(s: &Solid<'_>) -> bool {
 
 /// Returns the rectangle around rectangles.
 pub(crate) fn around<'a>(rects: impl Iterator<Item = &'a Rect>) -> Rect {
-    let join =
-        |a: Rect, b: &Rect| Rect { x0: a.x0.min(b.x0), y0: a.y0.min(b.y0), x1: a.x1.max(b.x1), y1: a.y1.max(b.y1) };
-    rects.copied().reduce(|a, b| join(a, &b)).unwrap_or(Rect { x0: 0.0, y0: 0.0, x1: 0.0, y1: 0.0 })
+    rects.copied().reduce(|a, b| a.union(&b)).unwrap_or(Rect { x0: 0.0, y0: 0.0, x1: 0.0, y1: 0.0 })
 }
 
 /// Returns the floor of the house with doors, less the objects that `is_obstacle` picks.

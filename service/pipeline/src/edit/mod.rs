@@ -7,7 +7,7 @@
 mod objects;
 mod rooms;
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use d3dgen_knowledge::Retrieval;
 use d3dgen_model::edits::Edit;
@@ -86,6 +86,8 @@ struct Desk<'a> {
     held: BTreeSet<String>,
     /// Objects that an edit took away: no room gets another one.
     unwanted: BTreeSet<String>,
+    /// How many objects of a kind are left in a room that an edit took one out of, by room and object.
+    left: BTreeMap<[String; 2], usize>,
 }
 
 impl<'a> Desk<'a> {
@@ -101,6 +103,7 @@ impl<'a> Desk<'a> {
             changed: BTreeSet::new(),
             held: BTreeSet::new(),
             unwanted: BTreeSet::new(),
+            left: BTreeMap::new(),
         }
     }
 
@@ -154,6 +157,7 @@ impl<'a> Desk<'a> {
         let mut found = self.assembled(before)?;
         let allowed =
             if found.1.sound { 0 } else { broken(&world::check(before, self.plugin.domain(), &self.retrieved)) };
+        let breaks = first_broken(&found.1);
         if broken(&found.1) > allowed {
             // What was kept is in the way: the rooms that changed are furnished from their locked objects up.
             for room_id in self.changed.clone() {
@@ -163,14 +167,20 @@ impl<'a> Desk<'a> {
             }
             found = self.assembled(before)?;
         }
-        if broken(&found.1) > allowed {
-            let rule = found.1.rules.iter().find_map(|r| Some((&r.rule, r.violations.first()?)));
-            let (rule, place) = rule.map_or(("a hard rule", String::new()), |(r, v)| (r, format!(": {}", v.message)));
-            return Err(Error::Infeasible { stage: "edit", message: format!("it would break {rule}{place}") });
+        // what a room does not do without would be there again
+        let comes_back = self.left.iter().any(|([room, object], left)| self.count(room, object) > *left);
+        if comes_back || broken(&found.1) > allowed {
+            let rule = first_broken(&found.1).or(breaks).unwrap_or_else(|| "what the room is furnished with".into());
+            return Err(infeasible(format!("it would break {rule}")));
         }
         let changed = self.plan.rooms.iter().map(|r| &r.room_id).filter(|id| self.changed.contains(*id));
         let changed_room_ids = changed.cloned().collect();
         Ok(Edited { world: found.0, report: found.1, changed_room_ids })
+    }
+
+    /// Returns how many objects of a kind stand in a room.
+    fn count(&self, room_id: &str, object: &str) -> usize {
+        self.placements.placements.iter().filter(|p| p.room_id == room_id && p.object == object).count()
     }
 
     fn assembled(&self, before: &World) -> Result<(World, Report), Error> {
@@ -215,6 +225,11 @@ fn differs(before: &Floorplan, after: &Floorplan, room_id: &str) -> bool {
         plan.windows.iter().filter(|w| w.room_id == room_id).map(|w| (w.line, w.sill_m)).collect::<Vec<_>>()
     };
     outline(before) != outline(after) || doors(before) != doors(after) || windows(before) != windows(after)
+}
+
+/// Returns the first hard rule that a world breaks, and where.
+fn first_broken(report: &Report) -> Option<String> {
+    report.rules.iter().find_map(|r| Some(format!("{}: {}", r.rule, r.violations.first()?.message)))
 }
 
 fn broken(report: &Report) -> usize {

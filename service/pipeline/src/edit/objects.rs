@@ -77,6 +77,7 @@ impl Desk<'_> {
         let object = known(domain, object)?;
         self.room(room_id)?;
         self.furnish(room_id, Some(object))?;
+        self.left.remove(&[room_id.to_owned(), object.id.clone()]);
         let new: Vec<String> = self.placements.placements.iter().map(|p| p.placement_id.clone()).collect();
         self.held.extend(new.into_iter().filter(|id| !before.contains(id)));
         Ok(())
@@ -89,11 +90,13 @@ impl Desk<'_> {
             return Err(refused(format!("`{placement_id}` is locked; unlock it first")));
         }
         let (room_id, object) = (p.room_id.clone(), p.object.clone());
-        self.changed.insert(room_id);
-        self.unwanted.insert(object);
         let mut gone = BTreeSet::from([placement_id.to_owned()]);
         self.add_what_stands_on(&mut gone);
         self.placements.placements.retain(|p| !gone.contains(&p.placement_id));
+        let left = self.count(&room_id, &object);
+        self.changed.insert(room_id.clone());
+        self.unwanted.insert(object.clone());
+        self.left.insert([room_id, object], left);
         Ok(())
     }
 
@@ -192,6 +195,7 @@ impl Desk<'_> {
         }
         if new.object != old.object {
             self.unwanted.insert(old.object.clone());
+            self.left.remove(&[new.room_id.clone(), new.object.clone()]);
         }
         self.make_way(&new, &riders)
     }

@@ -5,7 +5,7 @@ use d3dgen_model::scene_graph::{Connector, GraphEdge, GraphRoom, Note, SceneGrap
 
 use super::{mismatch, refused};
 use crate::Error;
-use crate::scene_graph::wished_assets;
+use crate::scene_graph::{room_type_called, wished_assets};
 
 /// Reason of edges that an edit adds.
 const BY_EDIT: &str = "edit";
@@ -13,7 +13,7 @@ const BY_EDIT: &str = "edit";
 /// Adds a room to the graph, on the storey of the room that it is entered from; returns its id.
 ///
 /// # Errors
-/// `Mismatch` for a room type that the domain does not have, or a room to enter from that the graph does not have.
+/// `Mismatch` for a room type that the domain has neither by this id nor by this name, or a room to enter from that the graph does not have.
 pub(super) fn add(
     graph: &mut SceneGraph,
     domain: &Domain,
@@ -21,7 +21,8 @@ pub(super) fn add(
     area_m2: Option<f64>,
     entered_from: Option<&str>,
 ) -> Result<String, Error> {
-    let kind = domain.room_type(room_type).ok_or_else(|| {
+    let called = || room_type_called(domain, room_type);
+    let kind = domain.room_type(room_type).or_else(called).ok_or_else(|| {
         let known: Vec<&str> = domain.room_types.iter().map(|t| t.id.as_str()).collect();
         mismatch(format!("domain `{}` has no room type `{room_type}`; it has {}", domain.id, known.join(", ")))
     })?;

@@ -16,6 +16,8 @@ use crate::{Error, Stop};
 
 /// Searches of a part before it is given up.
 const ATTEMPTS: usize = 10;
+/// The same around locked rooms, where all that there is at first is to become something else.
+const ANEW_ATTEMPTS: usize = 40;
 
 /// Places tried for a room more.
 const PLACES: usize = 10;
@@ -200,7 +202,8 @@ impl<'a> Site<'a> {
     ) -> Result<Floorplan, Error> {
         let mut last = String::from("sizes, doors or daylight of the rooms around do not work out");
         let earlier = Earlier { plan: self.plan, kept: &self.kept };
-        for attempt in 0..ATTEMPTS {
+        let attempts = if task.aim == Aim::Anew { ANEW_ATTEMPTS } else { ATTEMPTS };
+        for attempt in 0..attempts {
             // A change that is sound by itself needs no repair.
             let board = match (attempt, task.aim) {
                 (0, Aim::Repair) => start.clone(),

@@ -4,7 +4,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use d3dgen_model::domain::{Domain, GENERIC_ROOM_TYPE};
+use d3dgen_model::domain::{Domain, GENERIC_ROOM_TYPE, RoomType};
 use d3dgen_model::floorplan::{DoorKind, Floorplan};
 use d3dgen_model::scene_graph::{Connector, GraphEdge, GraphRoom, Note, Occupancy, Robot, SceneGraph};
 use d3dgen_plugins::Registry;
@@ -163,6 +163,12 @@ impl<'a> Names<'a> {
             label.words().filter(|w| short(w)).find_map(|w| whole(w).map(|(id, letters)| (id, letters - ROOM.len(), w)))
         })
     }
+}
+
+/// Returns the room type of a domain that a name means in any language: "study", "Küche".
+pub(crate) fn room_type_called<'d>(domain: &'d Domain, name: &str) -> Option<&'d RoomType> {
+    let names = Names::new(domain);
+    names.find(name).and_then(|(id, _)| domain.room_type(id))
 }
 
 /// Returns a label without the numbers that count its rooms.

@@ -60,6 +60,7 @@ use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::style::Style;
 use d3dgen_plugins::Registry;
 
+pub(crate) use self::given::room_type_called;
 pub use self::given::{Brought, Label, Understood, of_plan, understand};
 use self::program::Planned;
 pub(crate) use self::proposed::suits;

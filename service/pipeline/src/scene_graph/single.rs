@@ -9,6 +9,8 @@ use super::words::{Spoken, Tag};
 
 /// Words before a room that a building's word is the end of, at most: "a private office".
 const MOST_BEFORE: usize = 3;
+/// People from whose number on no room of that kind holds them.
+const MANY_PEOPLE: f64 = 5.0;
 
 /// Takes a word for a building that is the end of a word for a room for that room, where the prompt names nothing else: "a
 /// private office"; and words for people for no building.
@@ -30,7 +32,10 @@ pub(super) fn unname(
     }
     // "cellular office with 14 rooms" is a building
     let total = |n: &Number| spoken.iter().any(|s| s.tag_at(tokens, n.span.end, Tag::Total).is_some());
-    if numbers.iter().any(|n| n.value > 1.0 && total(n)) {
+    // and so is "private office for 20 people"
+    let held = [Tag::People, Tag::Staff, Tag::Desks];
+    let people = |n: &Number| held.iter().any(|t| spoken.iter().any(|s| s.tag_at(tokens, n.span.end, *t).is_some()));
+    if numbers.iter().any(|n| n.value > 1.0 && total(n) || n.value >= MANY_PEOPLE && people(n)) {
         return;
     }
     let own = |start: usize| vocabulary.own_at(tokens, Span { start, end: head.end });

@@ -17,15 +17,18 @@ pub(super) struct Said {
     pub word: StyleWord,
 }
 
-/// Returns the phrases of each language.
-fn phrases() -> &'static BTreeMap<String, Phrases<StyleWord>> {
-    static ALL: LazyLock<BTreeMap<String, Phrases<StyleWord>>> = LazyLock::new(|| {
+/// Key of the words that take back a word of style right after them.
+const NOT: &str = "not";
+
+/// Returns the phrases of each language; `None` is one that takes the next back.
+fn phrases() -> &'static BTreeMap<String, Phrases<Option<StyleWord>>> {
+    static ALL: LazyLock<BTreeMap<String, Phrases<Option<StyleWord>>>> = LazyLock::new(|| {
         let file: BTreeMap<String, BTreeMap<String, Vec<String>>> =
             toml::from_str(include_str!("styles.toml")).expect("a test reads styles.toml");
         let language = |words: BTreeMap<String, Vec<String>>| {
             let mut out = Phrases::new("");
             for (word, list) in words {
-                let meaning = StyleWord::of(&word).expect("a test reads styles.toml");
+                let meaning = (word != NOT).then(|| StyleWord::of(&word).expect("a test reads styles.toml"));
                 list.iter().for_each(|phrase| out.insert(phrase, meaning));
             }
             out
@@ -35,16 +38,23 @@ fn phrases() -> &'static BTreeMap<String, Phrases<StyleWord>> {
     &ALL
 }
 
-/// Returns the words of style in a prompt, in its order.
+/// Returns the words of style in a prompt, in its order: not those that it takes back, as "not too compact" does.
 pub(super) fn said(tokens: &[Token], languages: &[&str]) -> Vec<Said> {
     let spoken: Vec<_> = languages.iter().filter_map(|l| phrases().get(*l)).collect();
     let mut out = Vec::new();
+    let mut not_until = None;
     let mut i = 0;
     while i < tokens.len() {
         let found = spoken.iter().filter_map(|p| p.longest_at(tokens, i)).max_by_key(|(end, _)| *end);
         match found {
-            Some((end, word)) => {
-                out.push(Said { span: Span { start: i, end }, word: *word });
+            Some((end, Some(word))) => {
+                if not_until != Some(i) {
+                    out.push(Said { span: Span { start: i, end }, word: *word });
+                }
+                i = end;
+            }
+            Some((end, None)) => {
+                not_until = Some(end);
                 i = end;
             }
             None => i += 1,
@@ -100,7 +110,7 @@ mod tests {
         let file: BTreeMap<String, BTreeMap<String, Vec<String>>> =
             toml::from_str(include_str!("styles.toml")).unwrap();
         for (code, words) in &file {
-            assert_eq!(words.len(), 13, "{code}");
+            assert_eq!(words.len(), 14, "{code}");
             assert!(words.values().all(|list| !list.is_empty()), "{code}");
         }
     }
@@ -117,6 +127,9 @@ mod tests {
             ("racetrack ward with 24 patient rooms", "en", r#"{"form":"racetrack"}"#),
             ("Büro mit 20 Räumen um einen Innenhof", "de", r#"{"form":"wings"}"#),
             ("L-shaped house", "en", r#"{"form":"l_shaped"}"#),
+            ("a not too compact flat", "en", "{}"),
+            ("not spacious, not symmetrical and tidy", "en", r#"{"clutter":"low","symmetry":"asymmetric"}"#),
+            ("nicht zu kompakte Wohnung", "de", "{}"),
             ("kompakte, aufgeräumte Wohnung", "de", r#"{"clutter":"low","space":"compact"}"#),
             ("appartement spacieux et encombré", "fr", r#"{"clutter":"high","space":"generous"}"#),
             ("oficina de planta abierta y ordenada", "es", r#"{"clutter":"low","layout":"open"}"#),

@@ -163,6 +163,18 @@ fn rooms_come_and_go() {
 }
 
 #[test]
+fn a_room_is_added_by_what_prompts_call_it() {
+    let registry = Registry::builtin();
+    let world = world(&registry, HOME, 0);
+    let add = |name: &str| [Edit::AddRoom { room_type: name.into(), area_m2: None, entered_from: None }];
+    for name in ["study", "Arbeitszimmer", "home_office"] {
+        let more = edited(&registry, &world, &add(name)).unwrap_or_else(|e| panic!("{name}: {e}"));
+        assert!(more.world.floorplan.room("home_office_1").is_some(), "{name}");
+    }
+    assert!(matches!(edited(&registry, &world, &add("throne hall")), Err(Error::Mismatch { .. })));
+}
+
+#[test]
 fn objects_are_swapped_moved_added_and_removed() {
     let registry = Registry::builtin();
     let world = world(&registry, HOME, 5);
@@ -201,6 +213,29 @@ fn objects_are_swapped_moved_added_and_removed() {
     let remove = Edit::RemoveObject { placement_id: plant.placement_id };
     let back = edited(&registry, &done.world, &[remove]).expect("a plant can go");
     assert_eq!(count(&back.world, room), count(&world, room), "{:?}", things(&back.world, room));
+}
+
+#[test]
+fn what_is_taken_away_is_gone_or_the_rule_is_named_that_it_would_break() {
+    let registry = Registry::builtin();
+    let world = world(&registry, HOME, 1);
+    let (mut gone, mut refused) = (0, 0);
+    for p in &world.placements.placements {
+        let edits = [Edit::RemoveObject { placement_id: p.placement_id.clone() }];
+        match edited(&registry, &world, &edits) {
+            Ok(done) => {
+                let count = |w: &World| things(w, &p.room_id).iter().filter(|q| q.object == p.object).count();
+                assert!(count(&done.world) < count(&world), "{} is there again", p.placement_id);
+                gone += 1;
+            }
+            Err(error) => {
+                assert!(error.to_string().contains("it would break "), "{}: {error}", p.placement_id);
+                refused += 1;
+            }
+        }
+    }
+    eprintln!("{gone} objects taken away, {refused} refused");
+    assert!(gone > 4 * refused && refused > 0, "{gone} gone, {refused} refused");
 }
 
 #[test]

@@ -48,6 +48,18 @@ fn a_good_proposal_is_mostly_kept() {
 }
 
 #[test]
+fn a_proposal_that_says_what_would_be_made_anyway_is_kept() {
+    for prompt in BUILDINGS {
+        let own = own_world(prompt).world;
+        let found = with_answer(prompt, Stage::SceneGraph, &json!(graph_answer(&own.scene_graph)));
+        let record = only(&found);
+        assert_eq!(record.outcome, Outcome::Used, "{prompt}: {}", record.note);
+        let mut rooms = record.items.iter().filter(|i| i.kind == ItemKind::Room);
+        assert!(rooms.all(|i| i.fate == Fate::Kept), "{prompt}: {record:#?}");
+    }
+}
+
+#[test]
 fn what_the_prompt_says_goes_before_what_is_proposed() {
     let prompt = "flat with two bedrooms, one bathroom, a kitchen, a living room, without a balcony, in Germany";
     let room =

@@ -79,11 +79,7 @@ fn floor_rects(plan: &Floorplan) -> Vec<Rect> {
 }
 
 fn bounds(plan: &Floorplan) -> Rect {
-    plan.rooms.iter().map(|r| r.polygon.bounds()).reduce(union).unwrap_or(Rect::new(0.0, 0.0, 0.0, 0.0))
-}
-
-fn union(a: Rect, b: Rect) -> Rect {
-    Rect { x0: a.x0.min(b.x0), y0: a.y0.min(b.y0), x1: a.x1.max(b.x1), y1: a.y1.max(b.y1) }
+    plan.rooms.iter().map(|r| r.polygon.bounds()).reduce(|a, b| a.union(&b)).unwrap_or(Rect::new(0.0, 0.0, 0.0, 0.0))
 }
 
 fn origin(around: Rect) -> (f64, f64) {

@@ -301,7 +301,7 @@ pub(super) fn outer_bounds(plan: &Floorplan) -> Rect {
         .iter()
         .map(|w| wall_rect(w, plan))
         .chain(plan.rooms.iter().map(|r| r.polygon.bounds()))
-        .reduce(|a, b| Rect { x0: a.x0.min(b.x0), y0: a.y0.min(b.y0), x1: a.x1.max(b.x1), y1: a.y1.max(b.y1) })
+        .reduce(|a, b| a.union(&b))
         .unwrap_or(Rect::new(0.0, 0.0, 1.0, 1.0))
 }
 

@@ -146,7 +146,7 @@ fn layouts(page: &Page, room: &Room<'_>, area: &str, (usual, share): (f64, f64))
         layouts.push(measure(page, lines, false, smaller + cost + NAME_ONLY));
     }
     // Long thin rooms read better along their length.
-    let bounds = room.floor.iter().copied().reduce(union).unwrap_or(Rect::new(0.0, 0.0, 1.0, 1.0));
+    let bounds = room.floor.iter().copied().reduce(|a, b| a.union(&b)).unwrap_or(Rect::new(0.0, 0.0, 1.0, 1.0));
     if bounds.height() > 1.8 * bounds.width() {
         let lines = vec![line(room.name, size, style::NAME), line(area, 0.84 * size, style::AREA)];
         layouts.push(measure(page, lines, true, smaller + UPRIGHT));
@@ -198,7 +198,7 @@ struct Grid {
 
 impl Grid {
     fn new(room: &Room<'_>, obstacles: &Obstacles) -> Self {
-        let bounds = room.floor.iter().copied().reduce(union).unwrap_or(Rect::new(0.0, 0.0, 1.0, 1.0));
+        let bounds = room.floor.iter().copied().reduce(|a, b| a.union(&b)).unwrap_or(Rect::new(0.0, 0.0, 1.0, 1.0));
         let (columns, rows) = ((bounds.width() / CELL) as usize + 1, (bounds.height() / CELL) as usize + 1);
         let diagonal = bounds.width().hypot(bounds.height()).max(CELL);
         let mut grid = Self {
@@ -304,10 +304,6 @@ impl Grid {
         }
         best
     }
-}
-
-fn union(a: Rect, b: Rect) -> Rect {
-    Rect { x0: a.x0.min(b.x0), y0: a.y0.min(b.y0), x1: a.x1.max(b.x1), y1: a.y1.max(b.y1) }
 }
 
 #[cfg(test)]
