@@ -54,7 +54,7 @@ pub struct RequestArgs {
     #[arg(long, value_name = "GRADE", value_parser = clutter)]
     pub clutter: Option<Clutter>,
     /// How the building is to be, in words with commas between: compact or generous, cellular or open, symmetric or
-    /// asymmetric, and one of linear, l_shaped, racetrack, wings; otherwise read from the prompt
+    /// asymmetric, and one of linear, l_shaped, racetrack, courtyard, wings; otherwise read from the prompt
     #[arg(long, value_name = "WORDS", value_parser = style)]
     pub style: Option<Style>,
 }

@@ -75,8 +75,10 @@ pub enum Form {
     Linear,
     /// Two wings at a right angle.
     LShaped,
-    /// Two parallel corridors around a core.
+    /// A ring of corridors around a core.
     Racetrack,
+    /// A court with the building all around it.
+    Courtyard,
     /// Wings off a spine, with courtyards between.
     Wings,
 }
@@ -113,7 +115,7 @@ impl Clutter {
 
 impl StyleWord {
     /// Every word that a flag or request may say, clutter aside.
-    pub const NAMES: [(&'static str, Self); 10] = [
+    pub const NAMES: [(&'static str, Self); 11] = [
         ("compact", Self::Space(SpaceStyle::Compact)),
         ("generous", Self::Space(SpaceStyle::Generous)),
         ("cellular", Self::Layout(LayoutStyle::Cellular)),
@@ -123,6 +125,7 @@ impl StyleWord {
         ("linear", Self::Form(Form::Linear)),
         ("l_shaped", Self::Form(Form::LShaped)),
         ("racetrack", Self::Form(Form::Racetrack)),
+        ("courtyard", Self::Form(Form::Courtyard)),
         ("wings", Self::Form(Form::Wings)),
     ];
 

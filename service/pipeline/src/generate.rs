@@ -20,7 +20,7 @@ use d3dgen_plugins::{Plugin, Registry};
 
 use crate::placement::{Furnished, before_openings};
 use crate::scene_graph::{BY_PROMPT, BY_STYLE, Request};
-use crate::{Error, fit, floorplan, placement, scenario, scene_graph, world};
+use crate::{Error, fit, floorplan, placement, scenario, scene_graph, ways_out, world};
 
 /// How to make a world, beside the request itself.
 #[derive(Debug, Clone)]
@@ -341,8 +341,9 @@ fn attempt(
     let mut told = with_area(graph, &plan);
     told.conflicts.extend(scene_graph::shortages(domain, graph, &placements));
     told.conflicts.extend(far_apart(graph, &plan));
-    let world = world::assemble(name, told, plan, placements, scenario);
+    let mut world = world::assemble(name, told, plan, placements, scenario);
     let report = world::check(&world, domain, retrieved);
+    world.scene_graph.conflicts.extend(ways_out::told(&world, &report, domain, retrieved));
     observe(Event::Finished(Stage::World, attempt, Artifact::World(&world, &report)));
     Ok(Generated { world, report, attempts: attempt + 1 })
 }

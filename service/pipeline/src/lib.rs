@@ -14,6 +14,7 @@ pub mod scenario;
 pub mod scene_graph;
 pub mod stop;
 pub mod variations;
+mod ways_out;
 pub mod world;
 
 pub use error::Error;

@@ -18,6 +18,7 @@ pub(crate) mod sizes;
 mod spacing;
 mod stairs;
 
+use d3dgen_model::Polygon;
 use d3dgen_model::domain::Domain;
 use d3dgen_model::knowledge::Value;
 use d3dgen_model::report::{ConstraintResult, ConstraintSummary, Status};
@@ -49,6 +50,20 @@ impl Reading {
     fn flag(subject: &str, holds: bool) -> Self {
         Self::new(subject, if holds { 1.0 } else { 0.0 })
     }
+}
+
+/// Returns the room from which the way out is longest, and how long it is, m; of several storeys to the stairs. `None` where no
+/// way of the building can be longer than `least`, or nothing leads out.
+pub fn longest_way_out(world: &World, domain: &Domain, retrieval: &Retrieval, least: f64) -> Option<(String, f64)> {
+    let corners = world.floorplan.rooms.iter().flat_map(|r| r.polygon.0.iter().copied());
+    let whole = Polygon(corners.collect()).bounds();
+    if whole.width() + whole.height() <= least {
+        return None;
+    }
+    let storeys = world.storeys();
+    let ways = storeys.iter().flat_map(|(_, storey)| routes::farthest_from_exit(&Site::new(storey, domain, retrieval)));
+    let longest = ways.max_by(|a, b| a.value.total_cmp(&b.value))?;
+    Some((longest.subject, longest.value))
 }
 
 /// Evaluates every constraint that applies, in the order of the retrieval.

@@ -119,7 +119,7 @@ fn to_circulation(site: &Site, a: &Applicable) -> Vec<Reading> {
 }
 
 /// Returns, for the room with the longest way out, the length of that way.
-fn farthest_from_exit(site: &Site) -> Vec<Reading> {
+pub(super) fn farthest_from_exit(site: &Site) -> Vec<Reading> {
     let map = site.occupancy();
     let distances = site.distances(&exits(site));
     let ways = site.rooms.iter().filter_map(|r| Some((r, distances.largest_in(map, r.plan)?)));

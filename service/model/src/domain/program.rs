@@ -186,6 +186,12 @@ pub struct Circulation {
     /// True when a corridor needs a second way out at its far end.
     #[serde(default)]
     pub second_exit: bool,
+    /// Longest way from any place to a way out, m, where the country is not known whose law says it; see `way_out_source`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub way_out_m: Option<f64>,
+    /// Where that figure is from.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub way_out_source: String,
     /// True where doors to the rooms that robots work in open by themselves, when there are robots; in homes they stand open.
     #[serde(default)]
     pub automatic_doors: bool,
@@ -286,10 +292,19 @@ pub enum Scheme {
     Capped,
     /// Two wings at a right angle.
     Angle,
-    /// Two parallel corridors around a core of service rooms.
+    /// A ring of corridors around a core of service rooms.
     Racetrack,
+    /// A ring of corridors around an open court, with rooms outside of it and on the court.
+    Courtyard,
     /// Several wings off one spine, with courtyards between.
     Comb,
+}
+
+impl Scheme {
+    /// Returns true where the corridors run all the way round.
+    pub fn is_ring(self) -> bool {
+        matches!(self, Self::Racetrack | Self::Courtyard)
+    }
 }
 
 fn is_zero(n: &u32) -> bool {

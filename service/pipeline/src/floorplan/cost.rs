@@ -414,7 +414,7 @@ impl<'b> Judge<'b> {
                 score.hard += 5.0;
                 continue;
             }
-            let corridor = i == self.spine && !self.brief.hub;
+            let corridor = i == self.spine && !self.brief.hub || Some(i) == self.brief.ring;
             let net = room.net_m2;
             score.hard += ((spec.area_min - net) / spec.area_min).max(0.0) * 4.0;
             if !corridor {
@@ -498,7 +498,8 @@ impl<'b> Judge<'b> {
             // From a fifth on, circulation is what a reviewer objects to first.
             // stairs are of the way too, wherever they stand
             let stairs = (0..rooms.len()).filter(|&i| home && brief.in_core(i)).map(|i| rooms[i].gross_m2).sum::<f64>();
-            let share = (rooms[spine].gross_m2 + stairs) / total;
+            let way = |area: fn(&Measured) -> f64| area(&rooms[spine]) + brief.ring.map_or(0.0, |r| area(&rooms[r]));
+            let share = (way(|r| r.gross_m2) + stairs) / total;
             score.soft[4] += (share - 0.10).max(0.0) + 5.0 * (share - 0.20).max(0.0);
             score.soft[4] += ONE_WAY * layout.one_way;
             if home {
@@ -512,7 +513,7 @@ impl<'b> Judge<'b> {
                 score.soft[4] += ONE_SIDED * (self.one_sided(layout) - ONE_SIDED_FROM).max(0.0);
             }
             if let Some(most) = brief.share_advised {
-                let share = rooms[spine].net_m2 / rooms.iter().map(|r| r.net_m2).sum::<f64>();
+                let share = way(|r| r.net_m2) / rooms.iter().map(|r| r.net_m2).sum::<f64>();
                 score.soft[4] += if share > most { ILL_SHARED + 4.0 * (share - most) } else { 0.0 };
             }
         }

@@ -9,6 +9,8 @@ use super::spec::Brief;
 
 /// Share of homes that begin with a bedroom, and not the largest room, at the end of the hall.
 const AT_THE_END: f64 = 0.8;
+/// Least and greatest depth of a court to begin with, m.
+const COURT_M: (f64, f64) = (6.0, 10.0);
 /// Share of small rooms that look first for a room large enough to spare a corner.
 const AT_LARGE: f64 = 0.8;
 /// Small rooms at one end of a cell at most.
@@ -81,6 +83,9 @@ impl Cell {
 /// Band in which the stairs of a building with several storeys stand: all have it on the same side.
 pub(super) const CORE_BAND: usize = 0;
 
+/// Band along the third side of a court.
+pub(super) const WEST_BAND: usize = 4;
+
 /// A row of cells along one side of a corridor.
 #[derive(Debug, PartialEq)]
 pub(super) struct Band {
@@ -123,8 +128,10 @@ pub(super) struct Genome {
     pub bands: Vec<Band>,
     /// Rooms that close the start and the end of the corridor (straight schemes only).
     pub caps: [Option<Cap>; 2],
-    /// Angle: true when the outer band fills the corner.
+    /// Angle: true when the outer band fills the corner; courtyard: true when each outer band fills one.
     pub corner: bool,
+    /// Courtyard: depth of the court between the rooms on it, lattice units.
+    pub court: i32,
 }
 
 impl Clone for Genome {
@@ -134,7 +141,8 @@ impl Clone for Genome {
 
     /// Takes over `source` in the memory of `self`.
     fn clone_from(&mut self, source: &Self) {
-        (self.scheme, self.caps, self.corner) = (source.scheme, source.caps, source.corner);
+        (self.scheme, self.caps) = (source.scheme, source.caps);
+        (self.corner, self.court) = (source.corner, source.court);
         self.bands.clone_from(&source.bands);
     }
 }
@@ -144,6 +152,7 @@ fn band_count(scheme: Scheme) -> usize {
     match scheme {
         Scheme::Straight | Scheme::Capped => 2,
         Scheme::Angle | Scheme::Racetrack => 4,
+        Scheme::Courtyard => 5,
         Scheme::Comb => 0,
     }
 }
@@ -157,9 +166,15 @@ impl Genome {
             bands: (0..count).map(|_| Band { depth: 0, cells: Vec::new() }).collect(),
             caps: [None, None],
             corner: rng.chance(0.7),
+            court: 0,
         };
+        if scheme == Scheme::Courtyard {
+            genome.court = up(COURT_M.0 + (COURT_M.1 - COURT_M.0) * rng.unit());
+        }
+        // the piece that closes a ring stands where the ring has it
+        let ring = brief.ring.filter(|_| scheme.is_ring());
         let mut free: Vec<usize> =
-            (0..brief.rooms.len()).filter(|i| Some(*i) != brief.spine && !brief.in_core(*i)).collect();
+            (0..brief.rooms.len()).filter(|i| ![brief.spine, ring].contains(&Some(*i)) && !brief.in_core(*i)).collect();
         rng.shuffle(&mut free);
         if scheme == Scheme::Capped {
             genome.choose_caps(brief, &mut free, rng);
@@ -269,6 +284,7 @@ impl Genome {
             // Bands 2 and 3 of a racetrack are its core.
             Scheme::Racetrack if dark => vec![2, 3],
             Scheme::Racetrack => vec![0, 1],
+            Scheme::Courtyard => vec![0, 1, WEST_BAND],
             _ => (0..self.bands.len()).collect(),
         };
         let best = candidates.iter().copied().min_by(|a, b| load(*a).total_cmp(&load(*b))).unwrap_or(0);
@@ -284,7 +300,7 @@ fn random_cap(room: usize, rng: &mut Stream) -> Cap {
 /// Returns true for rooms small enough to be cut out of a larger one's corridor side.
 pub(super) fn is_nestable(brief: &Brief, room: usize) -> bool {
     let spec = &brief.rooms[room];
-    spec.area_target <= 9.0 && !spec.fixed && !spec.needs_outer_wall() && !spec.entrance
+    spec.area_target <= 9.0 && !spec.fixed && !spec.circulation && !spec.needs_outer_wall() && !spec.entrance
 }
 
 /// Returns the room that is entered through `room` (an isolation room through its anteroom), if any.

@@ -117,7 +117,9 @@ pub fn generate_until(
             break;
         }
         // when a form was tried in vain often enough, any is better than no plan
-        brief.form = form.filter(|_| attempt < ATTEMPTS / 2);
+        if attempt == ATTEMPTS / 2 {
+            brief.take_any_form();
+        }
         let schemes = schemes(&brief, domain, &mut rng);
         let turn = Turn { flip_x: rng.chance(0.5), flip_y: rng.chance(0.5), swap: rng.chance(0.3) };
         let found = search(&brief, &schemes, &mut rng, stop);
@@ -237,7 +239,10 @@ fn schemes(brief: &Brief, domain: &Domain, rng: &mut Stream) -> Vec<Scheme> {
         Scheme::Capped => rooms >= 3 && along <= LONGEST_BAR,
         // no axis mirrors an angle
         Scheme::Angle => rooms >= 8 && along <= MOST_WHOLE && brief.symmetry != Some(Symmetry::Symmetric),
-        Scheme::Racetrack => rooms >= 14 && along <= MOST_WHOLE,
+        // corridors make a ring where the scene graph has the piece that closes it
+        Scheme::Racetrack => brief.ring.is_some() && rooms >= 14 && along <= MOST_WHOLE,
+        // nobody builds around a court unasked
+        Scheme::Courtyard => false,
         Scheme::Comb => along > MOST_WHOLE || units,
     };
     let mut list: Vec<Scheme> = domain.circulation.schemes.iter().copied().filter(suits).collect();
@@ -251,7 +256,8 @@ fn schemes(brief: &Brief, domain: &Domain, rng: &mut Stream) -> Vec<Scheme> {
     }
     if let Some(form) = brief.form {
         let (asked, [least, most]) = scheme_of(form);
-        if (least..=most).contains(&rooms) {
+        let closes = !asked.is_ring() || brief.ring.is_some();
+        if (least..=most).contains(&rooms) && closes {
             return vec![asked];
         }
     }
@@ -263,12 +269,19 @@ fn schemes(brief: &Brief, domain: &Domain, rng: &mut Stream) -> Vec<Scheme> {
     list
 }
 
+/// Returns true for a form that is a ring of corridors, and can be built with this many rooms on a storey.
+pub(crate) fn runs_around(form: Form, rooms: usize) -> bool {
+    let (scheme, [least, most]) = scheme_of(form);
+    scheme.is_ring() && (least..=most).contains(&rooms)
+}
+
 /// Returns the scheme of a form, and from how many rooms to how many it can be built.
 fn scheme_of(form: Form) -> (Scheme, [usize; 2]) {
     match form {
         Form::Linear => (Scheme::Straight, [1, MOST_WHOLE]),
         Form::LShaped => (Scheme::Angle, [5, MOST_WHOLE]),
         Form::Racetrack => (Scheme::Racetrack, [10, MOST_WHOLE + 10]),
+        Form::Courtyard => (Scheme::Courtyard, [6, 2 * MOST_WHOLE]),
         Form::Wings => (Scheme::Comb, [10, usize::MAX]),
     }
 }

@@ -20,6 +20,8 @@ pub(super) struct Stretch {
     pub low: Option<usize>,
     /// Room on the east or north side.
     pub high: Option<usize>,
+    /// True for an outer wall on a court with the building all around: there is daylight, and no way out.
+    pub court: bool,
 }
 
 impl Stretch {
@@ -29,6 +31,11 @@ impl Stretch {
 
     pub(super) fn is_outer(&self) -> bool {
         self.low.is_none() || self.high.is_none()
+    }
+
+    /// Returns the room of an outer stretch from which one comes to the street.
+    pub(super) fn leads_out_of(&self) -> Option<usize> {
+        self.only_room().filter(|_| !self.court)
     }
 
     /// Returns the room of an outer stretch.
@@ -55,6 +62,8 @@ pub(super) struct Mosaic {
     xs: Vec<i32>,
     ys: Vec<i32>,
     owner: Vec<Option<usize>>,
+    /// By cell: true for floor of no room with rooms all around.
+    court: Vec<bool>,
 }
 
 impl Mosaic {
@@ -75,7 +84,30 @@ impl Mosaic {
                 }
             }
         }
-        Self { xs, ys, owner }
+        let mut mosaic = Self { xs, ys, owner, court: Vec::new() };
+        mosaic.court = mosaic.courts();
+        mosaic
+    }
+
+    /// Returns which cells belong to courts: those that one does not come to from the edge of the grid past rooms.
+    fn courts(&self) -> Vec<bool> {
+        let (columns, rows) = (self.xs.len().saturating_sub(1), self.ys.len().saturating_sub(1));
+        let mut court: Vec<bool> = self.owner.iter().map(Option::is_none).collect();
+        let rim = (0..columns).flat_map(|i| [(i, 0), (i, rows - 1)]);
+        let mut open: Vec<(usize, usize)> = rim.chain((0..rows).flat_map(|j| [(0, j), (columns - 1, j)])).collect();
+        while let Some((i, j)) = open.pop() {
+            if i >= columns || j >= rows || !std::mem::take(&mut court[j * self.xs.len() + i]) {
+                continue;
+            }
+            open.extend([(i + 1, j), (i.wrapping_sub(1), j), (i, j + 1), (i, j.wrapping_sub(1))]);
+        }
+        court
+    }
+
+    /// Returns true for a cell of a court; as [`Mosaic::at`] for what is outside of the grid.
+    fn is_court(&self, i: usize, j: usize) -> bool {
+        let inside = i != usize::MAX && j != usize::MAX && i + 1 < self.xs.len() && j + 1 < self.ys.len();
+        inside && self.court[j * self.xs.len() + i]
     }
 
     fn at(&self, i: usize, j: usize) -> Option<usize> {
@@ -95,12 +127,10 @@ impl Mosaic {
                 let mut open: Option<Stretch> = None;
                 for j in 0..along.len().saturating_sub(1) {
                     let before = i.wrapping_sub(1);
-                    let (low, high) = if vertical {
-                        (self.at(before, j), self.at(i, j))
-                    } else {
-                        (self.at(j, before), self.at(j, i))
-                    };
-                    let continues = open.is_some_and(|s| (s.low, s.high) == (low, high));
+                    let [low, high] = [before, i].map(|i| if vertical { (i, j) } else { (j, i) });
+                    let court = self.is_court(low.0, low.1) || self.is_court(high.0, high.1);
+                    let (low, high) = (self.at(low.0, low.1), self.at(high.0, high.1));
+                    let continues = open.is_some_and(|s| (s.low, s.high, s.court) == (low, high, court));
                     if continues {
                         if let Some(s) = &mut open {
                             s.to = along[j + 1];
@@ -109,7 +139,7 @@ impl Mosaic {
                     }
                     found.extend(open.take());
                     if low != high {
-                        open = Some(Stretch { vertical, at, from: along[j], to: along[j + 1], low, high });
+                        open = Some(Stretch { vertical, at, from: along[j], to: along[j + 1], low, high, court });
                     }
                 }
                 found.extend(open);
@@ -276,9 +306,27 @@ mod tests {
     }
 
     #[test]
+    fn walls_on_a_court_lead_nowhere() {
+        let boxes = [
+            (0, Cellbox::new(0, 0, 90, 30)),
+            (0, Cellbox::new(0, 30, 30, 60)),
+            (0, Cellbox::new(0, 60, 90, 90)),
+            (1, Cellbox::new(60, 30, 90, 60)),
+        ];
+        let around = Mosaic::new(&boxes).stretches();
+        let on_court: i32 = around.iter().filter(|s| s.court).map(Stretch::len).sum();
+        assert_eq!(on_court, 4 * 30);
+        assert!(around.iter().filter(|s| s.court).all(|s| s.is_outer() && s.leads_out_of().is_none()));
+        // the same with one side open is a yard
+        let yard = Mosaic::new(&boxes[..3]).stretches();
+        assert!(yard.iter().all(|s| !s.court));
+    }
+
+    #[test]
     fn stretches_cover_both_sides_of_a_shared_wall_once() {
         let boxes = [(0, Cellbox::new(0, 0, 40, 40)), (1, Cellbox::new(40, 0, 80, 60))];
         let shared: Vec<_> = Mosaic::new(&boxes).stretches().into_iter().filter(|s| !s.is_outer()).collect();
-        assert_eq!(shared, vec![Stretch { vertical: true, at: 40, from: 0, to: 40, low: Some(0), high: Some(1) }]);
+        let wall = Stretch { vertical: true, at: 40, from: 0, to: 40, low: Some(0), high: Some(1), court: false };
+        assert_eq!(shared, vec![wall]);
     }
 }

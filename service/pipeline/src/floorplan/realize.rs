@@ -1,9 +1,11 @@
 //! From genome to rectangles: widths follow from areas, all bands along one corridor share its length.
 
+use std::cmp::Ordering;
+
 use d3dgen_model::domain::Scheme;
 
 use super::core::Comb;
-use super::genome::{Cap, Cell, Cover, Genome};
+use super::genome::{Cap, Cell, Cover, Genome, WEST_BAND};
 use super::lattice::{Cellbox, Frame, INNER_HALF_M, JAMB_M, OUTER_HALF_M, meters, nearest, up};
 use super::spec::Brief;
 
@@ -12,8 +14,12 @@ pub(super) const MAX_PROPORTION: f64 = 2.4;
 /// A notch in the outline shorter than this is a stagger without a reason, m.
 const MIN_NOTCH_M: f64 = 1.5;
 
-/// Least width and depth of a court between two corridors, m.
+/// Least width and depth of a court, m, and how many times longer than wide it is at most.
 const COURT_M: f64 = 5.0;
+const MOST_COURT: f64 = 3.0;
+
+/// What a ring of corridors misses that nothing closes or that goes around nothing, in meters.
+const NO_RING: f64 = 10.0;
 
 /// Longest corridor from which there is one way out only, m (Approved Document B, table 2.1: 18 m to walk in one direction, and
 /// a room lies at its end).
@@ -137,7 +143,7 @@ pub(super) fn realize(brief: &Brief, genome: &Genome, scratch: &mut Scratch, lay
     match genome.scheme {
         Scheme::Straight | Scheme::Capped => straight(&mut task),
         Scheme::Angle => angle(&mut task),
-        Scheme::Racetrack => racetrack(&mut task),
+        Scheme::Racetrack | Scheme::Courtyard => ring(&mut task),
         // wings are realized one by one
         Scheme::Comb => {}
     }
@@ -253,32 +259,73 @@ fn angle(task: &mut Task<'_, '_>) {
     fill(task, &inner.at((x, w + dt), (0, 1), (-1, 0)), y - w - dt);
 }
 
-fn racetrack(task: &mut Task<'_, '_>) {
+/// Lays a ring of corridors: rooms outside along its long sides, and inside, back to back around a core or apart on a court.
+fn ring(task: &mut Task<'_, '_>) {
     let (brief, genome) = (task.brief, task.genome);
+    let Some(link) = brief.ring else {
+        task.misfit += NO_RING;
+        return;
+    };
     let w = spine_units(brief);
-    let core = used_depth(genome, 2) + used_depth(genome, 3);
-    task.misfit += if core == 0 { 10.0 } else { 0.0 };
-    let top = Row::new(task, 0, 0);
+    let inside = [2, 3].map(|band| used_depth(genome, band));
+    let around = genome.scheme == Scheme::Courtyard;
+    // a third side of a court has rooms too; at the corners one row goes on past the end of the next
+    let west = if around { used_depth(genome, WEST_BAND) } else { 0 };
+    let [over, under] = if genome.corner { [west, used_depth(genome, 1)] } else { [0, 0] };
+    let top = Row::new(task, 0, over);
     let bottom = Row::new(task, 1, 0);
-    let lower = Row::new(task, 2, -w);
-    let upper = Row::new(task, 3, -w);
-    let len = solve(&[&top, &bottom, &lower, &upper], &mut task.misfit).max(3 * w);
+    let lower = Row::new(task, 2, -2 * w);
+    let upper = Row::new(task, 3, -2 * w);
+    let len = solve(&[&top, &bottom, &lower, &upper], &mut task.misfit).max(4 * w);
+    let mut core = inside[0] + inside[1] + genome.court;
+    let side = if west > 0 { Some(Row::new(task, WEST_BAND, under)) } else { None };
+    if let Some(side) = &side {
+        core = core.max(solve(&[side], &mut task.misfit) - 2 * w);
+    }
+    task.misfit += if core == 0 { NO_RING } else { 0.0 };
+    let high = 2 * w + core;
     task.spine_box(Cellbox::new(0, 0, len, w));
     task.spine_box(Cellbox::new(0, w, w, w + core));
-    task.spine_box(Cellbox::new(0, w + core, len, 2 * w + core));
-    fill(task, &top.at((0, 2 * w + core), (1, 0), (0, 1)), len);
+    task.spine_box(Cellbox::new(0, w + core, len, high));
+    task.layout.boxes.push((link, Cellbox::new(len - w, w, len, w + core)));
+    fill(task, &top.at((-over, high), (1, 0), (0, 1)), len + over);
     fill(task, &bottom.at((0, 0), (1, 0), (0, -1)), len);
+    if let Some(side) = side {
+        fill(task, &side.at((0, -under), (0, 1), (-1, 0)), high + under);
+    }
     let before = task.layout.notch;
-    fill(task, &lower.at((w, w), (1, 0), (0, 1)), len - w);
+    fill(task, &lower.at((w, w), (1, 0), (0, 1)), len - 2 * w);
     let first = task.layout.notch - before;
-    fill(task, &upper.at((w, w + core), (1, 0), (0, -1)), len - w);
+    fill(task, &upper.at((w, w + core), (1, 0), (0, -1)), len - 2 * w);
     let second = task.layout.notch - before - first;
-    // a core that ends short leaves a court between the corridors, or a hole that is none
+    task.misfit += if around {
+        court_misfit(core - inside[0] - inside[1], len - 2 * w)
+    } else {
+        core_misfit([first, second], inside)
+    };
+}
+
+/// Returns what the sides of a court miss, in meters: all have light, and one looks across it, not along a shaft.
+fn court_misfit(deep: i32, long: i32) -> f64 {
+    let short = |side: i32| (COURT_M - meters(side)).max(0.0);
+    let slot = meters(long.max(deep)) - MOST_COURT * meters(long.min(deep));
+    short(deep) + short(long) + slot.max(0.0)
+}
+
+/// Returns what the rows of a core of these depths miss that end so far before the corridor, in meters: what they leave open is
+/// a court, or a hole that is none.
+fn core_misfit(gaps: [f64; 2], depths: [i32; 2]) -> f64 {
     let court = |gap: f64| if gap < COURT_M { gap.min(COURT_M - gap) } else { 0.0 };
-    let step = (first - second).abs();
+    let step = (gaps[0] - gaps[1]).abs();
     let stagger = if step < MIN_NOTCH_M { step.min(MIN_NOTCH_M - step) } else { 0.0 };
-    let shallow = if first + second > 0.0 { (COURT_M - meters(core)).max(0.0) } else { 0.0 };
-    task.misfit += court(first) + court(second) + stagger + shallow;
+    // beside a row that goes on, a court is only as deep as the row that ends
+    let deep = match gaps[0].total_cmp(&gaps[1]) {
+        Ordering::Greater => depths[0],
+        Ordering::Less => depths[1],
+        Ordering::Equal => depths[0] + depths[1],
+    };
+    let shallow = if gaps[0] + gaps[1] > 0.0 { (COURT_M - meters(deep)).max(0.0) } else { 0.0 };
+    gaps.map(court).iter().sum::<f64>() + stagger + shallow
 }
 
 /// Returns the depth of a band, 0 when nothing stands in it.

@@ -20,6 +20,8 @@ use crate::Error;
 use crate::placement::has_docks;
 use crate::scene_graph::BY_PROMPT;
 
+/// Code of the conflict that a building has another form than was asked for.
+const FORM_NOT_BUILT: &str = "form_not_built";
 /// Clear width that a wheelchair and most robots need through a door, m; used when the prompt asks for access.
 const ACCESSIBLE_DOOR_M: f64 = 0.9;
 
@@ -140,6 +142,8 @@ pub(super) struct Brief {
     pub rooms: Vec<RoomSpec>,
     /// Index of the corridor, hall or hub room; `None` for a single room.
     pub spine: Option<usize>,
+    /// The piece of corridor that closes a ring with the spine, if any.
+    pub ring: Option<usize>,
     /// True when the spine is a room of its own right (a warehouse hall) and takes its width from its area.
     pub hub: bool,
     /// Clear corridor width, m.
@@ -210,6 +214,7 @@ impl Brief {
         let circulation_width = hard_width.max(advised_width).max(fitted);
         let mut brief = Self {
             hub: spine.is_some_and(|s| !rooms[s].circulation),
+            ring: ring_of(graph, spine),
             rooms,
             spine,
             spine_width: circulation_width,
@@ -251,12 +256,18 @@ impl Brief {
         Ok(brief)
     }
 
+    /// Gives up the form that is asked for: what would close a ring of corridors is a piece of corridor like any other room.
+    pub(super) fn take_any_form(&mut self) {
+        (self.form, self.ring) = (None, None);
+    }
+
     /// Says so where another form was built than was asked for.
     pub(super) fn tell_form(&mut self, asked: Option<Form>, built: Scheme) {
+        self.conflicts.retain(|n| n.code != FORM_NOT_BUILT);
         let Some(form) = asked.filter(|f| super::scheme_of(*f).0 != built) else { return };
         let asked = StyleWord::Form(form).label().replace('_', "-");
         self.conflicts.push(Note {
-            code: "form_not_built".into(),
+            code: FORM_NOT_BUILT.into(),
             message: format!(
                 "no plan of {} rooms was found in the form asked for ({asked}); another form was built",
                 self.rooms.iter().filter(|r| !r.circulation).count()
@@ -336,6 +347,7 @@ impl Brief {
         let mut out = Self {
             rooms: specs,
             spine: spine.and_then(|s| index[s]),
+            ring: None,
             hub: false,
             links: self.links.iter().filter_map(link).collect(),
             apart: both(&self.apart),
@@ -390,6 +402,16 @@ impl Brief {
             _ => self.rooms[a].door_width.min(self.rooms[b].door_width),
         }
     }
+}
+
+/// Returns the piece of corridor that is open to the spine, so that both together can run around a core or a court.
+fn ring_of(graph: &SceneGraph, spine: Option<usize>) -> Option<usize> {
+    let spine = &graph.rooms[spine?];
+    let joined = |id: &str| {
+        let ends = |e: &GraphEdge| e.a == id && e.b == spine.id || e.b == id && e.a == spine.id;
+        graph.edges.iter().any(|e| e.required && e.connector == Connector::Open && ends(e))
+    };
+    graph.rooms.iter().position(|r| r.circulation && r.id != spine.id && joined(&r.id))
 }
 
 /// Returns the pairs of rooms that the domain advises against putting wall to wall.

@@ -202,16 +202,21 @@ fn storey(
     let mut last = String::from("no layout was found");
     let mut best: Option<Planned> = None;
     let mut compared = 0;
-    for _ in 0..ATTEMPTS {
-        let mut schemes = schemes(brief, domain, rng);
+    let form = brief.form;
+    let mut brief = brief.clone();
+    for attempt in 0..ATTEMPTS {
+        if attempt == ATTEMPTS / 2 {
+            brief.take_any_form();
+        }
+        let mut schemes = schemes(&brief, domain, rng);
         // a bar lies best on a bar
         let bar = |s: Scheme| matches!(s, Scheme::Straight | Scheme::Capped);
         if brief.core.as_ref().and_then(|c| c.below.as_ref()?.scheme).is_some_and(bar) {
             schemes.sort_by_key(|s| !bar(*s));
         }
-        let Some(mut found) = search(brief, &schemes, rng, stop) else { break };
+        let Some(mut found) = search(&brief, &schemes, rng, stop) else { continue };
         if found.score.is_sound() {
-            align(brief, &mut found);
+            align(&brief, &mut found);
         }
         if stop.is_set() {
             break;
@@ -222,7 +227,8 @@ fn storey(
         };
         let boxes: Vec<(usize, Cellbox)> = in_core(&found.layout.boxes, &frame);
         let name = format!("{:?}", found.scheme).to_lowercase();
-        match assemble(brief, &turned_in_place(&boxes, turn), &found.score, seed, &name, None, rng) {
+        brief.tell_form(form, found.scheme);
+        match assemble(&brief, &turned_in_place(&boxes, turn), &found.score, seed, &name, None, rng) {
             Ok(plan) => {
                 let wings = brief.core.as_ref().is_some_and(|c| c.far.is_some() && !c.gable);
                 let comb = wings.then_some(found.layout.comb);
@@ -238,7 +244,7 @@ fn storey(
                     between: None,
                 };
                 let overhang = found.score.overhang;
-                let set_back = set_back(brief, &boxes);
+                let set_back = set_back(&brief, &boxes);
                 if best.as_ref().is_none_or(|b| overhang < b.overhang) {
                     best = Some(Planned { plan, below, overhang, set_back });
                 }

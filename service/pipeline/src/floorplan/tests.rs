@@ -57,6 +57,7 @@ fn brief(mut rooms: Vec<RoomSpec>, width: f64, links: &[(usize, usize, Connector
     rooms.push(corridor);
     let mut brief = Brief {
         spine: Some(rooms.len() - 1),
+        ring: None,
         rooms,
         hub: false,
         spine_width: width,
@@ -120,6 +121,16 @@ fn ward(beds: usize) -> Brief {
     brief(rooms, 2.4, &links)
 }
 
+/// Returns the same with the piece of corridor that closes a ring.
+fn closed(mut brief: Brief) -> Brief {
+    let mut piece = room("corridor_2", [1.0, 10.0, 500.0], 1.0, Daylight::None, Zone::Circulation);
+    (piece.circulation, piece.open_front) = (true, true);
+    brief.ring = Some(brief.rooms.len());
+    brief.rooms.push(piece);
+    brief.find_guests();
+    brief
+}
+
 fn hall() -> Brief {
     let mut rooms = vec![
         room("loading_dock_1", [60., 120., 200.], 6.0, Daylight::None, Zone::Service),
@@ -165,12 +176,14 @@ fn sound(brief: &Brief, schemes: &[Scheme], seed: u64) -> bool {
 #[test]
 fn every_kind_of_brief_finds_sound_plans() {
     let both = [Scheme::Straight, Scheme::Capped];
-    let cases: [(&str, Brief, &[Scheme]); 6] = [
+    let cases: [(&str, Brief, &[Scheme]); 8] = [
         ("home", home(), &both),
         ("small ward", ward(2), &both),
         ("ward", ward(4), &both),
         ("angled ward", ward(8), &[Scheme::Angle]),
-        ("racetrack", ward(10), &[Scheme::Racetrack]),
+        ("racetrack", closed(ward(10)), &[Scheme::Racetrack]),
+        ("home around a court", closed(home()), &[Scheme::Courtyard]),
+        ("ward around a court", closed(ward(6)), &[Scheme::Courtyard]),
         ("warehouse", hall(), &[Scheme::Straight]),
     ];
     for (name, brief, schemes) in cases {
@@ -190,11 +203,11 @@ fn rooms_of(genome: &Genome) -> Vec<usize> {
 
 #[test]
 fn no_change_loses_or_doubles_a_room() {
-    let brief = ward(5);
     let mut rng = Stream::new(3, "test");
-    for scheme in [Scheme::Straight, Scheme::Capped, Scheme::Angle, Scheme::Racetrack] {
+    for scheme in [Scheme::Straight, Scheme::Capped, Scheme::Angle, Scheme::Racetrack, Scheme::Courtyard] {
+        let brief = if scheme.is_ring() { closed(ward(5)) } else { ward(5) };
         let mut genome = Genome::random(&brief, scheme, &mut rng);
-        let expected: Vec<usize> = (0..brief.rooms.len() - 1).collect();
+        let expected: Vec<usize> = (0..brief.rooms.len()).filter(|r| !brief.rooms[*r].circulation).collect();
         for step in 0..2000 {
             assert_eq!(rooms_of(&genome), expected, "{scheme:?}, step {step}");
             mutate(&brief, &mut genome, &mut rng);

@@ -31,6 +31,7 @@ mod proposed;
 mod qualities;
 mod reading;
 mod relations;
+mod ring;
 mod robots;
 mod rooms;
 mod seated;
@@ -137,7 +138,7 @@ fn assemble(request: &Request, mut reading: Reading, planned: &[Planned]) -> Sce
     let mut rooms = rooms::describe(&mut reading, planned);
     reading.occupancy.residents = homes::house(&reading, planned, &mut rooms);
     let levels = deal::levels(&mut reading);
-    let (web, links) = if levels.len() > 1 {
+    let (mut web, links) = if levels.len() > 1 {
         let areas: Vec<f64> = rooms.iter().map(|r| r.target_area_m2).collect();
         let dealt = deal::deal(&mut reading, planned, &areas, &levels);
         rooms.iter_mut().zip(dealt).for_each(|(room, level)| room.level = level);
@@ -149,6 +150,7 @@ fn assemble(request: &Request, mut reading: Reading, planned: &[Planned]) -> Sce
     } else {
         (edges::connect(&mut reading, planned, &mut rooms), Vec::new())
     };
+    ring::close(&reading, &links, &mut rooms, &mut web.edges);
     rooms::add_docks(reading.domain, &reading.robots, &reading.docked, &mut rooms);
     robots::send(&reading.errand, &rooms, &mut reading.robots);
     SceneGraph {

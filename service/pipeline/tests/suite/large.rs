@@ -3,10 +3,11 @@
 use std::collections::BTreeMap;
 
 use crate::common::{most, worlds};
-use d3dgen_model::Point;
 use d3dgen_model::document::Document;
+use d3dgen_model::floorplan::DoorKind;
 use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::world::World;
+use d3dgen_model::{Point, Polygon};
 use d3dgen_pipeline::scene_graph::{self, Request};
 use d3dgen_plugins::Registry;
 
@@ -95,6 +96,7 @@ fn forms_that_prompts_ask_for_are_built_or_missed_aloud() {
         ("office with 14 rooms, two wings", "comb"),
         ("Büro mit 30 Räumen mit zentralem Kern", "racetrack"),
         ("racetrack ward with 24 patient rooms", "racetrack"),
+        ("office with 20 rooms around a courtyard", "courtyard"),
     ];
     for (prompt, scheme) in cases {
         for world in worlds(prompt, 2) {
@@ -105,6 +107,62 @@ fn forms_that_prompts_ask_for_are_built_or_missed_aloud() {
     }
     let built = worlds(cases[0].0, 4).iter().filter(|w| w.floorplan.scheme == "angle").count();
     assert_eq!(built, 4, "{}", cases[0].0);
+}
+
+/// Returns how far apart two pieces of corridor are open to each other; `None` where they are so at one place only.
+fn ring_m(world: &World) -> Option<f64> {
+    let plan = &world.floorplan;
+    let corridor = |id: &String| plan.room(id).is_some_and(|r| r.circulation);
+    let between = plan.doors.iter().filter(|d| d.room_ids.len() == 2 && d.room_ids.iter().all(corridor));
+    let open: Vec<Point> = between.filter(|d| d.kind == DoorKind::Open).map(|d| d.line.middle()).collect();
+    let apart = |a: &Point| open.iter().map(|b| a.distance(*b)).fold(0.0, f64::max);
+    open.iter().map(apart).reduce(f64::max).filter(|m| *m > 0.0)
+}
+
+/// Returns the floor of no room with rooms all around, m^2, counted in squares of 25 cm.
+fn court_m2(world: &World) -> f64 {
+    let rooms: Vec<&Polygon> = world.floorplan.rooms.iter().map(|r| &r.polygon).collect();
+    let corners = rooms.iter().flat_map(|p| p.0.iter().copied());
+    let all = Polygon(corners.collect()).bounds().grown(0.5);
+    let (columns, rows) = ((4.0 * all.width()) as usize, (4.0 * all.height()) as usize);
+    let at = |n: usize, from: f64| from + 0.25 * n as f64 + 0.13;
+    let built = |i: usize, j: usize| rooms.iter().any(|p| p.contains(Point::new(at(i, all.x0), at(j, all.y0))));
+    let mut free: Vec<Vec<bool>> = (0..columns).map(|i| (0..rows).map(|j| !built(i, j)).collect()).collect();
+    let mut reached = vec![(0, 0)];
+    while let Some((i, j)) = reached.pop() {
+        if i < columns && j < rows && std::mem::take(&mut free[i][j]) {
+            reached.extend([(i + 1, j), (i.wrapping_sub(1), j), (i, j + 1), (i, j.wrapping_sub(1))]);
+        }
+    }
+    free.iter().flatten().filter(|f| **f).count() as f64 / 16.0
+}
+
+#[test]
+fn one_walks_all_the_way_round_a_racetrack() {
+    for prompt in
+        ["racetrack hospital ward with 20 patient rooms and a nurse station", "Büro mit 30 Räumen mit Ringflur"]
+    {
+        for world in worlds(prompt, 4) {
+            let round = ring_m(&world).unwrap_or(0.0);
+            assert!(round > 2.0, "{prompt}, seed {}: no ring", world.scene_graph.seed);
+        }
+    }
+}
+
+#[test]
+fn courtyards_that_are_asked_for_have_the_building_all_around() {
+    let prompts = [
+        "office with 20 rooms around a courtyard",
+        "School around a central courtyard with 12 classrooms",
+        "Villa with an inner courtyard, 5 bedrooms and 3 bathrooms",
+    ];
+    for prompt in prompts {
+        for world in worlds(prompt, 3) {
+            let seed = world.scene_graph.seed;
+            assert!(court_m2(&world) >= 25.0, "{prompt}, seed {seed}: {} m2 of court", court_m2(&world));
+            assert!(ring_m(&world).is_some(), "{prompt}, seed {seed}: one cannot walk around the court");
+        }
+    }
 }
 
 #[test]

@@ -109,6 +109,7 @@ fn lay(site: &Site<'_>, entrance_first: bool, rng: &mut Stream) -> Laid {
     let (before, after) = entrances.split_at(if entrance_first { entrances.len().min(1) } else { 0 });
     site.lay_entrances(before, &mut laid);
     site.lay_gates(&mut laid);
+    site.lay_ring(&mut laid);
     site.lay_inner(&mut laid, rng);
     site.lay_second_fronts(&mut laid);
     site.lay_entrances(after, &mut laid);
@@ -182,7 +183,8 @@ impl Site<'_> {
         let brief = self.brief;
         let mut wanted: Vec<(usize, usize, Connector, bool)> = Vec::new();
         if let Some(spine) = brief.spine {
-            for (i, room) in brief.rooms.iter().enumerate().filter(|(i, r)| r.on_spine && *i != spine) {
+            let by_door = |i: usize| i != spine && Some(i) != brief.ring;
+            for (i, room) in brief.rooms.iter().enumerate().filter(|(i, r)| r.on_spine && by_door(*i)) {
                 let connector = if room.open_front { Connector::Open } else { Connector::Door };
                 wanted.push((i, spine, connector, true));
             }
@@ -210,6 +212,24 @@ impl Site<'_> {
             if !laid.take_best(spots) && required {
                 laid.missing.push(format!("{} to {}", brief.rooms[a].id, brief.rooms[b].id));
             }
+        }
+    }
+
+    /// Opens the piece that closes a ring of corridors to them over its full width, at both of its ends.
+    fn lay_ring(&self, laid: &mut Laid) {
+        let Some((ring, spine)) = self.brief.ring.zip(self.brief.spine) else { return };
+        let before = laid.spots.len();
+        for s in self.stretches.iter().filter(|s| s.joins(ring, spine)) {
+            let start = meters(s.from) + self.half_across(s, s.from);
+            let width = meters(s.to) - self.half_across(s, s.to) - start;
+            if width >= self.brief.spine_width - 1e-9 {
+                let spot = self.open_spot(s, ring, spine, start, width);
+                let known = self.standing.iter().find(|d| d.line == spot.door.line).cloned();
+                laid.take_best(vec![Spot { door: known.unwrap_or_else(|| spot.door.clone()), ..spot }]);
+            }
+        }
+        if laid.spots.len() == before {
+            laid.missing.push(format!("{} to {}", self.brief.rooms[ring].id, self.brief.rooms[spine].id));
         }
     }
 

@@ -42,7 +42,7 @@ impl Site<'_> {
     /// Places doors to outdoors.
     pub(super) fn lay_entrances(&self, entrances: &[(usize, bool)], laid: &mut Laid) {
         for &(room, main) in entrances {
-            let stretches = self.stretches.iter().filter(|s| s.only_room() == Some(room));
+            let stretches = self.stretches.iter().filter(|s| s.leads_out_of() == Some(room));
             let spots: Vec<Spot> = match self.standing_spot(&[room], main) {
                 Some(spot) => vec![spot],
                 None => stretches.flat_map(|s| self.entrance_spots(s, room, main, &laid.spots)).collect(),
@@ -58,7 +58,7 @@ impl Site<'_> {
         for (room, spec) in self.brief.rooms.iter().enumerate() {
             let Some(clear) = spec.gate else { continue };
             let opening = Brief::opening(clear);
-            let walls = self.stretches.iter().filter(|s| s.only_room() == Some(room));
+            let walls = self.stretches.iter().filter(|s| s.leads_out_of() == Some(room));
             let mut spots: Vec<Spot> = self.standing_spot(&[room], false).into_iter().collect();
             if spots.is_empty() {
                 spots.extend(walls.flat_map(|s| self.gate_spots(s, room, clear, opening)));
@@ -91,7 +91,7 @@ impl Site<'_> {
             return;
         };
         let is_end =
-            |s: &&Stretch| s.only_room() == Some(spine) && meters(s.len()) <= END_WALL * self.brief.spine_width;
+            |s: &&Stretch| s.leads_out_of() == Some(spine) && meters(s.len()) <= END_WALL * self.brief.spine_width;
         let middle = |s: &Stretch| s.point((meters(s.from) + meters(s.to)) / 2.0);
         let mut ends: Vec<&Stretch> = self.stretches.iter().filter(is_end).collect();
         for _ in 0..ends.len() {
@@ -132,7 +132,7 @@ impl Site<'_> {
             let away = |spot: &Spot| {
                 own.iter().map(|p| p.distance(spot.door.line.middle())).fold(f64::MAX, f64::min).min(MOST_WAY_M)
             };
-            let walls = self.stretches.iter().filter(|s| s.only_room() == Some(room));
+            let walls = self.stretches.iter().filter(|s| s.leads_out_of() == Some(room));
             let mut spots: Vec<Spot> = walls.flat_map(|s| self.entrance_spots(s, room, false, &laid.spots)).collect();
             spots.iter_mut().for_each(|spot| spot.penalty = MOST_WAY_M - away(spot));
             laid.take_best(spots);
