@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use d3dgen_model::report::{ConstraintResult, ConstraintSummary, Report, Status, Violation};
+use d3dgen_model::report::{ConstraintResult, ConstraintSummary, Report, RobotFit, Status, Violation};
 use d3dgen_model::scene_graph::Note;
 use d3dgen_pipeline::generate::Generated;
 use serde_json::{Value, json};
@@ -31,6 +31,7 @@ pub struct Summary {
     area_m2: f64,
     objects: usize,
     robots: usize,
+    robot_fit: Vec<String>,
     people: usize,
     constraints: ConstraintSummary,
     violated: Vec<String>,
@@ -63,6 +64,7 @@ impl Summary {
             area_m2: world.floorplan.rooms.iter().map(|r| r.net_area_m2).sum(),
             objects: world.placements.placements.len(),
             robots: world.scenario.robots.len(),
+            robot_fit: report.robot_fit.iter().map(fit_line).collect(),
             people: world.scenario.agents.len(),
             constraints: report.summary.clone(),
             violated: violated_lines(report),
@@ -144,6 +146,7 @@ impl Summary {
         }
         let proposed: Vec<String> = self.proposals.iter().map(|(stage, line)| format!("{stage}: {line}")).collect();
         for (label, lines) in [
+            ("robot", self.robot_fit.clone()),
             ("proposed", proposed),
             ("assumed", messages(&self.assumptions)),
             ("changed", messages(&self.conflicts)),
@@ -178,6 +181,23 @@ impl Summary {
 
     fn total_ms(&self) -> f64 {
         self.times.iter().map(|(_, t)| ms(*t)).sum()
+    }
+}
+
+/// Returns whether a robot fits, and else how many rooms it gets to and the narrowest place on its way to the others.
+fn fit_line(fit: &RobotFit) -> String {
+    let body = format!("{} robot that needs {:.2} m", fit.kind, 2.0 * fit.radius_m);
+    let reached = fit.rooms.iter().filter(|w| w.reachable).count();
+    let missed = fit.rooms.iter().chain(&fit.points).filter(|w| !w.reachable);
+    let narrow = missed.min_by(|a, b| b.clear_width_m.total_cmp(&a.clear_width_m));
+    match narrow.filter(|_| !fit.fits) {
+        Some(way) => {
+            let height = way.clear_height_m.map(|h| format!("{h:.2} m of height"));
+            let clear = height.unwrap_or_else(|| format!("{:.2} m", way.clear_width_m));
+            let rooms = fit.rooms.len();
+            format!("{body} gets to {reached} of {rooms} rooms; to {} there are {clear} at {}", way.to, way.narrowest)
+        }
+        None => format!("{body} fits"),
     }
 }
 

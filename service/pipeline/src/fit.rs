@@ -2,7 +2,7 @@
 
 use d3dgen_model::passage::RobotWay;
 use d3dgen_model::robot_body::RobotBody;
-use d3dgen_model::scene_graph::{Robot, SceneGraph};
+use d3dgen_model::scene_graph::{Note, Robot, SceneGraph};
 
 use crate::Error;
 use crate::generate::Generated;
@@ -11,6 +11,22 @@ use crate::generate::Generated;
 const SMALL_M: f64 = 0.2;
 /// How closely the largest radius that fits is sought, m.
 const STEP_M: f64 = 0.05;
+
+/// Returns the graph of the same building made without the robots whose bodies are known, which then drive only where they
+/// can; `None` where there are none, or the building is to be made for them.
+pub(crate) fn without_robots(graph: &SceneGraph) -> Option<SceneGraph> {
+    let is_own = |r: &&Robot| !r.misfit && r.body.is_some_and(|b| !b.fit);
+    let widest = graph.robots.iter().filter(is_own).map(|r| r.radius_m).fold(0.0, f64::max);
+    let mut out = graph.clone();
+    out.robots.iter_mut().for_each(|r| r.misfit |= is_own(&&*r));
+    let message = format!(
+        "these rooms are too small for a robot that needs {:.2} m; they are made as without it, and the report says where it \
+         fits (--fit-robot makes them for it)",
+        2.0 * widest
+    );
+    out.conflicts.push(Note { code: "robot_does_not_fit".into(), message });
+    (widest > 0.0).then_some(out)
+}
 
 /// Returns the world when the robots that are to fit do; else refuses, with the least change that would help.
 ///

@@ -43,6 +43,8 @@ impl Default for Settings {
 
 /// How often plan and furniture are tried for each smaller robot, when one that was to fit does not.
 const FEW_ATTEMPTS: u32 = 3;
+/// How often they are tried for a robot that somebody has and that the building need not be made for.
+const FOR_OWN_ROBOT: u32 = 2;
 /// Rooms of a storey up to which a sound world that misses a law, or with something before a door or window, is tried again:
 /// in a large building there is always one.
 const FEW_ROOMS: usize = 26;
@@ -159,13 +161,24 @@ pub fn furnish_and_check(
         stage: "floorplan",
         message: format!("the scene graph is of domain `{}`, which is not registered", graph.domain),
     })?;
-    let made = match attempts(graph, plugin, settings, observe, cancelled) {
+    let mut made = |graph: &SceneGraph, settings: &Settings| match attempts(graph, plugin, settings, observe, cancelled)
+    {
         Err(error @ Error::Infeasible { .. }) => match relaxed(graph) {
             Some(relaxed) => attempts(&relaxed, plugin, settings, observe, cancelled),
             None => Err(error),
         },
         other => other,
     };
+    if let Some(without) = fit::without_robots(graph) {
+        let few = Settings { attempts: FOR_OWN_ROBOT.min(settings.attempts), ..settings.clone() };
+        let with = made(graph, &few);
+        return match &with {
+            Ok(found) if found.report.is_writable() => with,
+            Ok(_) | Err(Error::Infeasible { .. }) => made(&without, settings),
+            Err(_) => with,
+        };
+    }
+    let made = made(graph, settings);
     if !graph.robots.iter().any(Robot::is_fitted) {
         return made;
     }
@@ -199,6 +212,8 @@ struct Faults {
     broken: usize,
     /// Laws of the knowledge base that are not kept.
     laws: usize,
+    /// Robots without a dock of their own.
+    undocked: usize,
     /// Things before doors and windows.
     before: usize,
     /// Advice of the knowledge base that is not followed.
@@ -237,12 +252,14 @@ fn attempts(
                 let World { floorplan, placements, .. } = &found.world;
                 let before = if picky { before_openings(floorplan, placements, plugin.domain()) } else { 0 };
                 let (laws, advice) = found.report.missed();
-                let faults = Faults { broken, laws: if picky { laws } else { 0 }, before, advice };
-                if (faults.broken, faults.laws, faults.before) == (0, 0, 0) {
+                let undocked = if picky { scenario::without_dock(&found.world.scenario.robots).len() } else { 0 };
+                let faults = Faults { broken, laws: if picky { laws } else { 0 }, undocked, before, advice };
+                if (faults.broken, faults.laws, faults.undocked, faults.before) == (0, 0, 0, 0) {
                     return Ok(found);
                 }
                 let why = match broken {
                     0 if laws > 0 => format!("{laws} law(s) are not kept"),
+                    0 if undocked > 0 => format!("{undocked} robot(s) have no dock of their own"),
                     0 => format!("{before} thing(s) before doors or windows"),
                     _ if unfit => "a robot does not fit".to_owned(),
                     _ => format!("breaks {broken} hard rule(s), first {first}"),
@@ -341,6 +358,7 @@ fn attempt(
     let mut told = with_area(graph, &plan);
     told.conflicts.extend(scene_graph::shortages(domain, graph, &placements));
     told.conflicts.extend(far_apart(graph, &plan));
+    let told = scenario::with_shortages(told, &scenario);
     let mut world = world::assemble(name, told, plan, placements, scenario);
     let report = world::check(&world, domain, retrieved);
     world.scene_graph.conflicts.extend(ways_out::told(&world, &report, domain, retrieved));
@@ -391,6 +409,7 @@ pub fn finish(
 ) -> Result<(World, Report), Error> {
     let reseeded = SceneGraph { seed: plan.seed, ..graph.clone() };
     let scenario = scenario::generate(&reseeded, &plan, &placements, domain)?;
+    let graph = scenario::with_shortages(graph, &scenario);
     let world = world::assemble(name, graph, plan, placements, scenario);
     let report = world::check(&world, domain, retrieved);
     Ok((world, report))

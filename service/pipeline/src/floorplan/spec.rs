@@ -495,7 +495,7 @@ fn room_spec(
     let advised = limit.door_width_advised.unwrap_or(0.0).min(door_width + MOST_ADVISED_DOOR_M);
     door_width = door_width.max(advised);
     // A robot's circle passes with 5 cm to spare on both sides.
-    let robot = graph.robots.iter().map(|r| 2.0 * r.radius_m + 0.1).fold(0.0, f64::max);
+    let robot = graph.robots.iter().map(|r| 2.0 * r.planned_radius_m() + 0.1).fold(0.0, f64::max);
     let robots = !graph.robots.is_empty();
     let automatic = robots && domain.circulation.automatic_doors && kind.robot.iter().any(|u| *u != RobotUse::KeepOut);
     // what hangs in the air or lies below the ground has no drive

@@ -44,8 +44,17 @@ pub(super) fn add_missing(
     let home = first.and_then(|p| plan.room(&p.room_id)).map_or(0, |r| r.level);
     let suits = |room: &&PlanRoom| {
         let kind = domain.room_type_or_generic(&room.room_type);
-        let charges = kind.robot.contains(&RobotUse::Charging) && !kind.robot.contains(&RobotUse::KeepOut);
+        let kept_out = kind.robot.contains(&RobotUse::KeepOut) || graph.keeps_robots_out(&room.room_id);
+        let charges = kind.robot.contains(&RobotUse::Charging) && !kept_out;
         dock_rank(kind, robot).filter(|_| charges && room.level == home)
+    };
+    let most = |room: &PlanRoom| {
+        let kind = domain.room_type_or_generic(&room.room_type);
+        let line = kind
+            .furnishing
+            .iter()
+            .find(|f| f.required && domain.anchor(&f.item).is_some_and(|o| o.shape == Shape::Dock));
+        line.map_or(most_docks(room.net_area_m2), |line| line.max)
     };
     let mut rooms: Vec<(u8, &PlanRoom)> = plan.rooms.iter().filter_map(|r| Some((suits(&r)?, r))).collect();
     rooms.sort_by_key(|r| r.0);
@@ -55,7 +64,7 @@ pub(super) fn add_missing(
             rooms.iter().enumerate().find_map(|(at, (_, room))| {
                 let here: Vec<&Placement> = out.placements.iter().filter(|p| p.room_id == room.room_id).collect();
                 let own = here.iter().filter(|p| docks.contains(&p.object.as_str())).count();
-                if own >= most_docks(room.net_area_m2) as usize {
+                if own >= most(room) as usize {
                     return None;
                 }
                 let more = one_more(graph, storey, room, (domain, limits), &here, Wanted::IfFree(dock), stop)?;
@@ -88,7 +97,7 @@ fn is_free(
 ) -> bool {
     let own = p.footprint().bounds();
     let others = here.iter().filter(|o| stops_robot(o) && !is_shallow(o)).map(|o| o.footprint().bounds());
-    let robot = graph.robots.iter().map(|r| r.radius_m).fold(super::LEAST_RADIUS_M, f64::max);
+    let robot = graph.robots.iter().map(|r| r.planned_radius_m()).fold(super::LEAST_RADIUS_M, f64::max);
     let depth = free_depth(p, Side::Front, &room.net_polygon, others);
     let at = Point::new(p.pose.x, p.pose.y);
     depth >= dock.clearance_front_m.max(2.0 * robot)

@@ -4,7 +4,7 @@ use d3dgen_model::domain::{Arrangement, Domain, Furnishing, Goods, Mount, Object
 use d3dgen_model::occupancy::ROBOT_HEIGHT_M;
 use d3dgen_model::scene_graph::{GraphRoom, SceneGraph};
 
-use crate::scene_graph::CLEANING;
+use crate::scene_graph::{CLEANING, docks_held, widest_m};
 
 use super::seats::is_seat;
 
@@ -134,6 +134,9 @@ pub(super) struct Household<'a> {
     /// True where step-free access is asked for.
     accessible: bool,
     has_robots: bool,
+    /// How many of them live in each of the rooms that are there for their docks, and the largest circle that one turns in, m.
+    in_each: u32,
+    circle_m: f64,
     /// True when one of them cleans: the docks of rooms for soiled things are theirs.
     cleans: bool,
     /// True where one robot lives in a room that is there for its dock: no other has one.
@@ -149,6 +152,8 @@ impl<'a> Household<'a> {
             kind.furnishing.iter().any(|f| f.required && usual_unit(domain, &f.item).is_some_and(|u| u.beds() > 0))
         };
         let held = graph.rooms.iter().filter_map(|r| Some((domain.room_type(&r.room_type)?, r.occupants?)));
+        let robots = graph.robots.iter().map(|r| r.count).fold(0, u32::saturating_add);
+        let homes = graph.rooms.iter().filter(|r| has_docks(domain, domain.room_type_or_generic(&r.room_type))).count();
         Self {
             domain,
             room_types,
@@ -159,9 +164,10 @@ impl<'a> Household<'a> {
                 .collect(),
             accessible: graph.accessible,
             has_robots: !graph.robots.is_empty(),
+            in_each: robots.div_ceil(homes.max(1) as u32),
+            circle_m: widest_m(&graph.robots),
             cleans: graph.robots.iter().any(|r| r.kind == CLEANING),
-            one_berth: graph.robots.iter().map(|r| r.count).sum::<u32>() == 1
-                && graph.rooms.iter().any(|r| has_docks(domain, domain.room_type_or_generic(&r.room_type))),
+            one_berth: robots == 1 && homes > 0,
             sharing: held
                 .filter(|(kind, _)| sleeps(kind))
                 .map(|h| h.1)
@@ -225,6 +231,11 @@ pub(super) fn tasks<'a>(
         if bed.is_some_and(|b| std::ptr::eq(b, f)) {
             required = 1;
         }
+        // in a room that is there for it each robot has a dock of its own
+        let berths = f.required && anchor.shape == Shape::Dock && household.in_each > 0;
+        if berths {
+            count = docks_held(f, area_m2, household.in_each, household.circle_m);
+        }
         // what finds no wall of the same stands in rows
         let goes_on = |of: usize| {
             line > of && f.arrangement == Arrangement::Rows && kind.furnishing.get(of).is_some_and(|o| o.item == f.item)
@@ -268,7 +279,7 @@ pub(super) fn tasks<'a>(
         let (rule, instead_of) = (rule.clone(), &f.instead_of[..]);
         let first_choice =
             asked || kind.furnishing.iter().any(|other| other.required && other.instead_of.contains(&f.item));
-        let asked = asked || f.sleepers > 0 && anchor.shape == Shape::Bed;
+        let asked = asked || f.sleepers > 0 && anchor.shape == Shape::Bed || berths && count > 1;
         let item = &f.item;
         let leads = line == 0 || instead_of.contains(&kind.furnishing[0].item);
         let whole = Task {

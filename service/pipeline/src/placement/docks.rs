@@ -84,11 +84,16 @@ pub(super) fn crowding(state: &State, p: &Placed, robot: i32) -> f64 {
     CROWDED * (others + corners) + NARROW * narrow + buffers(p, robot).map(|b| crowded(&b)).sum::<f64>()
 }
 
+/// Returns how far from each other the middles of robots that charge side by side are at least, mm.
+pub(super) fn beside_berth(robot: i32) -> i32 {
+    robot + PLAY
+}
+
 /// Returns true for a dock whose robot would touch one that charges beside it, or that one of the two could not leave while
 /// the other charges.
 pub(super) fn touches_robot(state: &State, p: &Placed, robot: i32) -> bool {
     let stands = || state.placed.iter().flat_map(berths);
-    let touches = berths(p).any(|own| stands().any(|other| other.gap(&own) < robot + PLAY));
+    let touches = berths(p).any(|own| stands().any(|other| other.gap(&own) < beside_berth(robot)));
     let shut = |own: &Placed, other: &Placed| {
         leaving(own, robot, 2).any(|way| leaving(other, robot, 1).any(|parked| parked.overlaps(&way)))
     };

@@ -40,6 +40,8 @@ const TABLE_FOR_MANY: f64 = 2.5;
 const ASKED: f64 = 3.0;
 /// How far beside the axis of those on a sofa a screen is that they do not see well, mm.
 const FAR_ASIDE: i32 = 700;
+/// How far from the door hands are washed at most, mm.
+const FAR_FROM_DOOR: i32 = 2500;
 /// Departures tried where something has no place that the room can do without.
 const LOOKS: usize = 2;
 /// Units in rows or a grid, and what they are worth.
@@ -292,6 +294,7 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
                 _ if best.docks_taken() > 0
                     || best.state.lacks_circle()
                     || best.eats_at_sofa()
+                    || self.washes_far_in(&best)
                     || self.looks_aside(&best) =>
                 {
                     DEPARTURES.len() + RESCUES.len()
@@ -404,6 +407,18 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
     /// Returns true where a sofa leaves too little floor for the table or for what was asked for by name.
     fn crowds_out(&self, draft: &Draft) -> bool {
         self.lacks_table_for_many(draft) || draft.eats_at_sofa() || draft.outcome.asked_for(self.job) > 0
+    }
+
+    /// Returns true where a basin that belongs to the door is far from it.
+    fn washes_far_in(&self, draft: &Draft) -> bool {
+        let Some(door) = self.job.space.doors.first() else { return false };
+        let belongs = |p: &&Placed| {
+            let task = self.job.tasks.get(p.task);
+            let by_door = task.is_some_and(|t| t.arrangement == Arrangement::BesideDoor);
+            by_door && p.unit.anchor().object.shape == Shape::Basin
+        };
+        let far = |p: &Placed| p.world(&p.unit.bbox).gap(&door.zone) > FAR_FROM_DOOR;
+        draft.state.placed.iter().filter(belongs).any(far)
     }
 
     /// Returns true where what those on the sofa or in bed look at is far beside them.
@@ -551,6 +566,12 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
         depths.max().unwrap_or(0)
     }
 
+    /// Returns true for a dock in a room that is to have more of them.
+    fn is_one_of_several_docks(&self, task: &Task) -> bool {
+        let docks = self.job.tasks.iter().filter(|t| t.anchor.shape == Shape::Dock);
+        task.anchor.shape == Shape::Dock && docks.map(|t| t.count).sum::<u32>() > 1
+    }
+
     /// Returns what stands on the floor and faces the only unit of the line a room begins with.
     fn across(&self, task: &Task) -> Option<Rc<Unit<'a>>> {
         if task.line > 0 || task.count > 1 {
@@ -663,6 +684,7 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
             for unit in forms {
                 let mut find = Find::new(state, task, index, self.job.salt, aisle, tally);
                 (find.across, find.aside, find.at_wall) = (self.across(task), aside, at_wall);
+                find.banked = self.is_one_of_several_docks(task);
                 candidates.extend(find.run(unit));
             }
             candidates.retain(|c| c.in_corner || !in_corner);

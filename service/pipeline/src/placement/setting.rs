@@ -133,7 +133,7 @@ fn workroom_area(plan: &Floorplan, domain: &Domain, limits: &Limits) -> Option<f
 
 /// Returns the width that ways through circulation keep, m.
 fn way_width(graph: &SceneGraph, domain: &Domain, limits: &Limits) -> f64 {
-    let robot_m = graph.robots.iter().map(|r| r.radius_m).fold(LEAST_RADIUS_M, f64::max);
+    let robot_m = graph.robots.iter().map(|r| r.planned_radius_m()).fold(LEAST_RADIUS_M, f64::max);
     let asked_m = limits.corridor_width.as_ref().map_or(0.0, |l| l.value).max(domain.circulation.width_m);
     asked_m.max(2.0 * robot_m)
 }
@@ -186,7 +186,7 @@ fn pick_sizes<'a>(
 /// wheelchair's where one is to get about.
 fn radius(graph: &SceneGraph, space: &Space) -> i32 {
     let least = mm(if graph.accessible { WHEELCHAIR_RADIUS_M } else { LEAST_RADIUS_M });
-    let robot = graph.robots.iter().map(|r| mm(r.radius_m)).fold(least, i32::max);
+    let robot = graph.robots.iter().map(|r| mm(r.planned_radius_m())).fold(least, i32::max);
     let doors = space.doors.iter().map(|d| d.clear_width / 2).max().unwrap_or(robot);
     robot.min(doors).max(least)
 }

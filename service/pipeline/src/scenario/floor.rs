@@ -11,6 +11,7 @@ use d3dgen_model::obstacles::Obstacles;
 use d3dgen_model::occupancy::{Bitmap, CELL_M, Occupancy, ROBOT_HEIGHT_M};
 use d3dgen_model::placements::{Placement, Placements};
 use d3dgen_model::scene_graph::SceneGraph;
+use d3dgen_model::storeys::LinkKind;
 use d3dgen_model::{Point, Pose, Rect};
 
 use super::tour::Doors;
@@ -72,6 +73,10 @@ pub(super) struct Room<'a> {
     pub quiet: Bitmap,
     /// Floor that nothing stands on, m^2.
     pub free_m2: f64,
+    /// True where robots stay out: by its type, by the prompt, or because they would fall down the steps.
+    pub keep_out: bool,
+    /// Highest speed of robots that the prompt asks for, m/s.
+    pub max_speed_m_s: Option<f64>,
     /// Its first cell in the grid of the building.
     pub corner: (i64, i64),
 }
@@ -79,7 +84,7 @@ pub(super) struct Room<'a> {
 impl<'a> Floor<'a> {
     pub fn new(graph: &SceneGraph, plan: &'a Floorplan, placements: &'a Placements, domain: &'a Domain) -> Self {
         let occupancy = Occupancy::of_world(plan, placements);
-        let radius = graph.robots.iter().map(|r| r.radius_m).fold(LEAST_RADIUS_M, f64::max);
+        let radius = graph.robots.iter().map(|r| r.planned_radius_m()).fold(LEAST_RADIUS_M, f64::max);
         let height = graph.robots.iter().map(|r| r.height_m).fold(0.0, f64::max);
         let main = occupancy.reach(plan, radius).main;
         // grids that begin elsewhere see gaps a cell narrower
@@ -129,6 +134,8 @@ impl<'a> Floor<'a> {
                 undisturbed,
                 quiet: floor,
                 free_m2,
+                keep_out: keeps_out(graph, plan, domain, &room.room_id),
+                max_speed_m_s: graph.robot_speed_m_s(&room.room_id),
                 corner: (i0.max(0), j0.max(0)),
             }
         };
@@ -289,6 +296,14 @@ impl<'a> Floor<'a> {
 /// Returns which of some spots is the best; of equal ones the southernmost, then the westernmost.
 fn nearest(spots: &[(f64, Point)]) -> Option<usize> {
     (0..spots.len()).min_by(|a, b| spots[*a].0.total_cmp(&spots[*b].0))
+}
+
+/// Returns true for a room that robots stay out of.
+pub(super) fn keeps_out(graph: &SceneGraph, plan: &Floorplan, domain: &Domain, room_id: &str) -> bool {
+    let kind = plan.room(room_id).map(|r| domain.room_type_or_generic(&r.room_type));
+    kind.is_some_and(|kind| kind.robot.contains(&RobotUse::KeepOut))
+        || graph.keeps_robots_out(room_id)
+        || plan.link_of(room_id).is_some_and(|link| link.kind == LinkKind::Stairs)
 }
 
 impl Room<'_> {

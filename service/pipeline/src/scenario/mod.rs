@@ -23,6 +23,7 @@ use d3dgen_model::scene_graph::SceneGraph;
 
 use crate::Error;
 use floor::Floor;
+pub(crate) use robots::{DOCKS_MISSING, without_dock};
 
 /// Fills a furnished building with regions, points, robots and people.
 ///
@@ -69,6 +70,16 @@ fn one_storey(
     scenario.rois.extend(staged);
     scenario.agents = people::all(&mut floor, graph);
     scenario
+}
+
+/// Returns the graph with what its robots lack in a scenario: docks of their own, floor to put goods down.
+pub(crate) fn with_shortages(mut graph: SceneGraph, scenario: &Scenario) -> SceneGraph {
+    graph.conflicts.retain(|n| n.code != DOCKS_MISSING);
+    graph.conflicts.extend(robots::dock_shortage(&scenario.robots));
+    graph.assumptions.retain(|n| n.code != staging::NO_STAGING);
+    let unstaged = staging::staging_shortage(&graph, &scenario.rois);
+    graph.assumptions.extend(unstaged);
+    graph
 }
 
 fn fits(graph: &SceneGraph, plan: &Floorplan, placements: &Placements) -> Result<(), Error> {

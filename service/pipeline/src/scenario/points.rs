@@ -93,7 +93,10 @@ pub(super) fn all(floor: &Floor, graph: &SceneGraph) -> Vec<Poi> {
             );
         }
     }
-    for room in floor.rooms.iter().filter(|r| r.is_for(RobotUse::Service) && !r.is_for(RobotUse::KeepOut)) {
+    // where the prompt sends a robot it stops, whatever others do there
+    let sent = |id: &String| graph.robots.iter().any(|r| r.stops.contains(id));
+    let serves = |r: &&Room| (r.is_for(RobotUse::Service) || sent(&r.plan.room_id)) && !r.keep_out;
+    for room in floor.rooms.iter().filter(serves) {
         let pose = match served(floor, room) {
             Some(&(object, kind)) => at_object(floor, room, (object, kind)).map(|(_, pose)| pose),
             // nobody takes anything over in the middle of a corridor
@@ -105,7 +108,7 @@ pub(super) fn all(floor: &Floor, graph: &SceneGraph) -> Vec<Poi> {
     }
     if graph.robots.iter().any(|r| r.kind == CLEANING) {
         let cleaned = |r: &&Room| r.is_for(RobotUse::CleaningHigh) || r.is_for(RobotUse::CleaningLow);
-        for room in floor.rooms.iter().filter(cleaned).filter(|r| !r.is_for(RobotUse::KeepOut)) {
+        for room in floor.rooms.iter().filter(cleaned).filter(|r| !r.keep_out) {
             let id = format!("cleaning_point_{}", room.plan.room_id);
             out.extend(in_the_middle(floor, room).map(|pose| poi(id, "cleaning_point", room, pose)));
         }

@@ -22,6 +22,8 @@ const TOUCH_M: f64 = 0.01;
 const DOCK_BESIDE_M: f64 = 0.5;
 /// Floor inside the doors out of the building on which nobody waits, m.
 const INSIDE_EXIT_M: f64 = 1.5;
+/// What the floor says that robots stay out of.
+pub(super) const STAY_OUT: &str = "robots stay out";
 /// Least side of a region, m.
 const LEAST_SIDE_M: f64 = 0.3;
 
@@ -36,14 +38,15 @@ pub(super) fn all(floor: &Floor) -> Vec<Roi> {
             let polygon = room.plan.net_polygon.clone();
             out.push(Roi::new(format!("{prefix}_{id}"), kind, id, polygon, note.into()));
         };
-        if room.is_for(RobotUse::KeepOut) {
-            whole(RoiKind::KeepOut, "keep_out", "robots stay out");
+        if room.keep_out {
+            whole(RoiKind::KeepOut, "keep_out", STAY_OUT);
         } else if room.is_for(RobotUse::CleaningHigh) {
             whole(RoiKind::CleaningZone, "cleaning_zone", "high");
         } else if room.is_for(RobotUse::CleaningLow) {
             whole(RoiKind::CleaningZone, "cleaning_zone", "low");
         }
         if room.is_for(RobotUse::Service)
+            && !room.keep_out
             && let Some(&(object, kind)) = served(floor, room)
             && let side = at_object(floor, room, (object, kind)).map_or(0, |(side, _)| side)
             && let Some(polygon) = clipped(room, &service_floor(floor, room, (object, side), &buffers))
@@ -54,7 +57,7 @@ pub(super) fn all(floor: &Floor) -> Vec<Roi> {
         }
         for (dock, buffer) in &buffers {
             docks += 1;
-            if let Some(polygon) = clipped(room, buffer) {
+            if let Some(polygon) = clipped(room, &beside_furniture(room, dock, *buffer)) {
                 let note = format!("free floor of {}", dock.placement_id);
                 let roi_id = format!("charging_buffer_{docks}");
                 out.push(Roi::new(roi_id, RoiKind::ChargingBuffer, id, polygon, note));
@@ -103,6 +106,39 @@ pub(super) fn buffers<'r>(floor: &'r Floor, room: &'r Room) -> impl Iterator<Ite
     })
 }
 
+/// Returns the floor before a dock without what furniture takes beside the lane in which its robot comes.
+fn beside_furniture(room: &Room, dock: &Placement, buffer: Rect) -> Rect {
+    let own = dock.footprint().bounds().grown(-TOUCH_M);
+    let across = quarter(dock.pose.yaw_rad) % 2 == 1;
+    let keeps_lane = |r: &Rect| match across {
+        true => r.x0 <= own.x0 && own.x1 <= r.x1 && r.y0 == buffer.y0 && r.y1 == buffer.y1,
+        false => r.y0 <= own.y0 && own.y1 <= r.y1 && r.x0 == buffer.x0 && r.x1 == buffer.x1,
+    };
+    let standing = room.objects.iter().map(|(p, _)| *p).filter(|p| stops_robot(p) && p.support.is_none());
+    let bodies = standing.filter(|p| p.placement_id != dock.placement_id).map(|p| p.footprint().bounds());
+    bodies.fold(buffer, |left, body| {
+        if body.overlaps(&left.grown(-TOUCH_M)) {
+            beside(left, &body)
+                .into_iter()
+                .filter(keeps_lane)
+                .max_by(|a, b| a.area().total_cmp(&b.area()))
+                .unwrap_or(left)
+        } else {
+            left
+        }
+    })
+}
+
+/// Returns what of a rectangle lies west, east, south and north of another.
+fn beside(whole: Rect, taken: &Rect) -> [Rect; 4] {
+    [
+        Rect { x1: taken.x0, ..whole },
+        Rect { x0: taken.x1, ..whole },
+        Rect { y1: taken.y0, ..whole },
+        Rect { y0: taken.y1, ..whole },
+    ]
+}
+
 /// Returns the floor where robots serve at an object, so many quarters left of its front, without what stands there, the
 /// floor of docks, the swing of doors and the way in from outside, where enough is left.
 fn service_floor(floor: &Floor, room: &Room, (object, side): (&Placement, u8), buffers: &[(&Placement, Rect)]) -> Rect {
@@ -120,14 +156,8 @@ fn service_floor(floor: &Floor, room: &Room, (object, side): (&Placement, u8), b
         if !taken.overlaps(&left.grown(-TOUCH_M)) {
             continue;
         }
-        let beside = [
-            Rect { x1: taken.x0, ..left },
-            Rect { x0: taken.x1, ..left },
-            Rect { y1: taken.y0, ..left },
-            Rect { y0: taken.y1, ..left },
-        ];
         // what is left still lies before the object
-        let parts = beside.into_iter().filter(|r| is_wide(r) && r.overlaps(&own));
+        let parts = beside(left, &taken).into_iter().filter(|r| is_wide(r) && r.overlaps(&own));
         left = parts.max_by(|a, b| a.area().total_cmp(&b.area())).unwrap_or(left);
     }
     left

@@ -7,7 +7,7 @@ use d3dgen_model::obstacles::Obstacles;
 use d3dgen_model::passage::{Passages, RobotWay};
 use d3dgen_model::placements::Placements;
 use d3dgen_model::scenario::{Poi, RobotTask, Scenario};
-use d3dgen_model::scene_graph::{Robot, SceneGraph};
+use d3dgen_model::scene_graph::{Note, Robot, SceneGraph};
 use d3dgen_model::{Point, Pose};
 
 use super::floor::{Floor, looking_at};
@@ -38,9 +38,8 @@ pub(super) fn all(
             let dock = own_dock(floor, graph, robot, &mut docks)
                 .or_else(|| all_docks.get(number % all_docks.len().max(1)).copied());
             let Some(start) = start(floor, pois, dock, &out) else { continue };
-            floor.take(Point::new(start.x, start.y), robot.radius_m);
-            out.push(RobotTask {
-                goals: goals(floor, share(&all, robot, number), dock),
+            let mut task = RobotTask {
+                goals: goals(floor, share(floor, &all, robot, number), dock),
                 robot_id,
                 robot: Robot { count: 1, ..robot.clone() },
                 start,
@@ -48,13 +47,34 @@ pub(super) fn all(
                 level: 0,
                 ways: Vec::new(),
                 routes: Vec::new(),
-            });
-            if let Some(task) = out.last_mut().filter(|t| t.robot.body.is_some()) {
-                task.ways = ways(task, (plan, placements), pois);
+            };
+            if robot.misfit && !keep_where_it_fits(floor, &mut task, pois) {
+                continue;
             }
+            if robot.body.is_some() {
+                task.ways = ways(&task, (plan, placements), pois);
+            }
+            floor.take(Point::new(task.start.x, task.start.y), robot.radius_m);
+            out.push(task);
         }
     }
     out
+}
+
+/// Leaves a robot that the building is made without the goals and the dock that it gets to from floor that it can stand on,
+/// the nearest to where it would start; false where there is none.
+fn keep_where_it_fits(floor: &Floor, task: &mut RobotTask, pois: &[Poi]) -> bool {
+    let Some(map) = floor.occupancy.clear(task.robot.radius_m).largest() else { return false };
+    let wanted = Point::new(task.start.x, task.start.y);
+    let Some(start) = floor.occupancy.nearest(&map, wanted) else { return false };
+    task.start = looking_at(start, wanted);
+    let is_reached = |id: &String| {
+        let at = pois.iter().find(|p| &p.poi_id == id).map(|p| Point::new(p.pose.x, p.pose.y));
+        at.and_then(|at| floor.occupancy.frame.cell(at)).is_some_and(|(i, j)| map.get(i, j))
+    };
+    task.goals.retain(is_reached);
+    task.dock = task.dock.take().filter(is_reached);
+    true
 }
 
 /// Takes the dock that suits a robot best of those that no other one has: where the prompt puts it, else cleaning ones charge
@@ -72,6 +92,30 @@ fn own_dock<'p>(floor: &Floor, graph: &SceneGraph, robot: &Robot, left: &mut Vec
     let at = left.iter().position(told).or_else(|| left.iter().position(wished));
     let at = at.or_else(|| left.iter().position(suits)).or((!left.is_empty()).then_some(0))?;
     Some(left.remove(at))
+}
+
+/// Code of the conflict that says which robots have no dock of their own.
+pub(crate) const DOCKS_MISSING: &str = "docks_missing";
+
+/// Returns the robots that charge and have no dock, or one that is another's.
+pub(crate) fn without_dock(robots: &[RobotTask]) -> Vec<&RobotTask> {
+    let charging: Vec<&RobotTask> = robots.iter().filter(|t| t.robot.charging && !t.robot.misfit).collect();
+    let taken = |i: usize| charging[..i].iter().any(|other| other.dock == charging[i].dock);
+    (0..charging.len()).filter(|&i| charging[i].dock.is_none() || taken(i)).map(|i| charging[i]).collect()
+}
+
+/// Returns what to say where there are fewer docks than robots.
+pub(super) fn dock_shortage(robots: &[RobotTask]) -> Option<Note> {
+    let without = without_dock(robots);
+    let charging = robots.iter().filter(|t| t.robot.charging).count();
+    let shares = |t: &&RobotTask| match &t.dock {
+        Some(dock) => format!("{} shares {dock}", t.robot_id),
+        None => format!("{} has none", t.robot_id),
+    };
+    let named: Vec<String> = without.iter().map(shares).collect();
+    let docks = charging - without.len();
+    let message = || format!("{charging} robots charge and there is floor for {docks} dock(s): {}", named.join(", "));
+    (!named.is_empty()).then(|| Note { code: DOCKS_MISSING.into(), message: message() })
 }
 
 /// Looks for the routes of all robots, each around the others where these start: as the largest of them goes, where a smaller
@@ -103,8 +147,8 @@ pub(super) fn add_routes(floor: &Floor, scenario: &mut Scenario) {
             }
             routers[at].1.round(task, pois)
         };
-        let mut legs = round(floor.radius);
         let radius = task.robot.radius_m;
+        let mut legs = round(floor.radius.max(radius));
         if radius < floor.radius && legs.iter().any(Option::is_none) {
             for (leg, narrow) in legs.iter_mut().zip(round(radius)) {
                 *leg = leg.take().or(narrow);
@@ -167,13 +211,17 @@ fn of_trade<'p>(floor: &Floor, robot: &Robot, pois: &'p [Poi]) -> Vec<&'p Poi> {
     toured(floor, found, pois.iter().find(|p| p.kind == "dock"))
 }
 
-/// Returns the part of a tour that one of several equal robots visits; all where there are fewer points than robots.
-fn share<'p>(all: &[&'p Poi], robot: &Robot, number: usize) -> Vec<&'p Poi> {
+/// Returns the part of a tour that one of several equal robots visits; all where there are fewer points than robots. Each of those
+/// that bring things loads where the clean ones are.
+fn share<'p>(floor: &Floor, all: &[&'p Poi], robot: &Robot, number: usize) -> Vec<&'p Poi> {
+    let loads = |p: &&&'p Poi| floor.goods(&p.room_id) == Goods::Clean && !BRING_NOTHING.contains(&robot.kind.as_str());
+    let (mut own, rest): (Vec<&'p Poi>, Vec<&'p Poi>) = all.iter().partition(loads);
     let robots = robot.count as usize;
-    match all.len() < robots {
-        true => all.to_vec(),
-        false => all[number * all.len() / robots..(number + 1) * all.len() / robots].to_vec(),
+    match rest.len() < robots {
+        true => own.extend(rest),
+        false => own.extend(&rest[number * rest.len() / robots..(number + 1) * rest.len() / robots]),
     }
+    own
 }
 
 /// Returns the ids of goals along a short tour from a robot's dock.

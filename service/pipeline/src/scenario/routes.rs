@@ -8,7 +8,6 @@
 use std::collections::BTreeMap;
 
 use d3dgen_model::Point;
-use d3dgen_model::domain::RobotUse;
 use d3dgen_model::floorplan::Door;
 use d3dgen_model::geometry::to_mm;
 use d3dgen_model::obstacles::{Obstacles, clear_opening};
@@ -268,7 +267,7 @@ impl<'f, 'a> Router<'f, 'a> {
             }
             let ends = [b].into_iter().filter(|m| self.nodes[*m].room == here.room);
             for m in self.doors[here.room].iter().copied().chain(ends).filter(|m| *m != n) {
-                let kept_out = self.floor.rooms[here.room].is_for(RobotUse::KeepOut);
+                let kept_out = self.floor.rooms[here.room].keep_out;
                 let factor = if kept_out { KEPT_OUT } else { 1.0 };
                 match self.stretches.get(&(n.min(m), n.max(m))) {
                     None => to(m, factor * here.at.distance(self.nodes[m].at)),

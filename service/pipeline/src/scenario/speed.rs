@@ -38,7 +38,7 @@ struct Slow<'f> {
 /// Returns all slow floor of a storey, room by room.
 pub(super) fn all(floor: &Floor) -> Vec<Roi> {
     let mut out = Vec::new();
-    for room in floor.rooms.iter().filter(|r| !r.is_for(RobotUse::KeepOut)) {
+    for room in floor.rooms.iter().filter(|r| !r.keep_out) {
         let mut slow = joined(before_doors(floor, room));
         let crossings = crossings(room);
         let known = |r: &Rect| slow.iter().any(|s| s.rect.grown(SAME_M).contains(r));
@@ -47,6 +47,7 @@ pub(super) fn all(floor: &Floor) -> Vec<Roi> {
         slow.extend(new.into_iter().map(|rect| Slow { room, rect, before: Vec::new(), note: note() }));
         slow.extend(at_counter(floor, room));
         out.extend(slow.into_iter().enumerate().map(|(i, s)| s.into_roi(floor, i)));
+        out.extend(asked_for(room));
     }
     out
 }
@@ -65,8 +66,16 @@ impl Slow<'_> {
         };
         let polygon = Polygon(self.rect.corners().to_vec());
         let roi = Roi::new(format!("speed_zone_{id}_{}", number + 1), RoiKind::SpeedZone, id, polygon, what + &why);
-        Roi { max_speed_m_s: Some(speed), ..roi }
+        Roi { max_speed_m_s: Some(self.room.max_speed_m_s.map_or(speed, |most| most.min(speed))), ..roi }
     }
+}
+
+/// Returns all of a room where the prompt says how fast robots drive.
+fn asked_for(room: &Room) -> Option<Roi> {
+    let id = &room.plan.room_id;
+    let polygon = room.plan.net_polygon.clone();
+    let roi = Roi::new(format!("speed_zone_{id}"), RoiKind::SpeedZone, id, polygon, "as the prompt asks".into());
+    Some(Roi { max_speed_m_s: Some(room.max_speed_m_s?), ..roi })
 }
 
 /// Returns the floor in a room before the doors of others that people sleep in.

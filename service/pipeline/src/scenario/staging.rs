@@ -10,7 +10,7 @@ use d3dgen_model::floorplan::Door;
 use d3dgen_model::geometry::to_mm;
 use d3dgen_model::occupancy::{Bitmap, CELL_M, stops_robot};
 use d3dgen_model::scenario::{Roi, RoiKind, Scenario};
-use d3dgen_model::scene_graph::SceneGraph;
+use d3dgen_model::scene_graph::{GraphRoom, Note, SceneGraph};
 use d3dgen_model::{Point, Polygon, Rect};
 
 use super::floor::{CHAIR_BACK_M, Floor, Room, floor_beside, floor_in_front, lane};
@@ -53,22 +53,56 @@ pub(super) const BRING_NOTHING: [&str; 2] = ["cleaning", "disinfection"];
 /// Returns a staging area for each unit of the storey, or for all of it, where there is floor for one beside the routes and
 /// points of its robots.
 pub(super) fn all(floor: &Floor, graph: &SceneGraph, scenario: &Scenario) -> Vec<Roi> {
-    let robots: u32 = graph.robots.iter().filter(|r| !BRING_NOTHING.contains(&r.kind.as_str())).map(|r| r.count).sum();
+    let robots = bringing(graph);
     if robots == 0 {
         return Vec::new();
     }
-    let mut units: Vec<Option<&str>> = Vec::new();
-    for room in &graph.rooms {
-        if room.unit.is_some() && !units.contains(&room.unit.as_deref()) {
-            units.push(room.unit.as_deref());
-        }
-    }
-    if units.is_empty() {
-        units.push(None);
-    }
+    let units = units(&graph.rooms.iter().collect::<Vec<_>>());
     let each = robots.div_ceil(units.len() as u32).min(MOST_ROBOTS);
     let driven = driven(floor, scenario);
     units.into_iter().filter_map(|unit| of_unit(floor, graph, (&scenario.rois, &driven), (unit, each))).collect()
+}
+
+/// Returns how many robots bring goods.
+fn bringing(graph: &SceneGraph) -> u32 {
+    graph.robots.iter().filter(|r| !BRING_NOTHING.contains(&r.kind.as_str())).map(|r| r.count).sum()
+}
+
+/// Returns the units of the rooms of a storey, in their order; `None` for all of a storey without any.
+fn units<'g>(rooms: &[&'g GraphRoom]) -> Vec<Option<&'g str>> {
+    let mut out: Vec<Option<&str>> = Vec::new();
+    for room in rooms {
+        if room.unit.is_some() && !out.contains(&room.unit.as_deref()) {
+            out.push(room.unit.as_deref());
+        }
+    }
+    if out.is_empty() { vec![None] } else { out }
+}
+
+/// Code of the note that says where there is no staging area.
+pub(super) const NO_STAGING: &str = "no_staging_area";
+
+/// Returns what to say of units and storeys without floor for goods, where robots bring some.
+pub(super) fn staging_shortage(graph: &SceneGraph, rois: &[Roi]) -> Option<Note> {
+    let staged: Vec<&GraphRoom> =
+        rois.iter().filter(|r| r.kind == RoiKind::StagingArea).filter_map(|r| graph.room(&r.room_id)).collect();
+    let levels = graph.level_numbers();
+    let lacking = levels.iter().flat_map(|&level| {
+        let here: Vec<&GraphRoom> = graph.rooms.iter().filter(|r| r.level == level).collect();
+        let has = |unit: Option<&str>| {
+            staged.iter().any(|r| r.level == level && (unit.is_none() || r.unit.as_deref() == unit))
+        };
+        let name = |unit: Option<&str>| match unit {
+            Some(unit) => unit.to_owned(),
+            None if levels.len() > 1 => format!("storey {level}"),
+            None => "the building".into(),
+        };
+        units(&here).into_iter().filter(|unit| !has(*unit)).map(name).collect::<Vec<_>>()
+    });
+    let lacking: Vec<String> = lacking.filter(|_| bringing(graph) > 0).collect();
+    let message =
+        || format!("beside the ways of people and robots no floor is left to put goods down in {}", lacking.join(", "));
+    (!lacking.is_empty()).then(|| Note { code: NO_STAGING.into(), message: message() })
 }
 
 /// Returns the floor that robots drive over and wait on.

@@ -3,13 +3,15 @@
 use std::collections::BTreeSet;
 
 use d3dgen_model::domain::{Domain, Shape};
-use d3dgen_model::floorplan::Floorplan;
+use d3dgen_model::floorplan::{Floorplan, PlanRoom};
 use d3dgen_model::placements::Placements;
-use d3dgen_model::scenario::Scenario;
+use d3dgen_model::scenario::{Roi, RoiKind, Scenario};
 use d3dgen_model::scene_graph::SceneGraph;
+use d3dgen_model::storeys::LinkKind;
 use d3dgen_model::world::World;
 
 use super::one_storey;
+use super::regions::STAY_OUT;
 
 /// Fills all storeys of a building.
 pub(super) fn generate(graph: &SceneGraph, plan: &Floorplan, placements: &Placements, domain: &Domain) -> Scenario {
@@ -42,10 +44,22 @@ pub(super) fn generate(graph: &SceneGraph, plan: &Floorplan, placements: &Placem
     for (at, (level, mut world)) in storeys.into_iter().enumerate() {
         let share = |n: u32| n / count + u32::from((at as u32) < n % count);
         world.scene_graph.occupancy.residents = graph.occupancy.residents.map(share);
-        let storey = one_storey(&world.scene_graph, &world.floorplan, &world.placements, domain, level == docked);
+        let mut storey = one_storey(&world.scene_graph, &world.floorplan, &world.placements, domain, level == docked);
+        storey.rois.extend(flights_down(plan, level));
         add(&mut out, storey, level, level == docked);
     }
     out
+}
+
+/// Returns the stairwells of a storey off the ground, which are no floor of it: nothing but a region keeps robots from the steps.
+fn flights_down(plan: &Floorplan, level: i32) -> Vec<Roi> {
+    let off_ground = plan.rooms.iter().filter(|r| level != 0 && r.level == level);
+    let stairs = off_ground.filter(|r| plan.link_of(&r.room_id).is_some_and(|link| link.kind == LinkKind::Stairs));
+    let region = |room: &PlanRoom| {
+        let (id, note) = (format!("keep_out_{}", room.room_id), STAY_OUT.to_owned());
+        Roi::new(id, RoiKind::KeepOut, &room.room_id, room.net_polygon.clone(), note)
+    };
+    stairs.map(region).collect()
 }
 
 /// Adds a storey's scenario; what has a name that is taken gets the storey's number behind it.

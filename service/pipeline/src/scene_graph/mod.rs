@@ -7,6 +7,7 @@
 mod apiece;
 mod beds;
 mod building;
+mod charging;
 mod compounds;
 mod deal;
 mod docks;
@@ -61,13 +62,14 @@ use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::style::Style;
 use d3dgen_plugins::Registry;
 
+pub(crate) use self::charging::{dock_rank, docks_held, most_docks, widest_m};
 pub(crate) use self::given::room_type_called;
 pub use self::given::{Brought, Label, Understood, of_plan, understand};
 use self::program::Planned;
 pub(crate) use self::proposed::suits;
 pub use self::proposed::{BY_PROPOSAL, Draft, DraftEdge, DraftRoom, Settled, propose};
 use self::reading::Reading;
-pub(crate) use self::rooms::{CLEANING, dock_rank, most_docks, wished_assets};
+pub(crate) use self::rooms::{CLEANING, wished_assets};
 pub(crate) use self::seats::shortages;
 use crate::Error;
 
@@ -151,7 +153,7 @@ fn assemble(request: &Request, mut reading: Reading, planned: &[Planned]) -> Sce
         (edges::connect(&mut reading, planned, &mut rooms), Vec::new())
     };
     ring::close(&reading, &links, &mut rooms, &mut web.edges);
-    rooms::add_docks(reading.domain, &reading.robots, &reading.docked, &mut rooms);
+    charging::add_docks(reading.domain, &reading.robots, &reading.docked, &mut rooms);
     robots::send(&reading.errand, &rooms, &mut reading.robots);
     SceneGraph {
         version: 1,
@@ -171,6 +173,7 @@ fn assemble(request: &Request, mut reading: Reading, planned: &[Planned]) -> Sce
         links,
         forbidden_room_types: reading.wishes.forbidden,
         robots: reading.robots,
+        robot_rules: Vec::new(),
         assumptions: reading.assumptions,
         conflicts: reading.conflicts,
     }

@@ -9,11 +9,11 @@ use d3dgen_model::domain::{
 };
 
 use super::beds::{Held, sleeps};
+use super::charging::most_docks;
 use super::layout;
 use super::objects::Thing;
 use super::places::note;
 use super::reading::{MAX_ROOMS, MOST_IN_OFFICE, Reading, is_dwelling};
-use super::rooms::most_docks;
 use super::seated;
 use super::seats;
 use super::spread;

@@ -2,10 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use d3dgen_model::domain::{
-    Domain, Furnishing, GENERIC_ROOM_TYPE, Goods, ObjectType, Privacy, Relation, RobotUse, RoomType, Shape, Zone,
-};
-use d3dgen_model::scene_graph::{GraphRoom, Robot};
+use d3dgen_model::domain::{Domain, GENERIC_ROOM_TYPE, ObjectType, Privacy, Relation, RoomType, Shape, Zone};
+use d3dgen_model::scene_graph::GraphRoom;
 use d3dgen_model::style::SpaceStyle;
 
 use super::beds;
@@ -21,7 +19,7 @@ use super::workers::is_office;
 /// Kind of the robots that clean.
 pub(crate) const CLEANING: &str = "cleaning";
 /// Most objects wished for in one room.
-const MOST_WISHES: usize = 15;
+pub(super) const MOST_WISHES: usize = 15;
 /// Things named of a room that no domain knows.
 const MOST_NAMED: usize = 3;
 /// Share of the usual area per head that a building short of area leaves.
@@ -328,11 +326,8 @@ fn space_scale(reading: &mut Reading) -> f64 {
     scale
 }
 
-/// Area of a room to charge robots over what its docks need: a plan that comes out a little smaller still has them all.
-const DOCK_SPARE: f64 = 1.1;
-
 /// Rounds to 0.1 m^2; ranges of the domains have no finer steps that could be left.
-fn tenth(area: f64) -> f64 {
+pub(super) fn tenth(area: f64) -> f64 {
     (area * 10.0).round() / 10.0
 }
 
@@ -458,125 +453,6 @@ pub(crate) fn wished_assets(domain: &Domain, kind: &RoomType, named: &[String]) 
 }
 
 /// Returns true for the type of the room that joins the others, whatever the plan calls it.
-fn is_way(domain: &Domain, room_type: &str) -> bool {
+pub(super) fn is_way(domain: &Domain, room_type: &str) -> bool {
     domain.circulation.room_type == room_type || domain.circulation.entrance_room_types.iter().any(|t| t == room_type)
-}
-
-/// Makes rooms that are there to charge robots large enough for one dock a robot, as far as one such room goes; a size that
-/// the prompt gives stays.
-fn grow_charging(domain: &Domain, robots: u32, rooms: &mut [GraphRoom]) {
-    let mut left = robots;
-    for room in rooms.iter_mut() {
-        let kind = domain.room_type_or_generic(&room.room_type);
-        let charges = kind.robot.contains(&RobotUse::Charging);
-        let is_dock = |f: &&Furnishing| domain.anchor(&f.item).is_some_and(|o| o.shape == Shape::Dock);
-        let Some(line) = kind.furnishing.iter().filter(|f| charges && f.required).find(is_dock) else { continue };
-        let docks = left.min(line.max);
-        left -= docks;
-        let needed = tenth(f64::from(docks) * line.area_per_item_m2);
-        let [least, most] = room.area_range_m2;
-        if most >= kind.area_m2.max && needed > least {
-            room.area_range_m2 = [needed, most.max(tenth(DOCK_SPARE * DOCK_SPARE * needed))];
-            room.target_area_m2 = room.target_area_m2.max(tenth(DOCK_SPARE * needed));
-        }
-    }
-}
-
-/// Wishes for a dock in the rooms that the prompt wants one in, and for one a robot in rooms that suit one while there are
-/// fewer docks than robots: first one in each room of the staff and in circulation, then several, last in rooms for visitors
-/// and work.
-pub(super) fn add_docks(domain: &Domain, robots: &[Robot], docked: &[String], rooms: &mut [GraphRoom]) {
-    let sum = |counts: &mut dyn Iterator<Item = u32>| counts.fold(0, u32::saturating_add);
-    let is_dock = |id: &str| domain.anchor(id).is_some_and(|o| o.shape == Shape::Dock);
-    let Some(dock) = domain.objects.iter().rev().find(|o| o.shape == Shape::Dock) else { return };
-    // the dock of a mop room is for those that clean
-    let cleans = robots.iter().any(|r| r.kind == CLEANING);
-    let held = |room: &GraphRoom| -> u32 {
-        if !cleans && domain.room_type_or_generic(&room.room_type).goods == Goods::Soiled {
-            return 0;
-        }
-        let lines = domain.room_type_or_generic(&room.room_type).furnishing.iter();
-        sum(&mut lines.filter(|f| is_dock(&f.item)).map(|f| f.units(room.target_area_m2)))
-    };
-    let wished = |room: &GraphRoom| room.wished_assets.iter().filter(|id| **id == dock.id).count() as u32;
-    let wish = |room: &mut GraphRoom| {
-        room.wished_assets.insert(0, dock.id.clone());
-        room.wished_assets.truncate(MOST_WISHES);
-    };
-    grow_charging(domain, sum(&mut robots.iter().map(|r| r.count)), rooms);
-    let mut present = sum(&mut rooms.iter().map(held));
-    for room_type in docked {
-        let here = |r: &&mut GraphRoom| &r.room_type == room_type || r.circulation && is_way(domain, room_type);
-        if let Some(room) = rooms.iter_mut().find(here).filter(|r| held(r) + wished(r) == 0) {
-            wish(room);
-            present = present.saturating_add(1);
-        }
-    }
-    // robots live on one storey
-    let home = rooms.iter().find(|r| held(r) + wished(r) > 0).map_or(0, |r| r.level);
-    for robot in robots {
-        let own = present.min(robot.count);
-        present -= own;
-        for _ in own..robot.count {
-            let suits = |room: &GraphRoom| {
-                let kind = domain.room_type_or_generic(&room.room_type);
-                let charges =
-                    kind.robot.contains(&RobotUse::Charging) && !kind.furnishing.iter().any(|f| is_dock(&f.item));
-                let rank = dock_rank(kind, robot)?;
-                let most = most_docks(room.target_area_m2);
-                // a second one where loads are handed over, before one that takes of the width of a corridor
-                let crowded = wished(room) + u32::from(kind.zone == Zone::Circulation);
-                (charges && wished(room) < most).then_some((room.level != home, rank >= LAST_RANK, crowded, rank))
-            };
-            let all = rooms.iter().enumerate().filter_map(|(i, room)| Some((suits(room)?, i)));
-            let Some((_, best)) = all.min() else { return };
-            wish(&mut rooms[best]);
-            make_room_for_dock(&mut rooms[best], domain);
-        }
-    }
-}
-
-/// Lets a room open to where people pass grow by the floor of a dock: what it is there for stays.
-fn make_room_for_dock(room: &mut GraphRoom, domain: &Domain) {
-    let kind = domain.room_type_or_generic(&room.room_type);
-    let [least, most] = room.area_range_m2;
-    if kind.zone == Zone::Staff && kind.open_front && most >= kind.area_m2.max {
-        room.target_area_m2 = tenth((room.target_area_m2 + DOCK_FLOOR_M2).min(most));
-        let docks = room.wished_assets.iter().filter(|id| domain.anchor(id).is_some_and(|o| o.shape == Shape::Dock));
-        let floor = DOCK_FLOOR_M2 * docks.count() as f64;
-        room.area_range_m2 = [tenth((kind.area_m2.target + floor).min(room.target_area_m2).max(least)), most];
-    }
-}
-
-/// Floor of a dock and of the robot before it, m^2.
-const DOCK_FLOOR_M2: f64 = 4.0;
-/// From here on rooms for staff, work and visitors.
-const LAST_RANK: u8 = 4;
-/// Floor of a room for each dock in it, m^2, and most docks in a room that is there for something else.
-const DOCK_ROOM_M2: f64 = 8.0;
-const MOST_DOCKS: u32 = 3;
-
-/// Returns how many docks a room of this area takes that is there for something else.
-pub(crate) fn most_docks(area_m2: f64) -> u32 {
-    ((area_m2 / DOCK_ROOM_M2) as u32).clamp(1, MOST_DOCKS)
-}
-
-/// Returns how well a room that may have a dock suits a robot, 0 best: stores, rooms to work in, corridors, at last where people wait; robots
-/// that clean charge where soiled things are and no other ones do. `None` for rooms to sleep in.
-pub(crate) fn dock_rank(kind: &RoomType, robot: &Robot) -> Option<u8> {
-    let cleans = robot.kind == CLEANING;
-    match (kind.zone, kind.goods) {
-        (Zone::Service, Goods::Soiled) if cleans => Some(0),
-        // a mop room is no place for what brings mail or meals
-        (Zone::Service, Goods::Soiled) => Some(LAST_RANK + 2),
-        (Zone::Service, Goods::Usual) => Some(if cleans { 1 } else { 0 }),
-        // a base open to the corridor, where loads are handed over, before the corridor, of whose width a dock takes
-        (Zone::Day, _) => Some(2),
-        (Zone::Staff, _) if kind.open_front => Some(2),
-        (Zone::Circulation, _) => Some(3),
-        (Zone::Service, _) => Some(LAST_RANK),
-        (Zone::Staff, _) => Some(LAST_RANK + 1),
-        (Zone::Public | Zone::Outdoor, _) => Some(LAST_RANK + 3),
-        (Zone::Night, _) => None,
-    }
 }

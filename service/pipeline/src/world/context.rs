@@ -89,7 +89,7 @@ impl<'a> Context<'a> {
             index,
             rooms: plan.rooms.iter().map(room).collect(),
             objects: world.placements.placements.iter().map(object).collect(),
-            radius: world.scene_graph.robots.iter().map(|r| r.radius_m).fold(LEAST_RADIUS_M, f64::max),
+            radius: world.scene_graph.robots.iter().map(|r| r.planned_radius_m()).fold(LEAST_RADIUS_M, f64::max),
             world,
             domain,
             retrieval,

@@ -4,7 +4,7 @@
 //! stairs.
 
 use d3dgen_model::Point;
-use d3dgen_model::domain::{Domain, RobotUse};
+use d3dgen_model::domain::{Domain, RobotUse, RoomType};
 use d3dgen_model::floorplan::Floorplan;
 use d3dgen_model::passage::{Passages, RobotWay};
 use d3dgen_model::report::RobotFit;
@@ -65,7 +65,9 @@ fn one(world: &World, storeys: &[(i32, World)], domain: &Domain, robot: &Robot) 
     };
     let served = |id: &str| {
         let kind = world.floorplan.room(id).map(|r| domain.room_type_or_generic(&r.room_type));
-        kind.is_some_and(|k| k.robot.iter().any(|u| own.contains(u)) && !k.robot.contains(&RobotUse::KeepOut))
+        let kept_out = world.scene_graph.keeps_robots_out(id);
+        let used = |k: &RoomType| k.robot.iter().any(|u| own.contains(u)) && !k.robot.contains(&RobotUse::KeepOut);
+        !kept_out && kind.is_some_and(used)
     };
     let missed = rooms.iter().any(|w| served(&w.to) && !w.reachable) || points.iter().any(|w| !w.reachable);
     RobotFit {

@@ -8,6 +8,7 @@ mod corridors;
 mod details;
 mod edit;
 mod edit_storeys;
+mod fleets;
 mod homes;
 mod homes_plans;
 mod homes_read;

@@ -86,6 +86,8 @@ pub(super) struct Find<'f, 'a, 's> {
     pub across: Option<Rc<Unit<'a>>>,
     /// Toward which end of its wall it stands rather than in the middle; 0 for neither.
     pub aside: i8,
+    /// True for one of several docks.
+    pub banked: bool,
     /// True where a sofa is not moved from its wall towards what it looks at.
     pub at_wall: bool,
     style: Style,
@@ -105,7 +107,8 @@ impl<'f, 'a, 's> Find<'f, 'a, 's> {
         let both = task.anchor.clear_sides > 1 && task.anchor.clearance_side_m > 0.0;
         let style = style(task.anchor.shape, task.anchor.mount, both);
         let (out, across, neighbors) = (Vec::new(), None, None);
-        Self { state, task, index, salt, aisle, out, tally, across, aside: 0, at_wall: false, style, neighbors }
+        let (aside, banked, at_wall) = (0, false, false);
+        Self { state, task, index, salt, aisle, out, tally, across, aside, banked, at_wall, style, neighbors }
     }
 
     /// Collects positions of a unit as the task's arrangement wants it.

@@ -17,6 +17,8 @@ use crate::placement::unit::Unit;
 const AISLE: i32 = 900;
 /// Floor by which two who sit back to back let a third pass, mm.
 const PASSAGE: i32 = 250;
+/// Least floor between the desks of those who sit back to back, mm.
+const BACK_TO_BACK: i32 = 1800;
 /// Floor of the two behind them that those who sit back to back may share, mm.
 const SHARED_MOST: i32 = 200;
 /// Free floor between tables in a row where there is room, mm.
@@ -24,6 +26,8 @@ const TABLES_APART: i32 = 500;
 /// Steps away from a place on the ceiling that is taken, mm.
 const BESIDE: [(i32, i32); 9] =
     [(0, 0), (500, 0), (-500, 0), (0, 500), (0, -500), (900, 0), (-900, 0), (0, 900), (0, -900)];
+/// The same along the axes of a room whose middle is taken, mm.
+const OFF_STEP: i32 = 250;
 /// Floor between doors and what senses smoke below the ceiling, mm (IRC R314.3: 3 ft), and the steps that it is moved by.
 const FROM_DOOR: i32 = 930;
 const ALONG: i32 = 250;
@@ -308,6 +312,14 @@ fn doors_behind(space: &Space, placed: &[Placed]) -> f64 {
     BEHIND_COUNTERS * n as f64 / pairs().count().max(1) as f64
 }
 
+/// Returns steps away from the middle of a room along both its axes, the short ones first: over the landing of a stairwell a lamp
+/// has room, over its flights it has none.
+fn off_middle(main: Box2) -> impl Iterator<Item = (i32, i32)> {
+    let most = main.width().max(main.height()) / 2;
+    let steps = (1..=most / OFF_STEP).map(|n| n * OFF_STEP);
+    steps.flat_map(|far| [(far, 0), (-far, 0), (0, far), (0, -far)])
+}
+
 /// Returns how many units rows lack of being as long as the longest, over their number.
 fn ragged(placed: &[Placed], plan: &Plan) -> f64 {
     let mut rows: BTreeMap<i32, i32> = BTreeMap::new();
@@ -356,9 +368,10 @@ fn plans(state: &State, unit: &Unit, task: &Task, focus: Option<u8>, terms: &Ter
                 continue;
             }
             // whoever sits back to back has floor of one's own where there is room
-            let own = if paired && shape == Shape::Desk { 2 * need + PASSAGE } else { 0 };
-            // and never shares so much of it that neither could get up while the other sits there
-            let least = own - PASSAGE - SHARED_MOST;
+            let behind_desks = BACK_TO_BACK - 2 * (b.x1 - unit.anchor().solid.rect.x1);
+            let own = if paired && shape == Shape::Desk { (2 * need + PASSAGE).max(behind_desks) } else { 0 };
+            // and never shares so much of it that neither could get up while the other sits there, however close things stand
+            let least = (own - PASSAGE - SHARED_MOST).max(if own > 0 { behind_desks } else { 0 });
             let gaps = gaps.iter().copied().filter(|g| *g >= least).chain((own > 0).then_some(own));
             let gaps: Vec<i32> = gaps.collect();
             for (&gap_u, &gap_v) in gaps.iter().flat_map(|u| sides.iter().map(move |v| (u, v))) {
@@ -584,7 +597,7 @@ pub(in crate::placement) fn over<'a>(
             tested = far_from_doors(state.space, &p, |p| state.test(p, false).and_then(|()| apart(&placed, p)));
         }
         // beside its place in line where a lamp or a hood hangs already
-        for (du, dv) in BESIDE {
+        for (du, dv) in BESIDE.into_iter().chain(off_middle(main)) {
             if tested.is_ok() {
                 break;
             }

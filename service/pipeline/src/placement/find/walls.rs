@@ -7,11 +7,11 @@ use d3dgen_model::domain::{Arrangement, Mount, Shape};
 use super::barred::Barred;
 use super::ends::BETWEEN_WINDOWS;
 use super::{Find, Rule};
-use crate::placement::docks::door_loss;
+use crate::placement::docks::{beside_berth, door_loss};
 use crate::placement::geom::{Box2, FLAT, turn};
 use crate::placement::seats::is_seat;
 use crate::placement::space::{DoorZone, WallSide};
-use crate::placement::state::{Placed, at_frame};
+use crate::placement::state::{Placed, at_frame, takes_floor};
 use crate::placement::unit::{Part, Unit};
 
 /// Positions nearer than this along a wall are one position, mm.
@@ -50,8 +50,12 @@ const DRAWN_UP: f64 = 1.0;
 /// What a meter more than a way behind it loses: nothing else uses that floor.
 const EMPTY_BEHIND: f64 = 0.4;
 
-/// Opening of a door within which no hob stands, mm, and what a place with one there loses (ways past pots).
+/// Floor ahead of a door, mm, and what a place loses that takes some of it.
+const AHEAD_OF_DOOR: i32 = 900;
+const MET: f64 = 1.2;
+/// Opening of a door within which no hob stands, the same of the floor that a leaf swings over, mm, and what a place with one there loses (ways past pots).
 const FROM_STOVE: i32 = 900;
+const LEAF_FROM_STOVE: i32 = 400;
 const HOT: f64 = 4.0;
 /// What a place loses with a leaf that sweeps the floor before a toilet or its cubicle.
 const SWEPT: f64 = 4.0;
@@ -65,6 +69,8 @@ const ELBOW: i32 = 120;
 const CRAMPED: f64 = 1.5;
 /// What a hand dryer loses for each meter from the basin.
 const FROM_BASIN: f64 = 3.0;
+/// What one of several docks is worth at the end of a wall or right beside another.
+const IN_BANK: f64 = 3.0;
 /// Part of a bed beside which a visitor sits, from its head, mm.
 const HEAD: i32 = 700;
 
@@ -257,10 +263,28 @@ impl<'a> Find<'_, 'a, '_> {
             let own = unit.anchor().solid.rect;
             out.extend([wall.v0 + ELBOW - own.y0, wall.v1 - ELBOW - own.y1]);
         }
-        out.retain(|v| v + b.y0 >= wall.v0 && v + b.y1 <= wall.v1);
         out.sort_unstable();
         out.dedup_by(|a, b| *a - *b < SAME && *a != wall.v1 - unit.bbox.y1);
+        if self.banked {
+            out.extend(self.berth_stops(wall, unit));
+        }
+        out.retain(|v| v + b.y0 >= wall.v0 && v + b.y1 <= wall.v1);
         out
+    }
+
+    /// Returns where one of several docks leaves the others most of a wall: at the ends of it and beside one that stands there,
+    /// as near as the robots before them can be.
+    fn berth_stops(&self, wall: &WallSide, unit: &Unit) -> Vec<i32> {
+        let own = unit.anchor().solid.rect;
+        let middle = (own.y0 + own.y1) / 2;
+        let beside = |p: &Placed<'a>| {
+            let dock = p.world(&p.unit.anchor().solid.rect).turned((4 - wall.q) % 4);
+            let (at, step) = ((dock.y0 + dock.y1) / 2, beside_berth(self.aisle));
+            (p.q == wall.q && (dock.x0 - wall.u).abs() < SAME).then_some([at - step, at + step])
+        };
+        let docks = self.state.placed.iter().filter(|p| p.unit.anchor().object.shape == Shape::Dock);
+        let ends = [wall.v0 + (self.aisle + 1) / 2, wall.v1 - (self.aisle + 1) / 2];
+        docks.filter_map(beside).flatten().chain(ends).map(|at| at - middle).collect()
     }
 
     fn wall_score(&self, p: &Placed<'a>, index: usize, front: &Front, v: i32) -> f64 {
@@ -299,6 +323,9 @@ impl<'a> Find<'_, 'a, '_> {
         s -= style.tight * (spare / 3000.0).min(1.0);
         s += self.window_score(index, a, z) + self.door_score(p) + self.sibling_score(p, a, z, index);
         s -= door_loss(space, p, self.aisle);
+        if self.banked && self.berth_stops(wall, &p.unit).contains(&v) {
+            s += IN_BANK;
+        }
         s += self.company_score(p) - self.at_doors(p) - self.apart_from_run(p) - self.apart_from_basin(p);
         s -= self.across.as_ref().map_or(0.0, |unit| far_view(self.view(p, unit)));
         s + self.arrangement_score(p, index, a, z)
@@ -338,7 +365,8 @@ impl<'a> Find<'_, 'a, '_> {
     fn at_doors(&self, p: &Placed<'a>) -> f64 {
         let space = self.state.space;
         let opening = |d: &DoorZone| space.walls[d.wall].strip(d.v0, d.v1, 0, 0);
-        let hot = |rect: Box2| space.doors.iter().any(|d| opening(d).gap(&rect) < FROM_STOVE);
+        let by_leaf = |d: &DoorZone, rect: &Box2| d.swings_in && d.zone.gap(rect) < LEAF_FROM_STOVE;
+        let hot = |rect: Box2| space.doors.iter().any(|d| opening(d).gap(&rect) < FROM_STOVE || by_leaf(d, &rect));
         let stoves = p.unit.parts.iter().filter(|part| part.object.shape == Shape::Stove);
         let hobs = stoves.filter(|part| hot(p.solid(part).rect)).count();
         let closet = matches!(p.unit.anchor().object.shape, Shape::Cubicle | Shape::Toilet);
@@ -348,7 +376,13 @@ impl<'a> Find<'_, 'a, '_> {
         let shower = |part: &Part| part.object.shape == Shape::Shower && part.mount == Mount::Floor;
         let showers = p.unit.parts.iter().filter(|part| shower(part)).map(|part| p.solid(part).rect);
         let wet = showers.filter(|shower| space.doors.iter().any(|d| d.zone.overlaps(shower))).count();
-        HOT * hobs as f64 + if closet { SWEPT } else { BY_LEAF } * f64::from(swept) + SWEPT * wet as f64
+        let ahead = |d: &DoorZone| space.walls[d.wall].strip(d.v0, d.v1, 0, AHEAD_OF_DOOR);
+        let bodies = || p.unit.parts.iter().map(|part| (part, p.solid(part))).filter(|(part, s)| takes_floor(part, s));
+        let met = space.doors.iter().filter(|d| bodies().any(|(_, s)| s.rect.overlaps(&ahead(d)))).count();
+        MET * met as f64
+            + HOT * hobs as f64
+            + if closet { SWEPT } else { BY_LEAF } * f64::from(swept)
+            + SWEPT * wet as f64
     }
 
     /// Returns what a machine loses away from the sink or hob it works with: a refrigerator belongs to the kitchen's run.

@@ -102,7 +102,7 @@ fn to_corner(door: &Door, room: &Room) -> Option<f64> {
 }
 
 pub fn width(c: &Context, out: &mut Findings) {
-    let robots = c.graph().robots.iter().map(|r| 2.0 * (r.radius_m + ROBOT_SPARE_M)).fold(0.0, f64::max);
+    let robots = c.graph().robots.iter().map(|r| 2.0 * (r.planned_radius_m() + ROBOT_SPARE_M)).fold(0.0, f64::max);
     for door in &c.plan().doors {
         out.look();
         let (needed, why) = needed_width(c, door);

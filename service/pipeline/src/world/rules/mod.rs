@@ -113,7 +113,14 @@ pub const RULES: &[Rule] = &[
     furnishing("object_back", "what belongs against a wall has its back to one", furniture::back),
     furnishing("object_clearance", "objects keep the free floor in front that their use needs", furniture::clearance),
     furnishing("dock_blocked", "docks are clear of doors and furniture", robots::docks),
-    Rule { whole: true, ..furnishing("dock_missing", "robots that charge have a dock", robots::dock_missing) },
+    Rule {
+        whole: true,
+        ..furnishing(
+            "dock_missing",
+            "each robot that charges has a dock of its own, or the world says how many have none",
+            robots::dock_missing,
+        )
+    },
     rule("robot_stuck", "every robot reaches each of its goals from where it starts", robots::tasks),
     rule("pose_taken", "points and people of the scenario stand on free floor of their room", robots::poses),
     rule("region_outside", "regions of the scenario lie in their room", robots::regions),

@@ -8,6 +8,7 @@ use d3dgen_model::scenario::{RobotTask, Roi, RoiKind, Route};
 use d3dgen_model::{Point, Pose, Rect, TOLERANCE_M};
 
 use super::Findings;
+use crate::scenario::{DOCKS_MISSING, without_dock};
 use crate::world::context::{Context, LEAST_RADIUS_M, Object, Room, common_area};
 
 /// A region may reach beyond its room by rounding, m^2.
@@ -46,12 +47,22 @@ pub fn docks(c: &Context, out: &mut Findings) {
     }
 }
 
+/// Each robot that charges has a dock of its own, or the world says how many have none.
 pub fn dock_missing(c: &Context, out: &mut Findings) {
-    if c.graph().robots.iter().any(|r| r.charging) {
+    let charging = c.graph().robots.iter().filter(|r| r.charging && !r.misfit);
+    if charging.map(|r| r.count).sum::<u32>() == 0 {
+        return;
+    }
+    out.look();
+    if !c.objects.iter().any(is_dock) {
+        out.add("building", "robots that charge were asked for and the building has no dock");
+    }
+    if c.graph().conflicts.iter().any(|n| n.code == DOCKS_MISSING) {
+        return;
+    }
+    for task in without_dock(&c.world.scenario.robots) {
         out.look();
-        if !c.objects.iter().any(is_dock) {
-            out.add("building", "robots that charge were asked for and the building has no dock");
-        }
+        out.add(&task.robot_id, "has no dock of its own");
     }
 }
 

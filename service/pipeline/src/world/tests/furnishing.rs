@@ -138,6 +138,15 @@ pub(super) const BREAKS: &[Break] = &[
             charging.then(|| "building".into())
         })
     }),
+    always("dock_missing", |s| {
+        one(s, |w| {
+            // another robot at the same dock
+            let mut task = w.scenario.robots.iter().find(|t| t.robot.charging && t.dock.is_some())?.clone();
+            task.robot_id.push_str("_twin");
+            w.scenario.robots.push(task.clone());
+            Some(task.robot_id)
+        })
+    }),
     always("robot_stuck", |s| {
         one(s, |w| {
             let task = w.scenario.robots.first_mut()?;
