@@ -16,6 +16,7 @@ mod fixtures;
 mod given;
 mod homes;
 mod keeps;
+mod labels;
 mod language;
 mod layout;
 mod measures;
