@@ -145,6 +145,13 @@ fn an_unsound_world_is_reported_and_not_written() {
     let written = files(&home.path().join("bad"));
     assert!(written.contains_key("report.json") && !written.contains_key("world.json"), "{:?}", written.keys());
     assert!(!written.keys().any(|name| name.starts_with("arena")), "{:?}", written.keys());
+
+    // an earlier world in that folder stays, byte by byte
+    let before = files(&home.path().join("flat"));
+    let output = run(home.path(), &[parts.as_slice(), &["--out", "flat"]].concat());
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.code() == Some(1) && told.contains("flat keeps the earlier world"), "{told}");
+    assert!(files(&home.path().join("flat")) == before);
 }
 
 #[test]

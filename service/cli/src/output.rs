@@ -3,6 +3,7 @@
 //! Everything is written into a temporary folder first: beside a folder to be made, inside one that exists (which may be
 //! a mount point or the current folder and cannot be renamed). Dropping an [`Output`] leaves the disk as it was.
 
+use std::fmt;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -14,8 +15,8 @@ use crate::interrupt;
 
 /// Names a world's folder may hold; a folder with anything else in it is somebody's work and is never replaced.
 const OURS: &[&str] = &[
-    "world.json",
-    "report.json",
+    WORLD,
+    MARK,
     "scene_graph.json",
     "floorplan.json",
     "placements.json",
@@ -31,6 +32,8 @@ const OURS: &[&str] = &[
     "nav2",
     "rmf",
 ];
+/// The file that only the folder of a world has which may be used.
+const WORLD: &str = "world.json";
 /// The file that every world's folder has, sound or not.
 const MARK: &str = "report.json";
 const TMP_PREFIX: &str = ".d3dgen-";
@@ -42,6 +45,15 @@ pub struct Output {
     tmp: TempDir,
     exists: bool,
     adds: bool,
+}
+
+/// The folder of an earlier world that stays, for what came now is none.
+pub struct Kept(PathBuf);
+
+impl fmt::Display for Kept {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "nothing was written; {} keeps the earlier world, name another folder", self.0.display())
+    }
 }
 
 impl Output {
@@ -87,17 +99,21 @@ impl Output {
             .map_err(|source| Error::Write { path: self.path.join(name), source })
     }
 
-    /// Puts the folder in its place; an earlier output goes away whole.
+    /// Puts the folder in its place; an earlier output goes away whole. A folder without a world takes the place of none
+    /// with one: that one stays as it is, and so the name of its folder is returned.
     ///
     /// # Errors
     /// `Write`; what was there before is then still there.
-    pub fn commit(self) -> Result<(), Error> {
+    pub fn commit(self) -> Result<Option<Kept>, Error> {
+        if !self.adds && self.path.join(WORLD).exists() && !self.fresh().join(WORLD).exists() {
+            return Ok(Some(Kept(self.path.clone())));
+        }
         let moved = match (self.exists, self.adds) {
             (false, _) => self.rename(),
             (true, false) => self.swap().or_else(|_| self.exchange()),
             (true, true) => self.exchange(),
         };
-        moved.map_err(|source| Error::Write { path: self.path.clone(), source })
+        moved.map(|()| None).map_err(|source| Error::Write { path: self.path.clone(), source })
     }
 
     fn fresh(&self) -> PathBuf {
@@ -266,6 +282,21 @@ mod tests {
             output.commit().unwrap();
         }
         assert_eq!(files(home.path()), ["plan.svg", "report.json"]);
+    }
+
+    #[test]
+    fn a_world_is_replaced_by_worlds_only() {
+        let home = TempDir::new().unwrap();
+        let put = |names: &[&str]| {
+            let output = Output::new(home.path()).unwrap();
+            names.iter().for_each(|n| output.write(n, n.as_bytes()).unwrap());
+            output.commit().unwrap().is_none()
+        };
+        assert!(put(&["report.json"]) && put(&["report.json", "world.json", "plan.svg"]));
+        assert!(!put(&["report.json", "floorplan.json"]));
+        assert_eq!(files(home.path()), ["plan.svg", "report.json", "world.json"]);
+        assert!(put(&["report.json", "world.json"]));
+        assert_eq!(files(home.path()), ["report.json", "world.json"]);
     }
 
     #[test]

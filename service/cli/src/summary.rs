@@ -10,6 +10,7 @@ use d3dgen_pipeline::generate::Generated;
 use serde_json::{Value, json};
 
 use crate::error::Error;
+use crate::output::Kept;
 use crate::table::table;
 
 /// Most notes, broken rules and constraints that are printed of one run; the reports have all.
@@ -23,6 +24,7 @@ pub struct Summary {
     country_code: Option<String>,
     seed: u64,
     path: PathBuf,
+    kept: Option<Kept>,
     sound: bool,
     verdict: &'static str,
     rules: usize,
@@ -56,6 +58,7 @@ impl Summary {
             country_code: graph.country_code.clone(),
             seed: graph.seed,
             path: path.to_path_buf(),
+            kept: None,
             sound: report.sound,
             verdict: verdict(report),
             rules: report.rules.len(),
@@ -82,6 +85,11 @@ impl Summary {
         Self { proposals, ..self }
     }
 
+    /// Returns the figures of a world that was not written, for the folder keeps an earlier one.
+    pub fn with_kept(self, kept: Option<Kept>) -> Self {
+        Self { kept, ..self }
+    }
+
     /// Returns true when the world holds every hard rule.
     pub fn sound(&self) -> bool {
         self.sound
@@ -99,6 +107,7 @@ impl Summary {
         let mut value = json!({
             "world": self.name, "domain": self.domain, "building_type": self.building_type,
             "country_code": self.country_code, "seed": self.seed, "path": self.path.display().to_string(),
+            "written": self.kept.is_none(),
             "sound": self.sound, "verdict": self.verdict.to_lowercase(),
             "rooms": self.rooms, "circulation_rooms": self.circulation,
             "area_m2": round(self.area_m2, 2), "objects": self.objects, "robots": self.robots, "people": self.people,
@@ -138,7 +147,7 @@ impl Summary {
                 ),
             ),
             ("time", format!("{:.0} ms: {}{again}", self.total_ms(), stages.join(", "))),
-            ("folder", self.path.display().to_string()),
+            ("folder", self.folder()),
         ];
         let mut text = format!("\n{}, seed {}: {}\n", self.name, self.seed, self.verdict);
         for (label, value) in rows {
@@ -156,6 +165,10 @@ impl Summary {
             text += &listed(label, &lines);
         }
         text
+    }
+
+    fn folder(&self) -> String {
+        self.kept.as_ref().map_or_else(|| self.path.display().to_string(), Kept::to_string)
     }
 
     fn row(&self) -> Vec<String> {
@@ -222,6 +235,8 @@ pub fn closing(worlds: &[Summary]) -> String {
     text += &listed("changed", &changed.collect::<Vec<_>>());
     let broken = worlds.iter().flat_map(|w| w.broken.iter().map(|line| format!("{}: {line}", w.name)));
     text += &listed("broken", &broken.collect::<Vec<_>>());
+    let kept = worlds.iter().filter_map(|w| w.kept.as_ref());
+    text += &listed("folder", &kept.map(Kept::to_string).collect::<Vec<_>>());
     text
 }
 

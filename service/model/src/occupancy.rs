@@ -102,7 +102,7 @@ pub struct Occupancy {
 /// How much of the free floor a robot can use.
 #[derive(Debug, Clone)]
 pub struct Reach {
-    /// Cells the robot's center can be at, connected to most of the others: the largest component.
+    /// Cells the robot's center can be at, connected to most of the others: the largest component, or the one asked for.
     pub main: Bitmap,
     /// Share of all clear cells that lie in `main`, 0 to 1; 0 when no cell is clear.
     pub largest_share: f64,
@@ -154,8 +154,14 @@ impl Occupancy {
 
     /// Returns what a disc of this radius (m) can reach, over all and room by room.
     pub fn reach(&self, plan: &Floorplan, radius_m: f64) -> Reach {
+        self.reach_around(plan, radius_m, &Bitmap::new(self.frame.nx, self.frame.ny))
+    }
+
+    /// Returns what a disc of this radius (m) can reach from any of these cells; the largest part, where it stands on none.
+    pub fn reach_around(&self, plan: &Floorplan, radius_m: f64, start: &Bitmap) -> Reach {
         let clear = self.clear(radius_m);
-        let main = clear.largest().unwrap_or_else(|| Bitmap::new(self.frame.nx, self.frame.ny));
+        let around = clear.flood(start);
+        let main = if around.is_empty() { clear.largest().unwrap_or(around) } else { around };
         let share = |part: usize, whole: usize| if whole == 0 { 0.0 } else { part as f64 / whole as f64 };
         // one room after the other in one set: nothing is gone through but the floor around each
         let mut cells = Bitmap::new(self.frame.nx, self.frame.ny);

@@ -75,7 +75,7 @@ fn label_of_planned(room: &PlanRoom) -> Label {
 }
 
 fn label_of_drawn(room: &LaidRoom) -> Label {
-    Label { text: room.label.clone(), kind: room.kind.clone(), also: room.also.clone(), hub: room.hub }
+    Label { text: room.label.clone(), kind: room.kind.clone(), also: room.also.clone(), hub: room.hub, said: false }
 }
 
 /// Returns the labels with the types that are said.
@@ -85,7 +85,7 @@ fn typed(mut labels: Vec<Label>, room_types: &[(String, String)]) -> Result<Vec<
         if named.peek().is_none() {
             return Err(refused(format!("room type {name}={kind}: the plan has no room `{name}`")));
         }
-        named.for_each(|l| l.kind = Some(kind.clone()));
+        named.for_each(|l| (l.kind, l.said) = (Some(kind.clone()), true));
     }
     Ok(labels)
 }

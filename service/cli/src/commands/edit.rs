@@ -84,11 +84,14 @@ impl Args {
         let output = Output::new(&self.out)?;
         let edited = edit::apply(&world, &edits.edits, plugin, Stop::from(interrupt::flag()))?;
         bundle::write(&edited.world, &edited.report, plugin.domain(), &formats, &output)?;
-        output.commit()?;
+        let kept = output.commit()?;
         summary::print_broken(&edited.report);
         let changed =
             if edited.changed_room_ids.is_empty() { "no room".into() } else { edited.changed_room_ids.join(", ") };
-        eprintln!("wrote {} with {} changes; changed: {changed}", self.out.display(), edits.edits.len());
+        match kept {
+            Some(kept) => eprintln!("{kept}"),
+            None => eprintln!("wrote {} with {} changes; changed: {changed}", self.out.display(), edits.edits.len()),
+        }
         summary::judged(&edited.report)
     }
 }

@@ -74,7 +74,7 @@ struct ReadingArgs {
     /// Length of one unit of the drawing in m (a cell, for a map), where the file does not say it
     #[arg(long, value_name = "M", allow_negative_numbers = true)]
     meters_per_unit: Option<f64>,
-    /// Storey to read; otherwise the first one
+    /// Storey to read alone; otherwise all of them
     #[arg(long, value_name = "NAME")]
     level: Option<String>,
     /// Make outlines with slanted walls of steps instead of refusing them (walls drawn as lines are in any case)
@@ -119,10 +119,10 @@ impl Args {
         let plugin = domain(&registry, &made.world.scene_graph.domain)?;
         bundle::write(&made.world, &made.report, plugin.domain(), &formats, &output)?;
         interrupt::check()?;
-        output.commit()?;
+        let kept = output.commit()?;
         let mut times: Vec<(&'static str, Duration)> = clock.iter().map(|(stage, t)| (stage.name(), *t)).collect();
         times.push(("files", writing.elapsed()));
-        let page = Summary::new(&made, &self.out, times);
+        let page = Summary::new(&made, &self.out, times).with_kept(kept);
         if self.json {
             write_text(None, &format!("{}\n", page.json()))?;
         }

@@ -126,8 +126,9 @@ impl Args {
             let begun = Instant::now();
             match maker.make(&job.request, job.name.as_deref(), &output, &progress) {
                 Ok(made) => {
-                    output.commit()?;
-                    let summary = Summary::new(&made, &job.path, vec![("server", begun.elapsed())]);
+                    let kept = output.commit()?;
+                    let times = vec![("server", begun.elapsed())];
+                    let summary = Summary::new(&made, &job.path, times).with_kept(kept);
                     if self.json {
                         one::print_json(&summary)?;
                     }

@@ -62,12 +62,16 @@ impl Args {
             return Err(Error::Document { path: "the documents together".into(), source });
         }
         let report = world::check(&world, plugin.domain(), &retrieved);
+        let mut kept = None;
         if let Some(folder) = &self.out {
             let output = Output::new(folder)?;
             bundle::write(&world, &report, plugin.domain(), &formats, &output)?;
-            output.commit()?;
+            kept = output.commit()?;
         }
         summary::print_broken(&report);
+        if let Some(kept) = kept {
+            eprintln!("{kept}");
+        }
         if self.out.is_none() && report.is_writable() {
             write_text(None, &world.to_json())?;
         }

@@ -9,6 +9,7 @@ use d3dgen_model::floorplan::{DoorKind, Floorplan};
 use d3dgen_model::scene_graph::{Connector, GraphEdge, GraphRoom, Note, Occupancy, Robot, SceneGraph};
 use d3dgen_plugins::Registry;
 
+use super::labels;
 use super::places::{self, note};
 use super::reading::refused;
 use super::rooms::wished_assets;
@@ -33,6 +34,8 @@ const RARE: f64 = 1.0;
 const LIKE_PROGRAM: f64 = 0.8;
 const TITLED: f64 = 0.5;
 const TITLE: f64 = 1.0;
+/// How many known types are named beside one that is not known.
+const NEAREST: usize = 3;
 /// Domains this close to the best one are as good; the first of them is taken.
 const AS_GOOD: f64 = 0.97;
 
@@ -41,8 +44,10 @@ const AS_GOOD: f64 = 0.97;
 pub struct Label {
     /// The name on the plan.
     pub text: String,
-    /// What the file says it is, where it says so beside the name; counts first.
+    /// What the file or the user says it is, where that is said beside the name; counts first.
     pub kind: Option<String>,
+    /// True when the user says it, who wants to hear of a kind that is none.
+    pub said: bool,
     /// Other words that stand in the room; they count when neither of the others names a room.
     pub also: Vec<String>,
     /// True when it joins so many rooms that it is circulation, if no words say something else.
@@ -157,10 +162,15 @@ impl<'a> Names<'a> {
     fn room_type<'l>(&self, label: &'l Label) -> Option<(&str, usize, &'l str)> {
         let found = label.words().find_map(|w| self.find(w).map(|(id, letters)| (id, letters, w)));
         // a word that is short for such a room: an exam, a ward
-        found.or_else(|| {
+        let found = found.or_else(|| {
             let short = |w: &str| !w.trim().is_empty() && !w.to_lowercase().contains(ROOM);
             let whole = |w: &str| self.find(&format!("{} {ROOM}", bare(w))).filter(|f| f.1 > ROOM.len());
             label.words().filter(|w| short(w)).find_map(|w| whole(w).map(|(id, letters)| (id, letters - ROOM.len(), w)))
+        });
+        // words that only plans have: "Kit.", "LR 2", "Slaapkamer"
+        found.or_else(|| {
+            let meant = |w: &'l str| labels::in_english(&spaced(w)).and_then(|english| self.find(english));
+            label.words().find_map(|w| meant(w).map(|(id, letters)| (id, letters, w)))
         })
     }
 }
@@ -194,10 +204,36 @@ fn spaced(label: &str) -> String {
     out
 }
 
+/// Refuses kinds that the user says and that are no room of the domain, with those that are written most alike.
+fn check_said(labels: &[Label], names: &Names) -> Result<(), Error> {
+    let wrong = |l: &&Label| l.kind.as_deref().is_some_and(|k| k != GENERIC_ROOM_TYPE && names.find(k).is_none());
+    let Some(label) = labels.iter().filter(|l| l.said).find(wrong) else { return Ok(()) };
+    let kind = label.kind.as_deref().unwrap_or_default();
+    let mut known: Vec<&str> = names.domain.room_types.iter().map(|r| r.id.as_str()).collect();
+    known.sort_by(|a, b| likeness(b, kind).total_cmp(&likeness(a, kind)));
+    known.truncate(NEAREST);
+    let (id, text) = (&names.domain.id, &label.text);
+    let message = format!(
+        "room type {text}={kind}: {id} has no room `{kind}`; nearest are {}; `d3dgen domains show {id}` has all",
+        known.join(", ")
+    );
+    Err(refused(message))
+}
+
+/// Returns the share of pairs of letters that two words have in common, 0 to 1.
+fn likeness(a: &str, b: &str) -> f64 {
+    let pairs = |w: &str| {
+        let letters: Vec<char> = w.to_lowercase().chars().collect();
+        letters.windows(2).map(|p| (p[0], p[1])).collect::<BTreeSet<_>>()
+    };
+    let (a, b) = (pairs(a), pairs(b));
+    2.0 * a.intersection(&b).count() as f64 / (a.len() + b.len()).max(1) as f64
+}
+
 /// Finds the room types of labels, in a domain or in the one that they and the titles of the plan fit best.
 ///
 /// # Errors
-/// `Refused` for a domain that is not registered.
+/// `Refused` for a domain that is not registered, and for a kind of room that the user says and the domain does not know.
 pub fn understand(
     labels: &[Label],
     titles: &[String],
@@ -219,6 +255,7 @@ pub fn understand(
             names
         }
     };
+    check_said(labels, &names)?;
     let circulation = names.domain.room_type(&names.domain.circulation.room_type).map(|r| r.id.clone());
     let mut unknown: Vec<String> = Vec::new();
     let mut hubs = 0;
@@ -241,7 +278,9 @@ pub fn understand(
         }
     }
     if let Some(id) = circulation.filter(|_| hubs > 0) {
-        let message = format!("{hubs} rooms without a name join so many others that they were taken for `{id}`");
+        let message = format!(
+            "{hubs} rooms without a name, or with a number only, join so many others that they were taken for `{id}`"
+        );
         notes.push(note("circulation_guessed", message));
     }
     unknown.dedup();
@@ -359,7 +398,8 @@ pub fn of_plan(plan: &Floorplan, brought: &Brought, registry: &Registry) -> Resu
                 name: room.name.clone(),
                 description: kind.description.clone(),
                 target_area_m2: room.net_area_m2.clamp(range.min, range.max),
-                area_range_m2: [range.min, range.max],
+                // nobody asked for less than is there
+                area_range_m2: [range.min, range.max.max(room.net_area_m2)],
                 wished_assets: wished_assets(domain, kind, &[]),
                 occupants: None,
                 circulation: room.circulation,
@@ -471,6 +511,15 @@ mod tests {
             ("Schlafzimmer Eltern", "bedroom"),
             ("Salle de bains", "bathroom"),
             ("卧室", "bedroom"),
+            ("LR", "living_room"),
+            ("Kit.", "kitchen"),
+            ("BR 1", "bedroom"),
+            ("KiZi2", "kids_room"),
+            ("SdB", "bathroom"),
+            ("Slaapkamer 2", "bedroom"),
+            ("寝室1", "bedroom"),
+            ("キッチン", "kitchen"),
+            ("Sala da pranzo", "dining_room"),
             ("xyzzy", "room"),
             ("", "room"),
         ] {
@@ -506,6 +555,19 @@ mod tests {
         assert_eq!(titled(&["coe", "lounge", "pantry"], &["office.building.yaml"], None).domain, "office");
         assert_eq!(titled(&["a", "b"], &["old_school"], None).domain, "school");
         assert_eq!(titled(&["Bedroom", "Bathroom", "Kitchen"], &["office"], None).domain, "residential");
+    }
+
+    #[test]
+    fn a_type_that_the_user_says_must_be_known() {
+        let said = |kind: &str| {
+            let label = Label { text: "1.02".into(), kind: Some(kind.into()), said: true, ..Label::default() };
+            understand(&[label], &[], Some("residential"), &Registry::builtin())
+        };
+        assert_eq!(said("bedroom").expect("a type").room_types, ["bedroom"]);
+        assert_eq!(said("Schlafzimmer").expect("a word for one").room_types, ["bedroom"]);
+        assert_eq!(said("room").expect("any room").room_types, ["room"]);
+        let message = said("bedrom").expect_err("a slip").to_string();
+        assert!(message.contains("1.02=bedrom") && message.contains("nearest are bedroom"), "{message}");
     }
 
     #[test]

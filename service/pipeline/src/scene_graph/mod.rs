@@ -17,6 +17,7 @@ mod fixtures;
 mod given;
 mod homes;
 mod keeps;
+mod labels;
 mod language;
 mod layout;
 mod measures;

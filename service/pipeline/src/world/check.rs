@@ -21,7 +21,7 @@ pub fn check(world: &World, domain: &Domain, retrieval: &Retrieval) -> Report {
     let mut rules = judge(&whole, &storeys);
     let given_plan = world.floorplan.is_given();
     if given_plan && rules.iter().any(|r| !r.violations.is_empty()) {
-        mark_given(world, domain, retrieval, &mut rules);
+        mark_given((&whole, &storeys), &mut rules);
     }
     let finite = rules.iter().all(|r| r.rule != "not_finite" || r.violations.is_empty());
     let (constraints, summary) =
@@ -73,12 +73,15 @@ fn judge(whole: &Context, storeys: &[Context]) -> Vec<RuleResult> {
 /// Those of rules about plans: what they find with nothing in the rooms, too. Those of rules about furniture: what a room
 /// lacks (the bed of a bedroom) that is smaller than its type needs, and what the building lacks (a dock) when such rooms
 /// are the only ones that lack something. Whatever else is wrong with the furniture is the fault of who placed it.
-fn mark_given(world: &World, domain: &Domain, retrieval: &Retrieval, rules: &mut [RuleResult]) {
+fn mark_given((whole, furnished): (&Context, &[Context]), rules: &mut [RuleResult]) {
+    let (world, domain, retrieval) = (whole.world, whole.domain, whole.retrieval);
     let nothing = Placements { placements: Vec::new(), ..world.placements.clone() };
     let bare = World { placements: nothing, ..world.clone() };
     let parts = storeys_of(&bare);
     let context = Context::new(&bare, domain, retrieval);
     let storeys: Vec<Context> = parts.iter().map(|(_, storey)| Context::new(storey, domain, retrieval)).collect();
+    context.judge_from(whole);
+    storeys.iter().zip(furnished).for_each(|(bare, furnished)| bare.judge_from(furnished));
     let of_plan = judge(&context, &storeys);
     let mut lacking: Option<bool> = None;
     let mut of_building = Vec::new();

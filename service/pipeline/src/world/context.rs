@@ -125,6 +125,14 @@ impl<'a> Context<'a> {
         self.reach.get_or_init(|| self.occupancy().reach(self.plan(), self.radius))
     }
 
+    /// Judges from the part of the floor that another world of the same plan was judged from: where a plan is cut in two,
+    /// its furniture decides which part is the larger one.
+    pub fn judge_from(&self, other: &Self) {
+        if let Some(other) = other.reach.get() {
+            self.reach.get_or_init(|| self.occupancy().reach_around(self.plan(), self.radius, &other.main));
+        }
+    }
+
     /// Returns where the center of a disc of this radius (m) can be; several rules ask for the same one.
     pub fn clear(&self, radius: f64) -> Rc<Bitmap> {
         let key = (radius * 1000.0) as u64;

@@ -166,7 +166,7 @@ impl Maker<'_> {
         let domain = domain(&self.registry, &made.world.scene_graph.domain)?.domain();
         let output = Output::new(&out.join(&task.path))?;
         bundle::write(&made.world, &made.report, domain, &self.formats, &output)?;
-        output.commit()
+        output.commit().map(drop)
     }
 }
 

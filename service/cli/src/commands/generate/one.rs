@@ -64,12 +64,12 @@ impl Maker {
             output.write("proposal.json", proposal.to_json().as_bytes())?;
         }
         interrupt::check()?;
-        output.commit()?;
+        let kept = output.commit()?;
         let mut times = clock.times();
         times.push(("files", begun.elapsed()));
         progress.done(&format!("files ({:.0} ms)", begun.elapsed().as_secs_f64() * 1000.0));
         let proposed = proposal.as_ref().map(lines).unwrap_or_default();
-        Ok(Summary::new(&made, &job.path, times).with_proposals(proposed))
+        Ok(Summary::new(&made, &job.path, times).with_proposals(proposed).with_kept(kept))
     }
 }
 

@@ -16,6 +16,10 @@ pub fn private_passage(c: &Context, out: &mut Findings) {
     for door in c.plan().doors.iter().filter(|d| d.room_ids.len() == 1) {
         open.extend(door.room_ids.iter().map(String::as_str));
     }
+    // a building without a way in lacks an entrance, which is another rule's
+    if open.is_empty() {
+        open.extend(c.rooms.iter().filter(|r| r.plan.circulation).map(|r| r.plan.room_id.as_str()));
+    }
     while let Some(id) = open.pop() {
         if !entered.insert(id) {
             continue;
@@ -32,8 +36,11 @@ pub fn private_passage(c: &Context, out: &mut Findings) {
         let id = room.plan.room_id.as_str();
         if !entered.contains(id) {
             let through: Vec<&str> = neighbors(room).collect();
-            let text = if through.is_empty() { "nothing".into() } else { through.join(", ") };
-            out.add(id, format!("one reaches it only through private rooms ({text})"));
+            let message = match through.as_slice() {
+                [] => "no door leads into it".to_owned(),
+                rooms => format!("one reaches it only through private rooms ({})", rooms.join(", ")),
+            };
+            out.add(id, message);
         }
     }
 }
