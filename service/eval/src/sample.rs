@@ -179,6 +179,7 @@ fn graph(robot: &Robot) -> SceneGraph {
         apart: Vec::new(),
         forbidden_room_types: Vec::new(),
         robots: vec![robot.clone()],
+        robot_rules: Vec::new(),
         assumptions: Vec::new(),
         conflicts: Vec::new(),
     }
@@ -195,6 +196,7 @@ pub fn world() -> World {
         body: None,
         stops: Vec::new(),
         room_types: Vec::new(),
+        misfit: false,
     };
     let poi = |id: &str, room: &str, x: f64, y: f64| Poi {
         poi_id: id.into(),

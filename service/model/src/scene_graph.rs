@@ -56,6 +56,9 @@ pub struct SceneGraph {
     /// Robots the world is for.
     #[serde(default)]
     pub robots: Vec<Robot>,
+    /// What the prompt asks of robots room by room: where they stay out, how fast they drive.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub robot_rules: Vec<RobotRule>,
     /// What was assumed where the prompt is silent.
     #[serde(default)]
     pub assumptions: Vec<Note>,
@@ -157,6 +160,9 @@ pub enum Connector {
     Near,
 }
 
+/// Radius of a usual service robot, m: what a building has ways for that is too small for the robot somebody has.
+const USUAL_RADIUS_M: f64 = 0.30;
+
 /// A robot the world must suit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -181,6 +187,23 @@ pub struct Robot {
     /// Types of the rooms that it works in, where the prompt says so; empty for wherever its kind works.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub room_types: Vec<String>,
+    /// True when the building is made without it: it is too large for these rooms, and drives only where it can.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub misfit: bool,
+}
+
+/// What the prompt asks of all robots in one room.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RobotRule {
+    /// Room id.
+    pub room_id: String,
+    /// True where robots stay out.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub keep_out: bool,
+    /// Highest speed of robots there, m/s.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub max_speed_m_s: Option<f64>,
 }
 
 /// A statement about how the prompt was read.
@@ -194,6 +217,11 @@ pub struct Note {
 }
 
 impl Robot {
+    /// Returns the radius of the disc that the building has ways for, m.
+    pub fn planned_radius_m(&self) -> f64 {
+        if self.misfit { USUAL_RADIUS_M.min(self.radius_m) } else { self.radius_m }
+    }
+
     /// Returns true when the building is made so that it fits.
     pub fn is_fitted(&self) -> bool {
         self.body.is_some_and(|b| b.fit)
@@ -201,6 +229,16 @@ impl Robot {
 }
 
 impl SceneGraph {
+    /// Returns true for a room that the prompt keeps robots out of.
+    pub fn keeps_robots_out(&self, room_id: &str) -> bool {
+        self.robot_rules.iter().any(|r| r.keep_out && r.room_id == room_id)
+    }
+
+    /// Returns the highest speed of robots in a room, m/s, where the prompt says one.
+    pub fn robot_speed_m_s(&self, room_id: &str) -> Option<f64> {
+        self.robot_rules.iter().filter(|r| r.room_id == room_id).filter_map(|r| r.max_speed_m_s).reduce(f64::min)
+    }
+
     /// Returns the room with this id.
     pub fn room(&self, id: &str) -> Option<&GraphRoom> {
         self.rooms.iter().find(|r| r.id == id)
@@ -253,6 +291,16 @@ impl Document for SceneGraph {
                 if self.room(id).is_none() {
                     problems.push(Problem::new(format!("/apart/{i}/{j}"), format!("room `{id}` is not in rooms")));
                 }
+            }
+        }
+        for (i, rule) in self.robot_rules.iter().enumerate() {
+            if self.room(&rule.room_id).is_none() {
+                let message = format!("room `{}` is not in rooms", rule.room_id);
+                problems.push(Problem::new(format!("/robot_rules/{i}/room_id"), message));
+            }
+            if let Some(speed) = rule.max_speed_m_s.filter(|v| !(0.05..=5.0).contains(v)) {
+                let message = format!("{speed} m/s is outside 0.05-5 m/s");
+                problems.push(Problem::new(format!("/robot_rules/{i}/max_speed_m_s"), message));
             }
         }
         for (i, robot) in self.robots.iter().enumerate() {

@@ -92,6 +92,7 @@ impl SceneGraph {
             rooms: self.rooms.iter().filter(|r| r.level == level).cloned().collect(),
             edges: self.edges.iter().filter(|e| here(&e.a) && here(&e.b)).cloned().collect(),
             apart: self.apart.iter().filter(|p| p.iter().all(here)).cloned().collect(),
+            robot_rules: self.robot_rules.iter().filter(|r| here(&r.room_id)).cloned().collect(),
             ..self.clone()
         }
     }

@@ -136,6 +136,7 @@ impl<'s> Site<'s> {
             links: Vec::new(),
             forbidden_room_types: Vec::new(),
             robots: Vec::new(),
+            robot_rules: Vec::new(),
             assumptions: Vec::new(),
             conflicts: Vec::new(),
         };

@@ -382,6 +382,7 @@ pub fn of_plan(plan: &Floorplan, brought: &Brought, registry: &Registry) -> Resu
         apart: Vec::new(),
         forbidden_room_types: Vec::new(),
         robots: robots(plan, brought)?,
+        robot_rules: Vec::new(),
         assumptions: brought.notes.clone(),
         conflicts: Vec::new(),
         links: plan.links.clone(),
@@ -434,6 +435,7 @@ fn robots(plan: &Floorplan, brought: &Brought) -> Result<Vec<Robot>, Error> {
             body: None,
             stops: Vec::new(),
             room_types: Vec::new(),
+            misfit: false,
         })
     };
     kinds.into_iter().map(robot).collect()

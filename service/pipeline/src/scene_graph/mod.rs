@@ -18,9 +18,11 @@ mod homes;
 mod keeps;
 mod language;
 mod layout;
+mod listed;
 mod measures;
 mod mentions;
 mod named_for;
+mod numbered;
 mod numbers;
 mod objects;
 mod parts;
@@ -31,6 +33,7 @@ mod proposed;
 mod qualities;
 mod reading;
 mod relations;
+mod robot_rules;
 mod robots;
 mod rooms;
 mod seated;
@@ -150,6 +153,8 @@ fn assemble(request: &Request, mut reading: Reading, planned: &[Planned]) -> Sce
     };
     rooms::add_docks(reading.domain, &reading.robots, &reading.docked, &mut rooms);
     robots::send(&reading.errand, &rooms, &mut reading.robots);
+    let robot_rules = robot_rules::of_rooms(&reading.robot_rules, &rooms);
+    edges::state_unmet(&mut reading, &rooms, &web.edges);
     SceneGraph {
         version: 1,
         prompt: request.prompt.clone(),
@@ -168,6 +173,7 @@ fn assemble(request: &Request, mut reading: Reading, planned: &[Planned]) -> Sce
         links,
         forbidden_room_types: reading.wishes.forbidden,
         robots: reading.robots,
+        robot_rules,
         assumptions: reading.assumptions,
         conflicts: reading.conflicts,
     }

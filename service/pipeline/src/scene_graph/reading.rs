@@ -28,8 +28,8 @@ use super::wishes::{self, MANY, PerHost, Text, Wish, Wishes};
 use super::words::{ByBedrooms, Spoken, Tag, words};
 use super::workers;
 use super::{
-    Request, apiece, docks, dwelling, fixtures, homes, keeps, language, measures, numbers, qualities, robots, seated,
-    sharing, single, stays, umlauts, unread,
+    Request, apiece, docks, dwelling, fixtures, homes, keeps, language, measures, numbers, qualities, robot_rules,
+    robots, seated, sharing, single, stays, umlauts, unread,
 };
 use crate::Error;
 
@@ -95,6 +95,8 @@ pub(super) struct Reading<'a> {
     pub accessible: bool,
     pub style: Style,
     pub robots: Vec<Robot>,
+    /// What is asked of robots in rooms.
+    pub robot_rules: Vec<robot_rules::Rule>,
     /// Types of the rooms that a dock is to stand in.
     pub docked: Vec<String>,
     /// Where the robot is to go.
@@ -368,7 +370,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     let mut wishes = wishes::gather(&text, &mut conflicts);
     if lives {
         homes::add_studio(&mut wishes, program, domain);
-        wishes.closed = compounds::closed_rooms(&tokens, &mentions, domain, &spoken);
+        wishes.closed.extend(compounds::closed_rooms(&tokens, &mentions, domain, &spoken));
         wishes.enter_through_halls(domain);
     }
     wishes.open = compounds::open_rooms(&tokens, &mentions, domain, &spoken);
@@ -422,6 +424,9 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         let meant = |r: &Robot| own.is_none_or(|kind| r.kind == kind) && !CARRIES.contains(&r.kind.as_str());
         robots.iter_mut().filter(|r| meant(r)).for_each(|r| r.room_types.clone_from(&kept));
     }
+    let rooms = relations::Reader::new(&tokens, &mentions, &spoken, language, building.head);
+    let asked = robot_rules::read(&rooms, &numbers, &machines.spans);
+    spans.extend(asked.spans);
     // "drei Stockwerken" ends in a word for a factory
     let storey = |p: &building::Part| spoken.iter().any(|s| s.tag_at(&tokens, p.span.start, Tag::Storeys).is_some());
     building.parts.retain(|p| !storey(p) && !spans.iter().any(|s| s.overlaps(p.span)));
@@ -455,6 +460,9 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     let said = request.rooms.or_else(|| said_total(&mentions));
     if lives {
         wishes.join_to_fit(said, domain);
+    }
+    if lives {
+        conflicts.extend(homes::state_size(said));
     }
     let beside = workers::beside_rooms(&mut wishes, said.filter(|_| request.rooms.is_none()), domain, program);
     let total = beside.map_or_else(|| total_rooms(request, &mentions, &wishes, &mut conflicts), |n| Ok(Some(n)))?;
@@ -582,6 +590,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         each_alone,
         accessible: says(Tag::Accessible) || lives && says(Tag::Frail),
         robots,
+        robot_rules: asked.rules,
         docked,
         errand,
         style: styles::wished(&said_styles, request.style, &mut conflicts),

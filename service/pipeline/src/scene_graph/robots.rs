@@ -413,6 +413,7 @@ pub(super) fn of_graph(
                 // its rooms have no ids yet
                 stops: Vec::new(),
                 room_types: Vec::new(),
+                misfit: false,
             })
         })
         .collect()

@@ -101,6 +101,7 @@ impl Args {
             charging: true,
             stops: Vec::new(),
             room_types: Vec::new(),
+            misfit: false,
         });
         Building {
             country_code: self.country.as_ref().map(|c| c.to_ascii_uppercase()),
