@@ -102,7 +102,10 @@ impl Reader<'_> {
             .map_or(self.mentions[first].end(), |i| i + 1);
         let behind = relation.end..(relation.end + MOST_TO_VERB).min(self.tokens.len());
         let behind = behind.take_while(|&i| self.verb_last && !self.tokens[i].is_mark());
-        (from..to).filter(|&i| !relation.contains(i)).chain(behind).any(|i| self.tagged(i, Tag::Not))
+        // "a kitchen not too large next to the hall"
+        let of_size = |end: usize| self.tag_end(end, Tag::Degree).is_some_and(|end| end < relation.start);
+        let turns = |i: usize| self.tag_end(i, Tag::Not).is_some_and(|end| !of_size(end));
+        (from..to).filter(|&i| !relation.contains(i)).chain(behind).any(turns)
     }
 
     /// Returns true for a room that is told of by name: "the kitchen", "bedroom 2".
@@ -113,8 +116,10 @@ impl Reader<'_> {
     /// Returns true for a room that a sentence is about: "the kitchen must be next to".
     fn is_said(&self, m: usize, start: usize) -> bool {
         let verb = |i: usize| self.tagged(i, Tag::Stops) && !self.tagged(i, Tag::Joins);
-        let turned =
-            self.spoken.iter().any(|s| s.tags.word(&self.tokens[start].text).is_some_and(|t| t.contains(&Tag::Stops)));
+        // "must not be next to" is one phrase, and so is "near"
+        let has =
+            |tag| self.spoken.iter().any(|s| s.tags.word(&self.tokens[start].text).is_some_and(|t| t.contains(&tag)));
+        let turned = has(Tag::Stops) && !has(Tag::Near);
         turned || (self.mentions[m].end()..start).any(verb)
     }
 

@@ -52,8 +52,8 @@ pub(super) struct Said {
     pub closed: Vec<usize>,
 }
 
-pub(super) const RELATIONS: [Tag; 7] =
-    [Tag::Near, Tag::Door, Tag::Open, Tag::Together, Tag::Between, Tag::Around, Tag::Apart];
+pub(super) const RELATIONS: [Tag; 8] =
+    [Tag::Near, Tag::Door, Tag::Open, Tag::Together, Tag::Between, Tag::Around, Tag::Sight, Tag::Apart];
 
 /// Reads all relations and negations.
 pub(super) fn read(

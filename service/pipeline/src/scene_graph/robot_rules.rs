@@ -1,9 +1,10 @@
 //! What a prompt asks of robots room by room: where they stay out ("keep robots out of the pharmacy"), and how fast they
 //! drive ("at most 0.4 m/s in the corridors").
 
-use d3dgen_model::scene_graph::{GraphRoom, RobotRule};
+use d3dgen_model::scene_graph::{GraphRoom, Note, RobotRule};
 
 use super::numbers::Number;
+use super::places::note;
 use super::relations::Reader;
 use super::text::Span;
 use super::words::{Tag, words};
@@ -56,6 +57,16 @@ pub(super) fn read(reader: &Reader, numbers: &[Number], machines: &[Span]) -> Fo
         out.spans.push(span);
     }
     out
+}
+
+/// States that corridors are not made for robots that meet, where a prompt wants that.
+pub(super) fn state_two_way(reader: &Reader, machines: &[Span]) -> Option<(Span, Note)> {
+    let mut said =
+        (0..reader.tokens.len()).filter_map(|i| Some(Span { start: i, end: reader.tag_end(i, Tag::TwoWay)? }));
+    let span = said.next().filter(|_| !machines.is_empty())?;
+    let message = "corridors are as wide as people, beds and one robot need; whether two robots pass each other there is \
+                   judged in the report (two_way_robot_corridor_width), not planned";
+    Some((span, note("two_way_not_planned", message.into())))
 }
 
 /// Returns what is asked of robots in each room.

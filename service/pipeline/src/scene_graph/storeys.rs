@@ -233,6 +233,8 @@ struct Lifts {
     wanted: Option<bool>,
     /// How many are counted; 0 where none are.
     count: u32,
+    /// True where a room is to be beside one.
+    beside: bool,
 }
 
 /// Reads whether elevators are asked for or ruled out, and how many: those of several kinds are added up.
@@ -258,7 +260,8 @@ fn lifts(text: &Text) -> Lifts {
         let number = numbers.iter().rev().find(between).or_else(|| numbers.iter().find(behind))?;
         (number.value >= 1.0).then_some(number.value as u32)
     };
-    Lifts { wanted, count: all.iter().filter_map(counted).fold(0, u32::saturating_add) }
+    let near = |&at: &usize| (at.saturating_sub(MOST_TO_LIFT + 1)..at).any(|k| tagged(k, Tag::Near).is_some());
+    Lifts { wanted, beside: all.iter().any(near), count: all.iter().filter_map(counted).fold(0, u32::saturating_add) }
 }
 
 /// What the reading of storeys needs to see.
@@ -339,11 +342,15 @@ pub(super) fn read(text: &Text, country: Option<&str>, conflicts: &mut Vec<Note>
         wanted.push(Wanted { room_type: room_type.to_owned(), count, at });
     }
     let bare = (0..phrases.len()).any(|p| phrases[p].noun) && !wanted.iter().any(|w| w.at == Where::Level(-1));
-    let Lifts { wanted: elevator, count: lifts } = lifts(text);
+    let Lifts { wanted: elevator, count: lifts, beside } = lifts(text);
     if elevator == Some(true) && levels.len() < 2 {
         let message =
             "an elevator was asked for, but the building has one storey; none was planned, say how many storeys it has";
         conflicts.push(note("elevator_on_one_storey", message.into()));
+    }
+    if elevator == Some(true) && levels.len() > 1 && beside {
+        let message = "no room was planned beside an elevator: it stands where it joins the storeys";
+        conflicts.push(note("not_beside", message.into()));
     }
     Storeys { levels, wanted, elevator, lifts, stairs: 0, robots_on_each, bare_basement: bare }
 }

@@ -28,10 +28,14 @@ pub(super) enum Tag {
     No,
     /// Turns a relation round: "must not be next to".
     Not,
+    /// How much of something: "not too large".
+    Degree,
     /// Stands for the room that was spoken of: "with a door to it".
     It,
     /// Where robots are not to go: "keep out of".
     KeepOut,
+    /// Robots that meet in a corridor: "two-way".
+    TwoWay,
     /// Between the first and the last of numbered rooms: "bedrooms 1 to 4".
     Range,
     Negative,
