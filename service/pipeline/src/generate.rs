@@ -286,7 +286,7 @@ fn attempts(
 const AREA_MISSED: &str = "area_missed";
 
 /// Conflicts that leave open what is wanted; all others have a natural way out, which was taken.
-const CONTRADICTIONS: &[&str] = &["wanted_and_forbidden", "contradicting_counts", "apart_but_joined"];
+const CONTRADICTIONS: &[&str] = &["wanted_and_forbidden", "contradicting_counts", "apart_but_joined", "near_and_apart"];
 
 /// Returns what contradicts itself in a request, as its scene graph tells.
 pub fn contradictions(graph: &SceneGraph) -> Vec<&str> {

@@ -30,6 +30,9 @@ const TWO_STAIRS_M2: f64 = 300.0;
 /// The same where the prompt asks for two.
 const LEAST_FOR_TWO: usize = 6;
 
+/// Ids of the elevators of a building, as many as stand in one core.
+const LIFTS: [&str; 4] = ["elevator_a", "elevator_b", "elevator_c", "elevator_d"];
+
 /// Rooms that stay together, with the storey they must or would be on.
 struct Cluster<'p> {
     rooms: Vec<usize>,
@@ -431,8 +434,15 @@ fn links(
     if let Some(elevator) = &rules.elevator {
         let usual = elevator.from_levels.is_some_and(|n| levels.len() >= n as usize);
         let lift = reading.storeys.elevator.unwrap_or(usual || reading.accessible);
+        let asked = reading.storeys.lifts;
         if lift {
-            wanted.push((LinkKind::Elevator, &elevator.room_type, "elevator_a"));
+            let planned = asked.clamp(1, LIFTS.len() as u32);
+            wanted.extend(LIFTS[..planned as usize].iter().map(|id| (LinkKind::Elevator, &elevator.room_type, *id)));
+            if asked > planned {
+                let message =
+                    format!("{asked} elevators were asked for; a core has room for {planned}, which were planned");
+                reading.conflicts.push(note("fewer_elevators", message));
+            }
         } else if usual && !reading.accessible {
             let message =
                 format!("the prompt wants no elevator, which a building of {} storeys usually has", levels.len());

@@ -1,7 +1,7 @@
 //! How the rooms connect: circulation, hosts, what the prompt asks for, and the domain's adjacency rules.
 
 use d3dgen_model::domain::{Adjacency, AdjacencyRelation};
-use d3dgen_model::scene_graph::{Connector, GraphEdge, GraphRoom};
+use d3dgen_model::scene_graph::{Connector, GraphEdge, GraphRoom, Note};
 use d3dgen_model::style::LayoutStyle;
 
 use super::compounds::opens_to;
@@ -10,10 +10,15 @@ use super::program::{Planned, are_public};
 use super::reading::Reading;
 use super::relations::Spread;
 use super::rooms;
+use super::wishes::{Apart, Pair};
 use super::{BY_CIRCULATION, BY_HOST, BY_PROMPT, BY_STYLE};
 
-/// Walls that one room can be asked to share with others; more are wished for only.
-const MOST_WALLS: usize = 2;
+/// Rooms that one room can be asked to be beside: those at its two ends and one at its back. More are wished for only.
+const MOST_WALLS: usize = 3;
+/// The same of rooms of one type: a room stands in one row of such.
+const MOST_ALIKE: usize = 2;
+/// Names of a note, at most.
+const MOST_NAMED: usize = 6;
 
 /// Edges and pairs to keep apart.
 #[derive(Debug, Default)]
@@ -29,12 +34,39 @@ pub(super) fn connect(reading: &mut Reading, planned: &[Planned], rooms: &mut Ve
     web.circulate(planned, rooms, hub);
     choose_entrance(reading, rooms, hub);
     keep_apart(reading, rooms, &mut web);
-    web.follow_prompt(reading, planned, rooms);
+    web.follow_prompt(reading, planned, rooms, hub);
     web.stay_near_entrance(reading, rooms);
     web.open_named(reading, planned, rooms);
     web.open_up(reading, rooms);
     web.follow_rules(reading, rooms);
     web
+}
+
+/// States the pairs of the prompt that came to nothing: of rooms on different storeys, or of one that is not there.
+pub(super) fn state_unmet(reading: &mut Reading, rooms: &[GraphRoom], edges: &[GraphEdge]) {
+    let mut unmet = Vec::new();
+    for pair in reading.wishes.pairs.iter().filter(|p| !p.belongs && ruled_out(reading, p).is_none()) {
+        let (from, to) = (of_kind(rooms, &pair.a, pair.which[0]), of_kind(rooms, &pair.b, pair.which[1]));
+        let joins = |e: &GraphEdge| {
+            let is = |all: &[usize], id: &String| all.iter().any(|&i| &rooms[i].id == id);
+            is(&from, &e.a) && is(&to, &e.b) || is(&from, &e.b) && is(&to, &e.a)
+        };
+        if edges.iter().any(joins) {
+            continue;
+        }
+        let [a, b] = [(&pair.a, pair.which[0]), (&pair.b, pair.which[1])].map(|(id, n)| {
+            let number = n.map_or(String::new(), |n| format!(" {n}"));
+            format!("{}{number}", id.replace('_', " "))
+        });
+        let why = match (from.as_slice(), to.as_slice()) {
+            ([], _) => format!("no {a} was planned"),
+            (_, []) => format!("no {b} was planned"),
+            ([i, ..], [j, ..]) if rooms[*i].level != rooms[*j].level => "they are on different storeys".to_owned(),
+            _ => "there is only one of them".to_owned(),
+        };
+        unmet.push(note("not_beside", format!("{a} and {b} cannot be beside each other: {why}")));
+    }
+    reading.conflicts.extend(unmet);
 }
 
 /// Connects the rooms of one storey of several around its own corridor, which becomes the last of them.
@@ -53,7 +85,7 @@ pub(super) fn connect_storey(
         choose_entrance(reading, rooms, hub);
     }
     keep_apart(reading, rooms, &mut web);
-    web.follow_prompt(reading, planned, rooms);
+    web.follow_prompt(reading, planned, rooms, hub);
     web.stay_near_entrance(reading, rooms);
     web.open_named(reading, planned, rooms);
     web.open_up(reading, rooms);
@@ -125,10 +157,10 @@ impl Web {
     }
 
     /// Adds what the prompt asks for.
-    fn follow_prompt(&mut self, reading: &mut Reading, planned: &[Planned], rooms: &[GraphRoom]) {
+    fn follow_prompt(&mut self, reading: &mut Reading, planned: &[Planned], rooms: &[GraphRoom], hub: usize) {
+        let mut left: Vec<Left> = Vec::new();
         for pair in reading.wishes.pairs.clone() {
-            let of = |kind: &str| -> Vec<usize> { (0..rooms.len()).filter(|&i| rooms[i].room_type == kind).collect() };
-            let (from, to) = (of(&pair.a), of(&pair.b));
+            let (from, to) = (of_kind(rooms, &pair.a, pair.which[0]), of_kind(rooms, &pair.b, pair.which[1]));
             let hangs = |i: usize, j: usize| planned.get(i).is_some_and(|p| p.host == Some(j));
             let met = from.iter().all(|&i| to.iter().any(|&j| hangs(i, j) || hangs(j, i)));
             if from.is_empty() || to.is_empty() || met {
@@ -144,30 +176,47 @@ impl Web {
                 }
                 continue;
             }
-            let forbids =
-                |rule: &&Adjacency| rule.relation == AdjacencyRelation::MustNot && is_pair(rule, &pair.a, &pair.b);
-            let rule = reading
-                .domain
-                .adjacency
-                .iter()
-                .find(forbids)
-                .filter(|r| r.via == "wall" || pair.connector != Connector::Wall);
-            if let Some(rule) = rule.filter(|_| pair.connector != Connector::Near) {
+            if let Some(rule) = ruled_out(reading, &pair) {
                 let message = format!("{} and {} may not be joined by a {}: {}", pair.a, pair.b, rule.via, rule.reason);
                 reading.conflicts.push(note("forbidden_adjacency", message));
                 continue;
             }
-            let pairs = spread(rooms, &from, &to, pair.spread);
-            let crowded = |i: usize| pairs.iter().filter(|p| p.0 == i || p.1 == i).count() > MOST_WALLS;
-            let many = pairs.iter().any(|p| crowded(p.0) || crowded(p.1));
-            for (i, j) in pairs.iter().copied() {
+            let near = pair.connector == Connector::Near;
+            for (i, j) in spread(rooms, &from, &to, pair.spread) {
                 if self.has_apart(&rooms[i].id, &rooms[j].id) {
                     continue;
                 }
-                let connector = if many { Connector::Near } else { pair.connector };
+                let is_full = |k: usize, other: usize| {
+                    let beside = self.neighbors(rooms, k);
+                    let alike = beside.iter().filter(|r| r.room_type == rooms[other].room_type).count();
+                    k != hub && (alike >= MOST_ALIKE || beside.len() >= MOST_WALLS)
+                };
+                let free = near || self.joins(rooms, (i, j));
+                let full = [(i, j), (j, i)].into_iter().find(|&(k, other)| !free && is_full(k, other)).map(|f| f.0);
+                let connector = if full.is_some() { Connector::Near } else { pair.connector };
                 self.put(rooms, (i, j), connector, connector != Connector::Near, BY_PROMPT);
+                if let Some(k) = full {
+                    Left::add(&mut left, k, if k == i { j } else { i });
+                }
             }
         }
+        for crowd in left {
+            reading.conflicts.push(crowd.note(self, rooms));
+        }
+    }
+
+    /// Returns the rooms that the prompt has beside a room.
+    fn neighbors<'r>(&self, rooms: &'r [GraphRoom], room: usize) -> Vec<&'r GraphRoom> {
+        let id = &rooms[room].id;
+        let beside = self.edges.iter().filter(|e| e.required && e.reason == BY_PROMPT && (&e.a == id || &e.b == id));
+        let others: Vec<&String> = beside.map(|e| if &e.a == id { &e.b } else { &e.a }).collect();
+        if others.is_empty() { Vec::new() } else { rooms.iter().filter(|r| others.contains(&&r.id)).collect() }
+    }
+
+    /// Returns true where an edge that must be joins two rooms already.
+    fn joins(&self, rooms: &[GraphRoom], (i, j): (usize, usize)) -> bool {
+        let (a, b) = (&rooms[i].id, &rooms[j].id);
+        self.edges.iter().any(|e| e.required && (&e.a == a && &e.b == b || &e.a == b && &e.b == a))
     }
 
     /// Wishes for rooms near the entrance that the prompt wants there, where they are on its storey.
@@ -304,6 +353,52 @@ impl Web {
     }
 }
 
+/// A room that was to be beside more others than its walls have place for.
+struct Left {
+    room: usize,
+    others: Vec<usize>,
+}
+
+impl Left {
+    fn add(all: &mut Vec<Self>, room: usize, other: usize) {
+        match all.iter_mut().find(|l| l.room == room) {
+            Some(known) => known.others.push(other),
+            None => all.push(Self { room, others: vec![other] }),
+        }
+    }
+
+    /// Returns what was planned instead.
+    fn note(&self, web: &Web, rooms: &[GraphRoom]) -> Note {
+        let room = &rooms[self.room];
+        let beside = web.neighbors(rooms, self.room).len();
+        let named: Vec<&str> = self.others.iter().take(MOST_NAMED).map(|&i| rooms[i].name.as_str()).collect();
+        let more = if self.others.len() > named.len() { ", ..." } else { "" };
+        let message = format!(
+            "{} was to be beside {} rooms; its walls take {beside} of them, the other {} were kept near: {}{more}",
+            room.name,
+            beside + self.others.len(),
+            self.others.len(),
+            named.join(", "),
+        );
+        note("too_many_neighbors", message)
+    }
+}
+
+/// Returns the rooms of a type, or the one of them with a number of its own.
+fn of_kind(rooms: &[GraphRoom], kind: &str, number: Option<u32>) -> Vec<usize> {
+    let meant = |r: &GraphRoom| number.is_none_or(|n| r.id == format!("{kind}_{n}"));
+    (0..rooms.len()).filter(|&i| rooms[i].room_type == kind && meant(&rooms[i])).collect()
+}
+
+/// Returns the rule of the domain that rules out what a pair asks for.
+fn ruled_out<'d>(reading: &Reading<'d>, pair: &Pair) -> Option<&'d Adjacency> {
+    let forbids = |rule: &&Adjacency| {
+        let via = rule.via == "wall" || pair.connector != Connector::Wall;
+        rule.relation == AdjacencyRelation::MustNot && is_pair(rule, &pair.a, &pair.b) && via
+    };
+    reading.domain.adjacency.iter().find(forbids).filter(|_| pair.connector != Connector::Near)
+}
+
 fn is_pair(rule: &Adjacency, a: &str, b: &str) -> bool {
     rule.a == a && rule.b == b || rule.a == b && rule.b == a
 }
@@ -361,19 +456,19 @@ fn keep_apart(reading: &mut Reading, rooms: &[GraphRoom], web: &mut Web) {
             r.jurisdictions.is_empty() || r.jurisdictions.iter().any(|c| reading.country_code.as_ref() == Some(c));
         r.relation == AdjacencyRelation::MustNot && r.via == "wall" && here
     });
-    let pairs: Vec<[String; 2]> =
-        reading.wishes.apart.iter().cloned().chain(rules.map(|r| [r.a.clone(), r.b.clone()])).collect();
-    for [a, b] in pairs {
-        for x in rooms.iter().filter(|r| r.room_type == a) {
-            for y in rooms.iter().filter(|r| r.room_type == b && r.id != x.id) {
-                let joined = web.edges.iter().any(|e| e.a == x.id && e.b == y.id || e.a == y.id && e.b == x.id);
-                if joined {
-                    let message =
-                        format!("{} and {} cannot be apart: one is entered through the other", x.name, y.name);
-                    reading.conflicts.push(note("apart_but_joined", message));
-                } else if !web.has_apart(&x.id, &y.id) {
-                    web.apart.push([x.id.clone(), y.id.clone()]);
-                }
+    let ruled = rules.map(|r| Apart { rooms: [r.a.clone(), r.b.clone()], which: [None, None] });
+    let pairs: Vec<Apart> = reading.wishes.apart.iter().cloned().chain(ruled).collect();
+    for Apart { rooms: [a, b], which } in pairs {
+        let (from, to) = (of_kind(rooms, &a, which[0]), of_kind(rooms, &b, which[1]));
+        for (x, y) in
+            from.iter().flat_map(|&i| to.iter().filter(move |&&j| j != i).map(move |&j| (&rooms[i], &rooms[j])))
+        {
+            let joined = web.edges.iter().any(|e| e.a == x.id && e.b == y.id || e.a == y.id && e.b == x.id);
+            if joined {
+                let message = format!("{} and {} cannot be apart: one is entered through the other", x.name, y.name);
+                reading.conflicts.push(note("apart_but_joined", message));
+            } else if !web.has_apart(&x.id, &y.id) {
+                web.apart.push([x.id.clone(), y.id.clone()]);
             }
         }
     }

@@ -2,13 +2,14 @@
 //! the others, a flat of so many rooms counts those that are listed, a studio is one room, and who lives there has a bed.
 
 use d3dgen_model::domain::{Domain, Program, Zone};
-use d3dgen_model::scene_graph::GraphRoom;
+use d3dgen_model::scene_graph::{GraphRoom, Note};
 use d3dgen_plugins::Registry;
 
 use super::beds::sleeps;
 use super::dwelling::ShortForm;
 use super::mentions::{Mention, What};
 use super::objects::{self, Thing};
+use super::places::note;
 use super::program::Planned;
 use super::qualities::Nook;
 use super::reading::{Reading, is_dwelling};
@@ -262,4 +263,16 @@ pub(super) fn house(reading: &Reading, planned: &[Planned], rooms: &mut [GraphRo
         spare -= more;
     }
     Some(residents)
+}
+
+/// Rooms of one home, at most; more are a house of many homes, of which no plan is made.
+const MOST_IN_HOME: u32 = 40;
+
+/// States that a number of rooms is not that of one home.
+pub(super) fn state_size(rooms: Option<u32>) -> Option<Note> {
+    let rooms = rooms.filter(|n| *n > MOST_IN_HOME)?;
+    let message = format!(
+        "{rooms} rooms are those of many homes; they were planned as one dwelling, for flats of their own are not planned: ask for one of them"
+    );
+    Some(note("one_dwelling", message))
 }

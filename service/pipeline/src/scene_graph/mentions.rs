@@ -8,6 +8,7 @@ use d3dgen_plugins::Registry;
 use super::beds::BedRoom;
 use super::compounds::{self, Compound};
 use super::named_for;
+use super::numbered::{self, Numbered};
 use super::numbers::Number;
 use super::reading::is_dwelling;
 use super::seated;
@@ -63,6 +64,8 @@ pub(super) struct Mention {
     pub beds: Option<u32>,
     /// Places to be treated at of each such room, where the prompt says so.
     pub places: Option<u32>,
+    /// Its own number: "bedroom 2".
+    pub numbered: Option<Numbered>,
 }
 
 impl Mention {
@@ -81,7 +84,13 @@ impl Mention {
             number: None,
             beds: None,
             places: None,
+            numbered: None,
         }
+    }
+
+    /// Returns the end of its words, with the number of its own.
+    pub(super) fn end(&self) -> usize {
+        self.numbered.map_or(self.span.end, |n| n.span.end)
     }
 
     pub(super) fn room_type(&self) -> Option<&str> {
@@ -391,6 +400,7 @@ pub(super) fn mentions(
     }
     ellipses(tokens, vocabulary, &mut out);
     drop_modifiers(tokens, vocabulary, &mut out);
+    numbered::read(tokens, numbers, spoken, matches!(language, "zh" | "ko"), &mut out);
     attach_numbers(tokens, numbers, spoken, language, taken, &mut out);
     compounds::settle(tokens, taken.compounds, spoken, &mut out);
     part_by_sex(tokens, vocabulary, spoken, &mut out);
@@ -647,7 +657,8 @@ fn attach_numbers(
     taken: &Taken,
     out: &mut [Mention],
 ) {
-    let spans: Vec<Span> = out.iter().map(|m| m.span).collect();
+    let own = |m: &Mention| m.numbered.map(|n| n.span);
+    let spans: Vec<Span> = out.iter().map(|m| m.span).chain(out.iter().filter_map(own)).collect();
     let usable: Vec<&Number> = numbers
         .iter()
         .filter(|n| !taken.spans.iter().chain(&taken.head).chain(&spans).any(|s| s.overlaps(n.span)))
@@ -656,7 +667,7 @@ fn attach_numbers(
         .collect();
     let walls: Vec<Span> = spans.iter().chain(taken.counted).copied().collect();
     let mut used = vec![false; usable.len()];
-    for m in out.iter_mut() {
+    for m in out.iter_mut().filter(|m| m.numbered.is_none_or(|n| !n.span.contains(m.span.start))) {
         let after = || number_after(tokens, m.span.end, &usable, spoken, language);
         // the garage of "2 car garage" is one
         let holds = m.span.end > m.span.start + 1

@@ -20,9 +20,11 @@ mod keeps;
 mod labels;
 mod language;
 mod layout;
+mod listed;
 mod measures;
 mod mentions;
 mod named_for;
+mod numbered;
 mod numbers;
 mod objects;
 mod parts;
@@ -34,6 +36,7 @@ mod qualities;
 mod reading;
 mod relations;
 mod ring;
+mod robot_rules;
 mod robots;
 mod rooms;
 mod seated;
@@ -156,6 +159,8 @@ fn assemble(request: &Request, mut reading: Reading, planned: &[Planned]) -> Sce
     ring::close(&reading, &links, &mut rooms, &mut web.edges);
     charging::add_docks(reading.domain, &reading.robots, &reading.docked, &mut rooms);
     robots::send(&reading.errand, &rooms, &mut reading.robots);
+    let robot_rules = robot_rules::of_rooms(&reading.robot_rules, &rooms);
+    edges::state_unmet(&mut reading, &rooms, &web.edges);
     SceneGraph {
         version: 1,
         prompt: request.prompt.clone(),
@@ -174,7 +179,7 @@ fn assemble(request: &Request, mut reading: Reading, planned: &[Planned]) -> Sce
         links,
         forbidden_room_types: reading.wishes.forbidden,
         robots: reading.robots,
-        robot_rules: Vec::new(),
+        robot_rules,
         assumptions: reading.assumptions,
         conflicts: reading.conflicts,
     }

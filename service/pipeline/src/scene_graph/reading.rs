@@ -28,8 +28,8 @@ use super::wishes::{self, MANY, PerHost, Text, Wish, Wishes};
 use super::words::{ByBedrooms, Spoken, Tag, words};
 use super::workers;
 use super::{
-    Request, apiece, docks, dwelling, fixtures, homes, keeps, language, measures, numbers, qualities, robots, seated,
-    sharing, single, stays, umlauts, unread,
+    Request, apiece, docks, dwelling, fixtures, homes, keeps, language, measures, numbers, qualities, robot_rules,
+    robots, seated, sharing, single, stays, umlauts, unread,
 };
 use crate::Error;
 
@@ -95,6 +95,8 @@ pub(super) struct Reading<'a> {
     pub accessible: bool,
     pub style: Style,
     pub robots: Vec<Robot>,
+    /// What is asked of robots in rooms.
+    pub robot_rules: Vec<robot_rules::Rule>,
     /// Types of the rooms that a dock is to stand in.
     pub docked: Vec<String>,
     /// Where the robot is to go.
@@ -368,7 +370,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     let mut wishes = wishes::gather(&text, &mut conflicts);
     if lives {
         homes::add_studio(&mut wishes, program, domain);
-        wishes.closed = compounds::closed_rooms(&tokens, &mentions, domain, &spoken);
+        wishes.closed.extend(compounds::closed_rooms(&tokens, &mentions, domain, &spoken));
         wishes.enter_through_halls(domain);
     }
     wishes.open = compounds::open_rooms(&tokens, &mentions, domain, &spoken);
@@ -392,7 +394,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     };
     let mut storeys = storeys::read(&said_storeys, country, &mut conflicts);
     furnish_basement(&mut storeys, &mut wishes, domain);
-    wish_for_storeys(&mut storeys, &mut wishes, domain);
+    wish_for_storeys(&mut storeys, &mut wishes, domain, &mut conflicts);
     name_private_bathrooms(&mut wishes, domain, lives);
     if !lives {
         vital::rule_out(domain, &wet, &mut wishes);
@@ -421,6 +423,13 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         let own = machines.kind_at(span);
         let meant = |r: &Robot| own.is_none_or(|kind| r.kind == kind) && !CARRIES.contains(&r.kind.as_str());
         robots.iter_mut().filter(|r| meant(r)).for_each(|r| r.room_types.clone_from(&kept));
+    }
+    let rooms = relations::Reader::new(&tokens, &mentions, &spoken, language, building.head);
+    let asked = robot_rules::read(&rooms, &numbers, &machines.spans);
+    spans.extend(asked.spans);
+    if let Some((span, note)) = robot_rules::state_two_way(&rooms, &machines.spans) {
+        spans.push(span);
+        conflicts.push(note);
     }
     // "drei Stockwerken" ends in a word for a factory
     let storey = |p: &building::Part| spoken.iter().any(|s| s.tag_at(&tokens, p.span.start, Tag::Storeys).is_some());
@@ -455,6 +464,9 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     let said = request.rooms.or_else(|| said_total(&mentions));
     if lives {
         wishes.join_to_fit(said, domain);
+    }
+    if lives {
+        conflicts.extend(homes::state_size(said));
     }
     let beside = workers::beside_rooms(&mut wishes, said.filter(|_| request.rooms.is_none()), domain, program);
     let total = beside.map_or_else(|| total_rooms(request, &mentions, &wishes, &mut conflicts), |n| Ok(Some(n)))?;
@@ -582,6 +594,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         each_alone,
         accessible: says(Tag::Accessible) || lives && says(Tag::Frail),
         robots,
+        robot_rules: asked.rules,
         docked,
         errand,
         style: styles::wished(&said_styles, request.style, &mut conflicts),
@@ -716,8 +729,13 @@ fn program_by_bedrooms<'a>(domain: &'a Domain, program: &'a Program, wishes: &Wi
 }
 
 /// Counts rooms on every storey for each of them, and leaves stairs and elevators to what joins the storeys.
-fn wish_for_storeys(storeys: &mut Storeys, wishes: &mut Wishes, domain: &Domain) {
+fn wish_for_storeys(storeys: &mut Storeys, wishes: &mut Wishes, domain: &Domain, conflicts: &mut Vec<Note>) {
+    let rules = domain.circulation.storeys.as_ref();
+    let climbs = |id: &str| rules.is_some_and(|r| goes_up(domain, id, &r.stairs.room_type));
     if storeys.levels.len() < 2 {
+        // "a core with lifts and stairs" on one storey has one of them
+        let stairs = wishes.wishes.iter_mut().filter(|w| !w.exact && climbs(&w.room_type));
+        stairs.for_each(|w| w.count = 1);
         return;
     }
     let above = storeys.above_ground() as u32;
@@ -734,26 +752,32 @@ fn wish_for_storeys(storeys: &mut Storeys, wishes: &mut Wishes, domain: &Domain)
             wish.count = wish.count.max(*sum);
         }
     }
-    if let Some(rules) = &domain.circulation.storeys {
-        let spaces = |id: &str| domain.room_type(id).map_or(&[][..], |k| &k.spaces);
-        // "two staircases" are what joins the storeys, whatever room a building of one storey has for that
-        let is = |id: &str, of: &str| {
-            let circulates = domain.room_type(id).is_some_and(|k| k.zone == Zone::Circulation);
-            id == of || circulates && spaces(id).iter().any(|s| spaces(of).contains(s))
-        };
-        let climbs = |id: &str| is(id, &rules.stairs.room_type);
-        let lifts = |id: &str| rules.elevator.as_ref().is_some_and(|e| is(id, &e.room_type));
+    if let Some(rules) = rules {
+        let lifts = |id: &str| rules.elevator.as_ref().is_some_and(|e| goes_up(domain, id, &e.room_type));
         let joins = |id: &String| climbs(id) || lifts(id);
         let stairs = wishes.wishes.iter().filter(|w| w.exact && climbs(&w.room_type)).map(|w| w.count).max();
         storeys.stairs = stairs.unwrap_or(0);
         storeys.elevator = storeys.elevator.or(wishes.wishes.iter().any(|w| lifts(&w.room_type)).then_some(true));
         storeys.wanted.retain(|w| !joins(&w.room_type));
         wishes.wishes.retain(|w| !joins(&w.room_type));
+        for pair in wishes.pairs.iter().filter(|p| joins(&p.a) || joins(&p.b)) {
+            let [a, b] = [&pair.a, &pair.b].map(|id| id.replace('_', " "));
+            let why = "stairs and elevators stand where they join the storeys";
+            conflicts.push(note("not_beside", format!("{a} and {b} were not planned beside each other: {why}")));
+        }
         wishes.pairs.retain(|p| !joins(&p.a) && !joins(&p.b));
         wishes.forbidden.retain(|f| !joins(f));
     }
     // what joins the rooms of a storey cannot be ruled out
     wishes.forbidden.retain(|f| *f != domain.circulation.room_type);
+}
+
+/// Returns true for rooms that lead to other storeys as those of a type do: "two staircases" are what joins the storeys,
+/// whatever room a building of one storey has for that.
+fn goes_up(domain: &Domain, id: &str, of: &str) -> bool {
+    let spaces = |id: &str| domain.room_type(id).map_or(&[][..], |k| &k.spaces);
+    let circulates = domain.room_type(id).is_some_and(|k| k.zone == Zone::Circulation);
+    id == of || circulates && spaces(id).iter().any(|s| spaces(of).contains(s))
 }
 
 /// Head counts of a prompt.

@@ -46,9 +46,14 @@ pub(super) struct Said {
     pub every: Vec<usize>,
     /// Mentions counted once for every room that can have one: "every room has an en suite".
     pub each_room: Vec<usize>,
+    /// Pairs of mentions of which one is to be seen from the other.
+    pub seen: Vec<(usize, usize)>,
+    /// Mentions that are not to be open to others.
+    pub closed: Vec<usize>,
 }
 
-const RELATIONS: [Tag; 7] = [Tag::Near, Tag::Door, Tag::Open, Tag::Together, Tag::Between, Tag::Around, Tag::Apart];
+pub(super) const RELATIONS: [Tag; 8] =
+    [Tag::Near, Tag::Door, Tag::Open, Tag::Together, Tag::Between, Tag::Around, Tag::Sight, Tag::Apart];
 
 /// Reads all relations and negations.
 pub(super) fn read(
@@ -59,7 +64,7 @@ pub(super) fn read(
     building: Option<Span>,
 ) -> Said {
     let mut said = Said { negated: negated(tokens, mentions, spoken, language), ..Said::default() };
-    let reader = Reader { tokens, mentions, spoken, postposed: matches!(language, "zh" | "ko" | "de"), building };
+    let reader = Reader::new(tokens, mentions, spoken, language, building);
     let mut i = 0;
     while i < tokens.len() {
         if mentions.iter().any(|m| m.span.contains(i)) {
@@ -114,22 +119,43 @@ fn at_entrance(reader: &Reader, said: &mut Said) {
     }
 }
 
-struct Reader<'a> {
-    tokens: &'a [Token],
-    mentions: &'a [Mention],
-    spoken: &'a [&'a Spoken],
+/// Reads relations of the rooms of a prompt.
+pub(super) struct Reader<'a> {
+    pub tokens: &'a [Token],
+    pub mentions: &'a [Mention],
+    pub spoken: &'a [&'a Spoken],
     /// True where the relation can stand behind both rooms.
     postposed: bool,
+    /// True where what turns a relation round stands behind it.
+    pub verb_last: bool,
     /// Words that name the building.
     building: Option<Span>,
 }
 
+impl<'a> Reader<'a> {
+    pub(super) fn new(
+        tokens: &'a [Token],
+        mentions: &'a [Mention],
+        spoken: &'a [&'a Spoken],
+        language: &str,
+        building: Option<Span>,
+    ) -> Self {
+        let postposed = matches!(language, "zh" | "ko" | "de");
+        Self { tokens, mentions, spoken, postposed, verb_last: language == "ko", building }
+    }
+}
+
 impl Reader<'_> {
-    fn place(&self, i: usize) -> bool {
+    /// Returns the end of the longest phrase with a tag that begins at a token.
+    pub(super) fn tag_end(&self, i: usize, tag: Tag) -> Option<usize> {
+        self.spoken.iter().find_map(|s| s.tag_at(self.tokens, i, tag))
+    }
+
+    pub(super) fn place(&self, i: usize) -> bool {
         matches!(self.mentions[i].what, What::Room(_) | What::Charge | What::Entrance)
     }
 
-    fn tagged(&self, i: usize, tag: Tag) -> bool {
+    pub(super) fn tagged(&self, i: usize, tag: Tag) -> bool {
         self.spoken.iter().any(|s| s.tag_at(self.tokens, i, tag).is_some())
     }
 
@@ -138,7 +164,7 @@ impl Reader<'_> {
         let from = (0..at).rev().find(|&i| self.tokens[i].ends_sentence()).map_or(0, |i| i + 1);
         (0..self.mentions.len())
             .rev()
-            .filter(|&m| self.place(m) && self.mentions[m].span.end <= at && self.mentions[m].span.start >= from)
+            .filter(|&m| self.place(m) && self.mentions[m].end() <= at && self.mentions[m].span.start >= from)
             .take(n)
             .collect()
     }
@@ -154,7 +180,7 @@ impl Reader<'_> {
                     break;
                 }
                 out.push(m);
-                i = self.mentions[m].span.end;
+                i = self.mentions[m].end();
                 steps = 0;
                 continue;
             }
@@ -172,8 +198,8 @@ impl Reader<'_> {
     }
 
     /// Returns true when a mention begins a statement of its own: "and the office is close to the entrance".
-    fn goes_on(&self, m: usize) -> bool {
-        let end = self.mentions[m].span.end;
+    pub(super) fn goes_on(&self, m: usize) -> bool {
+        let end = self.mentions[m].end();
         (end..(end + 3).min(self.tokens.len()))
             .take_while(|&i| !self.tokens[i].is_mark() && !self.tagged(i, Tag::Joins))
             .any(|i| RELATIONS.iter().any(|&tag| self.tagged(i, tag)))
@@ -186,7 +212,7 @@ impl Reader<'_> {
         self.mentions[m].count.is_none() && (start.saturating_sub(2)..start).any(each)
     }
 
-    fn is_group(&self, m: usize) -> bool {
+    pub(super) fn is_group(&self, m: usize) -> bool {
         self.mentions[m].plural || self.mentions[m].count.is_some_and(|n| n > 1)
     }
 
@@ -194,7 +220,7 @@ impl Reader<'_> {
         let connector = match tag {
             Tag::Door => Connector::Door,
             Tag::Open => Connector::Open,
-            Tag::Around => Connector::Near,
+            Tag::Around | Tag::Sight => Connector::Near,
             _ => Connector::Wall,
         };
         let before = self.before(start, 3);
@@ -208,14 +234,25 @@ impl Reader<'_> {
             let group = before[1..].iter().find(|&&m| self.is_group(m)).copied();
             after = group.map_or_else(|| before[1..].to_vec(), |g| vec![g]);
         }
-        let mut pairs: Vec<(usize, usize)> = Vec::new();
+        if after.is_empty() {
+            after.extend(self.spoken_of(end, &before, said));
+        }
+        let listed = !matches!(tag, Tag::Between | Tag::Together);
+        if let ([subject, ..], [object, ..], true) = (&before[..], &after[..], listed) {
+            after = self.all_after(*subject, *object, start);
+        }
         let group_object = after.first().is_some_and(|&m| self.is_group(m) || self.both_before(m));
+        let one_to_many = |s: usize, o: usize| {
+            let counted = self.mentions[o].count.is_some_and(|n| n > 1) && !self.mentions[o].article;
+            counted && !self.is_group(s) && self.mentions[o].what != self.mentions[s].what
+        };
         let spread = match tag {
             Tag::Around => Spread::All,
             Tag::Between if group_object => Spread::Between,
             _ if after.first().is_some_and(|&m| self.both_before(m)) => Spread::All,
             _ => Spread::Each,
         };
+        let mut pairs: Vec<(usize, usize)> = Vec::new();
         match (tag, before.as_slice(), after.as_slice()) {
             (Tag::Together, [b, a, ..], _) if !self.is_group(*b) => pairs.push((*a, *b)),
             (Tag::Together, [b, ..], _) => pairs.push((*b, *b)),
@@ -223,15 +260,9 @@ impl Reader<'_> {
             (Tag::Between, [b, a, ..], [s]) if self.postposed && !group_object => pairs.extend([(*s, *a), (*s, *b)]),
             (Tag::Between, [s, ..], [group]) => pairs.push((*s, *group)),
             (Tag::Between, ..) => {}
-            (_, [s, ..], [o, rest @ ..]) => {
-                pairs.push((*s, *o));
-                // "next to the kitchen and the dining room"
-                if let [second] = rest
-                    && self.mentions[*second].definite
-                    && !self.goes_on(*second)
-                {
-                    pairs.push((*s, *second));
-                }
+            (_, [s, ..], [_, ..]) => {
+                let subjects = self.all_before(*s, start, said);
+                pairs.extend(subjects.into_iter().flat_map(|s| after.iter().map(move |&o| (s, o))));
             }
             (_, [b, a, ..], []) if self.postposed => pairs.push((*a, *b)),
             (_, [], [o, s, ..]) => pairs.push((*s, *o)),
@@ -240,10 +271,21 @@ impl Reader<'_> {
         for (subject, object) in pairs {
             said.subjects.push(subject);
             said.objects.push(object);
+            let turned = self.is_turned((subject, object), Span { start, end });
             if subject == object && !self.is_group(subject) {
                 continue;
             }
-            let apart = tag == Tag::Apart;
+            if turned && tag == Tag::Open {
+                said.closed.push(subject);
+                continue;
+            }
+            if tag == Tag::Sight && !turned {
+                said.seen.push((subject, object));
+            }
+            let apart = (tag == Tag::Apart) != turned;
+            // "not far from the kitchen"
+            let connector = if turned && tag == Tag::Apart { Connector::Near } else { connector };
+            let spread = if spread == Spread::Each && one_to_many(subject, object) { Spread::All } else { spread };
             said.relations.push(Relation { subject, object, connector, spread, apart, belongs: false });
         }
     }

@@ -67,6 +67,8 @@ pub(super) struct Storeys {
     pub wanted: Vec<Wanted>,
     /// True when an elevator is named, false when it is ruled out.
     pub elevator: Option<bool>,
+    /// Elevators that are counted; 0 where none are.
+    pub lifts: u32,
     /// Stairs that are counted: "two staircases"; 0 where none are.
     pub stairs: u32,
     /// Robots that are wanted on every storey.
@@ -222,11 +224,44 @@ fn stated(text: &Text) -> Option<f64> {
     by_number.or_else(counts)
 }
 
-/// Returns whether an elevator is asked for or ruled out.
-fn elevator(tokens: &[Token], spoken: &[&Spoken]) -> Option<bool> {
-    let tagged = |i: usize, tag: Tag| spoken.iter().any(|s| s.tag_at(tokens, i, tag).is_some());
-    let at = (0..tokens.len()).find(|&i| tagged(i, Tag::Lift))?;
-    Some(!(at.saturating_sub(2)..at).any(|k| tagged(k, Tag::No)))
+/// Words between a number and the elevators that it counts, at most: "two large passenger lifts".
+const MOST_TO_LIFT: usize = 2;
+
+/// What a prompt says of elevators.
+struct Lifts {
+    /// True when one is named, false when it is ruled out.
+    wanted: Option<bool>,
+    /// How many are counted; 0 where none are.
+    count: u32,
+    /// True where a room is to be beside one.
+    beside: bool,
+}
+
+/// Reads whether elevators are asked for or ruled out, and how many: those of several kinds are added up.
+fn lifts(text: &Text) -> Lifts {
+    let Text { tokens, numbers, mentions, spoken, .. } = *text;
+    let tagged = |i: usize, tag: Tag| spoken.iter().find_map(|s| s.tag_at(tokens, i, tag));
+    // a "lift lobby" is a room
+    let in_room = |i: usize| mentions.iter().any(|m| m.room_type().is_some() && m.span.contains(i));
+    let named = |i: &usize| tagged(*i, Tag::Lift).is_some() && !in_room(*i);
+    let all: Vec<usize> = (0..tokens.len()).filter(named).collect();
+    let wanted = all.first().map(|&at| !(at.saturating_sub(2)..at).any(|k| tagged(k, Tag::No).is_some()));
+    let counted = |&at: &usize| {
+        let between = |n: &&Number| {
+            let gap = n.span.end..at;
+            let parted = |i: usize| {
+                tokens[i].is_mark() || tagged(i, Tag::Joins).is_some() || mentions.iter().any(|m| m.span.contains(i))
+            };
+            n.span.end <= at && gap.len() <= MOST_TO_LIFT && !gap.into_iter().any(parted)
+        };
+        // "电梯4部", "엘리베이터 3대"
+        let end = tagged(at, Tag::Lift).unwrap_or(at);
+        let behind = |n: &&Number| n.span.start == end && tagged(n.span.end, Tag::Counters).is_some();
+        let number = numbers.iter().rev().find(between).or_else(|| numbers.iter().find(behind))?;
+        (number.value >= 1.0).then_some(number.value as u32)
+    };
+    let near = |&at: &usize| (at.saturating_sub(MOST_TO_LIFT + 1)..at).any(|k| tagged(k, Tag::Near).is_some());
+    Lifts { wanted, beside: all.iter().any(near), count: all.iter().filter_map(counted).fold(0, u32::saturating_add) }
 }
 
 /// What the reading of storeys needs to see.
@@ -307,8 +342,17 @@ pub(super) fn read(text: &Text, country: Option<&str>, conflicts: &mut Vec<Note>
         wanted.push(Wanted { room_type: room_type.to_owned(), count, at });
     }
     let bare = (0..phrases.len()).any(|p| phrases[p].noun) && !wanted.iter().any(|w| w.at == Where::Level(-1));
-    let elevator = elevator(tokens, spoken);
-    Storeys { levels, wanted, elevator, stairs: 0, robots_on_each, bare_basement: bare }
+    let Lifts { wanted: elevator, count: lifts, beside } = lifts(text);
+    if elevator == Some(true) && levels.len() < 2 {
+        let message =
+            "an elevator was asked for, but the building has one storey; none was planned, say how many storeys it has";
+        conflicts.push(note("elevator_on_one_storey", message.into()));
+    }
+    if elevator == Some(true) && levels.len() > 1 && beside {
+        let message = "no room was planned beside an elevator: it stands where it joins the storeys";
+        conflicts.push(note("not_beside", message.into()));
+    }
+    Storeys { levels, wanted, elevator, lifts, stairs: 0, robots_on_each, bare_basement: bare }
 }
 
 /// Returns the robots that a phrase says the storey of: "a cleaning robot on each floor", not "upstairs bedrooms".

@@ -9,9 +9,10 @@ use super::compounds;
 use super::dwelling::ShortForm;
 use super::measures::Area;
 use super::mentions::{Mention, What};
+use super::numbered;
 use super::places::note;
 use super::qualities;
-use super::relations::{Said, Spread};
+use super::relations::{Relation, Said, Spread};
 use super::storeys::Where;
 use super::text::Token;
 use super::words::{Spoken, Tag, words};
@@ -50,6 +51,30 @@ pub(super) struct Pair {
     pub spread: Spread,
     /// True when `a` belongs to `b` (an en suite).
     pub belongs: bool,
+    /// Which of the rooms are meant, where they have numbers of their own.
+    pub which: Which,
+}
+
+/// Numbers of the rooms of a pair; none means any of their type.
+pub(super) type Which = [Option<u32>; 2];
+
+/// Two room types that share neither door nor wall.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Apart {
+    pub rooms: [String; 2],
+    pub which: Which,
+}
+
+impl Apart {
+    /// Returns true for a pair of which no room could be beside the other.
+    fn rules_out(&self, pair: &Pair) -> bool {
+        let side = |i: usize, kind: &String, number: Option<u32>| {
+            &self.rooms[i] == kind && (self.which[i].is_none() || self.which[i] == number)
+        };
+        let [a, b] = pair.which;
+        let alike = side(0, &pair.a, a) && side(1, &pair.b, b) || side(1, &pair.a, a) && side(0, &pair.b, b);
+        alike && !pair.belongs && pair.connector != Connector::Near
+    }
 }
 
 /// A room that comes with each room of another type.
@@ -65,7 +90,7 @@ pub(super) struct PerHost {
 pub(super) struct Wishes {
     pub wishes: Vec<Wish>,
     pub pairs: Vec<Pair>,
-    pub apart: Vec<[String; 2]>,
+    pub apart: Vec<Apart>,
     pub forbidden: Vec<String>,
     pub entrance: Vec<String>,
     /// What comes with each room of a type whose number the prompt leaves open.
@@ -239,22 +264,90 @@ pub(super) fn gather(text: &Text, conflicts: &mut Vec<Note>) -> Wishes {
                 out.entrance.push(id);
             }
         }
-        let (Some(a), Some(b)) = (type_of(s), type_of(o)) else { continue };
-        if relation.apart {
-            if a != b && !out.apart.contains(&[a.clone(), b.clone()]) {
-                out.apart.push([a, b]);
+        let (Some(a), Some(b)) = (type_of(s), type_of(o)) else {
+            let entrance = [s, o].iter().any(|&m| text.mentions[m].what == What::Entrance);
+            if relation.apart
+                && entrance
+                && let Some(id) = type_of(s).or_else(|| type_of(o))
+            {
+                let message = format!(
+                    "{} is to be away from the entrance; how far it is from there is not planned",
+                    id.replace('_', " ")
+                );
+                conflicts.push(note("unread_wish", message));
             }
+            continue;
+        };
+        let which = [s, o].map(|m| text.mentions[m].numbered.map(|n| n.n));
+        if relation.apart {
+            let apart = Apart { rooms: [a, b], which };
+            out.apart.extend((!out.apart.contains(&apart)).then_some(apart));
             continue;
         }
         out.charging_room |= a == CHARGING || b == CHARGING;
-        let pair = Pair { a, b, connector: relation.connector, spread: relation.spread, belongs: relation.belongs };
-        match out.pairs.iter_mut().find(|p| p.a == pair.a && p.b == pair.b || p.a == pair.b && p.b == pair.a) {
-            Some(known) if known.belongs || !pair.belongs => {}
-            Some(known) => *known = pair,
-            None => out.pairs.push(pair),
+        let Relation { connector, spread, belongs, .. } = *relation;
+        out.join(Pair { a, b, connector, spread, belongs, which });
+    }
+    for &(a, b) in &text.said.seen {
+        let [Some(a), Some(b)] = [a, b].map(|m| type_of(m).map(|id| id.replace('_', " "))) else { continue };
+        let message = format!(
+            "{a} and {b} are to be in sight of each other; they were wished near each other, what is seen from where is not assured"
+        );
+        conflicts.push(note("sight_not_assured", message));
+    }
+    for &m in &text.said.closed {
+        out.closed.extend(type_of(m));
+    }
+    out.keep_apart(conflicts);
+    out
+}
+
+impl Wishes {
+    /// Adds a pair; what is said of the same rooms again makes the first say more.
+    fn join(&mut self, pair: Pair) {
+        let same = |p: &&mut Pair| {
+            p.a == pair.a && p.b == pair.b && p.which == pair.which
+                || p.a == pair.b && p.b == pair.a && p.which == [pair.which[1], pair.which[0]]
+        };
+        match self.pairs.iter_mut().find(same) {
+            Some(known) if known.belongs => {}
+            Some(known) if pair.belongs => *known = pair,
+            // "next to 25 offices, all with a door to it"
+            Some(known) => {
+                if strength(pair.connector) > strength(known.connector) {
+                    known.connector = pair.connector;
+                }
+                if pair.spread == Spread::All {
+                    known.spread = Spread::All;
+                }
+            }
+            None => self.pairs.push(pair),
         }
     }
-    out
+
+    /// Takes back the pairs that are to be apart too, and says so.
+    fn keep_apart(&mut self, conflicts: &mut Vec<Note>) {
+        let apart = &self.apart;
+        self.pairs.retain(|pair| {
+            let kept = !apart.iter().any(|a| a.rules_out(pair));
+            if !kept {
+                let [a, b] = [&pair.a, &pair.b].map(|id| id.replace('_', " "));
+                let message = format!("{a} and {b} are to be beside each other and apart; they were kept apart");
+                conflicts.push(note("near_and_apart", message));
+            }
+            kept
+        });
+    }
+}
+
+/// Returns how much a connector asks for: who has a door has a wall.
+fn strength(connector: Connector) -> u8 {
+    match connector {
+        Connector::Near => 0,
+        Connector::Wall => 1,
+        Connector::Door => 2,
+        Connector::Open => 3,
+    }
 }
 
 /// Returns guests and hosts of "every patient room has an en suite" where no other words say how many hosts there are.
@@ -331,6 +424,10 @@ fn count_mentions(
     let mut first = true;
     for &m in positive {
         let mention = &text.mentions[m];
+        if mention.numbered.is_some() {
+            listed |= !is_reference(text, m, first);
+            continue;
+        }
         let n = mention.count.unwrap_or(if mention.plural { 2 } else { 1 });
         let in_name = mention.span.start < text.list_from && mention.count.is_some() && !mention.article;
         let again = is_reference(text, m, first);
@@ -347,6 +444,11 @@ fn count_mentions(
         }
     }
     let listed_any = listed || !positive.is_empty();
+    if let Some((numbered, from_one)) = numbered::count(positive.iter().map(|&m| &text.mentions[m])) {
+        // "master bedroom, bedroom 1, bedroom 2", but "three bedrooms; bedroom 1 is next to the bathroom"
+        sum = if explicit || !from_one { sum.max(numbered.into()) } else { sum + i64::from(numbered) };
+        explicit = true;
+    }
     if let Some(h) = head {
         if sum > h && explicit {
             conflicts.push(note(
@@ -404,7 +506,7 @@ fn is_reference(text: &Text, m: usize, first: bool) -> bool {
     }
     // A bare repeated word is a room of its own only as a list item.
     let mark = |i: Option<usize>| i.and_then(|i| text.tokens.get(i)).is_none_or(Token::is_mark);
-    !(mark(mention.from.checked_sub(1)) && mark(Some(mention.span.end)))
+    !(mark(mention.from.checked_sub(1)) && mark(Some(mention.end())))
 }
 
 /// Returns true for a room on a storey where the prompt names no other of its type: "two bedrooms on the first floor, on the

@@ -26,6 +26,18 @@ pub(super) enum Tag {
     Stops,
     Joins,
     No,
+    /// Turns a relation round: "must not be next to".
+    Not,
+    /// How much of something: "not too large".
+    Degree,
+    /// Stands for the room that was spoken of: "with a door to it".
+    It,
+    /// Where robots are not to go: "keep out of".
+    KeepOut,
+    /// Robots that meet in a corridor: "two-way".
+    TwoWay,
+    /// Between the first and the last of numbered rooms: "bedrooms 1 to 4".
+    Range,
     Negative,
     Halves,
     Near,
@@ -35,6 +47,8 @@ pub(super) enum Tag {
     Between,
     Around,
     Apart,
+    /// What one sees from a room: "in sight of".
+    Sight,
     Entrance,
     Total,
     Storeys,
@@ -307,6 +321,8 @@ struct File {
     first_is_ground: Vec<String>,
     area_units: BTreeMap<String, f64>,
     length_units: BTreeMap<String, f64>,
+    /// Seconds of units of time.
+    time_units: BTreeMap<String, f64>,
     robot_kinds: BTreeMap<String, Body>,
     dwelling: Dwelling,
     #[serde(flatten)]
@@ -318,6 +334,7 @@ pub(super) struct Words {
     pub languages: BTreeMap<String, Spoken>,
     pub area_units: Phrases<f64>,
     pub length_units: Phrases<f64>,
+    pub time_units: Phrases<f64>,
     pub robot_kinds: BTreeMap<String, Body>,
     pub dwelling: Dwelling,
     pub first_is_ground: Vec<String>,
@@ -382,6 +399,7 @@ pub(super) fn words() -> &'static Words {
         Words {
             area_units: units(&file.area_units),
             length_units: units(&file.length_units),
+            time_units: units(&file.time_units),
             languages: file.languages.into_iter().map(|(code, words)| (code.clone(), spoken(&code, words))).collect(),
             robot_kinds: file.robot_kinds,
             dwelling: file.dwelling,

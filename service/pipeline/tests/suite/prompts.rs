@@ -53,6 +53,10 @@ struct Case {
     robots: Option<BTreeMap<String, u32>>,
     /// How many rooms of a type there are, exactly.
     rooms: BTreeMap<String, usize>,
+    /// Types of rooms that robots stay out of.
+    keep_out: Vec<String>,
+    /// The highest speed of robots in rooms of a type, m/s.
+    speeds: BTreeMap<String, f64>,
     /// Storeys in all.
     storeys: Option<usize>,
     /// The storey that all rooms of a type are on.
@@ -239,6 +243,17 @@ fn check_robots(case: &Case, graph: &SceneGraph, misses: &mut Misses) {
         let got: BTreeMap<String, u32> = graph.robots.iter().map(|r| (r.kind.clone(), r.count)).collect();
         misses.check(&got == robots, "robots", robots, &got);
     }
+    let of_type = |id: &str| graph.rooms.iter().filter(|r| r.room_type == id).collect::<Vec<_>>();
+    for room_type in &case.keep_out {
+        let rooms = of_type(room_type);
+        let right = !rooms.is_empty() && rooms.iter().all(|r| graph.keeps_robots_out(&r.id));
+        misses.check(right, "keep out", room_type, &graph.robot_rules);
+    }
+    for (room_type, speed) in &case.speeds {
+        let rooms = of_type(room_type);
+        let right = !rooms.is_empty() && rooms.iter().all(|r| graph.robot_speed_m_s(&r.id) == Some(*speed));
+        misses.check(right, "speed", (room_type, speed), &graph.robot_rules);
+    }
     if let Some(radius) = case.robot_radius_m {
         let right = graph.robots.iter().any(|r| (r.radius_m - radius).abs() < 1e-6);
         misses.check(right, "robot radius", radius, &graph.robots);
@@ -282,6 +297,13 @@ fn reads_odd_prompts() {
 fn reads_what_an_audit_found() {
     let (right, all) = score(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/prompts/audit.jsonl"));
     assert!(all >= 80, "{all} prompts");
+    assert_eq!(right, all);
+}
+
+#[test]
+fn reads_how_rooms_lie_to_each_other() {
+    let (right, all) = score(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/prompts/relations.jsonl"));
+    assert!(all >= 45, "{all} prompts");
     assert_eq!(right, all);
 }
 
