@@ -162,6 +162,7 @@ impl Beside {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::{Point, Segment};
 
     fn segment(x0: f64, y0: f64, x1: f64, y1: f64) -> Segment {
         Segment { start: Point::new(x0, y0), end: Point::new(x1, y1) }
