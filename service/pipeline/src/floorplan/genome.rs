@@ -128,7 +128,7 @@ pub(super) struct Genome {
     pub bands: Vec<Band>,
     /// Rooms that close the start and the end of the corridor (straight schemes only).
     pub caps: [Option<Cap>; 2],
-    /// Angle: true when the outer band fills the corner; courtyard: true when each outer band fills one.
+    /// Angle: true when the outer band fills the corner; racetrack: when the core began as one row of rooms; courtyard: true when each outer band fills one.
     pub corner: bool,
     /// Courtyard: depth of the court between the rooms on it, lattice units.
     pub court: i32,
@@ -279,10 +279,14 @@ impl Genome {
 
     fn lightest_band(&self, brief: &Brief, room: usize, rng: &mut Stream) -> usize {
         let load = |b: usize| self.bands[b].cells.iter().map(|c| brief.rooms[c.host].area_target).sum::<f64>();
-        let dark = matches!(brief.rooms[room].daylight, Daylight::None | Daylight::Optional);
+        let spec = &brief.rooms[room];
+        let dark = matches!(spec.daylight, Daylight::None | Daylight::Optional);
+        // from the core those at an open counter see the doors on both sides of it
+        let inner = dark || spec.open_front && spec.zone == Zone::Staff;
         let candidates: Vec<usize> = match self.scheme {
             // Bands 2 and 3 of a racetrack are its core.
-            Scheme::Racetrack if dark => vec![2, 3],
+            Scheme::Racetrack if inner && self.corner => vec![2],
+            Scheme::Racetrack if inner => vec![2, 3],
             Scheme::Racetrack => vec![0, 1],
             Scheme::Courtyard => vec![0, 1, WEST_BAND],
             _ => (0..self.bands.len()).collect(),

@@ -261,6 +261,9 @@ fn schemes(brief: &Brief, domain: &Domain, rng: &mut Stream) -> Vec<Scheme> {
             return vec![asked];
         }
     }
+    if list.contains(&Scheme::Racetrack) {
+        return vec![Scheme::Racetrack];
+    }
     for fallback in [Scheme::Straight, Scheme::Comb] {
         if suits(&fallback) && !list.contains(&fallback) {
             list.push(fallback);
@@ -280,8 +283,8 @@ fn scheme_of(form: Form) -> (Scheme, [usize; 2]) {
     match form {
         Form::Linear => (Scheme::Straight, [1, MOST_WHOLE]),
         Form::LShaped => (Scheme::Angle, [5, MOST_WHOLE]),
-        Form::Racetrack => (Scheme::Racetrack, [10, MOST_WHOLE + 10]),
-        Form::Courtyard => (Scheme::Courtyard, [6, 2 * MOST_WHOLE]),
+        Form::Racetrack => (Scheme::Racetrack, [10, MOST_WHOLE + 30]),
+        Form::Courtyard => (Scheme::Courtyard, [6, 2 * MOST_WHOLE + 20]),
         Form::Wings => (Scheme::Comb, [10, usize::MAX]),
     }
 }

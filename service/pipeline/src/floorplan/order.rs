@@ -27,6 +27,9 @@ const LEAST_FRONT_M: f64 = 1.2;
 const OUT_OF_SIGHT: f64 = 8.0;
 /// How far along the wall across from a station one sees a door beyond the ends of the station, m.
 const ALONG_M: f64 = 0.5;
+/// Bedrooms from which on a station cannot face all doors, and how far it sees those in the wall across aslant, m.
+const MANY_BEDS: usize = 9;
+const ASLANT_M: f64 = 8.0;
 /// What a way from the stations to the bedrooms as long as the building is wide costs.
 const OFF_CENTER: f64 = 2.5;
 /// Way from a station to a bedroom from which on it is too long, m, and what as much more counts beside its length.
@@ -203,12 +206,14 @@ impl Judge<'_> {
         if posts.iter().all(Vec::is_empty) {
             return 0.0;
         }
+        let beds = brief.rooms.iter().filter(|s| s.on_spine && s.zone == Zone::Night).count();
+        let reach = up(if beds >= MANY_BEDS { ASLANT_M } else { ALONG_M });
         let (mut all, mut hidden) = (0, 0);
         for (bed, _) in brief.rooms.iter().enumerate().filter(|(_, s)| s.on_spine && s.zone == Zone::Night) {
             all += 1;
             let seen = pieces.iter().zip(&posts).any(|(c, posts)| {
                 !posts.is_empty()
-                    && at(c, &|room| room == bed).iter().any(|bed| posts.iter().any(|post| sees(post, bed)))
+                    && at(c, &|room| room == bed).iter().any(|bed| posts.iter().any(|post| sees(post, bed, reach)))
             });
             hidden += u32::from(!seen);
         }
@@ -220,10 +225,10 @@ impl Judge<'_> {
 type Front = (usize, i32, i32);
 
 /// Returns true for a room whose door one sees from a station: never in the station's own wall, in the wall across as far
-/// along as the opening lets one look.
-fn sees((side, from, to): &Front, (other, low, high): &Front) -> bool {
+/// along as its opening lets one look, `reach`.
+fn sees((side, from, to): &Front, (other, low, high): &Front, reach: i32) -> bool {
     let along = (low - to).max(from - high);
-    side != other && (side / 2 != other / 2 || along <= up(ALONG_M))
+    side != other && (side / 2 != other / 2 || along <= reach)
 }
 
 /// Returns where a room lies along a piece of corridor, with wall enough for its door.

@@ -5,6 +5,7 @@ use d3dgen_model::Rect;
 use d3dgen_model::floorplan::PlanRoom;
 use d3dgen_model::placements::Placement;
 use d3dgen_model::world::World;
+use d3dgen_plugins::Registry;
 
 use crate::common::{body, gap, most, worlds};
 
@@ -21,6 +22,28 @@ fn homes() -> impl Iterator<Item = World> {
 
 fn in_room<'w>(world: &'w World, room: &'w PlanRoom) -> impl Iterator<Item = &'w Placement> {
     world.placements.placements.iter().filter(|p| p.room_id == room.room_id)
+}
+
+#[test]
+fn rooms_with_water_lie_beside_each_other() {
+    let prompts = [
+        "A flat with 3 bedrooms, 2 bathrooms, a kitchen, a living room and a study",
+        "house with 4 bedrooms, 2 bathrooms, a kitchen, a utility room and a living room",
+    ];
+    let registry = Registry::builtin();
+    let domain = registry.get("residential").expect("homes are built in").domain();
+    let (mut all, mut beside) = (0, 0);
+    for world in prompts.iter().flat_map(|prompt| worlds(prompt, 8)) {
+        let plan = &world.floorplan;
+        let wet = |id: &String| plan.room(id).is_some_and(|r| domain.room_type_or_generic(&r.room_type).wet);
+        for room in plan.rooms.iter().filter(|r| wet(&r.room_id)) {
+            let shared = |ids: &[String]| ids.contains(&room.room_id) && ids.iter().filter(|id| wet(id)).count() == 2;
+            all += 1;
+            beside += u32::from(plan.walls.iter().any(|w| shared(&w.room_ids)));
+        }
+    }
+    let share = f64::from(beside) / f64::from(all);
+    assert!(share >= 0.75, "{beside} of {all} rooms with water lie beside another");
 }
 
 #[test]

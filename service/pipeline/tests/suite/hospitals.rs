@@ -3,6 +3,7 @@
 
 use d3dgen_model::floorplan::{Door, DoorKind};
 use d3dgen_model::world::World;
+use d3dgen_model::{Point, Polygon, Rect};
 
 use crate::common::{body, gap, most, worlds};
 
@@ -15,6 +16,60 @@ fn count(world: &World, kind: &str) -> usize {
 fn ways_in<'w>(world: &'w World, kind: &str) -> Vec<&'w Door> {
     let of = |id: &str| world.floorplan.room(id).is_some_and(|r| r.room_type == kind);
     world.floorplan.doors.iter().filter(|d| matches!(&d.room_ids[..], [room] if of(room))).collect()
+}
+
+/// Returns how many doors of patient rooms one sees from some place in a nurse station, and how many there are.
+fn doors_in_sight(world: &World) -> (usize, usize) {
+    let plan = &world.floorplan;
+    let of = |kind: &'static str| plan.rooms.iter().filter(move |r| r.room_type == kind);
+    let is_patient = |id: &String| plan.room(id).is_some_and(|r| r.room_type.starts_with("patient_room"));
+    let halls: Vec<&Polygon> = plan.rooms.iter().filter(|r| r.circulation).map(|r| &r.polygon).collect();
+    let openings: Vec<Rect> = plan.doors.iter().filter(|d| d.kind == DoorKind::Open).map(|d| around(d, 0.2)).collect();
+    let sees = |station: &Polygon, from: Point, to: Point| {
+        let steps = (from.distance(to) / 0.15).ceil();
+        (0..steps as usize - 1).map(|n| n as f64 / steps).all(|t| {
+            let p = Point::new(from.x + t * (to.x - from.x), from.y + t * (to.y - from.y));
+            let here = Rect::new(p.x, p.y, p.x, p.y);
+            station.contains(p) || halls.iter().any(|h| h.contains(p)) || openings.iter().any(|o| o.contains(&here))
+        })
+    };
+    let views: Vec<(&Polygon, Vec<Point>)> = of("nurse_station")
+        .map(|station| {
+            let all = station.net_polygon.bounds();
+            let grid = |from: f64, length: f64| (0..(length / 0.4) as usize).map(move |n| from + 0.2 + 0.4 * n as f64);
+            let points =
+                grid(all.x0, all.width()).flat_map(|x| grid(all.y0, all.height()).map(move |y| Point::new(x, y)));
+            (&station.net_polygon, points.filter(|p| station.net_polygon.contains(*p)).collect())
+        })
+        .collect();
+    let leads_in = |d: &&Door| {
+        let from_hall = d.room_ids.iter().any(|id| plan.room(id).is_some_and(|r| r.circulation));
+        from_hall && d.room_ids.iter().any(is_patient)
+    };
+    let doors: Vec<Point> = plan.doors.iter().filter(leads_in).map(|d| d.line.middle()).collect();
+    let seen = doors.iter().filter(|to| views.iter().any(|(s, from)| from.iter().any(|p| sees(s, *p, **to)))).count();
+    (seen, doors.len())
+}
+
+/// Returns the rectangle around a door that reaches `margin` m beyond its line.
+fn around(door: &Door, margin: f64) -> Rect {
+    let (a, b) = (door.line.start, door.line.end);
+    Rect::new(a.x.min(b.x), a.y.min(b.y), a.x.max(b.x), a.y.max(b.y)).grown(margin)
+}
+
+#[test]
+fn stations_see_the_doors_of_their_patients() {
+    let cases = [
+        ("hospital ward with 10 rooms", 0.9),
+        ("hospital ward with 12 patient rooms and one nurse station", 0.5),
+        ("racetrack hospital ward with 20 patient rooms and a nurse station", 0.5),
+    ];
+    for (prompt, least) in cases {
+        let found: Vec<(usize, usize)> = worlds(prompt, 4).iter().map(doors_in_sight).collect();
+        let share = |of: fn(&(usize, usize)) -> usize| found.iter().map(of).sum::<usize>() as f64;
+        let seen = share(|f| f.0) / share(|f| f.1);
+        assert!(seen >= least, "{prompt}: {seen:.2} of the doors, {found:?}");
+    }
 }
 
 #[test]

@@ -3,12 +3,16 @@
 use std::collections::BTreeMap;
 
 use crate::common::{most, worlds};
+use d3dgen_knowledge::compliance::longest_way_out;
 use d3dgen_model::document::Document;
 use d3dgen_model::floorplan::DoorKind;
+use d3dgen_model::report::Status;
 use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::world::World;
 use d3dgen_model::{Point, Polygon};
+use d3dgen_pipeline::generate;
 use d3dgen_pipeline::scene_graph::{self, Request};
+use d3dgen_pipeline::world::check;
 use d3dgen_plugins::Registry;
 
 fn graph(prompt: &str) -> SceneGraph {
@@ -170,6 +174,28 @@ fn far_ends_of_corridors_have_exits() {
     for world in worlds("office with 120 rooms in the United Kingdom", 2) {
         let exits = world.floorplan.doors.iter().filter(|d| d.room_ids.len() == 1).count();
         assert!(exits >= 4, "{exits} exits");
+    }
+}
+
+#[test]
+fn ways_out_that_are_longer_than_allowed_are_told() {
+    let registry = Registry::builtin();
+    for (prompt, seeds) in
+        [("office with 120 rooms in the United Kingdom", 2), ("office with 300 rooms on 2 storeys", 1)]
+    {
+        for world in worlds(prompt, seeds) {
+            let plugin = registry.get(&world.scene_graph.domain).expect("it was made in this domain");
+            let (domain, retrieved) = (plugin.domain(), generate::retrieve(&world.scene_graph, plugin));
+            let most = domain.circulation.way_out_m.expect("offices have a usual limit");
+            let far = longest_way_out(&world, domain, &retrieved, 0.0).is_some_and(|(_, way)| way > most);
+            let report = check(&world, domain, &retrieved);
+            let mut laws =
+                report.constraints.iter().filter(|c| c.mandatory && c.name.contains("travel_distance")).peekable();
+            let known = laws.peek().is_some();
+            let too_far = if known { laws.any(|c| c.status == Status::Violated) } else { far };
+            let told = world.scene_graph.conflicts.iter().any(|c| c.code == "way_out_too_long");
+            assert_eq!(told, too_far, "{prompt}, seed {}", world.scene_graph.seed);
+        }
     }
 }
 

@@ -32,6 +32,7 @@ const FORMS: &[(&str, Form)] = &[
     ("JointLimits", Form::Tuple),
     ("NumberList", Form::List),
     ("Polygon", Form::List),
+    ("RoomCounts", Form::Tuple),
     ("RoomPair", Form::Tuple),
     ("Size", Form::Tuple),
     ("Stretch", Form::Tuple),
