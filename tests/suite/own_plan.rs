@@ -104,6 +104,27 @@ fn a_plan_that_was_made_here_passes_through_with_all_its_levels() {
 }
 
 #[test]
+fn a_building_of_two_levels_comes_in_whole() {
+    let home = tempfile::tempdir().unwrap();
+    let tower = plan("tower.building.yaml");
+    let done = run(home.path(), &["furnish", &tower, "--domain", "office", "--no-png", "--out", "whole"]);
+    let told = String::from_utf8_lossy(&done.stderr);
+    assert!(done.status.code() == Some(1) && told.contains("plan as given breaks"), "{told}");
+    assert!(given(&report(&home.path().join("whole"))).contains(&"stairs_missing"), "{told}");
+    let read = |out: &str| {
+        let text = fs::read_to_string(home.path().join(out).join("floorplan.json")).unwrap();
+        Floorplan::from_json(&text).unwrap()
+    };
+    let whole = read("whole");
+    assert_eq!((whole.levels.len(), whole.links.len()), (2, 2), "{told}");
+    assert!(whole.rooms.iter().filter(|r| r.room_type == "elevator").count() == 4);
+    assert_eq!(run(home.path(), &["check", "whole"]).status.code(), Some(1));
+    run(home.path(), &["furnish", &tower, "--level", "L2", "--domain", "office", "--no-png", "--out", "upper"]);
+    let upper = read("upper");
+    assert!(upper.levels.is_empty() && upper.rooms.iter().any(|r| r.name == "archive"));
+}
+
+#[test]
 fn maps_of_worlds_made_here_come_back_with_their_rooms() {
     let home = tempfile::tempdir().unwrap();
     for (request, seed) in
@@ -182,6 +203,10 @@ fn what_a_room_lacks_is_the_plans_fault_only_where_the_room_is_too_small() {
     assert!(broken.contains(&"object_missing") && broken.contains(&"room_area"), "{broken:?}");
     assert!(home.path().join("closet/world.json").is_file());
 
+    // a room larger than such rooms mostly are breaks nothing: nobody asked for less
+    fs::write(home.path().join("large.geojson"), house("Bedroom", 9.0, 7.0)).unwrap();
+    run_well(home.path(), &["furnish", "large.geojson", "--no-png", "--out", "large"]);
+
     // the same lack in a room that is large enough: its bed is taken out of the finished world's placements
     fs::write(home.path().join("room.geojson"), house("Bedroom", 3.6, 4.0)).unwrap();
     run_well(home.path(), &["furnish", "room.geojson", "--no-png", "--out", "room"]);
@@ -195,6 +220,23 @@ fn what_a_room_lacks_is_the_plans_fault_only_where_the_room_is_too_small() {
     let lack = emptied.rules.iter().find(|r| r.rule == "object_missing").unwrap();
     assert!(!lack.violations.is_empty() && lack.violations.iter().all(|v| !v.given), "{lack:?}");
     assert!(emptied.given_plan && !home.path().join("emptied/world.json").exists());
+}
+
+#[test]
+fn a_plan_without_doors_is_a_world_that_says_so() {
+    let home = tempfile::tempdir().unwrap();
+    let mut shut: serde_json::Value = serde_json::from_str(&fs::read_to_string(plan("flat.geojson")).unwrap()).unwrap();
+    let is_door = |f: &serde_json::Value| ["door", "opening", "entrance"].iter().any(|k| f["properties"]["type"] == *k);
+    shut["features"].as_array_mut().unwrap().retain(|f| !is_door(f));
+    fs::write(home.path().join("shut.geojson"), shut.to_string()).unwrap();
+    for seed in ["0", "1", "2"] {
+        let done = run(home.path(), &["furnish", "shut.geojson", "--seed", seed, "--no-png", "--out", "shut"]);
+        assert_eq!(done.status.code(), Some(1), "{}", String::from_utf8_lossy(&done.stderr));
+        let report = report(&home.path().join("shut"));
+        let broken = given(&report);
+        assert!(["no_entrance", "unreachable_zone"].iter().all(|r| broken.contains(r)), "{broken:?}");
+        assert!(home.path().join("shut/world.json").is_file());
+    }
 }
 
 #[test]
@@ -216,6 +258,7 @@ fn plans_that_cannot_be_read_are_refused_with_the_place() {
         (vec!["note.txt", "--plan-format", "dwg"], vec!["dwg", "geojson"]),
         (vec![&flat, "--domain", "spaceship"], vec!["spaceship", "residential"]),
         (vec![&flat, "--room-type", "Attic=bedroom"], vec!["Attic"]),
+        (vec![&flat, "--room-type", "Hall=hallwey"], vec!["hallwey", "residential", "hallway"]),
         (vec![&flat, "--country", "XQ"], vec!["XQ"]),
         (vec![&flat, "--robot", "dancing"], vec!["dancing", "delivery"]),
         (vec![&flat, "--robot-radius", "9"], vec!["9"]),

@@ -6,6 +6,7 @@ use d3dgen_model::domain::{Daylight, Domain, Zone};
 
 use crate::drawing::{OpeningKind, note};
 use crate::layout::{LaidOpening, Layout};
+use crate::links;
 
 /// Wall left on each side of an added opening, mm.
 const JAMB: i64 = 250;
@@ -20,14 +21,14 @@ const FRAME: i64 = 60;
 /// Adds doors until every room is reached from outdoors: from the circulation where a wall with it is long enough.
 pub(crate) fn doors(layout: &mut Layout, types: &[String], domain: &Domain) {
     let kind = |room: usize| domain.room_type_or_generic(&types[room]);
-    let outside = layout.rooms.len();
-    if !layout.openings.iter().any(|o| o.kind != OpeningKind::Window && o.rooms.len() == 1) {
+    let at_ground = |layout: &Layout, rooms: &[usize]| rooms.len() == 1 && layout.number_of(rooms[0]) == 0;
+    if !layout.openings.iter().any(|o| o.kind != OpeningKind::Window && at_ground(layout, &o.rooms)) {
         let rank = |room: usize| {
             let listed = domain.circulation.entrance_room_types.iter().position(|t| *t == types[room]);
             (kind(room).zone != Zone::Circulation, listed.unwrap_or(usize::MAX))
         };
         let width = (domain.circulation.entrance_width_m * 1000.0) as i64 + FRAME;
-        let mut spots = free_parts(layout, width, |s| s.len() == 1);
+        let mut spots = free_parts(layout, width, |s| at_ground(layout, s));
         spots.sort_by_key(|&(stretch, from, to)| {
             let room = layout.stretches[stretch].rooms().next().unwrap_or(0);
             (rank(room), from - to, stretch)
@@ -35,8 +36,8 @@ pub(crate) fn doors(layout: &mut Layout, types: &[String], domain: &Domain) {
         add_door(layout, spots.first().copied(), width, "an entrance to");
     }
     loop {
-        let reached = reached(layout);
-        let missing: Vec<usize> = (0..outside).filter(|r| !reached.contains(r)).collect();
+        let reached = reached(layout, |room| links::kind_of(&types[room], domain).is_some());
+        let missing: Vec<usize> = (0..layout.rooms.len()).filter(|r| !reached.contains(r)).collect();
         if missing.is_empty() {
             return;
         }
@@ -88,15 +89,19 @@ fn opening(kind: OpeningKind, rooms: Vec<usize>, stretch: usize, from: i64, to: 
     LaidOpening { kind, rooms, stretch, from, to, sill_m: None, head_m: None, sliding: false, swing: None }
 }
 
-/// Returns the rooms that openings join to outdoors, step by step.
-pub(crate) fn reached(layout: &Layout) -> BTreeSet<usize> {
+/// Returns the rooms that openings join to outdoors, or on other storeys than the ground floor to stairs and lifts, step by step.
+fn reached(layout: &Layout, joins_storeys: impl Fn(usize) -> bool) -> BTreeSet<usize> {
     let walkable: Vec<&LaidOpening> = layout.openings.iter().filter(|o| o.kind != OpeningKind::Window).collect();
     let mut found: BTreeSet<usize> =
         walkable.iter().filter(|o| o.rooms.len() == 1).flat_map(|o| o.rooms.iter().copied()).collect();
-    if found.is_empty() {
-        found.extend(
-            walkable.first().and_then(|o| o.rooms.first()).copied().or((!layout.rooms.is_empty()).then_some(0)),
-        );
+    found.extend((0..layout.rooms.len()).filter(|r| layout.number_of(*r) != 0 && joins_storeys(*r)));
+    // on a storey without any way in, one begins where there is a door
+    for storey in 0..=layout.levels.len().saturating_sub(1) {
+        let here = |room: &usize| layout.rooms[*room].storey == storey;
+        if !found.iter().any(here) {
+            let opened = walkable.iter().flat_map(|o| o.rooms.iter().copied()).find(here);
+            found.extend(opened.or_else(|| (0..layout.rooms.len()).find(here)));
+        }
     }
     loop {
         let before = found.len();

@@ -8,10 +8,11 @@ use d3dgen_model::floorplan::{Door, DoorKind, Floorplan, PlanRoom, Swing, Wall, 
 use d3dgen_model::geometry::to_mm;
 use d3dgen_model::scene_graph::Note;
 use d3dgen_model::slides;
+use d3dgen_model::storeys::{Level, LinkKind, VerticalLink};
 
 use crate::drawing::{OpeningKind, note};
 use crate::layout::{LaidOpening, Layout, point};
-use crate::{Options, add};
+use crate::{Options, add, links};
 
 /// Clear height of doors, m, and the wall left above openings.
 const DOOR_HEIGHT_M: f64 = 2.1;
@@ -21,6 +22,9 @@ const SILL_M: f64 = 0.9;
 const HEAD_M: f64 = 2.1;
 /// Frame of a door, both sides together, m.
 const FRAME_M: f64 = 0.06;
+/// Floor structure below a storey where the domain says nothing of storeys, and the thinnest there is, m.
+const SLAB_M: f64 = 0.4;
+const THINNEST_SLAB_M: f64 = 0.1;
 /// Clear width from which a door gets two leaves, m.
 const DOUBLE_FROM_M: f64 = 1.25;
 /// A leaf whose square takes more than this share of the room slides instead.
@@ -41,7 +45,12 @@ pub fn assemble(
     if options.add_windows {
         add::windows(&mut layout, types, domain);
     }
-    let rooms = rooms(&layout, types, domain);
+    let links = if layout.levels.is_empty() { Vec::new() } else { links::links(&mut layout, types, domain) };
+    let mut types = types.to_vec();
+    links.iter().for_each(|l| l.rooms.iter().for_each(|&r| types[r].clone_from(&l.room_type)));
+    let mut rooms = rooms(&layout, &types, domain);
+    let levels = levels(&layout, &mut rooms, domain);
+    let links = vertical(&links, &mut rooms, &levels);
     tell_of_missing(&mut layout, &rooms);
     let mut doors = doors(&layout, &rooms);
     guess_entrance(&mut doors, &rooms, domain, &mut layout.notes);
@@ -58,15 +67,15 @@ pub fn assemble(
         windows,
         cost: Vec::new(),
         conflicts: Vec::new(),
-        levels: Vec::new(),
-        links: Vec::new(),
+        levels,
+        links,
     };
     (plan, layout.notes)
 }
 
 fn rooms(layout: &Layout, types: &[String], domain: &Domain) -> Vec<PlanRoom> {
     let mut seen: BTreeMap<&str, u32> = BTreeMap::new();
-    let list = layout.rooms.iter().zip(types).map(|(room, room_type)| {
+    let list = layout.rooms.iter().zip(types).enumerate().map(|(i, (room, room_type))| {
         let kind = domain.room_type_or_generic(room_type);
         let number = seen.entry(&kind.id).or_default();
         *number += 1;
@@ -82,10 +91,54 @@ fn rooms(layout: &Layout, types: &[String], domain: &Domain) -> Vec<PlanRoom> {
             ceiling_height_m: room.height_m.unwrap_or(kind.ceiling_height_m),
             materials: kind.materials.clone(),
             locked: true,
-            level: 0,
+            level: layout.number_of(i),
         }
     });
     list.collect()
+}
+
+/// Returns the storeys with their heights: by the elevations that the file states, otherwise as high as their rooms. A ceiling
+/// that was assumed gives way to the floor above.
+fn levels(layout: &Layout, rooms: &mut [PlanRoom], domain: &Domain) -> Vec<Level> {
+    let slab = domain.circulation.storeys.as_ref().map_or(SLAB_M, |s| s.slab_m);
+    let mut levels: Vec<Level> = Vec::with_capacity(layout.levels.len());
+    let mut elevation = 0.0;
+    for (k, laid) in layout.levels.iter().enumerate() {
+        let next = layout.levels.get(k + 1).and_then(|l| l.elevation_m);
+        let stated = laid.elevation_m.zip(next).map(|(from, to)| to - from);
+        let tallest = rooms.iter().filter(|r| r.level == laid.number).map(|r| r.ceiling_height_m).fold(0.0, f64::max);
+        let height_m = to_mm(stated.unwrap_or(tallest + slab));
+        levels.push(Level { level: laid.number, elevation_m: to_mm(laid.elevation_m.unwrap_or(elevation)), height_m });
+        elevation += height_m;
+        for (room, laid_room) in rooms.iter_mut().zip(&layout.rooms) {
+            if laid_room.storey == k && laid_room.height_m.is_none() {
+                room.ceiling_height_m = room.ceiling_height_m.min(to_mm(height_m - THINNEST_SLAB_M));
+            }
+        }
+    }
+    let ground = levels.iter().find(|l| l.level == 0).map_or(0.0, |l| l.elevation_m);
+    levels.iter_mut().for_each(|l| l.elevation_m = to_mm(l.elevation_m - ground));
+    levels
+}
+
+/// Returns links with the ids of their rooms. Flights go up through the ceiling; over those of the highest storey it is a usual
+/// one.
+fn vertical(links: &[links::Link], rooms: &mut [PlanRoom], levels: &[Level]) -> Vec<VerticalLink> {
+    let mut counts: BTreeMap<LinkKind, u32> = BTreeMap::new();
+    let link = |link: &links::Link| {
+        if let (LinkKind::Stairs, Some((_, below))) = (link.kind, link.rooms.split_last()) {
+            for &room in below {
+                let height = levels.iter().find(|l| l.level == rooms[room].level).map(|l| l.height_m);
+                rooms[room].ceiling_height_m = height.unwrap_or(rooms[room].ceiling_height_m);
+            }
+        }
+        let count = counts.entry(link.kind).or_default();
+        *count += 1;
+        let name = if link.kind == LinkKind::Stairs { "stairs" } else { "elevator" };
+        let room_ids = link.rooms.iter().map(|&r| rooms[r].room_id.clone()).collect();
+        VerticalLink { link_id: format!("{name}_{count}"), kind: link.kind, room_ids }
+    };
+    links.iter().map(link).collect()
 }
 
 /// Notes the rooms that no door leads to.
@@ -157,7 +210,8 @@ fn guess_entrance(doors: &mut [Door], rooms: &[PlanRoom], domain: &Domain, notes
         let listed = room.and_then(|r| domain.circulation.entrance_room_types.iter().position(|t| *t == r.room_type));
         (listed.unwrap_or(usize::MAX), !room.is_some_and(|r| r.circulation), -(door.clear_width_m * 1000.0) as i64)
     };
-    let outer: Vec<usize> = (0..doors.len()).filter(|&i| doors[i].room_ids.len() == 1).collect();
+    let at_ground = |door: &Door| rooms.iter().any(|r| r.level == 0 && door.room_ids == [r.room_id.as_str()]);
+    let outer: Vec<usize> = (0..doors.len()).filter(|&i| at_ground(&doors[i])).collect();
     match outer.iter().copied().min_by_key(|&i| rank(&doors[i])) {
         Some(best) => {
             doors[best].entrance = true;

@@ -2,6 +2,8 @@
 //!
 //! Nothing here is checked: outlines may cross, overlap, lean; `layout` judges them.
 
+use std::collections::BTreeMap;
+
 use d3dgen_model::Point;
 use d3dgen_model::scene_graph::Note;
 
@@ -9,6 +11,10 @@ use crate::Error;
 
 /// Most points of one file; larger drawings are not floor plans.
 pub(crate) const MOST_POINTS: usize = 200_000;
+/// Most layers that a note of what was left out names.
+const MOST_UNREAD: usize = 12;
+/// Coordinates beyond this are slips, m.
+const FARTHEST_M: f64 = 1e9;
 
 /// A plan as drawn.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -23,8 +29,14 @@ pub struct Drawing {
     pub labels: Vec<DrawnLabel>,
     /// Floors that walls stand on: they bound rooms where no wall is drawn.
     pub floors: Vec<DrawnFloor>,
+    /// Cars of lifts, one for each storey that they stop at.
+    pub cabins: Vec<DrawnCabin>,
+    /// Heights of the floors of storeys, m, by their names.
+    pub elevations_m: BTreeMap<String, f64>,
     /// What the file calls the building.
     pub titles: Vec<String>,
+    /// What was left out because nothing says what it is (`layer A-XYZ`), and how many shapes.
+    pub unread: BTreeMap<String, usize>,
     /// What was assumed while reading.
     pub notes: Vec<Note>,
 }
@@ -77,6 +89,19 @@ pub struct DrawnWall {
     pub level: Option<String>,
     /// Where it stands in the file, for messages.
     pub place: String,
+}
+
+/// The car of a lift on one storey.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DrawnCabin {
+    /// Name of the lift.
+    pub name: String,
+    /// Corners in order, m.
+    pub corners: [Point; 4],
+    /// Ends of its doors on this storey, m.
+    pub doors: Vec<[Point; 2]>,
+    /// Storey.
+    pub level: Option<String>,
 }
 
 /// What an opening is.
@@ -136,83 +161,73 @@ pub(crate) fn note(code: &str, message: impl Into<String>) -> Note {
 }
 
 impl Drawing {
+    /// Counts a shape that is left out.
+    pub(crate) fn leave_out(&mut self, what: impl Into<String>) {
+        *self.unread.entry(what.into()).or_default() += 1;
+    }
+
+    /// Notes what was left out, the most of it first.
+    pub(crate) fn tell_of_unread(&mut self) {
+        let mut all: Vec<(String, usize)> = std::mem::take(&mut self.unread).into_iter().collect();
+        if all.is_empty() {
+            return;
+        }
+        all.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+        let more = all.len().saturating_sub(MOST_UNREAD);
+        let more = if more > 0 { format!(", and {more} more") } else { String::new() };
+        let list: Vec<String> = all.iter().take(MOST_UNREAD).map(|(what, count)| format!("{what} ({count})")).collect();
+        let message = format!(
+            "nothing says what is drawn on {}{more}; it was left out, words such as wall, door, window or room would say it",
+            list.join(", ")
+        );
+        self.notes.push(note("not_understood", message));
+    }
+
     /// Returns every point of the drawing.
     pub(crate) fn points_mut(&mut self) -> impl Iterator<Item = &mut Point> {
-        let rooms = self
-            .rooms
-            .iter_mut()
-            .flat_map(|r| r.corners.iter_mut().chain(r.holes.iter_mut().flat_map(|h| h.iter_mut())));
-        let floors = self.floors.iter_mut().flat_map(|f| f.corners.iter_mut());
-        let walls = self.walls.iter_mut().flat_map(|w| w.line.iter_mut());
-        let openings = self
-            .openings
-            .iter_mut()
-            .flat_map(|o| o.points.iter_mut().chain(o.arc.iter_mut().flat_map(|a| a.iter_mut())));
-        rooms.chain(walls).chain(openings).chain(floors).chain(self.labels.iter_mut().map(|l| &mut l.at))
+        self.points_where(|_| true)
+    }
+
+    /// Returns every point of one storey.
+    pub(crate) fn on_level_mut(&mut self, level: &str) -> impl Iterator<Item = &mut Point> {
+        self.points_where(move |l| l.as_deref() == Some(level))
+    }
+
+    fn points_where(&mut self, here: impl Fn(&Option<String>) -> bool + Copy) -> impl Iterator<Item = &mut Point> {
+        let rooms = self.rooms.iter_mut().filter(move |r| here(&r.level));
+        let rooms = rooms.flat_map(|r| r.corners.iter_mut().chain(r.holes.iter_mut().flatten()));
+        let floors = self.floors.iter_mut().filter(move |f| here(&f.level)).flat_map(|f| f.corners.iter_mut());
+        let walls = self.walls.iter_mut().filter(move |w| here(&w.level)).flat_map(|w| w.line.iter_mut());
+        let openings = self.openings.iter_mut().filter(move |o| here(&o.level));
+        let openings = openings.flat_map(|o| o.points.iter_mut().chain(o.arc.iter_mut().flatten()));
+        let cabins = self.cabins.iter_mut().filter(move |c| here(&c.level));
+        let cabins = cabins.flat_map(|c| c.corners.iter_mut().chain(c.doors.iter_mut().flatten()));
+        let labels = self.labels.iter_mut().filter(move |l| here(&l.level)).map(|l| &mut l.at);
+        rooms.chain(walls).chain(openings).chain(floors).chain(cabins).chain(labels)
     }
 
     /// Refuses numbers that are none and drawings beyond any building.
     pub(crate) fn check_numbers(&mut self) -> Result<(), Error> {
-        let mut count = 0_usize;
-        for p in self.points_mut() {
-            count += 1;
-            if !(p.x.is_finite() && p.y.is_finite() && p.x.abs() < 1e9 && p.y.abs() < 1e9) {
-                let message = format!("the point ({}, {}) is no place in a building", p.x, p.y);
-                return Err(Error::refused("drawing", message));
-            }
+        let rooms =
+            self.rooms.iter().flat_map(|r| r.corners.iter().chain(r.holes.iter().flatten()).map(|p| (p, &r.place)));
+        let walls = self.walls.iter().flat_map(|w| w.line.iter().map(|p| (p, &w.place)));
+        let openings =
+            self.openings.iter().flat_map(|o| o.points.iter().chain(o.arc.iter().flatten()).map(|p| (p, &o.place)));
+        let labels = self.labels.iter().map(|l| (&l.at, &l.text));
+        let floor = "floor".to_owned();
+        let floors = self.floors.iter().flat_map(|f| f.corners.iter().map(|p| (p, &floor)));
+        let far = |v: f64| !(v.is_finite() && v.abs() < FARTHEST_M);
+        let cabins =
+            self.cabins.iter().flat_map(|c| c.corners.iter().chain(c.doors.iter().flatten()).map(|p| (p, &c.name)));
+        let mut all = rooms.chain(walls).chain(openings).chain(labels).chain(floors).chain(cabins);
+        if let Some((p, place)) = all.find(|(p, _)| far(p.x) || far(p.y)) {
+            let message = format!("the point ({:e}, {:e}) m is no place in a building", p.x, p.y);
+            return Err(Error::refused(place, message));
         }
+        let count = self.points_mut().count();
         if count > MOST_POINTS {
             return Err(Error::refused("drawing", format!("has {count} points, at most {MOST_POINTS} are read")));
         }
-        Ok(())
-    }
-
-    /// Keeps one storey: the named one, or the first that has rooms or walls.
-    ///
-    /// # Errors
-    /// `Refused` with the storeys there are.
-    pub(crate) fn keep_level(&mut self, wanted: Option<&str>) -> Result<(), Error> {
-        let mut levels: Vec<String> = Vec::new();
-        let all = self.rooms.iter().map(|r| &r.level).chain(self.walls.iter().map(|w| &w.level));
-        let all = all.chain(self.floors.iter().map(|f| &f.level));
-        for level in all.flatten() {
-            if !levels.contains(level) {
-                levels.push(level.clone());
-            }
-        }
-        let Some(first) = levels.first() else {
-            return match wanted {
-                None => Ok(()),
-                Some(level) => {
-                    Err(Error::refused("--level", format!("`{level}` is not there; the plan names no levels")))
-                }
-            };
-        };
-        let chosen = match wanted {
-            None => first.clone(),
-            Some(level) if levels.iter().any(|l| l.trim().eq_ignore_ascii_case(level.trim())) => {
-                levels.iter().find(|l| l.trim().eq_ignore_ascii_case(level.trim())).cloned().unwrap_or_default()
-            }
-            Some(level) => {
-                let message = format!("`{level}` is not there; the plan has {}", levels.join(", "));
-                return Err(Error::refused("--level", message));
-            }
-        };
-        if levels.len() > 1 && wanted.is_none() {
-            let other = levels.get(1).cloned().unwrap_or_default();
-            let message = format!(
-                "the plan has {} levels ({}); only `{chosen}` was read: a run with `--level \"{other}\"` reads that one",
-                levels.len(),
-                levels.join(", ")
-            );
-            self.notes.push(note("one_level", message));
-        }
-        let here = |level: &Option<String>| level.as_ref().is_none_or(|l| *l == chosen);
-        self.rooms.retain(|r| here(&r.level));
-        self.walls.retain(|w| here(&w.level));
-        self.openings.retain(|o| here(&o.level));
-        self.labels.retain(|l| here(&l.level));
-        self.floors.retain(|f| here(&f.level));
         Ok(())
     }
 }

@@ -31,6 +31,14 @@ impl Error {
         Self::Refused { place: place.into(), message: message.into() }
     }
 
+    /// Returns the error with the storey in its place.
+    pub(crate) fn on_level(self, level: &str) -> Self {
+        match self {
+            Self::Refused { place, message } => Self::Refused { place: format!("level {level}: {place}"), message },
+            other => other,
+        }
+    }
+
     pub(crate) fn broken(format: &'static str, place: impl Into<String>, message: impl Into<String>) -> Self {
         Self::Broken { format, place: place.into(), message: message.into() }
     }

@@ -10,10 +10,12 @@ use d3dgen_model::{Point, Polygon};
 use crate::attach::attach;
 use crate::cells::Stretch;
 use crate::drawing::{Drawing, OpeningKind, note};
+use crate::levels::{LaidLevel, Storey};
 use crate::rooms::{name, rooms_and_floor, strips};
 use crate::snap::Corner;
 use crate::walls::{outlines, walls};
-use crate::{Error, Options, leaves, upright};
+use crate::words::is_number;
+use crate::{Error, Options, cabins, leaves, levels, upright};
 
 /// Wall left at the ends of the open side between two pieces of one room, mm, and the shortest such side.
 const PIECE_JAMB: i64 = 120;
@@ -27,7 +29,7 @@ const FAR_M: f64 = 10_000.0;
 const LARGEST_M: f64 = 2000.0;
 
 /// Rooms, walls and openings, in place; not typed yet.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Layout {
     /// Rooms in the order of the drawing.
     pub rooms: Vec<LaidRoom>,
@@ -37,6 +39,8 @@ pub struct Layout {
     pub notes: Vec<Note>,
     /// What the file calls the building.
     pub titles: Vec<String>,
+    /// Storeys from the lowest to the highest; empty for a plan of one.
+    pub(crate) levels: Vec<LaidLevel>,
     pub(crate) stretches: Vec<Stretch>,
 }
 
@@ -49,7 +53,7 @@ pub struct LaidRoom {
     pub kind: Option<String>,
     /// Other words that stand in it.
     pub also: Vec<String>,
-    /// True when it has no name, and joins so many rooms that it is circulation.
+    /// True when it has no name but a number at most, and joins so many rooms that it is circulation.
     pub hub: bool,
     /// Outline on wall center lines.
     pub polygon: Polygon,
@@ -57,6 +61,8 @@ pub struct LaidRoom {
     pub net_polygon: Polygon,
     /// Clear height, m, where the file states it.
     pub height_m: Option<f64>,
+    /// Which of the storeys it is on.
+    pub(crate) storey: usize,
 }
 
 /// An opening in its stretch of wall.
@@ -77,14 +83,17 @@ pub struct LaidOpening {
     pub(crate) swing: Option<(Option<usize>, bool)>,
 }
 
-/// Lays out a drawing.
+/// Lays out a drawing: one storey after the other, in one frame.
 ///
 /// # Errors
 /// `Refused` for what is no building: no rooms, rooms on top of each other, outlines that cross themselves, slanted walls
 /// (unless `rectify`), rooms that walls leave no floor of; always with the room and the place.
 pub fn lay_out(mut drawing: Drawing, options: &Options) -> Result<Layout, Error> {
     drawing.check_numbers()?;
-    drawing.keep_level(options.level.as_deref())?;
+    drawing.tell_of_unread();
+    if let Some(level) = options.level.as_deref() {
+        levels::keep(&mut drawing, level)?;
+    }
     if let Some(thickness) =
         [options.inner_wall_m, options.outer_wall_m].into_iter().flatten().find(|t| !(0.02..=1.0).contains(t))
     {
@@ -92,8 +101,28 @@ pub fn lay_out(mut drawing: Drawing, options: &Options) -> Result<Layout, Error>
     }
     upright::turn(&mut drawing);
     move_near(&mut drawing)?;
+    let (titles, notes) = (std::mem::take(&mut drawing.titles), std::mem::take(&mut drawing.notes));
+    let mut layout = Layout { notes, titles, ..Layout::default() };
+    let storeys = if options.level.is_some() { vec![levels::whole(drawing)] } else { levels::split(drawing) };
+    let several = storeys.len() > 1;
+    for Storey { level, drawing } in storeys {
+        let found = storey(drawing, options, layout.rooms.len());
+        let mut found = if several { found.map_err(|e| e.on_level(&level.name))? } else { found? };
+        if several {
+            found.notes.iter_mut().for_each(|n| n.message = format!("level {}: {}", level.name, n.message));
+            layout.levels.push(level);
+        }
+        layout.stack(found);
+    }
+    layout.notes.extend(levels::tell(&layout.levels));
+    Ok(layout)
+}
+
+/// Lays out one storey; rooms that were found are named by their number, counted from `before`.
+fn storey(mut drawing: Drawing, options: &Options, before: usize) -> Result<Layout, Error> {
     leaves::pair(&mut drawing.openings);
     strips(&mut drawing);
+    cabins::enclose(&mut drawing);
     let (mut drawn, cells) = rooms_and_floor(&mut drawing, options)?;
     let words = name(&mut drawn, &cells, &drawing);
     let mut walls = walls(cells, options, &mut drawing.notes)?;
@@ -108,8 +137,10 @@ pub fn lay_out(mut drawing: Drawing, options: &Options) -> Result<Layout, Error>
             net_polygon: polygon(&net),
             polygon: polygon(&ring),
             height_m: drawn[room].height_m.filter(|h| h.is_finite() && (1.5..=50.0).contains(h)),
+            storey: 0,
         });
     }
+    cabins::mark(&mut rooms, &mut drawing);
     let stretches = outlines.stretches;
     let mut openings = attach(&drawing.openings, &stretches, &rooms, &mut drawing.notes);
     openings.extend(open_sides(&stretches, &outlines.family, &openings));
@@ -117,15 +148,41 @@ pub fn lay_out(mut drawing: Drawing, options: &Options) -> Result<Layout, Error>
     // rooms that were found get a name by which the user can say what they are
     for (i, (room, family)) in rooms.iter_mut().zip(&outlines.family).enumerate() {
         if room.label.is_empty() && drawn[*family].traced {
-            room.label = format!("room_{}", i + 1);
+            room.label = format!("room_{}", before + i + 1);
         }
     }
-    Ok(Layout { rooms, openings, notes: drawing.notes, titles: drawing.titles, stretches })
+    Ok(Layout { rooms, openings, notes: drawing.notes, stretches, ..Layout::default() })
+}
+
+impl Layout {
+    /// Adds the next storey; levels are listed before.
+    fn stack(&mut self, upper: Layout) {
+        let (rooms, stretches) = (self.rooms.len(), self.stretches.len());
+        let storey = self.levels.len().saturating_sub(1);
+        let room = |r: &mut usize| *r += rooms;
+        self.rooms.extend(upper.rooms.into_iter().map(|r| LaidRoom { storey, ..r }));
+        self.stretches.extend(upper.stretches.into_iter().map(|mut s| {
+            s.low.iter_mut().chain(&mut s.high).for_each(room);
+            s
+        }));
+        self.openings.extend(upper.openings.into_iter().map(|mut o| {
+            o.rooms.iter_mut().for_each(room);
+            o.swing.iter_mut().flat_map(|s| &mut s.0).for_each(room);
+            LaidOpening { stretch: o.stretch + stretches, ..o }
+        }));
+        self.notes.extend(upper.notes);
+    }
+
+    /// Returns the number of the storey that a room is on: 0 at the ground.
+    pub(crate) fn number_of(&self, room: usize) -> i32 {
+        self.levels.get(self.rooms[room].storey).map_or(0, |l| l.number)
+    }
 }
 
 /// Marks rooms without a name that join many others: long ones, or those that join more.
 fn mark_hubs(rooms: &mut [LaidRoom], openings: &[LaidOpening]) {
-    for (room, laid) in rooms.iter_mut().enumerate().filter(|(_, r)| r.label.is_empty() && r.kind.is_none()) {
+    let unnamed = |r: &LaidRoom| r.kind.is_none() && (r.label.is_empty() || is_number(&r.label));
+    for (room, laid) in rooms.iter_mut().enumerate().filter(|(_, r)| unnamed(r)) {
         let walkable = openings.iter().filter(|o| o.kind != OpeningKind::Window && o.rooms.contains(&room));
         let mut joined: Vec<usize> = walkable.flat_map(|o| o.rooms.iter().copied()).filter(|r| *r != room).collect();
         joined.sort_unstable();
@@ -144,11 +201,10 @@ fn mark_hubs(rooms: &mut [LaidRoom], openings: &[LaidOpening]) {
         return;
     }
     for (room, laid) in rooms.iter_mut().enumerate() {
-        let unnamed = laid.label.is_empty() && laid.kind.is_none();
         let at_hub = openings.iter().any(|o| {
             o.kind != OpeningKind::Window && o.rooms.contains(&room) && o.rooms.iter().any(|r| *r != room && hubs[*r])
         });
-        laid.hub |= unnamed && at_hub && leads_out(room);
+        laid.hub |= unnamed(laid) && at_hub && leads_out(room);
     }
 }
 

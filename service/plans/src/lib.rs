@@ -10,6 +10,7 @@
 mod add;
 mod assemble;
 mod attach;
+mod cabins;
 mod cells;
 mod clean;
 mod drawing;
@@ -17,6 +18,8 @@ mod error;
 mod faces;
 mod layout;
 mod leaves;
+mod levels;
+mod links;
 mod pieces;
 pub mod readers;
 mod rooms;
@@ -27,7 +30,7 @@ mod walls;
 mod words;
 
 pub use assemble::assemble;
-pub use drawing::{Drawing, DrawnFloor, DrawnLabel, DrawnOpening, DrawnRoom, DrawnWall, OpeningKind};
+pub use drawing::{Drawing, DrawnCabin, DrawnFloor, DrawnLabel, DrawnOpening, DrawnRoom, DrawnWall, OpeningKind};
 pub use error::Error;
 pub use layout::{LaidOpening, LaidRoom, Layout, lay_out};
 pub use readers::{Plan, Source, read};
@@ -39,7 +42,7 @@ pub struct Options {
     pub format: Option<String>,
     /// Length of one unit of the drawing, m, where the file does not say it or says it wrong.
     pub meters_per_unit: Option<f64>,
-    /// Storey to read; the first one otherwise.
+    /// Storey to read alone; all of them otherwise.
     pub level: Option<String>,
     /// Makes outlines with slanted walls of steps instead of refusing them; walls drawn as lines are in any case.
     pub rectify: bool,

@@ -3,6 +3,8 @@
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
+use serde::Deserialize;
+
 /// What a drawn thing is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Role {
@@ -12,11 +14,17 @@ pub(crate) enum Role {
     Wall,
     Room,
     Outline,
+    /// A number or name of something else: its words count, what is drawn does not.
+    Tag,
     Skip,
 }
 
-const ROLES: [(&str, Role); 7] = [
+/// Most letters of a code in a room's number.
+const MOST_CODE_LETTERS: usize = 2;
+
+const ROLES: [(&str, Role); 8] = [
     ("skip", Role::Skip),
+    ("tag", Role::Tag),
     ("window", Role::Window),
     ("door", Role::Door),
     ("open", Role::Passage),
@@ -25,7 +33,18 @@ const ROLES: [(&str, Role); 7] = [
     ("room", Role::Room),
 ];
 
-static WORDS: LazyLock<BTreeMap<String, Vec<String>>> = LazyLock::new(|| {
+/// Words and codes by what they say.
+type Lists = BTreeMap<String, Vec<String>>;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Data {
+    words: Lists,
+    codes: Lists,
+    storeys: Lists,
+}
+
+static DATA: LazyLock<Data> = LazyLock::new(|| {
     toml::from_str(include_str!("../data/words.toml")).expect("data/words.toml is shipped and tested")
 });
 
@@ -36,8 +55,19 @@ pub(crate) fn role(text: &str) -> Option<Role> {
     let says = |word: &str, token: &&str| {
         token.strip_prefix(word).is_some_and(|rest| rest.bytes().all(|b| b.is_ascii_digit()))
     };
-    let named = |name: &str| WORDS.get(name).is_some_and(|list| list.iter().any(|w| tokens.iter().any(|t| says(w, t))));
+    let in_list = |lists: &Lists, name: &str| {
+        lists.get(name).is_some_and(|list| list.iter().any(|w| tokens.iter().any(|t| says(w, t))))
+    };
+    let coded = is_standard_layer(&folded);
+    let named = |name: &str| in_list(&DATA.words, name) || coded && in_list(&DATA.codes, name);
     ROLES.iter().find(|(name, _)| named(name)).map(|(_, role)| *role)
+}
+
+/// Returns true for a layer name in the form of the National CAD Standard: a discipline, and a group of four letters.
+fn is_standard_layer(folded: &str) -> bool {
+    let mut groups = folded.split('-');
+    let discipline = groups.next().is_some_and(|d| (1..=2).contains(&d.len()));
+    discipline && groups.next().is_some_and(|g| g.len() == 4 && g.bytes().all(|b| b.is_ascii_alphabetic()))
 }
 
 /// Returns true for the name of a point that means something to robots only: it ends in such a word (`main_door`), or has no
@@ -47,7 +77,7 @@ pub(crate) fn is_waypoint(text: &str) -> bool {
     let is = |list: &str, t: &str| {
         let known =
             |w: &String| t.strip_prefix(w.as_str()).is_some_and(|rest| rest.bytes().all(|b| b.is_ascii_digit()));
-        WORDS.get(list).is_some_and(|words| words.iter().any(known))
+        DATA.words.get(list).is_some_and(|words| words.iter().any(known))
     };
     let tokens = folded.split(|c: char| !c.is_alphanumeric()).filter(|t| !t.is_empty());
     // figures and single letters only number things
@@ -56,6 +86,43 @@ pub(crate) fn is_waypoint(text: &str) -> bool {
         .collect();
     let all = !names.is_empty() && names.iter().all(|t| is("waypoint", t) || is("waypoint_alone", t));
     all || names.last().is_some_and(|t| is("waypoint", t))
+}
+
+/// What a word in the name of a storey says.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum StoreyWord {
+    Below,
+    Ground,
+    Above,
+    Top,
+}
+
+/// Returns what a word in the name of a storey says, as [`parts`] returns it.
+pub(crate) fn storey_word(word: &str) -> Option<StoreyWord> {
+    let lists = [
+        ("below", StoreyWord::Below),
+        ("ground", StoreyWord::Ground),
+        ("above", StoreyWord::Above),
+        ("top", StoreyWord::Top),
+    ];
+    let says = |name: &str| DATA.storeys.get(name).is_some_and(|list| list.iter().any(|w| w == word));
+    lists.into_iter().find(|(name, _)| says(name)).map(|(_, said)| said)
+}
+
+/// Returns the words and figures of a name, folded and parted from one another: `1.OG` is `1`, `og`.
+pub(crate) fn parts(name: &str) -> Vec<String> {
+    let mut out: Vec<String> = Vec::new();
+    let mut before = None;
+    for c in fold(name).chars() {
+        let kind = c.is_alphanumeric().then(|| c.is_ascii_digit());
+        match (kind, out.last_mut()) {
+            (Some(_), Some(last)) if kind == before => last.push(c),
+            (Some(_), _) => out.push(c.to_string()),
+            (None, _) => {}
+        }
+        before = kind;
+    }
+    out
 }
 
 /// Returns lower case without the accents of the languages in `words.toml`.
@@ -83,6 +150,20 @@ pub(crate) fn is_name(text: &str) -> bool {
     (wide || letters) && !text.starts_with(|c: char| c.is_ascii_digit())
 }
 
+/// Returns true for a label that numbers a room and does not name it: figures, codes of two letters at most and words for any
+/// room (`1.02`, `B 12`, `EG.04`, `Raum 3`).
+pub(crate) fn is_number(text: &str) -> bool {
+    let folded = fold(text);
+    let counts = |t: &str| t.bytes().any(|b| b.is_ascii_digit());
+    let numbers = |t: &str| {
+        let code = t.bytes().all(|b| b.is_ascii_alphanumeric())
+            && t.bytes().filter(u8::is_ascii_alphabetic).count() <= MOST_CODE_LETTERS;
+        code || role(t) == Some(Role::Room)
+    };
+    let mut tokens = folded.split(|c: char| !c.is_alphanumeric()).filter(|t| !t.is_empty());
+    counts(&folded) && tokens.all(numbers)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -100,15 +181,46 @@ mod tests {
             ("wardrobe", None),
             ("indoor", None),
             ("Furniture", Some(Role::Skip)),
+            ("A-GLAZ", Some(Role::Window)),
+            ("A-WALL-GLAZ", Some(Role::Window)),
+            ("A-WIND-E", Some(Role::Window)),
+            ("A-OPNG", Some(Role::Passage)),
+            ("I-FURN", Some(Role::Skip)),
+            ("A-DOOR-IDEN", Some(Role::Tag)),
+            ("A-FLOR-STRS", None),
+            // codes count in such names only
+            ("wind lobby", None),
+            ("roof terrace", None),
         ] {
             assert_eq!(role(text), expected, "{text}");
         }
-        assert!(WORDS.values().flatten().all(|w| fold(w) == *w), "words are written folded");
+        assert!(
+            [&DATA.words, &DATA.codes, &DATA.storeys]
+                .into_iter()
+                .flat_map(Lists::values)
+                .flatten()
+                .all(|w| fold(w) == *w),
+            "words are written folded"
+        );
         for name in ["patrol_D2", "dock_1", "tinyRobot1_charger", "main_door", "lift1", "pickup", "charger"] {
             assert!(is_waypoint(name), "{name}");
         }
         for name in ["lift_lobby", "kitchen", "hardware_2", "coe", "dock office", "loading_dock", "supplies"] {
             assert!(!is_waypoint(name), "{name}");
+        }
+        for (text, numbers) in [
+            ("1.02", true),
+            ("B 12", true),
+            ("EG.04", true),
+            ("OG2-13a", true),
+            ("Raum 3", true),
+            ("Room 101", true),
+            ("Kitchen 2", false),
+            ("WC", false),
+            ("卧室 1", false),
+            ("", false),
+        ] {
+            assert_eq!(is_number(text), numbers, "{text}");
         }
         assert!(is_name("WC") && is_name("卧室") && !is_name("12.5 m2") && !is_name("B1"));
     }

@@ -181,9 +181,84 @@ fn a_level_is_chosen_by_its_name_and_the_note_says_how() {
         panic!("a drawing")
     };
     let layout = lay_out(drawing, &thin()).expect("a plan");
-    let note = layout.notes.iter().find(|n| n.code == "one_level").expect("a note");
-    assert!(note.message.contains("--level \"L2\""), "{}", note.message);
+    let note = layout.notes.iter().find(|n| n.code == "levels").expect("a note");
+    assert!(
+        note.message.contains("`L1` is 0, `L2` is 1") && note.message.contains("--level \"L2\""),
+        "{}",
+        note.message
+    );
     assert_eq!(layout.titles, ["small office"]);
+}
+
+#[test]
+fn levels_are_lined_up_and_joined_by_their_lifts() {
+    let bytes = std::fs::read(plans().join("tower.building.yaml")).expect("a plan of the tests");
+    let source = Source { name: "tower.building.yaml", bytes: &bytes, companion: &|_| None };
+    let Ok(Plan::Drawing(drawing)) = read(&source, &thin()) else { panic!("a drawing") };
+    let layout = lay_out(drawing, &thin()).expect("a plan");
+    let types: Vec<String> =
+        layout.rooms.iter().map(|r| r.kind.clone().unwrap_or_else(|| r.label.replace(' ', "_"))).collect();
+    let registry = Registry::builtin();
+    let domain = registry.get("office").expect("built in").domain();
+    let (plan, notes) = assemble(layout, &types, domain, 0, &thin());
+    assert_eq!(plan.check(), Vec::new());
+    let levels: Vec<_> = plan.levels.iter().map(|l| (l.level, l.elevation_m)).collect();
+    assert_eq!(levels, [(0, 0.0), (1, 4.0)]);
+    assert_eq!(plan.levels[0].height_m, 4.0);
+    let outlines: Vec<_> = [0, 1]
+        .map(|level| {
+            let rooms = plan.rooms.iter().filter(|r| r.level == level);
+            rooms.flat_map(|r| &r.polygon.0).fold([f64::MAX, f64::MAX, f64::MIN, f64::MIN], |b, p| {
+                [b[0].min(p.x), b[1].min(p.y), b[2].max(p.x), b[3].max(p.y)]
+            })
+        })
+        .into();
+    let off = outlines[0].iter().zip(&outlines[1]).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    assert!(off < 0.05, "{outlines:?}");
+    // both lifts stop on both storeys, at the same place
+    assert_eq!(plan.links.len(), 2, "{notes:?}");
+    for link in &plan.links {
+        let rooms: Vec<_> = link.room_ids.iter().map(|id| plan.room(id).expect("a room of the plan")).collect();
+        assert_eq!(rooms.iter().map(|r| r.level).collect::<Vec<_>>(), [0, 1]);
+        let [a, b] = [rooms[0], rooms[1]].map(|r| r.polygon.bounds().center());
+        assert!(a.distance(b) < 0.05 && plan.doors_of(&rooms[1].room_id).count() == 1, "{link:?}");
+    }
+    let codes: Vec<&str> = notes.iter().map(|n| n.code.as_str()).collect();
+    assert!(codes.contains(&"lined_up") && codes.contains(&"levels"), "{codes:?}");
+    let left_out: Vec<_> = notes.iter().filter(|n| n.code == "lift_left_out").collect();
+    assert!(!left_out.is_empty() && left_out.iter().all(|n| n.message.contains("slanted")), "{left_out:?}");
+}
+
+#[test]
+fn storeys_are_joined_by_stairs_above_each_other() {
+    let rect = |level: &str, name: &str, [x0, y0, x1, y1]: [f64; 4]| {
+        format!(
+            r#"{{"type":"Feature","properties":{{"name":"{name}","level":"{level}"}},"geometry":{{"type":"Polygon","coordinates":[[[{x0},{y0}],[{x1},{y0}],[{x1},{y1}],[{x0},{y1}],[{x0},{y0}]]]}}}}"#
+        )
+    };
+    let upper = |stairs: [f64; 4]| {
+        let features = [
+            rect("EG", "Hall", [0.0, 0.0, 6.0, 4.0]),
+            rect("EG", "Stair", [6.0, 0.0, 9.0, 5.0]),
+            rect("OG", "Hall", [0.0, 0.0, 6.0, 4.0]),
+            rect("OG", "Stair", stairs),
+        ];
+        let text = format!(r#"{{"type":"FeatureCollection","features":[{}]}}"#, features.join(","));
+        plan_of("p.geojson", text.as_bytes(), &Options::default()).expect("a plan")
+    };
+    let (plan, notes) = upper([6.0, 0.0, 9.0, 5.0]);
+    assert_eq!(plan.links.len(), 1, "{notes:?}");
+    let stairs: Vec<_> = plan.links[0].room_ids.iter().map(|id| plan.room(id).expect("a room")).collect();
+    assert!(stairs.iter().all(|r| r.room_type == "stairwell"));
+    assert_eq!(stairs[0].ceiling_height_m, plan.levels[0].height_m);
+    assert!(!notes.contains(&"not_linked".into()));
+    let (plan, notes) = upper([0.0, 4.0, 3.0, 9.0]);
+    assert!(plan.links.is_empty() && notes.contains(&"not_linked".into()));
+    assert!(plan.rooms.iter().any(|r| r.room_type == "stair"), "what joins nothing stays what it is");
+    let alone = Options { level: Some("OG".into()), ..Options::default() };
+    let text = format!(r#"{{"type":"FeatureCollection","features":[{}]}}"#, rect("OG", "Hall", [0.0, 0.0, 6.0, 4.0]));
+    let (plan, _) = plan_of("p.geojson", text.as_bytes(), &alone).expect("a plan");
+    assert!(plan.levels.is_empty() && plan.rooms[0].level == 0);
 }
 
 #[test]
@@ -310,6 +385,49 @@ fn a_map_at_an_angle_is_turned() {
 }
 
 #[test]
+fn layers_of_the_cad_standard_are_understood_and_others_named() {
+    // the flat with its walls, windows and door on layers of other names
+    let text = String::from_utf8(std::fs::read(plans().join("flat.dxf")).expect("the sample")).expect("text");
+    let on = |window: &str| text.replace("A-GLAZ-WINDOW", window);
+    for window in ["A-GLAZ", "A-WALL-GLAZ", "A-WIND-FULL"] {
+        let (plan, notes) = plan_of("flat.dxf", on(window).as_bytes(), &thin()).expect("a plan");
+        assert_eq!((plan.windows.len(), notes.contains(&"not_understood".into())), (2, false), "{window}");
+    }
+    let (plan, notes) = plan_of("flat.dxf", on("A-XYZW").as_bytes(), &thin()).expect("a plan");
+    assert_eq!((plan.windows.len(), notes.contains(&"not_understood".into())), (0, true));
+}
+
+#[test]
+fn numbers_are_no_names() {
+    let rect = |name: &str, [x0, y0, x1, y1]: [f64; 4]| {
+        format!(
+            r#"{{"type":"Feature","properties":{{"name":"{name}"}},"geometry":{{"type":"Polygon","coordinates":[[[{x0},{y0}],[{x1},{y0}],[{x1},{y1}],[{x0},{y1}],[{x0},{y0}]]]}}}}"#
+        )
+    };
+    let door = |x: f64, y: f64| {
+        format!(
+            r#"{{"type":"Feature","properties":{{"kind":"door"}},"geometry":{{"type":"Point","coordinates":[{x},{y}]}}}}"#
+        )
+    };
+    let plan = |corridor: &str| {
+        let mut features = vec![rect(corridor, [0.0, 4.0, 12.0, 5.5]), door(0.0, 4.75)];
+        for (i, x) in [0.0, 4.0, 8.0].into_iter().enumerate() {
+            features.push(rect(&format!("1.0{}", i + 1), [x, 0.0, x + 4.0, 4.0]));
+            features.push(door(x + 2.0, 4.0));
+        }
+        format!(r#"{{"type":"FeatureCollection","features":[{}]}}"#, features.join(","))
+    };
+    for (corridor, hub) in [("", true), ("1.10", true), ("R 4", true), ("Foundry", false)] {
+        let text = plan(corridor);
+        let source = Source { name: "p.geojson", bytes: text.as_bytes(), companion: &|_| None };
+        let Ok(Plan::Drawing(drawing)) = read(&source, &thin()) else { panic!("{corridor}") };
+        let layout = lay_out(drawing, &thin()).expect("a layout");
+        let hubs: Vec<(&str, bool)> = layout.rooms.iter().map(|r| (r.label.as_str(), r.hub)).collect();
+        assert_eq!(hubs, [(corridor, hub), ("1.01", false), ("1.02", false), ("1.03", false)]);
+    }
+}
+
+#[test]
 fn what_is_no_building_is_refused_with_its_place() {
     let rooms = |shapes: &str| format!(r#"<svg xmlns="http://www.w3.org/2000/svg">{shapes}</svg>"#);
     let slanted = rooms(r#"<polygon id="attic" points="0,0 500,0 500,300 100,400"/>"#);
@@ -332,6 +450,29 @@ fn what_is_no_building_is_refused_with_its_place() {
     assert!(notes.contains(&"rectified".into()));
     let message = plan_of("x.svg", twice.as_bytes(), &Options::default()).expect_err("no unit").to_string();
     assert!(message.contains("--meters-per-unit"), "{message}");
+}
+
+#[test]
+fn what_cannot_be_read_is_named_by_its_place() {
+    let feature = |name: &str, x: &str| {
+        format!(
+            r#"{{"type":"Feature","properties":{{"name":"{name}"}},"geometry":{{"type":"Polygon","coordinates":[[[0,0],[{x},0],[5,4],[0,4],[0,0]]]}}}}"#
+        )
+    };
+    let collection = |x: &str| {
+        format!(r#"{{"type":"FeatureCollection","features":[{},{}]}}"#, feature("Hall", "5"), feature("Bath", x))
+    };
+    for (name, text, says) in [
+        ("p.geojson", collection("\"a\""), "geojson: feature 1 `Bath`: invalid type"),
+        ("p.geojson", collection("1e308"), "room `Bath`: the point (1e308, 0e0) m"),
+        ("p.geojson", "{\"type\":\n[".into(), "geojson: line 2 column 1: EOF"),
+        ("p.building.yaml", "levels:\n  L1:\n    walls: 3\n".into(), "rmf: line 3 column 12: expected"),
+        // a drawing in meters
+        ("p.svg", r#"<svg><rect id="hall" width="8" height="9"/></svg>"#.into(), "--meters-per-unit 1 would make"),
+    ] {
+        let message = plan_of(name, text.as_bytes(), &Options::default()).expect_err("no plan").to_string();
+        assert!(message.contains(says) && message.len() < 300, "{message}");
+    }
 }
 
 #[test]

@@ -103,7 +103,7 @@ impl<'a> Entity<'a> {
 
 fn read(source: &Source, options: &Options) -> Result<Plan, Error> {
     if source.bytes.starts_with(b"AutoCAD Binary DXF") {
-        return Err(Error::broken(FORMAT, source.name, "is the binary form; save it as text (ASCII) DXF"));
+        return Err(Error::broken(FORMAT, "byte 0", "is the binary form; save it as text (ASCII) DXF"));
     }
     // old files are in a code page of one byte a letter
     let text = match source.text(FORMAT) {
@@ -363,6 +363,11 @@ impl State {
                     drawing.labels.extend(lines.map(|l| DrawnLabel { text: l.to_owned(), at, level: None }));
                 }
             }
+            "SPLINE" | "ELLIPSE" | "MLINE"
+                if matches!(role, Some(Role::Wall | Role::Door | Role::Window | Role::Room)) =>
+            {
+                drawing.leave_out(format!("layer `{layer}` as {}", e.kind));
+            }
             _ => {}
         }
         Ok(())
@@ -488,7 +493,7 @@ fn polyline(
             points.extend(bulged(a, b, bulge));
         }
     }
-    if points.len() < 2 || matches!(role, Some(Role::Skip | Role::Outline)) {
+    if points.len() < 2 || matches!(role, Some(Role::Skip | Role::Outline | Role::Tag)) {
         return;
     }
     let place = format!("{place} on layer `{layer}`");
@@ -502,6 +507,8 @@ fn polyline(
         drawing.walls.extend(points.windows(2).map(line));
     } else if closed {
         drawing.rooms.push(DrawnRoom::new(String::new(), points, place));
+    } else {
+        drawing.leave_out(format!("layer `{layer}`"));
     }
 }
 

@@ -15,7 +15,7 @@ fn recognizes(source: &Source) -> bool {
 
 fn read(source: &Source, _: &Options) -> Result<Plan, Error> {
     let mut plan = Floorplan::from_json(source.text("floorplan")?)
-        .map_err(|e| Error::broken("floorplan", source.name, e.to_string()))?;
+        .map_err(|e| Error::broken("floorplan", "document", e.to_string()))?;
     plan.scheme = Floorplan::GIVEN.into();
     plan.rooms.iter_mut().for_each(|r| r.locked = true);
     plan.walls.iter_mut().for_each(|w| w.locked = true);

@@ -8,6 +8,7 @@
 
 use d3dgen_model::Point;
 use serde::Deserialize;
+use serde_json::Value;
 
 use super::{Plan, Reader, Source};
 use crate::drawing::{Drawing, DrawnLabel, DrawnOpening, DrawnRoom, DrawnWall, OpeningKind, note};
@@ -28,15 +29,8 @@ const DEGREES: f64 = 0.05;
 const EARTH_M: f64 = 6_378_137.0;
 const EARTH_E2: f64 = 0.006_694_379_990_14;
 
-type JsonObject = serde_json::Map<String, serde_json::Value>;
+type JsonObject = serde_json::Map<String, Value>;
 type Position = Vec<f64>;
-
-/// A file: a collection, a feature, or a bare shape.
-#[derive(Deserialize)]
-#[serde(tag = "type")]
-enum Collected {
-    FeatureCollection { features: Vec<Feature> },
-}
 
 #[derive(Deserialize)]
 struct Feature {
@@ -66,18 +60,31 @@ fn recognizes(source: &Source) -> bool {
 
 fn read(source: &Source, options: &Options) -> Result<Plan, Error> {
     let text = source.text(FORMAT)?;
-    let broken = |e: String| Error::broken(FORMAT, source.name, e);
-    let value: serde_json::Value = serde_json::from_str(text).map_err(|e| broken(e.to_string()))?;
+    let mut value: Value = serde_json::from_str(text).map_err(|e| {
+        let (message, place) = (e.to_string(), format!("line {} column {}", e.line(), e.column()));
+        Error::broken(FORMAT, &place, message.trim_end_matches(&format!(" at {place}")))
+    })?;
     let crs = value.pointer("/crs/properties/name").and_then(|v| v.as_str()).map(str::to_owned);
     let value_title = value.get("name").and_then(|v| v.as_str()).map(str::to_owned);
-    let wrong = |e: serde_json::Error| broken(e.to_string());
-    let features: Vec<Feature> = match value.get("type").and_then(|t| t.as_str()) {
+    let wrong = |place: &str, e: serde_json::Error| Error::broken(FORMAT, place, e.to_string());
+    let features: Vec<Feature> = match value.get("type").and_then(Value::as_str) {
         Some("FeatureCollection") => {
-            let Collected::FeatureCollection { features } = serde_json::from_value(value).map_err(wrong)?;
-            features
+            let list = value.get_mut("features").map(Value::take);
+            let Some(Value::Array(list)) = list else {
+                return Err(Error::broken(FORMAT, "FeatureCollection", "needs a list of features"));
+            };
+            let feature = |(i, f): (usize, Value)| {
+                let name = f.pointer("/properties/name").and_then(Value::as_str).map(|n| format!(" `{n}`"));
+                let place = format!("feature {i}{}", name.unwrap_or_default());
+                serde_json::from_value(f).map_err(|e| wrong(&place, e))
+            };
+            list.into_iter().enumerate().map(feature).collect::<Result<_, _>>()?
         }
-        Some("Feature") => vec![serde_json::from_value(value).map_err(wrong)?],
-        _ => vec![Feature { geometry: Some(serde_json::from_value(value).map_err(wrong)?), properties: None }],
+        Some("Feature") => vec![serde_json::from_value(value).map_err(|e| wrong("feature", e))?],
+        _ => {
+            let geometry = serde_json::from_value(value).map_err(|e| wrong("geometry", e))?;
+            vec![Feature { geometry: Some(geometry), properties: None }]
+        }
     };
     let titles = value_title.into_iter().collect();
     let mut drawing = Drawing { titles, ..Drawing::default() };
@@ -94,20 +101,18 @@ fn read(source: &Source, options: &Options) -> Result<Plan, Error> {
 
 fn text_of(properties: &JsonObject, keys: &[&str]) -> Option<String> {
     keys.iter().find_map(|k| match properties.get(*k)? {
-        serde_json::Value::String(s) if !s.trim().is_empty() => Some(s.trim().to_owned()),
-        serde_json::Value::Number(n) => Some(n.to_string()),
+        Value::String(s) if !s.trim().is_empty() => Some(s.trim().to_owned()),
+        Value::Number(n) => Some(n.to_string()),
         // names by language, as IMDF has them
-        serde_json::Value::Object(o) => {
-            o.get("en").or_else(|| o.values().next()).and_then(|v| v.as_str()).map(str::to_owned)
-        }
+        Value::Object(o) => o.get("en").or_else(|| o.values().next()).and_then(|v| v.as_str()).map(str::to_owned),
         _ => None,
     })
 }
 
 fn number_of(properties: &JsonObject, keys: &[&str]) -> Option<f64> {
     keys.iter().find_map(|k| match properties.get(*k)? {
-        serde_json::Value::Number(n) => n.as_f64(),
-        serde_json::Value::String(s) => s.trim().trim_end_matches(['m', ' ']).parse().ok(),
+        Value::Number(n) => n.as_f64(),
+        Value::String(s) => s.trim().trim_end_matches(['m', ' ']).parse().ok(),
         _ => None,
     })
 }
@@ -140,6 +145,10 @@ fn add(drawing: &mut Drawing, geometry: &Shape, properties: &JsonObject, place: 
         Some(Role::Window) => Some(OpeningKind::Window),
         _ => None,
     };
+    let unread = || match kinds.first() {
+        Some(kind) => format!("lines of the kind `{kind}`"),
+        None => "lines without a kind".to_owned(),
+    };
     let mut shapes: Vec<&Shape> = vec![geometry];
     while let Some(shape) = shapes.pop() {
         match shape {
@@ -164,11 +173,15 @@ fn add(drawing: &mut Drawing, geometry: &Shape, properties: &JsonObject, place: 
                 }
             }
             Shape::LineString { coordinates: line } => {
-                line_of(drawing, points(line)?, said, &opening, as_opening, &level, &place)
+                if !line_of(drawing, points(line)?, said, &opening, as_opening, &level, &place) {
+                    drawing.leave_out(unread());
+                }
             }
             Shape::MultiLineString { coordinates: lines } => {
                 for line in lines {
-                    line_of(drawing, points(line)?, said, &opening, as_opening, &level, &place);
+                    if !line_of(drawing, points(line)?, said, &opening, as_opening, &level, &place) {
+                        drawing.leave_out(unread());
+                    }
                 }
             }
             Shape::Point { coordinates: p } => {
@@ -205,7 +218,7 @@ fn polygon(
     room: impl FnOnce() -> DrawnRoom,
 ) {
     match said {
-        Some(Role::Skip | Role::Outline | Role::Wall) => {}
+        Some(Role::Skip | Role::Outline | Role::Tag | Role::Wall) => {}
         _ => match as_opening(said) {
             Some(kind) => opening(drawing, kind, ring),
             None => drawing.rooms.push(DrawnRoom { corners: ring, ..room() }),
@@ -213,6 +226,7 @@ fn polygon(
     }
 }
 
+/// Adds a line; returns false when nothing says what it is.
 fn line_of(
     drawing: &mut Drawing,
     line: Vec<Point>,
@@ -221,7 +235,7 @@ fn line_of(
     as_opening: impl Fn(Option<Role>) -> Option<OpeningKind>,
     level: &Option<String>,
     place: &str,
-) {
+) -> bool {
     if let Some(kind) = as_opening(said) {
         opening(drawing, kind, line);
     } else if said == Some(Role::Wall) {
@@ -231,6 +245,7 @@ fn line_of(
             place: format!("wall of {place}"),
         }));
     }
+    !matches!(said, None | Some(Role::Room))
 }
 
 fn point(

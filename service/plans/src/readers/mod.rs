@@ -9,6 +9,7 @@ mod svg;
 mod trace;
 
 use d3dgen_model::floorplan::Floorplan;
+use serde::de::DeserializeOwned;
 
 use crate::{Drawing, Error, Options};
 
@@ -30,6 +31,18 @@ impl Source<'_> {
         let text = std::str::from_utf8(self.bytes)
             .map_err(|e| Error::broken(format, format!("byte {}", e.valid_up_to()), "is no UTF-8 text"))?;
         Ok(text.strip_prefix('\u{feff}').unwrap_or(text))
+    }
+
+    /// Reads YAML; the place of an error is its line.
+    fn yaml<T: DeserializeOwned>(&self, format: &'static str) -> Result<T, Error> {
+        serde_saphyr::from_str(self.text(format)?).map_err(|e| {
+            let said = e.to_string();
+            let first = said.lines().next().unwrap_or_default().trim_start_matches("error: ");
+            match first.split_once(": ").filter(|(place, _)| place.starts_with("line ")) {
+                Some((place, message)) => Error::broken(format, place, message),
+                None => Error::broken(format, "file", first),
+            }
+        })
     }
 
     fn has_ending(&self, endings: &[&str]) -> bool {

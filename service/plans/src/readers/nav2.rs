@@ -46,8 +46,7 @@ fn recognizes(source: &Source) -> bool {
 }
 
 fn read(source: &Source, options: &Options) -> Result<Plan, Error> {
-    let map: Map = serde_saphyr::from_str(source.text(FORMAT)?)
-        .map_err(|e| Error::broken(FORMAT, source.name, e.to_string().lines().next().unwrap_or_default().to_owned()))?;
+    let map: Map = source.yaml(FORMAT)?;
     let resolution = options.meters_per_unit.unwrap_or(map.resolution);
     if !(resolution.is_finite() && resolution > 0.001 && resolution <= COARSEST_M) {
         let message = format!("{resolution} m a cell; rooms can be traced at 0.001 to {COARSEST_M} m");

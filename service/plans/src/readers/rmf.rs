@@ -1,7 +1,8 @@
 //! Open-RMF `building.yaml` of the traffic editor: rooms are what the walls, doors and floors of a level enclose.
 //!
 //! Values are pairs of a type and a value; drawings are in pixels with y downwards, unless the coordinate system says
-//! meters; the measurements of a level give its scale. Names of waypoints inside a room are its name, but not those of
+//! meters; the measurements of a level give its scale, and the fiducials that it shares with the level of reference line it
+//! up with that one. The cars of lifts are drawn on every level where they have a door. Names of waypoints inside a room are its name, but not those of
 //! chargers, docks, doors, lifts and places where robots start: they name a thing for robots.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -10,6 +11,11 @@ use d3dgen_model::Point;
 use serde::Deserialize;
 use serde_json::Value;
 
+mod align;
+mod lifts;
+
+use self::align::Shift;
+use self::lifts::Lift;
 use super::{Plan, Reader, Source};
 use crate::drawing::{Drawing, DrawnFloor, DrawnLabel, DrawnOpening, DrawnWall, OpeningKind, note};
 use crate::words::is_waypoint;
@@ -36,6 +42,8 @@ struct Building {
     #[serde(default)]
     coordinate_system: Option<String>,
     #[serde(default)]
+    reference_level_name: Option<String>,
+    #[serde(default)]
     levels: BTreeMap<String, Level>,
     #[serde(default)]
     lifts: BTreeMap<String, Value>,
@@ -43,6 +51,11 @@ struct Building {
 
 #[derive(Deserialize)]
 struct Level {
+    #[serde(default)]
+    elevation: Option<f64>,
+    /// Points that levels have in common: x, y and a name.
+    #[serde(default)]
+    fiducials: Vec<Vec<Value>>,
     #[serde(default)]
     vertices: Vec<Vec<Value>>,
     #[serde(default)]
@@ -64,20 +77,82 @@ struct Floor {
 }
 
 fn read(source: &Source, options: &Options) -> Result<Plan, Error> {
-    let building: Building = serde_saphyr::from_str(source.text(FORMAT)?)
-        .map_err(|e| Error::broken(FORMAT, source.name, e.to_string().lines().next().unwrap_or_default().to_owned()))?;
+    let building: Building = source.yaml(FORMAT)?;
     let meters = building.coordinate_system.as_deref() == Some("cartesian_meters");
     let titles = building.name.as_ref().and_then(Value::as_str).map(str::to_owned).into_iter().collect();
     let mut drawing = Drawing { titles, ..Drawing::default() };
-    let lifts: BTreeSet<String> = building.lifts.keys().map(|n| n.to_lowercase()).collect();
+    let lifts: BTreeMap<String, Lift> = building.lifts.iter().map(lifts::read).collect::<Result<_, _>>()?;
+    let names: BTreeSet<String> = lifts.keys().map(|n| n.to_lowercase()).collect();
+    let mut frames: BTreeMap<&str, Frame> = BTreeMap::new();
     for (name, level) in &building.levels {
-        add_level(&mut drawing, name, level, meters, &lifts, options)?;
+        let frame = add_level(&mut drawing, name, level, meters, &names, options)?;
+        frames.insert(name, frame);
+        drawing.elevations_m.extend(level.elevation.map(|e| (name.clone(), e)));
     }
-    if !building.lifts.is_empty() {
-        let message = format!("{} lifts were left out; their cabins are no rooms", building.lifts.len());
-        drawing.notes.push(note("lifts_left_out", message));
+    if !meters {
+        line_up(&mut drawing, &building, &mut frames);
+    }
+    for (name, lift) in &lifts {
+        lifts::draw(&mut drawing, name, lift, &frames);
     }
     Ok(Plan::Drawing(drawing))
+}
+
+/// How the numbers of a level become meters of the building.
+#[derive(Clone, Copy)]
+struct Frame {
+    /// Meters a unit, and whether y runs upwards.
+    scale: f64,
+    up: bool,
+    /// From the meters of the level to those of the level of reference.
+    shift: Shift,
+}
+
+impl Frame {
+    /// Returns where a point of the file is on its own level, m.
+    fn own(&self, x: f64, y: f64) -> Point {
+        Point::new(x * self.scale, if self.up { y } else { -y } * self.scale)
+    }
+
+    /// Returns where it is in the building, m.
+    fn at(&self, x: f64, y: f64) -> Point {
+        self.shift.of(self.own(x, y))
+    }
+}
+
+/// Lines levels up with the level of reference, the first one where none is named, by the fiducials that both have.
+fn line_up<'a>(drawing: &mut Drawing, building: &'a Building, frames: &mut BTreeMap<&'a str, Frame>) {
+    let named = building.reference_level_name.as_deref().filter(|n| building.levels.contains_key(*n));
+    let Some(reference) = named.or_else(|| building.levels.keys().next().map(String::as_str)) else { return };
+    let points = |name: &str, frames: &BTreeMap<&str, Frame>| -> BTreeMap<String, Point> {
+        let point = |f: &Vec<Value>| {
+            let (x, y) = (f.first()?.as_f64()?, f.get(1)?.as_f64()?);
+            let id = f.get(2).map(|id| id.as_str().map_or_else(|| id.to_string(), str::to_owned))?;
+            Some((id, frames.get(name)?.own(x, y)))
+        };
+        building.levels.get(name).into_iter().flat_map(|l| &l.fiducials).filter_map(point).collect()
+    };
+    let fixed = points(reference, frames);
+    for name in building.levels.keys().filter(|n| *n != reference) {
+        let own = points(name, frames);
+        let pairs: Vec<(Point, Point)> = own.iter().filter_map(|(id, p)| Some((*p, *fixed.get(id)?))).collect();
+        match align::shift(&pairs) {
+            Some((shift, off)) => {
+                drawing.on_level_mut(name).for_each(|p| *p = shift.of(*p));
+                frames.entry(name).and_modify(|f| f.shift = shift);
+                let count = pairs.len();
+                let message =
+                    format!("level {name} was lined up with {reference} by {count} fiducials, to within {off:.2} m");
+                drawing.notes.push(note("lined_up", message));
+            }
+            None => {
+                let message = format!(
+                    "level {name} has no fiducials that agree with those of {reference}; it stands where its own coordinates are"
+                );
+                drawing.notes.push(note("not_lined_up", message));
+            }
+        }
+    }
 }
 
 /// Returns the value of a typed pair `[3, 0.9]` under a name.
@@ -92,7 +167,7 @@ fn add_level(
     meters: bool,
     lifts: &BTreeSet<String>,
     options: &Options,
-) -> Result<(), Error> {
+) -> Result<Frame, Error> {
     let broken = |place: String, message: &str| Error::broken(FORMAT, format!("levels/{name}/{place}"), message);
     let mut points = Vec::with_capacity(level.vertices.len());
     for (i, v) in level.vertices.iter().enumerate() {
@@ -152,7 +227,7 @@ fn add_level(
             drawing.floors.push(DrawnFloor { corners, hole, level: here.clone() });
         }
     }
-    Ok(())
+    Ok(Frame { scale, up: meters, shift: Shift::default() })
 }
 
 /// Returns meters a unit: as asked, 1 for meters, else by the measurements of the level.

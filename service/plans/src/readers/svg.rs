@@ -155,12 +155,22 @@ fn transform(node: &Node, outer: Transform) -> Result<Transform, Error> {
 
 /// Returns what the class, layer name, type or id of an element says it is.
 fn own_role(node: &Node) -> Option<Role> {
+    names(node).find_map(role)
+}
+
+/// Returns the names of an element that say what it is, if they say it.
+fn names<'a>(node: &Node<'a, '_>) -> impl Iterator<Item = &'a str> {
     let label = node.attribute((INKSCAPE, "label"));
-    [node.attribute("class"), node.attribute("data-type"), label, node.attribute("id")]
-        .into_iter()
-        .flatten()
-        .filter(|t| !is_automatic(t))
-        .find_map(role)
+    let names = [node.attribute("class"), node.attribute("data-type"), label, node.attribute("id")];
+    names.into_iter().flatten().filter(|t| !is_automatic(t))
+}
+
+/// Returns the nearest name around an element, for what is left out.
+fn layer(node: &Node) -> String {
+    match node.ancestors().find_map(|n| names(&n).next()) {
+        Some(name) => format!("`{name}`"),
+        None => format!("elements <{}> without a name", node.tag_name().name()),
+    }
 }
 
 /// Returns true for names that drawing programs give by themselves.
@@ -214,7 +224,7 @@ fn add(drawing: &mut Drawing, node: &Node, scope: Scope) -> Result<usize, Error>
                 o.sliding = node.attribute("class").is_some_and(|c| c.contains("sliding"));
                 drawing.openings.push(o);
             }
-            (Some(Role::Skip | Role::Outline), _) => {}
+            (Some(Role::Skip | Role::Outline | Role::Tag), _) => {}
             // a filled wall is drawn by its faces
             (Some(Role::Wall), _) => {
                 let back = shape.closed.then(|| points[0]);
@@ -231,7 +241,7 @@ fn add(drawing: &mut Drawing, node: &Node, scope: Scope) -> Result<usize, Error>
                 let kind = node.attribute("data-room-type").map(str::to_owned);
                 drawing.rooms.push(DrawnRoom { kind, ..DrawnRoom::new(label, points, place) });
             }
-            _ => {}
+            _ => drawing.leave_out(layer(node)),
         }
     }
     Ok(count)
@@ -373,9 +383,11 @@ fn scale(drawing: &mut Drawing, root: &Node, options: &Options) -> Result<(), Er
                 (Some(_), _, None) | (_, Some(_), None) => Some(0.0254 / 96.0),
                 _ => None,
             };
-            let hint = |unit: f64| {
+            let hint = |printed: Option<f64>| {
                 let guess = 10.0_f64.powf((10.0 / width.max(height).max(1e-12)).log10().round());
-                let guess = if (0.1..10.0).contains(&(guess / unit)) { unit * 100.0 } else { guess };
+                // a plan is printed a hundred times smaller than it is, or more
+                let large = |unit: &f64| (0.1..10.0).contains(&(guess / unit));
+                let guess = printed.filter(large).map_or(guess, |unit| unit * 100.0);
                 format!(
                     "say how long one unit is: --meters-per-unit {guess} would make the plan {:.2} m by {:.2} m",
                     width * guess,
@@ -389,11 +401,11 @@ fn scale(drawing: &mut Drawing, root: &Node, options: &Options) -> Result<(), Er
                         "the rooms are {:.0} mm by {:.0} mm as printed, too small to be their real size; {}",
                         width * unit * 1000.0,
                         height * unit * 1000.0,
-                        hint(unit)
+                        hint(Some(unit))
                     );
                     return Err(Error::refused("scale", message));
                 }
-                None => return Err(Error::refused("scale", format!("the drawing has no unit; {}", hint(1.0)))),
+                None => return Err(Error::refused("scale", format!("the drawing has no unit; {}", hint(None)))),
             }
         }
     };
