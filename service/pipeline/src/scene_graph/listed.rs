@@ -62,6 +62,24 @@ impl Reader<'_> {
         out
     }
 
+    /// Returns the room that a relation right behind another one is said of: "next to the garage but away from the bedrooms".
+    pub(super) fn told_before(&self, nearest: usize, start: usize, said: &Said) -> Option<usize> {
+        let gap = self.mentions[nearest].end()..start;
+        let goes_on = |i: usize| self.tagged(i, Tag::Joins) || self.tagged(i, Tag::But);
+        let told = !gap.is_empty() && gap.into_iter().all(goes_on);
+        said.relations.iter().rev().find(|r| r.object == nearest).map(|r| r.subject).filter(|_| told)
+    }
+
+    /// Returns the subject and the objects of a verb behind them: "die Küche, die an das Bad, das Zimmer und den Flur grenzt".
+    pub(super) fn verb_behind(&self, last: usize) -> Option<(usize, Vec<usize>)> {
+        let objects = self.row_to(last);
+        let first = *objects.first()?;
+        let bound = self.mentions[first].from.checked_sub(2)?;
+        let binds = self.tagged(bound + 1, Tag::Definite) && BINDS.contains(&self.tokens[bound].text.as_str());
+        let subject = first.checked_sub(1).filter(|&s| binds && self.mentions[s].room_type().is_some())?;
+        Some((subject, objects))
+    }
+
     /// Returns the rooms listed from one on.
     pub(super) fn row_from(&self, first: usize) -> Vec<usize> {
         let goes_on = |m: &usize| {
@@ -77,7 +95,10 @@ impl Reader<'_> {
             let (mention, next) = (&self.mentions[*m], &self.mentions[m + 1]);
             mention.room_type().is_some() && self.is_one(*m) && self.is_next(mention, next)
         };
-        (0..last).rev().take_while(goes_on).chain(std::iter::once(last)).collect()
+        let mut out: Vec<usize> = (0..last).rev().take_while(goes_on).collect();
+        out.reverse();
+        out.push(last);
+        out
     }
 
     /// Returns the room that "it" behind a relation stands for: the one that those before it were said to be beside, else the

@@ -776,8 +776,11 @@ fn wish_for_storeys(storeys: &mut Storeys, wishes: &mut Wishes, domain: &Domain,
 /// whatever room a building of one storey has for that.
 fn goes_up(domain: &Domain, id: &str, of: &str) -> bool {
     let spaces = |id: &str| domain.room_type(id).map_or(&[][..], |k| &k.spaces);
-    let circulates = domain.room_type(id).is_some_and(|k| k.zone == Zone::Circulation);
-    id == of || circulates && spaces(id).iter().any(|s| spaces(of).contains(s))
+    let known = domain.room_type(id);
+    // "stair" is the word of another domain for the same
+    let same = known.is_none() && spaces(of).iter().any(|s| s == id);
+    let circulates = known.is_some_and(|k| k.zone == Zone::Circulation);
+    id == of || same || circulates && spaces(id).iter().any(|s| spaces(of).contains(s))
 }
 
 /// Head counts of a prompt.

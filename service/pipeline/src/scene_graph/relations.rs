@@ -223,7 +223,7 @@ impl Reader<'_> {
             Tag::Around | Tag::Sight => Connector::Near,
             _ => Connector::Wall,
         };
-        let before = self.before(start, 3);
+        let mut before = self.before(start, 3);
         let mut after = self.after(end, 2);
         // "between them": the last group named
         let them = after.is_empty()
@@ -237,7 +237,13 @@ impl Reader<'_> {
         if after.is_empty() {
             after.extend(self.spoken_of(end, &before, said));
         }
-        let listed = !matches!(tag, Tag::Between | Tag::Together);
+        let mut told_at = start;
+        if let Some(told) = before.first().and_then(|&nearest| self.told_before(nearest, start, said)) {
+            before[0] = told;
+            told_at = self.mentions[told].end();
+        }
+        let mutual = tag == Tag::Together || after.is_empty() && self.tagged(end, Tag::Mutual);
+        let listed = !mutual && tag != Tag::Between;
         if let ([subject, ..], [object, ..], true) = (&before[..], &after[..], listed) {
             after = self.all_after(*subject, *object, start);
         }
@@ -254,17 +260,25 @@ impl Reader<'_> {
         };
         let mut pairs: Vec<(usize, usize)> = Vec::new();
         match (tag, before.as_slice(), after.as_slice()) {
-            (Tag::Together, [b, a, ..], _) if !self.is_group(*b) => pairs.push((*a, *b)),
-            (Tag::Together, [b, ..], _) => pairs.push((*b, *b)),
+            (_, [b, rest @ ..], _) if mutual => {
+                let all = self.all_before(*b, told_at, said);
+                pairs.extend(all.windows(2).map(|w| (w[0], w[1])));
+                let alone = pairs.is_empty();
+                pairs.extend(rest.first().filter(|_| alone && !self.is_group(*b)).map(|a| (*a, *b)));
+                pairs.extend((alone && self.is_group(*b)).then_some((*b, *b)));
+            }
             (Tag::Between, [s, ..], [a, b, ..]) => pairs.extend([(*s, *a), (*s, *b)]),
             (Tag::Between, [b, a, ..], [s]) if self.postposed && !group_object => pairs.extend([(*s, *a), (*s, *b)]),
             (Tag::Between, [s, ..], [group]) => pairs.push((*s, *group)),
             (Tag::Between, ..) => {}
             (_, [s, ..], [_, ..]) => {
-                let subjects = self.all_before(*s, start, said);
+                let subjects = self.all_before(*s, told_at, said);
                 pairs.extend(subjects.into_iter().flat_map(|s| after.iter().map(move |&o| (s, o))));
             }
-            (_, [b, a, ..], []) if self.postposed => pairs.push((*a, *b)),
+            (_, [b, a, ..], []) if self.postposed => {
+                let (subject, objects) = self.verb_behind(*b).unwrap_or((*a, vec![*b]));
+                pairs.extend(objects.into_iter().map(|o| (subject, o)));
+            }
             (_, [], [o, s, ..]) => pairs.push((*s, *o)),
             _ => {}
         }
@@ -395,7 +409,11 @@ fn negated(tokens: &[Token], mentions: &[Mention], spoken: &[&Spoken], language:
     let mut out = Vec::new();
     for i in 0..tokens.len() {
         let Some(end) = tag_end(i, Tag::No) else { continue };
-        if mentions.iter().any(|m| m.span.contains(i)) {
+        // "darf nicht an das Bad grenzen" turns a relation round
+        let relates = |k: usize| RELATIONS.iter().any(|&t| tag_end(k, t).is_some());
+        let turns = tag_end(i, Tag::Not).is_some();
+        let turned = turns && (end..tokens.len()).take_while(|&k| !tokens[k].is_mark()).any(relates);
+        if turned || mentions.iter().any(|m| m.span.contains(i)) {
             continue;
         }
         if language == "ko" {

@@ -28,6 +28,10 @@ pub(super) enum Tag {
     No,
     /// Turns a relation round: "must not be next to".
     Not,
+    /// All of those before it: "each other".
+    Mutual,
+    /// Goes on to say something else of the same: "but".
+    But,
     /// How much of something: "not too large".
     Degree,
     /// Stands for the room that was spoken of: "with a door to it".
