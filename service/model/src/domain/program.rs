@@ -197,22 +197,9 @@ pub struct Circulation {
     pub automatic_doors: bool,
     /// Layout schemes that suit the domain, best first.
     pub schemes: Vec<Scheme>,
-    /// Which storeys have corridors that run in a ring without being asked to; without it none has.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub ring: Option<RingUse>,
     /// How buildings with several storeys are made; without it the domain has one storey only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub storeys: Option<Storeys>,
-}
-
-/// Where corridors run in a ring around a core.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct RingUse {
-    /// Rooms of a storey, its corridors with them, from how many to how many.
-    pub rooms: [usize; 2],
-    /// Share of such storeys, 0 to 1.
-    pub share: f64,
 }
 
 /// How a building with several storeys is divided and joined.

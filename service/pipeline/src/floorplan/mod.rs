@@ -261,6 +261,7 @@ fn schemes(brief: &Brief, domain: &Domain, rng: &mut Stream) -> Vec<Scheme> {
             return vec![asked];
         }
     }
+    // a scene graph that has the piece which closes a ring is one of a ring
     if list.contains(&Scheme::Racetrack) {
         return vec![Scheme::Racetrack];
     }

@@ -156,7 +156,7 @@ fn assemble(request: &Request, mut reading: Reading, planned: &[Planned]) -> Sce
     } else {
         (edges::connect(&mut reading, planned, &mut rooms), Vec::new())
     };
-    ring::close(&reading, request.seed, &links, &mut rooms, &mut web.edges);
+    ring::close(&reading, &links, &mut rooms, &mut web.edges);
     charging::add_docks(reading.domain, &reading.robots, &reading.docked, &mut rooms);
     robots::send(&reading.errand, &rooms, &mut reading.robots);
     let robot_rules = robot_rules::of_rooms(&reading.robot_rules, &rooms);

@@ -1,11 +1,8 @@
 //! Corridors that run all the way round: a room is one outline without holes, so a ring is made of two pieces of corridor
 //! that are open to each other at both ends. The first has all the doors; this adds the second, which closes the ring.
 
-use d3dgen_model::domain::Domain;
 use d3dgen_model::scene_graph::{Connector, GraphEdge, GraphRoom};
-use d3dgen_model::seed::Stream;
 use d3dgen_model::storeys::{LinkKind, VerticalLink};
-use d3dgen_model::style::Form;
 
 use super::reading::Reading;
 use super::{BY_CIRCULATION, rooms};
@@ -15,14 +12,8 @@ use crate::floorplan::runs_around;
 const LEAST_M2: f64 = 2.0;
 
 /// Adds the piece of corridor that closes the ring of each storey whose form is one.
-pub(super) fn close(
-    reading: &Reading,
-    seed: u64,
-    links: &[VerticalLink],
-    rooms: &mut Vec<GraphRoom>,
-    edges: &mut Vec<GraphEdge>,
-) {
-    let mut rng = Stream::new(seed, "scene_graph/ring");
+pub(super) fn close(reading: &Reading, links: &[VerticalLink], rooms: &mut Vec<GraphRoom>, edges: &mut Vec<GraphEdge>) {
+    let Some(form) = reading.style.form else { return };
     // stairs at both ends stand at one straight way
     if links.iter().filter(|l| l.kind == LinkKind::Stairs).count() > 1 {
         return;
@@ -31,8 +22,7 @@ pub(super) fn close(
     let mut number = rooms.iter().filter(|r| corridors.iter().any(|c| c.room_type == r.room_type)).count();
     for corridor in corridors {
         let beside = rooms.iter().filter(|r| r.level == corridor.level).count();
-        let form = reading.style.form.or_else(|| unasked(reading.domain, beside + 1, &mut rng));
-        if !form.is_some_and(|form| runs_around(form, beside + 1)) {
+        if !runs_around(form, beside + 1) {
             continue;
         }
         number += 1;
@@ -50,12 +40,6 @@ pub(super) fn close(
         });
         rooms.push(piece);
     }
-}
-
-/// Returns the form of a storey of so many rooms whose corridors run in a ring without being asked to.
-fn unasked(domain: &Domain, rooms: usize, rng: &mut Stream) -> Option<Form> {
-    let ring = domain.circulation.ring.as_ref().filter(|r| (r.rooms[0]..=r.rooms[1]).contains(&rooms))?;
-    rng.chance(ring.share).then_some(Form::Racetrack)
 }
 
 fn is_link(links: &[VerticalLink], room: &GraphRoom) -> bool {

@@ -32,7 +32,6 @@ const FORMS: &[(&str, Form)] = &[
     ("JointLimits", Form::Tuple),
     ("NumberList", Form::List),
     ("Polygon", Form::List),
-    ("RoomCounts", Form::Tuple),
     ("RoomPair", Form::Tuple),
     ("Size", Form::Tuple),
     ("Stretch", Form::Tuple),
