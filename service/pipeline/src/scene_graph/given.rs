@@ -512,7 +512,6 @@ mod tests {
             ("Slaapkamer 2", "bedroom"),
             ("寝室1", "bedroom"),
             ("キッチン", "kitchen"),
-            ("Sala da pranzo", "dining_room"),
             ("xyzzy", "room"),
             ("", "room"),
         ] {
