@@ -118,11 +118,11 @@ mod tests {
         };
         let car = Rect::new(1.0, 1.0, 3.0, 3.0);
         let around = [wall(0.8, 0.0, 0.8, 4.0), wall(0.0, 0.7, 9.0, 0.7), wall(3.3, 4.0, 3.3, 0.0)];
-        let (shaft, missing) = super::shaft(car, &around);
-        assert_eq!((shaft.x0, shaft.y0, shaft.x1, shaft.y1), (0.8, 0.7, 3.3, 3.0));
+        let (grown, missing) = shaft(car, &around);
+        assert_eq!((grown.x0, grown.y0, grown.x1, grown.y1), (0.8, 0.7, 3.3, 3.0));
         assert_eq!(missing, [[Point::new(3.3, 3.0), Point::new(0.8, 3.0)]]);
         // a wall that passes by elsewhere, and one too far off, are none of its
-        let (shaft, missing) = super::shaft(car, &[wall(0.0, 0.9, 1.5, 0.9), wall(0.2, 0.0, 0.2, 4.0)]);
-        assert_eq!((shaft, missing.len()), (car, 4));
+        let (grown, missing) = shaft(car, &[wall(0.0, 0.9, 1.5, 0.9), wall(0.2, 0.0, 0.2, 4.0)]);
+        assert_eq!((grown, missing.len()), (car, 4));
     }
 }
