@@ -358,7 +358,6 @@ fn attempt(
     let mut told = with_area(graph, &plan);
     told.conflicts.extend(scene_graph::shortages(domain, graph, &placements));
     told.conflicts.extend(far_apart(graph, &plan));
-    let told = scenario::with_shortages(told, &scenario);
     let world = world::assemble(name, told, plan, placements, scenario);
     let report = world::check(&world, domain, retrieved);
     observe(Event::Finished(Stage::World, attempt, Artifact::World(&world, &report)));
@@ -408,7 +407,6 @@ pub fn finish(
 ) -> Result<(World, Report), Error> {
     let reseeded = SceneGraph { seed: plan.seed, ..graph.clone() };
     let scenario = scenario::generate(&reseeded, &plan, &placements, domain)?;
-    let graph = scenario::with_shortages(graph, &scenario);
     let world = world::assemble(name, graph, plan, placements, scenario);
     let report = world::check(&world, domain, retrieved);
     Ok((world, report))
