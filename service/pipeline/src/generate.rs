@@ -358,7 +358,6 @@ fn attempt(
     let mut told = with_area(graph, &plan);
     told.conflicts.extend(scene_graph::shortages(domain, graph, &placements));
     told.conflicts.extend(far_apart(graph, &plan));
-    let told = scenario::with_shortages(told, &scenario);
     let mut world = world::assemble(name, told, plan, placements, scenario);
     let report = world::check(&world, domain, retrieved);
     world.scene_graph.conflicts.extend(ways_out::told(&world, &report, domain, retrieved));
@@ -409,7 +408,6 @@ pub fn finish(
 ) -> Result<(World, Report), Error> {
     let reseeded = SceneGraph { seed: plan.seed, ..graph.clone() };
     let scenario = scenario::generate(&reseeded, &plan, &placements, domain)?;
-    let graph = scenario::with_shortages(graph, &scenario);
     let world = world::assemble(name, graph, plan, placements, scenario);
     let report = world::check(&world, domain, retrieved);
     Ok((world, report))

@@ -97,25 +97,28 @@ fn own_dock<'p>(floor: &Floor, graph: &SceneGraph, robot: &Robot, left: &mut Vec
 /// Code of the conflict that says which robots have no dock of their own.
 pub(crate) const DOCKS_MISSING: &str = "docks_missing";
 
-/// Returns the robots that charge and have no dock, or one that is another's.
+/// Returns the robots that charge and have no dock, and those whose dock is another's already.
 pub(crate) fn without_dock(robots: &[RobotTask]) -> Vec<&RobotTask> {
-    let charging: Vec<&RobotTask> = robots.iter().filter(|t| t.robot.charging && !t.robot.misfit).collect();
-    let taken = |i: usize| charging[..i].iter().any(|other| other.dock == charging[i].dock);
-    (0..charging.len()).filter(|&i| charging[i].dock.is_none() || taken(i)).map(|i| charging[i]).collect()
+    let planned: Vec<&RobotTask> = robots.iter().filter(|t| !t.robot.misfit).collect();
+    let is_taken = |i: usize| planned[..i].iter().any(|other| other.dock == planned[i].dock);
+    let lacks = |i: &usize| match planned[*i].dock {
+        Some(_) => is_taken(*i),
+        None => planned[*i].robot.charging,
+    };
+    (0..planned.len()).filter(lacks).map(|i| planned[i]).collect()
 }
 
 /// Returns what to say where there are fewer docks than robots.
 pub(super) fn dock_shortage(robots: &[RobotTask]) -> Option<Note> {
     let without = without_dock(robots);
-    let charging = robots.iter().filter(|t| t.robot.charging).count();
-    let shares = |t: &&RobotTask| match &t.dock {
+    let what = |t: &&RobotTask| match &t.dock {
         Some(dock) => format!("{} shares {dock}", t.robot_id),
         None => format!("{} has none", t.robot_id),
     };
-    let named: Vec<String> = without.iter().map(shares).collect();
-    let docks = charging - without.len();
-    let message = || format!("{charging} robots charge and there is floor for {docks} dock(s): {}", named.join(", "));
-    (!named.is_empty()).then(|| Note { code: DOCKS_MISSING.into(), message: message() })
+    let named: Vec<String> = without.iter().map(what).collect();
+    let (all, lacking, named) = (robots.len(), named.len(), named.join(", "));
+    let message = || format!("{lacking} of {all} robots have no dock of their own, for want of floor: {named}");
+    (lacking > 0).then(|| Note { code: DOCKS_MISSING.into(), message: message() })
 }
 
 /// Looks for the routes of all robots, each around the others where these start: as the largest of them goes, where a smaller

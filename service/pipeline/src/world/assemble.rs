@@ -6,7 +6,9 @@ use d3dgen_model::scenario::Scenario;
 use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::world::World;
 
-/// Puts the documents together under a name (`^[a-z0-9_]+$`).
+use crate::scenario::with_shortages;
+
+/// Puts the documents together under a name (`^[a-z0-9_]+$`), with what the robots lack told in the scene graph.
 pub fn assemble(
     name: &str,
     scene_graph: SceneGraph,
@@ -14,6 +16,7 @@ pub fn assemble(
     placements: Placements,
     scenario: Scenario,
 ) -> World {
+    let scene_graph = with_shortages(scene_graph, &scenario);
     World {
         version: 1,
         name: name.to_owned(),

@@ -50,11 +50,9 @@ pub fn docks(c: &Context, out: &mut Findings) {
 /// Each robot that charges has a dock of its own, or the world says how many have none.
 pub fn dock_missing(c: &Context, out: &mut Findings) {
     let charging = c.graph().robots.iter().filter(|r| r.charging && !r.misfit);
-    if charging.map(|r| r.count).sum::<u32>() == 0 {
-        return;
-    }
+    let wanted = charging.map(|r| r.count).sum::<u32>() > 0;
     out.look();
-    if !c.objects.iter().any(is_dock) {
+    if wanted && !c.objects.iter().any(is_dock) {
         out.add("building", "robots that charge were asked for and the building has no dock");
     }
     if c.graph().conflicts.iter().any(|n| n.code == DOCKS_MISSING) {
