@@ -83,6 +83,8 @@ impl Cell {
 /// Band in which the stairs of a building with several storeys stand: all have it on the same side.
 pub(super) const CORE_BAND: usize = 0;
 
+/// Rooms from which on those around a court stand on both sides of its corridors: one row of them would make it a field.
+const BOTH_SIDES_FROM: usize = 20;
 /// Band along the third side of a court.
 pub(super) const WEST_BAND: usize = 4;
 
@@ -288,7 +290,7 @@ impl Genome {
             Scheme::Racetrack if inner && self.corner => vec![2],
             Scheme::Racetrack if inner => vec![2, 3],
             Scheme::Racetrack => vec![0, 1],
-            Scheme::Courtyard => vec![0, 1, WEST_BAND],
+            Scheme::Courtyard if brief.rooms.len() < BOTH_SIDES_FROM => vec![0, 1, WEST_BAND],
             _ => (0..self.bands.len()).collect(),
         };
         let best = candidates.iter().copied().min_by(|a, b| load(*a).total_cmp(&load(*b))).unwrap_or(0);

@@ -176,10 +176,11 @@ impl<'a> Names<'a> {
     }
 }
 
-/// Returns the room type of a domain that a name means in any language: "study", "Küche".
+/// Returns the room type of a domain that a name means in any language, all of it: "study", "Küche".
 pub(crate) fn room_type_called<'d>(domain: &'d Domain, name: &str) -> Option<&'d RoomType> {
     let names = Names::new(domain);
-    names.find(name).and_then(|(id, _)| domain.room_type(id))
+    let all = name.chars().filter(|c| c.is_alphanumeric()).count();
+    names.find(name).filter(|(_, letters)| *letters >= all).and_then(|(id, _)| domain.room_type(id))
 }
 
 /// Returns a label without the numbers that count its rooms.

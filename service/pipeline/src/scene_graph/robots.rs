@@ -111,7 +111,10 @@ pub(super) fn find(tokens: &[Token], spoken: &[&Spoken]) -> Robots {
             continue;
         };
         let span = Span { start: i, end };
-        let plural = is_plural(&tokens[i..end]);
+        // "a robot delivers" is one
+        let is_verb = |tag| spoken.iter().any(|s| s.tag_at(tokens, end - 1, tag) == Some(end));
+        let noun_end = if VERBS.iter().any(|(tag, _)| is_verb(*tag)) { end - 1 } else { end };
+        let plural = is_plural(&tokens[i..noun_end.max(i + 1)]);
         let named = Named { span, kind: None, place: false, plural, shared: false, name_from: None };
         if let Some((_, kind)) = KINDS.iter().find(|(tag, _)| tags.contains(tag)) {
             let kind = if *kind == "delivery" && serves(tokens, i, spoken) { "service" } else { kind };

@@ -55,7 +55,8 @@ fn a_proposal_that_says_what_would_be_made_anyway_is_kept() {
         let record = only(&found);
         assert_eq!(record.outcome, Outcome::Used, "{prompt}: {}", record.note);
         let mut rooms = record.items.iter().filter(|i| i.kind == ItemKind::Room);
-        assert!(rooms.all(|i| i.fate == Fate::Kept), "{prompt}: {record:#?}");
+        // a station grows with what is charged there: its own area is not taken for another
+        assert!(rooms.all(|i| matches!(i.fate, Fate::Kept | Fate::Moved)), "{prompt}: {record:#?}");
     }
 }
 
