@@ -1,6 +1,8 @@
 //! The discrete description of a plan that the search changes: which scheme, which rooms in which band and order, which
 //! small rooms nest beside whom, how deep the bands are.
 
+use std::ops::RangeInclusive;
+
 use d3dgen_model::domain::{Daylight, Scheme, Zone};
 use d3dgen_model::seed::Stream;
 
@@ -83,8 +85,9 @@ impl Cell {
 /// Band in which the stairs of a building with several storeys stand: all have it on the same side.
 pub(super) const CORE_BAND: usize = 0;
 
-/// Rooms from which on those around a court stand on both sides of its corridors: one row of them would make it a field.
-const BOTH_SIDES_FROM: usize = 20;
+/// Rooms that begin on both sides of the corridors around a court: one row of so many would make it a field. More do in some of
+/// the starts, as not all of them come to a plan.
+const BOTH_SIDES: RangeInclusive<usize> = 20..=32;
 /// Band along the third side of a court.
 pub(super) const WEST_BAND: usize = 4;
 
@@ -285,12 +288,15 @@ impl Genome {
         let dark = matches!(spec.daylight, Daylight::None | Daylight::Optional);
         // from the core those at an open counter see the doors on both sides of it
         let inner = dark || spec.open_front && spec.zone == Zone::Staff;
+        let many = brief.rooms.len() > *BOTH_SIDES.end();
         let candidates: Vec<usize> = match self.scheme {
             // Bands 2 and 3 of a racetrack are its core.
             Scheme::Racetrack if inner && self.corner => vec![2],
             Scheme::Racetrack if inner => vec![2, 3],
             Scheme::Racetrack => vec![0, 1],
-            Scheme::Courtyard if brief.rooms.len() < BOTH_SIDES_FROM => vec![0, 1, WEST_BAND],
+            Scheme::Courtyard if !BOTH_SIDES.contains(&brief.rooms.len()) && !(many && self.corner) => {
+                vec![0, 1, WEST_BAND]
+            }
             _ => (0..self.bands.len()).collect(),
         };
         let best = candidates.iter().copied().min_by(|a, b| load(*a).total_cmp(&load(*b))).unwrap_or(0);

@@ -285,7 +285,7 @@ fn scheme_of(form: Form) -> (Scheme, [usize; 2]) {
         Form::Linear => (Scheme::Straight, [1, MOST_WHOLE]),
         Form::LShaped => (Scheme::Angle, [5, MOST_WHOLE]),
         Form::Racetrack => (Scheme::Racetrack, [10, MOST_WHOLE + 30]),
-        Form::Courtyard => (Scheme::Courtyard, [6, 2 * MOST_WHOLE + 20]),
+        Form::Courtyard => (Scheme::Courtyard, [6, MOST_WHOLE + 30]),
         Form::Wings => (Scheme::Comb, [10, usize::MAX]),
     }
 }
