@@ -288,15 +288,14 @@ impl Genome {
         let dark = matches!(spec.daylight, Daylight::None | Daylight::Optional);
         // from the core those at an open counter see the doors on both sides of it
         let inner = dark || spec.open_front && spec.zone == Zone::Staff;
-        let many = brief.rooms.len() > *BOTH_SIDES.end();
+        let count = brief.rooms.len();
+        let both_sides = BOTH_SIDES.contains(&count) || count > *BOTH_SIDES.end() && self.corner;
         let candidates: Vec<usize> = match self.scheme {
             // Bands 2 and 3 of a racetrack are its core.
             Scheme::Racetrack if inner && self.corner => vec![2],
             Scheme::Racetrack if inner => vec![2, 3],
             Scheme::Racetrack => vec![0, 1],
-            Scheme::Courtyard if !BOTH_SIDES.contains(&brief.rooms.len()) && !(many && self.corner) => {
-                vec![0, 1, WEST_BAND]
-            }
+            Scheme::Courtyard if !both_sides => vec![0, 1, WEST_BAND],
             _ => (0..self.bands.len()).collect(),
         };
         let best = candidates.iter().copied().min_by(|a, b| load(*a).total_cmp(&load(*b))).unwrap_or(0);
