@@ -160,6 +160,11 @@ impl Domain {
         self.object(self.group(item).map_or(item, |g| g.anchor.as_str()))
     }
 
+    /// Returns true for a furnishing item that is about a dock for robots.
+    pub fn is_dock(&self, item: &str) -> bool {
+        self.anchor(item).is_some_and(|o| o.shape == Shape::Dock)
+    }
+
     /// Returns the program with this id.
     pub fn program(&self, id: &str) -> Option<&Program> {
         self.programs.iter().find(|p| p.id == id)

@@ -130,6 +130,12 @@ impl Rect {
         }
     }
 
+    /// Returns the area that both have in common, m^2.
+    pub fn common_area(&self, other: &Self) -> f64 {
+        let (w, h) = (self.x1.min(other.x1) - self.x0.max(other.x0), self.y1.min(other.y1) - self.y0.max(other.y0));
+        if w > 0.0 && h > 0.0 { w * h } else { 0.0 }
+    }
+
     /// Returns true when the interiors share more than a contact line.
     pub fn overlaps(&self, other: &Self) -> bool {
         let e = crate::TOLERANCE_M;

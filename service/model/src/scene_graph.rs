@@ -1,5 +1,7 @@
 //! Rooms as nodes, relations as edges; no coordinates yet.
 
+use std::ops::RangeInclusive;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -160,6 +162,8 @@ pub enum Connector {
     Near,
 }
 
+/// Speeds that a robot in a building can be asked to keep to, m/s.
+pub const ROBOT_SPEEDS_M_S: RangeInclusive<f64> = 0.05..=5.0;
 /// Radius of a usual service robot, m: what a building has ways for that is too small for the robot somebody has.
 const USUAL_RADIUS_M: f64 = 0.30;
 
@@ -298,8 +302,9 @@ impl Document for SceneGraph {
                 let message = format!("room `{}` is not in rooms", rule.room_id);
                 problems.push(Problem::new(format!("/robot_rules/{i}/room_id"), message));
             }
-            if let Some(speed) = rule.max_speed_m_s.filter(|v| !(0.05..=5.0).contains(v)) {
-                let message = format!("{speed} m/s is outside 0.05-5 m/s");
+            if let Some(speed) = rule.max_speed_m_s.filter(|v| !ROBOT_SPEEDS_M_S.contains(v)) {
+                let (least, most) = (ROBOT_SPEEDS_M_S.start(), ROBOT_SPEEDS_M_S.end());
+                let message = format!("{speed} m/s is outside {least}-{most} m/s");
                 problems.push(Problem::new(format!("/robot_rules/{i}/max_speed_m_s"), message));
             }
         }

@@ -17,7 +17,7 @@ const NONE_M2: f64 = 1e-3;
 pub(crate) fn way_in(outline: &Polygon, door: &Door) -> Vec<Rect> {
     let pieces = outline.rects();
     let inside = |r: &Rect| {
-        let covered: f64 = pieces.iter().map(|p| common_area(p, r)).sum();
+        let covered: f64 = pieces.iter().map(|p| p.common_area(r)).sum();
         r.area() - covered < NONE_M2
     };
     let Some(main) = largest(outline, &inside) else { return Vec::new() };
@@ -37,7 +37,7 @@ pub(crate) fn way_in(outline: &Polygon, door: &Door) -> Vec<Rect> {
     };
     let slice = |k: u32| strip(sign, face + f64::from(k) * STEP_M, face + f64::from(k + 1) * STEP_M);
     let run = (0..).take_while(|k| inside(&slice(*k))).count() as u32;
-    let wide = (0..run).find(|k| common_area(&slice(*k), &main) > slice(*k).area() - NONE_M2);
+    let wide = (0..run).find(|k| slice(*k).common_area(&main) > slice(*k).area() - NONE_M2);
     if let Some(wide) = wide {
         let far = f64::from(wide) * STEP_M;
         let depth = DEPTH_M.max(far + if wide > 0 { BEYOND_M } else { 0.0 });
@@ -71,9 +71,4 @@ fn largest(outline: &Polygon, inside: &dyn Fn(&Rect) -> bool) -> Option<Rect> {
     let (wide, high) = (pairs(&xs), pairs(&ys));
     let all = wide.iter().flat_map(|(x0, x1)| high.iter().map(|(y0, y1)| Rect { x0: *x0, y0: *y0, x1: *x1, y1: *y1 }));
     all.filter(|r| inside(r)).max_by(|a, b| a.area().total_cmp(&b.area()))
-}
-
-fn common_area(a: &Rect, b: &Rect) -> f64 {
-    let (w, h) = (a.x1.min(b.x1) - a.x0.max(b.x0), a.y1.min(b.y1) - a.y0.max(b.y0));
-    if w > 0.0 && h > 0.0 { w * h } else { 0.0 }
 }

@@ -143,8 +143,7 @@ impl Shape {
         for (kind, level, rect) in &other.rects {
             let rect = turned(rect);
             for (_, _, own) in self.rects.iter().filter(|(k, l, _)| k == kind && l == level) {
-                let (w, h) = (own.x1.min(rect.x1) - own.x0.max(rect.x0), own.y1.min(rect.y1) - own.y0.max(rect.y0));
-                sum += w.max(0.0) * h.max(0.0);
+                sum += own.common_area(&rect);
             }
         }
         sum

@@ -1,8 +1,8 @@
 //! What joins the storeys of a plan: stairwells and shafts that lie above each other.
 
+use d3dgen_model::Polygon;
 use d3dgen_model::domain::Domain;
 use d3dgen_model::storeys::LinkKind;
-use d3dgen_model::{Polygon, Rect};
 
 use crate::drawing::note;
 use crate::layout::Layout;
@@ -66,11 +66,7 @@ fn follows(layout: &Layout, below: usize, above: usize, kind: LinkKind) -> bool 
 
 /// Returns the share of the smaller of two outlines that both have in common, 0 to 1.
 fn overlap(a: &Polygon, b: &Polygon) -> f64 {
-    let common = |p: &Rect, q: &Rect| {
-        let (width, height) = (p.x1.min(q.x1) - p.x0.max(q.x0), p.y1.min(q.y1) - p.y0.max(q.y0));
-        width.max(0.0) * height.max(0.0)
-    };
     let below = b.rects();
-    let common: f64 = a.rects().iter().flat_map(|p| below.iter().map(|q| common(p, q))).sum();
+    let common: f64 = a.rects().iter().flat_map(|p| below.iter().map(|q| p.common_area(q))).sum();
     common / a.area().min(b.area()).max(1e-9)
 }

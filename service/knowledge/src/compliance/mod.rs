@@ -18,7 +18,6 @@ pub(crate) mod sizes;
 mod spacing;
 mod stairs;
 
-use d3dgen_model::Polygon;
 use d3dgen_model::domain::Domain;
 use d3dgen_model::knowledge::Value;
 use d3dgen_model::report::{ConstraintResult, ConstraintSummary, Status};
@@ -55,8 +54,7 @@ impl Reading {
 /// Returns the room from which the way out is longest, and how long it is, m; of several storeys to the stairs. `None` where no
 /// way of the building can be longer than `least`, or nothing leads out.
 pub fn longest_way_out(world: &World, domain: &Domain, retrieval: &Retrieval, least: f64) -> Option<(String, f64)> {
-    let corners = world.floorplan.rooms.iter().flat_map(|r| r.polygon.0.iter().copied());
-    let whole = Polygon(corners.collect()).bounds();
+    let whole = world.floorplan.rooms.iter().map(|r| r.polygon.bounds()).reduce(|a, b| a.union(&b))?;
     if whole.width() + whole.height() <= least {
         return None;
     }

@@ -383,11 +383,8 @@ fn touches(p: &Placement, room: &PlanRoom) -> [bool; 4] {
     let mut out = [false; 4];
     for (side, at) in sides.into_iter().enumerate() {
         out[side] = room.net_polygon.edges().any(|e| {
-            let (along, across, line, low, high) = if e.is_vertical() {
-                (at.y, at.x, e.start.x, e.start.y.min(e.end.y), e.start.y.max(e.end.y))
-            } else {
-                (at.x, at.y, e.start.y, e.start.x.min(e.end.x), e.start.x.max(e.end.x))
-            };
+            let (line, low, high) = e.span();
+            let (along, across) = if e.is_vertical() { (at.y, at.x) } else { (at.x, at.y) };
             e.is_vertical() == (side < 2) && (across - line).abs() <= AT_WALL_M && (low..=high).contains(&along)
         });
     }

@@ -50,10 +50,7 @@ pub(super) fn add_missing(
     };
     let most = |room: &PlanRoom| {
         let kind = domain.room_type_or_generic(&room.room_type);
-        let line = kind
-            .furnishing
-            .iter()
-            .find(|f| f.required && domain.anchor(&f.item).is_some_and(|o| o.shape == Shape::Dock));
+        let line = kind.furnishing.iter().find(|f| f.required && domain.is_dock(&f.item));
         line.map_or(most_docks(room.net_area_m2), |line| line.max)
     };
     let mut rooms: Vec<(u8, &PlanRoom)> = plan.rooms.iter().filter_map(|r| Some((suits(&r)?, r))).collect();

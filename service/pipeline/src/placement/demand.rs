@@ -194,7 +194,7 @@ impl<'a> Household<'a> {
 
     /// Returns true for a line that the building asks for, in a room for so many people.
     fn wants(&self, kind: &RoomType, line: &Furnishing, people: Option<u32>) -> bool {
-        let dock = || self.domain.anchor(&line.item).is_some_and(|o| o.shape == Shape::Dock);
+        let dock = || self.domain.is_dock(&line.item);
         // docks stand where there are robots, or in rooms that are there for them;
         // few lines ask who sleeps there, and to know takes time
         let robots = if kind.goods == Goods::Soiled { self.cleans } else { self.has_robots };
@@ -379,8 +379,7 @@ fn usual_width_m(domain: &Domain, line: &Furnishing) -> Option<f64> {
 
 /// Returns true for rooms that are there to charge robots.
 pub(crate) fn has_docks(domain: &Domain, kind: &RoomType) -> bool {
-    let docks = |item: &str| domain.anchor(item).is_some_and(|o| o.shape == Shape::Dock);
-    kind.furnishing.iter().any(|f| f.required && docks(&f.item))
+    kind.furnishing.iter().any(|f| f.required && domain.is_dock(&f.item))
 }
 
 /// Returns true for rooms that people have desks in.

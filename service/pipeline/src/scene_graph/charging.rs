@@ -49,8 +49,8 @@ fn grow_charging(domain: &Domain, robots: &[Robot], rooms: &mut [GraphRoom]) {
     for room in rooms.iter_mut() {
         let kind = domain.room_type_or_generic(&room.room_type);
         let charges = kind.robot.contains(&RobotUse::Charging);
-        let is_dock = |f: &&Furnishing| domain.anchor(&f.item).is_some_and(|o| o.shape == Shape::Dock);
-        let Some(line) = kind.furnishing.iter().filter(|f| charges && f.required).find(is_dock) else { continue };
+        let holds = |f: &&Furnishing| charges && f.required && domain.is_dock(&f.item);
+        let Some(line) = kind.furnishing.iter().find(holds) else { continue };
         let docks = left.min(line.max);
         if docks == 0 {
             break;
@@ -70,7 +70,6 @@ fn grow_charging(domain: &Domain, robots: &[Robot], rooms: &mut [GraphRoom]) {
 /// and work.
 pub(super) fn add_docks(domain: &Domain, robots: &[Robot], docked: &[String], rooms: &mut [GraphRoom]) {
     let sum = |counts: &mut dyn Iterator<Item = u32>| counts.fold(0, u32::saturating_add);
-    let is_dock = |id: &str| domain.anchor(id).is_some_and(|o| o.shape == Shape::Dock);
     let Some(dock) = domain.objects.iter().rev().find(|o| o.shape == Shape::Dock) else { return };
     // the dock of a mop room is for those that clean
     let cleans = robots.iter().any(|r| r.kind == CLEANING);
@@ -81,7 +80,7 @@ pub(super) fn add_docks(domain: &Domain, robots: &[Robot], docked: &[String], ro
             return 0;
         }
         let lines = domain.room_type_or_generic(&room.room_type).furnishing.iter();
-        sum(&mut lines.filter(|f| is_dock(&f.item)).map(|f| match f.required {
+        sum(&mut lines.filter(|f| domain.is_dock(&f.item)).map(|f| match f.required {
             true => docks_held(f, room.target_area_m2, all, circle),
             false => f.units(room.target_area_m2),
         }))
@@ -108,8 +107,8 @@ pub(super) fn add_docks(domain: &Domain, robots: &[Robot], docked: &[String], ro
         for _ in own..robot.count {
             let suits = |room: &GraphRoom| {
                 let kind = domain.room_type_or_generic(&room.room_type);
-                let charges =
-                    kind.robot.contains(&RobotUse::Charging) && !kind.furnishing.iter().any(|f| is_dock(&f.item));
+                let charges = kind.robot.contains(&RobotUse::Charging)
+                    && !kind.furnishing.iter().any(|f| domain.is_dock(&f.item));
                 let rank = dock_rank(kind, robot)?;
                 let most = most_docks(room.target_area_m2);
                 // a second one where loads are handed over, before one that takes of the width of a corridor
@@ -130,7 +129,7 @@ fn make_room_for_dock(room: &mut GraphRoom, domain: &Domain) {
     let [least, most] = room.area_range_m2;
     if kind.zone == Zone::Staff && kind.open_front && most >= kind.area_m2.max {
         room.target_area_m2 = tenth((room.target_area_m2 + DOCK_FLOOR_M2).min(most));
-        let docks = room.wished_assets.iter().filter(|id| domain.anchor(id).is_some_and(|o| o.shape == Shape::Dock));
+        let docks = room.wished_assets.iter().filter(|id| domain.is_dock(id));
         let floor = DOCK_FLOOR_M2 * docks.count() as f64;
         room.area_range_m2 = [tenth((kind.area_m2.target + floor).min(room.target_area_m2).max(least)), most];
     }

@@ -386,8 +386,7 @@ impl Left {
 
 /// Returns the rooms of a type, or the one of them with a number of its own.
 fn of_kind(rooms: &[GraphRoom], kind: &str, number: Option<u32>) -> Vec<usize> {
-    let meant = |r: &GraphRoom| number.is_none_or(|n| r.id == format!("{kind}_{n}"));
-    (0..rooms.len()).filter(|&i| rooms[i].room_type == kind && meant(&rooms[i])).collect()
+    (0..rooms.len()).filter(|&i| rooms::is_meant(&rooms[i], kind, number)).collect()
 }
 
 /// Returns the rule of the domain that rules out what a pair asks for.

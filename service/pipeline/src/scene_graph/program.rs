@@ -199,9 +199,8 @@ fn house_robots<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
     }
     let robots: u32 = reading.robots.iter().map(|r| r.count).fold(0, u32::saturating_add);
     // rooms that are there to charge robots grow with them
-    let is_dock = |item: &str| reading.domain.anchor(item).is_some_and(|o| o.shape == Shape::Dock);
     let holds = |kind: &RoomType| match kind.zone == Zone::Service && kind.robot.contains(&RobotUse::Charging) {
-        true if kind.furnishing.iter().any(|f| is_dock(&f.item)) => robots,
+        true if kind.furnishing.iter().any(|f| reading.domain.is_dock(&f.item)) => robots,
         true => most_docks(kind.area_m2.target),
         false => 0,
     };
@@ -455,8 +454,7 @@ impl<'r, 'a> Build<'r, 'a> {
 
     /// Returns true when one of the rooms is furnished with a dock anyway.
     fn has_dock(&self) -> bool {
-        let is_dock = |item: &str| self.reading.domain.anchor(item).is_some_and(|o| o.shape == Shape::Dock);
-        self.rooms.iter().any(|r| r.kind.furnishing.iter().any(|f| is_dock(&f.item)))
+        self.rooms.iter().any(|r| r.kind.furnishing.iter().any(|f| self.reading.domain.is_dock(&f.item)))
     }
 
     /// Adds the room through which one enters the last one, where a program of the domain has them together (an isolation

@@ -464,8 +464,6 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     let said = request.rooms.or_else(|| said_total(&mentions));
     if lives {
         wishes.join_to_fit(said, domain);
-    }
-    if lives {
         conflicts.extend(homes::state_size(said));
     }
     let beside = workers::beside_rooms(&mut wishes, said.filter(|_| request.rooms.is_none()), domain, program);

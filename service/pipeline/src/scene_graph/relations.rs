@@ -156,7 +156,7 @@ impl Reader<'_> {
     }
 
     pub(super) fn tagged(&self, i: usize, tag: Tag) -> bool {
-        self.spoken.iter().any(|s| s.tag_at(self.tokens, i, tag).is_some())
+        self.tag_end(i, tag).is_some()
     }
 
     /// Returns up to `n` mentions before a token in its sentence, nearest first.

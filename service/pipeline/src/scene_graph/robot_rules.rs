@@ -1,18 +1,17 @@
 //! What a prompt asks of robots room by room: where they stay out ("keep robots out of the pharmacy"), and how fast they
 //! drive ("at most 0.4 m/s in the corridors").
 
-use d3dgen_model::scene_graph::{GraphRoom, Note, RobotRule};
+use d3dgen_model::scene_graph::{GraphRoom, Note, ROBOT_SPEEDS_M_S, RobotRule};
 
 use super::numbers::Number;
 use super::places::note;
 use super::relations::Reader;
+use super::rooms::is_meant;
 use super::text::Span;
 use super::words::{Tag, words};
 
 /// Words between robots or a speed and the rooms that are spoken of, at most.
 const MOST_BETWEEN: usize = 5;
-/// Speeds that a robot in a building can be asked to keep to, m/s.
-const SPEEDS_M_S: std::ops::RangeInclusive<f64> = 0.05..=5.0;
 
 /// What is asked of robots in rooms of a type, or in all.
 #[derive(Debug, Clone, PartialEq)]
@@ -88,9 +87,7 @@ impl Rule {
     }
 
     fn is_of(&self, room: &GraphRoom) -> bool {
-        let meant =
-            |kind: &String| *kind == room.room_type && self.number.is_none_or(|n| room.id == format!("{kind}_{n}"));
-        self.room_type.as_ref().is_none_or(meant)
+        self.room_type.as_ref().is_none_or(|kind| is_meant(room, kind, self.number))
     }
 }
 
@@ -133,7 +130,7 @@ fn speeds(reader: &Reader, numbers: &[Number]) -> Vec<(Span, f64)> {
         let per = per.or_else(|| reader.tag_end(unit, Tag::Each))?;
         let (end, time) = words().time_units.longest_at(reader.tokens, per)?;
         let value = n.value * length / time;
-        SPEEDS_M_S.contains(&value).then_some((Span { start: n.span.start, end }, value))
+        ROBOT_SPEEDS_M_S.contains(&value).then_some((Span { start: n.span.start, end }, value))
     };
     numbers.iter().filter(|n| !n.article).filter_map(speed).collect()
 }

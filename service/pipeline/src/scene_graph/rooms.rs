@@ -452,6 +452,11 @@ pub(crate) fn wished_assets(domain: &Domain, kind: &RoomType, named: &[String]) 
     out
 }
 
+/// Returns true for a room of a type, where a number is given for the one that has it as its own.
+pub(super) fn is_meant(room: &GraphRoom, kind: &str, number: Option<u32>) -> bool {
+    room.room_type == kind && number.is_none_or(|n| room.id == format!("{kind}_{n}"))
+}
+
 /// Returns true for the type of the room that joins the others, whatever the plan calls it.
 pub(super) fn is_way(domain: &Domain, room_type: &str) -> bool {
     domain.circulation.room_type == room_type || domain.circulation.entrance_room_types.iter().any(|t| t == room_type)

@@ -165,13 +165,6 @@ pub fn bounds(line: &Segment) -> Rect {
     Rect::new(line.start.x, line.start.y, line.end.x, line.end.y)
 }
 
-/// Returns the common area of two rectangles, m^2.
-pub fn common_area(a: &Rect, b: &Rect) -> f64 {
-    let w = a.x1.min(b.x1) - a.x0.max(b.x0);
-    let h = a.y1.min(b.y1) - a.y0.max(b.y0);
-    if w > 0.0 && h > 0.0 { w * h } else { 0.0 }
-}
-
 /// Returns the interval (along the first line) that a line parallel to it and within `distance` shares with it, m.
 pub fn shared(first: &Segment, other: &Segment, distance: f64) -> Option<(f64, f64)> {
     if first.is_vertical() != other.is_vertical() {

@@ -56,12 +56,7 @@ fn signature(plan: &Floorplan) -> Signature {
 
 /// Returns true when a room is no rectangle, or the building is none.
 fn is_shaped(plan: &Floorplan) -> bool {
-    let bounds = plan.rooms.iter().map(|r| r.polygon.bounds()).reduce(|a, b| d3dgen_model::Rect {
-        x0: a.x0.min(b.x0),
-        y0: a.y0.min(b.y0),
-        x1: a.x1.max(b.x1),
-        y1: a.y1.max(b.y1),
-    });
+    let bounds = plan.rooms.iter().map(|r| r.polygon.bounds()).reduce(|a, b| a.union(&b));
     let covered: f64 = plan.rooms.iter().map(|r| r.polygon.area()).sum();
     let notched = bounds.is_some_and(|b| covered < b.area() - 0.5);
     notched || plan.rooms.iter().any(|r| !r.circulation && r.polygon.corners().len() > 4)

@@ -5,7 +5,7 @@ use d3dgen_model::floorplan::{Door, DoorKind};
 use d3dgen_model::{Rect, Segment, TOLERANCE_M};
 
 use super::Findings;
-use crate::world::context::{Context, ON_LINE_M, Room, bounds, common_area, shared, uncovered};
+use crate::world::context::{Context, ON_LINE_M, Room, bounds, shared, uncovered};
 
 /// Narrowest opening, m.
 const NARROWEST_M: f64 = 0.60;
@@ -164,7 +164,7 @@ pub fn blocked(c: &Context, out: &mut Findings) {
 
 /// Returns the area that an obstacle takes from a lane, counted within the rooms the door joins, m^2.
 fn within_rooms(c: &Context, door: &Door, lane: &Rect, obstacle: &Rect) -> f64 {
-    if common_area(lane, obstacle) <= 0.0 {
+    if lane.common_area(obstacle) <= 0.0 {
         return 0.0;
     }
     let cut = Rect {
@@ -174,7 +174,7 @@ fn within_rooms(c: &Context, door: &Door, lane: &Rect, obstacle: &Rect) -> f64 {
         y1: lane.y1.min(obstacle.y1),
     };
     let rooms = door.room_ids.iter().filter_map(|id| c.room(id));
-    rooms.flat_map(|r| &r.rects).map(|r| common_area(r, &cut)).sum()
+    rooms.flat_map(|r| &r.rects).map(|r| r.common_area(&cut)).sum()
 }
 
 /// Returns the rectangles before and behind a door: from `skip` beside its center line, `depth` deep.
@@ -198,11 +198,11 @@ pub fn swing(c: &Context, out: &mut Findings) {
         };
         let leaves = if door.kind == DoorKind::DoubleHinged { 2.0 } else { 1.0 };
         let squares = sides(door, door.line.length() / leaves, door.wall_thickness_m / 2.0);
-        let inside = |s: &Rect| room.net.iter().map(|n| common_area(n, s)).sum::<f64>();
+        let inside = |s: &Rect| room.net.iter().map(|n| n.common_area(s)).sum::<f64>();
         let [a, b] = squares;
         let square = if inside(&a) >= inside(&b) { a } else { b };
         for object in c.objects_in(into).filter(|o| o.blocks) {
-            if common_area(&object.rect, &square) > GRAZE_M2 {
+            if object.rect.common_area(&square) > GRAZE_M2 {
                 let id = &object.placement.placement_id;
                 out.add(format!("{}|{id}", door.door_id), format!("the leaf hits `{id}`"));
             }

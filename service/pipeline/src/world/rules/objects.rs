@@ -4,7 +4,7 @@ use d3dgen_model::Rect;
 use d3dgen_model::domain::Mount;
 
 use super::Findings;
-use crate::world::context::{Context, Object, Room, bounds, common_area};
+use crate::world::context::{Context, Object, Room, bounds};
 
 /// Tolerance of positions, m.
 const SLACK_M: f64 = 0.02;
@@ -46,7 +46,7 @@ pub fn outside(c: &Context, out: &mut Findings) {
 }
 
 fn covered(rect: &Rect, pieces: &[Rect]) -> f64 {
-    pieces.iter().map(|r| common_area(r, rect)).sum()
+    pieces.iter().map(|r| r.common_area(rect)).sum()
 }
 
 /// Returns true when the object fits after giving way by the tolerance on each side.
@@ -68,7 +68,7 @@ pub fn collision(c: &Context, out: &mut Findings) {
         for j in order[k + 1..].iter().take_while(|j| solid[**j].rect.x0 < a.rect.x1) {
             let b = solid[*j];
             let height = a.placement.top_m().min(b.placement.top_m()) - a.placement.pose.z.max(b.placement.pose.z);
-            let area = common_area(&a.rect, &b.rect);
+            let area = a.rect.common_area(&b.rect);
             if height > SLACK_M && area > SLACK_M2 {
                 let subject = format!("{}|{}", a.placement.placement_id, b.placement.placement_id);
                 let message = format!("they share {area:.3} m2 over {height:.2} m of height");
@@ -132,7 +132,7 @@ fn off_surface(c: &Context, object: &Object) -> Option<String> {
     if (p.pose.z - top).abs() > SLACK_M {
         return Some(format!("stands at {:.2} m on a top at {top:.2} m", p.pose.z));
     }
-    let share = common_area(&object.rect, &base.rect) / object.rect.area().max(1e-9);
+    let share = object.rect.common_area(&base.rect) / object.rect.area().max(1e-9);
     (share < ON_SUPPORT).then(|| format!("{:.0} % of it stand on `{id}`", share * 100.0))
 }
 

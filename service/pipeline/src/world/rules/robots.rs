@@ -9,7 +9,7 @@ use d3dgen_model::{Point, Pose, Rect, TOLERANCE_M};
 
 use super::Findings;
 use crate::scenario::{DOCKS_MISSING, without_dock};
-use crate::world::context::{Context, LEAST_RADIUS_M, Object, Room, common_area};
+use crate::world::context::{Context, LEAST_RADIUS_M, Object, Room};
 
 /// A region may reach beyond its room by rounding, m^2.
 const REGION_SLACK_M2: f64 = 0.01;
@@ -28,7 +28,7 @@ pub fn docks(c: &Context, out: &mut Findings) {
         let p = dock.placement;
         let Some(room) = c.room(&p.room_id) else { continue };
         for door in &room.doors {
-            if door_zones(door).iter().any(|zone| common_area(zone, &dock.rect) > 1e-6) {
+            if door_zones(door).iter().any(|zone| zone.common_area(&dock.rect) > 1e-6) {
                 out.add(&p.placement_id, format!("stands in the way of `{}`", door.door_id));
             }
         }
@@ -144,7 +144,7 @@ pub fn regions(c: &Context, out: &mut Findings) {
             continue;
         };
         let pieces = roi.polygon.rects();
-        let inside: f64 = pieces.iter().flat_map(|p| room.rects.iter().map(move |r| common_area(p, r))).sum();
+        let inside: f64 = pieces.iter().flat_map(|p| room.rects.iter().map(move |r| p.common_area(r))).sum();
         let outside = roi.polygon.area() - inside;
         if outside > REGION_SLACK_M2 || roi.polygon.signed_area() <= 0.0 {
             out.add_figure(
@@ -168,7 +168,7 @@ pub fn regions(c: &Context, out: &mut Findings) {
 /// Goods are put down where nothing stands and no door opens.
 fn staging(c: &Context, roi: &Roi, room: &Room, out: &mut Findings) {
     let pieces = roi.polygon.rects();
-    let takes = |r: &Rect| pieces.iter().any(|p| common_area(p, r) > REGION_SLACK_M2);
+    let takes = |r: &Rect| pieces.iter().any(|p| p.common_area(r) > REGION_SLACK_M2);
     let taken = c.objects_in(&roi.room_id).find(|o| o.blocks && takes(&o.rect));
     if let Some(object) = taken {
         out.add(&roi.roi_id, format!("`{}` stands on it", object.placement.placement_id));

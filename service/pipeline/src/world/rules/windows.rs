@@ -5,7 +5,7 @@ use d3dgen_model::domain::{Daylight, Shape};
 use d3dgen_model::floorplan::Window;
 
 use super::Findings;
-use crate::world::context::{Context, ON_LINE_M, bounds, common_area, shared, uncovered};
+use crate::world::context::{Context, ON_LINE_M, bounds, shared, uncovered};
 
 /// Depth in front of a window in which tall things stand in its light, m.
 const LIGHT_M: f64 = 0.25;
@@ -53,7 +53,7 @@ pub fn blocked(c: &Context, out: &mut Findings) {
             let curtain = object.kind.is_some_and(|k| matches!(k.shape, Shape::Curtain | Shape::Stairs));
             let (low, high) = (object.placement.pose.z, object.placement.top_m());
             let in_light = high > window.sill_m + ON_LINE_M && low < window.head_m - ON_LINE_M;
-            let hides = common_area(&object.rect, &strip) > HIDDEN_SHARE * LIGHT_M * window.line.length();
+            let hides = object.rect.common_area(&strip) > HIDDEN_SHARE * LIGHT_M * window.line.length();
             if !curtain && in_light && hides {
                 let id = &object.placement.placement_id;
                 let message = format!("`{id}` is {high:.2} m high in front of a sill at {:.2} m", window.sill_m);

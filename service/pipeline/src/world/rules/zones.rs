@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use d3dgen_model::{Point, Polygon, Pose, Segment};
 
 use super::Findings;
-use crate::world::context::{Context, common_area};
+use crate::world::context::Context;
 
 /// Floor that two rooms may share by rounding, m^2.
 const OVERLAP_M2: f64 = 0.01;
@@ -80,7 +80,7 @@ pub fn overlap(c: &Context, out: &mut Findings) {
     for (i, a) in c.rooms.iter().enumerate() {
         for b in &c.rooms[i + 1..] {
             out.look();
-            let area: f64 = a.rects.iter().flat_map(|r| b.rects.iter().map(move |s| common_area(r, s))).sum();
+            let area: f64 = a.rects.iter().flat_map(|r| b.rects.iter().map(move |s| r.common_area(s))).sum();
             if area > OVERLAP_M2 {
                 let subject = format!("{}|{}", a.plan.room_id, b.plan.room_id);
                 out.add_figure(subject, format!("the rooms share {area:.2} m2"), area, OVERLAP_M2, "m^2");
@@ -93,7 +93,7 @@ pub fn net(c: &Context, out: &mut Findings) {
     for room in &c.rooms {
         out.look();
         let area = room.plan.net_polygon.area();
-        let inside: f64 = room.net.iter().flat_map(|r| room.rects.iter().map(move |s| common_area(r, s))).sum();
+        let inside: f64 = room.net.iter().flat_map(|r| room.rects.iter().map(move |s| r.common_area(s))).sum();
         if area - inside > 1e-3 {
             out.add_figure(&room.plan.room_id, "the net outline reaches beyond the outline", area - inside, 0.0, "m^2");
         }
