@@ -25,6 +25,16 @@ fn worlds_at_any_depth_are_measured_and_broken_ones_are_named() {
     let page = fs::read_to_string(home.path().join("e.html")).unwrap();
     assert_eq!(page.matches("<svg").count(), 2);
 
+    // how long they took is no part of a world: they are made once more
+    assert!(!all.contains_key("time_ms"), "{all:?}");
+    run_well(home.path(), &["eval", "all", "--time", "--json", "e.json"]);
+    let timed = read();
+    assert!(timed.groups.last().unwrap().figures["time_ms"] > 0.0);
+    for world in &timed.worlds {
+        let stages: Vec<&str> = world.stage_ms.keys().map(String::as_str).collect();
+        assert_eq!(stages, ["floorplan", "placement", "scenario", "world"], "{}", world.path);
+    }
+
     // the first world breaks, the second is still measured
     let broken = home.path().join("all/flats/0/world.json");
     let text = fs::read_to_string(&broken).unwrap();

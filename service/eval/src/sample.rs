@@ -180,6 +180,7 @@ fn graph(robot: &Robot) -> SceneGraph {
         forbidden_room_types: Vec::new(),
         robots: vec![robot.clone()],
         robot_rules: Vec::new(),
+        two_way: false,
         assumptions: Vec::new(),
         conflicts: Vec::new(),
     }

@@ -33,6 +33,7 @@ pub(crate) fn draw(constraints: &[Applicable], all: &[Applicable], chain: &[Stri
             (r.quantity.measure == Measure::CirculationWidth && is_circulation(a, query)).then_some(r.bounds.min?)
         }),
         corridor_width_advised: advised_width(&wished, query),
+        corridor_width_two_way: two_way_width(&wished, query),
         circulation_share_advised: advised_share(&wished),
         entrance_width: pick(&|a, r| {
             let door = r.quantity.measure == Measure::DoorWidth && matches!(a.scope, Scope::Entrance | Scope::Doors);
@@ -130,6 +131,13 @@ fn ceilings_by_area(constraints: &[Applicable], about: &dyn Fn(&Applicable) -> b
 fn advised_width(usable: &[(&Applicable, &Rule)], query: &Query) -> Option<f64> {
     let about = |a: &Applicable, r: &Rule| r.quantity.measure == Measure::CirculationWidth && is_circulation(a, query);
     usable.iter().filter(|(a, r)| about(a, r)).filter_map(|(_, r)| r.bounds.min).reduce(f64::max)
+}
+
+/// Returns the width of circulation in which two of the robots pass each other: that of the rules about robots which asks for
+/// the most, for all others are about one.
+fn two_way_width(usable: &[(&Applicable, &Rule)], query: &Query) -> Option<f64> {
+    let robots: Vec<_> = usable.iter().filter(|(a, _)| a.constraint.topic == ROBOT_TOPIC).copied().collect();
+    advised_width(&robots, query).filter(|_| !query.robots.is_empty())
 }
 
 /// Returns the largest share of circulation that all advice allows.

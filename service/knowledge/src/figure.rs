@@ -18,6 +18,8 @@ pub(crate) struct Facts {
     pub robots: u32,
     /// Radius of the circle that the largest robot turns in, m.
     pub robot_radius: Option<f64>,
+    /// Width and length of the largest body that is known, m.
+    pub robot_body: [Option<f64>; 2],
     /// Rooms to sleep in.
     pub bedrooms: u32,
 }
@@ -25,13 +27,14 @@ pub(crate) struct Facts {
 impl Facts {
     /// Returns the figure behind a name of a formula.
     ///
-    /// Documents hold the turning circle of a robot only: it is round, or square where the formula asks for its length.
+    /// A robot of which only the turning circle is known is round, or square where the formula asks for its length.
     fn figure(&self, name: &str, formula: &str) -> Option<f64> {
         let side = if formula.contains("robot_length") { std::f64::consts::SQRT_2 } else { 2.0 };
         match name {
             "N" => Some(f64::from(self.persons)),
             "N_robots" => Some(f64::from(self.robots)),
-            "robot_width" | "robot_length" | "vehicle_width" => self.robot_radius.map(|r| r * side),
+            "robot_width" | "vehicle_width" => self.robot_body[0].or(self.robot_radius.map(|r| r * side)),
+            "robot_length" => self.robot_body[1].or(self.robot_body[0]).or(self.robot_radius.map(|r| r * side)),
             _ => None,
         }
     }

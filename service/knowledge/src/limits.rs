@@ -11,6 +11,8 @@ pub struct Limits {
     pub corridor_width: Option<Limit>,
     /// Width that advice asks of circulation beyond the hard figure, m; a wish.
     pub corridor_width_advised: Option<f64>,
+    /// Width of circulation in which two of the robots pass each other, m; a wish.
+    pub corridor_width_two_way: Option<f64>,
     /// Largest circulation over all net floor area that all advice allows; a wish.
     pub circulation_share_advised: Option<f64>,
     /// Least clear width of the main entrance door, m.

@@ -2,6 +2,7 @@
 
 use crate::figure::Facts;
 use d3dgen_model::domain::{Daylight, Domain, Shape, Zone};
+use d3dgen_model::robot_body::RobotBody;
 use d3dgen_model::scene_graph::{Robot, SceneGraph};
 
 /// Floor area that one person is reckoned with when nothing says how many there are, m^2.
@@ -90,9 +91,13 @@ impl Query {
     /// Returns what formulas may ask about the building.
     pub(crate) fn facts(&self) -> Facts {
         let robot_radius = self.robots.iter().map(|r| r.radius_m).reduce(f64::max);
+        let largest = |of: fn(&RobotBody) -> Option<f64>| {
+            self.robots.iter().filter_map(|r| r.body.as_ref().and_then(of)).reduce(f64::max)
+        };
+        let robot_body = [largest(|b| b.width_m), largest(|b| b.length_m)];
         let sleeps = |r: &&QueryRoom| r.room_type == SLEEPING || r.spaces.iter().any(|s| s == SLEEPING);
         let bedrooms = self.rooms.iter().filter(sleeps).map(|r| r.count).sum();
-        Facts { persons: self.persons, robots: self.robot_count(), robot_radius, bedrooms }
+        Facts { persons: self.persons, robots: self.robot_count(), robot_radius, robot_body, bedrooms }
     }
 
     /// Returns the number of robots.

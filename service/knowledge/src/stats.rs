@@ -11,7 +11,8 @@ use crate::figure::{self, Facts};
 use crate::tables::{QuantityRow, SpaceKind, TABLES};
 
 /// Facts of a building in which every formula and table has a figure.
-const SOME_BUILDING: Facts = Facts { persons: 4, robots: 2, robot_radius: Some(0.3), bedrooms: 2 };
+const SOME_BUILDING: Facts =
+    Facts { persons: 4, robots: 2, robot_radius: Some(0.3), robot_body: [None; 2], bedrooms: 2 };
 
 /// Counts of one knowledge base.
 #[derive(Debug, Clone, PartialEq, Serialize)]

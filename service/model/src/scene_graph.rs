@@ -61,6 +61,9 @@ pub struct SceneGraph {
     /// What the prompt asks of robots room by room: where they stay out, how fast they drive.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub robot_rules: Vec<RobotRule>,
+    /// True where corridors are to be so wide that two robots pass each other.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub two_way: bool,
     /// What was assumed where the prompt is silent.
     #[serde(default)]
     pub assumptions: Vec<Note>,
@@ -226,6 +229,11 @@ impl Robot {
         if self.misfit { USUAL_RADIUS_M.min(self.radius_m) } else { self.radius_m }
     }
 
+    /// Returns the width of its body, m: that of a robot of which only the circle is known is the circle's.
+    pub fn width_m(&self) -> f64 {
+        self.body.and_then(|b| b.width_m).unwrap_or(2.0 * self.radius_m)
+    }
+
     /// Returns true when the building is made so that it fits.
     pub fn is_fitted(&self) -> bool {
         self.body.is_some_and(|b| b.fit)
@@ -233,6 +241,13 @@ impl Robot {
 }
 
 impl SceneGraph {
+    /// Returns true where robots meet in corridors that are made for them: because the prompt says so, or because there are
+    /// several and the building is made so that they fit.
+    pub fn is_two_way(&self) -> bool {
+        let fitted = self.robots.iter().filter(|r| r.is_fitted()).map(|r| r.count).fold(0, u32::saturating_add);
+        self.two_way || fitted > 1
+    }
+
     /// Returns true for a room that the prompt keeps robots out of.
     pub fn keeps_robots_out(&self, room_id: &str) -> bool {
         self.robot_rules.iter().any(|r| r.keep_out && r.room_id == room_id)

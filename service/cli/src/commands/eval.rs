@@ -12,6 +12,7 @@ use d3dgen_model::document::Document;
 use crate::error::Error;
 use crate::input::write_text;
 use crate::parallel;
+use crate::registry::RegistryArgs;
 use crate::table::table;
 
 /// Arguments.
@@ -32,9 +33,14 @@ pub struct Args {
     /// Folder with other worlds: layouts are compared with those of the same domain in it
     #[arg(long, value_name = "DIR")]
     reference: Option<PathBuf>,
+    /// Make every world once more from its scene graph, to tell how long that takes; one thread unless --threads says more
+    #[arg(long)]
+    time: bool,
     /// Threads; otherwise one for each core
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
+    #[command(flatten)]
+    registry: RegistryArgs,
 }
 
 /// Most plans in a page when nothing else is asked for.
@@ -42,9 +48,12 @@ pub const PICTURES: usize = 60;
 
 impl Args {
     pub fn run(self) -> Result<(), Error> {
-        let threads = self.threads.map_or_else(parallel::default_threads, usize::from);
-        let found = worlds::measured(&self.folder, threads)?;
-        let reference = self.reference.as_ref().map(|dir| worlds::measured(dir, threads)).transpose()?;
+        // worlds that are made at a time are in each other's way
+        let usual = || if self.time { 1 } else { parallel::default_threads() };
+        let threads = self.threads.map_or_else(usual, usize::from);
+        let makers = self.time.then(|| self.registry.load()).transpose()?;
+        let found = worlds::measured(&self.folder, threads, makers.as_ref())?;
+        let reference = self.reference.as_ref().map(|dir| worlds::measured(dir, threads, None)).transpose()?;
         let (reference, unread) = reference.map_or_else(Default::default, |r| (r.worlds, r.broken));
         let evaluation = compare::evaluation(found.worlds, &reference, [found.broken, unread].concat());
         if let Some(file) = &self.html {

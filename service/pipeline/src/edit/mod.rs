@@ -122,7 +122,7 @@ impl<'a> Desk<'a> {
                 Ok(())
             }
             Edit::RemoveRoom { room_id } => {
-                rooms::remove(&mut self.graph, room_id)?;
+                rooms::remove(&mut self.graph, self.plugin.domain(), room_id)?;
                 self.retrieved = retrieve(&self.graph, self.plugin);
                 self.change_plan(None)
             }

@@ -5,7 +5,7 @@ use d3dgen_model::scene_graph::{Connector, GraphEdge, GraphRoom, Note, SceneGrap
 
 use super::{mismatch, refused};
 use crate::Error;
-use crate::scene_graph::{room_type_called, wished_assets};
+use crate::scene_graph::{is_missed, room_type_called, wished_assets};
 
 /// Reason of edges that an edit adds.
 const BY_EDIT: &str = "edit";
@@ -64,17 +64,20 @@ pub(super) fn add(
     graph
         .assumptions
         .push(Note { code: "room_by_edit".into(), message: format!("{} was added by an edit", room.name) });
+    let missed = missed(kind);
+    graph.conflicts.retain(|n| *n != missed);
     // circulation comes last, as in a graph that was made
     let at = graph.rooms.iter().position(|r| r.circulation).unwrap_or(graph.rooms.len());
     graph.rooms.insert(at, room);
     Ok(id)
 }
 
-/// Takes a room out of the graph; rooms that were entered through it are entered from the corridor or hall.
+/// Takes a room out of the graph; rooms that were entered through it are entered from the corridor or hall. What no such
+/// building is without is missed in a conflict.
 ///
 /// # Errors
 /// `Mismatch` when there is none; `Refused` for a locked one, for circulation, and for the last room.
-pub(super) fn remove(graph: &mut SceneGraph, room_id: &str) -> Result<(), Error> {
+pub(super) fn remove(graph: &mut SceneGraph, domain: &Domain, room_id: &str) -> Result<(), Error> {
     let room = graph.room(room_id).ok_or_else(|| mismatch(format!("the world has no room `{room_id}`")))?;
     if graph.links.iter().any(|l| l.room_ids.iter().any(|id| id == room_id)) {
         return Err(refused(format!("`{room_id}` joins the storeys of the building")));
@@ -88,7 +91,7 @@ pub(super) fn remove(graph: &mut SceneGraph, room_id: &str) -> Result<(), Error>
             "the other rooms are entered through `{room_id}`, or it is the only one on its storey"
         )));
     }
-    let (name, level) = (room.name.clone(), room.level);
+    let (name, room_type, level) = (room.name.clone(), room.room_type.clone(), room.level);
     let walkable = |e: &GraphEdge| e.required && matches!(e.connector, Connector::Door | Connector::Open);
     let other = |e: &GraphEdge| if e.a == room_id { e.b.clone() } else { e.a.clone() };
     let guests: Vec<String> =
@@ -106,8 +109,17 @@ pub(super) fn remove(graph: &mut SceneGraph, room_id: &str) -> Result<(), Error>
             graph.edges.push(GraphEdge { a, b, connector: Connector::Door, required: true, reason: BY_EDIT.into() });
         }
     }
+    if is_missed(graph, &room_type, domain) {
+        graph.conflicts.push(missed(domain.room_type_or_generic(&room_type)));
+    }
     graph.assumptions.push(Note { code: "room_by_edit".into(), message: format!("{name} was taken out by an edit") });
     Ok(())
+}
+
+/// Says that a building has no room any more of a type that such a building needs.
+fn missed(kind: &RoomType) -> Note {
+    let message = format!("an edit took out the last {}, which such a building needs", kind.label.to_lowercase());
+    Note { code: "vital_room_missing".into(), message }
 }
 
 /// Returns the room that most others are entered from.

@@ -8,7 +8,7 @@ use d3dgen_model::domain::{
     Adjacency, AdjacencyRelation, Arrangement, Daylight, Domain, Materials, Privacy, Relation, RobotUse, RoomType,
     Scheme, Shape, Zone,
 };
-use d3dgen_model::scene_graph::{Connector, GraphEdge, GraphRoom, Note, SceneGraph};
+use d3dgen_model::scene_graph::{Connector, GraphEdge, GraphRoom, Note, Robot, SceneGraph};
 use d3dgen_model::seed::Stream;
 use d3dgen_model::storeys::LinkKind;
 use d3dgen_model::style::{Form, StyleWord, Symmetry};
@@ -18,7 +18,7 @@ use super::lattice::{JAMB_M, OUTER_HALF_M};
 use super::windows::LEAST_WALL_M;
 use crate::Error;
 use crate::placement::has_docks;
-use crate::scene_graph::BY_PROMPT;
+use crate::scene_graph::{BY_PROMPT, CLEANING};
 
 /// Code of the conflict that a building has another form than was asked for.
 const FORM_NOT_BUILT: &str = "form_not_built";
@@ -211,7 +211,8 @@ impl Brief {
         let most_advised = if of_home && !graph.accessible { MOST_ADVISED_WITH_STAIRS } else { MOST_ADVISED_WIDTH };
         let advised_width = limits.corridor_width_advised.unwrap_or(0.0).min(most_advised * hard_width);
         let fitted = fitted_width(graph);
-        let circulation_width = hard_width.max(advised_width).max(fitted);
+        let two_way = if graph.is_two_way() { two_way_width(graph, limits) } else { 0.0 };
+        let circulation_width = hard_width.max(advised_width).max(fitted).max(two_way);
         let mut brief = Self {
             hub: spine.is_some_and(|s| !rooms[s].circulation),
             ring: ring_of(graph, spine),
@@ -433,6 +434,12 @@ fn fitted_width(graph: &SceneGraph) -> f64 {
     widths.fold(0.0, f64::max)
 }
 
+/// Returns the width in which two of the robots pass each other, m: by the rules, else what each needs for itself.
+fn two_way_width(graph: &SceneGraph, limits: &Limits) -> f64 {
+    let widest = graph.robots.iter().map(Robot::width_m).fold(0.0, f64::max);
+    limits.corridor_width_two_way.unwrap_or(2.0 * (widest + PASSING_M))
+}
+
 fn max_limit(base: f64, limit: Option<&Limit>) -> f64 {
     limit.map_or(base, |l| base.max(l.value))
 }
@@ -496,8 +503,11 @@ fn room_spec(
     door_width = door_width.max(advised);
     // A robot's circle passes with 5 cm to spare on both sides.
     let robot = graph.robots.iter().map(|r| 2.0 * r.planned_radius_m() + 0.1).fold(0.0, f64::max);
+    // what brings something opens no leaf; where a robot only cleans, the door stands open meanwhile
     let robots = !graph.robots.is_empty();
-    let automatic = robots && domain.circulation.automatic_doors && kind.robot.iter().any(|u| *u != RobotUse::KeepOut);
+    let brings = graph.robots.iter().any(|r| r.kind != CLEANING);
+    let served = room.circulation || kind.robot.iter().any(|u| matches!(u, RobotUse::Service | RobotUse::Staging));
+    let automatic = brings && served && !kind.robot.contains(&RobotUse::KeepOut) && domain.circulation.automatic_doors;
     // what hangs in the air or lies below the ground has no drive
     let gate = gate(domain, kind).filter(|_| room.level == 0);
     RoomSpec {

@@ -137,6 +137,7 @@ impl<'s> Site<'s> {
             forbidden_room_types: Vec::new(),
             robots: Vec::new(),
             robot_rules: Vec::new(),
+            two_way: false,
             assumptions: Vec::new(),
             conflicts: Vec::new(),
         };

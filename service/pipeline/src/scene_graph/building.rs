@@ -5,6 +5,7 @@ use std::sync::Arc;
 use d3dgen_model::domain::{Domain, Words};
 use d3dgen_plugins::Registry;
 
+use super::negation::is_ruled_out;
 use super::numbers::Number;
 use super::text::{Kind, Phrases, Span, Token, fold};
 use super::words::{Spoken, Tag, words};
@@ -26,6 +27,8 @@ pub(super) struct Building {
     pub listed_type: bool,
     /// All words for buildings.
     pub words: Vec<Span>,
+    /// Room types of the departments that it is to be without: "hospital, no ICU".
+    pub without: Vec<String>,
 }
 
 impl Building {
@@ -40,6 +43,7 @@ impl Building {
             parts: Vec::new(),
             listed_type: false,
             words: Vec::new(),
+            without: Vec::new(),
         }
     }
 }
@@ -77,6 +81,10 @@ pub(super) fn recognize(
         registry.iter().map(|p| p.domain()).filter(|d| only.is_none_or(|o| o == d.id)).collect();
     let list_from = list_start(tokens, spoken, languages);
     let found = occurrences(tokens, registry, &domains, languages, spoken, numbers, places);
+    let named = found.iter().map(|f| f.0).collect();
+    let language = languages.first().copied().unwrap_or_default();
+    let (denied, found): (Vec<_>, Vec<_>) =
+        found.into_iter().partition(|(span, _)| is_ruled_out(tokens, spoken, language, *span));
     let rooms = domains.iter().flat_map(|d| room_words(d, registry, languages)).collect::<Vec<_>>();
     let head_final = matches!(languages.first(), Some(&("zh" | "ko")));
     let plural = |span: &Span| {
@@ -87,7 +95,11 @@ pub(super) fn recognize(
                 .flatten()
                 .any(|from| counts_rooms(tokens, n, from, *span, &rooms, spoken))
         });
-        before || head_final && numbers.iter().any(|n| counts_before(tokens, n, *span, spoken))
+        // "offices 1 to 12"
+        let range = |n: &Number| spoken.iter().any(|s| s.tag_at(tokens, n.span.end, Tag::Range).is_some());
+        let numbered = tokens[span.end - 1].text.ends_with('s')
+            && numbers.iter().any(|n| n.span.start == span.end && !n.article && range(n));
+        before || numbered || head_final && numbers.iter().any(|n| counts_before(tokens, n, *span, spoken))
     };
     let pick = if head_final {
         found.iter().filter(|(s, _)| !plural(s)).max_by_key(|(span, _)| {
@@ -132,7 +144,8 @@ pub(super) fn recognize(
             by_rooms: true,
             parts: Vec::new(),
             listed_type: false,
-            words: found.iter().map(|f| f.0).collect(),
+            words: named,
+            without: Vec::new(),
         });
     };
     let (domain, kind) = if meaning.len() > 1 {
@@ -158,8 +171,15 @@ pub(super) fn recognize(
         by_rooms: false,
         parts,
         listed_type,
-        words: found.iter().map(|f| f.0).collect(),
+        words: named,
+        without: denied.iter().filter_map(|(_, meaning)| purpose(domains[domain], domain, meaning)).collect(),
     })
+}
+
+/// Returns the room type that a department of a domain is for.
+fn purpose(of: &Domain, domain: usize, meaning: &Meaning) -> Option<String> {
+    let kind = meaning.iter().find(|m| m.0 == domain)?.1?;
+    Some(of.program(&of.building_types[kind].program)?.rooms.first()?.room_type.clone())
 }
 
 /// Returns the buildings and departments that the list names, beside the building itself.

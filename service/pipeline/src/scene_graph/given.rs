@@ -431,6 +431,7 @@ pub fn of_plan(plan: &Floorplan, brought: &Brought, registry: &Registry) -> Resu
         forbidden_room_types: Vec::new(),
         robots: robots(plan, brought)?,
         robot_rules: Vec::new(),
+        two_way: false,
         assumptions: brought.notes.clone(),
         conflicts: Vec::new(),
         links: plan.links.clone(),

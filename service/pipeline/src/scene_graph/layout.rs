@@ -1,6 +1,6 @@
 //! Open and cellular layouts: what the domain's program changes for them, as its `layouts` say.
 
-use d3dgen_model::domain::{LayoutSwap, Occupants, RoomType};
+use d3dgen_model::domain::{Domain, LayoutSwap, Occupants, RoomType};
 use d3dgen_model::style::LayoutStyle;
 
 use super::places::note;
@@ -9,6 +9,18 @@ use super::reading::Reading;
 
 /// Most rooms that stand for one.
 const MOST_ROOMS: u32 = 40;
+
+/// Returns the rooms of a layout that stand for one which a list takes for granted, and how many of them so many people need:
+/// shared offices in place of the open one of "no open-plan office".
+pub(super) fn in_place_of<'a>(
+    domain: &'a Domain,
+    room_type: &str,
+    layout: LayoutStyle,
+    people: u32,
+) -> Option<(&'a RoomType, u32)> {
+    let swap = domain.layouts.swaps.iter().find(|s| s.layout == layout && s.from == room_type)?;
+    Some((domain.room_type(&swap.to)?, people.div_ceil(swap.occupants?.max(1)).clamp(1, MOST_ROOMS)))
+}
 
 /// Lets rooms of the program give way to those of the layout that is asked for.
 pub(super) fn follow<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned<'a>>) {

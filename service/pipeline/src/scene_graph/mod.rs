@@ -24,6 +24,7 @@ mod listed;
 mod measures;
 mod mentions;
 mod named_for;
+mod negation;
 mod numbered;
 mod numbers;
 mod objects;
@@ -75,6 +76,7 @@ pub use self::proposed::{BY_PROPOSAL, Draft, DraftEdge, DraftRoom, Settled, prop
 use self::reading::Reading;
 pub(crate) use self::rooms::{CLEANING, wished_assets};
 pub(crate) use self::seats::shortages;
+pub(crate) use self::vital::is_missed;
 use crate::Error;
 
 /// Reason of the doors to the corridor or hall.
@@ -180,6 +182,7 @@ fn assemble(request: &Request, mut reading: Reading, planned: &[Planned]) -> Sce
         forbidden_room_types: reading.wishes.forbidden,
         robots: reading.robots,
         robot_rules,
+        two_way: reading.two_way,
         assumptions: reading.assumptions,
         conflicts: reading.conflicts,
     }

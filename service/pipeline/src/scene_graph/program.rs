@@ -993,9 +993,11 @@ fn hang_on_hosts(reading: &mut Reading, rooms: &mut [Planned]) {
             None => room.kind.hosts.contains(&h.room_type),
         };
         let by_type = |h: &Planned| hosted && room.kind.hosts.contains(&h.room_type);
-        let guests = |h: usize, rooms: &[Planned]| {
-            rooms.iter().filter(|r| r.host == Some(h) && r.room_type == rooms[i].room_type).count()
+        // an en suite for wheelchairs is one of the en suites
+        let alike = |r: &Planned| {
+            r.room_type == rooms[i].room_type || [r, &rooms[i]].iter().all(|r| reading.wet.has_toilet(r.kind))
         };
+        let guests = |h: usize, rooms: &[Planned]| rooms.iter().filter(|r| r.host == Some(h) && alike(r)).count();
         // the usual host first: a terrace lies before the living room
         let rank = |h: &Planned| room.kind.hosts.iter().position(|k| *k == h.room_type);
         let candidates = |test: &dyn Fn(&Planned) -> bool| {

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use d3dgen_model::domain::{Access, Domain, GENERIC_ROOM_TYPE, Occupants, Program, ProgramRoom, Shape, Zone};
+use d3dgen_model::domain::{Access, Domain, GENERIC_ROOM_TYPE, Occupants, Program, ProgramRoom, RoomType, Shape, Zone};
 use d3dgen_model::scene_graph::{Note, Occupancy, Robot};
 use d3dgen_model::style::{LayoutStyle, Style, StyleWord};
 use d3dgen_plugins::Registry;
@@ -28,8 +28,8 @@ use super::wishes::{self, MANY, PerHost, Text, Wish, Wishes};
 use super::words::{ByBedrooms, Spoken, Tag, words};
 use super::workers;
 use super::{
-    Request, apiece, docks, dwelling, fixtures, homes, keeps, language, measures, numbers, qualities, robot_rules,
-    robots, seated, sharing, single, stays, umlauts, unread,
+    Request, apiece, docks, dwelling, fixtures, homes, keeps, language, layout, measures, numbers, qualities,
+    robot_rules, robots, seated, sharing, single, stays, umlauts, unread,
 };
 use crate::Error;
 
@@ -97,6 +97,8 @@ pub(super) struct Reading<'a> {
     pub robots: Vec<Robot>,
     /// What is asked of robots in rooms.
     pub robot_rules: Vec<robot_rules::Rule>,
+    /// True where they pass each other in the corridors.
+    pub two_way: bool,
     /// Types of the rooms that a dock is to stand in.
     pub docked: Vec<String>,
     /// Where the robot is to go.
@@ -147,7 +149,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     if flag_country.is_some() {
         conflicts.retain(|n| n.code != "ambiguous_place" && n.code != "unknown_place");
     }
-    let machines = robots::find(&tokens, &spoken);
+    let machines = robots::find(&tokens, &spoken, language);
     // neither places nor robots and their docks say what is built
     let elsewhere: Vec<Span> = place.spans.iter().chain(&machines.spans).chain(&machines.docks).copied().collect();
     let mut building = building_of(
@@ -427,10 +429,11 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     let rooms = relations::Reader::new(&tokens, &mentions, &spoken, language, building.head);
     let asked = robot_rules::read(&rooms, &numbers, &machines.spans);
     spans.extend(asked.spans);
-    if let Some((span, note)) = robot_rules::state_two_way(&rooms, &machines.spans) {
-        spans.push(span);
-        conflicts.push(note);
-    }
+    let wished = |id: &String| wishes.wishes.iter().any(|w| &w.room_type == id);
+    let without: Vec<String> = building.without.iter().filter(|id| !wished(id)).cloned().collect();
+    wishes.forbidden.extend(without);
+    let two_way = robot_rules::two_way(&rooms, &machines.spans);
+    spans.extend(two_way);
     // "drei Stockwerken" ends in a word for a factory
     let storey = |p: &building::Part| spoken.iter().any(|s| s.tag_at(&tokens, p.span.start, Tag::Storeys).is_some());
     building.parts.retain(|p| !storey(p) && !spans.iter().any(|s| s.overlaps(p.span)));
@@ -488,6 +491,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     let total = total.filter(|_| !single);
     let only = says_only(&tokens, &mentions, &spoken);
     let listed_only = only && !lives && wishes.wishes.iter().any(|w| w.listed);
+    let style = styles::wished(&said_styles, request.style, &mut conflicts);
     let closed = single || listed_only || is_closed(&wishes, &tokens, &building, (domain, lives));
     let may_join = !only && joins_a_name(&building, &tokens, language, !program.support.is_empty() && !arranged);
     let named_first = is_named_first(&building, language);
@@ -496,7 +500,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     }
     if closed && total.is_none() && !single {
         let named = building.head.and_then(|h| vocabulary.room_named(&tokens[h.start..h.end]));
-        assumptions.extend(add_main_room(&mut wishes, program, domain, &people, named.as_deref()));
+        assumptions.extend(add_main_room(&mut wishes, program, domain, &people, named.as_deref(), style.layout));
     }
     spans.extend(station_words);
     spans.extend(told_again);
@@ -593,9 +597,10 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         accessible: says(Tag::Accessible) || lives && says(Tag::Frail),
         robots,
         robot_rules: asked.rules,
+        two_way: two_way.is_some(),
         docked,
         errand,
-        style: styles::wished(&said_styles, request.style, &mut conflicts),
+        style,
         assumptions,
         conflicts,
     })
@@ -1039,24 +1044,45 @@ fn says_only(tokens: &[Token], mentions: &[Mention], spoken: &[&Spoken]) -> bool
 }
 
 /// Adds to a list of rooms the one the building is for where the list takes it for granted: a laboratory's laboratory,
-/// a supermarket's sales floor, the desks of those who work there. A dwelling has no such room.
+/// a supermarket's sales floor, the desks of those who work there, in shared offices where the layout is to be cellular. A
+/// dwelling has no such room.
 fn add_main_room(
     wishes: &mut Wishes,
     program: &Program,
     domain: &Domain,
     people: &People,
     named: Option<&str>,
+    layout: Option<LayoutStyle>,
 ) -> Option<Note> {
+    let heads = &people.occupancy;
+    let left_out = workers::room_left_out(wishes, program, domain, heads.staff, heads.desks);
+    let kind = left_out.or_else(|| main_room_left_out(wishes, program, domain, people, named))?;
+    let ruled_out = wishes.forbidden.contains(&kind.id);
+    let layout = if ruled_out { Some(LayoutStyle::Cellular) } else { layout };
+    let people = heads.staff.max(heads.desks);
+    if let Some(people) = people.filter(|_| layout == Some(LayoutStyle::Cellular))
+        && let Some(seated) = workers::seat_in_listed(wishes, domain, people)
+    {
+        return Some(seated);
+    }
+    let laid_out = layout.zip(people).and_then(|(l, n)| layout::in_place_of(domain, &kind.id, l, n));
+    let (kind, count) = laid_out.or((!ruled_out).then_some((kind, 1)))?;
+    let label = kind.label.to_lowercase();
+    wishes.wishes.insert(0, Wish { count, ..Wish::one(&kind.id, &label) });
+    Some(note("main_room", format!("the list of rooms takes the {label} for granted; it was added")))
+}
+
+/// Returns the room that a program begins with, where the list has nothing that could stand for it.
+fn main_room_left_out<'a>(
+    wishes: &Wishes,
+    program: &Program,
+    domain: &'a Domain,
+    people: &People,
+    named: Option<&str>,
+) -> Option<&'a RoomType> {
     let main = program.rooms.first()?;
     let listed = |id: &str| wishes.wishes.iter().any(|w| w.room_type == id);
-    let lives = is_dwelling(program);
-    let heads = &people.occupancy;
-    if let Some(kind) = workers::room_left_out(wishes, program, domain, heads.staff, heads.desks) {
-        wishes.wishes.insert(0, Wish::one(&kind.id, &kind.label.to_lowercase()));
-        let label = kind.label.to_lowercase();
-        return Some(note("main_room", format!("the list of rooms takes the {label} for granted; it was added")));
-    }
-    if lives || listed(&main.room_type) || wishes.forbidden.contains(&main.room_type) {
+    if is_dwelling(program) || listed(&main.room_type) || wishes.forbidden.contains(&main.room_type) {
         return None;
     }
     let works = |r: &ProgramRoom| {
@@ -1074,11 +1100,7 @@ fn add_main_room(
     let placed = placed && works(main);
     let needed = named == Some(main.room_type.as_str())
         || !placed && (heads || size(&main.room_type) > MAIN_ROOM_SHARE * largest);
-    needed.then(|| {
-        let label = main.room_type.replace('_', " ");
-        wishes.wishes.insert(0, Wish::one(&main.room_type, &label));
-        note("main_room", format!("the list of rooms takes the {label} for granted; it was added"))
-    })
+    needed.then(|| domain.room_type_or_generic(&main.room_type))
 }
 
 /// Returns the words that wish for access, as in "wheelchair users": all but the things of lists, as in "with a bed, two

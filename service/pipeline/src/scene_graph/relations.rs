@@ -403,6 +403,11 @@ fn belongings(reader: &Reader, said: &mut Said) {
     }
 }
 
+/// Words before the last of "everywhere in the house except", at most.
+const MOST_OF_PLACE: usize = 4;
+/// What stands between a word that rules out and a room that it says nothing of: "no carpet in the bathroom".
+const PARTS: [Tag; 5] = [Tag::Starts, Tag::Near, Tag::Between, Tag::Inside, Tag::UnreadThings];
+
 /// Returns the mentions after "no", "without", or before "없는".
 fn negated(tokens: &[Token], mentions: &[Mention], spoken: &[&Spoken], language: &str) -> Vec<usize> {
     let tag_end = |i: usize, tag| spoken.iter().find_map(|s| s.tag_at(tokens, i, tag));
@@ -413,7 +418,9 @@ fn negated(tokens: &[Token], mentions: &[Mention], spoken: &[&Spoken], language:
         let relates = |k: usize| RELATIONS.iter().any(|&t| tag_end(k, t).is_some());
         let turns = tag_end(i, Tag::Not).is_some();
         let turned = turns && (end..tokens.len()).take_while(|&k| !tokens[k].is_mark()).any(relates);
-        if turned || mentions.iter().any(|m| m.span.contains(i)) {
+        // "everywhere except the bathroom" keeps a robot out
+        let keeps = (i.saturating_sub(MOST_OF_PLACE)..=i).any(|k| tag_end(k, Tag::KeepOut).is_some_and(|to| to >= end));
+        if turned || keeps || mentions.iter().any(|m| m.span.contains(i)) {
             continue;
         }
         if language == "ko" {
@@ -427,9 +434,7 @@ fn negated(tokens: &[Token], mentions: &[Mention], spoken: &[&Spoken], language:
         while let Some(m) = mentions.iter().position(|m| m.from >= at) {
             let mention = &mentions[m];
             let gap = at..mention.from;
-            let blocked = gap.clone().any(|k| {
-                tokens[k].is_mark() || [Tag::Starts, Tag::Near, Tag::Between].iter().any(|&t| tag_end(k, t).is_some())
-            });
+            let blocked = gap.clone().any(|k| tokens[k].is_mark() || PARTS.iter().any(|&t| tag_end(k, t).is_some()));
             let joined = gap.len() <= 1 && gap.clone().all(|k| tag_end(k, Tag::Joins).is_some());
             let fits = if first { gap.len() <= 3 && !blocked } else { joined && mention.count.is_none() };
             if !fits || mention.room_type().is_none() {

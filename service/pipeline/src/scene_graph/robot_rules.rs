@@ -1,10 +1,9 @@
 //! What a prompt asks of robots room by room: where they stay out ("keep robots out of the pharmacy"), and how fast they
 //! drive ("at most 0.4 m/s in the corridors").
 
-use d3dgen_model::scene_graph::{GraphRoom, Note, ROBOT_SPEEDS_M_S, RobotRule};
+use d3dgen_model::scene_graph::{GraphRoom, ROBOT_SPEEDS_M_S, RobotRule};
 
 use super::numbers::Number;
-use super::places::note;
 use super::relations::Reader;
 use super::rooms::is_meant;
 use super::text::Span;
@@ -58,14 +57,11 @@ pub(super) fn read(reader: &Reader, numbers: &[Number], machines: &[Span]) -> Fo
     out
 }
 
-/// States that corridors are not made for robots that meet, where a prompt wants that.
-pub(super) fn state_two_way(reader: &Reader, machines: &[Span]) -> Option<(Span, Note)> {
+/// Returns the words that ask for corridors in which the robots of a prompt, named at `machines`, pass each other.
+pub(super) fn two_way(reader: &Reader, machines: &[Span]) -> Option<Span> {
     let mut said =
         (0..reader.tokens.len()).filter_map(|i| Some(Span { start: i, end: reader.tag_end(i, Tag::TwoWay)? }));
-    let span = said.next().filter(|_| !machines.is_empty())?;
-    let message = "corridors are as wide as people, beds and one robot need; whether two robots pass each other there is \
-                   judged in the report (two_way_robot_corridor_width), not planned";
-    Some((span, note("two_way_not_planned", message.into())))
+    said.next().filter(|_| !machines.is_empty())
 }
 
 /// Returns what is asked of robots in each room.

@@ -5,6 +5,7 @@ use d3dgen_model::scene_graph::{GraphRoom, Note, Robot};
 
 use super::Request;
 use super::mentions::{Mention, What, number_after};
+use super::negation::is_ruled_out;
 use super::numbers::Number;
 use super::places::note;
 use super::text::{Kind, Span, Token, fold};
@@ -98,8 +99,8 @@ const VERBS: [(Tag, &str); 5] = [
     (Tag::TransportVerbs, "transport"),
 ];
 
-/// Finds the robots of a prompt.
-pub(super) fn find(tokens: &[Token], spoken: &[&Spoken]) -> Robots {
+/// Finds the robots of a prompt, but for those that it rules out.
+pub(super) fn find(tokens: &[Token], spoken: &[&Spoken], language: &str) -> Robots {
     let mut out = Robots::default();
     let mut i = 0;
     while i < tokens.len() {
@@ -135,6 +136,7 @@ pub(super) fn find(tokens: &[Token], spoken: &[&Spoken]) -> Robots {
     out.found.extend(shared.into_iter().map(|s| s.0));
     out.found.sort_by_key(|f| f.span.start);
     out.spans = out.found.iter().filter(|f| !f.place).map(|f| f.span).collect();
+    out.found.retain(|f| !is_denied(tokens, spoken, language, f));
     let tagged = |i: usize, tag| spoken.iter().find_map(|l| l.tag_at(tokens, i, tag));
     let dock = |s: &Span| {
         let relative = [Tag::Stops, Tag::Definite].iter().find_map(|&tag| tagged(s.end, tag));
@@ -144,6 +146,17 @@ pub(super) fn find(tokens: &[Token], spoken: &[&Spoken]) -> Robots {
     out.docks = out.spans.iter().filter_map(dock).collect();
     out.named = !out.found.is_empty();
     out
+}
+
+/// Returns true for robots that a prompt does not want: "no cleaning robots", "robots not needed"; where they are to stay
+/// out of rooms, it wants them.
+fn is_denied(tokens: &[Token], spoken: &[&Spoken], language: &str, robots: &Named) -> bool {
+    let tagged = |i: usize, tag| spoken.iter().any(|s| s.tag_at(tokens, i, tag).is_some());
+    let keep_out = (robots.span.start.saturating_sub(MOST_BETWEEN)..=robots.span.end)
+        .any(|i| spoken.iter().any(|s| s.tag_at(tokens, i, Tag::KeepOut).is_some_and(|end| end > robots.span.start)));
+    let named = Span { start: robots.name_from.unwrap_or(robots.span.start), ..robots.span };
+    let denied = is_ruled_out(tokens, spoken, language, named) || tagged(named.end, Tag::Unneeded);
+    denied && !keep_out
 }
 
 /// What can count robots, and what stands between.

@@ -1,11 +1,14 @@
 //! Large buildings are made of units (wards, departments), each with what it needs at hand, as programs of the domain say.
 
-use d3dgen_model::domain::{Access, Program, Units};
+use d3dgen_model::domain::{Access, Occupants, Program, Units};
 
 use super::places::note;
-use super::program::{Planned, fill_unit, is_counted};
+use super::program::{Planned, fill_unit, head_count, is_counted};
 use super::reading::Reading;
 use super::vital::guests;
+
+/// Rooms of a storey that is a unit of its own, at least.
+const LEAST_ON_STOREY: usize = 6;
 
 /// A unit to be.
 struct Unit<'a> {
@@ -19,14 +22,17 @@ pub(super) fn divide<'a>(reading: &mut Reading<'a>, rooms: Vec<Planned<'a>>) -> 
     let program = reading.program;
     // twenty patient rooms with their en suites are one ward
     let along = rooms.iter().filter(|r| r.kind.access != Access::Host).count();
-    let large = |u: &&Units| !reading.closed && along >= u.from_rooms as usize;
+    let storeys = own_storeys(reading, along);
+    let large = |u: &&Units| !reading.closed && (along >= u.from_rooms as usize || storeys > 1);
     let Some(rules) = program.units.as_ref().filter(large) else { return rooms };
-    let count = (rooms.len() as f64 / f64::from(rules.rooms)).round().max(2.0) as usize;
+    let count = ((rooms.len() as f64 / f64::from(rules.rooms)).round() as usize).max(2).max(storeys);
     let later = rules.programs.iter().filter_map(|id| reading.domain.program(id)).cycle();
     let mut units: Vec<Unit> =
         [program].into_iter().chain(later).take(count).map(|program| Unit { program, rooms: Vec::new() }).collect();
     let fixed = fixed_rooms(reading, rooms);
-    let free = reading.total.map(|total| (total as usize).saturating_sub(fixed.len()));
+    // storeys of a building whose size is open have as many rooms as it would have on one
+    let total = reading.total.or_else(|| (storeys > 1).then(|| program.default_rooms * count as u32));
+    let free = total.map(|total| (total as usize).saturating_sub(fixed.len()));
     spread(fixed, &mut units);
     let totals = free.map(|free| level_up(free, &units));
     let mut out = Vec::new();
@@ -40,6 +46,16 @@ pub(super) fn divide<'a>(reading: &mut Reading<'a>, rooms: Vec<Planned<'a>>) -> 
     let message = format!("the building was made of {} units: {}", made.len(), made.join(", ").replace('_', " "));
     reading.assumptions.push(note("units", message));
     out
+}
+
+/// Returns how many storeys, counted from the ground, are each to be a unit: with what is needed at hand on that storey, rather
+/// than with what is left over from the others. Too few rooms are dealt out one by one.
+fn own_storeys(reading: &Reading, rooms: usize) -> usize {
+    let storeys = reading.storeys.above_ground();
+    let counted = [Occupants::Staff, Occupants::Visitors, Occupants::Beds, Occupants::Residents];
+    let people = counted.iter().any(|&who| head_count(reading, who).is_some());
+    let open = reading.total.is_none() && reading.area_m2.is_none() && !people;
+    if rooms >= LEAST_ON_STOREY * storeys || open { storeys } else { 1 }
 }
 
 /// Returns the rooms that the prompt names, those of which it counts the people, and what comes with these.

@@ -6,6 +6,8 @@ use std::collections::BTreeSet;
 
 use d3dgen_model::domain::{Access, Adjacency, AdjacencyRelation, Domain, Occupants, Program, RoomType, Shape, Zone};
 
+use d3dgen_model::scene_graph::SceneGraph;
+
 use super::beds::sleeps;
 use super::places::note;
 use super::program::{Planned, places_to_work};
@@ -61,6 +63,28 @@ impl Class<'_> {
     fn holds(&self, room: &Planned) -> bool {
         self.ids.contains(&room.room_type.as_str())
     }
+}
+
+/// Returns true where a room of this type that was taken out of the graph was the last of a kind that no such building is
+/// without, or the last with a toilet.
+pub(crate) fn is_missed(graph: &SceneGraph, room_type: &str, domain: &Domain) -> bool {
+    let building = domain.building_types.iter().find(|b| graph.building_type.as_ref() == Some(&b.id));
+    let own = domain.programs.iter().find(|p| building.is_some_and(|b| b.program == p.id));
+    let Some(program) = own.or(domain.programs.first()) else { return false };
+    let of_all = if is_dwelling(program) {
+        words().dwelling.vital.as_slice()
+    } else if is_worked_at(program) {
+        words().work_vital.as_slice()
+    } else {
+        &[]
+    };
+    let wet = Wet::of(domain);
+    let flushes = |id: &str| domain.room_type(id).is_some_and(|k| wet.has_toilet(k));
+    let is_left = |alike: &dyn Fn(&str) -> bool| graph.rooms.iter().any(|r| alike(&r.room_type));
+    let class = |ids: &Vec<String>| ids.iter().any(|id| id == room_type) && !is_left(&|o| ids.iter().any(|id| id == o));
+    of_all.iter().any(class)
+        || program.vital.iter().any(|id| id == room_type) && !is_left(&|o| o == room_type)
+        || flushes(room_type) && !is_left(&flushes)
 }
 
 /// Returns true for programs that seat people at work.

@@ -38,6 +38,8 @@ pub(super) enum Tag {
     It,
     /// Where robots are not to go: "keep out of".
     KeepOut,
+    /// Behind what is not wanted: "not needed".
+    Unneeded,
     /// Robots that meet in a corridor: "two-way".
     TwoWay,
     /// Between the first and the last of numbered rooms: "bedrooms 1 to 4".

@@ -2,7 +2,7 @@
 //! break rooms and canteens, and the names that the prompt gives its rooms.
 
 use d3dgen_model::domain::{Domain, Occupants, Privacy, Program, RoomType, Zone};
-use d3dgen_model::scene_graph::GraphRoom;
+use d3dgen_model::scene_graph::{GraphRoom, Note};
 
 use super::places::note;
 use super::program::{Planned, desk_area_m2, head_count, places_to_work};
@@ -51,7 +51,19 @@ pub(super) fn room_left_out<'a>(
     let kind = open_kind(domain)?;
     let holds = |w: &Wish| w.count.saturating_mul(domain.room_type(&w.room_type).map_or(0, |k| most_desks(domain, k)));
     let have = wishes.wishes.iter().map(holds).fold(0, u32::saturating_add);
-    (have < heads && !wishes.forbidden.contains(&kind.id)).then_some(kind)
+    (have < heads).then_some(kind)
+}
+
+/// Makes the rooms to work in of a list that does not count them as many as seat everybody: "20 people, only private offices";
+/// `None` where there are none.
+pub(super) fn seat_in_listed(wishes: &mut Wishes, domain: &Domain, people: u32) -> Option<Note> {
+    let desks = |w: &Wish| domain.room_type(&w.room_type).map_or(0, |k| most_desks(domain, k));
+    let open = wishes.wishes.iter().position(|w| !w.exact && w.listed && desks(w) > 0)?;
+    let others = wishes.wishes.iter().enumerate().filter(|(i, _)| *i != open).map(|(_, w)| w.count * desks(w));
+    let left = people.saturating_sub(others.fold(0, u32::saturating_add));
+    let wish = &mut wishes.wishes[open];
+    wish.count = left.div_ceil(desks(wish)).clamp(wish.count, MOST_SHARED_OUT.max(wish.count));
+    Some(note("rooms_for_people", format!("{} x {} seat those who work there", wish.count, wish.name)))
 }
 
 /// Counts the toilets of "two-room office with a small toilet" beside its rooms, which are to work in.

@@ -163,6 +163,27 @@ fn rooms_come_and_go() {
 }
 
 #[test]
+fn taking_out_what_no_building_is_without_is_said_until_it_is_back() {
+    let registry = Registry::builtin();
+    let missed = |w: &World| w.scene_graph.conflicts.iter().any(|n| n.code == "vital_room_missing");
+    let cases = [
+        ("two-bedroom flat with one bathroom", "bathroom_1", true),
+        ("two-bedroom flat with one bathroom", "bedroom_2", false),
+        ("office with 2 offices, a meeting room and a toilet", "toilet_1", true),
+        ("office with 2 offices, a meeting room and a toilet", "meeting_room_1", false),
+    ];
+    for (prompt, room_id, vital) in cases {
+        let world = world(&registry, prompt, 1);
+        let room_type = world.scene_graph.room(room_id).unwrap().room_type.clone();
+        assert!(!missed(&world), "{prompt}");
+        let less = edited(&registry, &world, &[Edit::RemoveRoom { room_id: room_id.into() }]).unwrap().world;
+        assert_eq!(missed(&less), vital, "{prompt} without {room_id}: {:?}", less.scene_graph.conflicts);
+        let back = [Edit::AddRoom { room_type, area_m2: None, entered_from: None }];
+        assert!(!missed(&edited(&registry, &less, &back).unwrap().world), "{prompt}");
+    }
+}
+
+#[test]
 fn a_room_is_added_by_what_prompts_call_it() {
     let registry = Registry::builtin();
     let world = world(&registry, HOME, 0);

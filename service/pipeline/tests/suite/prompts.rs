@@ -68,6 +68,8 @@ struct Case {
     same: Vec<[String; 2]>,
     /// People, beds or seats of every room of a type.
     occupants: BTreeMap<String, u32>,
+    /// Whether the corridors are to be wide enough for robots that pass each other.
+    two_way: bool,
     /// Codes of conflicts that are to be there.
     has_conflicts: Vec<String>,
     /// Codes of assumptions that are to be there.
@@ -254,6 +256,7 @@ fn check_robots(case: &Case, graph: &SceneGraph, misses: &mut Misses) {
         let right = !rooms.is_empty() && rooms.iter().all(|r| graph.robot_speed_m_s(&r.id) == Some(*speed));
         misses.check(right, "speed", (room_type, speed), &graph.robot_rules);
     }
+    misses.check(graph.two_way == case.two_way, "two-way", case.two_way, graph.two_way);
     if let Some(radius) = case.robot_radius_m {
         let right = graph.robots.iter().any(|r| (r.radius_m - radius).abs() < 1e-6);
         misses.check(right, "robot radius", radius, &graph.robots);

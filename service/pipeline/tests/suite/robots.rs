@@ -10,6 +10,7 @@ use d3dgen_model::domain::{Goods, RobotUse, Shape, Zone};
 use d3dgen_model::floorplan::Door;
 use d3dgen_model::obstacles::Obstacles;
 use d3dgen_model::occupancy::stops_robot;
+use d3dgen_model::report::Status;
 use d3dgen_model::robot_body::RobotBody;
 use d3dgen_model::scenario::{Roi, RoiKind};
 use d3dgen_model::world::World;
@@ -296,6 +297,32 @@ fn buildings_with_stairs_are_made_for_wide_robots() {
     for (prompt, width, length, seed) in tried {
         let found = made(&registry, prompt, seed, body(width, length)).unwrap();
         assert!(found.report.robot_fit[0].fits, "{prompt}, seed {seed}: {:?}", found.report.robot_fit);
+    }
+}
+
+#[test]
+fn robots_pass_each_other_where_that_is_asked_for_and_where_the_building_is_made_for_several() {
+    let registry = Registry::builtin();
+    let body = RobotBody { width_m: Some(0.85), length_m: Some(0.9), height_m: Some(1.2), ..RobotBody::default() };
+    let cases = [
+        ("office with 12 rooms and two-way corridors for 2 delivery robots", body),
+        ("office with 12 rooms for 2 delivery robots", RobotBody { fit: true, ..body }),
+        (
+            "hospital ward with 8 rooms for 3 delivery robots",
+            RobotBody { fit: true, turning_radius_m: Some(0.8), ..body },
+        ),
+    ];
+    for (prompt, body) in cases {
+        for seed in 0..3 {
+            let found = made(&registry, prompt, seed, body).unwrap();
+            assert!(found.report.is_writable(), "{prompt}, {seed}");
+            let rules = found.report.constraints.iter().filter(|c| c.name == "two_way_robot_corridor_width");
+            let rules: Vec<_> = rules.collect();
+            let least = rules.iter().filter_map(|c| c.required_min).fold(0.0, f64::max);
+            // by the rule: both robots, and 0.3 m beside and between them
+            assert!((least - 2.6).abs() < 1e-9, "{prompt}, {seed}: {rules:?}");
+            assert!(rules.iter().all(|c| c.status == Status::Satisfied), "{prompt}, {seed}: {rules:?}");
+        }
     }
 }
 

@@ -72,6 +72,40 @@ fn prompts_say_which_rooms_are_on_which_storey() {
 }
 
 #[test]
+fn every_storey_of_a_large_building_has_its_share_of_the_rooms() {
+    let registry = Registry::builtin();
+    for (prompt, storeys) in [
+        ("hospital with 60 rooms on 3 storeys with lifts", 3),
+        ("office tower with 5 storeys and 50 rooms", 5),
+        ("hospital with 40 rooms on 3 storeys", 3),
+        ("hospital on 3 storeys with lifts, for two delivery robots", 3),
+        ("office building with 4 floors", 4),
+        ("office for 150 people on 4 floors", 4),
+        ("school with 60 rooms on 3 storeys", 3),
+    ] {
+        for seed in 0..3 {
+            let graph = generate(&request(prompt, seed), &registry).unwrap();
+            let link = |id: &String| graph.links.iter().any(|l| l.room_ids.contains(id));
+            let on = |level: i32| {
+                graph
+                    .rooms
+                    .iter()
+                    .filter(move |r| r.level == level && !r.circulation && !link(&r.id))
+                    .collect::<Vec<_>>()
+            };
+            let counts: Vec<usize> = graph.level_numbers().into_iter().map(|l| on(l).len()).collect();
+            assert_eq!(counts.len(), storeys, "{prompt}");
+            let all: usize = counts.iter().sum();
+            assert!(counts.iter().all(|n| 2 * n * storeys >= all), "{prompt}, seed {seed}: {counts:?}");
+            let wet = |id: &str| id.contains("toilet") || id.contains("restroom") || id.contains("bathroom");
+            for level in graph.level_numbers() {
+                assert!(on(level).iter().any(|r| wet(&r.room_type)), "{prompt}, seed {seed}: none on {level}");
+            }
+        }
+    }
+}
+
+#[test]
 fn cores_line_up_for_every_seed() {
     let registry = Registry::builtin();
     let prompts = [

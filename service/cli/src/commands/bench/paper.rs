@@ -153,8 +153,7 @@ impl Maker<'_> {
             Err(d3dgen_pipeline::Error::Cancelled) => return Err(Error::Interrupted),
             Err(error) => return Ok(Outcome::Failed(error.to_string())),
         };
-        let ms = |(stage, time): (&str, std::time::Duration)| (stage.to_owned(), round_ms(time.as_secs_f64()));
-        let known = Known { rooms_asked: Some(task.rooms), stage_ms: clock.times().into_iter().map(ms).collect() };
+        let known = Known { rooms_asked: Some(task.rooms), stage_ms: clock.stage_ms() };
         let measures = measure(&made.world, Some(&made.report), &task.path, &known);
         let plan = self.out.map(|_| picture::svg(&made.world, &measures));
         self.write(task, &made)?;
@@ -186,10 +185,6 @@ fn stages(worlds: &[WorldMeasures]) -> String {
     };
     let rows: Vec<Vec<String>> = order.filter_map(row).collect();
     format!("\n{}", table(&["stage", "median ms", "95 % ms", "most ms"], &rows))
-}
-
-fn round_ms(seconds: f64) -> f64 {
-    (seconds * 1e6).round() / 1e3
 }
 
 /// Refuses a folder that holds anything.

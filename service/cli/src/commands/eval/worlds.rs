@@ -1,16 +1,21 @@
 //! The worlds below a folder: found, read, measured; what cannot be read is told and left out.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use d3dgen_eval::evaluation::{BrokenFile, WorldMeasures};
-use d3dgen_eval::{measure, picture};
+use d3dgen_eval::{Known, measure, picture};
 use d3dgen_model::report::Report;
 use d3dgen_model::world::World;
+use d3dgen_pipeline::generate::{Event, Settings, furnish_and_check};
+use d3dgen_plugins::Registry;
 
 use crate::error::Error;
 use crate::input::document;
+use crate::interrupt;
 use crate::parallel;
+use crate::stage_clock::StageClock;
 
 /// What was found below a folder.
 pub struct Found {
@@ -20,18 +25,18 @@ pub struct Found {
     pub broken: Vec<BrokenFile>,
 }
 
-/// Measures every world below a folder.
+/// Measures every world below a folder; with the kinds of building, each is made once more and timed.
 ///
 /// # Errors
-/// `Read` when a folder cannot be looked into, `Input` when there is no world at all.
-pub fn measured(folder: &Path, threads: usize) -> Result<Found, Error> {
+/// `Read` when a folder cannot be looked into, `Input` when there is no world at all, `Interrupted`.
+pub fn measured(folder: &Path, threads: usize, makers: Option<&Registry>) -> Result<Found, Error> {
     let mut files = Vec::new();
     below(folder, &mut files)?;
     if files.is_empty() {
         return Err(Error::Input(format!("{} holds no world: no world.json in it or below it", folder.display())));
     }
     let mut found = Found { worlds: Vec::new(), broken: Vec::new() };
-    for (world, broken) in parallel::map(&files, threads, |file| Ok(one(folder, file)))? {
+    for (world, broken) in parallel::map(&files, threads, |file| one(folder, file, makers))? {
         found.worlds.extend(world);
         found.broken.extend(broken);
     }
@@ -65,7 +70,11 @@ fn below(folder: &Path, files: &mut Vec<PathBuf>) -> Result<(), Error> {
 }
 
 /// Measures a world; a broken report is told, and the world measured without it.
-fn one(folder: &Path, file: &Path) -> (Option<WorldMeasures>, Vec<BrokenFile>) {
+fn one(
+    folder: &Path,
+    file: &Path,
+    makers: Option<&Registry>,
+) -> Result<(Option<WorldMeasures>, Vec<BrokenFile>), Error> {
     let home = file.parent().unwrap_or(folder);
     let short = |path: &Path| {
         let below = path.strip_prefix(folder).unwrap_or(path).to_string_lossy().replace('\\', "/");
@@ -89,11 +98,35 @@ fn one(folder: &Path, file: &Path) -> (Option<WorldMeasures>, Vec<BrokenFile>) {
         }
         read => read.and_then(Result::ok),
     };
-    match document::<World>(file) {
-        Ok(world) => (Some(measure(&world, report.as_ref(), &short(home), &Default::default())), broken),
+    let world = match document::<World>(file) {
+        Ok(world) => world,
         Err(error) => {
             tell(file, error);
-            (None, broken)
+            return Ok((None, broken));
         }
+    };
+    let stage_ms = match makers.map(|registry| stage_ms(&world, registry)).transpose() {
+        Err(Error::Interrupted) => return Err(Error::Interrupted),
+        Err(error) => {
+            tell(file, error);
+            None
+        }
+        Ok(times) => times,
+    };
+    let known = Known { stage_ms: stage_ms.unwrap_or_default(), ..Known::default() };
+    Ok((Some(measure(&world, report.as_ref(), &short(home), &known)), broken))
+}
+
+/// Makes a world of the same scene graph and returns the times of its stages, ms; nothing for plans that were brought.
+fn stage_ms(world: &World, registry: &Registry) -> Result<BTreeMap<String, f64>, Error> {
+    let mut clock = StageClock::default();
+    if world.floorplan.is_given() {
+        return Ok(clock.stage_ms());
+    }
+    let mut hear = |event: Event<'_>| clock.hear(&event);
+    match furnish_and_check(&world.scene_graph, registry, &Settings::default(), &mut hear, interrupt::flag()) {
+        Ok(_) => Ok(clock.stage_ms()),
+        Err(d3dgen_pipeline::Error::Cancelled) => Err(Error::Interrupted),
+        Err(error) => Err(error.into()),
     }
 }

@@ -541,7 +541,8 @@ impl Site<'_> {
         let elevator = rooms.iter().any(|&r| self.brief.rooms[r].elevator);
         // robots open no leaf
         let docks = rooms.iter().any(|&r| self.brief.rooms[r].docks && !self.brief.rooms[r].circulation);
-        let automatic = elevator || docks || rooms.iter().any(|&r| self.brief.rooms[r].automatic);
+        // a corridor's doors are those of the rooms beside it
+        let automatic = elevator || docks || rooms.iter().all(|&r| self.brief.rooms[r].automatic);
         let slides = automatic
             || self.brief.rooms[into].slides
             || leaf * leaf > SLIDING_SHARE * self.net_m2[into]
