@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use d3dgen_model::scene_graph::{Robot, SceneGraph};
+
 use crate::aims::ObjectAims;
 
 /// Figures for the floorplan stage: the strictest of what applies, hard unless called advised.
@@ -23,6 +25,17 @@ pub struct Limits {
     pub rooms: BTreeMap<String, RoomLimits>,
     /// What to aim at when objects are chosen and placed; wishes.
     pub objects: ObjectAims,
+}
+
+/// What two robots that pass each other have to spare where no rule says more, each of them, m.
+const PASSING_M: f64 = 0.1;
+
+impl Limits {
+    /// Returns the width of circulation in which two of a graph's robots pass each other, m; 0 where they need not.
+    pub fn two_way_m(&self, graph: &SceneGraph) -> f64 {
+        let widest = graph.robots.iter().map(Robot::width_m).reduce(f64::max).filter(|_| graph.is_two_way());
+        widest.map_or(0.0, |width| self.corridor_width_two_way.unwrap_or(2.0 * (width + PASSING_M)))
+    }
 }
 
 /// Limits of one room type.

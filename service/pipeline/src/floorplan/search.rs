@@ -128,6 +128,8 @@ pub(super) fn search_with(
     rng: &mut Stream,
     stop: Stop<'_>,
 ) -> Option<Candidate> {
+    // wings are composed of plans, and are none themselves
+    let schemes: Vec<Scheme> = schemes.iter().copied().filter(|s| *s != Scheme::Comb).collect();
     let mut best: Option<(bool, f64, (Genome, Candidate))> = None;
     let mut sound = 0;
     let mut judge = Judge::new(brief);

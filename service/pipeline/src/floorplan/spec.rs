@@ -8,7 +8,7 @@ use d3dgen_model::domain::{
     Adjacency, AdjacencyRelation, Arrangement, Daylight, Domain, Materials, Privacy, Relation, RobotUse, RoomType,
     Scheme, Shape, Zone,
 };
-use d3dgen_model::scene_graph::{Connector, GraphEdge, GraphRoom, Note, Robot, SceneGraph};
+use d3dgen_model::scene_graph::{Connector, GraphEdge, GraphRoom, Note, SceneGraph};
 use d3dgen_model::seed::Stream;
 use d3dgen_model::storeys::LinkKind;
 use d3dgen_model::style::{Form, StyleWord, Symmetry};
@@ -211,8 +211,7 @@ impl Brief {
         let most_advised = if of_home && !graph.accessible { MOST_ADVISED_WITH_STAIRS } else { MOST_ADVISED_WIDTH };
         let advised_width = limits.corridor_width_advised.unwrap_or(0.0).min(most_advised * hard_width);
         let fitted = fitted_width(graph);
-        let two_way = if graph.is_two_way() { two_way_width(graph, limits) } else { 0.0 };
-        let circulation_width = hard_width.max(advised_width).max(fitted).max(two_way);
+        let circulation_width = hard_width.max(advised_width).max(fitted).max(limits.two_way_m(graph));
         let mut brief = Self {
             hub: spine.is_some_and(|s| !rooms[s].circulation),
             ring: ring_of(graph, spine),
@@ -432,12 +431,6 @@ fn aloof(graph: &SceneGraph, domain: &Domain) -> Vec<[usize; 2]> {
 fn fitted_width(graph: &SceneGraph) -> f64 {
     let widths = graph.robots.iter().filter(|r| r.is_fitted()).map(|r| 2.0 * r.radius_m + PASSING_M);
     widths.fold(0.0, f64::max)
-}
-
-/// Returns the width in which two of the robots pass each other, m: by the rules, else what each needs for itself.
-fn two_way_width(graph: &SceneGraph, limits: &Limits) -> f64 {
-    let widest = graph.robots.iter().map(Robot::width_m).fold(0.0, f64::max);
-    limits.corridor_width_two_way.unwrap_or(2.0 * (widest + PASSING_M))
 }
 
 fn max_limit(base: f64, limit: Option<&Limit>) -> f64 {

@@ -145,7 +145,9 @@ pub(super) fn deal(reading: &mut Reading, planned: &[Planned], areas: &[f64], le
 /// Returns the clusters of each unit that are still free, and their area, in the order of the units.
 fn units(clusters: &[Cluster], at: &[Option<i32>]) -> Vec<(Vec<usize>, f64)> {
     let mut out: Vec<(&str, Vec<usize>, f64)> = Vec::new();
-    for (i, cluster) in clusters.iter().enumerate().filter(|(i, _)| at[*i].is_none()) {
+    // what every storey has goes to the storey without it, whichever unit it came with
+    let free = |(i, cluster): &(usize, &Cluster)| at[*i].is_none() && cluster.likes != Likes::Each;
+    for (i, cluster) in clusters.iter().enumerate().filter(free) {
         let Some(unit) = cluster.unit else { continue };
         match out.iter_mut().find(|u| u.0 == unit) {
             Some(known) => {

@@ -279,7 +279,8 @@ pub(super) fn may_grow(reading: &Reading, room_type: &str) -> bool {
     Build::new(reading, reading.program).may_grow(room_type)
 }
 
-/// Returns the rooms of a unit: those it has already, and what its program adds up to a total, or as usual.
+/// Returns the rooms of a unit: those it has already, and what its program adds up to a total, or as usual; a total that the
+/// prompt does not give is none that rooms are made up for.
 pub(super) fn fill_unit<'a>(
     reading: &Reading<'a>,
     program: &'a Program,
@@ -288,7 +289,8 @@ pub(super) fn fill_unit<'a>(
 ) -> Vec<Planned<'a>> {
     let mut build = Build { rooms, ..Build::new(reading, program) };
     match total {
-        Some(total) => build.fill_to(total),
+        Some(total) if reading.total.is_some() => build.fill_to(total),
+        Some(most) => build.spend_wishes(most, usize::MAX),
         None => build.spend_wishes(MAX_ROOMS as usize, program.default_rooms as usize),
     }
     build.rooms

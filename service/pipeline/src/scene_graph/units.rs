@@ -29,10 +29,12 @@ pub(super) fn divide<'a>(reading: &mut Reading<'a>, rooms: Vec<Planned<'a>>) -> 
     let later = rules.programs.iter().filter_map(|id| reading.domain.program(id)).cycle();
     let mut units: Vec<Unit> =
         [program].into_iter().chain(later).take(count).map(|program| Unit { program, rooms: Vec::new() }).collect();
+    let rooms_in_all = rooms.len();
     let fixed = fixed_rooms(reading, rooms);
     // storeys of a building whose size is open have as many rooms as it would have on one
-    let total = reading.total.or_else(|| (storeys > 1).then(|| program.default_rooms * count as u32));
-    let free = total.map(|total| (total as usize).saturating_sub(fixed.len()));
+    let usual = if is_open(reading) { program.default_rooms as usize * count } else { rooms_in_all };
+    let total = reading.total.map(|total| total as usize).or_else(|| (storeys > 1).then_some(usual));
+    let free = total.map(|total| total.saturating_sub(fixed.len()));
     spread(fixed, &mut units);
     let totals = free.map(|free| level_up(free, &units));
     let mut out = Vec::new();
@@ -52,10 +54,14 @@ pub(super) fn divide<'a>(reading: &mut Reading<'a>, rooms: Vec<Planned<'a>>) -> 
 /// than with what is left over from the others. Too few rooms are dealt out one by one.
 fn own_storeys(reading: &Reading, rooms: usize) -> usize {
     let storeys = reading.storeys.above_ground();
+    if rooms >= LEAST_ON_STOREY * storeys || is_open(reading) { storeys } else { 1 }
+}
+
+/// Returns true where neither a number of rooms or people nor an area says how large the building is.
+fn is_open(reading: &Reading) -> bool {
     let counted = [Occupants::Staff, Occupants::Visitors, Occupants::Beds, Occupants::Residents];
     let people = counted.iter().any(|&who| head_count(reading, who).is_some());
-    let open = reading.total.is_none() && reading.area_m2.is_none() && !people;
-    if rooms >= LEAST_ON_STOREY * storeys || open { storeys } else { 1 }
+    reading.total.is_none() && reading.area_m2.is_none() && !people
 }
 
 /// Returns the rooms that the prompt names, those of which it counts the people, and what comes with these.

@@ -268,3 +268,17 @@ fn single_rooms_keep_the_size_that_is_advised() {
     }
     most("single rooms of 18 m2 at most", 0.93, &held);
 }
+
+#[test]
+fn each_resident_has_one_bathroom() {
+    for world in worlds("care home with 18 residents", 3) {
+        let rooms = world.floorplan.rooms.iter().filter(|r| r.room_type.starts_with("resident_room"));
+        for room in rooms {
+            let baths = world
+                .floorplan
+                .doors_of(&room.room_id)
+                .filter(|d| d.room_ids.iter().any(|id| id.starts_with("ensuite")));
+            assert_eq!(baths.count(), 1, "seed {}: {}", world.floorplan.seed, room.room_id);
+        }
+    }
+}

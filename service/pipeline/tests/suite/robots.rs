@@ -301,6 +301,37 @@ fn buildings_with_stairs_are_made_for_wide_robots() {
 }
 
 #[test]
+fn doors_open_by_themselves_where_a_robot_brings_something_and_nowhere_else() {
+    let registry = Registry::builtin();
+    let mut open = 0;
+    for (prompt, brings) in [
+        ("hospital with 40 rooms on 2 storeys, for two delivery robots", true),
+        ("hospital ward with 8 rooms in Germany, for two delivery robots", true),
+        ("house with 6 rooms for a cleaning robot", false),
+        ("office for 20 people with a reception and two meeting rooms, for a cleaning robot", false),
+    ] {
+        let world = world(&registry, prompt, 1);
+        let domain = registry.get(&world.scene_graph.domain).unwrap().domain();
+        let uses = |id: &String| {
+            let room = world.floorplan.room(id).unwrap();
+            (room.circulation, domain.room_type_or_generic(&room.room_type).robot.clone())
+        };
+        for door in world.floorplan.doors.iter().filter(|d| d.automatic && d.room_ids.len() == 2) {
+            let uses: Vec<_> = door.room_ids.iter().map(uses).collect();
+            let lift = door.room_ids.iter().any(|id| id.starts_with("elevator"));
+            let charges = uses.iter().any(|u| !u.0 && u.1.contains(&RobotUse::Charging));
+            let served = uses
+                .iter()
+                .all(|(way, uses)| *way || uses.contains(&RobotUse::Service) || uses.contains(&RobotUse::Staging));
+            let kept_out = uses.iter().any(|u| u.1.contains(&RobotUse::KeepOut));
+            assert!(lift || charges || brings && served && !kept_out, "{prompt}: {door:?}");
+            open += usize::from(served);
+        }
+    }
+    assert!(open > 5, "{open}");
+}
+
+#[test]
 fn robots_pass_each_other_where_that_is_asked_for_and_where_the_building_is_made_for_several() {
     let registry = Registry::builtin();
     let body = RobotBody { width_m: Some(0.85), length_m: Some(0.9), height_m: Some(1.2), ..RobotBody::default() };
