@@ -72,6 +72,12 @@ impl FreeSpace {
         for (i, a) in self.rects.iter().enumerate() {
             widths.extend(self.rects[i + 1..].iter().map(|b| short_side(&common(a, b))).filter(|w| *w > 0.0));
         }
+        // what is free of an opening that is wider than that
+        for (gate, vertical, clear) in &gates {
+            let along =
+                self.rects.iter().map(|r| common(r, gate)).map(|c| if *vertical { c.height() } else { c.width() });
+            widths.extend(along.filter(|w| 0.0 < *w && w < clear));
+        }
         widths.sort_by(f64::total_cmp);
         widths.dedup_by(|a, b| (*a - *b).abs() < TOLERANCE_M);
         let passes = |w: f64| self.connects(&gates, w);
@@ -220,6 +226,15 @@ mod tests {
         let width = space.passage(&ends.iter().collect::<Vec<_>>());
         assert!((width - 1.2).abs() < 1e-6, "{width}");
         assert!((space.largest_square() - 1.5).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_planter_at_the_end_of_a_wide_opening_takes_no_more_than_its_floor() {
+        let hall = Polygon(Rect::new(0.0, 0.0, 10.0, 2.8).corners().to_vec());
+        let ends = [door(-0.06, 0.4, -0.06, 1.4), door(7.0, 2.86, 9.7, 2.86)];
+        let ends: Vec<&Door> = ends.iter().collect();
+        let space = FreeSpace::new(&hall, &[Rect::new(9.6, 0.0, 10.0, 0.8)]);
+        assert!((space.passage(&ends) - 2.6).abs() < 1e-6, "{}", space.passage(&ends));
     }
 
     #[test]

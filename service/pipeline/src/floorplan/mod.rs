@@ -36,6 +36,8 @@ mod storeys;
 mod tests;
 mod windows;
 
+use std::collections::BTreeMap;
+
 use d3dgen_knowledge::Limits;
 use d3dgen_model::domain::{Domain, Scheme};
 use d3dgen_model::floorplan::Floorplan;
@@ -61,6 +63,8 @@ const ATTEMPTS: u64 = 8;
 /// Rooms up to which a building is tried in one body before it is composed of wings, and up to which it is a bar.
 const MOST_WHOLE: usize = 50;
 const LONGEST_BAR: usize = 30;
+/// Rooms of a unit from which on it is a wing of its own.
+const LEAST_IN_UNIT: usize = 5;
 
 /// Plans a scene graph under the limits of the knowledge base.
 ///
@@ -222,6 +226,15 @@ const MOST_CAPPED: usize = 10;
 /// Share of the building from which on one room leaves too little for the far arm of a corridor that turns.
 const DOMINANT: f64 = 0.45;
 
+/// Returns true for several units in one body, each large enough for a wing; single rooms that came from another storey's unit
+/// make none.
+fn has_units(brief: &Brief) -> bool {
+    let mut rooms: BTreeMap<usize, usize> = BTreeMap::new();
+    let own = brief.rooms.iter().filter(|r| !r.circulation).filter_map(|r| r.unit);
+    own.for_each(|unit| *rooms.entry(unit).or_default() += 1);
+    rooms.values().filter(|n| **n >= LEAST_IN_UNIT).count() > 1
+}
+
 /// Returns the schemes that suit the domain and the number of rooms, the seed's choice first.
 fn schemes(brief: &Brief, domain: &Domain, rng: &mut Stream) -> Vec<Scheme> {
     // a storey with one core is one body, whatever its size
@@ -232,7 +245,7 @@ fn schemes(brief: &Brief, domain: &Domain, rng: &mut Stream) -> Vec<Scheme> {
     if brief.hub || brief.core.as_ref().is_some_and(|c| c.gable) {
         return vec![Scheme::Straight];
     }
-    let units = brief.rooms.iter().any(|r| r.unit.is_some_and(|u| u > 0));
+    let units = has_units(brief);
     let suits = |s: &Scheme| match s {
         _ if units && *s != Scheme::Comb => false,
         Scheme::Straight => along <= LONGEST_BAR,

@@ -83,11 +83,18 @@ pub(super) fn deal(reading: &mut Reading, planned: &[Planned], areas: &[f64], le
     let open = |at: &[Option<i32>], likes: Likes, clusters: &[Cluster]| -> Vec<usize> {
         (0..clusters.len()).filter(|&i| at[i].is_none() && clusters[i].likes == likes).collect()
     };
-    for (rooms, area) in units(&clusters, &at) {
+    let flushes = |c: &Cluster| c.rooms.iter().all(|&r| reading.wet.has_toilet(planned[r].kind));
+    let units = units(&clusters, &at, |c| c.likes == Likes::Each && flushes(c));
+    let own_storeys = units.len() == above.len();
+    for (n, (rooms, area)) in units.into_iter().enumerate() {
         let fits = |l: &&i32| load(&at, &clusters, **l) + 0.5 * area <= mean;
-        let level = above.iter().find(fits).copied();
+        let level = if own_storeys { above.get(n) } else { above.iter().find(fits) }.copied();
         let level = level.unwrap_or_else(|| least_loaded(&above, |l| load(&at, &clusters, l)));
-        rooms.iter().for_each(|&i| at[i] = Some(level));
+        for i in rooms {
+            at[i] = Some(level);
+            // a storey that is a unit keeps what it needs at hand
+            clusters[i].fixed = clusters[i].fixed.or(own_storeys.then_some(level));
+        }
     }
     for i in open(&at, Likes::Ground, &clusters) {
         let full = load(&at, &clusters, 0) + 0.5 * clusters[i].area > FULL * mean;
@@ -142,12 +149,11 @@ pub(super) fn deal(reading: &mut Reading, planned: &[Planned], areas: &[f64], le
     out
 }
 
-/// Returns the clusters of each unit that are still free, and their area, in the order of the units.
-fn units(clusters: &[Cluster], at: &[Option<i32>]) -> Vec<(Vec<usize>, f64)> {
+/// Returns the clusters of each unit that are still free, and their area, in the order of the units; `shared` are those that go
+/// to the storey without one, whichever unit they came with.
+fn units(clusters: &[Cluster], at: &[Option<i32>], shared: impl Fn(&Cluster) -> bool) -> Vec<(Vec<usize>, f64)> {
     let mut out: Vec<(&str, Vec<usize>, f64)> = Vec::new();
-    // what every storey has goes to the storey without it, whichever unit it came with
-    let free = |(i, cluster): &(usize, &Cluster)| at[*i].is_none() && cluster.likes != Likes::Each;
-    for (i, cluster) in clusters.iter().enumerate().filter(free) {
+    for (i, cluster) in clusters.iter().enumerate().filter(|(i, c)| at[*i].is_none() && !shared(c)) {
         let Some(unit) = cluster.unit else { continue };
         match out.iter_mut().find(|u| u.0 == unit) {
             Some(known) => {
