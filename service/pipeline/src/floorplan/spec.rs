@@ -18,7 +18,7 @@ use super::lattice::{JAMB_M, OUTER_HALF_M};
 use super::windows::LEAST_WALL_M;
 use crate::Error;
 use crate::placement::has_docks;
-use crate::scene_graph::BY_PROMPT;
+use crate::scene_graph::{BY_PROMPT, rules_here};
 
 /// Code of the conflict that a building has another form than was asked for.
 const FORM_NOT_BUILT: &str = "form_not_built";
@@ -420,7 +420,7 @@ fn aloof(graph: &SceneGraph, domain: &Domain) -> Vec<[usize; 2]> {
     let of = |kind: &str| -> Vec<usize> {
         graph.rooms.iter().enumerate().filter(|(_, r)| r.room_type == kind).map(|(i, _)| i).collect()
     };
-    let pairs = domain.adjacency.iter().filter(advice).flat_map(|rule| {
+    let pairs = rules_here(domain, graph.country_code.as_deref()).filter(advice).flat_map(|rule| {
         let others = of(&rule.b);
         of(&rule.a).into_iter().flat_map(move |a| others.clone().into_iter().map(move |b| [a, b]))
     });
@@ -548,10 +548,11 @@ fn is_by_entrance(room: &GraphRoom, graph: &SceneGraph) -> bool {
 /// Returns true for a room that belongs near the entrance hall in a building that has none: it lies near the entrance then.
 fn is_for_guests(room: &GraphRoom, graph: &SceneGraph, domain: &Domain) -> bool {
     let halls = &domain.circulation.entrance_room_types;
-    let wanted = |rule: &&Adjacency| {
+    let wanted = |rule: &Adjacency| {
         rule.relation == AdjacencyRelation::Should && rule.a == room.room_type && halls.contains(&rule.b)
     };
-    !graph.rooms.iter().any(|r| halls.contains(&r.room_type)) && domain.adjacency.iter().any(|rule| wanted(&rule))
+    !graph.rooms.iter().any(|r| halls.contains(&r.room_type))
+        && rules_here(domain, graph.country_code.as_deref()).any(wanted)
 }
 
 /// Returns the clear width of the gate that the vehicles of a room need, or of its own door to outdoors, m.

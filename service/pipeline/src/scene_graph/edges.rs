@@ -1,6 +1,7 @@
 //! How the rooms connect: circulation, hosts, what the prompt asks for, and the domain's adjacency rules.
 
-use d3dgen_model::domain::{Adjacency, AdjacencyRelation};
+use d3dgen_knowledge::jurisdiction;
+use d3dgen_model::domain::{Adjacency, AdjacencyRelation, Domain};
 use d3dgen_model::scene_graph::{Connector, GraphEdge, GraphRoom, Note};
 use d3dgen_model::style::LayoutStyle;
 
@@ -25,6 +26,11 @@ const MOST_NAMED: usize = 6;
 pub(super) struct Web {
     pub edges: Vec<GraphEdge>,
     pub apart: Vec<[String; 2]>,
+}
+
+/// Returns the adjacency rules of a domain that hold in a country; without one, those that hold everywhere.
+pub(crate) fn rules_here<'d>(domain: &'d Domain, country_code: Option<&str>) -> impl Iterator<Item = &'d Adjacency> {
+    domain.adjacency.iter().filter(move |rule| jurisdiction::holds(&rule.jurisdictions, country_code))
 }
 
 /// Connects the rooms; adds the corridor where the building needs one.
@@ -177,7 +183,8 @@ impl Web {
                 continue;
             }
             if let Some(rule) = ruled_out(reading, &pair) {
-                let message = format!("{} and {} may not be joined by a {}: {}", pair.a, pair.b, rule.via, rule.reason);
+                let Adjacency { via, reason, source, .. } = rule;
+                let message = format!("{} and {} may not be joined by a {via}: {reason} ({source})", pair.a, pair.b);
                 reading.conflicts.push(note("forbidden_adjacency", message));
                 continue;
             }
@@ -307,11 +314,7 @@ impl Web {
 
     /// Adds the domain's rules: `must` as required edges, `should` as wishes.
     fn follow_rules(&mut self, reading: &Reading, rooms: &[GraphRoom]) {
-        for rule in &reading.domain.adjacency {
-            let here = |c: &String| reading.country_code.as_ref() == Some(c);
-            if !rule.jurisdictions.is_empty() && !rule.jurisdictions.iter().any(here) {
-                continue;
-            }
+        for rule in rules_here(reading.domain, reading.country_code.as_deref()) {
             let required = match rule.relation {
                 AdjacencyRelation::Must => true,
                 AdjacencyRelation::Should => false,
@@ -391,11 +394,12 @@ fn of_kind(rooms: &[GraphRoom], kind: &str, number: Option<u32>) -> Vec<usize> {
 
 /// Returns the rule of the domain that rules out what a pair asks for.
 fn ruled_out<'d>(reading: &Reading<'d>, pair: &Pair) -> Option<&'d Adjacency> {
+    let mut rules = rules_here(reading.domain, reading.country_code.as_deref());
     let forbids = |rule: &&Adjacency| {
         let via = rule.via == "wall" || pair.connector != Connector::Wall;
         rule.relation == AdjacencyRelation::MustNot && is_pair(rule, &pair.a, &pair.b) && via
     };
-    reading.domain.adjacency.iter().find(forbids).filter(|_| pair.connector != Connector::Near)
+    rules.find(forbids).filter(|_| pair.connector != Connector::Near)
 }
 
 fn is_pair(rule: &Adjacency, a: &str, b: &str) -> bool {
@@ -450,12 +454,9 @@ fn choose_entrance(reading: &mut Reading, rooms: &mut [GraphRoom], hub: usize) {
 
 /// Lists the pairs that share neither door nor wall: those the prompt names, and those the domain rules out.
 fn keep_apart(reading: &mut Reading, rooms: &[GraphRoom], web: &mut Web) {
-    let rules = reading.domain.adjacency.iter().filter(|r| {
-        let here =
-            r.jurisdictions.is_empty() || r.jurisdictions.iter().any(|c| reading.country_code.as_ref() == Some(c));
-        r.relation == AdjacencyRelation::MustNot && r.via == "wall" && here
-    });
-    let ruled = rules.map(|r| Apart { rooms: [r.a.clone(), r.b.clone()], which: [None, None] });
+    let rules = rules_here(reading.domain, reading.country_code.as_deref());
+    let walls = rules.filter(|r| r.relation == AdjacencyRelation::MustNot && r.via == "wall");
+    let ruled = walls.map(|r| Apart { rooms: [r.a.clone(), r.b.clone()], which: [None, None] });
     let pairs: Vec<Apart> = reading.wishes.apart.iter().cloned().chain(ruled).collect();
     for Apart { rooms: [a, b], which } in pairs {
         let (from, to) = (of_kind(rooms, &a, which[0]), of_kind(rooms, &b, which[1]));

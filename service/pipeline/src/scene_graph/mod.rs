@@ -67,6 +67,7 @@ use d3dgen_model::style::Style;
 use d3dgen_plugins::Registry;
 
 pub(crate) use self::charging::{dock_rank, docks_held, most_docks, widest_m};
+pub(crate) use self::edges::rules_here;
 pub(crate) use self::given::room_type_called;
 pub use self::given::{Brought, Label, Understood, of_plan, understand};
 use self::program::Planned;
