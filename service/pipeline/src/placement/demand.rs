@@ -4,7 +4,7 @@ use d3dgen_model::domain::{Arrangement, Domain, Furnishing, Goods, Mount, Object
 use d3dgen_model::occupancy::ROBOT_HEIGHT_M;
 use d3dgen_model::scene_graph::{GraphRoom, SceneGraph};
 
-use crate::scene_graph::{CLEANING, docks_held, widest_m};
+use crate::scene_graph::{cleans, docks_held, widest_m};
 
 use super::seats::is_seat;
 
@@ -166,7 +166,7 @@ impl<'a> Household<'a> {
             has_robots: !graph.robots.is_empty(),
             in_each: robots.div_ceil(homes.max(1) as u32),
             circle_m: widest_m(&graph.robots),
-            cleans: graph.robots.iter().any(|r| r.kind == CLEANING),
+            cleans: graph.robots.iter().any(|r| cleans(&r.kind)),
             one_berth: robots == 1 && homes > 0,
             sharing: held
                 .filter(|(kind, _)| sleeps(kind))

@@ -8,6 +8,7 @@ use d3dgen_model::{Point, Rect};
 
 use super::floor::{Floor, Room, around, floor_in_front, looking_at, swept};
 use super::regions::buffers;
+use crate::scene_graph::cleans;
 
 /// Gap between a robot's hull and what it serves, m.
 const GAP_M: f64 = 0.10;
@@ -42,8 +43,6 @@ const SERVED: [Shape; 8] = [
     Shape::Shelf,
     Shape::Cabinet,
 ];
-/// Kind of robot that visits rooms to clean them.
-const CLEANING: &str = "cleaning";
 
 /// Returns what a robot serves in a room: of the objects of the most telling build that stand on the floor, clear of the
 /// swing of doors where there is such a one, the nearest to a door.
@@ -106,7 +105,7 @@ pub(super) fn all(floor: &Floor, graph: &SceneGraph) -> Vec<Poi> {
         let id = format!("service_point_{}", room.plan.room_id);
         out.extend(pose.map(|pose| poi(id, "service_point", room, pose)));
     }
-    if graph.robots.iter().any(|r| r.kind == CLEANING) {
+    if graph.robots.iter().any(|r| cleans(&r.kind)) {
         let cleaned = |r: &&Room| r.is_for(RobotUse::CleaningHigh) || r.is_for(RobotUse::CleaningLow);
         for room in floor.rooms.iter().filter(cleaned).filter(|r| !r.keep_out) {
             let id = format!("cleaning_point_{}", room.plan.room_id);

@@ -12,13 +12,11 @@ use d3dgen_model::{Point, Pose};
 
 use super::floor::{Floor, looking_at};
 use super::routes::Router;
-use super::staging::BRING_NOTHING;
 use super::tour::{self, Stop};
+use crate::scene_graph::{brings, cleans};
 
 /// Robots up to whose number each has routes around all others at their docks.
 const MOST_APART: usize = 8;
-/// Kind of robot that cleans.
-const CLEANING: &str = "cleaning";
 
 /// Returns the robots of the scene graph, each with its own start, goals that it can reach, in the order of a short tour.
 pub(super) fn all(
@@ -80,7 +78,7 @@ fn keep_where_it_fits(floor: &Floor, task: &mut RobotTask, pois: &[Poi]) -> bool
 /// Takes the dock that suits a robot best of those that no other one has: where the prompt puts it, else cleaning ones charge
 /// where soiled things are.
 fn own_dock<'p>(floor: &Floor, graph: &SceneGraph, robot: &Robot, left: &mut Vec<&'p Poi>) -> Option<&'p Poi> {
-    let suits = |p: &&Poi| (floor.goods(&p.room_id) == Goods::Soiled) == (robot.kind == CLEANING);
+    let suits = |p: &&Poi| (floor.goods(&p.room_id) == Goods::Soiled) == cleans(&robot.kind);
     // a dock that its type of room does not come with
     let wished = |p: &&Poi| {
         let Some(room) = graph.room(&p.room_id) else { return false };
@@ -204,7 +202,7 @@ fn of_trade<'p>(floor: &Floor, robot: &Robot, pois: &'p [Poi]) -> Vec<&'p Poi> {
     let mut all: Vec<Vec<&Poi>> = known.into_iter().map(of_kinds).collect();
     // what brings clean things goes to none of the soiled ones, where it has anything else to do
     let soiled = |p: &&Poi| floor.goods(&p.room_id) == Goods::Soiled;
-    if !BRING_NOTHING.contains(&robot.kind.as_str()) && robot.room_types.is_empty() {
+    if brings(&robot.kind) && robot.room_types.is_empty() {
         all.iter_mut().filter(|found| !found.iter().all(soiled)).for_each(|found| found.retain(|p| !soiled(p)));
     }
     // what the prompt keeps to some rooms visits these, where they have a point of any kind
@@ -217,7 +215,7 @@ fn of_trade<'p>(floor: &Floor, robot: &Robot, pois: &'p [Poi]) -> Vec<&'p Poi> {
 /// Returns the part of a tour that one of several equal robots visits; all where there are fewer points than robots. Each of those
 /// that bring things loads where the clean ones are.
 fn share<'p>(floor: &Floor, all: &[&'p Poi], robot: &Robot, number: usize) -> Vec<&'p Poi> {
-    let loads = |p: &&&'p Poi| floor.goods(&p.room_id) == Goods::Clean && !BRING_NOTHING.contains(&robot.kind.as_str());
+    let loads = |p: &&&'p Poi| floor.goods(&p.room_id) == Goods::Clean && brings(&robot.kind);
     let (mut own, rest): (Vec<&'p Poi>, Vec<&'p Poi>) = all.iter().partition(loads);
     let robots = robot.count as usize;
     match rest.len() < robots {

@@ -15,6 +15,7 @@ use d3dgen_model::{Point, Polygon, Rect};
 
 use super::floor::{CHAIR_BACK_M, Floor, Room, floor_beside, floor_in_front, lane};
 use crate::entry::way_in;
+use crate::scene_graph::brings;
 
 /// Floor for each robot, m^2 (rule `staging_zone_area_per_robot`).
 const PER_ROBOT_M2: f64 = 2.5;
@@ -47,8 +48,6 @@ const PLACES: usize = 4;
 const APART: usize = 16;
 /// Cells of a room's bounds from which on fewer of them are looked at.
 const LARGE: usize = 200_000;
-/// Kinds of robots that bring nothing.
-pub(super) const BRING_NOTHING: [&str; 2] = ["cleaning", "disinfection"];
 
 /// Returns a staging area for each unit of the storey, or for all of it, where there is floor for one beside the routes and
 /// points of its robots.
@@ -65,7 +64,7 @@ pub(super) fn all(floor: &Floor, graph: &SceneGraph, scenario: &Scenario) -> Vec
 
 /// Returns how many robots bring goods.
 fn bringing(graph: &SceneGraph) -> u32 {
-    graph.robots.iter().filter(|r| !BRING_NOTHING.contains(&r.kind.as_str())).map(|r| r.count).sum()
+    graph.robots.iter().filter(|r| brings(&r.kind)).map(|r| r.count).sum()
 }
 
 /// Returns the units of the rooms of a storey, in their order; `None` for all of a storey without any.

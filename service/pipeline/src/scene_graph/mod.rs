@@ -74,8 +74,9 @@ use self::program::Planned;
 pub(crate) use self::proposed::suits;
 pub use self::proposed::{BY_PROPOSAL, Draft, DraftEdge, DraftRoom, Settled, propose};
 use self::reading::Reading;
-pub(crate) use self::rooms::{CLEANING, wished_assets};
+pub(crate) use self::rooms::wished_assets;
 pub(crate) use self::seats::shortages;
+pub(crate) use self::words::{brings, cleans};
 use crate::Error;
 
 /// Reason of the doors to the corridor or hall.
