@@ -26,7 +26,7 @@ pub(super) fn all(
     pois: &[Poi],
 ) -> Vec<RobotTask> {
     let mut out: Vec<RobotTask> = Vec::new();
-    let mut docks: Vec<&Poi> = pois.iter().filter(|p| p.kind == "dock").collect();
+    let mut docks: Vec<&Poi> = pois.iter().filter(|p| p.kind == Poi::DOCK).collect();
     let all_docks = docks.clone();
     for robot in &graph.robots {
         let all = of_trade(floor, robot, pois);
@@ -170,13 +170,13 @@ fn ways(task: &RobotTask, (plan, placements): (&Floorplan, &Placements), pois: &
 
 /// Returns where a robot starts: its dock, else a bay, else the spot nearest to the entrance that is still free.
 fn start(floor: &Floor, pois: &[Poi], dock: Option<&Poi>, others: &[RobotTask]) -> Option<Pose> {
-    let bays = pois.iter().filter(|p| p.kind == "waiting_bay");
+    let bays = pois.iter().filter(|p| p.kind == Poi::WAITING_BAY);
     let apart = |p: &Pose| {
         others.iter().all(|o| Point::new(o.start.x, o.start.y).distance(Point::new(p.x, p.y)) >= 2.0 * floor.radius)
     };
     let known = dock.into_iter().chain(bays).map(|p| p.pose).find(apart);
     known.or_else(|| {
-        let from = pois.iter().find(|p| p.kind == "entrance").map(|p| Point::new(p.pose.x, p.pose.y));
+        let from = pois.iter().find(|p| p.kind == Poi::ENTRANCE).map(|p| Point::new(p.pose.x, p.pose.y));
         let from = from.or_else(|| floor.rooms.first().map(|r| r.plan.net_polygon.bounds().center()))?;
         let spots = floor.rooms.iter().filter_map(|r| floor.spot_near(r, from));
         let nearest = spots.min_by(|a, b| a.distance(from).total_cmp(&b.distance(from)))?;
@@ -191,14 +191,14 @@ fn of_trade<'p>(floor: &Floor, robot: &Robot, pois: &'p [Poi]) -> Vec<&'p Poi> {
         // one point a room: where it serves, else any
         let in_room = |id: &String| {
             let rank =
-                |p: &&Poi| [own.as_str(), "entrance", "service_point"].iter().position(|k| *k == p.kind).unwrap_or(3);
-            pois.iter().filter(|p| &p.room_id == id && p.kind != "dock").min_by_key(rank)
+                |p: &&Poi| [own.as_str(), Poi::ENTRANCE, Poi::SERVICE_POINT].iter().position(|k| *k == p.kind).unwrap_or(3);
+            pois.iter().filter(|p| &p.room_id == id && p.kind != Poi::DOCK).min_by_key(rank)
         };
         let found: Vec<&Poi> = robot.stops.iter().filter_map(in_room).collect();
-        return toured(floor, found, pois.iter().find(|p| p.kind == "dock"));
+        return toured(floor, found, pois.iter().find(|p| p.kind == Poi::DOCK));
     }
     let of_kinds = |kinds: &[&str]| pois.iter().filter(|p| kinds.contains(&p.kind.as_str())).collect::<Vec<&Poi>>();
-    let known = [&[own.as_str()][..], &["service_point"], &["entrance", "waiting_bay"]];
+    let known = [&[own.as_str()][..], &[Poi::SERVICE_POINT], &[Poi::ENTRANCE, Poi::WAITING_BAY]];
     let mut all: Vec<Vec<&Poi>> = known.into_iter().map(of_kinds).collect();
     // what brings clean things goes to none of the soiled ones, where it has anything else to do
     let soiled = |p: &&Poi| floor.goods(&p.room_id) == Goods::Soiled;
@@ -209,7 +209,7 @@ fn of_trade<'p>(floor: &Floor, robot: &Robot, pois: &'p [Poi]) -> Vec<&'p Poi> {
     let kept = |p: &&Poi| robot.room_types.iter().any(|t| t == floor.room_type(&p.room_id));
     let only = all.iter().map(|found| found.iter().copied().filter(kept).collect::<Vec<&Poi>>());
     let found = only.chain(all.iter().cloned()).find(|found| !found.is_empty()).unwrap_or_default();
-    toured(floor, found, pois.iter().find(|p| p.kind == "dock"))
+    toured(floor, found, pois.iter().find(|p| p.kind == Poi::DOCK))
 }
 
 /// Returns the part of a tour that one of several equal robots visits; all where there are fewer points than robots. Each of those

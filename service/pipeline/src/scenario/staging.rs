@@ -9,7 +9,7 @@ use d3dgen_model::domain::{Mount, RobotUse, Shape, Zone};
 use d3dgen_model::floorplan::Door;
 use d3dgen_model::geometry::to_mm;
 use d3dgen_model::occupancy::{Bitmap, CELL_M, stops_robot};
-use d3dgen_model::scenario::{Roi, RoiKind, Scenario};
+use d3dgen_model::scenario::{Poi, Roi, RoiKind, Scenario};
 use d3dgen_model::scene_graph::{GraphRoom, Note, SceneGraph};
 use d3dgen_model::{Point, Polygon, Rect};
 
@@ -116,7 +116,7 @@ fn driven(floor: &Floor, scenario: &Scenario) -> Vec<Rect> {
     };
     let legs = scenario.robots.iter().flat_map(|task| task.routes.iter().map(|leg| (&leg.path, task.robot.radius_m)));
     let routes = legs.flat_map(|(path, radius)| path.windows(2).flat_map(move |w| steps(w[0], w[1], radius)));
-    let points = scenario.pois.iter().filter(|p| matches!(p.kind.as_str(), "waiting_bay" | "service_point"));
+    let points = scenario.pois.iter().filter(|p| matches!(p.kind.as_str(), Poi::WAITING_BAY | Poi::SERVICE_POINT));
     let points = points.map(|p| around(Point::new(p.pose.x, p.pose.y), reach(floor.radius)));
     routes.chain(points).collect()
 }

@@ -8,6 +8,7 @@ use d3dgen_model::domain::{Domain, RobotUse, RoomType};
 use d3dgen_model::floorplan::Floorplan;
 use d3dgen_model::passage::{Passages, RobotWay};
 use d3dgen_model::report::RobotFit;
+use d3dgen_model::scenario::Poi;
 use d3dgen_model::scene_graph::Robot;
 use d3dgen_model::storeys::LinkKind;
 use d3dgen_model::world::World;
@@ -90,7 +91,7 @@ fn ways<'w>(world: &'w World, robot: &Robot, from: Option<Point>) -> Option<Pass
 
 /// Returns the middle of the floor inside the entrance, or of the first room.
 fn entry(world: &World) -> Option<Point> {
-    let poi = world.scenario.pois.iter().find(|p| p.kind == "entrance").map(|p| Point::new(p.pose.x, p.pose.y));
+    let poi = world.scenario.pois.iter().find(|p| p.kind == Poi::ENTRANCE).map(|p| Point::new(p.pose.x, p.pose.y));
     poi.or_else(|| world.floorplan.rooms.first().map(|r| r.net_polygon.bounds().center()))
 }
 
