@@ -35,17 +35,8 @@ pub(crate) fn rules_here<'d>(domain: &'d Domain, country_code: Option<&str>) -> 
 
 /// Connects the rooms; adds the corridor where the building needs one.
 pub(super) fn connect(reading: &mut Reading, planned: &[Planned], rooms: &mut Vec<GraphRoom>) -> Web {
-    let mut web = Web::default();
     let hub = hub(reading, planned, rooms);
-    web.circulate(planned, rooms, hub);
-    choose_entrance(reading, rooms, hub);
-    keep_apart(reading, rooms, &mut web);
-    web.follow_prompt(reading, planned, rooms, hub);
-    web.stay_near_entrance(reading, rooms);
-    web.open_named(reading, planned, rooms);
-    web.open_up(reading, rooms);
-    web.follow_rules(reading, rooms);
-    web
+    Web::around(reading, planned, rooms, hub, true)
 }
 
 /// States the pairs of the prompt that came to nothing: of rooms on different storeys, or of one that is not there.
@@ -83,20 +74,9 @@ pub(super) fn connect_storey(
     corridor: GraphRoom,
     ground: bool,
 ) -> Web {
-    let mut web = Web::default();
+    let hub = rooms.len();
     rooms.push(corridor);
-    let hub = rooms.len() - 1;
-    web.circulate(planned, rooms, hub);
-    if ground {
-        choose_entrance(reading, rooms, hub);
-    }
-    keep_apart(reading, rooms, &mut web);
-    web.follow_prompt(reading, planned, rooms, hub);
-    web.stay_near_entrance(reading, rooms);
-    web.open_named(reading, planned, rooms);
-    web.open_up(reading, rooms);
-    web.follow_rules(reading, rooms);
-    web
+    Web::around(reading, planned, rooms, hub, ground)
 }
 
 /// Returns the index of the room all others open to: a hub of the domain, a new corridor, or the only room.
@@ -126,6 +106,29 @@ fn hub(reading: &mut Reading, planned: &[Planned], rooms: &mut Vec<GraphRoom>) -
 }
 
 impl Web {
+    /// Connects the rooms around one of them, which one enters the building through unless the prompt or domain has another
+    /// one for that. Storeys off the ground have no entrance.
+    fn around(
+        reading: &mut Reading,
+        planned: &[Planned],
+        rooms: &mut [GraphRoom],
+        hub: usize,
+        has_entrance: bool,
+    ) -> Self {
+        let mut web = Self::default();
+        web.circulate(planned, rooms, hub);
+        if has_entrance {
+            choose_entrance(reading, rooms, hub);
+        }
+        keep_apart(reading, rooms, &mut web);
+        web.follow_prompt(reading, planned, rooms, hub);
+        web.stay_near_entrance(reading, rooms);
+        web.open_named(reading, planned, rooms);
+        web.open_up(reading, rooms);
+        web.follow_rules(reading, rooms);
+        web
+    }
+
     fn put(&mut self, rooms: &[GraphRoom], (a, b): (usize, usize), connector: Connector, required: bool, reason: &str) {
         let (a, b) = (rooms[a].id.clone(), rooms[b].id.clone());
         let same = |e: &&mut GraphEdge| e.a == a && e.b == b || e.a == b && e.b == a;
