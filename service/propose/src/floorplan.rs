@@ -33,7 +33,7 @@ const NEAR: f64 = 0.3;
 /// Asks for a floorplan of a building that stands; returns the building that it became.
 pub fn propose(desk: &mut Desk<'_, '_>, base: &Generated) -> Result<(Option<Generated>, StageProposal), Error> {
     let graph = &base.world.scene_graph;
-    if graph.level_numbers().len() > 1 {
+    if graph.has_storeys() {
         let note = "the building has several storeys, whose plans follow from each other: they are planned as ever";
         return Ok((None, not_asked(Stage::Floorplan, note)));
     }

@@ -1,6 +1,5 @@
 //! Furniture under edits: what still fits stays, what an edit names goes where it says, the rest is furnished anew.
 
-use std::borrow::Cow;
 use std::collections::BTreeSet;
 use std::f64::consts::FRAC_PI_2;
 
@@ -25,7 +24,7 @@ impl Desk<'_> {
         let old = before.room(room_id);
         self.follow(old, &room);
         let old = old.filter(|old| moved_by(old, &room).is_none());
-        let plan = self.storey_of(&room);
+        let plan = self.plan.storey_at(room.level);
         let mut gone: BTreeSet<String> = BTreeSet::new();
         for p in self.placements.placements.iter().filter(|p| p.room_id == room_id) {
             let at_wall = old.is_none_or(|old| {
@@ -204,7 +203,7 @@ impl Desk<'_> {
     fn make_way(&mut self, new: &Placement, riders: &BTreeSet<String>) -> Result<(), Error> {
         let room = self.room(&new.room_id)?.clone();
         let domain = self.plugin.domain();
-        let plan = self.storey_of(&room);
+        let plan = self.plan.storey_at(room.level);
         let of_room = |p: &&Placement| p.room_id == room.room_id;
         if new.support.is_none()
             && let Some(problem) = misfits(&plan, &room, domain, &[new]).into_iter().next()
@@ -278,7 +277,7 @@ impl Desk<'_> {
         let limits = &self.retrieved.limits;
         let made = furnish_room(
             &self.graph,
-            &self.storey_of(room),
+            &self.plan.storey_at(room.level),
             room,
             (self.plugin.domain(), limits),
             &fixed,
@@ -307,15 +306,6 @@ impl Desk<'_> {
         }
         self.changed.insert(room_id.to_owned());
         Ok(())
-    }
-
-    /// Returns the plan of the storey that a room is on.
-    fn storey_of(&self, room: &PlanRoom) -> Cow<'_, Floorplan> {
-        if self.plan.level_numbers().len() > 1 {
-            Cow::Owned(self.plan.storey(room.level))
-        } else {
-            Cow::Borrowed(&self.plan)
-        }
     }
 
     fn room(&self, room_id: &str) -> Result<&PlanRoom, Error> {
