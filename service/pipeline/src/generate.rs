@@ -230,10 +230,7 @@ fn attempts(
     let retrieved = retrieve(graph, plugin);
     let name = settings.name.clone().unwrap_or_else(|| world_name(graph));
     let pinned = settings.pinned_floorplan.is_some() || settings.pinned_placements.is_some();
-    let mut levels: Vec<i32> = graph.rooms.iter().map(|r| r.level).collect();
-    levels.sort_unstable();
-    levels.dedup();
-    let picky = !pinned && graph.rooms.len() <= (FEW_ROOMS * levels.len()).min(FEW_ON_STOREYS);
+    let picky = !pinned && graph.rooms.len() <= (FEW_ROOMS * graph.level_numbers().len()).min(FEW_ON_STOREYS);
     let mut best: Option<(Faults, Generated)> = None;
     let mut reason = None;
     for attempt in 0..settings.attempts.max(1) {
