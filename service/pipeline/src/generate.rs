@@ -7,7 +7,6 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use d3dgen_knowledge::{Query, Retrieval};
-use d3dgen_model::Rect;
 use d3dgen_model::domain::Domain;
 use d3dgen_model::floorplan::Floorplan;
 use d3dgen_model::placements::Placements;
@@ -364,14 +363,10 @@ fn attempt(
 
 /// Returns what to say of rooms that the prompt wants near each other and that are not.
 fn far_apart(graph: &SceneGraph, plan: &Floorplan) -> Option<Note> {
-    let between = |a: Rect, b: Rect| {
-        let apart = [a.x0.max(b.x0) - a.x1.min(b.x1), a.y0.max(b.y0) - a.y1.min(b.y1)];
-        apart[0].max(0.0).hypot(apart[1].max(0.0))
-    };
     let near = graph.edges.iter().filter(|e| e.connector == Connector::Near && e.reason == BY_PROMPT);
     let far = near.filter_map(|e| {
         let (a, b) = (plan.room(&e.a)?, plan.room(&e.b)?);
-        let gap = between(a.polygon.bounds(), b.polygon.bounds());
+        let gap = a.polygon.bounds().distance(&b.polygon.bounds());
         (a.level == b.level && gap > NEAR_M).then(|| format!("{} from {} ({gap:.0} m)", a.name, b.name))
     });
     let far: Vec<String> = far.collect();

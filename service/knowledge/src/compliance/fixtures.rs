@@ -2,7 +2,7 @@
 
 use d3dgen_model::domain::{Mount, Shape};
 use d3dgen_model::knowledge::Value;
-use d3dgen_model::{Point, Rect, Segment};
+use d3dgen_model::{Point, Rect};
 
 use super::kitchen;
 use super::objects::belong_together;
@@ -58,7 +58,7 @@ pub(super) fn figure(site: &Site, room: &Room, object: &Object, a: &Applicable, 
         }
         Measure::HeadToWindow => {
             let head = head(object);
-            room.windows.iter().map(|w| to_segment(head, &w.line)).reduce(f64::min)
+            room.windows.iter().map(|w| w.line.bounds().distance_to(head)).reduce(f64::min)
         }
         Measure::BedToSideWall => to_side_wall(room, object, rule),
         Measure::BedSidePair => {
@@ -94,14 +94,7 @@ fn to_door(site: &Site, room: &Room, object: &Object, rule: &Rule) -> Option<f64
     let plan = &site.world.floorplan;
     let leads = |id: &String| plan.room(id).is_some_and(|r| rule.to.contains(&r.room_type));
     let doors = room.doors.iter().filter(|d| d.room_ids.iter().any(leads));
-    doors.map(|d| to_segment(object.rect.center(), &d.line)).reduce(f64::min)
-}
-
-/// Returns the distance of a point from an axis-aligned segment, m.
-fn to_segment(p: Point, s: &Segment) -> f64 {
-    let r = Rect::new(s.start.x, s.start.y, s.end.x, s.end.y);
-    let nearest = Point::new(p.x.clamp(r.x0, r.x1), p.y.clamp(r.y0, r.y1));
-    p.distance(nearest)
+    doors.map(|d| d.line.bounds().distance_to(object.rect.center())).reduce(f64::min)
 }
 
 fn seats_at<'a>(room: &'a Room, object: &'a Object) -> impl Iterator<Item = &'a Object<'a>> {

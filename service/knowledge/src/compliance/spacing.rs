@@ -4,7 +4,7 @@ use d3dgen_model::Rect;
 use d3dgen_model::domain::{Mount, Shape};
 
 use super::Reading;
-use super::objects::{belong_together, gap};
+use super::objects::belong_together;
 use super::site::{Object, Room, Site};
 use crate::clearance::{HEAD_ROOM_M, Side, depth_beside, free_depth, quarter};
 use crate::measure::Measure;
@@ -39,7 +39,7 @@ pub(super) fn figure(room: &Room, object: &Object, rule: &Rule) -> Option<f64> {
         }
         Measure::ObjectToObject => {
             let ends = room.objects.iter().filter(|o| o.is(&rule.quantity.to_shapes));
-            ends.map(|o| gap(&o.rect, own)).reduce(f64::min)
+            ends.map(|o| o.rect.gap(own)).reduce(f64::min)
         }
         Measure::CentreToSide => {
             let ahead = quarter(object.placement.pose.yaw_rad);
@@ -57,7 +57,7 @@ pub(super) fn figure(room: &Room, object: &Object, rule: &Rule) -> Option<f64> {
         }
         Measure::TableEdgePerSeat => {
             let seats = room.objects.iter().filter(|o| o.is(&SEATS) && belong_together(o, object));
-            let seats = seats.filter(|o| gap(&o.rect, own) <= AT_TABLE_M).count();
+            let seats = seats.filter(|o| o.rect.gap(own) <= AT_TABLE_M).count();
             (seats > 0).then(|| 2.0 * (own.width() + own.height()) / seats as f64)
         }
         Measure::WindowDistance => room.windows.iter().map(|w| w.line.middle().distance(own_middle)).reduce(f64::min),

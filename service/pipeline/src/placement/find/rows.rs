@@ -522,13 +522,6 @@ fn senses(unit: &Unit) -> bool {
     unit.bbox.width() < DEVICE && unit.anchor().object.affordances.iter().any(|a| a == "see")
 }
 
-/// Returns how far apart two rectangles are, mm.
-fn distance(a: &Box2, b: &Box2) -> i32 {
-    let dx = f64::from((a.x0 - b.x1).max(b.x0 - a.x1).max(0));
-    let dy = f64::from((a.y0 - b.y1).max(b.y0 - a.y1).max(0));
-    (dx * dx + dy * dy).sqrt() as i32
-}
-
 /// Moves what senses smoke along the room to the nearest place away from doors through which steam comes; where no place is
 /// far enough, to the farthest.
 fn far_from_doors<'a>(
@@ -549,7 +542,7 @@ fn far_from_doors<'a>(
             continue;
         }
         let body = moved.world(&moved.unit.bbox);
-        let far = openings.iter().map(|o| distance(o, &body)).min().unwrap_or(FROM_DOOR).min(FROM_DOOR);
+        let far = openings.iter().map(|o| o.distance(&body)).min().unwrap_or(FROM_DOOR).min(FROM_DOOR);
         if best.as_ref().is_ok_and(|(most, _)| *most >= far) {
             continue;
         }
