@@ -11,7 +11,7 @@ use std::str::Lines;
 use d3dgen_model::Point;
 
 use super::{Plan, Reader, Source};
-use crate::drawing::{Drawing, DrawnLabel, DrawnOpening, DrawnRoom, DrawnWall, MOST_POINTS, OpeningKind, note};
+use crate::drawing::{Drawing, DrawnLabel, DrawnOpening, DrawnRoom, DrawnWall, MOST_POINTS, OpeningKind, extent, note};
 use crate::words::{Role, role};
 use crate::{Error, Options};
 
@@ -198,12 +198,7 @@ fn read(source: &Source, options: &Options) -> Result<Plan, Error> {
 
 /// Returns the unit by the size of the drawing: a building has some tens of meters.
 fn guessed(drawing: &mut Drawing) -> f64 {
-    let mut around: Option<[f64; 4]> = None;
-    for p in drawing.points_mut() {
-        let b = around.get_or_insert([p.x, p.y, p.x, p.y]);
-        *b = [b[0].min(p.x), b[1].min(p.y), b[2].max(p.x), b[3].max(p.y)];
-    }
-    match around.map_or(0.0, |b| (b[2] - b[0]).max(b[3] - b[1])) {
+    match extent(drawing.points_mut().map(|p| *p)).map_or(0.0, |b| (b[2] - b[0]).max(b[3] - b[1])) {
         side if side > 2000.0 => 0.001,
         side if side > 250.0 => 0.01,
         _ => 1.0,
