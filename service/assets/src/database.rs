@@ -131,6 +131,16 @@ impl Database {
         record.and_then(|r| r.model).map(|hash| files::read(&self.files_dir(), &hash)).transpose()
     }
 
+    /// Returns the model of an asset kept here as worlds place it, with what is known of it; none for such as have no file.
+    ///
+    /// # Errors
+    /// As [`Self::model`].
+    pub fn placed_model(&self, asset_id: &str) -> Result<Option<(Model3d, Annotation)>, Error> {
+        let Some(annotation) = self.get(asset_id)? else { return Ok(None) };
+        let Some(model) = self.model(asset_id)? else { return Ok(None) };
+        Ok(Some((placed(model, &annotation), annotation)))
+    }
+
     /// Returns the thumbnail of an asset kept here, PNG; none for such as have no model.
     ///
     /// # Errors
