@@ -20,6 +20,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::annotation::Annotation;
 use crate::error::Error;
+use crate::placed::placed;
 use records::{ASSETS, AssetRecord, CHANGES, PATHS, REMOVED, RemovedRecord, each, get};
 
 pub use records::{Change, IngestedFile, Kind, Provenance};
@@ -169,7 +170,7 @@ impl Database {
     /// # Errors
     /// `Store`.
     pub fn ingested(&self, path: &str) -> Result<Option<IngestedFile>, Error> {
-        get(&self.store.view()?, PATHS, path)
+        Ok(get(&self.store.view()?, PATHS, path)?)
     }
 
     /// Returns true when no asset is kept and none of the library removed.
