@@ -156,10 +156,7 @@ pub fn furnish_and_check(
     observe: &mut dyn FnMut(Event<'_>),
     cancelled: &AtomicBool,
 ) -> Result<Generated, Error> {
-    let plugin = registry.get(&graph.domain).ok_or_else(|| Error::Mismatch {
-        stage: "floorplan",
-        message: format!("the scene graph is of domain `{}`, which is not registered", graph.domain),
-    })?;
+    let plugin = plugin_of(registry, graph)?;
     let mut made = |graph: &SceneGraph, settings: &Settings| match attempts(graph, plugin, settings, observe, cancelled)
     {
         Err(error @ Error::Infeasible { .. }) => match relaxed(graph) {
@@ -183,6 +180,17 @@ pub fn furnish_and_check(
     }
     let few = Settings { attempts: FEW_ATTEMPTS, ..settings.clone() };
     fit::or_refused(made, graph, &mut |graph| attempts(graph, plugin, &few, &mut |_| (), cancelled))
+}
+
+/// Returns the plugin of a graph's domain.
+///
+/// # Errors
+/// `Mismatch` when it is not registered.
+pub fn plugin_of<'r>(registry: &'r Registry, graph: &SceneGraph) -> Result<&'r dyn Plugin, Error> {
+    registry.get(&graph.domain).ok_or_else(|| Error::Mismatch {
+        stage: "floorplan",
+        message: format!("the scene graph is of domain `{}`, which is not registered", graph.domain),
+    })
 }
 
 /// Returns the graph with what the prompt wants beside each other as wishes, or `None` when there is nothing to relax.
