@@ -4,7 +4,7 @@
 //! was asked for. When the plan, the furniture or the check fails, the stages after it start again under a seed derived
 //! from the first, so that the outcome still depends on nothing but the request.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
 use d3dgen_knowledge::{Query, Retrieval};
 use d3dgen_model::domain::Domain;
@@ -19,7 +19,7 @@ use d3dgen_plugins::{Plugin, Registry};
 
 use crate::placement::{Furnished, before_openings};
 use crate::scene_graph::{BY_PROMPT, BY_STYLE, Request};
-use crate::{Error, fit, floorplan, placement, scenario, scene_graph, ways_out, world};
+use crate::{Error, Stop, fit, floorplan, placement, scenario, scene_graph, ways_out, world};
 
 /// How to make a world, beside the request itself.
 #[derive(Debug, Clone)]
@@ -414,9 +414,7 @@ pub fn finish(
 }
 
 fn begin(stage: Stage, attempt: u32, observe: &mut dyn FnMut(Event<'_>), cancelled: &AtomicBool) -> Result<(), Error> {
-    if cancelled.load(Ordering::Relaxed) {
-        return Err(Error::Cancelled);
-    }
+    Stop::from(cancelled).check()?;
     observe(Event::Started(stage, attempt));
     Ok(())
 }

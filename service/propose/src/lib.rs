@@ -17,7 +17,7 @@ mod placement;
 mod prompt;
 mod scene_graph;
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
 use d3dgen_knowledge::Retrieval;
 use d3dgen_llm::{Answer, Client, Error as LlmError, Request as LlmRequest};
@@ -156,7 +156,7 @@ impl Desk<'_, '_> {
 
     /// Goes on unless the caller wants to stop.
     fn check(&self) -> Result<(), Error> {
-        if self.cancelled.load(Ordering::Relaxed) { Err(Error::Cancelled) } else { Ok(()) }
+        self.stop().check()
     }
 
     /// Puts a world together and judges it.
