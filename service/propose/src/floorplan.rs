@@ -67,8 +67,8 @@ fn question(desk: &Desk<'_, '_>, graph: &SceneGraph) -> Question {
     let mut listed: Vec<_> = graph.edges.iter().collect();
     listed.sort_by_key(|e| !e.required);
     for edge in listed {
-        let connector = format!("{:?}", edge.connector).to_lowercase();
-        let _ = writeln!(edges, "- {} - {}: {connector}{}", edge.a, edge.b, if edge.required { "" } else { " (wish)" });
+        let (connector, wish) = (edge.connector.name(), if edge.required { "" } else { " (wish)" });
+        let _ = writeln!(edges, "- {} - {}: {connector}{wish}", edge.a, edge.b);
     }
     for [a, b] in &graph.apart {
         let _ = writeln!(edges, "- {a} - {b}: must not touch");

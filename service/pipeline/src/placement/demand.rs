@@ -273,7 +273,7 @@ pub(super) fn tasks<'a>(
         if count == 0 {
             continue;
         }
-        let name = arrangement_name(f.arrangement);
+        let name = f.arrangement.name();
         let rule = format!("furnishing line {} ({}): {name}", line + 1, f.item);
         let arrangement = f.arrangement;
         let (rule, instead_of) = (rule.clone(), &f.instead_of[..]);
@@ -311,7 +311,7 @@ pub(super) fn tasks<'a>(
     let lines = kind.furnishing.len();
     for (i, (object, count)) in wishes(domain, kind, graph).into_iter().enumerate() {
         let arrangement = natural(object);
-        let rule = format!("wished for in the scene graph ({}): {}", object.id, arrangement_name(arrangement));
+        let rule = format!("wished for in the scene graph ({}): {}", object.id, arrangement.name());
         let line = lines + i;
         let item = &object.id;
         out.push(Task {
@@ -486,7 +486,7 @@ fn usual_unit<'a>(domain: &'a Domain, item: &'a str) -> Option<Unit<'a>> {
 /// Returns the task of one object that somebody wants in a room, whatever its type asks for.
 pub(super) fn one_more(object: &ObjectType) -> Task<'_> {
     let arrangement = natural(object);
-    let rule = format!("added by an edit ({}): {}", object.id, arrangement_name(arrangement));
+    let rule = format!("added by an edit ({}): {}", object.id, arrangement.name());
     let item = &object.id;
     Task {
         item,
@@ -581,21 +581,4 @@ fn takes_floor(object: &ObjectType) -> bool {
     let depth = object.sizes_m.first().map_or(0.0, |s| s[1]);
     object.mount == Mount::Floor
         || (object.mount == Mount::Wall && low && (depth > 0.15 || object.clearance_front_m > 0.3))
-}
-
-fn arrangement_name(a: Arrangement) -> &'static str {
-    match a {
-        Arrangement::Wall => "wall",
-        Arrangement::SolidWall => "solid_wall",
-        Arrangement::WindowWall => "window_wall",
-        Arrangement::Corner => "corner",
-        Arrangement::Center => "center",
-        Arrangement::Rows => "rows",
-        Arrangement::Facing => "facing",
-        Arrangement::BesideDoor => "beside_door",
-        Arrangement::OnSurface => "on_surface",
-        Arrangement::Overhead => "overhead",
-        Arrangement::AtWindow => "at_window",
-        Arrangement::FacingDoor => "facing_door",
-    }
 }
