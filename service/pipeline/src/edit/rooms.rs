@@ -47,9 +47,8 @@ pub(super) fn add(
     let connector = if kind.open_front && entered_from.is_none() { Connector::Open } else { Connector::Door };
     graph.edges.push(GraphEdge { a: id.clone(), b: from.clone(), connector, required: true, reason: BY_EDIT.into() });
     let country = graph.country_code.clone();
-    let apart = rules_here(domain, country.as_deref()).filter(|r| {
-        r.relation == AdjacencyRelation::MustNot && r.via == "wall" && (r.a == kind.id || r.b == kind.id)
-    });
+    let apart = rules_here(domain, country.as_deref())
+        .filter(|r| r.relation == AdjacencyRelation::MustNot && r.via == "wall" && (r.a == kind.id || r.b == kind.id));
     for rule in apart {
         let other = if rule.a == kind.id { &rule.b } else { &rule.a };
         for room in graph.rooms.iter().filter(|r| &r.room_type == other && r.id != from && r.level == level) {

@@ -88,7 +88,8 @@ pub(super) fn all(floor: &Floor, graph: &SceneGraph) -> Vec<Poi> {
         for &(dock, kind) in docks {
             let number = out.iter().filter(|p| p.kind == Poi::DOCK).count() + 1;
             out.extend(
-                at_object(floor, room, (dock, kind)).map(|(_, pose)| poi(format!("dock_{number}"), Poi::DOCK, room, pose)),
+                at_object(floor, room, (dock, kind))
+                    .map(|(_, pose)| poi(format!("dock_{number}"), Poi::DOCK, room, pose)),
             );
         }
     }

@@ -190,8 +190,9 @@ fn of_trade<'p>(floor: &Floor, robot: &Robot, pois: &'p [Poi]) -> Vec<&'p Poi> {
     if !robot.stops.is_empty() {
         // one point a room: where it serves, else any
         let in_room = |id: &String| {
-            let rank =
-                |p: &&Poi| [own.as_str(), Poi::ENTRANCE, Poi::SERVICE_POINT].iter().position(|k| *k == p.kind).unwrap_or(3);
+            let rank = |p: &&Poi| {
+                [own.as_str(), Poi::ENTRANCE, Poi::SERVICE_POINT].iter().position(|k| *k == p.kind).unwrap_or(3)
+            };
             pois.iter().filter(|p| &p.room_id == id && p.kind != Poi::DOCK).min_by_key(rank)
         };
         let found: Vec<&Poi> = robot.stops.iter().filter_map(in_room).collect();

@@ -61,7 +61,8 @@ impl KeptModels for Kept {
     fn model(&self, asset_id: &str) -> Result<Option<KeptModel>, d3dgen_export::Error> {
         let Some(database) = &self.0 else { return Ok(None) };
         let kept = database.placed_model(asset_id);
-        let kept = kept.map_err(|e| d3dgen_export::Error::Kept { asset: asset_id.to_owned(), reason: e.to_string() })?;
+        let kept =
+            kept.map_err(|e| d3dgen_export::Error::Kept { asset: asset_id.to_owned(), reason: e.to_string() })?;
         Ok(kept.map(|(model, annotation)| {
             let tags = asa::tags(&annotation);
             KeptModel { model, tags, description: annotation.description }

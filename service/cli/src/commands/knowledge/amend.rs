@@ -111,7 +111,6 @@ impl Args {
         }
         Ok(difference(knowledge, &after, true))
     }
-
 }
 
 fn is_held(knowledge: &KnowledgeBase, rule: &d3dgen_model::knowledge::Constraint) -> bool {
