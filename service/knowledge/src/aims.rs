@@ -129,9 +129,12 @@ fn is_floor(measure: Measure) -> bool {
         || measure == M::CentreToSide
 }
 
+/// Tag of what robots that see with light mistake for an opening.
+const MIRROR: &str = "mirror";
+
 /// Returns true for what robots that see with light mistake for an opening.
-pub(crate) fn is_mirror(object_id: &str, kind: Option<&ObjectType>) -> bool {
-    object_id.contains("mirror") || kind.is_some_and(|k| k.tags.iter().any(|t| t == "mirror"))
+pub(crate) fn is_mirror(kind: &ObjectType) -> bool {
+    kind.tags.iter().any(|t| t == MIRROR)
 }
 
 fn in_scope(a: &Applicable, room_type: &str, circulation: bool) -> bool {
@@ -145,7 +148,7 @@ fn in_scope(a: &Applicable, room_type: &str, circulation: bool) -> bool {
 
 fn concerns(a: &Applicable, rule: &Rule, object: &ObjectType) -> bool {
     match &a.scope {
-        _ if rule.quantity.measure == Measure::NoGlassOrMirrors => is_mirror(&object.id, Some(object)),
+        _ if rule.quantity.measure == Measure::NoGlassOrMirrors => is_mirror(object),
         Scope::Objects(shapes) if !rule.quantity.names_objects() => shapes.contains(&object.shape),
         _ => rule.quantity.picks(object),
     }
