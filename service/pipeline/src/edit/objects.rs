@@ -37,8 +37,8 @@ impl Desk<'_> {
             }
             if p.locked {
                 let reason = problems.into_iter().next();
-                let reason = reason.unwrap_or_else(|| format!("locked `{}` would lose its wall", p.placement_id));
-                return Err(infeasible(reason));
+                let reason = reason.unwrap_or_else(|| format!("`{}` would lose its wall", p.placement_id));
+                return Err(infeasible(format!("locked {reason}")));
             }
             gone.insert(p.placement_id.clone());
         }
@@ -208,7 +208,7 @@ impl Desk<'_> {
         if new.support.is_none()
             && let Some(problem) = misfits(&plan, &room, domain, &[new]).into_iter().next()
         {
-            return Err(infeasible(problem.replace("locked ", "")));
+            return Err(infeasible(problem));
         }
         let mut gone = BTreeSet::new();
         for p in self.placements.placements.iter().filter(of_room).filter(|p| !riders.contains(&p.placement_id)) {
@@ -285,7 +285,7 @@ impl Desk<'_> {
             self.stop,
         );
         self.stop.check()?;
-        let (placements, unplaced) = made.map_err(|problems| infeasible(problems.join("; ").replace("locked ", "")))?;
+        let (placements, unplaced) = made.map_err(|problems| infeasible(problems.join("; ")))?;
         if let Some(object) = more
             && let Some(missing) = unplaced.first()
         {
