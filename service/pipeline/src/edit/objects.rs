@@ -1,6 +1,6 @@
 //! Furniture under edits: what still fits stays, what an edit names goes where it says, the rest is furnished anew.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::FRAC_PI_2;
 
 use d3dgen_model::domain::{Domain, Mount, ObjectType};
@@ -291,15 +291,13 @@ impl Desk<'_> {
         {
             return Err(infeasible(format!("`{}` finds no place in `{room_id}`: {}", object.id, missing.reason)));
         }
-        let mut by_room: Vec<Placement> = Vec::new();
-        for r in &self.plan.rooms {
-            if r.room_id == room_id {
-                by_room.extend(placements.iter().cloned());
-            } else {
-                by_room.extend(self.placements.placements.iter().filter(|p| p.room_id == r.room_id).cloned());
-            }
-        }
-        self.placements.placements = by_room;
+        // in the order of the plan's rooms, as in a world that was made
+        let order: BTreeMap<&str, usize> =
+            self.plan.rooms.iter().enumerate().map(|(i, r)| (r.room_id.as_str(), i)).collect();
+        let all = &mut self.placements.placements;
+        all.retain(|p| p.room_id != room_id && order.contains_key(p.room_id.as_str()));
+        all.extend(placements);
+        all.sort_by_key(|p| order[p.room_id.as_str()]);
         if more.is_none() {
             self.placements.unplaced.retain(|u| u.room_id != room_id);
             self.placements.unplaced.extend(unplaced);
