@@ -257,6 +257,7 @@ pub(crate) fn brings(kind: &str) -> bool {
 
 /// Room types behind short forms of dwellings.
 #[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub(super) struct Dwelling {
     pub living: String,
     pub dining: String,
@@ -313,6 +314,7 @@ pub(super) struct Dwelling {
 
 /// A program of homes with so many bedrooms.
 #[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub(super) struct ByBedrooms {
     /// Programs that it replaces.
     pub programs: Vec<String>,
