@@ -88,7 +88,7 @@ impl Aim {
             } else if let Some(least) = rule.bounds.min {
                 let width = object.sizes_m.iter().map(|s| s[0]).reduce(f64::min).unwrap_or(0.0);
                 let least = if measure == Measure::CentreToSide { (least - width / 2.0).max(0.0) } else { least };
-                let one_side = a.constraint.measurement_basis.contains("one side");
+                let one_side = a.is_one_sided();
                 aim.clear.raise(measure, least, one_side);
                 if a.mandatory {
                     aim.by_law.raise(measure, least, one_side);

@@ -53,7 +53,7 @@ pub(super) fn figure(site: &Site, room: &Room, object: &Object, a: &Applicable, 
         Measure::ClearanceAround => Some(around(room, object, entry(a, "length")?)),
         Measure::AccessibleSides => {
             let free =
-                |turn| depth_beside(&object.rect, turn, &room.plan.net_polygon, others(room, object)) >= STANDING_M;
+                |turn| depth_beside(&object.rect, turn, &room.plan.net_polygon, room.others(object)) >= STANDING_M;
             Some((0..4).filter(|turn| free(*turn)).count() as f64)
         }
         Measure::HeadToWindow => {
@@ -63,7 +63,7 @@ pub(super) fn figure(site: &Site, room: &Room, object: &Object, a: &Applicable, 
         Measure::BedToSideWall => to_side_wall(room, object, rule),
         Measure::BedSidePair => {
             let (wide, narrow) = (entry(a, "one_side")?, entry(a, "other_side")?);
-            let side = |side| free_depth(object.placement, side, &room.plan.net_polygon, others(room, object));
+            let side = |side| free_depth(object.placement, side, &room.plan.net_polygon, room.others(object));
             let (left, right) = (side(Side::Left), side(Side::Right));
             Some(left.min(right).min(left.max(right) - (wide - narrow)))
         }
@@ -77,10 +77,6 @@ fn entry(a: &Applicable, key: &str) -> Option<f64> {
         Value::Table(table) => table.get(key)?.as_f64(),
         _ => None,
     }
-}
-
-fn others<'a>(room: &'a Room, object: &'a Object) -> impl Iterator<Item = Rect> + 'a {
-    room.objects.iter().filter(|o| o.blocks && !belong_together(o, object)).map(|o| o.rect)
 }
 
 /// Returns the distance of the middle of a thing on a wall from the nearest wall beside it, m.
@@ -108,7 +104,7 @@ fn seated_depth(room: &Room, object: &Object) -> Option<f64> {
         let beyond = |r: Rect| r.center().x > own.x1 && r.center().y > own.y0 && r.center().y < own.y1;
         seats_at(room, object).any(|s| beyond(turned(&s.rect, turn)))
     };
-    let free = |turn| depth_beside(&object.rect, turn, &room.plan.net_polygon, others(room, object));
+    let free = |turn| depth_beside(&object.rect, turn, &room.plan.net_polygon, room.others(object));
     (0..4).filter(|turn| sits(*turn)).map(free).reduce(f64::min)
 }
 

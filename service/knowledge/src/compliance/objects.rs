@@ -1,6 +1,5 @@
 //! Free floor around objects, and where docks stand.
 
-use d3dgen_model::Rect;
 use d3dgen_model::domain::Shape;
 use d3dgen_model::floorplan::Door;
 
@@ -51,16 +50,12 @@ fn docks_keep_egress(site: &Site) -> Vec<Reading> {
 }
 
 fn figure(site: &Site, room: &Room, object: &Object, a: &Applicable, rule: &Rule) -> Option<f64> {
-    let depth = |side: Side| {
-        let others = room.objects.iter().filter(|o| o.blocks && !belong_together(o, object)).map(|o| o.rect);
-        free_depth(object.placement, side, &room.plan.net_polygon, others)
-    };
+    let depth = |side: Side| free_depth(object.placement, side, &room.plan.net_polygon, room.others(object));
     match rule.quantity.measure {
         Measure::ObjectFront => Some(depth(Side::Front)),
         Measure::ObjectSides => {
             let (left, right) = (depth(Side::Left), depth(Side::Right));
-            let one_side = a.constraint.measurement_basis.contains("one side");
-            Some(if one_side { left.max(right) } else { left.min(right) })
+            Some(if a.is_one_sided() { left.max(right) } else { left.min(right) })
         }
         Measure::GapBetweenObjects => {
             let alike = |o: &&Object| o.kind.is_some_and(|k| rule.quantity.picks(k)) && o.placement != object.placement;

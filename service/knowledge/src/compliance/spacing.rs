@@ -1,6 +1,5 @@
 //! Free floor around objects, and distances between objects, walls and windows.
 
-use d3dgen_model::Rect;
 use d3dgen_model::domain::{Mount, Shape};
 
 use super::Reading;
@@ -29,7 +28,7 @@ pub(super) fn figure(room: &Room, object: &Object, rule: &Rule) -> Option<f64> {
         Measure::ObjectThreeSides => {
             let sides = [Side::Front, Side::Left, Side::Right];
             sides
-                .map(|side| free_depth(object.placement, side, &room.plan.net_polygon, others(room, object)))
+                .map(|side| free_depth(object.placement, side, &room.plan.net_polygon, room.others(object)))
                 .into_iter()
                 .reduce(f64::min)
         }
@@ -84,11 +83,7 @@ pub(super) fn projections(site: &Site, a: &Applicable) -> Vec<Reading> {
 
 /// Returns the free depth towards a quarter turn up to the next wall or thing that does not belong to the object, m.
 fn depth(room: &Room, object: &Object, turn: u8) -> f64 {
-    depth_beside(&object.rect, turn, &room.plan.net_polygon, others(room, object))
-}
-
-fn others<'a>(room: &'a Room, object: &'a Object) -> impl Iterator<Item = Rect> + 'a {
-    room.objects.iter().filter(|o| o.blocks && !belong_together(o, object)).map(|o| o.rect)
+    depth_beside(&object.rect, turn, &room.plan.net_polygon, room.others(object))
 }
 
 /// Returns the aisle between the front of this desk or shelf and the next one that faces it, m.
