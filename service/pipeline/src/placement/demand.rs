@@ -85,7 +85,11 @@ impl Task<'_> {
     /// Looks hard for one of several tables that fill a large room only: the others stand where there is floor for them.
     fn allow_one_table(&mut self) {
         if is_table(self.anchor)
-            && self.arrangement == Arrangement::Center && self.required == 0 && !self.asked && self.count > 1 {
+            && self.arrangement == Arrangement::Center
+            && self.required == 0
+            && !self.asked
+            && self.count > 1
+        {
             self.spare = self.count - 1;
         }
     }

@@ -14,15 +14,10 @@ use d3dgen_model::world::World;
 use d3dgen_pipeline::scene_graph::{Request, generate};
 use d3dgen_plugins::Registry;
 
-use crate::common::{body, gap, most, worlds};
+use crate::common::{body, gap, in_room, most, named, seen_from, worlds};
 
 /// Bodies nearer than this touch, m: skirting and tiles.
 const TOUCH_M: f64 = 0.13;
-
-fn placed<'w>(world: &'w World, room: &'w PlanRoom, object: &'w str) -> impl Iterator<Item = &'w Placement> {
-    let own = move |p: &&Placement| p.room_id == room.room_id && p.object == object;
-    world.placements.placements.iter().filter(own)
-}
 
 /// Returns how far a body is from the walls of its room to the left or right and below or above it, m.
 fn to_walls(room: &PlanRoom, body: &Rect) -> [f64; 2] {
@@ -38,13 +33,6 @@ fn to_walls(room: &PlanRoom, body: &Rect) -> [f64; 2] {
         }
     }
     nearest
-}
-
-/// Returns where a point lies in a body's own frame, m: ahead of its middle, and to its left.
-fn seen_from(p: &Placement, x: f64, y: f64) -> (f64, f64) {
-    let (sin, cos) = p.pose.yaw_rad.sin_cos();
-    let (dx, dy) = (x - p.pose.x, y - p.pose.y);
-    (dx * cos + dy * sin, dy * cos - dx * sin)
 }
 
 /// Returns the floor on both sides of a door as deep as its leaf is wide.
@@ -79,7 +67,7 @@ fn screens_stand_at_a_wall_across_from_the_sofa() {
     for world in HOMES.iter().flat_map(|prompt| worlds(prompt, 6)) {
         for room in world.floorplan.rooms.iter().filter(|r| r.room_type == "living_room") {
             let (Some(sofa), Some(stand)) =
-                (placed(&world, room, "sofa").next(), placed(&world, room, "tv_stand").next())
+                (named(&world, room, "sofa").into_iter().next(), named(&world, room, "tv_stand").into_iter().next())
             else {
                 continue;
             };
@@ -90,7 +78,7 @@ fn screens_stand_at_a_wall_across_from_the_sofa() {
                 let (far, off) = seen_from(sofa, p.pose.x, p.pose.y);
                 far > 0.6 && far < ahead - 0.4 && (off - aside).abs() < stand.size_m[0] / 2.0
             };
-            let tall = world.placements.placements.iter().filter(|p| p.room_id == room.room_id && p.top_m() > 0.5);
+            let tall = in_room(&world, &room.room_id).filter(|p| p.top_m() > 0.5);
             seen.push(!tall.filter(|p| p.mount == Mount::Floor).any(|p| between(&p)));
         }
     }
@@ -127,7 +115,7 @@ fn kitchens_have_an_aisle_and_radiators_a_window_wall() {
             let runs: Vec<&Placement> =
                 ["sink_unit", "hob", "base_cabinet", "wide_base_cabinet", "fridge", "tall_cabinet"]
                     .iter()
-                    .flat_map(|kind| placed(&world, room, kind))
+                    .flat_map(|kind| named(&world, room, kind))
                     .collect();
             for (i, a) in runs.iter().enumerate() {
                 let turned = |b: &&&Placement| (a.pose.yaw_rad - b.pose.yaw_rad).cos() < -0.9;
@@ -138,7 +126,7 @@ fn kitchens_have_an_aisle_and_radiators_a_window_wall() {
                     }
                 }
             }
-            for radiator in placed(&world, room, "radiator") {
+            for radiator in named(&world, room, "radiator") {
                 let behind = |w: &Window| {
                     let (ahead, _) = seen_from(radiator, w.line.middle().x, w.line.middle().y);
                     w.room_id == room.room_id && ahead < 0.0 && ahead > -0.6
@@ -155,7 +143,7 @@ fn kitchens_have_an_aisle_and_radiators_a_window_wall() {
 fn toilets_of_a_step_free_office_have_a_wc_for_a_wheelchair() {
     let mut held = Vec::new();
     for world in worlds("office with 8 rooms, wheelchair accessible", 8) {
-        held.push(world.floorplan.rooms.iter().any(|r| placed(&world, r, "accessible_wc").next().is_some()));
+        held.push(world.floorplan.rooms.iter().any(|r| !named(&world, r, "accessible_wc").is_empty()));
     }
     most("offices with a WC for a wheelchair", 0.8, &held);
 }
@@ -165,9 +153,9 @@ fn visitors_sit_beside_the_bed() {
     let mut held = Vec::new();
     for world in ["hospital ward with 8 rooms in Germany", "ward with ten rooms"].iter().flat_map(|p| worlds(p, 6)) {
         for room in world.floorplan.rooms.iter().filter(|r| r.room_type.starts_with("patient_room")) {
-            for chair in placed(&world, room, "visitor_chair") {
+            for chair in named(&world, room, "visitor_chair") {
                 let near = |bed: &Placement| gap(&body(bed), &body(chair)) < 1.5;
-                held.push(placed(&world, room, "hospital_bed").any(near));
+                held.push(named(&world, room, "hospital_bed").into_iter().any(near));
             }
         }
     }
@@ -181,7 +169,7 @@ fn who_works_in_a_single_office_sees_the_door() {
     for world in prompts.iter().flat_map(|prompt| worlds(prompt, 6)) {
         for room in world.floorplan.rooms.iter().filter(|r| r.room_type == "office") {
             let door = world.floorplan.doors_of(&room.room_id).next().unwrap().line.middle();
-            let Some(chair) = placed(&world, room, "swivel_chair").next() else { continue };
+            let Some(chair) = named(&world, room, "swivel_chair").into_iter().next() else { continue };
             held.push(seen_from(chair, door.x, door.y).0 > 0.0);
         }
     }
@@ -194,9 +182,9 @@ fn sofas_in_offices_have_a_table() {
     for world in worlds("office with 8 rooms and a reception", 8) {
         for room in &world.floorplan.rooms {
             let tables: Vec<Rect> =
-                ["low_table", "side_table"].iter().flat_map(|t| placed(&world, room, t)).map(body).collect();
+                ["low_table", "side_table"].iter().flat_map(|t| named(&world, room, t)).map(body).collect();
             let near = |sofa: &Placement| tables.iter().any(|t| gap(t, &body(sofa)) < 0.7);
-            held.extend(placed(&world, room, "lounge_sofa").map(near));
+            held.extend(named(&world, room, "lounge_sofa").into_iter().map(near));
         }
     }
     most("sofas with a table", 1.0, &held);
@@ -214,7 +202,9 @@ fn halls_of_homes_have_coat_hooks_and_mats_lie_clear_of_doors() {
                 .filter(|d| d.swing.as_ref().is_some_and(|s| s.into_room_id.as_ref() == Some(&room.room_id)))
                 .map(swept)
                 .collect();
-            mats.extend(placed(&world, room, "bath_mat").map(|mat| swings.iter().all(|s| !s.overlaps(&body(mat)))));
+            mats.extend(
+                named(&world, room, "bath_mat").into_iter().map(|mat| swings.iter().all(|s| !s.overlaps(&body(mat)))),
+            );
         }
     }
     most("halls with hooks for coats", 0.9, &hooks);
@@ -227,7 +217,7 @@ fn showers_stand_in_corners() {
     for prompt in ["flat with 5 rooms", "family house in Germany with 8 rooms", "hospital ward with 8 rooms"] {
         for world in worlds(prompt, 8) {
             for room in &world.floorplan.rooms {
-                for shower in placed(&world, room, "shower") {
+                for shower in named(&world, room, "shower") {
                     all += 1;
                     cornered += u32::from(to_walls(room, &shower.footprint().bounds()).iter().all(|d| *d < TOUCH_M));
                 }
@@ -245,7 +235,8 @@ fn desks_of_an_open_office_stand_face_to_face() {
     {
         for world in worlds(prompt, 6) {
             for room in world.floorplan.rooms.iter().filter(|r| r.room_type == "open_office") {
-                let desks: Vec<Rect> = placed(&world, room, "desk").map(|p| p.footprint().bounds()).collect();
+                let desks: Vec<Rect> =
+                    named(&world, room, "desk").into_iter().map(|p| p.footprint().bounds()).collect();
                 let touches = |a: &Rect, b: &Rect| {
                     let within = |a0: f64, a1: f64, b0: f64, b1: f64| a0 < b1 - TOUCH_M && b0 < a1 - TOUCH_M;
                     let side_by_side = (a.x1 - b.x0).abs() < TOUCH_M || (b.x1 - a.x0).abs() < TOUCH_M;
@@ -272,7 +263,7 @@ fn nurses_sit_at_their_corridor() {
                 let Some(opening) = world.floorplan.doors_of(&room.room_id).find(open) else { continue };
                 let from = opening.line.start;
                 let to = opening.line.end;
-                for counter in placed(&world, room, "small_nurse_counter") {
+                for counter in named(&world, room, "small_nurse_counter") {
                     all += 1;
                     let body = counter.footprint().bounds();
                     let away = if opening.line.is_vertical() {
@@ -334,7 +325,9 @@ fn coats_hang_by_the_entrance() {
     for world in HOMES.iter().flat_map(|prompt| worlds(prompt, 6)) {
         let door = entrance(&world);
         let Some(hall) = world.floorplan.room(&door.room_ids[0]) else { continue };
-        held.extend(placed(&world, hall, "coat_hooks").map(|p| body(p).center().distance(door.line.middle()) < 3.0));
+        held.extend(
+            named(&world, hall, "coat_hooks").into_iter().map(|p| body(p).center().distance(door.line.middle()) < 3.0),
+        );
     }
     most("coat hooks near the entrance", 0.95, &held);
 }
@@ -384,12 +377,12 @@ fn patients_have_a_wardrobe_and_visitors_a_seat() {
     let (mut wardrobes, mut seats) = (Vec::new(), Vec::new());
     for world in worlds("hospital ward with 8 rooms", 8) {
         let rooms = world.floorplan.rooms.iter().filter(|r| r.room_type == "patient_room");
-        wardrobes.extend(rooms.map(|r| placed(&world, r, "patient_wardrobe").next().is_some()));
+        wardrobes.extend(rooms.map(|r| !named(&world, r, "patient_wardrobe").is_empty()));
     }
     for world in worlds("office with 8 rooms and a reception", 16) {
         for room in world.floorplan.rooms.iter().filter(|r| r.room_type == "reception") {
             let soft = |p: &Placement| p.object == "visitor_chair" || p.object.contains("sofa");
-            let mut own = world.placements.placements.iter().filter(|p| p.room_id == room.room_id);
+            let mut own = in_room(&world, &room.room_id);
             seats.push(own.any(soft));
         }
     }

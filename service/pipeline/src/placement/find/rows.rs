@@ -336,7 +336,6 @@ fn plans(state: &State, unit: &Unit, task: &Task, focus: Option<u8>, terms: &Ter
     let (robot, look) = (terms.robot, unit.look());
     let aisle = robot.max(AISLE);
     let (b, r) = (unit.bbox, unit.reach);
-    let (d, w) = (b.width(), b.height());
     let (front, back) = (r.x1 - b.x1, b.x0 - r.x0);
     let side = (b.y0 - r.y0).max(r.y1 - b.y1);
     let shape = unit.anchor().object.shape;
