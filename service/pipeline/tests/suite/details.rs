@@ -227,7 +227,8 @@ fn who_works_alone_gets_to_the_seat() {
 #[test]
 fn screens_of_who_works_alone_mirror_no_window() {
     let mut held = Vec::new();
-    for world in OFFICES.iter().flat_map(|prompt| worlds(prompt, 12)) {
+    let others = ["office with 8 rooms", "four private offices, two meeting rooms, an open office and a reception"];
+    for world in OFFICES.iter().chain(&others).flat_map(|prompt| worlds(prompt, 12)) {
         for (room, chair) in lone_workers(&world) {
             let (sin, cos) = chair.pose.yaw_rad.sin_cos();
             let mirrors = world.floorplan.windows.iter().filter(|w| w.room_id == room.room_id).any(|window| {

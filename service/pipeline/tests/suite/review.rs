@@ -1,5 +1,4 @@
-//! What a reviewer of plans objects to and geometry can tell, over many seeds: showers that stand about, desks in ragged
-//! rows, nurses far from their corridor, isolation rooms without their anteroom, homes with nowhere to eat, screens beside
+//! What a reviewer of plans objects to and geometry can tell, over many seeds: showers that stand about, nurses far from their corridor, isolation rooms without their anteroom, homes with nowhere to eat, screens beside
 //! the sofa's axis, machines on the sink, coats far from the entrance, docks behind rugs, chairs against the wall, visitors
 //! behind the counter, robots that stop in a doorway.
 //!
@@ -16,6 +15,8 @@ use d3dgen_plugins::Registry;
 
 use crate::common::{body, gap, in_room, most, named, seen_from, worlds};
 
+/// Distance up to which a sofa looks at its screen, between the bodies, m.
+const VIEW_M: f64 = 4.2;
 /// Bodies nearer than this touch, m: skirting and tiles.
 const TOUCH_M: f64 = 0.13;
 
@@ -62,9 +63,10 @@ fn homes_without_a_dining_room_have_a_table_and_seats() {
 }
 
 #[test]
-fn screens_stand_at_a_wall_across_from_the_sofa() {
-    let (mut axis, mut wall, mut seen) = (Vec::new(), Vec::new(), Vec::new());
-    for world in HOMES.iter().flat_map(|prompt| worlds(prompt, 6)) {
+fn screens_stand_at_a_wall_across_from_the_sofa_and_near_it() {
+    let (mut axis, mut wall, mut seen, mut near) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    let others = ["spacious villa with 6 rooms and a large living room", "house, 10 rooms, UK, service robot"];
+    for world in HOMES.iter().chain(&others).flat_map(|prompt| worlds(prompt, 6)) {
         for room in world.floorplan.rooms.iter().filter(|r| r.room_type == "living_room") {
             let (Some(sofa), Some(stand)) =
                 (named(&world, room, "sofa").into_iter().next(), named(&world, room, "tv_stand").into_iter().next())
@@ -73,6 +75,7 @@ fn screens_stand_at_a_wall_across_from_the_sofa() {
             };
             let (ahead, aside) = seen_from(sofa, stand.pose.x, stand.pose.y);
             axis.push(ahead > 0.0 && aside.abs() <= 0.45);
+            near.push(gap(&body(sofa), &body(stand)) <= VIEW_M);
             wall.push(to_walls(room, &body(stand)).iter().any(|d| *d < TOUCH_M));
             let between = |p: &&Placement| {
                 let (far, off) = seen_from(sofa, p.pose.x, p.pose.y);
@@ -85,6 +88,7 @@ fn screens_stand_at_a_wall_across_from_the_sofa() {
     most("screens seen from the sofa", 1.0, &seen);
     most("screens on the sofa's axis", 0.9, &axis);
     most("screens at a wall", 1.0, &wall);
+    most("screens near their sofa", 0.85, &near);
 }
 
 #[test]
@@ -226,31 +230,6 @@ fn showers_stand_in_corners() {
     }
     assert!(all >= 24, "{all} showers in 24 worlds");
     assert!(f64::from(cornered) >= 0.9 * f64::from(all), "{cornered} of {all} showers stand in a corner");
-}
-
-#[test]
-fn desks_of_an_open_office_stand_face_to_face() {
-    let (mut all, mut together) = (0, 0);
-    for prompt in ["office with 5 rooms", "office in the United States with 8 rooms", "office in London with 10 rooms"]
-    {
-        for world in worlds(prompt, 6) {
-            for room in world.floorplan.rooms.iter().filter(|r| r.room_type == "open_office") {
-                let desks: Vec<Rect> =
-                    named(&world, room, "desk").into_iter().map(|p| p.footprint().bounds()).collect();
-                let touches = |a: &Rect, b: &Rect| {
-                    let within = |a0: f64, a1: f64, b0: f64, b1: f64| a0 < b1 - TOUCH_M && b0 < a1 - TOUCH_M;
-                    let side_by_side = (a.x1 - b.x0).abs() < TOUCH_M || (b.x1 - a.x0).abs() < TOUCH_M;
-                    let above = (a.y1 - b.y0).abs() < TOUCH_M || (b.y1 - a.y0).abs() < TOUCH_M;
-                    side_by_side && within(a.y0, a.y1, b.y0, b.y1) || above && within(a.x0, a.x1, b.x0, b.x1)
-                };
-                let neighbors = |d: &Rect| desks.iter().filter(|o| *o != d && touches(d, o)).count();
-                all += desks.len();
-                together += desks.iter().filter(|d| neighbors(d) >= 2).count();
-            }
-        }
-    }
-    assert!(all > 100, "{all} desks in 18 offices");
-    assert!(together as f64 >= 0.6 * all as f64, "{together} of {all} desks have two others beside and opposite them");
 }
 
 #[test]

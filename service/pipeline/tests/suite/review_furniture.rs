@@ -6,7 +6,6 @@
 
 use d3dgen_model::Rect;
 use d3dgen_model::domain::Mount;
-use d3dgen_model::floorplan::PlanRoom;
 use d3dgen_model::placements::Placement;
 use d3dgen_model::world::World;
 
@@ -108,10 +107,14 @@ fn nothing_hangs_over_a_basin_that_does_not_belong_to_it() {
 #[test]
 fn desks_of_open_offices_stand_face_to_face_or_against_a_wall() {
     let mut whole = Vec::new();
-    for world in ["office with 5 rooms", "office with 8 rooms in Germany", "office with 10 rooms"]
-        .iter()
-        .flat_map(|prompt| worlds(prompt, 5))
-    {
+    let prompts = [
+        "office with 5 rooms",
+        "office with 8 rooms in Germany",
+        "office with 10 rooms",
+        "office in the United States with 8 rooms",
+        "office in London with 10 rooms",
+    ];
+    for world in prompts.iter().flat_map(|prompt| worlds(prompt, 6)) {
         for room in world.floorplan.rooms.iter().filter(|r| r.room_type == "open_office") {
             let desks = named(&world, room, "desk");
             let bounds = room.net_polygon.bounds();
