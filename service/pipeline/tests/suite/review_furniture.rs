@@ -7,7 +7,6 @@
 use d3dgen_model::Rect;
 use d3dgen_model::domain::Mount;
 use d3dgen_model::placements::Placement;
-use d3dgen_model::world::World;
 
 use crate::common::{body, gap, in_room, most, named, seen_from, worlds};
 
