@@ -125,8 +125,8 @@ pub struct Generated {
 
 /// Makes and checks a world.
 ///
-/// `observe` hears of every stage; `cancelled` is looked at before each and every few steps of the searches in them. When no attempt is sound, the one with the
-/// fewest broken rules is returned, its report saying so.
+/// `observe` hears of every stage; `cancelled` is looked at before each and every few steps of the searches in them. When no
+/// attempt is sound, the one with the fewest broken rules is returned, its report saying so.
 ///
 /// # Errors
 /// What the stages return (`Refused` at once, `Infeasible` after the last attempt); `Cancelled`.

@@ -2,7 +2,8 @@
 //!
 //! The sets in `prompts/` belong to this repository: `own.jsonl`, `odd.jsonl` (in keywords, with numbers of many things),
 //! `audit.jsonl`, `relations.jsonl` and `rules.jsonl` (adjacency rules of one country asked for in another). One more in the
-//! same form is scored where it lies beside the workspace. Room counts are minima, `n_rooms` counts rooms other than circulation, adjacency means any edge.
+//! same form is scored where it lies beside the workspace. Room counts are minima, `n_rooms` counts rooms other than
+//! circulation, adjacency means any edge.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
