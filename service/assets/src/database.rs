@@ -20,6 +20,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::annotation::Annotation;
 use crate::error::Error;
+use crate::placed::placed;
 use records::{ASSETS, AssetRecord, CHANGES, PATHS, REMOVED, RemovedRecord, each, get};
 
 pub use records::{Change, IngestedFile, Kind, Provenance};
@@ -131,6 +132,16 @@ impl Database {
         record.and_then(|r| r.model).map(|hash| files::read(&self.files_dir(), &hash)).transpose()
     }
 
+    /// Returns the model of an asset kept here as worlds place it, with what is known of it; none for such as have no file.
+    ///
+    /// # Errors
+    /// As [`Self::model`].
+    pub fn placed_model(&self, asset_id: &str) -> Result<Option<(Model3d, Annotation)>, Error> {
+        let Some(annotation) = self.get(asset_id)? else { return Ok(None) };
+        let Some(model) = self.model(asset_id)? else { return Ok(None) };
+        Ok(Some((placed(model, &annotation), annotation)))
+    }
+
     /// Returns the thumbnail of an asset kept here, PNG; none for such as have no model.
     ///
     /// # Errors
@@ -159,7 +170,7 @@ impl Database {
     /// # Errors
     /// `Store`.
     pub fn ingested(&self, path: &str) -> Result<Option<IngestedFile>, Error> {
-        get(&self.store.view()?, PATHS, path)
+        Ok(get(&self.store.view()?, PATHS, path)?)
     }
 
     /// Returns true when no asset is kept and none of the library removed.

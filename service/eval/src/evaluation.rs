@@ -6,6 +6,7 @@ use d3dgen_model::{Document, document::Problem};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::figures::Figure;
 use crate::metrics::adjacency::Adjacency;
 use crate::metrics::collision::Collisions;
 use crate::metrics::compliance::{Compliance, SourceTally};
@@ -37,6 +38,24 @@ pub struct Evaluation {
     /// Files that could not be read; everything else is measured all the same.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub broken: Vec<BrokenFile>,
+}
+
+impl Evaluation {
+    /// Returns those of some figures that any group has.
+    pub fn measured<'f>(&self, figures: impl IntoIterator<Item = &'f Figure>) -> Vec<&'f Figure> {
+        figures.into_iter().filter(|f| self.groups.iter().any(|g| g.figures.contains_key(f.name))).collect()
+    }
+
+    /// Returns the means of the groups as headings and rows of a table, `-` where a group has none.
+    pub fn group_table<'f>(&self, figures: &[&'f Figure]) -> (Vec<&'f str>, Vec<Vec<String>>) {
+        let header = ["domain", "rooms", "worlds"].into_iter().chain(figures.iter().map(|f| f.title));
+        let row = |g: &Group| {
+            let fixed = [g.domain.clone(), g.rooms.map_or_else(String::new, |r| r.to_string()), g.worlds.to_string()];
+            let mean = |f: &&Figure| g.figures.get(f.name).map_or_else(|| "-".into(), |v| f.form.text(*v));
+            fixed.into_iter().chain(figures.iter().map(mean)).collect()
+        };
+        (header.collect(), self.groups.iter().map(row).collect())
+    }
 }
 
 /// A file that could not be read.

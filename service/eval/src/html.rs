@@ -67,8 +67,8 @@ pub fn page(evaluation: &Evaluation, title: &str, pictures: &[Picture]) -> Strin
     );
     cards(&mut out, evaluation);
     for (heading, names) in TABLES {
-        let figures: Vec<&Figure> = FIGURES.iter().filter(|f| names.contains(&f.name)).collect();
-        groups(&mut out, evaluation, heading, &figures);
+        let figures = FIGURES.iter().filter(|f| names.contains(&f.name));
+        groups(&mut out, evaluation, heading, figures);
     }
     broken(&mut out, evaluation);
     sources(&mut out, evaluation);
@@ -112,20 +112,14 @@ fn table<'a>(out: &mut String, header: &[&str], rows: impl Iterator<Item = Vec<S
     out.push_str("</tbody></table></div>\n");
 }
 
-fn groups(out: &mut String, evaluation: &Evaluation, heading: &str, figures: &[&Figure]) {
-    let shown: Vec<&&Figure> =
-        figures.iter().filter(|f| evaluation.groups.iter().any(|g| g.figures.contains_key(f.name))).collect();
+fn groups<'f>(out: &mut String, evaluation: &Evaluation, heading: &str, figures: impl Iterator<Item = &'f Figure>) {
+    let shown = evaluation.measured(figures);
     if shown.is_empty() {
         return;
     }
     let _ = writeln!(out, "<h2>{}</h2>", escape(heading));
-    let header: Vec<&str> = ["domain", "rooms", "worlds"].into_iter().chain(shown.iter().map(|f| f.title)).collect();
-    let rows = evaluation.groups.iter().map(|g| {
-        let fixed = [g.domain.clone(), g.rooms.map_or_else(String::new, |r| r.to_string()), g.worlds.to_string()];
-        let figures = shown.iter().map(|f| g.figures.get(f.name).map_or_else(|| "-".into(), |v| f.form.text(*v)));
-        fixed.into_iter().chain(figures).collect()
-    });
-    table(out, &header, rows);
+    let (header, rows) = evaluation.group_table(&shown);
+    table(out, &header, rows.into_iter());
     out.push_str("<dl>");
     for f in &shown {
         let _ = write!(out, "<dt>{}</dt><dd>{}</dd>", escape(f.title), escape(f.about));

@@ -88,7 +88,7 @@ impl Aim {
             } else if let Some(least) = rule.bounds.min {
                 let width = object.sizes_m.iter().map(|s| s[0]).reduce(f64::min).unwrap_or(0.0);
                 let least = if measure == Measure::CentreToSide { (least - width / 2.0).max(0.0) } else { least };
-                let one_side = a.constraint.measurement_basis.contains("one side");
+                let one_side = a.is_one_sided();
                 aim.clear.raise(measure, least, one_side);
                 if a.mandatory {
                     aim.by_law.raise(measure, least, one_side);
@@ -129,9 +129,12 @@ fn is_floor(measure: Measure) -> bool {
         || measure == M::CentreToSide
 }
 
+/// Tag of what robots that see with light mistake for an opening.
+const MIRROR: &str = "mirror";
+
 /// Returns true for what robots that see with light mistake for an opening.
-pub(crate) fn is_mirror(object_id: &str, kind: Option<&ObjectType>) -> bool {
-    object_id.contains("mirror") || kind.is_some_and(|k| k.tags.iter().any(|t| t == "mirror"))
+pub(crate) fn is_mirror(kind: &ObjectType) -> bool {
+    kind.tags.iter().any(|t| t == MIRROR)
 }
 
 fn in_scope(a: &Applicable, room_type: &str, circulation: bool) -> bool {
@@ -145,7 +148,7 @@ fn in_scope(a: &Applicable, room_type: &str, circulation: bool) -> bool {
 
 fn concerns(a: &Applicable, rule: &Rule, object: &ObjectType) -> bool {
     match &a.scope {
-        _ if rule.quantity.measure == Measure::NoGlassOrMirrors => is_mirror(&object.id, Some(object)),
+        _ if rule.quantity.measure == Measure::NoGlassOrMirrors => is_mirror(object),
         Scope::Objects(shapes) if !rule.quantity.names_objects() => shapes.contains(&object.shape),
         _ => rule.quantity.picks(object),
     }

@@ -2,7 +2,7 @@
 //!
 //! What it is not for: finding the rule in the sentence (`research` does) and storing the edits (`database`).
 
-use d3dgen_model::knowledge::{AMENDMENT, Constraint, KnowledgeBase, LOCAL, Reference, Source, Value};
+use d3dgen_model::knowledge::{AMENDMENT, Constraint, KnowledgeBase, LOCAL, Reference, Source, Statement, Value};
 use d3dgen_model::units;
 
 use crate::database::{Edit, Provenance, difference};
@@ -10,23 +10,6 @@ use crate::error::Error;
 use crate::import::scale;
 use crate::phrase;
 use crate::tables::TABLES;
-
-/// A rule as somebody states it, in printed units.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Statement {
-    /// What is limited, snake case.
-    pub name: String,
-    /// `minimum`, `maximum`, ...
-    pub constraint_type: String,
-    /// The figure, in `unit`.
-    pub value: Value,
-    /// Unit as printed.
-    pub unit: String,
-    /// Space it is about, as the knowledge base calls it where it can be known.
-    pub space: String,
-    /// When it holds, in words.
-    pub conditions: Vec<String>,
-}
 
 /// Returns the edits that make a statement a rule of the owner, beside the law; the same question asked again replaces
 /// the owner's earlier answer.

@@ -34,6 +34,11 @@ pub fn chain(country_code: Option<&str>) -> Vec<String> {
     out
 }
 
+/// Returns true where a rule of these jurisdictions holds; one without any holds everywhere.
+pub fn holds(jurisdictions: &[String], country_code: Option<&str>) -> bool {
+    jurisdictions.is_empty() || chain(country_code).iter().any(|code| jurisdictions.contains(code))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -49,6 +54,25 @@ mod tests {
         ];
         for (code, expected) in cases {
             assert_eq!(chain(code), expected, "{code:?}");
+        }
+    }
+
+    #[test]
+    fn rules_hold_in_their_parts_too() {
+        let cases: [(&[&str], Option<&str>, bool); 9] = [
+            (&[], None, true),
+            (&[], Some("DE"), true),
+            (&["US"], Some("US"), true),
+            (&["US"], Some("US-CA"), true),
+            (&["US-CA"], Some("US"), false),
+            (&["CN", "EU"], Some("DE"), true),
+            (&["US"], Some("DE"), false),
+            (&["US"], None, false),
+            (&["INT"], None, true),
+        ];
+        for (of, country, expected) in cases {
+            let of: Vec<String> = of.iter().map(|&code| code.to_owned()).collect();
+            assert_eq!(holds(&of, country), expected, "{of:?} in {country:?}");
         }
     }
 }

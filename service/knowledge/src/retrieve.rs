@@ -62,6 +62,13 @@ pub struct Applicable {
     pub reported_only: bool,
 }
 
+impl Applicable {
+    /// Returns true where free floor on one of both sides is enough.
+    pub fn is_one_sided(&self) -> bool {
+        self.constraint.measurement_basis.contains("one side")
+    }
+}
+
 /// What a constraint is about.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Scope {

@@ -78,6 +78,11 @@ impl Segment {
         let ((at, a), (_, b)) = (along(self.start), along(self.end));
         (at, a.min(b), a.max(b))
     }
+
+    /// Returns the rectangle between the ends.
+    pub fn bounds(&self) -> Rect {
+        Rect::new(self.start.x, self.start.y, self.end.x, self.end.y)
+    }
 }
 
 /// An axis-aligned rectangle, m.
@@ -134,6 +139,29 @@ impl Rect {
     pub fn common_area(&self, other: &Self) -> f64 {
         let (w, h) = (self.x1.min(other.x1) - self.x0.max(other.x0), self.y1.min(other.y1) - self.y0.max(other.y0));
         if w > 0.0 && h > 0.0 { w * h } else { 0.0 }
+    }
+
+    /// Returns the gap to another rectangle along the axis that parts them more, m; 0 when they touch or overlap.
+    pub fn gap(&self, other: &Self) -> f64 {
+        let [x, y] = self.gaps(other);
+        x.max(y)
+    }
+
+    /// Returns the distance to another rectangle, m; 0 when they touch or overlap.
+    pub fn distance(&self, other: &Self) -> f64 {
+        let [x, y] = self.gaps(other);
+        x.hypot(y)
+    }
+
+    /// Returns the distance to a point, m; 0 inside.
+    pub fn distance_to(&self, p: Point) -> f64 {
+        self.distance(&Self { x0: p.x, y0: p.y, x1: p.x, y1: p.y })
+    }
+
+    fn gaps(&self, other: &Self) -> [f64; 2] {
+        let x = (self.x0 - other.x1).max(other.x0 - self.x1);
+        let y = (self.y0 - other.y1).max(other.y0 - self.y1);
+        [x.max(0.0), y.max(0.0)]
     }
 
     /// Returns true when the interiors share more than a contact line.
@@ -296,5 +324,21 @@ mod tests {
         let rects = l.rects();
         assert_eq!(rects, vec![Rect::new(0., 0., 4., 2.), Rect::new(0., 2., 2., 5.)]);
         assert_eq!(rects.iter().map(Rect::area).sum::<f64>(), l.area());
+    }
+
+    #[test]
+    fn rectangles_are_apart_as_far_as_their_sides() {
+        let a = Rect::new(0., 0., 2., 2.);
+        let cases = [
+            (Rect::new(5., 6., 7., 8.), 4.0, 5.0),
+            (Rect::new(3., 1., 4., 2.), 1.0, 1.0),
+            (Rect::new(2., 0., 3., 1.), 0.0, 0.0),
+            (Rect::new(0.5, 0.5, 1., 1.), 0.0, 0.0),
+        ];
+        for (b, gap, distance) in cases {
+            assert_eq!((a.gap(&b), a.distance(&b)), (gap, distance), "{b:?}");
+            assert_eq!((b.gap(&a), b.distance(&a)), (gap, distance), "{b:?}");
+        }
+        assert_eq!((a.distance_to(Point::new(5., 6.)), a.distance_to(Point::new(1., 1.))), (5.0, 0.0));
     }
 }

@@ -316,6 +316,23 @@ pub fn is_jurisdiction(code: &str) -> bool {
     matches!(code, "INT" | LOCAL) || country.len() == 2 && upper(country) && division_fits
 }
 
+/// A rule as somebody states it, in printed units.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Statement {
+    /// What is limited, snake case.
+    pub name: String,
+    /// `minimum`, `maximum`, ...
+    pub constraint_type: String,
+    /// The figure, in `unit`.
+    pub value: Value,
+    /// Unit as printed.
+    pub unit: String,
+    /// Space it is about, as the knowledge base calls it where it can be known.
+    pub space: String,
+    /// When it holds, in words.
+    pub conditions: Vec<String>,
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

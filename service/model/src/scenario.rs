@@ -85,12 +85,25 @@ pub enum RoiKind {
 pub struct Poi {
     /// Unique id: `dock_1`.
     pub poi_id: String,
-    /// `dock`, `service_point`, `entrance`, `waiting_bay`.
+    /// `dock`, `service_point`, `cleaning_point`, `entrance`, `waiting_bay`.
     pub kind: String,
     /// Room it lies in.
     pub room_id: String,
     /// Where a robot stands to use it.
     pub pose: Pose,
+}
+
+impl Poi {
+    /// Kind of the place where a robot charges.
+    pub const DOCK: &'static str = "dock";
+    /// Kind of the place where a robot serves the people of a room.
+    pub const SERVICE_POINT: &'static str = "service_point";
+    /// Kind of the place from which a robot cleans a room.
+    pub const CLEANING_POINT: &'static str = "cleaning_point";
+    /// Kind of the place inside the main entrance.
+    pub const ENTRANCE: &'static str = "entrance";
+    /// Kind of the place where a robot waits.
+    pub const WAITING_BAY: &'static str = "waiting_bay";
 }
 
 /// A robot and its work.

@@ -165,6 +165,18 @@ pub enum Connector {
     Near,
 }
 
+impl Connector {
+    /// Returns the name that documents have for it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Door => "door",
+            Self::Open => "open",
+            Self::Wall => "wall",
+            Self::Near => "near",
+        }
+    }
+}
+
 /// Speeds that a robot in a building can be asked to keep to, m/s.
 pub const ROBOT_SPEEDS_M_S: RangeInclusive<f64> = 0.05..=5.0;
 /// Radius of a usual service robot, m: what a building has ways for that is too small for the robot somebody has.

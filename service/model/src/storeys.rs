@@ -3,6 +3,7 @@
 //! Every stage works level by level: a storey is a complete document in the building's frame, so what plans, furnishes,
 //! checks or exports one floor needs to know nothing of the others.
 
+use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 
 use schemars::JsonSchema;
@@ -78,7 +79,18 @@ pub(crate) fn check_links(links: &[VerticalLink], level_of: impl Fn(&str) -> Opt
     }
 }
 
+/// Returns true when rooms lie on different storeys.
+fn differ(mut levels: impl Iterator<Item = i32>) -> bool {
+    let first = levels.next();
+    levels.any(|level| Some(level) != first)
+}
+
 impl SceneGraph {
+    /// Returns true for a building with rooms on several storeys.
+    pub fn has_storeys(&self) -> bool {
+        differ(self.rooms.iter().map(|r| r.level))
+    }
+
     /// Returns the numbers of the storeys that have rooms, from the lowest; `[0]` for a building of one storey.
     pub fn level_numbers(&self) -> Vec<i32> {
         self.rooms.iter().map(|r| r.level).collect::<BTreeSet<_>>().into_iter().collect()
@@ -99,6 +111,16 @@ impl SceneGraph {
 }
 
 impl Floorplan {
+    /// Returns true for a building with rooms on several storeys.
+    pub fn has_storeys(&self) -> bool {
+        differ(self.rooms.iter().map(|r| r.level))
+    }
+
+    /// Returns the plan of the storey with this number: a building's own where it has no other.
+    pub fn storey_at(&self, level: i32) -> Cow<'_, Self> {
+        if self.has_storeys() { Cow::Owned(self.storey(level)) } else { Cow::Borrowed(self) }
+    }
+
     /// Returns the numbers of the storeys that have rooms, from the lowest; `[0]` for a building of one storey.
     pub fn level_numbers(&self) -> Vec<i32> {
         self.rooms.iter().map(|r| r.level).collect::<BTreeSet<_>>().into_iter().collect()

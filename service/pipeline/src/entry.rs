@@ -22,8 +22,8 @@ pub(crate) fn way_in(outline: &Polygon, door: &Door) -> Vec<Rect> {
     };
     let Some(main) = largest(outline, &inside) else { return Vec::new() };
     let vertical = door.line.is_vertical();
-    let (a, b) = (door.line.start, door.line.end);
-    let opening = Rect::new(a.x.min(b.x), a.y.min(b.y), a.x.max(b.x), a.y.max(b.y));
+    let a = door.line.start;
+    let opening = door.line.bounds();
     let face = door.wall_thickness_m / 2.0;
     let strip = |sign: f64, from: f64, to: f64| {
         let (from, to) = (sign * from, sign * to);

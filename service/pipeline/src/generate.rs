@@ -4,10 +4,9 @@
 //! was asked for. When the plan, the furniture or the check fails, the stages after it start again under a seed derived
 //! from the first, so that the outcome still depends on nothing but the request.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
 use d3dgen_knowledge::{Query, Retrieval};
-use d3dgen_model::Rect;
 use d3dgen_model::domain::Domain;
 use d3dgen_model::floorplan::Floorplan;
 use d3dgen_model::placements::Placements;
@@ -20,7 +19,7 @@ use d3dgen_plugins::{Plugin, Registry};
 
 use crate::placement::{Furnished, before_openings};
 use crate::scene_graph::{BY_PROMPT, BY_STYLE, Request};
-use crate::{Error, fit, floorplan, placement, scenario, scene_graph, ways_out, world};
+use crate::{Error, Stop, fit, floorplan, placement, scenario, scene_graph, ways_out, world};
 
 /// How to make a world, beside the request itself.
 #[derive(Debug, Clone)]
@@ -126,8 +125,8 @@ pub struct Generated {
 
 /// Makes and checks a world.
 ///
-/// `observe` hears of every stage; `cancelled` is looked at before each and every few steps of the searches in them. When no attempt is sound, the one with the
-/// fewest broken rules is returned, its report saying so.
+/// `observe` hears of every stage; `cancelled` is looked at before each and every few steps of the searches in them. When no
+/// attempt is sound, the one with the fewest broken rules is returned, its report saying so.
 ///
 /// # Errors
 /// What the stages return (`Refused` at once, `Infeasible` after the last attempt); `Cancelled`.
@@ -157,10 +156,7 @@ pub fn furnish_and_check(
     observe: &mut dyn FnMut(Event<'_>),
     cancelled: &AtomicBool,
 ) -> Result<Generated, Error> {
-    let plugin = registry.get(&graph.domain).ok_or_else(|| Error::Mismatch {
-        stage: "floorplan",
-        message: format!("the scene graph is of domain `{}`, which is not registered", graph.domain),
-    })?;
+    let plugin = plugin_of(registry, graph)?;
     let mut made = |graph: &SceneGraph, settings: &Settings| match attempts(graph, plugin, settings, observe, cancelled)
     {
         Err(error @ Error::Infeasible { .. }) => match relaxed(graph) {
@@ -184,6 +180,17 @@ pub fn furnish_and_check(
     }
     let few = Settings { attempts: FEW_ATTEMPTS, ..settings.clone() };
     fit::or_refused(made, graph, &mut |graph| attempts(graph, plugin, &few, &mut |_| (), cancelled))
+}
+
+/// Returns the plugin of a graph's domain.
+///
+/// # Errors
+/// `Mismatch` when it is not registered.
+pub fn plugin_of<'r>(registry: &'r Registry, graph: &SceneGraph) -> Result<&'r dyn Plugin, Error> {
+    registry.get(&graph.domain).ok_or_else(|| Error::Mismatch {
+        stage: "floorplan",
+        message: format!("the scene graph is of domain `{}`, which is not registered", graph.domain),
+    })
 }
 
 /// Returns the graph with what the prompt wants beside each other as wishes, or `None` when there is nothing to relax.
@@ -230,10 +237,7 @@ fn attempts(
     let retrieved = retrieve(graph, plugin);
     let name = settings.name.clone().unwrap_or_else(|| world_name(graph));
     let pinned = settings.pinned_floorplan.is_some() || settings.pinned_placements.is_some();
-    let mut levels: Vec<i32> = graph.rooms.iter().map(|r| r.level).collect();
-    levels.sort_unstable();
-    levels.dedup();
-    let picky = !pinned && graph.rooms.len() <= (FEW_ROOMS * levels.len()).min(FEW_ON_STOREYS);
+    let picky = !pinned && graph.rooms.len() <= (FEW_ROOMS * graph.level_numbers().len()).min(FEW_ON_STOREYS);
     let mut best: Option<(Faults, Generated)> = None;
     let mut reason = None;
     for attempt in 0..settings.attempts.max(1) {
@@ -367,14 +371,10 @@ fn attempt(
 
 /// Returns what to say of rooms that the prompt wants near each other and that are not.
 fn far_apart(graph: &SceneGraph, plan: &Floorplan) -> Option<Note> {
-    let between = |a: Rect, b: Rect| {
-        let apart = [a.x0.max(b.x0) - a.x1.min(b.x1), a.y0.max(b.y0) - a.y1.min(b.y1)];
-        apart[0].max(0.0).hypot(apart[1].max(0.0))
-    };
     let near = graph.edges.iter().filter(|e| e.connector == Connector::Near && e.reason == BY_PROMPT);
     let far = near.filter_map(|e| {
         let (a, b) = (plan.room(&e.a)?, plan.room(&e.b)?);
-        let gap = between(a.polygon.bounds(), b.polygon.bounds());
+        let gap = a.polygon.bounds().distance(&b.polygon.bounds());
         (a.level == b.level && gap > NEAR_M).then(|| format!("{} from {} ({gap:.0} m)", a.name, b.name))
     });
     let far: Vec<String> = far.collect();
@@ -414,9 +414,7 @@ pub fn finish(
 }
 
 fn begin(stage: Stage, attempt: u32, observe: &mut dyn FnMut(Event<'_>), cancelled: &AtomicBool) -> Result<(), Error> {
-    if cancelled.load(Ordering::Relaxed) {
-        return Err(Error::Cancelled);
-    }
+    Stop::from(cancelled).check()?;
     observe(Event::Started(stage, attempt));
     Ok(())
 }

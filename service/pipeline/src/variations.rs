@@ -8,7 +8,7 @@ use d3dgen_model::scene_graph::SceneGraph;
 
 use d3dgen_plugins::Registry;
 
-use crate::generate::retrieve;
+use crate::generate::{plugin_of, retrieve};
 use crate::scene_graph::Request;
 use crate::{Error, Stop, floorplan, scene_graph};
 
@@ -56,10 +56,7 @@ pub fn variations(
 pub fn seeds(request: &Request, registry: &Registry, count: usize, stop: Stop<'_>) -> Result<Vec<Variation>, Error> {
     let plan = |seed| {
         let graph = scene_graph::generate(&Request { seed, ..request.clone() }, registry)?;
-        let plugin = registry.get(&graph.domain).ok_or_else(|| Error::Mismatch {
-            stage: "floorplan",
-            message: format!("domain `{}` is not registered", graph.domain),
-        })?;
+        let plugin = plugin_of(registry, &graph)?;
         floorplan::generate_until(&graph, plugin.domain(), &retrieve(&graph, plugin).limits, None, stop)
     };
     choose(request.seed, count, plan)

@@ -6,9 +6,8 @@ use d3dgen_model::{Point, Polygon, Rect};
 
 use crate::drawing::{Drawing, DrawnFloor, DrawnOpening, DrawnWall, OpeningKind, note};
 use crate::layout::LaidRoom;
+use crate::words;
 
-/// What a room around a car is called, in words that domains know.
-const KIND: &str = "elevator";
 /// Farthest that a wall of the shaft stands outside of a side of the car, and inside of it, m.
 const OUTSIDE_M: f64 = 0.5;
 const INSIDE_M: f64 = 0.2;
@@ -56,7 +55,7 @@ pub(crate) fn mark(rooms: &mut [LaidRoom], drawing: &mut Drawing) {
         let around = rooms.iter_mut().find(|r| r.polygon.contains(middle));
         match around.filter(|r| r.polygon.area() <= LARGEST * car.area()) {
             Some(room) => {
-                room.kind = Some(KIND.to_owned());
+                room.kind = Some(words::car().to_owned());
                 room.label.clone_from(&cabin.name);
             }
             None => {

@@ -160,6 +160,12 @@ pub(crate) fn note(code: &str, message: impl Into<String>) -> Note {
     Note { code: code.into(), message: message.into() }
 }
 
+/// Returns the least x and y and the greatest x and y of points, or `None` without any.
+pub(crate) fn extent(points: impl IntoIterator<Item = Point>) -> Option<[f64; 4]> {
+    let each = points.into_iter().map(|p| [p.x, p.y, p.x, p.y]);
+    each.reduce(|a, b| [a[0].min(b[0]), a[1].min(b[1]), a[2].max(b[2]), a[3].max(b[3])])
+}
+
 impl Drawing {
     /// Counts a shape that is left out.
     pub(crate) fn leave_out(&mut self, what: impl Into<String>) {

@@ -2,7 +2,7 @@
 
 use d3dgen_model::Point;
 
-use crate::drawing::{DrawnOpening, OpeningKind};
+use crate::drawing::{DrawnOpening, OpeningKind, extent};
 
 /// Leaves are this wide, m.
 const LEAF_M: std::ops::RangeInclusive<f64> = 0.45..=1.6;
@@ -66,7 +66,7 @@ fn meet(openings: &mut Vec<DrawnOpening>) {
 
 /// Returns the middle line of a thin shape.
 fn axis(points: &[Point]) -> Option<(Point, Point)> {
-    let [x0, y0, x1, y1] = bounds(points)?;
+    let [x0, y0, x1, y1] = extent(points.iter().copied())?;
     let (w, h) = (x1 - x0, y1 - y0);
     match points {
         [a, b] => Some((*a, *b)),
@@ -74,12 +74,6 @@ fn axis(points: &[Point]) -> Option<(Point, Point)> {
         _ if w < 0.15 * h => Some((Point::new((x0 + x1) / 2.0, y0), Point::new((x0 + x1) / 2.0, y1))),
         _ => None,
     }
-}
-
-fn bounds(points: &[Point]) -> Option<[f64; 4]> {
-    let first = points.first()?;
-    let start = [first.x, first.y, first.x, first.y];
-    Some(points.iter().fold(start, |b, p| [b[0].min(p.x), b[1].min(p.y), b[2].max(p.x), b[3].max(p.y)]))
 }
 
 fn distance(points: &[Point], p: Point) -> f64 {
@@ -97,7 +91,7 @@ fn distance(points: &[Point], p: Point) -> f64 {
 /// A quarter circle keeps off the corner across from its hinge by 0.41 of its radius; alone, without the leaf, it keeps off the
 /// hinge by the whole radius.
 fn swing(points: &[Point]) -> Option<[Point; 3]> {
-    let [x0, y0, x1, y1] = bounds(points)?;
+    let [x0, y0, x1, y1] = extent(points.iter().copied())?;
     let (w, h) = (x1 - x0, y1 - y0);
     let radius = w.max(h);
     if !LEAF_M.contains(&radius) || (w - h).abs() > ALIKE * radius {
@@ -117,7 +111,7 @@ fn swing(points: &[Point]) -> Option<[Point; 3]> {
 
 /// Returns the line that two leaves close: the long side of a shape twice as wide as high whose middle they meet in.
 fn double(points: &[Point]) -> Option<[Point; 2]> {
-    let [x0, y0, x1, y1] = bounds(points)?;
+    let [x0, y0, x1, y1] = extent(points.iter().copied())?;
     let (w, h) = (x1 - x0, y1 - y0);
     let leaf = w.min(h);
     if !LEAF_M.contains(&leaf) || (w.max(h) - 2.0 * leaf).abs() > 2.0 * ALIKE * leaf {

@@ -88,6 +88,11 @@ pub(crate) fn is_waypoint(text: &str) -> bool {
     all || names.last().is_some_and(|t| is("waypoint", t))
 }
 
+/// Returns what the room around the car of a lift is, in a word that domains know for it.
+pub(crate) fn car() -> &'static str {
+    DATA.words["car"].first().expect("data/words.toml has a word for it")
+}
+
 /// What a word in the name of a storey says.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum StoreyWord {

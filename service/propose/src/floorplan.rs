@@ -33,7 +33,7 @@ const NEAR: f64 = 0.3;
 /// Asks for a floorplan of a building that stands; returns the building that it became.
 pub fn propose(desk: &mut Desk<'_, '_>, base: &Generated) -> Result<(Option<Generated>, StageProposal), Error> {
     let graph = &base.world.scene_graph;
-    if graph.level_numbers().len() > 1 {
+    if graph.has_storeys() {
         let note = "the building has several storeys, whose plans follow from each other: they are planned as ever";
         return Ok((None, not_asked(Stage::Floorplan, note)));
     }
@@ -67,8 +67,8 @@ fn question(desk: &Desk<'_, '_>, graph: &SceneGraph) -> Question {
     let mut listed: Vec<_> = graph.edges.iter().collect();
     listed.sort_by_key(|e| !e.required);
     for edge in listed {
-        let connector = format!("{:?}", edge.connector).to_lowercase();
-        let _ = writeln!(edges, "- {} - {}: {connector}{}", edge.a, edge.b, if edge.required { "" } else { " (wish)" });
+        let (connector, wish) = (edge.connector.name(), if edge.required { "" } else { " (wish)" });
+        let _ = writeln!(edges, "- {} - {}: {connector}{wish}", edge.a, edge.b);
     }
     for [a, b] in &graph.apart {
         let _ = writeln!(edges, "- {a} - {b}: must not touch");
@@ -205,12 +205,7 @@ fn fates(rooms: &[OutlineAnswer], plan: &Floorplan, used: bool) -> Vec<ProposedI
 
 /// Returns middle and extent of rectangles; `None` when they are none that a document can hold.
 fn spot(rects: &[Rect]) -> Option<Spot> {
-    let all = rects.iter().copied().reduce(|a, b| Rect {
-        x0: a.x0.min(b.x0),
-        y0: a.y0.min(b.y0),
-        x1: a.x1.max(b.x1),
-        y1: a.y1.max(b.y1),
-    })?;
+    let all = rects.iter().copied().reduce(|a, b| a.union(&b))?;
     let sane = [all.x0, all.y0, all.x1, all.y1].iter().all(|v| v.is_finite() && v.abs() < 1e6);
     (sane && all.width() > 0.0 && all.height() > 0.0).then(|| Spot {
         x_m: to_mm(all.center().x),
@@ -224,13 +219,7 @@ fn spot(rects: &[Rect]) -> Option<Spot> {
 /// Returns what an outline has in common with rectangles, as a share of both together.
 fn alike(rects: &[Rect], outline: &Polygon) -> f64 {
     let own = outline.rects();
-    let mut common = 0.0;
-    for a in rects {
-        for b in &own {
-            let (w, h) = (a.x1.min(b.x1) - a.x0.max(b.x0), a.y1.min(b.y1) - a.y0.max(b.y0));
-            common += if w > 0.0 && h > 0.0 { w * h } else { 0.0 };
-        }
-    }
+    let common: f64 = rects.iter().flat_map(|a| own.iter().map(|b| a.common_area(b))).sum();
     let sum: f64 = rects.iter().chain(&own).map(Rect::area).sum();
     let both = sum - common;
     if both > 0.0 && both.is_finite() { (common / both).clamp(0.0, 1.0) } else { 0.0 }

@@ -17,7 +17,7 @@ mod placement;
 mod prompt;
 mod scene_graph;
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
 use d3dgen_knowledge::Retrieval;
 use d3dgen_llm::{Answer, Client, Error as LlmError, Request as LlmRequest};
@@ -25,7 +25,7 @@ use d3dgen_model::floorplan::Floorplan;
 use d3dgen_model::placements::Placements;
 use d3dgen_model::proposal::{Proposal, TokenUsage};
 use d3dgen_model::scene_graph::SceneGraph;
-use d3dgen_pipeline::generate::{Event, Generated, Settings, Stage, finish, furnish_and_check, world_name};
+use d3dgen_pipeline::generate::{Event, Generated, Settings, Stage, finish, furnish_and_check, plugin_of, world_name};
 use d3dgen_pipeline::scene_graph::Request;
 use d3dgen_pipeline::{Error, Stop};
 use d3dgen_plugins::{Plugin, Registry};
@@ -94,10 +94,7 @@ pub fn generate(
     observe: &mut dyn FnMut(Event<'_>),
     cancelled: &AtomicBool,
 ) -> Result<Proposed, Error> {
-    let plugin = registry.get(&graph.domain).ok_or_else(|| Error::Mismatch {
-        stage: "floorplan",
-        message: format!("the scene graph is of domain `{}`, which is not registered", graph.domain),
-    })?;
+    let plugin = plugin_of(registry, graph)?;
     let name = settings.name.clone().unwrap_or_else(|| world_name(graph));
     let mut desk = Desk { request, registry, plugin, settings, proposer, observe, cancelled, name, trouble: None };
     let mut stages = Vec::new();
@@ -159,7 +156,7 @@ impl Desk<'_, '_> {
 
     /// Goes on unless the caller wants to stop.
     fn check(&self) -> Result<(), Error> {
-        if self.cancelled.load(Ordering::Relaxed) { Err(Error::Cancelled) } else { Ok(()) }
+        self.stop().check()
     }
 
     /// Puts a world together and judges it.

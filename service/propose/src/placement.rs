@@ -1,6 +1,5 @@
 //! The proposal of furniture: objects at poses.
 
-use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
@@ -118,7 +117,7 @@ fn judge(desk: &mut Desk<'_, '_>, base: &Generated, answer: &FurnitureAnswer) ->
     for room in &plan.rooms {
         let Some(wanted) = by_room.get(room.room_id.as_str()) else { continue };
         let wishes: Vec<Wish> = wanted.iter().map(|&n| wish(&answer.objects[n])).collect();
-        let storey = storey_of(plan, room);
+        let storey = plan.storey_at(room.level);
         let known = (desk.plugin.domain(), &retrieved.limits);
         let found = propose_room(&reseeded, &storey, room, known, &wishes, desk.stop());
         desk.check()?;
@@ -147,11 +146,6 @@ fn judge(desk: &mut Desk<'_, '_>, base: &Generated, answer: &FurnitureAnswer) ->
 
 fn wish(object: &ObjectAnswer) -> Wish {
     Wish { object: object.object.clone(), x: object.x_m, y: object.y_m, yaw_rad: (object.yaw_deg % 360.0).to_radians() }
-}
-
-/// Returns the plan of the storey that a room is on.
-fn storey_of<'p>(plan: &'p Floorplan, room: &PlanRoom) -> Cow<'p, Floorplan> {
-    if plan.level_numbers().len() > 1 { Cow::Owned(plan.storey(room.level)) } else { Cow::Borrowed(plan) }
 }
 
 /// Returns the furniture of all rooms: the proposed, and that of the other rooms as it was.

@@ -4,7 +4,6 @@ use std::fmt::Write as _;
 
 use d3dgen_llm::Request as LlmRequest;
 use d3dgen_model::domain::{Domain, GENERIC_ROOM_TYPE};
-use d3dgen_model::geometry::Rect;
 use d3dgen_model::proposal::{Fate, FateCounts, ItemKind, ProposedItem, StageProposal};
 use d3dgen_model::scene_graph::{Connector, SceneGraph};
 use d3dgen_model::world::World;
@@ -187,13 +186,9 @@ fn is_met(world: &World, a: &str, b: &str, connector: Connector) -> bool {
     let door = plan.doors.iter().any(|d| both(&d.room_ids));
     let wall = door || plan.walls.iter().any(|w| both(&w.room_ids));
     let bounds = |id: &str| plan.room(id).map(|r| r.polygon.bounds());
-    let gap = |(x, y): (Rect, Rect)| {
-        let dx = (x.x0 - y.x1).max(y.x0 - x.x1).max(0.0);
-        dx.max((x.y0 - y.y1).max(y.y0 - x.y1))
-    };
     match connector {
         Connector::Door | Connector::Open => door,
         Connector::Wall => wall,
-        Connector::Near => wall || bounds(a).zip(bounds(b)).map(gap).is_some_and(|g| g <= NEAR_M),
+        Connector::Near => wall || bounds(a).zip(bounds(b)).is_some_and(|(a, b)| a.gap(&b) <= NEAR_M),
     }
 }

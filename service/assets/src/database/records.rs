@@ -9,8 +9,9 @@
 //! | `asset_change` | ten digits | [`Change`] |
 
 use std::collections::BTreeMap;
-use std::ops::ControlFlow;
 
+use d3dgen_store::records::json;
+pub(super) use d3dgen_store::records::json::{decode, encode, get};
 use d3dgen_store::{KeyRange, View};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -95,35 +96,11 @@ pub struct Change {
     pub assets: Vec<String>,
 }
 
-/// Returns a payload.
-pub(super) fn encode(record: &impl Serialize) -> Vec<u8> {
-    serde_json::to_vec(record).expect("records hold only finite numbers and string keys")
-}
-
-/// Returns the record of a payload.
-///
-/// # Errors
-/// `Damaged` when it is of another form.
-pub(super) fn decode<T: DeserializeOwned>(table: &str, key: &str, payload: &[u8]) -> Result<T, Error> {
-    serde_json::from_slice(payload).map_err(|e| {
-        let reason = format!("not of the form of this table: {e}");
-        d3dgen_store::Error::Damaged { table: table.into(), key: key.into(), reason }.into()
-    })
-}
-
-/// Returns one record.
-pub(super) fn get<T: DeserializeOwned>(view: &View<'_>, table: &str, key: &str) -> Result<Option<T>, Error> {
-    view.get(table, key)?.map(|payload| decode(table, key, &payload)).transpose()
-}
-
 /// Calls `visit` with each record of a table, in the order of keys.
 pub(super) fn each<T: DeserializeOwned>(
     view: &View<'_>,
     table: &str,
-    mut visit: impl FnMut(&str, T) -> Result<(), Error>,
+    visit: impl FnMut(&str, T) -> Result<(), Error>,
 ) -> Result<(), Error> {
-    view.scan(table, &KeyRange::all(), |key, payload| {
-        visit(key, decode(table, key, payload)?)?;
-        Ok(ControlFlow::Continue(()))
-    })
+    json::each(view, table, &KeyRange::all(), visit)
 }

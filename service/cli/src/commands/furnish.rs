@@ -42,7 +42,7 @@ pub struct Args {
     /// Country whose rules apply, as a code (DE) or an English name
     #[arg(long, value_name = "COUNTRY")]
     country: Option<String>,
-    /// Robot the world is for: cleaning, delivery, service or transport; may be given more than once
+    /// Robot the world is for: cleaning, disinfection, delivery, service or transport; may be given more than once
     #[arg(long, value_name = "KIND")]
     robot: Vec<String>,
     /// Radius in m of the largest robot

@@ -46,7 +46,7 @@ impl Ord for Square {
 /// Squares are split in four while one of them may hold something better: the radius around a point is at most that
 /// around another point and the way between them.
 pub(super) fn largest(outline: &Polygon, obstacles: &[Rect]) -> f64 {
-    let walls: Vec<Rect> = outline.edges().map(|w| Rect::new(w.start.x, w.start.y, w.end.x, w.end.y)).collect();
+    let walls: Vec<Rect> = outline.edges().map(|w| w.bounds()).collect();
     let nearest = |p: Point, list: &[Rect]| list.iter().map(|r| squared(p, r)).fold(f64::MAX, f64::min);
     // below 0 outside of the outline
     let radius = |p: Point| {

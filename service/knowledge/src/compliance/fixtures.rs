@@ -2,7 +2,7 @@
 
 use d3dgen_model::domain::{Mount, Shape};
 use d3dgen_model::knowledge::Value;
-use d3dgen_model::{Point, Rect, Segment};
+use d3dgen_model::{Point, Rect};
 
 use super::kitchen;
 use super::objects::belong_together;
@@ -53,17 +53,17 @@ pub(super) fn figure(site: &Site, room: &Room, object: &Object, a: &Applicable, 
         Measure::ClearanceAround => Some(around(room, object, entry(a, "length")?)),
         Measure::AccessibleSides => {
             let free =
-                |turn| depth_beside(&object.rect, turn, &room.plan.net_polygon, others(room, object)) >= STANDING_M;
+                |turn| depth_beside(&object.rect, turn, &room.plan.net_polygon, room.others(object)) >= STANDING_M;
             Some((0..4).filter(|turn| free(*turn)).count() as f64)
         }
         Measure::HeadToWindow => {
             let head = head(object);
-            room.windows.iter().map(|w| to_segment(head, &w.line)).reduce(f64::min)
+            room.windows.iter().map(|w| w.line.bounds().distance_to(head)).reduce(f64::min)
         }
         Measure::BedToSideWall => to_side_wall(room, object, rule),
         Measure::BedSidePair => {
             let (wide, narrow) = (entry(a, "one_side")?, entry(a, "other_side")?);
-            let side = |side| free_depth(object.placement, side, &room.plan.net_polygon, others(room, object));
+            let side = |side| free_depth(object.placement, side, &room.plan.net_polygon, room.others(object));
             let (left, right) = (side(Side::Left), side(Side::Right));
             Some(left.min(right).min(left.max(right) - (wide - narrow)))
         }
@@ -79,10 +79,6 @@ fn entry(a: &Applicable, key: &str) -> Option<f64> {
     }
 }
 
-fn others<'a>(room: &'a Room, object: &'a Object) -> impl Iterator<Item = Rect> + 'a {
-    room.objects.iter().filter(|o| o.blocks && !belong_together(o, object)).map(|o| o.rect)
-}
-
 /// Returns the distance of the middle of a thing on a wall from the nearest wall beside it, m.
 fn corner_distance(room: &Room, object: &Object) -> f64 {
     let ahead = quarter(object.placement.pose.yaw_rad);
@@ -94,14 +90,7 @@ fn to_door(site: &Site, room: &Room, object: &Object, rule: &Rule) -> Option<f64
     let plan = &site.world.floorplan;
     let leads = |id: &String| plan.room(id).is_some_and(|r| rule.to.contains(&r.room_type));
     let doors = room.doors.iter().filter(|d| d.room_ids.iter().any(leads));
-    doors.map(|d| to_segment(object.rect.center(), &d.line)).reduce(f64::min)
-}
-
-/// Returns the distance of a point from an axis-aligned segment, m.
-fn to_segment(p: Point, s: &Segment) -> f64 {
-    let r = Rect::new(s.start.x, s.start.y, s.end.x, s.end.y);
-    let nearest = Point::new(p.x.clamp(r.x0, r.x1), p.y.clamp(r.y0, r.y1));
-    p.distance(nearest)
+    doors.map(|d| d.line.bounds().distance_to(object.rect.center())).reduce(f64::min)
 }
 
 fn seats_at<'a>(room: &'a Room, object: &'a Object) -> impl Iterator<Item = &'a Object<'a>> {
@@ -115,7 +104,7 @@ fn seated_depth(room: &Room, object: &Object) -> Option<f64> {
         let beyond = |r: Rect| r.center().x > own.x1 && r.center().y > own.y0 && r.center().y < own.y1;
         seats_at(room, object).any(|s| beyond(turned(&s.rect, turn)))
     };
-    let free = |turn| depth_beside(&object.rect, turn, &room.plan.net_polygon, others(room, object));
+    let free = |turn| depth_beside(&object.rect, turn, &room.plan.net_polygon, room.others(object));
     (0..4).filter(|turn| sits(*turn)).map(free).reduce(f64::min)
 }
 

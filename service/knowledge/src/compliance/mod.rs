@@ -70,7 +70,7 @@ pub fn longest_way_out(world: &World, domain: &Domain, retrieval: &Retrieval, le
 pub fn evaluate(world: &World, domain: &Domain, retrieval: &Retrieval) -> (Vec<ConstraintResult>, ConstraintSummary) {
     // figures of the building are of all storeys, what is measured on a floor is of one after the other
     let site = Site::new(world, domain, retrieval);
-    let several = world.floorplan.level_numbers().len() > 1;
+    let several = world.floorplan.has_storeys();
     let storeys = if several { world.storeys() } else { Vec::new() };
     let storeys: Vec<Site> = storeys.iter().map(|(_, storey)| Site::new(storey, domain, retrieval)).collect();
     let mut summary = ConstraintSummary { not_applicable: retrieval.not_applicable, ..ConstraintSummary::default() };

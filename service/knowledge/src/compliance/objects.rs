@@ -1,6 +1,5 @@
 //! Free floor around objects, and where docks stand.
 
-use d3dgen_model::Rect;
 use d3dgen_model::domain::Shape;
 use d3dgen_model::floorplan::Door;
 
@@ -51,21 +50,17 @@ fn docks_keep_egress(site: &Site) -> Vec<Reading> {
 }
 
 fn figure(site: &Site, room: &Room, object: &Object, a: &Applicable, rule: &Rule) -> Option<f64> {
-    let depth = |side: Side| {
-        let others = room.objects.iter().filter(|o| o.blocks && !belong_together(o, object)).map(|o| o.rect);
-        free_depth(object.placement, side, &room.plan.net_polygon, others)
-    };
+    let depth = |side: Side| free_depth(object.placement, side, &room.plan.net_polygon, room.others(object));
     match rule.quantity.measure {
         Measure::ObjectFront => Some(depth(Side::Front)),
         Measure::ObjectSides => {
             let (left, right) = (depth(Side::Left), depth(Side::Right));
-            let one_side = a.constraint.measurement_basis.contains("one side");
-            Some(if one_side { left.max(right) } else { left.min(right) })
+            Some(if a.is_one_sided() { left.max(right) } else { left.min(right) })
         }
         Measure::GapBetweenObjects => {
             let alike = |o: &&Object| o.kind.is_some_and(|k| rule.quantity.picks(k)) && o.placement != object.placement;
             let others = room.objects.iter().filter(alike);
-            others.map(|o| gap(&o.rect, &object.rect)).reduce(f64::min)
+            others.map(|o| o.rect.gap(&object.rect)).reduce(f64::min)
         }
         Measure::DockClearOfDoors => {
             let free = |d: &&Door| door_zones(d).iter().all(|zone| !zone.overlaps(&object.rect));
@@ -88,11 +83,4 @@ fn figure(site: &Site, room: &Room, object: &Object, a: &Applicable, rule: &Rule
 pub(super) fn belong_together(a: &Object, b: &Object) -> bool {
     a.placement.placement_id == b.placement.placement_id
         || (a.placement.group.is_some() && a.placement.group == b.placement.group)
-}
-
-/// Returns the distance between two outlines along the axis that parts them, m.
-pub(super) fn gap(a: &Rect, b: &Rect) -> f64 {
-    let x = (a.x0 - b.x1).max(b.x0 - a.x1);
-    let y = (a.y0 - b.y1).max(b.y0 - a.y1);
-    x.max(y).max(0.0)
 }

@@ -58,7 +58,7 @@ fn figure(site: &Site, room: &Room, rule: &Rule) -> Option<f64> {
         }
         Measure::NoGlassOrMirrors => {
             let glass = room.windows.iter().any(|w| w.sill_m < FLOOR_GLASS_M);
-            let mirror = room.objects.iter().any(|o| is_mirror(&o.placement.object, o.kind));
+            let mirror = room.objects.iter().any(|o| o.kind.is_some_and(is_mirror));
             if glass || mirror { 0.0 } else { 1.0 }
         }
         Measure::AreaPerObject => {

@@ -12,6 +12,7 @@ use d3dgen_model::placements::Placement;
 use d3dgen_model::world::World;
 use d3dgen_model::{Point, Rect};
 
+use super::objects::belong_together;
 use crate::clearance::{HEAD_ROOM_M, is_shallow, quarter};
 use crate::conditions::Guard;
 use crate::freespace::FreeSpace;
@@ -157,6 +158,11 @@ impl Room<'_> {
             let taken: Vec<Rect> = self.objects.iter().filter(|o| o.blocks).map(|o| o.rect).collect();
             FreeSpace::new(&self.plan.net_polygon, &taken)
         })
+    }
+
+    /// Returns the floor of all that blocks the way but one object and what was placed with it.
+    pub fn others(&self, object: &Object) -> impl Iterator<Item = Rect> {
+        self.objects.iter().filter(move |o| o.blocks && !belong_together(o, object)).map(|o| o.rect)
     }
 
     /// Returns the free floor for people upright: what stands out from walls above a robot's head takes some of it too.

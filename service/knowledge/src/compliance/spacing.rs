@@ -1,10 +1,9 @@
 //! Free floor around objects, and distances between objects, walls and windows.
 
-use d3dgen_model::Rect;
 use d3dgen_model::domain::{Mount, Shape};
 
 use super::Reading;
-use super::objects::{belong_together, gap};
+use super::objects::belong_together;
 use super::site::{Object, Room, Site};
 use crate::clearance::{HEAD_ROOM_M, Side, depth_beside, free_depth, quarter};
 use crate::measure::Measure;
@@ -29,7 +28,7 @@ pub(super) fn figure(room: &Room, object: &Object, rule: &Rule) -> Option<f64> {
         Measure::ObjectThreeSides => {
             let sides = [Side::Front, Side::Left, Side::Right];
             sides
-                .map(|side| free_depth(object.placement, side, &room.plan.net_polygon, others(room, object)))
+                .map(|side| free_depth(object.placement, side, &room.plan.net_polygon, room.others(object)))
                 .into_iter()
                 .reduce(f64::min)
         }
@@ -39,7 +38,7 @@ pub(super) fn figure(room: &Room, object: &Object, rule: &Rule) -> Option<f64> {
         }
         Measure::ObjectToObject => {
             let ends = room.objects.iter().filter(|o| o.is(&rule.quantity.to_shapes));
-            ends.map(|o| gap(&o.rect, own)).reduce(f64::min)
+            ends.map(|o| o.rect.gap(own)).reduce(f64::min)
         }
         Measure::CentreToSide => {
             let ahead = quarter(object.placement.pose.yaw_rad);
@@ -57,7 +56,7 @@ pub(super) fn figure(room: &Room, object: &Object, rule: &Rule) -> Option<f64> {
         }
         Measure::TableEdgePerSeat => {
             let seats = room.objects.iter().filter(|o| o.is(&SEATS) && belong_together(o, object));
-            let seats = seats.filter(|o| gap(&o.rect, own) <= AT_TABLE_M).count();
+            let seats = seats.filter(|o| o.rect.gap(own) <= AT_TABLE_M).count();
             (seats > 0).then(|| 2.0 * (own.width() + own.height()) / seats as f64)
         }
         Measure::WindowDistance => room.windows.iter().map(|w| w.line.middle().distance(own_middle)).reduce(f64::min),
@@ -84,11 +83,7 @@ pub(super) fn projections(site: &Site, a: &Applicable) -> Vec<Reading> {
 
 /// Returns the free depth towards a quarter turn up to the next wall or thing that does not belong to the object, m.
 fn depth(room: &Room, object: &Object, turn: u8) -> f64 {
-    depth_beside(&object.rect, turn, &room.plan.net_polygon, others(room, object))
-}
-
-fn others<'a>(room: &'a Room, object: &'a Object) -> impl Iterator<Item = Rect> + 'a {
-    room.objects.iter().filter(|o| o.blocks && !belong_together(o, object)).map(|o| o.rect)
+    depth_beside(&object.rect, turn, &room.plan.net_polygon, room.others(object))
 }
 
 /// Returns the aisle between the front of this desk or shelf and the next one that faces it, m.

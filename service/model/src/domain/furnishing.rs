@@ -80,6 +80,26 @@ pub enum Arrangement {
     FacingDoor,
 }
 
+impl Arrangement {
+    /// Returns the name that documents have for it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Wall => "wall",
+            Self::SolidWall => "solid_wall",
+            Self::WindowWall => "window_wall",
+            Self::Corner => "corner",
+            Self::Center => "center",
+            Self::Rows => "rows",
+            Self::Facing => "facing",
+            Self::BesideDoor => "beside_door",
+            Self::OnSurface => "on_surface",
+            Self::Overhead => "overhead",
+            Self::AtWindow => "at_window",
+            Self::FacingDoor => "facing_door",
+        }
+    }
+}
+
 /// Objects that stand together, laid out around an anchor and placed as one.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -230,6 +250,20 @@ impl Group {
                     format!("object `{}` is not in objects", member.object),
                 ));
             }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn arrangements_are_called_as_in_documents() {
+        let names = "wall solid_wall window_wall corner center rows facing beside_door on_surface overhead at_window facing_door";
+        for name in names.split(' ') {
+            let arrangement: Arrangement = serde_json::from_value(name.into()).expect("it is one");
+            assert_eq!(arrangement.name(), name);
         }
     }
 }

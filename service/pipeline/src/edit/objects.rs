@@ -1,7 +1,6 @@
 //! Furniture under edits: what still fits stays, what an edit names goes where it says, the rest is furnished anew.
 
-use std::borrow::Cow;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::FRAC_PI_2;
 
 use d3dgen_model::domain::{Domain, Mount, ObjectType};
@@ -25,7 +24,7 @@ impl Desk<'_> {
         let old = before.room(room_id);
         self.follow(old, &room);
         let old = old.filter(|old| moved_by(old, &room).is_none());
-        let plan = self.storey_of(&room);
+        let plan = self.plan.storey_at(room.level);
         let mut gone: BTreeSet<String> = BTreeSet::new();
         for p in self.placements.placements.iter().filter(|p| p.room_id == room_id) {
             let at_wall = old.is_none_or(|old| {
@@ -38,8 +37,8 @@ impl Desk<'_> {
             }
             if p.locked {
                 let reason = problems.into_iter().next();
-                let reason = reason.unwrap_or_else(|| format!("locked `{}` would lose its wall", p.placement_id));
-                return Err(infeasible(reason));
+                let reason = reason.unwrap_or_else(|| format!("`{}` would lose its wall", p.placement_id));
+                return Err(infeasible(format!("locked {reason}")));
             }
             gone.insert(p.placement_id.clone());
         }
@@ -204,12 +203,12 @@ impl Desk<'_> {
     fn make_way(&mut self, new: &Placement, riders: &BTreeSet<String>) -> Result<(), Error> {
         let room = self.room(&new.room_id)?.clone();
         let domain = self.plugin.domain();
-        let plan = self.storey_of(&room);
+        let plan = self.plan.storey_at(room.level);
         let of_room = |p: &&Placement| p.room_id == room.room_id;
         if new.support.is_none()
             && let Some(problem) = misfits(&plan, &room, domain, &[new]).into_iter().next()
         {
-            return Err(infeasible(problem.replace("locked ", "")));
+            return Err(infeasible(problem));
         }
         let mut gone = BTreeSet::new();
         for p in self.placements.placements.iter().filter(of_room).filter(|p| !riders.contains(&p.placement_id)) {
@@ -278,7 +277,7 @@ impl Desk<'_> {
         let limits = &self.retrieved.limits;
         let made = furnish_room(
             &self.graph,
-            &self.storey_of(room),
+            &self.plan.storey_at(room.level),
             room,
             (self.plugin.domain(), limits),
             &fixed,
@@ -286,36 +285,25 @@ impl Desk<'_> {
             self.stop,
         );
         self.stop.check()?;
-        let (placements, unplaced) = made.map_err(|problems| infeasible(problems.join("; ").replace("locked ", "")))?;
+        let (placements, unplaced) = made.map_err(|problems| infeasible(problems.join("; ")))?;
         if let Some(object) = more
             && let Some(missing) = unplaced.first()
         {
             return Err(infeasible(format!("`{}` finds no place in `{room_id}`: {}", object.id, missing.reason)));
         }
-        let mut by_room: Vec<Placement> = Vec::new();
-        for r in &self.plan.rooms {
-            if r.room_id == room_id {
-                by_room.extend(placements.iter().cloned());
-            } else {
-                by_room.extend(self.placements.placements.iter().filter(|p| p.room_id == r.room_id).cloned());
-            }
-        }
-        self.placements.placements = by_room;
+        // in the order of the plan's rooms, as in a world that was made
+        let order: BTreeMap<&str, usize> =
+            self.plan.rooms.iter().enumerate().map(|(i, r)| (r.room_id.as_str(), i)).collect();
+        let all = &mut self.placements.placements;
+        all.retain(|p| p.room_id != room_id && order.contains_key(p.room_id.as_str()));
+        all.extend(placements);
+        all.sort_by_key(|p| order[p.room_id.as_str()]);
         if more.is_none() {
             self.placements.unplaced.retain(|u| u.room_id != room_id);
             self.placements.unplaced.extend(unplaced);
         }
         self.changed.insert(room_id.to_owned());
         Ok(())
-    }
-
-    /// Returns the plan of the storey that a room is on.
-    fn storey_of(&self, room: &PlanRoom) -> Cow<'_, Floorplan> {
-        if self.plan.level_numbers().len() > 1 {
-            Cow::Owned(self.plan.storey(room.level))
-        } else {
-            Cow::Borrowed(&self.plan)
-        }
     }
 
     fn room(&self, room_id: &str) -> Result<&PlanRoom, Error> {

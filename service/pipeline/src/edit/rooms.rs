@@ -5,7 +5,7 @@ use d3dgen_model::scene_graph::{Connector, GraphEdge, GraphRoom, Note, SceneGrap
 
 use super::{mismatch, refused};
 use crate::Error;
-use crate::scene_graph::{is_missed, room_type_called, wished_assets};
+use crate::scene_graph::{is_missed, room_type_called, rules_here, wished_assets};
 
 /// Reason of edges that an edit adds.
 const BY_EDIT: &str = "edit";
@@ -46,15 +46,9 @@ pub(super) fn add(
     let id = room.id.clone();
     let connector = if kind.open_front && entered_from.is_none() { Connector::Open } else { Connector::Door };
     graph.edges.push(GraphEdge { a: id.clone(), b: from.clone(), connector, required: true, reason: BY_EDIT.into() });
-    let here = |jurisdictions: &[String]| {
-        jurisdictions.is_empty() || jurisdictions.iter().any(|c| graph.country_code.as_ref() == Some(c))
-    };
-    let apart = domain.adjacency.iter().filter(|r| {
-        r.relation == AdjacencyRelation::MustNot
-            && r.via == "wall"
-            && here(&r.jurisdictions)
-            && (r.a == kind.id || r.b == kind.id)
-    });
+    let country = graph.country_code.clone();
+    let apart = rules_here(domain, country.as_deref())
+        .filter(|r| r.relation == AdjacencyRelation::MustNot && r.via == "wall" && (r.a == kind.id || r.b == kind.id));
     for rule in apart {
         let other = if rule.a == kind.id { &rule.b } else { &rule.a };
         for room in graph.rooms.iter().filter(|r| &r.room_type == other && r.id != from && r.level == level) {

@@ -206,9 +206,8 @@ pub(super) fn merged(boxes: &[(usize, Cellbox)]) -> Vec<Cellbox> {
             i += 1;
             continue;
         };
-        let b = out.remove(j);
-        let a = out[i];
-        out[i] = Cellbox { x0: a.x0.min(b.x0), y0: a.y0.min(b.y0), x1: a.x1.max(b.x1), y1: a.y1.max(b.y1) };
+        let other = out.remove(j);
+        out[i] = out[i].union(&other);
         i = 0;
     }
     out

@@ -66,6 +66,16 @@ impl Cellbox {
         (x0 < x1 && y0 < y1).then_some(Self { x0, y0, x1, y1 })
     }
 
+    /// Returns the least rectangle around both.
+    pub(super) fn union(&self, other: &Self) -> Self {
+        Self {
+            x0: self.x0.min(other.x0),
+            y0: self.y0.min(other.y0),
+            x1: self.x1.max(other.x1),
+            y1: self.y1.max(other.y1),
+        }
+    }
+
     /// Returns what is left of a rectangle without another: up to four rectangles.
     pub(super) fn without(&self, other: &Self) -> Vec<Self> {
         let Some(cut) = self.overlap(other) else { return vec![*self] };

@@ -99,13 +99,13 @@ pub fn generate_until(
         if plan.rooms.iter().all(|r| r.locked) {
             return kept(graph, plan);
         }
-        if plan.levels.len() > 1 || graph.level_numbers().len() > 1 {
+        if plan.levels.len() > 1 || graph.has_storeys() {
             return storey::replan(graph, domain, limits, plan, stop);
         }
         let brief = Brief::new(graph, domain, limits)?;
         return adjust::replan(&brief, plan, graph.seed, &mut Stream::new(graph.seed, "floorplan"), stop);
     }
-    if graph.level_numbers().len() > 1 {
+    if graph.has_storeys() {
         return storeys::generate(graph, domain, limits, stop);
     }
     let mut brief = Brief::new(graph, domain, limits)?;
@@ -176,7 +176,7 @@ pub fn change(
     moved: Option<&WallMove>,
     stop: Stop<'_>,
 ) -> Result<Floorplan, Error> {
-    if plan.levels.len() > 1 || graph.level_numbers().len() > 1 {
+    if plan.levels.len() > 1 || graph.has_storeys() {
         return storey::change(graph, domain, limits, plan, moved, stop);
     }
     let brief = Brief::new(graph, domain, limits)?;

@@ -193,12 +193,7 @@ fn complete(brief: &Brief, sketch: &Board) -> Option<Board> {
 /// Returns the place between the rooms that suits a room best, if there is one: it may be the one that was forgotten.
 fn gap_for(brief: &Brief, board: &Board, room: usize) -> Option<Cellbox> {
     let all = board.layout().boxes;
-    let whole = all.iter().map(|(_, b)| *b).reduce(|a, b| Cellbox {
-        x0: a.x0.min(b.x0),
-        y0: a.y0.min(b.y0),
-        x1: a.x1.max(b.x1),
-        y1: a.y1.max(b.y1),
-    })?;
+    let whole = all.iter().map(|(_, b)| *b).reduce(|a, b| a.union(&b))?;
     let free = all.iter().fold(vec![whole], |free, (_, b)| free.iter().flat_map(|f| f.without(b)).collect());
     let target = brief.rooms[room].area_target;
     let misfit = |b: &Cellbox| (b.area_m2() / target).max(target / b.area_m2());

@@ -213,12 +213,7 @@ impl Hand<'_> {
     fn cut_anew(&self, board: &mut Board, rng: &mut Stream) -> bool {
         let (a, b) = (self.any(rng), self.any(rng));
         let ([first], [second]) = (board.rooms[a].as_slice(), board.rooms[b].as_slice()) else { return false };
-        let whole = Cellbox {
-            x0: first.x0.min(second.x0),
-            y0: first.y0.min(second.y0),
-            x1: first.x1.max(second.x1),
-            y1: first.y1.max(second.y1),
-        };
+        let whole = first.union(second);
         if a == b || units(&whole) != units(first) + units(second) {
             return false;
         }

@@ -18,7 +18,7 @@ use super::lattice::{JAMB_M, OUTER_HALF_M};
 use super::windows::LEAST_WALL_M;
 use crate::Error;
 use crate::placement::has_docks;
-use crate::scene_graph::{BY_PROMPT, CLEANING};
+use crate::scene_graph::{BY_PROMPT, brings, rules_here};
 
 /// Code of the conflict that a building has another form than was asked for.
 const FORM_NOT_BUILT: &str = "form_not_built";
@@ -420,7 +420,7 @@ fn aloof(graph: &SceneGraph, domain: &Domain) -> Vec<[usize; 2]> {
     let of = |kind: &str| -> Vec<usize> {
         graph.rooms.iter().enumerate().filter(|(_, r)| r.room_type == kind).map(|(i, _)| i).collect()
     };
-    let pairs = domain.adjacency.iter().filter(advice).flat_map(|rule| {
+    let pairs = rules_here(domain, graph.country_code.as_deref()).filter(advice).flat_map(|rule| {
         let others = of(&rule.b);
         of(&rule.a).into_iter().flat_map(move |a| others.clone().into_iter().map(move |b| [a, b]))
     });
@@ -498,9 +498,9 @@ fn room_spec(
     let robot = graph.robots.iter().map(|r| 2.0 * r.planned_radius_m() + 0.1).fold(0.0, f64::max);
     // what brings something opens no leaf; where a robot only cleans, the door stands open meanwhile
     let robots = !graph.robots.is_empty();
-    let brings = graph.robots.iter().any(|r| r.kind != CLEANING);
+    let brought = graph.robots.iter().any(|r| brings(&r.kind));
     let served = room.circulation || kind.robot.iter().any(|u| matches!(u, RobotUse::Service | RobotUse::Staging));
-    let automatic = brings && served && !kind.robot.contains(&RobotUse::KeepOut) && domain.circulation.automatic_doors;
+    let automatic = brought && served && !kind.robot.contains(&RobotUse::KeepOut) && domain.circulation.automatic_doors;
     // what hangs in the air or lies below the ground has no drive
     let gate = gate(domain, kind).filter(|_| room.level == 0);
     RoomSpec {
@@ -551,10 +551,11 @@ fn is_by_entrance(room: &GraphRoom, graph: &SceneGraph) -> bool {
 /// Returns true for a room that belongs near the entrance hall in a building that has none: it lies near the entrance then.
 fn is_for_guests(room: &GraphRoom, graph: &SceneGraph, domain: &Domain) -> bool {
     let halls = &domain.circulation.entrance_room_types;
-    let wanted = |rule: &&Adjacency| {
+    let wanted = |rule: &Adjacency| {
         rule.relation == AdjacencyRelation::Should && rule.a == room.room_type && halls.contains(&rule.b)
     };
-    !graph.rooms.iter().any(|r| halls.contains(&r.room_type)) && domain.adjacency.iter().any(|rule| wanted(&rule))
+    !graph.rooms.iter().any(|r| halls.contains(&r.room_type))
+        && rules_here(domain, graph.country_code.as_deref()).any(wanted)
 }
 
 /// Returns the clear width of the gate that the vehicles of a room need, or of its own door to outdoors, m.

@@ -55,7 +55,7 @@ pub(super) fn add_missing(
     };
     let mut rooms: Vec<(u8, &PlanRoom)> = plan.rooms.iter().filter_map(|r| Some((suits(&r)?, r))).collect();
     rooms.sort_by_key(|r| r.0);
-    let storey = if plan.level_numbers().len() > 1 { &plan.storey(home) } else { plan };
+    let storey = &plan.storey_at(home);
     while standing(out) < robots {
         let place = |whole: bool| {
             rooms.iter().enumerate().find_map(|(at, (_, room))| {

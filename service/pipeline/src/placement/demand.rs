@@ -4,12 +4,10 @@ use d3dgen_model::domain::{Arrangement, Domain, Furnishing, Goods, Mount, Object
 use d3dgen_model::occupancy::ROBOT_HEIGHT_M;
 use d3dgen_model::scene_graph::{GraphRoom, SceneGraph};
 
-use crate::scene_graph::{CLEANING, docks_held, widest_m};
-
 use super::seats::is_seat;
-
 use super::state::Placed;
 use super::unit::{Forms, Unit, variants};
+use crate::scene_graph::{cleans, docks_held, widest_m};
 
 /// Largest number of units of one line in one room.
 const MAX_UNITS: u32 = 400;
@@ -86,8 +84,12 @@ impl Task<'_> {
 
     /// Looks hard for one of several tables that fill a large room only: the others stand where there is floor for them.
     fn allow_one_table(&mut self) {
-        let table = matches!(self.anchor.shape, Shape::Table | Shape::RoundTable);
-        if table && self.arrangement == Arrangement::Center && self.required == 0 && !self.asked && self.count > 1 {
+        if is_table(self.anchor)
+            && self.arrangement == Arrangement::Center
+            && self.required == 0
+            && !self.asked
+            && self.count > 1
+        {
             self.spare = self.count - 1;
         }
     }
@@ -166,7 +168,7 @@ impl<'a> Household<'a> {
             has_robots: !graph.robots.is_empty(),
             in_each: robots.div_ceil(homes.max(1) as u32),
             circle_m: widest_m(&graph.robots),
-            cleans: graph.robots.iter().any(|r| r.kind == CLEANING),
+            cleans: graph.robots.iter().any(|r| cleans(&r.kind)),
             one_berth: robots == 1 && homes > 0,
             sharing: held
                 .filter(|(kind, _)| sleeps(kind))
@@ -214,154 +216,209 @@ pub(super) fn tasks<'a>(
     windows: u32,
     household: &Household,
 ) -> Vec<Task<'a>> {
-    let occupied = occupied_line(domain, kind, graph, household);
-    let named = named(domain, kind, graph);
-    // who eats there, whoever sleeps in the building
-    let guests = graph.and_then(|g| g.occupants).filter(|_| occupied.is_none());
-    let mut out: Vec<Task> = Vec::new();
-    // what is asked for by name comes whoever lives there
-    let called = |f: &Furnishing| domain.anchor(&f.item).is_some_and(|a| named.iter().any(|id| **id == a.id));
-    // a bed that is asked for comes in the place of the usual one
-    let bed = graph.and_then(|g| other_bed(domain, g));
-    let given_up = |f: &Furnishing| bed.is_some_and(|b| b.instead_of.contains(&f.item));
-    let wanted = |f: &Furnishing| (household.wants(kind, f, guests) || f.sleepers > 0 && called(f)) && !given_up(f);
-    for (line, f) in kind.furnishing.iter().enumerate().filter(|(_, f)| wanted(f)) {
-        let Some(anchor) = domain.anchor(&f.item) else { continue };
-        let (mut count, mut required) = (f.units(area_m2).min(MAX_UNITS), if f.required { f.min } else { 0 });
-        if bed.is_some_and(|b| std::ptr::eq(b, f)) {
+    let order = Order {
+        domain,
+        kind,
+        graph,
+        area_m2,
+        windows,
+        household,
+        occupied: occupied_line(domain, kind, graph, household),
+        named: named(domain, kind, graph),
+        bed: graph.and_then(|g| other_bed(domain, g)),
+    };
+    let lines = kind.furnishing.iter().enumerate().filter(|(_, f)| order.wants(f));
+    let mut out: Vec<Task> = lines.flat_map(|(line, f)| order.tasks_of(line, f)).collect();
+    out.extend(order.wished());
+    if order.occupied.is_none() {
+        if let Some(each) = per_person_m2 {
+            thin_out(domain, &mut out, (area_m2 / each).floor().max(1.0) as u32);
+        }
+        out.iter_mut().filter(|t| t.is_seated()).for_each(Task::allow_full_rows);
+    }
+    spare_for_rows(&mut out);
+    out.iter_mut().for_each(Task::allow_one_table);
+    turn_to_audience(&mut out);
+    sort(&mut out, kind, household.has_robots);
+    out
+}
+
+/// What a room is asked to hold.
+struct Order<'a, 'h> {
+    domain: &'a Domain,
+    kind: &'a RoomType,
+    graph: Option<&'a GraphRoom>,
+    area_m2: f64,
+    windows: u32,
+    household: &'h Household<'h>,
+    /// The line whose number follows from who is there, and that number.
+    occupied: Option<(usize, u32)>,
+    /// Objects that come before what the room's type begins with.
+    named: Vec<&'a String>,
+    /// The line of a bed that is asked for: it comes in the place of the usual one.
+    bed: Option<&'a Furnishing>,
+}
+
+impl<'a> Order<'a, '_> {
+    fn is_named(&self, object: &ObjectType) -> bool {
+        self.named.iter().any(|id| **id == object.id)
+    }
+
+    /// Returns true for a line that the building or somebody asks for.
+    fn wants(&self, f: &Furnishing) -> bool {
+        // who eats there, whoever sleeps in the building
+        let guests = self.graph.and_then(|g| g.occupants).filter(|_| self.occupied.is_none());
+        // what is asked for by name comes whoever lives there
+        let called = || self.domain.anchor(&f.item).is_some_and(|a| self.is_named(a));
+        let given_up = self.bed.is_some_and(|b| b.instead_of.contains(&f.item));
+        (self.household.wants(self.kind, f, guests) || f.sleepers > 0 && called()) && !given_up
+    }
+
+    /// Returns true where each robot has a dock of its own: in a room that is there for it.
+    fn are_berths(&self, f: &Furnishing, anchor: &ObjectType) -> bool {
+        f.required && anchor.shape == Shape::Dock && self.household.in_each > 0
+    }
+
+    /// Returns true for what somebody asked for. A table that is asked for may be the larger one that suits the people and the
+    /// room; the same table at a wall comes where it finds no place in the middle.
+    fn is_asked(&self, line: usize, f: &Furnishing, anchor: &ObjectType) -> bool {
+        let anchor_of = |o: &Furnishing| self.domain.anchor(&o.item);
+        let larger = |o: &Furnishing| {
+            let named = anchor_of(o).is_some_and(|a| self.is_named(a));
+            named && o.instead_of.contains(&f.item) && f.units(self.area_m2) > 0
+        };
+        let same = |o: &Furnishing| f.instead_of.contains(&o.item) && anchor_of(o).is_some_and(|a| a.id == anchor.id);
+        let lines = &self.kind.furnishing;
+        match is_table(anchor) {
+            true => self.is_named(anchor) && !lines[..line].iter().any(same) || lines.iter().any(larger),
+            false => self.is_named(anchor),
+        }
+    }
+
+    /// Returns how many units of a line the room is to have, and how many of them it cannot do without.
+    fn count_of(&self, line: usize, f: &Furnishing, anchor: &ObjectType) -> (u32, u32) {
+        let lines = &self.kind.furnishing;
+        let mut count = f.units(self.area_m2).min(MAX_UNITS);
+        let mut required = if f.required { f.min } else { 0 };
+        if self.bed.is_some_and(|b| std::ptr::eq(b, f)) {
             required = 1;
         }
-        // in a room that is there for it each robot has a dock of its own
-        let berths = f.required && anchor.shape == Shape::Dock && household.in_each > 0;
-        if berths {
-            count = docks_held(f, area_m2, household.in_each, household.circle_m);
+        if self.are_berths(f, anchor) {
+            count = docks_held(f, self.area_m2, self.household.in_each, self.household.circle_m);
         }
+        let in_rows = f.arrangement == Arrangement::Rows;
         // what finds no wall of the same stands in rows
-        let goes_on = |of: usize| {
-            line > of && f.arrangement == Arrangement::Rows && kind.furnishing.get(of).is_some_and(|o| o.item == f.item)
-        };
-        if let Some((steered, units)) = occupied
-            && (steered == line || goes_on(steered))
-        {
-            count = units.max(f.min);
-            required = required.min(count);
-        } else if let Some((steered, _)) = occupied
-            && !f.required
-            && f.arrangement != Arrangement::Rows
-            && [&f.item, &kind.furnishing[steered].item].iter().all(|item| works(domain, item))
-        {
+        let goes_on = |of: usize| line > of && in_rows && lines.get(of).is_some_and(|o| o.item == f.item);
+        let both_work = |of: usize| [&f.item, &lines[of].item].iter().all(|item| works(self.domain, item));
+        match self.occupied {
+            Some((steered, units)) if steered == line || goes_on(steered) => {
+                count = units.max(f.min);
+                required = required.min(count);
+            }
             // a room has as many desks as people
-            count = 0;
+            Some((steered, _)) if !f.required && !in_rows && both_work(steered) => count = 0,
+            _ => {}
         }
         if f.arrangement == Arrangement::AtWindow {
-            count = count.min(windows);
-            required = required.min(windows);
+            count = count.min(self.windows);
+            required = required.min(self.windows);
         }
-        // a table that is asked for may be the larger one that suits the people and the room
-        let larger = |o: &Furnishing| {
-            let named = domain.anchor(&o.item).is_some_and(|a| named.iter().any(|id| **id == a.id));
-            named && o.instead_of.contains(&f.item) && f.units(area_m2) > 0
-        };
-        let seats = matches!(anchor.shape, Shape::Table | Shape::RoundTable);
-        // the same table at a wall comes where it finds no place in the middle
-        let second = kind.furnishing[..line]
-            .iter()
-            .any(|o| f.instead_of.contains(&o.item) && domain.anchor(&o.item).is_some_and(|a| a.id == anchor.id));
-        let asked = named.iter().any(|id| **id == anchor.id) && !(seats && second)
-            || seats && kind.furnishing.iter().any(larger);
-        count = count.max(u32::from(asked && f.max > 0));
+        let asked = self.is_asked(line, f, anchor);
+        (count.max(u32::from(asked && f.max > 0)), required)
+    }
+
+    /// Returns the tasks of a furnishing line: none, one, or two where the room can do without some of the units.
+    fn tasks_of(&self, line: usize, f: &'a Furnishing) -> Vec<Task<'a>> {
+        let Some(anchor) = self.domain.anchor(&f.item) else { return Vec::new() };
+        let (count, required) = self.count_of(line, f, anchor);
         if count == 0 {
-            continue;
+            return Vec::new();
         }
-        let name = arrangement_name(f.arrangement);
-        let rule = format!("furnishing line {} ({}): {name}", line + 1, f.item);
-        let arrangement = f.arrangement;
-        let (rule, instead_of) = (rule.clone(), &f.instead_of[..]);
-        let first_choice =
-            asked || kind.furnishing.iter().any(|other| other.required && other.instead_of.contains(&f.item));
-        let asked = asked || f.sleepers > 0 && anchor.shape == Shape::Bed || berths && count > 1;
-        let item = &f.item;
-        let leads = line == 0 || instead_of.contains(&kind.furnishing[0].item);
+        let lines = &self.kind.furnishing;
+        let asked = self.is_asked(line, f, anchor);
+        let in_its_place = || lines.iter().any(|other| other.required && other.instead_of.contains(&f.item));
         let whole = Task {
-            item,
+            item: &f.item,
             anchor,
-            arrangement,
+            arrangement: f.arrangement,
             count,
             required,
             spare: 0,
             line,
-            leads,
-            rule,
-            instead_of,
-            first_choice,
-            asked,
-            for_many: seats && f.sleepers > 0,
-            usual_width_m: usual_width_m(domain, f),
-            seats: if occupied.is_none() { at_table(domain, f, graph) } else { None },
+            leads: line == 0 || f.instead_of.contains(&lines[0].item),
+            rule: format!("furnishing line {} ({}): {}", line + 1, f.item, f.arrangement.name()),
+            instead_of: &f.instead_of,
+            first_choice: asked || in_its_place(),
+            asked: asked || f.sleepers > 0 && anchor.shape == Shape::Bed || self.are_berths(f, anchor) && count > 1,
+            for_many: is_table(anchor) && f.sleepers > 0,
+            usual_width_m: usual_width_m(self.domain, f),
+            seats: if self.occupied.is_none() { at_table(self.domain, f, self.graph) } else { None },
         };
-        let together = whole.is_batch() || required == 0 || required == count || occupied.is_some_and(|o| o.0 == line);
-        if together {
-            out.push(whole);
-        } else {
-            // what the room cannot do without comes before the rest of the same line
-            out.push(Task { count: required, ..whole.clone() });
-            out.push(Task { count: count - required, required: 0, ..whole });
+        let steered = self.occupied.is_some_and(|o| o.0 == line);
+        if whole.is_batch() || required == 0 || required == count || steered {
+            return vec![whole];
         }
+        // what the room cannot do without comes before the rest of the same line
+        vec![Task { count: required, ..whole.clone() }, Task { count: count - required, required: 0, ..whole }]
     }
-    let lines = kind.furnishing.len();
-    for (i, (object, count)) in wishes(domain, kind, graph).into_iter().enumerate() {
-        let arrangement = natural(object);
-        let rule = format!("wished for in the scene graph ({}): {}", object.id, arrangement_name(arrangement));
-        let line = lines + i;
-        let item = &object.id;
-        out.push(Task {
-            item,
-            anchor: object,
-            arrangement,
-            count,
-            required: 0,
-            spare: 0,
-            line,
-            leads: false,
-            rule,
-            instead_of: &[],
-            first_choice: named.contains(&&object.id),
-            asked: named.contains(&&object.id),
-            for_many: false,
-            usual_width_m: storage_width_m(object),
-            seats: None,
-        });
+
+    /// Returns the tasks of what the graph wishes for beyond the lines of the room's type.
+    fn wished(&self) -> impl Iterator<Item = Task<'a>> {
+        let wishes = wishes(self.domain, self.kind, self.graph).into_iter().enumerate();
+        wishes.map(move |(i, (object, count))| {
+            let arrangement = natural(object);
+            Task {
+                item: &object.id,
+                anchor: object,
+                arrangement,
+                count,
+                required: 0,
+                spare: 0,
+                line: self.kind.furnishing.len() + i,
+                leads: false,
+                rule: format!("wished for in the scene graph ({}): {}", object.id, arrangement.name()),
+                instead_of: &[],
+                first_choice: self.is_named(object),
+                asked: self.is_named(object),
+                for_many: false,
+                usual_width_m: storage_width_m(object),
+                seats: None,
+            }
+        })
     }
-    if let Some(each) = per_person_m2.filter(|_| occupied.is_none()) {
-        thin_out(domain, &mut out, (area_m2 / each).floor().max(1.0) as u32);
-    }
-    if occupied.is_none() {
-        out.iter_mut().filter(|t| t.is_seated()).for_each(Task::allow_full_rows);
-    }
-    // what finds no wall is not missing where a later line has it in rows
-    for k in 0..out.len() {
-        let (item, line) = (out[k].item, out[k].line);
+}
+
+fn is_table(object: &ObjectType) -> bool {
+    matches!(object.shape, Shape::Table | Shape::RoundTable)
+}
+
+/// Lets what finds no wall be missing where a later line has it in rows.
+fn spare_for_rows(tasks: &mut [Task]) {
+    for k in 0..tasks.len() {
+        let (item, line) = (tasks[k].item, tasks[k].line);
         let later = |t: &Task| t.item == item && t.line > line && t.arrangement == Arrangement::Rows;
-        if out.iter().any(later) {
-            out[k].spare = out[k].count - out[k].required.max(1).min(out[k].count);
+        if tasks.iter().any(later) {
+            tasks[k].spare = tasks[k].count - tasks[k].required.max(1).min(tasks[k].count);
         }
     }
-    out.iter_mut().for_each(Task::allow_one_table);
-    turn_to_audience(&mut out);
+}
+
+/// Sorts tasks by what comes first in a room.
+fn sort(tasks: &mut [Task], kind: &RoomType, has_robots: bool) {
     // a household eats before its vacuum robot does
     let table = |t: &Task| kind.furnishing.get(t.line).is_some_and(|f| !f.unless_rooms.is_empty());
-    // where robots live a dock comes before what it stands beside, for it needs more floor; corners are few: what cannot do without one comes before what
-    // only wants a wall
-    let dock = |t: &Task| household.has_robots && t.required == 0 && t.anchor.shape == Shape::Dock;
+    // where robots live a dock comes before what it stands beside, for it needs more floor
+    let dock = |t: &Task| has_robots && t.required == 0 && t.anchor.shape == Shape::Dock;
+    // corners are few: what cannot do without one comes before what only wants a wall
+    let corner = |t: &Task| t.is_needed() && t.arrangement == Arrangement::Corner;
     // where one eats the table comes before a desk that is asked for too
-    let sleeps = out.iter().any(|t| t.anchor.shape == Shape::Bed);
-    let eats = !sleeps && out.iter().any(table);
+    let sleeps = tasks.iter().any(|t| t.anchor.shape == Shape::Bed);
+    let eats = !sleeps && tasks.iter().any(table);
     let waits = |t: &Task| eats && t.required == 0 && t.anchor.shape == Shape::Desk;
-    out.sort_by_key(|t| {
+    tasks.sort_by_key(|t| {
         let phase = if waits(t) { phase(t).max(2) } else { phase(t) };
-        (phase, !table(t), !dock(t), !t.is_needed() || t.arrangement != Arrangement::Corner, t.line)
+        (phase, !table(t), !dock(t), !corner(t), t.line)
     });
-    out
 }
 
 /// Returns how wide what things are stored in usually is, m; `None` for all else.
@@ -486,7 +543,7 @@ fn usual_unit<'a>(domain: &'a Domain, item: &'a str) -> Option<Unit<'a>> {
 /// Returns the task of one object that somebody wants in a room, whatever its type asks for.
 pub(super) fn one_more(object: &ObjectType) -> Task<'_> {
     let arrangement = natural(object);
-    let rule = format!("added by an edit ({}): {}", object.id, arrangement_name(arrangement));
+    let rule = format!("added by an edit ({}): {}", object.id, arrangement.name());
     let item = &object.id;
     Task {
         item,
@@ -581,21 +638,4 @@ fn takes_floor(object: &ObjectType) -> bool {
     let depth = object.sizes_m.first().map_or(0.0, |s| s[1]);
     object.mount == Mount::Floor
         || (object.mount == Mount::Wall && low && (depth > 0.15 || object.clearance_front_m > 0.3))
-}
-
-fn arrangement_name(a: Arrangement) -> &'static str {
-    match a {
-        Arrangement::Wall => "wall",
-        Arrangement::SolidWall => "solid_wall",
-        Arrangement::WindowWall => "window_wall",
-        Arrangement::Corner => "corner",
-        Arrangement::Center => "center",
-        Arrangement::Rows => "rows",
-        Arrangement::Facing => "facing",
-        Arrangement::BesideDoor => "beside_door",
-        Arrangement::OnSurface => "on_surface",
-        Arrangement::Overhead => "overhead",
-        Arrangement::AtWindow => "at_window",
-        Arrangement::FacingDoor => "facing_door",
-    }
 }

@@ -32,7 +32,7 @@ pub(super) fn place(
             kind.furnishing.iter().any(|f| f.item == object.id)
         };
         let found = plan.rooms.iter().filter(knows).find_map(|room| {
-            let storey = if plan.level_numbers().len() > 1 { &plan.storey(room.level) } else { plan };
+            let storey = &plan.storey_at(room.level);
             let here: Vec<&Placement> = out.placements.iter().filter(|p| p.room_id == room.room_id).collect();
             let one = [Wanted::IfFree(object), Wanted::Only(object)]
                 .into_iter()

@@ -120,6 +120,13 @@ impl Box2 {
         let dy = (self.y0 - o.y1).max(o.y0 - self.y1);
         dx.max(dy).max(0)
     }
+
+    /// Returns how far apart two rectangles are, mm; 0 when they touch or overlap.
+    pub fn distance(&self, o: &Self) -> i32 {
+        let dx = f64::from((self.x0 - o.x1).max(o.x0 - self.x1).max(0));
+        let dy = f64::from((self.y0 - o.y1).max(o.y0 - self.y1).max(0));
+        (dx * dx + dy * dy).sqrt() as i32
+    }
 }
 
 /// A rectangle over a height interval, mm.

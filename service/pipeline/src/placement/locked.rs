@@ -29,7 +29,7 @@ pub(super) fn strays(pinned: Option<&Placements>, plan: &Floorplan) -> Vec<Strin
     stray.map(|p| format!("`{}` stands in room `{}`, which the floorplan lacks", p.placement_id, p.room_id)).collect()
 }
 
-/// Returns locked placements as placed units, and everything that keeps them from standing where they are.
+/// Returns placements that stand already as placed units, and everything that keeps them from standing where they are.
 pub(super) fn placed<'a>(locked: &[&Placement], domain: &'a Domain, space: &Space) -> (Vec<Placed<'a>>, Vec<String>) {
     let mut problems = Vec::new();
     let mut units: Vec<Placed> = Vec::new();
@@ -37,11 +37,11 @@ pub(super) fn placed<'a>(locked: &[&Placement], domain: &'a Domain, space: &Spac
         let solid = solid_of(p);
         let id = &p.placement_id;
         let Some(object) = domain.object(&p.object) else {
-            problems.push(format!("locked `{id}` is a `{}`, which domain `{}` does not know", p.object, domain.id));
+            problems.push(format!("`{id}` is a `{}`, which domain `{}` does not know", p.object, domain.id));
             continue;
         };
         if !space.contains(&solid.rect.grown(-1)) {
-            problems.push(format!("locked `{id}` does not stand inside room `{}`", p.room_id));
+            problems.push(format!("`{id}` does not stand inside room `{}`", p.room_id));
         }
         if let Some(d) = space.doors.iter().find(|d| {
             p.mount != Mount::Surface
@@ -49,13 +49,13 @@ pub(super) fn placed<'a>(locked: &[&Placement], domain: &'a Domain, space: &Spac
                 && solid.z0 < d.height
                 && d.zone.overlaps(&solid.rect.grown(-1))
         }) {
-            problems.push(format!("locked `{id}` stands in the floor that door `{}` needs", d.id));
+            problems.push(format!("`{id}` stands in the floor that door `{}` needs", d.id));
         }
         for (other, q) in units.iter().zip(locked) {
             let theirs = other.solid(other.unit.anchor());
             let inner = Solid { rect: solid.rect.grown(-1), ..solid };
             if !solid.is_flat() && !theirs.is_flat() && inner.overlaps(&theirs) {
-                problems.push(format!("locked `{id}` and locked `{}` share space", q.placement_id));
+                problems.push(format!("`{id}` and `{}` share space", q.placement_id));
             }
         }
         let mount = p.mount;
@@ -90,7 +90,7 @@ pub(super) fn placed<'a>(locked: &[&Placement], domain: &'a Domain, space: &Spac
 pub(super) fn shading(fixed: &[&Placement], domain: &Domain, space: &Space) -> Vec<String> {
     let curtain = |p: &Placement| domain.object(&p.object).is_some_and(|o| o.shape == Shape::Curtain);
     let dark = |p: &&&Placement| !curtain(p) && space.windows.iter().any(|w| w.is_hidden_by(&solid_of(p)));
-    fixed.iter().filter(dark).map(|p| format!("locked `{}` stands in front of a window", p.placement_id)).collect()
+    fixed.iter().filter(dark).map(|p| format!("`{}` stands in front of a window", p.placement_id)).collect()
 }
 
 /// Returns how many things stand before a door or a window of the room where one would rather have none: as deep as the

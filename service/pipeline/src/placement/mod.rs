@@ -117,7 +117,7 @@ pub fn generate_until(
                 out.placements.extend(placements);
                 out.unplaced.extend(unplaced);
             }
-            Err(found) => problems.extend(found),
+            Err(found) => problems.extend(found.into_iter().map(|problem| format!("locked {problem}"))),
         }
     }
     locked::settle(problems)?;

@@ -320,24 +320,8 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
                 (best, best_of) = (other, Some(departure));
             }
         }
-        for departure in AT_WALL {
-            if self.job.stop.is_set() || !self.crowds_out(&best) {
-                break;
-            }
-            let Some(other) = self.draft((0, self.blank()), floor, Some(departure), false, &mut seen) else { continue };
-            if other.cost(empty) < best.cost(empty) {
-                (best, best_of) = (other, Some(departure));
-            }
-        }
-        for departure in ASIDE {
-            if self.job.stop.is_set() || !self.bed_crowds_out_wardrobe(&best) {
-                break;
-            }
-            let Some(other) = self.draft((0, self.blank()), floor, Some(departure), false, &mut seen) else { continue };
-            if other.cost(empty) < best.cost(empty) {
-                (best, best_of) = (other, Some(departure));
-            }
-        }
+        self.improve((&mut best, &mut best_of), &AT_WALL, floor, &mut seen, |draft| self.crowds_out(draft));
+        self.improve((&mut best, &mut best_of), &ASIDE, floor, &mut seen, |draft| self.bed_crowds_out_wardrobe(draft));
         // once more with an eye on every corner, where floor is closed off; few rooms need it
         let mut closed = best.state.pockets.area();
         // what stands there for good may close off floor by itself
@@ -359,6 +343,27 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
         self.run(&mut best, floor..tasks.len(), None, true);
         best.outcome.closed = (closed - open).max(0);
         Outcome { placed: best.state.placed, ..best.outcome }
+    }
+
+    /// Tries departures from the first task on for as long as the best draft lacks something; keeps what is better.
+    fn improve(
+        &self,
+        (best, best_of): (&mut Draft<'a, 's>, &mut Option<Departure>),
+        departures: &[Departure],
+        floor: usize,
+        seen: &mut Seen<'a>,
+        lacks: impl Fn(&Draft<'a, 's>) -> bool,
+    ) {
+        let empty = self.start.free_area;
+        for &departure in departures {
+            if self.job.stop.is_set() || !lacks(best) {
+                break;
+            }
+            let Some(other) = self.draft((0, self.blank()), floor, Some(departure), false, seen) else { continue };
+            if other.cost(empty) < best.cost(empty) {
+                (*best, *best_of) = (other, Some(departure));
+            }
+        }
     }
 
     /// Goes on with a draft from one of the tasks up to `floor`, with one departure; `None` where that leads to what was seen.

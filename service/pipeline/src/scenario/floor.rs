@@ -264,10 +264,7 @@ impl<'a> Floor<'a> {
     pub fn is_at_chair(&self, room: &Room, p: Point) -> bool {
         let chairs = room.objects.iter().filter(|(_, o)| matches!(o.shape, Shape::Chair | Shape::SwivelChair));
         let reach = self.radius + FROM_CHAIR_M;
-        chairs.map(|(chair, _)| chair.footprint().bounds()).any(|r| {
-            let (dx, dy) = ((r.x0 - p.x).max(p.x - r.x1).max(0.0), (r.y0 - p.y).max(p.y - r.y1).max(0.0));
-            dx.hypot(dy) < reach
-        })
+        chairs.map(|(chair, _)| chair.footprint().bounds()).any(|r| r.distance_to(p) < reach)
     }
 
     /// Takes the floor around a robot or person (of this radius) from the spots of all rooms.
@@ -321,8 +318,7 @@ pub(super) fn swept(door: &Door, room_id: &str) -> Option<Rect> {
 
 /// Returns the floor on both sides of a door that people come through on, this deep.
 pub(super) fn lane(door: &Door, deep: f64) -> Rect {
-    let (a, b) = (door.line.start, door.line.end);
-    let r = Rect::new(a.x.min(b.x), a.y.min(b.y), a.x.max(b.x), a.y.max(b.y));
+    let r = door.line.bounds();
     match door.line.is_vertical() {
         true => Rect { x0: r.x0 - deep, x1: r.x1 + deep, ..r },
         false => Rect { y0: r.y0 - deep, y1: r.y1 + deep, ..r },

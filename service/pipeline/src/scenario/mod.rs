@@ -38,7 +38,7 @@ pub fn generate(
     domain: &Domain,
 ) -> Result<Scenario, Error> {
     fits(graph, plan, placements)?;
-    if plan.level_numbers().len() > 1 {
+    if plan.has_storeys() {
         return Ok(storeys::generate(graph, plan, placements, domain));
     }
     Ok(one_storey(graph, plan, placements, domain, true))

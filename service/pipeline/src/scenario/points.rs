@@ -8,6 +8,7 @@ use d3dgen_model::{Point, Rect};
 
 use super::floor::{Floor, Room, around, floor_in_front, looking_at, swept};
 use super::regions::buffers;
+use crate::scene_graph::cleans;
 
 /// Gap between a robot's hull and what it serves, m.
 const GAP_M: f64 = 0.10;
@@ -42,8 +43,6 @@ const SERVED: [Shape; 8] = [
     Shape::Shelf,
     Shape::Cabinet,
 ];
-/// Kind of robot that visits rooms to clean them.
-const CLEANING: &str = "cleaning";
 
 /// Returns what a robot serves in a room: of the objects of the most telling build that stand on the floor, clear of the
 /// swing of doors where there is such a one, the nearest to a door.
@@ -87,9 +86,10 @@ pub(super) fn all(floor: &Floor, graph: &SceneGraph) -> Vec<Poi> {
     for room in &floor.rooms {
         let docks = room.objects.iter().filter(|(_, k)| k.shape == Shape::Dock);
         for &(dock, kind) in docks {
-            let number = out.iter().filter(|p| p.kind == "dock").count() + 1;
+            let number = out.iter().filter(|p| p.kind == Poi::DOCK).count() + 1;
             out.extend(
-                at_object(floor, room, (dock, kind)).map(|(_, pose)| poi(format!("dock_{number}"), "dock", room, pose)),
+                at_object(floor, room, (dock, kind))
+                    .map(|(_, pose)| poi(format!("dock_{number}"), Poi::DOCK, room, pose)),
             );
         }
     }
@@ -104,13 +104,13 @@ pub(super) fn all(floor: &Floor, graph: &SceneGraph) -> Vec<Poi> {
             None => in_the_middle(floor, room),
         };
         let id = format!("service_point_{}", room.plan.room_id);
-        out.extend(pose.map(|pose| poi(id, "service_point", room, pose)));
+        out.extend(pose.map(|pose| poi(id, Poi::SERVICE_POINT, room, pose)));
     }
-    if graph.robots.iter().any(|r| r.kind == CLEANING) {
+    if graph.robots.iter().any(|r| cleans(&r.kind)) {
         let cleaned = |r: &&Room| r.is_for(RobotUse::CleaningHigh) || r.is_for(RobotUse::CleaningLow);
         for room in floor.rooms.iter().filter(cleaned).filter(|r| !r.keep_out) {
             let id = format!("cleaning_point_{}", room.plan.room_id);
-            out.extend(in_the_middle(floor, room).map(|pose| poi(id, "cleaning_point", room, pose)));
+            out.extend(in_the_middle(floor, room).map(|pose| poi(id, Poi::CLEANING_POINT, room, pose)));
         }
     }
     out.extend(bays(floor, graph));
@@ -160,7 +160,7 @@ fn entrance(floor: &Floor) -> Option<Poi> {
     let spot = floor.spot_near(room, middle)?;
     // looking on in the direction in which one has come in
     let on = Point::new(2.0 * spot.x - middle.x, 2.0 * spot.y - middle.y);
-    Some(poi("entrance_1".into(), "entrance", room, looking_at(spot, on)))
+    Some(poi("entrance_1".into(), Poi::ENTRANCE, room, looking_at(spot, on)))
 }
 
 /// Returns places in the circulation, or in the room one enters through, where robots wait without standing before a door.
@@ -188,5 +188,5 @@ fn bays(floor: &Floor, graph: &SceneGraph) -> Vec<Poi> {
     }
     let middle = room.plan.net_polygon.bounds().center();
     let each = taken.iter().enumerate();
-    each.map(|(i, p)| poi(format!("waiting_bay_{}", i + 1), "waiting_bay", room, looking_at(*p, middle))).collect()
+    each.map(|(i, p)| poi(format!("waiting_bay_{}", i + 1), Poi::WAITING_BAY, room, looking_at(*p, middle))).collect()
 }

@@ -77,7 +77,7 @@ pub(super) fn number(rois: &mut [Roi], floor: &Floor, pois: &[Poi]) {
         }
     }
     let of_kind = |kind: &str| pois.iter().find(|p| p.kind == kind);
-    let start = of_kind("dock").or_else(|| of_kind("entrance")).map(Stop::of_poi);
+    let start = of_kind(Poi::DOCK).or_else(|| of_kind(Poi::ENTRANCE)).map(Stop::of_poi);
     let stops =
         zones.iter().map(|(_, room)| (room.kind.goods, Stop { room: &room.plan.room_id, at: largest(room).center() }));
     let stops: Vec<(Goods, Stop)> = stops.collect();

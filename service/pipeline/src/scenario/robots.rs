@@ -12,13 +12,11 @@ use d3dgen_model::{Point, Pose};
 
 use super::floor::{Floor, looking_at};
 use super::routes::Router;
-use super::staging::BRING_NOTHING;
 use super::tour::{self, Stop};
+use crate::scene_graph::{brings, cleans};
 
 /// Robots up to whose number each has routes around all others at their docks.
 const MOST_APART: usize = 8;
-/// Kind of robot that cleans.
-const CLEANING: &str = "cleaning";
 
 /// Returns the robots of the scene graph, each with its own start, goals that it can reach, in the order of a short tour.
 pub(super) fn all(
@@ -28,7 +26,7 @@ pub(super) fn all(
     pois: &[Poi],
 ) -> Vec<RobotTask> {
     let mut out: Vec<RobotTask> = Vec::new();
-    let mut docks: Vec<&Poi> = pois.iter().filter(|p| p.kind == "dock").collect();
+    let mut docks: Vec<&Poi> = pois.iter().filter(|p| p.kind == Poi::DOCK).collect();
     let all_docks = docks.clone();
     for robot in &graph.robots {
         let all = of_trade(floor, robot, pois);
@@ -80,7 +78,7 @@ fn keep_where_it_fits(floor: &Floor, task: &mut RobotTask, pois: &[Poi]) -> bool
 /// Takes the dock that suits a robot best of those that no other one has: where the prompt puts it, else cleaning ones charge
 /// where soiled things are.
 fn own_dock<'p>(floor: &Floor, graph: &SceneGraph, robot: &Robot, left: &mut Vec<&'p Poi>) -> Option<&'p Poi> {
-    let suits = |p: &&Poi| (floor.goods(&p.room_id) == Goods::Soiled) == (robot.kind == CLEANING);
+    let suits = |p: &&Poi| (floor.goods(&p.room_id) == Goods::Soiled) == cleans(&robot.kind);
     // a dock that its type of room does not come with
     let wished = |p: &&Poi| {
         let Some(room) = graph.room(&p.room_id) else { return false };
@@ -172,13 +170,13 @@ fn ways(task: &RobotTask, (plan, placements): (&Floorplan, &Placements), pois: &
 
 /// Returns where a robot starts: its dock, else a bay, else the spot nearest to the entrance that is still free.
 fn start(floor: &Floor, pois: &[Poi], dock: Option<&Poi>, others: &[RobotTask]) -> Option<Pose> {
-    let bays = pois.iter().filter(|p| p.kind == "waiting_bay");
+    let bays = pois.iter().filter(|p| p.kind == Poi::WAITING_BAY);
     let apart = |p: &Pose| {
         others.iter().all(|o| Point::new(o.start.x, o.start.y).distance(Point::new(p.x, p.y)) >= 2.0 * floor.radius)
     };
     let known = dock.into_iter().chain(bays).map(|p| p.pose).find(apart);
     known.or_else(|| {
-        let from = pois.iter().find(|p| p.kind == "entrance").map(|p| Point::new(p.pose.x, p.pose.y));
+        let from = pois.iter().find(|p| p.kind == Poi::ENTRANCE).map(|p| Point::new(p.pose.x, p.pose.y));
         let from = from.or_else(|| floor.rooms.first().map(|r| r.plan.net_polygon.bounds().center()))?;
         let spots = floor.rooms.iter().filter_map(|r| floor.spot_near(r, from));
         let nearest = spots.min_by(|a, b| a.distance(from).total_cmp(&b.distance(from)))?;
@@ -192,32 +190,33 @@ fn of_trade<'p>(floor: &Floor, robot: &Robot, pois: &'p [Poi]) -> Vec<&'p Poi> {
     if !robot.stops.is_empty() {
         // one point a room: where it serves, else any
         let in_room = |id: &String| {
-            let rank =
-                |p: &&Poi| [own.as_str(), "entrance", "service_point"].iter().position(|k| *k == p.kind).unwrap_or(3);
-            pois.iter().filter(|p| &p.room_id == id && p.kind != "dock").min_by_key(rank)
+            let rank = |p: &&Poi| {
+                [own.as_str(), Poi::ENTRANCE, Poi::SERVICE_POINT].iter().position(|k| *k == p.kind).unwrap_or(3)
+            };
+            pois.iter().filter(|p| &p.room_id == id && p.kind != Poi::DOCK).min_by_key(rank)
         };
         let found: Vec<&Poi> = robot.stops.iter().filter_map(in_room).collect();
-        return toured(floor, found, pois.iter().find(|p| p.kind == "dock"));
+        return toured(floor, found, pois.iter().find(|p| p.kind == Poi::DOCK));
     }
     let of_kinds = |kinds: &[&str]| pois.iter().filter(|p| kinds.contains(&p.kind.as_str())).collect::<Vec<&Poi>>();
-    let known = [&[own.as_str()][..], &["service_point"], &["entrance", "waiting_bay"]];
+    let known = [&[own.as_str()][..], &[Poi::SERVICE_POINT], &[Poi::ENTRANCE, Poi::WAITING_BAY]];
     let mut all: Vec<Vec<&Poi>> = known.into_iter().map(of_kinds).collect();
     // what brings clean things goes to none of the soiled ones, where it has anything else to do
     let soiled = |p: &&Poi| floor.goods(&p.room_id) == Goods::Soiled;
-    if !BRING_NOTHING.contains(&robot.kind.as_str()) && robot.room_types.is_empty() {
+    if brings(&robot.kind) && robot.room_types.is_empty() {
         all.iter_mut().filter(|found| !found.iter().all(soiled)).for_each(|found| found.retain(|p| !soiled(p)));
     }
     // what the prompt keeps to some rooms visits these, where they have a point of any kind
     let kept = |p: &&Poi| robot.room_types.iter().any(|t| t == floor.room_type(&p.room_id));
     let only = all.iter().map(|found| found.iter().copied().filter(kept).collect::<Vec<&Poi>>());
     let found = only.chain(all.iter().cloned()).find(|found| !found.is_empty()).unwrap_or_default();
-    toured(floor, found, pois.iter().find(|p| p.kind == "dock"))
+    toured(floor, found, pois.iter().find(|p| p.kind == Poi::DOCK))
 }
 
 /// Returns the part of a tour that one of several equal robots visits; all where there are fewer points than robots. Each of those
 /// that bring things loads where the clean ones are.
 fn share<'p>(floor: &Floor, all: &[&'p Poi], robot: &Robot, number: usize) -> Vec<&'p Poi> {
-    let loads = |p: &&&'p Poi| floor.goods(&p.room_id) == Goods::Clean && !BRING_NOTHING.contains(&robot.kind.as_str());
+    let loads = |p: &&&'p Poi| floor.goods(&p.room_id) == Goods::Clean && brings(&robot.kind);
     let (mut own, rest): (Vec<&'p Poi>, Vec<&'p Poi>) = all.iter().partition(loads);
     let robots = robot.count as usize;
     match rest.len() < robots {

@@ -118,8 +118,7 @@ fn joined(mut slow: Vec<Slow>) -> Vec<Slow> {
             continue;
         };
         let other = slow.remove(j);
-        let (a, b) = (slow[i].rect, other.rect);
-        slow[i].rect = Rect { x0: a.x0.min(b.x0), y0: a.y0.min(b.y0), x1: a.x1.max(b.x1), y1: a.y1.max(b.y1) };
+        slow[i].rect = slow[i].rect.union(&other.rect);
         slow[i].before.extend(other.before);
         slow[i].before.dedup();
         i = 0;

@@ -9,12 +9,13 @@ use d3dgen_model::domain::{Mount, RobotUse, Shape, Zone};
 use d3dgen_model::floorplan::Door;
 use d3dgen_model::geometry::to_mm;
 use d3dgen_model::occupancy::{Bitmap, CELL_M, stops_robot};
-use d3dgen_model::scenario::{Roi, RoiKind, Scenario};
+use d3dgen_model::scenario::{Poi, Roi, RoiKind, Scenario};
 use d3dgen_model::scene_graph::{GraphRoom, Note, SceneGraph};
 use d3dgen_model::{Point, Polygon, Rect};
 
 use super::floor::{CHAIR_BACK_M, Floor, Room, floor_beside, floor_in_front, lane};
 use crate::entry::way_in;
+use crate::scene_graph::brings;
 
 /// Floor for each robot, m^2 (rule `staging_zone_area_per_robot`).
 const PER_ROBOT_M2: f64 = 2.5;
@@ -47,8 +48,6 @@ const PLACES: usize = 4;
 const APART: usize = 16;
 /// Cells of a room's bounds from which on fewer of them are looked at.
 const LARGE: usize = 200_000;
-/// Kinds of robots that bring nothing.
-pub(super) const BRING_NOTHING: [&str; 2] = ["cleaning", "disinfection"];
 
 /// Returns a staging area for each unit of the storey, or for all of it, where there is floor for one beside the routes and
 /// points of its robots.
@@ -65,7 +64,7 @@ pub(super) fn all(floor: &Floor, graph: &SceneGraph, scenario: &Scenario) -> Vec
 
 /// Returns how many robots bring goods.
 fn bringing(graph: &SceneGraph) -> u32 {
-    graph.robots.iter().filter(|r| !BRING_NOTHING.contains(&r.kind.as_str())).map(|r| r.count).sum()
+    graph.robots.iter().filter(|r| brings(&r.kind)).map(|r| r.count).sum()
 }
 
 /// Returns the units of the rooms of a storey, in their order; `None` for all of a storey without any.
@@ -117,7 +116,7 @@ fn driven(floor: &Floor, scenario: &Scenario) -> Vec<Rect> {
     };
     let legs = scenario.robots.iter().flat_map(|task| task.routes.iter().map(|leg| (&leg.path, task.robot.radius_m)));
     let routes = legs.flat_map(|(path, radius)| path.windows(2).flat_map(move |w| steps(w[0], w[1], radius)));
-    let points = scenario.pois.iter().filter(|p| matches!(p.kind.as_str(), "waiting_bay" | "service_point"));
+    let points = scenario.pois.iter().filter(|p| matches!(p.kind.as_str(), Poi::WAITING_BAY | Poi::SERVICE_POINT));
     let points = points.map(|p| around(Point::new(p.pose.x, p.pose.y), reach(floor.radius)));
     routes.chain(points).collect()
 }

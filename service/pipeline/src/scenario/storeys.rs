@@ -65,7 +65,7 @@ fn flights_down(plan: &Floorplan, level: i32) -> Vec<Roi> {
 /// Adds a storey's scenario; what has a name that is taken gets the storey's number behind it.
 fn add(out: &mut Scenario, mut storey: Scenario, level: i32, robots: bool) {
     let tag = if level < 0 { format!("_basement_{}", -level) } else { format!("_level_{level}") };
-    let free = |taken: BTreeSet<String>, id: &mut String| {
+    let free = |taken: &BTreeSet<String>, id: &mut String| {
         if taken.contains(id) {
             id.push_str(&tag);
         }
@@ -74,15 +74,15 @@ fn add(out: &mut Scenario, mut storey: Scenario, level: i32, robots: bool) {
     for robot in &mut storey.robots {
         let ways = robot.ways.iter_mut().map(|w| &mut w.to);
         let ends = robot.routes.iter_mut().flat_map(|r| [&mut r.from, &mut r.to]).filter(|id| !id.is_empty());
-        robot.goals.iter_mut().chain(&mut robot.dock).chain(ways).chain(ends).for_each(|goal| free(pois.clone(), goal));
+        robot.goals.iter_mut().chain(&mut robot.dock).chain(ways).chain(ends).for_each(|goal| free(&pois, goal));
         robot.level = level;
     }
-    storey.pois.iter_mut().for_each(|p| free(pois.clone(), &mut p.poi_id));
+    storey.pois.iter_mut().for_each(|p| free(&pois, &mut p.poi_id));
     let rois: BTreeSet<String> = out.rois.iter().map(|r| r.roi_id.clone()).collect();
-    storey.rois.iter_mut().for_each(|r| free(rois.clone(), &mut r.roi_id));
+    storey.rois.iter_mut().for_each(|r| free(&rois, &mut r.roi_id));
     let agents: BTreeSet<String> = out.agents.iter().map(|a| a.agent_id.clone()).collect();
     for agent in &mut storey.agents {
-        free(agents.clone(), &mut agent.agent_id);
+        free(&agents, &mut agent.agent_id);
         agent.level = level;
     }
     out.rois.extend(storey.rois);

@@ -3,7 +3,8 @@
 use d3dgen_model::domain::{Domain, Furnishing, Goods, RobotUse, RoomType, Shape, Zone};
 use d3dgen_model::scene_graph::{GraphRoom, Robot};
 
-use super::rooms::{CLEANING, MOST_WISHES, is_way, tenth};
+use super::rooms::{MOST_WISHES, is_way, tenth};
+use super::words::cleans;
 
 /// Area of a room to charge robots over what its docks need: a plan that comes out a little smaller still has them all.
 const DOCK_SPARE: f64 = 1.1;
@@ -72,7 +73,7 @@ pub(super) fn add_docks(domain: &Domain, robots: &[Robot], docked: &[String], ro
     let sum = |counts: &mut dyn Iterator<Item = u32>| counts.fold(0, u32::saturating_add);
     let Some(dock) = domain.objects.iter().rev().find(|o| o.shape == Shape::Dock) else { return };
     // the dock of a mop room is for those that clean
-    let cleans = robots.iter().any(|r| r.kind == CLEANING);
+    let cleans = robots.iter().any(|r| cleans(&r.kind));
     let all = sum(&mut robots.iter().map(|r| r.count));
     let circle = widest_m(robots);
     let held = |room: &GraphRoom| -> u32 {
@@ -143,7 +144,7 @@ pub(crate) fn most_docks(area_m2: f64) -> u32 {
 /// Returns how well a room that may have a dock suits a robot, 0 best: stores, rooms to work in, corridors, at last where people wait; robots
 /// that clean charge where soiled things are and no other ones do. `None` for rooms to sleep in.
 pub(crate) fn dock_rank(kind: &RoomType, robot: &Robot) -> Option<u8> {
-    let cleans = robot.kind == CLEANING;
+    let cleans = cleans(&robot.kind);
     match (kind.zone, kind.goods) {
         (Zone::Service, Goods::Soiled) if cleans => Some(0),
         // a mop room is no place for what brings mail or meals

@@ -1,6 +1,7 @@
 //! How the rooms connect: circulation, hosts, what the prompt asks for, and the domain's adjacency rules.
 
-use d3dgen_model::domain::{Adjacency, AdjacencyRelation};
+use d3dgen_knowledge::jurisdiction;
+use d3dgen_model::domain::{Adjacency, AdjacencyRelation, Domain};
 use d3dgen_model::scene_graph::{Connector, GraphEdge, GraphRoom, Note};
 use d3dgen_model::style::LayoutStyle;
 
@@ -27,19 +28,15 @@ pub(super) struct Web {
     pub apart: Vec<[String; 2]>,
 }
 
+/// Returns the adjacency rules of a domain that hold in a country; without one, those that hold everywhere.
+pub(crate) fn rules_here<'d>(domain: &'d Domain, country_code: Option<&str>) -> impl Iterator<Item = &'d Adjacency> {
+    domain.adjacency.iter().filter(move |rule| jurisdiction::holds(&rule.jurisdictions, country_code))
+}
+
 /// Connects the rooms; adds the corridor where the building needs one.
 pub(super) fn connect(reading: &mut Reading, planned: &[Planned], rooms: &mut Vec<GraphRoom>) -> Web {
-    let mut web = Web::default();
     let hub = hub(reading, planned, rooms);
-    web.circulate(planned, rooms, hub);
-    choose_entrance(reading, rooms, hub);
-    keep_apart(reading, rooms, &mut web);
-    web.follow_prompt(reading, planned, rooms, hub);
-    web.stay_near_entrance(reading, rooms);
-    web.open_named(reading, planned, rooms);
-    web.open_up(reading, rooms);
-    web.follow_rules(reading, rooms);
-    web
+    Web::around(reading, planned, rooms, hub, true)
 }
 
 /// States the pairs of the prompt that came to nothing: of rooms on different storeys, or of one that is not there.
@@ -77,20 +74,9 @@ pub(super) fn connect_storey(
     corridor: GraphRoom,
     ground: bool,
 ) -> Web {
-    let mut web = Web::default();
+    let hub = rooms.len();
     rooms.push(corridor);
-    let hub = rooms.len() - 1;
-    web.circulate(planned, rooms, hub);
-    if ground {
-        choose_entrance(reading, rooms, hub);
-    }
-    keep_apart(reading, rooms, &mut web);
-    web.follow_prompt(reading, planned, rooms, hub);
-    web.stay_near_entrance(reading, rooms);
-    web.open_named(reading, planned, rooms);
-    web.open_up(reading, rooms);
-    web.follow_rules(reading, rooms);
-    web
+    Web::around(reading, planned, rooms, hub, ground)
 }
 
 /// Returns the index of the room all others open to: a hub of the domain, a new corridor, or the only room.
@@ -120,6 +106,29 @@ fn hub(reading: &mut Reading, planned: &[Planned], rooms: &mut Vec<GraphRoom>) -
 }
 
 impl Web {
+    /// Connects the rooms around one of them, which one enters the building through unless the prompt or domain has another
+    /// one for that. Storeys off the ground have no entrance.
+    fn around(
+        reading: &mut Reading,
+        planned: &[Planned],
+        rooms: &mut [GraphRoom],
+        hub: usize,
+        has_entrance: bool,
+    ) -> Self {
+        let mut web = Self::default();
+        web.circulate(planned, rooms, hub);
+        if has_entrance {
+            choose_entrance(reading, rooms, hub);
+        }
+        keep_apart(reading, rooms, &mut web);
+        web.follow_prompt(reading, planned, rooms, hub);
+        web.stay_near_entrance(reading, rooms);
+        web.open_named(reading, planned, rooms);
+        web.open_up(reading, rooms);
+        web.follow_rules(reading, rooms);
+        web
+    }
+
     fn put(&mut self, rooms: &[GraphRoom], (a, b): (usize, usize), connector: Connector, required: bool, reason: &str) {
         let (a, b) = (rooms[a].id.clone(), rooms[b].id.clone());
         let same = |e: &&mut GraphEdge| e.a == a && e.b == b || e.a == b && e.b == a;
@@ -177,7 +186,8 @@ impl Web {
                 continue;
             }
             if let Some(rule) = ruled_out(reading, &pair) {
-                let message = format!("{} and {} may not be joined by a {}: {}", pair.a, pair.b, rule.via, rule.reason);
+                let Adjacency { via, reason, source, .. } = rule;
+                let message = format!("{} and {} may not be joined by a {via}: {reason} ({source})", pair.a, pair.b);
                 reading.conflicts.push(note("forbidden_adjacency", message));
                 continue;
             }
@@ -307,11 +317,7 @@ impl Web {
 
     /// Adds the domain's rules: `must` as required edges, `should` as wishes.
     fn follow_rules(&mut self, reading: &Reading, rooms: &[GraphRoom]) {
-        for rule in &reading.domain.adjacency {
-            let here = |c: &String| reading.country_code.as_ref() == Some(c);
-            if !rule.jurisdictions.is_empty() && !rule.jurisdictions.iter().any(here) {
-                continue;
-            }
+        for rule in rules_here(reading.domain, reading.country_code.as_deref()) {
             let required = match rule.relation {
                 AdjacencyRelation::Must => true,
                 AdjacencyRelation::Should => false,
@@ -391,11 +397,12 @@ fn of_kind(rooms: &[GraphRoom], kind: &str, number: Option<u32>) -> Vec<usize> {
 
 /// Returns the rule of the domain that rules out what a pair asks for.
 fn ruled_out<'d>(reading: &Reading<'d>, pair: &Pair) -> Option<&'d Adjacency> {
+    let mut rules = rules_here(reading.domain, reading.country_code.as_deref());
     let forbids = |rule: &&Adjacency| {
         let via = rule.via == "wall" || pair.connector != Connector::Wall;
         rule.relation == AdjacencyRelation::MustNot && is_pair(rule, &pair.a, &pair.b) && via
     };
-    reading.domain.adjacency.iter().find(forbids).filter(|_| pair.connector != Connector::Near)
+    rules.find(forbids).filter(|_| pair.connector != Connector::Near)
 }
 
 fn is_pair(rule: &Adjacency, a: &str, b: &str) -> bool {
@@ -450,12 +457,9 @@ fn choose_entrance(reading: &mut Reading, rooms: &mut [GraphRoom], hub: usize) {
 
 /// Lists the pairs that share neither door nor wall: those the prompt names, and those the domain rules out.
 fn keep_apart(reading: &mut Reading, rooms: &[GraphRoom], web: &mut Web) {
-    let rules = reading.domain.adjacency.iter().filter(|r| {
-        let here =
-            r.jurisdictions.is_empty() || r.jurisdictions.iter().any(|c| reading.country_code.as_ref() == Some(c));
-        r.relation == AdjacencyRelation::MustNot && r.via == "wall" && here
-    });
-    let ruled = rules.map(|r| Apart { rooms: [r.a.clone(), r.b.clone()], which: [None, None] });
+    let rules = rules_here(reading.domain, reading.country_code.as_deref());
+    let walls = rules.filter(|r| r.relation == AdjacencyRelation::MustNot && r.via == "wall");
+    let ruled = walls.map(|r| Apart { rooms: [r.a.clone(), r.b.clone()], which: [None, None] });
     let pairs: Vec<Apart> = reading.wishes.apart.iter().cloned().chain(ruled).collect();
     for Apart { rooms: [a, b], which } in pairs {
         let (from, to) = (of_kind(rooms, &a, which[0]), of_kind(rooms, &b, which[1]));

@@ -68,15 +68,17 @@ use d3dgen_model::style::Style;
 use d3dgen_plugins::Registry;
 
 pub(crate) use self::charging::{dock_rank, docks_held, most_docks, widest_m};
+pub(crate) use self::edges::rules_here;
 pub(crate) use self::given::room_type_called;
 pub use self::given::{Brought, Label, Understood, of_plan, understand};
 use self::program::Planned;
 pub(crate) use self::proposed::suits;
 pub use self::proposed::{BY_PROPOSAL, Draft, DraftEdge, DraftRoom, Settled, propose};
 use self::reading::Reading;
-pub(crate) use self::rooms::{CLEANING, wished_assets};
+pub(crate) use self::rooms::wished_assets;
 pub(crate) use self::seats::shortages;
 pub(crate) use self::vital::is_missed;
+pub(crate) use self::words::{brings, cleans};
 use crate::Error;
 
 /// Reason of the doors to the corridor or hall.

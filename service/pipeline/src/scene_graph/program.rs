@@ -10,6 +10,7 @@ use d3dgen_model::domain::{
 
 use super::beds::{Held, sleeps};
 use super::charging::most_docks;
+use super::edges::rules_here;
 use super::layout;
 use super::objects::Thing;
 use super::places::note;
@@ -958,8 +959,8 @@ fn hang_on_hosts(reading: &mut Reading, rooms: &mut [Planned]) {
     // the control room of "MRI with control room" has a door to the scanner and one for those who work there
     let beside = |p: &&Pair| {
         let of = |id: &String| domain.room_type(id).is_none_or(|k| k.access == Access::Host);
-        let mut rules = domain.adjacency.iter().filter(|r| r.relation == AdjacencyRelation::Must);
-        !of(&p.a) && rules.any(|r| r.a == p.a && r.b == p.b)
+        let mut rules = rules_here(domain, reading.country_code.as_deref());
+        !of(&p.a) && rules.any(|r| r.relation == AdjacencyRelation::Must && r.a == p.a && r.b == p.b)
     };
     let pairs: Vec<Pair> = reading.wishes.pairs.iter().filter(|p| p.belongs && !beside(p)).cloned().collect();
     // the only storey that the prompt puts rooms of a type on

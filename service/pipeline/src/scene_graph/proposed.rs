@@ -6,11 +6,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use d3dgen_model::domain::{Adjacency, AdjacencyRelation, Domain, GENERIC_ROOM_TYPE, RoomType};
+use d3dgen_model::domain::{AdjacencyRelation, Domain, GENERIC_ROOM_TYPE, RoomType};
 use d3dgen_model::proposal::{Fate, ItemKind, ProposedItem};
 use d3dgen_model::scene_graph::{Connector, GraphEdge, SceneGraph};
 use d3dgen_plugins::Registry;
 
+use super::edges::rules_here;
 use super::given::Names;
 use super::program::{self, Planned, circulation_share};
 use super::reading::{self, MAX_ROOMS, Reading};
@@ -446,13 +447,10 @@ fn judge(item: &mut ProposedItem, graph: &mut SceneGraph, reading: &Reading, (a,
         return;
     }
     let apart = graph.apart.iter().any(|[x, y]| x == a && y == b || x == b && y == a);
-    let here = |r: &Adjacency| {
-        r.jurisdictions.is_empty() || r.jurisdictions.iter().any(|c| reading.country_code.as_ref() == Some(c))
-    };
-    let rule = reading.domain.adjacency.iter().find(|r| {
+    let rule = rules_here(reading.domain, reading.country_code.as_deref()).find(|r| {
         let pair = r.a == type_a && r.b == type_b || r.a == type_b && r.b == type_a;
         let against = matches!(r.relation, AdjacencyRelation::MustNot | AdjacencyRelation::ShouldNot);
-        pair && against && here(r) && (r.via == "wall" || walkable(wanted))
+        pair && against && (r.via == "wall" || walkable(wanted))
     });
     let at = |id: &str| graph.edges.iter().filter(|e| e.reason == BY_PROPOSAL && (e.a == id || e.b == id)).count();
     if apart || rule.is_some() {

@@ -16,8 +16,6 @@ use super::text::capital;
 use super::words::words;
 use super::workers::is_office;
 
-/// Kind of the robots that clean.
-pub(crate) const CLEANING: &str = "cleaning";
 /// Most objects wished for in one room.
 pub(super) const MOST_WISHES: usize = 15;
 /// Things named of a room that no domain knows.

@@ -52,7 +52,7 @@ pub(super) fn settle(
     }
 }
 
-/// Returns the rules of a domain by which rooms belong beside others.
+/// Returns the rules of a domain by which rooms belong beside others: of any country, as words mean the same in all.
 fn musts(domain: &Domain) -> impl Iterator<Item = &Adjacency> {
     domain.adjacency.iter().filter(|r| r.relation == AdjacencyRelation::Must)
 }

@@ -9,6 +9,7 @@ use d3dgen_model::domain::{Access, Adjacency, AdjacencyRelation, Domain, Occupan
 use d3dgen_model::scene_graph::SceneGraph;
 
 use super::beds::sleeps;
+use super::edges::rules_here;
 use super::places::note;
 use super::program::{Planned, places_to_work};
 use super::reading::{MOST_IN_OFFICE, Reading, is_dwelling};
@@ -464,9 +465,9 @@ pub(super) fn accompany<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>)
             let hosts = rooms.iter().filter(|r| guest.hosts.contains(&r.room_type)).count();
             let have = rooms.iter().filter(|r| r.room_type == guest.id).count();
             // one room to scrub serves two operating rooms
-            let shares = |r: &&Adjacency| r.relation == AdjacencyRelation::Must && r.a == guest.id && r.b == id;
+            let shares = |r: &Adjacency| r.relation == AdjacencyRelation::Must && r.a == guest.id && r.b == id;
             let served = rooms.iter().filter(|r| r.room_type == id).count();
-            let wanted = match (own, domain.adjacency.iter().any(|r| shares(&r))) {
+            let wanted = match (own, rules_here(domain, reading.country_code.as_deref()).any(shares)) {
                 (true, _) => hosts,
                 (false, true) => served.div_ceil(2),
                 (false, false) => 1,
@@ -488,8 +489,8 @@ fn accompany_counted<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
     }
     for id in kinds.into_iter().filter(|_| !reading.single && !is_dwelling(reading.program)) {
         let must = |k: &RoomType| {
-            let mut rules = domain.adjacency.iter().filter(|r| r.relation == AdjacencyRelation::Must);
-            rules.any(|r| r.a == k.id && r.b == id)
+            let mut rules = rules_here(domain, reading.country_code.as_deref());
+            rules.any(|r| r.relation == AdjacencyRelation::Must && r.a == k.id && r.b == id)
         };
         for guest in guests(reading, &id).into_iter().filter(|k| k.access != Access::Host && must(k)) {
             let there = rooms.iter().any(|r| r.room_type == guest.id);

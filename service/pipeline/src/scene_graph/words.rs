@@ -229,15 +229,37 @@ pub(super) struct Language {
     pub phrases: BTreeMap<Tag, Vec<String>>,
 }
 
-/// Body of a typical robot of a kind.
+/// A typical robot of a kind.
 #[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub(super) struct Body {
     pub radius_m: f64,
     pub height_m: f64,
+    /// It visits rooms to clean their floor.
+    #[serde(default)]
+    cleans: bool,
+    /// It brings things to where it stops.
+    #[serde(default = "yes")]
+    brings: bool,
+}
+
+fn yes() -> bool {
+    true
+}
+
+/// Returns true for a kind of robot that visits rooms to clean their floor.
+pub(crate) fn cleans(kind: &str) -> bool {
+    words().robot_kinds.get(kind).is_some_and(|body| body.cleans)
+}
+
+/// Returns true for a kind of robot that brings things to where it stops, as one does that nothing is known of.
+pub(crate) fn brings(kind: &str) -> bool {
+    words().robot_kinds.get(kind).is_none_or(|body| body.brings)
 }
 
 /// Room types behind short forms of dwellings.
 #[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub(super) struct Dwelling {
     pub living: String,
     pub dining: String,
@@ -294,6 +316,7 @@ pub(super) struct Dwelling {
 
 /// A program of homes with so many bedrooms.
 #[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub(super) struct ByBedrooms {
     /// Programs that it replaces.
     pub programs: Vec<String>,

@@ -42,7 +42,7 @@ pub fn check(world: &World, domain: &Domain, retrieval: &Retrieval) -> Report {
 
 /// Returns the storeys of a world as worlds of their own; none of a world with one.
 fn storeys_of(world: &World) -> Vec<(i32, World)> {
-    if world.floorplan.level_numbers().len() > 1 { world.storeys() } else { Vec::new() }
+    if world.floorplan.has_storeys() { world.storeys() } else { Vec::new() }
 }
 
 /// Returns the rules that apply to a building of one storey, or of several.

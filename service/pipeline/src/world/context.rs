@@ -142,7 +142,7 @@ impl<'a> Context<'a> {
     /// Returns true when a cell of the map lies within `distance` of the line.
     pub fn near(&self, map: &Bitmap, line: &Segment, distance: f64) -> bool {
         let frame = &self.occupancy().frame;
-        let (i0, i1, j0, j1) = frame.span(&bounds(line).grown(distance));
+        let (i0, i1, j0, j1) = frame.span(&line.bounds().grown(distance));
         map.any_in(i0, i1, j0, j1)
     }
 
@@ -160,17 +160,12 @@ impl Room<'_> {
     }
 }
 
-/// Returns the rectangle around a line.
-pub fn bounds(line: &Segment) -> Rect {
-    Rect::new(line.start.x, line.start.y, line.end.x, line.end.y)
-}
-
 /// Returns the interval (along the first line) that a line parallel to it and within `distance` shares with it, m.
 pub fn shared(first: &Segment, other: &Segment, distance: f64) -> Option<(f64, f64)> {
     if first.is_vertical() != other.is_vertical() {
         return None;
     }
-    let (a, b) = (bounds(first), bounds(other));
+    let (a, b) = (first.bounds(), other.bounds());
     let (apart, from, to) = if first.is_vertical() {
         ((first.start.x - other.start.x).abs(), a.y0.max(b.y0), a.y1.min(b.y1))
     } else {

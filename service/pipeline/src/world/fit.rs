@@ -8,12 +8,12 @@ use d3dgen_model::domain::{Domain, RobotUse, RoomType};
 use d3dgen_model::floorplan::Floorplan;
 use d3dgen_model::passage::{Passages, RobotWay};
 use d3dgen_model::report::RobotFit;
+use d3dgen_model::scenario::Poi;
 use d3dgen_model::scene_graph::Robot;
 use d3dgen_model::storeys::LinkKind;
 use d3dgen_model::world::World;
 
-/// Kind of robot that goes into rooms to clean them; others go where there is something to bring.
-const CLEANING: &str = "cleaning";
+use crate::scene_graph::brings;
 
 /// Measures the fit of every robot whose body is known.
 pub(super) fn measure(world: &World, storeys: &[(i32, World)], domain: &Domain) -> Vec<RobotFit> {
@@ -59,10 +59,7 @@ fn one(world: &World, storeys: &[(i32, World)], domain: &Domain, robot: &Robot) 
             judge(&poi.poi_id, passages.map(|p| p.to_point(&poi.poi_id, at, r)))
         }));
     }
-    let own: &[RobotUse] = match robot.kind == CLEANING {
-        true => &[RobotUse::CleaningHigh, RobotUse::CleaningLow, RobotUse::Charging],
-        false => &[RobotUse::Service, RobotUse::Charging],
-    };
+    let own = uses(&robot.kind);
     let served = |id: &str| {
         let kind = world.floorplan.room(id).map(|r| domain.room_type_or_generic(&r.room_type));
         let kept_out = world.scene_graph.keeps_robots_out(id);
@@ -80,13 +77,21 @@ fn one(world: &World, storeys: &[(i32, World)], domain: &Domain, robot: &Robot) 
     }
 }
 
+/// Returns which rooms a kind of robot goes into: where there is something to bring, or the floor of all.
+fn uses(kind: &str) -> &'static [RobotUse] {
+    match brings(kind) {
+        true => &[RobotUse::Service, RobotUse::Charging],
+        false => &[RobotUse::CleaningHigh, RobotUse::CleaningLow, RobotUse::Charging],
+    }
+}
+
 fn ways<'w>(world: &'w World, robot: &Robot, from: Option<Point>) -> Option<Passages<'w>> {
     Some(Passages::new(&world.floorplan, &world.placements, robot, from?))
 }
 
 /// Returns the middle of the floor inside the entrance, or of the first room.
 fn entry(world: &World) -> Option<Point> {
-    let poi = world.scenario.pois.iter().find(|p| p.kind == "entrance").map(|p| Point::new(p.pose.x, p.pose.y));
+    let poi = world.scenario.pois.iter().find(|p| p.kind == Poi::ENTRANCE).map(|p| Point::new(p.pose.x, p.pose.y));
     poi.or_else(|| world.floorplan.rooms.first().map(|r| r.net_polygon.bounds().center()))
 }
 
@@ -112,6 +117,19 @@ fn ride(world: &World, ground: Option<&Passages>, level: i32, home: i32, robot: 
         _ => {
             let stairs = plan.links.iter().find_map(|l| on(plan, &l.room_ids, home)).map_or(String::new(), |s| s.0);
             Ride { way: RobotWay { narrowest: stairs, ..RobotWay::none("") }, exit: None }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_brings_nothing_is_judged_by_the_floor_that_is_cleaned() {
+        for (kind, service) in [("cleaning", false), ("disinfection", false), ("delivery", true), ("guide", true)] {
+            assert_eq!(uses(kind).contains(&RobotUse::Service), service, "{kind}");
+            assert_eq!(uses(kind).contains(&RobotUse::CleaningHigh), !service, "{kind}");
         }
     }
 }

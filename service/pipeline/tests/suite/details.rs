@@ -10,24 +10,10 @@ use d3dgen_model::placements::Placement;
 use d3dgen_model::scenario::Poi;
 use d3dgen_model::world::World;
 
-use crate::common::{body, gap, most, worlds};
+use crate::common::{body, gap, in_room, most, rooms, worlds};
 
 const OFFICES: [&str; 3] =
     ["office with 10 rooms", "office with 8 rooms in the Netherlands", "law firm office with 8 rooms in Zurich"];
-
-fn rooms<'w>(world: &'w World, kind: &'w str) -> impl Iterator<Item = &'w PlanRoom> {
-    world.floorplan.rooms.iter().filter(move |r| r.room_type == kind)
-}
-
-fn inside<'w>(world: &'w World, room_id: &'w str) -> impl Iterator<Item = &'w Placement> {
-    world.placements.placements.iter().filter(move |p| p.room_id == room_id)
-}
-
-/// Returns the floor of a door's opening.
-fn opening(door: &Door) -> Rect {
-    let (a, b) = (door.line.start, door.line.end);
-    Rect::new(a.x.min(b.x), a.y.min(b.y), a.x.max(b.x), a.y.max(b.y))
-}
 
 /// Returns the floor along an open leaf that opens into a room, without thickness.
 fn open_leaf(door: &Door, room: &PlanRoom) -> Option<Rect> {
@@ -52,7 +38,7 @@ fn exit_signs_hang_at_the_way_out() {
     for world in OFFICES.iter().flat_map(|prompt| worlds(prompt, 6)) {
         for sign in world.placements.placements.iter().filter(|p| p.object == "exit_sign") {
             let own: Vec<&Door> = world.floorplan.doors.iter().filter(|d| d.room_ids.contains(&sign.room_id)).collect();
-            let way_out = own.iter().filter(|d| d.room_ids.len() == 1).map(|d| gap(&body(sign), &opening(d)));
+            let way_out = own.iter().filter(|d| d.room_ids.len() == 1).map(|d| gap(&body(sign), &d.line.bounds()));
             // a room without a door to the outside has its sign at the way to one
             held.push(way_out.reduce(f64::min).is_none_or(|gap| gap < BESIDE_EXIT_M));
         }
@@ -65,7 +51,7 @@ fn meeting_rooms_have_the_table_that_their_floor_holds() {
     let mut held = Vec::new();
     for world in OFFICES.iter().flat_map(|prompt| worlds(prompt, 6)) {
         for room in rooms(&world, "meeting_room") {
-            let seats = inside(&world, &room.room_id).filter(|p| p.object == "conference_chair").count();
+            let seats = in_room(&world, &room.room_id).filter(|p| p.object == "conference_chair").count();
             held.push(seats >= 4 && room.net_area_m2 / seats as f64 <= 3.6);
         }
     }
@@ -78,7 +64,7 @@ fn visitors_have_a_table_beside_their_seats() {
     let mut held = Vec::new();
     for world in OFFICES.iter().flat_map(|prompt| worlds(prompt, 6)) {
         for room in rooms(&world, "reception") {
-            let has = |list: &[&str]| inside(&world, &room.room_id).any(|p| list.contains(&p.object.as_str()));
+            let has = |list: &[&str]| in_room(&world, &room.room_id).any(|p| list.contains(&p.object.as_str()));
             if has(&["visitor_chair", "lounge_chair", "lounge_sofa"]) {
                 held.push(has(&["low_table", "side_table"]));
             }
@@ -97,7 +83,7 @@ fn one_gets_to_the_whiteboard() {
             let along = |r: &Rect| if upright { (r.y0, r.y1) } else { (r.x0, r.x1) };
             let (from, to) = along(&own);
             let stands = |p: &&Placement| p.pose.z < 0.6 && p.size_m[2] > 0.25 && gap(&body(p), &own) < 0.35;
-            let covered: f64 = inside(&world, &board.room_id)
+            let covered: f64 = in_room(&world, &board.room_id)
                 .filter(|p| p.placement_id != board.placement_id)
                 .filter(stands)
                 .map(|p| (along(&body(p)).1.min(to) - along(&body(p)).0.max(from)).max(0.0))
@@ -127,7 +113,7 @@ fn rows_of_chairs_stand_clear_of_each_other() {
     for world in OFFICES.iter().flat_map(|prompt| worlds(prompt, 12)) {
         for room in rooms(&world, "open_office") {
             let chairs: Vec<&Placement> =
-                inside(&world, &room.room_id).filter(|p| p.object == "swivel_chair").collect();
+                in_room(&world, &room.room_id).filter(|p| p.object == "swivel_chair").collect();
             held.extend(least_between_backs(&chairs).map(|least| least >= 0.95));
         }
     }
@@ -149,7 +135,7 @@ fn robots_stop_clear_of_chairs_and_behind_doors_that_open_for_them() {
         let brings = world.scene_graph.robots.iter().any(|r| r.kind != "cleaning");
         for (stop, radius) in stops(&world) {
             let at = Rect::new(stop.pose.x, stop.pose.y, stop.pose.x, stop.pose.y);
-            let mut chairs = inside(&world, &stop.room_id).filter(|p| p.object.contains("chair"));
+            let mut chairs = in_room(&world, &stop.room_id).filter(|p| p.object.contains("chair"));
             clear.push(!chairs.any(|p| gap(&body(p), &at) < radius + 0.15));
             let mut doors = world.floorplan.doors.iter().filter(|d| d.room_ids.contains(&stop.room_id));
             // where one only cleans, doors are those of people
@@ -171,7 +157,7 @@ fn coats_hang_clear_of_the_open_entrance() {
             Some((room, open_leaf(d, room)?))
         });
         held.extend(leaves.map(|(room, leaf)| {
-            let mut coats = inside(&world, &room.room_id).filter(|p| p.object.contains("coat"));
+            let mut coats = in_room(&world, &room.room_id).filter(|p| p.object.contains("coat"));
             !coats.any(|p| gap(&body(p), &leaf) < 0.3)
         }));
     }
@@ -195,7 +181,7 @@ fn bedrooms_have_a_wardrobe() {
     let mut held = Vec::new();
     for world in ["flat with 5 rooms", "house with 8 rooms"].iter().flat_map(|prompt| worlds(prompt, 10)) {
         let bedrooms = rooms(&world, "bedroom");
-        held.extend(bedrooms.map(|r| inside(&world, &r.room_id).any(|p| p.object.ends_with("wardrobe"))));
+        held.extend(bedrooms.map(|r| in_room(&world, &r.room_id).any(|p| p.object.ends_with("wardrobe"))));
     }
     assert!(held.len() >= 40, "{}", held.len());
     most("bedrooms with a wardrobe", 0.95, &held);
@@ -209,7 +195,7 @@ fn one_gets_to_the_tap_of_a_basin() {
             let (own, rim) = (body(basin), basin.pose.z + basin.size_m[2]);
             let deep = |p: &&Placement| body(p).width().min(body(p).height()) > 0.15;
             let over = |p: &&Placement| p.pose.z >= rim - 0.01 && p.pose.z < rim + 0.7 && body(p).overlaps(&own);
-            held.push(!inside(&world, &basin.room_id).filter(deep).any(|p| over(&p)));
+            held.push(!in_room(&world, &basin.room_id).filter(deep).any(|p| over(&p)));
         }
     }
     assert!(held.len() >= 40, "{}", held.len());
@@ -220,7 +206,7 @@ fn one_gets_to_the_tap_of_a_basin() {
 fn lone_workers(world: &World) -> impl Iterator<Item = (&PlanRoom, &Placement)> {
     let alone = |room: &&PlanRoom| ["office", "executive_office"].contains(&room.room_type.as_str());
     world.floorplan.rooms.iter().filter(alone).flat_map(|room| {
-        inside(world, &room.room_id).filter(|p| p.object == "swivel_chair").map(move |chair| (room, chair))
+        in_room(world, &room.room_id).filter(|p| p.object == "swivel_chair").map(move |chair| (room, chair))
     })
 }
 
@@ -230,7 +216,7 @@ fn who_works_alone_gets_to_the_seat() {
     for world in OFFICES.iter().flat_map(|prompt| worlds(prompt, 12)) {
         for (room, chair) in lone_workers(&world) {
             let stands = |p: &&Placement| p.mount == Mount::Floor && p.size_m[2] > 0.05;
-            let others = inside(&world, &room.room_id).filter(|p| p.placement_id != chair.placement_id);
+            let others = in_room(&world, &room.room_id).filter(|p| p.placement_id != chair.placement_id);
             let floor = FreeSpace::new(&room.net_polygon, &others.filter(stands).map(body).collect::<Vec<_>>());
             held.push(world.floorplan.doors_of(&room.room_id).any(|door| floor.leads(door, &body(chair), 0.65)));
         }
@@ -243,7 +229,8 @@ fn who_works_alone_gets_to_the_seat() {
 #[test]
 fn screens_of_who_works_alone_mirror_no_window() {
     let mut held = Vec::new();
-    for world in OFFICES.iter().flat_map(|prompt| worlds(prompt, 12)) {
+    let others = ["office with 8 rooms", "four private offices, two meeting rooms, an open office and a reception"];
+    for world in OFFICES.iter().chain(&others).flat_map(|prompt| worlds(prompt, 12)) {
         for (room, chair) in lone_workers(&world) {
             let (sin, cos) = chair.pose.yaw_rad.sin_cos();
             let mirrors = world.floorplan.windows.iter().filter(|w| w.room_id == room.room_id).any(|window| {
@@ -266,9 +253,9 @@ fn who_meets_sees_the_screen_past_the_head_of_the_table() {
         for room in rooms(&world, "meeting_room") {
             // large ones have the table of a conference room
             let table = |p: &&Placement| p.object.starts_with("meeting_table") || p.object == "conference_table";
-            let table = inside(&world, &room.room_id).find(table).unwrap();
+            let table = in_room(&world, &room.room_id).find(table).unwrap();
             let long_by_x = body(table).width() > body(table).height();
-            held.push(inside(&world, &room.room_id).filter(|p| p.object == "wall_display").any(|display| {
+            held.push(in_room(&world, &room.room_id).filter(|p| p.object == "wall_display").any(|display| {
                 let hangs_by_x = body(display).width() < body(display).height();
                 let (dx, dy) = (display.pose.x - table.pose.x, display.pose.y - table.pose.y);
                 hangs_by_x == long_by_x && if hangs_by_x { dy } else { dx }.abs() < 0.7
@@ -290,7 +277,7 @@ fn who_washes_has_room_for_the_elbows() {
             let beside = |p: &&Placement| {
                 p.placement_id != basin.placement_id && p.pose.z < rim && p.pose.z + p.size_m[2] > low && !is_shallow(p)
             };
-            let obstacles: Vec<Rect> = inside(&world, &basin.room_id).filter(beside).map(body).collect();
+            let obstacles: Vec<Rect> = in_room(&world, &basin.room_id).filter(beside).map(body).collect();
             let free = |side| free_depth(basin, side, &room.net_polygon, obstacles.iter().copied());
             held.push(free(Side::Left).min(free(Side::Right)) > 0.19);
         }
@@ -304,7 +291,7 @@ fn nobody_prints_beside_a_sofa() {
     let mut held = Vec::new();
     for world in OFFICES.iter().flat_map(|prompt| worlds(prompt, 12)) {
         for printer in world.placements.placements.iter().filter(|p| p.object == "printer") {
-            let mut sofas = inside(&world, &printer.room_id).filter(|p| p.object.ends_with("sofa"));
+            let mut sofas = in_room(&world, &printer.room_id).filter(|p| p.object.ends_with("sofa"));
             held.push(sofas.all(|sofa| gap(&body(sofa), &body(printer)) > 0.5));
         }
     }
@@ -317,9 +304,9 @@ fn visitors_of_an_office_find_a_seat_that_is_not_among_the_staff() {
     let mut held = Vec::new();
     for world in OFFICES.iter().flat_map(|prompt| worlds(prompt, 12)) {
         for room in rooms(&world, "reception") {
-            let desk = inside(&world, &room.room_id).find(|p| p.object == "small_reception_desk").unwrap();
+            let desk = in_room(&world, &room.room_id).find(|p| p.object == "small_reception_desk").unwrap();
             let (sin, cos) = desk.pose.yaw_rad.sin_cos();
-            let mut seats = inside(&world, &room.room_id)
+            let mut seats = in_room(&world, &room.room_id)
                 .filter(|p| ["lounge_sofa", "lounge_chair", "visitor_chair"].contains(&p.object.as_str()));
             held.push(seats.any(|seat| {
                 let (dx, dy) = (seat.pose.x - desk.pose.x, seat.pose.y - desk.pose.y);

@@ -14,6 +14,8 @@ use d3dgen_pipeline::scene_graph::Request;
 use d3dgen_pipeline::{Error, Stop};
 use d3dgen_plugins::Registry;
 
+use crate::common::in_room;
+
 const HOME: &str = "apartment with a living room, a kitchen, two bedrooms and a bathroom";
 const OFFICE: &str = "office with 9 rooms for a cleaning robot";
 const WARD: &str = "hospital ward with 8 rooms in Germany";
@@ -43,17 +45,14 @@ fn edited(registry: &Registry, world: &World, edits: &[Edit]) -> Result<Edited, 
             continue;
         }
         assert_eq!(outline(room), outline(old), "{edits:?}: {}", room.room_id);
-        assert_eq!(things(&edited.world, &room.room_id), things(world, &room.room_id), "{edits:?}: {}", room.room_id);
+        let id = &room.room_id;
+        assert!(in_room(&edited.world, id).eq(in_room(world, id)), "{edits:?}: {id} is furnished otherwise");
     }
     Ok(edited)
 }
 
 fn outline(room: &PlanRoom) -> String {
     format!("{:?}", room.net_polygon)
-}
-
-fn things(world: &World, room_id: &str) -> Vec<Placement> {
-    world.placements.placements.iter().filter(|p| p.room_id == room_id).cloned().collect()
 }
 
 fn find<'w>(world: &'w World, object: &str) -> &'w Placement {
@@ -147,7 +146,7 @@ fn rooms_come_and_go() {
             assert_eq!(more.world.floorplan.rooms.len(), world.floorplan.rooms.len() + 1);
             let new = more.world.floorplan.rooms.iter().find(|r| world.floorplan.room(&r.room_id).is_none());
             let new = new.expect("one room more").room_id.clone();
-            assert!(!things(&more.world, &new).is_empty(), "{new} stands empty");
+            assert!(in_room(&more.world, &new).next().is_some(), "{new} stands empty");
             let kept = more.changed_room_ids.len();
             assert!(
                 kept <= world.floorplan.rooms.len() / 2 + 2,
@@ -205,8 +204,8 @@ fn objects_are_swapped_moved_added_and_removed() {
     };
     let shelf = find(&world, "bookshelf").clone();
     let done = swap(&shelf, "plant").expect("a plant is smaller than a bookshelf");
-    assert!(!things(&done.world, &shelf.room_id).iter().any(|p| p.object == "bookshelf"));
-    assert!(things(&done.world, &shelf.room_id).iter().any(|p| p.object == "plant" && p.rule.contains("edit")));
+    assert!(!in_room(&done.world, &shelf.room_id).any(|p| p.object == "bookshelf"));
+    assert!(in_room(&done.world, &shelf.room_id).any(|p| p.object == "plant" && p.rule.contains("edit")));
     let required = swap(find(&world, "double_bed"), "plant").map(|_| ()).map_err(|e| e.to_string());
     assert!(required.is_err_and(|e| e.contains("would break")), "a bedroom cannot do without its bed");
 
@@ -223,17 +222,17 @@ fn objects_are_swapped_moved_added_and_removed() {
     assert!((now.pose.x - x).abs() < 0.001 && (now.pose.y - y).abs() < 0.001);
     assert_eq!(done.changed_room_ids, std::slice::from_ref(&bed.room_id));
 
-    let count = |w: &World, room: &str| things(w, room).iter().filter(|p| p.object == "plant").count();
+    let count = |w: &World, room: &str| in_room(w, room).filter(|p| p.object == "plant").count();
     let added = world.floorplan.rooms.iter().filter(|r| !r.circulation).find_map(|room| {
         let add = Edit::AddObject { room_id: room.room_id.clone(), object: "plant".into() };
         Some((room.room_id.as_str(), edited(&registry, &world, &[add]).ok()?))
     });
     let (room, done) = added.expect("some room has a place for a plant");
     assert_eq!(count(&done.world, room), count(&world, room) + 1);
-    let plant = things(&done.world, room).into_iter().rfind(|p| p.rule.contains("edit")).expect("added");
-    let remove = Edit::RemoveObject { placement_id: plant.placement_id };
+    let plant = in_room(&done.world, room).filter(|p| p.rule.contains("edit")).last().expect("added");
+    let remove = Edit::RemoveObject { placement_id: plant.placement_id.clone() };
     let back = edited(&registry, &done.world, &[remove]).expect("a plant can go");
-    assert_eq!(count(&back.world, room), count(&world, room), "{:?}", things(&back.world, room));
+    assert_eq!(count(&back.world, room), count(&world, room));
 }
 
 #[test]
@@ -245,7 +244,7 @@ fn what_is_taken_away_is_gone_or_the_rule_is_named_that_it_would_break() {
         let edits = [Edit::RemoveObject { placement_id: p.placement_id.clone() }];
         match edited(&registry, &world, &edits) {
             Ok(done) => {
-                let count = |w: &World| things(w, &p.room_id).iter().filter(|q| q.object == p.object).count();
+                let count = |w: &World| in_room(w, &p.room_id).filter(|q| q.object == p.object).count();
                 assert!(count(&done.world) < count(&world), "{} is there again", p.placement_id);
                 gone += 1;
             }

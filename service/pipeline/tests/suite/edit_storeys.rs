@@ -16,6 +16,8 @@ use d3dgen_pipeline::variations::variations;
 use d3dgen_pipeline::{Error, Stop};
 use d3dgen_plugins::Registry;
 
+use crate::common::in_room;
+
 const HOUSE: &str = "two-storey house with 3 bedrooms";
 const OFFICE: &str = "three floor office building";
 const STOREYS: &str = "hotel with 3 storeys, a basement floor with a storage, and 12 guest rooms";
@@ -27,10 +29,6 @@ fn world(registry: &Registry, prompt: &str, seed: u64, pinned: Option<Floorplan>
     let broken: Vec<_> = made.report.rules.iter().filter(|r| !r.violations.is_empty()).map(|r| &r.rule).collect();
     assert!(made.report.sound, "{prompt} with seed {seed} breaks {broken:?}");
     made.world
-}
-
-fn things(world: &World, room_id: &str) -> Vec<Placement> {
-    world.placements.placements.iter().filter(|p| p.room_id == room_id).cloned().collect()
 }
 
 /// Returns one storey of a plan without what is said of the whole building.
@@ -62,7 +60,7 @@ fn edited(registry: &Registry, world: &World, level: i32, edits: &[Edit]) -> Res
     for other in before.level_numbers().into_iter().filter(|l| *l != level) {
         assert_eq!(storey(before, other), storey(after, other), "{edits:?}: storey {other}");
         for room in before.rooms.iter().filter(|r| r.level == other) {
-            assert_eq!(things(world, &room.room_id), things(&edited.world, &room.room_id), "{edits:?}");
+            assert!(in_room(world, &room.room_id).eq(in_room(&edited.world, &room.room_id)), "{edits:?}");
         }
     }
     for room in &after.rooms {
@@ -70,7 +68,7 @@ fn edited(registry: &Registry, world: &World, level: i32, edits: &[Edit]) -> Res
         assert!(!changed || room.level == level, "{edits:?} changed {} on storey {}", room.room_id, room.level);
         if let Some(old) = before.room(&room.room_id).filter(|_| !changed) {
             assert_eq!(old.net_polygon, room.net_polygon, "{edits:?}: {}", room.room_id);
-            assert_eq!(things(world, &room.room_id), things(&edited.world, &room.room_id), "{edits:?}");
+            assert!(in_room(world, &room.room_id).eq(in_room(&edited.world, &room.room_id)), "{edits:?}");
         }
     }
     Ok(edited)
@@ -190,14 +188,14 @@ fn rooms_of_the_program_can_be_taken_out() {
 
 /// Returns an object that stands by itself, the only one of its kind in its room, with the room.
 fn loose_thing(world: &World, level: i32) -> (&PlanRoom, Placement) {
-    let alone = |things: &[Placement], p: &Placement| {
+    let alone = |things: &[&Placement], p: &Placement| {
         let carries = things.iter().any(|q| q.support.as_ref() == Some(&p.placement_id));
         let kin = things.iter().filter(|q| q.object == p.object).count();
         p.mount == Mount::Floor && p.group.is_none() && p.support.is_none() && !carries && kin == 1
     };
     let of_room = |room: &PlanRoom| {
-        let things = things(world, &room.room_id);
-        things.iter().find(|p| alone(&things, p)).cloned()
+        let things: Vec<&Placement> = in_room(world, &room.room_id).collect();
+        things.iter().find(|p| alone(&things, p)).map(|p| (*p).clone())
     };
     let found = plain_rooms(world, level).into_iter().find_map(|r| Some((r, of_room(r)?)));
     found.unwrap_or_else(|| panic!("storey {level} has no object that stands by itself"))
@@ -215,8 +213,8 @@ fn furniture_changes_in_its_room() {
             Edit::Lock { ids: vec![room.room_id.clone()], locked: true, contents: true },
         ];
         let done = edited(&registry, &world, level, &edits).unwrap_or_else(|e| panic!("storey {level}: {e}"));
-        assert_eq!(things(&done.world, &room.room_id).iter().filter(|p| p.object == bin.object).count(), 1);
-        assert!(things(&done.world, &room.room_id).iter().all(|p| p.locked));
+        assert_eq!(in_room(&done.world, &room.room_id).filter(|p| p.object == bin.object).count(), 1);
+        assert!(in_room(&done.world, &room.room_id).all(|p| p.locked));
         assert!(done.world.floorplan.room(&room.room_id).expect("it stays").locked);
         let refurnish = Edit::Refurnish { room_id: room.room_id.clone() };
         edited(&registry, &world, level, &[refurnish]).unwrap_or_else(|e| panic!("storey {level}: {e}"));

@@ -4,12 +4,7 @@
 use d3dgen_model::floorplan::DoorKind;
 use d3dgen_model::world::World;
 
-use crate::common::{most, worlds};
-
-fn count(world: &World, room_type: &str, object: &str) -> usize {
-    let room = |id: &str| world.floorplan.rooms.iter().any(|r| r.room_id == id && r.room_type == room_type);
-    world.placements.placements.iter().filter(|p| p.object == object && room(&p.room_id)).count()
-}
+use crate::common::{count, most, worlds};
 
 #[test]
 fn open_kitchens_have_an_opening() {

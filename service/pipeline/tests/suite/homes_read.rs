@@ -3,15 +3,10 @@
 
 use d3dgen_model::world::World;
 
-use crate::common::{most, worlds};
+use crate::common::{count, most, worlds};
 
 fn rooms(world: &World, room_type: &str) -> usize {
     world.scene_graph.rooms.iter().filter(|r| r.room_type == room_type).count()
-}
-
-fn things(world: &World, room_type: &str, object: &str) -> usize {
-    let room = |id: &str| world.floorplan.rooms.iter().any(|r| r.room_id == id && r.room_type == room_type);
-    world.placements.placements.iter().filter(|p| p.object == object && room(&p.room_id)).count()
 }
 
 /// Returns the types of the rooms that doors of rooms of a type lead to.
@@ -44,7 +39,7 @@ fn several_rooms_have_what_is_told_of_them_each() {
     ] {
         for world in worlds(prompt, 2) {
             assert_eq!(rooms(&world, "home_office"), 0, "{prompt}");
-            held.extend((0..3).map(|i| i < things(&world, "bedroom", "small_desk")));
+            held.extend((0..3).map(|i| i < count(&world, "bedroom", "small_desk")));
         }
     }
     most("desks of bedrooms", 0.9, &held);
@@ -54,15 +49,15 @@ fn several_rooms_have_what_is_told_of_them_each() {
 fn babies_and_those_who_sleep_alone_have_their_beds() {
     let (mut cots, mut beds) = (Vec::new(), Vec::new());
     for prompt in ["two-bedroom flat for a couple with a baby", "Wohnung mit zwei Zimmern für ein Paar mit Baby"] {
-        cots.extend(worlds(prompt, 3).iter().map(|w| things(w, "bedroom", "cot") == 1));
+        cots.extend(worlds(prompt, 3).iter().map(|w| count(w, "bedroom", "cot") == 1));
     }
     for (prompt, double, single) in [
         ("shared student house with four bedrooms, kitchen and bathroom", 0, 4),
         ("house with three bedrooms, kitchen, living room and bathroom for a family with two teenagers", 1, 2),
     ] {
         for world in worlds(prompt, 2) {
-            beds.push(things(&world, "bedroom", "double_bed") == double);
-            beds.push(things(&world, "bedroom", "single_bed") == single);
+            beds.push(count(&world, "bedroom", "double_bed") == double);
+            beds.push(count(&world, "bedroom", "single_bed") == single);
         }
     }
     most("cots beside parents", 0.8, &cots);
@@ -76,7 +71,7 @@ fn single_rooms_have_a_bed_for_one_and_their_own_bathroom() {
     {
         assert_eq!(rooms(&world, "single_bedroom"), 4);
         assert_eq!(rooms(&world, "staff_bedroom"), 1);
-        assert_eq!(things(&world, "single_bedroom", "single_bed"), 4);
+        assert_eq!(count(&world, "single_bedroom", "single_bed"), 4);
         let own = entered_from(&world, "bathroom").filter(|k| *k == "single_bedroom").count();
         assert!(own == 4, "seed {}: {own} own bathrooms", world.floorplan.seed);
     }
@@ -91,7 +86,7 @@ fn a_corner_to_work_in_is_no_room() {
     ] {
         for world in worlds(prompt, 5) {
             assert_eq!(rooms(&world, "home_office"), 0, "{prompt}");
-            held.push(things(&world, "living_room", "small_desk") == 1);
+            held.push(count(&world, "living_room", "small_desk") == 1);
         }
     }
     most("desks in living rooms", 0.7, &held);
@@ -111,7 +106,7 @@ fn an_annexe_has_rooms_of_its_own() {
             for kind in ["hallway", "bedroom", "bathroom"] {
                 assert!(annexe.contains(&kind), "seed {seed}: no door from the annexe to its {kind}");
             }
-            assert_eq!(things(&world, "annexe_living", "compact_kitchen_unit"), 1, "seed {seed}");
+            assert_eq!(count(&world, "annexe_living", "compact_kitchen_unit"), 1, "seed {seed}");
         }
     }
 }

@@ -7,17 +7,13 @@ use d3dgen_model::scenario::{Roi, RoiKind};
 use d3dgen_model::world::World;
 use d3dgen_model::{Point, Rect};
 
-use crate::common::{body, gap, most, worlds};
+use crate::common::{body, gap, in_room, most, rooms, worlds};
 
 /// Length from which a step in an outline is one that somebody meant, m.
 const STEP_M: f64 = 0.85;
 
-fn rooms<'w>(world: &'w World, kind: &'w str) -> impl Iterator<Item = &'w PlanRoom> {
-    world.floorplan.rooms.iter().filter(move |r| r.room_type == kind)
-}
-
 fn standing<'w>(world: &'w World, room: &'w PlanRoom) -> impl Iterator<Item = &'w Placement> {
-    world.placements.placements.iter().filter(|p| p.room_id == room.room_id && p.support.is_none() && p.pose.z < 1.2)
+    in_room(world, &room.room_id).filter(|p| p.support.is_none() && p.pose.z < 1.2)
 }
 
 #[test]
@@ -215,12 +211,7 @@ fn one_comes_to_rows_of_desks_through_an_aisle() {
     for world in ["office with 8 rooms", "call center with eight rooms"].iter().flat_map(|prompt| worlds(prompt, 20)) {
         for room in rooms(&world, "open_office").filter(|r| r.net_polygon.rects().len() == 1) {
             let desks: Vec<&Placement> = standing(&world, room).filter(|p| p.object.ends_with("desk")).collect();
-            let Some(all) = desks.iter().map(|p| body(p)).reduce(|a, b| Rect {
-                x0: a.x0.min(b.x0),
-                y0: a.y0.min(b.y0),
-                x1: a.x1.max(b.x1),
-                y1: a.y1.max(b.y1),
-            }) else {
+            let Some(all) = desks.iter().map(|p| body(p)).reduce(|a, b| a.union(&b)) else {
                 continue;
             };
             let net = room.net_polygon.bounds();

@@ -1,7 +1,9 @@
 //! Scores the prompt reader: prompts with the facts a sensible person reads in them, and texts that make no sense.
 //!
-//! `prompts/own.jsonl` and `prompts/odd.jsonl` (in keywords, with numbers of many things) belong to this repository. A second set in the same form is scored too where it lies beside the
-//! workspace. Room counts are minima, `n_rooms` counts rooms other than circulation, adjacency means any edge.
+//! The sets in `prompts/` belong to this repository: `own.jsonl`, `odd.jsonl` (in keywords, with numbers of many things),
+//! `audit.jsonl`, `relations.jsonl` and `rules.jsonl` (adjacency rules of one country asked for in another). One more in the
+//! same form is scored where it lies beside the workspace. Room counts are minima, `n_rooms` counts rooms other than
+//! circulation, adjacency means any edge.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -308,6 +310,21 @@ fn reads_how_rooms_lie_to_each_other() {
     let (right, all) = score(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/prompts/relations.jsonl"));
     assert!(all >= 45, "{all} prompts");
     assert_eq!(right, all);
+}
+
+#[test]
+fn keeps_to_the_rules_of_the_country_alone() {
+    let (right, all) = score(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/prompts/rules.jsonl"));
+    assert!(all >= 6, "{all} prompts");
+    assert_eq!(right, all);
+}
+
+#[test]
+fn a_rule_that_forbids_a_door_is_named_with_its_source() {
+    let prompt = "House in Texas with a garage, kitchen, living room, bathroom and one bedroom; the garage has a door to the bedroom";
+    let graph = generate(&request(prompt), &Registry::builtin()).unwrap();
+    let told = graph.conflicts.iter().find(|n| n.code == "forbidden_adjacency").expect("the rule forbids the door");
+    assert!(told.message.ends_with("(IRC R302.5.1)"), "{}", told.message);
 }
 
 #[test]

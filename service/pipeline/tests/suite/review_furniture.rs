@@ -6,33 +6,16 @@
 
 use d3dgen_model::Rect;
 use d3dgen_model::domain::Mount;
-use d3dgen_model::floorplan::PlanRoom;
 use d3dgen_model::placements::Placement;
-use d3dgen_model::world::World;
 
-use crate::common::{body, gap, most, worlds};
+use crate::common::{body, gap, in_room, most, named, seen_from, worlds};
 
 const WARDS: [&str; 3] =
     ["hospital ward with 8 rooms", "hospital ward with 10 rooms in Germany", "hospital with 6 rooms"];
 const HOMES: [&str; 3] = ["flat with 5 rooms", "house with 8 rooms", "flat with three bedrooms in Vienna"];
 
-fn in_room<'w>(world: &'w World, room: &'w PlanRoom) -> impl Iterator<Item = &'w Placement> {
-    world.placements.placements.iter().filter(|p| p.room_id == room.room_id)
-}
-
-fn named<'w>(world: &'w World, room: &'w PlanRoom, object: &str) -> Vec<&'w Placement> {
-    in_room(world, room).filter(|p| p.object == object).collect()
-}
-
 fn nearest(from: &Placement, others: &[&Placement]) -> f64 {
     others.iter().map(|o| gap(&body(from), &body(o))).fold(f64::MAX, f64::min)
-}
-
-/// Returns where a point lies in a body's own frame, m: ahead of its middle, and to its left.
-fn seen_from(p: &Placement, x: f64, y: f64) -> (f64, f64) {
-    let (sin, cos) = p.pose.yaw_rad.sin_cos();
-    let (dx, dy) = (x - p.pose.x, y - p.pose.y);
-    (dx * cos + dy * sin, dy * cos - dx * sin)
 }
 
 fn overlaps(a: &Rect, b: &Rect) -> bool {
@@ -113,7 +96,7 @@ fn nothing_hangs_over_a_basin_that_does_not_belong_to_it() {
                 let over = |p: &&Placement| {
                     p.mount == Mount::Wall && p.group != basin.group && p.pose.z > basin.pose.z && p.pose.z < 1.9
                 };
-                free.push(!in_room(&world, room).filter(over).any(|p| overlaps(&body(p), &body(basin))));
+                free.push(!in_room(&world, &room.room_id).filter(over).any(|p| overlaps(&body(p), &body(basin))));
             }
         }
     }
@@ -123,10 +106,14 @@ fn nothing_hangs_over_a_basin_that_does_not_belong_to_it() {
 #[test]
 fn desks_of_open_offices_stand_face_to_face_or_against_a_wall() {
     let mut whole = Vec::new();
-    for world in ["office with 5 rooms", "office with 8 rooms in Germany", "office with 10 rooms"]
-        .iter()
-        .flat_map(|prompt| worlds(prompt, 5))
-    {
+    let prompts = [
+        "office with 5 rooms",
+        "office with 8 rooms in Germany",
+        "office with 10 rooms",
+        "office in the United States with 8 rooms",
+        "office in London with 10 rooms",
+    ];
+    for world in prompts.iter().flat_map(|prompt| worlds(prompt, 6)) {
         for room in world.floorplan.rooms.iter().filter(|r| r.room_type == "open_office") {
             let desks = named(&world, room, "desk");
             let bounds = room.net_polygon.bounds();
@@ -157,7 +144,7 @@ fn homes_have_armchairs_at_the_table_wide_wardrobes_and_fridges_in_the_kitchen()
                 at_table.push(nearest(chair, &tables) <= 1.2);
             }
             if !named(&world, room, "double_bed").is_empty() {
-                let wardrobes = in_room(&world, room).filter(|p| p.object.contains("wardrobe"));
+                let wardrobes = in_room(&world, &room.room_id).filter(|p| p.object.contains("wardrobe"));
                 wide.push(wardrobes.map(|p| p.size_m[0]).sum::<f64>() > 1.19);
             }
             let run: Vec<&Placement> =
@@ -187,7 +174,7 @@ fn rooms_with_a_ceiling_have_a_lamp() {
                 let lamp = |p: &Placement| {
                     p.mount == Mount::Ceiling && (p.object.contains("lamp") || p.object.contains("light"))
                 };
-                lit.push(in_room(&world, room).any(lamp));
+                lit.push(in_room(&world, &room.room_id).any(lamp));
             }
         }
     }

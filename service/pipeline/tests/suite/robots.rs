@@ -370,3 +370,12 @@ fn a_long_robot_fits_where_beds_pass() {
     let widest = to_patients.map(|d| d.clear_width_m).fold(0.0, f64::max);
     assert!(widest < 0.95_f64.hypot(2.1), "{widest}");
 }
+
+#[test]
+fn mirrors_are_tagged_for_robots_that_see_with_light() {
+    let registry = Registry::builtin();
+    let objects = registry.iter().flat_map(|plugin| &plugin.domain().objects);
+    let mirrors: Vec<_> = objects.filter(|o| o.label.to_lowercase().contains("mirror")).collect();
+    assert!(mirrors.len() >= 14, "{}", mirrors.len());
+    assert!(mirrors.iter().all(|o| o.tags.iter().any(|t| t == "mirror")), "a mirror has no tag");
+}

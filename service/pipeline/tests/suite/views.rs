@@ -1,16 +1,14 @@
 //! What a reviewer of plans objects to in what one sees and what opens where: bathrooms one looks into, leaves that shut
-//! someone in, screens at the far end of the room, baths that a wheelchair cannot use.
+//! someone in, baths that a wheelchair cannot use.
 
 use d3dgen_model::floorplan::{Door, DoorKind};
 use d3dgen_model::placements::Placement;
 use d3dgen_model::world::World;
 
-use crate::common::{body, gap, most, worlds};
+use crate::common::{gap, most, worlds};
 
 /// Across a corridor no wider than this one looks from one room into the other, m.
 const ACROSS_M: f64 = 2.5;
-/// Distance up to which a sofa looks at its screen, between the bodies, m.
-const VIEW_M: f64 = 4.2;
 
 /// Returns where a door stands: its wall's direction, the wall and the two ends along it.
 fn extent(door: &Door) -> (bool, f64, f64, f64) {
@@ -75,30 +73,7 @@ fn step_free_bathrooms_hold_a_toilet_for_wheelchairs() {
 }
 
 #[test]
-fn a_sofa_stands_near_its_screen() {
-    let mut held = Vec::new();
-    for prompt in ["house with 8 rooms", "spacious villa with 6 rooms and a large living room"] {
-        for world in worlds(prompt, 10) {
-            let of = |name: &'static str| world.placements.placements.iter().filter(move |p| p.object == name);
-            for sofa in of("sofa") {
-                let screens = of("tv_stand").filter(|tv| tv.room_id == sofa.room_id);
-                held.extend(screens.map(|tv| gap(&body(sofa), &body(tv)) <= VIEW_M));
-            }
-        }
-    }
-    assert!(held.len() >= 12, "{}", held.len());
-    most("sofas near their screens", 0.85, &held);
-}
-
-#[test]
-fn the_entrance_of_a_home_opens_inwards() {
-    let mut held = Vec::new();
-    let homes = ["house with 8 rooms", "flat with 5 rooms in Vienna", "residence with ten rooms in New Zealand"];
-    for world in homes.iter().flat_map(|prompt| worlds(prompt, 8)) {
-        let entrances = world.floorplan.doors.iter().filter(|d| d.entrance);
-        held.extend(entrances.map(|d| d.swing.as_ref().is_some_and(|s| s.into_room_id.is_some())));
-    }
-    most("entrances that open inwards", 0.7, &held);
+fn ways_out_of_wards_open_outwards() {
     for world in worlds("hospital ward with 8 rooms", 4) {
         let out = world.floorplan.doors.iter().filter(|d| d.room_ids.len() == 1);
         let open = |d: &Door| d.swing.as_ref().is_none_or(|s| s.into_room_id.is_none());
@@ -118,31 +93,4 @@ fn clean_and_dirty_utilities_seldom_share_a_wall() {
     }
     assert!(held.len() >= 8, "{}", held.len());
     most("clean and dirty utilities apart", 0.75, &held);
-}
-
-#[test]
-fn screens_of_single_offices_do_not_mirror_a_window() {
-    let mut held = Vec::new();
-    for prompt in ["office with 8 rooms", "four private offices, two meeting rooms, an open office and a reception"] {
-        for world in worlds(prompt, 10) {
-            for room in world.floorplan.rooms.iter().filter(|r| r.room_type == "office") {
-                let screen =
-                    world.placements.placements.iter().find(|p| p.object == "monitor" && p.room_id == room.room_id);
-                let Some(screen) = screen else { continue };
-                // the screen looks along x when its heading is east or west
-                let along_x = screen.pose.yaw_rad.cos().abs() > 0.5;
-                let mirrored = world.floorplan.windows.iter().filter(|w| w.room_id == room.room_id).any(|w| {
-                    let (a, b) = (w.line.start, w.line.end);
-                    let (low, high, across) = match w.line.is_vertical() {
-                        true => (a.y.min(b.y), a.y.max(b.y), screen.pose.y),
-                        false => (a.x.min(b.x), a.x.max(b.x), screen.pose.x),
-                    };
-                    w.line.is_vertical() == along_x && (low..=high).contains(&across)
-                });
-                held.push(!mirrored);
-            }
-        }
-    }
-    assert!(held.len() >= 30, "{}", held.len());
-    most("screens without a window before or behind them", 0.85, &held);
 }

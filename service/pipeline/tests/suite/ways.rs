@@ -1,7 +1,5 @@
 //! Ways through furnished rooms: beds leave patient rooms, people come through a reception, robots stand at their docks.
 
-use std::sync::atomic::AtomicBool;
-
 use d3dgen_knowledge::clearance::is_shallow;
 use d3dgen_knowledge::freespace::FreeSpace;
 use d3dgen_model::Rect;
@@ -9,21 +7,12 @@ use d3dgen_model::domain::{Domain, Mount, Shape};
 use d3dgen_model::floorplan::{Door, PlanRoom};
 use d3dgen_model::placements::Placement;
 use d3dgen_model::world::World;
-use d3dgen_pipeline::generate::{Settings, generate_world};
-use d3dgen_pipeline::scene_graph::Request;
 use d3dgen_plugins::Registry;
+
+use crate::common::{in_room, worlds, worlds_of};
 
 /// What people walk under, m.
 const HEAD_ROOM_M: f64 = 2.03;
-
-/// Worlds of a prompt with their domain.
-fn worlds(registry: &Registry, prompt: &str, seeds: std::ops::Range<u64>) -> Vec<World> {
-    let make = |seed| {
-        let request = Request { prompt: prompt.into(), seed, ..Request::default() };
-        generate_world(&request, registry, &Settings::default(), &mut |_| (), &AtomicBool::new(false)).unwrap().world
-    };
-    seeds.map(make).collect()
-}
 
 fn shape(domain: &Domain, p: &Placement) -> Option<Shape> {
     domain.object(&p.object).map(|o| o.shape)
@@ -36,7 +25,7 @@ fn bodies<'w>(world: &'w World, room: &'w PlanRoom) -> impl Iterator<Item = &'w 
         Mount::Wall => p.pose.z < HEAD_ROOM_M && !is_shallow(p),
         Mount::Ceiling | Mount::Surface => false,
     };
-    world.placements.placements.iter().filter(|p| p.room_id == room.room_id).filter(in_the_way)
+    in_room(world, &room.room_id).filter(in_the_way)
 }
 
 /// Returns the doors of a room to corridors and halls.
@@ -50,7 +39,7 @@ fn a_bed_can_be_pushed_out_of_its_room() {
     let registry = Registry::builtin();
     let (mut beds, mut stuck) = (0, Vec::new());
     for prompt in ["hospital ward with 5 rooms", "Hospital ward with 8 rooms in Germany, for a delivery robot"] {
-        for world in worlds(&registry, prompt, 100..112) {
+        for world in worlds_of(prompt, 100..112) {
             let domain = registry.get(&world.scene_graph.domain).unwrap().domain();
             for room in world.floorplan.rooms.iter().filter(|r| r.room_type.starts_with("patient_room")) {
                 let is_bed = |p: &Placement| shape(domain, p) == Some(Shape::HospitalBed);
@@ -86,7 +75,7 @@ fn one_comes_through_a_reception_past_robots_at_their_docks() {
         "office with 8 rooms and a reception at the entrance, for a delivery robot",
         "clinic with a reception, three exam rooms and a waiting area",
     ] {
-        for world in worlds(&registry, prompt, 0..8) {
+        for world in worlds(prompt, 8) {
             let domain = registry.get(&world.scene_graph.domain).unwrap().domain();
             let robot_m = world.scene_graph.robots.iter().map(|r| 2.0 * r.radius_m).fold(0.6, f64::max);
             for room in world.floorplan.rooms.iter().filter(|r| !r.circulation) {
@@ -125,7 +114,7 @@ fn a_robot_at_its_dock_touches_nothing() {
         "office with 8 rooms for a delivery robot",
         "Hospital ward with 8 rooms in Germany, for a delivery robot",
     ] {
-        for world in worlds(&registry, prompt, 0..8) {
+        for world in worlds(prompt, 8) {
             let domain = registry.get(&world.scene_graph.domain).unwrap().domain();
             let robot_m = world.scene_graph.robots.iter().map(|r| 2.0 * r.radius_m).fold(0.0, f64::max);
             assert!(robot_m > 0.0, "{prompt}");

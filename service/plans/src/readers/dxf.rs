@@ -11,7 +11,7 @@ use std::str::Lines;
 use d3dgen_model::Point;
 
 use super::{Plan, Reader, Source};
-use crate::drawing::{Drawing, DrawnLabel, DrawnOpening, DrawnRoom, DrawnWall, MOST_POINTS, OpeningKind, note};
+use crate::drawing::{Drawing, DrawnLabel, DrawnOpening, DrawnRoom, DrawnWall, MOST_POINTS, OpeningKind, extent, note};
 use crate::words::{Role, role};
 use crate::{Error, Options};
 
@@ -110,17 +110,35 @@ fn read(source: &Source, options: &Options) -> Result<Plan, Error> {
         Ok(text) => text.to_owned(),
         Err(_) => source.bytes.iter().map(|&b| char::from(b)).collect(),
     };
+    let mut state = State::default();
+    let Contents { unit, blocks, entities } = contents(&text, &mut state)?;
+    let mut drawing = Drawing::default();
+    let outer = Frame::default();
+    for e in &entities {
+        state.add(&mut drawing, e, &outer, &blocks)?;
+    }
+    scale(&mut drawing, unit, options);
+    Ok(Plan::Drawing(drawing))
+}
+
+/// What a file holds.
+#[derive(Default)]
+struct Contents<'a> {
+    /// Code of the unit of lengths.
+    unit: Option<i64>,
+    blocks: Blocks<'a>,
+    entities: Vec<Entity<'a>>,
+}
+
+/// Reads a file section by section; `state` counts the entities.
+fn contents<'a>(text: &'a str, state: &mut State) -> Result<Contents<'a>, Error> {
     let mut pairs = Pairs { lines: text.lines(), line: 0 };
     let (mut section, mut variable) = ("", "");
-    let mut unit = None;
-    let mut drawing = Drawing::default();
-    let mut state = State::default();
+    let mut out = Contents::default();
     let mut entity: Option<Entity> = None;
-    let mut found = false;
-    // entities of the drawing, and of the block that is being read
-    let mut blocks: Blocks = BTreeMap::new();
+    // the block that is being read
     let mut block: Option<Block> = None;
-    let mut entities: Vec<Entity> = Vec::new();
+    let mut found = false;
     while let Some((code, value)) = pairs.next()? {
         match (code, value) {
             (0, _) => {
@@ -129,7 +147,7 @@ fn read(source: &Source, options: &Options) -> Result<Plan, Error> {
                     match (&mut block, done.kind) {
                         (None, "BLOCK") => block = Some(Block::new(&done)?),
                         (Some(open), kind) if kind != "BLOCK" => open.entities.push(done),
-                        (None, _) if section == "ENTITIES" => entities.push(done),
+                        (None, _) if section == "ENTITIES" => out.entities.push(done),
                         _ => {}
                     }
                 }
@@ -139,7 +157,7 @@ fn read(source: &Source, options: &Options) -> Result<Plan, Error> {
                     "SECTION" => {}
                     "ENDBLK" => {
                         if let Some(done) = block.take() {
-                            blocks.insert(done.name, done);
+                            out.blocks.insert(done.name, done);
                         }
                     }
                     kind if matches!(section, "ENTITIES" | "BLOCKS") => {
@@ -153,7 +171,7 @@ fn read(source: &Source, options: &Options) -> Result<Plan, Error> {
                 found = true;
             }
             (9, name) if section == "HEADER" => variable = name,
-            (70, value) if section == "HEADER" && variable == "$INSUNITS" => unit = value.parse::<i64>().ok(),
+            (70, value) if section == "HEADER" && variable == "$INSUNITS" => out.unit = value.parse().ok(),
             _ => {
                 if let Some(e) = &mut entity {
                     e.groups.push((code, value));
@@ -168,11 +186,12 @@ fn read(source: &Source, options: &Options) -> Result<Plan, Error> {
             "holds no section; a DXF begins with the groups 0 SECTION, 2 HEADER",
         ));
     }
-    entities.extend(entity.take().filter(|_| section == "ENTITIES"));
-    let outer = Frame::default();
-    for e in &entities {
-        state.add(&mut drawing, e, &outer, &blocks)?;
-    }
+    out.entities.extend(entity.take().filter(|_| section == "ENTITIES"));
+    Ok(out)
+}
+
+/// Turns the units of the drawing into meters.
+fn scale(drawing: &mut Drawing, unit: Option<i64>, options: &Options) {
     let named = UNITS.iter().find(|u| Some(u.0) == unit).map(|u| u.1);
     let scale = match (options.meters_per_unit, named) {
         (Some(scale), _) => scale,
@@ -181,7 +200,7 @@ fn read(source: &Source, options: &Options) -> Result<Plan, Error> {
             scale
         }
         (None, None) => {
-            let scale = guessed(&mut drawing);
+            let scale = guessed(drawing);
             let message = format!(
                 "the drawing does not state its unit ($INSUNITS); {scale} m was guessed by its size, say it with --meters-per-unit"
             );
@@ -193,17 +212,11 @@ fn read(source: &Source, options: &Options) -> Result<Plan, Error> {
     for o in &mut drawing.openings {
         o.width_m = o.width_m.map(|w| if w <= 0.0 { w } else { w * scale }).filter(|w| (0.5..=4.0).contains(w));
     }
-    Ok(Plan::Drawing(drawing))
 }
 
 /// Returns the unit by the size of the drawing: a building has some tens of meters.
 fn guessed(drawing: &mut Drawing) -> f64 {
-    let mut around: Option<[f64; 4]> = None;
-    for p in drawing.points_mut() {
-        let b = around.get_or_insert([p.x, p.y, p.x, p.y]);
-        *b = [b[0].min(p.x), b[1].min(p.y), b[2].max(p.x), b[3].max(p.y)];
-    }
-    match around.map_or(0.0, |b| (b[2] - b[0]).max(b[3] - b[1])) {
+    match extent(drawing.points_mut().map(|p| *p)).map_or(0.0, |b| (b[2] - b[0]).max(b[3] - b[1])) {
         side if side > 2000.0 => 0.001,
         side if side > 250.0 => 0.01,
         _ => 1.0,

@@ -11,7 +11,7 @@ use serde::Deserialize;
 use serde_json::Value;
 
 use super::{Plan, Reader, Source};
-use crate::drawing::{Drawing, DrawnLabel, DrawnOpening, DrawnRoom, DrawnWall, OpeningKind, note};
+use crate::drawing::{Drawing, DrawnLabel, DrawnOpening, DrawnRoom, DrawnWall, OpeningKind, extent, note};
 use crate::words::{Role, role};
 use crate::{Error, Options};
 
@@ -266,12 +266,7 @@ fn point(
 
 /// Turns longitude and latitude into meters east and north of the plan's middle, and other units into meters.
 fn project(drawing: &mut Drawing, crs: Option<&str>, options: &Options) {
-    let mut around: Option<[f64; 4]> = None;
-    for p in drawing.points_mut() {
-        let b = around.get_or_insert([p.x, p.y, p.x, p.y]);
-        *b = [b[0].min(p.x), b[1].min(p.y), b[2].max(p.x), b[3].max(p.y)];
-    }
-    let Some([x0, y0, x1, y1]) = around else { return };
+    let Some([x0, y0, x1, y1]) = extent(drawing.points_mut().map(|p| *p)) else { return };
     let globe = crs.map(|c| c.contains("CRS84") || c.ends_with("4326"));
     let fits = x0 >= -180.0 && x1 <= 180.0 && y0 >= -90.0 && y1 <= 90.0;
     let small = x1 - x0 < DEGREES && y1 - y0 < DEGREES;

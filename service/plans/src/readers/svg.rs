@@ -10,7 +10,7 @@ use roxmltree::{Document, Node, ParsingOptions};
 use svgtypes::{Length, LengthUnit, SimplePathSegment, SimplifyingPathParser, Transform, ViewBox};
 
 use super::{Plan, Reader, Source};
-use crate::drawing::{Drawing, DrawnLabel, DrawnOpening, DrawnRoom, DrawnWall, MOST_POINTS, OpeningKind, note};
+use crate::drawing::{Drawing, DrawnLabel, DrawnOpening, DrawnRoom, DrawnWall, MOST_POINTS, OpeningKind, extent, note};
 use crate::words::{Role, is_name, role};
 use crate::{Error, Options};
 
@@ -359,13 +359,8 @@ fn millimeters(length: Length) -> Option<f64> {
 
 /// Turns the units of the drawing into meters, and y upwards.
 fn scale(drawing: &mut Drawing, root: &Node, options: &Options) -> Result<(), Error> {
-    let mut around: Option<[f64; 4]> = None;
     let corners = drawing.rooms.iter().flat_map(|r| &r.corners).chain(drawing.walls.iter().flat_map(|w| &w.line));
-    for p in corners {
-        let b = around.get_or_insert([p.x, p.y, p.x, p.y]);
-        *b = [b[0].min(p.x), b[1].min(p.y), b[2].max(p.x), b[3].max(p.y)];
-    }
-    let Some([x0, y0, x1, y1]) = around else {
+    let Some([x0, y0, x1, y1]) = extent(corners.copied()) else {
         return Err(Error::refused(
             "drawing",
             "holds no closed shapes and no walls; rooms are rect, polygon or closed path",

@@ -12,7 +12,7 @@ mod token;
 
 use std::ops::Range;
 
-use d3dgen_model::knowledge::Value;
+use d3dgen_model::knowledge::{Statement, Value};
 use serde::Serialize;
 
 use lexicon::Lexicon;
@@ -105,6 +105,24 @@ pub struct Finding {
     pub si: Vec<f64>,
 }
 
+impl Finding {
+    /// Returns what is said, for the rules of a building's owner.
+    pub fn statement(&self) -> Statement {
+        let c = &self.constraint;
+        Statement {
+            name: c.name.clone(),
+            constraint_type: c.constraint_type.name().to_owned(),
+            value: c.value.clone(),
+            unit: c.unit.clone(),
+            space: c.space.clone(),
+            conditions: c.conditions.clone(),
+        }
+    }
+}
+
+/// Languages that a text is read in when nobody says which it is in.
+const LANGUAGES: [&str; 2] = ["en", "de"];
+
 /// Reads text with the shipped vocabulary.
 #[derive(Debug)]
 pub struct Extractor {
@@ -140,6 +158,16 @@ impl Extractor {
             }));
         }
         findings
+    }
+
+    /// Returns the constraints of a text as [`Self::extract`] does; without a language, those of the reading that names most
+    /// spaces, then most constraints, the first language of equals.
+    pub fn extract_best(&self, text: &str, lang: Option<&str>) -> Vec<Finding> {
+        let languages = lang.map_or(LANGUAGES.to_vec(), |lang| vec![lang]);
+        let readings = languages.into_iter().map(|lang| self.extract(text, lang));
+        let named =
+            |found: &Vec<Finding>| (found.iter().filter(|f| !f.constraint.space.is_empty()).count(), found.len());
+        readings.rev().max_by_key(named).unwrap_or_default()
     }
 }
 

@@ -5,7 +5,7 @@ mod research;
 
 use std::collections::BTreeMap;
 
-use d3dgen_knowledge::amend::{Statement, state};
+use d3dgen_knowledge::amend::state;
 use d3dgen_knowledge::classify::{Building, Classified, classify};
 use d3dgen_knowledge::database::{Change, Edit, SearchQuery, apply, difference, filter_names};
 use d3dgen_knowledge::{Policy, Stats, retrieve_with};
@@ -24,7 +24,7 @@ use d3dgen_proto::v1::{
     RetrieveConstraintsResponse, SearchConstraintsRequest, SearchConstraintsResponse, SearchFilter,
     UndoKnowledgeChangeRequest, UndoKnowledgeChangeResponse, source_policy,
 };
-use d3dgen_research::extract::{Extractor, Finding};
+use d3dgen_research::extract::Extractor;
 use tonic::{Request, Status};
 
 use super::domain::plugin;
@@ -39,8 +39,6 @@ use crate::status::{self, invalid};
 const QUERY_LIMIT: usize = 2000;
 /// Rooms of one question at most.
 const ROOMS: usize = 1000;
-/// Languages that sentences of owners are read in.
-const LANGUAGES: [&str; 2] = ["en", "de"];
 
 #[tonic::async_trait]
 impl KnowledgeService for Api {
@@ -354,14 +352,14 @@ fn edits(
 ) -> Result<Vec<Edit>, Status> {
     match wanted {
         Wanted::Sentence(said) => {
-            let found = findings(&said.text, said.language.as_deref());
+            let found = Extractor::shared().extract_best(&said.text, said.language.as_deref());
             if found.is_empty() {
                 let help = "has no rule with a figure; say it like \"corridors are at least 2.6 m wide\"";
                 return Err(invalid("sentence.text", help));
             }
             let mut after = knowledge.clone();
             for finding in &found {
-                let made = state(&after, &statement(finding), by).map_err(status::knowledge)?;
+                let made = state(&after, &finding.statement(), by).map_err(status::knowledge)?;
                 apply(&mut after, &made);
             }
             Ok(difference(knowledge, &after, true))
@@ -388,27 +386,6 @@ fn edits(
             }
             Ok(difference(knowledge, &after, false))
         }
-    }
-}
-
-/// Returns the rules in a sentence, read in the language that names most.
-fn findings(sentence: &str, language: Option<&str>) -> Vec<Finding> {
-    let extractor = Extractor::shared();
-    let languages = language.map_or(LANGUAGES.to_vec(), |l| vec![l]);
-    let readings = languages.into_iter().map(|lang| extractor.extract(sentence, lang));
-    let named = |found: &Vec<Finding>| (found.iter().filter(|f| !f.constraint.space.is_empty()).count(), found.len());
-    readings.rev().max_by_key(named).unwrap_or_default()
-}
-
-fn statement(found: &Finding) -> Statement {
-    let c = &found.constraint;
-    Statement {
-        name: c.name.clone(),
-        constraint_type: c.constraint_type.name().to_owned(),
-        value: c.value.clone(),
-        unit: c.unit.clone(),
-        space: c.space.clone(),
-        conditions: c.conditions.clone(),
     }
 }
 

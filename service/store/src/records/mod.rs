@@ -4,6 +4,7 @@
 //! [`Store::revision`] to compare with).
 
 mod envelope;
+pub mod json;
 mod loader;
 mod open;
 mod state;

@@ -16,7 +16,6 @@ use clap::Subcommand;
 use d3dgen_assets::annotation::asa;
 use d3dgen_assets::catalog::Catalog;
 use d3dgen_assets::database::Database;
-use d3dgen_assets::placed::placed;
 use d3dgen_assets::stock::Stock;
 use d3dgen_export::models::{KeptModel, KeptModels};
 use d3dgen_model::domain::Domain;
@@ -61,13 +60,13 @@ impl Kept {
 impl KeptModels for Kept {
     fn model(&self, asset_id: &str) -> Result<Option<KeptModel>, d3dgen_export::Error> {
         let Some(database) = &self.0 else { return Ok(None) };
-        let read = || -> Result<Option<KeptModel>, d3dgen_assets::Error> {
-            let Some(annotation) = database.get(asset_id)? else { return Ok(None) };
-            let Some(model) = database.model(asset_id)? else { return Ok(None) };
-            let model = placed(model, &annotation);
-            Ok(Some(KeptModel { model, tags: asa::tags(&annotation), description: annotation.description }))
-        };
-        read().map_err(|e| d3dgen_export::Error::Kept { asset: asset_id.to_owned(), reason: e.to_string() })
+        let kept = database.placed_model(asset_id);
+        let kept =
+            kept.map_err(|e| d3dgen_export::Error::Kept { asset: asset_id.to_owned(), reason: e.to_string() })?;
+        Ok(kept.map(|(model, annotation)| {
+            let tags = asa::tags(&annotation);
+            KeptModel { model, tags, description: annotation.description }
+        }))
     }
 }
 

@@ -3,11 +3,11 @@
 use std::io::{self, BufRead, IsTerminal, Write};
 use std::path::PathBuf;
 
-use d3dgen_knowledge::amend::{Statement, correct, state};
+use d3dgen_knowledge::amend::{correct, state};
 use d3dgen_knowledge::database::{Edit, Provenance, difference};
 use d3dgen_knowledge::phrase;
 use d3dgen_model::knowledge::{KnowledgeBase, Value};
-use d3dgen_research::extract::{Extractor, Finding};
+use d3dgen_research::extract::Extractor;
 
 use super::history::shown;
 use crate::database::provenance;
@@ -94,7 +94,7 @@ impl Args {
 
     /// Returns the edits that make the rules of a sentence rules of the owner.
     fn stated(&self, sentence: &str, knowledge: &KnowledgeBase, by: &Provenance) -> Result<Vec<Edit>, Error> {
-        let found = self.findings(sentence);
+        let found = Extractor::shared().extract_best(sentence, self.lang.as_deref());
         if found.is_empty() {
             return Err(Error::Input(format!(
                 "no rule with a figure was found in \"{sentence}\"; say it like \"corridors are at least 2.6 m wide\""
@@ -102,7 +102,7 @@ impl Args {
         }
         let mut after = knowledge.clone();
         for finding in &found {
-            let edits = state(&after, &statement(finding), by)?;
+            let edits = state(&after, &finding.statement(), by)?;
             d3dgen_knowledge::database::apply(&mut after, &edits);
         }
         let local = after.references.iter().filter(|r| r.jurisdiction == d3dgen_model::knowledge::LOCAL);
@@ -111,32 +111,10 @@ impl Args {
         }
         Ok(difference(knowledge, &after, true))
     }
-
-    fn findings(&self, sentence: &str) -> Vec<Finding> {
-        let extractor = Extractor::shared();
-        let languages = self.lang.as_deref().map_or(vec!["en", "de"], |l| vec![l]);
-        let readings = languages.into_iter().map(|lang| extractor.extract(sentence, lang));
-        // the reading that names most; the first language of equals
-        let named =
-            |found: &Vec<Finding>| (found.iter().filter(|f| !f.constraint.space.is_empty()).count(), found.len());
-        readings.rev().max_by_key(named).unwrap_or_default()
-    }
 }
 
 fn is_held(knowledge: &KnowledgeBase, rule: &d3dgen_model::knowledge::Constraint) -> bool {
     knowledge.references.iter().flat_map(|r| &r.constraints).any(|c| c == rule)
-}
-
-fn statement(found: &Finding) -> Statement {
-    let c = &found.constraint;
-    Statement {
-        name: c.name.clone(),
-        constraint_type: c.constraint_type.name().to_owned(),
-        value: c.value.clone(),
-        unit: c.unit.clone(),
-        space: c.space.clone(),
-        conditions: c.conditions.clone(),
-    }
 }
 
 fn figure(text: &str) -> Result<Value, Error> {

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use d3dgen_model::domain::{Domain, Zone};
 use d3dgen_model::floorplan::{DoorKind, PlanRoom};
 use d3dgen_model::geometry::Rect;
-use d3dgen_model::scenario::RoiKind;
+use d3dgen_model::scenario::{Poi, RoiKind};
 use d3dgen_model::world::World;
 
 use super::labels;
@@ -250,7 +250,7 @@ impl Facts<'_> {
             world.floorplan.rooms.iter().map(|r| self.domain.room_type_or_generic(&r.room_type).zone).collect();
         let rois: BTreeSet<RoiKind> = world.scenario.rois.iter().map(|r| r.kind).collect();
         let goals = world.scenario.robots.iter().any(|r| !r.goals.is_empty());
-        let docks = world.scenario.pois.iter().any(|p| p.kind == "dock");
+        let docks = world.scenario.pois.iter().any(|p| p.kind == Poi::DOCK);
         let mut rows: Vec<(&str, Swatch)> =
             zones.into_iter().map(|z| (style::zone_label(z), Swatch::Zone(z))).collect();
         rows.extend(rois.into_iter().map(|r| (style::roi_label(r), Swatch::Roi(r))));

@@ -1,7 +1,7 @@
 //! Robot zones under the furniture; docks, goals and starts above it.
 
 use d3dgen_model::geometry::{Pose, Rect};
-use d3dgen_model::scenario::{RoiKind, Scenario};
+use d3dgen_model::scenario::{Poi, RoiKind, Scenario};
 
 use super::page::{Anchor, Frame, Page, Path, Type, on_sheet};
 use super::style;
@@ -97,14 +97,14 @@ pub(super) fn marks(page: &mut Page, frame: &Frame, scenario: &Scenario, size: f
     page.open_group("robot-marks");
     let mut taken = Vec::new();
     let mut around = |c: (f64, f64), r: f64| taken.push(Rect::new(c.0 - r, c.1 - r, c.0 + r, c.1 + r));
-    for poi in scenario.pois.iter().filter(|p| p.kind == "dock") {
+    for poi in scenario.pois.iter().filter(|p| p.kind == Poi::DOCK) {
         let at = frame.map(super::at(&poi.pose));
         dock(page, at, 0.75 * size);
         around(at, size);
     }
     for (robot, letter) in scenario.robots.iter().zip(letters(scenario)) {
         for (i, id) in robot.goals.iter().enumerate() {
-            let Some(poi) = scenario.pois.iter().find(|p| &p.poi_id == id && p.kind != "dock") else { continue };
+            let Some(poi) = scenario.pois.iter().find(|p| &p.poi_id == id && p.kind != Poi::DOCK) else { continue };
             let at = frame.map(super::at(&poi.pose));
             goal(page, at, &format!("{letter}{}", i + 1), 0.62 * size);
             around(at, size);

@@ -336,7 +336,6 @@ fn plans(state: &State, unit: &Unit, task: &Task, focus: Option<u8>, terms: &Ter
     let (robot, look) = (terms.robot, unit.look());
     let aisle = robot.max(AISLE);
     let (b, r) = (unit.bbox, unit.reach);
-    let (d, w) = (b.width(), b.height());
     let (front, back) = (r.x1 - b.x1, b.x0 - r.x0);
     let side = (b.y0 - r.y0).max(r.y1 - b.y1);
     let shape = unit.anchor().object.shape;
@@ -374,44 +373,74 @@ fn plans(state: &State, unit: &Unit, task: &Task, focus: Option<u8>, terms: &Ter
             let least = (own - PASSAGE - SHARED_MOST).max(if own > 0 { behind_desks } else { 0 });
             let gaps = gaps.iter().copied().filter(|g| *g >= least).chain((own > 0).then_some(own));
             let gaps: Vec<i32> = gaps.collect();
-            for (&gap_u, &gap_v) in gaps.iter().flat_map(|u| sides.iter().map(move |v| (u, v))) {
-                for run in [i32::MAX, 4, 3, 2] {
-                    for columns in 1..=count {
-                        // full rows, where those that they leave out may go
-                        let full = count - count % columns;
-                        let count = if full > 0 && count - full <= task.spare as i32 { full } else { count };
-                        let rows = (count + columns - 1) / columns;
-                        let mut plan =
-                            Plan { q, columns, rows, count, run, gap_v, gap_u, paired, gap_back, score: 0.0 };
-                        if plan.breadth(w, aisle) > wide.height() {
-                            break;
-                        }
-                        if run < i32::MAX && columns <= run {
-                            continue; // no cross aisle: the same as one long run
-                        }
-                        let margins = |plan: &Plan| plan.margins(unit, front, terms.stage);
-                        let needs = |plan: &Plan| plan.depth(d) + margins(plan).0 + margins(plan).1;
-                        while plan.rows > 1 && needs(&plan) > wide.width() {
-                            plan.rows -= 1;
-                        }
-                        let (low, high) = margins(&plan);
-                        let set = set - if in_pairs { OPEN_BACKS * plan.open_backs() } else { 0.0 };
-                        plan.score = set - plan.shared(own) + rate(&plan, rows, task, (d, w), &wide, aisle);
-                        out.push(plan);
-                        if shape == Shape::Desk && focus.is_none() && plan.rows > 1 {
-                            // the floor that is left shared out among the aisles
-                            let between = if paired { (plan.rows - 1) / 2 } else { plan.rows - 1 };
-                            let left = (wide.width() - plan.depth(d) - low - high) / (between + 2);
-                            plan.gap_u += left.min(WIDENED) / 50 * 50;
-                            plan.score = set - plan.shared(own) + rate(&plan, rows, task, (d, w), &wide, aisle);
-                            out.push(plan);
-                        }
-                    }
-                }
+            let widens = shape == Shape::Desk && focus.is_none();
+            let hall = Hall { unit, task, wide, aisle, front, stage: terms.stage, own, set, in_pairs, widens };
+            let gaps = gaps.iter().flat_map(|u| sides.iter().map(move |v| (*u, *v)));
+            for ((gap_u, gap_v), run) in gaps.flat_map(|gap| [i32::MAX, 4, 3, 2].map(|run| (gap, run))) {
+                let plan = Plan { q, columns: 1, rows: 1, count, run, gap_v, gap_u, paired, gap_back, score: 0.0 };
+                out.extend((1..=count).map_while(|columns| hall.tries(plan, columns)).flatten().flatten());
             }
         }
     }
     out
+}
+
+/// What plans of rows with one heading are judged by; lengths in mm.
+struct Hall<'h> {
+    unit: &'h Unit<'h>,
+    task: &'h Task<'h>,
+    /// Bounds of the room, turned so that rows run along y.
+    wide: Box2,
+    aisle: i32,
+    /// Floor before a unit.
+    front: i32,
+    /// Floor before the rows for whatever faces them.
+    stage: i32,
+    /// Floor that two rows back to back have for themselves.
+    own: i32,
+    /// What the heading is worth.
+    set: f64,
+    in_pairs: bool,
+    /// True where the floor that is left may be shared out among the aisles.
+    widens: bool,
+}
+
+impl Hall<'_> {
+    /// Returns a plan with so many columns, rated, and the same with wider aisles where that is an own plan; `None` where the
+    /// columns are too many for the room.
+    fn tries(&self, plan: Plan, columns: i32) -> Option<[Option<Plan>; 2]> {
+        let (d, w) = (self.unit.bbox.width(), self.unit.bbox.height());
+        // full rows, where those that they leave out may go
+        let full = plan.count - plan.count % columns;
+        let count = if full > 0 && plan.count - full <= self.task.spare as i32 { full } else { plan.count };
+        let rows = (count + columns - 1) / columns;
+        let mut plan = Plan { columns, rows, count, ..plan };
+        if plan.breadth(w, self.aisle) > self.wide.height() {
+            return None;
+        }
+        if plan.run < i32::MAX && columns <= plan.run {
+            return Some([None, None]); // no cross aisle: the same as one long run
+        }
+        let needs = |plan: &Plan| {
+            let (low, high) = plan.margins(self.unit, self.front, self.stage);
+            plan.depth(d) + low + high
+        };
+        while plan.rows > 1 && needs(&plan) > self.wide.width() {
+            plan.rows -= 1;
+        }
+        let set = self.set - if self.in_pairs { OPEN_BACKS * plan.open_backs() } else { 0.0 };
+        let rated = |plan: Plan| {
+            let score = set - plan.shared(self.own) + rate(&plan, rows, self.task, (d, w), &self.wide, self.aisle);
+            Plan { score, ..plan }
+        };
+        // the floor that is left shared out among the aisles
+        let wider = || {
+            let between = if plan.paired { (plan.rows - 1) / 2 } else { plan.rows - 1 };
+            let left = (self.wide.width() - needs(&plan)) / (between + 2);
+            Plan { gap_u: plan.gap_u + left.min(WIDENED) / 50 * 50, ..plan }
+        };
+        Some([Some(rated(plan)), (self.widens && plan.rows > 1).then(|| rated(wider()))])
+    }
 }
 
 /// Rates the walls with this heading as what rows of seats look at: solid, and not where people come in.
@@ -522,13 +551,6 @@ fn senses(unit: &Unit) -> bool {
     unit.bbox.width() < DEVICE && unit.anchor().object.affordances.iter().any(|a| a == "see")
 }
 
-/// Returns how far apart two rectangles are, mm.
-fn distance(a: &Box2, b: &Box2) -> i32 {
-    let dx = f64::from((a.x0 - b.x1).max(b.x0 - a.x1).max(0));
-    let dy = f64::from((a.y0 - b.y1).max(b.y0 - a.y1).max(0));
-    (dx * dx + dy * dy).sqrt() as i32
-}
-
 /// Moves what senses smoke along the room to the nearest place away from doors through which steam comes; where no place is
 /// far enough, to the farthest.
 fn far_from_doors<'a>(
@@ -549,7 +571,7 @@ fn far_from_doors<'a>(
             continue;
         }
         let body = moved.world(&moved.unit.bbox);
-        let far = openings.iter().map(|o| distance(o, &body)).min().unwrap_or(FROM_DOOR).min(FROM_DOOR);
+        let far = openings.iter().map(|o| o.distance(&body)).min().unwrap_or(FROM_DOOR).min(FROM_DOOR);
         if best.as_ref().is_ok_and(|(most, _)| *most >= far) {
             continue;
         }

@@ -5,7 +5,7 @@ use d3dgen_model::floorplan::{Door, DoorKind};
 use d3dgen_model::{Rect, Segment, TOLERANCE_M};
 
 use super::Findings;
-use crate::world::context::{Context, ON_LINE_M, Room, bounds, shared, uncovered};
+use crate::world::context::{Context, ON_LINE_M, Room, shared, uncovered};
 
 /// Narrowest opening, m.
 const NARROWEST_M: f64 = 0.60;
@@ -93,7 +93,7 @@ pub fn jamb(c: &Context, out: &mut Findings) {
 fn to_corner(door: &Door, room: &Room) -> Option<f64> {
     let reach = door.wall_thickness_m / 2.0 + ON_LINE_M;
     let along = |s: &Segment| {
-        let r = bounds(s);
+        let r = s.bounds();
         if door.line.is_vertical() { (r.y0, r.y1) } else { (r.x0, r.x1) }
     };
     let (d0, d1) = along(&door.line);
@@ -179,7 +179,7 @@ fn within_rooms(c: &Context, door: &Door, lane: &Rect, obstacle: &Rect) -> f64 {
 
 /// Returns the rectangles before and behind a door: from `skip` beside its center line, `depth` deep.
 fn sides(door: &Door, depth: f64, skip: f64) -> [Rect; 2] {
-    let r = bounds(&door.line);
+    let r = door.line.bounds();
     if door.line.is_vertical() {
         [Rect { x0: r.x0 - skip - depth, x1: r.x0 - skip, ..r }, Rect { x0: r.x1 + skip, x1: r.x1 + skip + depth, ..r }]
     } else {

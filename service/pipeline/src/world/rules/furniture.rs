@@ -9,7 +9,7 @@ use d3dgen_model::{Rect, TOLERANCE_M};
 
 use super::Findings;
 use crate::placement::other_bed;
-use crate::world::context::{Context, Object, Room, bounds};
+use crate::world::context::{Context, Object, Room};
 
 /// Farthest a back may be from the wall it belongs to, m: a heater, a skirting, a curtain fit between.
 const BACK_M: f64 = 0.30;
@@ -162,18 +162,13 @@ fn rear(c: &Context, object: &Object) -> Rect {
         let ahead = dx * (center.x - own.x) + dy * (center.y - own.y);
         o.placement.group.as_deref() == Some(group) && o.placement.mount == Mount::Floor && ahead < 0.0
     });
-    members.fold(object.rect, |r, o| Rect {
-        x0: r.x0.min(o.rect.x0),
-        y0: r.y0.min(o.rect.y0),
-        x1: r.x1.max(o.rect.x1),
-        y1: r.y1.max(o.rect.y1),
-    })
+    members.fold(object.rect, |r, o| r.union(&o.rect))
 }
 
 /// Returns the distance from the back of an outline to the wall behind it, m; very far without a wall behind.
 fn behind(r: &Rect, p: &Placement, room: &Room) -> Option<f64> {
     let gaps = room.plan.net_polygon.edges().filter_map(|e| {
-        let w = bounds(&e);
+        let w = e.bounds();
         let (across, gap) = match quarter(p.pose.yaw_rad) {
             0 => ((w.y0, w.y1, r.y0, r.y1, e.is_vertical()), r.x0 - w.x0),
             1 => ((w.x0, w.x1, r.x0, r.x1, !e.is_vertical()), r.y0 - w.y0),

@@ -2,11 +2,11 @@
 
 use std::collections::BTreeSet;
 
-use d3dgen_knowledge::jurisdiction;
 use d3dgen_model::domain::{Adjacency, AdjacencyRelation};
 use d3dgen_model::scene_graph::Connector;
 
 use super::Findings;
+use crate::scene_graph::rules_here;
 use crate::world::context::{Context, ON_LINE_M, Room, shared};
 
 /// Common boundary from which rooms count as sharing a wall, m.
@@ -62,10 +62,7 @@ pub fn edges(c: &Context, out: &mut Findings) {
 
 /// Returns the adjacency rules of this strength that hold in the building's country.
 fn pairs<'c>(c: &'c Context, relation: AdjacencyRelation) -> impl Iterator<Item = &'c Adjacency> {
-    let here = jurisdiction::chain(c.graph().country_code.as_deref());
-    c.domain.adjacency.iter().filter(move |p| {
-        p.relation == relation && (p.jurisdictions.is_empty() || p.jurisdictions.iter().any(|j| here.contains(j)))
-    })
+    rules_here(c.domain, c.graph().country_code.as_deref()).filter(move |p| p.relation == relation)
 }
 
 fn of_type<'c>(c: &'c Context, room_type: &'c str) -> impl Iterator<Item = &'c str> {

@@ -4,7 +4,7 @@ use d3dgen_model::Rect;
 use d3dgen_model::domain::Mount;
 
 use super::Findings;
-use crate::world::context::{Context, Object, Room, bounds};
+use crate::world::context::{Context, Object, Room};
 
 /// Tolerance of positions, m.
 const SLACK_M: f64 = 0.02;
@@ -97,7 +97,7 @@ pub fn support(c: &Context, out: &mut Findings) {
 fn off_wall(object: &Object, room: &Room) -> Option<String> {
     let near = object.rect.grown(FROM_WALL_M);
     let touches = room.plan.net_polygon.edges().any(|e| {
-        let (r, own) = (bounds(&e), object.rect);
+        let (r, own) = (e.bounds(), object.rect);
         if e.is_vertical() {
             near.x0 <= r.x0 && r.x0 <= near.x1 && r.y1 > own.y0 && r.y0 < own.y1
         } else {

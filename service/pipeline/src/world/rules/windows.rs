@@ -5,7 +5,7 @@ use d3dgen_model::domain::{Daylight, Shape};
 use d3dgen_model::floorplan::Window;
 
 use super::Findings;
-use crate::world::context::{Context, ON_LINE_M, bounds, shared, uncovered};
+use crate::world::context::{Context, ON_LINE_M, shared, uncovered};
 
 /// Depth in front of a window in which tall things stand in its light, m.
 const LIGHT_M: f64 = 0.25;
@@ -65,7 +65,7 @@ pub fn blocked(c: &Context, out: &mut Findings) {
 
 /// Returns the floor in front of a window on both sides of its wall; outdoors nothing stands.
 fn light(window: &Window) -> Rect {
-    let r = bounds(&window.line);
+    let r = window.line.bounds();
     let reach = window.wall_thickness_m / 2.0 + LIGHT_M;
     if window.line.is_vertical() {
         Rect { x0: r.x0 - reach, x1: r.x1 + reach, ..r }

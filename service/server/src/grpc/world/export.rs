@@ -3,7 +3,6 @@
 use std::sync::atomic::AtomicBool;
 
 use d3dgen_assets::annotation::asa;
-use d3dgen_assets::placed::placed;
 use d3dgen_export::exporters;
 use d3dgen_export::models::{KeptModel, KeptModels};
 use d3dgen_model::world::World;
@@ -28,14 +27,13 @@ struct Kept<'a>(&'a Core);
 
 impl KeptModels for Kept<'_> {
     fn model(&self, asset_id: &str) -> Result<Option<KeptModel>, d3dgen_export::Error> {
-        let assets = &self.0.databases.assets;
-        let read = || -> Result<Option<KeptModel>, d3dgen_assets::Error> {
-            let Some(annotation) = assets.get(asset_id)? else { return Ok(None) };
-            let Some(model) = assets.model(asset_id)? else { return Ok(None) };
-            let model = placed(model, &annotation);
-            Ok(Some(KeptModel { model, tags: asa::tags(&annotation), description: annotation.description }))
-        };
-        read().map_err(|e| d3dgen_export::Error::Kept { asset: asset_id.to_owned(), reason: e.to_string() })
+        let kept = self.0.databases.assets.placed_model(asset_id);
+        let kept =
+            kept.map_err(|e| d3dgen_export::Error::Kept { asset: asset_id.to_owned(), reason: e.to_string() })?;
+        Ok(kept.map(|(model, annotation)| {
+            let tags = asa::tags(&annotation);
+            KeptModel { model, tags, description: annotation.description }
+        }))
     }
 }
 
