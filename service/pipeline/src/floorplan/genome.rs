@@ -88,8 +88,9 @@ pub(super) const CORE_BAND: usize = 0;
 /// Rooms that begin on both sides of the corridors around a court: one row of so many would make it a field. More do in some of
 /// the starts, as not all of them come to a plan.
 const BOTH_SIDES: RangeInclusive<usize> = 20..=32;
-/// Band along the third side of a court.
+/// Bands along the short sides of a court.
 pub(super) const WEST_BAND: usize = 4;
+pub(super) const EAST_BAND: usize = 5;
 
 /// A row of cells along one side of a corridor.
 #[derive(Debug, PartialEq)]
@@ -157,7 +158,7 @@ fn band_count(scheme: Scheme) -> usize {
     match scheme {
         Scheme::Straight | Scheme::Capped => 2,
         Scheme::Angle | Scheme::Racetrack => 4,
-        Scheme::Courtyard => 5,
+        Scheme::Courtyard => 6,
         Scheme::Comb => 0,
     }
 }
@@ -295,7 +296,7 @@ impl Genome {
             Scheme::Racetrack if inner && self.corner => vec![2],
             Scheme::Racetrack if inner => vec![2, 3],
             Scheme::Racetrack => vec![0, 1],
-            Scheme::Courtyard if !both_sides => vec![0, 1, WEST_BAND],
+            Scheme::Courtyard if !both_sides => vec![0, 1, WEST_BAND, EAST_BAND],
             _ => (0..self.bands.len()).collect(),
         };
         let best = candidates.iter().copied().min_by(|a, b| load(*a).total_cmp(&load(*b))).unwrap_or(0);

@@ -2,13 +2,16 @@
 
 use d3dgen_model::domain::Scheme;
 use d3dgen_model::seed::Stream;
+use d3dgen_model::style::Form;
 
 use super::compose::{LARGE, compose};
 use super::core::Below;
 use super::cost::{Judge, Score, Weights, taste};
 use super::genome::{Cell, Cover, Genome, guest_of, is_nestable};
 use super::order::put_in_order;
+use super::outline::Mosaic;
 use super::realize::{Layout, Scratch, realize};
+use super::scheme_of;
 use super::spec::Brief;
 use crate::Stop;
 
@@ -61,6 +64,20 @@ pub(super) struct Candidate {
     pub scheme: Scheme,
     pub layout: Layout,
     pub score: Score,
+}
+
+impl Candidate {
+    /// Returns true for a building of a form, not only one whose corridors run so: an L has one corner that turns inwards, and
+    /// wings lie side by side.
+    pub(super) fn has_form(&self, form: Form) -> bool {
+        let slots = &self.layout.comb.slots;
+        self.scheme == scheme_of(form).0
+            && match form {
+                Form::LShaped => Mosaic::new(&self.layout.boxes).reflex_corners() == 1,
+                Form::Wings => [0, 1].iter().any(|side| slots.iter().filter(|s| s.side == *side).count() > 1),
+                Form::Linear | Form::Racetrack | Form::Courtyard => true,
+            }
+    }
 }
 
 /// Returns the best candidate found, of few steps when asked to stop; its `score.hard` is above 0 when none is sound.

@@ -259,7 +259,7 @@ pub(super) fn outward_reach(plan: &Floorplan) -> f64 {
 /// Marks the ways in and out with an arrow; the main entrance is filled and named.
 pub(super) fn entrances(page: &mut Page, frame: &Frame, plan: &Floorplan, size: f64) {
     page.open_group("entrances");
-    for door in plan.doors.iter().filter(|d| d.room_ids.len() == 1) {
+    for door in plan.ways_out() {
         let Some(room) = door.room_ids.first().and_then(|id| plan.room(id)) else { continue };
         let o = Opening::new(door.line, door.wall_thickness_m, |p| !room.polygon.contains(p));
         let outward = door.swing.as_ref().is_some_and(|s| s.into_room_id.is_none());
@@ -317,7 +317,7 @@ pub(super) struct Sides<T> {
 /// Returns on which sides of the building there are ways in or out.
 pub(super) fn entrance_sides(plan: &Floorplan, around: &Rect) -> Sides<bool> {
     let mut sides = Sides { west: false, east: false, north: false, south: false };
-    for line in plan.doors.iter().filter(|d| d.room_ids.len() == 1).map(|d| d.line) {
+    for line in plan.ways_out().into_iter().map(|d| d.line) {
         let (m, c) = (line.middle(), around.center());
         match (line.is_vertical(), m.x < c.x, m.y < c.y) {
             (true, true, _) => sides.west = true,
