@@ -63,9 +63,29 @@ fn on_level(rooms: &[PlanRoom], level: i32) -> Vec<Court> {
         let Some(court) = court else { continue };
         courts.resize_with(courts.len().max(court + 1), || Court { level, rects: Vec::new() });
         let (i, j) = (cell % columns, cell / columns);
-        courts[court].rects.push(Rect::new(xs[i], ys[j], xs[i + 1], ys[j + 1]));
+        add(&mut courts[court].rects, Rect::new(xs[i], ys[j], xs[i + 1], ys[j + 1]));
     }
     courts
+}
+
+/// Adds a cell to those west and south of it: to the last one where it goes on with it, and both to what they complete below.
+fn add(rects: &mut Vec<Rect>, cell: Rect) {
+    let goes_on = |last: &&mut Rect| (last.y0, last.y1, last.x1) == (cell.y0, cell.y1, cell.x0);
+    let row = match rects.last_mut().filter(goes_on) {
+        Some(last) => {
+            last.x1 = cell.x1;
+            *last
+        }
+        None => {
+            rects.push(cell);
+            cell
+        }
+    };
+    let last = rects.len() - 1;
+    if let Some(below) = rects[..last].iter_mut().find(|r| (r.x0, r.x1, r.y1) == (row.x0, row.x1, row.y0)) {
+        below.y1 = row.y1;
+        rects.pop();
+    }
 }
 
 /// Returns which court each cell of a grid belongs to, of which `built` says row by row where rooms are: a court is free cells

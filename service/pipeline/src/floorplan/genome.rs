@@ -134,7 +134,8 @@ pub(super) struct Genome {
     pub bands: Vec<Band>,
     /// Rooms that close the start and the end of the corridor (straight schemes only).
     pub caps: [Option<Cap>; 2],
-    /// Angle: true when the outer band fills the corner; racetrack: when the core began as one row of rooms; courtyard: true when each outer band fills one.
+    /// Angle: true when the outer band fills the corner; racetrack: when the core began as one row of rooms; courtyard: when
+    /// it began with rooms on both sides of its corridors, however many.
     pub corner: bool,
     /// Courtyard: depth of the court between the rooms on it, lattice units.
     pub court: i32,

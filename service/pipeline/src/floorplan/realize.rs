@@ -19,8 +19,10 @@ const MIN_NOTCH_M: f64 = 1.5;
 const COURT_M: f64 = 5.0;
 const MOST_COURT: f64 = 3.0;
 
-/// Length of the piece that closes a ring of corridors around a court, on center lines, m: no room can have its door there.
-const CLOSING_M: f64 = 2.0;
+/// How wide a court is at least, as a share of the side of a square as large as all rooms: a large building has no shaft.
+const COURT_SHARE: f64 = 0.25;
+/// How much more a notch in the outline around a court counts.
+const AROUND_COURT: f64 = 5.0;
 
 /// How far each arm of an L that is asked for reaches beyond the other at least, m.
 const ARM_M: f64 = 3.0;
@@ -291,7 +293,7 @@ fn ring(task: &mut Task<'_, '_>) {
     // the short sides of a court have rooms too: in the west one row goes on past the end of the next at the corners, in the
     // east the corridors go on to the facade, where the ways out are
     let [west, east] = [WEST_BAND, EAST_BAND].map(|band| if around { used_depth(genome, band) } else { 0 });
-    let [over, under] = if genome.corner { [west, used_depth(genome, 1)] } else { [0, 0] };
+    let [over, under] = [west, if west > 0 { used_depth(genome, 1) } else { 0 }];
     let top = Row::new(task, 0, over + east);
     let bottom = Row::new(task, 1, east);
     let lower = Row::new(task, 2, -2 * w);
@@ -308,8 +310,8 @@ fn ring(task: &mut Task<'_, '_>) {
     task.spine_box(Cellbox::new(0, 0, len + east, w));
     task.spine_box(Cellbox::new(0, w, w, w + core));
     task.spine_box(Cellbox::new(0, w + core, len + east, high));
-    // what closes the ring is short, so that rooms have their doors all around; the core of a ring has none on its short sides
-    let closing = if around && core > up(CLOSING_M) + w { up(CLOSING_M) } else { core };
+    // what closes the ring has no doors: around a court it is as short as it is wide; a core has no rooms on its short sides
+    let closing = if around && core > 2 * w { w } else { core };
     task.layout.boxes.push((link, Cellbox::new(len - w, w, len, w + closing)));
     if closing < core {
         task.spine_box(Cellbox::new(len - w, w + closing, len, w + core));
@@ -320,21 +322,25 @@ fn ring(task: &mut Task<'_, '_>) {
         fill(task, &left.at((0, -under), (0, 1), (-1, 0)), high + under);
         fill(task, &right.at((len, w), (0, 1), (1, 0)), core);
     }
+    if around {
+        task.layout.notch *= AROUND_COURT;
+    }
     let before = task.layout.notch;
     fill(task, &lower.at((w, w), (1, 0), (0, 1)), len - 2 * w);
     let first = task.layout.notch - before;
     fill(task, &upper.at((w, w + core), (1, 0), (0, -1)), len - 2 * w);
     let second = task.layout.notch - before - first;
     task.misfit += if around {
-        court_misfit(core - inside[0] - inside[1], len - 2 * w)
+        let all: f64 = brief.rooms.iter().map(|r| r.area_target).sum();
+        court_misfit([core - inside[0] - inside[1], len - 2 * w], COURT_M.max(COURT_SHARE * all.sqrt()))
     } else {
         core_misfit([first, second], inside)
     };
 }
 
 /// Returns what the sides of a court miss, in meters: all have light, and one looks across it, not along a shaft.
-fn court_misfit(deep: i32, long: i32) -> f64 {
-    let short = |side: i32| (COURT_M - meters(side)).max(0.0);
+fn court_misfit([deep, long]: [i32; 2], least: f64) -> f64 {
+    let short = |side: i32| (least - meters(side)).max(0.0);
     let slot = meters(long.max(deep)) - MOST_COURT * meters(long.min(deep));
     short(deep) + short(long) + slot.max(0.0)
 }

@@ -389,10 +389,6 @@ fn change_caps(brief: &Brief, genome: &mut Genome, rng: &mut Stream) -> bool {
             return true;
         }
         Scheme::Courtyard => {
-            if rng.chance(0.3) {
-                genome.corner = !genome.corner;
-                return true;
-            }
             let step = 1 + rng.below(8) as i32;
             genome.court = (genome.court + if rng.chance(0.5) { step } else { -step }).max(1);
             return true;

@@ -1,6 +1,7 @@
 //! Floors, walls, doors, windows and outer dimensions.
 
 use d3dgen_model::TOLERANCE_M;
+use d3dgen_model::courts::Court;
 use d3dgen_model::domain::{Domain, Zone};
 use d3dgen_model::floorplan::{Door, DoorKind, Floorplan, Slide, Wall, Window};
 use d3dgen_model::geometry::{Point, Rect, Segment};
@@ -21,7 +22,20 @@ pub(super) fn floors(page: &mut Page, frame: &Frame, plan: &Floorplan, domain: &
         let fill = format!("fill=\"{}\"", style::tint(zone));
         page.path_with(&fill, Path::new().polygon(&on_sheet(frame, &room.polygon)));
     }
+    let fill = format!("fill=\"{}\"", style::tint(Zone::Outdoor));
+    for rect in courts(plan).iter().flat_map(|c| &c.rects) {
+        page.path_with(&fill, Path::new().rect(&frame.rect(rect)));
+    }
     page.close_group();
+}
+
+/// Least width of a court that is drawn, m: less is a gap between walls that somebody drew.
+const COURT_M: f64 = 2.0;
+
+/// Returns the courts of a plan that are drawn and named.
+pub(super) fn courts(plan: &Floorplan) -> Vec<Court> {
+    let is_wide = |c: &Court| c.bounds().width().min(c.bounds().height()) >= COURT_M;
+    plan.courts().into_iter().filter(is_wide).collect()
 }
 
 /// Width in which the railings of balconies and terraces are drawn, m.
