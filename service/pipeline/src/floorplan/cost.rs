@@ -45,7 +45,7 @@ const BY_ENTRANCE: f64 = 1.5;
 const FOR_GUESTS: f64 = 1.8;
 /// Way from a bedroom to the nearest station of a ward from which on it is far, m, and what a meter more of it counts.
 const NEAR_STATION_M: f64 = 20.0;
-const FAR_FROM_STATION: f64 = 0.2;
+const FAR_FROM_STATION: f64 = 0.15;
 /// What a building that is to be compact pays for the share of the rectangle around it that it leaves open.
 const NOTCHED: f64 = 30.0;
 /// Number of soft terms.
