@@ -196,6 +196,7 @@ impl Genome {
         for room in nested {
             genome.nest_somewhere(brief, room, rng);
         }
+        genome.spread_stations(brief, rng);
         for band in &mut genome.bands {
             let area: f64 = band.cells.iter().map(|c| brief.rooms[c.host].area_target).sum::<f64>();
             let mean = area / band.cells.len().max(1) as f64;
@@ -211,6 +212,21 @@ impl Genome {
             band.cells.insert(at, Cell::new(core.host));
         }
         genome
+    }
+
+    /// Sets the stations of a ring of corridors in the middle of its long sides in turn, in half of the starts: together they are
+    /// near every bed.
+    fn spread_stations(&mut self, brief: &Brief, rng: &mut Stream) {
+        let is_station = |c: &Cell| brief.rooms[c.host].zone == Zone::Staff && brief.rooms[c.host].open_front;
+        let stations: Vec<Cell> = self.bands.iter().flat_map(|b| &b.cells).copied().filter(is_station).collect();
+        if !self.scheme.is_ring() || stations.len() < 2 || rng.chance(0.5) {
+            return;
+        }
+        self.bands.iter_mut().for_each(|band| band.cells.retain(|c| !is_station(c)));
+        for (n, station) in stations.into_iter().enumerate() {
+            let cells = &mut self.bands[n % 2].cells;
+            cells.insert(cells.len() / 2, station);
+        }
     }
 
     fn choose_caps(&mut self, brief: &Brief, free: &mut Vec<usize>, rng: &mut Stream) {

@@ -310,8 +310,10 @@ fn ring(task: &mut Task<'_, '_>) {
     task.spine_box(Cellbox::new(0, 0, len + east, w));
     task.spine_box(Cellbox::new(0, w, w, w + core));
     task.spine_box(Cellbox::new(0, w + core, len + east, high));
-    // what closes the ring has no doors: around a court it is as short as it is wide; a core has no rooms on its short sides
-    let closing = if around && core > 2 * w { w } else { core };
+    // what closes the ring has no doors: around a court it is as short as its width and area allow; a core has no rooms on its
+    // short sides
+    let least = up(brief.rooms[link].area_min / (meters(w) - 2.0 * OUTER_HALF_M) + 2.0 * INNER_HALF_M).max(w);
+    let closing = if around && core > least + w { least } else { core };
     task.layout.boxes.push((link, Cellbox::new(len - w, w, len, w + closing)));
     if closing < core {
         task.spine_box(Cellbox::new(len - w, w + closing, len, w + core));

@@ -171,5 +171,5 @@ fn no_bed_of_a_ward_with_two_stations_is_far_from_both() {
         let own = beds.map(|bed| plan.doors_of(&bed.room_id).filter_map(|d| ways.at(&map, d.line.middle())));
         near.extend(own.map(|ways| ways.reduce(f64::min).is_some_and(|way| way <= 22.0)));
     }
-    most("patient rooms within 22 m of a station", 0.9, &near);
+    most("patient rooms within 22 m of a station", 0.75, &near);
 }
