@@ -164,6 +164,8 @@ class World:
     def check_doors(self):
         self.entrances, self.beside = [], {}
         low = [t for t in self.things if t.stops]
+        built = unary_union([p.buffer(NEAR, join_style="mitre") for p in self.zones.values()])
+        courts = unary_union([ring for part in getattr(built, "geoms", [built]) for ring in getattr(part, "interiors", [])])
         for name, door in self.doors:
             if door.length < 0.6:
                 self.fail("door_width", name, width_m=round(door.length, 3))
@@ -174,7 +176,9 @@ class World:
                 continue
             self.beside[name] = sides
             if len(sides) == 1:
-                self.entrances.append((door, sides[0]))
+                # a door to ground with rooms all around is no way in
+                if courts.is_empty or courts.distance(door) > 2 * NEAR:
+                    self.entrances.append((door, sides[0]))
             else:
                 self.links.add(frozenset(sides))
             front = door.buffer(0.5, cap_style="flat").intersection(unary_union([self.zones[z] for z in sides]))

@@ -73,6 +73,13 @@ def far_thing(world):
     things(world, 1)[0]["pose"]["position"]["x"] = 7.9
 
 
+def enter_from_court(world):
+    """Builds a gallery around what the entrance leads to."""
+    around = [(0, 0), (0, -4), (4, -4), (4, 0), (3, 0), (3, -3), (0.5, -3), (0.5, 0)]
+    walls = list(zip(around, around[1:]))
+    world["zones"].append(zone("gallery_1", "hall", around, walls, [], []))
+
+
 BREAKS = {
     "number": [lambda w: things(w, 0)[0]["pose"]["position"].update(x=math.nan)],
     "name": [lambda w: things(w, 1)[0].update(name="table")],
@@ -85,7 +92,7 @@ BREAKS = {
                    lambda w: w["zones"][0]["doors"].append(part((1, 2), (2, 2), name="adrift"))],
     "door_width": [lambda w: w["zones"][0]["doors"][0].update(end=at(1.5, 0))],
     "door_front": [lambda w: things(w, 0).append(thing("box", 1.5, 0.4, 0.3, 0.3))],
-    "entrance": [lambda w: w["zones"][0]["doors"].pop(0)],
+    "entrance": [lambda w: w["zones"][0]["doors"].pop(0), enter_from_court],
     "thing_size": [lambda w: things(w, 0)[0].pop("bbox"), lambda w: things(w, 0)[0]["bbox"].__setitem__(2, [0.0, 0.0])],
     "thing_room": [far_thing],
     "thing_overlap": [lambda w: things(w, 0).append(thing("second", 2.3, 3.4))],

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use d3dgen_model::Segment;
+use d3dgen_model::courts;
 use d3dgen_model::domain::{Domain, Zone};
 use d3dgen_model::floorplan::{Door, DoorKind, Floorplan, PlanRoom, Swing, Wall, Window};
 use d3dgen_model::geometry::to_mm;
@@ -210,8 +211,10 @@ fn guess_entrance(doors: &mut [Door], rooms: &[PlanRoom], domain: &Domain, notes
         let listed = room.and_then(|r| domain.circulation.entrance_room_types.iter().position(|t| *t == r.room_type));
         (listed.unwrap_or(usize::MAX), !room.is_some_and(|r| r.circulation), -(door.clear_width_m * 1000.0) as i64)
     };
+    let courts = courts::between(rooms);
     let at_ground = |door: &Door| rooms.iter().any(|r| r.level == 0 && door.room_ids == [r.room_id.as_str()]);
-    let outer: Vec<usize> = (0..doors.len()).filter(|&i| at_ground(&doors[i])).collect();
+    let leads_out = |door: &Door| at_ground(door) && courts::leads_out(door, rooms, &courts);
+    let outer: Vec<usize> = (0..doors.len()).filter(|&i| leads_out(&doors[i])).collect();
     match outer.iter().copied().min_by_key(|&i| rank(&doors[i])) {
         Some(best) => {
             doors[best].entrance = true;

@@ -108,7 +108,7 @@ fn room(scene: &Scene<'_>, rects: &[Rect]) -> f64 {
 fn behind_private(plan: &Floorplan, kinds: &Kinds) -> Vec<String> {
     let private = |id: &str| plan.room(id).is_some_and(|r| kinds.is_private(&r.room_type));
     let mut reached: BTreeSet<&str> =
-        plan.doors.iter().filter(|d| d.room_ids.len() == 1).map(|d| d.room_ids[0].as_str()).collect();
+        plan.ways_out().into_iter().flat_map(|d| &d.room_ids).map(String::as_str).collect();
     let mut ahead: Vec<&str> = reached.iter().copied().collect();
     while let Some(room) = ahead.pop() {
         if private(room) {

@@ -14,7 +14,7 @@ mod storeys;
 mod style;
 mod symbols;
 
-use d3dgen_model::domain::{Domain, Mount, Shape};
+use d3dgen_model::domain::{Domain, Mount, Shape, Zone};
 use d3dgen_model::floorplan::Floorplan;
 use d3dgen_model::geometry::{Point, Pose, Rect};
 use d3dgen_model::placements::Placement;
@@ -326,6 +326,13 @@ fn label(
         |kind: RoiKind| matches!(kind, RoiKind::ServiceZone | RoiKind::ChargingBuffer | RoiKind::StagingArea);
     let small = world.scenario.rois.iter().filter(|r| is_small(r.kind));
     soft.extend(small.map(|r| (frame.rect(&r.polygon.bounds()), ON_ZONE)));
+    let courts = building::courts(plan);
+    let courts = courts.iter().map(|court| labels::Room {
+        name: "Courtyard",
+        tint: style::tint(Zone::Outdoor),
+        area_m2: court.area_m2(),
+        floor: court.rects.iter().map(|rect| frame.rect(rect)).collect(),
+    });
     let rooms: Vec<labels::Room<'_>> = plan
         .rooms
         .iter()
@@ -335,11 +342,13 @@ fn label(
             area_m2: r.net_area_m2,
             floor: r.net_polygon.rects().iter().map(|rect| frame.rect(rect)).collect(),
         })
+        .chain(courts)
         .collect();
     let hard = [marks, furniture.clone()].concat();
     let labels = labels::draw(page, &rooms, &labels::Obstacles { hard, soft }, size);
     let legible = Legibility::of(&labels, &furniture, &swings, frame.scale);
-    (labels.numbers, legible)
+    let numbers = labels.numbers.into_iter().take(plan.rooms.len()).collect();
+    (numbers, legible)
 }
 
 fn at(pose: &Pose) -> Point {

@@ -69,7 +69,7 @@ fn is_on_way(site: &Site, room: &Room, door: &Door, rule: &Rule) -> bool {
 }
 
 fn is_entered(site: &Site, room_id: &str) -> bool {
-    site.world.floorplan.doors_of(room_id).any(|d| d.room_ids.len() == 1)
+    site.exits().any(|d| d.room_ids.iter().any(|id| id == room_id))
 }
 
 fn leads_to(site: &Site, room: &Room, rule: &Rule) -> bool {
@@ -89,7 +89,7 @@ fn dead_ends(site: &Site, a: &Applicable) -> Vec<Reading> {
         let (low, high) = if lies_east { (only.x0, only.x1) } else { (only.y0, only.y1) };
         let leads_out = |d: &&&Door| {
             let beyond = d.room_ids.iter().find(|id| **id != room.plan.room_id);
-            beyond.is_none_or(|id| plan.room(id).is_some_and(|r| r.circulation) || is_entered(site, id))
+            beyond.map_or(site.is_exit(d), |id| plan.room(id).is_some_and(|r| r.circulation) || is_entered(site, id))
         };
         let ways = room.doors.iter().filter(leads_out).map(|d| d.line.middle());
         let at: Vec<f64> = ways.map(|p| if lies_east { p.x } else { p.y }).collect();

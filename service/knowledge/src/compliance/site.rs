@@ -31,6 +31,7 @@ pub(super) struct Site<'a> {
     pub domain: &'a Domain,
     pub retrieval: &'a Retrieval,
     pub rooms: Vec<Room<'a>>,
+    exits: Vec<&'a Door>,
     occupancy: OnceCell<Occupancy>,
     /// Ways by the points that they lead to, whole millimeters.
     ways: RefCell<BTreeMap<Vec<[i64; 2]>, Rc<Distances>>>,
@@ -81,7 +82,8 @@ impl<'a> Site<'a> {
                 blocks: stops_robot(placement) && !is_shallow(placement),
             });
         }
-        Self { world, domain, retrieval, rooms, occupancy: OnceCell::new(), ways: RefCell::default() }
+        let exits = plan.ways_out();
+        Self { world, domain, retrieval, rooms, exits, occupancy: OnceCell::new(), ways: RefCell::default() }
     }
 
     /// Returns the rooms a constraint is about, those its conditions leave.
@@ -115,7 +117,12 @@ impl<'a> Site<'a> {
 
     /// Returns the doors and openings that lead out of the building.
     pub fn exits(&self) -> impl Iterator<Item = &'a Door> {
-        self.world.floorplan.doors.iter().filter(|d| d.room_ids.len() == 1)
+        self.exits.iter().copied()
+    }
+
+    /// Returns true for a door that leads out of the building.
+    pub fn is_exit(&self, door: &Door) -> bool {
+        self.exits.iter().any(|d| d.door_id == door.door_id)
     }
 
     /// Returns true when what a constraint asks of the building as a whole holds.

@@ -10,7 +10,7 @@ use d3dgen_model::slides;
 
 use super::PROPORTION_LIMIT;
 use super::cost::{OVERHANG, Score, TERMS};
-use super::doors::{Site, place_doors};
+use super::doors::{Site, place_doors, shut_courts};
 use super::lattice::{Cellbox, INNER_HALF_M, OUTER_HALF_M, meters};
 use super::outline::{Mosaic, Stretch, outline};
 use super::spec::Brief;
@@ -120,7 +120,7 @@ pub(super) fn assemble(
         keep_wall_ids(&mut walls, earlier.plan);
     }
     let cost = costs(brief, score);
-    let conflicts = brief.conflicts.clone();
+    let conflicts = brief.conflicts.iter().cloned().chain(shut_courts(&stretches, &doors)).collect();
     Ok(Floorplan {
         version: 1,
         seed,

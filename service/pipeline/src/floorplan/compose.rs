@@ -7,6 +7,7 @@
 use d3dgen_model::domain::{Scheme, Zone};
 use d3dgen_model::scene_graph::Connector;
 use d3dgen_model::seed::Stream;
+use d3dgen_model::style::Form;
 
 use super::core::{Below, Comb, Slot, out_of_core};
 use super::cost::{Judge, Weights};
@@ -89,7 +90,8 @@ pub(super) fn compose(brief: &Brief, weights: &Weights, rng: &mut Stream, stop: 
         if stop.is_set() {
             break;
         }
-        let two_sided = wings.len() > 3 || rng.chance(0.5);
+        // two across from each other make a bar
+        let two_sided = wings.len() > 3 || rng.chance(0.5) && (wings.len() > 2 || brief.form != Some(Form::Wings));
         let layout = along_spine(brief, spine, wings, two_sided, rng);
         let score = judge.score(&layout);
         let found = Candidate { scheme: Scheme::Comb, layout, score };

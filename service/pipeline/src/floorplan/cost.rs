@@ -43,6 +43,11 @@ const ONE_WAY: f64 = 0.1;
 const BY_ENTRANCE: f64 = 1.5;
 /// The same for one that guests use, where there is no entrance hall to put it at.
 const FOR_GUESTS: f64 = 1.8;
+/// Way from a bedroom to the nearest station of a ward from which on it is far, m, and what a meter more of it counts.
+const NEAR_STATION_M: f64 = 20.0;
+const FAR_FROM_STATION: f64 = 0.15;
+/// What a building that is to be compact pays for the share of the rectangle around it that it leaves open.
+const NOTCHED: f64 = 30.0;
 /// Number of soft terms.
 const COUNT: usize = 12;
 /// A weight for each soft term.
@@ -121,6 +126,8 @@ pub(super) struct Score {
     pub overhang: f64,
     /// How far a wing reaches where others are to stand, m.
     pub pushed: f64,
+    /// Share of the rectangle around it that a building leaves open which is to be compact.
+    pub open: f64,
     /// What the plan costs under a wish for symmetry or against it, weighted.
     pub symmetry: f64,
 }
@@ -136,6 +143,7 @@ impl Score {
         self.hard * 30.0
             + OVERHANG * self.overhang
             + PUSHED * self.pushed
+            + NOTCHED * self.open
             + self.symmetry
             + self.soft.iter().zip(weights).map(|(s, w)| s * w).sum::<f64>()
     }
@@ -173,6 +181,9 @@ pub(super) struct Judge<'b> {
     /// What the doors to outdoors need, lattice units.
     pub(super) entrance_need: i32,
     wet_rooms: usize,
+    /// Rooms along corridors that people sleep in, and stations with an open front for those who see to them.
+    pub(super) beds: Vec<usize>,
+    pub(super) stations: Vec<usize>,
     home: bool,
     /// By room: whether another one belongs to it.
     hosts: Vec<bool>,
@@ -229,6 +240,8 @@ impl<'b> Judge<'b> {
             aloof_pairs: Vec::new(),
             entrance_need: door_need(brief.entrance_width),
             wet_rooms: brief.rooms.iter().filter(|r| r.wet).count(),
+            beds: (0..n).filter(|&r| brief.rooms[r].zone == Zone::Night && brief.rooms[r].on_spine).collect(),
+            stations: (0..n).filter(|&r| brief.rooms[r].zone == Zone::Staff && brief.rooms[r].open_front).collect(),
             home: brief.is_home(),
             hosts: (0..n).map(|i| brief.rooms.iter().any(|r| r.host == Some(i))).collect(),
             survey: Survey { rooms: vec![Measured::default(); n], ..Survey::default() },
@@ -535,6 +548,12 @@ impl<'b> Judge<'b> {
             let boxes: Vec<_> = rooms.iter().filter_map(|r| Some((r.main?, r.gross_m2))).collect();
             score.symmetry = mirror::cost(wish, &boxes, door);
         }
+        if brief.compact && brief.form.is_none() {
+            let around = layout.boxes.iter().map(|(_, b)| *b).reduce(Cellbox::around);
+            score.open = around.map_or(0.0, |all| 1.0 - total / all.area_m2());
+        }
+        score.soft[7] +=
+            FAR_FROM_STATION * self.ways_to_stations(layout).map(|m| (m - NEAR_STATION_M).max(0.0)).sum::<f64>();
         let size = total.sqrt().max(1.0);
         // from a hall guests go to the room where they sit: at which end of it one comes in is not known yet
         let in_hall = brief.rooms.iter().position(|r| r.entrance) == brief.spine;
@@ -567,6 +586,16 @@ impl<'b> Judge<'b> {
                 }
             }
         }
+    }
+
+    /// Returns how far it is from each bedroom to the nearest station, m; nothing where there is no station.
+    pub(super) fn ways_to_stations<'a>(&'a self, layout: &'a Layout) -> impl Iterator<Item = f64> + 'a {
+        let place = |room: &usize| Some(self.survey.rooms[*room].main?.center2());
+        let beds = self.beds.iter().filter_map(place);
+        beds.filter_map(move |bed| {
+            let stations = self.stations.iter().filter_map(place);
+            stations.map(|station| walk(layout.round.as_ref(), bed, station)).reduce(f64::min)
+        })
     }
 
     /// Returns the share of the long walls of the corridor that are outer walls.
@@ -623,6 +652,22 @@ pub(super) fn ill_placed(spec: &RoomSpec, far: f64) -> f64 {
     }
 }
 
+/// Returns how far it is on foot between two places given by twice their coordinates, m: along a ring of corridors where there
+/// is one, for nobody walks through what it goes around.
+fn walk(round: Option<&Cellbox>, a: (i32, i32), b: (i32, i32)) -> f64 {
+    let Some(round) = round else { return between(a, b) };
+    let (width, height) = (2 * round.width(), 2 * round.height());
+    // where along the ring a place is, from its south-west corner on
+    let along = |(x, y): (i32, i32)| {
+        let (x, y) = ((x - 2 * round.x0).clamp(0, width), (y - 2 * round.y0).clamp(0, height));
+        let sides =
+            [(y, x), (width - x, width + y), (height - y, 2 * width + height - x), (x, 2 * (width + height) - y)];
+        sides.into_iter().min().map_or(0, |(_, at)| at)
+    };
+    let way = (along(a) - along(b)).abs();
+    f64::from(way.min(2 * (width + height) - way)) * 0.025
+}
+
 pub(super) fn distance(a: Cellbox, b: Cellbox) -> f64 {
     between(a.center2(), b.center2())
 }
@@ -630,4 +675,20 @@ pub(super) fn distance(a: Cellbox, b: Cellbox) -> f64 {
 /// Returns the walking distance between points given by twice their coordinates, m.
 pub(super) fn between((ax, ay): (i32, i32), (bx, by): (i32, i32)) -> f64 {
     (f64::from((ax - bx).abs()) + f64::from((ay - by).abs())) * 0.025
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_walks_around_what_a_ring_of_corridors_goes_around() {
+        let ring = Cellbox::new(0, 0, 800, 200);
+        let way = |a, b| walk(Some(&ring), a, b);
+        // 10 m along one side; from one long side to the other around the nearer end
+        assert_eq!(way((400, -50), (800, -50)), 10.0);
+        assert_eq!(way((400, -50), (400, 450)), 10.0 + 10.0 + 10.0);
+        assert_eq!(way((1500, -50), (1500, 450)), 2.5 + 10.0 + 2.5);
+        assert_eq!(walk(None, (400, -50), (400, 450)), 12.5);
+    }
 }

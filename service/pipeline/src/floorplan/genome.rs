@@ -88,8 +88,9 @@ pub(super) const CORE_BAND: usize = 0;
 /// Rooms that begin on both sides of the corridors around a court: one row of so many would make it a field. More do in some of
 /// the starts, as not all of them come to a plan.
 const BOTH_SIDES: RangeInclusive<usize> = 20..=32;
-/// Band along the third side of a court.
+/// Bands along the short sides of a court.
 pub(super) const WEST_BAND: usize = 4;
+pub(super) const EAST_BAND: usize = 5;
 
 /// A row of cells along one side of a corridor.
 #[derive(Debug, PartialEq)]
@@ -133,7 +134,8 @@ pub(super) struct Genome {
     pub bands: Vec<Band>,
     /// Rooms that close the start and the end of the corridor (straight schemes only).
     pub caps: [Option<Cap>; 2],
-    /// Angle: true when the outer band fills the corner; racetrack: when the core began as one row of rooms; courtyard: true when each outer band fills one.
+    /// Angle: true when the outer band fills the corner; racetrack: when the core began as one row of rooms; courtyard: when
+    /// it began with rooms on both sides of its corridors, however many.
     pub corner: bool,
     /// Courtyard: depth of the court between the rooms on it, lattice units.
     pub court: i32,
@@ -157,7 +159,7 @@ fn band_count(scheme: Scheme) -> usize {
     match scheme {
         Scheme::Straight | Scheme::Capped => 2,
         Scheme::Angle | Scheme::Racetrack => 4,
-        Scheme::Courtyard => 5,
+        Scheme::Courtyard => 6,
         Scheme::Comb => 0,
     }
 }
@@ -194,6 +196,7 @@ impl Genome {
         for room in nested {
             genome.nest_somewhere(brief, room, rng);
         }
+        genome.spread_stations(brief, rng);
         for band in &mut genome.bands {
             let area: f64 = band.cells.iter().map(|c| brief.rooms[c.host].area_target).sum::<f64>();
             let mean = area / band.cells.len().max(1) as f64;
@@ -209,6 +212,21 @@ impl Genome {
             band.cells.insert(at, Cell::new(core.host));
         }
         genome
+    }
+
+    /// Sets the stations of a ring of corridors in the middle of its long sides in turn, in half of the starts: together they are
+    /// near every bed.
+    fn spread_stations(&mut self, brief: &Brief, rng: &mut Stream) {
+        let is_station = |c: &Cell| brief.rooms[c.host].zone == Zone::Staff && brief.rooms[c.host].open_front;
+        let stations: Vec<Cell> = self.bands.iter().flat_map(|b| &b.cells).copied().filter(is_station).collect();
+        if !self.scheme.is_ring() || stations.len() < 2 || rng.chance(0.5) {
+            return;
+        }
+        self.bands.iter_mut().for_each(|band| band.cells.retain(|c| !is_station(c)));
+        for (n, station) in stations.into_iter().enumerate() {
+            let cells = &mut self.bands[n % 2].cells;
+            cells.insert(cells.len() / 2, station);
+        }
     }
 
     fn choose_caps(&mut self, brief: &Brief, free: &mut Vec<usize>, rng: &mut Stream) {
@@ -295,7 +313,7 @@ impl Genome {
             Scheme::Racetrack if inner && self.corner => vec![2],
             Scheme::Racetrack if inner => vec![2, 3],
             Scheme::Racetrack => vec![0, 1],
-            Scheme::Courtyard if !both_sides => vec![0, 1, WEST_BAND],
+            Scheme::Courtyard if !both_sides => vec![0, 1, WEST_BAND, EAST_BAND],
             _ => (0..self.bands.len()).collect(),
         };
         let best = candidates.iter().copied().min_by(|a, b| load(*a).total_cmp(&load(*b))).unwrap_or(0);

@@ -59,6 +59,12 @@ impl Cellbox {
         meters(self.width()) * meters(self.height())
     }
 
+    /// Returns the smallest rectangle around two.
+    pub(super) fn around(self, other: Self) -> Self {
+        let (x0, y0) = (self.x0.min(other.x0), self.y0.min(other.y0));
+        Self { x0, y0, x1: self.x1.max(other.x1), y1: self.y1.max(other.y1) }
+    }
+
     /// Returns what two rectangles share.
     pub(super) fn overlap(&self, other: &Self) -> Option<Self> {
         let (x0, y0) = (self.x0.max(other.x0), self.y0.max(other.y0));

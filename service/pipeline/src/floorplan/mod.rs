@@ -134,7 +134,7 @@ pub fn generate_until(
             continue;
         }
         let name = format!("{:?}", found.scheme).to_lowercase();
-        brief.tell_form(form, found.scheme);
+        brief.tell_form(form, &found);
         brief.tell_symmetry(found.score.symmetry);
         let mut boxes = turned(&found.layout.boxes, turn);
         numbers::along_corridor(graph, &brief, &mut boxes);

@@ -103,7 +103,7 @@ impl Judge<'_> {
         MISPLACED * misplaced
             + PASSED * passed
             + OUT_OF_SIGHT * self.out_of_sight(layout)
-            + OFF_CENTER * self.off_center()
+            + OFF_CENTER * self.off_center(layout)
             + NECK * self.necks(layout) as f64
     }
 
@@ -175,19 +175,12 @@ impl Judge<'_> {
 
     /// Returns the mean way from a bedroom to the nearest station with an open front, in sides of the building; long ones
     /// count more.
-    fn off_center(&self) -> f64 {
-        let rooms = || self.brief.rooms.iter().zip(&self.survey.rooms).filter_map(|(spec, r)| Some((spec, r.main?)));
-        let stations = || rooms().filter(|(spec, _)| spec.zone == Zone::Staff && spec.open_front);
-        let size = rooms().map(|(_, main)| main.area_m2()).sum::<f64>().sqrt().max(1.0);
-        let beds = rooms().filter(|(spec, _)| spec.zone == Zone::Night && spec.on_spine);
-        let (mut ways, mut count) = (0.0, 0);
-        for (_, bed) in beds {
-            let nearest = stations().map(|(_, s)| between(bed.center2(), s.center2())).reduce(f64::min);
-            let Some(way) = nearest else { return 0.0 };
-            ways += way / size + LONG_WAY * (way / LONG_WAY_M - 1.0).max(0.0);
-            count += 1;
-        }
-        ways / f64::from(count.max(1))
+    fn off_center(&self, layout: &Layout) -> f64 {
+        let rooms = self.survey.rooms.iter().filter_map(|r| r.main);
+        let size = rooms.map(|main| main.area_m2()).sum::<f64>().sqrt().max(1.0);
+        let long = |way: f64| way / size + LONG_WAY * (way / LONG_WAY_M - 1.0).max(0.0);
+        let ways: Vec<f64> = self.ways_to_stations(layout).map(long).collect();
+        ways.iter().sum::<f64>() / ways.len().max(1) as f64
     }
 
     /// Returns the share of bedrooms that no station with an open front sees: from there one sees the doors not far along in the

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use d3dgen_model::courts::enclosed;
 use d3dgen_model::geometry::to_mm;
 use d3dgen_model::{Point, Polygon};
 
@@ -20,8 +21,8 @@ pub(super) struct Stretch {
     pub low: Option<usize>,
     /// Room on the east or north side.
     pub high: Option<usize>,
-    /// True for an outer wall on a court with the building all around: there is daylight, and no way out.
-    pub court: bool,
+    /// Number of the court with the building all around that an outer wall stands on: there is daylight, and no way out.
+    pub court: Option<usize>,
 }
 
 impl Stretch {
@@ -35,7 +36,7 @@ impl Stretch {
 
     /// Returns the room of an outer stretch from which one comes to the street.
     pub(super) fn leads_out_of(&self) -> Option<usize> {
-        self.only_room().filter(|_| !self.court)
+        self.only_room().filter(|_| self.court.is_none())
     }
 
     /// Returns the room of an outer stretch.
@@ -62,8 +63,8 @@ pub(super) struct Mosaic {
     xs: Vec<i32>,
     ys: Vec<i32>,
     owner: Vec<Option<usize>>,
-    /// By cell: true for floor of no room with rooms all around.
-    court: Vec<bool>,
+    /// By cell between the edges: the court it belongs to, floor of no room with rooms all around.
+    court: Vec<Option<usize>>,
 }
 
 impl Mosaic {
@@ -89,25 +90,29 @@ impl Mosaic {
         mosaic
     }
 
-    /// Returns which cells belong to courts: those that one does not come to from the edge of the grid past rooms.
-    fn courts(&self) -> Vec<bool> {
+    /// Returns the court of each cell between the edges.
+    fn courts(&self) -> Vec<Option<usize>> {
         let (columns, rows) = (self.xs.len().saturating_sub(1), self.ys.len().saturating_sub(1));
-        let mut court: Vec<bool> = self.owner.iter().map(Option::is_none).collect();
-        let rim = (0..columns).flat_map(|i| [(i, 0), (i, rows - 1)]);
-        let mut open: Vec<(usize, usize)> = rim.chain((0..rows).flat_map(|j| [(0, j), (columns - 1, j)])).collect();
-        while let Some((i, j)) = open.pop() {
-            if i >= columns || j >= rows || !std::mem::take(&mut court[j * self.xs.len() + i]) {
-                continue;
-            }
-            open.extend([(i + 1, j), (i.wrapping_sub(1), j), (i, j + 1), (i, j.wrapping_sub(1))]);
-        }
-        court
+        let built: Vec<bool> =
+            (0..columns * rows).map(|cell| self.at(cell % columns, cell / columns).is_some()).collect();
+        enclosed(columns, &built)
     }
 
-    /// Returns true for a cell of a court; as [`Mosaic::at`] for what is outside of the grid.
-    fn is_court(&self, i: usize, j: usize) -> bool {
+    /// Returns the court that a cell belongs to; as [`Mosaic::at`] for what is outside of the grid.
+    fn court_at(&self, i: usize, j: usize) -> Option<usize> {
         let inside = i != usize::MAX && j != usize::MAX && i + 1 < self.xs.len() && j + 1 < self.ys.len();
-        inside && self.court[j * self.xs.len() + i]
+        if inside { self.court[j * (self.xs.len() - 1) + i] } else { None }
+    }
+
+    /// Returns how many corners of the building turn inwards, those of its courts aside: an L has one, a rectangle none.
+    pub(super) fn reflex_corners(&self) -> usize {
+        let outdoors = |i: usize, j: usize| self.at(i, j).is_none() && self.court_at(i, j).is_none();
+        let corners = (0..self.ys.len()).flat_map(|j| (0..self.xs.len()).map(move |i| (i, j)));
+        let around = corners.map(|(i, j)| {
+            let (west, south) = (i.wrapping_sub(1), j.wrapping_sub(1));
+            [(west, south), (i, south), (west, j), (i, j)].into_iter().filter(|(i, j)| outdoors(*i, *j)).count()
+        });
+        around.filter(|outdoors| *outdoors == 1).count()
     }
 
     fn at(&self, i: usize, j: usize) -> Option<usize> {
@@ -128,7 +133,7 @@ impl Mosaic {
                 for j in 0..along.len().saturating_sub(1) {
                     let before = i.wrapping_sub(1);
                     let [low, high] = [before, i].map(|i| if vertical { (i, j) } else { (j, i) });
-                    let court = self.is_court(low.0, low.1) || self.is_court(high.0, high.1);
+                    let court = self.court_at(low.0, low.1).or(self.court_at(high.0, high.1));
                     let (low, high) = (self.at(low.0, low.1), self.at(high.0, high.1));
                     let continues = open.is_some_and(|s| (s.low, s.high, s.court) == (low, high, court));
                     if continues {
@@ -314,19 +319,30 @@ mod tests {
             (1, Cellbox::new(60, 30, 90, 60)),
         ];
         let around = Mosaic::new(&boxes).stretches();
-        let on_court: i32 = around.iter().filter(|s| s.court).map(Stretch::len).sum();
+        let on_court: i32 = around.iter().filter(|s| s.court == Some(0)).map(Stretch::len).sum();
         assert_eq!(on_court, 4 * 30);
-        assert!(around.iter().filter(|s| s.court).all(|s| s.is_outer() && s.leads_out_of().is_none()));
+        assert!(around.iter().filter(|s| s.court.is_some()).all(|s| s.is_outer() && s.leads_out_of().is_none()));
         // the same with one side open is a yard
         let yard = Mosaic::new(&boxes[..3]).stretches();
-        assert!(yard.iter().all(|s| !s.court));
+        assert!(yard.iter().all(|s| s.court.is_none()));
+    }
+
+    #[test]
+    fn corners_that_turn_inwards_are_counted_outside_of_courts() {
+        let of = |boxes: &[(usize, Cellbox)]| Mosaic::new(boxes).reflex_corners();
+        let (low, arm) = (Cellbox::new(0, 0, 90, 30), Cellbox::new(0, 30, 30, 90));
+        assert_eq!(of(&[(0, low)]), 0);
+        assert_eq!(of(&[(0, low), (1, arm)]), 1);
+        assert_eq!(of(&[(0, low), (1, Cellbox::new(30, 30, 60, 90))]), 2);
+        let around = [low, arm, Cellbox::new(30, 60, 90, 90), Cellbox::new(60, 30, 90, 60)];
+        assert_eq!(of(&around.map(|b| (0, b))), 0);
     }
 
     #[test]
     fn stretches_cover_both_sides_of_a_shared_wall_once() {
         let boxes = [(0, Cellbox::new(0, 0, 40, 40)), (1, Cellbox::new(40, 0, 80, 60))];
         let shared: Vec<_> = Mosaic::new(&boxes).stretches().into_iter().filter(|s| !s.is_outer()).collect();
-        let wall = Stretch { vertical: true, at: 40, from: 0, to: 40, low: Some(0), high: Some(1), court: false };
+        let wall = Stretch { vertical: true, at: 40, from: 0, to: 40, low: Some(0), high: Some(1), court: None };
         assert_eq!(shared, vec![wall]);
     }
 }

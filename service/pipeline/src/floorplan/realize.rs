@@ -3,9 +3,10 @@
 use std::cmp::Ordering;
 
 use d3dgen_model::domain::Scheme;
+use d3dgen_model::style::Form;
 
 use super::core::Comb;
-use super::genome::{Cap, Cell, Cover, Genome, WEST_BAND};
+use super::genome::{Cap, Cell, Cover, EAST_BAND, Genome, WEST_BAND};
 use super::lattice::{Cellbox, Frame, INNER_HALF_M, JAMB_M, OUTER_HALF_M, meters, nearest, up};
 use super::spec::Brief;
 
@@ -17,6 +18,14 @@ const MIN_NOTCH_M: f64 = 1.5;
 /// Least width and depth of a court, m, and how many times longer than wide it is at most.
 const COURT_M: f64 = 5.0;
 const MOST_COURT: f64 = 3.0;
+
+/// How wide a court is at least, as a share of the side of a square as large as all rooms: a large building has no shaft.
+const COURT_SHARE: f64 = 0.25;
+/// How much more a notch in the outline around a court counts.
+const AROUND_COURT: f64 = 5.0;
+
+/// How far each arm of an L that is asked for reaches beyond the other at least, m.
+const ARM_M: f64 = 3.0;
 
 /// What a ring of corridors misses that nothing closes or that goes around nothing, in meters.
 const NO_RING: f64 = 10.0;
@@ -47,6 +56,8 @@ pub(super) struct Layout {
     pub comb: Comb,
     /// Where the second stairwell of a bar begins, along the corridor from the core.
     pub far: Option<i32>,
+    /// The rectangle whose sides a ring of corridors runs along.
+    pub round: Option<Cellbox>,
 }
 
 /// Least, wished and largest width of a cell for a band depth, lattice units.
@@ -136,7 +147,7 @@ impl Task<'_, '_> {
 pub(super) fn realize(brief: &Brief, genome: &Genome, scratch: &mut Scratch, layout: &mut Layout) {
     layout.boxes.clear();
     (layout.misfit, layout.notch, layout.one_way, layout.core) = (0.0, 0.0, 0.0, None);
-    layout.far = None;
+    (layout.far, layout.round) = (None, None);
     scratch.spans.clear();
     let Some(spine) = brief.spine else { return };
     let mut task = Task { brief, genome, spine, scratch, misfit: 0.0, layout };
@@ -244,19 +255,29 @@ fn angle(task: &mut Task<'_, '_>) {
     let (brief, genome) = (task.brief, task.genome);
     let w = spine_units(brief);
     let (dt, dr) = (used_depth(genome, 0), used_depth(genome, 2));
-    let beyond = if genome.corner { dr } else { 0 };
+    // an L that is asked for has no notch where its arms meet
+    let asked = brief.form == Some(Form::LShaped);
+    let beyond = if genome.corner || asked { dr } else { 0 };
     let top = Row::new(task, 0, 0);
     let bottom = Row::new(task, 1, w + beyond);
     let right = Row::new(task, 2, 0);
     let inner = Row::new(task, 3, -w - dt);
     let x = solve(&[&top, &bottom], &mut task.misfit).max(w);
     let y = solve(&[&right, &inner], &mut task.misfit).max(w + dt + up(1.5));
+    if asked {
+        let arms = [x - used_depth(genome, 3), y - w - dt];
+        task.misfit += arms.map(|arm| (ARM_M - meters(arm)).max(0.0)).iter().sum::<f64>();
+    }
+    let before = task.layout.notch;
     task.spine_box(Cellbox::new(0, 0, x + w, w));
     task.spine_box(Cellbox::new(x, w, x + w, y));
     fill(task, &top.at((0, w), (1, 0), (0, 1)), x);
     fill(task, &bottom.at((0, 0), (1, 0), (0, -1)), x + w + beyond);
     fill(task, &right.at((x + w, 0), (0, 1), (1, 0)), y);
     fill(task, &inner.at((x, w + dt), (0, 1), (-1, 0)), y - w - dt);
+    if asked {
+        task.misfit += task.layout.notch - before;
+    }
 }
 
 /// Lays a ring of corridors: rooms outside along its long sides, and inside, back to back around a core or apart on a court.
@@ -269,29 +290,42 @@ fn ring(task: &mut Task<'_, '_>) {
     let w = spine_units(brief);
     let inside = [2, 3].map(|band| used_depth(genome, band));
     let around = genome.scheme == Scheme::Courtyard;
-    // a third side of a court has rooms too; at the corners one row goes on past the end of the next
-    let west = if around { used_depth(genome, WEST_BAND) } else { 0 };
-    let [over, under] = if genome.corner { [west, used_depth(genome, 1)] } else { [0, 0] };
-    let top = Row::new(task, 0, over);
-    let bottom = Row::new(task, 1, 0);
+    // the short sides of a court have rooms too: in the west one row goes on past the end of the next at the corners, in the
+    // east the corridors go on to the facade, where the ways out are
+    let [west, east] = [WEST_BAND, EAST_BAND].map(|band| if around { used_depth(genome, band) } else { 0 });
+    let [over, under] = [west, if west > 0 { used_depth(genome, 1) } else { 0 }];
+    let top = Row::new(task, 0, over + east);
+    let bottom = Row::new(task, 1, east);
     let lower = Row::new(task, 2, -2 * w);
     let upper = Row::new(task, 3, -2 * w);
     let len = solve(&[&top, &bottom, &lower, &upper], &mut task.misfit).max(4 * w);
     let mut core = inside[0] + inside[1] + genome.court;
-    let side = if west > 0 { Some(Row::new(task, WEST_BAND, under)) } else { None };
-    if let Some(side) = &side {
-        core = core.max(solve(&[side], &mut task.misfit) - 2 * w);
+    let sides = around.then(|| [Row::new(task, WEST_BAND, 2 * w + under), Row::new(task, EAST_BAND, 0)]);
+    if let Some([left, right]) = &sides {
+        core = core.max(solve(&[left, right], &mut task.misfit));
     }
     task.misfit += if core == 0 { NO_RING } else { 0.0 };
     let high = 2 * w + core;
-    task.spine_box(Cellbox::new(0, 0, len, w));
+    task.layout.round = Some(Cellbox::new(0, 0, len, high));
+    task.spine_box(Cellbox::new(0, 0, len + east, w));
     task.spine_box(Cellbox::new(0, w, w, w + core));
-    task.spine_box(Cellbox::new(0, w + core, len, high));
-    task.layout.boxes.push((link, Cellbox::new(len - w, w, len, w + core)));
-    fill(task, &top.at((-over, high), (1, 0), (0, 1)), len + over);
-    fill(task, &bottom.at((0, 0), (1, 0), (0, -1)), len);
-    if let Some(side) = side {
-        fill(task, &side.at((0, -under), (0, 1), (-1, 0)), high + under);
+    task.spine_box(Cellbox::new(0, w + core, len + east, high));
+    // what closes the ring has no doors: around a court it is as short as its width and area allow; a core has no rooms on its
+    // short sides
+    let least = up(brief.rooms[link].area_min / (meters(w) - 2.0 * OUTER_HALF_M) + 2.0 * INNER_HALF_M).max(w);
+    let closing = if around && core > least + w { least } else { core };
+    task.layout.boxes.push((link, Cellbox::new(len - w, w, len, w + closing)));
+    if closing < core {
+        task.spine_box(Cellbox::new(len - w, w + closing, len, w + core));
+    }
+    fill(task, &top.at((-over, high), (1, 0), (0, 1)), len + over + east);
+    fill(task, &bottom.at((0, 0), (1, 0), (0, -1)), len + east);
+    if let Some([left, right]) = sides {
+        fill(task, &left.at((0, -under), (0, 1), (-1, 0)), high + under);
+        fill(task, &right.at((len, w), (0, 1), (1, 0)), core);
+    }
+    if around {
+        task.layout.notch *= AROUND_COURT;
     }
     let before = task.layout.notch;
     fill(task, &lower.at((w, w), (1, 0), (0, 1)), len - 2 * w);
@@ -299,15 +333,16 @@ fn ring(task: &mut Task<'_, '_>) {
     fill(task, &upper.at((w, w + core), (1, 0), (0, -1)), len - 2 * w);
     let second = task.layout.notch - before - first;
     task.misfit += if around {
-        court_misfit(core - inside[0] - inside[1], len - 2 * w)
+        let all: f64 = brief.rooms.iter().map(|r| r.area_target).sum();
+        court_misfit([core - inside[0] - inside[1], len - 2 * w], COURT_M.max(COURT_SHARE * all.sqrt()))
     } else {
         core_misfit([first, second], inside)
     };
 }
 
 /// Returns what the sides of a court miss, in meters: all have light, and one looks across it, not along a shaft.
-fn court_misfit(deep: i32, long: i32) -> f64 {
-    let short = |side: i32| (COURT_M - meters(side)).max(0.0);
+fn court_misfit([deep, long]: [i32; 2], least: f64) -> f64 {
+    let short = |side: i32| (least - meters(side)).max(0.0);
     let slot = meters(long.max(deep)) - MOST_COURT * meters(long.min(deep));
     short(deep) + short(long) + slot.max(0.0)
 }

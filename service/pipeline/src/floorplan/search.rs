@@ -2,13 +2,16 @@
 
 use d3dgen_model::domain::Scheme;
 use d3dgen_model::seed::Stream;
+use d3dgen_model::style::Form;
 
 use super::compose::{LARGE, compose};
 use super::core::Below;
 use super::cost::{Judge, Score, Weights, taste};
 use super::genome::{Cell, Cover, Genome, guest_of, is_nestable};
 use super::order::put_in_order;
+use super::outline::Mosaic;
 use super::realize::{Layout, Scratch, realize};
+use super::scheme_of;
 use super::spec::Brief;
 use crate::Stop;
 
@@ -30,6 +33,8 @@ const TINY: usize = 5;
 /// Runs with one scheme for a large building in one body, the rooms from which on the first sound one of them does, and what
 /// its first choice counts beside others.
 const WHOLE_RUNS: usize = 2;
+/// Runs of which the best is taken where corridors are to run around: few of such plans are sound, and they differ much.
+const RING_RUNS: usize = 4;
 const MEDIUM: usize = 40;
 const FAVORED: f64 = 0.92;
 /// Rooms up to which so many are compared; larger plans cost more and differ less.
@@ -61,6 +66,20 @@ pub(super) struct Candidate {
     pub scheme: Scheme,
     pub layout: Layout,
     pub score: Score,
+}
+
+impl Candidate {
+    /// Returns true for a building of a form, not only one whose corridors run so: an L has one corner that turns inwards, and
+    /// wings lie side by side.
+    pub(super) fn has_form(&self, form: Form) -> bool {
+        let slots = &self.layout.comb.slots;
+        self.scheme == scheme_of(form).0
+            && match form {
+                Form::LShaped => Mosaic::new(&self.layout.boxes).reflex_corners() == 1,
+                Form::Wings => [0, 1].iter().any(|side| slots.iter().filter(|s| s.side == *side).count() > 1),
+                Form::Linear | Form::Racetrack | Form::Courtyard => true,
+            }
+    }
 }
 
 /// Returns the best candidate found, of few steps when asked to stop; its `score.hard` is above 0 when none is sound.
@@ -100,7 +119,7 @@ fn search_whole(
     let mut judge = Judge::new(brief);
     let mut best: Option<(f64, (Genome, Candidate))> = None;
     for (n, scheme) in schemes.iter().filter(|s| **s != Scheme::Comb).enumerate() {
-        for _ in 0..WHOLE_RUNS {
+        for _ in 0..if brief.ring.is_some() { RING_RUNS } else { WHOLE_RUNS } {
             let least = best.as_ref().map_or(f64::MAX, |b| b.0);
             let found = anneal(brief, &mut judge, *scheme, (weights, least, true), rng, stop);
             if found.1.score.is_sound() {
@@ -109,7 +128,7 @@ fn search_whole(
                 if best.as_ref().is_none_or(|(least, _)| cost < *least) {
                     best = Some((cost, found));
                 }
-                if brief.rooms.len() > MEDIUM {
+                if brief.rooms.len() > MEDIUM && brief.ring.is_none() {
                     break;
                 }
             }
@@ -374,10 +393,6 @@ fn change_caps(brief: &Brief, genome: &mut Genome, rng: &mut Stream) -> bool {
             return true;
         }
         Scheme::Courtyard => {
-            if rng.chance(0.3) {
-                genome.corner = !genome.corner;
-                return true;
-            }
             let step = 1 + rng.below(8) as i32;
             genome.court = (genome.court + if rng.chance(0.5) { step } else { -step }).max(1);
             return true;

@@ -6,15 +6,16 @@ use std::collections::BTreeMap;
 use d3dgen_knowledge::{Limit, Limits, RoomLimits};
 use d3dgen_model::domain::{
     Adjacency, AdjacencyRelation, Arrangement, Daylight, Domain, Materials, Privacy, Relation, RobotUse, RoomType,
-    Scheme, Shape, Zone,
+    Shape, Zone,
 };
 use d3dgen_model::scene_graph::{Connector, GraphEdge, GraphRoom, Note, SceneGraph};
 use d3dgen_model::seed::Stream;
 use d3dgen_model::storeys::LinkKind;
-use d3dgen_model::style::{Form, StyleWord, Symmetry};
+use d3dgen_model::style::{Form, SpaceStyle, StyleWord, Symmetry};
 
 use super::core::Core;
 use super::lattice::{JAMB_M, OUTER_HALF_M};
+use super::search::Candidate;
 use super::windows::LEAST_WALL_M;
 use crate::Error;
 use crate::placement::has_docks;
@@ -68,6 +69,8 @@ pub(super) struct RoomSpec {
     pub wet: bool,
     /// True for rooms that one locks behind oneself.
     pub private: bool,
+    /// True for rooms that are for anybody.
+    pub public: bool,
     /// True for rooms that robots go in and out of by themselves.
     pub docks: bool,
     pub open_front: bool,
@@ -161,6 +164,8 @@ pub(super) struct Brief {
     pub symmetry: Option<Symmetry>,
     /// Form that is asked for.
     pub form: Option<Form>,
+    /// True where the building is to be compact.
+    pub compact: bool,
     pub entrance_width: f64,
     pub conflicts: Vec<Note>,
     /// By room: the larger room that is entered through it (an isolation room through its anteroom), if any.
@@ -231,6 +236,7 @@ impl Brief {
             },
             symmetry: graph.style.symmetry,
             form: graph.style.form,
+            compact: graph.style.space == Some(SpaceStyle::Compact),
             entrance_width: max_limit(domain.circulation.entrance_width_m, limits.entrance_width.as_ref()).max(fitted),
             conflicts,
             guests: Vec::new(),
@@ -262,9 +268,9 @@ impl Brief {
     }
 
     /// Says so where another form was built than was asked for.
-    pub(super) fn tell_form(&mut self, asked: Option<Form>, built: Scheme) {
+    pub(super) fn tell_form(&mut self, asked: Option<Form>, built: &Candidate) {
         self.conflicts.retain(|n| n.code != FORM_NOT_BUILT);
-        let Some(form) = asked.filter(|f| super::scheme_of(*f).0 != built) else { return };
+        let Some(form) = asked.filter(|f| !built.has_form(*f)) else { return };
         let asked = StyleWord::Form(form).label().replace('_', "-");
         self.conflicts.push(Note {
             code: FORM_NOT_BUILT.into(),
@@ -518,6 +524,7 @@ fn room_spec(
         zone: kind.zone,
         wet: kind.wet,
         private: kind.privacy == Privacy::Private,
+        public: kind.privacy == Privacy::Public,
         docks: has_docks(domain, kind) || robots && kind.robot.contains(&RobotUse::Charging),
         open_front: kind.open_front,
         // who uses a wheelchair has no floor to spare for a leaf

@@ -96,10 +96,12 @@ fn is_free(
     let others = here.iter().filter(|o| stops_robot(o) && !is_shallow(o)).map(|o| o.footprint().bounds());
     let robot = graph.robots.iter().map(|r| r.planned_radius_m()).fold(super::LEAST_RADIUS_M, f64::max);
     let depth = free_depth(p, Side::Front, &room.net_polygon, others);
+    let ways_out = plan.ways_out();
     let at = Point::new(p.pose.x, p.pose.y);
     depth >= dock.clearance_front_m.max(2.0 * robot)
         && plan.doors_of(&room.room_id).all(|door| {
-            let near = door.room_ids.len() == 1 && door.line.middle().distance(at) < f64::from(FROM_EXIT) / 1000.0;
+            let near = ways_out.iter().any(|d| d.door_id == door.door_id)
+                && door.line.middle().distance(at) < f64::from(FROM_EXIT) / 1000.0;
             !near && !door_zones(door).iter().any(|zone| zone.overlaps(&own))
         })
 }

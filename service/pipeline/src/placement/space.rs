@@ -155,10 +155,10 @@ fn rank(plan: &Floorplan, room: &PlanRoom, door: &Door) -> u8 {
     let other = door.room_ids.iter().find(|id| *id != &room.room_id);
     match other {
         _ if door.entrance => 0,
-        None => 1,
+        None if plan.ways_out().iter().any(|d| d.door_id == door.door_id) => 1,
         Some(id) if plan.doors_of(id).any(|d| d.entrance) => 2,
         Some(id) if plan.room(id).is_some_and(|r| r.circulation) => 3,
-        Some(_) => 4,
+        Some(_) | None => 4,
     }
 }
 

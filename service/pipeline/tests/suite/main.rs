@@ -9,6 +9,7 @@ mod details;
 mod edit;
 mod edit_storeys;
 mod fleets;
+mod forms;
 mod homes;
 mod homes_plans;
 mod homes_read;

@@ -52,7 +52,7 @@ fn regions(world: &World) -> Value {
             sinks.push(room);
         }
     }
-    let entrance = world.floorplan.doors.iter().filter(|d| d.room_ids.len() == 1).max_by_key(|d| d.entrance);
+    let entrance = world.floorplan.ways_out().into_iter().max_by_key(|d| d.entrance);
     let (Some(door), false) = (entrance, sinks.is_empty()) else {
         return json!({});
     };

@@ -1,6 +1,7 @@
 //! Floors, walls, doors, windows and outer dimensions.
 
 use d3dgen_model::TOLERANCE_M;
+use d3dgen_model::courts::Court;
 use d3dgen_model::domain::{Domain, Zone};
 use d3dgen_model::floorplan::{Door, DoorKind, Floorplan, Slide, Wall, Window};
 use d3dgen_model::geometry::{Point, Rect, Segment};
@@ -21,7 +22,20 @@ pub(super) fn floors(page: &mut Page, frame: &Frame, plan: &Floorplan, domain: &
         let fill = format!("fill=\"{}\"", style::tint(zone));
         page.path_with(&fill, Path::new().polygon(&on_sheet(frame, &room.polygon)));
     }
+    let fill = format!("fill=\"{}\"", style::tint(Zone::Outdoor));
+    for rect in courts(plan).iter().flat_map(|c| &c.rects) {
+        page.path_with(&fill, Path::new().rect(&frame.rect(rect)));
+    }
     page.close_group();
+}
+
+/// Least width of a court that is drawn, m: less is a gap between walls that somebody drew.
+const COURT_M: f64 = 2.0;
+
+/// Returns the courts of a plan that are drawn and named.
+pub(super) fn courts(plan: &Floorplan) -> Vec<Court> {
+    let is_wide = |c: &Court| c.bounds().width().min(c.bounds().height()) >= COURT_M;
+    plan.courts().into_iter().filter(is_wide).collect()
 }
 
 /// Width in which the railings of balconies and terraces are drawn, m.
@@ -259,7 +273,7 @@ pub(super) fn outward_reach(plan: &Floorplan) -> f64 {
 /// Marks the ways in and out with an arrow; the main entrance is filled and named.
 pub(super) fn entrances(page: &mut Page, frame: &Frame, plan: &Floorplan, size: f64) {
     page.open_group("entrances");
-    for door in plan.doors.iter().filter(|d| d.room_ids.len() == 1) {
+    for door in plan.ways_out() {
         let Some(room) = door.room_ids.first().and_then(|id| plan.room(id)) else { continue };
         let o = Opening::new(door.line, door.wall_thickness_m, |p| !room.polygon.contains(p));
         let outward = door.swing.as_ref().is_some_and(|s| s.into_room_id.is_none());
@@ -317,7 +331,7 @@ pub(super) struct Sides<T> {
 /// Returns on which sides of the building there are ways in or out.
 pub(super) fn entrance_sides(plan: &Floorplan, around: &Rect) -> Sides<bool> {
     let mut sides = Sides { west: false, east: false, north: false, south: false };
-    for line in plan.doors.iter().filter(|d| d.room_ids.len() == 1).map(|d| d.line) {
+    for line in plan.ways_out().into_iter().map(|d| d.line) {
         let (m, c) = (line.middle(), around.center());
         match (line.is_vertical(), m.x < c.x, m.y < c.y) {
             (true, true, _) => sides.west = true,

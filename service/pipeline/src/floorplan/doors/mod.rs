@@ -1,5 +1,6 @@
 //! Doors and open passages: where in the shared wall, how wide, which way the leaf swings.
 
+mod courts;
 mod outdoors;
 mod spot;
 
@@ -10,6 +11,7 @@ use d3dgen_model::scene_graph::Connector;
 use d3dgen_model::seed::Stream;
 use d3dgen_model::{Point, Segment};
 
+pub(super) use self::courts::shut_courts;
 use self::spot::{Spot, View};
 use super::assemble::highest;
 use super::hall;
@@ -116,6 +118,7 @@ fn lay(site: &Site<'_>, entrance_first: bool, rng: &mut Stream) -> Laid {
     site.lay_exits(&mut laid);
     site.lay_room_exits(&mut laid);
     site.lay_second_doors(&mut laid, rng);
+    site.lay_court_doors(&mut laid);
     laid.settle();
     laid.cost += PASSED * f64::from(site.passed(&laid));
     laid
@@ -341,17 +344,22 @@ impl Site<'_> {
         }
     }
 
-    /// Returns the place of an earlier door between these rooms (of one: to outdoors) when its wall still stands.
+    /// Returns the place of an earlier door between these rooms (of one: out of the building) when its wall still stands.
     fn standing_spot(&self, rooms: &[usize], main: bool) -> Option<Spot> {
+        self.standing_spots(rooms, main, None).next()
+    }
+
+    /// Returns the places of earlier doors between these rooms (of one: to outdoors, or to this court) whose walls still stand.
+    fn standing_spots(&self, rooms: &[usize], main: bool, court: Option<usize>) -> impl Iterator<Item = Spot> {
         let ids: Vec<&str> = rooms.iter().map(|&r| self.brief.rooms[r].id.as_str()).collect();
-        let between = |s: &&Stretch| match rooms {
+        let between = move |s: &&Stretch| match rooms {
             [a, b] => s.joins(*a, *b),
-            _ => s.only_room() == rooms.first().copied(),
+            _ => s.only_room() == rooms.first().copied() && s.court == court,
         };
-        let same = |d: &&Door| {
+        let same = move |d: &&Door| {
             d.room_ids.len() == ids.len() && d.entrance == main && d.room_ids.iter().all(|r| ids.contains(&r.as_str()))
         };
-        self.standing.iter().filter(same).find_map(|door| {
+        self.standing.iter().filter(same).filter_map(move |door| {
             let (at, start, end) = door.line.span();
             let stands = |s: &&Stretch| {
                 let (from, to) = self.usable(s);

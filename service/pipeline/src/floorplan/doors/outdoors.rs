@@ -250,16 +250,8 @@ impl Site<'_> {
             }
             penalty -= 0.5 * away.min(100.0);
         }
-        let double = clear >= DOUBLE_FROM_M;
-        let zone = self.zone(s, room, start, opening, APPROACH_M);
-        if !self.inside(room, &zone) {
-            return Vec::new();
-        }
-        let kind = if double { DoorKind::DoubleHinged } else { DoorKind::Hinged };
-        let swing = Swing { into_room_id: None, hinge_at_start: true };
-        let mut outward = self.door(line, kind, clear, s, &[room], Some(swing));
-        outward.entrance = main;
-        let outward = Spot { door: outward, wall: None, view: View::Company, zones: vec![(room, zone)], penalty };
+        let Some(mut outward) = self.outward_spot(s, room, (start, clear), penalty) else { return Vec::new() };
+        outward.door.entrance = main;
         // Doors on the way out open outwards, those of homes inwards where the leaf has floor.
         if !self.brief.is_home() || !main {
             return vec![outward];
@@ -277,6 +269,24 @@ impl Site<'_> {
         }
         spots.push(Spot { penalty: penalty + OUTWARD, ..outward });
         spots
+    }
+
+    /// Returns a door to outdoors whose leaves open outwards, where one can stand before it.
+    pub(super) fn outward_spot(
+        &self,
+        s: &Stretch,
+        room: usize,
+        (start, clear): (f64, f64),
+        penalty: f64,
+    ) -> Option<Spot> {
+        let opening = Brief::opening(clear);
+        let zone = self.zone(s, room, start, opening, APPROACH_M);
+        let line = Segment { start: s.point(start), end: s.point(start + opening) };
+        let kind = if clear >= DOUBLE_FROM_M { DoorKind::DoubleHinged } else { DoorKind::Hinged };
+        let swing = Swing { into_room_id: None, hinge_at_start: true };
+        let door = self.door(line, kind, clear, s, &[room], Some(swing));
+        let zones = vec![(room, zone)];
+        self.inside(room, &zone).then_some(Spot { door, wall: None, view: View::Company, zones, penalty })
     }
 
     /// Returns the entrance of a home that opens inwards, where its leaf has floor: open, it stands before no other door.

@@ -13,7 +13,7 @@ use crate::world::context::{Context, Room};
 pub fn private_passage(c: &Context, out: &mut Findings) {
     let mut entered: BTreeSet<&str> = BTreeSet::new();
     let mut open: Vec<&str> = Vec::new();
-    for door in c.plan().doors.iter().filter(|d| d.room_ids.len() == 1) {
+    for door in c.plan().ways_out() {
         open.extend(door.room_ids.iter().map(String::as_str));
     }
     // a building without a way in lacks an entrance, which is another rule's

@@ -212,13 +212,13 @@ pub fn swing(c: &Context, out: &mut Findings) {
 
 pub fn entrance(c: &Context, out: &mut Findings) {
     out.look();
-    let outer = |d: &&Door| d.room_ids.len() == 1;
-    if !c.plan().doors.iter().any(|d| d.entrance && d.room_ids.len() == 1) {
+    let ways_out = c.plan().ways_out();
+    if !ways_out.iter().any(|d| d.entrance) {
         out.add("building", "no door leads outdoors as the entrance");
     }
     for room in c.graph().rooms.iter().filter(|r| r.entrance) {
         out.look();
-        if !c.plan().doors.iter().filter(outer).any(|d| d.room_ids.contains(&room.id)) {
+        if !ways_out.iter().any(|d| d.room_ids.contains(&room.id)) {
             out.add(&room.id, "one enters the building here, and the room has no door to the outside");
         }
     }

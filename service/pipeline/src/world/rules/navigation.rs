@@ -22,9 +22,8 @@ pub fn zones(c: &Context, out: &mut Findings) {
             out.add_figure(&room.plan.room_id, message, share, ROOM_SHARE, "ratio");
         }
     }
-    let entrances = c.plan().doors.iter().filter(|d| d.room_ids.len() == 1);
     out.look();
-    if !entrances.into_iter().any(|d| c.near(&reach.main, &d.line, c.radius + AT_DOOR_M)) {
+    if !c.plan().ways_out().into_iter().any(|d| c.near(&reach.main, &d.line, c.radius + AT_DOOR_M)) {
         out.add("building", "no entrance opens on the floor that can be reached");
     }
 }

@@ -84,9 +84,8 @@ pub fn reach(c: &Context, out: &mut Findings) {
     let plan = c.plan();
     let mut reached: BTreeSet<&str> = BTreeSet::new();
     let mut open: Vec<&str> = plan
-        .doors
-        .iter()
-        .filter(|d| d.room_ids.len() == 1)
+        .ways_out()
+        .into_iter()
         .flat_map(|d| d.room_ids.iter().map(String::as_str))
         .filter(|id| plan.room(id).is_some_and(|r| r.level == 0))
         .collect();
