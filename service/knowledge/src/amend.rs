@@ -6,6 +6,7 @@ use d3dgen_model::knowledge::{AMENDMENT, Constraint, KnowledgeBase, LOCAL, Refer
 use d3dgen_model::units;
 
 use crate::database::{Edit, Provenance, difference};
+use crate::draw_limits::ROBOT_TOPIC;
 use crate::error::Error;
 use crate::import::scale;
 use crate::phrase;
@@ -159,9 +160,6 @@ fn in_si(value: &Value, unit: &str) -> (Value, String, Option<String>) {
 /// Names that say no more than the unit does: which extent of a space they mean is told by what its rules ask of it.
 const GENERIC: [&str; 5] = ["dimension", "length", "distance", "size", "value"];
 
-/// Topic whose rules are about robots rather than the building.
-const ROBOTS: &str = "robot_placement_charging_circulation";
-
 /// Returns the rule that asks the same of the same space: of those that share most words with the statement, the one
 /// whose quantity most rules of the space are about.
 fn alike<'a>(knowledge: &'a KnowledgeBase, said: &Statement, unit: &str) -> Option<&'a Constraint> {
@@ -173,7 +171,7 @@ fn alike<'a>(knowledge: &'a KnowledgeBase, said: &Statement, unit: &str) -> Opti
     let candidates: Vec<&Constraint> = all
         .filter(|c| {
             let named = c.space_type == said.space || space.last().is_some_and(|last| *last == c.space_type);
-            c.unit == unit && named && c.topic != ROBOTS
+            c.unit == unit && named && c.topic != ROBOT_TOPIC
         })
         .collect();
     let measure = |c: &Constraint| TABLES.quantity(c).map(|q| q.measure);

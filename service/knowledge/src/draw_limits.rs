@@ -18,8 +18,8 @@ use crate::retrieve::{Applicable, Rule, Scope};
 
 /// Source types whose least figures a plan keeps.
 const PLANNED_BY: [&str; 4] = ["regulation", "standard", "guideline", AMENDMENT];
-/// Topic of the rules about robots.
-const ROBOT_TOPIC: &str = "robot_placement_charging_circulation";
+/// Topic of the rules about robots rather than the building.
+pub(crate) const ROBOT_TOPIC: &str = "robot_placement_charging_circulation";
 /// Widest door that a limit may ask of an ordinary room, m: wider ones are gates with rules of their own.
 const WIDEST_DOOR_M: f64 = 2.0;
 

@@ -119,15 +119,8 @@ pub fn print(evaluation: &Evaluation) -> Result<(), Error> {
 }
 
 fn groups(evaluation: &Evaluation, figures: &[Figure]) -> String {
-    let shown: Vec<&Figure> =
-        figures.iter().filter(|f| evaluation.groups.iter().any(|g| g.figures.contains_key(f.name))).collect();
-    let header: Vec<&str> = ["domain", "rooms", "worlds"].into_iter().chain(shown.iter().map(|f| f.title)).collect();
-    let row = |g: &d3dgen_eval::evaluation::Group| {
-        let fixed = [g.domain.clone(), g.rooms.map_or_else(String::new, |r| r.to_string()), g.worlds.to_string()];
-        let figures = shown.iter().map(|f| g.figures.get(f.name).map_or_else(|| "-".into(), |v| f.form.text(*v)));
-        fixed.into_iter().chain(figures).collect::<Vec<_>>()
-    };
-    table(&header, &evaluation.groups.iter().map(row).collect::<Vec<_>>())
+    let (header, rows) = evaluation.group_table(&evaluation.measured(figures));
+    table(&header, &rows)
 }
 
 /// Returns how different the worlds of one prompt are, over all prompts.
