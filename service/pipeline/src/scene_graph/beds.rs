@@ -2,7 +2,7 @@
 //! double rooms"; and beds that contradict the rooms.
 
 use d3dgen_model::domain::{Access, Domain, Occupants, Privacy, Program, ProgramRoom, RoomType, Shape, Zone};
-use d3dgen_model::scene_graph::Note;
+use d3dgen_model::scene_graph::{Note, Occupancy};
 
 use super::mentions::{Mention, What};
 use super::numbers::{self, Number};
@@ -483,27 +483,48 @@ impl Sleepers<'_> {
 
     /// Puts beds that the named rooms do not have into rooms of the program, where the prompt fixes the others.
     fn rest(&self, wishes: &mut Wishes, beds: u32, assumptions: &mut Vec<Note>) {
-        let entry = self.program.rooms.iter().find(|e| e.occupants == Occupants::Beds);
         let night = |w: &Wish| self.domain.room_type(&w.room_type).is_some_and(|k| k.zone == Zone::Night);
-        let fixed = wishes.wishes.iter().any(|w| w.exact && night(w));
-        let Some(entry) = entry.filter(|e| fixed && !wishes.forbidden.contains(&e.room_type)) else { return };
-        let rooms = beds.div_ceil(entry.occupants_per_room.unwrap_or(1).max(1));
-        let label = self.domain.room_type_or_generic(&entry.room_type).label.to_lowercase();
-        match wishes.wishes.iter_mut().find(|w| w.room_type == entry.room_type) {
-            Some(_) => return,
-            None => wishes.wishes.push(Wish {
-                room_type: entry.room_type.clone(),
-                count: rooms,
-                exact: true,
-                name: label.clone(),
-                area_m2: None,
-                size: None,
-                listed: false,
-            }),
+        if wishes.wishes.iter().any(|w| w.exact && night(w)) {
+            assumptions.extend(add_rooms((self.domain, self.program), beds, wishes));
         }
-        let message = format!("{beds} beds are in none of the rooms named; {rooms} x {label} were added for them");
-        assumptions.push(note("beds_left", message));
     }
+}
+
+/// Adds the program's own rooms for so many beds, where the prompt neither names nor forbids them, and says so.
+fn add_rooms((domain, program): (&Domain, &Program), beds: u32, wishes: &mut Wishes) -> Option<Note> {
+    let entry = program.rooms.iter().find(|e| e.occupants == Occupants::Beds)?;
+    let named = wishes.wishes.iter().any(|w| w.room_type == entry.room_type);
+    if named || wishes.forbidden.contains(&entry.room_type) {
+        return None;
+    }
+    let rooms = beds.div_ceil(entry.occupants_per_room.unwrap_or(1).max(1));
+    let label = domain.room_type_or_generic(&entry.room_type).label.to_lowercase();
+    wishes.wishes.push(Wish { count: rooms, exact: true, ..Wish::one(&entry.room_type, &label) });
+    let message = format!("{beds} beds are in none of the rooms named; {rooms} x {label} were added for them");
+    Some(note("beds_left", message))
+}
+
+/// Returns true where the prompt names rooms to sleep in.
+pub(super) fn names_rooms(domain: &Domain, wishes: &Wishes) -> bool {
+    let bedded = |w: &Wish| domain.room_type(&w.room_type).is_some_and(|k| sleeps(domain, k).is_some());
+    wishes.wishes.iter().any(bedded)
+}
+
+/// Adds the rooms to sleep in that a list of rooms takes for granted, for all who are to have a bed: "ward: 12 beds, nurse
+/// station, clean utility".
+pub(super) fn house(
+    (domain, program): (&Domain, &Program),
+    heads: &Occupancy,
+    residents: Option<u32>,
+    wishes: &mut Wishes,
+) -> Option<Note> {
+    if names_rooms(domain, wishes) {
+        return None;
+    }
+    // who visits a building that is all for beds is its patient
+    let all = program.rooms.first().is_some_and(|e| e.occupants == Occupants::Beds);
+    let patients = heads.visitors.filter(|_| all);
+    add_rooms((domain, program), heads.beds.or(residents).or(patients)?, wishes)
 }
 
 /// Beds as they were settled.

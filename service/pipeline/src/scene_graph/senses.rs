@@ -1,19 +1,21 @@
 //! Words for rooms that mean one thing here and another there: the control room beside a scanner is that scanner's, the
 //! treatment room of a dental practice has a dental chair.
 
-use d3dgen_model::domain::{Adjacency, AdjacencyRelation, Domain, Program};
+use d3dgen_model::domain::{Adjacency, AdjacencyRelation, Domain, GENERIC_ROOM_TYPE, Program, Zone};
 
 use super::mentions::{Mention, Vocabulary, What};
 use super::text::Token;
+use super::words::{Spoken, Tag};
 
 /// Gives every mention of a room the type that its words have in this building.
 pub(super) fn settle(
     tokens: &[Token],
     mentions: &mut Vec<Mention>,
     vocabulary: &Vocabulary,
-    domain: &Domain,
-    program: &Program,
+    spoken: &[&Spoken],
+    (domain, program): (&Domain, &Program),
 ) {
+    count_guests(tokens, mentions, spoken, (domain, program));
     let mut more: Vec<(usize, Mention)> = Vec::new();
     for m in 0..mentions.len() {
         if mentions[m].room_type().is_none() {
@@ -49,6 +51,34 @@ pub(super) fn settle(
         let others = vocabulary.meanings_at(tokens, mention.span).filter(|_| !known);
         let meant = std::iter::once(&id).chain(others).find_map(|id| program.means.get(id));
         mention.what = What::Room(meant.unwrap_or(&id).clone());
+    }
+}
+
+/// Takes the number of rooms of a building that is all for guests for that of the rooms they sleep in: "hotel with 20 rooms";
+/// not where the prompt names such rooms, of which the number may be the sum.
+fn count_guests(
+    tokens: &[Token],
+    mentions: &mut [Mention],
+    spoken: &[&Spoken],
+    (domain, program): (&Domain, &Program),
+) {
+    let Some(id) = program.means.get(GENERIC_ROOM_TYPE) else { return };
+    let night = |m: &Mention| {
+        let kind = m.room_type().and_then(|id| domain.room_type(id));
+        kind.is_some_and(|k| k.zone == Zone::Night)
+    };
+    let counts = |m: &Mention| m.what == What::Total && m.count.is_some_and(|n| n > 1) && !m.article && !m.vague;
+    let Some(at) = mentions.iter().position(counts) else { return };
+    // "20 rooms, including 4 suites"
+    let part = |m: &Mention| {
+        let mut gap = mentions[at].span.end..m.from.max(mentions[at].span.end);
+        gap.any(|i| spoken.iter().any(|s| s.tag_at(tokens, i, Tag::PartOf).is_some()))
+    };
+    // "20 rooms in total"
+    let summed = (mentions[at].span.start..mentions[at].span.end).any(|i| tokens[i].text == "total");
+    let named = mentions.iter().find(|m| night(m));
+    if !summed && named.is_none_or(part) {
+        mentions[at].what = What::Room(id.clone());
     }
 }
 
