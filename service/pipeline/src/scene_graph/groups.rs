@@ -60,6 +60,7 @@ impl Reader<'_> {
         self.spoken.iter().find_map(|s| s.tag_at(self.tokens, i, tag))
     }
 
+    /// Returns the end of a word for each of several.
     fn each(&self, i: usize) -> Option<usize> {
         self.tagged(i, Tag::Each).or_else(|| self.tagged(i, Tag::Everyone))
     }
@@ -102,10 +103,13 @@ impl Reader<'_> {
 
     /// Gives every group its rooms: those that each of them is said to have, and the one that it is in.
     fn rooms_of(&self, group: Group, mentions: &mut [Mention], found: &mut Found) {
+        let has_heads = self.heads_of_each(group, mentions);
         let people = self.people_of(group, mentions);
         let mut listed = self.listed(group, mentions);
         if listed.is_empty() {
             listed = self.told_before(group, mentions);
+            let more = self.with_each(group, mentions).filter(|m| !listed.contains(m));
+            listed.extend(more);
         }
         let by_day = |m: &usize| {
             let kind = mentions[*m].room_type().and_then(|id| self.domain.room_type(id));
@@ -134,7 +138,7 @@ impl Reader<'_> {
                 None => found.rooms.push((id.clone(), group.n as u32)),
             }
         }
-        if !listed.is_empty() || room.is_some() {
+        if !listed.is_empty() || room.is_some() || has_heads {
             found.spans.push(group.span);
         }
     }
@@ -147,6 +151,18 @@ impl Reader<'_> {
         let each = people.count.filter(|n| *n > 0 && !people.article && !people.vague)?;
         people.count = Some(each.saturating_mul(group.n));
         u32::try_from(each).ok()
+    }
+
+    /// Counts the desks or people of all groups by those of each: "each team has 8 desks"; returns false where nothing tells.
+    fn heads_of_each(&self, group: Group, mentions: &mut [Mention]) -> bool {
+        let Some(each) = self.each_has(group, mentions) else { return false };
+        let Some(first) = mentions.iter_mut().find(|m| m.span.start >= each) else { return false };
+        let heads = matches!(first.what, What::Desks | What::People | What::Staff | What::Visitors);
+        let lead = each..first.from;
+        let has = lead.len() <= MOST_TO_NEXT && lead.clone().any(|i| self.tagged(i, Tag::Starts).is_some());
+        let own = first.count.filter(|n| *n > 0 && heads && has && !first.article && !first.vague);
+        first.count = own.map(|n| n.saturating_mul(group.n)).or(first.count);
+        own.is_some()
     }
 
     /// Returns where the words end that give each of the groups something: "each", "each group", not "12 children per group".
@@ -170,7 +186,10 @@ impl Reader<'_> {
     /// Returns the rooms that each of the groups is said to have: those behind that up to the "and" that closes their list.
     fn listed(&self, group: Group, mentions: &[Mention]) -> Vec<usize> {
         let Some(each) = self.each_has(group, mentions) else { return Vec::new() };
-        let behind: Vec<usize> = (0..mentions.len()).filter(|&m| mentions[m].span.start >= each).collect();
+        let heads = |m: usize| matches!(mentions[m].what, What::Desks | What::People | What::Staff | What::Visitors);
+        let behind = (0..mentions.len()).filter(|&m| mentions[m].span.start >= each);
+        // "each with 12 children and its own nap room"
+        let behind: Vec<usize> = behind.enumerate().filter(|&(k, m)| k > 0 || !heads(m)).map(|f| f.1).collect();
         let Some(&first) = behind.first() else { return Vec::new() };
         let has = |i: usize| [Tag::Starts, Tag::Own, Tag::Inside].iter().any(|&t| self.tagged(i, t).is_some());
         // "3 groups with one nap room each"
@@ -212,6 +231,14 @@ impl Reader<'_> {
         out
     }
 
+    /// Returns the room before "each" of "4 groups with a nap room each".
+    fn with_each(&self, group: Group, mentions: &[Mention]) -> Option<usize> {
+        let m = mentions.iter().position(|m| m.span.start >= group.span.end)?;
+        let mut lead = group.span.end..mentions[m].from;
+        let has = lead.len() <= MOST_TO_NEXT && lead.any(|i| self.tagged(i, Tag::Starts).is_some());
+        (has && mentions[m].room_type().is_some() && self.each(mentions[m].span.end).is_some()).then_some(m)
+    }
+
     /// Returns the room before "per group", "for each group".
     fn told_before(&self, group: Group, mentions: &[Mention]) -> Vec<usize> {
         let per = |i: usize| {
@@ -225,12 +252,34 @@ impl Reader<'_> {
 
     /// Counts rooms of which each of a number has one: "a bedroom for each of our three kids".
     fn for_each_of(&self, mentions: &mut [Mention]) {
+        let heads: Vec<(Span, i64)> = mentions
+            .iter()
+            .filter(|m| m.room_type().is_none() && !m.article && !m.vague)
+            .filter_map(|m| Some((m.span, m.count.filter(|n| (2..=MOST).contains(n))?)))
+            .collect();
         for m in mentions.iter_mut().filter(|m| m.room_type().is_some()) {
             let open = m.count.is_none_or(|n| n == 1) && !m.vague;
-            if let Some(n) = self.each_of(m.span.end).filter(|_| open) {
+            let told = || self.each_child(m.span.end, &heads).or_else(|| self.those_before(m, &heads));
+            if let Some(n) = self.each_of(m.span.end).or_else(told).filter(|_| open) {
                 (m.count, m.article, m.plural) = (Some(n), false, true);
             }
         }
+    }
+
+    /// Returns the number of children that the prompt counts elsewhere: "a bedroom for each child".
+    fn each_child(&self, i: usize, heads: &[(Span, i64)]) -> Option<i64> {
+        let each = self.each(self.tagged(i, Tag::For)?)?;
+        self.tagged(each, Tag::Children)?;
+        heads.iter().find(|(span, _)| self.tagged(span.start, Tag::Children).is_some()).map(|(_, n)| *n)
+    }
+
+    /// Returns the number of those right before that have one room each: "三个孩子每人一间卧室", "three kids each one bedroom".
+    fn those_before(&self, room: &Mention, heads: &[(Span, i64)]) -> Option<i64> {
+        let one = room.count == Some(1);
+        let (span, n) = heads.iter().rev().find(|(span, _)| span.end <= room.from && one)?;
+        let each = self.each(span.end)?;
+        let to = self.tagged(each, Tag::People).unwrap_or(each);
+        (to == room.from).then_some(*n)
     }
 
     /// Returns the number of "for each of our three".

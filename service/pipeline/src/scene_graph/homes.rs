@@ -284,7 +284,10 @@ pub(super) fn state_several(
         let plain = |i: usize| tagged(i, Tag::NotNames).is_some();
         let mut words = (from..(from + MOST_TO_HOMES + 1).min(tokens.len())).take_while(|i| *i == from || plain(i - 1));
         let end = words.find_map(|i| tagged(i, Tag::Homes)).filter(|_| exact)?;
-        Some(Span { start: n.span.start, end })
+        // "two units of storage", but "4 flats of two bedrooms"
+        let of = tokens.get(end).is_some_and(|t| t.text == "of");
+        let of_thing = of && !numbers.iter().any(|n| n.span.start == end + 1);
+        (!of_thing).then_some(Span { start: n.span.start, end })
     };
     let span = numbers.iter().find_map(several)?;
     let words = prompt.get(tokens[span.start].start..tokens[span.end - 1].end).unwrap_or_default();

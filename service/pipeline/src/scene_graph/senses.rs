@@ -1,7 +1,7 @@
 //! Words for rooms that mean one thing here and another there: the control room beside a scanner is that scanner's, the
 //! treatment room of a dental practice has a dental chair.
 
-use d3dgen_model::domain::{Adjacency, AdjacencyRelation, Domain, GENERIC_ROOM_TYPE, Program, Zone};
+use d3dgen_model::domain::{Access, Adjacency, AdjacencyRelation, Domain, GENERIC_ROOM_TYPE, Program, Zone};
 
 use super::mentions::{Mention, Vocabulary, What};
 use super::text::Token;
@@ -54,8 +54,8 @@ pub(super) fn settle(
     }
 }
 
-/// Takes the number of rooms of a building that is all for guests for that of the rooms they sleep in: "hotel with 20 rooms";
-/// not where the prompt names such rooms, of which the number may be the sum.
+/// Takes the number of rooms of a building that is all for guests for that of the rooms they sleep in: "hotel with 20 rooms".
+/// Those that the prompt names besides are some of them.
 fn count_guests(
     tokens: &[Token],
     mentions: &mut [Mention],
@@ -65,20 +65,26 @@ fn count_guests(
     let Some(id) = program.means.get(GENERIC_ROOM_TYPE) else { return };
     let night = |m: &Mention| {
         let kind = m.room_type().and_then(|id| domain.room_type(id));
-        kind.is_some_and(|k| k.zone == Zone::Night)
+        kind.is_some_and(|k| k.zone == Zone::Night && k.access != Access::Host)
     };
     let counts = |m: &Mention| m.what == What::Total && m.count.is_some_and(|n| n > 1) && !m.article && !m.vague;
     let Some(at) = mentions.iter().position(counts) else { return };
-    // "20 rooms, including 4 suites"
+    // "20 rooms in total"
+    let all = &mentions[at];
+    let Some(n) = all.count.filter(|_| !(all.span.start..all.span.end).any(|i| tokens[i].text == "total")) else {
+        return;
+    };
+    // "20 rooms, including 4 suites" is told of these
     let part = |m: &Mention| {
-        let mut gap = mentions[at].span.end..m.from.max(mentions[at].span.end);
+        let mut gap = all.span.end..m.from.max(all.span.end);
         gap.any(|i| spoken.iter().any(|s| s.tag_at(tokens, i, Tag::PartOf).is_some()))
     };
-    // "20 rooms in total"
-    let summed = (mentions[at].span.start..mentions[at].span.end).any(|i| tokens[i].text == "total");
-    let named = mentions.iter().find(|m| night(m));
-    if !summed && named.is_none_or(part) {
-        mentions[at].what = What::Room(id.clone());
+    let others = mentions.iter().filter(|m| night(m) && !part(m));
+    let others = others.map(|m| m.count.unwrap_or(if m.plural { 2 } else { 1 }).max(0)).fold(0, i64::saturating_add);
+    if n > others {
+        (mentions[at].what, mentions[at].count) = (What::Room(id.clone()), Some(n - others));
+    } else {
+        (mentions[at].count, mentions[at].number) = (None, None);
     }
 }
 
