@@ -21,7 +21,7 @@ const PROMPTS: [&str; 9] = [
     "office for 12 people with two meeting rooms",
     "Office with 8 rooms in Japan",
     "primary school with four classrooms",
-    "hotel with 9 rooms",
+    "hotel with 9 rooms in total",
 ];
 
 fn world(registry: &Registry, prompt: &str, seed: u64) -> World {

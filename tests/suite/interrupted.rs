@@ -10,7 +10,7 @@ use d3dgen_model::document::Document;
 use d3dgen_model::world::World;
 use d3dgen_tests::{command, files, run_well};
 
-const MANY: &[&str] = &["generate", "hotel with 8 rooms", "--no-png", "--out", "many", "--count", "200"];
+const MANY: &[&str] = &["generate", "hotel with 8 rooms in total", "--no-png", "--out", "many", "--count", "200"];
 
 /// Starts many worlds and returns when the first ones are there.
 fn start(home: &Path) -> Child {

@@ -2,7 +2,7 @@
 //! double rooms"; and beds that contradict the rooms.
 
 use d3dgen_model::domain::{Access, Domain, Occupants, Privacy, Program, ProgramRoom, RoomType, Shape, Zone};
-use d3dgen_model::scene_graph::Note;
+use d3dgen_model::scene_graph::{Note, Occupancy};
 
 use super::mentions::{Mention, What};
 use super::numbers::{self, Number};
@@ -18,6 +18,9 @@ const MOST_BEDS: f64 = 24.0;
 const FOR_TWO_M: f64 = 1.35;
 /// Words between rooms and their beds, at most: "rooms, each of them with".
 const MOST_BETWEEN: usize = 5;
+
+/// What a program calls its places to be treated at.
+const STATION: &str = "station";
 
 /// Words for a room with so many beds.
 #[derive(Debug, Clone, PartialEq)]
@@ -483,27 +486,59 @@ impl Sleepers<'_> {
 
     /// Puts beds that the named rooms do not have into rooms of the program, where the prompt fixes the others.
     fn rest(&self, wishes: &mut Wishes, beds: u32, assumptions: &mut Vec<Note>) {
-        let entry = self.program.rooms.iter().find(|e| e.occupants == Occupants::Beds);
         let night = |w: &Wish| self.domain.room_type(&w.room_type).is_some_and(|k| k.zone == Zone::Night);
-        let fixed = wishes.wishes.iter().any(|w| w.exact && night(w));
-        let Some(entry) = entry.filter(|e| fixed && !wishes.forbidden.contains(&e.room_type)) else { return };
-        let rooms = beds.div_ceil(entry.occupants_per_room.unwrap_or(1).max(1));
-        let label = self.domain.room_type_or_generic(&entry.room_type).label.to_lowercase();
-        match wishes.wishes.iter_mut().find(|w| w.room_type == entry.room_type) {
-            Some(_) => return,
-            None => wishes.wishes.push(Wish {
-                room_type: entry.room_type.clone(),
-                count: rooms,
-                exact: true,
-                name: label.clone(),
-                area_m2: None,
-                size: None,
-                listed: false,
-            }),
+        let counts = self.program.rooms.iter().any(|e| e.occupants == Occupants::Beds);
+        let rooms = room_for_beds(self.domain, self.program).filter(|_| counts);
+        if let Some(rooms) = rooms.filter(|_| wishes.wishes.iter().any(|w| w.exact && night(w))) {
+            assumptions.extend(add_rooms(self.domain, rooms, beds, wishes));
         }
-        let message = format!("{beds} beds are in none of the rooms named; {rooms} x {label} were added for them");
-        assumptions.push(note("beds_left", message));
     }
+}
+
+/// Returns the type of the rooms that beds are in and how many of them: of the program itself, else of its places to be treated
+/// at, else of the domain.
+fn room_for_beds<'a>(domain: &'a Domain, program: &'a Program) -> Option<(&'a String, u32)> {
+    let own = |p: &'a Program| p.rooms.iter().find(|e| e.occupants == Occupants::Beds);
+    let of_program = |p| own(p).map(|e| (&e.room_type, e.occupants_per_room.unwrap_or(1).max(1)));
+    let stations = || program.means.get(STATION).map(|id| (id, 1));
+    of_program(program).or_else(stations).or_else(|| domain.programs.iter().find_map(of_program))
+}
+
+/// Adds rooms for so many beds, where the prompt neither names nor forbids them, and says so.
+fn add_rooms(domain: &Domain, (id, each): (&String, u32), beds: u32, wishes: &mut Wishes) -> Option<Note> {
+    if wishes.forbidden.contains(id) || wishes.wishes.iter().any(|w| &w.room_type == id) {
+        return None;
+    }
+    let rooms = beds.div_ceil(each);
+    let label = domain.room_type_or_generic(id).label.to_lowercase();
+    wishes.wishes.push(Wish { count: rooms, exact: true, ..Wish::one(id, &label) });
+    let message = format!("{beds} beds are in none of the rooms named; {rooms} x {label} were added for them");
+    Some(note("beds_left", message))
+}
+
+/// Returns true where the prompt names rooms to sleep in.
+pub(super) fn names_rooms(domain: &Domain, wishes: &Wishes) -> bool {
+    let bedded = |w: &Wish| domain.room_type(&w.room_type).is_some_and(|k| sleeps(domain, k).is_some());
+    wishes.wishes.iter().any(bedded)
+}
+
+/// Adds the rooms to sleep in that a list of rooms takes for granted, for all who are to have a bed: "ward: 12 beds, nurse
+/// station, clean utility".
+pub(super) fn house(
+    (domain, program): (&Domain, &Program),
+    heads: &Occupancy,
+    residents: Option<u32>,
+    wishes: &mut Wishes,
+) -> Option<Note> {
+    if names_rooms(domain, wishes) {
+        return None;
+    }
+    // who visits a building that is all for beds is its patient
+    let all = program.rooms.first().is_some_and(|e| e.occupants == Occupants::Beds);
+    let patients = residents.or(heads.visitors.filter(|_| all));
+    let counts = program.rooms.iter().any(|e| e.occupants == Occupants::Beds);
+    let beds = heads.beds.or(patients.filter(|_| counts))?;
+    add_rooms(domain, room_for_beds(domain, program)?, beds, wishes)
 }
 
 /// Beds as they were settled.

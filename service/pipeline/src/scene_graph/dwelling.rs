@@ -17,6 +17,18 @@ pub(super) struct ShortForm {
     pub span: Span,
     /// Room types and how many.
     pub rooms: BTreeMap<String, i64>,
+    /// True where one number counts all rooms to live in, whichever they are: "3-Zimmer-Wohnung", "T3".
+    pub pooled: bool,
+}
+
+impl ShortForm {
+    fn pooled(span: Span, rooms: BTreeMap<String, i64>) -> Self {
+        Self { span, rooms, pooled: true }
+    }
+
+    fn of_each(span: Span, rooms: BTreeMap<String, i64>) -> Self {
+        Self { span, rooms, pooled: false }
+    }
 }
 
 /// Returns the short forms of a prompt; none in domains without the room types of a dwelling.
@@ -87,7 +99,7 @@ fn lettered(tokens: &[Token], i: usize, d: &Dwelling) -> Option<ShortForm> {
         return None;
     }
     let n: f64 = digits.parse().ok()?;
-    (n >= 1.0).then(|| ShortForm { span: Span { start: i, end: i + 1 }, rooms: rooms_to_live(n, d) })
+    (n >= 1.0).then(|| ShortForm::pooled(Span { start: i, end: i + 1 }, rooms_to_live(n, d)))
 }
 
 /// "3 BHK", "2LDK", "3-Zimmer-Wohnung", "3 pièces", "2 bed 1 bath", "2BR/2BA"
@@ -103,7 +115,8 @@ fn counted(
     let at = number.span.end;
     let unit = tokens.get(at)?;
     let n = number.value as i64;
-    let form = |end: usize, rooms: BTreeMap<String, i64>| Some(ShortForm { span: Span { start: i, end }, rooms });
+    let form = |end: usize, rooms: BTreeMap<String, i64>| Some(ShortForm::of_each(Span { start: i, end }, rooms));
+    let to_live = |end: usize| Some(ShortForm::pooled(Span { start: i, end }, rooms_to_live(number.value, d)));
     let with = |others: &[String]| {
         let mut rooms: BTreeMap<String, i64> =
             others.iter().filter(|t| domain.room_type(t).is_some()).map(|t| (t.clone(), 1)).collect();
@@ -119,13 +132,13 @@ fn counted(
     // "2.5 rooms": only rooms to live in are counted by halves
     let halves = number.value.fract() > 0.0 && matches!(unit.text.as_str(), "room" | "rooms");
     if halves || d.rooms_to_live.contains(&unit.text) {
-        return form(at + 1, rooms_to_live(number.value, d));
+        return to_live(at + 1);
     }
     let joined = |k: usize| tokens.get(k).is_some_and(|t| !t.is_mark());
     if let Some(end) = spoken.iter().find_map(|s| s.tag_at(tokens, at, Tag::Habitable))
         && !number.article
     {
-        return form(end, rooms_to_live(number.value, d));
+        return to_live(end);
     }
     // "2 bed flat", "2 bed 2 bath", "3BR": letters or the bare singular; "5 beds" stays with the people
     // "4 beds, 3.5 baths" sleep in bedrooms
@@ -148,7 +161,7 @@ fn counted(
             rooms.insert(d.toilet.clone(), 1);
         }
         rooms.retain(|_, n| *n > 0);
-        ShortForm { span: Span { start: i, end: at + 1 }, rooms }
+        ShortForm::of_each(Span { start: i, end: at + 1 }, rooms)
     })
 }
 
@@ -219,17 +232,15 @@ fn one_word(tokens: &[Token], i: usize, d: &Dwelling, spoken: &[&Spoken]) -> Opt
     if token.kind == Kind::Hangul {
         let text: String = tokens[i..].iter().take(2).map(|t| t.text.as_str()).collect();
         let n = *d.bedroom_words.get(&text)? as i64;
-        return Some(ShortForm {
-            span: Span { start: i, end: i + 2 },
-            rooms: BTreeMap::from([(d.bedroom.clone(), n)]),
-        });
+        let rooms = BTreeMap::from([(d.bedroom.clone(), n)]);
+        return Some(ShortForm::of_each(Span { start: i, end: i + 2 }, rooms));
     }
     let head = d.rooms_to_live.iter().find_map(|w| {
         let plural = token.text.strip_suffix('n').unwrap_or(&token.text);
         token.text.strip_suffix(w.as_str()).or_else(|| plural.strip_suffix(w.as_str()))
     })?;
     let n = spoken.iter().find_map(|s| s.numbers.get(head)).copied()?;
-    Some(ShortForm { span: Span { start: i, end: i + 1 }, rooms: rooms_to_live(n, d) })
+    Some(ShortForm::pooled(Span { start: i, end: i + 1 }, rooms_to_live(n, d)))
 }
 
 /// "三室两厅两卫", "3室1厅", "两房一厅一厨一卫"
@@ -265,5 +276,5 @@ fn chinese(tokens: &[Token], i: usize, numbers: &[Number], d: &Dwelling) -> Opti
             break;
         }
     }
-    (units >= 2 || sleeps).then_some(ShortForm { span: Span { start: i, end }, rooms })
+    (units >= 2 || sleeps).then(|| ShortForm::of_each(Span { start: i, end }, rooms))
 }

@@ -8,6 +8,7 @@ use d3dgen_plugins::Registry;
 use super::beds::sleeps;
 use super::dwelling::ShortForm;
 use super::mentions::{Mention, What};
+use super::numbers::Number;
 use super::objects::{self, Thing};
 use super::places::note;
 use super::program::Planned;
@@ -86,7 +87,7 @@ pub(super) fn count_listed(forms: &mut [ShortForm], mentions: &[Mention], domain
     };
     let others = of(&|id| lived_in(id) && ![&d.living, &d.bedroom, &d.dining, &d.studio].iter().any(|t| *t == id));
     let (bedrooms, dining) = (of(&|id| id == d.bedroom), of(&|id| id == d.dining));
-    for form in forms.iter_mut().filter(|f| f.rooms.contains_key(&d.living) && !f.rooms.contains_key(&d.kitchen)) {
+    for form in forms.iter_mut().filter(|f| f.pooled && f.rooms.contains_key(&d.living)) {
         let total: i64 = form.rooms.values().sum();
         let Some(own) = form.rooms.get_mut(&d.bedroom) else { continue };
         // where one eats counts where the list is whole with it
@@ -263,6 +264,37 @@ pub(super) fn house(reading: &Reading, planned: &[Planned], rooms: &mut [GraphRo
         spare -= more;
     }
     Some(residents)
+}
+
+/// Words between a number and the homes that it counts, at most: "identical".
+const MOST_TO_HOMES: usize = 2;
+
+/// States that several homes are asked for, of which one was planned: "two identical units, each with 2 bedrooms". Returns
+/// their words too.
+pub(super) fn state_several(
+    tokens: &[Token],
+    prompt: &str,
+    numbers: &[Number],
+    spoken: &[&Spoken],
+) -> Option<(Span, Note)> {
+    let tagged = |i: usize, tag| spoken.iter().find_map(|s| s.tag_at(tokens, i, tag));
+    let several = |n: &Number| {
+        let exact = n.value >= 2.0 && !n.article && !n.vague;
+        let from = tagged(n.span.end, Tag::Counters).unwrap_or(n.span.end);
+        let plain = |i: usize| tagged(i, Tag::NotNames).is_some();
+        let mut words = (from..(from + MOST_TO_HOMES + 1).min(tokens.len())).take_while(|i| *i == from || plain(i - 1));
+        let end = words.find_map(|i| tagged(i, Tag::Homes)).filter(|_| exact)?;
+        // "two units of storage", but "4 flats of two bedrooms"
+        let of = tokens.get(end).is_some_and(|t| t.text == "of");
+        let of_thing = of && !numbers.iter().any(|n| n.span.start == end + 1);
+        (!of_thing).then_some(Span { start: n.span.start, end })
+    };
+    let span = numbers.iter().find_map(several)?;
+    let words = prompt.get(tokens[span.start].start..tokens[span.end - 1].end).unwrap_or_default();
+    let message = format!(
+        "`{words}` are homes of their own, and several in one building are not planned: one of them was, ask for each by itself"
+    );
+    Some((span, note("one_dwelling", message)))
 }
 
 /// Rooms of one home, at most; more are a house of many homes, of which no plan is made.

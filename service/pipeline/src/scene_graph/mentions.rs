@@ -9,7 +9,7 @@ use super::beds::BedRoom;
 use super::compounds::{self, Compound};
 use super::named_for;
 use super::numbered::{self, Numbered};
-use super::numbers::Number;
+use super::numbers::{self, Number};
 use super::reading::is_dwelling;
 use super::seated;
 use super::seats::works_in;
@@ -657,17 +657,23 @@ fn attach_numbers(
     taken: &Taken,
     out: &mut [Mention],
 ) {
-    let own = |m: &Mention| m.numbered.map(|n| n.span);
+    let own = |m: &Mention| m.numbered.map(|n| n.span).or(m.number);
     let spans: Vec<Span> = out.iter().map(|m| m.span).chain(out.iter().filter_map(own)).collect();
+    // "로봇 5대 충전소", "机器人5台充电区": the number is of the machines before it
+    let behind = |n: &Number| {
+        let counts = tagged(tokens, n.span.end, spoken, Tag::Counters);
+        matches!(language, "zh" | "ko") && counts && taken.counted.iter().any(|s| s.end == n.span.start)
+    };
     let usable: Vec<&Number> = numbers
         .iter()
         .filter(|n| !taken.spans.iter().chain(&taken.head).chain(&spans).any(|s| s.overlaps(n.span)))
         // "거실 2층", "三层": so many storeys
-        .filter(|n| !tagged(tokens, n.span.end, spoken, Tag::Storeys))
+        .filter(|n| !tagged(tokens, n.span.end, spoken, Tag::Storeys) && !behind(n))
         .collect();
     let walls: Vec<Span> = spans.iter().chain(taken.counted).copied().collect();
     let mut used = vec![false; usable.len()];
-    for m in out.iter_mut().filter(|m| m.numbered.is_none_or(|n| !n.span.contains(m.span.start))) {
+    let open = |m: &&mut Mention| m.count.is_none() && m.numbered.is_none_or(|n| !n.span.contains(m.span.start));
+    for m in out.iter_mut().filter(open) {
         let after = || number_after(tokens, m.span.end, &usable, spoken, language);
         // the garage of "2 car garage" is one
         let holds = m.span.end > m.span.start + 1
@@ -716,7 +722,8 @@ fn number_before(
         }
         at = at.checked_sub(1)?;
         let token = &tokens[at];
-        if token.is_mark() || nouns.iter().any(|s| s.contains(at)) || matches!(token.kind, Kind::Number(_)) {
+        let number = matches!(token.kind, Kind::Number(_)) && !numbers::is_name(tokens, at, spoken);
+        if token.is_mark() || nouns.iter().any(|s| s.contains(at)) || number {
             return None;
         }
         let has = |tag| spoken.iter().any(|s| s.tag_at(tokens, at, tag) == Some(at + 1));

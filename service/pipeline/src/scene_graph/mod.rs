@@ -4,10 +4,12 @@
 //! with the modules about words, `program` completes the rooms, `rooms` names, sizes and furnishes them, `edges`
 //! connects them.
 
+mod addresses;
 mod apiece;
 mod beds;
 mod building;
 mod charging;
+mod comparisons;
 mod compounds;
 mod deal;
 mod docks;
@@ -15,6 +17,7 @@ mod dwelling;
 mod edges;
 mod fixtures;
 mod given;
+mod groups;
 mod homes;
 mod keeps;
 mod labels;

@@ -1,8 +1,8 @@
 //! Rooms with numbers of their own: "bedroom 1, bedroom 2", "bedrooms 1 to 4", "office A and office B". Such a number says
 //! which room is meant, and not how many there are.
 
-use super::mentions::Mention;
-use super::numbers::Number;
+use super::mentions::{Mention, What};
+use super::numbers::{self, Number};
 use super::text::{Kind, Span, Token};
 use super::words::{Spoken, Tag};
 
@@ -77,11 +77,19 @@ pub(super) fn read(
             ..Mention::plain(number.span, mention.what.clone())
         }));
     }
+    for m in out.iter_mut().filter(|m| m.room_type().is_some() || m.what == What::Total) {
+        if let Some((count, doors)) = reader.doors_behind(m) {
+            (m.count, m.number) = (Some(count), Some(doors));
+        }
+    }
     *mentions = out;
 }
 
 impl Reader<'_> {
     fn tagged(&self, i: usize, tag: Tag) -> Option<usize> {
+        if i >= self.tokens.len() {
+            return None;
+        }
         self.spoken.iter().find_map(|s| s.tag_at(self.tokens, i, tag))
     }
 
@@ -125,9 +133,33 @@ impl Reader<'_> {
         if let Some(letter) = letter.filter(|_| token.kind == Kind::Word) {
             return Some(Numbered { n: u32::from(letter - b'a') + 1, span: Span { start: i, end: i + 1 } });
         }
-        let number = self.numbers.iter().find(|n| n.span.start == i && !n.article && !n.vague)?;
-        let whole = (1.0..=MOST).contains(&number.value) && number.value.fract() == 0.0;
-        whole.then_some(Numbered { n: number.value as u32, span: number.span })
+        let (value, span) = match token.kind {
+            // "bedroom-2"
+            Kind::Number(value) if numbers::is_name(self.tokens, i, self.spoken) => {
+                (value, Span { start: i, end: i + 1 })
+            }
+            _ => {
+                let number = self.numbers.iter().find(|n| n.span.start == i && !n.article && !n.vague)?;
+                (number.value, number.span)
+            }
+        };
+        let whole = (1.0..=MOST).contains(&value) && value.fract() == 0.0;
+        whole.then_some(Numbered { n: value as u32, span })
+    }
+
+    /// Returns how many rooms the numbers of their doors tell, and where these stand: "rooms 101 to 110".
+    fn doors_behind(&self, rooms: &Mention) -> Option<(i64, Span)> {
+        let value = |i: usize| match self.tokens.get(i)?.kind {
+            Kind::Number(value) => Some(value),
+            _ => None,
+        };
+        let from = rooms.span.end;
+        let joint = self.tagged(from + 1, Tag::Range).filter(|end| value(*end).is_some());
+        let unspaced = || self.tokens.get(from + 1).filter(|t| !t.spaced).map(|_| from + 1);
+        let last = joint.or_else(unspaced)?;
+        let (first, to) = (value(from)?, value(last)?);
+        let doors = first > MOST && to > first && to - first < MOST && self.closes(last + 1);
+        doors.then_some((1 + (to - first) as i64, Span { start: from, end: last + 1 }))
     }
 
     /// Returns true where nothing follows that a number before it could count.

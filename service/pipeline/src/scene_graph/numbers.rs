@@ -3,6 +3,11 @@
 use super::text::{Kind, Span, Token};
 use super::words::{Spoken, Tag};
 
+/// Words before a number that it is the name of, at most: "biosafety level".
+const MOST_IN_NAME: usize = 3;
+/// Letters behind a number that are a unit or mean "times".
+const UNIT_LETTERS: [&str; 3] = ["m", "x", "k"];
+
 /// A number in the prompt.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Number {
@@ -54,7 +59,7 @@ fn unsigned_at(tokens: &[Token], i: usize, language: &str, spoken: &[&Spoken]) -
     let token = tokens.get(i)?;
     let found = |end: usize, value: f64| Number { span: Span { start: i, end }, value, article: false, vague: false };
     if let Kind::Number(value) = token.kind {
-        return Some(digits_at(tokens, i, value, spoken));
+        return (!is_name(tokens, i, spoken)).then(|| digits_at(tokens, i, value, spoken));
     }
     for s in spoken {
         if let Some((end, value)) = s.quantities.longest_at(tokens, i) {
@@ -76,6 +81,22 @@ fn unsigned_at(tokens: &[Token], i: usize, language: &str, spoken: &[&Spoken]) -
         }),
         _ => None,
     }
+}
+
+/// Returns true for digits that count nothing and belong to a name: "BSL-2", "221B", "class 100", "100级".
+pub(super) fn is_name(tokens: &[Token], i: usize, spoken: &[&Spoken]) -> bool {
+    let tagged = |i: usize, tag| spoken.iter().find_map(|s| s.tag_at(tokens, i, tag));
+    // "80sqm-100sqm" ends a measure with a word, "cleaning robot x2" counts
+    let word = |k: usize| tokens[k].kind == Kind::Word && tokens[k].text != "x";
+    let of_number = |k: usize| !tokens[k].spaced && k > 0 && matches!(tokens[k - 1].kind, Kind::Number(_));
+    let hyphened = !tokens[i].spaced && i.checked_sub(1).is_some_and(|k| word(k) && !of_number(k));
+    let lettered = tokens.get(i + 1).is_some_and(|t| {
+        let letter = t.kind == Kind::Word && t.capital && t.text.len() == 1;
+        letter && !t.spaced && !UNIT_LETTERS.contains(&t.text.as_str())
+    });
+    let named = (i.saturating_sub(MOST_IN_NAME)..i).any(|k| tagged(k, Tag::NumberNames) == Some(i));
+    let behind = tokens.get(i + 1).is_some_and(|t| !t.spaced) && tagged(i + 1, Tag::NumberNamesBehind).is_some();
+    hyphened || lettered || named || behind
 }
 
 /// Reads "4", "3-4" (the larger), "2.5 thousand".
@@ -262,6 +283,22 @@ mod tests {
     use super::super::text::tokens;
     use super::super::words::words;
     use super::*;
+
+    #[test]
+    fn digits_of_names_count_nothing() {
+        for (language, text, values) in [
+            ("en", "2 BSL-2 labs and 1 BSL-3 lab", vec![2.0, 1.0]),
+            ("en", "221B Baker Street", vec![]),
+            ("en", "a class 100 cleanroom, Type-2 meeting room", vec![1.0]),
+            ("en", "60-80 employees, 80sqm-100sqm, robots x2", vec![80.0, 80.0, 100.0, 2.0]),
+            ("de", "Reinraum der Klasse 5, 3 Labore", vec![3.0]),
+            ("zh", "100级洁净室，会议室3间", vec![3.0]),
+        ] {
+            let spoken = [&words().languages[language], &words().languages["en"]];
+            let found: Vec<f64> = numbers(&tokens(text), language, &spoken).iter().map(|n| n.value).collect();
+            assert_eq!(found, values, "{text}");
+        }
+    }
 
     #[test]
     fn reads_numbers_in_six_languages() {

@@ -5,11 +5,13 @@
 use d3dgen_model::domain::{Domain, Occupants, Program};
 use d3dgen_model::scene_graph::Note;
 
+use super::beds;
 use super::building::Part;
 use super::mentions::{Mention, What};
 use super::places::note;
 use super::text::{Span, Token};
 use super::wishes::{Wish, Wishes};
+use super::words::{Spoken, Tag};
 
 /// Room types that a department is planned with, at most.
 const MOST_TYPES: usize = 4;
@@ -30,7 +32,7 @@ pub(super) struct Parts {
 /// Adds the rooms of departments to the wishes; their beds are no longer those of the building.
 pub(super) fn plan(
     parts: &[Part],
-    tokens: &[Token],
+    (tokens, spoken): (&[Token], &[&Spoken]),
     mentions: &mut [Mention],
     wishes: &mut Wishes,
     (domain, program): (&Domain, &Program),
@@ -48,11 +50,14 @@ pub(super) fn plan(
             out.left.extend((!same).then(|| part.clone()));
             continue;
         };
-        let beds = beds_of(part.span, tokens, mentions);
-        let added = add_rooms(own, program, domain, beds, wishes);
+        // "a ward with 16 beds in double rooms" names the rooms that its beds are in
+        let slept_in = own.rooms.iter().any(|e| e.occupants == Occupants::Beds)
+            && are_in_rooms(part.span, (tokens, spoken), mentions, domain);
+        let beds = if slept_in { None } else { beds_of(part.span, tokens, mentions) };
+        let added = add_rooms(own, program, domain, (beds, slept_in), wishes);
         if added.is_empty() {
             let named = own.rooms.first().is_some_and(|e| wishes.wishes.iter().any(|w| w.room_type == e.room_type));
-            if named {
+            if named || slept_in {
                 out.planned.push(part.span)
             } else {
                 out.left.push(part.clone())
@@ -67,18 +72,42 @@ pub(super) fn plan(
     out
 }
 
+/// Returns true for the beds of a department.
+fn are_beds(m: &Mention, span: Span, tokens: &[Token]) -> bool {
+    let gap = span.end..m.from;
+    let behind = m.from >= span.end && gap.len() <= MOST_TO_BEDS && !gap.into_iter().any(|i| tokens[i].is_mark());
+    m.what == What::Beds && (behind || m.span.end == span.start)
+}
+
+/// Returns true for beds of a department that are said to be in rooms of a kind: "ward with 16 beds in double rooms".
+fn are_in_rooms(span: Span, (tokens, spoken): (&[Token], &[&Spoken]), mentions: &[Mention], domain: &Domain) -> bool {
+    let inside = |i: usize| spoken.iter().any(|s| s.tag_at(tokens, i, Tag::Inside).is_some());
+    mentions.windows(2).any(|pair| {
+        let [beds, rooms] = pair else { return false };
+        let kind = rooms.room_type().and_then(|id| domain.room_type(id));
+        let mut gap = beds.span.end..rooms.from.min(rooms.span.start);
+        let open = rooms.count.is_none() && gap.len() <= MOST_TO_BEDS;
+        are_beds(beds, span, tokens)
+            && open
+            && gap.any(inside)
+            && kind.is_some_and(|k| beds::sleeps(domain, k).is_some())
+    })
+}
+
 /// Returns the beds named with a department, and takes them from the building.
 fn beds_of(span: Span, tokens: &[Token], mentions: &mut [Mention]) -> Option<u32> {
-    let near = |m: &&mut Mention| {
-        let gap = span.end..m.from;
-        let behind = m.from >= span.end && gap.len() <= MOST_TO_BEDS && !gap.into_iter().any(|i| tokens[i].is_mark());
-        m.what == What::Beds && (behind || m.span.end == span.start)
-    };
-    let count = mentions.iter_mut().find(near)?.count.take()?;
+    let count = mentions.iter_mut().find(|m| are_beds(m, span, tokens))?.count.take()?;
     u32::try_from(count).ok().filter(|n| (1..=500).contains(n))
 }
 
-fn add_rooms(own: &Program, main: &Program, domain: &Domain, beds: Option<u32>, wishes: &mut Wishes) -> Vec<String> {
+/// Adds the first rooms of a department; those for its beds only where the prompt names none that these are in (`slept_in`).
+fn add_rooms(
+    own: &Program,
+    main: &Program,
+    domain: &Domain,
+    (beds, slept_in): (Option<u32>, bool),
+    wishes: &mut Wishes,
+) -> Vec<String> {
     let mut seen: Vec<&str> = Vec::new();
     let mut out = Vec::new();
     for entry in &own.rooms {
@@ -91,6 +120,7 @@ fn add_rooms(own: &Program, main: &Program, domain: &Domain, beds: Option<u32>, 
         let leads = seen.len() == 1;
         let known =
             !leads && main.rooms.iter().any(|e| e.room_type == id) || wishes.wishes.iter().any(|w| w.room_type == id);
+        let known = known || slept_in && entry.occupants == Occupants::Beds;
         if known || wishes.forbidden.iter().any(|f| f == id) {
             continue;
         }

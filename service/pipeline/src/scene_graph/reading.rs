@@ -28,8 +28,8 @@ use super::wishes::{self, MANY, PerHost, Text, Wish, Wishes};
 use super::words::{ByBedrooms, Spoken, Tag, words};
 use super::workers;
 use super::{
-    Request, apiece, docks, dwelling, fixtures, homes, keeps, language, layout, measures, numbers, qualities,
-    robot_rules, robots, seated, sharing, single, stays, umlauts, unread,
+    Request, addresses, apiece, comparisons, docks, dwelling, fixtures, groups, homes, keeps, language, layout,
+    measures, numbers, qualities, robot_rules, robots, seated, sharing, single, stays, umlauts, unread,
 };
 use crate::Error;
 
@@ -136,6 +136,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     let spoken: Vec<&Spoken> = languages.iter().filter_map(|l| words().languages.get(*l)).collect();
     let numbers = numbers::numbers(&tokens, language, &spoken);
     let mut place = places::locate(&tokens, prompt, &spoken);
+    place.spans.extend(addresses::find(&tokens, &spoken));
     let (mut assumptions, mut conflicts) = (place.assumptions, place.conflicts);
     if tokens.len() >= MAX_TOKENS {
         conflicts.push(note("prompt_cut", format!("only the first {MAX_TOKENS} words of the prompt were read")));
@@ -254,9 +255,6 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         told_again.extend(homes::sleep_where_one_lives(&tokens, &mut mentions, (domain, program), &spoken));
         homes::not_of_things(&tokens, &mut mentions, (domain, registry), (&languages, &spoken));
     }
-    if shared {
-        own_rooms(&mut mentions, domain);
-    }
     let sleeps = |id: &str| domain.room_type(id).is_some_and(|k| k.zone == Zone::Night);
     let own_room = lives.then(|| sharing::each_has_a_room(&tokens, &mentions, &spoken, sleeps)).flatten();
     if let Some(span) = own_room {
@@ -281,7 +279,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         let wards: Vec<Span> = building.words.iter().chain(&building.head).copied().collect();
         beds::of_several_wards(&mut mentions, &numbers, &wards);
     }
-    senses::settle(&tokens, &mut mentions, &vocabulary, domain, program);
+    senses::settle(&tokens, &mut mentions, &vocabulary, &spoken, (domain, program));
     subsets::settle(&tokens, &numbers, &spoken, &mut mentions, domain);
     let (mut seated, desk_words) =
         if lives { Default::default() } else { seated::read(&tokens, &mut mentions, (domain, program), &spoken) };
@@ -300,6 +298,13 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     seated.extend(single_offices);
     let (shared_offices, sharing_words) = apiece.one_for_all(&mut mentions);
     seated.extend(shared_offices);
+    let of_groups = groups::Reader { tokens: &tokens, numbers: &numbers, domain, program, spoken: &spoken };
+    let of_groups = of_groups.read(&mut mentions);
+    seated.extend(of_groups.held);
+    told_again.extend(of_groups.spans);
+    let rooms_of_groups = of_groups.rooms;
+    let (compared, compared_words) = comparisons::read(&tokens, &mut mentions, &spoken);
+    told_again.extend(compared_words);
     let elsewhere: Vec<Span> = machines.spans.iter().chain(&place_spans).chain(&building.head).copied().collect();
     let stations = stations::Reader {
         tokens: &tokens,
@@ -347,7 +352,9 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     let by_door = errand.entrance && docked.is_empty() && lives || at_door;
     docked.extend(by_door.then(|| domain.circulation.room_type.clone()));
     let said_styles = styles::of_building(said_styles, &mentions, language);
-    let mut said = relations::read(&tokens, &mentions, &spoken, language, building.head);
+    let built: Vec<Span> = building.words.iter().chain(&building.head).copied().collect();
+    let mut said = relations::read(&tokens, &mentions, &spoken, language, &built);
+    groups::belong_together(&tokens, &mentions, domain, &spoken, &mut said);
     compounds::relate(&compounds, &mentions, domain, &mut said);
     compounds::open_belongings(&tokens, &mentions, domain, &spoken, &mut said);
     if lives {
@@ -370,6 +377,8 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         storeys: &storey_of,
     };
     let mut wishes = wishes::gather(&text, &mut conflicts);
+    comparisons::settle(&compared, &mut wishes, &mut assumptions, &mut conflicts);
+    groups::house(&rooms_of_groups, &mut wishes, domain);
     if lives {
         homes::add_studio(&mut wishes, program, domain);
         wishes.closed.extend(compounds::closed_rooms(&tokens, &mentions, domain, &spoken));
@@ -426,7 +435,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         let meant = |r: &Robot| own.is_none_or(|kind| r.kind == kind) && !CARRIES.contains(&r.kind.as_str());
         robots.iter_mut().filter(|r| meant(r)).for_each(|r| r.room_types.clone_from(&kept));
     }
-    let rooms = relations::Reader::new(&tokens, &mentions, &spoken, language, building.head);
+    let rooms = relations::Reader::new(&tokens, &mentions, &spoken, language, &built);
     let asked = robot_rules::read(&rooms, &numbers, &machines.spans);
     spans.extend(asked.spans);
     let wished = |id: &String| wishes.wishes.iter().any(|w| &w.room_type == id);
@@ -437,9 +446,16 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     // "drei Stockwerken" ends in a word for a factory
     let storey = |p: &building::Part| spoken.iter().any(|s| s.tag_at(&tokens, p.span.start, Tag::Storeys).is_some());
     building.parts.retain(|p| !storey(p) && !spans.iter().any(|s| s.overlaps(p.span)));
-    let parts = parts::plan(&building.parts, &tokens, &mut mentions, &mut wishes, (domain, program), &mut assumptions);
+    let parts = parts::plan(
+        &building.parts,
+        (&tokens, &spoken),
+        &mut mentions,
+        &mut wishes,
+        (domain, program),
+        &mut assumptions,
+    );
     let mut people = People::read(&mentions, program, domain, &mut conflicts);
-    let mut held = Vec::new();
+    let (mut held, mut desks_told) = (Vec::new(), 0);
     let each_alone = lives && (shared || own_room.is_some());
     if lives {
         people.share_a_home(&tokens, &numbers, &mentions, &spoken);
@@ -457,6 +473,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
             people.occupancy.staff = people.occupancy.staff.max(Some(titled_heads));
         }
         let desks: u32 = seated.iter().map(|s| s.count.saturating_mul(s.beds)).fold(0, u32::saturating_add);
+        desks_told = desks;
         let heads = &mut people.occupancy;
         let counted = if heads.desks.is_some() || counts_desks { &mut heads.desks } else { &mut heads.staff };
         if counted.is_some() || counts_desks {
@@ -468,15 +485,13 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     if lives {
         wishes.join_to_fit(said, domain);
         conflicts.extend(homes::state_size(said));
+        if let Some((span, note)) = homes::state_several(&tokens, prompt, &numbers, &spoken) {
+            told_again.push(span);
+            conflicts.push(note);
+        }
     }
     let beside = workers::beside_rooms(&mut wishes, said.filter(|_| request.rooms.is_none()), domain, program);
     let total = beside.map_or_else(|| total_rooms(request, &mentions, &wishes, &mut conflicts), |n| Ok(Some(n)))?;
-    let listed: u64 = wishes.wishes.iter().map(|w| u64::from(w.count)).sum();
-    if listed > u64::from(MAX_ROOMS) {
-        return Err(refused(format!(
-            "the prompt asks for {listed} rooms; one world has {MAX_ROOMS} at most, ask for fewer"
-        )));
-    }
     let alone = storeys.levels.len() == 1 && short_forms.is_empty() && total.is_none_or(|n| n == 1);
     let alone = alone && unread_language.is_none();
     let one_room = total == Some(1) && building.head.is_none() && wishes.wishes.is_empty() && request.rooms.is_none();
@@ -498,9 +513,19 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     if closed && lives && !single {
         wishes.open_to(domain);
     }
+    if closed && total.is_none() && !single && !lives {
+        assumptions.extend(beds::house((domain, program), &people.occupancy, people.residents, &mut wishes));
+    }
+    let listed: u64 = wishes.wishes.iter().map(|w| u64::from(w.count)).sum();
+    if listed > u64::from(MAX_ROOMS) {
+        return Err(refused(format!(
+            "the prompt asks for {listed} rooms; one world has {MAX_ROOMS} at most, ask for fewer"
+        )));
+    }
     if closed && total.is_none() && !single {
         let named = building.head.and_then(|h| vocabulary.room_named(&tokens[h.start..h.end]));
-        assumptions.extend(add_main_room(&mut wishes, program, domain, &people, named.as_deref(), style.layout));
+        let people = (&people, desks_told);
+        assumptions.extend(add_main_room(&mut wishes, program, domain, people, named.as_deref(), style.layout));
     }
     spans.extend(station_words);
     spans.extend(told_again);
@@ -877,13 +902,20 @@ fn furnish_basement(storeys: &mut Storeys, wishes: &mut Wishes, domain: &Domain)
 /// Turns "habitaciones con baño" into guest rooms with bathrooms where the word alone means a public toilet, and "patient
 /// rooms with a bathroom each" into rooms with en suites where the word alone means one that several share.
 fn name_private_bathrooms(wishes: &mut Wishes, domain: &Domain, lives: bool) {
-    let shared = |id: &String| domain.room_type(id).is_some_and(|t| t.wet && t.access != Access::Host);
-    for pair in wishes.pairs.iter_mut().filter(|p| p.belongs && !lives && p.a == words().dwelling.bathroom) {
+    // of a type that the domain has not it is one of its own too: "chambres avec douche"
+    let shared = |id: &String| domain.room_type(id).is_none_or(|t| t.wet && t.access != Access::Host);
+    let washes = |id: &String| [&words().dwelling.bathroom, &words().dwelling.shower].contains(&id);
+    for pair in wishes.pairs.iter_mut().filter(|p| p.belongs && !lives && washes(&p.a)) {
         let mut own =
             domain.room_types.iter().filter(|t| t.wet && t.access == Access::Host && t.hosts.contains(&pair.b));
         let Some(own) = own.next().filter(|_| shared(&pair.a)) else { continue };
-        if let Some(wish) = wishes.wishes.iter_mut().find(|w| w.room_type == pair.a) {
-            wish.room_type.clone_from(&own.id);
+        let named = wishes.wishes.iter().any(|w| w.room_type == own.id);
+        match wishes.wishes.iter().position(|w| w.room_type == pair.a) {
+            Some(same) if named => {
+                wishes.wishes.remove(same);
+            }
+            Some(wish) => wishes.wishes[wish].room_type.clone_from(&own.id),
+            None => {}
         }
         pair.a.clone_from(&own.id);
     }
@@ -925,19 +957,6 @@ fn total_area(text: &Text, request: &Request, conflicts: &mut Vec<Note>) -> Opti
     }
     // One third of a millimeter squared of noise from unit factors helps nobody.
     request.area_m2.or(named).map(|a| (a * 100.0).round() / 100.0)
-}
-
-/// Takes the rooms of a home that people share for bedrooms where it names none: "student flat with five rooms".
-fn own_rooms(mentions: &mut [Mention], domain: &Domain) {
-    let bedroom = &words().dwelling.bedroom;
-    let sleeps = |id: &str| domain.room_type(id).is_some_and(|k| k.zone == Zone::Night);
-    let listed = mentions.iter().any(|m| m.room_type().is_some());
-    if !listed || mentions.iter().any(|m| m.room_type().is_some_and(sleeps)) {
-        return;
-    }
-    if let Some(m) = mentions.iter_mut().find(|m| m.what == What::Total && m.count.is_some() && !m.article) {
-        m.what = What::Room(bedroom.clone());
-    }
 }
 
 /// Returns the number of rooms that the prompt gives the building by its name.
@@ -1050,22 +1069,22 @@ fn add_main_room(
     wishes: &mut Wishes,
     program: &Program,
     domain: &Domain,
-    people: &People,
+    (people, desks_told): (&People, u32),
     named: Option<&str>,
     layout: Option<LayoutStyle>,
 ) -> Option<Note> {
     let heads = &people.occupancy;
-    let left_out = workers::room_left_out(wishes, program, domain, heads.staff, heads.desks);
+    let workers = heads.staff.max(heads.desks);
+    let left_out = workers::room_left_out(wishes, program, domain, workers, desks_told);
     let kind = left_out.or_else(|| main_room_left_out(wishes, program, domain, people, named))?;
     let ruled_out = wishes.forbidden.contains(&kind.id);
     let layout = if ruled_out { Some(LayoutStyle::Cellular) } else { layout };
-    let people = heads.staff.max(heads.desks);
-    if let Some(people) = people.filter(|_| layout == Some(LayoutStyle::Cellular))
+    if let Some(people) = workers.filter(|_| layout == Some(LayoutStyle::Cellular))
         && let Some(seated) = workers::seat_in_listed(wishes, domain, people)
     {
         return Some(seated);
     }
-    let laid_out = layout.zip(people).and_then(|(l, n)| layout::in_place_of(domain, &kind.id, l, n));
+    let laid_out = layout.zip(workers).and_then(|(l, n)| layout::in_place_of(domain, &kind.id, l, n));
     let (kind, count) = laid_out.or((!ruled_out).then_some((kind, 1)))?;
     let label = kind.label.to_lowercase();
     wishes.wishes.insert(0, Wish { count, ..Wish::one(&kind.id, &label) });
@@ -1082,7 +1101,10 @@ fn main_room_left_out<'a>(
 ) -> Option<&'a RoomType> {
     let main = program.rooms.first()?;
     let listed = |id: &str| wishes.wishes.iter().any(|w| w.room_type == id);
-    if is_dwelling(program) || listed(&main.room_type) || wishes.forbidden.contains(&main.room_type) {
+    // "a ward with 16 beds in double rooms" has no others
+    let slept_in = main.occupants == Occupants::Beds && beds::names_rooms(domain, wishes);
+    let ruled_out = wishes.forbidden.contains(&main.room_type);
+    if is_dwelling(program) || slept_in || listed(&main.room_type) || ruled_out {
         return None;
     }
     let works = |r: &ProgramRoom| {

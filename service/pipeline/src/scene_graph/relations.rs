@@ -61,10 +61,10 @@ pub(super) fn read(
     mentions: &[Mention],
     spoken: &[&Spoken],
     language: &str,
-    building: Option<Span>,
+    buildings: &[Span],
 ) -> Said {
     let mut said = Said { negated: negated(tokens, mentions, spoken, language), ..Said::default() };
-    let reader = Reader::new(tokens, mentions, spoken, language, building);
+    let reader = Reader::new(tokens, mentions, spoken, language, buildings);
     let mut i = 0;
     while i < tokens.len() {
         if mentions.iter().any(|m| m.span.contains(i)) {
@@ -128,8 +128,8 @@ pub(super) struct Reader<'a> {
     postposed: bool,
     /// True where what turns a relation round stands behind it.
     pub verb_last: bool,
-    /// Words that name the building.
-    building: Option<Span>,
+    /// Words for buildings.
+    buildings: &'a [Span],
 }
 
 impl<'a> Reader<'a> {
@@ -138,10 +138,10 @@ impl<'a> Reader<'a> {
         mentions: &'a [Mention],
         spoken: &'a [&'a Spoken],
         language: &str,
-        building: Option<Span>,
+        buildings: &'a [Span],
     ) -> Self {
         let postposed = matches!(language, "zh" | "ko" | "de");
-        Self { tokens, mentions, spoken, postposed, verb_last: language == "ko", building }
+        Self { tokens, mentions, spoken, postposed, verb_last: language == "ko", buildings }
     }
 }
 
@@ -344,7 +344,7 @@ fn belongings(reader: &Reader, said: &mut Said) {
         }
         let between = host.span.end..guest.from.min(guest.span.start);
         // "two-bedroom flat with a kitchen": the flat has it, not the bedroom
-        let of_building = reader.building.is_some_and(|b| between.clone().any(|i| b.contains(i)));
+        let of_building = reader.buildings.iter().any(|b| between.clone().any(|i| b.contains(i)));
         let apart = of_building || between.clone().any(|i| tokens[i].ends_sentence());
         if between.is_empty() || between.len() > 7 || apart {
             continue;

@@ -1,19 +1,21 @@
 //! Words for rooms that mean one thing here and another there: the control room beside a scanner is that scanner's, the
 //! treatment room of a dental practice has a dental chair.
 
-use d3dgen_model::domain::{Adjacency, AdjacencyRelation, Domain, Program};
+use d3dgen_model::domain::{Access, Adjacency, AdjacencyRelation, Domain, GENERIC_ROOM_TYPE, Program, Zone};
 
 use super::mentions::{Mention, Vocabulary, What};
 use super::text::Token;
+use super::words::{Spoken, Tag};
 
 /// Gives every mention of a room the type that its words have in this building.
 pub(super) fn settle(
     tokens: &[Token],
     mentions: &mut Vec<Mention>,
     vocabulary: &Vocabulary,
-    domain: &Domain,
-    program: &Program,
+    spoken: &[&Spoken],
+    (domain, program): (&Domain, &Program),
 ) {
+    count_guests(tokens, mentions, spoken, (domain, program));
     let mut more: Vec<(usize, Mention)> = Vec::new();
     for m in 0..mentions.len() {
         if mentions[m].room_type().is_none() {
@@ -49,6 +51,40 @@ pub(super) fn settle(
         let others = vocabulary.meanings_at(tokens, mention.span).filter(|_| !known);
         let meant = std::iter::once(&id).chain(others).find_map(|id| program.means.get(id));
         mention.what = What::Room(meant.unwrap_or(&id).clone());
+    }
+}
+
+/// Takes the number of rooms of a building that is all for guests for that of the rooms they sleep in: "hotel with 20 rooms".
+/// Those that the prompt names besides are some of them.
+fn count_guests(
+    tokens: &[Token],
+    mentions: &mut [Mention],
+    spoken: &[&Spoken],
+    (domain, program): (&Domain, &Program),
+) {
+    let Some(id) = program.means.get(GENERIC_ROOM_TYPE) else { return };
+    let night = |m: &Mention| {
+        let kind = m.room_type().and_then(|id| domain.room_type(id));
+        kind.is_some_and(|k| k.zone == Zone::Night && k.access != Access::Host)
+    };
+    let counts = |m: &Mention| m.what == What::Total && m.count.is_some_and(|n| n > 1) && !m.article && !m.vague;
+    let Some(at) = mentions.iter().position(counts) else { return };
+    // "20 rooms in total"
+    let all = &mentions[at];
+    let Some(n) = all.count.filter(|_| !(all.span.start..all.span.end).any(|i| tokens[i].text == "total")) else {
+        return;
+    };
+    // "20 rooms, including 4 suites" is told of these
+    let part = |m: &Mention| {
+        let mut gap = all.span.end..m.from.max(all.span.end);
+        gap.any(|i| spoken.iter().any(|s| s.tag_at(tokens, i, Tag::PartOf).is_some()))
+    };
+    let others = mentions.iter().filter(|m| night(m) && !part(m));
+    let others = others.map(|m| m.count.unwrap_or(if m.plural { 2 } else { 1 }).max(0)).fold(0, i64::saturating_add);
+    if n > others {
+        (mentions[at].what, mentions[at].count) = (What::Room(id.clone()), Some(n - others));
+    } else {
+        (mentions[at].count, mentions[at].number) = (None, None);
     }
 }
 

@@ -217,11 +217,41 @@ fn stated(text: &Text) -> Option<f64> {
         return ground_plus;
     }
     let by_number = numbers.iter().find(counted).map(|n| n.value);
+    by_number.or_else(|| said_by_word(text))
+}
+
+/// Returns the number of storeys that a word for the building says: "bungalow", "duplex".
+fn said_by_word(text: &Text) -> Option<f64> {
+    let Text { tokens, spoken, phrases, head, .. } = *text;
     let by_word = |counts: &Phrases<f64>| (0..tokens.len()).find_map(|i| counts.longest_at(tokens, i).map(|f| *f.1));
     // a "ground-floor maisonette" has one storey of its house
     let placed = phrases.iter().any(|p| !p.noun && head.is_some_and(|h| h.start == p.span.end));
-    let counts = || spoken.iter().find_map(|s| by_word(&s.storey_counts)).filter(|_| !placed);
-    by_number.or_else(counts)
+    spoken.iter().find_map(|s| by_word(&s.storey_counts)).filter(|_| !placed)
+}
+
+/// Says that a building of one storey is to have more: "bungalow with three storeys", "one-storey house with an upper floor".
+fn state_more_than_one(text: &Text, stated: i32, conflicts: &mut Vec<Note>) {
+    let Text { tokens, spoken, phrases, .. } = *text;
+    if stated > 1 && said_by_word(text) == Some(1.0) {
+        let message = format!("the prompt asks for one storey and for {stated}; {stated} were planned");
+        conflicts.push(note("contradicting_storeys", message));
+    }
+    let tagged = |i: usize, tags: &[Tag]| spoken.iter().any(|s| tags.iter().any(|&t| s.tag_at(tokens, i, t).is_some()));
+    let above = |at: Where| match at {
+        Where::Level(n) => n > 0,
+        Where::Nth(n) => n > 1,
+        Where::Upper | Where::Top => true,
+        Where::Each => false,
+    };
+    // "with an upper floor" is what the building has, "on the upper floor" where something is
+    let own = |p: &Phrase| {
+        let before = p.span.start.checked_sub(1);
+        before.is_some_and(|i| tagged(i, &[Tag::Articles, Tag::Starts, Tag::Joins])) && above(p.at)
+    };
+    if stated == 1 && phrases.iter().any(own) {
+        let message = "one storey was asked for, and one above it too; the number was followed".to_owned();
+        conflicts.push(note("contradicting_storeys", message));
+    }
 }
 
 /// Words between a number and the elevators that it counts, at most: "two large passenger lifts".
@@ -312,6 +342,8 @@ pub(super) fn read(text: &Text, country: Option<&str>, conflicts: &mut Vec<Note>
         None if several => highest,
         None => 0,
     };
+    let own = stated.filter(|_| highest <= top);
+    own.into_iter().for_each(|n| state_more_than_one(text, n, conflicts));
     if stated.is_some() && highest > top {
         let message = format!(
             "{} storeys were asked for, but rooms on {} are named; {} were planned",

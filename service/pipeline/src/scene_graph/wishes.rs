@@ -495,7 +495,7 @@ fn is_reference(text: &Text, m: usize, first: bool) -> bool {
         return true;
     }
     if first {
-        return false;
+        return is_told_again(text, m);
     }
     let subject = text.said.subjects.contains(&m);
     if mention.definite || subject && !numbered {
@@ -507,6 +507,30 @@ fn is_reference(text: &Text, m: usize, first: bool) -> bool {
     // A bare repeated word is a room of its own only as a list item.
     let mark = |i: Option<usize>| i.and_then(|i| text.tokens.get(i)).is_none_or(Token::is_mark);
     !(mark(mention.from.checked_sub(1)) && mark(Some(mention.end())))
+}
+
+/// Returns true for the first mention of a room that only says something of it, where the prompt lists it behind that: "the
+/// kitchen must be next to the hall. A house with a kitchen ...", "robots stay out of the bathroom, one bathroom, ...".
+fn is_told_again(text: &Text, m: usize) -> bool {
+    let mention = &text.mentions[m];
+    if mention.count.is_some() || mention.numbered.is_some() || text.said.every.contains(&m) {
+        return false;
+    }
+    let mark = |i: Option<usize>| i.and_then(|i| text.tokens.get(i)).is_none_or(Token::is_mark);
+    let related = text.said.subjects.contains(&m) || text.said.objects.contains(&m);
+    let listed = |o: usize| {
+        let other = &text.mentions[o];
+        let item = mark(other.from.checked_sub(1)) && mark(Some(other.end()));
+        let counted = other.count.is_some() && !other.vague;
+        let told = text.said.subjects.contains(&o) || text.said.objects.contains(&o);
+        other.what == mention.what
+            && !other.definite
+            && other.numbered.is_none()
+            && !text.said.negated.contains(&o)
+            && (counted || item && !told)
+    };
+    let parted = |o: usize| (mention.end()..text.mentions[o].from).any(|i| text.tokens[i].ends_sentence());
+    (m + 1..text.mentions.len()).any(|o| listed(o) && (mention.definite || related && parted(o)))
 }
 
 /// Returns true for a room on a storey where the prompt names no other of its type: "two bedrooms on the first floor, on the
@@ -571,27 +595,36 @@ fn room_area(text: &Text, mention: &Mention) -> Option<f64> {
             let after = mention.span.end..area.span.start;
             let before = area.span.end..mention.from;
             let short = |range: &std::ops::Range<usize>| {
-                range.start <= range.end
-                    && range.len() <= MOST_TO_AREA
-                    && range.clone().all(|i| {
-                        let t = &text.tokens[i];
-                        matches!(
-                            t.text.as_str(),
-                            "of" | "with" | "mit" | "von" | "de" | "d" | "con" | "a" | "à" | "about" | "each" | "etwa"
-                        ) || is_measure(text.tokens, i)
-                            || (t.mark() == Some(',') && text.prompt.as_bytes().get(t.start) == Some(&b'('))
-                    })
+                range.start <= range.end && range.len() <= MOST_TO_AREA && leads_to_area(text, range.clone())
             };
-            (area.sides || mention.span.start >= text.list_from.min(text.tokens.len()))
+            // "flat, living room of at least 30 m2": an item by its mark
+            let item = mention.from.checked_sub(1).is_some_and(|i| text.tokens[i].is_mark()) && !after.is_empty();
+            (area.sides || item || mention.span.start >= text.list_from.min(text.tokens.len()))
                 && (area.span.start >= mention.span.end && short(&after)
                     || area.span.end <= mention.from && before.is_empty())
         })
         .map(|area| area.value)
 }
 
-/// Returns true for words between a room and its area: "at least".
-fn is_measure(tokens: &[Token], i: usize) -> bool {
-    words().languages.values().any(|s| s.tag_at(tokens, i, Tag::Measure).is_some())
+/// Returns true for words between a room and its area: "of", "larger than", "of at least".
+fn leads_to_area(text: &Text, words: std::ops::Range<usize>) -> bool {
+    let mut at = words.start;
+    while at < words.end {
+        let token = &text.tokens[at];
+        let little = ["of", "with", "mit", "von", "de", "d", "con", "a", "à", "about", "each", "etwa"];
+        let bracket = token.mark() == Some(',') && text.prompt.as_bytes().get(token.start) == Some(&b'(');
+        match measure_end(text.tokens, at).filter(|end| *end <= words.end) {
+            Some(end) => at = end,
+            None if bracket || little.contains(&token.text.as_str()) => at += 1,
+            None => return false,
+        }
+    }
+    true
+}
+
+/// Returns the end of words between a thing and its measure: "at least".
+fn measure_end(tokens: &[Token], i: usize) -> Option<usize> {
+    words().languages.values().filter_map(|s| s.tag_at(tokens, i, Tag::Measure)).max()
 }
 
 /// Returns true when an area belongs to a room, not to the building.

@@ -179,7 +179,42 @@ pub(super) enum Tag {
     SharedWords,
     /// Where one sleeps in a room that is for more: "sleeping area", "coin nuit".
     SleepingPlaces,
+    /// People who are counted together and have rooms of their own: "groups", "teams".
+    Groups,
+    /// Homes, of which a building may have several: "flats", "units".
+    Homes,
+    /// Leads to those that something is for: "for".
+    For,
+    /// What a number behind them is the name of: "class 100", "type 2".
+    NumberNames,
+    /// The same where the number stands before them: "100级", "3호".
+    NumberNamesBehind,
+    /// "Fewer bedrooms than bathrooms".
+    Fewer,
+    More,
+    Than,
+    /// Words for streets behind their names: "Street", "road".
+    Streets,
+    /// The same before the name: "rue", "calle".
+    StreetsBefore,
+    /// Ends of German names of streets: "-strasse".
+    StreetEnds,
 }
+
+/// Tags of words that only their own reader hears: to all others these are words like any.
+const QUIET: [Tag; 11] = [
+    Tag::Groups,
+    Tag::Homes,
+    Tag::For,
+    Tag::NumberNames,
+    Tag::NumberNamesBehind,
+    Tag::Fewer,
+    Tag::More,
+    Tag::Than,
+    Tag::Streets,
+    Tag::StreetsBefore,
+    Tag::StreetEnds,
+];
 
 /// Words of one language.
 #[derive(Debug, Deserialize)]
@@ -384,6 +419,8 @@ pub(super) struct Words {
 pub(super) struct Spoken {
     pub words: Language,
     pub tags: Phrases<Vec<Tag>>,
+    /// Phrases of tags that only one reader hears.
+    quiet: Phrases<Vec<Tag>>,
     pub quantities: Phrases<f64>,
     pub levels: Phrases<Where>,
     pub levels_elided: Phrases<Where>,
@@ -412,7 +449,8 @@ impl Spoken {
 
     /// Returns the end of the longest phrase with this tag that begins at a token.
     pub(super) fn tag_at(&self, tokens: &[Token], i: usize, tag: Tag) -> Option<usize> {
-        self.tags.longest_at(tokens, i).filter(|(_, tags)| tags.contains(&tag)).map(|(end, _)| end)
+        let phrases = if QUIET.contains(&tag) { &self.quiet } else { &self.tags };
+        phrases.longest_at(tokens, i).filter(|(_, tags)| tags.contains(&tag)).map(|(end, _)| end)
     }
 }
 
@@ -453,12 +491,13 @@ pub(super) fn words() -> &'static Words {
 }
 
 fn spoken(code: &str, words: Language) -> Spoken {
-    let mut tags = Phrases::new("");
+    let (mut tags, mut quiet) = (Phrases::new(""), Phrases::new(""));
     let robots = [Tag::Clean, Tag::Deliver, Tag::Serve, Tag::Transport, Tag::OtherRobot];
     for (tag, phrases) in &words.phrases {
         let plurals = phrases.iter().filter(|_| robots.contains(tag)).flat_map(|p| robot_forms(code, p));
+        let known = if QUIET.contains(tag) { &mut quiet } else { &mut tags };
         for phrase in phrases.iter().cloned().chain(plurals) {
-            tags.put(&phrase, vec![*tag], |old: &Vec<Tag>, new| {
+            known.put(&phrase, vec![*tag], |old: &Vec<Tag>, new| {
                 if old.contains(&new[0]) { old.clone() } else { [old.clone(), new.clone()].concat() }
             });
         }
@@ -501,6 +540,7 @@ fn spoken(code: &str, words: Language) -> Spoken {
         multipliers,
         words,
         tags,
+        quiet,
         quantities,
         levels,
         levels_elided,

@@ -39,15 +39,16 @@ fn open_kind(domain: &Domain) -> Option<&RoomType> {
     domain.room_types.iter().max_by_key(|k| most_desks(domain, k)).filter(|k| most_desks(domain, k) > MOST_IN_TEAM)
 }
 
-/// Returns the room that a list leaves out which names those who work there and no room with desks enough for them.
+/// Returns the room that a list leaves out which names those who work there and no room with desks enough for them: neither
+/// by the types of its rooms nor by the desks that it gives these (`told`).
 pub(super) fn room_left_out<'a>(
     wishes: &Wishes,
     program: &Program,
     domain: &'a Domain,
     people: Option<u32>,
-    desks: Option<u32>,
+    told: u32,
 ) -> Option<&'a RoomType> {
-    let heads = people.max(desks).filter(|_| is_office(program))?;
+    let heads = people.filter(|n| *n > told && is_office(program))?;
     let kind = open_kind(domain)?;
     let holds = |w: &Wish| w.count.saturating_mul(domain.room_type(&w.room_type).map_or(0, |k| most_desks(domain, k)));
     let have = wishes.wishes.iter().map(holds).fold(0, u32::saturating_add);

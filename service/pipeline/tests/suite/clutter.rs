@@ -19,7 +19,7 @@ const CASES: [(&str, f64); 9] = [
     ("hospital ward with 8 rooms in Germany", 2.0),
     ("outpatient clinic with 8 rooms", 2.0),
     ("primary school with four classrooms", 2.0),
-    ("hotel with 9 rooms", 2.0),
+    ("hotel with 9 rooms in total", 2.0),
     ("clothing shop", 2.0),
     ("restaurant", 2.0),
     ("warehouse with a loading dock, an office and charging for two robots", 0.5),

@@ -306,6 +306,13 @@ fn reads_what_an_audit_found() {
 }
 
 #[test]
+fn reads_counts_and_groups() {
+    let (right, all) = score(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/prompts/counts.jsonl"));
+    assert!(all >= 80, "{all} prompts");
+    assert_eq!(right, all);
+}
+
+#[test]
 fn reads_how_rooms_lie_to_each_other() {
     let (right, all) = score(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/prompts/relations.jsonl"));
     assert!(all >= 45, "{all} prompts");

@@ -165,7 +165,7 @@ fn rooms_with_a_ceiling_have_a_lamp() {
     for prompt in [
         "hospital ward with 8 rooms",
         "outpatient clinic with 8 rooms",
-        "hotel with 9 rooms",
+        "hotel with 9 rooms in total",
         "supermarket",
         "warehouse with 6 rooms",
     ] {
