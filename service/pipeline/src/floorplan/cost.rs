@@ -552,8 +552,11 @@ impl<'b> Judge<'b> {
             let around = layout.boxes.iter().map(|(_, b)| *b).reduce(Cellbox::around);
             score.open = around.map_or(0.0, |all| 1.0 - total / all.area_m2());
         }
-        score.soft[7] +=
-            FAR_FROM_STATION * self.ways_to_stations(layout).map(|m| (m - NEAR_STATION_M).max(0.0)).sum::<f64>();
+        // one station stands where it sees most doors; several share the beds out
+        if self.stations.len() > 1 {
+            let far = self.ways_to_stations(layout).map(|way| (way - NEAR_STATION_M).max(0.0));
+            score.soft[7] += FAR_FROM_STATION * far.sum::<f64>();
+        }
         let size = total.sqrt().max(1.0);
         // from a hall guests go to the room where they sit: at which end of it one comes in is not known yet
         let in_hall = brief.rooms.iter().position(|r| r.entrance) == brief.spine;
@@ -591,10 +594,11 @@ impl<'b> Judge<'b> {
     /// Returns how far it is from each bedroom to the nearest station, m; nothing where there is no station.
     pub(super) fn ways_to_stations<'a>(&'a self, layout: &'a Layout) -> impl Iterator<Item = f64> + 'a {
         let place = |room: &usize| Some(self.survey.rooms[*room].main?.center2());
+        let round = layout.round.as_ref().filter(|_| self.stations.len() > 1);
         let beds = self.beds.iter().filter_map(place);
         beds.filter_map(move |bed| {
             let stations = self.stations.iter().filter_map(place);
-            stations.map(|station| walk(layout.round.as_ref(), bed, station)).reduce(f64::min)
+            stations.map(|station| walk(round, bed, station)).reduce(f64::min)
         })
     }
 

@@ -33,7 +33,8 @@ const TINY: usize = 5;
 /// Runs with one scheme for a large building in one body, the rooms from which on the first sound one of them does, and what
 /// its first choice counts beside others.
 const WHOLE_RUNS: usize = 2;
-/// Runs of which the best is taken where corridors are to run around: few of such plans are sound, and they differ much.
+/// Runs of which the best is taken where corridors run around, for these plans differ much; with one station the first sound one
+/// is taken as elsewhere, for what that station sees counts little beside the rest.
 const RING_RUNS: usize = 4;
 const MEDIUM: usize = 40;
 const FAVORED: f64 = 0.92;
@@ -117,9 +118,10 @@ fn search_whole(
     stop: Stop<'_>,
 ) -> Option<Candidate> {
     let mut judge = Judge::new(brief);
+    let compared = brief.ring.is_some() && judge.stations.len() != 1;
     let mut best: Option<(f64, (Genome, Candidate))> = None;
     for (n, scheme) in schemes.iter().filter(|s| **s != Scheme::Comb).enumerate() {
-        for _ in 0..if brief.ring.is_some() { RING_RUNS } else { WHOLE_RUNS } {
+        for _ in 0..if compared { RING_RUNS } else { WHOLE_RUNS } {
             let least = best.as_ref().map_or(f64::MAX, |b| b.0);
             let found = anneal(brief, &mut judge, *scheme, (weights, least, true), rng, stop);
             if found.1.score.is_sound() {
@@ -128,7 +130,7 @@ fn search_whole(
                 if best.as_ref().is_none_or(|(least, _)| cost < *least) {
                     best = Some((cost, found));
                 }
-                if brief.rooms.len() > MEDIUM && brief.ring.is_none() {
+                if brief.rooms.len() > MEDIUM && !compared {
                     break;
                 }
             }
