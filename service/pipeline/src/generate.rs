@@ -240,7 +240,9 @@ fn attempts(
     let picky = !pinned && graph.rooms.len() <= (FEW_ROOMS * graph.level_numbers().len()).min(FEW_ON_STOREYS);
     let mut best: Option<(Faults, Generated)> = None;
     let mut reason = None;
-    for attempt in 0..settings.attempts.max(1) {
+    // the storeys of a building have to suit each other: that takes more attempts
+    let most = settings.attempts.max(1) * if graph.links.is_empty() { 1 } else { 2 };
+    for attempt in 0..most {
         if attempt >= FEW_ATTEMPTS && best.as_ref().is_some_and(|(least, _)| least.broken == 0) {
             break;
         }

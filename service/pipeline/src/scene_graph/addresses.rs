@@ -41,7 +41,9 @@ impl Reader<'_> {
         let lettered = |i: usize| self.tokens.get(i).is_some_and(|t| !t.spaced && t.text.len() == 1);
         let number = Some(end).filter(|&i| self.is_number(i))?;
         let to = if lettered(number + 1) { number + 2 } else { number + 1 };
-        self.tokens.get(to).is_none_or(|t| t.is_mark() || self.tagged(to, Tag::Stops).is_some()).then_some(to)
+        let goes_on =
+            |t: &Token| t.is_mark() || [Tag::Stops, Tag::Starts].iter().any(|&t| self.tagged(to, t).is_some());
+        self.tokens.get(to).is_none_or(goes_on).then_some(to)
     }
 
     /// Returns where the number of a house before its street begins: "221", "221B".

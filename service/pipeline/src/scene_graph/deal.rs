@@ -83,9 +83,9 @@ pub(super) fn deal(reading: &mut Reading, planned: &[Planned], areas: &[f64], le
     let open = |at: &[Option<i32>], likes: Likes, clusters: &[Cluster]| -> Vec<usize> {
         (0..clusters.len()).filter(|&i| at[i].is_none() && clusters[i].likes == likes).collect()
     };
+    let own_storeys = units(&clusters, &at, |_| false).len() == above.len();
     let flushes = |c: &Cluster| c.rooms.iter().all(|&r| reading.wet.has_toilet(planned[r].kind));
-    let units = units(&clusters, &at, |c| c.likes == Likes::Each && flushes(c));
-    let own_storeys = units.len() == above.len();
+    let units = units(&clusters, &at, |c| own_storeys && c.likes == Likes::Each && flushes(c));
     for (n, (rooms, area)) in units.into_iter().enumerate() {
         let fits = |l: &&i32| load(&at, &clusters, **l) + 0.5 * area <= mean;
         let level = if own_storeys { above.get(n) } else { above.iter().find(fits) }.copied();

@@ -289,7 +289,7 @@ mod tests {
         for (language, text, values) in [
             ("en", "2 BSL-2 labs and 1 BSL-3 lab", vec![2.0, 1.0]),
             ("en", "221B Baker Street", vec![]),
-            ("en", "a class 100 cleanroom, Type-2 meeting room", vec![1.0]),
+            ("en", "class 100 cleanroom, Type-2 meeting room, 3 offices", vec![3.0]),
             ("en", "60-80 employees, 80sqm-100sqm, robots x2", vec![80.0, 80.0, 100.0, 2.0]),
             ("de", "Reinraum der Klasse 5, 3 Labore", vec![3.0]),
             ("zh", "100级洁净室，会议室3间", vec![3.0]),
