@@ -157,7 +157,7 @@ fn storeys_stand_on_those_below() {
         "two-storey house with living room, dining room, kitchen, 3 bedrooms, 2 bathrooms",
         "student house with three storeys, six bedrooms, three bathrooms, kitchen and living room",
     ] {
-        for world in worlds(prompt, 2) {
+        for world in worlds(prompt, 5) {
             held.push(!world.floorplan.conflicts.iter().any(|n| n.code == "overhang"));
             let edges = |level: i32| {
                 let all = world.floorplan.rooms.iter().filter(move |r| r.level == level).map(|r| r.polygon.bounds());

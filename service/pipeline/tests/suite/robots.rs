@@ -97,7 +97,7 @@ fn floor_is_cleaned_in_a_stated_order() {
 fn a_round_goes_from_goal_to_goal_on_free_floor_and_home() {
     let registry = Registry::builtin();
     let mut plays: Vec<f64> = Vec::new();
-    for (prompt, seed) in PROMPTS.into_iter().flat_map(|p| (0..2).map(move |s| (p, s))) {
+    for (prompt, seed) in PROMPTS.into_iter().flat_map(|p| (0..4).map(move |s| (p, s))) {
         let world = world(&registry, prompt, seed);
         for task in &world.scenario.robots {
             let storey = world.storey(task.level);
