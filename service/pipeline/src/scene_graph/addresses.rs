@@ -38,7 +38,8 @@ impl Reader<'_> {
 
     /// Returns the end of the number of a house behind its street: one that counts nothing that follows.
     fn house_behind(&self, end: usize) -> Option<usize> {
-        let lettered = |i: usize| self.tokens.get(i).is_some_and(|t| !t.spaced && t.text.len() == 1);
+        let lettered =
+            |i: usize| self.tokens.get(i).is_some_and(|t| t.kind == Kind::Word && !t.spaced && t.text.len() == 1);
         let number = Some(end).filter(|&i| self.is_number(i))?;
         let to = if lettered(number + 1) { number + 2 } else { number + 1 };
         let goes_on =
