@@ -19,7 +19,7 @@ use super::search::Candidate;
 use super::windows::LEAST_WALL_M;
 use crate::Error;
 use crate::placement::has_docks;
-use crate::scene_graph::{BY_PROMPT, brings, rules_here};
+use crate::scene_graph::{BY_PROMPT, rules_here};
 
 /// Code of the conflict that a building has another form than was asked for.
 const FORM_NOT_BUILT: &str = "form_not_built";
@@ -78,6 +78,8 @@ pub(super) struct RoomSpec {
     pub slides: bool,
     /// True for rooms whose doors open by themselves, for robots.
     pub automatic: bool,
+    /// True for rooms that robots stay out of.
+    pub kept_out: bool,
     pub entrance: bool,
     /// True for a room that the prompt wants near the entrance.
     pub by_entrance: bool,
@@ -502,11 +504,9 @@ fn room_spec(
     door_width = door_width.max(advised);
     // A robot's circle passes with 5 cm to spare on both sides.
     let robot = graph.robots.iter().map(|r| 2.0 * r.planned_radius_m() + 0.1).fold(0.0, f64::max);
-    // what brings something opens no leaf; where a robot only cleans, the door stands open meanwhile
     let robots = !graph.robots.is_empty();
-    let brought = graph.robots.iter().any(|r| brings(&r.kind));
-    let served = room.circulation || kind.robot.iter().any(|u| matches!(u, RobotUse::Service | RobotUse::Staging));
-    let automatic = brought && served && !kind.robot.contains(&RobotUse::KeepOut) && domain.circulation.automatic_doors;
+    let works = kind.robot.iter().any(|u| *u != RobotUse::KeepOut);
+    let automatic = robots && works && domain.circulation.automatic_doors;
     // what hangs in the air or lies below the ground has no drive
     let gate = gate(domain, kind).filter(|_| room.level == 0);
     RoomSpec {
@@ -530,6 +530,7 @@ fn room_spec(
         // who uses a wheelchair has no floor to spare for a leaf
         slides: kind.sliding_door || graph.accessible && kind.wet && kind.privacy == Privacy::Private || automatic,
         automatic,
+        kept_out: kind.robot.contains(&RobotUse::KeepOut),
         entrance: room.entrance,
         by_entrance: is_by_entrance(room, graph),
         for_guests: is_for_guests(room, graph, domain),

@@ -33,6 +33,7 @@ fn room(id: &str, area: [f64; 3], min_dimension: f64, daylight: Daylight, zone: 
         desk_rows: false,
         slides: false,
         automatic: false,
+        kept_out: false,
         entrance: false,
         by_entrance: false,
         for_guests: false,

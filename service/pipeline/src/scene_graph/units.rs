@@ -7,8 +7,9 @@ use super::program::{Planned, fill_unit, head_count, is_counted};
 use super::reading::Reading;
 use super::vital::guests;
 
-/// Rooms of a storey that is a unit of its own, at least.
-const LEAST_ON_STOREY: usize = 6;
+/// Rooms of a storey that is a unit of its own, at least, and of one whose number is open.
+const LEAST_ON_STOREY: usize = 10;
+const USUAL_ON_STOREY: usize = 16;
 
 /// A unit to be.
 struct Unit<'a> {
@@ -31,8 +32,9 @@ pub(super) fn divide<'a>(reading: &mut Reading<'a>, rooms: Vec<Planned<'a>>) -> 
         [program].into_iter().chain(later).take(count).map(|program| Unit { program, rooms: Vec::new() }).collect();
     let rooms_in_all = rooms.len();
     let fixed = fixed_rooms(reading, rooms);
-    // storeys of a building whose size is open have as many rooms as it would have on one
-    let usual = if is_open(reading) { program.default_rooms as usize * count } else { rooms_in_all };
+    // storeys of a building whose size is open have as many rooms as it would have on one, and those of a unit
+    let usual = (program.default_rooms as usize).max(USUAL_ON_STOREY) * count;
+    let usual = if is_open(reading) { usual } else { rooms_in_all };
     let total = reading.total.map(|total| total as usize).or_else(|| (storeys > 1).then_some(usual));
     let free = total.map(|total| total.saturating_sub(fixed.len()));
     spread(fixed, &mut units);

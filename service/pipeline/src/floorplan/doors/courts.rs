@@ -55,7 +55,7 @@ impl Site<'_> {
     /// Returns the places for a door from a stretch to the court on its other side: in the middle of a corridor's wall, at the
     /// ends of a room's, which keeps its window.
     fn court_spots(&self, s: &Stretch) -> Vec<Spot> {
-        let Some((room, from_room)) = s.only_room().and_then(|room| Some((room, self.from_room(room)?))) else {
+        let Some((room, penalty_of)) = s.only_room().and_then(|room| Some((room, self.penalty_of(room)?))) else {
             return Vec::new();
         };
         let clear = self.brief.entrance_width;
@@ -66,12 +66,12 @@ impl Site<'_> {
             return Vec::new();
         }
         let starts = if window > 0.0 { vec![from, to - opening] } else { vec![(from + to - opening) / 2.0] };
-        let penalty = from_room + LESS_WALL * (ROOMY_WALL_M - (to - from)).max(0.0);
+        let penalty = penalty_of + LESS_WALL * (ROOMY_WALL_M - (to - from)).max(0.0);
         starts.into_iter().filter_map(|start| self.outward_spot(s, room, (start, clear), penalty)).collect()
     }
 
     /// Returns what a door from a room to a court costs beside one from a corridor; `None` for rooms that are private.
-    fn from_room(&self, room: usize) -> Option<f64> {
+    fn penalty_of(&self, room: usize) -> Option<f64> {
         let spec = &self.brief.rooms[room];
         match spec.zone {
             _ if spec.circulation => (!spec.fixed).then_some(0.0),

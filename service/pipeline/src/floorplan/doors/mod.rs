@@ -549,8 +549,10 @@ impl Site<'_> {
         let elevator = rooms.iter().any(|&r| self.brief.rooms[r].elevator);
         // robots open no leaf
         let docks = rooms.iter().any(|&r| self.brief.rooms[r].docks && !self.brief.rooms[r].circulation);
-        // a corridor's doors are those of the rooms beside it
-        let automatic = elevator || docks || rooms.iter().all(|&r| self.brief.rooms[r].automatic);
+        // nobody wants the door of a stairwell to open to a robot that passes
+        let kept_out = rooms.iter().any(|&r| self.brief.rooms[r].kept_out);
+        let works = rooms.iter().any(|&r| self.brief.rooms[r].automatic) && !kept_out;
+        let automatic = elevator || docks || works;
         let slides = automatic
             || self.brief.rooms[into].slides
             || leaf * leaf > SLIDING_SHARE * self.net_m2[into]
