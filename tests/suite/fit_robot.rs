@@ -60,7 +60,7 @@ fn doors_and_corridors_grow_until_the_robot_fits_and_all_judges_agree() {
 #[test]
 fn a_robot_that_cannot_fit_is_refused_with_one_that_does() {
     let home = tempfile::tempdir().unwrap();
-    // offices have room for it
+    // offices have room for it, and a studio grows until it has
     for prompt in ["flat with 5 rooms, for a delivery robot", "flat with 7 rooms, for a delivery robot", PROMPTS[2]] {
         let flags = ["generate", prompt, "--seed", "2", "--robot-width", "2.8", "--fit-robot", "--out", "w"];
         let output = run(home.path(), &flags);

@@ -8,7 +8,7 @@ use super::reading::Reading;
 use super::vital::guests;
 
 /// Rooms of a storey that is a unit of its own, at least, and of one whose number is open.
-const LEAST_ON_STOREY: usize = 10;
+const LEAST_ON_STOREY: usize = 12;
 const USUAL_ON_STOREY: usize = 16;
 
 /// A unit to be.
@@ -23,8 +23,9 @@ pub(super) fn divide<'a>(reading: &mut Reading<'a>, rooms: Vec<Planned<'a>>) -> 
     let program = reading.program;
     // twenty patient rooms with their en suites are one ward
     let along = rooms.iter().filter(|r| r.kind.access != Access::Host).count();
-    let storeys = own_storeys(reading, along);
-    let large = |u: &&Units| !reading.closed && (along >= u.from_rooms as usize || storeys > 1);
+    let is_large = |u: &Units| along >= u.from_rooms as usize;
+    let storeys = own_storeys(reading, along, program.units.as_ref().is_some_and(is_large));
+    let large = |u: &&Units| !reading.closed && (is_large(u) || storeys > 1);
     let Some(rules) = program.units.as_ref().filter(large) else { return rooms };
     let count = ((rooms.len() as f64 / f64::from(rules.rooms)).round() as usize).max(2).max(storeys);
     let later = rules.programs.iter().filter_map(|id| reading.domain.program(id)).cycle();
@@ -54,9 +55,9 @@ pub(super) fn divide<'a>(reading: &mut Reading<'a>, rooms: Vec<Planned<'a>>) -> 
 
 /// Returns how many storeys, counted from the ground, are each to be a unit: with what is needed at hand on that storey, rather
 /// than with what is left over from the others. Too few rooms are dealt out one by one.
-fn own_storeys(reading: &Reading, rooms: usize) -> usize {
+fn own_storeys(reading: &Reading, rooms: usize, large: bool) -> usize {
     let storeys = reading.storeys.above_ground();
-    if rooms >= LEAST_ON_STOREY * storeys || is_open(reading) { storeys } else { 1 }
+    if large || rooms >= LEAST_ON_STOREY * storeys || is_open(reading) { storeys } else { 1 }
 }
 
 /// Returns true where neither a number of rooms or people nor an area says how large the building is.
