@@ -42,6 +42,7 @@ RULES = {
     "graph_link": "rooms the graph connects have a door or an opening between them",
 }
 
+LEAST_COURT_M2 = 25.0  # larger than any stairwell
 NEAR = 0.14  # how far the line of a wall or door may lie from the edge it belongs to: half an outer wall
 LINE = 0.05  # half the thickness in which a wall stops a robot
 FLAT = 0.03  # things this low are driven over
@@ -165,7 +166,9 @@ class World:
         self.entrances, self.beside = [], {}
         low = [t for t in self.things if t.stops]
         built = unary_union([p.buffer(NEAR, join_style="mitre") for p in self.zones.values()])
-        courts = unary_union([ring for part in getattr(built, "geoms", [built]) for ring in getattr(part, "interiors", [])])
+        holes = [ring for part in getattr(built, "geoms", [built]) for ring in getattr(part, "interiors", [])]
+        # stairwells are no zones of upper storeys, and smaller
+        courts = unary_union([ring for ring in holes if Polygon(ring).area >= LEAST_COURT_M2])
         for name, door in self.doors:
             if door.length < 0.6:
                 self.fail("door_width", name, width_m=round(door.length, 3))

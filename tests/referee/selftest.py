@@ -75,7 +75,7 @@ def far_thing(world):
 
 def enter_from_court(world):
     """Builds a gallery around what the entrance leads to."""
-    around = [(0, 0), (0, -4), (4, -4), (4, 0), (3, 0), (3, -3), (0.5, -3), (0.5, 0)]
+    around = [(0, 0), (0, -13), (4, -13), (4, 0), (3, 0), (3, -12), (0.5, -12), (0.5, 0)]
     walls = list(zip(around, around[1:]))
     world["zones"].append(zone("gallery_1", "hall", around, walls, [], []))
 
