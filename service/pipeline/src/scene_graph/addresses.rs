@@ -2,7 +2,7 @@
 //! numbers count nothing.
 
 use super::text::{Kind, Span, Token};
-use super::words::{Spoken, Tag};
+use super::words::{Spoken, Tag, tag_end};
 
 /// Words of the name of a street, at most: "Martin Luther King".
 const MOST_IN_NAME: usize = 3;
@@ -22,7 +22,7 @@ struct Reader<'a> {
 
 impl Reader<'_> {
     fn tagged(&self, i: usize, tag: Tag) -> Option<usize> {
-        self.spoken.iter().find_map(|s| s.tag_at(self.tokens, i, tag))
+        tag_end(self.spoken, self.tokens, i, tag)
     }
 
     /// Returns true for a word of a name: with a capital, and none that does anything else in a sentence.

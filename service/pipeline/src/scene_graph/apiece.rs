@@ -10,7 +10,7 @@ use super::numbers::Number;
 use super::seated;
 use super::seats::{MOST_IN_TEAM, most_desks};
 use super::text::{Kind, Span, Token};
-use super::words::{Spoken, Tag};
+use super::words::{Spoken, Tag, tag_end};
 use super::workers::is_office;
 
 /// Words from those who have an office to the word for it, at most: "each of them with their own spacious private office".
@@ -41,10 +41,7 @@ pub(super) struct Reader<'a> {
 
 impl Reader<'_> {
     fn tagged(&self, i: usize, tag: Tag) -> Option<usize> {
-        if i >= self.tokens.len() {
-            return None;
-        }
-        self.spoken.iter().find_map(|s| s.tag_at(self.tokens, i, tag))
+        tag_end(self.spoken, self.tokens, i, tag)
     }
 
     /// Returns the domain's office for one.

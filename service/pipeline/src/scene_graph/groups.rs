@@ -11,7 +11,7 @@ use super::numbers::Number;
 use super::relations::{Relation, Said, Spread};
 use super::text::{Kind, Span, Token};
 use super::wishes::{Wish, Wishes};
-use super::words::{Spoken, Tag};
+use super::words::{Spoken, Tag, tag_end};
 
 /// Groups that have rooms of their own, at most.
 const MOST: i64 = 60;
@@ -54,10 +54,7 @@ pub(super) struct Found {
 
 impl Reader<'_> {
     fn tagged(&self, i: usize, tag: Tag) -> Option<usize> {
-        if i >= self.tokens.len() {
-            return None;
-        }
-        self.spoken.iter().find_map(|s| s.tag_at(self.tokens, i, tag))
+        tag_end(self.spoken, self.tokens, i, tag)
     }
 
     /// Returns the end of a word for each of several.

@@ -1,14 +1,14 @@
 //! What a prompt rules out by the word before it ("no ICU", "without any robots"), in Korean by that behind it.
 
 use super::text::{Span, Token};
-use super::words::{Spoken, Tag};
+use super::words::{Spoken, Tag, tag_end};
 
 /// Words of a phrase that rules out, at most: "do not include".
 const MOST_WORDS: usize = 4;
 
 /// Returns true for words that the prompt says the building is to be without.
 pub(super) fn is_ruled_out(tokens: &[Token], spoken: &[&Spoken], language: &str, span: Span) -> bool {
-    let end = |i: usize, tag| spoken.iter().find_map(|s| s.tag_at(tokens, i, tag));
+    let end = |i: usize, tag| tag_end(spoken, tokens, i, tag);
     if language == "ko" {
         return end(span.end, Tag::No).is_some();
     }

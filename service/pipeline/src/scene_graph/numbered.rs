@@ -4,7 +4,7 @@
 use super::mentions::{Mention, What};
 use super::numbers::{self, Number};
 use super::text::{Kind, Span, Token};
-use super::words::{Spoken, Tag};
+use super::words::{Spoken, Tag, tag_end};
 
 /// Largest number of a room that is one of several; larger ones name doors ("office 204").
 const MOST: f64 = 99.0;
@@ -87,10 +87,7 @@ pub(super) fn read(
 
 impl Reader<'_> {
     fn tagged(&self, i: usize, tag: Tag) -> Option<usize> {
-        if i >= self.tokens.len() {
-            return None;
-        }
-        self.spoken.iter().find_map(|s| s.tag_at(self.tokens, i, tag))
+        tag_end(self.spoken, self.tokens, i, tag)
     }
 
     /// Returns the numbers behind a room: one, a list of them, or all from the first to the last.

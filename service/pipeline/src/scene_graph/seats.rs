@@ -10,7 +10,7 @@ use super::mentions::{Mention, What};
 use super::numbers::Number;
 use super::places::note;
 use super::text::{Kind, Span, Token};
-use super::words::{Spoken, Tag, words};
+use super::words::{Spoken, Tag, tag_end, words};
 use super::workers::is_office;
 use super::{seated, stations, unknown};
 
@@ -240,10 +240,7 @@ impl Reader<'_> {
     }
 
     fn tagged(&self, i: usize, tag: Tag) -> Option<usize> {
-        if i >= self.tokens.len() {
-            return None;
-        }
-        self.spoken.iter().find_map(|s| s.tag_at(self.tokens, i, tag))
+        tag_end(self.spoken, self.tokens, i, tag)
     }
 
     fn any(&self, i: usize, tags: &[Tag]) -> bool {

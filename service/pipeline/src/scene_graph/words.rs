@@ -454,6 +454,11 @@ impl Spoken {
     }
 }
 
+/// Returns the end of a phrase with this tag that begins at a token, in the first of the languages that has one.
+pub(super) fn tag_end(spoken: &[&Spoken], tokens: &[Token], i: usize, tag: Tag) -> Option<usize> {
+    spoken.iter().find_map(|s| s.tag_at(tokens, i, tag))
+}
+
 /// Returns the words of all languages.
 pub(super) fn words() -> &'static Words {
     static WORDS: LazyLock<Words> = LazyLock::new(|| {
