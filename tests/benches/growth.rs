@@ -13,6 +13,11 @@ use std::time::{Duration, Instant};
 use d3dgen_pipeline::generate::{Artifact, Event, Settings, Stage, generate_world};
 use d3dgen_pipeline::scene_graph::Request;
 use d3dgen_plugins::Registry;
+use mimalloc::MiMalloc;
+
+/// As the command has it.
+#[global_allocator]
+static ALLOCATOR: MiMalloc = MiMalloc;
 
 const PROMPTS: &[(&str, &str)] = &[
     ("residential", "house in Germany, for a cleaning robot"),

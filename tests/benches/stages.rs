@@ -18,6 +18,11 @@ use d3dgen_pipeline::generate::{Event, Generated, Settings, Stage, generate_worl
 use d3dgen_pipeline::scene_graph::Request;
 use d3dgen_pipeline::{Stop, edit, world};
 use d3dgen_plugins::Registry;
+use mimalloc::MiMalloc;
+
+/// As the command has it.
+#[global_allocator]
+static ALLOCATOR: MiMalloc = MiMalloc;
 
 const PROMPTS: &[(&str, &str)] = &[
     ("residential", "house in Germany, for a cleaning robot"),

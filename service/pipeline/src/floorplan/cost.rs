@@ -344,7 +344,7 @@ impl<'b> Judge<'b> {
                     break;
                 }
                 let (b, second) = boxes[j];
-                let Some((s, from, to)) = first.contact(&second) else { continue };
+                let Some((s, from, to)) = first.contact_eastward(&second) else { continue };
                 let len = to - from;
                 survey.side[i][s][0] += len;
                 survey.side[j][s ^ 1][0] += len;
@@ -375,17 +375,21 @@ impl<'b> Judge<'b> {
             let mut walls = [0.0; 2];
             // mean of the walls on both sides together, east and west, north and south: what they share at the corners
             let mut taken = [0.0; 2];
-            for (s, [shared, own]) in side.iter().copied().enumerate() {
-                let len = if s < 2 { shape.height() } else { shape.width() };
-                let free = len - shared;
-                survey.steps += usize::from(shared > 0 && (1..up(STEP_M)).contains(&free));
-                room.outer = (room.outer.0.max(free), room.outer.1 + free);
-                let lost = meters(free) * OUTER_HALF_M + meters(shared - own) * INNER_HALF_M;
+            for (axis, sides) in [[side[0], side[1]], [side[2], side[3]]].into_iter().enumerate() {
+                let len = if axis == 0 { shape.height() } else { shape.width() };
+                let (mut outer, mut inner) = (0, 0);
+                for [shared, own] in sides {
+                    let free = len - shared;
+                    survey.steps += usize::from(shared > 0 && (1..up(STEP_M)).contains(&free));
+                    room.outer = (room.outer.0.max(free), room.outer.1 + free);
+                    (outer, inner) = (outer + free, inner + shared - own);
+                    // the clear extent ends at the thickest wall of a side
+                    let half = if free > 0 { OUTER_HALF_M } else { INNER_HALF_M };
+                    walls[axis] += if own == len { 0.0 } else { half };
+                }
+                let lost = meters(outer) * OUTER_HALF_M + meters(inner) * INNER_HALF_M;
                 net -= lost;
-                taken[s / 2] += lost / meters(len);
-                // the clear extent ends at the thickest wall of a side
-                let half = if free > 0 { OUTER_HALF_M } else { INNER_HALF_M };
-                walls[s / 2] += if own == len { 0.0 } else { half };
+                taken[axis] = lost / meters(len);
             }
             room.net_m2 += net + taken[0] * taken[1];
             if room.main.is_none_or(|m| m.area_m2() < area) {

@@ -115,6 +115,23 @@ impl Cellbox {
         Rect::new(meters(self.x0), meters(self.y0), meters(self.x1), meters(self.y1))
     }
 
+    /// As [`Cellbox::contact`] has it, of a rectangle that begins east of this one's west side and no farther than where this
+    /// one ends: the one question of the search that is asked a million times.
+    pub(super) fn contact_eastward(&self, other: &Self) -> Option<(usize, i32, i32)> {
+        if other.x0 == self.x1 {
+            let (from, to) = (self.y0.max(other.y0), self.y1.min(other.y1));
+            return (from < to).then_some((1, from, to));
+        }
+        let side = if other.y1 == self.y0 {
+            2
+        } else if other.y0 == self.y1 {
+            3
+        } else {
+            return None;
+        };
+        Some((side, other.x0, self.x1.min(other.x1)))
+    }
+
     /// Returns the shared edge of two rectangles that touch without overlapping, as the side of `self` it lies on
     /// (0 west, 1 east, 2 south, 3 north) and the stretch `from..to` along that side.
     pub(super) fn contact(&self, other: &Self) -> Option<(usize, i32, i32)> {

@@ -92,6 +92,9 @@ pub(super) fn beside_berth(robot: i32) -> i32 {
 /// Returns true for a dock whose robot would touch one that charges beside it, or that one of the two could not leave while
 /// the other charges.
 pub(super) fn touches_robot(state: &State, p: &Placed, robot: i32) -> bool {
+    if fronts(p).next().is_none() {
+        return false;
+    }
     let stands = || state.placed.iter().flat_map(berths);
     let touches = berths(p).any(|own| stands().any(|other| other.gap(&own) < beside_berth(robot)));
     let shut = |own: &Placed, other: &Placed| {

@@ -70,6 +70,7 @@ pub(super) fn placed<'a>(locked: &[&Placement], domain: &'a Domain, space: &Spac
             clears,
             bbox: solid.rect,
             reach: solid.rect,
+            extent: solid.rect,
             needs_wall: mount == Mount::Wall,
             parked: Vec::new(),
         };

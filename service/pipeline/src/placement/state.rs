@@ -223,6 +223,10 @@ impl<'a, 's> State<'a, 's> {
         if p.support.is_none() && !space.bounds.contains(&p.world(&p.unit.bbox)) {
             return Err(Rule::Outside);
         }
+        // most of what there is stands elsewhere in the room
+        let extent = p.world(&p.unit.extent);
+        let solids: Vec<&Solid> = self.solids.iter().filter(|s| s.rect.overlaps(&extent)).collect();
+        let clears: Vec<&Box2> = self.clears.iter().filter(|c| c.overlaps(&extent)).collect();
         for part in &p.unit.parts {
             let solid = p.solid(part);
             if p.support.is_none() && !space.contains(&solid.rect) || solid.z1 > space.ceiling {
@@ -234,7 +238,7 @@ impl<'a, 's> State<'a, 's> {
             }
             if solid.is_flat() && solid.z0 == 0 {
                 // floor covering may lie anywhere, but not on other floor covering
-                if self.solids.iter().any(|s| s.is_flat() && s.overlaps(&solid)) {
+                if solids.iter().any(|s| s.is_flat() && s.overlaps(&solid)) {
                     return Err(Rule::Collision);
                 }
                 // nobody wants to step over the edge of a rug in a door
@@ -244,7 +248,7 @@ impl<'a, 's> State<'a, 's> {
                 }
                 continue;
             }
-            if self.solids.iter().any(|s| !(s.is_flat() && s.z0 == 0) && s.overlaps(&solid)) {
+            if solids.iter().any(|s| !(s.is_flat() && s.z0 == 0) && s.overlaps(&solid)) {
                 return Err(Rule::Collision);
             }
             if self.closes_basin(part, &solid) {
@@ -263,7 +267,7 @@ impl<'a, 's> State<'a, 's> {
             if takes_floor(part, &solid) && space.lanes(self.open).iter().any(|lane| lane.overlaps(&solid.rect)) {
                 return Err(Rule::Door);
             }
-            if takes_floor(part, &solid) && self.clears.iter().any(|c| c.overlaps(&solid.rect)) {
+            if takes_floor(part, &solid) && clears.iter().any(|c| c.overlaps(&solid.rect)) {
                 return Err(Rule::Clearance);
             }
         }

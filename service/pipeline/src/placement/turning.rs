@@ -21,8 +21,16 @@ impl Circle {
         };
         let at = |x: i32, y: i32| Self { radius, center: (x, y) };
         let places = || steps(b.x0, b.x1).flat_map(|x| steps(b.y0, b.y1).map(move |y| at(x, y)));
-        places()
-            .find(|circle| holes.iter().chain(bodies.iter().copied().flatten()).all(|other| circle.is_clear_of(other)))
+        let others = || holes.iter().chain(bodies.iter().copied().flatten());
+        // what is in the way of one place is mostly in the way of the next
+        let mut last: Option<&Box2> = None;
+        places().find(|circle| {
+            if last.is_some_and(|other| !circle.is_clear_of(other)) {
+                return false;
+            }
+            last = others().find(|other| !circle.is_clear_of(other));
+            last.is_none()
+        })
     }
 
     /// Returns true when a body takes none of it.

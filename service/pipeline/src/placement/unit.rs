@@ -82,6 +82,8 @@ pub(super) struct Unit<'a> {
     pub bbox: Box2,
     /// Around `bbox` and `clears`.
     pub reach: Box2,
+    /// Around all parts, whatever they are.
+    pub extent: Box2,
     /// True when a part hangs on the wall behind, so the unit cannot stand free.
     pub needs_wall: bool,
     /// Floor that robots take while they charge at its docks.
@@ -135,6 +137,7 @@ impl<'a> Unit<'a> {
         out.clears.iter_mut().chain(&mut out.parked).for_each(|c| *c = c.mirrored());
         out.bbox = out.bbox.mirrored();
         out.reach = out.reach.mirrored();
+        out.extent = extent_of(&out.parts);
         let key = |u: &Self| {
             let mut parts: Vec<(Box2, i32)> = u.parts.iter().map(|p| (p.solid.rect, p.solid.z0)).collect();
             let mut clears = u.clears.clone();
@@ -449,7 +452,13 @@ fn finish_with<'a>(item: &'a str, group: bool, parts: Vec<Part<'a>>, clears: Vec
     let reach = clears.iter().fold(bbox, |r, c| r.union(c));
     let back = bbox.x0;
     let needs_wall = parts.iter().any(|p| p.mount == Mount::Wall && p.solid.rect.x0 <= back + 5);
-    Unit { item, group, parts, clears, bbox, reach, needs_wall, parked }
+    let extent = extent_of(&parts);
+    Unit { item, group, parts, clears, bbox, reach, extent, needs_wall, parked }
+}
+
+/// Returns the rectangle around all parts, of which there is at least one.
+fn extent_of(parts: &[Part]) -> Box2 {
+    parts.iter().fold(parts[0].solid.rect, |all, part| all.union(&part.solid.rect))
 }
 
 /// Adds the floor in front of and beside a part that must stay free.

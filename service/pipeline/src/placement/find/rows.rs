@@ -1,6 +1,5 @@
 //! Many equal units at once: parallel rows with aisles, and lamps spread over a ceiling.
 
-use std::collections::BTreeMap;
 use std::rc::Rc;
 
 use d3dgen_model::domain::{Arrangement, Shape};
@@ -175,66 +174,78 @@ pub(in crate::placement) fn rows<'a>(
     let mut plans = plans(state, unit, task, focus, terms);
     plans.sort_by(|a, b| b.score.total_cmp(&a.score));
     plans.truncate((PLANS * 10 / task.count.max(10) as usize).max(3));
+    // the most promising first: the rest is not set up once enough are better than it could become
+    let mut sites: Vec<Site> = plans.iter().flat_map(|plan| sites(state.space, plan, unit, terms, aisle)).collect();
+    // on an island some counters face the door, whichever way it is turned
+    let one_line = |plan: &Plan| task.anchor.shape == Shape::Counter && !plan.paired;
+    // who serves has a wall behind and an aisle to it: the rest of the hall is for those who are served
+    sites.iter_mut().filter(|s| one_line(s.plan) && s.aisle_behind).for_each(|s| s.most += BACKED);
+    sites.sort_by(|a, b| b.most.total_cmp(&a.most));
     let mut out: Vec<Batch> = Vec::new();
-    for plan in &plans {
-        let wide = state.space.bounds.turned((4 - plan.q) % 4);
-        let (d, w) = (unit.bbox.width(), unit.bbox.height());
-        let (spare_u, spare_v) = (wide.width() - plan.depth(d), wide.height() - plan.breadth(w, aisle));
-        let front = unit.reach.x1 - unit.bbox.x1;
-        let (back, front) = plan.margins(unit, front, terms.stage);
-        for (ku, u0) in [(spare_u + back - front).max(0) / 2, back.min(spare_u), (spare_u - front).max(0), aisle]
-            .into_iter()
-            .enumerate()
-        {
-            if terms.stage > 0 && (u0 < back || u0 > spare_u - front) {
-                continue;
-            }
-            for (kv, v0) in [spare_v / 2, 0, spare_v, aisle, spare_v - aisle].into_iter().enumerate() {
-                if u0 > spare_u || v0 > spare_v || v0 < 0 {
-                    continue;
-                }
-                let mut placed = set_up(state, plan, unit, (wide.x0 + u0, wide.y0 + v0), aisle, index, tally);
-                if terms.stage > 0 {
-                    // the row that makes up for others must not stand on the stage
-                    placed.retain(|p| {
-                        let r = p.world(&unit.bbox).turned((4 - plan.q) % 4);
-                        r.x0 >= wide.x0 + back && r.x1 <= wide.x1 - front
-                    });
-                }
-                let single = if in_pairs { leave_out_single(state.space, task, &mut placed) } else { 0 };
-                if placed.is_empty() {
-                    continue;
-                }
-                let single = SINGLE * single as f64 / placed.len() as f64;
-                let share = task.counted(placed.len()) as f64 / task.counted(usize::MAX).max(1) as f64;
-                let tidy = [0.5, 0.3, 0.1, 0.1][ku] + [0.5, 0.25, 0.25, 0.1, 0.1][kv];
-                let raggedness = if task.spare > 0 { ragged(&placed, plan) } else { 0.0 };
-                // one comes to the rows past one of their ends
-                let narrow = if plan.rows > 1 && v0.max(spare_v - v0) < aisle { NARROW_ENDS } else { 0.0 };
-                let noise =
-                    0.5 * grain(terms.salt, i64::from(plan.q) * 64 + i64::from(plan.columns), (ku * 8 + kv) as i64);
-                let dark =
-                    if in_pairs { from_windows(state.space, &placed) + mirrors(state.space, &placed) } else { 0.0 };
-                // on an island some counters face the door, whichever way it is turned
-                let one_line = task.anchor.shape == Shape::Counter && !plan.paired;
-                let behind = if one_line { doors_behind(state.space, &placed) } else { 0.0 };
-                // who serves has a wall behind and an aisle to it: the rest of the hall is for those who are served
-                let backed = if one_line && ku == AISLE_BEHIND { BACKED } else { 0.0 };
-                out.push(Batch {
-                    placed,
-                    in_pairs,
-                    score: plan.score + 8.0 * (share - 1.0) + tidy + noise + backed
-                        - raggedness
-                        - narrow
-                        - single
-                        - dark
-                        - behind,
-                });
-            }
+    for site in &sites {
+        if out.get(KEPT - 1).is_some_and(|least| least.score >= site.most) {
+            break;
+        }
+        let plan = site.plan;
+        let mut placed = set_up(state, plan, unit, site.at, aisle, index, tally);
+        if let Some((from, to)) = site.before_stage {
+            // the row that makes up for others must not stand on the stage
+            placed.retain(|p| {
+                let r = p.world(&unit.bbox).turned((4 - plan.q) % 4);
+                r.x0 >= from && r.x1 <= to
+            });
+        }
+        let single = if in_pairs { leave_out_single(state.space, task, &mut placed) } else { 0 };
+        if placed.is_empty() {
+            continue;
+        }
+        let single = SINGLE * single as f64 / placed.len() as f64;
+        let share = task.counted(placed.len()) as f64 / task.counted(usize::MAX).max(1) as f64;
+        let raggedness = if task.spare > 0 { ragged(&placed, plan) } else { 0.0 };
+        let dark = if in_pairs { from_windows(state.space, &placed) + mirrors(state.space, &placed) } else { 0.0 };
+        let behind = if one_line(plan) { doors_behind(state.space, &placed) } else { 0.0 };
+        let score = site.most + 8.0 * (share - 1.0) - raggedness - single - dark - behind;
+        let at = out.partition_point(|other| other.score >= score);
+        out.insert(at, Batch { placed, in_pairs, score });
+        out.truncate(KEPT);
+    }
+    out
+}
+
+/// Where the low corner of rows may be.
+struct Site<'p> {
+    plan: &'p Plan,
+    /// The corner, in the frame of the plan, mm.
+    at: (i32, i32),
+    /// The floor that rows leave a stage, from where to where they may stand.
+    before_stage: Option<(i32, i32)>,
+    /// True with an aisle and no more between the rows and the wall behind.
+    aisle_behind: bool,
+    /// What the rows are worth where everything finds its place, the most that they can be.
+    most: f64,
+}
+
+/// Returns where the rows of a plan may begin: in the middle, at the walls, an aisle from them.
+fn sites<'p>(space: &Space, plan: &'p Plan, unit: &Unit, terms: &Terms, aisle: i32) -> Vec<Site<'p>> {
+    let wide = space.bounds.turned((4 - plan.q) % 4);
+    let (d, w) = (unit.bbox.width(), unit.bbox.height());
+    let (spare_u, spare_v) = (wide.width() - plan.depth(d), wide.height() - plan.breadth(w, aisle));
+    let (back, front) = plan.margins(unit, unit.reach.x1 - unit.bbox.x1, terms.stage);
+    let us = [(spare_u + back - front).max(0) / 2, back.min(spare_u), (spare_u - front).max(0), aisle];
+    let vs = [spare_v / 2, 0, spare_v, aisle, spare_v - aisle];
+    let staged = |u0: i32| terms.stage == 0 || (back..=spare_u - front).contains(&u0);
+    let before_stage = (terms.stage > 0).then_some((wide.x0 + back, wide.x1 - front));
+    let mut out = Vec::new();
+    for (ku, u0) in us.into_iter().enumerate().filter(|(_, u0)| *u0 <= spare_u && staged(*u0)) {
+        for (kv, v0) in vs.into_iter().enumerate().filter(|(_, v0)| (0..=spare_v).contains(v0)) {
+            let tidy = [0.5, 0.3, 0.1, 0.1][ku] + [0.5, 0.25, 0.25, 0.1, 0.1][kv];
+            // one comes to the rows past one of their ends
+            let narrow = if plan.rows > 1 && v0.max(spare_v - v0) < aisle { NARROW_ENDS } else { 0.0 };
+            let noise = 0.5 * grain(terms.salt, i64::from(plan.q) * 64 + i64::from(plan.columns), (ku * 8 + kv) as i64);
+            let (at, most) = ((wide.x0 + u0, wide.y0 + v0), plan.score + tidy + noise - narrow);
+            out.push(Site { plan, at, before_stage, aisle_behind: ku == AISLE_BEHIND, most });
         }
     }
-    out.sort_by(|a, b| b.score.total_cmp(&a.score));
-    out.truncate(KEPT);
     out
 }
 
@@ -258,12 +269,17 @@ pub(in crate::placement) fn leave_out_single(space: &Space, task: &Task, placed:
         let sign = if p.q < 2 { 1 } else { -1 };
         (p.q % 2, sign * u, sign * (v0 + v1))
     };
-    let mut places: BTreeMap<(u8, i32, i32), usize> = BTreeMap::new();
-    placed.iter().for_each(|p| *places.entry(place(p)).or_default() += 1);
+    let mut places: Vec<(u8, i32, i32)> = placed.iter().map(place).collect();
+    places.sort_unstable();
+    // another one next to it in the list is at the same place
+    let is_alone = |place: (u8, i32, i32)| {
+        let first = places.partition_point(|other| *other < place);
+        places.get(first + 1) != Some(&place)
+    };
     let is_single = |p: &Placed| {
         let (u, v0, v1) = back(p);
         let at = |w: &WallSide| w.q == p.q && (0..=AT_WALL).contains(&(u - w.u)) && w.v0 <= v0 && w.v1 >= v1;
-        places[&place(p)] < 2 && !space.walls.iter().any(at)
+        is_alone(place(p)) && !space.walls.iter().any(at)
     };
     let single = placed.iter().filter(|p| is_single(p)).count();
     let stay = placed.len() - single;
@@ -322,13 +338,12 @@ fn off_middle(main: Box2) -> impl Iterator<Item = (i32, i32)> {
 
 /// Returns how many units rows lack of being as long as the longest, over their number.
 fn ragged(placed: &[Placed], plan: &Plan) -> f64 {
-    let mut rows: BTreeMap<i32, i32> = BTreeMap::new();
-    for p in placed {
-        let across = p.world(&p.unit.anchor().solid.rect).turned((4 - plan.q) % 4);
-        *rows.entry(across.x0).or_default() += 1;
-    }
-    let longest = rows.values().max().copied().unwrap_or(0);
-    rows.values().map(|n| f64::from(longest - n)).sum::<f64>() / f64::from(longest.max(1))
+    let across = |p: &Placed| p.world(&p.unit.anchor().solid.rect).turned((4 - plan.q) % 4).x0;
+    let mut rows: Vec<i32> = placed.iter().map(across).collect();
+    rows.sort_unstable();
+    let lengths = || rows.chunk_by(|a, b| a == b).map(<[i32]>::len);
+    let longest = lengths().max().unwrap_or(0);
+    lengths().map(|n| longest - n).sum::<usize>() as f64 / longest.max(1) as f64
 }
 
 fn plans(state: &State, unit: &Unit, task: &Task, focus: Option<u8>, terms: &Terms) -> Vec<Plan> {
