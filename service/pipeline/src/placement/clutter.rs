@@ -346,6 +346,7 @@ fn task_of<'a>(line: &ClutterLine, object: &'a ObjectType, host: &ObjectType, co
         instead_of: &[],
         first_choice: false,
         asked: false,
+        for_guests: false,
         for_many: false,
         usual_width_m: None,
         seats: None,

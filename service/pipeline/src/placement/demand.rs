@@ -40,6 +40,8 @@ pub(super) struct Task<'a> {
     pub first_choice: bool,
     /// True for what somebody asked for by name, and for the bed of two.
     pub asked: bool,
+    /// True for tables whose number follows from how many people are to sit at them.
+    pub for_guests: bool,
     /// True for a table that comes with so many people: smaller ones are for want of floor.
     pub for_many: bool,
     /// How wide what things are stored in usually is, m: of what comes in another's place, the wider of them.
@@ -337,6 +339,7 @@ impl<'a> Order<'a, '_> {
         let lines = &self.kind.furnishing;
         let asked = self.is_asked(line, f, anchor);
         let in_its_place = || lines.iter().any(|other| other.required && other.instead_of.contains(&f.item));
+        let steered = self.occupied.is_some_and(|o| o.0 == line);
         let whole = Task {
             item: &f.item,
             anchor,
@@ -350,11 +353,11 @@ impl<'a> Order<'a, '_> {
             instead_of: &f.instead_of,
             first_choice: asked || in_its_place(),
             asked: asked || f.sleepers > 0 && anchor.shape == Shape::Bed || self.are_berths(f, anchor) && count > 1,
+            for_guests: is_table(anchor) && steered,
             for_many: is_table(anchor) && f.sleepers > 0,
             usual_width_m: usual_width_m(self.domain, f),
             seats: if self.occupied.is_none() { at_table(self.domain, f, self.graph) } else { None },
         };
-        let steered = self.occupied.is_some_and(|o| o.0 == line);
         if whole.is_batch() || required == 0 || required == count || steered {
             return vec![whole];
         }
@@ -380,6 +383,7 @@ impl<'a> Order<'a, '_> {
                 instead_of: &[],
                 first_choice: self.is_named(object),
                 asked: self.is_named(object),
+                for_guests: false,
                 for_many: false,
                 usual_width_m: storage_width_m(object),
                 seats: None,
@@ -558,6 +562,7 @@ pub(super) fn one_more(object: &ObjectType) -> Task<'_> {
         instead_of: &[],
         first_choice: false,
         asked: false,
+        for_guests: false,
         for_many: false,
         usual_width_m: storage_width_m(object),
         seats: None,

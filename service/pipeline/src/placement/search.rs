@@ -120,8 +120,10 @@ impl Level {
     }
 }
 
-/// The last pass that tries what has something else in its place, and the last that is made for what was asked for by name.
+/// The last pass that tries what has something else in its place, the last that is made for the seats of guests, which still keeps
+/// ways, and the last for what was asked for by name.
 const FIRST_CHOICES: usize = 1;
+const GUESTS: usize = 3;
 const ASKED_FOR: usize = 5;
 const NOT_OPEN: Open = Open { doors: false, deep: false, windows: false };
 const WIDE_OPEN: Open = Open { doors: true, deep: true, windows: true };
@@ -171,6 +173,11 @@ impl Outcome<'_> {
         self.missing.iter().filter(|(task, ..)| job.tasks[*task].asked).count()
     }
 
+    /// Returns how many tables have no place that guests were to sit at.
+    fn tables_short(&self, job: &Job) -> u32 {
+        self.missing.iter().filter(|(task, ..)| job.tasks[*task].for_guests).map(|(_, count, _)| count).sum()
+    }
+
     /// Returns how many items had no place for which something required comes in their place.
     fn second_choices(&self, job: &Job) -> usize {
         self.missing.iter().filter(|(task, ..)| job.tasks[*task].first_choice).count()
@@ -202,9 +209,10 @@ fn relax<'a>(job: &Job<'a, '_>) -> Outcome<'a> {
         let advice_left = LEVELS.get(level + 1).is_some_and(|next| next.tightness >= 1.0 && next.open.doors);
         let second_choice = level < FIRST_CHOICES && outcome.second_choices(job) > 0;
         let asked_for = level < ASKED_FOR && outcome.asked_for(job) > 0;
-        let done =
-            outcome.required_missing == 0 && (outcome.closed == 0 || !advice_left) && !second_choice && !asked_for;
-        let lacks = |o: &Outcome| (o.lacks(), o.asked_for(job), o.second_choices(job));
+        let seats_short = level < GUESTS && outcome.tables_short(job) > 0;
+        let wished = second_choice || asked_for || seats_short;
+        let done = outcome.required_missing == 0 && (outcome.closed == 0 || !advice_left) && !wished;
+        let lacks = |o: &Outcome| (o.lacks(), o.asked_for(job), o.tables_short(job), o.second_choices(job));
         if best.as_ref().is_none_or(|b| lacks(&outcome) < lacks(b)) {
             best = Some(outcome);
         }
@@ -493,7 +501,8 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
                     outcome.score += score;
                     state.add(units);
                 }
-            } else {
+            }
+            if !task.is_batch() || self.lines_walls(task) || placed > 0 && self.is_sat_around(index) {
                 while placed < count && !self.job.stop.is_set() {
                     let open = whole.then_some(task.required > present + placed);
                     let Some((mut unit, score)) = self.single(state, index, step(steps, state), open, &mut tally)
@@ -523,6 +532,14 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
     /// Returns true for rows that stand along walls: beds have their heads there.
     fn lines_walls(&self, task: &Task) -> bool {
         task.arrangement == Arrangement::Rows && matches!(task.anchor.shape, Shape::Bed | Shape::HospitalBed)
+    }
+
+    /// Returns true for rows of tables with seats around them: where the rows leave floor, more stand by themselves.
+    fn is_sat_around(&self, index: usize) -> bool {
+        let task = &self.job.tasks[index];
+        let table = matches!(task.anchor.shape, Shape::Table | Shape::RoundTable);
+        let first = self.forms[index].first().and_then(|forms| forms.first());
+        table && task.arrangement == Arrangement::Rows && first.is_some_and(|u| u.seats() > 0 && u.look() == 0)
     }
 
     /// Returns the rule that stopped most positions.

@@ -3,6 +3,7 @@
 mod barred;
 mod center;
 mod ends;
+mod fill;
 mod rows;
 mod top;
 mod walls;
@@ -119,8 +120,9 @@ impl<'f, 'a, 's> Find<'f, 'a, 's> {
         match self.task.arrangement {
             Arrangement::OnSurface => self.on_surfaces(unit),
             Arrangement::AtWindow => self.at_windows(unit),
-            Arrangement::Center => {
-                self.center(unit);
+            Arrangement::Center => self.center(unit),
+            Arrangement::Rows if matches!(self.task.anchor.shape, Shape::Table | Shape::RoundTable) => {
+                self.beside_rows(unit);
             }
             Arrangement::Facing => self.facing(unit),
             Arrangement::FacingDoor => self.facing_door(unit),
