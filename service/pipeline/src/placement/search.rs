@@ -24,6 +24,8 @@ const ROUTE_TESTS: usize = 40;
 const WEIGHED: usize = 4;
 /// Share of the units that rows of smaller or closer ones would hold from which those that keep more rules are taken.
 const WORTH: f64 = 0.75;
+/// Smaller numbers of units for which rows are drawn up where those for all have holes.
+const FEWER: u32 = 3;
 /// Furnishing lines that a room should not go without, and how many more drafts are made for them where the room is small,
 /// in cells (19 m^2), so that drafts take little time.
 const EARLY: usize = 4;
@@ -569,11 +571,27 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
         let mut stages = vec![depth + self.aisle(), depth, 0];
         stages.retain(|stage| depth > 0 || *stage == 0);
         let mut best = None;
+        let mut at = 0;
         for stage in stages {
+            at = stage;
             best = self.best_batch(state, &task, index, (rank, whole), &terms(stage), tally);
             if best.as_ref().is_some_and(|b| b.0.len() as u32 >= task.required.max(1)) {
                 break;
             }
+        }
+        // rows out of which units had to go have holes: as many or more in rows drawn up for that number have none; desks in
+        // pairs are drawn up so as it is
+        let held = best.as_ref().map_or(0, |b| b.0.len() as u32);
+        let short = count.saturating_sub(held + task.spare);
+        let pairs = task.anchor.shape == Shape::Desk && !terms(at).one_way;
+        if held > 1 && short > 0 && task.arrangement == Arrangement::Rows && !pairs {
+            let fewer = (held..count).rev().step_by(short.div_ceil(FEWER) as usize).chain([held]);
+            let drawn_up = |n: u32, tally: &mut Tally| {
+                let task = Task { count: n, spare: 0, ..task.clone() };
+                self.best_batch(state, &task, index, (rank, whole), &terms(at), tally)
+            };
+            let mut whole_rows = fewer.filter_map(|n| drawn_up(n, tally).filter(|b| b.0.len() as u32 >= n));
+            best = whole_rows.next().or(best);
         }
         best
     }
