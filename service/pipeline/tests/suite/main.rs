@@ -22,6 +22,7 @@ mod prompts;
 mod review;
 mod review_furniture;
 mod robots;
+mod seats;
 mod stop;
 mod storeys;
 mod style;
