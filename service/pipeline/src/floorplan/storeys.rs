@@ -7,6 +7,7 @@ use d3dgen_model::geometry::to_mm;
 use d3dgen_model::scene_graph::{Note, SceneGraph};
 use d3dgen_model::seed::Stream;
 use d3dgen_model::storeys::{Level, LinkKind};
+use d3dgen_model::style::Form;
 
 use super::align::align;
 use super::assemble::{Turn, assemble, turned_in_place};
@@ -20,6 +21,9 @@ use crate::{Error, Stop};
 
 /// Share of a storey that may jut out over the one below without a word.
 pub(super) const OVERHANG_SHARE: f64 = 0.10;
+/// Share that may while there are few plans to compare, and how many are few.
+const LITTLE_OVERHANG: f64 = 0.04;
+const FEW_PLANS: usize = 3;
 /// Plans of a storey that are compared when the first ones jut out further.
 const COMPARED: usize = 6;
 const COMPARED_LARGE: usize = 2;
@@ -76,10 +80,12 @@ pub(super) fn generate(
         brief.core = Some(core.ok_or_else(missing)?);
         raise_stairwells(brief, graph, (i + 1 < numbers.len()).then(|| heights[i] - 0.01));
     }
-    // two stairs of a storey that is one bar are at its ends; where that does not work out it has wings
+    // two stairs of a storey that is one bar are at its ends; where that does not work out it has wings, which are nearer to no
+    // other form either
     let mut bars = briefs.iter().all(|b| {
         let along = b.rooms.iter().filter(|r| r.host.is_none()).count();
-        along <= LONGEST_BAR && b.form.is_none() && b.core.as_ref().is_some_and(|c| c.far.is_some())
+        let two = b.core.as_ref().is_some_and(|c| c.far.is_some());
+        along <= LONGEST_BAR && b.form != Some(Form::Wings) && two
     });
     let least = briefs.iter().map(bar_length).max().unwrap_or(0);
     briefs.iter_mut().filter_map(|b| b.core.as_mut()).for_each(|c| c.least = least);
@@ -250,7 +256,9 @@ fn storey(
                 }
                 compared += 1;
                 let most = if comb_built { COMPARED_LARGE } else { COMPARED };
-                if overhang <= OVERHANG_SHARE || compared == most {
+                let few = !comb_built && !brief.of_home && compared < FEW_PLANS;
+                let enough = if few { LITTLE_OVERHANG } else { OVERHANG_SHARE };
+                if best.as_ref().is_some_and(|b| b.overhang <= enough) || compared == most {
                     break;
                 }
             }
