@@ -32,6 +32,8 @@ const COMPARED_LARGE: usize = 2;
 const STACKS: usize = 4;
 const SET_BACK: f64 = 0.3;
 const WELL_STACKED: f64 = 0.06;
+/// Longest storey, about, that is one bar between two stairs, m: others walk less in wings.
+const LONGEST_BAR_M: f64 = 64.0;
 /// Heights of storeys are whole multiples of this, m.
 const HEIGHT_STEP_M: f64 = 0.05;
 
@@ -88,6 +90,7 @@ pub(super) fn generate(
         along <= LONGEST_BAR && b.form != Some(Form::Wings) && two
     });
     let least = briefs.iter().map(bar_length).max().unwrap_or(0);
+    bars &= meters(least) <= LONGEST_BAR_M;
     briefs.iter_mut().filter_map(|b| b.core.as_mut()).for_each(|c| c.least = least);
     let ground = numbers.iter().position(|&l| l == 0).unwrap_or(0);
     let order = (ground..numbers.len()).map(|i| (i, i.checked_sub(1).filter(|_| i > ground)));

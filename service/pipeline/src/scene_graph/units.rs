@@ -80,14 +80,17 @@ fn how_many(rooms: usize, rules: &Units, storeys: usize) -> usize {
     }
 }
 
-/// Gives each unit what its program calls vital, as far as the number of rooms allows: its own toilets, its own station.
+/// Gives each unit what its program calls vital, and the first the toilets that those after it have, as far as the number of
+/// rooms allows.
 fn equip<'a>(reading: &Reading<'a>, units: &mut [Unit<'a>], mut free: Option<&mut usize>) {
-    for unit in units {
-        for id in unit.program.vital.iter().filter(|id| may_grow(reading, id)) {
-            let Some(kind) = reading.domain.room_type(id).filter(|_| unit.rooms.iter().all(|r| &r.room_type != id))
-            else {
-                continue;
-            };
+    let of_second: Vec<&String> = units.get(1).map_or(Vec::new(), |unit| unit.program.vital.iter().collect());
+    let flushes = |id: &String| reading.domain.room_type(id).is_some_and(|k| reading.wet.has_toilet(k));
+    for (n, unit) in units.iter_mut().enumerate() {
+        let as_well = of_second.iter().copied().filter(|id| n == 0 && flushes(id) && unit.knows(id));
+        let vital: Vec<&String> = unit.program.vital.iter().chain(as_well).collect();
+        for id in vital.into_iter().filter(|id| may_grow(reading, id)) {
+            let missing = unit.rooms.iter().all(|r| &r.room_type != id);
+            let Some(kind) = reading.domain.room_type(id).filter(|_| missing) else { continue };
             match free.as_deref_mut() {
                 Some(0) => return,
                 Some(left) => *left -= 1,
