@@ -30,6 +30,8 @@ const COMPARED_LARGE: usize = 2;
 /// How often a home is stacked at most, what a share of a storey counts that the one above leaves open beside one that juts
 /// out, and how ragged a stack may be that is taken at once.
 const STACKS: usize = 4;
+/// The same of other buildings that are no wings, where a storey juts out further than it may without a word.
+const STACKS_OF_OTHERS: usize = 3;
 const SET_BACK: f64 = 0.3;
 const WELL_STACKED: f64 = 0.06;
 /// Longest storey, about, that is one bar between two stairs, m: others walk less in wings.
@@ -134,23 +136,29 @@ struct Plan<'a> {
 
 impl Plan<'_> {
     /// Plans the storeys one after the other, from the ground up and then down. What stands well above depends on what is
-    /// below: a home is stacked a few times, the best stack is taken.
+    /// below: a home is stacked a few times, another building where it juts out, and the best stack is taken.
     fn best_stack(&self, briefs: &mut [Brief], stop: Stop<'_>) -> Result<Vec<Planned>, Error> {
-        let stacks = if briefs.iter().all(|b| b.of_home) { STACKS } else { 1 };
+        let homes = briefs.iter().all(|b| b.of_home);
+        let stacks = if homes { STACKS } else { STACKS_OF_OTHERS };
         let mut best: Option<(f64, Vec<Planned>)> = None;
         let mut failed = None;
         for n in 0..stacks {
-            match self.stack(briefs, n, stop) {
+            let done = match self.stack(briefs, n, stop) {
                 Ok(stack) => {
+                    let juts = stack.iter().any(|p| p.overhang > OVERHANG_SHARE && p.below.comb.is_none());
                     let ragged = stack.iter().map(|p| p.overhang + SET_BACK * p.set_back).sum::<f64>();
                     if best.as_ref().is_none_or(|b| ragged < b.0) {
                         best = Some((ragged, stack));
                     }
+                    !homes && !juts
                 }
-                Err(error) => failed = failed.or(Some(error)),
-            }
+                Err(error) => {
+                    failed = failed.or(Some(error));
+                    !homes
+                }
+            };
             stop.check()?;
-            if best.as_ref().is_some_and(|b| b.0 <= WELL_STACKED) {
+            if done || best.as_ref().is_some_and(|b| b.0 <= WELL_STACKED) {
                 break;
             }
         }
