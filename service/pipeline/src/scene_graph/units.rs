@@ -22,8 +22,9 @@ struct Unit<'a> {
 /// or counts stay, the rest is what each unit's own program has. The rooms of a unit follow each other.
 pub(super) fn divide<'a>(reading: &mut Reading<'a>, rooms: Vec<Planned<'a>>) -> Vec<Planned<'a>> {
     let program = reading.program;
-    // twenty patient rooms with their en suites are one ward
-    let along = rooms.iter().filter(|r| r.kind.access != Access::Host).count();
+    // twenty patient rooms with their en suites are one ward, and one reception more makes no two of it
+    let counts = |r: &&Planned| r.kind.access != Access::Host && !is_once_for_all(reading, r);
+    let along = rooms.iter().filter(counts).count();
     let is_large = |u: &Units| along >= u.from_rooms as usize;
     let storeys = own_storeys(reading, along, program.units.as_ref().is_some_and(is_large));
     let large = |u: &&Units| !reading.closed && (is_large(u) || storeys > 1);
@@ -175,11 +176,16 @@ fn fixed_rooms(reading: &Reading, rooms: &[Planned]) -> Vec<bool> {
     };
     let asked = rooms.iter().filter(|r| r.requested).flat_map(|r| guests(reading, &r.room_type)).collect::<Vec<_>>();
     let belongs = |room: &Planned| asked.iter().any(|k| k.id == room.room_type);
-    let of_all = |room: &Planned| reading.total.is_none() && large::is_of_all(reading, room);
     let stays = |room: &Planned| {
-        room.requested || is_counted(reading, &room.room_type) || comes_with(room) || belongs(room) || of_all(room)
+        let told = room.requested || is_counted(reading, &room.room_type) || comes_with(room) || belongs(room);
+        told || is_once_for_all(reading, room)
     };
     rooms.iter().map(stays).collect()
+}
+
+/// Returns true for what a large building has once for all, where the number of rooms is open.
+fn is_once_for_all(reading: &Reading, room: &Planned) -> bool {
+    reading.total.is_none() && large::is_of_all(reading, room)
 }
 
 impl Unit<'_> {
