@@ -19,8 +19,8 @@ pub use furnishing::{Arrangement, FacingRule, Furnishing, Group, Member, Relatio
 pub use layouts::{LayoutSwap, Layouts};
 pub use object::{Mount, ObjectType, Shape, Stock, StockedAsset};
 pub use program::{
-    Adjacency, AdjacencyRelation, Circulation, Elevator, Occupants, Program, ProgramRoom, Scheme, Stairs, Storeys,
-    SupportRoom, Units,
+    Adjacency, AdjacencyRelation, Circulation, Elevator, Large, Occupants, Program, ProgramRoom, Scheme, Stairs,
+    Storeys, SupportRoom, TwoStairs, Units,
 };
 pub use room_type::{Access, AreaRange, Daylight, Goods, Materials, Privacy, RobotUse, RoomType, Zone};
 
@@ -234,10 +234,13 @@ impl Document for Domain {
             for (j, id) in program.vital.iter().enumerate() {
                 room(format!("/programs/{i}/vital/{j}"), id, &mut problems);
             }
-            for (j, entry) in program.support.iter().enumerate() {
-                room(format!("/programs/{i}/support/{j}/room_type"), &entry.room_type, &mut problems);
-                for (k, id) in entry.or.iter().enumerate() {
-                    room(format!("/programs/{i}/support/{j}/or/{k}"), id, &mut problems);
+            let large = program.large.iter().enumerate().map(|(j, l)| (format!("large/{j}/rooms"), &l.rooms));
+            for (list, entries) in std::iter::once(("support".to_owned(), &program.support)).chain(large) {
+                for (j, entry) in entries.iter().enumerate() {
+                    room(format!("/programs/{i}/{list}/{j}/room_type"), &entry.room_type, &mut problems);
+                    for (k, id) in entry.or.iter().enumerate() {
+                        room(format!("/programs/{i}/{list}/{j}/or/{k}"), id, &mut problems);
+                    }
                 }
             }
             for (name, id) in &program.means {

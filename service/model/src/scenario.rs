@@ -116,12 +116,12 @@ pub struct RobotTask {
     pub robot: Robot,
     /// Where it starts.
     pub start: Pose,
-    /// POI ids in the order it visits them.
+    /// POI ids in the order it visits them: those of its storey, then those it rides to.
     pub goals: Vec<String>,
     /// The way to each goal, where the robot's body is known.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub ways: Vec<RobotWay>,
-    /// Its round: from where it starts to its first goal, from there to the next, at last to its dock.
+    /// Its round on the storey that it starts on: to its first goal, from there to the next, at last to its dock.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub routes: Vec<Route>,
     /// POI id of its dock.

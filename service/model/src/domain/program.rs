@@ -35,6 +35,9 @@ pub struct Program {
     /// What large buildings are made of; without it they have more of the same.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub units: Option<Units>,
+    /// What large buildings have besides, once for all: where people arrive, what feeds and serves so many.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub large: Vec<Large>,
     /// What words for rooms of other buildings mean in this one: the treatment room of a dental practice is one with a
     /// dental chair. Room type or name as the prompt has it, and the room type that it is here.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
@@ -79,6 +82,16 @@ pub struct Units {
     /// Ids of the programs of the second unit and of those after it, again from the first when there are more; the first unit
     /// has the program that these belong to.
     pub programs: Vec<String>,
+}
+
+/// Rooms that a building has from a size on, where the prompt leaves its rooms open.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Large {
+    /// Rooms of the building from which on it has them; those entered from another room are not counted.
+    pub from_rooms: u32,
+    /// They, each with what can stand for it.
+    pub rooms: Vec<SupportRoom>,
 }
 
 /// One line of a program.
@@ -222,6 +235,32 @@ pub struct Storeys {
     /// Room types that every storey should have one of before any has two (toilets).
     #[serde(default)]
     pub each_level_room_types: Vec<String>,
+    /// Which buildings have two stairs: those of which one of these speaks that holds in their country.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub two_stairs: Vec<TwoStairs>,
+}
+
+/// Buildings with a second staircase. Of what is given all must be so; a figure counts for the storeys off the ground.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TwoStairs {
+    /// Storeys above ground, the ground floor among them, at least.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub from_storeys: Option<u32>,
+    /// Floor of the rooms of a storey, at least, m^2.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub from_area_m2: Option<f64>,
+    /// People on a storey, at least: who works, learns or sleeps there.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub from_people: Option<u32>,
+    /// True where only storeys count that people sleep on.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub asleep: bool,
+    /// Where the rule holds, as ISO codes; everywhere when empty.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub jurisdictions: Vec<String>,
+    /// The rule and where it is from, as a reader is told.
+    pub source: String,
 }
 
 /// Stairs of two flights side by side with a landing between.

@@ -454,7 +454,10 @@ impl<'b> Judge<'b> {
                 score.hard += (spec.min_dimension - w.min(h)).max(0.0);
                 let (w, h) = room.largest;
                 let proportion = w.max(h) / w.min(h).max(0.1);
-                score.hard += (proportion - PROPORTION_LIMIT).max(0.0);
+                // the flights of a high storey are as long as they are
+                if !spec.fixed {
+                    score.hard += (proportion - PROPORTION_LIMIT).max(0.0);
+                }
                 score.soft[1] += (proportion - 1.5).max(0.0).powi(2) + SLOT * (proportion - SLOT_FROM).max(0.0);
             }
             if i != self.spine {

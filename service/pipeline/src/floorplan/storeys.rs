@@ -7,6 +7,7 @@ use d3dgen_model::geometry::to_mm;
 use d3dgen_model::scene_graph::{Note, SceneGraph};
 use d3dgen_model::seed::Stream;
 use d3dgen_model::storeys::{Level, LinkKind};
+use d3dgen_model::style::Form;
 
 use super::align::align;
 use super::assemble::{Turn, assemble, turned_in_place};
@@ -20,14 +21,21 @@ use crate::{Error, Stop};
 
 /// Share of a storey that may jut out over the one below without a word.
 pub(super) const OVERHANG_SHARE: f64 = 0.10;
+/// Share that may while there are few plans to compare, and how many are few.
+const LITTLE_OVERHANG: f64 = 0.04;
+const FEW_PLANS: usize = 3;
 /// Plans of a storey that are compared when the first ones jut out further.
 const COMPARED: usize = 6;
 const COMPARED_LARGE: usize = 2;
 /// How often a home is stacked at most, what a share of a storey counts that the one above leaves open beside one that juts
 /// out, and how ragged a stack may be that is taken at once.
 const STACKS: usize = 4;
+/// The same of other buildings that are no wings, where a storey juts out further than it may without a word.
+const STACKS_OF_OTHERS: usize = 3;
 const SET_BACK: f64 = 0.3;
 const WELL_STACKED: f64 = 0.06;
+/// Longest storey, about, that is one bar between two stairs, m: others walk less in wings.
+const LONGEST_BAR_M: f64 = 64.0;
 /// Heights of storeys are whole multiples of this, m.
 const HEIGHT_STEP_M: f64 = 0.05;
 
@@ -76,12 +84,15 @@ pub(super) fn generate(
         brief.core = Some(core.ok_or_else(missing)?);
         raise_stairwells(brief, graph, (i + 1 < numbers.len()).then(|| heights[i] - 0.01));
     }
-    // two stairs of a storey that is one bar are at its ends; where that does not work out it has wings
+    // two stairs of a storey that is one bar are at its ends; where that does not work out it has wings, which are nearer to no
+    // other form either
     let mut bars = briefs.iter().all(|b| {
         let along = b.rooms.iter().filter(|r| r.host.is_none()).count();
-        along <= LONGEST_BAR && b.form.is_none() && b.core.as_ref().is_some_and(|c| c.far.is_some())
+        let two = b.core.as_ref().is_some_and(|c| c.far.is_some());
+        along <= LONGEST_BAR && b.form != Some(Form::Wings) && two
     });
     let least = briefs.iter().map(bar_length).max().unwrap_or(0);
+    bars &= meters(least) <= LONGEST_BAR_M;
     briefs.iter_mut().filter_map(|b| b.core.as_mut()).for_each(|c| c.least = least);
     let ground = numbers.iter().position(|&l| l == 0).unwrap_or(0);
     let order = (ground..numbers.len()).map(|i| (i, i.checked_sub(1).filter(|_| i > ground)));
@@ -125,23 +136,29 @@ struct Plan<'a> {
 
 impl Plan<'_> {
     /// Plans the storeys one after the other, from the ground up and then down. What stands well above depends on what is
-    /// below: a home is stacked a few times, the best stack is taken.
+    /// below: a home is stacked a few times, another building where it juts out, and the best stack is taken.
     fn best_stack(&self, briefs: &mut [Brief], stop: Stop<'_>) -> Result<Vec<Planned>, Error> {
-        let stacks = if briefs.iter().all(|b| b.of_home) { STACKS } else { 1 };
+        let homes = briefs.iter().all(|b| b.of_home);
+        let stacks = if homes { STACKS } else { STACKS_OF_OTHERS };
         let mut best: Option<(f64, Vec<Planned>)> = None;
         let mut failed = None;
         for n in 0..stacks {
-            match self.stack(briefs, n, stop) {
+            let done = match self.stack(briefs, n, stop) {
                 Ok(stack) => {
+                    let juts = stack.iter().any(|p| p.overhang > OVERHANG_SHARE && p.below.comb.is_none());
                     let ragged = stack.iter().map(|p| p.overhang + SET_BACK * p.set_back).sum::<f64>();
                     if best.as_ref().is_none_or(|b| ragged < b.0) {
                         best = Some((ragged, stack));
                     }
+                    !homes && !juts
                 }
-                Err(error) => failed = failed.or(Some(error)),
-            }
+                Err(error) => {
+                    failed = failed.or(Some(error));
+                    !homes
+                }
+            };
             stop.check()?;
-            if best.as_ref().is_some_and(|b| b.0 <= WELL_STACKED) {
+            if done || best.as_ref().is_some_and(|b| b.0 <= WELL_STACKED) {
                 break;
             }
         }
@@ -250,7 +267,9 @@ fn storey(
                 }
                 compared += 1;
                 let most = if comb_built { COMPARED_LARGE } else { COMPARED };
-                if overhang <= OVERHANG_SHARE || compared == most {
+                let few = !comb_built && !brief.of_home && compared < FEW_PLANS;
+                let enough = if few { LITTLE_OVERHANG } else { OVERHANG_SHARE };
+                if best.as_ref().is_some_and(|b| b.overhang <= enough) || compared == most {
                     break;
                 }
             }

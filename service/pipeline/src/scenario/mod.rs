@@ -72,10 +72,12 @@ fn one_storey(
     scenario
 }
 
-/// Returns the graph with what its robots lack in a scenario: docks of their own, floor to put goods down.
+/// Returns the graph with what its robots lack in a scenario: docks of their own, ways to other storeys, floor to put goods down.
 pub(crate) fn with_shortages(mut graph: SceneGraph, scenario: &Scenario) -> SceneGraph {
     graph.conflicts.retain(|n| n.code != DOCKS_MISSING);
     graph.conflicts.extend(robots::dock_shortage(&scenario.robots));
+    graph.conflicts.retain(|n| n.code != storeys::STOREYS_MISSED);
+    graph.conflicts.extend(storeys::missed(&graph, scenario));
     graph.assumptions.retain(|n| n.code != staging::NO_STAGING);
     let unstaged = staging::staging_shortage(&graph, &scenario.rois);
     graph.assumptions.extend(unstaged);

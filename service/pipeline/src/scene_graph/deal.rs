@@ -1,15 +1,18 @@
 //! Which room goes on which storey, and the stairs and elevators that join them.
 
-use d3dgen_model::domain::{Access, Domain, GENERIC_ROOM_TYPE, Storeys as Rules, Zone};
+use d3dgen_knowledge::jurisdiction;
+use d3dgen_model::domain::{Access, Domain, GENERIC_ROOM_TYPE, Storeys as Rules, TwoStairs, Zone};
 use d3dgen_model::scene_graph::{Connector, GraphEdge, GraphRoom};
 use d3dgen_model::storeys::{LinkKind, VerticalLink};
 
 use super::BY_CIRCULATION;
+use super::beds::sleeps;
 use super::edges::{self, Web};
 use super::places::note;
 use super::program::Planned;
 use super::reading::{Reading, is_dwelling};
 use super::rooms;
+use super::seated;
 use super::storeys::Where;
 
 /// How much fuller than the mean a storey gets with what belongs there.
@@ -19,15 +22,16 @@ const LARGER: f64 = 1.15;
 /// How far areas are scaled so that storeys carry each other.
 const LEAST_SCALE: f64 = 0.8;
 const MOST_SCALE: f64 = 1.3;
+/// How much larger than the one above a storey of a building of units may be for that one to grow with it.
+const MOST_SPREAD: f64 = 1.2;
 /// How much larger a storey of a home may be than the one below, and how often areas are scaled until it is not.
 const EVEN: f64 = 0.01;
 const ROUNDS: usize = 4;
-/// Rooms of a storey from which on a building has two stairs.
+/// Rooms of a storey from which on a building has two stairs whatever its domain says.
 const TWO_STAIRS: usize = 16;
-
 /// The least floor of such a storey beside its corridor, m^2: on less all rooms are within 35 m of one stair (ASR A2.3).
 const TWO_STAIRS_M2: f64 = 300.0;
-/// The same where the prompt asks for two.
+/// Rooms of a storey that two stairs stand at the ends of, where the prompt or a rule asks for two.
 const LEAST_FOR_TWO: usize = 6;
 
 /// Ids of the elevators of a building, as many as stand in one core.
@@ -83,23 +87,33 @@ pub(super) fn deal(reading: &mut Reading, planned: &[Planned], areas: &[f64], le
     let open = |at: &[Option<i32>], likes: Likes, clusters: &[Cluster]| -> Vec<usize> {
         (0..clusters.len()).filter(|&i| at[i].is_none() && clusters[i].likes == likes).collect()
     };
-    let own_storeys = units(&clusters, &at, |_| false).len() == above.len();
-    let flushes = |c: &Cluster| c.rooms.iter().all(|&r| reading.wet.has_toilet(planned[r].kind));
-    let units = units(&clusters, &at, |c| own_storeys && c.likes == Likes::Each && flushes(c));
-    for (n, (rooms, area)) in units.into_iter().enumerate() {
-        let fits = |l: &&i32| load(&at, &clusters, **l) + 0.5 * area <= mean;
-        let level = if own_storeys { above.get(n) } else { above.iter().find(fits) }.copied();
+    let units = units(&clusters, &at);
+    // as many on each: a storey that is a unit keeps what it needs at hand
+    let own_storeys = !units.is_empty() && units.len().is_multiple_of(above.len());
+    let each = units.len() / above.len();
+    for (n, unit) in units.into_iter().enumerate() {
+        let fits = |l: &&i32| load(&at, &clusters, **l) + 0.5 * unit.area <= mean;
+        let level = if own_storeys { above.get(n / each) } else { above.iter().find(fits) }.copied();
         let level = level.unwrap_or_else(|| least_loaded(&above, |l| load(&at, &clusters, l)));
-        for i in rooms {
+        for i in unit.clusters {
             at[i] = Some(level);
-            // a storey that is a unit keeps what it needs at hand
             clusters[i].fixed = clusters[i].fixed.or(own_storeys.then_some(level));
         }
     }
-    for i in open(&at, Likes::Ground, &clusters) {
-        let full = load(&at, &clusters, 0) + 0.5 * clusters[i].area > FULL * mean;
-        let next = above.get(1).copied().unwrap_or(0);
-        at[i] = Some(if full && load(&at, &clusters, 0) > 0.0 { next } else { 0 });
+    let lives = is_dwelling(reading.program);
+    let mut ground = open(&at, Likes::Ground, &clusters);
+    if !lives {
+        // the lobby before the seventh gallery
+        let alike =
+            |i: usize| planned.iter().filter(|p| p.room_type == planned[clusters[i].rooms[0]].room_type).count();
+        ground.sort_by_cached_key(|&i| alike(i));
+    }
+    for i in ground {
+        let full =
+            |l: i32| load(&at, &clusters, l) > 0.0 && load(&at, &clusters, l) + 0.5 * clusters[i].area > FULL * mean;
+        let next = if lives { None } else { above[1..].iter().copied().find(|l| !full(*l)) };
+        let next = next.or(above.get(1).copied()).unwrap_or(0);
+        at[i] = Some(if full(0) { next } else { 0 });
     }
     // a home has its bedrooms on all upper storeys alike
     let up: f64 = clusters
@@ -109,11 +123,13 @@ pub(super) fn deal(reading: &mut Reading, planned: &[Planned], areas: &[f64], le
         .map(|(c, _)| c.area)
         .sum();
     let shared = up / (above.len() - 1).max(1) as f64;
-    let most = if is_dwelling(reading.program) { mean.min(shared) } else { mean };
+    let most = if lives { mean.min(shared) } else { mean };
     for i in open(&at, Likes::Upper, &clusters) {
         // one storey after the other, so that what is alike stays together
         let free = above.iter().skip(1).find(|&&l| load(&at, &clusters, l) + 0.5 * clusters[i].area <= most);
-        let least = || least_loaded(&above[1..], |l| load(&at, &clusters, l));
+        // one of a few large rooms rather stands on the ground floor than two of them on one storey
+        let large = !lives && clusters[i].area > 0.5 * mean;
+        let least = || least_loaded(&above[usize::from(!large)..], |l| load(&at, &clusters, l));
         at[i] = Some(free.copied().unwrap_or_else(least));
     }
     for i in open(&at, Likes::Each, &clusters) {
@@ -149,21 +165,34 @@ pub(super) fn deal(reading: &mut Reading, planned: &[Planned], areas: &[f64], le
     out
 }
 
-/// Returns the clusters of each unit that are still free, and their area, in the order of the units; `shared` are those that go
-/// to the storey without one, whichever unit they came with.
-fn units(clusters: &[Cluster], at: &[Option<i32>], shared: impl Fn(&Cluster) -> bool) -> Vec<(Vec<usize>, f64)> {
-    let mut out: Vec<(&str, Vec<usize>, f64)> = Vec::new();
-    for (i, cluster) in clusters.iter().enumerate().filter(|(i, c)| at[*i].is_none() && !shared(c)) {
-        let Some(unit) = cluster.unit else { continue };
-        match out.iter_mut().find(|u| u.0 == unit) {
+/// What of a unit is still free.
+struct Unit<'p> {
+    id: &'p str,
+    clusters: Vec<usize>,
+    area: f64,
+}
+
+/// Returns the units as they are to stand above each other: the first one below, then those that people come to by day.
+fn units<'p>(clusters: &[Cluster<'p>], at: &[Option<i32>]) -> Vec<Unit<'p>> {
+    let mut out: Vec<Unit> = Vec::new();
+    for (i, cluster) in clusters.iter().enumerate().filter(|(i, _)| at[*i].is_none()) {
+        let Some(id) = cluster.unit else { continue };
+        match out.iter_mut().find(|u| u.id == id) {
             Some(known) => {
-                known.1.push(i);
-                known.2 += cluster.area;
+                known.clusters.push(i);
+                known.area += cluster.area;
             }
-            None => out.push((unit, vec![i], cluster.area)),
+            None => out.push(Unit { id, clusters: vec![i], area: cluster.area }),
         }
     }
-    out.into_iter().map(|(_, rooms, area)| (rooms, area)).collect()
+    let ground = |unit: &Unit| {
+        let below = unit.clusters.iter().filter(|&&c| clusters[c].likes == Likes::Ground);
+        below.map(|&c| clusters[c].area).sum::<f64>() / unit.area.max(1.0)
+    };
+    if let Some((_, others)) = out.split_first_mut() {
+        others.sort_by(|a, b| ground(b).total_cmp(&ground(a)));
+    }
+    out
 }
 
 fn least_loaded(levels: &[i32], load: impl Fn(i32) -> f64) -> i32 {
@@ -186,24 +215,33 @@ pub(super) fn even_out(planned: &[Planned], rooms: &mut [GraphRoom], levels: &[i
             }
             let middle = 0.5 * (lower + upper);
             for (level, factor) in [(pair[0], middle / lower), (pair[1], middle / upper)] {
-                let factor = factor.clamp(LEAST_SCALE, MOST_SCALE);
-                // rooms for so many people may have more floor, never less
-                let free = planned
-                    .iter()
-                    .zip(&mut *rooms)
-                    .filter(|(p, _)| p.area_m2.is_none() && (p.people_area_m2.is_none() || lives && factor > 1.0));
-                for (p, room) in free.filter(|(_, r)| r.level == level) {
-                    let [min, max] = room.area_range_m2;
-                    // nobody wants a garage as large as the bedrooms above it
-                    let serves = lives && p.kind.zone == Zone::Service;
-                    let most =
-                        if serves { (0.9 * max).min(rooms::MOST_TO_SERVE * p.kind.area_m2.target) } else { 0.9 * max };
-                    let (low, high) = (room.target_area_m2.min(1.08 * min), room.target_area_m2.max(most));
-                    room.target_area_m2 =
-                        (room.target_area_m2 * factor * 10.0).round().clamp(10.0 * low, 10.0 * high) / 10.0;
-                }
+                scale(planned, rooms, level, factor.clamp(LEAST_SCALE, MOST_SCALE), lives);
             }
         }
+    }
+    // a storey that is a unit is to leave no roof beside its corridor
+    for pair in above.windows(2).filter(|_| !lives && planned.iter().any(|p| p.unit.is_some())) {
+        let (lower, upper) = (area(rooms, pair[0]), area(rooms, pair[1]));
+        if upper > 0.0 && (1.0..MOST_SPREAD).contains(&(lower / upper)) {
+            scale(planned, rooms, pair[1], lower / upper, lives);
+        }
+    }
+}
+
+/// Scales the rooms of a storey whose areas neither the prompt nor their people fix, within what their types allow.
+fn scale(planned: &[Planned], rooms: &mut [GraphRoom], level: i32, factor: f64, lives: bool) {
+    // rooms for so many people may have more floor, never less
+    let free = planned
+        .iter()
+        .zip(rooms)
+        .filter(|(p, _)| p.area_m2.is_none() && (p.people_area_m2.is_none() || lives && factor > 1.0));
+    for (p, room) in free.filter(|(_, r)| r.level == level) {
+        let [min, max] = room.area_range_m2;
+        // nobody wants a garage as large as the bedrooms above it
+        let serves = lives && p.kind.zone == Zone::Service;
+        let most = if serves { (0.9 * max).min(rooms::MOST_TO_SERVE * p.kind.area_m2.target) } else { 0.9 * max };
+        let (low, high) = (room.target_area_m2.min(1.08 * min), room.target_area_m2.max(most));
+        room.target_area_m2 = (room.target_area_m2 * factor * 10.0).round().clamp(10.0 * low, 10.0 * high) / 10.0;
     }
 }
 
@@ -404,6 +442,31 @@ pub(super) fn connect(
     (out, web, links)
 }
 
+/// Returns a rule of the building's country by which it has two stairs; without a country, one that holds everywhere.
+fn two_stairs<'r>(reading: &Reading, rules: &'r Rules, rooms: &[GraphRoom]) -> Option<&'r TwoStairs> {
+    let domain = reading.domain;
+    let storeys = reading.storeys.above_ground() as u32;
+    let country = reading.country_code.as_deref();
+    let people = |room: &GraphRoom| {
+        let kind = domain.room_type_or_generic(&room.room_type);
+        let usual = || sleeps(domain, kind).or_else(|| seated::desks(domain, kind)).map(|n| n[0]);
+        room.occupants.or_else(usual).unwrap_or(0)
+    };
+    let speaks = |rule: &&TwoStairs| {
+        let storey = |level: i32| {
+            let here = || rooms.iter().filter(move |r| r.level == level);
+            let asleep = || here().any(|r| domain.room_type_or_generic(&r.room_type).zone == Zone::Night);
+            rule.from_area_m2.is_none_or(|least| here().map(|r| r.target_area_m2).sum::<f64>() >= least)
+                && rule.from_people.is_none_or(|least| here().map(people).sum::<u32>() >= least)
+                && (!rule.asleep || asleep())
+        };
+        jurisdiction::holds(&rule.jurisdictions, country)
+            && rule.from_storeys.is_none_or(|least| storeys >= least)
+            && reading.storeys.levels.iter().any(|&level| level != 0 && storey(level))
+    };
+    rules.two_stairs.iter().find(speaks)
+}
+
 fn corridor(reading: &Reading, i: usize, level: i32) -> GraphRoom {
     let mut room = rooms::circulation(reading);
     room.id = format!("{}_{}", room.room_type, i + 1);
@@ -430,8 +493,19 @@ fn links(
         .any(|l| here(*l).count() >= TWO_STAIRS && here(*l).map(|r| r.target_area_m2).sum::<f64>() >= TWO_STAIRS_M2);
     let mut wanted = vec![(LinkKind::Stairs, &rules.stairs.room_type, "stairs_a")];
     let asked = reading.storeys.stairs;
-    if large || asked > 1 && most >= LEAST_FOR_TWO {
+    let ruled = two_stairs(reading, rules, rooms);
+    let along =
+        |level: i32| here(level).filter(|r| domain.room_type_or_generic(&r.room_type).access != Access::Host).count();
+    let longest = levels.iter().map(|l| along(*l)).max().unwrap_or(0);
+    let holds_two = if ruled.is_some() { longest } else { most } >= LEAST_FOR_TWO;
+    if large || (asked > 1 || ruled.is_some()) && holds_two {
         wanted.push((LinkKind::Stairs, &rules.stairs.room_type, "stairs_b"));
+    } else if let Some(rule) = ruled {
+        let message = format!(
+            "the building needs two stairs ({}); on storeys of up to {longest} rooms they would be one beside the other, and one was planned",
+            rule.source
+        );
+        reading.conflicts.push(note("one_stair", message));
     }
     let planned = wanted.len() as u32;
     if asked > planned {

@@ -22,6 +22,7 @@ mod homes;
 mod keeps;
 mod labels;
 mod language;
+mod large;
 mod layout;
 mod listed;
 mod measures;

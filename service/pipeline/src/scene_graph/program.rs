@@ -11,6 +11,7 @@ use d3dgen_model::domain::{
 use super::beds::{Held, sleeps};
 use super::charging::most_docks;
 use super::edges::rules_here;
+use super::large;
 use super::layout;
 use super::objects::Thing;
 use super::places::note;
@@ -160,6 +161,7 @@ pub(super) fn complete<'a>(reading: &mut Reading<'a>) -> Vec<Planned<'a>> {
     equip_hosts(reading, &mut rooms);
     vital::accompany(reading, &mut rooms);
     vital::complete(reading, &mut rooms);
+    large::complete(reading, &mut rooms);
     house_robots(reading, &mut rooms);
     let mut rooms = units::divide(reading, rooms);
     layout::follow(reading, &mut rooms);
@@ -359,16 +361,66 @@ fn wash_on_every_storey<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>)
         kinds.filter(|k| k.wet && !reading.wishes.forbidden.contains(&k.id) && k.access != Access::Host).collect();
     let usual = wet.iter().copied().find(|k| words().dwelling.toilets.contains(&k.id));
     let Some(kind) = usual.or(wet.first().copied()) else { return };
-    let is_wet = |r: &Planned| r.kind.access != Access::Host && reading.wet.has_toilet(r.kind);
-    for _ in rooms.iter().filter(|r| is_wet(r)).count()..storeys {
+    if rooms.iter().any(|r| r.unit.is_some()) {
+        return wash_in_units(reading, rooms, kind);
+    }
+    for _ in rooms.iter().filter(|r| is_washed_in(reading, r)).count()..storeys {
         if reading.total.is_none() {
             rooms.push(Planned::new(&kind.id, kind));
             continue;
         }
-        // what comes last in the program gives way
-        let spare = rooms.iter().rposition(|r| !r.requested && !is_wet(r) && r.kind.access != Access::Host);
-        let Some(spare) = spare.filter(|s| *s > storeys) else { return };
+        let Some(spare) = spare_for_toilet(reading, rooms, None).filter(|s| *s > storeys) else { return };
         rooms[spare] = Planned::new(&kind.id, kind);
+    }
+}
+
+/// Returns true for toilets and bathrooms that all use.
+fn is_washed_in(reading: &Reading, room: &Planned) -> bool {
+    room.kind.access != Access::Host && reading.wet.has_toilet(room.kind)
+}
+
+/// Returns the room that gives way to a toilet where their number is fixed: what comes last in the program, or in that of a unit.
+/// No bathroom is left without its bedroom.
+fn spare_for_toilet(reading: &Reading, rooms: &[Planned], unit: Option<&String>) -> Option<usize> {
+    let entered = |r: &Planned| {
+        let guest =
+            |g: &Planned| g.kind.access == Access::Host && g.unit == r.unit && g.kind.hosts.contains(&r.room_type);
+        rooms.iter().any(guest)
+    };
+    let spare = |r: &Planned| {
+        !r.requested
+            && !is_washed_in(reading, r)
+            && r.kind.access != Access::Host
+            && !entered(r)
+            && r.unit.as_ref() == unit
+    };
+    rooms.iter().rposition(spare)
+}
+
+/// Gives each unit whose people have no toilets of their own one: who sleeps there may have, who works or learns there has not.
+fn wash_in_units<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>, kind: &'a RoomType) {
+    let mut units: Vec<String> = Vec::new();
+    for unit in rooms.iter().filter_map(|r| r.unit.as_ref()) {
+        if !units.contains(unit) {
+            units.push(unit.clone());
+        }
+    }
+    for unit in units {
+        let own = || rooms.iter().filter(|r| r.unit.as_ref() == Some(&unit));
+        let count = |test: &dyn Fn(&Planned) -> bool| own().filter(|r| test(r)).count();
+        let asleep = count(&|r| r.kind.zone == Zone::Night && r.kind.access != Access::Host);
+        let bathed = count(&|r| r.kind.access == Access::Host && reading.wet.has_toilet(r.kind));
+        let awake =
+            count(&|r| matches!(r.kind.zone, Zone::Public | Zone::Day | Zone::Staff) && r.kind.access != Access::Host);
+        if own().any(|r| is_washed_in(reading, r)) || awake == 0 && bathed >= asleep {
+            continue;
+        }
+        let toilet = Planned { unit: Some(unit.clone()), ..Planned::new(&kind.id, kind) };
+        match (reading.total, spare_for_toilet(reading, rooms, Some(&unit))) {
+            (None, _) => rooms.push(toilet),
+            (Some(_), Some(spare)) => rooms[spare] = toilet,
+            (Some(_), None) => {}
+        }
     }
 }
 
@@ -857,8 +909,7 @@ fn table_for(reading: &Reading, rooms: &[Planned], room: Option<usize>, people: 
 
 /// Returns how many people work there: as many as the prompt says, else as have a desk.
 pub(super) fn places_to_work(reading: &Reading, rooms: &[Planned]) -> u32 {
-    let own = |r: &Planned| r.occupants.filter(|_| !r.visited).unwrap_or_else(|| workplaces(reading.domain, r));
-    let desks = || rooms.iter().map(own).sum::<u32>();
+    let desks = || rooms.iter().map(|r| workplaces(reading.domain, r)).sum::<u32>();
     match reading.occupancy.staff {
         Some(staff) => staff.max(reading.occupancy.desks.unwrap_or(0)),
         // "10 offices and an open plan with 12 desks"
@@ -893,8 +944,11 @@ fn seat_waiting(reading: &Reading, rooms: &mut [Planned]) {
     }
 }
 
-/// Returns how many people have a desk in a room of its usual size.
-fn workplaces(domain: &Domain, room: &Planned) -> u32 {
+/// Returns how many people have a desk in a room: as many as it is told to hold, else as in one of its usual size.
+pub(super) fn workplaces(domain: &Domain, room: &Planned) -> u32 {
+    if let Some(told) = room.occupants.filter(|_| !room.visited) {
+        return told;
+    }
     let area = room.reckoned_m2();
     let lines = room.kind.furnishing.iter().filter(|line| line.instead_of.is_empty());
     lines.map(|line| seated::desks_of(domain, &line.item) * line.units(area)).max().unwrap_or(0)

@@ -5,7 +5,7 @@ use d3dgen_model::scene_graph::Note;
 use super::mentions::{Mention, What};
 use super::numbers::Number;
 use super::places::note;
-use super::text::{Kind, Phrases, Span, Token};
+use super::text::{Kind, Phrases, Span, Token, fold};
 use super::words::{Spoken, Tag, words};
 
 /// Storeys above the ground that a prompt may ask for.
@@ -257,6 +257,9 @@ fn state_more_than_one(text: &Text, stated: i32, conflicts: &mut Vec<Note>) {
 /// Words between a number and the elevators that it counts, at most: "two large passenger lifts".
 const MOST_TO_LIFT: usize = 2;
 
+/// What words in the plural end in where that is all that makes them one.
+const PLURAL_ENDS: [&str; 2] = ["s", "es"];
+
 /// What a prompt says of elevators.
 struct Lifts {
     /// True when one is named, false when it is ruled out.
@@ -287,11 +290,26 @@ fn lifts(text: &Text) -> Lifts {
         // "电梯4部", "엘리베이터 3대"
         let end = tagged(at, Tag::Lift).unwrap_or(at);
         let behind = |n: &&Number| n.span.start == end && tagged(n.span.end, Tag::Counters).is_some();
-        let number = numbers.iter().rev().find(between).or_else(|| numbers.iter().find(behind))?;
+        // "3 storeys with lifts" counts no lifts
+        let of_storeys = |n: &&Number| tagged(n.span.end, Tag::Storeys).is_some();
+        let before = numbers.iter().rev().find(between).filter(|n| !of_storeys(n));
+        let number = before.or_else(|| numbers.iter().find(behind))?;
         (number.value >= 1.0).then_some(number.value as u32)
     };
     let near = |&at: &usize| (at.saturating_sub(MOST_TO_LIFT + 1)..at).any(|k| tagged(k, Tag::Near).is_some());
-    Lifts { wanted, beside: all.iter().any(near), count: all.iter().filter_map(counted).fold(0, u32::saturating_add) }
+    let single = |word: &str| {
+        let mut all = spoken.iter().filter_map(|s| s.words.phrases.get(&Tag::Lift)).flatten();
+        all.any(|w| fold(w) == word)
+    };
+    // "with lifts": the plural of a word that is known without its ending
+    let plural = |&at: &usize| {
+        let word = tagged(at, Tag::Lift).and_then(|end| tokens.get(end - 1)).map_or("", |t| t.text.as_str());
+        PLURAL_ENDS.iter().any(|end| word.strip_suffix(end).is_some_and(single))
+    };
+    let told = all.iter().filter_map(counted).fold(0, u32::saturating_add);
+    let beside = all.iter().any(near);
+    let several = if all.iter().any(plural) && wanted == Some(true) && !beside { 2 } else { 0 };
+    Lifts { wanted, beside, count: if told > 0 { told } else { several } }
 }
 
 /// What the reading of storeys needs to see.

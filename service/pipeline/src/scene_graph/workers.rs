@@ -1,11 +1,13 @@
 //! Places to work at follow those who work there: desks for as many as the prompt says, toilets for women and men, seats in
 //! break rooms and canteens, and the names that the prompt gives its rooms.
 
+use std::collections::BTreeMap;
+
 use d3dgen_model::domain::{Domain, Occupants, Privacy, Program, RoomType, Zone};
 use d3dgen_model::scene_graph::{GraphRoom, Note};
 
 use super::places::note;
-use super::program::{Planned, desk_area_m2, head_count, places_to_work};
+use super::program::{Planned, desk_area_m2, head_count, places_to_work, workplaces};
 use super::reading::{Reading, is_dwelling};
 use super::seats::{MOST_IN_TEAM, has_counters, most_desks, places, works_in};
 use super::text::capital;
@@ -262,8 +264,12 @@ fn part_toilets<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
     // two on every storey
     let each = people as usize / storeys;
     let two = each > PEOPLE_FOR_TWO as usize && (1..2 * storeys).contains(&count);
-    if two && may(kind) && !fixed && rooms.iter().all(|r| r.unit.is_none()) {
+    let in_units = rooms.iter().any(|r| r.unit.is_some());
+    if two && may(kind) && !fixed && !in_units {
         rooms.extend((count..2 * storeys).map(|_| Planned::new(&kind.id, kind)));
+        added = Some(kind);
+    }
+    if in_units && storeys > 1 && may(kind) && !fixed && part_in_units(reading, rooms, kind) {
         added = Some(kind);
     }
     let many = people > PEOPLE_FOR_ACCESSIBLE || rooms.len() > ROOMS_FOR_ACCESSIBLE;
@@ -291,6 +297,22 @@ fn part_toilets<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
         let message = format!("{people} people work there; women and men have {} each", kind.label.to_lowercase());
         reading.assumptions.push(note("toilets_by_people", message));
     }
+}
+
+/// Adds a second toilet to each unit with one where many work; returns true when it did.
+fn part_in_units<'a>(reading: &Reading, rooms: &mut Vec<Planned<'a>>, kind: &'a RoomType) -> bool {
+    let mut people: BTreeMap<&str, (u32, u32)> = BTreeMap::new();
+    for (room, unit) in rooms.iter().filter_map(|r| Some((r, r.unit.as_deref()?))) {
+        let of_unit = people.entry(unit).or_default();
+        of_unit.0 += workplaces(reading.domain, room);
+        of_unit.1 += u32::from(room.room_type == kind.id);
+    }
+    let many = people.iter().filter(|(_, (people, toilets))| *people > PEOPLE_FOR_TWO && *toilets == 1);
+    let second = |(unit, _): (&&str, _)| Planned { unit: Some((*unit).to_owned()), ..Planned::new(&kind.id, kind) };
+    let more: Vec<Planned> = many.map(second).collect();
+    let any = !more.is_empty();
+    rooms.extend(more);
+    any
 }
 
 /// Gives rooms to wait in seats by the counters that people wait for.

@@ -105,6 +105,171 @@ fn every_storey_of_a_large_building_has_its_share_of_the_rooms() {
     }
 }
 
+/// Returns the rooms of each type of a storey.
+fn types_on(graph: &SceneGraph, level: i32) -> BTreeMap<&str, usize> {
+    let mut out = BTreeMap::new();
+    for room in graph.rooms.iter().filter(|r| r.level == level) {
+        *out.entry(room.room_type.as_str()).or_default() += 1;
+    }
+    out
+}
+
+#[test]
+fn what_all_share_is_on_the_ground_floor() {
+    let registry = Registry::builtin();
+    let hotel: &[&str] = &["reception", "lobby", "breakfast_room", "linen_room", "restroom"];
+    for (prompt, needed) in [
+        ("Hotel with 30 guest rooms on 3 storeys with a lift", hotel),
+        ("Hotel with 60 guest rooms on 4 floors", hotel),
+        ("Hotel on 4 storeys", hotel),
+        ("Hospital on 3 storeys with lifts", &["reception", "waiting_area"]),
+        ("School with 40 rooms on two storeys", &["entrance_hall", "canteen", "office"]),
+        ("Ward with 24 patient rooms on two storeys", &["reception", "waiting_area"]),
+        ("Museum on two floors with 8 galleries", &["lobby", "reception"]),
+        ("Care home with 40 residents on 2 storeys", &["kitchen", "reception", "office", "laundry"]),
+    ] {
+        for seed in 0..3 {
+            let graph = generate(&request(prompt, seed), &registry).unwrap();
+            let ground = types_on(&graph, 0);
+            let missing: Vec<_> = needed.iter().filter(|t| !ground.contains_key(**t)).collect();
+            assert!(missing.is_empty(), "{prompt}, seed {seed}: {missing:?} not among {ground:?}");
+        }
+    }
+}
+
+#[test]
+fn every_storey_has_what_its_people_need_at_hand() {
+    let registry = Registry::builtin();
+    let ward: &[&str] = &["nurse_station", "dirty_utility", "clean_utility", "staff_room"];
+    for (prompt, needed) in [
+        ("Ward with 24 patient rooms on two storeys", ward),
+        ("Hospital with 40 rooms on 3 storeys with lifts", ward),
+        ("Hospital with 120 rooms on 4 storeys", &["nurse_station", "dirty_utility", "staff_room"]),
+        ("Office tower with 5 storeys, a core and 60 rooms", &["toilet", "accessible_toilet", "kitchenette"]),
+        ("Office tower with 5 storeys and a central core", &["toilet", "accessible_toilet", "kitchenette"]),
+        (
+            "Care home with 40 residents on 2 storeys",
+            &["nurse_station", "day_room", "dining_room", "assisted_bathroom"],
+        ),
+        ("School with 40 rooms on two storeys", &["toilet", "accessible_toilet"]),
+    ] {
+        let graph = generate(&request(prompt, 1), &registry).unwrap();
+        for level in graph.level_numbers() {
+            let here = types_on(&graph, level);
+            let missing: Vec<_> = needed.iter().filter(|t| !here.contains_key(**t)).collect();
+            assert!(missing.is_empty(), "{prompt}, level {level}: {missing:?} not among {here:?}");
+        }
+        // nobody has all cubicles of a building on one storey
+        let toilets = graph.rooms.iter().filter(|r| r.room_type == "toilet").map(|r| r.target_area_m2);
+        let (least, most) = toilets.fold((f64::MAX, 0.0_f64), |(a, b), m2| (a.min(m2), b.max(m2)));
+        assert!(most <= 2.0 * least, "{prompt}: toilets of {least} to {most} m2");
+    }
+}
+
+#[test]
+fn storeys_that_are_units_are_about_as_large() {
+    let registry = Registry::builtin();
+    for prompt in [
+        "Hotel with 30 guest rooms on 3 storeys with a lift",
+        "Hospital with 40 rooms on 3 storeys with lifts",
+        "Hospital with 120 rooms on 4 storeys",
+        "Office tower with 5 storeys and a central core",
+        "Office tower with 5 storeys, a core and 60 rooms",
+    ] {
+        let graph = generate(&request(prompt, 1), &registry).unwrap();
+        let area = |level: &i32| -> f64 {
+            let rooms = graph.rooms.iter().filter(|r| r.level == *level && !r.circulation);
+            rooms.map(|r| r.target_area_m2).sum()
+        };
+        let areas: Vec<f64> = graph.level_numbers().iter().map(area).collect();
+        let (least, most) = areas.iter().fold((f64::MAX, 0.0_f64), |(a, b), m2| (a.min(*m2), b.max(*m2)));
+        assert!(most <= 1.25 * least, "{prompt}: {areas:?}");
+    }
+}
+
+#[test]
+fn no_room_has_two_en_suites() {
+    let registry = Registry::builtin();
+    for prompt in [
+        "Hospital with 40 rooms on 3 storeys with lifts",
+        "Hospital with 60 rooms on 3 storeys",
+        "Hospital with 20 rooms on 2 floors",
+        "Ward with 24 patient rooms on two storeys",
+        "Hotel with 30 guest rooms on 3 storeys with a lift",
+        "hospital ward with 31 rooms on 2 storeys",
+    ] {
+        for seed in 0..4 {
+            let graph = generate(&request(prompt, seed), &registry).unwrap();
+            let bath =
+                |id: &str| graph.room(id).is_some_and(|r| ["ensuite", "bathroom"].contains(&r.room_type.as_str()));
+            for room in
+                graph.rooms.iter().filter(|r| r.room_type.contains("patient_room") || r.room_type == "guest_room")
+            {
+                let beside = |e: &&d3dgen_model::scene_graph::GraphEdge| {
+                    e.a == room.id && bath(&e.b) || e.b == room.id && bath(&e.a)
+                };
+                let own = graph.edges.iter().filter(beside).count();
+                assert!(own < 2, "{prompt}, seed {seed}: {} has {own}", room.id);
+            }
+        }
+    }
+}
+
+#[test]
+fn stairs_are_two_where_a_rule_of_the_country_asks_for_them() {
+    let registry = Registry::builtin();
+    let of_kind = |graph: &SceneGraph, kind| graph.links.iter().filter(|l| l.kind == kind).count();
+    for (prompt, stairs) in [
+        ("Office tower with 5 storeys, a core and 60 rooms", 2),
+        ("Hotel with 30 guest rooms on 3 storeys with a lift", 2),
+        ("Hospital on 3 storeys with lifts", 2),
+        ("Hospital with 40 rooms on 3 storeys with lifts", 2),
+        ("School with 40 rooms on two storeys", 2),
+        ("office with 24 rooms on 3 floors", 1),
+        ("office in the US with 24 rooms on 3 floors", 2),
+        ("two-storey house with 4 bedrooms", 1),
+    ] {
+        let graph = generate(&request(prompt, 1), &registry).unwrap();
+        assert_eq!(of_kind(&graph, LinkKind::Stairs), stairs, "{prompt}");
+    }
+    // storeys of a few rooms have one, and say so
+    let small = generate(&request("office in the US with 9 rooms on 3 floors", 1), &registry).unwrap();
+    assert_eq!(of_kind(&small, LinkKind::Stairs), 1);
+    assert!(
+        small.conflicts.iter().any(|n| n.code == "one_stair" && n.message.contains("IBC")),
+        "{:?}",
+        small.conflicts
+    );
+    // "3 storeys with lifts" says nothing of three lifts
+    let lifts = generate(&request("Hospital on 3 storeys with lifts", 1), &registry).unwrap();
+    assert!(of_kind(&lifts, LinkKind::Elevator) < 3);
+}
+
+#[test]
+fn robots_ride_to_other_storeys_or_the_world_says_that_they_do_not() {
+    let registry = Registry::builtin();
+    let world = |prompt: &str| {
+        let settings = Settings::default();
+        generate_world(&request(prompt, 1), &registry, &settings, &mut |_| {}, &AtomicBool::new(false)).expect(prompt)
+    };
+    let levels = |world: &d3dgen_model::world::World| -> Vec<i32> {
+        let poi = |id: &String| world.scenario.pois.iter().find(|p| &p.poi_id == id);
+        let goals = world.scenario.robots.iter().flat_map(|t| &t.goals).filter_map(poi);
+        let mut out: Vec<i32> = goals.filter_map(|p| Some(world.floorplan.room(&p.room_id)?.level)).collect();
+        out.sort_unstable();
+        out.dedup();
+        out
+    };
+    let told = |world: &d3dgen_model::world::World| {
+        world.scene_graph.conflicts.iter().any(|n| n.code == "robots_miss_storeys")
+    };
+    let made = world("Office on 3 floors with an elevator and a cleaning robot");
+    assert!(made.report.sound);
+    assert_eq!((levels(&made.world), told(&made.world)), (vec![0, 1, 2], false));
+    let made = world("Two-storey office with 12 rooms, no elevator, a cleaning robot");
+    assert_eq!((levels(&made.world).len(), told(&made.world)), (1, true));
+}
+
 #[test]
 fn cores_line_up_for_every_seed() {
     let registry = Registry::builtin();

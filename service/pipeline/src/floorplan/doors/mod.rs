@@ -390,14 +390,20 @@ impl Site<'_> {
         })
     }
 
-    /// Returns true for walls where a room may have its door: a stairwell has it at the end of its flights.
+    /// Returns true for walls where a room may have its door: a stairwell has it at the end of its flights, an elevator at the
+    /// alcove beside them, wherever else a corridor passes it.
     fn is_front(&self, s: &Stretch, room: usize) -> bool {
         let spec = &self.brief.rooms[room];
-        if !spec.fixed || spec.elevator {
-            return true;
+        let shape = |room: usize| self.boxes.iter().find(|b| b.0 == room).map(|b| b.1);
+        let across = |stairs: &Cellbox| s.vertical == (stairs.height() < stairs.width());
+        if spec.elevator {
+            let stairs = self.brief.core.as_ref().and_then(|core| shape(core.host));
+            return stairs.is_none_or(|b| {
+                let (low, high) = if s.vertical { (b.x0, b.x1) } else { (b.y0, b.y1) };
+                across(&b) && low < s.at && s.at < high
+            });
         }
-        let shape = self.boxes.iter().find(|b| b.0 == room).map(|b| b.1);
-        shape.is_none_or(|b| s.vertical == (b.height() < b.width()))
+        !spec.fixed || shape(room).is_none_or(|b| across(&b))
     }
 
     /// Returns the free part of a stretch in meters: clear of the walls that meet its ends.
