@@ -19,6 +19,7 @@ mod cost;
 mod doors;
 mod genome;
 mod hall;
+mod holes;
 mod insert;
 mod lattice;
 mod mirror;
@@ -32,8 +33,10 @@ mod search;
 mod spec;
 mod storey;
 mod storeys;
+mod symmetric;
 #[cfg(test)]
 mod tests;
+mod twins;
 mod windows;
 
 use std::collections::BTreeMap;
@@ -135,7 +138,7 @@ pub fn generate_until(
         }
         let name = format!("{:?}", found.scheme).to_lowercase();
         brief.tell_form(form, &found);
-        brief.tell_symmetry(found.score.symmetry);
+        brief.tell_symmetry(mirror::share(&brief, &found.layout.boxes));
         let mut boxes = turned(&found.layout.boxes, turn);
         numbers::along_corridor(graph, &brief, &mut boxes);
         match assemble(&brief, &boxes, &found.score, graph.seed, &name, None, &mut rng) {
