@@ -39,25 +39,31 @@ impl Axis {
     }
 }
 
-/// By room: the room of the same kind that its mirror image is, itself for one on the axis. Pieces of corridor are one room.
-type Images = Vec<Option<usize>>;
-
-/// Returns the axis about which more of a layout is alike, the share of its floor area that is, and which room mirrors which.
-pub(super) fn best_axis(brief: &Brief, boxes: &[(usize, Cellbox)]) -> Option<(Axis, f64, Images)> {
-    let found = Axis::of(boxes)?.map(|axis| {
-        let (share, images) = alike(brief, boxes, axis);
-        (axis, share, images)
-    });
-    found.into_iter().reduce(|a, b| if b.1 > a.1 { b } else { a })
+/// How much of a layout is alike on both sides of an axis.
+#[derive(Debug, Clone)]
+pub(super) struct Likeness {
+    pub axis: Axis,
+    /// Share of the floor area whose mirror image is a room of the same kind.
+    pub share: f64,
+    /// Share of the floor area whose mirror image is a room of the same type.
+    pub of_type: f64,
+    /// By room: the room of the same kind that its mirror image is, itself for one on the axis. Pieces of corridor are one
+    /// room.
+    pub images: Vec<Option<usize>>,
 }
 
-/// Returns the share of the floor area whose mirror image is a room of the same kind, about the better of two axes.
+/// Returns how alike a layout is, about the better of the two axes through its middle.
+pub(super) fn likeness(brief: &Brief, boxes: &[(usize, Cellbox)]) -> Option<Likeness> {
+    let found = Axis::of(boxes)?.map(|axis| alike(brief, boxes, axis));
+    found.into_iter().reduce(|a, b| if b.share > a.share { b } else { a })
+}
+
+/// Returns the share of the floor area whose mirror image is a room of the same kind.
 pub(super) fn share(brief: &Brief, boxes: &[(usize, Cellbox)]) -> f64 {
-    best_axis(brief, boxes).map_or(0.0, |found| found.1)
+    likeness(brief, boxes).map_or(0.0, |found| found.share)
 }
 
-/// Returns the share of the floor area whose mirror image is a room of the same kind, and which room mirrors which.
-pub(super) fn alike(brief: &Brief, boxes: &[(usize, Cellbox)], axis: Axis) -> (f64, Images) {
+fn alike(brief: &Brief, boxes: &[(usize, Cellbox)], axis: Axis) -> Likeness {
     let count = brief.rooms.len();
     let whole = |room: usize| whole(brief, room);
     let area = |b: &Cellbox| i64::from(b.width()) * i64::from(b.height());
@@ -66,16 +72,24 @@ pub(super) fn alike(brief: &Brief, boxes: &[(usize, Cellbox)], axis: Axis) -> (f
     let mut shared = vec![0_i64; count * count];
     for (room, b) in boxes {
         let image = axis.image(*b);
-        for (other, c) in boxes.iter().filter(|(other, _)| same_kind(brief, whole(*room), whole(*other))) {
-            shared[whole(*room) * count + whole(*other)] += image.overlap(c).map_or(0, |both| area(&both));
+        for (other, c) in boxes {
+            if let Some(both) = image.overlap(c)
+                && same_kind(brief, whole(*room), whole(*other))
+            {
+                shared[whole(*room) * count + whole(*other)] += area(&both);
+            }
         }
     }
     let covers = |room: usize, other: usize| shared[room * count + other] as f64 >= COVERS * areas[room] as f64;
     let image = |room: usize| (0..count).find(|&other| areas[room] > 0 && covers(room, other) && covers(other, room));
-    let images: Images = (0..count).map(|room| image(whole(room))).collect();
-    let mirrored: i64 =
-        (0..count).filter(|&room| whole(room) == room && images[room].is_some()).map(|r| areas[r]).sum();
-    (mirrored as f64 / areas.iter().sum::<i64>().max(1) as f64, images)
+    let images: Vec<Option<usize>> = (0..count).map(|room| image(whole(room))).collect();
+    let total = areas.iter().sum::<i64>().max(1) as f64;
+    let of = |chosen: &dyn Fn(usize, usize) -> bool| {
+        let mirrored = (0..count).filter(|&room| whole(room) == room && images[room].is_some_and(|i| chosen(room, i)));
+        mirrored.map(|room| areas[room]).sum::<i64>() as f64 / total
+    };
+    let same_type = |a: usize, b: usize| brief.rooms[a].room_type == brief.rooms[b].room_type;
+    Likeness { axis, share: of(&|_, _| true), of_type: of(&same_type), images }
 }
 
 /// Returns the corridor for each of its pieces, which are one room here; else the room.
@@ -84,11 +98,10 @@ pub(super) fn whole(brief: &Brief, room: usize) -> usize {
     if is_piece { brief.spine.unwrap_or(room) } else { room }
 }
 
-/// Returns true for rooms of one type, and for those of one zone that both have water or both have none: a toilet pairs with a
-/// bathroom, an office with a larger one.
+/// Returns true for rooms of one part of the building: those that the picture of a plan tints alike.
 pub(super) fn same_kind(brief: &Brief, a: usize, b: usize) -> bool {
     let (a, b) = (&brief.rooms[a], &brief.rooms[b]);
-    a.room_type == b.room_type || (a.zone, a.wet, a.circulation) == (b.zone, b.wet, b.circulation)
+    a.room_type == b.room_type || (a.zone, a.circulation) == (b.zone, b.circulation)
 }
 
 /// Returns what a layout costs under a wish, from the largest box of each room, its area, and the box of the room one

@@ -22,6 +22,8 @@ const MOST_COURT: f64 = 3.0;
 const BEYOND_LEAST_M: f64 = 1.0;
 /// How wide a court is at least, as a share of the side of a square as large as all rooms: a large building has no shaft.
 const COURT_SHARE: f64 = 0.28;
+/// How much more a corridor around a court counts than a notch as long that has no room on its facade.
+pub(super) const BARE: f64 = 5.0;
 /// How much more a notch in the outline around a court counts.
 const AROUND_COURT: f64 = 5.0;
 
@@ -330,7 +332,8 @@ fn ring(task: &mut Task<'_, '_>) {
     if around {
         // a corridor along a facade without rooms is a way for nothing
         let bare = |band: usize, length: i32| if used_depth(genome, band) == 0 { meters(length) } else { 0.0 };
-        task.layout.notch += bare(0, len) + bare(1, len) + bare(WEST_BAND, core) + bare(EAST_BAND, core);
+        let legs = bare(0, len) + bare(1, len) + bare(WEST_BAND, core) + bare(EAST_BAND, core);
+        task.layout.notch += BARE * legs;
         task.layout.notch *= AROUND_COURT;
     }
     let before = task.layout.notch;
@@ -361,7 +364,7 @@ pub(super) fn court_misfit([deep, long]: [i32; 2], least: f64) -> f64 {
 
 /// Returns what the rows of a core of these depths miss that end so far before the corridor, in meters: what they leave open is
 /// a court at least so wide, or a hole that is none.
-fn core_misfit(gaps: [f64; 2], depths: [i32; 2], least: f64) -> f64 {
+pub(super) fn core_misfit(gaps: [f64; 2], depths: [i32; 2], least: f64) -> f64 {
     let court = |gap: f64| if gap < least { gap.min(least - gap) } else { 0.0 };
     let step = (gaps[0] - gaps[1]).abs();
     let stagger = if step < MIN_NOTCH_M { step.min(MIN_NOTCH_M - step) } else { 0.0 };

@@ -2,7 +2,7 @@
 
 use d3dgen_model::domain::Scheme;
 use d3dgen_model::seed::Stream;
-use d3dgen_model::style::{Form, Symmetry};
+use d3dgen_model::style::Form;
 
 use super::compose::{LARGE, compose};
 use super::core::Below;
@@ -90,8 +90,7 @@ impl Candidate {
 /// Returns the best candidate found, of few steps when asked to stop; its `score.hard` is above 0 when none is sound.
 pub(super) fn search(brief: &Brief, schemes: &[Scheme], rng: &mut Stream, stop: Stop<'_>) -> Option<Candidate> {
     let weights = taste(brief, rng);
-    let alike = brief.symmetry == Some(Symmetry::Symmetric);
-    let alike = if alike { symmetric::search(brief, schemes, &weights, rng, stop) } else { None };
+    let alike = if brief.mirrored { symmetric::search(brief, schemes, &weights, rng, stop) } else { None };
     let mut found = alike.or_else(|| search_freely(brief, schemes, weights, rng, stop))?;
     holes::close(brief, &weights, &mut found);
     Some(found)

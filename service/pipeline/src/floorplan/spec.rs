@@ -165,6 +165,8 @@ pub(super) struct Brief {
     pub area: Option<f64>,
     /// Whether the plan is to be alike on both sides of an axis.
     pub symmetry: Option<Symmetry>,
+    /// True while plans are looked for that are alike on both sides by construction.
+    pub mirrored: bool,
     /// Form that is asked for.
     pub form: Option<Form>,
     /// True where the building is to be compact.
@@ -240,6 +242,7 @@ impl Brief {
                 area => area.filter(|_| graph.links.is_empty()),
             },
             symmetry: graph.style.symmetry,
+            mirrored: graph.style.symmetry == Some(Symmetry::Symmetric),
             form: graph.style.form,
             compact: graph.style.space == Some(SpaceStyle::Compact),
             entrance_width: max_limit(domain.circulation.entrance_width_m, limits.entrance_width.as_ref()).max(fitted),

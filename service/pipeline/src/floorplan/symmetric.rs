@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use d3dgen_model::domain::Scheme;
+use d3dgen_model::domain::{Daylight, Scheme, Zone};
 use d3dgen_model::seed::Stream;
 
 use super::cost::{Judge, Weights};
@@ -11,8 +11,8 @@ use super::genome::{Band, Cap, Cell, Cover, Genome, is_nestable, nest_depth};
 use super::lattice::{Cellbox, Frame, INNER_HALF_M, OUTER_HALF_M, meters, up};
 use super::mirror::{self, Axis};
 use super::realize::{
-    Layout, MIN_NOTCH_M, ONE_WAY_M, Span, cap_box, court_misfit, court_need, door_need, fill_cell, shares, span,
-    spine_units,
+    BARE, Layout, MIN_NOTCH_M, ONE_WAY_M, Span, cap_box, core_misfit, court_misfit, court_need, door_need, fill_cell,
+    shares, span, spine_units,
 };
 use super::search::{Candidate, LOOK, mutate, patience};
 use super::spec::Brief;
@@ -20,20 +20,24 @@ use super::twins::{Twins, tie};
 use crate::Stop;
 
 /// Sound plans that are compared, the runs at most, and the rooms from which on fewer do.
-const WANTED: usize = 6;
-const MOST_RUNS: usize = 20;
+const WANTED: usize = 8;
+const MOST_RUNS: usize = 16;
 const MANY: usize = 24;
 /// Steps of one run per room, at least and at most, and what is added where the order of rooms is looked at too.
 const STEPS_PER_ROOM: usize = 110;
 const STEPS: (usize, usize) = (700, 5_000);
 const IN_ORDER: usize = 3;
+/// What it costs in the end that a plan misses a hard rule by ever so little.
+const UNSOUND: f64 = 5.0;
 /// Changes drawn at most for each step.
 const TRIES: usize = 6;
 /// Temperature at the start and the end of a run, and at the start of its end, where the order of rooms counts.
 const HEAT: (f64, f64) = (1.5, 0.02);
 const HEAT_IN_ORDER: f64 = 0.3;
 /// What it costs that nothing of the floor is mirrored in rooms of the same kind.
-const NOT_ALIKE: f64 = 30.0;
+const NOT_ALIKE: f64 = 45.0;
+/// What it costs beside that nothing is mirrored in rooms of the same type.
+const OTHER_TYPE: f64 = 8.0;
 /// Rooms up to which a plan has its axis along the corridor too, and the area of a room from which on it closes its end, m^2.
 const MOST_ALONG: usize = 12;
 const LEAST_CAP_M2: f64 = 9.0;
@@ -42,6 +46,8 @@ const FULL: f64 = 1000.0;
 const FILLED: f64 = 3.0;
 /// What a meter costs by which the rows along a corridor are shorter than it.
 const SHORT_ROW: f64 = 0.1;
+/// The first of the rows inside a ring of corridors.
+const CORE_ROWS: usize = 2;
 /// Share of small rooms that begin beside a larger one.
 const NESTED: f64 = 0.6;
 
@@ -109,9 +115,9 @@ pub(super) fn search(
     };
     // what is not alike is told exactly here
     let plain = Brief { symmetry: None, ..brief.clone() };
-    let wanted = if brief.rooms.len() > MANY { WANTED / 2 } else { WANTED };
+    let [wanted, runs] = [WANTED, MOST_RUNS].map(|n| if brief.rooms.len() > MANY { n / 2 } else { n });
     let (mut best, mut sound): (Option<(bool, f64, Candidate)>, usize) = (None, 0);
-    for run in 0..MOST_RUNS {
+    for run in 0..runs {
         let mut half = Half::new(&plain, figures[run % figures.len()], rng);
         let mut judge = Judge::new(&plain);
         let found = half.anneal(&mut judge, weights, rng, stop);
@@ -244,8 +250,9 @@ impl<'b> Half<'b> {
         if let Some(at) = largest(singles) {
             genome.caps[1] = cap(singles.remove(at));
         }
+        // an odd one has nothing to stand across from
         if genome.caps[0].is_none()
-            && rng.chance(0.3)
+            && (singles.len() % 2 == 1 || rng.chance(0.3))
             && let Some(at) = largest(singles)
         {
             genome.caps[0] = cap(singles.remove(at));
@@ -275,7 +282,14 @@ impl<'b> Half<'b> {
             let paired = if band < count || self.figure.middles().contains(&band) { 0.0 } else { FILLED * of(band) };
             all + paired + if taken { FULL } else { 0.0 }
         };
-        let bands = self.bands_for(room);
+        let mut bands = self.bands_for(room);
+        if self.figure == Figure::Ring(Scheme::Racetrack) {
+            // the core has no facade, and its stations see the doors on both sides of it
+            let spec = &rooms[room];
+            let dark = matches!(spec.daylight, Daylight::None | Daylight::Optional);
+            let inside = dark || spec.open_front && spec.zone == Zone::Staff;
+            bands.retain(|band| (band % count >= CORE_ROWS) == inside);
+        }
         let best = bands.iter().copied().min_by(|a, b| load(*a).total_cmp(&load(*b))).unwrap_or(0);
         if rng.chance(0.75) { best } else { *rng.pick(&bands).unwrap_or(&best) }
     }
@@ -333,11 +347,13 @@ impl<'b> Half<'b> {
         let mut layout = Layout::default();
         let mut value = |half: &mut Self, genome: &Genome, most: f64| {
             half.realize(genome, &mut layout);
-            let cost = judge.cost_up_to(&layout, weights, most);
-            if cost > most {
-                return cost;
+            if in_order {
+                let score = judge.score(&layout);
+                let unsound = if score.is_sound() { 0.0 } else { UNSOUND };
+                return score.total(weights) + half.misses(&layout) + judge.disorder(&layout) + unsound;
             }
-            cost + half.misses(&layout) + if in_order { judge.disorder(&layout) } else { 0.0 }
+            let cost = judge.cost_up_to(&layout, weights, most);
+            if cost > most { cost } else { cost + half.misses(&layout) }
         };
         let even = self.twins.even.clone();
         let mut current = start;
@@ -373,7 +389,8 @@ impl<'b> Half<'b> {
 
     /// Returns what it costs that not all of a layout has its like across the axis.
     fn unlike(&self, layout: &Layout) -> f64 {
-        NOT_ALIKE * (1.0 - mirror::share(self.brief, &layout.boxes))
+        mirror::likeness(self.brief, &layout.boxes)
+            .map_or(NOT_ALIKE, |l| NOT_ALIKE * (1.0 - l.share) + OTHER_TYPE * (1.0 - l.of_type))
     }
 
     /// Returns what is against a layout beside what the judge knows.
@@ -433,9 +450,14 @@ impl<'b> Half<'b> {
         let [top, bottom, lower, upper] = rows;
         self.fill(genome, &top, (len, high, 1), layout);
         self.fill(genome, &bottom, (len, 0, -1), layout);
-        let outside = layout.notch;
-        self.fill(genome, &lower, (len, w, 1), layout);
-        self.fill(genome, &upper, (len, w + core, -1), layout);
+        let bare = |row: usize| if deep(row) == 0 { meters(len) } else { 0.0 };
+        layout.notch += BARE * (bare(0) + bare(1));
+        // what the rows inside leave open at each end
+        let gaps = [(&lower, w, 1), (&upper, w + core, -1)].map(|(row, y, v)| {
+            let before = layout.notch;
+            self.fill(genome, row, (len, y, v), layout);
+            (layout.notch - before) / 2.0
+        });
         if let Some(cells) = along_side {
             let frame = Frame { origin: (len, w), u: (0, 1), v: (1, 0) };
             let from = layout.boxes.len();
@@ -445,8 +467,7 @@ impl<'b> Half<'b> {
         layout.misfit += if genome.court > 0 {
             court_misfit([core - inside, len - 2 * w], court_need(self.brief))
         } else {
-            // a gap in a core is a hole
-            layout.notch - outside + if core == 0 { meters(4 * w) } else { 0.0 }
+            core_misfit(gaps, [deep(2), deep(3)], self.brief.court_width) + if core == 0 { meters(4 * w) } else { 0.0 }
         };
     }
 
@@ -494,11 +515,27 @@ impl<'b> Half<'b> {
         Cells { band, first, sum }
     }
 
+    /// Makes the last cell wider by what the outer wall at its end is thicker than an inner one.
+    fn widen_last(&mut self, genome: &Genome, cells: &mut Cells) {
+        let more = up(OUTER_HALF_M - INNER_HALF_M);
+        let count = genome.bands[cells.band].cells.len();
+        let last = count.checked_sub(1).and_then(|last| self.spans.get_mut(cells.first + last));
+        for span in last.into_iter().chain((count > 0).then_some(&mut cells.sum)) {
+            *span = Span { min: span.min + more, target: span.target + more, max: span.max + more };
+        }
+    }
+
     fn row(&mut self, genome: &Genome, band: usize, beyond: i32, layout: &mut Layout) -> Row {
         let depth = genome.bands[band].depth;
         let count = self.figure.rows();
         let [mirrored, middle, left, right] =
             [0, 1, 2, 3].map(|kind| self.cells_of(genome, band + kind * count, depth, layout));
+        let (mut mirrored, mut left, mut right) = (mirrored, left, right);
+        if beyond >= 0 {
+            let blocks = self.at_end && left.sum.max + right.sum.max > 0;
+            let outermost = if blocks { [Some(&mut left), Some(&mut right)] } else { [Some(&mut mirrored), None] };
+            outermost.into_iter().flatten().for_each(|cells| self.widen_last(genome, cells));
+        }
         let low = left.sum.min.max(right.sum.min);
         let high = match (left.sum.max, right.sum.max) {
             (0, most) | (most, 0) => {
@@ -591,9 +628,7 @@ fn judge_gap(all: i32, piece: i32, layout: &mut Layout) {
 /// is a line of the lattice.
 fn even_length(rows: &[Row], layout: &mut Layout) -> i32 {
     let used = || rows.iter().filter(|r| r.mirrored.sum.max + r.middle.sum.max + r.block.max > 0);
-    let all = |of: fn(&Span) -> i32, r: &Row| {
-        2 * (of(&r.mirrored.sum) + of(&r.block) - r.beyond) + of(&r.middle.sum)
-    };
+    let all = |of: fn(&Span) -> i32, r: &Row| 2 * (of(&r.mirrored.sum) + of(&r.block) - r.beyond) + of(&r.middle.sum);
     let low = used().map(|r| all(|s| s.min, r)).max().unwrap_or(0);
     let high = used().map(|r| all(|s| s.max, r)).min().unwrap_or(low);
     let wish = used().map(|r| all(|s| s.target, r)).sum::<i32>() / used().count().max(1) as i32;

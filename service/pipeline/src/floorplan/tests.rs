@@ -9,7 +9,7 @@ use d3dgen_model::style::Symmetry;
 use super::assemble::{Turn, assemble, turned};
 use super::genome::Genome;
 use super::lattice::Cellbox;
-use super::mirror::{SYMMETRIC, best_axis};
+use super::mirror::{Likeness, SYMMETRIC, likeness};
 use super::search::{mutate, search};
 use super::spec::{Brief, Link, RoomSpec};
 use crate::Stop;
@@ -69,6 +69,7 @@ fn brief(mut rooms: Vec<RoomSpec>, width: f64, links: &[(usize, usize, Connector
         spine_extra: 0.0,
         form: None,
         symmetry: None,
+        mirrored: false,
         compact: false,
         links: links.iter().map(|&(a, b, connector)| Link { a, b, connector, required: true }).collect(),
         apart: Vec::new(),
@@ -236,12 +237,12 @@ fn one_seed_gives_one_plan_and_two_seeds_give_two() {
 #[test]
 fn twins_mirror_each_other_to_a_step_of_the_lattice() {
     for (beds, seed) in [(6, 0), (8, 1), (10, 2), (12, 3)] {
-        let brief = Brief { symmetry: Some(Symmetry::Symmetric), ..ward(beds) };
+        let brief = Brief { symmetry: Some(Symmetry::Symmetric), mirrored: true, ..ward(beds) };
         let mut rng = Stream::new(seed, "test");
         let found = search(&brief, &[Scheme::Straight], &mut rng, Stop::never()).expect("a ward has plans");
         assert!(found.score.is_sound(), "{beds} beds");
         let boxes = &found.layout.boxes;
-        let (axis, share, images) = best_axis(&brief, boxes).expect("it has rooms");
+        let Likeness { axis, share, images, .. } = likeness(&brief, boxes).expect("it has rooms");
         assert!(share >= SYMMETRIC, "{beds} beds: {share:.2}");
         let of = |room: usize, turn: &dyn Fn(Cellbox) -> Cellbox| {
             let own = boxes.iter().filter(|b| b.0 == room).map(|b| turn(b.1));

@@ -2,12 +2,14 @@
 //! kind and size. What is left stands on the axis.
 
 use std::collections::BTreeMap;
+use std::ops::RangeInclusive;
 
 use d3dgen_model::domain::Daylight;
 use d3dgen_model::seed::Stream;
 
-use super::genome::{guest_of, is_nestable};
+use super::genome::{Cell, MOST_NESTS, guest_of, is_nestable, nest_depth};
 use super::mirror::same_kind;
+use super::realize::span;
 use super::spec::{Brief, RoomSpec};
 
 /// What two rooms of different kinds count as differing in size, when a room looks for one to stand across from.
@@ -16,6 +18,9 @@ const OTHER_KIND: f64 = 1.0;
 const PAIRED_ALL_THE_SAME: f64 = 0.85;
 /// What a room with another that is entered from it counts as a room to stand on the axis.
 const CUT: f64 = 0.3;
+/// Depths of rows that are looked at for whether a room fits, lattice units.
+const DEPTHS: RangeInclusive<i32> = 30..=200;
+const DEPTH_STEP: usize = 4;
 /// Least range of areas that two rooms share, as a share of the area.
 const LEAST_RANGE: f64 = 0.05;
 
@@ -106,11 +111,27 @@ impl Twins {
         }
         let evened = own.iter().zip(&theirs).map(|(a, b)| evened(&brief.rooms[*a], &brief.rooms[*b]));
         let Some(evened) = evened.collect::<Option<Vec<RoomSpec>>>() else { return false };
-        for ((a, b), spec) in own.into_iter().zip(theirs).zip(evened) {
-            self.other[a] = Some(b);
-            self.even.rooms[a] = spec;
+        let before: Vec<RoomSpec> = own.iter().map(|&room| self.even.rooms[room].clone()).collect();
+        own.iter().zip(evened).for_each(|(&room, spec)| self.even.rooms[room] = spec);
+        if !self.has_shape(&own) {
+            own.into_iter().zip(before).for_each(|(room, spec)| self.even.rooms[room] = spec);
+            return false;
         }
+        own.into_iter().zip(theirs).for_each(|(a, b)| self.other[a] = Some(b));
         true
+    }
+
+    /// Returns true for a room that has all that belongs to it in a row of some depth, of the size that suits its twin too.
+    fn has_shape(&self, company: &[usize]) -> bool {
+        let [host, tied @ ..] = company else { return false };
+        let mut cell = Cell::new(*host);
+        tied.iter().take(MOST_NESTS).for_each(|&room| cell.left.push(room));
+        cell.nest_depth = tied.first().map_or(0, |&room| nest_depth(&self.even, room));
+        DEPTHS.step_by(DEPTH_STEP).any(|depth| {
+            let mut misfit = 0.0;
+            span(&self.even, &cell, depth, &mut misfit);
+            misfit == 0.0
+        })
     }
 }
 

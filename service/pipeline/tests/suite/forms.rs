@@ -130,7 +130,8 @@ fn rooms_lie_on_all_sides_of_a_court() {
 
 #[test]
 fn no_window_looks_into_a_shaft() {
-    let prompts = ["Care home for 16 residents with cleaning robots", "L-shaped office with 16 rooms", AROUND_COURTS[0]];
+    let prompts =
+        ["Care home for 16 residents with cleaning robots", "L-shaped office with 16 rooms", AROUND_COURTS[0]];
     for prompt in prompts {
         for world in worlds_of(prompt, 33..37) {
             let (plan, seed) = (&world.floorplan, world.scene_graph.seed);

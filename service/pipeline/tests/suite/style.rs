@@ -146,12 +146,9 @@ fn symmetric_plans_are_more_alike_on_both_sides() {
 }
 
 /// Returns the share of the floor area of a plan whose mirror image, about the better of two axes through the middle, is a room of
-/// the same zone, both with water or both without; pieces of corridor are one room.
+/// the same zone; pieces of corridor are one room.
 fn mirrored(plan: &Floorplan, domain: &Domain) -> f64 {
-    let kind = |room_type: &str| {
-        let kind = domain.room_type_or_generic(room_type);
-        (kind.zone, kind.wet)
-    };
+    let kind = |room_type: &str| domain.room_type_or_generic(room_type).zone;
     let (ways, rooms): (Vec<_>, Vec<_>) = plan.rooms.iter().partition(|r| r.circulation);
     let mut all: Vec<_> = rooms.iter().map(|r| (kind(&r.room_type), r.polygon.rects())).collect();
     all.extend(ways.first().map(|r| (kind(&r.room_type), ways.iter().flat_map(|w| w.polygon.rects()).collect())));

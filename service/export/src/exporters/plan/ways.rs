@@ -21,7 +21,10 @@ impl Named<'_> {
 pub(super) fn named(plan: &Floorplan) -> Vec<Named<'_>> {
     let mut out: Vec<Named<'_>> = Vec::with_capacity(plan.rooms.len());
     for (n, room) in plan.rooms.iter().enumerate() {
-        let joined = |named: &Named<'_>| room.circulation && named.rooms.iter().filter(|r| r.circulation).any(|r| plan.doors.iter().any(|d| joins(d, [r, room])));
+        let joined = |named: &Named<'_>| {
+            room.circulation
+                && named.rooms.iter().filter(|r| r.circulation).any(|r| plan.doors.iter().any(|d| joins(d, [r, room])))
+        };
         match out.iter_mut().find(|named| joined(named)) {
             Some(whole) => {
                 whole.pieces.push(n);

@@ -5,7 +5,7 @@ use d3dgen_model::Segment;
 use d3dgen_model::style::Symmetry;
 
 use super::super::lattice::STEP_M;
-use super::super::mirror::{Axis, best_axis, whole};
+use super::super::mirror::{Axis, Likeness, likeness, whole};
 use super::spot::Spot;
 use super::{Laid, Site};
 
@@ -21,7 +21,7 @@ impl Site<'_> {
         if brief.symmetry != Some(Symmetry::Symmetric) || !self.standing.is_empty() {
             return;
         }
-        let Some((axis, _, images)) = best_axis(brief, self.boxes) else { return };
+        let Some(Likeness { axis, images, .. }) = likeness(brief, self.boxes) else { return };
         let rooms = |spot: &Spot| -> Vec<usize> {
             let ids = spot.door.room_ids.iter();
             ids.filter_map(|id| Some(whole(brief, brief.rooms.iter().position(|r| r.id == *id)?))).collect()
