@@ -38,6 +38,8 @@ const HEAT_IN_ORDER: f64 = 0.3;
 const NOT_ALIKE: f64 = 45.0;
 /// What it costs beside that nothing is mirrored in rooms of the same type.
 const OTHER_TYPE: f64 = 8.0;
+/// What it costs that the room one enters by does not stand on the axis.
+const ASIDE: f64 = 4.0;
 /// Rooms up to which a plan has its axis along the corridor too, and the area of a room from which on it closes its end, m^2.
 const MOST_ALONG: usize = 12;
 const LEAST_CAP_M2: f64 = 9.0;
@@ -45,7 +47,7 @@ const LEAST_CAP_M2: f64 = 9.0;
 const FULL: f64 = 1000.0;
 const FILLED: f64 = 3.0;
 /// What a meter costs by which the rows along a corridor are shorter than it.
-const SHORT_ROW: f64 = 0.1;
+const SHORT_ROW: f64 = 0.35;
 /// The first of the rows inside a ring of corridors.
 const CORE_ROWS: usize = 2;
 /// Share of small rooms that begin beside a larger one.
@@ -387,10 +389,12 @@ impl<'b> Half<'b> {
         best
     }
 
-    /// Returns what it costs that not all of a layout has its like across the axis.
+    /// Returns what it costs that not all of a layout has its like across the axis, and that one enters beside it.
     fn unlike(&self, layout: &Layout) -> f64 {
-        mirror::likeness(self.brief, &layout.boxes)
-            .map_or(NOT_ALIKE, |l| NOT_ALIKE * (1.0 - l.share) + OTHER_TYPE * (1.0 - l.of_type))
+        let Some(found) = mirror::likeness(self.brief, &layout.boxes) else { return NOT_ALIKE };
+        let hall = self.brief.rooms.iter().position(|r| r.entrance).filter(|hall| Some(*hall) != self.brief.spine);
+        let aside = hall.is_some_and(|hall| found.images[hall] != Some(hall));
+        NOT_ALIKE * (1.0 - found.share) + OTHER_TYPE * (1.0 - found.of_type) + if aside { ASIDE } else { 0.0 }
     }
 
     /// Returns what is against a layout beside what the judge knows.
