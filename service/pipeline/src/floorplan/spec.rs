@@ -302,7 +302,7 @@ impl Brief {
             message: format!(
                 "a symmetric plan was asked for; of the floor {:.0} % has a room of the same kind for its mirror image, less than \
                  {:.0} %: the rooms asked for do not pair up",
-                100.0 * share,
+                (100.0 * share).floor(),
                 100.0 * SYMMETRIC
             ),
         });

@@ -23,7 +23,7 @@ use crate::Stop;
 const WANTED: usize = 8;
 const MOST_RUNS: usize = 16;
 const MANY: usize = 24;
-/// Steps of one run per room, at least and at most, and what is added where the order of rooms is looked at too.
+/// Steps of one run per room, at least and at most; one for so many of them is added with the order of rooms in view.
 const STEPS_PER_ROOM: usize = 110;
 const STEPS: (usize, usize) = (700, 5_000);
 const IN_ORDER: usize = 3;
@@ -187,7 +187,7 @@ impl<'b> Half<'b> {
             let right = |room: usize| self.twins.other[room].is_some() == is_twin;
             row.cells.iter().all(|cell| right(cell.host) && cell.nests().all(right))
         };
-        genome.bands.iter().enumerate().all(|(b, row)| keeps((b, row)))
+        genome.bands.iter().enumerate().all(keeps)
             && genome.caps.iter().flatten().all(|cap| self.twins.single[cap.room])
     }
 
