@@ -337,6 +337,7 @@ impl<'b> Half<'b> {
         Candidate { scheme: if best.scheme == Scheme::Capped { Scheme::Straight } else { best.scheme }, layout, score }
     }
 
+    /// Changes a plan step by step, from a temperature down; returns the best one that it came past.
     fn cool(
         &mut self,
         judge: &mut Judge<'_>,
