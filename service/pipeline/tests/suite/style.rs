@@ -129,11 +129,10 @@ fn symmetric_plans_are_more_alike_on_both_sides() {
         };
         (0..SEEDS).map(of).sum::<f64>() / SEEDS as f64
     };
-    // the fewer rooms are alike in size, the less can be won
     let cases = [
-        ("house with 4 bedrooms and 2 bathrooms", 0.02),
-        ("10-room office", 0.15),
-        ("hospital ward with 8 rooms in Germany", 0.02),
+        ("house with 4 bedrooms and 2 bathrooms", 0.3),
+        ("10-room office", 0.4),
+        ("hospital ward with 8 rooms in Germany", 0.2),
     ];
     for (prompt, gain) in cases {
         let [unlike, usual, alike] = [&["asymmetric"][..], &[], &["symmetric"]].map(|words| mean(prompt, words));
@@ -206,7 +205,7 @@ fn symmetric_plans_mirror_four_fifths_of_their_floor() {
             all += 1;
         }
     }
-    assert!(symmetric * 10 >= all * 8, "{symmetric} of {all} plans are symmetric");
+    assert!(symmetric * 10 >= all * 9, "{symmetric} of {all} plans are symmetric");
 }
 
 #[test]
