@@ -13,6 +13,7 @@ mod robots;
 mod storeys;
 mod style;
 mod symbols;
+mod ways;
 
 use d3dgen_model::domain::{Domain, Mount, Shape, Zone};
 use d3dgen_model::floorplan::Floorplan;
@@ -164,7 +165,7 @@ fn draw(world: &World, domain: &Domain) -> (String, Legibility) {
         if storeys.is_empty() {
             building::dimensions(page, &frame, &around, offsets, UNIT);
         }
-        storeys::titles(page, &frame, &storeys, UNIT);
+        storeys::titles(page, &frame, plan, &storeys, UNIT);
         let marks = robots::marks(page, &frame, &world.scenario, 17.0 * k.max(0.85));
         (numbers, legible) = label(page, &frame, (world, domain), &shown, marks, 18.0 * k.clamp(0.8, 1.1));
         drawing.y1
@@ -333,21 +334,22 @@ fn label(
         area_m2: court.area_m2(),
         floor: court.rects.iter().map(|rect| frame.rect(rect)).collect(),
     });
-    let rooms: Vec<labels::Room<'_>> = plan
-        .rooms
+    let named = ways::named(plan);
+    let rooms: Vec<labels::Room<'_>> = named
         .iter()
-        .map(|r| labels::Room {
-            name: &r.name,
-            tint: style::tint(domain.room_type_or_generic(&r.room_type).zone),
-            area_m2: r.net_area_m2,
-            floor: r.net_polygon.rects().iter().map(|rect| frame.rect(rect)).collect(),
+        .map(|named| labels::Room {
+            name: &named.name,
+            tint: style::tint(domain.room_type_or_generic(&named.rooms[0].room_type).zone),
+            area_m2: named.area_m2(),
+            floor: named.rooms.iter().flat_map(|r| r.net_polygon.rects()).map(|rect| frame.rect(&rect)).collect(),
         })
         .chain(courts)
         .collect();
     let hard = [marks, furniture.clone()].concat();
     let labels = labels::draw(page, &rooms, &labels::Obstacles { hard, soft }, size);
     let legible = Legibility::of(&labels, &furniture, &swings, frame.scale);
-    let numbers = labels.numbers.into_iter().take(plan.rooms.len()).collect();
+    let mut numbers = vec![None; plan.rooms.len()];
+    named.iter().zip(labels.numbers).for_each(|(named, number)| numbers[named.pieces[0]] = number);
     (numbers, legible)
 }
 

@@ -37,6 +37,9 @@ pub struct Furnishing {
     /// Only where step-free access is asked for.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub accessible: bool,
+    /// Belongs to a way out: a piece of corridor that has none beside others has no such thing either.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub by_exit: bool,
 }
 
 impl Furnishing {

@@ -205,6 +205,11 @@ pub struct Circulation {
     /// Where that figure is from.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub way_out_source: String,
+    /// Least width of open ground with the building all around that rooms have their light from, m: a narrower hole is a shaft,
+    /// without windows or doors. As it is: two walls with windows, 3 m of open ground before each (Musterbauordnung, Germany,
+    /// section 6 (5)); IBC 1205.3.1 is content with 1.83 m.
+    #[serde(default = "court_width_m")]
+    pub court_width_m: f64,
     /// True where doors to the rooms that robots work in open by themselves, when there are robots; in homes they stand open.
     #[serde(default)]
     pub automatic_doors: bool,
@@ -213,6 +218,10 @@ pub struct Circulation {
     /// How buildings with several storeys are made; without it the domain has one storey only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub storeys: Option<Storeys>,
+}
+
+fn court_width_m() -> f64 {
+    6.0
 }
 
 /// How a building with several storeys is divided and joined.

@@ -11,7 +11,7 @@ use d3dgen_model::slides;
 use super::PROPORTION_LIMIT;
 use super::cost::{OVERHANG, Score, TERMS};
 use super::doors::{Site, place_doors, shut_courts};
-use super::lattice::{Cellbox, INNER_HALF_M, OUTER_HALF_M, meters};
+use super::lattice::{Cellbox, INNER_HALF_M, OUTER_HALF_M, meters, up};
 use super::outline::{Mosaic, Stretch, outline};
 use super::spec::Brief;
 use super::windows::place_windows;
@@ -66,7 +66,8 @@ pub(super) fn assemble(
     earlier: Option<&Earlier<'_>>,
     rng: &mut Stream,
 ) -> Result<Floorplan, String> {
-    let stretches = Mosaic::new(boxes).stretches();
+    let mosaic = Mosaic::new(boxes);
+    let stretches = mosaic.stretches();
     let mut rooms = Vec::with_capacity(brief.rooms.len());
     for (i, spec) in brief.rooms.iter().enumerate() {
         let ring = outline(i, &stretches).ok_or_else(|| format!("{} is not one simple polygon", spec.id))?;
@@ -105,7 +106,10 @@ pub(super) fn assemble(
     let net_m2: Vec<f64> = rooms.iter().map(|r| r.net_area_m2).collect();
     let standing = earlier.map_or(&[][..], |e| &e.plan.doors);
     let mut doors = place_doors(&Site { brief, boxes, stretches: &stretches, net_m2: &net_m2, standing }, rng)?;
-    let mut windows = place_windows(brief, &stretches, &net_m2, &doors);
+    let shafts = mosaic.shafts(up(brief.court_width));
+    let in_shaft = |s: &Stretch| s.court.is_some_and(|court| shafts.contains(&court));
+    let open: Vec<Stretch> = stretches.iter().filter(|s| !in_shaft(s)).copied().collect();
+    let mut windows = place_windows(brief, &open, &net_m2, &doors);
     let dark = |i: &usize| {
         let needs = brief.rooms[*i].daylight == Daylight::Required;
         needs && !windows.iter().any(|w| w.room_id == brief.rooms[*i].id)
@@ -120,7 +124,7 @@ pub(super) fn assemble(
         keep_wall_ids(&mut walls, earlier.plan);
     }
     let cost = costs(brief, score);
-    let conflicts = brief.conflicts.iter().cloned().chain(shut_courts(&stretches, &doors)).collect();
+    let conflicts = brief.conflicts.iter().cloned().chain(shut_courts(&open, &doors)).collect();
     Ok(Floorplan {
         version: 1,
         seed,

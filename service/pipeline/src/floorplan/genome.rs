@@ -16,7 +16,7 @@ const COURT_M: (f64, f64) = (6.0, 10.0);
 /// Share of small rooms that look first for a room large enough to spare a corner.
 const AT_LARGE: f64 = 0.8;
 /// Small rooms at one end of a cell at most.
-const MOST_NESTS: usize = 7;
+pub(super) const MOST_NESTS: usize = 7;
 
 /// Small rooms in a row; a list of its own size, for genomes are copied millions of times.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

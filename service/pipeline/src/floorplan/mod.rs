@@ -19,6 +19,7 @@ mod cost;
 mod doors;
 mod genome;
 mod hall;
+mod holes;
 mod insert;
 mod lattice;
 mod mirror;
@@ -32,8 +33,10 @@ mod search;
 mod spec;
 mod storey;
 mod storeys;
+mod symmetric;
 #[cfg(test)]
 mod tests;
+mod twins;
 mod windows;
 
 use std::collections::BTreeMap;
@@ -58,6 +61,8 @@ pub(crate) const PROPORTION_LIMIT: f64 = 2.5;
 pub(crate) const AREA_MISS: f64 = 0.1;
 /// Attempts after which a plan that misses it more is taken all the same.
 const AREA_ATTEMPTS: u64 = 5;
+/// Attempts at a plan that is alike on both sides by construction.
+const MIRRORED_ATTEMPTS: u64 = 4;
 /// Plans tried before the stage gives up.
 const ATTEMPTS: u64 = 8;
 /// Rooms up to which a building is tried in one body before it is composed of wings, and up to which it is a bar.
@@ -124,6 +129,7 @@ pub fn generate_until(
         if attempt == ATTEMPTS / 2 {
             brief.take_any_form();
         }
+        brief.mirrored &= attempt < MIRRORED_ATTEMPTS;
         let schemes = schemes(&brief, domain, &mut rng);
         let turn = Turn { flip_x: rng.chance(0.5), flip_y: rng.chance(0.5), swap: rng.chance(0.3) };
         let found = search(&brief, &schemes, &mut rng, stop);
@@ -135,7 +141,7 @@ pub fn generate_until(
         }
         let name = format!("{:?}", found.scheme).to_lowercase();
         brief.tell_form(form, &found);
-        brief.tell_symmetry(found.score.symmetry);
+        brief.tell_symmetry(mirror::share(&brief, &found.layout.boxes));
         let mut boxes = turned(&found.layout.boxes, turn);
         numbers::along_corridor(graph, &brief, &mut boxes);
         match assemble(&brief, &boxes, &found.score, graph.seed, &name, None, &mut rng) {

@@ -1,11 +1,13 @@
 //! Room outlines from lattice boxes, and wall pieces between them.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use d3dgen_model::courts::enclosed;
 use d3dgen_model::geometry::to_mm;
 use d3dgen_model::{Point, Polygon};
 
+use super::board::tidied;
+use super::holes::is_narrow;
 use super::lattice::{Cellbox, INNER_HALF_M, OUTER_HALF_M, meters};
 
 /// A straight stretch of boundary on the lattice between two rooms, or between a room and outdoors.
@@ -86,12 +88,30 @@ impl Mosaic {
             }
         }
         let mut mosaic = Self { xs, ys, owner, court: Vec::new() };
-        mosaic.court = mosaic.courts();
+        mosaic.court = mosaic.court_of_cells();
         mosaic
     }
 
+    /// Returns the rectangles of each court, in the order of their numbers.
+    pub(super) fn courts(&self) -> Vec<Vec<Cellbox>> {
+        let columns = self.xs.len().saturating_sub(1);
+        let mut courts: Vec<Vec<Cellbox>> = Vec::new();
+        for (cell, court) in self.court.iter().enumerate() {
+            let Some(court) = *court else { continue };
+            courts.resize_with(courts.len().max(court + 1), Vec::new);
+            let (i, j) = (cell % columns, cell / columns);
+            courts[court].push(Cellbox::new(self.xs[i], self.ys[j], self.xs[i + 1], self.ys[j + 1]));
+        }
+        courts.iter().map(|cells| tidied(cells)).collect()
+    }
+
+    /// Returns the numbers of the courts that are shafts: narrower than `least`, lattice units.
+    pub(super) fn shafts(&self, least: i32) -> BTreeSet<usize> {
+        self.courts().iter().enumerate().filter(|(_, court)| is_narrow(court, least)).map(|(n, _)| n).collect()
+    }
+
     /// Returns the court of each cell between the edges.
-    fn courts(&self) -> Vec<Option<usize>> {
+    fn court_of_cells(&self) -> Vec<Option<usize>> {
         let (columns, rows) = (self.xs.len().saturating_sub(1), self.ys.len().saturating_sub(1));
         let built: Vec<bool> =
             (0..columns * rows).map(|cell| self.at(cell % columns, cell / columns).is_some()).collect();

@@ -13,14 +13,17 @@ use super::spec::Brief;
 /// Room proportions stay below 1 : 2.5; the search aims a little lower.
 pub(super) const MAX_PROPORTION: f64 = 2.4;
 /// A notch in the outline shorter than this is a stagger without a reason, m.
-const MIN_NOTCH_M: f64 = 1.5;
+pub(super) const MIN_NOTCH_M: f64 = 1.5;
 
-/// Least width and depth of a court, m, and how many times longer than wide it is at most.
-const COURT_M: f64 = 5.0;
+/// How many times longer than wide a court is at most.
 const MOST_COURT: f64 = 3.0;
 
+/// How much wider than it must be a court is that a building of other than one household is made around, m.
+const BEYOND_LEAST_M: f64 = 1.0;
 /// How wide a court is at least, as a share of the side of a square as large as all rooms: a large building has no shaft.
-const COURT_SHARE: f64 = 0.25;
+const COURT_SHARE: f64 = 0.28;
+/// How much more a corridor around a court counts than a notch as long that has no room on its facade.
+pub(super) const BARE: f64 = 5.0;
 /// How much more a notch in the outline around a court counts.
 const AROUND_COURT: f64 = 5.0;
 
@@ -61,11 +64,11 @@ pub(super) struct Layout {
 }
 
 /// Least, wished and largest width of a cell for a band depth, lattice units.
-#[derive(Debug, Clone, Copy)]
-struct Span {
-    min: i32,
-    target: i32,
-    max: i32,
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Span {
+    pub min: i32,
+    pub target: i32,
+    pub max: i32,
 }
 
 /// Clear width from which a door is one for beds, m.
@@ -111,7 +114,7 @@ impl<'a> Row<'a> {
     fn new(task: &mut Task<'a, '_>, band: usize, offset: i32) -> Self {
         let band = &task.genome.bands[band];
         let spans = task.scratch.spans.len();
-        let mut sum = Span { min: 0, target: 0, max: 0 };
+        let mut sum = Span::default();
         for cell in &band.cells {
             let one = span(task.brief, cell, band.depth, &mut task.misfit);
             sum = Span { min: sum.min + one.min, target: sum.target + one.target, max: sum.max + one.max };
@@ -290,26 +293,28 @@ fn ring(task: &mut Task<'_, '_>) {
     let w = spine_units(brief);
     let inside = [2, 3].map(|band| used_depth(genome, band));
     let around = genome.scheme == Scheme::Courtyard;
-    // the short sides of a court have rooms too: in the west one row goes on past the end of the next at the corners, in the
-    // east the corridors go on to the facade, where the ways out are
+    // the short sides of a court have rooms too: the corridors go on between them to the facade, where the ways out are; at home,
+    // where the entrance is way out enough, one row goes on past the end of the next at the corners in the west
     let [west, east] = [WEST_BAND, EAST_BAND].map(|band| if around { used_depth(genome, band) } else { 0 });
-    let [over, under] = [west, if west > 0 { used_depth(genome, 1) } else { 0 }];
+    let out = if brief.second_exit { west } else { 0 };
+    let [over, under] = [west, if west > out { used_depth(genome, 1) } else { 0 }];
     let top = Row::new(task, 0, over + east);
-    let bottom = Row::new(task, 1, east);
+    let bottom = Row::new(task, 1, out + east);
     let lower = Row::new(task, 2, -2 * w);
     let upper = Row::new(task, 3, -2 * w);
     let len = solve(&[&top, &bottom, &lower, &upper], &mut task.misfit).max(4 * w);
     let mut core = inside[0] + inside[1] + genome.court;
-    let sides = around.then(|| [Row::new(task, WEST_BAND, 2 * w + under), Row::new(task, EAST_BAND, 0)]);
+    let corner = if west > out { 2 * w + under } else { 0 };
+    let sides = around.then(|| [Row::new(task, WEST_BAND, corner), Row::new(task, EAST_BAND, 0)]);
     if let Some([left, right]) = &sides {
         core = core.max(solve(&[left, right], &mut task.misfit));
     }
     task.misfit += if core == 0 { NO_RING } else { 0.0 };
     let high = 2 * w + core;
     task.layout.round = Some(Cellbox::new(0, 0, len, high));
-    task.spine_box(Cellbox::new(0, 0, len + east, w));
+    task.spine_box(Cellbox::new(-out, 0, len + east, w));
     task.spine_box(Cellbox::new(0, w, w, w + core));
-    task.spine_box(Cellbox::new(0, w + core, len + east, high));
+    task.spine_box(Cellbox::new(-out, w + core, len + east, high));
     // what closes the ring has no doors: around a court it is as short as its width and area allow; a core has no rooms on its
     // short sides
     let least = up(brief.rooms[link].area_min / (meters(w) - 2.0 * OUTER_HALF_M) + 2.0 * INNER_HALF_M).max(w);
@@ -319,12 +324,16 @@ fn ring(task: &mut Task<'_, '_>) {
         task.spine_box(Cellbox::new(len - w, w + closing, len, w + core));
     }
     fill(task, &top.at((-over, high), (1, 0), (0, 1)), len + over + east);
-    fill(task, &bottom.at((0, 0), (1, 0), (0, -1)), len + east);
+    fill(task, &bottom.at((-out, 0), (1, 0), (0, -1)), len + out + east);
     if let Some([left, right]) = sides {
-        fill(task, &left.at((0, -under), (0, 1), (-1, 0)), high + under);
+        fill(task, &left.at((0, if west > out { -under } else { w }), (0, 1), (-1, 0)), core + corner);
         fill(task, &right.at((len, w), (0, 1), (1, 0)), core);
     }
     if around {
+        // a corridor along a facade without rooms is a way for nothing
+        let bare = |band: usize, length: i32| if used_depth(genome, band) == 0 { meters(length) } else { 0.0 };
+        let legs = bare(0, len) + bare(1, len) + bare(WEST_BAND, core) + bare(EAST_BAND, core);
+        task.layout.notch += BARE * legs;
         task.layout.notch *= AROUND_COURT;
     }
     let before = task.layout.notch;
@@ -333,24 +342,30 @@ fn ring(task: &mut Task<'_, '_>) {
     fill(task, &upper.at((w, w + core), (1, 0), (0, -1)), len - 2 * w);
     let second = task.layout.notch - before - first;
     task.misfit += if around {
-        let all: f64 = brief.rooms.iter().map(|r| r.area_target).sum();
-        court_misfit([core - inside[0] - inside[1], len - 2 * w], COURT_M.max(COURT_SHARE * all.sqrt()))
+        court_misfit([core - inside[0] - inside[1], len - 2 * w], court_need(brief))
     } else {
-        core_misfit([first, second], inside)
+        core_misfit([first, second], inside, brief.court_width)
     };
 }
 
+/// Returns how wide a court is at least, m.
+pub(super) fn court_need(brief: &Brief) -> f64 {
+    let all: f64 = brief.rooms.iter().map(|r| r.area_target).sum();
+    let least = if brief.is_home() { brief.court_width } else { brief.court_width + BEYOND_LEAST_M };
+    least.max(COURT_SHARE * all.sqrt())
+}
+
 /// Returns what the sides of a court miss, in meters: all have light, and one looks across it, not along a shaft.
-fn court_misfit([deep, long]: [i32; 2], least: f64) -> f64 {
+pub(super) fn court_misfit([deep, long]: [i32; 2], least: f64) -> f64 {
     let short = |side: i32| (least - meters(side)).max(0.0);
     let slot = meters(long.max(deep)) - MOST_COURT * meters(long.min(deep));
     short(deep) + short(long) + slot.max(0.0)
 }
 
 /// Returns what the rows of a core of these depths miss that end so far before the corridor, in meters: what they leave open is
-/// a court, or a hole that is none.
-fn core_misfit(gaps: [f64; 2], depths: [i32; 2]) -> f64 {
-    let court = |gap: f64| if gap < COURT_M { gap.min(COURT_M - gap) } else { 0.0 };
+/// a court at least so wide, or a hole that is none.
+pub(super) fn core_misfit(gaps: [f64; 2], depths: [i32; 2], least: f64) -> f64 {
+    let court = |gap: f64| if gap < least { gap.min(least - gap) } else { 0.0 };
     let step = (gaps[0] - gaps[1]).abs();
     let stagger = if step < MIN_NOTCH_M { step.min(MIN_NOTCH_M - step) } else { 0.0 };
     // beside a row that goes on, a court is only as deep as the row that ends
@@ -359,17 +374,17 @@ fn core_misfit(gaps: [f64; 2], depths: [i32; 2]) -> f64 {
         Ordering::Less => depths[1],
         Ordering::Equal => depths[0] + depths[1],
     };
-    let shallow = if gaps[0] + gaps[1] > 0.0 { (COURT_M - meters(deep)).max(0.0) } else { 0.0 };
+    let shallow = if gaps[0] + gaps[1] > 0.0 { (least - meters(deep)).max(0.0) } else { 0.0 };
     gaps.map(court).iter().sum::<f64>() + stagger + shallow
 }
 
 /// Returns the depth of a band, 0 when nothing stands in it.
-fn used_depth(genome: &Genome, band: usize) -> i32 {
+pub(super) fn used_depth(genome: &Genome, band: usize) -> i32 {
     if genome.bands[band].cells.is_empty() { 0 } else { genome.bands[band].depth }
 }
 
 /// Returns the width of a cap from its area and the bands it covers, lattice units.
-fn cap_box(brief: &Brief, cap: Cap, w: i32, dt: i32, db: i32, misfit: &mut f64) -> i32 {
+pub(super) fn cap_box(brief: &Brief, cap: Cap, w: i32, dt: i32, db: i32, misfit: &mut f64) -> i32 {
     let height = match cap.cover {
         Cover::Both => dt + w + db,
         Cover::Top => w + dt,
@@ -387,7 +402,7 @@ fn cap_box(brief: &Brief, cap: Cap, w: i32, dt: i32, db: i32, misfit: &mut f64) 
 }
 
 /// Returns the widths a cell can have at this band depth.
-fn span(brief: &Brief, cell: &Cell, depth: i32, misfit: &mut f64) -> Span {
+pub(super) fn span(brief: &Brief, cell: &Cell, depth: i32, misfit: &mut f64) -> Span {
     if let Some(core) = brief.core.as_ref().filter(|c| c.host == cell.host) {
         return Span { min: core.width, target: core.width, max: core.width };
     }
@@ -472,27 +487,31 @@ fn fill(task: &mut Task<'_, '_>, row: &Row<'_>, len: i32) {
     let mut at = 0;
     for (i, cell) in row.cells.iter().enumerate() {
         let width = task.scratch.widths[i];
-        fill_cell(task, row, cell, at, width);
+        task.misfit += fill_cell((task.brief, &mut *task.layout), (&row.frame, row.depth), cell, at, width);
         at += width;
     }
 }
 
-fn fill_cell(task: &mut Task<'_, '_>, row: &Row<'_>, cell: &Cell, at: i32, width: i32) {
-    let depth = row.depth;
-    let (brief, layout) = (task.brief, &mut *task.layout);
+/// Lays a cell from `at` on along a frame; returns what it misses, in meters.
+pub(super) fn fill_cell(
+    (brief, layout): (&Brief, &mut Layout),
+    (frame, depth): (&Frame, i32),
+    cell: &Cell,
+    at: i32,
+    width: i32,
+) -> f64 {
     if let Some(core) = brief.core.as_ref().filter(|c| c.host == cell.host) {
-        let corner = row.frame.place(at, at, 0, 0);
-        layout.core = Some(Frame { origin: (corner.x0, corner.y0), ..row.frame });
-        layout.boxes.extend(core.boxes.iter().map(|(r, b)| (*r, row.frame.place(at + b.x0, at + b.x1, b.y0, b.y1))));
+        let corner = frame.place(at, at, 0, 0);
+        layout.core = Some(Frame { origin: (corner.x0, corner.y0), ..*frame });
+        layout.boxes.extend(core.boxes.iter().map(|(r, b)| (*r, frame.place(at + b.x0, at + b.x1, b.y0, b.y1))));
         // a step in the facade between the core and its neighbors needs a reason
         let step = meters((depth - core.depth).abs());
         layout.notch += CORE_STEP * step.min(3.0);
-        task.misfit += if step < MIN_NOTCH_M { step.min(MIN_NOTCH_M - step) } else { 0.0 };
-        return;
+        return if step < MIN_NOTCH_M { step.min(MIN_NOTCH_M - step) } else { 0.0 };
     }
     if !cell.has_nests() {
-        layout.boxes.push((cell.host, row.frame.place(at, at + width, 0, depth)));
-        return;
+        layout.boxes.push((cell.host, frame.place(at, at + width, 0, depth)));
+        return 0.0;
     }
     let d = cell.nest_depth.min(depth - 1);
     let own = |room: usize| nest_width(brief, room, d);
@@ -507,11 +526,9 @@ fn fill_cell(task: &mut Task<'_, '_>, row: &Row<'_>, cell: &Cell, at: i32, width
     let first_right = cell.left.len();
     let left: i32 = cell.left.iter().enumerate().map(wide).sum();
     let right: i32 = cell.right.iter().enumerate().map(|(i, room)| wide((first_right + i, room))).sum();
-    layout.boxes.push((cell.host, row.frame.place(at, at + width, d, depth)));
+    layout.boxes.push((cell.host, frame.place(at, at + width, d, depth)));
     if left + right < width {
-        layout.boxes.push((cell.host, row.frame.place(at + left, at + width - right, 0, d)));
-    } else if left + right > width {
-        task.misfit += meters(left + right - width);
+        layout.boxes.push((cell.host, frame.place(at + left, at + width - right, 0, d)));
     }
     let mut x = at;
     for (i, room) in cell.nests().enumerate() {
@@ -519,13 +536,14 @@ fn fill_cell(task: &mut Task<'_, '_>, row: &Row<'_>, cell: &Cell, at: i32, width
             x = at + width - right;
         }
         let w = wide((i, room));
-        layout.boxes.push((room, row.frame.place(x, x + w, 0, d)));
+        layout.boxes.push((room, frame.place(x, x + w, 0, d)));
         x += w;
     }
+    meters((left + right - width).max(0))
 }
 
 /// Finds widths that add up to `len` where the spans allow it, each within its span, close to its target.
-fn shares(spans: &[Span], len: i32, widths: &mut Vec<i32>) {
+pub(super) fn shares(spans: &[Span], len: i32, widths: &mut Vec<i32>) {
     widths.clear();
     widths.extend(spans.iter().map(|s| s.target));
     let mut rest = len - widths.iter().sum::<i32>();

@@ -8,11 +8,13 @@ use super::compose::{LARGE, compose};
 use super::core::Below;
 use super::cost::{Judge, Score, Weights, taste};
 use super::genome::{Cell, Cover, Genome, guest_of, is_nestable};
+use super::holes;
 use super::order::put_in_order;
 use super::outline::Mosaic;
 use super::realize::{Layout, Scratch, realize};
 use super::scheme_of;
 use super::spec::Brief;
+use super::symmetric;
 use crate::Stop;
 
 /// Steps of one run per room, of a small plan and of others, and the runs at most.
@@ -26,6 +28,8 @@ const WANTED: usize = 3;
 /// Cost of a room up to which a plan is good enough, and the sound plans more to compare where none is.
 const CONTENT: f64 = 0.75;
 const MORE: usize = 2;
+/// Sound plans more to compare where a form is asked for: one that is bought with the inside is no good.
+const MORE_OF_A_FORM: usize = 4;
 /// Runs with the scheme that the seed drew, before others step in.
 const OWN_RUNS: usize = 4;
 /// Rooms up to which a building is tiny: few schemes suit so few rooms, which ones only a look at all of them tells.
@@ -86,6 +90,20 @@ impl Candidate {
 /// Returns the best candidate found, of few steps when asked to stop; its `score.hard` is above 0 when none is sound.
 pub(super) fn search(brief: &Brief, schemes: &[Scheme], rng: &mut Stream, stop: Stop<'_>) -> Option<Candidate> {
     let weights = taste(brief, rng);
+    let alike = if brief.mirrored { symmetric::search(brief, schemes, &weights, rng, stop) } else { None };
+    let mut found = alike.or_else(|| search_freely(brief, schemes, weights, rng, stop))?;
+    holes::close(brief, &weights, &mut found);
+    Some(found)
+}
+
+/// Searches among all plans, alike on both sides or not.
+fn search_freely(
+    brief: &Brief,
+    schemes: &[Scheme],
+    weights: Weights,
+    rng: &mut Stream,
+    stop: Stop<'_>,
+) -> Option<Candidate> {
     if brief.core.as_ref().is_some_and(|c| c.far.is_some() && !c.gable) {
         return compose(brief, &weights, rng, stop);
     }
@@ -94,6 +112,7 @@ pub(super) fn search(brief: &Brief, schemes: &[Scheme], rng: &mut Stream, stop: 
     }
     if brief.core.is_some() || brief.rooms.len() < LARGE || brief.hub {
         let wanted = if brief.rooms.len() > SMALL { WANTED - 1 } else { WANTED };
+        let wanted = wanted + if brief.form.is_some() { MORE_OF_A_FORM } else { 0 };
         return search_with(brief, schemes, (&weights, wanted), None, rng, stop);
     }
     // one body where the size allows it and it is the better plan, else wings
@@ -118,7 +137,7 @@ fn search_whole(
     stop: Stop<'_>,
 ) -> Option<Candidate> {
     let mut judge = Judge::new(brief);
-    let compared = brief.ring.is_some() && judge.stations.len() != 1;
+    let compared = brief.ring.is_some() && judge.stations.len() != 1 || brief.form == Some(Form::LShaped);
     let mut best: Option<(f64, (Genome, Candidate))> = None;
     for (n, scheme) in schemes.iter().filter(|s| **s != Scheme::Comb).enumerate() {
         for _ in 0..if compared { RING_RUNS } else { WHOLE_RUNS } {

@@ -15,6 +15,7 @@ use d3dgen_model::style::{Form, SpaceStyle, StyleWord, Symmetry};
 
 use super::core::Core;
 use super::lattice::{JAMB_M, OUTER_HALF_M};
+use super::mirror::SYMMETRIC;
 use super::search::Candidate;
 use super::windows::LEAST_WALL_M;
 use crate::Error;
@@ -23,6 +24,8 @@ use crate::scene_graph::{BY_PROMPT, rules_here};
 
 /// Code of the conflict that a building has another form than was asked for.
 const FORM_NOT_BUILT: &str = "form_not_built";
+/// Code of the conflict that a plan is not alike on both sides.
+const NOT_SYMMETRIC: &str = "not_symmetric";
 /// Clear width that a wheelchair and most robots need through a door, m; used when the prompt asks for access.
 const ACCESSIBLE_DOOR_M: f64 = 0.9;
 
@@ -32,8 +35,6 @@ const MOST_ADVISED_WIDTH: f64 = 1.4;
 const MOST_ADVISED_WITH_STAIRS: f64 = 1.1;
 /// Advice widens a door by this much at most, m.
 const MOST_ADVISED_DOOR_M: f64 = 0.1;
-/// What a plan that looks symmetric costs for not being so, at most.
-const ALIKE: f64 = 0.5;
 /// Share by which the area aimed for differs from seed to seed, what one room has more of it by itself and many share,
 /// and the range from which on an area may differ.
 const AREA_VARIATION: f64 = 0.07;
@@ -164,11 +165,15 @@ pub(super) struct Brief {
     pub area: Option<f64>,
     /// Whether the plan is to be alike on both sides of an axis.
     pub symmetry: Option<Symmetry>,
+    /// True while plans are looked for that are alike on both sides by construction.
+    pub mirrored: bool,
     /// Form that is asked for.
     pub form: Option<Form>,
     /// True where the building is to be compact.
     pub compact: bool,
     pub entrance_width: f64,
+    /// Least width of a court, m.
+    pub court_width: f64,
     pub conflicts: Vec<Note>,
     /// By room: the larger room that is entered through it (an isolation room through its anteroom), if any.
     pub guests: Vec<Option<usize>>,
@@ -237,9 +242,11 @@ impl Brief {
                 area => area.filter(|_| graph.links.is_empty()),
             },
             symmetry: graph.style.symmetry,
+            mirrored: graph.style.symmetry == Some(Symmetry::Symmetric),
             form: graph.style.form,
             compact: graph.style.space == Some(SpaceStyle::Compact),
             entrance_width: max_limit(domain.circulation.entrance_width_m, limits.entrance_width.as_ref()).max(fitted),
+            court_width: domain.circulation.court_width_m,
             conflicts,
             guests: Vec::new(),
             stem: false,
@@ -283,14 +290,21 @@ impl Brief {
         });
     }
 
-    /// Says so where a symmetric plan was asked for and the best one is not alike on both sides.
-    pub(super) fn tell_symmetry(&mut self, cost: f64) {
-        if self.symmetry != Some(Symmetry::Symmetric) || cost <= ALIKE {
+    /// Says so where a symmetric plan was asked for and too small a share of the one that was found has its like across the
+    /// axis.
+    pub(super) fn tell_symmetry(&mut self, share: f64) {
+        self.conflicts.retain(|n| n.code != NOT_SYMMETRIC);
+        if self.symmetry != Some(Symmetry::Symmetric) || share >= SYMMETRIC {
             return;
         }
         self.conflicts.push(Note {
-            code: "not_symmetric".into(),
-            message: "a symmetric plan was asked for; the rooms asked for do not pair up, so that only parts of it are alike on both sides".into(),
+            code: NOT_SYMMETRIC.into(),
+            message: format!(
+                "a symmetric plan was asked for; of the floor {:.0} % has a room of the same kind for its mirror image, less than \
+                 {:.0} %: the rooms asked for do not pair up",
+                (100.0 * share).floor(),
+                100.0 * SYMMETRIC
+            ),
         });
     }
 

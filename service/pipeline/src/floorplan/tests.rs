@@ -4,9 +4,12 @@ use d3dgen_model::Document;
 use d3dgen_model::domain::{Daylight, Materials, Scheme, Zone};
 use d3dgen_model::scene_graph::Connector;
 use d3dgen_model::seed::Stream;
+use d3dgen_model::style::Symmetry;
 
 use super::assemble::{Turn, assemble, turned};
 use super::genome::Genome;
+use super::lattice::Cellbox;
+use super::mirror::{Likeness, SYMMETRIC, likeness};
 use super::search::{mutate, search};
 use super::spec::{Brief, Link, RoomSpec};
 use crate::Stop;
@@ -66,6 +69,7 @@ fn brief(mut rooms: Vec<RoomSpec>, width: f64, links: &[(usize, usize, Connector
         spine_extra: 0.0,
         form: None,
         symmetry: None,
+        mirrored: false,
         compact: false,
         links: links.iter().map(|&(a, b, connector)| Link { a, b, connector, required: true }).collect(),
         apart: Vec::new(),
@@ -74,6 +78,7 @@ fn brief(mut rooms: Vec<RoomSpec>, width: f64, links: &[(usize, usize, Connector
         area: None,
         share_advised: None,
         entrance_width: 1.0,
+        court_width: 6.0,
         conflicts: Vec::new(),
         guests: Vec::new(),
         stem: false,
@@ -227,4 +232,28 @@ fn one_seed_gives_one_plan_and_two_seeds_give_two() {
     };
     assert_eq!(boxes(1), boxes(1));
     assert_ne!(boxes(1), boxes(2));
+}
+
+#[test]
+fn twins_mirror_each_other_to_a_step_of_the_lattice() {
+    for (beds, seed) in [(6, 0), (8, 1), (10, 2), (12, 3)] {
+        let brief = Brief { symmetry: Some(Symmetry::Symmetric), mirrored: true, ..ward(beds) };
+        let mut rng = Stream::new(seed, "test");
+        let found = search(&brief, &[Scheme::Straight], &mut rng, Stop::never()).expect("a ward has plans");
+        assert!(found.score.is_sound(), "{beds} beds");
+        let boxes = &found.layout.boxes;
+        let Likeness { axis, share, images, .. } = likeness(&brief, boxes).expect("it has rooms");
+        assert!(share >= SYMMETRIC, "{beds} beds: {share:.2}");
+        let of = |room: usize, turn: &dyn Fn(Cellbox) -> Cellbox| {
+            let own = boxes.iter().filter(|b| b.0 == room).map(|b| turn(b.1));
+            let mut own: Vec<[i32; 4]> = own.map(|b| [b.x0, b.y0, b.x1, b.y1]).collect();
+            own.sort_unstable();
+            own
+        };
+        let twins = (0..brief.rooms.len()).filter_map(|room| Some((room, images[room]?)));
+        let alike = |(a, b): &(usize, usize)| brief.rooms[*a].room_type == brief.rooms[*b].room_type;
+        for (room, other) in twins.filter(alike) {
+            assert_eq!(of(room, &|b| axis.image(b)), of(other, &|b| b), "{beds} beds: {}", brief.rooms[room].id);
+        }
+    }
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use d3dgen_knowledge::{Aim, Limits};
 use d3dgen_model::domain::{Domain, ObjectType, RoomType, Shape};
-use d3dgen_model::floorplan::{Floorplan, PlanRoom};
+use d3dgen_model::floorplan::{Door, DoorKind, Floorplan, PlanRoom};
 use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::seed::Stream;
 use d3dgen_model::style::Clutter;
@@ -98,6 +98,9 @@ impl<'a> Setting<'a> {
         }
         // what rules advise against goes where the room can do without
         tasks.retain(|t| t.required > 0 || !aims.get(t.anchor.id.as_str()).is_some_and(|a| a.unwanted));
+        if closes_ring(plan, room) {
+            tasks.retain(|task| !kind.furnishing.get(task.line).is_some_and(|line| line.by_exit));
+        }
         if graph.style.clutter == Some(Clutter::Low) && !wanted.is_one_more() {
             tasks.retain(|task| !clutter::is_spare(task, kind));
         }
@@ -119,6 +122,19 @@ impl<'a> Setting<'a> {
     pub fn size(&self, object: &ObjectType) -> usize {
         self.sizes.get(object.id.as_str()).copied().unwrap_or(0)
     }
+}
+
+/// Returns true for a piece of corridor that goes on in another, with no way out of its own.
+fn closes_ring(plan: &Floorplan, room: &PlanRoom) -> bool {
+    let goes_on = |d: &Door| {
+        let others = d.room_ids.iter().filter(|id| **id != room.room_id);
+        d.kind == DoorKind::Open
+            && d.room_ids.contains(&room.room_id)
+            && others.into_iter().any(|id| plan.room(id).is_some_and(|r| r.circulation))
+    };
+    let leaves = |d: &&Door| d.room_ids == [room.room_id.clone()];
+    let is_main = plan.rooms.iter().find(|r| r.circulation && r.level == room.level) == Some(room);
+    room.circulation && !is_main && plan.doors.iter().any(goes_on) && !plan.ways_out().iter().any(leaves)
 }
 
 /// Returns the floor area of the rooms with desks that each workplace has where the whole building has what is advised, m^2.

@@ -1,6 +1,6 @@
 //! The form of buildings: what is asked for is built, courts can be entered, wards keep their stations near the beds.
 
-use crate::common::{most, worlds};
+use crate::common::{most, worlds, worlds_of};
 use d3dgen_knowledge::compliance::longest_way_out;
 use d3dgen_knowledge::travel::Distances;
 use d3dgen_model::Point;
@@ -126,6 +126,25 @@ fn rooms_lie_on_all_sides_of_a_court() {
     }
     most("rings of corridors that a short piece closes", 1.0, &closings);
     most("courts with rooms on all sides", 0.8, &sides);
+}
+
+#[test]
+fn no_window_looks_into_a_shaft() {
+    let prompts =
+        ["Care home for 16 residents with cleaning robots", "L-shaped office with 16 rooms", AROUND_COURTS[0]];
+    for prompt in prompts {
+        for world in worlds_of(prompt, 33..37) {
+            let (plan, seed) = (&world.floorplan, world.scene_graph.seed);
+            for court in plan.courts() {
+                let around = court.bounds();
+                let on = |at: Point| [-0.05, 0.05].iter().any(|by| court.contains(Point::new(at.x + by, at.y + by)));
+                let windows = plan.windows.iter().filter(|w| on(w.line.middle())).count();
+                let doors = plan.doors.iter().filter(|d| d.room_ids.len() == 1 && on(d.line.middle())).count();
+                let width = around.width().min(around.height());
+                assert!(width >= 6.0 || windows + doors == 0, "{prompt}, seed {seed}: a court {width:.1} m wide");
+            }
+        }
+    }
 }
 
 #[test]

@@ -7,7 +7,7 @@ use d3dgen_model::floorplan::{Door, DoorKind, Floorplan, Slide, Wall, Window};
 use d3dgen_model::geometry::{Point, Rect, Segment};
 
 use super::page::{Anchor, Frame, Page, Path, on_sheet};
-use super::style;
+use super::{style, ways};
 
 /// Thickness of a door leaf as drawn, m.
 const LEAF_M: f64 = 0.045;
@@ -151,7 +151,7 @@ fn draw_window(page: &mut Page, frame: &Frame, window: &Window) {
 /// Draws doors with leaves and swings, sliding panels and open passages.
 pub(super) fn doors(page: &mut Page, frame: &Frame, plan: &Floorplan) {
     page.open_group("doors");
-    for door in &plan.doors {
+    for door in plan.doors.iter().filter(|d| !ways::is_between_pieces(plan, d)) {
         draw_door(page, frame, plan, door);
     }
     page.close_group();

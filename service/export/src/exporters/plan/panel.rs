@@ -3,13 +3,14 @@
 use std::collections::BTreeSet;
 
 use d3dgen_model::domain::{Domain, Zone};
-use d3dgen_model::floorplan::{DoorKind, PlanRoom};
+use d3dgen_model::floorplan::DoorKind;
 use d3dgen_model::geometry::Rect;
 use d3dgen_model::scenario::{Poi, RoiKind};
 use d3dgen_model::world::World;
 
 use super::labels;
 use super::page::{Anchor, Block, Page, Path};
+use super::ways::{self, Named};
 use super::{EDGE, GAP, robots, style};
 use crate::font::Weight;
 
@@ -207,9 +208,9 @@ impl Facts<'_> {
 
     /// The list of rooms with their net areas, or only those that are numbers in the drawing when there are many.
     fn schedule(&self, page: &mut Page) -> Option<Block> {
-        let all: Vec<(Option<usize>, &PlanRoom)> =
-            self.numbers.iter().copied().zip(&self.world.floorplan.rooms).collect();
-        let mut all = all;
+        let named = ways::named(&self.world.floorplan);
+        let mut all: Vec<(Option<usize>, &Named<'_>)> =
+            named.iter().map(|named| (self.numbers.get(named.pieces[0]).copied().flatten(), named)).collect();
         all.sort_by_key(|(_, room)| by_name(&room.name));
         let numbered: Vec<_> = all.iter().filter(|(n, _)| n.is_some()).copied().collect();
         let rows = if all.len() <= MOST_LISTED { all } else { numbered };
@@ -230,7 +231,7 @@ impl Facts<'_> {
                     labels::badge(page, (x + 9.0, y + 11.5), *number, 9.0);
                     left += 25.0;
                 }
-                let area = format!("{:.1} m²", room.net_area_m2);
+                let area = format!("{:.1} m²", room.area_m2());
                 let taken = page.text(&area, (x + width, y + 16.5), size, style::SMALL, Anchor::End);
                 let space = x + width - left - taken - 8.0;
                 // A long name may be set a little tighter before it is cut.

@@ -14,6 +14,10 @@ const BETWEEN_M: f64 = 3.5;
 /// Width over height that a sheet of several storeys should have.
 const SHEET: f64 = 1.7;
 
+/// How far from the top of a storey a door is at its top, m, and how far a name at a door reaches to each side, in units of type.
+const AT_TOP_M: f64 = 0.5;
+const DOOR_NAME: f64 = 3.0;
+
 /// A storey on the sheet.
 pub(super) struct Storey {
     pub title: String,
@@ -122,10 +126,40 @@ pub(super) fn elevators(page: &mut Page, frame: &Frame, plan: &Floorplan) {
     page.close_group();
 }
 
-/// Writes the title of each storey above it.
-pub(super) fn titles(page: &mut Page, frame: &Frame, storeys: &[Storey], size: f64) {
+/// Writes the title of each storey above it, beside what is written at the doors there.
+pub(super) fn titles(page: &mut Page, frame: &Frame, plan: &Floorplan, storeys: &[Storey], size: f64) {
     for storey in storeys {
         let r = frame.rect(&storey.around);
-        page.text(&storey.title, (r.x0, r.y0 - 1.1 * size), 1.5 * size, style::HEADING, Anchor::Start);
+        let width = page.font(style::HEADING.weight).width(&storey.title, 1.5 * size);
+        let doors: Vec<f64> = plan
+            .ways_out()
+            .into_iter()
+            .map(|door| door.line.middle())
+            .filter(|at| (at.y - storey.around.y1).abs() < AT_TOP_M)
+            .map(|at| frame.map(at).0)
+            .filter(|x| (r.x0..=r.x1).contains(x))
+            .collect();
+        let x = beside(r.x0, width, &doors, DOOR_NAME * size);
+        page.text(&storey.title, (x, r.y0 - 1.1 * size), 1.5 * size, style::HEADING, Anchor::Start);
+    }
+}
+
+/// Returns where a text so wide begins, from `first` on, that keeps so far from some places.
+fn beside(first: f64, width: f64, places: &[f64], away: f64) -> f64 {
+    let clear = |x: &f64| places.iter().all(|at| at + away <= *x || x + width <= at - away);
+    let starts = std::iter::once(first).chain(places.iter().map(|at| at + away));
+    starts.filter(clear).reduce(f64::min).unwrap_or(first)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::beside;
+
+    #[test]
+    fn a_title_stands_beside_the_names_of_doors() {
+        assert_eq!(beside(10.0, 100.0, &[], 20.0), 10.0);
+        assert_eq!(beside(10.0, 100.0, &[50.0], 20.0), 70.0);
+        assert_eq!(beside(10.0, 100.0, &[50.0, 120.0], 20.0), 140.0);
+        assert_eq!(beside(10.0, 100.0, &[200.0], 20.0), 10.0);
     }
 }

@@ -6,8 +6,8 @@ use d3dgen_model::domain::Zone;
 use d3dgen_model::floorplan::Door;
 use d3dgen_model::scene_graph::Note;
 
-use super::super::lattice::meters;
-use super::super::outline::Stretch;
+use super::super::lattice::{meters, up};
+use super::super::outline::{Mosaic, Stretch};
 use super::super::spec::Brief;
 use super::super::windows::LEAST_WALL_M;
 use super::spot::Spot;
@@ -27,7 +27,11 @@ impl Site<'_> {
     /// Places a door to each court, two to a large one: from a corridor that borders it, else from a room for all.
     pub(super) fn lay_court_doors(&self, laid: &mut Laid) {
         let courts: BTreeSet<usize> = self.stretches.iter().filter_map(|s| s.court).collect();
-        for court in courts {
+        if courts.is_empty() {
+            return;
+        }
+        let shafts = Mosaic::new(self.boxes).shafts(up(self.brief.court_width));
+        for court in courts.difference(&shafts).copied() {
             let around: Vec<&Stretch> = self.stretches.iter().filter(|s| s.court == Some(court)).collect();
             let rooms: BTreeSet<usize> = around.iter().filter_map(|s| s.only_room()).collect();
             let count = if area_m2(&around) >= LARGE_COURT_M2 { 2 } else { 1 };

@@ -1,6 +1,7 @@
 //! Doors and open passages: where in the shared wall, how wide, which way the leaf swings.
 
 mod courts;
+mod mirrored;
 mod outdoors;
 mod spot;
 
@@ -120,7 +121,8 @@ fn lay(site: &Site<'_>, entrance_first: bool, rng: &mut Stream) -> Laid {
     site.lay_second_doors(&mut laid, rng);
     site.lay_court_doors(&mut laid);
     laid.settle();
-    laid.cost += PASSED * f64::from(site.passed(&laid));
+    site.mirror_doors(&mut laid);
+    laid.cost = laid.disturbances() + PASSED * f64::from(site.passed(&laid));
     laid
 }
 
@@ -145,8 +147,7 @@ impl Laid {
         true
     }
 
-    /// Moves doors that look into a bathroom, or out of one, and leaves without wall to go into, where a later door made it so,
-    /// and adds up what all cost.
+    /// Moves doors that look into a bathroom, or out of one, and leaves without wall to go into, where a later door made it so.
     fn settle(&mut self) {
         for _ in 0..MOST_SETTLING {
             let moved = (0..self.spots.len()).filter(|&n| self.resettle(n)).count();
@@ -154,7 +155,11 @@ impl Laid {
                 break;
             }
         }
-        self.cost = (0..self.spots.len()).map(|n| self.disturbance(&self.spots[n], n)).sum();
+    }
+
+    /// Returns what the places of all doors cost.
+    fn disturbances(&self) -> f64 {
+        (0..self.spots.len()).map(|n| self.disturbance(&self.spots[n], n)).sum()
     }
 
     /// Moves a door that others disturb so to the best of its places; returns true when that is another one.

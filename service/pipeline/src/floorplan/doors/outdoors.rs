@@ -93,18 +93,34 @@ impl Site<'_> {
         let is_end =
             |s: &&Stretch| s.leads_out_of() == Some(spine) && meters(s.len()) <= END_WALL * self.brief.spine_width;
         let middle = |s: &Stretch| s.point((meters(s.from) + meters(s.to)) / 2.0);
-        let mut ends: Vec<&Stretch> = self.stretches.iter().filter(is_end).collect();
+        let mut ends: Vec<Stretch> = self.stretches.iter().filter(is_end).copied().collect();
+        ends.extend(self.corners_of_ring(spine));
         for _ in 0..ends.len() {
             let exits: Vec<(Point, f64)> =
                 laid.spots.iter().filter_map(|l| self.way_out(spine, &l.door, laid)).collect();
-            let far = self.walks(spine, &exits, &ends.iter().map(|s| middle(s)).collect::<Vec<_>>());
+            let far = self.walks(spine, &exits, &ends.iter().map(middle).collect::<Vec<_>>());
             let Some(at) = (0..ends.len()).max_by(|&a, &b| far[a].total_cmp(&far[b])) else { return };
             if far[at] < ONE_WAY_M {
                 return;
             }
-            let spots = self.entrance_spots(ends.remove(at), spine, false, &laid.spots);
+            let spots = self.entrance_spots(&ends.remove(at), spine, false, &laid.spots);
             laid.take_best(spots);
         }
+    }
+
+    /// Returns where the corridors of a ring end at a facade along which another of them runs: the wall goes on, and what is an end
+    /// to who walks there is no piece of wall by itself.
+    fn corners_of_ring(&self, spine: usize) -> Vec<Stretch> {
+        let long =
+            |s: &&Stretch| s.leads_out_of() == Some(spine) && meters(s.len()) > END_WALL * self.brief.spine_width;
+        let mut corners = Vec::new();
+        for (_, b) in self.boxes.iter().filter(|(room, _)| self.brief.ring.is_some() && *room == spine) {
+            let upright = b.width() >= b.height();
+            let (ends, from, to) = if upright { ([b.x0, b.x1], b.y0, b.y1) } else { ([b.y0, b.y1], b.x0, b.x1) };
+            let at_end = |s: &&Stretch| s.vertical == upright && ends.contains(&s.at) && s.from <= from && to <= s.to;
+            corners.extend(self.stretches.iter().filter(long).filter(at_end).map(|s| Stretch { from, to, ..*s }));
+        }
+        corners
     }
 
     /// Places a way out of its own for each room of more people than may share one, and for the fullest room of a building of
