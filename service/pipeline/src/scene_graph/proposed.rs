@@ -11,12 +11,13 @@ use d3dgen_model::proposal::{Fate, ItemKind, ProposedItem};
 use d3dgen_model::scene_graph::{Connector, GraphEdge, SceneGraph};
 use d3dgen_plugins::Registry;
 
-use super::edges::rules_here;
+use super::built::edges::rules_here;
+use super::built::program::{self, Planned, circulation_share};
+use super::built::rooms::wished_assets;
+use super::built::vital;
 use super::given::Names;
-use super::program::{self, Planned, circulation_share};
 use super::reading::{self, MAX_ROOMS, Reading};
-use super::rooms::wished_assets;
-use super::{Request, settle, vital};
+use super::{Request, settle};
 use crate::Error;
 
 /// Reason of the edges that a proposal wishes for.

@@ -7,30 +7,34 @@ use d3dgen_model::scene_graph::{Note, Occupancy, Robot};
 use d3dgen_model::style::{LayoutStyle, Style, StyleWord};
 use d3dgen_plugins::Registry;
 
-use super::beds::{self, Held};
-use super::building::{self, Building};
-use super::compounds;
-use super::mentions::{Mention, Taken, Vocabulary, What, mentions};
-use super::objects::{self, Thing};
-use super::parts;
-use super::places::{self, note};
-use super::practitioners;
-use super::relations;
-use super::seats::{self, Called};
-use super::senses;
-use super::stations;
-use super::storeys::{self, Storeys, Wanted, Where};
-use super::styles;
-use super::subsets;
-use super::text::{MAX_TOKENS, Span, Token, tokens};
-use super::vital::{self, Wet};
-use super::wishes::{self, MANY, PerHost, Text, Wish, Wishes};
-use super::words::{ByBedrooms, Spoken, Tag, words};
-use super::workers;
-use super::{
-    Request, addresses, apiece, comparisons, docks, dwelling, fixtures, groups, homes, keeps, language, layout,
-    measures, numbers, qualities, robot_rules, robots, seated, sharing, single, stays, umlauts, unread,
-};
+use super::Request;
+use super::built::layout;
+use super::built::vital::{self, Wet};
+use super::built::workers;
+use super::levels::storeys::{self, Storeys, Wanted, Where};
+use super::machines::{docks, keeps, robot_rules, robots};
+use super::named::compounds;
+use super::named::mentions::{Mention, Taken, Vocabulary, What, mentions};
+use super::named::objects::{self, Thing};
+use super::named::senses;
+use super::named::styles;
+use super::named::{fixtures, qualities};
+use super::people::beds::{self, Held};
+use super::people::seats::{self, Called};
+use super::people::stations;
+use super::people::{apiece, dwelling, groups, homes, seated, sharing, stays};
+use super::subject::building::{self, Building};
+use super::subject::parts;
+use super::subject::places::{self, note};
+use super::subject::practitioners;
+use super::subject::{addresses, single};
+use super::tokens::text::{MAX_TOKENS, Span, Token, tokens};
+use super::tokens::words::{ByBedrooms, Spoken, Tag, words};
+use super::tokens::{language, measures, numbers, umlauts};
+use super::wished::relations;
+use super::wished::subsets;
+use super::wished::wishes::{self, MANY, PerHost, Text, Wish, Wishes};
+use super::wished::{comparisons, unread};
 use crate::Error;
 
 /// Most rooms one world is planned for.

@@ -1,0 +1,1066 @@
+//! Which rooms the building has: those the prompt names, completed from the program of its building type.
+
+use std::collections::BTreeMap;
+
+use d3dgen_knowledge::Applicable;
+use d3dgen_model::domain::{
+    Access, AdjacencyRelation, Domain, Furnishing, Occupants, Privacy, Program, ProgramRoom, RobotUse, RoomType, Shape,
+    Zone,
+};
+
+use super::edges::rules_here;
+use super::layout;
+use super::vital;
+use super::workers;
+use crate::scene_graph::levels::spread;
+use crate::scene_graph::levels::storeys::Where;
+use crate::scene_graph::levels::units;
+use crate::scene_graph::machines::charging::most_docks;
+use crate::scene_graph::named::objects::Thing;
+use crate::scene_graph::people::beds::{Held, sleeps};
+use crate::scene_graph::people::seated;
+use crate::scene_graph::people::seats;
+use crate::scene_graph::people::stations;
+use crate::scene_graph::reading::{MAX_ROOMS, MOST_IN_OFFICE, Reading, is_dwelling};
+use crate::scene_graph::subject::places::note;
+use crate::scene_graph::tokens::words::words;
+use crate::scene_graph::wished::wishes::{CHARGING, Pair, PerHost, Wish};
+
+/// Rooms of a building planned by area alone.
+const MOST_BY_AREA: usize = 60;
+/// Share of a building's net area that its corridors take, before any plan is drawn.
+const CIRCULATION_SHARE: f64 = 0.14;
+
+/// The same of a home of several storeys, its stairs aside.
+const HALLS_SHARE: f64 = 0.11;
+/// Height of a storey as stairs are reckoned with before it is known, m, and the most of a home that they are reckoned to take.
+const STOREY_M: f64 = 2.8;
+const MOST_STAIRS: f64 = 0.2;
+
+/// Floor for a desk of a room whose domain says nothing of it, m^2.
+const DESK_AREA_M2: f64 = 9.0;
+
+/// Share of a room's usual area from which on its people need all of it.
+const FULL: f64 = 0.8;
+
+/// Floor of a room to live in with a table for many, over the least that such a table comes in.
+const BESIDE_TABLE: f64 = 1.3;
+
+/// Floor of a room with a table of a size that is asked for, over the least that such a table comes in.
+const ROUND_NAMED: f64 = 1.15;
+/// Floor of a desk in a room that one lives in, m^2.
+const AT_DESK_M2: f64 = 5.0;
+/// Floor of such a room for who comes to the table in a wheelchair, as a factor.
+const STEP_FREE: f64 = 1.15;
+
+/// Toilets that a home of several storeys has where its list of rooms names fewer: one by day, one by night.
+const TOILETS_GRANTED: usize = 2;
+
+/// Width of one seat of a bench, m.
+const SEAT_M: f64 = 0.5;
+/// What rooms need beyond their least area before a building counts as too small for them, as a factor.
+const TIGHT: f64 = 1.1;
+
+/// Returns the share of the net area that goes to corridors: none where a hall takes their part.
+pub(crate) fn circulation_share(reading: &Reading, rooms: &[Planned]) -> f64 {
+    let hubs = &reading.domain.circulation.hub_room_types;
+    if rooms.len() < 2 || rooms.iter().any(|r| hubs.contains(&r.room_type)) {
+        return 0.0;
+    }
+    let stairs = stairs_share(reading);
+    // halls of a home with stairs are short
+    if stairs > 0.0 { HALLS_SHARE + stairs } else { CIRCULATION_SHARE }
+}
+
+/// Returns the share of the net area that the stairs of a home take: one flight on every storey.
+fn stairs_share(reading: &Reading) -> f64 {
+    let storeys = reading.storeys.levels.len();
+    let rules = reading.domain.circulation.storeys.as_ref().filter(|_| storeys > 1 && is_dwelling(reading.program));
+    let Some((rules, area)) = rules.zip(reading.area_m2) else { return 0.0 };
+    let (width, depth) = rules.stairs.size_m(STOREY_M);
+    (storeys as f64 * width * depth / area).min(MOST_STAIRS)
+}
+
+/// A room to be.
+#[derive(Debug, Clone)]
+pub(crate) struct Planned<'a> {
+    /// Type of the domain, or a name that only the prompt knows.
+    pub room_type: String,
+    /// What the domain knows about it.
+    pub kind: &'a RoomType,
+    /// The prompt's words for a type the domain does not know.
+    pub name: Option<String>,
+    /// Area the prompt gives, m^2.
+    pub area_m2: Option<f64>,
+    /// Factor on its usual area that the prompt asks for.
+    pub size: Option<f64>,
+    /// Area that the people in it ask for, m^2.
+    pub people_area_m2: Option<f64>,
+    /// Area that the table of those who live there asks for, m^2: what a small home leaves others less for.
+    pub table_area_m2: Option<f64>,
+    /// Area that a proposal gives, m^2; within the range of its type.
+    pub proposed_area_m2: Option<f64>,
+    pub requested: bool,
+    /// Index of the room it is entered from, when that is not the circulation.
+    pub host: Option<usize>,
+    /// People, beds or desks it is to hold.
+    pub occupants: Option<u32>,
+    /// Unit of a large building that it belongs to.
+    pub unit: Option<String>,
+    /// What the prompt calls it, where that is not the label of its type.
+    pub called: Option<String>,
+    /// True where its occupants only meet, wait or eat there.
+    pub visited: bool,
+}
+
+impl<'a> Planned<'a> {
+    /// Returns the area that it is reckoned with before it is sized, m^2: as asked for, else for its people, else the usual.
+    pub(crate) fn reckoned_m2(&self) -> f64 {
+        self.area_m2.or(self.people_area_m2).unwrap_or(self.kind.area_m2.target)
+    }
+
+    /// Sizes a room by the people it is for, within what its type allows; a size that the prompt gives stays.
+    pub(super) fn size_for_people(&mut self, area_m2: f64) {
+        let range = self.kind.area_m2;
+        self.people_area_m2 = self.area_m2.is_none().then(|| area_m2.clamp(range.min, range.max));
+    }
+
+    /// Returns a room of a type that nobody said more about.
+    pub(crate) fn new(room_type: &str, kind: &'a RoomType) -> Self {
+        Self {
+            room_type: room_type.to_owned(),
+            kind,
+            name: None,
+            area_m2: None,
+            size: None,
+            people_area_m2: None,
+            table_area_m2: None,
+            proposed_area_m2: None,
+            requested: false,
+            host: None,
+            occupants: None,
+            unit: None,
+            called: None,
+            visited: false,
+        }
+    }
+}
+
+/// Returns the rooms of the building, circulation aside.
+pub(crate) fn complete<'a>(reading: &mut Reading<'a>) -> Vec<Planned<'a>> {
+    let mut build = Build::new(reading, reading.program);
+    build.take_wishes();
+    build.house_parents();
+    match (reading.total, reading.closed) {
+        (None, true) => {}
+        (Some(total), _) => build.fill_to(total as usize),
+        (None, false) => build.fill_usual(),
+    }
+    let mut rooms = build.rooms;
+    equip_hosts(reading, &mut rooms);
+    vital::accompany(reading, &mut rooms);
+    vital::complete(reading, &mut rooms);
+    house_robots(reading, &mut rooms);
+    let mut rooms = units::divide(reading, rooms);
+    layout::follow(reading, &mut rooms);
+    let mut rooms = finish(reading, rooms);
+    spread::open_offices(reading, &mut rooms);
+    spread::fill_ground(reading, &mut rooms);
+    rooms
+}
+
+/// Gives rooms that are settled their people and hosts, and states which of them the prompt does not name.
+pub(crate) fn finish<'a>(reading: &mut Reading<'a>, mut rooms: Vec<Planned<'a>>) -> Vec<Planned<'a>> {
+    wash_on_every_storey(reading, &mut rooms);
+    serve_every_storey(reading, &mut rooms);
+    if reading.building_type.as_ref().is_some_and(|b| words().dwelling.shared.contains(b)) {
+        // a room to sleep and work in is not to come out small
+        let own = |r: &&mut Planned| r.room_type == words().dwelling.bedroom && r.area_m2.is_none();
+        rooms.iter_mut().filter(own).for_each(|r| r.size = r.size.or(Some(1.0)));
+    }
+    make_room_for_things(reading, &mut rooms);
+    hold_beds(reading, &mut rooms);
+    workers::settle(reading, &mut rooms);
+    hold_people(reading, &mut rooms);
+    make_room_for_companions(reading, &mut rooms);
+    serve_people(reading, &mut rooms);
+    workers::seat_guests(reading, &mut rooms);
+    seat_waiting(reading, &mut rooms);
+    hang_on_hosts(reading, &mut rooms);
+    share_last_bathroom(reading, &mut rooms);
+    state_additions(reading, &rooms);
+    rooms
+}
+
+/// Adds the room that robots live in, where the rooms are left open and none of them suits that.
+fn house_robots<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
+    let open = reading.total.is_none() && (!reading.closed || reading.may_join) && !reading.single;
+    if !open || reading.robots.is_empty() || !reading.docked.is_empty() {
+        return;
+    }
+    let robots: u32 = reading.robots.iter().map(|r| r.count).fold(0, u32::saturating_add);
+    // rooms that are there to charge robots grow with them
+    let holds = |kind: &RoomType| match kind.zone == Zone::Service && kind.robot.contains(&RobotUse::Charging) {
+        true if kind.furnishing.iter().any(|f| reading.domain.is_dock(&f.item)) => robots,
+        true => most_docks(kind.area_m2.target),
+        false => 0,
+    };
+    let have: u32 = rooms.iter().map(|r| holds(r.kind)).fold(0, u32::saturating_add);
+    let mut kinds = reading.program.robot_rooms.iter().filter_map(|id| reading.domain.room_type(id));
+    let new = |k: &RoomType| may_add(reading, &k.id) && !rooms.iter().any(|r| r.room_type == k.id);
+    let kind = kinds.find(|k| new(k) && have.saturating_add(holds(k)) >= robots);
+    if let Some(kind) = kind.filter(|_| have < robots) {
+        rooms.push(Planned::new(&kind.id, kind));
+    }
+}
+
+/// Returns true for rooms that the prompt does not rule out.
+fn may_add(reading: &Reading, room_type: &str) -> bool {
+    !reading.wishes.forbidden.iter().any(|f| f == room_type)
+}
+
+/// Returns the type of the room that comes with every host: the one that is named, or where that is no room entered through
+/// another the one for the same use that is: "every room has a bathroom" of a hospital means its en suites.
+fn private_kind<'a>(reading: &Reading<'a>, rooms: &[Planned], pair: &PerHost) -> &'a RoomType {
+    let named = reading.domain.room_type_or_generic(&pair.guest);
+    let sleeps = |id: &String| rooms.iter().any(|r| &r.room_type == id && r.kind.zone == Zone::Night);
+    let serves = |kind: &&RoomType| kind.access == Access::Host && kind.wet && kind.hosts.iter().any(sleeps);
+    if named.access == Access::Host || !named.wet || pair.host.is_some() {
+        return named;
+    }
+    reading.domain.room_types.iter().find(serves).unwrap_or(named)
+}
+
+/// Gives each host the room that the prompt wants with every one of them: "every patient room has an en suite".
+fn equip_hosts<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
+    for pair in &reading.wishes.per_host {
+        let kind = private_kind(reading, rooms, pair);
+        let takes = |r: &Planned| match &pair.host {
+            Some(host) => &r.room_type == host,
+            None => r.kind.zone == Zone::Night && r.kind.access != Access::Host && kind.hosts.contains(&r.room_type),
+        };
+        loop {
+            let hosts = rooms.iter().filter(|r| takes(r)).count();
+            if rooms.iter().filter(|r| r.room_type == kind.id).count() >= hosts {
+                break;
+            }
+            let guest = Planned { requested: true, ..Planned::new(&kind.id, kind) };
+            if reading.total.is_none() {
+                rooms.push(guest);
+                continue;
+            }
+            // the number of rooms is fixed: the last host makes room for something else of the program, or else that for it
+            let own = |r: &Planned| takes(r) || r.room_type == kind.id;
+            let last = rooms.iter().rposition(|r| takes(r) && !r.requested);
+            let next = reading
+                .program
+                .rooms
+                .iter()
+                .map(|e| Planned::new(&e.room_type, reading.domain.room_type_or_generic(&e.room_type)));
+            let fresh = |p: &Planned| {
+                !own(p) && p.kind.access != Access::Host && !rooms.iter().any(|r| r.room_type == p.room_type)
+            };
+            let next = next.into_iter().find(|p| fresh(p) && may_add(reading, &p.room_type));
+            if let (Some(last), Some(next)) = (last.filter(|_| hosts > 1), next) {
+                rooms[last] = next;
+                continue;
+            }
+            let spare = (0..rooms.len())
+                .rev()
+                .find(|&i| !rooms[i].requested && !own(&rooms[i]) && !vital::is_vital(reading, rooms, i))
+                .or_else(|| (0..rooms.len()).rev().find(|&i| takes(&rooms[i]) && !rooms[i].requested));
+            let Some(spare) = spare else { break };
+            rooms[spare] = guest;
+        }
+    }
+}
+
+/// Returns true when rooms of a type may be added to those that the prompt names.
+pub(crate) fn may_grow(reading: &Reading, room_type: &str) -> bool {
+    Build::new(reading, reading.program).may_grow(room_type)
+}
+
+/// Returns the rooms of a unit: those it has already, and what its program adds up to a total, or as usual; a total that the
+/// prompt does not give is none that rooms are made up for.
+pub(crate) fn fill_unit<'a>(
+    reading: &Reading<'a>,
+    program: &'a Program,
+    rooms: Vec<Planned<'a>>,
+    total: Option<usize>,
+) -> Vec<Planned<'a>> {
+    let mut build = Build { rooms, ..Build::new(reading, program) };
+    match total {
+        Some(total) if reading.total.is_some() => build.fill_to(total),
+        Some(most) => build.spend_wishes(most, usize::MAX),
+        None => build.spend_wishes(MAX_ROOMS as usize, program.default_rooms as usize),
+    }
+    build.rooms
+}
+
+/// Returns true when a head count of the prompt says how many rooms of a type there are.
+pub(crate) fn is_counted(reading: &Reading, room_type: &str) -> bool {
+    let mut entries = reading.program.rooms.iter().filter(|e| e.room_type == room_type);
+    entries.any(|e| head_count(reading, e.occupants).is_some())
+}
+
+/// Makes bedrooms of a home larger by the desk or the cot that the prompt wants in them.
+fn make_room_for_things(reading: &Reading, rooms: &mut [Planned]) {
+    let d = &words().dwelling;
+    let larger = |t: &&Thing| t.object == d.own_desk || t.object == d.baby_bed;
+    // a wardrobe needs floor before it that an entrance hall of the usual size has for the door
+    let halls = &reading.domain.circulation.entrance_room_types;
+    let stores = |t: &&Thing| reading.domain.object(&t.object).is_some_and(|o| o.shape == Shape::Cabinet);
+    for thing in reading.objects.iter().filter(stores) {
+        let hall = |r: &&mut Planned| halls.contains(&r.room_type) && thing.room_type.as_deref() == Some(&r.room_type);
+        rooms.iter_mut().filter(hall).take(1).for_each(|r| r.size = r.size.or(Some(HALL_WITH_WARDROBE)));
+    }
+    for thing in reading.objects.iter().filter(larger).filter(|_| is_dwelling(reading.program)) {
+        let asked = |r: &&mut Planned| {
+            r.kind.zone == Zone::Night && thing.room_type.as_deref() == Some(&r.room_type) && r.area_m2.is_none()
+        };
+        let count = if thing.each { rooms.len() } else { 1 };
+        rooms.iter_mut().filter(asked).take(count).for_each(|r| r.size = r.size.or(Some(WITH_THING)));
+    }
+}
+
+/// Factor on the area of an entrance hall with a wardrobe in it.
+const HALL_WITH_WARDROBE: f64 = 1.35;
+
+/// Factor on the area of a bedroom with a desk or a cot in it.
+const WITH_THING: f64 = 1.12;
+
+/// Floor of the bed for who stays with a patient, m^2.
+const COMPANION_M2: f64 = 4.0;
+
+/// Makes rooms of patients larger by the bed of who stays with them.
+fn make_room_for_companions(reading: &Reading, rooms: &mut [Planned]) {
+    let domain = reading.domain;
+    let own = |r: &&mut Planned| r.kind.privacy == Privacy::Private && sleeps(domain, r.kind).is_some();
+    for room in rooms.iter_mut().filter(|_| reading.stays).filter(own) {
+        let area = room.people_area_m2.unwrap_or(room.kind.area_m2.target);
+        room.size_for_people(area + COMPANION_M2);
+    }
+}
+
+/// Sees to it that there are as many toilets and bathrooms as storeys, where the prompt leaves the rooms open.
+fn wash_on_every_storey<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
+    let storeys = reading.storeys.above_ground();
+    // where people work, a list of rooms that says nothing of that does not mean that one goes to another storey; nor does
+    // anybody go up to the bedrooms for a toilet, unless the list says that it is all
+    let works = workers::is_office(reading.program) && !reading.only;
+    let lives = is_dwelling(reading.program) && !reading.only && !reading.single;
+    let open = !reading.closed || works || lives && reading.total.is_none();
+    let Some(rules) = reading.domain.circulation.storeys.as_ref().filter(|_| storeys > 1 && open) else {
+        return;
+    };
+    let storeys = if reading.closed && lives { storeys.min(TOILETS_GRANTED) } else { storeys };
+    let kinds = rules.each_level_room_types.iter().filter_map(|id| reading.domain.room_type(id));
+    let wet: Vec<&RoomType> =
+        kinds.filter(|k| k.wet && !reading.wishes.forbidden.contains(&k.id) && k.access != Access::Host).collect();
+    let usual = wet.iter().copied().find(|k| words().dwelling.toilets.contains(&k.id));
+    let Some(kind) = usual.or(wet.first().copied()) else { return };
+    let is_wet = |r: &Planned| r.kind.access != Access::Host && reading.wet.has_toilet(r.kind);
+    for _ in rooms.iter().filter(|r| is_wet(r)).count()..storeys {
+        if reading.total.is_none() {
+            rooms.push(Planned::new(&kind.id, kind));
+            continue;
+        }
+        // what comes last in the program gives way
+        let spare = rooms.iter().rposition(|r| !r.requested && !is_wet(r) && r.kind.access != Access::Host);
+        let Some(spare) = spare.filter(|s| *s > storeys) else { return };
+        rooms[spare] = Planned::new(&kind.id, kind);
+    }
+}
+
+/// Sees to it that who works on a storey has a place for tea there, where the prompt leaves the rooms open.
+fn serve_every_storey<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
+    let storeys = reading.storeys.above_ground();
+    let open = storeys > 1 && !reading.closed && reading.total.is_none() && workers::is_office(reading.program);
+    let Some(rules) = reading.domain.circulation.storeys.as_ref().filter(|_| open) else { return };
+    let served =
+        |id: &&String| reading.program.rooms.iter().any(|e| &e.room_type == *id && e.area_per_person_m2.is_some());
+    let kinds = rules.each_level_room_types.iter().filter(served).filter_map(|id| reading.domain.room_type(id));
+    for kind in kinds.filter(|k| !reading.wet.has_toilet(k) && may_grow(reading, &k.id)) {
+        let have = rooms.iter().filter(|r| r.room_type == kind.id).count();
+        rooms.extend((have..storeys).filter(|_| have > 0).map(|_| Planned::new(&kind.id, kind)));
+    }
+}
+
+/// Adds rooms that a building rule asks for; returns true when something was added or said.
+pub(crate) fn follow_rules<'a>(
+    reading: &mut Reading<'a>,
+    rooms: &mut Vec<Planned<'a>>,
+    missing: &[Applicable],
+) -> bool {
+    let mut changed = false;
+    // a room by itself is no building
+    for rule in missing.iter().filter(|_| !reading.single) {
+        let space = &rule.constraint.space_type;
+        let speaks = |t: &&RoomType| &t.id == space || t.spaces.contains(space);
+        let Some(kind) = reading.domain.room_types.iter().find(speaks) else { continue };
+        let what = format!("{} by {}", kind.label.to_lowercase(), rule.constraint.constraint_id);
+        changed = true;
+        if reading.total.is_some() || reading.closed || reading.wishes.forbidden.contains(&kind.id) {
+            let message = format!("the building needs a {what}; the prompt's own list of rooms was followed");
+            reading.conflicts.push(note("rule_asks_for_room", message));
+            continue;
+        }
+        reading.assumptions.push(note("room_by_rule", format!("added a {what}")));
+        rooms.push(Planned::new(&kind.id, kind));
+    }
+    changed
+}
+
+struct Build<'r, 'a> {
+    reading: &'r Reading<'a>,
+    program: &'a Program,
+    rooms: Vec<Planned<'a>>,
+    /// Zones for sleeping in which the prompt fixes the rooms.
+    sleeping_is_fixed: bool,
+}
+
+impl<'r, 'a> Build<'r, 'a> {
+    fn new(reading: &'r Reading<'a>, program: &'a Program) -> Self {
+        let zone = |w: &Wish| reading.domain.room_type(&w.room_type).map(|t| t.zone);
+        let sleeping_is_fixed = reading.wishes.wishes.iter().any(|w| w.exact && zone(w) == Some(Zone::Night));
+        Self { reading, program, rooms: Vec::new(), sleeping_is_fixed }
+    }
+
+    fn take_wishes(&mut self) {
+        let corridor = &self.reading.domain.circulation.room_type;
+        for wish in self.reading.wishes.wishes.iter().filter(|w| &w.room_type != corridor) {
+            for _ in 0..wish.count {
+                self.push(&wish.room_type, Some(wish));
+                self.bring_host(&wish.room_type);
+            }
+        }
+        let charging = self.reading.wishes.charging_room
+            || self.reading.wishes.charging && self.reading.docked.is_empty() && !self.has_dock();
+        if charging && !self.is_forbidden(CHARGING) && self.count(CHARGING) == 0 {
+            self.push(CHARGING, None);
+            self.rooms.last_mut().expect("just pushed").requested = true;
+        }
+    }
+
+    /// Gives a home whose rooms are left open, and of whose rooms to sleep in only those of children and guests are named, a
+    /// bedroom for who lives there with them.
+    fn house_parents(&mut self) {
+        let d = &words().dwelling;
+        let open = is_dwelling(self.program) && !self.reading.closed && self.reading.total.is_none();
+        let kind = self.reading.domain.room_type(&d.bedroom).filter(|k| !self.is_forbidden(&k.id));
+        let own = |r: &Planned| r.kind.zone == Zone::Night && !d.of_others.contains(&r.room_type);
+        let bedded = |r: &Planned| own(r) && r.kind.access != Access::Host || r.room_type == d.studio;
+        if let Some(kind) = kind.filter(|_| open && self.sleeping_is_fixed && !self.rooms.iter().any(bedded)) {
+            self.push(&kind.id, None);
+        }
+    }
+
+    /// Returns true when one of the rooms is furnished with a dock anyway.
+    fn has_dock(&self) -> bool {
+        self.rooms.iter().any(|r| r.kind.furnishing.iter().any(|f| self.reading.domain.is_dock(&f.item)))
+    }
+
+    /// Adds the room through which one enters the last one, where a program of the domain has them together (an isolation
+    /// room and its anteroom).
+    fn bring_host(&mut self, room_type: &str) {
+        let kind = self.reading.domain.room_type_or_generic(room_type);
+        let mut entries =
+            self.reading.domain.programs.iter().flat_map(|p| &p.rooms).filter(|e| e.room_type == room_type);
+        let host = entries.find_map(|e| e.with.iter().find(|w| kind.hosts.contains(w)));
+        // one that serves a number of rooms is not enough for more, whether it is named or not
+        let shares = |id: &str| self.reading.domain.room_type(id).is_some_and(|h| h.guests.is_some());
+        let named = |id: &str| !shares(id) && self.reading.wishes.wishes.iter().any(|w| w.room_type == id);
+        let is_full = |host: &str| {
+            let each = self.reading.domain.room_type(host).and_then(|h| h.guests).unwrap_or(1) as usize;
+            // those that the prompt names come behind
+            let told: u32 = self.reading.wishes.wishes.iter().filter(|w| w.room_type == host).map(|w| w.count).sum();
+            let brought = self.rooms.iter().filter(|r| r.room_type == host && !r.requested).count();
+            self.count(room_type) > each * (told as usize + brought)
+        };
+        let may_come = !self.reading.closed || self.reading.may_join;
+        if let Some(host) = host.filter(|h| may_come && !named(h) && !self.is_forbidden(h) && is_full(h)) {
+            self.push(host, None);
+        }
+    }
+
+    fn push(&mut self, room_type: &str, wish: Option<&Wish>) {
+        let kind = self.reading.domain.room_type_or_generic(room_type);
+        self.rooms.push(Planned {
+            name: wish.filter(|_| kind.id != room_type).map(|w| w.name.clone()),
+            area_m2: wish.and_then(|w| w.area_m2),
+            size: wish.and_then(|w| w.size),
+            requested: wish.is_some(),
+            ..Planned::new(room_type, kind)
+        });
+    }
+
+    fn count(&self, room_type: &str) -> usize {
+        self.rooms.iter().filter(|r| r.room_type == room_type).count()
+    }
+
+    fn is_forbidden(&self, room_type: &str) -> bool {
+        self.reading.wishes.forbidden.iter().any(|f| f == room_type)
+    }
+
+    /// Returns true when the program may add rooms of a type to those the prompt names.
+    fn may_grow(&self, room_type: &str) -> bool {
+        let wishes = &self.reading.wishes;
+        let exact = wishes.wishes.iter().any(|w| w.exact && w.room_type == room_type);
+        let zone = self.reading.domain.room_type(room_type).map(|t| t.zone);
+        let night = zone == Some(Zone::Night);
+        let essential = words().dwelling.essential.iter().flatten().any(|e| e == room_type);
+        let lived_in = (night || zone == Some(Zone::Day)) && !essential;
+        // no kitchenette beside a kitchen that was asked for
+        let met = |set: &&Vec<String>| {
+            set.iter().any(|s| s == room_type)
+                && wishes.wishes.iter().any(|w| w.room_type != room_type && set.contains(&w.room_type))
+        };
+        let fixed = words().alike.iter().any(|set| met(&set))
+            || exact
+            || night && self.sleeping_is_fixed
+            || lived_in && self.reading.habitable_fixed;
+        !fixed && !self.is_forbidden(room_type)
+    }
+
+    /// Adds one room of an entry with those that come with it; returns false when there is no place for it.
+    ///
+    /// A room that one enters through one of those (an isolation room through its anteroom) comes with all or not at all.
+    fn add(&mut self, entry: &ProgramRoom, limit: usize) -> bool {
+        let kind = self.reading.domain.room_type_or_generic(&entry.room_type);
+        let entered = entry.with.iter().filter(|w| kind.hosts.contains(w));
+        // beds beyond the first ones have their bathroom or are not there
+        let bathroom = |w: &&String| {
+            let kind = self.reading.domain.room_type_or_generic(w);
+            let hosts = self.rooms.iter().filter(|r| kind.hosts.contains(&r.room_type)).count();
+            self.reading.wet.is_bathroom(kind) && self.may_grow(w) && self.count(w) <= hosts
+        };
+        let bathed = self.count(&entry.room_type) > 0 && !is_dwelling(self.program);
+        let baths = if bathed { entry.with.iter().filter(bathroom).count() } else { 0 };
+        let whole = 1 + baths + if entered.clone().all(|w| self.may_grow(w)) { entered.count() } else { limit };
+        if !self.may_grow(&entry.room_type) || self.rooms.len() + whole > limit {
+            return false;
+        }
+        self.push(&entry.room_type, None);
+        for with in &entry.with {
+            if self.rooms.len() < limit && self.may_grow(with) && !self.waits_for_host(with) {
+                self.push(with, None);
+            }
+        }
+        true
+    }
+
+    /// Returns true when there are enough rooms of a type for all that they may be entered from: the prompt names en suites
+    /// before their rooms come.
+    fn waits_for_host(&self, room_type: &str) -> bool {
+        let kind = self.reading.domain.room_type_or_generic(room_type);
+        let hosts = self.rooms.iter().filter(|r| kind.hosts.contains(&r.room_type)).count();
+        kind.access == Access::Host && self.count(room_type) >= hosts
+    }
+
+    /// Returns the program in the order in which this building needs it.
+    fn entries(&self) -> Vec<&'a ProgramRoom> {
+        let all = &self.program.rooms;
+        let sooner = |e: &ProgramRoom| e.accessible_after.filter(|_| self.reading.accessible);
+        let mut out: Vec<&ProgramRoom> = all.iter().filter(|e| sooner(e).is_none()).collect();
+        for entry in all {
+            if let Some(after) = sooner(entry) {
+                out.insert(out.len().min(after as usize), entry);
+            }
+        }
+        out
+    }
+
+    /// Walks through the program as it grows: `min` of every entry, then one more of each below its `max`, again and
+    /// again. `visit` returns false to stop.
+    fn walk(&mut self, mut visit: impl FnMut(&mut Self, &'a ProgramRoom) -> bool) {
+        let entries = self.entries();
+        let rounds = entries.iter().map(|e| e.max.saturating_sub(e.min)).max().unwrap_or(0);
+        for round in 0..=rounds {
+            for &entry in &entries {
+                let n = if round == 0 { entry.min } else { u32::from(entry.min + round <= entry.max) };
+                for _ in 0..n {
+                    if !visit(self, entry) {
+                        return;
+                    }
+                }
+            }
+        }
+    }
+
+    /// Fills up to a total; rooms the prompt names count first, a program's own come in its order.
+    fn fill_to(&mut self, total: usize) {
+        self.spend_wishes(total, usize::MAX);
+        // a program shorter than the count goes on with what it has
+        while self.rooms.len() < total {
+            let before = self.rooms.len();
+            for entry in &self.program.rooms {
+                if entry.max > 1 {
+                    self.add(entry, total);
+                }
+            }
+            if self.rooms.len() == before {
+                let growing = self.reading.wishes.wishes.iter().find(|w| !w.exact).map(|w| w.room_type.clone());
+                let kind = growing.unwrap_or_else(|| self.program.rooms[0].room_type.clone());
+                self.push(&kind, None);
+            }
+        }
+    }
+
+    /// Walks the program up to `limit` rooms in all or `usual` rooms of the program; a program's room that the prompt
+    /// names already is that room.
+    fn spend_wishes(&mut self, limit: usize, usual: usize) {
+        let mut named: BTreeMap<String, usize> = BTreeMap::new();
+        for room in &self.rooms {
+            *named.entry(room.room_type.clone()).or_default() += 1;
+        }
+        let mut spent = 0;
+        self.walk(|build, entry| {
+            if build.rooms.len() >= limit || spent >= usual {
+                return false;
+            }
+            match named.get_mut(&entry.room_type).filter(|n| **n > 0) {
+                Some(left) => {
+                    *left -= 1;
+                    spent += 1 + entry.with.len();
+                }
+                None => {
+                    let before = build.rooms.len();
+                    build.add(entry, limit);
+                    spent += (build.rooms.len() - before).max(1);
+                }
+            }
+            true
+        });
+    }
+
+    /// Fills with the rooms such a building usually has, as many as the area and the people ask for.
+    fn fill_usual(&mut self) {
+        let program = self.program;
+        let most = MAX_ROOMS as usize;
+        self.spend_wishes(most, program.default_rooms as usize);
+        self.fit_people(most);
+        if let Some(area) = self.reading.area_m2 {
+            self.fit_area(area * (1.0 - circulation_share(self.reading, &self.rooms)));
+        }
+    }
+
+    /// Adds rooms that a head count asks for.
+    fn fit_people(&mut self, limit: usize) {
+        for entry in &self.program.rooms {
+            let present = self.count(&entry.room_type);
+            let Some(people) = head_count(self.reading, entry.occupants).filter(|_| present > 0) else { continue };
+            let kind = self.reading.domain.room_type_or_generic(&entry.room_type);
+            // who sits in an open office that the prompt names needs no office of their own
+            let seated = entry.occupants_per_room.is_some_and(|n| n <= MOST_IN_OFFICE)
+                && self
+                    .rooms
+                    .iter()
+                    .any(|r| r.requested && seats::most_desks(self.reading.domain, r.kind) > seats::MOST_IN_TEAM);
+            if seated {
+                continue;
+            }
+            let by_count = entry.occupants_per_room.map_or(0, |per| people.div_ceil(per.max(1)) as usize);
+            let by_area = entry
+                .area_per_occupant_m2
+                .map_or(0, |per| (per * f64::from(people) / kind.area_m2.max).ceil() as usize);
+            // each storey has its share of those who work there
+            let storeys = self.reading.storeys.above_ground();
+            let shares = entry.area_per_occupant_m2.map_or(0, |per| {
+                let most = (per * f64::from(people) / kind.area_m2.min) as usize;
+                if storeys > 1 { most.min(storeys) } else { 0 }
+            });
+            for _ in present..by_count.max(by_area).max(shares) {
+                self.add(entry, limit);
+            }
+        }
+        if let Some(people) = self.reading.residents {
+            // two share a bedroom, everyone else has one
+            let wanted = vital::bedrooms_for(people, self.reading.each_alone);
+            let sleeping =
+                |e: &&ProgramRoom| self.reading.domain.room_type_or_generic(&e.room_type).zone == Zone::Night;
+            if let Some(entry) = self.program.rooms.iter().find(sleeping) {
+                for _ in self.count(&entry.room_type) + self.count(&words().dwelling.studio)..wanted {
+                    self.add(entry, limit);
+                }
+            }
+        }
+    }
+
+    /// Drops or adds rooms until the usual sizes fit an area, net m^2.
+    fn fit_area(&mut self, area: f64) {
+        let sum = |build: &Self, size: fn(&RoomType) -> f64| {
+            build.rooms.iter().map(|r| r.area_m2.unwrap_or_else(|| size(r.kind))).sum::<f64>()
+        };
+        while sum(self, |k| TIGHT * k.area_m2.min) > area {
+            // what comes last in the program goes first
+            let spare = |&i: &usize| !self.rooms[i].requested && !vital::is_vital(self.reading, &self.rooms, i);
+            let Some(last) = (0..self.rooms.len()).rev().find(spare) else { break };
+            if self.rooms.len() <= 1 {
+                break;
+            }
+            self.rooms.remove(last);
+        }
+        let roomy = sum(self, |k| k.area_m2.target.max(0.75 * k.area_m2.max));
+        if roomy >= area {
+            return;
+        }
+        let mut seen: BTreeMap<&str, u32> = BTreeMap::new();
+        let counted: BTreeMap<String, u32> = self.rooms.iter().fold(BTreeMap::new(), |mut map, r| {
+            *map.entry(r.room_type.clone()).or_default() += 1;
+            map
+        });
+        self.walk(|build, entry| {
+            let n = seen.entry(&entry.room_type).or_default();
+            *n += 1;
+            if *n > counted.get(&entry.room_type).copied().unwrap_or(0) {
+                build.add(entry, MOST_BY_AREA);
+            }
+            build.rooms.len() < MOST_BY_AREA && sum(build, |k| k.area_m2.target) < area
+        });
+    }
+}
+
+/// Returns the head count a program entry speaks of.
+pub(crate) fn head_count(reading: &Reading, of: Occupants) -> Option<u32> {
+    let o = &reading.occupancy;
+    match of {
+        Occupants::Staff => o.staff.max(o.desks),
+        Occupants::Visitors => o.visitors,
+        // who stays in a ward are its patients, whatever the prompt calls them
+        Occupants::Beds => o.beds.or(reading.residents).or(o.visitors),
+        Occupants::Residents => reading.residents,
+    }
+}
+
+/// Spreads the people over the rooms that the program gives them.
+fn hold_people(reading: &mut Reading, rooms: &mut [Planned]) {
+    hold_stations(reading, rooms);
+    // who has a desk elsewhere needs none here
+    let at_desks = |r: &&Planned| seated::desks(reading.domain, r.kind).is_some();
+    let seated: u32 = rooms.iter().filter(at_desks).filter_map(|r| r.occupants).sum();
+    for entry in &reading.program.rooms {
+        let Some(people) = head_count(reading, entry.occupants) else { continue };
+        let elsewhere = if entry.occupants == Occupants::Staff { seated } else { 0 };
+        let Some(people) = people.checked_sub(elsewhere).filter(|n| *n > 0) else { continue };
+        let places: Vec<usize> = (0..rooms.len()).filter(|&i| rooms[i].room_type == entry.room_type).collect();
+        let sits = entry.area_per_occupant_m2.is_some() || entry.occupants != Occupants::Staff;
+        if !sits || places.is_empty() || places.iter().any(|&i| rooms[i].occupants.is_some()) || reading.single {
+            continue;
+        }
+        let n = places.len() as u32;
+        for (k, &i) in places.iter().enumerate() {
+            rooms[i].occupants = Some(people / n + u32::from((k as u32) < people % n));
+            let area = entry.area_per_occupant_m2.map(|per| per * f64::from(people) / f64::from(n));
+            rooms[i].people_area_m2 = area;
+        }
+    }
+    // beds the program does not know of stand in the rooms the prompt names for sleeping
+    if let Some(beds) = reading.occupancy.beds
+        && rooms.iter().all(|r| r.occupants.is_none())
+    {
+        let places: Vec<usize> =
+            (0..rooms.len()).filter(|&i| rooms[i].requested && rooms[i].kind.zone == Zone::Night).collect();
+        if (1..=beds as usize).contains(&places.len()) {
+            let n = places.len() as u32;
+            for (k, &i) in places.iter().enumerate() {
+                rooms[i].occupants = Some(beds / n + u32::from((k as u32) < beds % n));
+            }
+        }
+    }
+}
+
+/// Returns the rooms that the prompt gives so many heads, and that have none yet.
+fn rooms_of<'r, 'a>(held: &Held, rooms: &'r mut [Planned<'a>]) -> impl Iterator<Item = &'r mut Planned<'a>> {
+    let free = |r: &&mut Planned| r.requested && r.occupants.is_none() && r.room_type == held.room_type;
+    rooms.iter_mut().filter(free).take(held.count as usize)
+}
+
+/// Gives rooms the places to be treated at that the prompt says, and the floor for them.
+fn hold_stations(reading: &Reading, rooms: &mut [Planned]) {
+    for held in &reading.stationed {
+        for room in rooms_of(held, rooms) {
+            let Some(line) = stations::line_of(reading.domain, room.kind) else { continue };
+            room.occupants = Some(held.beds);
+            room.size_for_people(stations::area_m2(line, held.beds));
+        }
+    }
+}
+
+/// Sizes rooms that serve all who work there by how many these are: as many as the prompt says, else as have a desk.
+fn serve_people(reading: &Reading, rooms: &mut [Planned]) {
+    let entries = reading.program.rooms.iter().filter_map(|e| Some((e, e.area_per_person_m2?))).collect::<Vec<_>>();
+    if entries.is_empty() || reading.single {
+        return;
+    }
+    // in a home those who sleep there eat there
+    let lives = is_dwelling(reading.program);
+    let beds = rooms.iter().filter_map(|r| Some(sleeps(reading.domain, r.kind)?[0])).sum::<u32>();
+    // who has a room alone has its double bed alone
+    let rooms_to_sleep = rooms.iter().filter(|r| sleeps(reading.domain, r.kind).is_some()).count() as u32;
+    // and in a ward its patients, for whom the day room is
+    let nurses = reading.program.rooms.iter().any(|e| e.occupants == Occupants::Beds);
+    let people = match (lives, reading.each_alone, nurses) {
+        (true, true, _) => reading.residents.unwrap_or(rooms_to_sleep),
+        (true, false, _) => reading.residents.unwrap_or(0).max(beds),
+        (false, _, true) => reading.occupancy.beds.unwrap_or(beds),
+        (false, _, false) => places_to_work(reading, rooms),
+    };
+    let people = f64::from(people);
+    let mut sized: Vec<&str> = Vec::new();
+    for (entry, each) in entries {
+        if sized.contains(&entry.room_type.as_str()) {
+            continue;
+        }
+        sized.push(&entry.room_type);
+        let alike: Vec<usize> = (0..rooms.len()).filter(|&i| rooms[i].room_type == entry.room_type).collect();
+        let at_table = if lives { table_for(reading, rooms, alike.first().copied(), people) } else { 0.0 };
+        for &i in &alike {
+            let range = rooms[i].kind.area_m2;
+            rooms[i].table_area_m2 = (at_table > 0.0).then(|| at_table.min(range.max));
+            // a table for a few stands in a room of the usual size
+            let table = if at_table > range.target { at_table } else { 0.0 };
+            let area = (each * people / alike.len() as f64).max(table).clamp(range.min, range.max);
+            // those of a usual size hold a usual number; a small office has small toilets
+            if !lives || area > range.target {
+                rooms[i].size_for_people(area);
+            } else if lives && area > FULL * range.target {
+                // as many as the usual size is for: it is not to come out small
+                rooms[i].size_for_people(range.target);
+            }
+        }
+    }
+}
+
+/// Returns the floor of a room in which the people of a home eat for want of a room for that, m^2: what the table for all
+/// of them asks for, and the way past it to the rest; 0 where such a table is nothing out of the usual.
+fn table_for(reading: &Reading, rooms: &[Planned], room: Option<usize>, people: f64) -> f64 {
+    let domain = reading.domain;
+    let Some(kind) = room.and_then(|i| rooms.get(i)).map(|r| r.kind) else { return 0.0 };
+    let elsewhere = |line: &Furnishing| rooms.iter().any(|r| line.unless_rooms.contains(&r.room_type));
+    let table = |line: &&Furnishing| {
+        let is = domain.anchor(&line.item).is_some_and(|o| matches!(o.shape, Shape::Table | Shape::RoundTable));
+        is && line.sleepers > 0 && f64::from(line.sleepers) <= people.max(2.0) && !line.unless_rooms.is_empty()
+    };
+    let line = kind.furnishing.iter().filter(table).max_by_key(|line| line.sleepers).filter(|line| !elsewhere(line));
+    let beside = if reading.accessible { BESIDE_TABLE * STEP_FREE } else { BESIDE_TABLE };
+    // a desk in the room takes floor of its own
+    let desk = |t: &&Thing| t.object == words().dwelling.own_desk && t.room_type.as_deref() == Some(&kind.id);
+    let at_desk = if reading.objects.iter().any(|t| desk(&t)) { AT_DESK_M2 } else { 0.0 };
+    let of_all = line.map_or(0.0, |line| beside * line.area_per_item_m2 + at_desk);
+    // "a dining table for eight"
+    let named = |line: &&Furnishing| {
+        let table = domain.anchor(&line.item).filter(|_| line.sleepers > 0);
+        table.is_some_and(|o| reading.objects.iter().any(|t| t.object == o.id)) && !elsewhere(line)
+    };
+    kind.furnishing.iter().filter(named).map(|line| ROUND_NAMED * line.area_per_item_m2).fold(of_all, f64::max)
+}
+
+/// Returns how many people work there: as many as the prompt says, else as have a desk.
+pub(super) fn places_to_work(reading: &Reading, rooms: &[Planned]) -> u32 {
+    let own = |r: &Planned| r.occupants.filter(|_| !r.visited).unwrap_or_else(|| workplaces(reading.domain, r));
+    let desks = || rooms.iter().map(own).sum::<u32>();
+    match reading.occupancy.staff {
+        Some(staff) => staff.max(reading.occupancy.desks.unwrap_or(0)),
+        // "10 offices and an open plan with 12 desks"
+        None => head_count(reading, Occupants::Staff).unwrap_or(0).max(desks()),
+    }
+}
+
+/// Seats that people find where they wait for each room that sees them one at a time.
+const SEATS_PER_ROOM: u32 = 2;
+
+/// Sizes rooms to wait in by the rooms that people wait for, where these ask for more than usual.
+fn seat_waiting(reading: &Reading, rooms: &mut [Planned]) {
+    let waits = |kind: &RoomType| {
+        let line = kind.furnishing.first().filter(|f| f.required && f.area_per_item_m2 > 0.0)?;
+        let bench = reading.domain.object(&line.item).filter(|o| o.shape == Shape::Bench)?;
+        let seats = bench.sizes_m.first().map_or(1.0, |s| (s[0] / SEAT_M).floor().max(1.0));
+        (kind.privacy == Privacy::Public).then_some(line.area_per_item_m2 / seats)
+    };
+    let sees = |r: &&Planned| r.kind.zone == Zone::Day && r.kind.privacy == Privacy::Private;
+    let seen = rooms.iter().filter(sees).count() as u32;
+    let places: Vec<usize> = (0..rooms.len()).filter(|&i| waits(rooms[i].kind).is_some()).collect();
+    for &i in &places {
+        let Some(each) = waits(rooms[i].kind).filter(|_| rooms[i].area_m2.is_none() && !reading.single) else {
+            continue;
+        };
+        let seats = (SEATS_PER_ROOM * seen).div_ceil(places.len() as u32);
+        let range = rooms[i].kind.area_m2;
+        let area = (each * f64::from(seats)).min(range.max);
+        if area > range.target && rooms[i].people_area_m2.is_none() {
+            rooms[i].people_area_m2 = Some(area);
+        }
+    }
+}
+
+/// Returns how many people have a desk in a room of its usual size.
+fn workplaces(domain: &Domain, room: &Planned) -> u32 {
+    let area = room.reckoned_m2();
+    let lines = room.kind.furnishing.iter().filter(|line| line.instead_of.is_empty());
+    lines.map(|line| seated::desks_of(domain, &line.item) * line.units(area)).max().unwrap_or(0)
+}
+
+/// Returns the floor for each desk of a room type, m^2: as the programs say, else as its furnishing.
+pub(super) fn desk_area_m2(domain: &Domain, room_type: &str) -> f64 {
+    let entries = domain.programs.iter().flat_map(|p| &p.rooms).filter(|e| e.room_type == room_type);
+    let lines = domain.room_type_or_generic(room_type).furnishing.iter().filter(|f| f.required);
+    let by_program = entries.filter_map(|e| e.area_per_occupant_m2).next();
+    by_program.or_else(|| lines.map(|f| f.area_per_item_m2).find(|a| *a > 0.0)).unwrap_or(DESK_AREA_M2)
+}
+
+/// Gives rooms to sleep in the beds that the prompt says, and where its beds are those of its rooms the usual ones.
+fn hold_beds(reading: &Reading, rooms: &mut [Planned]) {
+    for held in &reading.held {
+        for room in rooms_of(held, rooms) {
+            room.occupants = Some(held.beds);
+            if seated::desks(reading.domain, room.kind).is_some() {
+                let area = desk_area_m2(reading.domain, &room.room_type) * f64::from(held.beds);
+                room.size_for_people(area + workers::beside_desks(held.beds));
+            }
+            let Some([low, high]) = sleeps(reading.domain, room.kind) else { continue };
+            if !(low..=high).contains(&held.beds) || high > low {
+                room.size_for_people(room.kind.area_m2.target * f64::from(held.beds) / f64::from(low.max(1)));
+            }
+        }
+    }
+    let o = &reading.occupancy;
+    let heads = o.beds.or(o.staff).or(o.desks).or(o.visitors).or(reading.residents);
+    if let Some(room) = rooms.first_mut().filter(|r| reading.single && r.occupants.is_none()) {
+        room.occupants = heads;
+    }
+    let Some(beds) = o.beds else { return };
+    let held: u32 = rooms.iter().filter_map(|r| r.occupants).sum();
+    let open: Vec<(usize, u32)> = (0..rooms.len())
+        .filter(|&i| rooms[i].requested && rooms[i].occupants.is_none())
+        .filter_map(|i| Some((i, sleeps(reading.domain, rooms[i].kind)?[0])))
+        .collect();
+    let sum = |rooms: &mut dyn Iterator<Item = &(usize, u32)>| held + rooms.map(|r| r.1).sum::<u32>();
+    let beside = sum(&mut open.iter().filter(|r| rooms[r.0].kind.access != Access::Host));
+    if sum(&mut open.iter()) == beds || beside == beds {
+        open.into_iter().for_each(|(i, each)| rooms[i].occupants = Some(each));
+    }
+}
+
+/// Returns true for two rooms of the public, one told with the other, where people work: each of them lies at the
+/// circulation, or the one would be the only way to the other and to all who work behind it.
+pub(super) fn are_public(reading: &Reading, pair: &Pair) -> bool {
+    let public = |id: &String| {
+        let kind = reading.domain.room_type(id)?;
+        (kind.zone == Zone::Public && kind.access != Access::Host).then_some(kind)
+    };
+    let (Some(a), Some(b)) = (public(&pair.a), public(&pair.b)) else { return false };
+    let serves = |k| seats::has_counters(reading.domain, k);
+    workers::is_office(reading.program) || serves(a) || serves(b)
+}
+
+/// Finds for every en suite, closet and the like the room it is entered from.
+fn hang_on_hosts(reading: &mut Reading, rooms: &mut [Planned]) {
+    let domain = reading.domain;
+    // the control room of "MRI with control room" has a door to the scanner and one for those who work there
+    let beside = |p: &&Pair| {
+        let of = |id: &String| domain.room_type(id).is_none_or(|k| k.access == Access::Host);
+        let mut rules = rules_here(domain, reading.country_code.as_deref());
+        !of(&p.a) && rules.any(|r| r.relation == AdjacencyRelation::Must && r.a == p.a && r.b == p.b)
+    };
+    let pairs: Vec<Pair> = reading.wishes.pairs.iter().filter(|p| p.belongs && !beside(p)).cloned().collect();
+    // the only storey that the prompt puts rooms of a type on
+    let storey = |id: &str| {
+        let mut on = reading.storeys.wanted.iter().filter(|w| w.room_type == id).map(|w| w.at);
+        on.next().filter(|_| on.next().is_none())
+    };
+    let storeys: Vec<Option<Where>> = rooms.iter().map(|r| storey(&r.room_type)).collect();
+    for i in 0..rooms.len() {
+        let room = &rooms[i];
+        // "on the second floor a terrace": not that of the living room below
+        let elsewhere = |h: usize| storeys[i].is_some_and(|at| storeys[h].is_some_and(|other| other != at));
+        let hosted = room.kind.access == Access::Host;
+        // the closet of a suite is entered from its bedroom, not through the bathroom that the suite has too
+        let through_bath = |p: &&Pair| {
+            let bath = domain.room_type(&p.b).is_some_and(|k| k.access == Access::Host && k.wet);
+            hosted && bath && !room.kind.hosts.contains(&p.b)
+        };
+        let belongs = pairs.iter().find(|p| p.a == room.room_type).filter(|p| !through_bath(p));
+        // "management with boardroom": nobody meets behind somebody's office
+        let shared = room.kind.privacy != Privacy::Private && room.kind.zone == Zone::Day && !hosted;
+        let through = |p: &&Pair| domain.room_type(&p.b).is_some_and(|k| k.privacy == Privacy::Private);
+        let works = workers::is_office(reading.program);
+        let belongs = belongs.filter(|p| !(works && shared && through(p)));
+        // "lobby with counters": the public goes on from one to the other, those who work there do not
+        let belongs = belongs.filter(|p| !are_public(reading, p));
+        if !hosted && belongs.is_none() {
+            continue;
+        }
+        let fits = |h: &Planned| match belongs {
+            // "isolation room with anteroom": the type says that one enters through the anteroom
+            Some(pair) => h.room_type == pair.b && !h.kind.hosts.contains(&room.room_type),
+            None => room.kind.hosts.contains(&h.room_type),
+        };
+        let by_type = |h: &Planned| hosted && room.kind.hosts.contains(&h.room_type);
+        // an en suite for wheelchairs is one of the en suites
+        let alike = |r: &Planned| {
+            r.room_type == rooms[i].room_type || [r, &rooms[i]].iter().all(|r| reading.wet.has_toilet(r.kind))
+        };
+        let guests = |h: usize, rooms: &[Planned]| rooms.iter().filter(|r| r.host == Some(h) && alike(r)).count();
+        // the usual host first: a terrace lies before the living room
+        let rank = |h: &Planned| room.kind.hosts.iter().position(|k| *k == h.room_type);
+        let candidates = |test: &dyn Fn(&Planned) -> bool| {
+            let free = |h: &usize| *h != i && test(&rooms[*h]) && rooms[*h].host != Some(i) && !elsewhere(*h);
+            (0..rooms.len()).filter(free).min_by_key(|&h| {
+                let apart = rooms[h].unit != room.unit;
+                (apart, guests(h, rooms), rank(&rooms[h]), usize::from(rooms[h].host.is_some()), h)
+            })
+        };
+        // en suites beyond those of the rooms that they are told of go to the others that have none
+        let told = candidates(&fits);
+        let bare = |h: &usize| !hosted || guests(*h, rooms) == 0;
+        let host = told.filter(bare).or_else(|| candidates(&by_type)).or(told);
+        // a room the prompt gives to one host only ("bedroom with its own bath and a second bath")
+        let taken = !hosted && host.is_some_and(|h| guests(h, rooms) > 0);
+        if taken {
+            continue;
+        }
+        if host.is_none() && hosted {
+            let message =
+                format!("{} has no room to be entered from; it opens to the circulation instead", room.kind.label);
+            reading.assumptions.push(note("no_host", message));
+        }
+        rooms[i].host = host;
+    }
+}
+
+/// Lets the only bathroom of a home open to its hall where those of other bedrooms would have to go through one to it.
+fn share_last_bathroom(reading: &mut Reading, rooms: &mut [Planned]) {
+    if !is_dwelling(reading.program) || reading.single {
+        return;
+    }
+    let bathes = |r: &Planned| reading.wet.is_bathroom(r.kind) || r.room_type == words().dwelling.shower;
+    let sleeps = |r: &Planned| r.kind.zone == Zone::Night && sleeps(reading.domain, r.kind).is_some();
+    let own = |i: usize| rooms.iter().any(|r| bathes(r) && r.host == Some(i));
+    let without = (0..rooms.len()).filter(|&i| sleeps(&rooms[i]) && !own(i)).count();
+    let shared = rooms.iter().any(|r| bathes(r) && r.host.is_none());
+    let last = rooms.iter().rposition(|r| bathes(r) && r.host.is_some() && r.kind.access != Access::Host);
+    // where several rooms have their own, what the others lack is said
+    let hosted = rooms.iter().filter(|r| bathes(r) && r.host.is_some()).count();
+    let Some(last) = last.filter(|_| without > 0 && !shared && hosted == 1) else { return };
+    rooms[last].host = None;
+    let label = rooms[last].kind.label.to_lowercase();
+    let message = format!("no other {label} serves all bedrooms; it opens to the hall and not into one of them");
+    reading.assumptions.push(note("shared_bathroom", message));
+}
+
+/// States which rooms the prompt does not name.
+fn state_additions(reading: &mut Reading, rooms: &[Planned]) {
+    let mut added: Vec<(&str, u32)> = Vec::new();
+    for room in rooms.iter().filter(|r| !r.requested) {
+        match added.iter_mut().find(|a| a.0 == room.kind.label) {
+            Some(known) => known.1 += 1,
+            None => added.push((&room.kind.label, 1)),
+        }
+    }
+    if added.is_empty() {
+        return;
+    }
+    let list: Vec<String> = added.iter().map(|(label, n)| format!("{n} {}", label.to_lowercase())).collect();
+    let message = format!("rooms added from program {}: {}", reading.program.id, list.join(", "));
+    reading.assumptions.push(note("rooms_added", message));
+}
