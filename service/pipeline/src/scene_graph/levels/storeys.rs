@@ -6,7 +6,7 @@ use crate::scene_graph::named::mentions::{Mention, What};
 use crate::scene_graph::subject::places::note;
 use crate::scene_graph::tokens::numbers::Number;
 use crate::scene_graph::tokens::text::{Kind, Phrases, Span, Token};
-use crate::scene_graph::tokens::words::{Spoken, Tag, words};
+use crate::scene_graph::tokens::words::{Spoken, Tag, is_tagged, tag_end, words};
 
 /// Storeys above the ground that a prompt may ask for.
 const MOST_LEVELS: u32 = 12;
@@ -44,7 +44,7 @@ impl Where {
 
 /// A phrase that names a storey.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Phrase {
+pub(crate) struct Phrase {
     pub span: Span,
     pub at: Where,
     /// True for a storey that the building is to have ("a basement"), not one that something is on.
@@ -102,7 +102,7 @@ pub(crate) fn phrases(
         // "en la primera planta", "in the first bedroom"
         let whole = |end: usize| (i..end).any(|k| full(k).is_some_and(|f| f.0 > end));
         let counts_rooms = |end: usize| {
-            let noun = spoken.iter().any(|s| s.tag_at(tokens, end, Tag::Storeys).is_some());
+            let noun = is_tagged(spoken, tokens, end, Tag::Storeys);
             noun || room_end(end).is_some_and(|to| tokens.get(to).is_none_or(Token::is_mark))
         };
         found.filter(|f| named && !whole(f.0) && !counts_rooms(f.0))
@@ -120,7 +120,7 @@ pub(crate) fn phrases(
         let found = full(i).or_else(|| elided(i));
         // a wine cellar is a room
         let inner = || (i.saturating_sub(3)..i).any(|k| room_end(k).is_some_and(|end| end > i));
-        let below = spoken.iter().find_map(|s| s.tag_at(tokens, i, Tag::Basement)).filter(|_| basements && !inner());
+        let below = tag_end(spoken, tokens, i, Tag::Basement).filter(|_| basements && !inner());
         match (found, below) {
             (Some((end, &at)), below) if below.is_none_or(|b| b < end || inside(tokens, i, spoken)) => {
                 out.push(Phrase { span: Span { start: i, end }, at, noun: false });
@@ -139,7 +139,7 @@ pub(crate) fn phrases(
 
 /// Returns true behind "in the": what is said lies on the storey, and the storey itself is nothing new.
 fn inside(tokens: &[Token], i: usize, spoken: &[&Spoken]) -> bool {
-    let tagged = |k: usize, tag: Tag| spoken.iter().any(|s| s.tag_at(tokens, k, tag).is_some());
+    let tagged = |k: usize, tag: Tag| is_tagged(spoken, tokens, k, tag);
     let before = |k: usize| i.checked_sub(k);
     before(1).is_some_and(|k| tagged(k, Tag::Inside))
         || before(2).is_some_and(|k| tagged(k, Tag::Inside) && tagged(k + 1, Tag::Definite))
@@ -198,7 +198,7 @@ fn nth_in_east(
 /// "G+2".
 fn stated(text: &Text) -> Option<f64> {
     let Text { tokens, numbers, spoken, phrases, head, .. } = *text;
-    let tagged = |i: usize, tag| spoken.iter().find_map(|s| s.tag_at(tokens, i, tag));
+    let tagged = |i: usize, tag| tag_end(spoken, tokens, i, tag);
     // "a three floor bank", "library, 3 floor": the singular where nothing but the building follows
     let singular = |n: &Number| {
         let after = tagged(n.span.end, Tag::Singular).filter(|_| n.value >= 2.0);
@@ -270,7 +270,7 @@ struct Lifts {
 /// Reads whether elevators are asked for or ruled out, and how many: those of several kinds are added up.
 fn lifts(text: &Text) -> Lifts {
     let Text { tokens, numbers, mentions, spoken, .. } = *text;
-    let tagged = |i: usize, tag: Tag| spoken.iter().find_map(|s| s.tag_at(tokens, i, tag));
+    let tagged = |i: usize, tag: Tag| tag_end(spoken, tokens, i, tag);
     // a "lift lobby" is a room
     let in_room = |i: usize| mentions.iter().any(|m| m.room_type().is_some() && m.span.contains(i));
     let named = |i: &usize| tagged(*i, Tag::Lift).is_some() && !in_room(*i);

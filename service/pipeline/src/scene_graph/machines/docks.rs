@@ -4,7 +4,7 @@ use d3dgen_model::domain::Domain;
 
 use crate::scene_graph::named::mentions::{Mention, What};
 use crate::scene_graph::tokens::text::{Kind, Span, Token};
-use crate::scene_graph::tokens::words::{Spoken, Tag};
+use crate::scene_graph::tokens::words::{Spoken, Tag, tag_end, tag_ends_at};
 use crate::scene_graph::wished::wishes::CHARGING;
 
 /// Words between a dock and its room, at most: "charging station for two robots in the".
@@ -16,7 +16,7 @@ pub(crate) fn not_of_goods(tokens: &[Token], mentions: &mut [Mention], domain: &
     for mention in mentions {
         let strange = mention.room_type().is_some_and(|id| domain.room_type(id).is_none());
         let span = mention.span;
-        if strange && spoken.iter().any(|s| s.tag_at(tokens, span.start, Tag::Charge) == Some(span.end)) {
+        if strange && tag_ends_at(spoken, tokens, span.start, Tag::Charge, span.end) {
             mention.what = What::Charge;
         }
     }
@@ -57,7 +57,7 @@ pub(crate) fn where_robots_wait(
     machines: &[Span],
     spoken: &[&Spoken],
 ) -> Vec<Option<String>> {
-    let tagged = |i: usize, tag| spoken.iter().find_map(|s| s.tag_at(tokens, i, tag));
+    let tagged = |i: usize, tag| tag_end(spoken, tokens, i, tag);
     let mut out = Vec::new();
     for robot in machines {
         let Some(m) = mentions.iter().position(|m| m.span.start >= robot.end) else { continue };
@@ -83,7 +83,7 @@ pub(crate) fn where_robots_wait(
 
 /// Returns the type of the room that a dock stands in.
 fn host(tokens: &[Token], mentions: &[Mention], dock: usize, machines: &[Span], spoken: &[&Spoken]) -> Option<String> {
-    let tagged = |i: usize, tag| spoken.iter().find_map(|s| s.tag_at(tokens, i, tag));
+    let tagged = |i: usize, tag| tag_end(spoken, tokens, i, tag);
     let room = |m: &&Mention| m.room_type().is_some_and(|id| id != CHARGING);
     let marks = |range: std::ops::Range<usize>| range.into_iter().any(|i| tokens[i].is_mark());
     let span = mentions[dock].span;

@@ -3,7 +3,7 @@
 
 use crate::scene_graph::named::mentions::Mention;
 use crate::scene_graph::tokens::text::{Span, Token};
-use crate::scene_graph::tokens::words::{Spoken, Tag};
+use crate::scene_graph::tokens::words::{Spoken, Tag, is_tagged};
 
 /// Words between a robot and the corridors that it keeps to, at most: "drives at night through the".
 const MOST_BETWEEN: usize = 6;
@@ -17,7 +17,7 @@ pub(crate) fn read(
     way: &str,
     spoken: &[&Spoken],
 ) -> Option<(Span, Vec<String>)> {
-    let tagged = |i: usize, tag| spoken.iter().any(|s| s.tag_at(tokens, i, tag).is_some());
+    let tagged = |i: usize, tag| is_tagged(spoken, tokens, i, tag);
     let named: Vec<&Mention> = mentions.iter().filter(|m| m.room_type().is_some()).collect();
     for robot in machines {
         let Some(first) = named.iter().position(|m| m.span.start >= robot.end) else { continue };

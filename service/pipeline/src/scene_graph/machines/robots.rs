@@ -9,7 +9,7 @@ use crate::scene_graph::subject::places::note;
 use crate::scene_graph::tokens::negation::is_ruled_out;
 use crate::scene_graph::tokens::numbers::Number;
 use crate::scene_graph::tokens::text::{Kind, Span, Token, fold};
-use crate::scene_graph::tokens::words::{Spoken, Tag, words};
+use crate::scene_graph::tokens::words::{Spoken, Tag, is_tagged, tag_end, tag_ends_at, words};
 use crate::scene_graph::wished::wishes::{CHARGING, Wishes};
 
 /// Most robots of one kind.
@@ -54,7 +54,7 @@ struct Work {
 
 /// What a reader of robots may assume.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Assumed {
+pub(crate) enum Assumed {
     /// The kind was not said.
     Kind,
     /// They do more than one kind of work, and the prompt does not say how many do which.
@@ -77,7 +77,7 @@ pub(crate) struct Robots {
 
 /// Which robots a prompt wants.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub(super) struct Fleet {
+pub(crate) struct Fleet {
     pub wanted: Vec<Wanted>,
     pub assumed: Vec<Assumed>,
     /// Words for robots of kinds that are not planned.
@@ -113,7 +113,7 @@ pub(crate) fn find(tokens: &[Token], spoken: &[&Spoken], language: &str) -> Robo
         };
         let span = Span { start: i, end };
         // "a robot delivers" is one
-        let is_verb = |tag| spoken.iter().any(|s| s.tag_at(tokens, end - 1, tag) == Some(end));
+        let is_verb = |tag| tag_ends_at(spoken, tokens, end - 1, tag, end);
         let noun_end = if VERBS.iter().any(|(tag, _)| is_verb(*tag)) { end - 1 } else { end };
         let plural = is_plural(&tokens[i..noun_end.max(i + 1)]);
         let named = Named { span, kind: None, place: false, plural, shared: false, name_from: None };
@@ -137,7 +137,7 @@ pub(crate) fn find(tokens: &[Token], spoken: &[&Spoken], language: &str) -> Robo
     out.found.sort_by_key(|f| f.span.start);
     out.spans = out.found.iter().filter(|f| !f.place).map(|f| f.span).collect();
     out.found.retain(|f| !is_denied(tokens, spoken, language, f));
-    let tagged = |i: usize, tag| spoken.iter().find_map(|l| l.tag_at(tokens, i, tag));
+    let tagged = |i: usize, tag| tag_end(spoken, tokens, i, tag);
     let dock = |s: &Span| {
         let relative = [Tag::Stops, Tag::Definite].iter().find_map(|&tag| tagged(s.end, tag));
         let starts = std::iter::once(s.end).chain(relative);
@@ -151,7 +151,7 @@ pub(crate) fn find(tokens: &[Token], spoken: &[&Spoken], language: &str) -> Robo
 /// Returns true for robots that a prompt does not want: "no cleaning robots", "robots not needed"; where they are to stay
 /// out of rooms, it wants them.
 fn is_denied(tokens: &[Token], spoken: &[&Spoken], language: &str, robots: &Named) -> bool {
-    let tagged = |i: usize, tag| spoken.iter().any(|s| s.tag_at(tokens, i, tag).is_some());
+    let tagged = |i: usize, tag| is_tagged(spoken, tokens, i, tag);
     let keep_out = (robots.span.start.saturating_sub(MOST_BETWEEN)..=robots.span.end)
         .any(|i| spoken.iter().any(|s| s.tag_at(tokens, i, Tag::KeepOut).is_some_and(|end| end > robots.span.start)));
     let named = Span { start: robots.name_from.unwrap_or(robots.span.start), ..robots.span };
@@ -307,7 +307,7 @@ fn share(works: &[Work], n: u32, from: usize, out: &mut Fleet) {
 
 impl Counting<'_> {
     fn tagged(&self, i: usize, tag: Tag) -> bool {
-        self.spoken.iter().any(|s| s.tag_at(self.tokens, i, tag).is_some())
+        is_tagged(self.spoken, self.tokens, i, tag)
     }
 
     /// Returns the number before robots, or behind them: "机器人三台", "로봇 2대", "robots: 3", "robots x 2".
@@ -445,7 +445,7 @@ pub(crate) struct Errand {
 /// Reads what one robot does between rooms: "a delivery robot that brings parcels from the entrance to kitchen and study".
 pub(crate) fn errand(robots: &Robots, tokens: &[Token], mentions: &[Mention], spoken: &[&Spoken]) -> Errand {
     let mut out = Errand::default();
-    let tagged = |i: usize, tag| spoken.iter().any(|s| s.tag_at(tokens, i, tag).is_some());
+    let tagged = |i: usize, tag| is_tagged(spoken, tokens, i, tag);
     let carries = [Tag::DeliverVerbs, Tag::TransportVerbs, Tag::ServeVerbs];
     let [robot] = robots.spans.as_slice() else { return out };
     let ends = |i: &usize| !(tokens[*i].ends_sentence() || tokens[*i].mark() == Some(':'));
@@ -565,7 +565,7 @@ fn compound(tokens: &[Token], i: usize, spoken: &[&Spoken]) -> Option<Named> {
 /// Returns the kinds that share the word for robots with one behind them: "2 cleaning and 3 delivery robots",
 /// "Reinigungs- und Transportroboter".
 fn elliptic(tokens: &[Token], found: &[Named], spoken: &[&Spoken]) -> Vec<(Named, Span)> {
-    let tagged = |i: usize, tag: Tag| spoken.iter().any(|s| s.tag_at(tokens, i, tag).is_some());
+    let tagged = |i: usize, tag: Tag| is_tagged(spoken, tokens, i, tag);
     let kind_of = |i: usize| {
         let verb = VERBS.iter().find(|(tag, _)| tagged(i, *tag)).map(|v| v.1);
         verb.filter(|_| tokens[i].kind == Kind::Word && !found.iter().any(|f| f.span.contains(i)))
@@ -603,7 +603,7 @@ fn add(wanted: &mut Vec<Wanted>, kind: &'static str, count: u32) {
 }
 
 fn robot_inside(tokens: &[Token], start: usize, end: usize, spoken: &[&Spoken]) -> bool {
-    (start..end).any(|i| spoken.iter().any(|s| s.tag_at(tokens, i, Tag::Robot).is_some())) || {
+    (start..end).any(|i| is_tagged(spoken, tokens, i, Tag::Robot)) || {
         let text: String = tokens[start..end].iter().map(|t| t.text.as_str()).collect();
         let words = spoken.iter().filter_map(|s| s.words.phrases.get(&Tag::Robot)).flatten();
         words.map(|w| fold(w)).any(|w| text.contains(&w))
@@ -619,5 +619,5 @@ fn sentence(tokens: &[Token], at: usize) -> std::ops::Range<usize> {
 /// Returns true when a delivery robot brings things to guests at tables.
 fn serves(tokens: &[Token], at: usize, spoken: &[&Spoken]) -> bool {
     let range = at..sentence(tokens, at).end.min(at + 12);
-    range.into_iter().any(|i| spoken.iter().any(|s| s.tag_at(tokens, i, Tag::TableWords).is_some()))
+    range.into_iter().any(|i| is_tagged(spoken, tokens, i, Tag::TableWords))
 }

@@ -7,7 +7,7 @@ use d3dgen_model::scene_graph::Connector;
 
 use super::mentions::{Mention, What};
 use crate::scene_graph::tokens::text::{Kind, Span, Token};
-use crate::scene_graph::tokens::words::{Spoken, Tag, words};
+use crate::scene_graph::tokens::words::{Spoken, Tag, is_tagged, tag_end, words};
 use crate::scene_graph::wished::relations::{Relation, Said, Spread};
 
 /// Words before a suite that say whose it is, at most: "elderly grandparents' suite".
@@ -19,7 +19,7 @@ const MOST_TO_CORNER: usize = 4;
 
 /// Words for several rooms.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Compound {
+pub(crate) struct Compound {
     pub span: Span,
     /// Types of its rooms, no type twice.
     pub room_types: Vec<String>,
@@ -71,7 +71,7 @@ pub(crate) fn find(
 /// Reads one room to live and cook in: "living room with a kitchen corner", "Kochnische im Wohnzimmer"; returns its end.
 fn with_corner(tokens: &[Token], i: usize, spoken: &[&Spoken]) -> Option<usize> {
     let living = &words().dwelling.living;
-    let tagged = |k: usize, tag| spoken.iter().find_map(|s| s.tag_at(tokens, k, tag));
+    let tagged = |k: usize, tag| tag_end(spoken, tokens, k, tag);
     let lives = |k: usize| {
         let found = spoken.iter().filter_map(|s| s.joint.longest_at(tokens, k)).max_by_key(|f| f.0);
         let (end, _) = found.filter(|(_, types)| types.len() == 1 && types[0] == *living)?;
@@ -96,7 +96,7 @@ fn any_suite(
     spoken: &[&Spoken],
     names_room: &impl Fn(usize) -> bool,
 ) -> Option<(usize, Vec<String>)> {
-    let tagged = |k: usize, tag| spoken.iter().find_map(|s| s.tag_at(tokens, k, tag));
+    let tagged = |k: usize, tag| tag_end(spoken, tokens, k, tag);
     // what a phrase for something else begins with is no name of a suite; "en suite" is no suite
     let part = [Tag::Stops, Tag::Starts, Tag::Joins, Tag::Articles, Tag::Definite, Tag::Own, Tag::Near, Tag::No];
     let name = |k: usize| {
@@ -121,7 +121,7 @@ fn any_suite(
 fn joint(tokens: &[Token], prompt: &str, i: usize, spoken: &[&Spoken]) -> Option<(usize, Vec<String>)> {
     let open = i > 0 && is_open(tokens, i - 1, spoken, true);
     let at = |k: usize| spoken.iter().filter_map(|s| s.joint.longest_at(tokens, k)).max_by_key(|f| f.0);
-    let tagged = |k: usize, tag| spoken.iter().find_map(|s| s.tag_at(tokens, k, tag));
+    let tagged = |k: usize, tag| tag_end(spoken, tokens, k, tag);
     let (mut end, first) = at(i)?;
     let mut types: Vec<String> = first.clone();
     let words = tokens[i].kind == Kind::Word;
@@ -186,7 +186,7 @@ pub(crate) fn settle(tokens: &[Token], compounds: &[Compound], spoken: &[&Spoken
             // "four bedrooms, master suite with closet": no article, no number and nothing that adds it
             let apposed =
                 compound.suite && single && gap.len() == 1 && gap.clone().all(|k| tokens[k].mark() == Some(','));
-            apposed || gap.any(|k| spoken.iter().any(|s| s.tag_at(tokens, k, Tag::PartOf).is_some()))
+            apposed || gap.any(|k| is_tagged(spoken, tokens, k, Tag::PartOf))
         });
         for m in mentions.iter_mut().filter(|m| m.span == compound.span) {
             m.from = head.from;
@@ -231,7 +231,7 @@ pub(crate) fn hold_own(
     let d = &words().dwelling;
     let mut told: Vec<Span> = Vec::new();
     let at = |k: usize, c: char| tokens.get(k).is_some_and(|t| prompt.get(t.start..).is_some_and(|p| p.starts_with(c)));
-    let tagged = |k: usize, tag| spoken.iter().find_map(|s| s.tag_at(tokens, k, tag));
+    let tagged = |k: usize, tag| tag_end(spoken, tokens, k, tag);
     let is_suite = |c: &&Compound| c.suite && c.room_types.len() > 1;
     for compound in compounds.iter().filter(is_suite) {
         let annexe = compound.room_types[0] == d.annexe;
@@ -358,7 +358,7 @@ pub(crate) fn opens_to<'d>(domain: &'d Domain, id: &'d String) -> impl Iterator<
 
 /// Returns the types of rooms that the prompt calls closed or separate and that an open layout of the domain joins to others.
 pub(crate) fn closed_rooms(tokens: &[Token], mentions: &[Mention], domain: &Domain, spoken: &[&Spoken]) -> Vec<String> {
-    let tagged = |i: usize| spoken.iter().find_map(|s| s.tag_at(tokens, i, Tag::ClosedPlan));
+    let tagged = |i: usize| tag_end(spoken, tokens, i, Tag::ClosedPlan);
     let mut out: Vec<String> = Vec::new();
     for m in mentions {
         let joined = |id: &&str| domain.layouts.open_joins.iter().flatten().any(|j| j == id);

@@ -5,7 +5,7 @@ use d3dgen_model::domain::Domain;
 use super::mentions::{Mention, What};
 use crate::scene_graph::built::vital::Wet;
 use crate::scene_graph::tokens::text::{Span, Token};
-use crate::scene_graph::tokens::words::{Spoken, Tag, words};
+use crate::scene_graph::tokens::words::{Spoken, Tag, is_tagged, words};
 
 /// Settles what the word for a shower means: a thing in "bathroom with shower", a bathroom where no other room has a toilet
 /// ("bedroom, kitchen, shower") or in "shower/WC", a room of its own everywhere else. Returns the words for things.
@@ -23,7 +23,7 @@ pub(crate) fn settle(
     }
     let shower = |m: &Mention| m.room_type() == Some(d.shower.as_str());
     let toilet = |m: &Mention| m.room_type().and_then(|id| domain.room_type(id)).is_some_and(|k| wet.has_toilet(k));
-    let tagged = |i: usize, tag| spoken.iter().any(|s| s.tag_at(tokens, i, tag).is_some());
+    let tagged = |i: usize, tag| is_tagged(spoken, tokens, i, tag);
     let bracket = |i: usize| prompt.get(tokens[i].start..).is_some_and(|p| p.starts_with(['(', '[']));
     let mut things: Vec<usize> = Vec::new();
     let mut whole: Vec<usize> = Vec::new();

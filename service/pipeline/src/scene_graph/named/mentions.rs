@@ -15,7 +15,7 @@ use crate::scene_graph::people::seats::works_in;
 use crate::scene_graph::reading::is_dwelling;
 use crate::scene_graph::tokens::numbers::{self, Number};
 use crate::scene_graph::tokens::text::{Kind, Phrases, Span, Token, fold};
-use crate::scene_graph::tokens::words::{Spoken, Tag, words};
+use crate::scene_graph::tokens::words::{Spoken, Tag, is_tagged, tag_end, tag_ends_at, words};
 
 /// Most desks of a room for one team.
 const MOST_IN_TEAM: u32 = 12;
@@ -175,7 +175,7 @@ impl Vocabulary {
         let (own, foreign) = (longest(&self.own), longest(&self.foreign));
         // "two bedrooms" and "large kitchen" of another domain are numbers and adjectives before a room of this one
         let sized = spoken.iter().any(|s| s.sizes.longest_at(tokens, i).is_some());
-        let loose = sized || numbers.iter().any(|n| n.span.start == i) || tagged(tokens, i, spoken, Tag::NotNames);
+        let loose = sized || numbers.iter().any(|n| n.span.start == i) || is_tagged(spoken, tokens, i, Tag::NotNames);
         let inside = |end: usize| {
             (i + 1..end).any(|k| self.own.iter().any(|p| p.longest_at(tokens, k).is_some_and(|o| o.0 >= end)))
         };
@@ -183,9 +183,9 @@ impl Vocabulary {
         let adjective = |from: usize, end: usize| {
             from > i
                 && (from..end)
-                    .all(|k| [Tag::Own, Tag::NotNames, Tag::Accessible].iter().any(|&t| tagged(tokens, k, spoken, t)))
+                    .all(|k| [Tag::Own, Tag::NotNames, Tag::Accessible].iter().any(|&t| is_tagged(spoken, tokens, k, t)))
         };
-        let total = |end: usize| spoken.iter().any(|s| s.tag_at(tokens, i, Tag::Total) == Some(end));
+        let total = |end: usize| tag_ends_at(spoken, tokens, i, Tag::Total, end);
         let own_to = own.as_ref().map_or(0, |o| o.0);
         // "salón comedor" is a living room and a dining room where both are known
         let two = |end: usize| {
@@ -208,9 +208,9 @@ impl Vocabulary {
     /// Returns the end and the type of an open room to work in: "open drafting room", "open studio space".
     fn open_work(&self, tokens: &[Token], i: usize, spoken: &[&Spoken]) -> Option<(usize, String)> {
         let id = self.open_office.as_ref()?;
-        let from = spoken.iter().find_map(|s| s.tag_at(tokens, i, Tag::OpenPlan))?;
-        let noun = |k: usize| [Tag::RoomWords, Tag::SpaceWords].iter().any(|&t| tagged(tokens, k, spoken, t));
-        let plain = |k: &usize| tokens[*k].kind == Kind::Word && !tagged(tokens, *k, spoken, Tag::Stops);
+        let from = tag_end(spoken, tokens, i, Tag::OpenPlan)?;
+        let noun = |k: usize| [Tag::RoomWords, Tag::SpaceWords].iter().any(|&t| is_tagged(spoken, tokens, k, t));
+        let plain = |k: &usize| tokens[*k].kind == Kind::Word && !is_tagged(spoken, tokens, *k, Tag::Stops);
         let last = (from + 1..(from + 3).min(tokens.len())).take_while(plain).find(|&k| noun(k))?;
         let known = self.own.iter().find_map(|p| p.longest_at(tokens, from)).filter(|f| f.0 == last + 1);
         let works = known.is_none_or(|f| self.desks.contains(&f.1.id));
@@ -296,10 +296,6 @@ impl Vocabulary {
     pub(crate) fn whole(&self, text: &str) -> Option<&str> {
         self.own.iter().chain(&self.foreign).find_map(|p| p.whole(text)).map(|w| w.id.as_str())
     }
-}
-
-fn tagged(tokens: &[Token], i: usize, spoken: &[&Spoken], tag: Tag) -> bool {
-    spoken.iter().any(|s| s.tag_at(tokens, i, tag).is_some())
 }
 
 /// Returns the letters of a phrase that say how many there are: in French and Spanish those of the first word ("salles de
@@ -420,7 +416,7 @@ fn noun_at(
 ) -> Option<(usize, What, bool)> {
     // "a dozen rooms", "ein einzelnes Zimmer": what lies within a number names no room
     let counts = numbers.iter().any(|n| !n.article && n.span.start < i && i < n.span.end);
-    if counts || tagged(tokens, i, spoken, Tag::Storeys) {
+    if counts || is_tagged(spoken, tokens, i, Tag::Storeys) {
         return None;
     }
     if let Some(dock) = taken.docks.iter().find(|d| d.start == i) {
@@ -449,11 +445,11 @@ fn noun_at(
         .filter(|r| !spoken.iter().any(|s| s.tag_at(tokens, i, Tag::Lift).is_some_and(|end| end >= r.0)))
         // "open-plan" is no office where there are none
         .filter(|r| {
-            let open = spoken.iter().any(|s| s.tag_at(tokens, i, Tag::OpenPlan) == Some(r.0));
+            let open = tag_ends_at(spoken, tokens, i, Tag::OpenPlan, r.0);
             !open || vocabulary.ids.contains(r.1)
         })
         .map(|(end, id, plural)| (end, What::Room(id.into()), plural));
-    let entrance = spoken.iter().find_map(|s| s.tag_at(tokens, i, Tag::Entrance)).filter(|&end| free(end));
+    let entrance = tag_end(spoken, tokens, i, Tag::Entrance).filter(|&end| free(end));
     if let Some(end) = entrance
         && room.as_ref().is_none_or(|r| r.0 <= end)
     {
@@ -484,7 +480,7 @@ fn noun_at(
     ]
     .into_iter()
     .filter_map(|(tag, what)| {
-        let end = spoken.iter().find_map(|s| s.tag_at(tokens, i, tag))?;
+        let end = tag_end(spoken, tokens, i, tag)?;
         free(end).then_some((end, what, true))
     })
     .max_by_key(|p| p.0);
@@ -587,7 +583,7 @@ fn drop_modifiers(tokens: &[Token], vocabulary: &Vocabulary, out: &mut Vec<Menti
 fn part_by_sex(tokens: &[Token], vocabulary: &Vocabulary, spoken: &[&Spoken], out: &mut [Mention]) {
     let stem = |i: usize| -> Option<String> {
         let text = &tokens[i].text;
-        if tagged(tokens, i, spoken, Tag::Sexes) {
+        if is_tagged(spoken, tokens, i, Tag::Sexes) {
             return Some(text.trim_end_matches('s').to_owned());
         }
         // "Herrentoilette"
@@ -596,7 +592,7 @@ fn part_by_sex(tokens: &[Token], vocabulary: &Vocabulary, spoken: &[&Spoken], ou
             .find(|w| text.starts_with(w.as_str()))
     };
     let little = [Tag::Joins, Tag::Stops, Tag::Articles, Tag::Definite, Tag::Each, Tag::NotNames, Tag::Own];
-    let plain = |i: usize| tokens[i].mark() == Some('/') || little.iter().any(|&t| tagged(tokens, i, spoken, t));
+    let plain = |i: usize| tokens[i].mark() == Some('/') || little.iter().any(|&t| is_tagged(spoken, tokens, i, t));
     let spans: Vec<Span> = out.iter().map(|m| m.span).collect();
     for m in out.iter_mut().filter(|m| m.room_type().is_some_and(|id| vocabulary.parted.contains(id))) {
         let other = |i: usize| spans.iter().any(|s| *s != m.span && s.contains(i));
@@ -611,7 +607,7 @@ fn part_by_sex(tokens: &[Token], vocabulary: &Vocabulary, spoken: &[&Spoken], ou
         }
         // "getrennte WCs", "toilettes séparées"
         let end = m.span.end;
-        let parted = |i: usize| i < tokens.len() && tagged(tokens, i, spoken, Tag::Parted);
+        let parted = |i: usize| i < tokens.len() && is_tagged(spoken, tokens, i, Tag::Parted);
         if m.span.start.checked_sub(1).is_some_and(parted) || parted(end) {
             sexes = ["", "s"].map(str::to_owned).into();
         }
@@ -627,7 +623,7 @@ fn count_hosts(tokens: &[Token], spoken: &[&Spoken], out: &mut [Mention]) {
     for g in 1..out.len() {
         let (before, after) = out.split_at_mut(g);
         let (Some(guest), Some(host)) = (before.last_mut(), after.first_mut()) else { continue };
-        let own = tagged(tokens, guest.span.start, spoken, Tag::Own) && guest.span.end == host.span.start;
+        let own = is_tagged(spoken, tokens, guest.span.start, Tag::Own) && guest.span.end == host.span.start;
         if own && guest.room_type().is_some() && host.room_type().is_some() && host.count.is_none() {
             (host.count, host.article, host.vague) = (guest.count.take(), guest.article, guest.vague);
             host.number = guest.number.take();
@@ -661,14 +657,14 @@ fn attach_numbers(
     let spans: Vec<Span> = out.iter().map(|m| m.span).chain(out.iter().filter_map(own)).collect();
     // "로봇 5대 충전소", "机器人5台充电区": the number is of the machines before it
     let behind = |n: &Number| {
-        let counts = tagged(tokens, n.span.end, spoken, Tag::Counters);
+        let counts = is_tagged(spoken, tokens, n.span.end, Tag::Counters);
         matches!(language, "zh" | "ko") && counts && taken.counted.iter().any(|s| s.end == n.span.start)
     };
     let usable: Vec<&Number> = numbers
         .iter()
         .filter(|n| !taken.spans.iter().chain(&taken.head).chain(&spans).any(|s| s.overlaps(n.span)))
         // "거실 2층", "三层": so many storeys
-        .filter(|n| !tagged(tokens, n.span.end, spoken, Tag::Storeys) && !behind(n))
+        .filter(|n| !is_tagged(spoken, tokens, n.span.end, Tag::Storeys) && !behind(n))
         .collect();
     let walls: Vec<Span> = spans.iter().chain(taken.counted).copied().collect();
     let mut used = vec![false; usable.len()];
@@ -677,7 +673,7 @@ fn attach_numbers(
         let after = || number_after(tokens, m.span.end, &usable, spoken, language);
         // the garage of "2 car garage" is one
         let holds = m.span.end > m.span.start + 1
-            && spoken.iter().any(|s| s.tag_at(tokens, m.span.start, Tag::Holds) == Some(m.span.start + 1));
+            && tag_ends_at(spoken, tokens, m.span.start, Tag::Holds, m.span.start + 1);
         let before = || number_before(tokens, m.span.start, &usable, spoken, &walls).filter(|_| !holds);
         let found = if language == "ko" { after().or_else(before) } else { before().or_else(after) };
         let special = || {
@@ -686,7 +682,7 @@ fn attach_numbers(
                 What::Visitors => Tag::VisitorsBefore,
                 _ => return None,
             };
-            let ends = spoken.iter().any(|s| s.tag_at(tokens, m.span.start, tag) == Some(m.span.end));
+            let ends = tag_ends_at(spoken, tokens, m.span.start, tag, m.span.end);
             ends.then(|| usable.iter().position(|n| n.span.start == m.span.end)).flatten()
         };
         let Some(k) = special().or(found).filter(|&k| !used[k]) else {
@@ -703,7 +699,7 @@ fn attach_numbers(
         m.vague = number.vague;
         m.from = m.from.min(number.span.start);
         m.definite = number.span.start > 0
-            && spoken.iter().any(|s| s.tag_at(tokens, number.span.start - 1, Tag::Definite).is_some());
+            && is_tagged(spoken, tokens, number.span.start - 1, Tag::Definite);
     }
 }
 
@@ -726,7 +722,7 @@ fn number_before(
         if token.is_mark() || nouns.iter().any(|s| s.contains(at)) || number {
             return None;
         }
-        let has = |tag| spoken.iter().any(|s| s.tag_at(tokens, at, tag) == Some(at + 1));
+        let has = |tag| tag_ends_at(spoken, tokens, at, tag, at + 1);
         // "6 person meeting room", "2 car garage", "10人会议室": the number is of what one room holds
         if has(Tag::Holds) && (at == start - 1 || !has(Tag::Counters)) {
             return None;
@@ -751,7 +747,7 @@ pub(crate) fn number_after(
     let closes = |at: usize| tokens.get(at).is_none_or(Token::is_mark);
     let number_at = |at: usize| numbers.iter().position(|n| n.span.start == at);
     let next = tokens.get(end)?;
-    let counter = |at: usize| spoken.iter().find_map(|s| s.tag_at(tokens, at, Tag::Counters));
+    let counter = |at: usize| tag_end(spoken, tokens, at, Tag::Counters);
     match language {
         "ko" => {
             let particle =
@@ -761,10 +757,10 @@ pub(crate) fn number_after(
         }
         "zh" => number_at(end).filter(|&k| {
             let after = counter(numbers[k].span.end).unwrap_or(numbers[k].span.end);
-            let joined = spoken.iter().any(|s| s.tag_at(tokens, after, Tag::Joins).is_some());
+            let joined = is_tagged(spoken, tokens, after, Tag::Joins);
             // "等候区6人": so many wait there
             let holds = [Tag::People, Tag::Visitors, Tag::Staff, Tag::Desks, Tag::ServicePoints];
-            let held = |at: usize| at < tokens.len() && holds.iter().any(|&t| tagged(tokens, at, spoken, t));
+            let held = |at: usize| at < tokens.len() && holds.iter().any(|&t| is_tagged(spoken, tokens, at, t));
             !held(numbers[k].span.end) && !held(after) && (closes(after) || joined || tokens[after].spaced)
         }),
         _ => {

@@ -13,7 +13,7 @@ const MOST_ALONE: u32 = 9;
 
 /// The number of a room.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Numbered {
+pub(crate) struct Numbered {
     pub n: u32,
     /// Where it stands.
     pub span: Span,

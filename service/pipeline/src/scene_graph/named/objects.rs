@@ -5,7 +5,7 @@ use d3dgen_plugins::Registry;
 
 use super::mentions::{Mention, What};
 use crate::scene_graph::tokens::text::{Phrases, Span, Token};
-use crate::scene_graph::tokens::words::{Spoken, Tag};
+use crate::scene_graph::tokens::words::{Spoken, Tag, is_tagged, tag_end};
 
 /// Words from a thing to the word that gives it to every room, at most: "with a desk and chair each".
 const MOST_TO_EACH: usize = 4;
@@ -81,7 +81,7 @@ pub(crate) fn named(
 
 /// Returns the place that a thing is said to be in: "a wardrobe in the entrance".
 fn place_of<'m>(tokens: &[Token], mentions: &'m [Mention], end: usize, spoken: &[&Spoken]) -> Option<&'m Mention> {
-    let tagged = |i: usize, tag| spoken.iter().find_map(|s| s.tag_at(tokens, i, tag));
+    let tagged = |i: usize, tag| tag_end(spoken, tokens, i, tag);
     // "a wardrobe, in the hall", but "armario grande en la entrada"
     let from = (end..(end + MOST_TO_PLACE).min(tokens.len())).take_while(|&i| !tokens[i].is_mark());
     let start = from.into_iter().find_map(|i| tagged(i, Tag::Inside))?;
@@ -134,7 +134,7 @@ pub(crate) fn of_bedrooms(
         let hall = m.what == What::Entrance || kind.is_some_and(|k| k.zone == Zone::Circulation);
         hall || kind.is_some_and(|k| k.zone == Zone::Night && k.access != Access::Host)
     };
-    let tagged = |i: usize, tag| spoken.iter().any(|s| s.tag_at(tokens, i, tag).is_some());
+    let tagged = |i: usize, tag| is_tagged(spoken, tokens, i, tag);
     let is_thing = |span: Span| {
         let whole =
             |l: &&str| vocabulary(domain, registry, l).longest_at(tokens, span.start).is_some_and(|f| f.0 == span.end);
@@ -158,7 +158,7 @@ pub(crate) fn of_bedrooms(
 
 /// Returns true for a thing that every one of several rooms is to have: "six bedrooms with desks", "with a desk each".
 fn is_each(tokens: &[Token], room: &Mention, thing: Span, spoken: &[&Spoken]) -> bool {
-    let tagged = |i: usize, tag| spoken.iter().any(|s| s.tag_at(tokens, i, tag).is_some());
+    let tagged = |i: usize, tag| is_tagged(spoken, tokens, i, tag);
     let several = room.plural || room.count.is_some_and(|n| n > 1 && !room.article);
     let gap = room.span.end..thing.start;
     let apart = gap.clone().any(|i| tokens[i].ends_sentence());
@@ -178,7 +178,7 @@ fn is_each(tokens: &[Token], room: &Mention, thing: Span, spoken: &[&Spoken]) ->
 fn is_item(tokens: &[Token], gap: std::ops::Range<usize>, spoken: &[&Spoken]) -> bool {
     let opens = |i: usize| {
         let holds = [Tag::Starts, Tag::Inside, Tag::Each];
-        let tagged = |tag: &Tag| spoken.iter().any(|s| s.tag_at(tokens, i, *tag).is_some());
+        let tagged = |tag: &Tag| is_tagged(spoken, tokens, i, *tag);
         matches!(tokens[i].mark(), Some(':' | '(')) || holds.iter().any(tagged)
     };
     gap.clone().any(|i| tokens[i].mark() == Some(',')) && !gap.into_iter().any(opens)

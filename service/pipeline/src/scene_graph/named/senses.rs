@@ -5,7 +5,7 @@ use d3dgen_model::domain::{Access, Adjacency, AdjacencyRelation, Domain, GENERIC
 
 use super::mentions::{Mention, Vocabulary, What};
 use crate::scene_graph::tokens::text::Token;
-use crate::scene_graph::tokens::words::{Spoken, Tag};
+use crate::scene_graph::tokens::words::{Spoken, Tag, is_tagged};
 
 /// Gives every mention of a room the type that its words have in this building.
 pub(crate) fn settle(
@@ -77,7 +77,7 @@ fn count_guests(
     // "20 rooms, including 4 suites" is told of these
     let part = |m: &Mention| {
         let mut gap = all.span.end..m.from.max(all.span.end);
-        gap.any(|i| spoken.iter().any(|s| s.tag_at(tokens, i, Tag::PartOf).is_some()))
+        gap.any(|i| is_tagged(spoken, tokens, i, Tag::PartOf))
     };
     let others = mentions.iter().filter(|m| night(m) && !part(m));
     let others = others.map(|m| m.count.unwrap_or(if m.plural { 2 } else { 1 }).max(0)).fold(0, i64::saturating_add);

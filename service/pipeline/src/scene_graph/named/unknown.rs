@@ -1,7 +1,7 @@
 //! Rooms no domain knows: "pooja room", "Bastelraum", "salle de projection", "茶室".
 
 use crate::scene_graph::tokens::text::{Kind, Span, Token};
-use crate::scene_graph::tokens::words::{Spoken, Tag};
+use crate::scene_graph::tokens::words::{Spoken, Tag, tag_end, tag_ends_at};
 use d3dgen_model::domain::GENERIC_ROOM_TYPE;
 
 /// Returns the end and the room type of an unknown room at a token; the generic type where its name has no Latin letters.
@@ -71,7 +71,7 @@ fn slug(tokens: &[Token]) -> String {
 
 /// "X room", "X Y room", and in a list "X area", "X store"
 fn english(tokens: &[Token], i: usize, spoken: &[&Spoken], list_from: usize) -> Option<(usize, String)> {
-    let tagged = |k: usize, tag| spoken.iter().any(|s| s.tag_at(tokens, k, tag) == Some(k + 1));
+    let tagged = |k: usize, tag| tag_ends_at(spoken, tokens, k, tag, k + 1);
     for len in [2, 1] {
         let at = i + len;
         if at >= tokens.len() || !(i..at).all(|k| is_name(tokens, k, spoken)) {
@@ -106,7 +106,7 @@ fn german(tokens: &[Token], i: usize, spoken: &[&Spoken], list_from: usize) -> O
 
 /// "salle de projection", "cuarto de juegos"
 fn romance(tokens: &[Token], i: usize, spoken: &[&Spoken]) -> Option<(usize, String)> {
-    let end = spoken.iter().find_map(|s| s.tag_at(tokens, i, Tag::RoomWords))?;
+    let end = tag_end(spoken, tokens, i, Tag::RoomWords)?;
     let name = tokens.get(end)?;
     let known = name.kind == Kind::Word && name.text.len() >= 3 && name.text.is_ascii();
     (known && is_name(tokens, end, spoken)).then(|| (end + 1, slug(&tokens[i..=end])))

@@ -8,7 +8,7 @@ use crate::scene_graph::named::mentions::{Mention, What};
 use crate::scene_graph::subject::places::note;
 use crate::scene_graph::tokens::numbers::{self, Number};
 use crate::scene_graph::tokens::text::{Kind, Span, Token};
-use crate::scene_graph::tokens::words::{Spoken, Tag};
+use crate::scene_graph::tokens::words::{Spoken, Tag, tag_end};
 use crate::scene_graph::wished::relations::Said;
 use crate::scene_graph::wished::wishes::{Wish, Wishes};
 
@@ -90,7 +90,7 @@ fn is_for_beds(domain: &Domain, kind: &RoomType) -> bool {
 
 /// Returns the beds of a room that the prompt tells by them alone: "a 4-bed room", "Vierbettzimmer", "chambre à 4 lits".
 pub(crate) fn told(tokens: &[Token], numbers: &[Number], spoken: &[&Spoken]) -> Option<u32> {
-    let tagged = |i: usize, tag| spoken.iter().find_map(|s| s.tag_at(tokens, i, tag));
+    let tagged = |i: usize, tag| tag_end(spoken, tokens, i, tag);
     let unit = |i: usize| {
         let text = &tokens.get(i)?.text;
         let known = spoken.iter().any(|s| s.tags.word(text).is_some_and(|tags| tags.contains(&Tag::BedUnits)));
@@ -163,7 +163,7 @@ impl Choice<'_> {
     }
 
     fn tagged(&self, tokens: &[Token], i: usize, tag: Tag) -> Option<usize> {
-        self.spoken.iter().find_map(|s| s.tag_at(tokens, i, tag))
+        tag_end(self.spoken, tokens, i, tag)
     }
 
     /// "4-bed rooms", "six bed bay", "3-Bett-Zimmer", "六人间", "6인실"

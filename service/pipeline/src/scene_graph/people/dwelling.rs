@@ -8,7 +8,7 @@ use crate::scene_graph::named::mentions::Mention;
 use crate::scene_graph::named::objects::Thing;
 use crate::scene_graph::tokens::numbers::Number;
 use crate::scene_graph::tokens::text::{Kind, Span, Token};
-use crate::scene_graph::tokens::words::{Dwelling, Spoken, Tag, words};
+use crate::scene_graph::tokens::words::{Dwelling, Spoken, Tag, tag_end, words};
 use crate::scene_graph::wished::wishes::Wishes;
 
 /// Rooms that a short form stands for.
@@ -135,7 +135,7 @@ fn counted(
         return to_live(at + 1);
     }
     let joined = |k: usize| tokens.get(k).is_some_and(|t| !t.is_mark());
-    if let Some(end) = spoken.iter().find_map(|s| s.tag_at(tokens, at, Tag::Habitable))
+    if let Some(end) = tag_end(spoken, tokens, at, Tag::Habitable)
         && !number.article
     {
         return to_live(end);
@@ -173,7 +173,7 @@ pub(crate) fn household(
     children: Option<u32>,
 ) -> Option<u32> {
     let number_at = |i: usize| numbers.iter().find(|n| n.span.start == i && !n.article && n.value >= 1.0);
-    let tagged = |i: usize, tag| spoken.iter().find_map(|s| s.tag_at(tokens, i, tag));
+    let tagged = |i: usize, tag| tag_end(spoken, tokens, i, tag);
     let told = (0..tokens.len()).find_map(|i| {
         let behind = tagged(i, Tag::ResidentsBefore).and_then(number_at).map(|n| n.value);
         behind.or_else(|| headed(&tokens[i], spoken))
@@ -211,7 +211,7 @@ pub(crate) fn cradle(
         mentions.iter().any(|m| m.room_type().is_some() && m.span.contains(i)) || read.iter().any(|s| s.contains(i))
     };
     let found = (0..tokens.len()).filter(|&i| !taken(i)).find_map(|i| {
-        let end = spoken.iter().find_map(|s| s.tag_at(tokens, i, Tag::Babies))?;
+        let end = tag_end(spoken, tokens, i, Tag::Babies)?;
         Some(Span { start: i, end })
     });
     let span = found.filter(|_| domain.object(&d.baby_bed).is_some())?;

@@ -9,7 +9,7 @@ use crate::scene_graph::named::mentions::{Mention, What};
 use crate::scene_graph::named::named_for;
 use crate::scene_graph::tokens::numbers::Number;
 use crate::scene_graph::tokens::text::{Kind, Span, Token};
-use crate::scene_graph::tokens::words::{Spoken, Tag, tag_end};
+use crate::scene_graph::tokens::words::{Spoken, Tag, is_tagged, tag_end};
 use crate::scene_graph::wished::relations::{Relation, Said, Spread};
 use crate::scene_graph::wished::wishes::{Wish, Wishes};
 
@@ -331,7 +331,7 @@ pub(crate) fn belong_together(
     spoken: &[&Spoken],
     said: &mut Said,
 ) {
-    let tagged = |i: usize, tag| spoken.iter().any(|s| s.tag_at(tokens, i, tag).is_some());
+    let tagged = |i: usize, tag| is_tagged(spoken, tokens, i, tag);
     let entered = |m: usize, host: usize| {
         let kind = mentions[m].room_type().and_then(|id| domain.room_type(id));
         let from = mentions[host].room_type();

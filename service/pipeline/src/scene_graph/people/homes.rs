@@ -15,7 +15,7 @@ use crate::scene_graph::reading::{Reading, is_dwelling};
 use crate::scene_graph::subject::places::note;
 use crate::scene_graph::tokens::numbers::Number;
 use crate::scene_graph::tokens::text::{Span, Token};
-use crate::scene_graph::tokens::words::{Spoken, Tag, words};
+use crate::scene_graph::tokens::words::{Spoken, Tag, is_tagged, tag_end, tag_ends_at, words};
 use crate::scene_graph::wished::relations::Said;
 use crate::scene_graph::wished::wishes::{Wish, Wishes};
 
@@ -34,7 +34,7 @@ pub(crate) fn share_bathrooms(
     spoken: &[&Spoken],
     said: &mut Said,
 ) {
-    let tagged = |i: usize| spoken.iter().find_map(|s| s.tag_at(tokens, i, Tag::SharedWords));
+    let tagged = |i: usize| tag_end(spoken, tokens, i, Tag::SharedWords);
     let shared = |m: usize| {
         let wet = mentions[m].room_type().and_then(|id| domain.room_type(id)).is_some_and(|k| k.wet);
         let span = mentions[m].span;
@@ -111,7 +111,7 @@ pub(crate) fn sleep_where_one_lives(
 ) -> Vec<Span> {
     let d = &words().dwelling;
     let place =
-        |m: &Mention| spoken.iter().any(|s| s.tag_at(tokens, m.span.start, Tag::SleepingPlaces) == Some(m.span.end));
+        |m: &Mention| tag_ends_at(spoken, tokens, m.span.start, Tag::SleepingPlaces, m.span.end);
     let mut told = Vec::new();
     if !is_studio(program) {
         let sleeps = mentions.iter().any(|m| night(domain, m) && !place(m));
@@ -122,7 +122,7 @@ pub(crate) fn sleep_where_one_lives(
         });
         return told;
     }
-    let corner = |m: &Mention| spoken.iter().any(|s| s.tag_at(tokens, m.span.start, Tag::Corners).is_some());
+    let corner = |m: &Mention| is_tagged(spoken, tokens, m.span.start, Tag::Corners);
     let mut has = false;
     mentions.retain_mut(|m| {
         let Some(id) = m.room_type() else { return true };
@@ -170,7 +170,7 @@ pub(crate) fn room_of_nook<'n>(
     spoken: &[&Spoken],
 ) -> Option<&'n String> {
     let own = |m: &Mention| nook.room_types.iter().find(|id| m.room_type() == Some(id));
-    let tagged = |i: usize, tags: &[Tag]| tags.iter().any(|&t| spoken.iter().any(|s| s.tag_at(tokens, i, t).is_some()));
+    let tagged = |i: usize, tags: &[Tag]| tags.iter().any(|&t| is_tagged(spoken, tokens, i, t));
     let little = [Tag::Inside, Tag::Stops, Tag::Definite, Tag::Articles];
     let behind = mentions.iter().find(|m| m.span.start >= nook.span.end).filter(|m| {
         let mut gap = nook.span.end..m.from.min(m.span.start);
@@ -190,7 +190,7 @@ pub(crate) fn not_of_things(
     (domain, registry): (&Domain, &Registry),
     (languages, spoken): (&[&str], &[&Spoken]),
 ) -> Vec<Span> {
-    let tagged = |i: usize, tag| spoken.iter().any(|s| s.tag_at(tokens, i, tag).is_some());
+    let tagged = |i: usize, tag| is_tagged(spoken, tokens, i, tag);
     let thing = |end: usize| objects::ends_at(tokens, end, (domain, registry), languages);
     let mut told = Vec::new();
     mentions.retain(|m| {
@@ -277,7 +277,7 @@ pub(crate) fn state_several(
     numbers: &[Number],
     spoken: &[&Spoken],
 ) -> Option<(Span, Note)> {
-    let tagged = |i: usize, tag| spoken.iter().find_map(|s| s.tag_at(tokens, i, tag));
+    let tagged = |i: usize, tag| tag_end(spoken, tokens, i, tag);
     let several = |n: &Number| {
         let exact = n.value >= 2.0 && !n.article && !n.vague;
         let from = tagged(n.span.end, Tag::Counters).unwrap_or(n.span.end);

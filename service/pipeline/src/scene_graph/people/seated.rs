@@ -8,7 +8,7 @@ use super::beds::Held;
 use super::seats::works_in;
 use crate::scene_graph::named::mentions::{Mention, What};
 use crate::scene_graph::tokens::text::{Span, Token};
-use crate::scene_graph::tokens::words::{Spoken, Tag};
+use crate::scene_graph::tokens::words::{Spoken, Tag, is_tagged};
 
 /// Words between a room and the number of its desks, at most: "with up to".
 const MOST_BETWEEN: usize = 5;
@@ -40,7 +40,7 @@ pub(crate) fn read(
     spoken: &[&Spoken],
 ) -> (Vec<Held>, Vec<Span>) {
     let (mut out, mut words): (Vec<Held>, Vec<Span>) = (Vec::new(), Vec::new());
-    let tagged = |i: usize, tag| spoken.iter().any(|s| s.tag_at(tokens, i, tag).is_some());
+    let tagged = |i: usize, tag| is_tagged(spoken, tokens, i, tag);
     for d in 1..mentions.len() {
         let people = matches!(mentions[d].what, What::Staff | What::People);
         let Some(count) = mentions[d].count.filter(|_| people || mentions[d].what == What::Desks) else { continue };

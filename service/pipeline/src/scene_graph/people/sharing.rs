@@ -3,7 +3,7 @@
 use crate::scene_graph::named::mentions::{Mention, What};
 use crate::scene_graph::tokens::numbers::{self, Number};
 use crate::scene_graph::tokens::text::{Kind, Span, Token};
-use crate::scene_graph::tokens::words::{Spoken, Tag};
+use crate::scene_graph::tokens::words::{Spoken, Tag, is_tagged, tag_end};
 
 /// Words from those who have something to the word that it is their own, at most: "each of the tenants has his own".
 const MOST_TO_OWN: usize = 6;
@@ -20,7 +20,7 @@ pub(crate) fn each_has_a_room(
     spoken: &[&Spoken],
     sleeps: impl Fn(&str) -> bool,
 ) -> Option<Span> {
-    let tagged = |i: usize, tag| spoken.iter().any(|s| s.tag_at(tokens, i, tag).is_some());
+    let tagged = |i: usize, tag| is_tagged(spoken, tokens, i, tag);
     let room = |i: usize| {
         let at = mentions.iter().find(|m| m.span.start == i);
         tagged(i, Tag::Total) || at.is_some_and(|m| m.what == What::Total || m.room_type().is_some_and(&sleeps))
@@ -31,7 +31,7 @@ pub(crate) fn each_has_a_room(
         before.is_some_and(|m| m.room_type().is_some() && m.span.end + 2 > i)
     };
     (0..tokens.len()).find_map(|i| {
-        if let Some(end) = spoken.iter().find_map(|s| s.tag_at(tokens, i, Tag::SingleRooms)) {
+        if let Some(end) = tag_end(spoken, tokens, i, Tag::SingleRooms) {
             return Some(Span { start: i, end });
         }
         let goes_on = |from: usize, most: usize| {
@@ -60,7 +60,7 @@ pub(crate) fn residents(tokens: &[Token], numbers: &[Number], head: Span, spoken
     let of_many = of_many.and_then(sane);
     let for_many = || {
         let little = |k: usize| {
-            [Tag::Stops, Tag::PlaceBefore].iter().any(|&t| spoken.iter().any(|s| s.tag_at(tokens, k, t).is_some()))
+            [Tag::Stops, Tag::PlaceBefore].iter().any(|&t| is_tagged(spoken, tokens, k, t))
         };
         let at = head.end + usize::from(head.end < tokens.len() && little(head.end));
         let number = numbers.iter().find(|n| n.span.start == at && at > head.end && !n.article && !n.vague)?;

@@ -6,7 +6,7 @@ use d3dgen_model::domain::{Domain, Furnishing, Privacy, Program, RoomType, Shape
 use crate::scene_graph::named::mentions::{Mention, Vocabulary, What};
 use crate::scene_graph::tokens::numbers::Number;
 use crate::scene_graph::tokens::text::{Span, Token, fold};
-use crate::scene_graph::tokens::words::{Spoken, Tag};
+use crate::scene_graph::tokens::words::{Spoken, Tag, tag_end};
 
 /// Words between a number and the places that it counts, at most: "10 reclining treatment chairs".
 const MOST_BETWEEN: usize = 2;
@@ -81,7 +81,7 @@ impl Reader<'_> {
     }
 
     fn tagged(&self, i: usize, tag: Tag) -> Option<usize> {
-        self.spoken.iter().find_map(|s| s.tag_at(self.tokens, i, tag))
+        tag_end(self.spoken, self.tokens, i, tag)
     }
 
     /// Returns true for rooms with many places.

@@ -2,14 +2,14 @@
 //! room of their own, but a bed in the patient's.
 
 use crate::scene_graph::tokens::text::{Span, Token};
-use crate::scene_graph::tokens::words::{Spoken, Tag};
+use crate::scene_graph::tokens::words::{Spoken, Tag, tag_end};
 
 /// Words between those who stay and their staying, at most: "parents should be able to".
 const MOST_BETWEEN: usize = 6;
 
 /// Returns the words that say so.
 pub(crate) fn read(tokens: &[Token], spoken: &[&Spoken]) -> Option<Span> {
-    let tagged = |i: usize, tag| spoken.iter().find_map(|s| s.tag_at(tokens, i, tag));
+    let tagged = |i: usize, tag| tag_end(spoken, tokens, i, tag);
     let alone = (0..tokens.len()).find_map(|start| Some(Span { start, end: tagged(start, Tag::RoomingIn)? }));
     let near = |start: usize| {
         let (first, other) = match (tagged(start, Tag::Companions), tagged(start, Tag::Overnight)) {

@@ -8,7 +8,7 @@ use d3dgen_plugins::Registry;
 use crate::scene_graph::tokens::negation::is_ruled_out;
 use crate::scene_graph::tokens::numbers::Number;
 use crate::scene_graph::tokens::text::{Kind, Phrases, Span, Token, fold};
-use crate::scene_graph::tokens::words::{Spoken, Tag, words};
+use crate::scene_graph::tokens::words::{Spoken, Tag, is_tagged, tag_end, tag_ends_at, words};
 
 /// The building a prompt names.
 #[derive(Debug, Clone, PartialEq)]
@@ -96,7 +96,7 @@ pub(crate) fn recognize(
                 .any(|from| counts_rooms(tokens, n, from, *span, &rooms, spoken))
         });
         // "offices 1 to 12"
-        let range = |n: &Number| spoken.iter().any(|s| s.tag_at(tokens, n.span.end, Tag::Range).is_some());
+        let range = |n: &Number| is_tagged(spoken, tokens, n.span.end, Tag::Range);
         let numbered = tokens[span.end - 1].text.ends_with('s')
             && numbers.iter().any(|n| n.span.start == span.end && !n.article && range(n));
         before || numbered || head_final && numbers.iter().any(|n| counts_before(tokens, n, *span, spoken))
@@ -194,7 +194,7 @@ fn parts(
     // "hospital pharmacy and outpatient department": as a list of two, without a word that begins one
     let joined = |span: &Span| {
         let (tokens, spoken) = words;
-        let tagged = |i: usize, tag| spoken.iter().any(|s| s.tag_at(tokens, i, tag).is_some());
+        let tagged = |i: usize, tag| is_tagged(spoken, tokens, i, tag);
         built.1.is_some()
             && (own.end..span.start).len() <= MOST_JOINING
             && tagged(own.end, Tag::Joins)
@@ -219,7 +219,7 @@ fn parts(
 /// Returns the department whose name begins with a word that is an item of the list by itself: "ICU, outpatient".
 fn begun_by(domain: &Domain, span: Span, (tokens, spoken): (&[Token], &[&Spoken])) -> Option<usize> {
     let parts = |i: usize| {
-        tokens.get(i).is_none_or(|t| t.is_mark() || spoken.iter().any(|s| s.tag_at(tokens, i, Tag::Joins).is_some()))
+        tokens.get(i).is_none_or(|t| t.is_mark() || is_tagged(spoken, tokens, i, Tag::Joins))
     };
     let whole = span.start > 0 && parts(span.start - 1) && parts(span.end);
     let name = tokens.get(span.start).filter(|_| whole && span.end == span.start + 1)?.text.as_str();
@@ -266,7 +266,7 @@ fn counts_rooms(
 /// before "의" ("두 개의 사무실"), since a Korean number counts the noun before it. Storeys are no counter of rooms.
 fn counter(tokens: &[Token], number: &Number, languages: &[&str], spoken: &[&Spoken]) -> Option<usize> {
     let at = number.span.end;
-    let tagged = |tag| spoken.iter().find_map(|s| s.tag_at(tokens, at, tag));
+    let tagged = |tag| tag_end(spoken, tokens, at, tag);
     if words().area_units.longest_at(tokens, at).is_some() || tagged(Tag::Storeys).is_some() {
         return None;
     }
@@ -279,7 +279,7 @@ fn counter(tokens: &[Token], number: &Number, languages: &[&str], spoken: &[&Spo
 
 /// Returns true for "病房8间", "병실 8개": the number counts the word before it, and nothing else follows it.
 fn counts_before(tokens: &[Token], number: &Number, span: Span, spoken: &[&Spoken]) -> bool {
-    let tagged = |i: usize, tag| spoken.iter().find_map(|s| s.tag_at(tokens, i, tag));
+    let tagged = |i: usize, tag| tag_end(spoken, tokens, i, tag);
     let Some(end) = tagged(number.span.end, Tag::RoomCounters).filter(|_| number.span.start == span.end) else {
         return false;
     };
@@ -304,7 +304,7 @@ fn is_late(
         counts.is_some_and(|n| i >= n.span.start)
             || [Tag::Articles, Tag::NotNames, Tag::Own]
                 .iter()
-                .any(|&t| spoken.iter().any(|s| s.tag_at(tokens, i, t).is_some()))
+                .any(|&t| is_tagged(spoken, tokens, i, t))
     };
     let first = (span.start.saturating_sub(MOST_BEFORE_LATE)..span.start).rev().find(|&i| !plain(i));
     let heads = first.map_or(span.start <= MOST_BEFORE_LATE, |i| tokens[i].is_mark());
@@ -336,7 +336,7 @@ fn is_item(tokens: &[Token], start: usize, spoken: &[&Spoken], first: bool) -> b
     if modified {
         return false;
     }
-    let tagged = |i: usize, tag| spoken.iter().any(|s| s.tag_at(tokens, i, tag).is_some());
+    let tagged = |i: usize, tag| is_tagged(spoken, tokens, i, tag);
     for i in (start.saturating_sub(4)..start).rev() {
         let han = tokens[i].kind == Kind::Han;
         if tokens[i].is_mark() {
@@ -402,7 +402,7 @@ fn occurrences(
             }
         }
         // a "Ladestation" charges robots, and is no ward ("Station")
-        let charges = spoken.iter().any(|s| s.tag_at(tokens, i, Tag::Charge).is_some());
+        let charges = is_tagged(spoken, tokens, i, Tag::Charge);
         if best.is_none() && tokens[i].kind == Kind::Word && !charges {
             best = vocabularies.iter().find_map(|v| v.ending(&tokens[i].text, 4)).map(|(m, _)| (i + 1, m));
         }
@@ -449,7 +449,7 @@ fn room_votes(
     taken: &[Span],
 ) -> Vec<usize> {
     // "3 Zimmer, Küche, Bad": a word for rooms in total is no guest room
-    let total = |i: usize, end: usize| spoken.iter().any(|s| s.tag_at(tokens, i, Tag::Total) == Some(end));
+    let total = |i: usize, end: usize| tag_ends_at(spoken, tokens, i, Tag::Total, end);
 
     domains
         .iter()

@@ -10,7 +10,7 @@ use super::places::note;
 use crate::scene_graph::named::mentions::{Mention, What};
 use crate::scene_graph::people::beds;
 use crate::scene_graph::tokens::text::{Span, Token};
-use crate::scene_graph::tokens::words::{Spoken, Tag};
+use crate::scene_graph::tokens::words::{Spoken, Tag, is_tagged};
 use crate::scene_graph::wished::wishes::{Wish, Wishes};
 
 /// Room types that a department is planned with, at most.
@@ -22,7 +22,7 @@ const MOST_TO_BEDS: usize = 2;
 
 /// What became of the departments.
 #[derive(Debug, Default)]
-pub(super) struct Parts {
+pub(crate) struct Parts {
     pub planned: Vec<Span>,
     pub left: Vec<Part>,
     /// Beds of the departments.
@@ -81,7 +81,7 @@ fn are_beds(m: &Mention, span: Span, tokens: &[Token]) -> bool {
 
 /// Returns true for beds of a department that are said to be in rooms of a kind: "ward with 16 beds in double rooms".
 fn are_in_rooms(span: Span, (tokens, spoken): (&[Token], &[&Spoken]), mentions: &[Mention], domain: &Domain) -> bool {
-    let inside = |i: usize| spoken.iter().any(|s| s.tag_at(tokens, i, Tag::Inside).is_some());
+    let inside = |i: usize| is_tagged(spoken, tokens, i, Tag::Inside);
     mentions.windows(2).any(|pair| {
         let [beds, rooms] = pair else { return false };
         let kind = rooms.room_type().and_then(|id| domain.room_type(id));

@@ -7,7 +7,7 @@ use d3dgen_model::scene_graph::Note;
 use serde::Deserialize;
 
 use crate::scene_graph::tokens::text::{Kind, Phrases, Span, Token};
-use crate::scene_graph::tokens::words::{Spoken, Tag};
+use crate::scene_graph::tokens::words::{Spoken, Tag, is_tagged, tag_end, tag_ends_at};
 
 /// One line of `places.jsonl`.
 #[derive(Debug, Deserialize)]
@@ -63,7 +63,7 @@ fn gazetteer() -> &'static Gazetteer {
 
 /// What the prompt says about the place.
 #[derive(Debug, Default)]
-pub(super) struct Whereabouts {
+pub(crate) struct Whereabouts {
     pub country_code: Option<String>,
     pub spans: Vec<Span>,
     pub assumptions: Vec<Note>,
@@ -167,7 +167,7 @@ fn place_at(tokens: &[Token], i: usize, prompt: &str, spoken: &[&Spoken]) -> Opt
     }
     let (end, place) = gazetteer().phrases.longest_at(tokens, i)?;
     let before = (1..=2).any(|k| {
-        i.checked_sub(k).is_some_and(|b| spoken.iter().any(|s| s.tag_at(tokens, b, Tag::PlaceBefore) == Some(i)))
+        i.checked_sub(k).is_some_and(|b| tag_ends_at(spoken, tokens, b, Tag::PlaceBefore, i))
     });
     let apart = i.checked_sub(1).is_none_or(|b| tokens[b].is_mark());
     let last = tokens.get(end).is_none_or(Token::is_mark);
@@ -201,7 +201,7 @@ fn nationality(tokens: &[Token], spoken: &[&Spoken], out: &mut Whereabouts) {
             };
             let styled = (i + 1..(i + 4).min(tokens.len()))
                 .take_while(|&j| !tokens[j].is_mark())
-                .any(|j| spoken.iter().any(|s| s.tag_at(tokens, j, Tag::StyleWords).is_some()));
+                .any(|j| is_tagged(spoken, tokens, j, Tag::StyleWords));
             if styled || !token.capital {
                 continue;
             }
@@ -225,7 +225,7 @@ pub(crate) fn of_building(
 ) -> Option<(String, Span)> {
     // in these languages adjectives follow their noun, at times behind another: "clínica dental española"
     let behind = if matches!(language, "fr" | "es") { 2 } else { 0 };
-    let tagged = |i: usize, tag| spoken.iter().any(|s| s.tag_at(tokens, i, tag).is_some());
+    let tagged = |i: usize, tag| is_tagged(spoken, tokens, i, tag);
     for (i, token) in tokens.iter().enumerate() {
         let follows = |s: &Span| (s.end..s.end + behind).contains(&i) && (s.end..i).all(|k| !tokens[k].is_mark());
         if !buildings.iter().any(|s| i + 1 == s.start || follows(s)) {
@@ -252,9 +252,9 @@ pub(crate) fn of_building(
 /// Returns a note on a place that has no building law, or that nobody knows.
 fn nowhere(tokens: &[Token], prompt: &str, spoken: &[&Spoken], known: &[Span]) -> Option<Note> {
     for i in 0..tokens.len() {
-        let named = spoken.iter().find_map(|s| s.tag_at(tokens, i, Tag::Nowhere));
+        let named = tag_end(spoken, tokens, i, Tag::Nowhere);
         let before = (1..=2).any(|k| {
-            i.checked_sub(k).is_some_and(|b| spoken.iter().any(|s| s.tag_at(tokens, b, Tag::PlaceBefore) == Some(i)))
+            i.checked_sub(k).is_some_and(|b| tag_ends_at(spoken, tokens, b, Tag::PlaceBefore, i))
         });
         let wide = matches!(tokens[i].kind, Kind::Han | Kind::Hangul);
         if let Some(end) = named

@@ -9,7 +9,7 @@ use super::building::Building;
 use super::places::note;
 use crate::scene_graph::tokens::numbers::Number;
 use crate::scene_graph::tokens::text::{Kind, Phrases, Span, Token};
-use crate::scene_graph::tokens::words::{Spoken, Tag};
+use crate::scene_graph::tokens::words::{Spoken, Tag, is_tagged, tag_ends_at};
 use crate::scene_graph::wished::wishes::{Wish, Wishes};
 
 /// Most of one kind that are taken at their word.
@@ -38,14 +38,14 @@ pub(crate) fn house(
         };
         // "four general practitioners", "two experienced nurses"
         let plain = |k: usize| {
-            tokens[k].kind == Kind::Word && !spoken.iter().any(|s| s.tag_at(tokens, k, Tag::Joins).is_some())
+            tokens[k].kind == Kind::Word && !is_tagged(spoken, tokens, k, Tag::Joins)
         };
         let of = |n: &&Number| n.span.end == i || n.span.end + 1 == i && plain(n.span.end);
         let number = numbers.iter().filter(|n| !n.vague && (1.0..=MOST).contains(&n.value)).find(of);
         // "doctor's office", "nurse station": these name rooms
         let names = tokens.get(end).is_some_and(|t| t.kind == Kind::Word && is_noun(tokens, end, spoken));
         // "two doctors and a nurse"
-        let one = i.checked_sub(1).filter(|&k| spoken.iter().any(|s| s.tag_at(tokens, k, Tag::Articles) == Some(i)));
+        let one = i.checked_sub(1).filter(|&k| tag_ends_at(spoken, tokens, k, Tag::Articles, i));
         let said = number.map(|n| (n.span.start, n.value as u32)).or(one.map(|start| (start, 1)));
         if let Some((start, count)) = said.filter(|_| !names) {
             people[who] += count;
@@ -103,7 +103,7 @@ pub(crate) fn practice_of(
 fn is_noun(tokens: &[Token], i: usize, spoken: &[&Spoken]) -> bool {
     [Tag::RoomWords, Tag::SpaceWords, Tag::Stations]
         .iter()
-        .any(|&t| spoken.iter().any(|s| s.tag_at(tokens, i, t).is_some()))
+        .any(|&t| is_tagged(spoken, tokens, i, t))
 }
 
 fn table(all: &[Practitioner], language: &str) -> Phrases<usize> {

@@ -4,7 +4,7 @@ use super::building::Building;
 use crate::scene_graph::named::mentions::{Mention, Vocabulary, What};
 use crate::scene_graph::tokens::numbers::Number;
 use crate::scene_graph::tokens::text::{Span, Token};
-use crate::scene_graph::tokens::words::{Spoken, Tag};
+use crate::scene_graph::tokens::words::{Spoken, Tag, is_tagged, tag_ends_at};
 use crate::scene_graph::wished::wishes::Wishes;
 
 /// Words before a room that a building's word is the end of, at most: "a private office".
@@ -23,7 +23,7 @@ pub(crate) fn unname(
 ) {
     let Some(head) = building.head.filter(|_| building.parts.is_empty()) else { return };
     // "Klassenzimmer für 30 Schüler": pupils are no school
-    let tagged = |tag| spoken.iter().any(|s| s.tag_at(tokens, head.start, tag) == Some(head.end));
+    let tagged = |tag| tag_ends_at(spoken, tokens, head.start, tag, head.end);
     let rooms = || (0..head.start).any(|i| vocabulary.names_room(tokens, i, numbers, spoken));
     if tagged(Tag::Visitors) && rooms() {
         building.head = None;
@@ -31,10 +31,10 @@ pub(crate) fn unname(
         return;
     }
     // "cellular office with 14 rooms" is a building
-    let total = |n: &Number| spoken.iter().any(|s| s.tag_at(tokens, n.span.end, Tag::Total).is_some());
+    let total = |n: &Number| is_tagged(spoken, tokens, n.span.end, Tag::Total);
     // and so is "private office for 20 people"
     let held = [Tag::People, Tag::Staff, Tag::Desks];
-    let people = |n: &Number| held.iter().any(|t| spoken.iter().any(|s| s.tag_at(tokens, n.span.end, *t).is_some()));
+    let people = |n: &Number| held.iter().any(|t| is_tagged(spoken, tokens, n.span.end, *t));
     if numbers.iter().any(|n| n.value > 1.0 && total(n) || n.value >= MANY_PEOPLE && people(n)) {
         return;
     }

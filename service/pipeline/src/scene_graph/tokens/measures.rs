@@ -2,7 +2,7 @@
 
 use super::numbers::Number;
 use super::text::{Span, Token};
-use super::words::{Spoken, Tag, words};
+use super::words::{Spoken, Tag, is_tagged, words};
 
 /// A floor area in the prompt.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -70,7 +70,7 @@ fn robot_measure(tokens: &[Token], numbers: &[Number], spoken: &[&Spoken], tags:
         if length <= 0.0 {
             continue;
         }
-        let has = |i: usize, tag| spoken.iter().any(|s| s.tag_at(tokens, i, tag).is_some());
+        let has = |i: usize, tag| is_tagged(spoken, tokens, i, tag);
         // the next length has its own word
         let other = |i: &usize| numbers.iter().any(|n| n.span.contains(*i));
         let word = |i: usize| tags.iter().find(|t| has(i, t.0)).map(|t| (i, t.1));

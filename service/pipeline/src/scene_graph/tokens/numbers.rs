@@ -1,7 +1,7 @@
 //! Numbers in digits and words.
 
 use super::text::{Kind, Span, Token};
-use super::words::{Spoken, Tag};
+use super::words::{Spoken, Tag, is_tagged, tag_end};
 
 /// Words before a number that it is the name of, at most: "biosafety level".
 const MOST_IN_NAME: usize = 3;
@@ -40,7 +40,7 @@ fn number_at(tokens: &[Token], i: usize, language: &str, spoken: &[&Spoken]) -> 
     let sign = if tokens[i].mark() == Some('-') {
         Some(i + 1)
     } else {
-        spoken.iter().find_map(|s| s.tag_at(tokens, i, Tag::Negative))
+        tag_end(spoken, tokens, i, Tag::Negative)
     };
     if let Some(next) = sign {
         let number = unsigned_at(tokens, next, language, spoken).filter(|n| !n.article && !n.vague)?;
@@ -48,7 +48,7 @@ fn number_at(tokens: &[Token], i: usize, language: &str, spoken: &[&Spoken]) -> 
     }
     let number = unsigned_at(tokens, i, language, spoken)?;
     // "two and a half baths"
-    let half = spoken.iter().find_map(|s| s.tag_at(tokens, number.span.end, Tag::Halves));
+    let half = tag_end(spoken, tokens, number.span.end, Tag::Halves);
     Some(match half {
         Some(end) => Number { span: Span { end, ..number.span }, value: number.value + 0.5, ..number },
         None => number,
@@ -85,7 +85,7 @@ fn unsigned_at(tokens: &[Token], i: usize, language: &str, spoken: &[&Spoken]) -
 
 /// Returns true for digits that count nothing and belong to a name: "BSL-2", "221B", "class 100", "100级".
 pub(crate) fn is_name(tokens: &[Token], i: usize, spoken: &[&Spoken]) -> bool {
-    let tagged = |i: usize, tag| spoken.iter().find_map(|s| s.tag_at(tokens, i, tag));
+    let tagged = |i: usize, tag| tag_end(spoken, tokens, i, tag);
     // "80sqm-100sqm" ends a measure with a word, "cleaning robot x2" counts
     let word = |k: usize| tokens[k].kind == Kind::Word && tokens[k].text != "x";
     let of_number = |k: usize| !tokens[k].spaced && k > 0 && matches!(tokens[k - 1].kind, Kind::Number(_));
@@ -239,7 +239,7 @@ fn korean(tokens: &[Token], i: usize, spoken: &[&Spoken]) -> Option<(usize, f64)
     if !tokens[i].spaced {
         return None;
     }
-    let counter = |end: usize| spoken.iter().any(|s| s.tag_at(tokens, end, Tag::Counters).is_some());
+    let counter = |end: usize| is_tagged(spoken, tokens, end, Tag::Counters);
     let mut text = String::new();
     let mut native = None;
     for (j, token) in tokens.iter().enumerate().skip(i).take(4) {

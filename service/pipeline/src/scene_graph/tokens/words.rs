@@ -218,7 +218,7 @@ const QUIET: [Tag; 11] = [
 
 /// Words of one language.
 #[derive(Debug, Deserialize)]
-pub(super) struct Language {
+pub(crate) struct Language {
     pub numbers: BTreeMap<String, f64>,
     pub multipliers: BTreeMap<String, f64>,
     pub quantities: BTreeMap<String, f64>,
@@ -457,6 +457,16 @@ impl Spoken {
 /// Returns the end of a phrase with this tag that begins at a token, in the first of the languages that has one.
 pub(crate) fn tag_end(spoken: &[&Spoken], tokens: &[Token], i: usize, tag: Tag) -> Option<usize> {
     spoken.iter().find_map(|s| s.tag_at(tokens, i, tag))
+}
+
+/// Returns true where a phrase with this tag begins at a token.
+pub(crate) fn is_tagged(spoken: &[&Spoken], tokens: &[Token], i: usize, tag: Tag) -> bool {
+    tag_end(spoken, tokens, i, tag).is_some()
+}
+
+/// Returns true where a phrase with this tag, in any of the languages, is the tokens from one up to another.
+pub(crate) fn tag_ends_at(spoken: &[&Spoken], tokens: &[Token], i: usize, tag: Tag, end: usize) -> bool {
+    spoken.iter().any(|s| s.tag_at(tokens, i, tag) == Some(end))
 }
 
 /// Returns the words of all languages.

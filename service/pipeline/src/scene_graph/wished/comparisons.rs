@@ -6,21 +6,21 @@ use super::wishes::{Wish, Wishes};
 use crate::scene_graph::named::mentions::Mention;
 use crate::scene_graph::subject::places::note;
 use crate::scene_graph::tokens::text::{Span, Token};
-use crate::scene_graph::tokens::words::{Spoken, Tag};
+use crate::scene_graph::tokens::words::{Spoken, Tag, tag_end};
 
 /// Words from "fewer" to the first rooms, and from these to the others, at most: "than there are".
 const MOST_BETWEEN: usize = 4;
 
 /// Rooms of which there are to be fewer than of others, by their types.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Comparison {
+pub(crate) struct Comparison {
     fewer: String,
     more: String,
 }
 
 /// Takes rooms that are compared from the mentions; returns the comparisons and their words.
 pub(crate) fn read(tokens: &[Token], mentions: &mut Vec<Mention>, spoken: &[&Spoken]) -> (Vec<Comparison>, Vec<Span>) {
-    let tagged = |i: usize, tag| spoken.iter().find_map(|s| s.tag_at(tokens, i, tag));
+    let tagged = |i: usize, tag| tag_end(spoken, tokens, i, tag);
     let (mut out, mut spans) = (Vec::new(), Vec::new());
     for start in 0..tokens.len() {
         let (end, fewer) = match (tagged(start, Tag::Fewer), tagged(start, Tag::More)) {

@@ -4,7 +4,7 @@ use d3dgen_model::scene_graph::Connector;
 
 use crate::scene_graph::named::mentions::{Mention, What};
 use crate::scene_graph::tokens::text::{Kind, Span, Token};
-use crate::scene_graph::tokens::words::{Spoken, Tag};
+use crate::scene_graph::tokens::words::{Spoken, Tag, tag_end, tag_ends_at};
 
 /// How a pair is spread over the rooms of its types.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -148,7 +148,7 @@ impl<'a> Reader<'a> {
 impl Reader<'_> {
     /// Returns the end of the longest phrase with a tag that begins at a token.
     pub(crate) fn tag_end(&self, i: usize, tag: Tag) -> Option<usize> {
-        self.spoken.iter().find_map(|s| s.tag_at(self.tokens, i, tag))
+        tag_end(self.spoken, self.tokens, i, tag)
     }
 
     pub(crate) fn place(&self, i: usize) -> bool {
@@ -208,7 +208,7 @@ impl Reader<'_> {
     /// Returns true for "every patient room", "all bedrooms".
     fn every(&self, m: usize) -> bool {
         let start = self.mentions[m].span.start;
-        let each = |i: usize| self.spoken.iter().any(|s| s.tag_at(self.tokens, i, Tag::Each) == Some(start));
+        let each = |i: usize| tag_ends_at(self.spoken, self.tokens, i, Tag::Each, start);
         self.mentions[m].count.is_none() && (start.saturating_sub(2)..start).any(each)
     }
 
@@ -410,16 +410,16 @@ const PARTS: [Tag; 5] = [Tag::Starts, Tag::Near, Tag::Between, Tag::Inside, Tag:
 
 /// Returns the mentions after "no", "without", or before "없는".
 fn negated(tokens: &[Token], mentions: &[Mention], spoken: &[&Spoken], language: &str) -> Vec<usize> {
-    let tag_end = |i: usize, tag| spoken.iter().find_map(|s| s.tag_at(tokens, i, tag));
+    let end_of = |i: usize, tag| tag_end(spoken, tokens, i, tag);
     let mut out = Vec::new();
     for i in 0..tokens.len() {
-        let Some(end) = tag_end(i, Tag::No) else { continue };
+        let Some(end) = end_of(i, Tag::No) else { continue };
         // "darf nicht an das Bad grenzen" turns a relation round
-        let relates = |k: usize| RELATIONS.iter().any(|&t| tag_end(k, t).is_some());
-        let turns = tag_end(i, Tag::Not).is_some();
+        let relates = |k: usize| RELATIONS.iter().any(|&t| end_of(k, t).is_some());
+        let turns = end_of(i, Tag::Not).is_some();
         let turned = turns && (end..tokens.len()).take_while(|&k| !tokens[k].is_mark()).any(relates);
         // "everywhere except the bathroom" keeps a robot out
-        let keeps = (i.saturating_sub(MOST_OF_PLACE)..=i).any(|k| tag_end(k, Tag::KeepOut).is_some_and(|to| to >= end));
+        let keeps = (i.saturating_sub(MOST_OF_PLACE)..=i).any(|k| end_of(k, Tag::KeepOut).is_some_and(|to| to >= end));
         if turned || keeps || mentions.iter().any(|m| m.span.contains(i)) {
             continue;
         }
@@ -434,8 +434,8 @@ fn negated(tokens: &[Token], mentions: &[Mention], spoken: &[&Spoken], language:
         while let Some(m) = mentions.iter().position(|m| m.from >= at) {
             let mention = &mentions[m];
             let gap = at..mention.from;
-            let blocked = gap.clone().any(|k| tokens[k].is_mark() || PARTS.iter().any(|&t| tag_end(k, t).is_some()));
-            let joined = gap.len() <= 1 && gap.clone().all(|k| tag_end(k, Tag::Joins).is_some());
+            let blocked = gap.clone().any(|k| tokens[k].is_mark() || PARTS.iter().any(|&t| end_of(k, t).is_some()));
+            let joined = gap.len() <= 1 && gap.clone().all(|k| end_of(k, Tag::Joins).is_some());
             let fits = if first { gap.len() <= 3 && !blocked } else { joined && mention.count.is_none() };
             if !fits || mention.room_type().is_none() {
                 break;

@@ -5,7 +5,7 @@ use d3dgen_model::domain::{Domain, Zone};
 use crate::scene_graph::named::mentions::Mention;
 use crate::scene_graph::tokens::numbers::Number;
 use crate::scene_graph::tokens::text::{Kind, Token};
-use crate::scene_graph::tokens::words::{Spoken, Tag};
+use crate::scene_graph::tokens::words::{Spoken, Tag, is_tagged};
 
 /// Words between some rooms and what they are, at most: "are", "are negative pressure".
 const MOST_BETWEEN: usize = 4;
@@ -22,7 +22,7 @@ pub(crate) fn settle(
 ) {
     let sleeps =
         |m: &Mention| m.room_type().and_then(|id| domain.room_type(id)).is_some_and(|kind| kind.zone == Zone::Night);
-    let tagged = |i: usize, tag| spoken.iter().any(|s| s.tag_at(tokens, i, tag).is_some());
+    let tagged = |i: usize, tag| is_tagged(spoken, tokens, i, tag);
     let exact = |end: usize| numbers.iter().find(|n| n.span.end == end && !n.article && !n.vague && n.value >= 1.0);
     for k in 1..mentions.len() {
         let (before, part) = (&mentions[k - 1], &mentions[k]);

@@ -10,7 +10,7 @@ use crate::scene_graph::subject::places::note;
 use crate::scene_graph::tokens::measures::Area;
 use crate::scene_graph::tokens::numbers::Number;
 use crate::scene_graph::tokens::text::{Kind, Span, Token};
-use crate::scene_graph::tokens::words::{Spoken, Tag, words};
+use crate::scene_graph::tokens::words::{Spoken, Tag, tag_end, words};
 
 /// Words behind a measure that say what it is of, at most: "1.2 m wide doors".
 const MOST_AFTER: usize = 3;
@@ -45,7 +45,7 @@ pub(crate) struct Text<'a> {
 
 impl Text<'_> {
     fn tagged(&self, i: usize, tag: Tag) -> Option<usize> {
-        self.spoken.iter().find_map(|s| s.tag_at(self.tokens, i, tag))
+        tag_end(self.spoken, self.tokens, i, tag)
     }
 
     fn is_taken(&self, i: usize) -> bool {
@@ -162,7 +162,7 @@ fn phrases(text: &Text) -> Vec<Span> {
 
 /// Takes "two entrances" for one: a plan has one, and the exits that rules ask for. Returns where they are named.
 pub(crate) fn doors(tokens: &[Token], mentions: &mut [Mention], spoken: &[&Spoken]) -> Vec<Span> {
-    let end = |m: &Mention| spoken.iter().find_map(|s| s.tag_at(tokens, m.span.start, Tag::UnreadThings));
+    let end = |m: &Mention| tag_end(spoken, tokens, m.span.start, Tag::UnreadThings);
     let mut out = Vec::new();
     for m in mentions.iter_mut().filter(|m| m.count.is_some_and(|n| n > 1) && !m.article) {
         if (m.what == What::Entrance || m.room_type().is_some()) && end(m) == Some(m.span.end) {

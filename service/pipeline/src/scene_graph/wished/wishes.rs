@@ -15,7 +15,7 @@ use crate::scene_graph::people::dwelling::ShortForm;
 use crate::scene_graph::subject::places::note;
 use crate::scene_graph::tokens::measures::Area;
 use crate::scene_graph::tokens::text::Token;
-use crate::scene_graph::tokens::words::{Spoken, Tag, words};
+use crate::scene_graph::tokens::words::{Spoken, Tag, tag_ends_at, words};
 
 /// Rooms of one type that the prompt names.
 #[derive(Debug, Clone, PartialEq)]
@@ -473,7 +473,7 @@ fn is_reference(text: &Text, m: usize, first: bool) -> bool {
     let numbered = mention.count.is_some() && !mention.article;
     // "the main one with a bathroom, and another bathroom"
     let another =
-        |i: usize| text.spoken.iter().any(|s| s.tag_at(text.tokens, i, Tag::Another) == Some(mention.span.start));
+        |i: usize| tag_ends_at(text.spoken, text.tokens, i, Tag::Another, mention.span.start);
     if (mention.span.start.saturating_sub(2)..mention.span.start).any(another) {
         return false;
     }
