@@ -11,7 +11,7 @@ use d3dgen_plugins::Registry;
 
 use super::built::rooms::wished_assets;
 use super::built::vital::Wet;
-use super::reading::refused;
+use super::refused;
 use super::subject::places::{self, note};
 use super::tokens::labels;
 use super::tokens::text::{Phrases, Token, fold, tokens};

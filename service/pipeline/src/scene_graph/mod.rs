@@ -15,7 +15,9 @@
 //! `given` makes the graph of a plan that somebody brings, `proposed` that of what a language model proposes.
 
 mod built;
+mod draft;
 mod given;
+mod heard;
 mod levels;
 mod machines;
 mod named;
@@ -47,7 +49,9 @@ pub(crate) use self::people::seats::shortages;
 pub(crate) use self::proposed::suits;
 pub use self::proposed::{BY_PROPOSAL, Draft, DraftEdge, DraftRoom, Settled, propose};
 use self::reading::Reading;
+use self::subject::programs::is_dwelling;
 pub(crate) use self::tokens::words::{brings, cleans};
+use self::wished::wishes::MANY;
 use crate::Error;
 
 /// Reason of the doors to the corridor or hall.
@@ -61,6 +65,15 @@ pub(crate) const BY_STYLE: &str = "style";
 
 /// Reason of the edge between a room and the one it is entered from.
 pub(crate) const BY_HOST: &str = "host";
+
+/// Most rooms one world is planned for.
+const MAX_ROOMS: u32 = MANY as u32;
+
+/// Largest building, m^2.
+const MAX_AREA_M2: f64 = 200_000.0;
+
+/// A room for more people each is no place to work at but one to meet or wash in.
+const MOST_IN_OFFICE: u32 = 4;
 
 /// What to build: a prompt, and flags that overrule it.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -95,6 +108,10 @@ pub fn generate(request: &Request, registry: &Registry) -> Result<SceneGraph, Er
     Ok(settle(request, registry, &mut reading, &mut planned))
 }
 
+fn refused(message: String) -> Error {
+    Error::Refused { stage: "scene_graph", message }
+}
+
 /// Returns the graph of rooms, with those that building rules ask for beside them.
 fn settle<'a>(
     request: &Request,
@@ -122,7 +139,7 @@ fn assemble(request: &Request, mut reading: Reading, planned: &[Planned]) -> Sce
         let dealt = deal::deal(&mut reading, planned, &areas, &levels);
         rooms.iter_mut().zip(dealt).for_each(|(room, level)| room.level = level);
         workers::name_toilets(reading.domain, &mut rooms);
-        deal::even_out(planned, &mut rooms, &levels, reading::is_dwelling(reading.program));
+        deal::even_out(planned, &mut rooms, &levels, is_dwelling(reading.program));
         let (all, web, links) = deal::connect(&mut reading, planned, rooms, &levels);
         rooms = all;
         (web, links)

@@ -2,42 +2,24 @@
 
 use std::sync::Arc;
 
-use d3dgen_model::domain::{Domain, GENERIC_ROOM_TYPE, Program, Shape};
+use d3dgen_model::domain::{Domain, Program};
 use d3dgen_model::scene_graph::{Note, Occupancy, Robot};
 use d3dgen_model::style::Style;
 use d3dgen_plugins::Registry;
 
-use super::built::vital::{self, Wet};
-use super::built::workers;
-use super::heard::{Heard, Notes};
-use super::levels::storeys::{self, Storeys};
-use super::levels::wished;
-use super::machines::{docks, keeps, robot_rules, robots};
-use super::named::aside::Aside;
-use super::named::mentions::Mention;
+use super::built::vital::Wet;
+use super::draft::Draft;
+use super::levels::storeys::Storeys;
+use super::machines::{robot_rules, robots};
 use super::named::objects::Thing;
-use super::named::rooms_named::Named;
-use super::named::things;
-use super::named::{compounds, styles};
-use super::people::beds::{self, Held};
-use super::people::counted::Counted;
-use super::people::heads::People;
-use super::people::seats::{self, Called};
-use super::people::{ensuites, groups, homes, sharing, stays};
-use super::subject::places::{self, note};
-use super::subject::programs::program_by_bedrooms;
-use super::subject::site::Site;
-use super::subject::{parts, practitioners, single};
-use super::tokens::text::Span;
-use super::tokens::words::{Tag, tag_ends_at, words};
-use super::wished::relations::{self, Said};
-use super::wished::wishes::{self, Text, Wish, Wishes};
-use super::wished::{closed, comparisons, totals, unread};
+use super::named::styles;
+use super::people::beds::Held;
+use super::people::seats::Called;
+use super::subject::places;
+use super::tokens::words::Tag;
+use super::wished::wishes::Wishes;
 use super::{MAX_AREA_M2, MAX_ROOMS, Request, refused};
 use crate::Error;
-
-/// Robots that fetch and bring: corridors are only their way.
-const CARRIES: [&str; 2] = ["delivery", "transport"];
 
 /// Facts of a prompt.
 #[derive(Clone)]
@@ -109,6 +91,68 @@ pub(super) struct Reading<'a> {
 /// # Errors
 /// `Refused` for prompts without words, absurd sizes, unknown domains and countries.
 pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Reading<'a>, Error> {
+    check_flags(request, registry)?;
+    let mut draft = Draft::of_words(request, registry)?;
+    let called = draft.called();
+    let doors = draft.doors();
+    let stops = draft.stops_of_robots();
+    let styles = draft.styles();
+    let said = draft.said_of_rooms();
+    let area_m2 = draft.wish(&said);
+    let storeys = draft.storeys();
+    draft.settle_types();
+    let robots = draft.robots(&storeys);
+    let orders = draft.orders_of_robots();
+    let parts = draft.departments();
+    let (people, held) = draft.people(&said, parts.beds);
+    let total = draft.total()?;
+    let style = styles::wished(&styles, request.style, &mut draft.notes.conflicts);
+    let list = draft.list(&said, &storeys, total);
+    draft.close(&list, &people, style.layout)?;
+    let stays = draft.stays();
+    draft.take_words(&called);
+    let objects = draft.objects(&stops.docked);
+    draft.state_unread(&objects.words, &doors, &parts);
+    let Draft { heard, site, counted, wishes, named, notes, .. } = draft;
+    Ok(Reading {
+        language: heard.language,
+        domain: site.domain,
+        wet: site.wet,
+        building_type: site.building.building_type,
+        program: site.program,
+        country_code: site.country_code,
+        storeys,
+        stays,
+        objects: objects.things,
+        wishes,
+        total: list.total,
+        closed: list.closed,
+        may_join: list.may_join,
+        named_first: list.named_first,
+        only: list.only,
+        single: list.single,
+        held,
+        stationed: counted.stations,
+        seats: counted.seats,
+        halves: counted.halves,
+        called,
+        habitable_fixed: named.habitable_fixed,
+        area_m2,
+        each_alone: site.lives && (site.shared || named.own_rooms),
+        occupancy: people.occupancy,
+        residents: people.residents,
+        children: people.children,
+        pair: people.pair,
+        accessible: heard.says(Tag::Accessible) || site.lives && heard.says(Tag::Frail),
+        robots,
+        robot_rules: orders.rules,
+        two_way: orders.two_way,
+        docked: stops.docked,
+        errand: stops.errand,
+        style,
+        assumptions: notes.assumptions,
+        conflicts: notes.conflicts,
+    })
 }
 
 fn check_flags(request: &Request, registry: &Registry) -> Result<(), Error> {

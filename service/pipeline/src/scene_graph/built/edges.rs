@@ -5,7 +5,8 @@ use d3dgen_model::domain::{Adjacency, AdjacencyRelation, Domain};
 use d3dgen_model::scene_graph::{Connector, GraphEdge, GraphRoom, Note};
 use d3dgen_model::style::LayoutStyle;
 
-use super::program::{Planned, are_public};
+use super::hosts::are_public;
+use super::program::Planned;
 use super::rooms;
 use crate::scene_graph::named::compounds::opens_to;
 use crate::scene_graph::reading::Reading;

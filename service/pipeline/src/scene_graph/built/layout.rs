@@ -3,7 +3,8 @@
 use d3dgen_model::domain::{Domain, LayoutSwap, Occupants, RoomType};
 use d3dgen_model::style::LayoutStyle;
 
-use super::program::{Planned, head_count};
+use super::occupants::head_count;
+use super::program::Planned;
 use crate::scene_graph::reading::Reading;
 use crate::scene_graph::subject::places::note;
 

@@ -1,8 +1,11 @@
-//! From the reading to the graph: the rooms there are (`program`, `vital`, `workers`, `layout`), what they are like
+//! From the reading to the graph: the rooms there are (`program`, `vital`, `workers`, `layout`), who is in them and what they are
+//! entered from (`occupants`, `hosts`), what they are like
 //! (`rooms`), and how they connect (`edges`, `ring`).
 
 pub(super) mod edges;
+pub(super) mod hosts;
 pub(super) mod layout;
+pub(super) mod occupants;
 pub(super) mod program;
 pub(super) mod ring;
 pub(super) mod rooms;

@@ -3,28 +3,19 @@
 use std::collections::BTreeMap;
 
 use d3dgen_knowledge::Applicable;
-use d3dgen_model::domain::{
-    Access, AdjacencyRelation, Domain, Furnishing, Occupants, Privacy, Program, ProgramRoom, RobotUse, RoomType, Shape,
-    Zone,
-};
+use d3dgen_model::domain::{Access, Program, ProgramRoom, RobotUse, RoomType, Zone};
 
-use super::edges::rules_here;
-use super::layout;
-use super::vital;
-use super::workers;
-use crate::scene_graph::levels::spread;
-use crate::scene_graph::levels::storeys::Where;
-use crate::scene_graph::levels::units;
+use super::occupants::head_count;
+use super::{hosts, layout, occupants, vital, workers};
+use crate::scene_graph::levels::{spread, units};
 use crate::scene_graph::machines::charging::most_docks;
-use crate::scene_graph::named::objects::Thing;
-use crate::scene_graph::people::beds::{Held, sleeps};
-use crate::scene_graph::people::seated;
 use crate::scene_graph::people::seats;
-use crate::scene_graph::people::stations;
-use crate::scene_graph::reading::{MAX_ROOMS, MOST_IN_OFFICE, Reading, is_dwelling};
+use crate::scene_graph::reading::Reading;
 use crate::scene_graph::subject::places::note;
+use crate::scene_graph::subject::programs::is_dwelling;
 use crate::scene_graph::tokens::words::words;
-use crate::scene_graph::wished::wishes::{CHARGING, Pair, PerHost, Wish};
+use crate::scene_graph::wished::wishes::{CHARGING, Wish};
+use crate::scene_graph::{MAX_ROOMS, MOST_IN_OFFICE};
 
 /// Rooms of a building planned by area alone.
 const MOST_BY_AREA: usize = 60;
@@ -37,27 +28,9 @@ const HALLS_SHARE: f64 = 0.11;
 const STOREY_M: f64 = 2.8;
 const MOST_STAIRS: f64 = 0.2;
 
-/// Floor for a desk of a room whose domain says nothing of it, m^2.
-const DESK_AREA_M2: f64 = 9.0;
-
-/// Share of a room's usual area from which on its people need all of it.
-const FULL: f64 = 0.8;
-
-/// Floor of a room to live in with a table for many, over the least that such a table comes in.
-const BESIDE_TABLE: f64 = 1.3;
-
-/// Floor of a room with a table of a size that is asked for, over the least that such a table comes in.
-const ROUND_NAMED: f64 = 1.15;
-/// Floor of a desk in a room that one lives in, m^2.
-const AT_DESK_M2: f64 = 5.0;
-/// Floor of such a room for who comes to the table in a wheelchair, as a factor.
-const STEP_FREE: f64 = 1.15;
-
 /// Toilets that a home of several storeys has where its list of rooms names fewer: one by day, one by night.
 const TOILETS_GRANTED: usize = 2;
 
-/// Width of one seat of a bench, m.
-const SEAT_M: f64 = 0.5;
 /// What rooms need beyond their least area before a building counts as too small for them, as a factor.
 const TIGHT: f64 = 1.1;
 
@@ -157,7 +130,7 @@ pub(crate) fn complete<'a>(reading: &mut Reading<'a>) -> Vec<Planned<'a>> {
         (None, false) => build.fill_usual(),
     }
     let mut rooms = build.rooms;
-    equip_hosts(reading, &mut rooms);
+    hosts::equip_hosts(reading, &mut rooms);
     vital::accompany(reading, &mut rooms);
     vital::complete(reading, &mut rooms);
     house_robots(reading, &mut rooms);
@@ -178,16 +151,16 @@ pub(crate) fn finish<'a>(reading: &mut Reading<'a>, mut rooms: Vec<Planned<'a>>)
         let own = |r: &&mut Planned| r.room_type == words().dwelling.bedroom && r.area_m2.is_none();
         rooms.iter_mut().filter(own).for_each(|r| r.size = r.size.or(Some(1.0)));
     }
-    make_room_for_things(reading, &mut rooms);
-    hold_beds(reading, &mut rooms);
+    occupants::make_room_for_things(reading, &mut rooms);
+    occupants::hold_beds(reading, &mut rooms);
     workers::settle(reading, &mut rooms);
-    hold_people(reading, &mut rooms);
-    make_room_for_companions(reading, &mut rooms);
-    serve_people(reading, &mut rooms);
+    occupants::hold_people(reading, &mut rooms);
+    occupants::make_room_for_companions(reading, &mut rooms);
+    occupants::serve_people(reading, &mut rooms);
     workers::seat_guests(reading, &mut rooms);
-    seat_waiting(reading, &mut rooms);
-    hang_on_hosts(reading, &mut rooms);
-    share_last_bathroom(reading, &mut rooms);
+    occupants::seat_waiting(reading, &mut rooms);
+    hosts::hang_on_hosts(reading, &mut rooms);
+    hosts::share_last_bathroom(reading, &mut rooms);
     state_additions(reading, &rooms);
     rooms
 }
@@ -215,64 +188,8 @@ fn house_robots<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
 }
 
 /// Returns true for rooms that the prompt does not rule out.
-fn may_add(reading: &Reading, room_type: &str) -> bool {
+pub(super) fn may_add(reading: &Reading, room_type: &str) -> bool {
     !reading.wishes.forbidden.iter().any(|f| f == room_type)
-}
-
-/// Returns the type of the room that comes with every host: the one that is named, or where that is no room entered through
-/// another the one for the same use that is: "every room has a bathroom" of a hospital means its en suites.
-fn private_kind<'a>(reading: &Reading<'a>, rooms: &[Planned], pair: &PerHost) -> &'a RoomType {
-    let named = reading.domain.room_type_or_generic(&pair.guest);
-    let sleeps = |id: &String| rooms.iter().any(|r| &r.room_type == id && r.kind.zone == Zone::Night);
-    let serves = |kind: &&RoomType| kind.access == Access::Host && kind.wet && kind.hosts.iter().any(sleeps);
-    if named.access == Access::Host || !named.wet || pair.host.is_some() {
-        return named;
-    }
-    reading.domain.room_types.iter().find(serves).unwrap_or(named)
-}
-
-/// Gives each host the room that the prompt wants with every one of them: "every patient room has an en suite".
-fn equip_hosts<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
-    for pair in &reading.wishes.per_host {
-        let kind = private_kind(reading, rooms, pair);
-        let takes = |r: &Planned| match &pair.host {
-            Some(host) => &r.room_type == host,
-            None => r.kind.zone == Zone::Night && r.kind.access != Access::Host && kind.hosts.contains(&r.room_type),
-        };
-        loop {
-            let hosts = rooms.iter().filter(|r| takes(r)).count();
-            if rooms.iter().filter(|r| r.room_type == kind.id).count() >= hosts {
-                break;
-            }
-            let guest = Planned { requested: true, ..Planned::new(&kind.id, kind) };
-            if reading.total.is_none() {
-                rooms.push(guest);
-                continue;
-            }
-            // the number of rooms is fixed: the last host makes room for something else of the program, or else that for it
-            let own = |r: &Planned| takes(r) || r.room_type == kind.id;
-            let last = rooms.iter().rposition(|r| takes(r) && !r.requested);
-            let next = reading
-                .program
-                .rooms
-                .iter()
-                .map(|e| Planned::new(&e.room_type, reading.domain.room_type_or_generic(&e.room_type)));
-            let fresh = |p: &Planned| {
-                !own(p) && p.kind.access != Access::Host && !rooms.iter().any(|r| r.room_type == p.room_type)
-            };
-            let next = next.into_iter().find(|p| fresh(p) && may_add(reading, &p.room_type));
-            if let (Some(last), Some(next)) = (last.filter(|_| hosts > 1), next) {
-                rooms[last] = next;
-                continue;
-            }
-            let spare = (0..rooms.len())
-                .rev()
-                .find(|&i| !rooms[i].requested && !own(&rooms[i]) && !vital::is_vital(reading, rooms, i))
-                .or_else(|| (0..rooms.len()).rev().find(|&i| takes(&rooms[i]) && !rooms[i].requested));
-            let Some(spare) = spare else { break };
-            rooms[spare] = guest;
-        }
-    }
 }
 
 /// Returns true when rooms of a type may be added to those that the prompt names.
@@ -295,51 +212,6 @@ pub(crate) fn fill_unit<'a>(
         None => build.spend_wishes(MAX_ROOMS as usize, program.default_rooms as usize),
     }
     build.rooms
-}
-
-/// Returns true when a head count of the prompt says how many rooms of a type there are.
-pub(crate) fn is_counted(reading: &Reading, room_type: &str) -> bool {
-    let mut entries = reading.program.rooms.iter().filter(|e| e.room_type == room_type);
-    entries.any(|e| head_count(reading, e.occupants).is_some())
-}
-
-/// Makes bedrooms of a home larger by the desk or the cot that the prompt wants in them.
-fn make_room_for_things(reading: &Reading, rooms: &mut [Planned]) {
-    let d = &words().dwelling;
-    let larger = |t: &&Thing| t.object == d.own_desk || t.object == d.baby_bed;
-    // a wardrobe needs floor before it that an entrance hall of the usual size has for the door
-    let halls = &reading.domain.circulation.entrance_room_types;
-    let stores = |t: &&Thing| reading.domain.object(&t.object).is_some_and(|o| o.shape == Shape::Cabinet);
-    for thing in reading.objects.iter().filter(stores) {
-        let hall = |r: &&mut Planned| halls.contains(&r.room_type) && thing.room_type.as_deref() == Some(&r.room_type);
-        rooms.iter_mut().filter(hall).take(1).for_each(|r| r.size = r.size.or(Some(HALL_WITH_WARDROBE)));
-    }
-    for thing in reading.objects.iter().filter(larger).filter(|_| is_dwelling(reading.program)) {
-        let asked = |r: &&mut Planned| {
-            r.kind.zone == Zone::Night && thing.room_type.as_deref() == Some(&r.room_type) && r.area_m2.is_none()
-        };
-        let count = if thing.each { rooms.len() } else { 1 };
-        rooms.iter_mut().filter(asked).take(count).for_each(|r| r.size = r.size.or(Some(WITH_THING)));
-    }
-}
-
-/// Factor on the area of an entrance hall with a wardrobe in it.
-const HALL_WITH_WARDROBE: f64 = 1.35;
-
-/// Factor on the area of a bedroom with a desk or a cot in it.
-const WITH_THING: f64 = 1.12;
-
-/// Floor of the bed for who stays with a patient, m^2.
-const COMPANION_M2: f64 = 4.0;
-
-/// Makes rooms of patients larger by the bed of who stays with them.
-fn make_room_for_companions(reading: &Reading, rooms: &mut [Planned]) {
-    let domain = reading.domain;
-    let own = |r: &&mut Planned| r.kind.privacy == Privacy::Private && sleeps(domain, r.kind).is_some();
-    for room in rooms.iter_mut().filter(|_| reading.stays).filter(own) {
-        let area = room.people_area_m2.unwrap_or(room.kind.area_m2.target);
-        room.size_for_people(area + COMPANION_M2);
-    }
 }
 
 /// Sees to it that there are as many toilets and bathrooms as storeys, where the prompt leaves the rooms open.
@@ -718,334 +590,6 @@ impl<'r, 'a> Build<'r, 'a> {
             build.rooms.len() < MOST_BY_AREA && sum(build, |k| k.area_m2.target) < area
         });
     }
-}
-
-/// Returns the head count a program entry speaks of.
-pub(crate) fn head_count(reading: &Reading, of: Occupants) -> Option<u32> {
-    let o = &reading.occupancy;
-    match of {
-        Occupants::Staff => o.staff.max(o.desks),
-        Occupants::Visitors => o.visitors,
-        // who stays in a ward are its patients, whatever the prompt calls them
-        Occupants::Beds => o.beds.or(reading.residents).or(o.visitors),
-        Occupants::Residents => reading.residents,
-    }
-}
-
-/// Spreads the people over the rooms that the program gives them.
-fn hold_people(reading: &mut Reading, rooms: &mut [Planned]) {
-    hold_stations(reading, rooms);
-    // who has a desk elsewhere needs none here
-    let at_desks = |r: &&Planned| seated::desks(reading.domain, r.kind).is_some();
-    let seated: u32 = rooms.iter().filter(at_desks).filter_map(|r| r.occupants).sum();
-    for entry in &reading.program.rooms {
-        let Some(people) = head_count(reading, entry.occupants) else { continue };
-        let elsewhere = if entry.occupants == Occupants::Staff { seated } else { 0 };
-        let Some(people) = people.checked_sub(elsewhere).filter(|n| *n > 0) else { continue };
-        let places: Vec<usize> = (0..rooms.len()).filter(|&i| rooms[i].room_type == entry.room_type).collect();
-        let sits = entry.area_per_occupant_m2.is_some() || entry.occupants != Occupants::Staff;
-        if !sits || places.is_empty() || places.iter().any(|&i| rooms[i].occupants.is_some()) || reading.single {
-            continue;
-        }
-        let n = places.len() as u32;
-        for (k, &i) in places.iter().enumerate() {
-            rooms[i].occupants = Some(people / n + u32::from((k as u32) < people % n));
-            let area = entry.area_per_occupant_m2.map(|per| per * f64::from(people) / f64::from(n));
-            rooms[i].people_area_m2 = area;
-        }
-    }
-    // beds the program does not know of stand in the rooms the prompt names for sleeping
-    if let Some(beds) = reading.occupancy.beds
-        && rooms.iter().all(|r| r.occupants.is_none())
-    {
-        let places: Vec<usize> =
-            (0..rooms.len()).filter(|&i| rooms[i].requested && rooms[i].kind.zone == Zone::Night).collect();
-        if (1..=beds as usize).contains(&places.len()) {
-            let n = places.len() as u32;
-            for (k, &i) in places.iter().enumerate() {
-                rooms[i].occupants = Some(beds / n + u32::from((k as u32) < beds % n));
-            }
-        }
-    }
-}
-
-/// Returns the rooms that the prompt gives so many heads, and that have none yet.
-fn rooms_of<'r, 'a>(held: &Held, rooms: &'r mut [Planned<'a>]) -> impl Iterator<Item = &'r mut Planned<'a>> {
-    let free = |r: &&mut Planned| r.requested && r.occupants.is_none() && r.room_type == held.room_type;
-    rooms.iter_mut().filter(free).take(held.count as usize)
-}
-
-/// Gives rooms the places to be treated at that the prompt says, and the floor for them.
-fn hold_stations(reading: &Reading, rooms: &mut [Planned]) {
-    for held in &reading.stationed {
-        for room in rooms_of(held, rooms) {
-            let Some(line) = stations::line_of(reading.domain, room.kind) else { continue };
-            room.occupants = Some(held.beds);
-            room.size_for_people(stations::area_m2(line, held.beds));
-        }
-    }
-}
-
-/// Sizes rooms that serve all who work there by how many these are: as many as the prompt says, else as have a desk.
-fn serve_people(reading: &Reading, rooms: &mut [Planned]) {
-    let entries = reading.program.rooms.iter().filter_map(|e| Some((e, e.area_per_person_m2?))).collect::<Vec<_>>();
-    if entries.is_empty() || reading.single {
-        return;
-    }
-    // in a home those who sleep there eat there
-    let lives = is_dwelling(reading.program);
-    let beds = rooms.iter().filter_map(|r| Some(sleeps(reading.domain, r.kind)?[0])).sum::<u32>();
-    // who has a room alone has its double bed alone
-    let rooms_to_sleep = rooms.iter().filter(|r| sleeps(reading.domain, r.kind).is_some()).count() as u32;
-    // and in a ward its patients, for whom the day room is
-    let nurses = reading.program.rooms.iter().any(|e| e.occupants == Occupants::Beds);
-    let people = match (lives, reading.each_alone, nurses) {
-        (true, true, _) => reading.residents.unwrap_or(rooms_to_sleep),
-        (true, false, _) => reading.residents.unwrap_or(0).max(beds),
-        (false, _, true) => reading.occupancy.beds.unwrap_or(beds),
-        (false, _, false) => places_to_work(reading, rooms),
-    };
-    let people = f64::from(people);
-    let mut sized: Vec<&str> = Vec::new();
-    for (entry, each) in entries {
-        if sized.contains(&entry.room_type.as_str()) {
-            continue;
-        }
-        sized.push(&entry.room_type);
-        let alike: Vec<usize> = (0..rooms.len()).filter(|&i| rooms[i].room_type == entry.room_type).collect();
-        let at_table = if lives { table_for(reading, rooms, alike.first().copied(), people) } else { 0.0 };
-        for &i in &alike {
-            let range = rooms[i].kind.area_m2;
-            rooms[i].table_area_m2 = (at_table > 0.0).then(|| at_table.min(range.max));
-            // a table for a few stands in a room of the usual size
-            let table = if at_table > range.target { at_table } else { 0.0 };
-            let area = (each * people / alike.len() as f64).max(table).clamp(range.min, range.max);
-            // those of a usual size hold a usual number; a small office has small toilets
-            if !lives || area > range.target {
-                rooms[i].size_for_people(area);
-            } else if lives && area > FULL * range.target {
-                // as many as the usual size is for: it is not to come out small
-                rooms[i].size_for_people(range.target);
-            }
-        }
-    }
-}
-
-/// Returns the floor of a room in which the people of a home eat for want of a room for that, m^2: what the table for all
-/// of them asks for, and the way past it to the rest; 0 where such a table is nothing out of the usual.
-fn table_for(reading: &Reading, rooms: &[Planned], room: Option<usize>, people: f64) -> f64 {
-    let domain = reading.domain;
-    let Some(kind) = room.and_then(|i| rooms.get(i)).map(|r| r.kind) else { return 0.0 };
-    let elsewhere = |line: &Furnishing| rooms.iter().any(|r| line.unless_rooms.contains(&r.room_type));
-    let table = |line: &&Furnishing| {
-        let is = domain.anchor(&line.item).is_some_and(|o| matches!(o.shape, Shape::Table | Shape::RoundTable));
-        is && line.sleepers > 0 && f64::from(line.sleepers) <= people.max(2.0) && !line.unless_rooms.is_empty()
-    };
-    let line = kind.furnishing.iter().filter(table).max_by_key(|line| line.sleepers).filter(|line| !elsewhere(line));
-    let beside = if reading.accessible { BESIDE_TABLE * STEP_FREE } else { BESIDE_TABLE };
-    // a desk in the room takes floor of its own
-    let desk = |t: &&Thing| t.object == words().dwelling.own_desk && t.room_type.as_deref() == Some(&kind.id);
-    let at_desk = if reading.objects.iter().any(|t| desk(&t)) { AT_DESK_M2 } else { 0.0 };
-    let of_all = line.map_or(0.0, |line| beside * line.area_per_item_m2 + at_desk);
-    // "a dining table for eight"
-    let named = |line: &&Furnishing| {
-        let table = domain.anchor(&line.item).filter(|_| line.sleepers > 0);
-        table.is_some_and(|o| reading.objects.iter().any(|t| t.object == o.id)) && !elsewhere(line)
-    };
-    kind.furnishing.iter().filter(named).map(|line| ROUND_NAMED * line.area_per_item_m2).fold(of_all, f64::max)
-}
-
-/// Returns how many people work there: as many as the prompt says, else as have a desk.
-pub(super) fn places_to_work(reading: &Reading, rooms: &[Planned]) -> u32 {
-    let own = |r: &Planned| r.occupants.filter(|_| !r.visited).unwrap_or_else(|| workplaces(reading.domain, r));
-    let desks = || rooms.iter().map(own).sum::<u32>();
-    match reading.occupancy.staff {
-        Some(staff) => staff.max(reading.occupancy.desks.unwrap_or(0)),
-        // "10 offices and an open plan with 12 desks"
-        None => head_count(reading, Occupants::Staff).unwrap_or(0).max(desks()),
-    }
-}
-
-/// Seats that people find where they wait for each room that sees them one at a time.
-const SEATS_PER_ROOM: u32 = 2;
-
-/// Sizes rooms to wait in by the rooms that people wait for, where these ask for more than usual.
-fn seat_waiting(reading: &Reading, rooms: &mut [Planned]) {
-    let waits = |kind: &RoomType| {
-        let line = kind.furnishing.first().filter(|f| f.required && f.area_per_item_m2 > 0.0)?;
-        let bench = reading.domain.object(&line.item).filter(|o| o.shape == Shape::Bench)?;
-        let seats = bench.sizes_m.first().map_or(1.0, |s| (s[0] / SEAT_M).floor().max(1.0));
-        (kind.privacy == Privacy::Public).then_some(line.area_per_item_m2 / seats)
-    };
-    let sees = |r: &&Planned| r.kind.zone == Zone::Day && r.kind.privacy == Privacy::Private;
-    let seen = rooms.iter().filter(sees).count() as u32;
-    let places: Vec<usize> = (0..rooms.len()).filter(|&i| waits(rooms[i].kind).is_some()).collect();
-    for &i in &places {
-        let Some(each) = waits(rooms[i].kind).filter(|_| rooms[i].area_m2.is_none() && !reading.single) else {
-            continue;
-        };
-        let seats = (SEATS_PER_ROOM * seen).div_ceil(places.len() as u32);
-        let range = rooms[i].kind.area_m2;
-        let area = (each * f64::from(seats)).min(range.max);
-        if area > range.target && rooms[i].people_area_m2.is_none() {
-            rooms[i].people_area_m2 = Some(area);
-        }
-    }
-}
-
-/// Returns how many people have a desk in a room of its usual size.
-fn workplaces(domain: &Domain, room: &Planned) -> u32 {
-    let area = room.reckoned_m2();
-    let lines = room.kind.furnishing.iter().filter(|line| line.instead_of.is_empty());
-    lines.map(|line| seated::desks_of(domain, &line.item) * line.units(area)).max().unwrap_or(0)
-}
-
-/// Returns the floor for each desk of a room type, m^2: as the programs say, else as its furnishing.
-pub(super) fn desk_area_m2(domain: &Domain, room_type: &str) -> f64 {
-    let entries = domain.programs.iter().flat_map(|p| &p.rooms).filter(|e| e.room_type == room_type);
-    let lines = domain.room_type_or_generic(room_type).furnishing.iter().filter(|f| f.required);
-    let by_program = entries.filter_map(|e| e.area_per_occupant_m2).next();
-    by_program.or_else(|| lines.map(|f| f.area_per_item_m2).find(|a| *a > 0.0)).unwrap_or(DESK_AREA_M2)
-}
-
-/// Gives rooms to sleep in the beds that the prompt says, and where its beds are those of its rooms the usual ones.
-fn hold_beds(reading: &Reading, rooms: &mut [Planned]) {
-    for held in &reading.held {
-        for room in rooms_of(held, rooms) {
-            room.occupants = Some(held.beds);
-            if seated::desks(reading.domain, room.kind).is_some() {
-                let area = desk_area_m2(reading.domain, &room.room_type) * f64::from(held.beds);
-                room.size_for_people(area + workers::beside_desks(held.beds));
-            }
-            let Some([low, high]) = sleeps(reading.domain, room.kind) else { continue };
-            if !(low..=high).contains(&held.beds) || high > low {
-                room.size_for_people(room.kind.area_m2.target * f64::from(held.beds) / f64::from(low.max(1)));
-            }
-        }
-    }
-    let o = &reading.occupancy;
-    let heads = o.beds.or(o.staff).or(o.desks).or(o.visitors).or(reading.residents);
-    if let Some(room) = rooms.first_mut().filter(|r| reading.single && r.occupants.is_none()) {
-        room.occupants = heads;
-    }
-    let Some(beds) = o.beds else { return };
-    let held: u32 = rooms.iter().filter_map(|r| r.occupants).sum();
-    let open: Vec<(usize, u32)> = (0..rooms.len())
-        .filter(|&i| rooms[i].requested && rooms[i].occupants.is_none())
-        .filter_map(|i| Some((i, sleeps(reading.domain, rooms[i].kind)?[0])))
-        .collect();
-    let sum = |rooms: &mut dyn Iterator<Item = &(usize, u32)>| held + rooms.map(|r| r.1).sum::<u32>();
-    let beside = sum(&mut open.iter().filter(|r| rooms[r.0].kind.access != Access::Host));
-    if sum(&mut open.iter()) == beds || beside == beds {
-        open.into_iter().for_each(|(i, each)| rooms[i].occupants = Some(each));
-    }
-}
-
-/// Returns true for two rooms of the public, one told with the other, where people work: each of them lies at the
-/// circulation, or the one would be the only way to the other and to all who work behind it.
-pub(super) fn are_public(reading: &Reading, pair: &Pair) -> bool {
-    let public = |id: &String| {
-        let kind = reading.domain.room_type(id)?;
-        (kind.zone == Zone::Public && kind.access != Access::Host).then_some(kind)
-    };
-    let (Some(a), Some(b)) = (public(&pair.a), public(&pair.b)) else { return false };
-    let serves = |k| seats::has_counters(reading.domain, k);
-    workers::is_office(reading.program) || serves(a) || serves(b)
-}
-
-/// Finds for every en suite, closet and the like the room it is entered from.
-fn hang_on_hosts(reading: &mut Reading, rooms: &mut [Planned]) {
-    let domain = reading.domain;
-    // the control room of "MRI with control room" has a door to the scanner and one for those who work there
-    let beside = |p: &&Pair| {
-        let of = |id: &String| domain.room_type(id).is_none_or(|k| k.access == Access::Host);
-        let mut rules = rules_here(domain, reading.country_code.as_deref());
-        !of(&p.a) && rules.any(|r| r.relation == AdjacencyRelation::Must && r.a == p.a && r.b == p.b)
-    };
-    let pairs: Vec<Pair> = reading.wishes.pairs.iter().filter(|p| p.belongs && !beside(p)).cloned().collect();
-    // the only storey that the prompt puts rooms of a type on
-    let storey = |id: &str| {
-        let mut on = reading.storeys.wanted.iter().filter(|w| w.room_type == id).map(|w| w.at);
-        on.next().filter(|_| on.next().is_none())
-    };
-    let storeys: Vec<Option<Where>> = rooms.iter().map(|r| storey(&r.room_type)).collect();
-    for i in 0..rooms.len() {
-        let room = &rooms[i];
-        // "on the second floor a terrace": not that of the living room below
-        let elsewhere = |h: usize| storeys[i].is_some_and(|at| storeys[h].is_some_and(|other| other != at));
-        let hosted = room.kind.access == Access::Host;
-        // the closet of a suite is entered from its bedroom, not through the bathroom that the suite has too
-        let through_bath = |p: &&Pair| {
-            let bath = domain.room_type(&p.b).is_some_and(|k| k.access == Access::Host && k.wet);
-            hosted && bath && !room.kind.hosts.contains(&p.b)
-        };
-        let belongs = pairs.iter().find(|p| p.a == room.room_type).filter(|p| !through_bath(p));
-        // "management with boardroom": nobody meets behind somebody's office
-        let shared = room.kind.privacy != Privacy::Private && room.kind.zone == Zone::Day && !hosted;
-        let through = |p: &&Pair| domain.room_type(&p.b).is_some_and(|k| k.privacy == Privacy::Private);
-        let works = workers::is_office(reading.program);
-        let belongs = belongs.filter(|p| !(works && shared && through(p)));
-        // "lobby with counters": the public goes on from one to the other, those who work there do not
-        let belongs = belongs.filter(|p| !are_public(reading, p));
-        if !hosted && belongs.is_none() {
-            continue;
-        }
-        let fits = |h: &Planned| match belongs {
-            // "isolation room with anteroom": the type says that one enters through the anteroom
-            Some(pair) => h.room_type == pair.b && !h.kind.hosts.contains(&room.room_type),
-            None => room.kind.hosts.contains(&h.room_type),
-        };
-        let by_type = |h: &Planned| hosted && room.kind.hosts.contains(&h.room_type);
-        // an en suite for wheelchairs is one of the en suites
-        let alike = |r: &Planned| {
-            r.room_type == rooms[i].room_type || [r, &rooms[i]].iter().all(|r| reading.wet.has_toilet(r.kind))
-        };
-        let guests = |h: usize, rooms: &[Planned]| rooms.iter().filter(|r| r.host == Some(h) && alike(r)).count();
-        // the usual host first: a terrace lies before the living room
-        let rank = |h: &Planned| room.kind.hosts.iter().position(|k| *k == h.room_type);
-        let candidates = |test: &dyn Fn(&Planned) -> bool| {
-            let free = |h: &usize| *h != i && test(&rooms[*h]) && rooms[*h].host != Some(i) && !elsewhere(*h);
-            (0..rooms.len()).filter(free).min_by_key(|&h| {
-                let apart = rooms[h].unit != room.unit;
-                (apart, guests(h, rooms), rank(&rooms[h]), usize::from(rooms[h].host.is_some()), h)
-            })
-        };
-        // en suites beyond those of the rooms that they are told of go to the others that have none
-        let told = candidates(&fits);
-        let bare = |h: &usize| !hosted || guests(*h, rooms) == 0;
-        let host = told.filter(bare).or_else(|| candidates(&by_type)).or(told);
-        // a room the prompt gives to one host only ("bedroom with its own bath and a second bath")
-        let taken = !hosted && host.is_some_and(|h| guests(h, rooms) > 0);
-        if taken {
-            continue;
-        }
-        if host.is_none() && hosted {
-            let message =
-                format!("{} has no room to be entered from; it opens to the circulation instead", room.kind.label);
-            reading.assumptions.push(note("no_host", message));
-        }
-        rooms[i].host = host;
-    }
-}
-
-/// Lets the only bathroom of a home open to its hall where those of other bedrooms would have to go through one to it.
-fn share_last_bathroom(reading: &mut Reading, rooms: &mut [Planned]) {
-    if !is_dwelling(reading.program) || reading.single {
-        return;
-    }
-    let bathes = |r: &Planned| reading.wet.is_bathroom(r.kind) || r.room_type == words().dwelling.shower;
-    let sleeps = |r: &Planned| r.kind.zone == Zone::Night && sleeps(reading.domain, r.kind).is_some();
-    let own = |i: usize| rooms.iter().any(|r| bathes(r) && r.host == Some(i));
-    let without = (0..rooms.len()).filter(|&i| sleeps(&rooms[i]) && !own(i)).count();
-    let shared = rooms.iter().any(|r| bathes(r) && r.host.is_none());
-    let last = rooms.iter().rposition(|r| bathes(r) && r.host.is_some() && r.kind.access != Access::Host);
-    // where several rooms have their own, what the others lack is said
-    let hosted = rooms.iter().filter(|r| bathes(r) && r.host.is_some()).count();
-    let Some(last) = last.filter(|_| without > 0 && !shared && hosted == 1) else { return };
-    rooms[last].host = None;
-    let label = rooms[last].kind.label.to_lowercase();
-    let message = format!("no other {label} serves all bedrooms; it opens to the hall and not into one of them");
-    reading.assumptions.push(note("shared_bathroom", message));
 }
 
 /// States which rooms the prompt does not name.

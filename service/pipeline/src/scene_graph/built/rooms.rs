@@ -11,8 +11,9 @@ use super::workers::is_office;
 use crate::scene_graph::named::objects::Thing;
 use crate::scene_graph::people::beds;
 use crate::scene_graph::people::seats::MOST_IN_TEAM;
-use crate::scene_graph::reading::{Reading, is_dwelling};
+use crate::scene_graph::reading::Reading;
 use crate::scene_graph::subject::places::note;
+use crate::scene_graph::subject::programs::is_dwelling;
 use crate::scene_graph::tokens::text::capital;
 use crate::scene_graph::tokens::words::words;
 

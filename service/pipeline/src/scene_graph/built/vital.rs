@@ -9,10 +9,13 @@ use d3dgen_model::domain::{Access, Adjacency, AdjacencyRelation, Domain, Occupan
 use d3dgen_model::scene_graph::SceneGraph;
 
 use super::edges::rules_here;
-use super::program::{Planned, places_to_work};
+use super::occupants::places_to_work;
+use super::program::Planned;
+use crate::scene_graph::MOST_IN_OFFICE;
 use crate::scene_graph::people::beds::sleeps;
-use crate::scene_graph::reading::{MOST_IN_OFFICE, Reading, is_dwelling};
+use crate::scene_graph::reading::Reading;
 use crate::scene_graph::subject::places::note;
+use crate::scene_graph::subject::programs::is_dwelling;
 use crate::scene_graph::tokens::words::words;
 use crate::scene_graph::wished::wishes::Wishes;
 

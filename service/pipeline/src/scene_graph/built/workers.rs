@@ -4,11 +4,13 @@
 use d3dgen_model::domain::{Domain, Occupants, Privacy, Program, RoomType, Zone};
 use d3dgen_model::scene_graph::{GraphRoom, Note};
 
-use super::program::{Planned, desk_area_m2, head_count, places_to_work};
+use super::occupants::{desk_area_m2, head_count, places_to_work};
+use super::program::Planned;
 use super::vital;
 use crate::scene_graph::people::seats::{MOST_IN_TEAM, has_counters, most_desks, places, works_in};
-use crate::scene_graph::reading::{Reading, is_dwelling};
+use crate::scene_graph::reading::Reading;
 use crate::scene_graph::subject::places::note;
+use crate::scene_graph::subject::programs::is_dwelling;
 use crate::scene_graph::tokens::text::capital;
 use crate::scene_graph::tokens::words::words;
 use crate::scene_graph::wished::wishes::{Wish, Wishes};

@@ -9,8 +9,9 @@ use crate::scene_graph::BY_CIRCULATION;
 use crate::scene_graph::built::edges::{self, Web};
 use crate::scene_graph::built::program::Planned;
 use crate::scene_graph::built::rooms;
-use crate::scene_graph::reading::{Reading, is_dwelling};
+use crate::scene_graph::reading::Reading;
 use crate::scene_graph::subject::places::note;
+use crate::scene_graph::subject::programs::is_dwelling;
 
 /// How much fuller than the mean a storey gets with what belongs there.
 const FULL: f64 = 1.3;

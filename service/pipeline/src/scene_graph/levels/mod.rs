@@ -3,5 +3,6 @@
 
 pub(super) mod deal;
 pub(super) mod spread;
+pub(super) mod storey_wishes;
 pub(super) mod storeys;
 pub(super) mod units;

@@ -2,7 +2,8 @@
 
 use d3dgen_model::domain::{Access, Occupants, Program, Units};
 
-use crate::scene_graph::built::program::{Planned, fill_unit, head_count, is_counted};
+use crate::scene_graph::built::occupants::{head_count, is_counted};
+use crate::scene_graph::built::program::{Planned, fill_unit};
 use crate::scene_graph::built::vital::guests;
 use crate::scene_graph::reading::Reading;
 use crate::scene_graph::subject::places::note;

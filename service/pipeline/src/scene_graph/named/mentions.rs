@@ -12,7 +12,7 @@ use super::unknown;
 use crate::scene_graph::people::beds::BedRoom;
 use crate::scene_graph::people::seated;
 use crate::scene_graph::people::seats::works_in;
-use crate::scene_graph::reading::is_dwelling;
+use crate::scene_graph::subject::programs::is_dwelling;
 use crate::scene_graph::tokens::numbers::{self, Number};
 use crate::scene_graph::tokens::text::{Kind, Phrases, Span, Token, fold};
 use crate::scene_graph::tokens::words::{Spoken, Tag, is_tagged, tag_end, tag_ends_at, words};
@@ -182,8 +182,9 @@ impl Vocabulary {
         // "salle de bains privée": the own word and an adjective; "Zimmer" anywhere but in a hotel: rooms in total
         let adjective = |from: usize, end: usize| {
             from > i
-                && (from..end)
-                    .all(|k| [Tag::Own, Tag::NotNames, Tag::Accessible].iter().any(|&t| is_tagged(spoken, tokens, k, t)))
+                && (from..end).all(|k| {
+                    [Tag::Own, Tag::NotNames, Tag::Accessible].iter().any(|&t| is_tagged(spoken, tokens, k, t))
+                })
         };
         let total = |end: usize| tag_ends_at(spoken, tokens, i, Tag::Total, end);
         let own_to = own.as_ref().map_or(0, |o| o.0);
@@ -672,8 +673,8 @@ fn attach_numbers(
     for m in out.iter_mut().filter(open) {
         let after = || number_after(tokens, m.span.end, &usable, spoken, language);
         // the garage of "2 car garage" is one
-        let holds = m.span.end > m.span.start + 1
-            && tag_ends_at(spoken, tokens, m.span.start, Tag::Holds, m.span.start + 1);
+        let holds =
+            m.span.end > m.span.start + 1 && tag_ends_at(spoken, tokens, m.span.start, Tag::Holds, m.span.start + 1);
         let before = || number_before(tokens, m.span.start, &usable, spoken, &walls).filter(|_| !holds);
         let found = if language == "ko" { after().or_else(before) } else { before().or_else(after) };
         let special = || {
@@ -698,8 +699,7 @@ fn attach_numbers(
         m.article = number.article;
         m.vague = number.vague;
         m.from = m.from.min(number.span.start);
-        m.definite = number.span.start > 0
-            && is_tagged(spoken, tokens, number.span.start - 1, Tag::Definite);
+        m.definite = number.span.start > 0 && is_tagged(spoken, tokens, number.span.start - 1, Tag::Definite);
     }
 }
 

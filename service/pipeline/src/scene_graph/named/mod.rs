@@ -1,6 +1,8 @@
 //! What the prompt calls by a name: rooms (`mentions` finds them, the others say what a word means where it stands), objects,
 //! qualities and styles.
 
+pub(super) mod access;
+pub(super) mod aside;
 pub(super) mod compounds;
 pub(super) mod fixtures;
 pub(super) mod mentions;
@@ -8,6 +10,8 @@ pub(super) mod named_for;
 pub(super) mod numbered;
 pub(super) mod objects;
 pub(super) mod qualities;
+pub(super) mod rooms_named;
 pub(super) mod senses;
 pub(super) mod styles;
+pub(super) mod things;
 pub(super) mod unknown;

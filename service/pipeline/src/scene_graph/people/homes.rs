@@ -11,8 +11,9 @@ use crate::scene_graph::built::program::Planned;
 use crate::scene_graph::named::mentions::{Mention, What};
 use crate::scene_graph::named::objects::{self, Thing};
 use crate::scene_graph::named::qualities::Nook;
-use crate::scene_graph::reading::{Reading, is_dwelling};
+use crate::scene_graph::reading::Reading;
 use crate::scene_graph::subject::places::note;
+use crate::scene_graph::subject::programs::is_dwelling;
 use crate::scene_graph::tokens::numbers::Number;
 use crate::scene_graph::tokens::text::{Span, Token};
 use crate::scene_graph::tokens::words::{Spoken, Tag, is_tagged, tag_end, tag_ends_at, words};
@@ -110,8 +111,7 @@ pub(crate) fn sleep_where_one_lives(
     spoken: &[&Spoken],
 ) -> Vec<Span> {
     let d = &words().dwelling;
-    let place =
-        |m: &Mention| tag_ends_at(spoken, tokens, m.span.start, Tag::SleepingPlaces, m.span.end);
+    let place = |m: &Mention| tag_ends_at(spoken, tokens, m.span.start, Tag::SleepingPlaces, m.span.end);
     let mut told = Vec::new();
     if !is_studio(program) {
         let sleeps = mentions.iter().any(|m| night(domain, m) && !place(m));

@@ -2,8 +2,11 @@
 
 pub(super) mod apiece;
 pub(super) mod beds;
+pub(super) mod counted;
 pub(super) mod dwelling;
+pub(super) mod ensuites;
 pub(super) mod groups;
+pub(super) mod heads;
 pub(super) mod homes;
 pub(super) mod seated;
 pub(super) mod seats;

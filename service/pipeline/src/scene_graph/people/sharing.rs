@@ -59,9 +59,7 @@ pub(crate) fn residents(tokens: &[Token], numbers: &[Number], head: Span, spoken
     });
     let of_many = of_many.and_then(sane);
     let for_many = || {
-        let little = |k: usize| {
-            [Tag::Stops, Tag::PlaceBefore].iter().any(|&t| is_tagged(spoken, tokens, k, t))
-        };
+        let little = |k: usize| [Tag::Stops, Tag::PlaceBefore].iter().any(|&t| is_tagged(spoken, tokens, k, t));
         let at = head.end + usize::from(head.end < tokens.len() && little(head.end));
         let number = numbers.iter().find(|n| n.span.start == at && at > head.end && !n.article && !n.vague)?;
         tokens.get(number.span.end).is_none_or(Token::is_mark).then(|| sane(number.value)).flatten()

@@ -218,9 +218,7 @@ fn parts(
 
 /// Returns the department whose name begins with a word that is an item of the list by itself: "ICU, outpatient".
 fn begun_by(domain: &Domain, span: Span, (tokens, spoken): (&[Token], &[&Spoken])) -> Option<usize> {
-    let parts = |i: usize| {
-        tokens.get(i).is_none_or(|t| t.is_mark() || is_tagged(spoken, tokens, i, Tag::Joins))
-    };
+    let parts = |i: usize| tokens.get(i).is_none_or(|t| t.is_mark() || is_tagged(spoken, tokens, i, Tag::Joins));
     let whole = span.start > 0 && parts(span.start - 1) && parts(span.end);
     let name = tokens.get(span.start).filter(|_| whole && span.end == span.start + 1)?.text.as_str();
     let begins = |phrase: &String| phrase.split_once(' ').is_some_and(|(first, _)| fold(first) == name);
@@ -302,9 +300,7 @@ fn is_late(
         count.filter(|n| rooms.iter().any(|r| r.longest_at(tokens, n.span.end).is_some_and(|f| f.0 == span.start)));
     let plain = |i: usize| {
         counts.is_some_and(|n| i >= n.span.start)
-            || [Tag::Articles, Tag::NotNames, Tag::Own]
-                .iter()
-                .any(|&t| is_tagged(spoken, tokens, i, t))
+            || [Tag::Articles, Tag::NotNames, Tag::Own].iter().any(|&t| is_tagged(spoken, tokens, i, t))
     };
     let first = (span.start.saturating_sub(MOST_BEFORE_LATE)..span.start).rev().find(|&i| !plain(i));
     let heads = first.map_or(span.start <= MOST_BEFORE_LATE, |i| tokens[i].is_mark());

@@ -6,4 +6,6 @@ pub(super) mod building;
 pub(super) mod parts;
 pub(super) mod places;
 pub(super) mod practitioners;
+pub(super) mod programs;
 pub(super) mod single;
+pub(super) mod site;

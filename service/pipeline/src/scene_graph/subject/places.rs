@@ -166,9 +166,7 @@ fn place_at(tokens: &[Token], i: usize, prompt: &str, spoken: &[&Spoken]) -> Opt
         }
     }
     let (end, place) = gazetteer().phrases.longest_at(tokens, i)?;
-    let before = (1..=2).any(|k| {
-        i.checked_sub(k).is_some_and(|b| tag_ends_at(spoken, tokens, b, Tag::PlaceBefore, i))
-    });
+    let before = (1..=2).any(|k| i.checked_sub(k).is_some_and(|b| tag_ends_at(spoken, tokens, b, Tag::PlaceBefore, i)));
     let apart = i.checked_sub(1).is_none_or(|b| tokens[b].is_mark());
     let last = tokens.get(end).is_none_or(Token::is_mark);
     match token.kind {
@@ -253,9 +251,8 @@ pub(crate) fn of_building(
 fn nowhere(tokens: &[Token], prompt: &str, spoken: &[&Spoken], known: &[Span]) -> Option<Note> {
     for i in 0..tokens.len() {
         let named = tag_end(spoken, tokens, i, Tag::Nowhere);
-        let before = (1..=2).any(|k| {
-            i.checked_sub(k).is_some_and(|b| tag_ends_at(spoken, tokens, b, Tag::PlaceBefore, i))
-        });
+        let before =
+            (1..=2).any(|k| i.checked_sub(k).is_some_and(|b| tag_ends_at(spoken, tokens, b, Tag::PlaceBefore, i)));
         let wide = matches!(tokens[i].kind, Kind::Han | Kind::Hangul);
         if let Some(end) = named
             && (before || tokens[i].capital || wide)

@@ -37,9 +37,7 @@ pub(crate) fn house(
             continue;
         };
         // "four general practitioners", "two experienced nurses"
-        let plain = |k: usize| {
-            tokens[k].kind == Kind::Word && !is_tagged(spoken, tokens, k, Tag::Joins)
-        };
+        let plain = |k: usize| tokens[k].kind == Kind::Word && !is_tagged(spoken, tokens, k, Tag::Joins);
         let of = |n: &&Number| n.span.end == i || n.span.end + 1 == i && plain(n.span.end);
         let number = numbers.iter().filter(|n| !n.vague && (1.0..=MOST).contains(&n.value)).find(of);
         // "doctor's office", "nurse station": these name rooms
@@ -101,9 +99,7 @@ pub(crate) fn practice_of(
 
 /// Returns true for a word for rooms behind people.
 fn is_noun(tokens: &[Token], i: usize, spoken: &[&Spoken]) -> bool {
-    [Tag::RoomWords, Tag::SpaceWords, Tag::Stations]
-        .iter()
-        .any(|&t| is_tagged(spoken, tokens, i, t))
+    [Tag::RoomWords, Tag::SpaceWords, Tag::Stations].iter().any(|&t| is_tagged(spoken, tokens, i, t))
 }
 
 fn table(all: &[Practitioner], language: &str) -> Phrases<usize> {

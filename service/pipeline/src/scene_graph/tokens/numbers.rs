@@ -37,11 +37,7 @@ pub(crate) fn numbers(tokens: &[Token], language: &str, spoken: &[&Spoken]) -> V
 
 fn number_at(tokens: &[Token], i: usize, language: &str, spoken: &[&Spoken]) -> Option<Number> {
     // "-3 bedrooms", "minus three"
-    let sign = if tokens[i].mark() == Some('-') {
-        Some(i + 1)
-    } else {
-        tag_end(spoken, tokens, i, Tag::Negative)
-    };
+    let sign = if tokens[i].mark() == Some('-') { Some(i + 1) } else { tag_end(spoken, tokens, i, Tag::Negative) };
     if let Some(next) = sign {
         let number = unsigned_at(tokens, next, language, spoken).filter(|n| !n.article && !n.vague)?;
         return Some(Number { span: Span { start: i, end: number.span.end }, value: -number.value, ..number });

@@ -472,8 +472,7 @@ fn is_reference(text: &Text, m: usize, first: bool) -> bool {
     let mention = &text.mentions[m];
     let numbered = mention.count.is_some() && !mention.article;
     // "the main one with a bathroom, and another bathroom"
-    let another =
-        |i: usize| tag_ends_at(text.spoken, text.tokens, i, Tag::Another, mention.span.start);
+    let another = |i: usize| tag_ends_at(text.spoken, text.tokens, i, Tag::Another, mention.span.start);
     if (mention.span.start.saturating_sub(2)..mention.span.start).any(another) {
         return false;
     }
