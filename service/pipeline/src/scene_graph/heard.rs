@@ -5,8 +5,10 @@ use d3dgen_plugins::Registry;
 
 use super::refused;
 use super::subject::building;
+use super::subject::places::note;
 use super::tokens::numbers::{self, Number};
 use super::tokens::text::{Token, tokens};
+use super::tokens::typos::{self, Typo};
 use super::tokens::words::{Spoken, Tag, is_tagged, words};
 use super::tokens::{language, umlauts};
 use crate::Error;
@@ -21,6 +23,10 @@ pub(crate) struct Heard<'p> {
     pub languages: Vec<&'static str>,
     /// How these are spoken.
     pub spoken: Vec<&'static Spoken>,
+    /// The language it seems to be in, where that is none that is read.
+    pub strange: Option<&'static str>,
+    /// Words that were read as others.
+    typos: Vec<Typo>,
 }
 
 impl<'p> Heard<'p> {
@@ -38,8 +44,27 @@ impl<'p> Heard<'p> {
         let language = language::detect(&tokens, |code| building::words_known(&tokens, registry, code));
         let languages = if language == "en" { vec!["en"] } else { vec![language, "en"] };
         let spoken: Vec<&Spoken> = languages.iter().filter_map(|l| words().languages.get(*l)).collect();
+        let known = building::words_known(&tokens, registry, language);
+        let strange = language::unread(prompt, &tokens, language, known);
+        let typos = match strange {
+            Some(_) => Vec::new(),
+            None => typos::mend(&mut tokens, &languages, &spoken, registry),
+        };
         let numbers = numbers::numbers(&tokens, language, &spoken);
-        Ok(Self { prompt, tokens, numbers, language, languages, spoken })
+        Ok(Self { prompt, tokens, numbers, language, languages, spoken, strange, typos })
+    }
+
+    /// Returns what is told about misspelled words.
+    pub(super) fn spelling(&self) -> Option<Note> {
+        let mut read: Vec<String> = Vec::new();
+        for typo in &self.typos {
+            let token = &self.tokens[typo.at];
+            let told = format!("`{}` as {}", &self.prompt[token.start..token.end], typo.read);
+            if !read.contains(&told) {
+                read.push(told);
+            }
+        }
+        (!read.is_empty()).then(|| note("spelling", format!("read {}", read.join(", "))))
     }
 
     /// Returns true where a phrase with a tag begins at a token.

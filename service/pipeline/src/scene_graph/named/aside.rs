@@ -45,7 +45,7 @@ pub(crate) struct Aside {
 impl Aside {
     /// Finds them; a building whose word turns out to be that of a room loses it.
     pub(crate) fn find(heard: &Heard, site: &mut Site, registry: &Registry) -> Self {
-        let Heard { prompt, tokens, numbers, language: _, languages, spoken } = heard;
+        let Heard { prompt, tokens, numbers, languages, spoken, .. } = heard;
         let (domain, lives) = (site.domain, site.lives);
         let areas = measures::areas(tokens, numbers);
         let radius = measures::robot_radius(tokens, numbers, spoken);

@@ -14,7 +14,6 @@ use crate::scene_graph::heard::{Heard, Notes};
 use crate::scene_graph::machines::robots::{self, Robots};
 use crate::scene_graph::people::beds;
 use crate::scene_graph::subject::places::note;
-use crate::scene_graph::tokens::language;
 use crate::scene_graph::tokens::text::{MAX_TOKENS, Span};
 use crate::scene_graph::tokens::words::{Tag, words};
 use crate::scene_graph::wished::unread;
@@ -28,8 +27,6 @@ pub(crate) struct Site<'a> {
     pub places: Vec<Span>,
     pub machines: Robots,
     pub building: Building,
-    /// True for a language that is not read.
-    pub strange: bool,
     pub domain: &'a Domain,
     pub program: &'a Program,
     /// Which rooms of the domain have a toilet.
@@ -71,9 +68,7 @@ impl<'a> Site<'a> {
             place.country_code = code;
             place.spans.extend(span);
         }
-        let known = building::words_known(tokens, registry, language);
-        let unread_language = language::unread(prompt, tokens, language, known);
-        if let Some(name) = unread_language {
+        if let Some(name) = heard.strange {
             let message = format!(
                 "the prompt seems to be in {name}, which is not read; only what looks like a language that is was taken from it (English, German, French, Spanish, Chinese, Korean)"
             );
@@ -86,7 +81,6 @@ impl<'a> Site<'a> {
             country_code: flag_country.or(place.country_code),
             places: place.spans,
             machines,
-            strange: unread_language.is_some(),
             domain,
             program,
             wet: registry.digest(&domain.id, || Wet::of(domain)),
