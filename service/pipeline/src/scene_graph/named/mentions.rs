@@ -6,6 +6,7 @@ use d3dgen_model::domain::{Access, Domain, GENERIC_ROOM_TYPE, RoomType, Zone};
 use d3dgen_plugins::Registry;
 
 use super::compounds::{self, Compound};
+use super::counts;
 use super::named_for;
 use super::numbered::{self, Numbered};
 use super::unknown;
@@ -13,7 +14,7 @@ use crate::scene_graph::people::beds::BedRoom;
 use crate::scene_graph::people::seated;
 use crate::scene_graph::people::seats::works_in;
 use crate::scene_graph::subject::programs::is_dwelling;
-use crate::scene_graph::tokens::numbers::{self, Number};
+use crate::scene_graph::tokens::numbers::Number;
 use crate::scene_graph::tokens::text::{Kind, Phrases, Span, Token, fold};
 use crate::scene_graph::tokens::words::{Spoken, Tag, is_tagged, tag_end, tag_ends_at, words};
 
@@ -368,6 +369,7 @@ pub(crate) fn mentions(
     language: &str,
     taken: &Taken,
 ) -> Vec<Mention> {
+    let nouns = Nouns { tokens, numbers, vocabulary, spoken, language, taken };
     let mut out: Vec<Mention> = Vec::new();
     let mut i = 0;
     while i < tokens.len() {
@@ -386,7 +388,7 @@ pub(crate) fn mentions(
         }
         let told = taken.bed_rooms.iter().find(|b| b.span.start == i);
         let told = told.map(|b| (b.span.end, What::Room(b.room_type.clone()), b.plural, Some(b.beds)));
-        let noun = || noun_at(tokens, i, numbers, vocabulary, spoken, language, taken).map(|n| (n.0, n.1, n.2, None));
+        let noun = || nouns.at(i).map(|(end, what, plural)| (end, what, plural, None));
         match told.or_else(noun) {
             Some((end, what, plural, beds)) => {
                 out.push(Mention { plural, beds, ..Mention::plain(Span { start: i, end }, what) });
@@ -398,131 +400,147 @@ pub(crate) fn mentions(
     ellipses(tokens, vocabulary, &mut out);
     drop_modifiers(tokens, vocabulary, &mut out);
     numbered::read(tokens, numbers, spoken, matches!(language, "zh" | "ko"), &mut out);
-    attach_numbers(tokens, numbers, spoken, language, taken, &mut out);
+    counts::attach_numbers(tokens, numbers, spoken, language, taken, &mut out);
     compounds::settle(tokens, taken.compounds, spoken, &mut out);
     part_by_sex(tokens, vocabulary, spoken, &mut out);
-    count_hosts(tokens, spoken, &mut out);
+    counts::count_hosts(tokens, spoken, &mut out);
     drop_echoes(tokens, taken, &mut out);
     out
 }
 
-fn noun_at(
-    tokens: &[Token],
-    i: usize,
-    numbers: &[Number],
-    vocabulary: &Vocabulary,
-    spoken: &[&Spoken],
-    language: &str,
-    taken: &Taken,
-) -> Option<(usize, What, bool)> {
-    // "a dozen rooms", "ein einzelnes Zimmer": what lies within a number names no room
-    let counts = numbers.iter().any(|n| !n.article && n.span.start < i && i < n.span.end);
-    if counts || is_tagged(spoken, tokens, i, Tag::Storeys) {
-        return None;
+/// Finds what a token names.
+struct Nouns<'a> {
+    tokens: &'a [Token],
+    numbers: &'a [Number],
+    vocabulary: &'a Vocabulary,
+    spoken: &'a [&'a Spoken],
+    language: &'a str,
+    taken: &'a Taken<'a>,
+}
+
+/// What begins at a token: its end, what it is, and whether it is a plural.
+type Noun = (usize, What, bool);
+
+impl Nouns<'_> {
+    fn at(&self, i: usize) -> Option<Noun> {
+        let Self { tokens, numbers, vocabulary, spoken, taken, .. } = *self;
+        // "a dozen rooms", "ein einzelnes Zimmer": what lies within a number names no room
+        let counts = numbers.iter().any(|n| !n.article && n.span.start < i && i < n.span.end);
+        if counts || is_tagged(spoken, tokens, i, Tag::Storeys) {
+            return None;
+        }
+        if let Some(dock) = taken.docks.iter().find(|d| d.start == i) {
+            return Some((dock.end, What::Charge, false));
+        }
+        if let Some((end, id)) = vocabulary.open_work(tokens, i, spoken).filter(|f| self.is_free(i, f.0)) {
+            return Some((end, What::Room(id), false));
+        }
+        let room = self.room_at(i);
+        if let Some(entrance) = self.entrance_at(i, room.as_ref()) {
+            return Some(entrance);
+        }
+        match (room, self.people_at(i)) {
+            (Some(room), Some(people)) if people.0 > room.0 => Some(people),
+            // "30 hot desks" are places to work, not 30 offices
+            (Some(room), Some(people))
+                if people.1 == What::Desks
+                    && people.0 == room.0
+                    && numbers.iter().any(|n| n.span.end == i && !n.article) =>
+            {
+                Some(people)
+            }
+            (Some(room), _) => Some(room),
+            (None, people) => self.unnamed_at(i, people),
+        }
     }
-    if let Some(dock) = taken.docks.iter().find(|d| d.start == i) {
-        return Some((dock.end, What::Charge, false));
+
+    /// Returns true for words that name nothing else.
+    fn is_free(&self, start: usize, end: usize) -> bool {
+        !self.taken.spans.iter().chain(&self.taken.head).any(|s| s.overlaps(Span { start, end }))
     }
-    let free = |end: usize| {
-        let span = Span { start: i, end };
-        !taken.spans.iter().chain(&taken.head).any(|s| s.overlaps(span))
-    };
-    if let Some((end, id)) = vocabulary.open_work(tokens, i, spoken).filter(|f| free(f.0)) {
-        return Some((end, What::Room(id), false));
+
+    /// Returns the room of a keyword.
+    fn room_at(&self, i: usize) -> Option<Noun> {
+        let Self { tokens, numbers, vocabulary, spoken, language, .. } = *self;
+        vocabulary
+            .at(tokens, i, numbers, spoken)
+            // "für den Transport": a little word of the language names no room of another one
+            .filter(|r| self.is_free(i, r.0) && !(r.0 == i + 1 && is_little(tokens, i, spoken, language)))
+            // "cuarto de …" is no bedroom where nobody sleeps, "ascensor" the lift of the storeys and no room
+            .filter(|r| {
+                let span = Span { start: i, end: r.0 };
+                let strange = !vocabulary.ids.contains(r.1) && !vocabulary.lives;
+                !(strange && named_for::is_bare_noun(tokens, span, spoken))
+            })
+            // "Zweierbüro" is an office of this domain before it is a room of another
+            .filter(|r| vocabulary.ids.contains(r.1) || vocabulary.office_at(&tokens[i], spoken).is_none())
+            .map(|(end, id, plural)| (end, vocabulary.strange_office(id).unwrap_or(id), plural))
+            .filter(|r| !spoken.iter().any(|s| s.tag_at(tokens, i, Tag::Lift).is_some_and(|end| end >= r.0)))
+            // "open-plan" is no office where there are none
+            .filter(|r| !tag_ends_at(spoken, tokens, i, Tag::OpenPlan, r.0) || vocabulary.ids.contains(r.1))
+            .map(|(end, id, plural)| (end, What::Room(id.into()), plural))
     }
-    let room = vocabulary
-        .at(tokens, i, numbers, spoken)
-        // "für den Transport": a little word of the language names no room of another one
-        .filter(|r| free(r.0) && !(r.0 == i + 1 && is_little(tokens, i, spoken, language)))
-        // "cuarto de …" is no bedroom where nobody sleeps, "ascensor" the lift of the storeys and no room
-        .filter(|r| {
-            let span = Span { start: i, end: r.0 };
-            let strange = !vocabulary.ids.contains(r.1) && !vocabulary.lives;
-            !(strange && named_for::is_bare_noun(tokens, span, spoken))
-        })
-        // "Zweierbüro" is an office of this domain before it is a room of another
-        .filter(|r| vocabulary.ids.contains(r.1) || vocabulary.office_at(&tokens[i], spoken).is_none())
-        .map(|(end, id, plural)| (end, vocabulary.strange_office(id).unwrap_or(id), plural))
-        .filter(|r| !spoken.iter().any(|s| s.tag_at(tokens, i, Tag::Lift).is_some_and(|end| end >= r.0)))
-        // "open-plan" is no office where there are none
-        .filter(|r| {
-            let open = tag_ends_at(spoken, tokens, i, Tag::OpenPlan, r.0);
-            !open || vocabulary.ids.contains(r.1)
-        })
-        .map(|(end, id, plural)| (end, What::Room(id.into()), plural));
-    let entrance = tag_end(spoken, tokens, i, Tag::Entrance).filter(|&end| free(end));
-    if let Some(end) = entrance
-        && room.as_ref().is_none_or(|r| r.0 <= end)
-    {
+
+    /// Returns the entrance of the building, where that is no room.
+    fn entrance_at(&self, i: usize, room: Option<&Noun>) -> Option<Noun> {
+        let Self { tokens, spoken, .. } = *self;
+        let end = tag_end(spoken, tokens, i, Tag::Entrance).filter(|&end| self.is_free(i, end))?;
+        if room.is_some_and(|r| r.0 > end) {
+            return None;
+        }
         // "cafe at the entrance" means a place, "an entrance, a kitchen" a room
-        let near = (i.saturating_sub(2)..i).any(|k| {
-            spoken
-                .iter()
-                .any(|s| s.tag_at(tokens, k, Tag::Near).is_some() || s.tag_at(tokens, k, Tag::Definite).is_some())
-        });
+        let beside = |k: usize| [Tag::Near, Tag::Definite].iter().any(|&t| is_tagged(spoken, tokens, k, t));
+        let near = (i.saturating_sub(2)..i).any(beside);
         // "입구에": the particle makes it a place
-        let longer = room.as_ref().is_some_and(|r| r.0 < end) && tokens[i].kind != Kind::Word;
-        if near || longer || room.is_none() {
-            return Some((end, What::Entrance, false));
-        }
+        let longer = room.is_some_and(|r| r.0 < end) && tokens[i].kind != Kind::Word;
+        (near || longer || room.is_none()).then_some((end, What::Entrance, false))
     }
-    let people = [
-        (Tag::Staff, What::Staff),
-        (Tag::StaffBefore, What::Staff),
-        (Tag::Visitors, What::Visitors),
-        (Tag::VisitorsBefore, What::Visitors),
-        (Tag::Beds, What::Beds),
-        (Tag::Desks, What::Desks),
-        (Tag::Residents, What::Residents),
-        (Tag::People, What::People),
-        (Tag::Total, What::Total),
-        (Tag::ChargePlace, What::Charge),
-        (Tag::Charge, What::Charge),
-    ]
-    .into_iter()
-    .filter_map(|(tag, what)| {
-        let end = tag_end(spoken, tokens, i, tag)?;
-        free(end).then_some((end, what, true))
-    })
-    .max_by_key(|p| p.0);
-    let generic = people.as_ref().is_some_and(|p| p.1 == What::Total);
-    match (room, people) {
-        (Some(room), Some(people)) if people.0 > room.0 => Some(people),
-        // "30 hot desks" are places to work, not 30 offices
-        (Some(room), Some(people))
-            if people.1 == What::Desks
-                && people.0 == room.0
-                && numbers.iter().any(|n| n.span.end == i && !n.article) =>
-        {
-            Some(people)
-        }
-        (Some(room), _) => Some(room),
-        (None, people) => {
-            let unknown = if !taken.unread && (people.is_none() || generic) {
-                unknown::room_at(tokens, i, spoken, language, taken.list_from)
-                    .filter(|_| !numbers.iter().any(|n| n.span.contains(i)))
-                    // "nurse treatment room" is a treatment room
-                    .filter(|(end, _)| free(*end) && !(i + 1..*end).any(|k| vocabulary.known_to(tokens, k, *end)))
-                    .map(|(end, name)| {
-                        let known = vocabulary.room_for(tokens, Span { start: i, end }, spoken);
-                        (end, What::Room(known.unwrap_or(name)), false)
-                    })
-            } else {
-                None
-            };
-            let compound = || {
-                let token = &tokens[i];
-                (token.kind == Kind::Word && i >= taken.list_from)
-                    .then(|| vocabulary.ending(&token.text))
-                    .flatten()
-                    .map(|id| (i + 1, What::Room(id.into()), false))
-            };
-            let office = || {
-                let (id, _, plural) = vocabulary.office_at(&tokens[i], spoken).filter(|_| !taken.unread)?;
-                (i >= taken.list_from || plural).then(|| (i + 1, What::Room(id.into()), plural))
-            };
-            office().or_else(compound).or(unknown).or(people)
-        }
+
+    /// Returns people and what is counted for them, all rooms, and places to charge.
+    fn people_at(&self, i: usize) -> Option<Noun> {
+        let whats = [
+            (Tag::Staff, What::Staff),
+            (Tag::StaffBefore, What::Staff),
+            (Tag::Visitors, What::Visitors),
+            (Tag::VisitorsBefore, What::Visitors),
+            (Tag::Beds, What::Beds),
+            (Tag::Desks, What::Desks),
+            (Tag::Residents, What::Residents),
+            (Tag::People, What::People),
+            (Tag::Total, What::Total),
+            (Tag::ChargePlace, What::Charge),
+            (Tag::Charge, What::Charge),
+        ];
+        let found = whats.into_iter().filter_map(|(tag, what)| {
+            let end = tag_end(self.spoken, self.tokens, i, tag)?;
+            self.is_free(i, end).then_some((end, what, true))
+        });
+        found.max_by_key(|p| p.0)
+    }
+
+    /// Returns a room that no keyword names: an office by its people, a compound, one that only the prompt knows.
+    fn unnamed_at(&self, i: usize, people: Option<Noun>) -> Option<Noun> {
+        let Self { tokens, numbers, vocabulary, spoken, language, taken } = *self;
+        let generic = people.as_ref().is_none_or(|p| p.1 == What::Total);
+        let unknown = || {
+            let (end, name) = unknown::room_at(tokens, i, spoken, language, taken.list_from)
+                .filter(|_| !taken.unread && generic && !numbers.iter().any(|n| n.span.contains(i)))?;
+            // "nurse treatment room" is a treatment room
+            let named = (i + 1..end).any(|k| vocabulary.known_to(tokens, k, end));
+            let known = vocabulary.room_for(tokens, Span { start: i, end }, spoken);
+            (self.is_free(i, end) && !named).then(|| (end, What::Room(known.unwrap_or(name)), false))
+        };
+        let compound = || {
+            let token = &tokens[i];
+            let listed = token.kind == Kind::Word && i >= taken.list_from;
+            let id = listed.then(|| vocabulary.ending(&token.text)).flatten()?;
+            Some((i + 1, What::Room(id.into()), false))
+        };
+        let office = || {
+            let (id, _, plural) = vocabulary.office_at(&tokens[i], spoken).filter(|_| !taken.unread)?;
+            (i >= taken.list_from || plural).then(|| (i + 1, What::Room(id.into()), plural))
+        };
+        office().or_else(compound).or_else(unknown).or(people)
     }
 }
 
@@ -619,20 +637,6 @@ fn part_by_sex(tokens: &[Token], vocabulary: &Vocabulary, spoken: &[&Spoken], ou
     }
 }
 
-/// Gives the number in "3 ensuite bedrooms" to the bedrooms.
-fn count_hosts(tokens: &[Token], spoken: &[&Spoken], out: &mut [Mention]) {
-    for g in 1..out.len() {
-        let (before, after) = out.split_at_mut(g);
-        let (Some(guest), Some(host)) = (before.last_mut(), after.first_mut()) else { continue };
-        let own = is_tagged(spoken, tokens, guest.span.start, Tag::Own) && guest.span.end == host.span.start;
-        if own && guest.room_type().is_some() && host.room_type().is_some() && host.count.is_none() {
-            (host.count, host.article, host.vague) = (guest.count.take(), guest.article, guest.vague);
-            host.number = guest.number.take();
-            host.from = guest.from;
-        }
-    }
-}
-
 /// Drops repeated words for the building outside the list of rooms ("office office office", "headquarters office").
 fn drop_echoes(tokens: &[Token], taken: &Taken, out: &mut Vec<Mention>) {
     let Some(head) = taken.head else { return };
@@ -642,131 +646,9 @@ fn drop_echoes(tokens: &[Token], taken: &Taken, out: &mut Vec<Mention>) {
         let before_list = m.span.start < taken.list_from;
         let beside = m.span.start == head.end || m.span.end == head.start;
         let second = beside && taken.buildings.iter().any(|b| b.overlaps(m.span));
-        !(m.room_type().is_some() && before_list && m.count.is_none() && (second || name.contains(&text(m.span))))
+        // "an office for an architecture studio"
+        let part = |b: &Span| b.start <= m.span.start && m.span.end <= b.end && *b != m.span;
+        let again = second || taken.buildings.iter().any(part) || name.contains(&text(m.span));
+        !(m.room_type().is_some() && before_list && m.count.is_none() && again)
     });
-}
-
-fn attach_numbers(
-    tokens: &[Token],
-    numbers: &[Number],
-    spoken: &[&Spoken],
-    language: &str,
-    taken: &Taken,
-    out: &mut [Mention],
-) {
-    let own = |m: &Mention| m.numbered.map(|n| n.span).or(m.number);
-    let spans: Vec<Span> = out.iter().map(|m| m.span).chain(out.iter().filter_map(own)).collect();
-    // "로봇 5대 충전소", "机器人5台充电区": the number is of the machines before it
-    let behind = |n: &Number| {
-        let counts = is_tagged(spoken, tokens, n.span.end, Tag::Counters);
-        matches!(language, "zh" | "ko") && counts && taken.counted.iter().any(|s| s.end == n.span.start)
-    };
-    let usable: Vec<&Number> = numbers
-        .iter()
-        .filter(|n| !taken.spans.iter().chain(&taken.head).chain(&spans).any(|s| s.overlaps(n.span)))
-        // "거실 2층", "三层": so many storeys
-        .filter(|n| !is_tagged(spoken, tokens, n.span.end, Tag::Storeys) && !behind(n))
-        .collect();
-    let walls: Vec<Span> = spans.iter().chain(taken.counted).copied().collect();
-    let mut used = vec![false; usable.len()];
-    let open = |m: &&mut Mention| m.count.is_none() && m.numbered.is_none_or(|n| !n.span.contains(m.span.start));
-    for m in out.iter_mut().filter(open) {
-        let after = || number_after(tokens, m.span.end, &usable, spoken, language);
-        // the garage of "2 car garage" is one
-        let holds =
-            m.span.end > m.span.start + 1 && tag_ends_at(spoken, tokens, m.span.start, Tag::Holds, m.span.start + 1);
-        let before = || number_before(tokens, m.span.start, &usable, spoken, &walls).filter(|_| !holds);
-        let found = if language == "ko" { after().or_else(before) } else { before().or_else(after) };
-        let special = || {
-            let tag = match m.what {
-                What::Staff => Tag::StaffBefore,
-                What::Visitors => Tag::VisitorsBefore,
-                _ => return None,
-            };
-            let ends = tag_ends_at(spoken, tokens, m.span.start, tag, m.span.end);
-            ends.then(|| usable.iter().position(|n| n.span.start == m.span.end)).flatten()
-        };
-        let Some(k) = special().or(found).filter(|&k| !used[k]) else {
-            m.definite = (m.span.start.saturating_sub(2)..m.span.start).any(|k| {
-                spoken.iter().any(|s| s.tag_at(tokens, k, Tag::Definite).is_some_and(|end| end <= m.span.start))
-            });
-            continue;
-        };
-        let number = usable[k];
-        used[k] = !(number.article || number.vague);
-        m.count = Some(number.value.clamp(-1e9, 1e9).trunc() as i64);
-        m.number = Some(number.span);
-        m.article = number.article;
-        m.vague = number.vague;
-        m.from = m.from.min(number.span.start);
-        m.definite = number.span.start > 0 && is_tagged(spoken, tokens, number.span.start - 1, Tag::Definite);
-    }
-}
-
-/// Returns the number before a noun, over adjectives and counters.
-fn number_before(
-    tokens: &[Token],
-    start: usize,
-    numbers: &[&Number],
-    spoken: &[&Spoken],
-    nouns: &[Span],
-) -> Option<usize> {
-    let mut at = start;
-    for _ in 0..5 {
-        if let Some(k) = numbers.iter().position(|n| n.span.end == at) {
-            return Some(k);
-        }
-        at = at.checked_sub(1)?;
-        let token = &tokens[at];
-        let number = matches!(token.kind, Kind::Number(_)) && !numbers::is_name(tokens, at, spoken);
-        if token.is_mark() || nouns.iter().any(|s| s.contains(at)) || number {
-            return None;
-        }
-        let has = |tag| tag_ends_at(spoken, tokens, at, tag, at + 1);
-        // "6 person meeting room", "2 car garage", "10人会议室": the number is of what one room holds
-        if has(Tag::Holds) && (at == start - 1 || !has(Tag::Counters)) {
-            return None;
-        }
-        let parts = [Tag::Stops, Tag::Starts, Tag::No, Tag::Near, Tag::Door, Tag::Joins, Tag::Each, Tag::Definite];
-        let joint = matches!(token.text.as_str(), "的" | "의" | "de" | "of");
-        if !joint && parts.iter().any(|&tag| has(tag)) && !has(Tag::Counters) {
-            return None;
-        }
-    }
-    None
-}
-
-/// Returns the number after a noun: "방 2개", "会议室3间", "bedrooms: 3", "bedroom x 2".
-pub(crate) fn number_after(
-    tokens: &[Token],
-    end: usize,
-    numbers: &[&Number],
-    spoken: &[&Spoken],
-    language: &str,
-) -> Option<usize> {
-    let closes = |at: usize| tokens.get(at).is_none_or(Token::is_mark);
-    let number_at = |at: usize| numbers.iter().position(|n| n.span.start == at);
-    let next = tokens.get(end)?;
-    let counter = |at: usize| tag_end(spoken, tokens, at, Tag::Counters);
-    match language {
-        "ko" => {
-            let particle =
-                !next.spaced && matches!(next.text.as_str(), "은" | "는" | "이" | "가" | "을" | "를" | "도" | "만");
-            let at = if particle { end + 1 } else { end };
-            number_at(at).filter(|&k| counter(numbers[k].span.end).is_some() || closes(numbers[k].span.end))
-        }
-        "zh" => number_at(end).filter(|&k| {
-            let after = counter(numbers[k].span.end).unwrap_or(numbers[k].span.end);
-            let joined = is_tagged(spoken, tokens, after, Tag::Joins);
-            // "等候区6人": so many wait there
-            let holds = [Tag::People, Tag::Visitors, Tag::Staff, Tag::Desks, Tag::ServicePoints];
-            let held = |at: usize| at < tokens.len() && holds.iter().any(|&t| is_tagged(spoken, tokens, at, t));
-            !held(numbers[k].span.end) && !held(after) && (closes(after) || joined || tokens[after].spaced)
-        }),
-        _ => {
-            let at = if matches!(next.text.as_str(), "x" | ":" | "," | "-") { end + 1 } else { return None };
-            let listed = next.text != "," && next.text != "-";
-            number_at(at).filter(|&k| closes(numbers[k].span.end) && (listed || tokens.len() > numbers[k].span.end))
-        }
-    }
 }

@@ -4,6 +4,7 @@
 pub(super) mod access;
 pub(super) mod aside;
 pub(super) mod compounds;
+pub(super) mod counts;
 pub(super) mod fixtures;
 pub(super) mod mentions;
 pub(super) mod named_for;

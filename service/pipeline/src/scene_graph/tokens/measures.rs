@@ -31,15 +31,10 @@ pub(crate) fn areas(tokens: &[Token], numbers: &[Number]) -> Vec<Area> {
             && next.value > 0.0
             && let Some((end, unit)) = words().length_units.longest_at(tokens, next.span.end)
         {
-            let between = &tokens[number.span.end..next.span.start];
-            let times = between.iter().any(|t| matches!(t.text.as_str(), "x" | "by" | "mal" | "sur" | "por"))
-                && between.iter().all(|t| {
-                    matches!(
-                        t.text.as_str(),
-                        "x" | "by" | "mal" | "sur" | "por" | "m" | "meters" | "metres" | "ft" | "feet"
-                    )
-                });
-            if times {
+            let between = number.span.end..next.span.start;
+            let times = |i: usize| words().times.contains(&tokens[i].text);
+            let measures = |i: usize| times(i) || words().length_units.longest_at(tokens, i).is_some();
+            if between.clone().any(times) && between.clone().all(measures) {
                 out.push(Area {
                     span: Span { start: number.span.start, end },
                     value: number.value * next.value * unit * unit,

@@ -88,6 +88,8 @@ pub(crate) enum Tag {
     Diameter,
     RoomWords,
     SpaceWords,
+    /// What makes a kind of the word before it: "loft-style".
+    OfKind,
     NotNames,
     Repeat,
     StyleWords,
@@ -361,6 +363,25 @@ pub(crate) struct ByBedrooms {
 
 #[derive(Debug, Deserialize)]
 struct File {
+    /// Usual words of languages that are not read, by English name of the language.
+    unread_languages: BTreeMap<String, Vec<String>>,
+    /// Countries where the ground floor is the first floor.
+    first_is_ground: Vec<String>,
+    /// What stands between two lengths.
+    times: BTreeSet<String>,
+    area_units: BTreeMap<String, f64>,
+    length_units: BTreeMap<String, f64>,
+    /// Seconds of units of time.
+    time_units: BTreeMap<String, f64>,
+    robot_kinds: BTreeMap<String, Body>,
+    #[serde(flatten)]
+    languages: BTreeMap<String, Language>,
+}
+
+/// Room types by what they do for the reader, from `rooms.toml`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Rooms {
     /// Rooms that no place to work at is without, each with what can stand for it.
     work_vital: Vec<Vec<String>>,
     /// Desks from which on more is vital.
@@ -379,23 +400,13 @@ struct File {
     sexes: Vec<String>,
     /// Domain whose rooms are of all kinds of buildings.
     common_domain: String,
-    /// Usual words of languages that are not read, by English name of the language.
-    unread_languages: BTreeMap<String, Vec<String>>,
-    /// Countries where the ground floor is the first floor.
-    first_is_ground: Vec<String>,
-    area_units: BTreeMap<String, f64>,
-    length_units: BTreeMap<String, f64>,
-    /// Seconds of units of time.
-    time_units: BTreeMap<String, f64>,
-    robot_kinds: BTreeMap<String, Body>,
     dwelling: Dwelling,
-    #[serde(flatten)]
-    languages: BTreeMap<String, Language>,
 }
 
 /// All words of the module, ready for matching.
 pub(crate) struct Words {
     pub languages: BTreeMap<String, Spoken>,
+    pub times: BTreeSet<String>,
     pub area_units: Phrases<f64>,
     pub length_units: Phrases<f64>,
     pub time_units: Phrases<f64>,
@@ -473,28 +484,30 @@ pub(crate) fn tag_ends_at(spoken: &[&Spoken], tokens: &[Token], i: usize, tag: T
 pub(crate) fn words() -> &'static Words {
     static WORDS: LazyLock<Words> = LazyLock::new(|| {
         let file: File = toml::from_str(include_str!("words.toml")).expect("a test reads words.toml");
+        let rooms: Rooms = toml::from_str(include_str!("rooms.toml")).expect("a test reads rooms.toml");
         let units = |units: &BTreeMap<String, f64>| {
             let mut phrases = Phrases::new("");
             units.iter().for_each(|(unit, factor)| phrases.insert(unit, *factor));
             phrases
         };
         Words {
+            times: file.times,
             area_units: units(&file.area_units),
             length_units: units(&file.length_units),
             time_units: units(&file.time_units),
             languages: file.languages.into_iter().map(|(code, words)| (code.clone(), spoken(&code, words))).collect(),
             robot_kinds: file.robot_kinds,
-            dwelling: file.dwelling,
+            dwelling: rooms.dwelling,
             first_is_ground: file.first_is_ground,
-            work_vital: file.work_vital,
-            many_desks: file.many_desks,
-            many_vital: file.many_vital,
-            alike: file.alike,
-            eating: file.eating,
-            waiting: file.waiting,
-            fill_ground: file.fill_ground,
-            sexes: file.sexes,
-            common_domain: file.common_domain,
+            work_vital: rooms.work_vital,
+            many_desks: rooms.many_desks,
+            many_vital: rooms.many_vital,
+            alike: rooms.alike,
+            eating: rooms.eating,
+            waiting: rooms.waiting,
+            fill_ground: rooms.fill_ground,
+            sexes: rooms.sexes,
+            common_domain: rooms.common_domain,
             unread_languages: file
                 .unread_languages
                 .into_iter()
