@@ -47,6 +47,8 @@ pub(super) struct Draft<'r, 'a> {
     pub named: Named,
     pub counted: Counted,
     pub wishes: Wishes,
+    /// Mentions of people who are on every storey.
+    on_each: Vec<usize>,
 }
 
 /// Where robots stand and go.
@@ -82,13 +84,22 @@ impl<'r, 'a> Draft<'r, 'a> {
     pub(super) fn of_words(request: &'r Request, registry: &'a Registry) -> Result<Self, Error> {
         let heard = Heard::of(&request.prompt, registry)?;
         let mut notes = Notes::default();
+        notes.assumptions.extend(heard.spelling());
         let mut site = Site::of(&heard, request, registry, &mut notes)?;
         let mut aside = Aside::find(&heard, &mut site, registry);
         let mut named = Named::find(&heard, &site, &mut aside, registry);
         let counted = Counted::of(&heard, &site, &aside, &mut named.mentions);
-        aside.not_things.extend(counted.not_things.iter().copied());
+        aside.not_things.extend(counted.not_things.iter().chain(&named.no_things).copied());
+        for span in &named.no_things {
+            let prompt = robots::Prompt { text: heard.prompt, tokens: &heard.tokens };
+            let words = prompt.words(*span);
+            let message =
+                format!("`{words}` is an object, and these are not ruled out; rooms have what is usual in them");
+            notes.conflicts.push(note("unread_wish", message));
+        }
         let wishes = Wishes::default();
-        Ok(Self { request, registry, heard, notes, site, aside, named, counted, wishes })
+        let on_each = Vec::new();
+        Ok(Self { request, registry, heard, notes, site, aside, named, counted, wishes, on_each })
     }
 
     /// Returns what the prompt calls its rooms.
@@ -140,6 +151,7 @@ impl<'r, 'a> Draft<'r, 'a> {
 
     /// Makes wishes of what is named; returns the area of the building, m^2.
     pub(super) fn wish(&mut self, said: &Said) -> Option<f64> {
+        self.on_each = storey_wishes::people_on_each(&self.named.mentions, &mut self.aside.storeys);
         let Heard { prompt, tokens, language, spoken, .. } = &self.heard;
         let Self { aside, counted, notes, .. } = self;
         let Site { domain, program, .. } = self.site;
@@ -190,6 +202,10 @@ impl<'r, 'a> Draft<'r, 'a> {
         };
         let conflicts = &mut self.notes.conflicts;
         let mut storeys = storeys::read(&said, self.site.country_code.as_deref(), conflicts);
+        for &m in &self.on_each {
+            let times = |n: i64| n.saturating_mul(storeys.above_ground() as i64);
+            self.named.mentions[m].count = self.named.mentions[m].count.map(times);
+        }
         storey_wishes::furnish_basement(&mut storeys, &mut self.wishes, self.site.domain);
         storey_wishes::wish_for_storeys(&mut storeys, &mut self.wishes, self.site.domain, conflicts);
         storeys
@@ -322,7 +338,9 @@ impl<'r, 'a> Draft<'r, 'a> {
         let free = self.request.rooms.is_none();
         let alone = storeys.levels.len() == 1 && self.aside.short_forms.is_empty() && total.is_none_or(|n| n == 1);
         let one_room = total == Some(1) && building.head.is_none() && wishes.wishes.is_empty() && free;
-        let single = alone && !self.site.strange && (one_room || free && single::is_single(building, mentions, wishes));
+        let single = alone
+            && self.heard.strange.is_none()
+            && (one_room || free && single::is_single(building, mentions, wishes));
         if single {
             let message = "the prompt asks for one room and no building; it was planned by itself";
             self.notes.assumptions.push(note("single_room", message.into()));
@@ -411,7 +429,7 @@ impl<'r, 'a> Draft<'r, 'a> {
         let Heard { prompt, tokens, numbers, spoken, .. } = &self.heard;
         let unread = unread::Text {
             tokens,
-            known_language: !self.site.strange,
+            known_language: self.heard.strange.is_none(),
             doors,
             prompt,
             numbers,

@@ -3,12 +3,13 @@
 use std::collections::BTreeMap;
 
 use d3dgen_knowledge::Applicable;
-use d3dgen_model::domain::{Access, Program, ProgramRoom, RobotUse, RoomType, Zone};
+use d3dgen_model::domain::{Access, Occupants, Program, ProgramRoom, RobotUse, RoomType, Zone};
 
 use super::occupants::head_count;
 use super::{hosts, layout, occupants, vital, workers};
 use crate::scene_graph::levels::{spread, units};
 use crate::scene_graph::machines::charging::most_docks;
+use crate::scene_graph::people::beds::sleeps;
 use crate::scene_graph::people::seats;
 use crate::scene_graph::reading::Reading;
 use crate::scene_graph::subject::places::note;
@@ -511,6 +512,7 @@ impl<'r, 'a> Build<'r, 'a> {
         let most = MAX_ROOMS as usize;
         self.spend_wishes(most, program.default_rooms as usize);
         self.fit_people(most);
+        self.keep_to_beds();
         if let Some(area) = self.reading.area_m2 {
             self.fit_area(area * (1.0 - circulation_share(self.reading, &self.rooms)));
         }
@@ -555,6 +557,23 @@ impl<'r, 'a> Build<'r, 'a> {
                     self.add(entry, limit);
                 }
             }
+        }
+    }
+
+    /// Takes beds of the rooms that the program adds for some of those that the prompt counts: an intensive care unit of ten
+    /// beds has its isolation room among them.
+    fn keep_to_beds(&mut self) {
+        let single =
+            |e: &&ProgramRoom| e.occupants == Occupants::Beds && e.occupants_per_room == Some(1) && e.with.is_empty();
+        let Some(entry) = self.program.rooms.iter().find(single) else { return };
+        let Some(beds) = head_count(self.reading, Occupants::Beds) else { return };
+        let sleeps = |r: &Planned| sleeps(self.reading.domain, r.kind).map_or(0, |[low, _]| low as usize);
+        let added = |r: &Planned| !r.requested && r.room_type != entry.room_type && sleeps(r) > 0;
+        let others: usize = self.rooms.iter().filter(|r| added(r)).map(sleeps).sum();
+        let all: usize = self.rooms.iter().map(sleeps).sum();
+        for _ in 0..all.saturating_sub(beds as usize).min(others) {
+            let last = self.rooms.iter().rposition(|r| r.room_type == entry.room_type && !r.requested);
+            last.map(|last| self.rooms.remove(last));
         }
     }
 

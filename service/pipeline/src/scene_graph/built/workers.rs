@@ -353,8 +353,7 @@ pub(super) fn seat_guests(reading: &mut Reading, rooms: &mut [Planned]) {
             if area > largest && room.area_m2.is_none() && wanted <= most {
                 let label = room.called.clone().unwrap_or_else(|| room.kind.label.clone());
                 let message = format!(
-                    "{label} for {wanted} is more than such a room is planned for (at most {} places, {largest:.0} m2); as many as fit were planned",
-                    most.min(wanted)
+                    "{label} for {wanted} would need {area:.0} m2, and such a room has {largest:.0} m2 at most; as many as fit were planned"
                 );
                 reading.conflicts.push(note("too_many_seats", message));
             }

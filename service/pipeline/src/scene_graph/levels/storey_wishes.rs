@@ -4,10 +4,26 @@
 use d3dgen_model::domain::{Domain, Zone};
 use d3dgen_model::scene_graph::Note;
 
-use super::storeys::{Storeys, Wanted, Where};
+use super::storeys::{Phrase, Storeys, Wanted, Where};
+use crate::scene_graph::named::mentions::{Mention, What};
 use crate::scene_graph::subject::places::note;
 use crate::scene_graph::tokens::words::words;
 use crate::scene_graph::wished::wishes::{Wish, Wishes};
+
+/// Takes phrases that say how many people are on every storey ("40 people per floor") from those that put rooms there; returns
+/// the mentions of these people.
+pub(crate) fn people_on_each(mentions: &[Mention], phrases: &mut Vec<Phrase>) -> Vec<usize> {
+    let people = [What::People, What::Staff, What::Visitors, What::Residents, What::Beds, What::Desks];
+    let mut out = Vec::new();
+    for (i, m) in mentions.iter().enumerate().filter(|(_, m)| people.contains(&m.what) && m.count.is_some()) {
+        let behind = phrases.iter().position(|p| p.at == Where::Each && p.span.start == m.span.end);
+        if let Some(phrase) = behind {
+            phrases.remove(phrase);
+            out.push(i);
+        }
+    }
+    out
+}
 
 /// Gives a basement of which nothing is said the room that it has for things.
 pub(crate) fn furnish_basement(storeys: &mut Storeys, wishes: &mut Wishes, domain: &Domain) {

@@ -4,7 +4,8 @@ use d3dgen_model::robot_body::RobotBody;
 use d3dgen_model::scene_graph::{GraphRoom, Note, Robot};
 
 use crate::scene_graph::Request;
-use crate::scene_graph::named::mentions::{Mention, What, number_after};
+use crate::scene_graph::named::counts::number_after;
+use crate::scene_graph::named::mentions::{Mention, What};
 use crate::scene_graph::subject::places::note;
 use crate::scene_graph::tokens::negation::is_ruled_out;
 use crate::scene_graph::tokens::numbers::Number;
@@ -80,8 +81,10 @@ pub(crate) struct Robots {
 pub(crate) struct Fleet {
     pub wanted: Vec<Wanted>,
     pub assumed: Vec<Assumed>,
-    /// Words for robots of kinds that are not planned.
+    /// Words for robots of kinds that are not planned, for which service robots are.
     pub unknown: Vec<Span>,
+    /// The same beside robots of other kinds, which stand for none of them: drones beside transport robots.
+    pub left_out: Vec<Span>,
 }
 
 const KINDS: [(Tag, &str); 5] = [
@@ -210,6 +213,11 @@ impl Robots {
     /// Adds robots whose words do not say the kind: by the work beside them, as the same robots again, or as service robots.
     fn add_generic(&self, f: &Named, n: u32, several: bool, by: &Counting, free: &[&Number], out: &mut Fleet) {
         let works = self.works(f, by, free);
+        let other_kind = f.name_from == Some(f.span.start);
+        if other_kind && works.is_empty() && !out.wanted.is_empty() {
+            out.left_out.push(f.span);
+            return;
+        }
         let mut kinds: Vec<&'static str> = Vec::new();
         works.iter().for_each(|w| kinds.extend((!kinds.contains(&w.kind)).then_some(w.kind)));
         match (kinds.as_slice(), out.wanted.as_mut_slice()) {
@@ -389,6 +397,11 @@ pub(crate) fn of_graph(
         wanted.push(Wanted { kind: "service", count: 1 });
     }
     state_assumed(fleet, prompt, assumptions);
+    for span in &fleet.left_out {
+        let words = prompt.words(*span);
+        let message = format!("`{words}` is no kind of robot that is planned; it was left out beside the others");
+        conflicts.push(note("unread_wish", message));
+    }
     let radius = match radius {
         Some(r) if !(0.05..=2.0).contains(&r) => {
             conflicts.push(note(

@@ -4,6 +4,7 @@ use d3dgen_model::domain::{Access, Domain, Zone};
 use d3dgen_plugins::Registry;
 
 use super::mentions::{Mention, What};
+use crate::scene_graph::tokens::negation::is_ruled_out;
 use crate::scene_graph::tokens::text::{Phrases, Span, Token};
 use crate::scene_graph::tokens::words::{Spoken, Tag, is_tagged, tag_end};
 
@@ -73,6 +74,31 @@ pub(crate) fn named(
                     i = end;
                 }
                 None => i += 1,
+            }
+        }
+    }
+    out
+}
+
+/// Returns the words for objects that the prompt rules out: "no bath tub". A room whose word is part of one is none.
+pub(crate) fn ruled_out(
+    tokens: &[Token],
+    mentions: &mut Vec<Mention>,
+    (domain, registry): (&Domain, &Registry),
+    (language, languages, spoken): (&str, &[&str], &[&Spoken]),
+) -> Vec<Span> {
+    let mut out: Vec<Span> = Vec::new();
+    for phrases in languages.iter().map(|language| vocabulary(domain, registry, language)) {
+        for start in 0..tokens.len() {
+            let Some((end, _)) = phrases.longest_at(tokens, start) else { continue };
+            let span = Span { start, end };
+            let part = |m: &Mention| {
+                m.room_type().is_some() && m.span != span && span.contains(m.span.start) && m.span.end <= end
+            };
+            let room = |m: &Mention| m.room_type().is_some() && m.span.overlaps(span) && !part(m);
+            if is_ruled_out(tokens, spoken, language, span) && !mentions.iter().any(room) {
+                mentions.retain(|m| !part(m));
+                out.push(span);
             }
         }
     }

@@ -20,6 +20,8 @@ pub(crate) struct Named {
     pub mentions: Vec<Mention>,
     /// Words that say more about these.
     pub words: Vec<Span>,
+    /// Words for objects that are ruled out.
+    pub no_things: Vec<Span>,
     /// True where everybody has a room of their own.
     pub own_rooms: bool,
     /// True when the prompt counts the rooms to live in ("3-Zimmer-Wohnung", "2BHK").
@@ -33,6 +35,9 @@ impl Named {
         let (domain, program) = (site.domain, site.program);
         let mut mentions = sounding_like_rooms(heard, site, aside);
         let mut words = compounds::hold_own(tokens, heard.prompt, &aside.compounds, &mut mentions, domain, spoken);
+        let languages = (heard.language, &heard.languages[..], &spoken[..]);
+        let no_things = objects::ruled_out(tokens, &mut mentions, (domain, registry), languages);
+        words.extend(no_things.iter().copied());
         let mut own_rooms = None;
         if site.lives {
             words.extend(in_homes(heard, site, &mut mentions, registry));
@@ -44,11 +49,11 @@ impl Named {
             let choice = Choice { domain, program, spoken };
             choice.read_lists(tokens, &mut mentions);
             choice.adopt(&mut mentions);
-            beds::of_several_wards(&mut mentions, numbers, &site.building_words());
+            beds::of_several_wards((tokens, spoken), &mut mentions, numbers, &site.building_words());
         }
         senses::settle(tokens, &mut mentions, &aside.vocabulary, spoken, (domain, program));
         subsets::settle(tokens, numbers, spoken, &mut mentions, domain);
-        Self { mentions, words, own_rooms: own_rooms.is_some(), habitable_fixed }
+        Self { mentions, words, no_things, own_rooms: own_rooms.is_some(), habitable_fixed }
     }
 }
 
@@ -64,7 +69,7 @@ fn sounding_like_rooms(heard: &Heard, site: &Site, aside: &Aside) -> Vec<Mention
         docks: &site.machines.docks,
         bed_rooms: &aside.bed_rooms,
         compounds: &aside.compounds,
-        unread: site.strange,
+        unread: heard.strange.is_some(),
     };
     let mut mentions = mentions(tokens, numbers, &aside.vocabulary, spoken, language, &taken);
     docks::not_of_goods(tokens, &mut mentions, site.domain, spoken);

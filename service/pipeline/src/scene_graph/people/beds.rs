@@ -8,7 +8,7 @@ use crate::scene_graph::named::mentions::{Mention, What};
 use crate::scene_graph::subject::places::note;
 use crate::scene_graph::tokens::numbers::{self, Number};
 use crate::scene_graph::tokens::text::{Kind, Span, Token};
-use crate::scene_graph::tokens::words::{Spoken, Tag, tag_end};
+use crate::scene_graph::tokens::words::{Spoken, Tag, is_tagged, tag_end};
 use crate::scene_graph::wished::relations::Said;
 use crate::scene_graph::wished::wishes::{Wish, Wishes};
 
@@ -307,8 +307,27 @@ fn bed_count(value: f64) -> Option<u32> {
     (value.fract() == 0.0 && (1.0..=MOST_BEDS).contains(&value)).then_some(value as u32)
 }
 
-/// Multiplies the beds of "two 12-bed wards".
-pub(crate) fn of_several_wards(mentions: &mut [Mention], numbers: &[Number], wards: &[Span]) {
+/// Multiplies the beds of "two 12-bed wards" and "two wards of 12 beds each".
+pub(crate) fn of_several_wards(
+    (tokens, spoken): (&[Token], &[&Spoken]),
+    mentions: &mut [Mention],
+    numbers: &[Number],
+    wards: &[Span],
+) {
+    let each = |i: usize| is_tagged(spoken, tokens, i, Tag::Each);
+    let before = |ward: &Span| numbers.iter().find(|n| n.span.end == ward.start && !n.article && n.value > 1.0);
+    let told_each = |m: &Mention| {
+        let near = |w: &&Span| w.end <= m.from && m.from - w.end <= MOST_BETWEEN;
+        let between = |w: &Span| (w.end..m.from).any(each);
+        let ward = wards.iter().filter(near).max_by_key(|w| w.end)?;
+        let whole = (ward.end..m.from).all(|i| !tokens[i].is_mark());
+        before(ward).filter(|_| m.what == What::Beds && whole && (each(m.span.end) || between(ward)))
+    };
+    for m in mentions.iter_mut() {
+        if let (Some(wards), Some(beds)) = (told_each(m), m.count) {
+            m.count = Some(beds.saturating_mul(wards.value as i64));
+        }
+    }
     let of_ward = |m: &Mention| {
         let holds = |w: &Span| w.start == m.span.end || w.start == m.span.start && w.end > m.span.end;
         m.what == What::Beds && wards.iter().any(holds)

@@ -80,7 +80,9 @@ pub(crate) fn recognize(
     let domains: Vec<&Domain> =
         registry.iter().map(|p| p.domain()).filter(|d| only.is_none_or(|o| o == d.id)).collect();
     let list_from = list_start(tokens, spoken, languages);
-    let found = occurrences(tokens, registry, &domains, languages, spoken, numbers, places);
+    let mut found = occurrences(tokens, registry, &domains, languages, spoken, numbers, places);
+    // a "loft-style office" is no loft
+    found.retain(|(span, _)| !is_tagged(spoken, tokens, span.end, Tag::OfKind));
     let named = found.iter().map(|f| f.0).collect();
     let language = languages.first().copied().unwrap_or_default();
     let (denied, found): (Vec<_>, Vec<_>) =

@@ -80,6 +80,15 @@ pub(crate) fn code_of(text: &str) -> Option<String> {
     if let [code] = place.codes.as_slice() { Some(code.clone()) } else { None }
 }
 
+/// Words of a place's name before one of them, at most.
+const MOST_BEFORE: usize = 2;
+
+/// Returns true for a word of the name of a place.
+pub(crate) fn names(tokens: &[Token], at: usize) -> bool {
+    let ends = |i: usize| gazetteer().phrases.longest_at(tokens, i).is_some_and(|(end, _)| end > at);
+    (at.saturating_sub(MOST_BEFORE)..=at).any(ends)
+}
+
 /// Returns a country's English name.
 pub(super) fn country_name(code: &str) -> &str {
     gazetteer().countries.get(code).map_or(code, String::as_str)
@@ -178,9 +187,11 @@ fn place_at(tokens: &[Token], i: usize, prompt: &str, spoken: &[&Spoken]) -> Opt
         _ => {
             let strict = place.strict || (end == i + 1 && token.text.len() < 4 && !token.capital);
             let fits = !strict || (token.capital && (before || (apart && last && i > 0)));
-            // "Paris-style", "Wellington boots": a name joined to a following word is a kind, not a place
-            let joined = tokens.get(end).is_some_and(|t| !t.spaced && t.kind == Kind::Word && t.text == "style");
-            (fits && !joined).then(|| (end, place.clone()))
+            // "Paris-style": a name joined to a following word is a kind, not a place
+            let joined = is_tagged(spoken, tokens, end, Tag::OfKind);
+            // "a den" is no Aden
+            let parted = end > i + 1 && !token.capital && is_tagged(spoken, tokens, i, Tag::Articles);
+            (fits && !joined && !parted).then(|| (end, place.clone()))
         }
     }
 }

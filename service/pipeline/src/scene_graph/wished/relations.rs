@@ -385,7 +385,7 @@ fn belongings(reader: &Reader, said: &mut Said) {
         }
         if any_room {
             // "moves between all rooms, with a dock in the laundry" says nothing of what each room has
-            said.each_room.extend((each_host && starts && !comma && !guest.definite).then_some(g));
+            said.each_room.extend((each_host && starts && !comma && (!guest.definite || has(Tag::Own))).then_some(g));
             continue;
         }
         // "three bedrooms including a master suite": one of them has it

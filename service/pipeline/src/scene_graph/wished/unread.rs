@@ -20,6 +20,8 @@ const MOST_IN_ITEM: usize = 4;
 const MOST_NOTES: usize = 20;
 /// Letters of a word that can be a thing, at least.
 const LEAST_LETTERS: usize = 4;
+/// Largest number that counts things that somebody wishes for; larger ones are years and prices.
+const MOST_COUNTED: f64 = 500.0;
 
 /// What the others have read.
 pub(crate) struct Text<'a> {
@@ -68,6 +70,7 @@ pub(crate) fn state(text: &Text, conflicts: &mut Vec<Note>) {
     text.parts.iter().for_each(|p| put(p.span, &mut spans));
     if text.known_language {
         items(text, &spans).into_iter().for_each(|s| put(s, &mut spans));
+        counted(text).into_iter().for_each(|s| put(s, &mut spans));
     }
     spans.sort_by_key(|s| s.start);
     for span in spans.into_iter().take(MOST_NOTES) {
@@ -174,6 +177,44 @@ pub(crate) fn doors(tokens: &[Token], mentions: &mut [Mention], spoken: &[&Spoke
     out
 }
 
+/// Things that the prompt counts and nobody has read: "3 appliance bays", "two dance floors".
+fn counted(text: &Text) -> Vec<Span> {
+    let tokens = text.tokens;
+    let mentioned = |i: usize| text.mentions.iter().any(|m| m.from <= i && i < m.span.end);
+    let of_mention = |n: &Number| text.mentions.iter().any(|m| m.number == Some(n.span));
+    let free = |i: usize| !text.is_taken(i) && !mentioned(i) && !text.planned.iter().any(|s| s.contains(i));
+    let parts = [Tag::Stops, Tag::Starts, Tag::Joins, Tag::No, Tag::Near, Tag::Each, Tag::PlaceBefore, Tag::Inside];
+    let plain = |i: &usize| {
+        let word = tokens[*i].kind == Kind::Word && !text.numbers.iter().any(|n| n.span.contains(*i));
+        word && free(*i) && !parts.iter().any(|&t| text.tagged(*i, t).is_some())
+    };
+    let several = |n: &&Number| n.value >= 2.0 && n.value.fract() == 0.0 && n.value <= MOST_COUNTED;
+    let mut out = Vec::new();
+    for n in text.numbers.iter().filter(several).filter(|n| !n.article && !n.vague && !of_mention(n)) {
+        let end = (n.span.end..tokens.len().min(n.span.end + MOST_IN_ITEM)).take_while(plain).last().map(|i| i + 1);
+        let Some(end) = end.filter(|_| free(n.span.start)) else { continue };
+        // "24 hours", "two of them": no word of it is a thing; "2 bedroom" of another room is read on
+        let thing = (n.span.end..end).any(|i| is_thing(text, i));
+        let closed = tokens.get(end).is_none_or(|t| t.kind != Kind::Word) || free(end);
+        if thing && closed {
+            out.push(Span { start: n.span.start, end });
+        }
+    }
+    out
+}
+
+/// Returns true for a word that nothing knows and that could be a thing.
+fn is_thing(text: &Text, i: usize) -> bool {
+    let token = &text.tokens[i];
+    let unknown = text.spoken.iter().all(|s| s.tags.longest_at(text.tokens, i).is_none());
+    let number = text.numbers.iter().any(|n| n.span.contains(i));
+    let letters = token.text.chars().count();
+    // "NOC"
+    let name = letters + 1 >= LEAST_LETTERS
+        && text.prompt.get(token.start..token.end).is_some_and(|word| word.chars().all(char::is_uppercase));
+    token.kind == Kind::Word && (letters >= LEAST_LETTERS || name) && unknown && !number
+}
+
 /// Items of the list of rooms of which no word says anything to anybody: "a swimming pool", "helipad".
 fn items(text: &Text, known: &[Span]) -> Vec<Span> {
     let tokens = text.tokens;
@@ -199,7 +240,19 @@ fn is_unread(text: &Text, item: Span, known: &[Span]) -> bool {
     if mentioned || text.taken.iter().chain(known).chain(text.planned).any(read) {
         return false;
     }
-    let little = [Tag::Articles, Tag::Definite, Tag::Own, Tag::Both, Tag::Measure];
+    // words that say whose or what kind of a thing it is: "staff quarters"
+    let little = [
+        Tag::Articles,
+        Tag::Definite,
+        Tag::Own,
+        Tag::Both,
+        Tag::Measure,
+        Tag::NotNames,
+        Tag::Staff,
+        Tag::StaffBefore,
+        Tag::Visitors,
+        Tag::SpaceWords,
+    ];
     let word = |i: usize| {
         let tags = text.spoken.iter().filter_map(|s| s.tags.longest_at(text.tokens, i)).flat_map(|f| f.1);
         let all: Vec<&Tag> = tags.collect();
@@ -207,9 +260,5 @@ fn is_unread(text: &Text, item: Span, known: &[Span]) -> bool {
         (number || !all.is_empty() && all.iter().all(|t| little.contains(t)), all.is_empty() && !number)
     };
     let plain: Vec<(bool, bool)> = (item.start..item.end).map(word).collect();
-    let thing = |i: usize| {
-        let token = &text.tokens[i];
-        token.kind == Kind::Word && token.text.chars().count() >= LEAST_LETTERS && plain[i - item.start].1
-    };
-    plain.iter().all(|w| w.0 || w.1) && (item.start..item.end).any(thing)
+    plain.iter().all(|w| w.0 || w.1) && (item.start..item.end).any(|i| is_thing(text, i))
 }
