@@ -84,6 +84,7 @@ fn in_homes(heard: &Heard, site: &Site, mentions: &mut Vec<Mention>, registry: &
     let mut read = fixtures::settle(tokens, prompt, mentions, domain, &site.wet, spoken);
     read.extend(objects::of_bedrooms(tokens, mentions, (domain, registry), (languages, spoken)));
     read.extend(homes::sleep_where_one_lives(tokens, mentions, (domain, program), spoken));
+    homes::halve_bathrooms((tokens, spoken), &heard.numbers, mentions, domain);
     homes::not_of_things(tokens, mentions, (domain, registry), (languages, spoken));
     read
 }

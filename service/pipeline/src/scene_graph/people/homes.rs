@@ -183,6 +183,27 @@ pub(crate) fn room_of_nook<'n>(
     behind.and_then(own).or_else(|| before.and_then(own))
 }
 
+/// Counts a toilet for the half of "two and a half bathrooms", "dos baños y medio".
+pub(crate) fn halve_bathrooms(
+    (tokens, spoken): (&[Token], &[&Spoken]),
+    numbers: &[Number],
+    mentions: &mut Vec<Mention>,
+    domain: &Domain,
+) {
+    let d = &words().dwelling;
+    let half = |m: &Mention| {
+        let of_number = |span: Span| numbers.iter().any(|n| n.span == span && n.value.fract() == 0.5);
+        m.number.is_some_and(|span| of_number(span) || is_tagged(spoken, tokens, m.span.end, Tag::Halves))
+    };
+    for at in (0..mentions.len()).rev() {
+        let bathroom = mentions[at].room_type() == Some(&d.bathroom) && domain.room_type(&d.toilet).is_some();
+        if bathroom && half(&mentions[at]) {
+            let toilet = Mention::plain(mentions[at].span, What::Room(d.toilet.clone()));
+            mentions.insert(at + 1, Mention { count: Some(1), ..toilet });
+        }
+    }
+}
+
 /// Takes people whom a thing is for from those who live there: "mesa para cuatro personas". Returns their words.
 pub(crate) fn not_of_things(
     tokens: &[Token],
