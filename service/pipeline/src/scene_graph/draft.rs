@@ -20,6 +20,7 @@ use super::people::counted::Counted;
 use super::people::heads::People;
 use super::people::seats::{self, Called};
 use super::people::{ensuites, groups, homes, sharing, stays};
+use super::subject::building::Part;
 use super::subject::parts::{self, Parts};
 use super::subject::places::note;
 use super::subject::programs::program_by_bedrooms;
@@ -270,7 +271,7 @@ impl<'r, 'a> Draft<'r, 'a> {
         let Heard { tokens, spoken, .. } = &self.heard;
         let (site, taken) = (&mut self.site, &self.aside.taken);
         // "drei Stockwerken" ends in a word for a factory
-        let storey = |p: &super::subject::building::Part| self.heard.is_tagged(p.span.start, Tag::Storeys);
+        let storey = |p: &Part| self.heard.is_tagged(p.span.start, Tag::Storeys);
         site.building.parts.retain(|p| !storey(p) && !taken.iter().any(|s| s.overlaps(p.span)));
         parts::plan(
             &site.building.parts,

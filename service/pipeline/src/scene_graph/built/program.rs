@@ -573,7 +573,8 @@ impl<'r, 'a> Build<'r, 'a> {
         let all: usize = self.rooms.iter().map(sleeps).sum();
         for _ in 0..all.saturating_sub(beds as usize).min(others) {
             let last = self.rooms.iter().rposition(|r| r.room_type == entry.room_type && !r.requested);
-            last.map(|last| self.rooms.remove(last));
+            let Some(last) = last else { return };
+            self.rooms.remove(last);
         }
     }
 

@@ -191,7 +191,9 @@ fn place_at(tokens: &[Token], i: usize, prompt: &str, spoken: &[&Spoken]) -> Opt
             let joined = is_tagged(spoken, tokens, end, Tag::OfKind);
             // "a den" is no Aden
             let parted = end > i + 1 && !token.capital && is_tagged(spoken, tokens, i, Tag::Articles);
-            (fits && !joined && !parted).then(|| (end, place.clone()))
+            // nor the "Check-in-Halle" the town of Halle
+            let end_of_word = !token.spaced && i.checked_sub(1).is_some_and(|b| tokens[b].kind == Kind::Word);
+            (fits && !joined && !parted && !end_of_word).then(|| (end, place.clone()))
         }
     }
 }

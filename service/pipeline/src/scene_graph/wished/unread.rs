@@ -236,7 +236,10 @@ fn items(text: &Text, known: &[Span]) -> Vec<Span> {
 /// Returns true when no word of an item has been read, and one of them could be a thing.
 fn is_unread(text: &Text, item: Span, known: &[Span]) -> bool {
     let read = |s: &Span| s.overlaps(item);
-    let mentioned = text.mentions.iter().any(|m| Span { start: m.from, end: m.span.end }.overlaps(item));
+    // "staff quarters" counts nobody
+    let bare = |m: &Mention| m.count.is_none() && matches!(m.what, What::Staff | What::Visitors | What::People);
+    let here = |m: &Mention| Span { start: m.from, end: m.span.end }.overlaps(item);
+    let mentioned = text.mentions.iter().any(|m| here(m) && !bare(m));
     if mentioned || text.taken.iter().chain(known).chain(text.planned).any(read) {
         return false;
     }
