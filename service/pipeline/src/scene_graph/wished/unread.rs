@@ -236,26 +236,12 @@ fn items(text: &Text, known: &[Span]) -> Vec<Span> {
 /// Returns true when no word of an item has been read, and one of them could be a thing.
 fn is_unread(text: &Text, item: Span, known: &[Span]) -> bool {
     let read = |s: &Span| s.overlaps(item);
-    // "staff quarters" counts nobody
-    let bare = |m: &Mention| m.count.is_none() && matches!(m.what, What::Staff | What::Visitors | What::People);
-    let here = |m: &Mention| Span { start: m.from, end: m.span.end }.overlaps(item);
-    let mentioned = text.mentions.iter().any(|m| here(m) && !bare(m));
+    let mentioned = text.mentions.iter().any(|m| Span { start: m.from, end: m.span.end }.overlaps(item));
     if mentioned || text.taken.iter().chain(known).chain(text.planned).any(read) {
         return false;
     }
-    // words that say whose or what kind of a thing it is: "staff quarters"
-    let little = [
-        Tag::Articles,
-        Tag::Definite,
-        Tag::Own,
-        Tag::Both,
-        Tag::Measure,
-        Tag::NotNames,
-        Tag::Staff,
-        Tag::StaffBefore,
-        Tag::Visitors,
-        Tag::SpaceWords,
-    ];
+    // words that say whose or what kind of a thing it is: "large helipad"
+    let little = [Tag::Articles, Tag::Definite, Tag::Own, Tag::Both, Tag::Measure, Tag::NotNames];
     let word = |i: usize| {
         let tags = text.spoken.iter().filter_map(|s| s.tags.longest_at(text.tokens, i)).flat_map(|f| f.1);
         let all: Vec<&Tag> = tags.collect();
