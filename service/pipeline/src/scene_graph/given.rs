@@ -9,15 +9,15 @@ use d3dgen_model::floorplan::{DoorKind, Floorplan};
 use d3dgen_model::scene_graph::{Connector, GraphEdge, GraphRoom, Note, Occupancy, Robot, SceneGraph};
 use d3dgen_plugins::Registry;
 
-use super::labels;
-use super::places::{self, note};
-use super::reading::refused;
-use super::rooms::wished_assets;
-use super::text::{Phrases, Token, fold, tokens};
-use super::umlauts;
-use super::vital::Wet;
-use super::wishes::CHARGING;
-use super::words::words;
+use super::built::rooms::wished_assets;
+use super::built::vital::Wet;
+use super::refused;
+use super::subject::places::{self, note};
+use super::tokens::labels;
+use super::tokens::text::{Phrases, Token, fold, tokens};
+use super::tokens::umlauts;
+use super::tokens::words::words;
+use super::wished::wishes::CHARGING;
 use crate::Error;
 
 /// Reason of the edges of a brought plan.

@@ -1,69 +1,32 @@
 //! Stage `scene_graph`: from a prompt to rooms and relations.
 //!
-//! No language model: rules over the words of the prompt and the data of the domains. `reading` understands the prompt
-//! with the modules about words, `program` completes the rooms, `rooms` names, sizes and furnishes them, `edges`
-//! connects them.
+//! No language model: rules over the words of the prompt and the data of the domains. The way of a prompt through the
+//! folders, in this order:
+//!
+//! 1. `tokens`: text into words, numbers and measures, in the language it is in.
+//! 2. `subject`: the building and its parts, and where it stands.
+//! 3. `machines`: the robots; `levels`: the storeys. Their words name no rooms.
+//! 4. `named`: the rooms and objects that are called by a name.
+//! 5. `people`: who lives, works, sleeps and is treated there, which says how many rooms there are of some.
+//! 6. `wished`: how many rooms of which type, and how they lie to each other; what nobody can plan.
+//! 7. `reading` runs these steps and holds what they found: all that the prompt says, and nothing more.
+//! 8. `built`: the rooms that are missing, names and sizes of all, doors; `levels` deals them to the storeys.
+//!
+//! `given` makes the graph of a plan that somebody brings, `proposed` that of what a language model proposes.
 
-mod addresses;
-mod apiece;
-mod beds;
-mod building;
-mod charging;
-mod comparisons;
-mod compounds;
-mod deal;
-mod docks;
-mod dwelling;
-mod edges;
-mod fixtures;
+mod built;
+mod draft;
 mod given;
-mod groups;
-mod homes;
-mod keeps;
-mod labels;
-mod language;
-mod large;
-mod layout;
-mod listed;
-mod measures;
-mod mentions;
-mod named_for;
-mod negation;
-mod numbered;
-mod numbers;
-mod objects;
-mod parts;
-mod places;
-mod practitioners;
-mod program;
+mod heard;
+mod levels;
+mod machines;
+mod named;
+mod people;
 mod proposed;
-mod qualities;
 mod reading;
-mod relations;
-mod ring;
-mod robot_rules;
-mod robots;
-mod rooms;
-mod seated;
-mod seats;
-mod senses;
-mod sharing;
-mod single;
-mod spread;
-mod stations;
-mod stays;
-mod storeys;
-mod styles;
-mod subsets;
-mod text;
-mod umlauts;
-mod units;
-mod unknown;
-mod unread;
-mod vital;
-mod wishes;
-mod words;
-mod workers;
+mod subject;
+mod tokens;
+mod wished;
 
 use d3dgen_knowledge::Query;
 use d3dgen_model::robot_body::RobotBody;
@@ -71,18 +34,24 @@ use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::style::Style;
 use d3dgen_plugins::Registry;
 
-pub(crate) use self::charging::{dock_rank, docks_held, most_docks, widest_m};
-pub(crate) use self::edges::rules_here;
+pub(crate) use self::built::edges::rules_here;
+use self::built::program::Planned;
+pub(crate) use self::built::rooms::wished_assets;
+pub(crate) use self::built::vital::is_missed;
+use self::built::{edges, program, ring, rooms, workers};
 pub(crate) use self::given::room_type_called;
 pub use self::given::{Brought, Label, Understood, of_plan, understand};
-use self::program::Planned;
+use self::levels::deal;
+pub(crate) use self::machines::charging::{dock_rank, docks_held, most_docks, widest_m};
+use self::machines::{charging, robot_rules, robots};
+use self::people::homes;
+pub(crate) use self::people::seats::shortages;
 pub(crate) use self::proposed::suits;
 pub use self::proposed::{BY_PROPOSAL, Draft, DraftEdge, DraftRoom, Settled, propose};
 use self::reading::Reading;
-pub(crate) use self::rooms::wished_assets;
-pub(crate) use self::seats::shortages;
-pub(crate) use self::vital::is_missed;
-pub(crate) use self::words::{brings, cleans};
+use self::subject::programs::is_dwelling;
+pub(crate) use self::tokens::words::{brings, cleans};
+use self::wished::wishes::MANY;
 use crate::Error;
 
 /// Reason of the doors to the corridor or hall.
@@ -96,6 +65,15 @@ pub(crate) const BY_STYLE: &str = "style";
 
 /// Reason of the edge between a room and the one it is entered from.
 pub(crate) const BY_HOST: &str = "host";
+
+/// Most rooms one world is planned for.
+const MAX_ROOMS: u32 = MANY as u32;
+
+/// Largest building, m^2.
+const MAX_AREA_M2: f64 = 200_000.0;
+
+/// A room for more people each is no place to work at but one to meet or wash in.
+const MOST_IN_OFFICE: u32 = 4;
 
 /// What to build: a prompt, and flags that overrule it.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -130,6 +108,10 @@ pub fn generate(request: &Request, registry: &Registry) -> Result<SceneGraph, Er
     Ok(settle(request, registry, &mut reading, &mut planned))
 }
 
+fn refused(message: String) -> Error {
+    Error::Refused { stage: "scene_graph", message }
+}
+
 /// Returns the graph of rooms, with those that building rules ask for beside them.
 fn settle<'a>(
     request: &Request,
@@ -157,7 +139,7 @@ fn assemble(request: &Request, mut reading: Reading, planned: &[Planned]) -> Sce
         let dealt = deal::deal(&mut reading, planned, &areas, &levels);
         rooms.iter_mut().zip(dealt).for_each(|(room, level)| room.level = level);
         workers::name_toilets(reading.domain, &mut rooms);
-        deal::even_out(planned, &mut rooms, &levels, reading::is_dwelling(reading.program));
+        deal::even_out(planned, &mut rooms, &levels, is_dwelling(reading.program));
         let (all, web, links) = deal::connect(&mut reading, planned, rooms, &levels);
         rooms = all;
         (web, links)

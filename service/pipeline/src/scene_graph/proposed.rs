@@ -11,12 +11,15 @@ use d3dgen_model::proposal::{Fate, ItemKind, ProposedItem};
 use d3dgen_model::scene_graph::{Connector, GraphEdge, SceneGraph};
 use d3dgen_plugins::Registry;
 
-use super::edges::rules_here;
+use super::MAX_ROOMS;
+use super::built::edges::rules_here;
+use super::built::occupants;
+use super::built::program::{self, Planned, circulation_share};
+use super::built::rooms::wished_assets;
+use super::built::vital;
 use super::given::Names;
-use super::program::{self, Planned, circulation_share};
-use super::reading::{self, MAX_ROOMS, Reading};
-use super::rooms::wished_assets;
-use super::{Request, settle, vital};
+use super::reading::{self, Reading};
+use super::{Request, settle};
 use crate::Error;
 
 /// Reason of the edges that a proposal wishes for.
@@ -232,7 +235,7 @@ impl<'r, 'a> Choice<'r, 'a> {
         for room in self.own.iter().filter(|r| !r.requested) {
             let entry = self.reading.program.rooms.iter().find(|e| e.room_type == room.room_type);
             let own = self.own_count(&room.room_type);
-            let counted = program::is_counted(self.reading, &room.room_type);
+            let counted = occupants::is_counted(self.reading, &room.room_type);
             let least = if counted { own } else { own.min(entry.map_or(0, |e| e.min as usize)) };
             if self.count(&room.room_type) < least {
                 self.push(room.clone());

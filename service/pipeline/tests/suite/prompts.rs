@@ -1,7 +1,7 @@
 //! Scores the prompt reader: prompts with the facts a sensible person reads in them, and texts that make no sense.
 //!
 //! The sets in `prompts/` belong to this repository: `own.jsonl`, `odd.jsonl` (in keywords, with numbers of many things),
-//! `audit.jsonl`, `relations.jsonl` and `rules.jsonl` (adjacency rules of one country asked for in another). One more in the
+//! `audit.jsonl`, `spelling.jsonl`, `relations.jsonl` and `rules.jsonl` (adjacency rules of one country asked for in another). One more in the
 //! same form is scored where it lies beside the workspace. Room counts are minima, `n_rooms` counts rooms other than
 //! circulation, adjacency means any edge.
 
@@ -78,6 +78,10 @@ struct Case {
     has_assumptions: Vec<String>,
     /// Codes of conflicts that the prompt does not have.
     no_conflicts: Vec<String>,
+    /// Codes of assumptions that it does not have.
+    no_assumptions: Vec<String>,
+    /// What conflicts or assumptions are to tell.
+    told: Vec<String>,
     tags: Vec<String>,
 }
 
@@ -136,6 +140,12 @@ fn check_facts(case: &Case, graph: &SceneGraph, misses: &mut Misses) {
     }
     let false_ones: Vec<_> = graph.conflicts.iter().filter(|c| case.no_conflicts.contains(&c.code)).collect();
     misses.check(false_ones.is_empty(), "no_conflicts", &case.no_conflicts, &false_ones);
+    let false_ones: Vec<_> = graph.assumptions.iter().filter(|c| case.no_assumptions.contains(&c.code)).collect();
+    misses.check(false_ones.is_empty(), "no_assumptions", &case.no_assumptions, &false_ones);
+    for words in &case.told {
+        let all = || graph.conflicts.iter().chain(&graph.assumptions).map(|n| &n.message);
+        misses.check(all().any(|m| m.contains(words)), "told", words, all().collect::<Vec<_>>());
+    }
     for (fact, codes, notes) in [
         ("conflicts", &case.has_conflicts, &graph.conflicts),
         ("assumptions", &case.has_assumptions, &graph.assumptions),
@@ -302,6 +312,13 @@ fn reads_odd_prompts() {
 fn reads_what_an_audit_found() {
     let (right, all) = score(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/prompts/audit.jsonl"));
     assert!(all >= 80, "{all} prompts");
+    assert_eq!(right, all);
+}
+
+#[test]
+fn reads_misspelled_prompts() {
+    let (right, all) = score(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/prompts/spelling.jsonl"));
+    assert!(all >= 12, "{all} prompts");
     assert_eq!(right, all);
 }
 
