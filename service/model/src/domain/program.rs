@@ -206,8 +206,8 @@ pub struct Circulation {
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub way_out_source: String,
     /// Least width of open ground with the building all around that rooms have their light from, m: a narrower hole is a shaft,
-    /// without windows or doors. As it is: two walls with windows, 3 m of open ground before each (Musterbauordnung, Germany,
-    /// section 6 (5)); IBC 1205.3.1 is content with 1.83 m.
+    /// without windows or doors. As it is: light falls in at 45 degrees over a wall of one storey across it (3 m), and there is
+    /// room to walk; IBC 1205.3.1 is content with 1.83 m.
     #[serde(default = "court_width_m")]
     pub court_width_m: f64,
     /// True where doors to the rooms that robots work in open by themselves, when there are robots; in homes they stand open.
@@ -221,7 +221,7 @@ pub struct Circulation {
 }
 
 fn court_width_m() -> f64 {
-    6.0
+    5.0
 }
 
 /// How a building with several storeys is divided and joined.

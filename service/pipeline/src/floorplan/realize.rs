@@ -19,7 +19,7 @@ pub(super) const MIN_NOTCH_M: f64 = 1.5;
 const MOST_COURT: f64 = 3.0;
 
 /// How much wider than it must be a court is that a building of other than one household is made around, m.
-const BEYOND_LEAST_M: f64 = 1.0;
+const BEYOND_LEAST_M: f64 = 2.0;
 /// How wide a court is at least, as a share of the side of a square as large as all rooms: a large building has no shaft.
 const COURT_SHARE: f64 = 0.28;
 /// How much more a corridor around a court counts than a notch as long that has no room on its facade.

@@ -78,7 +78,7 @@ fn brief(mut rooms: Vec<RoomSpec>, width: f64, links: &[(usize, usize, Connector
         area: None,
         share_advised: None,
         entrance_width: 1.0,
-        court_width: 6.0,
+        court_width: 5.0,
         conflicts: Vec::new(),
         guests: Vec::new(),
         stem: false,
