@@ -244,7 +244,8 @@ fn is_unread(text: &Text, item: Span, known: &[Span]) -> bool {
     let little = [Tag::Articles, Tag::Definite, Tag::Own, Tag::Both, Tag::Measure, Tag::NotNames];
     let word = |i: usize| {
         let tags = text.spoken.iter().filter_map(|s| s.tags.longest_at(text.tokens, i)).flat_map(|f| f.1);
-        let all: Vec<&Tag> = tags.collect();
+        // what tells the language says nothing of the thing: "a helipad"
+        let all: Vec<&Tag> = tags.filter(|t| **t != Tag::Detect).collect();
         let number = text.numbers.iter().any(|n| n.span.contains(i));
         (number || !all.is_empty() && all.iter().all(|t| little.contains(t)), all.is_empty() && !number)
     };
