@@ -90,6 +90,8 @@ pub(super) struct RoomSpec {
     pub people: u32,
     /// Clear width of the gate through which its vehicles come in, or of its own door to outdoors, m.
     pub gate: Option<f64>,
+    /// Height of that gate where vehicles need more than a door, m.
+    pub gate_height: f64,
     pub door_width: f64,
     pub ceiling_height: f64,
     /// Limits of its type, for what depends on the finished room.
@@ -126,6 +128,12 @@ impl RoomSpec {
 
 /// How much wider than a vehicle its gate is, m.
 const BESIDE_VEHICLE_M: f64 = 0.6;
+/// Air over a vehicle in its gate, and lintel over a gate, m.
+const OVER_VEHICLE_M: f64 = 0.4;
+const OVER_GATE_M: f64 = 0.4;
+/// Clear width of a door to outdoors from which on lorries come to it, m, and how high it is for them (practice: 3 m and more).
+const DOCK_GATE_M: f64 = 2.4;
+const DOCK_GATE_HEIGHT_M: f64 = 3.0;
 /// What a robot's circle has to spare where it passes, both sides together, m.
 const PASSING_M: f64 = 0.1;
 /// Floor that rooms have for a usual robot to turn on anyway, m^2.
@@ -550,6 +558,7 @@ fn room_spec(
         for_guests: is_for_guests(room, graph, domain),
         people: room.occupants.filter(|_| kind.zone != Zone::Night).unwrap_or(0),
         gate,
+        gate_height: gate_height(domain, kind),
         door_width: door_width.max(robot),
         ceiling_height: kind.ceiling_height_m,
         limits: limit.clone(),
@@ -578,6 +587,18 @@ fn is_for_guests(room: &GraphRoom, graph: &SceneGraph, domain: &Domain) -> bool 
     };
     !graph.rooms.iter().any(|r| halls.contains(&r.room_type))
         && rules_here(domain, graph.country_code.as_deref()).any(wanted)
+}
+
+/// Returns the height of the gate that the vehicles of a room need, or those that come to it, m.
+fn gate_height(domain: &Domain, kind: &RoomType) -> f64 {
+    let high = |item: &str| {
+        let vehicle = domain.anchor(item).filter(|o| o.shape == Shape::Vehicle)?;
+        vehicle.sizes_m.first().map(|size| size[2] + OVER_VEHICLE_M)
+    };
+    let parked = kind.furnishing.iter().filter(|f| f.required).filter_map(|f| high(&f.item)).reduce(f64::max);
+    // lorries back up to a dock
+    let lorries = || kind.outdoor_door_m.filter(|wide| *wide >= DOCK_GATE_M).map(|_| DOCK_GATE_HEIGHT_M);
+    parked.or_else(lorries).unwrap_or(0.0).min(kind.ceiling_height_m - OVER_GATE_M)
 }
 
 /// Returns the clear width of the gate that the vehicles of a room need, or of its own door to outdoors, m.

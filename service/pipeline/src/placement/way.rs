@@ -13,6 +13,8 @@ const THROUGH_M: [f64; 2] = [1.2, 1.5];
 /// Floor that a bed takes beside its own width when it is pushed, m, at least and as one would have it.
 const BESIDE_BED_M: [f64; 2] = [0.05, 0.2];
 
+/// Clear width of a door to outdoors from which on patients are brought in through it, m.
+const BROUGHT_M: f64 = 1.2;
 /// Floor around a bed that is turned through a door, m, over its width and its length.
 const BED_SPARE_M: f64 = 0.05;
 
@@ -72,7 +74,9 @@ impl Way {
         let circulation = |id: &String| *id != room.room_id && plan.room(id).is_some_and(|r| r.circulation);
         let doors = || plan.doors_of(&room.room_id);
         let inward: Vec<Door> = doors().filter(|d| d.room_ids.iter().any(circulation)).cloned().collect();
-        let entrance = doors().find(|d| d.entrance);
+        // where an ambulance brings patients they come in on a stretcher, past those that wait for the next
+        let brought = |d: &&Door| beds && d.room_ids.len() == 1 && d.clear_width_m >= BROUGHT_M;
+        let entrance = doors().find(|d| d.entrance).or_else(|| doors().find(brought));
         let (kind, doors, widths): (_, Vec<Door>, _) = if room.circulation {
             (Kind::Circulation, doors().cloned().collect(), widths_m)
         } else if let Some(entrance) = entrance.filter(|_| !inward.is_empty()) {

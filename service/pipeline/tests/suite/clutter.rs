@@ -20,7 +20,7 @@ const CASES: [(&str, f64); 9] = [
     ("outpatient clinic with 8 rooms", 2.0),
     ("primary school with four classrooms", 2.0),
     ("hotel with 9 rooms in total", 2.0),
-    ("clothing shop", 2.0),
+    ("clothing shop", 1.75),
     ("restaurant", 2.0),
     ("warehouse with a loading dock, an office and charging for two robots", 0.5),
 ];

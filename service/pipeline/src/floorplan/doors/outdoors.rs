@@ -78,7 +78,9 @@ impl Site<'_> {
         let spots = [(middle, 0.0), (from, 0.5), (to - opening, 0.5)].into_iter().map(|(start, penalty)| {
             let line = Segment { start: s.point(start), end: s.point(start + opening) };
             let zone = self.zone(s, room, start, opening, APPROACH_M);
-            let door = Door { automatic: true, ..self.door(line, DoorKind::Sliding, clear, s, &[room], None) };
+            let usual = self.door(line, DoorKind::Sliding, clear, s, &[room], None);
+            let height_m = self.brief.rooms[room].gate_height.max(usual.height_m);
+            let door = Door { automatic: true, height_m, ..usual };
             Spot { door, wall: None, view: View::Other, zones: vec![(room, zone)], penalty: penalty + meters(s.len()) }
         });
         spots.filter(|spot| spot.zones.iter().all(|(r, zone)| self.inside(*r, zone))).collect()

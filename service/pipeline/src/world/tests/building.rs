@@ -245,8 +245,9 @@ fn range(s: &Sample, wanted: impl Fn(f64) -> [f64; 2]) -> Vec<Change> {
 /// A thin fin of wall runs through most of a room, at several places of each.
 fn slits(s: &Sample) -> Vec<Change> {
     let rooms = s.world.floorplan.rooms.iter().filter(|r| !r.circulation && r.net_polygon.0.len() == 4);
-    let shares = || (0..=20).map(|i| 0.1 + 0.04 * f64::from(i));
-    let all = rooms.flat_map(|r| shares().flat_map(move |at| [(r, at, true), (r, at, false)]));
+    // the middle of every room first
+    let shares = (0..=20).map(|i: i32| 0.5 + 0.04 * f64::from(if i % 2 == 0 { i / 2 } else { -(i + 1) / 2 }));
+    let all = shares.flat_map(|at| rooms.clone().flat_map(move |r| [(r, at, true), (r, at, false)]));
     // a slit through furniture would break the rules about furniture too
     let places = all.filter(|(room, at, upright)| {
         let b = room.net_polygon.bounds();
