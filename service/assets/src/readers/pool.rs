@@ -117,6 +117,8 @@ fn start(program: &Program) -> Result<Running, Error> {
     command.args(&program.arguments).arg(program.limits.memory_bytes.to_string());
     // A file must not find the keys of providers in the memory of the process that it may take over.
     command.env_clear().stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null());
+    // The command's allocator takes memory ahead, which would count against the limit of the process.
+    command.env("MIMALLOC_ARENA_EAGER_COMMIT", "0");
     let mut process = command.spawn().map_err(failed)?;
     let pipes = process.stdin.take().zip(process.stdout.take());
     let (input, output) = pipes.ok_or_else(|| failed(std::io::Error::other("no pipe to it")))?;
