@@ -1,7 +1,8 @@
 //! Changes that break the rules about outlines, walls, sizes and how rooms hang together.
 
-use d3dgen_model::domain::{Access, AdjacencyRelation, Privacy};
-use d3dgen_model::floorplan::DoorKind;
+use d3dgen_model::domain::{Access, AdjacencyRelation, Mount, Privacy};
+use d3dgen_model::floorplan::{DoorKind, PlanRoom};
+use d3dgen_model::placements::Placement;
 use d3dgen_model::world::World;
 use d3dgen_model::{Point, Polygon, Segment};
 
@@ -248,17 +249,19 @@ fn slits(s: &Sample) -> Vec<Change> {
     // the middle of every room first
     let shares = (0..=20).map(|i: i32| 0.5 + 0.04 * f64::from(if i % 2 == 0 { i / 2 } else { -(i + 1) / 2 }));
     let all = shares.flat_map(|at| rooms.clone().flat_map(move |r| [(r, at, true), (r, at, false)]));
-    // a slit through furniture would break the rules about furniture too
+    // a slit through furniture would break the rules about furniture too; what hangs from the ceiling there is taken down
+    let crosses = |p: &Placement, room: &PlanRoom, at: f64, upright: bool| {
+        let (o, b) = (p.footprint().bounds(), room.net_polygon.bounds());
+        let (from, to, edge) =
+            if upright { (o.x0, o.x1, b.x0 + at * b.width()) } else { (o.y0, o.y1, b.y0 + at * b.height()) };
+        p.room_id == room.room_id && from < edge + 0.01 && edge < to
+    };
     let places = all.filter(|(room, at, upright)| {
-        let b = room.net_polygon.bounds();
-        let in_room = s.world.placements.placements.iter().filter(|p| p.room_id == room.room_id);
-        !in_room.map(|p| p.footprint().bounds()).any(|o| {
-            let (from, to, edge) =
-                if *upright { (o.x0, o.x1, b.x0 + at * b.width()) } else { (o.y0, o.y1, b.y0 + at * b.height()) };
-            from < edge + 0.01 && edge < to
-        })
+        let mut standing = s.world.placements.placements.iter().filter(|p| p.mount != Mount::Ceiling);
+        !standing.any(|p| crosses(p, room, *at, *upright))
     });
     each(s, places, |w, (room, at, upright)| {
+        w.placements.placements.retain(|p| !crosses(p, room, at, upright));
         let b = room.net_polygon.bounds();
         let along = if upright { b.x0 + at * b.width() } else { b.y0 + at * b.height() };
         let points = if upright {
