@@ -77,10 +77,10 @@ fn a_robot_that_cannot_fit_is_refused_with_one_that_does() {
 #[test]
 fn without_fitting_the_report_says_where_a_robot_is_stopped() {
     let home = tempfile::tempdir().unwrap();
-    std::fs::write(home.path().join("robot.toml"), "width_m = 0.5\nlength_m = 0.7\nheight_m = 0.9\n").unwrap();
+    std::fs::write(home.path().join("robot.toml"), "width_m = 0.5\nlength_m = 0.6\nheight_m = 0.9\n").unwrap();
     let (_, report, evaluation) = made(home.path(), PROMPTS[1], &["--robot-file", "robot.toml"]);
     let fit = &report["robot_fit"][0];
-    assert_eq!((fit["radius_m"].as_f64(), fit["height_m"].as_f64()), (Some(0.431), Some(0.9)));
+    assert_eq!((fit["radius_m"].as_f64(), fit["height_m"].as_f64()), (Some(0.391), Some(0.9)));
     assert_eq!(fit["fits"], evaluation["worlds"][0]["robots"][0]["fits"]);
     std::fs::write(home.path().join("bad.toml"), "girth_m = 0.5\n").unwrap();
     let output = run(home.path(), &["generate", PROMPTS[1], "--robot-file", "bad.toml", "--out", "x"]);
