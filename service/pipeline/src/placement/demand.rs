@@ -392,7 +392,8 @@ impl<'a> Order<'a, '_> {
     }
 }
 
-fn is_table(object: &ObjectType) -> bool {
+/// Returns true for what people sit at to eat or talk.
+pub(super) fn is_table(object: &ObjectType) -> bool {
     matches!(object.shape, Shape::Table | Shape::RoundTable)
 }
 

@@ -8,7 +8,7 @@ use std::rc::Rc;
 use d3dgen_knowledge::Aim;
 use d3dgen_model::domain::{Arrangement, Domain, Mount, Shape};
 
-use super::demand::{Task, storage_width_m};
+use super::demand::{Task, is_table, storage_width_m};
 use super::draft::{ASIDE, AT_WALL, DEEPEST, DEPARTURES, Departure, Draft, RESCUES, Seen};
 use super::find::{Candidate, Find, Tally, Terms, leave_out_single, over, rows};
 use super::nav::Nav;
@@ -539,9 +539,10 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
     /// Returns true for rows of tables with seats around them: where the rows leave floor, more stand by themselves.
     fn is_sat_around(&self, index: usize) -> bool {
         let task = &self.job.tasks[index];
-        let table = matches!(task.anchor.shape, Shape::Table | Shape::RoundTable);
         let first = self.forms[index].first().and_then(|forms| forms.first());
-        table && task.arrangement == Arrangement::Rows && first.is_some_and(|u| u.seats() > 0 && u.look() == 0)
+        is_table(task.anchor)
+            && task.arrangement == Arrangement::Rows
+            && first.is_some_and(|u| u.seats() > 0 && u.look() == 0)
     }
 
     /// Returns the rule that stopped most positions.

@@ -18,9 +18,8 @@ const ON_LINE: i32 = 30;
 impl<'a> Find<'_, 'a, '_> {
     /// Offers places for one more table beside rows of them.
     pub(super) fn beside_rows(&mut self, unit: &Rc<Unit<'a>>) {
-        let tables: Vec<Placed<'a>> = self.siblings().cloned().collect();
-        let boxes: Vec<Box2> = tables.iter().map(|p| p.world(&p.unit.bbox)).collect();
-        let alike = |q: u8| tables.iter().filter(|p| p.q % 2 == q).count();
+        let boxes: Vec<Box2> = self.siblings().map(|p| p.world(&p.unit.bbox)).collect();
+        let alike = |q: u8| self.siblings().filter(|p| p.q % 2 == q).count();
         let usual = u8::from(alike(1) > alike(0));
         let before = self.out.len();
         for q in [0, 1] {

@@ -14,7 +14,7 @@ use d3dgen_model::domain::{Arrangement, Mount, Shape};
 
 pub(super) use rows::{Terms, leave_out_single, over, rows};
 
-use super::demand::Task;
+use super::demand::{Task, is_table};
 use super::docks::{crowding, touches_robot};
 use super::geom::{Box2, turn};
 use super::neighbors::{Neighbors, beside_sofas};
@@ -121,9 +121,7 @@ impl<'f, 'a, 's> Find<'f, 'a, 's> {
             Arrangement::OnSurface => self.on_surfaces(unit),
             Arrangement::AtWindow => self.at_windows(unit),
             Arrangement::Center => self.center(unit),
-            Arrangement::Rows if matches!(self.task.anchor.shape, Shape::Table | Shape::RoundTable) => {
-                self.beside_rows(unit);
-            }
+            Arrangement::Rows if is_table(self.task.anchor) => self.beside_rows(unit),
             Arrangement::Facing => self.facing(unit),
             Arrangement::FacingDoor => self.facing_door(unit),
             _ if self.task.anchor.mount == Mount::Surface => self.on_surfaces(unit),
