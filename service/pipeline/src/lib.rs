@@ -4,18 +4,14 @@
 
 pub mod bring;
 pub mod edit;
-mod entry;
-pub mod error;
 mod fit;
 pub mod floorplan;
 pub mod generate;
 pub mod placement;
 pub mod scenario;
 pub mod scene_graph;
-pub mod stop;
 pub mod variations;
 mod ways_out;
 pub mod world;
 
-pub use error::Error;
-pub use stop::Stop;
+pub use d3dgen_model::stage::{Error, Stop};

@@ -3,6 +3,7 @@
 use d3dgen_model::floorplan::{Door, Floorplan};
 use d3dgen_model::scene_graph::Note;
 use d3dgen_model::seed::Stream;
+use d3dgen_model::stage::{Error, Stop};
 
 use super::assemble::{Earlier, assemble};
 use super::board::{Board, cells, units};
@@ -12,7 +13,6 @@ use super::lattice::{Cellbox, meters, nearest};
 use super::outline::Mosaic;
 use super::revise::{Aim, Task};
 use super::spec::{Brief, RoomSpec};
-use crate::{Error, Stop};
 
 /// Searches of a part before it is given up.
 const ATTEMPTS: usize = 10;

@@ -5,10 +5,10 @@ use d3dgen_model::Segment;
 use d3dgen_model::domain::{Daylight, Zone};
 use d3dgen_model::floorplan::{CostTerm, Door, Floorplan, PlanRoom, Wall, Window};
 use d3dgen_model::geometry::to_mm;
+use d3dgen_model::measures::MOST_ELONGATED;
 use d3dgen_model::seed::Stream;
 use d3dgen_model::slides;
 
-use super::PROPORTION_LIMIT;
 use super::cost::{OVERHANG, Score, TERMS};
 use super::doors::{Site, place_doors, shut_courts};
 use super::lattice::{Cellbox, INNER_HALF_M, OUTER_HALF_M, meters, up};
@@ -77,7 +77,7 @@ pub(super) fn assemble(
         }
         let net_area_m2 = to_mm(net_polygon.signed_area());
         let proportion = FreeSpace::new(&net_polygon, &[]).proportion();
-        if proportion > PROPORTION_LIMIT && !spec.circulation && spec.zone != Zone::Circulation {
+        if proportion > MOST_ELONGATED && !spec.circulation && spec.zone != Zone::Circulation {
             return Err(format!("{} is {proportion:.1} times as long as wide", spec.id));
         }
         let polygon = ring.polygon();

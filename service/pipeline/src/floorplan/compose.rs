@@ -7,6 +7,7 @@
 use d3dgen_model::domain::{Scheme, Zone};
 use d3dgen_model::scene_graph::Connector;
 use d3dgen_model::seed::Stream;
+use d3dgen_model::stage::Stop;
 use d3dgen_model::style::Form;
 
 use super::core::{Below, Comb, Slot, out_of_core};
@@ -15,7 +16,6 @@ use super::lattice::{Cellbox, Frame, meters, up};
 use super::realize::{Layout, spine_units};
 use super::search::{Candidate, search_with};
 use super::spec::Brief;
-use crate::Stop;
 
 /// Rooms from which on a building is composed of wings.
 pub(super) const LARGE: usize = 18;

@@ -4,13 +4,13 @@
 //! accepted only when they are zero. Soft terms are weighted sums, reported in the floorplan's `cost`.
 
 use d3dgen_model::domain::{Daylight, Zone};
+use d3dgen_model::measures::{JAMB_M, MOST_ELONGATED};
 use d3dgen_model::scene_graph::Connector;
 use d3dgen_model::seed::Stream;
 
-use super::PROPORTION_LIMIT;
 use super::core::{Below, in_core, overhang};
 use super::hall;
-use super::lattice::{CELL_M2, Cellbox, INNER_HALF_M, JAMB_M, OUTER_HALF_M, meters, up};
+use super::lattice::{CELL_M2, Cellbox, INNER_HALF_M, OUTER_HALF_M, meters, up};
 use super::mirror;
 use super::realize::{Layout, door_need};
 use super::spec::{Brief, RoomSpec};
@@ -456,7 +456,7 @@ impl<'b> Judge<'b> {
                 let proportion = w.max(h) / w.min(h).max(0.1);
                 // the flights of a high storey are as long as they are
                 if !spec.fixed {
-                    score.hard += (proportion - PROPORTION_LIMIT).max(0.0);
+                    score.hard += (proportion - MOST_ELONGATED).max(0.0);
                 }
                 score.soft[1] += (proportion - 1.5).max(0.0).powi(2) + SLOT * (proportion - SLOT_FROM).max(0.0);
             }

@@ -8,9 +8,6 @@ pub(super) const STEP_M: f64 = 0.05;
 pub(super) const INNER_HALF_M: f64 = 0.06;
 /// Half the thickness of an outer wall, m.
 pub(super) const OUTER_HALF_M: f64 = 0.12;
-/// Least wall between a door opening and a room corner, measured from the face of the crossing wall, m.
-pub(super) const JAMB_M: f64 = 0.10;
-
 /// Returns meters as lattice units, rounded up.
 pub(super) fn up(meters: f64) -> i32 {
     // By hand: the processor's own way to round is not in every machine, and the library's is slow.

@@ -46,17 +46,15 @@ use d3dgen_model::domain::{Domain, Scheme};
 use d3dgen_model::floorplan::Floorplan;
 use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::seed::Stream;
+use d3dgen_model::stage::{Error, Stop};
 use d3dgen_model::style::{Form, Symmetry};
 
-use crate::{Error, Stop};
 pub use adjust::WallMove;
 use assemble::{Turn, assemble, turned};
 pub use proposed::{Follow, MOST_SKETCHED, Sketch, propose};
 use search::search;
 use spec::Brief;
 
-/// Longest net length over width of a room: a hard rule.
-pub(crate) const PROPORTION_LIMIT: f64 = 2.5;
 /// Share by which a plan may miss the area that is asked for.
 pub(crate) const AREA_MISS: f64 = 0.1;
 /// Attempts after which a plan that misses it more is taken all the same.

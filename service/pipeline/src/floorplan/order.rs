@@ -6,6 +6,7 @@
 
 use d3dgen_model::domain::Zone;
 use d3dgen_model::seed::Stream;
+use d3dgen_model::stage::Stop;
 
 use super::cost::{Judge, Weights, between, ill_placed};
 use super::genome::Genome;
@@ -14,7 +15,6 @@ use super::lattice::{Cellbox, up};
 use super::realize::{Layout, Scratch, realize};
 use super::search::{Candidate, LOOK, mutate, patience};
 use super::spec::{Brief, RoomSpec};
-use crate::Stop;
 
 /// Changes tried per room, and at most.
 const TRIES_PER_ROOM: usize = 50;

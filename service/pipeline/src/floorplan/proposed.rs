@@ -7,6 +7,7 @@ use d3dgen_model::floorplan::Floorplan;
 use d3dgen_model::geometry::Rect;
 use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::seed::Stream;
+use d3dgen_model::stage::{Error, Stop};
 
 use super::assemble::{Turn, assemble, turned};
 use super::board::{Board, tidied, units};
@@ -17,7 +18,6 @@ use super::revise::{Aim, Task};
 use super::search::search;
 use super::spec::Brief;
 use super::{one_storey_graph, schemes};
-use crate::{Error, Stop};
 
 /// Most rooms whose sketch is looked at.
 pub const MOST_SKETCHED: usize = 60;

@@ -3,11 +3,12 @@
 use std::cmp::Ordering;
 
 use d3dgen_model::domain::Scheme;
+use d3dgen_model::measures::JAMB_M;
 use d3dgen_model::style::Form;
 
 use super::core::Comb;
 use super::genome::{Cap, Cell, Cover, EAST_BAND, Genome, WEST_BAND};
-use super::lattice::{Cellbox, Frame, INNER_HALF_M, JAMB_M, OUTER_HALF_M, meters, nearest, up};
+use super::lattice::{Cellbox, Frame, INNER_HALF_M, OUTER_HALF_M, meters, nearest, up};
 use super::spec::Brief;
 
 /// Room proportions stay below 1 : 2.5; the search aims a little lower.

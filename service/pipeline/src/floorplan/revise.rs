@@ -4,6 +4,7 @@
 //! places, and the outline moves where no kept room has its outer wall. The corridor stays where it is.
 
 use d3dgen_model::seed::Stream;
+use d3dgen_model::stage::Stop;
 
 use super::board::{Board, units};
 use super::cost::{Judge, Weights};
@@ -11,7 +12,6 @@ use super::lattice::{Cellbox, up};
 use super::realize::Layout;
 use super::search::patience;
 use super::spec::Brief;
-use crate::Stop;
 
 /// Steps per free room, and at least and at most in all.
 const STEPS_PER_ROOM: usize = 700;

@@ -2,6 +2,7 @@
 
 use d3dgen_model::domain::Scheme;
 use d3dgen_model::seed::Stream;
+use d3dgen_model::stage::Stop;
 use d3dgen_model::style::Form;
 
 use super::compose::{LARGE, compose};
@@ -15,7 +16,6 @@ use super::realize::{Layout, Scratch, realize};
 use super::scheme_of;
 use super::spec::Brief;
 use super::symmetric;
-use crate::Stop;
 
 /// Steps of one run per room, of a small plan and of others, and the runs at most.
 const STEPS_OF_SMALL: usize = 100;

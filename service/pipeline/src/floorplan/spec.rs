@@ -3,24 +3,25 @@
 
 use std::collections::BTreeMap;
 
+use d3dgen_knowledge::jurisdiction::rules_here;
 use d3dgen_knowledge::{Limit, Limits, RoomLimits};
 use d3dgen_model::domain::{
     Adjacency, AdjacencyRelation, Arrangement, Daylight, Domain, Materials, Privacy, Relation, RobotUse, RoomType,
     Shape, Zone,
 };
-use d3dgen_model::scene_graph::{Connector, GraphEdge, GraphRoom, Note, SceneGraph};
+use d3dgen_model::measures::JAMB_M;
+use d3dgen_model::offer::has_docks;
+use d3dgen_model::scene_graph::{BY_PROMPT, Connector, GraphEdge, GraphRoom, Note, SceneGraph};
 use d3dgen_model::seed::Stream;
+use d3dgen_model::stage::Error;
 use d3dgen_model::storeys::LinkKind;
 use d3dgen_model::style::{Form, SpaceStyle, StyleWord, Symmetry};
 
 use super::core::Core;
-use super::lattice::{JAMB_M, OUTER_HALF_M};
+use super::lattice::OUTER_HALF_M;
 use super::mirror::SYMMETRIC;
 use super::search::Candidate;
 use super::windows::LEAST_WALL_M;
-use crate::Error;
-use crate::placement::has_docks;
-use crate::scene_graph::{BY_PROMPT, rules_here};
 
 /// Code of the conflict that a building has another form than was asked for.
 const FORM_NOT_BUILT: &str = "form_not_built";

@@ -12,6 +12,7 @@ use d3dgen_model::floorplan::{CostTerm, Floorplan};
 use d3dgen_model::geometry::to_mm;
 use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::seed::Stream;
+use d3dgen_model::stage::{Error, Stop};
 
 use super::adjust::{self, WallMove};
 use super::assemble::{costs, highest};
@@ -20,7 +21,6 @@ use super::core::{Below, Core, merged};
 use super::cost::Judge;
 use super::spec::Brief;
 use super::storeys::{height, overhang_note, raise_stairwells};
-use crate::{Error, Stop};
 
 /// A building of several storeys whose plan stands.
 struct Building<'a> {

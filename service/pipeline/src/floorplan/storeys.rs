@@ -6,6 +6,7 @@ use d3dgen_model::floorplan::{CostTerm, Floorplan};
 use d3dgen_model::geometry::to_mm;
 use d3dgen_model::scene_graph::{Note, SceneGraph};
 use d3dgen_model::seed::Stream;
+use d3dgen_model::stage::{Error, Stop};
 use d3dgen_model::storeys::{Level, LinkKind};
 use d3dgen_model::style::Form;
 
@@ -17,7 +18,6 @@ use super::lattice::{CELL_M2, Cellbox, INNER_HALF_M, meters, nearest};
 use super::search::search;
 use super::spec::Brief;
 use super::{ATTEMPTS, LONGEST_BAR, schemes};
-use crate::{Error, Stop};
 
 /// Share of a storey that may jut out over the one below without a word.
 pub(super) const OVERHANG_SHARE: f64 = 0.10;

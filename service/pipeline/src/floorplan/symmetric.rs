@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use d3dgen_model::domain::{Daylight, Scheme, Zone};
 use d3dgen_model::seed::Stream;
+use d3dgen_model::stage::Stop;
 
 use super::cost::{Judge, Weights};
 use super::genome::{Band, Cap, Cell, Cover, Genome, is_nestable, nest_depth};
@@ -17,7 +18,6 @@ use super::realize::{
 use super::search::{Candidate, LOOK, mutate, patience};
 use super::spec::Brief;
 use super::twins::{Twins, tie};
-use crate::Stop;
 
 /// Sound plans that are compared, the runs at most, and the rooms from which on fewer do.
 const WANTED: usize = 8;

@@ -4,6 +4,7 @@ use d3dgen_model::Document;
 use d3dgen_model::domain::{Daylight, Materials, Scheme, Zone};
 use d3dgen_model::scene_graph::Connector;
 use d3dgen_model::seed::Stream;
+use d3dgen_model::stage::Stop;
 use d3dgen_model::style::Symmetry;
 
 use super::assemble::{Turn, assemble, turned};
@@ -12,7 +13,6 @@ use super::lattice::Cellbox;
 use super::mirror::{Likeness, SYMMETRIC, likeness};
 use super::search::{mutate, search};
 use super::spec::{Brief, Link, RoomSpec};
-use crate::Stop;
 
 fn room(id: &str, area: [f64; 3], min_dimension: f64, daylight: Daylight, zone: Zone) -> RoomSpec {
     let material = || "Concrete_Smooth".to_owned();

@@ -4,9 +4,12 @@ use d3dgen_knowledge::Limits;
 use d3dgen_knowledge::clearance::{Side, door_zones, free_depth, is_shallow, quarter};
 use d3dgen_model::domain::{Domain, ObjectType, RobotUse, Shape};
 use d3dgen_model::floorplan::{Floorplan, PlanRoom};
+use d3dgen_model::measures::LEAST_RADIUS_M;
 use d3dgen_model::occupancy::stops_robot;
+use d3dgen_model::offer::{dock_rank, most_docks};
 use d3dgen_model::placements::{Placement, Placements};
 use d3dgen_model::scene_graph::SceneGraph;
+use d3dgen_model::stage::{Error, Stop};
 use d3dgen_model::{Point, Rect};
 
 use super::docks::FROM_EXIT;
@@ -14,8 +17,6 @@ use super::locked::placed;
 use super::pockets::Pockets;
 use super::space::Space;
 use super::{Wanted, insert, one_more};
-use crate::scene_graph::{dock_rank, most_docks};
-use crate::{Error, Stop};
 
 /// Floor beside a dock that belongs to it, m, as in the charging buffers of scenarios.
 const BESIDE_M: f64 = 0.5;
@@ -94,7 +95,7 @@ fn is_free(
 ) -> bool {
     let own = p.footprint().bounds();
     let others = here.iter().filter(|o| stops_robot(o) && !is_shallow(o)).map(|o| o.footprint().bounds());
-    let robot = graph.robots.iter().map(|r| r.planned_radius_m()).fold(super::LEAST_RADIUS_M, f64::max);
+    let robot = graph.robots.iter().map(|r| r.planned_radius_m()).fold(LEAST_RADIUS_M, f64::max);
     let depth = free_depth(p, Side::Front, &room.net_polygon, others);
     let ways_out = plan.ways_out();
     let at = Point::new(p.pose.x, p.pose.y);
@@ -108,7 +109,7 @@ fn is_free(
 
 /// Returns true when something stands on the floor beside the robot before a dock.
 fn is_crowded(p: &Placement, dock: &ObjectType, here: &[&Placement]) -> bool {
-    let depth = dock.clearance_front_m.max(2.0 * super::LEAST_RADIUS_M);
+    let depth = dock.clearance_front_m.max(2.0 * LEAST_RADIUS_M);
     let r = p.footprint().bounds();
     let floor = match quarter(p.pose.yaw_rad) {
         0 => Rect { x0: r.x1, x1: r.x1 + depth, y0: r.y0 - BESIDE_M, y1: r.y1 + BESIDE_M },

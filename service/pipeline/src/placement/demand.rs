@@ -2,12 +2,13 @@
 
 use d3dgen_model::domain::{Arrangement, Domain, Furnishing, Goods, Mount, ObjectType, RoomType, Shape};
 use d3dgen_model::occupancy::ROBOT_HEIGHT_M;
+use d3dgen_model::offer::{asked_objects, docks_held, has_docks, other_bed, widest_circle_m};
+use d3dgen_model::robot_kind::cleans;
 use d3dgen_model::scene_graph::{GraphRoom, SceneGraph};
 
 use super::seats::is_seat;
 use super::state::Placed;
 use super::unit::{Forms, Unit, variants};
-use crate::scene_graph::{cleans, docks_held, widest_m};
 
 /// Largest number of units of one line in one room.
 const MAX_UNITS: u32 = 400;
@@ -169,7 +170,7 @@ impl<'a> Household<'a> {
             accessible: graph.accessible,
             has_robots: !graph.robots.is_empty(),
             in_each: robots.div_ceil(homes.max(1) as u32),
-            circle_m: widest_m(&graph.robots),
+            circle_m: widest_circle_m(&graph.robots),
             cleans: graph.robots.iter().any(|r| cleans(&r.kind)),
             one_berth: robots == 1 && homes > 0,
             sharing: held
@@ -226,7 +227,7 @@ pub(super) fn tasks<'a>(
         windows,
         household,
         occupied: occupied_line(domain, kind, graph, household),
-        named: named(domain, kind, graph),
+        named: graph.map_or_else(Vec::new, |room| asked_objects(domain, kind, room)),
         bed: graph.and_then(|g| other_bed(domain, g)),
     };
     let lines = kind.furnishing.iter().enumerate().filter(|(_, f)| order.wants(f));
@@ -439,11 +440,6 @@ fn usual_width_m(domain: &Domain, line: &Furnishing) -> Option<f64> {
     Some(instead.fold(own, f64::max))
 }
 
-/// Returns true for rooms that are there to charge robots.
-pub(crate) fn has_docks(domain: &Domain, kind: &RoomType) -> bool {
-    kind.furnishing.iter().any(|f| f.required && domain.is_dock(&f.item))
-}
-
 /// Returns true for rooms that people have desks in.
 pub(super) fn has_desks(domain: &Domain, kind: &RoomType) -> bool {
     let desk = |item: &str| domain.anchor(item).is_some_and(|o| o.shape == Shape::Desk);
@@ -568,28 +564,6 @@ pub(super) fn one_more(object: &ObjectType) -> Task<'_> {
         usual_width_m: storage_width_m(object),
         seats: None,
     }
-}
-
-/// Returns the objects that somebody asked for in a room: they are wished for before what its type begins with.
-fn named<'a>(domain: &Domain, kind: &RoomType, graph: Option<&'a GraphRoom>) -> Vec<&'a String> {
-    let usual = kind.furnishing.first().and_then(|f| domain.anchor(&f.item));
-    let all = graph.map_or(&[][..], |g| &g.wished_assets);
-    let own = all.iter().position(|id| usual.is_some_and(|o| &o.id == id)).unwrap_or(0);
-    let is_dock = |id: &String| domain.object(id).is_some_and(|o| o.shape == Shape::Dock);
-    all[..own].iter().filter(|id| !is_dock(id)).collect()
-}
-
-/// Returns the line of the bed that a room is to have in the place of its usual one, where somebody asked for that.
-pub(crate) fn other_bed<'a>(domain: &'a Domain, room: &GraphRoom) -> Option<&'a Furnishing> {
-    let kind = domain.room_type(&room.room_type)?;
-    let is_bed = |item: &str| domain.anchor(item).is_some_and(|o| o.shape == Shape::Bed);
-    let usual = kind.furnishing.first().filter(|f| f.required && is_bed(&f.item))?;
-    let named = named(domain, kind, Some(room));
-    kind.furnishing.iter().find(|f| {
-        f.instead_of.contains(&usual.item)
-            && is_bed(&f.item)
-            && domain.anchor(&f.item).is_some_and(|a| named.iter().any(|id| **id == a.id))
-    })
 }
 
 /// Returns what the graph wishes for beyond the lines of the room's type, and how many.

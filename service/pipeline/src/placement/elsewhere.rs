@@ -8,9 +8,9 @@ use d3dgen_model::domain::{Domain, Furnishing, ObjectType, Shape};
 use d3dgen_model::floorplan::{Floorplan, PlanRoom};
 use d3dgen_model::placements::{Placement, Placements};
 use d3dgen_model::scene_graph::SceneGraph;
+use d3dgen_model::stage::{Error, Stop};
 
 use super::{Wanted, insert, one_more};
-use crate::{Error, Stop};
 
 /// Puts what stands in no room, and had no place where it was wanted, into another room whose type knows it.
 ///

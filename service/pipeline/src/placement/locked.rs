@@ -6,13 +6,13 @@ use std::rc::Rc;
 use d3dgen_model::domain::{Domain, Mount, Shape};
 use d3dgen_model::floorplan::Floorplan;
 use d3dgen_model::placements::{Placement, Placements};
+use d3dgen_model::stage::Error;
 
 use super::demand::Task;
 use super::geom::{Box2, Solid, mm};
 use super::space::{DoorZone, Open, Space};
 use super::state::Placed;
 use super::unit::{Part, Unit, clears_of};
-use crate::Error;
 
 /// Share of its clearance that what stands already keeps from what comes after it.
 const LEAST_CLEARANCE: f64 = 0.5;

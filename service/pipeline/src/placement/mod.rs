@@ -42,16 +42,12 @@ use d3dgen_model::floorplan::{Floorplan, PlanRoom};
 use d3dgen_model::placements::Placement;
 use d3dgen_model::placements::{Placements, Unplaced};
 use d3dgen_model::scene_graph::SceneGraph;
+use d3dgen_model::stage::{Error, Stop};
 use d3dgen_model::style::Clutter;
 
-use crate::{Error, Stop};
-pub(crate) use demand::{has_docks, other_bed};
 pub use proposed::{Proposed, Refusal, Wish, propose_room};
 use setting::Setting;
 use space::Space;
-
-/// Least radius of the disc that must find its way, m: a person, or a small robot.
-const LEAST_RADIUS_M: f64 = 0.30;
 
 /// Furnishes every room of a floorplan; ways through circulation stay as wide as the limits ask.
 ///

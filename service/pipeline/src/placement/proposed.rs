@@ -10,8 +10,10 @@ use std::rc::Rc;
 use d3dgen_knowledge::Limits;
 use d3dgen_model::domain::{Arrangement, Domain, Mount, ObjectType};
 use d3dgen_model::floorplan::{Floorplan, PlanRoom};
+use d3dgen_model::offer::suits;
 use d3dgen_model::placements::{Placement, Unplaced};
 use d3dgen_model::scene_graph::SceneGraph;
+use d3dgen_model::stage::Stop;
 
 use super::demand::{self, Task};
 use super::geom::{mm, turn};
@@ -21,8 +23,6 @@ use super::setting::Setting;
 use super::state::{Placed, Rule, State};
 use super::unit::{Forms, Unit, variants};
 use super::{Wanted, assemble, furnish_room, stairs};
-use crate::Stop;
-use crate::scene_graph::suits;
 
 /// Farthest that an object is moved to fit, mm.
 const FARTHEST: i32 = 1500;

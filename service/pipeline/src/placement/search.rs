@@ -7,6 +7,7 @@ use std::rc::Rc;
 
 use d3dgen_knowledge::Aim;
 use d3dgen_model::domain::{Arrangement, Domain, Mount, Shape};
+use d3dgen_model::stage::Stop;
 
 use super::demand::{Task, is_table, storage_width_m};
 use super::draft::{ASIDE, AT_WALL, DEEPEST, DEPARTURES, Departure, Draft, RESCUES, Seen};
@@ -16,7 +17,6 @@ use super::space::{Open, Space};
 use super::state::{Placed, Rule, State};
 use super::unit::{Forms, Sizes, Unit, variants};
 use super::way::{self, Way};
-use crate::Stop;
 
 /// Positions whose routes are looked at before a unit counts as unplaceable.
 const ROUTE_TESTS: usize = 40;

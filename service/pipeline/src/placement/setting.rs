@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use d3dgen_knowledge::{Aim, Limits};
 use d3dgen_model::domain::{Domain, ObjectType, RoomType, Shape};
 use d3dgen_model::floorplan::{Door, DoorKind, Floorplan, PlanRoom};
+use d3dgen_model::measures::LEAST_RADIUS_M;
 use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::seed::Stream;
 use d3dgen_model::style::Clutter;
@@ -14,7 +15,7 @@ use super::geom::mm;
 use super::space::Space;
 use super::unit::BESIDE_BED_M;
 use super::way::Way;
-use super::{LEAST_RADIUS_M, Wanted, clutter};
+use super::{Wanted, clutter};
 
 /// Half the width of a way for a wheelchair past furniture, m (ISO 21542: 0.8 m at the narrowest).
 const WHEELCHAIR_RADIUS_M: f64 = 0.4;

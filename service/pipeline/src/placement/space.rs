@@ -2,9 +2,9 @@
 
 use d3dgen_model::floorplan::{Door, DoorKind, Floorplan, PlanRoom};
 use d3dgen_model::geometry::Segment;
+use d3dgen_model::way_in::way_in;
 
 use super::geom::{Box2, Solid, mm, turn};
-use crate::entry::way_in;
 
 /// Floor kept free in front of every door over its width, mm.
 const DOOR_DEPTH: i32 = 600;

@@ -7,6 +7,7 @@ use d3dgen_knowledge::clearance::quarter;
 use d3dgen_model::domain::{Domain, Goods, ObjectType, RobotUse, RoomType, Shape};
 use d3dgen_model::floorplan::{Door, DoorKind, Floorplan, PlanRoom};
 use d3dgen_model::geometry::to_mm;
+use d3dgen_model::measures::LEAST_RADIUS_M;
 use d3dgen_model::obstacles::Obstacles;
 use d3dgen_model::occupancy::{Bitmap, CELL_M, Occupancy, ROBOT_HEIGHT_M};
 use d3dgen_model::placements::{Placement, Placements};
@@ -16,8 +17,6 @@ use d3dgen_model::{Point, Pose, Rect};
 
 use super::tour::Doors;
 
-/// Least radius of the disc that must find its way, m.
-pub(super) const LEAST_RADIUS_M: f64 = 0.30;
 /// How much farther off a spot may be that is not tight, or only clear of the swing of doors and of chairs in use, m.
 const TIGHT_M: f64 = 1.6;
 const SWING_M: f64 = 1.0;

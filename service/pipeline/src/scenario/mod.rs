@@ -20,8 +20,8 @@ use d3dgen_model::floorplan::Floorplan;
 use d3dgen_model::placements::Placements;
 use d3dgen_model::scenario::Scenario;
 use d3dgen_model::scene_graph::SceneGraph;
+use d3dgen_model::stage::Error;
 
-use crate::Error;
 use floor::Floor;
 pub(crate) use robots::{DOCKS_MISSING, without_dock};
 

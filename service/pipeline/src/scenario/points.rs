@@ -2,13 +2,13 @@
 
 use d3dgen_model::domain::{Mount, ObjectType, RobotUse, Shape};
 use d3dgen_model::placements::Placement;
+use d3dgen_model::robot_kind::cleans;
 use d3dgen_model::scenario::Poi;
 use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::{Point, Rect};
 
 use super::floor::{Floor, Room, around, floor_in_front, looking_at, swept};
 use super::regions::buffers;
-use crate::scene_graph::cleans;
 
 /// Gap between a robot's hull and what it serves, m.
 const GAP_M: f64 = 0.10;

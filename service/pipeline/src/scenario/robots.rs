@@ -6,6 +6,7 @@ use d3dgen_model::geometry::Rect;
 use d3dgen_model::obstacles::Obstacles;
 use d3dgen_model::passage::{Passages, RobotWay};
 use d3dgen_model::placements::Placements;
+use d3dgen_model::robot_kind::{brings, cleans};
 use d3dgen_model::scenario::{Poi, RobotTask, Scenario};
 use d3dgen_model::scene_graph::{Note, Robot, SceneGraph};
 use d3dgen_model::{Point, Pose};
@@ -13,7 +14,6 @@ use d3dgen_model::{Point, Pose};
 use super::floor::{Floor, looking_at};
 use super::routes::Router;
 use super::tour::{self, Stop};
-use crate::scene_graph::{brings, cleans};
 
 /// Robots up to whose number each has routes around all others at their docks.
 const MOST_APART: usize = 8;

@@ -9,13 +9,13 @@ use d3dgen_model::domain::{Mount, RobotUse, Shape, Zone};
 use d3dgen_model::floorplan::Door;
 use d3dgen_model::geometry::to_mm;
 use d3dgen_model::occupancy::{Bitmap, CELL_M, stops_robot};
+use d3dgen_model::robot_kind::brings;
 use d3dgen_model::scenario::{Poi, Roi, RoiKind, Scenario};
 use d3dgen_model::scene_graph::{GraphRoom, Note, SceneGraph};
+use d3dgen_model::way_in::way_in;
 use d3dgen_model::{Point, Polygon, Rect};
 
 use super::floor::{CHAIR_BACK_M, Floor, Room, floor_beside, floor_in_front, lane};
-use crate::entry::way_in;
-use crate::scene_graph::brings;
 
 /// Floor for each robot, m^2 (rule `staging_zone_area_per_robot`).
 const PER_ROBOT_M2: f64 = 2.5;

@@ -2,7 +2,8 @@
 //! one step has read are not read again by a later one.
 
 use d3dgen_model::domain::{GENERIC_ROOM_TYPE, Shape};
-use d3dgen_model::scene_graph::Robot;
+use d3dgen_model::scene_graph::{Note, Robot};
+use d3dgen_model::stage::Error;
 use d3dgen_model::style::LayoutStyle;
 use d3dgen_plugins::Registry;
 
@@ -15,14 +16,13 @@ use super::named::aside::Aside;
 use super::named::rooms_named::Named;
 use super::named::things::{self, Things};
 use super::named::{compounds, styles};
-use super::people::beds::{self, Held};
+use super::people::beds;
 use super::people::counted::Counted;
 use super::people::heads::People;
 use super::people::seats::{self, Called};
 use super::people::{ensuites, groups, homes, sharing, stays};
 use super::subject::building::Part;
 use super::subject::parts::{self, Parts};
-use super::subject::places::note;
 use super::subject::programs::program_by_bedrooms;
 use super::subject::site::Site;
 use super::subject::{practitioners, single};
@@ -31,8 +31,8 @@ use super::tokens::words::{Tag, words};
 use super::wished::relations::{self, Said};
 use super::wished::wishes::{self, Text, Wish, Wishes};
 use super::wished::{closed, comparisons, totals, unread};
-use super::{MAX_ROOMS, Request, refused};
-use crate::Error;
+use crate::scene_graph::people::held::Held;
+use crate::scene_graph::request::{MAX_ROOMS, Request, refused};
 
 /// Robots that fetch and bring: corridors are only their way.
 const CARRIES: [&str; 2] = ["delivery", "transport"];
@@ -96,7 +96,7 @@ impl<'r, 'a> Draft<'r, 'a> {
             let words = prompt.words(*span);
             let message =
                 format!("`{words}` is an object, and these are not ruled out; rooms have what is usual in them");
-            notes.conflicts.push(note("unread_wish", message));
+            notes.conflicts.push(Note::new("unread_wish", message));
         }
         let wishes = Wishes::default();
         let on_each = Vec::new();
@@ -344,7 +344,7 @@ impl<'r, 'a> Draft<'r, 'a> {
             && (one_room || free && single::is_single(building, mentions, wishes));
         if single {
             let message = "the prompt asks for one room and no building; it was planned by itself";
-            self.notes.assumptions.push(note("single_room", message.into()));
+            self.notes.assumptions.push(Note::new("single_room", message.into()));
             if one_room {
                 wishes.wishes.push(Wish::one(GENERIC_ROOM_TYPE, "room"));
             }

@@ -6,19 +6,20 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use d3dgen_model::domain::{Domain, GENERIC_ROOM_TYPE, RoomType};
 use d3dgen_model::floorplan::{DoorKind, Floorplan};
+use d3dgen_model::offer::Wet;
+use d3dgen_model::robot_kind;
 use d3dgen_model::scene_graph::{Connector, GraphEdge, GraphRoom, Note, Occupancy, Robot, SceneGraph};
+use d3dgen_model::stage::Error;
 use d3dgen_plugins::Registry;
 
 use super::built::rooms::wished_assets;
-use super::built::vital::Wet;
-use super::refused;
-use super::subject::places::{self, note};
+use super::subject::places;
 use super::tokens::labels;
 use super::tokens::text::{Phrases, Token, fold, tokens};
 use super::tokens::umlauts;
 use super::tokens::words::words;
 use super::wished::wishes::CHARGING;
-use crate::Error;
+use crate::scene_graph::request::refused;
 
 /// Reason of the edges of a brought plan.
 const BY_PLAN: &str = "given_plan";
@@ -253,7 +254,7 @@ pub fn understand(
         }
         None => {
             let (names, why) = guess(labels, titles, registry)?;
-            notes.push(note("default_domain", why));
+            notes.push(Note::new("default_domain", why));
             names
         }
     };
@@ -283,7 +284,7 @@ pub fn understand(
         let message = format!(
             "{hubs} rooms without a name, or with a number only, join so many others that they were taken for `{id}`"
         );
-        notes.push(note("circulation_guessed", message));
+        notes.push(Note::new("circulation_guessed", message));
     }
     unknown.dedup();
     if !unknown.is_empty() {
@@ -294,7 +295,7 @@ pub fn understand(
             "{} names no room of {list}{more}; they are of the type `{GENERIC_ROOM_TYPE}`, --room-type \"NAME=TYPE\" says better",
             names.domain.id
         );
-        notes.push(note("unknown_label", message));
+        notes.push(Note::new("unknown_label", message));
     }
     Ok(Understood { domain: names.domain.id.clone(), room_types, names: called, notes })
 }
@@ -470,8 +471,8 @@ fn robots(plan: &Floorplan, brought: &Brought) -> Result<Vec<Robot>, Error> {
         }
     }
     let robot = |kind: String| {
-        let body = words().robot_kinds.get(&kind).ok_or_else(|| {
-            let known: Vec<&str> = words().robot_kinds.keys().map(String::as_str).collect();
+        let body = robot_kind::typical(&kind).ok_or_else(|| {
+            let known = robot_kind::names();
             refused(format!("robot `{kind}` is not known; known are {}", known.join(", ")))
         })?;
         let radius_m = brought.robot_radius_m.unwrap_or(body.radius_m);

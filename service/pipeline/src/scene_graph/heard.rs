@@ -1,17 +1,16 @@
 //! A prompt as it is heard: its words and numbers in the language it is in. Every step of the reading takes it.
 
 use d3dgen_model::scene_graph::Note;
+use d3dgen_model::stage::Error;
 use d3dgen_plugins::Registry;
 
-use super::refused;
 use super::subject::building;
-use super::subject::places::note;
 use super::tokens::numbers::{self, Number};
 use super::tokens::text::{Token, tokens};
 use super::tokens::typos::{self, Typo};
 use super::tokens::words::{Spoken, Tag, is_tagged, words};
 use super::tokens::{language, umlauts};
-use crate::Error;
+use crate::scene_graph::request::refused;
 
 /// The words of a prompt.
 pub(crate) struct Heard<'p> {
@@ -64,7 +63,7 @@ impl<'p> Heard<'p> {
                 read.push(told);
             }
         }
-        (!read.is_empty()).then(|| note("spelling", format!("read {}", read.join(", "))))
+        (!read.is_empty()).then(|| Note::new("spelling", format!("read {}", read.join(", "))))
     }
 
     /// Returns true where a phrase with a tag begins at a token.

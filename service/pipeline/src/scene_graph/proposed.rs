@@ -6,21 +6,25 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use d3dgen_knowledge::jurisdiction::rules_here;
 use d3dgen_model::domain::{AdjacencyRelation, Domain, GENERIC_ROOM_TYPE, RoomType};
+use d3dgen_model::offer::suits;
 use d3dgen_model::proposal::{Fate, ItemKind, ProposedItem};
 use d3dgen_model::scene_graph::{Connector, GraphEdge, SceneGraph};
+use d3dgen_model::stage::Error;
 use d3dgen_plugins::Registry;
 
-use super::MAX_ROOMS;
-use super::built::edges::rules_here;
 use super::built::occupants;
-use super::built::program::{self, Planned, circulation_share};
+use super::built::program;
 use super::built::rooms::wished_assets;
 use super::built::vital;
 use super::given::Names;
-use super::reading::{self, Reading};
-use super::{Request, settle};
-use crate::Error;
+use super::reading::Reading;
+use crate::scene_graph::built::growth::{circulation_share, may_grow};
+use crate::scene_graph::built::planned::Planned;
+use crate::scene_graph::read;
+use crate::scene_graph::request::{MAX_ROOMS, Request};
+use crate::scene_graph::settle::settle;
 
 /// Reason of the edges that a proposal wishes for.
 pub const BY_PROPOSAL: &str = "proposal";
@@ -81,7 +85,7 @@ pub struct Settled {
 /// # Errors
 /// As [`super::generate`]; the proposal itself is never an error.
 pub fn propose(request: &Request, registry: &Registry, draft: &Draft) -> Result<Settled, Error> {
-    let mut reading = reading::read(request, registry)?;
+    let mut reading = read::read(request, registry)?;
     let own = program::complete(&mut reading.clone());
     let mut chosen = Choice::new(&reading, &own, draft);
     chosen.take_what_the_prompt_asks_for();
@@ -267,7 +271,7 @@ impl<'r, 'a> Choice<'r, 'a> {
                 "the prompt lists all rooms there are to be".to_owned()
             } else if self.rooms.len() >= capacity {
                 format!("{capacity} rooms are as many as the prompt asks for or such a building has")
-            } else if have >= own && !program::may_grow(self.reading, &kind.id) {
+            } else if have >= own && !may_grow(self.reading, &kind.id) {
                 "the prompt says how many of these there are".to_owned()
             } else if have >= usual {
                 format!("{have} of these are as many as such a building has")
@@ -388,18 +392,6 @@ fn object<'a>(domain: &'a Domain, word: &str) -> Option<&'a str> {
         o.id == word || plain(&o.label) == word || o.keywords.values().flatten().any(|k| plain(k) == word)
     };
     domain.object(&word).or_else(|| domain.objects.iter().find(named)).map(|o| o.id.as_str())
-}
-
-/// Returns true when an object stands in rooms of a type, or of another type of the same part of the building.
-pub(crate) fn suits(domain: &Domain, kind: &RoomType, object: &str) -> bool {
-    let has = |k: &RoomType| {
-        k.furnishing.iter().any(|f| {
-            let group = domain.group(&f.item);
-            f.item == object
-                || group.is_some_and(|g| g.anchor == object || g.members.iter().any(|m| m.object == object))
-        })
-    };
-    has(kind) || domain.room_types.iter().any(|k| k.zone == kind.zone && has(k))
 }
 
 /// Adds the proposed connections that break nothing, as wishes.

@@ -8,14 +8,13 @@ use d3dgen_knowledge::Retrieval;
 use d3dgen_knowledge::freespace::FreeSpace;
 use d3dgen_model::domain::{Domain, ObjectType, RoomType};
 use d3dgen_model::floorplan::{Door, Floorplan, PlanRoom};
+use d3dgen_model::measures::LEAST_RADIUS_M;
 use d3dgen_model::occupancy::{Bitmap, FLAT_M, Occupancy, Reach, stops_robot};
 use d3dgen_model::placements::Placement;
 use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::world::World;
 use d3dgen_model::{Point, Rect, Segment};
 
-/// Least radius of the disc that must find its way, m.
-pub const LEAST_RADIUS_M: f64 = 0.30;
 /// How far a line may lie from the boundary it stands for, m.
 pub const ON_LINE_M: f64 = 0.02;
 

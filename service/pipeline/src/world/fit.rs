@@ -8,12 +8,11 @@ use d3dgen_model::domain::{Domain, RobotUse, RoomType};
 use d3dgen_model::floorplan::Floorplan;
 use d3dgen_model::passage::{Passages, RobotWay};
 use d3dgen_model::report::RobotFit;
+use d3dgen_model::robot_kind::brings;
 use d3dgen_model::scenario::Poi;
 use d3dgen_model::scene_graph::Robot;
 use d3dgen_model::storeys::LinkKind;
 use d3dgen_model::world::World;
-
-use crate::scene_graph::brings;
 
 /// Measures the fit of every robot whose body is known.
 pub(super) fn measure(world: &World, storeys: &[(i32, World)], domain: &Domain) -> Vec<RobotFit> {

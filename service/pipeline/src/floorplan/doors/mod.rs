@@ -8,6 +8,7 @@ mod spot;
 use d3dgen_model::domain::Zone;
 use d3dgen_model::floorplan::{Door, DoorKind, Swing};
 use d3dgen_model::geometry::{Rect, to_mm};
+use d3dgen_model::measures::{DOOR_HEIGHT_M, JAMB_M};
 use d3dgen_model::scene_graph::Connector;
 use d3dgen_model::seed::Stream;
 use d3dgen_model::{Point, Segment};
@@ -16,13 +17,11 @@ pub(super) use self::courts::shut_courts;
 use self::spot::{Spot, View};
 use super::assemble::highest;
 use super::hall;
-use super::lattice::{Cellbox, INNER_HALF_M, JAMB_M, OUTER_HALF_M, meters};
+use super::lattice::{Cellbox, INNER_HALF_M, OUTER_HALF_M, meters};
 use super::outline::Stretch;
 use super::realize::BED_DOOR_M;
 use super::spec::Brief;
 
-/// Clear height of doors, m.
-const DOOR_HEIGHT_M: f64 = 2.1;
 /// Clear width from which a door gets two leaves, m.
 pub(super) const DOUBLE_FROM_M: f64 = 1.25;
 /// A leaf whose square takes more than this share of the room slides instead.

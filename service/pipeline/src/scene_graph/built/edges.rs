@@ -1,19 +1,18 @@
 //! How the rooms connect: circulation, hosts, what the prompt asks for, and the domain's adjacency rules.
 
-use d3dgen_knowledge::jurisdiction;
-use d3dgen_model::domain::{Adjacency, AdjacencyRelation, Domain};
-use d3dgen_model::scene_graph::{Connector, GraphEdge, GraphRoom, Note};
+use d3dgen_knowledge::jurisdiction::rules_here;
+use d3dgen_model::domain::{Adjacency, AdjacencyRelation};
+use d3dgen_model::scene_graph::{BY_CIRCULATION, BY_HOST, BY_PROMPT, BY_STYLE, Connector, GraphEdge, GraphRoom, Note};
 use d3dgen_model::style::LayoutStyle;
 
 use super::hosts::are_public;
-use super::program::Planned;
 use super::rooms;
+use crate::scene_graph::built::planned::Planned;
 use crate::scene_graph::named::compounds::opens_to;
+use crate::scene_graph::named::numbered::is_meant;
 use crate::scene_graph::reading::Reading;
-use crate::scene_graph::subject::places::note;
 use crate::scene_graph::wished::relations::Spread;
 use crate::scene_graph::wished::wishes::{Apart, Pair};
-use crate::scene_graph::{BY_CIRCULATION, BY_HOST, BY_PROMPT, BY_STYLE};
 
 /// Rooms that one room can be asked to be beside: those at its two ends and one at its back. More are wished for only.
 const MOST_WALLS: usize = 3;
@@ -27,11 +26,6 @@ const MOST_NAMED: usize = 6;
 pub(crate) struct Web {
     pub edges: Vec<GraphEdge>,
     pub apart: Vec<[String; 2]>,
-}
-
-/// Returns the adjacency rules of a domain that hold in a country; without one, those that hold everywhere.
-pub(crate) fn rules_here<'d>(domain: &'d Domain, country_code: Option<&str>) -> impl Iterator<Item = &'d Adjacency> {
-    domain.adjacency.iter().filter(move |rule| jurisdiction::holds(&rule.jurisdictions, country_code))
 }
 
 /// Connects the rooms; adds the corridor where the building needs one.
@@ -62,7 +56,7 @@ pub(crate) fn state_unmet(reading: &mut Reading, rooms: &[GraphRoom], edges: &[G
             ([i, ..], [j, ..]) if rooms[*i].level != rooms[*j].level => "they are on different storeys".to_owned(),
             _ => "there is only one of them".to_owned(),
         };
-        unmet.push(note("not_beside", format!("{a} and {b} cannot be beside each other: {why}")));
+        unmet.push(Note::new("not_beside", format!("{a} and {b} cannot be beside each other: {why}")));
     }
     reading.conflicts.extend(unmet);
 }
@@ -96,7 +90,7 @@ fn hub(reading: &mut Reading, planned: &[Planned], rooms: &mut Vec<GraphRoom>) -
                     free.len(),
                     circulation.room_type
                 );
-                reading.conflicts.push(note("circulation_needed", message));
+                reading.conflicts.push(Note::new("circulation_needed", message));
                 // what the building cannot do without is not ruled out any more
                 reading.wishes.forbidden.retain(|f| f != &circulation.room_type);
             }
@@ -189,7 +183,7 @@ impl Web {
             if let Some(rule) = ruled_out(reading, &pair) {
                 let Adjacency { via, reason, source, .. } = rule;
                 let message = format!("{} and {} may not be joined by a {via}: {reason} ({source})", pair.a, pair.b);
-                reading.conflicts.push(note("forbidden_adjacency", message));
+                reading.conflicts.push(Note::new("forbidden_adjacency", message));
                 continue;
             }
             let near = pair.connector == Connector::Near;
@@ -387,13 +381,13 @@ impl Left {
             self.others.len(),
             named.join(", "),
         );
-        note("too_many_neighbors", message)
+        Note::new("too_many_neighbors", message)
     }
 }
 
 /// Returns the rooms of a type, or the one of them with a number of its own.
 fn of_kind(rooms: &[GraphRoom], kind: &str, number: Option<u32>) -> Vec<usize> {
-    (0..rooms.len()).filter(|&i| rooms::is_meant(&rooms[i], kind, number)).collect()
+    (0..rooms.len()).filter(|&i| is_meant(&rooms[i], kind, number)).collect()
 }
 
 /// Returns the rule of the domain that rules out what a pair asks for.
@@ -470,7 +464,7 @@ fn keep_apart(reading: &mut Reading, rooms: &[GraphRoom], web: &mut Web) {
             let joined = web.edges.iter().any(|e| e.a == x.id && e.b == y.id || e.a == y.id && e.b == x.id);
             if joined {
                 let message = format!("{} and {} cannot be apart: one is entered through the other", x.name, y.name);
-                reading.conflicts.push(note("apart_but_joined", message));
+                reading.conflicts.push(Note::new("apart_but_joined", message));
             } else if !web.has_apart(&x.id, &y.id) {
                 web.apart.push([x.id.clone(), y.id.clone()]);
             }

@@ -1,16 +1,17 @@
 //! Rooms that are entered through others: which room is the host of each en suite, closet and terrace.
 
+use d3dgen_knowledge::jurisdiction::rules_here;
 use d3dgen_model::domain::{Access, AdjacencyRelation, Privacy, RoomType, Zone};
+use d3dgen_model::offer;
+use d3dgen_model::offer::sleeps;
+use d3dgen_model::scene_graph::Note;
 
-use super::edges::rules_here;
-use super::program::{Planned, may_add};
-use super::{vital, workers};
-use crate::scene_graph::levels::storeys::Where;
-use crate::scene_graph::people::beds::sleeps;
-use crate::scene_graph::people::seats;
+use super::program::may_add;
+use super::vital;
+use crate::scene_graph::built::planned::Planned;
 use crate::scene_graph::reading::Reading;
-use crate::scene_graph::subject::places::note;
-use crate::scene_graph::subject::programs::is_dwelling;
+use crate::scene_graph::subject::programs::{is_dwelling, is_office};
+use crate::scene_graph::tokens::storey::Where;
 use crate::scene_graph::tokens::words::words;
 use crate::scene_graph::wished::wishes::{Pair, PerHost};
 
@@ -78,8 +79,8 @@ pub(super) fn are_public(reading: &Reading, pair: &Pair) -> bool {
         (kind.zone == Zone::Public && kind.access != Access::Host).then_some(kind)
     };
     let (Some(a), Some(b)) = (public(&pair.a), public(&pair.b)) else { return false };
-    let serves = |k| seats::has_counters(reading.domain, k);
-    workers::is_office(reading.program) || serves(a) || serves(b)
+    let serves = |k| offer::has_counters(reading.domain, k);
+    is_office(reading.program) || serves(a) || serves(b)
 }
 
 /// Finds for every en suite, closet and the like the room it is entered from.
@@ -112,7 +113,7 @@ pub(super) fn hang_on_hosts(reading: &mut Reading, rooms: &mut [Planned]) {
         // "management with boardroom": nobody meets behind somebody's office
         let shared = room.kind.privacy != Privacy::Private && room.kind.zone == Zone::Day && !hosted;
         let through = |p: &&Pair| domain.room_type(&p.b).is_some_and(|k| k.privacy == Privacy::Private);
-        let works = workers::is_office(reading.program);
+        let works = is_office(reading.program);
         let belongs = belongs.filter(|p| !(works && shared && through(p)));
         // "lobby with counters": the public goes on from one to the other, those who work there do not
         let belongs = belongs.filter(|p| !are_public(reading, p));
@@ -151,7 +152,7 @@ pub(super) fn hang_on_hosts(reading: &mut Reading, rooms: &mut [Planned]) {
         if host.is_none() && hosted {
             let message =
                 format!("{} has no room to be entered from; it opens to the circulation instead", room.kind.label);
-            reading.assumptions.push(note("no_host", message));
+            reading.assumptions.push(Note::new("no_host", message));
         }
         rooms[i].host = host;
     }
@@ -174,5 +175,5 @@ pub(super) fn share_last_bathroom(reading: &mut Reading, rooms: &mut [Planned]) 
     rooms[last].host = None;
     let label = rooms[last].kind.label.to_lowercase();
     let message = format!("no other {label} serves all bedrooms; it opens to the hall and not into one of them");
-    reading.assumptions.push(note("shared_bathroom", message));
+    reading.assumptions.push(Note::new("shared_bathroom", message));
 }

@@ -3,7 +3,7 @@
 
 use d3dgen_model::domain::Access;
 
-use super::program::Planned;
+use crate::scene_graph::built::planned::Planned;
 use crate::scene_graph::reading::Reading;
 
 /// Adds what a building of this size has, where the prompt leaves its rooms open.

@@ -1,12 +1,12 @@
 //! Open and cellular layouts: what the domain's program changes for them, as its `layouts` say.
 
 use d3dgen_model::domain::{Domain, LayoutSwap, Occupants, RoomType};
+use d3dgen_model::scene_graph::Note;
 use d3dgen_model::style::LayoutStyle;
 
 use super::occupants::head_count;
-use super::program::Planned;
+use crate::scene_graph::built::planned::Planned;
 use crate::scene_graph::reading::Reading;
-use crate::scene_graph::subject::places::note;
 
 /// Most rooms that stand for one.
 const MOST_ROOMS: u32 = 40;
@@ -29,7 +29,7 @@ pub(crate) fn follow<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned<'a>>
     let domain = reading.domain;
     if layout == LayoutStyle::Open && !domain.layouts.knows(layout) {
         let message = format!("{} has no open layout; the usual one was planned", domain.title);
-        reading.assumptions.push(note("style_without_effect", message));
+        reading.assumptions.push(Note::new("style_without_effect", message));
     }
     if reading.closed {
         return;
@@ -58,7 +58,7 @@ fn make<'a>(reading: &mut Reading<'a>, swap: &LayoutSwap, kind: &'a RoomType, ro
         let message = format!(
             "the number of rooms is fixed, and {needed} x {to} would have to stand for each {from}; it stayed as it is"
         );
-        reading.conflicts.push(note("style_needs_rooms", message));
+        reading.conflicts.push(Note::new("style_needs_rooms", message));
         return;
     }
     let each = if reading.total.is_some() { 1 } else { needed.clamp(1, MOST_ROOMS) };
@@ -81,5 +81,5 @@ fn make<'a>(reading: &mut Reading<'a>, swap: &LayoutSwap, kind: &'a RoomType, ro
     *rooms = out;
     let message =
         format!("{} {} in place of {places} {}", each * places, kind.label.to_lowercase(), swap.from.replace('_', " "));
-    reading.assumptions.push(note("style_layout", message));
+    reading.assumptions.push(Note::new("style_layout", message));
 }

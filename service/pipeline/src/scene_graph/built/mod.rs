@@ -3,10 +3,12 @@
 //! (`rooms`), and how they connect (`edges`, `ring`).
 
 pub(super) mod edges;
+pub(super) mod growth;
 pub(super) mod hosts;
 pub(super) mod large;
 pub(super) mod layout;
 pub(super) mod occupants;
+pub(super) mod planned;
 pub(super) mod program;
 pub(super) mod ring;
 pub(super) mod rooms;

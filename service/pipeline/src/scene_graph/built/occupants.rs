@@ -1,12 +1,13 @@
 //! Who is in the rooms, and how large that makes them: beds, desks, places to be treated at and to wait.
 
 use d3dgen_model::domain::{Access, Domain, Furnishing, Occupants, Privacy, RoomType, Shape, Zone};
+use d3dgen_model::offer;
+use d3dgen_model::offer::{MOST_IN_TEAM, sleeps};
 
-use super::program::Planned;
-use super::workers;
+use crate::scene_graph::built::planned::Planned;
 use crate::scene_graph::named::objects::Thing;
-use crate::scene_graph::people::beds::{Held, sleeps};
-use crate::scene_graph::people::{seated, stations};
+use crate::scene_graph::people::held::Held;
+use crate::scene_graph::people::stations;
 use crate::scene_graph::reading::Reading;
 use crate::scene_graph::subject::programs::is_dwelling;
 use crate::scene_graph::tokens::words::words;
@@ -29,9 +30,6 @@ const AT_DESK_M2: f64 = 5.0;
 /// Floor of such a room for who comes to the table in a wheelchair, as a factor.
 const STEP_FREE: f64 = 1.15;
 
-/// Width of one seat of a bench, m.
-const SEAT_M: f64 = 0.5;
-
 /// Seats that people find where they wait for each room that sees them one at a time.
 const SEATS_PER_ROOM: u32 = 2;
 
@@ -43,6 +41,9 @@ const WITH_THING: f64 = 1.12;
 
 /// Floor of the bed for who stays with a patient, m^2.
 const COMPANION_M2: f64 = 4.0;
+
+/// Floor of a room for a team beside its desks, m^2.
+const BESIDE_DESKS_M2: f64 = 3.0;
 
 /// Returns the head count a program entry speaks of.
 pub(crate) fn head_count(reading: &Reading, of: Occupants) -> Option<u32> {
@@ -96,7 +97,7 @@ pub(super) fn make_room_for_companions(reading: &Reading, rooms: &mut [Planned])
 pub(super) fn hold_people(reading: &mut Reading, rooms: &mut [Planned]) {
     hold_stations(reading, rooms);
     // who has a desk elsewhere needs none here
-    let at_desks = |r: &&Planned| seated::desks(reading.domain, r.kind).is_some();
+    let at_desks = |r: &&Planned| offer::desks(reading.domain, r.kind).is_some();
     let seated: u32 = rooms.iter().filter(at_desks).filter_map(|r| r.occupants).sum();
     for entry in &reading.program.rooms {
         let Some(people) = head_count(reading, entry.occupants) else { continue };
@@ -224,7 +225,7 @@ pub(super) fn seat_waiting(reading: &Reading, rooms: &mut [Planned]) {
     let waits = |kind: &RoomType| {
         let line = kind.furnishing.first().filter(|f| f.required && f.area_per_item_m2 > 0.0)?;
         let bench = reading.domain.object(&line.item).filter(|o| o.shape == Shape::Bench)?;
-        let seats = bench.sizes_m.first().map_or(1.0, |s| (s[0] / SEAT_M).floor().max(1.0));
+        let seats = f64::from(offer::seats_on(bench));
         (kind.privacy == Privacy::Public).then_some(line.area_per_item_m2 / seats)
     };
     let sees = |r: &&Planned| r.kind.zone == Zone::Day && r.kind.privacy == Privacy::Private;
@@ -250,7 +251,7 @@ pub(super) fn workplaces(domain: &Domain, room: &Planned) -> u32 {
     }
     let area = room.reckoned_m2();
     let lines = room.kind.furnishing.iter().filter(|line| line.instead_of.is_empty());
-    lines.map(|line| seated::desks_of(domain, &line.item) * line.units(area)).max().unwrap_or(0)
+    lines.map(|line| offer::desks_of(domain, &line.item) * line.units(area)).max().unwrap_or(0)
 }
 
 /// Returns the floor for each desk of a room type, m^2: as the programs say, else as its furnishing.
@@ -266,9 +267,9 @@ pub(super) fn hold_beds(reading: &Reading, rooms: &mut [Planned]) {
     for held in &reading.held {
         for room in rooms_of(held, rooms) {
             room.occupants = Some(held.beds);
-            if seated::desks(reading.domain, room.kind).is_some() {
+            if offer::desks(reading.domain, room.kind).is_some() {
                 let area = desk_area_m2(reading.domain, &room.room_type) * f64::from(held.beds);
-                room.size_for_people(area + workers::beside_desks(held.beds));
+                room.size_for_people(area + beside_desks(held.beds));
             }
             let Some([low, high]) = sleeps(reading.domain, room.kind) else { continue };
             if !(low..=high).contains(&held.beds) || high > low {
@@ -298,4 +299,9 @@ pub(super) fn hold_beds(reading: &Reading, rooms: &mut [Planned]) {
 fn rooms_of<'r, 'a>(held: &Held, rooms: &'r mut [Planned<'a>]) -> impl Iterator<Item = &'r mut Planned<'a>> {
     let free = |r: &&mut Planned| r.requested && r.occupants.is_none() && r.room_type == held.room_type;
     rooms.iter_mut().filter(free).take(held.count as usize)
+}
+
+/// Returns the floor of a small room beside its desks, m^2: the door and the cupboard.
+pub(super) fn beside_desks(desks: u32) -> f64 {
+    if (3..=MOST_IN_TEAM).contains(&desks) { BESIDE_DESKS_M2 } else { 0.0 }
 }

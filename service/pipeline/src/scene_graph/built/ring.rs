@@ -1,12 +1,11 @@
 //! Corridors that run all the way round: a room is one outline without holes, so a ring is made of two pieces of corridor
 //! that are open to each other at both ends. The first has all the doors; this adds the second, which closes the ring.
 
-use d3dgen_model::scene_graph::{Connector, GraphEdge, GraphRoom};
+use d3dgen_model::scene_graph::{BY_CIRCULATION, Connector, GraphEdge, GraphRoom};
 use d3dgen_model::storeys::{LinkKind, VerticalLink};
 
 use super::rooms;
 use crate::floorplan::runs_around;
-use crate::scene_graph::BY_CIRCULATION;
 use crate::scene_graph::reading::Reading;
 
 /// Least area of a piece that closes a ring, m^2: it is as long as what it goes around is deep.

@@ -3,17 +3,16 @@
 use std::collections::BTreeMap;
 
 use d3dgen_model::domain::{Domain, GENERIC_ROOM_TYPE, ObjectType, Privacy, Relation, RoomType, Shape, Zone};
-use d3dgen_model::scene_graph::GraphRoom;
+use d3dgen_model::offer;
+use d3dgen_model::offer::{MOST_IN_TEAM, furniture};
+use d3dgen_model::scene_graph::{GraphRoom, Note};
 use d3dgen_model::style::SpaceStyle;
 
-use super::program::{Planned, circulation_share};
-use super::workers::is_office;
+use crate::scene_graph::built::growth::circulation_share;
+use crate::scene_graph::built::planned::Planned;
 use crate::scene_graph::named::objects::Thing;
-use crate::scene_graph::people::beds;
-use crate::scene_graph::people::seats::MOST_IN_TEAM;
 use crate::scene_graph::reading::Reading;
-use crate::scene_graph::subject::places::note;
-use crate::scene_graph::subject::programs::is_dwelling;
+use crate::scene_graph::subject::programs::{is_dwelling, is_office};
 use crate::scene_graph::tokens::text::capital;
 use crate::scene_graph::tokens::words::words;
 
@@ -113,7 +112,7 @@ fn state_unknown(reading: &mut Reading, planned: &[Planned]) {
             "`{words}` is no room that is known; it was planned as one for general use, furnished with {}",
             things.join(", ")
         );
-        reading.assumptions.push(note("unknown_room", message));
+        reading.assumptions.push(Note::new("unknown_room", message));
     }
 }
 
@@ -200,7 +199,7 @@ fn target_areas(reading: &mut Reading, planned: &[Planned]) -> Vec<f64> {
                 range.min,
                 range.max
             );
-            reading.conflicts.push(note("area_out_of_range", message));
+            reading.conflicts.push(Note::new("area_out_of_range", message));
         }
         areas.push(area);
     }
@@ -263,7 +262,7 @@ fn target_areas(reading: &mut Reading, planned: &[Planned]) -> Vec<f64> {
         let message = format!(
             "{total:.0} m2 are more than these rooms need (about {needed:.0} m2); they were planned larger than usual"
         );
-        reading.assumptions.push(note("more_area_than_needed", message));
+        reading.assumptions.push(Note::new("more_area_than_needed", message));
     }
     let (mut low, mut high) = (0.01, MOST_SCALE);
     for _ in 0..48 {
@@ -282,7 +281,7 @@ fn target_areas(reading: &mut Reading, planned: &[Planned]) -> Vec<f64> {
         let message = format!(
             "{total:.0} m2 were asked for; the rooms can have about {reachable:.0} m2 within the ranges of their types; {change}"
         );
-        reading.conflicts.push(note("area_not_reachable", message));
+        reading.conflicts.push(Note::new("area_not_reachable", message));
     }
     scaled.into_iter().map(tenth).collect()
 }
@@ -316,12 +315,12 @@ fn space_scale(reading: &mut Reading) -> f64 {
     };
     if let Some(area) = reading.area_m2 {
         let message = format!("{area:.0} m2 are asked for; rooms share them, so that {word} changes nothing");
-        reading.assumptions.push(note("style_without_effect", message));
+        reading.assumptions.push(Note::new("style_without_effect", message));
         return 1.0;
     }
     let percent = 100.0 * scale;
     let message = format!("{word}: rooms have {percent:.0} % of their usual area, within the ranges of their types");
-    reading.assumptions.push(note("style_space", message));
+    reading.assumptions.push(Note::new("style_space", message));
     scale
 }
 
@@ -377,7 +376,7 @@ fn named_objects(reading: &mut Reading, planned: &[Planned]) -> BTreeMap<usize, 
             }
             None => {
                 let message = format!("no room was found for the object {object}; it was left out");
-                reading.conflicts.push(note("object_without_room", message));
+                reading.conflicts.push(Note::new("object_without_room", message));
             }
         }
     }
@@ -398,7 +397,7 @@ fn beds_of_one(reading: &Reading, planned: &[Planned]) -> Vec<usize> {
         return if alone { rooms } else { Vec::new() };
     }
     let others = planned.iter().filter(|r| r.kind.zone == Zone::Night && r.room_type != d.bedroom);
-    let others = others.filter(|r| beds::sleeps(reading.domain, r.kind).is_some_and(|[least, _]| least == 1)).count();
+    let others = others.filter(|r| offer::sleeps(reading.domain, r.kind).is_some_and(|[least, _]| least == 1)).count();
     let children = (reading.children as usize).saturating_sub(others);
     // parents first; guests may sleep in what is left
     let from = rooms.len().checked_sub(children).filter(|left| *left > 0 && children > 0);
@@ -419,25 +418,15 @@ fn sets_table(domain: &Domain, kind: &RoomType, object: &str, planned: &[Planned
 fn add_companions(reading: &mut Reading, planned: &[Planned], named: &mut BTreeMap<usize, Vec<String>>) {
     let is_for = |o: &&ObjectType| o.tags.iter().any(|t| t == COMPANION);
     let Some(object) = reading.domain.objects.iter().find(is_for).filter(|_| reading.stays) else { return };
-    let patients = |r: &Planned| r.kind.privacy == Privacy::Private && beds::sleeps(reading.domain, r.kind).is_some();
+    let patients = |r: &Planned| r.kind.privacy == Privacy::Private && offer::sleeps(reading.domain, r.kind).is_some();
     let rooms: Vec<usize> = (0..planned.len()).filter(|&i| patients(&planned[i])).collect();
     if rooms.is_empty() {
         let message = "no room was found for those who stay overnight with patients; they were left out".into();
-        return reading.conflicts.push(note("object_without_room", message));
+        return reading.conflicts.push(Note::new("object_without_room", message));
     }
     rooms.into_iter().for_each(|i| named.entry(i).or_default().push(object.id.clone()));
     let message = format!("those who stay overnight with patients have a {} in each room", object.label.to_lowercase());
-    reading.assumptions.push(note("companions", message));
-}
-
-/// Returns the objects a room type is furnished with, most important first.
-fn furniture<'a>(domain: &'a Domain, kind: &'a RoomType) -> impl Iterator<Item = &'a str> {
-    kind.furnishing.iter().flat_map(|line| {
-        let group = domain.group(&line.item);
-        let anchor = group.map_or(line.item.as_str(), |g| g.anchor.as_str());
-        let members = group.into_iter().flat_map(|g| g.members.iter().map(|m| m.object.as_str()));
-        std::iter::once(anchor).chain(members)
-    })
+    reading.assumptions.push(Note::new("companions", message));
 }
 
 /// Returns the objects wished for in a room, most important first: those named, then those of its type.
@@ -449,14 +438,4 @@ pub(crate) fn wished_assets(domain: &Domain, kind: &RoomType, named: &[String]) 
         }
     }
     out
-}
-
-/// Returns true for a room of a type, where a number is given for the one that has it as its own.
-pub(crate) fn is_meant(room: &GraphRoom, kind: &str, number: Option<u32>) -> bool {
-    room.room_type == kind && number.is_none_or(|n| room.id == format!("{kind}_{n}"))
-}
-
-/// Returns true for the type of the room that joins the others, whatever the plan calls it.
-pub(crate) fn is_way(domain: &Domain, room_type: &str) -> bool {
-    domain.circulation.room_type == room_type || domain.circulation.entrance_room_types.iter().any(|t| t == room_type)
 }

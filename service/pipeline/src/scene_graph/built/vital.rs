@@ -2,20 +2,16 @@
 //! to sleep, a place to work at has a toilet, a ward what its program calls vital. Where a number or list of rooms leaves no
 //! place for them, a conflict says so, and which change would.
 
-use std::collections::BTreeSet;
+use d3dgen_model::domain::{Access, Adjacency, AdjacencyRelation, Domain, Occupants, Program, RoomType, Zone};
 
-use d3dgen_model::domain::{Access, Adjacency, AdjacencyRelation, Domain, Occupants, Program, RoomType, Shape, Zone};
+use d3dgen_knowledge::jurisdiction::rules_here;
+use d3dgen_model::offer::{Wet, sleeps};
+use d3dgen_model::scene_graph::{Note, SceneGraph};
 
-use d3dgen_model::scene_graph::SceneGraph;
-
-use super::edges::rules_here;
 use super::occupants::places_to_work;
-use super::program::Planned;
-use crate::scene_graph::MOST_IN_OFFICE;
-use crate::scene_graph::people::beds::sleeps;
+use crate::scene_graph::built::planned::Planned;
 use crate::scene_graph::reading::Reading;
-use crate::scene_graph::subject::places::note;
-use crate::scene_graph::subject::programs::is_dwelling;
+use crate::scene_graph::subject::programs::{MOST_IN_OFFICE, is_dwelling};
 use crate::scene_graph::tokens::words::words;
 use crate::scene_graph::wished::wishes::Wishes;
 
@@ -96,48 +92,6 @@ fn is_worked_at(program: &Program) -> bool {
     program.rooms.iter().any(|r| {
         let seat = r.area_per_occupant_m2.is_some() || r.occupants_per_room.is_some_and(|n| n <= MOST_IN_OFFICE);
         r.occupants == Occupants::Staff && seat
-    })
-}
-
-/// Ids of a domain's room types with a toilet, and of those that one can bathe in too.
-#[derive(Debug, Default)]
-pub(crate) struct Wet {
-    toilets: BTreeSet<String>,
-    bathrooms: BTreeSet<String>,
-}
-
-impl Wet {
-    /// Finds them by what the rooms are furnished with.
-    pub(crate) fn of(domain: &Domain) -> Self {
-        let mut wet = Self::default();
-        for kind in domain.room_types.iter().filter(|k| k.zone != Zone::Night) {
-            if has_shape(domain, kind, &[Shape::Toilet, Shape::Cubicle]) {
-                wet.toilets.insert(kind.id.clone());
-                if has_shape(domain, kind, &[Shape::Shower, Shape::Bathtub]) {
-                    wet.bathrooms.insert(kind.id.clone());
-                }
-            }
-        }
-        wet
-    }
-
-    /// Returns true for rooms to go to the toilet in.
-    pub(crate) fn has_toilet(&self, kind: &RoomType) -> bool {
-        self.toilets.contains(&kind.id)
-    }
-
-    /// Returns true for rooms with a toilet and a shower or bathtub.
-    pub(crate) fn is_bathroom(&self, kind: &RoomType) -> bool {
-        self.bathrooms.contains(&kind.id)
-    }
-}
-
-/// Returns true for rooms with an object of one of these shapes.
-fn has_shape(domain: &Domain, kind: &RoomType, shapes: &[Shape]) -> bool {
-    let of = |id: &str| domain.object(id).is_some_and(|o| shapes.contains(&o.shape));
-    kind.furnishing.iter().any(|line| match domain.group(&line.item) {
-        Some(group) => of(&group.anchor) || group.members.iter().any(|m| of(&m.object)),
-        None => of(&line.item),
     })
 }
 
@@ -231,7 +185,7 @@ pub(crate) fn complete<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned<'a
                 "the list of rooms has nothing of what such a building needs: {what}; the list was followed, add these to it"
             ),
         };
-        reading.conflicts.push(note("vital_room_missing", message));
+        reading.conflicts.push(Note::new("vital_room_missing", message));
     }
 }
 
@@ -293,7 +247,7 @@ fn give_bedrooms<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
         let message = format!(
             "{people} people are to live there, and {have} bedrooms have {beds} beds; the rooms asked for were planned, {needed} bedrooms would have enough"
         );
-        reading.conflicts.push(note("too_few_bedrooms", message));
+        reading.conflicts.push(Note::new("too_few_bedrooms", message));
     }
 }
 
@@ -331,7 +285,7 @@ fn second_toilet<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
         rooms.push(Planned::new(&kind.id, kind));
     } else if private {
         let message = "all toilets are entered through bedrooms; the rooms asked for were planned, one more for visitors would help";
-        reading.assumptions.push(note("no_visitor_toilet", message.into()));
+        reading.assumptions.push(Note::new("no_visitor_toilet", message.into()));
     }
     let asleep = bedrooms(reading, rooms);
     let showers = |r: &Planned| r.room_type == words().dwelling.shower;

@@ -4,15 +4,16 @@
 use std::collections::BTreeMap;
 
 use d3dgen_model::domain::{Domain, Occupants, Privacy, Program, RoomType, Zone};
+use d3dgen_model::offer;
+use d3dgen_model::offer::{MOST_IN_TEAM, Seating, has_counters, most_desks, seating, works_in};
 use d3dgen_model::scene_graph::{GraphRoom, Note};
 
 use super::occupants::{desk_area_m2, head_count, places_to_work, workplaces};
-use super::program::Planned;
 use super::vital;
-use crate::scene_graph::people::seats::{MOST_IN_TEAM, has_counters, most_desks, places, works_in};
+use crate::scene_graph::built::occupants::beside_desks;
+use crate::scene_graph::built::planned::Planned;
 use crate::scene_graph::reading::Reading;
-use crate::scene_graph::subject::places::note;
-use crate::scene_graph::subject::programs::is_dwelling;
+use crate::scene_graph::subject::programs::is_office;
 use crate::scene_graph::tokens::text::capital;
 use crate::scene_graph::tokens::words::words;
 use crate::scene_graph::wished::wishes::{Wish, Wishes};
@@ -28,15 +29,9 @@ const LEAST_OPEN: u32 = 3;
 const MOST_COUNTED: u32 = 3;
 /// Floor of the kitchen or counter of a room to eat in, as a share of its least area.
 const KITCHEN_SHARE: f64 = 0.45;
-/// Floor of a room for a team beside its desks, m^2.
-const BESIDE_DESKS_M2: f64 = 3.0;
+
 /// Most single offices that a share of the people gets.
 const MOST_SHARED_OUT: u32 = 60;
-
-/// Returns true for programs of offices: rooms that serve all grow with those who work there.
-pub(crate) fn is_office(program: &Program) -> bool {
-    !is_dwelling(program) && program.rooms.iter().any(|e| e.area_per_person_m2.is_some())
-}
 
 /// Returns the domain's room type with the most desks.
 fn open_kind(domain: &Domain) -> Option<&RoomType> {
@@ -68,7 +63,7 @@ pub(crate) fn seat_in_listed(wishes: &mut Wishes, domain: &Domain, people: u32) 
     let left = people.saturating_sub(others.fold(0, u32::saturating_add));
     let wish = &mut wishes.wishes[open];
     wish.count = left.div_ceil(desks(wish)).clamp(wish.count, MOST_SHARED_OUT.max(wish.count));
-    Some(note("rooms_for_people", format!("{} x {} seat those who work there", wish.count, wish.name)))
+    Some(Note::new("rooms_for_people", format!("{} x {} seat those who work there", wish.count, wish.name)))
 }
 
 /// Counts the toilets of "two-room office with a small toilet" beside its rooms, which are to work in.
@@ -143,11 +138,6 @@ fn share_halves<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
     }
 }
 
-/// Returns the floor of a small room beside its desks, m^2: the door and the cupboard.
-pub(super) fn beside_desks(desks: u32) -> f64 {
-    if (3..=MOST_IN_TEAM).contains(&desks) { BESIDE_DESKS_M2 } else { 0.0 }
-}
-
 /// Gives a room so many desks and the floor for them.
 pub(crate) fn seat(reading: &Reading, room: &mut Planned, desks: u32) {
     room.occupants = Some(desks);
@@ -164,7 +154,7 @@ fn desks(domain: &Domain, room: &Planned) -> u32 {
     if !works_in(domain, room.kind) {
         return 0;
     }
-    room.occupants.or_else(|| crate::scene_graph::people::seated::desks(domain, room.kind).map(|d| d[0])).unwrap_or(0)
+    room.occupants.or_else(|| offer::desks(domain, room.kind).map(|d| d[0])).unwrap_or(0)
 }
 
 /// Gives open offices the people who have no desk elsewhere; rooms to work in that nobody asked for and nobody needs go.
@@ -218,7 +208,7 @@ fn give_desks<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
     let teams: Vec<usize> = (0..rooms.len()).filter(|&i| team(&rooms[i])).collect();
     let mut short = left;
     for i in teams {
-        let [low, high] = crate::scene_graph::people::seated::desks(domain, rooms[i].kind).unwrap_or([0, 0]);
+        let [low, high] = offer::desks(domain, rooms[i].kind).unwrap_or([0, 0]);
         let more = short.min(high - low.min(high));
         if more > 0 {
             seat(reading, &mut rooms[i], low + more);
@@ -230,7 +220,7 @@ fn give_desks<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
         let message = format!(
             "{people} people are to work there, and the rooms asked for have {most} desks at most; an open office would have the others"
         );
-        reading.conflicts.push(note("too_few_desks", message));
+        reading.conflicts.push(Note::new("too_few_desks", message));
     }
 }
 
@@ -241,7 +231,7 @@ fn seat_teams(reading: &Reading, rooms: &mut [Planned]) {
         !r.requested && (3..=MOST_IN_TEAM).contains(&size) && r.occupants.is_none() && r.area_m2.is_none()
     };
     for room in rooms.iter_mut().filter(team) {
-        let Some([low, high]) = crate::scene_graph::people::seated::desks(reading.domain, room.kind) else { continue };
+        let Some([low, high]) = offer::desks(reading.domain, room.kind) else { continue };
         let usual = room.kind.area_m2.target / desk_area_m2(reading.domain, &room.room_type);
         seat(reading, room, (usual as u32).clamp(low, high));
     }
@@ -297,7 +287,7 @@ fn part_toilets<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
     }
     if let Some(kind) = added {
         let message = format!("{people} people work there; women and men have {} each", kind.label.to_lowercase());
-        reading.assumptions.push(note("toilets_by_people", message));
+        reading.assumptions.push(Note::new("toilets_by_people", message));
     }
 }
 
@@ -328,7 +318,7 @@ fn seat_waiting(domain: &Domain, rooms: &mut [Planned]) {
                 continue;
             }
             let seats = (each * f64::from(counters) / waits.len() as f64).ceil() as u32;
-            let Some((_, area)) = places(domain, rooms[i].kind, seats) else { continue };
+            let Some(Seating { area_m2: area, .. }) = seating(domain, rooms[i].kind, seats) else { continue };
             (rooms[i].occupants, rooms[i].visited) = (Some(seats), true);
             rooms[i].size_for_people(area);
         }
@@ -367,7 +357,7 @@ pub(super) fn seat_guests(reading: &mut Reading, rooms: &mut [Planned]) {
     for held in reading.seats.clone() {
         let free = |r: &&mut Planned| r.requested && r.occupants.is_none() && r.room_type == held.room_type;
         for room in rooms.iter_mut().filter(free).take(held.count as usize) {
-            let Some((most, area)) = places(domain, room.kind, held.beds) else { continue };
+            let Some(Seating { most, area_m2: area }) = seating(domain, room.kind, held.beds) else { continue };
             room.occupants = Some(held.beds);
             room.visited = true;
             room.size_for_people(area);
@@ -377,7 +367,7 @@ pub(super) fn seat_guests(reading: &mut Reading, rooms: &mut [Planned]) {
                 let message = format!(
                     "{label} for {wanted} would need {area:.0} m2, and such a room has {largest:.0} m2 at most; as many as fit were planned"
                 );
-                reading.conflicts.push(note("too_many_seats", message));
+                reading.conflicts.push(Note::new("too_many_seats", message));
             }
         }
     }
@@ -393,7 +383,10 @@ pub(super) fn seat_guests(reading: &mut Reading, rooms: &mut [Planned]) {
                 continue;
             }
             let seats = (share * f64::from(people) / eats.len() as f64).ceil() as u32;
-            let Some((_, area)) = places(domain, rooms[i].kind, seats).filter(|_| seats > 0) else { continue };
+            let Some(Seating { area_m2: area, .. }) = seating(domain, rooms[i].kind, seats).filter(|_| seats > 0)
+            else {
+                continue;
+            };
             let room = &mut rooms[i];
             room.occupants = Some(seats);
             room.visited = true;

@@ -2,19 +2,17 @@
 
 use d3dgen_knowledge::jurisdiction;
 use d3dgen_model::domain::{Access, Domain, GENERIC_ROOM_TYPE, Storeys as Rules, TwoStairs, Zone};
-use d3dgen_model::scene_graph::{Connector, GraphEdge, GraphRoom};
+use d3dgen_model::offer;
+use d3dgen_model::offer::sleeps;
+use d3dgen_model::scene_graph::{BY_CIRCULATION, Connector, GraphEdge, GraphRoom, Note};
 use d3dgen_model::storeys::{LinkKind, VerticalLink};
 
-use super::storeys::Where;
-use crate::scene_graph::BY_CIRCULATION;
 use crate::scene_graph::built::edges::{self, Web};
-use crate::scene_graph::built::program::Planned;
+use crate::scene_graph::built::planned::Planned;
 use crate::scene_graph::built::rooms;
-use crate::scene_graph::people::beds::sleeps;
-use crate::scene_graph::people::seated;
 use crate::scene_graph::reading::Reading;
-use crate::scene_graph::subject::places::note;
 use crate::scene_graph::subject::programs::is_dwelling;
+use crate::scene_graph::tokens::storey::Where;
 
 /// How much fuller than the mean a storey gets with what belongs there.
 const FULL: f64 = 1.3;
@@ -65,7 +63,7 @@ pub(crate) fn levels(reading: &mut Reading) -> Vec<i32> {
             levels.len(),
             reading.domain.id
         );
-        reading.conflicts.push(note("one_floor", message));
+        reading.conflicts.push(Note::new("one_floor", message));
         return vec![0];
     }
     levels
@@ -335,7 +333,7 @@ fn fixed_levels(reading: &mut Reading, planned: &[Planned], levels: &[i32]) -> V
     }
     for room_type in short {
         let message = format!("fewer rooms of type {room_type} were planned than the prompt puts on its storeys");
-        reading.conflicts.push(note("fewer_than_on_storeys", message));
+        reading.conflicts.push(Note::new("fewer_than_on_storeys", message));
     }
     fixed
 }
@@ -450,7 +448,7 @@ fn two_stairs<'r>(reading: &Reading, rules: &'r Rules, rooms: &[GraphRoom]) -> O
     let country = reading.country_code.as_deref();
     let people = |room: &GraphRoom| {
         let kind = domain.room_type_or_generic(&room.room_type);
-        let usual = || sleeps(domain, kind).or_else(|| seated::desks(domain, kind)).map(|n| n[0]);
+        let usual = || sleeps(domain, kind).or_else(|| offer::desks(domain, kind)).map(|n| n[0]);
         room.occupants.or_else(usual).unwrap_or(0)
     };
     let speaks = |rule: &&TwoStairs| {
@@ -506,13 +504,13 @@ fn links(
             "the building needs two stairs ({}); on storeys of up to {longest} rooms they would be one beside the other, and one was planned",
             rule.source
         );
-        reading.conflicts.push(note("one_stair", message));
+        reading.conflicts.push(Note::new("one_stair", message));
     }
     let planned = wanted.len() as u32;
     if asked > planned {
         let message =
             format!("{asked} staircases were asked for; storeys of up to {most} rooms were planned with {planned}");
-        reading.conflicts.push(note("fewer_stairs", message));
+        reading.conflicts.push(Note::new("fewer_stairs", message));
     }
     if let Some(elevator) = &rules.elevator {
         let usual = elevator.from_levels.is_some_and(|n| levels.len() >= n as usize);
@@ -524,16 +522,16 @@ fn links(
             if asked > planned {
                 let message =
                     format!("{asked} elevators were asked for; a core has room for {planned}, which were planned");
-                reading.conflicts.push(note("fewer_elevators", message));
+                reading.conflicts.push(Note::new("fewer_elevators", message));
             }
         } else if usual && !reading.accessible {
             let message =
                 format!("the prompt wants no elevator, which a building of {} storeys usually has", levels.len());
-            reading.assumptions.push(note("no_elevator", message));
+            reading.assumptions.push(Note::new("no_elevator", message));
         }
         if !lift && !reading.robots.is_empty() {
             let message = "there is no elevator; robots stay on the storey they start on".to_owned();
-            reading.assumptions.push(note("robots_stay", message));
+            reading.assumptions.push(Note::new("robots_stay", message));
         }
     }
     let corridors: Vec<GraphRoom> = halls.clone();

@@ -2,14 +2,16 @@
 //! to be, so its desks are shared out to the storeys as far as these have floor for them.
 
 use d3dgen_model::domain::Domain;
+use d3dgen_model::offer::{MOST_IN_TEAM, most_desks};
+use d3dgen_model::scene_graph::Note;
 
 use super::deal;
-use super::storeys::{Wanted, Where};
-use crate::scene_graph::built::program::Planned;
-use crate::scene_graph::built::workers::{self, is_office};
-use crate::scene_graph::people::seats::{MOST_IN_TEAM, most_desks};
+use super::storeys::Wanted;
+use crate::scene_graph::built::planned::Planned;
+use crate::scene_graph::built::workers;
 use crate::scene_graph::reading::Reading;
-use crate::scene_graph::subject::places::note;
+use crate::scene_graph::subject::programs::is_office;
+use crate::scene_graph::tokens::storey::Where;
 use crate::scene_graph::tokens::words::words;
 
 /// Least desks of a part of an open office.
@@ -86,7 +88,7 @@ pub(crate) fn open_offices<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planne
         rooms[first].kind.label.to_lowercase(),
         said.join(", ")
     );
-    reading.assumptions.push(note("open_office_shared_out", message));
+    reading.assumptions.push(Note::new("open_office_shared_out", message));
 }
 
 /// Adds rooms to the ground floor of an office that is smaller than the storey above, which would hang in the air.
@@ -116,7 +118,7 @@ pub(crate) fn fill_ground<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned
     }
     if !added.is_empty() {
         let message = format!("the ground floor would be smaller than the storey above; added {}", added.join(", "));
-        reading.assumptions.push(note("ground_floor_filled", message));
+        reading.assumptions.push(Note::new("ground_floor_filled", message));
     }
 }
 

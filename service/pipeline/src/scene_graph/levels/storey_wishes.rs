@@ -4,9 +4,9 @@
 use d3dgen_model::domain::{Domain, Zone};
 use d3dgen_model::scene_graph::Note;
 
-use super::storeys::{Phrase, Storeys, Wanted, Where};
-use crate::scene_graph::named::mentions::{Mention, What};
-use crate::scene_graph::subject::places::note;
+use super::storeys::{Phrase, Storeys, Wanted};
+use crate::scene_graph::named::mention::{Mention, What};
+use crate::scene_graph::tokens::storey::Where;
 use crate::scene_graph::tokens::words::words;
 use crate::scene_graph::wished::wishes::{Wish, Wishes};
 
@@ -71,7 +71,7 @@ pub(crate) fn wish_for_storeys(storeys: &mut Storeys, wishes: &mut Wishes, domai
         for pair in wishes.pairs.iter().filter(|p| joins(&p.a) || joins(&p.b)) {
             let [a, b] = [&pair.a, &pair.b].map(|id| id.replace('_', " "));
             let why = "stairs and elevators stand where they join the storeys";
-            conflicts.push(note("not_beside", format!("{a} and {b} were not planned beside each other: {why}")));
+            conflicts.push(Note::new("not_beside", format!("{a} and {b} were not planned beside each other: {why}")));
         }
         wishes.pairs.retain(|p| !joins(&p.a) && !joins(&p.b));
         wishes.forbidden.retain(|f| !joins(f));

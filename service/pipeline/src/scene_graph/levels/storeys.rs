@@ -2,45 +2,14 @@
 
 use d3dgen_model::scene_graph::Note;
 
-use crate::scene_graph::named::mentions::{Mention, What};
-use crate::scene_graph::subject::places::note;
+use crate::scene_graph::named::mention::{Mention, What};
 use crate::scene_graph::tokens::numbers::Number;
+use crate::scene_graph::tokens::storey::Where;
 use crate::scene_graph::tokens::text::{Kind, Phrases, Span, Token, fold};
 use crate::scene_graph::tokens::words::{Spoken, Tag, is_tagged, tag_end, words};
 
 /// Storeys above the ground that a prompt may ask for.
 const MOST_LEVELS: u32 = 12;
-
-/// A word for a storey.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Where {
-    /// So many storeys above the ground.
-    Level(i32),
-    /// "First floor": the ground floor or the one above it, by country.
-    Nth(i32),
-    /// Any but the ground floor.
-    Upper,
-    /// The highest.
-    Top,
-    /// Every one.
-    Each,
-}
-
-impl Where {
-    /// Reads `level 1`, `nth 2`, `upper`, `top`, `each` of `words.toml`.
-    pub(crate) fn of(text: &str) -> Option<Self> {
-        let (word, number) = text.split_once(' ').unwrap_or((text, "0"));
-        let n: i32 = number.parse().ok()?;
-        match word {
-            "level" => Some(Self::Level(n)),
-            "nth" => Some(Self::Nth(n)),
-            "upper" => Some(Self::Upper),
-            "top" => Some(Self::Top),
-            "each" => Some(Self::Each),
-            _ => None,
-        }
-    }
-}
 
 /// A phrase that names a storey.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -234,7 +203,7 @@ fn state_more_than_one(text: &Text, stated: i32, conflicts: &mut Vec<Note>) {
     let Text { tokens, spoken, phrases, .. } = *text;
     if stated > 1 && said_by_word(text) == Some(1.0) {
         let message = format!("the prompt asks for one storey and for {stated}; {stated} were planned");
-        conflicts.push(note("contradicting_storeys", message));
+        conflicts.push(Note::new("contradicting_storeys", message));
     }
     let tagged = |i: usize, tags: &[Tag]| spoken.iter().any(|s| tags.iter().any(|&t| s.tag_at(tokens, i, t).is_some()));
     let above = |at: Where| match at {
@@ -250,7 +219,7 @@ fn state_more_than_one(text: &Text, stated: i32, conflicts: &mut Vec<Note>) {
     };
     if stated == 1 && phrases.iter().any(own) {
         let message = "one storey was asked for, and one above it too; the number was followed".to_owned();
-        conflicts.push(note("contradicting_storeys", message));
+        conflicts.push(Note::new("contradicting_storeys", message));
     }
 }
 
@@ -331,7 +300,7 @@ pub(crate) fn read(text: &Text, country: Option<&str>, conflicts: &mut Vec<Note>
     let stated = stated(text);
     if let Some(n) = stated.filter(|n| !(1.0..=f64::from(MOST_LEVELS)).contains(n)) {
         let message = format!("{n} storeys were asked for; one world has 1 to {MOST_LEVELS}");
-        conflicts.push(note("impossible_storeys", message));
+        conflicts.push(Note::new("impossible_storeys", message));
     }
     let stated = stated.filter(|n| (1.0..=f64::from(MOST_LEVELS)).contains(n)).map(|n| n.floor() as i32);
     let of_robots: Vec<(usize, Span)> = (0..phrases.len()).filter_map(|p| Some((p, robot_on(text, p)?))).collect();
@@ -369,7 +338,7 @@ pub(crate) fn read(text: &Text, country: Option<&str>, conflicts: &mut Vec<Note>
             highest + 1,
             highest + 1
         );
-        conflicts.push(note("contradicting_storeys", message));
+        conflicts.push(Note::new("contradicting_storeys", message));
         top = highest;
     }
     let lowest = named.first().copied().unwrap_or(0).min(0);
@@ -396,11 +365,11 @@ pub(crate) fn read(text: &Text, country: Option<&str>, conflicts: &mut Vec<Note>
     if elevator == Some(true) && levels.len() < 2 {
         let message =
             "an elevator was asked for, but the building has one storey; none was planned, say how many storeys it has";
-        conflicts.push(note("elevator_on_one_storey", message.into()));
+        conflicts.push(Note::new("elevator_on_one_storey", message.into()));
     }
     if elevator == Some(true) && levels.len() > 1 && beside {
         let message = "no room was planned beside an elevator: it stands where it joins the storeys";
-        conflicts.push(note("not_beside", message.into()));
+        conflicts.push(Note::new("not_beside", message.into()));
     }
     Storeys { levels, wanted, elevator, lifts, stairs: 0, robots_on_each, bare_basement: bare }
 }

@@ -1,13 +1,14 @@
 //! Large buildings are made of units (wards, departments), each with what it needs at hand, as programs of the domain say.
 
 use d3dgen_model::domain::{Access, Occupants, Program, Units, Zone};
+use d3dgen_model::scene_graph::Note;
 
+use crate::scene_graph::built::growth::{fill_unit, may_grow};
 use crate::scene_graph::built::large;
 use crate::scene_graph::built::occupants::{head_count, is_counted};
-use crate::scene_graph::built::program::{Planned, fill_unit, may_grow};
+use crate::scene_graph::built::planned::Planned;
 use crate::scene_graph::built::vital::guests;
 use crate::scene_graph::reading::Reading;
-use crate::scene_graph::subject::places::note;
 
 /// Rooms of a storey that is a unit of its own, at least, and of one whose number is open.
 const LEAST_ON_STOREY: usize = 12;
@@ -68,7 +69,7 @@ pub(crate) fn divide<'a>(reading: &mut Reading<'a>, rooms: Vec<Planned<'a>>) -> 
         out.extend(unit.rooms.into_iter().map(|room| Planned { unit: Some(id.clone()), ..room }));
     }
     let message = format!("the building was made of {} units: {}", made.len(), made.join(", ").replace('_', " "));
-    reading.assumptions.push(note("units", message));
+    reading.assumptions.push(Note::new("units", message));
     out
 }
 

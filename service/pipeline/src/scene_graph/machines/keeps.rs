@@ -1,7 +1,7 @@
 //! Where a robot works: "a disinfection robot drives through the corridors at night". Where the prompt says nothing of it a
 //! robot works wherever its kind does.
 
-use crate::scene_graph::named::mentions::Mention;
+use crate::scene_graph::named::mention::Mention;
 use crate::scene_graph::tokens::text::{Span, Token};
 use crate::scene_graph::tokens::words::{Spoken, Tag, is_tagged};
 

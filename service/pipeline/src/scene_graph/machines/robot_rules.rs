@@ -3,7 +3,7 @@
 
 use d3dgen_model::scene_graph::{GraphRoom, ROBOT_SPEEDS_M_S, RobotRule};
 
-use crate::scene_graph::built::rooms::is_meant;
+use crate::scene_graph::named::numbered::is_meant;
 use crate::scene_graph::tokens::numbers::Number;
 use crate::scene_graph::tokens::text::Span;
 use crate::scene_graph::tokens::words::{Tag, words};

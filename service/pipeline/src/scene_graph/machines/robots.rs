@@ -1,16 +1,16 @@
 //! Robots that a prompt names: kind, number, charging.
 
 use d3dgen_model::robot_body::RobotBody;
+use d3dgen_model::robot_kind;
 use d3dgen_model::scene_graph::{GraphRoom, Note, Robot};
 
-use crate::scene_graph::Request;
 use crate::scene_graph::named::counts::number_after;
-use crate::scene_graph::named::mentions::{Mention, What};
-use crate::scene_graph::subject::places::note;
+use crate::scene_graph::named::mention::{Mention, What};
+use crate::scene_graph::request::Request;
 use crate::scene_graph::tokens::negation::is_ruled_out;
 use crate::scene_graph::tokens::numbers::Number;
 use crate::scene_graph::tokens::text::{Kind, Span, Token, fold};
-use crate::scene_graph::tokens::words::{Spoken, Tag, is_tagged, tag_end, tag_ends_at, words};
+use crate::scene_graph::tokens::words::{Spoken, Tag, is_tagged, tag_end, tag_ends_at};
 use crate::scene_graph::wished::wishes::{CHARGING, Wishes};
 
 /// Most robots of one kind.
@@ -400,11 +400,11 @@ pub(crate) fn of_graph(
     for span in &fleet.left_out {
         let words = prompt.words(*span);
         let message = format!("`{words}` is no kind of robot that is planned; it was left out beside the others");
-        conflicts.push(note("unread_wish", message));
+        conflicts.push(Note::new("unread_wish", message));
     }
     let radius = match radius {
         Some(r) if !(0.05..=2.0).contains(&r) => {
-            conflicts.push(note(
+            conflicts.push(Note::new(
                 "robot_radius",
                 format!("a robot radius of {r} m is outside 0.05-2 m; the usual one was taken"),
             ));
@@ -415,7 +415,7 @@ pub(crate) fn of_graph(
     if let (Some(flag), Some(named)) = (request.robot_radius_m, radius)
         && (flag - named).abs() > 1e-9
     {
-        conflicts.push(note(
+        conflicts.push(Note::new(
             "radius_flag",
             format!("the prompt says {named} m robot radius, the request {flag} m; {flag} m was used"),
         ));
@@ -424,7 +424,7 @@ pub(crate) fn of_graph(
     wanted
         .iter()
         .filter_map(|w| {
-            let body = words().robot_kinds.get(w.kind)?;
+            let body = robot_kind::typical(w.kind)?;
             let mut own = request.robot;
             // "0.7 m wide, 0.9 m long"
             if let Some((width, length)) = radius.map(|r| 2.0 * r).zip(length).filter(|_| own == RobotBody::default()) {
@@ -525,16 +525,16 @@ fn state_assumed(fleet: &Fleet, prompt: &Prompt, assumptions: &mut Vec<Note>) {
                 ),
             ),
         };
-        assumptions.push(note(code, message));
+        assumptions.push(Note::new(code, message));
     }
     for span in &fleet.unknown {
-        let kinds: Vec<&str> = words().robot_kinds.keys().map(String::as_str).collect();
+        let kinds = robot_kind::names();
         let message = format!(
             "`{}` is none of the kinds of robots that are planned ({}); a service robot was taken for it",
             prompt.words(*span),
             kinds.join(", ")
         );
-        assumptions.push(note("robot_kind", message));
+        assumptions.push(Note::new("robot_kind", message));
     }
 }
 

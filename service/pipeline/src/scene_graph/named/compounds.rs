@@ -5,7 +5,7 @@
 use d3dgen_model::domain::{Access, Domain};
 use d3dgen_model::scene_graph::Connector;
 
-use super::mentions::{Mention, What};
+use crate::scene_graph::named::mention::{Mention, What};
 use crate::scene_graph::tokens::text::{Kind, Span, Token};
 use crate::scene_graph::tokens::words::{Spoken, Tag, is_tagged, tag_end, words};
 use crate::scene_graph::wished::relations::{Relation, Said, Spread};

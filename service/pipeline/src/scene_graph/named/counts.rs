@@ -1,7 +1,8 @@
 //! Which number counts which noun: the one before it, over adjectives, or the one behind it; what counts something else, or
 //! says what one room holds, is left alone.
 
-use super::mentions::{Mention, Taken, What};
+use crate::scene_graph::named::mention::{Mention, What};
+use crate::scene_graph::named::taken::Taken;
 use crate::scene_graph::tokens::numbers::{self, Number};
 use crate::scene_graph::tokens::text::{Kind, Span, Token};
 use crate::scene_graph::tokens::words::{Spoken, Tag, is_tagged, tag_end, tag_ends_at};

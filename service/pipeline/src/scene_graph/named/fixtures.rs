@@ -1,9 +1,9 @@
 //! Words that mean a room in a list and a thing behind another room: the "showers" of a shared flat, the "shower" of a bathroom.
 
 use d3dgen_model::domain::Domain;
+use d3dgen_model::offer::Wet;
 
-use super::mentions::{Mention, What};
-use crate::scene_graph::built::vital::Wet;
+use crate::scene_graph::named::mention::{Mention, What};
 use crate::scene_graph::tokens::text::{Span, Token};
 use crate::scene_graph::tokens::words::{Spoken, Tag, is_tagged, words};
 

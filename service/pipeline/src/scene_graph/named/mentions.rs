@@ -3,101 +3,24 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use d3dgen_model::domain::{Access, Domain, GENERIC_ROOM_TYPE, RoomType, Zone};
+use d3dgen_model::offer;
+use d3dgen_model::offer::{MOST_IN_TEAM, works_in};
 use d3dgen_plugins::Registry;
 
-use super::compounds::{self, Compound};
+use super::compounds::{self};
 use super::counts;
 use super::named_for;
-use super::numbered::{self, Numbered};
+use super::numbered;
 use super::unknown;
-use crate::scene_graph::people::beds::BedRoom;
-use crate::scene_graph::people::seated;
-use crate::scene_graph::people::seats::works_in;
+use crate::scene_graph::named::mention::{Mention, What};
+use crate::scene_graph::named::taken::Taken;
 use crate::scene_graph::subject::programs::is_dwelling;
 use crate::scene_graph::tokens::numbers::Number;
 use crate::scene_graph::tokens::text::{Kind, Phrases, Span, Token, fold};
 use crate::scene_graph::tokens::words::{Spoken, Tag, is_tagged, tag_end, tag_ends_at, words};
 
-/// Most desks of a room for one team.
-const MOST_IN_TEAM: u32 = 12;
 /// Words between a room and those who say for whom it is, at most: "toilets for men and women".
 const MOST_TO_SEXES: usize = 5;
-
-/// What a mention is about.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) enum What {
-    /// A room type of the domain, of another domain, or a slug of the prompt's own words.
-    Room(String),
-    /// A robot's charging, named by a verb or a place that need not be a room.
-    Charge,
-    /// The entrance of the building.
-    Entrance,
-    /// Rooms in total.
-    Total,
-    Staff,
-    People,
-    Visitors,
-    Beds,
-    Desks,
-    Residents,
-}
-
-/// One mention.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Mention {
-    pub span: Span,
-    pub what: What,
-    /// The number before (or, in some languages, after) it.
-    pub count: Option<i64>,
-    /// True for "a", "eine": one of them, perhaps only an article.
-    pub article: bool,
-    /// True for "several".
-    pub vague: bool,
-    /// True for a plural form.
-    pub plural: bool,
-    /// True after "the" and the like.
-    pub definite: bool,
-    /// First token of the number or article, or of the mention itself.
-    pub from: usize,
-    /// Where the number stands.
-    pub number: Option<Span>,
-    /// Beds of each such room, where the prompt says so.
-    pub beds: Option<u32>,
-    /// Places to be treated at of each such room, where the prompt says so.
-    pub places: Option<u32>,
-    /// Its own number: "bedroom 2".
-    pub numbered: Option<Numbered>,
-}
-
-impl Mention {
-    /// Returns a mention of which nothing more is known yet.
-    pub(crate) fn plain(span: Span, what: What) -> Self {
-        let from = span.start;
-        Self {
-            span,
-            what,
-            count: None,
-            article: false,
-            vague: false,
-            plural: false,
-            definite: false,
-            from,
-            number: None,
-            beds: None,
-            places: None,
-            numbered: None,
-        }
-    }
-
-    /// Returns the end of its words, with the number of its own.
-    pub(crate) fn end(&self) -> usize {
-        self.numbered.map_or(self.span.end, |n| n.span.end)
-    }
-
-    pub(crate) fn room_type(&self) -> Option<&str> {
-        if let What::Room(id) = &self.what { Some(id) } else { None }
-    }
-}
 
 /// A word for a room.
 #[derive(Debug, Clone, PartialEq)]
@@ -140,7 +63,7 @@ impl Vocabulary {
         let ids = |test: &dyn Fn(&RoomType) -> bool| -> BTreeSet<String> {
             domain.room_types.iter().filter(|r| test(r)).map(|r| r.id.clone()).collect()
         };
-        let desks = |kind: &RoomType| seated::desks(domain, kind);
+        let desks = |kind: &RoomType| offer::desks(domain, kind);
         let most = |kind: &&RoomType| desks(kind).map_or(0, |d| d[1]);
         let open = domain.room_types.iter().filter(|k| desks(k).is_some()).max_by_key(most);
         let lives = domain.programs.iter().all(is_dwelling);
@@ -154,7 +77,7 @@ impl Vocabulary {
             strange_offices: all()
                 .flat_map(|d| d.room_types.iter().filter(|k| works_in(d, k)).map(move |k| (d, k)))
                 .filter(|(_, k)| domain.room_type(&k.id).is_none())
-                .filter_map(|(d, k)| Some((k.id.clone(), seated::desks(d, k)?[0])))
+                .filter_map(|(d, k)| Some((k.id.clone(), offer::desks(d, k)?[0])))
                 .collect(),
             lives,
             // "WC séparés" of a home are one, apart from its bathroom
@@ -337,27 +260,6 @@ fn phrases<'a>(domains: impl Iterator<Item = &'a Domain>, language: &str) -> Phr
         }
     }
     phrases
-}
-
-/// What the other readers have taken already.
-pub(crate) struct Taken<'a> {
-    /// Places, areas, short forms, robots.
-    pub spans: &'a [Span],
-    /// Words that name the building.
-    pub head: Option<Span>,
-    /// All words for buildings.
-    pub buildings: &'a [Span],
-    pub list_from: usize,
-    /// Things that a number before them counts: robots, areas. No number counts what stands behind them.
-    pub counted: &'a [Span],
-    /// Words for a robot's dock.
-    pub docks: &'a [Span],
-    /// Rooms that are told by their beds.
-    pub bed_rooms: &'a [BedRoom],
-    /// Words for several rooms.
-    pub compounds: &'a [Compound],
-    /// True for a prompt in a language that is not read: no word of it is the name of a room by its form alone.
-    pub unread: bool,
 }
 
 /// Returns all mentions in order.

@@ -3,9 +3,9 @@
 //! whole, and none of them is a room of a home.
 
 use d3dgen_model::domain::{Domain, RoomType};
+use d3dgen_model::offer;
+use d3dgen_model::offer::works_in;
 
-use crate::scene_graph::people::seated;
-use crate::scene_graph::people::seats::works_in;
 use crate::scene_graph::tokens::numbers;
 use crate::scene_graph::tokens::text::{Kind, Phrases, Span, Token, fold};
 use crate::scene_graph::tokens::words::{Spoken, Tag};
@@ -55,8 +55,8 @@ const OFFICE_SPACE: &str = "office";
 
 /// Returns the domain's office with so many desks, the smallest that holds them: no workshop and no laboratory.
 pub(crate) fn with_desks(domain: &Domain, desks: u32) -> Option<&RoomType> {
-    let fits = |k: &&RoomType| seated::desks(domain, k).is_some_and(|[low, high]| (low..=high).contains(&desks));
-    let most = |k: &&RoomType| seated::desks(domain, k).map_or(0, |d| d[1]);
+    let fits = |k: &&RoomType| offer::desks(domain, k).is_some_and(|[low, high]| (low..=high).contains(&desks));
+    let most = |k: &&RoomType| offer::desks(domain, k).map_or(0, |d| d[1]);
     let office = |k: &&RoomType| works_in(domain, k) || k.spaces.iter().any(|s| s.contains(OFFICE_SPACE));
     domain.room_types.iter().filter(office).filter(fits).min_by_key(most)
 }

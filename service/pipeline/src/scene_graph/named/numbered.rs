@@ -1,7 +1,9 @@
 //! Rooms with numbers of their own: "bedroom 1, bedroom 2", "bedrooms 1 to 4", "office A and office B". Such a number says
 //! which room is meant, and not how many there are.
 
-use super::mentions::{Mention, What};
+use d3dgen_model::scene_graph::GraphRoom;
+
+use crate::scene_graph::named::mention::{Mention, Numbered, What};
 use crate::scene_graph::tokens::numbers::{self, Number};
 use crate::scene_graph::tokens::text::{Kind, Span, Token};
 use crate::scene_graph::tokens::words::{Spoken, Tag, tag_end};
@@ -10,14 +12,6 @@ use crate::scene_graph::tokens::words::{Spoken, Tag, tag_end};
 const MOST: f64 = 99.0;
 /// Largest number that a room alone of its kind tells that there are so many of: "next to bedroom 3".
 const MOST_ALONE: u32 = 9;
-
-/// The number of a room.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Numbered {
-    pub n: u32,
-    /// Where it stands.
-    pub span: Span,
-}
 
 /// What may stand behind a room with its number: the sentence goes on, and nothing there is counted.
 const GOES_ON: [Tag; 15] = [
@@ -175,4 +169,9 @@ pub(crate) fn count<'m>(mentions: impl Iterator<Item = &'m Mention>) -> Option<(
     // "master bedroom, bedroom 2, bedroom 3": the first has a name of its own
     let told = if named == 1 { last <= MOST_ALONE } else { last <= named + 1 };
     Some((if told { last } else { named }, first == 1))
+}
+
+/// Returns true for a room of a type, where a number is given for the one that has it as its own.
+pub(crate) fn is_meant(room: &GraphRoom, kind: &str, number: Option<u32>) -> bool {
+    room.room_type == kind && number.is_none_or(|n| room.id == format!("{kind}_{n}"))
 }

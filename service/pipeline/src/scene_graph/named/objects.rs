@@ -3,7 +3,7 @@
 use d3dgen_model::domain::{Access, Domain, Zone};
 use d3dgen_plugins::Registry;
 
-use super::mentions::{Mention, What};
+use crate::scene_graph::named::mention::{Mention, What};
 use crate::scene_graph::tokens::negation::is_ruled_out;
 use crate::scene_graph::tokens::text::{Phrases, Span, Token};
 use crate::scene_graph::tokens::words::{Spoken, Tag, is_tagged, tag_end};

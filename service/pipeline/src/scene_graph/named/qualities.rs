@@ -3,7 +3,7 @@
 
 use d3dgen_model::domain::Domain;
 
-use super::mentions::Mention;
+use crate::scene_graph::named::mention::Mention;
 use crate::scene_graph::tokens::text::{Span, Token};
 use crate::scene_graph::tokens::words::Spoken;
 

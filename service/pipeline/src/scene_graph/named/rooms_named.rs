@@ -4,10 +4,12 @@ use d3dgen_model::domain::Zone;
 use d3dgen_plugins::Registry;
 
 use super::aside::Aside;
-use super::mentions::{Mention, Taken, mentions};
+use super::mentions::mentions;
 use super::{compounds, fixtures, objects, senses};
 use crate::scene_graph::heard::Heard;
 use crate::scene_graph::machines::docks;
+use crate::scene_graph::named::mention::Mention;
+use crate::scene_graph::named::taken::Taken;
 use crate::scene_graph::people::beds::{self, Choice};
 use crate::scene_graph::people::{homes, sharing};
 use crate::scene_graph::subject::site::Site;

@@ -3,7 +3,8 @@
 
 use d3dgen_model::domain::{Access, Adjacency, AdjacencyRelation, Domain, GENERIC_ROOM_TYPE, Program, Zone};
 
-use super::mentions::{Mention, Vocabulary, What};
+use super::mentions::Vocabulary;
+use crate::scene_graph::named::mention::{Mention, What};
 use crate::scene_graph::tokens::text::Token;
 use crate::scene_graph::tokens::words::{Spoken, Tag, is_tagged};
 

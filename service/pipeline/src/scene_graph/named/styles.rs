@@ -6,8 +6,7 @@ use std::sync::LazyLock;
 use d3dgen_model::scene_graph::Note;
 use d3dgen_model::style::{Style, StyleWord};
 
-use super::mentions::Mention;
-use crate::scene_graph::subject::places::note;
+use crate::scene_graph::named::mention::Mention;
 use crate::scene_graph::tokens::text::{Phrases, Span, Token};
 
 /// A word of style in a prompt.
@@ -83,13 +82,15 @@ pub(crate) fn wished(said: &[Said], flags: Style, conflicts: &mut Vec<Note>) -> 
     for Said { word, .. } in said {
         if !style.add(*word) {
             let message = format!("the prompt asks for {} and the opposite; what came first was taken", word.label());
-            conflicts.push(note("contradicting_styles", message));
+            conflicts.push(Note::new("contradicting_styles", message));
         }
     }
     let all = flags.or(style);
     if all != style.or(flags) {
-        conflicts
-            .push(note("style_flag", "the prompt and the request differ in style; the request was followed".into()));
+        conflicts.push(Note::new(
+            "style_flag",
+            "the prompt and the request differ in style; the request was followed".into(),
+        ));
     }
     all
 }

@@ -4,10 +4,10 @@
 use d3dgen_plugins::Registry;
 
 use super::aside::Aside;
-use super::mentions::Mention;
 use super::objects::{self, Thing};
 use super::qualities;
 use crate::scene_graph::heard::Heard;
+use crate::scene_graph::named::mention::Mention;
 use crate::scene_graph::people::{dwelling, homes};
 use crate::scene_graph::subject::site::Site;
 use crate::scene_graph::tokens::text::Span;

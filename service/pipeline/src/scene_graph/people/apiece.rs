@@ -2,13 +2,13 @@
 //! avocat" are 8 single offices; "24 hot desks, five team offices" has an open area beside the team offices.
 
 use d3dgen_model::domain::{Domain, Program, RoomType};
+use d3dgen_model::offer;
+use d3dgen_model::offer::{MOST_IN_TEAM, most_desks};
 
-use super::beds::Held;
-use super::seated;
-use super::seats::{MOST_IN_TEAM, most_desks};
-use crate::scene_graph::built::workers::is_office;
-use crate::scene_graph::named::mentions::{Mention, What};
+use crate::scene_graph::named::mention::{Mention, What};
 use crate::scene_graph::named::named_for;
+use crate::scene_graph::people::held::Held;
+use crate::scene_graph::subject::programs::is_office;
 use crate::scene_graph::tokens::numbers::Number;
 use crate::scene_graph::tokens::text::{Kind, Span, Token};
 use crate::scene_graph::tokens::words::{Spoken, Tag, tag_end};
@@ -107,7 +107,7 @@ impl Reader<'_> {
                     continue;
                 };
                 let Some(title) = self.named_again(group, m.span) else { continue };
-                let least = seated::desks(self.domain, kind).map_or(1, |d| d[0]);
+                let least = offer::desks(self.domain, kind).map_or(1, |d| d[0]);
                 let each = (m.span.end..title).any(|i| self.is_each(i));
                 let behind = self.numbers.iter().find(|k| k.span.start == m.span.end + 1 && !k.article && !k.vague);
                 let said = behind.filter(|_| self.tagged(m.span.end, Tag::Stops).is_some()).map(|k| k.value as u32);
@@ -146,7 +146,7 @@ impl Reader<'_> {
             let kind = m.room_type().and_then(|id| self.domain.room_type(id))?;
             let count = m.count.filter(|n| *n > 0).map_or(if office.plural { 2 } else { 1 }, |n| n.min(MOST) as u32);
             let beds = office.desks?;
-            seated::desks(self.domain, kind).map(|_| Held { room_type: kind.id.clone(), count, beds })
+            offer::desks(self.domain, kind).map(|_| Held { room_type: kind.id.clone(), count, beds })
         };
         mentions.iter().filter(|m| m.span.end == m.span.start + 1).filter_map(desks).collect()
     }
@@ -168,7 +168,7 @@ impl Reader<'_> {
             let Some(at) = words.into_iter().find(room) else { continue };
             let desks = n as u32;
             let fits = |k: &&RoomType| {
-                let range = seated::desks(self.domain, k).filter(|_| most_desks(self.domain, k) > 0);
+                let range = offer::desks(self.domain, k).filter(|_| most_desks(self.domain, k) > 0);
                 range.is_some_and(|[low, high]| (low..=high).contains(&desks))
             };
             let kind = self.domain.room_types.iter().filter(fits).min_by_key(|k| most_desks(self.domain, k));

@@ -1,11 +1,12 @@
 //! Rooms that are told by their beds: "four 4-bed rooms", "Sechsbettzimmer", "4 rooms with 4 beds each", "16 beds in
 //! double rooms"; and beds that contradict the rooms.
 
-use d3dgen_model::domain::{Access, Domain, Occupants, Privacy, Program, ProgramRoom, RoomType, Shape, Zone};
+use d3dgen_model::domain::{Access, Domain, Occupants, Privacy, Program, ProgramRoom, RoomType, Zone};
+use d3dgen_model::offer::sleeps;
 use d3dgen_model::scene_graph::{Note, Occupancy};
 
-use crate::scene_graph::named::mentions::{Mention, What};
-use crate::scene_graph::subject::places::note;
+use crate::scene_graph::named::mention::{Mention, What};
+use crate::scene_graph::people::held::Held;
 use crate::scene_graph::tokens::numbers::{self, Number};
 use crate::scene_graph::tokens::text::{Kind, Span, Token};
 use crate::scene_graph::tokens::words::{Spoken, Tag, is_tagged, tag_end};
@@ -14,8 +15,7 @@ use crate::scene_graph::wished::wishes::{Wish, Wishes};
 
 /// Most beds of one room.
 const MOST_BEDS: f64 = 24.0;
-/// Beds at least so wide are for two, m.
-const FOR_TWO_M: f64 = 1.35;
+
 /// Words between rooms and their beds, at most: "rooms, each of them with".
 const MOST_BETWEEN: usize = 5;
 
@@ -30,37 +30,6 @@ pub(crate) struct BedRoom {
     pub plural: bool,
     /// Type of the domain that it is planned as.
     pub room_type: String,
-}
-
-/// Rooms of a type with so many beds each.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Held {
-    pub room_type: String,
-    pub count: u32,
-    pub beds: u32,
-}
-
-/// Returns how many people a room of a type has beds for, least and most; `None` where nobody stays overnight.
-pub(crate) fn sleeps(domain: &Domain, kind: &RoomType) -> Option<[u32; 2]> {
-    if kind.zone != Zone::Night {
-        return None;
-    }
-    kind.furnishing.iter().filter(|line| line.required).find_map(|line| {
-        let each = beds_of(domain, &line.item);
-        (each > 0).then(|| [line.min.max(1) * each, line.max.max(1) * each])
-    })
-}
-
-fn beds_of(domain: &Domain, item: &str) -> u32 {
-    let group = domain.group(item);
-    let anchor = group.map_or(item, |g| g.anchor.as_str());
-    let members = group.into_iter().flat_map(|g| &g.members).map(|m| (m.object.as_str(), m.count));
-    let all = std::iter::once((anchor, 1)).chain(members);
-    all.filter_map(|(id, count)| {
-        let object = domain.object(id).filter(|o| matches!(o.shape, Shape::Bed | Shape::HospitalBed))?;
-        Some(count * if object.sizes_m.first().is_some_and(|s| s[0] >= FOR_TWO_M) { 2 } else { 1 })
-    })
-    .sum()
 }
 
 /// Returns the sleeping room of the domain that is nearest to a number of beds, and how many people it usually sleeps.
@@ -367,7 +336,7 @@ impl Sleepers<'_> {
             return self.settle_open(wishes, assumptions, conflicts);
         };
         let message = format!("of the {beds} beds {apart} are in the isolation rooms");
-        assumptions.push(note("beds_apart", message));
+        assumptions.push(Note::new("beds_apart", message));
         let others = Sleepers { beds: Some(beds - apart), ..*self };
         let settled = others.settle_open(wishes, assumptions, conflicts);
         Settled { beds: settled.beds.map(|n| n + apart), ..settled }
@@ -407,7 +376,7 @@ impl Sleepers<'_> {
                 let message = format!(
                     "the prompt asks for {beds} beds, but its rooms have {low}; the rooms were followed, {low} beds were planned"
                 );
-                conflicts.push(note("contradicting_beds", message));
+                conflicts.push(Note::new("contradicting_beds", message));
                 Some(low)
             }
             None if !held.is_empty() && counts_beds => Some(low),
@@ -498,7 +467,7 @@ impl Sleepers<'_> {
             if sleeps(self.domain, kind).is_some_and(|[low, high]| !(low..=high).contains(&h.beds)) {
                 let (beds, label) = (h.beds, kind.label.to_lowercase());
                 let message = format!("rooms with {beds} beds are planned as {label}, the nearest type that is known");
-                assumptions.push(note("nearest_room_type", message));
+                assumptions.push(Note::new("nearest_room_type", message));
             }
         }
     }
@@ -532,7 +501,7 @@ fn add_rooms(domain: &Domain, (id, each): (&String, u32), beds: u32, wishes: &mu
     let label = domain.room_type_or_generic(id).label.to_lowercase();
     wishes.wishes.push(Wish { count: rooms, exact: true, ..Wish::one(id, &label) });
     let message = format!("{beds} beds are in none of the rooms named; {rooms} x {label} were added for them");
-    Some(note("beds_left", message))
+    Some(Note::new("beds_left", message))
 }
 
 /// Returns true where the prompt names rooms to sleep in.

@@ -1,11 +1,11 @@
 //! Rooms that follow from people: offices of those who work in them, rooms of groups, places that rooms are told to have.
 
 use super::apiece;
-use super::beds::Held;
 use super::{groups, seated, seats, stations};
 use crate::scene_graph::heard::Heard;
 use crate::scene_graph::named::aside::Aside;
-use crate::scene_graph::named::mentions::Mention;
+use crate::scene_graph::named::mention::Mention;
+use crate::scene_graph::people::held::Held;
 use crate::scene_graph::subject::site::Site;
 use crate::scene_graph::tokens::text::Span;
 use crate::scene_graph::wished::comparisons::{self, Comparison};

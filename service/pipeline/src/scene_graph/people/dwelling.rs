@@ -4,32 +4,13 @@ use std::collections::BTreeMap;
 
 use d3dgen_model::domain::Domain;
 
-use crate::scene_graph::named::mentions::Mention;
+use crate::scene_graph::named::mention::Mention;
 use crate::scene_graph::named::objects::Thing;
+use crate::scene_graph::people::short_form::ShortForm;
 use crate::scene_graph::tokens::numbers::Number;
 use crate::scene_graph::tokens::text::{Kind, Span, Token};
 use crate::scene_graph::tokens::words::{Dwelling, Spoken, Tag, tag_end, words};
 use crate::scene_graph::wished::wishes::Wishes;
-
-/// Rooms that a short form stands for.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct ShortForm {
-    pub span: Span,
-    /// Room types and how many.
-    pub rooms: BTreeMap<String, i64>,
-    /// True where one number counts all rooms to live in, whichever they are: "3-Zimmer-Wohnung", "T3".
-    pub pooled: bool,
-}
-
-impl ShortForm {
-    fn pooled(span: Span, rooms: BTreeMap<String, i64>) -> Self {
-        Self { span, rooms, pooled: true }
-    }
-
-    fn of_each(span: Span, rooms: BTreeMap<String, i64>) -> Self {
-        Self { span, rooms, pooled: false }
-    }
-}
 
 /// Returns the short forms of a prompt; none in domains without the room types of a dwelling.
 ///

@@ -4,9 +4,9 @@
 use d3dgen_model::domain::{Access, Domain, Program, Zone};
 use d3dgen_model::scene_graph::Connector;
 
-use super::beds::Held;
-use crate::scene_graph::named::mentions::{Mention, What};
+use crate::scene_graph::named::mention::{Mention, What};
 use crate::scene_graph::named::named_for;
+use crate::scene_graph::people::held::Held;
 use crate::scene_graph::tokens::numbers::Number;
 use crate::scene_graph::tokens::text::{Kind, Span, Token};
 use crate::scene_graph::tokens::words::{Spoken, Tag, is_tagged, tag_end};

@@ -5,8 +5,7 @@ use d3dgen_model::scene_graph::{Note, Occupancy};
 
 use super::counted::Counted;
 use super::dwelling;
-use crate::scene_graph::named::mentions::{Mention, What};
-use crate::scene_graph::subject::places::note;
+use crate::scene_graph::named::mention::{Mention, What};
 use crate::scene_graph::subject::programs::is_dwelling;
 use crate::scene_graph::tokens::numbers::Number;
 use crate::scene_graph::tokens::text::Token;
@@ -29,7 +28,7 @@ impl People {
         let mut count = |what: &What| {
             let n = mentions.iter().filter(|m| &m.what == what && !m.article).filter_map(|m| m.count).max()?;
             if !(1..=MAX_HEADS).contains(&n) {
-                conflicts.push(note(
+                conflicts.push(Note::new(
                     "impossible_count",
                     format!("a head count of {n} was left out; 1 to {MAX_HEADS} can be planned"),
                 ));

@@ -2,17 +2,16 @@
 //! the others, a flat of so many rooms counts those that are listed, a studio is one room, and who lives there has a bed.
 
 use d3dgen_model::domain::{Domain, Program, Zone};
+use d3dgen_model::offer::sleeps;
 use d3dgen_model::scene_graph::{GraphRoom, Note};
 use d3dgen_plugins::Registry;
 
-use super::beds::sleeps;
-use super::dwelling::ShortForm;
-use crate::scene_graph::built::program::Planned;
-use crate::scene_graph::named::mentions::{Mention, What};
+use crate::scene_graph::built::planned::Planned;
+use crate::scene_graph::named::mention::{Mention, What};
 use crate::scene_graph::named::objects::{self, Thing};
 use crate::scene_graph::named::qualities::Nook;
+use crate::scene_graph::people::short_form::ShortForm;
 use crate::scene_graph::reading::Reading;
-use crate::scene_graph::subject::places::note;
 use crate::scene_graph::subject::programs::is_dwelling;
 use crate::scene_graph::tokens::numbers::Number;
 use crate::scene_graph::tokens::text::{Span, Token};
@@ -315,7 +314,7 @@ pub(crate) fn state_several(
     let message = format!(
         "`{words}` are homes of their own, and several in one building are not planned: one of them was, ask for each by itself"
     );
-    Some((span, note("one_dwelling", message)))
+    Some((span, Note::new("one_dwelling", message)))
 }
 
 /// Rooms of one home, at most; more are a house of many homes, of which no plan is made.
@@ -327,5 +326,5 @@ pub(crate) fn state_size(rooms: Option<u32>) -> Option<Note> {
     let message = format!(
         "{rooms} rooms are those of many homes; they were planned as one dwelling, for flats of their own are not planned: ask for one of them"
     );
-    Some(note("one_dwelling", message))
+    Some(Note::new("one_dwelling", message))
 }

@@ -2,35 +2,17 @@
 
 use std::cmp::Reverse;
 
-use d3dgen_model::domain::{Domain, Program, RoomType, Shape};
+use d3dgen_model::domain::{Domain, Program, RoomType};
+use d3dgen_model::offer;
+use d3dgen_model::offer::works_in;
 
-use super::beds::Held;
-use super::seats::works_in;
-use crate::scene_graph::named::mentions::{Mention, What};
+use crate::scene_graph::named::mention::{Mention, What};
+use crate::scene_graph::people::held::Held;
 use crate::scene_graph::tokens::text::{Span, Token};
 use crate::scene_graph::tokens::words::{Spoken, Tag, is_tagged};
 
 /// Words between a room and the number of its desks, at most: "with up to".
 const MOST_BETWEEN: usize = 5;
-
-/// Returns the least and most desks of a room type; `None` where nobody has one.
-pub(crate) fn desks(domain: &Domain, kind: &RoomType) -> Option<[u32; 2]> {
-    let each = |item: &str| desks_of(domain, item);
-    let line = kind.furnishing.iter().filter(|f| f.required && each(&f.item) > 0).max_by_key(|f| f.max)?;
-    Some([line.min * each(&line.item), line.max * each(&line.item)])
-}
-
-/// Returns how many desks an object or a group has.
-pub(crate) fn desks_of(domain: &Domain, item: &str) -> u32 {
-    let is_desk = |id: &str| domain.object(id).is_some_and(|o| o.shape == Shape::Desk);
-    match domain.group(item) {
-        Some(group) => {
-            let more = group.members.iter().filter(|m| is_desk(&m.object)).map(|m| m.count).sum::<u32>();
-            more + u32::from(is_desk(&group.anchor))
-        }
-        None => u32::from(is_desk(item)),
-    }
-}
 
 /// Reads how many desks rooms have, with the words for them; rooms "of 4 desks" become those of the domain that have as many.
 pub(crate) fn read(
@@ -61,14 +43,14 @@ pub(crate) fn read(
         let rooms = host.count.filter(|n| *n > 0).and_then(|n| u32::try_from(n).ok());
         let rooms = rooms.unwrap_or(if host.plural { 2 } else { 1 });
         let each = if per_room || of || rooms == 1 { each } else { each.div_ceil(rooms) };
-        let fits = |k: &&RoomType| desks(domain, k).is_some_and(|[low, high]| (low..=high).contains(&each));
+        let fits = |k: &&RoomType| offer::desks(domain, k).is_some_and(|[low, high]| (low..=high).contains(&each));
         let strange = |k: &&RoomType| !program.rooms.iter().any(|e| e.room_type == k.id);
-        let least = |k: &&RoomType| (strange(k), desks(domain, k).map(|[low, high]| (Reverse(low), high)));
+        let least = |k: &&RoomType| (strange(k), offer::desks(domain, k).map(|[low, high]| (Reverse(low), high)));
         let id = match &host.what {
             What::Room(id) => {
                 // "a shared office with four desks" is larger than such a room is otherwise
                 let own = domain.room_type(id).filter(|k| works_in(domain, k));
-                let small = own.and_then(|k| desks(domain, k)).is_some_and(|[_, high]| each > high);
+                let small = own.and_then(|k| offer::desks(domain, k)).is_some_and(|[_, high]| each > high);
                 let larger = |k: &&RoomType| works_in(domain, k) && fits(k);
                 let kind = domain.room_types.iter().filter(|_| small).filter(larger).min_by_key(least);
                 kind.map_or_else(|| id.clone(), |k| k.id.clone())
@@ -80,7 +62,7 @@ pub(crate) fn read(
             _ => continue,
         };
         mentions[d - 1].what = What::Room(id.clone());
-        if domain.room_type(&id).and_then(|k| desks(domain, k)).is_some() {
+        if domain.room_type(&id).and_then(|k| offer::desks(domain, k)).is_some() {
             out.push(Held { room_type: id, count: rooms, beds: each });
             words.push(mentions[d].span);
         }

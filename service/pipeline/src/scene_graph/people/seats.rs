@@ -2,15 +2,16 @@
 //! plan", "counter hall with 6 service windows". They are no staff of the building and no rooms of their own.
 
 use d3dgen_model::domain::{Arrangement, Domain, Furnishing, Program, RoomType, Shape, Zone};
+use d3dgen_model::offer;
+use d3dgen_model::offer::{is_counter, most_desks, seating, seats_of, works_in};
 use d3dgen_model::placements::Placements;
 use d3dgen_model::scene_graph::{GraphRoom, Note, SceneGraph};
 
-use super::beds::Held;
-use super::{seated, stations};
-use crate::scene_graph::built::workers::is_office;
-use crate::scene_graph::named::mentions::{Mention, What};
+use super::stations;
+use crate::scene_graph::named::mention::{Mention, What};
 use crate::scene_graph::named::unknown;
-use crate::scene_graph::subject::places::note;
+use crate::scene_graph::people::held::Held;
+use crate::scene_graph::subject::programs::is_office;
 use crate::scene_graph::tokens::numbers::Number;
 use crate::scene_graph::tokens::text::{Kind, Span, Token};
 use crate::scene_graph::tokens::words::{Spoken, Tag, tag_end, words};
@@ -25,19 +26,6 @@ const MOST_BEFORE: usize = 2;
 const MOST_PLACES: i64 = 500;
 /// Most people at the one table of a room that no domain knows.
 const MOST_AT_TABLE: u32 = 30;
-/// Width of a seat of a bench, m.
-const SEAT_M: f64 = 0.55;
-/// Floor of a room beside what its places need, m^2: the way in, the display, the cupboard.
-const SPARE_M2: f64 = 5.0;
-/// Floor for each seat at one table, m^2.
-const AT_TABLE_M2: f64 = 2.3;
-/// Floor for each seat in rows, at small tables and on benches, at most, m^2.
-const IN_ROWS_M2: f64 = 1.7;
-const AT_TABLES_M2: f64 = 2.6;
-/// Floor for each counter with who serves there and who is served, m^2.
-const AT_COUNTER_M2: f64 = 11.0;
-/// Most desks of a room for one team: rooms with more are open ones.
-pub(crate) const MOST_IN_TEAM: u32 = 12;
 
 /// What a prompt says about places.
 #[derive(Debug, Default)]
@@ -50,75 +38,6 @@ pub(crate) struct Found {
     pub halves: Vec<String>,
     /// Words that are read.
     pub spans: Vec<Span>,
-}
-
-/// Returns how many people sit at an object or a group.
-pub(super) fn seats_of(domain: &Domain, item: &str) -> u32 {
-    let each = |id: &str| {
-        domain.object(id).map_or(0, |o| match o.shape {
-            Shape::Bench => o.sizes_m.first().map_or(1, |s| (s[0] / SEAT_M) as u32).max(1),
-            Shape::Chair | Shape::SwivelChair | Shape::Stool => 1,
-            _ => 0,
-        })
-    };
-    match domain.group(item) {
-        Some(group) => each(&group.anchor) + group.members.iter().map(|m| m.count * each(&m.object)).sum::<u32>(),
-        None => each(item),
-    }
-}
-
-/// Returns true for a counter at which several are served side by side.
-fn is_counter(domain: &Domain, line: &Furnishing) -> bool {
-    line.required && line.max > 1 && domain.anchor(&line.item).is_some_and(|o| o.shape == Shape::Counter)
-}
-
-/// Returns true for rooms with counters side by side.
-pub(crate) fn has_counters(domain: &Domain, kind: &RoomType) -> bool {
-    kind.furnishing.iter().any(|f| is_counter(domain, f))
-}
-
-/// Returns the most places at the one table of a room, or in rows; and the floor that so many places need, m^2. `None` for
-/// rooms that nobody sits in.
-pub(crate) fn places(domain: &Domain, kind: &RoomType, wanted: u32) -> Option<(u32, f64)> {
-    let n = f64::from(wanted);
-    if let Some(line) = kind.furnishing.iter().find(|f| is_counter(domain, f)) {
-        return Some((line.max, 2.0 * SPARE_M2 + AT_COUNTER_M2 * n));
-    }
-    let many = kind.furnishing.iter().filter(|f| f.max > 1 && f.area_per_item_m2 > 0.0);
-    let many = many.map(|f| (f, seats_of(domain, &f.item))).find(|(f, each)| *each > 0 && eats_or_waits(domain, f));
-    if let Some((line, each)) = many {
-        let small = domain.anchor(&line.item).is_some_and(|o| matches!(o.shape, Shape::Bench | Shape::Chair));
-        let most = if small { IN_ROWS_M2 } else { AT_TABLES_M2 };
-        let apiece = (line.area_per_item_m2 / f64::from(each)).min(most);
-        return Some((u32::MAX, SPARE_M2 + apiece * n));
-    }
-    let table = |f: &&Furnishing| f.max == 1 && f.arrangement == Arrangement::Center;
-    let most = kind.furnishing.iter().filter(table).map(|f| seats_of(domain, &f.item)).max().filter(|n| *n > 0)?;
-    Some((most, SPARE_M2 + AT_TABLE_M2 * n))
-}
-
-/// Returns true for seats that fill a room: not the chairs for visitors beside its desks.
-fn eats_or_waits(domain: &Domain, line: &Furnishing) -> bool {
-    let shape = domain.anchor(&line.item).map(|o| o.shape);
-    let bench = shape == Some(Shape::Bench);
-    line.required || bench || matches!(shape, Some(Shape::Table | Shape::RoundTable))
-}
-
-/// Returns true for rooms that people have their desk in: not tables of a course, nor workbenches.
-pub(crate) fn works_in(domain: &Domain, kind: &RoomType) -> bool {
-    let chair = |id: &str| domain.object(id).is_some_and(|o| o.shape == Shape::SwivelChair);
-    let desk = |f: &Furnishing| {
-        let group = domain.group(&f.item);
-        f.required
-            && seated::desks_of(domain, &f.item) > 0
-            && group.is_some_and(|g| g.members.iter().any(|m| chair(&m.object)))
-    };
-    kind.zone == Zone::Day && kind.furnishing.first().is_some_and(desk)
-}
-
-/// Returns the most desks of a room type, 0 for rooms that nobody has a desk in.
-pub(crate) fn most_desks(domain: &Domain, kind: &RoomType) -> u32 {
-    if works_in(domain, kind) { seated::desks(domain, kind).map_or(0, |d| d[1]) } else { 0 }
 }
 
 /// What the reading needs to see.
@@ -161,7 +80,7 @@ impl Reader<'_> {
                 }
                 continue;
             }
-            let (desks, seats) = (most_desks(self.domain, kind), places(self.domain, kind, 1).is_some());
+            let (desks, seats) = (most_desks(self.domain, kind), seating(self.domain, kind, 1).is_some());
             // "an office with workshop for 15 people" is for so many
             if desks == 0 && (!seats || kind.zone == Zone::Service) {
                 continue;
@@ -184,7 +103,7 @@ impl Reader<'_> {
             }
             let (id, rooms) = (kind.id.clone(), counted.unwrap_or(1));
             // "4 offices for 8 people" share them; "two meeting rooms for 6" have as many each, and so have "8 offices for 4"
-            let least = seated::desks(self.domain, kind).map_or(1, |d| d[0]);
+            let least = offer::desks(self.domain, kind).map_or(1, |d| d[0]);
             let shared = desks > 0 && n.div_ceil(rooms) >= least && n >= rooms;
             let each = if shared { n.div_ceil(rooms) } else { n };
             let held = Held { room_type: id, count: rooms, beds: each };
@@ -231,12 +150,11 @@ impl Reader<'_> {
         let n = u32::try_from(n).ok().filter(|n| (2..=MOST_AT_TABLE).contains(n))?;
         let at_table = |k: &&RoomType| {
             let table = |f: &Furnishing| f.max == 1 && f.required && f.arrangement == Arrangement::Center;
-            k.furnishing.iter().any(table)
-                && places(self.domain, k, n).is_some_and(|(most, _)| (n..500).contains(&most))
+            k.furnishing.iter().any(table) && seating(self.domain, k, n).is_some_and(|s| (n..500).contains(&s.most))
         };
         let listed = |k: &&RoomType| self.domain.programs.iter().flat_map(|p| &p.rooms).any(|e| e.room_type == k.id);
         let kinds = self.domain.room_types.iter().filter(listed).filter(at_table);
-        let kind = kinds.min_by_key(|k| places(self.domain, k, n).map(|p| p.0))?;
+        let kind = kinds.min_by_key(|k| seating(self.domain, k, n).map(|s| s.most))?;
         Some((kind, n, noun))
     }
 
@@ -477,10 +395,11 @@ pub(crate) fn shortages(domain: &Domain, graph: &SceneGraph, placements: &Placem
         } else if kind.furnishing.iter().any(|f| is_counter(domain, f)) {
             (count(&[Shape::Counter]), "counters")
         } else {
-            places(domain, kind, 1)?;
+            seating(domain, kind, 1)?;
             (here().map(|p| seats_of(domain, &p.object)).sum(), "seats")
         };
-        (have < wanted).then(|| note("too_few_places", format!("{} is for {wanted} and has {have} {what}", room.name)))
+        (have < wanted)
+            .then(|| Note::new("too_few_places", format!("{} is for {wanted} and has {have} {what}", room.name)))
     };
     graph.rooms.iter().filter_map(short).collect()
 }

@@ -1,6 +1,6 @@
 //! People who share a home and have a room each: "shared flat for six", "4er-WG", "everyone has their own bedroom".
 
-use crate::scene_graph::named::mentions::{Mention, What};
+use crate::scene_graph::named::mention::{Mention, What};
 use crate::scene_graph::tokens::numbers::{self, Number};
 use crate::scene_graph::tokens::text::{Kind, Span, Token};
 use crate::scene_graph::tokens::words::{Spoken, Tag, is_tagged, tag_end};

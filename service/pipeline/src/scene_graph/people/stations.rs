@@ -3,7 +3,8 @@
 
 use d3dgen_model::domain::{Domain, Furnishing, Privacy, Program, RoomType, Shape};
 
-use crate::scene_graph::named::mentions::{Mention, Vocabulary, What};
+use crate::scene_graph::named::mention::{Mention, What};
+use crate::scene_graph::named::mentions::Vocabulary;
 use crate::scene_graph::tokens::numbers::Number;
 use crate::scene_graph::tokens::text::{Span, Token, fold};
 use crate::scene_graph::tokens::words::{Spoken, Tag, tag_end};

@@ -3,12 +3,11 @@
 //! A department of the same domain is planned by the first rooms of its program; what is none becomes an unread wish.
 
 use d3dgen_model::domain::{Domain, Occupants, Program};
+use d3dgen_model::offer;
 use d3dgen_model::scene_graph::Note;
 
 use super::building::Part;
-use super::places::note;
-use crate::scene_graph::named::mentions::{Mention, What};
-use crate::scene_graph::people::beds;
+use crate::scene_graph::named::mention::{Mention, What};
 use crate::scene_graph::tokens::text::{Span, Token};
 use crate::scene_graph::tokens::words::{Spoken, Tag, is_tagged};
 use crate::scene_graph::wished::wishes::{Wish, Wishes};
@@ -67,7 +66,7 @@ pub(crate) fn plan(
         out.beds = beds.map(|b| b + out.beds.unwrap_or(0)).or(out.beds);
         out.planned.push(part.span);
         let message = format!("the {} was planned as {}", own.title.to_lowercase(), added.join(", "));
-        assumptions.push(note("part_planned", message));
+        assumptions.push(Note::new("part_planned", message));
     }
     out
 }
@@ -90,7 +89,7 @@ fn are_in_rooms(span: Span, (tokens, spoken): (&[Token], &[&Spoken]), mentions: 
         are_beds(beds, span, tokens)
             && open
             && gap.any(inside)
-            && kind.is_some_and(|k| beds::sleeps(domain, k).is_some())
+            && kind.is_some_and(|k| offer::sleeps(domain, k).is_some())
     })
 }
 

@@ -123,7 +123,7 @@ pub(crate) fn locate(tokens: &[Token], prompt: &str, spoken: &[&Spoken]) -> Wher
         ([code], _) => out.country_code = Some((*code).to_owned()),
         ([], Some((span, place))) => {
             let names: Vec<&str> = place.codes.iter().map(|c| country_name(c)).collect();
-            out.conflicts.push(note(
+            out.conflicts.push(Note::new(
                 "ambiguous_place",
                 format!(
                     "`{}` can be in {}; no country's rules were applied, name the country to choose",
@@ -139,7 +139,7 @@ pub(crate) fn locate(tokens: &[Token], prompt: &str, spoken: &[&Spoken]) -> Wher
             let code = if adjacent { last } else { first };
             out.country_code = Some((*code).to_owned());
             let names: Vec<&str> = codes.iter().map(|c| country_name(c)).collect();
-            out.conflicts.push(note(
+            out.conflicts.push(Note::new(
                 "several_places",
                 format!(
                     "the prompt names places in {}; the rules of {} were applied",
@@ -218,7 +218,7 @@ fn nationality(tokens: &[Token], spoken: &[&Spoken], out: &mut Whereabouts) {
             }
             out.country_code = Some(code.clone());
             out.spans.push(Span { start: i, end: i + 1 });
-            out.assumptions.push(note(
+            out.assumptions.push(Note::new(
                 "country_from_adjective",
                 format!("`{}` was read as the country {}", token.text, country_name(code)),
             ));
@@ -254,7 +254,7 @@ pub(crate) fn of_building(
             continue;
         }
         let message = format!("`{}` was read as the country {}", token.text, country_name(code));
-        assumptions.push(note("country_from_adjective", message));
+        assumptions.push(Note::new("country_from_adjective", message));
         return Some((code.clone(), Span { start: i, end: i + 1 }));
     }
     None
@@ -272,7 +272,7 @@ fn nowhere(tokens: &[Token], prompt: &str, spoken: &[&Spoken], known: &[Span]) -
             && !known.iter().any(|s| s.contains(i))
         {
             let name = prompt.get(tokens[i].start..tokens[end - 1].end).unwrap_or("");
-            return Some(note(
+            return Some(Note::new(
                 "unknown_place",
                 format!(
                     "`{name}` has no building rules; only international rules were applied, name a country to choose"
@@ -281,10 +281,6 @@ fn nowhere(tokens: &[Token], prompt: &str, spoken: &[&Spoken], known: &[Span]) -
         }
     }
     None
-}
-
-pub(crate) fn note(code: &str, message: String) -> Note {
-    Note { code: code.into(), message }
 }
 
 #[cfg(test)]

@@ -6,7 +6,6 @@ use d3dgen_model::scene_graph::Note;
 use d3dgen_plugins::Registry;
 
 use super::building::Building;
-use super::places::note;
 use crate::scene_graph::tokens::numbers::Number;
 use crate::scene_graph::tokens::text::{Kind, Phrases, Span, Token};
 use crate::scene_graph::tokens::words::{Spoken, Tag, is_tagged, tag_ends_at};
@@ -61,7 +60,7 @@ pub(crate) fn house(
         }
         wishes.wishes.push(Wish { count: rooms, exact: true, listed: true, ..Wish::one(id, &label) });
         let message = format!("{rooms} x {label} were planned for those {count} who work in one");
-        assumptions.push(note("rooms_of_practitioners", message));
+        assumptions.push(Note::new("rooms_of_practitioners", message));
     }
     spans
 }

@@ -5,6 +5,9 @@ use d3dgen_model::domain::{Domain, Program};
 use crate::scene_graph::tokens::words::{ByBedrooms, words};
 use crate::scene_graph::wished::wishes::Wishes;
 
+/// Most people of a room to work in: one for more is there to meet or wash in.
+pub(crate) const MOST_IN_OFFICE: u32 = 4;
+
 /// Returns true for programs of buildings that people live in.
 pub(crate) fn is_dwelling(program: &Program) -> bool {
     let d = &words().dwelling;
@@ -27,4 +30,9 @@ pub(crate) fn program_by_bedrooms<'a>(domain: &'a Domain, program: &'a Program, 
     let own = |b: &&ByBedrooms| b.programs.contains(&program.id) && Some(b.bedrooms) == bedrooms;
     let other = words().dwelling.by_bedrooms.iter().find(own).and_then(|b| domain.program(&b.program));
     other.unwrap_or(program)
+}
+
+/// Returns true for programs of offices: rooms that serve all grow with those who work there.
+pub(crate) fn is_office(program: &Program) -> bool {
+    !is_dwelling(program) && program.rooms.iter().any(|e| e.area_per_person_m2.is_some())
 }

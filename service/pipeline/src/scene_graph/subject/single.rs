@@ -1,7 +1,8 @@
 //! One room asked for by itself: "a bathroom", "just one meeting room", "classroom for 30 pupils".
 
 use super::building::Building;
-use crate::scene_graph::named::mentions::{Mention, Vocabulary, What};
+use crate::scene_graph::named::mention::{Mention, What};
+use crate::scene_graph::named::mentions::Vocabulary;
 use crate::scene_graph::tokens::numbers::Number;
 use crate::scene_graph::tokens::text::{Span, Token};
 use crate::scene_graph::tokens::words::{Spoken, Tag, is_tagged, tag_ends_at};

@@ -3,21 +3,21 @@
 use std::sync::Arc;
 
 use d3dgen_model::domain::{Domain, Program};
+use d3dgen_model::offer::Wet;
+use d3dgen_model::scene_graph::Note;
+use d3dgen_model::stage::Error;
 use d3dgen_plugins::Registry;
 
 use super::building::{self, Building};
 use super::programs::{is_dwelling, program_of};
 use super::{addresses, places, practitioners};
-use crate::Error;
-use crate::scene_graph::built::vital::Wet;
 use crate::scene_graph::heard::{Heard, Notes};
 use crate::scene_graph::machines::robots::{self, Robots};
 use crate::scene_graph::people::beds;
-use crate::scene_graph::subject::places::note;
+use crate::scene_graph::request::{Request, refused};
 use crate::scene_graph::tokens::text::{MAX_TOKENS, Span};
 use crate::scene_graph::tokens::words::{Tag, words};
 use crate::scene_graph::wished::unread;
-use crate::scene_graph::{Request, refused};
 
 /// What a prompt is about.
 pub(crate) struct Site<'a> {
@@ -55,7 +55,7 @@ impl<'a> Site<'a> {
         notes.conflicts.append(&mut place.conflicts);
         if tokens.len() >= MAX_TOKENS {
             let message = format!("only the first {MAX_TOKENS} words of the prompt were read");
-            notes.conflicts.push(note("prompt_cut", message));
+            notes.conflicts.push(Note::new("prompt_cut", message));
         }
         let flag_country = country_of(request, place.country_code.as_deref(), notes);
         let machines = robots::find(tokens, spoken, language);
@@ -72,7 +72,7 @@ impl<'a> Site<'a> {
             let message = format!(
                 "the prompt seems to be in {name}, which is not read; only what looks like a language that is was taken from it (English, German, French, Spanish, Chinese, Korean)"
             );
-            notes.assumptions.push(note("language_not_read", message));
+            notes.assumptions.push(Note::new("language_not_read", message));
         }
         let plugin = registry.get(&building.domain).ok_or_else(|| refused("no domain is registered".into()))?;
         let domain = plugin.domain();
@@ -101,7 +101,7 @@ fn country_of(request: &Request, named: Option<&str>, notes: &mut Notes) -> Opti
     let flag = request.country.as_deref().and_then(places::code_of)?;
     if let Some(named) = named.filter(|named| *named != flag) {
         let message = format!("the prompt says {named}, the request {flag}; {flag} was used");
-        notes.conflicts.push(note("country_flag", message));
+        notes.conflicts.push(Note::new("country_flag", message));
     }
     notes.conflicts.retain(|n| n.code != "ambiguous_place" && n.code != "unknown_place");
     Some(flag)
@@ -130,7 +130,7 @@ fn building_of(
         if let Some(other) = found.as_ref().filter(|b| &b.domain != id && !b.by_rooms) {
             let message =
                 format!("the prompt reads like domain {}, the request says {id}; {id} was used", other.domain);
-            notes.conflicts.push(note("domain_flag", message));
+            notes.conflicts.push(Note::new("domain_flag", message));
         }
         let head = found.as_ref().and_then(|b| b.head);
         let list_from = found.as_ref().map_or(0, |b| b.list_from);
@@ -143,7 +143,7 @@ fn building_of(
         Some(building) => {
             if building.by_rooms {
                 let message = format!("the prompt names no building; its rooms suggest domain {}", building.domain);
-                notes.assumptions.push(note("domain_from_rooms", message));
+                notes.assumptions.push(Note::new("domain_from_rooms", message));
             }
             building
         }
@@ -151,7 +151,7 @@ fn building_of(
             let id = registry.iter().next().map_or(String::new(), |p| p.id().to_owned());
             let title = registry.get(&id).map_or(String::new(), |p| p.domain().title.to_lowercase());
             let message = format!("the prompt does not say what to build; domain {id} was taken");
-            notes.assumptions.push(note("default_domain", message));
+            notes.assumptions.push(Note::new("default_domain", message));
             let unread: Vec<&str> = unread::nouns(tokens, numbers, spoken, elsewhere)
                 .into_iter()
                 .filter_map(|t| heard.prompt.get(t.start..t.end))
@@ -161,7 +161,7 @@ fn building_of(
                     "of `{}` no word names a building or room that is known; the usual {title} building was planned, say what it is (a flat, an office, a ward, a school)",
                     unread.join("`, `")
                 );
-                notes.conflicts.push(note("unknown_building", message));
+                notes.conflicts.push(Note::new("unknown_building", message));
             }
             Building::none(&id)
         }

@@ -9,6 +9,7 @@ pub(super) mod language;
 pub(super) mod measures;
 pub(super) mod negation;
 pub(super) mod numbers;
+pub(super) mod storey;
 pub(super) mod text;
 pub(super) mod typos;
 pub(super) mod umlauts;

@@ -6,7 +6,7 @@ use std::sync::LazyLock;
 use serde::Deserialize;
 
 use super::text::{Phrases, Token};
-use crate::scene_graph::levels::storeys::Where;
+use crate::scene_graph::tokens::storey::Where;
 
 /// What a phrase does in a sentence.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
@@ -266,34 +266,6 @@ pub(crate) struct Language {
     pub phrases: BTreeMap<Tag, Vec<String>>,
 }
 
-/// A typical robot of a kind.
-#[derive(Debug, Clone, Copy, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct Body {
-    pub radius_m: f64,
-    pub height_m: f64,
-    /// It visits rooms to clean their floor.
-    #[serde(default)]
-    cleans: bool,
-    /// It brings things to where it stops.
-    #[serde(default = "yes")]
-    brings: bool,
-}
-
-fn yes() -> bool {
-    true
-}
-
-/// Returns true for a kind of robot that visits rooms to clean their floor.
-pub(crate) fn cleans(kind: &str) -> bool {
-    words().robot_kinds.get(kind).is_some_and(|body| body.cleans)
-}
-
-/// Returns true for a kind of robot that brings things to where it stops, as one does that nothing is known of.
-pub(crate) fn brings(kind: &str) -> bool {
-    words().robot_kinds.get(kind).is_none_or(|body| body.brings)
-}
-
 /// Room types behind short forms of dwellings.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -373,7 +345,6 @@ struct File {
     length_units: BTreeMap<String, f64>,
     /// Seconds of units of time.
     time_units: BTreeMap<String, f64>,
-    robot_kinds: BTreeMap<String, Body>,
     #[serde(flatten)]
     languages: BTreeMap<String, Language>,
 }
@@ -410,7 +381,6 @@ pub(crate) struct Words {
     pub area_units: Phrases<f64>,
     pub length_units: Phrases<f64>,
     pub time_units: Phrases<f64>,
-    pub robot_kinds: BTreeMap<String, Body>,
     pub dwelling: Dwelling,
     pub first_is_ground: Vec<String>,
     pub work_vital: Vec<Vec<String>>,
@@ -496,7 +466,6 @@ pub(crate) fn words() -> &'static Words {
             length_units: units(&file.length_units),
             time_units: units(&file.time_units),
             languages: file.languages.into_iter().map(|(code, words)| (code.clone(), spoken(&code, words))).collect(),
-            robot_kinds: file.robot_kinds,
             dwelling: rooms.dwelling,
             first_is_ground: file.first_is_ground,
             work_vital: rooms.work_vital,

@@ -1,18 +1,17 @@
 //! Lists of rooms: whether one names all rooms there are to be, and what it takes for granted.
 
 use d3dgen_model::domain::{Domain, Occupants, Program, ProgramRoom, RoomType, Zone};
+use d3dgen_model::offer;
 use d3dgen_model::scene_graph::Note;
 use d3dgen_model::style::LayoutStyle;
 
 use super::wishes::{PerHost, Wish, Wishes};
-use crate::scene_graph::MOST_IN_OFFICE;
 use crate::scene_graph::built::{layout, workers};
-use crate::scene_graph::named::mentions::{Mention, What};
+use crate::scene_graph::named::mention::{Mention, What};
+use crate::scene_graph::people::beds;
 use crate::scene_graph::people::heads::People;
-use crate::scene_graph::people::{beds, seated};
 use crate::scene_graph::subject::building::Building;
-use crate::scene_graph::subject::places::note;
-use crate::scene_graph::subject::programs::is_dwelling;
+use crate::scene_graph::subject::programs::{MOST_IN_OFFICE, is_dwelling};
 use crate::scene_graph::tokens::text::Token;
 use crate::scene_graph::tokens::words::{Spoken, Tag, tag_end, words};
 
@@ -103,7 +102,7 @@ pub(crate) fn add_main_room(
     let (kind, count) = laid_out.or((!ruled_out).then_some((kind, 1)))?;
     let label = kind.label.to_lowercase();
     wishes.wishes.insert(0, Wish { count, ..Wish::one(&kind.id, &label) });
-    Some(note("main_room", format!("the list of rooms takes the {label} for granted; it was added")))
+    Some(Note::new("main_room", format!("the list of rooms takes the {label} for granted; it was added")))
 }
 
 /// Returns the room that a program begins with, where the list has nothing that could stand for it.
@@ -127,7 +126,7 @@ fn main_room_left_out<'a>(
         r.occupants == Occupants::Staff && seat
     };
     let team =
-        |w: &Wish| domain.room_type(&w.room_type).and_then(|k| seated::desks(domain, k)).is_some_and(|d| d[1] > 2);
+        |w: &Wish| domain.room_type(&w.room_type).and_then(|k| offer::desks(domain, k)).is_some_and(|d| d[1] > 2);
     let placed = domain.programs.iter().flat_map(|p| &p.rooms).any(|r| works(r) && listed(&r.room_type))
         || wishes.wishes.iter().any(team);
     let size = |id: &str| domain.room_type_or_generic(id).area_m2.target;

@@ -3,8 +3,7 @@
 use d3dgen_model::scene_graph::Note;
 
 use super::wishes::{Wish, Wishes};
-use crate::scene_graph::named::mentions::Mention;
-use crate::scene_graph::subject::places::note;
+use crate::scene_graph::named::mention::Mention;
 use crate::scene_graph::tokens::text::{Span, Token};
 use crate::scene_graph::tokens::words::{Spoken, Tag, tag_end};
 
@@ -62,7 +61,7 @@ pub(crate) fn settle(
                 let message = format!(
                     "the prompt asks for fewer rooms of type {less} than of type {most}, but for {few} and {many}; these were planned"
                 );
-                conflicts.push(note("contradicting_counts", message));
+                conflicts.push(Note::new("contradicting_counts", message));
                 continue;
             }
             (Some(_), Some(_)) => continue,
@@ -70,12 +69,13 @@ pub(crate) fn settle(
             (None, Some(many)) if many > 1 => (fewer, many - 1),
             (None, _) => {
                 let message = format!("how many rooms of type {less} are fewer than of type {most} was not planned");
-                conflicts.push(note("unread_wish", message));
+                conflicts.push(Note::new("unread_wish", message));
                 continue;
             }
         };
         let name = id.replace('_', " ");
-        assumptions.push(note("compared_count", format!("{n} rooms of type {name} were taken, by those of the other")));
+        assumptions
+            .push(Note::new("compared_count", format!("{n} rooms of type {name} were taken, by those of the other")));
         wishes.wishes.push(Wish { count: n, exact: true, listed: true, ..Wish::one(id, &name) });
     }
 }

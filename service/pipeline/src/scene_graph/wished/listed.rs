@@ -2,7 +2,7 @@
 //! to the living room"; what "it" stands for, and words that turn a relation round.
 
 use super::relations::{RELATIONS, Reader, Said};
-use crate::scene_graph::named::mentions::Mention;
+use crate::scene_graph::named::mention::Mention;
 use crate::scene_graph::tokens::text::Span;
 use crate::scene_graph::tokens::words::Tag;
 

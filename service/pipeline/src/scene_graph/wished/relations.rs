@@ -2,7 +2,7 @@
 
 use d3dgen_model::scene_graph::Connector;
 
-use crate::scene_graph::named::mentions::{Mention, What};
+use crate::scene_graph::named::mention::{Mention, What};
 use crate::scene_graph::tokens::text::{Kind, Span, Token};
 use crate::scene_graph::tokens::words::{Spoken, Tag, tag_end, tag_ends_at};
 

@@ -2,7 +2,7 @@
 
 use d3dgen_model::domain::{Domain, Zone};
 
-use crate::scene_graph::named::mentions::Mention;
+use crate::scene_graph::named::mention::Mention;
 use crate::scene_graph::tokens::numbers::Number;
 use crate::scene_graph::tokens::text::{Kind, Token};
 use crate::scene_graph::tokens::words::{Spoken, Tag, is_tagged};

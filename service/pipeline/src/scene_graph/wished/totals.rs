@@ -1,12 +1,11 @@
 //! How large the building is and how many rooms it has, where the prompt or the request says so.
 
 use d3dgen_model::scene_graph::Note;
+use d3dgen_model::stage::Error;
 
-use super::wishes::{self, MANY, Text, Wishes};
-use crate::Error;
-use crate::scene_graph::named::mentions::{Mention, What};
-use crate::scene_graph::subject::places::note;
-use crate::scene_graph::{MAX_AREA_M2, MAX_ROOMS, Request, refused};
+use super::wishes::{self, Text, Wishes};
+use crate::scene_graph::named::mention::{Mention, What};
+use crate::scene_graph::request::{MANY, MAX_AREA_M2, MAX_ROOMS, Request, refused};
 
 /// Returns the area of the building, m^2.
 pub(crate) fn total_area(text: &Text, request: &Request, conflicts: &mut Vec<Note>) -> Option<f64> {
@@ -14,7 +13,7 @@ pub(crate) fn total_area(text: &Text, request: &Request, conflicts: &mut Vec<Not
     let named = named.filter(|&area| {
         let sane = (5.0..=MAX_AREA_M2).contains(&area);
         if !sane {
-            conflicts.push(note(
+            conflicts.push(Note::new(
                 "impossible_area",
                 format!("an area of {area:.1} m2 was left out; 5 to {MAX_AREA_M2} m2 can be planned"),
             ));
@@ -24,7 +23,7 @@ pub(crate) fn total_area(text: &Text, request: &Request, conflicts: &mut Vec<Not
     if let (Some(flag), Some(named)) = (request.area_m2, named)
         && (flag - named).abs() > 0.01
     {
-        conflicts.push(note(
+        conflicts.push(Note::new(
             "area_flag",
             format!("the prompt says {named:.1} m2, the request {flag:.1} m2; {flag:.1} m2 was used"),
         ));
@@ -57,8 +56,10 @@ pub(crate) fn total_rooms(
     }
     let named = named.filter(|&n| {
         if n <= 0 {
-            conflicts
-                .push(note("impossible_count", format!("{n} rooms cannot be built; the usual number was planned")));
+            conflicts.push(Note::new(
+                "impossible_count",
+                format!("{n} rooms cannot be built; the usual number was planned"),
+            ));
         }
         n > 0
     });
@@ -66,12 +67,13 @@ pub(crate) fn total_rooms(
     if let (Some(flag), Some(n)) = (request.rooms, named)
         && flag != n
     {
-        conflicts.push(note("rooms_flag", format!("the prompt says {n} rooms, the request {flag}; {flag} was used")));
+        conflicts
+            .push(Note::new("rooms_flag", format!("the prompt says {n} rooms, the request {flag}; {flag} was used")));
     }
     let total = request.rooms.or(named);
     let listed: u32 = wishes.wishes.iter().map(|w| w.count).fold(0, u32::saturating_add);
     if let Some(n) = total.filter(|n| *n < listed && listed <= MAX_ROOMS) {
-        conflicts.push(note(
+        conflicts.push(Note::new(
             "more_rooms_listed",
             format!("{n} rooms were asked for in total, but {listed} are listed; {listed} were planned"),
         ));

@@ -4,9 +4,8 @@
 use d3dgen_model::scene_graph::Note;
 
 use crate::scene_graph::machines::robots::Prompt;
-use crate::scene_graph::named::mentions::{Mention, What};
+use crate::scene_graph::named::mention::{Mention, What};
 use crate::scene_graph::subject::building::Part;
-use crate::scene_graph::subject::places::note;
 use crate::scene_graph::tokens::measures::Area;
 use crate::scene_graph::tokens::numbers::Number;
 use crate::scene_graph::tokens::text::{Kind, Span, Token};
@@ -75,12 +74,12 @@ pub(crate) fn state(text: &Text, conflicts: &mut Vec<Note>) {
     spans.sort_by_key(|s| s.start);
     for span in spans.into_iter().take(MOST_NOTES) {
         let message = format!("`{}` is nothing that can be planned; it was left out", prompt.words(span));
-        conflicts.push(note("unread_wish", message));
+        conflicts.push(Note::new("unread_wish", message));
     }
     for area in text.areas.iter().filter(|a| a.sides).take(MOST_NOTES) {
         let (words, value) = (prompt.words(area.span), area.value);
         let message = format!("of `{words}` the area was taken ({value:.1} m2); the two lengths are not planned");
-        conflicts.push(note("unread_wish", message));
+        conflicts.push(Note::new("unread_wish", message));
     }
 }
 

@@ -6,14 +6,14 @@ use d3dgen_model::domain::{Domain, Zone};
 use d3dgen_model::scene_graph::{Connector, Note};
 
 use super::relations::{Relation, Said, Spread};
-use crate::scene_graph::levels::storeys::Where;
 use crate::scene_graph::named::compounds;
-use crate::scene_graph::named::mentions::{Mention, What};
+use crate::scene_graph::named::mention::{Mention, What};
 use crate::scene_graph::named::numbered;
 use crate::scene_graph::named::qualities;
-use crate::scene_graph::people::dwelling::ShortForm;
-use crate::scene_graph::subject::places::note;
+use crate::scene_graph::people::short_form::ShortForm;
+use crate::scene_graph::request::MANY;
 use crate::scene_graph::tokens::measures::Area;
+use crate::scene_graph::tokens::storey::Where;
 use crate::scene_graph::tokens::text::Token;
 use crate::scene_graph::tokens::words::{Spoken, Tag, tag_ends_at, words};
 
@@ -178,8 +178,7 @@ impl Wishes {
 
 /// Room type of a charging place; every domain may have it.
 pub(crate) const CHARGING: &str = "robot_charging";
-/// A count above this is no plan but a slip; the caller refuses.
-pub(crate) const MANY: i64 = 500;
+
 /// Words between a room and its area, at most: "of at least".
 const MOST_TO_AREA: usize = 4;
 
@@ -274,7 +273,7 @@ pub(crate) fn gather(text: &Text, conflicts: &mut Vec<Note>) -> Wishes {
                     "{} is to be away from the entrance; how far it is from there is not planned",
                     id.replace('_', " ")
                 );
-                conflicts.push(note("unread_wish", message));
+                conflicts.push(Note::new("unread_wish", message));
             }
             continue;
         };
@@ -293,7 +292,7 @@ pub(crate) fn gather(text: &Text, conflicts: &mut Vec<Note>) -> Wishes {
         let message = format!(
             "{a} and {b} are to be in sight of each other; they were wished near each other, what is seen from where is not assured"
         );
-        conflicts.push(note("sight_not_assured", message));
+        conflicts.push(Note::new("sight_not_assured", message));
     }
     for &m in &text.said.closed {
         out.closed.extend(type_of(m));
@@ -333,7 +332,7 @@ impl Wishes {
             if !kept {
                 let [a, b] = [&pair.a, &pair.b].map(|id| id.replace('_', " "));
                 let message = format!("{a} and {b} are to be beside each other and apart; they were kept apart");
-                conflicts.push(note("near_and_apart", message));
+                conflicts.push(Note::new("near_and_apart", message));
             }
             kept
         });
@@ -379,14 +378,17 @@ fn count_type(text: &Text, id: &str, list: &[usize], out: &mut Wishes, conflicts
             positive.retain(|&p| p != m);
             zero |= n == 0;
             let choice = if n == 0 { "none was planned" } else { "the usual number was planned" };
-            conflicts.push(note("impossible_count", format!("{n} rooms of type {label} cannot be built; {choice}")));
+            conflicts
+                .push(Note::new("impossible_count", format!("{n} rooms of type {label} cannot be built; {choice}")));
         }
     }
     if !negated.is_empty() || zero {
         // Objects of a relation do not ask for a room, so "no kitchen next to the bedroom" stays a ban.
         if positive.iter().any(|m| text.mentions[*m].count.is_some()) {
-            conflicts
-                .push(note("wanted_and_forbidden", format!("{label} is both asked for and ruled out; it was planned")));
+            conflicts.push(Note::new(
+                "wanted_and_forbidden",
+                format!("{label} is both asked for and ruled out; it was planned"),
+            ));
         } else {
             out.forbidden.push(id.to_owned());
             return;
@@ -451,7 +453,7 @@ fn count_mentions(
     }
     if let Some(h) = head {
         if sum > h && explicit {
-            conflicts.push(note(
+            conflicts.push(Note::new(
                 "contradicting_counts",
                 format!("the prompt asks for {h} and for {sum} rooms of type {label}; {sum} were planned"),
             ));

@@ -3,9 +3,9 @@
 use std::collections::BTreeSet;
 
 use d3dgen_model::domain::{Access, Privacy};
+use d3dgen_model::scene_graph::BY_HOST;
 
 use super::Findings;
-use crate::scene_graph::BY_HOST;
 use crate::world::context::{Context, Room};
 
 /// Rooms are entered from outdoors or through rooms that are not private; what belongs to a host (en suite, closet,

@@ -2,6 +2,7 @@
 
 use d3dgen_knowledge::clearance::DOOR_LANE_M;
 use d3dgen_model::floorplan::{Door, DoorKind};
+use d3dgen_model::measures::JAMB_M;
 use d3dgen_model::{Rect, Segment, TOLERANCE_M};
 
 use super::Findings;
@@ -9,8 +10,6 @@ use crate::world::context::{Context, ON_LINE_M, Room, shared, uncovered};
 
 /// Narrowest opening, m.
 const NARROWEST_M: f64 = 0.60;
-/// Least distance of a door from a corner of its room, m.
-const JAMB_M: f64 = 0.10;
 /// Footprint that may reach into the floor a door needs, m^2.
 const GRAZE_M2: f64 = 0.0025;
 /// Robots pass a door with at least this much to spare on each side, m.

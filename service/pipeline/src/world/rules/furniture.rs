@@ -4,11 +4,11 @@ use std::collections::BTreeSet;
 
 use d3dgen_knowledge::clearance::{Side, free_depth, is_shallow, quarter};
 use d3dgen_model::domain::{Arrangement, FacingRule, Furnishing, Group, Member, Mount, Relation, Shape};
+use d3dgen_model::offer::other_bed;
 use d3dgen_model::placements::Placement;
 use d3dgen_model::{Rect, TOLERANCE_M};
 
 use super::Findings;
-use crate::placement::other_bed;
 use crate::world::context::{Context, Object, Room};
 
 /// Farthest a back may be from the wall it belongs to, m: a heater, a skirting, a curtain fit between.

@@ -2,11 +2,11 @@
 
 use std::collections::BTreeSet;
 
+use d3dgen_knowledge::jurisdiction::rules_here;
 use d3dgen_model::domain::{Adjacency, AdjacencyRelation};
 use d3dgen_model::scene_graph::Connector;
 
 use super::Findings;
-use crate::scene_graph::rules_here;
 use crate::world::context::{Context, ON_LINE_M, Room, shared};
 
 /// Common boundary from which rooms count as sharing a wall, m.

@@ -1,9 +1,10 @@
 //! Rules about getting around: everybody is a disc of the largest robot's radius, 0.30 m at least.
 
 use super::Findings;
-use crate::world::context::{Context, LEAST_RADIUS_M, Room};
+use crate::world::context::{Context, Room};
 use d3dgen_knowledge::clearance::is_shallow;
 use d3dgen_model::TOLERANCE_M;
+use d3dgen_model::measures::LEAST_RADIUS_M;
 
 /// Share of a room's free floor that must be reachable.
 const ROOM_SHARE: f64 = 0.5;

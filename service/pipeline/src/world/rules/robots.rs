@@ -2,6 +2,7 @@
 
 use d3dgen_knowledge::clearance::{Side, door_zones, free_depth, is_shallow};
 use d3dgen_model::domain::Shape;
+use d3dgen_model::measures::LEAST_RADIUS_M;
 use d3dgen_model::obstacles::Obstacles;
 use d3dgen_model::occupancy::{Bitmap, ROBOT_HEIGHT_M};
 use d3dgen_model::scenario::{RobotTask, Roi, RoiKind, Route};
@@ -9,7 +10,7 @@ use d3dgen_model::{Point, Pose, Rect, TOLERANCE_M};
 
 use super::Findings;
 use crate::scenario::{DOCKS_MISSING, without_dock};
-use crate::world::context::{Context, LEAST_RADIUS_M, Object, Room};
+use crate::world::context::{Context, Object, Room};
 
 /// A region may reach beyond its room by rounding, m^2.
 const REGION_SLACK_M2: f64 = 0.01;

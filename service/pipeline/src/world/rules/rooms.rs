@@ -4,9 +4,9 @@ use d3dgen_knowledge::Limit;
 use d3dgen_knowledge::freespace::FreeSpace;
 use d3dgen_model::TOLERANCE_M;
 use d3dgen_model::domain::Zone;
+use d3dgen_model::measures::MOST_ELONGATED;
 
 use super::Findings;
-use crate::floorplan::PROPORTION_LIMIT as PROPORTION;
 use crate::world::context::{Context, Room};
 
 /// Share of an area that rounding to the wall lattice may take or add.
@@ -71,12 +71,12 @@ pub fn proportion(c: &Context, out: &mut Findings) {
     for room in c.rooms.iter().filter(|r| !r.plan.circulation && r.kind.zone != Zone::Circulation) {
         out.look();
         let ratio = FreeSpace::new(&room.plan.net_polygon, &[]).proportion();
-        if ratio > PROPORTION + TOLERANCE_M {
+        if ratio > MOST_ELONGATED + TOLERANCE_M {
             out.add_figure(
                 &room.plan.room_id,
                 format!("is {ratio:.2} times as long as wide"),
                 ratio,
-                PROPORTION,
+                MOST_ELONGATED,
                 "ratio",
             );
         }

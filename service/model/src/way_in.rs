@@ -1,8 +1,8 @@
 //! The way into a room that several people come to: floor inside its door, through the narrow part that a room with a corner
 //! begins with, to where the room is wide. Furniture, docks and goods keep off it.
 
-use d3dgen_model::floorplan::Door;
-use d3dgen_model::{Point, Polygon, Rect};
+use crate::floorplan::Door;
+use crate::{Point, Polygon, Rect};
 
 /// Depth of the way inside a door, m, and how far it goes on where the room becomes wide.
 const DEPTH_M: f64 = 1.5;
@@ -14,7 +14,7 @@ const STEP_M: f64 = 0.05;
 const NONE_M2: f64 = 1e-3;
 
 /// Returns the floor of the way from a door into a room with this net outline; nothing where the door leads elsewhere.
-pub(crate) fn way_in(outline: &Polygon, door: &Door) -> Vec<Rect> {
+pub fn way_in(outline: &Polygon, door: &Door) -> Vec<Rect> {
     let pieces = outline.rects();
     let inside = |r: &Rect| {
         let covered: f64 = pieces.iter().map(|p| p.common_area(r)).sum();
