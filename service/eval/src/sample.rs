@@ -224,7 +224,7 @@ pub fn world() -> World {
     };
     let placements = Placements { version: 1, seed: 7, placements: objects(), unplaced: Vec::new() };
     let (name, generator) = ("two_rooms".to_owned(), "by hand".to_owned());
-    World { version: 1, name, generator, scene_graph: graph(&robot), floorplan: plan(), placements, scenario }
+    World { version: 1, name, generator, brief: None, scene_graph: graph(&robot), floorplan: plan(), placements, scenario }
 }
 
 /// Returns a report with these constraints: name, title of the source, force, outcome.

@@ -161,6 +161,7 @@ pub fn assemble(floorplan: Floorplan, placements: Placements) -> World {
         version: 1,
         name: "sample_flat".into(),
         generator: "d3dgen test".into(),
+        brief: None,
         scene_graph: Document::from_value(graph).unwrap(),
         floorplan,
         placements,

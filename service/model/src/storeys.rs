@@ -309,6 +309,7 @@ impl World {
             version: self.version,
             name: self.name.clone(),
             generator: self.generator.clone(),
+            brief: None,
             scene_graph: self.scene_graph.storey(level),
             placements: self.placements.storey(&floorplan),
             scenario: self.scenario.storey(level, &floorplan),

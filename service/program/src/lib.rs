@@ -15,6 +15,7 @@
 //!
 //! `given` makes the graph of a plan that somebody brings, `proposed` that of what a language model proposes.
 
+mod briefed;
 mod built;
 mod draft;
 mod given;
@@ -32,6 +33,7 @@ mod subject;
 mod tokens;
 mod wished;
 
+use d3dgen_model::brief::Brief;
 use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::stage::Error;
 use d3dgen_plugins::Registry;
@@ -51,6 +53,16 @@ pub use self::request::Request;
 /// `Refused` for prompts without words, absurd sizes, unknown domains and countries, with what would work.
 pub fn generate(request: &Request, registry: &Registry) -> Result<SceneGraph, Error> {
     let mut reading = read::read(request, registry)?;
+    let mut planned = program::complete(&mut reading);
+    Ok(settle::settle(request, registry, &mut reading, &mut planned))
+}
+
+/// Turns a brief into a scene graph; the flags of the request overrule it, its prompt is not read.
+///
+/// # Errors
+/// `Refused` for kinds of buildings that no domain knows, absurd sizes, unknown domains and countries.
+pub fn of_brief(brief: &Brief, request: &Request, registry: &Registry) -> Result<SceneGraph, Error> {
+    let mut reading = briefed::read(brief, request, registry)?;
     let mut planned = program::complete(&mut reading);
     Ok(settle::settle(request, registry, &mut reading, &mut planned))
 }
