@@ -17,6 +17,7 @@ use crate::interrupt;
 const OURS: &[&str] = &[
     WORLD,
     MARK,
+    "brief.json",
     "scene_graph.json",
     "floorplan.json",
     "placements.json",

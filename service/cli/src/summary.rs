@@ -4,8 +4,9 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use d3dgen_model::report::{ConstraintResult, ConstraintSummary, Report, RobotFit, Status, Violation};
+use d3dgen_model::report::{AskAnswer, ConstraintResult, ConstraintSummary, Fate, Report, RobotFit, Status, Violation};
 use d3dgen_model::scene_graph::Note;
+use d3dgen_model::world::World;
 use d3dgen_pipeline::generate::Generated;
 use serde_json::{Value, json};
 
@@ -40,6 +41,8 @@ pub struct Summary {
     broken: Vec<String>,
     assumptions: Vec<Note>,
     conflicts: Vec<Note>,
+    asks: Vec<AskAnswer>,
+    not_understood: Vec<String>,
     attempts: u32,
     times: Vec<(&'static str, Duration)>,
     proposals: Vec<(String, String)>,
@@ -74,6 +77,8 @@ impl Summary {
             broken: broken_lines(report),
             assumptions: graph.assumptions.clone(),
             conflicts: graph.conflicts.iter().chain(&world.floorplan.conflicts).cloned().collect(),
+            asks: report.asks.clone(),
+            not_understood: not_understood(world),
             attempts: *attempts,
             times,
             proposals: Vec::new(),
@@ -112,7 +117,7 @@ impl Summary {
             "rooms": self.rooms, "circulation_rooms": self.circulation,
             "area_m2": round(self.area_m2, 2), "objects": self.objects, "robots": self.robots, "people": self.people,
             "constraints": self.constraints, "violations": self.broken, "assumptions": self.assumptions,
-            "conflicts": self.conflicts, "attempts": self.attempts, "stage_ms": times,
+            "conflicts": self.conflicts, "asks": self.asks, "not_understood": self.not_understood, "attempts": self.attempts, "stage_ms": times,
         });
         if !self.proposals.is_empty() {
             let proposals: serde_json::Map<String, Value> =
@@ -149,7 +154,7 @@ impl Summary {
             ("time", format!("{:.0} ms: {}{again}", self.total_ms(), stages.join(", "))),
             ("folder", self.folder()),
         ];
-        let mut text = format!("\n{}, seed {}: {}\n", self.name, self.seed, self.verdict);
+        let mut text = format!("\n{}, seed {}: {}{}\n", self.name, self.seed, self.verdict, self.wishes());
         for (label, value) in rows {
             text += &format!("  {label:<12} {value}\n");
         }
@@ -157,6 +162,8 @@ impl Summary {
         for (label, lines) in [
             ("robot", self.robot_fit.clone()),
             ("proposed", proposed),
+            ("not as asked", self.asks.iter().filter(|a| a.fate != Fate::Honored).map(ask_line).collect()),
+            ("not read", self.not_understood.clone()),
             ("assumed", messages(&self.assumptions)),
             ("changed", messages(&self.conflicts)),
             ("violated", self.violated.clone()),
@@ -165,6 +172,15 @@ impl Summary {
             text += &listed(label, &lines);
         }
         text
+    }
+
+    /// Returns how many of the wishes are met, as the verdict goes on; nothing where none was read.
+    fn wishes(&self) -> String {
+        let met = self.asks.iter().filter(|a| a.fate == Fate::Honored).count();
+        match self.asks.len() {
+            0 => String::new(),
+            all => format!("; {met} of {all} wishes met"),
+        }
     }
 
     fn folder(&self) -> String {
@@ -195,6 +211,16 @@ impl Summary {
     fn total_ms(&self) -> f64 {
         self.times.iter().map(|(_, t)| ms(*t)).sum()
     }
+}
+
+/// Returns the words of a prompt that nobody understood.
+fn not_understood(world: &World) -> Vec<String> {
+    world.brief.iter().flat_map(|b| &b.not_understood).map(|w| w.text.clone()).collect()
+}
+
+/// Returns a wish that is not met as it was said, and why.
+fn ask_line(ask: &AskAnswer) -> String {
+    format!("`{}`: {}", ask.said, ask.reason)
 }
 
 /// Returns whether a robot fits, and else how many rooms it gets to and the narrowest place on its way to the others.

@@ -57,6 +57,11 @@ pub fn generate(request: &Request, registry: &Registry) -> Result<SceneGraph, Er
     Ok(settle::settle(request, registry, &mut reading, &mut planned))
 }
 
+/// Returns true for languages, by ISO 639-1 code, that [`generate`] reads.
+pub fn reads(language: &str) -> bool {
+    tokens::words::words().languages.contains_key(language)
+}
+
 /// Turns a brief into a scene graph; the flags of the request overrule it, its prompt is not read.
 ///
 /// # Errors

@@ -69,7 +69,7 @@ fn building(registry: &Registry, domain: &Domain, rooms: u32, seed: u64) -> Opti
     let prompt = format!("{} with {rooms} rooms", domain.title);
     let id = Some(domain.id.clone());
     let request = Request { prompt: prompt.clone(), seed, domain: id, rooms: Some(rooms), ..Request::default() };
-    let graph = scene_graph::generate(&request, registry).ok()?;
+    let graph = d3dgen_pipeline::brief::rooms(&request, registry).ok()?.0;
     (graph.level_numbers().len() == 1).then_some((prompt, graph))
 }
 

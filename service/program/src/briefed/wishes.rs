@@ -51,7 +51,6 @@ pub(super) struct Facts<'a> {
     stated: Option<(u32, bool)>,
     /// Rooms on a storey.
     on_levels: Vec<Wanted>,
-    domain: Option<&'a Domain>,
     registry: Option<&'a Registry>,
 }
 
@@ -60,7 +59,7 @@ impl<'a> Facts<'a> {
         let building_type = brief.building.as_ref().and_then(|b| b.building_type.as_deref());
         let lives = lives(domain, building_type);
         let named = brief.building.as_ref().is_some_and(|b| !b.words.is_empty() || b.confidence >= 1.0);
-        let mut out = Self { named, single: !named, domain: Some(domain), registry: Some(registry), ..Self::default() };
+        let mut out = Self { named, single: !named, registry: Some(registry), ..Self::default() };
         for ask in &brief.asks {
             match &ask.fact {
                 Fact::Rooms(rooms) => out.rooms(rooms),

@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use d3dgen_knowledge::classify::classify;
 use d3dgen_model::domain::Domain;
 use d3dgen_model::knowledge::KnowledgeBase;
-use d3dgen_pipeline::scene_graph::{self, Request as Asked};
+use d3dgen_pipeline::brief;
+use d3dgen_pipeline::scene_graph::Request as Asked;
 use d3dgen_plugins::{Custom, Plugin};
 use d3dgen_proto::v1::domain_service_server::DomainService;
 use d3dgen_proto::v1::{
@@ -200,7 +201,7 @@ impl DomainService for Api {
                 return Ok(ClassifyDomainResponse { readings: readings.collect(), country_code: None, language: None });
             }
             let request = Asked { prompt: asked.prompt, ..Asked::default() };
-            let graph = scene_graph::generate(&request, &now.registry).map_err(|e| status::stage("prompt", e))?;
+            let graph = brief::rooms(&request, &now.registry).map_err(|e| status::stage("prompt", e))?.0;
             let rooms = graph.rooms.iter().filter(|r| !r.circulation);
             let rooms = rooms.map(|r| ClassifiedRoom { label: r.id.clone(), room_type: Some(r.room_type.clone()) });
             let reading = DomainReading {
