@@ -7,11 +7,14 @@
 mod machines;
 mod wishes;
 
+use std::sync::LazyLock;
+
 use d3dgen_model::brief::{Brief, Fact, PeopleAsk, PlaceKind};
 use d3dgen_model::domain::{Domain, GENERIC_ROOM_TYPE};
 use d3dgen_model::scene_graph::Note;
 use d3dgen_model::stage::Error;
 use d3dgen_plugins::Registry;
+use serde::Deserialize;
 
 use self::wishes::Facts;
 use super::draft::{Draft, List};
@@ -34,14 +37,21 @@ use super::tokens::text::Span;
 use super::wished::relations::Said;
 use super::wished::wishes::{Wish, Wishes};
 
-/// Roles of people who come and go: guests, pupils, customers. All others work there, or live or lie there.
-const VISITORS: [&str; 12] = [
-    "visitor", "guest", "customer", "pupil", "student", "child", "spectator", "diner", "reader", "passenger", "member",
-    "participant",
-];
-/// Roles of people who live there, or stay in a bed.
-const SLEEPERS: [&str; 9] =
-    ["resident", "patient", "inmate", "prisoner", "tenant", "person", "family_member", "senior", "adult"];
+/// Roles of people, from `roles.toml`.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Roles {
+    visitors: Vec<String>,
+    patients: Vec<String>,
+    anybody: Vec<String>,
+    children: Vec<String>,
+}
+
+fn roles() -> &'static Roles {
+    static ALL: LazyLock<Roles> =
+        LazyLock::new(|| toml::from_str(include_str!("roles.toml")).expect("a test reads roles.toml"));
+    &ALL
+}
 
 /// Reads a brief.
 ///
@@ -214,17 +224,14 @@ fn count_beds(brief: &Brief, occupancy: &mut d3dgen_model::scene_graph::Occupanc
 
 /// Returns what a head count is of in a building.
 fn what_of(people: &PeopleAsk, lives: bool) -> What {
-    let role = people.role.as_str();
-    match () {
-        () if lives => What::Residents,
-        () if VISITORS.contains(&role) => What::Visitors,
-        () if role == "patient" => What::Beds,
-        () if SLEEPERS.contains(&role) => What::People,
-        () => What::Staff,
+    let among = |list: &[String]| list.contains(&people.role);
+    if lives {
+        return What::Residents;
     }
+    let roles = roles();
+    let kinds = [(&roles.visitors, What::Visitors), (&roles.patients, What::Beds), (&roles.anybody, What::People)];
+    kinds.into_iter().find(|(list, _)| among(list)).map_or(What::Staff, |(_, what)| what)
 }
 
-/// Returns true for buildings that people live in.
-fn lives(domain: &Domain, building_type: Option<&str>) -> bool {
-    is_dwelling(program_of(domain, building_type))
-}
+#[cfg(test)]
+mod tests;

@@ -3,12 +3,12 @@
 use d3dgen_model::brief::{
     AskedCount, Bound, Brief, CapacityAsk, Fact, ObjectsAsk, PlaceKind, RelationAsk, RelationKind, RoomsAsk, Subject,
 };
-use d3dgen_model::domain::Domain;
+use d3dgen_model::domain::{Domain, Program};
 use d3dgen_model::scene_graph::{Connector, Note};
 use d3dgen_model::style::StyleWord;
 use d3dgen_plugins::Registry;
 
-use super::{GENERIC_ROOM_TYPE, Held, Thing, What, Wish, Wishes, lives, styles, what_of};
+use super::{GENERIC_ROOM_TYPE, Held, Thing, What, Wish, Wishes, is_dwelling, program_of, roles, styles, what_of};
 use crate::levels::storeys::{Storeys, Wanted};
 use crate::tokens::storey::Where;
 use crate::tokens::text::Span;
@@ -52,14 +52,16 @@ pub(super) struct Facts<'a> {
     /// Rooms on a storey.
     on_levels: Vec<Wanted>,
     registry: Option<&'a Registry>,
+    program: Option<&'a Program>,
 }
 
 impl<'a> Facts<'a> {
     pub(super) fn of(brief: &Brief, domain: &'a Domain, registry: &'a Registry) -> Self {
         let building_type = brief.building.as_ref().and_then(|b| b.building_type.as_deref());
-        let lives = lives(domain, building_type);
+        let program = Some(program_of(domain, building_type));
+        let lives = program.is_some_and(is_dwelling);
         let named = brief.building.as_ref().is_some_and(|b| !b.words.is_empty() || b.confidence >= 1.0);
-        let mut out = Self { named, single: !named, registry: Some(registry), ..Self::default() };
+        let mut out = Self { named, single: !named, registry: Some(registry), program, ..Self::default() };
         for ask in &brief.asks {
             match &ask.fact {
                 Fact::Rooms(rooms) => out.rooms(rooms),
@@ -67,7 +69,7 @@ impl<'a> Facts<'a> {
                 Fact::Capacity(capacity) => out.capacity(capacity),
                 Fact::Relation(relation) => out.relation(relation),
                 Fact::People(people) => {
-                    if lives && people.role == "child" {
+                    if lives && roles().children.contains(&people.role) {
                         out.children += people.count.n;
                     }
                     out.heads.push((what_of(people, lives), people.count.n));
@@ -99,7 +101,8 @@ impl<'a> Facts<'a> {
     /// Returns the room type that a subject is planned as: the domain's, that of another domain, or one of its own name.
     pub(super) fn type_of(&self, subject: &Subject) -> String {
         if let Some(id) = &subject.id {
-            return id.clone();
+            // the pharmacy of a ward is its room for medicine
+            return self.program.and_then(|p| p.means.get(id)).unwrap_or(id).clone();
         }
         let slug: String =
             subject.name.to_lowercase().chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
