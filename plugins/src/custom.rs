@@ -7,7 +7,7 @@ use d3dgen_model::domain::Domain;
 use d3dgen_model::knowledge::KnowledgeBase;
 use d3dgen_model::{Document, Problem};
 
-use crate::{Error, Plugin, merge};
+use crate::{Error, Plugin, complete, merge};
 
 /// A domain read from a folder.
 pub struct Custom {
@@ -31,7 +31,7 @@ impl Custom {
                 folder: folder.to_path_buf(),
                 reason: format!("knowledge.json: {e}"),
             })?;
-            KnowledgeBase::from_json(&text).map_err(|source| Error::Invalid { file, source })?
+            whole(&text).map_err(|source| Error::Invalid { file, source })?
         } else {
             KnowledgeBase::empty(&domain.id)
         };
@@ -58,7 +58,7 @@ impl Custom {
         let table = merge::texts(texts).map_err(|(file, reason)| not(&file, reason))?;
         let domain = Domain::from_value(table).map_err(|source| (main.to_owned(), source))?;
         let knowledge = match files.get("knowledge.json") {
-            Some(text) => KnowledgeBase::from_json(text).map_err(|source| ("knowledge.json".to_owned(), source))?,
+            Some(text) => whole(text).map_err(|source| ("knowledge.json".to_owned(), source))?,
             None => KnowledgeBase::empty(&domain.id),
         };
         Ok(Self { domain, knowledge })
@@ -68,6 +68,13 @@ impl Custom {
     pub fn of(domain: Domain, knowledge: KnowledgeBase) -> Self {
         Self { domain, knowledge }
     }
+}
+
+/// Reads rules with those they share.
+fn whole(text: &str) -> Result<KnowledgeBase, d3dgen_model::Error> {
+    let mut knowledge = KnowledgeBase::from_json(text)?;
+    complete(&mut knowledge)?;
+    Ok(knowledge)
 }
 
 impl Plugin for Custom {
