@@ -145,7 +145,7 @@ pub fn retrieve_with(knowledge: &KnowledgeBase, query: &Query, policy: &Policy) 
             continue;
         }
         for constraint in &reference.constraints {
-            match applicable(constraint, reference, query) {
+            match applicable(constraint, reference, query, &knowledge.metadata.date) {
                 Some(found) => constraints.push(found),
                 None => not_applicable += 1,
             }

@@ -64,7 +64,9 @@ impl Searcher {
                 ((fit * FIT_STEPS).round() as i64, found)
             })
             .collect();
-        let near = |f: &Found| jurisdiction::breadth(&f.jurisdiction);
+        // where no place is asked for none is nearer
+        let placed = query.filters.contains_key("jurisdiction");
+        let near = |f: &Found| if placed { jurisdiction::breadth(&f.jurisdiction) } else { 0 };
         ranked.sort_by(|(a, x), (b, y)| {
             b.cmp(a).then(near(x).cmp(&near(y))).then(y.hit.score.total_cmp(&x.hit.score)).then(x.hit.key.cmp(&y.hit.key))
         });
