@@ -1,5 +1,6 @@
 //! What the shipped knowledge bases come to for buildings of several countries.
 
+use d3dgen_model::document::Document;
 use d3dgen_model::domain::{Daylight, Zone};
 use d3dgen_model::knowledge::KnowledgeBase;
 use d3dgen_plugins::Registry;
