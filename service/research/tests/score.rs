@@ -152,4 +152,5 @@ fn fresh_sentences_are_read() {
     let file = |name: &str| Path::new(env!("CARGO_MANIFEST_DIR")).join("tests").join(name);
     check(&file("sentences_fresh_1.jsonl"), 0.97);
     check(&file("sentences_fresh_2.jsonl"), 0.91);
+    check(&file("sentences_fresh_3.jsonl"), 0.0);
 }
