@@ -68,10 +68,11 @@ fn add(knowledge: &mut KnowledgeBase, shared: &Reference, ids: &mut BTreeSet<Str
     let mut constraints = shared.constraints.clone();
     for c in &mut constraints {
         c.constraint_id = format!("{domain}_{}", c.constraint_id);
-        c.superseded_by = c.superseded_by.take().map(|by| match shared.constraints.iter().any(|o| o.constraint_id == by) {
-            true => format!("{domain}_{by}"),
-            false => by,
-        });
+        c.superseded_by =
+            c.superseded_by.take().map(|by| match shared.constraints.iter().any(|o| o.constraint_id == by) {
+                true => format!("{domain}_{by}"),
+                false => by,
+            });
     }
     constraints.retain(|c| ids.insert(c.constraint_id.clone()));
     if constraints.is_empty() {
@@ -97,8 +98,8 @@ mod tests {
     use d3dgen_model::Document;
 
     use super::*;
-    use crate::all;
     use crate::Plugin;
+    use crate::all;
 
     #[test]
     fn shared_rules_hold_their_schema_and_are_used() {

@@ -58,7 +58,8 @@ impl Desk {
         for question in text.lines().map(|line| serde_json::from_str::<Value>(line).expect("each line is JSON")) {
             let words = question["words"].as_str().expect("each has words");
             let found = self.ask(words, question["country"].as_str()).found;
-            let gold: Vec<&str> = question["gold"].as_array().expect("a list").iter().flat_map(|g| g.as_str()).collect();
+            let gold: Vec<&str> =
+                question["gold"].as_array().expect("a list").iter().flat_map(|g| g.as_str()).collect();
             let named = |i: usize| format!("{}:{}", found[i].constraint.space_type, found[i].constraint.name);
             let rank = (0..found.len()).find(|&i| gold.iter().any(|g| is_like(&named(i), g)));
             if rank != Some(0) {

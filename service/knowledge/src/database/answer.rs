@@ -68,7 +68,10 @@ impl Searcher {
         let placed = query.filters.contains_key("jurisdiction");
         let near = |f: &Found| if placed { jurisdiction::breadth(&f.jurisdiction) } else { 0 };
         ranked.sort_by(|(a, x), (b, y)| {
-            b.cmp(a).then(near(x).cmp(&near(y))).then(y.hit.score.total_cmp(&x.hit.score)).then(x.hit.key.cmp(&y.hit.key))
+            b.cmp(a)
+                .then(near(x).cmp(&near(y)))
+                .then(y.hit.score.total_cmp(&x.hit.score))
+                .then(x.hit.key.cmp(&y.hit.key))
         });
         Ok(merged(ranked.into_iter().map(|(_, f)| f).collect(), query.limit))
     }
@@ -85,7 +88,8 @@ fn merged(found: Vec<Found>, limit: usize) -> Vec<Found> {
     for found in found {
         let c = &found.constraint;
         let title = found.source.as_ref().map(|s| (&s.title, &s.edition_or_year));
-        let same = (&found.jurisdiction, &c.name, &c.space_type, &c.constraint_type, &c.value, &c.unit, &c.conditions, title);
+        let same =
+            (&found.jurisdiction, &c.name, &c.space_type, &c.constraint_type, &c.value, &c.unit, &c.conditions, title);
         match places.get(&format!("{same:?}")).and_then(|at| kept.get_mut(*at)) {
             Some(first) => first.copies.push(found.hit.key),
             None => {

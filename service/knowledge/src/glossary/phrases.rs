@@ -102,7 +102,9 @@ impl Phrases {
     }
 
     fn is_filler(&self, tokens: &[Token], length: usize) -> bool {
-        tokens.get(..length).is_some_and(|t| self.filler.contains(&t.iter().map(|t| t.text.clone()).collect::<Vec<_>>()))
+        tokens
+            .get(..length)
+            .is_some_and(|t| self.filler.contains(&t.iter().map(|t| t.text.clone()).collect::<Vec<_>>()))
     }
 
     fn single(&self, word: &str) -> Option<&BTreeSet<usize>> {

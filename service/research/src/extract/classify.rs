@@ -269,9 +269,8 @@ impl Sentence<'_> {
                 // "unter Treppen ist eine Durchgangshöhe von 2 m": the word says where
                 let placed = !comparator.strong
                     && !self.is_negated(from, k)
-                    && (end..mention.from).any(|j| {
-                        self.lexicon.space.is_at(self.tokens, j) || self.lexicon.object.is_at(self.tokens, j)
-                    });
+                    && (end..mention.from)
+                        .any(|j| self.lexicon.space.is_at(self.tokens, j) || self.lexicon.object.is_at(self.tokens, j));
                 if placed {
                     k = end;
                     continue;
@@ -407,7 +406,8 @@ impl Sentence<'_> {
         if matches!(mention.figure, Figure::Per(..)) {
             return false;
         }
-        let counted_later = || self.mentions.iter().skip(i + 1).enumerate().any(|(n, _)| !self.condition_thing(i + 1 + n));
+        let counted_later =
+            || self.mentions.iter().skip(i + 1).enumerate().any(|(n, _)| !self.condition_thing(i + 1 + n));
         if self.condition_thing(i) && counted_later() && self.cue("condition_ends", self.side_end(side, mention)) {
             return true; // "100명 이상이 이용하는 실에는 출구를 2개소"
         }
@@ -485,7 +485,9 @@ impl Sentence<'_> {
             reported: tone.plain && !ruled,
         };
         match &mention.figure {
-            Figure::Range(..) if weight.normative || any_strong || self.is_span(mention) => return Some((ConstraintType::Range, Medium)),
+            Figure::Range(..) if weight.normative || any_strong || self.is_span(mention) => {
+                return Some((ConstraintType::Range, Medium));
+            }
             Figure::Range(..) => return None,
             Figure::Per(..) if tone.habit => return Some((ConstraintType::RuleOfThumb, Low)),
             Figure::Per(..) if !weight.reported || side.is_some_and(|s| s.strong) => {
