@@ -4,7 +4,9 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use d3dgen_model::report::{AskAnswer, ConstraintResult, ConstraintSummary, Fate, Report, RobotFit, Status, Violation};
+use d3dgen_model::report::{
+    AskAnswer, Citation, ConstraintResult, ConstraintSummary, Fate, Report, RobotFit, Status, Violation,
+};
 use d3dgen_model::scene_graph::Note;
 use d3dgen_model::world::World;
 use d3dgen_pipeline::generate::Generated;
@@ -311,8 +313,27 @@ fn violated_line(c: &ConstraintResult) -> String {
         limits.join(" and "),
         c.unit,
         c.citation.jurisdiction,
-        c.citation.source.title
+        place(&c.citation)
     )
+}
+
+/// Returns where a rule stands: document, clause, what is quoted of it, the page where it was read, and when it ended.
+fn place(citation: &Citation) -> String {
+    let mut text = citation.source.title.clone();
+    if let Some(clause) = &citation.clause {
+        text += &format!(", {clause}");
+    }
+    if let Some(quotation) = &citation.quotation {
+        text += &format!(", \"{quotation}\"");
+    }
+    if let Some(page) = &citation.seen_at {
+        text += &format!(", {page}");
+    }
+    if let Some(last) = &citation.in_force_until {
+        text += &format!("; ended {last}");
+        text += &citation.superseded_by.as_ref().map(|by| format!(", see {by}")).unwrap_or_default();
+    }
+    text
 }
 
 /// Returns a line for each violation of a hard rule.

@@ -254,6 +254,7 @@ pub fn report(constraints: &[(&str, &str, bool, Status)]) -> Report {
             note: String::new(),
             printed: None,
             confidence: "high".into(),
+            ..Citation::default()
         },
     };
     Report {

@@ -142,6 +142,11 @@ fn drafted(knowledge: &KnowledgeBase, said: &Statement) -> Constraint {
         note: String::new(),
         source_ids: Vec::new(),
         seen_at: None,
+        clause: None,
+        quotation: None,
+        in_force_from: None,
+        in_force_until: None,
+        superseded_by: None,
     }
 }
 

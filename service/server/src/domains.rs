@@ -5,12 +5,13 @@
 
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use arc_swap::ArcSwap;
 use d3dgen_assets::catalog::Catalog;
 use d3dgen_assets::stock::Stock;
 use d3dgen_knowledge::database::{Provenance, digest};
+use d3dgen_knowledge::glossary::Glossary;
 use d3dgen_model::domain::Domain;
 use d3dgen_model::knowledge::KnowledgeBase;
 use d3dgen_model::{Document, Problem};
@@ -35,6 +36,14 @@ pub struct Snapshot {
     pub catalog: Arc<Catalog>,
     /// Registered ones, by id.
     pub registered: BTreeMap<String, Entry>,
+    glossary: OnceLock<Glossary>,
+}
+
+impl Snapshot {
+    /// Returns the words for what rules speak of, made when first asked for.
+    pub fn glossary(&self) -> &Glossary {
+        self.glossary.get_or_init(|| Glossary::of(self.registry.iter().map(|p| p.domain())))
+    }
 }
 
 /// A registered domain.
@@ -323,7 +332,7 @@ fn snapshot(databases: &Databases, shipped: &Registry) -> Result<Snapshot, Error
             registry.set_domain(domain);
         }
     }
-    Ok(Snapshot { registry, as_given, catalog, registered: entries })
+    Ok(Snapshot { registry, as_given, catalog, registered: entries, glossary: OnceLock::new() })
 }
 
 #[cfg(test)]

@@ -19,7 +19,7 @@ use tonic::{Request, Status};
 
 use super::page::Page;
 use super::{Answer, Api, caller, timestamp};
-use crate::convert::{document, message};
+use crate::convert::{document, message, with_shared};
 use crate::core::Core;
 use crate::domains::{Entry, Refusal, Snapshot};
 use crate::names;
@@ -98,7 +98,7 @@ impl DomainService for Api {
         let change = move |core: &Core, asked: RegisterDomainRequest, once: &super::Once| {
             let domain: Domain = document("manifest", asked.manifest)?;
             let knowledge: KnowledgeBase = match asked.knowledge_base {
-                Some(given) => document("knowledge_base", Some(given))?,
+                Some(given) => with_shared(document("knowledge_base", Some(given))?)?,
                 None => KnowledgeBase::empty(&domain.id),
             };
             let now = core.domains.now();

@@ -30,7 +30,7 @@ use tonic::{Request, Status};
 use super::domain::plugin;
 use super::page::Page;
 use super::{Answer, Api, Once, caller, limits, mode};
-use crate::convert::{document, masked, message, part};
+use crate::convert::{document, masked, message, part, with_shared};
 use crate::core::Core;
 use crate::domains::Snapshot;
 use crate::status::{self, invalid};
@@ -47,7 +47,7 @@ impl KnowledgeService for Api {
         let q = request.get_ref();
         let id = if q.validate_only { String::new() } else { q.request_id.clone() };
         let change = move |core: &Core, asked: ImportKnowledgeRequest, once: &Once| {
-            let given: KnowledgeBase = document("knowledge_base", asked.knowledge_base)?;
+            let given: KnowledgeBase = with_shared(document("knowledge_base", asked.knowledge_base)?)?;
             // once more as a text: formulas and printed units are looked at there
             let given = d3dgen_knowledge::import::read(&given.to_json()).map_err(status::knowledge)?.knowledge;
             let domain = given.metadata.domain.clone();
@@ -101,11 +101,11 @@ impl KnowledgeService for Api {
             limit: page.wanted(),
         };
         self.lookup(move |core| {
-            let found = core.databases.searcher()?.search(&query).map_err(status::knowledge)?;
             let now = core.domains.now();
-            let (found, next_page_token) = page.cut(found);
+            let answer = core.databases.searcher()?.answer(&query, now.glossary()).map_err(status::knowledge)?;
+            let (found, next_page_token) = page.cut(answer.found);
             let constraints = found.iter().map(|f| messages::found(f, &now)).collect();
-            Ok(SearchConstraintsResponse { constraints, next_page_token })
+            Ok(SearchConstraintsResponse { constraints, next_page_token, note: answer.note.unwrap_or_default() })
         })
         .await
     }
