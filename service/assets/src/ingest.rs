@@ -4,6 +4,7 @@
 //! Reading is the caller's ([`Reads`]), so that files of others are read in processes of their own. It can be stopped at
 //! any time and goes on where it stopped: every few models are kept for good.
 
+mod packages;
 mod walk;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -184,8 +185,8 @@ pub fn ingest(
     options: &Options<'_>,
 ) -> Result<Summary, Error> {
     let mut summary = Summary::default();
-    let Walk { root, models, refused } = walk(folder)?;
-    for (path, reason) in refused {
+    let Walk { root, models, refused, shapes } = walk(folder)?;
+    for (path, reason) in refused.into_iter().chain(shapes) {
         summary.files.insert(path, Outcome::Refused { reason });
     }
     let total = models.len();

@@ -23,6 +23,8 @@ pub const UNITS: &[(f64, f64)] = &[
 
 /// Extents of one kind of thing differ by this factor (as logarithm) without any doubt.
 const TOLERANCE: f64 = 0.38;
+/// How far the logarithms of the ratios of the extents scatter where the proportions are those of an object.
+const PROPORTIONED: f64 = 0.33;
 /// Cost of each further factor of e.
 const STEEPNESS: f64 = 2.0;
 /// Least extent counted: sheets and mats have any thickness, m.
@@ -78,6 +80,13 @@ fn ratios(size: [f64; 3], wanted: [f64; 3]) -> [f64; 3] {
     // Thin things compare by thickness only down to the thickness of a mat of their size.
     let floor = THIN * scale.clamp(1e-6, 1e6);
     std::array::from_fn(|i| (wanted[i].max(THIN) / found[i].max(floor)).ln())
+}
+
+/// Tells whether a size has the proportions of one of a catalog, whatever the unit it is told in.
+pub fn is_proportioned(size: [f64; 3], wanted: [f64; 3]) -> bool {
+    let logs = ratios(size, wanted);
+    let mean = logs.iter().sum::<f64>() / 3.0;
+    (logs.iter().map(|l| (l - mean).powi(2)).sum::<f64>() / 3.0).sqrt() <= PROPORTIONED
 }
 
 /// Returns the cost of a misfit.

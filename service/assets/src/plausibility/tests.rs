@@ -42,6 +42,26 @@ fn lying_units_are_repaired() {
 }
 
 #[test]
+fn a_word_of_the_name_never_beats_a_unit_against_the_proportions() {
+    let sdf = declared("sdf", Some('Z'), true);
+    let glb = declared("glb", Some('Y'), true);
+    for told in [&sdf, &glb] {
+        check("washer", standing([0.035, 0.035, 0.002]), told, [0.035, 0.035, 0.002]);
+        check("table_screw", standing([0.006, 0.006, 0.04]), told, [0.006, 0.006, 0.04]);
+        check("door_stopper", standing([0.05, 0.05, 0.03]), told, [0.05, 0.05, 0.03]);
+        check("lamp_socket", standing([0.03, 0.03, 0.05]), told, [0.03, 0.03, 0.05]);
+        check("sink_plug", standing([0.045, 0.045, 0.02]), told, [0.045, 0.045, 0.02]);
+    }
+    // Where the proportions agree the unit is what lies, whatever else the name says.
+    for told in [&sdf, &glb] {
+        check("leather_sofa_03", standing([0.022, 0.0095, 0.0088]), told, [2.2, 0.95, 0.88]);
+        check("sofa", standing([0.022, 0.0095, 0.0088]), told, [2.2, 0.95, 0.88]);
+    }
+    let verdict = judge(standing([4.5, 3.75, 1.5]), &glb, &[words::split("sink")], sample::catalog());
+    assert!((0.05..0.3).contains(&verdict.scale[0]), "no sink is 4.5 m wide: {verdict:?}");
+}
+
+#[test]
 fn lying_axes_are_repaired() {
     let dae = declared("dae", Some('Y'), true);
     let door = [[-0.708, -2.2696, 0.039], [0.708, 0.0002, 0.124]];
