@@ -168,7 +168,12 @@ fn names(subject: &Subject<'_>) -> Vec<Vec<String>> {
     let given = subject.around.metadata.as_ref().and_then(|a| a.name.as_deref());
     let folders = subject.around.folders.iter().map(String::as_str);
     let title = subject.around.title.as_deref();
-    let all = given.into_iter().chain([subject.stem]).chain(title).chain(folders).chain(subject.around.description.as_deref());
+    let all = given
+        .into_iter()
+        .chain([subject.stem])
+        .chain(title)
+        .chain(folders)
+        .chain(subject.around.description.as_deref());
     let mut names: Vec<Vec<String>> = Vec::new();
     for name in all {
         let split = words::split(name);

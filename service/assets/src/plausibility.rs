@@ -23,6 +23,9 @@ pub struct Declared {
     pub up_axis_authored: bool,
     /// Whether the file itself says its unit, or its format does for it; false where the format has none.
     pub unit_authored: bool,
+    /// Factor of the unit by which most of the files beside it were repaired, 1 where they were right; none where they do not
+    /// agree.
+    pub unit_beside: Option<f64>,
     /// What the simulator's model around the file says.
     pub simulator: Option<Simulator>,
 }
@@ -67,7 +70,7 @@ const UNLIKE: f64 = 2.2;
 /// The same for a name of which every word is explained, and for one of which some are, where the proportions are those
 /// of the object.
 const UNLIKE_SURE: f64 = 8.0;
-const UNLIKE_PROPORTIONED: f64 = 3.6;
+const UNLIKE_PROPORTIONED: f64 = 3.4;
 /// Names matched this badly say nothing about the size.
 const LEAST_COVERAGE: f64 = 0.3;
 /// The same for names beside the model's own: folders, parts and materials are about other things too.
@@ -133,7 +136,8 @@ pub fn judge<'c>(
         let (fit, object) = best_object(size, &matches, way.factor != 1.0 && unit_is_told);
         let stands = object.is_some_and(|(o, _)| o.mount == Mount::Floor);
         let lying = if stands { cost::lying(low, size) } else { 0.0 };
-        let base = way.prior + cost::origin(low[2], size[2]) + cost::bounds(size) + lying;
+        let odd = if way.factor == 1.0 { cost::unlike_all(size, &matches) } else { 0.0 };
+        let base = way.prior + cost::origin(low[2], size[2]) + cost::bounds(size) + lying + odd;
         let weighed = Weighed { way, cost: base + fit, object, to_catalog: false };
         if best.as_ref().is_none_or(|b| weighed.cost < b.cost - 1e-9) {
             best = Some(weighed);
@@ -178,7 +182,12 @@ fn ways(declared: &Declared, trust: &Trust) -> Vec<Way> {
     let mut ways = Vec::new();
     for &(turn, axis_prior) in turns {
         for (factor, rarity) in cost::UNITS {
-            let unit_prior = if *factor == 1.0 { 0.0 } else { trust.other_unit + rarity };
+            let alone = if *factor == 1.0 { 0.0 } else { trust.other_unit + rarity };
+            let unit_prior = match declared.unit_beside {
+                Some(unit) if (factor / unit - 1.0).abs() < 0.01 => 0.0,
+                Some(_) => alone + cost::UNLIKE_NEIGHBORS,
+                None => alone,
+            };
             ways.push(Way { turn, factor: *factor, prior: axis_prior + unit_prior });
         }
     }

@@ -187,9 +187,8 @@ mod tests {
 
     #[test]
     fn a_model_of_two_bodies_is_as_heavy_as_both() {
-        let [low, high] = [[0.0, 1.5], [1.5, 3.0]].map(|[a, b]| {
-            body(vec![Collision::Box { min: [0.0, 0.0, a], max: [2.0, 1.0, b] }], 3.0)
-        });
+        let [low, high] = [[0.0, 1.5], [1.5, 3.0]]
+            .map(|[a, b]| body(vec![Collision::Box { min: [0.0, 0.0, a], max: [2.0, 1.0, b] }], 3.0));
         let both = whole(&Model3d { bodies: vec![low, high], ..Model3d::default() });
         let one = inertia(&body(vec![Collision::Box { min: [0.0; 3], max: [2.0, 1.0, 3.0] }], 6.0));
         assert!(close(both.mass_kg, 6.0) && (0..3).all(|i| close(both.center_m[i], one.center_m[i])));

@@ -11,7 +11,7 @@ use crate::affine::{Vec3, add, cross, length, scale, sub};
 /// Most boxes of one body.
 pub const MOST: usize = 24;
 /// Most cells along an axis.
-const CELLS: usize = 40;
+const CELLS: usize = 32;
 /// A cut that saves less than this share of the first box is not made.
 const SAVES: f64 = 0.01;
 /// Thinnest box, m: sheets and panes collide too.
@@ -25,13 +25,13 @@ pub fn boxes(meshes: &[&Mesh]) -> Vec<Collision> {
     let Some(whole) = grid.part([0; 3], grid.count) else { return Vec::new() };
     let least = SAVES * whole.volume;
     let mut done: Vec<Part> = Vec::new();
-    let mut open = vec![grid.cut(whole)];
+    let mut open = vec![grid.cut(whole, least)];
     while let Some(at) = (0..open.len()).max_by(|&a, &b| open[a].1.total_cmp(&open[b].1)) {
         let (part, saved, halves) = open.swap_remove(at);
         match halves {
             Some([a, b]) if saved > least && done.len() + open.len() + 2 <= MOST => {
-                open.push(grid.cut(a));
-                open.push(grid.cut(b));
+                open.push(grid.cut(a, least));
+                open.push(grid.cut(b, least));
             }
             _ => done.push(part),
         }
@@ -43,6 +43,8 @@ pub fn boxes(meshes: &[&Mesh]) -> Vec<Collision> {
 /// The cells around a mesh.
 struct Grid {
     count: [usize; 3],
+    /// Size of a cell, m.
+    widths: Vec3,
     cells: Vec<Cell>,
 }
 
@@ -80,7 +82,7 @@ impl Grid {
         let cell = largest / CELLS as f64;
         let count = size.map(|s| ((s / cell).ceil() as usize).clamp(1, CELLS));
         let widths: Vec3 = std::array::from_fn(|i| (size[i] / count[i] as f64).max(1e-12));
-        let mut grid = Self { count, cells: vec![None; count.iter().product()] };
+        let mut grid = Self { count, widths, cells: vec![None; count.iter().product()] };
         for mesh in meshes {
             for triangle in &mesh.triangles {
                 let corner = |i: u32| mesh.positions.get(i as usize).map(|p| p.map(f64::from));
@@ -97,7 +99,7 @@ impl Grid {
                 }
             }
         }
-        grid.fill(min, widths);
+        grid.fill(min);
         Some(grid)
     }
 
@@ -106,7 +108,8 @@ impl Grid {
     }
 
     /// Fills the cells that cannot be reached from outside.
-    fn fill(&mut self, min: Vec3, widths: Vec3) {
+    fn fill(&mut self, min: Vec3) {
+        let widths = self.widths;
         let is_edge = |p: [usize; 3]| (0..3).any(|i| p[i] == 0 || p[i] + 1 == self.count[i]);
         let mut outside = vec![false; self.cells.len()];
         let mut open: Vec<[usize; 3]> = self.places([0; 3], self.count).filter(|p| is_edge(*p)).collect();
@@ -114,7 +117,8 @@ impl Grid {
         open.iter().for_each(|p| outside[self.index(*p)] = true);
         while let Some(at) = open.pop() {
             for i in 0..3 {
-                for next in [at[i].checked_sub(1), Some(at[i] + 1).filter(|n| *n < self.count[i])].into_iter().flatten() {
+                for next in [at[i].checked_sub(1), Some(at[i] + 1).filter(|n| *n < self.count[i])].into_iter().flatten()
+                {
                     let mut beside = at;
                     beside[i] = next;
                     let index = self.index(beside);
@@ -150,37 +154,60 @@ impl Grid {
         Some(Part { low, high, bounds, volume: volume(&bounds) })
     }
 
-    /// Returns the part with the cut that saves most, how much it saves, and its halves.
-    fn cut(&self, part: Part) -> (Part, f64, Option<[Part; 2]>) {
+    /// Returns a part with the cut that saves most, how much, and its halves. Where no cut saves much by itself, as between
+    /// the top of a table and its legs, the halves are thought cut again.
+    fn cut(&self, part: Part, least: f64) -> (Part, f64, Option<[Part; 2]>) {
+        let saves = |halves: &[Part; 2]| part.volume - halves[0].volume - halves[1].volume;
+        let best = self.best(&part, saves);
+        if best.0 > least || self.is_full(&part) {
+            return (part, best.0, best.1);
+        }
+        let again = |half: &Part| half.volume - self.best(half, |h| half.volume - h[0].volume - h[1].volume).0;
+        let (saved, halves) = self.best(&part, |halves| part.volume - again(&halves[0]) - again(&halves[1]));
+        (part, saved, halves)
+    }
+
+    fn is_full(&self, part: &Part) -> bool {
+        self.places(part.low, part.high).all(|p| self.cells[self.index(p)].is_some())
+    }
+
+    /// Returns the halves of the best cut with what a function says they save.
+    fn best(&self, part: &Part, saves: impl Fn(&[Part; 2]) -> f64) -> (f64, Option<[Part; 2]>) {
         let mut best: (f64, Option<[Part; 2]>) = (0.0, None);
         for axis in 0..3 {
-            let layers: Vec<Option<[Vec3; 2]>> = (part.low[axis]..part.high[axis])
+            let layers: Vec<Cell> = (part.low[axis]..part.high[axis])
                 .map(|layer| {
                     let (mut low, mut high) = (part.low, part.high);
                     (low[axis], high[axis]) = (layer, layer + 1);
                     self.part(low, high).map(|p| p.bounds)
                 })
                 .collect();
-            let mut before: Vec<Option<[Vec3; 2]>> = Vec::with_capacity(layers.len());
+            let mut before: Vec<Cell> = Vec::with_capacity(layers.len());
             let mut after = before.clone();
             for (layer, back) in layers.iter().zip(layers.iter().rev()) {
                 before.push(both(before.last().copied().flatten(), *layer));
                 after.push(both(after.last().copied().flatten(), *back));
             }
             for cut in 1..layers.len() {
-                let (Some(a), Some(b)) = (before[cut - 1], after[layers.len() - cut - 1]) else { continue };
-                let saved = part.volume - volume(&a) - volume(&b);
+                let (Some(mut a), Some(mut b)) = (before[cut - 1], after[layers.len() - cut - 1]) else { continue };
+                // Less than a cell between two halves is between the points looked at, not between parts.
+                if b[0][axis] - a[1][axis] < self.widths[axis] {
+                    let middle = (a[1][axis] + b[0][axis]) / 2.0;
+                    (a[1][axis], b[0][axis]) = (middle, middle);
+                }
+                let (mut low, mut high) = (part.low, part.high);
+                (low[axis], high[axis]) = (part.low[axis] + cut, part.low[axis] + cut);
+                let halves = [
+                    Part { low: part.low, high, bounds: a, volume: volume(&a) },
+                    Part { low, high: part.high, bounds: b, volume: volume(&b) },
+                ];
+                let saved = saves(&halves);
                 if saved > best.0 {
-                    let (mut middle_high, mut middle_low) = (part.high, part.low);
-                    middle_high[axis] = part.low[axis] + cut;
-                    middle_low[axis] = part.low[axis] + cut;
-                    let first = Part { low: part.low, high: middle_high, bounds: a, volume: volume(&a) };
-                    let second = Part { low: middle_low, high: part.high, bounds: b, volume: volume(&b) };
-                    best = (saved, Some([first, second]));
+                    best = (saved, Some(halves));
                 }
             }
         }
-        (part, best.0, best.1)
+        best
     }
 }
 
@@ -221,7 +248,8 @@ mod tests {
     use super::*;
 
     fn cuboid([min, max]: [[f32; 3]; 2]) -> Mesh {
-        let positions = (0..8).map(|k| std::array::from_fn(|i| if k >> i & 1 == 0 { min[i] } else { max[i] })).collect();
+        let positions =
+            (0..8).map(|k| std::array::from_fn(|i| if k >> i & 1 == 0 { min[i] } else { max[i] })).collect();
         let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
         let triangles = quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
         Mesh { positions, triangles, ..Mesh::default() }

@@ -78,7 +78,8 @@ fn config(folder: &Path) -> sdf::Config {
 fn is_older(name: &str, main: Option<&str>, config: &sdf::Config, folder: &Path) -> bool {
     let listed = main.is_some_and(|main| main != name) && config.all.iter().any(|f| f == name);
     let version = name.strip_prefix("model").and_then(|rest| rest.strip_suffix(".sdf")).unwrap_or_default();
-    let numbered = version.starts_with(['-', '_']) && version[1..].chars().all(|c| c.is_ascii_digit() || "._-".contains(c));
+    let numbered =
+        version.starts_with(['-', '_']) && version[1..].chars().all(|c| c.is_ascii_digit() || "._-".contains(c));
     listed || numbered && (main.is_some_and(|m| m != name) || folder.join("model.sdf").is_file())
 }
 
@@ -163,7 +164,11 @@ mod tests {
 
     #[test]
     fn a_model_folder_is_one_asset_and_what_it_names_is_none() {
-        let sdf = |uri: &str| format!("<sdf><model name='m'><link name='l'><visual name='v'><geometry><mesh><uri>{uri}</uri></mesh></geometry></visual></link></model></sdf>");
+        let sdf = |uri: &str| {
+            format!(
+                "<sdf><model name='m'><link name='l'><visual name='v'><geometry><mesh><uri>{uri}</uri></mesh></geometry></visual></link></model></sdf>"
+            )
+        };
         let (desk, lamp) = (sdf("model://desk/meshes/a.dae"), sdf("model://shared/lamp.dae"));
         let world = "<sdf><world name='w'><model name='m'/></world></sdf>";
         let config = "<model><sdf version='1.4'>model-1_4.sdf</sdf><sdf version='1.6'>desk.sdf</sdf></model>";
@@ -181,7 +186,10 @@ mod tests {
             ("worlds/office.sdf", world),
             ("broken/model.sdf", "<sdf"),
         ]);
-        assert_eq!(models, ["desk/desk.sdf", "lamps/lamp.sdf", "lamps/other.glb", "shared/vase.dae", "broken/model.sdf"]);
+        assert_eq!(
+            models,
+            ["desk/desk.sdf", "lamps/lamp.sdf", "lamps/other.glb", "shared/vase.dae", "broken/model.sdf"]
+        );
         assert_eq!(refused, []);
     }
 

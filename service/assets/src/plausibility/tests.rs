@@ -14,7 +14,7 @@ fn standing(size: [f64; 3]) -> [[f64; 3]; 2] {
 
 fn declared(format: &str, up: Option<char>, authored: bool) -> Declared {
     let (up_axis_authored, unit_authored) = (authored, authored);
-    Declared { format: format.into(), up_axis: up, up_axis_authored, unit_authored, simulator: None }
+    Declared { format: format.into(), up_axis: up, up_axis_authored, unit_authored, unit_beside: None, simulator: None }
 }
 
 #[track_caller]
@@ -57,8 +57,20 @@ fn a_word_of_the_name_never_beats_a_unit_against_the_proportions() {
         check("leather_sofa_03", standing([0.022, 0.0095, 0.0088]), told, [2.2, 0.95, 0.88]);
         check("sofa", standing([0.022, 0.0095, 0.0088]), told, [2.2, 0.95, 0.88]);
     }
-    let verdict = judge(standing([4.5, 3.75, 1.5]), &glb, &[words::split("sink")], sample::catalog());
-    assert!((0.05..0.3).contains(&verdict.scale[0]), "no sink is 4.5 m wide: {verdict:?}");
+    for (told, size) in [(&glb, [4.5, 3.75, 1.5]), (&sdf, [4.5, 3.75, 1.5]), (&glb, [5.05, 4.58, 3.23])] {
+        let verdict = judge(standing(size), told, &[words::split("BathroomSink")], sample::catalog());
+        assert!((0.05..0.3).contains(&verdict.scale[0]), "no sink is {size:?} m: {verdict:?}");
+    }
+}
+
+#[test]
+fn files_beside_tell_the_unit_where_nothing_else_does() {
+    let glb = |unit| Declared { unit_beside: unit, ..declared("glb", Some('Y'), true) };
+    check("gizmo", standing([0.4, 0.4, 0.4]), &glb(Some(0.01)), [0.004, 0.004, 0.004]);
+    check("gizmo", standing([4.0, 4.0, 2.0]), &glb(Some(0.1)), [0.4, 0.4, 0.2]);
+    check("gizmo", standing([4.0, 4.0, 2.0]), &glb(Some(1.0)), [4.0, 4.0, 2.0]);
+    // What its own name and proportions say for sure is surer.
+    check("sofa", standing([0.022, 0.0095, 0.0088]), &glb(Some(1.0)), [2.2, 0.95, 0.88]);
 }
 
 #[test]

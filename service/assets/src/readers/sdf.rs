@@ -151,7 +151,8 @@ fn bodies(builder: &mut Builder, tree: &Tree) -> BTreeMap<String, usize> {
     for joint in tree.joints.iter().filter(|j| j.node.attribute("type") == Some("fixed") && j.parent != "world") {
         fixed.insert(&joint.child, &joint.parent);
     }
-    let moves = |link: &Link| tree.joints.iter().any(|j| is_moving(j) && (j.child == link.name || j.parent == link.name));
+    let moves =
+        |link: &Link| tree.joints.iter().any(|j| is_moving(j) && (j.child == link.name || j.parent == link.name));
     let links: Vec<&str> = tree.links.iter().map(|l| l.name.as_str()).collect();
     let mut bodies: BTreeMap<String, usize> = BTreeMap::new();
     let mut first = true;

@@ -74,7 +74,10 @@ fn folders_of_other_people_are_assets_of_what_they_show() {
     let fuel = "https://fuel.gazebosim.org/1.0/OpenRobotics/models/Reading%20Desk/2/files/meshes/desk.obj";
     let files = [
         ("aws/models/desk_01/model.sdf", model("desk_01", &part("model://desk_01/meshes/desk.obj"))),
-        ("aws/models/desk_01/model.config", "<model><name>Desk</name><sdf version='1.7'>model.sdf</sdf></model>".into()),
+        (
+            "aws/models/desk_01/model.config",
+            "<model><name>Desk</name><sdf version='1.7'>model.sdf</sdf></model>".into(),
+        ),
         ("fuel/reading desk/2/model.sdf", model("Reading Desk", &part(fuel))),
         ("arena/static/desk/sdf/desk.sdf", model("desk", &part("model://desk/sdf/meshes/desk.obj"))),
         ("beside/office/model.sdf", model("office", &part("model://desk_of_shop/meshes/desk.obj"))),
@@ -208,7 +211,11 @@ fn what_collides_becomes_shapes_of_the_body() {
         read.expect("read").model.bodies[0].collisions.clone()
     };
     assert!(matches!(shapes(0)[..], [Collision::Box { .. }]), "{:?}", shapes(0));
-    assert!(matches!(shapes(1)[..], [Collision::Cylinder { axis: 0, .. }, Collision::TurnedBox { .. }]), "{:?}", shapes(1));
+    assert!(
+        matches!(shapes(1)[..], [Collision::Cylinder { axis: 0, .. }, Collision::TurnedBox { .. }]),
+        "{:?}",
+        shapes(1)
+    );
     assert!(matches!(shapes(2)[..], [Collision::Box { .. }]), "{:?}", shapes(2));
     assert_eq!((shapes(3), shapes(4)), (vec![], vec![]));
     assert_eq!(assets(home.path()).len(), 5, "a hull is no asset");

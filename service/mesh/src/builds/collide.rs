@@ -14,7 +14,9 @@ pub(super) fn moved(hull: &Hull, map: &Affine) -> Collision {
     let lengths = map.axes.map(length);
     let axes = map.axes.map(unit);
     match *hull {
-        Hull::Box { center, half } => Collision::around(map.point(center), std::array::from_fn(|i| half[i] * lengths[i]), axes),
+        Hull::Box { center, half } => {
+            Collision::around(map.point(center), std::array::from_fn(|i| half[i] * lengths[i]), axes)
+        }
         Hull::Sphere { center, radius } => Collision::Sphere { center: map.point(center), radius: radius * lengths[0] },
         Hull::Cylinder { center, radius, half, axis } => {
             let middle = map.point(center);
@@ -33,7 +35,11 @@ pub(super) fn moved(hull: &Hull, map: &Affine) -> Collision {
         Hull::Bar { center, direction, half, radius } => {
             let along = map.vector(direction);
             let frame = frame_along(unit(along));
-            Collision::around(map.point(center), [half * length(along), radius * lengths[0], radius * lengths[0]], frame)
+            Collision::around(
+                map.point(center),
+                [half * length(along), radius * lengths[0], radius * lengths[0]],
+                frame,
+            )
         }
     }
 }

@@ -85,13 +85,7 @@ impl Eye {
 }
 
 /// Draws the model, solid parts first, then clear ones from back to front.
-pub(super) fn draw(
-    model: &Model3d,
-    lights: &[Light],
-    cloths: &[Option<Cloth>],
-    side: usize,
-    view: &View,
-) -> Samples {
+pub(super) fn draw(model: &Model3d, lights: &[Light], cloths: &[Option<Cloth>], side: usize, view: &View) -> Samples {
     let mut samples = Samples {
         side,
         near: vec![0.0; side * side],

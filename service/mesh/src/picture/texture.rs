@@ -24,8 +24,13 @@ pub(super) struct Cloth {
 /// Returns the picture that each material wears, and one none more for surfaces without material. What cannot be decoded is
 /// not worn: its material has its plain color.
 pub(super) fn worn(model: &Model3d) -> Vec<Option<Cloth>> {
-    let used: std::collections::BTreeSet<usize> =
-        model.bodies.iter().flat_map(|b| &b.visuals).filter(|v| !v.mesh.uvs.is_empty()).filter_map(|v| v.material).collect();
+    let used: std::collections::BTreeSet<usize> = model
+        .bodies
+        .iter()
+        .flat_map(|b| &b.visuals)
+        .filter(|v| !v.mesh.uvs.is_empty())
+        .filter_map(|v| v.material)
+        .collect();
     let of = |(i, material): (usize, &crate::Material)| {
         let texture = material.texture.filter(|_| used.contains(&i)).and_then(|t| model.textures.get(t));
         texture.and_then(Cloth::new)

@@ -19,13 +19,7 @@ fn geometry<'a, 'i>(element: Node<'a, 'i>) -> Option<Node<'a, 'i>> {
 }
 
 /// Adds what a visual shows to a body.
-pub fn seen(
-    builder: &mut Builder,
-    folder: &Folder,
-    visual: Node,
-    place: &Matrix,
-    body: usize,
-) -> Result<(), Refusal> {
+pub fn seen(builder: &mut Builder, folder: &Folder, visual: Node, place: &Matrix, body: usize) -> Result<(), Refusal> {
     let Some(geometry) = geometry(visual) else { return Ok(()) };
     if geometry.tag_name().name() == "mesh" {
         let before = builder.piece_count(body);

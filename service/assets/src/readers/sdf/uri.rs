@@ -26,7 +26,17 @@ pub struct Config {
 
 /// Returns the path of a file, relative to a folder, that a URI names; none when it is not there or may not be read.
 pub fn located(folder: &Folder, uri: &str) -> Option<String> {
-    let found = |uri: &str| candidates(folder, uri).into_iter().find(|path| folder.resolve(path).is_some());
+    of_name(folder, uri).or_else(|| {
+        // A model downloaded under another name, or in a folder of its version, is still in the folder of its SDF.
+        let own = candidates(folder, uri, true);
+        let other = decoded(uri).map(|uri| candidates(folder, &uri, true)).unwrap_or_default();
+        own.into_iter().chain(other).find(|path| folder.resolve(path).is_some())
+    })
+}
+
+/// Returns the same where the name in the URI leads there, and not the folder that asks.
+fn of_name(folder: &Folder, uri: &str) -> Option<String> {
+    let found = |uri: &str| candidates(folder, uri, false).into_iter().find(|path| folder.resolve(path).is_some());
     found(uri).or_else(|| decoded(uri).and_then(|uri| found(&uri)))
 }
 
@@ -34,16 +44,16 @@ pub fn located(folder: &Folder, uri: &str) -> Option<String> {
 pub fn included(folder: &Folder, uri: &str) -> Option<String> {
     let uri = uri.trim_end_matches('/');
     if uri.to_ascii_lowercase().ends_with(".sdf") {
-        return located(folder, uri);
+        return of_name(folder, uri);
     }
-    let config = located(folder, &format!("{uri}/model.config"));
+    let config = of_name(folder, &format!("{uri}/model.config"));
     let named = config.and_then(|path| {
         let bytes = folder.read(&path, MAX_CONFIG_BYTES).ok()?;
         let sdf = config_of(&super::text(&bytes)).sdf?;
         let (parent, _) = path.rsplit_once('/')?;
         Some(format!("{parent}/{sdf}")).filter(|p| folder.resolve(p).is_some())
     });
-    named.or_else(|| located(folder, &format!("{uri}/model.sdf")))
+    named.or_else(|| of_name(folder, &format!("{uri}/model.sdf")))
 }
 
 /// Reads a `model.config`; one that cannot be read says nothing.
@@ -64,39 +74,41 @@ pub fn config_of(text: &str) -> Config {
     }
 }
 
-/// Returns where the file of a URI may be, the likeliest first.
-fn candidates(folder: &Folder, uri: &str) -> Vec<String> {
+/// Returns where the file of a URI may be, the likeliest first; in the folder that asks, whatever the name, where `own`.
+fn candidates(folder: &Folder, uri: &str, own: bool) -> Vec<String> {
     match uri.split_once("://") {
         None if uri.starts_with('/') => tails(uri),
         None => vec![uri.to_owned()],
         Some(("model" | "package", rest)) => match rest.split_once('/') {
-            Some((name, path)) => named(folder, name, path),
+            Some((name, path)) => named(folder, name, path, own),
             None => Vec::new(),
         },
         Some(("file", rest)) => {
             let rest = rest.trim_start_matches("./");
             match rest.split_once('/') {
                 Some((name, path)) if !name.is_empty() => {
-                    std::iter::once(rest.to_owned()).chain(named(folder, name, path)).collect()
+                    std::iter::once(rest.to_owned()).chain(named(folder, name, path, own)).collect()
                 }
                 _ => tails(rest),
             }
         }
         // Fuel: https://server/1.0/owner/models/NAME/tip/files/path, beside the folder of the model once it is downloaded.
-        Some(("http" | "https" | "fuel", rest)) => match rest.split_once("/models/").and_then(|(_, r)| r.split_once('/')) {
-            Some((name, path)) => {
-                let path = path.split_once("files/").map_or(path, |(_, path)| path);
-                let direct = std::iter::once(path.to_owned());
-                named(folder, name, path).into_iter().chain(direct).collect()
+        Some(("http" | "https" | "fuel", rest)) => {
+            match rest.split_once("/models/").and_then(|(_, r)| r.split_once('/')) {
+                Some((name, path)) => {
+                    let path = path.split_once("files/").map_or(path, |(_, path)| path);
+                    let path = path.strip_prefix("tip/").unwrap_or(path);
+                    named(folder, name, path, own)
+                }
+                None => Vec::new(),
             }
-            None => Vec::new(),
-        },
+        }
         Some(_) => Vec::new(),
     }
 }
 
 /// Returns where a file of a model called NAME may be.
-fn named(folder: &Folder, name: &str, path: &str) -> Vec<String> {
+fn named(folder: &Folder, name: &str, path: &str, own: bool) -> Vec<String> {
     let mut all = Vec::new();
     for (up, above) in folder.base().ancestors().take(folder.height() + 1).enumerate() {
         let climb = "../".repeat(up);
@@ -105,9 +117,9 @@ fn named(folder: &Folder, name: &str, path: &str) -> Vec<String> {
         }
         all.extend(SHELVES.iter().map(|shelf| format!("{climb}{shelf}{name}/{path}")));
     }
-    // A model downloaded under another name, or in a folder of its version, is still in the folder of its SDF.
-    all.push(path.to_owned());
-    all.push(format!("../{path}"));
+    if own {
+        all.extend([path.to_owned(), format!("../{path}")]);
+    }
     all
 }
 

@@ -85,8 +85,18 @@ impl Args {
         }
         written.map_err(|source| Error::Write { path: "standard output".into(), source })?;
         if !rows.is_empty() {
-            let head =
-                ["file", "format", "up", "m per unit", "size m", "meshes", "triangles", "materials", "is", "taken as m"];
+            let head = [
+                "file",
+                "format",
+                "up",
+                "m per unit",
+                "size m",
+                "meshes",
+                "triangles",
+                "materials",
+                "is",
+                "taken as m",
+            ];
             print!("{}", table(&head, &rows));
         }
         match refused.len() {
