@@ -4,7 +4,7 @@
 Usage: check_joints.py FOLDER...        needs `pip install mujoco`
 
 Reads every model.sdf with joints below the folders as `d3dgen assets export --format sdf` writes them: the root fixed to the
-world, friction and damping of each joint as the file says. From rest at both ends and in the middle of their ranges no joint may
+world, friction, damping and spring of each joint as the file says. From rest at both ends and in the middle of their ranges no joint may
 move by more than 3 % of its range. Parts that no joint holds together may not overlap by more than 2 mm, at rest or anywhere
 in the range of a joint. Prints each fault and one line of figures; exit status 0 when there is no fault.
 """
@@ -83,6 +83,9 @@ def world(file):
                 "damping": axis.find("dynamics/damping").text,
                 "frictionloss": axis.find("dynamics/friction").text,
             }
+            if axis.find("dynamics/spring_stiffness") is not None:
+                moves["stiffness"] = axis.find("dynamics/spring_stiffness").text
+                moves["springref"] = axis.find("dynamics/spring_reference").text
             if axis.find("limit") is not None:
                 moves["range"] = f"{axis.find('limit/lower').text} {axis.find('limit/upper').text}"
             ET.SubElement(own, "joint", moves)
@@ -137,7 +140,7 @@ def check(file):
 def main():
     models = joints = faulty = 0
     for folder in sys.argv[1:]:
-        for file in sorted(Path(folder).rglob("*.sdf")):
+        for file in sorted(f for f in Path(folder).rglob("*.sdf") if f.is_file()):
             faults = check(file)
             count = 0
             while True:

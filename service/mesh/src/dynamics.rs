@@ -1,8 +1,6 @@
-//! What holds a joint: friction that bears the weight of what hangs on it anywhere in its range, and damping that lets it
-//! move at the pace of furniture. Both follow from masses and arms, so a dishwasher's door stays where it is left as a
-//! drawer does.
-//!
-//! The friction stands for what holds real ones: springs of flaps, latches of rails, brakes of rollers.
+//! What holds a joint: a spring that balances most of the weight on it, as gas springs and counterweights do, friction that
+//! bears the rest anywhere in its range, and damping that lets it move at the pace of furniture. All follow from masses and
+//! arms, so a dishwasher's door stays where it is left as a drawer does.
 
 use crate::affine::{Vec3, cross, dot, scale, sub};
 use crate::mass::{Inertia, inertia};
@@ -16,6 +14,8 @@ const SAFETY: f64 = 1.3;
 /// N m or N.
 const ROLLING: f64 = 0.02;
 const LEAST: f64 = 0.01;
+/// How many ranges long a spring is drawn that pulls evenly.
+const FLAT: f64 = 50.0;
 /// How long what moves goes on by itself, s.
 const SLOWS_S: f64 = 0.5;
 /// Positions of its range at which the weight on a joint is looked at.
@@ -30,13 +30,23 @@ pub struct Dynamics {
     pub friction: f64,
     /// N m s/rad, or N s/m.
     pub damping: f64,
+    /// What balances the weight; none where there is next to none.
+    pub spring: Option<Spring>,
+}
+
+/// A spring of a joint.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Spring {
+    /// N m/rad, or N/m.
+    pub stiffness: f64,
+    /// Position without force, which may be beyond the range: rad, or m.
+    pub reference: f64,
 }
 
 /// Returns how a joint of a model resists.
 pub fn of(model: &Model3d, joint: &Joint) -> Dynamics {
     let moved = moved(model, joint);
     let mass: f64 = moved.iter().map(|b| b.mass_kg).sum();
-    let weight = load(&moved, joint);
     let (resists, idle) = match joint.kind {
         JointKind::Prismatic => (mass, mass * GRAVITY),
         JointKind::Revolute | JointKind::Continuous => {
@@ -45,24 +55,52 @@ pub fn of(model: &Model3d, joint: &Joint) -> Dynamics {
             (about, mass * GRAVITY * arm * 0.1)
         }
     };
-    Dynamics { friction: (SAFETY * weight).max(ROLLING * idle).max(LEAST), damping: (resists / SLOWS_S).max(LEAST) }
+    let least = (ROLLING * idle).max(LEAST);
+    let loads = loads(&moved, joint);
+    let most = |spring: Option<Spring>| {
+        let left = |(at, load): &(f64, f64)| (load + spring.map_or(0.0, |s| s.stiffness * (s.reference - at))).abs();
+        loads.iter().map(left).fold(0.0, f64::max)
+    };
+    let spring = spring(&loads).filter(|s| joint.limits.is_some() && most(None) > least && most(Some(*s)) < most(None));
+    let friction = (SAFETY * most(spring)).max(least);
+    Dynamics { friction, damping: (resists / SLOWS_S).max(LEAST), spring }
 }
 
-/// Returns the largest moment, or force, of gravity about a joint anywhere in its range, with all others at zero: N m or N.
-fn load(moved: &[Inertia], joint: &Joint) -> f64 {
-    if joint.kind == JointKind::Prismatic {
-        return moved.iter().map(|b| b.mass_kg).sum::<f64>() * GRAVITY * joint.axis[2].abs();
+/// Returns the spring that balances loads best: the line through them that leaves least squares, as steep as a spring can
+/// be.
+fn spring(loads: &[(f64, f64)]) -> Option<Spring> {
+    let count = loads.len() as f64;
+    let mean = |value: &dyn Fn(&(f64, f64)) -> f64| loads.iter().map(value).sum::<f64>() / count;
+    let (at, load) = (mean(&|l| l.0), mean(&|l| l.1));
+    let spread = mean(&|l| (l.0 - at).powi(2));
+    let (first, last) = (loads.first()?.0, loads.last()?.0);
+    if spread <= 0.0 {
+        return None;
     }
+    let slope = mean(&|l| (l.0 - at) * (l.1 - load)) / spread;
+    let stiffness = slope.max(load.abs() / (FLAT * (last - first)));
+    (stiffness > 0.0).then(|| Spring { stiffness, reference: at - load / stiffness })
+}
+
+/// Returns the moments, or forces, of gravity about a joint over its range, with all others at zero: each with the position,
+/// N m or N.
+fn loads(moved: &[Inertia], joint: &Joint) -> Vec<(f64, f64)> {
     let [low, high] = joint.limits.unwrap_or(ALL_ROUND);
     let at = |step: usize| low + (high - low) * step as f64 / (POSITIONS - 1) as f64;
-    let moment = |angle: f64| -> f64 {
+    let load = |position: f64| -> f64 {
         let one = |body: &Inertia| {
-            let way = turned(sub(body.center_m, joint.origin), joint.axis, angle);
-            dot(joint.axis, cross(way, [0.0, 0.0, -GRAVITY * body.mass_kg]))
+            let weight = [0.0, 0.0, -GRAVITY * body.mass_kg];
+            match joint.kind {
+                JointKind::Prismatic => dot(joint.axis, weight),
+                JointKind::Revolute | JointKind::Continuous => {
+                    let way = turned(sub(body.center_m, joint.origin), joint.axis, position);
+                    dot(joint.axis, cross(way, weight))
+                }
+            }
         };
         moved.iter().map(one).sum()
     };
-    (0..POSITIONS).map(|step| moment(at(step)).abs()).fold(0.0, f64::max)
+    (0..POSITIONS).map(at).map(|position| (position, load(position))).collect()
 }
 
 /// Returns the bodies that a joint moves: its own, and those that other joints hold to it.
@@ -112,17 +150,28 @@ mod tests {
         (Model3d { bodies, joints: vec![joint.clone()], ..Model3d::default() }, joint)
     }
 
+    /// Returns the largest load that spring and friction do not hold, over the range: below zero when all is held.
+    fn not_held(model: &Model3d, joint: &Joint) -> f64 {
+        let Dynamics { friction, spring, .. } = of(model, joint);
+        let pull = |at: f64| spring.map_or(0.0, |s| s.stiffness * (s.reference - at));
+        let all = loads(&moved(model, joint), joint);
+        all.iter().map(|(at, load)| (load + pull(*at)).abs() - friction).fold(f64::MIN, f64::max)
+    }
+
     #[test]
-    fn friction_bears_the_weight_anywhere_in_the_range() {
+    fn spring_and_friction_bear_the_weight_anywhere_in_the_range() {
         // A door hinged below, upright at zero: it weighs most on its hinge where it lies, 0.25 m from it.
         let (model, joint) = flap(JointKind::Revolute, [0.0, 1.0, 0.0], Some([0.0, 1.6]));
         let open = 4.0 * GRAVITY * 0.25;
         let found = of(&model, &joint);
-        assert!(found.friction > open && found.friction < 1.5 * open, "{found:?}, {open} N m");
+        assert!(not_held(&model, &joint) < 0.0 && found.friction < 0.3 * open, "{found:?}, {open} N m");
         assert!((found.damping - (4.0 * 0.25 / 12.0 + 4.0 * 0.0625) / SLOWS_S).abs() < 1e-9, "{found:?}");
         let (model, joint) = flap(JointKind::Prismatic, [0.0, 0.0, 1.0], Some([0.0, 0.3]));
-        assert!(of(&model, &joint).friction > 4.0 * GRAVITY);
+        assert!(not_held(&model, &joint) < 0.0 && of(&model, &joint).friction < 4.0, "{:?}", of(&model, &joint));
+        let (model, joint) = flap(JointKind::Continuous, [0.0, 1.0, 0.0], None);
+        assert!(not_held(&model, &joint) < 0.0 && of(&model, &joint).spring.is_none());
         let (model, joint) = flap(JointKind::Revolute, [0.0, 0.0, 1.0], Some([0.0, 1.6]));
-        assert!(of(&model, &joint).friction < 0.1 * open, "a door about an upright axis bears nothing");
+        let found = of(&model, &joint);
+        assert!(found.friction < 0.1 * open && found.spring.is_none(), "a door about an upright axis bears nothing");
     }
 }

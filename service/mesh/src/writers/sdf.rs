@@ -141,9 +141,14 @@ fn write_joint(out: &mut String, model: &Model3d, joint: &Joint) {
     }
     // Doors and drawers stay where they are left.
     let resists = dynamics::of(model, joint);
+    let spring = resists.spring.map_or_else(String::new, |s| {
+        let (reference, stiffness) = (n(s.reference), n(s.stiffness));
+        format!("<spring_reference>{reference}</spring_reference><spring_stiffness>{stiffness}</spring_stiffness>")
+    });
     let _ = write!(
         out,
-        "        <dynamics><damping>{}</damping><friction>{}</friction></dynamics>\n      </axis>\n    </joint>\n",
+        "        <dynamics><damping>{}</damping><friction>{}</friction>{spring}</dynamics>\n      </axis>\n    \
+         </joint>\n",
         n(resists.damping),
         n(resists.friction)
     );

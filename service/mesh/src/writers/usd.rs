@@ -267,10 +267,14 @@ fn moved(center: Vec3) -> [String; 2] {
 fn write_joint(out: &mut String, model: &Model3d, joint: &Joint, name: &str, root: &str, bodies: &[String]) {
     // Angles are degrees in USD, those of damping too.
     let resists = dynamics::of(model, joint);
-    let (kind, drive, damping) = match joint.kind {
-        JointKind::Prismatic => ("PhysicsPrismaticJoint", "linear", resists.damping),
+    let spring = resists.spring.unwrap_or(dynamics::Spring { stiffness: 0.0, reference: 0.0 });
+    let (kind, drive, damping, stiffness, reference) = match joint.kind {
+        JointKind::Prismatic => {
+            ("PhysicsPrismaticJoint", "linear", resists.damping, spring.stiffness, spring.reference)
+        }
         JointKind::Revolute | JointKind::Continuous => {
-            ("PhysicsRevoluteJoint", "angular", resists.damping.to_radians())
+            let [damping, stiffness] = [resists.damping, spring.stiffness].map(f64::to_radians);
+            ("PhysicsRevoluteJoint", "angular", damping, stiffness, spring.reference.to_degrees())
         }
     };
     let turn = quat(quaternion(frame_along(joint.axis)));
@@ -294,9 +298,11 @@ fn write_joint(out: &mut String, model: &Model3d, joint: &Joint, name: &str, roo
     // Doors and drawers stay where they are left. Friction has no word in UsdPhysics; Newton and PhysX know this one.
     let _ = write!(
         out,
-        "        float drive:{drive}:physics:damping = {}\n        float drive:{drive}:physics:stiffness = 0\n        \
-         float newton:friction = {}\n    }}\n",
+        "        float drive:{drive}:physics:damping = {}\n        float drive:{drive}:physics:stiffness = {}\n        \
+         float drive:{drive}:physics:targetPosition = {}\n        float newton:friction = {}\n    }}\n",
         n(damping),
+        n(stiffness),
+        n(reference),
         n(resists.friction)
     );
 }
