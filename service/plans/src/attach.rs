@@ -33,15 +33,17 @@ pub(crate) fn attach(
     drawn: &[DrawnOpening],
     stretches: &[Stretch],
     rooms: &[LaidRoom],
+    assumed: bool,
     notes: &mut Vec<Note>,
 ) -> Vec<LaidOpening> {
+    let mut moved = 0_usize;
     let mut out: Vec<LaidOpening> = Vec::new();
     let at = |o: &DrawnOpening| {
         let p = o.arc.map(|a| a[0]).or_else(|| o.points.first().copied()).unwrap_or(Point::new(0.0, 0.0));
         format!("({:.2}, {:.2}) m", p.x, p.y)
     };
     for opening in drawn {
-        let Some(fit) = best(opening, stretches) else {
+        let Some(mut fit) = best(opening, stretches) else {
             let what = if opening.kind == OpeningKind::Window {
                 "window lies in no outer wall"
             } else {
@@ -53,6 +55,10 @@ pub(crate) fn attach(
             ));
             continue;
         };
+        if assumed && opening.kind == OpeningKind::Door {
+            let stretch = &stretches[fit.stretch];
+            moved += usize::from(clear_of_corners(&mut fit, stretch, rooms));
+        }
         let clash = out.iter().any(|o| o.stretch == fit.stretch && o.from < fit.to && fit.from < o.to);
         if clash {
             let message = format!("{} at {}: overlaps another opening; it was left out", opening.place, at(opening));
@@ -72,8 +78,45 @@ pub(crate) fn attach(
             swing: fit.swing,
         });
     }
-    debug_assert!(out.iter().all(|o| o.rooms.iter().all(|r| *r < rooms.len())));
+    if moved > 0 {
+        let message = format!(
+            "{moved} doors end where walls meet; as the plan does not say how thick walls are, they were moved or narrowed by the \
+             thickness that was assumed"
+        );
+        notes.push(note("doors_moved", message));
+    }
     out
+}
+
+/// Moves a door along its wall to where the faces of the walls that meet there leave it a jamb; narrows it where that is not
+/// enough. Returns whether it did.
+fn clear_of_corners(fit: &mut Fit, s: &Stretch, rooms: &[LaidRoom]) -> bool {
+    let width = fit.to - fit.from;
+    let (mut low, mut high) = (i64::MIN, i64::MAX);
+    for room in s.rooms() {
+        let at = s.at + if s.low == Some(room) { -s.half[0] } else { s.half[1] };
+        let face = rooms[room].net_polygon.edges().find_map(|e| {
+            let across = |p: Point| mm(if s.vertical { p.x } else { p.y });
+            let (a, b) = (along(s, e.start), along(s, e.end));
+            let (from, to) = (a.min(b), a.max(b));
+            let on_wall = (across(e.start) - at).abs() <= 1 && (across(e.end) - at).abs() <= 1;
+            (on_wall && from < fit.to && fit.from < to).then_some((from, to))
+        });
+        if let Some((from, to)) = face {
+            (low, high) = (low.max(from), high.min(to));
+        }
+    }
+    if low == i64::MIN || fit.from >= low + JAMB && fit.to <= high - JAMB {
+        return false;
+    }
+    let (least, most) = (low + JAMB, high - JAMB);
+    let width = width.min(most - least);
+    if width < NARROWEST {
+        return false;
+    }
+    fit.from = fit.from.clamp(least, most - width);
+    fit.to = fit.from + width;
+    true
 }
 
 fn best(opening: &DrawnOpening, stretches: &[Stretch]) -> Option<Fit> {

@@ -2,8 +2,8 @@
 
 use d3dgen_model::Point;
 
-use crate::Error;
-use crate::upright::edges;
+use crate::error::Error;
+use crate::shape::edges;
 
 /// Corners closer than this are one, and a corner this close to the line of its neighbors is none, m.
 const SAME_M: f64 = 0.01;

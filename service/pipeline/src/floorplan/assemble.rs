@@ -133,6 +133,7 @@ pub(super) fn assemble(
         walls,
         doors,
         windows,
+        obstacles: Vec::new(),
         cost,
         conflicts,
         levels: Vec::new(),

@@ -17,6 +17,7 @@
 mod built;
 mod draft;
 mod given;
+mod guessed;
 mod heard;
 mod levels;
 mod machines;

@@ -292,7 +292,7 @@ pub(super) fn loops(map: &Map, shapes: &[Option<usize>], count: usize) -> Vec<Ve
 }
 
 /// Returns the outlines of a group of cells.
-fn around(map: &Map, cells: &[usize]) -> Vec<Vec<At>> {
+pub(super) fn around(map: &Map, cells: &[usize]) -> Vec<Vec<At>> {
     let mut inside = vec![false; map.free.len()];
     cells.iter().for_each(|k| inside[*k] = true);
     let (w, h) = (map.width as i64, map.height as i64);
