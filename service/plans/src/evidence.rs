@@ -3,7 +3,9 @@
 //! Layers that say it come first, then walls, then names. A shape inside another, one too small, and one on a layer of
 //! which nothing is known is no room where something better is. What is left out is counted with its layer.
 
-use d3dgen_model::Point;
+use std::collections::BTreeSet;
+
+use d3dgen_model::{Point, Polygon, Rect};
 
 use crate::drawing::{Drawing, DrawnShape, DrawnSolid, DrawnWall, Evidence, SolidKind, extent};
 use crate::shape::{area, area_together, edges, extents, is_simple, share_inside};
@@ -84,7 +86,7 @@ fn uncertain_walls(drawing: &mut Drawing) {
 /// Returns a shape that holds a name as one that has a name.
 fn with_names(mut shape: DrawnShape, names: &[Point]) -> DrawnShape {
     if shape.evidence == Evidence::None {
-        let outline = d3dgen_model::Polygon(shape.room.corners.clone());
+        let outline = Polygon(shape.room.corners.clone());
         if names.iter().any(|p| outline.contains(*p)) {
             shape.evidence = Evidence::Text;
         }
@@ -95,10 +97,10 @@ fn with_names(mut shape: DrawnShape, names: &[Point]) -> DrawnShape {
 /// Lets a layer speak for all of its shapes: where one has a name, the others of its kind are rooms too.
 fn by_layer(shapes: &mut [DrawnShape]) {
     for evidence in [Evidence::Named, Evidence::Text] {
-        let named: Vec<(String, String)> =
+        let named: BTreeSet<(String, String)> =
             shapes.iter().filter(|s| s.evidence == evidence).map(|s| (s.layer.clone(), s.kind.clone())).collect();
         for shape in shapes.iter_mut().filter(|s| s.evidence == Evidence::None && !s.curved) {
-            if named.iter().any(|(layer, kind)| (layer, kind) == (&shape.layer, &shape.kind)) {
+            if named.contains(&(shape.layer.clone(), shape.kind.clone())) {
                 shape.evidence = evidence;
             }
         }
@@ -115,13 +117,13 @@ fn chosen(drawing: &Drawing, shapes: Vec<DrawnShape>) -> (Vec<DrawnShape>, Vec<D
     };
     let named = area_together(of(Evidence::Named).map(|s| &s.room.corners[..]));
     let walls = !drawing.walls.is_empty();
-    let least = match () {
-        () if of(Evidence::Room).next().is_some() => Evidence::Room,
-        () if named > 0.0 && (!walls || named >= NAMED_SHARE * whole) => Evidence::Named,
-        () if walls => Evidence::Wall,
-        () if of(Evidence::Text).next().is_some() => Evidence::Text,
-        () => Evidence::None,
-    };
+    let found = [
+        (Evidence::Room, of(Evidence::Room).next().is_some()),
+        (Evidence::Named, named > if walls { NAMED_SHARE * whole } else { 0.0 }),
+        (Evidence::Wall, walls),
+        (Evidence::Text, of(Evidence::Text).next().is_some()),
+    ];
+    let least = found.into_iter().find(|f| f.1).map_or(Evidence::None, |f| f.0);
     shapes.into_iter().partition(|s| s.evidence >= least && s.evidence != Evidence::Wall && !s.curved)
 }
 
@@ -129,18 +131,9 @@ fn chosen(drawing: &Drawing, shapes: Vec<DrawnShape>) -> (Vec<DrawnShape>, Vec<D
 /// cross themselves and say nothing of being a room, and the outline around the others.
 fn apart(shapes: Vec<DrawnShape>) -> (Vec<DrawnShape>, Vec<DrawnShape>) {
     let areas: Vec<f64> = shapes.iter().map(|s| area(&s.room.corners)).collect();
-    let sure = |s: &DrawnShape| s.evidence >= Evidence::Named;
+    let bounds: Vec<Rect> = shapes.iter().map(|s| Polygon(s.room.corners.clone()).bounds()).collect();
     let alone = shapes.len() == 1;
-    let mut keep: Vec<bool> = shapes
-        .iter()
-        .zip(&areas)
-        .map(|(s, area)| {
-            alone
-                || sure(s) && is_simple(&s.room.corners)
-                || is_simple(&s.room.corners) && *area >= LEAST_ROOM_M2
-                || s.evidence == Evidence::Named
-        })
-        .collect();
+    let mut keep: Vec<bool> = shapes.iter().zip(&areas).map(|(s, area)| alone || may_be_room(s, *area)).collect();
     let mut order: Vec<usize> = (0..shapes.len()).filter(|i| keep[*i]).collect();
     order.sort_by(|a, b| areas[*b].total_cmp(&areas[*a]).then(a.cmp(b)));
     for (at, &outer) in order.iter().enumerate() {
@@ -150,7 +143,8 @@ fn apart(shapes: Vec<DrawnShape>) -> (Vec<DrawnShape>, Vec<DrawnShape>) {
         let ring = &shapes[outer].room.corners;
         let is_in = |inner: &usize| {
             let own = &shapes[*inner].room.corners;
-            keep[*inner] && areas[*inner] < areas[outer] && share_inside(own, ring) >= INSIDE
+            let near = bounds[*inner].overlaps(&bounds[outer]);
+            keep[*inner] && areas[*inner] < areas[outer] && near && share_inside(own, ring) >= INSIDE
         };
         let inside: Vec<usize> = order[at + 1..].iter().copied().filter(is_in).collect();
         let covered = area_together(inside.iter().map(|i| &shapes[*i].room.corners[..]));
@@ -164,4 +158,10 @@ fn apart(shapes: Vec<DrawnShape>) -> (Vec<DrawnShape>, Vec<DrawnShape>) {
         at += 1;
         keep[at - 1]
     })
+}
+
+/// Returns true for shapes that are whole and large enough, and those that say themselves that they are rooms.
+fn may_be_room(shape: &DrawnShape, area: f64) -> bool {
+    let large = area >= LEAST_ROOM_M2 || shape.evidence == Evidence::Named;
+    shape.evidence == Evidence::Named || large && is_simple(&shape.room.corners)
 }

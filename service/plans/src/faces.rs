@@ -387,6 +387,12 @@ impl Grid {
         out
     }
 
+    /// Returns the cells behind and before a piece of a line: the `b`th along the `a`th line of a direction.
+    fn sides(&self, vertical: bool, a: usize, b: usize) -> (usize, usize) {
+        let columns = self.cells.columns();
+        if vertical { (b * columns + a, b * columns + a - 1) } else { (a * columns + b, (a - 1) * columns + b) }
+    }
+
     /// Calls with each piece of border: the owners on its sides, whether no wall stands on it, where it is and how long.
     fn borders(&self, mut each: impl FnMut(Option<u32>, Option<u32>, bool, (bool, i64, i64, i64), i64)) {
         let columns = self.cells.columns();
@@ -396,11 +402,7 @@ impl Grid {
                 if vertical { (&self.cells.xs, &self.cells.ys) } else { (&self.cells.ys, &self.cells.xs) };
             for (a, at) in lines.iter().copied().enumerate().take(across).skip(1) {
                 for b in 0..along {
-                    let (k, before) = if vertical {
-                        (b * columns + a, b * columns + a - 1)
-                    } else {
-                        (a * columns + b, (a - 1) * columns + b)
-                    };
+                    let (k, before) = self.sides(vertical, a, b);
                     let (low, high) = (self.cells.owner[before], self.cells.owner[k]);
                     if low != high {
                         let wall = if vertical { self.west[k] } else { self.south[k] };
@@ -441,6 +443,10 @@ impl Grid {
         standing: &BTreeMap<u32, Vec<Corner>>,
     ) -> Vec<[Point; 2]> {
         let (west, south) = marked(&self.cells, drawn, &vec![false; self.cells.owner.len()]);
+        let is_same_room = |k: usize, before: usize| {
+            let owner = self.cells.owner[k].filter(|f| !standing.contains_key(f));
+            owner == self.cells.owner[before] && owner.is_some_and(|f| names[f as usize].is_some())
+        };
         let columns = self.cells.columns();
         let mut out = Vec::new();
         for vertical in [true, false] {
@@ -450,16 +456,9 @@ impl Grid {
             for (a, at) in lines.iter().copied().enumerate().take(across).skip(1) {
                 let mut run: Option<(i64, i64)> = None;
                 for b in 0..=along {
-                    let is_free = b < along && {
-                        let (k, before) = if vertical {
-                            (b * columns + a, b * columns + a - 1)
-                        } else {
-                            (a * columns + b, (a - 1) * columns + b)
-                        };
-                        let owner = self.cells.owner[k].filter(|f| !standing.contains_key(f));
-                        let wall = if vertical { west[k] } else { south[k] };
-                        wall && owner == self.cells.owner[before] && owner.is_some_and(|f| names[f as usize].is_some())
-                    };
+                    let (k, before) = self.sides(vertical, a, b.min(along - 1));
+                    let wall = if vertical { west[k] } else { south[k] };
+                    let is_free = b < along && wall && is_same_room(k, before);
                     match &mut run {
                         Some(run) if is_free => run.1 = marks[b + 1],
                         _ if is_free => run = Some((marks[b], marks[b + 1])),

@@ -44,22 +44,10 @@ struct Outlined {
 
 /// Returns the rooms with the floor that each is drawn on, or that walls enclose where no rooms are drawn.
 pub(crate) fn rooms_and_floor(drawing: &mut Drawing, options: &Options) -> Result<(Vec<DrawnRoom>, Cells), Error> {
-    if drawing.rooms.is_empty() {
-        if let Some(found) = enclosed(drawing, options)? {
-            let unclear = std::mem::take(&mut drawing.unclear);
-            unclear.iter().for_each(|s| drawing.leave_out(s.told()));
-            drawing.tell_of_unread();
-            return Ok(found);
-        }
-        drawing.rooms = std::mem::take(&mut drawing.unclear).into_iter().map(|s| s.room).collect();
-        if drawing.rooms.is_empty() {
-            drawing.rooms = floors_as_rooms(drawing);
-        }
-        if drawing.rooms.is_empty() {
-            let message =
-                format!("{ENCLOSE_NONE}; every room needs a closed run of walls, with doors drawn in the gaps");
-            return Err(Error::refused("walls", message));
-        }
+    if drawing.rooms.is_empty()
+        && let Some(found) = enclosed_or_drawn(drawing, options)?
+    {
+        return Ok(found);
     }
     walls_in_rooms(drawing, options);
     let shift = straighten_rooms(drawing);
@@ -98,6 +86,29 @@ pub(crate) fn rooms_and_floor(drawing: &mut Drawing, options: &Options) -> Resul
     check_count(rooms.len())?;
     let cells = fill(&rooms, GRAZE.max((2000.0 * shift) as i64))?;
     Ok((rooms.into_iter().map(|r| r.room).collect(), cells))
+}
+
+/// Returns what walls enclose; where that is nothing, makes rooms of shapes and floors.
+///
+/// # Errors
+/// `Refused` where there are none either.
+fn enclosed_or_drawn(drawing: &mut Drawing, options: &Options) -> Result<Option<(Vec<DrawnRoom>, Cells)>, Error> {
+    let found = enclosed(drawing, options)?;
+    let unclear = std::mem::take(&mut drawing.unclear);
+    if found.is_some() {
+        unclear.iter().for_each(|s| drawing.leave_out(s.told()));
+        drawing.tell_of_unread();
+        return Ok(found);
+    }
+    drawing.rooms = unclear.into_iter().map(|s| s.room).collect();
+    if drawing.rooms.is_empty() {
+        drawing.rooms = floors_as_rooms(drawing);
+    }
+    if drawing.rooms.is_empty() {
+        let message = format!("{ENCLOSE_NONE}; every room needs a closed run of walls, with doors drawn in the gaps");
+        return Err(Error::refused("walls", message));
+    }
+    Ok(None)
 }
 
 fn check_count(rooms: usize) -> Result<(), Error> {

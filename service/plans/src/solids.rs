@@ -1,11 +1,11 @@
 //! Columns and walls that stand free: each becomes an obstacle of the room it stands in.
 
-use d3dgen_model::Point;
 use d3dgen_model::scene_graph::Note;
+use d3dgen_model::{Polygon, Rect};
 
 use crate::drawing::{Drawing, DrawnSolid, SolidKind, note};
 use crate::layout::{LaidObstacle, LaidRoom};
-use crate::shape::{area, common, extents, share_inside};
+use crate::shape::{area, common, share_inside};
 
 /// Least floor that an obstacle takes, m^2; less is the rest of something that stands in a wall.
 const LEAST_M2: f64 = 0.005;
@@ -21,6 +21,9 @@ pub(crate) fn stand(drawing: &Drawing, rooms: &[LaidRoom], notes: &mut Vec<Note>
     for solid in once(&drawing.solids) {
         let before = out.len();
         for (room, laid) in rooms.iter().enumerate() {
+            if !bounds_of(solid).overlaps(&laid.net_polygon.bounds()) {
+                continue;
+            }
             let pieces = common(&solid.outline, laid.net_polygon.corners());
             let kept = pieces.into_iter().filter(|p| p.area() >= LEAST_M2);
             out.extend(kept.map(|outline| LaidObstacle { kind: solid.kind, outline, room }));
@@ -38,17 +41,17 @@ fn once(solids: &[DrawnSolid]) -> Vec<&DrawnSolid> {
     order.sort_by(|a, b| b.0.total_cmp(&a.0));
     let mut kept: Vec<&DrawnSolid> = Vec::new();
     for (_, solid) in order {
-        if !kept.iter().any(|k| near(k, solid) && share_inside(&solid.outline, &k.outline) >= SAME) {
+        let own = bounds_of(solid);
+        let is_same = |k: &&DrawnSolid| bounds_of(k).overlaps(&own) && share_inside(&solid.outline, &k.outline) >= SAME;
+        if !kept.iter().any(is_same) {
             kept.push(solid);
         }
     }
     kept
 }
 
-fn near(a: &DrawnSolid, b: &DrawnSolid) -> bool {
-    let reach = |s: &DrawnSolid| extents(&s.outline).0;
-    let first = |s: &DrawnSolid| s.outline.first().copied().unwrap_or(Point::new(0.0, 0.0));
-    first(a).distance(first(b)) <= reach(a) + reach(b)
+fn bounds_of(solid: &DrawnSolid) -> Rect {
+    Polygon(solid.outline.clone()).bounds()
 }
 
 fn tell(obstacles: &[LaidObstacle], outside: usize, notes: &mut Vec<Note>) {

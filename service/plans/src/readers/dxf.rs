@@ -413,38 +413,10 @@ impl State {
         let said = layer_role.filter(|r| *r != Role::Wall).or_else(|| role(name));
         let layer = frame.layer_of(e);
         if said == Some(Role::Column) && !plan {
-            let outline = match block {
-                Some(block) => hull(&block.points(&frame.inside(e, block)?, blocks)?),
-                None => Vec::new(),
-            };
-            if outline.len() > 2 {
-                drawing.solids.push(DrawnSolid { kind: SolidKind::Column, outline, level: None, place: e.place() });
-            } else {
-                drawing.leave_out(format!("layer `{layer}` as block `{name}`"));
-            }
-            return Ok(());
+            return column_of_block(drawing, e, block, frame, blocks);
         }
         if let Some(kind) = opening_of(said).filter(|_| !plan) {
-            let mut inner = Drawing::default();
-            if let Some(block) = block {
-                let layered = Frame { layer: None, ..frame.inside(e, block)? };
-                shape_of(&mut inner, block, &layered, blocks)?;
-            }
-            let arcs = inner.openings.iter().filter_map(|o| o.arc);
-            let mut found: Vec<DrawnOpening> = Vec::new();
-            for arc in arcs {
-                let mut o = DrawnOpening::new(kind, Vec::new(), None, e.place());
-                o.arc = Some(arc);
-                found.push(o);
-            }
-            if found.is_empty() || kind != OpeningKind::Door {
-                let points: Vec<Point> = inner.openings.iter().flat_map(|o| o.points.iter().copied()).collect();
-                let own = if points.len() > 1 { points } else { vec![frame.at(e.point(10)?)] };
-                let mut o = DrawnOpening::new(kind, own, None, e.place());
-                o.width_m = e.number(41)?.map(f64::abs);
-                found = vec![o];
-            }
-            drawing.openings.extend(found);
+            drawing.openings.extend(openings_of_block(kind, e, block, frame, blocks)?);
             return Ok(());
         }
         self.inserted += 1;
@@ -469,6 +441,49 @@ impl State {
     }
 }
 
+/// Adds the column that a block is: what is drawn in it, without dents.
+fn column_of_block(
+    drawing: &mut Drawing,
+    e: &Entity,
+    block: Option<&Block>,
+    frame: &Frame,
+    blocks: &Blocks,
+) -> Result<(), Error> {
+    let points = block.map(|b| b.points(&frame.inside(e, b)?, blocks)).transpose()?;
+    let outline = hull(&points.unwrap_or_default());
+    if outline.len() > 2 {
+        drawing.solids.push(DrawnSolid { kind: SolidKind::Column, outline, level: None, place: e.place() });
+    } else {
+        let name = e.text(2).unwrap_or_default();
+        drawing.leave_out(format!("layer `{}` as block `{name}`", frame.layer_of(e)));
+    }
+    Ok(())
+}
+
+/// Returns the openings that a block is: one for each swing in it, otherwise one as large as what is in it.
+fn openings_of_block(
+    kind: OpeningKind,
+    e: &Entity,
+    block: Option<&Block>,
+    frame: &Frame,
+    blocks: &Blocks,
+) -> Result<Vec<DrawnOpening>, Error> {
+    let mut inner = Drawing::default();
+    if let Some(block) = block {
+        let layered = Frame { layer: None, ..frame.inside(e, block)? };
+        shape_of(&mut inner, block, &layered, blocks)?;
+    }
+    let plain = |points: Vec<Point>| DrawnOpening::new(kind, points, None, e.place());
+    let arcs = inner.openings.iter().filter_map(|o| o.arc);
+    let found: Vec<DrawnOpening> = arcs.map(|arc| DrawnOpening { arc: Some(arc), ..plain(Vec::new()) }).collect();
+    if !found.is_empty() && kind == OpeningKind::Door {
+        return Ok(found);
+    }
+    let points: Vec<Point> = inner.openings.iter().flat_map(|o| o.points.iter().copied()).collect();
+    let own = if points.len() > 1 { points } else { vec![frame.at(e.point(10)?)] };
+    Ok(vec![DrawnOpening { width_m: e.number(41)?.map(f64::abs), ..plain(own) }])
+}
+
 /// Adds the lines and arcs of a block of a door or window, whatever layers they are on.
 fn shape_of(drawing: &mut Drawing, block: &Block, frame: &Frame, blocks: &Blocks) -> Result<(), Error> {
     let mut lines = |points: Vec<Point>| {
@@ -477,12 +492,7 @@ fn shape_of(drawing: &mut Drawing, block: &Block, frame: &Frame, blocks: &Blocks
     for e in &block.entities {
         match e.kind {
             "LINE" => lines(vec![frame.at(e.point(10)?), frame.at(e.point(11)?)]),
-            "LWPOLYLINE" => {
-                let xs = e.groups.iter().filter(|g| g.0 == 10).map(|g| e.parse(10, g.1));
-                let ys = e.groups.iter().filter(|g| g.0 == 20).map(|g| e.parse(20, g.1));
-                let points = xs.zip(ys).map(|(x, y)| Ok(frame.at(Point::new(x?, y?))));
-                lines(points.collect::<Result<_, Error>>()?);
-            }
+            "LWPOLYLINE" => lines(placed(&light_corners(e)?, frame).into_iter().map(|c| c.0).collect()),
             _ => {}
         }
     }

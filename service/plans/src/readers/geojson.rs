@@ -172,32 +172,18 @@ fn add(
     place: &str,
     options: &Options,
 ) -> Result<(), Error> {
-    let name = text_of(properties, &NAMES).unwrap_or_default();
-    let kinds: Vec<String> = KINDS.iter().filter_map(|k| text_of(properties, &[*k])).collect();
-    let tagged = |key: &str| properties.get(key).is_some_and(|v| v.as_str().is_none_or(|s| s != "no"));
-    let by_kind = kinds.iter().find_map(|k| said_of(k, options)).or_else(|| kinds.iter().find_map(|k| role(k)));
-    let role = by_kind.or_else(|| {
-        let keys = [("door", Role::Door), ("entrance", Role::Door), ("window", Role::Window)];
-        keys.iter().find(|(key, _)| tagged(key)).map(|k| k.1)
-    });
-    let place = if name.is_empty() { place.to_owned() } else { format!("{place} `{name}`") };
-    let said = Said { properties, role, name, kinds, level: text_of(properties, &LEVELS), place };
+    let said = Said::of(properties, place, options);
     let mut shapes: Vec<&Shape> = vec![geometry];
     while let Some(shape) = shapes.pop() {
         match shape {
             Shape::GeometryCollection { geometries } => shapes.extend(geometries.iter().rev()),
             Shape::Polygon { coordinates: rings } => said.polygon(drawing, rings, None)?,
-            Shape::MultiPolygon { coordinates: parts } => {
-                for (k, rings) in parts.iter().enumerate() {
-                    said.polygon(drawing, rings, (parts.len() > 1).then_some(k + 1))?;
-                }
-            }
+            Shape::MultiPolygon { coordinates: parts } => parts
+                .iter()
+                .enumerate()
+                .try_for_each(|(k, rings)| said.polygon(drawing, rings, (parts.len() > 1).then_some(k + 1)))?,
             Shape::LineString { coordinates: line } => said.line(drawing, line)?,
-            Shape::MultiLineString { coordinates: lines } => {
-                for line in lines {
-                    said.line(drawing, line)?;
-                }
-            }
+            Shape::MultiLineString { coordinates: lines } => lines.iter().try_for_each(|l| said.line(drawing, l))?,
             Shape::Point { coordinates: p } => said.points(drawing, std::slice::from_ref(p))?,
             Shape::MultiPoint { coordinates: list } => said.points(drawing, list)?,
         }
@@ -205,7 +191,20 @@ fn add(
     Ok(())
 }
 
-impl Said<'_> {
+impl<'a> Said<'a> {
+    fn of(properties: &'a JsonObject, place: &str, options: &Options) -> Self {
+        let name = text_of(properties, &NAMES).unwrap_or_default();
+        let kinds: Vec<String> = KINDS.iter().filter_map(|k| text_of(properties, &[*k])).collect();
+        let tagged = |key: &str| properties.get(key).is_some_and(|v| v.as_str().is_none_or(|s| s != "no"));
+        let by_kind = kinds.iter().find_map(|k| said_of(k, options)).or_else(|| kinds.iter().find_map(|k| role(k)));
+        let role = by_kind.or_else(|| {
+            let keys = [("door", Role::Door), ("entrance", Role::Door), ("window", Role::Window)];
+            keys.iter().find(|(key, _)| tagged(key)).map(|k| k.1)
+        });
+        let place = if name.is_empty() { place.to_owned() } else { format!("{place} `{name}`") };
+        Said { properties, role, name, kinds, level: text_of(properties, &LEVELS), place }
+    }
+
     fn corners(&self, list: &[Position]) -> Result<Vec<Point>, Error> {
         let short = || Error::broken(FORMAT, &self.place, "has a position without two coordinates");
         list.iter().map(|p| Ok(Point::new(*p.first().ok_or_else(short)?, *p.get(1).ok_or_else(short)?))).collect()
@@ -308,11 +307,9 @@ impl Said<'_> {
 
 /// Turns longitude and latitude into meters east and north of the plan's middle, and other units into meters.
 pub(super) fn project(drawing: &mut Drawing, crs: Option<&str>, options: &Options) {
-    let Some([x0, y0, x1, y1]) = extent(drawing.points_mut().map(|p| *p)) else { return };
-    let globe = crs.map(|c| c.contains("CRS84") || c.ends_with("4326"));
-    let fits = x0 >= -180.0 && x1 <= 180.0 && y0 >= -90.0 && y1 <= 90.0;
-    let small = x1 - x0 < DEGREES && y1 - y0 < DEGREES;
-    if options.meters_per_unit.is_none() && fits && globe.unwrap_or(small) {
+    let Some(around) = extent(drawing.points_mut().map(|p| *p)) else { return };
+    if options.meters_per_unit.is_none() && is_on_globe(around, crs) {
+        let [x0, y0, x1, y1] = around;
         let (lon, lat) = ((x0 + x1) / 2.0, (y0 + y1) / 2.0);
         let (sin, cos) = lat.to_radians().sin_cos();
         let w = 1.0 - EARTH_E2 * sin * sin;
@@ -331,4 +328,12 @@ pub(super) fn project(drawing: &mut Drawing, crs: Option<&str>, options: &Option
     if options.meters_per_unit.is_none() {
         drawing.notes.push(note("unit_assumed", "coordinates were taken for meters"));
     }
+}
+
+/// Returns true for coordinates that are longitude and latitude: the file says so, or they are no wider than a building.
+fn is_on_globe([x0, y0, x1, y1]: [f64; 4], crs: Option<&str>) -> bool {
+    let globe = crs.map(|c| c.contains("CRS84") || c.ends_with("4326"));
+    let fits = x0 >= -180.0 && x1 <= 180.0 && y0 >= -90.0 && y1 <= 90.0;
+    let small = x1 - x0 < DEGREES && y1 - y0 < DEGREES;
+    fits && globe.unwrap_or(small)
 }

@@ -15,6 +15,7 @@ use super::source::{MOST_BYTES, Plan, Reader, Source};
 use crate::drawing::{Drawing, note};
 use crate::error::Error;
 use crate::options::Options;
+use crate::words::{Role, role};
 
 pub(super) const READER: Reader = Reader { name: "imdf", title: "IMDF venue (zip, or its folder)", recognizes, read };
 
@@ -106,30 +107,30 @@ pub(super) fn prepare(features: &mut [Feature], drawing: &mut Drawing) {
         let id = feature.id();
         let properties = feature.properties.get_or_insert_default();
         let category = properties.remove("category").and_then(|c| c.as_str().map(str::to_owned)).unwrap_or_default();
-        let meant = |word: &str| WORDS.units.get(word).cloned();
-        let known = meant(&category).or_else(|| meant(category.split('.').next().unwrap_or_default()));
-        let word = match kind.as_str() {
-            UNITS => known.clone().filter(|w| crate::words::role(w).is_some_and(|r| r != crate::words::Role::Room)),
-            _ => None,
-        };
-        let word = word.or_else(|| WORDS.features.get(&kind).cloned()).unwrap_or_else(|| kind.clone());
-        properties.insert("feature_type".into(), word.into());
+        let mut word = WORDS.features.get(&kind).cloned().unwrap_or_else(|| kind.clone());
         if kind == UNITS {
-            let room = known.unwrap_or_else(|| category.split('.').next().unwrap_or_default().to_owned());
+            let room = room_of(&category);
+            // a unit may be no room: a column, or open to the floor below
+            word = if role(&room).is_some_and(|r| r != Role::Room) { room.clone() } else { word };
             properties.insert("room".into(), room.into());
-            if let Some(name) = id.as_ref().and_then(|id| names.get(id)) {
-                let own = properties.get("name").is_some_and(|n| !n.is_null());
-                if !own {
-                    properties.insert("name".into(), name.clone());
-                }
-            }
+            let own = properties.get("name").is_some_and(|n| !n.is_null());
+            let name = id.as_ref().and_then(|id| names.get(id)).filter(|_| !own);
+            properties.extend(name.map(|n| ("name".to_owned(), n.clone())));
         }
+        properties.insert("feature_type".into(), word.into());
         let level = properties.get("level_id").and_then(Value::as_str).and_then(|id| levels.get(id));
         match level.filter(|_| levels.len() > 1) {
             Some((ordinal, _)) => properties.insert("level".into(), ordinal.to_string().into()),
             None => properties.remove("level_id"),
         };
     }
+}
+
+/// Returns what the category of a unit says of its room.
+fn room_of(category: &str) -> String {
+    let first = category.split('.').next().unwrap_or_default();
+    let known = WORDS.units.get(category).or_else(|| WORDS.units.get(first));
+    known.cloned().unwrap_or_else(|| first.to_owned())
 }
 
 /// Returns ordinals and names of levels by their ids.

@@ -409,25 +409,8 @@ fn scale(drawing: &mut Drawing, root: &Node, options: &Options) -> Result<(), Er
     let unit = match options.meters_per_unit {
         Some(unit) => unit,
         None => {
-            let length = |name: &str| root.attribute(name).and_then(|t| Length::from_str(t).ok()).and_then(millimeters);
-            let view = root.attribute("viewBox").and_then(|v| ViewBox::from_str(v).ok());
-            let printed = match (length("width"), length("height"), view) {
-                (Some(mm), _, Some(v)) if v.w > 0.0 => Some(mm / v.w / 1000.0),
-                (None, Some(mm), Some(v)) if v.h > 0.0 => Some(mm / v.h / 1000.0),
-                (Some(_), _, None) | (_, Some(_), None) => Some(0.0254 / 96.0),
-                _ => None,
-            };
-            let hint = |printed: Option<f64>| {
-                let guess = 10.0_f64.powf((10.0 / width.max(height).max(1e-12)).log10().round());
-                // a plan is printed a hundred times smaller than it is, or more
-                let large = |unit: &f64| (0.1..10.0).contains(&(guess / unit));
-                let guess = printed.filter(large).map_or(guess, |unit| unit * 100.0);
-                format!(
-                    "say how long one unit is: --meters-per-unit {guess} would make the plan {:.2} m by {:.2} m",
-                    width * guess,
-                    height * guess
-                )
-            };
+            let hint = |printed| hint(printed, width, height);
+            let printed = printed(root);
             match printed {
                 Some(unit) if width.max(height) * unit >= REAL_SIZE_M => unit,
                 Some(unit) => {
@@ -446,4 +429,29 @@ fn scale(drawing: &mut Drawing, root: &Node, options: &Options) -> Result<(), Er
     drawing.points_mut().for_each(|p| *p = Point::new((p.x - x0) * unit, (y1 - p.y) * unit));
     drawing.notes.push(note("scale", format!("one unit of the drawing is {unit} m")));
     Ok(())
+}
+
+/// Returns the length of a unit as the drawing is printed, m, where the file states its size.
+fn printed(root: &Node) -> Option<f64> {
+    let length = |name: &str| root.attribute(name).and_then(|t| Length::from_str(t).ok()).and_then(millimeters);
+    let view = root.attribute("viewBox").and_then(|v| ViewBox::from_str(v).ok());
+    match (length("width"), length("height"), view) {
+        (Some(mm), _, Some(v)) if v.w > 0.0 => Some(mm / v.w / 1000.0),
+        (None, Some(mm), Some(v)) if v.h > 0.0 => Some(mm / v.h / 1000.0),
+        (Some(_), _, None) | (_, Some(_), None) => Some(0.0254 / 96.0),
+        _ => None,
+    }
+}
+
+/// Returns what to say of the unit, for a drawing so many units wide and high.
+fn hint(printed: Option<f64>, width: f64, height: f64) -> String {
+    let guess = 10.0_f64.powf((10.0 / width.max(height).max(1e-12)).log10().round());
+    // a plan is printed a hundred times smaller than it is, or more
+    let large = |unit: &f64| (0.1..10.0).contains(&(guess / unit));
+    let guess = printed.filter(large).map_or(guess, |unit| unit * 100.0);
+    format!(
+        "say how long one unit is: --meters-per-unit {guess} would make the plan {:.2} m by {:.2} m",
+        width * guess,
+        height * guess
+    )
 }

@@ -190,11 +190,8 @@ pub(in crate::readers) fn trace(map: Map) -> Found {
             found.gaps.push(Gap { ends: ends(&map, opening), rooms });
         }
     }
-    for (room, opening) in notches {
-        if let Some(room) = number[room] {
-            found.gaps.push(Gap { ends: ends(&map, &opening), rooms: [Some(room), None] });
-        }
-    }
+    let notch = |(room, o): (usize, Opening)| Some(Gap { ends: ends(&map, &o), rooms: [Some(number[room]?), None] });
+    found.gaps.extend(notches.into_iter().filter_map(notch));
     found
 }
 
