@@ -110,6 +110,7 @@ fn plan() -> Floorplan {
             door("door_1", line(4.0, 1.0, 4.0, 2.0), &["a_1", "b_1"]),
             door("door_2", line(0.5, 3.0, 1.5, 3.0), &["a_1"]),
         ],
+        obstacles: Vec::new(),
         windows: vec![Window {
             window_id: "window_1".into(),
             line: line(5.0, 3.0, 7.0, 3.0),

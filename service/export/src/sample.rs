@@ -246,6 +246,7 @@ pub fn floorplan() -> Floorplan {
         walls,
         doors,
         windows,
+        obstacles: Vec::new(),
         cost: vec![],
         conflicts: vec![],
         levels: vec![],

@@ -19,6 +19,7 @@ mod briefed;
 mod built;
 mod draft;
 mod given;
+mod guessed;
 mod heard;
 mod levels;
 mod machines;
