@@ -36,6 +36,7 @@ pub struct Summary {
     robot_fit: Vec<String>,
     people: usize,
     constraints: ConstraintSummary,
+    national: String,
     violated: Vec<String>,
     broken: Vec<String>,
     assumptions: Vec<Note>,
@@ -70,6 +71,7 @@ impl Summary {
             robot_fit: report.robot_fit.iter().map(fit_line).collect(),
             people: world.scenario.agents.len(),
             constraints: report.summary.clone(),
+            national: report.applied_rules().line(graph.country_code.as_deref()),
             violated: violated_lines(report),
             broken: broken_lines(report),
             assumptions: graph.assumptions.clone(),
@@ -139,6 +141,7 @@ impl Summary {
             ("objects", format!("{}, {:.1} a room", self.objects, self.objects_per_room())),
             ("robots", format!("{}, people {}", self.robots, self.people)),
             ("hard rules", format!("{} checked, {rules}", self.rules)),
+            ("law", self.national.clone()),
             (
                 "constraints",
                 format!(

@@ -21,6 +21,8 @@ use crate::tables::{QuantityRow, SpaceKind, TABLES};
 pub struct Retrieval {
     /// Jurisdictions whose rules were taken, nearest first.
     pub jurisdictions: Vec<String>,
+    /// Jurisdictions of the country and of its division; empty where no country is known.
+    pub national: Vec<String>,
     /// Constraints about something in the building, in the order of the knowledge base.
     pub constraints: Vec<Applicable>,
     /// Constraints of these jurisdictions about something the building does not have.
@@ -155,11 +157,16 @@ pub fn retrieve_with(knowledge: &KnowledgeBase, query: &Query, policy: &Policy) 
     resolve::settle(&mut planned, &chain, policy);
     let conflicts = resolve::settle(&mut constraints, &chain, policy);
     let limits = draw_limits::draw(&planned, &constraints, &chain, query);
+    // plans leave room for robots that may come; a world without any breaks none of their rules
+    let before = constraints.len();
+    constraints.retain(|a| !query.robots.is_empty() || !is_about_robots(a));
+    not_applicable += (before - constraints.len()) as u32;
     let used = |code: &String| {
         code == jurisdiction::INTERNATIONAL || constraints.iter().any(|c| &c.citation.jurisdiction == code)
     };
     Retrieval {
         jurisdictions: chain.iter().filter(|c| used(c)).cloned().collect(),
+        national: jurisdiction::national(query.country_code.as_deref()),
         not_applicable,
         limits,
         persons: query.persons,
@@ -205,6 +212,12 @@ fn applicable(c: &Constraint, reference: &Reference, query: &Query) -> Option<Ap
         decision,
         superseded_by: None,
     })
+}
+
+/// Returns true for rules about robots, their software and machines that move, other than laws on what a building has.
+fn is_about_robots(a: &Applicable) -> bool {
+    let law = a.citation.source.source_type == "regulation" && a.decision.is_ok();
+    a.constraint.topic == draw_limits::ROBOT_TOPIC && !law
 }
 
 /// Returns true for quantities of rooms that a building may lack.

@@ -25,7 +25,8 @@ pub struct SceneGraph {
     /// Building type inside the domain (`ward`, `hotel`), where known.
     #[serde(default)]
     pub building_type: Option<String>,
-    /// ISO 3166-1 alpha-2 code whose rules apply; absent means international rules only.
+    /// ISO 3166 code of the country, or of the division, whose rules apply (`DE`, `CA-ON`); absent means international rules
+    /// only.
     #[serde(default)]
     pub country_code: Option<String>,
     /// ISO 639-1 code of the prompt's language.
@@ -36,7 +37,10 @@ pub struct SceneGraph {
     /// Head counts and other figures the prompt gives.
     #[serde(default)]
     pub occupancy: Occupancy,
-    /// True when the prompt asks for wheelchair access.
+    /// True when the prompt speaks of somebody in a wheelchair: more than access without steps.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub wheelchair: bool,
+    /// True when the prompt asks for access without steps.
     #[serde(default)]
     pub accessible: bool,
     /// How the building is to be, where the request says.

@@ -367,6 +367,7 @@ fn attempt(
     let mut world = world::assemble(name, told, plan, placements, scenario);
     let report = world::check(&world, domain, retrieved);
     world.scene_graph.conflicts.extend(ways_out::told(&world, &report, domain, retrieved));
+    world.rules = Some(report.applied_rules());
     observe(Event::Finished(Stage::World, attempt, Artifact::World(&world, &report)));
     Ok(Generated { world, report, attempts: attempt + 1 })
 }
@@ -410,8 +411,9 @@ pub fn finish(
 ) -> Result<(World, Report), Error> {
     let reseeded = SceneGraph { seed: plan.seed, ..graph.clone() };
     let scenario = scenario::generate(&reseeded, &plan, &placements, domain)?;
-    let world = world::assemble(name, graph, plan, placements, scenario);
+    let mut world = world::assemble(name, graph, plan, placements, scenario);
     let report = world::check(&world, domain, retrieved);
+    world.rules = Some(report.applied_rules());
     Ok((world, report))
 }
 

@@ -384,7 +384,7 @@ pub fn of_plan(plan: &Floorplan, brought: &Brought, registry: &Registry) -> Resu
     let country_code = match &brought.country {
         None => None,
         Some(country) => Some(places::code_of(country).ok_or_else(|| {
-            refused(format!("country `{country}` is not known; give an ISO 3166-1 code such as DE or US"))
+            refused(format!("country `{country}` is not known; give an ISO 3166 code such as DE or US-NC, or a name"))
         })?),
     };
     let entrance = plan.doors.iter().find(|d| d.entrance).and_then(|d| d.room_ids.first());

@@ -165,7 +165,7 @@ fn check_flags(request: &Request, registry: &Registry) -> Result<(), Error> {
     if let Some(country) = &request.country
         && places::code_of(country).is_none()
     {
-        return Err(refused(format!("country `{country}` is not known; give an ISO 3166-1 code such as DE or US")));
+        return Err(refused(format!("country `{country}` is not known; give an ISO 3166 code such as DE or US-NC, or a name")));
     }
     if let Some(problem) = request.robot.problems().into_iter().next() {
         return Err(refused(problem));

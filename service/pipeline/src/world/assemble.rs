@@ -25,5 +25,6 @@ pub fn assemble(
         floorplan,
         placements,
         scenario,
+        rules: None,
     }
 }

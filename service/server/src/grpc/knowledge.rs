@@ -6,7 +6,7 @@ mod research;
 use std::collections::BTreeMap;
 
 use d3dgen_knowledge::amend::state;
-use d3dgen_knowledge::classify::{Building, Classified, classify};
+use d3dgen_knowledge::classify::{Building, Classified, classify, ties};
 use d3dgen_knowledge::database::{Change, Edit, SearchQuery, apply, difference, filter_names};
 use d3dgen_knowledge::{Policy, Stats, retrieve_with};
 use d3dgen_model::Document;
@@ -156,12 +156,13 @@ impl KnowledgeService for Api {
         }
         self.lookup(move |core| {
             let now = core.domains.now();
-            let reading = reading(&now, &asked)?;
+            let (reading, tied) = reading(&now, &asked)?;
             let plugin = plugin(&now, "domain_id", &reading.domain)?;
             let building = Building {
                 country_code: country,
                 building_type: asked.building_type.clone().or(reading.building_type),
-                accessible: asked.accessible,
+                accessible: asked.accessible || asked.wheelchair,
+                wheelchair: asked.wheelchair,
                 rooms: counted(&reading.rooms),
                 persons: asked.person_count,
                 robots: asked
@@ -173,7 +174,7 @@ impl KnowledgeService for Api {
             };
             let policy = policy(asked.policy);
             let found = retrieve_with(plugin.knowledge(), &building.query(plugin.domain()), &policy);
-            Ok(messages::retrieval(&reading.domain, &found))
+            Ok(messages::retrieval(&reading.domain, tied, &found))
         })
         .await
     }
@@ -389,13 +390,19 @@ fn edits(
     }
 }
 
-fn reading(now: &Snapshot, asked: &RetrieveConstraintsRequest) -> Result<Classified, Status> {
+/// Returns the best reading of the rooms, and the domains that they fit as well.
+fn reading(now: &Snapshot, asked: &RetrieveConstraintsRequest) -> Result<(Classified, Vec<String>), Status> {
     let domains: Vec<&Domain> = match &asked.domain_id {
         Some(id) => vec![plugin(now, "domain_id", id)?.domain()],
         None => now.registry.iter().map(Plugin::domain).collect(),
     };
-    let best = classify(&asked.room_labels, &domains).into_iter().next().filter(|r| r.score > 0.0);
-    best.ok_or_else(|| invalid("room_labels", "no domain knows any of these rooms"))
+    let found = classify(&asked.room_labels, &domains);
+    let tied = ties(&found).iter().map(|r| r.domain.clone()).collect();
+    let best = found.into_iter().next().filter(|r| r.score > 0.0);
+    let best = best.ok_or_else(|| {
+        invalid("room_labels", "no domain knows any of these rooms, or they are of no kind")
+    })?;
+    Ok((best, tied))
 }
 
 fn counted(rooms: &[(String, Option<String>)]) -> BTreeMap<String, u32> {

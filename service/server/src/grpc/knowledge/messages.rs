@@ -46,7 +46,7 @@ pub(super) fn placed(c: &Constraint, reference: &Reference, domain: &str, score:
 }
 
 /// Returns the rules of a building.
-pub(super) fn retrieval(domain: &str, found: &Retrieval) -> RetrieveConstraintsResponse {
+pub(super) fn retrieval(domain: &str, tied: Vec<String>, found: &Retrieval) -> RetrieveConstraintsResponse {
     let conflict = |c: &d3dgen_knowledge::Conflict| ConstraintConflict {
         space_type: c.space_type.clone(),
         kept_constraint_id: c.kept.clone(),
@@ -61,6 +61,7 @@ pub(super) fn retrieval(domain: &str, found: &Retrieval) -> RetrieveConstraintsR
         limits: Some(limits(&found.limits)),
         conflicts: found.conflicts.iter().map(conflict).collect(),
         person_count: found.persons,
+        tied_domain_ids: tied,
     }
 }
 
