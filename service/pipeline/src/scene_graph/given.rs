@@ -424,6 +424,7 @@ pub fn of_plan(plan: &Floorplan, brought: &Brought, registry: &Registry) -> Resu
         area_m2: None,
         occupancy: Occupancy::default(),
         accessible: false,
+        wheelchair: false,
         style: d3dgen_model::style::Style::default(),
         rooms,
         edges: edges(plan),

@@ -162,6 +162,7 @@ fn assemble(request: &Request, mut reading: Reading, planned: &[Planned]) -> Sce
         area_m2: reading.area_m2,
         occupancy: reading.occupancy,
         accessible: reading.accessible,
+        wheelchair: reading.wheelchair,
         style: reading.style,
         rooms,
         edges: web.edges,

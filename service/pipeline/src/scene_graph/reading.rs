@@ -65,6 +65,7 @@ pub(super) struct Reading<'a> {
     /// True where two of them are a couple.
     pub pair: bool,
     pub accessible: bool,
+    pub wheelchair: bool,
     pub style: Style,
     pub robots: Vec<Robot>,
     /// What is asked of robots in rooms.
@@ -143,6 +144,7 @@ pub(super) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         residents: people.residents,
         children: people.children,
         pair: people.pair,
+        wheelchair: heard.says(Tag::Wheelchair),
         accessible: heard.says(Tag::Accessible) || site.lives && heard.says(Tag::Frail),
         robots,
         robot_rules: orders.rules,
