@@ -65,11 +65,22 @@ pub struct Applicable {
 }
 
 impl Applicable {
+    /// Returns true for rules whose figure somebody read where it is printed, in more than a page of the web that nothing
+    /// vouches for: plans go by these only.
+    pub fn is_vouched_for(&self) -> bool {
+        self.constraint.verified != PARTLY_SEEN && self.citation.source.source_type != WEB_PAGE
+    }
+
     /// Returns true where free floor on one of both sides is enough.
     pub fn is_one_sided(&self) -> bool {
         self.constraint.measurement_basis.contains("one side")
     }
 }
+
+/// Word of `verified` for what a search quoted of a page that nobody read.
+const PARTLY_SEEN: &str = "partly_seen";
+/// Type of sources of which nothing says what they are.
+const WEB_PAGE: &str = "web_page";
 
 /// What a constraint is about.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -288,5 +299,6 @@ fn is_mandatory(c: &Constraint, reference: &Reference) -> bool {
     let sources = || c.source_ids.iter().filter_map(|id| reference.sources.iter().find(|s| &s.source_id == id));
     let source = sources().find(|s| s.source_type != AMENDMENT).or_else(|| sources().next());
     source.is_some_and(|s| matches!(s.source_type.as_str(), "regulation" | "standard" | AMENDMENT))
+        && c.verified != PARTLY_SEEN
         && !matches!(c.constraint_type.as_str(), "recommendation" | "rule_of_thumb")
 }

@@ -20,6 +20,7 @@ pub mod obstacles;
 pub mod occupancy;
 pub mod passage;
 pub mod placements;
+pub mod plausible;
 pub mod proposal;
 pub mod report;
 pub mod robot_body;

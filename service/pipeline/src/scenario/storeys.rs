@@ -36,6 +36,7 @@ pub(super) fn generate(graph: &SceneGraph, plan: &Floorplan, placements: &Placem
         floorplan: plan.clone(),
         placements: placements.clone(),
         scenario: empty,
+        rules: None,
     }
     .storeys();
     let has_dock = |world: &World| {

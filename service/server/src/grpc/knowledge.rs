@@ -49,7 +49,8 @@ impl KnowledgeService for Api {
         let change = move |core: &Core, asked: ImportKnowledgeRequest, once: &Once| {
             let given: KnowledgeBase = document("knowledge_base", asked.knowledge_base)?;
             // once more as a text: formulas and printed units are looked at there
-            let given = d3dgen_knowledge::import::read(&given.to_json()).map_err(status::knowledge)?.knowledge;
+            let read = d3dgen_knowledge::import::read(&given.to_json()).map_err(status::knowledge)?;
+            let (given, quarantined) = (read.knowledge, messages::quarantined(read.quarantined));
             let domain = given.metadata.domain.clone();
             plugin(&core.domains.now(), "knowledge_base.metadata.domain", &domain)?;
             if asked.validate_only {
@@ -60,12 +61,13 @@ impl KnowledgeService for Api {
                 let by = core.provenance(&who, &asked.why);
                 let edits = difference(&before, &given, asked.keep_others);
                 let planned = messages::planned(&domain, &edits, by);
-                return Ok(ImportKnowledgeResponse { change: (!edits.is_empty()).then(|| messages::change(&planned)) });
+                let change = (!edits.is_empty()).then(|| messages::change(&planned));
+                return Ok(ImportKnowledgeResponse { change, quarantined });
             }
             let changed = changed_once(core, once, &who, &asked.why, |by| {
                 core.databases.rules.import(&given, asked.keep_others, by)
             })?;
-            Ok(ImportKnowledgeResponse { change: changed.as_ref().map(messages::change) })
+            Ok(ImportKnowledgeResponse { change: changed.as_ref().map(messages::change), quarantined })
         };
         self.change("ImportKnowledge", request, id, change).await
     }
@@ -371,6 +373,9 @@ fn edits(
             let base: d3dgen_proto::v1::Constraint = message(was);
             let changed = masked("update", base, &given, update.update_mask, &["constraint_id"])?;
             let changed: Constraint = part("update.constraint", &changed)?;
+            if let Some(reason) = d3dgen_model::plausible::doubt_of(&changed) {
+                return Err(invalid("update.constraint.value", reason));
+            }
             let mut after = knowledge.clone();
             for constraint in after.references.iter_mut().flat_map(|r| &mut r.constraints) {
                 if constraint.constraint_id == changed.constraint_id {

@@ -3,10 +3,11 @@
 use d3dgen_knowledge::database::{Change, Edit, Entry, Found, Kind, Provenance};
 use d3dgen_knowledge::{Applicable, Limit, Limits, Retrieval, Scope, Stats, phrase};
 use d3dgen_model::knowledge::{Constraint, Reference};
+use d3dgen_model::plausible::Quarantined;
 use d3dgen_proto::v1::{
     ApplicableConstraint, AreaLimits, ConstraintConflict, ConstraintScope, FoundConstraint, GetKnowledgeStatsResponse,
     KnowledgeChange, KnowledgeChangeKind, KnowledgeEdit, KnowledgeEntry, PlacedConstraint, PlanLimit, PlanLimits,
-    Provenance as ProvenanceMessage, RetrieveConstraintsResponse, RoomPlanLimits, knowledge_entry,
+    Provenance as ProvenanceMessage, QuarantinedConstraint, RetrieveConstraintsResponse, RoomPlanLimits, knowledge_entry,
 };
 
 use crate::convert::message;
@@ -43,6 +44,11 @@ pub(super) fn placed(c: &Constraint, reference: &Reference, domain: &str, score:
         sources: c.source_ids.iter().filter_map(source).map(message).collect(),
         score,
     }
+}
+
+/// Returns what was kept apart at import.
+pub(super) fn quarantined(rules: Vec<Quarantined>) -> Vec<QuarantinedConstraint> {
+    rules.into_iter().map(|q| QuarantinedConstraint { constraint_id: q.constraint_id, reason: q.reason }).collect()
 }
 
 /// Returns the rules of a building.
