@@ -162,6 +162,7 @@ fn graph(robot: &Robot) -> SceneGraph {
         domain: "general".into(),
         building_type: None,
         country_code: Some("DE".into()),
+        division_code: None,
         language: "en".into(),
         area_m2: None,
         occupancy: Default::default(),
@@ -225,7 +226,16 @@ pub fn world() -> World {
     };
     let placements = Placements { version: 1, seed: 7, placements: objects(), unplaced: Vec::new() };
     let (name, generator) = ("two_rooms".to_owned(), "by hand".to_owned());
-    World { version: 1, name, generator, scene_graph: graph(&robot), floorplan: plan(), placements, scenario, rules: None }
+    World {
+        version: 1,
+        name,
+        generator,
+        scene_graph: graph(&robot),
+        floorplan: plan(),
+        placements,
+        scenario,
+        rules: None,
+    }
 }
 
 /// Returns a report with these constraints: name, title of the source, force, outcome.

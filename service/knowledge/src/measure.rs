@@ -322,13 +322,9 @@ impl Measure {
     /// Returns true when more than the upper end of an advised range does no harm.
     pub(crate) fn is_clearance(self) -> bool {
         use Measure as M;
-        matches!(
-            self,
-            M::ObjectFront | M::FreeHalfCircle | M::AreaPerPerson
-        ) || matches!(
-            self,
-            M::ObjectSides | M::ObjectAround | M::ObjectThreeSides | M::ObjectToWall | M::FacingGap
-        ) || matches!(self, M::GapBetweenObjects | M::TableEdgePerSeat | M::ClearFloorAtObject | M::SeatedDepth)
+        matches!(self, M::ObjectFront | M::FreeHalfCircle | M::AreaPerPerson)
+            || matches!(self, M::ObjectSides | M::ObjectAround | M::ObjectThreeSides | M::ObjectToWall | M::FacingGap)
+            || matches!(self, M::GapBetweenObjects | M::TableEdgePerSeat | M::ClearFloorAtObject | M::SeatedDepth)
     }
 
     /// Returns true for an extent of an object, which advice gives as the usual figure.

@@ -74,7 +74,7 @@ impl Query {
         }
         let (persons, persons_stated) = persons(graph);
         Self {
-            country_code: graph.country_code.clone(),
+            country_code: graph.place_code().map(str::to_owned),
             domain: graph.domain.clone(),
             building_type: graph.building_type.clone(),
             accessible: graph.accessible,

@@ -25,7 +25,8 @@ struct Row {
 }
 
 static TABLE: LazyLock<Table> = LazyLock::new(|| {
-    toml::from_str(include_str!("../data/plausible.toml")).expect("data/plausible.toml is part of the crate and read by its tests")
+    toml::from_str(include_str!("../data/plausible.toml"))
+        .expect("data/plausible.toml is part of the crate and read by its tests")
 });
 
 /// A rule that was kept apart because it cannot mean what it says.
@@ -51,7 +52,8 @@ pub fn doubt(words: &[&str], unit: &str, value: &Value) -> Option<String> {
         return Some(format!("{wrong} is no figure"));
     }
     let said: Vec<&str> = words.iter().flat_map(|w| w.split(|c: char| !c.is_alphanumeric())).collect();
-    let fits = |row: &&Row| row.unit == unit && (row.words.is_empty() || row.words.iter().any(|w| said.contains(&w.as_str())));
+    let fits =
+        |row: &&Row| row.unit == unit && (row.words.is_empty() || row.words.iter().any(|w| said.contains(&w.as_str())));
     let row = TABLE.row.iter().find(fits)?;
     let wrong = figures.iter().find(|v| **v < row.min || **v > row.max)?;
     Some(format!("{wrong} {unit} cannot be: such figures lie between {} and {} {unit}", row.min, row.max))

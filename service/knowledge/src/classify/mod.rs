@@ -124,7 +124,8 @@ fn rarity(evidence: &[f64]) -> f64 {
 /// Returns the weight of those labels whose rooms one building of a domain has together, at most.
 fn in_one_building(domain: &Domain, meanings: &[Option<Match>], weights: &[f64]) -> f64 {
     let share = |rooms: BTreeSet<&str>| -> f64 {
-        let here = |m: &Match| rooms.contains(m.room_type.id.as_str()) || domain.circulation.room_type == m.room_type.id;
+        let here =
+            |m: &Match| rooms.contains(m.room_type.id.as_str()) || domain.circulation.room_type == m.room_type.id;
         let known = meanings.iter().zip(weights).filter_map(|(m, w)| m.filter(here).map(|m| m.grade * w));
         known.sum()
     };

@@ -125,7 +125,8 @@ fn bent_dead_end(site: &Site, room: &Room, ways: &[Point]) -> Option<f64> {
         let ahead = inward(wall);
         let [dx, dy] = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]][usize::from(ahead)];
         let middle = Point::new(wall.middle().x + dx * AT_END_M, wall.middle().y + dy * AT_END_M);
-        let depth = depth_beside(&wall.moved(dx * AT_END_M, dy * AT_END_M).bounds(), ahead, outline, std::iter::empty());
+        let depth =
+            depth_beside(&wall.moved(dx * AT_END_M, dy * AT_END_M).bounds(), ahead, outline, std::iter::empty());
         if turn(i) > 0.0 && turn((i + 1) % walls.len()) > 0.0 && depth + AT_END_M > wall.length() {
             ends.push((middle, ahead));
         }

@@ -156,8 +156,8 @@ impl<'a> Site<'a> {
     pub fn net_area(&self, circulation_only: bool) -> f64 {
         let outside = TABLES.space(OUTSIDE, &self.domain.id);
         let counts = |r: &&Room| {
-            let left_out = r.kind.zone == Zone::Outdoor
-                || outside.is_some_and(|row| row.room_types.contains(&r.plan.room_type));
+            let left_out =
+                r.kind.zone == Zone::Outdoor || outside.is_some_and(|row| row.room_types.contains(&r.plan.room_type));
             !left_out && (r.plan.circulation || !circulation_only)
         };
         self.rooms.iter().filter(counts).map(|r| r.plan.net_area_m2).sum()
@@ -299,7 +299,11 @@ fn faces(a: &Segment, b: &Segment, walls: &[Segment]) -> bool {
     let opposite = (a.end.x - a.start.x) * (b.end.x - b.start.x) + (a.end.y - a.start.y) * (b.end.y - b.start.y) < 0.0;
     let between = walls.iter().any(|w| {
         let (at, from, to) = w.span();
-        w.is_vertical() == a.is_vertical() && at > near + TOLERANCE_M && at < far - TOLERANCE_M && from < high && to > low
+        w.is_vertical() == a.is_vertical()
+            && at > near + TOLERANCE_M
+            && at < far - TOLERANCE_M
+            && from < high
+            && to > low
     });
     opposite && high - low >= far - near && far > near && !between
 }

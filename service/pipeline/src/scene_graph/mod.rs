@@ -49,6 +49,7 @@ pub(crate) use self::people::seats::shortages;
 pub(crate) use self::proposed::suits;
 pub use self::proposed::{BY_PROPOSAL, Draft, DraftEdge, DraftRoom, Settled, propose};
 use self::reading::Reading;
+use self::subject::places;
 use self::subject::programs::is_dwelling;
 pub(crate) use self::tokens::words::{brings, cleans};
 use self::wished::wishes::MANY;
@@ -151,13 +152,15 @@ fn assemble(request: &Request, mut reading: Reading, planned: &[Planned]) -> Sce
     robots::send(&reading.errand, &rooms, &mut reading.robots);
     let robot_rules = robot_rules::of_rooms(&reading.robot_rules, &rooms);
     edges::state_unmet(&mut reading, &rooms, &web.edges);
+    let place = reading.country_code.take();
     SceneGraph {
         version: 1,
         prompt: request.prompt.clone(),
         seed: request.seed,
         domain: reading.domain.id.clone(),
         building_type: reading.building_type,
-        country_code: reading.country_code,
+        country_code: place.as_deref().map(places::country_of).map(str::to_owned),
+        division_code: place.filter(|code| places::country_of(code) != code.as_str()),
         language: reading.language.into(),
         area_m2: reading.area_m2,
         occupancy: reading.occupancy,

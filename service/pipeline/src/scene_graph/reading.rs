@@ -30,6 +30,7 @@ pub(super) struct Reading<'a> {
     pub wet: Arc<Wet>,
     pub building_type: Option<String>,
     pub program: &'a Program,
+    /// Code of the country, or of the division where one is known (`DE`, `CA-ON`).
     pub country_code: Option<String>,
     pub wishes: Wishes,
     /// Rooms in total, where fixed.
@@ -167,7 +168,9 @@ fn check_flags(request: &Request, registry: &Registry) -> Result<(), Error> {
     if let Some(country) = &request.country
         && places::code_of(country).is_none()
     {
-        return Err(refused(format!("country `{country}` is not known; give an ISO 3166 code such as DE or US-NC, or a name")));
+        return Err(refused(format!(
+            "country `{country}` is not known; give an ISO 3166 code such as DE or US-NC, or a name"
+        )));
     }
     if let Some(problem) = request.robot.problems().into_iter().next() {
         return Err(refused(problem));

@@ -273,7 +273,8 @@ mod tests {
         let documents = [document("a", None, Some("DE"))];
         let wide = ConstraintRecord { space: "patient_room".into(), ..rule("a", 24.0, "m", &[]) };
         let double = ConstraintRecord { space: "patient_room_double".into(), found_by: "model".into(), ..wide.clone() };
-        let conditioned = ConstraintRecord { conditions: vec!["two beds".into()], found_by: "model".into(), ..wide.clone() };
+        let conditioned =
+            ConstraintRecord { conditions: vec!["two beds".into()], found_by: "model".into(), ..wide.clone() };
         let elsewhere = ConstraintRecord {
             evidence: Evidence { passage_id: "p2".into(), ..double.evidence.clone() },
             ..double.clone()

@@ -200,7 +200,12 @@ impl DomainService for Api {
                     tied: tied > 0 && n <= tied,
                     rooms: r.rooms.into_iter().map(room).collect(),
                 });
-                return Ok(ClassifyDomainResponse { readings: readings.collect(), country_code: None, language: None });
+                return Ok(ClassifyDomainResponse {
+                    readings: readings.collect(),
+                    country_code: None,
+                    division_code: None,
+                    language: None,
+                });
             }
             let request = Asked { prompt: asked.prompt, ..Asked::default() };
             let graph = scene_graph::generate(&request, &now.registry).map_err(|e| status::stage("prompt", e))?;
@@ -215,6 +220,7 @@ impl DomainService for Api {
             };
             Ok(ClassifyDomainResponse {
                 readings: vec![reading],
+                division_code: graph.division_code,
                 country_code: graph.country_code,
                 language: Some(graph.language).filter(|l| !l.is_empty()),
             })

@@ -404,9 +404,8 @@ fn reading(now: &Snapshot, asked: &RetrieveConstraintsRequest) -> Result<(Classi
     let found = classify(&asked.room_labels, &domains);
     let tied = ties(&found).iter().map(|r| r.domain.clone()).collect();
     let best = found.into_iter().next().filter(|r| r.score > 0.0);
-    let best = best.ok_or_else(|| {
-        invalid("room_labels", "no domain knows any of these rooms, or they are of no kind")
-    })?;
+    let best =
+        best.ok_or_else(|| invalid("room_labels", "no domain knows any of these rooms, or they are of no kind"))?;
     Ok((best, tied))
 }
 

@@ -182,7 +182,7 @@ impl Facts<'_> {
         if !robots.is_empty() {
             rows.push(("Robots", robots.join(", ")));
         }
-        let country = world.scene_graph.country_code.as_deref();
+        let country = world.scene_graph.place_code();
         match (&world.rules, country) {
             (Some(rules), _) => rows.push(("Building rules", rules.line(country))),
             // it was never held against them

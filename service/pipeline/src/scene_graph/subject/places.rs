@@ -152,9 +152,9 @@ pub(crate) fn locate(tokens: &[Token], prompt: &str, spoken: &[&Spoken]) -> Wher
     let mut found: Vec<(Span, Place)> = Vec::new();
     let mut i = 0;
     while i < tokens.len() {
-        let before = found.last().filter(|(span, _)| {
-            tokens[span.end..i].iter().all(|t| t.mark() == Some(',')) && i <= span.end + 1
-        });
+        let before = found
+            .last()
+            .filter(|(span, _)| tokens[span.end..i].iter().all(|t| t.mark() == Some(',')) && i <= span.end + 1);
         let written = code_at(tokens, i, prompt, spoken, before.map(|(_, place)| place));
         match written.or_else(|| place_at(tokens, i, prompt, spoken)) {
             Some((end, place)) => {

@@ -7,7 +7,8 @@ use d3dgen_model::plausible::Quarantined;
 use d3dgen_proto::v1::{
     ApplicableConstraint, AreaLimits, ConstraintConflict, ConstraintScope, FoundConstraint, GetKnowledgeStatsResponse,
     KnowledgeChange, KnowledgeChangeKind, KnowledgeEdit, KnowledgeEntry, PlacedConstraint, PlanLimit, PlanLimits,
-    Provenance as ProvenanceMessage, QuarantinedConstraint, RetrieveConstraintsResponse, RoomPlanLimits, knowledge_entry,
+    Provenance as ProvenanceMessage, QuarantinedConstraint, RetrieveConstraintsResponse, RoomPlanLimits,
+    knowledge_entry,
 };
 
 use crate::convert::message;
