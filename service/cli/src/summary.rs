@@ -25,6 +25,7 @@ pub struct Summary {
     domain: String,
     building_type: Option<String>,
     country_code: Option<String>,
+    place_code: Option<String>,
     seed: u64,
     path: PathBuf,
     kept: Option<Kept>,
@@ -39,6 +40,7 @@ pub struct Summary {
     robot_fit: Vec<String>,
     people: usize,
     constraints: ConstraintSummary,
+    national: String,
     violated: Vec<String>,
     broken: Vec<String>,
     assumptions: Vec<Note>,
@@ -61,6 +63,7 @@ impl Summary {
             domain: graph.domain.clone(),
             building_type: graph.building_type.clone(),
             country_code: graph.country_code.clone(),
+            place_code: graph.place_code().map(str::to_owned),
             seed: graph.seed,
             path: path.to_path_buf(),
             kept: None,
@@ -75,6 +78,7 @@ impl Summary {
             robot_fit: report.robot_fit.iter().map(fit_line).collect(),
             people: world.scenario.agents.len(),
             constraints: report.summary.clone(),
+            national: report.applied_rules().line(graph.place_code()),
             violated: violated_lines(report),
             broken: broken_lines(report),
             assumptions: graph.assumptions.clone(),
@@ -113,7 +117,7 @@ impl Summary {
             self.times.iter().map(|(stage, t)| ((*stage).to_owned(), json!(round(ms(*t), 2)))).collect();
         let mut value = json!({
             "world": self.name, "domain": self.domain, "building_type": self.building_type,
-            "country_code": self.country_code, "seed": self.seed, "path": self.path.display().to_string(),
+            "country_code": self.country_code, "place_code": self.place_code, "seed": self.seed, "path": self.path.display().to_string(),
             "written": self.kept.is_none(),
             "sound": self.sound, "verdict": self.verdict.to_lowercase(),
             "rooms": self.rooms, "circulation_rooms": self.circulation,
@@ -133,7 +137,7 @@ impl Summary {
     pub fn page(&self) -> String {
         let c = &self.constraints;
         let building_type = self.building_type.as_deref().filter(|t| *t != self.domain);
-        let building = [Some(self.domain.as_str()), building_type, self.country_code.as_deref()];
+        let building = [Some(self.domain.as_str()), building_type, self.place_code.as_deref()];
         let stages: Vec<String> = self.times.iter().map(|(stage, t)| format!("{stage} {:.0}", ms(*t))).collect();
         let again = if self.attempts > 1 { format!(", in {} attempts", self.attempts) } else { String::new() };
         let circulation =
@@ -146,6 +150,7 @@ impl Summary {
             ("objects", format!("{}, {:.1} a room", self.objects, self.objects_per_room())),
             ("robots", format!("{}, people {}", self.robots, self.people)),
             ("hard rules", format!("{} checked, {rules}", self.rules)),
+            ("law", self.national.clone()),
             (
                 "constraints",
                 format!(

@@ -166,6 +166,7 @@ pub fn assemble(floorplan: Floorplan, placements: Placements) -> World {
         floorplan,
         placements,
         scenario: scenario(),
+        rules: None,
     };
     assert_eq!(world.check(), vec![]);
     world

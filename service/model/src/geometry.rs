@@ -79,6 +79,12 @@ impl Segment {
         (at, a.min(b), a.max(b))
     }
 
+    /// Returns the segment moved, m.
+    pub fn moved(&self, dx: f64, dy: f64) -> Self {
+        let by = |p: Point| Point::new(p.x + dx, p.y + dy);
+        Self { start: by(self.start), end: by(self.end) }
+    }
+
     /// Returns the rectangle between the ends.
     pub fn bounds(&self) -> Rect {
         Rect::new(self.start.x, self.start.y, self.end.x, self.end.y)

@@ -316,6 +316,7 @@ impl World {
             scene_graph: self.scene_graph.storey(level),
             placements: self.placements.storey(&floorplan),
             scenario: self.scenario.storey(level, &floorplan),
+            rules: self.rules.clone(),
             floorplan,
         }
     }

@@ -7,6 +7,7 @@ use crate::brief::Brief;
 use crate::document::{Document, Problem};
 use crate::floorplan::Floorplan;
 use crate::placements::Placements;
+use crate::report::AppliedRules;
 use crate::scenario::Scenario;
 use crate::scene_graph::SceneGraph;
 
@@ -32,6 +33,9 @@ pub struct World {
     pub placements: Placements,
     /// What happens in it.
     pub scenario: Scenario,
+    /// Which building rules it was held against when it was made.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rules: Option<AppliedRules>,
 }
 
 impl Document for World {

@@ -26,5 +26,6 @@ pub fn assemble(
         floorplan,
         placements,
         scenario,
+        rules: None,
     }
 }

@@ -375,6 +375,7 @@ fn attempt(
     world.brief.clone_from(&settings.brief);
     let report = world::check(&world, domain, retrieved);
     world.scene_graph.conflicts.extend(ways_out::told(&world, &report, domain, retrieved));
+    world.rules = Some(report.applied_rules());
     observe(Event::Finished(Stage::World, attempt, Artifact::World(&world, &report)));
     Ok(Generated { world, report, attempts: attempt + 1 })
 }
@@ -420,8 +421,9 @@ pub fn finish(
 ) -> Result<(World, Report), Error> {
     let reseeded = SceneGraph { seed: plan.seed, ..graph.clone() };
     let scenario = scenario::generate(&reseeded, &plan, &placements, domain)?;
-    let world = World { brief, ..world::assemble(name, graph, plan, placements, scenario) };
+    let mut world = World { brief, ..world::assemble(name, graph, plan, placements, scenario) };
     let report = world::check(&world, domain, retrieved);
+    world.rules = Some(report.applied_rules());
     Ok((world, report))
 }
 

@@ -129,6 +129,8 @@ impl<'s> Site<'s> {
             domain: domain.id.clone(),
             building_type: None,
             country_code: None,
+            division_code: None,
+            wheelchair: false,
             language: "en".into(),
             area_m2: None,
             occupancy: Occupancy::default(),

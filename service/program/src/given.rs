@@ -394,10 +394,10 @@ pub fn of_plan(plan: &Floorplan, brought: &Brought, registry: &Registry) -> Resu
     let plugin = registry.get(&brought.domain);
     let domain =
         plugin.map(|p| p.domain()).ok_or_else(|| refused(format!("domain `{}` is not known", brought.domain)))?;
-    let country_code = match &brought.country {
+    let place = match &brought.country {
         None => None,
         Some(country) => Some(places::code_of(country).ok_or_else(|| {
-            refused(format!("country `{country}` is not known; give an ISO 3166-1 code such as DE or US"))
+            refused(format!("country `{country}` is not known; give an ISO 3166 code such as DE or US-NC, or a name"))
         })?),
     };
     let entrance = plan.doors.iter().find(|d| d.entrance).and_then(|d| d.room_ids.first());
@@ -432,11 +432,13 @@ pub fn of_plan(plan: &Floorplan, brought: &Brought, registry: &Registry) -> Resu
         seed: brought.seed,
         domain: domain.id.clone(),
         building_type: None,
-        country_code,
+        country_code: place.as_deref().map(places::country_of).map(str::to_owned),
+        division_code: place.filter(|code| places::country_of(code) != code.as_str()),
         language: "en".into(),
         area_m2: None,
         occupancy: Occupancy::default(),
         accessible: false,
+        wheelchair: false,
         style: d3dgen_model::style::Style::default(),
         rooms,
         edges: edges(plan),

@@ -37,6 +37,7 @@ pub(crate) fn generate(graph: &SceneGraph, plan: &Floorplan, placements: &Placem
         floorplan: plan.clone(),
         placements: placements.clone(),
         scenario: empty,
+        rules: None,
     }
     .storeys();
     let has_dock = |world: &World| {

@@ -41,7 +41,7 @@ pub struct Args {
     /// Kind of building (`d3dgen domains list`); otherwise guessed from the names of the rooms
     #[arg(long, value_name = "ID")]
     domain: Option<String>,
-    /// Country whose rules apply, as a code (DE) or an English name
+    /// Country or division whose rules apply: a code (DE, CA-ON), or its name or a city
     #[arg(long, value_name = "COUNTRY")]
     country: Option<String>,
     /// Robot the world is for: cleaning, disinfection, delivery, service or transport; may be given more than once

@@ -115,6 +115,7 @@ pub(crate) fn read<'a>(brief: &Brief, request: &Request, registry: &'a Registry)
         children: facts.children,
         pair: false,
         accessible: facts.accessible,
+        wheelchair: false,
         robots,
         robot_rules: keep_out,
         two_way: false,
@@ -161,7 +162,7 @@ fn site_of<'a>(
     let building = Building { building_type: own_type, ..Building::none(&id) };
     let program = program_of(domain, building.building_type.as_deref());
     let flag = request.country.as_deref().and_then(places::code_of);
-    let country_code = flag.or_else(|| brief.place.as_ref().map(|p| p.country_code.clone()));
+    let country_code = flag.or_else(|| brief.place.as_ref().map(|p| p.division_code.clone().unwrap_or_else(|| p.country_code.clone())));
     Ok(Site::of_facts(domain, program, building, country_code, registry))
 }
 

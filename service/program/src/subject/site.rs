@@ -120,12 +120,14 @@ impl<'a> Site<'a> {
 /// Returns the country of the request, which goes before that of the prompt.
 fn country_of(request: &Request, named: Option<&str>, notes: &mut Notes) -> Option<String> {
     let flag = request.country.as_deref().and_then(places::code_of)?;
-    if let Some(named) = named.filter(|named| *named != flag) {
+    let nearer = named.and_then(|named| places::nearer(&flag, named)).map(str::to_owned);
+    if let Some(named) = named.filter(|_| nearer.is_none()) {
         let message = format!("the prompt says {named}, the request {flag}; {flag} was used");
         notes.conflicts.push(Note::new("country_flag", message));
     }
     notes.conflicts.retain(|n| n.code != "ambiguous_place" && n.code != "unknown_place");
-    Some(flag)
+    // the prompt may say where in that country
+    Some(nearer.unwrap_or(flag))
 }
 
 /// Returns the building that a prompt or its request names, else what its rooms suggest.

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use d3dgen_knowledge::classify::classify;
+use d3dgen_knowledge::classify::{classify, ties};
 use d3dgen_model::domain::Domain;
 use d3dgen_model::knowledge::KnowledgeBase;
 use d3dgen_pipeline::brief;
@@ -190,15 +190,23 @@ impl DomainService for Api {
             let now = core.domains.now();
             if !asked.room_labels.is_empty() {
                 let domains: Vec<&Domain> = now.registry.iter().map(Plugin::domain).collect();
-                let found = classify(&asked.room_labels, &domains).into_iter().filter(|r| r.score > 0.0);
+                let found = classify(&asked.room_labels, &domains);
+                let tied = ties(&found).len();
+                let found = found.into_iter().filter(|r| r.score > 0.0).enumerate();
                 let room = |(label, room_type)| ClassifiedRoom { label, room_type };
-                let readings = found.map(|r| DomainReading {
+                let readings = found.map(|(n, r)| DomainReading {
                     domain_id: r.domain,
                     score: r.score,
                     building_type: r.building_type,
+                    tied: tied > 0 && n <= tied,
                     rooms: r.rooms.into_iter().map(room).collect(),
                 });
-                return Ok(ClassifyDomainResponse { readings: readings.collect(), country_code: None, language: None });
+                return Ok(ClassifyDomainResponse {
+                    readings: readings.collect(),
+                    country_code: None,
+                    division_code: None,
+                    language: None,
+                });
             }
             let request = Asked { prompt: asked.prompt, ..Asked::default() };
             let graph = brief::rooms(&request, &now.registry).map_err(|e| status::stage("prompt", e))?.0;
@@ -208,10 +216,12 @@ impl DomainService for Api {
                 domain_id: graph.domain.clone(),
                 score: 1.0,
                 building_type: graph.building_type.clone(),
+                tied: false,
                 rooms: rooms.collect(),
             };
             Ok(ClassifyDomainResponse {
                 readings: vec![reading],
+                division_code: graph.division_code,
                 country_code: graph.country_code,
                 language: Some(graph.language).filter(|l| !l.is_empty()),
             })

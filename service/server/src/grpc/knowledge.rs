@@ -6,7 +6,7 @@ mod research;
 use std::collections::BTreeMap;
 
 use d3dgen_knowledge::amend::state;
-use d3dgen_knowledge::classify::{Building, Classified, classify};
+use d3dgen_knowledge::classify::{Building, Classified, classify, ties};
 use d3dgen_knowledge::database::{Change, Edit, SearchQuery, apply, difference, filter_names};
 use d3dgen_knowledge::{Policy, Stats, retrieve_with};
 use d3dgen_model::Document;
@@ -49,7 +49,8 @@ impl KnowledgeService for Api {
         let change = move |core: &Core, asked: ImportKnowledgeRequest, once: &Once| {
             let given: KnowledgeBase = with_shared(document("knowledge_base", asked.knowledge_base)?)?;
             // once more as a text: formulas and printed units are looked at there
-            let given = d3dgen_knowledge::import::read(&given.to_json()).map_err(status::knowledge)?.knowledge;
+            let read = d3dgen_knowledge::import::read(&given.to_json()).map_err(status::knowledge)?;
+            let (given, quarantined) = (read.knowledge, messages::quarantined(read.quarantined));
             let domain = given.metadata.domain.clone();
             plugin(&core.domains.now(), "knowledge_base.metadata.domain", &domain)?;
             if asked.validate_only {
@@ -60,12 +61,13 @@ impl KnowledgeService for Api {
                 let by = core.provenance(&who, &asked.why);
                 let edits = difference(&before, &given, asked.keep_others);
                 let planned = messages::planned(&domain, &edits, by);
-                return Ok(ImportKnowledgeResponse { change: (!edits.is_empty()).then(|| messages::change(&planned)) });
+                let change = (!edits.is_empty()).then(|| messages::change(&planned));
+                return Ok(ImportKnowledgeResponse { change, quarantined });
             }
             let changed = changed_once(core, once, &who, &asked.why, |by| {
                 core.databases.rules.import(&given, asked.keep_others, by)
             })?;
-            Ok(ImportKnowledgeResponse { change: changed.as_ref().map(messages::change) })
+            Ok(ImportKnowledgeResponse { change: changed.as_ref().map(messages::change), quarantined })
         };
         self.change("ImportKnowledge", request, id, change).await
     }
@@ -156,12 +158,13 @@ impl KnowledgeService for Api {
         }
         self.lookup(move |core| {
             let now = core.domains.now();
-            let reading = reading(&now, &asked)?;
+            let (reading, tied) = reading(&now, &asked)?;
             let plugin = plugin(&now, "domain_id", &reading.domain)?;
             let building = Building {
                 country_code: country,
                 building_type: asked.building_type.clone().or(reading.building_type),
-                accessible: asked.accessible,
+                accessible: asked.accessible || asked.wheelchair,
+                wheelchair: asked.wheelchair,
                 rooms: counted(&reading.rooms),
                 persons: asked.person_count,
                 robots: asked
@@ -173,7 +176,7 @@ impl KnowledgeService for Api {
             };
             let policy = policy(asked.policy);
             let found = retrieve_with(plugin.knowledge(), &building.query(plugin.domain()), &policy);
-            Ok(messages::retrieval(&reading.domain, &found))
+            Ok(messages::retrieval(&reading.domain, tied, &found))
         })
         .await
     }
@@ -370,6 +373,9 @@ fn edits(
             let base: d3dgen_proto::v1::Constraint = message(was);
             let changed = masked("update", base, &given, update.update_mask, &["constraint_id"])?;
             let changed: Constraint = part("update.constraint", &changed)?;
+            if let Some(reason) = d3dgen_model::plausible::doubt_of(&changed) {
+                return Err(invalid("update.constraint.value", reason));
+            }
             let mut after = knowledge.clone();
             for constraint in after.references.iter_mut().flat_map(|r| &mut r.constraints) {
                 if constraint.constraint_id == changed.constraint_id {
@@ -389,13 +395,18 @@ fn edits(
     }
 }
 
-fn reading(now: &Snapshot, asked: &RetrieveConstraintsRequest) -> Result<Classified, Status> {
+/// Returns the best reading of the rooms, and the domains that they fit as well.
+fn reading(now: &Snapshot, asked: &RetrieveConstraintsRequest) -> Result<(Classified, Vec<String>), Status> {
     let domains: Vec<&Domain> = match &asked.domain_id {
         Some(id) => vec![plugin(now, "domain_id", id)?.domain()],
         None => now.registry.iter().map(Plugin::domain).collect(),
     };
-    let best = classify(&asked.room_labels, &domains).into_iter().next().filter(|r| r.score > 0.0);
-    best.ok_or_else(|| invalid("room_labels", "no domain knows any of these rooms"))
+    let found = classify(&asked.room_labels, &domains);
+    let tied = ties(&found).iter().map(|r| r.domain.clone()).collect();
+    let best = found.into_iter().next().filter(|r| r.score > 0.0);
+    let best =
+        best.ok_or_else(|| invalid("room_labels", "no domain knows any of these rooms, or they are of no kind"))?;
+    Ok((best, tied))
 }
 
 fn counted(rooms: &[(String, Option<String>)]) -> BTreeMap<String, u32> {
