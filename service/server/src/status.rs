@@ -99,8 +99,34 @@ pub fn store(error: d3dgen_store::Error) -> Status {
             tracing::error!(reason = %error, "damage");
             Status::data_loss("a record is damaged: the server's log tells which; restore a backup")
         }
+        Error::Full { .. } => full(&error),
         other => internal(&other),
     }
+}
+
+/// When to come back after the disk was full.
+const ROOM: Duration = Duration::from_secs(30);
+
+fn full(error: &dyn std::fmt::Display) -> Status {
+    tracing::error!(reason = %error, "no room");
+    exhausted("the disk of the server is full; nothing was changed", ROOM)
+}
+
+/// Returns the answer to what the server's own records, or anything else of it, refuse.
+pub fn own(error: crate::Error) -> Status {
+    use crate::Error;
+    match error {
+        Error::Store(inner) => store(inner),
+        Error::Knowledge(inner) => knowledge(inner),
+        Error::Assets(inner) => assets(inner),
+        Error::File { source, .. } => io(&source),
+        other => internal(&other),
+    }
+}
+
+/// Returns the answer to what the system refuses of a file of the server.
+pub fn io(error: &std::io::Error) -> Status {
+    if d3dgen_store::is_full(error) { full(error) } else { internal(error) }
 }
 
 /// Returns the answer to what the database of rules refuses.

@@ -64,7 +64,7 @@ pub(super) fn run(run: &Run, spec: &Research) -> Result<serde_json::Value, Statu
         words.push(uploaded.display().to_string());
     }
     let sources = dir.join("facts.toml");
-    std::fs::write(&sources, &spec.sources).map_err(|e| status::internal(&e))?;
+    std::fs::write(&sources, &spec.sources).map_err(|e| status::io(&e))?;
     let date = core.clock.date();
     let plan = Plan {
         out: dir.join("out"),
