@@ -112,7 +112,10 @@ impl Rules {
         let Some(caller) = caller else {
             // Guessing is bounded as any other call is, by address.
             let refused = match self.rates.take(&format!("without a token: {peer}")) {
-                Ok(()) => Status::unauthenticated("the token is missing or wrong: send `authorization: Bearer TOKEN`"),
+                Ok(()) => {
+                    let message = "the token is missing or wrong: send `authorization: Bearer TOKEN`";
+                    status::because(status::reason::TOKEN, &Status::unauthenticated(message))
+                }
                 Err(wait) => status::exhausted("too many calls without a token", wait),
             };
             return Err((refused, peer.to_owned()));
@@ -120,7 +123,8 @@ impl Rules {
         if caller.scope < least {
             let message =
                 format!("token `{}` has scope {}, this call needs {}", caller.name, caller.scope.name(), least.name());
-            return Err((Status::permission_denied(message), caller.name));
+            let refused = status::because(status::reason::SCOPE, &Status::permission_denied(message));
+            return Err((refused, caller.name));
         }
         match self.rates.take(&caller.name) {
             Ok(()) => Ok(caller),
@@ -293,6 +297,7 @@ fn asked_time(headers: &HeaderMap) -> Option<Duration> {
 }
 
 fn refusal(status: Status, is_grpc: bool, mut call: Call) -> Response<Body> {
+    let status = status::explained(status);
     call.code = Some(status.code());
     let mut response = if is_grpc {
         status.into_http::<Body>()
@@ -314,8 +319,8 @@ fn refusal(status: Status, is_grpc: bool, mut call: Call) -> Response<Body> {
 
 fn watched(response: Response<Body>, is_grpc: bool, mut call: Call, until: Until) -> Response<Body> {
     let refused = is_grpc.then(|| Status::from_header_map(response.headers())).flatten();
-    let response = match refused.as_ref().and_then(status::of_transport) {
-        Some(meant) => meant.into_http(),
+    let response = match refused.filter(|s| s.code() != Code::Ok) {
+        Some(refused) => status::explained(status::of_transport(&refused).unwrap_or(refused)).into_http(),
         None => response,
     };
     // Answers without a body, and those that are no gRPC, say how they ended at once.

@@ -11,6 +11,7 @@ mod knowledge;
 mod once;
 mod outbox;
 mod page;
+mod server;
 mod world;
 mod zip;
 
@@ -30,13 +31,14 @@ use once::Once;
 pub use once::forget_old;
 
 /// Names of the services.
-pub const NAMES: [&str; 6] = [
+pub const NAMES: [&str; 7] = [
     "d3dgen.v1.DomainService",
     "d3dgen.v1.KnowledgeService",
     "d3dgen.v1.AssetService",
     "d3dgen.v1.WorldService",
     "d3dgen.v1.JobService",
     "d3dgen.v1.AdminService",
+    "d3dgen.v1.ServerService",
 ];
 
 /// Returns the services.
@@ -54,6 +56,7 @@ pub fn routes(core: &Arc<Core>) -> Routes {
         .add_service(service!(world_service_server, WorldServiceServer))
         .add_service(service!(job_service_server, JobServiceServer))
         .add_service(service!(admin_service_server, AdminServiceServer))
+        .add_service(service!(server_service_server, ServerServiceServer))
 }
 
 /// All services.

@@ -54,6 +54,11 @@ pub(crate) use self::tokens::words::{brings, cleans};
 use self::wished::wishes::MANY;
 use crate::Error;
 
+/// Returns the ISO 639-1 codes of the languages that prompts are read in.
+pub fn languages() -> Vec<&'static str> {
+    self::tokens::words::words().languages.keys().map(String::as_str).collect()
+}
+
 /// Reason of the doors to the corridor or hall.
 const BY_CIRCULATION: &str = "circulation";
 

@@ -135,6 +135,21 @@ fn cut(shared: &Mutex<Shared>, status: Status) {
     }
 }
 
+/// Notes how a call ended, when this is the end, and gives a refusal its reason.
+fn ended_with(frame: Frame<Bytes>, call: &mut Call) -> Frame<Bytes> {
+    let trailers = match frame.into_trailers() {
+        Ok(trailers) => trailers,
+        Err(other) => return other,
+    };
+    let Some(status) = Status::from_header_map(&trailers) else { return Frame::trailers(trailers) };
+    call.code = Some(status.code());
+    let mut explained = HeaderMap::new();
+    match status.code() != Code::Ok && status::explained(status).add_header(&mut explained).is_ok() {
+        true => Frame::trailers(explained),
+        false => Frame::trailers(trailers),
+    }
+}
+
 /// Returns the status that headers or trailers tell.
 pub(super) fn code(headers: &HeaderMap) -> Option<Code> {
     Status::from_header_map(headers).map(|s| s.code())
@@ -150,18 +165,13 @@ impl http_body::Body for Watched {
             State::Ended => return Poll::Ready(None),
             State::Cut(status) => {
                 let mut trailers = HeaderMap::new();
-                let told = status.add_header(&mut trailers);
+                let told = status::explained(status.clone()).add_header(&mut trailers);
                 shared.state = State::Ended;
                 return Poll::Ready(told.ok().map(|()| Ok(Frame::trailers(trailers))));
             }
             State::Open(inner, call) => {
                 let frame = Pin::new(inner).poll_frame(context);
-                if let Poll::Ready(Some(Ok(frame))) = &frame
-                    && let Some(found) = frame.trailers_ref().and_then(code)
-                {
-                    call.code = Some(found);
-                }
-                frame
+                frame.map(|frame| frame.map(|frame| frame.map(|frame| ended_with(frame, call))))
             }
         };
         match &frame {

@@ -10,6 +10,7 @@ use http::{HeaderMap, HeaderValue, Uri, header};
 use tonic::Status;
 
 use crate::config::Config;
+use crate::status::{self, reason};
 
 /// Which names and origins are answered.
 #[derive(Debug)]
@@ -42,7 +43,7 @@ impl Origins {
             if self.loopback && !known {
                 let message = "this server is asked by a name that is not its own: use localhost, or put the name of a \
                                proxy into the setting `hosts`";
-                return Err(Status::permission_denied(message));
+                return Err(status::because(reason::HOST, &Status::permission_denied(message)));
             }
         }
         let Some(origin) = headers.get(header::ORIGIN) else { return Ok(()) };
@@ -50,7 +51,8 @@ impl Origins {
         match self.is_allowed(origin, own) {
             true => Ok(()),
             false => {
-                Err(Status::permission_denied("pages of this origin may not call: cors_origins has those that may"))
+                let message = "pages of this origin may not call: cors_origins has those that may";
+                Err(status::because(reason::ORIGIN, &Status::permission_denied(message)))
             }
         }
     }
