@@ -101,26 +101,27 @@ impl Core {
         Arc::clone(&self.writing).lock_owned().await
     }
 
-    /// Changes rules; searches and worlds know of it when this returns.
+    /// Changes rules of a domain; searches and worlds know of it when this returns.
     ///
     /// # Errors
     /// What `change` returns; `INTERNAL` when the index cannot be made.
     pub fn change_rules<T>(
         &self,
+        domain: &str,
         change: impl FnOnce(&d3dgen_knowledge::database::Database) -> Result<T, d3dgen_knowledge::Error>,
     ) -> Result<T, Status> {
         let _alone = self.writing();
         let changed = change(&self.databases.rules).map_err(status::knowledge)?;
-        self.changed_rules()?;
+        self.changed_rules(domain)?;
         Ok(changed)
     }
 
-    /// Makes searches and worlds know of changed rules; for a caller that holds [`Core::writing`].
+    /// Makes searches and worlds know of changed rules of a domain; for a caller that has its turn ([`Core::turn`]).
     ///
     /// # Errors
     /// `INTERNAL` when the index cannot be made.
-    pub fn changed_rules(&self) -> Result<(), Status> {
-        self.domains.refresh(&self.databases).map_err(status::own)?;
+    pub fn changed_rules(&self, domain: &str) -> Result<(), Status> {
+        self.domains.refresh_rules(&self.databases, domain).map_err(status::own)?;
         self.databases.index_rules().map_err(status::own)
     }
 

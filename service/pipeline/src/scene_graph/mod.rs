@@ -56,7 +56,7 @@ use crate::Error;
 
 /// Returns the ISO 639-1 codes of the languages that prompts are read in.
 pub fn languages() -> Vec<&'static str> {
-    self::tokens::words::words().languages.keys().map(String::as_str).collect()
+    tokens::words::words().languages.keys().map(String::as_str).collect()
 }
 
 /// Reason of the doors to the corridor or hall.

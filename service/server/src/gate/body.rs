@@ -94,10 +94,12 @@ impl Until {
     /// Waits until the answer is to be cut short, and returns what to say.
     async fn cause(self) -> Status {
         let stopping = async {
-            match self.stop {
-                Some(mut stop) if stop.wait_for(|stops| *stops).await.is_ok() => {}
-                _ => std::future::pending().await,
+            if let Some(mut stop) = self.stop
+                && stop.wait_for(|stops| *stops).await.is_ok()
+            {
+                return;
             }
+            std::future::pending().await
         };
         tokio::select! {
             () = tokio::time::sleep_until(self.deadline) => Status::deadline_exceeded("the stream took longer than it may"),

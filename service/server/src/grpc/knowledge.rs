@@ -328,8 +328,8 @@ fn changed_once(
         Some(found) => Some(found),
         None => change(&by).map_err(status::knowledge)?,
     };
-    if changed.is_some() {
-        core.changed_rules()?;
+    if let Some(changed) = &changed {
+        core.changed_rules(&changed.domain)?;
     }
     Ok(changed)
 }

@@ -26,7 +26,7 @@ pub(super) enum Weight {
 pub(super) struct Outbox<T>(Arc<Mutex<Inner<T>>>);
 
 /// The end of the client, with the work that ends when it goes.
-pub(super) struct Inbox<T> {
+pub struct Inbox<T> {
     inner: Arc<Mutex<Inner<T>>>,
     _work: (StopOnDrop, AbortOnDrop),
 }

@@ -28,7 +28,7 @@ const SHARES: [f64; Stage::ALL.len()] = [0.05, 0.25, 0.5, 0.05, 0.15];
 const ATTEMPT: f64 = 0.9;
 
 /// What is sent; the work ends when nobody takes it any more.
-pub(super) type Events = Inbox<GenerateWorldResponse>;
+pub type Events = Inbox<GenerateWorldResponse>;
 
 impl Api {
     /// Starts the stages and returns what they send.
