@@ -48,6 +48,11 @@ pub use self::people::seats::shortages;
 pub use self::proposed::{BY_PROPOSAL, Draft, DraftEdge, DraftRoom, Settled, propose};
 pub use self::request::Request;
 
+/// Returns the ISO 639-1 codes of the languages that prompts are read in.
+pub fn languages() -> Vec<&'static str> {
+    tokens::words::words().languages.keys().map(String::as_str).collect()
+}
+
 /// Turns a request into a scene graph.
 ///
 /// # Errors

@@ -1,6 +1,7 @@
 //! `DomainService`.
 
 use std::collections::BTreeMap;
+use std::sync::atomic::AtomicBool;
 
 use d3dgen_knowledge::classify::{classify, ties};
 use d3dgen_model::domain::Domain;
@@ -25,11 +26,6 @@ use crate::domains::{Entry, Refusal, Snapshot};
 use crate::names;
 use crate::status::{self, invalid};
 
-/// Files of a domain folder at most.
-const FILES: usize = 64;
-/// Room labels of one question at most.
-const LABELS: usize = 1000;
-
 #[tonic::async_trait]
 impl DomainService for Api {
     async fn list_domains(&self, request: Request<ListDomainsRequest>) -> Answer<ListDomainsResponse> {
@@ -53,7 +49,7 @@ impl DomainService for Api {
             if let Some(version) = asked.domain_version.filter(|v| *v != in_force) {
                 let found = core.domains.version(&core.databases, &asked.domain_id, version);
                 let (entry, domain, knowledge) = found
-                    .map_err(|e| status::internal(&e))?
+                    .map_err(status::own)?
                     .ok_or_else(|| Status::not_found(format!("{} has no version {version}", asked.domain_id)))?;
                 let manifest = asked.include_manifest.then(|| message(&domain));
                 let custom = Custom::of(domain, knowledge);
@@ -94,13 +90,17 @@ impl DomainService for Api {
     async fn register_domain(&self, request: Request<RegisterDomainRequest>) -> Answer<RegisterDomainResponse> {
         let who = caller(&request).name;
         let q = request.get_ref();
-        let id = if q.validate_only { String::new() } else { q.request_id.clone() };
-        let change = move |core: &Core, asked: RegisterDomainRequest, once: &super::Once| {
-            let domain: Domain = document("manifest", asked.manifest)?;
-            let knowledge: KnowledgeBase = match asked.knowledge_base {
+        let id = (!q.validate_only).then(|| q.request_id.clone());
+        let read = |_: &Core, mut asked: RegisterDomainRequest, _: &AtomicBool| {
+            let domain: Domain = document("manifest", asked.manifest.take())?;
+            let knowledge: KnowledgeBase = match asked.knowledge_base.take() {
                 Some(given) => with_shared(document("knowledge_base", Some(given))?)?,
                 None => KnowledgeBase::empty(&domain.id),
             };
+            Ok((domain, knowledge, asked))
+        };
+        type Read = (Domain, KnowledgeBase, RegisterDomainRequest);
+        let change = move |core: &Core, (domain, knowledge, asked): Read, once: &super::Once| {
             let now = core.domains.now();
             let in_force = now.registered.get(&domain.id).map_or(0, |e| e.version);
             if asked.expected_version.is_some_and(|v| v != in_force) {
@@ -122,10 +122,10 @@ impl DomainService for Api {
                     once.also(core, &answer(entry), batch);
                 })
                 .map_err(refused)?;
-            core.open_indexes().map_err(|e| status::internal(&e))?;
+            core.open_indexes().map_err(status::own)?;
             Ok(answer(&entry))
         };
-        self.change("RegisterDomain", request, id, change).await
+        self.change_read("RegisterDomain", request, id, read, change).await
     }
 
     async fn remove_domain(&self, request: Request<RemoveDomainRequest>) -> Answer<RemoveDomainResponse> {
@@ -138,10 +138,10 @@ impl DomainService for Api {
             let by = core.provenance(&who, &format!("domain {id} removed"));
             let answer = RemoveDomainResponse {};
             let removed = core.domains.remove(&core.databases, id, &by, |batch| once.also(core, &answer, batch));
-            if !removed.map_err(|e| status::internal(&e))? {
+            if !removed.map_err(status::own)? {
                 return Err(no_domain(&core.domains.now(), id));
             }
-            core.open_indexes().map_err(|e| status::internal(&e))?;
+            core.open_indexes().map_err(status::own)?;
             Ok(answer)
         };
         {
@@ -161,7 +161,7 @@ impl DomainService for Api {
             let now = core.domains.now();
             plugin(&now, "domain_id", &asked.domain_id)?;
             let in_force = now.registered.get(&asked.domain_id).map(|e| e.version);
-            let all = core.domains.versions(&core.databases, &asked.domain_id).map_err(|e| status::internal(&e))?;
+            let all = core.domains.versions(&core.databases, &asked.domain_id).map_err(status::own)?;
             let versions = all.into_iter().rev().map(|(entry, digest)| DomainVersion {
                 domain_version: entry.version,
                 sha256_hex: digest,
@@ -180,13 +180,10 @@ impl DomainService for Api {
 
     async fn classify_domain(&self, request: Request<ClassifyDomainRequest>) -> Answer<ClassifyDomainResponse> {
         let asked = request.into_inner();
-        if asked.room_labels.len() > LABELS {
-            return Err(invalid("room_labels", format!("has {}, at most {LABELS}", asked.room_labels.len())));
-        }
         if asked.prompt.trim().is_empty() && asked.room_labels.is_empty() {
             return Err(invalid("prompt", "is empty: give a sentence, or room_labels"));
         }
-        self.work(move |core, _| {
+        self.short(move |core, _| {
             let now = core.domains.now();
             if !asked.room_labels.is_empty() {
                 let domains: Vec<&Domain> = now.registry.iter().map(Plugin::domain).collect();
@@ -250,7 +247,7 @@ fn refused(refusal: Refusal) -> Status {
             Status::already_exists("the id belongs to a domain that came with the server; choose another")
         }
         Refusal::Full => Status::resource_exhausted("there are as many registered domains as a server takes"),
-        Refusal::Failed(error) => status::internal(&error),
+        Refusal::Failed(error) => status::own(error),
     }
 }
 
@@ -277,9 +274,6 @@ fn described(plugin: &dyn Plugin, entry: Option<&Entry>) -> DomainMessage {
 
 /// Returns the texts of a domain folder by name.
 fn texts(asked: ParseDomainRequest) -> Result<BTreeMap<String, String>, Status> {
-    if asked.files.len() > FILES {
-        return Err(invalid("files", format!("has {}, at most {FILES}", asked.files.len())));
-    }
     let mut files = BTreeMap::new();
     for (i, file) in asked.files.into_iter().enumerate() {
         let field = format!("files[{i}].name");
