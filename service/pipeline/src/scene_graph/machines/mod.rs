@@ -5,3 +5,4 @@ pub(super) mod docks;
 pub(super) mod keeps;
 pub(super) mod robot_rules;
 pub(super) mod robots;
+pub(super) mod sizes;
