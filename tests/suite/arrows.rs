@@ -11,6 +11,7 @@ use serde_json::Value;
 const ARROWS: &[(&str, &[&str])] = &[
     ("model", &[]),
     ("plugins", &["model"]),
+    ("language", &[]),
     ("store", &[]),
     ("llm", &[]),
     ("knowledge", &["model", "store"]),

@@ -1,0 +1,218 @@
+//! What words of all languages stand for.
+
+use std::collections::{BTreeMap, HashMap};
+use std::sync::{Arc, OnceLock};
+
+use crate::data::{self, LanguageData, Shipped, Unread};
+use crate::morphology::stem;
+use crate::spelling::Vocabulary;
+use crate::tokens::{Token, TokenKind, tokens};
+
+/// Code of what is the same in all languages.
+pub(crate) const ANY: &str = "any";
+
+/// The phrases of all languages with what they stand for.
+#[derive(Debug, Clone)]
+pub struct Lexicon {
+    pub(crate) languages: Vec<Language>,
+    /// Classes whose words count only as they are written.
+    exact: Vec<String>,
+    /// Classes whose words are also understood amid another language.
+    pub(crate) travels: Vec<String>,
+    pub(crate) unread: Arc<Unread>,
+}
+
+/// One language, ready to look words up.
+#[derive(Debug, Clone)]
+pub(crate) struct Language {
+    pub data: LanguageData,
+    keys: HashMap<String, u32>,
+    /// From a node and the key of a word to the next node.
+    steps: HashMap<(u32, u32), u32>,
+    /// What the phrase that ends in a node stands for.
+    ends: Vec<Vec<Entry>>,
+    pub vocabulary: Vocabulary,
+}
+
+/// What one phrase stands for.
+#[derive(Debug, Clone)]
+pub(crate) struct Entry {
+    pub class: Arc<str>,
+    pub value: Arc<str>,
+    /// Its words, folded and not stemmed.
+    words: Box<str>,
+    /// True when only these very words count.
+    exact: bool,
+}
+
+/// A run of tokens that a language has entries for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Match {
+    pub from: usize,
+    pub to: usize,
+    /// Index of the language.
+    pub language: usize,
+    /// Where its entries are.
+    pub node: u32,
+    /// True when one entry is written exactly so.
+    pub exact: bool,
+}
+
+impl Lexicon {
+    /// Returns the lexicon of the crate: the words that build sentences, not yet those of any building.
+    ///
+    /// # Panics
+    /// Never: a test reads the files of the crate.
+    pub fn shipped() -> Self {
+        static SHIPPED: OnceLock<Lexicon> = OnceLock::new();
+        SHIPPED.get_or_init(|| Self::of(data::shipped().expect("a test reads the files of the crate"))).clone()
+    }
+
+    fn of(shipped: Shipped) -> Self {
+        let exact = shipped.classes.iter().filter(|(_, c)| c.exact).map(|(name, _)| name.clone()).collect();
+        let travels = shipped.classes.iter().filter(|(_, c)| c.travels).map(|(name, _)| name.clone()).collect();
+        let mut lexicon = Self { languages: Vec::new(), exact, travels, unread: Arc::new(shipped.unread) };
+        for mut data in shipped.languages {
+            let words = std::mem::take(&mut data.words);
+            lexicon.languages.push(Language::of(data));
+            let at = lexicon.languages.len() - 1;
+            words.iter().for_each(|w| lexicon.put(at, &w.class, &w.value, &w.phrase));
+        }
+        lexicon
+    }
+
+    /// Adds a phrase of a language: `any` for all of them. A language without a folder is as if it had one that says nothing.
+    pub fn add(&mut self, language: &str, class: &str, value: &str, phrase: &str) {
+        let at = self.languages.iter().position(|l| l.data.code == language).unwrap_or_else(|| {
+            self.languages.push(Language::of(bare(language)));
+            self.languages.len() - 1
+        });
+        self.put(at, class, value, phrase);
+    }
+
+    /// Returns the codes of the languages it reads, and their names in English.
+    pub fn languages(&self) -> BTreeMap<&str, &str> {
+        let read = self.languages.iter().filter(|l| l.data.code != ANY);
+        read.map(|l| (l.data.code.as_str(), l.data.name.as_str())).collect()
+    }
+
+    fn put(&mut self, at: usize, class: &str, value: &str, phrase: &str) {
+        let exact = self.exact.iter().any(|c| c == class);
+        let language = &mut self.languages[at];
+        language.put(class, value, phrase, exact);
+        let typed =
+            language.data.transcriptions.iter().fold(phrase.to_lowercase(), |p, (from, to)| p.replace(from, to));
+        if typed != phrase.to_lowercase() {
+            language.put(class, value, &typed, exact);
+        }
+    }
+
+    /// Returns every run of tokens that some language has an entry for, in no order that matters.
+    pub(crate) fn matches(&self, tokens: &[Token]) -> Vec<Match> {
+        let mut found = Vec::new();
+        for (at, language) in self.languages.iter().enumerate() {
+            let keys: Vec<Option<u32>> = tokens.iter().map(|t| language.key(t)).collect();
+            for from in 0..tokens.len() {
+                language.walk(at, tokens, &keys, from, &mut found);
+            }
+        }
+        found
+    }
+}
+
+impl Language {
+    fn of(data: LanguageData) -> Self {
+        let vocabulary = Vocabulary::new(&data.lookalikes);
+        Self { data, keys: HashMap::new(), steps: HashMap::new(), ends: vec![Vec::new()], vocabulary }
+    }
+
+    fn put(&mut self, class: &str, value: &str, phrase: &str, exact: bool) {
+        let words = tokens(phrase);
+        if words.is_empty() {
+            return;
+        }
+        let mut node = 0;
+        for word in &words {
+            if word.kind == TokenKind::Word {
+                self.vocabulary.add(&word.text);
+            }
+            let next_key = self.keys.len() as u32;
+            let key = *self.keys.entry(self.stem(word)).or_insert(next_key);
+            let next = self.ends.len() as u32;
+            node = *self.steps.entry((node, key)).or_insert(next);
+            if node == next {
+                self.ends.push(Vec::new());
+            }
+        }
+        let ends = &mut self.ends[node as usize];
+        let words = joined(&words);
+        if !ends.iter().any(|e| *e.class == *class && *e.value == *value && *e.words == *words) {
+            ends.push(Entry { class: class.into(), value: value.into(), words: words.into(), exact });
+        }
+    }
+
+    fn stem(&self, token: &Token) -> String {
+        if token.kind == TokenKind::Word { stem(&token.text, &self.data) } else { token.text.clone() }
+    }
+
+    fn key(&self, token: &Token) -> Option<u32> {
+        self.keys.get(&self.stem(token)).copied()
+    }
+
+    fn walk(&self, at: usize, tokens: &[Token], keys: &[Option<u32>], from: usize, found: &mut Vec<Match>) {
+        let mut node = 0;
+        for to in from..tokens.len() {
+            let next = keys[to].and_then(|key| self.steps.get(&(node, key)));
+            let Some(next) = next else { return };
+            node = *next;
+            if self.ends[node as usize].is_empty() {
+                continue;
+            }
+            let words = joined(&tokens[from..=to]);
+            let exact = self.ends[node as usize].iter().any(|e| *e.words == *words);
+            if exact || self.ends[node as usize].iter().any(|e| !e.exact) {
+                found.push(Match { from, to: to + 1, language: at, node, exact });
+            }
+        }
+    }
+
+    /// Returns the entries of a match: those written exactly so where there are any.
+    pub fn entries(&self, node: u32, tokens: &[Token]) -> Vec<(&Entry, bool)> {
+        let words = joined(tokens);
+        let all = &self.ends[node as usize];
+        let exact: Vec<(&Entry, bool)> = all.iter().filter(|e| *e.words == *words).map(|e| (e, true)).collect();
+        if exact.is_empty() { all.iter().filter(|e| !e.exact).map(|e| (e, false)).collect() } else { exact }
+    }
+
+    /// Returns the entries of one word that is not a token, with whether it is written exactly so.
+    pub fn word(&self, word: &str) -> Option<&[Entry]> {
+        let key = self.keys.get(&stem(word, &self.data))?;
+        let node = self.steps.get(&(0, *key))?;
+        let entries = &self.ends[*node as usize];
+        let fits = entries.iter().any(|e| !e.exact || *e.words == *word);
+        (fits && !entries.is_empty()).then_some(entries)
+    }
+}
+
+fn joined(tokens: &[Token]) -> String {
+    if let [token] = tokens {
+        return token.text.clone();
+    }
+    tokens.iter().map(|t| t.text.as_str()).collect::<Vec<_>>().join(" ")
+}
+
+fn bare(code: &str) -> LanguageData {
+    LanguageData {
+        code: code.to_owned(),
+        name: code.to_owned(),
+        decimal: '.',
+        head_last: true,
+        endings: Vec::new(),
+        same: Vec::new(),
+        joints: Vec::new(),
+        transcriptions: Vec::new(),
+        lookalikes: Vec::new(),
+        letters: Vec::new(),
+        words: Vec::new(),
+    }
+}

@@ -1,0 +1,98 @@
+//! Misspelled words: the nearest word of a language, where only one is near and the word is none itself.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Words shorter than this are not mended: too many others are near.
+const SHORTEST: usize = 5;
+/// Words from this length on may have two slips.
+const LONG: usize = 9;
+
+/// The words of a language, by what a misspelling leaves alone: their first letter and about their length.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Vocabulary {
+    words: BTreeMap<(char, usize), BTreeSet<String>>,
+    /// Words that are near others and right.
+    lookalikes: BTreeSet<String>,
+}
+
+impl Vocabulary {
+    pub fn new(lookalikes: &[String]) -> Self {
+        Self { words: BTreeMap::new(), lookalikes: lookalikes.iter().cloned().collect() }
+    }
+
+    pub fn add(&mut self, word: &str) {
+        let length = word.chars().count();
+        if length >= SHORTEST - 1
+            && let Some(first) = word.chars().next()
+        {
+            self.words.entry((first, length)).or_default().insert(word.to_owned());
+        }
+    }
+
+    /// Returns the word that a misspelled one was meant to be, and nothing where it is right, short, or near to several.
+    pub fn mend(&self, word: &str) -> Option<&str> {
+        let length = word.chars().count();
+        if length < SHORTEST || self.lookalikes.contains(word) {
+            return None;
+        }
+        let slips = if length >= LONG { 2 } else { 1 };
+        let first = word.chars().next()?;
+        let mut best: Option<(usize, &str, bool)> = None;
+        for near in length.saturating_sub(slips)..=length + slips {
+            for known in self.words.get(&(first, near)).into_iter().flatten() {
+                if apart(word, known) > 2 * slips {
+                    continue;
+                }
+                let slipped = strsim::osa_distance(word, known);
+                if slipped == 0 || slipped > slips {
+                    continue;
+                }
+                match best {
+                    Some((least, ..)) if slipped > least => {}
+                    // "bedrooms" and "bedroom" are one answer
+                    Some((least, old, alone)) if slipped == least => {
+                        best = Some((least, old, alone && akin(old, known)))
+                    }
+                    _ => best = Some((slipped, known, true)),
+                }
+            }
+        }
+        best.filter(|b| b.2).map(|b| b.1)
+    }
+}
+
+/// Returns how many kinds of letters one of two words has and the other lacks: never more than twice their distance.
+fn apart(a: &str, b: &str) -> usize {
+    let letters = |word: &str| word.chars().fold(0u64, |set, c| set | 1 << (u32::from(c) % 61));
+    (letters(a) ^ letters(b)).count_ones() as usize
+}
+
+/// Returns true when two words are forms of one.
+fn akin(a: &str, b: &str) -> bool {
+    let same = a.chars().zip(b.chars()).take_while(|(x, y)| x == y).count();
+    let (long, short) = (a.chars().count().max(b.chars().count()), a.chars().count().min(b.chars().count()));
+    same + 1 >= short && long - same <= 3
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_near_word_is_meant_and_two_are_not() {
+        let mut words = Vocabulary::new(&["bathrobe".to_owned()]);
+        ["bedroom", "bedrooms", "bathroom", "garage", "kitchen", "office", "officer"].iter().for_each(|w| words.add(w));
+        for (written, meant) in [
+            ("bedrom", Some("bedroom")),
+            ("garrage", Some("garage")),
+            ("kithcen", Some("kitchen")),
+            ("batroom", Some("bathroom")),
+            ("kitten", None),
+            ("garden", None),
+            ("room", None),
+            ("bathrobe", None),
+        ] {
+            assert_eq!(words.mend(written), meant, "{written}");
+        }
+    }
+}
