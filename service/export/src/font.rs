@@ -105,6 +105,7 @@ impl Font {
     }
 
     /// Returns true when the fonts have a glyph for every character.
+    #[cfg(test)]
     pub fn covers(&self, text: &str) -> bool {
         text.chars().all(|c| self.font_of(c).is_some())
     }

@@ -10,7 +10,7 @@ use d3dgen_model::floorplan::{Door, Floorplan};
 use d3dgen_model::geometry::{Point, Rect, Segment, to_mm};
 use d3dgen_model::obstacles::{Obstacles, clear_opening};
 use d3dgen_model::occupancy::{Bitmap, CELL_M, FLAT_M, Occupancy, ROBOT_HEIGHT_M};
-use d3dgen_model::scenario::RoiKind;
+use d3dgen_model::scenario::{Poi, RoiKind};
 use d3dgen_model::storeys::LinkKind;
 use d3dgen_model::world::World;
 
@@ -82,10 +82,7 @@ impl Ground {
 
     /// Returns true where nothing stands and robots may be.
     fn is_open(&self, p: Point) -> bool {
-        self.occupancy
-            .frame
-            .cell(p)
-            .is_some_and(|(i, j)| self.occupancy.free.get(i, j) && !self.kept_out.get(i, j))
+        self.occupancy.frame.cell(p).is_some_and(|(i, j)| self.occupancy.free.get(i, j) && !self.kept_out.get(i, j))
     }
 
     /// Returns the distance to the nearest thing as far as it matters, m.
@@ -149,7 +146,8 @@ impl Roadmap {
     /// Returns the roadmap of one storey. Places that the robot does not fit at, and parts of the storey that it does not
     /// get to from the largest, are left out.
     pub fn of(storey: &World, ground: &Ground) -> Self {
-        let mut maker = Maker { ground, plan: &storey.floorplan, nodes: Vec::new(), rooms: Vec::new(), lanes: BTreeMap::new() };
+        let (nodes, rooms, docks, lanes) = (Vec::new(), Vec::new(), Vec::new(), BTreeMap::new());
+        let mut maker = Maker { ground, plan: &storey.floorplan, nodes, rooms, docks, lanes };
         maker.add_places(storey);
         maker.add_doors();
         maker.add_lifts();
@@ -186,6 +184,8 @@ struct Maker<'a> {
     nodes: Vec<Node>,
     /// By node: the room that it is in.
     rooms: Vec<usize>,
+    /// Nodes of docks: a lane leads to one and not from one to the next.
+    docks: Vec<usize>,
     /// Lanes by their ends, the lower first, with the door that they go through.
     lanes: BTreeMap<(usize, usize), Option<String>>,
 }
@@ -210,7 +210,8 @@ impl Maker<'_> {
             let at = Point::new(poi.pose.x, poi.pose.y);
             let taken = self.nodes.iter().any(|n| n.at.distance(at) < CELL_M);
             if !taken && self.fits(at, self.ground.body.least_radius_m) {
-                self.add(at, Place::Poi(poi.poi_id.clone()));
+                let node = self.add(at, Place::Poi(poi.poi_id.clone()));
+                self.docks.extend(node.filter(|_| poi.kind == Poi::DOCK));
             }
         }
     }
@@ -277,7 +278,8 @@ impl Maker<'_> {
     /// Returns the least distance that a lane between two nodes needs: the radius with some play, less where a node has less.
     fn need(&self, ends: [usize; 2]) -> f64 {
         let body = self.ground.body;
-        let own = ends.map(|n| self.ground.clearance(self.nodes[n].at)).into_iter().fold(body.radius_m + PLAY_M, f64::min);
+        let own =
+            ends.map(|n| self.ground.clearance(self.nodes[n].at)).into_iter().fold(body.radius_m + PLAY_M, f64::min);
         own.max(body.least_radius_m) - ROUNDING_M
     }
 
@@ -289,7 +291,8 @@ impl Maker<'_> {
             for (k, &a) in own.iter().enumerate() {
                 for &b in &own[k + 1..] {
                     let (p, q) = (self.nodes[a].at, self.nodes[b].at);
-                    if self.ground.along(p, q) >= self.need([a, b]) && self.doors_on(p, q).is_empty() {
+                    let berths = self.docks.contains(&a) && self.docks.contains(&b);
+                    if !berths && self.ground.along(p, q) >= self.need([a, b]) && self.doors_on(p, q).is_empty() {
                         seen.insert((a, b), p.distance(q));
                     }
                 }
@@ -328,6 +331,9 @@ impl Maker<'_> {
                 continue;
             }
             let Some(corners) = self.pulled(&path) else { continue };
+            if corners.len() == 2 && self.docks.contains(&a) && self.docks.contains(&b) {
+                continue;
+            }
             let mut last = a;
             let mut joined = true;
             for at in &corners[1..corners.len() - 1] {
@@ -465,9 +471,10 @@ impl Maker<'_> {
         let best = counts.into_iter().max_by_key(|(part, count)| (*count, usize::MAX - part)).map(|(part, _)| part);
         let kept: Vec<usize> = (0..self.nodes.len()).filter(|n| Some(part[*n]) == best).collect();
         let place = |n: usize| kept.binary_search(&n).ok();
-        let lanes = self.lanes.into_iter().filter_map(|((a, b), door)| {
-            Some(Lane { ends: [place(a)?, place(b)?], door, max_speed_m_s: None })
-        });
+        let lanes = self
+            .lanes
+            .into_iter()
+            .filter_map(|((a, b), door)| Some(Lane { ends: [place(a)?, place(b)?], door, max_speed_m_s: None }));
         Roadmap { lanes: lanes.collect(), nodes: kept.iter().map(|n| self.nodes[*n].clone()).collect() }
     }
 }

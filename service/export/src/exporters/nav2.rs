@@ -168,7 +168,12 @@ fn approach(pose: &Pose, ground: &Ground) -> Option<f64> {
     };
     let turned = |yaw: f64| (yaw + PI).rem_euclid(TAU) - PI;
     let headings = [turned(pose.yaw_rad), turned(pose.yaw_rad + PI)];
-    headings.into_iter().map(|yaw| (clear(&yaw), yaw)).filter(|(c, _)| *c > 0.0).max_by(|a, b| a.0.total_cmp(&b.0)).map(|b| b.1)
+    headings
+        .into_iter()
+        .map(|yaw| (clear(&yaw), yaw))
+        .filter(|(c, _)| *c > 0.0)
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|b| b.1)
 }
 
 /// Returns the roadmap as the graph of nav2's route server: every lane once for each direction.

@@ -95,7 +95,8 @@ impl Building {
             group.iter_mut().filter(|g| joined.contains(g)).for_each(|g| *g = least);
         }
         let docked = |k: &usize| {
-            let is_dock = |id: &String| storeys[*k].world.scenario.pois.iter().any(|p| &p.poi_id == id && p.kind == Poi::DOCK);
+            let is_dock =
+                |id: &String| storeys[*k].world.scenario.pois.iter().any(|p| &p.poi_id == id && p.kind == Poi::DOCK);
             storeys[*k].roadmap.nodes.iter().any(|n| matches!(&n.place, Place::Poi(id) if is_dock(id)))
         };
         let with_dock: BTreeSet<usize> = (0..storeys.len()).filter(docked).map(|k| group[k]).collect();
@@ -352,7 +353,8 @@ fn motion(door: &Door, plan: &Floorplan) -> Value {
 
 /// Returns the doors of all storeys by name, with their ends.
 fn doors_of_graph(plan: &Floorplan, lifts: &BTreeSet<String>) -> Value {
-    let ends = |d: &Door| json!([[to_mm(d.line.start.x), to_mm(d.line.start.y)], [to_mm(d.line.end.x), to_mm(d.line.end.y)]]);
+    let ends =
+        |d: &Door| json!([[to_mm(d.line.start.x), to_mm(d.line.start.y)], [to_mm(d.line.end.x), to_mm(d.line.end.y)]]);
     let level = |d: &Door| d.room_ids.iter().find_map(|id| plan.room(id)).map_or(0, |r| r.level);
     let entry = |d: &Door| (d.door_id.clone(), json!({"endpoints": ends(d), "map": level_name(level(d))}));
     Value::Object(leaves(plan, lifts).map(entry).collect())

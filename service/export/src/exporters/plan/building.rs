@@ -89,9 +89,7 @@ pub(super) fn is_at(plan: &Floorplan, wall: &Segment, end: Point) -> bool {
         let (wx, wy) = (wall.end.x - wall.start.x, wall.end.y - wall.start.y);
         (dx * wy - dy * wx).abs() < 0.01 * line.length() * wall.length()
     };
-    openings
-        .into_iter()
-        .any(|o| (o.start.distance(end) < TOLERANCE_M || o.end.distance(end) < TOLERANCE_M) && along(o))
+    openings.into_iter().any(|o| (o.start.distance(end) < TOLERANCE_M || o.end.distance(end) < TOLERANCE_M) && along(o))
 }
 
 /// A straight opening with its own axes: `t` along the wall, `n` across it.

@@ -138,7 +138,11 @@ fn lines(page: &mut Page, frame: &Frame, chain: &Chain, size: f64) {
     let mut ticks = Path::new();
     for (i, mark) in chain.marks.iter().enumerate() {
         let outermost = i == 0 || i + 1 == chain.marks.len();
-        let begins = if outermost || chain.whole { on(*mark, chain.from, (0.0, 0.3 * NEAR)) } else { on(*mark, chain.at, (0.0, -over)) };
+        let begins = if outermost || chain.whole {
+            on(*mark, chain.from, (0.0, 0.3 * NEAR))
+        } else {
+            on(*mark, chain.at, (0.0, -over))
+        };
         thin = thin.segment(begins, on(*mark, chain.at, (0.0, over)));
         ticks = ticks.segment(on(*mark, chain.at, (-tick, -tick)), on(*mark, chain.at, (tick, tick)));
     }

@@ -251,8 +251,7 @@ impl Facts<'_> {
         let goals = world.scenario.robots.iter().any(|r| !r.goals.is_empty());
         let docks = world.scenario.pois.iter().any(|p| p.kind == Poi::DOCK);
         let tints = self.tints();
-        let mut rows: Vec<(&str, Swatch)> =
-            rois.into_iter().map(|r| (style::roi_label(r), Swatch::Roi(r))).collect();
+        let mut rows: Vec<(&str, Swatch)> = rois.into_iter().map(|r| (style::roi_label(r), Swatch::Roi(r))).collect();
         if world.floorplan.doors.iter().any(|d| d.automatic) {
             rows.push(("Opens by itself", Swatch::Automatic));
         }
@@ -455,9 +454,8 @@ fn pieces(text: &str) -> Vec<(bool, String)> {
     for word in text.split_whitespace() {
         let mut before: Option<char> = None;
         for c in word.chars() {
-            let breaks = before.is_some_and(|b| {
-                (is_wide(c) || is_wide(b)) && !CLOSING.contains(c) && !OPENING.contains(b)
-            });
+            let breaks =
+                before.is_some_and(|b| (is_wide(c) || is_wide(b)) && !CLOSING.contains(c) && !OPENING.contains(b));
             match (before, out.last_mut()) {
                 (Some(_), Some(last)) if !breaks => last.1.push(c),
                 (Some(_), _) => out.push((false, c.to_string())),
@@ -489,6 +487,9 @@ mod tests {
     fn a_legend_names_what_its_line_holds() {
         let page = Page::new();
         assert_eq!(page_list(&page, &["Living room", "Kitchen"], 14.0, 400.0), "Living room, kitchen");
-        assert_eq!(page_list(&page, &["Living room", "Kitchen", "Dining room"], 14.0, 150.0), "Living room, kitchen, …");
+        assert_eq!(
+            page_list(&page, &["Living room", "Kitchen", "Dining room"], 14.0, 150.0),
+            "Living room, kitchen, …"
+        );
     }
 }

@@ -84,7 +84,10 @@ impl Sheet {
         let map = path.abs_transform().post_concat(self.onto);
         let (fill, stroke) = (path.fill(), path.stroke());
         let percent = |opacity: f32| (opacity * 100.0).round().clamp(0.0, 100.0) as u8;
-        self.shade([fill.map_or(100, |f| percent(f.opacity().get())), stroke.map_or(100, |s| percent(s.opacity().get()))]);
+        self.shade([
+            fill.map_or(100, |f| percent(f.opacity().get())),
+            stroke.map_or(100, |s| percent(s.opacity().get())),
+        ]);
         if let Some(fill) = fill {
             let [r, g, b] = color(fill.paint())?;
             self.content.set_fill_rgb(r, g, b);
@@ -116,7 +119,11 @@ impl Sheet {
     }
 
     fn filled(&mut self, even_odd: bool) {
-        if even_odd { self.content.fill_even_odd() } else { self.content.fill_nonzero() };
+        if even_odd {
+            self.content.fill_even_odd()
+        } else {
+            self.content.fill_nonzero()
+        };
     }
 
     fn shade(&mut self, opacities: [u8; 2]) {

@@ -56,13 +56,22 @@ fn every_build_has_a_symbol_of_its_own() {
 
 #[test]
 fn prompts_and_names_in_any_script_are_drawn() {
-    for name in ["两居室公寓", "원룸 아파트", "二世帯住宅のキッチン", "Двухкомнатная квартира", "Phòng ngủ", "Δωμάτιο", "Łazienka"] {
+    for name in [
+        "两居室公寓",
+        "원룸 아파트",
+        "二世帯住宅のキッチン",
+        "Двухкомнатная квартира",
+        "Phòng ngủ",
+        "Δωμάτιο",
+        "Łazienka",
+    ] {
         let mut world = sample::world();
         world.scene_graph.prompt = name.into();
         world.floorplan.rooms[1].name = name.into();
         let svg = svg(&world, &sample::domain());
         let drawn = |label: &str| {
-            let (_, path) = svg.split_once(&format!("aria-label=\"{label}\" d=\"")).unwrap_or_else(|| panic!("{label}"));
+            let (_, path) =
+                svg.split_once(&format!("aria-label=\"{label}\" d=\"")).unwrap_or_else(|| panic!("{label}"));
             path.split('"').next().unwrap_or_default().matches('M').count()
         };
         let letters = name.chars().filter(|c| !c.is_whitespace()).count();

@@ -469,7 +469,8 @@ impl Bodies<'_> {
             ("climb", flags.climb_m, said.climb_m),
         ] {
             if let Some((flag, named)) = other(flag, named) {
-                let message = format!("the prompt says {named} m robot {name}, the request {flag} m; {flag} m was used");
+                let message =
+                    format!("the prompt says {named} m robot {name}, the request {flag} m; {flag} m was used");
                 self.tell("robot_flag", message);
             }
         }

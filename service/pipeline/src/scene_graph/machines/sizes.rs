@@ -384,10 +384,22 @@ mod tests {
 
         let flags = RobotBody { width_m: Some(0.6), length_m: Some(0.8), ..RobotBody::default() };
         for (bare, told) in [
-            ("hospital ward with 8 rooms for a delivery robot", "hospital ward with 8 rooms for a delivery robot 0.6 m wide and 0.8 m long"),
-            ("Krankenstation mit 8 Zimmern für einen Lieferroboter", "Krankenstation mit 8 Zimmern für einen 60 cm breiten und 80 cm langen Lieferroboter"),
-            ("bureau de 8 pièces pour un robot de livraison", "bureau de 8 pièces pour un robot de livraison de 60 cm de large et 80 cm de long"),
-            ("oficina de 8 salas para un robot de reparto", "oficina de 8 salas para un robot de reparto de 60 cm de ancho y 80 cm de largo"),
+            (
+                "hospital ward with 8 rooms for a delivery robot",
+                "hospital ward with 8 rooms for a delivery robot 0.6 m wide and 0.8 m long",
+            ),
+            (
+                "Krankenstation mit 8 Zimmern für einen Lieferroboter",
+                "Krankenstation mit 8 Zimmern für einen 60 cm breiten und 80 cm langen Lieferroboter",
+            ),
+            (
+                "bureau de 8 pièces pour un robot de livraison",
+                "bureau de 8 pièces pour un robot de livraison de 60 cm de large et 80 cm de long",
+            ),
+            (
+                "oficina de 8 salas para un robot de reparto",
+                "oficina de 8 salas para un robot de reparto de 60 cm de ancho y 80 cm de largo",
+            ),
             ("8间办公室,一台配送机器人", "8间办公室,一台配送机器人,宽0.6米,长0.8米"),
             ("사무실 8개, 배달 로봇 1대", "사무실 8개, 배달 로봇 1대, 폭 0.6m, 길이 0.8m"),
         ] {

@@ -43,7 +43,12 @@ fn our_own_reader_finds_the_same_rooms_and_doors() {
     }
     let kinds = |kind: OpeningKind| layout.openings.iter().filter(|o| o.kind == kind).count();
     let of_ours = |open: bool| plan.doors.iter().filter(|d| (d.kind == DoorKind::Open) == open).count();
-    assert_eq!((kinds(OpeningKind::Door), kinds(OpeningKind::Passage)), (of_ours(false), of_ours(true)), "{:?}", layout.notes);
+    assert_eq!(
+        (kinds(OpeningKind::Door), kinds(OpeningKind::Passage)),
+        (of_ours(false), of_ours(true)),
+        "{:?}",
+        layout.notes
+    );
     assert_eq!(kinds(OpeningKind::Window), plan.windows.len(), "{:?}", layout.notes);
     let types: Vec<String> = layout
         .rooms
