@@ -9,6 +9,7 @@ use std::sync::OnceLock;
 
 use d3dgen_assets::annotation::Annotation;
 use d3dgen_eval::Evaluation;
+use d3dgen_model::brief::Brief;
 use d3dgen_model::document::Document;
 use d3dgen_model::domain::Domain;
 use d3dgen_model::edits::Edits;
@@ -37,6 +38,7 @@ pub fn schemas() -> Vec<(PathBuf, String)> {
     vec![
         entry::<Domain>(),
         entry::<KnowledgeBase>(),
+        entry::<Brief>(),
         entry::<SceneGraph>(),
         entry::<Floorplan>(),
         entry::<Placements>(),

@@ -266,6 +266,7 @@ pub fn report(constraints: &[(&str, &str, bool, Status)]) -> Report {
         summary: ConstraintSummary::default(),
         constraints: constraints.iter().map(result).collect(),
         robot_fit: Vec::new(),
+        asks: Vec::new(),
         figures: Default::default(),
     }
 }

@@ -6,6 +6,7 @@
 //! Lengths are meters, areas square meters, angles radians; x east, y north, z up; yaw counter-clockwise from +x.
 //! An object's own frame has x forward (the side its user stands on), y left, z up (ROS REP 103).
 
+pub mod brief;
 pub mod courts;
 pub mod document;
 pub mod domain;

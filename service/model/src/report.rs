@@ -33,8 +33,54 @@ pub struct Report {
     /// For each robot whose body is known: whether and where it fits.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub robot_fit: Vec<RobotFit>,
+    /// What became of everything that the brief asks for, in its order.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub asks: Vec<AskAnswer>,
     /// Counts and measures of the world (`rooms`, `objects_per_room`, `circulation_share`, ...).
     pub figures: BTreeMap<String, f64>,
+}
+
+/// What became of one thing that was asked for.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AskAnswer {
+    /// Id of the ask in the brief.
+    pub ask_id: String,
+    /// The words that state it.
+    pub said: String,
+    /// Kind of fact: `rooms`, `capacity`, ...
+    pub kind: String,
+    /// What became of it.
+    pub fate: Fate,
+    /// Ids of the rooms, placements, doors or robots that answer it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub ids: Vec<String>,
+    /// Number or measure asked for, where it is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub asked: Option<f64>,
+    /// What the world has.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub measured: Option<f64>,
+    /// Unit of both; empty for a number of things.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub unit: String,
+    /// One sentence for people: why it is as it is, where it is not as asked.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub reason: String,
+}
+
+/// What became of something asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Fate {
+    /// It is there as asked.
+    Honored,
+    /// Something near to it is there.
+    Substituted,
+    /// It is not there, or nothing here can tell whether it is.
+    LeftOut,
+    /// Another wish, a rule or the building's kind speaks against it.
+    Contradicted,
 }
 
 /// Whether and where a robot fits.
@@ -178,6 +224,11 @@ impl Report {
     /// Returns true when the world may be used: sound, or a brought plan is all that is wrong with it.
     pub fn is_writable(&self) -> bool {
         self.sound || self.is_given()
+    }
+
+    /// Returns how many of the things asked for are there as asked, and how many were asked for.
+    pub fn wishes_met(&self) -> (usize, usize) {
+        (self.asks.iter().filter(|a| a.fate == Fate::Honored).count(), self.asks.len())
     }
 
     /// Returns how many laws and how much advice of the knowledge base are not kept.

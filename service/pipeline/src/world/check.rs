@@ -31,6 +31,7 @@ pub fn check(world: &World, domain: &Domain, retrieval: &Retrieval) -> Report {
         world: world.name.clone(),
         sound: rules.iter().all(|r| r.violations.is_empty()),
         given_plan,
+        asks: Vec::new(),
         figures: if finite { figures::measure(&whole, &storeys) } else { Default::default() },
         robot_fit: if finite { fit::measure(world, &parts, domain) } else { Vec::new() },
         rules,
