@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 use std::rc::Rc;
+use std::sync::Arc;
 
 use d3dgen_language::{Chunk, Reading, TokenKind};
 
@@ -9,15 +10,15 @@ use d3dgen_language::{Chunk, Reading, TokenKind};
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Node {
     /// Class and value of each sense; what a rule makes has one class and no value.
-    pub senses: Vec<(Rc<str>, Rc<str>)>,
+    pub senses: Vec<(Arc<str>, Arc<str>)>,
     /// Tokens of the reading.
     pub tokens: Range<usize>,
     /// Value of a number.
     pub number: Option<f64>,
     /// Words as they are looked up.
-    pub text: Rc<str>,
+    pub text: Arc<str>,
     /// What a rule captured, by name, in the order of the words.
-    pub fields: Vec<(Rc<str>, Rc<Node>)>,
+    pub fields: Vec<(Arc<str>, Rc<Node>)>,
     /// Number of the rule that made it.
     pub rule: Option<usize>,
     /// True for a mark.
@@ -49,9 +50,9 @@ impl Node {
     pub fn of(chunk: &Chunk, reading: &Reading) -> Self {
         let first = &reading.tokens()[chunk.tokens.start];
         let mark = chunk.tokens.len() == 1 && first.kind == TokenKind::Mark;
-        let mut senses: Vec<(Rc<str>, Rc<str>)> = Vec::new();
+        let mut senses: Vec<(Arc<str>, Arc<str>)> = Vec::new();
         for sense in &chunk.senses {
-            let sense = (Rc::from(sense.class), Rc::from(sense.value));
+            let sense = (Arc::from(sense.class), Arc::from(sense.value));
             if !senses.contains(&sense) {
                 senses.push(sense);
             }
@@ -75,10 +76,12 @@ impl Node {
             ("number", None) => self.number.is_some() && self.rule.is_none(),
             ("unknown", None) => self.is_unknown(),
             ("mark", Some(name)) => self.mark && MARKS.iter().any(|(text, n)| *n == name && **text == *self.text),
-            (_, Some("bare")) if self.rule.is_some() => self.made() == Some(class) && self.field("count").is_none(),
-            (_, Some("counted")) if self.rule.is_some() => self.made() == Some(class) && self.field("count").is_some(),
             (_, None) => self.senses.iter().any(|(c, _)| **c == *class),
-            (_, Some(value)) => self.senses.iter().any(|(c, v)| **c == *class && **v == *value),
+            (_, Some(value)) if self.senses.iter().any(|(c, v)| **c == *class && **v == *value) => true,
+            (_, Some("bare")) => self.made() == Some(class) && self.field("count").is_none(),
+            (_, Some("counted")) => self.made() == Some(class) && self.field("count").is_some(),
+            // what a rule made may be asked for by what was captured in it
+            (_, Some(value)) => self.made() == Some(class) && self.field(value).is_some(),
         }
     }
 

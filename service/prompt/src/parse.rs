@@ -1,6 +1,7 @@
 //! Applies the rules, step by step: the heaviest set of matches that do not overlap.
 
 use std::rc::Rc;
+use std::sync::Arc;
 
 use crate::grammar::{Grammar, Level, Makes, Order, Rule};
 use crate::node::Node;
@@ -90,9 +91,9 @@ fn made(grammar: &Grammar, candidate: &Candidate, nodes: &[Rc<Node>], from: usiz
     let rule = &grammar.rules[candidate.rule];
     let tokens = nodes[from].tokens.start..nodes[candidate.fit.end - 1].tokens.end;
     let captured = candidate.fit.captured.iter().map(|(name, at)| (name.clone(), nodes[*at].clone()));
-    let mut captured: Vec<(Rc<str>, Rc<Node>)> = captured.collect();
+    let mut captured: Vec<(Arc<str>, Rc<Node>)> = captured.collect();
     let constants = rule.set.iter().map(|(name, value)| {
-        (Rc::from(name.as_str()), Rc::new(Node { text: value.as_str().into(), tokens: 0..0, ..Node::default() }))
+        (Arc::from(name.as_str()), Rc::new(Node { text: value.as_str().into(), tokens: 0..0, ..Node::default() }))
     });
     let mut node = Node {
         tokens,
@@ -102,7 +103,13 @@ fn made(grammar: &Grammar, candidate: &Candidate, nodes: &[Rc<Node>], from: usiz
         ..Node::default()
     };
     match &rule.makes {
-        Makes::New(class) => node.senses = vec![(class.as_str().into(), "".into())],
+        Makes::New(class) => {
+            let class: Arc<str> = class.as_str().into();
+            // rooms and objects may be asked for by their ids
+            let ids = captured.iter().filter(|(name, _)| matches!(&**name, "room" | "object"));
+            let ids = ids.flat_map(|(name, n)| n.values(name).map(Arc::from).collect::<Vec<Arc<str>>>());
+            node.senses = [Arc::from("")].into_iter().chain(ids).map(|id| (class.clone(), id)).collect();
+        }
         Makes::More(name) => {
             let Some(at) = captured.iter().position(|(n, _)| **n == **name) else { return node };
             let base = captured.remove(at).1;

@@ -5,6 +5,7 @@
 //! least once). `( a | b c )` is one of several sequences. Small words that say nothing may stand between the elements.
 
 use std::rc::Rc;
+use std::sync::Arc;
 
 use crate::node::Node;
 
@@ -24,7 +25,7 @@ struct Element {
 
 #[derive(Debug, Clone, PartialEq)]
 enum What {
-    Atom { name: Option<Rc<str>>, class: String, value: Option<String> },
+    Atom { name: Option<Arc<str>>, class: String, value: Option<String> },
     Any(Vec<Pattern>),
 }
 
@@ -34,7 +35,7 @@ pub(crate) struct Fit {
     /// First node behind it.
     pub end: usize,
     /// What was captured: a name, and which node.
-    pub captured: Vec<(Rc<str>, usize)>,
+    pub captured: Vec<(Arc<str>, usize)>,
     /// Nodes taken, those in between aside.
     pub taken: usize,
 }
@@ -55,6 +56,16 @@ impl Pattern {
             return Err("it is empty".to_owned());
         }
         Ok(pattern)
+    }
+
+    /// Captures what has no name yet under this one.
+    fn capture_as(&mut self, under: &str) {
+        for element in &mut self.0 {
+            match &mut element.what {
+                What::Atom { name, .. } => *name = name.take().or_else(|| Some(under.into())),
+                What::Any(ways) => ways.iter_mut().for_each(|way| way.capture_as(under)),
+            }
+        }
     }
 
     /// Returns the classes of its first elements, to pass over it quickly; empty when any may be first.
@@ -153,8 +164,9 @@ impl Walk<'_> {
                     let Some(node) = self.nodes.get(at) else { return };
                     if node.is(class, value.as_deref()) {
                         let mut fit = fit;
-                        if let Some(name) = name {
-                            fit.captured.push((name.clone(), at));
+                        // "own+hold": under two names
+                        for name in name.iter().flat_map(|n| n.split('+')) {
+                            fit.captured.push((name.into(), at));
                         }
                         fit.end = at + 1;
                         fit.taken += 1;
@@ -191,7 +203,10 @@ fn sequence(words: &[String], at: &mut usize) -> Result<Pattern, String> {
             break;
         }
         *at += 1;
-        if word == "(" {
+        // "item:( rooms | objects )": what is in the bracket is captured under the name
+        let name = word.strip_suffix(':').filter(|_| words.get(*at).is_some_and(|w| w == "("));
+        if word == "(" || name.is_some() {
+            *at += usize::from(name.is_some());
             let mut ways = vec![sequence(words, at)?];
             while words.get(*at).is_some_and(|w| w == "|") {
                 *at += 1;
@@ -200,6 +215,7 @@ fn sequence(words: &[String], at: &mut usize) -> Result<Pattern, String> {
             let close = words.get(*at).filter(|w| w.starts_with(')')).ok_or("a bracket is not closed")?;
             let (_, least, most) = times(close);
             *at += 1;
+            name.iter().for_each(|name| ways.iter_mut().for_each(|way| way.capture_as(name)));
             elements.push(Element { what: What::Any(ways), least, most });
         } else {
             elements.push(atom(word)?);
@@ -213,10 +229,10 @@ fn atom(word: &str) -> Result<Element, String> {
     let (name, what) = text.split_once(':').map_or((None, text), |(name, what)| (Some(name), what));
     let (class, value) = what.split_once('.').map_or((what, None), |(class, value)| (class, Some(value.to_owned())));
     let plain = |s: &str| !s.is_empty() && s.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
-    if !plain(class) || name.is_some_and(|n| !plain(n)) {
+    if !plain(class) || name.is_some_and(|n| !n.split('+').all(plain)) {
         return Err(format!("`{word}` is no element"));
     }
-    let name = name.map(Rc::from);
+    let name = name.map(Arc::from);
     Ok(Element { what: What::Atom { name, class: class.to_owned(), value }, least, most })
 }
 
