@@ -94,9 +94,7 @@ fn unread(known: &Unread, text: &str, tokens: &[Token], explained: f64) -> Optio
     if let Some((name, _)) = script {
         return Some(name.clone());
     }
-    let score = |words: &Vec<String>| {
-        tokens.iter().filter(|t| words.contains(&t.text)).map(letters).sum::<f64>()
-    };
+    let score = |words: &Vec<String>| tokens.iter().filter(|t| words.contains(&t.text)).map(letters).sum::<f64>();
     let (name, most) =
         known.words.iter().map(|(name, words)| (name, score(words))).max_by(|a, b| a.1.total_cmp(&b.1))?;
     (explained < ENOUGH * all && most > 0.0 && most >= 0.6 * explained).then(|| name.clone())

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::Deserialize;
 
 /// Names of places, of the reader of words that this one replaces.
-const PLACES: &str = include_str!("../../pipeline/src/scene_graph/subject/places.jsonl");
+const PLACES: &str = include_str!("../../program/src/subject/places.jsonl");
 
 #[derive(Debug, Deserialize)]
 struct Line {
