@@ -30,6 +30,8 @@ pub struct Token {
     pub kind: TokenKind,
     /// True when nothing stands between it and the token before it.
     pub joined: bool,
+    /// True when a hyphen ties it to the token before it.
+    pub hyphen: bool,
     /// True when it is written with a capital letter.
     pub capital: bool,
     /// Number of the sentence it stands in.
@@ -195,6 +197,8 @@ impl Scan<'_> {
             folded
         });
         let joined = self.tokens.last().is_some_and(|t| t.bytes.end == from);
+        let tied = self.tokens.last().is_some_and(|t| t.bytes.end < from && self.text[t.bytes.end..from].chars().all(|c| MARKS[HYPHENS].0.contains(c)));
+        let hyphen = tied && kind != TokenKind::Mark;
         let capital = written.starts_with(char::is_uppercase);
         self.tokens.push(Token {
             text,
