@@ -5,7 +5,8 @@ use std::path::Path;
 
 use serde_json::{Map, Value};
 
-/// Key under which a domain names what it takes of the common objects and groups.
+/// Key under which a domain names its objects and groups in the order in which they are considered: those that it takes of
+/// the common ones, and its own.
 const USE: &str = "use";
 
 /// Lists whose entries may be taken from the common ones.
@@ -77,21 +78,21 @@ fn files(folder: &Path) -> Result<Vec<(String, String)>, String> {
 }
 
 /// Merges the texts of files, each with its name, in their order: lists are joined, tables merged, and a plain value may be
-/// given once only. What `use` names comes first in its list, in the order it is named in, as `common` has it; fields that an
-/// entry of the domain with the same id gives are as there.
+/// given once only. What `use` names comes first in its list, in the order it is named in: as `common` has it, with the fields
+/// that an entry of the domain with the same id gives, or that entry alone.
 ///
 /// # Errors
 /// The file and what is wrong with it.
 pub fn texts<'a>(texts: impl Iterator<Item = (&'a str, &'a str)>, common: &Value) -> Result<Merged, (String, String)> {
     let mut whole = Map::new();
     let mut files: BTreeMap<String, Vec<String>> = BTreeMap::new();
-    let mut used: Vec<String> = Vec::new();
+    let mut used: Vec<(String, String)> = Vec::new();
     for (file, text) in texts {
         let failed = |reason: String| (file.to_owned(), reason);
         let table: Map<String, Value> = toml::from_str(text).map_err(|e| failed(e.to_string()))?;
         for (key, value) in table {
             if key == USE {
-                name_used(&value, common, &mut used).map_err(failed)?;
+                name_used(&value, file, &mut used).map_err(failed)?;
                 continue;
             }
             if let Value::Array(entries) = &value {
@@ -100,24 +101,30 @@ pub fn texts<'a>(texts: impl Iterator<Item = (&'a str, &'a str)>, common: &Value
             join(&mut whole, key, value).map_err(|key| failed(format!("`{key}` is given twice")))?;
         }
     }
+    let table = Value::Object(whole);
+    let is_known = |id: &str| SHARED.iter().any(|key| entry(common, key, id).or(entry(&table, key, id)).is_some());
+    if let Some((id, file)) = used.iter().find(|(id, _)| !is_known(id)) {
+        let reason =
+            format!("`{USE}` names `{id}`, which is no object and no group, neither of {COMMON} nor of the domain");
+        return Err((file.clone(), reason));
+    }
+    let Value::Object(mut whole) = table else { unreachable!("made above") };
     for key in SHARED {
         take(key, &used, common, &mut whole, &mut files);
     }
     Ok(Merged { table: Value::Object(whole), files })
 }
 
-/// Adds the ids that a `use` names.
-fn name_used(value: &Value, common: &Value, used: &mut Vec<String>) -> Result<(), String> {
-    let ids = value.as_array().ok_or_else(|| format!("`{USE}` is a list of ids of {COMMON}"))?;
+/// Adds the ids that a `use` names, with its file.
+fn name_used(value: &Value, file: &str, used: &mut Vec<(String, String)>) -> Result<(), String> {
+    let ids = value.as_array().ok_or_else(|| format!("`{USE}` is a list of ids of objects and groups"))?;
     for id in ids {
-        let id = id.as_str().ok_or_else(|| format!("`{USE}` is a list of ids of {COMMON}, and {id} is none"))?;
-        if SHARED.iter().all(|key| entry(common, key, id).is_none()) {
-            return Err(format!("`{USE}` names `{id}`, which is neither an object nor a group of {COMMON}"));
-        }
-        if used.iter().any(|u| u == id) {
+        let id =
+            id.as_str().ok_or_else(|| format!("`{USE}` is a list of ids of objects and groups, and {id} is none"))?;
+        if used.iter().any(|(known, _)| known == id) {
             return Err(format!("`{USE}` names `{id}` twice"));
         }
-        used.push(id.to_owned());
+        used.push((id.to_owned(), file.to_owned()));
     }
     Ok(())
 }
@@ -131,40 +138,41 @@ fn has_id(entry: &Value, id: &str) -> bool {
     entry.get("id").and_then(Value::as_str) == Some(id)
 }
 
-/// Puts the used entries of a list before the others, with the fields that the domain gives them.
+/// Puts the used entries of a list before the others, in their order.
 fn take(
     key: &str,
-    used: &[String],
+    used: &[(String, String)],
     common: &Value,
     whole: &mut Map<String, Value>,
     files: &mut BTreeMap<String, Vec<String>>,
 ) {
-    let taken: Vec<&Value> = used.iter().filter_map(|id| entry(common, key, id)).collect();
-    let own = match whole.get_mut(key) {
-        None if taken.is_empty() => return,
-        None => whole.entry(key).or_insert(Value::Array(Vec::new())),
-        Some(own) => own,
+    let own = whole.remove(key).unwrap_or(Value::Array(Vec::new()));
+    let Value::Array(own) = own else {
+        whole.insert(key.to_owned(), own);
+        return;
     };
-    let Value::Array(own) = own else { return };
-    let from = files.entry(key.to_owned()).or_default();
-    let mut entries: Vec<(Value, String)> = std::mem::take(own).into_iter().zip(std::mem::take(from)).collect();
-    let mut all: Vec<(Value, String)> = Vec::with_capacity(taken.len() + entries.len());
-    for base in taken {
-        let mut whole = base.clone();
-        let mut file = COMMON.to_owned();
-        let told = base.get("id").and_then(Value::as_str).unwrap_or_default();
-        // a second one with this id stays, and is reported as a second one
-        if let Some(at) = entries.iter().position(|(e, _)| has_id(e, told)) {
-            let (fields, place) = entries.remove(at);
-            if let (Value::Object(whole), Value::Object(fields)) = (&mut whole, fields) {
-                whole.extend(fields);
+    let from = files.remove(key).unwrap_or_default();
+    let mut left: Vec<(Value, String)> = own.into_iter().zip(from).collect();
+    let mut all: Vec<(Value, String)> = Vec::with_capacity(left.len());
+    for (id, _) in used {
+        // a second one with this id stays behind, and is reported as a second one
+        let told = left.iter().position(|(e, _)| has_id(e, id)).map(|at| left.remove(at));
+        match (entry(common, key, id).cloned(), told) {
+            (Some(Value::Object(mut base)), Some((Value::Object(fields), file))) => {
+                base.extend(fields);
+                all.push((Value::Object(base), file));
             }
-            file = place;
+            (_, Some(own)) => all.push(own),
+            (Some(base), None) => all.push((base, COMMON.to_owned())),
+            (None, None) => {}
         }
-        all.push((whole, file));
     }
-    all.extend(entries);
-    (*own, *from) = all.into_iter().unzip();
+    all.extend(left);
+    if !all.is_empty() {
+        let (entries, from): (Vec<Value>, Vec<String>) = all.into_iter().unzip();
+        whole.insert(key.to_owned(), Value::Array(entries));
+        files.insert(key.to_owned(), from);
+    }
 }
 
 fn join(into: &mut Map<String, Value>, key: String, value: Value) -> Result<(), String> {
@@ -199,18 +207,19 @@ mod tests {
 
     #[test]
     fn what_is_used_comes_first_with_the_fields_that_the_domain_gives_it() {
-        let main = "use = [\"lamp\", \"desk_place\", \"desk\"]\n[[objects]]\nid = \"own\"\n";
+        let main = "use = [\"lamp\", \"own\", \"desk_place\", \"desk\"]\n[[objects]]\nid = \"last\"\n[[objects]]\nid = \"own\"\n";
         let more = "[[objects]]\nid = \"desk\"\ncolor = \"#000\"\n";
         let found = merged(&[("domain.toml", main), ("a/desks.toml", more)]).unwrap();
         let objects = json!([
             { "id": "lamp", "label": "Lamp" },
-            { "id": "desk", "label": "Desk", "color": "#000" },
             { "id": "own" },
+            { "id": "desk", "label": "Desk", "color": "#000" },
+            { "id": "last" },
         ]);
         assert_eq!(found.table["objects"], objects);
         assert_eq!(found.table["groups"], json!([{ "id": "desk_place", "anchor": "desk" }]));
         assert!(found.table.get(USE).is_none());
-        let places = ["/objects/0", "/objects/1/color", "/objects/2", "/groups/0/anchor", "/objects/9", ""];
+        let places = ["/objects/0", "/objects/2/color", "/objects/1", "/groups/0/anchor", "/objects/9", ""];
         let expected = [
             Some("`lamp` of domains/common"),
             Some("`desk` of desks.toml"),
@@ -225,7 +234,7 @@ mod tests {
     #[test]
     fn a_use_of_what_is_not_there_names_the_file() {
         for (text, words) in [
-            ("use = [\"sofa\"]", "`sofa`, which is neither"),
+            ("use = [\"sofa\"]", "`sofa`, which is no object"),
             ("use = [\"desk\", \"desk\"]", "`desk` twice"),
             ("use = \"desk\"", "is a list of ids"),
             ("use = [1]", "and 1 is none"),
