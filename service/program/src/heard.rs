@@ -62,7 +62,16 @@ impl<'p> Heard<'p> {
         let first = brief.languages.first().map_or("en", String::as_str);
         let language = words().languages.keys().find(|l| *l == first).map_or("en", String::as_str);
         let spoken = words().languages.get("en").into_iter().collect();
-        Self { prompt: "", tokens, numbers: Vec::new(), language, languages: vec!["en"], spoken, strange: None, typos: Vec::new() }
+        Self {
+            prompt: "",
+            tokens,
+            numbers: Vec::new(),
+            language,
+            languages: vec!["en"],
+            spoken,
+            strange: None,
+            typos: Vec::new(),
+        }
     }
 
     /// Returns the place of the word of a mention of a brief.

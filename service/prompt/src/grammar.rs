@@ -145,8 +145,7 @@ impl Grammar {
             grammar.small.extend(small.map(|(class, value)| (class.to_owned(), value.to_owned())));
             let mut level = Level { rules: Vec::new(), times: file.times };
             for rule in file.rule {
-                let wrong =
-                    |reason: String| Error::Rule { file: (*name).to_owned(), rule: rule.name.clone(), reason };
+                let wrong = |reason: String| Error::Rule { file: (*name).to_owned(), rule: rule.name.clone(), reason };
                 if !names.insert(rule.name.clone()) {
                     return Err(wrong("another rule has that name".to_owned()));
                 }
@@ -187,7 +186,12 @@ mod tests {
         }
         for rule in &grammar.rules {
             for (class, _) in rule.pattern.classes() {
-                assert!(known.contains(class), "{}: rule `{}` asks for `{class}`, which nothing makes", rule.file, rule.name);
+                assert!(
+                    known.contains(class),
+                    "{}: rule `{}` asks for `{class}`, which nothing makes",
+                    rule.file,
+                    rule.name
+                );
             }
         }
     }
@@ -198,7 +202,10 @@ mod tests {
             let error = Grammar::read(&[("10_x.toml", text)]).map(|_| ()).unwrap_err().to_string();
             assert!(error.contains(part), "{error}");
         };
-        check("[[rule]]\nname = \"a\"\nmakes = \"b\"\npattern = \"( c\"", "10_x.toml: rule `a`: a bracket is not closed");
+        check(
+            "[[rule]]\nname = \"a\"\nmakes = \"b\"\npattern = \"( c\"",
+            "10_x.toml: rule `a`: a bracket is not closed",
+        );
         check("[[rule]]\nname = \"a\"\npattern = \"c\"", "either `makes` or `extends`");
         check("[[rul]]", "10_x.toml");
     }

@@ -7,7 +7,7 @@ use d3dgen_model::placements::Placements;
 use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_pipeline::generate::retrieve;
 use d3dgen_pipeline::scene_graph::Request;
-use d3dgen_pipeline::{Stop, floorplan, placement, scene_graph};
+use d3dgen_pipeline::{Stop, floorplan, placement};
 use d3dgen_plugins::{Plugin, Registry};
 use serde_json::json;
 

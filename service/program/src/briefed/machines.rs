@@ -66,7 +66,11 @@ pub(super) fn errand(brief: &Brief, facts: &Facts) -> robots::Errand {
         }
     }
     // one place is where it works, not a way between two
-    if room_types.len() < 2 || asks(brief).count() != 1 { robots::Errand::default() } else { robots::Errand { room_types, entrance: false } }
+    if room_types.len() < 2 || asks(brief).count() != 1 {
+        robots::Errand::default()
+    } else {
+        robots::Errand { room_types, entrance: false }
+    }
 }
 
 /// Returns the rooms that robots stay out of.

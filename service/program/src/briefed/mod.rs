@@ -128,12 +128,7 @@ pub(crate) fn read<'a>(brief: &Brief, request: &Request, registry: &'a Registry)
 }
 
 /// Returns what the brief is about: the domain of the request, else of the brief, else the one that knows most of its rooms.
-fn site_of<'a>(
-    brief: &Brief,
-    request: &Request,
-    registry: &'a Registry,
-    notes: &mut Notes,
-) -> Result<Site<'a>, Error> {
+fn site_of<'a>(brief: &Brief, request: &Request, registry: &'a Registry, notes: &mut Notes) -> Result<Site<'a>, Error> {
     let named = brief.building.as_ref();
     if request.domain.is_none()
         && let Some(unknown) = named.filter(|b| b.domain.is_none())
@@ -162,7 +157,8 @@ fn site_of<'a>(
     let building = Building { building_type: own_type, ..Building::none(&id) };
     let program = program_of(domain, building.building_type.as_deref());
     let flag = request.country.as_deref().and_then(places::code_of);
-    let country_code = flag.or_else(|| brief.place.as_ref().map(|p| p.division_code.clone().unwrap_or_else(|| p.country_code.clone())));
+    let country_code = flag
+        .or_else(|| brief.place.as_ref().map(|p| p.division_code.clone().unwrap_or_else(|| p.country_code.clone())));
     Ok(Site::of_facts(domain, program, building, country_code, registry))
 }
 
@@ -180,7 +176,8 @@ fn room_id(fact: &Fact) -> Option<&str> {
 
 /// Returns a mention for each room and each head count of the facts.
 fn mentions_of(facts: &Facts) -> Vec<Mention> {
-    let rooms = facts.wishes.wishes.iter().map(|w| (What::Room(w.room_type.clone()), w.count, facts.beds_of(&w.room_type)));
+    let rooms =
+        facts.wishes.wishes.iter().map(|w| (What::Room(w.room_type.clone()), w.count, facts.beds_of(&w.room_type)));
     let heads = facts.heads.iter().map(|(what, n)| (what.clone(), *n, None));
     let mention = |(i, (what, count, beds)): (usize, (What, u32, Option<u32>))| {
         let at = Heard::place_of(i);

@@ -53,7 +53,8 @@ fn what_is_ruled_out_is_not_there() {
 
 #[test]
 fn beds_people_and_places_make_rooms() {
-    let beds = CapacityAsk { of: PlaceKind::Beds, count: AskedCount::exactly(12), room: None, each_room: false, groups: None };
+    let beds =
+        CapacityAsk { of: PlaceKind::Beds, count: AskedCount::exactly(12), room: None, each_room: false, groups: None };
     let ward = graph(Some(building("hospital", Some("ward"))), vec![Fact::Capacity(beds)]);
     assert_eq!(ward.occupancy.beds, Some(12));
     let staff = Fact::People(PeopleAsk { role: "employee".into(), count: AskedCount::exactly(30) });
@@ -66,16 +67,15 @@ fn beds_people_and_places_make_rooms() {
 
 #[test]
 fn rooms_stand_on_their_storeys_and_beside_each_other() {
-    let upstairs = RoomsAsk { room: subject("bedroom"), count: AskedCount::exactly(3), level: Some(1), ..RoomsAsk::default() };
+    let upstairs =
+        RoomsAsk { room: subject("bedroom"), count: AskedCount::exactly(3), level: Some(1), ..RoomsAsk::default() };
     let storeys = Fact::Storeys(StoreysAsk { count: AskedCount::exactly(2), basement: false });
     let house = graph(Some(building("residential", None)), vec![Fact::Rooms(upstairs), storeys]);
     let levels: Vec<i32> = house.rooms.iter().filter(|r| r.room_type == "bedroom").map(|r| r.level).collect();
     assert_eq!(levels, [1, 1, 1]);
     let door = RelationAsk { a: subject("kitchen"), relation: RelationKind::Door, b: subject("pantry") };
-    let flat = graph(
-        Some(building("residential", None)),
-        vec![rooms("kitchen", 1), rooms("pantry", 1), Fact::Relation(door)],
-    );
+    let flat =
+        graph(Some(building("residential", None)), vec![rooms("kitchen", 1), rooms("pantry", 1), Fact::Relation(door)]);
     let joined = |e: &&d3dgen_model::scene_graph::GraphEdge| {
         let ends = [e.a.as_str(), e.b.as_str()];
         ends.contains(&"kitchen") && ends.contains(&"pantry") && e.connector == Connector::Door
@@ -98,14 +98,13 @@ fn robots_have_their_kind_number_body_and_way() {
     let robot = &ward.robots[0];
     assert_eq!((robot.kind.as_str(), robot.count, robot.radius_m), ("delivery", 2, 0.5));
     let shut: Vec<&str> = ward.robot_rules.iter().filter(|r| r.keep_out).map(|r| r.room_id.as_str()).collect();
-    let kept: Vec<&str> = ward.rooms.iter().filter(|r| r.requested && r.room_type != "patient_room").map(|r| r.id.as_str()).collect();
+    let kept: Vec<&str> =
+        ward.rooms.iter().filter(|r| r.requested && r.room_type != "patient_room").map(|r| r.id.as_str()).collect();
     assert_eq!(shut, kept, "the room that such a building has for medicine");
     let task = AskedTask { from: Some(subject("kitchen")), to: vec![subject("study")], ..AskedTask::default() };
     let sent = RobotsAsk { kind: "delivery".into(), tasks: vec![task], ..RobotsAsk::default() };
-    let home = graph(
-        Some(building("residential", None)),
-        vec![rooms("kitchen", 1), rooms("study", 1), Fact::Robots(sent)],
-    );
+    let home =
+        graph(Some(building("residential", None)), vec![rooms("kitchen", 1), rooms("study", 1), Fact::Robots(sent)]);
     assert_eq!(home.robots[0].stops, ["kitchen", "study"]);
 }
 
@@ -124,7 +123,13 @@ fn things_stand_in_the_room_they_are_asked_for() {
 
 #[test]
 fn a_kind_of_building_nobody_knows_is_refused_with_the_nearest() {
-    let barn = AskedBuilding { domain: None, building_type: None, name: "cow barn".into(), confidence: 1.0, words: Vec::new() };
+    let barn = AskedBuilding {
+        domain: None,
+        building_type: None,
+        name: "cow barn".into(),
+        confidence: 1.0,
+        words: Vec::new(),
+    };
     let stable = AskedBuilding { name: "warehouse".into(), ..building("warehouse", None) };
     let brief = Brief { building: Some(barn), other_buildings: vec![stable], ..Brief::of_prompt("") };
     let refused = of_brief(&brief, &Request::default(), &Registry::builtin()).expect_err("no domain has barns");

@@ -54,7 +54,7 @@ impl Aside {
         Self {
             vocabulary,
             areas: Vec::new(),
-            robot_m: [None, None],
+            sizes: Sizes::default(),
             short_forms: Vec::new(),
             bed_rooms: Vec::new(),
             storeys: Vec::new(),

@@ -5,8 +5,8 @@ use std::time::Instant;
 
 use d3dgen_model::document::Document;
 use d3dgen_model::scene_graph::SceneGraph;
-use d3dgen_pipeline::generate::{Artifact, Event, Settings, Stage, contradictions, furnish_and_check};
 use d3dgen_pipeline::brief;
+use d3dgen_pipeline::generate::{Artifact, Event, Settings, Stage, contradictions, furnish_and_check};
 use d3dgen_plugins::Registry;
 
 use super::Job;
