@@ -380,8 +380,8 @@ mod tests {
     fn what_a_sentence_says_means_what_the_flags_mean() {
         use d3dgen_plugins::Registry;
 
-        use crate::request::Request;
         use crate::generate;
+        use crate::request::Request;
 
         let flags = RobotBody { width_m: Some(0.6), length_m: Some(0.8), ..RobotBody::default() };
         for (bare, told) in [
