@@ -78,7 +78,7 @@ impl Dimensions {
         for i in by_door {
             let n = sides[i].n;
             let parallel = |k: &usize| (sides[*k].n.0 * n.0 + sides[*k].n.1 * n.1).abs() > ONE_SIDE;
-            if !whole.iter().any(|k| parallel(k)) {
+            if !whole.iter().any(parallel) {
                 whole.push(i);
             }
         }
