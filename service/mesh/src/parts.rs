@@ -36,7 +36,7 @@ pub fn boxes(meshes: &[&Mesh]) -> Vec<Collision> {
             _ => done.push(part),
         }
     }
-    done.sort_by(|a, b| a.low.cmp(&b.low));
+    done.sort_by_key(|part| part.low);
     done.into_iter().map(|part| part.shape()).collect()
 }
 
