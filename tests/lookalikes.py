@@ -14,7 +14,7 @@ import unicodedata
 import wordfreq
 
 ROOT = pathlib.Path(__file__).parents[1]
-READER = ROOT / "service/pipeline/src/scene_graph/tokens"
+READER = ROOT / "service/program/src/tokens"
 LANGUAGES = ["en", "de", "fr", "es"]
 # words that are rarer than that, on the scale of Zipf, are as likely misspelled
 LEAST_ZIPF = 2.7

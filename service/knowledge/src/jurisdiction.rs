@@ -1,5 +1,6 @@
 //! Which rules apply in a place: subdivision, country, region, international, nearest first.
 
+use d3dgen_model::domain::{Adjacency, Domain};
 use d3dgen_model::knowledge::LOCAL;
 
 /// Regions whose rules their member states follow, with ISO 3166-1 codes.
@@ -44,6 +45,11 @@ pub fn national(country_code: Option<&str>) -> Vec<String> {
 /// Returns true where a rule of these jurisdictions holds; one without any holds everywhere.
 pub fn holds(jurisdictions: &[String], country_code: Option<&str>) -> bool {
     jurisdictions.is_empty() || chain(country_code).iter().any(|code| jurisdictions.contains(code))
+}
+
+/// Returns the adjacency rules of a domain that hold in a country; without one, those that hold everywhere.
+pub fn rules_here<'d>(domain: &'d Domain, country_code: Option<&str>) -> impl Iterator<Item = &'d Adjacency> {
+    domain.adjacency.iter().filter(move |rule| holds(&rule.jurisdictions, country_code))
 }
 
 #[cfg(test)]

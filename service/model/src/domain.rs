@@ -160,6 +160,24 @@ impl Domain {
         self.object(self.group(item).map_or(item, |g| g.anchor.as_str()))
     }
 
+    /// Returns the objects of a furnishing item with how many of each: the anchor of a group and its members, or the object.
+    pub fn counted_objects_of<'a>(&'a self, item: &'a str) -> impl Iterator<Item = (&'a str, u32)> {
+        let group = self.group(item);
+        let members = group.into_iter().flat_map(|g| &g.members).map(|m| (m.object.as_str(), m.count));
+        std::iter::once((group.map_or(item, |g| g.anchor.as_str()), 1)).chain(members)
+    }
+
+    /// Returns the objects of a furnishing item, its anchor first.
+    pub fn objects_of<'a>(&'a self, item: &'a str) -> impl Iterator<Item = &'a str> {
+        self.counted_objects_of(item).map(|(id, _)| id)
+    }
+
+    /// Returns true for the type of a room that joins the others, whatever the plan calls it.
+    pub fn is_way(&self, room_type: &str) -> bool {
+        let entrances = &self.circulation.entrance_room_types;
+        self.circulation.room_type == room_type || entrances.iter().any(|t| t == room_type)
+    }
+
     /// Returns true for a furnishing item that is about a dock for robots.
     pub fn is_dock(&self, item: &str) -> bool {
         self.anchor(item).is_some_and(|o| o.shape == Shape::Dock)

@@ -198,3 +198,17 @@ impl Document for Scenario {
         problems
     }
 }
+
+/// Code of the conflict that says which robots have no dock of their own.
+pub const DOCKS_MISSING: &str = "docks_missing";
+
+/// Returns the robots that charge and have no dock, and those whose dock is another's already.
+pub fn without_dock(robots: &[RobotTask]) -> Vec<&RobotTask> {
+    let planned: Vec<&RobotTask> = robots.iter().filter(|t| !t.robot.misfit).collect();
+    let is_taken = |i: usize| planned[..i].iter().any(|other| other.dock == planned[i].dock);
+    let lacks = |i: &usize| match planned[*i].dock {
+        Some(_) => is_taken(*i),
+        None => planned[*i].robot.charging,
+    };
+    (0..planned.len()).filter(lacks).map(|i| planned[i]).collect()
+}

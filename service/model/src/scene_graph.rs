@@ -10,6 +10,18 @@ use crate::robot_body::RobotBody;
 use crate::storeys::{VerticalLink, check_links, is_ground};
 use crate::style::Style;
 
+/// Reason of the doors to the corridor or hall.
+pub const BY_CIRCULATION: &str = "circulation";
+
+/// Reason of the edges that a prompt asks for.
+pub const BY_PROMPT: &str = "prompt";
+
+/// Reason of the openings of an open layout.
+pub const BY_STYLE: &str = "style";
+
+/// Reason of the edge between a room and the one it is entered from.
+pub const BY_HOST: &str = "host";
+
 /// What was asked for, understood.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -239,6 +251,13 @@ pub struct Note {
     pub code: String,
     /// One sentence for people.
     pub message: String,
+}
+
+impl Note {
+    /// Returns a note of a kind.
+    pub fn new(code: &str, message: String) -> Self {
+        Self { code: code.to_owned(), message }
+    }
 }
 
 impl Robot {

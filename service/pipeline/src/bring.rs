@@ -4,13 +4,24 @@
 
 use d3dgen_model::floorplan::{Floorplan, PlanRoom};
 use d3dgen_model::scene_graph::SceneGraph;
+use d3dgen_model::stage;
 use d3dgen_plans::{LaidRoom, Options, Plan, Source, assemble, lay_out, read};
 use d3dgen_plugins::Registry;
 
-use crate::Error;
 use crate::scene_graph::{Brought, Label, of_plan, understand};
 
 const STAGE: &str = "plan";
+
+/// Why a plan does not become the documents that the stages begin with.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// The file cannot be read; says where.
+    #[error(transparent)]
+    Plan(#[from] d3dgen_plans::Error),
+    /// What is said of the plan does not go with it, or its rooms make no building.
+    #[error(transparent)]
+    Stage(#[from] stage::Error),
+}
 
 /// What is said about a plan beside its file.
 #[derive(Debug, Clone, Default)]
@@ -30,7 +41,7 @@ pub struct Said<'a> {
 /// Reads a plan and returns it, all of it locked, with the scene graph of its rooms.
 ///
 /// # Errors
-/// `Plan` for what cannot be read, with the place in the file; `Refused` for what does not go with it.
+/// `Plan` for what cannot be read, with the place in the file; `Stage` for what does not go with it.
 pub fn bring(source: &Source, said: &Said, registry: &Registry) -> Result<(SceneGraph, Floorplan), Error> {
     let title = source.name.split('.').next().unwrap_or_default().to_owned();
     let domain = said.domain.as_deref();
@@ -91,5 +102,5 @@ fn typed(mut labels: Vec<Label>, room_types: &[(String, String)]) -> Result<Vec<
 }
 
 fn refused(message: impl Into<String>) -> Error {
-    Error::Refused { stage: STAGE, message: message.into() }
+    stage::Error::Refused { stage: STAGE, message: message.into() }.into()
 }

@@ -3,8 +3,8 @@
 use d3dgen_model::passage::RobotWay;
 use d3dgen_model::robot_body::RobotBody;
 use d3dgen_model::scene_graph::{Note, Robot, SceneGraph};
+use d3dgen_model::stage::Error;
 
-use crate::Error;
 use crate::generate::Generated;
 
 /// Radius of a robot that every building has room for, m.

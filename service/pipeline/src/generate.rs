@@ -11,15 +11,16 @@ use d3dgen_model::domain::Domain;
 use d3dgen_model::floorplan::Floorplan;
 use d3dgen_model::placements::Placements;
 use d3dgen_model::report::Report;
-use d3dgen_model::scenario::Scenario;
-use d3dgen_model::scene_graph::{Connector, Note, Robot, SceneGraph};
+use d3dgen_model::scenario::{Scenario, without_dock};
+use d3dgen_model::scene_graph::{BY_PROMPT, BY_STYLE, Connector, Note, Robot, SceneGraph};
 use d3dgen_model::seed::Stream;
+use d3dgen_model::stage::{Error, Stop};
 use d3dgen_model::world::World;
 use d3dgen_plugins::{Plugin, Registry};
 
 use crate::placement::{Furnished, before_openings};
-use crate::scene_graph::{BY_PROMPT, BY_STYLE, Request};
-use crate::{Error, Stop, fit, floorplan, placement, scenario, scene_graph, ways_out, world};
+use crate::scene_graph::Request;
+use crate::{fit, floorplan, placement, scenario, scene_graph, ways_out, world};
 
 /// How to make a world, beside the request itself.
 #[derive(Debug, Clone)]
@@ -258,7 +259,7 @@ fn attempts(
                 let World { floorplan, placements, .. } = &found.world;
                 let before = if picky { before_openings(floorplan, placements, plugin.domain()) } else { 0 };
                 let (laws, advice) = found.report.missed();
-                let undocked = if picky { scenario::without_dock(&found.world.scenario.robots).len() } else { 0 };
+                let undocked = if picky { without_dock(&found.world.scenario.robots).len() } else { 0 };
                 let faults = Faults { broken, laws: if picky { laws } else { 0 }, undocked, before, advice };
                 if (faults.broken, faults.laws, faults.undocked, faults.before) == (0, 0, 0, 0) {
                     return Ok(found);

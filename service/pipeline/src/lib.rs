@@ -1,21 +1,26 @@
-//! The stages from prompt to checked world, one folder each; `generate` drives them.
+//! The stages from prompt to checked world, in a row: `generate` drives them, `edit` changes what they made, `bring` begins
+//! with a plan that somebody has, `variations` makes several of one request.
 //!
-//! Stages take values and return documents; they read no file, clock or environment.
+//! Each stage is a crate of its own that knows none of the others; here they are under the names they have everywhere. Stages
+//! take values and return documents; they read no file, clock or environment.
 
+mod assemble;
 pub mod bring;
 pub mod edit;
-mod entry;
-pub mod error;
 mod fit;
-pub mod floorplan;
 pub mod generate;
-pub mod placement;
-pub mod scenario;
-pub mod scene_graph;
-pub mod stop;
 pub mod variations;
 mod ways_out;
-pub mod world;
 
-pub use error::Error;
-pub use stop::Stop;
+pub use d3dgen_floorplan as floorplan;
+pub use d3dgen_model::stage::{Error, Stop};
+pub use d3dgen_placement as placement;
+pub use d3dgen_program as scene_graph;
+pub use d3dgen_scenario as scenario;
+
+/// Stage `world`: the documents of all stages put together, and judged.
+pub mod world {
+    pub use d3dgen_check::check;
+
+    pub use crate::assemble::assemble;
+}

@@ -6,11 +6,12 @@ use d3dgen_model::floorplan::Floorplan;
 use d3dgen_model::geometry::Rect;
 use d3dgen_model::scene_graph::SceneGraph;
 
+use d3dgen_model::stage::{Error, Stop};
 use d3dgen_plugins::Registry;
 
 use crate::generate::{plugin_of, retrieve};
 use crate::scene_graph::Request;
-use crate::{Error, Stop, floorplan, scene_graph};
+use crate::{floorplan, scene_graph};
 
 /// Plans made for each one wanted.
 const POOL: usize = 5;

@@ -7,6 +7,7 @@ use d3dgen_model::courts;
 use d3dgen_model::domain::{Domain, Zone};
 use d3dgen_model::floorplan::{Door, DoorKind, Floorplan, PlanRoom, Swing, Wall, Window};
 use d3dgen_model::geometry::to_mm;
+use d3dgen_model::measures::DOOR_HEIGHT_M;
 use d3dgen_model::scene_graph::Note;
 use d3dgen_model::slides;
 use d3dgen_model::storeys::{Level, LinkKind, VerticalLink};
@@ -15,8 +16,7 @@ use crate::drawing::{OpeningKind, note};
 use crate::layout::{LaidOpening, Layout, point};
 use crate::{Options, add, links};
 
-/// Clear height of doors, m, and the wall left above openings.
-const DOOR_HEIGHT_M: f64 = 2.1;
+/// Wall left above openings, m.
 const LINTEL_M: f64 = 0.2;
 /// Sill and head of windows that do not say theirs, m.
 const SILL_M: f64 = 0.9;

@@ -83,9 +83,18 @@ pub fn document(field: &str, error: d3dgen_model::Error) -> Status {
 pub fn stage(field: &str, error: d3dgen_pipeline::Error) -> Status {
     use d3dgen_pipeline::Error;
     match error {
-        Error::Refused { .. } | Error::Mismatch { .. } | Error::Plan(_) => invalid(field, error.to_string()),
+        Error::Refused { .. } | Error::Mismatch { .. } => invalid(field, error.to_string()),
         Error::Infeasible { .. } => Status::failed_precondition(error.to_string()),
         Error::Cancelled => Status::cancelled("the call was given up"),
+    }
+}
+
+/// Returns the answer to a plan that cannot be brought; `field` is what it was sent in.
+pub fn plan(field: &str, error: d3dgen_pipeline::bring::Error) -> Status {
+    use d3dgen_pipeline::bring::Error;
+    match error {
+        Error::Plan(unreadable) => invalid(field, unreadable.to_string()),
+        Error::Stage(refused) => stage(field, refused),
     }
 }
 

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use d3dgen_model::floorplan::Floorplan;
 use d3dgen_model::scene_graph::SceneGraph;
-use d3dgen_pipeline::bring::{Said, bring};
+use d3dgen_pipeline::bring::{self, Said};
 use d3dgen_pipeline::generate::{Event, Settings, Stage, furnish_and_check};
 use d3dgen_pipeline::scene_graph::Brought;
 use d3dgen_plans::{Options, Source, readers};
@@ -161,9 +161,9 @@ impl Args {
         };
         let (domain, room_types) = (self.domain.clone(), self.room_type.clone());
         let said = Said { options, domain, room_types, graph: graph.as_ref(), brought };
-        bring(&source, &said, registry).map_err(|error| match error {
-            d3dgen_pipeline::Error::Plan(source) => Error::Plan { path: self.plan.clone(), source },
-            other => other.into(),
+        bring::bring(&source, &said, registry).map_err(|error| match error {
+            bring::Error::Plan(source) => Error::Plan { path: self.plan.clone(), source },
+            bring::Error::Stage(refused) => refused.into(),
         })
     }
 }

@@ -5,6 +5,8 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::style::Form;
+
 /// The rooms of one archetype, in the order in which they are added when a room count is asked for.
 ///
 /// Rooms are taken from the top: first `min` of every entry (an entry with `min = 0` is skipped), then one more of each
@@ -349,6 +351,26 @@ pub enum Scheme {
 }
 
 impl Scheme {
+    /// Rooms up to which a building stays in one body.
+    pub const MOST_WHOLE: usize = 50;
+
+    /// Returns the scheme of a form, and from how many rooms to how many on a storey it can be built.
+    pub fn of(form: Form) -> (Self, [usize; 2]) {
+        match form {
+            Form::Linear => (Self::Straight, [1, Self::MOST_WHOLE]),
+            Form::LShaped => (Self::Angle, [5, Self::MOST_WHOLE]),
+            Form::Racetrack => (Self::Racetrack, [10, Self::MOST_WHOLE + 30]),
+            Form::Courtyard => (Self::Courtyard, [6, Self::MOST_WHOLE + 30]),
+            Form::Wings => (Self::Comb, [10, usize::MAX]),
+        }
+    }
+
+    /// Returns true for a form that is a ring of corridors, and can be built with this many rooms on a storey.
+    pub fn runs_around(form: Form, rooms: usize) -> bool {
+        let (scheme, [least, most]) = Self::of(form);
+        scheme.is_ring() && (least..=most).contains(&rooms)
+    }
+
     /// Returns true where the corridors run all the way round.
     pub fn is_ring(self) -> bool {
         matches!(self, Self::Racetrack | Self::Courtyard)

@@ -15,12 +15,13 @@ use d3dgen_model::floorplan::Floorplan;
 use d3dgen_model::placements::Placements;
 use d3dgen_model::report::Report;
 use d3dgen_model::scene_graph::SceneGraph;
+use d3dgen_model::stage::{Error, Stop};
 use d3dgen_model::world::World;
 use d3dgen_plugins::Plugin;
 
 use crate::floorplan::WallMove;
 use crate::generate::{finish, retrieve};
-use crate::{Error, Stop, floorplan, world};
+use crate::{floorplan, world};
 
 /// A world after its edits, with its verdict.
 #[derive(Debug, Clone)]

@@ -7,10 +7,10 @@ use d3dgen_model::domain::{Domain, Mount, ObjectType};
 use d3dgen_model::floorplan::{Floorplan, PlanRoom};
 use d3dgen_model::geometry::to_mm;
 use d3dgen_model::placements::Placement;
+use d3dgen_model::stage::Error;
 use d3dgen_model::{Point, Rect};
 
 use super::{Desk, infeasible, mismatch, refused};
-use crate::Error;
 use crate::placement::assemble::stocked;
 use crate::placement::{Wanted, furnish_room, misfits};
 

@@ -1,11 +1,12 @@
 //! A room more or less in the scene graph.
 
+use d3dgen_knowledge::jurisdiction::rules_here;
 use d3dgen_model::domain::{AdjacencyRelation, Domain, RoomType};
 use d3dgen_model::scene_graph::{Connector, GraphEdge, GraphRoom, Note, SceneGraph};
+use d3dgen_model::stage::Error;
 
 use super::{mismatch, refused};
-use crate::Error;
-use crate::scene_graph::{is_missed, room_type_called, rules_here, wished_assets};
+use crate::scene_graph::{is_missed, room_type_called, wished_assets};
 
 /// Reason of edges that an edit adds.
 const BY_EDIT: &str = "edit";

@@ -40,6 +40,6 @@ pub(super) fn import(asked: &ImportFloorplanRequest, registry: &Registry) -> Res
     };
     let room_types = asked.room_types.iter().map(|(name, kind)| (name.clone(), kind.clone())).collect();
     let said = Said { options, domain: asked.domain_id.clone(), room_types, graph: None, brought };
-    let (graph, plan) = bring(&source, &said, registry).map_err(|e| status::stage("content", e))?;
+    let (graph, plan) = bring(&source, &said, registry).map_err(|e| status::plan("content", e))?;
     Ok(ImportFloorplanResponse { scene_graph: Some(message(&graph)), floorplan: Some(message(&plan)) })
 }

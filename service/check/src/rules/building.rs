@@ -1,0 +1,67 @@
+//! Rules about how the rooms hang together.
+
+use std::collections::BTreeSet;
+
+use d3dgen_model::domain::{Access, Privacy};
+use d3dgen_model::scene_graph::BY_HOST;
+
+use super::Findings;
+use crate::context::{Context, Room};
+
+/// Rooms are entered from outdoors or through rooms that are not private; what belongs to a host (en suite, closet,
+/// anteroom and what lies behind it) may be entered through the host.
+pub fn private_passage(c: &Context, out: &mut Findings) {
+    let mut entered: BTreeSet<&str> = BTreeSet::new();
+    let mut open: Vec<&str> = Vec::new();
+    for door in c.plan().ways_out() {
+        open.extend(door.room_ids.iter().map(String::as_str));
+    }
+    // a building without a way in lacks an entrance, which is another rule's
+    if open.is_empty() {
+        open.extend(c.rooms.iter().filter(|r| r.plan.circulation).map(|r| r.plan.room_id.as_str()));
+    }
+    while let Some(id) = open.pop() {
+        if !entered.insert(id) {
+            continue;
+        }
+        let Some(from) = c.room(id) else { continue };
+        for next in neighbors(from) {
+            if c.room(next).is_some_and(|to| may_pass(c, from, to)) {
+                open.push(next);
+            }
+        }
+    }
+    for room in &c.rooms {
+        out.look();
+        let id = room.plan.room_id.as_str();
+        if !entered.contains(id) {
+            let through: Vec<&str> = neighbors(room).collect();
+            let message = match through.as_slice() {
+                [] => "no door leads into it".to_owned(),
+                rooms => format!("one reaches it only through private rooms ({})", rooms.join(", ")),
+            };
+            out.add(id, message);
+        }
+    }
+}
+
+fn neighbors<'r>(room: &'r Room) -> impl Iterator<Item = &'r str> {
+    let own = room.plan.room_id.as_str();
+    room.doors.iter().flat_map(move |d| d.room_ids.iter().map(String::as_str).filter(move |id| *id != own))
+}
+
+fn may_pass(c: &Context, from: &Room, to: &Room) -> bool {
+    let hub = c.domain.circulation.hub_room_types.contains(&from.plan.room_type);
+    let hosted = |inner: &Room, outer: &Room| {
+        inner.kind.access == Access::Host && inner.kind.hosts.contains(&outer.plan.room_type)
+    };
+    // a bathroom that the scene graph gives to one room is that room's en suite
+    let belongs = |inner: &Room, outer: &Room| {
+        let pair = [inner.plan.room_id.as_str(), outer.plan.room_id.as_str()];
+        let mut edges = c.graph().edges.iter().filter(|e| e.required && e.reason == BY_HOST);
+        inner.kind.wet && edges.any(|e| pair == [e.a.as_str(), e.b.as_str()])
+    };
+    // an anteroom hangs on its host and is the way into it
+    let hangs = hosted(to, from) || hosted(from, to) || belongs(to, from);
+    from.plan.circulation || hub || from.kind.privacy != Privacy::Private || hangs
+}

@@ -1,0 +1,39 @@
+//! Beds of rooms that people stay in overnight.
+
+use super::asked_objects;
+use crate::domain::{Domain, Furnishing, RoomType, Shape, Zone};
+use crate::measures::BED_FOR_TWO_M;
+use crate::scene_graph::GraphRoom;
+
+/// Returns how many people a room of a type has beds for, least and most; `None` where nobody stays overnight.
+pub fn sleeps(domain: &Domain, kind: &RoomType) -> Option<[u32; 2]> {
+    if kind.zone != Zone::Night {
+        return None;
+    }
+    kind.furnishing.iter().filter(|line| line.required).find_map(|line| {
+        let each = sleepers_of(domain, &line.item);
+        (each > 0).then(|| [line.min.max(1) * each, line.max.max(1) * each])
+    })
+}
+
+/// Returns how many people sleep in the beds of an object or a group.
+fn sleepers_of(domain: &Domain, item: &str) -> u32 {
+    let of_one = |id: &str| {
+        let bed = domain.object(id).filter(|o| matches!(o.shape, Shape::Bed | Shape::HospitalBed));
+        bed.map_or(0, |o| if o.sizes_m.first().is_some_and(|s| s[0] >= BED_FOR_TWO_M) { 2 } else { 1 })
+    };
+    domain.counted_objects_of(item).map(|(id, count)| count * of_one(id)).sum()
+}
+
+/// Returns the line of the bed that a room is to have in the place of its usual one, where somebody asked for that.
+pub fn other_bed<'a>(domain: &'a Domain, room: &GraphRoom) -> Option<&'a Furnishing> {
+    let kind = domain.room_type(&room.room_type)?;
+    let is_bed = |item: &str| domain.anchor(item).is_some_and(|o| o.shape == Shape::Bed);
+    let usual = kind.furnishing.first().filter(|f| f.required && is_bed(&f.item))?;
+    let named = asked_objects(domain, kind, room);
+    kind.furnishing.iter().find(|f| {
+        f.instead_of.contains(&usual.item)
+            && is_bed(&f.item)
+            && domain.anchor(&f.item).is_some_and(|a| named.iter().any(|id| **id == a.id))
+    })
+}

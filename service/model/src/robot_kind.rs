@@ -1,0 +1,62 @@
+//! Kinds of robots, from `data/robot_kinds.toml`: their usual body and what they do in rooms.
+
+use std::collections::BTreeMap;
+use std::sync::LazyLock;
+
+use serde::Deserialize;
+
+/// A typical robot of a kind.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RobotKind {
+    /// Radius of the circle it turns in, m.
+    pub radius_m: f64,
+    /// Height, m.
+    pub height_m: f64,
+    /// It visits rooms to clean their floor.
+    #[serde(default)]
+    cleans: bool,
+    /// It brings things to where it stops.
+    #[serde(default = "yes")]
+    brings: bool,
+}
+
+fn yes() -> bool {
+    true
+}
+
+static KINDS: LazyLock<BTreeMap<String, RobotKind>> =
+    LazyLock::new(|| toml::from_str(include_str!("../data/robot_kinds.toml")).expect("a test reads robot_kinds.toml"));
+
+/// Returns the typical robot of a kind that is known.
+pub fn typical(kind: &str) -> Option<&'static RobotKind> {
+    KINDS.get(kind)
+}
+
+/// Returns the kinds that are known, in the order of the alphabet.
+pub fn names() -> Vec<&'static str> {
+    KINDS.keys().map(String::as_str).collect()
+}
+
+/// Returns true for a kind of robot that visits rooms to clean their floor.
+pub fn cleans(kind: &str) -> bool {
+    typical(kind).is_some_and(|body| body.cleans)
+}
+
+/// Returns true for a kind of robot that brings things to where it stops, as one does that nothing is known of.
+pub fn brings(kind: &str) -> bool {
+    typical(kind).is_none_or(|body| body.brings)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn kinds_say_what_they_do() {
+        assert_eq!(names(), ["cleaning", "delivery", "disinfection", "service", "transport"]);
+        for (kind, does) in [("cleaning", [true, false]), ("delivery", [false, true]), ("guide", [false, true])] {
+            assert_eq!([cleans(kind), brings(kind)], does, "{kind}");
+        }
+    }
+}

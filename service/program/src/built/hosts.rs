@@ -1,0 +1,178 @@
+//! Rooms that are entered through others: which room is the host of each en suite, closet and terrace.
+
+use d3dgen_knowledge::jurisdiction::rules_here;
+use d3dgen_model::domain::{Access, AdjacencyRelation, Privacy, RoomType, Zone};
+use d3dgen_model::offer;
+use d3dgen_model::offer::sleeps;
+use d3dgen_model::scene_graph::Note;
+
+use super::vital;
+use crate::built::planned::Planned;
+use crate::reading::Reading;
+use crate::subject::programs::{is_dwelling, is_office};
+use crate::tokens::storey::Where;
+use crate::tokens::words::words;
+use crate::wished::wishes::{Pair, PerHost};
+
+/// Returns the type of the room that comes with every host: the one that is named, or where that is no room entered through
+/// another the one for the same use that is: "every room has a bathroom" of a hospital means its en suites.
+fn private_kind<'a>(reading: &Reading<'a>, rooms: &[Planned], pair: &PerHost) -> &'a RoomType {
+    let named = reading.domain.room_type_or_generic(&pair.guest);
+    let sleeps = |id: &String| rooms.iter().any(|r| &r.room_type == id && r.kind.zone == Zone::Night);
+    let serves = |kind: &&RoomType| kind.access == Access::Host && kind.wet && kind.hosts.iter().any(sleeps);
+    if named.access == Access::Host || !named.wet || pair.host.is_some() {
+        return named;
+    }
+    reading.domain.room_types.iter().find(serves).unwrap_or(named)
+}
+
+/// Gives each host the room that the prompt wants with every one of them: "every patient room has an en suite".
+pub(super) fn equip_hosts<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
+    for pair in &reading.wishes.per_host {
+        let kind = private_kind(reading, rooms, pair);
+        let takes = |r: &Planned| match &pair.host {
+            Some(host) => &r.room_type == host,
+            None => r.kind.zone == Zone::Night && r.kind.access != Access::Host && kind.hosts.contains(&r.room_type),
+        };
+        loop {
+            let hosts = rooms.iter().filter(|r| takes(r)).count();
+            if rooms.iter().filter(|r| r.room_type == kind.id).count() >= hosts {
+                break;
+            }
+            let guest = Planned { requested: true, ..Planned::new(&kind.id, kind) };
+            if reading.total.is_none() {
+                rooms.push(guest);
+                continue;
+            }
+            // the number of rooms is fixed: the last host makes room for something else of the program, or else that for it
+            let own = |r: &Planned| takes(r) || r.room_type == kind.id;
+            let last = rooms.iter().rposition(|r| takes(r) && !r.requested);
+            let next = reading
+                .program
+                .rooms
+                .iter()
+                .map(|e| Planned::new(&e.room_type, reading.domain.room_type_or_generic(&e.room_type)));
+            let fresh = |p: &Planned| {
+                !own(p) && p.kind.access != Access::Host && !rooms.iter().any(|r| r.room_type == p.room_type)
+            };
+            let next = next.into_iter().find(|p| fresh(p) && reading.may_add(&p.room_type));
+            if let (Some(last), Some(next)) = (last.filter(|_| hosts > 1), next) {
+                rooms[last] = next;
+                continue;
+            }
+            let spare = (0..rooms.len())
+                .rev()
+                .find(|&i| !rooms[i].requested && !own(&rooms[i]) && !vital::is_vital(reading, rooms, i))
+                .or_else(|| (0..rooms.len()).rev().find(|&i| takes(&rooms[i]) && !rooms[i].requested));
+            let Some(spare) = spare else { break };
+            rooms[spare] = guest;
+        }
+    }
+}
+
+/// Returns true for two rooms of the public, one told with the other, where people work: each of them lies at the
+/// circulation, or the one would be the only way to the other and to all who work behind it.
+pub(super) fn are_public(reading: &Reading, pair: &Pair) -> bool {
+    let public = |id: &String| {
+        let kind = reading.domain.room_type(id)?;
+        (kind.zone == Zone::Public && kind.access != Access::Host).then_some(kind)
+    };
+    let (Some(a), Some(b)) = (public(&pair.a), public(&pair.b)) else { return false };
+    let serves = |k| offer::has_counters(reading.domain, k);
+    is_office(reading.program) || serves(a) || serves(b)
+}
+
+/// Finds for every en suite, closet and the like the room it is entered from.
+pub(super) fn hang_on_hosts(reading: &mut Reading, rooms: &mut [Planned]) {
+    let domain = reading.domain;
+    // the control room of "MRI with control room" has a door to the scanner and one for those who work there
+    let beside = |p: &&Pair| {
+        let of = |id: &String| domain.room_type(id).is_none_or(|k| k.access == Access::Host);
+        let mut rules = rules_here(domain, reading.country_code.as_deref());
+        !of(&p.a) && rules.any(|r| r.relation == AdjacencyRelation::Must && r.a == p.a && r.b == p.b)
+    };
+    let pairs: Vec<Pair> = reading.wishes.pairs.iter().filter(|p| p.belongs && !beside(p)).cloned().collect();
+    // the only storey that the prompt puts rooms of a type on
+    let storey = |id: &str| {
+        let mut on = reading.storeys.wanted.iter().filter(|w| w.room_type == id).map(|w| w.at);
+        on.next().filter(|_| on.next().is_none())
+    };
+    let storeys: Vec<Option<Where>> = rooms.iter().map(|r| storey(&r.room_type)).collect();
+    for i in 0..rooms.len() {
+        let room = &rooms[i];
+        // "on the second floor a terrace": not that of the living room below
+        let elsewhere = |h: usize| storeys[i].is_some_and(|at| storeys[h].is_some_and(|other| other != at));
+        let hosted = room.kind.access == Access::Host;
+        // the closet of a suite is entered from its bedroom, not through the bathroom that the suite has too
+        let through_bath = |p: &&Pair| {
+            let bath = domain.room_type(&p.b).is_some_and(|k| k.access == Access::Host && k.wet);
+            hosted && bath && !room.kind.hosts.contains(&p.b)
+        };
+        let belongs = pairs.iter().find(|p| p.a == room.room_type).filter(|p| !through_bath(p));
+        // "management with boardroom": nobody meets behind somebody's office
+        let shared = room.kind.privacy != Privacy::Private && room.kind.zone == Zone::Day && !hosted;
+        let through = |p: &&Pair| domain.room_type(&p.b).is_some_and(|k| k.privacy == Privacy::Private);
+        let works = is_office(reading.program);
+        let belongs = belongs.filter(|p| !(works && shared && through(p)));
+        // "lobby with counters": the public goes on from one to the other, those who work there do not
+        let belongs = belongs.filter(|p| !are_public(reading, p));
+        if !hosted && belongs.is_none() {
+            continue;
+        }
+        let fits = |h: &Planned| match belongs {
+            // "isolation room with anteroom": the type says that one enters through the anteroom
+            Some(pair) => h.room_type == pair.b && !h.kind.hosts.contains(&room.room_type),
+            None => room.kind.hosts.contains(&h.room_type),
+        };
+        let by_type = |h: &Planned| hosted && room.kind.hosts.contains(&h.room_type);
+        // an en suite for wheelchairs is one of the en suites
+        let alike = |r: &Planned| {
+            r.room_type == rooms[i].room_type || [r, &rooms[i]].iter().all(|r| reading.wet.has_toilet(r.kind))
+        };
+        let guests = |h: usize, rooms: &[Planned]| rooms.iter().filter(|r| r.host == Some(h) && alike(r)).count();
+        // the usual host first: a terrace lies before the living room
+        let rank = |h: &Planned| room.kind.hosts.iter().position(|k| *k == h.room_type);
+        let candidates = |test: &dyn Fn(&Planned) -> bool| {
+            let free = |h: &usize| *h != i && test(&rooms[*h]) && rooms[*h].host != Some(i) && !elsewhere(*h);
+            (0..rooms.len()).filter(free).min_by_key(|&h| {
+                let apart = rooms[h].unit != room.unit;
+                (apart, guests(h, rooms), rank(&rooms[h]), usize::from(rooms[h].host.is_some()), h)
+            })
+        };
+        // en suites beyond those of the rooms that they are told of go to the others that have none
+        let told = candidates(&fits);
+        let bare = |h: &usize| !hosted || guests(*h, rooms) == 0;
+        let host = told.filter(bare).or_else(|| candidates(&by_type)).or(told);
+        // a room the prompt gives to one host only ("bedroom with its own bath and a second bath")
+        let taken = !hosted && host.is_some_and(|h| guests(h, rooms) > 0);
+        if taken {
+            continue;
+        }
+        if host.is_none() && hosted {
+            let message =
+                format!("{} has no room to be entered from; it opens to the circulation instead", room.kind.label);
+            reading.assumptions.push(Note::new("no_host", message));
+        }
+        rooms[i].host = host;
+    }
+}
+
+/// Lets the only bathroom of a home open to its hall where those of other bedrooms would have to go through one to it.
+pub(super) fn share_last_bathroom(reading: &mut Reading, rooms: &mut [Planned]) {
+    if !is_dwelling(reading.program) || reading.single {
+        return;
+    }
+    let bathes = |r: &Planned| reading.wet.is_bathroom(r.kind) || r.room_type == words().dwelling.shower;
+    let sleeps = |r: &Planned| r.kind.zone == Zone::Night && sleeps(reading.domain, r.kind).is_some();
+    let own = |i: usize| rooms.iter().any(|r| bathes(r) && r.host == Some(i));
+    let without = (0..rooms.len()).filter(|&i| sleeps(&rooms[i]) && !own(i)).count();
+    let shared = rooms.iter().any(|r| bathes(r) && r.host.is_none());
+    let last = rooms.iter().rposition(|r| bathes(r) && r.host.is_some() && r.kind.access != Access::Host);
+    // where several rooms have their own, what the others lack is said
+    let hosted = rooms.iter().filter(|r| bathes(r) && r.host.is_some()).count();
+    let Some(last) = last.filter(|_| without > 0 && !shared && hosted == 1) else { return };
+    rooms[last].host = None;
+    let label = rooms[last].kind.label.to_lowercase();
+    let message = format!("no other {label} serves all bedrooms; it opens to the hall and not into one of them");
+    reading.assumptions.push(Note::new("shared_bathroom", message));
+}
