@@ -5,9 +5,9 @@ use std::collections::BTreeSet;
 use d3dgen_model::floorplan::Door;
 use d3dgen_model::{Point, Segment};
 
-use super::Reading;
 use super::site::{Room, Site};
 use crate::clearance::depth_beside;
+use crate::compliance::reading::Reading;
 use crate::measure::Measure;
 use crate::retrieve::{Applicable, Rule, Scope};
 

@@ -3,10 +3,10 @@
 use d3dgen_model::domain::{Mount, Shape};
 use d3dgen_model::{Point, Rect};
 
-use super::Reading;
-use super::objects::belong_together;
 use super::site::{Object, Room, Site};
 use crate::clearance::{HEAD_ROOM_M, Side, depth_beside, free_depth, quarter, turned};
+use crate::compliance::reading::Reading;
+use crate::compliance::site::belong_together;
 use crate::measure::Measure;
 use crate::retrieve::{Applicable, Rule};
 
