@@ -39,7 +39,8 @@ pub(crate) fn building(registry: &Registry, nodes: &[Rc<Node>], reading: &Readin
     let head = nodes.iter().position(|n| ends_head(n)).unwrap_or(nodes.len());
     let mut named: Vec<Named> = Vec::new();
     for (i, node) in nodes.iter().enumerate() {
-        if refused(nodes, i) {
+        // "staff" of an office names those in it
+        if refused(nodes, i) || node.is("person", None) {
             continue;
         }
         let room_too = node.is("room", None) || node.is("object", None) || node.is("room_word", None);
@@ -97,7 +98,9 @@ fn ends_head(node: &Node) -> bool {
 /// Returns true for a kind that is not to be: "not a hotel".
 fn refused(nodes: &[Rc<Node>], at: usize) -> bool {
     let before = nodes[..at].iter().rev().take(2);
-    before.filter(|n| n.is("particle", None)).any(|n| ["no", "not", "instead"].iter().any(|v| n.is("particle", Some(v))))
+    before
+        .filter(|n| n.is("particle", None))
+        .any(|n| ["no", "not", "instead"].iter().any(|v| n.is("particle", Some(v))))
 }
 
 /// Returns what a node may mean as a building.
@@ -125,7 +128,12 @@ fn meant(registry: &Registry, node: &Node, reading: &Reading) -> Vec<AskedBuildi
     }
     // a kind that some domain knows is more than one that none does
     found.sort_by_key(|b| b.domain.is_none());
-    found.extend(node.values("domain").filter(|d| found.iter().all(|f| f.domain.as_deref() != Some(*d))).map(|d| of(Some(d), None)).collect::<Vec<_>>());
+    found.extend(
+        node.values("domain")
+            .filter(|d| found.iter().all(|f| f.domain.as_deref() != Some(*d)))
+            .map(|d| of(Some(d), None))
+            .collect::<Vec<_>>(),
+    );
     found
 }
 
@@ -135,7 +143,9 @@ fn suggested(registry: &Registry, nodes: &[Rc<Node>]) -> Option<AskedBuilding> {
     for (order, plugin) in registry.iter().enumerate() {
         let knows = |id: &str| plugin.domain().room_type(id).is_some();
         let rooms = nodes.iter().filter(|n| n.is("room", None) || n.is("shorthand", None));
-        let votes_of = rooms.map(|n| if n.is("shorthand", None) && order == 0 { 2.0 } else { f64::from(u8::from(n.values("room").any(knows))) });
+        let votes_of = rooms.map(|n| {
+            if n.is("shorthand", None) && order == 0 { 2.0 } else { f64::from(u8::from(n.values("room").any(knows))) }
+        });
         votes.insert(plugin.id(), (votes_of.sum(), order));
     }
     let (domain, (most, _)) = votes.into_iter().max_by(|a, b| a.1.0.total_cmp(&b.1.0).then(b.1.1.cmp(&a.1.1)))?;
@@ -169,7 +179,12 @@ pub(crate) fn place(nodes: &[Rc<Node>], reading: &Reading) -> (Option<AskedPlace
         match &mut place {
             None => {
                 let division_code = parts.division.map(str::to_owned);
-                place = Some(AskedPlace { country_code: country.to_owned(), division_code, city, words: words(reading, node) });
+                place = Some(AskedPlace {
+                    country_code: country.to_owned(),
+                    division_code,
+                    city,
+                    words: words(reading, node),
+                });
             }
             Some(place) if place.country_code == country => {
                 place.words.extend(words(reading, node));

@@ -18,6 +18,8 @@ use crate::subjects::Known;
 #[derive(Debug, Clone)]
 pub(crate) struct Stated {
     pub tokens: Range<usize>,
+    /// Words that say something of it from elsewhere: the storey of a list.
+    pub also: Option<Range<usize>>,
     pub fact: Fact,
     /// True when the words only speak of a room or an object that others ask for.
     pub mention: bool,
@@ -56,6 +58,7 @@ impl Maker<'_> {
             Some("forbidden") => self.forbidden(node),
             Some("storeys") => self.storeys(node),
             Some("area") => self.area(node),
+            Some("total_area") => node.all("area").for_each(|n| self.area(n)),
             Some("total") => self.total(node),
             Some("only") => {
                 self.say(node, Fact::Only(OnlyAsk { rooms: None, closed: true }));
@@ -65,10 +68,14 @@ impl Maker<'_> {
             }
             Some("on_storey") => {
                 let level = node.field("level").map(|n| &**n);
+                let from = self.facts.len();
                 node.all("item").for_each(|n| {
                     self.state(n, Around { level, ..around });
                 });
+                let words = level.map(|l| l.tokens.clone());
+                self.facts[from..].iter_mut().for_each(|f| f.also = words.clone());
             }
+            Some("each_group") => self.each_group(node),
             Some("shorthand_home") => self.shorthand(node),
             Some("style") => self.style(node),
             Some("site") => self.site(node),
@@ -80,7 +87,7 @@ impl Maker<'_> {
     }
 
     fn say(&mut self, node: &Node, fact: Fact) {
-        self.facts.push(Stated { tokens: node.tokens.clone(), fact, mention: false });
+        self.facts.push(Stated { tokens: node.tokens.clone(), also: None, fact, mention: false });
     }
 
     fn subject(&self, node: &Node) -> Subject {
@@ -93,10 +100,16 @@ impl Maker<'_> {
             for id in ids.split('+') {
                 let room = Subject::known(id, self.reading.written(suite.tokens.clone()));
                 let count = count(node).unwrap_or_default();
-                self.say(node, Fact::Rooms(RoomsAsk { room, count, level: self.level(node, around), ..RoomsAsk::default() }));
+                self.say(
+                    node,
+                    Fact::Rooms(RoomsAsk { room, count, level: self.level(node, around), ..RoomsAsk::default() }),
+                );
             }
         }
         if node.field("suite").is_some() {
+            return;
+        }
+        if self.reads_otherwise(node) {
             return;
         }
         let room = self.known.subject(node, "room", self.reading);
@@ -117,10 +130,17 @@ impl Maker<'_> {
             let each = inside.remove(at);
             ask.each = Some(self.subject(&each));
         }
-        if let Some(sex) = node.field("sex") && sex.is("sex", Some("each")) {
+        if let Some(sex) = node.field("sex")
+            && sex.is("sex", Some("each"))
+        {
             ask.count = AskedCount { n: ask.count.n.max(1) * 2, ..ask.count };
         }
-        self.facts.push(Stated { tokens: node.tokens.clone(), fact: Fact::Rooms(ask), mention: around.mention });
+        self.facts.push(Stated {
+            tokens: node.tokens.clone(),
+            also: None,
+            fact: Fact::Rooms(ask),
+            mention: around.mention,
+        });
         for held in node.all("hold") {
             self.held(held, &room, several);
         }
@@ -130,6 +150,26 @@ impl Maker<'_> {
         node.all("other").for_each(|n| {
             self.state(n, Around::default());
         });
+    }
+
+    /// States what a word is that names a room of other buildings, and an object or a manner of this one: "open plan" in a home.
+    fn reads_otherwise(&mut self, node: &Node) -> bool {
+        let Some(leaf) = node.field("room").cloned() else { return false };
+        if self.known.rooms.is_empty() || leaf.values("room").any(|v| self.known.rooms.contains(v)) {
+            return false;
+        }
+        if let Some(word) = leaf.values("attribute").next() {
+            self.say(node, Fact::Style(StyleAsk { word: word.to_owned() }));
+            return true;
+        }
+        let Some(id) = leaf.values("object").find(|v| self.known.objects.contains(*v)) else { return false };
+        let object = Subject::known(id, self.reading.written(leaf.tokens.clone()));
+        let count = count(node).unwrap_or_default();
+        self.say(
+            node,
+            Fact::Objects(ObjectsAsk { object, count, attributes: attributes(node), ..ObjectsAsk::default() }),
+        );
+        true
     }
 
     /// States what a room has in it or beside it: "bedroom with a desk", "pharmacy with a clean room".
@@ -154,7 +194,10 @@ impl Maker<'_> {
     /// States the places of a room: "4 screens of 80 seats", "meeting room for ten".
     fn held(&mut self, held: &Node, room: &Subject, several: bool) {
         let count = count(held).or_else(|| household(held)).unwrap_or_default();
-        let of = held.values("capacity").chain(held.field("what").into_iter().flat_map(|w| w.values("capacity"))).find_map(place_kind);
+        let of = held
+            .values("capacity")
+            .chain(held.field("what").into_iter().flat_map(|w| w.values("capacity")))
+            .find_map(place_kind);
         let of = of.unwrap_or(PlaceKind::Seats);
         let fact = CapacityAsk { of, count, room: Some(room.clone()), each_room: several, groups: None };
         self.say(held, Fact::Capacity(fact));
@@ -162,12 +205,14 @@ impl Maker<'_> {
 
     fn level(&self, node: &Node, around: Around) -> Option<i32> {
         let level = node.field("level").map(|n| &**n).or(around.level)?;
-        let named = level.field("named").and_then(|n| n.values("storey").find_map(|v| match v {
-            "ground" => Some(0),
-            "upper" => Some(1),
-            "basement" => Some(-1),
-            _ => None,
-        }));
+        let named = level.field("named").and_then(|n| {
+            n.values("storey").find_map(|v| match v {
+                "ground" => Some(0),
+                "upper" => Some(1),
+                "basement" => Some(-1),
+                _ => None,
+            })
+        });
         let nth = || {
             let nth = level.field("nth")?;
             let n = nth.values("ordinal").find_map(|v| v.parse::<i32>().ok()).or(nth.number.map(|n| n as i32))?;
@@ -203,9 +248,13 @@ impl Maker<'_> {
         let (count, of) = match held {
             // "4 groups of 12", "3 groups of 20 children"
             Some(held) => {
-                let sleeps = held.field("who").is_some_and(|w| ["resident", "patient"].iter().any(|v| w.is("person", Some(v))));
+                let sleeps =
+                    held.field("who").is_some_and(|w| ["resident", "patient"].iter().any(|v| w.is("person", Some(v))));
                 let of = held.field("what").and_then(|w| w.values("capacity").find_map(place_kind));
-                (count(held).or_else(|| number(held)), of.unwrap_or(if sleeps { PlaceKind::Beds } else { PlaceKind::Seats }))
+                (
+                    count(held).or_else(|| number(held)),
+                    of.unwrap_or(if sleeps { PlaceKind::Beds } else { PlaceKind::Seats }),
+                )
             }
             None => (count(node), kind.unwrap_or(PlaceKind::Seats)),
         };
@@ -220,22 +269,46 @@ impl Maker<'_> {
         }
         let within = node.field("in").cloned();
         let room = room.or_else(|| within.as_ref().map(|n| self.subject(n)));
-        let each_room = within.as_ref().is_some_and(|n| n.field("each").is_some() || self::count(n).is_some_and(|c| c.n > 1));
+        let each_room =
+            within.as_ref().is_some_and(|n| n.field("each").is_some() || self::count(n).is_some_and(|c| c.n > 1));
         self.say(node, Fact::Capacity(CapacityAsk { of, count, room, each_room, groups }));
         if let Some(within) = within {
             self.state(&within, Around { mention: true, ..Around::default() });
         }
     }
 
+    /// States what every group has: one for each of the groups that were counted.
+    fn each_group(&mut self, node: &Node) {
+        let groups = self.facts.iter().rev().find_map(|f| match &f.fact {
+            Fact::Capacity(c) => c.groups,
+            _ => None,
+        });
+        let from = self.facts.len();
+        node.all("item").for_each(|n| {
+            self.state(n, Around::default());
+        });
+        for stated in &mut self.facts[from..] {
+            stated.tokens.start = stated.tokens.start.min(node.tokens.start);
+            if let (Fact::Rooms(rooms), Some(n)) = (&mut stated.fact, groups) {
+                rooms.count = AskedCount::exactly(n);
+            }
+        }
+    }
+
     fn people(&mut self, node: &Node) {
         let who = node.field("who");
-        let role = who.and_then(|w| w.values("person").next()).unwrap_or("resident").to_owned();
+        let role = who
+            .and_then(|w| w.values("person").next())
+            .unwrap_or(if household(node).is_some() { "resident" } else { "people" })
+            .to_owned();
         let count = count(node).or_else(|| household(node)).unwrap_or_default();
         self.say(node, Fact::People(PeopleAsk { role, count }));
     }
 
     fn robots(&mut self, node: &Node) {
-        let kinds = node.all("robot").flat_map(|r| r.values("robot").map(str::to_owned).collect::<Vec<_>>());
+        let kinds = node.all("robot").flat_map(|r| {
+            r.values("robot").chain(r.values("task").map(kind_of_work)).map(str::to_owned).collect::<Vec<_>>()
+        });
         let mut kinds: Vec<String> = kinds.collect();
         kinds.sort_by_key(|k| k == "any");
         let tasks: Vec<AskedTask> = node.all("does").filter_map(|d| self.task(d)).collect();
@@ -243,18 +316,18 @@ impl Maker<'_> {
         let mut kind = kinds.into_iter().next().unwrap_or_else(|| "any".to_owned());
         if kind == "any" {
             // a robot is what it does
-            kind = verb.unwrap_or_else(|| "service".to_owned());
-        }
-        if kind == "carry" {
-            kind = "delivery".to_owned();
+            kind = verb.map_or_else(|| "service".to_owned(), |v| kind_of_work(&v).to_owned());
         }
         let side = |which: &str| {
-            node.all("size").find(|s| s.field("which").is_some_and(|w| w.is("dimension", Some(which)))).and_then(|s| measure(s, "length"))
+            node.all("size")
+                .find(|s| s.field("which").is_some_and(|w| w.is("dimension", Some(which))))
+                .and_then(|s| measure(s, "length"))
         };
         let bare = node.all("size").find(|s| s.field("which").is_none()).and_then(|s| measure(s, "length"));
         let round = side("diameter").or(side("radius").map(|r| 2.0 * r));
         let sides = sides(node);
-        let keep_out = node.all("keep_out").flat_map(|k| k.all("item").map(|n| self.subject(n)).collect::<Vec<_>>()).collect();
+        let keep_out =
+            node.all("keep_out").flat_map(|k| k.all("item").map(|n| self.subject(n)).collect::<Vec<_>>()).collect();
         self.say(
             node,
             Fact::Robots(RobotsAsk {
@@ -267,7 +340,9 @@ impl Maker<'_> {
                 keep_out,
             }),
         );
-        let ends = node.all("does").flat_map(|d| d.all("from").chain(d.all("to")).chain(d.all("at")).cloned().collect::<Vec<_>>());
+        let ends = node
+            .all("does")
+            .flat_map(|d| d.all("from").chain(d.all("to")).chain(d.all("at")).cloned().collect::<Vec<_>>());
         let kept = node.all("keep_out").flat_map(|k| k.all("item").cloned().collect::<Vec<_>>());
         for end in ends.chain(kept).collect::<Vec<_>>() {
             self.mention(&end);
@@ -310,7 +385,11 @@ impl Maker<'_> {
         }
         firsts.iter().chain(&seconds).for_each(|n| {
             // a room with a number or for the first time is asked for, else spoken of
-            if n.is("rooms", Some("counted")) { self.state(n, Around::default()); } else { self.mention(n) }
+            if n.is("rooms", Some("counted")) {
+                self.state(n, Around::default());
+            } else {
+                self.mention(n)
+            }
         });
         for (a, b) in pairs {
             let (a, b) = if kind == RelationKind::Sees && node.field("seen").is_some() { (b, a) } else { (a, b) };
@@ -333,12 +412,13 @@ impl Maker<'_> {
                 (room, object) => Fact::Forbidden(ForbiddenAsk { room, object, within: within.clone() }),
             };
             let start = if item.tokens.start == words.start { node.tokens.start.min(words.start) } else { words.start };
-            self.facts.push(Stated { tokens: start..words.end, fact, mention: false });
+            self.facts.push(Stated { tokens: start..words.end, also: None, fact, mention: false });
         }
     }
 
     fn storeys(&mut self, node: &Node) {
-        let words = node.field("word").and_then(|w| w.values("storeys").find_map(|v| v.parse().ok())).map(AskedCount::exactly);
+        let words =
+            node.field("word").and_then(|w| w.values("storeys").find_map(|v| v.parse().ok())).map(AskedCount::exactly);
         let basement = node.field("basement").is_some();
         let count = count(node).or(words).unwrap_or_default();
         let count = node.field("plus").map_or(count, |p| AskedCount::exactly(1 + p.number.unwrap_or(1.0) as u32));
@@ -373,7 +453,10 @@ impl Maker<'_> {
                         let n = times.unwrap_or(if i == 0 { n.saturating_sub(less) } else { 1 });
                         if n > 0 {
                             let room = Subject::known(id, self.reading.written(node.tokens.clone()));
-                            self.say(node, Fact::Rooms(RoomsAsk { room, count: AskedCount::exactly(n), ..RoomsAsk::default() }));
+                            self.say(
+                                node,
+                                Fact::Rooms(RoomsAsk { room, count: AskedCount::exactly(n), ..RoomsAsk::default() }),
+                            );
                         }
                     }
                 }
@@ -383,21 +466,26 @@ impl Maker<'_> {
     }
 
     fn style(&mut self, node: &Node) {
-        let named: Vec<String> = node.all("word").flat_map(|w| w.values("style").chain(w.values("attribute")).take(1).map(str::to_owned).collect::<Vec<_>>()).collect();
+        let named: Vec<String> = node
+            .all("word")
+            .flat_map(|w| w.values("style").chain(w.values("attribute")).take(1).map(str::to_owned).collect::<Vec<_>>())
+            .collect();
         for word in named {
             self.say(node, Fact::Style(StyleAsk { word }));
         }
     }
 
     fn site(&mut self, node: &Node) {
-        let kind = node.field("word").and_then(|w| w.values("site").find_map(|v| match v {
-            "terraced" => Some(SiteKind::Terraced),
-            "detached" => Some(SiteKind::FreeStanding),
-            "semi_detached" => Some(SiteKind::SemiDetached),
-            "corner" => Some(SiteKind::Corner),
-            "inside" => Some(SiteKind::Inside),
-            _ => None,
-        }));
+        let kind = node.field("word").and_then(|w| {
+            w.values("site").find_map(|v| match v {
+                "terraced" => Some(SiteKind::Terraced),
+                "detached" => Some(SiteKind::FreeStanding),
+                "semi_detached" => Some(SiteKind::SemiDetached),
+                "corner" => Some(SiteKind::Corner),
+                "inside" => Some(SiteKind::Inside),
+                _ => None,
+            })
+        });
         match kind {
             Some(kind) => self.say(node, Fact::Site(SiteAsk { kind })),
             None => self.other(node),
@@ -485,6 +573,20 @@ fn attributes(node: &Node) -> Vec<String> {
     found
 }
 
+/// Work of robots, and the kind of robot that does it.
+const WORK: &[(&str, &str)] = &[
+    ("bring", "delivery"),
+    ("clean", "cleaning"),
+    ("disinfect", "disinfection"),
+    ("serve", "service"),
+    ("inspect", "inspection"),
+    ("feed", "feeding"),
+];
+
+fn kind_of_work(verb: &str) -> &str {
+    WORK.iter().find(|w| w.0 == verb).map_or(verb, |w| w.1)
+}
+
 fn place_kind(value: &str) -> Option<PlaceKind> {
     from_name(match value {
         "seat" => "seats",
@@ -538,18 +640,26 @@ pub(crate) fn shown(fact: &Fact) -> String {
         Fact::Objects(o) => {
             let mut line = format!("objects {} {}", number(&o.count), subject(&o.object));
             o.attributes.iter().for_each(|a| line += &format!(" {a}"));
-            o.room.iter().for_each(|r| line += &format!(" in {}{}", if o.each_room { "each " } else { "" }, subject(r)));
+            o.room
+                .iter()
+                .for_each(|r| line += &format!(" in {}{}", if o.each_room { "each " } else { "" }, subject(r)));
             line
         }
         Fact::Capacity(c) => {
             let mut line = format!("capacity {} {}", number(&c.count), name(&c.of));
-            c.room.iter().for_each(|r| line += &format!(" in {}{}", if c.each_room { "each " } else { "" }, subject(r)));
+            c.room
+                .iter()
+                .for_each(|r| line += &format!(" in {}{}", if c.each_room { "each " } else { "" }, subject(r)));
             c.groups.iter().for_each(|g| line += &format!(" in {g} groups"));
             line
         }
         Fact::Relation(r) => format!("relation {} {} {}", subject(&r.a), name(&r.relation), subject(&r.b)),
         Fact::Storeys(s) => format!("storeys {}{}", number(&s.count), if s.basement { " and a basement" } else { "" }),
-        Fact::Area(a) => format!("area {}{}", a.area_m2, if a.bound == Bound::Exactly { String::new() } else { format!(" {}", name(&a.bound)) }),
+        Fact::Area(a) => format!(
+            "area {}{}",
+            a.area_m2,
+            if a.bound == Bound::Exactly { String::new() } else { format!(" {}", name(&a.bound)) }
+        ),
         Fact::Robots(r) => {
             let mut line = format!("robots {} {}", number(&r.count), r.kind);
             r.width_m.iter().for_each(|w| line += &format!(" {w} m wide"));
@@ -565,7 +675,9 @@ pub(crate) fn shown(fact: &Fact) -> String {
         }
         Fact::People(p) => format!("people {} {}", number(&p.count), p.role),
         Fact::Style(s) => format!("style {}", s.word),
-        Fact::Accessible(a) => format!("accessible{}", a.room.as_ref().map_or(String::new(), |r| format!(" {}", subject(r)))),
+        Fact::Accessible(a) => {
+            format!("accessible{}", a.room.as_ref().map_or(String::new(), |r| format!(" {}", subject(r))))
+        }
         Fact::Forbidden(f) => {
             let what = f.room.iter().chain(&f.object).map(subject).collect::<Vec<_>>().join(" ");
             let within = f.within.as_ref().map_or(String::new(), |w| format!(" in {}", subject(w)));

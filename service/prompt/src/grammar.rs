@@ -65,6 +65,7 @@ pub(crate) struct Rule {
     pub order: Option<Order>,
     /// Constant fields.
     pub set: BTreeMap<String, String>,
+    #[cfg_attr(not(test), allow(dead_code, reason = "read by the test of the rules"))]
     pub examples: Vec<Example>,
 }
 
@@ -88,6 +89,7 @@ pub(crate) enum Order {
 /// A text and what is asked for in it: the test of a rule.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
+#[cfg_attr(not(test), allow(dead_code, reason = "read by the test of the rules"))]
 pub(crate) struct Example {
     pub text: String,
     /// Facts, one a line, as [`crate::facts::shown`] writes them.
@@ -145,8 +147,7 @@ impl Grammar {
             grammar.small.extend(small.map(|(class, value)| (class.to_owned(), value.to_owned())));
             let mut level = Level { rules: Vec::new(), times: file.times };
             for rule in file.rule {
-                let wrong =
-                    |reason: String| Error::Rule { file: (*name).to_owned(), rule: rule.name.clone(), reason };
+                let wrong = |reason: String| Error::Rule { file: (*name).to_owned(), rule: rule.name.clone(), reason };
                 if !names.insert(rule.name.clone()) {
                     return Err(wrong("another rule has that name".to_owned()));
                 }
@@ -187,7 +188,12 @@ mod tests {
         }
         for rule in &grammar.rules {
             for (class, _) in rule.pattern.classes() {
-                assert!(known.contains(class), "{}: rule `{}` asks for `{class}`, which nothing makes", rule.file, rule.name);
+                assert!(
+                    known.contains(class),
+                    "{}: rule `{}` asks for `{class}`, which nothing makes",
+                    rule.file,
+                    rule.name
+                );
             }
         }
     }
@@ -198,7 +204,10 @@ mod tests {
             let error = Grammar::read(&[("10_x.toml", text)]).map(|_| ()).unwrap_err().to_string();
             assert!(error.contains(part), "{error}");
         };
-        check("[[rule]]\nname = \"a\"\nmakes = \"b\"\npattern = \"( c\"", "10_x.toml: rule `a`: a bracket is not closed");
+        check(
+            "[[rule]]\nname = \"a\"\nmakes = \"b\"\npattern = \"( c\"",
+            "10_x.toml: rule `a`: a bracket is not closed",
+        );
         check("[[rule]]\nname = \"a\"\npattern = \"c\"", "either `makes` or `extends`");
         check("[[rul]]", "10_x.toml");
     }

@@ -75,6 +75,7 @@ impl Node {
         match (class, value) {
             ("number", None) => self.number.is_some() && self.rule.is_none(),
             ("unknown", None) => self.is_unknown(),
+            ("mark", None) => self.mark,
             ("mark", Some(name)) => self.mark && MARKS.iter().any(|(text, n)| *n == name && **text == *self.text),
             (_, None) => self.senses.iter().any(|(c, _)| **c == *class),
             (_, Some(value)) if self.senses.iter().any(|(c, v)| **c == *class && **v == *value) => true,

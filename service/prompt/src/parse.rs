@@ -106,8 +106,9 @@ fn made(grammar: &Grammar, candidate: &Candidate, nodes: &[Rc<Node>], from: usiz
         Makes::New(class) => {
             let class: Arc<str> = class.as_str().into();
             // rooms and objects may be asked for by their ids
-            let ids = captured.iter().filter(|(name, _)| matches!(&**name, "room" | "object"));
-            let ids = ids.flat_map(|(name, n)| n.values(name).map(Arc::from).collect::<Vec<Arc<str>>>());
+            let ids = captured.iter().filter(|(name, _)| matches!(&**name, "room" | "object" | "classifier" | "who"));
+            let class_of = |name: &str| if name == "who" { "person".to_owned() } else { name.to_owned() };
+            let ids = ids.flat_map(|(name, n)| n.values(&class_of(name)).map(Arc::from).collect::<Vec<Arc<str>>>());
             node.senses = [Arc::from("")].into_iter().chain(ids).map(|id| (class.clone(), id)).collect();
         }
         Makes::More(name) => {

@@ -2,7 +2,7 @@
 //!
 //! `count:count? attribute:attribute* room:room` is three elements: a name under which what matches is captured, what it must
 //! be (a class, or a class with a value: `particle.no`), and how often (`?` at most once, `*` any number of times, `+` at
-//! least once). `( a | b c )` is one of several sequences. Small words that say nothing may stand between the elements.
+//! least once). `( a | b c )` is one of several sequences. `=mark` must come next, or the end, and is not taken. Small words that say nothing may stand between the elements.
 
 use std::rc::Rc;
 use std::sync::Arc;
@@ -25,7 +25,7 @@ struct Element {
 
 #[derive(Debug, Clone, PartialEq)]
 enum What {
-    Atom { name: Option<Arc<str>>, class: String, value: Option<String> },
+    Atom { name: Option<Arc<str>>, class: String, value: Option<String>, ahead: bool },
     Any(Vec<Pattern>),
 }
 
@@ -68,6 +68,16 @@ impl Pattern {
         }
     }
 
+    /// Makes all of it what must come next and is not taken.
+    fn look_ahead(&mut self) {
+        for element in &mut self.0 {
+            match &mut element.what {
+                What::Atom { ahead, .. } => *ahead = true,
+                What::Any(ways) => ways.iter_mut().for_each(Pattern::look_ahead),
+            }
+        }
+    }
+
     /// Returns the classes of its first elements, to pass over it quickly; empty when any may be first.
     pub fn first_classes(&self) -> Vec<&str> {
         let mut classes = Vec::new();
@@ -92,11 +102,15 @@ impl Pattern {
     }
 
     /// Returns all classes that it asks for, with their values.
+    #[cfg(test)]
     pub fn classes(&self) -> Vec<(&str, Option<&str>)> {
-        self.0.iter().flat_map(|e| match &e.what {
-            What::Atom { class, value, .. } => vec![(class.as_str(), value.as_deref())],
-            What::Any(patterns) => patterns.iter().flat_map(Pattern::classes).collect(),
-        }).collect()
+        self.0
+            .iter()
+            .flat_map(|e| match &e.what {
+                What::Atom { class, value, .. } => vec![(class.as_str(), value.as_deref())],
+                What::Any(patterns) => patterns.iter().flat_map(Pattern::classes).collect(),
+            })
+            .collect()
     }
 
     /// Returns the longest way in which it fits from a node on; `skip` says which nodes may stand between its elements.
@@ -158,7 +172,13 @@ impl Walk<'_> {
     fn once(&mut self, element: &Element, fit: Fit, then: Then) {
         match &element.what {
             What::Any(patterns) => patterns.iter().for_each(|p| self.sequence(&p.0, fit.clone(), then)),
-            What::Atom { name, class, value } => {
+            What::Atom { class, value, ahead: true, .. } => {
+                let fits = self.nodes.get(fit.end).is_none_or(|n| n.is(class, value.as_deref()));
+                if fits {
+                    then(self, fit);
+                }
+            }
+            What::Atom { name, class, value, .. } => {
                 let mut at = fit.end;
                 loop {
                     let Some(node) = self.nodes.get(at) else { return };
@@ -204,9 +224,11 @@ fn sequence(words: &[String], at: &mut usize) -> Result<Pattern, String> {
         }
         *at += 1;
         // "item:( rooms | objects )": what is in the bracket is captured under the name
-        let name = word.strip_suffix(':').filter(|_| words.get(*at).is_some_and(|w| w == "("));
-        if word == "(" || name.is_some() {
-            *at += usize::from(name.is_some());
+        let opens = words.get(*at).is_some_and(|w| w == "(");
+        let name = word.strip_suffix(':').filter(|_| opens);
+        let ahead = word == "=" && opens;
+        if word == "(" || name.is_some() || ahead {
+            *at += usize::from(name.is_some() || ahead);
             let mut ways = vec![sequence(words, at)?];
             while words.get(*at).is_some_and(|w| w == "|") {
                 *at += 1;
@@ -216,6 +238,7 @@ fn sequence(words: &[String], at: &mut usize) -> Result<Pattern, String> {
             let (_, least, most) = times(close);
             *at += 1;
             name.iter().for_each(|name| ways.iter_mut().for_each(|way| way.capture_as(name)));
+            ways.iter_mut().filter(|_| ahead).for_each(Pattern::look_ahead);
             elements.push(Element { what: What::Any(ways), least, most });
         } else {
             elements.push(atom(word)?);
@@ -226,6 +249,7 @@ fn sequence(words: &[String], at: &mut usize) -> Result<Pattern, String> {
 
 fn atom(word: &str) -> Result<Element, String> {
     let (text, least, most) = times(word);
+    let (ahead, text) = text.strip_prefix('=').map_or((false, text), |text| (true, text));
     let (name, what) = text.split_once(':').map_or((None, text), |(name, what)| (Some(name), what));
     let (class, value) = what.split_once('.').map_or((what, None), |(class, value)| (class, Some(value.to_owned())));
     let plain = |s: &str| !s.is_empty() && s.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
@@ -233,7 +257,7 @@ fn atom(word: &str) -> Result<Element, String> {
         return Err(format!("`{word}` is no element"));
     }
     let name = name.map(Arc::from);
-    Ok(Element { what: What::Atom { name, class: class.to_owned(), value }, least, most })
+    Ok(Element { what: What::Atom { name, class: class.to_owned(), value, ahead }, least, most })
 }
 
 fn times(word: &str) -> (&str, usize, usize) {

@@ -35,7 +35,13 @@ pub(crate) fn places() -> Vec<Place> {
     for line in PLACES.lines() {
         let Ok(line) = serde_json::from_str::<Line>(line) else { continue };
         for name in &line.names {
-            let one = Line { names: Vec::new(), codes: line.codes.clone(), code: line.code.clone(), division: line.division.clone(), ..line };
+            let one = Line {
+                names: Vec::new(),
+                codes: line.codes.clone(),
+                code: line.code.clone(),
+                division: line.division.clone(),
+                ..line
+            };
             match found.get(&name.to_lowercase()) {
                 // a country wins over a city of the same name, a listed ambiguity over both
                 Some(old) if old.codes.len() >= one.codes.len() && (!old.city || one.city) => {}

@@ -28,7 +28,10 @@ impl Known {
     /// Returns the sense of a node that the building knows, or else its first one.
     fn sense<'n>(&self, node: &'n Node, class: &'n str) -> Option<&'n str> {
         let known = if class == "room" { &self.rooms } else { &self.objects };
-        node.values(class).find(|v| known.contains(*v)).or_else(|| node.values(class).next())
+        // of those that the building knows, the one that is called so
+        let named = |v: &&str| node.text.contains(&v.replace('_', " "));
+        let fits = || node.values(class).filter(|v| known.contains(*v));
+        fits().find(named).or_else(|| fits().next()).or_else(|| node.values(class).next())
     }
 
     /// Returns the room or object that a node of the grammar is about: a field of that class, or words of the prompt's own.

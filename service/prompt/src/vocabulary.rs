@@ -9,10 +9,19 @@ use crate::places::places;
 
 /// Returns the lexicon of the language crate with the words of all domains.
 pub(crate) fn lexicon(registry: &Registry) -> Lexicon {
-    let mut lexicon = Lexicon::shipped();
+    let shipped = Lexicon::shipped();
+    let mut lexicon = shipped.clone();
+    // "两室": a number and what it counts, which the grammar reads
+    let counts = |phrase: &str| {
+        let reading = shipped.read(phrase);
+        let chunks = reading.chunks();
+        let counted = chunks.iter().any(|c| c.has("shorthand"));
+        chunks.len() > 1 && counted && chunks.iter().all(|c| c.number.is_some() || c.has("shorthand"))
+    };
     let add = |lexicon: &mut Lexicon, class: &str, value: &str, words: &BTreeMap<String, Vec<String>>| {
         for (language, phrases) in words {
-            phrases.iter().for_each(|p| lexicon.add(language, class, value, p));
+            let told = phrases.iter().filter(|p| class != "domain" || !counts(p));
+            told.for_each(|p| lexicon.add(language, class, value, p));
         }
     };
     for plugin in registry.iter() {
@@ -32,7 +41,7 @@ pub(crate) fn lexicon(registry: &Registry) -> Lexicon {
         }
     }
     for place in places() {
-        lexicon.add("any", "place", &place.value, &place.name);
+        lexicon.add_name("place", &place.value, &place.name);
     }
     lexicon
 }

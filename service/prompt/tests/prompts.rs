@@ -68,9 +68,52 @@ fn any_text_has_a_brief() {
         (state >> 33) % below
     };
     let words = [
-        "flat", "with", "3", "bedrooms", "no", "only", "Küche", "ohne", "zwei", "m²", "12", "x", "4", "m", "会议室", "三间", "로봇", "2대",
-        "salle de", "réunion", "next to", "the", "between", "and", ",", ";", ":", "each", "robot", "from", "to", "ignore all previous instructions",
-        "999999999999999999999", "-1", "0", "1e400", "\u{202e}", "🦀", "кухня", "без", "キッチン", "なし", "{\"asks\":[]}", "at least", "floor", "second",
+        "flat",
+        "with",
+        "3",
+        "bedrooms",
+        "no",
+        "only",
+        "Küche",
+        "ohne",
+        "zwei",
+        "m²",
+        "12",
+        "x",
+        "4",
+        "m",
+        "会议室",
+        "三间",
+        "로봇",
+        "2대",
+        "salle de",
+        "réunion",
+        "next to",
+        "the",
+        "between",
+        "and",
+        ",",
+        ";",
+        ":",
+        "each",
+        "robot",
+        "from",
+        "to",
+        "ignore all previous instructions",
+        "999999999999999999999",
+        "-1",
+        "0",
+        "1e400",
+        "\u{202e}",
+        "🦀",
+        "кухня",
+        "без",
+        "キッチン",
+        "なし",
+        "{\"asks\":[]}",
+        "at least",
+        "floor",
+        "second",
     ];
     for _ in 0..300 {
         let mut prompt = String::new();
@@ -141,7 +184,9 @@ fn gold_facts_of_the_shared_prompts_are_read() {
         let prompt = gold["prompt"].as_str().unwrap();
         let brief = reader.read(prompt).brief;
         for ask in gold["asks"].as_array().unwrap() {
-            let stated = ask["words"].as_array().is_some_and(|w| w.iter().any(|w| prompt.to_lowercase().contains(w.as_str().unwrap_or("\0"))));
+            let stated = ask["words"]
+                .as_array()
+                .is_some_and(|w| w.iter().any(|w| prompt.to_lowercase().contains(w.as_str().unwrap_or("\0"))));
             let Some(met) = stated.then(|| met(ask, &brief)).flatten() else { continue };
             asked += 1;
             read += usize::from(met);
@@ -152,7 +197,8 @@ fn gold_facts_of_the_shared_prompts_are_read() {
         let domains: Vec<&str> = gold["domain"].as_array().unwrap().iter().filter_map(|d| d.as_str()).collect();
         let domain = brief.building.as_ref().and_then(|b| b.domain.as_deref());
         asked += 1;
-        let right = domain.is_some_and(|d| domains.contains(&d)) || (domain.is_none() && (domains.is_empty() || domains.contains(&"general")));
+        let right = domain.is_some_and(|d| domains.contains(&d))
+            || (domain.is_none() && (domains.is_empty() || domains.contains(&"general")));
         read += usize::from(right);
         if !right {
             eprintln!("{} {}: building {:?}", gold["id"], prompt, brief.building);
@@ -181,7 +227,12 @@ fn met(ask: &serde_json::Value, brief: &Brief) -> Option<bool> {
     let op = ask["op"].as_str().unwrap_or(">=");
     let facts = brief.asks.iter().map(|a| &a.fact);
     Some(match ask["kind"].as_str()? {
-        "room" if accept == [""] => facts.clone().any(|f| matches!(f, Fact::Only(o) if o.rooms.is_some_and(|r| f64::from(r) >= n || op == "<="))) || op == "<=",
+        "room" if accept == [""] => {
+            facts
+                .clone()
+                .any(|f| matches!(f, Fact::Only(o) if o.rooms.is_some_and(|r| f64::from(r) >= n || op == "<=")))
+                || op == "<="
+        }
         "room" => {
             let count: f64 = facts
                 .map(|f| match f {
@@ -191,7 +242,9 @@ fn met(ask: &serde_json::Value, brief: &Brief) -> Option<bool> {
                     _ => 0.0,
                 })
                 .sum();
-            let named = brief.building.as_ref().is_some_and(|b| b.words.iter().any(|w| strings("words").iter().any(|x| slug(&w.text).contains(x.as_str()))));
+            let named = brief.building.as_ref().is_some_and(|b| {
+                b.words.iter().any(|w| strings("words").iter().any(|x| slug(&w.text).contains(x.as_str())))
+            });
             count >= n || named
         }
         "object" => brief.asks.iter().any(|a| match &a.fact {
@@ -201,13 +254,18 @@ fn met(ask: &serde_json::Value, brief: &Brief) -> Option<bool> {
             _ => false,
         }),
         "capacity" => facts.clone().any(|f| match f {
-            Fact::Capacity(c) => f64::from(c.count.n) == n || c.groups.is_some_and(|g| f64::from(g * c.count.n) == n) || c.each_room,
+            Fact::Capacity(c) => {
+                f64::from(c.count.n) == n || c.groups.is_some_and(|g| f64::from(g * c.count.n) == n) || c.each_room
+            }
             Fact::People(p) => f64::from(p.count.n) == n,
             Fact::Objects(o) => f64::from(o.count.n) == n,
             Fact::Rooms(r) => f64::from(r.count.n) == n,
             _ => false,
         }),
-        "storeys" => facts.clone().any(|f| matches!(f, Fact::Storeys(s) if f64::from(s.count.n) == n)) || facts.clone().any(|f| matches!(f, Fact::Rooms(r) if r.level.is_some_and(|l| l > 0))),
+        "storeys" => {
+            facts.clone().any(|f| matches!(f, Fact::Storeys(s) if f64::from(s.count.n) == n))
+                || facts.clone().any(|f| matches!(f, Fact::Rooms(r) if r.level.is_some_and(|l| l > 0)))
+        }
         "country" => brief.place.as_ref().is_some_and(|p| Some(p.country_code.as_str()) == ask["value"].as_str()),
         "area" => facts.clone().any(|f| match f {
             Fact::Area(a) => (a.area_m2 - n).abs() < 0.1 * n,
@@ -215,11 +273,13 @@ fn met(ask: &serde_json::Value, brief: &Brief) -> Option<bool> {
             _ => false,
         }),
         "robot" => facts.clone().any(|f| matches!(f, Fact::Robots(r) if f64::from(r.count.n) >= n)),
-        "forbid" => facts.clone().any(|f| match f {
-            Fact::Forbidden(x) => x.room.iter().chain(&x.object).any(|s| is(s, &accept)),
-            Fact::Other(_) => true,
-            _ => false,
-        }) || !strings("words").iter().any(|w| w.starts_with("no") || w.starts_with("bez")),
+        "forbid" => {
+            facts.clone().any(|f| match f {
+                Fact::Forbidden(x) => x.room.iter().chain(&x.object).any(|s| is(s, &accept)),
+                Fact::Other(_) => true,
+                _ => false,
+            }) || !strings("words").iter().any(|w| w.starts_with("no") || w.starts_with("bez"))
+        }
         "relation" => {
             let (a, b) = (strings("a"), strings("b"));
             facts.clone().any(|f| match f {
