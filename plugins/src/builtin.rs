@@ -4,6 +4,7 @@ use std::sync::OnceLock;
 
 use d3dgen_model::domain::Domain;
 use d3dgen_model::knowledge::KnowledgeBase;
+use serde_json::Value;
 
 use crate::Plugin;
 
@@ -26,6 +27,13 @@ macro_rules! builtin {
             knowledge: OnceLock::new(),
         }
     };
+}
+
+/// Returns the objects and groups that domains share: what the `use` of a domain names.
+pub(crate) fn common() -> &'static Value {
+    static COMMON: OnceLock<Value> = OnceLock::new();
+    let text = include_str!(concat!(env!("OUT_DIR"), "/common.json"));
+    COMMON.get_or_init(|| serde_json::from_str(text).expect("the build script writes it"))
 }
 
 /// Returns the shipped domains, in the order in which `domains list` shows them.
@@ -74,6 +82,16 @@ mod tests {
             assert_eq!(knowledge.metadata.domain, builtin.id);
             assert_eq!(builtin.domain(), &domain);
             assert_eq!(builtin.knowledge(), &knowledge);
+        }
+    }
+
+    #[test]
+    fn what_domains_share_is_used_by_more_than_one() {
+        let has = |domain: &Domain, id: &str| domain.object(id).is_some() || domain.group(id).is_some();
+        for entry in ["objects", "groups"].iter().flat_map(|key| common()[key].as_array().expect("a list")) {
+            let id = entry["id"].as_str().expect("an id");
+            let users = all().into_iter().filter(|b| has(b.domain(), id)).count();
+            assert!(users > 1, "{id} is of {users} domain; it belongs into its folder");
         }
     }
 

@@ -19,9 +19,7 @@ use d3dgen_model::style::{Form, SpaceStyle, StyleWord, Symmetry};
 
 use super::core::Core;
 use super::lattice::OUTER_HALF_M;
-use super::mirror::SYMMETRIC;
-use super::search::Candidate;
-use super::windows::LEAST_WALL_M;
+use crate::measures::{LEAST_WALL_M, SYMMETRIC};
 
 /// Code of the conflict that a building has another form than was asked for.
 const FORM_NOT_BUILT: &str = "form_not_built";
@@ -286,9 +284,9 @@ impl Brief {
     }
 
     /// Says so where another form was built than was asked for.
-    pub(crate) fn tell_form(&mut self, asked: Option<Form>, built: &Candidate) {
+    pub(crate) fn tell_form(&mut self, asked: Option<Form>, is_built: impl Fn(Form) -> bool) {
         self.conflicts.retain(|n| n.code != FORM_NOT_BUILT);
-        let Some(form) = asked.filter(|f| !built.has_form(*f)) else { return };
+        let Some(form) = asked.filter(|f| !is_built(*f)) else { return };
         let asked = StyleWord::Form(form).label().replace('_', "-");
         self.conflicts.push(Note {
             code: FORM_NOT_BUILT.into(),

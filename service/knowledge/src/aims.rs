@@ -7,7 +7,8 @@ use std::collections::BTreeMap;
 
 use d3dgen_model::domain::{Domain, Mount, ObjectType};
 
-use crate::compliance::{SLACK, sizes};
+use crate::compliance::reading::SLACK;
+use crate::compliance::sizes;
 use crate::conditions::Guard;
 use crate::measure::Measure;
 use crate::retrieve::{Applicable, Rule, Scope};

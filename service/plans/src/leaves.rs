@@ -21,8 +21,9 @@ pub(crate) fn pair(openings: &mut Vec<DrawnOpening>) {
             o.points = line.to_vec();
         }
     }
-    meet(openings);
+    // those of two leaves too, which are one door from here on
     let arcs: Vec<[Point; 3]> = openings.iter().filter_map(|o| o.arc).collect();
+    meet(openings);
     let is_leaf = |o: &DrawnOpening| {
         let Some((a, b)) = o.arc.is_none().then(|| axis(&o.points)).flatten() else { return false };
         arcs.iter().any(|[hinge, from, to]| {

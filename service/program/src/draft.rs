@@ -236,10 +236,9 @@ impl<'r, 'a> Draft<'r, 'a> {
         let fleet = robots::Counting { tokens, numbers, mentions, taken: &self.aside.taken, spoken, language, on_each };
         let fleet = machines.counted(&fleet);
         let heard = robots::Prompt { text: prompt, tokens };
-        let [radius, length] = self.aside.robot_m;
         let Notes { assumptions, conflicts } = &mut self.notes;
-        let size = (radius, length);
-        let mut robots = robots::of_graph(&fleet, &self.wishes, size, self.request, &heard, assumptions, conflicts);
+        let said = (machines, &self.aside.sizes);
+        let mut robots = robots::of_graph(&fleet, &self.wishes, said, self.request, &heard, assumptions, conflicts);
         let corridor = &self.site.domain.circulation.room_type;
         if let Some((span, kept)) = keeps::read(tokens, mentions, &machines.spans, corridor, spoken) {
             // what is said of the one that cleans says nothing of the one that serves

@@ -3,9 +3,9 @@
 use d3dgen_model::Rect;
 use d3dgen_model::floorplan::{Door, DoorKind};
 
-use super::Reading;
 use super::site::{Room, Site};
 use crate::clearance::depth_beside;
+use crate::compliance::reading::Reading;
 use crate::measure::Measure;
 
 /// Depth of the wall strip beside a latch that must be free to reach the handle, m.

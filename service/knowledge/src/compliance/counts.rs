@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 
 use d3dgen_model::domain::Shape;
 
-use super::Reading;
 use super::site::{Room, Site};
+use crate::compliance::reading::Reading;
 use crate::freespace::FreeSpace;
 use crate::measure::Measure;
 use crate::retrieve::{Applicable, Rule, Scope};

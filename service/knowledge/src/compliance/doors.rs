@@ -2,8 +2,9 @@
 
 use d3dgen_model::floorplan::{Door, DoorKind};
 
+use super::approach;
 use super::site::Site;
-use super::{Reading, approach};
+use crate::compliance::reading::Reading;
 use crate::measure::Measure;
 use crate::retrieve::{Applicable, Rule, Scope};
 

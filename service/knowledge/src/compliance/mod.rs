@@ -10,6 +10,7 @@ mod doors;
 mod fixtures;
 mod kitchen;
 mod objects;
+pub(crate) mod reading;
 mod robots;
 mod rooms;
 mod routes;
@@ -26,30 +27,8 @@ use d3dgen_model::world::World;
 use crate::measure::Measure;
 use crate::retrieve::{Applicable, Retrieval, Rule};
 use crate::tables::Sure;
+use reading::{Reading, SLACK};
 use site::Site;
-
-/// Lengths and areas closer than this to their limit meet it.
-pub(crate) const SLACK: f64 = 1e-3;
-
-/// A measured figure of one thing.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Reading {
-    /// Id of the room, door or placement, or `building`.
-    pub subject: String,
-    /// The figure, in the constraint's unit.
-    pub value: f64,
-}
-
-impl Reading {
-    fn new(subject: &str, value: f64) -> Self {
-        Self { subject: subject.to_owned(), value }
-    }
-
-    /// Returns the reading of a statement: 1 when it holds.
-    fn flag(subject: &str, holds: bool) -> Self {
-        Self::new(subject, if holds { 1.0 } else { 0.0 })
-    }
-}
 
 /// Returns the room from which the way out is longest, and how long it is, m; of several storeys to the stairs. `None` where no
 /// way of the building can be longer than `least`, or nothing leads out.

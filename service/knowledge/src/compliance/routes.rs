@@ -5,8 +5,8 @@ use std::collections::BTreeSet;
 use d3dgen_model::Point;
 use d3dgen_model::floorplan::Door;
 
-use super::Reading;
 use super::site::{Room, Site};
+use crate::compliance::reading::Reading;
 use crate::measure::Measure;
 use crate::retrieve::{Applicable, Rule, Scope};
 

@@ -12,7 +12,6 @@ use d3dgen_model::placements::Placement;
 use d3dgen_model::world::World;
 use d3dgen_model::{Point, Rect};
 
-use super::objects::belong_together;
 use crate::clearance::{HEAD_ROOM_M, is_shallow, quarter};
 use crate::conditions::Guard;
 use crate::freespace::FreeSpace;
@@ -265,4 +264,10 @@ impl Object<'_> {
     pub fn is(&self, shapes: &[Shape]) -> bool {
         self.kind.is_some_and(|k| shapes.contains(&k.shape))
     }
+}
+
+/// Returns true for an object and what was placed with it (a desk and its chair): they share their clearance.
+pub(super) fn belong_together(a: &Object, b: &Object) -> bool {
+    a.placement.placement_id == b.placement.placement_id
+        || (a.placement.group.is_some() && a.placement.group == b.placement.group)
 }

@@ -2,10 +2,10 @@
 
 use d3dgen_model::domain::{Mount, Shape};
 
-use super::Reading;
-use super::objects::belong_together;
 use super::site::{Object, Room, Site};
 use crate::clearance::{HEAD_ROOM_M, Side, depth_beside, free_depth, quarter};
+use crate::compliance::reading::Reading;
+use crate::compliance::site::belong_together;
 use crate::measure::Measure;
 use crate::retrieve::{Applicable, Rule};
 

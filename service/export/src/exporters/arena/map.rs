@@ -52,15 +52,7 @@ pub(super) fn png(plan: &Floorplan) -> Result<Vec<u8>, Error> {
             pixels[line + columns.start..line + columns.end].fill(FREE);
         }
     }
-    let refused = |e: png::EncodingError| Error::Picture { picture, reason: e.to_string() };
-    let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, width as u32, height as u32);
-    encoder.set_color(png::ColorType::Grayscale);
-    encoder.set_depth(png::BitDepth::Eight);
-    let mut writer = encoder.write_header().map_err(refused)?;
-    writer.write_image_data(&pixels).map_err(refused)?;
-    writer.finish().map_err(refused)?;
-    Ok(bytes)
+    crate::picture::gray(picture, &pixels, width, height)
 }
 
 /// Net floors, and the openings between them through the thickness of their wall.
