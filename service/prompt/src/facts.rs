@@ -58,6 +58,7 @@ impl Maker<'_> {
             Some("forbidden") => self.forbidden(node),
             Some("storeys") => self.storeys(node),
             Some("area") => self.area(node),
+            Some("total_area") => node.all("area").for_each(|n| self.area(n)),
             Some("total") => self.total(node),
             Some("only") => {
                 self.say(node, Fact::Only(OnlyAsk { rooms: None, closed: true }));

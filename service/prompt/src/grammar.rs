@@ -65,6 +65,7 @@ pub(crate) struct Rule {
     pub order: Option<Order>,
     /// Constant fields.
     pub set: BTreeMap<String, String>,
+    #[cfg_attr(not(test), allow(dead_code, reason = "read by the test of the rules"))]
     pub examples: Vec<Example>,
 }
 
@@ -88,6 +89,7 @@ pub(crate) enum Order {
 /// A text and what is asked for in it: the test of a rule.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
+#[cfg_attr(not(test), allow(dead_code, reason = "read by the test of the rules"))]
 pub(crate) struct Example {
     pub text: String,
     /// Facts, one a line, as [`crate::facts::shown`] writes them.

@@ -102,6 +102,7 @@ impl Pattern {
     }
 
     /// Returns all classes that it asks for, with their values.
+    #[cfg(test)]
     pub fn classes(&self) -> Vec<(&str, Option<&str>)> {
         self.0
             .iter()

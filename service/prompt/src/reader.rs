@@ -142,8 +142,8 @@ fn named(nodes: Vec<Rc<Node>>, building: &[usize], places: &[usize]) -> Vec<Rc<N
             () => return node,
         };
         let mut node = (*node).clone();
-        // "3-Zimmer-Wohnung" names a building and counts its rooms
-        node.senses.retain(|(class, _)| **class == *"shorthand");
+        // "3-Zimmer-Wohnung" names a building and counts its rooms, "bungalow" its storeys
+        node.senses.retain(|(class, _)| matches!(&**class, "shorthand" | "storeys" | "site"));
         node.senses.push((sense.into(), "".into()));
         Rc::new(node)
     };
