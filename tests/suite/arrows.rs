@@ -57,7 +57,6 @@ const ARROWS: &[(&str, &[&str])] = &[
             "mesh",
             "assets",
             "pipeline",
-            "prompt",
             "plans",
             "export",
             "eval",
