@@ -2,6 +2,7 @@
 
 pub mod assets;
 mod bench;
+mod brief;
 mod check;
 mod completions;
 mod domains;
@@ -37,6 +38,8 @@ pub enum Command {
     Generate(Box<generate::Args>),
     /// Furnish and judge a plan of yours: floorplan.json, GeoJSON, SVG, DXF, Open-RMF, nav2 map
     Furnish(Box<furnish::Args>),
+    /// What a prompt asks for, fact by fact, before anything is planned
+    Brief(brief::Args),
     /// Stage 1: rooms and relations of a prompt
     SceneGraph(scene_graph::Args),
     /// Stage 2: room outlines, walls, doors and windows of a scene graph
@@ -86,6 +89,7 @@ impl Command {
         match self {
             Self::Generate(args) => args.run(),
             Self::Furnish(args) => args.run(),
+            Self::Brief(args) => args.run(),
             Self::SceneGraph(args) => args.run(),
             Self::Floorplan(args) => args.run(),
             Self::Placement(args) => args.run(),
