@@ -71,13 +71,6 @@ impl Custom {
     }
 }
 
-/// Reads rules with those they share.
-fn whole(text: &str) -> Result<KnowledgeBase, d3dgen_model::Error> {
-    let mut knowledge = KnowledgeBase::from_json(text)?;
-    complete(&mut knowledge)?;
-    Ok(knowledge)
-}
-
 /// Returns the domain of merged tables; its problems say in which file the entry is that they are about.
 fn checked(merged: &Merged) -> Result<Domain, d3dgen_model::Error> {
     Domain::from_value(merged.table.clone()).map_err(|error| match error {
@@ -91,6 +84,13 @@ fn checked(merged: &Merged) -> Result<Domain, d3dgen_model::Error> {
         }
         other => other,
     })
+}
+
+/// Reads rules with those they share.
+fn whole(text: &str) -> Result<KnowledgeBase, d3dgen_model::Error> {
+    let mut knowledge = KnowledgeBase::from_json(text)?;
+    complete(&mut knowledge)?;
+    Ok(knowledge)
 }
 
 impl Plugin for Custom {

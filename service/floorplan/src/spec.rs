@@ -449,7 +449,7 @@ fn aloof(graph: &SceneGraph, domain: &Domain) -> Vec<[usize; 2]> {
     let of = |kind: &str| -> Vec<usize> {
         graph.rooms.iter().enumerate().filter(|(_, r)| r.room_type == kind).map(|(i, _)| i).collect()
     };
-    let pairs = rules_here(domain, graph.country_code.as_deref()).filter(advice).flat_map(|rule| {
+    let pairs = rules_here(domain, graph.place_code()).filter(advice).flat_map(|rule| {
         let others = of(&rule.b);
         of(&rule.a).into_iter().flat_map(move |a| others.clone().into_iter().map(move |b| [a, b]))
     });
@@ -584,8 +584,7 @@ fn is_for_guests(room: &GraphRoom, graph: &SceneGraph, domain: &Domain) -> bool 
     let wanted = |rule: &Adjacency| {
         rule.relation == AdjacencyRelation::Should && rule.a == room.room_type && halls.contains(&rule.b)
     };
-    !graph.rooms.iter().any(|r| halls.contains(&r.room_type))
-        && rules_here(domain, graph.country_code.as_deref()).any(wanted)
+    !graph.rooms.iter().any(|r| halls.contains(&r.room_type)) && rules_here(domain, graph.place_code()).any(wanted)
 }
 
 /// Returns the height of the gate that the vehicles of a room need, or those that come to it, m.

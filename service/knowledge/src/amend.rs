@@ -3,7 +3,7 @@
 //! What it is not for: finding the rule in the sentence (`research` does) and storing the edits (`database`).
 
 use d3dgen_model::knowledge::{AMENDMENT, Constraint, KnowledgeBase, LOCAL, Reference, Source, Statement, Value};
-use d3dgen_model::units;
+use d3dgen_model::{plausible, units};
 
 use crate::database::{Edit, Provenance, difference};
 use crate::draw_limits::ROBOT_TOPIC;
@@ -19,21 +19,39 @@ use crate::tables::TABLES;
 /// and checked by it as by that one.
 ///
 /// # Errors
-/// `Input` when the statement names no space.
+/// `Input` when the statement names no space, or a figure that no building has.
 pub fn state(knowledge: &KnowledgeBase, said: &Statement, by: &Provenance) -> Result<Vec<Edit>, Error> {
+    states(knowledge, std::slice::from_ref(said), by)
+}
+
+/// Returns the edits that make each of some statements a rule of the owner, in their order, as [`state`] does for one.
+///
+/// # Errors
+/// As [`state`].
+pub fn states(knowledge: &KnowledgeBase, all: &[Statement], by: &Provenance) -> Result<Vec<Edit>, Error> {
+    let mut after = knowledge.clone();
+    for said in all {
+        add(&mut after, said, by)?;
+    }
+    Ok(difference(knowledge, &after, true))
+}
+
+/// Makes a statement a rule of the owner.
+fn add(after: &mut KnowledgeBase, said: &Statement, by: &Provenance) -> Result<(), Error> {
     if said.space.is_empty() {
         return Err(Error::Input(
             "the sentence does not say which space it is about; name one, as in `corridors are at least 2.6 m wide`"
                 .into(),
         ));
     }
-    let domain = &knowledge.metadata.domain;
-    let mut after = knowledge.clone();
+    let mut rule = drafted(after, said);
+    let domain = &after.metadata.domain;
     let ref_id = format!("{domain}_local_rules");
+    rule.constraint_id = format!("{domain}_local_{}_{}", rule.name, rule.space_type);
     let at = after.references.iter().position(|r| r.ref_id == ref_id).unwrap_or_else(|| {
         after.references.push(Reference {
-            ref_id: ref_id.clone(),
-            building_type: domain.clone(),
+            ref_id,
+            building_type: after.metadata.domain.clone(),
             jurisdiction: LOCAL.into(),
             retrieved_at: day(by),
             sources: Vec::new(),
@@ -41,10 +59,9 @@ pub fn state(knowledge: &KnowledgeBase, said: &Statement, by: &Provenance) -> Re
         });
         after.references.len() - 1
     });
-    let mut rule = drafted(knowledge, said);
+    plausible(&rule)?;
     let local = &mut after.references[at];
     rule.source_ids = vec![add_source(local, by)];
-    rule.constraint_id = format!("{domain}_local_{}_{}", rule.name, rule.space_type);
     let same = |c: &Constraint| {
         c.constraint_id.starts_with(&rule.constraint_id)
             && c.conditions == rule.conditions
@@ -64,14 +81,14 @@ pub fn state(knowledge: &KnowledgeBase, said: &Statement, by: &Provenance) -> Re
             local.constraints.push(rule);
         }
     }
-    Ok(difference(knowledge, &after, true))
+    Ok(())
 }
 
 /// Returns the edits that give a rule another figure, with the amendment as its first source and the old figure in its
 /// note.
 ///
 /// # Errors
-/// `Input` when there is no such rule, or the figure is the one it has.
+/// `Input` when there is no such rule, when the figure is the one it has, or one that no building has.
 pub fn correct(
     knowledge: &KnowledgeBase,
     constraint_id: &str,
@@ -98,7 +115,16 @@ pub fn correct(
     rule.note = if rule.note.is_empty() { was } else { format!("{}; {was}", rule.note) };
     rule.source_ids.insert(0, source);
     rule.value = value;
+    plausible(rule)?;
     Ok(difference(knowledge, &after, true))
+}
+
+/// Refuses a rule that cannot mean what it says.
+fn plausible(rule: &Constraint) -> Result<(), Error> {
+    match plausible::doubt_of(rule) {
+        None => Ok(()),
+        Some(reason) => Err(Error::Input(format!("{} of {}: {reason}", rule.name, rule.space_type))),
+    }
 }
 
 /// Adds the amendment to the sources of a document and returns its id.
@@ -180,10 +206,11 @@ fn alike<'a>(knowledge: &'a KnowledgeBase, said: &Statement, unit: &str) -> Opti
         })
         .collect();
     let measure = |c: &Constraint| TABLES.quantity(c).map(|q| q.measure);
+    let measures: Vec<_> = candidates.iter().map(|c| measure(c)).collect();
     let rank = |c: &&Constraint| {
         let own = words(&format!("{}_{}", c.name, c.measurement_basis));
         let shared = asked.iter().filter(|w| own.contains(w)).count();
-        let usual = measure(c).map_or(0, |m| candidates.iter().filter(|other| measure(other) == Some(m)).count());
+        let usual = measure(c).map_or(0, |m| measures.iter().filter(|other| **other == Some(m)).count());
         (shared, usual, c.space_type == said.space, c.constraint_type == said.constraint_type, c.conditions.is_empty())
     };
     // the first of the best, in the order of the file
@@ -260,5 +287,12 @@ mod tests {
         assert!(rule.note.ends_with("was at least 2.25 m before 2026-11-21"), "{}", rule.note);
         assert!(correct(&hospital, "nothing", Value::Number(1.0), &by()).is_err());
         assert!(correct(&hospital, id, Value::Number(2.25), &by()).is_err(), "nothing changes");
+        for (wrong, why) in
+            [(Value::Number(500.0), "500"), (Value::Number(-5.0), "-5"), (Value::Range { min: 3.0, max: 2.0 }, "above")]
+        {
+            let refused = correct(&hospital, id, wrong, &by()).expect_err("no corridor is so").to_string();
+            assert!(refused.contains(why), "{refused}");
+        }
+        assert!(state(&hospital, &said("width", "corridor", 500.0, "m"), &by()).is_err(), "no corridor is so wide");
     }
 }

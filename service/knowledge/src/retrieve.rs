@@ -21,6 +21,8 @@ use crate::tables::{QuantityRow, SpaceKind, TABLES};
 pub struct Retrieval {
     /// Jurisdictions whose rules were taken, nearest first.
     pub jurisdictions: Vec<String>,
+    /// Jurisdictions of the country and of its division; empty where no country is known.
+    pub national: Vec<String>,
     /// Constraints about something in the building, in the order of the knowledge base.
     pub constraints: Vec<Applicable>,
     /// Constraints of these jurisdictions about something the building does not have.
@@ -63,11 +65,22 @@ pub struct Applicable {
 }
 
 impl Applicable {
+    /// Returns true for rules whose figure somebody read where it is printed, in more than a page of the web that nothing
+    /// vouches for: plans go by these only.
+    pub fn is_vouched_for(&self) -> bool {
+        self.constraint.verified != PARTLY_SEEN && self.citation.source.source_type != WEB_PAGE
+    }
+
     /// Returns true where free floor on one of both sides is enough.
     pub fn is_one_sided(&self) -> bool {
         self.constraint.measurement_basis.contains("one side")
     }
 }
+
+/// Word of `verified` for what a search quoted of a page that nobody read.
+const PARTLY_SEEN: &str = "partly_seen";
+/// Type of sources of which nothing says what they are.
+const WEB_PAGE: &str = "web_page";
 
 /// What a constraint is about.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -155,11 +168,16 @@ pub fn retrieve_with(knowledge: &KnowledgeBase, query: &Query, policy: &Policy) 
     resolve::settle(&mut planned, &chain, policy);
     let conflicts = resolve::settle(&mut constraints, &chain, policy);
     let limits = draw_limits::draw(&planned, &constraints, &chain, query);
+    // plans leave room for robots that may come; a world without any breaks none of their rules
+    let before = constraints.len();
+    constraints.retain(|a| !query.robots.is_empty() || !is_about_robots(a));
+    not_applicable += (before - constraints.len()) as u32;
     let used = |code: &String| {
         code == jurisdiction::INTERNATIONAL || constraints.iter().any(|c| &c.citation.jurisdiction == code)
     };
     Retrieval {
         jurisdictions: chain.iter().filter(|c| used(c)).cloned().collect(),
+        national: jurisdiction::national(query.country_code.as_deref()),
         not_applicable,
         limits,
         persons: query.persons,
@@ -209,6 +227,12 @@ fn applicable(c: &Constraint, reference: &Reference, query: &Query, on: &str) ->
         decision,
         superseded_by: None,
     })
+}
+
+/// Returns true for rules about robots, their software and machines that move, other than laws on what a building has.
+fn is_about_robots(a: &Applicable) -> bool {
+    let law = a.citation.source.source_type == "regulation" && a.decision.is_ok();
+    a.constraint.topic == draw_limits::ROBOT_TOPIC && !law
 }
 
 /// Returns true for quantities of rooms that a building may lack.
@@ -284,5 +308,6 @@ fn is_mandatory(c: &Constraint, reference: &Reference) -> bool {
     let sources = || c.source_ids.iter().filter_map(|id| reference.sources.iter().find(|s| &s.source_id == id));
     let source = sources().find(|s| s.source_type != AMENDMENT).or_else(|| sources().next());
     source.is_some_and(|s| matches!(s.source_type.as_str(), "regulation" | "standard" | AMENDMENT))
+        && c.verified != PARTLY_SEEN
         && !matches!(c.constraint_type.as_str(), "recommendation" | "rule_of_thumb")
 }

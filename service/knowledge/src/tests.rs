@@ -46,6 +46,7 @@ fn query(domain: &str, country: Option<&str>) -> Query {
         domain: domain.into(),
         building_type: None,
         accessible: false,
+        wheelchair: false,
         rooms,
         persons: 18,
         persons_stated: false,

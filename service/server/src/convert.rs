@@ -10,9 +10,6 @@ use tonic::Status;
 
 use crate::status::{self, invalid};
 
-/// Paths of a mask at most.
-const PATHS: usize = 100;
-
 /// Returns the message of a document, or of a part of one.
 pub fn message<M: Message + Name + Default>(document: &impl Serialize) -> M {
     convert::to_message(document).expect("the contract is made of the schemas of documents: its tests compare them")
@@ -57,16 +54,8 @@ pub fn masked<M: Message + Name + Default>(
     fixed: &[&str],
 ) -> Result<M, Status> {
     let paths = mask.unwrap_or_default().paths;
-    if paths.len() > PATHS {
-        return Err(invalid(&at(field, "update_mask"), format!("has {} paths, at most {PATHS}", paths.len())));
-    }
     convert::apply_mask(&mut base, update, &paths, fixed).map_err(|e| refused(field, e))?;
     Ok(base)
-}
-
-/// Returns the path of a field in a message that stands in another.
-pub fn at(field: &str, inner: &str) -> String {
-    if field.is_empty() { inner.to_owned() } else { format!("{field}.{inner}") }
 }
 
 fn refused(field: &str, error: Error) -> Status {

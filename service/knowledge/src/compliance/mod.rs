@@ -55,9 +55,11 @@ pub fn evaluate(world: &World, domain: &Domain, retrieval: &Retrieval) -> (Vec<C
     let mut summary = ConstraintSummary { not_applicable: retrieval.not_applicable, ..ConstraintSummary::default() };
     let mut out = Vec::new();
     for a in &retrieval.constraints {
+        let national = u32::from(a.mandatory && retrieval.national.contains(&a.citation.jurisdiction));
         let rule = match &a.decision {
             Ok(rule) => rule,
             Err(reason) => {
+                summary.national_mandatory += national;
                 summary.not_decidable += 1;
                 out.push(result(a, None, "building", Status::NotDecidable, None, reason.clone()));
                 continue;
@@ -69,6 +71,10 @@ pub fn evaluate(world: &World, domain: &Domain, retrieval: &Retrieval) -> (Vec<C
             continue;
         }
         let found = judge(a, rule, &readings, retrieval);
+        summary.national_mandatory += national;
+        if found.first().is_some_and(|r| r.status != Status::NotDecidable) {
+            summary.national_decided += national;
+        }
         match found.first().map(|r| r.status) {
             Some(Status::Violated) => summary.violated += 1,
             Some(Status::NotDecidable) => summary.not_decidable += 1,

@@ -61,6 +61,7 @@ pub(crate) enum Tag {
     Lift,
     Habitable,
     Accessible,
+    Wheelchair,
     Staff,
     People,
     Visitors,

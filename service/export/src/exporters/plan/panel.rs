@@ -181,7 +181,13 @@ impl Facts<'_> {
         if !robots.is_empty() {
             rows.push(("Robots", robots.join(", ")));
         }
-        rows.push(("Building rules", world.scene_graph.country_code.clone().unwrap_or_else(|| "International".into())));
+        let country = world.scene_graph.place_code();
+        match (&world.rules, country) {
+            (Some(rules), _) => rows.push(("Building rules", rules.line(country))),
+            // it was never held against them
+            (None, Some(code)) => rows.push(("Country", code.to_owned())),
+            (None, None) => {}
+        }
         rows.push(("Seed", world.scene_graph.seed.to_string()));
         rows.push(("Made by", world.generator.clone()));
         page.block(|page| {
