@@ -9,7 +9,7 @@ use d3dgen_model::{Document, Problem};
 
 use crate::builtin::common;
 use crate::merge::{self, Merged};
-use crate::{Error, Plugin};
+use crate::{Error, Plugin, complete};
 
 /// A domain read from a folder.
 pub struct Custom {
@@ -32,7 +32,7 @@ impl Custom {
                 folder: folder.to_path_buf(),
                 reason: format!("knowledge.json: {e}"),
             })?;
-            KnowledgeBase::from_json(&text).map_err(|source| Error::Invalid { file, source })?
+            whole(&text).map_err(|source| Error::Invalid { file, source })?
         } else {
             KnowledgeBase::empty(&domain.id)
         };
@@ -59,7 +59,7 @@ impl Custom {
         let merged = merge::texts(texts, common()).map_err(|(file, reason)| not(&file, reason))?;
         let domain = checked(&merged).map_err(|source| (main.to_owned(), source))?;
         let knowledge = match files.get("knowledge.json") {
-            Some(text) => KnowledgeBase::from_json(text).map_err(|source| ("knowledge.json".to_owned(), source))?,
+            Some(text) => whole(text).map_err(|source| ("knowledge.json".to_owned(), source))?,
             None => KnowledgeBase::empty(&domain.id),
         };
         Ok(Self { domain, knowledge })
@@ -84,6 +84,13 @@ fn checked(merged: &Merged) -> Result<Domain, d3dgen_model::Error> {
         }
         other => other,
     })
+}
+
+/// Reads rules with those they share.
+fn whole(text: &str) -> Result<KnowledgeBase, d3dgen_model::Error> {
+    let mut knowledge = KnowledgeBase::from_json(text)?;
+    complete(&mut knowledge)?;
+    Ok(knowledge)
 }
 
 impl Plugin for Custom {

@@ -8,6 +8,7 @@ mod custom;
 mod digest;
 mod error;
 mod merge;
+mod shared;
 
 use std::any::Any;
 use std::path::Path;
@@ -19,6 +20,7 @@ use d3dgen_model::knowledge::KnowledgeBase;
 pub use builtin::{Builtin, all};
 pub use custom::Custom;
 pub use error::Error;
+pub use shared::complete;
 
 /// A domain with its knowledge base.
 pub trait Plugin: Send + Sync {
@@ -79,11 +81,12 @@ impl Registry {
     }
 
     /// Gives a domain other rules than it brings; false when no such domain is registered.
+    ///
+    /// What was worked out from the domains stays: see [`Registry::digest`].
     pub fn set_knowledge(&mut self, id: &str, knowledge: KnowledgeBase) -> bool {
         let Some(at) = self.plugins.iter().position(|p| p.id() == id) else { return false };
         let domain = self.plugins.remove(at);
         self.plugins.insert(at, Arc::new(OtherRules { domain, knowledge }));
-        self.digests = Arc::default();
         true
     }
 
@@ -102,7 +105,7 @@ impl Registry {
     }
 
     /// Returns what `make` works out from the domains, from memory where it was asked for before under this name and
-    /// type; forgotten when a domain changes. Names must be few: nothing that a request says belongs into them.
+    /// type; forgotten when a domain changes, and not when only its rules do: nothing of them belongs into it. Names must be few: nothing that a request says belongs into them.
     pub fn digest<T: Any + Send + Sync>(&self, name: &str, make: impl FnOnce() -> T) -> Arc<T> {
         self.digests.get(name, make)
     }

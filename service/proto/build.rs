@@ -19,6 +19,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     std::fs::write(out.join("descriptors.bin"), descriptors.encode_to_vec())?;
     let mut messages = tonic_prost_build::Config::new();
     messages.enable_type_names().btree_map(["."]);
-    tonic_prost_build::configure().compile_fds_with_config(descriptors, messages)?;
+    let contract = tonic_prost_build::configure().codec_path("crate::codec::Bounded");
+    contract.compile_fds_with_config(descriptors, messages)?;
     Ok(())
 }

@@ -16,8 +16,16 @@ use crate::interrupt;
 
 /// Documents of a world's folder. Beside them it holds what exporters write; a folder with anything else in it is
 /// somebody's work and is never replaced.
-const DOCUMENTS: &[&str] =
-    &[WORLD, MARK, "scene_graph.json", "floorplan.json", "placements.json", "scenario.json", "proposal.json"];
+const DOCUMENTS: &[&str] = &[
+    WORLD,
+    MARK,
+    "brief.json",
+    "scene_graph.json",
+    "floorplan.json",
+    "placements.json",
+    "scenario.json",
+    "proposal.json",
+];
 /// The file that only the folder of a world has which may be used.
 const WORLD: &str = "world.json";
 /// The file that every world's folder has, sound or not.

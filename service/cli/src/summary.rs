@@ -4,8 +4,11 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use d3dgen_model::report::{ConstraintResult, ConstraintSummary, Report, RobotFit, Status, Violation};
+use d3dgen_model::report::{
+    AskAnswer, Citation, ConstraintResult, ConstraintSummary, Fate, Report, RobotFit, Status, Violation,
+};
 use d3dgen_model::scene_graph::Note;
+use d3dgen_model::world::World;
 use d3dgen_pipeline::generate::Generated;
 use serde_json::{Value, json};
 
@@ -42,6 +45,8 @@ pub struct Summary {
     broken: Vec<String>,
     assumptions: Vec<Note>,
     conflicts: Vec<Note>,
+    asks: Vec<AskAnswer>,
+    not_understood: Vec<String>,
     attempts: u32,
     times: Vec<(&'static str, Duration)>,
     proposals: Vec<(String, String)>,
@@ -78,6 +83,8 @@ impl Summary {
             broken: broken_lines(report),
             assumptions: graph.assumptions.clone(),
             conflicts: graph.conflicts.iter().chain(&world.floorplan.conflicts).cloned().collect(),
+            asks: report.asks.clone(),
+            not_understood: not_understood(world),
             attempts: *attempts,
             times,
             proposals: Vec::new(),
@@ -116,7 +123,7 @@ impl Summary {
             "rooms": self.rooms, "circulation_rooms": self.circulation,
             "area_m2": round(self.area_m2, 2), "objects": self.objects, "robots": self.robots, "people": self.people,
             "constraints": self.constraints, "violations": self.broken, "assumptions": self.assumptions,
-            "conflicts": self.conflicts, "attempts": self.attempts, "stage_ms": times,
+            "conflicts": self.conflicts, "asks": self.asks, "not_understood": self.not_understood, "attempts": self.attempts, "stage_ms": times,
         });
         if !self.proposals.is_empty() {
             let proposals: serde_json::Map<String, Value> =
@@ -154,7 +161,7 @@ impl Summary {
             ("time", format!("{:.0} ms: {}{again}", self.total_ms(), stages.join(", "))),
             ("folder", self.folder()),
         ];
-        let mut text = format!("\n{}, seed {}: {}\n", self.name, self.seed, self.verdict);
+        let mut text = format!("\n{}, seed {}: {}{}\n", self.name, self.seed, self.verdict, self.wishes());
         for (label, value) in rows {
             text += &format!("  {label:<12} {value}\n");
         }
@@ -162,6 +169,8 @@ impl Summary {
         for (label, lines) in [
             ("robot", self.robot_fit.clone()),
             ("proposed", proposed),
+            ("not as asked", self.asks.iter().filter(|a| a.fate != Fate::Honored).map(ask_line).collect()),
+            ("not read", self.not_understood.clone()),
             ("assumed", messages(&self.assumptions)),
             ("changed", messages(&self.conflicts)),
             ("violated", self.violated.clone()),
@@ -170,6 +179,15 @@ impl Summary {
             text += &listed(label, &lines);
         }
         text
+    }
+
+    /// Returns how many of the wishes are met, as the verdict goes on; nothing where none was read.
+    fn wishes(&self) -> String {
+        let met = self.asks.iter().filter(|a| a.fate == Fate::Honored).count();
+        match self.asks.len() {
+            0 => String::new(),
+            all => format!("; {met} of {all} wishes met"),
+        }
     }
 
     fn folder(&self) -> String {
@@ -200,6 +218,16 @@ impl Summary {
     fn total_ms(&self) -> f64 {
         self.times.iter().map(|(_, t)| ms(*t)).sum()
     }
+}
+
+/// Returns the words of a prompt that nobody understood.
+fn not_understood(world: &World) -> Vec<String> {
+    world.brief.iter().flat_map(|b| &b.not_understood).map(|w| w.text.clone()).collect()
+}
+
+/// Returns a wish that is not met as it was said, and why.
+fn ask_line(ask: &AskAnswer) -> String {
+    format!("`{}`: {}", ask.said, ask.reason)
 }
 
 /// Returns whether a robot fits, and else how many rooms it gets to and the narrowest place on its way to the others.
@@ -290,8 +318,27 @@ fn violated_line(c: &ConstraintResult) -> String {
         limits.join(" and "),
         c.unit,
         c.citation.jurisdiction,
-        c.citation.source.title
+        place(&c.citation)
     )
+}
+
+/// Returns where a rule stands: document, clause, what is quoted of it, the page where it was read, and when it ended.
+fn place(citation: &Citation) -> String {
+    let mut text = citation.source.title.clone();
+    if let Some(clause) = &citation.clause {
+        text += &format!(", {clause}");
+    }
+    if let Some(quotation) = &citation.quotation {
+        text += &format!(", \"{quotation}\"");
+    }
+    if let Some(page) = &citation.seen_at {
+        text += &format!(", {page}");
+    }
+    if let Some(last) = &citation.in_force_until {
+        text += &format!("; ended {last}");
+        text += &citation.superseded_by.as_ref().map(|by| format!(", see {by}")).unwrap_or_default();
+    }
+    text
 }
 
 /// Returns a line for each violation of a hard rule.

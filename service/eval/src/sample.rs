@@ -110,6 +110,7 @@ fn plan() -> Floorplan {
             door("door_1", line(4.0, 1.0, 4.0, 2.0), &["a_1", "b_1"]),
             door("door_2", line(0.5, 3.0, 1.5, 3.0), &["a_1"]),
         ],
+        obstacles: Vec::new(),
         windows: vec![Window {
             window_id: "window_1".into(),
             line: line(5.0, 3.0, 7.0, 3.0),
@@ -230,6 +231,7 @@ pub fn world() -> World {
         version: 1,
         name,
         generator,
+        brief: None,
         scene_graph: graph(&robot),
         floorplan: plan(),
         placements,
@@ -265,6 +267,7 @@ pub fn report(constraints: &[(&str, &str, bool, Status)]) -> Report {
             note: String::new(),
             printed: None,
             confidence: "high".into(),
+            ..Citation::default()
         },
     };
     Report {

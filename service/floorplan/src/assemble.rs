@@ -134,6 +134,7 @@ pub(crate) fn assemble(
         walls,
         doors,
         windows,
+        obstacles: Vec::new(),
         cost,
         conflicts,
         levels: Vec::new(),

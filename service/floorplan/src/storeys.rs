@@ -309,6 +309,7 @@ fn stacked(graph: &SceneGraph, planned: Vec<Planned>, numbers: &[i32], heights: 
         walls: Vec::new(),
         doors: Vec::new(),
         windows: Vec::new(),
+        obstacles: Vec::new(),
         cost: Vec::new(),
         conflicts: Vec::new(),
         levels,

@@ -21,19 +21,37 @@ use crate::tables::TABLES;
 /// # Errors
 /// `Input` when the statement names no space, or a figure that no building has.
 pub fn state(knowledge: &KnowledgeBase, said: &Statement, by: &Provenance) -> Result<Vec<Edit>, Error> {
+    states(knowledge, std::slice::from_ref(said), by)
+}
+
+/// Returns the edits that make each of some statements a rule of the owner, in their order, as [`state`] does for one.
+///
+/// # Errors
+/// As [`state`].
+pub fn states(knowledge: &KnowledgeBase, all: &[Statement], by: &Provenance) -> Result<Vec<Edit>, Error> {
+    let mut after = knowledge.clone();
+    for said in all {
+        add(&mut after, said, by)?;
+    }
+    Ok(difference(knowledge, &after, true))
+}
+
+/// Makes a statement a rule of the owner.
+fn add(after: &mut KnowledgeBase, said: &Statement, by: &Provenance) -> Result<(), Error> {
     if said.space.is_empty() {
         return Err(Error::Input(
             "the sentence does not say which space it is about; name one, as in `corridors are at least 2.6 m wide`"
                 .into(),
         ));
     }
-    let domain = &knowledge.metadata.domain;
-    let mut after = knowledge.clone();
+    let mut rule = drafted(after, said);
+    let domain = &after.metadata.domain;
     let ref_id = format!("{domain}_local_rules");
+    rule.constraint_id = format!("{domain}_local_{}_{}", rule.name, rule.space_type);
     let at = after.references.iter().position(|r| r.ref_id == ref_id).unwrap_or_else(|| {
         after.references.push(Reference {
-            ref_id: ref_id.clone(),
-            building_type: domain.clone(),
+            ref_id,
+            building_type: after.metadata.domain.clone(),
             jurisdiction: LOCAL.into(),
             retrieved_at: day(by),
             sources: Vec::new(),
@@ -41,11 +59,9 @@ pub fn state(knowledge: &KnowledgeBase, said: &Statement, by: &Provenance) -> Re
         });
         after.references.len() - 1
     });
-    let mut rule = drafted(knowledge, said);
     plausible(&rule)?;
     let local = &mut after.references[at];
     rule.source_ids = vec![add_source(local, by)];
-    rule.constraint_id = format!("{domain}_local_{}_{}", rule.name, rule.space_type);
     let same = |c: &Constraint| {
         c.constraint_id.starts_with(&rule.constraint_id)
             && c.conditions == rule.conditions
@@ -65,7 +81,7 @@ pub fn state(knowledge: &KnowledgeBase, said: &Statement, by: &Provenance) -> Re
             local.constraints.push(rule);
         }
     }
-    Ok(difference(knowledge, &after, true))
+    Ok(())
 }
 
 /// Returns the edits that give a rule another figure, with the amendment as its first source and the old figure in its
@@ -152,6 +168,11 @@ fn drafted(knowledge: &KnowledgeBase, said: &Statement) -> Constraint {
         note: String::new(),
         source_ids: Vec::new(),
         seen_at: None,
+        clause: None,
+        quotation: None,
+        in_force_from: None,
+        in_force_until: None,
+        superseded_by: None,
     }
 }
 
@@ -185,10 +206,11 @@ fn alike<'a>(knowledge: &'a KnowledgeBase, said: &Statement, unit: &str) -> Opti
         })
         .collect();
     let measure = |c: &Constraint| TABLES.quantity(c).map(|q| q.measure);
+    let measures: Vec<_> = candidates.iter().map(|c| measure(c)).collect();
     let rank = |c: &&Constraint| {
         let own = words(&format!("{}_{}", c.name, c.measurement_basis));
         let shared = asked.iter().filter(|w| own.contains(w)).count();
-        let usual = measure(c).map_or(0, |m| candidates.iter().filter(|other| measure(other) == Some(m)).count());
+        let usual = measure(c).map_or(0, |m| measures.iter().filter(|other| **other == Some(m)).count());
         (shared, usual, c.space_type == said.space, c.constraint_type == said.constraint_type, c.conditions.is_empty())
     };
     // the first of the best, in the order of the file

@@ -136,7 +136,7 @@ pub fn missing_rooms(knowledge: &KnowledgeBase, query: &Query) -> Vec<Applicable
         .filter(|r| conditions::document_holds(r, query))
         .flat_map(|r| r.constraints.iter().map(move |c| (r, c)))
         .filter(|(_, c)| TABLES.quantity_of(c, asks_for_rooms).is_some())
-        .filter_map(|(reference, c)| applicable(c, reference, query))
+        .filter_map(|(reference, c)| applicable(c, reference, query, &knowledge.metadata.date))
         .collect();
     resolve::settle(&mut asking, &chain, &Policy::Strictest);
     asking.retain(|a| {
@@ -158,7 +158,7 @@ pub fn retrieve_with(knowledge: &KnowledgeBase, query: &Query, policy: &Policy) 
             continue;
         }
         for constraint in &reference.constraints {
-            match applicable(constraint, reference, query) {
+            match applicable(constraint, reference, query, &knowledge.metadata.date) {
                 Some(found) => constraints.push(found),
                 None => not_applicable += 1,
             }
@@ -188,8 +188,9 @@ pub fn retrieve_with(knowledge: &KnowledgeBase, query: &Query, policy: &Policy) 
     }
 }
 
-/// Returns a constraint with its meaning for this building; `None` when it is about nothing there.
-fn applicable(c: &Constraint, reference: &Reference, query: &Query) -> Option<Applicable> {
+/// Returns a constraint with its meaning for this building; `None` when it is about nothing there. What had ended `on` the day
+/// of the knowledge base binds nobody.
+fn applicable(c: &Constraint, reference: &Reference, query: &Query, on: &str) -> Option<Applicable> {
     let quantity = TABLES.quantity(c);
     let conditions = conditions::evaluate(c, quantity, query);
     if conditions.fails.is_some() {
@@ -211,7 +212,10 @@ fn applicable(c: &Constraint, reference: &Reference, query: &Query) -> Option<Ap
     };
     Some(Applicable {
         citation: citation(c, reference)?,
-        mandatory: is_mandatory(c, reference) && conditions.unknown.is_none() && !quantity.is_some_and(|q| q.advice),
+        mandatory: is_mandatory(c, reference)
+            && !c.has_ended(on)
+            && conditions.unknown.is_none()
+            && !quantity.is_some_and(|q| q.advice),
         reported_only: conditions.reported_only
             || quantity.is_some_and(|q| q.reported_only)
             || matches!(c.value, Value::Expression { .. }),
@@ -291,6 +295,11 @@ fn citation(c: &Constraint, reference: &Reference) -> Option<Citation> {
         note: c.note.clone(),
         printed: c.original_value.clone(),
         confidence: c.confidence.clone(),
+        clause: c.clause.clone(),
+        quotation: c.quotation.clone(),
+        seen_at: c.seen_at.clone(),
+        in_force_until: c.in_force_until.clone(),
+        superseded_by: c.superseded_by.clone(),
     })
 }
 

@@ -233,7 +233,7 @@ pub enum Status {
 }
 
 /// A source as cited, with jurisdiction and clause.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Citation {
     /// Where the rule applies.
@@ -248,6 +248,21 @@ pub struct Citation {
     pub printed: Option<String>,
     /// Confidence in the figure.
     pub confidence: String,
+    /// Where in the source it stands.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub clause: Option<String>,
+    /// Words that were read there.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub quotation: Option<String>,
+    /// Address of the page where the figure was checked.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub seen_at: Option<String>,
+    /// Last day it held, for a rule that has ended.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub in_force_until: Option<String>,
+    /// What replaced it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub superseded_by: Option<String>,
 }
 
 impl Report {

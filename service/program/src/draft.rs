@@ -103,6 +103,22 @@ impl<'r, 'a> Draft<'r, 'a> {
         Ok(Self { request, registry, heard, notes, site, aside, named, counted, wishes, on_each })
     }
 
+    /// Returns the draft of facts that need no words: see `briefed`.
+    #[allow(clippy::too_many_arguments)]
+    pub(super) fn of_facts(
+        request: &'r Request,
+        registry: &'a Registry,
+        heard: Heard<'r>,
+        notes: Notes,
+        site: Site<'a>,
+        aside: Aside,
+        named: Named,
+        counted: Counted,
+    ) -> Self {
+        let (wishes, on_each) = (Wishes::default(), Vec::new());
+        Self { request, registry, heard, notes, site, aside, named, counted, wishes, on_each }
+    }
+
     /// Returns what the prompt calls its rooms.
     pub(crate) fn called(&self) -> Vec<Called> {
         let Heard { prompt, tokens, language, spoken, .. } = &self.heard;
@@ -207,9 +223,15 @@ impl<'r, 'a> Draft<'r, 'a> {
             let times = |n: i64| n.saturating_mul(storeys.above_ground() as i64);
             self.named.mentions[m].count = self.named.mentions[m].count.map(times);
         }
-        storey_wishes::furnish_basement(&mut storeys, &mut self.wishes, self.site.domain);
-        storey_wishes::wish_for_storeys(&mut storeys, &mut self.wishes, self.site.domain, conflicts);
+        self.furnish_storeys(&mut storeys);
         storeys
+    }
+
+    /// Wishes for what storeys have and need.
+    pub(super) fn furnish_storeys(&mut self, storeys: &mut Storeys) {
+        let conflicts = &mut self.notes.conflicts;
+        storey_wishes::furnish_basement(storeys, &mut self.wishes, self.site.domain);
+        storey_wishes::wish_for_storeys(storeys, &mut self.wishes, self.site.domain, conflicts);
     }
 
     /// Settles which rooms the wishes mean in such a building, and the program that goes with them.

@@ -80,7 +80,7 @@ pub(crate) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     })
 }
 
-fn check_flags(request: &Request, registry: &Registry) -> Result<(), Error> {
+pub(super) fn check_flags(request: &Request, registry: &Registry) -> Result<(), Error> {
     if let Some(id) = &request.domain
         && registry.get(id).is_none()
     {

@@ -6,6 +6,13 @@ use std::fmt::Write;
 use super::numbers::{Given, Numbers, screaming};
 use super::types::{Body, Field, Item};
 
+/// Where other languages put what is made of the contract.
+const OPTIONS: &str = r#"
+option csharp_namespace = "D3dgen.V1";
+option go_package = "github.com/d3dgen/d3dgen/proto/d3dgen/v1;d3dgenv1";
+option java_multiple_files = true;
+option java_package = "io.github.d3dgen.v1";
+"#;
 /// Longest line of a comment.
 const WIDTH: usize = 118;
 
@@ -21,7 +28,7 @@ pub fn file(own: &str, about: &str, imports: &BTreeSet<String>, body: &str) -> S
     for import in imports {
         let _ = writeln!(out, "import \"d3dgen/v1/{import}.proto\";");
     }
-    out + body
+    out + OPTIONS + body
 }
 
 /// Returns a message or an enum.

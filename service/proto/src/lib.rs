@@ -2,6 +2,8 @@
 //!
 //! What it is not for: answering calls (`server`) and checking documents (`model`).
 
+pub mod bounds;
+pub mod codec;
 pub mod convert;
 
 /// Messages, clients (`*_client`) and servers (`*_server`) of package `d3dgen.v1`; the comments are in `proto/`.

@@ -1,17 +1,24 @@
-//! Load on a server, from a process of its own: many clients that search (80 %), and retrieve rules or make a world of five
-//! rooms (20 %). Prints times, errors, and the memory of the server.
+//! Load on a server, from a process of its own: many clients that search (half of the calls), retrieve rules, classify
+//! prompts, make scene graphs and small worlds, check worlds, and amend rules where that is asked for. Prints times by call,
+//! errors, and the memory of the server.
 //!
-//! `cargo run --release -p d3dgen-server --example load -- http://127.0.0.1:50051 [--clients 64] [--seconds 60] [--pid PID]`
+//! `cargo run --release -p d3dgen-server --example load -- http://127.0.0.1:50051 [--clients 64] [--seconds 60] [--pid PID]
+//! [--amending 0]`; so many of the clients do nothing but amend.
 
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
+use d3dgen_proto::v1::amend_knowledge_request::Change;
 use d3dgen_proto::v1::asset_service_client::AssetServiceClient;
+use d3dgen_proto::v1::domain_service_client::DomainServiceClient;
 use d3dgen_proto::v1::generate_world_request::Start;
+use d3dgen_proto::v1::generate_world_response::Event;
 use d3dgen_proto::v1::knowledge_service_client::KnowledgeServiceClient;
 use d3dgen_proto::v1::world_service_client::WorldServiceClient;
 use d3dgen_proto::v1::{
-    BuildingRequest, GenerateWorldRequest, RetrieveConstraintsRequest, SearchAssetsRequest, SearchConstraintsRequest,
+    AmendKnowledgeRequest, BuildingRequest, CheckWorldRequest, ClassifyDomainRequest, GenerateSceneGraphRequest,
+    GenerateWorldRequest, RetrieveConstraintsRequest, RuleSentence, SearchAssetsRequest, SearchConstraintsRequest,
+    World,
 };
 use tonic::transport::{Channel, Endpoint};
 use tonic::{Code, Status};
@@ -40,12 +47,19 @@ async fn main() -> Result<(), Box<dyn std::error::Error>> {
         at.map_or(Ok(usual), |v| v.parse())
     };
     let (clients, seconds, pid) = (option("--clients", 64)?, option("--seconds", 60)?, option("--pid", 0)?);
+    let amending = option("--amending", 0)?;
+    let first = Endpoint::new(url.clone())?.connect().await?;
+    let made = world(&mut WorldServiceClient::new(first).max_decoding_message_size(64 << 20), 1).await?;
+    let made = made.ok_or("the server made no world to check")?;
     let begun = Instant::now();
     let until = begun + Duration::from_secs(seconds);
     let mut all = Vec::new();
     for n in 0..clients {
         let channel = Endpoint::new(url.clone())?.connect().await?;
-        all.push(tokio::spawn(client(n, channel, until)));
+        all.push(match n < amending {
+            true => tokio::spawn(amend(n, channel, until)),
+            false => tokio::spawn(client(n, channel, until, made.clone())),
+        });
     }
     let mut memory = Vec::new();
     while Instant::now() < until {
@@ -64,7 +78,7 @@ async fn main() -> Result<(), Box<dyn std::error::Error>> {
         ms.sort_by(f64::total_cmp);
         let at = |share: f64| ms[((ms.len() - 1) as f64 * share) as usize];
         println!(
-            "{kind:<9} {:>6} calls  p50 {:>7.1} ms  p99 {:>7.1} ms  most {:>7.1} ms",
+            "{kind:<20} {:>6} calls  p50 {:>7.1} ms  p99 {:>7.1} ms  most {:>7.1} ms",
             ms.len(),
             at(0.5),
             at(0.99),
@@ -76,57 +90,100 @@ async fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-async fn client(n: u64, channel: Channel, until: Instant) -> Seen {
+const PROMPT: &str = "apartment with a kitchen, a bathroom, a living room and two bedrooms";
+
+async fn client(n: u64, channel: Channel, until: Instant, made: World) -> Seen {
     let mut knowledge = KnowledgeServiceClient::new(channel.clone());
     let mut assets = AssetServiceClient::new(channel.clone());
+    let mut domains = DomainServiceClient::new(channel.clone());
     let mut worlds = WorldServiceClient::new(channel).max_decoding_message_size(64 << 20);
-    let (mut times, mut errors): Seen = Default::default();
+    let mut seen = Seen::default();
     let mut turn = n;
     while Instant::now() < until {
         turn += 1;
         let begun = Instant::now();
-        let (kind, answer) = match turn % 10 {
-            8 => {
+        let building = BuildingRequest { prompt: PROMPT.into(), seed: turn * 1000 + n, ..Default::default() };
+        let (kind, answer) = match turn % 20 {
+            1 | 11 => {
                 let asked = RetrieveConstraintsRequest {
                     domain_id: Some("hospital".into()),
                     country_code: Some("DE".into()),
                     room_labels: vec!["patient room".into(), "corridor".into(), "office".into()],
                     ..Default::default()
                 };
-                ("retrieve", knowledge.retrieve_constraints(asked).await.map(drop))
+                ("RetrieveConstraints", knowledge.retrieve_constraints(asked).await.map(drop))
             }
-            9 => ("generate", world(&mut worlds, turn * 1000 + n).await),
-            odd if odd % 2 == 1 => {
+            3 | 13 => {
+                let asked = ClassifyDomainRequest { prompt: PROMPT.into(), ..Default::default() };
+                ("ClassifyDomain", domains.classify_domain(asked).await.map(drop))
+            }
+            5 | 15 => {
+                let asked = GenerateSceneGraphRequest { building: Some(building) };
+                ("GenerateSceneGraph", worlds.generate_scene_graph(asked).await.map(drop))
+            }
+            7 | 17 => {
+                let asked = CheckWorldRequest { world: Some(made.clone()) };
+                ("CheckWorld", worlds.check_world(asked).await.map(drop))
+            }
+            9 | 19 => ("GenerateWorld", world(&mut worlds, building.seed).await.map(drop)),
+            odd if odd % 4 == 0 => {
                 let query = THINGS[turn as usize / 2 % THINGS.len()].into();
                 let asked = SearchAssetsRequest { query, page_size: 10, ..Default::default() };
-                ("search", assets.search_assets(asked).await.map(drop))
+                ("SearchAssets", assets.search_assets(asked).await.map(drop))
             }
             _ => {
                 let query = QUESTIONS[turn as usize / 2 % QUESTIONS.len()].into();
                 let asked = SearchConstraintsRequest { query, page_size: 10, ..Default::default() };
-                ("search", knowledge.search_constraints(asked).await.map(drop))
+                ("SearchConstraints", knowledge.search_constraints(asked).await.map(drop))
             }
         };
-        match answer {
-            Ok(()) => times.entry(kind).or_default().push(begun.elapsed().as_secs_f64() * 1000.0),
-            Err(status) => {
-                *errors.entry((kind, format!("{:?}", status.code()))).or_default() += 1;
-                if status.code() == Code::ResourceExhausted {
-                    tokio::time::sleep(Duration::from_millis(500)).await; // as the answer asks
-                }
+        note(&mut seen, kind, begun, answer).await;
+    }
+    seen
+}
+
+/// Amends rules for as long as it may.
+async fn amend(n: u64, channel: Channel, until: Instant) -> Seen {
+    let mut knowledge = KnowledgeServiceClient::new(channel);
+    let mut seen = Seen::default();
+    let mut turn = 0;
+    while Instant::now() < until {
+        turn += 1;
+        let begun = Instant::now();
+        let text = format!("Corridors are at least {}.{:02} m wide.", 2 + n % 3, turn % 100);
+        let change = Some(Change::Sentence(RuleSentence { text, language: None }));
+        let asked = AmendKnowledgeRequest { domain_id: "hospital".into(), change, ..Default::default() };
+        let answer = knowledge.amend_knowledge(asked).await.map(drop);
+        note(&mut seen, "AmendKnowledge", begun, answer).await;
+    }
+    seen
+}
+
+/// Notes what came of a call, and waits where the answer asks for it.
+async fn note((times, errors): &mut Seen, kind: &'static str, begun: Instant, answer: Result<(), Status>) {
+    match answer {
+        Ok(()) => times.entry(kind).or_default().push(begun.elapsed().as_secs_f64() * 1000.0),
+        Err(status) => {
+            *errors.entry((kind, format!("{:?}", status.code()))).or_default() += 1;
+            if status.code() == Code::ResourceExhausted {
+                tokio::time::sleep(Duration::from_millis(500)).await;
             }
         }
     }
-    (times, errors)
 }
 
-async fn world(worlds: &mut WorldServiceClient<Channel>, seed: u64) -> Result<(), Status> {
-    let prompt = "apartment with a kitchen, a bathroom, a living room and two bedrooms".into();
-    let building = BuildingRequest { prompt, seed, ..Default::default() };
+/// Makes a world.
+async fn world(worlds: &mut WorldServiceClient<Channel>, seed: u64) -> Result<Option<World>, Status> {
+    let building = BuildingRequest { prompt: PROMPT.into(), seed, ..Default::default() };
     let asked = GenerateWorldRequest { start: Some(Start::Building(building)), ..Default::default() };
     let mut stream = worlds.generate_world(asked).await?.into_inner();
-    while stream.message().await?.is_some() {}
-    Ok(())
+    let mut made = None;
+    while let Some(news) = stream.message().await? {
+        if let Some(Event::World(checked)) = news.event {
+            made = checked.world;
+        }
+    }
+    Ok(made)
 }
 
 /// Returns the resident memory of a process, MB; 0 where the system does not tell.

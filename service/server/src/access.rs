@@ -17,6 +17,9 @@ pub enum Scope {
 }
 
 impl Scope {
+    /// All of them, the least first.
+    pub const ALL: [Self; 3] = [Self::Read, Self::Write, Self::Admin];
+
     /// Returns the word that configurations use.
     pub fn name(self) -> &'static str {
         match self {

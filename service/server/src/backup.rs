@@ -35,13 +35,13 @@ pub struct Summary {
 /// `CANCELLED`; `DATA_LOSS` when a record is damaged; `INTERNAL`.
 pub fn write(core: &Core, cancelled: &AtomicBool) -> Result<Summary, Status> {
     let home = core.config.data_dir.join("backups");
-    std::fs::create_dir_all(&home).map_err(|e| status::internal(&e))?;
+    std::fs::create_dir_all(&home).map_err(|e| status::io(&e))?;
     let name = core.clock.text().replace(':', "");
     let folder = (0..).map(|n| if n == 0 { home.join(&name) } else { home.join(format!("{name}-{n}")) });
     let Some(folder) = folder.take(100).find(|f| !f.exists()) else {
         return Err(Status::already_exists("there are many backups of this second"));
     };
-    let fresh = tempfile::Builder::new().prefix(".backup-").tempdir_in(&home).map_err(|e| status::internal(&e))?;
+    let fresh = tempfile::Builder::new().prefix(".backup-").tempdir_in(&home).map_err(|e| status::io(&e))?;
     let by = concat!("d3dgen ", env!("CARGO_PKG_VERSION"));
     let mut records = 0;
     for (store, name) in [&core.databases.own, core.databases.shared()].into_iter().zip(SNAPSHOTS) {
@@ -52,7 +52,7 @@ pub fn write(core: &Core, cancelled: &AtomicBool) -> Result<Summary, Status> {
     for (from, to) in FOLDERS {
         copy(&core.config.data_dir.join(from), &fresh.path().join(to), &mut files, cancelled)?;
     }
-    std::fs::rename(fresh.keep(), &folder).map_err(|e| status::internal(&e))?;
+    std::fs::rename(fresh.keep(), &folder).map_err(|e| status::io(&e))?;
     tracing::info!(folder = %folder.display(), records, files, "backup written");
     Ok(Summary { folder, records, files })
 }
@@ -62,7 +62,7 @@ fn copy(from: &Path, to: &Path, files: &mut u64, cancelled: &AtomicBool) -> Resu
         return Err(Status::cancelled("the call was given up"));
     }
     let Ok(entries) = std::fs::read_dir(from) else { return Ok(()) };
-    std::fs::create_dir_all(to).map_err(|e| status::internal(&e))?;
+    std::fs::create_dir_all(to).map_err(|e| status::io(&e))?;
     for entry in entries.flatten() {
         let (path, target) = (entry.path(), to.join(entry.file_name()));
         match path.is_dir() {
@@ -71,7 +71,7 @@ fn copy(from: &Path, to: &Path, files: &mut u64, cancelled: &AtomicBool) -> Resu
             false => match std::fs::hard_link(&path, &target).or_else(|_| std::fs::copy(&path, &target).map(drop)) {
                 Ok(()) => *files += 1,
                 Err(e) if e.kind() == std::io::ErrorKind::NotFound => {} // removed meanwhile
-                Err(e) => return Err(status::internal(&e)),
+                Err(e) => return Err(status::io(&e)),
             },
         }
     }

@@ -26,6 +26,8 @@ pub struct Config {
     pub tokens: Vec<Token>,
     /// Origins of web pages that may call.
     pub cors_origins: Vec<String>,
+    /// Names beside loopback ones under which a server on loopback is asked: those of a proxy before it.
+    pub hosts: Vec<String>,
     /// Folders from which clients may have the server read.
     pub read_roots: Vec<PathBuf>,
     /// Whether clients may have the server fetch documents from public addresses.
@@ -64,6 +66,8 @@ pub struct Limits {
     pub upload_bytes: u64,
     /// Connections at a time.
     pub connections: usize,
+    /// Connections of one address at a time.
+    pub connections_per_address: usize,
     /// Calls at a time.
     pub calls: usize,
     /// Calls of one client at a time.

@@ -1,4 +1,8 @@
-//! Connections: accepted up to a number, with TLS where it is configured, and dropped when a handshake takes too long.
+//! Connections: accepted up to a number, with TLS where it is configured, and dropped when they say nothing, take nothing,
+//! or when a handshake takes too long.
+
+mod guarded;
+mod slots;
 
 use std::io;
 use std::net::SocketAddr;
@@ -12,8 +16,8 @@ use rustls::ServerConfig;
 use rustls::pki_types::pem::PemObject;
 use rustls::pki_types::{CertificateDer, PrivateKeyDer};
 use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
-use tokio::net::{TcpListener, TcpStream};
-use tokio::sync::{OwnedSemaphorePermit, Semaphore, mpsc};
+use tokio::net::TcpListener;
+use tokio::sync::mpsc;
 use tokio_rustls::TlsAcceptor;
 use tokio_rustls::server::TlsStream;
 use tokio_stream::wrappers::ReceiverStream;
@@ -22,6 +26,8 @@ use tonic::transport::server::Connected;
 use crate::config::Tls;
 use crate::error::Error;
 use crate::metrics::Metrics;
+use guarded::Guarded;
+use slots::Slots;
 
 /// Longest time of a TLS handshake.
 const HANDSHAKE: Duration = Duration::from_secs(10);
@@ -30,19 +36,23 @@ const PAUSE: Duration = Duration::from_millis(50);
 
 /// Where a call comes from.
 #[derive(Debug, Clone, Copy)]
-pub struct Peer(pub SocketAddr);
+pub struct Peer {
+    /// The address.
+    pub address: SocketAddr,
+    /// True when the connection has no place of its own: only health is answered.
+    pub spare: bool,
+}
 
 /// A connection of a client.
 pub struct Connection {
     stream: Stream,
     peer: Peer,
     metrics: Arc<Metrics>,
-    _permit: OwnedSemaphorePermit,
 }
 
 enum Stream {
-    Plain(TcpStream),
-    Tls(Box<TlsStream<TcpStream>>),
+    Plain(Box<Guarded>),
+    Tls(Box<TlsStream<Guarded>>),
 }
 
 /// Reads certificate and key.
@@ -66,18 +76,18 @@ pub fn acceptor(tls: &Tls) -> Result<TlsAcceptor, Error> {
     Ok(TlsAcceptor::from(Arc::new(config)))
 }
 
-/// Accepts connections until the stream is dropped, at most `limit` at a time.
+/// Accepts connections until the stream is dropped, at most `limit` at a time and `each` of one address; beyond that a few
+/// on which only health is answered.
 pub fn accept(
     listener: TcpListener,
     tls: Option<TlsAcceptor>,
-    limit: usize,
+    (limit, each): (usize, usize),
     metrics: Arc<Metrics>,
 ) -> ReceiverStream<io::Result<Connection>> {
     let (send, receive) = mpsc::channel(16);
-    let free = Arc::new(Semaphore::new(limit));
+    let slots = Slots::new(limit, each);
     tokio::spawn(async move {
         loop {
-            let Ok(permit) = Arc::clone(&free).acquire_owned().await else { break };
             let accepted = tokio::select! {
                 accepted = listener.accept() => accepted,
                 () = send.closed() => break,
@@ -92,12 +102,14 @@ pub fn accept(
             };
             let _ = stream.set_nodelay(true);
             let (send, tls, metrics) = (send.clone(), tls.clone(), Arc::clone(&metrics));
+            let stream = Guarded::new(stream, slots.take(address.ip()));
+            let peer = Peer { address, spare: stream.is_spare() };
             let wrap = move |stream| {
                 metrics.connections.fetch_add(1, Ordering::Relaxed);
-                Connection { stream, peer: Peer(address), metrics, _permit: permit }
+                Connection { stream, peer, metrics }
             };
             match tls {
-                None => drop(send.send(Ok(wrap(Stream::Plain(stream)))).await),
+                None => drop(send.send(Ok(wrap(Stream::Plain(Box::new(stream))))).await),
                 Some(tls) => drop(tokio::spawn(async move {
                     match tokio::time::timeout(HANDSHAKE, tls.accept(stream)).await {
                         Ok(Ok(stream)) => drop(send.send(Ok(wrap(Stream::Tls(Box::new(stream))))).await),

@@ -1,5 +1,6 @@
 //! Between messages and documents: what comes in is checked as a file would be, and said with its field.
 
+use d3dgen_model::knowledge::KnowledgeBase;
 use d3dgen_proto::convert::{self, Contract, Error};
 use prost::{Message, Name};
 use prost_types::FieldMask;
@@ -8,9 +9,6 @@ use serde::de::DeserializeOwned;
 use tonic::Status;
 
 use crate::status::{self, invalid};
-
-/// Paths of a mask at most.
-const PATHS: usize = 100;
 
 /// Returns the message of a document, or of a part of one.
 pub fn message<M: Message + Name + Default>(document: &impl Serialize) -> M {
@@ -24,6 +22,16 @@ pub fn message<M: Message + Name + Default>(document: &impl Serialize) -> M {
 pub fn document<D: Contract>(field: &str, message: Option<D::Message>) -> Result<D, Status> {
     let message = message.ok_or_else(|| invalid(field, "is missing"))?;
     convert::from_proto(&message).map_err(|e| refused(field, e))
+}
+
+/// Returns a knowledge base with the shared rules that it uses.
+///
+/// # Errors
+/// `INVALID_ARGUMENT` for a name that is of none.
+pub fn with_shared(mut knowledge: KnowledgeBase) -> Result<KnowledgeBase, Status> {
+    let complete = d3dgen_plugins::complete(&mut knowledge);
+    complete.map_err(|e| invalid("knowledge_base.metadata.uses", e.to_string()))?;
+    Ok(knowledge)
 }
 
 /// Returns the part of a document that a message is; only its shape is checked.
@@ -46,16 +54,8 @@ pub fn masked<M: Message + Name + Default>(
     fixed: &[&str],
 ) -> Result<M, Status> {
     let paths = mask.unwrap_or_default().paths;
-    if paths.len() > PATHS {
-        return Err(invalid(&at(field, "update_mask"), format!("has {} paths, at most {PATHS}", paths.len())));
-    }
     convert::apply_mask(&mut base, update, &paths, fixed).map_err(|e| refused(field, e))?;
     Ok(base)
-}
-
-/// Returns the path of a field in a message that stands in another.
-pub fn at(field: &str, inner: &str) -> String {
-    if field.is_empty() { inner.to_owned() } else { format!("{field}.{inner}") }
 }
 
 fn refused(field: &str, error: Error) -> Status {

@@ -1,10 +1,12 @@
 //! What all services work with: databases, domains, jobs, threads, the clock.
 
 use std::path::PathBuf;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::Arc;
 
+use arc_swap::ArcSwap;
 use d3dgen_knowledge::database::Provenance;
 use d3dgen_store::embed::Embedder;
+use tokio::sync::{Mutex, MutexGuard, OwnedMutexGuard};
 use tonic::Status;
 
 use crate::clock::Clock;
@@ -12,6 +14,7 @@ use crate::config::Config;
 use crate::databases::Databases;
 use crate::domains::Domains;
 use crate::error::Error;
+use crate::health::Health;
 use crate::jobs::Jobs;
 use crate::metrics::Metrics;
 use crate::pool::Pool;
@@ -44,7 +47,9 @@ pub struct Core {
     pub jobs: Jobs,
     /// Programs that read files of others.
     pub programs: Programs,
-    writing: Mutex<()>,
+    /// What is well, as it was looked at last.
+    pub health: ArcSwap<Health>,
+    writing: Arc<Mutex<()>>,
 }
 
 impl Core {
@@ -66,8 +71,10 @@ impl Core {
         let domains = Domains::open(&databases, &by)?;
         let jobs = Jobs::open(&databases.own, config.jobs.clone(), clock.clone(), Arc::clone(&metrics))?;
         let pool = Pool::new(config.limits.threads, config.limits.waiting, Arc::clone(&metrics));
-        let writing = Mutex::new(());
-        let core = Self { config, clock, metrics, pool, databases, domains, jobs, programs, writing };
+        let writing = Arc::default();
+        let early = Health { store: Ok(()), index: Err("is being made".into()), lanes: Ok(()) };
+        let health = ArcSwap::from_pointee(early);
+        let core = Self { config, clock, metrics, pool, databases, domains, jobs, programs, health, writing };
         core.remove_leftovers();
         Ok(Arc::new(core))
     }
@@ -81,32 +88,41 @@ impl Core {
         self.databases.index_assets(&self.domains.now().catalog)
     }
 
-    /// Waits until nobody else changes rules, assets or domains.
+    /// Waits on its thread until nobody else changes rules, assets or domains; for jobs, which have threads of their own.
+    ///
+    /// # Panics
+    /// On a thread that answers calls: those wait with [`Core::turn`].
     pub fn writing(&self) -> MutexGuard<'_, ()> {
-        self.writing.lock().unwrap_or_else(PoisonError::into_inner)
+        self.writing.blocking_lock()
     }
 
-    /// Changes rules; searches and worlds know of it when this returns.
+    /// Waits without a thread until nobody else changes rules, assets or domains.
+    pub async fn turn(&self) -> OwnedMutexGuard<()> {
+        Arc::clone(&self.writing).lock_owned().await
+    }
+
+    /// Changes rules of a domain; searches and worlds know of it when this returns.
     ///
     /// # Errors
     /// What `change` returns; `INTERNAL` when the index cannot be made.
     pub fn change_rules<T>(
         &self,
+        domain: &str,
         change: impl FnOnce(&d3dgen_knowledge::database::Database) -> Result<T, d3dgen_knowledge::Error>,
     ) -> Result<T, Status> {
         let _alone = self.writing();
         let changed = change(&self.databases.rules).map_err(status::knowledge)?;
-        self.changed_rules()?;
+        self.changed_rules(domain)?;
         Ok(changed)
     }
 
-    /// Makes searches and worlds know of changed rules; for a caller that holds [`Core::writing`].
+    /// Makes searches and worlds know of changed rules of a domain; for a caller that has its turn ([`Core::turn`]).
     ///
     /// # Errors
     /// `INTERNAL` when the index cannot be made.
-    pub fn changed_rules(&self) -> Result<(), Status> {
-        self.domains.refresh(&self.databases).map_err(|e| status::internal(&e))?;
-        self.databases.index_rules().map_err(|e| status::internal(&e))
+    pub fn changed_rules(&self, domain: &str) -> Result<(), Status> {
+        self.domains.refresh_rules(&self.databases, domain).map_err(status::own)?;
+        self.databases.index_rules().map_err(status::own)
     }
 
     /// Makes searches and worlds know of changed assets.
@@ -114,8 +130,8 @@ impl Core {
     /// # Errors
     /// `INTERNAL` when the index cannot be made.
     pub fn changed_assets(&self) -> Result<(), Status> {
-        let now = self.domains.refresh(&self.databases).map_err(|e| status::internal(&e))?;
-        self.databases.index_assets(&now.catalog).map_err(|e| status::internal(&e))
+        let now = self.domains.refresh(&self.databases).map_err(status::own)?;
+        self.databases.index_assets(&now.catalog).map_err(status::own)
     }
 
     /// Returns who changes something now, and why.

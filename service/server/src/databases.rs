@@ -59,6 +59,10 @@ impl<T> Slot<T> {
         self.filled.notify_all();
     }
 
+    fn is_filled(&self) -> bool {
+        self.value.lock().unwrap_or_else(PoisonError::into_inner).is_some()
+    }
+
     fn wait(&self) -> Result<Arc<T>, Status> {
         let guard = self.value.lock().unwrap_or_else(PoisonError::into_inner);
         let waited = self.filled.wait_timeout_while(guard, WAIT, |v| v.is_none());
@@ -85,6 +89,20 @@ impl Databases {
             rules_index: Slot::empty(),
             asset_index: Slot::empty(),
         })
+    }
+
+    /// Returns an error while nothing can be stored; what a full disk has broken is mended first, when there is room.
+    ///
+    /// # Errors
+    /// `Store`.
+    pub fn check_writable(&self) -> Result<(), Error> {
+        self.own.check_writable()?;
+        Ok(self.shared().check_writable()?)
+    }
+
+    /// Returns true once searches are answered.
+    pub fn is_indexed(&self) -> bool {
+        self.rules_index.is_filled() && self.asset_index.is_filled()
     }
 
     /// Returns the store of rules and assets.

@@ -5,12 +5,13 @@
 
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use arc_swap::ArcSwap;
 use d3dgen_assets::catalog::Catalog;
 use d3dgen_assets::stock::Stock;
 use d3dgen_knowledge::database::{Provenance, digest};
+use d3dgen_knowledge::glossary::Glossary;
 use d3dgen_model::domain::Domain;
 use d3dgen_model::knowledge::KnowledgeBase;
 use d3dgen_model::{Document, Problem};
@@ -35,6 +36,33 @@ pub struct Snapshot {
     pub catalog: Arc<Catalog>,
     /// Registered ones, by id.
     pub registered: BTreeMap<String, Entry>,
+    glossary: OnceLock<Glossary>,
+    /// Both registries with the rules that the domains brought.
+    bare: (Registry, Registry),
+    /// Rules that have changed since, by domain.
+    rules: BTreeMap<String, Arc<KnowledgeBase>>,
+}
+
+impl Snapshot {
+    /// Returns the words for what rules speak of, made when first asked for.
+    pub fn glossary(&self) -> &Glossary {
+        self.glossary.get_or_init(|| Glossary::of(self.registry.iter().map(|p| p.domain())))
+    }
+
+    /// Returns the domains with their rules; `bare` are all domains, with the assets of the database and without.
+    fn new(
+        bare: (Registry, Registry),
+        rules: BTreeMap<String, Arc<KnowledgeBase>>,
+        catalog: Arc<Catalog>,
+        registered: BTreeMap<String, Entry>,
+    ) -> Self {
+        let (mut registry, mut as_given) = bare.clone();
+        for (id, knowledge) in &rules {
+            registry.set_knowledge(id, KnowledgeBase::clone(knowledge));
+            as_given.set_knowledge(id, KnowledgeBase::clone(knowledge));
+        }
+        Self { registry, as_given, catalog, registered, glossary: OnceLock::new(), bare, rules }
+    }
 }
 
 /// A registered domain.
@@ -108,6 +136,27 @@ impl Domains {
     /// Returns the domains as they are now.
     pub fn now(&self) -> Arc<Snapshot> {
         self.current.load_full()
+    }
+
+    /// Makes a new snapshot after rules of one domain have changed; for a caller who sees to it that nobody else changes
+    /// anything meanwhile.
+    ///
+    /// # Errors
+    /// `Knowledge`.
+    pub fn refresh_rules(&self, databases: &Databases, id: &str) -> Result<(), Error> {
+        let now = self.now();
+        if now.bare.0.get(id).is_none() {
+            return Ok(());
+        }
+        let mut rules = now.rules.clone();
+        match databases.rules.knowledge_base(id) {
+            Ok(knowledge) => drop(rules.insert(id.to_owned(), Arc::new(knowledge))),
+            Err(d3dgen_knowledge::Error::NoDomain { .. }) => drop(rules.remove(id)), // taken back
+            Err(other) => return Err(other.into()),
+        }
+        let (bare, registered) = (now.bare.clone(), now.registered.clone());
+        self.current.store(Arc::new(Snapshot::new(bare, rules, Arc::clone(&now.catalog), registered)));
+        Ok(())
     }
 
     /// Makes a new snapshot after rules or assets have changed.
@@ -306,11 +355,11 @@ fn snapshot(databases: &Databases, shipped: &Registry) -> Result<Snapshot, Error
         entries.insert(id, version.entry);
         registry.add(Arc::new(Custom::of(version.domain, version.knowledge)));
     }
+    let mut rules = BTreeMap::new();
     for entry in databases.rules.domains()? {
         // a registration counts as a change, so registered domains have what was amended since
         if entry.changes > 0 && registry.get(&entry.domain).is_some() {
-            let knowledge = databases.rules.knowledge_base(&entry.domain)?;
-            registry.set_knowledge(&entry.domain, knowledge);
+            rules.insert(entry.domain.clone(), Arc::new(databases.rules.knowledge_base(&entry.domain)?));
         }
     }
     let as_given = registry.clone();
@@ -323,7 +372,7 @@ fn snapshot(databases: &Databases, shipped: &Registry) -> Result<Snapshot, Error
             registry.set_domain(domain);
         }
     }
-    Ok(Snapshot { registry, as_given, catalog, registered: entries })
+    Ok(Snapshot::new((registry, as_given), rules, catalog, entries))
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 //! What it is not for: knowing what a call does. It lies inside of gRPC-Web, so that its refusals reach browsers too.
 
 mod body;
+mod origin;
 mod rate;
 
 use std::collections::HashMap;
@@ -15,17 +16,20 @@ use std::task::{Context, Poll};
 use std::time::{Duration, Instant};
 
 use axum::body::Body;
-use http::{HeaderMap, HeaderValue, Request, Response, StatusCode};
+use http::{HeaderMap, HeaderValue, Request, Response, StatusCode, Uri};
+use tokio::sync::watch;
 use tonic::{Code, Status};
 use tower::{Layer, Service};
 
 use crate::access::{Access, Caller, Scope};
-use crate::config::Limits;
+use crate::config::{Config, Limits};
 use crate::connection::Peer;
-use crate::methods::Methods;
+use crate::methods::{Kind, Methods};
 use crate::metrics::Metrics;
+use crate::pool::{self, Asked};
 use crate::status;
-use body::{Call, Watched};
+use body::{Call, Until, Watched};
+use origin::Origins;
 use rate::Rates;
 
 /// Header of the id that a client or the server gives a call.
@@ -39,6 +43,7 @@ const RETRY: Duration = Duration::from_millis(250);
 #[derive(Debug)]
 pub struct Rules {
     access: Access,
+    origins: Origins,
     methods: Methods,
     limits: Limits,
     metrics: Arc<Metrics>,
@@ -47,6 +52,8 @@ pub struct Rules {
     ids: AtomicU64,
     /// First part of request ids: another one each start.
     start: u64,
+    /// True once the server stops.
+    stop: watch::Receiver<bool>,
 }
 
 /// Calls under way.
@@ -57,10 +64,13 @@ struct InFlight {
 }
 
 impl Rules {
-    /// Returns the rules of a server; `start` tells its request ids from those of its last run.
-    pub fn new(access: Access, limits: Limits, metrics: Arc<Metrics>, start: u64) -> Arc<Self> {
+    /// Returns the rules of a server; `start` tells its request ids from those of its last run, `stop` becomes true when it
+    /// stops: what would go on for as long as its client wants ends then.
+    pub fn new(config: &Config, metrics: Arc<Metrics>, start: u64, stop: watch::Receiver<bool>) -> Arc<Self> {
+        let limits = config.limits.clone();
         Arc::new(Self {
-            access,
+            access: Access::new(config.tokens.clone()),
+            origins: Origins::new(config),
             methods: Methods::shipped(),
             rates: Rates::new(limits.rate_per_s, limits.burst),
             limits,
@@ -68,6 +78,7 @@ impl Rules {
             in_flight: Mutex::default(),
             ids: AtomicU64::new(0),
             start,
+            stop,
         })
     }
 
@@ -85,18 +96,26 @@ impl Rules {
     }
 
     /// Returns who calls, when they may.
-    fn admit(&self, path: &str, headers: &HeaderMap, peer: &str) -> Result<Caller, (Status, String)> {
-        let need = self.methods.need(path);
+    fn admit(&self, uri: &Uri, headers: &HeaderMap, peer: &str, spare: bool) -> Result<Caller, (Status, String)> {
+        let need = self.methods.need(uri.path());
+        self.origins.check(uri, headers).map_err(|refused| (refused, peer.to_owned()))?;
         let authorization = headers.get(http::header::AUTHORIZATION).map(HeaderValue::as_bytes);
         let caller = self.access.caller(authorization, peer);
         let Some(least) = need.scope else {
             // Health answers everybody.
             return Ok(caller.unwrap_or(Caller { name: peer.to_owned(), scope: Scope::Read }));
         };
+        if spare {
+            let message = "there are as many connections as the server takes, from this address or in all";
+            return Err((status::exhausted(message, RETRY), peer.to_owned()));
+        }
         let Some(caller) = caller else {
             // Guessing is bounded as any other call is, by address.
             let refused = match self.rates.take(&format!("without a token: {peer}")) {
-                Ok(()) => Status::unauthenticated("the token is missing or wrong: send `authorization: Bearer TOKEN`"),
+                Ok(()) => {
+                    let message = "the token is missing or wrong: send `authorization: Bearer TOKEN`";
+                    status::because(status::reason::TOKEN, &Status::unauthenticated(message))
+                }
                 Err(wait) => status::exhausted("too many calls without a token", wait),
             };
             return Err((refused, peer.to_owned()));
@@ -104,7 +123,8 @@ impl Rules {
         if caller.scope < least {
             let message =
                 format!("token `{}` has scope {}, this call needs {}", caller.name, caller.scope.name(), least.name());
-            return Err((Status::permission_denied(message), caller.name));
+            let refused = status::because(status::reason::SCOPE, &Status::permission_denied(message));
+            return Err((refused, caller.name));
         }
         match self.rates.take(&caller.name) {
             Ok(()) => Ok(caller),
@@ -189,7 +209,8 @@ where
         let path = request.uri().path().to_owned();
         let is_grpc = is_grpc(request.headers());
         let id = rules.id(request.headers());
-        let peer = request.extensions().get::<Peer>().map_or_else(|| "unknown".to_owned(), |p| p.0.ip().to_string());
+        let from = request.extensions().get::<Peer>().copied();
+        let peer = from.map_or_else(|| "unknown".to_owned(), |p| p.address.ip().to_string());
         let mut call = Call {
             metrics: Arc::clone(&rules.metrics),
             method: rules.methods.label(&path).to_owned(),
@@ -200,22 +221,28 @@ where
             code: None,
             place: None,
         };
-        let admitted = rules.admit(&path, request.headers(), &peer).map_err(|(status, client)| {
+        let need = rules.methods.need(&path);
+        let spare = from.is_some_and(|p| p.spare);
+        let admitted = rules.admit(request.uri(), request.headers(), &peer, spare).map_err(|(status, client)| {
             call.client = client;
             status
         });
         let admitted = admitted.and_then(|caller| {
             call.client.clone_from(&caller.name);
-            call.place = Some(rules.begin(&caller.name)?);
+            // health has a place whatever else goes on
+            if need.scope.is_some() {
+                call.place = Some(rules.begin(&caller.name)?);
+            }
             Ok(caller)
         });
         let caller = match admitted {
             Ok(caller) => caller,
             Err(status) => return Box::pin(async move { Ok(refusal(status, is_grpc, call)) }),
         };
-        let kind = rules.methods.need(&path).kind;
-        let time =
-            asked_time(request.headers()).map_or(kind.limit(&rules.limits), |t| t.min(kind.limit(&rules.limits)));
+        let kind = need.kind;
+        let longest = kind.limit(&rules.limits);
+        let time = asked_time(request.headers()).map_or(longest, |t| t.min(longest));
+        let asked = Asked { method: call.method.as_str().into(), id: id.as_str().into(), until: begun + time };
         request.extensions_mut().insert(caller);
         request.extensions_mut().insert(RequestId(id));
         request.extensions_mut().insert(kind);
@@ -223,9 +250,13 @@ where
         let ready = self.inner.clone();
         let mut inner = std::mem::replace(&mut self.inner, ready);
         Box::pin(async move {
-            let until = tokio::time::Instant::from_std(begun + time);
-            match tokio::time::timeout_at(until, inner.call(request)).await {
-                Ok(Ok(response)) => Ok(watched(response, is_grpc, call, until)),
+            let deadline = tokio::time::Instant::from_std(begun + time);
+            let answer = pool::asked(asked, inner.call(request));
+            match tokio::time::timeout_at(deadline, answer).await {
+                Ok(Ok(response)) => {
+                    let stop = (kind == Kind::Stream).then(|| rules.stop.clone());
+                    Ok(watched(response, is_grpc, call, Until { deadline, stop }))
+                }
                 Ok(Err(never)) => match never {},
                 Err(_) => Ok(refusal(late(time), is_grpc, call)),
             }
@@ -266,6 +297,7 @@ fn asked_time(headers: &HeaderMap) -> Option<Duration> {
 }
 
 fn refusal(status: Status, is_grpc: bool, mut call: Call) -> Response<Body> {
+    let status = status::explained(status);
     call.code = Some(status.code());
     let mut response = if is_grpc {
         status.into_http::<Body>()
@@ -285,10 +317,10 @@ fn refusal(status: Status, is_grpc: bool, mut call: Call) -> Response<Body> {
     response
 }
 
-fn watched(response: Response<Body>, is_grpc: bool, mut call: Call, until: tokio::time::Instant) -> Response<Body> {
+fn watched(response: Response<Body>, is_grpc: bool, mut call: Call, until: Until) -> Response<Body> {
     let refused = is_grpc.then(|| Status::from_header_map(response.headers())).flatten();
-    let response = match refused.as_ref().and_then(status::of_transport) {
-        Some(meant) => meant.into_http(),
+    let response = match refused.filter(|s| s.code() != Code::Ok) {
+        Some(refused) => status::explained(status::of_transport(&refused).unwrap_or(refused)).into_http(),
         None => response,
     };
     // Answers without a body, and those that are no gRPC, say how they ended at once.

@@ -9,7 +9,9 @@ mod domain;
 mod job;
 mod knowledge;
 mod once;
+mod outbox;
 mod page;
+mod server;
 mod world;
 mod zip;
 
@@ -26,14 +28,17 @@ use crate::core::Core;
 use crate::pool::Lane;
 use once::Once;
 
+pub use once::forget_old;
+
 /// Names of the services.
-pub const NAMES: [&str; 6] = [
+pub const NAMES: [&str; 7] = [
     "d3dgen.v1.DomainService",
     "d3dgen.v1.KnowledgeService",
     "d3dgen.v1.AssetService",
     "d3dgen.v1.WorldService",
     "d3dgen.v1.JobService",
     "d3dgen.v1.AdminService",
+    "d3dgen.v1.ServerService",
 ];
 
 /// Returns the services.
@@ -51,6 +56,7 @@ pub fn routes(core: &Arc<Core>) -> Routes {
         .add_service(service!(world_service_server, WorldServiceServer))
         .add_service(service!(job_service_server, JobServiceServer))
         .add_service(service!(admin_service_server, AdminServiceServer))
+        .add_service(service!(server_service_server, ServerServiceServer))
 }
 
 /// All services.
@@ -80,9 +86,19 @@ impl Api {
         self.core.pool.run(Lane::Work, move |stop| work(&core, stop)).await.map(Response::new)
     }
 
+    /// Does as [`Api::work`] what takes tens of milliseconds, beside the calls that take longer.
+    async fn short<T: Send + 'static>(
+        &self,
+        work: impl FnOnce(&Core, &AtomicBool) -> Result<T, Status> + Send + 'static,
+    ) -> Answer<T> {
+        let core = Arc::clone(&self.core);
+        self.core.pool.run(Lane::Short, move |stop| work(&core, stop)).await.map(Response::new)
+    }
+
     /// Changes something, alone, and once for each request id of a client.
     ///
-    /// The change goes on when the client goes away: half of one is not possible, and the answer is kept for a repeat.
+    /// A call waits for its turn without a thread, and leaves the queue when it is given up. Once begun, the change goes on
+    /// when the client goes away: half of one is not possible, and the answer is kept for a repeat.
     async fn change<Q, T>(
         &self,
         method: &'static str,
@@ -94,20 +110,56 @@ impl Api {
         Q: Message + Send + 'static,
         T: Message + Default + Send + 'static,
     {
+        self.change_read(method, request, Some(id), |_, asked, _| Ok(asked), change).await
+    }
+
+    /// Does as [`Api::change`] with what `read` makes of the request first: on a thread of its own, beside the changes of
+    /// others, and with a flag that tells when nobody waits for it any more. Without an id nothing is to be changed, so that
+    /// nobody's turn is waited for.
+    async fn change_read<Q, P, T>(
+        &self,
+        method: &'static str,
+        request: Request<Q>,
+        id: Option<String>,
+        read: impl FnOnce(&Core, Q, &AtomicBool) -> Result<P, Status> + Send + 'static,
+        change: impl FnOnce(&Core, P, &Once) -> Result<T, Status> + Send + 'static,
+    ) -> Answer<T>
+    where
+        Q: Message + Send + 'static,
+        P: Send + 'static,
+        T: Message + Default + Send + 'static,
+    {
         let caller = caller(&request);
         let request = request.into_inner();
-        let once = Once::new(&caller.name, method, &id, &request)?;
-        let core = Arc::clone(&self.core);
-        let changed = self.core.pool.run(Lane::Work, move |_| {
-            let _alone = core.writing();
-            if let Some(answer) = once.answered(&core)? {
+        let once = Once::new(&caller.name, method, id.as_deref().unwrap_or_default(), &request)?;
+        if id.is_none() {
+            return self.work(move |core, stop| change(core, read(core, request, stop)?, &once)).await;
+        }
+        let read = self.work(move |core, stop| read(core, request, stop)).await?.into_inner();
+        self.alone(move |core| {
+            if let Some(answer) = once.answered(core)? {
                 return Ok(answer);
             }
-            let answer = change(&core, request, &once)?;
-            once.keep(&core, &answer)?;
+            let answer = change(core, read, &once)?;
+            once.keep(core, &answer)?;
             Ok(answer)
+        })
+        .await
+        .map(Response::new)
+    }
+
+    /// Does something on a thread while nobody else changes rules, assets or domains.
+    async fn alone<T: Send + 'static>(
+        &self,
+        change: impl FnOnce(&Core) -> Result<T, Status> + Send + 'static,
+    ) -> Result<T, Status> {
+        let turn = self.core.pool.waits(self.core.turn()).await?;
+        let core = Arc::clone(&self.core);
+        let changed = self.core.pool.run(Lane::Write, move |_| {
+            let _turn = turn;
+            change(&core)
         });
-        changed.await.map(Response::new)
+        changed.await
     }
 }
 

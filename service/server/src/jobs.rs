@@ -208,7 +208,7 @@ impl Jobs {
             }
             self.line(job, batch, Level::Info, "the client asked to stop");
         });
-        let job = job.map_err(|e| status::internal(&e))?.ok_or_else(|| no_job(id))?;
+        let job = job.map_err(status::own)?.ok_or_else(|| no_job(id))?;
         if job.state == State::Cancelled {
             self.lock().queue.remove(id);
         }
@@ -244,7 +244,7 @@ impl Jobs {
             job.cut_short = 0;
             self.line(job, batch, Level::Info, "the client asked to go on");
         });
-        let job = job.map_err(|e| status::internal(&e))?.ok_or_else(|| no_job(id))?;
+        let job = job.map_err(status::own)?.ok_or_else(|| no_job(id))?;
         self.lock().queue.push(&job.owner, id);
         self.gauges();
         self.wake.notify_one();
@@ -296,6 +296,7 @@ impl Jobs {
                     job.fraction = 1.0;
                     (State::Succeeded, "is done".to_owned())
                 }
+                Err(refused) if gives_way(refused) && !job.cancelled => (State::Queued, "others go first".to_owned()),
                 Err(_) if job.cancelled => (State::Cancelled, "stopped as asked; what is finished stays".to_owned()),
                 Err(refused) if stopping && refused.code() == tonic::Code::Cancelled => {
                     (State::Queued, "the server stops; the job goes on when it starts again".to_owned())
@@ -313,7 +314,16 @@ impl Jobs {
             }
             self.line(job, batch, level, &text);
         });
-        self.lock().running.remove(id);
+        let mut inner = self.lock();
+        inner.running.remove(id);
+        if let (Ok(Some(job)), Err(refused)) = (&ended, &outcome)
+            && job.state == State::Queued
+            && gives_way(refused)
+        {
+            inner.queue.push(&job.owner, id);
+        }
+        drop(inner);
+        self.wake.notify_one();
         if let Err(error) = ended {
             tracing::error!(job = id, reason = %error, "the end of a job cannot be kept; it begins again at the next start");
         }
@@ -328,6 +338,11 @@ impl Jobs {
         }
         self.wake.notify_waiters();
         self.wake.notify_one();
+    }
+
+    /// Returns true when jobs wait for their turn.
+    pub fn is_waiting(&self) -> bool {
+        self.lock().queue.len() > 0
     }
 
     /// Returns how many jobs run.
@@ -419,6 +434,11 @@ impl Jobs {
     fn lock(&self) -> MutexGuard<'_, Inner> {
         self.inner.lock().unwrap_or_else(PoisonError::into_inner)
     }
+}
+
+/// Returns true when a run has ended to let others go first.
+fn gives_way(ended: &Status) -> bool {
+    ended.code() == tonic::Code::Unavailable && ended.message() == run::GIVES_WAY
 }
 
 fn line_key(id: &str, seq: u64) -> String {

@@ -13,7 +13,7 @@
 //! | [`serve`], [`backup`] | a running server, and copies of its databases |
 //! | [`names`] | names and paths that clients send |
 //! | [`pool`] | threads for what takes the processor, with cancellation |
-//! | [`status`], [`metrics`] | answers when something goes wrong; counters |
+//! | [`status`], [`metrics`], [`health`] | answers when something goes wrong; counters; what is well |
 //!
 //! What it is not for: files, environment and the clock of a command. It measures times and listens; the date comes from
 //! its caller.
@@ -30,6 +30,7 @@ pub mod domains;
 pub mod error;
 pub mod gate;
 pub mod grpc;
+pub mod health;
 pub mod jobs;
 pub mod methods;
 pub mod metrics;

@@ -46,7 +46,13 @@ const OTHERS: &[(&str, Need)] = &[
         "/grpc.reflection.v1.ServerReflection/ServerReflectionInfo",
         Need { scope: Some(Scope::Read), kind: Kind::Stream },
     ),
+    (
+        "/grpc.reflection.v1alpha.ServerReflection/ServerReflectionInfo",
+        Need { scope: Some(Scope::Read), kind: Kind::Stream },
+    ),
     ("/healthz", Need { scope: None, kind: Kind::Lookup }),
+    ("/livez", Need { scope: None, kind: Kind::Lookup }),
+    ("/readyz", Need { scope: None, kind: Kind::Lookup }),
     ("/metrics", Need { scope: Some(Scope::Read), kind: Kind::Lookup }),
 ];
 

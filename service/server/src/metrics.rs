@@ -21,6 +21,8 @@ pub struct Metrics {
     pub waiting: AtomicI64,
     /// Threads at work.
     pub threads_busy: AtomicI64,
+    /// Work that goes on after the deadline of its call.
+    pub overdue: AtomicI64,
     /// Jobs that wait.
     pub jobs_waiting: AtomicI64,
     /// Jobs that run.
@@ -55,6 +57,7 @@ impl Metrics {
             ("connections", "Connections that are open", &self.connections),
             ("calls_waiting", "Calls that wait for a thread", &self.waiting),
             ("threads_busy", "Threads of the pool at work", &self.threads_busy),
+            ("work_overdue", "Work that goes on after the deadline of its call", &self.overdue),
             ("jobs_waiting", "Jobs that wait", &self.jobs_waiting),
             ("jobs_running", "Jobs that run", &self.jobs_running),
         ];

@@ -10,6 +10,8 @@ use crate::status::invalid;
 const NAME_LIMIT: usize = 128;
 /// Longest relative path of an uploaded file, bytes.
 const PATH_LIMIT: usize = 512;
+/// Longest part of one, bytes.
+const PART_LIMIT: usize = 200;
 
 /// Checks an id of lower-case words: a letter, then letters, digits and underscores.
 ///
@@ -40,6 +42,21 @@ pub fn reference<'a>(field: &str, text: &'a str) -> Result<&'a str, Status> {
     }
 }
 
+/// Checks that a relative path stays in its folder.
+///
+/// # Errors
+/// `INVALID_ARGUMENT` with the field.
+pub fn inside(field: &str, text: &str) -> Result<(), Status> {
+    let leads_out = |part: &str| part.bytes().all(|b| b == b'.'); // an empty part too
+    match text.split(['/', '\\']).any(leads_out) || Path::new(text).is_absolute() {
+        true => Err(invalid(
+            field,
+            format!("{}: a path stays in its folder: no empty parts, no `.` and no `..`", quoted(text)),
+        )),
+        false => Ok(()),
+    }
+}
+
 /// Returns the relative path of an uploaded file.
 ///
 /// # Errors
@@ -49,12 +66,13 @@ pub fn upload_path(field: &str, text: &str) -> Result<PathBuf, Status> {
     if text.is_empty() || text.len() > PATH_LIMIT {
         return Err(refused("a path has 1 to 512 bytes"));
     }
+    inside(field, text)?;
     if text.chars().any(|c| c.is_control() || "\\:*?\"<>|".contains(c)) {
         return Err(refused("a path is written with / between its parts and without control characters"));
     }
     let parts: Vec<&str> = text.split('/').collect();
-    if parts.iter().any(|p| p.is_empty() || p.len() > 200 || p.bytes().all(|b| b == b'.')) {
-        return Err(refused("a path stays in its folder: no empty parts, no `.` and no `..`"));
+    if parts.iter().any(|p| p.len() > PART_LIMIT) {
+        return Err(refused("a part of a path has at most 200 bytes"));
     }
     Ok(parts.iter().collect())
 }

@@ -32,6 +32,50 @@ pub fn code_name(code: Code) -> &'static str {
     }
 }
 
+/// Domain of the reasons that answers give (`google.rpc.ErrorInfo`).
+const DOMAIN: &str = "d3dgen";
+/// Reasons that say more than the code does; docs/api.md lists them, and they stay.
+pub mod reason {
+    /// A field of the request cannot be used.
+    pub const FIELD: &str = "INVALID_FIELD";
+    /// Too much at once; the answer says when to come again.
+    pub const BUSY: &str = "TOO_MUCH_AT_ONCE";
+    /// The server has no room to keep anything.
+    pub const FULL: &str = "DISK_FULL";
+    /// The server was asked by a name that is not its own.
+    pub const HOST: &str = "UNKNOWN_HOST";
+    /// A web page called from an origin that may not.
+    pub const ORIGIN: &str = "FOREIGN_ORIGIN";
+    /// The scope of the token is too small.
+    pub const SCOPE: &str = "SCOPE_TOO_SMALL";
+    /// The token is missing or wrong.
+    pub const TOKEN: &str = "TOKEN_MISSING_OR_WRONG";
+}
+
+/// Returns an answer with a stable reason for programs, in place of one it may have.
+pub fn because(reason: &str, status: &Status) -> Status {
+    let mut details = status.get_error_details();
+    details.set_error_info(reason, DOMAIN, std::collections::HashMap::new());
+    let mut with = Status::with_error_details(status.code(), status.message(), details);
+    for pair in status.metadata().iter() {
+        if let tonic::metadata::KeyAndValueRef::Ascii(key, value) = pair {
+            with.metadata_mut().insert(key, value.clone());
+        }
+    }
+    with
+}
+
+/// Returns an answer with a stable reason for programs: its own, or what its details and its code tell.
+pub fn explained(status: Status) -> Status {
+    let details = status.get_error_details();
+    match (status.code(), details.error_info(), details.bad_request(), details.retry_info()) {
+        (Code::Ok, ..) | (_, Some(_), ..) => status,
+        (_, None, Some(_), _) => because(reason::FIELD, &status),
+        (_, None, None, Some(_)) => because(reason::BUSY, &status),
+        (code, ..) => because(code_name(code), &status),
+    }
+}
+
 /// Returns the answer to one field that cannot be used.
 pub fn invalid(field: &str, reason: impl Into<String>) -> Status {
     let reason = reason.into();
@@ -108,8 +152,34 @@ pub fn store(error: d3dgen_store::Error) -> Status {
             tracing::error!(reason = %error, "damage");
             Status::data_loss("a record is damaged: the server's log tells which; restore a backup")
         }
+        Error::Full { .. } => full(&error),
         other => internal(&other),
     }
+}
+
+/// When to come back after the disk was full.
+const ROOM: Duration = Duration::from_secs(30);
+
+fn full(error: &dyn std::fmt::Display) -> Status {
+    tracing::error!(reason = %error, "no room");
+    because(reason::FULL, &exhausted("the disk of the server is full; nothing was changed", ROOM))
+}
+
+/// Returns the answer to what the server's own records, or anything else of it, refuse.
+pub fn own(error: crate::Error) -> Status {
+    use crate::Error;
+    match error {
+        Error::Store(inner) => store(inner),
+        Error::Knowledge(inner) => knowledge(inner),
+        Error::Assets(inner) => assets(inner),
+        Error::File { source, .. } => io(&source),
+        other => internal(&other),
+    }
+}
+
+/// Returns the answer to what the system refuses of a file of the server.
+pub fn io(error: &std::io::Error) -> Status {
+    if d3dgen_store::is_full(error) { full(error) } else { internal(error) }
 }
 
 /// Returns the answer to what the database of rules refuses.
@@ -173,4 +243,24 @@ pub fn of_transport(said: &Status) -> Option<Status> {
 pub fn internal(error: &dyn std::fmt::Display) -> Status {
     tracing::error!(reason = %error, "internal");
     Status::internal("the server failed; its log tells why")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_answer_has_a_reason_that_stays() {
+        let reason_of = |status: &Status| status.get_error_details().error_info().map(|i| i.reason.clone());
+        let told = |status: Status| reason_of(&explained(status)).unwrap_or_default();
+        assert_eq!(told(invalid("edits[0].lock", "is empty")), "INVALID_FIELD");
+        assert_eq!(told(exhausted("too many calls wait", RETRY)), "TOO_MUCH_AT_ONCE");
+        assert_eq!(told(Status::not_found("there is no job")), "NOT_FOUND");
+        let full = explained(store(d3dgen_store::Error::Full { path: "x".into() }));
+        assert_eq!((full.code(), reason_of(&full).as_deref()), (Code::ResourceExhausted, Some("DISK_FULL")));
+        assert!(full.metadata().contains_key("retry-after") && full.get_details_retry_info().is_some());
+        assert_eq!(reason_of(&explained(Status::new(Code::Ok, ""))), None);
+    }
+
+    const RETRY: Duration = Duration::from_secs(1);
 }

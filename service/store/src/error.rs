@@ -16,6 +16,12 @@ pub enum Error {
         /// What it said.
         source: std::io::Error,
     },
+    /// There is no room for a change; nothing of it was stored, and reading goes on.
+    #[error("{}: no room is left on the disk: make some and try again", path.display())]
+    Full {
+        /// What was to be written.
+        path: PathBuf,
+    },
     /// There is no store in this folder.
     #[error("{} holds no store: create one there, or name another folder", dir.display())]
     NotFound {
@@ -150,8 +156,17 @@ pub enum Error {
 impl Error {
     /// Wraps what the operating system said about `path`.
     pub fn io(path: impl AsRef<Path>) -> impl FnOnce(std::io::Error) -> Self {
-        move |source| Self::Io { path: path.as_ref().to_path_buf(), source }
+        move |source| {
+            let path = path.as_ref().to_path_buf();
+            if is_full(&source) { Self::Full { path } } else { Self::Io { path, source } }
+        }
     }
+}
+
+/// Returns true when the system says that there is no room: of the disk, of a quota, or for files as large.
+pub fn is_full(error: &std::io::Error) -> bool {
+    use std::io::ErrorKind::{FileTooLarge, QuotaExceeded, StorageFull};
+    matches!(error.kind(), StorageFull | QuotaExceeded | FileTooLarge)
 }
 
 fn in_use(dir: &Path, pid: Option<u32>, shared: bool) -> String {

@@ -31,9 +31,26 @@ pub(crate) fn write_whole(
     let put = if replace { unfinished.persist(path) } else { unfinished.persist_noclobber(path) };
     put.map_err(|e| match e.error.kind() {
         std::io::ErrorKind::AlreadyExists => Error::Exists { path: path.to_path_buf() },
-        _ => Error::Io { path: path.to_path_buf(), source: e.error },
+        _ => Error::io(path)(e.error),
     })?;
     sync_folder(&dir)
+}
+
+/// Room that a change must leave on the disk, bytes: enough for what a database adds to what it is given.
+const ROOM: u64 = 4 << 20;
+
+/// Returns an error when the disk has no room for so many bytes more, and for what storing them takes besides.
+///
+/// Asked before a change it costs nothing; a database that runs out of room in the middle has to be opened again.
+pub(crate) fn check_room(path: &Path, bytes: u64) -> Result<()> {
+    #[cfg(unix)]
+    if let Ok(disk) = rustix::fs::statvfs(folder_of(path)) {
+        let free = disk.f_bavail.saturating_mul(disk.f_frsize);
+        if free < ROOM.saturating_add(bytes.saturating_mul(2)) {
+            return Err(Error::Full { path: path.to_path_buf() });
+        }
+    }
+    Ok(())
 }
 
 /// Makes the names in a folder durable: a renamed file may otherwise be gone after a power failure.

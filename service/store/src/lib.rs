@@ -23,7 +23,7 @@ mod lock;
 pub mod records;
 pub mod snapshot;
 
-pub use error::{Error, Result};
+pub use error::{Error, Result, is_full};
 pub use format::FORMAT;
 pub use kv::{Backend, Batch, KeyRange};
 pub use records::{Access, Options, Problem, Progress, Record, Records, Store, View};

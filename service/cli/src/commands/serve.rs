@@ -1,5 +1,6 @@
 //! `d3dgen serve`: the service; and what its operators need besides: tokens, backups.
 
+mod notify;
 mod settings;
 
 use std::io::Write;
@@ -54,6 +55,18 @@ enum Action {
         #[command(flatten)]
         settings: settings::SettingsArgs,
     },
+    /// Ask a server whether it answers every call; status 0 when it does
+    Health {
+        /// Server to ask
+        #[arg(long, value_name = "URL", default_value = "http://127.0.0.1:50051")]
+        server: String,
+        /// File (PEM) with the certificates that the server's is signed with; otherwise those the system trusts
+        #[arg(long, value_name = "FILE")]
+        ca: Option<PathBuf>,
+        /// Part to ask for: store, index, lanes, or a service; otherwise all
+        #[arg(long, default_value = "")]
+        part: String,
+    },
     /// Make the folder of a server's databases of a backup
     Restore {
         /// Folder of the backup
@@ -78,6 +91,7 @@ impl Args {
                     &format!("{}: {} records, {} files\n", made.folder.display(), made.records, made.files),
                 )
             }
+            Some(Action::Health { server, ca, part }) => health(&server, ca, &part),
             Some(Action::Restore { backup, data_dir }) => {
                 let records = backup::restore(&backup, &data_dir)?;
                 write_text(None, &format!("{}: {records} records\n", data_dir.display()))
@@ -90,6 +104,7 @@ impl Args {
 fn run(settings: &settings::SettingsArgs) -> Result<(), Error> {
     let config = settings.config()?;
     settings::start_log(&config.log_level);
+    keep_private();
     let core = Core::open(config, clock(), embedder()?, programs())?;
     let runtime = serve::runtime(&core)?;
     interrupt::listen();
@@ -97,11 +112,13 @@ fn run(settings: &settings::SettingsArgs) -> Result<(), Error> {
         let mut out = std::io::stdout().lock();
         // nobody may be listening any more; the log has it too
         let _ = writeln!(out, "listening on {address}").and_then(|()| out.flush());
+        notify::tell("READY=1");
     };
     let stop = async {
         while !interrupt::flag().load(Ordering::SeqCst) {
             tokio::time::sleep(POLL).await;
         }
+        notify::tell("STOPPING=1");
     };
     let asked = backups_on_request(Arc::clone(&core));
     runtime.block_on(async {
@@ -129,6 +146,25 @@ async fn backups_on_request(core: Arc<Core>) {
             tracing::error!(reason = %error, "backup.request cannot be removed: no more backups on request");
             return;
         }
+    }
+}
+
+/// Has every file that the server makes be for its own user only: tokens are in the settings, but what clients bring is here.
+fn keep_private() {
+    #[cfg(target_os = "linux")]
+    let _ = rustix::process::umask(rustix::fs::Mode::from_raw_mode(0o077));
+}
+
+/// Asks a server whether it answers.
+fn health(url: &str, ca: Option<PathBuf>, part: &str) -> Result<(), Error> {
+    use tonic_health::pb::health_check_response::ServingStatus;
+    let remote = crate::remote::Remote::to(url, ca.as_deref())?;
+    let mut client = tonic_health::pb::health_client::HealthClient::new(remote.channel());
+    let asked = tonic_health::pb::HealthCheckRequest { service: part.to_owned() };
+    let answer = remote.ask(client.check(asked))?;
+    match answer.status() {
+        ServingStatus::Serving => write_text(None, "serving\n"),
+        other => Err(Error::Input(format!("{url}: {}", other.as_str_name().to_lowercase().replace('_', " ")))),
     }
 }
 

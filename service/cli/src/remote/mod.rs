@@ -96,6 +96,15 @@ impl Remote {
         Ok(Self { runtime, channel, token: token(args)? })
     }
 
+    /// Returns a server to ask what needs no token.
+    ///
+    /// # Errors
+    /// `Input` for an address or certificates that cannot be used; `Read`.
+    pub fn to(url: &str, ca: Option<&std::path::Path>) -> Result<Self, Error> {
+        let args = ServerArgs { server: Some(url.to_owned()), token_file: None, ca: ca.map(PathBuf::from) };
+        Self::new(url, &args)
+    }
+
     /// Returns the connection, for a client of one of the services.
     pub fn channel(&self) -> Channel {
         self.channel.clone()

@@ -47,6 +47,8 @@ pub(super) struct Room<'a> {
     pub doors: Vec<&'a Door>,
     pub windows: Vec<&'a Window>,
     pub objects: Vec<Object<'a>>,
+    /// Rectangles that cover its columns and free walls.
+    pub standing: Vec<Rect>,
     space: OnceCell<FreeSpace>,
 }
 
@@ -71,6 +73,7 @@ impl<'a> Site<'a> {
                 doors: plan.doors_of(&room.room_id).collect(),
                 windows: plan.windows.iter().filter(|w| w.room_id == room.room_id).collect(),
                 objects: Vec::new(),
+                standing: plan.taken_in(&room.room_id),
                 space: OnceCell::new(),
             })
             .collect();
@@ -176,15 +179,19 @@ impl<'a> Site<'a> {
 impl Room<'_> {
     /// Returns the free floor between the furniture.
     pub fn space(&self) -> &FreeSpace {
-        self.space.get_or_init(|| {
-            let taken: Vec<Rect> = self.objects.iter().filter(|o| o.blocks).map(|o| o.rect).collect();
-            FreeSpace::new(&self.plan.net_polygon, &taken)
-        })
+        self.space.get_or_init(|| FreeSpace::new(&self.plan.net_polygon, &self.taken().collect::<Vec<_>>()))
+    }
+
+    /// Returns the floor of all that blocks the way.
+    pub fn taken(&self) -> impl Iterator<Item = Rect> {
+        let objects = self.objects.iter().filter(|o| o.blocks).map(|o| o.rect);
+        objects.chain(self.standing.iter().copied())
     }
 
     /// Returns the floor of all that blocks the way but one object and what was placed with it.
     pub fn others(&self, object: &Object) -> impl Iterator<Item = Rect> {
-        self.objects.iter().filter(move |o| o.blocks && !belong_together(o, object)).map(|o| o.rect)
+        let objects = self.objects.iter().filter(move |o| o.blocks && !belong_together(o, object)).map(|o| o.rect);
+        objects.chain(self.standing.iter().copied())
     }
 
     /// Returns the free floor for people upright: what stands out from walls above a robot's head takes some of it too.
@@ -192,7 +199,8 @@ impl Room<'_> {
         let stands_out = |o: &Object| {
             o.placement.mount == Mount::Wall && !is_shallow(o.placement) && o.placement.pose.z < HEAD_ROOM_M
         };
-        let taken: Vec<Rect> = self.objects.iter().filter(|o| o.blocks || stands_out(o)).map(|o| o.rect).collect();
+        let objects = self.objects.iter().filter(|o| o.blocks || stands_out(o)).map(|o| o.rect);
+        let taken: Vec<Rect> = objects.chain(self.standing.iter().copied()).collect();
         FreeSpace::new(&self.plan.net_polygon, &taken)
     }
 

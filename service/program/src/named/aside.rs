@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use d3dgen_model::domain::Domain;
 use d3dgen_model::style::{LayoutStyle, StyleWord};
 use d3dgen_plugins::Registry;
 
@@ -45,6 +46,27 @@ pub(crate) struct Aside {
 }
 
 impl Aside {
+    /// Returns that of a brief, which has no such words.
+    pub(crate) fn empty(heard: &Heard, domain: &Domain, registry: &Registry) -> Self {
+        let languages = &heard.languages;
+        let vocabulary =
+            registry.digest(&format!("{languages:?}: {}", domain.id), || Vocabulary::new(domain, registry, languages));
+        Self {
+            vocabulary,
+            areas: Vec::new(),
+            sizes: Sizes::default(),
+            short_forms: Vec::new(),
+            bed_rooms: Vec::new(),
+            storeys: Vec::new(),
+            styles: Vec::new(),
+            nooks: Vec::new(),
+            compounds: Vec::new(),
+            taken: Vec::new(),
+            counted: Vec::new(),
+            not_things: Vec::new(),
+        }
+    }
+
     /// Finds them; a building whose word turns out to be that of a room loses it.
     pub(crate) fn find(heard: &Heard, site: &mut Site, registry: &Registry) -> Self {
         let Heard { prompt, tokens, numbers, languages, spoken, .. } = heard;

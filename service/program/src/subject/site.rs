@@ -90,6 +90,27 @@ impl<'a> Site<'a> {
         })
     }
 
+    /// Returns what a brief is about.
+    pub(crate) fn of_facts(
+        domain: &'a Domain,
+        program: &'a Program,
+        building: Building,
+        country_code: Option<String>,
+        registry: &Registry,
+    ) -> Self {
+        Self {
+            country_code,
+            places: Vec::new(),
+            machines: Robots::default(),
+            domain,
+            program,
+            wet: registry.digest(&domain.id, || Wet::of(domain)),
+            lives: is_dwelling(program),
+            shared: building.building_type.as_ref().is_some_and(|b| words().dwelling.shared.contains(b)),
+            building,
+        }
+    }
+
     /// Returns the words that name the building or others.
     pub(crate) fn building_words(&self) -> Vec<Span> {
         self.building.words.iter().chain(&self.building.head).copied().collect()

@@ -11,7 +11,7 @@ mod forms;
 mod mask;
 mod path;
 mod plan;
-mod wire;
+pub(crate) mod wire;
 
 use d3dgen_model::domain::Domain;
 use d3dgen_model::floorplan::Floorplan;

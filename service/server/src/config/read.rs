@@ -33,6 +33,7 @@ struct Raw {
     allow_plain_text: bool,
     read_roots: Vec<PathBuf>,
     cors_origins: Vec<String>,
+    hosts: Vec<String>,
     fetch_documents: bool,
     #[serde(default)]
     tls: RawTls,
@@ -63,6 +64,7 @@ struct RawLimits {
     message_bytes: usize,
     upload_bytes: u64,
     connections: usize,
+    connections_per_address: usize,
     calls: usize,
     calls_per_client: usize,
     rate_per_s: f64,
@@ -198,6 +200,7 @@ impl Raw {
             tls,
             tokens,
             cors_origins: self.cors_origins,
+            hosts: self.hosts,
             read_roots: self.read_roots,
             fetch_documents: self.fetch_documents,
             limits: self.limits.check()?,
@@ -227,6 +230,7 @@ impl RawLimits {
         for (key, value) in [
             ("limits.message_bytes", self.message_bytes),
             ("limits.connections", self.connections),
+            ("limits.connections_per_address", self.connections_per_address),
             ("limits.calls", self.calls),
             ("limits.calls_per_client", self.calls_per_client),
         ] {
@@ -241,6 +245,7 @@ impl RawLimits {
             message_bytes: self.message_bytes,
             upload_bytes: self.upload_bytes,
             connections: self.connections,
+            connections_per_address: self.connections_per_address,
             calls: self.calls,
             calls_per_client: self.calls_per_client,
             rate_per_s: positive("limits.rate_per_s", self.rate_per_s)?,

@@ -15,10 +15,10 @@ use d3dgen_proto::v1::{
     ListAssetsRequest, ListAssetsResponse, RemoveAssetsRequest, RemoveAssetsResponse, RestoreAssetsRequest,
     RestoreAssetsResponse, SearchAssetsRequest, SearchAssetsResponse, Size, ValueCounts,
 };
-use tokio_stream::wrappers::ReceiverStream;
 use tonic::{Request, Response, Status, Streaming};
 
 use super::page::Page;
+use super::world::export;
 use super::{Answer, Api, Once, caller, limits, mode};
 use crate::convert::message;
 use crate::core::Core;
@@ -26,9 +26,6 @@ use crate::jobs::Spec;
 use crate::jobs::ingest::Ingest;
 use crate::names;
 use crate::status::{self, invalid};
-
-/// Longest question, bytes.
-const QUERY_LIMIT: usize = 2000;
 
 #[tonic::async_trait]
 impl AssetService for Api {
@@ -44,7 +41,13 @@ impl AssetService for Api {
             let domain = asked.domain_id.as_deref().map(|d| names::id("domain_id", d)).transpose()?.map(str::to_owned);
             let name = folder.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
             let title = format!("models of {name}");
-            let spec = Spec::Ingest(Ingest { folder: Some(folder), name, domain, why: asked.why });
+            let spec = Spec::Ingest(Ingest {
+                folder: Some(folder),
+                name,
+                domain,
+                why: asked.why,
+                refused: Default::default(),
+            });
             let job = core.jobs.start(&who, title, spec, None, |job, batch| {
                 once.also(core, &IngestFolderResponse { job: Some(super::job::message(job)) }, batch);
             })?;
@@ -60,9 +63,6 @@ impl AssetService for Api {
         let mut asked = request.into_inner();
         let (page_size, token) = (std::mem::take(&mut asked.page_size), std::mem::take(&mut asked.page_token));
         let page = Page::new(page_size, &token, &asked)?;
-        if asked.query.len() > QUERY_LIMIT {
-            return Err(invalid("query", format!("has {} bytes, at most {QUERY_LIMIT}", asked.query.len())));
-        }
         let query = SearchQuery {
             filters: filters(asked.filter)?,
             mode: mode(asked.mode)?,
@@ -115,13 +115,16 @@ impl AssetService for Api {
         .await
     }
 
-    type DownloadAssetStream = ReceiverStream<Result<DownloadAssetResponse, Status>>;
+    type DownloadAssetStream = export::Pieces<DownloadAssetResponse>;
 
     async fn download_asset(&self, request: Request<DownloadAssetRequest>) -> Answer<Self::DownloadAssetStream> {
         let asked = request.into_inner();
         names::reference("asset_id", &asked.asset_id)?;
-        let files = self.work(move |core, _| files::of(core, &asked.asset_id, &asked.formats)).await?.into_inner();
-        Ok(self.archive(files, |chunk| DownloadAssetResponse { chunk }))
+        self.work(move |core, stop| {
+            let files = files::of(core, &asked.asset_id, &asked.formats)?;
+            export::archive(files, stop, |chunk| DownloadAssetResponse { chunk })
+        })
+        .await
     }
 
     async fn annotate_asset(&self, request: Request<AnnotateAssetRequest>) -> Answer<AnnotateAssetResponse> {
@@ -151,12 +154,12 @@ impl AssetService for Api {
     async fn remove_assets(&self, request: Request<RemoveAssetsRequest>) -> Answer<RemoveAssetsResponse> {
         let who = caller(&request).name;
         let q = request.get_ref();
-        let id = if q.validate_only { String::new() } else { q.request_id.clone() };
+        let id = (!q.validate_only).then(|| q.request_id.clone());
         let change = move |core: &Core, asked: RemoveAssetsRequest, once: &Once| {
             let asset_ids = change::remove(core, &who, asked, once)?;
             Ok(RemoveAssetsResponse { asset_ids })
         };
-        self.change("RemoveAssets", request, id, change).await
+        self.change_read("RemoveAssets", request, id, |_, asked, _| Ok(asked), change).await
     }
 
     async fn restore_assets(&self, request: Request<RestoreAssetsRequest>) -> Answer<RestoreAssetsResponse> {

@@ -1,11 +1,13 @@
 //! `DomainService`.
 
 use std::collections::BTreeMap;
+use std::sync::atomic::AtomicBool;
 
 use d3dgen_knowledge::classify::{classify, ties};
 use d3dgen_model::domain::Domain;
 use d3dgen_model::knowledge::KnowledgeBase;
-use d3dgen_pipeline::scene_graph::{self, Request as Asked};
+use d3dgen_pipeline::brief;
+use d3dgen_pipeline::scene_graph::Request as Asked;
 use d3dgen_plugins::{Custom, Plugin};
 use d3dgen_proto::v1::domain_service_server::DomainService;
 use d3dgen_proto::v1::{
@@ -18,16 +20,11 @@ use tonic::{Request, Status};
 
 use super::page::Page;
 use super::{Answer, Api, caller, timestamp};
-use crate::convert::{document, message};
+use crate::convert::{document, message, with_shared};
 use crate::core::Core;
 use crate::domains::{Entry, Refusal, Snapshot};
 use crate::names;
 use crate::status::{self, invalid};
-
-/// Files of a domain folder at most.
-const FILES: usize = 64;
-/// Room labels of one question at most.
-const LABELS: usize = 1000;
 
 #[tonic::async_trait]
 impl DomainService for Api {
@@ -52,7 +49,7 @@ impl DomainService for Api {
             if let Some(version) = asked.domain_version.filter(|v| *v != in_force) {
                 let found = core.domains.version(&core.databases, &asked.domain_id, version);
                 let (entry, domain, knowledge) = found
-                    .map_err(|e| status::internal(&e))?
+                    .map_err(status::own)?
                     .ok_or_else(|| Status::not_found(format!("{} has no version {version}", asked.domain_id)))?;
                 let manifest = asked.include_manifest.then(|| message(&domain));
                 let custom = Custom::of(domain, knowledge);
@@ -93,13 +90,17 @@ impl DomainService for Api {
     async fn register_domain(&self, request: Request<RegisterDomainRequest>) -> Answer<RegisterDomainResponse> {
         let who = caller(&request).name;
         let q = request.get_ref();
-        let id = if q.validate_only { String::new() } else { q.request_id.clone() };
-        let change = move |core: &Core, asked: RegisterDomainRequest, once: &super::Once| {
-            let domain: Domain = document("manifest", asked.manifest)?;
-            let knowledge: KnowledgeBase = match asked.knowledge_base {
-                Some(given) => document("knowledge_base", Some(given))?,
+        let id = (!q.validate_only).then(|| q.request_id.clone());
+        let read = |_: &Core, mut asked: RegisterDomainRequest, _: &AtomicBool| {
+            let domain: Domain = document("manifest", asked.manifest.take())?;
+            let knowledge: KnowledgeBase = match asked.knowledge_base.take() {
+                Some(given) => with_shared(document("knowledge_base", Some(given))?)?,
                 None => KnowledgeBase::empty(&domain.id),
             };
+            Ok((domain, knowledge, asked))
+        };
+        type Read = (Domain, KnowledgeBase, RegisterDomainRequest);
+        let change = move |core: &Core, (domain, knowledge, asked): Read, once: &super::Once| {
             let now = core.domains.now();
             let in_force = now.registered.get(&domain.id).map_or(0, |e| e.version);
             if asked.expected_version.is_some_and(|v| v != in_force) {
@@ -121,10 +122,10 @@ impl DomainService for Api {
                     once.also(core, &answer(entry), batch);
                 })
                 .map_err(refused)?;
-            core.open_indexes().map_err(|e| status::internal(&e))?;
+            core.open_indexes().map_err(status::own)?;
             Ok(answer(&entry))
         };
-        self.change("RegisterDomain", request, id, change).await
+        self.change_read("RegisterDomain", request, id, read, change).await
     }
 
     async fn remove_domain(&self, request: Request<RemoveDomainRequest>) -> Answer<RemoveDomainResponse> {
@@ -137,10 +138,10 @@ impl DomainService for Api {
             let by = core.provenance(&who, &format!("domain {id} removed"));
             let answer = RemoveDomainResponse {};
             let removed = core.domains.remove(&core.databases, id, &by, |batch| once.also(core, &answer, batch));
-            if !removed.map_err(|e| status::internal(&e))? {
+            if !removed.map_err(status::own)? {
                 return Err(no_domain(&core.domains.now(), id));
             }
-            core.open_indexes().map_err(|e| status::internal(&e))?;
+            core.open_indexes().map_err(status::own)?;
             Ok(answer)
         };
         {
@@ -160,7 +161,7 @@ impl DomainService for Api {
             let now = core.domains.now();
             plugin(&now, "domain_id", &asked.domain_id)?;
             let in_force = now.registered.get(&asked.domain_id).map(|e| e.version);
-            let all = core.domains.versions(&core.databases, &asked.domain_id).map_err(|e| status::internal(&e))?;
+            let all = core.domains.versions(&core.databases, &asked.domain_id).map_err(status::own)?;
             let versions = all.into_iter().rev().map(|(entry, digest)| DomainVersion {
                 domain_version: entry.version,
                 sha256_hex: digest,
@@ -179,13 +180,10 @@ impl DomainService for Api {
 
     async fn classify_domain(&self, request: Request<ClassifyDomainRequest>) -> Answer<ClassifyDomainResponse> {
         let asked = request.into_inner();
-        if asked.room_labels.len() > LABELS {
-            return Err(invalid("room_labels", format!("has {}, at most {LABELS}", asked.room_labels.len())));
-        }
         if asked.prompt.trim().is_empty() && asked.room_labels.is_empty() {
             return Err(invalid("prompt", "is empty: give a sentence, or room_labels"));
         }
-        self.work(move |core, _| {
+        self.short(move |core, _| {
             let now = core.domains.now();
             if !asked.room_labels.is_empty() {
                 let domains: Vec<&Domain> = now.registry.iter().map(Plugin::domain).collect();
@@ -208,7 +206,7 @@ impl DomainService for Api {
                 });
             }
             let request = Asked { prompt: asked.prompt, ..Asked::default() };
-            let graph = scene_graph::generate(&request, &now.registry).map_err(|e| status::stage("prompt", e))?;
+            let graph = brief::rooms(&request, &now.registry).map_err(|e| status::stage("prompt", e))?.0;
             let rooms = graph.rooms.iter().filter(|r| !r.circulation);
             let rooms = rooms.map(|r| ClassifiedRoom { label: r.id.clone(), room_type: Some(r.room_type.clone()) });
             let reading = DomainReading {
@@ -249,7 +247,7 @@ fn refused(refusal: Refusal) -> Status {
             Status::already_exists("the id belongs to a domain that came with the server; choose another")
         }
         Refusal::Full => Status::resource_exhausted("there are as many registered domains as a server takes"),
-        Refusal::Failed(error) => status::internal(&error),
+        Refusal::Failed(error) => status::own(error),
     }
 }
 
@@ -276,9 +274,6 @@ fn described(plugin: &dyn Plugin, entry: Option<&Entry>) -> DomainMessage {
 
 /// Returns the texts of a domain folder by name.
 fn texts(asked: ParseDomainRequest) -> Result<BTreeMap<String, String>, Status> {
-    if asked.files.len() > FILES {
-        return Err(invalid("files", format!("has {}, at most {FILES}", asked.files.len())));
-    }
     let mut files = BTreeMap::new();
     for (i, file) in asked.files.into_iter().enumerate() {
         let field = format!("files[{i}].name");

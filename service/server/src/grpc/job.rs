@@ -38,7 +38,7 @@ impl Api {
     }
 
     fn logs(&self, id: &str, after: u64, most: usize) -> Result<Vec<JobLog>, Status> {
-        let lines = self.core.jobs.lines(id, after, most).map_err(|e| status::internal(&e))?;
+        let lines = self.core.jobs.lines(id, after, most).map_err(status::own)?;
         Ok(lines.into_iter().map(log).collect())
     }
 }

@@ -4,22 +4,23 @@ mod messages;
 mod research;
 
 use std::collections::BTreeMap;
+use std::sync::atomic::AtomicBool;
 
-use d3dgen_knowledge::amend::state;
+use d3dgen_knowledge::amend::states;
 use d3dgen_knowledge::classify::{Building, Classified, classify, ties};
-use d3dgen_knowledge::database::{Change, Edit, SearchQuery, apply, difference, filter_names};
+use d3dgen_knowledge::database::{Change, Edit, SearchQuery, difference, filter_names};
 use d3dgen_knowledge::{Policy, Stats, retrieve_with};
 use d3dgen_model::Document;
 use d3dgen_model::domain::Domain;
-use d3dgen_model::knowledge::{Constraint, KnowledgeBase, is_jurisdiction};
+use d3dgen_model::knowledge::{Constraint, KnowledgeBase, Statement, is_jurisdiction};
 use d3dgen_plugins::Plugin;
 use d3dgen_proto::v1::amend_knowledge_request::Change as Wanted;
 use d3dgen_proto::v1::knowledge_service_server::KnowledgeService;
 use d3dgen_proto::v1::{
-    AmendKnowledgeRequest, AmendKnowledgeResponse, ExportKnowledgeRequest, ExportKnowledgeResponse,
-    GetConstraintRequest, GetConstraintResponse, GetKnowledgeChangeRequest, GetKnowledgeChangeResponse,
-    GetKnowledgeStatsRequest, GetKnowledgeStatsResponse, ImportKnowledgeRequest, ImportKnowledgeResponse,
-    ListConstraintFiltersRequest, ListConstraintFiltersResponse, ListKnowledgeChangesRequest,
+    AmendKnowledgeRequest, AmendKnowledgeResponse, ConstraintRemoval, ConstraintUpdate, ExportKnowledgeRequest,
+    ExportKnowledgeResponse, GetConstraintRequest, GetConstraintResponse, GetKnowledgeChangeRequest,
+    GetKnowledgeChangeResponse, GetKnowledgeStatsRequest, GetKnowledgeStatsResponse, ImportKnowledgeRequest,
+    ImportKnowledgeResponse, ListConstraintFiltersRequest, ListConstraintFiltersResponse, ListKnowledgeChangesRequest,
     ListKnowledgeChangesResponse, ResearchKnowledgeRequest, ResearchKnowledgeResponse, RetrieveConstraintsRequest,
     RetrieveConstraintsResponse, SearchConstraintsRequest, SearchConstraintsResponse, SearchFilter,
     UndoKnowledgeChangeRequest, UndoKnowledgeChangeResponse, source_policy,
@@ -30,29 +31,28 @@ use tonic::{Request, Status};
 use super::domain::plugin;
 use super::page::Page;
 use super::{Answer, Api, Once, caller, limits, mode};
-use crate::convert::{document, masked, message, part};
+use crate::convert::{document, masked, message, part, with_shared};
 use crate::core::Core;
 use crate::domains::Snapshot;
 use crate::status::{self, invalid};
-
-/// Longest question, bytes.
-const QUERY_LIMIT: usize = 2000;
-/// Rooms of one question at most.
-const ROOMS: usize = 1000;
 
 #[tonic::async_trait]
 impl KnowledgeService for Api {
     async fn import_knowledge(&self, request: Request<ImportKnowledgeRequest>) -> Answer<ImportKnowledgeResponse> {
         let who = caller(&request).name;
         let q = request.get_ref();
-        let id = if q.validate_only { String::new() } else { q.request_id.clone() };
-        let change = move |core: &Core, asked: ImportKnowledgeRequest, once: &Once| {
-            let given: KnowledgeBase = document("knowledge_base", asked.knowledge_base)?;
+        let id = (!q.validate_only).then(|| q.request_id.clone());
+        let read = |core: &Core, mut asked: ImportKnowledgeRequest, _: &AtomicBool| {
+            let given: KnowledgeBase = with_shared(document("knowledge_base", asked.knowledge_base.take())?)?;
             // once more as a text: formulas and printed units are looked at there
             let read = d3dgen_knowledge::import::read(&given.to_json()).map_err(status::knowledge)?;
             let (given, quarantined) = (read.knowledge, messages::quarantined(read.quarantined));
+            plugin(&core.domains.now(), "knowledge_base.metadata.domain", &given.metadata.domain)?;
+            Ok((given, quarantined, asked))
+        };
+        type Read = (KnowledgeBase, Vec<d3dgen_proto::v1::QuarantinedConstraint>, ImportKnowledgeRequest);
+        let change = move |core: &Core, (given, quarantined, asked): Read, once: &Once| {
             let domain = given.metadata.domain.clone();
-            plugin(&core.domains.now(), "knowledge_base.metadata.domain", &domain)?;
             if asked.validate_only {
                 let before = match core.databases.rules.knowledge_base(&domain) {
                     Err(d3dgen_knowledge::Error::NoDomain { .. }) => KnowledgeBase::empty(&domain),
@@ -69,7 +69,7 @@ impl KnowledgeService for Api {
             })?;
             Ok(ImportKnowledgeResponse { change: changed.as_ref().map(messages::change), quarantined })
         };
-        self.change("ImportKnowledge", request, id, change).await
+        self.change_read("ImportKnowledge", request, id, read, change).await
     }
 
     async fn export_knowledge(&self, request: Request<ExportKnowledgeRequest>) -> Answer<ExportKnowledgeResponse> {
@@ -89,9 +89,6 @@ impl KnowledgeService for Api {
         let mut asked = request.into_inner();
         let (size, token) = (std::mem::take(&mut asked.page_size), std::mem::take(&mut asked.page_token));
         let page = Page::new(size, &token, &asked)?;
-        if asked.query.len() > QUERY_LIMIT {
-            return Err(invalid("query", format!("has {} bytes, at most {QUERY_LIMIT}", asked.query.len())));
-        }
         if let Some(name) = asked.filters.keys().find(|n| !filter_names().contains(&n.as_str())) {
             return Err(invalid("filters", format!("`{name}` is no filter; there are {}", filter_names().join(", "))));
         }
@@ -103,11 +100,11 @@ impl KnowledgeService for Api {
             limit: page.wanted(),
         };
         self.lookup(move |core| {
-            let found = core.databases.searcher()?.search(&query).map_err(status::knowledge)?;
             let now = core.domains.now();
-            let (found, next_page_token) = page.cut(found);
+            let answer = core.databases.searcher()?.answer(&query, now.glossary()).map_err(status::knowledge)?;
+            let (found, next_page_token) = page.cut(answer.found);
             let constraints = found.iter().map(|f| messages::found(f, &now)).collect();
-            Ok(SearchConstraintsResponse { constraints, next_page_token })
+            Ok(SearchConstraintsResponse { constraints, next_page_token, note: answer.note.unwrap_or_default() })
         })
         .await
     }
@@ -149,8 +146,8 @@ impl KnowledgeService for Api {
         request: Request<RetrieveConstraintsRequest>,
     ) -> Answer<RetrieveConstraintsResponse> {
         let asked = request.into_inner();
-        if asked.room_labels.is_empty() || asked.room_labels.len() > ROOMS {
-            return Err(invalid("room_labels", format!("has {}, needs 1 to {ROOMS}", asked.room_labels.len())));
+        if asked.room_labels.is_empty() {
+            return Err(invalid("room_labels", "is empty: name a room"));
         }
         let country = asked.country_code.as_ref().map(|c| c.to_ascii_uppercase());
         if let Some(code) = country.as_ref().filter(|c| !is_jurisdiction(c)) {
@@ -197,16 +194,21 @@ impl KnowledgeService for Api {
     async fn amend_knowledge(&self, request: Request<AmendKnowledgeRequest>) -> Answer<AmendKnowledgeResponse> {
         let who = caller(&request).name;
         let q = request.get_ref();
-        let id = if q.validate_only { String::new() } else { q.request_id.clone() };
-        let change = move |core: &Core, asked: AmendKnowledgeRequest, once: &Once| {
+        let id = (!q.validate_only).then(|| q.request_id.clone());
+        let read = |core: &Core, mut asked: AmendKnowledgeRequest, _: &AtomicBool| {
             plugin(&core.domains.now(), "domain_id", &asked.domain_id)?;
+            let wanted = super::required("change", asked.change.take())?;
+            if let Wanted::Sentence(said) = &wanted
+                && asked.why.is_empty()
+            {
+                asked.why.clone_from(&said.text);
+            }
+            Ok((Intended::of(wanted)?, asked))
+        };
+        let change = move |core: &Core, (wanted, asked): (Intended, AmendKnowledgeRequest), once: &Once| {
             let rules = &core.databases.rules;
-            let why = match &asked.change {
-                Some(Wanted::Sentence(said)) if asked.why.is_empty() => said.text.clone(),
-                _ => asked.why.clone(),
-            };
+            let why = asked.why;
             let knowledge = rules.knowledge_base(&asked.domain_id).map_err(status::knowledge)?;
-            let wanted = super::required("change", asked.change)?;
             if asked.validate_only {
                 let edits = edits(&knowledge, wanted, &core.provenance(&who, &why))?;
                 return Ok(AmendKnowledgeResponse { change: None, edits: edits.iter().map(messages::edit).collect() });
@@ -237,7 +239,7 @@ impl KnowledgeService for Api {
                 edits: kept.iter().map(messages::edit).collect(),
             })
         };
-        self.change("AmendKnowledge", request, id, change).await
+        self.change_read("AmendKnowledge", request, id, read, change).await
     }
 
     async fn list_knowledge_changes(
@@ -330,8 +332,8 @@ fn changed_once(
         Some(found) => Some(found),
         None => change(&by).map_err(status::knowledge)?,
     };
-    if changed.is_some() {
-        core.changed_rules()?;
+    if let Some(changed) = &changed {
+        core.changed_rules(&changed.domain)?;
     }
     Ok(changed)
 }
@@ -347,27 +349,40 @@ fn find<'a>(
     })
 }
 
+/// What a request wants changed, as far as it can be read without the rules that it changes.
+enum Intended {
+    Rules(Vec<Statement>),
+    Update(ConstraintUpdate),
+    Removal(ConstraintRemoval),
+}
+
+impl Intended {
+    /// Reads what is wanted.
+    fn of(wanted: Wanted) -> Result<Self, Status> {
+        Ok(match wanted {
+            Wanted::Sentence(said) => {
+                let found = Extractor::shared().extract_best(&said.text, said.language.as_deref());
+                if found.is_empty() {
+                    let help = "has no rule with a figure; say it like \"corridors are at least 2.6 m wide\"";
+                    return Err(invalid("sentence.text", help));
+                }
+                Self::Rules(found.iter().map(|f| f.statement()).collect())
+            }
+            Wanted::Update(update) => Self::Update(update),
+            Wanted::Removal(removal) => Self::Removal(removal),
+        })
+    }
+}
+
 /// Returns the edits that are wanted.
 fn edits(
     knowledge: &KnowledgeBase,
-    wanted: Wanted,
+    wanted: Intended,
     by: &d3dgen_knowledge::database::Provenance,
 ) -> Result<Vec<Edit>, Status> {
     match wanted {
-        Wanted::Sentence(said) => {
-            let found = Extractor::shared().extract_best(&said.text, said.language.as_deref());
-            if found.is_empty() {
-                let help = "has no rule with a figure; say it like \"corridors are at least 2.6 m wide\"";
-                return Err(invalid("sentence.text", help));
-            }
-            let mut after = knowledge.clone();
-            for finding in &found {
-                let made = state(&after, &finding.statement(), by).map_err(status::knowledge)?;
-                apply(&mut after, &made);
-            }
-            Ok(difference(knowledge, &after, true))
-        }
-        Wanted::Update(update) => {
+        Intended::Rules(said) => states(knowledge, &said, by).map_err(status::knowledge),
+        Intended::Update(update) => {
             let given = super::required("update.constraint", update.constraint)?;
             let (_, was) = find(knowledge, &given.constraint_id)?;
             let base: d3dgen_proto::v1::Constraint = message(was);
@@ -384,7 +399,7 @@ fn edits(
             }
             Ok(difference(knowledge, &after, true))
         }
-        Wanted::Removal(removal) => {
+        Intended::Removal(removal) => {
             let mut after = knowledge.clone();
             for id in &removal.constraint_ids {
                 find(knowledge, id)?;

@@ -1,7 +1,7 @@
 //! `WorldService`.
 
 mod edit;
-mod export;
+pub(in crate::grpc) mod export;
 mod generate;
 mod import;
 
@@ -15,8 +15,8 @@ use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::style::{Clutter, Style};
 use d3dgen_model::world::World;
 use d3dgen_pipeline::generate::{attempt_seed, retrieve, world_name};
-use d3dgen_pipeline::scene_graph::{self, Request as Asked};
-use d3dgen_pipeline::{floorplan, placement, scenario, variations, world};
+use d3dgen_pipeline::scene_graph::Request as Asked;
+use d3dgen_pipeline::{brief, floorplan, placement, scenario, variations, world};
 use d3dgen_plugins::Plugin;
 use d3dgen_proto::v1::world_service_server::WorldService;
 use d3dgen_proto::v1::{
@@ -28,7 +28,6 @@ use d3dgen_proto::v1::{
     GetBatchWorldResponse, ImportFloorplanRequest, ImportFloorplanResponse, ListBatchWorldsRequest,
     ListBatchWorldsResponse, ListExportersRequest, ListExportersResponse, RankedFloorplan,
 };
-use tokio_stream::wrappers::ReceiverStream;
 use tonic::{Request, Response, Status};
 
 use super::domain::plugin;
@@ -41,8 +40,6 @@ use crate::jobs::batch::{self, Batch};
 use crate::jobs::{Job, Spec};
 use crate::status::{self, invalid};
 
-/// Longest prompt, bytes.
-const PROMPT_LIMIT: usize = 10_000;
 /// Plans of one answer at most.
 const ALTERNATIVES: u32 = 16;
 /// Seeds tried for each plan asked for.
@@ -55,8 +52,8 @@ impl WorldService for Api {
         request: Request<GenerateSceneGraphRequest>,
     ) -> Answer<GenerateSceneGraphResponse> {
         let asked = building(request.into_inner().building)?;
-        self.work(move |core, _| {
-            let graph = scene_graph::generate(&asked, &core.domains.now().registry);
+        self.short(move |core, _| {
+            let graph = brief::rooms(&asked, &core.domains.now().registry).map(|made| made.0);
             let graph = graph.map_err(|e| status::stage("building", e))?;
             Ok(GenerateSceneGraphResponse { scene_graph: Some(message(&graph)) })
         })
@@ -169,7 +166,7 @@ impl WorldService for Api {
                 return Err(invalid("building.seed", format!("leaves no {count} seeds")));
             }
             // what no seed can make is refused now
-            let graph = scene_graph::generate(&building, &core.domains.now().registry);
+            let graph = brief::rooms(&building, &core.domains.now().registry).map(|made| made.0);
             graph.map_err(|e| status::stage("building", e))?;
             let title: String = format!("{count} worlds: {}", building.prompt).chars().take(200).collect();
             let spec = Spec::Batch(Batch { building: building.into(), count });
@@ -191,7 +188,7 @@ impl WorldService for Api {
         let page = Page::new(size, &token, &asked)?;
         let id = batch_of(self.job_of(&asked.job_id, &caller)?)?.id;
         self.lookup(move |core| {
-            let all = batch::list(&core.databases.own, &id, None, usize::MAX).map_err(|e| status::internal(&e))?;
+            let all = batch::list(&core.databases.own, &id, None, usize::MAX).map_err(status::own)?;
             let (found, next_page_token) = page.cut(all.into_iter().filter(|w| !w.name.is_empty()));
             let entry = |w: batch::Made| BatchWorld { seed: w.seed, name: w.name, sound: w.sound, figures: w.figures };
             Ok(ListBatchWorldsResponse { worlds: found.into_iter().map(entry).collect(), next_page_token })
@@ -233,11 +230,11 @@ impl WorldService for Api {
         .await
     }
 
-    type ExportWorldStream = ReceiverStream<Result<ExportWorldResponse, Status>>;
+    type ExportWorldStream = export::Pieces<ExportWorldResponse>;
 
     async fn export_world(&self, request: Request<ExportWorldRequest>) -> Answer<Self::ExportWorldStream> {
         let asked = request.into_inner();
-        let files = self.work(move |core, stop| {
+        self.work(move |core, stop| {
             let world: World = document("world", asked.world)?;
             let found = report(core, &world)?;
             if !found.is_writable() {
@@ -245,9 +242,10 @@ impl WorldService for Api {
                 let first = broken.map_or("a hard rule", |r| r.rule.as_str());
                 return Err(Status::failed_precondition(format!("the world is not sound: it breaks {first}")));
             }
-            export::files(core, &world, &asked.formats, stop)
-        });
-        Ok(self.archive(files.await?.into_inner(), |chunk| ExportWorldResponse { chunk }))
+            let files = export::files(core, &world, &asked.formats, stop)?;
+            export::archive(files, stop, |chunk| ExportWorldResponse { chunk })
+        })
+        .await
     }
 
     async fn list_exporters(&self, request: Request<ListExportersRequest>) -> Answer<ListExportersResponse> {
@@ -263,9 +261,6 @@ impl WorldService for Api {
 /// Returns what to build.
 fn building(asked: Option<BuildingRequest>) -> Result<Asked, Status> {
     let asked = super::required("building", asked)?;
-    if asked.prompt.len() > PROMPT_LIMIT {
-        return Err(invalid("building.prompt", format!("has {} bytes, at most {PROMPT_LIMIT}", asked.prompt.len())));
-    }
     for (field, value) in
         [("building.floor_area_m2", asked.floor_area_m2), ("building.robot_radius_m", asked.robot_radius_m)]
     {

@@ -9,8 +9,9 @@ use d3dgen_model::report::Report;
 use d3dgen_model::robot_body::RobotBody;
 use d3dgen_model::style::Style;
 use d3dgen_model::world::World;
+use d3dgen_pipeline::brief;
 use d3dgen_pipeline::generate::{Generated, Settings, furnish_and_check};
-use d3dgen_pipeline::scene_graph::{self, Request};
+use d3dgen_pipeline::scene_graph::Request;
 use d3dgen_store::{KeyRange, Store};
 use serde::{Deserialize, Serialize};
 use tonic::Status;
@@ -100,44 +101,74 @@ pub struct Done {
 /// Makes the worlds that are not there yet.
 ///
 /// # Errors
-/// `CANCELLED`; `INVALID_ARGUMENT` when the request cannot be honored with any seed.
+/// `CANCELLED`; `UNAVAILABLE` when others wait for their turn: the batch goes on after them.
 pub(super) fn run(run: &Run, spec: &Batch) -> Result<serde_json::Value, Status> {
     let mut done: Done = serde_json::from_value(run.job.checkpoint.clone()).unwrap_or_default();
     let dir = run.dir()?;
+    let first = u64::from(done.tried);
     while done.tried < spec.count {
         run.check()?;
-        let seed = spec.building.seed + u64::from(done.tried);
-        run.step("worlds", f64::from(done.tried) / f64::from(spec.count), &format!("{} of {}", done.tried, spec.count));
-        let made = match make(run, spec, seed) {
-            Ok(generated) => {
-                write(&dir, seed, &generated.world, &generated.report).map_err(|e| status::internal(&e))?;
-                let figures = generated.report.figures.iter().map(|(k, v)| (k.clone(), *v)).collect();
-                let first = generated.report.rules.iter().find(|r| !r.violations.is_empty());
-                let sound = generated.report.sound;
-                let reason = (!sound).then(|| format!("breaks {}", first.map_or("a hard rule", |r| r.rule.as_str())));
-                Made { seed, name: generated.world.name, sound, figures, reason }
-            }
-            Err(d3dgen_pipeline::Error::Infeasible { stage, message }) => {
-                let reason = Some(format!("{stage}: {message}"));
-                Made { seed, name: String::new(), sound: false, figures: BTreeMap::new(), reason }
-            }
-            Err(error) => return Err(status::stage("building", error)),
-        };
-        done.tried += 1;
-        done.sound += u32::from(made.sound);
-        if let Some(reason) = &made.reason {
-            done.failed.insert(seed, reason.clone());
-            run.log(Level::Warning, &format!("seed {seed}: {reason}"));
+        if u64::from(done.tried) > first {
+            run.give_way()?;
         }
-        run.checkpoint(&done, |batch| own::put(batch, WORLDS, &key(&run.job.id, seed), &made))?;
+        run.step("worlds", f64::from(done.tried) / f64::from(spec.count), &format!("{} of {}", done.tried, spec.count));
+        let next = spec.building.seed + u64::from(done.tried);
+        let most = run.cores().min((spec.count - done.tried) as usize);
+        for (seed, made) in (next..).zip(side_by_side(run, spec, next, most)) {
+            keep(run, &mut done, &dir, seed, made)?;
+        }
     }
     serde_json::to_value(&done).map_err(|e| status::internal(&e))
 }
 
+/// Makes worlds of so many seeds, each on a thread of its own; in the order of seeds.
+fn side_by_side(run: &Run, spec: &Batch, next: u64, count: usize) -> Vec<Result<Generated, d3dgen_pipeline::Error>> {
+    std::thread::scope(|scope| {
+        let all: Vec<_> = (next..).take(count).map(|seed| scope.spawn(move || make(run, spec, seed))).collect();
+        all.into_iter().map(|one| one.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))).collect()
+    })
+}
+
+/// Keeps what came of a seed; one that is refused is noted, and the batch goes on.
+fn keep(
+    run: &Run,
+    done: &mut Done,
+    dir: &Path,
+    seed: u64,
+    made: Result<Generated, d3dgen_pipeline::Error>,
+) -> Result<(), Status> {
+    let made = match made {
+        Ok(generated) => {
+            write(dir, seed, &generated.world, &generated.report).map_err(|e| status::io(&e))?;
+            let figures = generated.report.figures.iter().map(|(k, v)| (k.clone(), *v)).collect();
+            let first = generated.report.rules.iter().find(|r| !r.violations.is_empty());
+            let sound = generated.report.sound;
+            let reason = (!sound).then(|| format!("breaks {}", first.map_or("a hard rule", |r| r.rule.as_str())));
+            Made { seed, name: generated.world.name, sound, figures, reason }
+        }
+        Err(error @ d3dgen_pipeline::Error::Cancelled) => return Err(status::stage("building", error)),
+        Err(d3dgen_pipeline::Error::Infeasible { stage, message }) => nothing(seed, format!("{stage}: {message}")),
+        Err(error) => nothing(seed, error.to_string()),
+    };
+    done.tried += 1;
+    done.sound += u32::from(made.sound);
+    if let Some(reason) = &made.reason {
+        done.failed.insert(seed, reason.clone());
+        run.log(Level::Warning, &format!("seed {seed}: {reason}"));
+    }
+    run.checkpoint(done, |batch| own::put(batch, WORLDS, &key(&run.job.id, seed), &made))
+}
+
+/// Returns what is kept of a seed without a world.
+fn nothing(seed: u64, reason: String) -> Made {
+    Made { seed, name: String::new(), sound: false, figures: BTreeMap::new(), reason: Some(reason) }
+}
+
 fn make(run: &Run, spec: &Batch, seed: u64) -> Result<Generated, d3dgen_pipeline::Error> {
     let now = run.core.domains.now();
-    let graph = scene_graph::generate(&spec.building.request(seed), &now.registry)?;
-    furnish_and_check(&graph, &now.registry, &Settings::default(), &mut |_| {}, run.flag())
+    let (graph, brief) = brief::rooms(&spec.building.request(seed), &now.registry)?;
+    let settings = Settings { brief, ..Settings::default() };
+    furnish_and_check(&graph, &now.registry, &settings, &mut |_| {}, run.flag())
 }
 
 /// Writes a world's folder, whole or not at all.

@@ -1,5 +1,6 @@
 //! An ingest: a folder of models, uploaded or of the server's machine, into the database of assets.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use d3dgen_assets::database::Provenance;
@@ -22,6 +23,9 @@ pub struct Ingest {
     pub domain: Option<String>,
     /// Why, for the history.
     pub why: String,
+    /// Files of an upload that were left out for their names, with the reason.
+    #[serde(default)]
+    pub refused: BTreeMap<String, String>,
 }
 
 /// Lines about refused files at most.
@@ -57,7 +61,9 @@ pub(super) fn run(run: &Run, spec: &Ingest) -> Result<serde_json::Value, Status>
     let pool = Pool::new(program, core.config.limits.threads.min(8));
     let catalog = core.domains.now().catalog.clone();
     // Others change assets between the batches of this one: each is whole.
-    let summary = ingest(&core.databases.assets, &folder, &catalog, &pool, &options).map_err(status::assets)?;
+    let mut summary = ingest(&core.databases.assets, &folder, &catalog, &pool, &options).map_err(status::assets)?;
+    let named = |(path, reason): (&String, &String)| (path.clone(), Outcome::Refused { reason: reason.clone() });
+    summary.files.extend(spec.refused.iter().map(named));
     for (path, reason) in summary.refused().take(REFUSED) {
         run.log(Level::Warning, &format!("refused {path}: {reason}"));
     }

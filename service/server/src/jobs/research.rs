@@ -64,7 +64,7 @@ pub(super) fn run(run: &Run, spec: &Research) -> Result<serde_json::Value, Statu
         words.push(uploaded.display().to_string());
     }
     let sources = dir.join("facts.toml");
-    std::fs::write(&sources, &spec.sources).map_err(|e| status::internal(&e))?;
+    std::fs::write(&sources, &spec.sources).map_err(|e| status::io(&e))?;
     let date = core.clock.date();
     let plan = Plan {
         out: dir.join("out"),
@@ -101,7 +101,7 @@ pub(super) fn run(run: &Run, spec: &Research) -> Result<serde_json::Value, Statu
         run.step("import", 0.9, "keeping the rules");
         let why = format!("research job {}", run.job.id);
         let by = Provenance { who: run.job.owner.clone(), when: core.clock.text(), why };
-        let change = core.change_rules(|rules| rules.import(&outcome.knowledge, true, &by))?;
+        let change = core.change_rules(&spec.domain, |rules| rules.import(&outcome.knowledge, true, &by))?;
         found.change = change.map(|c| c.seq);
     }
     super::run::remove_dir(&dir.join("cache"));

@@ -13,6 +13,9 @@ use crate::core::Core;
 use crate::pool::Stop;
 use crate::status;
 
+/// How a run ends that lets others go first.
+pub(super) const GIVES_WAY: &str = "others wait";
+
 /// A run of a job.
 pub struct Run {
     /// What the server has.
@@ -55,7 +58,7 @@ impl Run {
     /// `INTERNAL` when it cannot be made.
     pub fn dir(&self) -> Result<PathBuf, Status> {
         let dir = self.core.job_dir(&self.job.id);
-        std::fs::create_dir_all(&dir).map_err(|e| status::internal(&e))?;
+        std::fs::create_dir_all(&dir).map_err(|e| status::io(&e))?;
         Ok(dir)
     }
 
@@ -70,6 +73,23 @@ impl Run {
     /// `CANCELLED`.
     pub fn check(&self) -> Result<(), Status> {
         if self.stop.load(Ordering::SeqCst) { Err(Status::cancelled("stopped")) } else { Ok(()) }
+    }
+
+    /// Returns an error when other jobs wait for their turn; what is finished is kept by then.
+    ///
+    /// # Errors
+    /// `UNAVAILABLE`: the job goes back into the queue, and on from there.
+    pub fn give_way(&self) -> Result<(), Status> {
+        match self.jobs().is_waiting() {
+            true => Err(Status::unavailable(GIVES_WAY)),
+            false => Ok(()),
+        }
+    }
+
+    /// Returns how many things to do side by side: as many as there are processors, one while calls wait for them.
+    pub fn cores(&self) -> usize {
+        let calls_wait = self.core.metrics.waiting.load(Ordering::Relaxed) > 0;
+        if calls_wait { 1 } else { self.core.config.limits.threads }
     }
 
     /// Shows how far the job is.
@@ -92,7 +112,7 @@ impl Run {
             job.cut_short = 0;
             also(batch);
         });
-        kept.map(drop).map_err(|e| status::internal(&e))
+        kept.map(drop).map_err(status::own)
     }
 
     /// Writes a line into the job's log.

@@ -40,7 +40,7 @@ async fn pages_of_listed_origins_may_call_and_no_others() {
         raw(
             &server.url,
             &format!(
-                "OPTIONS /d3dgen.v1.DomainService/ListDomains HTTP/1.1\r\nhost: x\r\nconnection: close\r\norigin: {origin}\r\n\
+                "OPTIONS /d3dgen.v1.DomainService/ListDomains HTTP/1.1\r\nhost: localhost\r\nconnection: close\r\norigin: {origin}\r\n\
                  access-control-request-method: POST\r\naccess-control-request-headers: x-grpc-web,authorization\r\n\r\n"
             ),
         )
@@ -53,14 +53,16 @@ async fn pages_of_listed_origins_may_call_and_no_others() {
         let refused = ask(other);
         assert!(!refused.contains("access-control-allow-origin"), "{other}: {refused}");
     }
-    let called =
-        raw(&server.url, "GET /healthz HTTP/1.1\r\nhost: x\r\nconnection: close\r\norigin: https://evil.org\r\n\r\n");
+    let called = raw(
+        &server.url,
+        "GET /healthz HTTP/1.1\r\nhost: localhost\r\nconnection: close\r\norigin: https://evil.org\r\n\r\n",
+    );
     assert!(!called.to_lowercase().contains("access-control-allow-origin"), "{called}");
     // without a list there are no such headers at all
     let other = Server::start(&dir.path().join("other"), &[]);
     let plain = raw(
         &other.url,
-        "GET /healthz HTTP/1.1\r\nhost: x\r\nconnection: close\r\norigin: https://studio.example\r\n\r\n",
+        "GET /healthz HTTP/1.1\r\nhost: localhost\r\nconnection: close\r\norigin: https://studio.example\r\n\r\n",
     );
     assert!(!plain.to_lowercase().contains("access-control-allow-origin"), "{plain}");
 }

@@ -80,7 +80,7 @@ impl Bytes {
 async fn send(address: &str, path: &str, framed: &[u8]) -> std::io::Result<(u16, Option<u32>)> {
     let mut stream = tokio::net::TcpStream::connect(address).await?;
     let head = format!(
-        "POST {path} HTTP/1.1\r\nhost: x\r\ncontent-type: application/grpc-web+proto\r\nx-grpc-web: 1\r\n\
+        "POST {path} HTTP/1.1\r\nhost: localhost\r\ncontent-type: application/grpc-web+proto\r\nx-grpc-web: 1\r\n\
          connection: close\r\ncontent-length: {}\r\n\r\n",
         framed.len()
     );

@@ -177,7 +177,7 @@ pub fn raw(url: &str, request: &str) -> String {
 
 /// Asks for a page over plain HTTP/1 and returns status and body.
 pub fn page(url: &str, path: &str, headers: &str) -> (u16, String) {
-    let text = raw(url, &format!("GET {path} HTTP/1.1\r\nhost: x\r\nconnection: close\r\n{headers}\r\n"));
+    let text = raw(url, &format!("GET {path} HTTP/1.1\r\nhost: localhost\r\nconnection: close\r\n{headers}\r\n"));
     let status = text.split(' ').nth(1).and_then(|s| s.parse().ok()).unwrap_or_default();
     (status, text.split("\r\n\r\n").nth(1).unwrap_or_default().to_owned())
 }

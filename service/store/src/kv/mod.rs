@@ -31,7 +31,18 @@ pub trait KeyValue: Send + Sync {
     fn view(&self) -> Result<Box<dyn View + '_>>;
 
     /// Stores all changes of `batch`, or none of them. When it returns, a crash does not undo them.
+    ///
+    /// # Errors
+    /// [`Error::Full`] when there is no room: views go on, and a later call stores again once there is some.
     fn apply(&self, batch: &Batch) -> Result<()>;
+
+    /// Makes sure that [`KeyValue::apply`] can store again after it failed; nothing to do for a backend that never needs it.
+    ///
+    /// # Errors
+    /// What it failed with, while that lasts.
+    fn recover(&self) -> Result<()> {
+        Ok(())
+    }
 }
 
 /// An unchanging sight of a [`KeyValue`]. A table that was never written to is empty.

@@ -1,9 +1,15 @@
 //! Records in a `redb` file: copy on write, checksummed pages, two-phase commits.
 //!
 //! One process writes, any number read beside it (`ConcurrencyMode::SingleWriter`).
+//!
+//! After a write that the system refuses, redb answers nothing more through that handle, reads included. Reads then go
+//! through a second handle, which is opened beside it as another process would, and the first one is opened again when there
+//! is room.
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};
 
 use redb::{
     Builder, ConcurrencyMode, Database, DatabaseError, ReadOnlyDatabase, ReadOnlyTable, ReadTransaction,
@@ -21,9 +27,7 @@ fn definition(table: &str) -> TableDefinition<'_, &'static [u8], &'static [u8]> 
 
 /// Opens or makes the file at `path`.
 pub(super) fn open(path: &Path, mode: Mode, cache_bytes: u64) -> Result<Opened> {
-    let mut builder = Builder::new();
-    builder.set_concurrency_mode(ConcurrencyMode::SingleWriter);
-    builder.set_cache_size(usize::try_from(cache_bytes).unwrap_or(usize::MAX));
+    let builder = builder(cache_bytes);
     let opened = shielded(path, || {
         Ok(match mode {
             Mode::Read => builder.open_read_only(path).map(Handle::Reader),
@@ -32,11 +36,26 @@ pub(super) fn open(path: &Path, mode: Mode, cache_bytes: u64) -> Result<Opened> 
         })
     })?;
     match opened {
-        Ok(handle) => Ok(Opened::Ready(Box::new(Redb { handle: Some(handle), path: path.to_path_buf() }))),
+        Ok(handle) => {
+            let handles = RwLock::new(Handles { first: Some(handle), beside: None });
+            Ok(Opened::Ready(Box::new(Redb {
+                handles,
+                failed: AtomicBool::new(false),
+                cache_bytes,
+                path: path.to_path_buf(),
+            })))
+        }
         Err(DatabaseError::DatabaseAlreadyOpen | DatabaseError::LockProtocolMismatch) => Ok(Opened::Busy),
         Err(DatabaseError::RepairAborted) => Ok(Opened::NeedsRepair),
         Err(other) => Err(said(path, other.into())),
     }
+}
+
+fn builder(cache_bytes: u64) -> Builder {
+    let mut builder = Builder::new();
+    builder.set_concurrency_mode(ConcurrencyMode::SingleWriter);
+    builder.set_cache_size(usize::try_from(cache_bytes).unwrap_or(usize::MAX));
+    builder
 }
 
 enum Handle {
@@ -44,37 +63,102 @@ enum Handle {
     Reader(ReadOnlyDatabase),
 }
 
+struct Handles {
+    /// None when it is dropped, and when it could not be opened again.
+    first: Option<Handle>,
+    /// What is read through after a write of the first one has failed.
+    beside: Option<ReadOnlyDatabase>,
+}
+
 struct Redb {
-    /// Taken when dropped only.
-    handle: Option<Handle>,
+    handles: RwLock<Handles>,
+    /// True once the first handle has failed: it answers nothing more.
+    failed: AtomicBool,
     path: PathBuf,
+    cache_bytes: u64,
 }
 
 impl Redb {
     fn begin_read(&self) -> Result<ReadTransaction> {
-        let begun = match &self.handle {
-            Some(Handle::Writer(database)) => database.begin_read(),
-            Some(Handle::Reader(database)) => database.begin_read(),
-            None => Err(TransactionError::Storage(StorageError::DatabaseClosed)),
+        if !self.failed.load(Ordering::SeqCst) {
+            let handles = self.handles();
+            let begun = match &handles.first {
+                Some(Handle::Writer(database)) => database.begin_read(),
+                Some(Handle::Reader(database)) => database.begin_read(),
+                None => Err(TransactionError::Storage(StorageError::DatabaseClosed)),
+            };
+            match begun {
+                Err(_) if !matches!(handles.first, Some(Handle::Reader(_))) => {
+                    self.failed.store(true, Ordering::SeqCst)
+                }
+                begun => return begun.map_err(|e| said(&self.path, e.into())),
+            }
+        }
+        self.begin_read_beside()
+    }
+
+    /// Reads what was stored before a write failed.
+    fn begin_read_beside(&self) -> Result<ReadTransaction> {
+        let mut handles = self.change_handles();
+        if handles.first.is_none() {
+            self.open_again(&mut handles)?;
+        }
+        let Handles { first, beside } = &mut *handles;
+        let begun = match first {
+            Some(Handle::Writer(database)) if !self.failed.load(Ordering::SeqCst) => database.begin_read(),
+            _ => {
+                if beside.is_none() {
+                    let opened = builder(self.cache_bytes).open_read_only(&self.path);
+                    *beside = Some(opened.map_err(|e| said(&self.path, e.into()))?);
+                }
+                match beside {
+                    Some(beside) => beside.begin_read(),
+                    None => Err(TransactionError::Storage(StorageError::DatabaseClosed)),
+                }
+            }
         };
         begun.map_err(|e| said(&self.path, e.into()))
     }
 
     fn begin_write(&self) -> Result<WriteTransaction> {
-        let Some(Handle::Writer(database)) = &self.handle else {
+        if self.failed.load(Ordering::SeqCst) {
+            self.recover()?;
+        }
+        let handles = self.handles();
+        let Some(Handle::Writer(database)) = &handles.first else {
             let dir = self.path.parent().unwrap_or(&self.path).to_path_buf();
             return Err(Error::ReadOnly { dir });
         };
         database.begin_write().map_err(|e| said(&self.path, e.into()))
     }
+
+    /// Opens the first handle again, which repairs the file, and reads through it from now on.
+    fn open_again(&self, handles: &mut Handles) -> Result<()> {
+        handles.beside = None;
+        handles.first = None; // lets go of the file
+        let opened = builder(self.cache_bytes).open(&self.path);
+        handles.first = Some(Handle::Writer(opened.map_err(|e| said(&self.path, e.into()))?));
+        self.failed.store(false, Ordering::SeqCst);
+        Ok(())
+    }
+
+    fn handles(&self) -> RwLockReadGuard<'_, Handles> {
+        self.handles.read().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn change_handles(&self) -> RwLockWriteGuard<'_, Handles> {
+        self.handles.write().unwrap_or_else(PoisonError::into_inner)
+    }
 }
 
 impl Drop for Redb {
     fn drop(&mut self) {
-        let handle = self.handle.take();
+        let mut handles = self.change_handles();
+        let taken = (handles.beside.take(), handles.first.take());
+        drop(handles);
         // What a close has to say (a file that was damaged meanwhile) the next open says again.
         let _ = shielded(&self.path, || {
-            drop(handle);
+            drop(taken);
             Ok(())
         });
     }
@@ -87,10 +171,23 @@ impl KeyValue for Redb {
     }
 
     fn apply(&self, batch: &Batch) -> Result<()> {
-        shielded(&self.path, || {
+        let applied = shielded(&self.path, || {
             let transaction = self.begin_write()?;
             write(transaction, batch).map_err(|e| said(&self.path, e))
-        })
+        });
+        if matches!(applied, Err(Error::Full { .. } | Error::Io { .. })) {
+            self.failed.store(true, Ordering::SeqCst);
+        }
+        applied
+    }
+
+    fn recover(&self) -> Result<()> {
+        if !self.failed.load(Ordering::SeqCst) {
+            return Ok(());
+        }
+        // A file that needs a repair cannot be read, and the repair writes: not without room.
+        crate::files::check_room(&self.path, 0)?;
+        shielded(&self.path, || self.open_again(&mut self.change_handles()))
     }
 }
 
@@ -176,7 +273,7 @@ fn said(path: &Path, error: redb::Error) -> Error {
     use std::io::ErrorKind::{InvalidData, UnexpectedEof};
     let path = path.to_path_buf();
     match error {
-        redb::Error::Io(source) if !matches!(source.kind(), InvalidData | UnexpectedEof) => Error::Io { path, source },
+        redb::Error::Io(source) if !matches!(source.kind(), InvalidData | UnexpectedEof) => Error::io(path)(source),
         redb::Error::PreviousIo => {
             let source = std::io::Error::other("an earlier write failed: make room, then open the store again");
             Error::Io { path, source }

@@ -150,7 +150,8 @@ impl Store {
     ///
     /// # Errors
     /// [`Error::ReadOnly`]; [`Error::StillReading`] when this thread holds a view of the store; [`Error::Limit`];
-    /// [`Error::Io`] when the disk is full: the store must be opened again then, and has the whole batch or nothing of it.
+    /// [`Error::Full`] when there is no room: nothing of it is stored, reading goes on, and so does storing once there is
+    /// some.
     pub fn apply(&self, batch: Batch) -> Result<u64> {
         let inner = &*self.inner;
         if inner.access == Access::Read {
@@ -174,6 +175,7 @@ impl Store {
             }
             enveloped(batch, state, &*view)?
         };
+        crate::files::check_room(&inner.dir.join(crate::lock::FILE), bytes(&changes))?;
         inner.records.apply(&changes)?;
         let revision = state.revision;
         writing.state = Some(state);
@@ -181,6 +183,19 @@ impl Store {
             witness.note(revision);
         }
         Ok(revision)
+    }
+
+    /// Returns an error while nothing can be stored. What a full disk has broken is mended first, when there is room.
+    ///
+    /// # Errors
+    /// [`Error::ReadOnly`]; [`Error::Full`]; what the records were refused with.
+    pub fn check_writable(&self) -> Result<()> {
+        let inner = &*self.inner;
+        if inner.access == Access::Read {
+            return Err(Error::ReadOnly { dir: inner.dir.clone() });
+        }
+        crate::files::check_room(&inner.dir.join(crate::lock::FILE), 0)?;
+        inner.records.recover()
     }
 
     /// Takes a view of the records as they are now.
@@ -236,6 +251,12 @@ impl Store {
     pub(super) fn id(&self) -> usize {
         Arc::as_ptr(&self.inner) as usize
     }
+}
+
+/// Returns the bytes of keys and values of a batch.
+fn bytes(batch: &Batch) -> u64 {
+    let entries = batch.tables().flat_map(|(_, entries)| entries);
+    entries.map(|(key, value)| (key.len() + value.as_ref().map_or(0, Vec::len)) as u64).sum()
 }
 
 /// Returns what is to be stored for `batch`, and the state after it.

@@ -62,6 +62,8 @@ pub(super) fn walls(page: &mut Page, frame: &Frame, plan: &Floorplan, domain: &D
     });
     page.path("rl", panels);
     // The edge of every piece first, the bodies over it: what stays visible is the edge of their union.
+    let standing = plan.obstacles.iter().map(|o| on_sheet(frame, &o.outline));
+    let body = standing.fold(body, |path, outline| path.polygon(&outline));
     page.path("wo", body.clone());
     page.path("w", body);
     page.close_group();

@@ -3,10 +3,9 @@
 use std::collections::BTreeSet;
 
 use d3dgen_assets::annotate::camel;
-use d3dgen_assets::annotation::{Annotation, Basis, JointNote, Origin};
+use d3dgen_assets::annotation::{Annotation, Basis};
 use d3dgen_assets::database::{Kind, NewAsset, Provenance};
-use d3dgen_assets::library::{Library, LibraryAsset};
-use d3dgen_mesh::JointKind;
+use d3dgen_assets::library::LibraryAsset;
 use d3dgen_proto::v1::{AnnotateAssetRequest, GenerateAssetsRequest, RemoveAssetsRequest, RestoreAssetsRequest};
 use tonic::Status;
 
@@ -33,8 +32,6 @@ const FIELDS: [&str; 11] = [
 ];
 /// Variants of one call at most.
 const VARIANTS: u32 = 100;
-/// Assets of one removal at most.
-const REMOVALS: usize = 10_000;
 
 /// Returns the provenance of a change, and whether an attempt that was cut short has made it.
 fn begin(core: &Core, once: &Once, who: &str, why: &str) -> Result<(Provenance, Option<Vec<String>>), Status> {
@@ -104,11 +101,8 @@ pub(super) fn generate(
         }
         None => object.domains.first().map_or("", String::as_str),
     };
-    let mut annotation = LibraryAsset { object, domain, size: 0 }.annotation(Library::new(&now.catalog).catalog());
-    let extents = asked.size_m.map_or(Ok(annotation.size_m), |s| size("size_m", s))?;
-    let [w, d, h] = extents;
-    annotation.size_m = extents;
-    annotation.bounding_box_m = [[-w / 2.0, w / 2.0], [-d / 2.0, d / 2.0], [0.0, h]];
+    let asset = LibraryAsset { object, domain, size: 0 };
+    let extents = asked.size_m.map_or(Ok(asset.size_m()), |s| size("size_m", s))?;
     let (by, made) = begin(core, once, who, &format!("{} generated", asked.object_id))?;
     let ids = match made {
         Some(ids) => ids,
@@ -117,17 +111,7 @@ pub(super) fn generate(
             for seed in asked.seed..asked.seed.saturating_add(u64::from(asked.count.max(1))) {
                 let mut model = files::generate(&now, domain, &asked.object_id, extents, seed)?;
                 model.name = format!("{}_v{seed}", camel(&asked.object_id));
-                let mut a = annotation.clone();
-                a.asset_id = format!("{}/{}", camel(domain), model.name);
-                a.origin = Origin::Generated { domain: domain.to_owned(), object: asked.object_id.clone(), seed };
-                a.triangle_count = model.triangle_count() as u64;
-                a.basis.insert("size_m".into(), Basis::Given);
-                let note = |j: &d3dgen_mesh::Joint| JointNote {
-                    name: j.name.clone(),
-                    kind: joint_kind(j.kind).into(),
-                    limits: j.limits,
-                };
-                a.joints = model.joints.iter().map(note).collect();
+                let a = asset.annotation_of(&now.catalog, &model, extents, seed);
                 assets.push(NewAsset::new(a, Some(model), Default::default()));
             }
             core.databases.assets.put(Kind::Generate, assets, &by).map_err(status::assets)?
@@ -139,8 +123,8 @@ pub(super) fn generate(
 }
 
 pub(super) fn remove(core: &Core, who: &str, asked: RemoveAssetsRequest, once: &Once) -> Result<Vec<String>, Status> {
-    if asked.asset_ids.is_empty() || asked.asset_ids.len() > REMOVALS {
-        return Err(invalid("asset_ids", format!("has {}, needs 1 to {REMOVALS}", asked.asset_ids.len())));
+    if asked.asset_ids.is_empty() {
+        return Err(invalid("asset_ids", "is empty: name an asset"));
     }
     let (by, made) = match asked.validate_only {
         true => (Provenance { who: who.into(), when: core.clock.text(), why: asked.why.clone() }, None),
@@ -191,12 +175,4 @@ pub(super) fn restore(core: &Core, who: &str, asked: RestoreAssetsRequest, once:
         core.changed_assets()?;
     }
     Ok(objects)
-}
-
-fn joint_kind(kind: JointKind) -> &'static str {
-    match kind {
-        JointKind::Revolute => "revolute",
-        JointKind::Prismatic => "prismatic",
-        JointKind::Continuous => "continuous",
-    }
 }

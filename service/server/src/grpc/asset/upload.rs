@@ -1,10 +1,12 @@
 //! A folder of models on its way in: files in pieces, under names that stay in their folder, whole before a job begins.
 
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use d3dgen_proto::v1::ingest_assets_request::Part;
 use d3dgen_proto::v1::{IngestAssetsRequest, IngestAssetsResponse, IngestHeader};
+use prost::Message;
+use sha2::{Digest, Sha256};
 use tokio::fs::File;
 use tokio::io::AsyncWriteExt;
 use tonic::{Status, Streaming};
@@ -15,10 +17,20 @@ use crate::jobs::ingest::Ingest;
 use crate::names;
 use crate::status::{self, invalid};
 
-/// Bytes of one piece at most.
-const PIECE: usize = 1 << 20;
 /// Files of one upload at most.
 const FILES: usize = 100_000;
+
+/// Files refused for their names that are remembered.
+const REFUSED: usize = 1000;
+
+/// What came of an upload.
+#[derive(Default)]
+struct Received {
+    /// The content of each file, for the digest of the whole.
+    files: BTreeMap<PathBuf, Sha256>,
+    /// Files that were left out, with the reason.
+    refused: BTreeMap<String, String>,
+}
 
 /// An upload that is removed when it does not become a job.
 struct Upload<'a> {
@@ -47,25 +59,28 @@ impl Api {
             _ => return Err(invalid("header", "is missing: the first message is the header")),
         };
         let name = checked(&header)?;
-        let once = Once::new(who, "IngestAssets", &header.request_id, &header)?;
-        let answered = |once: &Once| once.answered::<IngestAssetsResponse>(&self.core);
-        if let Some(answer) = answered(&once)? {
-            return Ok(answer);
-        }
         let mut upload = Upload { api: self, id: self.core.jobs.reserve(), kept: false };
         let dir = self.core.upload_dir(&upload.id).join(&name);
-        tokio::fs::create_dir_all(&dir).await.map_err(|e| status::internal(&e))?;
-        self.receive(&dir, &mut parts).await?;
-        let (core, who, id) = (self.core.clone(), who.to_owned(), upload.id.clone());
-        let started = self.core.pool.run(crate::pool::Lane::Work, move |_| {
-            let _alone = core.writing();
-            if let Some(answer) = once.answered::<IngestAssetsResponse>(&core)? {
+        tokio::fs::create_dir_all(&dir).await.map_err(|e| status::io(&e))?;
+        let Received { refused, files } = self.receive(&dir, &mut parts).await?;
+        // the same id with other files is another request, so that all files are looked at before an answer is repeated
+        let mut whole = Sha256::new_with_prefix(header.encode_to_vec());
+        for (path, content) in files {
+            whole.update(path.to_string_lossy().as_bytes());
+            whole.update([0]);
+            whole.update(content.finalize());
+        }
+        let (id, digest) = (header.request_id.clone(), whole.finalize().into());
+        let once = Once::of("header.request_id", who, "IngestAssets", &id, &digest)?;
+        let (who, id) = (who.to_owned(), upload.id.clone());
+        let started = self.alone(move |core| {
+            if let Some(answer) = once.answered::<IngestAssetsResponse>(core)? {
                 return Ok((answer, false)); // the same upload twice at once
             }
             let title = format!("models of {name}");
-            let spec = Ingest { folder: None, name, domain: header.domain_id, why: header.why };
+            let spec = Ingest { folder: None, name, domain: header.domain_id, why: header.why, refused };
             let job = core.jobs.start(&who, title, Spec::Ingest(spec), Some(id), |job, batch| {
-                once.also(&core, &IngestAssetsResponse { job: Some(job::message(job)) }, batch);
+                once.also(core, &IngestAssetsResponse { job: Some(job::message(job)) }, batch);
             })?;
             Ok((IngestAssetsResponse { job: Some(job::message(&job)) }, true))
         });
@@ -74,55 +89,62 @@ impl Api {
         Ok(answer)
     }
 
-    /// Writes the files.
-    async fn receive(&self, dir: &Path, parts: &mut Streaming<IngestAssetsRequest>) -> Result<(), Status> {
+    /// Writes the files. One whose name not every system can hold is refused by itself.
+    async fn receive(&self, dir: &Path, parts: &mut Streaming<IngestAssetsRequest>) -> Result<Received, Status> {
         let limit = self.core.config.limits.upload_bytes;
-        let (mut bytes, mut seen) = (0, BTreeSet::new());
+        let (mut bytes, mut received) = (0, Received::default());
         let mut open: Option<(PathBuf, File)> = None;
         while let Some(message) = parts.message().await? {
             let Some(Part::Chunk(chunk)) = message.part else {
                 return Err(invalid("chunk", "is missing: every message after the first is a piece of a file"));
             };
-            let path = names::upload_path("chunk.path", &chunk.path)?;
-            if chunk.content.len() > PIECE {
-                return Err(invalid("chunk.content", format!("has {} bytes, at most {PIECE}", chunk.content.len())));
-            }
+            names::inside("chunk.path", &chunk.path)?;
             bytes += chunk.content.len() as u64;
             if bytes > limit {
                 return Err(Status::resource_exhausted(format!("the upload has more than {limit} bytes, the limit")));
             }
+            let path = match names::upload_path("chunk.path", &chunk.path) {
+                Ok(path) => path,
+                Err(refused) => {
+                    if received.refused.len() < REFUSED {
+                        received.refused.insert(chunk.path, refused.message().to_owned());
+                    }
+                    continue;
+                }
+            };
             let failed = |e: std::io::Error| match e.kind() {
                 // a file where others have a folder
                 std::io::ErrorKind::NotADirectory
                 | std::io::ErrorKind::AlreadyExists
                 | std::io::ErrorKind::IsADirectory => invalid("chunk.path", "is a file and a folder"),
-                std::io::ErrorKind::StorageFull => Status::resource_exhausted("the disk of the server is full"),
-                _ => status::internal(&e),
+                _ => status::io(&e),
             };
             if open.as_ref().is_none_or(|(current, _)| *current != path) {
                 if let Some((_, file)) = open.take() {
                     file.sync_data().await.map_err(failed)?;
                 }
-                if seen.insert(path.clone()) && seen.len() > FILES {
-                    return Err(invalid("chunk", format!("is of file {}, at most {FILES}", seen.len())));
+                if received.files.len() >= FILES && !received.files.contains_key(&path) {
+                    return Err(invalid("chunk", format!("is of one file more than {FILES}")));
                 }
                 let file = dir.join(&path);
                 tokio::fs::create_dir_all(file.parent().unwrap_or(dir)).await.map_err(failed)?;
                 let file = File::options().create(true).append(true).open(file).await.map_err(failed)?;
                 open = Some((path, file));
             }
-            if let Some((_, file)) = &mut open {
+            if let Some((path, file)) = &mut open {
                 file.write_all(&chunk.content).await.map_err(failed)?;
+                received.files.entry(path.clone()).or_default().update(&chunk.content);
             }
         }
         if let Some((_, mut file)) = open {
-            file.flush().await.map_err(|e| status::internal(&e))?;
-            file.sync_data().await.map_err(|e| status::internal(&e))?;
+            file.flush().await.map_err(|e| status::io(&e))?;
+            file.sync_data().await.map_err(|e| status::io(&e))?;
         }
-        if seen.is_empty() {
-            return Err(invalid("chunk", "is missing: the upload has no files"));
+        match received.refused.first_key_value() {
+            _ if !received.files.is_empty() => Ok(received),
+            Some((_, reason)) => Err(invalid("chunk.path", reason.clone())),
+            None => Err(invalid("chunk", "is missing: the upload has no files")),
         }
-        Ok(())
     }
 }
 

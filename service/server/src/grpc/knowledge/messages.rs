@@ -21,7 +21,9 @@ pub(super) fn found(found: &Found, now: &Snapshot) -> FoundConstraint {
     let reference = knowledge.and_then(|k| k.references.iter().find(|r| r.ref_id == found.ref_id));
     let (c, score) = (&found.constraint, found.hit.score);
     match reference {
-        Some(reference) => placed(c, reference, &found.domain, score),
+        Some(reference) => {
+            FoundConstraint { copies: found.copies.clone(), ..placed(c, reference, &found.domain, score) }
+        }
         // removed in this moment
         None => FoundConstraint {
             constraint: Some(message(c)),
@@ -30,6 +32,7 @@ pub(super) fn found(found: &Found, now: &Snapshot) -> FoundConstraint {
             jurisdiction: found.jurisdiction.clone(),
             sources: found.source.iter().map(message).collect(),
             score,
+            copies: found.copies.clone(),
         },
     }
 }
@@ -44,6 +47,7 @@ pub(super) fn placed(c: &Constraint, reference: &Reference, domain: &str, score:
         jurisdiction: reference.jurisdiction.clone(),
         sources: c.source_ids.iter().filter_map(source).map(message).collect(),
         score,
+        copies: Vec::new(),
     }
 }
 

@@ -15,14 +15,11 @@ use crate::jobs::{Job, Spec};
 use crate::names;
 use crate::status::{self, invalid};
 
-/// Documents of one job at most.
-const DOCUMENTS: usize = 1000;
-
 /// Keeps the documents and starts the job.
 pub(super) fn start(core: &Core, who: &str, asked: ResearchKnowledgeRequest, once: &Once) -> Result<Job, Status> {
     plugin(&core.domains.now(), "domain_id", &asked.domain_id)?;
-    if asked.documents.is_empty() || asked.documents.len() > DOCUMENTS {
-        return Err(invalid("documents", format!("has {}, needs 1 to {DOCUMENTS}", asked.documents.len())));
+    if asked.documents.is_empty() {
+        return Err(invalid("documents", "is empty: give a document"));
     }
     let country = asked.country_code.map(|c| c.to_ascii_uppercase());
     if let Some(code) = country.as_ref().filter(|c| !is_jurisdiction(c)) {
@@ -85,7 +82,7 @@ fn keep(
                 out.write_all(bytes)?;
                 out.sync_data()
             });
-            written.map_err(|e| status::internal(&e))?;
+            written.map_err(|e| status::io(&e))?;
             Ok((document.name.clone(), None))
         }
         Some(Source::Url(url)) => {

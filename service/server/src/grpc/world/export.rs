@@ -7,16 +7,13 @@ use d3dgen_export::exporters;
 use d3dgen_export::models::{KeptModel, KeptModels};
 use d3dgen_model::world::World;
 use d3dgen_plugins::Plugin;
-use tokio::sync::mpsc;
-use tokio_stream::wrappers::ReceiverStream;
-use tonic::{Response, Status};
+use tonic::Status;
 
 use super::go_on;
 use crate::core::Core;
 use crate::grpc::domain::plugin;
-use crate::grpc::{Api, zip};
+use crate::grpc::zip;
 use crate::names;
-use crate::pool::Lane;
 use crate::status::{self, invalid};
 
 /// Formats that are written when the client names none.
@@ -73,24 +70,22 @@ fn short(text: &str) -> String {
     text.chars().take(60).collect()
 }
 
-impl Api {
-    /// Sends files as the pieces of an archive.
-    pub(in crate::grpc) fn archive<T: Send + 'static>(
-        &self,
-        files: Vec<(String, Vec<u8>)>,
-        piece: impl Fn(Vec<u8>) -> T + Send + 'static,
-    ) -> Response<ReceiverStream<Result<T, Status>>> {
-        let (send, receive) = mpsc::channel(4);
-        let core = self.core.clone();
-        tokio::spawn(async move {
-            let pieces = send.clone();
-            let packed = core
-                .pool
-                .run(Lane::Work, move |_| zip::write(files, |bytes| pieces.blocking_send(Ok(piece(bytes))).is_ok()));
-            if let Err(refused) = packed.await {
-                let _ = send.send(Err(refused)).await;
-            }
-        });
-        Response::new(ReceiverStream::new(receive))
-    }
+/// An archive on its way to a client, made whole: what is not taken yet lies in memory, and no thread waits for it.
+pub(in crate::grpc) type Pieces<T> = tokio_stream::Iter<std::vec::IntoIter<Result<T, Status>>>;
+
+/// Returns files as the pieces of an archive.
+///
+/// # Errors
+/// `CANCELLED` once nobody waits for it; `INTERNAL`.
+pub(in crate::grpc) fn archive<T>(
+    files: Vec<(String, Vec<u8>)>,
+    stop: &AtomicBool,
+    piece: impl Fn(Vec<u8>) -> T,
+) -> Result<Pieces<T>, Status> {
+    let mut pieces = Vec::new();
+    zip::write(files, |bytes| {
+        pieces.push(Ok(piece(bytes)));
+        !stop.load(std::sync::atomic::Ordering::SeqCst)
+    })?;
+    Ok(tokio_stream::iter(pieces))
 }

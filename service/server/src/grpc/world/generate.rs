@@ -1,26 +1,23 @@
 //! All stages in one call, with an event for each.
 
-use std::pin::Pin;
 use std::sync::Arc;
-use std::sync::atomic::Ordering;
-use std::task::{Context, Poll};
 
 use d3dgen_model::floorplan::Floorplan;
 use d3dgen_model::placements::Placements;
 use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_pipeline::generate::{Artifact, Event, Settings, Stage, contradictions, furnish_and_check};
-use d3dgen_pipeline::{Error, scene_graph};
+use d3dgen_pipeline::{Error, brief};
 use d3dgen_proto::v1::generate_world_request::Start;
 use d3dgen_proto::v1::generate_world_response::Event as Sent;
 use d3dgen_proto::v1::{GenerateWorldRequest, GenerateWorldResponse, Progress, Stage as StageMessage};
-use tokio::sync::mpsc;
 use tonic::Status;
 
 use super::{building, checked, has_locked_rooms, world_named};
 use crate::convert::{document, message};
 use crate::grpc::Api;
 use crate::grpc::domain::plugin;
-use crate::pool::{Lane, Stop, StopOnDrop};
+use crate::grpc::outbox::{Inbox, Outbox, Weight};
+use crate::pool::{self, Lane, Stop, StopOnDrop};
 use crate::status::{self, invalid};
 
 /// Attempts of one call at most.
@@ -29,22 +26,9 @@ const ATTEMPTS: u32 = 100;
 const SHARES: [f64; Stage::ALL.len()] = [0.05, 0.25, 0.5, 0.05, 0.15];
 /// Share of the way that the attempt under way takes of what is left.
 const ATTEMPT: f64 = 0.9;
-/// Events that wait for a client that reads slowly.
-const EVENTS: usize = 16;
 
 /// What is sent; the work ends when nobody takes it any more.
-pub struct Events {
-    events: mpsc::Receiver<Result<GenerateWorldResponse, Status>>,
-    _stop: StopOnDrop,
-}
-
-impl tokio_stream::Stream for Events {
-    type Item = Result<GenerateWorldResponse, Status>;
-
-    fn poll_next(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<Option<Self::Item>> {
-        self.events.poll_recv(context)
-    }
-}
+pub type Events = Inbox<GenerateWorldResponse>;
 
 impl Api {
     /// Starts the stages and returns what they send.
@@ -54,15 +38,16 @@ impl Api {
         if asked.attempt_count > ATTEMPTS {
             return Err(invalid("attempt_count", format!("is {}, at most {ATTEMPTS}", asked.attempt_count)));
         }
-        let (send, events) = mpsc::channel(EVENTS);
+        let outbox = Outbox::new();
         let stop = Stop::default();
         let guard = StopOnDrop(Arc::clone(&stop));
         let (pool, core) = (Arc::clone(&self.core), Arc::clone(&self.core));
         let (pins, attempts, allow) =
             ((asked.pinned_floorplan, asked.pinned_placements), asked.attempt_count, asked.allow_conflicts);
-        tokio::spawn(async move {
+        let send = outbox.clone();
+        let queue = pool::spawn(async move {
             let answers = send.clone();
-            let done = pool.pool.run_with(Lane::Work, Arc::clone(&stop), move |_| {
+            let done = pool.pool.run_with(Lane::Work, stop, move |stop| {
                 let pinned: Option<Floorplan> = pins.0.map(|p| document("pinned_floorplan", Some(p))).transpose()?;
                 let kept: Option<Placements> = pins.1.map(|p| document("pinned_placements", Some(p))).transpose()?;
                 let mut settings =
@@ -75,12 +60,12 @@ impl Api {
                     Start::SceneGraph(_) => "scene_graph",
                 };
                 let now = core.domains.now();
-                let mut told = Told { send: answers, stop: Arc::clone(&stop), seed: 0, begun: 0.0, fraction: 0.0 };
+                let mut told = Told { send: answers, seed: 0, begun: 0.0, fraction: 0.0 };
                 let graph = match start {
                     Start::Building(asked) => {
                         let request = building(Some(asked))?;
                         told.hear(Event::Started(Stage::SceneGraph, 0));
-                        scene_graph::generate(&request, &now.registry).map_err(|e| status::stage("building", e))?
+                        brief::rooms(&request, &now.registry).map_err(|e| status::stage("building", e))?.0
                     }
                     Start::SceneGraph(graph) => document::<SceneGraph>("scene_graph", Some(graph))?,
                 };
@@ -92,16 +77,16 @@ impl Api {
                     return Err(invalid(field, format!("contradicts itself: {said}; or set allow_conflicts")));
                 }
                 told.hear(Event::Finished(Stage::SceneGraph, 0, Artifact::SceneGraph(&graph)));
-                let made = furnish_and_check(&graph, &now.registry, &settings, &mut |e| told.hear(e), &stop);
+                let made = furnish_and_check(&graph, &now.registry, &settings, &mut |e| told.hear(e), stop);
                 let made = made.map_err(|e| status::stage(at_fault(&e, from, &settings), e))?;
                 told.end(checked(&made.world, &made.report), made.attempts.saturating_sub(1));
                 Ok(())
             });
             if let Err(refused) = done.await {
-                let _ = send.send(Err(refused)).await;
+                send.end(Err(refused));
             }
         });
-        Ok(Events { events, _stop: guard })
+        Ok(outbox.inbox(guard, queue))
     }
 }
 
@@ -117,8 +102,7 @@ fn at_fault(error: &Error, from: &'static str, settings: &Settings) -> &'static 
 
 /// Tells a client what the stages do.
 struct Told {
-    send: mpsc::Sender<Result<GenerateWorldResponse, Status>>,
-    stop: Stop,
+    send: Outbox<GenerateWorldResponse>,
     /// Seed of the attempt under way.
     seed: u64,
     /// Fraction at which the attempt under way began.
@@ -136,17 +120,14 @@ impl Told {
                 let placements = Placements { version: 1, seed: self.seed, placements, unplaced: Vec::new() };
                 let sent = Sent::Placements(message(&placements));
                 let text = format!("{} is furnished, {} of {} rooms", room.room_id, room.done, room.total);
-                return self.send(Stage::Placement, attempt, Some(sent), text, self.at(Stage::Placement, share));
+                let news = self.news(Stage::Placement, attempt, Some(sent), text, self.at(Stage::Placement, share));
+                return self.send.tell(Weight::Passing, news);
             }
             Event::Rejected(attempt, reason) => {
                 self.begun = self.fraction;
-                return self.send(
-                    Stage::World,
-                    attempt,
-                    Some(Sent::Rejected(reason.to_owned())),
-                    reason.to_owned(),
-                    self.begun,
-                );
+                let sent = Sent::Rejected(reason.to_owned());
+                let news = self.news(Stage::World, attempt, Some(sent), reason.to_owned(), self.begun);
+                return self.send.tell(Weight::Passing, news);
             }
             Event::Finished(stage, attempt, artifact) => {
                 let sent = match artifact {
@@ -163,8 +144,9 @@ impl Told {
                 (stage, attempt, Some(sent), format!("{} is done", stage.name()))
             }
         };
-        let now = self.at(stage, if sent.is_some() { 1.0 } else { 0.0 });
-        self.send(stage, attempt, sent, text, now);
+        let (share, weight) = if sent.is_some() { (1.0, Weight::Kept) } else { (0.0, Weight::Passing) };
+        let news = self.news(stage, attempt, sent, text, self.at(stage, share));
+        self.send.tell(weight, news);
     }
 
     /// Returns how far the call is when a share of a stage is done.
@@ -176,10 +158,18 @@ impl Told {
     }
 
     fn end(&mut self, world: d3dgen_proto::v1::CheckedWorld, attempt: u32) {
-        self.send(Stage::World, attempt, Some(Sent::World(world)), "the world is done".into(), 1.0);
+        let news = self.news(Stage::World, attempt, Some(Sent::World(world)), "the world is done".into(), 1.0);
+        self.send.end(Ok(news));
     }
 
-    fn send(&mut self, stage: Stage, attempt: u32, event: Option<Sent>, text: String, fraction: f64) {
+    fn news(
+        &mut self,
+        stage: Stage,
+        attempt: u32,
+        event: Option<Sent>,
+        text: String,
+        fraction: f64,
+    ) -> GenerateWorldResponse {
         self.fraction = self.fraction.max(fraction);
         let progress = Progress { stage: stage.name().into(), fraction: self.fraction, message: text };
         let stage = match stage {
@@ -189,9 +179,6 @@ impl Told {
             Stage::Scenario => StageMessage::Scenario,
             Stage::World => StageMessage::World,
         };
-        let news = GenerateWorldResponse { progress: Some(progress), stage: stage as i32, attempt, event };
-        if self.send.blocking_send(Ok(news)).is_err() {
-            self.stop.store(true, Ordering::SeqCst);
-        }
+        GenerateWorldResponse { progress: Some(progress), stage: stage as i32, attempt, event }
     }
 }

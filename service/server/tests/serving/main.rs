@@ -1,0 +1,8 @@
+//! A server in this process, asked by clients that do what they should not. What needs the command itself, with processes
+//! that are killed, is in `tests/process`.
+
+mod bounds;
+mod changes;
+mod connections;
+mod support;
+mod unread;
