@@ -5,7 +5,8 @@
 
 Reads `floorplan.json`, `placements.json` and `scenario.json` of every world below the folder, and nothing of the program. One
 objection of weight A, or three different ones of weight B, send a plan back. Exit status 1 when a tenth of the plans or more
-would be sent back, 2 when there are no worlds. `--list` names the plans of each objection.
+would be sent back, 2 when there are no worlds. `--list` names the plans of each objection; `--page` prints the tables of
+docs/plans.md and reads no worlds, `--page docs/plans.md` tells whether they are in it.
 
 This is no referee: what must never be is for `judge_worlds.py`. Lengths in m; figures are those that reviewers named
 (docs/plans.md), less a centimeter or two for rounding.
@@ -1128,11 +1129,32 @@ def pinched(world):
     return False
 
 
+def page():
+    """The objections as tables of a page, by what they are looked for in."""
+    titles = {None: "Every building", "residential": "Homes", "office": "Offices", "hospital": "Wards"}
+    out = []
+    for domain in sorted({where for _, where, _, _ in OBJECTIONS}, key=list(titles).index):
+        rows = sorted((weight, text) for weight, where, text, _ in OBJECTIONS if where == domain)
+        out += [f"### {titles[domain]}", "", "| weight | objection |", "|---|---|"]
+        out += [f"| {weight} | {text} |" for weight, text in rows] + [""]
+    return "\n".join(out)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("folder", type=Path, help="worlds, at any depth; the folder of a set begins with its domain")
+    parser.add_argument("folder", type=Path, nargs="?", help="worlds, at any depth; the folder of a set begins with its domain")
+    parser.add_argument("--page", nargs="?", const=True, metavar="FILE", help="print the objections, or look for them in a page")
     parser.add_argument("--list", action="store_true", help="name the plans of each objection")
     options = parser.parse_args()
+    if options.page is True:
+        print(page(), end="")
+        return 0
+    if options.page:
+        fresh = page() in Path(options.page).read_text()
+        print(f"{options.page} {'has' if fresh else 'lacks'} the {len(OBJECTIONS)} objections of this program")
+        return int(not fresh)
+    if options.folder is None:
+        parser.error("name a folder of worlds")
     folders = sorted(path.parent for path in options.folder.rglob("floorplan.json"))
     if not folders:
         print(f"{options.folder}: no world below it; make some with `d3dgen bench paper --out DIR`", file=sys.stderr)

@@ -4,8 +4,9 @@ use std::sync::OnceLock;
 
 use d3dgen_model::domain::Domain;
 use d3dgen_model::knowledge::KnowledgeBase;
+use serde_json::Value;
 
-use crate::Plugin;
+use crate::{Plugin, complete};
 
 /// A shipped domain: JSON texts made at build time, parsed when first used.
 pub struct Builtin {
@@ -28,6 +29,13 @@ macro_rules! builtin {
     };
 }
 
+/// Returns the objects and groups that domains share: what the `use` of a domain names.
+pub(crate) fn common() -> &'static Value {
+    static COMMON: OnceLock<Value> = OnceLock::new();
+    let text = include_str!(concat!(env!("OUT_DIR"), "/common.json"));
+    COMMON.get_or_init(|| serde_json::from_str(text).expect("the build script writes it"))
+}
+
 /// Returns the shipped domains, in the order in which `domains list` shows them.
 pub fn all() -> Vec<Builtin> {
     vec![
@@ -40,6 +48,15 @@ pub fn all() -> Vec<Builtin> {
     ]
 }
 
+impl Builtin {
+    /// Reads the domain's own rules and those it shares.
+    fn read_knowledge(&self) -> Result<KnowledgeBase, String> {
+        let mut knowledge = serde_json::from_str(self.knowledge_json).map_err(|e| e.to_string())?;
+        complete(&mut knowledge).map_err(|e| e.to_string())?;
+        Ok(knowledge)
+    }
+}
+
 impl Plugin for Builtin {
     fn id(&self) -> &str {
         self.id
@@ -50,9 +67,7 @@ impl Plugin for Builtin {
     }
 
     fn knowledge(&self) -> &KnowledgeBase {
-        self.knowledge.get_or_init(|| {
-            serde_json::from_str(self.knowledge_json).expect("a test reads every shipped knowledge base")
-        })
+        self.knowledge.get_or_init(|| self.read_knowledge().expect("a test reads every shipped knowledge base"))
     }
 }
 
@@ -73,14 +88,26 @@ mod tests {
                 KnowledgeBase::from_json(builtin.knowledge_json).unwrap_or_else(|e| panic!("{}: {e}", builtin.id));
             assert_eq!(knowledge.metadata.domain, builtin.id);
             assert_eq!(builtin.domain(), &domain);
-            assert_eq!(builtin.knowledge(), &knowledge);
+            let whole = builtin.knowledge();
+            assert!(whole.check().is_empty(), "{}: {:?}", builtin.id, whole.check());
+            assert!(knowledge.references.iter().all(|r| whole.references.iter().any(|w| w.ref_id == r.ref_id)));
+        }
+    }
+
+    #[test]
+    fn what_domains_share_is_used_by_more_than_one() {
+        let has = |domain: &Domain, id: &str| domain.object(id).is_some() || domain.group(id).is_some();
+        for entry in ["objects", "groups"].iter().flat_map(|key| common()[key].as_array().expect("a list")) {
+            let id = entry["id"].as_str().expect("an id");
+            let users = all().into_iter().filter(|b| has(b.domain(), id)).count();
+            assert!(users > 1, "{id} is of {users} domain; it belongs into its folder");
         }
     }
 
     #[test]
     fn the_knowledge_bases_hold_every_researched_fact() {
-        // 318, 271 and 373 facts on the buildings, and the robot facts that join them.
-        let expected = [("residential", 357), ("office", 362), ("hospital", 452)];
+        // those of the domain alone, and the shared ones that join them
+        let expected = [("residential", 357), ("office", 363), ("hospital", 501), ("general", 145)];
         for (id, count) in expected {
             let builtin = all().into_iter().find(|b| b.id == id).expect("shipped");
             let constraints: usize = builtin.knowledge().references.iter().map(|r| r.constraints.len()).sum();

@@ -7,7 +7,9 @@ use d3dgen_model::domain::Domain;
 use d3dgen_model::knowledge::KnowledgeBase;
 use d3dgen_model::{Document, Problem};
 
-use crate::{Error, Plugin, merge};
+use crate::builtin::common;
+use crate::merge::{self, Merged};
+use crate::{Error, Plugin, complete};
 
 /// A domain read from a folder.
 pub struct Custom {
@@ -21,17 +23,16 @@ impl Custom {
     /// # Errors
     /// `Unreadable` when a file is missing or does not parse, `Invalid` with every problem found.
     pub fn read(folder: &Path) -> Result<Self, Error> {
-        let table = merge::domain_folder(folder)
+        let merged = merge::domain_folder(folder, common())
             .map_err(|reason| Error::Unreadable { folder: folder.to_path_buf(), reason })?;
-        let domain =
-            Domain::from_value(table).map_err(|source| Error::Invalid { file: folder.join("domain.toml"), source })?;
+        let domain = checked(&merged).map_err(|source| Error::Invalid { file: folder.join("domain.toml"), source })?;
         let file = folder.join("knowledge.json");
         let knowledge = if file.is_file() {
             let text = std::fs::read_to_string(&file).map_err(|e| Error::Unreadable {
                 folder: folder.to_path_buf(),
                 reason: format!("knowledge.json: {e}"),
             })?;
-            KnowledgeBase::from_json(&text).map_err(|source| Error::Invalid { file, source })?
+            whole(&text).map_err(|source| Error::Invalid { file, source })?
         } else {
             KnowledgeBase::empty(&domain.id)
         };
@@ -55,10 +56,10 @@ impl Custom {
         };
         let others = files.iter().filter(|(name, _)| *name != main && name.ends_with(".toml"));
         let texts = std::iter::once((main, first.as_str())).chain(others.map(|(n, t)| (n.as_str(), t.as_str())));
-        let table = merge::texts(texts).map_err(|(file, reason)| not(&file, reason))?;
-        let domain = Domain::from_value(table).map_err(|source| (main.to_owned(), source))?;
+        let merged = merge::texts(texts, common()).map_err(|(file, reason)| not(&file, reason))?;
+        let domain = checked(&merged).map_err(|source| (main.to_owned(), source))?;
         let knowledge = match files.get("knowledge.json") {
-            Some(text) => KnowledgeBase::from_json(text).map_err(|source| ("knowledge.json".to_owned(), source))?,
+            Some(text) => whole(text).map_err(|source| ("knowledge.json".to_owned(), source))?,
             None => KnowledgeBase::empty(&domain.id),
         };
         Ok(Self { domain, knowledge })
@@ -68,6 +69,28 @@ impl Custom {
     pub fn of(domain: Domain, knowledge: KnowledgeBase) -> Self {
         Self { domain, knowledge }
     }
+}
+
+/// Returns the domain of merged tables; its problems say in which file the entry is that they are about.
+fn checked(merged: &Merged) -> Result<Domain, d3dgen_model::Error> {
+    Domain::from_value(merged.table.clone()).map_err(|error| match error {
+        d3dgen_model::Error::Invalid { kind, mut problems } => {
+            for problem in &mut problems {
+                if let Some(place) = merged.place(&problem.path) {
+                    problem.message = format!("{} (in {place})", problem.message);
+                }
+            }
+            d3dgen_model::Error::Invalid { kind, problems }
+        }
+        other => other,
+    })
+}
+
+/// Reads rules with those they share.
+fn whole(text: &str) -> Result<KnowledgeBase, d3dgen_model::Error> {
+    let mut knowledge = KnowledgeBase::from_json(text)?;
+    complete(&mut knowledge)?;
+    Ok(knowledge)
 }
 
 impl Plugin for Custom {
@@ -143,6 +166,7 @@ mod tests {
         .unwrap();
         let message = Custom::read(dir.path()).err().expect("two problems").to_string();
         assert!(message.contains("no_such_thing") && message.contains("no_such_room"), "{message}");
+        assert!(message.contains("(in `x` of broken.toml)"), "{message}");
     }
 
     #[test]

@@ -8,6 +8,7 @@ mod custom;
 mod digest;
 mod error;
 mod merge;
+mod shared;
 
 use std::any::Any;
 use std::path::Path;
@@ -19,6 +20,7 @@ use d3dgen_model::knowledge::KnowledgeBase;
 pub use builtin::{Builtin, all};
 pub use custom::Custom;
 pub use error::Error;
+pub use shared::complete;
 
 /// A domain with its knowledge base.
 pub trait Plugin: Send + Sync {

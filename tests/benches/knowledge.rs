@@ -173,6 +173,11 @@ fn rule(document: usize, n: usize, stream: &mut Stream) -> Constraint {
         note: String::new(),
         source_ids: vec!["s".into()],
         seen_at: None,
+        clause: None,
+        quotation: None,
+        in_force_from: None,
+        in_force_until: None,
+        superseded_by: None,
     }
 }
 

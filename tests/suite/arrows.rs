@@ -73,6 +73,7 @@ const OUTSIDE: &[(&str, &[&str])] = &[
     ("image", &["assets"]),
     ("png", &["export", "mesh", "plans"]),
     ("resvg", &["export"]),
+    ("pdf-writer", &["export"]),
     ("svgtypes", &["export", "plans"]),
     ("ttf-parser", &["export"]),
     ("openusd", &["assets"]),
@@ -117,10 +118,36 @@ fn crates_use_each_other_along_the_arrows_only() {
     let packages = packages();
     assert_eq!(packages.keys().map(String::as_str).collect::<BTreeSet<_>>(), ARROWS.iter().map(|a| a.0).collect());
     for (name, allowed) in ARROWS {
-        for used in packages[*name].1.iter().filter_map(|u| u.strip_prefix("d3dgen-")) {
-            assert!(allowed.contains(&used), "{name} uses {used}; the arrows allow only {allowed:?}");
+        let used: BTreeSet<&str> = packages[*name].1.iter().filter_map(|u| u.strip_prefix("d3dgen-")).collect();
+        for used in &used {
+            assert!(allowed.contains(used), "{name} uses {used}; the arrows allow only {allowed:?}");
+        }
+        for arrow in *allowed {
+            assert!(used.contains(arrow), "{name} does not use {arrow}: no such arrow");
         }
     }
+}
+
+#[test]
+fn the_map_shows_these_arrows_and_no_others() {
+    let map = std::fs::read_to_string(workspace().join("ARCHITECTURE.md")).unwrap();
+    let (_, after) = map.split_once("Arrows between crates").expect("the map has its arrows");
+    let block = after.split("```").nth(1).expect("a block of arrows");
+    let names = |side: &str| -> Vec<String> {
+        side.trim_matches(['{', '}', ' ']).split(',').map(|n| n.trim().to_owned()).filter(|n| !n.is_empty()).collect()
+    };
+    let mut shown: BTreeSet<(String, String)> = BTreeSet::new();
+    // several stand on a line, with space between
+    for arrow in block.lines().flat_map(|l| l.split("   ")).map(str::trim).filter(|a| !a.is_empty()) {
+        let (used, by) = arrow.split_once("<-").unwrap_or_else(|| panic!("`{arrow}` is no arrow"));
+        for by in names(by) {
+            assert!(names(used).into_iter().all(|used| shown.insert((by.clone(), used))), "`{arrow}` says it again");
+        }
+    }
+    // the tests are no part of the program
+    let arrows = ARROWS.iter().filter(|(by, _)| *by != "tests");
+    let there = arrows.flat_map(|(by, used)| used.iter().map(|used| ((*by).to_owned(), (*used).to_owned()))).collect();
+    assert_eq!(shown, there);
 }
 
 #[test]

@@ -31,6 +31,23 @@ fn the_domain_of_the_guide_makes_worlds() {
     let world = fs::read_to_string(home.path().join("o/0/world.json")).unwrap();
     assert!(world.contains("telescope_room_2") && world.contains("telescope_room_1_telescope_1"));
 
+    // What it takes of the common objects and groups, one of them lower.
+    fs::write(folder.join("taken.toml"), block(&guide, "toml", "use = [")).unwrap();
+    let shown = run_well(home.path(), &["domains", "show", "observatory", "--json", "--domains-dir", "."]);
+    let shown: serde_json::Value = serde_json::from_str(&shown).unwrap();
+    let entry = |key: &str, id: &str| shown[key].as_array().unwrap().iter().find(|e| e["id"] == id).cloned().unwrap();
+    let cabinet = entry("objects", "filing_cabinet");
+    assert!(cabinet["sizes_m"][0][2] == 1.0 && cabinet["shape"] == "cabinet", "{cabinet}");
+    assert_eq!(entry("groups", "reading_corner")["anchor"], "reading_chair");
+    fs::write(folder.join("taken.toml"), "use = [\"filing_cabinett\"]").unwrap();
+    let output = run(home.path(), &["domains", "validate", "observatory"]);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        output.status.code() == Some(2) && said.contains("taken.toml") && said.contains("filing_cabinett"),
+        "{said}"
+    );
+    fs::remove_file(folder.join("taken.toml")).unwrap();
+
     // The parts that stand in files of their own.
     fs::write(folder.join("clutter.toml"), block(&guide, "toml", "[[clutter]]")).unwrap();
     fs::write(folder.join("layouts.toml"), block(&guide, "toml", "[layouts]")).unwrap();

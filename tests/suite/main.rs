@@ -16,5 +16,6 @@ mod knowledge;
 mod own_plan;
 mod pins;
 mod proposals;
+mod readme;
 mod same_bytes;
 mod schemas;

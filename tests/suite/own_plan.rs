@@ -239,6 +239,35 @@ fn a_plan_without_doors_is_a_world_that_says_so() {
     }
 }
 
+/// A hall of 20 m by 12 m with two round columns, as a DXF whose walls are on a layer of the office's own naming.
+fn hall() -> String {
+    let mut text = String::from("0\nSECTION\n2\nHEADER\n9\n$INSUNITS\n70\n6\n0\nENDSEC\n0\nSECTION\n2\nENTITIES\n");
+    text += "0\nLWPOLYLINE\n8\nG-17\n90\n4\n70\n1\n10\n0\n20\n0\n10\n20\n20\n0\n10\n20\n20\n12\n10\n0\n20\n12\n";
+    for x in [7, 13] {
+        text += &format!("0\nCIRCLE\n8\nSTUETZEN\n10\n{x}\n20\n6\n40\n0.3\n");
+    }
+    text + "0\nENDSEC\n0\nEOF\n"
+}
+
+#[test]
+fn columns_are_obstacles_of_the_world_and_layers_are_what_the_user_says() {
+    let home = tempfile::tempdir().unwrap();
+    fs::write(home.path().join("hall.dxf"), hall()).unwrap();
+    let flags = ["--layer", "G-17=wall", "--domain", "office", "--add-doors", "--no-png", "--out", "hall"];
+    let done = run(home.path(), &[&["furnish", "hall.dxf"], &flags[..]].concat());
+    assert!(matches!(done.status.code(), Some(0 | 1)), "{}", String::from_utf8_lossy(&done.stderr));
+    let read = |name: &str| fs::read_to_string(home.path().join("hall").join(name)).unwrap();
+    let plan = Floorplan::from_json(&read("floorplan.json")).unwrap();
+    assert_eq!(plan.obstacles.len(), 2);
+    let placements: serde_json::Value = serde_json::from_str(&read("placements.json")).unwrap();
+    assert!(!placements["placements"].as_array().unwrap().is_empty());
+    given(&report(&home.path().join("hall")));
+    assert_eq!(run(home.path(), &["check", "hall"]).status.code(), done.status.code());
+    let map = files(&home.path().join("hall")).into_iter().find(|(name, _)| name.ends_with("world.yaml")).unwrap().1;
+    // the four walls of the hall, and the faces of two columns
+    assert!(String::from_utf8(map).unwrap().matches("start:").count() > 4 + 2 * 12);
+}
+
 #[test]
 fn plans_that_cannot_be_read_are_refused_with_the_place() {
     let home = tempfile::tempdir().unwrap();
@@ -249,6 +278,7 @@ fn plans_that_cannot_be_read_are_refused_with_the_place() {
     );
     put("torn.geojson", "{\"type\":\"FeatureCollection\",\"features\":[");
     put("note.txt", "a plan in words");
+    fs::create_dir(home.path().join("empty")).unwrap();
     let flat = plan("flat.geojson");
     for (args, words) in [
         (vec!["missing.svg"], vec!["missing.svg"]),
@@ -263,6 +293,8 @@ fn plans_that_cannot_be_read_are_refused_with_the_place() {
         (vec![&flat, "--robot", "dancing"], vec!["dancing", "delivery"]),
         (vec![&flat, "--robot-radius", "9"], vec!["9"]),
         (vec![&flat, "--inner-wall", "-1"], vec!["wall"]),
+        (vec![&flat, "--layer", "A-XREF=roof"], vec!["roof", "furniture"]),
+        (vec!["empty"], vec!["empty", "manifest.json"]),
     ] {
         let done = run(home.path(), &[&["furnish", "--out", "o"], args.as_slice()].concat());
         let told = String::from_utf8_lossy(&done.stderr);

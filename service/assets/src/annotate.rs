@@ -9,7 +9,7 @@ mod surroundings;
 
 use std::collections::BTreeMap;
 
-use d3dgen_mesh::{JointKind, Model3d};
+use d3dgen_mesh::{Joint, JointKind, Model3d};
 use d3dgen_model::domain::Mount;
 
 use crate::annotation::asa::{Asa, mount_from_name};
@@ -106,9 +106,10 @@ pub fn annotate(subject: &Subject<'_>, catalog: &Catalog) -> Option<Annotation> 
     note("palette", Basis::Measured);
     let mass = mass(subject.model, &measured, &kind, &mut note);
     note("size_m", if verdict.changes.is_empty() { Basis::Measured } else { Basis::Guessed });
+    let called = subject.around.title.as_deref().unwrap_or_else(|| best_name(subject));
     let name = match asa.and_then(|a| a.name.as_deref()).map(title).filter(|n| !n.is_empty()) {
         Some(name) => name,
-        None => object.map_or_else(|| title(best_name(subject)), |o| o.label.clone()),
+        None => object.map_or_else(|| title(called), |o| o.label.clone()),
     };
     let domains = domains(asa, subject, object);
     let room_types = match asa.map(|a| a.values("room").map(str::to_owned).collect::<Vec<_>>()) {
@@ -138,7 +139,7 @@ pub fn annotate(subject: &Subject<'_>, catalog: &Catalog) -> Option<Annotation> 
         footprint_m: measured.outline_m.iter().map(|p| p.map(rounded)).collect(),
         triangle_count: subject.model.triangle_count() as u64,
         mass,
-        joints: joints(subject.model),
+        joints: joint_notes(&subject.model.joints),
         thumbnail: None,
         origin: subject.origin.clone(),
         model_from_file: map.rows.map(|row| row.map(|v| (v * 1e9).round() / 1e9 + 0.0)),
@@ -166,7 +167,13 @@ fn map(model: &Model3d, verdict: &Verdict<'_>) -> Option<Map> {
 fn names(subject: &Subject<'_>) -> Vec<Vec<String>> {
     let given = subject.around.metadata.as_ref().and_then(|a| a.name.as_deref());
     let folders = subject.around.folders.iter().map(String::as_str);
-    let all = given.into_iter().chain([subject.stem]).chain(folders).chain(subject.around.description.as_deref());
+    let title = subject.around.title.as_deref();
+    let all = given
+        .into_iter()
+        .chain([subject.stem])
+        .chain(title)
+        .chain(folders)
+        .chain(subject.around.description.as_deref());
     let mut names: Vec<Vec<String>> = Vec::new();
     for name in all {
         let split = words::split(name);
@@ -301,14 +308,15 @@ fn mass(model: &Model3d, m: &Measured, kind: &str, note: &mut impl FnMut(&str, B
     })
 }
 
-fn joints(model: &Model3d) -> Vec<JointNote> {
+/// Returns what is told of the joints of a model.
+pub fn joint_notes(joints: &[Joint]) -> Vec<JointNote> {
     let kind = |k: JointKind| match k {
         JointKind::Revolute => "revolute",
         JointKind::Prismatic => "prismatic",
         JointKind::Continuous => "continuous",
     };
-    let notes = model.joints.iter();
-    notes.map(|j| JointNote { name: j.name.clone(), kind: kind(j.kind).into(), limits: j.limits }).collect()
+    let note = |j: &Joint| JointNote { name: j.name.clone(), kind: kind(j.kind).into(), limits: j.limits };
+    joints.iter().map(note).collect()
 }
 
 /// Returns the domains it belongs in: given, then those of the object.
@@ -380,7 +388,7 @@ fn rounded(v: f64) -> f64 {
 }
 
 /// Returns a figure with four digits that count.
-fn significant(v: f64) -> f64 {
+pub(crate) fn significant(v: f64) -> f64 {
     if v == 0.0 || !v.is_finite() {
         return 0.0;
     }

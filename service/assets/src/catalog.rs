@@ -2,6 +2,7 @@
 //!
 //! The objects come from the domains; `data/words_*.txt` adds names, German ones, and what each is for.
 
+mod makers;
 mod thesaurus;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -9,6 +10,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use d3dgen_model::domain::{Domain, Mount, ObjectType, Shape};
 
 use crate::words;
+pub use makers::{Makers, ModelFacts};
 pub use thesaurus::{kind_affordances, kind_density, kind_fits_people, kinds};
 
 /// The objects of some domains.
@@ -21,6 +23,7 @@ pub struct Catalog {
     labels: BTreeMap<String, String>,
     /// The words of each, singular.
     label_words: BTreeMap<String, Vec<String>>,
+    makers: Makers,
 }
 
 /// One object under all its names, of all domains that have it.
@@ -83,6 +86,7 @@ impl Catalog {
         let mut catalog = Self::default();
         for domain in domains {
             let rooms = rooms_of(domain);
+            catalog.makers.add(domain);
             catalog.labels.extend(domain.room_types.iter().map(|t| (t.id.clone(), t.label.clone())));
             for object in &domain.objects {
                 catalog.add(domain, object, rooms.get(object.id.as_str()));
@@ -103,6 +107,11 @@ impl Catalog {
     /// Returns the objects, in the order of the domains.
     pub fn objects(&self) -> &[CatalogObject] {
         &self.objects
+    }
+
+    /// Returns what the models of the objects say.
+    pub fn makers(&self) -> &Makers {
+        &self.makers
     }
 
     /// Returns an object by its id.

@@ -4,6 +4,8 @@
 //! Reading is the caller's ([`Reads`]), so that files of others are read in processes of their own. It can be stopped at
 //! any time and goes on where it stopped: every few models are kept for good.
 
+mod packages;
+mod units;
 mod walk;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -67,6 +69,7 @@ pub fn declared(facts: &Facts) -> Declared {
         up_axis: facts.up_axis.as_deref().and_then(|a| a.chars().next()).filter(|a| "XYZ".contains(*a)),
         up_axis_authored: facts.up_axis_authored,
         unit_authored: facts.meters_per_unit_authored,
+        unit_beside: None,
         simulator: None,
     }
 }
@@ -161,6 +164,8 @@ struct Wanted {
     path: String,
     hash: String,
     is_update: bool,
+    /// Factor of the unit that the files beside it agree on, once that is known.
+    unit_beside: Option<f64>,
 }
 
 /// A model that was read, on its way to be judged.
@@ -184,8 +189,8 @@ pub fn ingest(
     options: &Options<'_>,
 ) -> Result<Summary, Error> {
     let mut summary = Summary::default();
-    let Walk { root, models, refused } = walk(folder)?;
-    for (path, reason) in refused {
+    let Walk { root, models, refused, shapes } = walk(folder)?;
+    for (path, reason) in refused.into_iter().chain(shapes) {
         summary.files.insert(path, Outcome::Refused { reason });
     }
     let total = models.len();
@@ -193,6 +198,10 @@ pub fn ingest(
     summary.cancelled = (options.cancelled)();
     if !summary.cancelled {
         keep_all(database, &root, &wanted, total - later.len(), catalog, reads, options, &mut summary)?;
+    }
+    if !summary.cancelled {
+        let odd = units::unlike_their_neighbors(database, wanted, &summary)?;
+        keep_all(database, &root, &odd, total - later.len(), catalog, reads, options, &mut summary)?;
     }
     let mut others = copies(database, &root, later, &mut summary)?;
     while !others.is_empty() && !summary.cancelled {
@@ -227,7 +236,7 @@ fn sift(
         };
         let before = database.ingested(&path)?;
         let as_it_was = before.as_ref().is_some_and(|b| b.hash == hash);
-        let file = Wanted { file, path, hash, is_update: before.is_some() };
+        let file = Wanted { file, path, hash, is_update: before.is_some(), unit_beside: None };
         if let Some(before) = before
             && as_it_was
             && database.get(&before.asset_id)?.is_some()
@@ -337,7 +346,14 @@ fn judge_all(
 }
 
 /// Annotates a model and moves it into its own frame.
-fn judge(w: &Wanted, read: Read, root: &Path, catalog: &Catalog, options: &Options<'_>) -> Result<NewAsset, String> {
+fn judge(
+    w: &Wanted,
+    mut read: Read,
+    root: &Path,
+    catalog: &Catalog,
+    options: &Options<'_>,
+) -> Result<NewAsset, String> {
+    read.declared.unit_beside = w.unit_beside;
     let origin = Origin::Ingested { path: w.path.clone(), hash: w.hash.clone() };
     let annotation = annotate_file(&read, &w.file, Some(root), options.domain, origin, catalog);
     let annotation = annotation.ok_or("has no triangle: there is nothing to see")?;

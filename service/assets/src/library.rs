@@ -3,11 +3,12 @@
 
 use std::collections::BTreeMap;
 
+use d3dgen_mesh::Model3d;
 use d3dgen_model::domain::Mount;
 
-use crate::annotate::{camel, color, description};
+use crate::annotate::{camel, color, description, joint_notes, significant};
 use crate::annotation::{Annotation, Basis, Front, FrontAxis, Mass, Origin, Swatch};
-use crate::catalog::{Catalog, CatalogObject, kind_density};
+use crate::catalog::{Catalog, CatalogObject, ModelFacts, kind_density};
 
 /// The assets that the catalog stands for.
 #[derive(Debug, Clone)]
@@ -76,22 +77,51 @@ impl LibraryAsset<'_> {
         format!("_{w}x{d}x{h}")
     }
 
-    /// Returns what is known of it before it is made.
+    /// Returns what is known of it: what the object says, and of its model what the model says.
     pub fn annotation(&self, catalog: &Catalog) -> Annotation {
-        let (object, [w, d, h]) = (self.object, self.size_m());
+        let facts = catalog.makers().facts(self.domain, &self.object.object_id, self.size_m());
+        self.described(catalog, self.size_m(), facts.as_deref())
+    }
+
+    /// Returns what is known of a model of the object that was made with a seed, in any size.
+    pub fn annotation_of(&self, catalog: &Catalog, model: &Model3d, size_m: [f64; 3], seed: u64) -> Annotation {
+        let mut annotation = self.described(catalog, size_m, Some(&ModelFacts::of(model)));
+        annotation.asset_id = format!("{}/{}", camel(self.domain), model.name);
+        let (domain, object) = (self.domain.to_owned(), self.object.object_id.clone());
+        annotation.origin = Origin::Generated { domain, object, seed };
+        annotation
+    }
+
+    /// `facts` are none for an object whose model cannot be made: its mass is then guessed.
+    fn described(&self, catalog: &Catalog, size_m: [f64; 3], facts: Option<&ModelFacts>) -> Annotation {
+        let (object, [w, d, h]) = (self.object, size_m);
         let (hw, hd) = (w / 2.0, d / 2.0);
-        let mass_kg = (w.max(0.01) * d.max(0.01) * h.max(0.01) * kind_density(&object.kind)).max(0.01);
-        let moment = |a: f64, b: f64| mass_kg * (a * a + b * b) / 12.0;
-        let rounded = |v: f64| (v * 1000.0).round() / 1000.0;
-        let mass = Mass {
-            mass_kg: rounded(mass_kg),
-            center_m: [0.0, 0.0, rounded(h / 2.0)],
-            inertia_kg_m2: [moment(d, h), moment(w, h), moment(w, d), 0.0, 0.0, 0.0].map(rounded),
-            density_kg_m3: kind_density(&object.kind),
+        let box_m3 = w.max(0.01) * d.max(0.01) * h.max(0.01);
+        let mass = match facts {
+            Some(ModelFacts { inertia, .. }) => {
+                let t = inertia.tensor;
+                Mass {
+                    mass_kg: inertia.mass_kg,
+                    center_m: inertia.center_m.map(|v| (v * 1e6).round() / 1e6 + 0.0),
+                    inertia_kg_m2: [t[0][0], t[1][1], t[2][2], t[0][1], t[0][2], t[1][2]].map(significant),
+                    density_kg_m3: significant(inertia.mass_kg / box_m3),
+                }
+            }
+            None => {
+                let mass_kg = (box_m3 * kind_density(&object.kind)).max(0.01);
+                let moment = |a: f64, b: f64| mass_kg * (a * a + b * b) / 12.0;
+                Mass {
+                    mass_kg: significant(mass_kg),
+                    center_m: [0.0, 0.0, h / 2.0],
+                    inertia_kg_m2: [moment(d, h), moment(w, h), moment(w, d), 0.0, 0.0, 0.0].map(significant),
+                    density_kg_m3: kind_density(&object.kind),
+                }
+            }
         };
         let basis = ["size_m", "object", "kind", "mount", "front", "affordances", "materials", "room_types"];
         let mut basis: BTreeMap<String, Basis> = basis.map(|f| (f.to_owned(), Basis::Given)).into();
-        basis.extend(["mass", "description", "palette"].map(|f| (f.to_owned(), Basis::Guessed)));
+        basis.extend(["description", "palette"].map(|f| (f.to_owned(), Basis::Guessed)));
+        basis.insert("mass".into(), if facts.is_some() { Basis::Given } else { Basis::Guessed });
         let mut annotation = Annotation {
             version: 1,
             asset_id: self.asset_id(),
@@ -111,9 +141,9 @@ impl LibraryAsset<'_> {
             palette: swatch(&object.color).into_iter().collect(),
             affordances: object.affordances.clone(),
             footprint_m: vec![[-hw, -hd], [hw, -hd], [hw, hd], [-hw, hd]],
-            triangle_count: 0,
+            triangle_count: facts.map_or(0, |f| f.triangle_count),
             mass: Some(mass),
-            joints: Vec::new(),
+            joints: joint_notes(facts.map_or(&[], |f| &f.joints)),
             thumbnail: None,
             origin: Origin::Library { domain: self.domain.to_owned(), object: object.object_id.clone() },
             model_from_file: [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]],
@@ -139,6 +169,27 @@ mod tests {
 
     use super::*;
     use crate::sample;
+
+    #[test]
+    fn what_is_told_of_a_model_is_what_the_model_says() {
+        let catalog = sample::catalog();
+        let library = d3dgen_mesh::Library::shipped();
+        let mut articulated = 0;
+        for asset in Library::new(catalog).assets().filter(|a| a.size == 0) {
+            let told = asset.annotation(catalog);
+            let domain = sample::domains().iter().find(|d| d.id == asset.domain).expect("of a domain");
+            let object = domain.objects.iter().find(|o| o.id == asset.object.object_id).expect("its object");
+            let own = library.with(&domain.builds);
+            let model = d3dgen_mesh::generate(&own, object, asset.size_m(), 0).expect("it is made");
+            assert_eq!(told.triangle_count, model.triangle_count() as u64, "{}", told.asset_id);
+            let mass: f64 = model.bodies.iter().map(|b| b.mass_kg).sum();
+            let said = told.mass.as_ref().map_or(0.0, |m| m.mass_kg);
+            assert!((said - mass).abs() <= 0.01 * mass, "{}: {said} kg, its bodies {mass} kg", told.asset_id);
+            assert_eq!(told.joints.len(), model.joints.len(), "{}", told.asset_id);
+            articulated += usize::from(told.is_articulated());
+        }
+        assert!(articulated > 50, "{articulated} of the library have joints");
+    }
 
     #[test]
     fn every_size_of_every_object_is_an_asset() {

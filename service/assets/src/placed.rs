@@ -1,14 +1,10 @@
 //! Kept models as worlds place them: the front at -y, with masses and collision shapes.
 
-use d3dgen_mesh::{Body, Collision, Model3d};
+use d3dgen_mesh::{Body, Collision, Mesh, Model3d, parts};
 
 use crate::annotation::{Annotation, FrontAxis};
 
-/// A body of more visuals than this gets one box around all of them.
-const MOST_BOXES: usize = 24;
-
-/// Returns the model of an asset with its front at -y. A body without collision shapes gets the box around each of its
-/// visuals, a model without masses the one of its annotation, spread by the volume of the bodies' boxes.
+/// Returns the model of an asset with its front at -y. A body without collision shapes gets boxes around its parts, a model without masses the one of its annotation, spread by the volume of the bodies' boxes.
 pub fn placed(mut model: Model3d, annotation: &Annotation) -> Model3d {
     // A quarter turn about z that brings the front to -y; the origin is in the middle of the footprint.
     let [x, y] = match annotation.front.axis {
@@ -19,7 +15,7 @@ pub fn placed(mut model: Model3d, annotation: &Annotation) -> Model3d {
     };
     crate::moved::move_by(&mut model, &[[x[0], x[1], 0.0, 0.0], [y[0], y[1], 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]]);
     for body in model.bodies.iter_mut().filter(|b| b.collisions.is_empty()) {
-        body.collisions = boxes(body);
+        body.collisions = parts::boxes(&body.visuals.iter().map(|v| &v.mesh).collect::<Vec<&Mesh>>());
     }
     if let Some(mass) = annotation.mass.as_ref().filter(|_| model.bodies.iter().all(|b| b.mass_kg <= 0.0)) {
         let volumes: Vec<f64> = model.bodies.iter().map(volume).collect();
@@ -29,16 +25,6 @@ pub fn placed(mut model: Model3d, annotation: &Annotation) -> Model3d {
         }
     }
     model
-}
-
-fn boxes(body: &Body) -> Vec<Collision> {
-    let each: Vec<[[f64; 3]; 2]> = body.visuals.iter().filter_map(|v| v.mesh.bounds()).collect();
-    let whole = each
-        .iter()
-        .copied()
-        .reduce(|a, b| [std::array::from_fn(|i| a[0][i].min(b[0][i])), std::array::from_fn(|i| a[1][i].max(b[1][i]))]);
-    let chosen = if each.len() <= MOST_BOXES { each } else { whole.into_iter().collect() };
-    chosen.into_iter().map(|[min, max]| Collision::Box { min, max }).collect()
 }
 
 /// Returns the volume of the collision shapes' boxes, m^3; a little for a body that is flat, so that it weighs something.
@@ -74,5 +60,7 @@ mod tests {
         let mass: f64 = placed.bodies.iter().map(|b| b.mass_kg).sum();
         assert!(near(mass, 12.0), "{mass}");
         assert!(placed.bodies.iter().all(|b| !b.collisions.is_empty()));
+        let knob = placed.bodies[0].collisions.iter().map(Collision::bounds).find(|[_, max]| max[1] < -0.15);
+        assert!(knob.is_some_and(|[min, max]| max[2] - min[2] < 0.3), "the knob alone sticks out: {knob:?}");
     }
 }

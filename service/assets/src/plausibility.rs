@@ -23,6 +23,9 @@ pub struct Declared {
     pub up_axis_authored: bool,
     /// Whether the file itself says its unit, or its format does for it; false where the format has none.
     pub unit_authored: bool,
+    /// Factor of the unit by which most of the files beside it were repaired, 1 where they were right; none where they do not
+    /// agree.
+    pub unit_beside: Option<f64>,
     /// What the simulator's model around the file says.
     pub simulator: Option<Simulator>,
 }
@@ -64,6 +67,10 @@ pub struct Verdict<'c> {
 
 /// Cost from which an object is not what the name meant.
 const UNLIKE: f64 = 2.2;
+/// The same for a name of which every word is explained, and for one of which some are, where the proportions are those
+/// of the object.
+const UNLIKE_SURE: f64 = 8.0;
+const UNLIKE_PROPORTIONED: f64 = 3.4;
 /// Names matched this badly say nothing about the size.
 const LEAST_COVERAGE: f64 = 0.3;
 /// The same for names beside the model's own: folders, parts and materials are about other things too.
@@ -122,13 +129,15 @@ pub fn judge<'c>(
     let given = shown.unwrap_or([1.0; 3]).map(f64::abs);
     let matches = matches(names, catalog);
     let trust = Trust::of(declared);
+    let unit_is_told = declared.unit_authored || declared.simulator.is_some();
     let mut best: Option<Weighed<'c>> = None;
     for way in ways(declared, &trust) {
         let (low, size) = placed(bounds, way, given);
-        let (fit, object) = best_object(size, &matches);
+        let (fit, object) = best_object(size, &matches, way.factor != 1.0 && unit_is_told);
         let stands = object.is_some_and(|(o, _)| o.mount == Mount::Floor);
         let lying = if stands { cost::lying(low, size) } else { 0.0 };
-        let base = way.prior + cost::origin(low[2], size[2]) + cost::bounds(size) + lying;
+        let odd = if way.factor == 1.0 { cost::unlike_all(size, &matches) } else { 0.0 };
+        let base = way.prior + cost::origin(low[2], size[2]) + cost::bounds(size) + lying + odd;
         let weighed = Weighed { way, cost: base + fit, object, to_catalog: false };
         if best.as_ref().is_none_or(|b| weighed.cost < b.cost - 1e-9) {
             best = Some(weighed);
@@ -173,7 +182,12 @@ fn ways(declared: &Declared, trust: &Trust) -> Vec<Way> {
     let mut ways = Vec::new();
     for &(turn, axis_prior) in turns {
         for (factor, rarity) in cost::UNITS {
-            let unit_prior = if *factor == 1.0 { 0.0 } else { trust.other_unit + rarity };
+            let alone = if *factor == 1.0 { 0.0 } else { trust.other_unit + rarity };
+            let unit_prior = match declared.unit_beside {
+                Some(unit) if (factor / unit - 1.0).abs() < 0.01 => 0.0,
+                Some(_) => alone + cost::UNLIKE_NEIGHBORS,
+                None => alone,
+            };
             ways.push(Way { turn, factor: *factor, prior: axis_prior + unit_prior });
         }
     }
@@ -188,13 +202,25 @@ fn placed([min, max]: [[f64; 3]; 2], way: Way, given: [f64; 3]) -> ([f64; 3], [f
     (low, std::array::from_fn(|i| (a[i] - b[i]).abs() * factor(i)))
 }
 
-fn best_object<'c>(size: [f64; 3], matches: &[NameMatch<'c>]) -> (f64, Option<(&'c CatalogObject, f64)>) {
+/// Returns what the best of the objects costs, and that object. Where the unit that the file tells is contradicted, a name
+/// counts only with the proportions of what it means: a steel washer is no washing machine in another unit.
+fn best_object<'c>(
+    size: [f64; 3],
+    matches: &[NameMatch<'c>],
+    contradicts_unit: bool,
+) -> (f64, Option<(&'c CatalogObject, f64)>) {
     let mut best: Option<(f64, f64, &NameMatch<'c>)> = None;
     for m in matches {
         let off = m.object.sizes_m.iter().map(|s| misfit(size, *s)).fold(f64::INFINITY, f64::min);
+        let proportioned = m.object.sizes_m.iter().any(|s| cost::is_proportioned(size, *s));
         // A name that explains half of the words is half as sure: it may be the other half that counts.
-        let cap = if m.coverage > 0.99 { 8.0 } else { UNLIKE };
-        let cost = (cost::of_misfit(off) + cost::of_name(m.coverage)).min(cap);
+        let cap = match (m.coverage > 0.99, proportioned) {
+            (true, _) => UNLIKE_SURE,
+            (false, true) => UNLIKE_PROPORTIONED,
+            (false, false) => UNLIKE,
+        };
+        let fits = !contradicts_unit || proportioned;
+        let cost = if fits { (cost::of_misfit(off) + cost::of_name(m.coverage)).min(cap) } else { cap };
         let order = cost + 0.02 * off;
         if best.is_none_or(|(_, b, _)| order < b - 1e-12) {
             best = Some((cost, order, m));

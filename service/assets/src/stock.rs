@@ -1,11 +1,13 @@
 //! Domains stocked from the database: which assets stand for an object when worlds are furnished, and why.
 //!
 //! In stages: the same object, then, where the library's own is removed, the same kind for the same use on the same
-//! mount; each must be of a size that the object has about, and those of the domain and its rooms come first. Where
-//! nothing fits, the object is made. A database without own assets or removals changes nothing.
+//! mount; each must be of a size that the object has about in every direction, and those of the domain and its rooms come
+//! first. What stands for an object that people in wheelchairs use keeps its figures. Where nothing fits, the object is
+//! made. A database without own assets or removals changes nothing.
 
 use std::collections::BTreeMap;
 
+use d3dgen_model::TOLERANCE_M;
 use d3dgen_model::domain::{Domain, ObjectType, StockedAsset};
 
 use crate::annotation::Annotation;
@@ -14,9 +16,13 @@ use crate::database::{Database, Shelf};
 use crate::error::Error;
 use crate::plausibility::misfit;
 
-/// How far the size of an asset may be from the nearest one of the object, see [`misfit`].
-const SAME_OBJECT: f64 = 0.8;
-const SAME_KIND: f64 = 0.45;
+/// How far each extent of an asset may be from that of a size of the object, as a share of it.
+const SHARE_OFF: f64 = 0.25;
+/// The same for objects whose figures must hold, and in m.
+const SHARE_OFF_ACCESSIBLE: f64 = 0.05;
+const ACCESSIBLE_M: f64 = 0.02;
+/// Tag of objects whose figures must hold.
+const ACCESSIBLE: &str = "accessible";
 /// Assets that stand for one object at most.
 const MOST: usize = 4;
 
@@ -93,7 +99,7 @@ impl<'c> Stock<'c> {
 
     fn of_object(&self, object: &ObjectType, domain: &str) -> Vec<Choice<'_>> {
         let all = self.by_object.get(&object.id).map(Vec::as_slice).unwrap_or_default();
-        choose(all, object, domain, SAME_OBJECT, "the same object")
+        choose(all, object, domain, "the same object")
     }
 
     fn of_kind(&self, object: &ObjectType, domain: &str) -> Vec<Choice<'_>> {
@@ -103,19 +109,28 @@ impl<'c> Stock<'c> {
             Some(first) => a.affordances.contains(first),
             None => true,
         };
-        let fitting: Vec<Choice<'_>> = choose(all, object, domain, SAME_KIND, "of the same kind and use");
+        let fitting: Vec<Choice<'_>> = choose(all, object, domain, "of the same kind and use");
         fitting.into_iter().filter(|c| same_use(c.asset)).collect()
     }
 }
 
+/// Tells whether an asset of a size may stand for an object of another: `[width, depth, height]`, m.
+fn stands_for(size: [f64; 3], wanted: [f64; 3], is_accessible: bool) -> bool {
+    let most = |wanted: f64| match is_accessible {
+        true => (SHARE_OFF_ACCESSIBLE * wanted).min(ACCESSIBLE_M),
+        false => SHARE_OFF * wanted,
+    };
+    size.iter().zip(wanted).all(|(is, wanted)| (is - wanted).abs() <= most(wanted) + TOLERANCE_M)
+}
+
 /// Returns the assets of a size that fits, the best first.
-fn choose<'a>(all: &'a [Annotation], object: &ObjectType, domain: &str, most_off: f64, what: &str) -> Vec<Choice<'a>> {
+fn choose<'a>(all: &'a [Annotation], object: &ObjectType, domain: &str, what: &str) -> Vec<Choice<'a>> {
     let mut choices: Vec<Choice<'a>> = Vec::new();
+    let is_accessible = object.tags.iter().any(|t| t == ACCESSIBLE);
     for asset in all.iter().filter(|a| a.mount == object.mount) {
-        let off = object.sizes_m.iter().map(|s| misfit(asset.width_depth_height(), *s)).fold(f64::INFINITY, f64::min);
-        if off > most_off {
-            continue;
-        }
+        let size = asset.width_depth_height();
+        let alike = object.sizes_m.iter().filter(|s| stands_for(size, **s, is_accessible));
+        let Some(off) = alike.map(|s| misfit(size, *s)).reduce(f64::min) else { continue };
         let of_domain = asset.domains.iter().any(|d| d == domain);
         let place = if of_domain { format!(", of domain {domain}") } else { String::new() };
         let reason = format!("{what}{place}, size {:.0} % off", (off.exp() - 1.0) * 100.0);
@@ -150,6 +165,28 @@ mod tests {
     }
 
     #[test]
+    fn a_stand_in_is_within_a_quarter_in_each_direction() {
+        let wanted = [1.6, 0.8, 0.74];
+        for (size, fits) in [
+            ([1.6, 0.8, 0.74], true),
+            ([1.95, 0.65, 0.9], true),
+            ([1.6, 0.8, 0.5], false),
+            ([2.1, 0.8, 0.74], false),
+            ([1.6, 0.55, 0.74], false),
+        ] {
+            assert_eq!(stands_for(size, wanted, false), fits, "{size:?}");
+        }
+        let wc = [0.4, 0.75, 0.48];
+        assert!(stands_for([0.39, 0.74, 0.47], wc, true) && !stands_for([0.4, 0.75, 0.44], wc, true));
+        let tagged = |id: &str| id.starts_with("accessible_");
+        for domain in sample::domains() {
+            for object in domain.objects.iter().filter(|o| tagged(&o.id)) {
+                assert!(object.tags.iter().any(|t| t == ACCESSIBLE), "{} {}", domain.id, object.id);
+            }
+        }
+    }
+
+    #[test]
     fn own_assets_stand_for_objects_and_removed_ones_are_replaced() {
         let dir = tempfile::tempdir().expect("a folder");
         let database = Database::open_or_create(&dir.path().join("store"), &d3dgen_store::Options::default());
@@ -162,6 +199,9 @@ mod tests {
             asset("dining_chair", "Own/Chair", [0.45, 0.5, 0.87]),
             asset("desk", "Own/Desk", [1.7, 0.82, 0.73]),
             asset("desk", "Own/TinyDesk", [0.1, 0.1, 0.1]),
+            // As large as the room for it allows, and not of the height that its users need.
+            asset("accessible_wc", "Own/LowWc", [0.4, 0.72, 0.42]),
+            asset("accessible_wc", "Own/TinyWc", [0.31, 0.48, 0.45]),
         ];
         database.put(Kind::Ingest, own, &by).expect("stored");
         let stock = Stock::read(&database, catalog).expect("readable").expect("it changes things");
@@ -171,6 +211,8 @@ mod tests {
         let first = |id: &str| object(id).stock.assets[0].clone();
         assert!(first("desk").asset == "Own/Desk" && first("desk").reason.starts_with("the same object"));
         assert!(!object("desk").sizes_m.contains(&[0.1, 0.1, 0.1]));
+        let wc = |stocked: &Domain| stocked.objects.iter().find(|o| o.id == "accessible_wc").cloned();
+        assert_eq!(wc(&stocked), wc(office), "an accessible WC keeps its figures");
         let before = office.objects.iter().find(|o| o.id == "cafe_chair").expect("there");
         assert_eq!(object("cafe_chair"), before);
         database.remove(&[], &["cafe_chair".into(), "whiteboard".into()], &by).expect("removed");

@@ -54,6 +54,7 @@ fn lying_models_become_as_large_as_meant_and_others_stay() {
             up_axis_authored: truth["up_axis_authored"].as_bool().unwrap_or(true),
             unit_authored: truth["unit_authored"].as_bool().or(truth["meters_per_unit_authored"].as_bool())
                 != Some(false),
+            unit_beside: None,
             simulator: around.simulator,
         };
         let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();

@@ -1,6 +1,7 @@
 //! Small models with known figures; those of USD, glTF, OBJ and COLLADA were also found by the tools of others
 //! (`usd-core`, `pycollada`, `trimesh`), but for what these leave out.
 
+mod packages;
 mod packing;
 
 use std::path::{Path, PathBuf};

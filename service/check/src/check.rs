@@ -6,6 +6,7 @@ use d3dgen_model::placements::Placements;
 use d3dgen_model::report::{Report, RuleResult};
 use d3dgen_model::world::World;
 
+use super::answers::answers;
 use super::context::Context;
 use super::rules::{About, Findings, RULES, Rule, STOREY_RULES, is_cramped};
 use super::{figures, fit};
@@ -31,7 +32,7 @@ pub fn check(world: &World, domain: &Domain, retrieval: &Retrieval) -> Report {
         world: world.name.clone(),
         sound: rules.iter().all(|r| r.violations.is_empty()),
         given_plan,
-        asks: Vec::new(),
+        asks: world.brief.as_ref().filter(|_| finite).map(|b| answers(b, world, domain)).unwrap_or_default(),
         figures: if finite { figures::measure(&whole, &storeys) } else { Default::default() },
         robot_fit: if finite { fit::measure(world, &parts, domain) } else { Vec::new() },
         rules,

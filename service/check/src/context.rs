@@ -41,8 +41,10 @@ pub struct Room<'a> {
     pub kind: &'a RoomType,
     /// Rectangles that make up its zone, on wall center lines.
     pub rects: Vec<Rect>,
-    /// Rectangles that make up its net floor.
+    /// Rectangles that make up its net floor, without what columns and free walls take of it.
     pub net: Vec<Rect>,
+    /// Rectangles that cover its columns and free walls.
+    pub standing: Vec<Rect>,
     pub doors: Vec<&'a Door>,
 }
 
@@ -64,7 +66,8 @@ impl<'a> Context<'a> {
             plan: room,
             kind: domain.room_type_or_generic(&room.room_type),
             rects: room.polygon.rects(),
-            net: room.net_polygon.rects(),
+            net: net_floor(plan, room),
+            standing: plan.taken_in(&room.room_id),
             doors: plan.doors_of(&room.room_id).collect(),
         };
         let kinds = domain.objects_by_id();
@@ -154,9 +157,17 @@ impl<'a> Context<'a> {
 impl Room<'_> {
     /// Returns the free floor between these objects, m.
     pub fn space<'s>(&self, objects: impl Iterator<Item = &'s Object<'s>>) -> FreeSpace {
-        let taken: Vec<Rect> = objects.filter(|o| o.blocks).map(|o| o.rect).collect();
+        let objects = objects.filter(|o| o.blocks).map(|o| o.rect);
+        let taken: Vec<Rect> = objects.chain(self.standing.iter().copied()).collect();
         FreeSpace::new(&self.plan.net_polygon, &taken)
     }
+}
+
+/// Returns rectangles that make up the net floor of a room.
+fn net_floor(plan: &Floorplan, room: &PlanRoom) -> Vec<Rect> {
+    plan.taken_in(&room.room_id)
+        .iter()
+        .fold(room.net_polygon.rects(), |floor, taken| floor.iter().flat_map(|r| r.without(taken)).collect())
 }
 
 /// Returns the interval (along the first line) that a line parallel to it and within `distance` shares with it, m.

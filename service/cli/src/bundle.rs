@@ -28,6 +28,9 @@ pub fn write(world: &World, report: &Report, domain: &Domain, formats: &Formats,
 /// `Write`.
 pub fn write_documents(world: &World, report: &Report, output: &Output) -> Result<(), Error> {
     output.write("report.json", report.to_json().as_bytes())?;
+    if let Some(brief) = &world.brief {
+        output.write("brief.json", brief.to_json().as_bytes())?;
+    }
     output.write("scene_graph.json", world.scene_graph.to_json().as_bytes())?;
     output.write("floorplan.json", world.floorplan.to_json().as_bytes())?;
     output.write("placements.json", world.placements.to_json().as_bytes())?;

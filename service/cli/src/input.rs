@@ -50,14 +50,17 @@ pub fn scene_graph(path: &Path) -> Result<SceneGraph, Error> {
     graph.map_err(|source| Error::Document { path, source })
 }
 
-/// Returns a checked knowledge base in SI, and the file it is in; a folder stands for its `knowledge.json`.
+/// Returns a checked knowledge base in SI with the shared rules it uses, and the file it is in; a folder stands for its `knowledge.json`.
 ///
 /// # Errors
 /// `Read`, or `Document` with every problem.
 pub fn knowledge_base(path: &Path) -> Result<(PathBuf, Imported), Error> {
     let (path, text) = text(path, "knowledge.json")?;
     match import::read(&text) {
-        Ok(imported) => Ok((path, imported)),
+        Ok(mut imported) => match d3dgen_plugins::complete(&mut imported.knowledge) {
+            Ok(()) => Ok((path, imported)),
+            Err(source) => Err(Error::Document { path, source }),
+        },
         Err(d3dgen_knowledge::Error::Document(source)) => Err(Error::Document { path, source }),
         Err(other) => Err(other.into()),
     }

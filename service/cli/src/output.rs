@@ -8,29 +8,23 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use d3dgen_export::exporters;
 use tempfile::TempDir;
 
 use crate::error::Error;
 use crate::interrupt;
 
-/// Names a world's folder may hold; a folder with anything else in it is somebody's work and is never replaced.
-const OURS: &[&str] = &[
+/// Documents of a world's folder. Beside them it holds what exporters write; a folder with anything else in it is
+/// somebody's work and is never replaced.
+const DOCUMENTS: &[&str] = &[
     WORLD,
     MARK,
+    "brief.json",
     "scene_graph.json",
     "floorplan.json",
     "placements.json",
     "scenario.json",
     "proposal.json",
-    "plan.svg",
-    "plan.png",
-    "arena",
-    "gazebo",
-    "usd",
-    "mujoco",
-    "gltf",
-    "nav2",
-    "rmf",
 ];
 /// The file that only the folder of a world has which may be used.
 const WORLD: &str = "world.json";
@@ -201,7 +195,7 @@ fn check_ours(path: &Path, marked: bool) -> Result<bool, Error> {
     }
     let all = entries(path).map_err(|source| Error::Write { path: path.to_path_buf(), source })?;
     let names: Vec<&String> = all.iter().filter(|n| !is_leftover(n)).collect();
-    let foreign = names.iter().find(|n| !OURS.contains(&n.as_str()));
+    let foreign = names.iter().find(|n| !is_ours(n));
     // A leftover stands for the mark: a run was killed while it put the mark in place.
     let has_mark = all.iter().any(|n| n == MARK || is_leftover(n));
     if let Some(name) = foreign.or(names.first().filter(|_| marked && !has_mark)) {
@@ -228,6 +222,11 @@ pub fn check_collection(path: &Path) -> Result<(), Error> {
         ))),
         None => Ok(()),
     }
+}
+
+/// Returns true for the name of a document or of what an exporter writes.
+fn is_ours(name: &str) -> bool {
+    DOCUMENTS.contains(&name) || exporters::roots().any(|root| root == name)
 }
 
 fn is_leftover(name: &str) -> bool {
@@ -276,7 +275,7 @@ mod tests {
     #[test]
     fn an_earlier_output_is_replaced_whole() {
         let home = TempDir::new().unwrap();
-        for names in [["report.json", "usd/a.usda"], ["report.json", "plan.svg"]] {
+        for names in [["report.json", "arena/a.yaml"], ["report.json", "plan.svg"]] {
             let output = Output::new(home.path()).unwrap();
             names.iter().for_each(|n| output.write(n, n.as_bytes()).unwrap());
             output.commit().unwrap();
@@ -297,6 +296,20 @@ mod tests {
         assert_eq!(files(home.path()), ["plan.svg", "report.json", "world.json"]);
         assert!(put(&["report.json", "world.json"]));
         assert_eq!(files(home.path()), ["report.json", "world.json"]);
+    }
+
+    #[test]
+    fn what_any_exporter_writes_may_be_replaced() {
+        for root in exporters::roots() {
+            let home = TempDir::new().unwrap();
+            fs::write(home.path().join(MARK), "{}").unwrap();
+            fs::write(home.path().join(root), "").unwrap();
+            assert!(check_free(home.path()).unwrap(), "{root}");
+        }
+        let home = TempDir::new().unwrap();
+        fs::write(home.path().join(MARK), "{}").unwrap();
+        fs::create_dir(home.path().join("no_exporter")).unwrap();
+        assert!(check_free(home.path()).is_err());
     }
 
     #[test]

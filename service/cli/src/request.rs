@@ -17,7 +17,7 @@ pub struct RequestArgs {
     /// Kind of building (`d3dgen domains list`); otherwise read from the prompt
     #[arg(long, value_name = "ID")]
     pub domain: Option<String>,
-    /// Country whose rules apply, as a code (DE) or an English name; otherwise read from the prompt
+    /// Country or division whose rules apply: a code (DE, CA-ON), or its name or a city; otherwise read from the prompt
     #[arg(long, value_name = "COUNTRY")]
     pub country: Option<String>,
     /// Number of rooms, corridors not counted

@@ -4,8 +4,11 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use d3dgen_model::report::{ConstraintResult, ConstraintSummary, Report, RobotFit, Status, Violation};
+use d3dgen_model::report::{
+    AskAnswer, Citation, ConstraintResult, ConstraintSummary, Fate, Report, RobotFit, Status, Violation,
+};
 use d3dgen_model::scene_graph::Note;
+use d3dgen_model::world::World;
 use d3dgen_pipeline::generate::Generated;
 use serde_json::{Value, json};
 
@@ -22,6 +25,7 @@ pub struct Summary {
     domain: String,
     building_type: Option<String>,
     country_code: Option<String>,
+    place_code: Option<String>,
     seed: u64,
     path: PathBuf,
     kept: Option<Kept>,
@@ -36,10 +40,13 @@ pub struct Summary {
     robot_fit: Vec<String>,
     people: usize,
     constraints: ConstraintSummary,
+    national: String,
     violated: Vec<String>,
     broken: Vec<String>,
     assumptions: Vec<Note>,
     conflicts: Vec<Note>,
+    asks: Vec<AskAnswer>,
+    not_understood: Vec<String>,
     attempts: u32,
     times: Vec<(&'static str, Duration)>,
     proposals: Vec<(String, String)>,
@@ -56,6 +63,7 @@ impl Summary {
             domain: graph.domain.clone(),
             building_type: graph.building_type.clone(),
             country_code: graph.country_code.clone(),
+            place_code: graph.place_code().map(str::to_owned),
             seed: graph.seed,
             path: path.to_path_buf(),
             kept: None,
@@ -70,10 +78,13 @@ impl Summary {
             robot_fit: report.robot_fit.iter().map(fit_line).collect(),
             people: world.scenario.agents.len(),
             constraints: report.summary.clone(),
+            national: report.applied_rules().line(graph.place_code()),
             violated: violated_lines(report),
             broken: broken_lines(report),
             assumptions: graph.assumptions.clone(),
             conflicts: graph.conflicts.iter().chain(&world.floorplan.conflicts).cloned().collect(),
+            asks: report.asks.clone(),
+            not_understood: not_understood(world),
             attempts: *attempts,
             times,
             proposals: Vec::new(),
@@ -106,13 +117,13 @@ impl Summary {
             self.times.iter().map(|(stage, t)| ((*stage).to_owned(), json!(round(ms(*t), 2)))).collect();
         let mut value = json!({
             "world": self.name, "domain": self.domain, "building_type": self.building_type,
-            "country_code": self.country_code, "seed": self.seed, "path": self.path.display().to_string(),
+            "country_code": self.country_code, "place_code": self.place_code, "seed": self.seed, "path": self.path.display().to_string(),
             "written": self.kept.is_none(),
             "sound": self.sound, "verdict": self.verdict.to_lowercase(),
             "rooms": self.rooms, "circulation_rooms": self.circulation,
             "area_m2": round(self.area_m2, 2), "objects": self.objects, "robots": self.robots, "people": self.people,
             "constraints": self.constraints, "violations": self.broken, "assumptions": self.assumptions,
-            "conflicts": self.conflicts, "attempts": self.attempts, "stage_ms": times,
+            "conflicts": self.conflicts, "asks": self.asks, "not_understood": self.not_understood, "attempts": self.attempts, "stage_ms": times,
         });
         if !self.proposals.is_empty() {
             let proposals: serde_json::Map<String, Value> =
@@ -126,7 +137,7 @@ impl Summary {
     pub fn page(&self) -> String {
         let c = &self.constraints;
         let building_type = self.building_type.as_deref().filter(|t| *t != self.domain);
-        let building = [Some(self.domain.as_str()), building_type, self.country_code.as_deref()];
+        let building = [Some(self.domain.as_str()), building_type, self.place_code.as_deref()];
         let stages: Vec<String> = self.times.iter().map(|(stage, t)| format!("{stage} {:.0}", ms(*t))).collect();
         let again = if self.attempts > 1 { format!(", in {} attempts", self.attempts) } else { String::new() };
         let circulation =
@@ -139,6 +150,7 @@ impl Summary {
             ("objects", format!("{}, {:.1} a room", self.objects, self.objects_per_room())),
             ("robots", format!("{}, people {}", self.robots, self.people)),
             ("hard rules", format!("{} checked, {rules}", self.rules)),
+            ("law", self.national.clone()),
             (
                 "constraints",
                 format!(
@@ -149,7 +161,7 @@ impl Summary {
             ("time", format!("{:.0} ms: {}{again}", self.total_ms(), stages.join(", "))),
             ("folder", self.folder()),
         ];
-        let mut text = format!("\n{}, seed {}: {}\n", self.name, self.seed, self.verdict);
+        let mut text = format!("\n{}, seed {}: {}{}\n", self.name, self.seed, self.verdict, self.wishes());
         for (label, value) in rows {
             text += &format!("  {label:<12} {value}\n");
         }
@@ -157,6 +169,8 @@ impl Summary {
         for (label, lines) in [
             ("robot", self.robot_fit.clone()),
             ("proposed", proposed),
+            ("not as asked", self.asks.iter().filter(|a| a.fate != Fate::Honored).map(ask_line).collect()),
+            ("not read", self.not_understood.clone()),
             ("assumed", messages(&self.assumptions)),
             ("changed", messages(&self.conflicts)),
             ("violated", self.violated.clone()),
@@ -165,6 +179,15 @@ impl Summary {
             text += &listed(label, &lines);
         }
         text
+    }
+
+    /// Returns how many of the wishes are met, as the verdict goes on; nothing where none was read.
+    fn wishes(&self) -> String {
+        let met = self.asks.iter().filter(|a| a.fate == Fate::Honored).count();
+        match self.asks.len() {
+            0 => String::new(),
+            all => format!("; {met} of {all} wishes met"),
+        }
     }
 
     fn folder(&self) -> String {
@@ -195,6 +218,16 @@ impl Summary {
     fn total_ms(&self) -> f64 {
         self.times.iter().map(|(_, t)| ms(*t)).sum()
     }
+}
+
+/// Returns the words of a prompt that nobody understood.
+fn not_understood(world: &World) -> Vec<String> {
+    world.brief.iter().flat_map(|b| &b.not_understood).map(|w| w.text.clone()).collect()
+}
+
+/// Returns a wish that is not met as it was said, and why.
+fn ask_line(ask: &AskAnswer) -> String {
+    format!("`{}`: {}", ask.said, ask.reason)
 }
 
 /// Returns whether a robot fits, and else how many rooms it gets to and the narrowest place on its way to the others.
@@ -285,8 +318,27 @@ fn violated_line(c: &ConstraintResult) -> String {
         limits.join(" and "),
         c.unit,
         c.citation.jurisdiction,
-        c.citation.source.title
+        place(&c.citation)
     )
+}
+
+/// Returns where a rule stands: document, clause, what is quoted of it, the page where it was read, and when it ended.
+fn place(citation: &Citation) -> String {
+    let mut text = citation.source.title.clone();
+    if let Some(clause) = &citation.clause {
+        text += &format!(", {clause}");
+    }
+    if let Some(quotation) = &citation.quotation {
+        text += &format!(", \"{quotation}\"");
+    }
+    if let Some(page) = &citation.seen_at {
+        text += &format!(", {page}");
+    }
+    if let Some(last) = &citation.in_force_until {
+        text += &format!("; ended {last}");
+        text += &citation.superseded_by.as_ref().map(|by| format!(", see {by}")).unwrap_or_default();
+    }
+    text
 }
 
 /// Returns a line for each violation of a hard rule.

@@ -110,6 +110,7 @@ fn plan() -> Floorplan {
             door("door_1", line(4.0, 1.0, 4.0, 2.0), &["a_1", "b_1"]),
             door("door_2", line(0.5, 3.0, 1.5, 3.0), &["a_1"]),
         ],
+        obstacles: Vec::new(),
         windows: vec![Window {
             window_id: "window_1".into(),
             line: line(5.0, 3.0, 7.0, 3.0),
@@ -162,9 +163,11 @@ fn graph(robot: &Robot) -> SceneGraph {
         domain: "general".into(),
         building_type: None,
         country_code: Some("DE".into()),
+        division_code: None,
         language: "en".into(),
         area_m2: None,
         occupancy: Default::default(),
+        wheelchair: false,
         accessible: false,
         style: d3dgen_model::style::Style::default(),
         rooms: vec![room("a_1"), room("b_1")],
@@ -224,7 +227,17 @@ pub fn world() -> World {
     };
     let placements = Placements { version: 1, seed: 7, placements: objects(), unplaced: Vec::new() };
     let (name, generator) = ("two_rooms".to_owned(), "by hand".to_owned());
-    World { version: 1, name, generator, scene_graph: graph(&robot), floorplan: plan(), placements, scenario }
+    World {
+        version: 1,
+        name,
+        generator,
+        brief: None,
+        scene_graph: graph(&robot),
+        floorplan: plan(),
+        placements,
+        scenario,
+        rules: None,
+    }
 }
 
 /// Returns a report with these constraints: name, title of the source, force, outcome.
@@ -254,6 +267,7 @@ pub fn report(constraints: &[(&str, &str, bool, Status)]) -> Report {
             note: String::new(),
             printed: None,
             confidence: "high".into(),
+            ..Citation::default()
         },
     };
     Report {

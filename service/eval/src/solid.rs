@@ -1,6 +1,6 @@
 //! Objects as upright boxes turned about the vertical, and the floor and walls they stand on and at: exact geometry.
 
-use d3dgen_model::floorplan::{Door, Floorplan};
+use d3dgen_model::floorplan::{Door, Floorplan, PlanRoom};
 use d3dgen_model::placements::Placement;
 use d3dgen_model::world::World;
 use d3dgen_model::{Point, Rect, Segment};
@@ -175,7 +175,7 @@ impl<'a> Scene<'a> {
         Self {
             world,
             solids: world.placements.placements.iter().map(Solid::new).collect(),
-            rooms: plan.rooms.iter().map(|r| r.net_polygon.rects()).collect(),
+            rooms: plan.rooms.iter().map(|r| net_floor(plan, r)).collect(),
             thresholds: plan.doors.iter().map(threshold).collect(),
         }
     }
@@ -194,6 +194,12 @@ impl<'a> Scene<'a> {
     pub fn ceiling(&self, room_id: &str) -> f64 {
         self.world.floorplan.room(room_id).map_or(f64::INFINITY, |r| r.ceiling_height_m)
     }
+}
+
+/// Returns the net floor of a room without its columns and free walls.
+fn net_floor(plan: &Floorplan, room: &PlanRoom) -> Vec<Rect> {
+    let taken = plan.taken_in(&room.room_id);
+    taken.iter().fold(room.net_polygon.rects(), |floor, t| floor.iter().flat_map(|r| r.without(t)).collect())
 }
 
 #[cfg(test)]

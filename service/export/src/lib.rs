@@ -6,10 +6,12 @@
 pub mod error;
 pub mod exporters;
 pub mod models;
+pub mod roadmap;
 pub mod yaml;
 
 mod color;
 mod font;
+mod picture;
 
 pub use error::Error;
 pub use exporters::{Exporter, File};

@@ -161,10 +161,12 @@ pub fn assemble(floorplan: Floorplan, placements: Placements) -> World {
         version: 1,
         name: "sample_flat".into(),
         generator: "d3dgen test".into(),
+        brief: None,
         scene_graph: Document::from_value(graph).unwrap(),
         floorplan,
         placements,
         scenario: scenario(),
+        rules: None,
     };
     assert_eq!(world.check(), vec![]);
     world
@@ -245,6 +247,7 @@ pub fn floorplan() -> Floorplan {
         walls,
         doors,
         windows,
+        obstacles: Vec::new(),
         cost: vec![],
         conflicts: vec![],
         levels: vec![],

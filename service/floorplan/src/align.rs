@@ -6,8 +6,8 @@ use std::collections::BTreeSet;
 use super::core::{out_of_core, overhang};
 use super::cost::{Judge, WEIGHTS};
 use super::lattice::{CELL_M2, Cellbox};
-use super::search::Candidate;
 use super::spec::Brief;
+use crate::candidate::Candidate;
 
 /// How far an inner wall moves onto one below, and how far a facade does, lattice units.
 const INNER_REACH: i32 = 5;

@@ -15,6 +15,7 @@ use super::lattice::{Cellbox, INNER_HALF_M, OUTER_HALF_M, meters, up};
 use super::outline::{Mosaic, Stretch, outline};
 use super::spec::Brief;
 use super::windows::place_windows;
+use crate::numbers::highest;
 
 /// How a plan is turned before it is written, so that not every building has its corridor from west to east.
 #[derive(Debug, Clone, Copy)]
@@ -133,6 +134,7 @@ pub(crate) fn assemble(
         walls,
         doors,
         windows,
+        obstacles: Vec::new(),
         cost,
         conflicts,
         levels: Vec::new(),
@@ -182,12 +184,6 @@ fn keep_wall_ids(walls: &mut [Wall], earlier: &Floorplan) {
             }
         }
     }
-}
-
-/// Returns the highest number at the end of ids; 0 when none has one.
-pub(crate) fn highest<'a>(ids: impl Iterator<Item = &'a str>) -> u32 {
-    let number = |id: &str| id.rsplit('_').next().and_then(|n| n.parse::<u32>().ok());
-    ids.filter_map(number).max().unwrap_or(0)
 }
 
 /// Returns wall pieces with the doors cut out; windows stay part of their wall, which goes on below the sill.

@@ -14,8 +14,9 @@ use super::core::{Below, Comb, Slot, out_of_core};
 use super::cost::{Judge, Weights};
 use super::lattice::{Cellbox, Frame, meters, up};
 use super::realize::{Layout, spine_units};
-use super::search::{Candidate, search_with};
+use super::search::search_with;
 use super::spec::Brief;
+use crate::candidate::Candidate;
 
 /// Rooms from which on a building is composed of wings.
 pub(crate) const LARGE: usize = 18;

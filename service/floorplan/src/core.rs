@@ -9,9 +9,9 @@ use d3dgen_model::domain::{Domain, Scheme, Stairs};
 use d3dgen_model::scene_graph::{Robot, SceneGraph};
 use d3dgen_model::storeys::LinkKind;
 
-use super::doors::DOUBLE_FROM_M;
 use super::lattice::{Cellbox, Frame, INNER_HALF_M, OUTER_HALF_M, up};
 use super::spec::Brief;
+use crate::measures::DOUBLE_FROM_M;
 
 /// Stairs and elevator as one storey sees them.
 #[derive(Debug, Clone)]

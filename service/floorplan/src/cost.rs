@@ -14,7 +14,8 @@ use super::lattice::{CELL_M2, Cellbox, INNER_HALF_M, OUTER_HALF_M, meters, up};
 use super::mirror;
 use super::realize::{Layout, door_need};
 use super::spec::{Brief, RoomSpec};
-use super::windows::LEAST_WALL_M;
+use crate::lattice::{between, distance};
+use crate::measures::LEAST_WALL_M;
 
 /// Cost of a room whose area is outside what is advised, beside that of how far.
 const ILL_ADVISED: f64 = 0.8;
@@ -677,15 +678,6 @@ fn walk(round: Option<&Cellbox>, a: (i32, i32), b: (i32, i32)) -> f64 {
     };
     let way = (along(a) - along(b)).abs();
     f64::from(way.min(2 * (width + height) - way)) * 0.025
-}
-
-pub(crate) fn distance(a: Cellbox, b: Cellbox) -> f64 {
-    between(a.center2(), b.center2())
-}
-
-/// Returns the walking distance between points given by twice their coordinates, m.
-pub(crate) fn between((ax, ay): (i32, i32), (bx, by): (i32, i32)) -> f64 {
-    (f64::from((ax - bx).abs()) + f64::from((ay - by).abs())) * 0.025
 }
 
 #[cfg(test)]

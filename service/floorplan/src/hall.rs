@@ -5,10 +5,10 @@
 
 use d3dgen_model::domain::Zone;
 
-use super::cost::between;
 use super::lattice::Cellbox;
 use super::realize::door_need;
 use super::spec::Brief;
+use crate::lattice::between;
 
 /// How much nearer to the entrance a bedroom's door is at least to count as passed, m.
 pub(crate) const PLAINLY_M: f64 = 0.3;

@@ -1,12 +1,12 @@
 //! Holes between rooms that are too narrow for a court: a room beside one takes its ground where the plan stays sound. What
 //! is left is a shaft, which nobody enters and no window looks into.
 
-use super::board::tidied;
 use super::cost::{Judge, Weights};
 use super::lattice::{Cellbox, up};
 use super::outline::Mosaic;
-use super::search::Candidate;
 use super::spec::Brief;
+use crate::candidate::Candidate;
+use crate::lattice::{is_narrow, tidied};
 
 /// Gives the holes of a sound plan that are no courts to the rooms beside them.
 pub(crate) fn close(brief: &Brief, weights: &Weights, found: &mut Candidate) {
@@ -35,12 +35,6 @@ pub(crate) fn close(brief: &Brief, weights: &Weights, found: &mut Candidate) {
             found.score.symmetry = symmetry;
         }
     }
-}
-
-/// Returns true for a hole in which two walls with windows would be too near to each other.
-pub(crate) fn is_narrow(hole: &[Cellbox], least: i32) -> bool {
-    let around = hole.iter().copied().reduce(Cellbox::around);
-    around.is_some_and(|b| b.width().min(b.height()) < least)
 }
 
 /// Returns the rectangles of a plan in which a room has a hole that it borders on.

@@ -171,3 +171,61 @@ impl Frame {
         Cellbox::new(xa, ya, xb, yb)
     }
 }
+
+/// Returns the walking distance between the middles of two boxes, m.
+pub(crate) fn distance(a: Cellbox, b: Cellbox) -> f64 {
+    between(a.center2(), b.center2())
+}
+
+/// Returns the walking distance between points given by twice their coordinates, m.
+pub(crate) fn between((ax, ay): (i32, i32), (bx, by): (i32, i32)) -> f64 {
+    (f64::from((ax - bx).abs()) + f64::from((ay - by).abs())) * 0.025
+}
+
+/// Returns the same cells as few rectangles, the largest first: it is the one a room is judged by.
+pub(crate) fn tidied(cells: &[Cellbox]) -> Vec<Cellbox> {
+    if cells.len() < 2 {
+        return cells.to_vec();
+    }
+    let lines = |edges: fn(&Cellbox) -> [i32; 2]| {
+        let mut list: Vec<i32> = cells.iter().flat_map(edges).collect();
+        list.sort_unstable();
+        list.dedup();
+        list
+    };
+    let (xs, ys) = (lines(|b| [b.x0, b.x1]), lines(|b| [b.y0, b.y1]));
+    let (columns, rows) = (xs.len() - 1, ys.len() - 1);
+    let at = |i: usize, j: usize| Cellbox { x0: xs[i], y0: ys[j], x1: xs[i + 1], y1: ys[j + 1] };
+    let mut open: Vec<bool> =
+        (0..columns * rows).map(|k| cells.iter().any(|b| b.overlap(&at(k % columns, k / columns)).is_some())).collect();
+    let mut out = Vec::new();
+    while open.contains(&true) {
+        let mut best: Option<(i64, [usize; 4])> = None;
+        for k in (0..open.len()).filter(|&k| open[k]) {
+            let (i0, j0) = (k % columns, k / columns);
+            let mut end = columns;
+            for j1 in j0..rows {
+                end = (i0..end).find(|&i| !open[j1 * columns + i]).unwrap_or(end);
+                if end == i0 {
+                    break;
+                }
+                let size = i64::from(xs[end] - xs[i0]) * i64::from(ys[j1 + 1] - ys[j0]);
+                if best.is_none_or(|(b, _)| size > b) {
+                    best = Some((size, [i0, j0, end, j1 + 1]));
+                }
+            }
+        }
+        let Some((_, [i0, j0, i1, j1])) = best else { break };
+        for j in j0..j1 {
+            open[j * columns + i0..j * columns + i1].fill(false);
+        }
+        out.push(Cellbox { x0: xs[i0], y0: ys[j0], x1: xs[i1], y1: ys[j1] });
+    }
+    out
+}
+
+/// Returns true for a hole in which two walls with windows would be too near to each other.
+pub(crate) fn is_narrow(hole: &[Cellbox], least: i32) -> bool {
+    let around = hole.iter().copied().reduce(Cellbox::around);
+    around.is_some_and(|b| b.width().min(b.height()) < least)
+}

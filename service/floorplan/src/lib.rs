@@ -13,6 +13,8 @@ mod adjust;
 mod align;
 mod assemble;
 mod board;
+mod candidate;
+mod changes;
 mod compose;
 mod core;
 mod cost;
@@ -22,6 +24,7 @@ mod hall;
 mod holes;
 mod insert;
 mod lattice;
+mod measures;
 mod mirror;
 mod numbers;
 mod order;
@@ -137,7 +140,7 @@ pub fn generate_until(
             continue;
         }
         let name = format!("{:?}", found.scheme).to_lowercase();
-        brief.tell_form(form, &found);
+        brief.tell_form(form, |f| found.has_form(f));
         brief.tell_symmetry(mirror::share(&brief, &found.layout.boxes));
         let mut boxes = turned(&found.layout.boxes, turn);
         numbers::along_corridor(graph, &brief, &mut boxes);

@@ -3,12 +3,9 @@
 
 use d3dgen_model::style::Symmetry;
 
-use super::cost::distance;
 use super::lattice::{Cellbox, meters};
 use super::spec::Brief;
-
-/// Share of the floor area from which on a plan is symmetric whose mirror images are rooms of the same kind.
-pub(crate) const SYMMETRIC: f64 = 0.8;
+use crate::lattice::distance;
 /// Share of a room that the mirror image of another covers at least, and the other way round, for the two to be a pair.
 const COVERS: f64 = 0.98;
 /// Weight of what is not alike, where a symmetric plan is asked for.

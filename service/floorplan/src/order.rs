@@ -8,13 +8,15 @@ use d3dgen_model::domain::Zone;
 use d3dgen_model::seed::Stream;
 use d3dgen_model::stage::Stop;
 
-use super::cost::{Judge, Weights, between, ill_placed};
+use super::cost::{Judge, Weights, ill_placed};
 use super::genome::Genome;
 use super::hall::passed_bedrooms;
 use super::lattice::{Cellbox, up};
 use super::realize::{Layout, Scratch, realize};
-use super::search::{Candidate, LOOK, mutate, patience};
 use super::spec::{Brief, RoomSpec};
+use crate::candidate::Candidate;
+use crate::changes::{LOOK, mutate, patience};
+use crate::lattice::between;
 
 /// Changes tried per room, and at most.
 const TRIES_PER_ROOM: usize = 50;

@@ -6,9 +6,8 @@ use d3dgen_model::courts::enclosed;
 use d3dgen_model::geometry::to_mm;
 use d3dgen_model::{Point, Polygon};
 
-use super::board::tidied;
-use super::holes::is_narrow;
 use super::lattice::{Cellbox, INNER_HALF_M, OUTER_HALF_M, meters};
+use crate::lattice::{is_narrow, tidied};
 
 /// A straight stretch of boundary on the lattice between two rooms, or between a room and outdoors.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

@@ -10,7 +10,7 @@ use d3dgen_model::seed::Stream;
 use d3dgen_model::stage::{Error, Stop};
 
 use super::assemble::{Turn, assemble, turned};
-use super::board::{Board, tidied, units};
+use super::board::{Board, units};
 use super::cost::{Judge, WEIGHTS};
 use super::insert::Chooser;
 use super::lattice::{Cellbox, INNER_HALF_M, OUTER_HALF_M, nearest, up};
@@ -18,6 +18,7 @@ use super::revise::{Aim, Task};
 use super::search::search;
 use super::spec::Brief;
 use super::{one_storey_graph, schemes};
+use crate::lattice::tidied;
 
 /// Most rooms whose sketch is looked at.
 pub const MOST_SKETCHED: usize = 60;

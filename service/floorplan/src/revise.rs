@@ -10,8 +10,8 @@ use super::board::{Board, units};
 use super::cost::{Judge, Weights};
 use super::lattice::{Cellbox, up};
 use super::realize::Layout;
-use super::search::patience;
 use super::spec::Brief;
+use crate::changes::patience;
 
 /// Steps per free room, and at least and at most in all.
 const STEPS_PER_ROOM: usize = 700;

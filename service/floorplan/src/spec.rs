@@ -19,9 +19,7 @@ use d3dgen_model::style::{Form, SpaceStyle, StyleWord, Symmetry};
 
 use super::core::Core;
 use super::lattice::OUTER_HALF_M;
-use super::mirror::SYMMETRIC;
-use super::search::Candidate;
-use super::windows::LEAST_WALL_M;
+use crate::measures::{LEAST_WALL_M, SYMMETRIC};
 
 /// Code of the conflict that a building has another form than was asked for.
 const FORM_NOT_BUILT: &str = "form_not_built";
@@ -286,9 +284,9 @@ impl Brief {
     }
 
     /// Says so where another form was built than was asked for.
-    pub(crate) fn tell_form(&mut self, asked: Option<Form>, built: &Candidate) {
+    pub(crate) fn tell_form(&mut self, asked: Option<Form>, is_built: impl Fn(Form) -> bool) {
         self.conflicts.retain(|n| n.code != FORM_NOT_BUILT);
-        let Some(form) = asked.filter(|f| !built.has_form(*f)) else { return };
+        let Some(form) = asked.filter(|f| !is_built(*f)) else { return };
         let asked = StyleWord::Form(form).label().replace('_', "-");
         self.conflicts.push(Note {
             code: FORM_NOT_BUILT.into(),
@@ -451,7 +449,7 @@ fn aloof(graph: &SceneGraph, domain: &Domain) -> Vec<[usize; 2]> {
     let of = |kind: &str| -> Vec<usize> {
         graph.rooms.iter().enumerate().filter(|(_, r)| r.room_type == kind).map(|(i, _)| i).collect()
     };
-    let pairs = rules_here(domain, graph.country_code.as_deref()).filter(advice).flat_map(|rule| {
+    let pairs = rules_here(domain, graph.place_code()).filter(advice).flat_map(|rule| {
         let others = of(&rule.b);
         of(&rule.a).into_iter().flat_map(move |a| others.clone().into_iter().map(move |b| [a, b]))
     });
@@ -586,8 +584,7 @@ fn is_for_guests(room: &GraphRoom, graph: &SceneGraph, domain: &Domain) -> bool 
     let wanted = |rule: &Adjacency| {
         rule.relation == AdjacencyRelation::Should && rule.a == room.room_type && halls.contains(&rule.b)
     };
-    !graph.rooms.iter().any(|r| halls.contains(&r.room_type))
-        && rules_here(domain, graph.country_code.as_deref()).any(wanted)
+    !graph.rooms.iter().any(|r| halls.contains(&r.room_type)) && rules_here(domain, graph.place_code()).any(wanted)
 }
 
 /// Returns the height of the gate that the vehicles of a room need, or those that come to it, m.

@@ -15,12 +15,13 @@ use d3dgen_model::seed::Stream;
 use d3dgen_model::stage::{Error, Stop};
 
 use super::adjust::{self, WallMove};
-use super::assemble::{costs, highest};
+use super::assemble::costs;
 use super::board::{Board, cells};
 use super::core::{Below, Core, merged};
 use super::cost::Judge;
 use super::spec::Brief;
 use super::storeys::{height, overhang_note, raise_stairwells};
+use crate::numbers::highest;
 
 /// A building of several storeys whose plan stands.
 struct Building<'a> {

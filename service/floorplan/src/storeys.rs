@@ -244,7 +244,7 @@ fn storey(
         };
         let boxes: Vec<(usize, Cellbox)> = in_core(&found.layout.boxes, &frame);
         let name = format!("{:?}", found.scheme).to_lowercase();
-        brief.tell_form(form, &found);
+        brief.tell_form(form, |f| found.has_form(f));
         match assemble(&brief, &turned_in_place(&boxes, turn), &found.score, seed, &name, None, rng) {
             Ok(plan) => {
                 let wings = brief.core.as_ref().is_some_and(|c| c.far.is_some() && !c.gable);
@@ -309,6 +309,7 @@ fn stacked(graph: &SceneGraph, planned: Vec<Planned>, numbers: &[i32], heights: 
         walls: Vec::new(),
         doors: Vec::new(),
         windows: Vec::new(),
+        obstacles: Vec::new(),
         cost: Vec::new(),
         conflicts: Vec::new(),
         levels,

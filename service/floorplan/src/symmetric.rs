@@ -15,9 +15,10 @@ use super::realize::{
     BARE, Layout, MIN_NOTCH_M, ONE_WAY_M, Span, cap_box, core_misfit, court_misfit, court_need, door_need, fill_cell,
     shares, span, spine_units,
 };
-use super::search::{Candidate, LOOK, mutate, patience};
 use super::spec::Brief;
 use super::twins::{Twins, tie};
+use crate::candidate::Candidate;
+use crate::changes::{LOOK, mutate, patience};
 
 /// Sound plans that are compared, the runs at most, and the rooms from which on fewer do.
 const WANTED: usize = 8;

@@ -10,9 +10,11 @@ use d3dgen_model::style::Symmetry;
 use super::assemble::{Turn, assemble, turned};
 use super::genome::Genome;
 use super::lattice::Cellbox;
-use super::mirror::{Likeness, SYMMETRIC, likeness};
-use super::search::{mutate, search};
+use super::mirror::{Likeness, likeness};
+use super::search::search;
 use super::spec::{Brief, Link, RoomSpec};
+use crate::changes::mutate;
+use crate::measures::SYMMETRIC;
 
 fn room(id: &str, area: [f64; 3], min_dimension: f64, daylight: Daylight, zone: Zone) -> RoomSpec {
     let material = || "Concrete_Smooth".to_owned();

@@ -7,6 +7,7 @@ use d3dgen_model::floorplan::{Door, Window};
 use super::lattice::{OUTER_HALF_M, meters};
 use super::outline::Stretch;
 use super::spec::{Brief, RoomSpec};
+use crate::measures::{LEAST_WALL_M, MARGIN_M, PANE_M};
 
 /// Glass per floor area; building codes ask for 1/10 to 1/7 (see the `window_to_floor_area` constraints).
 const GLASS_PER_FLOOR: f64 = 0.145;
@@ -16,8 +17,6 @@ const HIGH_SILL_M: f64 = 1.5;
 const HEAD_M: f64 = 2.2;
 /// Height of the balustrade of balconies and terraces, m.
 const BALUSTRADE_M: f64 = 1.0;
-/// Wall left between a window and a corner, and between two windows, m.
-const MARGIN_M: f64 = 0.35;
 /// Outer wall of a corridor with one window, and that window's width, m: nobody likes to walk along a blank wall.
 const CORRIDOR_STEP_M: f64 = 5.0;
 const CORRIDOR_PANE_M: f64 = 1.2;
@@ -32,10 +31,6 @@ const SPARED_SHARE: f64 = 0.12;
 /// Outer wall of a wet room that has a tall shower in one corner and its window in the middle, m; on shorter ones the
 /// window makes room for it.
 const SHOWER_AND_WINDOW_M: f64 = 2.9;
-/// Outer wall that takes the narrowest window, m: the least of a room that needs one.
-pub(crate) const LEAST_WALL_M: f64 = PANE_M.1 + 2.0 * MARGIN_M;
-/// Widest and narrowest single window, m.
-const PANE_M: (f64, f64) = (2.4, 0.6);
 /// What a width in steps may lack by rounding.
 const ROUNDING: f64 = 1e-6;
 

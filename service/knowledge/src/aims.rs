@@ -7,7 +7,8 @@ use std::collections::BTreeMap;
 
 use d3dgen_model::domain::{Domain, Mount, ObjectType};
 
-use crate::compliance::{SLACK, sizes};
+use crate::compliance::reading::SLACK;
+use crate::compliance::sizes;
 use crate::conditions::Guard;
 use crate::measure::Measure;
 use crate::retrieve::{Applicable, Rule, Scope};
@@ -103,7 +104,7 @@ impl Clear {
     fn raise(&mut self, measure: Measure, least: f64, one_side: bool) {
         let up = |v: &mut f64| *v = v.max(least);
         match measure {
-            Measure::ObjectFront => up(&mut self.front),
+            Measure::ObjectFront | Measure::FreeHalfCircle => up(&mut self.front),
             Measure::ObjectSides | Measure::CentreToSide => {
                 self.one_side = one_side && (self.one_side || self.sides == 0.0);
                 up(&mut self.sides);
@@ -126,7 +127,7 @@ fn is_extent(measure: Measure) -> bool {
 fn is_floor(measure: Measure) -> bool {
     use Measure as M;
     matches!(measure, M::ObjectFront | M::ObjectSides | M::ObjectThreeSides | M::ObjectAround | M::ObjectToWall)
-        || measure == M::CentreToSide
+        || matches!(measure, M::CentreToSide | M::FreeHalfCircle)
 }
 
 /// Tag of what robots that see with light mistake for an opening.

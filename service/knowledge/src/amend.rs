@@ -3,7 +3,7 @@
 //! What it is not for: finding the rule in the sentence (`research` does) and storing the edits (`database`).
 
 use d3dgen_model::knowledge::{AMENDMENT, Constraint, KnowledgeBase, LOCAL, Reference, Source, Statement, Value};
-use d3dgen_model::units;
+use d3dgen_model::{plausible, units};
 
 use crate::database::{Edit, Provenance, difference};
 use crate::draw_limits::ROBOT_TOPIC;
@@ -19,7 +19,7 @@ use crate::tables::TABLES;
 /// and checked by it as by that one.
 ///
 /// # Errors
-/// `Input` when the statement names no space.
+/// `Input` when the statement names no space, or a figure that no building has.
 pub fn state(knowledge: &KnowledgeBase, said: &Statement, by: &Provenance) -> Result<Vec<Edit>, Error> {
     states(knowledge, std::slice::from_ref(said), by)
 }
@@ -59,6 +59,7 @@ fn add(after: &mut KnowledgeBase, said: &Statement, by: &Provenance) -> Result<(
         });
         after.references.len() - 1
     });
+    plausible(&rule)?;
     let local = &mut after.references[at];
     rule.source_ids = vec![add_source(local, by)];
     let same = |c: &Constraint| {
@@ -87,7 +88,7 @@ fn add(after: &mut KnowledgeBase, said: &Statement, by: &Provenance) -> Result<(
 /// note.
 ///
 /// # Errors
-/// `Input` when there is no such rule, or the figure is the one it has.
+/// `Input` when there is no such rule, when the figure is the one it has, or one that no building has.
 pub fn correct(
     knowledge: &KnowledgeBase,
     constraint_id: &str,
@@ -114,7 +115,16 @@ pub fn correct(
     rule.note = if rule.note.is_empty() { was } else { format!("{}; {was}", rule.note) };
     rule.source_ids.insert(0, source);
     rule.value = value;
+    plausible(rule)?;
     Ok(difference(knowledge, &after, true))
+}
+
+/// Refuses a rule that cannot mean what it says.
+fn plausible(rule: &Constraint) -> Result<(), Error> {
+    match plausible::doubt_of(rule) {
+        None => Ok(()),
+        Some(reason) => Err(Error::Input(format!("{} of {}: {reason}", rule.name, rule.space_type))),
+    }
 }
 
 /// Adds the amendment to the sources of a document and returns its id.
@@ -158,6 +168,11 @@ fn drafted(knowledge: &KnowledgeBase, said: &Statement) -> Constraint {
         note: String::new(),
         source_ids: Vec::new(),
         seen_at: None,
+        clause: None,
+        quotation: None,
+        in_force_from: None,
+        in_force_until: None,
+        superseded_by: None,
     }
 }
 
@@ -272,5 +287,12 @@ mod tests {
         assert!(rule.note.ends_with("was at least 2.25 m before 2026-11-21"), "{}", rule.note);
         assert!(correct(&hospital, "nothing", Value::Number(1.0), &by()).is_err());
         assert!(correct(&hospital, id, Value::Number(2.25), &by()).is_err(), "nothing changes");
+        for (wrong, why) in
+            [(Value::Number(500.0), "500"), (Value::Number(-5.0), "-5"), (Value::Range { min: 3.0, max: 2.0 }, "above")]
+        {
+            let refused = correct(&hospital, id, wrong, &by()).expect_err("no corridor is so").to_string();
+            assert!(refused.contains(why), "{refused}");
+        }
+        assert!(state(&hospital, &said("width", "corridor", 500.0, "m"), &by()).is_err(), "no corridor is so wide");
     }
 }

@@ -157,6 +157,7 @@ fn fact(when: When, query: &Query) -> Option<bool> {
         When::Always => Some(true),
         When::Never => Some(false),
         When::Accessible => Some(query.accessible),
+        When::Wheelchair => Some(query.wheelchair),
         When::Beds => Some(beds),
         When::NoBeds => Some(!beds),
         When::TwoRobots => Some(query.robot_count() >= 2),

@@ -208,6 +208,11 @@ mod tests {
             note: String::new(),
             source_ids: Vec::new(),
             seen_at: None,
+            clause: None,
+            quotation: None,
+            in_force_from: None,
+            in_force_until: None,
+            superseded_by: None,
         }
     }
 

@@ -3,6 +3,7 @@
 //! What it is not for: storing them (`database`).
 
 use d3dgen_model::knowledge::{Constraint, KnowledgeBase, Value};
+use d3dgen_model::plausible::{self, Quarantined};
 use d3dgen_model::{Document, Problem, units};
 use serde_json::Value as Json;
 
@@ -16,6 +17,8 @@ pub struct Imported {
     pub knowledge: KnowledgeBase,
     /// Number of constraints whose figures were converted.
     pub converted: usize,
+    /// Rules that cannot mean what they say; `knowledge` is without them.
+    pub quarantined: Vec<Quarantined>,
     /// Units that are not known, each once with the id of the first constraint that has it; their figures stay as printed.
     pub unknown_units: Vec<(String, String)>,
 }
@@ -39,7 +42,8 @@ pub fn read(text: &str) -> Result<Imported, Error> {
             None => unknown_units.push((constraint.unit.clone(), constraint.constraint_id.clone())),
         }
     }
-    Ok(Imported { knowledge, converted, unknown_units })
+    let quarantined = plausible::quarantine(&mut knowledge);
+    Ok(Imported { knowledge, converted, quarantined, unknown_units })
 }
 
 /// Returns a problem for every formula that is none; names of quantities are left open, a building gives them figures.
@@ -148,6 +152,18 @@ mod tests {
         let imported = read(&text(3.into(), "persons per bench")).expect("valid");
         assert_eq!(imported.converted, 0);
         assert_eq!(imported.unknown_units, [("persons per bench".to_owned(), "c".to_owned())]);
+    }
+
+    #[test]
+    fn what_no_building_has_is_kept_apart_with_the_reason() {
+        for (value, unit, kept) in
+            [(500.into(), "m", false), ((-5).into(), "m", false), (9900.into(), "cm", false), (2.4.into(), "m", true)]
+        {
+            let imported = read(&text(value, unit)).expect("valid");
+            assert_eq!(imported.knowledge.references[0].constraints.len(), usize::from(kept), "{unit}");
+            assert_eq!(imported.quarantined.len(), usize::from(!kept), "{:?}", imported.quarantined);
+            assert!(imported.quarantined.iter().all(|q| q.constraint_id == "c" && q.reason.contains("lie between")));
+        }
     }
 
     #[test]

@@ -35,6 +35,24 @@ pub fn chain(country_code: Option<&str>) -> Vec<String> {
     out
 }
 
+/// Returns how wide a place is that rules hold in: 0 for one building and parts of countries, then countries, regions, the world.
+pub fn breadth(code: &str) -> u8 {
+    match code {
+        LOCAL => 0,
+        INTERNATIONAL => 3,
+        code if REGIONS.iter().any(|(name, _)| *name == code) => 2,
+        code if code.contains('-') => 0,
+        _ => 1,
+    }
+}
+
+/// Returns the jurisdictions of a country and of its division, nearest first; none where no country is known.
+pub fn national(country_code: Option<&str>) -> Vec<String> {
+    let mut all = chain(country_code);
+    all.retain(|code| code != LOCAL && code != INTERNATIONAL && !REGIONS.iter().any(|(region, _)| region == code));
+    all
+}
+
 /// Returns true where a rule of these jurisdictions holds; one without any holds everywhere.
 pub fn holds(jurisdictions: &[String], country_code: Option<&str>) -> bool {
     jurisdictions.is_empty() || chain(country_code).iter().any(|code| jurisdictions.contains(code))

@@ -15,6 +15,7 @@ mod draw_limits;
 pub mod error;
 mod figure;
 pub mod freespace;
+pub mod glossary;
 pub mod import;
 pub mod jurisdiction;
 mod limits;

@@ -74,6 +74,8 @@ pub enum Measure {
     RoomsAdjacent,
     /// Free floor in front of an object, m.
     ObjectFront,
+    /// Radius of the free half circle before the middle of an object's front, m.
+    FreeHalfCircle,
     /// Free floor at both sides of an object, m.
     ObjectSides,
     /// Free floor between objects of a kind, m.
@@ -212,9 +214,11 @@ pub enum Measure {
     SideClearance,
     /// Width of circulation beyond that of the widest robot, m.
     SpareWidth,
-    /// Length of a straight corridor beyond its last way out, in buildings with two exits, m.
+    /// Length of a corridor beyond its last way out, in buildings with two exits, m.
     DeadEnd,
-    /// Longest way to an exit over the row's base, the length that is allowed as the crow flies.
+    /// Way to the first room from which two ways lead out that have no room in common, or to the only exit, m.
+    CommonPath,
+    /// Longest way to an exit over the straight line between its ends; at least 1.
     WalkingFactor,
     /// Height of the middle of a thing on a wall, m.
     MountHeight,
@@ -292,6 +296,9 @@ impl Measure {
             Self::Proportion
                 | Self::WindowSill
                 | Self::TravelDistance
+                | Self::CommonPath
+                | Self::DeadEnd
+                | Self::WalkingFactor
                 | Self::StraightDistance
                 | Self::DistanceToRoom
                 | Self::DistanceBetween
@@ -315,10 +322,9 @@ impl Measure {
     /// Returns true when more than the upper end of an advised range does no harm.
     pub(crate) fn is_clearance(self) -> bool {
         use Measure as M;
-        matches!(
-            self,
-            M::ObjectFront | M::ObjectSides | M::ObjectAround | M::ObjectThreeSides | M::ObjectToWall | M::FacingGap
-        ) || matches!(self, M::GapBetweenObjects | M::TableEdgePerSeat | M::ClearFloorAtObject | M::SeatedDepth)
+        matches!(self, M::ObjectFront | M::FreeHalfCircle | M::AreaPerPerson)
+            || matches!(self, M::ObjectSides | M::ObjectAround | M::ObjectThreeSides | M::ObjectToWall | M::FacingGap)
+            || matches!(self, M::GapBetweenObjects | M::TableEdgePerSeat | M::ClearFloorAtObject | M::SeatedDepth)
     }
 
     /// Returns true for an extent of an object, which advice gives as the usual figure.

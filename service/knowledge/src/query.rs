@@ -22,6 +22,8 @@ pub struct Query {
     pub building_type: Option<String>,
     /// True when wheelchair access is asked for.
     pub accessible: bool,
+    /// True when somebody in a wheelchair lives or works there: rules for their homes ask more than those without steps.
+    pub wheelchair: bool,
     /// Room types of the building, each once, in scene-graph order.
     pub rooms: Vec<QueryRoom>,
     /// People at a time, as stated or reckoned from the area.
@@ -72,10 +74,11 @@ impl Query {
         }
         let (persons, persons_stated) = persons(graph);
         Self {
-            country_code: graph.country_code.clone(),
+            country_code: graph.place_code().map(str::to_owned),
             domain: graph.domain.clone(),
             building_type: graph.building_type.clone(),
             accessible: graph.accessible,
+            wheelchair: graph.wheelchair,
             rooms,
             persons,
             persons_stated,

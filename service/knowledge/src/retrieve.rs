@@ -21,6 +21,8 @@ use crate::tables::{QuantityRow, SpaceKind, TABLES};
 pub struct Retrieval {
     /// Jurisdictions whose rules were taken, nearest first.
     pub jurisdictions: Vec<String>,
+    /// Jurisdictions of the country and of its division; empty where no country is known.
+    pub national: Vec<String>,
     /// Constraints about something in the building, in the order of the knowledge base.
     pub constraints: Vec<Applicable>,
     /// Constraints of these jurisdictions about something the building does not have.
@@ -63,11 +65,22 @@ pub struct Applicable {
 }
 
 impl Applicable {
+    /// Returns true for rules whose figure somebody read where it is printed, in more than a page of the web that nothing
+    /// vouches for: plans go by these only.
+    pub fn is_vouched_for(&self) -> bool {
+        self.constraint.verified != PARTLY_SEEN && self.citation.source.source_type != WEB_PAGE
+    }
+
     /// Returns true where free floor on one of both sides is enough.
     pub fn is_one_sided(&self) -> bool {
         self.constraint.measurement_basis.contains("one side")
     }
 }
+
+/// Word of `verified` for what a search quoted of a page that nobody read.
+const PARTLY_SEEN: &str = "partly_seen";
+/// Type of sources of which nothing says what they are.
+const WEB_PAGE: &str = "web_page";
 
 /// What a constraint is about.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -123,7 +136,7 @@ pub fn missing_rooms(knowledge: &KnowledgeBase, query: &Query) -> Vec<Applicable
         .filter(|r| conditions::document_holds(r, query))
         .flat_map(|r| r.constraints.iter().map(move |c| (r, c)))
         .filter(|(_, c)| TABLES.quantity_of(c, asks_for_rooms).is_some())
-        .filter_map(|(reference, c)| applicable(c, reference, query))
+        .filter_map(|(reference, c)| applicable(c, reference, query, &knowledge.metadata.date))
         .collect();
     resolve::settle(&mut asking, &chain, &Policy::Strictest);
     asking.retain(|a| {
@@ -145,7 +158,7 @@ pub fn retrieve_with(knowledge: &KnowledgeBase, query: &Query, policy: &Policy) 
             continue;
         }
         for constraint in &reference.constraints {
-            match applicable(constraint, reference, query) {
+            match applicable(constraint, reference, query, &knowledge.metadata.date) {
                 Some(found) => constraints.push(found),
                 None => not_applicable += 1,
             }
@@ -155,11 +168,16 @@ pub fn retrieve_with(knowledge: &KnowledgeBase, query: &Query, policy: &Policy) 
     resolve::settle(&mut planned, &chain, policy);
     let conflicts = resolve::settle(&mut constraints, &chain, policy);
     let limits = draw_limits::draw(&planned, &constraints, &chain, query);
+    // plans leave room for robots that may come; a world without any breaks none of their rules
+    let before = constraints.len();
+    constraints.retain(|a| !query.robots.is_empty() || !is_about_robots(a));
+    not_applicable += (before - constraints.len()) as u32;
     let used = |code: &String| {
         code == jurisdiction::INTERNATIONAL || constraints.iter().any(|c| &c.citation.jurisdiction == code)
     };
     Retrieval {
         jurisdictions: chain.iter().filter(|c| used(c)).cloned().collect(),
+        national: jurisdiction::national(query.country_code.as_deref()),
         not_applicable,
         limits,
         persons: query.persons,
@@ -170,8 +188,9 @@ pub fn retrieve_with(knowledge: &KnowledgeBase, query: &Query, policy: &Policy) 
     }
 }
 
-/// Returns a constraint with its meaning for this building; `None` when it is about nothing there.
-fn applicable(c: &Constraint, reference: &Reference, query: &Query) -> Option<Applicable> {
+/// Returns a constraint with its meaning for this building; `None` when it is about nothing there. What had ended `on` the day
+/// of the knowledge base binds nobody.
+fn applicable(c: &Constraint, reference: &Reference, query: &Query, on: &str) -> Option<Applicable> {
     let quantity = TABLES.quantity(c);
     let conditions = conditions::evaluate(c, quantity, query);
     if conditions.fails.is_some() {
@@ -193,7 +212,10 @@ fn applicable(c: &Constraint, reference: &Reference, query: &Query) -> Option<Ap
     };
     Some(Applicable {
         citation: citation(c, reference)?,
-        mandatory: is_mandatory(c, reference) && conditions.unknown.is_none() && !quantity.is_some_and(|q| q.advice),
+        mandatory: is_mandatory(c, reference)
+            && !c.has_ended(on)
+            && conditions.unknown.is_none()
+            && !quantity.is_some_and(|q| q.advice),
         reported_only: conditions.reported_only
             || quantity.is_some_and(|q| q.reported_only)
             || matches!(c.value, Value::Expression { .. }),
@@ -205,6 +227,12 @@ fn applicable(c: &Constraint, reference: &Reference, query: &Query) -> Option<Ap
         decision,
         superseded_by: None,
     })
+}
+
+/// Returns true for rules about robots, their software and machines that move, other than laws on what a building has.
+fn is_about_robots(a: &Applicable) -> bool {
+    let law = a.citation.source.source_type == "regulation" && a.decision.is_ok();
+    a.constraint.topic == draw_limits::ROBOT_TOPIC && !law
 }
 
 /// Returns true for quantities of rooms that a building may lack.
@@ -267,6 +295,11 @@ fn citation(c: &Constraint, reference: &Reference) -> Option<Citation> {
         note: c.note.clone(),
         printed: c.original_value.clone(),
         confidence: c.confidence.clone(),
+        clause: c.clause.clone(),
+        quotation: c.quotation.clone(),
+        seen_at: c.seen_at.clone(),
+        in_force_until: c.in_force_until.clone(),
+        superseded_by: c.superseded_by.clone(),
     })
 }
 
@@ -275,5 +308,6 @@ fn is_mandatory(c: &Constraint, reference: &Reference) -> bool {
     let sources = || c.source_ids.iter().filter_map(|id| reference.sources.iter().find(|s| &s.source_id == id));
     let source = sources().find(|s| s.source_type != AMENDMENT).or_else(|| sources().next());
     source.is_some_and(|s| matches!(s.source_type.as_str(), "regulation" | "standard" | AMENDMENT))
+        && c.verified != PARTLY_SEEN
         && !matches!(c.constraint_type.as_str(), "recommendation" | "rule_of_thumb")
 }

@@ -240,6 +240,7 @@ pub(crate) enum When {
     Always,
     Never,
     Accessible,
+    Wheelchair,
     Beds,
     NoBeds,
     Public,

@@ -1,17 +1,15 @@
 //! What the shipped knowledge bases come to for buildings of several countries.
 
-use std::path::Path;
-
 use d3dgen_model::document::Document;
 use d3dgen_model::domain::{Daylight, Zone};
 use d3dgen_model::knowledge::KnowledgeBase;
+use d3dgen_plugins::Registry;
 
 use crate::*;
 
 pub(crate) fn knowledge(domain: &str) -> KnowledgeBase {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../domains").join(domain).join("knowledge.json");
-    KnowledgeBase::from_json(&std::fs::read_to_string(path).expect("every domain has a knowledge base"))
-        .expect("shipped knowledge bases are valid")
+    let registry = Registry::builtin();
+    registry.get(domain).expect("every domain has a knowledge base").knowledge().clone()
 }
 
 fn room(room_type: &str, spaces: &[&str], beds: bool) -> QueryRoom {
@@ -48,6 +46,7 @@ fn query(domain: &str, country: Option<&str>) -> Query {
         domain: domain.into(),
         building_type: None,
         accessible: false,
+        wheelchair: false,
         rooms,
         persons: 18,
         persons_stated: false,

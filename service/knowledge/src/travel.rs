@@ -70,17 +70,26 @@ impl Distances {
 
     /// Returns the longest way from the free floor of a room, m; `None` when none of it is connected.
     pub fn largest_in(&self, map: &Occupancy, room: &PlanRoom) -> Option<f64> {
-        let mut largest = None;
+        self.farthest_in(map, room).map(|(_, way)| way)
+    }
+
+    /// Returns the free floor of a room with the longest way, and that way, m; `None` when none of it is connected.
+    pub fn farthest_in(&self, map: &Occupancy, room: &PlanRoom) -> Option<(Point, f64)> {
+        let mut largest: Option<(u32, usize, usize)> = None;
         for rect in room.net_polygon.rects() {
             let (i0, i1, j0, j1) = map.frame.span(&rect);
             let steps = |a: i64, b: i64| (a.max(0) as usize).div_ceil(STEP)..(b.max(0) as usize).div_ceil(STEP);
             for j in steps(j0, j1) {
                 for i in steps(i0, i1) {
-                    largest = largest.max(self.cost.get(j * self.nx + i).copied().filter(|c| *c != u32::MAX));
+                    let here = self.cost.get(j * self.nx + i).copied().filter(|c| *c != u32::MAX);
+                    if here.is_some_and(|c| largest.is_none_or(|l| c > l.0)) {
+                        largest = here.map(|c| (c, i, j));
+                    }
                 }
             }
         }
-        largest.and_then(meters)
+        let (cost, i, j) = largest?;
+        Some((map.frame.center(i * STEP, j * STEP), meters(cost)?))
     }
 
     fn around(&self, map: &Occupancy, p: Point) -> Vec<(usize, usize)> {

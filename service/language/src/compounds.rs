@@ -60,6 +60,7 @@ fn parts(token: &Token, text: &str, language: &Language) -> Option<Vec<Token>> {
             bytes: token.bytes.start + bytes[first]..token.bytes.start + bytes[last],
             chars: token.chars.start + first..token.chars.start + last,
             joined: i > 0 || token.joined,
+            hyphen: i == 0 && token.hyphen,
             capital: i == 0 && token.capital,
             ..token.clone()
         }

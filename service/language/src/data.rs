@@ -81,6 +81,8 @@ pub struct LanguageData {
     pub(crate) lookalikes: Vec<String>,
     /// Letters that tell the language from others: first and last of each run.
     pub(crate) letters: Vec<(char, char)>,
+    /// True where names of places are inflected as other words are.
+    pub names_decline: bool,
     /// The lexicon.
     pub words: Vec<Words>,
 }
@@ -141,6 +143,8 @@ struct LanguageFile {
     lookalikes: String,
     #[serde(default)]
     letters: Vec<String>,
+    #[serde(default)]
+    names_decline: bool,
 }
 
 #[derive(Debug, Default, Deserialize, PartialEq)]
@@ -216,6 +220,7 @@ fn language(file: &str, code: &str, text: &str) -> Result<LanguageData, Error> {
         transcriptions: read.transcriptions.into_iter().collect(),
         lookalikes: read.lookalikes.split_whitespace().map(fold).collect(),
         letters: read.letters.iter().filter_map(|r| Some((r.chars().next()?, r.chars().next_back()?))).collect(),
+        names_decline: read.names_decline,
         words: Vec::new(),
     })
 }

@@ -96,6 +96,16 @@ impl Lexicon {
         read.map(|l| (l.data.code.as_str(), l.data.name.as_str())).collect()
     }
 
+    /// Adds a name: for all languages, and once more for those that inflect names.
+    pub fn add_name(&mut self, class: &str, value: &str, name: &str) {
+        self.add(ANY, class, value, name);
+        for at in 0..self.languages.len() {
+            if self.languages[at].data.names_decline {
+                self.put(at, class, value, name);
+            }
+        }
+    }
+
     fn put(&mut self, at: usize, class: &str, value: &str, phrase: &str) {
         let exact = self.exact.iter().any(|c| c == class);
         let language = &mut self.languages[at];
@@ -213,6 +223,7 @@ fn bare(code: &str) -> LanguageData {
         transcriptions: Vec::new(),
         lookalikes: Vec::new(),
         letters: Vec::new(),
+        names_decline: false,
         words: Vec::new(),
     }
 }

@@ -207,6 +207,11 @@ impl Lexicon {
         if run.last()?.sentence != sentence {
             return None;
         }
+        // "4-bed rooms": what a hyphen ties to a number goes with it before it goes with what follows
+        let torn = run[0].hyphen && found.from > 0 && tokens[found.from - 1].kind == TokenKind::Number;
+        if torn && run[1..].iter().any(|t| !t.hyphen) {
+            return None;
+        }
         let letters: usize = run.iter().map(|t| t.text.chars().count()).sum();
         let language = &self.languages[found.language];
         let own = detected.sentences[sentence] == found.language || language.data.code == ANY;

@@ -30,6 +30,8 @@ pub struct Token {
     pub kind: TokenKind,
     /// True when nothing stands between it and the token before it.
     pub joined: bool,
+    /// True when a hyphen ties it to the token before it.
+    pub hyphen: bool,
     /// True when it is written with a capital letter.
     pub capital: bool,
     /// Number of the sentence it stands in.
@@ -55,7 +57,11 @@ const MARKS: &[(&str, &str)] = &[
     ("≥", "≥"),
     ("≤", "≤"),
 ];
+/// Which of the marks are hyphens.
+const HYPHENS: usize = 9;
 const ENDS_SENTENCE: &[&str] = &[".", "!", "?", ";", ":", "\n"];
+/// What stands behind an apostrophe in one word.
+const CONTRACTED: &[&str] = &["ll", "re", "ve"];
 const APOSTROPHES: &[char] = &['\'', '’', 'ʼ', '`', '´'];
 
 /// Returns the tokens of a text.
@@ -96,7 +102,10 @@ impl Scan<'_> {
             self.push(self.at + 1, TokenKind::Sign, None);
         } else if is_digit(c) {
             let end = self.number_end();
-            self.push(end, TokenKind::Number, None);
+            // "1930s" is a word
+            let years = self.get(end) == Some('s') && !self.get(end + 1).is_some_and(char::is_alphanumeric);
+            let kind = if years { TokenKind::Word } else { TokenKind::Number };
+            self.push(end + usize::from(years), kind, None);
         } else if c.is_alphabetic() || is_wide_unit(c) {
             self.word();
         } else {
@@ -129,8 +138,8 @@ impl Scan<'_> {
                 end += 1;
             } else if APOSTROPHES.contains(&c) && end > self.at && self.get(end + 1).is_some_and(char::is_alphabetic) {
                 // "women's", "don't" are one word, "d'angle" and "dell'ingresso" are two
-                let after = (end + 1..).take_while(|i| self.get(*i).is_some_and(char::is_alphabetic)).count();
-                if after > 2 {
+                let after: String = (end + 1..).map_while(|i| self.get(i).filter(|c| c.is_alphabetic())).collect();
+                if after.chars().count() > 1 && !CONTRACTED.contains(&after.as_str()) {
                     self.push(end, TokenKind::Word, None);
                     self.at += 1;
                     return;
@@ -195,6 +204,10 @@ impl Scan<'_> {
             folded
         });
         let joined = self.tokens.last().is_some_and(|t| t.bytes.end == from);
+        let tied = self.tokens.last().is_some_and(|t| {
+            t.bytes.end < from && self.text[t.bytes.end..from].chars().all(|c| MARKS[HYPHENS].0.contains(c))
+        });
+        let hyphen = tied && kind != TokenKind::Mark;
         let capital = written.starts_with(char::is_uppercase);
         self.tokens.push(Token {
             text,
@@ -202,6 +215,7 @@ impl Scan<'_> {
             chars: self.at..end,
             kind,
             joined,
+            hyphen,
             capital,
             sentence: self.sentence,
         });

@@ -4,9 +4,11 @@
 //! the middle of the footprint on the underside (of a wall object: in the middle of its box's underside too).
 
 pub mod builds;
+pub mod dynamics;
 pub mod error;
 pub mod mass;
 pub mod model3d;
+pub mod parts;
 pub mod picture;
 pub mod writers;
 

@@ -1,7 +1,7 @@
 //! Center of mass and inertia of rigid bodies, in closed form from their collision shapes.
 
 use crate::affine::Vec3;
-use crate::{Body, Collision};
+use crate::{Body, Collision, Model3d};
 
 /// How a body resists being moved.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -45,6 +45,26 @@ pub fn inertia(body: &Body) -> Inertia {
         }
     }
     Inertia { mass_kg: body.mass_kg, center_m: center, tensor }
+}
+
+/// Returns the inertia of all bodies of a model as one, with every joint at zero.
+pub fn whole(model: &Model3d) -> Inertia {
+    let all: Vec<Inertia> = model.bodies.iter().map(inertia).collect();
+    let mass_kg: f64 = all.iter().map(|b| b.mass_kg).sum();
+    let share = |b: &Inertia| if mass_kg > 0.0 { b.mass_kg / mass_kg } else { 1.0 / all.len() as f64 };
+    let center_m: Vec3 = std::array::from_fn(|i| all.iter().map(|b| b.center_m[i] * share(b)).sum());
+    let mut tensor = [[0.0; 3]; 3];
+    for body in &all {
+        let way: Vec3 = std::array::from_fn(|i| body.center_m[i] - center_m[i]);
+        let square: f64 = way.iter().map(|v| v * v).sum();
+        for i in 0..3 {
+            for j in 0..3 {
+                let same = if i == j { square } else { 0.0 };
+                tensor[i][j] += body.tensor[i][j] + body.mass_kg * (same - way[i] * way[j]);
+            }
+        }
+    }
+    Inertia { mass_kg, center_m, tensor }
 }
 
 /// Returns the volume of a shape, m^3.
@@ -163,6 +183,17 @@ mod tests {
         }
         let triple = crate::affine::dot(crate::affine::cross(found[0], found[1]), found[2]);
         assert!(close(triple, 1.0));
+    }
+
+    #[test]
+    fn a_model_of_two_bodies_is_as_heavy_as_both() {
+        let [low, high] = [[0.0, 1.5], [1.5, 3.0]]
+            .map(|[a, b]| body(vec![Collision::Box { min: [0.0, 0.0, a], max: [2.0, 1.0, b] }], 3.0));
+        let both = whole(&Model3d { bodies: vec![low, high], ..Model3d::default() });
+        let one = inertia(&body(vec![Collision::Box { min: [0.0; 3], max: [2.0, 1.0, 3.0] }], 6.0));
+        assert!(close(both.mass_kg, 6.0) && (0..3).all(|i| close(both.center_m[i], one.center_m[i])));
+        assert!((0..9).all(|k| close(both.tensor[k / 3][k % 3], one.tensor[k / 3][k % 3])), "{both:?} {one:?}");
+        assert_eq!(whole(&Model3d::default()).mass_kg, 0.0);
     }
 
     #[test]

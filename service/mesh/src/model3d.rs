@@ -2,6 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::affine::{Vec3, cross, dot, length, scale, sub, unit};
+
+/// A direction closer than this to an axis is that axis.
+const STRAIGHT: f64 = 0.9999;
+
 /// A 3D model: bodies that joints move against each other, and what they look like.
 ///
 /// All geometry is in the frame of the model (see the crate), with every joint at zero.
@@ -200,6 +205,34 @@ impl Mesh {
 }
 
 impl Collision {
+    /// Returns a box around a center with these axes, whose lengths stretch it: an upright one when they are those of the
+    /// model.
+    pub fn around(center: [f64; 3], half: [f64; 3], axes: [[f64; 3]; 3]) -> Self {
+        let lengths = axes.map(length);
+        let half = std::array::from_fn(|i| half[i] * lengths[i]);
+        turned(center, half, axes.map(unit))
+    }
+
+    /// Returns an upright box whose third axis was that of a round bar as such a bar, and any other shape as it is.
+    /// `radius` and `half` tell which of its axes that is.
+    pub fn rounded(self, radius: f64, half: f64) -> Self {
+        let Self::Box { min, max } = &self else { return self };
+        let extent: [f64; 3] = std::array::from_fn(|i| max[i] - min[i]);
+        let close = |a: f64, b: f64| (a - b).abs() <= 1e-6 * (a + b);
+        let along = (0..3).rev().find(|&i| {
+            let across = extent[(i + 1) % 3];
+            close(extent[i] * radius, across * half) && close(across, extent[(i + 2) % 3])
+        });
+        let center = std::array::from_fn(|i| (min[i] + max[i]) / 2.0);
+        match along {
+            Some(axis) => {
+                let radius = extent[(axis + 1) % 3] / 2.0;
+                Self::Cylinder { center, radius, length: extent[axis], axis }
+            }
+            None => self,
+        }
+    }
+
     /// Returns the upright box around the shape: least and largest corner, m.
     pub fn bounds(&self) -> [[f64; 3]; 2] {
         let around = |center: &[f64; 3], half: [f64; 3]| {
@@ -216,4 +249,20 @@ impl Collision {
             }
         }
     }
+}
+
+/// Returns a box with these unit axes: upright when they are the axes of the model.
+fn turned(center: Vec3, half: Vec3, axes: [Vec3; 3]) -> Collision {
+    let straight = axes.iter().all(|a| a.iter().any(|v| v.abs() > STRAIGHT));
+    if straight {
+        let extent: Vec3 = std::array::from_fn(|k| (0..3).map(|i| axes[i][k].abs() * half[i]).sum());
+        return Collision::Box {
+            min: std::array::from_fn(|k| center[k] - extent[k]),
+            max: std::array::from_fn(|k| center[k] + extent[k]),
+        };
+    }
+    // Where it was stretched by per milles, turned axes are not quite square to each other.
+    let second = unit(sub(axes[1], scale(axes[0], dot(axes[0], axes[1]))));
+    let axes = [axes[0], second, cross(axes[0], second)];
+    Collision::TurnedBox { center, half, axes }
 }

@@ -1,10 +1,10 @@
 //! Pictures of models: a software rasterizer for thumbnails and contact sheets.
 //!
-//! One view for all: from the front, a little from the right and above. What it is not for: photographs; textures are
-//! shown by their mean color, which the material's base color holds.
+//! One view for all: from the front, a little from the right and above. What it is not for: photographs.
 
 mod raster;
 mod shade;
+mod texture;
 
 use crate::{Error, Material, Model3d};
 use shade::Light;
@@ -56,7 +56,7 @@ pub fn render(model: &Model3d, px: usize, view: &View) -> Picture {
     let px = px.clamp(1, 4096);
     let plain = Material::default();
     let lights: Vec<Light> = model.materials.iter().chain([&plain]).map(Light::new).collect();
-    let samples = raster::draw(model, &lights, px * raster::SAMPLES, view);
+    let samples = raster::draw(model, &lights, &texture::worn(model), px * raster::SAMPLES, view);
     shade::develop(&samples, &lights, px, view.ground)
 }
 

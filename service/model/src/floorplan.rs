@@ -8,8 +8,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::document::{Document, Problem, check_unique};
 use crate::domain::Materials;
-use crate::geometry::{Polygon, Segment};
+use crate::geometry::{Polygon, Rect, Segment};
 use crate::storeys::{Level, VerticalLink, check_links, is_ground};
+
+/// Height of the slices in which what stands at an angle is covered by rectangles, m.
+const COVER_STEP_M: f64 = 0.05;
 
 /// A plan of one storey or several; all storeys share one frame, so what has the same coordinates lies above each other.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -29,6 +32,9 @@ pub struct Floorplan {
     pub doors: Vec<Door>,
     /// Windows.
     pub windows: Vec<Window>,
+    /// What stands in rooms from floor to ceiling: columns, and walls that stand free.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub obstacles: Vec<FixedObstacle>,
     /// Cost terms of the layout search, weighted, for those who compare plans.
     #[serde(default)]
     pub cost: Vec<CostTerm>,
@@ -192,6 +198,33 @@ pub struct Window {
     pub locked: bool,
 }
 
+/// Part of the building that stands in a room from floor to ceiling and bounds none: its floor is no floor of the room.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FixedObstacle {
+    /// Unique id: `obstacle_2`.
+    pub obstacle_id: String,
+    /// What it is.
+    pub kind: ObstacleKind,
+    /// Outline, counter-clockwise, at any angle.
+    pub outline: Polygon,
+    /// Room it stands in.
+    pub room_id: String,
+    /// True keeps it when the plan is fed back.
+    #[serde(default)]
+    pub locked: bool,
+}
+
+/// What stands in a room and is no furniture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ObstacleKind {
+    /// Holds up the building.
+    Column,
+    /// Ends at no other wall, or at one only.
+    Wall,
+}
+
 /// One term of the layout cost.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -219,6 +252,16 @@ impl Floorplan {
     /// Returns the doors and open passages of a room.
     pub fn doors_of<'a>(&'a self, id: &'a str) -> impl Iterator<Item = &'a Door> + 'a {
         self.doors.iter().filter(move |d| d.room_ids.iter().any(|r| r == id))
+    }
+
+    /// Returns the columns and free walls of a room.
+    pub fn obstacles_of<'a>(&'a self, id: &'a str) -> impl Iterator<Item = &'a FixedObstacle> + 'a {
+        self.obstacles.iter().filter(move |o| o.room_id == id)
+    }
+
+    /// Returns rectangles that cover the columns and free walls of a room.
+    pub fn taken_in(&self, id: &str) -> Vec<Rect> {
+        self.obstacles_of(id).flat_map(|o| o.outline.cover(COVER_STEP_M)).collect()
     }
 }
 
@@ -248,6 +291,17 @@ impl Document for Floorplan {
                         "has an edge that is not along x or y; this release plans right angles only",
                     ));
                 }
+            }
+        }
+        check_unique("/obstacles", self.obstacles.iter().map(|o| o.obstacle_id.as_str()), &mut problems);
+        for (i, obstacle) in self.obstacles.iter().enumerate() {
+            if obstacle.outline.0.len() < 3 || obstacle.outline.signed_area() <= 0.0 {
+                let path = format!("/obstacles/{i}/outline");
+                problems.push(Problem::new(path, "needs three corners or more, counter-clockwise"));
+            }
+            if self.room(&obstacle.room_id).is_none() {
+                let path = format!("/obstacles/{i}/room_id");
+                problems.push(Problem::new(path, format!("room `{}` is not in rooms", obstacle.room_id)));
             }
         }
         check_links(&self.links, |id| self.room(id).map(|r| r.level), &mut problems);

@@ -79,6 +79,12 @@ impl Segment {
         (at, a.min(b), a.max(b))
     }
 
+    /// Returns the segment moved, m.
+    pub fn moved(&self, dx: f64, dy: f64) -> Self {
+        let by = |p: Point| Point::new(p.x + dx, p.y + dy);
+        Self { start: by(self.start), end: by(self.end) }
+    }
+
     /// Returns the rectangle between the ends.
     pub fn bounds(&self) -> Rect {
         Rect::new(self.start.x, self.start.y, self.end.x, self.end.y)
@@ -162,6 +168,21 @@ impl Rect {
         let x = (self.x0 - other.x1).max(other.x0 - self.x1);
         let y = (self.y0 - other.y1).max(other.y0 - self.y1);
         [x.max(0.0), y.max(0.0)]
+    }
+
+    /// Returns what is left of the rectangle without another one, in at most four pieces.
+    pub fn without(&self, cut: &Self) -> Vec<Self> {
+        if !self.overlaps(cut) {
+            return vec![*self];
+        }
+        let (y0, y1) = (self.y0.max(cut.y0), self.y1.min(cut.y1));
+        let pieces = [
+            Self { y1: cut.y0, ..*self },
+            Self { y0: cut.y1, ..*self },
+            Self { x1: cut.x0, y0, y1, ..*self },
+            Self { x0: cut.x1, y0, y1, ..*self },
+        ];
+        pieces.into_iter().filter(|p| p.x0 < p.x1 && p.y0 < p.y1).collect()
     }
 
     /// Returns true when the interiors share more than a contact line.
@@ -259,6 +280,32 @@ impl Polygon {
         self.edges().all(|s| (s.start.x - s.end.x).abs() < e || (s.start.y - s.end.y).abs() < e)
     }
 
+    /// Returns rectangles that cover the polygon: exactly where it is rectilinear, else in slices of at most `step` m along y,
+    /// each as wide as the polygon is there.
+    pub fn cover(&self, step: f64) -> Vec<Rect> {
+        if self.is_rectilinear() {
+            return self.rects();
+        }
+        let bounds = self.bounds();
+        let count = (bounds.height() / step).ceil().max(1.0);
+        let at = |k: f64| bounds.y0 + bounds.height() * k / count;
+        let slice = |k: u32| {
+            let (y0, y1) = (at(f64::from(k)), at(f64::from(k + 1)));
+            let ends = self.edges().filter_map(|e| {
+                let (low, high) = if e.start.y <= e.end.y { (e.start, e.end) } else { (e.end, e.start) };
+                let rise = high.y - low.y;
+                let x = |y: f64| {
+                    let share = if rise > 0.0 { (y - low.y) / rise } else { 0.0 };
+                    low.x + share.clamp(0.0, 1.0) * (high.x - low.x)
+                };
+                (low.y <= y1 && high.y >= y0).then(|| [x(y0), x(y1)])
+            });
+            let (x0, x1) = ends.flatten().fold((f64::MAX, f64::MIN), |b, x| (b.0.min(x), b.1.max(x)));
+            Rect { x0, y0, x1, y1 }
+        };
+        (0..count as u32).map(slice).filter(|r| r.x1 > r.x0).collect()
+    }
+
     /// Returns non-overlapping rectangles that together cover a rectilinear polygon, by slabs between corner heights.
     pub fn rects(&self) -> Vec<Rect> {
         let mut ys: Vec<f64> = self.0.iter().map(|p| p.y).collect();
@@ -315,6 +362,17 @@ fn folds_back(s: &Segment, t: &Segment) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_stands_at_an_angle_is_covered_by_narrow_slices() {
+        let lozenge = Polygon([(1.0, 0.0), (2.0, 1.0), (1.0, 2.0), (0.0, 1.0)].map(|(x, y)| Point::new(x, y)).to_vec());
+        let cover = lozenge.cover(0.1);
+        let area: f64 = cover.iter().map(Rect::area).sum();
+        assert!((2.0..2.3).contains(&area), "{area} m2 for 2 m2");
+        assert!(cover.iter().any(|r| r.x0 < 0.001) && cover.iter().all(|r| r.height() < 0.101));
+        let square = Polygon([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(x, y)| Point::new(x, y)).to_vec());
+        assert_eq!(square.cover(0.1), square.rects());
+    }
 
     #[test]
     fn rects_cover_an_l_shape_exactly() {

@@ -29,6 +29,9 @@ pub struct Metadata {
     pub version: u32,
     /// Domain id.
     pub domain: String,
+    /// Ids of shared knowledge bases whose rules hold too (`egress`, `accessibility`, `workplace`).
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub uses: Vec<String>,
     /// How the file was made, one sentence.
     pub generated_by: String,
     /// Date of the newest change, `YYYY-MM-DD`.
@@ -57,7 +60,7 @@ pub struct Reference {
 }
 
 /// The citable origin of a constraint.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Source {
     /// Unique within the reference.
@@ -114,6 +117,31 @@ pub struct Constraint {
     /// Where the figure was checked, if not in the source itself.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub seen_at: Option<String>,
+    /// Where in the source it stands (`Art. 21`, `5.2`).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub clause: Option<String>,
+    /// Words of the source or of the page where it was checked, 25 at most; only where they were read.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub quotation: Option<String>,
+    /// First day it holds, where that is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub in_force_from: Option<String>,
+    /// Last day it held; such a rule is no law for new buildings any more, and is reported as what it was.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub in_force_until: Option<String>,
+    /// What replaced it: the id of a constraint, or the name of a document.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub superseded_by: Option<String>,
+}
+
+/// Words of a quotation at most: enough to find the place, too few to stand for the text.
+const QUOTED_WORDS: usize = 25;
+
+impl Constraint {
+    /// Returns whether it had ended on a day (`2026-11-21`).
+    pub fn has_ended(&self, on: &str) -> bool {
+        self.in_force_until.as_deref().is_some_and(|last| last < on)
+    }
 }
 
 /// A polymorphic constraint value.
@@ -162,6 +190,7 @@ impl KnowledgeBase {
         let metadata = Metadata {
             version: 1,
             domain: domain.into(),
+            uses: Vec::new(),
             generated_by: "no knowledge.json was given".into(),
             date: "1970-01-01".into(),
             notes: Vec::new(),
@@ -262,6 +291,18 @@ fn check_constraint(path: &str, constraint: &Constraint, reference: &Reference, 
         Value::List(list) if list.is_empty() => problem("value", "is an empty list".into()),
         Value::Table(table) if table.is_empty() => problem("value", "is an empty table".into()),
         _ => {}
+    }
+    if constraint.quotation.as_ref().is_some_and(|q| q.split_whitespace().count() > QUOTED_WORDS) {
+        problem("quotation", format!("has more than {QUOTED_WORDS} words"));
+    }
+    let term = [("in_force_from", &constraint.in_force_from), ("in_force_until", &constraint.in_force_until)];
+    for (field, date) in term.iter().filter_map(|(field, date)| Some((field, date.as_ref()?))) {
+        check_date(&format!("{path}/{field}"), date, problems);
+    }
+    if let [(_, Some(from)), (field, Some(until))] = term
+        && from > until
+    {
+        problems.push(Problem::new(format!("{path}/{field}"), format!("{until} is before {from}, its first day")));
     }
     check_id(&format!("{path}/constraint_id"), &constraint.constraint_id, problems);
     for (field, word) in

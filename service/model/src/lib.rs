@@ -22,6 +22,7 @@ pub mod occupancy;
 pub mod offer;
 pub mod passage;
 pub mod placements;
+pub mod plausible;
 pub mod proposal;
 pub mod report;
 pub mod robot_body;

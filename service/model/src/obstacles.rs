@@ -123,7 +123,7 @@ pub fn clear_opening(door: &Door) -> Segment {
 
 /// Returns the faces of all walls, open where doors between two rooms are clear, and the jambs of those doors.
 fn walls(plan: &Floorplan) -> Vec<Segment> {
-    let mut out = Vec::new();
+    let mut out: Vec<Segment> = plan.obstacles.iter().flat_map(|o| o.outline.edges()).collect();
     for room in &plan.rooms {
         // all of its openings in the order of the doors: a face may have several
         let doors: Vec<&Door> = plan.doors_of(&room.room_id).filter(|d| d.room_ids.len() > 1).collect();

@@ -120,6 +120,9 @@ impl Occupancy {
         for room in &plan.rooms {
             frame.paint(&mut floor, &room.net_polygon, true);
         }
+        for obstacle in &plan.obstacles {
+            frame.paint(&mut floor, &obstacle.outline, false);
+        }
         for door in &plan.doors {
             let (i0, i1, j0, j1) = frame.span(&opening(door));
             floor.fill(i0, i1, j0, j1, true);
@@ -242,6 +245,7 @@ mod tests {
                 locked: false,
             }],
             windows: Vec::new(),
+            obstacles: Vec::new(),
             cost: Vec::new(),
             conflicts: Vec::new(),
             levels: Vec::new(),

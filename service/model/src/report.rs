@@ -153,6 +153,36 @@ pub struct ConstraintSummary {
     pub not_applicable: u32,
     /// Cannot be decided from geometry and objects.
     pub not_decidable: u32,
+    /// Mandatory ones of the country and of its division that apply to something in this world.
+    #[serde(default)]
+    pub national_mandatory: u32,
+    /// Those among them that were decided: satisfied or violated.
+    #[serde(default)]
+    pub national_decided: u32,
+}
+
+/// Which building rules a world was held against.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AppliedRules {
+    /// Jurisdictions whose rules were applied, nearest first.
+    pub jurisdictions: Vec<String>,
+    /// Mandatory rules of the country and of its division that apply to something in the world.
+    pub national_mandatory: u32,
+    /// Those among them that were decided.
+    pub national_decided: u32,
+}
+
+impl AppliedRules {
+    /// Returns a line for people: how many mandatory rules of the country were decided, or that none are known.
+    pub fn line(&self, country_code: Option<&str>) -> String {
+        let decided = |n: u32| format!("{} of {n} mandatory decided", self.national_decided);
+        match (country_code, self.national_mandatory) {
+            (None, _) => "international, no country named".to_owned(),
+            (Some(code), 0) => format!("none of {code} apply here, others only"),
+            (Some(code), n) => format!("{code}, {}", decided(n)),
+        }
+    }
 }
 
 /// One constraint evaluated on one subject.
@@ -203,7 +233,7 @@ pub enum Status {
 }
 
 /// A source as cited, with jurisdiction and clause.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Citation {
     /// Where the rule applies.
@@ -218,12 +248,36 @@ pub struct Citation {
     pub printed: Option<String>,
     /// Confidence in the figure.
     pub confidence: String,
+    /// Where in the source it stands.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub clause: Option<String>,
+    /// Words that were read there.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub quotation: Option<String>,
+    /// Address of the page where the figure was checked.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub seen_at: Option<String>,
+    /// Last day it held, for a rule that has ended.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub in_force_until: Option<String>,
+    /// What replaced it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub superseded_by: Option<String>,
 }
 
 impl Report {
     /// Returns true when the world may be used: sound, or a brought plan is all that is wrong with it.
     pub fn is_writable(&self) -> bool {
         self.sound || self.is_given()
+    }
+
+    /// Returns which building rules the world was held against.
+    pub fn applied_rules(&self) -> AppliedRules {
+        AppliedRules {
+            jurisdictions: self.jurisdictions.clone(),
+            national_mandatory: self.summary.national_mandatory,
+            national_decided: self.summary.national_decided,
+        }
     }
 
     /// Returns how many of the things asked for are there as asked, and how many were asked for.

@@ -40,6 +40,9 @@ pub struct SceneGraph {
     /// ISO 3166-1 alpha-2 code whose rules apply; absent means international rules only.
     #[serde(default)]
     pub country_code: Option<String>,
+    /// ISO 3166-2 code of the division of that country whose rules apply too (`CA-ON`), where a city, a division or its code is named.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub division_code: Option<String>,
     /// ISO 639-1 code of the prompt's language.
     pub language: String,
     /// Requested total net floor area, m^2.
@@ -48,7 +51,10 @@ pub struct SceneGraph {
     /// Head counts and other figures the prompt gives.
     #[serde(default)]
     pub occupancy: Occupancy,
-    /// True when the prompt asks for wheelchair access.
+    /// True when the prompt speaks of somebody in a wheelchair: more than access without steps.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub wheelchair: bool,
+    /// True when the prompt asks for access without steps.
     #[serde(default)]
     pub accessible: bool,
     /// How the building is to be, where the request says.
@@ -272,6 +278,11 @@ impl Robot {
 }
 
 impl SceneGraph {
+    /// Returns the code of the nearest place that is known: of the division, else of the country.
+    pub fn place_code(&self) -> Option<&str> {
+        self.division_code.as_deref().or(self.country_code.as_deref())
+    }
+
     /// Returns true where robots meet in corridors that are made for them: because the prompt says so, or because there are
     /// several and the building is made so that they fit.
     pub fn is_two_way(&self) -> bool {
@@ -314,6 +325,11 @@ impl Document for SceneGraph {
         }
         if self.rooms.is_empty() {
             problems.push(Problem::new("/rooms", "is empty; a building needs at least one room"));
+        }
+        let within = |division: &str, country: &str| division.strip_prefix(country).is_some_and(|d| d.starts_with('-'));
+        let country = self.country_code.as_deref().unwrap_or_default();
+        if let Some(division) = self.division_code.as_deref().filter(|d| country.is_empty() || !within(d, country)) {
+            problems.push(Problem::new("/division_code", format!("`{division}` is no division of `{country}`")));
         }
         check_unique("/rooms", self.rooms.iter().map(|r| r.id.as_str()), &mut problems);
         for (i, room) in self.rooms.iter().enumerate() {

@@ -139,6 +139,7 @@ impl Floorplan {
             walls: self.walls.iter().filter(|w| here(&w.room_ids)).cloned().collect(),
             doors: self.doors.iter().filter(|d| here(&d.room_ids)).cloned().collect(),
             windows: self.windows.iter().filter(|w| ids.contains(w.room_id.as_str())).cloned().collect(),
+            obstacles: self.obstacles.iter().filter(|o| ids.contains(o.room_id.as_str())).cloned().collect(),
             cost: self.cost.clone(),
             conflicts: self.conflicts.clone(),
             levels: self.levels.clone(),
@@ -152,6 +153,7 @@ impl Floorplan {
         for room in &mut self.rooms {
             room.polygon.0.iter_mut().chain(&mut room.net_polygon.0).for_each(point);
         }
+        self.obstacles.iter_mut().flat_map(|o| &mut o.outline.0).for_each(point);
         let lines = self.walls.iter_mut().map(|w| &mut w.line);
         let lines = lines.chain(self.doors.iter_mut().map(|d| &mut d.line));
         for line in lines.chain(self.windows.iter_mut().map(|w| &mut w.line)) {
@@ -262,6 +264,7 @@ impl World {
         let plan = &mut world.floorplan;
         plan.rooms.retain(|r| !shafts.contains(&r.room_id));
         plan.windows.retain(|w| !shafts.contains(&w.room_id));
+        plan.obstacles.retain(|o| !shafts.contains(&o.room_id));
         for wall in &mut plan.walls {
             let sides = wall.room_ids.len();
             out(&mut wall.room_ids);
@@ -309,9 +312,11 @@ impl World {
             version: self.version,
             name: self.name.clone(),
             generator: self.generator.clone(),
+            brief: None,
             scene_graph: self.scene_graph.storey(level),
             placements: self.placements.storey(&floorplan),
             scenario: self.scenario.storey(level, &floorplan),
+            rules: self.rules.clone(),
             floorplan,
         }
     }

@@ -3,9 +3,11 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::brief::Brief;
 use crate::document::{Document, Problem};
 use crate::floorplan::Floorplan;
 use crate::placements::Placements;
+use crate::report::AppliedRules;
 use crate::scenario::Scenario;
 use crate::scene_graph::SceneGraph;
 
@@ -20,7 +22,10 @@ pub struct World {
     pub name: String,
     /// Name and version of the program that wrote it.
     pub generator: String,
-    /// What was asked for.
+    /// What was asked for, where it was read; the check answers each fact of it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub brief: Option<Brief>,
+    /// Rooms and relations.
     pub scene_graph: SceneGraph,
     /// The building.
     pub floorplan: Floorplan,
@@ -28,6 +33,9 @@ pub struct World {
     pub placements: Placements,
     /// What happens in it.
     pub scenario: Scenario,
+    /// Which building rules it was held against when it was made.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rules: Option<AppliedRules>,
 }
 
 impl Document for World {
@@ -39,6 +47,7 @@ impl Document for World {
             problems.push(Problem::new("/version", format!("is {}, this release reads version 1", self.version)));
         }
         let parts = [
+            ("/brief", self.brief.as_ref().map(Document::check).unwrap_or_default()),
             ("/scene_graph", self.scene_graph.check()),
             ("/floorplan", self.floorplan.check()),
             ("/placements", self.placements.check()),

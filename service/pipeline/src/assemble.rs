@@ -21,9 +21,11 @@ pub fn assemble(
         version: 1,
         name: name.to_owned(),
         generator: concat!("d3dgen ", env!("CARGO_PKG_VERSION")).to_owned(),
+        brief: None,
         scene_graph,
         floorplan,
         placements,
         scenario,
+        rules: None,
     }
 }

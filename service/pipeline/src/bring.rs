@@ -66,7 +66,8 @@ pub fn bring(source: &Source, said: &Said, registry: &Registry) -> Result<(Scene
         }
         Plan::Drawing(drawing) => {
             let mut layout = lay_out(drawing, &said.options)?;
-            let labels: Vec<Label> = layout.rooms.iter().map(label_of_drawn).collect();
+            let joined = layout.joined();
+            let labels: Vec<Label> = layout.rooms.iter().zip(joined).map(label_of_drawn).collect();
             let titles: Vec<String> = [title].into_iter().chain(layout.titles.iter().cloned()).collect();
             let known = understand(&typed(labels, &said.room_types)?, &titles, domain, registry)?;
             layout.rooms.iter_mut().zip(&known.names).for_each(|(room, name)| room.label.clone_from(name));
@@ -85,8 +86,17 @@ fn label_of_planned(room: &PlanRoom) -> Label {
     Label { text: room.name.clone(), kind: Some(room.room_type.clone()), ..Label::default() }
 }
 
-fn label_of_drawn(room: &LaidRoom) -> Label {
-    Label { text: room.label.clone(), kind: room.kind.clone(), also: room.also.clone(), hub: room.hub, said: false }
+fn label_of_drawn((room, beside): (&LaidRoom, Vec<usize>)) -> Label {
+    Label {
+        text: room.label.clone(),
+        kind: room.kind.clone(),
+        also: room.also.clone(),
+        hub: room.hub,
+        said: false,
+        unnamed: room.unnamed,
+        area_m2: room.net_polygon.area(),
+        beside,
+    }
 }
 
 /// Returns the labels with the types that are said.

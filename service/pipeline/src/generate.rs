@@ -7,6 +7,7 @@
 use std::sync::atomic::AtomicBool;
 
 use d3dgen_knowledge::{Query, Retrieval};
+use d3dgen_model::brief::Brief;
 use d3dgen_model::domain::Domain;
 use d3dgen_model::floorplan::Floorplan;
 use d3dgen_model::placements::Placements;
@@ -20,7 +21,7 @@ use d3dgen_plugins::{Plugin, Registry};
 
 use crate::placement::{Furnished, before_openings};
 use crate::scene_graph::Request;
-use crate::{fit, floorplan, placement, scenario, scene_graph, ways_out, world};
+use crate::{brief, fit, floorplan, placement, scenario, scene_graph, ways_out, world};
 
 /// How to make a world, beside the request itself.
 #[derive(Debug, Clone)]
@@ -33,11 +34,13 @@ pub struct Settings {
     pub pinned_floorplan: Option<Floorplan>,
     /// Earlier placements whose locked ones are kept.
     pub pinned_placements: Option<Placements>,
+    /// What was asked for; read from the prompt of the scene graph when absent. The report answers each fact of it.
+    pub brief: Option<Brief>,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { name: None, attempts: 6, pinned_floorplan: None, pinned_placements: None }
+        Self { name: None, attempts: 6, pinned_floorplan: None, pinned_placements: None, brief: None }
     }
 }
 
@@ -139,9 +142,10 @@ pub fn generate_world(
     cancelled: &AtomicBool,
 ) -> Result<Generated, Error> {
     begin(Stage::SceneGraph, 0, observe, cancelled)?;
-    let graph = scene_graph::generate(request, registry)?;
+    let (graph, brief) = brief::rooms(request, registry)?;
     observe(Event::Finished(Stage::SceneGraph, 0, Artifact::SceneGraph(&graph)));
-    furnish_and_check(&graph, registry, settings, observe, cancelled)
+    let settings = Settings { brief: settings.brief.clone().or(brief), ..settings.clone() };
+    furnish_and_check(&graph, registry, &settings, observe, cancelled)
 }
 
 /// Makes and checks a world of a scene graph: all stages but the first.
@@ -158,6 +162,8 @@ pub fn furnish_and_check(
     cancelled: &AtomicBool,
 ) -> Result<Generated, Error> {
     let plugin = plugin_of(registry, graph)?;
+    let read = || brief::of_prompt(&graph.prompt, registry);
+    let settings = &Settings { brief: settings.brief.clone().or_else(read), ..settings.clone() };
     let mut made = |graph: &SceneGraph, settings: &Settings| match attempts(graph, plugin, settings, observe, cancelled)
     {
         Err(error @ Error::Infeasible { .. }) => match relaxed(graph) {
@@ -366,8 +372,10 @@ fn attempt(
     told.conflicts.extend(scene_graph::shortages(domain, graph, &placements));
     told.conflicts.extend(far_apart(graph, &plan));
     let mut world = world::assemble(name, told, plan, placements, scenario);
+    world.brief.clone_from(&settings.brief);
     let report = world::check(&world, domain, retrieved);
     world.scene_graph.conflicts.extend(ways_out::told(&world, &report, domain, retrieved));
+    world.rules = Some(report.applied_rules());
     observe(Event::Finished(Stage::World, attempt, Artifact::World(&world, &report)));
     Ok(Generated { world, report, attempts: attempt + 1 })
 }
@@ -398,7 +406,8 @@ fn with_area(graph: &SceneGraph, plan: &Floorplan) -> SceneGraph {
     graph
 }
 
-/// Puts a world together of a plan and its furniture, and judges it; the scenario goes on under the plan's seed.
+/// Puts a world together of a plan and its furniture, and judges it by the rules and by the brief that it answers to; the
+/// scenario goes on under the plan's seed.
 ///
 /// # Errors
 /// As [`scenario::generate`].
@@ -408,11 +417,13 @@ pub fn finish(
     (plan, placements): (Floorplan, Placements),
     domain: &Domain,
     retrieved: &Retrieval,
+    brief: Option<Brief>,
 ) -> Result<(World, Report), Error> {
     let reseeded = SceneGraph { seed: plan.seed, ..graph.clone() };
     let scenario = scenario::generate(&reseeded, &plan, &placements, domain)?;
-    let world = world::assemble(name, graph, plan, placements, scenario);
+    let mut world = World { brief, ..world::assemble(name, graph, plan, placements, scenario) };
     let report = world::check(&world, domain, retrieved);
+    world.rules = Some(report.applied_rules());
     Ok((world, report))
 }
 

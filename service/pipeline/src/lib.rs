@@ -5,6 +5,7 @@
 //! take values and return documents; they read no file, clock or environment.
 
 mod assemble;
+pub mod brief;
 pub mod bring;
 pub mod edit;
 mod fit;

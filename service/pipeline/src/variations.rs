@@ -11,7 +11,7 @@ use d3dgen_plugins::Registry;
 
 use crate::generate::{plugin_of, retrieve};
 use crate::scene_graph::Request;
-use crate::{floorplan, scene_graph};
+use crate::{brief, floorplan};
 
 /// Plans made for each one wanted.
 const POOL: usize = 5;
@@ -56,7 +56,7 @@ pub fn variations(
 /// As [`variations`], and those of the scene graph.
 pub fn seeds(request: &Request, registry: &Registry, count: usize, stop: Stop<'_>) -> Result<Vec<Variation>, Error> {
     let plan = |seed| {
-        let graph = scene_graph::generate(&Request { seed, ..request.clone() }, registry)?;
+        let (graph, _) = brief::rooms(&Request { seed, ..request.clone() }, registry)?;
         let plugin = plugin_of(registry, &graph)?;
         floorplan::generate_until(&graph, plugin.domain(), &retrieve(&graph, plugin).limits, None, stop)
     };
@@ -157,7 +157,7 @@ mod tests {
         let registry = Registry::builtin();
         for prompt in ["apartment with a living room, a kitchen, two bedrooms and a bathroom", "office with 9 rooms"] {
             let request = Request { prompt: prompt.into(), seed: 3, ..Request::default() };
-            let graph = scene_graph::generate(&request, &registry).expect(prompt);
+            let graph = crate::scene_graph::generate(&request, &registry).expect(prompt);
             let plugin = registry.get(&graph.domain).expect("built in");
             let limits = retrieve(&graph, plugin).limits;
             let found = variations(&graph, plugin.domain(), &limits, None, 4, Stop::never()).expect(prompt);
@@ -187,7 +187,7 @@ mod tests {
     fn a_plan_does_not_differ_from_itself_turned() {
         let registry = Registry::builtin();
         let request = Request { prompt: "two-bedroom flat".into(), seed: 1, ..Request::default() };
-        let graph = scene_graph::generate(&request, &registry).expect("a graph");
+        let graph = crate::scene_graph::generate(&request, &registry).expect("a graph");
         let plugin = registry.get(&graph.domain).expect("built in");
         let limits = retrieve(&graph, plugin).limits;
         let plan = floorplan::generate(&graph, plugin.domain(), &limits, None).expect("a plan");

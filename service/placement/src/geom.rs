@@ -30,6 +30,21 @@ pub(crate) struct Box2 {
 }
 
 impl Box2 {
+    /// Returns what is left of a rectangle without another one.
+    pub fn without(&self, cut: &Self) -> Vec<Self> {
+        if !self.overlaps(cut) {
+            return vec![*self];
+        }
+        let (y0, y1) = (self.y0.max(cut.y0), self.y1.min(cut.y1));
+        let parts = [
+            Self { y1: cut.y0, ..*self },
+            Self { y0: cut.y1, ..*self },
+            Self { x0: self.x0, y0, x1: cut.x0, y1 },
+            Self { x0: cut.x1, y0, x1: self.x1, y1 },
+        ];
+        parts.into_iter().filter(|p| p.x0 < p.x1 && p.y0 < p.y1).collect()
+    }
+
     pub fn new(x0: i32, y0: i32, x1: i32, y1: i32) -> Self {
         Self { x0: x0.min(x1), y0: y0.min(y1), x1: x0.max(x1), y1: y0.max(y1) }
     }

@@ -105,7 +105,7 @@ impl Pockets {
             let middle = (door.v0 + door.v1) / 2;
             let half = door.clear_width.min(door.v1 - door.v0) / 2;
             let floor = space.walls[door.wall].strip(middle - half, middle + half, -THRESHOLD, 0);
-            solid = solid.iter().flat_map(|s| without(s, &floor)).collect();
+            solid = solid.iter().flat_map(|s| s.without(&floor)).collect();
         }
         Self { frame, obstacles: solid, own_raster: own_raster(&b) }
     }
@@ -203,21 +203,6 @@ fn is_drawn(s: &Solid) -> bool {
     !(s.z0 <= FLAT && s.z1 <= FLAT) && s.z0 + s.z1 <= 2 * OVERHEAD
 }
 
-/// Returns what is left of a rectangle without another one.
-fn without(r: &Box2, cut: &Box2) -> Vec<Box2> {
-    if !r.overlaps(cut) {
-        return vec![*r];
-    }
-    let (y0, y1) = (r.y0.max(cut.y0), r.y1.min(cut.y1));
-    let parts = [
-        Box2 { y1: cut.y0, ..*r },
-        Box2 { y0: cut.y1, ..*r },
-        Box2 { x0: r.x0, y0, x1: cut.x0, y1 },
-        Box2 { x0: cut.x1, y0, x1: r.x1, y1 },
-    ];
-    parts.into_iter().filter(|p| p.x0 < p.x1 && p.y0 < p.y1).collect()
-}
-
 /// Adds where a rectangle covers the way once around another one, just outside it: from its south-west corner east.
 fn along_ring(ring: &Box2, o: &Box2, out: &mut Vec<(i32, i32)>) {
     let (w, h) = (ring.width(), ring.height());
@@ -264,7 +249,7 @@ mod tests {
             [Box2 { y1: 0, ..frame }, Box2 { y0: 3000, ..frame }, Box2 { x1: 0, ..frame }, Box2 { x0: 3000, ..frame }];
         // a door in the south, 0.9 m wide
         let door = Box2::new(1000, -THRESHOLD, 1900, 0);
-        let obstacles = solid.iter().flat_map(|s| without(s, &door)).collect();
+        let obstacles = solid.iter().flat_map(|s| s.without(&door)).collect();
         Pockets { frame, obstacles, own_raster: own_raster(&b) }
     }
 

@@ -1,7 +1,10 @@
 //! An empty room as the search sees it: net outline, wall sides with their openings, floor that doors need.
 
+use std::cmp::Reverse;
+
+use d3dgen_knowledge::freespace::FreeSpace;
 use d3dgen_model::floorplan::{Door, DoorKind, Floorplan, PlanRoom};
-use d3dgen_model::geometry::Segment;
+use d3dgen_model::geometry::{Polygon, Rect, Segment};
 use d3dgen_model::way_in::way_in;
 
 use super::geom::{Box2, Solid, mm, turn};
@@ -141,9 +144,9 @@ pub(crate) struct Space {
     pub doors: Vec<DoorZone>,
     pub windows: Vec<WindowZone>,
     pub ceiling: i32,
-    /// Rectangles inside the bounds and outside the outline.
+    /// Rectangles inside the bounds that are no floor: outside the outline, under columns and walls that stand free.
     holes: Vec<Box2>,
-    /// Rectangles that cover the outline.
+    /// Rectangles that cover the floor.
     floor: Vec<Box2>,
     /// Floor by which many come in.
     lanes: Vec<Box2>,
@@ -168,19 +171,25 @@ impl Space {
         let corners: Vec<(i32, i32)> = room.net_polygon.corners().iter().map(|p| (mm(p.x), mm(p.y))).collect();
         let bounds = Box2::from_rect(&room.net_polygon.bounds());
         let walls = wall_sides(&corners);
-        let holes = holes(bounds, &corners);
+        let taken = plan.taken_in(&room.room_id);
+        let standing: Vec<Box2> = taken.iter().map(Box2::from_rect).collect();
+        let mut holes = holes(bounds, &corners);
+        holes.extend(&standing);
+        let mut floor: Vec<Box2> = room.net_polygon.rects().iter().map(Box2::from_rect).collect();
+        for column in &standing {
+            floor = floor.iter().flat_map(|f| f.without(column)).collect();
+        }
         let mut out = Self {
             bounds,
-            main: bounds,
+            main: largest_rectangle(&room.net_polygon, &taken).unwrap_or(bounds),
             walls,
             doors: Vec::new(),
             windows: Vec::new(),
             ceiling: mm(room.ceiling_height_m),
             holes,
-            floor: room.net_polygon.rects().iter().map(Box2::from_rect).collect(),
+            floor,
             lanes: Vec::new(),
         };
-        out.main = out.largest_rectangle(&corners);
         for door in plan.doors_of(&room.room_id) {
             if let Some((wall, v0, v1)) = out.locate(&door.line, door.wall_thickness_m) {
                 let swings_in =
@@ -256,7 +265,7 @@ impl Space {
         &self.floor
     }
 
-    /// Returns rectangles inside the bounds and outside the outline.
+    /// Returns rectangles inside the bounds that are no floor.
     pub fn holes(&self) -> &[Box2] {
         &self.holes
     }
@@ -284,29 +293,12 @@ impl Space {
         }
         best.map(|(_, i, v0, v1)| (i, v0, v1))
     }
+}
 
-    fn largest_rectangle(&self, corners: &[(i32, i32)]) -> Box2 {
-        let mut xs: Vec<i32> = corners.iter().map(|c| c.0).collect();
-        let mut ys: Vec<i32> = corners.iter().map(|c| c.1).collect();
-        for list in [&mut xs, &mut ys] {
-            list.sort_unstable();
-            list.dedup();
-        }
-        let mut best = Box2::new(self.bounds.x0, self.bounds.y0, self.bounds.x0, self.bounds.y0);
-        for (i, &x0) in xs.iter().enumerate() {
-            for &x1 in &xs[i + 1..] {
-                for (j, &y0) in ys.iter().enumerate() {
-                    for &y1 in &ys[j + 1..] {
-                        let r = Box2 { x0, y0, x1, y1 };
-                        if r.area() > best.area() && self.contains(&r) {
-                            best = r;
-                        }
-                    }
-                }
-            }
-        }
-        best
-    }
+/// Returns the largest free rectangle of an outline, of equal ones the westernmost; `None` without floor.
+fn largest_rectangle(outline: &Polygon, taken: &[Rect]) -> Option<Box2> {
+    let rects = FreeSpace::new(outline, taken).rects;
+    rects.iter().map(Box2::from_rect).max_by_key(|r| (r.area(), Reverse((r.x0, r.x1, r.y0, r.y1))))
 }
 
 fn wall_sides(corners: &[(i32, i32)]) -> Vec<WallSide> {

@@ -4,7 +4,7 @@ use d3dgen_knowledge::Limits;
 use d3dgen_knowledge::clearance::{is_shallow, quarter};
 use d3dgen_knowledge::freespace::FreeSpace;
 use d3dgen_model::domain::{Domain, Materials, Mount, Relation, Shape};
-use d3dgen_model::floorplan::{Door, DoorKind, Floorplan, PlanRoom, Swing, Window};
+use d3dgen_model::floorplan::{Door, DoorKind, FixedObstacle, Floorplan, ObstacleKind, PlanRoom, Swing, Window};
 use d3dgen_model::occupancy::stops_robot;
 use d3dgen_model::placements::{Placement, Placements};
 use d3dgen_model::scene_graph::{GraphRoom, Occupancy, SceneGraph};
@@ -25,6 +25,7 @@ struct Site<'s> {
     circulation: bool,
     /// Whether door leaves swing into the room.
     leaf_inside: bool,
+    columns: Vec<FixedObstacle>,
 }
 
 impl<'s> Site<'s> {
@@ -37,6 +38,7 @@ impl<'s> Site<'s> {
             windows: Vec::new(),
             circulation: false,
             leaf_inside: true,
+            columns: Vec::new(),
         }
     }
 
@@ -93,6 +95,8 @@ impl<'s> Site<'s> {
             walls: Vec::new(),
             doors: self.doors.iter().enumerate().map(door).collect(),
             windows: self.windows.iter().enumerate().map(window).collect(),
+            obstacles: self.columns.clone(),
+            obstacles: self.columns.clone(),
             cost: Vec::new(),
             conflicts: Vec::new(),
             levels: Vec::new(),
@@ -125,6 +129,8 @@ impl<'s> Site<'s> {
             domain: domain.id.clone(),
             building_type: None,
             country_code: None,
+            division_code: None,
+            wheelchair: false,
             language: "en".into(),
             area_m2: None,
             occupancy: Occupancy::default(),
@@ -152,6 +158,36 @@ fn with_domain(id: &str, look: impl FnOnce(&Domain)) {
 
 fn of<'p>(placements: &'p Placements, object: &str) -> Vec<&'p Placement> {
     placements.placements.iter().filter(|p| p.object == object).collect()
+}
+
+#[test]
+fn nothing_stands_in_a_column_and_ways_lead_around_it() {
+    with_domain("office", |domain| {
+        let column = |x: f64, y: f64, k: u32| FixedObstacle {
+            obstacle_id: format!("obstacle_{k}"),
+            kind: ObstacleKind::Column,
+            outline: Polygon(
+                (0..8)
+                    .map(|i| f64::from(i) * 0.7854)
+                    .map(|a| Point::new(x + 0.3 * a.cos(), y + 0.3 * a.sin()))
+                    .collect(),
+            ),
+            room_id: "meeting_room_1".into(),
+            locked: true,
+        };
+        let columns = vec![column(3.0, 2.5, 1), column(5.0, 2.5, 2)];
+        let site = Site { columns: columns.clone(), ..Site::new("meeting_room", 8.0, 5.0) };
+        for seed in 0..3 {
+            let found = site.furnished(domain, seed);
+            assert!(!found.placements.is_empty());
+            for p in found.placements.iter().filter(|p| stops_robot(p)) {
+                let rect = p.footprint().bounds();
+                let shared: f64 =
+                    columns.iter().flat_map(|c| c.outline.cover(0.05)).map(|r| r.common_area(&rect)).sum();
+                assert!(shared < 0.001, "seed {seed}: {} shares {shared:.3} m2 with a column", p.object);
+            }
+        }
+    });
 }
 
 #[test]

@@ -5,16 +5,18 @@ use std::collections::BTreeMap;
 use d3dgen_model::Segment;
 use d3dgen_model::courts;
 use d3dgen_model::domain::{Domain, Zone};
-use d3dgen_model::floorplan::{Door, DoorKind, Floorplan, PlanRoom, Swing, Wall, Window};
+use d3dgen_model::floorplan::{Door, DoorKind, FixedObstacle, Floorplan, ObstacleKind, PlanRoom, Swing, Wall, Window};
 use d3dgen_model::geometry::to_mm;
 use d3dgen_model::measures::DOOR_HEIGHT_M;
 use d3dgen_model::scene_graph::Note;
 use d3dgen_model::slides;
 use d3dgen_model::storeys::{Level, LinkKind, VerticalLink};
 
-use crate::drawing::{OpeningKind, note};
-use crate::layout::{LaidOpening, Layout, point};
-use crate::{Options, add, links};
+use crate::drawing::{OpeningKind, SolidKind, note};
+use crate::layout::{LaidObstacle, LaidOpening, Layout};
+use crate::options::Options;
+use crate::shape::point;
+use crate::{add, links};
 
 /// Wall left above openings, m.
 const LINTEL_M: f64 = 0.2;
@@ -56,6 +58,7 @@ pub fn assemble(
     let mut doors = doors(&layout, &rooms);
     guess_entrance(&mut doors, &rooms, domain, &mut layout.notes);
     let windows = windows(&layout, &rooms);
+    let obstacles = obstacles(&layout, &rooms);
     let walls = walls(&layout, &rooms);
     slides::aim(&mut doors, &walls);
     let plan = Floorplan {
@@ -66,6 +69,7 @@ pub fn assemble(
         walls,
         doors,
         windows,
+        obstacles,
         cost: Vec::new(),
         conflicts: Vec::new(),
         levels,
@@ -247,6 +251,20 @@ fn windows(layout: &Layout, rooms: &[PlanRoom]) -> Vec<Window> {
         });
     }
     windows
+}
+
+fn obstacles(layout: &Layout, rooms: &[PlanRoom]) -> Vec<FixedObstacle> {
+    let obstacle = |(i, o): (usize, &LaidObstacle)| FixedObstacle {
+        obstacle_id: format!("obstacle_{}", i + 1),
+        kind: match o.kind {
+            SolidKind::Column => ObstacleKind::Column,
+            SolidKind::Wall => ObstacleKind::Wall,
+        },
+        outline: o.outline.clone(),
+        room_id: rooms[o.room].room_id.clone(),
+        locked: true,
+    };
+    layout.obstacles.iter().enumerate().map(obstacle).collect()
 }
 
 /// Returns wall pieces with the doors cut out; windows stay part of their wall.

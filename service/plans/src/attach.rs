@@ -33,47 +33,89 @@ pub(crate) fn attach(
     drawn: &[DrawnOpening],
     stretches: &[Stretch],
     rooms: &[LaidRoom],
+    assumed: bool,
     notes: &mut Vec<Note>,
 ) -> Vec<LaidOpening> {
+    let mut moved = 0_usize;
     let mut out: Vec<LaidOpening> = Vec::new();
-    let at = |o: &DrawnOpening| {
-        let p = o.arc.map(|a| a[0]).or_else(|| o.points.first().copied()).unwrap_or(Point::new(0.0, 0.0));
-        format!("({:.2}, {:.2}) m", p.x, p.y)
-    };
     for opening in drawn {
-        let Some(fit) = best(opening, stretches) else {
-            let what = if opening.kind == OpeningKind::Window {
-                "window lies in no outer wall"
-            } else {
-                "door lies in no wall"
-            };
-            notes.push(note(
-                "opening_left_out",
-                format!("{} at {}: the {what}; it was left out", opening.place, at(opening)),
-            ));
+        let Some(mut fit) = best(opening, stretches) else {
+            let is_window = opening.kind == OpeningKind::Window;
+            let why = if is_window { "the window lies in no outer wall" } else { "the door lies in no wall" };
+            notes.push(left_out(opening, why));
             continue;
         };
+        if assumed && opening.kind == OpeningKind::Door {
+            let stretch = &stretches[fit.stretch];
+            moved += usize::from(clear_of_corners(&mut fit, stretch, rooms));
+        }
         let clash = out.iter().any(|o| o.stretch == fit.stretch && o.from < fit.to && fit.from < o.to);
         if clash {
-            let message = format!("{} at {}: overlaps another opening; it was left out", opening.place, at(opening));
-            notes.push(note("opening_left_out", message));
+            notes.push(left_out(opening, "overlaps another opening"));
             continue;
         }
-        let meters = |v: Option<f64>| v.filter(|m| m.is_finite() && (0.0..=SILL_HIGH_M).contains(m));
-        out.push(LaidOpening {
-            kind: opening.kind,
-            rooms: stretches[fit.stretch].rooms().collect(),
-            stretch: fit.stretch,
-            from: fit.from,
-            to: fit.to,
-            sill_m: meters(opening.sill_m),
-            head_m: meters(opening.head_m),
-            sliding: opening.sliding,
-            swing: fit.swing,
-        });
+        out.push(laid(opening, fit, stretches));
     }
-    debug_assert!(out.iter().all(|o| o.rooms.iter().all(|r| *r < rooms.len())));
+    if moved > 0 {
+        let message = format!(
+            "{moved} doors end where walls meet; as the plan does not say how thick walls are, they were moved or narrowed by the \
+             thickness that was assumed"
+        );
+        notes.push(note("doors_moved", message));
+    }
     out
+}
+
+fn left_out(opening: &DrawnOpening, why: &str) -> Note {
+    let p = opening.arc.map(|a| a[0]).or_else(|| opening.points.first().copied()).unwrap_or(Point::new(0.0, 0.0));
+    let message = format!("{} at ({:.2}, {:.2}) m: {why}; it was left out", opening.place, p.x, p.y);
+    note("opening_left_out", message)
+}
+
+fn laid(opening: &DrawnOpening, fit: Fit, stretches: &[Stretch]) -> LaidOpening {
+    let meters = |v: Option<f64>| v.filter(|m| m.is_finite() && (0.0..=SILL_HIGH_M).contains(m));
+    LaidOpening {
+        kind: opening.kind,
+        rooms: stretches[fit.stretch].rooms().collect(),
+        stretch: fit.stretch,
+        from: fit.from,
+        to: fit.to,
+        sill_m: meters(opening.sill_m),
+        head_m: meters(opening.head_m),
+        sliding: opening.sliding,
+        swing: fit.swing,
+    }
+}
+
+/// Moves a door along its wall to where the faces of the walls that meet there leave it a jamb; narrows it where that is not
+/// enough. Returns whether it did.
+fn clear_of_corners(fit: &mut Fit, s: &Stretch, rooms: &[LaidRoom]) -> bool {
+    let width = fit.to - fit.from;
+    let faces = s.rooms().filter_map(|room| face_beside(fit, s, room, &rooms[room]));
+    let Some((low, high)) = faces.reduce(|a, b| (a.0.max(b.0), a.1.min(b.1))) else { return false };
+    if fit.from >= low + JAMB && fit.to <= high - JAMB {
+        return false;
+    }
+    let (least, most) = (low + JAMB, high - JAMB);
+    let width = width.min(most - least);
+    if width < NARROWEST {
+        return false;
+    }
+    fit.from = fit.from.clamp(least, most - width);
+    fit.to = fit.from + width;
+    true
+}
+
+/// Returns from where to where the face of a wall in a room goes that a door lies in, mm.
+fn face_beside(fit: &Fit, s: &Stretch, room: usize, laid: &LaidRoom) -> Option<(i64, i64)> {
+    let at = s.at + if s.low == Some(room) { -s.half[0] } else { s.half[1] };
+    let across = |p: Point| mm(if s.vertical { p.x } else { p.y });
+    laid.net_polygon.edges().find_map(|e| {
+        let (a, b) = (along(s, e.start), along(s, e.end));
+        let (from, to) = (a.min(b), a.max(b));
+        let on_wall = (across(e.start) - at).abs() <= 1 && (across(e.end) - at).abs() <= 1;
+        (on_wall && from < fit.to && fit.from < to).then_some((from, to))
+    })
 }
 
 fn best(opening: &DrawnOpening, stretches: &[Stretch]) -> Option<Fit> {
@@ -127,16 +169,13 @@ fn fit(s: &Stretch, stretch: usize, points: &[Point], width: Option<i64>) -> Opt
         return None;
     }
     // walls that meet the ends of the stretch take half of their thickness from it
-    let (from, to) = if dot {
-        let room = s.len() - 2 * JAMB;
-        let width = width?.min(room);
-        if width < NARROWEST {
-            return None;
-        }
-        let start = (middle - width / 2).clamp(s.from + JAMB, s.to - JAMB - width);
-        (start, start + width)
-    } else {
-        (from.max(s.from), to.min(s.to))
-    };
+    let (from, to) = if dot { around(s, middle, width?)? } else { (from.max(s.from), to.min(s.to)) };
     (to - from >= NARROWEST).then_some(Fit { stretch, from, to, off, swing: None })
+}
+
+/// Returns the part of a stretch around a point that is so wide, as far as the stretch allows.
+fn around(s: &Stretch, middle: i64, width: i64) -> Option<(i64, i64)> {
+    let width = width.min(s.len() - 2 * JAMB);
+    let start = (width >= NARROWEST).then(|| (middle - width / 2).clamp(s.from + JAMB, s.to - JAMB - width))?;
+    Some((start, start + width))
 }

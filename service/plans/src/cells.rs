@@ -1,6 +1,6 @@
 //! The compressed grid that all wall lines of a plan span: which room owns each cell, and the lines between owners.
 
-use crate::snap::Corner;
+use crate::shape::Corner;
 
 /// Most cells; a plan of 500 rooms has some millions.
 const MOST_CELLS: usize = 16_000_000;

@@ -2,8 +2,8 @@
 
 use d3dgen_model::Point;
 
-use crate::Error;
-use crate::upright::edges;
+use crate::error::Error;
+use crate::shape::edges;
 
 /// Corners closer than this are one, and a corner this close to the line of its neighbors is none, m.
 const SAME_M: f64 = 0.01;
@@ -21,15 +21,7 @@ const MOST_CORNERS: usize = 2000;
 /// # Errors
 /// `Refused` when nothing is left, or when the outline crosses itself.
 pub(crate) fn ring(corners: &[Point], place: &str) -> Result<Vec<Point>, Error> {
-    let mut out: Vec<Point> = Vec::with_capacity(corners.len());
-    for p in corners {
-        if out.last().is_none_or(|q| q.distance(*p) > SAME_M) {
-            out.push(*p);
-        }
-    }
-    while out.len() > 1 && out[0].distance(out[out.len() - 1]) <= SAME_M {
-        out.pop();
-    }
+    let out = without_doubles(corners);
     let mut kept: Vec<Point> = Vec::with_capacity(out.len());
     for (i, p) in out.iter().enumerate() {
         let before = kept.last().copied().unwrap_or(out[out.len() - 1]);
@@ -57,6 +49,19 @@ pub(crate) fn ring(corners: &[Point], place: &str) -> Result<Vec<Point>, Error> 
         out.reverse();
     }
     Ok(out)
+}
+
+fn without_doubles(corners: &[Point]) -> Vec<Point> {
+    let mut out: Vec<Point> = Vec::with_capacity(corners.len());
+    for p in corners {
+        if out.last().is_none_or(|q| q.distance(*p) > SAME_M) {
+            out.push(*p);
+        }
+    }
+    while out.len() > 1 && out[0].distance(out[out.len() - 1]) <= SAME_M {
+        out.pop();
+    }
+    out
 }
 
 /// Returns how far a point lies from the line through two others, m; the distance to them when they are one.

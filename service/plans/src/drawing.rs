@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use d3dgen_model::Point;
 use d3dgen_model::scene_graph::Note;
 
-use crate::Error;
+use crate::error::Error;
 
 /// Most points of one file; larger drawings are not floor plans.
 pub(crate) const MOST_POINTS: usize = 200_000;
@@ -25,6 +25,14 @@ pub struct Drawing {
     pub walls: Vec<DrawnWall>,
     /// Doors, passages, windows.
     pub openings: Vec<DrawnOpening>,
+    /// Closed shapes that may be rooms: `evidence` decides.
+    pub shapes: Vec<DrawnShape>,
+    /// Shapes that are rooms only where walls enclose none.
+    pub unclear: Vec<DrawnShape>,
+    /// Lines that are walls only where no layer says that it has any, with what is said when they are left out.
+    pub perhaps_walls: Vec<(String, DrawnWall)>,
+    /// Columns and walls that stand free.
+    pub solids: Vec<DrawnSolid>,
     /// Words on the plan.
     pub labels: Vec<DrawnLabel>,
     /// Floors that walls stand on: they bound rooms where no wall is drawn.
@@ -37,6 +45,10 @@ pub struct Drawing {
     pub titles: Vec<String>,
     /// What was left out because nothing says what it is (`layer A-XYZ`), and how many shapes.
     pub unread: BTreeMap<String, usize>,
+    /// What was left out because it is no part of the building (furniture, symbols), and how many shapes.
+    pub skipped: BTreeMap<String, usize>,
+    /// What is drawn at all: kinds of shapes by their layers, and how many.
+    pub layers: BTreeMap<String, BTreeMap<String, usize>>,
     /// What was assumed while reading.
     pub notes: Vec<Note>,
 }
@@ -67,6 +79,65 @@ impl DrawnRoom {
         let (kind, holes, level, height_m) = (None, Vec::new(), None, None);
         Self { label, kind, corners, holes, level, height_m, traced: false, place }
     }
+}
+
+/// How sure a closed shape is a room, from the least.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Evidence {
+    /// Nothing says so.
+    None,
+    /// A name stands in it.
+    Text,
+    /// It lies on a layer of walls.
+    Wall,
+    /// It has a name itself.
+    Named,
+    /// Its layer says so, or the user.
+    Room,
+}
+
+/// A closed shape that may be a room.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DrawnShape {
+    /// The room that it would be.
+    pub room: DrawnRoom,
+    /// What says that it is one.
+    pub evidence: Evidence,
+    /// Layer, as messages name it.
+    pub layer: String,
+    /// Kind of shape, as the file calls it.
+    pub kind: String,
+    /// True for circles and the like, which are no rooms.
+    pub curved: bool,
+}
+
+impl DrawnShape {
+    /// Returns what is said of it when it is left out.
+    pub(crate) fn told(&self) -> String {
+        format!("{} as {}", self.layer, self.kind)
+    }
+}
+
+/// Something that stands from floor to ceiling and bounds no room.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DrawnSolid {
+    /// What it is.
+    pub kind: SolidKind,
+    /// Corners in either sense, m.
+    pub outline: Vec<Point>,
+    /// Storey.
+    pub level: Option<String>,
+    /// Where it stands in the file, for messages.
+    pub place: String,
+}
+
+/// What stands free.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum SolidKind {
+    /// A column or pillar.
+    Column,
+    /// A piece of wall.
+    Wall,
 }
 
 /// A piece of floor under walls.
@@ -166,27 +237,66 @@ pub(crate) fn extent(points: impl IntoIterator<Item = Point>) -> Option<[f64; 4]
     each.reduce(|a, b| [a[0].min(b[0]), a[1].min(b[1]), a[2].max(b[2]), a[3].max(b[3])])
 }
 
+/// Returns counted things as a list, the most of them first; `None` without any.
+fn listed(counts: &BTreeMap<String, usize>) -> Option<String> {
+    let mut all: Vec<(&String, &usize)> = counts.iter().collect();
+    all.sort_by_key(|(_, count)| std::cmp::Reverse(**count));
+    let more = all.len().saturating_sub(MOST_UNREAD);
+    let more = if more > 0 { format!(", and {more} more") } else { String::new() };
+    let list: Vec<String> = all.iter().take(MOST_UNREAD).map(|(what, count)| format!("{what} ({count})")).collect();
+    (!list.is_empty()).then(|| list.join(", ") + &more)
+}
+
 impl Drawing {
     /// Counts a shape that is left out.
     pub(crate) fn leave_out(&mut self, what: impl Into<String>) {
         *self.unread.entry(what.into()).or_default() += 1;
     }
 
+    /// Counts what is no part of the building.
+    pub(crate) fn skip(&mut self, what: impl Into<String>) {
+        *self.skipped.entry(what.into()).or_default() += 1;
+    }
+
+    /// Counts a shape of a layer, whatever becomes of it.
+    pub(crate) fn saw(&mut self, layer: &str, kind: &str) {
+        *self.layers.entry(layer.to_owned()).or_default().entry(kind.to_owned()).or_default() += 1;
+    }
+
     /// Notes what was left out, the most of it first.
     pub(crate) fn tell_of_unread(&mut self) {
-        let mut all: Vec<(String, usize)> = std::mem::take(&mut self.unread).into_iter().collect();
-        if all.is_empty() {
-            return;
+        if let Some(list) = listed(&std::mem::take(&mut self.unread)) {
+            let message = format!(
+                "nothing says that these are part of the building: {list}; left out, words such as wall, door, window or room \
+                 would say it, or --layer \"NAME=wall\""
+            );
+            self.notes.push(note("not_understood", message));
         }
+        if let Some(list) = listed(&std::mem::take(&mut self.skipped)) {
+            self.notes.push(note("left_out", format!("furniture, symbols and the like were left out: {list}")));
+        }
+    }
+
+    /// Returns the layers there are with what is drawn on them, for a drawing in which nothing encloses a room; empty for files
+    /// without layers.
+    pub(crate) fn tell_of_layers(&self) -> String {
+        let kinds = |kinds: &BTreeMap<String, usize>| {
+            kinds.iter().map(|(kind, count)| format!("{count} {kind}")).collect::<Vec<_>>().join(", ")
+        };
+        let mut all: Vec<(&String, usize)> = self.layers.iter().map(|(l, k)| (l, k.values().sum())).collect();
         all.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+        let list: Vec<String> =
+            all.iter().take(MOST_UNREAD).map(|(l, _)| format!("`{l}` ({})", kinds(&self.layers[*l]))).collect();
         let more = all.len().saturating_sub(MOST_UNREAD);
-        let more = if more > 0 { format!(", and {more} more") } else { String::new() };
-        let list: Vec<String> = all.iter().take(MOST_UNREAD).map(|(what, count)| format!("{what} ({count})")).collect();
-        let message = format!(
-            "nothing says what is drawn on {}{more}; it was left out, words such as wall, door, window or room would say it",
-            list.join(", ")
-        );
-        self.notes.push(note("not_understood", message));
+        let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+        match all.first() {
+            Some((layer, _)) => format!(
+                "; there are the layers {}{more}: say what they are with --layer \"{layer}=wall\" (or room, door, window, column, \
+                 furniture, ignore)",
+                list.join(", ")
+            ),
+            None => String::new(),
+        }
     }
 
     /// Returns every point of the drawing.
@@ -200,23 +310,33 @@ impl Drawing {
     }
 
     fn points_where(&mut self, here: impl Fn(&Option<String>) -> bool + Copy) -> impl Iterator<Item = &mut Point> {
-        let rooms = self.rooms.iter_mut().filter(move |r| here(&r.level));
+        let shapes = self.shapes.iter_mut().chain(&mut self.unclear).map(|s| &mut s.room);
+        let rooms = self.rooms.iter_mut().chain(shapes).filter(move |r| here(&r.level));
         let rooms = rooms.flat_map(|r| r.corners.iter_mut().chain(r.holes.iter_mut().flatten()));
         let floors = self.floors.iter_mut().filter(move |f| here(&f.level)).flat_map(|f| f.corners.iter_mut());
-        let walls = self.walls.iter_mut().filter(move |w| here(&w.level)).flat_map(|w| w.line.iter_mut());
+        let perhaps = self.perhaps_walls.iter_mut().map(|(_, wall)| wall);
+        let walls =
+            self.walls.iter_mut().chain(perhaps).filter(move |w| here(&w.level)).flat_map(|w| w.line.iter_mut());
+        let solids = self.solids.iter_mut().filter(move |s| here(&s.level)).flat_map(|s| s.outline.iter_mut());
         let openings = self.openings.iter_mut().filter(move |o| here(&o.level));
         let openings = openings.flat_map(|o| o.points.iter_mut().chain(o.arc.iter_mut().flatten()));
         let cabins = self.cabins.iter_mut().filter(move |c| here(&c.level));
         let cabins = cabins.flat_map(|c| c.corners.iter_mut().chain(c.doors.iter_mut().flatten()));
         let labels = self.labels.iter_mut().filter(move |l| here(&l.level)).map(|l| &mut l.at);
-        rooms.chain(walls).chain(openings).chain(floors).chain(cabins).chain(labels)
+        rooms.chain(walls).chain(openings).chain(floors).chain(cabins).chain(labels).chain(solids)
     }
 
     /// Refuses numbers that are none and drawings beyond any building.
     pub(crate) fn check_numbers(&mut self) -> Result<(), Error> {
-        let rooms =
-            self.rooms.iter().flat_map(|r| r.corners.iter().chain(r.holes.iter().flatten()).map(|p| (p, &r.place)));
-        let walls = self.walls.iter().flat_map(|w| w.line.iter().map(|p| (p, &w.place)));
+        let shapes = self.shapes.iter().map(|s| &s.room);
+        let rooms = self
+            .rooms
+            .iter()
+            .chain(shapes)
+            .flat_map(|r| r.corners.iter().chain(r.holes.iter().flatten()).map(|p| (p, &r.place)));
+        let perhaps = self.perhaps_walls.iter().map(|(_, wall)| wall);
+        let walls = self.walls.iter().chain(perhaps).flat_map(|w| w.line.iter().map(|p| (p, &w.place)));
+        let solids = self.solids.iter().flat_map(|s| s.outline.iter().map(|p| (p, &s.place)));
         let openings =
             self.openings.iter().flat_map(|o| o.points.iter().chain(o.arc.iter().flatten()).map(|p| (p, &o.place)));
         let labels = self.labels.iter().map(|l| (&l.at, &l.text));
@@ -225,7 +345,7 @@ impl Drawing {
         let far = |v: f64| !(v.is_finite() && v.abs() < FARTHEST_M);
         let cabins =
             self.cabins.iter().flat_map(|c| c.corners.iter().chain(c.doors.iter().flatten()).map(|p| (p, &c.name)));
-        let mut all = rooms.chain(walls).chain(openings).chain(labels).chain(floors).chain(cabins);
+        let mut all = rooms.chain(walls).chain(openings).chain(labels).chain(floors).chain(cabins).chain(solids);
         if let Some((p, place)) = all.find(|(p, _)| far(p.x) || far(p.y)) {
             let message = format!("the point ({:e}, {:e}) m is no place in a building", p.x, p.y);
             return Err(Error::refused(place, message));

@@ -1,5 +1,8 @@
 //! The one error type of this crate.
 
+/// How a refusal of walls that enclose nothing begins.
+pub(crate) const ENCLOSE_NONE: &str = "enclose no room";
+
 /// Why a plan cannot be read.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum Error {
@@ -35,6 +38,24 @@ impl Error {
     pub(crate) fn on_level(self, level: &str) -> Self {
         match self {
             Self::Refused { place, message } => Self::Refused { place: format!("level {level}: {place}"), message },
+            other => other,
+        }
+    }
+
+    /// Returns the error with the layers of the drawing, where nothing in it encloses a room.
+    pub(crate) fn with_layers(self, layers: &str) -> Self {
+        match self {
+            Self::Refused { place, message } if message.starts_with(ENCLOSE_NONE) => {
+                Self::Refused { place, message: message + layers }
+            }
+            other => other,
+        }
+    }
+
+    /// Returns the error of a part of a file, with its name in the place.
+    pub(crate) fn in_file(self, format: &'static str, file: &str) -> Self {
+        match self {
+            Self::Broken { place, message, .. } => Self::Broken { format, place: format!("{file}: {place}"), message },
             other => other,
         }
     }

@@ -6,9 +6,10 @@ use std::collections::BTreeMap;
 use d3dgen_model::Point;
 use d3dgen_model::scene_graph::Note;
 
-use crate::cells::{Cells, outline};
+use crate::cells::{Cells, Stretch, outline};
 use crate::drawing::{DrawnOpening, OpeningKind, note};
-use crate::snap::{Axis, Corner};
+use crate::shape::{Corner, point, polygon};
+use crate::snap::Axis;
 
 /// A space narrower than this in one direction is the inside of a wall drawn with two lines, mm.
 const THIN: i64 = 400;
@@ -29,6 +30,10 @@ const JAMB: i64 = 100;
 const OPEN_SHARE: f64 = 0.4;
 /// Part of a space that floor has to cover, where most spaces have floor.
 const FLOORED: f64 = 0.3;
+/// Shortest piece of wall that stands free, mm.
+const LEAST_FREE_WALL: i64 = 300;
+/// Largest closed shape of walls inside of a room that is a column and no room, mm^2.
+const COLUMN: i64 = 1_000_000;
 /// Most lines that are compared with one another.
 const MOST_LINES: usize = 6000;
 
@@ -42,6 +47,10 @@ pub(crate) struct Faces {
     pub count: usize,
     /// Passages that no door was drawn for: gaps between wall ends, and open sides between two floors.
     pub passages: Vec<DrawnOpening>,
+    /// Lines of walls with the same room on both sides.
+    pub free_walls: Vec<[Point; 2]>,
+    /// Outlines of small shapes with one room all around: columns and walls drawn by their faces.
+    pub standing: Vec<Vec<Point>>,
     pub notes: Vec<Note>,
 }
 
@@ -60,6 +69,7 @@ pub(crate) fn faces(
     if lines.len() > MOST_LINES {
         return None;
     }
+    let drawn = lines.clone();
     let own = openings.iter().filter(|o| o.arc.is_none() && o.points.len() == 2).filter_map(|o| {
         let line = on_lattice(&[o.points[0], o.points[1]], xs, ys)?;
         (length(&line) >= 400).then_some(line)
@@ -81,16 +91,19 @@ pub(crate) fn faces(
             next += 1;
         }
     }
+    let standing = grid.standing(&mut names);
+    let free_walls = grid.free_walls(&drawn, &names, &standing);
     for owner in &mut grid.cells.owner {
         *owner = owner.and_then(|face| names[face as usize]);
     }
+    let standing = standing.into_values().map(|ring| polygon(&ring).0).collect();
     let mut passages: Vec<DrawnOpening> = gaps.iter().map(|g| passage(g[0], "gap between two walls")).collect();
     passages.extend(grid.open_sides().into_iter().map(|line| passage(line, "open side")));
-    Some(Faces { cells: grid.cells, count: next as usize, passages, notes })
+    Some(Faces { cells: grid.cells, count: next as usize, passages, free_walls, standing, notes })
 }
 
 fn passage((a, b): Line, what: &str) -> DrawnOpening {
-    let (a, b) = (crate::layout::point(a), crate::layout::point(b));
+    let (a, b) = (point(a), point(b));
     DrawnOpening::new(OpeningKind::Passage, vec![a, b], None, what.into())
 }
 
@@ -374,6 +387,12 @@ impl Grid {
         out
     }
 
+    /// Returns the cells behind and before a piece of a line: the `b`th along the `a`th line of a direction.
+    fn sides(&self, vertical: bool, a: usize, b: usize) -> (usize, usize) {
+        let columns = self.cells.columns();
+        if vertical { (b * columns + a, b * columns + a - 1) } else { (a * columns + b, (a - 1) * columns + b) }
+    }
+
     /// Calls with each piece of border: the owners on its sides, whether no wall stands on it, where it is and how long.
     fn borders(&self, mut each: impl FnMut(Option<u32>, Option<u32>, bool, (bool, i64, i64, i64), i64)) {
         let columns = self.cells.columns();
@@ -383,11 +402,7 @@ impl Grid {
                 if vertical { (&self.cells.xs, &self.cells.ys) } else { (&self.cells.ys, &self.cells.xs) };
             for (a, at) in lines.iter().copied().enumerate().take(across).skip(1) {
                 for b in 0..along {
-                    let (k, before) = if vertical {
-                        (b * columns + a, b * columns + a - 1)
-                    } else {
-                        (a * columns + b, (a - 1) * columns + b)
-                    };
+                    let (k, before) = self.sides(vertical, a, b);
                     let (low, high) = (self.cells.owner[before], self.cells.owner[k]);
                     if low != high {
                         let wall = if vertical { self.west[k] } else { self.south[k] };
@@ -396,6 +411,69 @@ impl Grid {
                 }
             }
         }
+    }
+
+    /// Gives small spaces that are no rooms and have one room all around to that room; returns their outlines.
+    fn standing(&self, names: &mut [Option<u32>]) -> BTreeMap<u32, Vec<Corner>> {
+        let mut by_face: BTreeMap<u32, Vec<Stretch>> = BTreeMap::new();
+        for s in self.cells.stretches(|_, _, _| [0, 0]) {
+            s.rooms().filter(|face| *face > 0 && names[*face].is_none()).for_each(|face| {
+                by_face.entry(face as u32).or_default().push(s);
+            });
+        }
+        let mut out = BTreeMap::new();
+        for (face, stretches) in by_face {
+            let own = Some(face as usize);
+            let mut around = stretches.iter().map(|s| if s.low == own { s.high } else { s.low });
+            let Some(Some(room)) = around.next() else { continue };
+            let (Some(name), true) = (names[room], around.all(|other| other == Some(room))) else { continue };
+            if let Some(ring) = outline(face as usize, &stretches).filter(|ring| is_thin(ring) || is_small(ring)) {
+                names[face as usize] = Some(name);
+                out.insert(face, ring);
+            }
+        }
+        out
+    }
+
+    /// Returns the drawn walls that have the same room on both sides and are no faces of what stands there.
+    fn free_walls(
+        &self,
+        drawn: &[Line],
+        names: &[Option<u32>],
+        standing: &BTreeMap<u32, Vec<Corner>>,
+    ) -> Vec<[Point; 2]> {
+        let (west, south) = marked(&self.cells, drawn, &vec![false; self.cells.owner.len()]);
+        let is_same_room = |k: usize, before: usize| {
+            let owner = self.cells.owner[k].filter(|f| !standing.contains_key(f));
+            owner == self.cells.owner[before] && owner.is_some_and(|f| names[f as usize].is_some())
+        };
+        let columns = self.cells.columns();
+        let mut out = Vec::new();
+        for vertical in [true, false] {
+            let (across, along) = if vertical { (columns, self.cells.rows()) } else { (self.cells.rows(), columns) };
+            let (lines, marks) =
+                if vertical { (&self.cells.xs, &self.cells.ys) } else { (&self.cells.ys, &self.cells.xs) };
+            for (a, at) in lines.iter().copied().enumerate().take(across).skip(1) {
+                let mut run: Option<(i64, i64)> = None;
+                for b in 0..=along {
+                    let (k, before) = self.sides(vertical, a, b.min(along - 1));
+                    let wall = if vertical { west[k] } else { south[k] };
+                    let is_free = b < along && wall && is_same_room(k, before);
+                    match &mut run {
+                        Some(run) if is_free => run.1 = marks[b + 1],
+                        _ if is_free => run = Some((marks[b], marks[b + 1])),
+                        _ => {
+                            let done = run.take().filter(|(from, to)| to - from >= LEAST_FREE_WALL);
+                            out.extend(done.map(|(from, to)| {
+                                let (p, q) = line_of(vertical, at, from, to);
+                                [point(p), point(q)]
+                            }));
+                        }
+                    }
+                }
+            }
+        }
+        out
     }
 
     /// Returns the sides between two rooms on which no wall stands.
@@ -439,11 +517,22 @@ fn marked(cells: &Cells, lines: &[Line], empty: &[bool]) -> (Vec<bool>, Vec<bool
     (west, south)
 }
 
+/// Returns true for a shape as small as a column.
+fn is_small(ring: &[Corner]) -> bool {
+    twice_area(ring) / 2 <= COLUMN
+}
+
+/// Returns twice the area of an outline, mm^2.
+fn twice_area(ring: &[Corner]) -> i64 {
+    let n = ring.len();
+    (0..n).map(|k| (ring[k].0 * ring[(k + 1) % n].1) - (ring[k].1 * ring[(k + 1) % n].0)).sum::<i64>().abs()
+}
+
 /// Returns true for the inside of a wall: a long thin box, or one whose area a strip of that width would have.
 fn is_thin(ring: &[Corner]) -> bool {
     let n = ring.len();
     let edge = |k: usize| (ring[k], ring[(k + 1) % n]);
-    let area: i64 = (0..n).map(|k| (edge(k).0.0 * edge(k).1.1) - (edge(k).1.0 * edge(k).0.1)).sum::<i64>().abs() / 2;
+    let area = twice_area(ring) / 2;
     let around: i64 = (0..n).map(|k| (edge(k).0.0 - edge(k).1.0).abs() + (edge(k).0.1 - edge(k).1.1).abs()).sum();
     area < THIN * (around / 2 - THIN).max(THIN)
 }

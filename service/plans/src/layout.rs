@@ -9,13 +9,15 @@ use d3dgen_model::{Point, Polygon};
 
 use crate::attach::attach;
 use crate::cells::Stretch;
-use crate::drawing::{Drawing, OpeningKind, note};
+use crate::drawing::{Drawing, OpeningKind, SolidKind, note};
+use crate::error::Error;
 use crate::levels::{LaidLevel, Storey};
+use crate::options::Options;
 use crate::rooms::{name, rooms_and_floor, strips};
-use crate::snap::Corner;
+use crate::shape::polygon;
 use crate::walls::{outlines, walls};
 use crate::words::is_number;
-use crate::{Error, Options, cabins, leaves, levels, upright};
+use crate::{cabins, evidence, leaves, levels, solids, upright};
 
 /// Wall left at the ends of the open side between two pieces of one room, mm, and the shortest such side.
 const PIECE_JAMB: i64 = 120;
@@ -35,6 +37,8 @@ pub struct Layout {
     pub rooms: Vec<LaidRoom>,
     /// Openings in walls.
     pub openings: Vec<LaidOpening>,
+    /// Columns and walls that stand free.
+    pub obstacles: Vec<LaidObstacle>,
     /// What was assumed and changed.
     pub notes: Vec<Note>,
     /// What the file calls the building.
@@ -55,6 +59,8 @@ pub struct LaidRoom {
     pub also: Vec<String>,
     /// True when it has no name but a number at most, and joins so many rooms that it is circulation.
     pub hub: bool,
+    /// True when it has no name, or a number only.
+    pub unnamed: bool,
     /// Outline on wall center lines.
     pub polygon: Polygon,
     /// Outline on wall faces.
@@ -63,6 +69,17 @@ pub struct LaidRoom {
     pub height_m: Option<f64>,
     /// Which of the storeys it is on.
     pub(crate) storey: usize,
+}
+
+/// Something that stands in a room from floor to ceiling.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LaidObstacle {
+    /// What it is.
+    pub kind: SolidKind,
+    /// Its outline within the room, counter-clockwise, at any angle.
+    pub outline: Polygon,
+    /// Room it stands in.
+    pub room: usize,
 }
 
 /// An opening in its stretch of wall.
@@ -90,7 +107,9 @@ pub struct LaidOpening {
 /// (unless `rectify`), rooms that walls leave no floor of; always with the room and the place.
 pub fn lay_out(mut drawing: Drawing, options: &Options) -> Result<Layout, Error> {
     drawing.check_numbers()?;
+    evidence::decide(&mut drawing);
     drawing.tell_of_unread();
+    let layers = drawing.tell_of_layers();
     if let Some(level) = options.level.as_deref() {
         levels::keep(&mut drawing, level)?;
     }
@@ -100,13 +119,13 @@ pub fn lay_out(mut drawing: Drawing, options: &Options) -> Result<Layout, Error>
         return Err(Error::refused("wall thickness", format!("{thickness} m is outside 0.02-1 m")));
     }
     upright::turn(&mut drawing);
-    move_near(&mut drawing)?;
+    move_near(&mut drawing, &layers)?;
     let (titles, notes) = (std::mem::take(&mut drawing.titles), std::mem::take(&mut drawing.notes));
     let mut layout = Layout { notes, titles, ..Layout::default() };
     let storeys = if options.level.is_some() { vec![levels::whole(drawing)] } else { levels::split(drawing) };
     let several = storeys.len() > 1;
     for Storey { level, drawing } in storeys {
-        let found = storey(drawing, options, layout.rooms.len());
+        let found = storey(drawing, options, layout.rooms.len()).map_err(|e| e.with_layers(&layers));
         let mut found = if several { found.map_err(|e| e.on_level(&level.name))? } else { found? };
         if several {
             found.notes.iter_mut().for_each(|n| n.message = format!("level {}: {}", level.name, n.message));
@@ -124,8 +143,9 @@ fn storey(mut drawing: Drawing, options: &Options, before: usize) -> Result<Layo
     strips(&mut drawing);
     cabins::enclose(&mut drawing);
     let (mut drawn, cells) = rooms_and_floor(&mut drawing, options)?;
-    let words = name(&mut drawn, &cells, &drawing);
+    let words = name(&mut drawn, &cells, &mut drawing);
     let mut walls = walls(cells, options, &mut drawing.notes)?;
+    let assumed = walls.are_assumed();
     let outlines = outlines(&mut drawn, &mut walls, &mut drawing.notes)?;
     let mut rooms: Vec<LaidRoom> = Vec::with_capacity(outlines.rooms.len());
     for (room, ring, net) in outlines.rooms {
@@ -134,6 +154,7 @@ fn storey(mut drawing: Drawing, options: &Options, before: usize) -> Result<Layo
             kind: drawn[room].kind.clone(),
             also: words.get(outlines.origin[room]).cloned().unwrap_or_default(),
             hub: false,
+            unnamed: false,
             net_polygon: polygon(&net),
             polygon: polygon(&ring),
             height_m: drawn[room].height_m.filter(|h| h.is_finite() && (1.5..=50.0).contains(h)),
@@ -142,16 +163,19 @@ fn storey(mut drawing: Drawing, options: &Options, before: usize) -> Result<Layo
     }
     cabins::mark(&mut rooms, &mut drawing);
     let stretches = outlines.stretches;
-    let mut openings = attach(&drawing.openings, &stretches, &rooms, &mut drawing.notes);
+    let mut notes = std::mem::take(&mut drawing.notes);
+    let obstacles = solids::stand(&drawing, &rooms, &mut notes);
+    let mut openings = attach(&drawing.openings, &stretches, &rooms, assumed, &mut notes);
     openings.extend(open_sides(&stretches, &outlines.family, &openings));
     mark_hubs(&mut rooms, &openings);
+    rooms.iter_mut().for_each(|r| r.unnamed = has_no_name(r));
     // rooms that were found get a name by which the user can say what they are
     for (i, (room, family)) in rooms.iter_mut().zip(&outlines.family).enumerate() {
         if room.label.is_empty() && drawn[*family].traced {
             room.label = format!("room_{}", before + i + 1);
         }
     }
-    Ok(Layout { rooms, openings, notes: drawing.notes, stretches, ..Layout::default() })
+    Ok(Layout { rooms, openings, obstacles, notes, stretches, ..Layout::default() })
 }
 
 impl Layout {
@@ -170,7 +194,20 @@ impl Layout {
             o.swing.iter_mut().flat_map(|s| &mut s.0).for_each(room);
             LaidOpening { stretch: o.stretch + stretches, ..o }
         }));
+        self.obstacles.extend(upper.obstacles.into_iter().map(|o| LaidObstacle { room: o.room + rooms, ..o }));
         self.notes.extend(upper.notes);
+    }
+
+    /// Returns for each room those that a door or passage joins it with.
+    pub fn joined(&self) -> Vec<Vec<usize>> {
+        let mut out = vec![Vec::new(); self.rooms.len()];
+        for o in self.openings.iter().filter(|o| o.kind != OpeningKind::Window) {
+            if let [a, b] = o.rooms[..] {
+                out[a].push(b);
+                out[b].push(a);
+            }
+        }
+        out
     }
 
     /// Returns the number of the storey that a room is on: 0 at the ground.
@@ -179,10 +216,14 @@ impl Layout {
     }
 }
 
+/// Returns true for a room without a name, or with a number only.
+fn has_no_name(room: &LaidRoom) -> bool {
+    room.kind.as_deref().is_none_or(str::is_empty) && (room.label.is_empty() || is_number(&room.label))
+}
+
 /// Marks rooms without a name that join many others: long ones, or those that join more.
 fn mark_hubs(rooms: &mut [LaidRoom], openings: &[LaidOpening]) {
-    let unnamed = |r: &LaidRoom| r.kind.is_none() && (r.label.is_empty() || is_number(&r.label));
-    for (room, laid) in rooms.iter_mut().enumerate().filter(|(_, r)| unnamed(r)) {
+    for (room, laid) in rooms.iter_mut().enumerate().filter(|(_, r)| has_no_name(r)) {
         let walkable = openings.iter().filter(|o| o.kind != OpeningKind::Window && o.rooms.contains(&room));
         let mut joined: Vec<usize> = walkable.flat_map(|o| o.rooms.iter().copied()).filter(|r| *r != room).collect();
         joined.sort_unstable();
@@ -204,7 +245,7 @@ fn mark_hubs(rooms: &mut [LaidRoom], openings: &[LaidOpening]) {
         let at_hub = openings.iter().any(|o| {
             o.kind != OpeningKind::Window && o.rooms.contains(&room) && o.rooms.iter().any(|r| *r != room && hubs[*r])
         });
-        laid.hub |= unnamed(laid) && at_hub && leads_out(room);
+        laid.hub |= has_no_name(laid) && at_hub && leads_out(room);
     }
 }
 
@@ -232,21 +273,15 @@ fn open_sides(stretches: &[Stretch], family: &[usize], openings: &[LaidOpening])
     out
 }
 
-pub(crate) fn polygon(ring: &[Corner]) -> Polygon {
-    Polygon(ring.iter().map(|&c| point(c)).collect())
-}
-
-pub(crate) fn point(c: Corner) -> Point {
-    Point::new(c.0 as f64 / 1000.0, c.1 as f64 / 1000.0)
-}
-
 /// Refuses what is too large for a building and moves what is drawn far away to the origin.
-fn move_near(drawing: &mut Drawing) -> Result<(), Error> {
-    let corners: Vec<Point> = drawing.rooms.iter().flat_map(|r| r.corners.iter().copied()).collect();
+fn move_near(drawing: &mut Drawing, layers: &str) -> Result<(), Error> {
+    let rooms = drawing.rooms.iter().chain(drawing.unclear.iter().map(|s| &s.room));
+    let corners: Vec<Point> = rooms.flat_map(|r| r.corners.iter().copied()).collect();
     let lines = drawing.walls.iter().flat_map(|w| w.line);
     let all: Vec<Point> = if corners.is_empty() { lines.collect() } else { corners };
     if all.is_empty() {
-        return Err(Error::refused("plan", "holds no rooms: no closed outlines and no walls that could enclose any"));
+        let message = format!("holds no rooms: no closed outlines and no walls that could enclose any{layers}");
+        return Err(Error::refused("plan", message));
     }
     let around = Polygon(all).bounds();
     if around.width().max(around.height()) > LARGEST_M {

@@ -3,6 +3,7 @@
 use d3dgen_model::Point;
 
 use crate::drawing::{DrawnOpening, OpeningKind, extent};
+use crate::shape::distance;
 
 /// Leaves are this wide, m.
 const LEAF_M: std::ops::RangeInclusive<f64> = 0.45..=1.6;
@@ -21,8 +22,9 @@ pub(crate) fn pair(openings: &mut Vec<DrawnOpening>) {
             o.points = line.to_vec();
         }
     }
-    meet(openings);
+    // those of two leaves too, which are one door from here on
     let arcs: Vec<[Point; 3]> = openings.iter().filter_map(|o| o.arc).collect();
+    meet(openings);
     let is_leaf = |o: &DrawnOpening| {
         let Some((a, b)) = o.arc.is_none().then(|| axis(&o.points)).flatten() else { return false };
         arcs.iter().any(|[hinge, from, to]| {
@@ -74,16 +76,6 @@ fn axis(points: &[Point]) -> Option<(Point, Point)> {
         _ if w < 0.15 * h => Some((Point::new((x0 + x1) / 2.0, y0), Point::new((x0 + x1) / 2.0, y1))),
         _ => None,
     }
-}
-
-fn distance(points: &[Point], p: Point) -> f64 {
-    let to = |pair: &[Point]| {
-        let (a, b) = (pair[0], pair[1]);
-        let length = a.distance(b).max(1e-9);
-        let along = (((p.x - a.x) * (b.x - a.x) + (p.y - a.y) * (b.y - a.y)) / length / length).clamp(0.0, 1.0);
-        p.distance(Point::new(a.x + along * (b.x - a.x), a.y + along * (b.y - a.y)))
-    };
-    points.windows(2).map(to).fold(f64::MAX, f64::min)
 }
 
 /// Returns hinge and ends of the arc of a shape as wide as high.

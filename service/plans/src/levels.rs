@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use d3dgen_model::scene_graph::Note;
 
-use crate::Error;
 use crate::drawing::{Drawing, note};
+use crate::error::Error;
 use crate::words::{self, StoreyWord, storey_word};
 
 /// Floors closer than this to one another are no storeys, m.
@@ -74,6 +74,8 @@ fn retain(drawing: &mut Drawing, here: impl Fn(&Option<String>) -> bool) {
     drawing.labels.retain(|l| here(&l.level));
     drawing.floors.retain(|f| here(&f.level));
     drawing.cabins.retain(|c| here(&c.level));
+    drawing.solids.retain(|s| here(&s.level));
+    drawing.unclear.retain(|s| here(&s.room.level));
 }
 
 /// Parts a drawing into its storeys, from the lowest to the highest; what is on none is on the ground floor. A drawing of one

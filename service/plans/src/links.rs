@@ -6,6 +6,7 @@ use d3dgen_model::storeys::LinkKind;
 
 use crate::drawing::note;
 use crate::layout::Layout;
+use crate::shape::share_inside;
 
 /// Share of the smaller of two rooms that lies above or below the other when they are one stairwell or shaft.
 const ABOVE: f64 = 0.5;
@@ -66,7 +67,6 @@ fn follows(layout: &Layout, below: usize, above: usize, kind: LinkKind) -> bool 
 
 /// Returns the share of the smaller of two outlines that both have in common, 0 to 1.
 fn overlap(a: &Polygon, b: &Polygon) -> f64 {
-    let below = b.rects();
-    let common: f64 = a.rects().iter().flat_map(|p| below.iter().map(|q| p.common_area(q))).sum();
-    common / a.area().min(b.area()).max(1e-9)
+    let (small, large) = if a.area() <= b.area() { (a, b) } else { (b, a) };
+    share_inside(small.corners(), large.corners())
 }

@@ -5,12 +5,16 @@ use d3dgen_model::scene_graph::Note;
 use d3dgen_model::{Point, Polygon};
 
 use crate::cells::Cells;
-use crate::drawing::{Drawing, DrawnOpening, DrawnRoom, DrawnWall, OpeningKind, note};
+use crate::drawing::{Drawing, DrawnOpening, DrawnRoom, DrawnSolid, DrawnWall, OpeningKind, SolidKind, note};
+use crate::error::{ENCLOSE_NONE, Error};
 use crate::faces::FloorRing;
-use crate::layout::{point, polygon};
-use crate::snap::{Axis, Corner};
+use crate::options::INNER_WALL_M;
+use crate::options::Options;
+use crate::shape::Corner;
+use crate::shape::{area, distance, edges, extents, point, polygon, share_inside, thickened};
+use crate::snap::Axis;
 use crate::straighten::{Chain, Done, straighten};
-use crate::{Error, Options, clean, faces, snap, upright, words};
+use crate::{clean, faces, snap, words};
 
 /// Coordinates closer than this are one wall face, m.
 const SNAP_M: f64 = 0.015;
@@ -22,8 +26,10 @@ const WELD_OUTLINE_M: f64 = 0.03;
 /// A closed shape without a name is a wall when it is this thin, m, and so many times as long.
 const STRIP_M: f64 = 0.4;
 const STRIP_LONG: f64 = 2.5;
-/// Smallest hole in an outline that is kept free, m^2; smaller ones are columns.
+/// Smallest hole in an outline that is a court, m^2; smaller ones are columns.
 const COLUMN_M2: f64 = 0.5;
+/// Share of an outline in another one that is all of it, but for rounding.
+const ALL: f64 = 0.98;
 /// Most other words that a room keeps.
 const MOST_WORDS: usize = 12;
 /// Most rooms of a plan.
@@ -38,21 +44,14 @@ struct Outlined {
 
 /// Returns the rooms with the floor that each is drawn on, or that walls enclose where no rooms are drawn.
 pub(crate) fn rooms_and_floor(drawing: &mut Drawing, options: &Options) -> Result<(Vec<DrawnRoom>, Cells), Error> {
-    if drawing.rooms.is_empty() {
-        if let Some(found) = enclosed(drawing)? {
-            return Ok(found);
-        }
-        drawing.rooms = floors_as_rooms(drawing);
-        if drawing.rooms.is_empty() {
-            return Err(Error::refused(
-                "walls",
-                "enclose no room; every room needs a closed run of walls, with doors drawn in the gaps",
-            ));
-        }
+    if drawing.rooms.is_empty()
+        && let Some(found) = enclosed_or_drawn(drawing, options)?
+    {
+        return Ok(found);
     }
+    walls_in_rooms(drawing, options);
     let shift = straighten_rooms(drawing);
     let mut stray = 0.0_f64;
-    let mut columns = 0;
     let mut upright_rooms: Vec<(DrawnRoom, Vec<Point>, Vec<Vec<Point>>)> = Vec::new();
     for mut room in std::mem::take(&mut drawing.rooms) {
         let ring = clean::ring(&room.corners, &room.place)?;
@@ -60,8 +59,9 @@ pub(crate) fn rooms_and_floor(drawing: &mut Drawing, options: &Options) -> Resul
         stray = stray.max(off);
         let mut holes = Vec::new();
         for hole in std::mem::take(&mut room.holes) {
-            if Polygon(hole.clone()).area() < COLUMN_M2 {
-                columns += 1;
+            if area(&hole) < COLUMN_M2 {
+                let (kind, level, place) = (SolidKind::Column, room.level.clone(), format!("hole in {}", room.place));
+                drawing.solids.push(DrawnSolid { kind, outline: hole, level, place });
                 continue;
             }
             let place = format!("hole in {}", room.place);
@@ -72,16 +72,10 @@ pub(crate) fn rooms_and_floor(drawing: &mut Drawing, options: &Options) -> Resul
         }
         upright_rooms.push((room, ring, holes));
     }
-    if columns > 0 {
-        let message = format!(
-            "{columns} holes in rooms are smaller than {COLUMN_M2} m2; they were taken for columns and left out"
-        );
-        drawing.notes.push(note("columns_left_out", message));
-    }
     tell_of_steps(drawing, stray);
     let (mut xs, mut ys) = (Vec::new(), Vec::new());
     let rings = || upright_rooms.iter().flat_map(|(_, ring, holes)| std::iter::once(ring).chain(holes));
-    snap::collect(rings().flat_map(|ring| upright::edges(ring)), &mut xs, &mut ys);
+    snap::collect(rings().flat_map(|ring| edges(ring)), &mut xs, &mut ys);
     let (xs, ys) = (Axis::new(xs, SNAP_M), Axis::new(ys, SNAP_M));
     let lattice = |ring: &Vec<Point>| snap::ring(ring, &xs, &ys);
     let mut rooms: Vec<Outlined> = upright_rooms
@@ -92,6 +86,29 @@ pub(crate) fn rooms_and_floor(drawing: &mut Drawing, options: &Options) -> Resul
     check_count(rooms.len())?;
     let cells = fill(&rooms, GRAZE.max((2000.0 * shift) as i64))?;
     Ok((rooms.into_iter().map(|r| r.room).collect(), cells))
+}
+
+/// Returns what walls enclose; where that is nothing, makes rooms of shapes and floors.
+///
+/// # Errors
+/// `Refused` where there are none either.
+fn enclosed_or_drawn(drawing: &mut Drawing, options: &Options) -> Result<Option<(Vec<DrawnRoom>, Cells)>, Error> {
+    let found = enclosed(drawing, options)?;
+    let unclear = std::mem::take(&mut drawing.unclear);
+    if found.is_some() {
+        unclear.iter().for_each(|s| drawing.leave_out(s.told()));
+        drawing.tell_of_unread();
+        return Ok(found);
+    }
+    drawing.rooms = unclear.into_iter().map(|s| s.room).collect();
+    if drawing.rooms.is_empty() {
+        drawing.rooms = floors_as_rooms(drawing);
+    }
+    if drawing.rooms.is_empty() {
+        let message = format!("{ENCLOSE_NONE}; every room needs a closed run of walls, with doors drawn in the gaps");
+        return Err(Error::refused("walls", message));
+    }
+    Ok(None)
 }
 
 fn check_count(rooms: usize) -> Result<(), Error> {
@@ -164,7 +181,7 @@ fn straighten_walls(drawing: &mut Drawing) {
 /// Returns what walls, doors and floors enclose, or `None` when they enclose nothing.
 ///
 /// Slanted walls are made of steps here, asked or not: no outline of a room was drawn that had to be kept.
-fn enclosed(drawing: &mut Drawing) -> Result<Option<(Vec<DrawnRoom>, Cells)>, Error> {
+fn enclosed(drawing: &mut Drawing, options: &Options) -> Result<Option<(Vec<DrawnRoom>, Cells)>, Error> {
     straighten_walls(drawing);
     let mut lines: Vec<[Point; 2]> = Vec::new();
     let mut stray = 0.0_f64;
@@ -189,7 +206,7 @@ fn enclosed(drawing: &mut Drawing) -> Result<Option<(Vec<DrawnRoom>, Cells)>, Er
     snap::collect(lines.iter().map(|l| (l[0], l[1])), &mut xs, &mut ys);
     // floors go by the walls, so their edges have next to no weight
     let before = (xs.len(), ys.len());
-    snap::collect(floors.iter().flat_map(|f| upright::edges(&f.0)), &mut xs, &mut ys);
+    snap::collect(floors.iter().flat_map(|f| edges(&f.0)), &mut xs, &mut ys);
     xs[before.0..].iter_mut().chain(&mut ys[before.1..]).for_each(|c| c.1 *= 1e-6);
     let (xs, ys) = (Axis::new(xs, SNAP_M), Axis::new(ys, SNAP_M));
     let floors: Vec<FloorRing> = floors.iter().map(|(ring, hole)| (snap::ring(ring, &xs, &ys), *hole)).collect();
@@ -201,6 +218,7 @@ fn enclosed(drawing: &mut Drawing) -> Result<Option<(Vec<DrawnRoom>, Cells)>, Er
         return Ok(None);
     }
     drawing.openings.extend(found.passages);
+    stand_free(drawing, options, &found.free_walls, found.standing);
     let mut rooms = Vec::with_capacity(found.count);
     for i in 0..found.count {
         let at = found.cells.owner.iter().position(|o| *o == Some(i as u32)).unwrap_or(0);
@@ -210,6 +228,39 @@ fn enclosed(drawing: &mut Drawing) -> Result<Option<(Vec<DrawnRoom>, Cells)>, Er
         rooms.push(DrawnRoom { traced: true, ..DrawnRoom::new(String::new(), Vec::new(), place) });
     }
     Ok(Some((rooms, found.cells)))
+}
+
+/// Adds what walls show to stand in rooms: their free ends and pieces as thick as inner walls, and small closed shapes.
+fn stand_free(drawing: &mut Drawing, options: &Options, walls: &[[Point; 2]], standing: Vec<Vec<Point>>) {
+    let solid = |kind: SolidKind, outline: Vec<Point>| {
+        let at = outline.first().copied().unwrap_or(Point::new(0.0, 0.0));
+        DrawnSolid { kind, outline, level: None, place: format!("wall at ({:.2}, {:.2}) m", at.x, at.y) }
+    };
+    let thickness = options.inner_wall_m.unwrap_or(INNER_WALL_M);
+    drawing.solids.extend(walls.iter().map(|line| solid(SolidKind::Wall, thickened(*line, thickness))));
+    drawing.solids.extend(standing.into_iter().map(|outline| {
+        let (long, short) = extents(&outline);
+        let kind = if long >= STRIP_LONG * short { SolidKind::Wall } else { SolidKind::Column };
+        solid(kind, outline)
+    }));
+}
+
+/// Adds the walls drawn inside of rooms whose outlines are drawn: those that keep off their outlines.
+fn walls_in_rooms(drawing: &mut Drawing, options: &Options) {
+    let inside = |wall: &DrawnWall| {
+        let [a, b] = wall.line;
+        let middle = Point::new((a.x + b.x) / 2.0, (a.y + b.y) / 2.0);
+        let holds = |room: &DrawnRoom| {
+            let outline = Polygon(room.corners.clone());
+            room.level == wall.level && [a, b, middle].iter().all(|p| outline.contains(*p)) && {
+                let ring: Vec<Point> = room.corners.iter().chain(room.corners.first()).copied().collect();
+                [a, b, middle].iter().any(|p| distance(&ring, *p) > STRIP_M)
+            }
+        };
+        a.distance(b) > STRIP_M && drawing.rooms.iter().any(holds)
+    };
+    let free: Vec<[Point; 2]> = drawing.walls.iter().filter(|w| inside(w)).map(|w| w.line).collect();
+    stand_free(drawing, options, &free, Vec::new());
 }
 
 /// Returns floors as rooms, where walls enclose none.
@@ -226,7 +277,7 @@ fn floors_as_rooms(drawing: &mut Drawing) -> Vec<DrawnRoom> {
 }
 
 /// Gives rooms without a name the first of the words that stand in them; returns the other words in each room.
-pub(crate) fn name(rooms: &mut [DrawnRoom], cells: &Cells, drawing: &Drawing) -> Vec<Vec<String>> {
+pub(crate) fn name(rooms: &mut [DrawnRoom], cells: &Cells, drawing: &mut Drawing) -> Vec<Vec<String>> {
     let mm = |v: f64| (v * 1000.0).round() as i64;
     let mut words: Vec<Vec<String>> = vec![Vec::new(); rooms.len()];
     for label in drawing.labels.iter().filter(|l| words::is_name(&l.text)) {
@@ -241,6 +292,11 @@ pub(crate) fn name(rooms: &mut [DrawnRoom], cells: &Cells, drawing: &Drawing) ->
             room.label = label;
         }
         list.truncate(MOST_WORDS);
+        list.dedup();
+        if room.traced && !list.is_empty() {
+            let message = format!("{} also has the names {}", room.place, list.join(", "));
+            drawing.notes.push(note("several_names", message));
+        }
     }
     words
 }
@@ -253,11 +309,12 @@ fn drop_outlines(rooms: &mut Vec<Outlined>, notes: &mut Vec<Note>) {
     let holds = |i: usize, j: usize| {
         let (a, b) = (bounds[i], bounds[j]);
         let within = a.x0 <= b.x0 + 0.05 && a.y0 <= b.y0 + 0.05 && a.x1 >= b.x1 - 0.05 && a.y1 >= b.y1 - 0.05;
-        within && outlines[i].area() > outlines[j].area() + 0.5 && {
-            let inner = outlines[j].rects();
-            let within = |p: Point| outlines[i].contains(p) && !holes[i].iter().any(|h| h.contains(p));
-            !inner.is_empty() && inner.iter().all(|r| within(r.center()))
-        }
+        let larger = outlines[i].area() > outlines[j].area() + 0.5;
+        let in_hole = |h: &Polygon| share_inside(outlines[j].corners(), h.corners()) > 0.5;
+        within
+            && larger
+            && share_inside(outlines[j].corners(), outlines[i].corners()) > ALL
+            && !holes[i].iter().any(in_hole)
     };
     let two = |i: usize| (0..rooms.len()).filter(|&j| j != i && holds(i, j)).take(2).count() == 2;
     let drop: Vec<bool> = (0..rooms.len()).map(two).collect();
@@ -326,7 +383,7 @@ pub(crate) fn strips(drawing: &mut Drawing) {
     let message = format!("{} closed shapes are as thin as walls and were taken for walls", strips.len());
     drawing.notes.push(note("thin_shapes", message));
     for strip in strips {
-        drawing.walls.extend(upright::edges(&strip.corners).map(|(a, b)| DrawnWall {
+        drawing.walls.extend(edges(&strip.corners).map(|(a, b)| DrawnWall {
             line: [a, b],
             level: strip.level.clone(),
             place: strip.place.clone(),

@@ -2,10 +2,7 @@
 
 use d3dgen_model::Point;
 
-use crate::upright::edges;
-
-/// A corner on the lattice of millimeters.
-pub(crate) type Corner = (i64, i64);
+use crate::shape::{Corner, edges};
 
 /// Coordinates of one axis: each group of close ones with the one that stands for it.
 #[derive(Debug, Default)]

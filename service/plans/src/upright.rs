@@ -3,6 +3,7 @@
 use d3dgen_model::Point;
 
 use crate::drawing::{Drawing, note};
+use crate::shape::edges;
 
 /// Angles below this are drawn that way by accident or not at all, rad.
 const LEAST_RAD: f64 = 0.0005;
@@ -30,10 +31,6 @@ pub(crate) fn turn(drawing: &mut Drawing) {
         about.y
     );
     drawing.notes.push(note("turned", message));
-}
-
-pub(crate) fn edges(corners: &[Point]) -> impl Iterator<Item = (Point, Point)> + '_ {
-    (0..corners.len()).map(|i| (corners[i], corners[(i + 1) % corners.len()]))
 }
 
 /// Returns the direction most wall meters run in, modulo a quarter turn, rad in (-pi/4, pi/4].

@@ -4,17 +4,16 @@ use d3dgen_model::scene_graph::Note;
 
 use crate::cells::{Cells, Stretch, outline};
 use crate::drawing::{DrawnRoom, note};
-use crate::layout::polygon;
-use crate::snap::Corner;
-use crate::{Error, Options, pieces};
+use crate::error::Error;
+use crate::options::{INNER_WALL_M, OUTER_WALL_M, Options};
+use crate::pieces;
+use crate::shape::Corner;
+use crate::shape::polygon;
 
 /// Widest gap between two rooms that is taken for a wall, mm.
 const WIDEST_WALL: i64 = 600;
 /// Times that rooms are cut in pieces before the rest is given up.
 const ROUNDS: usize = 6;
-/// Thickness of walls drawn as lines, m.
-const INNER_WALL_M: f64 = 0.12;
-const OUTER_WALL_M: f64 = 0.24;
 /// Share of a room's floor that is the room where its walls cut off the rest.
 const MOST_OF_ROOM: f64 = 0.85;
 /// Gaps and overlaps up to this are rounding, mm.
@@ -27,6 +26,8 @@ pub(crate) struct Walls {
     /// Usual thickness of inner and outer walls, mm.
     inner: i64,
     outer: i64,
+    /// True when the plan draws no faces of walls.
+    assumed: bool,
 }
 
 /// Outlines of rooms that are each one simple outline.
@@ -138,6 +139,11 @@ impl Fault {
 }
 
 impl Walls {
+    /// Returns true when the plan draws walls as lines: how thick they are is not said by it.
+    pub(crate) fn are_assumed(&self) -> bool {
+        self.assumed
+    }
+
     /// Takes a room out of the plan.
     fn take(&mut self, room: usize) {
         for owner in self.cells.owner.iter_mut().chain(&mut self.floor.owner) {
@@ -258,7 +264,7 @@ pub(crate) fn walls(drawn: Cells, options: &Options, notes: &mut Vec<Note>) -> R
     // the drawn floor on the same lines tells how far the faces are
     let floor = drawn.refined(&cells.xs, &cells.ys).ok_or_else(too_many)?;
     let cells = cells.refined(&floor.xs, &floor.ys).ok_or_else(too_many)?;
-    Ok(Walls { cells, floor, inner, outer })
+    Ok(Walls { cells, floor, inner, outer, assumed: gaps.is_empty() })
 }
 
 /// Closes gaps between cells of different owners in the rows of a grid, each at its middle.

@@ -4,6 +4,10 @@ use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
 use serde::Deserialize;
+use unicode_normalization::UnicodeNormalization;
+use unicode_normalization::char::is_combining_mark;
+
+use crate::options::{LayerUse, Options};
 
 /// What a drawn thing is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -12,6 +16,7 @@ pub(crate) enum Role {
     Passage,
     Window,
     Wall,
+    Column,
     Room,
     Outline,
     /// A number or name of something else: its words count, what is drawn does not.
@@ -22,12 +27,13 @@ pub(crate) enum Role {
 /// Most letters of a code in a room's number.
 const MOST_CODE_LETTERS: usize = 2;
 
-const ROLES: [(&str, Role); 8] = [
+const ROLES: [(&str, Role); 9] = [
     ("skip", Role::Skip),
     ("tag", Role::Tag),
     ("window", Role::Window),
     ("door", Role::Door),
     ("open", Role::Passage),
+    ("column", Role::Column),
     ("wall", Role::Wall),
     ("outline", Role::Outline),
     ("room", Role::Room),
@@ -41,6 +47,7 @@ type Lists = BTreeMap<String, Vec<String>>;
 struct Data {
     words: Lists,
     codes: Lists,
+    endings: Lists,
     storeys: Lists,
 }
 
@@ -48,19 +55,57 @@ static DATA: LazyLock<Data> = LazyLock::new(|| {
     toml::from_str(include_str!("../data/words.toml")).expect("data/words.toml is shipped and tested")
 });
 
+/// Returns what a layer, class, group or kind is: as the user says, or by its words.
+pub(crate) fn role_of(name: &str, options: &Options) -> Option<Role> {
+    said_of(name, options).or_else(|| role(name))
+}
+
+/// Returns what the user says that a layer is.
+pub(crate) fn said_of(name: &str, options: &Options) -> Option<Role> {
+    let said = options.layers.iter().find(|(layer, _)| layer.trim().eq_ignore_ascii_case(name.trim()));
+    said.map(|(_, layer_use)| match layer_use {
+        LayerUse::Wall => Role::Wall,
+        LayerUse::Room => Role::Room,
+        LayerUse::Door => Role::Door,
+        LayerUse::Window => Role::Window,
+        LayerUse::Column => Role::Column,
+        LayerUse::Furniture => Role::Skip,
+        LayerUse::Ignore => Role::Tag,
+    })
+}
+
 /// Returns what the words of a layer, class or id say, or `None`.
 pub(crate) fn role(text: &str) -> Option<Role> {
-    let folded = fold(text);
+    let folded = fold(&parted(text));
     let tokens: Vec<&str> = folded.split(|c: char| !c.is_alphanumeric()).filter(|t| !t.is_empty()).collect();
     let says = |word: &str, token: &&str| {
-        token.strip_prefix(word).is_some_and(|rest| rest.bytes().all(|b| b.is_ascii_digit()))
+        token
+            .strip_prefix(word)
+            .is_some_and(|rest| rest.strip_prefix('s').unwrap_or(rest).bytes().all(|b| b.is_ascii_digit()))
     };
-    let in_list = |lists: &Lists, name: &str| {
-        lists.get(name).is_some_and(|list| list.iter().any(|w| tokens.iter().any(|t| says(w, t))))
+    let ends = |ending: &str, token: &&str| token.ends_with(ending);
+    let any = |lists: &Lists, name: &str, test: &dyn Fn(&str, &&str) -> bool| {
+        lists.get(name).is_some_and(|list| list.iter().any(|w| tokens.iter().any(|t| test(w, t))))
     };
     let coded = is_standard_layer(&folded);
-    let named = |name: &str| in_list(&DATA.words, name) || coded && in_list(&DATA.codes, name);
+    let named = |name: &str| {
+        any(&DATA.words, name, &says) || any(&DATA.endings, name, &ends) || coded && any(&DATA.codes, name, &says)
+    };
     ROLES.iter().find(|(name, _)| named(name)).map(|(_, role)| *role)
+}
+
+/// Returns a name with its words parted where a small letter meets a capital: `InnerWalls`.
+fn parted(name: &str) -> String {
+    let mut out = String::with_capacity(name.len() + 4);
+    let mut before = ' ';
+    for c in name.chars() {
+        if before.is_lowercase() && c.is_uppercase() {
+            out.push(' ');
+        }
+        out.push(c);
+        before = c;
+    }
+    out
 }
 
 /// Returns true for a layer name in the form of the National CAD Standard: a discipline, and a group of four letters.
@@ -130,21 +175,18 @@ pub(crate) fn parts(name: &str) -> Vec<String> {
     out
 }
 
-/// Returns lower case without the accents of the languages in `words.toml`.
+/// Returns lower case without accents.
 fn fold(text: &str) -> String {
-    text.chars()
-        .flat_map(char::to_lowercase)
-        .map(|c| match c {
-            'ä' | 'á' | 'à' | 'â' => 'a',
-            'é' | 'è' | 'ê' => 'e',
-            'í' | 'î' => 'i',
-            'ö' | 'ó' | 'ô' => 'o',
-            'ü' | 'ú' | 'û' => 'u',
-            'ñ' => 'n',
-            'ç' => 'c',
-            other => other,
-        })
-        .collect()
+    // the marks of Japanese make other letters
+    let is_accent = |c: &char| is_combining_mark(*c) && !matches!(c, '\u{3099}' | '\u{309a}');
+    let plain = text.chars().flat_map(char::to_lowercase).nfd().filter(|c| !is_accent(c));
+    let plain = plain.nfc().map(|c| match c {
+        'ø' => 'o',
+        'ł' => 'l',
+        'ı' => 'i',
+        other => other,
+    });
+    plain.collect::<String>().replace('ß', "ss").replace('æ', "ae")
 }
 
 /// Returns true for words that name a room rather than give its size or number: two letters in a row, and no figure first.
@@ -186,6 +228,17 @@ mod tests {
             ("wardrobe", None),
             ("indoor", None),
             ("Furniture", Some(Role::Skip)),
+            ("Furnitures", Some(Role::Skip)),
+            ("InnerWalls", Some(Role::Wall)),
+            ("Außenwände", Some(Role::Wall)),
+            ("Innentüren", Some(Role::Door)),
+            ("Стены", Some(Role::Wall)),
+            ("ściany", Some(Role::Wall)),
+            ("Stützen", Some(Role::Column)),
+            ("S-COLS", Some(Role::Column)),
+            ("COLUMN", Some(Role::Column)),
+            ("Möblierung", Some(Role::Skip)),
+            ("Natur", None),
             ("A-GLAZ", Some(Role::Window)),
             ("A-WALL-GLAZ", Some(Role::Window)),
             ("A-WIND-E", Some(Role::Window)),
@@ -200,7 +253,7 @@ mod tests {
             assert_eq!(role(text), expected, "{text}");
         }
         assert!(
-            [&DATA.words, &DATA.codes, &DATA.storeys]
+            [&DATA.words, &DATA.codes, &DATA.endings, &DATA.storeys]
                 .into_iter()
                 .flat_map(Lists::values)
                 .flatten()

@@ -13,8 +13,16 @@ use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
 
 /// The plans that are changed; the ending of each says its reader.
-const TARGETS: &[&str] =
-    &["flat.json", "flat.geojson", "flat.svg", "flat.dxf", "flat.building.yaml", "flat_map.yaml", "flat_map.pgm"];
+const TARGETS: &[&str] = &[
+    "flat.json",
+    "flat.geojson",
+    "flat.svg",
+    "flat.dxf",
+    "flat.building.yaml",
+    "flat_map.yaml",
+    "flat_map.pgm",
+    "venue.zip",
+];
 /// A file must be answered within this time; the tests are not built for speed.
 const TIME: Duration = Duration::from_secs(6);
 

@@ -103,6 +103,22 @@ impl<'r, 'a> Draft<'r, 'a> {
         Ok(Self { request, registry, heard, notes, site, aside, named, counted, wishes, on_each })
     }
 
+    /// Returns the draft of facts that need no words: see `briefed`.
+    #[allow(clippy::too_many_arguments)]
+    pub(super) fn of_facts(
+        request: &'r Request,
+        registry: &'a Registry,
+        heard: Heard<'r>,
+        notes: Notes,
+        site: Site<'a>,
+        aside: Aside,
+        named: Named,
+        counted: Counted,
+    ) -> Self {
+        let (wishes, on_each) = (Wishes::default(), Vec::new());
+        Self { request, registry, heard, notes, site, aside, named, counted, wishes, on_each }
+    }
+
     /// Returns what the prompt calls its rooms.
     pub(crate) fn called(&self) -> Vec<Called> {
         let Heard { prompt, tokens, language, spoken, .. } = &self.heard;
@@ -207,9 +223,15 @@ impl<'r, 'a> Draft<'r, 'a> {
             let times = |n: i64| n.saturating_mul(storeys.above_ground() as i64);
             self.named.mentions[m].count = self.named.mentions[m].count.map(times);
         }
-        storey_wishes::furnish_basement(&mut storeys, &mut self.wishes, self.site.domain);
-        storey_wishes::wish_for_storeys(&mut storeys, &mut self.wishes, self.site.domain, conflicts);
+        self.furnish_storeys(&mut storeys);
         storeys
+    }
+
+    /// Wishes for what storeys have and need.
+    pub(super) fn furnish_storeys(&mut self, storeys: &mut Storeys) {
+        let conflicts = &mut self.notes.conflicts;
+        storey_wishes::furnish_basement(storeys, &mut self.wishes, self.site.domain);
+        storey_wishes::wish_for_storeys(storeys, &mut self.wishes, self.site.domain, conflicts);
     }
 
     /// Settles which rooms the wishes mean in such a building, and the program that goes with them.
@@ -236,10 +258,9 @@ impl<'r, 'a> Draft<'r, 'a> {
         let fleet = robots::Counting { tokens, numbers, mentions, taken: &self.aside.taken, spoken, language, on_each };
         let fleet = machines.counted(&fleet);
         let heard = robots::Prompt { text: prompt, tokens };
-        let [radius, length] = self.aside.robot_m;
         let Notes { assumptions, conflicts } = &mut self.notes;
-        let size = (radius, length);
-        let mut robots = robots::of_graph(&fleet, &self.wishes, size, self.request, &heard, assumptions, conflicts);
+        let said = (machines, &self.aside.sizes);
+        let mut robots = robots::of_graph(&fleet, &self.wishes, said, self.request, &heard, assumptions, conflicts);
         let corridor = &self.site.domain.circulation.room_type;
         if let Some((span, kept)) = keeps::read(tokens, mentions, &machines.spans, corridor, spoken) {
             // what is said of the one that cleans says nothing of the one that serves

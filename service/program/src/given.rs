@@ -13,6 +13,7 @@ use d3dgen_model::stage::Error;
 use d3dgen_plugins::Registry;
 
 use super::built::rooms::wished_assets;
+use super::guessed;
 use super::subject::places;
 use super::tokens::labels;
 use super::tokens::text::{Phrases, Token, fold, tokens};
@@ -41,7 +42,7 @@ const NEAREST: usize = 3;
 const AS_GOOD: f64 = 0.97;
 
 /// What a plan says about a room.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Label {
     /// The name on the plan.
     pub text: String,
@@ -53,6 +54,12 @@ pub struct Label {
     pub also: Vec<String>,
     /// True when it joins so many rooms that it is circulation, if no words say something else.
     pub hub: bool,
+    /// True when the plan gives it no name, or a number only.
+    pub unnamed: bool,
+    /// Net floor area, m^2.
+    pub area_m2: f64,
+    /// Rooms that a door or passage joins it with, by their place in the list.
+    pub beside: Vec<usize>,
 }
 
 impl Label {
@@ -244,6 +251,7 @@ pub fn understand(
     registry: &Registry,
 ) -> Result<Understood, Error> {
     let mut notes = Vec::new();
+    let mut sure = domain.is_some();
     let names = match domain {
         Some(id) => {
             let plugin = registry.get(id).ok_or_else(|| {
@@ -253,14 +261,14 @@ pub fn understand(
             Names::new(plugin.domain())
         }
         None => {
-            let (names, why) = guess(labels, titles, registry)?;
+            let (names, why, evident) = guess(labels, titles, registry)?;
+            sure = evident;
             notes.push(Note::new("default_domain", why));
             names
         }
     };
     check_said(labels, &names)?;
     let circulation = names.domain.room_type(&names.domain.circulation.room_type).map(|r| r.id.clone());
-    let mut unknown: Vec<String> = Vec::new();
     let mut hubs = 0;
     let (mut room_types, mut called) = (Vec::with_capacity(labels.len()), Vec::with_capacity(labels.len()));
     for label in labels {
@@ -273,11 +281,7 @@ pub fn understand(
                 hubs += 1;
                 room_types.push(id.clone());
             }
-            _ => {
-                let text = if label.text.is_empty() { label.kind.as_deref().unwrap_or_default() } else { &label.text };
-                unknown.push(if text.is_empty() { "rooms without a name".into() } else { format!("`{text}`") });
-                room_types.push(GENERIC_ROOM_TYPE.to_owned());
-            }
+            _ => room_types.push(GENERIC_ROOM_TYPE.to_owned()),
         }
     }
     if let Some(id) = circulation.filter(|_| hubs > 0) {
@@ -286,6 +290,14 @@ pub fn understand(
         );
         notes.push(Note::new("circulation_guessed", message));
     }
+    if sure {
+        notes.extend(guessed::unnamed(labels, &mut room_types, titles, names.domain));
+    }
+    let generic = labels.iter().zip(&room_types).filter(|(_, t)| *t == GENERIC_ROOM_TYPE).map(|(label, _)| {
+        let text = if label.text.is_empty() { label.kind.as_deref().unwrap_or_default() } else { &label.text };
+        if text.is_empty() { "rooms without a name".into() } else { format!("`{text}`") }
+    });
+    let mut unknown: Vec<String> = generic.collect();
     unknown.dedup();
     if !unknown.is_empty() {
         let more = unknown.len().saturating_sub(12);
@@ -300,12 +312,12 @@ pub fn understand(
     Ok(Understood { domain: names.domain.id.clone(), room_types, names: called, notes })
 }
 
-/// Returns the domain that labels and titles fit best, and why.
+/// Returns the domain that labels and titles fit best, why, and whether anything speaks for it.
 ///
 /// A name counts more the fewer domains know it, and a domain more the closer one of its programs is to the rooms there are:
 /// that an office has a meeting room and no loading dock tells it from a warehouse. Titles decide where names say little.
 /// Where nothing is known it is the domain of the most kinds of buildings.
-fn guess<'a>(labels: &[Label], titles: &[String], registry: &'a Registry) -> Result<(Names<'a>, String), Error> {
+fn guess<'a>(labels: &[Label], titles: &[String], registry: &'a Registry) -> Result<(Names<'a>, String, bool), Error> {
     let all: Vec<Names> = registry.iter().map(|p| Names::new(p.domain())).collect();
     let found: Vec<Vec<_>> = all.iter().map(|names| labels.iter().map(|l| names.room_type(l)).collect()).collect();
     let best: Vec<usize> = (0..labels.len())
@@ -342,7 +354,7 @@ fn guess<'a>(labels: &[Label], titles: &[String], registry: &'a Registry) -> Res
         (false, _) => format!("domain {id} {names} and was taken; choose another with --domain"),
     };
     let names = all.into_iter().nth(chosen).ok_or_else(|| refused("no domain is registered".into()))?;
-    Ok((names, why))
+    Ok((names, why, most > 0.0))
 }
 
 /// Returns how alike room types are to the first rooms of the program that is most like them, 0 to 1.
@@ -382,10 +394,10 @@ pub fn of_plan(plan: &Floorplan, brought: &Brought, registry: &Registry) -> Resu
     let plugin = registry.get(&brought.domain);
     let domain =
         plugin.map(|p| p.domain()).ok_or_else(|| refused(format!("domain `{}` is not known", brought.domain)))?;
-    let country_code = match &brought.country {
+    let place = match &brought.country {
         None => None,
         Some(country) => Some(places::code_of(country).ok_or_else(|| {
-            refused(format!("country `{country}` is not known; give an ISO 3166-1 code such as DE or US"))
+            refused(format!("country `{country}` is not known; give an ISO 3166 code such as DE or US-NC, or a name"))
         })?),
     };
     let entrance = plan.doors.iter().find(|d| d.entrance).and_then(|d| d.room_ids.first());
@@ -420,11 +432,13 @@ pub fn of_plan(plan: &Floorplan, brought: &Brought, registry: &Registry) -> Resu
         seed: brought.seed,
         domain: domain.id.clone(),
         building_type: None,
-        country_code,
+        country_code: place.as_deref().map(places::country_of).map(str::to_owned),
+        division_code: place.filter(|code| places::country_of(code) != code.as_str()),
         language: "en".into(),
         area_m2: None,
         occupancy: Occupancy::default(),
         accessible: false,
+        wheelchair: false,
         style: d3dgen_model::style::Style::default(),
         rooms,
         edges: edges(plan),

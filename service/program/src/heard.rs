@@ -1,12 +1,13 @@
 //! A prompt as it is heard: its words and numbers in the language it is in. Every step of the reading takes it.
 
+use d3dgen_model::brief::Brief;
 use d3dgen_model::scene_graph::Note;
 use d3dgen_model::stage::Error;
 use d3dgen_plugins::Registry;
 
 use super::subject::building;
 use super::tokens::numbers::{self, Number};
-use super::tokens::text::{Token, tokens};
+use super::tokens::text::{Kind, Token, tokens};
 use super::tokens::typos::{self, Typo};
 use super::tokens::words::{Spoken, Tag, is_tagged, words};
 use super::tokens::{language, umlauts};
@@ -51,6 +52,31 @@ impl<'p> Heard<'p> {
         };
         let numbers = numbers::numbers(&tokens, language, &spoken);
         Ok(Self { prompt, tokens, numbers, language, languages, spoken, strange, typos })
+    }
+
+    /// Returns what is heard of a brief, which has no words but a silent one for each of its `mentions`, at
+    /// [`Heard::place_of`] it; marks stand between, so that none belongs to the next.
+    pub(crate) fn of_facts(brief: &Brief, mentions: usize) -> Self {
+        let silent = |kind| Token { text: String::new(), kind, start: 0, end: 0, spaced: true, capital: false };
+        let tokens = (0..mentions).flat_map(|_| [silent(Kind::Word), silent(Kind::Mark(';'))]).collect();
+        let first = brief.languages.first().map_or("en", String::as_str);
+        let language = words().languages.keys().find(|l| *l == first).map_or("en", String::as_str);
+        let spoken = words().languages.get("en").into_iter().collect();
+        Self {
+            prompt: "",
+            tokens,
+            numbers: Vec::new(),
+            language,
+            languages: vec!["en"],
+            spoken,
+            strange: None,
+            typos: Vec::new(),
+        }
+    }
+
+    /// Returns the place of the word of a mention of a brief.
+    pub(crate) fn place_of(mention: usize) -> usize {
+        2 * mention
     }
 
     /// Returns what is told about misspelled words.

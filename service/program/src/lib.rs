@@ -15,9 +15,11 @@
 //!
 //! `given` makes the graph of a plan that somebody brings, `proposed` that of what a language model proposes.
 
+mod briefed;
 mod built;
 mod draft;
 mod given;
+mod guessed;
 mod heard;
 mod levels;
 mod machines;
@@ -32,6 +34,7 @@ mod subject;
 mod tokens;
 mod wished;
 
+use d3dgen_model::brief::Brief;
 use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::stage::Error;
 use d3dgen_plugins::Registry;
@@ -56,6 +59,21 @@ pub fn languages() -> Vec<&'static str> {
 /// `Refused` for prompts without words, absurd sizes, unknown domains and countries, with what would work.
 pub fn generate(request: &Request, registry: &Registry) -> Result<SceneGraph, Error> {
     let mut reading = read::read(request, registry)?;
+    let mut planned = program::complete(&mut reading);
+    Ok(settle::settle(request, registry, &mut reading, &mut planned))
+}
+
+/// Returns true for languages, by ISO 639-1 code, that [`generate`] reads.
+pub fn reads(language: &str) -> bool {
+    tokens::words::words().languages.contains_key(language)
+}
+
+/// Turns a brief into a scene graph; the flags of the request overrule it, its prompt is not read.
+///
+/// # Errors
+/// `Refused` for kinds of buildings that no domain knows, absurd sizes, unknown domains and countries.
+pub fn of_brief(brief: &Brief, request: &Request, registry: &Registry) -> Result<SceneGraph, Error> {
+    let mut reading = briefed::read(brief, request, registry)?;
     let mut planned = program::complete(&mut reading);
     Ok(settle::settle(request, registry, &mut reading, &mut planned))
 }

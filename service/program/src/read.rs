@@ -67,6 +67,7 @@ pub(crate) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         residents: people.residents,
         children: people.children,
         pair: people.pair,
+        wheelchair: heard.says(Tag::Wheelchair),
         accessible: heard.says(Tag::Accessible) || site.lives && heard.says(Tag::Frail),
         robots,
         robot_rules: orders.rules,
@@ -79,7 +80,7 @@ pub(crate) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     })
 }
 
-fn check_flags(request: &Request, registry: &Registry) -> Result<(), Error> {
+pub(super) fn check_flags(request: &Request, registry: &Registry) -> Result<(), Error> {
     if let Some(id) = &request.domain
         && registry.get(id).is_none()
     {
@@ -89,7 +90,9 @@ fn check_flags(request: &Request, registry: &Registry) -> Result<(), Error> {
     if let Some(country) = &request.country
         && places::code_of(country).is_none()
     {
-        return Err(refused(format!("country `{country}` is not known; give an ISO 3166-1 code such as DE or US")));
+        return Err(refused(format!(
+            "country `{country}` is not known; give an ISO 3166 code such as DE or US-NC, or a name"
+        )));
     }
     if let Some(problem) = request.robot.problems().into_iter().next() {
         return Err(refused(problem));

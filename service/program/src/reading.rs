@@ -23,6 +23,7 @@ pub(crate) struct Reading<'a> {
     pub wet: Arc<Wet>,
     pub building_type: Option<String>,
     pub program: &'a Program,
+    /// Code of the country, or of the division where one is known (`DE`, `CA-ON`).
     pub country_code: Option<String>,
     pub wishes: Wishes,
     /// Rooms in total, where fixed.
@@ -58,6 +59,7 @@ pub(crate) struct Reading<'a> {
     /// True where two of them are a couple.
     pub pair: bool,
     pub accessible: bool,
+    pub wheelchair: bool,
     pub style: Style,
     pub robots: Vec<Robot>,
     /// What is asked of robots in rooms.

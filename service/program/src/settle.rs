@@ -11,6 +11,7 @@ use super::machines::{charging, robot_rules, robots};
 use super::people::homes;
 use super::reading::Reading;
 use super::request::Request;
+use super::subject::places;
 use super::subject::programs::is_dwelling;
 
 /// Returns the graph of rooms, with those that building rules ask for beside them.
@@ -52,17 +53,20 @@ fn assemble(request: &Request, mut reading: Reading, planned: &[Planned]) -> Sce
     robots::send(&reading.errand, &rooms, &mut reading.robots);
     let robot_rules = robot_rules::of_rooms(&reading.robot_rules, &rooms);
     edges::state_unmet(&mut reading, &rooms, &web.edges);
+    let place = reading.country_code.take();
     SceneGraph {
         version: 1,
         prompt: request.prompt.clone(),
         seed: request.seed,
         domain: reading.domain.id.clone(),
         building_type: reading.building_type,
-        country_code: reading.country_code,
+        country_code: place.as_deref().map(places::country_of).map(str::to_owned),
+        division_code: place.filter(|code| places::country_of(code) != code.as_str()),
         language: reading.language.into(),
         area_m2: reading.area_m2,
         occupancy: reading.occupancy,
         accessible: reading.accessible,
+        wheelchair: reading.wheelchair,
         style: reading.style,
         rooms,
         edges: web.edges,

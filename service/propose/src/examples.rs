@@ -7,7 +7,7 @@ use d3dgen_model::placements::Placements;
 use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_pipeline::generate::retrieve;
 use d3dgen_pipeline::scene_graph::Request;
-use d3dgen_pipeline::{Stop, floorplan, placement, scene_graph};
+use d3dgen_pipeline::{Stop, floorplan, placement};
 use d3dgen_plugins::{Plugin, Registry};
 use serde_json::json;
 
@@ -69,7 +69,7 @@ fn building(registry: &Registry, domain: &Domain, rooms: u32, seed: u64) -> Opti
     let prompt = format!("{} with {rooms} rooms", domain.title);
     let id = Some(domain.id.clone());
     let request = Request { prompt: prompt.clone(), seed, domain: id, rooms: Some(rooms), ..Request::default() };
-    let graph = scene_graph::generate(&request, registry).ok()?;
+    let graph = d3dgen_pipeline::brief::rooms(&request, registry).ok()?.0;
     (graph.level_numbers().len() == 1).then_some((prompt, graph))
 }
 

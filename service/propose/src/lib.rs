@@ -167,7 +167,8 @@ impl Desk<'_, '_> {
         placements: Placements,
     ) -> Result<Generated, Error> {
         let domain = self.plugin.domain();
-        let (world, report) = finish(&self.name, graph.clone(), (plan, placements), domain, retrieved)?;
+        let (world, report) =
+            finish(&self.name, graph.clone(), (plan, placements), domain, retrieved, self.settings.brief.clone())?;
         Ok(Generated { world, report, attempts: 1 })
     }
 }

@@ -144,3 +144,13 @@ fn open_sentences_are_read_where_they_are_at_hand() {
     }
     check(&file, LEAST_OPEN_F1);
 }
+
+/// Sentences that were written with no word list at hand. Unseen the first batch scored 0.858, the second, after the words
+/// had been mended by the first, 0.903, and the third 0.943; all are kept so that none gets worse.
+#[test]
+fn fresh_sentences_are_read() {
+    let file = |name: &str| Path::new(env!("CARGO_MANIFEST_DIR")).join("tests").join(name);
+    check(&file("sentences_fresh_1.jsonl"), 0.97);
+    check(&file("sentences_fresh_2.jsonl"), 0.91);
+    check(&file("sentences_fresh_3.jsonl"), 0.94);
+}

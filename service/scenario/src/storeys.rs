@@ -32,10 +32,12 @@ pub(crate) fn generate(graph: &SceneGraph, plan: &Floorplan, placements: &Placem
         version: 1,
         name: String::new(),
         generator: String::new(),
+        brief: None,
         scene_graph: graph.clone(),
         floorplan: plan.clone(),
         placements: placements.clone(),
         scenario: empty,
+        rules: None,
     }
     .storeys();
     let has_dock = |world: &World| {

@@ -1,5 +1,6 @@
 //! Between messages and documents: what comes in is checked as a file would be, and said with its field.
 
+use d3dgen_model::knowledge::KnowledgeBase;
 use d3dgen_proto::convert::{self, Contract, Error};
 use prost::{Message, Name};
 use prost_types::FieldMask;
@@ -21,6 +22,16 @@ pub fn message<M: Message + Name + Default>(document: &impl Serialize) -> M {
 pub fn document<D: Contract>(field: &str, message: Option<D::Message>) -> Result<D, Status> {
     let message = message.ok_or_else(|| invalid(field, "is missing"))?;
     convert::from_proto(&message).map_err(|e| refused(field, e))
+}
+
+/// Returns a knowledge base with the shared rules that it uses.
+///
+/// # Errors
+/// `INVALID_ARGUMENT` for a name that is of none.
+pub fn with_shared(mut knowledge: KnowledgeBase) -> Result<KnowledgeBase, Status> {
+    let complete = d3dgen_plugins::complete(&mut knowledge);
+    complete.map_err(|e| invalid("knowledge_base.metadata.uses", e.to_string()))?;
+    Ok(knowledge)
 }
 
 /// Returns the part of a document that a message is; only its shape is checked.

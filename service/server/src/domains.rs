@@ -5,12 +5,13 @@
 
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use arc_swap::ArcSwap;
 use d3dgen_assets::catalog::Catalog;
 use d3dgen_assets::stock::Stock;
 use d3dgen_knowledge::database::{Provenance, digest};
+use d3dgen_knowledge::glossary::Glossary;
 use d3dgen_model::domain::Domain;
 use d3dgen_model::knowledge::KnowledgeBase;
 use d3dgen_model::{Document, Problem};
@@ -35,6 +36,7 @@ pub struct Snapshot {
     pub catalog: Arc<Catalog>,
     /// Registered ones, by id.
     pub registered: BTreeMap<String, Entry>,
+    glossary: OnceLock<Glossary>,
     /// Both registries with the rules that the domains brought.
     bare: (Registry, Registry),
     /// Rules that have changed since, by domain.
@@ -42,6 +44,11 @@ pub struct Snapshot {
 }
 
 impl Snapshot {
+    /// Returns the words for what rules speak of, made when first asked for.
+    pub fn glossary(&self) -> &Glossary {
+        self.glossary.get_or_init(|| Glossary::of(self.registry.iter().map(|p| p.domain())))
+    }
+
     /// Returns the domains with their rules; `bare` are all domains, with the assets of the database and without.
     fn new(
         bare: (Registry, Registry),
@@ -54,7 +61,7 @@ impl Snapshot {
             registry.set_knowledge(id, KnowledgeBase::clone(knowledge));
             as_given.set_knowledge(id, KnowledgeBase::clone(knowledge));
         }
-        Self { registry, as_given, catalog, registered, bare, rules }
+        Self { registry, as_given, catalog, registered, glossary: OnceLock::new(), bare, rules }
     }
 }
 

@@ -19,6 +19,8 @@ pub struct Surroundings {
     pub folders: Vec<String>,
     /// The annotation beside it.
     pub metadata: Option<Asa>,
+    /// What `model.config` calls it.
+    pub title: Option<String>,
     /// What `model.config` says about it.
     pub description: Option<String>,
     /// The simulator's model around it.
@@ -33,14 +35,20 @@ pub struct Surroundings {
 pub fn look_around(file: &Path, root: Option<&Path>) -> Surroundings {
     let mut found = Surroundings::default();
     let stem = file.file_stem().map(|s| s.to_string_lossy().to_lowercase()).unwrap_or_default();
+    let is_sdf = file.extension().is_some_and(|e| e.eq_ignore_ascii_case("sdf"));
+    let mut is_package = false;
     let root = root.filter(|r| file.starts_with(r));
     for folder in file.ancestors().skip(1).take(LEVELS) {
         let name = folder.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
         if found.metadata.is_none() {
             metadata(folder, &stem, &name, &mut found);
         }
-        if found.simulator.is_none() {
-            simulator(folder, file, &mut found);
+        if !is_package && is_model(folder, is_sdf) {
+            is_package = true;
+            if !is_sdf {
+                simulator(folder, file, &mut found);
+            }
+            config(folder, &mut found);
         }
         if root == Some(folder) {
             break;
@@ -70,7 +78,12 @@ fn metadata(folder: &Path, stem: &str, folder_name: &str, found: &mut Surroundin
     }
 }
 
-/// Reads `model.sdf` and `model.config` of a Gazebo model folder.
+/// Tells whether a folder is that of a Gazebo model. Of an SDF file it is its own, whatever it is called.
+fn is_model(folder: &Path, is_sdf: bool) -> bool {
+    folder.join("model.sdf").is_file() || is_sdf
+}
+
+/// Reads what the `model.sdf` of a Gazebo model folder says of a mesh.
 fn simulator(folder: &Path, file: &Path, found: &mut Surroundings) {
     let path = folder.join("model.sdf");
     let Some(text) = read(&path) else { return };
@@ -91,12 +104,17 @@ fn simulator(folder: &Path, file: &Path, found: &mut Surroundings) {
     });
     found.simulator = Some(Simulator { scale: scale.into_iter().next() });
     found.files.push(path);
+}
+
+/// Reads `model.config` of a Gazebo model folder.
+fn config(folder: &Path, found: &mut Surroundings) {
     let config = folder.join("model.config");
     if let Some(text) = read(&config)
         && let Ok(document) = roxmltree::Document::parse(&text)
     {
         let texts = document.descendants().filter(|n| n.has_tag_name("description")).filter_map(|n| n.text());
         let joined = texts.map(|t| t.split_whitespace().collect::<Vec<_>>().join(" ")).find(|t| !t.is_empty());
+        found.title = crate::readers::sdf::config_of(&text).name.map(|n| n.chars().take(100).collect());
         found.description = joined.map(|t| t.chars().take(500).collect());
         found.files.push(config);
     }

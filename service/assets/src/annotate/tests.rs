@@ -14,6 +14,7 @@ fn subject<'a>(model: &'a Model3d, stem: &'a str, around: &'a Surroundings) -> S
         up_axis: Some('Y'),
         up_axis_authored: true,
         unit_authored: true,
+        unit_beside: None,
         simulator: around.simulator,
     };
     let origin = Origin::Ingested { path: format!("{stem}.glb"), hash: "00".into() };

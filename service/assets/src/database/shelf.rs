@@ -14,6 +14,9 @@ use crate::error::Error;
 use crate::library::{Library, LibraryAsset};
 use crate::search::{AssetIndex, Assets, Filters, Found, SearchQuery, document};
 
+/// What the index holds of the library, in which form, and by which release.
+const LIBRARY_FORM: &str = concat!("of models, ", env!("CARGO_PKG_VERSION"));
+
 /// All assets there are.
 #[derive(Debug, Clone)]
 pub struct Shelf<'c> {
@@ -138,6 +141,8 @@ impl<'c> Shelf<'c> {
     /// Returns a number that changes with the database and with the objects of the domains.
     fn revision(&self) -> Result<u64, Error> {
         let mut hash = Sha256::new();
+        // Another release may make other models of the same objects.
+        hash.update(LIBRARY_FORM);
         for object in self.catalog().objects() {
             hash.update(format!("{object:?}\n"));
         }

@@ -151,3 +151,24 @@ fn what_is_stopped_goes_on() {
     assert!(!second.cancelled);
     assert_eq!(second.counts(), [70 - kept, 0, kept, 0]);
 }
+
+#[test]
+fn files_of_a_folder_are_in_one_unit() {
+    // Furniture in centimeters, and something that nothing is known of.
+    let home = Home::new(&[
+        ("kit/office_chair.glb", "62 64 105"),
+        ("kit/wardrobe.glb", "120 60 208"),
+        ("kit/sofa.glb", "220 95 88"),
+        ("kit/zzyzx.glb", "9 7 5"),
+        ("alone/zzyzx.glb", "9 7 5.1"),
+    ]);
+    let first = home.ingest(&|| false);
+    assert_eq!(first.counts(), [5, 0, 0, 0], "{first:?}");
+    let size = |path: &str| match &first.files[path] {
+        Outcome::Added { asset_id } => home.database.get(asset_id).expect("readable").expect("kept").size_m,
+        other => panic!("{path}: {other:?}"),
+    };
+    assert_eq!(size("kit/sofa.glb"), [2.2, 0.95, 0.88]);
+    assert_eq!((size("kit/zzyzx.glb"), size("alone/zzyzx.glb")), ([0.09, 0.07, 0.05], [9.0, 7.0, 5.1]));
+    assert_eq!(home.ingest(&|| false).counts(), [0, 0, 5, 0]);
+}

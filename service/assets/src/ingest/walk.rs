@@ -6,11 +6,12 @@ use std::path::{Path, PathBuf};
 
 use sha2::{Digest, Sha256};
 
+use super::packages::leave_parts_out;
 use crate::annotate::look_around;
 use crate::error::Error;
 
 /// Endings of models, small letters.
-const ENDINGS: &[&str] = &["usd", "usda", "usdc", "usdz", "glb", "gltf", "obj", "dae", "stl"];
+const ENDINGS: &[&str] = &["usd", "usda", "usdc", "usdz", "glb", "gltf", "obj", "dae", "stl", "sdf"];
 /// Folders deeper than this are somebody's mistake, or a circle.
 const DEEPEST: usize = 24;
 /// Larger files are not read, bytes.
@@ -25,9 +26,11 @@ pub struct Walk {
     pub models: Vec<(String, PathBuf)>,
     /// What looks like a model and is not taken, with the reason.
     pub refused: Vec<(String, String)>,
+    /// What is by its name only the shape that collides of another model, with a word on that.
+    pub shapes: Vec<(String, String)>,
 }
 
-/// Lists the models of a folder, or takes one file. Links are not followed.
+/// Lists the models of a folder, without the files that are parts of others, or takes one file. Links are not followed.
 ///
 /// # Errors
 /// `File` when the folder cannot be read.
@@ -37,11 +40,12 @@ pub fn walk(folder: &Path) -> Result<Walk, Error> {
     if !meta.is_dir() {
         let root = folder.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new(".")).to_path_buf();
         let name = folder.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
-        return Ok(Walk { root, models: vec![(name, folder.to_path_buf())], refused: Vec::new() });
+        return Ok(Walk { root, models: vec![(name, folder.to_path_buf())], ..Walk::default() });
     }
     let mut found = Walk { root: folder.to_path_buf(), ..Walk::default() };
     descend(folder, "", 0, &mut found).map_err(failed)?;
     found.models.sort();
+    found.shapes = leave_parts_out(folder, &mut found.models);
     found.refused.sort();
     Ok(found)
 }

@@ -13,16 +13,22 @@ pub const UNITS: &[(f64, f64)] = &[
     (1000.0, 0.1),
     (0.0254, 0.2),
     (1.0 / 0.0254, 0.2),
-    (0.1, 1.5),
-    (10.0, 1.5),
-    (0.3048, 0.4),
-    (1.0 / 0.3048, 0.4),
+    (0.1, 1.3),
+    (10.0, 1.3),
+    (0.3048, 1.2),
+    (1.0 / 0.3048, 1.2),
     (2.54, 0.5),
     (1.0 / 2.54, 0.5),
 ];
 
+/// Cost of another unit than that of the files beside it.
+pub const UNLIKE_NEIGHBORS: f64 = 1.0;
 /// Extents of one kind of thing differ by this factor (as logarithm) without any doubt.
 const TOLERANCE: f64 = 0.38;
+/// How far the logarithms of the ratios of the extents scatter where the proportions are those of an object.
+const PROPORTIONED: f64 = 0.33;
+/// Mean logarithm of the ratios of the extents from which nothing of the kind is as large, or as small.
+const FAR: f64 = 0.9;
 /// Cost of each further factor of e.
 const STEEPNESS: f64 = 2.0;
 /// Least extent counted: sheets and mats have any thickness, m.
@@ -80,6 +86,13 @@ fn ratios(size: [f64; 3], wanted: [f64; 3]) -> [f64; 3] {
     std::array::from_fn(|i| (wanted[i].max(THIN) / found[i].max(floor)).ln())
 }
 
+/// Tells whether a size has the proportions of one of a catalog, whatever the unit it is told in.
+pub fn is_proportioned(size: [f64; 3], wanted: [f64; 3]) -> bool {
+    let logs = ratios(size, wanted);
+    let mean = logs.iter().sum::<f64>() / 3.0;
+    (logs.iter().map(|l| (l - mean).powi(2)).sum::<f64>() / 3.0).sqrt() <= PROPORTIONED
+}
+
 /// Returns the cost of a misfit.
 pub fn of_misfit(misfit: f64) -> f64 {
     STEEPNESS * (misfit - TOLERANCE).max(0.0)
@@ -119,6 +132,16 @@ pub fn bounds(size: [f64; 3]) -> f64 {
     let long = over(12.0, largest) * 1.2;
     let tiny = if largest > 0.0 { over(largest, 0.004) * 1.2 } else { 0.0 };
     tall.max(long) + tiny
+}
+
+/// Returns the cost of a size that none of the things has which the name surely means: in the proportions of one of them,
+/// and far larger or smaller than all.
+pub fn unlike_all(size: [f64; 3], matches: &[NameMatch<'_>]) -> f64 {
+    let surely = || matches.iter().filter(|m| m.coverage > 0.99 && kind_fits_people(&m.object.kind));
+    let sizes = || surely().flat_map(|m| &m.object.sizes_m);
+    let far = |s: &[f64; 3]| (ratios(size, *s).iter().sum::<f64>() / 3.0).abs() >= FAR;
+    let is = sizes().all(far) && sizes().any(|s| is_proportioned(size, *s));
+    if is { 2.5 } else { 0.0 }
 }
 
 /// Returns the factor that makes a model as large as the object its name surely means, when it is off in all extents

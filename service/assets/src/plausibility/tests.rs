@@ -14,7 +14,7 @@ fn standing(size: [f64; 3]) -> [[f64; 3]; 2] {
 
 fn declared(format: &str, up: Option<char>, authored: bool) -> Declared {
     let (up_axis_authored, unit_authored) = (authored, authored);
-    Declared { format: format.into(), up_axis: up, up_axis_authored, unit_authored, simulator: None }
+    Declared { format: format.into(), up_axis: up, up_axis_authored, unit_authored, unit_beside: None, simulator: None }
 }
 
 #[track_caller]
@@ -39,6 +39,38 @@ fn lying_units_are_repaired() {
     check("Wardrobe", standing([47.0, 24.0, 82.0]), &declared("usdc", Some('Y'), true), [1.1938, 0.6096, 2.0828]);
     check("desk", standing([0.016, 0.008, 0.0074]), &declared("usda", Some('Y'), false), [1.6, 0.8, 0.74]);
     check("thing_without_name", standing([214.0, 109.0, 96.0]), &declared("obj", None, false), [2.14, 1.09, 0.96]);
+}
+
+#[test]
+fn a_word_of_the_name_never_beats_a_unit_against_the_proportions() {
+    let sdf = declared("sdf", Some('Z'), true);
+    let glb = declared("glb", Some('Y'), true);
+    for told in [&sdf, &glb] {
+        check("washer", standing([0.035, 0.035, 0.002]), told, [0.035, 0.035, 0.002]);
+        check("table_screw", standing([0.006, 0.006, 0.04]), told, [0.006, 0.006, 0.04]);
+        check("door_stopper", standing([0.05, 0.05, 0.03]), told, [0.05, 0.05, 0.03]);
+        check("lamp_socket", standing([0.03, 0.03, 0.05]), told, [0.03, 0.03, 0.05]);
+        check("sink_plug", standing([0.045, 0.045, 0.02]), told, [0.045, 0.045, 0.02]);
+    }
+    // Where the proportions agree the unit is what lies, whatever else the name says.
+    for told in [&sdf, &glb] {
+        check("leather_sofa_03", standing([0.022, 0.0095, 0.0088]), told, [2.2, 0.95, 0.88]);
+        check("sofa", standing([0.022, 0.0095, 0.0088]), told, [2.2, 0.95, 0.88]);
+    }
+    for (told, size) in [(&glb, [4.5, 3.75, 1.5]), (&sdf, [4.5, 3.75, 1.5]), (&glb, [5.05, 4.58, 3.23])] {
+        let verdict = judge(standing(size), told, &[words::split("BathroomSink")], sample::catalog());
+        assert!((0.05..0.3).contains(&verdict.scale[0]), "no sink is {size:?} m: {verdict:?}");
+    }
+}
+
+#[test]
+fn files_beside_tell_the_unit_where_nothing_else_does() {
+    let glb = |unit| Declared { unit_beside: unit, ..declared("glb", Some('Y'), true) };
+    check("gizmo", standing([0.4, 0.4, 0.4]), &glb(Some(0.01)), [0.004, 0.004, 0.004]);
+    check("gizmo", standing([4.0, 4.0, 2.0]), &glb(Some(0.1)), [0.4, 0.4, 0.2]);
+    check("gizmo", standing([4.0, 4.0, 2.0]), &glb(Some(1.0)), [4.0, 4.0, 2.0]);
+    // What its own name and proportions say for sure is surer.
+    check("sofa", standing([0.022, 0.0095, 0.0088]), &glb(Some(1.0)), [2.2, 0.95, 0.88]);
 }
 
 #[test]

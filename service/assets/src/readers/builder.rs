@@ -1,11 +1,11 @@
 //! Collects what a reader finds into a model, within bounds, and judges at the end whether it is one.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use d3dgen_mesh::{Body, Joint, Material, Mesh, Model3d, Texture, Visual};
+use d3dgen_mesh::{Body, Collision, Joint, Material, Mesh, Model3d, Texture, Visual};
 
-use super::facts::{Facts, Feature, ReadModel, Refusal};
+use super::facts::{Bounds, Facts, Feature, ReadModel, Refusal};
 use super::folder::{Folder, MAX_PICTURE_BYTES};
 use super::frame::{Extent, Matrix, turned};
 
@@ -17,6 +17,8 @@ pub const MAX_POINTS: usize = 8_000_000;
 const MAX_VISUALS: usize = 50_000;
 /// The most bytes of all pictures that are kept with a model.
 const MAX_PICTURES_BYTES: u64 = 48 << 20;
+/// The most names of parts that are kept for a message.
+const MAX_NAMES: usize = 100;
 /// Larger things are no objects but errors of numbers, m.
 const LARGEST_M: f64 = 1e6;
 /// Smaller things are not there, m.
@@ -53,6 +55,8 @@ pub struct Builder {
     pub materials: Vec<Material>,
     /// How the bodies beyond the first move.
     pub joints: Vec<Joint>,
+    /// The one part of a mesh file that is wanted, while such a file is read.
+    wanted: Option<WantedPart>,
     textures: Vec<Texture>,
     by_path: BTreeMap<String, usize>,
     picture_bytes: u64,
@@ -64,6 +68,15 @@ pub struct Builder {
     /// Turns the axes of the file to z up, in meters.
     zup_from_file: Matrix,
     meters_per_unit: f64,
+}
+
+/// A part of a mesh file that is asked for by its name.
+#[derive(Debug, Default)]
+struct WantedPart {
+    name: String,
+    is_found: bool,
+    /// The other parts there are.
+    others: BTreeSet<String>,
 }
 
 /// Returns the triangles of a polygon, as a fan around its first corner; none of fewer than three corners.
@@ -79,6 +92,7 @@ impl Builder {
             extent: Extent::default(),
             materials: Vec::new(),
             joints: Vec::new(),
+            wanted: None,
             textures: Vec::new(),
             by_path: BTreeMap::new(),
             picture_bytes: 0,
@@ -123,6 +137,75 @@ impl Builder {
             body.name = name.to_owned();
             body.mass_kg = mass_kg;
         }
+    }
+
+    /// Adds the mass of something that is part of a body, kg.
+    pub fn add_mass(&mut self, index: usize, mass_kg: f64) {
+        if let Some(body) = self.bodies.get_mut(index) {
+            body.mass_kg += mass_kg;
+        }
+    }
+
+    /// Adds a shape that collides to a body, in the frame of the model.
+    pub fn collide(&mut self, index: usize, shape: Collision) {
+        if let Some(body) = self.bodies.get_mut(index) {
+            body.collisions.push(shape);
+        }
+    }
+
+    /// Returns the box around all shapes that collide, m.
+    pub fn collision_bounds(&self) -> Option<Bounds> {
+        let mut extent = Extent::default();
+        let all = self.bodies.iter().flat_map(|b| &b.collisions);
+        all.flat_map(Collision::bounds).for_each(|corner| extent.add(corner));
+        extent.scaled(1.0)
+    }
+
+    /// Takes away all shapes that collide.
+    pub fn clear_collisions(&mut self) {
+        self.bodies.iter_mut().for_each(|b| b.collisions.clear());
+    }
+
+    /// Returns the meshes that a body shows so far.
+    pub fn meshes(&self, index: usize) -> Vec<&Mesh> {
+        self.bodies.get(index).into_iter().flat_map(|b| &b.visuals).map(|v| &v.mesh).collect()
+    }
+
+    /// Returns how many pieces a body shows so far.
+    pub fn piece_count(&self, index: usize) -> usize {
+        self.bodies.get(index).map_or(0, |b| b.visuals.len())
+    }
+
+    /// Gives a material to the pieces of a body, from one on, that have none.
+    pub fn paint(&mut self, index: usize, from: usize, material: usize) {
+        let pieces = self.bodies.get_mut(index).into_iter().flat_map(|b| b.visuals.iter_mut().skip(from));
+        pieces.filter(|v| v.material.is_none()).for_each(|v| v.material = Some(material));
+    }
+
+    /// Asks for one part of the mesh files that are read from now on, or for all parts again. Returns, when a part was
+    /// asked for until now, whether it was there, and the other parts that there were.
+    pub fn want_part(&mut self, name: Option<&str>) -> Option<(bool, Vec<String>)> {
+        let next = name.map(|n| WantedPart { name: n.to_owned(), ..WantedPart::default() });
+        let last = std::mem::replace(&mut self.wanted, next)?;
+        Some((last.is_found, last.others.into_iter().collect()))
+    }
+
+    /// Tells whether a part of a mesh file is to be read, which has these names.
+    pub fn wants(&mut self, names: &[&str]) -> bool {
+        let Some(wanted) = &mut self.wanted else { return true };
+        if names.contains(&wanted.name.as_str()) {
+            wanted.is_found = true;
+            return true;
+        }
+        if let Some(name) = names.iter().find(|n| !n.is_empty()).filter(|_| wanted.others.len() < MAX_NAMES) {
+            wanted.others.insert(super::folder::shortened(name));
+        }
+        false
+    }
+
+    /// Tells whether one part is asked for.
+    pub fn wants_one_part(&self) -> bool {
+        self.wanted.is_some()
     }
 
     /// Adds triangles to a body, put in place in the axes of the file by a matrix. Triangles with corners that are not

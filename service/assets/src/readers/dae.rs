@@ -164,8 +164,8 @@ fn scene(
                     let target = url.and_then(|u| ids.get(u)).filter(|n| n.tag_name().name() == "node");
                     below.extend(target.map(|n| (*n, world, depth + 1)));
                 }
-                "instance_geometry" => state.geometry(part, url, &world, true)?,
-                "instance_controller" => state.controller(part, url, &world)?,
+                "instance_geometry" if state.wants(node, url) => state.geometry(part, url, &world, true)?,
+                "instance_controller" if state.wants(node, url) => state.controller(part, url, &world)?,
                 _ => {}
             }
         }
@@ -224,6 +224,13 @@ struct Walk<'b, 'a, 'i> {
 }
 
 impl Walk<'_, '_, '_> {
+    /// Tells whether the geometry at a node is asked for, by the names of either.
+    fn wants(&mut self, node: Node, url: Option<&str>) -> bool {
+        let named = url.and_then(|u| self.ids.get(u)).and_then(|g| g.attribute("name"));
+        let names = [node.attribute("name"), node.attribute("id"), named, url];
+        self.builder.wants(&names.map(Option::unwrap_or_default))
+    }
+
     fn geometry(&mut self, instance: Node, url: Option<&str>, place: &Matrix, counted: bool) -> Result<(), Refusal> {
         let Some(url) = url else { return Ok(()) };
         if !self.geometries.contains_key(url) {

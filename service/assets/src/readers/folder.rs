@@ -16,7 +16,7 @@ const CLIMB: usize = 4;
 /// Endings of files that a model may name above its own folder.
 const ENDINGS: &[&str] = &[
     "usd", "usda", "usdc", "usdz", "gltf", "glb", "bin", "obj", "mtl", "dae", "stl", "png", "jpg", "jpeg", "tga",
-    "bmp", "tif", "tiff", "webp", "ktx", "ktx2", "exr", "hdr", "dds", "gif", "avif",
+    "bmp", "tif", "tiff", "webp", "ktx", "ktx2", "exr", "hdr", "dds", "gif", "avif", "sdf", "config",
 ];
 
 /// The folder of a model, and how far around it files may be read.
@@ -68,6 +68,11 @@ impl Folder {
     /// Returns where relative paths begin.
     pub fn base(&self) -> &Path {
         &self.base
+    }
+
+    /// Returns how many folders above its own files may be read in.
+    pub fn height(&self) -> usize {
+        self.base.strip_prefix(&self.root).map_or(0, |below| below.components().count())
     }
 
     /// Returns the file that a model names, when it is there and may be read. Backslashes part folders too, as in files

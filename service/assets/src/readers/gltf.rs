@@ -153,6 +153,9 @@ fn fill(
     }
     for (node, place) in places {
         let Some(mesh) = node.mesh.and_then(|m| document.meshes.get(m)) else { continue };
+        if !builder.wants(&[&node.name, &mesh.name].map(|n| n.as_deref().unwrap_or_default())) {
+            continue;
+        }
         for primitive in &mesh.primitives {
             let name = mesh.name.as_deref().unwrap_or_default();
             add(builder, buffers, primitive, (name, body, first), &place)?;

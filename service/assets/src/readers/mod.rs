@@ -13,7 +13,7 @@ mod gltf;
 mod meshopt;
 mod obj;
 mod pool;
-mod sdf;
+pub(crate) mod sdf;
 mod stl;
 mod usd;
 mod wire;

@@ -47,6 +47,8 @@ struct Text {
     uvs: Vec<[f32; 2]>,
     /// Corners of faces as indices of points and texture coordinates, with the material, cut into triangles.
     corners: Vec<([(u32, u32); 3], usize)>,
+    /// Objects and groups, each with the first of the triangles that it has.
+    parts: Vec<(String, usize)>,
     used: Vec<bool>,
     materials: Vec<String>,
     libraries: Vec<String>,
@@ -60,7 +62,11 @@ struct Text {
 
 /// Reads an OBJ text into a body of a builder, put in place by a matrix.
 pub fn fill(builder: &mut Builder, bytes: &[u8], folder: &Folder, place: &Matrix, body: usize) -> Result<(), Refusal> {
-    let text = parse(&String::from_utf8_lossy(bytes))?;
+    let mut text = parse(&String::from_utf8_lossy(bytes))?;
+    if builder.wants_one_part() {
+        text.keep_parts(|name| builder.wants(&[name]));
+    }
+    text.note_used();
     note(builder, &text, place);
     let worn = materials(builder, &text, folder);
     /// Where in a piece a corner stands that is a point with a texture coordinate.
@@ -125,6 +131,7 @@ fn parse(content: &str) -> Result<Text, Refusal> {
             "o" | "g" => {
                 text.objects += u64::from(key == "o");
                 text.groups.insert(line.trim().to_owned());
+                text.parts.push((rest(line, key).to_owned(), text.corners.len()));
             }
             _ => {}
         }
@@ -132,16 +139,30 @@ fn parse(content: &str) -> Result<Text, Refusal> {
             return Err(format!("has more than {MAX_POINTS} corners or {MAX_TRIANGLES} triangles").into());
         }
     }
-    text.used.resize(text.points.len(), false);
-    for (corners, _) in &text.corners {
-        for (point, _) in corners {
-            match text.used.get_mut(*point as usize) {
+    Ok(text)
+}
+
+impl Text {
+    /// Keeps the triangles of some objects and groups.
+    fn keep_parts(&mut self, mut is_kept: impl FnMut(&str) -> bool) {
+        let ends = self.parts.iter().skip(1).map(|p| p.1).chain([self.corners.len()]);
+        let ranges: Vec<(usize, usize)> =
+            self.parts.iter().zip(ends).filter(|((name, _), _)| is_kept(name)).map(|((_, a), b)| (*a, b)).collect();
+        let all = std::mem::take(&mut self.corners);
+        self.corners = ranges.iter().flat_map(|(a, b)| all.get(*a..*b).unwrap_or_default().iter().copied()).collect();
+        self.triangles = self.corners.len() as u64;
+    }
+
+    /// Notes which points faces use.
+    fn note_used(&mut self) {
+        self.used.resize(self.points.len(), false);
+        for (point, _) in self.corners.iter().flat_map(|(corners, _)| corners) {
+            match self.used.get_mut(*point as usize) {
                 Some(used) => *used = true,
-                None => text.missing += 1,
+                None => self.missing += 1,
             }
         }
     }
-    Ok(text)
 }
 
 /// Returns what stands behind the first word of a line.

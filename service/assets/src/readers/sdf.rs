@@ -1,25 +1,29 @@
-//! SDF model folders: links with their poses and joints, meshes with their scale, and simple shapes.
+//! SDF model folders: links with their poses and joints, meshes with their scale, simple shapes, models in models.
 //!
-//! Meshes are taken as Gazebo takes them: in the axes of their files, whatever those say is up. The pose of the model
+//! What is seen is the geometry; what collides becomes convex shapes, whatever mesh it is. Meshes are taken as Gazebo takes them: in the axes of their files, whatever those say is up. The pose of the model
 //! itself says where it stands in a world and is left aside.
 
 mod frames;
+mod shape;
+mod tree;
+mod uri;
 
+use std::cell::Cell;
 use std::collections::BTreeMap;
 
-use d3dgen_mesh::{Joint, JointKind, Material};
-use roxmltree::{Document, Node, ParsingOptions};
+use d3dgen_mesh::{Joint, JointKind};
+use roxmltree::Node;
 
-use self::frames::Frames;
-use super::builder::{Builder, Piece, identifier};
+use self::tree::{JointPlace, Link, Tree};
+use super::builder::{Builder, identifier};
 use super::facts::{Feature, ReadModel, Refusal};
-use super::folder::{Folder, MAX_FILE_BYTES};
-use super::frame::{Extent, Matrix};
-use super::usd::{Triangles, cuboid, turned_solid};
 use super::{Reader, Source};
+pub use uri::{Config, config_of, located};
 
-/// The most visuals of a model.
+/// The most visuals of a model, and the most shapes that collide.
 const MAX_VISUALS: usize = 4_000;
+/// How far shapes that collide may reach beyond what is seen, or stay behind, as a share of its extent and in m.
+const BESIDE: (f64, f64) = (0.25, 0.05);
 
 /// Reads SDF.
 pub struct Sdf;
@@ -85,70 +89,93 @@ fn three(node: Node, name: &str) -> Option<[f64; 3]> {
 }
 
 fn fill(builder: &mut Builder, source: &Source) -> Result<String, Refusal> {
-    let text = text(source.bytes);
-    let options = ParsingOptions { allow_dtd: false, nodes_limit: 1_000_000, ..ParsingOptions::default() };
-    let document = Document::parse_with_options(&text, options).map_err(|e| format!("its XML cannot be read: {e}"))?;
-    let root = document.root_element();
-    let model = if root.tag_name().name() == "model" { Some(root) } else { child(root, "model") };
-    let model = model.ok_or("has no model: worlds and lights are not read")?;
     builder.set_frame(("Z", true), (1.0, true))?;
+    let texts = tree::texts(text(source.bytes), source.folder)?;
+    let documents = tree::documents(&texts)?;
+    let visits = Cell::new(0);
+    let tree = tree::gather(&texts, &documents, &visits)?;
+    let model = documents.first().and_then(tree::model_of).ok_or("has no model: worlds and lights are not read")?;
     let name = model.attribute("name").unwrap_or_default().trim().to_owned();
-    for part in ["include", "model"] {
-        if child(model, part).is_some() {
-            builder.facts.warn(format!("has an `{part}` in its model, which is left out"));
-        }
-    }
     if words(model, "pose").is_some_and(|p| numbers(p).iter().any(|v| *v != 0.0)) {
         builder.facts.warn("its model has a pose, which is where it stands in a world and is left aside");
     }
-    let frames = Frames::of(model);
-    let bodies = bodies(builder, model, &frames);
+    let bodies = bodies(builder, &tree);
     let mut visuals = 0;
-    for link in children(model, "link") {
-        let Some(&body) = link.attribute("name").and_then(|n| bodies.get(n)) else { continue };
-        let place = frames.link(link.attribute("name").unwrap_or_default());
-        for visual in children(link, "visual") {
+    for link in &tree.links {
+        let Some(&body) = bodies.get(&link.name) else { continue };
+        for visual in children(link.node, "visual") {
             visuals += 1;
             if visuals > MAX_VISUALS {
                 return Err(format!("has more than {MAX_VISUALS} visuals").into());
             }
-            let place = place * frames.pose(visual, link.attribute("name"));
-            shape(builder, source.folder, visual, &place, body)?;
+            // Gazebo does not draw what is wholly clear.
+            if number(visual, "transparency").is_none_or(|t| t < 1.0) {
+                shape::seen(builder, link.folder, visual, &tree.place(link, visual), body)?;
+            }
         }
     }
-    builder.facts.feature("links", Feature::Count(children(model, "link").count() as u64));
+    collisions(builder, &tree, &bodies);
+    builder.facts.feature("links", Feature::Count(tree.links.len() as u64));
     builder.facts.feature("visuals", Feature::Count(visuals as u64));
     Ok(if name.is_empty() { "model".into() } else { name.replace('.', "_") })
 }
 
-/// Makes a body of each link, and joints between them; a link that is fixed to another is part of its body.
-fn bodies(builder: &mut Builder, model: Node, frames: &Frames) -> BTreeMap<String, usize> {
-    let mut fixed: BTreeMap<&str, &str> = BTreeMap::new();
-    let joints: Vec<Node> = children(model, "joint").collect();
-    for joint in joints.iter().filter(|j| j.attribute("type") == Some("fixed")) {
-        if let (Some(parent), Some(child)) = (words(*joint, "parent"), words(*joint, "child"))
-            && parent != "world"
-        {
-            fixed.insert(child, parent);
+/// Reads what collides. Shapes that do not lie where the model is seen are of another size or place than it, and are left
+/// out as a whole.
+fn collisions(builder: &mut Builder, tree: &Tree, bodies: &BTreeMap<String, usize>) {
+    let mut count = 0;
+    for link in &tree.links {
+        let Some(&body) = bodies.get(&link.name) else { continue };
+        for collision in children(link.node, "collision") {
+            count += 1;
+            if count <= MAX_VISUALS {
+                shape::collides(builder, link.folder, collision, &tree.place(link, collision), body);
+            }
         }
     }
-    let links: Vec<&str> = children(model, "link").filter_map(|l| l.attribute("name")).collect();
+    builder.facts.feature("collisions", Feature::Count(count as u64));
+    if let (Some(seen), Some(found)) = (builder.extent.scaled(1.0), builder.collision_bounds()) {
+        let off = |i: usize| (seen[0][i] - found[0][i]).abs().max((seen[1][i] - found[1][i]).abs());
+        let most = |i: usize| BESIDE.0 * (seen[1][i] - seen[0][i]) + BESIDE.1;
+        if (0..3).any(|i| off(i) > most(i)) {
+            builder.facts.warn("its collision shapes are not where it is seen; they are left out");
+            builder.clear_collisions();
+        }
+    }
+}
+
+/// Makes a body of each link, and joints between them; a link that is fixed to another is part of its body, and so is one
+/// of a static model that no joint moves.
+fn bodies(builder: &mut Builder, tree: &Tree) -> BTreeMap<String, usize> {
+    let mut fixed: BTreeMap<&str, &str> = BTreeMap::new();
+    for joint in tree.joints.iter().filter(|j| j.node.attribute("type") == Some("fixed") && j.parent != "world") {
+        fixed.insert(&joint.child, &joint.parent);
+    }
+    let moves =
+        |link: &Link| tree.joints.iter().any(|j| is_moving(j) && (j.child == link.name || j.parent == link.name));
+    let links: Vec<&str> = tree.links.iter().map(|l| l.name.as_str()).collect();
     let mut bodies: BTreeMap<String, usize> = BTreeMap::new();
     let mut first = true;
-    for link in children(model, "link") {
-        let Some(name) = link.attribute("name") else { continue };
-        if fixed.get(name).is_some_and(|parent| links.contains(parent)) || bodies.contains_key(name) {
+    for link in &tree.links {
+        let name = &link.name;
+        if fixed.get(name.as_str()).is_some_and(|parent| links.contains(parent)) || bodies.contains_key(name) {
             continue;
         }
-        let mass = child(link, "inertial").and_then(|i| number(i, "mass")).filter(|m| m.is_finite() && *m > 0.0);
+        let mass = child(link.node, "inertial").and_then(|i| number(i, "mass"));
+        let mass = mass.filter(|m| m.is_finite() && *m > 0.0).unwrap_or(0.0);
+        if !first && tree.is_static && !moves(link) {
+            builder.add_mass(0, mass);
+            bodies.insert(name.clone(), 0);
+            continue;
+        }
         let label = identifier(name, "link");
         let index = if std::mem::take(&mut first) { 0 } else { builder.body(&label) };
-        builder.set_body(index, &label, mass.unwrap_or(0.0));
-        bodies.insert(name.to_owned(), index);
+        builder.set_body(index, &label, mass);
+        bodies.insert(name.clone(), index);
     }
-    for name in &links {
+    for link in &tree.links {
         // Over any number of fixed joints; a circle of them ends at the first body.
-        let mut at = *name;
+        let mut at = link.name.as_str();
         for _ in 0..links.len() {
             match fixed.get(at) {
                 Some(parent) if !bodies.contains_key(at) => at = parent,
@@ -156,138 +183,45 @@ fn bodies(builder: &mut Builder, model: Node, frames: &Frames) -> BTreeMap<Strin
             }
         }
         let index = bodies.get(at).copied().unwrap_or(0);
-        bodies.entry((*name).to_owned()).or_insert(index);
+        if !bodies.contains_key(&link.name) {
+            let mass = child(link.node, "inertial").and_then(|i| number(i, "mass"));
+            builder.add_mass(index, mass.filter(|m| m.is_finite() && *m > 0.0).unwrap_or(0.0));
+            bodies.insert(link.name.clone(), index);
+        }
     }
-    for joint in joints {
-        builder.joints.extend(moving(joint, &bodies, frames));
+    for joint in &tree.joints {
+        builder.joints.extend(moving(joint, &bodies));
     }
     bodies
 }
 
-fn moving(joint: Node, bodies: &BTreeMap<String, usize>, frames: &Frames) -> Option<Joint> {
-    let kind = match joint.attribute("type")? {
-        "revolute" => JointKind::Revolute,
-        "continuous" => JointKind::Continuous,
-        "prismatic" => JointKind::Prismatic,
-        _ => return None,
-    };
-    let index = |name: &str| bodies.get(words(joint, name)?).copied();
-    let (parent, below) = (index("parent")?, index("child")?);
-    let name = joint.attribute("name")?;
-    let place = frames.joint(name);
-    let axis = child(joint, "axis");
-    let direction = axis.and_then(|a| three(a, "xyz")).unwrap_or([0., 0., 1.]);
-    let (from, to) = (place.point([0.; 3]), place.point(direction));
-    let direction: [f64; 3] = std::array::from_fn(|i| to[i] - from[i]);
-    let length = direction.iter().map(|v| v * v).sum::<f64>().sqrt();
+fn kind(joint: &JointPlace) -> Option<JointKind> {
+    match joint.node.attribute("type")? {
+        "revolute" => Some(JointKind::Revolute),
+        "continuous" => Some(JointKind::Continuous),
+        "prismatic" => Some(JointKind::Prismatic),
+        _ => None,
+    }
+}
+
+fn is_moving(joint: &JointPlace) -> bool {
+    kind(joint).is_some()
+}
+
+fn moving(joint: &JointPlace, bodies: &BTreeMap<String, usize>) -> Option<Joint> {
+    let kind = kind(joint)?;
+    let (parent, below) = (*bodies.get(&joint.parent)?, *bodies.get(&joint.child)?);
+    let from = joint.place.point([0.; 3]);
+    let length = joint.axis.iter().map(|v| v * v).sum::<f64>().sqrt();
     if parent == below || !length.is_finite() || length == 0.0 {
         return None;
     }
-    let limit = axis.and_then(|a| child(a, "limit"));
+    let limit = child(joint.node, "axis").and_then(|a| child(a, "limit"));
     let bound = |name: &str| limit.and_then(|l| number(l, name)).filter(|v| v.abs() < 1e6);
-    let limits = bound("lower").zip(bound("upper")).map(|(a, b)| [a, b]).filter(|_| kind != JointKind::Continuous);
+    let limits = bound("lower").zip(bound("upper")).map(|(a, b)| [a, b]).filter(|[a, b]| a <= b);
+    let limits = limits.filter(|_| kind != JointKind::Continuous);
     // Without limits a hinge turns without end.
     let kind = if kind == JointKind::Revolute && limits.is_none() { JointKind::Continuous } else { kind };
-    let name = identifier(name, "joint");
-    Some(Joint { name, kind, parent, child: below, origin: from, axis: direction.map(|v| v / length), limits })
-}
-
-fn shape(builder: &mut Builder, folder: &Folder, visual: Node, place: &Matrix, body: usize) -> Result<(), Refusal> {
-    let Some(geometry) = child(visual, "geometry").and_then(|g| g.children().find(Node::is_element)) else {
-        return Ok(());
-    };
-    if geometry.tag_name().name() == "mesh" {
-        return mesh(builder, folder, geometry, place, body);
-    }
-    let radius = number(geometry, "radius").unwrap_or(0.5);
-    let half = number(geometry, "length").unwrap_or(1.0) / 2.0;
-    let solid = match geometry.tag_name().name() {
-        "box" => Some(cuboid(three(geometry, "size").unwrap_or([1.0; 3]).map(|v| v / 2.0))),
-        "cylinder" => Some(turned_solid(half, [radius; 2], false, 2)),
-        "cone" => Some(turned_solid(half, [radius, 0.0], false, 2)),
-        "capsule" => Some(turned_solid(half, [radius; 2], true, 2)),
-        "sphere" => Some(turned_solid(0.0, [radius; 2], true, 2)),
-        "ellipsoid" => {
-            let radii = three(geometry, "radii").unwrap_or([1.0; 3]);
-            let mut ball = turned_solid(0.0, [1.0; 2], true, 2);
-            ball.positions.iter_mut().for_each(|p| *p = std::array::from_fn(|i| p[i] * radii[i] as f32));
-            Some(ball)
-        }
-        "plane" => {
-            let size = words(geometry, "size").map(numbers).unwrap_or_default();
-            let side = |i: usize| size.get(i).copied().unwrap_or(1.0) / 2.0;
-            Some(cuboid([side(0), side(1), 0.0]))
-        }
-        other => {
-            builder.facts.warn(format!("a visual is a {}, which is not read", super::folder::shortened(other)));
-            None
-        }
-    };
-    let Some(Triangles { positions, uvs, triangles }) = solid else { return Ok(()) };
-    builder.facts.mesh_count += 1;
-    builder.facts.triangle_count += triangles.len() as u64;
-    let mut own = Extent::default();
-    positions.iter().for_each(|p| own.add(p.map(f64::from)));
-    if let Some(bounds) = own.scaled(1.0) {
-        builder.extent.add_box(bounds, place);
-    }
-    let material = child(visual, "material").map(|m| surface(builder, m, visual.attribute("name")));
-    let name = visual.attribute("name").unwrap_or("visual").to_owned();
-    builder.add(body, Piece { name, positions, uvs, triangles, material }, place)
-}
-
-fn surface(builder: &mut Builder, material: Node, name: Option<&str>) -> usize {
-    let color = words(material, "diffuse").map(numbers).unwrap_or_default();
-    let part = |i: usize, fallback: f64| color.get(i).copied().unwrap_or(fallback).clamp(0.0, 1.0);
-    let base = [part(0, 0.8), part(1, 0.8), part(2, 0.8)];
-    let name = name.unwrap_or("visual").to_owned();
-    if color.len() >= 3 {
-        builder.facts.diffuse_colors.push(base);
-    }
-    builder.facts.material_names.push(name.clone());
-    builder.facts.material_names.sort();
-    builder.facts.material_names.dedup();
-    let emissive = words(material, "emissive").map(numbers).unwrap_or_default();
-    builder.materials.push(Material {
-        name,
-        base_color: base.map(|v| v as f32),
-        opacity: part(3, 1.0) as f32,
-        emissive: std::array::from_fn(|i| emissive.get(i).copied().unwrap_or(0.0).clamp(0.0, 1.0) as f32),
-        ..Material::default()
-    });
-    builder.materials.len() - 1
-}
-
-fn mesh(builder: &mut Builder, folder: &Folder, geometry: Node, place: &Matrix, body: usize) -> Result<(), Refusal> {
-    let uri = words(geometry, "uri").ok_or("a mesh of it has no uri")?;
-    if child(geometry, "submesh").is_some() {
-        builder.facts.warn("a visual names a part of a mesh; the whole mesh is read");
-    }
-    let path = located(folder, uri).ok_or_else(|| {
-        format!("names the mesh `{}`, which is not there or outside of its folder", super::folder::shortened(uri))
-    })?;
-    let bytes = folder.read(&path, MAX_FILE_BYTES)?;
-    let inner = folder.of_named(&path).unwrap_or_else(|| folder.clone());
-    let place = *place * Matrix::scale(three(geometry, "scale").unwrap_or([1.0; 3]));
-    let ending = path.rsplit_once('.').map(|(_, e)| e.to_ascii_lowercase()).unwrap_or_default();
-    let result = match ending.as_str() {
-        "dae" => super::dae::fill(builder, &bytes, &inner, &place, body),
-        "obj" => super::obj::fill(builder, &bytes, &inner, &place, body),
-        "stl" => super::stl::fill(builder, &bytes, &place, body),
-        "glb" | "gltf" => super::gltf::fill_into(builder, &bytes, &inner, &place, body),
-        other => Err(format!("has the ending .{}, which is not read in SDF", super::folder::shortened(other)).into()),
-    };
-    result.map_err(|r| format!("its mesh `{}`: {}", super::folder::shortened(uri), r.reason).into())
-}
-
-/// Returns the path of a mesh: `model://name/path` is in the folder of that name, which is this one or beside it.
-fn located(folder: &Folder, uri: &str) -> Option<String> {
-    let Some(rest) = uri.strip_prefix("model://").or_else(|| uri.strip_prefix("package://")) else {
-        return folder.resolve(uri).map(|_| uri.to_owned());
-    };
-    let (name, path) = rest.split_once('/')?;
-    let own = folder.base().file_name().is_some_and(|f| f.to_str() == Some(name));
-    let beside = format!("../{name}/{path}");
-    let order = if own { [path.to_owned(), beside] } else { [beside, path.to_owned()] };
-    order.into_iter().find(|p| folder.resolve(p).is_some())
+    let name = identifier(&joint.name, "joint");
+    Some(Joint { name, kind, parent, child: below, origin: from, axis: joint.axis.map(|v| v / length), limits })
 }

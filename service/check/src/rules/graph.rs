@@ -62,7 +62,7 @@ pub fn edges(c: &Context, out: &mut Findings) {
 
 /// Returns the adjacency rules of this strength that hold in the building's country.
 fn pairs<'c>(c: &'c Context, relation: AdjacencyRelation) -> impl Iterator<Item = &'c Adjacency> {
-    rules_here(c.domain, c.graph().country_code.as_deref()).filter(move |p| p.relation == relation)
+    rules_here(c.domain, c.graph().place_code()).filter(move |p| p.relation == relation)
 }
 
 fn of_type<'c>(c: &'c Context, room_type: &'c str) -> impl Iterator<Item = &'c str> {

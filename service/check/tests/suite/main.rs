@@ -1,6 +1,7 @@
 //! Every hard rule is broken on purpose: a sound world breaks none, the smallest change that breaks one is reported as
 //! that rule, at that subject.
 
+mod answers;
 mod building;
 mod compliance;
 mod furnishing;

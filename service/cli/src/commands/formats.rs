@@ -13,7 +13,7 @@ use crate::output::Output;
 /// Flags for formats.
 #[derive(clap::Args, Clone)]
 pub struct FormatArgs {
-    /// Formats to write, with commas between (`d3dgen version` lists them)
+    /// Formats to write, with commas between, or `all` (`d3dgen version` lists them)
     #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "arena,plan")]
     format: Vec<String>,
     /// Leave out plan.png, which takes longer than all the rest
@@ -48,8 +48,13 @@ impl FormatArgs {
     /// `Input` with the formats there are.
     pub fn names(&self) -> Result<Vec<&'static str>, Error> {
         let mut names = Vec::new();
-        for name in &self.format {
-            let exporter = exporters::get(name.trim()).ok_or_else(|| {
+        let every = exporters::all().iter().map(|e| e.name().to_owned());
+        let asked = self.format.iter().flat_map(|name| match name.trim() {
+            "all" => every.clone().collect(),
+            name => vec![name.to_owned()],
+        });
+        for name in asked {
+            let exporter = exporters::get(&name).ok_or_else(|| {
                 let known: Vec<&str> = exporters::all().iter().map(|e| e.name()).collect();
                 Error::Input(format!("format `{name}` is not known; there are {}", known.join(", ")))
             })?;
@@ -75,7 +80,7 @@ impl Formats {
         for exporter in self.names.iter().filter_map(|name| exporters::get(name)) {
             interrupt::check()?;
             let files = if exporter.name() == "plan" && !self.png {
-                vec![File::new("plan.svg", plan::svg(world, domain))] // the picture is never drawn
+                plan::files(world, domain, false)? // the picture is never drawn
             } else {
                 exporter.export(world, domain, &self.kept)?
             };

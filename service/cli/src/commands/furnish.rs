@@ -10,13 +10,14 @@ use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_pipeline::bring::{self, Said};
 use d3dgen_pipeline::generate::{Event, Settings, Stage, furnish_and_check};
 use d3dgen_pipeline::scene_graph::Brought;
-use d3dgen_plans::{Options, Source, readers};
+use d3dgen_plans::{LayerUse, Options, Source, readers};
 use d3dgen_plugins::Registry;
 
 use super::formats;
 use crate::error::Error;
 use crate::input::{document, write_text};
 use crate::output::Output;
+use crate::progress::Progress;
 use crate::registry::{RegistryArgs, domain};
 use crate::summary::Summary;
 use crate::{bundle, interrupt, summary};
@@ -24,13 +25,14 @@ use crate::{bundle, interrupt, summary};
 /// Arguments.
 #[derive(clap::Args)]
 pub struct Args {
-    /// The plan: floorplan.json of d3dgen, GeoJSON, SVG, DXF, Open-RMF building.yaml, or the map.yaml of a nav2 map
+    /// The plan: floorplan.json of d3dgen, GeoJSON, IMDF (zip or folder), SVG, DXF, Open-RMF building.yaml, or the map.yaml of
+    /// a nav2 map
     #[arg(value_name = "PLAN")]
     plan: PathBuf,
     /// Folder to write: new, empty, or an earlier output, which is replaced
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
-    /// Format of the plan (floorplan, geojson, svg, dxf, rmf, nav2); otherwise recognized
+    /// Format of the plan (floorplan, imdf, geojson, svg, dxf, rmf, nav2); otherwise recognized
     #[arg(long, value_name = "NAME")]
     plan_format: Option<String>,
     /// Scene graph of the plan's rooms, for a floorplan.json; otherwise made of its rooms and doors
@@ -39,7 +41,7 @@ pub struct Args {
     /// Kind of building (`d3dgen domains list`); otherwise guessed from the names of the rooms
     #[arg(long, value_name = "ID")]
     domain: Option<String>,
-    /// Country whose rules apply, as a code (DE) or an English name
+    /// Country or division whose rules apply: a code (DE, CA-ON), or its name or a city
     #[arg(long, value_name = "COUNTRY")]
     country: Option<String>,
     /// Robot the world is for: cleaning, disinfection, delivery, service or transport; may be given more than once
@@ -68,6 +70,9 @@ pub struct Args {
     registry: RegistryArgs,
 }
 
+/// The file that a folder of a venue has.
+const MANIFEST: &str = "manifest.json";
+
 /// How the drawing is read.
 #[derive(clap::Args)]
 struct ReadingArgs {
@@ -77,6 +82,10 @@ struct ReadingArgs {
     /// Storey to read alone; otherwise all of them
     #[arg(long, value_name = "NAME")]
     level: Option<String>,
+    /// What is drawn on a layer (class, group, kind): wall, room, door, window, column, furniture or ignore, as in
+    /// `--layer "A-210 Existing=wall"`; may be given more than once
+    #[arg(long, value_name = "NAME=USE", value_parser = layer)]
+    layer: Vec<(String, LayerUse)>,
     /// Make outlines with slanted walls of steps instead of refusing them (walls drawn as lines are in any case)
     #[arg(long)]
     rectify: bool,
@@ -100,6 +109,15 @@ fn pair(text: &str) -> Result<(String, String), String> {
     Ok((name.trim().to_owned(), kind.trim().to_owned()))
 }
 
+/// Returns the parts of `NAME=USE`.
+fn layer(text: &str) -> Result<(String, LayerUse), String> {
+    let (name, word) = text.rsplit_once('=').ok_or("needs the form NAME=USE")?;
+    let known = || LayerUse::ALL.map(|(name, _)| name).join(", ");
+    let layer_use =
+        LayerUse::of_word(word).ok_or_else(|| format!("`{word}` is no use of a layer; there are {}", known()))?;
+    Ok((name.trim().to_owned(), layer_use))
+}
+
 impl Args {
     pub fn run(self) -> Result<(), Error> {
         let formats = self.formats.chosen(&self.registry.store)?;
@@ -107,14 +125,20 @@ impl Args {
         let output = Output::new(&self.out)?;
         let (graph, plan) = self.given(&registry)?;
         let settings = Settings { name: self.name.clone(), pinned_floorplan: Some(plan), ..Settings::default() };
+        let progress = if self.json { Progress::silent() } else { Progress::of(1) };
         let mut clock: BTreeMap<Stage, Duration> = BTreeMap::new();
         let mut begun = Instant::now();
         let mut observe = |event: Event<'_>| match event {
             Event::Started(..) => begun = Instant::now(),
             Event::Finished(stage, ..) => *clock.entry(stage).or_default() += begun.elapsed(),
-            Event::Furnished(..) | Event::Rejected(..) => {}
+            Event::Furnished(_, room) => {
+                progress.doing(&format!("furnishing: {} of {} rooms, {}", room.done, room.total, room.room_id));
+            }
+            Event::Rejected(..) => {}
         };
-        let made = furnish_and_check(&graph, &registry, &settings, &mut observe, interrupt::flag())?;
+        let made = furnish_and_check(&graph, &registry, &settings, &mut observe, interrupt::flag());
+        progress.finish();
+        let made = made?;
         let writing = Instant::now();
         let plugin = domain(&registry, &made.world.scene_graph.domain)?;
         bundle::write(&made.world, &made.report, plugin.domain(), &formats, &output)?;
@@ -137,19 +161,26 @@ impl Args {
             meters_per_unit: self.reading.meters_per_unit,
             level: self.reading.level.clone(),
             rectify: self.reading.rectify,
+            layers: self.reading.layer.clone(),
             inner_wall_m: self.reading.inner_wall,
             outer_wall_m: self.reading.outer_wall,
             add_doors: self.reading.add_doors,
             add_windows: self.reading.add_windows,
         };
         let read_error = |source| Error::Read { path: self.plan.clone(), source };
-        let size = fs::metadata(&self.plan).map_err(read_error)?;
+        // a folder is a venue in files of its own, which its manifest stands for
+        let file = if self.plan.is_dir() { self.plan.join(MANIFEST) } else { self.plan.clone() };
+        if self.plan.is_dir() && !file.is_file() {
+            let message = format!("{} is a folder without {MANIFEST}: it is no IMDF venue", self.plan.display());
+            return Err(Error::Input(message));
+        }
+        let size = fs::metadata(&file).map_err(read_error)?;
         if size.is_file() && size.len() > readers::MOST_BYTES as u64 {
             return Err(Error::Input(format!("{} is too large for a floor plan", self.plan.display())));
         }
-        let bytes = fs::read(&self.plan).map_err(read_error)?;
-        let name = self.plan.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
-        let source = Source { name: &name, bytes: &bytes, companion: &|file| companion(&self.plan, file) };
+        let bytes = fs::read(&file).map_err(read_error)?;
+        let name = file.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+        let source = Source { name: &name, bytes: &bytes, companion: &|name| companion(&file, name) };
         let graph: Option<SceneGraph> = self.graph.as_deref().map(document).transpose()?;
         let brought = Brought {
             title: format!("furnish {name}"),

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use d3dgen_model::document::Document;
-use d3dgen_pipeline::scene_graph;
+use d3dgen_pipeline::brief;
 
 use crate::error::Error;
 use crate::input::{self, write_text};
@@ -37,7 +37,7 @@ impl Args {
             (Some(file), _) => input::scene_graph(file)?,
             (None, text) => {
                 let request = self.request.request(&prompt(text.as_deref().unwrap_or_default())?);
-                scene_graph::generate(&request, &self.registry.load()?)?
+                brief::rooms(&request, &self.registry.load()?)?.0
             }
         };
         input::tell(&graph.conflicts);

@@ -49,7 +49,7 @@ impl Args {
         let plugin = domain(&registry, &graph.domain)?;
         let name = self.name.unwrap_or_else(|| generate::world_name(&graph));
         let retrieved = generate::retrieve(&graph, plugin);
-        let world = world::assemble(
+        let mut world = world::assemble(
             &name,
             graph,
             document(&self.plan)?,
@@ -62,6 +62,7 @@ impl Args {
             return Err(Error::Document { path: "the documents together".into(), source });
         }
         let report = world::check(&world, plugin.domain(), &retrieved);
+        world.rules = Some(report.applied_rules());
         let mut kept = None;
         if let Some(folder) = &self.out {
             let output = Output::new(folder)?;

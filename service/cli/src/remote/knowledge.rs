@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use d3dgen_knowledge::database::{Found, SearchQuery};
+use d3dgen_knowledge::database::{Answer, Found, SearchQuery};
 use d3dgen_proto::v1::knowledge_service_client::KnowledgeServiceClient;
 use d3dgen_proto::v1::{
     AnyOf, FoundConstraint, Limits, ListConstraintFiltersRequest, SearchConstraintsRequest, SearchMode,
@@ -41,8 +41,8 @@ pub fn filter_values(remote: &Remote) -> Result<BTreeMap<String, BTreeSet<String
 ///
 /// # Errors
 /// `Remote`.
-pub fn search(remote: &Remote, query: &SearchQuery) -> Result<Vec<Found>, Error> {
-    let (mut found, mut page_token) = (Vec::new(), String::new());
+pub fn search(remote: &Remote, query: &SearchQuery) -> Result<Answer, Error> {
+    let (mut found, mut note, mut page_token) = (Vec::new(), None, String::new());
     let any_of = |values: &BTreeSet<String>| AnyOf { values: values.iter().cloned().collect() };
     let (min, max) = query.value;
     while found.len() < query.limit {
@@ -56,13 +56,14 @@ pub fn search(remote: &Remote, query: &SearchQuery) -> Result<Vec<Found>, Error>
         };
         let page = remote.ask(client(remote).search_constraints(remote.request(asked)))?;
         found.extend(page.constraints.iter().map(read).collect::<Result<Vec<_>, _>>()?);
+        note = Some(page.note).filter(|n| !n.is_empty());
         page_token = page.next_page_token;
         if page_token.is_empty() {
             break;
         }
     }
     found.truncate(query.limit);
-    Ok(found)
+    Ok(Answer { found, note })
 }
 
 fn read(found: &FoundConstraint) -> Result<Found, Error> {
@@ -75,6 +76,7 @@ fn read(found: &FoundConstraint) -> Result<Found, Error> {
         source: found.sources.first().map(part).transpose()?,
         constraint: part(constraint)?,
         hit: Hit { key, score: found.score, text_rank: None, vector_rank: None, similarity: None },
+        copies: found.copies.clone(),
     })
 }
 

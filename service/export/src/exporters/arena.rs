@@ -28,6 +28,10 @@ impl Exporter for Arena {
         "Arena world folder: world.yaml, occupancy map, default scenario and USDZ, GLB and SDF models of the objects"
     }
 
+    fn roots(&self) -> &'static [&'static str] {
+        &["arena"]
+    }
+
     fn export(&self, world: &World, domain: &Domain, kept: &dyn KeptModels) -> Result<Vec<File>, Error> {
         if snake(&world.name) != world.name || world.name.is_empty() {
             let reason = "a world's name is of lower-case letters, digits and underscores".to_owned();

@@ -1,7 +1,9 @@
 //! One file per target; [`all`] is the list that `--format` and its help read.
 
 mod arena;
+mod nav2;
 pub mod plan;
+mod rmf;
 
 use d3dgen_model::domain::Domain;
 use d3dgen_model::world::World;
@@ -10,7 +12,9 @@ use crate::Error;
 use crate::models::KeptModels;
 
 pub use arena::Arena;
+pub use nav2::Nav2;
 pub use plan::Plan;
+pub use rmf::Rmf;
 
 /// A file to be written, relative to the world's output folder.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -36,6 +40,11 @@ pub trait Exporter: Sync {
     /// Returns one sentence on what it writes and who reads it.
     fn about(&self) -> &'static str;
 
+    /// Returns the names that its files and folders have at the top of a world's folder: `["plan.svg"]`, `["arena"]`.
+    ///
+    /// They are its own: a folder that holds nothing but such names and the documents of a world may be written again.
+    fn roots(&self) -> &'static [&'static str];
+
     /// Returns the files, sorted by path; a pure function of world, domain and kept models.
     ///
     /// # Errors
@@ -46,7 +55,12 @@ pub trait Exporter: Sync {
 
 /// Returns every exporter, the default ones first.
 pub fn all() -> &'static [&'static dyn Exporter] {
-    &[&Arena, &Plan]
+    &[&Arena, &Plan, &Nav2, &Rmf]
+}
+
+/// Returns the names at the top of a world's folder that exporters write, each once.
+pub fn roots() -> impl Iterator<Item = &'static str> {
+    all().iter().flat_map(|e| e.roots()).copied()
 }
 
 /// Returns the exporter with this name.
@@ -69,6 +83,8 @@ mod tests {
             assert_eq!(get(exporter.name()).map(Exporter::name), Some(exporter.name()));
         }
         assert!(get("no_such_format").is_none());
+        let distinct: std::collections::BTreeSet<_> = roots().collect();
+        assert_eq!(distinct.len(), roots().count(), "no two exporters write to one name");
     }
 
     #[test]
@@ -79,6 +95,10 @@ mod tests {
             assert!(!files.is_empty());
             assert_eq!(files, exporter.export(&world, &domain, &NothingKept).unwrap());
             assert!(files.iter().all(|f| !f.path.starts_with('/') && !f.path.contains("..")));
+            let root = |f: &File| f.path.split('/').next().unwrap_or_default().to_owned();
+            let used: std::collections::BTreeSet<String> = files.iter().map(root).collect();
+            let named = exporter.roots().iter().map(|r| (*r).to_owned()).collect();
+            assert_eq!(used, named, "{} names the roots it writes to, and no others", exporter.name());
             assert!(files.windows(2).all(|p| p[0].path < p[1].path), "{} sorts its files", exporter.name());
         }
     }

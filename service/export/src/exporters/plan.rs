@@ -1,13 +1,16 @@
-//! An architect's plan as `plan.svg` and `plan.png`.
+//! An architect's plan as `plan.svg`, `plan.png` and `plan.pdf`, and as `plan.dxf` for CAD programs.
 //!
 //! The picture is drawn once as SVG: walls with thickness, door swings, windows, furniture symbols, room names with net
-//! areas, robot zones, dimensions, title block and legend. All type is outlines, so it looks the same everywhere. The PNG
-//! is that SVG rendered.
+//! areas, robot zones, dimensions, title block and legend. All type is outlines, so it looks the same everywhere. PNG and
+//! PDF are that SVG rendered; the DXF has the same parts at full size, on layers.
 
 mod building;
+mod dimensions;
+mod dxf;
 mod labels;
 mod page;
 mod panel;
+mod pdf;
 mod pen;
 mod robots;
 mod storeys;
@@ -27,6 +30,7 @@ use super::{Exporter, File};
 use crate::Error;
 use crate::models::KeptModels;
 use building::Sides;
+use dimensions::Dimensions;
 use page::{Frame, Page, Path};
 
 /// Sheet width aimed for, sheet units.
@@ -61,14 +65,35 @@ impl Exporter for Plan {
     }
 
     fn about(&self) -> &'static str {
-        "an architect's plan to look at and print: plan.svg and plan.png"
+        "an architect's plan to look at, to print to scale and for CAD: plan.svg, plan.png, plan.pdf and plan.dxf"
+    }
+
+    fn roots(&self) -> &'static [&'static str] {
+        &["plan.dxf", "plan.pdf", "plan.png", "plan.svg"]
     }
 
     fn export(&self, world: &World, domain: &Domain, _: &dyn KeptModels) -> Result<Vec<File>, Error> {
-        let svg = svg(world, domain);
-        let png = png(&svg)?;
-        Ok(vec![File::new("plan.png", png), File::new("plan.svg", svg)])
+        files(world, domain, true)
     }
+}
+
+/// Returns the files of the plan, sorted by path, with or without the picture that takes longer than all the rest.
+///
+/// # Errors
+/// `Picture` when a renderer refuses the SVG: a bug of ours.
+pub fn files(world: &World, domain: &Domain, with_png: bool) -> Result<Vec<File>, Error> {
+    let svg = svg(world, domain);
+    let drawn = parsed(&svg, "plan.pdf")?;
+    let (laid_out, storeys) = storeys::laid_out(world, (0.0, 0.0));
+    let mut files = vec![
+        File::new("plan.dxf", dxf::dxf(&laid_out, domain, &storeys)),
+        File::new("plan.pdf", pdf::pdf(&drawn, &panel::title(world, domain))?),
+    ];
+    if with_png {
+        files.push(File::new("plan.png", rendered(&svg, &drawn)?));
+    }
+    files.push(File::new("plan.svg", svg));
+    Ok(files)
 }
 
 /// How legible a drawing's labels are.
@@ -132,19 +157,10 @@ pub fn svg(world: &World, domain: &Domain) -> String {
 
 fn draw(world: &World, domain: &Domain) -> (String, Legibility) {
     let size = building::outer_bounds(&world.floorplan);
-    let (laid_out, storeys) = storeys::laid_out(world);
+    let Placed { world: laid_out, storeys, around, scale, margins, beside } = placed(world);
     let world = &laid_out;
     let plan = &world.floorplan;
-    let around = building::outer_bounds(plan);
-    let beside = around.width() < 1.5 * around.height();
-
-    // The drawing's scale follows from the sheet; weights and type follow from the scale, within limits.
-    let scale = scale(&around, if beside { panel::WIDTH + GAP } else { 0.0 });
     let k = (scale / 55.0).clamp(0.7, 1.15);
-    let (mut margins, offsets) = margins(plan, &around, scale);
-    if !storeys.is_empty() {
-        margins.north += 2.0 * UNIT;
-    }
     let frame =
         Frame { scale, origin: Point::new(around.x0, around.y1), at: (EDGE + margins.west, EDGE + margins.north) };
     let on_sheet = frame.rect(&around);
@@ -155,16 +171,20 @@ fn draw(world: &World, domain: &Domain) -> (String, Legibility) {
     let block = page.block(|page| {
         let shown = Shown::of(world, domain);
         building::floors(page, &frame, plan, domain);
-        robots::zones(page, &frame, &world.scenario, k);
+        if !world.scenario.robots.is_empty() {
+            robots::zones(page, &frame, &world.scenario, k);
+        }
         furniture(page, &frame, &shown);
         building::walls(page, &frame, plan, domain);
         building::windows(page, &frame, plan, domain);
         building::doors(page, &frame, plan);
         building::entrances(page, &frame, plan, UNIT);
         storeys::elevators(page, &frame, plan);
-        if storeys.is_empty() {
-            building::dimensions(page, &frame, &around, offsets, UNIT);
+        page.open_group("dimensions");
+        for floor in floors(plan, &storeys) {
+            Dimensions::of(floor, scale, UNIT).draw(page, &frame, UNIT);
         }
+        page.close_group();
         storeys::titles(page, &frame, plan, &storeys, UNIT);
         let marks = robots::marks(page, &frame, &world.scenario, 17.0 * k.max(0.85));
         (numbers, legible) = label(page, &frame, (world, domain), &shown, marks, 18.0 * k.clamp(0.8, 1.1));
@@ -194,31 +214,68 @@ fn scale(around: &Rect, panel_width: f64) -> f64 {
     scale.clamp(SCALES[0], SCALES[1])
 }
 
-/// Returns the free space around the building and where its dimensions go: on sides without an entrance if there are any.
-fn margins(plan: &Floorplan, around: &Rect, scale: f64) -> (Sides<f64>, Sides<Option<f64>>) {
+/// A world as it comes onto its sheet.
+struct Placed {
+    /// Its storeys beside each other.
+    world: World,
+    storeys: Vec<storeys::Storey>,
+    /// Outer faces of all of it, m.
+    around: Rect,
+    /// Sheet units per meter.
+    scale: f64,
+    /// Free space around it, sheet units.
+    margins: Sides<f64>,
+    /// True where the title block stands right of the drawing, not below it.
+    beside: bool,
+}
+
+/// Finds the scale, and how far storeys are apart so that their dimensions and titles find place between them.
+fn placed(world: &World) -> Placed {
+    let mut apart = (0.0, 0.0);
+    loop {
+        let (laid_out, storeys) = storeys::laid_out(world, apart);
+        let around = building::outer_bounds(&laid_out.floorplan);
+        let beside = around.width() < 1.5 * around.height();
+        // The drawing's scale follows from the sheet; weights and type follow from the scale, within limits.
+        let scale = scale(&around, if beside { panel::WIDTH + GAP } else { 0.0 });
+        let mut margins = Sides { west: 0.0, east: 0.0, north: 0.0, south: 0.0 };
+        for floor in floors(&laid_out.floorplan, &storeys) {
+            let own = self::margins(floor, &building::outer_bounds(floor), scale);
+            margins = margins.max(own);
+        }
+        if !storeys.is_empty() {
+            margins.north += 3.0 * UNIT;
+        }
+        let needed = ((margins.west + margins.east) / scale, (margins.north + margins.south) / scale);
+        // a wider sheet has a smaller scale, which needs more meters between storeys
+        if storeys.is_empty() || needed.0 <= apart.0 && needed.1 <= apart.1 {
+            return Placed { world: laid_out, storeys, around, scale, margins, beside };
+        }
+        apart = (1.02 * needed.0.max(apart.0), 1.02 * needed.1.max(apart.1));
+    }
+}
+
+/// Returns the plan of each storey where it is on the sheet.
+fn floors<'a>(plan: &'a Floorplan, storeys: &'a [storeys::Storey]) -> Vec<&'a Floorplan> {
+    if storeys.is_empty() { vec![plan] } else { storeys.iter().map(|s| &s.plan).collect() }
+}
+
+/// Returns what a storey's dimensions and the names at its doors take around it, sheet units.
+fn margins(plan: &Floorplan, around: &Rect, scale: f64) -> Sides<f64> {
     let doors = building::entrance_sides(plan, around);
-    let swing = building::outward_reach(plan) * scale;
-    let near = 52.0;
-    let beyond = swing + 2.4 * UNIT;
-    let pick = |first: bool, second: bool, beyond: f64| match (first, second) {
-        (false, _) => (Some(near), None),
-        (true, false) => (None, Some(near)),
-        (true, true) => (Some(beyond), None),
-    };
+    let beyond = building::outward_reach(plan) * scale + 2.4 * UNIT;
+    let chains = Dimensions::of(plan, scale, UNIT).bounds().map_or(*around, |b| b.union(around));
     // Beside the building the entrance's name runs outwards, above and below it only takes a line.
-    let (west, east) = pick(doors.west, doors.east, beyond + 4.0 * UNIT);
-    let (south, north) = pick(doors.south, doors.north, beyond + 2.0 * UNIT);
-    let margin = |offset: Option<f64>, door: bool, name: f64| {
-        let named = if door { beyond + name } else { 0.0 };
-        offset.map_or(16.0, |o| o + 1.6 * UNIT).max(named).max(30.0) + GAP * 0.8
+    let margin = |chain_m: f64, door: bool, name: f64| {
+        let chain = if chain_m > 0.0 { chain_m * scale + 1.6 * UNIT } else { 0.0 };
+        chain.max(if door { beyond + name } else { 0.0 }).max(30.0) + GAP * 0.8
     };
-    let margins = Sides {
-        west: margin(west, doors.west, 3.6 * UNIT),
-        east: margin(east, doors.east, 3.6 * UNIT),
-        north: margin(north, doors.north, UNIT),
-        south: margin(south, doors.south, UNIT),
-    };
-    (margins, Sides { west, east, north, south })
+    Sides {
+        west: margin(around.x0 - chains.x0, doors.west, 3.6 * UNIT),
+        east: margin(chains.x1 - around.x1, doors.east, 3.6 * UNIT),
+        north: margin(chains.y1 - around.y1, doors.north, UNIT),
+        south: margin(around.y0 - chains.y0, doors.south, UNIT),
+    }
 }
 
 /// Returns the picture of an SVG that [`svg`] made, between 1600 and 2400 px wide.
@@ -226,8 +283,16 @@ fn margins(plan: &Floorplan, around: &Rect, scale: f64) -> (Sides<f64>, Sides<Op
 /// # Errors
 /// `Picture` when the renderer refuses the SVG: a bug of ours.
 pub fn png(svg: &str) -> Result<Vec<u8>, Error> {
+    rendered(svg, &parsed(svg, "plan.png")?)
+}
+
+fn parsed(svg: &str, picture: &'static str) -> Result<usvg::Tree, Error> {
+    let refused = |e: usvg::Error| Error::Picture { picture, reason: e.to_string() };
+    usvg::Tree::from_str(svg, &usvg::Options::default()).map_err(refused)
+}
+
+fn rendered(svg: &str, tree: &usvg::Tree) -> Result<Vec<u8>, Error> {
     let refused = |reason: String| Error::Picture { picture: "plan.png", reason };
-    let tree = usvg::Tree::from_str(svg, &usvg::Options::default()).map_err(|e| refused(e.to_string()))?;
     // The width in millimeters is for print; pixels follow the sheet units in the view box.
     let natural = svg
         .split_once("viewBox=\"0 0 ")
@@ -241,7 +306,7 @@ pub fn png(svg: &str) -> Result<Vec<u8>, Error> {
     // The sheet's own background may end within the last row or column of pixels.
     pixmap.fill(tiny_skia::Color::WHITE);
     let transform = tiny_skia::Transform::from_scale(zoom as f32, zoom as f32);
-    resvg::render(&tree, transform, &mut pixmap.as_mut());
+    resvg::render(tree, transform, &mut pixmap.as_mut());
     pixmap.encode_png().map_err(|e| refused(e.to_string()))
 }
 

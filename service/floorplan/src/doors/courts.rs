@@ -9,9 +9,9 @@ use d3dgen_model::scene_graph::Note;
 use super::super::lattice::{meters, up};
 use super::super::outline::{Mosaic, Stretch};
 use super::super::spec::Brief;
-use super::super::windows::LEAST_WALL_M;
 use super::spot::Spot;
 use super::{BETWEEN_DOORS_M, Laid, Site};
+use crate::measures::LEAST_WALL_M;
 
 /// Area from which on a court has two doors, on center lines, m^2.
 const LARGE_COURT_M2: f64 = 150.0;

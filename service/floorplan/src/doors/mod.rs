@@ -15,15 +15,13 @@ use d3dgen_model::{Point, Segment};
 
 pub(super) use self::courts::shut_courts;
 use self::spot::{Spot, View};
-use super::assemble::highest;
 use super::hall;
 use super::lattice::{Cellbox, INNER_HALF_M, OUTER_HALF_M, meters};
 use super::outline::Stretch;
 use super::realize::BED_DOOR_M;
 use super::spec::Brief;
-
-/// Clear width from which a door gets two leaves, m.
-pub(super) const DOUBLE_FROM_M: f64 = 1.25;
+use crate::measures::DOUBLE_FROM_M;
+use crate::numbers::highest;
 /// A leaf whose square takes more than this share of the room slides instead.
 const SLIDING_SHARE: f64 = 0.22;
 /// Widest open passage, m, and the piece of wall left on each side of it.

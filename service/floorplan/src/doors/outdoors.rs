@@ -10,9 +10,9 @@ use super::super::lattice::{Cellbox, OUTER_HALF_M, meters};
 use super::super::outline::Stretch;
 use super::super::realize::ONE_WAY_M;
 use super::super::spec::{Brief, RoomSpec};
-use super::super::windows::LEAST_WALL_M;
 use super::spot::{Spot, View};
-use super::{APPROACH_M, DOUBLE_FROM_M, Laid, Site};
+use super::{APPROACH_M, Laid, Site};
+use crate::measures::{DOUBLE_FROM_M, LEAST_WALL_M};
 
 /// What a meter between the entrance and the nearest room for visitors counts against the length of its wall.
 const TO_PUBLIC: f64 = 0.2;

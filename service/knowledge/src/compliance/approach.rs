@@ -3,9 +3,9 @@
 use d3dgen_model::Rect;
 use d3dgen_model::floorplan::{Door, DoorKind};
 
-use super::Reading;
 use super::site::{Room, Site};
 use crate::clearance::depth_beside;
+use crate::compliance::reading::Reading;
 use crate::measure::Measure;
 
 /// Depth of the wall strip beside a latch that must be free to reach the handle, m.
@@ -31,7 +31,7 @@ pub(super) fn read(site: &Site, measure: Measure, concerns: impl Fn(&Door) -> bo
             let value = if beside_latch {
                 beside(room, door, &face, ahead, swing.hinge_at_start)
             } else {
-                depth_beside(&ahead_of, ahead, &room.plan.net_polygon, taken(room)) + STEP_M
+                depth_beside(&ahead_of, ahead, &room.plan.net_polygon, room.taken()) + STEP_M
             };
             out.push(Reading::new(&door.door_id, value));
         }
@@ -47,10 +47,6 @@ fn stepped(r: &Rect, ahead: u8) -> Rect {
         2 => Rect { x0: r.x0 - STEP_M, ..*r },
         _ => Rect { y0: r.y0 - STEP_M, ..*r },
     }
-}
-
-fn taken<'a>(room: &'a Room) -> impl Iterator<Item = Rect> + 'a {
-    room.objects.iter().filter(|o| o.blocks).map(|o| o.rect)
 }
 
 /// Returns the opening through its wall, and the quarter turn that leads from it into the room.
@@ -91,5 +87,5 @@ fn beside(room: &Room, door: &Door, face: &Rect, ahead: u8, hinge_at_start: bool
         (false, true, _) => 0,
         (false, false, _) => 2,
     };
-    depth_beside(&strip, towards, &room.plan.net_polygon, taken(room))
+    depth_beside(&strip, towards, &room.plan.net_polygon, room.taken())
 }

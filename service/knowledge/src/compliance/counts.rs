@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 
 use d3dgen_model::domain::Shape;
 
-use super::Reading;
 use super::site::{Room, Site};
+use crate::compliance::reading::Reading;
 use crate::freespace::FreeSpace;
 use crate::measure::Measure;
 use crate::retrieve::{Applicable, Rule, Scope};
@@ -19,10 +19,7 @@ pub(super) fn read(site: &Site, a: &Applicable, rule: &Rule) -> Vec<Reading> {
 }
 
 fn figure(site: &Site, a: &Applicable, rule: &Rule) -> Option<f64> {
-    let area = |circulation_only: bool| -> f64 {
-        let rooms = site.rooms.iter().filter(|r| r.plan.circulation || !circulation_only);
-        rooms.map(|r| r.plan.net_area_m2).sum()
-    };
+    let area = |circulation_only: bool| site.net_area(circulation_only);
     let toilets = site.count(&[Shape::Toilet, Shape::Cubicle]);
     let per_toilet = |n: f64| (toilets > 0 && n > 0.0).then(|| n / toilets as f64);
     let each = |whole: f64, parts: f64| (parts > 0.0).then(|| whole / parts);

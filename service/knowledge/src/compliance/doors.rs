@@ -2,8 +2,9 @@
 
 use d3dgen_model::floorplan::{Door, DoorKind};
 
+use super::approach;
 use super::site::Site;
-use super::{Reading, approach};
+use crate::compliance::reading::Reading;
 use crate::measure::Measure;
 use crate::retrieve::{Applicable, Rule, Scope};
 
@@ -54,7 +55,9 @@ fn concerns(site: &Site, a: &Applicable, door: &Door) -> bool {
                 site.domain.room_type(inner).is_some_and(|t| t.hosts.iter().any(|h| h == outer))
             };
             let ends: Vec<&str> = door.room_ids.iter().filter_map(room_type).collect();
-            leaf && ends.iter().any(|own| types.contains(*own) && !ends.iter().any(|other| hangs_on(other, own)))
+            let kept = a.guards.is_empty() || site.rooms_of(a).any(|r| door.room_ids.contains(&r.plan.room_id));
+            leaf && kept
+                && ends.iter().any(|own| types.contains(*own) && !ends.iter().any(|other| hangs_on(other, own)))
         }
         Scope::Building | Scope::Objects(_) => false,
     }

@@ -5,9 +5,9 @@ use d3dgen_model::knowledge::Value;
 use d3dgen_model::{Point, Rect};
 
 use super::kitchen;
-use super::objects::belong_together;
 use super::site::{Object, Room, Site};
 use crate::clearance::{Side, depth_beside, free_depth, quarter, turned};
+use crate::compliance::site::belong_together;
 use crate::freespace::FreeSpace;
 use crate::measure::Measure;
 use crate::retrieve::{Applicable, Rule};

@@ -3,10 +3,10 @@
 use d3dgen_model::domain::Shape;
 use d3dgen_model::{Point, Rect};
 
-use super::Reading;
-use super::objects::belong_together;
 use super::site::{Object, Room, Site};
 use crate::clearance::quarter;
+use crate::compliance::reading::Reading;
+use crate::compliance::site::belong_together;
 use crate::freespace::FreeSpace;
 use crate::measure::Measure;
 use crate::retrieve::{Applicable, Rule};

@@ -10,6 +10,7 @@ mod doors;
 mod fixtures;
 mod kitchen;
 mod objects;
+pub(crate) mod reading;
 mod robots;
 mod rooms;
 mod routes;
@@ -26,30 +27,8 @@ use d3dgen_model::world::World;
 use crate::measure::Measure;
 use crate::retrieve::{Applicable, Retrieval, Rule};
 use crate::tables::Sure;
+use reading::{Reading, SLACK};
 use site::Site;
-
-/// Lengths and areas closer than this to their limit meet it.
-pub(crate) const SLACK: f64 = 1e-3;
-
-/// A measured figure of one thing.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Reading {
-    /// Id of the room, door or placement, or `building`.
-    pub subject: String,
-    /// The figure, in the constraint's unit.
-    pub value: f64,
-}
-
-impl Reading {
-    fn new(subject: &str, value: f64) -> Self {
-        Self { subject: subject.to_owned(), value }
-    }
-
-    /// Returns the reading of a statement: 1 when it holds.
-    fn flag(subject: &str, holds: bool) -> Self {
-        Self::new(subject, if holds { 1.0 } else { 0.0 })
-    }
-}
 
 /// Returns the room from which the way out is longest, and how long it is, m; of several storeys to the stairs. `None` where no
 /// way of the building can be longer than `least`, or nothing leads out.
@@ -76,9 +55,11 @@ pub fn evaluate(world: &World, domain: &Domain, retrieval: &Retrieval) -> (Vec<C
     let mut summary = ConstraintSummary { not_applicable: retrieval.not_applicable, ..ConstraintSummary::default() };
     let mut out = Vec::new();
     for a in &retrieval.constraints {
+        let national = u32::from(a.mandatory && retrieval.national.contains(&a.citation.jurisdiction));
         let rule = match &a.decision {
             Ok(rule) => rule,
             Err(reason) => {
+                summary.national_mandatory += national;
                 summary.not_decidable += 1;
                 out.push(result(a, None, "building", Status::NotDecidable, None, reason.clone()));
                 continue;
@@ -90,6 +71,10 @@ pub fn evaluate(world: &World, domain: &Domain, retrieval: &Retrieval) -> (Vec<C
             continue;
         }
         let found = judge(a, rule, &readings, retrieval);
+        summary.national_mandatory += national;
+        if found.first().is_some_and(|r| r.status != Status::NotDecidable) {
+            summary.national_decided += national;
+        }
         match found.first().map(|r| r.status) {
             Some(Status::Violated) => summary.violated += 1,
             Some(Status::NotDecidable) => summary.not_decidable += 1,

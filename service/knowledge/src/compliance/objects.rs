@@ -4,8 +4,9 @@ use d3dgen_model::domain::Shape;
 use d3dgen_model::floorplan::Door;
 
 use super::site::{Object, Room, Site};
-use super::{Reading, fixtures, kitchen, sizes, spacing, stairs};
+use super::{fixtures, kitchen, sizes, spacing, stairs};
 use crate::clearance::{Side, door_zones, free_depth};
+use crate::compliance::reading::Reading;
 use crate::measure::Measure;
 use crate::retrieve::{Applicable, Rule, Scope};
 
@@ -77,10 +78,4 @@ fn figure(site: &Site, room: &Room, object: &Object, a: &Applicable, rule: &Rule
         _ => None,
     }
     .filter(|_| site.domain.object(&object.placement.object).is_some())
-}
-
-/// Returns true for an object and what was placed with it (a desk and its chair): they share their clearance.
-pub(super) fn belong_together(a: &Object, b: &Object) -> bool {
-    a.placement.placement_id == b.placement.placement_id
-        || (a.placement.group.is_some() && a.placement.group == b.placement.group)
 }

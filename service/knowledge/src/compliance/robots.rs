@@ -6,8 +6,8 @@ use d3dgen_model::Point;
 use d3dgen_model::domain::Shape;
 use d3dgen_model::scenario::{RobotTask, RoiKind};
 
-use super::Reading;
 use super::site::Site;
+use crate::compliance::reading::Reading;
 use crate::measure::Measure;
 use crate::retrieve::{Applicable, Rule};
 

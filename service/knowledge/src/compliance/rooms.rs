@@ -3,9 +3,10 @@
 use d3dgen_model::storeys::LinkKind;
 use d3dgen_model::{Rect, TOLERANCE_M};
 
+use super::circle;
 use super::site::{Room, Site};
-use super::{Reading, circle};
 use crate::aims::is_mirror;
+use crate::compliance::reading::Reading;
 use crate::freespace::FreeSpace;
 use crate::measure::Measure;
 use crate::retrieve::{Applicable, Rule};

@@ -4,22 +4,25 @@ use std::cell::{OnceCell, RefCell};
 use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
 
-use d3dgen_model::domain::{Domain, Mount, ObjectType, RoomType, Shape};
+use d3dgen_model::domain::{Domain, Mount, ObjectType, RoomType, Shape, Zone};
 use d3dgen_model::floorplan::{Door, PlanRoom, Window};
 use d3dgen_model::geometry::to_mm;
 use d3dgen_model::occupancy::{Occupancy, stops_robot};
 use d3dgen_model::placements::Placement;
 use d3dgen_model::world::World;
-use d3dgen_model::{Point, Rect};
+use d3dgen_model::{Point, Rect, Segment, TOLERANCE_M};
 
-use super::objects::belong_together;
 use crate::clearance::{HEAD_ROOM_M, is_shallow, quarter};
 use crate::conditions::Guard;
 use crate::freespace::FreeSpace;
 use crate::retrieve::{Applicable, Retrieval, Scope};
-use crate::tables::{ConditionRow, When};
+use crate::tables::{ConditionRow, TABLES, When};
 use crate::travel::Distances;
 
+/// Space name of rooms that are no part of a dwelling's floor area.
+const OUTSIDE: &str = "outside_dwelling";
+/// A door stands in a wall that is at most this far from its line, m.
+const IN_WALL_M: f64 = 0.3;
 /// Beds at least this wide are for two, m: the narrowest that is sold so is 1.2 m, and for one the widest is 1.1 m.
 const FOR_TWO_M: f64 = 1.2;
 /// Beds narrower than this are cots, m.
@@ -44,6 +47,8 @@ pub(super) struct Room<'a> {
     pub doors: Vec<&'a Door>,
     pub windows: Vec<&'a Window>,
     pub objects: Vec<Object<'a>>,
+    /// Rectangles that cover its columns and free walls.
+    pub standing: Vec<Rect>,
     space: OnceCell<FreeSpace>,
 }
 
@@ -68,6 +73,7 @@ impl<'a> Site<'a> {
                 doors: plan.doors_of(&room.room_id).collect(),
                 windows: plan.windows.iter().filter(|w| w.room_id == room.room_id).collect(),
                 objects: Vec::new(),
+                standing: plan.taken_in(&room.room_id),
                 space: OnceCell::new(),
             })
             .collect();
@@ -142,9 +148,21 @@ impl<'a> Site<'a> {
         match row.when {
             When::Bedspaces => self.rooms.iter().map(Room::bedspaces).sum::<usize>() as f64,
             When::Storeys => self.world.floorplan.levels.len().max(1) as f64,
-            When::BuildingArea => self.rooms.iter().map(|r| r.plan.net_area_m2).sum(),
+            When::BuildingArea => self.net_area(false),
             _ => objects().filter(|k| row.counts(k)).count() as f64,
         }
+    }
+
+    /// Returns the net floor area of the building, or of its circulation alone, m^2: without what lies under the sky and what is
+    /// no part of a dwelling (its garage).
+    pub fn net_area(&self, circulation_only: bool) -> f64 {
+        let outside = TABLES.space(OUTSIDE, &self.domain.id);
+        let counts = |r: &&Room| {
+            let left_out =
+                r.kind.zone == Zone::Outdoor || outside.is_some_and(|row| row.room_types.contains(&r.plan.room_type));
+            !left_out && (r.plan.circulation || !circulation_only)
+        };
+        self.rooms.iter().filter(counts).map(|r| r.plan.net_area_m2).sum()
     }
 
     /// Returns the gross floor area on wall center lines, m^2.
@@ -161,15 +179,19 @@ impl<'a> Site<'a> {
 impl Room<'_> {
     /// Returns the free floor between the furniture.
     pub fn space(&self) -> &FreeSpace {
-        self.space.get_or_init(|| {
-            let taken: Vec<Rect> = self.objects.iter().filter(|o| o.blocks).map(|o| o.rect).collect();
-            FreeSpace::new(&self.plan.net_polygon, &taken)
-        })
+        self.space.get_or_init(|| FreeSpace::new(&self.plan.net_polygon, &self.taken().collect::<Vec<_>>()))
+    }
+
+    /// Returns the floor of all that blocks the way.
+    pub fn taken(&self) -> impl Iterator<Item = Rect> {
+        let objects = self.objects.iter().filter(|o| o.blocks).map(|o| o.rect);
+        objects.chain(self.standing.iter().copied())
     }
 
     /// Returns the floor of all that blocks the way but one object and what was placed with it.
     pub fn others(&self, object: &Object) -> impl Iterator<Item = Rect> {
-        self.objects.iter().filter(move |o| o.blocks && !belong_together(o, object)).map(|o| o.rect)
+        let objects = self.objects.iter().filter(move |o| o.blocks && !belong_together(o, object)).map(|o| o.rect);
+        objects.chain(self.standing.iter().copied())
     }
 
     /// Returns the free floor for people upright: what stands out from walls above a robot's head takes some of it too.
@@ -177,7 +199,8 @@ impl Room<'_> {
         let stands_out = |o: &Object| {
             o.placement.mount == Mount::Wall && !is_shallow(o.placement) && o.placement.pose.z < HEAD_ROOM_M
         };
-        let taken: Vec<Rect> = self.objects.iter().filter(|o| o.blocks || stands_out(o)).map(|o| o.rect).collect();
+        let objects = self.objects.iter().filter(|o| o.blocks || stands_out(o)).map(|o| o.rect);
+        let taken: Vec<Rect> = objects.chain(self.standing.iter().copied()).collect();
         FreeSpace::new(&self.plan.net_polygon, &taken)
     }
 
@@ -223,14 +246,24 @@ impl Room<'_> {
         }
     }
 
-    /// Returns at how many of its long sides a corridor has doors to rooms.
+    /// Returns at how many of its sides a corridor has doors to rooms: two where somewhere along it doors stand in walls that
+    /// face each other, however often it bends.
     fn sides_with_doors(&self) -> usize {
-        let bounds = self.plan.net_polygon.bounds();
-        let lies_east = bounds.width() >= bounds.height();
-        let middle = bounds.center();
-        let along = self.doors.iter().filter(|d| d.room_ids.len() == 2 && d.line.is_vertical() != lies_east);
-        let above = along.map(|d| if lies_east { d.line.middle().y > middle.y } else { d.line.middle().x > middle.x });
-        above.collect::<BTreeSet<bool>>().len()
+        let walls: Vec<Segment> = self.plan.net_polygon.edges().collect();
+        let has_door = |wall: &Segment| {
+            let bounds = wall.bounds().grown(IN_WALL_M);
+            let in_it = |d: &&Door| {
+                let middle = d.line.middle();
+                d.room_ids.len() == 2
+                    && d.line.is_vertical() == wall.is_vertical()
+                    && bounds.contains(&Rect::new(middle.x, middle.y, middle.x, middle.y))
+            };
+            self.doors.iter().any(|d| in_it(d))
+        };
+        let with_doors: Vec<&Segment> = walls.iter().filter(|w| has_door(w)).collect();
+        let facing = |a: &Segment, b: &Segment| faces(a, b, &walls);
+        let both = with_doors.iter().any(|a| with_doors.iter().any(|b| facing(a, b)));
+        if both { 2 } else { with_doors.len().min(1) }
     }
 
     /// Returns true when the room meets a condition.
@@ -261,8 +294,35 @@ impl Room<'_> {
     }
 }
 
+/// Returns true for walls of an outline that face each other over a piece of it that is longer than wide, with no wall
+/// between them.
+fn faces(a: &Segment, b: &Segment, walls: &[Segment]) -> bool {
+    if a.is_vertical() != b.is_vertical() {
+        return false;
+    }
+    let ((p, a0, a1), (q, b0, b1)) = (a.span(), b.span());
+    let (low, high) = (a0.max(b0), a1.min(b1));
+    let (near, far) = (p.min(q), p.max(q));
+    let opposite = (a.end.x - a.start.x) * (b.end.x - b.start.x) + (a.end.y - a.start.y) * (b.end.y - b.start.y) < 0.0;
+    let between = walls.iter().any(|w| {
+        let (at, from, to) = w.span();
+        w.is_vertical() == a.is_vertical()
+            && at > near + TOLERANCE_M
+            && at < far - TOLERANCE_M
+            && from < high
+            && to > low
+    });
+    opposite && high - low >= far - near && far > near && !between
+}
+
 impl Object<'_> {
     pub fn is(&self, shapes: &[Shape]) -> bool {
         self.kind.is_some_and(|k| shapes.contains(&k.shape))
     }
+}
+
+/// Returns true for an object and what was placed with it (a desk and its chair): they share their clearance.
+pub(super) fn belong_together(a: &Object, b: &Object) -> bool {
+    a.placement.placement_id == b.placement.placement_id
+        || (a.placement.group.is_some() && a.placement.group == b.placement.group)
 }

@@ -1,16 +1,19 @@
 //! Free floor around objects, and distances between objects, walls and windows.
 
 use d3dgen_model::domain::{Mount, Shape};
+use d3dgen_model::{Point, Rect};
 
-use super::Reading;
-use super::objects::belong_together;
 use super::site::{Object, Room, Site};
-use crate::clearance::{HEAD_ROOM_M, Side, depth_beside, free_depth, quarter};
+use crate::clearance::{HEAD_ROOM_M, Side, depth_beside, free_depth, quarter, turned};
+use crate::compliance::reading::Reading;
+use crate::compliance::site::belong_together;
 use crate::measure::Measure;
 use crate::retrieve::{Applicable, Rule};
 
 /// Objects nearer to a wall than this stand against it, m.
 const AGAINST_M: f64 = 0.10;
+/// What reaches less far beyond the front of an object stands beside it, m.
+const BESIDE_M: f64 = 0.02;
 /// Heights between which a thing on a wall stands out into the way of people, m.
 const IN_THE_WAY_M: [f64; 2] = [0.685, HEAD_ROOM_M];
 /// Seats belong to a table at most this far from its edge, m.
@@ -24,6 +27,7 @@ pub(super) fn figure(room: &Room, object: &Object, rule: &Rule) -> Option<f64> {
     let alike = |o: &&Object| o.placement != object.placement && o.kind.is_some_and(|k| rule.quantity.picks(k));
     let (own, own_middle) = (&object.rect, object.rect.center());
     match rule.quantity.measure {
+        Measure::FreeHalfCircle => Some(half_circle(room, object)),
         Measure::ObjectAround => (0..4).map(|turn| depth(room, object, turn)).reduce(f64::min),
         Measure::ObjectThreeSides => {
             let sides = [Side::Front, Side::Left, Side::Right];
@@ -62,6 +66,17 @@ pub(super) fn figure(room: &Room, object: &Object, rule: &Rule) -> Option<f64> {
         Measure::WindowDistance => room.windows.iter().map(|w| w.line.middle().distance(own_middle)).reduce(f64::min),
         _ => None,
     }
+}
+
+/// Returns the radius of the free half circle before the middle of an object's front, m: walls beside it bound it too.
+fn half_circle(room: &Room, object: &Object) -> f64 {
+    let ahead = quarter(object.placement.pose.yaw_rad);
+    let own = turned(&object.rect, ahead);
+    let middle = Point::new(own.x1, own.center().y);
+    let walls = room.plan.net_polygon.edges().map(|wall| wall.bounds());
+    let bounds = walls.chain(room.others(object)).map(|r| turned(&r, ahead)).filter(|r| r.x1 > own.x1 + BESIDE_M);
+    let in_front = bounds.map(|r| Rect { x0: r.x0.max(own.x1), ..r });
+    in_front.map(|r| r.distance_to(middle)).reduce(f64::min).unwrap_or(0.0)
 }
 
 /// Returns true when the back of an object stands against a wall.

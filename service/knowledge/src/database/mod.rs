@@ -3,6 +3,7 @@
 //!
 //! What it is not for: what a rule means for a building (`retrieve`) and where the files lie (the command).
 
+mod answer;
 mod change;
 mod records;
 mod search;
@@ -18,6 +19,7 @@ use d3dgen_store::{Access, KeyRange, Options, Store};
 use crate::error::Error;
 use records::{CHANGES, DOMAINS, DomainRecord, EDITS, REFERENCES, Stored, each, get};
 
+pub use answer::Answer;
 pub use change::{Change, Edit, Entry, FieldChange, Kind, Provenance, Target, apply, difference};
 pub use search::{Found, SearchQuery, Searcher, filter_names};
 pub use write::digest;

@@ -62,6 +62,8 @@ pub struct Found {
     pub constraint: Constraint,
     /// How well it fits, see [`Hit`].
     pub hit: Hit,
+    /// Keys of the same rule in other domains.
+    pub copies: Vec<String>,
 }
 
 /// The database with its index open.
@@ -183,9 +185,15 @@ impl Searcher {
                 source,
                 constraint: record.constraint,
                 hit,
+                copies: Vec::new(),
             });
         }
         Ok(found)
+    }
+
+    /// Returns the index below.
+    pub(super) fn index(&self) -> &Index {
+        &self.index
     }
 
     /// Returns the values of a filter with how many rules have each.

@@ -2,7 +2,7 @@
 
 use super::solids::Hull;
 use crate::Collision;
-use crate::affine::{Affine, Vec3, cross, dot, length, scale, sub, unit};
+use crate::affine::{Affine, Vec3, cross, length, unit};
 
 /// Most convex shapes of one body.
 pub(super) const MOST: usize = 24;
@@ -14,7 +14,9 @@ pub(super) fn moved(hull: &Hull, map: &Affine) -> Collision {
     let lengths = map.axes.map(length);
     let axes = map.axes.map(unit);
     match *hull {
-        Hull::Box { center, half } => turned(map.point(center), std::array::from_fn(|i| half[i] * lengths[i]), axes),
+        Hull::Box { center, half } => {
+            Collision::around(map.point(center), std::array::from_fn(|i| half[i] * lengths[i]), axes)
+        }
         Hull::Sphere { center, radius } => Collision::Sphere { center: map.point(center), radius: radius * lengths[0] },
         Hull::Cylinder { center, radius, half, axis } => {
             let middle = map.point(center);
@@ -26,14 +28,18 @@ pub(super) fn moved(hull: &Hull, map: &Affine) -> Collision {
                 }
                 None => {
                     let half = std::array::from_fn(|i| if i == axis { half } else { radius } * lengths[i]);
-                    turned(middle, half, axes)
+                    Collision::around(middle, half, axes)
                 }
             }
         }
         Hull::Bar { center, direction, half, radius } => {
             let along = map.vector(direction);
             let frame = frame_along(unit(along));
-            turned(map.point(center), [half * length(along), radius * lengths[0], radius * lengths[0]], frame)
+            Collision::around(
+                map.point(center),
+                [half * length(along), radius * lengths[0], radius * lengths[0]],
+                frame,
+            )
         }
     }
 }
@@ -45,22 +51,6 @@ fn frame_along(direction: Vec3) -> [Vec3; 3] {
     side[least] = 1.0;
     let second = unit(cross(direction, side));
     [direction, second, cross(direction, second)]
-}
-
-/// Returns a box with these unit axes: upright when they are the axes of the model.
-fn turned(center: Vec3, half: Vec3, axes: [Vec3; 3]) -> Collision {
-    let straight = axes.iter().all(|a| a.iter().any(|v| v.abs() > STRAIGHT));
-    if straight {
-        let extent: Vec3 = std::array::from_fn(|k| (0..3).map(|i| axes[i][k].abs() * half[i]).sum());
-        return Collision::Box {
-            min: std::array::from_fn(|k| center[k] - extent[k]),
-            max: std::array::from_fn(|k| center[k] + extent[k]),
-        };
-    }
-    // The fit to the size stretches by per milles, after which turned axes are not quite square to each other.
-    let second = unit(sub(axes[1], scale(axes[0], dot(axes[0], axes[1]))));
-    let axes = [axes[0], second, cross(axes[0], second)];
-    Collision::TurnedBox { center, half, axes }
 }
 
 /// Merges the shapes of a body until there are few enough: each time the two whose common box adds least.

@@ -2,6 +2,7 @@
 
 use super::View;
 use super::shade::Light;
+use super::texture::Cloth;
 use crate::Model3d;
 use crate::affine::{Vec3, add, cross, dot, scale, sub, unit};
 
@@ -21,6 +22,8 @@ pub(super) struct Samples {
     pub normal: Vec<[f32; 3]>,
     /// Number of the material of the solid surface seen, counted from 1; 0 for none.
     pub material: Vec<u16>,
+    /// Color of the picture that it wears there; none at all where no picture is worn.
+    pub cloth: Vec<Option<[f32; 3]>>,
     /// Clear surfaces before it, nearest first to last: their light with the share they hide.
     pub veil: Vec<Veil>,
     /// The world's up in the frame of the eye.
@@ -41,6 +44,7 @@ struct Seen {
     y: f32,
     near: f32,
     normal: [f32; 3],
+    uv: [f32; 2],
 }
 
 /// Where the eye is.
@@ -81,12 +85,13 @@ impl Eye {
 }
 
 /// Draws the model, solid parts first, then clear ones from back to front.
-pub(super) fn draw(model: &Model3d, lights: &[Light], side: usize, view: &View) -> Samples {
+pub(super) fn draw(model: &Model3d, lights: &[Light], cloths: &[Option<Cloth>], side: usize, view: &View) -> Samples {
     let mut samples = Samples {
         side,
         near: vec![0.0; side * side],
         normal: vec![[0.0; 3]; side * side],
         material: vec![0; side * side],
+        cloth: Vec::new(),
         veil: Vec::new(),
         up: [0.0, 1.0, 0.0],
     };
@@ -97,6 +102,9 @@ pub(super) fn draw(model: &Model3d, lights: &[Light], side: usize, view: &View) 
         visuals.iter().map(|v| v.mesh.positions.iter().map(|p| eye.project(p.map(f64::from))).collect()).collect();
     let Some(place) = placement(&visuals, &seen, side) else { return samples };
     let mut clear: Vec<(f32, [Seen; 3], usize)> = Vec::new();
+    if cloths.iter().any(Option::is_some) {
+        samples.cloth = vec![None; side * side];
+    }
     for (visual, seen) in visuals.iter().zip(&seen) {
         // The last light is that of surfaces without material.
         let known = |m: &usize| *m < model.materials.len().min(usize::from(u16::MAX) - 1);
@@ -106,11 +114,15 @@ pub(super) fn draw(model: &Model3d, lights: &[Light], side: usize, view: &View) 
             if lights[material].opacity < 0.99 {
                 clear.push((corners.iter().map(|c| c.near).sum(), corners, material));
             } else {
-                fill(&corners, side, |at, near, normal| {
+                let cloth = cloths.get(material).and_then(Option::as_ref).filter(|_| !visual.mesh.uvs.is_empty());
+                fill(&corners, side, |at, near, shares| {
                     if near > samples.near[at] {
                         samples.near[at] = near;
-                        samples.normal[at] = facing(normal);
+                        samples.normal[at] = facing(mixed(&corners.map(|c| c.normal), shares));
                         samples.material[at] = material as u16 + 1;
+                        if let Some(color) = samples.cloth.get_mut(at) {
+                            *color = cloth.map(|c| c.at(mixed(&corners.map(|c| c.uv), shares)));
+                        }
                     }
                 });
             }
@@ -123,9 +135,12 @@ pub(super) fn draw(model: &Model3d, lights: &[Light], side: usize, view: &View) 
     for (_, corners, material) in &clear {
         let light = &lights[*material];
         let share = light.opacity.clamp(0.05, 1.0);
-        fill(corners, side, |at, near, normal| {
+        let cloth = cloths.get(*material).and_then(Option::as_ref);
+        fill(corners, side, |at, near, shares| {
             if near > samples.near[at] {
-                let color = light.on(facing(normal), &samples.up);
+                let normal = facing(mixed(&corners.map(|c| c.normal), shares));
+                let worn = cloth.map(|c| c.at(mixed(&corners.map(|c| c.uv), shares)));
+                let color = light.on(normal, &samples.up, worn);
                 let veil = &mut samples.veil[at];
                 veil.color = std::array::from_fn(|k| color[k] * share + veil.color[k] * (1.0 - share));
                 veil.hides = share + veil.hides * (1.0 - share);
@@ -168,7 +183,7 @@ fn placement(visuals: &[&crate::Visual], seen: &[Vec<[f64; 3]>], side: usize) ->
 /// Returns the corners of a triangle; none when an index is out of range.
 fn corners(eye: &Eye, mesh: &crate::Mesh, seen: &[[f64; 3]], triangle: &[u32; 3], place: &Place) -> Option<[Seen; 3]> {
     let ids = triangle.map(|i| i as usize);
-    let mut out = [Seen { x: 0.0, y: 0.0, near: 0.0, normal: [0.0; 3] }; 3];
+    let mut out = [Seen { x: 0.0, y: 0.0, near: 0.0, normal: [0.0; 3], uv: [0.0; 2] }; 3];
     let mut flat = None;
     for (corner, i) in out.iter_mut().zip(ids) {
         let p = seen.get(i)?;
@@ -185,12 +200,13 @@ fn corners(eye: &Eye, mesh: &crate::Mesh, seen: &[[f64; 3]], triangle: &[u32; 3]
             y: (place.y - place.scale * p[1]) as f32,
             near: p[2] as f32,
             normal: eye.turn(normal),
+            uv: mesh.uvs.get(i).copied().unwrap_or_default(),
         };
     }
     Some(out)
 }
 
-/// Visits the samples that a triangle covers, with their nearness and normal (of no particular length).
+/// Visits the samples that a triangle covers, with their nearness and the shares of its corners.
 fn fill([a, b, c]: &[Seen; 3], side: usize, mut visit: impl FnMut(usize, f32, [f32; 3])) {
     let area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
     if area.abs() < 1e-9 || !area.is_finite() {
@@ -213,13 +229,17 @@ fn fill([a, b, c]: &[Seen; 3], side: usize, mut visit: impl FnMut(usize, f32, [f
             let wa = 1.0 - wb - wc;
             if wa >= -1e-4 && wb >= -1e-4 && wc >= -1e-4 {
                 let near = wa * a.near + wb * b.near + wc * c.near;
-                let normal = std::array::from_fn(|k| wa * a.normal[k] + wb * b.normal[k] + wc * c.normal[k]);
-                visit(y * side + x, near, normal);
+                visit(y * side + x, near, [wa, wb, wc]);
             }
             wb += step_b;
             wc += step_c;
         }
     }
+}
+
+/// Returns what three corners have, mixed by shares.
+fn mixed<const N: usize>([a, b, c]: &[[f32; N]; 3], [wa, wb, wc]: [f32; 3]) -> [f32; N] {
+    std::array::from_fn(|k| wa * a[k] + wb * b[k] + wc * c[k])
 }
 
 /// Returns the unit normal on the side of the eye.

@@ -40,8 +40,10 @@ impl Light {
         }
     }
 
-    /// Returns the light that a surface sends to the eye; all vectors in the frame of the eye.
-    pub fn on(&self, normal: [f32; 3], up: &[f32; 3]) -> [f32; 3] {
+    /// Returns the light that a surface sends to the eye, of its own color or that of the picture it wears; all vectors in
+    /// the frame of the eye.
+    pub fn on(&self, normal: [f32; 3], up: &[f32; 3], worn: Option<[f32; 3]>) -> [f32; 3] {
+        let base = worn.unwrap_or(self.base);
         let dot = |a: [f32; 3], b: [f32; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
         let key = dot(normal, KEY).max(0.0);
         let sky = 0.5 + 0.5 * dot(normal, *up);
@@ -55,8 +57,8 @@ impl Light {
         let grazing = (1.0 - normal[2]) * (1.0 - normal[2]);
         let edge = grazing * grazing * self.smooth * 0.35;
         std::array::from_fn(|k| {
-            let matte = self.base[k] * diffuse + edge * around;
-            let shiny = self.base[k] * (0.2 + 0.9 * around);
+            let matte = base[k] * diffuse + edge * around;
+            let shiny = base[k] * (0.2 + 0.9 * around);
             matte * (1.0 - self.metal) + shiny * self.metal + gloss + self.emissive[k]
         })
     }
@@ -67,7 +69,7 @@ pub(super) fn develop(samples: &Samples, lights: &[Light], px: usize, ground: Gr
     let mut rgba = vec![0; px * px * 4];
     let table = Table::new();
     // Samples side by side mostly belong to one flat face: the light of the last one is theirs too.
-    let mut last = (0_u16, [0.0_f32; 3], [0.0_f32; 3]);
+    let mut last = (0_u16, [0.0_f32; 3], [0.0_f32; 3], None);
     for y in 0..px {
         for x in 0..px {
             let (mut color, mut cover) = ([0.0_f32; 3], 0.0_f32);
@@ -86,8 +88,10 @@ pub(super) fn develop(samples: &Samples, lights: &[Light], px: usize, ground: Gr
                         Some(index) => {
                             let normal = samples.normal[at];
                             let same = (0..3).map(|k| normal[k] * last.1[k]).sum::<f32>();
-                            if material != last.0 || same < SAME {
-                                last = (material, normal, lights[usize::from(index)].on(normal, &samples.up));
+                            let worn = samples.cloth.get(at).copied().flatten();
+                            if material != last.0 || same < SAME || worn != last.3 {
+                                let light = lights[usize::from(index)].on(normal, &samples.up, worn);
+                                last = (material, normal, light, worn);
                             }
                             let dark = line(samples, sx, sy);
                             last.2.map(|c| c * dark)

@@ -1,5 +1,5 @@
 use super::*;
-use crate::{Body, Material, Mesh, Visual};
+use crate::{Body, Material, Mesh, Texture, Visual};
 
 /// A square plate upright at the front, and one behind it to the right.
 fn plates() -> Model3d {
@@ -70,4 +70,26 @@ fn a_sheet_holds_every_tile_and_is_a_png() {
     let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
     reader.next_frame(&mut pixels).unwrap();
     assert_eq!(pixels, sheet.rgba);
+}
+
+#[test]
+fn surfaces_wear_their_pictures() {
+    let mut model = plates();
+    let mut bytes = Vec::new();
+    // Green above, blue below.
+    let mut encoder = png::Encoder::new(&mut bytes, 1, 2);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.write_header().and_then(|mut w| w.write_image_data(&[0, 200, 0, 0, 0, 200])).expect("a picture");
+    model.textures = vec![Texture { path: "two.png".into(), bytes: Some(bytes) }];
+    model.materials[0].texture = Some(0);
+    model.bodies[0].visuals.truncate(1);
+    model.bodies[0].visuals[0].mesh.uvs = vec![[0.0, 0.01], [1.0, 0.01], [1.0, 0.99], [0.0, 0.99]];
+    let view = View { right_deg: 0.0, above_deg: 0.0, ground: Ground::White };
+    let picture = render(&model, 64, &view);
+    let at = |row: usize| picture.rgba[(row * 64 + 32) * 4..][..3].to_vec();
+    assert!(at(20)[1] > at(20)[2] + 90 && at(20)[1] > at(20)[0] + 90, "{:?} is not green", at(20));
+    assert!(at(44)[2] > at(44)[1] + 90, "{:?} is not blue", at(44));
+    model.textures[0].bytes = Some(b"\x89PNG is none".to_vec());
+    let plain = render(&model, 64, &view);
+    assert!(plain.rgba[(20 * 64 + 32) * 4] > 120, "what cannot be decoded has its plain color");
 }

@@ -5,6 +5,7 @@ use std::fmt::Write;
 use super::number::{n, small};
 use super::{ModelFile, check, obj, picture_extension, roll_pitch_yaw, texture_of};
 use crate::affine::Vec3;
+use crate::dynamics;
 use crate::mass::inertia;
 use crate::{Body, Collision, Error, Joint, JointKind, Model3d};
 
@@ -139,7 +140,16 @@ fn write_joint(out: &mut String, model: &Model3d, joint: &Joint) {
         let _ = writeln!(out, "        <limit><lower>{}</lower><upper>{}</upper></limit>", n(low), n(high));
     }
     // Doors and drawers stay where they are left.
-    out.push_str(
-        "        <dynamics><damping>0.1</damping><friction>0.1</friction></dynamics>\n      </axis>\n    </joint>\n",
+    let resists = dynamics::of(model, joint);
+    let spring = resists.spring.map_or_else(String::new, |s| {
+        let (reference, stiffness) = (n(s.reference), n(s.stiffness));
+        format!("<spring_reference>{reference}</spring_reference><spring_stiffness>{stiffness}</spring_stiffness>")
+    });
+    let _ = write!(
+        out,
+        "        <dynamics><damping>{}</damping><friction>{}</friction>{spring}</dynamics>\n      </axis>\n    \
+         </joint>\n",
+        n(resists.damping),
+        n(resists.friction)
     );
 }

@@ -5,6 +5,7 @@ use std::fmt::Write;
 use super::number::{n, push, small};
 use super::{check, frame_along, picture_extension, quaternion, texture_of};
 use crate::affine::Vec3;
+use crate::dynamics;
 use crate::mass::inertia;
 use crate::{Body, Collision, Error, Joint, JointKind, Material, Model3d, Visual};
 
@@ -47,7 +48,7 @@ pub fn usda(model: &Model3d) -> Result<String, Error> {
     }
     let joints = names("root_joint", model.joints.iter().map(|j| j.name.as_str()));
     for (joint, name) in model.joints.iter().zip(&joints) {
-        write_joint(&mut out, joint, name, &root, &bodies);
+        write_joint(&mut out, model, joint, name, &root, &bodies);
     }
     out.push_str("}\n");
     Ok(out)
@@ -263,13 +264,24 @@ fn moved(center: Vec3) -> [String; 2] {
     ]
 }
 
-fn write_joint(out: &mut String, joint: &Joint, name: &str, root: &str, bodies: &[String]) {
-    let kind = if joint.kind == JointKind::Prismatic { "PhysicsPrismaticJoint" } else { "PhysicsRevoluteJoint" };
+fn write_joint(out: &mut String, model: &Model3d, joint: &Joint, name: &str, root: &str, bodies: &[String]) {
+    // Angles are degrees in USD, those of damping too.
+    let resists = dynamics::of(model, joint);
+    let spring = resists.spring.unwrap_or(dynamics::Spring { stiffness: 0.0, reference: 0.0 });
+    let (kind, drive, damping, stiffness, reference) = match joint.kind {
+        JointKind::Prismatic => {
+            ("PhysicsPrismaticJoint", "linear", resists.damping, spring.stiffness, spring.reference)
+        }
+        JointKind::Revolute | JointKind::Continuous => {
+            let [damping, stiffness] = [resists.damping, spring.stiffness].map(f64::to_radians);
+            ("PhysicsRevoluteJoint", "angular", damping, stiffness, spring.reference.to_degrees())
+        }
+    };
     let turn = quat(quaternion(frame_along(joint.axis)));
     let at = triple(joint.origin);
     let _ = write!(
         out,
-        "\n    def {kind} \"{name}\"\n    {{\n        uniform token physics:axis = \"X\"\n        rel physics:body0 = \
+        "\n    def {kind} \"{name}\" (\n        prepend apiSchemas = [\"PhysicsDriveAPI:{drive}\"]\n    )\n    {{\n        uniform token physics:axis = \"X\"\n        rel physics:body0 = \
          </{root}/{}>\n        rel physics:body1 = </{root}/{}>\n        point3f physics:localPos0 = {at}\n        point3f \
          physics:localPos1 = {at}\n        quatf physics:localRot0 = {turn}\n        quatf physics:localRot1 = {turn}\n",
         bodies[joint.parent], bodies[joint.child],
@@ -283,7 +295,16 @@ fn write_joint(out: &mut String, joint: &Joint, name: &str, root: &str, bodies: 
             unit(high)
         );
     }
-    out.push_str("    }\n");
+    // Doors and drawers stay where they are left. Friction has no word in UsdPhysics; Newton and PhysX know this one.
+    let _ = write!(
+        out,
+        "        float drive:{drive}:physics:damping = {}\n        float drive:{drive}:physics:stiffness = {}\n        \
+         float drive:{drive}:physics:targetPosition = {}\n        float newton:friction = {}\n    }}\n",
+        n(damping),
+        n(stiffness),
+        n(reference),
+        n(resists.friction)
+    );
 }
 
 /// Returns prim names of a list: valid, different from each other and from `taken`.

@@ -187,7 +187,7 @@ impl<'a> Desk<'a> {
     fn assembled(&self, before: &World) -> Result<(World, Report), Error> {
         let graph = SceneGraph { seed: before.scene_graph.seed, ..self.graph.clone() };
         let made = (self.plan.clone(), self.placements.clone());
-        finish(&before.name, graph, made, self.plugin.domain(), &self.retrieved)
+        finish(&before.name, graph, made, self.plugin.domain(), &self.retrieved, before.brief.clone())
     }
 
     fn lock(&mut self, ids: &[String], locked: bool, contents: bool) -> Result<(), Error> {

@@ -47,7 +47,7 @@ pub(super) fn add(
     let id = room.id.clone();
     let connector = if kind.open_front && entered_from.is_none() { Connector::Open } else { Connector::Door };
     graph.edges.push(GraphEdge { a: id.clone(), b: from.clone(), connector, required: true, reason: BY_EDIT.into() });
-    let country = graph.country_code.clone();
+    let country = graph.place_code().map(str::to_owned);
     let apart = rules_here(domain, country.as_deref())
         .filter(|r| r.relation == AdjacencyRelation::MustNot && r.via == "wall" && (r.a == kind.id || r.b == kind.id));
     for rule in apart {

@@ -10,10 +10,15 @@ use std::str::Lines;
 
 use d3dgen_model::Point;
 
-use super::{Plan, Reader, Source};
-use crate::drawing::{Drawing, DrawnLabel, DrawnOpening, DrawnRoom, DrawnWall, MOST_POINTS, OpeningKind, extent, note};
-use crate::words::{Role, role};
-use crate::{Error, Options};
+use super::source::{Plan, Reader, Source};
+use crate::drawing::{
+    Drawing, DrawnLabel, DrawnOpening, DrawnRoom, DrawnShape, DrawnSolid, DrawnWall, Evidence, MOST_POINTS,
+    OpeningKind, SolidKind, extent, note,
+};
+use crate::error::Error;
+use crate::options::Options;
+use crate::shape::hull;
+use crate::words::{Role, role, role_of};
 
 pub(super) const READER: Reader = Reader { name: "dxf", title: "DXF drawing (text form)", recognizes, read };
 
@@ -110,7 +115,7 @@ fn read(source: &Source, options: &Options) -> Result<Plan, Error> {
         Ok(text) => text.to_owned(),
         Err(_) => source.bytes.iter().map(|&b| char::from(b)).collect(),
     };
-    let mut state = State::default();
+    let mut state = State { options: options.clone(), ..State::default() };
     let Contents { unit, blocks, entities } = contents(&text, &mut state)?;
     let mut drawing = Drawing::default();
     let outer = Frame::default();
@@ -252,6 +257,31 @@ impl<'a> Block<'a> {
         };
         self.entities.iter().any(rooms)
     }
+
+    /// Returns the points of all that is drawn in the block.
+    fn points(&self, frame: &Frame, blocks: &Blocks) -> Result<Vec<Point>, Error> {
+        let mut out = Vec::new();
+        for e in &self.entities {
+            match e.kind {
+                "LINE" => out.extend([frame.at(e.point(10)?), frame.at(e.point(11)?)]),
+                "LWPOLYLINE" => out.extend(placed(&light_corners(e)?, frame).iter().map(|c| c.0)),
+                "VERTEX" => out.push(frame.at(e.point(10)?)),
+                "CIRCLE" => out.extend(circle(e, frame)?),
+                "SOLID" | "TRACE" => out.extend(solid_corners(e, frame)?.iter().map(|c| c.0)),
+                "HATCH" => out.extend(hatch_loops(e, frame)?.into_iter().flatten()),
+                "INSERT" if frame.depth < MOST_DEPTH => {
+                    if let Some(inner) = e.text(2).and_then(|n| blocks.get(n)) {
+                        out.extend(inner.points(&frame.inside(e, inner)?, blocks)?);
+                    }
+                }
+                _ => {}
+            }
+            if out.len() > MOST_POINTS {
+                break;
+            }
+        }
+        Ok(out)
+    }
 }
 
 /// Where entities are drawn: inside of the inserts around them.
@@ -311,6 +341,7 @@ impl Frame {
 /// What goes over several entities.
 #[derive(Default)]
 struct State {
+    options: Options,
     /// Corners of a POLYLINE that is still open: points, bulges, whether it is closed, its layer and line.
     polyline: Option<Open>,
     points: usize,
@@ -328,25 +359,14 @@ impl State {
 
     fn add(&mut self, drawing: &mut Drawing, e: &Entity, frame: &Frame, blocks: &Blocks) -> Result<(), Error> {
         let layer = frame.layer_of(e);
-        let role = role(layer);
+        let role = role_of(layer, &self.options);
+        if !matches!(e.kind, "VERTEX" | "SEQEND" | "ATTRIB" | "VIEWPORT") {
+            drawing.saw(layer, e.kind);
+        }
+        let draw = Draw { layer, role, kind: e.kind, place: e.place(), inside: frame.depth > 0 };
         match e.kind {
-            "LWPOLYLINE" => {
-                let closed = e.number(70)?.unwrap_or(0.0) as i64 & 1 == 1;
-                let mut corners: Vec<(Point, f64)> = Vec::new();
-                for (code, value) in &e.groups {
-                    match code {
-                        10 => corners.push((Point::new(e.parse(10, value)?, 0.0), 0.0)),
-                        20 => corners.last_mut().map_or(Ok(()), |c| e.parse(20, value).map(|y| c.0.y = y))?,
-                        42 => corners.last_mut().map_or(Ok(()), |c| e.parse(42, value).map(|b| c.1 = b))?,
-                        _ => {}
-                    }
-                }
-                polyline(drawing, &placed(&corners, frame), closed, layer, role, e.place());
-            }
-            "POLYLINE" => {
-                let closed = e.number(70)?.unwrap_or(0.0) as i64 & 1 == 1;
-                self.polyline = Some((Vec::new(), closed, layer.to_owned(), e.line));
-            }
+            "LWPOLYLINE" => draw.polyline(drawing, &placed(&light_corners(e)?, frame), is_closed(e)?),
+            "POLYLINE" => self.polyline = Some((Vec::new(), is_closed(e)?, layer.to_owned(), e.line)),
             "VERTEX" => {
                 let (at, bulge) = (e.point(10)?, e.number(42)?.unwrap_or(0.0));
                 if let Some(p) = &mut self.polyline {
@@ -355,33 +375,25 @@ impl State {
             }
             "SEQEND" => {
                 if let Some((corners, closed, layer, line)) = self.polyline.take() {
-                    let role = crate::words::role(&layer);
-                    let place = format!("POLYLINE in line {line}");
-                    polyline(drawing, &placed(&corners, frame), closed, &layer, role, place);
+                    let (role, place) = (role_of(&layer, &self.options), format!("POLYLINE in line {line}"));
+                    let draw = Draw { layer: &layer, role, kind: "POLYLINE", place, inside: frame.depth > 0 };
+                    draw.polyline(drawing, &placed(&corners, frame), closed);
                 }
             }
             "LINE" => {
                 let line = [(frame.at(e.point(10)?), 0.0), (frame.at(e.point(11)?), 0.0)];
-                polyline(drawing, &line, false, layer, role, e.place());
+                draw.polyline(drawing, &line, false);
             }
-            "ARC" => arc(drawing, e, role, frame)?,
+            "ARC" if matches!(role, None | Some(Role::Door)) && arc(drawing, e, frame)? => {}
+            "CIRCLE" => draw.curve(drawing, circle(e, frame)?),
+            "SOLID" | "TRACE" => draw.polyline(drawing, &solid_corners(e, frame)?, true),
+            "HATCH" => draw.hatch(drawing, hatch_loops(e, frame)?),
             "INSERT" => self.insert(drawing, e, role, frame, blocks)?,
-            "TEXT" | "MTEXT" | "ATTRIB" => {
-                let at = frame.at(e.point(10)?);
-                // long texts come in pieces; names and areas stand on lines of their own
-                let parts = e.groups.iter().filter(|g| g.0 == 1 || g.0 == 3 && e.kind == "MTEXT").map(|g| g.1);
-                let text = plain(&parts.collect::<String>());
-                if !matches!(role, Some(Role::Skip)) {
-                    let lines = text.lines().map(str::trim).filter(|l| !l.is_empty());
-                    drawing.labels.extend(lines.map(|l| DrawnLabel { text: l.to_owned(), at, level: None }));
-                }
-            }
-            "SPLINE" | "ELLIPSE" | "MLINE"
-                if matches!(role, Some(Role::Wall | Role::Door | Role::Window | Role::Room)) =>
-            {
-                drawing.leave_out(format!("layer `{layer}` as {}", e.kind));
-            }
-            _ => {}
+            "TEXT" | "MTEXT" | "ATTRIB" => text(drawing, e, role, frame)?,
+            // what measures and explains a drawing is no part of the building
+            "DIMENSION" | "LEADER" | "MULTILEADER" | "ATTDEF" | "POINT" | "VIEWPORT" | "TOLERANCE" | "XLINE"
+            | "RAY" => {}
+            _ => draw.leave_out(drawing),
         }
         Ok(())
     }
@@ -399,31 +411,20 @@ impl State {
         let block = blocks.get(name);
         let plan = block.is_some_and(|b| b.is_plan(blocks, MOST_DEPTH));
         let said = layer_role.filter(|r| *r != Role::Wall).or_else(|| role(name));
+        let layer = frame.layer_of(e);
+        if said == Some(Role::Column) && !plan {
+            return column_of_block(drawing, e, block, frame, blocks);
+        }
         if let Some(kind) = opening_of(said).filter(|_| !plan) {
-            let mut inner = Drawing::default();
-            if let Some(block) = block {
-                let layered = Frame { layer: None, ..frame.inside(e, block)? };
-                shape_of(&mut inner, block, &layered, blocks)?;
-            }
-            let arcs = inner.openings.iter().filter_map(|o| o.arc);
-            let mut found: Vec<DrawnOpening> = Vec::new();
-            for arc in arcs {
-                let mut o = DrawnOpening::new(kind, Vec::new(), None, e.place());
-                o.arc = Some(arc);
-                found.push(o);
-            }
-            if found.is_empty() || kind != OpeningKind::Door {
-                let points: Vec<Point> = inner.openings.iter().flat_map(|o| o.points.iter().copied()).collect();
-                let own = if points.len() > 1 { points } else { vec![frame.at(e.point(10)?)] };
-                let mut o = DrawnOpening::new(kind, own, None, e.place());
-                o.width_m = e.number(41)?.map(f64::abs);
-                found = vec![o];
-            }
-            drawing.openings.extend(found);
+            drawing.openings.extend(openings_of_block(kind, e, block, frame, blocks)?);
             return Ok(());
         }
         self.inserted += 1;
-        if matches!(said, Some(Role::Skip)) || frame.depth >= MOST_DEPTH || self.inserted > MOST_INSERTS {
+        if said == Some(Role::Skip) {
+            drawing.skip(format!("layer `{layer}` as block `{name}`"));
+            return Ok(());
+        }
+        if frame.depth >= MOST_DEPTH || self.inserted > MOST_INSERTS {
             return Ok(());
         }
         if let Some(block) = block {
@@ -440,6 +441,49 @@ impl State {
     }
 }
 
+/// Adds the column that a block is: what is drawn in it, without dents.
+fn column_of_block(
+    drawing: &mut Drawing,
+    e: &Entity,
+    block: Option<&Block>,
+    frame: &Frame,
+    blocks: &Blocks,
+) -> Result<(), Error> {
+    let points = block.map(|b| b.points(&frame.inside(e, b)?, blocks)).transpose()?;
+    let outline = hull(&points.unwrap_or_default());
+    if outline.len() > 2 {
+        drawing.solids.push(DrawnSolid { kind: SolidKind::Column, outline, level: None, place: e.place() });
+    } else {
+        let name = e.text(2).unwrap_or_default();
+        drawing.leave_out(format!("layer `{}` as block `{name}`", frame.layer_of(e)));
+    }
+    Ok(())
+}
+
+/// Returns the openings that a block is: one for each swing in it, otherwise one as large as what is in it.
+fn openings_of_block(
+    kind: OpeningKind,
+    e: &Entity,
+    block: Option<&Block>,
+    frame: &Frame,
+    blocks: &Blocks,
+) -> Result<Vec<DrawnOpening>, Error> {
+    let mut inner = Drawing::default();
+    if let Some(block) = block {
+        let layered = Frame { layer: None, ..frame.inside(e, block)? };
+        shape_of(&mut inner, block, &layered, blocks)?;
+    }
+    let plain = |points: Vec<Point>| DrawnOpening::new(kind, points, None, e.place());
+    let arcs = inner.openings.iter().filter_map(|o| o.arc);
+    let found: Vec<DrawnOpening> = arcs.map(|arc| DrawnOpening { arc: Some(arc), ..plain(Vec::new()) }).collect();
+    if !found.is_empty() && kind == OpeningKind::Door {
+        return Ok(found);
+    }
+    let points: Vec<Point> = inner.openings.iter().flat_map(|o| o.points.iter().copied()).collect();
+    let own = if points.len() > 1 { points } else { vec![frame.at(e.point(10)?)] };
+    Ok(vec![DrawnOpening { width_m: e.number(41)?.map(f64::abs), ..plain(own) }])
+}
+
 /// Adds the lines and arcs of a block of a door or window, whatever layers they are on.
 fn shape_of(drawing: &mut Drawing, block: &Block, frame: &Frame, blocks: &Blocks) -> Result<(), Error> {
     let mut lines = |points: Vec<Point>| {
@@ -448,18 +492,15 @@ fn shape_of(drawing: &mut Drawing, block: &Block, frame: &Frame, blocks: &Blocks
     for e in &block.entities {
         match e.kind {
             "LINE" => lines(vec![frame.at(e.point(10)?), frame.at(e.point(11)?)]),
-            "LWPOLYLINE" => {
-                let xs = e.groups.iter().filter(|g| g.0 == 10).map(|g| e.parse(10, g.1));
-                let ys = e.groups.iter().filter(|g| g.0 == 20).map(|g| e.parse(20, g.1));
-                let points = xs.zip(ys).map(|(x, y)| Ok(frame.at(Point::new(x?, y?))));
-                lines(points.collect::<Result<_, Error>>()?);
-            }
+            "LWPOLYLINE" => lines(placed(&light_corners(e)?, frame).into_iter().map(|c| c.0).collect()),
             _ => {}
         }
     }
     for e in &block.entities {
         match e.kind {
-            "ARC" => arc(drawing, e, Some(Role::Door), frame)?,
+            "ARC" => {
+                arc(drawing, e, frame)?;
+            }
             "INSERT" if frame.depth < MOST_DEPTH => {
                 if let Some(inner) = e.text(2).and_then(|n| blocks.get(n)) {
                     shape_of(drawing, inner, &frame.inside(e, inner)?, blocks)?;
@@ -480,6 +521,77 @@ fn placed(corners: &[(Point, f64)], frame: &Frame) -> Vec<(Point, f64)> {
     corners.iter().map(|(p, bulge)| (frame.at(*p), bulge * turn)).collect()
 }
 
+fn is_closed(e: &Entity) -> Result<bool, Error> {
+    Ok(e.number(70)?.unwrap_or(0.0) as i64 & 1 == 1)
+}
+
+/// Returns the corners of an LWPOLYLINE with their bulges.
+fn light_corners(e: &Entity) -> Result<Vec<(Point, f64)>, Error> {
+    let mut corners: Vec<(Point, f64)> = Vec::new();
+    for (code, value) in &e.groups {
+        match code {
+            10 => corners.push((Point::new(e.parse(10, value)?, 0.0), 0.0)),
+            20 => corners.last_mut().map_or(Ok(()), |c| e.parse(20, value).map(|y| c.0.y = y))?,
+            42 => corners.last_mut().map_or(Ok(()), |c| e.parse(42, value).map(|b| c.1 = b))?,
+            _ => {}
+        }
+    }
+    Ok(corners)
+}
+
+/// Returns the corners of a SOLID in order around it: the file has the last two the other way round.
+fn solid_corners(e: &Entity, frame: &Frame) -> Result<Vec<(Point, f64)>, Error> {
+    let fourth = if e.text(13).is_some() { 13 } else { 12 };
+    [10, 11, fourth, 12].into_iter().map(|code| Ok((frame.at(e.point(code)?), 0.0))).collect()
+}
+
+/// Returns a circle in straight pieces.
+fn circle(e: &Entity, frame: &Frame) -> Result<Vec<Point>, Error> {
+    let (center, radius) = (e.point(10)?, e.number(40)?.unwrap_or(0.0).abs());
+    let at = |k: usize| {
+        let (sin, cos) = (std::f64::consts::TAU * k as f64 / (2 * PIECES) as f64).sin_cos();
+        frame.at(Point::new(center.x + radius * cos, center.y + radius * sin))
+    };
+    Ok((0..2 * PIECES).map(at).collect())
+}
+
+/// Returns the outlines of a HATCH: polylines as they are, edges by their ends.
+fn hatch_loops(e: &Entity, frame: &Frame) -> Result<Vec<Vec<Point>>, Error> {
+    let begin = e.groups.iter().position(|g| g.0 == 91).map_or(e.groups.len(), |k| k + 1);
+    let mut loops: Vec<Vec<Point>> = Vec::new();
+    let mut x: Option<f64> = None;
+    for (code, value) in &e.groups[begin..] {
+        match code {
+            92 => loops.push(Vec::new()),
+            // pattern lines and seed points come after the outlines
+            75 | 98 => break,
+            10 | 11 => x = Some(e.parse(*code, value)?),
+            20 | 21 => {
+                let at = x.take().map(|x| Ok::<_, Error>(Point::new(x, e.parse(*code, value)?))).transpose()?;
+                if let (Some(p), Some(last)) = (at, loops.last_mut()) {
+                    last.push(frame.at(p));
+                }
+            }
+            _ => {}
+        }
+    }
+    loops.iter_mut().for_each(|l| l.dedup_by(|a, b| a.distance(*b) < 1e-9));
+    loops.retain(|l| l.len() > 2);
+    Ok(loops)
+}
+
+fn text(drawing: &mut Drawing, e: &Entity, role: Option<Role>, frame: &Frame) -> Result<(), Error> {
+    let at = frame.at(e.point(10)?);
+    // long texts come in pieces; names and areas stand on lines of their own
+    let parts = e.groups.iter().filter(|g| g.0 == 1 || g.0 == 3 && e.kind == "MTEXT").map(|g| g.1);
+    let text = plain(&parts.collect::<String>());
+    if role != Some(Role::Skip) {
+        let lines = text.lines().map(str::trim).filter(|l| !l.is_empty());
+        drawing.labels.extend(lines.map(|l| DrawnLabel { text: l.to_owned(), at, level: None }));
+    }
+    Ok(())
+}
+
 fn opening_of(role: Option<Role>) -> Option<OpeningKind> {
     match role {
         Some(Role::Door) => Some(OpeningKind::Door),
@@ -489,40 +601,109 @@ fn opening_of(role: Option<Role>) -> Option<OpeningKind> {
     }
 }
 
-fn polyline(
-    drawing: &mut Drawing,
-    corners: &[(Point, f64)],
-    closed: bool,
-    layer: &str,
+/// How an entity is drawn: where, and what its layer says it is.
+struct Draw<'a> {
+    layer: &'a str,
     role: Option<Role>,
+    kind: &'a str,
     place: String,
-) {
-    let closed = closed || corners.len() > 3 && corners.first().map(|c| c.0) == corners.last().map(|c| c.0);
-    let mut points: Vec<Point> = Vec::new();
-    for (i, &(a, bulge)) in corners.iter().enumerate() {
-        points.push(a);
-        let next = corners.get(i + 1).or(closed.then(|| &corners[0]));
-        if let (Some(&(b, _)), true) = (next, bulge.abs() > 1e-6) {
-            points.extend(bulged(a, b, bulge));
+    /// True inside of a block.
+    inside: bool,
+}
+
+impl Draw<'_> {
+    /// Counts what is drawn and not read.
+    fn leave_out(&self, drawing: &mut Drawing) {
+        let what = format!("layer `{}` as {}", self.layer, self.kind);
+        match self.role {
+            Some(Role::Skip) => drawing.skip(what),
+            Some(Role::Tag | Role::Outline) => {}
+            _ => drawing.leave_out(what),
         }
     }
-    if points.len() < 2 || matches!(role, Some(Role::Skip | Role::Outline | Role::Tag)) {
-        return;
+
+    fn is_no_building(&self) -> bool {
+        matches!(self.role, Some(Role::Skip | Role::Outline | Role::Tag))
     }
-    let place = format!("{place} on layer `{layer}`");
-    if let Some(kind) = opening_of(role) {
-        drawing.openings.push(DrawnOpening::new(kind, points, None, place));
-    } else if role == Some(Role::Wall) || !closed && layer == "0" {
-        if closed {
-            points.push(points[0]);
+
+    fn polyline(self, drawing: &mut Drawing, corners: &[(Point, f64)], closed: bool) {
+        let closed = closed || corners.len() > 3 && corners.first().map(|c| c.0) == corners.last().map(|c| c.0);
+        let mut points: Vec<Point> = Vec::new();
+        for (i, &(a, bulge)) in corners.iter().enumerate() {
+            points.push(a);
+            let next = corners.get(i + 1).or(closed.then(|| &corners[0]));
+            if let (Some(&(b, _)), true) = (next, bulge.abs() > 1e-6) {
+                points.extend(bulged(a, b, bulge));
+            }
         }
-        let line = |p: &[Point]| DrawnWall { line: [p[0], p[1]], level: None, place: place.clone() };
-        drawing.walls.extend(points.windows(2).map(line));
-    } else if closed {
-        drawing.rooms.push(DrawnRoom::new(String::new(), points, place));
-    } else {
-        drawing.leave_out(format!("layer `{layer}`"));
+        if points.len() < 2 || self.is_no_building() {
+            return self.leave_out(drawing);
+        }
+        let place = format!("{} on layer `{}`", self.place, self.layer);
+        if let Some(kind) = opening_of(self.role) {
+            drawing.openings.push(DrawnOpening::new(kind, points, None, place));
+        } else if closed && points.len() > 2 {
+            self.shape(drawing, points, false);
+        } else if self.role == Some(Role::Wall) {
+            drawing.walls.extend(points.windows(2).map(|p| wall(p, &place)));
+        } else if self.role.is_none() && self.layer == "0" && !self.inside {
+            let told = format!("layer `0` as {}", self.kind);
+            drawing.perhaps_walls.extend(points.windows(2).map(|p| (told.clone(), wall(p, &place))));
+        } else {
+            self.leave_out(drawing);
+        }
     }
+
+    /// Adds a circle, which is a column or nothing of the building.
+    fn curve(self, drawing: &mut Drawing, outline: Vec<Point>) {
+        match self.role {
+            Some(Role::Column | Role::Wall) => self.shape(drawing, outline, true),
+            _ => self.leave_out(drawing),
+        }
+    }
+
+    /// Adds the outlines of a hatch, which are columns; a hatch fills walls and rooms that are drawn beside it.
+    fn hatch(self, drawing: &mut Drawing, loops: Vec<Vec<Point>>) {
+        if self.role != Some(Role::Column) {
+            if !matches!(self.role, Some(Role::Wall | Role::Room)) {
+                self.leave_out(drawing);
+            }
+            return;
+        }
+        for outline in loops {
+            drawing.solids.push(DrawnSolid {
+                kind: SolidKind::Column,
+                outline,
+                level: None,
+                place: self.place.clone(),
+            });
+        }
+    }
+
+    /// Adds a closed shape with what its layer says of it.
+    fn shape(self, drawing: &mut Drawing, corners: Vec<Point>, curved: bool) {
+        let place = format!("{} on layer `{}`", self.place, self.layer);
+        let evidence = match self.role {
+            Some(Role::Column) => {
+                drawing.solids.push(DrawnSolid { kind: SolidKind::Column, outline: corners, level: None, place });
+                return;
+            }
+            Some(Role::Room) => Evidence::Room,
+            Some(Role::Wall) => Evidence::Wall,
+            _ => Evidence::None,
+        };
+        drawing.shapes.push(DrawnShape {
+            room: DrawnRoom::new(String::new(), corners, place),
+            evidence,
+            layer: format!("layer `{}`", self.layer),
+            kind: self.kind.to_owned(),
+            curved,
+        });
+    }
+}
+
+fn wall(ends: &[Point], place: &str) -> DrawnWall {
+    DrawnWall { line: [ends[0], ends[1]], level: None, place: place.to_owned() }
 }
 
 /// Returns points on the arc between two corners, the ends left out; a bulge is the tangent of a quarter of its angle.
@@ -541,16 +722,13 @@ fn bulged(a: Point, b: Point, bulge: f64) -> Vec<Point> {
         .collect()
 }
 
-/// Adds a quarter circle: the swing of a door, wherever it is drawn but on layers of other things.
-fn arc(drawing: &mut Drawing, e: &Entity, role: Option<Role>, frame: &Frame) -> Result<(), Error> {
-    if !matches!(role, None | Some(Role::Door)) {
-        return Ok(());
-    }
+/// Adds a quarter circle, the swing of a door; returns false for other arcs.
+fn arc(drawing: &mut Drawing, e: &Entity, frame: &Frame) -> Result<bool, Error> {
     let (center, radius) = (e.point(10)?, e.number(40)?.unwrap_or(0.0));
     let (from, to) = (e.number(50)?.unwrap_or(0.0), e.number(51)?.unwrap_or(360.0));
     let sweep = (to - from).rem_euclid(360.0);
     if !(60.0..=120.0).contains(&sweep) || radius <= 0.0 {
-        return Ok(());
+        return Ok(false);
     }
     let end = |degrees: f64| {
         let (sin, cos) = degrees.to_radians().sin_cos();
@@ -559,7 +737,7 @@ fn arc(drawing: &mut Drawing, e: &Entity, role: Option<Role>, frame: &Frame) -> 
     let mut o = DrawnOpening::new(OpeningKind::Door, Vec::new(), None, e.place());
     o.arc = Some([frame.at(center), end(from), end(to)]);
     drawing.openings.push(o);
-    Ok(())
+    Ok(true)
 }
 
 /// Returns a text without its formatting codes: `{\fArial|b0;Bath}\P4 m2` is `Bath 4 m2`.

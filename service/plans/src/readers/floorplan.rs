@@ -3,8 +3,9 @@
 use d3dgen_model::document::Document;
 use d3dgen_model::floorplan::Floorplan;
 
-use super::{Plan, Reader, Source};
-use crate::{Error, Options};
+use super::source::{Plan, Reader, Source};
+use crate::error::Error;
+use crate::options::Options;
 
 pub(super) const READER: Reader = Reader { name: "floorplan", title: "floorplan.json of d3dgen", recognizes, read };
 
@@ -21,6 +22,7 @@ fn read(source: &Source, _: &Options) -> Result<Plan, Error> {
     plan.walls.iter_mut().for_each(|w| w.locked = true);
     plan.doors.iter_mut().for_each(|d| d.locked = true);
     plan.windows.iter_mut().for_each(|w| w.locked = true);
+    plan.obstacles.iter_mut().for_each(|o| o.locked = true);
     if plan.rooms.is_empty() {
         return Err(Error::broken("floorplan", "/rooms", "is empty; a plan needs at least one room"));
     }

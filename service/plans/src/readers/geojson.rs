@@ -10,10 +10,15 @@ use d3dgen_model::Point;
 use serde::Deserialize;
 use serde_json::Value;
 
-use super::{Plan, Reader, Source};
-use crate::drawing::{Drawing, DrawnLabel, DrawnOpening, DrawnRoom, DrawnWall, OpeningKind, extent, note};
-use crate::words::{Role, role};
-use crate::{Error, Options};
+use super::imdf;
+use super::source::{Plan, Reader, Source};
+use crate::drawing::{
+    Drawing, DrawnLabel, DrawnOpening, DrawnRoom, DrawnSolid, DrawnWall, OpeningKind, SolidKind, extent, note,
+};
+use crate::error::Error;
+use crate::options::Options;
+use crate::shape::extents;
+use crate::words::{Role, role, said_of};
 
 pub(super) const READER: Reader = Reader { name: "geojson", title: "GeoJSON", recognizes, read };
 
@@ -23,6 +28,8 @@ const KINDS: [&str; 10] =
     ["feature_type", "room_type", "type", "class", "category", "kind", "indoor", "element", "layer", "usage"];
 const NAMES: [&str; 6] = ["name", "label", "title", "alt_name", "ref", "id"];
 const LEVELS: [&str; 6] = ["level", "level_id", "floor", "storey", "level:ref", "layer_level"];
+/// A solid so many times as long as wide is a wall, not a column.
+const STRIP_LONG: f64 = 2.5;
 /// A building is no wider than this in degrees, so smaller coordinates are longitude and latitude.
 const DEGREES: f64 = 0.05;
 /// Axes of the earth's ellipsoid (WGS 84): half the longer one in m, and the square of its eccentricity.
@@ -33,11 +40,30 @@ type JsonObject = serde_json::Map<String, Value>;
 type Position = Vec<f64>;
 
 #[derive(Deserialize)]
-struct Feature {
+pub(super) struct Feature {
+    #[serde(default)]
+    id: Option<Value>,
+    /// What it is, where the file says so beside the properties, as IMDF does.
+    #[serde(default)]
+    pub feature_type: Option<String>,
     #[serde(default)]
     geometry: Option<Shape>,
     #[serde(default)]
-    properties: Option<JsonObject>,
+    pub properties: Option<JsonObject>,
+}
+
+impl Feature {
+    /// Returns the id as text.
+    pub fn id(&self) -> Option<String> {
+        self.id.as_ref().and_then(Value::as_str).map(str::to_owned)
+    }
+}
+
+/// What a file holds.
+pub(super) struct Collection {
+    pub features: Vec<Feature>,
+    title: Option<String>,
+    crs: Option<String>,
 }
 
 #[derive(Deserialize)]
@@ -59,13 +85,24 @@ fn recognizes(source: &Source) -> bool {
 }
 
 fn read(source: &Source, options: &Options) -> Result<Plan, Error> {
-    let text = source.text(FORMAT)?;
+    let Collection { mut features, title, crs } = collection(source.text(FORMAT)?)?;
+    let mut drawing = Drawing { titles: title.into_iter().collect(), ..Drawing::default() };
+    if features.iter().any(|f| f.feature_type.is_some()) {
+        imdf::prepare(&mut features, &mut drawing);
+    }
+    draw(&mut drawing, &features, options)?;
+    project(&mut drawing, crs.as_deref(), options);
+    Ok(Plan::Drawing(drawing))
+}
+
+/// Reads the features of a text.
+pub(super) fn collection(text: &str) -> Result<Collection, Error> {
     let mut value: Value = serde_json::from_str(text).map_err(|e| {
         let (message, place) = (e.to_string(), format!("line {} column {}", e.line(), e.column()));
         Error::broken(FORMAT, &place, message.trim_end_matches(&format!(" at {place}")))
     })?;
     let crs = value.pointer("/crs/properties/name").and_then(|v| v.as_str()).map(str::to_owned);
-    let value_title = value.get("name").and_then(|v| v.as_str()).map(str::to_owned);
+    let title = value.get("name").and_then(|v| v.as_str()).map(str::to_owned);
     let wrong = |place: &str, e: serde_json::Error| Error::broken(FORMAT, place, e.to_string());
     let features: Vec<Feature> = match value.get("type").and_then(Value::as_str) {
         Some("FeatureCollection") => {
@@ -83,23 +120,24 @@ fn read(source: &Source, options: &Options) -> Result<Plan, Error> {
         Some("Feature") => vec![serde_json::from_value(value).map_err(|e| wrong("feature", e))?],
         _ => {
             let geometry = serde_json::from_value(value).map_err(|e| wrong("geometry", e))?;
-            vec![Feature { geometry: Some(geometry), properties: None }]
+            vec![Feature { id: None, feature_type: None, geometry: Some(geometry), properties: None }]
         }
     };
-    let titles = value_title.into_iter().collect();
-    let mut drawing = Drawing { titles, ..Drawing::default() };
-    for (i, feature) in features.iter().enumerate() {
-        if let Some(geometry) = &feature.geometry {
-            let place = format!("feature {i}");
-            let properties = feature.properties.clone().unwrap_or_default();
-            add(&mut drawing, geometry, &properties, &place)?;
-        }
-    }
-    project(&mut drawing, crs.as_deref(), options);
-    Ok(Plan::Drawing(drawing))
+    Ok(Collection { features, title, crs })
 }
 
-fn text_of(properties: &JsonObject, keys: &[&str]) -> Option<String> {
+/// Draws features in the units of the file.
+pub(super) fn draw(drawing: &mut Drawing, features: &[Feature], options: &Options) -> Result<(), Error> {
+    for (i, feature) in features.iter().enumerate() {
+        if let Some(geometry) = &feature.geometry {
+            let properties = feature.properties.clone().unwrap_or_default();
+            add(drawing, geometry, &properties, &format!("feature {i}"), options)?;
+        }
+    }
+    Ok(())
+}
+
+pub(super) fn text_of(properties: &JsonObject, keys: &[&str]) -> Option<String> {
     keys.iter().find_map(|k| match properties.get(*k)? {
         Value::String(s) if !s.trim().is_empty() => Some(s.trim().to_owned()),
         Value::Number(n) => Some(n.to_string()),
@@ -117,160 +155,161 @@ fn number_of(properties: &JsonObject, keys: &[&str]) -> Option<f64> {
     })
 }
 
-fn add(drawing: &mut Drawing, geometry: &Shape, properties: &JsonObject, place: &str) -> Result<(), Error> {
-    let level = text_of(properties, &LEVELS);
-    let name = text_of(properties, &NAMES).unwrap_or_default();
-    let kinds: Vec<String> = KINDS.iter().filter_map(|k| text_of(properties, &[*k])).collect();
-    let place = if name.is_empty() { place.to_owned() } else { format!("{place} `{name}`") };
-    let tagged = |key: &str| properties.get(key).is_some_and(|v| v.as_str().is_none_or(|s| s != "no"));
-    let said = kinds.iter().find_map(|k| role(k)).or_else(|| {
-        let keys = [("door", Role::Door), ("entrance", Role::Door), ("window", Role::Window)];
-        keys.iter().find(|(key, _)| tagged(key)).map(|k| k.1)
-    });
-    let points = |list: &[Position]| -> Result<Vec<Point>, Error> {
-        let short = || Error::broken(FORMAT, &place, "has a position without two coordinates");
-        list.iter().map(|p| Ok(Point::new(*p.first().ok_or_else(short)?, *p.get(1).ok_or_else(short)?))).collect()
-    };
-    let opening = |drawing: &mut Drawing, kind: OpeningKind, points: Vec<Point>| {
-        let mut o = DrawnOpening::new(kind, points, level.clone(), place.clone());
-        o.width_m = number_of(properties, &["width_m", "width"]);
-        o.sill_m = number_of(properties, &["sill_m", "sill", "sill_height"]);
-        o.head_m = number_of(properties, &["head_m", "head"]);
-        o.sliding = kinds.iter().chain(text_of(properties, &["door", "door_type"]).iter()).any(|k| k.contains("slid"));
-        drawing.openings.push(o);
-    };
-    let as_opening = |role: Option<Role>| match role {
-        Some(Role::Door) => Some(OpeningKind::Door),
-        Some(Role::Passage) => Some(OpeningKind::Passage),
-        Some(Role::Window) => Some(OpeningKind::Window),
-        _ => None,
-    };
-    let unread = || match kinds.first() {
-        Some(kind) => format!("lines of the kind `{kind}`"),
-        None => "lines without a kind".to_owned(),
-    };
+/// What the properties of a feature say of all that it draws.
+struct Said<'a> {
+    properties: &'a JsonObject,
+    role: Option<Role>,
+    name: String,
+    kinds: Vec<String>,
+    level: Option<String>,
+    place: String,
+}
+
+fn add(
+    drawing: &mut Drawing,
+    geometry: &Shape,
+    properties: &JsonObject,
+    place: &str,
+    options: &Options,
+) -> Result<(), Error> {
+    let said = Said::of(properties, place, options);
     let mut shapes: Vec<&Shape> = vec![geometry];
     while let Some(shape) = shapes.pop() {
         match shape {
             Shape::GeometryCollection { geometries } => shapes.extend(geometries.iter().rev()),
-            Shape::Polygon { coordinates: rings } => {
-                let holes = rings.iter().skip(1).map(|r| points(r)).collect::<Result<Vec<_>, _>>()?;
-                polygon(drawing, points(rings.first().map_or(&[], Vec::as_slice))?, said, &opening, as_opening, || {
-                    DrawnRoom { holes, ..room(&name, &kinds, properties, level.clone(), &place) }
-                });
-            }
-            Shape::MultiPolygon { coordinates: parts } => {
-                for (k, rings) in parts.iter().enumerate() {
-                    let ring = points(rings.first().map_or(&[], Vec::as_slice))?;
-                    let holes = rings.iter().skip(1).map(|r| points(r)).collect::<Result<Vec<_>, _>>()?;
-                    polygon(drawing, ring, said, &opening, as_opening, || {
-                        let mut room = DrawnRoom { holes, ..room(&name, &kinds, properties, level.clone(), &place) };
-                        if parts.len() > 1 {
-                            room.label = format!("{} {}", room.label, k + 1).trim().to_owned();
-                        }
-                        room
-                    });
-                }
-            }
-            Shape::LineString { coordinates: line } => {
-                if !line_of(drawing, points(line)?, said, &opening, as_opening, &level, &place) {
-                    drawing.leave_out(unread());
-                }
-            }
-            Shape::MultiLineString { coordinates: lines } => {
-                for line in lines {
-                    if !line_of(drawing, points(line)?, said, &opening, as_opening, &level, &place) {
-                        drawing.leave_out(unread());
-                    }
-                }
-            }
-            Shape::Point { coordinates: p } => {
-                point(drawing, points(std::slice::from_ref(p))?, said, &opening, as_opening, &name, &level)
-            }
-            Shape::MultiPoint { coordinates: list } => {
-                for p in points(list)? {
-                    point(drawing, vec![p], said, &opening, as_opening, &name, &level);
-                }
-            }
+            Shape::Polygon { coordinates: rings } => said.polygon(drawing, rings, None)?,
+            Shape::MultiPolygon { coordinates: parts } => parts
+                .iter()
+                .enumerate()
+                .try_for_each(|(k, rings)| said.polygon(drawing, rings, (parts.len() > 1).then_some(k + 1)))?,
+            Shape::LineString { coordinates: line } => said.line(drawing, line)?,
+            Shape::MultiLineString { coordinates: lines } => lines.iter().try_for_each(|l| said.line(drawing, l))?,
+            Shape::Point { coordinates: p } => said.points(drawing, std::slice::from_ref(p))?,
+            Shape::MultiPoint { coordinates: list } => said.points(drawing, list)?,
         }
     }
     Ok(())
 }
 
-fn room(name: &str, kinds: &[String], properties: &JsonObject, level: Option<String>, place: &str) -> DrawnRoom {
-    let generic = |k: &&String| role(k).is_none();
-    let kind = text_of(properties, &["room", "room_type"]).or_else(|| kinds.iter().find(generic).cloned());
-    let place = if name.is_empty() { place.to_owned() } else { format!("room `{name}`") };
-    DrawnRoom {
-        kind: kind.filter(|k| k != "yes"),
-        level,
-        height_m: number_of(properties, &["ceiling_height_m", "ceiling_height", "height_m", "height"]),
-        ..DrawnRoom::new(name.to_owned(), Vec::new(), place)
+impl<'a> Said<'a> {
+    fn of(properties: &'a JsonObject, place: &str, options: &Options) -> Self {
+        let name = text_of(properties, &NAMES).unwrap_or_default();
+        let kinds: Vec<String> = KINDS.iter().filter_map(|k| text_of(properties, &[*k])).collect();
+        let tagged = |key: &str| properties.get(key).is_some_and(|v| v.as_str().is_none_or(|s| s != "no"));
+        let by_kind = kinds.iter().find_map(|k| said_of(k, options)).or_else(|| kinds.iter().find_map(|k| role(k)));
+        let role = by_kind.or_else(|| {
+            let keys = [("door", Role::Door), ("entrance", Role::Door), ("window", Role::Window)];
+            keys.iter().find(|(key, _)| tagged(key)).map(|k| k.1)
+        });
+        let place = if name.is_empty() { place.to_owned() } else { format!("{place} `{name}`") };
+        Said { properties, role, name, kinds, level: text_of(properties, &LEVELS), place }
     }
-}
 
-fn polygon(
-    drawing: &mut Drawing,
-    ring: Vec<Point>,
-    said: Option<Role>,
-    opening: &impl Fn(&mut Drawing, OpeningKind, Vec<Point>),
-    as_opening: impl Fn(Option<Role>) -> Option<OpeningKind>,
-    room: impl FnOnce() -> DrawnRoom,
-) {
-    match said {
-        Some(Role::Skip | Role::Outline | Role::Tag | Role::Wall) => {}
-        _ => match as_opening(said) {
-            Some(kind) => opening(drawing, kind, ring),
-            None => drawing.rooms.push(DrawnRoom { corners: ring, ..room() }),
-        },
+    fn corners(&self, list: &[Position]) -> Result<Vec<Point>, Error> {
+        let short = || Error::broken(FORMAT, &self.place, "has a position without two coordinates");
+        list.iter().map(|p| Ok(Point::new(*p.first().ok_or_else(short)?, *p.get(1).ok_or_else(short)?))).collect()
     }
-}
 
-/// Adds a line; returns false when nothing says what it is.
-fn line_of(
-    drawing: &mut Drawing,
-    line: Vec<Point>,
-    said: Option<Role>,
-    opening: &impl Fn(&mut Drawing, OpeningKind, Vec<Point>),
-    as_opening: impl Fn(Option<Role>) -> Option<OpeningKind>,
-    level: &Option<String>,
-    place: &str,
-) -> bool {
-    if let Some(kind) = as_opening(said) {
-        opening(drawing, kind, line);
-    } else if said == Some(Role::Wall) {
-        drawing.walls.extend(line.windows(2).map(|p| DrawnWall {
-            line: [p[0], p[1]],
-            level: level.clone(),
-            place: format!("wall of {place}"),
-        }));
+    /// Returns the kind of opening, if the feature is one.
+    fn opening(&self) -> Option<OpeningKind> {
+        match self.role {
+            Some(Role::Door) => Some(OpeningKind::Door),
+            Some(Role::Passage) => Some(OpeningKind::Passage),
+            Some(Role::Window) => Some(OpeningKind::Window),
+            _ => None,
+        }
     }
-    !matches!(said, None | Some(Role::Room))
-}
 
-fn point(
-    drawing: &mut Drawing,
-    at: Vec<Point>,
-    said: Option<Role>,
-    opening: &impl Fn(&mut Drawing, OpeningKind, Vec<Point>),
-    as_opening: impl Fn(Option<Role>) -> Option<OpeningKind>,
-    name: &str,
-    level: &Option<String>,
-) {
-    if let Some(kind) = as_opening(said) {
-        opening(drawing, kind, at);
-    } else if !name.is_empty() && said != Some(Role::Skip) {
-        drawing.labels.extend(at.iter().map(|p| DrawnLabel { text: name.to_owned(), at: *p, level: level.clone() }));
+    fn add_opening(&self, drawing: &mut Drawing, kind: OpeningKind, points: Vec<Point>) {
+        let mut o = DrawnOpening::new(kind, points, self.level.clone(), self.place.clone());
+        o.width_m = number_of(self.properties, &["width_m", "width"]);
+        o.sill_m = number_of(self.properties, &["sill_m", "sill", "sill_height"]);
+        o.head_m = number_of(self.properties, &["head_m", "head"]);
+        let door = text_of(self.properties, &["door", "door_type"]);
+        o.sliding = self.kinds.iter().chain(door.iter()).any(|k| k.contains("slid"));
+        drawing.openings.push(o);
+    }
+
+    /// Returns what is said of the feature where it is left out.
+    fn told(&self, shape: &str) -> String {
+        match self.kinds.first() {
+            Some(kind) => format!("{shape} of the kind `{kind}`"),
+            None => format!("{shape} without a kind"),
+        }
+    }
+
+    /// Adds a polygon; `part` counts those of one feature.
+    fn polygon(&self, drawing: &mut Drawing, rings: &[Vec<Position>], part: Option<usize>) -> Result<(), Error> {
+        let ring = self.corners(rings.first().map_or(&[], Vec::as_slice))?;
+        match (self.role, self.opening()) {
+            (_, Some(kind)) => self.add_opening(drawing, kind, ring),
+            (Some(Role::Skip), _) => drawing.skip(self.told("polygons")),
+            (Some(Role::Outline | Role::Tag), _) => {}
+            (Some(Role::Column | Role::Wall), _) => {
+                let (long, short) = extents(&ring);
+                let is_wall = self.role == Some(Role::Wall) || long > STRIP_LONG * short;
+                let kind = if is_wall { SolidKind::Wall } else { SolidKind::Column };
+                let (level, place) = (self.level.clone(), self.place.clone());
+                drawing.solids.push(DrawnSolid { kind, outline: ring, level, place });
+            }
+            _ => {
+                let holes = rings.iter().skip(1).map(|r| self.corners(r)).collect::<Result<Vec<_>, _>>()?;
+                let mut room = DrawnRoom { corners: ring, holes, ..self.room() };
+                if let Some(part) = part {
+                    room.label = format!("{} {part}", room.label).trim().to_owned();
+                }
+                drawing.rooms.push(room);
+            }
+        }
+        Ok(())
+    }
+
+    fn room(&self) -> DrawnRoom {
+        let generic = |k: &&String| role(k).is_none();
+        let kind =
+            text_of(self.properties, &["room", "room_type"]).or_else(|| self.kinds.iter().find(generic).cloned());
+        let place = if self.name.is_empty() { self.place.clone() } else { format!("room `{}`", self.name) };
+        DrawnRoom {
+            kind: kind.filter(|k| k != "yes"),
+            level: self.level.clone(),
+            height_m: number_of(self.properties, &["ceiling_height_m", "ceiling_height", "height_m", "height"]),
+            ..DrawnRoom::new(self.name.clone(), Vec::new(), place)
+        }
+    }
+
+    fn line(&self, drawing: &mut Drawing, line: &[Position]) -> Result<(), Error> {
+        let points = self.corners(line)?;
+        match (self.role, self.opening()) {
+            (_, Some(kind)) => self.add_opening(drawing, kind, points),
+            (Some(Role::Wall), _) => drawing.walls.extend(points.windows(2).map(|p| DrawnWall {
+                line: [p[0], p[1]],
+                level: self.level.clone(),
+                place: format!("wall of {}", self.place),
+            })),
+            (Some(Role::Skip), _) => drawing.skip(self.told("lines")),
+            (None | Some(Role::Room | Role::Column), _) => drawing.leave_out(self.told("lines")),
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn points(&self, drawing: &mut Drawing, list: &[Position]) -> Result<(), Error> {
+        let points = self.corners(list)?;
+        if let Some(kind) = self.opening() {
+            points.into_iter().for_each(|p| self.add_opening(drawing, kind, vec![p]));
+        } else if !self.name.is_empty() && self.role != Some(Role::Skip) {
+            let label = |at| DrawnLabel { text: self.name.clone(), at, level: self.level.clone() };
+            drawing.labels.extend(points.into_iter().map(label));
+        }
+        Ok(())
     }
 }
 
 /// Turns longitude and latitude into meters east and north of the plan's middle, and other units into meters.
-fn project(drawing: &mut Drawing, crs: Option<&str>, options: &Options) {
-    let Some([x0, y0, x1, y1]) = extent(drawing.points_mut().map(|p| *p)) else { return };
-    let globe = crs.map(|c| c.contains("CRS84") || c.ends_with("4326"));
-    let fits = x0 >= -180.0 && x1 <= 180.0 && y0 >= -90.0 && y1 <= 90.0;
-    let small = x1 - x0 < DEGREES && y1 - y0 < DEGREES;
-    if options.meters_per_unit.is_none() && fits && globe.unwrap_or(small) {
+pub(super) fn project(drawing: &mut Drawing, crs: Option<&str>, options: &Options) {
+    let Some(around) = extent(drawing.points_mut().map(|p| *p)) else { return };
+    if options.meters_per_unit.is_none() && is_on_globe(around, crs) {
+        let [x0, y0, x1, y1] = around;
         let (lon, lat) = ((x0 + x1) / 2.0, (y0 + y1) / 2.0);
         let (sin, cos) = lat.to_radians().sin_cos();
         let w = 1.0 - EARTH_E2 * sin * sin;
@@ -289,4 +328,12 @@ fn project(drawing: &mut Drawing, crs: Option<&str>, options: &Options) {
     if options.meters_per_unit.is_none() {
         drawing.notes.push(note("unit_assumed", "coordinates were taken for meters"));
     }
+}
+
+/// Returns true for coordinates that are longitude and latitude: the file says so, or they are no wider than a building.
+fn is_on_globe([x0, y0, x1, y1]: [f64; 4], crs: Option<&str>) -> bool {
+    let globe = crs.map(|c| c.contains("CRS84") || c.ends_with("4326"));
+    let fits = x0 >= -180.0 && x1 <= 180.0 && y0 >= -90.0 && y1 <= 90.0;
+    let small = x1 - x0 < DEGREES && y1 - y0 < DEGREES;
+    fits && globe.unwrap_or(small)
 }

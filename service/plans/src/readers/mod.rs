@@ -3,81 +3,20 @@
 mod dxf;
 mod floorplan;
 mod geojson;
+mod imdf;
 mod nav2;
 mod rmf;
+mod source;
 mod svg;
 mod trace;
 
-use d3dgen_model::floorplan::Floorplan;
-use serde::de::DeserializeOwned;
-
-use crate::{Drawing, Error, Options};
-
-/// Largest file that is read, bytes.
-pub const MOST_BYTES: usize = 64 << 20;
-
-/// A file of a plan.
-pub struct Source<'a> {
-    /// Its name, for its ending.
-    pub name: &'a str,
-    /// What is in it.
-    pub bytes: &'a [u8],
-    /// Returns a file that it names, of the same folder (the picture of a map).
-    pub companion: &'a dyn Fn(&str) -> Option<Vec<u8>>,
-}
-
-impl Source<'_> {
-    fn text(&self, format: &'static str) -> Result<&str, Error> {
-        let text = std::str::from_utf8(self.bytes)
-            .map_err(|e| Error::broken(format, format!("byte {}", e.valid_up_to()), "is no UTF-8 text"))?;
-        Ok(text.strip_prefix('\u{feff}').unwrap_or(text))
-    }
-
-    /// Reads YAML; the place of an error is its line.
-    fn yaml<T: DeserializeOwned>(&self, format: &'static str) -> Result<T, Error> {
-        serde_saphyr::from_str(self.text(format)?).map_err(|e| {
-            let said = e.to_string();
-            let first = said.lines().next().unwrap_or_default().trim_start_matches("error: ");
-            match first.split_once(": ").filter(|(place, _)| place.starts_with("line ")) {
-                Some((place, message)) => Error::broken(format, place, message),
-                None => Error::broken(format, "file", first),
-            }
-        })
-    }
-
-    fn has_ending(&self, endings: &[&str]) -> bool {
-        let name = self.name.to_ascii_lowercase();
-        endings.iter().any(|e| name.ends_with(e))
-    }
-
-    /// Returns the first bytes as far as they are text.
-    fn head(&self) -> String {
-        String::from_utf8_lossy(&self.bytes[..self.bytes.len().min(4096)]).into_owned()
-    }
-}
-
-/// What a file holds.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Plan {
-    /// A floorplan document of ours.
-    Document(Floorplan),
-    /// A drawing, to be laid out.
-    Drawing(Drawing),
-}
-
-/// A format.
-pub struct Reader {
-    /// Name for `--format`.
-    pub name: &'static str,
-    /// What it is, for people.
-    pub title: &'static str,
-    recognizes: fn(&Source) -> bool,
-    read: fn(&Source, &Options) -> Result<Plan, Error>,
-}
+use crate::error::Error;
+use crate::options::Options;
+pub use source::{MOST_BYTES, Plan, Reader, Source};
 
 /// Every reader; the first that recognizes a file reads it.
 pub fn all() -> &'static [Reader] {
-    &[floorplan::READER, geojson::READER, svg::READER, dxf::READER, rmf::READER, nav2::READER]
+    &[floorplan::READER, imdf::READER, geojson::READER, svg::READER, dxf::READER, rmf::READER, nav2::READER]
 }
 
 /// Reads a plan.
@@ -98,8 +37,63 @@ pub fn read(source: &Source, options: &Options) -> Result<Plan, Error> {
             Error::UnknownFormat(format!("format `{name}` is not known; plans are read of {}", known()))
         })?,
         None => all().iter().find(|r| (r.recognizes)(source)).ok_or_else(|| {
-            Error::UnknownFormat(format!("{} is no plan that is known; plans are read of {}", source.name, known()))
+            let what = foreign(source).map_or("is no plan that is known".to_owned(), |(name, way)| {
+                format!("is {name}, which is not read: {way}")
+            });
+            Error::UnknownFormat(format!("{} {what}; plans are read of {}", source.name, known()))
         })?,
     };
     (reader.read)(source, options)
+}
+
+/// A kind of file that people have plans in and that is not read.
+struct Foreign {
+    /// How its bytes begin; empty where the ending says it.
+    head: &'static [u8],
+    endings: &'static [&'static str],
+    name: &'static str,
+    /// How to come by a plan that is read.
+    way: &'static str,
+}
+
+const FOREIGN: [Foreign; 7] = [
+    Foreign {
+        head: b"ISO-10303-21",
+        endings: &[".ifc", ".ifczip", ".ifcxml"],
+        name: "a building model (IFC)",
+        way: "export the floor plan of a storey as DXF or SVG (in Bonsai, FreeCAD, Revit or ArchiCAD; `IfcConvert model.ifc \
+              plan.svg` does it too), and name the layers of walls and doors so",
+    },
+    Foreign { head: b"AC10", endings: &[".dwg"], name: "an AutoCAD drawing (DWG)", way: "save it as ASCII DXF" },
+    Foreign {
+        head: b"%PDF",
+        endings: &[".pdf"],
+        name: "a PDF",
+        way: "open it in Inkscape and save it as SVG, or trace it as DXF",
+    },
+    Foreign {
+        head: b"\x89PNG",
+        endings: &[".png", ".jpg", ".jpeg", ".webp", ".gif"],
+        name: "a picture",
+        way: "draw its walls as SVG or DXF over it; the picture of an occupancy map is read with its map.yaml",
+    },
+    Foreign { head: b"P5", endings: &[".pgm"], name: "the picture of a map", way: "give the map.yaml beside it" },
+    Foreign {
+        head: b"\xd0\xcf\x11\xe0",
+        endings: &[".rvt", ".rfa", ".pln", ".vsd"],
+        name: "a file of a building program (Revit, ArchiCAD, Visio)",
+        way: "export the floor plan as DXF",
+    },
+    Foreign {
+        head: b"",
+        endings: &[".skp", ".3dm", ".sh3d", ".blend"],
+        name: "a 3D model",
+        way: "export its floor plan as DXF or SVG",
+    },
+];
+
+/// Returns what a file is that is not read, and the way round.
+fn foreign(source: &Source) -> Option<(&'static str, &'static str)> {
+    let known = |f: &&Foreign| !f.head.is_empty() && source.bytes.starts_with(f.head) || source.has_ending(f.endings);
+    FOREIGN.iter().find(known).map(|f| (f.name, f.way))
 }

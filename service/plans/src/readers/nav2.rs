@@ -5,11 +5,14 @@
 
 use d3dgen_model::Point;
 use serde::Deserialize;
+use serde_json::Value;
 
+use super::source::{Plan, Reader, Source};
 use super::trace::{DOOR_M, Map as Cells, trace};
-use super::{Plan, Reader, Source};
-use crate::drawing::{Drawing, DrawnOpening, DrawnRoom, OpeningKind, note};
-use crate::{Error, Options, clean};
+use crate::clean;
+use crate::drawing::{Drawing, DrawnOpening, DrawnRoom, DrawnSolid, OpeningKind, SolidKind, note};
+use crate::error::Error;
+use crate::options::Options;
 
 pub(super) const READER: Reader = Reader { name: "nav2", title: "nav2 occupancy map (map.yaml)", recognizes, read };
 
@@ -21,6 +24,8 @@ const COARSEST_M: f64 = 0.5;
 const NOISE_M: f64 = 0.15;
 /// Most corners of a traced outline.
 const MOST_CORNERS: usize = 1500;
+/// Least floor never scanned that is worth a note, m^2.
+const LEAST_UNSCANNED_M2: f64 = 0.5;
 /// What a map saver writes for cells that nobody has seen; some maps have a threshold that would make them free.
 const UNSEEN: u8 = 205;
 
@@ -29,15 +34,50 @@ struct Map {
     image: String,
     resolution: f64,
     #[serde(default)]
-    origin: Vec<f64>,
+    origin: Vec<Value>,
     #[serde(default)]
     negate: i64,
     #[serde(default = "free_thresh")]
     free_thresh: f64,
+    #[serde(default = "occupied_thresh")]
+    occupied_thresh: f64,
 }
 
 fn free_thresh() -> f64 {
     0.25
+}
+
+fn occupied_thresh() -> f64 {
+    0.65
+}
+
+/// Returns where the picture's lower left corner lies, m.
+///
+/// # Errors
+/// `Broken` for what is no number, and for a picture that is turned: rooms are found along its rows and columns.
+fn origin(given: &[Value], drawing: &mut Drawing) -> Result<Point, Error> {
+    let broken = |message: String| Error::broken(FORMAT, "origin", message);
+    let number = |value: &Value| match value {
+        Value::Number(n) => n.as_f64(),
+        // as C and Python print what is no number
+        Value::String(s) => s.trim().parse::<f64>().ok(),
+        Value::Null => Some(f64::NAN),
+        _ => None,
+    };
+    let numbers: Vec<f64> = given
+        .iter()
+        .map(|v| number(v).ok_or_else(|| broken(format!("`{v}` is no number"))))
+        .collect::<Result<_, _>>()?;
+    let at = |k: usize| numbers.get(k).copied().unwrap_or(0.0);
+    if !(at(0).is_finite() && at(1).is_finite()) {
+        return Err(broken(format!("({}, {}) is no place", at(0), at(1))));
+    }
+    if at(2).is_nan() {
+        drawing.notes.push(note("yaw_assumed", "the map's yaw is no number (nan); it was taken for 0"));
+    } else if at(2).abs() > 1e-6 {
+        return Err(broken("is turned; rooms are traced of maps with a yaw of 0".into()));
+    }
+    Ok(Point::new(at(0), at(1)))
 }
 
 fn recognizes(source: &Source) -> bool {
@@ -58,19 +98,19 @@ fn read(source: &Source, options: &Options) -> Result<Plan, Error> {
     let value = |g: u8| if map.negate == 0 { 255 - g } else { g };
     // a map all in this gray has no other floor
     let seen = gray.iter().any(|g| *g > 250 || *g == 0) && map.negate == 0;
-    let mut free = vec![false; width * height];
+    let (mut free, mut unknown) = (vec![false; width * height], vec![false; width * height]);
     for row in 0..height {
         for column in 0..width {
             let shade = gray[row * width + column];
             let occupied = f64::from(value(shade)) / 255.0;
-            free[(height - 1 - row) * width + column] = occupied < map.free_thresh && !(seen && shade == UNSEEN);
+            let cell = (height - 1 - row) * width + column;
+            free[cell] = occupied < map.free_thresh && !(seen && shade == UNSEEN);
+            unknown[cell] = !free[cell] && occupied < map.occupied_thresh;
         }
     }
-    let origin = Point::new(map.origin.first().copied().unwrap_or(0.0), map.origin.get(1).copied().unwrap_or(0.0));
-    if map.origin.get(2).is_some_and(|yaw| yaw.abs() > 1e-6) {
-        return Err(Error::broken(FORMAT, "origin", "is turned; rooms are traced of maps with a yaw of 0"));
-    }
-    let found = trace(Cells { width, height, free, per_meter: 1.0 / resolution });
+    let mut drawing = Drawing::default();
+    let origin = origin(&map.origin, &mut drawing)?;
+    let found = trace(Cells { width, height, free, unknown, per_meter: 1.0 / resolution });
     // rooms are found on a map that is turned upright, and drawn where they are on the map as it is
     let meters = |p: Point| {
         let (x, y) = (p.x / resolution, p.y / resolution);
@@ -78,7 +118,15 @@ fn read(source: &Source, options: &Options) -> Result<Plan, Error> {
         Point::new(origin.x + x * resolution, origin.y + y * resolution)
     };
     let upright = |x: f64, y: f64| Point::new(x * resolution, y * resolution);
-    let mut drawing = Drawing::default();
+    for (i, ring) in found.standing.iter().enumerate() {
+        let outline = ring.iter().map(|(x, y)| meters(upright(*x as f64, *y as f64))).collect();
+        drawing.solids.push(DrawnSolid {
+            kind: SolidKind::Wall,
+            outline,
+            level: None,
+            place: format!("free wall {}", i + 1),
+        });
+    }
     for (room, mut loops) in found.rooms.into_iter().enumerate() {
         let corners =
             |ring: Vec<(i64, i64)>| ring.into_iter().map(|(x, y)| upright(x as f64, y as f64)).collect::<Vec<Point>>();
@@ -107,6 +155,14 @@ fn read(source: &Source, options: &Options) -> Result<Plan, Error> {
             found.things
         ),
     ));
+    if found.unscanned_m2 >= LEAST_UNSCANNED_M2 {
+        let message = format!(
+            "{:.1} m2 of the map lie between what was scanned and were never scanned themselves; what encloses them was taken for \
+             the edge of rooms, and what they leave inside of rooms for floor",
+            found.unscanned_m2
+        );
+        drawing.notes.push(note("unscanned", message));
+    }
     Ok(Plan::Drawing(drawing))
 }
 

@@ -16,10 +16,11 @@ mod lifts;
 
 use self::align::Shift;
 use self::lifts::Lift;
-use super::{Plan, Reader, Source};
+use super::source::{Plan, Reader, Source};
 use crate::drawing::{Drawing, DrawnFloor, DrawnLabel, DrawnOpening, DrawnWall, OpeningKind, note};
+use crate::error::Error;
+use crate::options::Options;
 use crate::words::is_waypoint;
-use crate::{Error, Options};
 
 pub(super) const READER: Reader = Reader { name: "rmf", title: "Open-RMF building.yaml", recognizes, read };
 
@@ -68,6 +69,9 @@ struct Level {
     floors: Vec<Floor>,
     #[serde(default)]
     holes: Vec<Floor>,
+    /// Things that stand about: model, name, place.
+    #[serde(default)]
+    models: Vec<Value>,
 }
 
 #[derive(Deserialize)]
@@ -226,6 +230,10 @@ fn add_level(
             let corners = corners.ok_or_else(|| broken(format!("{list}/{i}"), "names a vertex that is not there"))?;
             drawing.floors.push(DrawnFloor { corners, hole, level: here.clone() });
         }
+    }
+    for model in &level.models {
+        let name = model.get("model_name").or_else(|| model.get("name")).and_then(Value::as_str).unwrap_or("a model");
+        drawing.skip(format!("model `{}`", name.rsplit('/').next().unwrap_or(name)));
     }
     Ok(Frame { scale, up: meters, shift: Shift::default() })
 }

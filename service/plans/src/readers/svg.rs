@@ -9,10 +9,14 @@ use d3dgen_model::Point;
 use roxmltree::{Document, Node, ParsingOptions};
 use svgtypes::{Length, LengthUnit, SimplePathSegment, SimplifyingPathParser, Transform, ViewBox};
 
-use super::{Plan, Reader, Source};
-use crate::drawing::{Drawing, DrawnLabel, DrawnOpening, DrawnRoom, DrawnWall, MOST_POINTS, OpeningKind, extent, note};
-use crate::words::{Role, is_name, role};
-use crate::{Error, Options};
+use super::source::{Plan, Reader, Source};
+use crate::drawing::{
+    Drawing, DrawnLabel, DrawnOpening, DrawnRoom, DrawnShape, DrawnSolid, DrawnWall, Evidence, MOST_POINTS,
+    OpeningKind, SolidKind, extent, note,
+};
+use crate::error::Error;
+use crate::options::Options;
+use crate::words::{Role, is_name, role, said_of};
 
 pub(super) const READER: Reader = Reader { name: "svg", title: "SVG drawing", recognizes, read };
 
@@ -40,6 +44,8 @@ fn recognizes(source: &Source) -> bool {
 struct Shape {
     points: Vec<Point>,
     closed: bool,
+    /// True for circles and ellipses.
+    curved: bool,
 }
 
 /// What an element inherits.
@@ -47,6 +53,8 @@ struct Shape {
 struct Scope {
     transform: Transform,
     role: Option<Role>,
+    /// True when the user says what the role is.
+    said: bool,
     /// How many `<use>` lie around it.
     uses: usize,
 }
@@ -67,15 +75,14 @@ fn read(source: &Source, options: &Options) -> Result<Plan, Error> {
     let mut drawing = Drawing::default();
     let by_id: BTreeMap<&str, Node> =
         document.descendants().filter_map(|n| n.attribute("id").map(|id| (id, n))).collect();
-    let mut todo = vec![(root, Scope { transform: Transform::default(), role: None, uses: 0 }, false)];
+    let mut todo = vec![(root, Scope { transform: Transform::default(), role: None, said: false, uses: 0 }, false)];
     let (mut count, mut used) = (0_usize, 0_usize);
     while let Some((node, scope, asked)) = todo.pop() {
         // what a <use> asks for is drawn there, wherever it stands
         if !node.is_element() || !asked && UNSEEN.contains(&node.tag_name().name()) || is_hidden(&node) {
             continue;
         }
-        let role = own_role(&node).or(scope.role);
-        let scope = Scope { transform: transform(&node, scope.transform)?, role, ..scope };
+        let scope = Scope { transform: transform(&node, scope.transform)?, ..spoken(&node, scope, options) };
         count += add(&mut drawing, &node, scope)?;
         if node.tag_name().name() == "use" {
             if let Some((target, scope)) = used_by(&node, scope, &by_id).filter(|_| used < MOST_USED) {
@@ -153,9 +160,13 @@ fn transform(node: &Node, outer: Transform) -> Result<Transform, Error> {
     })
 }
 
-/// Returns what the class, layer name, type or id of an element says it is.
-fn own_role(node: &Node) -> Option<Role> {
-    names(node).find_map(role)
+/// Returns the scope with what the user says of an element, or its class, layer name, type or id.
+fn spoken(node: &Node, scope: Scope, options: &Options) -> Scope {
+    match names(node).find_map(|n| said_of(n, options)) {
+        Some(role) => Scope { role: Some(role), said: true, ..scope },
+        None if scope.said => scope,
+        None => Scope { role: names(node).find_map(role).or(scope.role), ..scope },
+    }
 }
 
 /// Returns the names of an element that say what it is, if they say it.
@@ -165,12 +176,9 @@ fn names<'a>(node: &Node<'a, '_>) -> impl Iterator<Item = &'a str> {
     names.into_iter().flatten().filter(|t| !is_automatic(t))
 }
 
-/// Returns the nearest name around an element, for what is left out.
-fn layer(node: &Node) -> String {
-    match node.ancestors().find_map(|n| names(&n).next()) {
-        Some(name) => format!("`{name}`"),
-        None => format!("elements <{}> without a name", node.tag_name().name()),
-    }
+/// Returns the nearest name around an element, by which the user can say what is drawn there.
+fn layer<'a>(node: &Node<'a, '_>) -> Option<&'a str> {
+    node.ancestors().skip(1).find_map(|n| names(&n).next())
 }
 
 /// Returns true for names that drawing programs give by themselves.
@@ -209,42 +217,61 @@ fn add(drawing: &mut Drawing, node: &Node, scope: Scope) -> Result<usize, Error>
     let mut count = 0;
     for shape in shapes(node)? {
         let t = scope.transform;
-        let points: Vec<Point> =
-            shape.points.iter().map(|p| Point::new(t.a * p.x + t.c * p.y + t.e, t.b * p.x + t.d * p.y + t.f)).collect();
+        let at = |p: &Point| Point::new(t.a * p.x + t.c * p.y + t.e, t.b * p.x + t.d * p.y + t.f);
+        let points: Vec<Point> = shape.points.iter().map(at).collect();
         count += points.len();
-        let opening = match scope.role {
-            Some(Role::Door) => Some(OpeningKind::Door),
-            Some(Role::Passage) => Some(OpeningKind::Passage),
-            Some(Role::Window) => Some(OpeningKind::Window),
-            _ => None,
-        };
-        match (scope.role, opening) {
-            (_, Some(kind)) => {
-                let mut o = DrawnOpening::new(kind, points, None, place(node));
-                o.sliding = node.attribute("class").is_some_and(|c| c.contains("sliding"));
-                drawing.openings.push(o);
-            }
-            (Some(Role::Skip | Role::Outline | Role::Tag), _) => {}
-            // a filled wall is drawn by its faces
-            (Some(Role::Wall), _) => {
-                let back = shape.closed.then(|| points[0]);
-                let points: Vec<Point> = points.iter().copied().chain(back).collect();
-                drawing.walls.extend(points.windows(2).map(|p| DrawnWall {
-                    line: [p[0], p[1]],
-                    level: None,
-                    place: place(node),
-                }));
-            }
-            _ if shape.closed => {
-                let label = label(node);
-                let place = if label.is_empty() { place(node) } else { format!("room `{label}` ({})", place(node)) };
-                let kind = node.attribute("data-room-type").map(str::to_owned);
-                drawing.rooms.push(DrawnRoom { kind, ..DrawnRoom::new(label, points, place) });
-            }
-            _ => drawing.leave_out(layer(node)),
-        }
+        add_shape(drawing, node, scope, Shape { points, ..shape });
     }
     Ok(count)
+}
+
+/// Adds a shape in the units of the drawing by what is said of its element.
+fn add_shape(drawing: &mut Drawing, node: &Node, scope: Scope, Shape { points, closed, curved }: Shape) {
+    let tag = node.tag_name().name();
+    let layer = layer(node);
+    drawing.saw(layer.or(names(node).next()).unwrap_or(tag), tag);
+    let told = layer.map_or_else(|| "no layer".to_owned(), |l| format!("layer `{l}`"));
+    let opening = match scope.role {
+        Some(Role::Door) => Some(OpeningKind::Door),
+        Some(Role::Passage) => Some(OpeningKind::Passage),
+        Some(Role::Window) => Some(OpeningKind::Window),
+        _ => None,
+    };
+    match (scope.role, opening) {
+        (_, Some(kind)) => {
+            let mut o = DrawnOpening::new(kind, points, None, place(node));
+            o.sliding = node.attribute("class").is_some_and(|c| c.contains("sliding"));
+            drawing.openings.push(o);
+        }
+        (Some(Role::Skip), _) => drawing.skip(format!("{told} as <{tag}>")),
+        (Some(Role::Outline | Role::Tag), _) => {}
+        (Some(Role::Column), _) if closed => {
+            let (kind, place) = (SolidKind::Column, place(node));
+            drawing.solids.push(DrawnSolid { kind, outline: points, level: None, place });
+        }
+        _ if closed => drawing.shapes.push(closed_shape(node, scope, told, points, curved)),
+        (Some(Role::Wall), _) => drawing.walls.extend(points.windows(2).map(|p| DrawnWall {
+            line: [p[0], p[1]],
+            level: None,
+            place: place(node),
+        })),
+        _ => drawing.leave_out(format!("{told} as <{tag}>")),
+    }
+}
+
+/// Returns a closed shape with what its element says of it; a filled wall is drawn by its faces.
+fn closed_shape(node: &Node, scope: Scope, layer: String, corners: Vec<Point>, curved: bool) -> DrawnShape {
+    let label = label(node);
+    let place = if label.is_empty() { place(node) } else { format!("room `{label}` ({})", place(node)) };
+    let kind = node.attribute("data-room-type").map(str::to_owned);
+    let evidence = match scope.role {
+        Some(Role::Wall) => Evidence::Wall,
+        Some(Role::Room) => Evidence::Room,
+        _ if kind.is_some() || !label.is_empty() => Evidence::Named,
+        _ => Evidence::None,
+    };
+    let room = DrawnRoom { kind, ..DrawnRoom::new(label, corners, place) };
+    DrawnShape { room, evidence, layer, kind: format!("<{}>", node.tag_name().name()), curved }
 }
 
 fn add_text(drawing: &mut Drawing, node: &Node, scope: Scope) -> usize {
@@ -273,7 +300,7 @@ fn shapes(node: &Node) -> Result<Vec<Shape>, Error> {
     };
     let list =
         |text: &str| svgtypes::PointsParser::from(text).map(|(x, y)| Point::new(x, y)).take(MOST_POINTS).collect();
-    let one = |points: Vec<Point>, closed: bool| Ok(vec![Shape { points, closed }]);
+    let one = |points: Vec<Point>, closed: bool| Ok(vec![Shape { points, closed, curved: false }]);
     match node.tag_name().name() {
         "rect" => {
             let (x, y, w, h) = (number("x")?, number("y")?, number("width")?, number("height")?);
@@ -293,6 +320,16 @@ fn shapes(node: &Node) -> Result<Vec<Shape>, Error> {
             one(points, closed)
         }
         "path" => path(node),
+        "circle" | "ellipse" => {
+            let (x, y, r) = (number("cx")?, number("cy")?, number("r")?);
+            let (rx, ry) = (number("rx")?.max(r), number("ry")?.max(r));
+            let at = |k: usize| {
+                let (sin, cos) = (std::f64::consts::TAU * k as f64 / (2 * PIECES) as f64).sin_cos();
+                Point::new(x + rx * cos, y + ry * sin)
+            };
+            let points = (0..2 * PIECES).map(at).collect();
+            Ok(if rx > 0.0 && ry > 0.0 { vec![Shape { points, closed: true, curved: true }] } else { Vec::new() })
+        }
         _ => Ok(Vec::new()),
     }
 }
@@ -306,7 +343,7 @@ fn path(node: &Node) -> Result<Vec<Shape>, Error> {
         let mut line = |points: &mut dyn Iterator<Item = Point>| {
             if out.last().is_none_or(|s| s.closed) {
                 let start = out.last().and_then(|s| s.points.first().copied()).unwrap_or(here);
-                out.push(Shape { points: vec![start], closed: false });
+                out.push(Shape { points: vec![start], closed: false, curved: false });
             }
             if let Some(shape) = out.last_mut() {
                 shape.points.extend(points);
@@ -314,7 +351,9 @@ fn path(node: &Node) -> Result<Vec<Shape>, Error> {
         };
         let steps = || (1..=PIECES).map(|k| k as f64 / PIECES as f64);
         match segment {
-            SimplePathSegment::MoveTo { x, y } => out.push(Shape { points: vec![Point::new(x, y)], closed: false }),
+            SimplePathSegment::MoveTo { x, y } => {
+                out.push(Shape { points: vec![Point::new(x, y)], closed: false, curved: false })
+            }
             SimplePathSegment::LineTo { x, y } => line(&mut std::iter::once(Point::new(x, y))),
             SimplePathSegment::CurveTo { x1, y1, x2, y2, x, y } => line(&mut steps().map(|t| {
                 let u = 1.0 - t;
@@ -359,36 +398,19 @@ fn millimeters(length: Length) -> Option<f64> {
 
 /// Turns the units of the drawing into meters, and y upwards.
 fn scale(drawing: &mut Drawing, root: &Node, options: &Options) -> Result<(), Error> {
-    let corners = drawing.rooms.iter().flat_map(|r| &r.corners).chain(drawing.walls.iter().flat_map(|w| &w.line));
+    let shapes = drawing.shapes.iter().filter(|s| !s.curved).flat_map(|s| &s.room.corners);
+    let corners = shapes.chain(drawing.walls.iter().flat_map(|w| &w.line));
     let Some([x0, y0, x1, y1]) = extent(corners.copied()) else {
-        return Err(Error::refused(
-            "drawing",
-            "holds no closed shapes and no walls; rooms are rect, polygon or closed path",
-        ));
+        let layers = drawing.tell_of_layers();
+        let message = format!("holds no closed shapes and no walls; rooms are rect, polygon or closed path{layers}");
+        return Err(Error::refused("drawing", message));
     };
     let (width, height) = (x1 - x0, y1 - y0);
     let unit = match options.meters_per_unit {
         Some(unit) => unit,
         None => {
-            let length = |name: &str| root.attribute(name).and_then(|t| Length::from_str(t).ok()).and_then(millimeters);
-            let view = root.attribute("viewBox").and_then(|v| ViewBox::from_str(v).ok());
-            let printed = match (length("width"), length("height"), view) {
-                (Some(mm), _, Some(v)) if v.w > 0.0 => Some(mm / v.w / 1000.0),
-                (None, Some(mm), Some(v)) if v.h > 0.0 => Some(mm / v.h / 1000.0),
-                (Some(_), _, None) | (_, Some(_), None) => Some(0.0254 / 96.0),
-                _ => None,
-            };
-            let hint = |printed: Option<f64>| {
-                let guess = 10.0_f64.powf((10.0 / width.max(height).max(1e-12)).log10().round());
-                // a plan is printed a hundred times smaller than it is, or more
-                let large = |unit: &f64| (0.1..10.0).contains(&(guess / unit));
-                let guess = printed.filter(large).map_or(guess, |unit| unit * 100.0);
-                format!(
-                    "say how long one unit is: --meters-per-unit {guess} would make the plan {:.2} m by {:.2} m",
-                    width * guess,
-                    height * guess
-                )
-            };
+            let hint = |printed| hint(printed, width, height);
+            let printed = printed(root);
             match printed {
                 Some(unit) if width.max(height) * unit >= REAL_SIZE_M => unit,
                 Some(unit) => {
@@ -407,4 +429,29 @@ fn scale(drawing: &mut Drawing, root: &Node, options: &Options) -> Result<(), Er
     drawing.points_mut().for_each(|p| *p = Point::new((p.x - x0) * unit, (y1 - p.y) * unit));
     drawing.notes.push(note("scale", format!("one unit of the drawing is {unit} m")));
     Ok(())
+}
+
+/// Returns the length of a unit as the drawing is printed, m, where the file states its size.
+fn printed(root: &Node) -> Option<f64> {
+    let length = |name: &str| root.attribute(name).and_then(|t| Length::from_str(t).ok()).and_then(millimeters);
+    let view = root.attribute("viewBox").and_then(|v| ViewBox::from_str(v).ok());
+    match (length("width"), length("height"), view) {
+        (Some(mm), _, Some(v)) if v.w > 0.0 => Some(mm / v.w / 1000.0),
+        (None, Some(mm), Some(v)) if v.h > 0.0 => Some(mm / v.h / 1000.0),
+        (Some(_), _, None) | (_, Some(_), None) => Some(0.0254 / 96.0),
+        _ => None,
+    }
+}
+
+/// Returns what to say of the unit, for a drawing so many units wide and high.
+fn hint(printed: Option<f64>, width: f64, height: f64) -> String {
+    let guess = 10.0_f64.powf((10.0 / width.max(height).max(1e-12)).log10().round());
+    // a plan is printed a hundred times smaller than it is, or more
+    let large = |unit: &f64| (0.1..10.0).contains(&(guess / unit));
+    let guess = printed.filter(large).map_or(guess, |unit| unit * 100.0);
+    format!(
+        "say how long one unit is: --meters-per-unit {guess} would make the plan {:.2} m by {:.2} m",
+        width * guess,
+        height * guess
+    )
 }

@@ -431,8 +431,9 @@ fn add_companions(reading: &mut Reading, planned: &[Planned], named: &mut BTreeM
 
 /// Returns the objects wished for in a room, most important first: those named, then those of its type.
 pub fn wished_assets(domain: &Domain, kind: &RoomType, named: &[String]) -> Vec<String> {
-    let mut out: Vec<String> = Vec::new();
-    for object in named.iter().map(String::as_str).chain(furniture(domain, kind)) {
+    // what is named several times is to be there so often
+    let mut out: Vec<String> = named.to_vec();
+    for object in furniture(domain, kind) {
         if out.len() < MOST_WISHES && !out.iter().any(|o| o == object) {
             out.push(object.to_owned());
         }

@@ -5,3 +5,4 @@ pub(crate) mod docks;
 pub(crate) mod keeps;
 pub(crate) mod robot_rules;
 pub(crate) mod robots;
+pub(crate) mod sizes;

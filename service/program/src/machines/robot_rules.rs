@@ -76,6 +76,11 @@ pub(crate) fn of_rooms(rules: &[Rule], rooms: &[GraphRoom]) -> Vec<RobotRule> {
 }
 
 impl Rule {
+    /// Returns the rule that keeps robots out of all rooms of a type.
+    pub(crate) fn keep_out_of(room_type: String) -> Self {
+        Self { room_type: Some(room_type), number: None, keep_out: true, max_speed_m_s: None }
+    }
+
     fn of(reader: &Reader, mention: usize) -> Self {
         let mention = &reader.mentions[mention];
         let room_type = mention.room_type().map(str::to_owned);

@@ -4,6 +4,7 @@ use d3dgen_model::robot_body::RobotBody;
 use d3dgen_model::robot_kind;
 use d3dgen_model::scene_graph::{GraphRoom, Note, Robot};
 
+use super::sizes::Sizes;
 use crate::named::counts::number_after;
 use crate::named::mention::{Mention, What};
 use crate::request::Request;
@@ -384,7 +385,7 @@ impl Counting<'_> {
 pub(crate) fn of_graph(
     fleet: &Fleet,
     wishes: &Wishes,
-    (radius, length): (Option<f64>, Option<f64>),
+    (robots, sizes): (&Robots, &Sizes),
     request: &Request,
     prompt: &Prompt,
     assumptions: &mut Vec<Note>,
@@ -402,41 +403,19 @@ pub(crate) fn of_graph(
         let message = format!("`{words}` is no kind of robot that is planned; it was left out beside the others");
         conflicts.push(Note::new("unread_wish", message));
     }
-    let radius = match radius {
-        Some(r) if !(0.05..=2.0).contains(&r) => {
-            conflicts.push(Note::new(
-                "robot_radius",
-                format!("a robot radius of {r} m is outside 0.05-2 m; the usual one was taken"),
-            ));
-            None
-        }
-        other => other,
-    };
-    if let (Some(flag), Some(named)) = (request.robot_radius_m, radius)
-        && (flag - named).abs() > 1e-9
-    {
-        conflicts.push(Note::new(
-            "radius_flag",
-            format!("the prompt says {named} m robot radius, the request {flag} m; {flag} m was used"),
-        ));
-    }
     let charging = wishes.charging || wishes.wishes.iter().any(|w| w.room_type == CHARGING);
+    let kinds: Vec<&str> = wanted.iter().map(|w| w.kind).collect();
+    let mut bodies = Bodies { request, sizes, robots, conflicts };
     wanted
         .iter()
         .filter_map(|w| {
-            let body = robot_kind::typical(w.kind)?;
-            let mut own = request.robot;
-            // "0.7 m wide, 0.9 m long"
-            if let Some((width, length)) = radius.map(|r| 2.0 * r).zip(length).filter(|_| own == RobotBody::default()) {
-                (own.width_m, own.length_m) = (Some(width), Some(length));
-            }
-            // it drives through doors as wide as it is, and turns where there is room for its length
-            let stated = request.robot_radius_m.or(request.robot.radius_m()).or(radius);
+            let usual = robot_kind::typical(w.kind)?;
+            let (own, stated) = bodies.of(w.kind, &kinds);
             Some(Robot {
                 kind: w.kind.into(),
                 count: w.count,
-                radius_m: stated.unwrap_or(body.radius_m),
-                height_m: own.height_m.unwrap_or(body.height_m),
+                radius_m: stated.unwrap_or(usual.radius_m),
+                height_m: own.height_m.unwrap_or(usual.height_m),
                 charging,
                 body: (own != RobotBody::default()).then_some(own),
                 // its rooms have no ids yet
@@ -446,6 +425,65 @@ pub(crate) fn of_graph(
             })
         })
         .collect()
+}
+
+/// Puts together what the prompt and the request say of the bodies of robots.
+struct Bodies<'a> {
+    request: &'a Request,
+    sizes: &'a Sizes,
+    robots: &'a Robots,
+    conflicts: &'a mut Vec<Note>,
+}
+
+impl Bodies<'_> {
+    /// Returns the body of robots of one of the kinds that are wanted, and the radius that is planned for, where one of its
+    /// measures is known: the request's, and where that says nothing the prompt's.
+    fn of(&mut self, kind: &str, wanted: &[&str]) -> (RobotBody, Option<f64>) {
+        let (said, radius) = self.sizes.of(kind, wanted, self.robots);
+        let said = if said.problems().is_empty() {
+            said
+        } else {
+            let problems = said.problems().join("; ");
+            self.tell("robot_size", format!("{problems}; the usual one was taken"));
+            RobotBody::default()
+        };
+        let radius = radius.filter(|r| {
+            let plausible = (0.05..=2.0).contains(r);
+            if !plausible {
+                let message = format!("a robot radius of {r} m is outside 0.05-2 m; the usual one was taken");
+                self.tell("robot_radius", message);
+            }
+            plausible
+        });
+        let Request { robot: flags, robot_radius_m: flag, .. } = self.request;
+        let other = |a: Option<f64>, b: Option<f64>| Some(a.zip(b)?).filter(|(a, b)| (a - b).abs() > 1e-9);
+        if let Some((flag, named)) = other(*flag, radius) {
+            let message = format!("the prompt says {named} m robot radius, the request {flag} m; {flag} m was used");
+            self.tell("radius_flag", message);
+        }
+        for (name, flag, named) in [
+            ("width", flags.width_m, said.width_m),
+            ("length", flags.length_m, said.length_m),
+            ("height", flags.height_m, said.height_m),
+            ("turning radius", flags.turning_radius_m, said.turning_radius_m),
+            ("climb", flags.climb_m, said.climb_m),
+        ] {
+            if let Some((flag, named)) = other(flag, named) {
+                let message =
+                    format!("the prompt says {named} m robot {name}, the request {flag} m; {flag} m was used");
+                self.tell("robot_flag", message);
+            }
+        }
+        let own = flags.or(said);
+        // one that is told by its circle alone has no body
+        (own, flag.or(flags.radius_m().and(own.radius_m())).or(radius).or(own.radius_m()))
+    }
+
+    fn tell(&mut self, code: &str, message: String) {
+        if !self.conflicts.iter().any(|note| note.message == message) {
+            self.conflicts.push(Note::new(code, message));
+        }
+    }
 }
 
 /// Where the prompt has robots go: room types, and whether to the entrance.

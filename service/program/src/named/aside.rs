@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use d3dgen_model::domain::Domain;
 use d3dgen_model::style::{LayoutStyle, StyleWord};
 use d3dgen_plugins::Registry;
 
@@ -13,6 +14,7 @@ use super::qualities::{self, Nook};
 use super::styles;
 use crate::heard::Heard;
 use crate::levels::storeys;
+use crate::machines::sizes::Sizes;
 use crate::people::beds::{BedRoom, Choice};
 use crate::people::dwelling;
 use crate::people::short_form::ShortForm;
@@ -26,8 +28,8 @@ use crate::tokens::words::{Tag, tag_ends_at, words};
 pub(crate) struct Aside {
     pub vocabulary: Arc<Vocabulary>,
     pub areas: Vec<Area>,
-    /// Radius and length of the robot, m.
-    pub robot_m: [Option<f64>; 2],
+    /// How large the robots are.
+    pub sizes: Sizes,
     pub short_forms: Vec<ShortForm>,
     /// Rooms that are told by their beds.
     pub bed_rooms: Vec<BedRoom>,
@@ -44,13 +46,39 @@ pub(crate) struct Aside {
 }
 
 impl Aside {
+    /// Returns that of a brief, which has no such words.
+    pub(crate) fn empty(heard: &Heard, domain: &Domain, registry: &Registry) -> Self {
+        let languages = &heard.languages;
+        let vocabulary =
+            registry.digest(&format!("{languages:?}: {}", domain.id), || Vocabulary::new(domain, registry, languages));
+        Self {
+            vocabulary,
+            areas: Vec::new(),
+            sizes: Sizes::default(),
+            short_forms: Vec::new(),
+            bed_rooms: Vec::new(),
+            storeys: Vec::new(),
+            styles: Vec::new(),
+            nooks: Vec::new(),
+            compounds: Vec::new(),
+            taken: Vec::new(),
+            counted: Vec::new(),
+            not_things: Vec::new(),
+        }
+    }
+
     /// Finds them; a building whose word turns out to be that of a room loses it.
     pub(crate) fn find(heard: &Heard, site: &mut Site, registry: &Registry) -> Self {
         let Heard { prompt, tokens, numbers, languages, spoken, .. } = heard;
         let (domain, lives) = (site.domain, site.lives);
-        let areas = measures::areas(tokens, numbers);
-        let radius = measures::robot_radius(tokens, numbers, spoken);
-        let length = measures::robot_length(tokens, numbers, spoken).filter(|_| radius.is_some());
+        let vocabulary =
+            registry.digest(&format!("{languages:?}: {}", domain.id), || Vocabulary::new(domain, registry, languages));
+        let sizes = Sizes::read(tokens, numbers, spoken, &site.machines, |i| {
+            heard.is_tagged(i, Tag::MeasuredParts) || vocabulary.names_room(tokens, i, numbers, spoken)
+        });
+        let mut areas = measures::areas(tokens, numbers);
+        // "0.6 x 0.8 m" of a robot is no floor
+        areas.retain(|a| !sizes.spans.iter().any(|s| s.overlaps(a.span)));
         let short_forms = dwelling::short_forms(tokens, numbers, domain, spoken, site.shared);
         let mut taken = site.places.clone();
         taken.extend(areas.iter().map(|a| a.span));
@@ -58,9 +86,7 @@ impl Aside {
         let mut counted: Vec<Span> = taken.iter().filter(|s| !site.places.contains(s)).copied().collect();
         counted.extend(site.machines.spans.iter().copied());
         taken.extend(site.machines.spans.iter().copied());
-        taken.extend(radius.iter().chain(&length).map(|r| r.0));
-        let vocabulary =
-            registry.digest(&format!("{languages:?}: {}", domain.id), || Vocabulary::new(domain, registry, languages));
+        taken.extend(sizes.spans.iter().copied());
         single::unname(&mut site.building, tokens, &vocabulary, numbers, spoken);
         let choice = Choice { domain, program: site.program, spoken };
         let own = |span| vocabulary.own_at(tokens, span);
@@ -81,11 +107,10 @@ impl Aside {
         let compounds = compounds::find(tokens, prompt, domain, spoken, names_room, |span| {
             taken.iter().chain(&site.building.head).any(|s| s.overlaps(span))
         });
-        let robot_m = [radius.map(|r| r.1), length.map(|l| l.1)];
         Self {
             vocabulary,
             areas,
-            robot_m,
+            sizes,
             short_forms,
             bed_rooms,
             storeys,

@@ -11,6 +11,7 @@ use crate::tokens::text::Span;
 use crate::wished::comparisons::{self, Comparison};
 
 /// What people and places make of the rooms that are named.
+#[derive(Default)]
 pub(crate) struct Counted {
     /// Rooms with the desks of each.
     pub desks: Vec<Held>,

@@ -1,20 +1,22 @@
-//! Countries and cities in prompts: which jurisdiction applies.
+//! Countries, their divisions and cities in prompts: which jurisdiction applies. The gazetteer is `places.jsonl`.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::LazyLock;
 
+use d3dgen_model::knowledge::is_jurisdiction;
 use d3dgen_model::scene_graph::Note;
 use serde::Deserialize;
 
-use crate::tokens::text::{Kind, Phrases, Span, Token};
+use crate::tokens::text::{Kind, Phrases, Span, Token, tokens};
 use crate::tokens::words::{Spoken, Tag, is_tagged, tag_end, tag_ends_at};
 
 /// One line of `places.jsonl`.
 #[derive(Debug, Deserialize)]
 struct Line {
+    /// ISO 3166 code of a country (`CA`) or a division (`CA-ON`); of a city, the nearest of both that is known.
     #[serde(default)]
     code: Option<String>,
-    /// Countries that share the name.
+    /// Countries and divisions that share the name.
     #[serde(default)]
     codes: Vec<String>,
     names: Vec<String>,
@@ -23,6 +25,9 @@ struct Line {
     strict: bool,
     #[serde(default)]
     city: bool,
+    /// True for codes that are words or abbreviations too ("IT", "ER"): alone they name no country.
+    #[serde(default)]
+    code_is_word: bool,
 }
 
 #[derive(Debug, Clone)]
@@ -34,21 +39,37 @@ struct Place {
 
 struct Gazetteer {
     phrases: Phrases<Place>,
-    /// Country codes with their English names.
-    countries: BTreeMap<String, String>,
+    /// Names as they are written, folded, one space between their words: "in de" is no "Inde".
+    written: BTreeSet<String>,
+    /// Codes of countries and divisions with their names.
+    names: BTreeMap<String, String>,
+    /// Codes of countries that name them in a sentence.
+    spoken_codes: BTreeSet<String>,
+}
+
+impl Gazetteer {
+    /// Returns true for a country whose divisions are listed.
+    fn lists_divisions_of(&self, country: &str) -> bool {
+        let after = format!("{country}-");
+        self.names.range(after.clone()..).next().is_some_and(|(code, _)| code.starts_with(&after))
+    }
 }
 
 fn gazetteer() -> &'static Gazetteer {
     static GAZETTEER: LazyLock<Gazetteer> = LazyLock::new(|| {
         let mut phrases = Phrases::new("");
-        let mut countries = BTreeMap::new();
+        let (mut known, mut spoken_codes, mut written) = (BTreeMap::new(), BTreeSet::new(), BTreeSet::new());
         for line in include_str!("places.jsonl").lines() {
             let line: Line = serde_json::from_str(line).expect("a test reads places.jsonl");
             let codes: Vec<String> = line.code.clone().into_iter().chain(line.codes).collect();
             if let (Some(code), Some(name), false) = (&line.code, line.names.first(), line.city) {
-                countries.insert(code.clone(), name.clone());
+                known.entry(code.clone()).or_insert_with(|| name.clone());
+                if !line.code_is_word && !code.contains('-') {
+                    spoken_codes.insert(code.clone());
+                }
             }
             for name in &line.names {
+                written.insert(spelled(&tokens(name)));
                 let place = Place { codes: codes.clone(), strict: line.strict, city: line.city };
                 phrases.put(name, place, |old: &Place, new| {
                     // a country wins over a city of the same name; a listed ambiguity over both
@@ -56,9 +77,15 @@ fn gazetteer() -> &'static Gazetteer {
                 });
             }
         }
-        Gazetteer { phrases, countries }
+        Gazetteer { phrases, written, names: known, spoken_codes }
     });
     &GAZETTEER
+}
+
+/// Returns words with one space between them.
+fn spelled(words: &[Token]) -> String {
+    let words: Vec<&str> = words.iter().filter(|t| !t.is_mark()).map(|t| t.text.as_str()).collect();
+    words.join(" ")
 }
 
 /// What the prompt says about the place.
@@ -70,14 +97,39 @@ pub(crate) struct Whereabouts {
     pub conflicts: Vec<Note>,
 }
 
-/// Returns the ISO 3166-1 alpha-2 code of a code or a name in one of six languages.
+/// Returns the ISO 3166 code of a country or of one of its divisions, for a code (`ca-on`) or a name in one of six
+/// languages; a city gives where it lies.
 pub(crate) fn code_of(text: &str) -> Option<String> {
     let upper = text.trim().to_uppercase();
-    if gazetteer().countries.contains_key(&upper) {
+    if gazetteer().names.contains_key(&upper) || is_unlisted_division(&upper) {
         return Some(upper);
     }
     let place = gazetteer().phrases.whole(text)?;
     if let [code] = place.codes.as_slice() { Some(code.clone()) } else { None }
+}
+
+/// Returns true for a division of a country of which no division is listed: which there are nobody here can say.
+fn is_unlisted_division(code: &str) -> bool {
+    let country = country_of(code);
+    country != code
+        && is_jurisdiction(code)
+        && gazetteer().names.contains_key(country)
+        && !gazetteer().lists_divisions_of(country)
+}
+
+/// Returns the country of a code.
+pub(crate) fn country_of(code: &str) -> &str {
+    code.split('-').next().unwrap_or(code)
+}
+
+/// Returns the nearer of two codes where one lies in the other.
+pub(crate) fn nearer<'a>(a: &'a str, b: &'a str) -> Option<&'a str> {
+    match (country_of(a), country_of(b)) {
+        (x, y) if x != y => None,
+        _ if a == b || country_of(b) == b => Some(a),
+        _ if country_of(a) == a => Some(b),
+        _ => None,
+    }
 }
 
 /// Words of a place's name before one of them, at most.
@@ -89,9 +141,9 @@ pub(crate) fn names(tokens: &[Token], at: usize) -> bool {
     (at.saturating_sub(MOST_BEFORE)..=at).any(ends)
 }
 
-/// Returns a country's English name.
-pub(super) fn country_name(code: &str) -> &str {
-    gazetteer().countries.get(code).map_or(code, String::as_str)
+/// Returns the name of a country or a division.
+pub(super) fn name_of(code: &str) -> &str {
+    gazetteer().names.get(code).map_or(code, String::as_str)
 }
 
 /// Finds the place a prompt names.
@@ -100,7 +152,11 @@ pub(crate) fn locate(tokens: &[Token], prompt: &str, spoken: &[&Spoken]) -> Wher
     let mut found: Vec<(Span, Place)> = Vec::new();
     let mut i = 0;
     while i < tokens.len() {
-        match place_at(tokens, i, prompt, spoken) {
+        let before = found
+            .last()
+            .filter(|(span, _)| tokens[span.end..i].iter().all(|t| t.mark() == Some(',')) && i <= span.end + 1);
+        let written = code_at(tokens, i, prompt, spoken, before.map(|(_, place)| place));
+        match written.or_else(|| place_at(tokens, i, prompt, spoken)) {
             Some((end, place)) => {
                 out.spans.push(Span { start: i, end });
                 found.push((Span { start: i, end }, place));
@@ -111,10 +167,11 @@ pub(crate) fn locate(tokens: &[Token], prompt: &str, spoken: &[&Spoken]) -> Wher
     }
     let mut codes: Vec<&str> = Vec::new();
     for (_, place) in &found {
-        if let [code] = place.codes.as_slice()
-            && !codes.contains(&code.as_str())
-        {
-            codes.push(code);
+        let [code] = place.codes.as_slice() else { continue };
+        // "Toronto, Canada" is one place
+        match codes.iter().position(|known| nearer(known, code).is_some()) {
+            Some(at) => codes[at] = nearer(codes[at], code).unwrap_or(code),
+            None => codes.push(code),
         }
     }
     let text = |span: &Span| prompt.get(tokens[span.start].start..tokens[span.end - 1].end).unwrap_or("");
@@ -122,7 +179,7 @@ pub(crate) fn locate(tokens: &[Token], prompt: &str, spoken: &[&Spoken]) -> Wher
     match (codes.as_slice(), open) {
         ([code], _) => out.country_code = Some((*code).to_owned()),
         ([], Some((span, place))) => {
-            let names: Vec<&str> = place.codes.iter().map(|c| country_name(c)).collect();
+            let names: Vec<&str> = place.codes.iter().map(|c| name_of(c)).collect();
             out.conflicts.push(Note::new(
                 "ambiguous_place",
                 format!(
@@ -136,17 +193,25 @@ pub(crate) fn locate(tokens: &[Token], prompt: &str, spoken: &[&Spoken]) -> Wher
             // "London, Ontario" and "Paris, Texas": the wider place comes last; "Berlin or Paris" has no winner.
             let adjacent =
                 found.windows(2).all(|w| tokens[w[0].0.end..w[1].0.start].iter().all(|t| t.mark() == Some(',')));
-            let code = if adjacent { last } else { first };
-            out.country_code = Some((*code).to_owned());
-            let names: Vec<&str> = codes.iter().map(|c| country_name(c)).collect();
-            out.conflicts.push(Note::new(
-                "several_places",
-                format!(
-                    "the prompt names places in {}; the rules of {} were applied",
-                    names.join(", "),
-                    country_name(code)
-                ),
-            ));
+            let one_country = codes.iter().all(|c| country_of(c) == country_of(first));
+            let code = match (adjacent, one_country) {
+                (true, _) => last,
+                (false, true) => country_of(first),
+                (false, false) => first,
+            };
+            out.country_code = Some(code.to_owned());
+            // "Portland, Maine"
+            if !(adjacent && one_country) {
+                let names: Vec<&str> = codes.iter().map(|c| name_of(c)).collect();
+                out.conflicts.push(Note::new(
+                    "several_places",
+                    format!(
+                        "the prompt names places in {}; the rules of {} were applied",
+                        names.join(", "),
+                        name_of(code)
+                    ),
+                ));
+            }
         }
         ([], None) => {}
     }
@@ -157,6 +222,41 @@ pub(crate) fn locate(tokens: &[Token], prompt: &str, spoken: &[&Spoken]) -> Wher
         if out.country_code.is_some() { out.assumptions.push(note) } else { out.conflicts.push(note) }
     }
     out
+}
+
+/// Reads a code of a country or a division, in capitals: `office in DE`, `hospital, US-NC`, and, behind a place,
+/// `Austin, TX`. In lower case, and where all is in capitals, the letters are words ("toilet in de hal").
+fn code_at(
+    tokens: &[Token],
+    i: usize,
+    prompt: &str,
+    spoken: &[&Spoken],
+    behind: Option<&Place>,
+) -> Option<(usize, Place)> {
+    let raw = |t: &Token| prompt.get(t.start..t.end).unwrap_or("");
+    let code = raw(&tokens[i]);
+    if code.len() != 2 || !code.bytes().all(|b| b.is_ascii_uppercase()) {
+        return None;
+    }
+    let place = |code: String, end: usize| Some((end, Place { codes: vec![code], strict: false, city: false }));
+    if let Some(division) = tokens.get(i + 1).filter(|t| prompt.get(tokens[i].end..t.start) == Some("-")) {
+        let whole = format!("{code}-{}", raw(division));
+        return if code_of(&whole).is_some_and(|c| c == whole) { place(whole, i + 2) } else { None };
+    }
+    let shouted = |t: &Token| t.kind != Kind::Word || raw(t).chars().all(char::is_uppercase);
+    let ends = tokens.get(i + 1).is_none_or(Token::is_mark);
+    if !ends || tokens.iter().all(shouted) {
+        return None;
+    }
+    if let Some([of]) = behind.map(|p| p.codes.as_slice()) {
+        let division = format!("{}-{code}", country_of(of));
+        if gazetteer().names.contains_key(&division) {
+            return place(division, i + 1);
+        }
+    }
+    let inside = i.checked_sub(1).is_some_and(|b| tag_ends_at(spoken, tokens, b, Tag::Inside, i));
+    let named = (inside || behind.is_some()) && gazetteer().spoken_codes.contains(code);
+    if named { place(code.to_owned(), i + 1) } else { None }
 }
 
 fn place_at(tokens: &[Token], i: usize, prompt: &str, spoken: &[&Spoken]) -> Option<(usize, Place)> {
@@ -174,7 +274,12 @@ fn place_at(tokens: &[Token], i: usize, prompt: &str, spoken: &[&Spoken]) -> Opt
             return Some((i + 3, Place { codes: vec![code.into()], strict: false, city: false }));
         }
     }
-    let (end, place) = gazetteer().phrases.longest_at(tokens, i)?;
+    let phrases = &gazetteer().phrases;
+    let whole = |end: &usize| {
+        *end == i + 1 || token.kind != Kind::Word || gazetteer().written.contains(&spelled(&tokens[i..*end]))
+    };
+    let longest = phrases.longest_at(tokens, i).filter(|(end, _)| whole(end));
+    let (end, place) = longest.or_else(|| Some((i + 1, phrases.word(&token.text)?)))?;
     let before = (1..=2).any(|k| i.checked_sub(k).is_some_and(|b| tag_ends_at(spoken, tokens, b, Tag::PlaceBefore, i)));
     let apart = i.checked_sub(1).is_none_or(|b| tokens[b].is_mark());
     let last = tokens.get(end).is_none_or(Token::is_mark);
@@ -189,11 +294,9 @@ fn place_at(tokens: &[Token], i: usize, prompt: &str, spoken: &[&Spoken]) -> Opt
             let fits = !strict || (token.capital && (before || (apart && last && i > 0)));
             // "Paris-style": a name joined to a following word is a kind, not a place
             let joined = is_tagged(spoken, tokens, end, Tag::OfKind);
-            // "a den" is no Aden
-            let parted = end > i + 1 && !token.capital && is_tagged(spoken, tokens, i, Tag::Articles);
             // nor the "Check-in-Halle" the town of Halle
             let end_of_word = !token.spaced && i.checked_sub(1).is_some_and(|b| tokens[b].kind == Kind::Word);
-            (fits && !joined && !parted && !end_of_word).then(|| (end, place.clone()))
+            (fits && !joined && !end_of_word).then(|| (end, place.clone()))
         }
     }
 }
@@ -220,7 +323,7 @@ fn nationality(tokens: &[Token], spoken: &[&Spoken], out: &mut Whereabouts) {
             out.spans.push(Span { start: i, end: i + 1 });
             out.assumptions.push(Note::new(
                 "country_from_adjective",
-                format!("`{}` was read as the country {}", token.text, country_name(code)),
+                format!("`{}` was read as the country {}", token.text, name_of(code)),
             ));
             return;
         }
@@ -253,7 +356,7 @@ pub(crate) fn of_building(
         if after.into_iter().any(|j| tagged(j, Tag::StyleWords)) {
             continue;
         }
-        let message = format!("`{}` was read as the country {}", token.text, country_name(code));
+        let message = format!("`{}` was read as the country {}", token.text, name_of(code));
         assumptions.push(Note::new("country_from_adjective", message));
         return Some((code.clone(), Span { start: i, end: i + 1 }));
     }
@@ -286,7 +389,6 @@ fn nowhere(tokens: &[Token], prompt: &str, spoken: &[&Spoken], known: &[Span]) -
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tokens::text::tokens;
     use crate::tokens::words::words;
 
     fn located(text: &str) -> Option<String> {
@@ -300,14 +402,14 @@ mod tests {
         for (text, code) in [
             ("two-bedroom flat in Germany", Some("DE")),
             ("flat in Tokyo", Some("JP")),
-            ("Wohnung in München", Some("DE")),
+            ("Wohnung in München", Some("DE-BY")),
             ("上海一套住宅", Some("CN")),
             ("서울에 있는 아파트", Some("KR")),
-            ("Italian restaurant in Chicago", Some("US")),
+            ("Italian restaurant in Chicago", Some("US-IL")),
             ("Italian restaurant", None),
             ("a German hospital", Some("DE")),
             ("Flat in Georgia", None),
-            ("flat in Atlanta, Georgia", Some("US")),
+            ("flat in Atlanta, Georgia", Some("US-GA")),
             ("flat in Tbilisi, Georgia", Some("GE")),
             ("hospital on Mars", None),
             ("house with a reading room and a bath", None),
@@ -316,7 +418,27 @@ mod tests {
             ("give us an office", None),
             ("office, US", Some("US")),
             ("office in the U.S.", Some("US")),
-            ("London, Ontario", Some("CA")),
+            ("London, Ontario", Some("CA-ON")),
+            ("flat in Toronto, Canada", Some("CA-ON")),
+            ("Büro in Zürich", Some("CH-ZH")),
+            ("hospital in North Carolina", Some("US-NC")),
+            ("clinic in Dubai", Some("AE-DU")),
+            ("Krankenhaus in Bayern", Some("DE-BY")),
+            ("flat in Portland, Maine", Some("US-ME")),
+            ("an office in Munich and one in Kiel", Some("DE")),
+            ("offices, one in Munich, one in Paris", Some("DE-BY")),
+            ("office in DE", Some("DE")),
+            ("ward, US-NC", Some("US-NC")),
+            ("house in Austin, TX", Some("US-TX")),
+            ("house in San Francisco, CA, with a garage", Some("US-CA")),
+            ("office in de hoek", None),
+            ("toilet in de hal", None),
+            ("TOILET IN DE HAL", None),
+            ("the server racks in IT", None),
+            ("beds in ER", None),
+            ("rooms per u shape", None),
+            ("flat in New Zealand, the usual", Some("NZ")),
+            ("flat in CA-ZZ", None),
             ("office in New Zealand", Some("NZ")),
         ] {
             assert_eq!(located(text).as_deref(), code, "{text}");
@@ -325,8 +447,22 @@ mod tests {
 
     #[test]
     fn flags_read_codes_and_names() {
-        for (text, code) in [("de", Some("DE")), ("Germany", Some("DE")), ("UK", Some("GB")), ("XX", None), ("", None)]
-        {
+        for (text, code) in [
+            ("de", Some("DE")),
+            ("Germany", Some("DE")),
+            ("UK", Some("GB")),
+            ("CA-ON", Some("CA-ON")),
+            ("us-nc", Some("US-NC")),
+            ("Toronto", Some("CA-ON")),
+            ("Zürich", Some("CH-ZH")),
+            ("Bayern", Some("DE-BY")),
+            ("Vorarlberg", Some("AT-8")),
+            ("JP-13", Some("JP-13")),
+            ("US-ZZ", None),
+            ("XX", None),
+            ("XX-1", None),
+            ("", None),
+        ] {
             assert_eq!(code_of(text).as_deref(), code, "{text}");
         }
     }

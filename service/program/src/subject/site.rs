@@ -90,6 +90,27 @@ impl<'a> Site<'a> {
         })
     }
 
+    /// Returns what a brief is about.
+    pub(crate) fn of_facts(
+        domain: &'a Domain,
+        program: &'a Program,
+        building: Building,
+        country_code: Option<String>,
+        registry: &Registry,
+    ) -> Self {
+        Self {
+            country_code,
+            places: Vec::new(),
+            machines: Robots::default(),
+            domain,
+            program,
+            wet: registry.digest(&domain.id, || Wet::of(domain)),
+            lives: is_dwelling(program),
+            shared: building.building_type.as_ref().is_some_and(|b| words().dwelling.shared.contains(b)),
+            building,
+        }
+    }
+
     /// Returns the words that name the building or others.
     pub(crate) fn building_words(&self) -> Vec<Span> {
         self.building.words.iter().chain(&self.building.head).copied().collect()
@@ -99,12 +120,14 @@ impl<'a> Site<'a> {
 /// Returns the country of the request, which goes before that of the prompt.
 fn country_of(request: &Request, named: Option<&str>, notes: &mut Notes) -> Option<String> {
     let flag = request.country.as_deref().and_then(places::code_of)?;
-    if let Some(named) = named.filter(|named| *named != flag) {
+    let nearer = named.and_then(|named| places::nearer(&flag, named)).map(str::to_owned);
+    if let Some(named) = named.filter(|_| nearer.is_none()) {
         let message = format!("the prompt says {named}, the request {flag}; {flag} was used");
         notes.conflicts.push(Note::new("country_flag", message));
     }
     notes.conflicts.retain(|n| n.code != "ambiguous_place" && n.code != "unknown_place");
-    Some(flag)
+    // the prompt may say where in that country
+    Some(nearer.unwrap_or(flag))
 }
 
 /// Returns the building that a prompt or its request names, else what its rooms suggest.

@@ -61,6 +61,7 @@ pub(crate) enum Tag {
     Lift,
     Habitable,
     Accessible,
+    Wheelchair,
     Staff,
     People,
     Visitors,
@@ -157,8 +158,18 @@ pub(crate) enum Tag {
     ServicePoints,
     /// "Separate" of toilets: men and women have their own.
     Parted,
+    /// How wide a robot is: "0.7 m wide".
+    Width,
     /// How long a robot is: "0.9 m long".
     Length,
+    /// How high a robot is: "1.2 m high".
+    Height,
+    /// The circle in which a robot turns: "turning radius".
+    TurningRadius,
+    /// The step that a robot drives over: "climbs 2 cm".
+    Climb,
+    /// Parts of a building that are measured too: "ceilings", "aisles".
+    MeasuredParts,
     /// Those who stay with a patient: "parents".
     Companions,
     /// What they do there: "stay overnight".
@@ -204,7 +215,13 @@ pub(crate) enum Tag {
 }
 
 /// Tags of words that only their own reader hears: to all others these are words like any.
-const QUIET: [Tag; 11] = [
+const QUIET: [Tag; 17] = [
+    Tag::Width,
+    Tag::Length,
+    Tag::Height,
+    Tag::TurningRadius,
+    Tag::Climb,
+    Tag::MeasuredParts,
     Tag::Groups,
     Tag::Homes,
     Tag::For,

@@ -23,7 +23,7 @@ pub fn merge(
     let place: BTreeMap<&str, Option<&str>> =
         documents.iter().map(|d| (d.document_id.as_str(), d.jurisdiction.as_deref())).collect();
     let mut groups: BTreeMap<String, Vec<(SiFigure, ConstraintRecord)>> = BTreeMap::new();
-    for constraint in constraints {
+    for constraint in constraints.iter().filter(|c| !constraints.iter().any(|other| narrows(other, c))) {
         let Some(id) = ids.get(constraint.evidence.document_id.as_str()) else { continue };
         let mut constraint = constraint.clone();
         constraint.evidence.document_id.clone_from(id);
@@ -48,6 +48,34 @@ pub fn merge(
         documents,
         constraints: merged,
     }
+}
+
+/// Finder of the patterns; any other is a model.
+const BY_PATTERN: &str = "rules";
+
+/// Returns true where a model read in the same words what a pattern read too widely: a double patient room is not every
+/// patient room.
+fn narrows(model: &ConstraintRecord, pattern: &ConstraintRecord) -> bool {
+    let (m, p) = (&model.evidence, &pattern.evidence);
+    let same_words = m.document_id == p.document_id
+        && m.passage_id == p.passage_id
+        && m.span[0] < p.span[1]
+        && p.span[0] < m.span[1];
+    let same_figure = || {
+        let of = |c: &ConstraintRecord| si(&c.value, &c.unit, &c.name).key();
+        model.constraint_type == pattern.constraint_type && of(model) == of(pattern)
+    };
+    let words = |c: &ConstraintRecord| -> BTreeSet<String> {
+        let said = [c.space.as_str()].into_iter().chain(c.conditions.iter().map(String::as_str));
+        let words = said.flat_map(|s| s.split(|c: char| !c.is_alphanumeric()));
+        words.filter(|w| !w.is_empty()).map(str::to_lowercase).collect()
+    };
+    let by_both = model.found_by != BY_PATTERN && pattern.found_by == BY_PATTERN;
+    let narrower = || {
+        let (own, wide) = (words(model), words(pattern));
+        own.len() > wide.len() && wide.is_subset(&own)
+    };
+    by_both && same_words && same_figure() && narrower()
 }
 
 /// Returns the documents by id, and the id of each record's document.
@@ -238,6 +266,33 @@ mod tests {
         let mut shuffled = documents.to_vec();
         shuffled.rotate_left(1);
         assert_eq!(corpus(&shuffled, &backwards), merged);
+    }
+
+    #[test]
+    fn a_narrower_reading_of_the_same_words_wins() {
+        let documents = [document("a", None, Some("DE"))];
+        let wide = ConstraintRecord { space: "patient_room".into(), ..rule("a", 24.0, "m", &[]) };
+        let double = ConstraintRecord { space: "patient_room_double".into(), found_by: "model".into(), ..wide.clone() };
+        let conditioned =
+            ConstraintRecord { conditions: vec!["two beds".into()], found_by: "model".into(), ..wide.clone() };
+        let elsewhere = ConstraintRecord {
+            evidence: Evidence { passage_id: "p2".into(), ..double.evidence.clone() },
+            ..double.clone()
+        };
+        let other = ConstraintRecord { value: Value::Number(20.0), ..double.clone() };
+        for (model, left) in [(&double, 1), (&conditioned, 1), (&elsewhere, 2), (&other, 2)] {
+            let merged = corpus(&documents, &[wide.clone(), model.clone()]);
+            assert_eq!(merged.constraints.len(), left, "{merged:#?}");
+            assert!(merged.constraints.iter().any(|c| c.found_by == ["model"]), "{merged:#?}");
+        }
+    }
+
+    #[test]
+    fn what_no_building_has_is_kept_apart() {
+        let documents = [document("a", None, Some("DE"))];
+        let planted = [rule("a", 99.0, "m", &[]), rule("a", -5.0, "m", &[]), rule("a", 1.5, "m", &[])];
+        let (kept, apart) = corpus(&documents, &planted).without_doubtful();
+        assert_eq!((kept.constraints.len(), apart.len()), (1, 2), "{apart:?}");
     }
 
     #[test]

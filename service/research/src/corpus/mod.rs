@@ -12,6 +12,7 @@ use std::collections::BTreeSet;
 
 use d3dgen_model::document::{Document, Problem};
 use d3dgen_model::knowledge::{CONFIDENCES, CONSTRAINT_TYPES, Value, is_date};
+use d3dgen_model::plausible::doubt;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -111,6 +112,21 @@ pub struct CorpusConstraint {
     pub found_by: Vec<String>,
     /// Every place that says so.
     pub evidence: Vec<Evidence>,
+}
+
+impl Corpus {
+    /// Returns the corpus without rules that cannot mean what they say, and these: id and why.
+    pub fn without_doubtful(&self) -> (Self, Vec<(String, String)>) {
+        let (mut kept, mut apart) = (self.clone(), Vec::new());
+        kept.constraints.retain(|c| match doubt(&[&c.name, &c.basis, &c.space], &c.unit, &c.value) {
+            None => true,
+            Some(reason) => {
+                apart.push((c.constraint_id.clone(), reason));
+                false
+            }
+        });
+        (kept, apart)
+    }
 }
 
 impl Document for Corpus {

@@ -22,6 +22,10 @@ const MAX_TITLE: usize = 4;
 const MAX_SHORT_NOTE: usize = 8;
 /// Longest note without a verb, in words.
 const MAX_NOTE: usize = 14;
+/// How far behind a comparator its negation may stand in languages whose verb comes last, in tokens.
+const DENIAL_REACH: usize = 9;
+/// How far before a range the words may stand that make it one, in tokens.
+const SPAN_REACH: usize = 4;
 /// How far before a figure "within" and the like may stand, in tokens.
 const CLOSE_REACH: usize = 3;
 
@@ -92,6 +96,7 @@ impl Sentence<'_> {
     /// Returns for each figure its kind and how plain it is, none where it is no limit.
     pub fn verdicts(&self) -> Vec<Option<(ConstraintType, Confidence)>> {
         let tone = self.tone();
+        let unread = self.is_unread();
         if tone.former || tone.report && !self.is_physical() || tone.past && !tone.duty {
             return vec![None; self.mentions.len()];
         }
@@ -122,8 +127,38 @@ impl Sentence<'_> {
         }
         let any_strong = sides.iter().flatten().any(|s| s.strong);
         (0..self.mentions.len())
-            .map(|i| if conditions[i] { None } else { self.verdict(i, sides[i], &tone, any_strong) })
+            .map(|i| {
+                let told = sides[i].is_some_and(|s| s.strong);
+                let strange = sides[i].is_none() && self.is_compared(i);
+                let skipped = conditions[i] || strange || !told && (unread || self.is_remark(i));
+                if skipped { None } else { self.verdict(i, sides[i], &tone, any_strong) }
+            })
             .collect()
+    }
+
+    /// Whether the sentence is in a language whose words of comparison are not known: there only one that is makes a rule.
+    fn is_unread(&self) -> bool {
+        let read = &self.lexicon.languages;
+        if !self.lang.is_empty() && !read.iter().any(|l| l == self.lang) {
+            return true;
+        }
+        let words = || self.tokens.iter().filter(|t| t.kind == Kind::Word);
+        let strange = |t: &Token| t.text.chars().any(|c| self.lexicon.strange_letters.contains(c));
+        words().any(strange)
+    }
+
+    /// Whether a figure stands in brackets behind another: "1:20 (5 cm a metre)".
+    fn is_remark(&self, i: usize) -> bool {
+        let Some(mention) = self.mentions.get(i) else { return false };
+        let opened = (0..mention.from).rev().find(|&k| matches!(self.tokens[k].text.as_str(), "(" | ")" | "（" | "）"));
+        let Some(at) = opened.filter(|&k| matches!(self.tokens[k].text.as_str(), "(" | "（")) else { return false };
+        self.mentions.iter().any(|m| m.to <= at) && !(at..mention.from).any(|k| self.cue("duty", k))
+    }
+
+    /// Whether a figure is compared with in a word that is not known: "no skimpier than 2 m".
+    fn is_compared(&self, i: usize) -> bool {
+        self.mentions.get(i).and_then(|m| m.from.checked_sub(1)).is_some_and(|k| self.cue("than", k))
+            || self.mentions.get(i).is_some_and(|m| self.cue("than_behind", m.to))
     }
 
     fn cue(&self, name: &str, i: usize) -> bool {
@@ -231,6 +266,15 @@ impl Sentence<'_> {
             };
             if let Some(comparator) = self.lexicon.comparators.get(index) {
                 let near = !comparator.fixed || mention.from - end <= CLOSE_REACH;
+                // "unter Treppen ist eine Durchgangshöhe von 2 m": the word says where
+                let placed = !comparator.strong
+                    && !self.is_negated(from, k)
+                    && (end..mention.from)
+                        .any(|j| self.lexicon.space.is_at(self.tokens, j) || self.lexicon.object.is_at(self.tokens, j));
+                if placed {
+                    k = end;
+                    continue;
+                }
                 let before_thing = comparator.strong || mention.from - end <= OPENER_REACH + CLOSE_REACH;
                 let article = self.tokens.get(k).is_some_and(|t| t.is("every")) && mention.unit.is_none();
                 if near && before_thing && !article {
@@ -260,13 +304,20 @@ impl Sentence<'_> {
         (from..at).any(|k| self.cue("negations", k))
     }
 
+    /// Whether what a comparator says is denied behind it: "1.2m보다 좁아서는 안 된다".
+    fn is_denied(&self, end: usize) -> bool {
+        let rest = end..self.tokens.len().min(end + DENIAL_REACH);
+        rest.take_while(|&k| !self.tokens[k].is(",")).any(|k| self.cue("denials", k))
+    }
+
     fn side_behind(&self, mention: &Mention, next: usize) -> Option<(Sided, usize)> {
         for k in mention.to..next.min(mention.to + AFTER_REACH) {
             if let Some((end, index)) =
                 self.lexicon.after.at(self.tokens, k).filter(|c| c.0 < next || next == self.tokens.len())
             {
                 let comparator = self.lexicon.comparators.get(index)?;
-                let negated = !comparator.strong && self.is_negated(mention.to.saturating_sub(OPENER_REACH), k);
+                let negated = !comparator.strong
+                    && (self.is_negated(mention.to.saturating_sub(OPENER_REACH), k) || self.is_denied(end));
                 let bound = if negated { opposite(comparator.bound) } else { comparator.bound };
                 return Some((
                     Sided { bound, strong: comparator.strong || negated, fixed: false, at: k, behind: true },
@@ -333,6 +384,12 @@ impl Sentence<'_> {
         self.mentions.iter().filter(|m| !m.weak || matches!(m.figure, Figure::Per(..))).count()
     }
 
+    /// Returns the token behind a figure and a comparator that follows it.
+    fn side_end(&self, side: Option<Sided>, mention: &Mention) -> usize {
+        let behind = side.filter(|s| s.behind && s.at >= mention.to);
+        behind.and_then(|s| self.lexicon.after.at(self.tokens, s.at)).map_or(mention.to, |a| a.0)
+    }
+
     fn condition_thing(&self, i: usize) -> bool {
         self.mentions.get(i).is_some_and(|m| {
             matches!(m.figure, Figure::Number(_) | Figure::Range(..))
@@ -348,6 +405,11 @@ impl Sentence<'_> {
         }
         if matches!(mention.figure, Figure::Per(..)) {
             return false;
+        }
+        let counted_later =
+            || self.mentions.iter().skip(i + 1).enumerate().any(|(n, _)| !self.condition_thing(i + 1 + n));
+        if self.condition_thing(i) && counted_later() && self.cue("condition_ends", self.side_end(side, mention)) {
+            return true; // "100명 이상이 이용하는 실에는 출구를 2개소"
         }
         if mention.weak
             && side.is_none()
@@ -423,7 +485,9 @@ impl Sentence<'_> {
             reported: tone.plain && !ruled,
         };
         match &mention.figure {
-            Figure::Range(..) if weight.normative || any_strong => return Some((ConstraintType::Range, Medium)),
+            Figure::Range(..) if weight.normative || any_strong || self.is_span(mention) => {
+                return Some((ConstraintType::Range, Medium));
+            }
             Figure::Range(..) => return None,
             Figure::Per(..) if tone.habit => return Some((ConstraintType::RuleOfThumb, Low)),
             Figure::Per(..) if !weight.reported || side.is_some_and(|s| s.strong) => {
@@ -447,6 +511,11 @@ impl Sentence<'_> {
             return None;
         }
         self.bare_verdict(i, tone, &weight)
+    }
+
+    /// Whether a range is said to be one: "comprise entre 13 et 17 cm".
+    fn is_span(&self, mention: &Mention) -> bool {
+        (mention.from.saturating_sub(SPAN_REACH)..mention.from).any(|k| self.cue("spans", k))
     }
 
     /// Returns the kind of a figure without a comparator.

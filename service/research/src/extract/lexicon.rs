@@ -86,6 +86,8 @@ pub struct Numbers {
 #[derive(Debug)]
 pub struct Phrases<T> {
     by_first: BTreeMap<String, Vec<(Vec<String>, T)>>,
+    /// First words of phrases that stand for all words with that beginning (`super*`) or ending (`*rá`).
+    open: Vec<String>,
     plurals: bool,
 }
 
@@ -93,8 +95,7 @@ impl<T: Clone> Phrases<T> {
     fn new(entries: impl IntoIterator<Item = (String, T)>, plurals: bool) -> Self {
         let mut by_first: BTreeMap<String, Vec<(Vec<String>, T)>> = BTreeMap::new();
         for (phrase, meaning) in entries {
-            let words: Vec<String> =
-                tokens(&phrase, "").into_iter().filter(|t| !is_joint(t) || phrase == t.text).map(|t| t.text).collect();
+            let words = words_of(&phrase);
             if let Some(first) = words.first() {
                 by_first.entry(first.clone()).or_default().push((words, meaning));
             }
@@ -102,13 +103,15 @@ impl<T: Clone> Phrases<T> {
         for list in by_first.values_mut() {
             list.sort_by_key(|e| std::cmp::Reverse(e.0.len()));
         }
-        Self { by_first, plurals }
+        let open = by_first.keys().filter(|word| is_open(word)).cloned().collect();
+        Self { by_first, open, plurals }
     }
 
     /// Returns the end and meaning of the longest phrase that begins at `i`.
     pub fn at(&self, tokens: &[Token], i: usize) -> Option<(usize, T)> {
         let first = tokens.get(i)?;
-        let keys = if self.plurals { singulars(&first.text) } else { vec![first.text.as_str().to_owned()] };
+        let mut keys = if self.plurals { singulars(&first.text) } else { vec![first.text.as_str().to_owned()] };
+        keys.extend(self.open.iter().filter(|word| first.kind == Kind::Word && is_word(&first.text, word)).cloned());
         let mut best: Option<(usize, usize, T)> = None;
         for key in keys {
             for (words, meaning) in self.by_first.get(&key).into_iter().flatten() {
@@ -129,7 +132,7 @@ impl<T: Clone> Phrases<T> {
                 j += 1;
             }
             let token = tokens.get(j)?;
-            if !(token.is(word) || self.plurals && singulars(&token.text).contains(word)) {
+            if !(is_word(&token.text, word) || self.plurals && singulars(&token.text).contains(word)) {
                 return None;
             }
             j += 1;
@@ -167,6 +170,36 @@ impl<T: Clone> Phrases<T> {
     }
 }
 
+/// Returns the words of a phrase of the vocabulary; a star belongs to the word it is written at.
+fn words_of(phrase: &str) -> Vec<String> {
+    let parts = tokens(phrase, "");
+    let whole = parts.len() == 1;
+    let mut words: Vec<String> = Vec::new();
+    let mut ending = false;
+    for token in parts.into_iter().filter(|t| whole || !is_joint(t)) {
+        match words.last_mut() {
+            Some(word) if token.is("*") && token.glued && !whole => word.push('*'),
+            Some(word) if ending && token.glued => word.push_str(&token.text),
+            _ => words.push(token.text.clone()),
+        }
+        ending = token.is("*") && !token.glued && !whole;
+    }
+    words
+}
+
+fn is_open(word: &str) -> bool {
+    word.len() > 1 && (word.starts_with('*') || word.ends_with('*'))
+}
+
+/// Whether a word is one of the vocabulary, or one of those an open one stands for.
+fn is_word(text: &str, word: &str) -> bool {
+    match (word.strip_prefix('*'), word.strip_suffix('*')) {
+        (Some(end), _) if !end.is_empty() => text.len() > end.len() + 1 && text.ends_with(end),
+        (_, Some(begin)) if !begin.is_empty() => text.starts_with(begin),
+        _ => text == word,
+    }
+}
+
 fn is_joint(token: &Token) -> bool {
     token.kind == Kind::Symbol && matches!(token.text.as_str(), "-" | "‐" | "‑" | "'" | "’" | "." | ".-")
 }
@@ -177,7 +210,7 @@ fn singulars(word: &str) -> Vec<String> {
     if let Some(stem) = word.strip_suffix("ies") {
         forms.push(format!("{stem}y"));
     }
-    for suffix in ["s", "es", "n", "en", "e", "er", "ern", "i"] {
+    for suffix in ["s", "es", "n", "en", "e", "er", "ern", "i", "x"] {
         if let Some(stem) = word.strip_suffix(suffix).filter(|s| s.chars().count() >= 3) {
             forms.push(stem.to_owned());
         }
@@ -217,6 +250,10 @@ pub struct Lexicon {
     pub fractions: Phrases<(f64, f64)>,
     pub multiples: Phrases<f64>,
     pub cues: Cues,
+    /// Languages whose words of comparison are known.
+    pub languages: Vec<String>,
+    /// Letters that none of them writes.
+    pub strange_letters: String,
 }
 
 impl Lexicon {
@@ -238,6 +275,8 @@ impl Lexicon {
         }
         #[derive(Deserialize)]
         struct Comparators {
+            languages: Vec<String>,
+            strange_letters: String,
             comparator: Vec<Comparator>,
             negations: Negations,
         }
@@ -256,7 +295,7 @@ impl Lexicon {
             objects: BTreeMap<String, Vec<String>>,
         }
         let Units { unit: units } = toml::from_str(include_str!("../../data/units.toml"))?;
-        let Comparators { comparator: comparators, negations } =
+        let Comparators { languages, strange_letters, comparator: comparators, negations } =
             toml::from_str(include_str!("../../data/comparators.toml"))?;
         let Quantities { quantity: quantities } = toml::from_str(include_str!("../../data/quantities.toml"))?;
         let Counts { thing: things, basis } = toml::from_str(include_str!("../../data/counts.toml"))?;
@@ -301,6 +340,8 @@ impl Lexicon {
                     .collect(),
                 Phrases::new([], false),
             ),
+            languages,
+            strange_letters,
             units,
             spellings,
             comparators,

@@ -1,7 +1,7 @@
 //! Figures in a sentence: a number, range, ratio or formula with its unit or with the thing it counts.
 
-use super::lexicon::Lexicon;
-use super::token::{Kind, Token};
+use super::lexicon::{Bound, Lexicon};
+use super::token::{Kind, Token, is_dense};
 
 /// Words that may stand between a number and the thing counted.
 const MAX_ADJECTIVES: usize = 2;
@@ -11,6 +11,8 @@ const MAX_RATIO_GAP: usize = 10;
 const MAX_AHEAD_GAP: usize = 8;
 /// Words that may stand between a figure and "per bed".
 const MAX_BASIS_GAP: usize = 5;
+/// How far before a figure what it counts may begin, in tokens.
+const MAX_THING_BEFORE: usize = 6;
 /// A unit this long, in letters, is a word and not an abbreviation.
 const MIN_SPELLED_UNIT: usize = 3;
 /// Two figures side by side, one in brackets, are the same one converted when they differ by less.
@@ -136,13 +138,22 @@ impl Finder<'_> {
             } else if let Some(b) = self.after_colon(i) {
                 return Some((i + 3, Figure::Ratio(format!("{n}:{b}")), false));
             }
-            return Some((to, Figure::Number(value), false));
+            return Some(self.inverse(to, value).unwrap_or((to, Figure::Number(value), false)));
         }
         if let Some(part) = numbers.symbols.get(&token.text) {
             return Some((i + 1, Figure::Number(*part), false));
         }
         let (value, to) = self.words(i)?;
+        if let Some(inverse) = self.inverse(to, value) {
+            return Some(inverse);
+        }
         Some((to, Figure::Number(value), to == i + 1 && numbers.weak.contains(&token.text)))
+    }
+
+    /// Returns "12분의 1" and "七分之一", whose parts stand the other way round.
+    fn inverse(&self, to: usize, below: f64) -> Option<(usize, Figure, bool)> {
+        let (end, Figure::Number(above), _) = self.number(self.cue("inverse_of", to)?)? else { return None };
+        Some((end, Figure::Ratio(format!("{above}/{below}")), false))
     }
 
     /// Returns the value of `a/b` at a token, and its end; both are small whole numbers side by side.
@@ -315,11 +326,26 @@ impl Finder<'_> {
                 break;
             }
         }
+        if let Some(end) = self.cue("classifiers", mention.to).filter(|_| self.tokens[mention.from].number().is_some())
+            && let Some(thing) = self.thing_before(mention.from)
+        {
+            (mention.thing, mention.to) = (Some(thing), end);
+            return;
+        }
         if let Some(thing) =
             self.tokens.get(mention.to).filter(|_| self.lang == "de").and_then(|t| self.lexicon.thing.part(t, true))
         {
             (mention.thing, mention.to) = (Some(thing), mention.to + 1);
         }
+    }
+
+    /// Returns the thing right before a figure, with a particle between at most: "출구를 2개소".
+    fn thing_before(&self, from: usize) -> Option<usize> {
+        (1..=MAX_THING_BEFORE).find_map(|n| {
+            let (end, thing) = self.lexicon.thing.at(self.tokens, from.checked_sub(n)?)?;
+            let particle = end == from || end + 1 == from && self.cue("particles", end) == Some(from);
+            particle.then_some(thing)
+        })
     }
 
     /// Reads "per person", "/bed", "je Arbeitsplatz" behind a figure with a unit or a thing.
@@ -408,6 +434,9 @@ impl Finder<'_> {
         };
         let (x, y) = (*x, *y);
         let (fa, fb) = (self.factor(a.unit), self.factor(b.unit));
+        if let Some(joined) = self.for_each(a, b, x, y).or_else(|| self.both_bounds(a, b, x, y)) {
+            return Some(Joined::One(joined));
+        }
         let whole = Mention { from: a.from, to: b.to, weak: false, ..b.clone() };
         if let (Some(p), Some(q)) = (a.unit, b.unit) {
             let same = self.dimension(p) == self.dimension(q);
@@ -435,7 +464,11 @@ impl Finder<'_> {
         });
         let inner_bound =
             b.from.checked_sub(1).is_some_and(|k| self.lexicon.before.is_at(self.tokens, k) && !at("ranges"));
-        if (at("ranges") || opened && at("and"))
+        let and_then = || {
+            let end = self.cue("and", a.to)?;
+            (end < b.from && self.cue("articles", end) == Some(b.from)).then_some(())
+        };
+        if (at("ranges") || opened && (at("and") || and_then().is_some()))
             && !inner_bound
             && (b.unit.is_some() || b.thing.is_some())
             && a.thing.is_none()
@@ -470,6 +503,35 @@ impl Finder<'_> {
         self.ratio(a, b, between, whole, x, y)
     }
 
+    /// Joins "20명당 변기 1개" and "1인당 1.8㎡".
+    fn for_each(&self, a: &Mention, b: &Mention, x: f64, y: f64) -> Option<Mention> {
+        let at = [a.to, a.to + 1].into_iter().find(|&k| self.cue("behind_per", k).is_some_and(|end| end <= b.from))?;
+        if a.unit.is_some() || x <= 0.0 || at > a.to && self.cue("classifiers", a.to) != Some(at) {
+            return None;
+        }
+        let whole = Mention { from: a.from, weak: false, basis: self.basis_before(a.to), ..b.clone() };
+        match b.unit {
+            Some(_) if x == 1.0 => Some(whole),
+            None if self.names_something(b) => Some(Mention { figure: Figure::Per(y, x), ..whole }),
+            _ => None,
+        }
+    }
+
+    /// Joins "0.8m 이상 0.9m 이하".
+    fn both_bounds(&self, a: &Mention, b: &Mention, x: f64, y: f64) -> Option<Mention> {
+        let bound = |k: usize| {
+            let (end, index) = self.lexicon.after.at(self.tokens, k)?;
+            let dense = self.tokens.get(k).is_some_and(|t| t.text.starts_with(is_dense));
+            self.lexicon.comparators.get(index).filter(|c| c.strong && dense).map(|c| (end, c.bound))
+        };
+        let (least, most) = (bound(a.to)?, bound(b.to)?);
+        let apart = self.tokens.get(least.0..b.from)?.iter().all(|t| t.is(",") || t.is("、"));
+        let (fa, fb) = (self.factor(a.unit), self.factor(b.unit));
+        let low = x * fa / fb;
+        let fits = least.1 == Bound::Min && most.1 == Bound::Max && a.unit.is_some() && b.unit.is_some() && low < y;
+        (apart && fits).then(|| Mention { from: a.from, figure: Figure::Range(round(low), y), ..b.clone() })
+    }
+
     /// Whether the first figure says for how many the second is given: "each group of 12 desks".
     fn is_ahead(&self, a: &Mention, b: &Mention) -> bool {
         let ahead = (1..=MAX_ADJECTIVES + 2).any(|n| {
@@ -496,7 +558,8 @@ impl Finder<'_> {
         }
         if let Some(unit) = a.unit {
             // "1 m² of storage for every 10 m² of floor"
-            let per = (a.to..b.from).any(|k| self.cue("plain_per", k) == Some(b.from));
+            let foreign = |k: usize| self.cue("english_per", k).is_some() && !matches!(self.lang, "" | "en");
+            let per = (a.to..b.from).any(|k| self.cue("plain_per", k) == Some(b.from) && !foreign(k));
             let share = per && b.unit == Some(unit);
             return share.then_some(Joined::One(Mention {
                 figure: Figure::Per(x, y),

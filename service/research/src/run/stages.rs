@@ -278,7 +278,11 @@ impl Run<'_> {
     fn knowledge(&mut self, corpus: &Corpus) -> Result<KnowledgeBase, Error> {
         self.context.stop.check()?;
         let start = Instant::now();
-        let knowledge = synthesize(corpus)?;
+        let (plausible, doubted) = corpus.without_doubtful();
+        for (id, reason) in &doubted {
+            self.warnings.push(format!("kept apart: {id}: {reason}"));
+        }
+        let knowledge = synthesize(&plausible)?;
         self.timed("synthesize", start);
         self.write(KNOWLEDGE, &knowledge.to_json())?;
         Ok(knowledge)

@@ -132,6 +132,11 @@ fn constraint_of(domain: &str, found: &CorpusConstraint, cited: &[&CorpusDocumen
         note: note(found),
         source_ids: cited.iter().map(|d| d.document_id.clone()).collect(),
         seen_at: found.evidence.first().map(|e| e.source.clone()),
+        clause: None,
+        quotation: None,
+        in_force_from: None,
+        in_force_until: None,
+        superseded_by: None,
     }
 }
 
@@ -185,6 +190,7 @@ fn metadata(corpus: &Corpus) -> Metadata {
     Metadata {
         version: 1,
         domain: corpus.domain.clone(),
+        uses: Vec::new(),
         generated_by: corpus.generated_by.clone(),
         date: corpus.date.clone(),
         notes,

@@ -3,10 +3,11 @@
 use std::collections::BTreeMap;
 use std::sync::atomic::AtomicBool;
 
-use d3dgen_knowledge::classify::classify;
+use d3dgen_knowledge::classify::{classify, ties};
 use d3dgen_model::domain::Domain;
 use d3dgen_model::knowledge::KnowledgeBase;
-use d3dgen_pipeline::scene_graph::{self, Request as Asked};
+use d3dgen_pipeline::brief;
+use d3dgen_pipeline::scene_graph::Request as Asked;
 use d3dgen_plugins::{Custom, Plugin};
 use d3dgen_proto::v1::domain_service_server::DomainService;
 use d3dgen_proto::v1::{
@@ -19,7 +20,7 @@ use tonic::{Request, Status};
 
 use super::page::Page;
 use super::{Answer, Api, caller, timestamp};
-use crate::convert::{document, message};
+use crate::convert::{document, message, with_shared};
 use crate::core::Core;
 use crate::domains::{Entry, Refusal, Snapshot};
 use crate::names;
@@ -93,7 +94,7 @@ impl DomainService for Api {
         let read = |_: &Core, mut asked: RegisterDomainRequest, _: &AtomicBool| {
             let domain: Domain = document("manifest", asked.manifest.take())?;
             let knowledge: KnowledgeBase = match asked.knowledge_base.take() {
-                Some(given) => document("knowledge_base", Some(given))?,
+                Some(given) => with_shared(document("knowledge_base", Some(given))?)?,
                 None => KnowledgeBase::empty(&domain.id),
             };
             Ok((domain, knowledge, asked))
@@ -186,28 +187,38 @@ impl DomainService for Api {
             let now = core.domains.now();
             if !asked.room_labels.is_empty() {
                 let domains: Vec<&Domain> = now.registry.iter().map(Plugin::domain).collect();
-                let found = classify(&asked.room_labels, &domains).into_iter().filter(|r| r.score > 0.0);
+                let found = classify(&asked.room_labels, &domains);
+                let tied = ties(&found).len();
+                let found = found.into_iter().filter(|r| r.score > 0.0).enumerate();
                 let room = |(label, room_type)| ClassifiedRoom { label, room_type };
-                let readings = found.map(|r| DomainReading {
+                let readings = found.map(|(n, r)| DomainReading {
                     domain_id: r.domain,
                     score: r.score,
                     building_type: r.building_type,
+                    tied: tied > 0 && n <= tied,
                     rooms: r.rooms.into_iter().map(room).collect(),
                 });
-                return Ok(ClassifyDomainResponse { readings: readings.collect(), country_code: None, language: None });
+                return Ok(ClassifyDomainResponse {
+                    readings: readings.collect(),
+                    country_code: None,
+                    division_code: None,
+                    language: None,
+                });
             }
             let request = Asked { prompt: asked.prompt, ..Asked::default() };
-            let graph = scene_graph::generate(&request, &now.registry).map_err(|e| status::stage("prompt", e))?;
+            let graph = brief::rooms(&request, &now.registry).map_err(|e| status::stage("prompt", e))?.0;
             let rooms = graph.rooms.iter().filter(|r| !r.circulation);
             let rooms = rooms.map(|r| ClassifiedRoom { label: r.id.clone(), room_type: Some(r.room_type.clone()) });
             let reading = DomainReading {
                 domain_id: graph.domain.clone(),
                 score: 1.0,
                 building_type: graph.building_type.clone(),
+                tied: false,
                 rooms: rooms.collect(),
             };
             Ok(ClassifyDomainResponse {
                 readings: vec![reading],
+                division_code: graph.division_code,
                 country_code: graph.country_code,
                 language: Some(graph.language).filter(|l| !l.is_empty()),
             })

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::sync::atomic::AtomicBool;
 
 use d3dgen_knowledge::amend::states;
-use d3dgen_knowledge::classify::{Building, Classified, classify};
+use d3dgen_knowledge::classify::{Building, Classified, classify, ties};
 use d3dgen_knowledge::database::{Change, Edit, SearchQuery, difference, filter_names};
 use d3dgen_knowledge::{Policy, Stats, retrieve_with};
 use d3dgen_model::Document;
@@ -31,7 +31,7 @@ use tonic::{Request, Status};
 use super::domain::plugin;
 use super::page::Page;
 use super::{Answer, Api, Once, caller, limits, mode};
-use crate::convert::{document, masked, message, part};
+use crate::convert::{document, masked, message, part, with_shared};
 use crate::core::Core;
 use crate::domains::Snapshot;
 use crate::status::{self, invalid};
@@ -43,13 +43,15 @@ impl KnowledgeService for Api {
         let q = request.get_ref();
         let id = (!q.validate_only).then(|| q.request_id.clone());
         let read = |core: &Core, mut asked: ImportKnowledgeRequest, _: &AtomicBool| {
-            let given: KnowledgeBase = document("knowledge_base", asked.knowledge_base.take())?;
+            let given: KnowledgeBase = with_shared(document("knowledge_base", asked.knowledge_base.take())?)?;
             // once more as a text: formulas and printed units are looked at there
-            let given = d3dgen_knowledge::import::read(&given.to_json()).map_err(status::knowledge)?.knowledge;
+            let read = d3dgen_knowledge::import::read(&given.to_json()).map_err(status::knowledge)?;
+            let (given, quarantined) = (read.knowledge, messages::quarantined(read.quarantined));
             plugin(&core.domains.now(), "knowledge_base.metadata.domain", &given.metadata.domain)?;
-            Ok((given, asked))
+            Ok((given, quarantined, asked))
         };
-        let change = move |core: &Core, (given, asked): (KnowledgeBase, ImportKnowledgeRequest), once: &Once| {
+        type Read = (KnowledgeBase, Vec<d3dgen_proto::v1::QuarantinedConstraint>, ImportKnowledgeRequest);
+        let change = move |core: &Core, (given, quarantined, asked): Read, once: &Once| {
             let domain = given.metadata.domain.clone();
             if asked.validate_only {
                 let before = match core.databases.rules.knowledge_base(&domain) {
@@ -59,12 +61,13 @@ impl KnowledgeService for Api {
                 let by = core.provenance(&who, &asked.why);
                 let edits = difference(&before, &given, asked.keep_others);
                 let planned = messages::planned(&domain, &edits, by);
-                return Ok(ImportKnowledgeResponse { change: (!edits.is_empty()).then(|| messages::change(&planned)) });
+                let change = (!edits.is_empty()).then(|| messages::change(&planned));
+                return Ok(ImportKnowledgeResponse { change, quarantined });
             }
             let changed = changed_once(core, once, &who, &asked.why, |by| {
                 core.databases.rules.import(&given, asked.keep_others, by)
             })?;
-            Ok(ImportKnowledgeResponse { change: changed.as_ref().map(messages::change) })
+            Ok(ImportKnowledgeResponse { change: changed.as_ref().map(messages::change), quarantined })
         };
         self.change_read("ImportKnowledge", request, id, read, change).await
     }
@@ -97,11 +100,11 @@ impl KnowledgeService for Api {
             limit: page.wanted(),
         };
         self.lookup(move |core| {
-            let found = core.databases.searcher()?.search(&query).map_err(status::knowledge)?;
             let now = core.domains.now();
-            let (found, next_page_token) = page.cut(found);
+            let answer = core.databases.searcher()?.answer(&query, now.glossary()).map_err(status::knowledge)?;
+            let (found, next_page_token) = page.cut(answer.found);
             let constraints = found.iter().map(|f| messages::found(f, &now)).collect();
-            Ok(SearchConstraintsResponse { constraints, next_page_token })
+            Ok(SearchConstraintsResponse { constraints, next_page_token, note: answer.note.unwrap_or_default() })
         })
         .await
     }
@@ -152,12 +155,13 @@ impl KnowledgeService for Api {
         }
         self.lookup(move |core| {
             let now = core.domains.now();
-            let reading = reading(&now, &asked)?;
+            let (reading, tied) = reading(&now, &asked)?;
             let plugin = plugin(&now, "domain_id", &reading.domain)?;
             let building = Building {
                 country_code: country,
                 building_type: asked.building_type.clone().or(reading.building_type),
-                accessible: asked.accessible,
+                accessible: asked.accessible || asked.wheelchair,
+                wheelchair: asked.wheelchair,
                 rooms: counted(&reading.rooms),
                 persons: asked.person_count,
                 robots: asked
@@ -169,7 +173,7 @@ impl KnowledgeService for Api {
             };
             let policy = policy(asked.policy);
             let found = retrieve_with(plugin.knowledge(), &building.query(plugin.domain()), &policy);
-            Ok(messages::retrieval(&reading.domain, &found))
+            Ok(messages::retrieval(&reading.domain, tied, &found))
         })
         .await
     }
@@ -384,6 +388,9 @@ fn edits(
             let base: d3dgen_proto::v1::Constraint = message(was);
             let changed = masked("update", base, &given, update.update_mask, &["constraint_id"])?;
             let changed: Constraint = part("update.constraint", &changed)?;
+            if let Some(reason) = d3dgen_model::plausible::doubt_of(&changed) {
+                return Err(invalid("update.constraint.value", reason));
+            }
             let mut after = knowledge.clone();
             for constraint in after.references.iter_mut().flat_map(|r| &mut r.constraints) {
                 if constraint.constraint_id == changed.constraint_id {
@@ -403,13 +410,18 @@ fn edits(
     }
 }
 
-fn reading(now: &Snapshot, asked: &RetrieveConstraintsRequest) -> Result<Classified, Status> {
+/// Returns the best reading of the rooms, and the domains that they fit as well.
+fn reading(now: &Snapshot, asked: &RetrieveConstraintsRequest) -> Result<(Classified, Vec<String>), Status> {
     let domains: Vec<&Domain> = match &asked.domain_id {
         Some(id) => vec![plugin(now, "domain_id", id)?.domain()],
         None => now.registry.iter().map(Plugin::domain).collect(),
     };
-    let best = classify(&asked.room_labels, &domains).into_iter().next().filter(|r| r.score > 0.0);
-    best.ok_or_else(|| invalid("room_labels", "no domain knows any of these rooms"))
+    let found = classify(&asked.room_labels, &domains);
+    let tied = ties(&found).iter().map(|r| r.domain.clone()).collect();
+    let best = found.into_iter().next().filter(|r| r.score > 0.0);
+    let best =
+        best.ok_or_else(|| invalid("room_labels", "no domain knows any of these rooms, or they are of no kind"))?;
+    Ok((best, tied))
 }
 
 fn counted(rooms: &[(String, Option<String>)]) -> BTreeMap<String, u32> {

@@ -15,8 +15,8 @@ use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::style::{Clutter, Style};
 use d3dgen_model::world::World;
 use d3dgen_pipeline::generate::{attempt_seed, retrieve, world_name};
-use d3dgen_pipeline::scene_graph::{self, Request as Asked};
-use d3dgen_pipeline::{floorplan, placement, scenario, variations, world};
+use d3dgen_pipeline::scene_graph::Request as Asked;
+use d3dgen_pipeline::{brief, floorplan, placement, scenario, variations, world};
 use d3dgen_plugins::Plugin;
 use d3dgen_proto::v1::world_service_server::WorldService;
 use d3dgen_proto::v1::{
@@ -53,7 +53,7 @@ impl WorldService for Api {
     ) -> Answer<GenerateSceneGraphResponse> {
         let asked = building(request.into_inner().building)?;
         self.short(move |core, _| {
-            let graph = scene_graph::generate(&asked, &core.domains.now().registry);
+            let graph = brief::rooms(&asked, &core.domains.now().registry).map(|made| made.0);
             let graph = graph.map_err(|e| status::stage("building", e))?;
             Ok(GenerateSceneGraphResponse { scene_graph: Some(message(&graph)) })
         })
@@ -166,7 +166,7 @@ impl WorldService for Api {
                 return Err(invalid("building.seed", format!("leaves no {count} seeds")));
             }
             // what no seed can make is refused now
-            let graph = scene_graph::generate(&building, &core.domains.now().registry);
+            let graph = brief::rooms(&building, &core.domains.now().registry).map(|made| made.0);
             graph.map_err(|e| status::stage("building", e))?;
             let title: String = format!("{count} worlds: {}", building.prompt).chars().take(200).collect();
             let spec = Spec::Batch(Batch { building: building.into(), count });

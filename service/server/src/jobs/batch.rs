@@ -9,8 +9,9 @@ use d3dgen_model::report::Report;
 use d3dgen_model::robot_body::RobotBody;
 use d3dgen_model::style::Style;
 use d3dgen_model::world::World;
+use d3dgen_pipeline::brief;
 use d3dgen_pipeline::generate::{Generated, Settings, furnish_and_check};
-use d3dgen_pipeline::scene_graph::{self, Request};
+use d3dgen_pipeline::scene_graph::Request;
 use d3dgen_store::{KeyRange, Store};
 use serde::{Deserialize, Serialize};
 use tonic::Status;
@@ -165,8 +166,9 @@ fn nothing(seed: u64, reason: String) -> Made {
 
 fn make(run: &Run, spec: &Batch, seed: u64) -> Result<Generated, d3dgen_pipeline::Error> {
     let now = run.core.domains.now();
-    let graph = scene_graph::generate(&spec.building.request(seed), &now.registry)?;
-    furnish_and_check(&graph, &now.registry, &Settings::default(), &mut |_| {}, run.flag())
+    let (graph, brief) = brief::rooms(&spec.building.request(seed), &now.registry)?;
+    let settings = Settings { brief, ..Settings::default() };
+    furnish_and_check(&graph, &now.registry, &settings, &mut |_| {}, run.flag())
 }
 
 /// Writes a world's folder, whole or not at all.

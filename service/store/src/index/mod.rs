@@ -258,6 +258,14 @@ impl Index {
         Ok(hits.collect())
     }
 
+    /// Returns whether any document has a word, in any of its forms.
+    ///
+    /// # Errors
+    /// [`Error::Index`] when the full text cannot be read.
+    pub fn has_word(&self, word: &str) -> Result<bool> {
+        self.inner.parts.text.has_word(word)
+    }
+
     /// Returns how many documents fulfill a filter.
     ///
     /// # Errors

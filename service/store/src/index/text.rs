@@ -131,6 +131,17 @@ impl TextIndex {
         Ok(top.into_sorted())
     }
 
+    /// Returns whether any row has every word of a text, or one that it is a slip of.
+    pub(crate) fn has_word(&self, text: &str) -> Result<bool> {
+        let words = self.analyzer.lock().unwrap_or_else(|broken| broken.into_inner()).words(text);
+        for word in &words {
+            if self.query(std::slice::from_ref(word))?.is_none() {
+                return Ok(false);
+            }
+        }
+        Ok(!words.is_empty())
+    }
+
     /// Returns the question as alternatives of terms that occur, if any does.
     fn query(&self, words: &[Word]) -> Result<Option<BooleanQuery>> {
         let Some(reader) = self.searcher.segment_readers().first() else { return Ok(None) };

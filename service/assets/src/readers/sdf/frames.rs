@@ -1,4 +1,4 @@
-//! The poses of links and joints in the frame of the model, through `relative_to` and frames of their own.
+//! The poses of links, joints and models in the frame of their model, through `relative_to` and frames of their own.
 
 use std::collections::BTreeMap;
 
@@ -13,10 +13,12 @@ const MAX_CHAIN: usize = 64;
 /// Named frames: each with the frame it is in, and its pose there.
 pub struct Frames {
     named: BTreeMap<String, (Option<String>, Matrix)>,
+    /// Those of the models in the model.
+    models: BTreeMap<String, Frames>,
 }
 
 impl Frames {
-    /// Reads the frames of a model.
+    /// Reads the frames of a model, without those of the models in it.
     pub fn of(model: Node) -> Self {
         let mut named = BTreeMap::new();
         for (kind, other) in [("link", None), ("frame", Some("attached_to")), ("joint", None)] {
@@ -31,16 +33,19 @@ impl Frames {
                 named.entry(name.to_owned()).or_insert((relative.or(by_kind), matrix));
             }
         }
-        Self { named }
+        Self { named, models: BTreeMap::new() }
     }
 
-    /// Returns the matrix from a link to the model.
-    pub fn link(&self, name: &str) -> Matrix {
-        self.resolved(Some(name), 0)
+    /// Adds a model in the model: the element that has its pose, what undoes the frame that the pose is of, and its own
+    /// frames.
+    pub fn add_model(&mut self, name: &str, posed: Node, back: &Matrix, frames: Frames) {
+        let (relative, matrix) = pose(posed);
+        self.named.entry(name.to_owned()).or_insert((relative, matrix * *back));
+        self.models.insert(name.to_owned(), frames);
     }
 
-    /// Returns the matrix from a joint to the model.
-    pub fn joint(&self, name: &str) -> Matrix {
+    /// Returns the matrix from a link, joint, frame or model to this model.
+    pub fn place(&self, name: &str) -> Matrix {
         self.resolved(Some(name), 0)
     }
 
@@ -58,9 +63,16 @@ impl Frames {
     }
 
     fn resolved(&self, name: Option<&str>, steps: usize) -> Matrix {
-        match name.and_then(|n| self.named.get(n)) {
-            Some((parent, matrix)) if steps < MAX_CHAIN => self.resolved(parent.as_deref(), steps + 1) * *matrix,
-            _ => Matrix::IDENTITY,
+        let Some(name) = name.filter(|_| steps < MAX_CHAIN) else { return Matrix::IDENTITY };
+        if let Some((parent, matrix)) = self.named.get(name) {
+            return self.resolved(parent.as_deref(), steps + 1) * *matrix;
+        }
+        match name.split_once("::") {
+            Some((model, rest)) => match self.models.get(model) {
+                Some(inner) => self.resolved(Some(model), steps + 1) * inner.resolved(Some(rest), steps + 1),
+                None => Matrix::IDENTITY,
+            },
+            None => Matrix::IDENTITY,
         }
     }
 }

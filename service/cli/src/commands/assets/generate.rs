@@ -1,10 +1,8 @@
 //! `d3dgen assets generate`: models of objects, made and kept.
 
 use d3dgen_assets::annotate::camel;
-use d3dgen_assets::annotation::{Basis, JointNote, Origin};
 use d3dgen_assets::database::{Kind, NewAsset};
-use d3dgen_assets::library::{Library, LibraryAsset};
-use d3dgen_mesh::JointKind;
+use d3dgen_assets::library::LibraryAsset;
 
 use super::common::{World, by, open, size_text};
 use super::search::parse_size;
@@ -51,31 +49,14 @@ impl Args {
             }
             None => object.domains.first().map_or("", String::as_str),
         };
-        let mut annotation =
-            LibraryAsset { object, domain, size: 0 }.annotation(Library::new(&world.catalog).catalog());
-        let size = self.size.unwrap_or(annotation.size_m);
-        let [w, d, h] = size;
-        annotation.size_m = size;
-        annotation.bounding_box_m = [[-w / 2.0, w / 2.0], [-d / 2.0, d / 2.0], [0.0, h]];
+        let asset = LibraryAsset { object, domain, size: 0 };
+        let size = self.size.unwrap_or_else(|| asset.size_m());
         let mut assets = Vec::new();
         for seed in self.seed..self.seed.saturating_add(self.count) {
             let mut model = world.generate(domain, &self.object, size, seed)?;
-            let mut a = annotation.clone();
             model.name = format!("{}_v{seed}", camel(&self.object));
-            a.asset_id = format!("{}/{}", camel(domain), model.name);
-            a.origin = Origin::Generated { domain: domain.to_owned(), object: self.object.clone(), seed };
-            a.triangle_count = model.triangle_count() as u64;
-            a.basis.insert("size_m".into(), Basis::Given);
-            let kind = |k: JointKind| match k {
-                JointKind::Revolute => "revolute",
-                JointKind::Prismatic => "prismatic",
-                JointKind::Continuous => "continuous",
-            };
-            let notes = model.joints.iter();
-            a.joints = notes
-                .map(|j| JointNote { name: j.name.clone(), kind: kind(j.kind).into(), limits: j.limits })
-                .collect();
-            assets.push(NewAsset::new(a, Some(model), Default::default()));
+            let annotation = asset.annotation_of(&world.catalog, &model, size, seed);
+            assets.push(NewAsset::new(annotation, Some(model), Default::default()));
         }
         let database = open(&self.registry.store)?;
         let ids = database.put(Kind::Generate, assets, &by(None, &format!("{} generated", self.object)))?;

@@ -21,7 +21,7 @@ const SHOWN: usize = 40;
 /// Arguments.
 #[derive(clap::Args)]
 pub struct Args {
-    /// Folder of models, or one file: USD, USDZ, GLB, glTF, OBJ, DAE, STL
+    /// Folder of models, or one file: USD, USDZ, GLB, glTF, OBJ, DAE, STL, SDF
     #[arg(value_name = "DIR")]
     folder: PathBuf,
     /// Domain under which assets are kept when neither metadata nor folders tell: Office

@@ -5,8 +5,8 @@ use std::time::Instant;
 
 use d3dgen_model::document::Document;
 use d3dgen_model::scene_graph::SceneGraph;
+use d3dgen_pipeline::brief;
 use d3dgen_pipeline::generate::{Artifact, Event, Settings, Stage, contradictions, furnish_and_check};
-use d3dgen_pipeline::scene_graph;
 use d3dgen_plugins::Registry;
 
 use super::Job;
@@ -36,14 +36,15 @@ impl Maker {
     /// Makes a world and writes its folder; of an unsound one only the report and the documents of the stages.
     pub fn make(&self, job: &Job, progress: &Progress) -> Result<Summary, Error> {
         let output = Output::new(&job.path)?;
-        let settings = Settings { name: job.name.clone(), ..Settings::default() };
+        let mut settings = Settings { name: job.name.clone(), ..Settings::default() };
         let mut clock = StageClock::default();
         let mut observe = |event: Event<'_>| {
             clock.hear(&event);
             talk(&event, &clock, progress);
         };
         observe(Event::Started(Stage::SceneGraph, 0));
-        let graph = scene_graph::generate(&job.request, &self.registry)?;
+        let (graph, brief) = brief::rooms(&job.request, &self.registry)?;
+        settings.brief = brief;
         if !self.allow_conflicts {
             refuse_contradictions(&graph)?;
         }

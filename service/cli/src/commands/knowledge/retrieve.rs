@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use d3dgen_knowledge::classify::{Building, Classified, classify};
+use d3dgen_knowledge::classify::{Building, Classified, classify, ties};
 use d3dgen_knowledge::{Limit, Policy, Retrieval, phrase, retrieve_with};
 use d3dgen_model::domain::Domain;
 use d3dgen_model::scene_graph::Robot;
@@ -33,6 +33,9 @@ pub struct Args {
     /// Wheelchair access is asked for
     #[arg(long)]
     accessible: bool,
+    /// Somebody in a wheelchair lives or works there: more than access without steps
+    #[arg(long)]
+    wheelchair: bool,
     /// Radius in m of the robots that work there
     #[arg(long, value_name = "M")]
     robot_radius: Option<f64>,
@@ -60,9 +63,13 @@ impl Args {
             None => registry.iter().map(|p| p.domain()).collect(),
         };
         let labels: Vec<String> = self.rooms.iter().map(|l| l.trim().to_owned()).filter(|l| !l.is_empty()).collect();
-        let reading = classify(&labels, &domains).into_iter().next();
-        let Some(reading) = reading.filter(|r| r.score > 0.0) else {
-            return Err(Error::Input(format!("no domain knows any of these rooms: {}", labels.join(", "))));
+        let readings = classify(&labels, &domains);
+        let others: Vec<String> = ties(&readings).iter().map(|r| r.domain.clone()).collect();
+        let Some(reading) = readings.into_iter().next().filter(|r| r.score > 0.0) else {
+            return Err(Error::Input(format!(
+                "no domain knows any of these rooms, or they are of no kind: {}",
+                labels.join(", ")
+            )));
         };
         if let Some(code) = &self.country
             && !d3dgen_model::knowledge::is_jurisdiction(&code.to_ascii_uppercase())
@@ -78,12 +85,15 @@ impl Args {
         };
         let found = retrieve_with(plugin.knowledge(), &building.query(plugin.domain()), &policy);
         let text = if self.json {
-            format!("{}\n", json(&reading, &found, &policy))
+            format!("{}\n", json(&reading, &others, &found, &policy))
         } else if self.bullets {
             phrase::bullets(&found).iter().map(|b| format!("{b}\n")).collect()
         } else {
-            shown(&reading, &found, &policy)
+            shown(&reading, &others, &found, &policy)
         };
+        if !others.is_empty() && (self.json || self.bullets) {
+            eprintln!("{}", tied(&others));
+        }
         write_text(None, &text)
     }
 
@@ -106,7 +116,8 @@ impl Args {
         Building {
             country_code: self.country.as_ref().map(|c| c.to_ascii_uppercase()),
             building_type: reading.building_type.clone(),
-            accessible: self.accessible,
+            accessible: self.accessible || self.wheelchair,
+            wheelchair: self.wheelchair,
             rooms,
             persons: self.persons,
             robots: robot.into_iter().collect(),
@@ -135,7 +146,7 @@ fn limits(found: &Retrieval) -> Vec<(String, String, f64, &'static str, String)>
     out
 }
 
-fn json(reading: &Classified, found: &Retrieval, policy: &Policy) -> serde_json::Value {
+fn json(reading: &Classified, others: &[String], found: &Retrieval, policy: &Policy) -> serde_json::Value {
     let rooms: BTreeMap<&str, Option<&str>> = reading.rooms.iter().map(|(l, t)| (l.as_str(), t.as_deref())).collect();
     let limits: Vec<serde_json::Value> = limits(found)
         .into_iter()
@@ -160,13 +171,18 @@ fn json(reading: &Classified, found: &Retrieval, policy: &Policy) -> serde_json:
         })
         .collect();
     serde_json::json!({
-        "domain": reading.domain, "building_type": reading.building_type, "score": reading.score, "rooms": rooms,
+        "domain": reading.domain, "building_type": reading.building_type, "score": reading.score, "ties": others, "rooms": rooms,
         "jurisdictions": found.jurisdictions, "policy": policy.name(), "limits": limits, "conflicts": conflicts,
         "constraints": constraints, "not_applicable": found.not_applicable,
     })
 }
 
-fn shown(reading: &Classified, found: &Retrieval, policy: &Policy) -> String {
+/// Returns a line on the kinds of building that the rooms fit as well.
+fn tied(others: &[String]) -> String {
+    format!("the rooms fit {} as well: --domain chooses", others.join(", "))
+}
+
+fn shown(reading: &Classified, others: &[String], found: &Retrieval, policy: &Policy) -> String {
     let kind = reading.building_type.as_ref().map(|b| format!(", most like {b}")).unwrap_or_default();
     let rooms: Vec<String> = reading
         .rooms
@@ -179,8 +195,9 @@ fn shown(reading: &Classified, found: &Retrieval, policy: &Policy) -> String {
         .into_iter()
         .map(|(place, what, value, unit, id)| vec![place, what, value.to_string(), unit.to_owned(), id])
         .collect();
+    let also = if others.is_empty() { String::new() } else { format!("               {}\n", tied(others)) };
     let mut text = format!(
-        "building       {}{kind}\nrooms          {}\njurisdictions  {}\ncontradictions settled by nearest jurisdiction, then {}\n\n",
+        "building       {}{kind}\n{also}rooms          {}\njurisdictions  {}\ncontradictions settled by nearest jurisdiction, then {}\n\n",
         reading.domain,
         rooms.join(", "),
         found.jurisdictions.join(" > "),

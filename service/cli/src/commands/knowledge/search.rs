@@ -3,7 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::atomic::Ordering;
 
-use d3dgen_knowledge::database::{Found, SearchQuery, Searcher};
+use d3dgen_knowledge::database::{Answer, Found, SearchQuery, Searcher};
+use d3dgen_knowledge::glossary::Glossary;
 use d3dgen_knowledge::{jurisdiction, phrase};
 use d3dgen_store::index::{Mode, Progress, Watch};
 
@@ -98,7 +99,8 @@ impl Args {
             }
             filters.insert("space_type".into(), spaces);
         }
-        self.print(&searcher.search(&self.query(filters))?)
+        let glossary = Glossary::of(registry.iter().map(|p| p.domain()));
+        self.print(&searcher.answer(&self.query(filters), &glossary)?)
     }
 
     /// Returns what every rule must be, by filter; `values` are those that the rules have.
@@ -139,11 +141,14 @@ impl Args {
         SearchQuery { text: self.words.join(" "), filters, value: (self.min, self.max), limit: self.limit, mode }
     }
 
-    fn print(&self, found: &[Found]) -> Result<(), Error> {
+    fn print(&self, Answer { found, note }: &Answer) -> Result<(), Error> {
+        if let Some(note) = note {
+            eprintln!("{note}");
+        }
         if self.json {
             return write_text(None, &found.iter().map(|f| format!("{}\n", json(f))).collect::<String>());
         }
-        if found.is_empty() {
+        if found.is_empty() && note.is_none() {
             eprintln!("nothing fits; `knowledge search` without words lists what the filters leave");
         }
         write_text(None, &found.iter().map(shown).collect::<String>())
@@ -187,7 +192,7 @@ fn json(f: &Found) -> serde_json::Value {
     serde_json::json!({
         "domain": f.domain, "jurisdiction": f.jurisdiction, "ref_id": f.ref_id, "source": f.source,
         "constraint": f.constraint, "score": f.hit.score, "text_rank": f.hit.text_rank,
-        "vector_rank": f.hit.vector_rank,
+        "vector_rank": f.hit.vector_rank, "copies": f.copies,
     })
 }
 

@@ -43,13 +43,23 @@ impl ImportArgs {
         for (unit, id) in &imported.unknown_units {
             eprintln!("warning: unit `{unit}` (of {id}) is not known; its figures stay as printed");
         }
+        for kept in &imported.quarantined {
+            eprintln!("kept apart: {}: {}", kept.constraint_id, kept.reason);
+        }
         let registry = self.registry.load_as_brought()?;
         let database = self.registry.store.open(&registry, self.backend)?;
         let why = self.why.unwrap_or_else(|| format!("import of {}", path.display()));
         let change = database.import(&imported.knowledge, !self.replace, &provenance(self.by.as_deref(), &why))?;
         let domain = &imported.knowledge.metadata.domain;
         if self.json {
-            let line = serde_json::json!({"domain": domain, "change": change, "converted": imported.converted});
+            let apart: Vec<_> = imported
+                .quarantined
+                .iter()
+                .map(|q| serde_json::json!({"constraint_id": q.constraint_id, "reason": q.reason}))
+                .collect();
+            let line = serde_json::json!({
+                "domain": domain, "change": change, "converted": imported.converted, "quarantined": apart,
+            });
             return write_lines([line]);
         }
         match change {

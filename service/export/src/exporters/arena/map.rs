@@ -45,22 +45,17 @@ pub(super) fn png(plan: &Floorplan) -> Result<Vec<u8>, Error> {
         let index = |v: f64| ((v - start) / RESOLUTION_M - 0.5 - 1e-6).ceil().clamp(0.0, count as f64) as usize;
         index(from)..index(to)
     };
-    for rect in floor_rects(plan) {
+    let mut paint = |rect: &Rect, value: u8| {
         let columns = span(rect.x0, rect.x1, x0, width);
         for row in span(rect.y0, rect.y1, y0, height) {
             let line = (height - 1 - row) * width;
-            pixels[line + columns.start..line + columns.end].fill(FREE);
+            pixels[line + columns.start..line + columns.end].fill(value);
         }
-    }
-    let refused = |e: png::EncodingError| Error::Picture { picture, reason: e.to_string() };
-    let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, width as u32, height as u32);
-    encoder.set_color(png::ColorType::Grayscale);
-    encoder.set_depth(png::BitDepth::Eight);
-    let mut writer = encoder.write_header().map_err(refused)?;
-    writer.write_image_data(&pixels).map_err(refused)?;
-    writer.finish().map_err(refused)?;
-    Ok(bytes)
+    };
+    floor_rects(plan).iter().for_each(|rect| paint(rect, FREE));
+    let standing = plan.obstacles.iter().flat_map(|o| o.outline.cover(RESOLUTION_M));
+    standing.for_each(|rect| paint(&rect, OCCUPIED));
+    crate::picture::gray(picture, &pixels, width, height)
 }
 
 /// Net floors, and the openings between them through the thickness of their wall.

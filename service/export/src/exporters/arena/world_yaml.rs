@@ -6,7 +6,7 @@
 
 use d3dgen_model::TOLERANCE_M;
 use d3dgen_model::domain::{Domain, RobotUse, RoomType, Zone};
-use d3dgen_model::floorplan::{Door, DoorKind, Floorplan, PlanRoom};
+use d3dgen_model::floorplan::{Door, DoorKind, FixedObstacle, Floorplan, PlanRoom};
 use d3dgen_model::geometry::Segment;
 use d3dgen_model::placements::Placement;
 use d3dgen_model::scenario::RoiKind;
@@ -209,5 +209,10 @@ fn solid_walls(plan: &Floorplan) -> Vec<SolidWall> {
                 .map(|(a, b)| SolidWall { owner: owner.clone(), line: Segment { start: at(a), end: at(b) } }),
         );
     }
+    // columns and walls that stand free, by their faces
+    let faces = |o: &FixedObstacle| {
+        o.outline.edges().map(|line| SolidWall { owner: o.room_id.clone(), line }).collect::<Vec<_>>()
+    };
+    solid.extend(plan.obstacles.iter().flat_map(faces));
     solid
 }

@@ -1,10 +1,10 @@
-//! Floors, walls, doors, windows and outer dimensions.
+//! Floors, walls, doors and windows.
 
 use d3dgen_model::TOLERANCE_M;
 use d3dgen_model::courts::Court;
 use d3dgen_model::domain::{Domain, Zone};
 use d3dgen_model::floorplan::{Door, DoorKind, Floorplan, Slide, Wall, Window};
-use d3dgen_model::geometry::{Point, Rect, Segment};
+use d3dgen_model::geometry::{Point, Polygon, Rect, Segment};
 
 use super::page::{Anchor, Frame, Page, Path, on_sheet};
 use super::{style, ways};
@@ -51,64 +51,63 @@ pub(super) fn walls(page: &mut Page, frame: &Frame, plan: &Floorplan, domain: &D
     page.open_group("walls");
     let railing = |w: &&Wall| w.exterior && w.room_ids.iter().all(|id| is_outdoor(id, plan, domain));
     let (railings, walls): (Vec<&Wall>, Vec<&Wall>) = plan.walls.iter().partition(railing);
-    let body = walls.iter().map(|w| frame.rect(&wall_rect(w, plan))).fold(Path::new(), |path, rect| path.rect(&rect));
-    let posts = railings.iter().map(|w| {
-        let (rect, half) = (wall_rect(w, plan), (w.thickness_m - RAILING_M) / 2.0);
-        let inset = if w.line.is_vertical() {
-            (half, half.min(rect.height() / 2.0))
-        } else {
-            (half.min(rect.width() / 2.0), half)
-        };
-        frame.rect(&Rect { x0: rect.x0 + inset.0, x1: rect.x1 - inset.0, y0: rect.y0 + inset.1, y1: rect.y1 - inset.1 })
-    });
-    let posts = posts.fold(Path::new(), |path, rect| path.rect(&rect));
+    let drawn = |outlines: Vec<Polygon>, path: Path| {
+        outlines.iter().fold(path, |path, outline| path.polygon(&on_sheet(frame, outline)))
+    };
+    let body = drawn(walls.iter().map(|w| wall_body(w, plan)).collect(), Path::new());
+    let posts = drawn(railings.iter().map(|w| self::body(w, plan, RAILING_M / 2.0)).collect(), Path::new());
     let panels = plan.windows.iter().filter(|w| is_outdoor(&w.room_id, plan, domain)).fold(posts, |path, window| {
-        let half = RAILING_M / 2.0;
-        let (a, b) = (window.line.start, window.line.end);
-        let rect =
-            Rect { x0: a.x.min(b.x) - half, x1: a.x.max(b.x) + half, y0: a.y.min(b.y) - half, y1: a.y.max(b.y) + half };
-        path.rect(&frame.rect(&rect))
+        let o = Opening::new(window.line, RAILING_M, |_| true);
+        path.polygon(&o.corners([0.0, o.length], [-o.half, o.half], frame))
     });
     page.path("rl", panels);
     // The edge of every piece first, the bodies over it: what stays visible is the edge of their union.
+    let standing = plan.obstacles.iter().map(|o| on_sheet(frame, &o.outline));
+    let body = standing.fold(body, |path, outline| path.polygon(&outline));
     page.path("wo", body.clone());
     page.path("w", body);
     page.close_group();
 }
 
-/// Returns a wall piece with its ends drawn into the corners, but not into openings.
-fn wall_rect(wall: &Wall, plan: &Floorplan) -> Rect {
-    let half = wall.thickness_m / 2.0;
-    let openings = || plan.doors.iter().map(|d| &d.line).chain(plan.windows.iter().map(|w| &w.line));
-    let reach = |end: Point| {
-        let at_opening = openings().any(|o| {
-            o.is_vertical() == wall.line.is_vertical()
-                && (o.start.distance(end) < TOLERANCE_M || o.end.distance(end) < TOLERANCE_M)
-        });
-        if at_opening { 0.0 } else { half }
+/// Returns the outline of a wall piece, its ends drawn into the corners, but not into openings.
+pub(super) fn wall_body(wall: &Wall, plan: &Floorplan) -> Polygon {
+    body(wall, plan, wall.thickness_m / 2.0)
+}
+
+/// Returns what stands on the line of a wall, so wide to both sides, its ends drawn into the corners but not into openings.
+fn body(wall: &Wall, plan: &Floorplan, half: f64) -> Polygon {
+    let o = Opening::new(wall.line, 2.0 * half, |_| true);
+    let reach = |along: f64| if is_at(plan, &wall.line, o.at(along, 0.0)) { 0.0 } else { half };
+    let (from, to) = (-reach(0.0), o.length + reach(o.length));
+    let corners = [(from, -half), (to, -half), (to, half), (from, half)];
+    Polygon(corners.map(|(along, across)| o.at(along, across)).to_vec())
+}
+
+/// Returns true where the end of a wall is that of a door or window in it.
+pub(super) fn is_at(plan: &Floorplan, wall: &Segment, end: Point) -> bool {
+    let openings = plan.doors.iter().map(|d| &d.line).chain(plan.windows.iter().map(|w| &w.line));
+    let along = |line: &Segment| {
+        let (dx, dy) = (line.end.x - line.start.x, line.end.y - line.start.y);
+        let (wx, wy) = (wall.end.x - wall.start.x, wall.end.y - wall.start.y);
+        (dx * wy - dy * wx).abs() < 0.01 * line.length() * wall.length()
     };
-    let (a, b) = (wall.line.start, wall.line.end);
-    if wall.line.is_vertical() {
-        let (low, high) = if a.y < b.y { (a, b) } else { (b, a) };
-        Rect { x0: a.x - half, x1: a.x + half, y0: low.y - reach(low), y1: high.y + reach(high) }
-    } else {
-        let (low, high) = if a.x < b.x { (a, b) } else { (b, a) };
-        Rect { x0: low.x - reach(low), x1: high.x + reach(high), y0: a.y - half, y1: a.y + half }
-    }
+    openings.into_iter().any(|o| (o.start.distance(end) < TOLERANCE_M || o.end.distance(end) < TOLERANCE_M) && along(o))
 }
 
 /// A straight opening with its own axes: `t` along the wall, `n` across it.
-struct Opening {
+pub(super) struct Opening {
     line: Segment,
     t: (f64, f64),
-    n: (f64, f64),
-    length: f64,
-    half: f64,
+    pub n: (f64, f64),
+    /// Along the wall, m.
+    pub length: f64,
+    /// Half the thickness of the wall, m.
+    pub half: f64,
 }
 
 impl Opening {
     /// `into` tells the side that `n` points to.
-    fn new(line: Segment, thickness: f64, into: impl Fn(Point) -> bool) -> Self {
+    pub fn new(line: Segment, thickness: f64, into: impl Fn(Point) -> bool) -> Self {
         let length = line.length().max(TOLERANCE_M);
         let t = ((line.end.x - line.start.x) / length, (line.end.y - line.start.y) / length);
         let (m, probe) = (line.middle(), thickness / 2.0 + 0.05);
@@ -118,15 +117,19 @@ impl Opening {
     }
 
     /// Returns the point `along` from the start and `across` from the center line.
-    fn at(&self, along: f64, across: f64) -> Point {
+    pub fn at(&self, along: f64, across: f64) -> Point {
         let s = self.line.start;
         Point::new(s.x + self.t.0 * along + self.n.0 * across, s.y + self.t.1 * along + self.n.1 * across)
     }
 
-    fn quad(&self, along: [f64; 2], across: [f64; 2], frame: &Frame) -> Path {
+    fn corners(&self, along: [f64; 2], across: [f64; 2], frame: &Frame) -> [(f64, f64); 4] {
         let [a, b] = along;
         let [c, d] = across;
-        Path::new().polygon(&[(a, c), (b, c), (b, d), (a, d)].map(|(x, y)| frame.map(self.at(x, y))))
+        [(a, c), (b, c), (b, d), (a, d)].map(|(x, y)| frame.map(self.at(x, y)))
+    }
+
+    fn quad(&self, along: [f64; 2], across: [f64; 2], frame: &Frame) -> Path {
+        Path::new().polygon(&self.corners(along, across, frame))
     }
 }
 
@@ -157,7 +160,7 @@ pub(super) fn doors(page: &mut Page, frame: &Frame, plan: &Floorplan) {
     page.close_group();
 }
 
-fn opening_of(door: &Door, plan: &Floorplan) -> Opening {
+pub(super) fn opening_of(door: &Door, plan: &Floorplan) -> Opening {
     let into = door.swing.as_ref().and_then(|s| s.into_room_id.as_deref());
     let inside = |p: Point| plan.rooms.iter().any(|r| r.polygon.contains(p));
     Opening::new(door.line, door.wall_thickness_m, |p| match (into, door.swing.is_some()) {
@@ -313,7 +316,7 @@ pub(super) fn entrances(page: &mut Page, frame: &Frame, plan: &Floorplan, size: 
 pub(super) fn outer_bounds(plan: &Floorplan) -> Rect {
     plan.walls
         .iter()
-        .map(|w| wall_rect(w, plan))
+        .map(|w| wall_body(w, plan).bounds())
         .chain(plan.rooms.iter().map(|r| r.polygon.bounds()))
         .reduce(|a, b| a.union(&b))
         .unwrap_or(Rect::new(0.0, 0.0, 1.0, 1.0))
@@ -326,6 +329,18 @@ pub(super) struct Sides<T> {
     pub east: T,
     pub north: T,
     pub south: T,
+}
+
+impl Sides<f64> {
+    /// Returns the larger of both on each side.
+    pub fn max(self, other: Self) -> Self {
+        Self {
+            west: self.west.max(other.west),
+            east: self.east.max(other.east),
+            north: self.north.max(other.north),
+            south: self.south.max(other.south),
+        }
+    }
 }
 
 /// Returns on which sides of the building there are ways in or out.
@@ -341,47 +356,4 @@ pub(super) fn entrance_sides(plan: &Floorplan, around: &Rect) -> Sides<bool> {
         }
     }
     sides
-}
-
-/// Draws the overall extents on the sides that have an offset, m.
-pub(super) fn dimensions(page: &mut Page, frame: &Frame, around: &Rect, offsets: Sides<Option<f64>>, size: f64) {
-    page.open_group("dimensions");
-    let r = frame.rect(around);
-    let label = |meters: f64| format!("{meters:.2} m");
-    let (across, along) = (label(around.width()), label(around.height()));
-    if let Some(offset) = offsets.south {
-        dimension(page, [(r.x0, r.y1), (r.x1, r.y1)], (0.0, offset), size);
-        page.text(&across, ((r.x0 + r.x1) / 2.0, r.y1 + offset - 0.5 * size), size, style::SMALL, Anchor::Middle);
-    }
-    if let Some(offset) = offsets.north {
-        dimension(page, [(r.x0, r.y0), (r.x1, r.y0)], (0.0, -offset), size);
-        page.text(&across, ((r.x0 + r.x1) / 2.0, r.y0 - offset - 0.5 * size), size, style::SMALL, Anchor::Middle);
-    }
-    for (offset, edge) in [(offsets.west.map(|o| -o), r.x0), (offsets.east, r.x1)] {
-        let Some(offset) = offset else { continue };
-        dimension(page, [(edge, r.y0), (edge, r.y1)], (offset, 0.0), size);
-        let at = (edge + offset - 0.5 * size, (r.y0 + r.y1) / 2.0);
-        page.upright(at, |page| {
-            page.text(&along, at, size, style::SMALL, Anchor::Middle);
-        });
-    }
-    page.close_group();
-}
-
-/// One dimension line: extension lines from two corners, the line itself and slashes at its ends.
-fn dimension(page: &mut Page, ends: [(f64, f64); 2], (dx, dy): (f64, f64), size: f64) {
-    let length = dx.hypot(dy).max(1.0);
-    let (ux, uy) = (dx / length, dy / length);
-    let (tick, over) = (0.45 * size, 0.6 * size);
-    let (mut lines, mut ticks) = (Path::new(), Path::new());
-    for (x, y) in ends {
-        let (ex, ey) = (x + dx, y + dy);
-        lines = lines.segment((x + 0.3 * dx, y + 0.3 * dy), (ex + ux * over, ey + uy * over));
-        ticks = ticks.segment((ex - tick, ey + tick), (ex + tick, ey - tick));
-    }
-    let [a, b] = ends.map(|(x, y)| (x + dx, y + dy));
-    // The line runs a little past its ends, along the wall it measures.
-    let (px, py) = (uy.abs() * over, ux.abs() * over);
-    page.path("dm", lines.segment((a.0 - px, a.1 - py), (b.0 + px, b.1 + py)));
-    page.path("dt", ticks);
 }

@@ -192,8 +192,17 @@ impl Page {
     }
 
     /// Draws turned so that type reads from below upwards, around a point.
-    pub fn upright(&mut self, (x, y): (f64, f64), draw: impl FnOnce(&mut Self)) {
-        let _ = writeln!(self.out, "<g transform=\"rotate(-90 {x:.2} {y:.2})\">");
+    pub fn upright(&mut self, at: (f64, f64), draw: impl FnOnce(&mut Self)) {
+        self.turned(-90.0, at, draw);
+    }
+
+    /// Draws turned clockwise around a point.
+    pub fn turned(&mut self, degrees: f64, (x, y): (f64, f64), draw: impl FnOnce(&mut Self)) {
+        if degrees.abs() < 0.005 {
+            return draw(self);
+        }
+        let degrees = (degrees * 100.0).round() / 100.0;
+        let _ = writeln!(self.out, "<g transform=\"rotate({degrees} {x:.2} {y:.2})\">");
         draw(self);
         self.close_group();
     }

@@ -1,6 +1,6 @@
 //! Title block, facts, legend, scale bar and north arrow, beside the drawing or below it.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use d3dgen_model::domain::{Domain, Zone};
 use d3dgen_model::floorplan::DoorKind;
@@ -146,8 +146,7 @@ impl Facts<'_> {
             }
             y += 10.0;
             let prompt = world.scene_graph.prompt.trim();
-            // A prompt in a script the font lacks would show gaps; the title says enough.
-            if !prompt.is_empty() && page.font(Weight::Regular).covers(prompt) {
+            if !prompt.is_empty() {
                 for line in wrap(page, &format!("“{prompt}”"), 16.5, Weight::Regular, 6) {
                     y += 22.0;
                     page.text(&line, (0.0, y), 16.5, style::SMALL, Anchor::Start);
@@ -182,7 +181,13 @@ impl Facts<'_> {
         if !robots.is_empty() {
             rows.push(("Robots", robots.join(", ")));
         }
-        rows.push(("Building rules", world.scene_graph.country_code.clone().unwrap_or_else(|| "International".into())));
+        let country = world.scene_graph.place_code();
+        match (&world.rules, country) {
+            (Some(rules), _) => rows.push(("Building rules", rules.line(country))),
+            // it was never held against them
+            (None, Some(code)) => rows.push(("Country", code.to_owned())),
+            (None, None) => {}
+        }
         rows.push(("Seed", world.scene_graph.seed.to_string()));
         rows.push(("Made by", world.generator.clone()));
         page.block(|page| {
@@ -244,40 +249,62 @@ impl Facts<'_> {
         }))
     }
 
-    /// Tints, robot zones and marks that occur, in two columns.
+    /// Tints with the rooms that have them, each a line; robot zones and marks that occur, in two columns.
     fn legend(&self, page: &mut Page) -> Block {
         let world = self.world;
-        let zones: BTreeSet<Zone> =
-            world.floorplan.rooms.iter().map(|r| self.domain.room_type_or_generic(&r.room_type).zone).collect();
-        let rois: BTreeSet<RoiKind> = world.scenario.rois.iter().map(|r| r.kind).collect();
+        let robots = !world.scenario.robots.is_empty();
+        let rois: BTreeSet<RoiKind> = world.scenario.rois.iter().filter(|_| robots).map(|r| r.kind).collect();
         let goals = world.scenario.robots.iter().any(|r| !r.goals.is_empty());
         let docks = world.scenario.pois.iter().any(|p| p.kind == Poi::DOCK);
-        let mut rows: Vec<(&str, Swatch)> =
-            zones.into_iter().map(|z| (style::zone_label(z), Swatch::Zone(z))).collect();
-        rows.extend(rois.into_iter().map(|r| (style::roi_label(r), Swatch::Roi(r))));
+        let tints = self.tints();
+        let mut rows: Vec<(&str, Swatch)> = rois.into_iter().map(|r| (style::roi_label(r), Swatch::Roi(r))).collect();
         if world.floorplan.doors.iter().any(|d| d.automatic) {
             rows.push(("Opens by itself", Swatch::Automatic));
         }
         if docks {
             rows.push(("Charging dock", Swatch::Dock));
         }
-        if !world.scenario.robots.is_empty() {
+        if robots {
             rows.push(("Robot at its start", Swatch::Start));
         }
         if goals {
             rows.push(("Stops in order", Swatch::Goal));
         }
         page.block(|page| {
-            let top = heading(page, "Legend");
+            let mut y = heading(page, "Legend");
+            for (zone, kinds) in &tints {
+                Swatch::Zone(*zone).draw(page, (0.0, y + 3.0), self.k);
+                let text = page_list(page, kinds, SIZE - 1.0, WIDTH - 38.0);
+                page.text(&text, (38.0, y + 16.5), SIZE - 1.0, style::TEXT, Anchor::Start);
+                y += ROW + 3.0;
+            }
             let half = rows.len().div_ceil(2);
             for (i, (text, swatch)) in rows.iter().enumerate() {
                 let (column, row) = (i / half, i % half);
-                let (x, y) = (column as f64 * (WIDTH * 0.54), top + row as f64 * (ROW + 3.0));
+                let (x, y) = (column as f64 * (WIDTH * 0.54), y + row as f64 * (ROW + 3.0));
                 swatch.draw(page, (x, y + 3.0), self.k);
                 page.text(text, (x + 38.0, y + 16.5), SIZE - 1.0, style::TEXT, Anchor::Start);
             }
-            top + half as f64 * (ROW + 3.0)
+            y + half as f64 * (ROW + 3.0)
         })
+    }
+
+    /// Returns the parts of the building that occur, each with what the domain calls its rooms, the largest first.
+    fn tints<'s>(&'s self) -> BTreeMap<Zone, Vec<&'s str>> {
+        let mut areas: BTreeMap<Zone, BTreeMap<&'s str, f64>> = BTreeMap::new();
+        for room in &self.world.floorplan.rooms {
+            let kind = self.domain.room_type_or_generic(&room.room_type);
+            *areas.entry(kind.zone).or_default().entry(&kind.label).or_default() += room.net_area_m2;
+        }
+        if !super::building::courts(&self.world.floorplan).is_empty() {
+            areas.entry(Zone::Outdoor).or_default().entry("Courtyard").or_default();
+        }
+        let by_area = |(zone, kinds): (Zone, BTreeMap<&'s str, f64>)| {
+            let mut kinds: Vec<(&'s str, f64)> = kinds.into_iter().collect();
+            kinds.sort_by(|a, b| b.1.total_cmp(&a.1));
+            (zone, kinds.into_iter().map(|k| k.0).collect())
+        };
+        areas.into_iter().map(by_area).collect()
     }
 
     /// Scale bar, scale and north arrow.
@@ -361,6 +388,28 @@ fn heading(page: &mut Page, text: &str) -> f64 {
     22.0
 }
 
+/// Returns as many names as a width holds, with commas between, the first with a capital; what is left out is an ellipsis.
+fn page_list(page: &Page, names: &[&str], size: f64, width: f64) -> String {
+    let font = page.font(Weight::Regular);
+    let joined = |n: usize| {
+        let list = names[..n].iter().enumerate().map(|(i, name)| {
+            // abbreviations keep their capitals
+            let plain = i > 0 && !name.chars().nth(1).is_some_and(char::is_uppercase);
+            if plain { lowered(name) } else { (*name).to_owned() }
+        });
+        let more = if n < names.len() { ", …" } else { "" };
+        list.collect::<Vec<_>>().join(", ") + more
+    };
+    let fits = (1..=names.len()).rev().find(|n| font.width(&joined(*n), size) <= width);
+    fits.map_or_else(|| wrap_to(page, names.first().unwrap_or(&""), size, Weight::Regular, 1, width).concat(), joined)
+}
+
+/// Returns a name as it stands within a line.
+fn lowered(name: &str) -> String {
+    let mut letters = name.chars();
+    letters.next().map_or_else(String::new, |first| first.to_lowercase().chain(letters).collect())
+}
+
 fn wrap(page: &Page, text: &str, size: f64, weight: Weight, limit: usize) -> Vec<String> {
     wrap_to(page, text, size, weight, limit, WIDTH)
 }
@@ -378,13 +427,14 @@ fn with_number(page: &Page, name: &str, size: f64, width: f64) -> String {
 fn wrap_to(page: &Page, text: &str, size: f64, weight: Weight, limit: usize, width: f64) -> Vec<String> {
     let font = page.font(weight);
     let mut lines: Vec<String> = vec![String::new()];
-    for word in text.split_whitespace() {
+    for (spaced, piece) in pieces(text) {
         let last = lines.last_mut().expect("there is always one line");
-        let longer = if last.is_empty() { word.to_owned() } else { format!("{last} {word}") };
+        let space = if spaced && !last.is_empty() { " " } else { "" };
+        let longer = format!("{last}{space}{piece}");
         if last.is_empty() || font.width(&longer, size) <= width {
             *last = longer;
         } else {
-            lines.push(word.to_owned());
+            lines.push(piece);
         }
     }
     let cut = lines.len() > limit;
@@ -398,4 +448,54 @@ fn wrap_to(page: &Page, text: &str, size: f64, weight: Weight, limit: usize, wid
         line.push_str(ellipsis);
     }
     lines
+}
+
+/// Returns the pieces between which a text may be broken, and whether a space stands before each: words, and every letter
+/// of Chinese and Japanese, marks with the letter that they belong to.
+fn pieces(text: &str) -> Vec<(bool, String)> {
+    const OPENING: &str = "（「『【《〈“‘(";
+    const CLOSING: &str = "、。，．：；！？）」』】》〉”’…),.:;!?%";
+    let is_wide = |c: char| matches!(c, '\u{2e80}'..='\u{a4cf}' | '\u{f900}'..='\u{faff}' | '\u{ff00}'..='\u{ffef}');
+    let mut out: Vec<(bool, String)> = Vec::new();
+    for word in text.split_whitespace() {
+        let mut before: Option<char> = None;
+        for c in word.chars() {
+            let breaks =
+                before.is_some_and(|b| (is_wide(c) || is_wide(b)) && !CLOSING.contains(c) && !OPENING.contains(b));
+            match (before, out.last_mut()) {
+                (Some(_), Some(last)) if !breaks => last.1.push(c),
+                (Some(_), _) => out.push((false, c.to_string())),
+                (None, _) => out.push((true, c.to_string())),
+            }
+            before = Some(c);
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_break_between_words_and_between_letters_of_chinese() {
+        let words = |text: &str| pieces(text).into_iter().map(|p| p.1).collect::<Vec<_>>();
+        assert_eq!(words("flat with 2 rooms"), ["flat", "with", "2", "rooms"]);
+        assert_eq!(words("两室,一卫。"), ["两", "室,", "一", "卫。"]);
+        assert_eq!(words("방 두 개"), ["방", "두", "개"]);
+        let page = Page::new();
+        let prompt = "“深圳市宝安区三室两厅两卫的住宅,带独立卫生间、衣帽间和书房,面积一百二十平方米。”";
+        let lines = wrap(&page, prompt, 16.5, Weight::Regular, 6);
+        assert!(lines.len() > 1 && lines.concat() == prompt, "{lines:?}");
+    }
+
+    #[test]
+    fn a_legend_names_what_its_line_holds() {
+        let page = Page::new();
+        assert_eq!(page_list(&page, &["Living room", "Kitchen"], 14.0, 400.0), "Living room, kitchen");
+        assert_eq!(
+            page_list(&page, &["Living room", "Kitchen", "Dining room"], 14.0, 150.0),
+            "Living room, kitchen, …"
+        );
+    }
 }

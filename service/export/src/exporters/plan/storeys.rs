@@ -6,10 +6,11 @@ use d3dgen_model::storeys::LinkKind;
 use d3dgen_model::world::World;
 
 use super::building::outer_bounds;
+use super::dimensions::Dimensions;
 use super::page::{Anchor, Frame, Page, Path};
 use super::style;
 
-/// Space between two storeys, m.
+/// Least space between two storeys, m.
 const BETWEEN_M: f64 = 3.5;
 /// Width over height that a sheet of several storeys should have.
 const SHEET: f64 = 1.7;
@@ -23,16 +24,19 @@ pub(super) struct Storey {
     pub title: String,
     /// Outer faces of its walls, m.
     pub around: Rect,
+    /// Its plan alone, where it is on the sheet.
+    pub plan: Floorplan,
 }
 
-/// Returns a world of one storey as it is, one of several with its storeys beside each other.
-pub(super) fn laid_out(world: &World) -> (World, Vec<Storey>) {
+/// Returns a world of one storey as it is, one of several with its storeys beside each other, so far apart across and along,
+/// m, or further.
+pub(super) fn laid_out(world: &World, apart: (f64, f64)) -> (World, Vec<Storey>) {
     let levels = world.floorplan.level_numbers();
     if levels.len() < 2 {
         return (world.clone(), Vec::new());
     }
     let whole = outer_bounds(&world.floorplan);
-    let (w, h) = (whole.width() + BETWEEN_M, whole.height() + BETWEEN_M);
+    let (w, h) = (whole.width() + apart.0.max(BETWEEN_M), whole.height() + apart.1.max(BETWEEN_M));
     // as many in a row as make the sheet's shape
     let shape = |columns: usize| {
         let rows = levels.len().div_ceil(columns);
@@ -59,7 +63,7 @@ pub(super) fn laid_out(world: &World) -> (World, Vec<Storey>) {
             l => format!("Level {l}, {rooms} rooms"),
         };
         let around = Rect { y1: whole.y1 + by.1, ..outer_bounds(&storey.floorplan) };
-        titles.push(Storey { title, around });
+        titles.push(Storey { title, around, plan: storey.floorplan.clone() });
         match &mut out {
             None => out = Some(storey),
             Some(all) => join(all, storey),
@@ -126,9 +130,11 @@ pub(super) fn elevators(page: &mut Page, frame: &Frame, plan: &Floorplan) {
     page.close_group();
 }
 
-/// Writes the title of each storey above it, beside what is written at the doors there.
+/// Writes the title of each storey above it and its dimensions, beside what is written at the doors there.
 pub(super) fn titles(page: &mut Page, frame: &Frame, plan: &Floorplan, storeys: &[Storey], size: f64) {
     for storey in storeys {
+        let chains = Dimensions::of(&storey.plan, frame.scale, size).bounds();
+        let above = chains.map_or(0.0, |b| (b.y1 - storey.around.y1).max(0.0) * frame.scale + size);
         let r = frame.rect(&storey.around);
         let width = page.font(style::HEADING.weight).width(&storey.title, 1.5 * size);
         let doors: Vec<f64> = plan
@@ -140,7 +146,7 @@ pub(super) fn titles(page: &mut Page, frame: &Frame, plan: &Floorplan, storeys: 
             .filter(|x| (r.x0..=r.x1).contains(x))
             .collect();
         let x = beside(r.x0, width, &doors, DOOR_NAME * size);
-        page.text(&storey.title, (x, r.y0 - 1.1 * size), 1.5 * size, style::HEADING, Anchor::Start);
+        page.text(&storey.title, (x, r.y0 - above - 1.1 * size), 1.5 * size, style::HEADING, Anchor::Start);
     }
 }
 

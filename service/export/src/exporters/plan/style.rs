@@ -41,19 +41,6 @@ pub(super) fn tint(zone: Zone) -> &'static str {
     }
 }
 
-/// Returns the legend's words for a part of the building.
-pub(super) fn zone_label(zone: Zone) -> &'static str {
-    match zone {
-        Zone::Day => "Day, work, treatment",
-        Zone::Night => "Sleeping and care",
-        Zone::Public => "Public",
-        Zone::Staff => "Staff",
-        Zone::Service => "Wet, storage, technical",
-        Zone::Circulation => "Circulation",
-        Zone::Outdoor => "Outdoor",
-    }
-}
-
 /// Returns fill and stroke of a robot zone.
 pub(super) fn roi_colors(kind: RoiKind) -> (&'static str, &'static str) {
     match kind {

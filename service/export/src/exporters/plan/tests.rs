@@ -5,8 +5,8 @@ use crate::sample;
 #[test]
 fn the_picture_decodes_and_shows_the_building() {
     let files = Plan.export(&sample::world(), &sample::domain(), &NothingKept).unwrap();
-    assert_eq!(files[0].path, "plan.png");
-    let mut reader = png::Decoder::new(std::io::Cursor::new(&files[0].bytes)).read_info().unwrap();
+    let picture = files.iter().find(|f| f.path == "plan.png").unwrap();
+    let mut reader = png::Decoder::new(std::io::Cursor::new(&picture.bytes)).read_info().unwrap();
     let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
     let info = reader.next_frame(&mut pixels).unwrap();
     assert!((1600..=2400).contains(&info.width) && info.height > 800, "{} x {}", info.width, info.height);
@@ -55,13 +55,74 @@ fn every_build_has_a_symbol_of_its_own() {
 }
 
 #[test]
-fn a_prompt_in_another_script_is_left_out() {
+fn prompts_and_names_in_any_script_are_drawn() {
+    for name in [
+        "两居室公寓",
+        "원룸 아파트",
+        "二世帯住宅のキッチン",
+        "Двухкомнатная квартира",
+        "Phòng ngủ",
+        "Δωμάτιο",
+        "Łazienka",
+    ] {
+        let mut world = sample::world();
+        world.scene_graph.prompt = name.into();
+        world.floorplan.rooms[1].name = name.into();
+        let svg = svg(&world, &sample::domain());
+        let drawn = |label: &str| {
+            let (_, path) =
+                svg.split_once(&format!("aria-label=\"{label}\" d=\"")).unwrap_or_else(|| panic!("{label}"));
+            path.split('"').next().unwrap_or_default().matches('M').count()
+        };
+        let letters = name.chars().filter(|c| !c.is_whitespace()).count();
+        assert!(drawn(&format!("“{name}”")) >= letters + 2, "{name}");
+        assert!(svg.matches(&format!("aria-label=\"{name}\"")).count() > 0, "{name}");
+    }
     let mut world = sample::world();
-    world.scene_graph.prompt = "两居室公寓".into();
-    let foreign = svg(&world, &sample::domain());
-    assert!(!foreign.contains("aria-label=\"“"));
     world.scene_graph.prompt = "<flat> & \"more\"".into();
     let escaped = svg(&world, &sample::domain());
     assert!(escaped.contains("“&lt;flat&gt; &amp; &quot;more&quot;”"));
     assert!(png(&escaped).is_ok());
+}
+
+#[test]
+fn without_robots_nothing_is_hatched_for_them() {
+    let mut world = sample::world();
+    let hatched = svg(&world, &sample::domain());
+    assert!(hatched.contains("id=\"robot-zones\"") && hatched.contains("aria-label=\"Cleaning zone\""));
+    world.scenario.robots.clear();
+    let bare = svg(&world, &sample::domain());
+    assert!(!bare.contains("id=\"robot-zones\"") && !bare.contains("aria-label=\"Cleaning zone\""));
+    assert!(bare.contains("aria-label=\"Charging dock\""), "a dock that stands there is shown");
+}
+
+#[test]
+fn the_legend_names_the_rooms_of_the_plan() {
+    let (world, domain) = (sample::world(), sample::domain());
+    let svg = svg(&world, &domain);
+    let kinds: std::collections::BTreeSet<_> = world.floorplan.rooms.iter().map(|r| r.room_type.as_str()).collect();
+    let labels: Vec<&str> = kinds.iter().map(|k| domain.room_type_or_generic(k).label.as_str()).collect();
+    let named = |label: &&&str| svg.to_lowercase().contains(&label.to_lowercase());
+    assert_eq!(labels.iter().filter(named).count(), labels.len(), "{labels:?}");
+    assert!(!svg.contains("Sleeping and care") && !svg.contains("Day, work, treatment"));
+}
+
+#[test]
+fn the_pdf_has_the_size_of_the_sheet_and_is_the_same_each_time() {
+    let (world, domain) = (sample::world(), sample::domain());
+    let all = files(&world, &domain, false).unwrap();
+    assert_eq!(all, files(&world, &domain, false).unwrap());
+    assert_eq!(all.iter().map(|f| f.path.as_str()).collect::<Vec<_>>(), ["plan.dxf", "plan.pdf", "plan.svg"]);
+    let pdf = &all[1].bytes;
+    assert!(pdf.starts_with(b"%PDF-") && pdf.ends_with(b"%%EOF"), "a whole file");
+    let text = String::from_utf8_lossy(pdf);
+    let (_, media_box) = text.split_once("/MediaBox [0 0 ").expect("a page with a size");
+    let points: Vec<f64> = media_box.split([' ', ']']).take(2).map(|v| v.parse().unwrap()).collect();
+    let svg = String::from_utf8_lossy(&all[2].bytes);
+    for (name, points) in ["width", "height"].iter().zip(points) {
+        let (_, mm) = svg.split_once(&format!("{name}=\"")).unwrap();
+        let mm: f64 = mm.split("mm").next().unwrap().parse().unwrap();
+        assert!((points / 72.0 * 25.4 - mm).abs() < 0.1, "{name}: {points} pt are {mm} mm");
+    }
+    assert!(!text.contains("CreationDate") && !text.contains("ModDate"));
 }

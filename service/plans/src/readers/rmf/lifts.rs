@@ -7,8 +7,8 @@ use serde::Deserialize;
 use serde_json::Value;
 
 use super::{FORMAT, Frame};
-use crate::Error;
 use crate::drawing::{Drawing, DrawnCabin, note};
+use crate::error::Error;
 
 /// A lift: the middle of its car in units of a level, all else in meters and radians.
 #[derive(Debug, Clone, Deserialize)]

@@ -4,6 +4,7 @@
 //! Everything is counted in cells, row 0 in the south; what a cell measures is only known by `cells_of`.
 
 mod rooms;
+mod standing;
 mod walls;
 
 use std::collections::BTreeMap;
@@ -47,6 +48,10 @@ pub(in crate::readers) struct Found {
     pub gaps: Vec<Gap>,
     /// Things that were taken away.
     pub things: usize,
+    /// Outlines of walls that stand free in a room.
+    pub standing: Vec<Vec<At>>,
+    /// Floor between what was seen that was never scanned, m^2.
+    pub unscanned_m2: f64,
     /// How the map was turned, when its walls do not run along its rows and columns; everything is on the turned map.
     pub turn: Option<Turn>,
 }
@@ -66,6 +71,8 @@ pub(in crate::readers) struct Map {
     pub width: usize,
     pub height: usize,
     pub free: Vec<bool>,
+    /// Cells that nobody has seen; none of them is free.
+    pub unknown: Vec<bool>,
     /// Cells of one meter.
     pub per_meter: f64,
 }
@@ -153,9 +160,11 @@ impl Map {
 /// Finds the rooms of a map.
 pub(in crate::readers) fn trace(map: Map) -> Found {
     let (mut map, turn) = upright(map);
-    let things = take_away(&mut map);
+    let unscanned_m2 = standing::unscanned_m2(&map);
+    let (things, mut walls) = take_away(&mut map);
     let openings = openings(&map);
-    let (labels, openings) = part(&map, openings);
+    let (mut labels, openings) = part(&map, openings);
+    walls.extend(standing::take(&mut map, &mut labels));
     let count = labels.iter().flatten().max().map_or(0, |m| m + 1);
     let outdoors = outdoors(&map, &labels, count);
     let mut wide = smooth(&map, &labels);
@@ -166,7 +175,7 @@ pub(in crate::readers) fn trace(map: Map) -> Found {
         *free &= was.is_none() || is.is_some();
     }
     let shapes = smooth(&map, &fill(&map, &wide, count));
-    let mut found = Found { things, turn, ..Found::default() };
+    let mut found = Found { things, standing: walls, unscanned_m2, turn, ..Found::default() };
     let mut number: Vec<Option<usize>> = vec![None; count];
     for (room, loops) in loops(&map, &shapes, count).into_iter().enumerate() {
         if Some(room) != outdoors && !loops.is_empty() {
@@ -181,11 +190,8 @@ pub(in crate::readers) fn trace(map: Map) -> Found {
             found.gaps.push(Gap { ends: ends(&map, opening), rooms });
         }
     }
-    for (room, opening) in notches {
-        if let Some(room) = number[room] {
-            found.gaps.push(Gap { ends: ends(&map, &opening), rooms: [Some(room), None] });
-        }
-    }
+    let notch = |(room, o): (usize, Opening)| Some(Gap { ends: ends(&map, &o), rooms: [Some(number[room]?), None] });
+    found.gaps.extend(notches.into_iter().filter_map(notch));
     found
 }
 

@@ -106,20 +106,10 @@ fn wall_between(map: &Map, labels: &[Option<usize>]) -> usize {
     for along_x in [true, false] {
         let (across, along) = if along_x { (map.height, map.width) } else { (map.width, map.height) };
         for line in 0..across {
-            let mut last: Option<(usize, usize)> = None;
-            for i in 0..along {
-                let k = if along_x { line * map.width + i } else { i * map.width + line };
-                if let Some(room) = labels[k] {
-                    if let Some((j, before)) = last
-                        && before != room
-                        && i - j - 1 <= thickest
-                        && i - j > 1
-                    {
-                        *found.entry(i - j - 1).or_default() += 1;
-                    }
-                    last = Some((i, room));
-                }
-            }
+            let at = |i: usize| if along_x { line * map.width + i } else { i * map.width + line };
+            let floor: Vec<(usize, usize)> = (0..along).filter_map(|i| Some((i, labels[at(i)]?))).collect();
+            let gaps = floor.windows(2).filter(|w| w[0].1 != w[1].1).map(|w| w[1].0 - w[0].0 - 1);
+            gaps.filter(|gap| (1..=thickest).contains(gap)).for_each(|gap| *found.entry(gap).or_default() += 1);
         }
     }
     found.into_iter().max_by_key(|(thick, n)| (*n, usize::MAX - thick)).map_or(map.cells_of(0.1), |f| f.0)
@@ -292,7 +282,7 @@ pub(super) fn loops(map: &Map, shapes: &[Option<usize>], count: usize) -> Vec<Ve
 }
 
 /// Returns the outlines of a group of cells.
-fn around(map: &Map, cells: &[usize]) -> Vec<Vec<At>> {
+pub(super) fn around(map: &Map, cells: &[usize]) -> Vec<Vec<At>> {
     let mut inside = vec![false; map.free.len()];
     cells.iter().for_each(|k| inside[*k] = true);
     let (w, h) = (map.width as i64, map.height as i64);

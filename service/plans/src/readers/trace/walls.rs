@@ -1,7 +1,7 @@
 //! Walls and the gaps in them: the direction they run in, what stands about and is none, where two of their ends face each
 //! other.
 
-use super::{DOOR_M, LEAST_ROOM_M2, Map, Opening, Turn, WALL_M};
+use super::{At, DOOR_M, LEAST_ROOM_M2, Map, Opening, Turn, WALL_M, standing};
 
 /// Narrowest gap between two wall ends that is a door, m; the widest opening at all.
 const NARROWEST_M: f64 = 0.65;
@@ -38,7 +38,15 @@ pub(super) fn upright(map: Map) -> (Map, Option<Turn>) {
         })
     };
     let free = (0..width * height).map(|k| sure(k % width, k / width)).collect();
-    (Map { width, height, free, per_meter: map.per_meter }, Some(turn))
+    // what lies beyond the picture was not seen either
+    let unseen = |k: usize| {
+        let (x, y) = turn.back(((k % width) as f64 + 0.5, (k / width) as f64 + 0.5));
+        let (i, j) = (x.floor(), y.floor());
+        let within = i >= 0.0 && j >= 0.0 && i < w && j < h;
+        !within || map.unknown[j as usize * map.width + i as usize]
+    };
+    let unknown = (0..width * height).map(unseen).collect();
+    (Map { width, height, free, unknown, per_meter: map.per_meter }, Some(turn))
 }
 
 /// Returns the direction of most walls, rad, when it is not that of rows and columns: the one in which their cells fall
@@ -78,11 +86,12 @@ fn main_angle(map: &Map) -> Option<f64> {
     (best.1.abs() >= LEAST_TURN && best.0 as f64 > SHARPER * flat as f64).then(|| best.1.to_radians())
 }
 
-/// Frees what stands about: groups of blocked cells that are no walls; returns how many.
-pub(super) fn take_away(map: &mut Map) -> usize {
+/// Frees what stands about: groups of blocked cells that part no rooms. Returns how many there are, without what was only never
+/// seen, and the outlines of those that are walls.
+pub(super) fn take_away(map: &mut Map) -> (usize, Vec<Vec<At>>) {
     let (short, block) = (map.cells_of(FURNITURE_M), map.cells_of(BLOCK_M));
     let (thin, row) = (map.cells_of(0.35), map.cells_of(ROW_M));
-    let mut count = 0;
+    let (mut count, mut free_walls) = (0, Vec::new());
     let groups = map.groups(true, |k| !map.free[k]);
     for group in groups {
         let (x0, x1, y0, y1) = map.bounds(&group);
@@ -96,7 +105,12 @@ pub(super) fn take_away(map: &mut Map) -> usize {
             long <= short && !(narrow <= thin && long >= map.cells_of(0.6) && between_walls(map, (x0, x1, y0, y1)));
         let standing = solid && narrow > thin && (long <= block || narrow <= row);
         if small || standing {
-            count += usize::from(group.len() >= map.area_of(0.04));
+            if standing::is_wall(map, &group) {
+                free_walls.extend(standing::outline(map, &group));
+            } else {
+                let seen = group.iter().any(|k| !map.unknown[*k]);
+                count += usize::from(seen && group.len() >= map.area_of(0.04));
+            }
             group.into_iter().for_each(|k| map.free[k] = true);
         }
     }
@@ -106,7 +120,7 @@ pub(super) fn take_away(map: &mut Map) -> usize {
             group.into_iter().for_each(|k| map.free[k] = false);
         }
     }
-    count
+    (count, free_walls)
 }
 
 /// Returns true for a thin piece that goes on as a wall after a door at both of its ends.

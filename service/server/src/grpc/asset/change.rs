@@ -3,10 +3,9 @@
 use std::collections::BTreeSet;
 
 use d3dgen_assets::annotate::camel;
-use d3dgen_assets::annotation::{Annotation, Basis, JointNote, Origin};
+use d3dgen_assets::annotation::{Annotation, Basis};
 use d3dgen_assets::database::{Kind, NewAsset, Provenance};
-use d3dgen_assets::library::{Library, LibraryAsset};
-use d3dgen_mesh::JointKind;
+use d3dgen_assets::library::LibraryAsset;
 use d3dgen_proto::v1::{AnnotateAssetRequest, GenerateAssetsRequest, RemoveAssetsRequest, RestoreAssetsRequest};
 use tonic::Status;
 
@@ -102,11 +101,8 @@ pub(super) fn generate(
         }
         None => object.domains.first().map_or("", String::as_str),
     };
-    let mut annotation = LibraryAsset { object, domain, size: 0 }.annotation(Library::new(&now.catalog).catalog());
-    let extents = asked.size_m.map_or(Ok(annotation.size_m), |s| size("size_m", s))?;
-    let [w, d, h] = extents;
-    annotation.size_m = extents;
-    annotation.bounding_box_m = [[-w / 2.0, w / 2.0], [-d / 2.0, d / 2.0], [0.0, h]];
+    let asset = LibraryAsset { object, domain, size: 0 };
+    let extents = asked.size_m.map_or(Ok(asset.size_m()), |s| size("size_m", s))?;
     let (by, made) = begin(core, once, who, &format!("{} generated", asked.object_id))?;
     let ids = match made {
         Some(ids) => ids,
@@ -115,17 +111,7 @@ pub(super) fn generate(
             for seed in asked.seed..asked.seed.saturating_add(u64::from(asked.count.max(1))) {
                 let mut model = files::generate(&now, domain, &asked.object_id, extents, seed)?;
                 model.name = format!("{}_v{seed}", camel(&asked.object_id));
-                let mut a = annotation.clone();
-                a.asset_id = format!("{}/{}", camel(domain), model.name);
-                a.origin = Origin::Generated { domain: domain.to_owned(), object: asked.object_id.clone(), seed };
-                a.triangle_count = model.triangle_count() as u64;
-                a.basis.insert("size_m".into(), Basis::Given);
-                let note = |j: &d3dgen_mesh::Joint| JointNote {
-                    name: j.name.clone(),
-                    kind: joint_kind(j.kind).into(),
-                    limits: j.limits,
-                };
-                a.joints = model.joints.iter().map(note).collect();
+                let a = asset.annotation_of(&now.catalog, &model, extents, seed);
                 assets.push(NewAsset::new(a, Some(model), Default::default()));
             }
             core.databases.assets.put(Kind::Generate, assets, &by).map_err(status::assets)?
@@ -189,12 +175,4 @@ pub(super) fn restore(core: &Core, who: &str, asked: RestoreAssetsRequest, once:
         core.changed_assets()?;
     }
     Ok(objects)
-}
-
-fn joint_kind(kind: JointKind) -> &'static str {
-    match kind {
-        JointKind::Revolute => "revolute",
-        JointKind::Prismatic => "prismatic",
-        JointKind::Continuous => "continuous",
-    }
 }

@@ -3,10 +3,12 @@
 use d3dgen_knowledge::database::{Change, Edit, Entry, Found, Kind, Provenance};
 use d3dgen_knowledge::{Applicable, Limit, Limits, Retrieval, Scope, Stats, phrase};
 use d3dgen_model::knowledge::{Constraint, Reference};
+use d3dgen_model::plausible::Quarantined;
 use d3dgen_proto::v1::{
     ApplicableConstraint, AreaLimits, ConstraintConflict, ConstraintScope, FoundConstraint, GetKnowledgeStatsResponse,
     KnowledgeChange, KnowledgeChangeKind, KnowledgeEdit, KnowledgeEntry, PlacedConstraint, PlanLimit, PlanLimits,
-    Provenance as ProvenanceMessage, RetrieveConstraintsResponse, RoomPlanLimits, knowledge_entry,
+    Provenance as ProvenanceMessage, QuarantinedConstraint, RetrieveConstraintsResponse, RoomPlanLimits,
+    knowledge_entry,
 };
 
 use crate::convert::message;
@@ -19,7 +21,9 @@ pub(super) fn found(found: &Found, now: &Snapshot) -> FoundConstraint {
     let reference = knowledge.and_then(|k| k.references.iter().find(|r| r.ref_id == found.ref_id));
     let (c, score) = (&found.constraint, found.hit.score);
     match reference {
-        Some(reference) => placed(c, reference, &found.domain, score),
+        Some(reference) => {
+            FoundConstraint { copies: found.copies.clone(), ..placed(c, reference, &found.domain, score) }
+        }
         // removed in this moment
         None => FoundConstraint {
             constraint: Some(message(c)),
@@ -28,6 +32,7 @@ pub(super) fn found(found: &Found, now: &Snapshot) -> FoundConstraint {
             jurisdiction: found.jurisdiction.clone(),
             sources: found.source.iter().map(message).collect(),
             score,
+            copies: found.copies.clone(),
         },
     }
 }
@@ -42,11 +47,17 @@ pub(super) fn placed(c: &Constraint, reference: &Reference, domain: &str, score:
         jurisdiction: reference.jurisdiction.clone(),
         sources: c.source_ids.iter().filter_map(source).map(message).collect(),
         score,
+        copies: Vec::new(),
     }
 }
 
+/// Returns what was kept apart at import.
+pub(super) fn quarantined(rules: Vec<Quarantined>) -> Vec<QuarantinedConstraint> {
+    rules.into_iter().map(|q| QuarantinedConstraint { constraint_id: q.constraint_id, reason: q.reason }).collect()
+}
+
 /// Returns the rules of a building.
-pub(super) fn retrieval(domain: &str, found: &Retrieval) -> RetrieveConstraintsResponse {
+pub(super) fn retrieval(domain: &str, tied: Vec<String>, found: &Retrieval) -> RetrieveConstraintsResponse {
     let conflict = |c: &d3dgen_knowledge::Conflict| ConstraintConflict {
         space_type: c.space_type.clone(),
         kept_constraint_id: c.kept.clone(),
@@ -61,6 +72,7 @@ pub(super) fn retrieval(domain: &str, found: &Retrieval) -> RetrieveConstraintsR
         limits: Some(limits(&found.limits)),
         conflicts: found.conflicts.iter().map(conflict).collect(),
         person_count: found.persons,
+        tied_domain_ids: tied,
     }
 }
 

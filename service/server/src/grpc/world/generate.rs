@@ -6,7 +6,7 @@ use d3dgen_model::floorplan::Floorplan;
 use d3dgen_model::placements::Placements;
 use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_pipeline::generate::{Artifact, Event, Settings, Stage, contradictions, furnish_and_check};
-use d3dgen_pipeline::{Error, scene_graph};
+use d3dgen_pipeline::{Error, brief};
 use d3dgen_proto::v1::generate_world_request::Start;
 use d3dgen_proto::v1::generate_world_response::Event as Sent;
 use d3dgen_proto::v1::{GenerateWorldRequest, GenerateWorldResponse, Progress, Stage as StageMessage};
@@ -65,7 +65,7 @@ impl Api {
                     Start::Building(asked) => {
                         let request = building(Some(asked))?;
                         told.hear(Event::Started(Stage::SceneGraph, 0));
-                        scene_graph::generate(&request, &now.registry).map_err(|e| status::stage("building", e))?
+                        brief::rooms(&request, &now.registry).map_err(|e| status::stage("building", e))?.0
                     }
                     Start::SceneGraph(graph) => document::<SceneGraph>("scene_graph", Some(graph))?,
                 };

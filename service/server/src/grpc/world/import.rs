@@ -21,6 +21,7 @@ pub(super) fn import(asked: &ImportFloorplanRequest, registry: &Registry) -> Res
         companion: &|file| asked.companions.get(file).cloned(),
     };
     let options = Options {
+        layers: Vec::new(),
         format: asked.format.clone(),
         meters_per_unit: asked.meters_per_unit,
         level: asked.level.clone(),

@@ -1,0 +1,153 @@
+//! What was asked for is measured in the world: the same fact is honored where it holds, and told where it does not.
+
+use d3dgen_check::check;
+use d3dgen_model::brief::{AreaAsk, SiteAsk, SiteKind};
+use d3dgen_model::brief::{
+    Ask, AskedCount, AskedTask, Bound, Brief, CapacityAsk, Fact, ForbiddenAsk, ObjectsAsk, OnlyAsk, OtherAsk,
+    PeopleAsk, PlaceKind, RelationAsk, RelationKind, RobotsAsk, RoomsAsk, StoreysAsk, StyleAsk, Subject,
+};
+use d3dgen_model::report::{AskAnswer, Fate};
+use d3dgen_model::world::World;
+
+use crate::{SAMPLES, Sample};
+
+const FLAT: usize = 0;
+const OFFICE: usize = 1;
+const WARD: usize = 2;
+const WAREHOUSE: usize = 3;
+
+/// Returns what became of one fact in a world.
+fn answer(sample: &Sample, fact: Fact) -> AskAnswer {
+    let ask = Ask { id: "ask_1".into(), words: Vec::new(), read_by: Default::default(), fact };
+    let brief = Brief { asks: vec![ask], ..Brief::of_prompt("") };
+    let world = World { brief: Some(brief), ..sample.world.clone() };
+    let mut answers = check(&world, sample.domain, &sample.retrieval).asks;
+    assert_eq!(answers.len(), 1, "each fact has its answer");
+    answers.remove(0)
+}
+
+fn room(id: &str) -> Subject {
+    Subject::known(id, &id.replace('_', " "))
+}
+
+fn rooms(id: &str, count: AskedCount) -> Fact {
+    Fact::Rooms(RoomsAsk { room: room(id), count, ..RoomsAsk::default() })
+}
+
+#[test]
+fn facts_are_honored_where_they_hold_and_told_where_they_do_not() {
+    let exactly = AskedCount::exactly;
+    let objects = |id: &str, within: Option<&str>, n| {
+        Fact::Objects(ObjectsAsk {
+            object: room(id),
+            count: AskedCount::at_least(n),
+            room: within.map(room),
+            ..ObjectsAsk::default()
+        })
+    };
+    let relation = |a: &str, relation, b: &str| Fact::Relation(RelationAsk { a: room(a), relation, b: room(b) });
+    let robots =
+        |kind: &str, n| Fact::Robots(RobotsAsk { kind: kind.into(), count: exactly(n), ..RobotsAsk::default() });
+    let forbidden = |id: &str| Fact::Forbidden(ForbiddenAsk { room: Some(room(id)), ..ForbiddenAsk::default() });
+    let beds = |n| {
+        Fact::Capacity(CapacityAsk {
+            of: PlaceKind::Beds,
+            count: exactly(n),
+            room: None,
+            each_room: false,
+            groups: None,
+        })
+    };
+    let cases = [
+        (FLAT, rooms("bedroom", exactly(2)), Fate::Honored),
+        (FLAT, rooms("bedroom", exactly(3)), Fate::Substituted),
+        (FLAT, rooms("bedroom", AskedCount::at_least(1)), Fate::Honored),
+        (FLAT, rooms("sauna", AskedCount::at_least(1)), Fate::LeftOut),
+        (FLAT, forbidden("sauna"), Fate::Honored),
+        (FLAT, forbidden("kitchen"), Fate::LeftOut),
+        (FLAT, Fact::Storeys(StoreysAsk { count: exactly(1), basement: false }), Fate::Honored),
+        (FLAT, Fact::Storeys(StoreysAsk { count: exactly(2), basement: false }), Fate::Substituted),
+        (FLAT, Fact::Area(AreaAsk { area_m2: 900.0, bound: Bound::Exactly }), Fate::Substituted),
+        (FLAT, Fact::Area(AreaAsk { area_m2: 900.0, bound: Bound::AtMost }), Fate::Honored),
+        (FLAT, objects("wardrobe", Some("bedroom"), 1), Fate::Honored),
+        (FLAT, objects("wardrobe", Some("kitchen"), 1), Fate::Substituted),
+        (FLAT, objects("piano", None, 1), Fate::LeftOut),
+        (FLAT, relation("bedroom", RelationKind::NotFrom, "kitchen"), Fate::Honored),
+        (FLAT, relation("sauna", RelationKind::Door, "kitchen"), Fate::LeftOut),
+        (FLAT, Fact::Style(StyleAsk { word: "l_shaped".into() }), Fate::LeftOut),
+        (FLAT, Fact::Site(SiteAsk { kind: SiteKind::Terraced }), Fate::LeftOut),
+        (FLAT, Fact::Other(OtherAsk { wish: "a view of the sea".into() }), Fate::LeftOut),
+        (FLAT, Fact::People(PeopleAsk { role: "resident".into(), count: exactly(40) }), Fate::Substituted),
+        (OFFICE, Fact::People(PeopleAsk { role: "employee".into(), count: exactly(8) }), Fate::Honored),
+        (WARD, rooms("patient_room", exactly(4)), Fate::Honored),
+        (WARD, relation("anteroom", RelationKind::Door, "isolation_room"), Fate::Honored),
+        (WARD, relation("isolation_room", RelationKind::OnlyFrom, "anteroom"), Fate::Honored),
+        (WARD, beds(200), Fate::Substituted),
+        (WAREHOUSE, robots("transport", 2), Fate::Honored),
+        (WAREHOUSE, robots("transport", 3), Fate::Substituted),
+        (WAREHOUSE, robots("cleaning", 1), Fate::Substituted),
+        (WAREHOUSE, Fact::Only(OnlyAsk { rooms: Some(99), closed: false }), Fate::Substituted),
+    ];
+    for (sample, fact, fate) in cases {
+        let found = answer(&SAMPLES[sample], fact.clone());
+        assert_eq!(found.fate, fate, "{fact:?}: {found:?}");
+        assert_eq!(found.reason.is_empty(), fate == Fate::Honored, "a reason for what is not as asked: {found:?}");
+    }
+}
+
+#[test]
+fn numbers_and_measures_are_told() {
+    let found = answer(&SAMPLES[FLAT], rooms("bedroom", AskedCount::exactly(3)));
+    assert_eq!((found.asked, found.measured), (Some(3.0), Some(2.0)));
+    assert_eq!(found.ids.len(), 2);
+    let sample = &SAMPLES[FLAT];
+    let kitchen = sample.world.floorplan.rooms.iter().find(|r| r.room_type == "kitchen").unwrap();
+    let bounds = kitchen.net_polygon.bounds();
+    let sized = |area: f64, sides: [f64; 2]| {
+        Fact::Rooms(RoomsAsk {
+            room: room("kitchen"),
+            area_m2: Some(area),
+            sides_m: Some(sides),
+            ..RoomsAsk::default()
+        })
+    };
+    let area = kitchen.net_polygon.area();
+    assert_eq!(answer(sample, sized(area, [bounds.height(), bounds.width()])).fate, Fate::Honored);
+    let larger = answer(sample, sized(1.2 * area, [bounds.width(), bounds.height()]));
+    assert_eq!((larger.fate, larger.unit.as_str()), (Fate::Substituted, "m2"));
+    let longer = answer(sample, sized(area, [1.2 * bounds.width(), bounds.height()]));
+    assert!(longer.reason.contains("sides are"), "{longer:?}");
+}
+
+#[test]
+fn a_robot_answers_for_where_it_is_sent() {
+    let task = |to: &str| AskedTask { verb: "bring".into(), to: vec![room(to)], ..AskedTask::default() };
+    let robots = |to: &str| {
+        Fact::Robots(RobotsAsk {
+            kind: "transport".into(),
+            count: AskedCount::exactly(2),
+            tasks: vec![task(to)],
+            ..RobotsAsk::default()
+        })
+    };
+    let lacking = answer(&SAMPLES[WAREHOUSE], robots("operating_room"));
+    assert_eq!(lacking.fate, Fate::LeftOut, "{lacking:?}");
+    assert!(lacking.reason.contains("operating room"), "{lacking:?}");
+}
+
+#[test]
+fn a_conflict_that_names_the_wish_is_its_reason() {
+    let sample = &SAMPLES[FLAT];
+    let prompt = "flat with a helipad";
+    let words = vec![d3dgen_model::brief::PromptWords::of(prompt, 12, 19)];
+    let fact = Fact::Rooms(RoomsAsk { room: Subject::unknown("helipad"), ..RoomsAsk::default() });
+    let ask = Ask { id: "ask_1".into(), words, read_by: Default::default(), fact };
+    let mut world =
+        World { brief: Some(Brief { asks: vec![ask], ..Brief::of_prompt(prompt) }), ..sample.world.clone() };
+    let note = d3dgen_model::scene_graph::Note::new("unread_wish", "no helipad is planned on a flat");
+    world.scene_graph.conflicts.push(note);
+    let found = check(&world, sample.domain, &sample.retrieval);
+    assert_eq!(found.asks[0].fate, Fate::Contradicted);
+    assert!(found.asks[0].reason.ends_with("no helipad is planned on a flat"));
+    assert_eq!(found.wishes_met(), (0, 1));
+}

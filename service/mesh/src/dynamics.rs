@@ -1,0 +1,177 @@
+//! What holds a joint: a spring that balances most of the weight on it, as gas springs and counterweights do, friction that
+//! bears the rest anywhere in its range, and damping that lets it move at the pace of furniture. All follow from masses and
+//! arms, so a dishwasher's door stays where it is left as a drawer does.
+
+use crate::affine::{Vec3, cross, dot, scale, sub};
+use crate::mass::{Inertia, inertia};
+use crate::{Joint, JointKind, Model3d};
+
+/// Gravity, m/s^2.
+const GRAVITY: f64 = 9.81;
+/// How much more than the weight friction bears.
+const SAFETY: f64 = 1.3;
+/// Friction of a joint that bears no weight, as a share of the weight of what moves at a tenth of its arm, and at least,
+/// N m or N.
+const ROLLING: f64 = 0.02;
+const LEAST: f64 = 0.01;
+/// How many ranges long a spring is drawn that pulls evenly.
+const FLAT: f64 = 50.0;
+/// How long what moves goes on by itself, s.
+const SLOWS_S: f64 = 0.5;
+/// Positions of its range at which the weight on a joint is looked at.
+const POSITIONS: usize = 33;
+/// How far a joint is looked at that has no limits: rad, and m.
+const ALL_ROUND: [f64; 2] = [0.0, std::f64::consts::TAU];
+
+/// How a joint resists.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Dynamics {
+    /// What moves it against its direction is borne up to this: N m, or N for a prismatic joint.
+    pub friction: f64,
+    /// N m s/rad, or N s/m.
+    pub damping: f64,
+    /// What balances the weight; none where there is next to none.
+    pub spring: Option<Spring>,
+}
+
+/// A spring of a joint.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Spring {
+    /// N m/rad, or N/m.
+    pub stiffness: f64,
+    /// Position without force, which may be beyond the range: rad, or m.
+    pub reference: f64,
+}
+
+/// Returns how a joint of a model resists.
+pub fn of(model: &Model3d, joint: &Joint) -> Dynamics {
+    let moved = moved(model, joint);
+    let mass: f64 = moved.iter().map(|b| b.mass_kg).sum();
+    let (resists, idle) = match joint.kind {
+        JointKind::Prismatic => (mass, mass * GRAVITY),
+        JointKind::Revolute | JointKind::Continuous => {
+            let about = moved.iter().map(|b| about_axis(b, joint)).sum::<f64>();
+            let arm = if mass > 0.0 { (about / mass).sqrt() } else { 0.0 };
+            (about, mass * GRAVITY * arm * 0.1)
+        }
+    };
+    let least = (ROLLING * idle).max(LEAST);
+    let loads = loads(&moved, joint);
+    let most = |spring: Option<Spring>| {
+        let left = |(at, load): &(f64, f64)| (load + spring.map_or(0.0, |s| s.stiffness * (s.reference - at))).abs();
+        loads.iter().map(left).fold(0.0, f64::max)
+    };
+    let spring = spring(&loads).filter(|s| joint.limits.is_some() && most(None) > least && most(Some(*s)) < most(None));
+    let friction = (SAFETY * most(spring)).max(least);
+    Dynamics { friction, damping: (resists / SLOWS_S).max(LEAST), spring }
+}
+
+/// Returns the spring that balances loads best: the line through them that leaves least squares, as steep as a spring can
+/// be.
+fn spring(loads: &[(f64, f64)]) -> Option<Spring> {
+    let count = loads.len() as f64;
+    let mean = |value: &dyn Fn(&(f64, f64)) -> f64| loads.iter().map(value).sum::<f64>() / count;
+    let (at, load) = (mean(&|l| l.0), mean(&|l| l.1));
+    let spread = mean(&|l| (l.0 - at).powi(2));
+    let (first, last) = (loads.first()?.0, loads.last()?.0);
+    if spread <= 0.0 {
+        return None;
+    }
+    let slope = mean(&|l| (l.0 - at) * (l.1 - load)) / spread;
+    let stiffness = slope.max(load.abs() / (FLAT * (last - first)));
+    (stiffness > 0.0).then(|| Spring { stiffness, reference: at - load / stiffness })
+}
+
+/// Returns the moments, or forces, of gravity about a joint over its range, with all others at zero: each with the position,
+/// N m or N.
+fn loads(moved: &[Inertia], joint: &Joint) -> Vec<(f64, f64)> {
+    let [low, high] = joint.limits.unwrap_or(ALL_ROUND);
+    let at = |step: usize| low + (high - low) * step as f64 / (POSITIONS - 1) as f64;
+    let load = |position: f64| -> f64 {
+        let one = |body: &Inertia| {
+            let weight = [0.0, 0.0, -GRAVITY * body.mass_kg];
+            match joint.kind {
+                JointKind::Prismatic => dot(joint.axis, weight),
+                JointKind::Revolute | JointKind::Continuous => {
+                    let way = turned(sub(body.center_m, joint.origin), joint.axis, position);
+                    dot(joint.axis, cross(way, weight))
+                }
+            }
+        };
+        moved.iter().map(one).sum()
+    };
+    (0..POSITIONS).map(at).map(|position| (position, load(position))).collect()
+}
+
+/// Returns the bodies that a joint moves: its own, and those that other joints hold to it.
+fn moved(model: &Model3d, joint: &Joint) -> Vec<Inertia> {
+    let mut bodies = vec![joint.child];
+    let mut next = 0;
+    while let Some(&body) = bodies.get(next) {
+        for below in model.joints.iter().filter(|j| j.parent == body).map(|j| j.child) {
+            if !bodies.contains(&below) {
+                bodies.push(below);
+            }
+        }
+        next += 1;
+    }
+    bodies.iter().filter_map(|b| model.bodies.get(*b)).map(inertia).collect()
+}
+
+/// Returns the inertia of a body about the axis of a joint, kg m^2.
+fn about_axis(body: &Inertia, joint: &Joint) -> f64 {
+    let a = joint.axis;
+    let own: f64 = (0..9).map(|k| a[k / 3] * body.tensor[k / 3][k % 3] * a[k % 3]).sum();
+    let way = sub(body.center_m, joint.origin);
+    let off = sub(way, scale(a, dot(way, a)));
+    own + body.mass_kg * dot(off, off)
+}
+
+/// Turns a vector about a unit axis by an angle, rad.
+fn turned(v: Vec3, axis: Vec3, angle: f64) -> Vec3 {
+    let (sin, cos) = angle.sin_cos();
+    let (across, along) = (cross(axis, v), scale(axis, dot(axis, v) * (1.0 - cos)));
+    std::array::from_fn(|i| v[i] * cos + across[i] * sin + along[i])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Body, Collision};
+
+    fn flap(kind: JointKind, axis: Vec3, limits: Option<[f64; 2]>) -> (Model3d, Joint) {
+        let body = |min: Vec3, max: Vec3, mass_kg| Body {
+            collisions: vec![Collision::Box { min, max }],
+            mass_kg,
+            ..Body::default()
+        };
+        let joint = Joint { name: "j".into(), kind, parent: 0, child: 1, origin: [0.0; 3], axis, limits };
+        let bodies = vec![body([-1.0; 3], [0.0; 3], 9.0), body([0.0, -0.3, 0.0], [0.0, 0.3, 0.5], 4.0)];
+        (Model3d { bodies, joints: vec![joint.clone()], ..Model3d::default() }, joint)
+    }
+
+    /// Returns the largest load that spring and friction do not hold, over the range: below zero when all is held.
+    fn not_held(model: &Model3d, joint: &Joint) -> f64 {
+        let Dynamics { friction, spring, .. } = of(model, joint);
+        let pull = |at: f64| spring.map_or(0.0, |s| s.stiffness * (s.reference - at));
+        let all = loads(&moved(model, joint), joint);
+        all.iter().map(|(at, load)| (load + pull(*at)).abs() - friction).fold(f64::MIN, f64::max)
+    }
+
+    #[test]
+    fn spring_and_friction_bear_the_weight_anywhere_in_the_range() {
+        // A door hinged below, upright at zero: it weighs most on its hinge where it lies, 0.25 m from it.
+        let (model, joint) = flap(JointKind::Revolute, [0.0, 1.0, 0.0], Some([0.0, 1.6]));
+        let open = 4.0 * GRAVITY * 0.25;
+        let found = of(&model, &joint);
+        assert!(not_held(&model, &joint) < 0.0 && found.friction < 0.3 * open, "{found:?}, {open} N m");
+        assert!((found.damping - (4.0 * 0.25 / 12.0 + 4.0 * 0.0625) / SLOWS_S).abs() < 1e-9, "{found:?}");
+        let (model, joint) = flap(JointKind::Prismatic, [0.0, 0.0, 1.0], Some([0.0, 0.3]));
+        assert!(not_held(&model, &joint) < 0.0 && of(&model, &joint).friction < 4.0, "{:?}", of(&model, &joint));
+        let (model, joint) = flap(JointKind::Continuous, [0.0, 1.0, 0.0], None);
+        assert!(not_held(&model, &joint) < 0.0 && of(&model, &joint).spring.is_none());
+        let (model, joint) = flap(JointKind::Revolute, [0.0, 0.0, 1.0], Some([0.0, 1.6]));
+        let found = of(&model, &joint);
+        assert!(found.friction < 0.1 * open && found.spring.is_none(), "a door about an upright axis bears nothing");
+    }
+}

@@ -1,0 +1,50 @@
+//! Stage `brief`: what is asked for, from words; and from there to the rooms.
+//!
+//! The rules of `d3dgen-prompt` read every prompt into a brief, which the finished world answers fact by fact. The rooms are made
+//! of the same brief where the older reader of `d3dgen-program` does not know the prompt's language, or where somebody wrote
+//! the brief; else that reader makes them of the words.
+
+use d3dgen_model::brief::Brief;
+use d3dgen_model::scene_graph::{Note, SceneGraph};
+use d3dgen_model::stage::Error;
+use d3dgen_plugins::Registry;
+use d3dgen_prompt::PromptReader;
+
+use crate::scene_graph::{self, Request};
+
+/// Reads a prompt; none where there are no words.
+pub fn of_prompt(prompt: &str, registry: &Registry) -> Option<Brief> {
+    (!prompt.trim().is_empty()).then(|| PromptReader::new(registry).read(prompt).brief)
+}
+
+/// Makes the rooms of a request, with the brief that they answer to.
+///
+/// # Errors
+/// `Refused` for prompts without words, kinds of buildings that no domain knows, absurd sizes, unknown domains and countries.
+pub fn rooms(request: &Request, registry: &Registry) -> Result<(SceneGraph, Option<Brief>), Error> {
+    let brief = of_prompt(&request.prompt, registry);
+    let strange = brief.as_ref().filter(|b| b.languages.first().is_some_and(|l| !scene_graph::reads(l)));
+    let graph = match strange {
+        Some(brief) => rooms_of(brief, request, registry)?,
+        None => scene_graph::generate(request, registry)?,
+    };
+    Ok((graph, brief))
+}
+
+/// Makes the rooms of a brief; the flags of the request overrule it.
+///
+/// # Errors
+/// As [`rooms`].
+pub fn rooms_of(brief: &Brief, request: &Request, registry: &Registry) -> Result<SceneGraph, Error> {
+    let mut graph = scene_graph::of_brief(brief, request, registry)?;
+    graph.prompt.clone_from(&brief.prompt);
+    if let Some(first) = brief.languages.first() {
+        graph.language.clone_from(first);
+    }
+    if !brief.not_understood.is_empty() {
+        let words: Vec<&str> = brief.not_understood.iter().map(|w| w.text.as_str()).collect();
+        let message = format!("not understood, and so not planned: `{}`", words.join("`, `"));
+        graph.conflicts.push(Note::new("not_understood", message));
+    }
+    Ok(graph)
+}

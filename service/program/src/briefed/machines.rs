@@ -1,0 +1,79 @@
+//! The robots of a brief: kind, number, body, where they go and where they stay out.
+
+use d3dgen_model::brief::{Brief, Fact, RobotsAsk};
+use d3dgen_model::robot_body::RobotBody;
+use d3dgen_model::robot_kind;
+use d3dgen_model::scene_graph::{Note, Robot};
+
+use super::wishes::Facts;
+use super::{Notes, Request, Wishes};
+use crate::machines::{robot_rules, robots};
+use crate::wished::wishes::CHARGING;
+
+/// Kind that stands for those that are not planned.
+const SERVICE: &str = "service";
+
+fn asks(brief: &Brief) -> impl Iterator<Item = &RobotsAsk> {
+    brief.asks.iter().filter_map(|a| if let Fact::Robots(robots) = &a.fact { Some(robots) } else { None })
+}
+
+/// Returns the robots, those of the request's flags where the brief names none.
+pub(super) fn robots(brief: &Brief, request: &Request, wishes: &Wishes, notes: &mut Notes) -> Vec<Robot> {
+    let charging = wishes.wishes.iter().any(|w| w.room_type == CHARGING);
+    let flagged = request.robot_radius_m.is_some() || request.robot != RobotBody::default();
+    let asked: Vec<RobotsAsk> = asks(brief).cloned().collect();
+    let any = RobotsAsk { kind: SERVICE.into(), ..RobotsAsk::default() };
+    let all = if asked.is_empty() && flagged { vec![any] } else { asked };
+    all.iter().filter_map(|asked| robot(asked, request, charging, notes)).collect()
+}
+
+fn robot(asked: &RobotsAsk, request: &Request, charging: bool, notes: &mut Notes) -> Option<Robot> {
+    let known = robot_kind::typical(&asked.kind);
+    if known.is_none() {
+        let message = format!("`{}` is no kind of robot that is planned; service robots stand for it", asked.kind);
+        notes.assumptions.push(Note::new("robot_kind", message));
+    }
+    let kind = if known.is_some() { asked.kind.as_str() } else { SERVICE };
+    let typical = known.or_else(|| robot_kind::typical(SERVICE))?;
+    let told = RobotBody {
+        width_m: asked.width_m,
+        length_m: asked.length_m.or(asked.width_m),
+        height_m: asked.height_m,
+        ..RobotBody::default()
+    };
+    let body = if request.robot == RobotBody::default() { told } else { request.robot };
+    Some(Robot {
+        kind: kind.to_owned(),
+        count: asked.count.n.max(1),
+        radius_m: request.robot_radius_m.or(body.radius_m()).unwrap_or(typical.radius_m),
+        height_m: body.height_m.unwrap_or(typical.height_m),
+        charging,
+        body: (body != RobotBody::default()).then_some(body),
+        stops: Vec::new(),
+        room_types: Vec::new(),
+        misfit: false,
+    })
+}
+
+/// Returns the rooms that the one robot of a brief goes to.
+pub(super) fn errand(brief: &Brief, facts: &Facts) -> robots::Errand {
+    let tasks = || asks(brief).flat_map(|a| &a.tasks);
+    let places = tasks().flat_map(|t| t.from.iter().chain(&t.to)).filter(|s| s.id.is_some());
+    let mut room_types: Vec<String> = Vec::new();
+    for id in places.map(|s| facts.type_of(s)) {
+        if !room_types.contains(&id) {
+            room_types.push(id);
+        }
+    }
+    // one place is where it works, not a way between two
+    if room_types.len() < 2 || asks(brief).count() != 1 {
+        robots::Errand::default()
+    } else {
+        robots::Errand { room_types, entrance: false }
+    }
+}
+
+/// Returns the rooms that robots stay out of.
+pub(super) fn keep_out(brief: &Brief, facts: &Facts) -> Vec<robot_rules::Rule> {
+    asks(brief).flat_map(|a| &a.keep_out).map(|s| robot_rules::Rule::keep_out_of(facts.type_of(s))).collect()
+}

@@ -1,0 +1,148 @@
+use d3dgen_model::brief::{
+    Ask, AskedBuilding, AskedCount, AskedPlace, AskedTask, Brief, CapacityAsk, Fact, ForbiddenAsk, ObjectsAsk, OnlyAsk,
+    PeopleAsk, PlaceKind, RelationAsk, RelationKind, RobotsAsk, RoomsAsk, StoreysAsk, Subject,
+};
+use d3dgen_model::scene_graph::{Connector, SceneGraph};
+use d3dgen_plugins::Registry;
+
+use crate::{Request, of_brief};
+
+fn building(domain: &str, building_type: Option<&str>) -> AskedBuilding {
+    let (domain, building_type) = (Some(domain.to_owned()), building_type.map(str::to_owned));
+    AskedBuilding { domain, building_type, name: "it".into(), confidence: 1.0, words: Vec::new() }
+}
+
+fn subject(id: &str) -> Subject {
+    Subject::known(id, &id.replace('_', " "))
+}
+
+fn rooms(id: &str, n: u32) -> Fact {
+    Fact::Rooms(RoomsAsk { room: subject(id), count: AskedCount::exactly(n), ..RoomsAsk::default() })
+}
+
+fn graph(building: Option<AskedBuilding>, facts: Vec<Fact>) -> SceneGraph {
+    let ask = |(i, fact)| Ask { id: format!("ask_{i}"), words: Vec::new(), read_by: Default::default(), fact };
+    let asks = facts.into_iter().enumerate().map(ask).collect();
+    let brief = Brief { building, asks, ..Brief::of_prompt("") };
+    of_brief(&brief, &Request { seed: 3, ..Request::default() }, &Registry::builtin()).expect("it can be planned")
+}
+
+fn count(graph: &SceneGraph, id: &str) -> usize {
+    graph.rooms.iter().filter(|r| r.room_type == id).count()
+}
+
+#[test]
+fn a_list_adds_to_what_a_home_has_unless_it_is_all() {
+    let home = || Some(building("residential", None));
+    let open = graph(home(), vec![rooms("bedroom", 3), rooms("sauna", 1)]);
+    assert_eq!((count(&open, "bedroom"), count(&open, "sauna")), (3, 1));
+    assert!(count(&open, "bathroom") > 0 && count(&open, "kitchen") > 0, "a home has these");
+    let only = Fact::Only(OnlyAsk { rooms: None, closed: true });
+    let closed = graph(home(), vec![rooms("bedroom", 1), rooms("bathroom", 1), only]);
+    let others = closed.rooms.iter().filter(|r| !r.circulation && !r.requested).count();
+    assert_eq!(others, 0, "{:?}", closed.rooms.iter().map(|r| &r.id).collect::<Vec<_>>());
+}
+
+#[test]
+fn what_is_ruled_out_is_not_there() {
+    let no = Fact::Forbidden(ForbiddenAsk { room: Some(subject("living_room")), ..ForbiddenAsk::default() });
+    let found = graph(Some(building("residential", None)), vec![rooms("bedroom", 2), no]);
+    assert_eq!(count(&found, "living_room"), 0);
+    assert!(found.forbidden_room_types.contains(&"living_room".to_owned()));
+}
+
+#[test]
+fn beds_people_and_places_make_rooms() {
+    let beds =
+        CapacityAsk { of: PlaceKind::Beds, count: AskedCount::exactly(12), room: None, each_room: false, groups: None };
+    let ward = graph(Some(building("hospital", Some("ward"))), vec![Fact::Capacity(beds)]);
+    assert_eq!(ward.occupancy.beds, Some(12));
+    let staff = Fact::People(PeopleAsk { role: "employee".into(), count: AskedCount::exactly(30) });
+    let office = graph(Some(building("office", None)), vec![staff]);
+    assert_eq!(office.occupancy.staff, Some(30));
+    let family = Fact::People(PeopleAsk { role: "child".into(), count: AskedCount::exactly(2) });
+    let home = graph(Some(building("residential", None)), vec![family]);
+    assert_eq!(home.occupancy.residents, Some(2));
+}
+
+#[test]
+fn rooms_stand_on_their_storeys_and_beside_each_other() {
+    let upstairs =
+        RoomsAsk { room: subject("bedroom"), count: AskedCount::exactly(3), level: Some(1), ..RoomsAsk::default() };
+    let storeys = Fact::Storeys(StoreysAsk { count: AskedCount::exactly(2), basement: false });
+    let house = graph(Some(building("residential", None)), vec![Fact::Rooms(upstairs), storeys]);
+    let levels: Vec<i32> = house.rooms.iter().filter(|r| r.room_type == "bedroom").map(|r| r.level).collect();
+    assert_eq!(levels, [1, 1, 1]);
+    let door = RelationAsk { a: subject("kitchen"), relation: RelationKind::Door, b: subject("pantry") };
+    let flat =
+        graph(Some(building("residential", None)), vec![rooms("kitchen", 1), rooms("pantry", 1), Fact::Relation(door)]);
+    let joined = |e: &&d3dgen_model::scene_graph::GraphEdge| {
+        let ends = [e.a.as_str(), e.b.as_str()];
+        ends.contains(&"kitchen") && ends.contains(&"pantry") && e.connector == Connector::Door
+    };
+    assert!(flat.edges.iter().any(|e| joined(&e)), "{:?}", flat.edges);
+}
+
+#[test]
+fn robots_have_their_kind_number_body_and_way() {
+    let robots = RobotsAsk {
+        kind: "delivery".into(),
+        count: AskedCount::exactly(2),
+        width_m: Some(0.6),
+        length_m: Some(0.8),
+        keep_out: vec![subject("pharmacy")],
+        ..RobotsAsk::default()
+    };
+    let facts = vec![rooms("pharmacy", 1), rooms("patient_room", 4), Fact::Robots(robots)];
+    let ward = graph(Some(building("hospital", Some("ward"))), facts);
+    let robot = &ward.robots[0];
+    assert_eq!((robot.kind.as_str(), robot.count, robot.radius_m), ("delivery", 2, 0.5));
+    let shut: Vec<&str> = ward.robot_rules.iter().filter(|r| r.keep_out).map(|r| r.room_id.as_str()).collect();
+    let kept: Vec<&str> =
+        ward.rooms.iter().filter(|r| r.requested && r.room_type != "patient_room").map(|r| r.id.as_str()).collect();
+    assert_eq!(shut, kept, "the room that such a building has for medicine");
+    let task = AskedTask { from: Some(subject("kitchen")), to: vec![subject("study")], ..AskedTask::default() };
+    let sent = RobotsAsk { kind: "delivery".into(), tasks: vec![task], ..RobotsAsk::default() };
+    let home =
+        graph(Some(building("residential", None)), vec![rooms("kitchen", 1), rooms("study", 1), Fact::Robots(sent)]);
+    assert_eq!(home.robots[0].stops, ["kitchen", "study"]);
+}
+
+#[test]
+fn things_stand_in_the_room_they_are_asked_for() {
+    let desks = ObjectsAsk {
+        object: subject("desk"),
+        count: AskedCount::exactly(2),
+        room: Some(subject("living_room")),
+        ..ObjectsAsk::default()
+    };
+    let home = graph(Some(building("residential", None)), vec![rooms("living_room", 1), Fact::Objects(desks)]);
+    let living = home.rooms.iter().find(|r| r.room_type == "living_room").expect("it is asked for");
+    assert_eq!(living.wished_assets.iter().filter(|o| *o == "desk").count(), 2, "{:?}", living.wished_assets);
+}
+
+#[test]
+fn a_kind_of_building_nobody_knows_is_refused_with_the_nearest() {
+    let barn = AskedBuilding {
+        domain: None,
+        building_type: None,
+        name: "cow barn".into(),
+        confidence: 1.0,
+        words: Vec::new(),
+    };
+    let stable = AskedBuilding { name: "warehouse".into(), ..building("warehouse", None) };
+    let brief = Brief { building: Some(barn), other_buildings: vec![stable], ..Brief::of_prompt("") };
+    let refused = of_brief(&brief, &Request::default(), &Registry::builtin()).expect_err("no domain has barns");
+    let message = refused.to_string();
+    assert!(message.contains("cow barn") && message.contains("warehouse"), "{message}");
+    let general = Request { domain: Some("general".into()), ..Request::default() };
+    assert!(of_brief(&brief, &general, &Registry::builtin()).is_ok(), "the request may name a domain");
+}
+
+#[test]
+fn the_place_says_whose_rules_apply() {
+    let place = AskedPlace { country_code: "PL".into(), division_code: None, city: None, words: Vec::new() };
+    let brief = Brief { building: Some(building("residential", None)), place: Some(place), ..Brief::of_prompt("") };
+    let found = of_brief(&brief, &Request::default(), &Registry::builtin()).expect("it can be planned");
+    assert_eq!(found.country_code.as_deref(), Some("PL"));
+}

@@ -1,0 +1,244 @@
+//! The facts of a brief, sorted by what the building of rooms asks for.
+
+use d3dgen_model::brief::{
+    AskedCount, Bound, Brief, CapacityAsk, Fact, ObjectsAsk, PlaceKind, RelationAsk, RelationKind, RoomsAsk, Subject,
+};
+use d3dgen_model::domain::{Domain, Program};
+use d3dgen_model::scene_graph::{Connector, Note};
+use d3dgen_model::style::StyleWord;
+use d3dgen_plugins::Registry;
+
+use super::{GENERIC_ROOM_TYPE, Held, Thing, What, Wish, Wishes, is_dwelling, program_of, roles, styles, what_of};
+use crate::levels::storeys::{Storeys, Wanted};
+use crate::tokens::storey::Where;
+use crate::tokens::text::Span;
+use crate::wished::relations::Spread;
+use crate::wished::wishes::{Apart, Pair, PerHost};
+
+/// Factors on the usual area of rooms that the words for their size stand for.
+const SIZES: [(&str, f64); 2] = [("large", 1.4), ("small", 0.75)];
+/// Most storeys above the ground, as for prompts.
+const MOST_LEVELS: u32 = 12;
+/// Most objects of one kind that one fact asks for.
+const MOST_THINGS: u32 = 200;
+
+/// What a brief asks for, sorted.
+#[derive(Default)]
+pub(super) struct Facts<'a> {
+    pub wishes: Wishes,
+    pub things: Vec<Thing>,
+    /// Rooms with so many beds each.
+    pub beds: Vec<Held>,
+    /// Rooms with so many desks each.
+    pub desks: Vec<Held>,
+    /// Rooms with so many seats or counters each.
+    pub seats: Vec<Held>,
+    /// Rooms with so many places to be treated at each.
+    pub stations: Vec<Held>,
+    /// Head counts of the building.
+    pub heads: Vec<(What, u32)>,
+    pub children: u32,
+    pub styles: Vec<styles::Said>,
+    pub area_m2: Option<f64>,
+    pub accessible: bool,
+    /// True when the rooms listed are all there are.
+    pub closed: bool,
+    /// True when the brief names no building, only a room.
+    pub single: bool,
+    /// True when the brief names a building, of which the rooms are a part.
+    pub named: bool,
+    /// Storeys that are counted, and whether a basement is among them or beside.
+    stated: Option<(u32, bool)>,
+    /// Rooms on a storey.
+    on_levels: Vec<Wanted>,
+    registry: Option<&'a Registry>,
+    program: Option<&'a Program>,
+}
+
+impl<'a> Facts<'a> {
+    pub(super) fn of(brief: &Brief, domain: &'a Domain, registry: &'a Registry) -> Self {
+        let building_type = brief.building.as_ref().and_then(|b| b.building_type.as_deref());
+        let program = Some(program_of(domain, building_type));
+        let lives = program.is_some_and(is_dwelling);
+        let named = brief.building.as_ref().is_some_and(|b| !b.words.is_empty() || b.confidence >= 1.0);
+        let mut out = Self { named, single: !named, registry: Some(registry), program, ..Self::default() };
+        for ask in &brief.asks {
+            match &ask.fact {
+                Fact::Rooms(rooms) => out.rooms(rooms),
+                Fact::Objects(objects) => out.objects(objects),
+                Fact::Capacity(capacity) => out.capacity(capacity),
+                Fact::Relation(relation) => out.relation(relation),
+                Fact::People(people) => {
+                    if lives && roles().children.contains(&people.role) {
+                        out.children += people.count.n;
+                    }
+                    out.heads.push((what_of(people, lives), people.count.n));
+                }
+                Fact::Storeys(storeys) => out.stated = Some((storeys.count.n, storeys.basement)),
+                Fact::Area(area) => out.area_m2 = Some(area.area_m2),
+                Fact::Style(style) => {
+                    let at = Span { start: 0, end: 0 };
+                    out.styles.extend(StyleWord::of(&style.word).map(|word| styles::Said { span: at, word }));
+                }
+                Fact::Accessible(_) => out.accessible = true,
+                Fact::Forbidden(forbidden) => {
+                    let room = forbidden.room.as_ref().map(|room| out.type_of(room));
+                    out.wishes.forbidden.extend(room);
+                }
+                Fact::Only(only) => {
+                    out.heads.extend(only.rooms.map(|n| (What::Total, n)));
+                    out.closed |= only.closed;
+                }
+                // whoever answers the asks tells of these
+                Fact::Robots(_) | Fact::Site(_) | Fact::Other(_) => {}
+            }
+        }
+        let wanted: Vec<String> = out.wishes.wishes.iter().map(|w| w.room_type.clone()).collect();
+        out.wishes.forbidden.retain(|id| !wanted.contains(id));
+        out
+    }
+
+    /// Returns the room type that a subject is planned as: the domain's, that of another domain, or one of its own name.
+    pub(super) fn type_of(&self, subject: &Subject) -> String {
+        if let Some(id) = &subject.id {
+            // the pharmacy of a ward is its room for medicine
+            return self.program.and_then(|p| p.means.get(id)).unwrap_or(id).clone();
+        }
+        let slug: String =
+            subject.name.to_lowercase().chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
+        let slug = slug.trim_matches('_').to_owned();
+        // a name in other letters stands on the plan; as an id it is the generic room
+        if slug.is_empty() || !subject.name.is_ascii() { GENERIC_ROOM_TYPE.to_owned() } else { slug }
+    }
+
+    /// Returns the beds of each room of a type, where the brief says so.
+    pub(super) fn beds_of(&self, room_type: &str) -> Option<u32> {
+        self.beds.iter().find(|h| h.room_type == room_type).map(|h| h.beds)
+    }
+
+    fn rooms(&mut self, asked: &RoomsAsk) {
+        let id = self.type_of(&asked.room);
+        let area = asked.area_m2.or_else(|| asked.sides_m.map(|s| s[0] * s[1]));
+        let size = SIZES.iter().find(|(word, _)| asked.attributes.iter().any(|a| a == word)).map(|s| s.1);
+        let exact = matches!(asked.count.bound, Bound::Exactly | Bound::About) || asked.count.n == 1;
+        self.wish(&id, &asked.room.name, asked.count, exact);
+        if let Some(wish) = self.wishes.wishes.iter_mut().find(|w| w.room_type == id) {
+            (wish.area_m2, wish.size) = (wish.area_m2.or(area), wish.size.or(size));
+        }
+        if let Some(level) = asked.level {
+            self.on_levels.push(Wanted { room_type: id.clone(), count: asked.count.n, at: Where::Level(level) });
+        }
+        for attribute in &asked.attributes {
+            match attribute.as_str() {
+                "open" => self.wishes.open.push(id.clone()),
+                "separate" | "closed" => self.wishes.closed.push(id.clone()),
+                "accessible" => self.accessible = true,
+                _ => {}
+            }
+        }
+        if let Some(each) = &asked.each {
+            self.each(&id, each, asked.count);
+        }
+    }
+
+    /// Wishes for a room that comes with each of others.
+    fn each(&mut self, host: &str, guest: &Subject, hosts: AskedCount) {
+        let guest_type = self.type_of(guest);
+        let pair = Pair {
+            a: guest_type.clone(),
+            b: host.to_owned(),
+            connector: Connector::Door,
+            spread: Spread::Each,
+            belongs: true,
+            which: [None, None],
+        };
+        self.wishes.pairs.push(pair);
+        if hosts.bound == Bound::Exactly {
+            self.wish(&guest_type, &guest.name, hosts, true);
+        } else {
+            self.wishes.per_host.push(PerHost { guest: guest_type, host: Some(host.to_owned()) });
+        }
+    }
+
+    /// Adds rooms of a type to those wished for.
+    fn wish(&mut self, id: &str, name: &str, count: AskedCount, exact: bool) {
+        match self.wishes.wishes.iter_mut().find(|w| w.room_type == id) {
+            Some(wish) => {
+                wish.count = wish.count.saturating_add(count.n);
+                wish.exact |= exact;
+            }
+            None => {
+                let wish = Wish { count: count.n.max(1), exact, listed: true, ..Wish::one(id, name) };
+                self.wishes.wishes.push(wish);
+            }
+        }
+    }
+
+    fn objects(&mut self, asked: &ObjectsAsk) {
+        let Some(object) = asked.object.id.clone() else { return };
+        let room_type = asked.room.as_ref().map(|room| self.type_of(room));
+        let times = if asked.each_room { 1 } else { asked.count.n.clamp(1, MOST_THINGS) };
+        let thing = Thing { object, room_type, each: asked.each_room };
+        self.things.extend(std::iter::repeat_n(thing, times as usize));
+    }
+
+    fn capacity(&mut self, asked: &CapacityAsk) {
+        let Some(room) = &asked.room else { return };
+        let room_type = self.type_of(room);
+        let rooms = self.wishes.wishes.iter().find(|w| w.room_type == room_type).map_or(1, |w| w.count);
+        let each = if asked.each_room { asked.count.n } else { asked.count.n.div_ceil(rooms.max(1)) };
+        let held = Held { room_type, count: rooms, beds: each };
+        match asked.of {
+            PlaceKind::Beds => self.beds.push(held),
+            PlaceKind::Desks => self.desks.push(held),
+            PlaceKind::Seats | PlaceKind::Counters => self.seats.push(held),
+            PlaceKind::Treatment => self.stations.push(held),
+            PlaceKind::Cars | PlaceKind::Bicycles | PlaceKind::Docks | PlaceKind::Animals | PlaceKind::Pallets => {}
+        }
+    }
+
+    fn relation(&mut self, asked: &RelationAsk) {
+        let (a, b) = (self.type_of(&asked.a), self.type_of(&asked.b));
+        let wished = |id: &String| self.wishes.wishes.iter().any(|w| &w.room_type == id);
+        let is_room = |subject: &Subject, id: &String| {
+            let known = self.registry.is_some_and(|r| r.iter().any(|p| p.domain().room_type(id).is_some()));
+            subject.id.is_some() && known || wished(id)
+        };
+        if !is_room(&asked.a, &a) || !is_room(&asked.b, &b) || a == b {
+            return;
+        }
+        let connector = match asked.relation {
+            RelationKind::AwayFrom | RelationKind::NotFrom => {
+                self.wishes.apart.push(Apart { rooms: [a, b], which: [None, None] });
+                return;
+            }
+            RelationKind::Door | RelationKind::OnlyFrom => Connector::Door,
+            RelationKind::OpenTo => Connector::Open,
+            RelationKind::NextTo | RelationKind::Between => Connector::Wall,
+            RelationKind::Sees | RelationKind::Faces => Connector::Near,
+            RelationKind::Above => return,
+        };
+        let belongs = asked.relation == RelationKind::OnlyFrom;
+        self.wishes.pairs.push(Pair { a, b, connector, spread: Spread::Each, belongs, which: [None, None] });
+    }
+
+    /// Returns the storeys of the building, from the lowest.
+    pub(super) fn storeys(&self, conflicts: &mut Vec<Note>) -> Storeys {
+        let levels = || self.on_levels.iter().filter_map(|w| if let Where::Level(n) = w.at { Some(n) } else { None });
+        let (stated, basement) = self.stated.unwrap_or((0, false));
+        if stated > MOST_LEVELS {
+            let message = format!("{stated} storeys were asked for; one world has 1 to {MOST_LEVELS}");
+            conflicts.push(Note::new("impossible_storeys", message));
+        }
+        let stated = if stated > MOST_LEVELS { 0 } else { stated as i32 };
+        let top = levels().max().unwrap_or(0).max(stated - 1).max(0);
+        let lowest = levels().min().unwrap_or(0).min(if basement { -1 } else { 0 });
+        let several = top > 0 || lowest < 0;
+        Storeys {
+            levels: if several { (lowest..=top).collect() } else { vec![0] },
+            wanted: if several { self.on_levels.clone() } else { Vec::new() },
+            bare_basement: basement && !levels().any(|l| l < 0),
+            ..Storeys::default()
+        }
+    }
+}

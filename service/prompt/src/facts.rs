@@ -1,0 +1,710 @@
+//! Facts of a brief, made of what the rules found.
+
+use std::ops::Range;
+use std::rc::Rc;
+
+use d3dgen_language::Reading;
+use d3dgen_model::brief::{
+    AccessAsk, AreaAsk, AskedCount, AskedTask, Bound, CapacityAsk, Fact, ForbiddenAsk, ObjectsAsk, OnlyAsk, OtherAsk,
+    PeopleAsk, PlaceKind, RelationAsk, RelationKind, RobotsAsk, RoomsAsk, SiteAsk, SiteKind, StoreysAsk, StyleAsk,
+    Subject,
+};
+use serde::de::DeserializeOwned;
+
+use crate::node::Node;
+use crate::subjects::Known;
+
+/// A fact with its words.
+#[derive(Debug, Clone)]
+pub(crate) struct Stated {
+    pub tokens: Range<usize>,
+    /// Words that say something of it from elsewhere: the storey of a list.
+    pub also: Option<Range<usize>>,
+    pub fact: Fact,
+    /// True when the words only speak of a room or an object that others ask for.
+    pub mention: bool,
+}
+
+/// Makes facts of nodes.
+pub(crate) struct Maker<'a> {
+    pub reading: &'a Reading<'a>,
+    pub known: Known,
+    /// True where the first floor is the ground floor.
+    pub first_is_ground: bool,
+    pub facts: Vec<Stated>,
+}
+
+/// What a room gets from around it.
+#[derive(Debug, Clone, Copy, Default)]
+struct Around<'n> {
+    level: Option<&'n Node>,
+    mention: bool,
+}
+
+impl Maker<'_> {
+    /// Adds the facts of a node; returns false when it states none.
+    pub fn add(&mut self, node: &Rc<Node>) -> bool {
+        self.state(node, Around::default())
+    }
+
+    fn state(&mut self, node: &Node, around: Around) -> bool {
+        match node.made() {
+            Some("rooms") => self.rooms(node, around),
+            Some("objects") => self.objects(node),
+            Some("capacity") => self.capacity(node, None),
+            Some("people") => self.people(node),
+            Some("robots") => self.robots(node),
+            Some("lies") => self.relation(node),
+            Some("forbidden") => self.forbidden(node),
+            Some("storeys") => self.storeys(node),
+            Some("area") => self.area(node),
+            Some("total") => self.total(node),
+            Some("only") => {
+                self.say(node, Fact::Only(OnlyAsk { rooms: None, closed: true }));
+                node.all("item").for_each(|n| {
+                    self.state(n, around);
+                });
+            }
+            Some("on_storey") => {
+                let level = node.field("level").map(|n| &**n);
+                let from = self.facts.len();
+                node.all("item").for_each(|n| {
+                    self.state(n, Around { level, ..around });
+                });
+                let words = level.map(|l| l.tokens.clone());
+                self.facts[from..].iter_mut().for_each(|f| f.also = words.clone());
+            }
+            Some("each_group") => self.each_group(node),
+            Some("shorthand_home") => self.shorthand(node),
+            Some("style") => self.style(node),
+            Some("site") => self.site(node),
+            Some("access") => self.say(node, Fact::Accessible(AccessAsk::default())),
+            Some("wish") => self.other(node),
+            _ => return false,
+        }
+        true
+    }
+
+    fn say(&mut self, node: &Node, fact: Fact) {
+        self.facts.push(Stated { tokens: node.tokens.clone(), also: None, fact, mention: false });
+    }
+
+    fn subject(&self, node: &Node) -> Subject {
+        self.known.any(node, self.reading)
+    }
+
+    fn rooms(&mut self, node: &Node, around: Around) {
+        for suite in node.all("suite") {
+            let ids = suite.values("suite").next().unwrap_or_default().to_owned();
+            for id in ids.split('+') {
+                let room = Subject::known(id, self.reading.written(suite.tokens.clone()));
+                let count = count(node).unwrap_or_default();
+                self.say(
+                    node,
+                    Fact::Rooms(RoomsAsk { room, count, level: self.level(node, around), ..RoomsAsk::default() }),
+                );
+            }
+        }
+        if node.field("suite").is_some() {
+            return;
+        }
+        if self.reads_otherwise(node) {
+            return;
+        }
+        let room = self.known.subject(node, "room", self.reading);
+        let asked = count(node);
+        let count = asked.unwrap_or_default();
+        let several = count.n > 1;
+        let mut ask = RoomsAsk {
+            room: room.clone(),
+            count,
+            area_m2: node.field("area").and_then(|a| measure(a, "area")),
+            sides_m: sides(node),
+            level: self.level(node, around),
+            attributes: attributes(node),
+            each: None,
+        };
+        let mut inside: Vec<Rc<Node>> = node.all("with").cloned().collect();
+        if several && let Some(at) = inside.iter().position(|n| n.is("rooms", Some("bare"))) {
+            let each = inside.remove(at);
+            ask.each = Some(self.subject(&each));
+        }
+        if let Some(sex) = node.field("sex")
+            && sex.is("sex", Some("each"))
+        {
+            ask.count = AskedCount { n: ask.count.n.max(1) * 2, ..ask.count };
+        }
+        self.facts.push(Stated {
+            tokens: node.tokens.clone(),
+            also: None,
+            fact: Fact::Rooms(ask),
+            mention: around.mention,
+        });
+        for held in node.all("hold") {
+            self.held(held, &room, several);
+        }
+        for inner in &inside {
+            self.inside(inner, &room, several);
+        }
+        node.all("other").for_each(|n| {
+            self.state(n, Around::default());
+        });
+    }
+
+    /// States what a word is that names a room of other buildings, and an object or a manner of this one: "open plan" in a home.
+    fn reads_otherwise(&mut self, node: &Node) -> bool {
+        let Some(leaf) = node.field("room").cloned() else { return false };
+        if self.known.rooms.is_empty() || leaf.values("room").any(|v| self.known.rooms.contains(v)) {
+            return false;
+        }
+        if let Some(word) = leaf.values("attribute").next() {
+            self.say(node, Fact::Style(StyleAsk { word: word.to_owned() }));
+            return true;
+        }
+        let Some(id) = leaf.values("object").find(|v| self.known.objects.contains(*v)) else { return false };
+        let object = Subject::known(id, self.reading.written(leaf.tokens.clone()));
+        let count = count(node).unwrap_or_default();
+        self.say(
+            node,
+            Fact::Objects(ObjectsAsk { object, count, attributes: attributes(node), ..ObjectsAsk::default() }),
+        );
+        true
+    }
+
+    /// States what a room has in it or beside it: "bedroom with a desk", "pharmacy with a clean room".
+    fn inside(&mut self, inner: &Rc<Node>, room: &Subject, several: bool) {
+        match inner.made() {
+            Some("rooms") => {
+                self.state(inner, Around::default());
+                let relation = RelationAsk { a: self.subject(inner), relation: RelationKind::Door, b: room.clone() };
+                self.say(inner, Fact::Relation(relation));
+            }
+            Some("objects") => {
+                self.state(inner, Around::default());
+                if let Some(Stated { fact: Fact::Objects(objects), .. }) = self.facts.last_mut() {
+                    objects.room = Some(room.clone());
+                    objects.each_room = several;
+                }
+            }
+            _ => self.held(inner, room, several),
+        }
+    }
+
+    /// States the places of a room: "4 screens of 80 seats", "meeting room for ten".
+    fn held(&mut self, held: &Node, room: &Subject, several: bool) {
+        let count = count(held).or_else(|| household(held)).unwrap_or_default();
+        let of = held
+            .values("capacity")
+            .chain(held.field("what").into_iter().flat_map(|w| w.values("capacity")))
+            .find_map(place_kind);
+        let of = of.unwrap_or(PlaceKind::Seats);
+        let fact = CapacityAsk { of, count, room: Some(room.clone()), each_room: several, groups: None };
+        self.say(held, Fact::Capacity(fact));
+    }
+
+    fn level(&self, node: &Node, around: Around) -> Option<i32> {
+        let level = node.field("level").map(|n| &**n).or(around.level)?;
+        let named = level.field("named").and_then(|n| {
+            n.values("storey").find_map(|v| match v {
+                "ground" => Some(0),
+                "upper" => Some(1),
+                "basement" => Some(-1),
+                _ => None,
+            })
+        });
+        let nth = || {
+            let nth = level.field("nth")?;
+            let n = nth.values("ordinal").find_map(|v| v.parse::<i32>().ok()).or(nth.number.map(|n| n as i32))?;
+            let from_ground = self.first_is_ground || level.field("from_one").is_some();
+            Some(if from_ground && n > 0 { n - 1 } else { n })
+        };
+        named.or_else(nth)
+    }
+
+    fn objects(&mut self, node: &Node) {
+        let within = node.field("in").cloned();
+        let mut ask = ObjectsAsk {
+            object: self.known.subject(node, "object", self.reading),
+            count: count(node).unwrap_or_default(),
+            room: within.as_ref().map(|n| self.subject(n)),
+            each_room: within.as_ref().is_some_and(|n| n.field("each").is_some() || count(n).is_some_and(|c| c.n > 1)),
+            attributes: attributes(node),
+        };
+        if node.field("each_of").is_some() {
+            ask.each_room = true;
+        }
+        self.say(node, Fact::Objects(ask));
+        if let Some(within) = within {
+            self.state(&within, Around { mention: true, ..Around::default() });
+        }
+    }
+
+    fn capacity(&mut self, node: &Node, room: Option<Subject>) {
+        let groups = node.field("groups").and_then(|g| count(g)).map(|c| c.n);
+        let what = node.field("what").map(|n| &**n);
+        let kind = what.and_then(|w| w.values("capacity").find_map(place_kind));
+        let held = node.field("of");
+        let (count, of) = match held {
+            // "4 groups of 12", "3 groups of 20 children"
+            Some(held) => {
+                let sleeps =
+                    held.field("who").is_some_and(|w| ["resident", "patient"].iter().any(|v| w.is("person", Some(v))));
+                let of = held.field("what").and_then(|w| w.values("capacity").find_map(place_kind));
+                (
+                    count(held).or_else(|| number(held)),
+                    of.unwrap_or(if sleeps { PlaceKind::Beds } else { PlaceKind::Seats }),
+                )
+            }
+            None => (count(node), kind.unwrap_or(PlaceKind::Seats)),
+        };
+        let Some(count) = count else { return self.other(node) };
+        if held.is_none() && what.is_some_and(|w| w.is("capacity", Some("group"))) {
+            let room = Subject::unknown(what.map_or("", |w| self.reading.written(w.tokens.clone())));
+            return self.say(node, Fact::Rooms(RoomsAsk { room, count, ..RoomsAsk::default() }));
+        }
+        if what.is_some_and(|w| w.is("capacity", Some("locker"))) {
+            let object = Subject::known("lockers", what.map_or("", |w| self.reading.written(w.tokens.clone())));
+            return self.say(node, Fact::Objects(ObjectsAsk { object, count, ..ObjectsAsk::default() }));
+        }
+        let within = node.field("in").cloned();
+        let room = room.or_else(|| within.as_ref().map(|n| self.subject(n)));
+        let each_room =
+            within.as_ref().is_some_and(|n| n.field("each").is_some() || self::count(n).is_some_and(|c| c.n > 1));
+        self.say(node, Fact::Capacity(CapacityAsk { of, count, room, each_room, groups }));
+        if let Some(within) = within {
+            self.state(&within, Around { mention: true, ..Around::default() });
+        }
+    }
+
+    /// States what every group has: one for each of the groups that were counted.
+    fn each_group(&mut self, node: &Node) {
+        let groups = self.facts.iter().rev().find_map(|f| match &f.fact {
+            Fact::Capacity(c) => c.groups,
+            _ => None,
+        });
+        let from = self.facts.len();
+        node.all("item").for_each(|n| {
+            self.state(n, Around::default());
+        });
+        for stated in &mut self.facts[from..] {
+            stated.tokens.start = stated.tokens.start.min(node.tokens.start);
+            if let (Fact::Rooms(rooms), Some(n)) = (&mut stated.fact, groups) {
+                rooms.count = AskedCount::exactly(n);
+            }
+        }
+    }
+
+    fn people(&mut self, node: &Node) {
+        let who = node.field("who");
+        let role = who
+            .and_then(|w| w.values("person").next())
+            .unwrap_or(if household(node).is_some() { "resident" } else { "people" })
+            .to_owned();
+        let count = count(node).or_else(|| household(node)).unwrap_or_default();
+        self.say(node, Fact::People(PeopleAsk { role, count }));
+    }
+
+    fn robots(&mut self, node: &Node) {
+        let kinds = node.all("robot").flat_map(|r| {
+            r.values("robot").chain(r.values("task").map(kind_of_work)).map(str::to_owned).collect::<Vec<_>>()
+        });
+        let mut kinds: Vec<String> = kinds.collect();
+        kinds.sort_by_key(|k| k == "any");
+        let tasks: Vec<AskedTask> = node.all("does").filter_map(|d| self.task(d)).collect();
+        let verb = tasks.first().map(|t| t.verb.clone());
+        let mut kind = kinds.into_iter().next().unwrap_or_else(|| "any".to_owned());
+        if kind == "any" {
+            // a robot is what it does
+            kind = verb.map_or_else(|| "service".to_owned(), |v| kind_of_work(&v).to_owned());
+        }
+        let side = |which: &str| {
+            node.all("size")
+                .find(|s| s.field("which").is_some_and(|w| w.is("dimension", Some(which))))
+                .and_then(|s| measure(s, "length"))
+        };
+        let bare = node.all("size").find(|s| s.field("which").is_none()).and_then(|s| measure(s, "length"));
+        let round = side("diameter").or(side("radius").map(|r| 2.0 * r));
+        let sides = sides(node);
+        let keep_out =
+            node.all("keep_out").flat_map(|k| k.all("item").map(|n| self.subject(n)).collect::<Vec<_>>()).collect();
+        self.say(
+            node,
+            Fact::Robots(RobotsAsk {
+                kind,
+                count: count(node).unwrap_or_default(),
+                width_m: side("width").or(round).or(sides.map(|s| s[0])).or(bare),
+                length_m: side("length").or(round).or(sides.map(|s| s[1])),
+                height_m: side("height"),
+                tasks,
+                keep_out,
+            }),
+        );
+        let ends = node
+            .all("does")
+            .flat_map(|d| d.all("from").chain(d.all("to")).chain(d.all("at")).cloned().collect::<Vec<_>>());
+        let kept = node.all("keep_out").flat_map(|k| k.all("item").cloned().collect::<Vec<_>>());
+        for end in ends.chain(kept).collect::<Vec<_>>() {
+            self.mention(&end);
+        }
+    }
+
+    fn task(&self, node: &Node) -> Option<AskedTask> {
+        let verb = node.field("verb")?.values("task").next()?.to_owned();
+        let what: Vec<Range<usize>> = node.all("what").map(|w| w.tokens.clone()).collect();
+        let what = what.into_iter().reduce(|a, b| a.start..b.end).map(|t| self.reading.written(t).to_owned());
+        let to = node.all("to").chain(node.all("at")).map(|n| self.subject(n)).collect();
+        Some(AskedTask { verb, what, from: node.field("from").map(|n| self.subject(n)), to })
+    }
+
+    /// States a room or an object that is only spoken of.
+    fn mention(&mut self, node: &Rc<Node>) {
+        let from = self.facts.len();
+        self.state(node, Around { mention: true, ..Around::default() });
+        self.facts[from..].iter_mut().for_each(|f| f.mention = true);
+    }
+
+    fn relation(&mut self, node: &Node) {
+        let Some(kind) = node.field("relation").and_then(|r| relation_kind(r)) else { return self.other(node) };
+        let denied = node.field("not").is_some();
+        let kind = match (kind, denied) {
+            (RelationKind::Door | RelationKind::OpenTo | RelationKind::OnlyFrom, true) => RelationKind::NotFrom,
+            (RelationKind::NextTo | RelationKind::Sees | RelationKind::Faces, true) => RelationKind::AwayFrom,
+            (RelationKind::AwayFrom, true) => RelationKind::NextTo,
+            (kind, _) => kind,
+        };
+        let firsts: Vec<Rc<Node>> = node.all("a").cloned().collect();
+        let seconds: Vec<Rc<Node>> = node.all("b").cloned().collect();
+        let mut pairs: Vec<(Subject, Subject)> = Vec::new();
+        if seconds.is_empty() {
+            // "kitchen and living room next to each other"
+            pairs.extend(firsts.windows(2).map(|w| (self.subject(&w[0]), self.subject(&w[1]))));
+        }
+        for a in &firsts {
+            pairs.extend(seconds.iter().map(|b| (self.subject(a), self.subject(b))));
+        }
+        firsts.iter().chain(&seconds).for_each(|n| {
+            // a room with a number or for the first time is asked for, else spoken of
+            if n.is("rooms", Some("counted")) {
+                self.state(n, Around::default());
+            } else {
+                self.mention(n)
+            }
+        });
+        for (a, b) in pairs {
+            let (a, b) = if kind == RelationKind::Sees && node.field("seen").is_some() { (b, a) } else { (a, b) };
+            self.say(node, Fact::Relation(RelationAsk { a, relation: kind, b }));
+        }
+    }
+
+    fn forbidden(&mut self, node: &Node) {
+        let within = node.field("within").map(|n| self.subject(n));
+        for item in node.all("item") {
+            let subject = self.subject(item);
+            let (room, object) = match item.made() {
+                Some("rooms") => (Some(subject), None),
+                Some("objects") => (None, Some(subject)),
+                _ => (None, None),
+            };
+            let words = item.tokens.clone();
+            let fact = match (room, object) {
+                (None, None) => Fact::Other(OtherAsk { wish: self.reading.written(node.tokens.clone()).to_owned() }),
+                (room, object) => Fact::Forbidden(ForbiddenAsk { room, object, within: within.clone() }),
+            };
+            let start = if item.tokens.start == words.start { node.tokens.start.min(words.start) } else { words.start };
+            self.facts.push(Stated { tokens: start..words.end, also: None, fact, mention: false });
+        }
+    }
+
+    fn storeys(&mut self, node: &Node) {
+        let words =
+            node.field("word").and_then(|w| w.values("storeys").find_map(|v| v.parse().ok())).map(AskedCount::exactly);
+        let basement = node.field("basement").is_some();
+        let count = count(node).or(words).unwrap_or_default();
+        let count = node.field("plus").map_or(count, |p| AskedCount::exactly(1 + p.number.unwrap_or(1.0) as u32));
+        self.say(node, Fact::Storeys(StoreysAsk { count, basement }));
+    }
+
+    fn area(&mut self, node: &Node) {
+        match measure(node, "area") {
+            Some(area_m2) => self.say(node, Fact::Area(AreaAsk { area_m2, bound: bound(node) })),
+            None => self.other(node),
+        }
+    }
+
+    fn total(&mut self, node: &Node) {
+        let rooms = count(node).map(|c| c.n);
+        self.say(node, Fact::Only(OnlyAsk { rooms, closed: false }));
+    }
+
+    fn shorthand(&mut self, node: &Node) {
+        // each part is a number and what it counts: rooms by id, with `+` between those that go together
+        let mut number = None;
+        for (name, part) in &node.fields {
+            match &**name {
+                "n" => number = part.number,
+                "what" => {
+                    let ids = part.values("shorthand").next().unwrap_or_default().to_owned();
+                    let n = number.take().unwrap_or(1.0).clamp(0.0, 1000.0) as u32;
+                    for (i, id) in ids.split('+').enumerate() {
+                        // "bedroom-1": one less than the number, "bedroom*3": so many by itself
+                        let (id, less) = id.strip_suffix("-1").map_or((id, 0), |id| (id, 1));
+                        let (id, times) = id.split_once('*').map_or((id, None), |(id, t)| (id, t.parse().ok()));
+                        let n = times.unwrap_or(if i == 0 { n.saturating_sub(less) } else { 1 });
+                        if n > 0 {
+                            let room = Subject::known(id, self.reading.written(node.tokens.clone()));
+                            self.say(
+                                node,
+                                Fact::Rooms(RoomsAsk { room, count: AskedCount::exactly(n), ..RoomsAsk::default() }),
+                            );
+                        }
+                    }
+                }
+                _ => {}
+            }
+        }
+    }
+
+    fn style(&mut self, node: &Node) {
+        let named: Vec<String> = node
+            .all("word")
+            .flat_map(|w| w.values("style").chain(w.values("attribute")).take(1).map(str::to_owned).collect::<Vec<_>>())
+            .collect();
+        for word in named {
+            self.say(node, Fact::Style(StyleAsk { word }));
+        }
+    }
+
+    fn site(&mut self, node: &Node) {
+        let kind = node.field("word").and_then(|w| {
+            w.values("site").find_map(|v| match v {
+                "terraced" => Some(SiteKind::Terraced),
+                "detached" => Some(SiteKind::FreeStanding),
+                "semi_detached" => Some(SiteKind::SemiDetached),
+                "corner" => Some(SiteKind::Corner),
+                "inside" => Some(SiteKind::Inside),
+                _ => None,
+            })
+        });
+        match kind {
+            Some(kind) => self.say(node, Fact::Site(SiteAsk { kind })),
+            None => self.other(node),
+        }
+    }
+
+    fn other(&mut self, node: &Node) {
+        let wish = self.reading.written(node.tokens.clone()).to_owned();
+        self.say(node, Fact::Other(OtherAsk { wish }));
+        for inner in node.all("item").cloned().collect::<Vec<_>>() {
+            self.state(&inner, Around::default());
+        }
+    }
+}
+
+/// Returns the number that a node has, as it binds.
+fn count(node: &Node) -> Option<AskedCount> {
+    let count = node.field("count")?;
+    number(count)
+}
+
+fn number(count: &Node) -> Option<AskedCount> {
+    if count.is("quantity", Some("several")) || count.field("several").is_some() {
+        return Some(AskedCount::at_least(2));
+    }
+    let n = count.number.or_else(|| count.field("n").and_then(|n| n.number));
+    let n = n.or_else(|| count.values("quantity").find_map(|v| v.parse().ok()))?;
+    // "ein", "une": an article, or one
+    if count.rule.is_none() && n == 1.0 && count.is("particle", Some("article")) {
+        return None;
+    }
+    if !(0.0..=f64::from(u32::MAX)).contains(&n) {
+        return None;
+    }
+    let most = count.field("most").and_then(|m| m.number);
+    let (n, bound) = most.map_or((n, bound(count)), |_| (n, Bound::AtLeast));
+    Some(AskedCount { n: n.ceil() as u32, bound })
+}
+
+fn household(node: &Node) -> Option<AskedCount> {
+    let who = node.field("who").map_or(node, |w| w);
+    who.values("household").find_map(|v| v.parse().ok()).map(AskedCount::exactly)
+}
+
+fn bound(node: &Node) -> Bound {
+    let inner = node.field("count").map(|n| &**n);
+    let of = |n: &Node| {
+        [("at_least", Bound::AtLeast), ("at_most", Bound::AtMost), ("about", Bound::About)]
+            .into_iter()
+            .find(|(name, _)| n.field(name).is_some())
+            .map(|b| b.1)
+    };
+    of(node).or_else(|| inner.and_then(of)).unwrap_or(Bound::Exactly)
+}
+
+/// Returns a measure in m or m2.
+fn measure(node: &Node, class: &str) -> Option<f64> {
+    if let Some(inner) = node.field(class).filter(|_| node.field("unit").is_none()) {
+        return measure(inner, class);
+    }
+    let n = node.field("n")?;
+    let n = n.number.or_else(|| n.field("n").and_then(|n| n.number))?;
+    let unit = node.field("unit").and_then(|u| u.values(class).find_map(|v| v.parse::<f64>().ok())).unwrap_or(1.0);
+    let value = n * unit;
+    let (least, most) = if class == "area" { (0.5, 1e6) } else { (0.05, 500.0) };
+    (least..=most).contains(&value).then_some(value)
+}
+
+fn sides(node: &Node) -> Option<[f64; 2]> {
+    let sides = node.field("sides")?;
+    let unit = sides.field("unit").and_then(|u| u.values("length").find_map(|v| v.parse::<f64>().ok())).unwrap_or(1.0);
+    let side = |name: &str| {
+        let node = sides.field(name)?;
+        node.number.map(|n| n * unit).or_else(|| measure(node, "length")).filter(|s| (0.5..=500.0).contains(s))
+    };
+    Some([side("first")?, side("second")?])
+}
+
+fn attributes(node: &Node) -> Vec<String> {
+    let mut found: Vec<String> = Vec::new();
+    for attribute in node.all("attribute") {
+        let value = attribute.values("attribute").next().map(str::to_owned);
+        found.extend(value.into_iter().filter(|v| !found.contains(v)).collect::<Vec<_>>());
+    }
+    found
+}
+
+/// Work of robots, and the kind of robot that does it.
+const WORK: &[(&str, &str)] = &[
+    ("bring", "delivery"),
+    ("clean", "cleaning"),
+    ("disinfect", "disinfection"),
+    ("serve", "service"),
+    ("inspect", "inspection"),
+    ("feed", "feeding"),
+];
+
+fn kind_of_work(verb: &str) -> &str {
+    WORK.iter().find(|w| w.0 == verb).map_or(verb, |w| w.1)
+}
+
+fn place_kind(value: &str) -> Option<PlaceKind> {
+    from_name(match value {
+        "seat" => "seats",
+        "bed" => "beds",
+        "desk" => "desks",
+        "car" => "cars",
+        "bike" => "bicycles",
+        "animal" => "animals",
+        "pallet" => "pallets",
+        "place" => "treatment",
+        other => other,
+    })
+}
+
+fn relation_kind(node: &Node) -> Option<RelationKind> {
+    let name = if node.senses.is_empty() { node.text.to_string() } else { node.values("relation").next()?.to_owned() };
+    from_name(match name.as_str() {
+        "near" | "around" | "together" => "next_to",
+        "open" => "open_to",
+        "apart" => "away_from",
+        "sight" => "sees",
+        other => other,
+    })
+}
+
+/// Returns the value of an enum of the documents by its name there.
+fn from_name<T: DeserializeOwned>(name: &str) -> Option<T> {
+    serde_json::from_value(serde_json::Value::String(name.to_owned())).ok()
+}
+
+/// Returns a fact in one line, as the examples of rules and `--explain` have it.
+pub(crate) fn shown(fact: &Fact) -> String {
+    let subject = |s: &Subject| s.id.clone().unwrap_or_else(|| format!("'{}'", s.name));
+    let number = |c: &AskedCount| match c.bound {
+        Bound::Exactly => c.n.to_string(),
+        Bound::AtLeast => format!("{}+", c.n),
+        Bound::AtMost => format!("{}-", c.n),
+        Bound::About => format!("~{}", c.n),
+    };
+    let name = |v: &dyn erased::Named| v.name();
+    match fact {
+        Fact::Rooms(r) => {
+            let mut line = format!("rooms {} {}", number(&r.count), subject(&r.room));
+            r.area_m2.iter().for_each(|a| line += &format!(" {a} m2"));
+            r.sides_m.iter().for_each(|s| line += &format!(" {} x {} m", s[0], s[1]));
+            r.level.iter().for_each(|l| line += &format!(" level {l}"));
+            r.attributes.iter().for_each(|a| line += &format!(" {a}"));
+            r.each.iter().for_each(|e| line += &format!(" each {}", subject(e)));
+            line
+        }
+        Fact::Objects(o) => {
+            let mut line = format!("objects {} {}", number(&o.count), subject(&o.object));
+            o.attributes.iter().for_each(|a| line += &format!(" {a}"));
+            o.room
+                .iter()
+                .for_each(|r| line += &format!(" in {}{}", if o.each_room { "each " } else { "" }, subject(r)));
+            line
+        }
+        Fact::Capacity(c) => {
+            let mut line = format!("capacity {} {}", number(&c.count), name(&c.of));
+            c.room
+                .iter()
+                .for_each(|r| line += &format!(" in {}{}", if c.each_room { "each " } else { "" }, subject(r)));
+            c.groups.iter().for_each(|g| line += &format!(" in {g} groups"));
+            line
+        }
+        Fact::Relation(r) => format!("relation {} {} {}", subject(&r.a), name(&r.relation), subject(&r.b)),
+        Fact::Storeys(s) => format!("storeys {}{}", number(&s.count), if s.basement { " and a basement" } else { "" }),
+        Fact::Area(a) => format!(
+            "area {}{}",
+            a.area_m2,
+            if a.bound == Bound::Exactly { String::new() } else { format!(" {}", name(&a.bound)) }
+        ),
+        Fact::Robots(r) => {
+            let mut line = format!("robots {} {}", number(&r.count), r.kind);
+            r.width_m.iter().for_each(|w| line += &format!(" {w} m wide"));
+            r.length_m.iter().for_each(|w| line += &format!(" {w} m long"));
+            for task in &r.tasks {
+                line += &format!(" {}", task.verb);
+                task.what.iter().for_each(|w| line += &format!(" '{w}'"));
+                task.from.iter().for_each(|f| line += &format!(" from {}", subject(f)));
+                task.to.iter().for_each(|t| line += &format!(" to {}", subject(t)));
+            }
+            r.keep_out.iter().for_each(|k| line += &format!(" not in {}", subject(k)));
+            line
+        }
+        Fact::People(p) => format!("people {} {}", number(&p.count), p.role),
+        Fact::Style(s) => format!("style {}", s.word),
+        Fact::Accessible(a) => {
+            format!("accessible{}", a.room.as_ref().map_or(String::new(), |r| format!(" {}", subject(r))))
+        }
+        Fact::Forbidden(f) => {
+            let what = f.room.iter().chain(&f.object).map(subject).collect::<Vec<_>>().join(" ");
+            let within = f.within.as_ref().map_or(String::new(), |w| format!(" in {}", subject(w)));
+            format!("forbidden {what}{within}")
+        }
+        Fact::Only(o) => match (o.rooms, o.closed) {
+            (Some(n), false) => format!("rooms in total {n}"),
+            _ => "only these".to_owned(),
+        },
+        Fact::Site(s) => format!("site {}", name(&s.kind)),
+        Fact::Other(o) => format!("other '{}'", o.wish),
+    }
+}
+
+mod erased {
+    //! Names that documents have for the values of enums.
+
+    use serde::Serialize;
+
+    /// A value with a name in documents.
+    pub trait Named {
+        /// Returns the name.
+        fn name(&self) -> String;
+    }
+
+    impl<T: Serialize> Named for T {
+        fn name(&self) -> String {
+            serde_json::to_value(self).ok().and_then(|v| v.as_str().map(str::to_owned)).unwrap_or_default()
+        }
+    }
+}

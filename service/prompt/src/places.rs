@@ -1,0 +1,94 @@
+//! Countries and cities, as words.
+
+use std::collections::BTreeMap;
+
+use serde::Deserialize;
+
+/// Names of places, of the reader of words that this one replaces.
+const PLACES: &str = include_str!("../../program/src/subject/places.jsonl");
+
+#[derive(Debug, Deserialize)]
+struct Line {
+    #[serde(default)]
+    code: Option<String>,
+    #[serde(default)]
+    codes: Vec<String>,
+    names: Vec<String>,
+    #[serde(default)]
+    strict: bool,
+    #[serde(default)]
+    city: bool,
+    #[serde(default)]
+    division: Option<String>,
+}
+
+/// A name, and the place that it is of.
+pub(crate) struct Place {
+    pub name: String,
+    /// Country, division and whether it is a city, as [`parts`] reads it.
+    pub value: String,
+}
+
+/// Returns all names of places; those of places in several countries have no country.
+pub(crate) fn places() -> Vec<Place> {
+    let mut found: BTreeMap<String, Line> = BTreeMap::new();
+    for line in PLACES.lines() {
+        let Ok(line) = serde_json::from_str::<Line>(line) else { continue };
+        for name in &line.names {
+            let one = Line {
+                names: Vec::new(),
+                codes: line.codes.clone(),
+                code: line.code.clone(),
+                division: line.division.clone(),
+                ..line
+            };
+            match found.get(&name.to_lowercase()) {
+                // a country wins over a city of the same name, a listed ambiguity over both
+                Some(old) if old.codes.len() >= one.codes.len() && (!old.city || one.city) => {}
+                _ => {
+                    found.insert(name.to_lowercase(), one);
+                }
+            }
+        }
+    }
+    let value = |l: &Line| {
+        let code = l.code.clone().filter(|_| l.codes.is_empty()).unwrap_or_default();
+        format!("{code}|{}|{}|{}", l.division.clone().unwrap_or_default(), u8::from(l.city), u8::from(l.strict))
+    };
+    found.into_iter().map(|(name, line)| Place { value: value(&line), name }).collect()
+}
+
+/// What the value of a place says.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Parts<'v> {
+    /// Code of the country; none for a name that several countries have.
+    pub country: Option<&'v str>,
+    pub division: Option<&'v str>,
+    pub city: bool,
+    /// True for names that are also common words.
+    pub strict: bool,
+}
+
+/// Returns what a value says.
+pub(crate) fn parts(value: &str) -> Parts<'_> {
+    let mut parts = value.split('|');
+    let mut next = || parts.next().filter(|p| !p.is_empty());
+    Parts { country: next(), division: next(), city: next() == Some("1"), strict: next() == Some("1") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_line_is_read() {
+        for line in PLACES.lines() {
+            let line: Line = serde_json::from_str(line).unwrap_or_else(|e| panic!("{e}: {line}"));
+            assert!(!line.names.is_empty());
+        }
+        let places = places();
+        let of = |name: &str| places.iter().find(|p| p.name == name).map(|p| parts(&p.value));
+        assert_eq!(of("wien").map(|p| (p.country, p.city)), Some((Some("AT"), true)));
+        assert_eq!(of("germany").map(|p| (p.country, p.city)), Some((Some("DE"), false)));
+    }
+}

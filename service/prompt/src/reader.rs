@@ -1,0 +1,263 @@
+//! A prompt from its words to its brief.
+
+use std::collections::BTreeSet;
+use std::ops::Range;
+use std::rc::Rc;
+use std::sync::Arc;
+
+use d3dgen_language::{Lexicon, Reading, TokenKind};
+use d3dgen_model::brief::{Ask, Brief, Fact, MAX_ASKS, PromptWords, ReadBy, Subject};
+use d3dgen_plugins::Registry;
+
+use crate::building::{building, place, stretch};
+use crate::facts::{Maker, Stated, shown};
+use crate::grammar::Grammar;
+use crate::node::Node;
+use crate::parse::{Applied, parse};
+use crate::places;
+use crate::subjects::Known;
+use crate::vocabulary::lexicon;
+
+/// Countries where the ground floor is the first floor.
+const FIRST_IS_GROUND: &[&str] =
+    &["US", "CA", "CN", "JP", "KR", "TW", "SG", "MX", "PH", "RU", "UA", "NO", "IS", "BY", "KZ"];
+/// Languages of such countries, for prompts that name none.
+const FIRST_IS_GROUND_IN: &[&str] = &["zh", "ja", "ko", "ru"];
+
+/// Reads prompts about the buildings of the domains that it was made with.
+pub struct PromptReader {
+    registry: Registry,
+    lexicon: Arc<Lexicon>,
+}
+
+/// A rule that took words.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Step {
+    /// Name of the rule.
+    pub rule: String,
+    /// File of the grammar that it stands in.
+    pub file: String,
+    /// The words.
+    pub words: String,
+}
+
+/// What came of a prompt.
+#[derive(Debug, Clone)]
+pub struct ReadPrompt {
+    /// The facts.
+    pub brief: Brief,
+    /// Name of the language of the prompt when it is none that is read, in English: only words that languages share are understood.
+    pub unread_language: Option<String>,
+    /// Words read as others, as they are written and as they were read.
+    pub misspelled: Vec<(String, String)>,
+    /// Which rule took which words, in the order in which they did.
+    pub steps: Vec<Step>,
+    /// The facts in short, one for each of the brief.
+    pub facts: Vec<String>,
+}
+
+impl PromptReader {
+    /// Returns a reader that knows the words of these domains. The first one takes longer than reading a prompt; later ones
+    /// of the same domains share its words.
+    pub fn new(registry: &Registry) -> Self {
+        let lexicon = registry.digest("prompt::lexicon", || lexicon(registry));
+        Self { registry: registry.clone(), lexicon }
+    }
+
+    /// Reads a prompt. Every prompt has a brief, if only one that says what was not understood.
+    pub fn read(&self, prompt: &str) -> ReadPrompt {
+        let reading = self.lexicon.read(prompt);
+        let grammar = Grammar::shipped();
+        let leaves: Vec<Rc<Node>> = reading.chunks().iter().map(|c| Rc::new(Node::of(c, &reading))).collect();
+        let (place, places) = place(&leaves, &reading);
+        let leaves = without_places(leaves, &places);
+        let building = building(&self.registry, &leaves, &reading);
+        let leaves = named(leaves, &building.nodes, &places);
+        let (nodes, applied) = parse(grammar, leaves);
+        let domain = building.first.as_ref().and_then(|b| b.domain.as_deref());
+        let country = place.as_ref().map(|p| p.country_code.as_str());
+        let first_is_ground = match country {
+            Some(country) => FIRST_IS_GROUND.contains(&country),
+            None => reading.languages().first().is_some_and(|l| FIRST_IS_GROUND_IN.contains(l)),
+        };
+        let known = Known::of(&self.registry, domain);
+        let mut maker = Maker { reading: &reading, known, first_is_ground, facts: Vec::new() };
+        nodes.iter().for_each(|n| {
+            maker.add(n);
+        });
+        let facts = settled(maker.facts);
+        let brief = Brief {
+            languages: reading.languages().iter().map(|l| (*l).to_owned()).collect(),
+            building: building.first,
+            other_buildings: building.others,
+            place,
+            ..Brief::of_prompt(prompt)
+        };
+        let brief = finished(brief, facts, &reading);
+        let facts = brief.asks.iter().map(|a| shown(&a.fact)).collect();
+        ReadPrompt {
+            brief,
+            unread_language: reading.unread().map(str::to_owned),
+            misspelled: misspelled(&reading),
+            steps: steps(grammar, &applied, &reading),
+            facts,
+        }
+    }
+}
+
+fn misspelled(reading: &Reading) -> Vec<(String, String)> {
+    let written = |m: &d3dgen_language::Misspelling| reading.text().get(m.bytes.clone()).unwrap_or_default().to_owned();
+    reading.misspellings().iter().map(|m| (written(m), m.meant.clone())).collect()
+}
+
+fn steps(grammar: &Grammar, applied: &[Applied], reading: &Reading) -> Vec<Step> {
+    let step = |a: &Applied| {
+        let rule = &grammar.rules[a.rule];
+        let words = reading.written(a.node.tokens.clone()).to_owned();
+        Step { rule: rule.name.clone(), file: rule.file.clone(), words }
+    };
+    applied.iter().map(step).collect()
+}
+
+/// Takes the sense of a place from words that are not meant as one here.
+fn without_places(nodes: Vec<Rc<Node>>, places: &[usize]) -> Vec<Rc<Node>> {
+    let of = |(i, node): (usize, Rc<Node>)| {
+        let clear = node.values("place").next().is_some_and(|v| places::parts(v).country.is_some());
+        if places.contains(&i) || !node.is("place", None) || !clear {
+            return node;
+        }
+        let mut node = (*node).clone();
+        node.senses.retain(|(class, _)| **class != *"place");
+        Rc::new(node)
+    };
+    nodes.into_iter().enumerate().map(of).collect()
+}
+
+/// Leaves of words that name the building or the place only that, so that no rule makes a room of them.
+fn named(nodes: Vec<Rc<Node>>, building: &[usize], places: &[usize]) -> Vec<Rc<Node>> {
+    let of = |(i, node): (usize, Rc<Node>)| {
+        let sense = match () {
+            () if building.contains(&i) => "building",
+            () if places.contains(&i) => "location",
+            () => return node,
+        };
+        let mut node = (*node).clone();
+        // "3-Zimmer-Wohnung" names a building and counts its rooms
+        node.senses.retain(|(class, _)| **class == *"shorthand");
+        node.senses.push((sense.into(), "".into()));
+        Rc::new(node)
+    };
+    nodes.into_iter().enumerate().map(of).collect()
+}
+
+/// Drops what is asked for elsewhere already, and doubles.
+fn settled(facts: Vec<Stated>) -> Vec<Stated> {
+    let same = |a: &Subject, b: &Subject| match (&a.id, &b.id) {
+        (Some(a), Some(b)) => a == b,
+        (None, None) => a.name.to_lowercase() == b.name.to_lowercase(),
+        _ => false,
+    };
+    let asked: Vec<Subject> = facts
+        .iter()
+        .filter(|f| !f.mention)
+        .filter_map(|f| match &f.fact {
+            Fact::Rooms(r) => Some(r.room.clone()),
+            Fact::Objects(o) => Some(o.object.clone()),
+            _ => None,
+        })
+        .collect();
+    let eached: Vec<Subject> = facts
+        .iter()
+        .filter_map(|f| match &f.fact {
+            Fact::Rooms(r) => r.each.clone(),
+            _ => None,
+        })
+        .collect();
+    let mut kept: Vec<Stated> = Vec::new();
+    for fact in facts {
+        let subject = match &fact.fact {
+            Fact::Rooms(r) => Some(&r.room),
+            Fact::Objects(o) => Some(&o.object),
+            _ => None,
+        };
+        let again = |k: &Stated| match (&k.fact, subject) {
+            (Fact::Rooms(r), Some(s)) => same(&r.room, s),
+            (Fact::Objects(o), Some(s)) => same(&o.object, s),
+            _ => false,
+        };
+        let spoken_of = fact.mention
+            && subject.is_some_and(|s| asked.iter().chain(&eached).any(|a| same(a, s)) || kept.iter().any(again));
+        if !spoken_of && !kept.iter().any(|k| k.fact == fact.fact && k.tokens == fact.tokens) {
+            kept.push(fact);
+        }
+    }
+    kept.sort_by_key(|f| (f.tokens.start, f.tokens.end));
+    kept
+}
+
+/// Puts facts into a brief, and accounts for every word.
+fn finished(mut brief: Brief, facts: Vec<Stated>, reading: &Reading) -> Brief {
+    let mut covered = BTreeSet::new();
+    for (i, stated) in facts.into_iter().take(MAX_ASKS).enumerate() {
+        covered.extend(stated.tokens.clone());
+        covered.extend(stated.also.clone().into_iter().flatten());
+        let mut words: Vec<PromptWords> =
+            [Some(stated.tokens), stated.also].into_iter().flatten().filter_map(|t| stretch(reading, t)).collect();
+        words.sort();
+        brief.asks.push(Ask { id: format!("ask_{}", i + 1), words, read_by: ReadBy::Rules, fact: stated.fact });
+    }
+    let named = brief.building.iter().flat_map(|b| &b.words).chain(brief.place.iter().flat_map(|p| &p.words));
+    let named: Vec<(u32, u32)> = named.map(|w| (w.start, w.end)).collect();
+    let open = reading.chunks().iter().filter(|chunk| {
+        let tokens = &reading.tokens()[chunk.tokens.clone()];
+        let within = |t: &d3dgen_language::Token| {
+            named.iter().any(|(s, e)| *s as usize <= t.chars.start && t.chars.end <= *e as usize)
+        };
+        let mark = tokens.iter().all(|t| t.kind == TokenKind::Mark);
+        // "home" in "a flat ... works from home": the building once more
+        let again = brief.building.as_ref().and_then(|b| b.domain.as_deref()).is_some_and(|d| chunk.is("domain", d));
+        let small = chunk.has("particle") || chunk.has("classifier") || again;
+        !mark && !small && !chunk.tokens.clone().all(|t| covered.contains(&t)) && !tokens.iter().all(within)
+    });
+    let mut left: Vec<Range<usize>> = Vec::new();
+    for chunk in open {
+        match left.last_mut() {
+            Some(last) if last.end == chunk.tokens.start => last.end = chunk.tokens.end,
+            _ => left.push(chunk.tokens.clone()),
+        }
+    }
+    brief.not_understood = left.into_iter().filter_map(|tokens| stretch(reading, tokens)).collect::<Vec<PromptWords>>();
+    brief
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every example of every rule is read as it says, and by that rule.
+    #[test]
+    fn the_examples_of_the_rules_are_read_as_they_say() {
+        let reader = PromptReader::new(&Registry::builtin());
+        let mut wrong = Vec::new();
+        for rule in &Grammar::shipped().rules {
+            for example in &rule.examples {
+                let read = reader.read(&example.text);
+                let sorted = |facts: &[String]| {
+                    let mut facts = facts.to_vec();
+                    facts.sort();
+                    facts
+                };
+                if sorted(&read.facts) != sorted(&example.facts) {
+                    wrong.push(format!(
+                        "{} `{}`: `{}`\n  reads {:?}\n  wants {:?}",
+                        rule.file, rule.name, example.text, read.facts, example.facts
+                    ));
+                } else if !read.steps.iter().any(|s| s.rule == rule.name) {
+                    let steps: Vec<&str> = read.steps.iter().map(|s| s.rule.as_str()).collect();
+                    wrong.push(format!("{} `{}`: `{}` is read by {steps:?}", rule.file, rule.name, example.text));
+                }
+            }
+        }
+        assert!(wrong.is_empty(), "{} examples:\n{}", wrong.len(), wrong.join("\n"));
+    }
+}
