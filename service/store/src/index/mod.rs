@@ -263,7 +263,9 @@ impl Index {
     /// # Errors
     /// [`Error::Index`] when the full text cannot be read.
     pub fn has_word(&self, word: &str) -> Result<bool> {
-        self.inner.parts.text.has_word(word)
+        let beside = self.inner.changed.as_ref();
+        let beside = beside.map_or(Ok(false), |changed| changed.parts.text.has_word(word))?;
+        Ok(beside || self.inner.parts.text.has_word(word)?)
     }
 
     /// Returns how many documents fulfill a filter.
