@@ -250,8 +250,12 @@ impl Index {
             Mode::Text => Vec::new(),
             _ => self.nearest(text, depth, &allowed)?,
         };
-        let fused = fuse(&by_text, &by_vector).into_iter().take(limit);
-        let hits = fused.filter_map(|fused| {
+        let mut fused = fuse(&by_text, &by_vector);
+        if changed.is_some() {
+            // rows are in the order of keys in each part, but not in both
+            fused.sort_by(|a, b| b.score.total_cmp(&a.score).then_with(|| self.key(a.row).cmp(&self.key(b.row))));
+        }
+        let hits = fused.into_iter().take(limit).filter_map(|fused| {
             let Fused { row, score, text_rank, vector_rank, similarity } = fused;
             Some(Hit { score, text_rank, vector_rank, similarity, ..self.hit(row)? })
         });
