@@ -134,7 +134,7 @@ fn a_dock_needs_a_free_half_circle_and_no_room_has_more_than_it_is_wide() {
     let rule = || rule("dock_clearance_radius_180_approach", "robot_dock", "clear_radius", "minimum", 1.2, "m");
     let room = square(0.0, 0.0, 5.0, 12.0);
     // its back at the south wall, it looks north along the room
-    let dock = ("robot_charging_1", "delivery_dock", [2.0, 0.2], 1, [0.4, 0.4]);
+    let dock = ("robot_charging_1", "robot_dock", [2.0, 0.2], 1, [0.4, 0.4]);
     let free = Building { rooms: vec![("robot_charging_1", &room)], objects: vec![dock], ..Building::default() };
     assert_eq!(free.figure(rule()), Some(2.0), "the wall at its side is the nearest");
     // a table beside the straight way ahead

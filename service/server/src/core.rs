@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use arc_swap::ArcSwap;
-use d3dgen_knowledge::database::Provenance;
+use d3dgen_knowledge::database::{Change, Provenance};
 use d3dgen_store::embed::Embedder;
 use tokio::sync::{Mutex, MutexGuard, OwnedMutexGuard};
 use tonic::Status;
@@ -101,28 +101,29 @@ impl Core {
         Arc::clone(&self.writing).lock_owned().await
     }
 
-    /// Changes rules of a domain; searches and worlds know of it when this returns.
+    /// Changes rules; searches and worlds know of it when this returns.
     ///
     /// # Errors
     /// What `change` returns; `INTERNAL` when the index cannot be made.
-    pub fn change_rules<T>(
+    pub fn change_rules(
         &self,
-        domain: &str,
-        change: impl FnOnce(&d3dgen_knowledge::database::Database) -> Result<T, d3dgen_knowledge::Error>,
-    ) -> Result<T, Status> {
+        change: impl FnOnce(&d3dgen_knowledge::database::Database) -> Result<Option<Change>, d3dgen_knowledge::Error>,
+    ) -> Result<Option<Change>, Status> {
         let _alone = self.writing();
         let changed = change(&self.databases.rules).map_err(status::knowledge)?;
-        self.changed_rules(domain)?;
+        if let Some(changed) = &changed {
+            self.changed_rules(changed)?;
+        }
         Ok(changed)
     }
 
-    /// Makes searches and worlds know of changed rules of a domain; for a caller that has its turn ([`Core::turn`]).
+    /// Makes searches and worlds know of a change of rules; for a caller that has its turn ([`Core::turn`]).
     ///
     /// # Errors
     /// `INTERNAL` when the index cannot be made.
-    pub fn changed_rules(&self, domain: &str) -> Result<(), Status> {
-        self.domains.refresh_rules(&self.databases, domain).map_err(status::own)?;
-        self.databases.index_rules().map_err(status::own)
+    pub fn changed_rules(&self, change: &Change) -> Result<(), Status> {
+        self.domains.refresh_rules(&self.databases, &change.domain).map_err(status::own)?;
+        self.databases.index_change(change).map_err(status::own)
     }
 
     /// Makes searches and worlds know of changed assets.

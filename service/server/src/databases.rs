@@ -10,7 +10,7 @@ use std::time::Duration;
 use d3dgen_assets::catalog::Catalog;
 use d3dgen_assets::database::Shelf;
 use d3dgen_assets::search::{AssetIndex, Found, SearchQuery};
-use d3dgen_knowledge::database::Searcher;
+use d3dgen_knowledge::database::{Change, Searcher};
 use d3dgen_store::embed::Embedder;
 use d3dgen_store::index::{Progress, Watch};
 use d3dgen_store::{Options, Store};
@@ -59,8 +59,12 @@ impl<T> Slot<T> {
         self.filled.notify_all();
     }
 
+    fn get(&self) -> Option<Arc<T>> {
+        self.value.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
     fn is_filled(&self) -> bool {
-        self.value.lock().unwrap_or_else(PoisonError::into_inner).is_some()
+        self.get().is_some()
     }
 
     fn wait(&self) -> Result<Arc<T>, Status> {
@@ -122,7 +126,23 @@ impl Databases {
         for damage in &searcher.damaged {
             tracing::error!(place = damage.place, reason = damage.reason, "damaged record left out of the index");
         }
-        self.rules_index.fill(searcher);
+        // beside the first answers a change may have been indexed that this one does not know
+        if self.rules_index.get().is_none_or(|now| now.revision() <= searcher.revision()) {
+            self.rules_index.fill(searcher);
+        }
+        Ok(())
+    }
+
+    /// Has searches find what a change of rules was about, without making the index anew where little has changed.
+    ///
+    /// # Errors
+    /// `Knowledge`.
+    pub fn index_change(&self, change: &Change) -> Result<(), Error> {
+        let Some(now) = self.rules_index.get() else { return self.index_rules() };
+        match now.after(&change.domain, &self.rules.edits(change.seq)?)? {
+            Some(searcher) => self.rules_index.fill(searcher),
+            None => self.index_rules()?,
+        }
         Ok(())
     }
 

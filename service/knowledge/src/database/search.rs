@@ -10,7 +10,8 @@ use d3dgen_store::KeyRange;
 use d3dgen_store::embed::Embedder;
 use d3dgen_store::index::{Document, Filter, Hit, Index, IndexSpec, Mode, Reason, Watch};
 
-use super::records::{CONSTRAINTS, ConstraintRecord, REFERENCES, ReferenceRecord, decode, get, key};
+use super::change::{Edit, Target};
+use super::records::{CONSTRAINTS, ConstraintRecord, REFERENCES, ReferenceRecord, decode, each, get, key};
 use super::{Damage, Database};
 use crate::error::Error;
 use crate::phrase;
@@ -105,6 +106,48 @@ impl Searcher {
             unsaved: opened.unsaved.map(|e| e.to_string()),
             damaged,
         })
+    }
+
+    /// Returns the searcher after a change of one domain, without making the index anew; none when too much has changed since
+    /// it was made.
+    ///
+    /// # Errors
+    /// `Store`, also when a changed rule is damaged.
+    pub fn after(&self, domain: &str, edits: &[Edit]) -> Result<Option<Self>, Error> {
+        let view = self.database.store.view()?;
+        let (mut keys, mut documents) = (BTreeSet::new(), BTreeSet::new());
+        for edit in edits {
+            match &edit.target {
+                Target::Constraint(id) => drop(keys.insert(key(domain, id))),
+                Target::Reference(id) => drop(documents.insert(id.as_str())),
+            }
+        }
+        if !documents.is_empty() {
+            // the rules of a document are found by its source and by where it applies
+            each(&view, CONSTRAINTS, &KeyRange::prefix(format!("{domain}/")), |at, record: ConstraintRecord| {
+                if documents.contains(record.ref_id.as_str()) {
+                    keys.insert(at.to_owned());
+                }
+                Ok(())
+            })?;
+        }
+        let mut changes = Vec::with_capacity(keys.len());
+        for at in keys {
+            let record: Option<ConstraintRecord> = get(&view, CONSTRAINTS, &at)?;
+            let now = record.map(|record| {
+                let reference = get::<ReferenceRecord>(&view, REFERENCES, &key(domain, &record.ref_id))?;
+                Ok::<_, Error>(document(&at, domain, &record, reference.map(|r| r.reference).as_ref()))
+            });
+            changes.push((at.clone(), now.transpose()?));
+        }
+        let index = self.index.changed(&spec(), view.revision()?, changes)?;
+        let database = self.database.clone();
+        Ok(index.map(|index| Self { database, index, rebuilt: None, unsaved: None, damaged: Vec::new() }))
+    }
+
+    /// Returns the revision of the database that it finds.
+    pub fn revision(&self) -> u64 {
+        self.index.revision()
     }
 
     /// Returns the rules that fit, best first.

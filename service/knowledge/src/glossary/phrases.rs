@@ -30,8 +30,15 @@ pub(super) struct Token {
 /// Phrases with what they mean, by their first token.
 #[derive(Debug, Default)]
 pub(super) struct Phrases {
-    by_first: BTreeMap<String, Vec<(Vec<String>, BTreeSet<usize>)>>,
+    by_first: BTreeMap<String, Vec<Phrase>>,
     filler: BTreeSet<Vec<String>>,
+}
+
+/// The stems of a phrase and what it means.
+#[derive(Debug)]
+struct Phrase {
+    stems: Vec<String>,
+    meaning: BTreeSet<usize>,
 }
 
 /// What was read in a question.
@@ -48,11 +55,11 @@ impl Phrases {
         let stems: Vec<String> = tokens(phrase).into_iter().map(|t| t.stem).collect();
         let Some(first) = stems.first() else { return };
         let list = self.by_first.entry(first.clone()).or_default();
-        match list.iter_mut().find(|p| p.0 == stems) {
+        match list.iter_mut().find(|p| p.stems == stems) {
             Some(known) => {
-                known.1.insert(meaning);
+                known.meaning.insert(meaning);
             }
-            None => list.push((stems, [meaning].into())),
+            None => list.push(Phrase { stems, meaning: [meaning].into() }),
         }
     }
 
@@ -98,7 +105,7 @@ impl Phrases {
             same && !(phrase.len() == 1 && is_syllable(&first.text) && !first.begins)
         };
         let list = self.by_first.get(&first.stem)?;
-        list.iter().filter(|p| fits(&p.0)).max_by_key(|p| p.0.len()).map(|p| (p.0.len(), &p.1))
+        list.iter().filter(|p| fits(&p.stems)).max_by_key(|p| p.stems.len()).map(|p| (p.stems.len(), &p.meaning))
     }
 
     fn is_filler(&self, tokens: &[Token], length: usize) -> bool {
@@ -109,7 +116,7 @@ impl Phrases {
 
     fn single(&self, word: &str) -> Option<&BTreeSet<usize>> {
         let list = self.by_first.get(&stem(word))?;
-        list.iter().find(|p| p.0.len() == 1).map(|p| &p.1)
+        list.iter().find(|p| p.stems.len() == 1).map(|p| &p.meaning)
     }
 
     /// Returns the meanings of the parts of a compound; of its last part alone where the first is not known.

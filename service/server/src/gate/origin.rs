@@ -39,7 +39,7 @@ impl Origins {
         let named = uri.authority().cloned().into_iter().map(Ok);
         let named = named.chain(host.map(|h| Authority::try_from(h.as_bytes()).map_err(drop)));
         for name in named {
-            let known = name.as_ref().is_ok_and(|name| self.is_own(name.host()));
+            let known = name.as_ref().is_ok_and(|name| !name.as_str().contains('@') && self.is_own(name.host()));
             if self.loopback && !known {
                 let message = "this server is asked by a name that is not its own: use localhost, or put the name of a \
                                proxy into the setting `hosts`";

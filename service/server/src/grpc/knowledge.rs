@@ -333,7 +333,7 @@ fn changed_once(
         None => change(&by).map_err(status::knowledge)?,
     };
     if let Some(changed) = &changed {
-        core.changed_rules(&changed.domain)?;
+        core.changed_rules(changed)?;
     }
     Ok(changed)
 }

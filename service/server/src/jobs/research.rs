@@ -101,7 +101,7 @@ pub(super) fn run(run: &Run, spec: &Research) -> Result<serde_json::Value, Statu
         run.step("import", 0.9, "keeping the rules");
         let why = format!("research job {}", run.job.id);
         let by = Provenance { who: run.job.owner.clone(), when: core.clock.text(), why };
-        let change = core.change_rules(&spec.domain, |rules| rules.import(&outcome.knowledge, true, &by))?;
+        let change = core.change_rules(|rules| rules.import(&outcome.knowledge, true, &by))?;
         found.change = change.map(|c| c.seq);
     }
     super::run::remove_dir(&dir.join("cache"));

@@ -7,7 +7,9 @@ use d3dgen_proto::v1::admin_service_client::AdminServiceClient;
 use d3dgen_proto::v1::amend_knowledge_request::Change;
 use d3dgen_proto::v1::knowledge_service_client::KnowledgeServiceClient;
 use d3dgen_proto::v1::server_service_client::ServerServiceClient;
-use d3dgen_proto::v1::{AmendKnowledgeRequest, CreateBackupRequest, GetServerInfoRequest, RuleSentence};
+use d3dgen_proto::v1::{
+    AmendKnowledgeRequest, AnyOf, CreateBackupRequest, GetServerInfoRequest, RuleSentence, SearchConstraintsRequest,
+};
 use http::uri::PathAndQuery;
 use prost::Message;
 use prost::encoding::{WireType, encode_key, encode_varint};
@@ -187,6 +189,12 @@ async fn a_sentence_as_long_as_may_be_is_read_soon_and_holds_nobody_up() {
     drop(turn);
     let made = knowledge.amend_knowledge(asked(false)).await.expect("made").into_inner();
     assert_eq!(made.edits.len(), planned.edits.len());
+    // searches know of it when the call returns
+    let filters = [("jurisdiction".to_owned(), AnyOf { values: vec!["LOCAL".into()] })].into();
+    let asked = SearchConstraintsRequest { query: "width of corridors".into(), filters, ..Default::default() };
+    let found = knowledge.search_constraints(asked).await.expect("found").into_inner().constraints;
+    let ids: Vec<_> = found.into_iter().filter_map(|f| f.constraint).map(|c| c.constraint_id).collect();
+    assert!(ids.iter().any(|id| id.starts_with("hospital_local_")), "{ids:?}");
 }
 
 #[tokio::test(flavor = "multi_thread")]

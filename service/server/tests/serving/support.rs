@@ -49,7 +49,9 @@ impl Server {
         let (stop, stopped) = oneshot::channel::<()>();
         let served = Arc::clone(&core);
         let ended = tokio::spawn(async move {
-            let ready = |address| drop(ready.send(address));
+            let ready = |address| {
+                let _ = ready.send(address);
+            };
             let stop = async { drop(stopped.await) };
             serve::serve(served, ready, stop).await.expect("it serves");
         });

@@ -82,9 +82,18 @@ impl Columns {
         self.keys.get(row as usize).map(String::as_str)
     }
 
-    /// Returns each value of a facet with how many rows have it.
-    pub(crate) fn counts(&self, facet: &str) -> Option<BTreeMap<String, usize>> {
-        Some(self.facets.get(facet)?.iter().map(|(value, rows)| (value.clone(), rows.len())).collect())
+    /// Returns the row of a key.
+    pub(crate) fn row(&self, key: &str) -> Option<u32> {
+        let place = self.keys.binary_search_by(|k| k.as_str().cmp(key)).ok()?;
+        u32::try_from(place).ok()
+    }
+
+    /// Returns each value of a facet with how many rows have it, beside those that are gone.
+    pub(crate) fn counts(&self, facet: &str, gone: Option<&RowSet>) -> Option<BTreeMap<String, usize>> {
+        let there =
+            |rows: &Vec<u32>| gone.map_or(rows.len(), |gone| rows.iter().filter(|r| !gone.contains(**r)).count());
+        let counts = self.facets.get(facet)?.iter().map(|(value, rows)| (value.clone(), there(rows)));
+        Some(counts.filter(|(_, count)| *count > 0).collect())
     }
 
     /// Returns the rows that fulfill a filter.

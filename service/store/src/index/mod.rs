@@ -3,7 +3,8 @@
 //!
 //! It does not hold the records, only their keys, and does not know what they mean: the caller says which texts,
 //! facets and numbers a record has. It is never changed in place. Opened with the revision of the records it is either
-//! exactly of this revision, or rebuilt.
+//! exactly of this revision, or rebuilt. After a change of a few records, [`Index::changed`] gives the index of the new
+//! revision at once: the old one with a small one beside it, for as long as both are in memory.
 //!
 //! # Examples
 //! ```
@@ -75,10 +76,23 @@ pub struct Index {
 /// Takes a document into an index; what it returns ends the giving.
 pub type Take<'a> = &'a mut dyn FnMut(Document) -> Result<()>;
 
+/// Documents that an index can have beside those it was made of; with more it is made anew.
+const BESIDE: usize = 400;
+
 struct Inner {
-    parts: Parts,
+    parts: Arc<Parts>,
+    changed: Option<Changed>,
     embedder: Arc<dyn Embedder>,
     revision: u64,
+}
+
+/// What has changed since the parts of an index were made.
+struct Changed {
+    /// Rows that are not there any more, or are in another form among the documents.
+    gone: RowSet,
+    documents: BTreeMap<String, Document>,
+    /// Of these documents; their rows follow those of the index.
+    parts: Parts,
 }
 
 impl std::fmt::Debug for Index {
@@ -147,7 +161,8 @@ impl Index {
     ) -> Result<Opened, E> {
         let wanted = Wanted { spec, embedder: &embedder, revision, graph_from: graph::FROM_ROWS };
         let found = lifecycle::open_or_rebuild(dir, &wanted, expected, &mut feed, watch)?;
-        let index = Self { inner: Arc::new(Inner { parts: found.parts, embedder, revision }) };
+        let inner = Inner { parts: Arc::new(found.parts), changed: None, embedder, revision };
+        let index = Self { inner: Arc::new(inner) };
         Ok(Opened { index, rebuilt: found.rebuilt, unsaved: found.unsaved })
     }
 
@@ -166,7 +181,44 @@ impl Index {
         let mut documents = documents.into_iter();
         let expected = documents.size_hint().0;
         let parts = Parts::new(&wanted, expected, &mut |take: Take<'_>| documents.try_for_each(take), watch)?;
-        Ok(Self { inner: Arc::new(Inner { parts, embedder, revision }) })
+        Ok(Self { inner: Arc::new(Inner { parts: Arc::new(parts), changed: None, embedder, revision }) })
+    }
+
+    /// Returns the index at a later revision, after some documents have changed: each by its key as it is now, none when it
+    /// is not there any more. It takes as long as the changed documents take, and lives in memory. Returns none when too
+    /// many have changed since the index was made: it is then to be made anew.
+    ///
+    /// # Errors
+    /// As [`Index::open_or_rebuild`].
+    pub fn changed(
+        &self,
+        spec: &IndexSpec,
+        revision: u64,
+        changes: impl IntoIterator<Item = (String, Option<Document>)>,
+    ) -> Result<Option<Self>> {
+        let inner = &*self.inner;
+        let (mut gone, mut documents) = match &inner.changed {
+            Some(changed) => (changed.gone.clone(), changed.documents.clone()),
+            None => (RowSet::none(inner.parts.columns.rows()), BTreeMap::new()),
+        };
+        for (key, document) in changes {
+            if let Some(row) = inner.parts.columns.row(&key) {
+                gone.insert(row);
+            }
+            match document {
+                Some(document) => drop(documents.insert(key, document)),
+                None => drop(documents.remove(&key)),
+            }
+        }
+        if documents.len() > BESIDE || inner.parts.columns.rows() == 0 {
+            return Ok(None);
+        }
+        let wanted = Wanted { spec, embedder: &inner.embedder, revision, graph_from: graph::FROM_ROWS };
+        let mut feed = |take: Take<'_>| documents.values().cloned().try_for_each(take);
+        let parts = Parts::new::<Error>(&wanted, documents.len(), &mut feed, Watch::nobody())?;
+        let changed = Some(Changed { gone, documents, parts });
+        let (parts, embedder) = (Arc::clone(&inner.parts), Arc::clone(&inner.embedder));
+        Ok(Some(Self { inner: Arc::new(Inner { parts, changed, embedder, revision }) }))
     }
 
     /// Returns the `limit` documents that fulfill the filter and fit the text best, best first; equal ones in the order
@@ -178,27 +230,32 @@ impl Index {
     /// [`Error::UnknownField`] when the filter names a facet or number that the index does not have;
     /// [`Error::Embedder`] when the embedder fails.
     pub fn search(&self, text: &str, filter: &Filter, limit: usize, mode: Mode) -> Result<Vec<Hit>> {
-        let parts = &self.inner.parts;
-        let allowed = match filter {
-            Filter::Everything => None,
-            filter => Some(parts.columns.matching(filter)?),
-        };
-        let limit = limit.min(parts.columns.rows() as usize);
+        let (parts, changed) = (&*self.inner.parts, self.inner.changed.as_ref());
+        let allowed =
+            Allowed { first: self.allowed(filter)?, beside: changed.map(|c| matching(&c.parts, filter)).transpose()? };
+        let limit = limit.min(self.len());
         if text.trim().is_empty() {
-            let allowed = allowed.unwrap_or_else(|| RowSet::all(parts.columns.rows()));
-            return Ok(allowed.iter().take(limit).filter_map(|row| self.hit(row)).collect());
+            return Ok(self.all(&allowed, limit));
         }
         let depth = if mode == Mode::Hybrid && limit > 0 { limit.max(FUSED_DEPTH) } else { limit };
         let by_text = match mode {
             Mode::Vector => Vec::new(),
-            _ => parts.text.search(text, depth, allowed.as_ref())?,
+            _ => {
+                let first = parts.text.search(text, depth, allowed.first.as_ref(), None)?;
+                let beside = changed.map(|c| c.parts.text.search(text, depth, allowed.of_beside(), Some(&parts.text)));
+                self.merged(first, beside.transpose()?, depth)
+            }
         };
         let by_vector = match mode {
             Mode::Text => Vec::new(),
-            _ => self.nearest(text, depth, allowed.as_ref())?,
+            _ => self.nearest(text, depth, &allowed)?,
         };
-        let fused = fuse(&by_text, &by_vector).into_iter().take(limit);
-        let hits = fused.filter_map(|fused| {
+        let mut fused = fuse(&by_text, &by_vector);
+        if changed.is_some() {
+            // rows are in the order of keys in each part, but not in both
+            fused.sort_by(|a, b| b.score.total_cmp(&a.score).then_with(|| self.key(a.row).cmp(&self.key(b.row))));
+        }
+        let hits = fused.into_iter().take(limit).filter_map(|fused| {
             let Fused { row, score, text_rank, vector_rank, similarity } = fused;
             Some(Hit { score, text_rank, vector_rank, similarity, ..self.hit(row)? })
         });
@@ -210,7 +267,9 @@ impl Index {
     /// # Errors
     /// [`Error::Index`] when the full text cannot be read.
     pub fn has_word(&self, word: &str) -> Result<bool> {
-        self.inner.parts.text.has_word(word)
+        let beside = self.inner.changed.as_ref();
+        let beside = beside.map_or(Ok(false), |changed| changed.parts.text.has_word(word))?;
+        Ok(beside || self.inner.parts.text.has_word(word)?)
     }
 
     /// Returns how many documents fulfill a filter.
@@ -218,19 +277,26 @@ impl Index {
     /// # Errors
     /// [`Error::UnknownField`] as [`Index::search`].
     pub fn count(&self, filter: &Filter) -> Result<usize> {
-        Ok(self.inner.parts.columns.matching(filter)?.count() as usize)
+        let first = self.allowed(filter)?.map_or(self.first_len(), |rows| rows.count() as usize);
+        let Some(changed) = &self.inner.changed else { return Ok(first) };
+        Ok(first + changed.parts.columns.matching(filter)?.count() as usize)
     }
 
     /// Returns the values of a facet with how many documents have each; none when there is no such facet.
     #[must_use]
     pub fn facet_counts(&self, facet: &str) -> Option<BTreeMap<String, usize>> {
-        self.inner.parts.columns.counts(facet)
+        let changed = self.inner.changed.as_ref();
+        let mut counts = self.inner.parts.columns.counts(facet, changed.map(|c| &c.gone))?;
+        for (value, count) in changed.and_then(|c| c.parts.columns.counts(facet, None)).unwrap_or_default() {
+            *counts.entry(value).or_default() += count;
+        }
+        Some(counts)
     }
 
     /// Returns how many documents there are.
     #[must_use]
     pub fn len(&self) -> usize {
-        self.inner.parts.columns.rows() as usize
+        self.first_len() + self.inner.changed.as_ref().map_or(0, |c| c.documents.len())
     }
 
     /// Returns whether there is no document.
@@ -245,24 +311,102 @@ impl Index {
         self.inner.revision
     }
 
+    /// Returns how many documents are as they were when the index was made.
+    fn first_len(&self) -> usize {
+        let gone = self.inner.changed.as_ref().map_or(0, |c| c.gone.count());
+        (self.inner.parts.columns.rows() - gone) as usize
+    }
+
+    /// Returns the rows of the first parts that are there and fulfill a filter; none for all.
+    fn allowed(&self, filter: &Filter) -> Result<Option<RowSet>> {
+        let allowed = matching(&self.inner.parts, filter)?;
+        let Some(changed) = &self.inner.changed else { return Ok(allowed) };
+        let mut there = changed.gone.clone();
+        there.invert();
+        if let Some(allowed) = allowed {
+            there.intersect(&allowed);
+        }
+        Ok(Some(there))
+    }
+
+    /// Returns the first of all documents that are allowed, in the order of keys.
+    fn all(&self, allowed: &Allowed, limit: usize) -> Vec<Hit> {
+        let rows = |set: Option<&RowSet>, count: u32| set.cloned().unwrap_or_else(|| RowSet::all(count));
+        let first = self.inner.parts.columns.rows();
+        let set = rows(allowed.first.as_ref(), first);
+        let mut hits: Vec<Hit> = set.iter().take(limit).filter_map(|row| self.hit(row)).collect();
+        if let Some(changed) = &self.inner.changed {
+            let beside = rows(allowed.of_beside(), changed.parts.columns.rows());
+            hits.extend(beside.iter().filter_map(|row| self.hit(first + row)));
+            hits.sort_by(|a, b| a.key.cmp(&b.key));
+            hits.truncate(limit);
+        }
+        hits
+    }
+
+    /// Returns the best of both parts, best first; equal ones in the order of keys.
+    fn merged(&self, mut first: Vec<Scored>, beside: Option<Vec<Scored>>, limit: usize) -> Vec<Scored> {
+        let Some(beside) = beside else { return first };
+        let offset = self.inner.parts.columns.rows();
+        first.extend(beside.into_iter().map(|s| Scored { row: s.row + offset, ..s }));
+        first.sort_by(|a, b| b.score.total_cmp(&a.score).then_with(|| self.key(a.row).cmp(&self.key(b.row))));
+        first.truncate(limit);
+        first
+    }
+
+    fn key(&self, row: u32) -> Option<&str> {
+        let first = &self.inner.parts.columns;
+        match row.checked_sub(first.rows()) {
+            None => first.key(row),
+            Some(beside) => self.inner.changed.as_ref()?.parts.columns.key(beside),
+        }
+    }
+
     fn hit(&self, row: u32) -> Option<Hit> {
-        let key = self.inner.parts.columns.key(row)?.to_owned();
+        let key = self.key(row)?.to_owned();
         Some(Hit { key, score: 0.0, text_rank: None, vector_rank: None, similarity: None })
     }
 
-    fn nearest(&self, text: &str, limit: usize, allowed: Option<&RowSet>) -> Result<Vec<Scored>> {
+    fn nearest(&self, text: &str, limit: usize, allowed: &Allowed) -> Result<Vec<Scored>> {
         let Some(question) = self.inner.embedder.embed(&[text])?.pop() else { return Ok(Vec::new()) };
         if question.iter().all(|x| *x == 0.0) || limit == 0 {
             return Ok(Vec::new());
         }
+        let first = self.nearest_of_first(&question, limit, allowed.first.as_ref());
+        let changed = self.inner.changed.as_ref();
+        let beside = changed.map(|c| c.parts.vectors.scan(&question, limit, allowed.of_beside()));
+        Ok(self.merged(first, beside, limit))
+    }
+
+    fn nearest_of_first(&self, question: &[f32], limit: usize, allowed: Option<&RowSet>) -> Vec<Scored> {
         let (parts, rows) = (&self.inner.parts, f64::from(self.inner.parts.columns.rows()));
         let wide = allowed.is_none_or(|allowed| f64::from(allowed.count()) >= rows * graph::LEAST_SHARE);
         if wide && let Some(graph) = parts.graph() {
-            let near = graph.near(&question, limit, allowed);
+            let near = graph.near(question, limit, allowed);
             if near.len() >= limit {
-                return Ok(parts.vectors.rank(&question, near.into_iter(), limit));
+                return parts.vectors.rank(question, near.into_iter(), limit);
             }
         }
-        Ok(parts.vectors.scan(&question, limit, allowed))
+        parts.vectors.scan(question, limit, allowed)
+    }
+}
+
+/// Which rows may be found: of the first parts, and of those beside them; none for all.
+struct Allowed {
+    first: Option<RowSet>,
+    beside: Option<Option<RowSet>>,
+}
+
+impl Allowed {
+    fn of_beside(&self) -> Option<&RowSet> {
+        self.beside.as_ref()?.as_ref()
+    }
+}
+
+/// Returns the rows that fulfill a filter; none for all.
+fn matching(parts: &Parts, filter: &Filter) -> Result<Option<RowSet>> {
+    match filter {
+        Filter::Everything => Ok(None),
+        filter => parts.columns.matching(filter).map(Some),
     }
 }

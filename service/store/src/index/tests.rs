@@ -23,8 +23,13 @@ fn document(key: &str, name: &str, text: &str, country: &str, rooms: &[&str], va
     }
 }
 
-fn index() -> Index {
-    let documents = [
+/// Returns one of the documents of [`index`].
+fn document_of(key: &str) -> Document {
+    documents().into_iter().find(|d| d.key == key).expect("one of them")
+}
+
+fn documents() -> [Document; 7] {
+    [
         document("de_corridor", "corridor_width", "clear width of corridors, 1.50 m", "DE", &["corridor"], Some(1.5)),
         document("us_corridor", "corridor_width", "clear width of corridors, 44 in", "US", &["corridor"], Some(1.118)),
         document(
@@ -46,8 +51,11 @@ fn index() -> Index {
         ),
         document("de_smoke", "smoke_alarm", "a smoke alarm in each bedroom", "DE", &["bedroom"], None),
         document("de_flur", "flur", "Flur und Breite", "DE", &["corridor"], None),
-    ];
-    Index::in_memory(&spec(), Arc::new(StaticTable::new()), 1, documents, Watch::nobody()).unwrap()
+    ]
+}
+
+fn index() -> Index {
+    Index::in_memory(&spec(), Arc::new(StaticTable::new()), 1, documents(), Watch::nobody()).unwrap()
 }
 
 #[track_caller]
@@ -230,7 +238,17 @@ fn a_graph_of_neighbors_is_kept_checked_and_as_good_as_the_scan() {
         let wanted = Wanted { spec, embedder: &embedder, revision, graph_from };
         let mut feed = |take: Take<'_>| many().into_iter().try_for_each(take);
         let found = lifecycle::open_or_rebuild::<Error>(dir.path(), &wanted, 0, &mut feed, Watch::nobody()).unwrap();
-        (Index { inner: Arc::new(Inner { parts: found.parts, embedder: embedder.clone(), revision }) }, found.rebuilt)
+        (
+            Index {
+                inner: Arc::new(Inner {
+                    parts: Arc::new(found.parts),
+                    changed: None,
+                    embedder: embedder.clone(),
+                    revision,
+                }),
+            },
+            found.rebuilt,
+        )
     };
     let scanned = open(u32::MAX).0;
     assert!(scanned.inner.parts.graph().is_none());
@@ -264,4 +282,59 @@ fn a_graph_of_neighbors_is_kept_checked_and_as_good_as_the_scan() {
     assert!(late.inner.parts.graph().is_none());
     assert_eq!(late.search("ramp", &Filter::Everything, 9, Mode::Vector).unwrap().len(), 9);
     assert!(matches!(open(500).1, Some(Reason::Damaged { .. })));
+}
+
+#[test]
+fn a_changed_index_finds_what_one_made_anew_finds() {
+    let changes = [
+        ("at_height", None),
+        (
+            "de_corridor",
+            Some(document(
+                "de_corridor",
+                "corridor_width",
+                "clear width of wards, 2.25 m",
+                "AT",
+                &["ward"],
+                Some(2.25),
+            )),
+        ),
+        ("ch_stair", Some(document("ch_stair", "stair_width", "clear width of stairs", "CH", &["stairs"], Some(1.2)))),
+        ("de_none", None),
+    ];
+    let changes = changes.map(|(key, document)| (key.to_owned(), document));
+    let before = index();
+    let changed = before.changed(&spec(), 2, changes.clone()).unwrap().expect("few have changed");
+    assert_eq!((changed.revision(), before.revision(), changed.len(), before.len()), (2, 1, 7, 7));
+    let mut documents: BTreeMap<String, Document> = changes.into_iter().filter_map(|(k, d)| Some((k, d?))).collect();
+    for kept in ["us_corridor", "de_door", "de_kitchen", "de_smoke", "de_flur"] {
+        documents.insert(kept.to_owned(), document_of(kept));
+    }
+    let anew = Index::in_memory(&spec(), Arc::new(StaticTable::new()), 2, documents.into_values(), Watch::nobody());
+    let anew = anew.unwrap();
+    let filters =
+        [Filter::Everything, Filter::facet("country", ["AT", "DE"]), Filter::number("value", Some(1.0), None)];
+    for filter in &filters {
+        for text in ["", "corridor width", "clear height", "stairs", "width of wards", "smoke alarm", "Breite"] {
+            for mode in [Mode::Text, Mode::Vector, Mode::Hybrid] {
+                let (mut found, mut wanted) = (keys(&changed, text, filter, mode), keys(&anew, text, filter, mode));
+                // how rare a word is differs a little while what is gone still counts; nearness does not
+                if text.is_empty() || mode == Mode::Vector {
+                    assert_eq!(found, wanted, "{text:?} {filter:?} {mode:?}");
+                }
+                found.sort();
+                wanted.sort();
+                assert_eq!(found, wanted, "{text:?} {filter:?} {mode:?}");
+            }
+        }
+        assert_eq!(changed.count(filter).unwrap(), anew.count(filter).unwrap());
+    }
+    for facet in ["country", "room"] {
+        assert_eq!(changed.facet_counts(facet), anew.facet_counts(facet), "{facet}");
+    }
+    // changes add up, and the last one counts
+    let again = changed.changed(&spec(), 3, [("ch_stair".to_owned(), None)]).unwrap().expect("few");
+    assert!(keys(&again, "stairs", &Filter::Everything, Mode::Text).is_empty() && again.len() == 6);
+    let many = (0..=BESIDE).map(|n| (format!("n{n}"), Some(document(&format!("n{n}"), "a", "b", "DE", &[], None))));
+    assert!(before.changed(&spec(), 2, many).unwrap().is_none(), "many changes make it anew");
 }

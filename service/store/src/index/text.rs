@@ -103,13 +103,23 @@ impl TextIndex {
     }
 
     /// Returns the `limit` rows that fit best by their words, best first; rows without any of the words are not found.
-    pub(crate) fn search(&self, text: &str, limit: usize, allowed: Option<&RowSet>) -> Result<Vec<Scored>> {
+    ///
+    /// How much a word tells is taken from `among`, where there is one: a few rows say nothing of how rare a word is.
+    pub(crate) fn search(
+        &self,
+        text: &str,
+        limit: usize,
+        allowed: Option<&RowSet>,
+        among: Option<&Self>,
+    ) -> Result<Vec<Scored>> {
         let words = self.analyzer.lock().unwrap_or_else(|broken| broken.into_inner()).words(text);
         let query = self.query(&words)?;
         let (Some(reader), Some(query)) = (self.searcher.segment_readers().first(), query) else {
             return Ok(Vec::new());
         };
-        let weight = query.weight(EnableScoring::enabled_from_searcher(&self.searcher)).map_err(failed)?;
+        let statistics = among.map_or(&self.searcher, |other| &other.searcher);
+        let scoring = EnableScoring::enabled_from_statistics_provider(statistics, &self.searcher);
+        let weight = query.weight(scoring).map_err(failed)?;
         let mut top = Top::new(limit);
         let mut consider = |row, score| {
             if allowed.is_none_or(|allowed| allowed.contains(row)) {
