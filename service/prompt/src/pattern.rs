@@ -92,7 +92,11 @@ impl Pattern {
                     classes.push(class);
                     true
                 }
-                What::Any(patterns) => patterns.iter().fold(true, |solid, p| p.collect_first(classes) && solid),
+                What::Any(patterns) => {
+                    // all of them: each adds what it may begin with
+                    let solid: Vec<bool> = patterns.iter().map(|p| p.collect_first(classes)).collect();
+                    solid.into_iter().all(|s| s)
+                }
             };
             if solid && element.least > 0 {
                 return true;

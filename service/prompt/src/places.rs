@@ -18,8 +18,6 @@ struct Line {
     strict: bool,
     #[serde(default)]
     city: bool,
-    #[serde(default)]
-    division: Option<String>,
 }
 
 /// A name, and the place that it is of.
@@ -35,13 +33,7 @@ pub(crate) fn places() -> Vec<Place> {
     for line in PLACES.lines() {
         let Ok(line) = serde_json::from_str::<Line>(line) else { continue };
         for name in &line.names {
-            let one = Line {
-                names: Vec::new(),
-                codes: line.codes.clone(),
-                code: line.code.clone(),
-                division: line.division.clone(),
-                ..line
-            };
+            let one = Line { names: Vec::new(), codes: line.codes.clone(), code: line.code.clone(), ..line };
             match found.get(&name.to_lowercase()) {
                 // a country wins over a city of the same name, a listed ambiguity over both
                 Some(old) if old.codes.len() >= one.codes.len() && (!old.city || one.city) => {}
@@ -53,7 +45,10 @@ pub(crate) fn places() -> Vec<Place> {
     }
     let value = |l: &Line| {
         let code = l.code.clone().filter(|_| l.codes.is_empty()).unwrap_or_default();
-        format!("{code}|{}|{}|{}", l.division.clone().unwrap_or_default(), u8::from(l.city), u8::from(l.strict))
+        // "AT-9": a division of a country
+        let country = code.split('-').next().unwrap_or_default();
+        let division = if code.contains('-') { code.as_str() } else { "" };
+        format!("{country}|{division}|{}|{}", u8::from(l.city), u8::from(l.strict))
     };
     found.into_iter().map(|(name, line)| Place { value: value(&line), name }).collect()
 }
@@ -88,7 +83,8 @@ mod tests {
         }
         let places = places();
         let of = |name: &str| places.iter().find(|p| p.name == name).map(|p| parts(&p.value));
-        assert_eq!(of("wien").map(|p| (p.country, p.city)), Some((Some("AT"), true)));
+        assert_eq!(of("wien").map(|p| p.country), Some(Some("AT")));
+        assert_eq!(of("lyon").map(|p| (p.country, p.city)), Some((Some("FR"), true)));
         assert_eq!(of("germany").map(|p| (p.country, p.city)), Some((Some("DE"), false)));
     }
 }

@@ -53,6 +53,9 @@ impl Reader<'_> {
                 let values = alternatives.iter().map(value).collect();
                 return Ok(vec![Item { name: proto, about, body: Body::Enum(values) }]);
             }
+            if let Some(arms) = self.wrapped(alternatives) {
+                return Ok(vec![Item { name: proto, about, body: Body::Message(arms, Some("kind".into())) }]);
+            }
             return self.tagged(name, &proto, about, alternatives);
         }
         if definition["type"] == "array" {
@@ -64,6 +67,24 @@ impl Reader<'_> {
         }
         let fields = self.fields(name, definition, None)?;
         Ok(vec![Item { name: proto, about, body: Body::Message(fields, None) }])
+    }
+
+    /// Returns the fields of alternatives each of which is an object with one key, that of a type of its own; none where they
+    /// are told apart otherwise.
+    fn wrapped(&mut self, alternatives: &[Value]) -> Option<Vec<Field>> {
+        let arm = |alternative: &Value| {
+            let mut properties = alternative["properties"].as_object()?.iter();
+            let ((key, property), None) = (properties.next()?, properties.next()) else { return None };
+            let reference = property["$ref"].as_str()?.rsplit('/').next()?.to_owned();
+            Some((key.clone(), text(alternative, "description"), reference))
+        };
+        let found: Vec<_> = alternatives.iter().map(arm).collect::<Option<_>>()?;
+        let field = |(key, about, reference): (String, String, String)| {
+            let kind = self.type_name(&reference);
+            self.used.insert(reference);
+            Field { name: key.clone(), key, about, label: "", kind }
+        };
+        Some(found.into_iter().map(field).collect())
     }
 
     /// Returns the messages of alternatives that a key tells apart.

@@ -33,6 +33,7 @@ const FORMS: &[(&str, Form)] = &[
     ("NumberList", Form::List),
     ("Polygon", Form::List),
     ("RoomPair", Form::Tuple),
+    ("Sides", Form::Tuple),
     ("Size", Form::Tuple),
     ("Stretch", Form::Tuple),
     ("StringList", Form::List),

@@ -250,8 +250,12 @@ impl Index {
             Mode::Text => Vec::new(),
             _ => self.nearest(text, depth, &allowed)?,
         };
-        let fused = fuse(&by_text, &by_vector).into_iter().take(limit);
-        let hits = fused.filter_map(|fused| {
+        let mut fused = fuse(&by_text, &by_vector);
+        if changed.is_some() {
+            // rows are in the order of keys in each part, but not in both
+            fused.sort_by(|a, b| b.score.total_cmp(&a.score).then_with(|| self.key(a.row).cmp(&self.key(b.row))));
+        }
+        let hits = fused.into_iter().take(limit).filter_map(|fused| {
             let Fused { row, score, text_rank, vector_rank, similarity } = fused;
             Some(Hit { score, text_rank, vector_rank, similarity, ..self.hit(row)? })
         });
@@ -263,7 +267,9 @@ impl Index {
     /// # Errors
     /// [`Error::Index`] when the full text cannot be read.
     pub fn has_word(&self, word: &str) -> Result<bool> {
-        self.inner.parts.text.has_word(word)
+        let beside = self.inner.changed.as_ref();
+        let beside = beside.map_or(Ok(false), |changed| changed.parts.text.has_word(word))?;
+        Ok(beside || self.inner.parts.text.has_word(word)?)
     }
 
     /// Returns how many documents fulfill a filter.

