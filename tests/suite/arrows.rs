@@ -23,7 +23,10 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("placement", &["model", "knowledge"]),
     ("scenario", &["model", "knowledge"]),
     ("check", &["model", "knowledge"]),
-    ("pipeline", &["model", "plugins", "knowledge", "plans", "prompt", "program", "floorplan", "placement", "scenario", "check"]),
+    (
+        "pipeline",
+        &["model", "plugins", "knowledge", "plans", "prompt", "program", "floorplan", "placement", "scenario", "check"],
+    ),
     ("export", &["model", "mesh"]),
     ("eval", &["model"]),
     ("plans", &["model"]),

@@ -114,5 +114,11 @@ fn homes(schemas: &[(&Document, Value)]) -> BTreeMap<String, String> {
             }
         }
     }
+    // what only a document made of documents has
+    for (document, schema) in schemas {
+        for (name, _) in &definitions(schema)[1..] {
+            homes.entry((*name).to_owned()).or_insert_with(|| document.file.clone());
+        }
+    }
     homes
 }

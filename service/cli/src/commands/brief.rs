@@ -46,15 +46,23 @@ impl Args {
 fn lines(read: &ReadPrompt, explain: bool) -> String {
     let brief = &read.brief;
     let mut lines = vec![format!("languages: {}", brief.languages.join(", "))];
-    lines.extend(read.unread_language.iter().map(|l| format!("not read: {l}; only words that languages share are understood")));
+    lines.extend(
+        read.unread_language.iter().map(|l| format!("not read: {l}; only words that languages share are understood")),
+    );
     let building = |b: &d3dgen_model::brief::AskedBuilding| {
         let known = b.building_type.as_deref().or(b.domain.as_deref()).unwrap_or("no kind that is known");
         format!("{known} (`{}`, {:.0} %)", b.name, 100.0 * b.confidence)
     };
     lines.extend(brief.building.iter().map(|b| format!("building: {}", building(b))));
     lines.extend(brief.other_buildings.iter().map(|b| format!("     or: {}", building(b))));
-    lines.extend(brief.place.iter().map(|p| format!("place: {}{}", p.country_code, p.city.as_ref().map_or(String::new(), |c| format!(", {c}")))));
-    lines.extend(read.facts.iter().zip(&brief.asks).map(|(fact, ask)| format!("{}: {fact}   <- {}", ask.id, ask.said())));
+    lines.extend(
+        brief.place.iter().map(|p| {
+            format!("place: {}{}", p.country_code, p.city.as_ref().map_or(String::new(), |c| format!(", {c}")))
+        }),
+    );
+    lines.extend(
+        read.facts.iter().zip(&brief.asks).map(|(fact, ask)| format!("{}: {fact}   <- {}", ask.id, ask.said())),
+    );
     lines.extend(read.misspelled.iter().map(|(written, meant)| format!("`{written}` is read as `{meant}`")));
     lines.extend(brief.not_understood.iter().map(|w| format!("not understood: {}", w.text)));
     if explain {
