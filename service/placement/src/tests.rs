@@ -96,7 +96,6 @@ impl<'s> Site<'s> {
             doors: self.doors.iter().enumerate().map(door).collect(),
             windows: self.windows.iter().enumerate().map(window).collect(),
             obstacles: self.columns.clone(),
-            obstacles: self.columns.clone(),
             cost: Vec::new(),
             conflicts: Vec::new(),
             levels: Vec::new(),

@@ -144,7 +144,7 @@ fn a_conflict_that_names_the_wish_is_its_reason() {
     let ask = Ask { id: "ask_1".into(), words, read_by: Default::default(), fact };
     let mut world =
         World { brief: Some(Brief { asks: vec![ask], ..Brief::of_prompt(prompt) }), ..sample.world.clone() };
-    let note = d3dgen_model::scene_graph::Note::new("unread_wish", "no helipad is planned on a flat");
+    let note = d3dgen_model::scene_graph::Note::new("unread_wish", "no helipad is planned on a flat".into());
     world.scene_graph.conflicts.push(note);
     let found = check(&world, sample.domain, &sample.retrieval);
     assert_eq!(found.asks[0].fate, Fate::Contradicted);
