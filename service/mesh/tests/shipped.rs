@@ -3,35 +3,19 @@
 #![allow(clippy::unwrap_used)] // helpers of tests are tests
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
 
 use d3dgen_mesh::builds::MOST_TRIANGLES;
 use d3dgen_mesh::{Library, Mesh, Model3d, generate_by};
 use d3dgen_model::domain::{ObjectType, Shape};
-use serde_json::{Map, Value};
+use d3dgen_plugins::{Plugin, Registry};
 
 /// Thinner things are plates.
 const FLAT_M: f64 = 0.12;
 
 fn objects() -> Vec<(String, ObjectType)> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../domains");
-    let mut folders: Vec<PathBuf> = std::fs::read_dir(root).unwrap().flatten().map(|e| e.path()).collect();
-    folders.retain(|f| f.join("domain.toml").is_file());
-    folders.sort();
-    let mut objects = Vec::new();
-    for folder in folders {
-        let domain = folder.file_name().unwrap().to_string_lossy().into_owned();
-        let mut files: Vec<PathBuf> = std::fs::read_dir(&folder).unwrap().flatten().map(|e| e.path()).collect();
-        files.retain(|f| f.file_name().is_some_and(|n| n.to_string_lossy().starts_with("objects")));
-        files.sort();
-        for file in files {
-            let table: Map<String, Value> = toml::from_str(&std::fs::read_to_string(file).unwrap()).unwrap();
-            for value in table["objects"].as_array().unwrap() {
-                objects.push((domain.clone(), serde_json::from_value(value.clone()).unwrap()));
-            }
-        }
-    }
-    objects
+    let registry = Registry::builtin();
+    let of = |p: &dyn Plugin| p.domain().objects.iter().map(|o| (p.id().to_owned(), o.clone())).collect::<Vec<_>>();
+    registry.iter().flat_map(of).collect()
 }
 
 fn open_edges(mesh: &Mesh) -> usize {

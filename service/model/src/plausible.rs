@@ -61,7 +61,16 @@ pub fn doubt(words: &[&str], unit: &str, value: &Value) -> Option<String> {
 
 /// Returns why a rule cannot mean what it says; `None` where it can.
 pub fn doubt_of(rule: &Constraint) -> Option<String> {
-    doubt(&[&rule.name, &rule.measurement_basis, &rule.space_type], &rule.unit, &rule.value)
+    // name and space say what is limited, the basis how it is measured: "clear width, at every point along the path"
+    let told = doubt(&[&rule.name, &rule.space_type], &rule.unit, &rule.value);
+    let measured = || doubt(&[&rule.name, &rule.measurement_basis, &rule.space_type], &rule.unit, &rule.value);
+    if is_told(&[&rule.name, &rule.space_type], &rule.unit) { told } else { measured() }
+}
+
+/// Returns true where words of the table tell which figures such a rule may have.
+fn is_told(words: &[&str], unit: &str) -> bool {
+    let said: Vec<&str> = words.iter().flat_map(|w| w.split(|c: char| !c.is_alphanumeric())).collect();
+    TABLE.row.iter().any(|row| row.unit == unit && row.words.iter().any(|w| said.contains(&w.as_str())))
 }
 
 /// Takes out of a knowledge base what cannot mean what it says.

@@ -12,6 +12,9 @@ use d3dgen_prompt::PromptReader;
 
 use crate::scene_graph::{self, Request};
 
+/// Codes of what is assumed where a prompt names no building that a domain knows.
+const NO_BUILDING: [&str; 2] = ["default_domain", "domain_from_rooms"];
+
 /// Reads a prompt; none where there are no words.
 pub fn of_prompt(prompt: &str, registry: &Registry) -> Option<Brief> {
     (!prompt.trim().is_empty()).then(|| PromptReader::new(registry).read(prompt).brief)
@@ -26,7 +29,15 @@ pub fn rooms(request: &Request, registry: &Registry) -> Result<(SceneGraph, Opti
     let strange = brief.as_ref().filter(|b| b.languages.first().is_some_and(|l| !scene_graph::reads(l)));
     let graph = match strange {
         Some(brief) => rooms_of(brief, request, registry)?,
-        None => scene_graph::generate(request, registry)?,
+        None => {
+            let graph = scene_graph::generate(request, registry)?;
+            let unnamed = graph.assumptions.iter().any(|n| NO_BUILDING.contains(&n.code.as_str()));
+            match brief.as_ref().filter(|b| unnamed && b.building.as_ref().is_some_and(|k| k.domain.is_none())) {
+                // a kind of building that no domain knows is no home by its rooms: this refuses it
+                Some(unknown) => rooms_of(unknown, request, registry)?,
+                None => graph,
+            }
+        }
     };
     Ok((graph, brief))
 }

@@ -52,7 +52,7 @@ impl Asked<'_> {
             RelationKind::NextTo | RelationKind::Between => joined() || wall(),
             RelationKind::Door => joined(),
             RelationKind::OpenTo => open(),
-            RelationKind::OnlyFrom => joined() && plan.doors_of(&a.id).all(|d| d.room_ids.contains(&b.id)),
+            RelationKind::OnlyFrom => joined() && self.is_entered_only(a, b),
             RelationKind::NotFrom => !joined(),
             RelationKind::AwayFrom => !joined() && !wall(),
             RelationKind::Sees | RelationKind::Faces => open(),
@@ -61,6 +61,16 @@ impl Asked<'_> {
                 a.level > b.level && boxes.is_some_and(|(x, y)| x.polygon.bounds().overlaps(&y.polygon.bounds()))
             }
         }
+    }
+
+    /// Returns true where every door of a room leads to another, or to what is entered from the room itself: its bathroom.
+    fn is_entered_only(&self, a: &GraphRoom, from: &GraphRoom) -> bool {
+        let plan = &self.world.floorplan;
+        let serves = |id: &String| plan.doors_of(id).all(|d| d.room_ids.contains(&a.id));
+        plan.doors_of(&a.id).all(|d| {
+            let others = || d.room_ids.iter().filter(|id| **id != a.id);
+            d.room_ids.contains(&from.id) || others().next().is_some() && others().all(serves)
+        })
     }
 
     /// Returns the floor between two rooms of one storey, m.

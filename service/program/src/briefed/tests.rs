@@ -78,7 +78,7 @@ fn rooms_stand_on_their_storeys_and_beside_each_other() {
         graph(Some(building("residential", None)), vec![rooms("kitchen", 1), rooms("pantry", 1), Fact::Relation(door)]);
     let joined = |e: &&d3dgen_model::scene_graph::GraphEdge| {
         let ends = [e.a.as_str(), e.b.as_str()];
-        ends.contains(&"kitchen") && ends.contains(&"pantry") && e.connector == Connector::Door
+        ends.contains(&"kitchen_1") && ends.contains(&"pantry_1") && e.connector == Connector::Door
     };
     assert!(flat.edges.iter().any(|e| joined(&e)), "{:?}", flat.edges);
 }
@@ -105,7 +105,7 @@ fn robots_have_their_kind_number_body_and_way() {
     let sent = RobotsAsk { kind: "delivery".into(), tasks: vec![task], ..RobotsAsk::default() };
     let home =
         graph(Some(building("residential", None)), vec![rooms("kitchen", 1), rooms("study", 1), Fact::Robots(sent)]);
-    assert_eq!(home.robots[0].stops, ["kitchen", "study"]);
+    assert_eq!(home.robots[0].stops, ["kitchen_1", "study_1"]);
 }
 
 #[test]

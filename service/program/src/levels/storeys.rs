@@ -3,6 +3,7 @@
 use d3dgen_model::scene_graph::Note;
 
 use crate::named::mention::{Mention, What};
+use crate::subject::places::country_of;
 use crate::tokens::numbers::Number;
 use crate::tokens::storey::Where;
 use crate::tokens::text::{Kind, Phrases, Span, Token, fold};
@@ -413,7 +414,7 @@ fn counts_from_one(phrases: &[Phrase], stated: Option<i32>, country: Option<&str
         return true;
     }
     match country {
-        Some(code) => words().first_is_ground.iter().any(|c| c == code),
+        Some(code) => words().first_is_ground.iter().any(|c| c == country_of(code)),
         None => !ground,
     }
 }
