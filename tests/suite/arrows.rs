@@ -75,7 +75,7 @@ const ARROWS: &[(&str, &[&str])] = &[
 
 /// Other people's file formats and protocols, and the crates that may know them.
 const OUTSIDE: &[(&str, &[&str])] = &[
-    ("image", &["assets"]),
+    ("image", &["assets", "mesh"]),
     ("png", &["export", "mesh", "plans"]),
     ("resvg", &["export"]),
     ("pdf-writer", &["export"]),

@@ -98,7 +98,8 @@ fn export_is_what_was_imported_and_problems_have_paths() {
     let file = d3dgen_tests::workspace().join("domains/office/knowledge.json");
     let text = std::fs::read_to_string(&file).unwrap();
     assert_eq!(run_well(home, &["knowledge", "export", "--domain", "office", "--store", "store"]), {
-        let value: d3dgen_model::knowledge::KnowledgeBase = serde_json::from_str(&text).unwrap();
+        let mut value: d3dgen_model::knowledge::KnowledgeBase = serde_json::from_str(&text).unwrap();
+        d3dgen_plugins::complete(&mut value).unwrap();
         value.to_json()
     });
     let mut broken: Value = serde_json::from_str(&text).unwrap();

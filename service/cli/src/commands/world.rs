@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use d3dgen_model::document::Document;
 use d3dgen_model::scene_graph::SceneGraph;
-use d3dgen_pipeline::{generate, world};
+use d3dgen_pipeline::{brief, generate, world};
 
 use super::formats;
 use crate::bundle;
@@ -56,6 +56,7 @@ impl Args {
             document(&self.placements)?,
             document(&self.scenario)?,
         );
+        world.brief = brief::of_prompt(&world.scene_graph.prompt, &registry);
         let problems = world.check();
         if !problems.is_empty() {
             let source = d3dgen_model::Error::Invalid { kind: "world", problems };
