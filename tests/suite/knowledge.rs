@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::process::Stdio;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use d3dgen_model::document::Document;
 use d3dgen_model::report::Report;
@@ -182,7 +182,9 @@ fn killed_imports_lose_nothing_that_was_acknowledged() {
         let dir = tempfile::tempdir().unwrap();
         let home = dir.path();
         std::fs::write(home.join("first.json"), many(99)).unwrap();
+        let begun = Instant::now();
         run_well(home, &["knowledge", "import", "first.json", "--backend", backend, "--store", "store"]);
+        let whole = begun.elapsed();
         let mut acknowledged = Vec::new();
         let mut killed = 0;
         for round in 0..20 {
@@ -191,7 +193,7 @@ fn killed_imports_lose_nothing_that_was_acknowledged() {
             let mut child =
                 command().args(args).current_dir(home).stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
             // from before the file is read to after it is stored, at other moments in every round
-            std::thread::sleep(Duration::from_millis(10 + 23 * round as u64));
+            std::thread::sleep(whole * (round as u32 + 1) / 20);
             child.kill().unwrap();
             let output = child.wait_with_output().unwrap();
             if output.stdout.ends_with(b"\n") {
