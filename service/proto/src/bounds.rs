@@ -262,7 +262,7 @@ mod tests {
     use super::*;
     use crate::v1;
 
-    fn refused(message: &(impl prost::Message + prost::Name)) -> Excess {
+    fn refused(message: &impl prost::Name) -> Excess {
         let name = full_name(message);
         check(&name, &message.encode_to_vec()).expect_err("too large")
     }

@@ -258,7 +258,7 @@ impl Room<'_> {
                     && d.line.is_vertical() == wall.is_vertical()
                     && bounds.contains(&Rect::new(middle.x, middle.y, middle.x, middle.y))
             };
-            self.doors.iter().any(|d| in_it(d))
+            self.doors.iter().any(in_it)
         };
         let with_doors: Vec<&Segment> = walls.iter().filter(|w| has_door(w)).collect();
         let facing = |a: &Segment, b: &Segment| faces(a, b, &walls);

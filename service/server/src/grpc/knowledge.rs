@@ -350,6 +350,7 @@ fn find<'a>(
 }
 
 /// What a request wants changed, as far as it can be read without the rules that it changes.
+#[allow(clippy::large_enum_variant)] // one is made for a call, and moved once
 enum Intended {
     Rules(Vec<Statement>),
     Update(ConstraintUpdate),

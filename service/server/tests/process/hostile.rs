@@ -89,7 +89,7 @@ async fn send(address: &str, path: &str, framed: &[u8]) -> std::io::Result<(u16,
     stream.write_all(head.as_bytes()).await?;
     stream.write_all(framed).await?;
     let mut answer = Vec::new();
-    let read = tokio::time::timeout(std::time::Duration::from_secs(30), stream.read_to_end(&mut answer)).await;
+    let read = tokio::time::timeout(Duration::from_secs(30), stream.read_to_end(&mut answer)).await;
     assert!(read.is_ok(), "no answer to {path} with {} bytes", framed.len());
     let text = String::from_utf8_lossy(&answer);
     let http = text.split(' ').nth(1).and_then(|s| s.parse().ok()).unwrap_or_default();
