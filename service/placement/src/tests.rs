@@ -167,7 +167,7 @@ fn nothing_stands_in_a_column_and_ways_lead_around_it() {
             kind: ObstacleKind::Column,
             outline: Polygon(
                 (0..8)
-                    .map(|i| f64::from(i) * 0.7854)
+                    .map(|i| f64::from(i) * std::f64::consts::FRAC_PI_4)
                     .map(|a| Point::new(x + 0.3 * a.cos(), y + 0.3 * a.sin()))
                     .collect(),
             ),
