@@ -139,7 +139,9 @@ def main():
             elif CANARY in out + err or "root:x:" in out + err:
                 problem = "read outside of its folder"
             elif os.path.isdir(folder / file):
-                pass  # the answer about a folder is that of its models, each by itself
+                # the answer about a folder is that of its models; what else is wrong with it is said beside
+                if (status == 0) != (json.loads(lines[0])["ok"] and not err.strip()):
+                    problem = f"status {status} does not fit its answer and {err[-200:]!r}"
             elif (status == 0) != json.loads(lines[0])["ok"]:
                 problem = f"status {status} does not fit its answer"
             else:

@@ -51,26 +51,25 @@ pub fn doubt(words: &[&str], unit: &str, value: &Value) -> Option<String> {
     if let Some(wrong) = figures.iter().find(|v| !v.is_finite()) {
         return Some(format!("{wrong} is no figure"));
     }
-    let said: Vec<&str> = words.iter().flat_map(|w| w.split(|c: char| !c.is_alphanumeric())).collect();
-    let fits =
-        |row: &&Row| row.unit == unit && (row.words.is_empty() || row.words.iter().any(|w| said.contains(&w.as_str())));
-    let row = TABLE.row.iter().find(fits)?;
+    let row = row_of(words, unit)?;
     let wrong = figures.iter().find(|v| **v < row.min || **v > row.max)?;
     Some(format!("{wrong} {unit} cannot be: such figures lie between {} and {} {unit}", row.min, row.max))
 }
 
 /// Returns why a rule cannot mean what it says; `None` where it can.
 pub fn doubt_of(rule: &Constraint) -> Option<String> {
+    let (name, space) = (rule.name.as_str(), rule.space_type.as_str());
     // name and space say what is limited, the basis how it is measured: "clear width, at every point along the path"
-    let told = doubt(&[&rule.name, &rule.space_type], &rule.unit, &rule.value);
-    let measured = || doubt(&[&rule.name, &rule.measurement_basis, &rule.space_type], &rule.unit, &rule.value);
-    if is_told(&[&rule.name, &rule.space_type], &rule.unit) { told } else { measured() }
+    let told = row_of(&[name, space], &rule.unit).is_some_and(|row| !row.words.is_empty());
+    let words = if told { vec![name, space] } else { vec![name, &rule.measurement_basis, space] };
+    doubt(&words, &rule.unit, &rule.value)
 }
 
-/// Returns true where words of the table tell which figures such a rule may have.
-fn is_told(words: &[&str], unit: &str) -> bool {
+/// Returns the first row of a unit that words are about, or that is for all others of the unit.
+fn row_of(words: &[&str], unit: &str) -> Option<&'static Row> {
     let said: Vec<&str> = words.iter().flat_map(|w| w.split(|c: char| !c.is_alphanumeric())).collect();
-    TABLE.row.iter().any(|row| row.unit == unit && row.words.iter().any(|w| said.contains(&w.as_str())))
+    let speaks = |row: &Row| row.words.is_empty() || row.words.iter().any(|w| said.contains(&w.as_str()));
+    TABLE.row.iter().find(|row| row.unit == unit && speaks(row))
 }
 
 /// Takes out of a knowledge base what cannot mean what it says.

@@ -39,17 +39,17 @@ const CARRIES: [&str; 2] = ["delivery", "transport"];
 
 /// A reading that is being made.
 pub(crate) struct Draft<'r, 'a> {
-    request: &'r Request,
-    registry: &'a Registry,
+    pub request: &'r Request,
+    pub registry: &'a Registry,
     pub heard: Heard<'r>,
     pub notes: Notes,
     pub site: Site<'a>,
-    aside: Aside,
+    pub aside: Aside,
     pub named: Named,
     pub counted: Counted,
     pub wishes: Wishes,
     /// Mentions of people who are on every storey.
-    on_each: Vec<usize>,
+    pub on_each: Vec<usize>,
 }
 
 /// Where robots stand and go.
@@ -101,22 +101,6 @@ impl<'r, 'a> Draft<'r, 'a> {
         let wishes = Wishes::default();
         let on_each = Vec::new();
         Ok(Self { request, registry, heard, notes, site, aside, named, counted, wishes, on_each })
-    }
-
-    /// Returns the draft of facts that need no words: see `briefed`.
-    #[allow(clippy::too_many_arguments)]
-    pub(super) fn of_facts(
-        request: &'r Request,
-        registry: &'a Registry,
-        heard: Heard<'r>,
-        notes: Notes,
-        site: Site<'a>,
-        aside: Aside,
-        named: Named,
-        counted: Counted,
-    ) -> Self {
-        let (wishes, on_each) = (Wishes::default(), Vec::new());
-        Self { request, registry, heard, notes, site, aside, named, counted, wishes, on_each }
     }
 
     /// Returns what the prompt calls its rooms.

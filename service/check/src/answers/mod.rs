@@ -191,7 +191,7 @@ impl Asked<'_> {
             self.doors_between(&room.id, |other| wanted.rooms.iter().any(|w| w.id == other)).next().is_some()
         };
         let n = rooms.iter().filter(has).count();
-        let what = format!("{} with {} of their own", plural_of(rooms), each.label());
+        let what = format!("{} with {} of their own", label_of(rooms), each.label());
         Finding::number(AskedCount::at_least(rooms.len() as u32), n as u32, &what)
     }
 
@@ -291,6 +291,6 @@ fn sides_of(rooms: &[&PlanRoom], sides: [f64; 2]) -> Finding {
     }
 }
 
-fn plural_of(rooms: &[&GraphRoom]) -> String {
+fn label_of(rooms: &[&GraphRoom]) -> String {
     rooms.first().map_or_else(String::new, |r| r.room_type.replace('_', " "))
 }

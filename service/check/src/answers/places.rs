@@ -2,7 +2,8 @@
 
 use d3dgen_model::brief::{AskedCount, CapacityAsk, PeopleAsk, PlaceKind};
 use d3dgen_model::domain::Shape;
-use d3dgen_model::measures::{BED_FOR_TWO_M, BENCH_SEAT_M};
+use d3dgen_model::measures::BED_FOR_TWO_M;
+use d3dgen_model::offer::seats_across;
 use d3dgen_model::placements::Placement;
 use d3dgen_model::report::Fate;
 use d3dgen_model::scene_graph::GraphRoom;
@@ -113,11 +114,9 @@ impl<'a> Asked<'a> {
 
 /// Returns how many sit on an object.
 fn seats(placement: &Placement, shape: Shape) -> u32 {
-    let width = placement.size_m[0];
+    let width_m = placement.size_m[0];
     match shape {
-        Shape::Chair | Shape::SwivelChair | Shape::Stool => 1,
-        Shape::Bench => ((width / BENCH_SEAT_M) as u32).max(1),
-        Shape::Sofa => ((width / SOFA_SEAT_M) as u32).max(1),
-        _ => 0,
+        Shape::Sofa => ((width_m / SOFA_SEAT_M) as u32).max(1),
+        other => seats_across(other, width_m),
     }
 }

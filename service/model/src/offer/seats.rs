@@ -16,10 +16,16 @@ const AT_COUNTER_M2: f64 = 11.0;
 /// Half of the tolerance that lengths of benches are counted in seats with.
 const ROUNDING: f64 = 1e-9;
 
-/// Returns how many people sit on an object; a bench has a seat for each [`BENCH_SEAT_M`], and one at least.
+/// Returns how many people sit on an object of its most common size.
 pub fn seats_on(object: &ObjectType) -> u32 {
-    match object.shape {
-        Shape::Bench => object.sizes_m.first().map_or(1, |s| (s[0] / BENCH_SEAT_M + ROUNDING) as u32).max(1),
+    seats_across(object.shape, object.sizes_m.first().map_or(0.0, |s| s[0]))
+}
+
+/// Returns how many people sit on a thing of this shape and width, m; a bench has a seat for each [`BENCH_SEAT_M`], and one at
+/// least.
+pub fn seats_across(shape: Shape, width_m: f64) -> u32 {
+    match shape {
+        Shape::Bench => ((width_m / BENCH_SEAT_M + ROUNDING) as u32).max(1),
         Shape::Chair | Shape::SwivelChair | Shape::Stool => 1,
         _ => 0,
     }

@@ -67,8 +67,8 @@ pub(crate) fn read<'a>(brief: &Brief, request: &Request, registry: &'a Registry)
     let aside = Aside::empty(&heard, site.domain, registry);
     let counted = Counted { seats: facts.seats.clone(), desks: facts.desks.clone(), ..Counted::default() };
     let named = Named { mentions, words: Vec::new(), no_things: Vec::new(), own_rooms: false, habitable_fixed: false };
-    let mut draft = Draft::of_facts(request, registry, heard, notes, site, aside, named, counted);
-    draft.wishes = facts.wishes.clone();
+    let (wishes, on_each) = (facts.wishes.clone(), Vec::new());
+    let mut draft = Draft { request, registry, heard, notes, site, aside, named, counted, wishes, on_each };
     let said = Said::default();
     let mut storeys = facts.storeys(&mut draft.notes.conflicts);
     draft.furnish_storeys(&mut storeys);

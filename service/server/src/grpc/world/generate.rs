@@ -65,7 +65,9 @@ impl Api {
                     Start::Building(asked) => {
                         let request = building(Some(asked))?;
                         told.hear(Event::Started(Stage::SceneGraph, 0));
-                        brief::rooms(&request, &now.registry).map_err(|e| status::stage("building", e))?.0
+                        let made = brief::rooms(&request, &now.registry).map_err(|e| status::stage("building", e))?;
+                        settings.brief = made.1;
+                        made.0
                     }
                     Start::SceneGraph(graph) => document::<SceneGraph>("scene_graph", Some(graph))?,
                 };
