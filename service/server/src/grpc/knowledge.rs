@@ -207,12 +207,14 @@ impl KnowledgeService for Api {
         let change = move |core: &Core, (wanted, asked): (Intended, AmendKnowledgeRequest), once: &Once| {
             let rules = &core.databases.rules;
             let why = asked.why;
-            let knowledge = rules.knowledge_base(&asked.domain_id).map_err(status::knowledge)?;
+            // as the database has it: whoever changes it makes a snapshot before the next may
+            let now = core.domains.now();
+            let knowledge = plugin(&now, "domain_id", &asked.domain_id)?.knowledge();
             if asked.validate_only {
-                let edits = edits(&knowledge, wanted, &core.provenance(&who, &why))?;
+                let edits = edits(knowledge, wanted, &core.provenance(&who, &why))?;
                 return Ok(AmendKnowledgeResponse { change: None, edits: edits.iter().map(messages::edit).collect() });
             }
-            let made = |by: &_| edits(&knowledge, wanted, by);
+            let made = |by: &_| edits(knowledge, wanted, by);
             let mut kept = Vec::new();
             let mut refused = None;
             let changed = changed_once(core, once, &who, &why, |by| match made(by) {
