@@ -37,8 +37,7 @@ const USUAL: f64 = 0.5;
 /// What the words of a label say whose room nobody knows, against a label that is known.
 const WORDS: f64 = 0.4;
 
-/// What the rooms and buildings of some domains are called, made ready to read labels with. Making it takes a hundred times
-/// as long as reading a list with it.
+/// What the rooms and buildings of some domains are called, made ready to read labels with: to be made once for many lists.
 #[derive(Debug)]
 pub struct Words {
     of: Vec<Vocabulary>,

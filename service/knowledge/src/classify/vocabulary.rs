@@ -45,7 +45,7 @@ struct Name {
 }
 
 impl Name {
-    fn as_heart(self) -> Self {
+    fn less_sure(self) -> Self {
         Self { grade: self.grade * SAME_HEART, ..self }
     }
 }
@@ -120,7 +120,7 @@ impl Vocabulary {
             self.words.entry(word.clone()).or_default().insert(name.at);
         }
         if !phrase.says_nothing() {
-            self.hearts.entry(phrase.heart()).or_default().push(name.clone().as_heart());
+            self.hearts.entry(phrase.heart()).or_default().push(name.clone().less_sure());
         }
         self.names.entry(phrase.whole()).or_default().push(name);
     }
@@ -160,7 +160,7 @@ impl Vocabulary {
         }
         let heart = label.heart();
         let same = self.look_up(&self.hearts, &heart, language);
-        let same = same.or_else(|| self.look_up(&self.names, &heart, language).map(|n| n.as_heart()));
+        let same = same.or_else(|| self.look_up(&self.names, &heart, language).map(|n| n.less_sure()));
         if let Some(name) = same.or_else(|| self.look_up(&self.buildings, &whole, language)) {
             return Some(found(name.at, name.grade));
         }
