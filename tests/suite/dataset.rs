@@ -57,7 +57,10 @@ fn shards_in_any_order_come_to_the_bytes_of_one_run() {
     let snapshot = snapshot.trim();
     dataset(home, &format!("make spec.toml --snapshot {snapshot} --out whole --block 4 --threads 2"));
     for shard in [2, 0, 1] {
-        dataset(home, &format!("make spec.toml --snapshot {snapshot} --shard {shard}/3 --out part-{shard} --block 2 --threads 1"));
+        dataset(
+            home,
+            &format!("make spec.toml --snapshot {snapshot} --shard {shard}/3 --out part-{shard} --block 2 --threads 1"),
+        );
     }
     let early = run(home, &["dataset", "merge", "part-0", "part-2", "--out", "merged"]);
     let said = String::from_utf8_lossy(&early.stderr).into_owned();
@@ -161,7 +164,8 @@ fn a_dry_run_and_a_quota_write_no_data_set() {
 fn stages_variants_filters_and_assets() {
     let home = with_spec("");
     let home = home.path();
-    let spec = "name = \"x\"\nseeds = 1\nprompts = [{ text = \"flat with 3 rooms\" }, { text = \"office with 3 rooms\" }]\n";
+    let spec =
+        "name = \"x\"\nseeds = 1\nprompts = [{ text = \"flat with 3 rooms\" }, { text = \"office with 3 rooms\" }]\n";
     let make = |name: &str, more: &str| {
         std::fs::write(home.join("spec.toml"), format!("{more}\n{spec}")).unwrap();
         dataset(home, &format!("make spec.toml --out {name}"));
@@ -174,12 +178,16 @@ fn stages_variants_filters_and_assets() {
     let varied = make("varied", "variants = { placement = 2, scenario = 2 }");
     let shard = String::from_utf8_lossy(&varied["shards/train-000000.tar"]).into_owned();
     assert!(shard.contains("world-000007.world.json.gz"));
-    let kept = make("kept", "filters = [{ measure = \"rooms\", min = 3 }, { measure = \"objects\", max = 1000 }]\nmeasures = [\"objects_per_m2\"]");
+    let kept = make(
+        "kept",
+        "filters = [{ measure = \"rooms\", min = 3 }, { measure = \"objects\", max = 1000 }]\nmeasures = [\"objects_per_m2\"]",
+    );
     assert!(kept["failures.jsonl"].is_empty());
     std::fs::write(home.join("spec.toml"), format!("filters = [{{ measure = \"rooms\", min = 30 }}]\n{spec}")).unwrap();
     let none = run(home, &["dataset", "make", "spec.toml", "--out", "none"]);
     assert!(String::from_utf8_lossy(&none.stderr).contains("rooms is 3, less than 30"));
-    let dealt = make("dealt", "splits = { by = [\"prompt\", \"asset\"], held_out_assets = 0.5, train = 0.5, test = 0.5 }");
+    let dealt =
+        make("dealt", "splits = { by = [\"prompt\", \"asset\"], held_out_assets = 0.5, train = 0.5, test = 0.5 }");
     assert!(dealt.contains_key("index/test.parquet"));
     let modelled = make("modelled", "formats = [\"arena\"]");
     assert!(modelled["shards/models-000000.tar"].len() > 100_000);

@@ -108,7 +108,8 @@ impl<'a> Maker<'a> {
 
     fn of(spec: &Spec, snapshot: &Snapshot, kept: Kept<'a>) -> Result<Self, Error> {
         let registry = snapshot.registry()?;
-        let without_held_out = spec.splits.by_asset().then(|| held_out::without(&registry, spec.splits.held_out_assets));
+        let without_held_out =
+            spec.splits.by_asset().then(|| held_out::without(&registry, spec.splits.held_out_assets));
         let (snapshot_sha256, evaluated) = (snapshot.digest().to_owned(), spec.evaluated());
         Ok(Self { spec: spec.clone(), registry, without_held_out, kept, snapshot_sha256, evaluated })
     }
@@ -134,7 +135,8 @@ impl Bench<'_> {
         let made = catch_unwind(AssertUnwindSafe(|| self.made(task, cancelled)));
         made.unwrap_or_else(|panic| {
             self.plan = None;
-            let said = panic.downcast_ref::<String>().map(String::as_str).or_else(|| panic.downcast_ref::<&str>().copied());
+            let said =
+                panic.downcast_ref::<String>().map(String::as_str).or_else(|| panic.downcast_ref::<&str>().copied());
             Ok(Outcome::Nothing(Failure::of(task, Why::Crashed, said.unwrap_or("panicked").trim())))
         })
     }
@@ -289,7 +291,9 @@ impl Maker<'_> {
         let mut files = self.documents(world, report);
         for format in &self.spec.formats {
             let exported = exported(format, world, domain, self.kept.models())?;
-            files.extend(exported.into_iter().filter(|file| !files.iter().any(|f| f.path == file.path)).collect::<Vec<_>>());
+            files.extend(
+                exported.into_iter().filter(|file| !files.iter().any(|f| f.path == file.path)).collect::<Vec<_>>(),
+            );
         }
         Ok(Outcome::World(Box::new(self.packed(row, files))))
     }
@@ -301,7 +305,9 @@ impl Maker<'_> {
             StageName::Floorplan => vec![File::new("floorplan.json", world.floorplan.to_json())],
             StageName::Placement => vec![File::new("placements.json", world.placements.to_json())],
             StageName::Scenario => vec![File::new("scenario.json", world.scenario.to_json())],
-            StageName::World => vec![File::new("report.json", report.to_json()), File::new("world.json", world.to_json())],
+            StageName::World => {
+                vec![File::new("report.json", report.to_json()), File::new("world.json", world.to_json())]
+            }
         };
         self.spec.stages.iter().flat_map(document).collect()
     }

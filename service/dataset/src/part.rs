@@ -176,7 +176,17 @@ impl Part {
         let tasks = Tasks::of(&spec).map_err(Error::Input)?;
         let snapshot = Snapshot::read(&folder.join(&about.snapshot))?;
         let done = Mutex::new(read_ledger(folder)?);
-        Ok(Self { folder: folder.to_path_buf(), about, spec_text, spec, tasks, snapshot, done, taken: BTreeSet::new(), _lock: None })
+        Ok(Self {
+            folder: folder.to_path_buf(),
+            about,
+            spec_text,
+            spec,
+            tasks,
+            snapshot,
+            done,
+            taken: BTreeSet::new(),
+            _lock: None,
+        })
     }
 
     /// Returns the folder.
@@ -294,7 +304,10 @@ impl Part {
         for done in self.done() {
             let path = self.block_file(done.block);
             if sha256_of_file(&path)? != done.sha256 {
-                return Err(Error::damaged(&path, "is not what the ledger says; remove it and its line, and run again"));
+                return Err(Error::damaged(
+                    &path,
+                    "is not what the ledger says; remove it and its line, and run again",
+                ));
             }
         }
         Ok(())
@@ -358,7 +371,9 @@ fn read_ledger(folder: &Path) -> Result<BTreeMap<u64, Done>, Error> {
                 }
             }
             _ if lines.peek().is_none() => {}
-            _ => return Err(Error::damaged(&path, format!("has a line that is none of a ledger: {}", line.trim_end()))),
+            _ => {
+                return Err(Error::damaged(&path, format!("has a line that is none of a ledger: {}", line.trim_end())));
+            }
         }
     }
     Ok(done)

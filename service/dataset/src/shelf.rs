@@ -99,9 +99,12 @@ impl Shelf {
                     let id = TaskId::parse(&failure.task).ok_or_else(|| Error::damaged(path, "has no task"))?;
                     self.failures.insert(id, failure);
                 }
-                Some(false) if member.name.ends_with(&format!(".{ROW}")) && key(&member.name).is_some_and(|k| k.1 == ROW) => {
+                Some(false)
+                    if member.name.ends_with(&format!(".{ROW}")) && key(&member.name).is_some_and(|k| k.1 == ROW) =>
+                {
                     let row: Row = json(path, &member.read().map_err(Error::read(path))?)?;
-                    let id = TaskId::parse(&row.task).ok_or_else(|| Error::damaged(path, "has a row without a task"))?;
+                    let id =
+                        TaskId::parse(&row.task).ok_or_else(|| Error::damaged(path, "has a row without a task"))?;
                     self.figures.extend(row.figures.into_keys());
                     self.worlds.insert(id, Place { file, at });
                 }
@@ -184,7 +187,8 @@ fn stored(path: &Path, at: u64) -> Result<Stored, Error> {
 pub fn tars(folder: &Path) -> Result<Vec<PathBuf>, Error> {
     let shards = folder.join(SHARDS);
     let entries = fs::read_dir(&shards).map_err(Error::read(&shards))?;
-    let mut paths = entries.map(|e| e.map(|e| e.path())).collect::<std::io::Result<Vec<_>>>().map_err(Error::read(&shards))?;
+    let mut paths =
+        entries.map(|e| e.map(|e| e.path())).collect::<std::io::Result<Vec<_>>>().map_err(Error::read(&shards))?;
     paths.retain(|p| p.extension().is_some_and(|e| e == "tar"));
     paths.sort();
     Ok(paths)
@@ -201,5 +205,6 @@ pub fn failures(folder: &Path) -> Result<Vec<Failure>, Error> {
 }
 
 fn json<T: serde::de::DeserializeOwned>(path: &Path, bytes: &[u8]) -> Result<T, Error> {
-    serde_json::from_slice(bytes).map_err(|e| Error::damaged(path, format!("has a line or member that cannot be read: {e}")))
+    serde_json::from_slice(bytes)
+        .map_err(|e| Error::damaged(path, format!("has a line or member that cannot be read: {e}")))
 }

@@ -172,7 +172,9 @@ impl Snapshot {
     pub fn registry(&self) -> Result<Registry, Error> {
         if self.content.program != PROGRAM {
             let (its, this) = (&self.content.program, PROGRAM);
-            return Err(Error::Input(format!("the snapshot is of {its}, this is {this}: run it with the program that took it")));
+            return Err(Error::Input(format!(
+                "the snapshot is of {its}, this is {this}: run it with the program that took it"
+            )));
         }
         let registry = registry_of(&self.content)?;
         let probe = &self.content.probe;
@@ -208,8 +210,11 @@ fn registry_of(content: &Content) -> Result<Registry, Error> {
         let knowledge = KnowledgeBase::from_value(pinned.knowledge.clone()).map_err(refused)?;
         for object in &mut domain.objects {
             if let Some(stock) = pinned.stock.get(&object.id) {
-                let asset =
-                    |a: &PinnedAsset| StockedAsset { size_m: a.size_m, asset: a.asset.clone(), reason: a.reason.clone() };
+                let asset = |a: &PinnedAsset| StockedAsset {
+                    size_m: a.size_m,
+                    asset: a.asset.clone(),
+                    reason: a.reason.clone(),
+                };
                 object.stock = Stock {
                     assets: stock.assets.iter().map(asset).collect(),
                     made_because: stock.made_because.clone(),

@@ -301,7 +301,8 @@ fn check_prompts(spec: &Spec, problems: &mut Vec<Problem>) {
         }
         for (name, values) in &prompt.slots {
             if values.all().is_empty() {
-                problems.push(Problem::new(format!("/prompts/{i}/{name}"), "is an empty list: no prompt would be left"));
+                problems
+                    .push(Problem::new(format!("/prompts/{i}/{name}"), "is an empty list: no prompt would be left"));
             }
         }
         let lengths = prompt.slots.values().map(|v| v.all().len() as u64);

@@ -138,7 +138,9 @@ fn expand(spec: &PromptSpec, prompts: &mut Vec<Prompt>) -> Result<(), (String, S
         let parts = parts(text).map_err(|why| ("text".to_owned(), why))?;
         let used: BTreeSet<&str> = parts.iter().filter_map(|p| p.slot()).collect();
         if let Some(slot) = used.iter().find(|slot| !spec.slots.contains_key(**slot)) {
-            let why = format!("`{{{slot}}}` has no values; add `{slot} = [...]`, or write {{{{{slot}}}}} for the word in braces");
+            let why = format!(
+                "`{{{slot}}}` has no values; add `{slot} = [...]`, or write {{{{{slot}}}}} for the word in braces"
+            );
             return Err(("text".into(), why));
         }
         let mut chosen: Vec<(&str, &Scalar)> = Vec::new();
@@ -182,7 +184,10 @@ fn fill(parts: &[Part], used: &BTreeSet<&str>, chosen: &[(&str, &Scalar)]) -> Re
         }
         let Some((_, set)) = FLAGS.iter().find(|(flag, _)| flag == name) else {
             let known: Vec<&str> = FLAGS.iter().map(|f| f.0).collect();
-            let why = format!("the text has no `{{{name}}}`; without a place in the text only these count: {}", known.join(", "));
+            let why = format!(
+                "the text has no `{{{name}}}`; without a place in the text only these count: {}",
+                known.join(", ")
+            );
             return Err(at(why));
         };
         set(&mut request, value).map_err(at)?;
@@ -257,7 +262,8 @@ fn set_rooms(request: &mut Request, value: &Scalar) -> Result<(), String> {
 
 fn set_clutter(request: &mut Request, value: &Scalar) -> Result<(), String> {
     let name = words(value)?;
-    let clutter = Clutter::of(&name).ok_or_else(|| format!("clutter `{name}` is not known; known are low, normal, high"))?;
+    let clutter =
+        Clutter::of(&name).ok_or_else(|| format!("clutter `{name}` is not known; known are low, normal, high"))?;
     request.style.clutter = Some(clutter);
     Ok(())
 }

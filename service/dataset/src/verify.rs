@@ -99,13 +99,18 @@ fn relative(folder: &Path, path: &Path) -> String {
 pub(crate) fn indices(folder: &Path) -> Result<Vec<PathBuf>, Error> {
     let index = folder.join(INDEX);
     let entries = fs::read_dir(&index).map_err(Error::read(&index))?;
-    let mut paths = entries.map(|e| e.map(|e| e.path())).collect::<std::io::Result<Vec<_>>>().map_err(Error::read(&index))?;
+    let mut paths =
+        entries.map(|e| e.map(|e| e.path())).collect::<std::io::Result<Vec<_>>>().map_err(Error::read(&index))?;
     paths.retain(|p| p.extension().is_some_and(|e| e == "parquet"));
     paths.sort();
     Ok(paths)
 }
 
-fn check_sums(folder: &Path, verdict: &mut Verdict, news: &mut dyn FnMut(&str) -> Result<(), Error>) -> Result<(), Error> {
+fn check_sums(
+    folder: &Path,
+    verdict: &mut Verdict,
+    news: &mut dyn FnMut(&str) -> Result<(), Error>,
+) -> Result<(), Error> {
     let path = folder.join(SUMS);
     let text = fs::read_to_string(&path).map_err(Error::read(&path))?;
     let mut listed = BTreeSet::new();

@@ -62,7 +62,12 @@ impl Args {
             Arc::new(worker).work(hands, |what| eprintln!("{what}")).await
         });
         let n = |counter: &std::sync::atomic::AtomicU64| counter.load(Ordering::Relaxed);
-        eprintln!("{} blocks, {} worlds, {} tasks without one", n(&counters.blocks), n(&counters.worlds), n(&counters.failed));
+        eprintln!(
+            "{} blocks, {} worlds, {} tasks without one",
+            n(&counters.blocks),
+            n(&counters.worlds),
+            n(&counters.failed)
+        );
         Ok(worked?)
     }
 }

@@ -87,8 +87,7 @@ fn header(whole: &Whole<'_>, statistics: &Statistics, title: &str) -> String {
         quoted(&whole.spec.license),
         quoted(title)
     );
-    for (config, default, path) in
-        [("index", true, "index/{split}.parquet"), ("worlds", false, "shards/{split}-*.tar")]
+    for (config, default, path) in [("index", true, "index/{split}.parquet"), ("worlds", false, "shards/{split}-*.tar")]
     {
         let _ = writeln!(text, "- config_name: {config}");
         if default {

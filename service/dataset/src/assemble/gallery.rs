@@ -46,7 +46,8 @@ fn plan(stored: &Stored) -> Option<Value> {
         flate2::read::GzDecoder::new(bytes.as_slice()).read_to_end(&mut text).ok()?;
         serde_json::from_slice::<Value>(&text).ok()
     };
-    let plan = document("world.json.gz").map(|mut w| w["floorplan"].take()).or_else(|| document("floorplan.json.gz"))?;
+    let plan =
+        document("world.json.gz").map(|mut w| w["floorplan"].take()).or_else(|| document("floorplan.json.gz"))?;
     let rooms = plan["rooms"].as_array()?;
     let cm = |v: &Value| (v.as_f64().unwrap_or(0.0) * 100.0).round() as i64;
     let level = |room: &Value| room["level"].as_i64().unwrap_or(0);

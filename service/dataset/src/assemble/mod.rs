@@ -207,7 +207,11 @@ impl<'a> Writing<'a> {
             self.sums.extend(split.finish(self.out)?);
         }
         if self.statistics.worlds == 0 {
-            return Err(Error::Input(format!("none of the {} tasks came to a world: {}", whole.tasks.len(), first_reason(whole, shelf))));
+            return Err(Error::Input(format!(
+                "none of the {} tasks came to a world: {}",
+                whole.tasks.len(),
+                first_reason(whole, shelf)
+            )));
         }
         let has_models = !self.models.is_empty();
         self.write_models(shelf)?;

@@ -74,7 +74,8 @@ impl Statistics {
         for (name, title) in NUMBERS {
             let Some(values) = self.numbers.get(name).filter(|v| !v.is_empty()) else { continue };
             let at = |share: f64| round(values[((values.len() - 1) as f64 * share).round() as usize]);
-            let _ = writeln!(text, "| {title} | {} | {} | {} | {} | {} |", at(0.0), at(0.05), at(0.5), at(0.95), at(1.0));
+            let _ =
+                writeln!(text, "| {title} | {} | {} | {} | {} | {} |", at(0.0), at(0.05), at(0.5), at(0.95), at(1.0));
         }
         if !self.failures.is_empty() {
             text += "\n| tasks without a world | count |\n|---|---|\n";
@@ -98,7 +99,11 @@ impl Statistics {
             let Some(values) = self.numbers.get(name).filter(|v| !v.is_empty()) else { continue };
             plots.push((format!("{name}.svg"), (*title).to_owned(), bars(title, &histogram(values))));
         }
-        let counts = [("kinds", "kinds of building", &self.kinds), ("countries", "countries", &self.countries), ("splits", "splits", &self.splits)];
+        let counts = [
+            ("kinds", "kinds of building", &self.kinds),
+            ("countries", "countries", &self.countries),
+            ("splits", "splits", &self.splits),
+        ];
         for (name, title, counts) in counts {
             plots.push((format!("{name}.svg"), title.to_owned(), bars(title, &largest(counts, MOST_BARS))));
         }

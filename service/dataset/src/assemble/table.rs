@@ -229,7 +229,10 @@ fn field(name: &str, kind: Kind) -> Result<TypePtr, ParquetError> {
     };
     let list = |of: Physical| {
         let element = primitive("element", of, Repetition::REQUIRED)?;
-        let list = Type::group_type_builder("list").with_repetition(Repetition::REPEATED).with_fields(vec![element]).build()?;
+        let list = Type::group_type_builder("list")
+            .with_repetition(Repetition::REPEATED)
+            .with_fields(vec![element])
+            .build()?;
         Type::group_type_builder(name)
             .with_logical_type(Some(LogicalType::List))
             .with_repetition(Repetition::REQUIRED)

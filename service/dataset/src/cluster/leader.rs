@@ -17,6 +17,8 @@ const LOOK: Duration = Duration::from_secs(2);
 const MOST_QUEUED: u64 = 2_000;
 /// Looks at an idle queue after which what the ledger lacks is put in again.
 const PATIENCE: u32 = 2;
+/// Rounds in a row that may fail: a few minutes, the time-outs of queue and store aside.
+const MOST_FAILURES: u32 = 60;
 
 /// A leader.
 pub struct Leader<'p> {
@@ -43,6 +45,21 @@ pub struct Standing {
     pub again: u64,
 }
 
+/// What a leader remembers from round to round.
+#[derive(Debug, Default)]
+struct Round {
+    standing: Standing,
+    announced: bool,
+    /// Blocks that were put into the queue in this pass.
+    queued: BTreeSet<u64>,
+    /// Tells what is put in again from what is only said twice.
+    pass: u64,
+    /// Rounds in which the queue had nothing for anybody.
+    idle: u32,
+    /// Blocks set aside, once nothing else is missing.
+    aside: Vec<Poison>,
+}
+
 impl Leader<'_> {
     /// Leads the run to its end; `news` hears of each block that came home, and now and then how far the run is.
     ///
@@ -54,44 +71,67 @@ impl Leader<'_> {
         news: &(dyn Fn(Option<&Done>, &Standing) -> Result<(), Error> + Sync),
     ) -> Result<(), Error> {
         let run = run_id(self.part);
-        self.announce(&run).await?;
-        let mut standing = Standing::default();
-        let mut queued: BTreeSet<u64> = BTreeSet::new();
-        let (mut pass, mut idle) = (0, 0);
+        let mut round = Round::default();
+        let mut failures = 0;
         loop {
             if cancelled.load(Ordering::Relaxed) {
                 return Err(Error::Interrupted);
             }
-            let missing = self.bring_home(&run, &mut standing, news).await?;
-            if missing.is_empty() {
-                break;
+            match self.round(&run, &mut round, news).await {
+                Ok(true) => break,
+                Ok(false) => failures = 0,
+                // a server that elects another one, a store that is full for a while
+                Err(Error::Cluster(_)) if failures < MOST_FAILURES && round.aside.is_empty() => {
+                    failures += 1;
+                    round.announced = false;
+                }
+                Err(error) => return Err(error),
             }
-            let aside = self.aside(&run).await?;
-            let open: Vec<u64> = missing.iter().copied().filter(|b| !aside.iter().any(|p| p.block == *b)).collect();
-            if open.is_empty() {
-                return self.give_up(&run, &aside).await;
-            }
-            let now = self.queue.queued(&run).await?;
-            (standing.waiting, standing.in_hand) = (now.waiting, now.in_hand);
-            // the queue has nothing for anybody, and the ledger lacks what was in it: it was lost
-            let stalls = now.waiting + now.in_hand == 0 && open.iter().all(|b| queued.contains(b));
-            idle = if stalls { idle + 1 } else { 0 };
-            if idle >= PATIENCE {
-                (pass, idle) = (pass + 1, 0);
-                standing.again += open.len() as u64;
-                queued.clear();
-            }
-            let room = MOST_QUEUED.saturating_sub(now.waiting) as usize;
-            let next: Vec<u64> = open.into_iter().filter(|b| !queued.contains(b)).take(room).collect();
-            for block in next {
-                self.queue.put(&Ticket { run: run.clone(), block }, pass).await?;
-                queued.insert(block);
-            }
-            news(None, &standing)?;
             tokio::time::sleep(LOOK).await;
         }
         let _ = self.queue.close(&run).await; // what is left there would find the ledger full
         Ok(())
+    }
+
+    /// Brings home what is done and puts in what is missing; true when nothing is.
+    async fn round(
+        &self,
+        run: &str,
+        round: &mut Round,
+        news: &(dyn Fn(Option<&Done>, &Standing) -> Result<(), Error> + Sync),
+    ) -> Result<bool, Error> {
+        if !round.announced {
+            self.announce(run).await?;
+            round.announced = true;
+        }
+        let missing = self.bring_home(run, &mut round.standing, news).await?;
+        if missing.is_empty() {
+            return Ok(true);
+        }
+        let aside = self.aside(run).await?;
+        let open: Vec<u64> = missing.into_iter().filter(|b| !aside.iter().any(|p| p.block == *b)).collect();
+        if open.is_empty() {
+            round.aside = aside;
+            return self.give_up(run, &round.aside).await.map(|()| false);
+        }
+        let now = self.queue.queued(run).await?;
+        (round.standing.waiting, round.standing.in_hand) = (now.waiting, now.in_hand);
+        // the queue has nothing for anybody, and the ledger lacks what was in it: it was lost
+        let stalls = now.waiting + now.in_hand == 0 && open.iter().all(|b| round.queued.contains(b));
+        round.idle = if stalls { round.idle + 1 } else { 0 };
+        if round.idle >= PATIENCE {
+            (round.pass, round.idle) = (round.pass + 1, 0);
+            round.standing.again += open.len() as u64;
+            round.queued.clear();
+        }
+        let room = MOST_QUEUED.saturating_sub(now.waiting) as usize;
+        let next: Vec<u64> = open.into_iter().filter(|b| !round.queued.contains(b)).take(room).collect();
+        for block in next {
+            self.queue.put(&Ticket { run: run.to_owned(), block }, round.pass).await?;
+            round.queued.insert(block);
+        }
+        news(None, &round.standing)?;
+        Ok(false)
     }
 
     /// Lays spec and snapshot into the store, and opens a place in the queue.
@@ -106,9 +146,6 @@ impl Leader<'_> {
         };
         let text = serde_json::to_vec(&about).expect("it has string keys only");
         self.objects.put_new(&places::about(run), text).await?;
-        for place in self.objects.list(&places::poison(run)).await? {
-            self.objects.remove(&place).await?; // another leader tries again
-        }
         self.queue.open(run).await.map(|_| ())
     }
 
@@ -130,7 +167,8 @@ impl Leader<'_> {
                 serde_json::from_slice(&text).map_err(|e| Error::Cluster(format!("{line} cannot be read: {e}")))?;
             let blob = places::blob(&done.sha256);
             let bytes = self.objects.get(&blob).await?;
-            let bytes = bytes.ok_or_else(|| Error::Cluster(format!("{line} names {blob}, which the store does not have")))?;
+            let bytes =
+                bytes.ok_or_else(|| Error::Cluster(format!("{line} names {blob}, which the store does not have")))?;
             if sha256(&bytes) != done.sha256 {
                 return Err(Error::Cluster(format!("{blob} is not what its name says: the store has damaged it")));
             }
@@ -150,7 +188,9 @@ impl Leader<'_> {
     }
 
     async fn give_up(&self, run: &str, aside: &[Poison]) -> Result<(), Error> {
-        let _ = self.queue.close(run).await; // so that the next leader's blocks are not taken for the same
+        for poison in aside {
+            self.objects.remove(&places::poisoned(run, poison.block)).await?; // the next leader tries again
+        }
         let first = &aside[0];
         let tasks = self.part.tasks_of(first.block);
         Err(Error::Cluster(format!(

@@ -79,6 +79,11 @@ pub(crate) mod places {
         format!("runs/{run}/poison")
     }
 
+    /// Returns where a block is set aside.
+    pub fn poisoned(run: &str, block: u64) -> String {
+        format!("runs/{run}/poison/{block:08}.json")
+    }
+
     /// Returns where a result is.
     pub fn blob(sha256: &str) -> String {
         format!("blobs/{}/{sha256}.tar", &sha256[..2])

@@ -32,7 +32,9 @@ impl Objects {
     /// `Input` for a URL that names no store; `Cluster` when it cannot be reached.
     pub async fn open(url: &str, options: &[(String, String)]) -> Result<Self, Error> {
         let parsed = Url::parse(url).map_err(|e| {
-            Error::Input(format!("`{url}` is no store: {e}; write file:///folder, s3://bucket/prefix or nats://host/bucket"))
+            Error::Input(format!(
+                "`{url}` is no store: {e}; write file:///folder, s3://bucket/prefix or nats://host/bucket"
+            ))
         })?;
         if parsed.scheme() == "nats" || parsed.scheme() == "tls" {
             return Self::open_bucket(&parsed).await;
@@ -127,7 +129,8 @@ impl Objects {
                 found.into_iter().filter_map(|o| o.location.as_ref().get(head..).map(str::to_owned)).collect()
             }
             Kind::Nats(bucket) => {
-                let all: Vec<_> = bucket.list().await.map_err(|e| refused(&e))?.try_collect().await.map_err(|e| refused(&e))?;
+                let all: Vec<_> =
+                    bucket.list().await.map_err(|e| refused(&e))?.try_collect().await.map_err(|e| refused(&e))?;
                 let head = format!("{below}/");
                 all.into_iter().map(|o| o.name).filter(|name| name.starts_with(&head)).collect()
             }

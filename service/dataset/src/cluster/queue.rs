@@ -70,7 +70,11 @@ impl Queue {
     ///
     /// # Errors
     /// `Input` for what is no URL; `Cluster`.
-    pub async fn connect(urls: &str, credentials: Option<&std::path::Path>, settings: QueueSettings) -> Result<Self, Error> {
+    pub async fn connect(
+        urls: &str,
+        credentials: Option<&std::path::Path>,
+        settings: QueueSettings,
+    ) -> Result<Self, Error> {
         let refused = failed("the queue");
         let servers: Result<Vec<async_nats::ServerAddr>, _> = urls.split(',').map(|u| u.trim().parse()).collect();
         let servers = servers.map_err(|e| Error::Input(format!("`{urls}` is no list of nats://host:port: {e}")))?;
@@ -152,7 +156,8 @@ impl Queue {
         let id = format!("{}/{}/{pass}", ticket.run, ticket.block);
         let message = PublishMessage::build().payload(payload.into()).message_id(id);
         let refused = failed("the queue does not take a block");
-        let sent = self.context.send_publish(format!("{SUBJECT}.{}", ticket.run), message).await.map_err(|e| refused(&e))?;
+        let sent =
+            self.context.send_publish(format!("{SUBJECT}.{}", ticket.run), message).await.map_err(|e| refused(&e))?;
         sent.await.map(|_| ()).map_err(|e| refused(&e))
     }
 

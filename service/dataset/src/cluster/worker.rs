@@ -24,6 +24,8 @@ use crate::tasks::Tasks;
 const LOOK: Duration = Duration::from_secs(3);
 /// How long a block rests that could not be made or stored.
 const REST: Duration = Duration::from_secs(5);
+/// How often a worker tries to reach the queue when it begins.
+const MOST_ATTEMPTS: u32 = 20;
 /// Runs whose domains a worker keeps in memory.
 const MOST_RUNS: usize = 4;
 
@@ -74,7 +76,12 @@ struct Prepared {
 
 impl Worker {
     /// Returns a worker.
-    pub fn new(queue: Queue, objects: Objects, kept: Arc<dyn KeptModels + Send>, cancelled: &'static AtomicBool) -> Self {
+    pub fn new(
+        queue: Queue,
+        objects: Objects,
+        kept: Arc<dyn KeptModels + Send>,
+        cancelled: &'static AtomicBool,
+    ) -> Self {
         let (counters, runs) = (Arc::default(), Mutex::default());
         Self { queue, objects, kept, counters, cancelled, idle: None, runs }
     }
@@ -83,8 +90,19 @@ impl Worker {
     ///
     /// # Errors
     /// `Cluster` when the queue cannot be used at all.
-    pub async fn work(self: Arc<Self>, hands: usize, say: impl Fn(String) + Send + Sync + 'static) -> Result<(), Error> {
-        self.queue.runs().await?;
+    pub async fn work(
+        self: Arc<Self>,
+        hands: usize,
+        say: impl Fn(String) + Send + Sync + 'static,
+    ) -> Result<(), Error> {
+        for attempt in 1.. {
+            match self.queue.runs().await {
+                Ok(_) => break,
+                Err(error) if attempt >= MOST_ATTEMPTS => return Err(error),
+                Err(error) => say(error.to_string()),
+            }
+            tokio::time::sleep(LOOK).await;
+        }
         let say: Arc<dyn Fn(String) + Send + Sync> = Arc::new(say);
         let mut all = tokio::task::JoinSet::new();
         for _ in 0..hands.max(1) {
@@ -152,7 +170,12 @@ impl Worker {
     }
 
     /// Takes a block of a run and deals with it; false when the run has none now.
-    async fn turn(&self, run: &str, consumer: &PullConsumer, say: &(dyn Fn(String) + Send + Sync)) -> Result<bool, Error> {
+    async fn turn(
+        &self,
+        run: &str,
+        consumer: &PullConsumer,
+        say: &(dyn Fn(String) + Send + Sync),
+    ) -> Result<bool, Error> {
         if self.ends() {
             return Ok(false);
         }
@@ -174,7 +197,8 @@ impl Worker {
     }
 
     async fn deal(&self, run: &str, message: &Message) -> Result<(), Error> {
-        let unreadable = |e: &dyn std::fmt::Display| Error::Cluster(format!("a message of the queue cannot be read: {e}"));
+        let unreadable =
+            |e: &dyn std::fmt::Display| Error::Cluster(format!("a message of the queue cannot be read: {e}"));
         let ticket: Ticket = serde_json::from_slice(&message.payload).map_err(|e| unreadable(&e))?;
         let deliveries = message.info().map_err(|e| unreadable(&e))?.delivered;
         let line = places::line(run, ticket.block);
@@ -225,13 +249,18 @@ impl Worker {
     async fn set_aside(&self, run: &str, block: u64, deliveries: i64, message: &Message) -> Result<(), Error> {
         let reason = format!("{} workers took it and none came back with it", deliveries - 1);
         let poison = serde_json::to_vec(&Poison { block, reason }).expect("it has string keys only");
-        self.objects.put_new(&format!("{}/{block:08}.json", places::poison(run)), poison).await?;
+        self.objects.put_new(&places::poisoned(run, block), poison).await?;
         self.counters.poisoned.fetch_add(1, Ordering::Relaxed);
         answer(message, AckKind::Term).await
     }
 
     /// Makes a block on a thread of its own, with a sign of life to the queue meanwhile.
-    async fn make(&self, prepared: Arc<Prepared>, number: u64, message: &Message) -> Result<(Vec<u8>, u64, u64), Error> {
+    async fn make(
+        &self,
+        prepared: Arc<Prepared>,
+        number: u64,
+        message: &Message,
+    ) -> Result<(Vec<u8>, u64, u64), Error> {
         let cancelled = self.cancelled;
         let mut made = tokio::task::spawn_blocking(move || {
             let from = number * prepared.run.tasks_per_block;
@@ -256,7 +285,8 @@ impl Worker {
         if let Some(known) = self.known(name) {
             return Ok(known);
         }
-        let missing = |place: &str| Error::Cluster(format!("the store has no {place}: worker and leader use different stores"));
+        let missing =
+            |place: &str| Error::Cluster(format!("the store has no {place}: worker and leader use different stores"));
         let get = async |place: String| self.objects.get(&place).await?.ok_or_else(|| missing(&place));
         let run: Run = serde_json::from_slice(&get(places::about(name)).await?)
             .map_err(|e| Error::Cluster(format!("{}: {e}", places::about(name))))?;

@@ -66,7 +66,8 @@ pub fn free(_: &Path) -> Option<u64> {
     None
 }
 
-const UNITS: [(&str, u64); 5] = [("TB", 1_000_000_000_000), ("GB", 1_000_000_000), ("MB", 1_000_000), ("kB", 1_000), ("B", 1)];
+const UNITS: [(&str, u64); 5] =
+    [("TB", 1_000_000_000_000), ("GB", 1_000_000_000), ("MB", 1_000_000), ("kB", 1_000), ("B", 1)];
 
 /// Returns a size for people.
 pub fn size(bytes: u64) -> String {

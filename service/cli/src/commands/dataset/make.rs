@@ -21,6 +21,10 @@ use crate::registry::RegistryArgs;
 
 /// Worlds that a dry run makes.
 const SAMPLE: u64 = 16;
+/// Blocks that a shard has at least, so that its threads end together, where it has so many tasks.
+const BLOCKS_OF_A_SHARD: u64 = 32;
+/// Tasks of a block where there are many.
+pub const MOST_OF_A_BLOCK: u64 = 50;
 
 /// Arguments.
 #[derive(clap::Args)]
@@ -52,9 +56,10 @@ pub struct RunArgs {
     /// Number of threads; otherwise one for each core
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
-    /// Worlds in a row that are kept at once: what a run that is stopped loses at most for each thread
-    #[arg(long, value_name = "N", default_value_t = 50, value_parser = clap::value_parser!(u64).range(1..=10_000))]
-    pub block: u64,
+    /// Worlds in a row that are kept at once: what a run that is stopped loses at most for each thread; the same for all
+    /// shards of a data set [default: 50, fewer where there would be too few blocks]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=10_000))]
+    pub block: Option<u64>,
     #[command(flatten)]
     disk: disk::DiskArgs,
     #[command(flatten)]
@@ -75,13 +80,15 @@ impl Args {
                 self.out.join(WORK)
             }
         };
-        let part = self.run.part(&work, &spec_text, self.shard.unwrap_or(Shard::WHOLE))?;
+        let part = self.run.part(&work, (&spec, &spec_text), self.shard.unwrap_or(Shard::WHOLE))?;
         self.fill(&part)?;
         if self.shard.is_some() {
             let done = part.done();
             let (worlds, failed) = done.iter().fold((0, 0), |(w, f), d| (w + d.worlds, f + d.failed));
             let bytes = disk::size(done.iter().map(|d| d.bytes).sum());
-            eprintln!("{worlds} worlds, {failed} tasks without one, {bytes}; put the shards together with `d3dgen dataset merge`");
+            eprintln!(
+                "{worlds} worlds, {failed} tasks without one, {bytes}; put the shards together with `d3dgen dataset merge`"
+            );
             return Ok(());
         }
         let mut shelf = Shelf::default();
@@ -106,13 +113,17 @@ impl Args {
 
 impl RunArgs {
     /// Begins a part in a folder, or goes on with the one there, under the snapshot it began with.
-    pub fn part(&self, folder: &Path, spec_text: &str, shard: Shard) -> Result<Part, Error> {
+    pub fn part(&self, folder: &Path, (spec, spec_text): (&Spec, &str), shard: Shard) -> Result<Part, Error> {
         let snapshot = match &self.snapshot {
             Some(file) => Snapshot::read(file)?,
             None if Part::is_at(folder) => Part::open(folder)?.snapshot,
             None => Snapshot::take(&self.registry.load()?)?,
         };
-        Ok(Part::begin(folder, spec_text, &snapshot, shard, self.block)?)
+        let block = self.block.unwrap_or_else(|| {
+            let tasks = Tasks::of(spec).map_or(1, |tasks| tasks.len());
+            (tasks / (shard.of * BLOCKS_OF_A_SHARD)).clamp(1, MOST_OF_A_BLOCK)
+        });
+        Ok(Part::begin(folder, spec_text, &snapshot, shard, block)?)
     }
 
     fn threads(&self) -> usize {
@@ -191,8 +202,15 @@ impl RunArgs {
         let (each, disk) = (time.as_secs_f64() / count as f64, (bytes as f64 * scale) as u64);
         let cpu = time.as_secs_f64() * scale;
         eprintln!("{} tasks of {} prompts; from {count} of them:", tasks.len(), tasks.prompts().len());
-        eprintln!("  time         {} on {threads} threads ({:.0} ms a task)", took(cpu / threads as f64), each * 1000.0);
-        eprintln!("  disk         {} of worlds, shared models aside; twice that while they are packed", disk::size(disk));
+        eprintln!(
+            "  time         {} on {threads} threads ({:.0} ms a task)",
+            took(cpu / threads as f64),
+            each * 1000.0
+        );
+        eprintln!(
+            "  disk         {} of worlds, shared models aside; twice that while they are packed",
+            disk::size(disk)
+        );
         eprintln!("  without one  {failed} of {count}");
     }
 }

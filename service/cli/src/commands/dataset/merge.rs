@@ -23,7 +23,8 @@ impl Args {
     pub fn run(self) -> Result<(), Error> {
         check_new(&self.out)?;
         let parts = parts(&self.parts)?;
-        let (first, others) = parts.split_first().ok_or_else(|| Error::Input("name the folders of the shards".into()))?;
+        let (first, others) =
+            parts.split_first().ok_or_else(|| Error::Input("name the folders of the shards".into()))?;
         if let Some(reason) = others.iter().find_map(|other| first.differs_from(other)) {
             return Err(Error::Input(reason));
         }

@@ -126,7 +126,9 @@ fn finish(part: &Part, shelf: &Shelf, out: &Path) -> Result<Assembled, Error> {
     interrupt::listen();
     let fresh = part.folder().join("new");
     let clear = || match std::fs::remove_dir_all(&fresh) {
-        Err(source) if source.kind() != std::io::ErrorKind::NotFound => Err(Error::Write { path: fresh.clone(), source }),
+        Err(source) if source.kind() != std::io::ErrorKind::NotFound => {
+            Err(Error::Write { path: fresh.clone(), source })
+        }
         _ => Ok(()),
     };
     clear()?; // what an earlier run left
@@ -157,7 +159,13 @@ fn clear_work(work: &Path) -> Result<(), Error> {
 /// Says what a data set has.
 fn tell(made: &Assembled, out: &Path) {
     let splits: Vec<String> = made.splits.iter().map(|(name, n)| format!("{name} {n}")).collect();
-    eprintln!("{} worlds ({}), {} tasks without one, {}", made.worlds, splits.join(", "), made.failed, disk::size(made.bytes));
+    eprintln!(
+        "{} worlds ({}), {} tasks without one, {}",
+        made.worlds,
+        splits.join(", "),
+        made.failed,
+        disk::size(made.bytes)
+    );
     eprintln!("  folder       {}", out.display());
 }
 

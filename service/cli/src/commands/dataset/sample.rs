@@ -81,5 +81,9 @@ impl Args {
 /// Refuses a path of somebody's data set that leads out of the folder of its world.
 fn check_inside(path: &str) -> Result<(), Error> {
     let plain = |part: &str| !part.is_empty() && part != "." && part != ".." && !part.contains(['\\', ':']);
-    if path.split('/').all(plain) { Ok(()) } else { Err(Error::Input(format!("`{path}` leads out of a world's folder"))) }
+    if path.split('/').all(plain) {
+        Ok(())
+    } else {
+        Err(Error::Input(format!("`{path}` leads out of a world's folder")))
+    }
 }

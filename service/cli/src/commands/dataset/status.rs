@@ -37,11 +37,16 @@ impl Args {
         let standing = if is_finished(&self.folder) { self.finished()? } else { self.unfinished()? };
         let Standing { tasks, worlds, failed, bytes, finished } = standing;
         if self.json {
-            let line = json!({ "tasks": tasks, "worlds": worlds, "failed": failed, "bytes": bytes, "finished": finished });
+            let line =
+                json!({ "tasks": tasks, "worlds": worlds, "failed": failed, "bytes": bytes, "finished": finished });
             return write_text(None, &format!("{line}\n"));
         }
         let state = if finished { "finished" } else { "in the making" };
-        eprintln!("{state}: {} of {tasks} tasks done, {worlds} worlds, {failed} without one, {}", worlds + failed, disk::size(bytes));
+        eprintln!(
+            "{state}: {} of {tasks} tasks done, {worlds} worlds, {failed} without one, {}",
+            worlds + failed,
+            disk::size(bytes)
+        );
         Ok(())
     }
 

@@ -25,7 +25,12 @@ impl Args {
         });
         talk.progress.finish();
         let verdict = verdict?;
-        eprintln!("{} worlds, {} files summed, {} of shards read", verdict.worlds, verdict.files, disk::size(verdict.bytes));
+        eprintln!(
+            "{} worlds, {} files summed, {} of shards read",
+            verdict.worlds,
+            verdict.files,
+            disk::size(verdict.bytes)
+        );
         if verdict.problems.is_empty() {
             return Ok(());
         }
