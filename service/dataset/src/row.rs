@@ -80,7 +80,7 @@ impl Row {
             kind: graph.building_type.clone(),
             country: graph.country_code.clone(),
             language: graph.language.clone(),
-            rooms: graph.rooms.len() as u32,
+            rooms: graph.rooms.iter().filter(|r| !r.circulation).count() as u32,
             room_types: types.into_iter().map(str::to_owned).collect(),
             ..Self::default()
         }
@@ -138,8 +138,6 @@ pub enum Why {
     Filtered,
     /// The program has a fault here.
     Crashed,
-    /// The task was given up on by every worker that took it.
-    Poison,
 }
 
 impl Why {
@@ -151,7 +149,6 @@ impl Why {
             Self::Unsound => "unsound",
             Self::Filtered => "filtered",
             Self::Crashed => "crashed",
-            Self::Poison => "poison",
         }
     }
 }

@@ -7,6 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use d3dgen_model::robot_body::RobotBody;
 use d3dgen_model::style::{Clutter, Style};
 use d3dgen_pipeline::scene_graph::Request;
+use serde_json::json;
 
 use crate::digest::sha256;
 use crate::spec::{PromptSpec, Scalar, Spec, Splits};
@@ -120,8 +121,8 @@ impl Tasks {
         let (rest, placement) = (rest / placements, (rest % placements) as u32);
         let count = self.prompts.len() as u64;
         let (seed, prompt) = (self.first_seed + rest / count, &self.prompts[(rest % count) as usize]);
-        let asked = format!("{:?}", (&prompt.request, seed, placement, scenario));
-        let digest = sha256(asked.as_bytes());
+        let asked = asked(&prompt.request, [seed, placement.into(), scenario.into()]);
+        let digest = sha256(asked.to_string().as_bytes());
         let id = TaskId(u64::from_str_radix(&digest[..16], 16).expect("a digest is hexadecimal"));
         Some(Task { number, id, prompt, seed, placement, scenario })
     }
@@ -130,6 +131,20 @@ impl Tasks {
     pub fn iter(&self) -> impl Iterator<Item = Task<'_>> {
         (0..self.len()).filter_map(|n| self.get(n))
     }
+}
+
+/// Returns what a task asks for; what is not said has no key, so that a later release with more to say gives the same ids.
+fn asked(request: &Request, [seed, placement, scenario]: [u64; 3]) -> serde_json::Value {
+    let Request { prompt, domain, country, rooms, area_m2, robot_radius_m, robot, style, .. } = request;
+    let mut value = json!({
+        "prompt": prompt, "domain": domain, "country": country, "rooms": rooms, "area_m2": area_m2,
+        "robot_radius_m": robot_radius_m, "robot": robot, "style": style, "seed": seed,
+        "placement": placement, "scenario": scenario,
+    });
+    if let Some(object) = value.as_object_mut() {
+        object.retain(|_, value| !value.is_null() && value.as_object().is_none_or(|o| !o.is_empty()));
+    }
+    value
 }
 
 /// Adds the prompts of a template, the last slot by name varying fastest.

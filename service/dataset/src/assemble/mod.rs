@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 use self::gallery::Gallery;
 use self::statistics::Statistics;
 use self::table::{Columns, Indexed, Table};
-use crate::digest::{Summed, sha256, sha256_of_file};
+use crate::digest::{Summed, of_members, sha256, sha256_of_file};
 use crate::error::Error;
 use crate::pack::{ROW, TarWriter};
 use crate::part::{Part, SPEC};
@@ -195,7 +195,7 @@ impl<'a> Writing<'a> {
         let (shard, bytes) = split.add(&key, &stored, self.out)?;
         self.statistics.add(&stored.row, &split.name, bytes);
         self.models.extend(stored.row.models.values().cloned());
-        if task.number % self.gallery_step == 0 {
+        if task.number.is_multiple_of(self.gallery_step) {
             self.gallery.add(&key, &split.name, &shard, &stored);
         }
         Ok(())
@@ -289,7 +289,7 @@ fn close((name, tar): OpenShard, out: &Path) -> Result<Sum, Error> {
 impl Split {
     /// Counts a task; where it begins a shard, the one before is closed and its sum returned.
     fn next_task(&mut self, out: &Path) -> Result<Option<Sum>, Error> {
-        let begins = self.tasks % self.per_shard == 0;
+        let begins = self.tasks.is_multiple_of(self.per_shard);
         let number = self.tasks / self.per_shard;
         self.tasks += 1;
         if !begins {
@@ -308,6 +308,12 @@ impl Split {
         for (ext, bytes) in std::iter::once(&row_member).chain(&stored.members) {
             tar.add(&format!("{key}.{ext}"), bytes).map_err(Error::write(&out.join(&*shard)))?;
             files.push((ext.clone(), sha256(bytes), bytes.len() as u64));
+        }
+        if of_members(files.iter().map(|(ext, sum, _)| (ext.as_str(), sum.as_str()))) != stored.row.content_sha256 {
+            let task = &stored.row.task;
+            return Err(Error::Input(format!(
+                "the files of task {task} are not those that were made: its block is damaged"
+            )));
         }
         let bytes = files.iter().map(|f| f.2).sum();
         self.table.add(&Indexed { row: &stored.row, key, shard, split: &self.name, files })?;

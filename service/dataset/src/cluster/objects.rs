@@ -20,7 +20,7 @@ pub struct Objects(Kind);
 #[derive(Clone)]
 enum Kind {
     Plain { store: Arc<dyn ObjectStore>, prefix: Path },
-    Nats(NatsBucket),
+    Nats(Box<NatsBucket>),
 }
 
 impl Objects {
@@ -63,7 +63,7 @@ impl Objects {
                 context.create_object_store(config).await.map_err(|e| refused(&e))?
             }
         };
-        Ok(Self(Kind::Nats(store)))
+        Ok(Self(Kind::Nats(Box::new(store))))
     }
 
     /// Writes an object, whole or not at all, unless it is there; returns whether it was written.

@@ -124,6 +124,14 @@ impl Queue {
         stream.get_or_create_consumer(run, config).await.map_err(|e| failed("the queue's consumer")(&e))
     }
 
+    /// Returns the place of a run in the queue; none where it was closed meanwhile.
+    ///
+    /// # Errors
+    /// `Cluster`.
+    pub async fn join(&self, run: &str) -> Result<Option<PullConsumer>, Error> {
+        Ok(self.stream().await?.get_consumer(run).await.ok())
+    }
+
     /// Closes the place of a run.
     ///
     /// # Errors

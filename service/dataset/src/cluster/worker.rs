@@ -120,45 +120,51 @@ impl Worker {
     /// One hand: a turn for each run in rotation, as many as its priority, so that no run waits for another to end.
     async fn hand(self: Arc<Self>, say: &(dyn Fn(String) + Send + Sync)) {
         let mut idle = Duration::ZERO;
-        while !self.ends() {
-            let turns = match self.turns().await {
-                Ok(turns) => turns,
-                Err(error) => {
-                    say(error.to_string());
-                    tokio::time::sleep(LOOK).await;
-                    continue;
-                }
-            };
+        while !self.ends() && self.idle.is_none_or(|most| idle < most) {
+            let turns = self.turns().await.unwrap_or_else(|error| {
+                say(error.to_string());
+                Vec::new()
+            });
             let mut took = false;
             for (name, consumer, turns) in &turns {
-                for _ in 0..*turns {
-                    match self.turn(name, consumer, say).await {
-                        Ok(true) => took = true,
-                        Ok(false) => break,
-                        Err(error) => {
-                            say(error.to_string());
-                            tokio::time::sleep(Duration::from_secs(1)).await;
-                            break;
-                        }
-                    }
-                }
+                took |= self.turns_of(name, consumer, *turns, say).await;
             }
-            let waited = if turns.is_empty() { LOOK } else { Duration::from_secs(turns.len() as u64) };
             if turns.is_empty() {
                 tokio::time::sleep(LOOK).await;
             }
+            let waited = if turns.is_empty() { LOOK } else { Duration::from_secs(turns.len() as u64) };
             idle = if took { Duration::ZERO } else { idle + waited };
-            if self.idle.is_some_and(|most| idle >= most) {
-                return;
+        }
+    }
+
+    /// Gives a run its turns; false when it had no block.
+    async fn turns_of(
+        &self,
+        run: &str,
+        consumer: &PullConsumer,
+        turns: u8,
+        say: &(dyn Fn(String) + Send + Sync),
+    ) -> bool {
+        let mut took = false;
+        for _ in 0..turns {
+            match self.turn(run, consumer, say).await {
+                Ok(true) => took = true,
+                Ok(false) => break,
+                Err(error) => {
+                    say(error.to_string());
+                    tokio::time::sleep(Duration::from_secs(1)).await;
+                    break;
+                }
             }
         }
+        took
     }
 
     /// Returns the runs of the queue with how many turns each has.
     async fn turns(&self) -> Result<Vec<(String, PullConsumer, u8)>, Error> {
         let mut turns = Vec::new();
         for name in self.queue.runs().await? {
-            let consumer = self.queue.open(&name).await?;
+            let Some(consumer) = self.queue.join(&name).await? else { continue };
             let known = self.known(&name);
             turns.push((name, consumer, known.map_or(1, |p| p.run.priority.max(1))));
         }
