@@ -41,8 +41,6 @@ pub struct Databases {
 pub struct AssetSearch {
     catalog: Arc<Catalog>,
     index: AssetIndex,
-    /// How far the store was when the index was begun: it holds that and perhaps more.
-    revision: u64,
 }
 
 /// What is there after a while, and is replaced now and then.
@@ -56,13 +54,9 @@ impl<T> Slot<T> {
         Self { value: Mutex::new(None), filled: Condvar::new() }
     }
 
-    /// Puts a value in its place, unless what is there is of a later revision: what was begun beside a change may not know it.
-    fn fill(&self, revision: fn(&T) -> u64, value: T) {
-        let mut there = self.value.lock().unwrap_or_else(PoisonError::into_inner);
-        if there.as_ref().is_none_or(|now| revision(now) <= revision(&value)) {
-            *there = Some(Arc::new(value));
-            self.filled.notify_all();
-        }
+    fn fill(&self, value: T) {
+        *self.value.lock().unwrap_or_else(PoisonError::into_inner) = Some(Arc::new(value));
+        self.filled.notify_all();
     }
 
     fn get(&self) -> Option<Arc<T>> {
@@ -132,7 +126,10 @@ impl Databases {
         for damage in &searcher.damaged {
             tracing::error!(place = damage.place, reason = damage.reason, "damaged record left out of the index");
         }
-        self.rules_index.fill(Searcher::revision, searcher);
+        // beside the first answers a change may have been indexed that this one does not know
+        if self.rules_index.get().is_none_or(|now| now.revision() <= searcher.revision()) {
+            self.rules_index.fill(searcher);
+        }
         Ok(())
     }
 
@@ -143,7 +140,7 @@ impl Databases {
     pub fn index_change(&self, change: &Change) -> Result<(), Error> {
         let Some(now) = self.rules_index.get() else { return self.index_rules() };
         match now.after(&change.domain, &self.rules.edits(change.seq)?)? {
-            Some(searcher) => self.rules_index.fill(Searcher::revision, searcher),
+            Some(searcher) => self.rules_index.fill(searcher),
             None => self.index_rules()?,
         }
         Ok(())
@@ -154,19 +151,13 @@ impl Databases {
     /// # Errors
     /// `Assets`.
     pub fn index_assets(&self, catalog: &Arc<Catalog>) -> Result<(), Error> {
-        let revision = self.shared().revision()?;
         let shelf = Shelf::new(Some(self.assets.clone()), catalog)?;
         let index = shelf.open_index(Arc::clone(&self.embedder), watch("assets"))?;
         if let Some(reason) = &index.rebuilt {
             tracing::info!(what = "assets", %reason, "index made anew");
         }
-        self.fill_asset_index(catalog, index, revision);
+        self.asset_index.fill(AssetSearch { catalog: Arc::clone(catalog), index });
         Ok(())
-    }
-
-    fn fill_asset_index(&self, catalog: &Arc<Catalog>, index: AssetIndex, revision: u64) {
-        let search = AssetSearch { catalog: Arc::clone(catalog), index, revision };
-        self.asset_index.fill(|search| search.revision, search);
     }
 
     /// Has searches find what a change of assets was about, without making the index anew where little has changed: kept
@@ -176,10 +167,9 @@ impl Databases {
     /// `Assets`.
     pub fn index_changed_assets(&self, catalog: &Arc<Catalog>, changed: &[String]) -> Result<(), Error> {
         let Some(now) = self.asset_index.get() else { return self.index_assets(catalog) };
-        let revision = self.shared().revision()?;
         let shelf = Shelf::new(Some(self.assets.clone()), catalog)?;
         match shelf.changed_index(&now.index, changed)? {
-            Some(index) => self.fill_asset_index(catalog, index, revision),
+            Some(index) => self.asset_index.fill(AssetSearch { catalog: Arc::clone(catalog), index }),
             None => self.index_assets(catalog)?,
         }
         Ok(())
