@@ -1,6 +1,7 @@
 //! One file per target; [`all`] is the list that `--format` and its help read.
 
 mod arena;
+mod gltf;
 mod nav2;
 pub mod plan;
 mod rmf;
@@ -12,6 +13,7 @@ use crate::Error;
 use crate::models::KeptModels;
 
 pub use arena::Arena;
+pub use gltf::Gltf;
 pub use nav2::Nav2;
 pub use plan::Plan;
 pub use rmf::Rmf;
@@ -55,7 +57,7 @@ pub trait Exporter: Sync {
 
 /// Returns every exporter, the default ones first.
 pub fn all() -> &'static [&'static dyn Exporter] {
-    &[&Arena, &Plan, &Nav2, &Rmf]
+    &[&Arena, &Plan, &Nav2, &Rmf, &Gltf]
 }
 
 /// Returns the names at the top of a world's folder that exporters write, each once.

@@ -1,0 +1,92 @@
+//! Things that stand in rooms, and parts of the building that are made of builds as they are.
+
+use std::collections::BTreeMap;
+
+use d3dgen_mesh::world3d::Node;
+use d3dgen_mesh::{Library, Model3d, World3d, generate};
+use d3dgen_model::domain::{Mount, ObjectType};
+
+use super::View;
+use crate::Error;
+use crate::used::plain;
+
+/// A part of the building by the object that its build is for.
+pub(crate) struct Part<'a> {
+    pub object: &'a str,
+    pub size_m: [f64; 3],
+    pub color: &'a str,
+    pub material: &'a str,
+}
+
+impl Part<'_> {
+    /// Returns its model.
+    ///
+    /// # Errors
+    /// `Model` when its build cannot be made at this size.
+    pub fn model(&self) -> Result<Model3d, Error> {
+        let object = ObjectType {
+            color: self.color.to_owned(),
+            material: self.material.to_owned(),
+            ..plain(self.object, self.size_m, Mount::Floor)
+        };
+        Ok(generate(Library::shipped(), &object, self.size_m, 0)?)
+    }
+}
+
+/// Meshes of parts that are there already, by part and size.
+#[derive(Default)]
+pub(crate) struct Parts(BTreeMap<(String, [i64; 3]), Option<usize>>);
+
+impl Parts {
+    /// Returns the mesh of a part, made when it is the first of its size.
+    ///
+    /// # Errors
+    /// `Model` when its build cannot be made at this size.
+    pub fn mesh(&mut self, world: &mut World3d, part: &Part<'_>) -> Result<Option<usize>, Error> {
+        let key = (part.object.to_owned(), part.size_m.map(|v| (v * 1e4).round() as i64));
+        if let Some(mesh) = self.0.get(&key) {
+            return Ok(*mesh);
+        }
+        let mesh = world.model(&part.model()?).first().copied().flatten();
+        self.0.insert(key, mesh);
+        Ok(mesh)
+    }
+}
+
+impl View<'_> {
+    /// Adds a node for each thing of a storey, with its bodies below it; things of one model share its meshes.
+    pub(super) fn things(&mut self, parent: usize, level: i32) {
+        let mut meshes: BTreeMap<usize, Vec<Option<usize>>> = BTreeMap::new();
+        for object in self.scene.objects.iter().filter(|o| o.level == level) {
+            let Some(model) = self.scene.models.get(object.model) else { continue };
+            let shown = match self.parts_of(&mut meshes, object.model) {
+                Some(shown) => shown,
+                None => continue,
+            };
+            let node = Node::new(object.id.clone(), Some(parent))
+                .at(object.at_m, object.yaw_rad)
+                .fact("category", "object")
+                .fact("class", object.class.clone())
+                .fact("label", object.label.clone())
+                .fact("room", object.room_id.clone())
+                .fact("model", model.reference.clone())
+                .fact("mobility", object.mobility.name())
+                .fact("mass_kg", object.mass_kg);
+            let root = self.world.node(node);
+            self.world.bodies(&model.model, &shown, root, &object.id);
+        }
+    }
+
+    fn parts_of(
+        &mut self,
+        meshes: &mut BTreeMap<usize, Vec<Option<usize>>>,
+        model: usize,
+    ) -> Option<Vec<Option<usize>>> {
+        if let Some(known) = meshes.get(&model) {
+            return Some(known.clone());
+        }
+        let shown = self.world.model(&self.scene.models.get(model)?.model);
+        meshes.insert(model, shown.clone());
+        Some(shown)
+    }
+}
