@@ -6,8 +6,10 @@
 pub mod error;
 pub mod exporters;
 pub mod models;
+pub mod render;
 pub mod roadmap;
 pub mod scene;
+pub mod view;
 pub mod yaml;
 
 mod color;

@@ -7,6 +7,8 @@ mod doors;
 mod shapes;
 mod things;
 
+use std::collections::BTreeMap;
+
 use d3dgen_mesh::world3d::{Lamp, LampKind, Node, lamp_color};
 use d3dgen_mesh::{World3d, finish};
 use d3dgen_model::geometry::Point;
@@ -14,6 +16,7 @@ use d3dgen_model::geometry::Point;
 use crate::Error;
 use crate::scene::{SimRoom, SimScene};
 
+pub(crate) use doors::{handle_places, leaf_part, window_part};
 pub(crate) use things::{Part, Parts};
 
 /// Layer of ceilings: hidden by who looks in from above.
@@ -34,7 +37,7 @@ pub fn storey_layer(level: i32) -> String {
 /// # Errors
 /// `Model` when a part of the building cannot be made.
 pub fn world3d(scene: &SimScene) -> Result<World3d, Error> {
-    let mut view = View { scene, world: World3d { name: scene.name.clone(), ..World3d::default() }, parts: Parts::default() };
+    let mut view = View { scene, world: World3d { name: scene.name.clone(), ..World3d::default() }, parts: Parts::default(), shown: BTreeMap::new() };
     let root = view.world.node(Node::new(scene.name.clone(), None).fact("units", "m"));
     view.ground(root);
     for storey in &scene.storeys {
@@ -58,6 +61,8 @@ pub(crate) struct View<'a> {
     scene: &'a SimScene,
     world: World3d,
     parts: Parts,
+    /// Meshes of the bodies of models that are there already.
+    shown: BTreeMap<usize, Vec<Option<usize>>>,
 }
 
 impl View<'_> {

@@ -81,6 +81,12 @@ fn texture_of(model: &Model3d, material: usize) -> Option<(usize, &[u8])> {
     model.textures.get(index)?.bytes.as_deref().map(|bytes| (index, bytes))
 }
 
+/// Returns materials without finishes: the files of single models have no pictures but their own, so that they stay small,
+/// and programs that read them see the color itself.
+fn plain(materials: &[Material]) -> Vec<Material> {
+    materials.iter().map(|m| Material { finish: None, ..m.clone() }).collect()
+}
+
 /// A picture that a material wears, as a file beside its model.
 struct Picture<'a> {
     name: String,

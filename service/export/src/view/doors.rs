@@ -15,18 +15,15 @@ const CASING: [f32; 3] = [0.78, 0.77, 0.75];
 /// Height of a threshold, m: what a wheel does not feel.
 const THRESHOLD_M: f64 = 0.003;
 const THRESHOLD: [f32; 3] = [0.35, 0.35, 0.36];
-/// Width, depth and height of a handle, m.
-const HANDLE_M: [f64; 3] = [0.13, 0.055, 0.17];
 
 impl View<'_> {
     /// Adds a node for each window of a storey.
     pub(super) fn windows(&mut self, parent: usize, level: i32) -> Result<(), Error> {
         for window in self.scene.windows.iter().filter(|w| w.level == level) {
-            let [at, size] = extent(window);
-            let part = Part { object: "window", size_m: size, color: "#f2f1ee", material: "plastic" };
+            let (part, at) = window_part(window);
             let mesh = self.parts.mesh(&mut self.world, &part)?;
             let mut node = Node::new(window.id.clone(), Some(parent))
-                .at([at[0], at[1], at[2] - size[2] / 2.0], window.glass.yaw_rad)
+                .at(at, window.glass.yaw_rad)
                 .fact("category", "window")
                 .fact("room", window.room_id.clone());
             node.mesh = mesh;
@@ -91,8 +88,7 @@ impl View<'_> {
     /// Adds a leaf: a node at a point of its axis that turns or slides, and its handles below it.
     fn leaf(&mut self, parent: usize, door: &SimDoor, leaf: &SimLeaf) -> Result<(), Error> {
         let (closed, joint) = (&leaf.closed, &leaf.joint);
-        let size = closed.half_m.map(|v| 2.0 * v);
-        let part = Part { object: object(door, leaf), size_m: size, color: "#c9a67a", material: "wood" };
+        let part = leaf_part(door, leaf);
         let shown = self.parts.mesh(&mut self.world, &part)?;
         let pivot = if joint.hinge { joint.origin_m } else { closed.center_m };
         let mut node = Node::new(leaf.id.clone(), Some(parent)).fact("category", "leaf").fact("mass_kg", leaf.mass_kg);
@@ -111,15 +107,12 @@ impl View<'_> {
         panel.turn = yaw(closed.yaw_rad);
         panel.mesh = shown;
         let panel = self.world.node(panel);
-        let handle = Part { object: "door_handle", size_m: HANDLE_M, color: "#b0b2b5", material: "metal" };
-        let shown = self.parts.mesh(&mut self.world, &handle)?;
-        for (i, at) in leaf.handles_m.iter().enumerate() {
+        let shown = self.parts.mesh(&mut self.world, &Part::HANDLE)?;
+        for (i, (at, turn)) in handle_places(leaf).into_iter().enumerate() {
+            // Counted from the foot of the panel.
             let mut node = Node::new(format!("{}_handle_{}", leaf.id, i + 1), Some(panel));
-            // Before the face, its back to it; the other face is looked at from the other side.
-            let front = at[1] < 0.0;
-            let deep = closed.half_m[1] + HANDLE_M[1] / 2.0;
-            node.at = [at[0], if front { -deep } else { deep }, at[2] + closed.half_m[2] - HANDLE_M[2] * 0.72];
-            node.turn = if front { yaw(0.0) } else { yaw(std::f64::consts::PI) };
+            node.at = [at[0], at[1], at[2] + closed.half_m[2]];
+            node.turn = turn;
             node.mesh = shown;
             self.world.nodes.push(node);
         }
@@ -127,8 +120,8 @@ impl View<'_> {
     }
 }
 
-/// Returns the middle and the size of a window in its wall.
-fn extent(window: &SimWindow) -> [[f64; 3]; 2] {
+/// Returns a window as a part, and where the middle of its foot is.
+pub(crate) fn window_part(window: &SimWindow) -> (Part<'static>, [f64; 3]) {
     let glass = &window.glass;
     let (sin, cos) = glass.yaw_rad.sin_cos();
     let mut half = glass.half_m;
@@ -138,7 +131,27 @@ fn extent(window: &SimWindow) -> [[f64; 3]; 2] {
         half[1] = half[1].max(b.half_m[1]);
         half[2] = half[2].max(dz.abs() + b.half_m[2]);
     }
-    [glass.center_m, half.map(|v| 2.0 * v)]
+    let [x, y, z] = glass.center_m;
+    let part = Part { object: "window", size_m: half.map(|v| 2.0 * v), color: "#f2f1ee", material: "plastic" };
+    (part, [x, y, z - half[2]])
+}
+
+/// Returns the panel of a leaf as a part.
+pub(crate) fn leaf_part(door: &SimDoor, leaf: &SimLeaf) -> Part<'static> {
+    let size_m = leaf.closed.half_m.map(|v| 2.0 * v);
+    Part { object: object(door, leaf), size_m, color: "#c9a67a", material: "wood" }
+}
+
+/// Returns where the handles of a leaf are, from its middle, and how they are turned: each with its back to its face.
+pub(crate) fn handle_places(leaf: &SimLeaf) -> Vec<([f64; 3], [f64; 4])> {
+    let [_, deep, high] = Part::HANDLE.size_m;
+    let place = |at: &[f64; 3]| {
+        let front = at[1] < 0.0;
+        let out = leaf.closed.half_m[1] + deep / 2.0;
+        let turn = if front { 0.0 } else { std::f64::consts::PI };
+        ([at[0], if front { -out } else { out }, at[2] - high * 0.72], yaw(turn))
+    };
+    leaf.handles_m.iter().map(place).collect()
 }
 
 /// Returns the object id by which the build of a leaf is found.

@@ -19,6 +19,16 @@ pub(crate) struct Part<'a> {
 }
 
 impl Part<'_> {
+    /// The handle of a leaf.
+    pub const HANDLE: Part<'static> =
+        Part { object: "door_handle", size_m: [0.13, 0.055, 0.17], color: "#b0b2b5", material: "metal" };
+
+    /// Returns a name for it: what it is and its size, mm.
+    pub fn name(&self) -> String {
+        let [w, d, h] = self.size_m.map(|v| (v * 1e3).round() as i64);
+        format!("{}_{w}x{d}x{h}", self.object)
+    }
+
     /// Returns its model.
     ///
     /// # Errors
@@ -56,13 +66,10 @@ impl Parts {
 impl View<'_> {
     /// Adds a node for each thing of a storey, with its bodies below it; things of one model share its meshes.
     pub(super) fn things(&mut self, parent: usize, level: i32) {
-        let mut meshes: BTreeMap<usize, Vec<Option<usize>>> = BTreeMap::new();
         for object in self.scene.objects.iter().filter(|o| o.level == level) {
             let Some(model) = self.scene.models.get(object.model) else { continue };
-            let shown = match self.parts_of(&mut meshes, object.model) {
-                Some(shown) => shown,
-                None => continue,
-            };
+            let world = &mut self.world;
+            let shown = self.shown.entry(object.model).or_insert_with(|| world.model(&model.model)).clone();
             let node = Node::new(object.id.clone(), Some(parent))
                 .at(object.at_m, object.yaw_rad)
                 .fact("category", "object")
@@ -75,18 +82,5 @@ impl View<'_> {
             let root = self.world.node(node);
             self.world.bodies(&model.model, &shown, root, &object.id);
         }
-    }
-
-    fn parts_of(
-        &mut self,
-        meshes: &mut BTreeMap<usize, Vec<Option<usize>>>,
-        model: usize,
-    ) -> Option<Vec<Option<usize>>> {
-        if let Some(known) = meshes.get(&model) {
-            return Some(known.clone());
-        }
-        let shown = self.world.model(&self.scene.models.get(model)?.model);
-        meshes.insert(model, shown.clone());
-        Some(shown)
     }
 }

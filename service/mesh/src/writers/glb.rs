@@ -8,7 +8,7 @@ use serde_json::{Map, Value, json};
 
 pub use world::world_glb;
 
-use super::{check, picture_extension};
+use super::{check, picture_extension, plain};
 use crate::affine::{Vec3, sub};
 use crate::{Body, Error, Finish, Joint, JointKind, Material, Model3d, Texture, Visual};
 
@@ -26,7 +26,8 @@ const REPEAT: u32 = 10_497;
 pub fn glb(model: &Model3d) -> Result<Vec<u8>, Error> {
     check(model)?;
     let mut file = File::default();
-    file.materials(&model.materials, &model.textures, Relief::Left);
+    let materials = plain(&model.materials);
+    file.materials(&materials, &model.textures);
     let mut nodes = vec![json!({"name": model.name})];
     for (b, body) in model.bodies.iter().enumerate() {
         let joint = joint_of(model, b);
@@ -34,7 +35,7 @@ pub fn glb(model: &Model3d) -> Result<Vec<u8>, Error> {
         let parent = joint.map_or([0.0; 3], |j| joint_of(model, j.parent).map_or([0.0; 3], |p| p.origin));
         let mut node = Map::new();
         node.insert("name".into(), body.name.clone().into());
-        if let Some(mesh) = file.mesh(&body.name, &body.visuals, &model.materials, pivot) {
+        if let Some(mesh) = file.mesh(&body.name, &body.visuals, &materials, pivot) {
             node.insert("mesh".into(), mesh.into());
         }
         let way = y_up(sub(pivot, parent));
@@ -85,15 +86,6 @@ fn y_up([x, y, z]: Vec3) -> Vec3 {
     [x, z, -y].map(|v| v + 0.0)
 }
 
-/// Whether normal maps of finishes are written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Relief {
-    /// Left out: a model is small on the screen, and its file is one of many.
-    Left,
-    /// Written.
-    Written,
-}
-
 #[derive(Default)]
 struct File {
     bytes: Vec<u8>,
@@ -132,14 +124,14 @@ impl File {
         container(&root, self.bytes)
     }
 
-    fn materials(&mut self, materials: &[Material], textures: &[Texture], relief: Relief) {
+    fn materials(&mut self, materials: &[Material], textures: &[Texture]) {
         for material in materials {
-            let value = self.material(material, textures, relief);
+            let value = self.material(material, textures);
             self.materials.push(value);
         }
     }
 
-    fn material(&mut self, material: &Material, textures: &[Texture], relief: Relief) -> Value {
+    fn material(&mut self, material: &Material, textures: &[Texture]) -> Value {
         let own = material.texture.and_then(|t| Some((t, textures.get(t)?.bytes.as_deref()?)));
         let own = own.and_then(|(t, bytes)| self.picture(&format!("{t}"), bytes));
         let worn = material.worn();
@@ -154,7 +146,7 @@ impl File {
             surface["baseColorTexture"] = json!({"index": texture});
         }
         let mut value = json!({"name": material.name, "pbrMetallicRoughness": surface});
-        let normal = worn.filter(|_| relief == Relief::Written).and_then(|f| Some((f, f.pictures().normal.as_ref()?)));
+        let normal = worn.and_then(|f| Some((f, f.pictures().normal.as_ref()?)));
         if let Some((finish, bytes)) = normal
             && let Some(texture) = self.picture(&format!("{}_normal", finish.id), bytes)
         {

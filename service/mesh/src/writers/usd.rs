@@ -5,7 +5,7 @@ pub mod text;
 
 use text::{Text, identifier, names, quat, schemas, triple};
 
-use super::check;
+use super::{check, plain};
 use super::number::{n, small};
 use super::quaternion;
 use crate::mass::{inertia, whole};
@@ -58,6 +58,14 @@ pub fn asset_usda(model: &Model3d, facts: &AssetFacts) -> Result<String, Error> 
 
 fn write(model: &Model3d, form: &Form<'_>) -> Result<String, Error> {
     check(model)?;
+    let stripped;
+    let model = match form {
+        Form::Plain => {
+            stripped = Model3d { materials: plain(&model.materials), ..model.clone() };
+            &stripped
+        }
+        Form::Asset(_) => model,
+    };
     let root = identifier(&model.name);
     let [min, max] = model.bounds().unwrap_or([[0.0; 3]; 2]);
     let class = match form {
@@ -98,7 +106,8 @@ fn write(model: &Model3d, form: &Form<'_>) -> Result<String, Error> {
             text.prim("def Scope", "Looks", &[], |text| {
                 let (names, paths) = parts::looks(&model.materials, &format!("/{root}/Looks"));
                 for ((material, name), path) in model.materials.iter().zip(&names).zip(&paths) {
-                    parts::material(text, material, &model.textures, path, name, "");
+                    let pictures = parts::Pictures { folder: "", relief: false };
+                    parts::material(text, material, &model.textures, path, name, &pictures);
                 }
             });
         }
@@ -155,26 +164,49 @@ fn prototypes(text: &mut Text, model: &Model3d, root: &str, class: &str) {
     let bodies = body_names(model);
     text.prim("class Scope", "Prototypes", &[], |text| {
         for (body, name) in model.bodies.iter().zip(&bodies) {
-            let used: Vec<usize> = {
-                let all: std::collections::BTreeSet<usize> = body.visuals.iter().filter_map(|v| v.material).collect();
-                all.into_iter().collect()
-            };
-            text.prim("def Xform", name, &[], |text| {
-                let scope = format!("/{root}/Prototypes/{name}/Looks");
-                let (names, paths) = parts::looks(&model.materials, &scope);
-                text.prim("def Scope", "Looks", &[], |text| {
-                    for &i in &used {
-                        let material = &model.materials[i];
-                        parts::material(text, material, &model.textures, &paths[i], &names[i], "textures/");
-                    }
-                });
-                let meshes = text::names("Looks", body.visuals.iter().map(|v| v.name.as_str()));
-                for (visual, name) in body.visuals.iter().zip(&meshes) {
-                    parts::mesh(text, visual, &model.materials, name, &paths, class);
-                }
-            });
+            prototype(text, model, body, &format!("/{root}/Prototypes/{name}"), class, "textures/");
         }
     });
+}
+
+/// Writes what is seen of a body with its materials, as a prim that instances refer to; `path` is its own path, its pictures
+/// lie in `folder`.
+pub fn prototype(text: &mut Text, model: &Model3d, body: &Body, path: &str, class: &str, folder: &str) {
+    let used: std::collections::BTreeSet<usize> = body.visuals.iter().filter_map(|v| v.material).collect();
+    let name = path.rsplit('/').next().unwrap_or(path);
+    text.prim("def Xform", name, &[], |text| {
+        let (names, paths) = parts::looks(&model.materials, &format!("{path}/Looks"));
+        text.prim("def Scope", "Looks", &[], |text| {
+            for i in used {
+                let pictures = parts::Pictures { folder, relief: false };
+                parts::material(text, &model.materials[i], &model.textures, &paths[i], &names[i], &pictures);
+            }
+        });
+        let meshes = names_of(body);
+        for (visual, name) in body.visuals.iter().zip(&meshes) {
+            parts::mesh(text, visual, &model.materials, name, &paths, class);
+        }
+    });
+}
+
+fn names_of(body: &Body) -> Vec<String> {
+    names("Looks", body.visuals.iter().map(|v| v.name.as_str()))
+}
+
+/// Returns the picture files that the materials of a model wear, by name.
+pub fn pictures(model: &Model3d) -> Vec<super::ModelFile> {
+    let mut files: Vec<super::ModelFile> = Vec::new();
+    for picture in model.materials.iter().filter_map(|m| super::picture_of(m, &model.textures)) {
+        if files.iter().all(|f| f.name != picture.name) {
+            files.push(super::ModelFile { name: picture.name, bytes: picture.bytes.to_vec() });
+        }
+    }
+    files
+}
+
+/// Returns the name of the prim of a model's first body, the one that stands.
+pub fn base_name(model: &Model3d) -> String {
+    body_names(model).into_iter().next().unwrap_or_default()
 }
 
 fn body_names(model: &Model3d) -> Vec<String> {

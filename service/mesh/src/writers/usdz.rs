@@ -1,7 +1,7 @@
 //! USDZ: a zip archive without compression whose files begin at multiples of 64 bytes.
 
 use super::usd::usda;
-use super::{ModelFile, picture_of};
+use super::{ModelFile, picture_of, plain};
 use crate::{Error, Model3d};
 
 /// Where the content of each file begins.
@@ -17,7 +17,7 @@ const DATE: u16 = (1 << 5) | 1;
 /// `Model` when the model is broken.
 pub fn usdz(model: &Model3d) -> Result<Vec<u8>, Error> {
     let mut files = vec![ModelFile { name: format!("{}.usda", model.name), bytes: usda(model)?.into_bytes() }];
-    for material in &model.materials {
+    for material in &plain(&model.materials) {
         if let Some(picture) = picture_of(material, &model.textures)
             && files.iter().all(|f| f.name != picture.name)
         {

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde_json::{Map, Value, json};
 
-use super::{File, Relief, round, y_up};
+use super::{File, round, y_up};
 use crate::world3d::{Lamp, LampKind, Motion, Node, World3d};
 use crate::{Error, JointKind};
 
@@ -25,7 +25,7 @@ pub fn world_glb(world: &World3d) -> Result<Vec<u8>, Error> {
         return Err(Error::Model { model: world.name.clone(), reason });
     }
     let mut file = File::default();
-    file.materials(&world.materials, &world.textures, Relief::Written);
+    file.materials(&world.materials, &world.textures);
     let meshes: Vec<Option<usize>> =
         world.meshes.iter().map(|m| file.mesh(&m.name, &m.visuals, &world.materials, [0.0; 3])).collect();
     let mut lamps = Vec::new();

@@ -7,13 +7,28 @@ use crate::writers::number::{n, push};
 use crate::writers::{frame_along, picture_of, quaternion};
 use crate::{Collision, Joint, JointKind, Material, Model3d, Texture, Visual};
 
-/// Writes a material of the preview surface with a label of what it is; its pictures lie in `folder`, `""` for beside the
-/// layer.
-pub fn material(text: &mut Text, material: &Material, textures: &[Texture], path: &str, name: &str, folder: &str) {
+/// Where the pictures of materials lie.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Pictures<'a> {
+    /// Folder beside the layer with a slash at its end; `""` for the layer's own.
+    pub folder: &'a str,
+    /// Whether normal maps are there: of walls and floors, not of the many small files of models.
+    pub relief: bool,
+}
+
+/// Writes a material of the preview surface with a label of what it is.
+pub fn material(
+    text: &mut Text,
+    material: &Material,
+    textures: &[Texture],
+    path: &str,
+    name: &str,
+    pictures: &Pictures<'_>,
+) {
+    let folder = pictures.folder;
     let picture = picture_of(material, textures);
-    let normal = material.worn().and_then(|f| Some((f, f.pictures().normal.as_ref()?)));
-    // Beside models no relief is written: see `Relief` of glTF.
-    let normal = normal.filter(|_| !folder.is_empty()).map(|(f, _)| format!("{folder}{}_normal.png", f.id));
+    let normal = material.worn().filter(|f| pictures.relief && f.pictures().normal.is_some());
+    let normal = normal.map(|f| format!("{folder}{}_normal.png", f.id));
     let color = |c: [f32; 3]| triple(c.map(f64::from));
     text.prim("def Material", name, &[schemas(&["SemanticsLabelsAPI:material"])], |text| {
         text.labels("material", &[&material.name.to_lowercase()]);
@@ -201,6 +216,30 @@ pub fn cuboid(text: &mut Text, name: &str, center: Vec3, half: Vec3, turn: Optio
     });
 }
 
+/// Writes an upright prism of a convex outline, counter-clockwise, as a convex mesh that collides and is not seen.
+pub fn convex_prism(text: &mut Text, name: &str, outline: &[[f64; 2]], z: [f64; 2], class: &str) {
+    let apis = ["PhysicsCollisionAPI", "PhysicsMeshCollisionAPI", "SemanticsLabelsAPI:class"];
+    let count = outline.len();
+    let corners: Vec<Vec3> = z.iter().flat_map(|z| outline.iter().map(move |p| [p[0], p[1], *z])).collect();
+    let mut faces: Vec<Vec<usize>> = vec![(0..count).rev().collect(), (count..2 * count).collect()];
+    faces.extend((0..count).map(|i| vec![i, (i + 1) % count, count + (i + 1) % count, count + i]));
+    let bound = |pick: fn(f64, f64) -> f64, start: f64| -> Vec3 {
+        corners.iter().fold([start; 3], |sum, p| std::array::from_fn(|k| pick(sum[k], p[k])))
+    };
+    let joined = |list: Vec<String>| list.join(", ");
+    text.prim("def Mesh", name, &[schemas(&apis)], |text| {
+        text.labels("class", &[class]);
+        text.line("uniform token purpose = \"guide\"");
+        text.line("uniform token physics:approximation = \"convexHull\"");
+        text.line("uniform token subdivisionScheme = \"none\"");
+        text.line(format_args!("float3[] extent = [{}, {}]", triple(bound(f64::min, f64::MAX)), triple(bound(f64::max, f64::MIN))));
+        text.line(format_args!("int[] faceVertexCounts = [{}]", joined(faces.iter().map(|f| f.len().to_string()).collect())));
+        let indices = faces.iter().flatten().map(ToString::to_string).collect();
+        text.line(format_args!("int[] faceVertexIndices = [{}]", joined(indices)));
+        text.line(format_args!("point3f[] points = [{}]", joined(corners.iter().map(|p| triple(*p)).collect())));
+    });
+}
+
 /// A joint as USD knows it; lengths in m, angles in rad.
 #[derive(Debug, Clone, PartialEq)]
 pub struct UsdJoint<'a> {
@@ -279,8 +318,13 @@ pub fn turn_to(direction: Vec3) -> [f64; 4] {
     quaternion(frame_along(direction))
 }
 
+/// Returns a turn (w, x, y, z) as seen from a frame that is itself turned.
+pub fn turn_within([w, x, y, z]: [f64; 4], turn: [f64; 4]) -> [f64; 4] {
+    crate::affine::product([w, -x, -y, -z], turn)
+}
+
 /// Returns the names and paths of materials in a scope.
-pub(super) fn looks(materials: &[Material], scope: &str) -> (Vec<String>, Vec<String>) {
+pub fn looks(materials: &[Material], scope: &str) -> (Vec<String>, Vec<String>) {
     let names = names("Looks", materials.iter().map(|m| m.name.as_str()));
     let paths = names.iter().map(|n| format!("{scope}/{n}")).collect();
     (names, paths)
