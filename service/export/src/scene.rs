@@ -8,6 +8,7 @@ mod convex;
 mod doors;
 mod floors;
 mod ids;
+mod manifest;
 mod objects;
 mod physics;
 mod walls;

@@ -5,6 +5,7 @@ mod gltf;
 mod nav2;
 pub mod plan;
 mod rmf;
+mod usd;
 
 use d3dgen_model::domain::Domain;
 use d3dgen_model::world::World;
@@ -17,6 +18,7 @@ pub use gltf::Gltf;
 pub use nav2::Nav2;
 pub use plan::Plan;
 pub use rmf::Rmf;
+pub use usd::Usd;
 
 /// A file to be written, relative to the world's output folder.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -57,7 +59,7 @@ pub trait Exporter: Sync {
 
 /// Returns every exporter, the default ones first.
 pub fn all() -> &'static [&'static dyn Exporter] {
-    &[&Arena, &Plan, &Nav2, &Rmf, &Gltf]
+    &[&Arena, &Plan, &Nav2, &Rmf, &Gltf, &Usd]
 }
 
 /// Returns the names at the top of a world's folder that exporters write, each once.

@@ -6,9 +6,13 @@ use d3dgen_mesh::world3d::Node;
 use d3dgen_mesh::{Library, Model3d, World3d, generate};
 use d3dgen_model::domain::{Mount, ObjectType};
 
-use super::View;
+use super::{CEILING, View};
 use crate::Error;
+use crate::scene::SimObject;
 use crate::used::plain;
+
+/// Height that people pass below, m.
+const HEAD_M: f64 = 1.5;
 
 /// A part of the building by the object that its build is for.
 pub(crate) struct Part<'a> {
@@ -70,7 +74,7 @@ impl View<'_> {
             let Some(model) = self.scene.models.get(object.model) else { continue };
             let world = &mut self.world;
             let shown = self.shown.entry(object.model).or_insert_with(|| world.model(&model.model)).clone();
-            let node = Node::new(object.id.clone(), Some(parent))
+            let mut node = Node::new(object.id.clone(), Some(parent))
                 .at(object.at_m, object.yaw_rad)
                 .fact("category", "object")
                 .fact("class", object.class.clone())
@@ -79,8 +83,21 @@ impl View<'_> {
                 .fact("model", model.reference.clone())
                 .fact("mobility", object.mobility.name())
                 .fact("mass_kg", object.mass_kg);
+            if self.hangs(object) {
+                node.layer = CEILING.to_owned();
+            }
             let root = self.world.node(node);
             self.world.bodies(&model.model, &shown, root, &object.id);
         }
+    }
+
+    /// Returns whether a thing hangs from the ceiling: it ends there, and begins above the heads of people.
+    fn hangs(&self, object: &SimObject) -> bool {
+        let room = self.scene.rooms.iter().find(|r| r.room_id == object.room_id);
+        let top = self.scene.models.get(object.model).and_then(|m| m.model.bounds()).map_or(0.0, |b| b[1][2]);
+        room.is_some_and(|r| {
+            let low = object.at_m[2] - r.floor_m;
+            low > HEAD_M && low + top > r.ceiling_m - 0.05
+        })
     }
 }

@@ -16,6 +16,8 @@ pub(super) struct Texel {
 
 /// Where a texel lies.
 struct Place {
+    /// Width of a gap between units that is drawn: at least as wide as a texel, m.
+    joint_m: f64,
     /// From 0 to 1 across and down the picture.
     x: f64,
     y: f64,
@@ -28,7 +30,8 @@ pub(super) fn texels(finish: &Finish, side: usize) -> Vec<Texel> {
     let count = |i: usize| (finish.size_m[i] / finish.unit_m[i]).round().max(1.0) as usize;
     let cells = [count(0), count(1)];
     let at = |i: usize| (i as f64 + 0.5) / side as f64;
-    let place = |i: usize| Place { x: at(i % side), y: at(i / side), cells };
+    let joint_m = finish.joint_m.max(1.02 * finish.size_m[0].max(finish.size_m[1]) / side as f64);
+    let place = |i: usize| Place { joint_m, x: at(i % side), y: at(i / side), cells };
     (0..side * side).map(|i| texel(finish, &place(i))).collect()
 }
 
@@ -73,7 +76,7 @@ fn planks(finish: &Finish, p: &Place) -> Texel {
     let along = edge(shifted * p.cells[0] as f64, finish.unit_m[0]);
     let gap = across.min(along);
     let shade = 0.5 + (grain(p.x, p.y, p.cells, own) - 0.5) * 0.7 + (own - 0.5) * 0.6;
-    Texel { tone: shade, height: (gap / finish.joint_m.max(1e-6)).min(1.0), joint: gap < finish.joint_m / 2.0 }
+    Texel { tone: shade, height: (gap / p.joint_m).min(1.0), joint: gap < p.joint_m / 2.0 }
 }
 
 fn tiles(finish: &Finish, p: &Place) -> Texel {
@@ -83,7 +86,7 @@ fn tiles(finish: &Finish, p: &Place) -> Texel {
     let gap = edge(tx, finish.unit_m[0]).min(edge(ty, finish.unit_m[1]));
     let cloud = layers(p.x, p.y, p.cells.map(|c| c * 3), 3, 22 + (own * 50.0) as u32);
     let tone = 0.5 + (own - 0.5) * 0.6 + (cloud - 0.5) * 0.8;
-    Texel { tone, height: (gap / (1.5 * finish.joint_m.max(1e-6))).min(1.0), joint: gap < finish.joint_m / 2.0 }
+    Texel { tone, height: (gap / (1.5 * p.joint_m)).min(1.0), joint: gap < p.joint_m / 2.0 }
 }
 
 fn weave(p: &Place) -> Texel {

@@ -50,10 +50,10 @@ impl Daylight {
     pub fn day() -> Self {
         Self {
             sun: [-0.45, -0.35, 0.82],
-            sunlight: [2.1, 2.0, 1.85],
+            sunlight: [2.2, 2.1, 2.0],
             sky: [0.95, 1.0, 1.08],
             within: 0.42,
-            lamps: 0.5,
+            lamps: 0.22,
             behind: [0.93, 0.95, 0.97],
         }
     }

@@ -164,7 +164,7 @@ fn prototypes(text: &mut Text, model: &Model3d, root: &str, class: &str) {
     let bodies = body_names(model);
     text.prim("class Scope", "Prototypes", &[], |text| {
         for (body, name) in model.bodies.iter().zip(&bodies) {
-            prototype(text, model, body, &format!("/{root}/Prototypes/{name}"), class, "textures/");
+            prototype(text, model, body, &format!("/{root}/Prototypes/{name}"), class, "./textures/");
         }
     });
 }

@@ -78,8 +78,8 @@ fn exposure(pixels: &[Pixel], colors: &[[f32; 3]]) -> f32 {
     (MEAN / mean.max(1e-3)).clamp(EXPOSURE[0], EXPOSURE[1])
 }
 
-/// Returns light as film shows it: straight below, bent toward 1 above (fit of the ACES curve by K. Narkowicz, 2015).
+/// Returns light as a print shows it: straight below, bent toward 1 where it is bright (extended Reinhard, white at 4).
 fn film(v: f32) -> f32 {
-    let v = v.max(0.0) * 0.72;
-    ((v * (2.51 * v + 0.03)) / (v * (2.43 * v + 0.59) + 0.14)).clamp(0.0, 1.0)
+    let v = v.max(0.0) * 1.35;
+    (v * (1.0 + v / 16.0) / (1.0 + v)).clamp(0.0, 1.0)
 }

@@ -93,7 +93,7 @@ fn texture(text: &mut Text, path: &str, name: &str, file: &str, more: impl FnOnc
 /// Writes a mesh; `looks` are the paths of the materials that visuals name by index, `class` what it is a part of.
 pub fn mesh(text: &mut Text, visual: &Visual, materials: &[Material], name: &str, looks: &[String], class: &str) {
     let mesh = &visual.mesh;
-    let Some([min, max]) = mesh.bounds() else { return };
+    let Some([min, max]) = written_bounds(&mesh.positions).filter(|_| !mesh.triangles.is_empty()) else { return };
     let material = visual.material.and_then(|m| Some((materials.get(m)?, looks.get(m)?)));
     let mut apis = vec!["SemanticsLabelsAPI:class"];
     if material.is_some() {
@@ -105,7 +105,7 @@ pub fn mesh(text: &mut Text, visual: &Visual, materials: &[Material], name: &str
         text.line("uniform token subdivisionScheme = \"none\"");
         list(text, "int[] faceVertexCounts = [", (0..mesh.triangles.len()).map(|_| 3), "]");
         list(text, "int[] faceVertexIndices = [", mesh.triangles.iter().flatten().copied(), "]");
-        vectors(text, "point3f[] points = [", mesh.positions.iter().copied(), 5, "]");
+        vectors(text, "point3f[] points = [", mesh.positions.iter().copied(), DECIMALS, "]");
         let each = "] (\n    interpolation = \"vertex\"\n)";
         if !mesh.normals.is_empty() {
             vectors(text, "normal3f[] normals = [", mesh.normals.iter().copied(), 3, each);
@@ -121,6 +121,18 @@ pub fn mesh(text: &mut Text, visual: &Visual, materials: &[Material], name: &str
             text.line(format_args!("rel material:binding = <{path}>"));
         }
     });
+}
+
+/// Decimals of corners, m.
+const DECIMALS: u32 = 5;
+
+/// Returns the box around all corners as they are written, used by triangles or not.
+fn written_bounds(positions: &[[f32; 3]]) -> Option<[Vec3; 2]> {
+    let unit = 10_f64.powi(DECIMALS as i32);
+    let written = positions.iter().map(|p| p.map(|v| (f64::from(v) * unit).round() / unit));
+    written.map(|p| [p, p]).reduce(|[low, high], [p, _]| {
+        [std::array::from_fn(|k| low[k].min(p[k])), std::array::from_fn(|k| high[k].max(p[k]))]
+    })
 }
 
 fn list(text: &mut Text, before: &str, values: impl Iterator<Item = u32>, after: &str) {
