@@ -54,6 +54,8 @@ const DOWN: f64 = 0.22;
 /// What is farther than this is seen no better, and what is nearer hides the room, m.
 const FAR_M: f64 = 7.0;
 const NEAR_M: f64 = 0.9;
+/// What a ray ends this far before is still in the room, m.
+const WALL_M: f64 = 0.1;
 /// How far doors stand open in pictures from above.
 const AJAR: f64 = 0.75;
 
@@ -198,7 +200,7 @@ fn within(scene: &SimScene, studio: &Studio, room: &SimRoom, wish: &Wish) -> Cam
                 continue;
             }
             let candidate = camera(p, [dx / way, dy / way]);
-            let seen = seen(studio, &candidate);
+            let seen = seen(studio, room, &candidate);
             if best.as_ref().is_none_or(|(most, _)| seen > *most) {
                 best = Some((seen, candidate));
             }
@@ -226,7 +228,7 @@ fn has_elbow_room(studio: &Studio, p: Point, height: f64) -> bool {
 }
 
 /// Returns how much a camera sees: how far it sees in all directions of its picture, less for what is right before it.
-fn seen(studio: &Studio, camera: &Camera) -> f64 {
+fn seen(studio: &Studio, room: &SimRoom, camera: &Camera) -> f64 {
     let [w, h] = camera.size_px;
     let tall = (camera.view_deg / 2.0).to_radians().tan();
     let wide = tall * w as f64 / h.max(1) as f64;
@@ -239,7 +241,11 @@ fn seen(studio: &Studio, camera: &Camera) -> f64 {
             let toward = [dx + dy * u, dy - dx * u, dz + v].map(|c| c * 10.0);
             let target = std::array::from_fn(|i| camera.eye[i] + toward[i]);
             let reach = studio.reach(camera.eye, target).unwrap_or(FAR_M).min(FAR_M);
-            sum += if reach < NEAR_M { reach - 2.0 * (NEAR_M - reach) - 2.0 } else { reach.sqrt() };
+            let length = toward.iter().map(|c| c * c).sum::<f64>().sqrt();
+            let [x, y] = [0, 1].map(|k| camera.eye[k] + toward[k] / length * (reach - WALL_M).max(0.0));
+            // What is seen through a doorway is another room.
+            let within = if room.net.contains(Point::new(x, y)) { 1.0 } else { 0.3 };
+            sum += within * if reach < NEAR_M { reach - 2.0 * (NEAR_M - reach) - 2.0 } else { reach.sqrt() };
         }
     }
     sum

@@ -97,6 +97,11 @@ fn write(model: &Model3d, form: &Form<'_>) -> Result<String, Error> {
     text.prim("def Xform", &root, &[schemas(&apis), "kind = \"component\"".to_owned()], |text| {
         text.labels("class", &[&class]);
         text.line(format_args!("float3[] extentsHint = [{}, {}]", triple(min), triple(max)));
+        if moving {
+            // Leaves of one cupboard pass each other closer than their boxes would.
+            text.line("bool physxArticulation:enabledSelfCollisions = 0");
+            text.line("bool newton:selfCollisionEnabled = 0");
+        }
         if let Form::Asset(facts) = form {
             text.labels("wikidata_qcode", &[QCODE]);
             text.line(format_args!("rel material:binding:physics = </{root}/Physics/Surface>"));

@@ -5,13 +5,15 @@ use d3dgen_mesh::world3d::yaw;
 use d3dgen_mesh::writers::usd::text::{Text, identifier, quoted, schemas};
 use d3dgen_mesh::writers::usd::{AssetFacts, asset_usda, base_name, pictures};
 use d3dgen_mesh::writers::ModelFile;
-use d3dgen_mesh::Model3d;
+use d3dgen_mesh::{Body, Model3d};
 
 use crate::Error;
 use crate::scene::{Mobility, SimObject, SimScene};
 
 /// Side of a thumbnail, px: what SimReady asks for.
 const THUMBNAIL_PX: usize = 256;
+/// Lightest body with a joint of its own, kg.
+const LEAST_KG: f64 = 0.3;
 /// License of models that are made, and what is said of those that a database keeps.
 const LICENSE: &str = "CC0-1.0";
 
@@ -102,11 +104,12 @@ impl Assets {
     }
 }
 
-/// Returns a model whose bodies without shapes that collide (hands of a clock, taps) are part of what they hang on: no
-/// simulator moves what nothing can touch.
+/// Returns a model whose bodies that nothing can touch (hands of a clock), and those so light that no solver of worlds holds
+/// them (knobs, valves, switches), are part of what they hang on.
 fn welded(model: &Model3d) -> Model3d {
     let mut out = model.clone();
-    while let Some(at) = (1..out.bodies.len()).find(|b| out.bodies[*b].collisions.is_empty()) {
+    let is_part = |body: &Body| body.collisions.is_empty() || body.mass_kg < LEAST_KG;
+    while let Some(at) = (1..out.bodies.len()).find(|b| is_part(&out.bodies[*b])) {
         let parent = out.joints.iter().find(|j| j.child == at).map_or(0, |j| j.parent);
         let body = out.bodies.remove(at);
         let moved = |b: usize| if b > at { b - 1 } else { b };
@@ -117,6 +120,7 @@ fn welded(model: &Model3d) -> Model3d {
         }
         let parent = &mut out.bodies[moved(parent)];
         parent.visuals.extend(body.visuals);
+        parent.collisions.extend(body.collisions);
         parent.mass_kg += body.mass_kg;
     }
     out
