@@ -215,7 +215,8 @@ fn interest(scene: &SimScene, room: &SimRoom) -> Point {
     let center = room.net.bounds().center();
     let here: Vec<_> = scene.objects.iter().filter(|o| o.room_id == room.room_id).collect();
     let count = here.len() as f64;
-    let mean = |k: usize, own: f64| (here.iter().map(|o| o.at_m[k]).sum::<f64>() + own * (count + 1.0)) / (2.0 * count + 1.0);
+    let mean =
+        |k: usize, own: f64| (here.iter().map(|o| o.at_m[k]).sum::<f64>() + own * (count + 1.0)) / (2.0 * count + 1.0);
     Point::new(mean(0, center.x), mean(1, center.y))
 }
 

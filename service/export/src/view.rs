@@ -37,7 +37,12 @@ pub fn storey_layer(level: i32) -> String {
 /// # Errors
 /// `Model` when a part of the building cannot be made.
 pub fn world3d(scene: &SimScene) -> Result<World3d, Error> {
-    let mut view = View { scene, world: World3d { name: scene.name.clone(), ..World3d::default() }, parts: Parts::default(), shown: BTreeMap::new() };
+    let mut view = View {
+        scene,
+        world: World3d { name: scene.name.clone(), ..World3d::default() },
+        parts: Parts::default(),
+        shown: BTreeMap::new(),
+    };
     let root = view.world.node(Node::new(scene.name.clone(), None).fact("units", "m"));
     view.ground(root);
     for storey in &scene.storeys {
@@ -78,8 +83,7 @@ impl View<'_> {
                 .at(light.at_m, 0.0)
                 .fact("object", light.object.clone())
                 .fact("kelvin", light.kelvin);
-            node.lamp =
-                Some(Lamp { kind: LampKind::Point, color: lamp_color(light.kelvin), strength: light.lumens });
+            node.lamp = Some(Lamp { kind: LampKind::Point, color: lamp_color(light.kelvin), strength: light.lumens });
             self.world.nodes.push(node);
         }
     }
@@ -97,7 +101,7 @@ impl View<'_> {
 const SUN_TURN: [f64; 4] = [0.939_692_6, 0.241_844_8, -0.241_844_8, 0.0];
 
 /// Returns the room of a storey that a point lies in.
-fn room_at<'a>(scene: &'a SimScene, level: i32, p: Point) -> Option<&'a SimRoom> {
+fn room_at(scene: &SimScene, level: i32, p: Point) -> Option<&SimRoom> {
     scene.rooms.iter().find(|r| r.level == level && r.net.contains(p))
 }
 

@@ -122,8 +122,7 @@ pub fn get(id: &str) -> Option<&'static Finish> {
 
 /// Returns the finish that a name of a surface stands for: its own, else one with a word of it, else plaster.
 pub fn named(name: &str) -> &'static Finish {
-    let words: Vec<String> =
-        name.split(|c: char| !c.is_ascii_alphanumeric()).map(str::to_ascii_lowercase).collect();
+    let words: Vec<String> = name.split(|c: char| !c.is_ascii_alphanumeric()).map(str::to_ascii_lowercase).collect();
     let by_word = || all().iter().find(|f| f.words.iter().any(|w| words.contains(w)));
     let plain = || all().iter().find(|f| f.id == "Plaster_Wall").unwrap_or(&all()[0]);
     get(name).or_else(by_word).unwrap_or_else(plain)
@@ -175,10 +174,8 @@ impl Finish {
         let texels = pattern::texels(self, SIDE);
         let joint = self.joint.as_deref().and_then(srgb).unwrap_or_else(|| self.srgb(0.0));
         let bytes = |c: [f64; 3]| c.map(|v| (v * 255.0).round() as u8);
-        let palette: Vec<[u8; 3]> = (0..STEPS)
-            .map(|i| bytes(self.srgb(i as f64 / (STEPS - 1) as f64)))
-            .chain([bytes(joint)])
-            .collect();
+        let palette: Vec<[u8; 3]> =
+            (0..STEPS).map(|i| bytes(self.srgb(i as f64 / (STEPS - 1) as f64))).chain([bytes(joint)]).collect();
         let index = |t: &pattern::Texel| {
             // About the middle of the two colors, so that contrast changes no mean.
             let tone = 0.5 + (t.tone - 0.5) * self.contrast;

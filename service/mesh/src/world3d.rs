@@ -288,8 +288,12 @@ mod tests {
         let mut world = World3d::default();
         let mut leaf = Node::new("leaf", None).at([1.0, 0.0, 0.0], 0.0);
         let quarter = std::f64::consts::FRAC_PI_2;
-        leaf.motion =
-            Some(Motion { name: "door".into(), kind: JointKind::Revolute, axis: [0.0, 0.0, 1.0], limits: [0.0, quarter] });
+        leaf.motion = Some(Motion {
+            name: "door".into(),
+            kind: JointKind::Revolute,
+            axis: [0.0, 0.0, 1.0],
+            limits: [0.0, quarter],
+        });
         let leaf = world.node(leaf);
         world.node(Node::new("handle", Some(leaf)).at([0.8, 0.0, 1.0], 0.0));
         let at = |open: f64| world.places(&|_| open)[1].origin;

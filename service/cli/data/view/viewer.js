@@ -129,10 +129,10 @@ function refresh() {
     const above = layer.startsWith('storey_') && state.storey && Number(layer.slice(7)) > Number(state.storey.slice(7));
     nodes.forEach((n) => { n.visible = layer === 'ceiling' ? inside : !above; });
   }
-  sky.intensity = state.night ? 0.05 : 1.0;
+  sky.intensity = state.night ? 0.05 : 0.65;
   dim.intensity = state.night ? 0.08 : 0.15;
   sun.intensity = state.night ? 0 : 2.6;
-  scene.environmentIntensity = state.night ? 0.08 : 0.7;
+  scene.environmentIntensity = state.night ? 0.08 : 0.5;
   scene.background = new Color(state.night ? 0x0a0f1a : 0xe6edf3);
   renderer.toneMappingExposure = state.night ? 1.15 : 0.9;
   for (const [id, on] of [['walk', state.walk], ['ceiling', inside], ['night', state.night]]) {
@@ -155,12 +155,24 @@ function light() {
   });
 }
 
+/** Returns the height of the floor of a room. */
+parts.storeyOf = (room) => {
+  for (let o = room; o; o = o.parent) if (o.userData.elevation_m !== undefined) return o.userData.elevation_m;
+  return 0;
+};
+
 function walkTo(name) {
   const room = parts.rooms.find((r) => r.name === name);
   if (!room) return;
   const box = new Box3().setFromObject(room);
   const middle = box.getCenter(new Vector3());
-  const floor = new Box3().setFromObject(room.children.length ? room : room).min.y + 0.2;
+  const size = box.getSize(new Vector3());
+  // At one end of its longer side, looking along it.
+  const along = size.x > size.z ? 'x' : 'z';
+  middle[along] -= 0.3 * size[along];
+  state.yaw = along === 'x' ? -Math.PI / 2 : Math.PI;
+  state.pitch = -0.12;
+  const floor = parts.storeyOf(room);
   camera.position.set(middle.x, floor + EYE_M, middle.z);
   state.walk = true;
   say(WALK_HINT);

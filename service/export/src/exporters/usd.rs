@@ -49,23 +49,15 @@ impl Exporter for Usd {
         let scene = SimScene::of(world, domain, kept)?;
         let seen = view::world3d(&scene)?;
         let assets = objects::Assets::of(&scene);
-        let mut layers = vec![ModelFile {
-            name: "world.usda".to_owned(),
-            bytes: layer(&scene, &seen, &assets)?.into_bytes(),
-        }];
+        let mut layers =
+            vec![ModelFile { name: "world.usda".to_owned(), bytes: layer(&scene, &seen, &assets)?.into_bytes() }];
         layers.extend(pictures(&seen));
         let objects = assets.files(&scene)?;
         // Thumbnails are for catalogs; a package holds what is loaded.
-        let packed: Vec<ModelFile> = layers
-            .iter()
-            .chain(objects.iter().filter(|f| !f.name.contains("/.thumbs/")))
-            .cloned()
-            .collect();
-        let mut files: Vec<File> = layers
-            .into_iter()
-            .chain(objects)
-            .map(|f| File::new(format!("{ROOT}/{}", f.name), f.bytes))
-            .collect();
+        let packed: Vec<ModelFile> =
+            layers.iter().chain(objects.iter().filter(|f| !f.name.contains("/.thumbs/"))).cloned().collect();
+        let mut files: Vec<File> =
+            layers.into_iter().chain(objects).map(|f| File::new(format!("{ROOT}/{}", f.name), f.bytes)).collect();
         files.push(File::new(format!("{ROOT}/world.usdz"), writers::pack(&packed)));
         files.push(File::new(format!("{ROOT}/manifest.json"), json_text(&manifest(&scene, &assets))));
         files.push(File::new(format!("{ROOT}/paths.json"), json_text(&scene.paths())));
@@ -95,12 +87,7 @@ fn pictures(seen: &World3d) -> Vec<ModelFile> {
 
 /// Returns the layer of the world.
 fn layer(scene: &SimScene, seen: &World3d, assets: &objects::Assets) -> Result<String, Error> {
-    let header = [
-        "defaultPrim = \"World\"",
-        "kilogramsPerUnit = 1",
-        "metersPerUnit = 1",
-        "upAxis = \"Z\"",
-    ];
+    let header = ["defaultPrim = \"World\"", "kilogramsPerUnit = 1", "metersPerUnit = 1", "upAxis = \"Z\""];
     let mut text = Text::layer(&header.map(str::to_owned));
     let apis = schemas(&["MaterialBindingAPI", "SemanticsLabelsAPI:class"]);
     let mut failed = None;

@@ -8,7 +8,8 @@ use super::{Mobility, SimScene};
 impl SimScene {
     /// Returns the manifest of a format, in which `path` is where it has what an id of the scene names.
     pub fn world_manifest(&self, path: impl Fn(&str) -> String) -> Value {
-        let rooms = self.rooms.iter().map(|r| json!({"path": path(&r.id), "id": r.id, "class": "room", "type": r.class}));
+        let rooms =
+            self.rooms.iter().map(|r| json!({"path": path(&r.id), "id": r.id, "class": "room", "type": r.class}));
         let doors = self.doors.iter().map(|d| {
             let kind = match d.kind {
                 DoorKind::Open => "opening",

@@ -76,9 +76,8 @@ impl View<'_> {
             for piece in &wall.pieces {
                 self.piece(wall, piece, &mut mesh);
             }
-            let mut node = Node::new(wall.id.clone(), Some(parent))
-                .fact("category", "wall")
-                .fact("rooms", wall.room_ids.clone());
+            let mut node =
+                Node::new(wall.id.clone(), Some(parent)).fact("category", "wall").fact("rooms", wall.room_ids.clone());
             node.mesh = self.world.mesh(wall.id.clone(), mesh.visuals());
             self.world.nodes.push(node);
         }
@@ -91,8 +90,7 @@ impl View<'_> {
                 Side::Top if piece.part != WallPart::Sill => self.plain("Wall_Section", SECTION),
                 Side::Top | Side::Bottom => self.finish(&wall.material),
                 Side::Upright { middle, outward, .. } => {
-                    let beside =
-                        Point::new(middle.x + outward[0] * BESIDE_M, middle.y + outward[1] * BESIDE_M);
+                    let beside = Point::new(middle.x + outward[0] * BESIDE_M, middle.y + outward[1] * BESIDE_M);
                     let room = room_at(self.scene, wall.level, beside);
                     let name = room.map(|r| r.materials.wall.clone());
                     let has_skirting = piece.part != WallPart::Lintel && piece.part != WallPart::Column;
@@ -102,7 +100,8 @@ impl View<'_> {
                     {
                         self.skirting(&corners, side, floor, mesh);
                     }
-                    let name = name.unwrap_or_else(|| if wall.exterior { FACADE.to_owned() } else { wall.material.clone() });
+                    let name =
+                        name.unwrap_or_else(|| if wall.exterior { FACADE.to_owned() } else { wall.material.clone() });
                     self.finish(&name)
                 }
             };
@@ -122,7 +121,8 @@ impl View<'_> {
         let out = |p: [f64; 3]| Point::new(p[0] + outward[0] * thick, p[1] + outward[1] * thick);
         // Counter-clockwise: along the wall, then back before it.
         let outline = vec![Point::new(b[0], b[1]), Point::new(a[0], a[1]), out(a), out(b)];
-        let outline = if Polygon(outline.clone()).signed_area() < 0.0 { outline.into_iter().rev().collect() } else { outline };
+        let outline =
+            if Polygon(outline.clone()).signed_area() < 0.0 { outline.into_iter().rev().collect() } else { outline };
         let shape = SimShape::Prism { outline, z_m: [floor, floor + height] };
         let material = self.plain("Skirting", SKIRTING);
         let mut strip = Mesh::default();

@@ -33,7 +33,10 @@ pub(super) fn faces(shape: &SimShape) -> Vec<(Vec<[f64; 3]>, Side)> {
         if length > 1e-9 {
             let outward = [(b.y - a.y) / length, (a.x - b.x) / length];
             let middle = Point::new((a.x + b.x) / 2.0, (a.y + b.y) / 2.0);
-            faces.push((vec![at(a, low), at(b, low), at(b, high), at(a, high)], Side::Upright { middle, outward, length }));
+            faces.push((
+                vec![at(a, low), at(b, low), at(b, high), at(a, high)],
+                Side::Upright { middle, outward, length },
+            ));
         }
     }
     faces

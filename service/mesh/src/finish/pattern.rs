@@ -134,7 +134,11 @@ fn veins(p: &Place) -> Texel {
 fn clouds(p: &Place) -> Texel {
     let cloud = layers(p.x, p.y, p.cells, 5, 101);
     let pore = hash((p.x * 1024.0) as i64, (p.y * 1024.0) as i64, 107) > 0.9975;
-    Texel { tone: if pore { 0.05 } else { 0.5 + (cloud - 0.5) * 1.7 }, height: if pore { 0.0 } else { cloud }, joint: false }
+    Texel {
+        tone: if pore { 0.05 } else { 0.5 + (cloud - 0.5) * 1.7 },
+        height: if pore { 0.0 } else { cloud },
+        joint: false,
+    }
 }
 
 fn stipple(p: &Place) -> Texel {

@@ -5,9 +5,9 @@ pub mod text;
 
 use text::{Text, identifier, names, quat, schemas, triple};
 
-use super::{check, plain};
 use super::number::{n, small};
 use super::quaternion;
+use super::{check, plain};
 use crate::mass::{inertia, whole};
 use crate::{Body, Error, Model3d};
 
@@ -78,13 +78,8 @@ fn write(model: &Model3d, form: &Form<'_>) -> Result<String, Error> {
         Form::Asset(facts) => metadata(model, facts, &root),
     };
     header.extend(
-        [
-            &format!("defaultPrim = \"{root}\""),
-            "kilogramsPerUnit = 1",
-            "metersPerUnit = 1",
-            "upAxis = \"Z\"",
-        ]
-        .map(|s: &str| s.to_owned()),
+        [&format!("defaultPrim = \"{root}\""), "kilogramsPerUnit = 1", "metersPerUnit = 1", "upAxis = \"Z\""]
+            .map(|s: &str| s.to_owned()),
     );
     let mut apis = vec!["GeomModelAPI", "SemanticsLabelsAPI:class"];
     if moving {

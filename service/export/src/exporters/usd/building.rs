@@ -5,8 +5,8 @@ use std::collections::BTreeSet;
 use d3dgen_mesh::dynamics::Dynamics;
 use d3dgen_mesh::world3d::{Node, yaw};
 use d3dgen_mesh::writers::usd::parts::{self, UsdJoint};
-use d3dgen_mesh::writers::usd::text::{Text, identifier, schemas, triple};
 use d3dgen_mesh::writers::usd::prototype;
+use d3dgen_mesh::writers::usd::text::{Text, identifier, schemas, triple};
 use d3dgen_mesh::{JointKind, World3d};
 
 use crate::Error;
@@ -223,8 +223,7 @@ fn group(_: &str, kind: &str) -> [String; 2] {
 
 /// Writes a zone as an outline on the floor.
 pub(super) fn zone(text: &mut Text, zone: &SimZone) {
-    let points: Vec<String> =
-        zone.outline.corners().iter().map(|p| triple([p.x, p.y, zone.floor_m + 0.01])).collect();
+    let points: Vec<String> = zone.outline.corners().iter().map(|p| triple([p.x, p.y, zone.floor_m + 0.01])).collect();
     let kind = serde_json::to_value(zone.kind).ok().and_then(|k| k.as_str().map(str::to_owned)).unwrap_or_default();
     text.prim("def BasisCurves", &identifier(&zone.id), &[schemas(&["SemanticsLabelsAPI:class"])], |text| {
         text.labels("class", &[&kind]);

@@ -29,7 +29,9 @@ fn scene_cfg(scene: &SimScene) -> String {
     let doors: Vec<String> = scene
         .doors
         .iter()
-        .flat_map(|d| d.leaves.iter().map(move |l| format!("    \"{{ENV_REGEX_NS}}/World/Doors/{}/{}\",\n", d.id, l.id)))
+        .flat_map(|d| {
+            d.leaves.iter().map(move |l| format!("    \"{{ENV_REGEX_NS}}/World/Doors/{}/{}\",\n", d.id, l.id))
+        })
         .collect();
     format!(
         r#""""Isaac Lab scene of the world `{name}`: give it a robot and step it.
@@ -78,9 +80,7 @@ fn capital(word: &str) -> String {
 /// Returns the environment graph: the world as background, what can be grasped as objects that stand on what they stand on.
 fn graph(scene: &SimScene) -> Value {
     let grasped = scene.objects.iter().filter(|o| o.mobility == Mobility::Graspable);
-    let references = |id: &str| {
-        json!({"id": id, "parent_id": scene.name, "object_type": "rigid", "params": {"prim_path": format!("{{ENV_REGEX_NS}}/World/Objects/{id}")}})
-    };
+    let references = |id: &str| json!({"id": id, "parent_id": scene.name, "object_type": "rigid", "params": {"prim_path": format!("{{ENV_REGEX_NS}}/World/Objects/{id}")}});
     let mut anchors: Vec<&str> = grasped.clone().filter_map(|o| o.support.as_deref()).collect();
     anchors.sort_unstable();
     anchors.dedup();

@@ -2,9 +2,9 @@
 
 use d3dgen_mesh::picture::{Ground, View, render};
 use d3dgen_mesh::world3d::yaw;
+use d3dgen_mesh::writers::ModelFile;
 use d3dgen_mesh::writers::usd::text::{Text, identifier, quoted, schemas};
 use d3dgen_mesh::writers::usd::{AssetFacts, asset_usda, base_name, pictures};
-use d3dgen_mesh::writers::ModelFile;
 use d3dgen_mesh::{Body, Model3d};
 
 use crate::Error;

@@ -180,9 +180,9 @@ impl Bvh {
 /// Returns the distance at which a ray enters a box; infinite where it misses.
 fn entry(bounds: &[[f32; 3]; 2], ray: &Ray) -> f32 {
     let (mut near, mut far) = (0.0_f32, f32::MAX);
-    for i in 0..3 {
-        let a = (bounds[0][i] - ray.from[i]) * ray.inverse[i];
-        let b = (bounds[1][i] - ray.from[i]) * ray.inverse[i];
+    for (i, (low, high)) in bounds[0].iter().zip(&bounds[1]).enumerate() {
+        let a = (low - ray.from[i]) * ray.inverse[i];
+        let b = (high - ray.from[i]) * ray.inverse[i];
         near = near.max(a.min(b));
         far = far.min(a.max(b));
     }
@@ -217,7 +217,8 @@ fn cut(boxes: &[[[f32; 3]; 2]], order: &mut [u32]) -> usize {
         order.iter().fold((f32::MAX, f32::MIN), |(low, high), i| (low.min(center(*i, k)), high.max(center(*i, k))))
     };
     let ranges: [(f32, f32); 3] = std::array::from_fn(range);
-    let axis = (0..3).max_by(|a, b| (ranges[*a].1 - ranges[*a].0).total_cmp(&(ranges[*b].1 - ranges[*b].0))).unwrap_or(0);
+    let axis =
+        (0..3).max_by(|a, b| (ranges[*a].1 - ranges[*a].0).total_cmp(&(ranges[*b].1 - ranges[*b].0))).unwrap_or(0);
     let (low, high) = ranges[axis];
     let half = order.len() / 2;
     if high - low <= 1e-9 {

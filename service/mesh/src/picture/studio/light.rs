@@ -37,7 +37,13 @@ impl Surface {
     pub fn new(material: &Material, cloth: Option<Cloth>) -> Self {
         let own = cloth.is_some() && material.worn().is_none();
         Self {
-            color: if own { [1.0; 3] } else if cloth.is_some() { material.factor() } else { material.base_color },
+            color: if own {
+                [1.0; 3]
+            } else if cloth.is_some() {
+                material.factor()
+            } else {
+                material.base_color
+            },
             cloth,
             size: material.worn().map_or([1.0; 2], |f| f.size_m.map(|v| v as f32)),
             opacity: material.opacity.clamp(0.0, 1.0),
@@ -264,7 +270,9 @@ impl Studio {
                 let surface = &self.surfaces[place.surface];
                 let color = surface.at(place.uv);
                 let open = 0.55 + 0.45 * (hit.distance / far).min(1.0);
-                std::array::from_fn(|k| color[k] * daylight.within * open * 1.3 + surface.emits[k] * daylight.lamps * 2.0)
+                std::array::from_fn(|k| {
+                    color[k] * daylight.within * open * 1.3 + surface.emits[k] * daylight.lamps * 2.0
+                })
             }
             // Below the horizon there is ground.
             None if ray.toward[2] < 0.0 && far > AROUND_M => daylight.behind.map(|v| v * 0.8),
@@ -281,9 +289,8 @@ impl Studio {
         let (a, b) = dice.pair();
         let spread = upward(place.normal, a, b);
         let blur = rough * rough;
-        let toward = unit(std::array::from_fn(|k| {
-            (ray.toward[k] - along * place.normal[k]) * (1.0 - blur) + spread[k] * blur
-        }));
+        let toward =
+            unit(std::array::from_fn(|k| (ray.toward[k] - along * place.normal[k]) * (1.0 - blur) + spread[k] * blur));
         self.glimpse(&Ray::new(place.lifted(), toward), 40.0, daylight)
     }
 

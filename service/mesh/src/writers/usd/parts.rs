@@ -117,7 +117,10 @@ pub fn mesh(text: &mut Text, visual: &Visual, materials: &[Material], name: &str
                 let st = mesh.uvs.iter().map(|uv| [uv[0] / size[0], uv[1] / size[1]]);
                 vectors(text, "texCoord2f[] primvars:st = [", st, 4, each);
             }
-            text.line(format_args!("color3f[] primvars:displayColor = [{}]", triple(material.base_color.map(f64::from))));
+            text.line(format_args!(
+                "color3f[] primvars:displayColor = [{}]",
+                triple(material.base_color.map(f64::from))
+            ));
             text.line(format_args!("rel material:binding = <{path}>"));
         }
     });
@@ -244,8 +247,15 @@ pub fn convex_prism(text: &mut Text, name: &str, outline: &[[f64; 2]], z: [f64; 
         text.line("uniform token purpose = \"guide\"");
         text.line("uniform token physics:approximation = \"convexHull\"");
         text.line("uniform token subdivisionScheme = \"none\"");
-        text.line(format_args!("float3[] extent = [{}, {}]", triple(bound(f64::min, f64::MAX)), triple(bound(f64::max, f64::MIN))));
-        text.line(format_args!("int[] faceVertexCounts = [{}]", joined(faces.iter().map(|f| f.len().to_string()).collect())));
+        text.line(format_args!(
+            "float3[] extent = [{}, {}]",
+            triple(bound(f64::min, f64::MAX)),
+            triple(bound(f64::max, f64::MIN))
+        ));
+        text.line(format_args!(
+            "int[] faceVertexCounts = [{}]",
+            joined(faces.iter().map(|f| f.len().to_string()).collect())
+        ));
         let indices = faces.iter().flatten().map(ToString::to_string).collect();
         text.line(format_args!("int[] faceVertexIndices = [{}]", joined(indices)));
         text.line(format_args!("point3f[] points = [{}]", joined(corners.iter().map(|p| triple(*p)).collect())));
