@@ -5,6 +5,7 @@
 
 pub mod error;
 pub mod exporters;
+pub mod manifest;
 pub mod models;
 pub mod roadmap;
 pub mod scene;
@@ -14,6 +15,7 @@ mod color;
 mod font;
 mod picture;
 mod used;
+mod xml;
 
 pub use error::Error;
 pub use exporters::{Exporter, File};

@@ -4,6 +4,7 @@ use std::sync::atomic::AtomicBool;
 
 use d3dgen_assets::annotation::asa;
 use d3dgen_export::exporters;
+use d3dgen_export::manifest::Manifest;
 use d3dgen_export::models::{KeptModel, KeptModels};
 use d3dgen_model::world::World;
 use d3dgen_plugins::Plugin;
@@ -51,6 +52,7 @@ pub(super) fn files(
     let plugin: &dyn Plugin = plugin(&now, "world.scene_graph.domain", &world.scene_graph.domain)?;
     let usual: Vec<String> = USUAL.iter().map(|f| (*f).to_owned()).collect();
     let mut files = std::collections::BTreeMap::new();
+    let mut manifest = Manifest::of(world, plugin.domain(), &Kept(core)).map_err(status::export)?;
     for name in if formats.is_empty() { &usual } else { formats } {
         go_on(stop)?;
         let exporter = exporters::get(name).ok_or_else(|| {
@@ -58,8 +60,11 @@ pub(super) fn files(
             invalid("formats", format!("{:?} is no format; there are {}", short(name), known.join(", ")))
         })?;
         let made = exporter.export(world, plugin.domain(), &Kept(core)).map_err(status::export)?;
+        manifest.add(exporter, &made);
         files.extend(made.into_iter().map(|f| (f.path, f.bytes)));
     }
+    let manifest = manifest.file(None);
+    files.insert(manifest.path, manifest.bytes);
     for path in files.keys() {
         names::upload_path("world", path)?;
     }
