@@ -8,7 +8,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use d3dgen_export::exporters;
+use d3dgen_export::{exporters, manifest};
 use tempfile::TempDir;
 
 use crate::error::Error;
@@ -27,6 +27,7 @@ const DOCUMENTS: &[&str] = &[
     "proposal.json",
     VIEW,
     PICTURES,
+    manifest::FILE,
 ];
 /// Folders of the page and the pictures that `view` and `render` make of a world.
 pub const VIEW: &str = "view";
@@ -109,6 +110,11 @@ impl Output {
         folder
             .and_then(|()| fs::write(&file, bytes))
             .map_err(|source| Error::Write { path: self.path.join(name), source })
+    }
+
+    /// Returns a file that stays in the folder unless it is written anew; none in a folder that goes away whole.
+    pub fn earlier(&self, name: &str) -> Option<Vec<u8>> {
+        self.adds.then(|| fs::read(self.path.join(name)).ok()).flatten()
     }
 
     /// Puts the folder in its place; an earlier output goes away whole. A folder without a world takes the place of none

@@ -5,6 +5,7 @@
 
 pub mod error;
 pub mod exporters;
+pub mod manifest;
 pub mod models;
 pub mod render;
 pub mod roadmap;
@@ -16,6 +17,7 @@ mod color;
 mod font;
 mod picture;
 mod used;
+mod xml;
 
 pub use error::Error;
 pub use exporters::{Exporter, File};

@@ -215,6 +215,17 @@ impl Model3d {
     }
 }
 
+/// Returns a model as one body: what joints hold is held fast, with every joint at zero.
+pub fn welded(model: &Model3d) -> Model3d {
+    let mut all = Body { name: model.name.clone(), ..Body::default() };
+    for body in &model.bodies {
+        all.visuals.extend(body.visuals.iter().cloned());
+        all.collisions.extend(body.collisions.iter().cloned());
+        all.mass_kg += body.mass_kg;
+    }
+    Model3d { bodies: vec![all], joints: Vec::new(), ..model.clone() }
+}
+
 impl Mesh {
     /// Returns the box around all corners that triangles use, m; none when there is no triangle.
     pub fn bounds(&self) -> Option<[[f64; 3]; 2]> {

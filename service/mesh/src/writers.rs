@@ -3,14 +3,15 @@
 //! Same model, same bytes. What it is not for: the annotation beside a model, which says what it is (`export`, `assets`).
 
 mod glb;
-mod number;
+pub mod number;
 mod obj;
 mod sdf;
 pub mod usd;
 mod usdz;
 
 pub use glb::{glb, world_glb};
-pub use sdf::sdf;
+pub use obj::mesh_obj;
+pub use sdf::{sdf, sdf_body};
 pub use usd::{asset_usda, usda};
 pub use usdz::{pack, usdz};
 
@@ -122,7 +123,7 @@ fn picture_extension(bytes: &[u8]) -> Option<&'static str> {
 }
 
 /// Returns the unit quaternion (w, x, y, z) of a right-handed frame given by its axes.
-fn quaternion(axes: [Vec3; 3]) -> [f64; 4] {
+pub fn quaternion(axes: [Vec3; 3]) -> [f64; 4] {
     let m = |row: usize, column: usize| axes[column][row];
     let trace = m(0, 0) + m(1, 1) + m(2, 2);
     let q = if trace > 0.0 {

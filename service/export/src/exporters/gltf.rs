@@ -29,4 +29,10 @@ impl Exporter for Gltf {
         let seen = view::world3d(&SimScene::of(world, domain, kept)?)?;
         Ok(vec![File::new(format!("gltf/{}.glb", world.name), writers::world_glb(&seen)?)])
     }
+
+    /// Nodes have the ids of the scene; zones and robots are not seen.
+    fn places(&self, scene: &SimScene) -> Vec<(String, String)> {
+        let seen = |kind: &str| !matches!(kind, "zone" | "robot");
+        scene.ids().into_iter().filter(|(_, kind)| seen(kind)).map(|(id, _)| (id.to_owned(), id.to_owned())).collect()
+    }
 }

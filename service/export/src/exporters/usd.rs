@@ -65,6 +65,10 @@ impl Exporter for Usd {
         files.sort_by(|a, b| a.path.cmp(&b.path));
         Ok(files)
     }
+
+    fn places(&self, scene: &SimScene) -> Vec<(String, String)> {
+        places(scene).into_iter().map(|(id, path)| (id.to_owned(), path)).collect()
+    }
 }
 
 fn json_text(value: &Value) -> String {
