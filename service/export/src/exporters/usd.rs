@@ -180,16 +180,18 @@ fn zones(text: &mut Text, scene: &SimScene) {
 
 /// Returns where the stage has what an id names.
 fn places(scene: &SimScene) -> BTreeMap<&str, String> {
-    let mut places = BTreeMap::new();
-    let mut add = |scope: &str, id| places.insert(id, format!("/World/{scope}/{}", identifier(id)));
-    scene.rooms.iter().for_each(|r| drop(add("Rooms", r.id.as_str())));
-    scene.walls.iter().for_each(|w| drop(add("Walls", w.id.as_str())));
-    scene.doors.iter().for_each(|d| drop(add("Doors", d.id.as_str())));
-    scene.windows.iter().for_each(|w| drop(add("Windows", w.id.as_str())));
-    scene.objects.iter().for_each(|o| drop(add("Objects", o.id.as_str())));
-    scene.lights.iter().for_each(|l| drop(add("Lights", l.id.as_str())));
-    scene.zones.iter().for_each(|z| drop(add("Zones", z.id.as_str())));
-    places
+    let scope = |kind: &str| match kind {
+        "room" => Some("Rooms"),
+        "wall" => Some("Walls"),
+        "door" => Some("Doors"),
+        "window" => Some("Windows"),
+        "object" => Some("Objects"),
+        "light" => Some("Lights"),
+        "zone" => Some("Zones"),
+        _ => None,
+    };
+    let place = |(id, kind)| Some((id, format!("/World/{}/{}", scope(kind)?, identifier(id))));
+    scene.ids().into_iter().filter_map(place).collect()
 }
 
 /// Returns what the stage holds, in the form in which checks of simulators read it.

@@ -63,7 +63,7 @@ impl Building<'_> {
         let Some(bounds) = bounds else { return };
         let z = self.scene.ground_m() - GROUND_M / 2.0;
         let (middle, around) = (bounds.center(), bounds.grown(AROUND_M));
-        text.prim("def Xform", "Ground", &group("ground", "component"), |text| {
+        text.prim("def Xform", "Ground", &component(), |text| {
             text.labels("class", &["ground"]);
             self.meshes(text, "ground", "ground");
             let half = [around.width() / 2.0, around.height() / 2.0, GROUND_M / 2.0];
@@ -74,7 +74,7 @@ impl Building<'_> {
     fn rooms(&self, text: &mut Text) {
         text.prim("def Xform", "Rooms", &["kind = \"group\"".to_owned()], |text| {
             for room in &self.scene.rooms {
-                text.prim("def Xform", &identifier(&room.id), &group("room", "component"), |text| {
+                text.prim("def Xform", &identifier(&room.id), &component(), |text| {
                     text.labels("class", &["room", &room.class]);
                     text.line(format_args!("custom string d3dgen:room_id = \"{}\"", room.room_id));
                     text.prim("def Xform", "floor", &[schemas(&["SemanticsLabelsAPI:class"])], |text| {
@@ -99,7 +99,7 @@ impl Building<'_> {
     fn walls(&self, text: &mut Text) {
         text.prim("def Xform", "Walls", &["kind = \"group\"".to_owned()], |text| {
             for wall in &self.scene.walls {
-                text.prim("def Xform", &identifier(&wall.id), &group("wall", "component"), |text| {
+                text.prim("def Xform", &identifier(&wall.id), &component(), |text| {
                     text.labels("class", &["wall"]);
                     self.meshes(text, &wall.id, "wall");
                     shapes(text, wall.pieces.iter().map(|p| &p.shape), "wall");
@@ -112,7 +112,7 @@ impl Building<'_> {
         text.prim("def Xform", "Windows", &["kind = \"group\"".to_owned()], |text| {
             for window in &self.scene.windows {
                 let (part, at) = window_part(window);
-                text.prim("def Xform", &identifier(&window.id), &group("window", "component"), |text| {
+                text.prim("def Xform", &identifier(&window.id), &component(), |text| {
                     text.labels("class", &["window"]);
                     parts.instance(text, "visual", &part, at, yaw(window.glass.yaw_rad));
                     for (i, shape) in std::iter::once(&window.glass).chain(&window.frame).enumerate() {
@@ -126,7 +126,7 @@ impl Building<'_> {
     fn doors(&self, text: &mut Text, parts: &Shared) {
         text.prim("def Xform", "Doors", &["kind = \"group\"".to_owned()], |text| {
             for door in &self.scene.doors {
-                text.prim("def Xform", &identifier(&door.id), &group("door", "component"), |text| {
+                text.prim("def Xform", &identifier(&door.id), &component(), |text| {
                     text.labels("class", &["door"]);
                     text.prim("def Xform", "frame", &[schemas(&["SemanticsLabelsAPI:class"])], |text| {
                         text.labels("class", &["door_frame"]);
@@ -217,8 +217,9 @@ fn upright(text: &mut Text, name: &str, b: &SimBox, class: &str) {
     parts::cuboid(text, name, b.center_m, b.half_m, turn, class);
 }
 
-fn group(_: &str, kind: &str) -> [String; 2] {
-    [schemas(&["SemanticsLabelsAPI:class"]), format!("kind = \"{kind}\"")]
+/// Returns the metadata of a labelled part of the building.
+fn component() -> [String; 2] {
+    [schemas(&["SemanticsLabelsAPI:class"]), "kind = \"component\"".to_owned()]
 }
 
 /// Writes a zone as an outline on the floor.
