@@ -4,5 +4,7 @@
 mod bounds;
 mod changes;
 mod connections;
+mod library;
+mod page;
 mod support;
 mod unread;
