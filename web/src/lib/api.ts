@@ -44,5 +44,6 @@ export function isRefusal(error: unknown): boolean {
 
 /** Returns what went wrong in the server's own words. */
 export function reasonOf(error: unknown): string {
-  return ConnectError.from(error).rawMessage;
+  const known = ConnectError.from(error);
+  return known.rawMessage || Code[known.code];
 }

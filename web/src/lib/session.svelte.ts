@@ -225,6 +225,20 @@ class Session {
     return await this.#make({ case: "building", value: { prompt: this.prompt, seed } as never }, t("made"), {});
   }
 
+  /** Furnishes a plan that the person brought, as it is; `companions` are files that it names. Returns true when there is a world. */
+  async bring(fileName: string, content: Uint8Array, companions: Record<string, Uint8Array>): Promise<boolean> {
+    this.notice = undefined;
+    try {
+      const { sceneGraph, floorplan } = await worlds.importFloorplan({ fileName, content, companions, addDoors: true });
+      if (!sceneGraph || !floorplan) return false;
+      this.prompt = "";
+      return await this.#make({ case: "sceneGraph", value: sceneGraph }, fileName, {}, create(WorldSchema, { sceneGraph, floorplan }));
+    } catch (error) {
+      this.say(reasonOf(error));
+      return false;
+    }
+  }
+
   /** Makes the world anew with another seed; what is locked stays. */
   async another() {
     const world = this.step?.world;

@@ -164,12 +164,30 @@ export function withWallMoved(world: World, wallId: string, by: number): World {
     return { ...room, polygon, netPolygon: net, netAreaM2: tidy(areaOf(corners(net))) };
   });
   const near = (roomIds: string[]) => roomIds.some((id) => sides.has(id));
+  const middle = { x: (spots[0].x + spots[1].x) / 2, y: (spots[0].y + spots[1].y) / 2 };
+  const ahead = { x: middle.x + Math.sign(shift.x) * 0.2, y: middle.y + Math.sign(shift.y) * 0.2 };
+  const shrinks = [...sides].find((id) => inside(corners(roomOf(world, id)?.polygon), ahead));
+  const grows = [...sides].find((id) => id !== shrinks);
+  const moving = new Set(pieces.map((w) => w.wallId));
+  const walls = plan.walls.flatMap((wall): Wall[] => {
+    if (moving.has(wall.wallId)) return [{ ...wall, line: line(wall.line) as Segment }];
+    const meets = [wall.line?.start, wall.line?.end].find((p) => touches(point(p), 1e-3));
+    const isSide = wall.roomIds.includes(shrinks ?? grows ?? "");
+    if (!meets || !isSide) return [wall];
+    const rest = { ...wall, line: line(wall.line) as Segment };
+    if (!shrinks) return [rest]; // outwards: the walls at its sides grow with it
+    // what parted the room that shrinks from a third one now parts the room that grows from it
+    const roomIds = wall.roomIds.flatMap((id) => (id !== shrinks ? [id] : grows ? [grows] : []));
+    if (roomIds.length === 0) return [rest];
+    const strip = { ...(wall.line as Segment), start: meets, end: at(meets, 1e-3) } as Segment;
+    return [rest, { ...wall, wallId: `${wall.wallId}_strip`, roomIds, exterior: roomIds.length < 2, line: strip }];
+  });
   return {
     ...world,
     floorplan: {
       ...plan,
       rooms,
-      walls: plan.walls.map((w) => (near(w.roomIds) ? { ...w, line: line(w.line) as Segment } : w)),
+      walls,
       doors: plan.doors.map((d) => (near(d.roomIds) ? { ...d, line: line(d.line) as Segment } : d)),
       windows: plan.windows.map((w) => (sides.has(w.roomId) ? { ...w, line: line(w.line) as Segment } : w)),
     },
