@@ -318,7 +318,7 @@ fn watched(response: Response<Body>, is_grpc: bool, mut call: Call, until: Until
     };
     // Answers without a body, and those that are no gRPC, say how they ended at once.
     call.code = body::code(response.headers()).or((!is_grpc).then_some(match response.status().as_u16() {
-        200..300 => Code::Ok,
+        200..400 => Code::Ok,
         404 => Code::NotFound,
         _ => Code::Unknown,
     }));

@@ -89,13 +89,13 @@ export function reach(polygon: P[], from: P, dx: number, dy: number): number | u
   return nearest;
 }
 
-/** Returns the area of an outline, m2. */
+/** Returns the area of an outline, m2; below 0 for one that runs clockwise. */
 export function areaOf(polygon: P[]): number {
   let twice = 0;
   for (let i = 0, j = polygon.length - 1; i < polygon.length; j = i++) {
     twice += polygon[j].x * polygon[i].y - polygon[i].x * polygon[j].y;
   }
-  return Math.abs(twice) / 2;
+  return twice / 2;
 }
 
 /** Returns a point well inside of an outline, for its label: the best of a small grid. */

@@ -1,9 +1,12 @@
 /** What happens while something is dragged: where it goes, what it snaps to, and the edit that it comes to. */
 import type { World } from "../gen/d3dgen/v1/world_pb";
-import { boundsOf, corners, ends, footprint, onStep, type P, reach, tidy } from "../lib/geometry";
+import { areaOf, boundsOf, corners, ends, footprint, onStep, type P, reach, tidy } from "../lib/geometry";
 import type { EditInit } from "../lib/session.svelte";
 import { t } from "../lib/texts.svelte";
 import { nameOf, objectOf, roomOf, snapLines, withDoorMoved, withMoved, withWallMoved } from "../lib/world";
+
+/** A wall stops before a room has less floor than this, m2. */
+const LEAST = 0.3;
 
 /** A straight line across the plan that something snapped to. */
 export interface Guide {
@@ -93,6 +96,13 @@ export function ofWall(world: World, wallId: string): Drag {
     .filter((l) => Math.abs(l.along.y) > Math.abs(l.along.x) === upright)
     .map((l) => across(l.a));
   const label = t("did.wall");
+  /** Leaves every room at the wall a floor. */
+  const leaves = (moved: World, sides: string[]) =>
+    sides.every((id) => {
+      const room = roomOf(moved, id);
+      return room !== undefined && areaOf(corners(room.netPolygon)) > LEAST && areaOf(corners(room.polygon)) > LEAST;
+    });
+  let last: Dragged | undefined;
   return {
     to(by, snap) {
       const from = across(line.a);
@@ -100,8 +110,9 @@ export function ofWall(world: World, wallId: string): Drag {
       const go = tidy(onStep(snapped?.by ?? across(by)));
       if (go === 0) return undefined;
       const moved = withWallMoved(world, wallId, go);
-      const guides: Guide[] = snapped ? [upright ? { x: snapped.line } : { y: snapped.line }] : [];
       const sides = walls.find((w) => w.wallId === wallId)?.roomIds ?? [];
+      if (!leaves(moved, sides)) return last;
+      const guides: Guide[] = snapped ? [upright ? { x: snapped.line } : { y: snapped.line }] : [];
       const dimensions = sides.flatMap((id): Dimension[] => {
         const net = corners(roomOf(moved, id)?.netPolygon);
         if (net.length === 0) return [];
@@ -117,7 +128,8 @@ export function ofWall(world: World, wallId: string): Drag {
         const to = upright ? { x: start.x + sign * far, y: start.y } : { x: start.x, y: start.y + sign * far };
         return [{ from: start, to }];
       });
-      return { world: moved, guides, dimensions, label, edits: [{ case: "movedWall", value: { wallId, byM: go } }] };
+      last = { world: moved, guides, dimensions, label, edits: [{ case: "movedWall", value: { wallId, byM: go } }] };
+      return last;
     },
   };
 }
