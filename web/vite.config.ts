@@ -16,7 +16,7 @@ export default defineConfig({
   },
   server: {
     proxy: {
-      "^/d3dgen\\.v1\\.": {
+      "^/(d3dgen\\.v1\\.|worlds/)": {
         target: server,
         changeOrigin: true,
         // to the server, the page is its own

@@ -1,6 +1,6 @@
 /** What happens while something is dragged: where it goes, what it snaps to, and the edit that it comes to. */
 import type { World } from "../gen/d3dgen/v1/world_pb";
-import { areaOf, boundsOf, corners, ends, footprint, onStep, type P, reach, tidy } from "../lib/geometry";
+import { areaOf, boundsOf, corners, ends, footprint, onStep, type P, reach, STEP, tidy } from "../lib/geometry";
 import type { EditInit } from "../lib/session.svelte";
 import { t } from "../lib/texts.svelte";
 import { nameOf, objectOf, roomOf, snapLines, withDoorMoved, withMoved, withWallMoved } from "../lib/world";
@@ -139,8 +139,12 @@ export function ofDoor(world: World, doorId: string): Drag {
   const line = ends(door?.line);
   return {
     to(by) {
-      const go = onStep(by.x * line.along.x + by.y * line.along.y);
-      const moved = go === 0 ? undefined : withDoorMoved(world, doorId, go);
+      const wished = onStep(by.x * line.along.x + by.y * line.along.y);
+      let moved: World | undefined;
+      // as far as there is wall
+      for (let left = Math.abs(wished); !moved && left > STEP / 2; left -= STEP) {
+        moved = withDoorMoved(world, doorId, Math.sign(wished) * left);
+      }
       if (!moved) return undefined;
       const now = ends(moved.floorplan?.doors.find((d) => d.doorId === doorId)?.line);
       const net = corners(roomOf(world, door?.roomIds[0] ?? "")?.polygon);
