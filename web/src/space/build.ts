@@ -11,6 +11,7 @@ import {
 } from "three";
 import { mergeGeometries } from "three/addons/utils/BufferGeometryUtils.js";
 
+import { Mount } from "../gen/d3dgen/v1/common_pb";
 import { type Door, DoorKind, type PlanRoom, Slide, type Wall, type Window } from "../gen/d3dgen/v1/floorplan_pb";
 import type { Placement } from "../gen/d3dgen/v1/placements_pb";
 import type { World } from "../gen/d3dgen/v1/world_pb";
@@ -162,6 +163,7 @@ function objectBody(placement: Placement): Group {
   geometry.translate(0, 0, heightM / 2);
   group.add(new Mesh(geometry, lambert(objectColor(placement.objectId))));
   group.userData.objectId = placement.placementId;
+  group.userData.overhead = placement.mount === Mount.CEILING;
   return group;
 }
 

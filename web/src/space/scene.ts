@@ -118,6 +118,7 @@ export class SpaceView {
       return lamp;
     });
     this.light(this.#night ? "night" : "day");
+    this.#overhead(this.#walking);
     if (first) this.whole();
     this.#ask();
     const isOver = () => this.#over || this.#bodies !== bodies;
@@ -146,14 +147,21 @@ export class SpaceView {
     const middle = new Vector3((Math.min(...xs) + Math.max(...xs)) / 2, (Math.min(...ys) + Math.max(...ys)) / 2, 0);
     const far = Math.max(6, Math.max(...xs) - Math.min(...xs), Math.max(...ys) - Math.min(...ys)) * 1.25;
     this.#controls.target.copy(middle);
-    this.#camera.position.set(middle.x - far * 0.45, middle.y - far * 0.95, far * 0.95);
+    this.#camera.position.set(middle.x - far * 0.2, middle.y - far * 0.6, far * 1.05);
     this.#controls.update();
+    this.#overhead(false);
     this.#ask();
+  }
+
+  /** Shows or hides what hangs from ceilings, which is in the way from above. */
+  #overhead(visible: boolean) {
+    for (const body of this.#bodies?.objects.values() ?? []) body.visible = visible || !body.userData.overhead;
   }
 
   /** Stands on the floor at a point, looking along a heading, the eyes so high. */
   walk(at: { x: number; y: number }, heading: number, eyes = EYES) {
     this.#walking = true;
+    this.#overhead(true);
     this.#controls.enabled = false;
     this.#eyes = eyes;
     this.#heading = heading;
