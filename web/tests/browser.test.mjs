@@ -348,6 +348,23 @@ test("no serious violation of accessibility, on wide and narrow screens, light a
   await context.close();
 });
 
+test("a building of 100 rooms stays usable", { skip }, async (t) => {
+  const { page, context, faults } = await opened(browser, server.url);
+  await make(page, "hospital ward with 60 patient rooms, 20 offices and 20 storage rooms in Germany");
+  const rooms = await page.locator("[data-room-id]").count();
+  assert.ok(rooms >= 100, `${rooms} rooms`);
+  await open(page, "rules");
+  await page.locator("[data-rule-id]").first().waitFor();
+  const begun = Date.now();
+  await open(page, "plan");
+  await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => setTimeout(done))));
+  const took = Date.now() - begun;
+  t.diagnostic(`${rooms} rooms with ${await page.locator("[data-object-id]").count()} objects: the plan is there after ${took} ms`);
+  assert.ok(took < 3000, `${took} ms`);
+  sound(faults);
+  await context.close();
+});
+
 test("first paint, size and speed", { skip }, async (t) => {
   const { page, context, faults } = await opened(browser, server.url);
   const paint = await page.evaluate(async () => {

@@ -9,7 +9,7 @@ import { type Report, ReportSchema } from "../gen/d3dgen/v1/report_pb";
 import type { Scenario } from "../gen/d3dgen/v1/scenario_pb";
 import { type SceneGraph, SceneGraphSchema } from "../gen/d3dgen/v1/scene_graph_pb";
 import { type World, WorldSchema } from "../gen/d3dgen/v1/world_pb";
-import type { GenerateWorldRequest, WorldEdit } from "../gen/d3dgen/v1/world_service_pb";
+import { BuildingRequestSchema, type GenerateWorldRequest, type WorldEdit } from "../gen/d3dgen/v1/world_service_pb";
 import { codeOf, isRefusal, library, reasonOf, worlds } from "./api";
 import { keep, kept } from "./keep";
 import { type TextKey, t } from "./texts.svelte";
@@ -71,6 +71,9 @@ interface KeptSession {
 
 class Session {
   prompt = $state("");
+  /** What the person chose of the manner; empty for what the sentence says. */
+  manner = $state({ clutter: "", space: "", layout: "", symmetry: "" });
+  seed = $state(0);
   steps = $state.raw<Step[]>([]);
   at = $state(-1);
   making = $state.raw<Making | undefined>();
@@ -221,8 +224,24 @@ class Session {
   }
 
   /** Makes a world of the prompt, one stage after the other; returns true when there is one. */
-  async generate(seed = 0n): Promise<boolean> {
-    return await this.#make({ case: "building", value: { prompt: this.prompt, seed } as never }, t("made"), {});
+  async generate(): Promise<boolean> {
+    return await this.#make(this.#asked(this.prompt, BigInt(Math.max(0, Math.trunc(this.seed || 0)))), t("made"), {});
+  }
+
+  /** Returns the start of a world of words, in the manner that the person chose. */
+  #asked(prompt: string, seed: bigint): Start {
+    const { clutter, ...styles } = this.manner;
+    const value = { prompt, seed, clutter: clutter || undefined, styles: Object.values(styles).filter(Boolean) };
+    return { case: "building", value: create(BuildingRequestSchema, value) };
+  }
+
+  /** Returns the start of a world like another one, with another seed. */
+  #like(world: World, seed: bigint): Start {
+    const graph = clone(SceneGraphSchema, world.sceneGraph as SceneGraph);
+    graph.seed = seed;
+    const prompt = world.brief?.prompt ?? graph.prompt;
+    // of words alone, the stages are free to find other rooms; what is locked needs the rooms as they are
+    return prompt && !hasLocks(world) ? this.#asked(prompt, seed) : { case: "sceneGraph", value: graph };
   }
 
   /** Furnishes a plan that the person brought, as it is; `companions` are files that it names. Returns true when there is a world. */
@@ -244,7 +263,7 @@ class Session {
     const world = this.step?.world;
     if (!world?.sceneGraph) return;
     const seed = world.sceneGraph.seed + 1n;
-    await this.#make(startOf(world, seed), t("another"), this.step?.home, world);
+    await this.#make(this.#like(world, seed), t("another"), this.step?.home, world);
   }
 
   /** Makes three worlds with seeds of their own to choose from. */
@@ -253,7 +272,7 @@ class Session {
     if (!world?.sceneGraph) return;
     const found: Made[] = [];
     for (let more = 1n; more <= 3n && !this.#stop?.signal.aborted; more++) {
-      const step = await this.#run(startOf(world, world.sceneGraph.seed + more), t("alternative"), world);
+      const step = await this.#run(this.#like(world, world.sceneGraph.seed + more), t("alternative"), world);
       if (!step) break;
       found.push(step);
       this.alternatives = [...found];
@@ -452,17 +471,6 @@ async function put(step: Step) {
 
 function titleOf(world: World): string {
   return Array.from(world.brief?.prompt || world.name).slice(0, 60).join("");
-}
-
-/** Returns the start of a world with the same rooms and another seed. */
-function startOf(world: World, seed: bigint): Start {
-  const graph = clone(SceneGraphSchema, world.sceneGraph as SceneGraph);
-  graph.seed = seed;
-  const locked = hasLocks(world);
-  const prompt = world.brief?.prompt ?? graph.prompt;
-  // of words alone, the stages are free to find other rooms; what is locked needs the rooms as they are
-  if (!locked && prompt) return { case: "building", value: { prompt, seed } as never };
-  return { case: "sceneGraph", value: graph };
 }
 
 function hasLocks(world: World): boolean {

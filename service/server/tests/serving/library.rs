@@ -9,6 +9,7 @@ use d3dgen_proto::v1::{
 };
 use tonic::Code;
 use tonic::transport::Channel;
+use tonic_types::StatusExt;
 
 use crate::page::get;
 use crate::support::{SMALL, Server, building};
@@ -123,7 +124,9 @@ async fn a_document_is_read_as_messages_and_what_is_wrong_in_it_is_said_with_its
     for (content, said) in [("", "content"), ("{}", "version"), ("{\"version\": 1, \"rooms\": []}", "rooms")] {
         let status = library.parse_world(refused(content)).await.expect_err("no world");
         assert_eq!(status.code(), Code::InvalidArgument, "{content}");
-        assert!(status.message().contains(said), "{content}: {status}");
+        let problems = status.get_details_bad_request().map(|b| b.field_violations).unwrap_or_default();
+        let named = problems.iter().any(|p| format!("{} {}", p.field, p.description).contains(said));
+        assert!(named, "{content}: {problems:?}");
     }
 }
 
