@@ -6,5 +6,6 @@ mod changes;
 mod connections;
 mod library;
 mod page;
+mod reflection;
 mod support;
 mod unread;
