@@ -18,6 +18,7 @@ use super::{Answer, Api, Once, caller, required, timestamp};
 use crate::convert::document;
 use crate::core::Core;
 use crate::library::{self, Kept, State};
+use crate::pool::Lane;
 use crate::status::{self, invalid};
 
 /// A repeated change of a kept world is refused by its etag, so that it needs no id.
@@ -49,7 +50,7 @@ impl LibraryService for Api {
             })?;
             Ok(CreateWorldResponse { kept: Some(message(&kept)) })
         };
-        self.change_read("CreateWorld", request, Some(id), read, change).await
+        self.change_read(("CreateWorld", Lane::Work), request, Some(id), read, change).await
     }
 
     async fn get_world(&self, request: Request<GetWorldRequest>) -> Answer<GetWorldResponse> {
@@ -86,7 +87,7 @@ impl LibraryService for Api {
             let kept = library::update(core, (&asked.world_id, &asked.etag, &caller), asked.title, state)?;
             Ok(UpdateWorldResponse { kept: Some(message(&kept)) })
         };
-        self.change_read("UpdateWorld", request, Some(NO_ID.into()), read, change).await
+        self.change_read(("UpdateWorld", Lane::Work), request, Some(NO_ID.into()), read, change).await
     }
 
     async fn restore_world(&self, request: Request<RestoreWorldRequest>) -> Answer<RestoreWorldResponse> {
