@@ -5,6 +5,7 @@ mod bench;
 mod brief;
 mod check;
 mod completions;
+mod dataset;
 mod domains;
 mod edit;
 mod eval;
@@ -23,7 +24,12 @@ mod scenario;
 mod scene_graph;
 mod serve;
 mod version;
+<<<<<<< HEAD
 mod view;
+=======
+#[cfg(feature = "cluster")]
+mod worker;
+>>>>>>> main
 mod world;
 
 use clap::Subcommand;
@@ -60,6 +66,11 @@ pub enum Command {
     Eval(eval::Args),
     /// Make the worlds of a published benchmark and measure them
     Bench(bench::Args),
+    /// Make data sets of many worlds, on one machine or many: spec, shards, index, card
+    Dataset(dataset::Args),
+    /// Make worlds of data sets for somebody else's `dataset make --nats`
+    #[cfg(feature = "cluster")]
+    Worker(worker::Args),
     /// Write a world in other formats
     Export(export::Args),
     /// A page that shows a world in three dimensions, to walk in and to open doors
@@ -105,6 +116,9 @@ impl Command {
             Self::Check(args) => args.run(),
             Self::Eval(args) => args.run(),
             Self::Bench(args) => args.run(),
+            Self::Dataset(args) => args.run(),
+            #[cfg(feature = "cluster")]
+            Self::Worker(args) => args.run(),
             Self::Export(args) => args.run(),
             Self::View(args) => args.run(),
             Self::Render(args) => args.run(),
