@@ -10,11 +10,11 @@ draw() { # name, prompt, seed, and what to look at
     name=$1 prompt=$2 seed=$3
     shift 3
     "$program" generate "$prompt" --seed "$seed" --out "$work/$name" --format gltf
-    "$program" render "$work/$name" --out "$work/pictures_$name" --size 800x500 --samples 16 "$@"
+    "$program" render "$work/$name" --out "$work/pictures_$name" --size 800x500 "$@"
     for picture in "$work/pictures_$name"/*.png; do cp "$picture" "$here/world_$name.png"; done
 }
 
-draw flat "flat with 3 bedrooms for a cleaning robot" 7 --rooms living_room_1
-draw office "office for 14 people with meeting rooms and a kitchen" 7 --rooms open_office_1
-draw ward "hospital ward with 6 patient rooms in Germany, for a delivery robot" 7 --overview
-draw shop "bakery shop with a cafe" 7 --overview
+draw flat "flat with 3 bedrooms for a cleaning robot" 7 --samples 16 --rooms living_room_1
+draw office "office for 14 people with meeting rooms and a kitchen" 7 --samples 8 --overview
+draw ward "hospital ward with 6 patient rooms in Germany, for a delivery robot" 7 --samples 8 --overview
+draw shop "bakery shop with a cafe" 7 --samples 8 --overview
