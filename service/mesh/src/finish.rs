@@ -1,6 +1,6 @@
 //! Finishes: what floors, walls, ceilings and parts of things are covered with, and the pictures of that.
 //!
-//! Finishes are data (`domains/finishes/`); [`pattern`] makes their pictures. What it is not for: which room has which
+//! Finishes are data (`domains/finishes/`); `pattern` makes their pictures. What it is not for: which room has which
 //! finish (domains say that), and which tone of a part wears one (`builds::tones`).
 
 mod noise;
