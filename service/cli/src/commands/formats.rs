@@ -1,6 +1,7 @@
 //! The flags that say which files to write of a world, shared by `generate` and `export`.
 
 use d3dgen_export::exporters::{self, File, plan};
+use d3dgen_export::manifest::{self, Manifest};
 use d3dgen_model::domain::Domain;
 use d3dgen_model::world::World;
 
@@ -62,11 +63,12 @@ impl FormatArgs {
 }
 
 impl Formats {
-    /// Writes the files of the world.
+    /// Writes the files of the world, and `manifest.json`, in which the formats that the folder has already stay.
     ///
     /// # Errors
     /// `Export`, `Write`, or `Interrupted` between two formats.
     pub fn write(&self, world: &World, domain: &Domain, output: &Output) -> Result<(), Error> {
+        let mut manifest = Manifest::of(world, domain, &self.kept)?;
         for exporter in self.names.iter().filter_map(|name| exporters::get(name)) {
             interrupt::check()?;
             let files = if exporter.name() == "plan" && !self.png {
@@ -74,10 +76,12 @@ impl Formats {
             } else {
                 exporter.export(world, domain, &self.kept)?
             };
+            manifest.add(exporter, &files);
             for File { path, bytes } in files {
                 output.write(&path, &bytes)?;
             }
         }
-        Ok(())
+        let File { path, bytes } = manifest.file(output.earlier(manifest::FILE).as_deref());
+        output.write(&path, &bytes)
     }
 }

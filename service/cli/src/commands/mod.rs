@@ -18,13 +18,18 @@ mod jobs;
 mod knowledge;
 mod model;
 mod placement;
+mod render;
 mod research;
 mod scenario;
 mod scene_graph;
 mod serve;
 mod version;
+<<<<<<< HEAD
+mod view;
+=======
 #[cfg(feature = "cluster")]
 mod worker;
+>>>>>>> main
 mod world;
 
 use clap::Subcommand;
@@ -68,6 +73,10 @@ pub enum Command {
     Worker(worker::Args),
     /// Write a world in other formats
     Export(export::Args),
+    /// A page that shows a world in three dimensions, to walk in and to open doors
+    View(view::Args),
+    /// Pictures of a world in three dimensions, from above and from inside
+    Render(render::Args),
     /// List, show and validate the kinds of building
     Domains(domains::Args),
     /// Make a knowledge base of documents or of a model's search; find the rules in sentences
@@ -111,6 +120,8 @@ impl Command {
             #[cfg(feature = "cluster")]
             Self::Worker(args) => args.run(),
             Self::Export(args) => args.run(),
+            Self::View(args) => args.run(),
+            Self::Render(args) => args.run(),
             Self::Domains(args) => args.run(),
             Self::Research(args) => args.run(),
             Self::Knowledge(args) => args.run(),

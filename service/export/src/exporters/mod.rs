@@ -1,20 +1,29 @@
 //! One file per target; [`all`] is the list that `--format` and its help read.
 
 mod arena;
+mod gazebo;
+mod gltf;
+mod mujoco;
 mod nav2;
 pub mod plan;
 mod rmf;
+mod usd;
 
 use d3dgen_model::domain::Domain;
 use d3dgen_model::world::World;
 
 use crate::Error;
 use crate::models::KeptModels;
+use crate::scene::SimScene;
 
 pub use arena::Arena;
+pub use gazebo::Gazebo;
+pub use gltf::Gltf;
+pub use mujoco::Mujoco;
 pub use nav2::Nav2;
 pub use plan::Plan;
 pub use rmf::Rmf;
+pub use usd::Usd;
 
 /// Name of all formats together.
 const ALL: &str = "all";
@@ -61,11 +70,18 @@ pub trait Exporter: Sync {
     /// `Unsupported` or `TooLarge` when the format cannot hold this world, `Model` and `Kept` when a model of it cannot be
     /// had, `Picture` when drawing fails.
     fn export(&self, world: &World, domain: &Domain, kept: &dyn KeptModels) -> Result<Vec<File>, Error>;
+
+    /// Returns where its files have what the ids of a scene name: id and place, for `manifest.json`. Nothing of what it leaves
+    /// out.
+    fn places(&self, scene: &SimScene) -> Vec<(String, String)> {
+        let _ = scene;
+        Vec::new()
+    }
 }
 
 /// Returns every exporter, the default ones first.
 pub fn all() -> &'static [&'static dyn Exporter] {
-    &[&Arena, &Plan, &Nav2, &Rmf]
+    &[&Arena, &Plan, &Nav2, &Rmf, &Mujoco, &Gazebo, &Gltf, &Usd]
 }
 
 /// Returns the names at the top of a world's folder that exporters write, each once.
