@@ -194,6 +194,14 @@ impl Language {
         if exact.is_empty() { all.iter().filter(|e| !e.exact).map(|e| (e, false)).collect() } else { exact }
     }
 
+    /// Returns true for the form of a word for more than one, where the word for one stands in the lexicon.
+    pub fn is_plural(&self, word: &str) -> bool {
+        self.data.plural.iter().any(|e| {
+            let one = word.strip_suffix(e.strip.as_str()).map(|root| format!("{root}{}", e.put));
+            one.is_some_and(|one| self.vocabulary.has(&one))
+        })
+    }
+
     /// Returns the entries of one word that is not a token, with whether it is written exactly so.
     pub fn word(&self, word: &str) -> Option<&[Entry]> {
         let key = self.keys.get(&stem(word, &self.data))?;
@@ -218,6 +226,7 @@ fn bare(code: &str) -> LanguageData {
         decimal: '.',
         head_last: true,
         endings: Vec::new(),
+        plural: Vec::new(),
         same: Vec::new(),
         joints: Vec::new(),
         transcriptions: Vec::new(),

@@ -6,7 +6,7 @@ use std::rc::Rc;
 use std::sync::Arc;
 
 use d3dgen_language::{Lexicon, Reading, TokenKind};
-use d3dgen_model::brief::{Ask, Brief, Fact, MAX_ASKS, PromptWords, ReadBy, Subject};
+use d3dgen_model::brief::{Ask, Bound, Brief, Fact, MAX_ASKS, PromptWords, ReadBy, RoomsAsk, Subject};
 use d3dgen_plugins::Registry;
 
 use crate::building::{building, place, stretch};
@@ -150,6 +150,11 @@ fn named(nodes: Vec<Rc<Node>>, building: &[usize], places: &[usize]) -> Vec<Rc<N
     nodes.into_iter().enumerate().map(of).collect()
 }
 
+/// Returns true for rooms of which a number is told.
+fn is_counted(rooms: &RoomsAsk) -> bool {
+    rooms.count.bound != Bound::AtLeast || rooms.count.n > 2
+}
+
 /// Drops what is asked for elsewhere already, and doubles.
 fn settled(facts: Vec<Stated>) -> Vec<Stated> {
     let same = |a: &Subject, b: &Subject| match (&a.id, &b.id) {
@@ -173,6 +178,13 @@ fn settled(facts: Vec<Stated>) -> Vec<Stated> {
             _ => None,
         })
         .collect();
+    let numbered: Vec<(Subject, Range<usize>)> = facts
+        .iter()
+        .filter_map(|f| match &f.fact {
+            Fact::Rooms(r) if is_counted(r) && r.count.n > 1 => Some((r.room.clone(), f.tokens.clone())),
+            _ => None,
+        })
+        .collect();
     let mut kept: Vec<Stated> = Vec::new();
     for fact in facts {
         let subject = match &fact.fact {
@@ -185,8 +197,12 @@ fn settled(facts: Vec<Stated>) -> Vec<Stated> {
             (Fact::Objects(o), Some(s)) => same(&o.object, s),
             _ => false,
         };
-        let spoken_of = fact.mention
-            && subject.is_some_and(|s| asked.iter().chain(&eached).any(|a| same(a, s)) || kept.iter().any(again));
+        // "3 bedrooms ..., master bedroom with a balcony": one of them
+        let counted = matches!(&fact.fact, Fact::Rooms(r) if !is_counted(r)) && !fact.own;
+        let one_of = counted && subject.is_some_and(|s| numbered.iter().any(|(r, t)| same(r, s) && *t != fact.tokens));
+        let spoken_of = one_of
+            || fact.mention
+                && subject.is_some_and(|s| asked.iter().chain(&eached).any(|a| same(a, s)) || kept.iter().any(again));
         if !spoken_of && !kept.iter().any(|k| k.fact == fact.fact && k.tokens == fact.tokens) {
             kept.push(fact);
         }
