@@ -11,6 +11,9 @@ use crate::tokens::{Token, TokenKind, tokens};
 /// Code of what is the same in all languages.
 pub(crate) const ANY: &str = "any";
 
+/// Class of the small words that build sentences.
+const SMALL: &str = "particle";
+
 /// The phrases of all languages with what they stand for.
 #[derive(Debug, Clone)]
 pub struct Lexicon {
@@ -192,6 +195,11 @@ impl Language {
         let all = &self.ends[node as usize];
         let exact: Vec<(&Entry, bool)> = all.iter().filter(|e| *e.words == *words).map(|e| (e, true)).collect();
         if exact.is_empty() { all.iter().filter(|e| !e.exact).map(|e| (e, false)).collect() } else { exact }
+    }
+
+    /// Returns true where a match is of a small word that builds sentences.
+    pub fn is_small(&self, node: u32) -> bool {
+        self.ends[node as usize].iter().any(|e| *e.class == *SMALL)
     }
 
     /// Returns true for the form of a word for more than one, where the word for one stands in the lexicon.

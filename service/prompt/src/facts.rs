@@ -426,7 +426,8 @@ impl Maker<'_> {
             // "no dead-end corridors" wants corridors, only none of that kind
             let some = subject.id.is_some() && ["own", "attribute"].iter().any(|f| item.field(f).is_some());
             if some {
-                self.other(node);
+                let wish = self.reading.written(node.tokens.clone()).to_owned();
+                self.say(node, Fact::Other(OtherAsk { wish }));
                 continue;
             }
             let (room, object) = match item.made() {

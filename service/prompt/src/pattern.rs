@@ -322,7 +322,7 @@ mod tests {
             ("a ( a b )?", Some(4), 3),
             ("b", None, 0),
             ("a.2", None, 0),
-            ("a !a.2", None, 0),
+            ("a !small", None, 0),
             ("a !b", Some(1), 1),
             ("<b a", Some(1), 1),
         ] {

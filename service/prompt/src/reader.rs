@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use d3dgen_language::{Lexicon, Reading, TokenKind};
 use d3dgen_model::brief::{Ask, Bound, Brief, Fact, MAX_ASKS, PromptWords, ReadBy, RoomsAsk, Subject};
+use d3dgen_model::gazetteer::{first_floor_is_ground, first_floor_is_ground_in};
 use d3dgen_plugins::Registry;
 
 use crate::building::{building, place, stretch};
@@ -17,12 +18,6 @@ use crate::parse::{Applied, parse};
 use crate::places;
 use crate::subjects::Known;
 use crate::vocabulary::lexicon;
-
-/// Countries where the ground floor is the first floor.
-const FIRST_IS_GROUND: &[&str] =
-    &["US", "CA", "CN", "JP", "KR", "TW", "SG", "MX", "PH", "RU", "UA", "NO", "IS", "BY", "KZ"];
-/// Languages of such countries, for prompts that name none.
-const FIRST_IS_GROUND_IN: &[&str] = &["zh", "ja", "ko", "ru"];
 
 /// Reads prompts about the buildings of the domains that it was made with.
 pub struct PromptReader {
@@ -77,8 +72,8 @@ impl PromptReader {
         let domain = building.first.as_ref().and_then(|b| b.domain.as_deref());
         let country = place.as_ref().map(|p| p.country_code.as_str());
         let first_is_ground = match country {
-            Some(country) => FIRST_IS_GROUND.contains(&country),
-            None => reading.languages().first().is_some_and(|l| FIRST_IS_GROUND_IN.contains(l)),
+            Some(country) => first_floor_is_ground(country),
+            None => reading.languages().first().is_some_and(|l| first_floor_is_ground_in(l)),
         };
         let known = Known::of(&self.registry, domain);
         let mut maker = Maker { reading: &reading, known, first_is_ground, facts: Vec::new() };

@@ -58,7 +58,7 @@ impl<'d> Known<'d> {
         let fits = || node.values(class).filter(|v| known.contains(*v));
         // the building's own word for it before that of other buildings: "1인실" is an office elsewhere
         let own = |v: &&str| fits().nth(1).is_some() && self.has_word(class, v, &node.text);
-        fits().find(own).or_else(|| fits().find(named)).or_else(|| fits().next()).or_else(|| node.values(class).next())
+        fits().find(named).or_else(|| fits().find(own)).or_else(|| fits().next()).or_else(|| node.values(class).next())
     }
 
     /// Returns true where the building's own domain has a word for a room or object.
