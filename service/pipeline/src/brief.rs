@@ -25,6 +25,9 @@ pub fn of_prompt(prompt: &str, registry: &Registry) -> Option<Brief> {
 /// # Errors
 /// `Refused` for prompts without words, kinds of buildings that no domain knows, absurd sizes, unknown domains and countries.
 pub fn rooms(request: &Request, registry: &Registry) -> Result<(SceneGraph, Option<Brief>), Error> {
+    if let Some(brief) = &request.brief {
+        return Ok((rooms_of(brief, request, registry)?, Some(brief.clone())));
+    }
     let Some(brief) = of_prompt(&request.prompt, registry) else {
         return Ok((scene_graph::generate(request, registry)?, None));
     };
