@@ -96,6 +96,11 @@ fn rooms_of(ask: &Ask) -> Option<&RoomsAsk> {
 /// Returns true for rooms of which the reader of words said that they are nothing that can be planned.
 fn is_lost(reading: &Reading, brief: &Brief, ask: &Ask, rooms: &RoomsAsk) -> bool {
     let name = rooms.room.name.to_lowercase();
+    // a word of the domain's own was understood, if only as something else: "bureau" in a bedroom is a desk
+    let kind = rooms.room.id.as_deref().and_then(|id| reading.domain.room_type(id));
+    if kind.is_some_and(|k| k.keywords.values().flatten().any(|w| *w == name)) {
+        return false;
+    }
     let last = name.split_whitespace().next_back().unwrap_or_default();
     let told = |u: &Unread| {
         let words = brief.prompt.get(u.bytes.clone()).unwrap_or_default().to_lowercase();
