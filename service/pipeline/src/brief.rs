@@ -5,6 +5,7 @@
 //! the brief; else that reader makes them of the words.
 
 use d3dgen_model::brief::Brief;
+use d3dgen_model::floorplan::Floorplan;
 use d3dgen_model::scene_graph::{Note, SceneGraph};
 use d3dgen_model::stage::Error;
 use d3dgen_plugins::Registry;
@@ -18,6 +19,11 @@ const NO_BUILDING: [&str; 2] = ["default_domain", "domain_from_rooms"];
 /// Reads a prompt; none where there are no words.
 pub fn of_prompt(prompt: &str, registry: &Registry) -> Option<Brief> {
     (!prompt.trim().is_empty()).then(|| PromptReader::new(registry).read(prompt).brief)
+}
+
+/// Reads the prompt of a building that is planned; none for a plan that somebody brought, which has the name of its file there.
+pub fn of_plan(prompt: &str, plan: Option<&Floorplan>, registry: &Registry) -> Option<Brief> {
+    if plan.is_some_and(Floorplan::is_given) { None } else { of_prompt(prompt, registry) }
 }
 
 /// Makes the rooms of a request, with the brief that they answer to.

@@ -14,7 +14,7 @@ use crate::output::Output;
 #[derive(clap::Args, Clone)]
 pub struct FormatArgs {
     /// Formats to write, with commas between, or `all` (`d3dgen version` lists them)
-    #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "arena,plan")]
+    #[arg(long, value_name = "LIST", value_delimiter = ',', default_values_t = usual())]
     format: Vec<String>,
     /// Leave out plan.png, which takes longer than all the rest
     #[arg(long)]
@@ -26,6 +26,10 @@ pub struct Formats {
     names: Vec<&'static str>,
     png: bool,
     kept: Kept,
+}
+
+fn usual() -> Vec<String> {
+    exporters::usual().map(|e| e.name().to_owned()).collect()
 }
 
 impl FormatArgs {
@@ -47,22 +51,8 @@ impl FormatArgs {
     /// # Errors
     /// `Input` with the formats there are.
     pub fn names(&self) -> Result<Vec<&'static str>, Error> {
-        let mut names = Vec::new();
-        let every = exporters::all().iter().map(|e| e.name().to_owned());
-        let asked = self.format.iter().flat_map(|name| match name.trim() {
-            "all" => every.clone().collect(),
-            name => vec![name.to_owned()],
-        });
-        for name in asked {
-            let exporter = exporters::get(&name).ok_or_else(|| {
-                let known: Vec<&str> = exporters::all().iter().map(|e| e.name()).collect();
-                Error::Input(format!("format `{name}` is not known; there are {}", known.join(", ")))
-            })?;
-            if !names.contains(&exporter.name()) {
-                names.push(exporter.name());
-            }
-        }
-        Ok(names)
+        let named = exporters::named(self.format.iter().map(|name| name.trim()));
+        Ok(named.map_err(|e| Error::Input(e.to_string()))?.iter().map(|e| e.name()).collect())
     }
 
     /// Returns true when plans are drawn as PNG too.

@@ -5,6 +5,7 @@ mod bench;
 mod brief;
 mod check;
 mod completions;
+mod dataset;
 mod domains;
 mod edit;
 mod eval;
@@ -22,6 +23,8 @@ mod scenario;
 mod scene_graph;
 mod serve;
 mod version;
+#[cfg(feature = "cluster")]
+mod worker;
 mod world;
 
 use clap::Subcommand;
@@ -58,6 +61,11 @@ pub enum Command {
     Eval(eval::Args),
     /// Make the worlds of a published benchmark and measure them
     Bench(bench::Args),
+    /// Make data sets of many worlds, on one machine or many: spec, shards, index, card
+    Dataset(dataset::Args),
+    /// Make worlds of data sets for somebody else's `dataset make --nats`
+    #[cfg(feature = "cluster")]
+    Worker(worker::Args),
     /// Write a world in other formats
     Export(export::Args),
     /// List, show and validate the kinds of building
@@ -99,6 +107,9 @@ impl Command {
             Self::Check(args) => args.run(),
             Self::Eval(args) => args.run(),
             Self::Bench(args) => args.run(),
+            Self::Dataset(args) => args.run(),
+            #[cfg(feature = "cluster")]
+            Self::Worker(args) => args.run(),
             Self::Export(args) => args.run(),
             Self::Domains(args) => args.run(),
             Self::Research(args) => args.run(),

@@ -32,6 +32,10 @@ impl Exporter for Arena {
         &["arena"]
     }
 
+    fn is_usual(&self) -> bool {
+        true
+    }
+
     fn export(&self, world: &World, domain: &Domain, kept: &dyn KeptModels) -> Result<Vec<File>, Error> {
         if snake(&world.name) != world.name || world.name.is_empty() {
             let reason = "a world's name is of lower-case letters, digits and underscores".to_owned();

@@ -143,7 +143,7 @@ impl WorldService for Api {
             let placements: Placements = document("placements", asked.placements)?;
             let scenario: Scenario = document("scenario", asked.scenario)?;
             let name = world_named(asked.name)?.unwrap_or_else(|| world_name(&graph));
-            let brief = brief::of_prompt(&graph.prompt, &core.domains.now().registry);
+            let brief = brief::of_plan(&graph.prompt, Some(&plan), &core.domains.now().registry);
             let world = World { brief, ..world::assemble(&name, graph, plan, placements, scenario) };
             Ok(AssembleWorldResponse { world: Some(judged(core, world)?) })
         })

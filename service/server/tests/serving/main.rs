@@ -4,5 +4,6 @@
 mod bounds;
 mod changes;
 mod connections;
+mod reflection;
 mod support;
 mod unread;
