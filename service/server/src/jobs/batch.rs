@@ -49,7 +49,7 @@ pub struct Building {
 
 impl From<Request> for Building {
     fn from(r: Request) -> Self {
-        let Request { prompt, seed, domain, country, rooms, area_m2, robot_radius_m, robot, style } = r;
+        let Request { prompt, seed, domain, country, rooms, area_m2, robot_radius_m, robot, style, .. } = r;
         Self { prompt, seed, domain, country, rooms, area_m2, robot_radius_m, robot, style }
     }
 }
@@ -58,7 +58,7 @@ impl Building {
     /// Returns the request for one of its seeds.
     pub fn request(&self, seed: u64) -> Request {
         let Self { prompt, domain, country, rooms, area_m2, robot_radius_m, robot, style, .. } = self.clone();
-        Request { prompt, seed, domain, country, rooms, area_m2, robot_radius_m, robot, style }
+        Request { prompt, brief: None, seed, domain, country, rooms, area_m2, robot_radius_m, robot, style }
     }
 }
 
