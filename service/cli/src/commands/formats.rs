@@ -29,6 +29,11 @@ pub struct Formats {
 }
 
 impl FormatArgs {
+    /// Returns the flags for these formats, pictures and all.
+    pub fn with_png(format: Vec<String>) -> Self {
+        Self { format, no_png: false }
+    }
+
     /// Returns the flags for these formats, plan.png left out.
     pub fn without_png(format: Vec<String>) -> Self {
         Self { format, no_png: true }
@@ -72,6 +77,11 @@ impl FormatArgs {
 }
 
 impl Formats {
+    /// Returns the names of the formats.
+    pub fn names(&self) -> &[&'static str] {
+        &self.names
+    }
+
     /// Writes the files of the world.
     ///
     /// # Errors
