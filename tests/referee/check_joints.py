@@ -82,6 +82,8 @@ def world(file):
                 "axis": axis.find("xyz").text,
                 "damping": axis.find("dynamics/damping").text,
                 "frictionloss": axis.find("dynamics/friction").text,
+                # dry friction, which does not creep
+                "solimpfriction": "0.9999 0.9999 0.001 0.5 2",
             }
             if axis.find("dynamics/spring_stiffness") is not None:
                 moves["stiffness"] = axis.find("dynamics/spring_stiffness").text

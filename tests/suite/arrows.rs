@@ -1,4 +1,5 @@
-//! The crates use each other only along the arrows of ARCHITECTURE.md, and only the command knows clock and environment.
+//! The crates use each other only along the arrows of ARCHITECTURE.md, depend on nothing they do not use, and only the command
+//! knows clock and environment.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -32,6 +33,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("plans", &["model"]),
     ("research", &["model", "llm"]),
     ("propose", &["model", "llm", "plugins", "knowledge", "pipeline"]),
+    ("dataset", &["model", "plugins", "pipeline", "export", "eval"]),
     ("proto", &["model"]),
     (
         "server",
@@ -66,11 +68,12 @@ const ARROWS: &[(&str, &[&str])] = &[
             "eval",
             "research",
             "propose",
+            "dataset",
             "proto",
             "server",
         ],
     ),
-    ("tests", &["model", "assets", "plugins", "knowledge", "pipeline", "export", "eval"]),
+    ("tests", &["model", "assets", "dataset", "plugins", "knowledge", "pipeline", "export", "eval"]),
 ];
 
 /// Other people's file formats and protocols, and the crates that may know them.
@@ -91,6 +94,10 @@ const OUTSIDE: &[(&str, &[&str])] = &[
     ("roxmltree", &["assets", "plans"]),
     ("serde-saphyr", &["assets", "plans"]),
     ("reqwest", &["llm", "research"]),
+    ("async-nats", &["dataset"]),
+    ("object_store", &["dataset"]),
+    ("parquet", &["dataset"]),
+    ("tar", &["dataset"]),
     ("scraper", &["research"]),
     ("pdf-extract", &["research"]),
     ("tonic", &["proto", "server", "cli"]),
@@ -105,13 +112,22 @@ const OUTSIDE: &[(&str, &[&str])] = &[
 
 /// Returns the packages of the workspace with the packages each uses, development aside.
 fn packages() -> BTreeMap<String, (PathBuf, BTreeSet<String>)> {
+    packages_with(|dependency| dependency["kind"] != "dev")
+}
+
+/// Returns the packages of the workspace with all that each uses, under the names it uses them by.
+fn dependencies() -> BTreeMap<String, (PathBuf, BTreeSet<String>)> {
+    packages_with(|_| true)
+}
+
+fn packages_with(counts: impl Fn(&Value) -> bool) -> BTreeMap<String, (PathBuf, BTreeSet<String>)> {
     let args = ["metadata", "--format-version", "1", "--no-deps", "--offline"];
     let output = Command::new(env!("CARGO")).args(args).current_dir(workspace()).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let metadata: Value = serde_json::from_slice(&output.stdout).unwrap();
     let text = |v: &Value| v.as_str().unwrap_or_default().to_owned();
     let package = |p: &Value| {
-        let used = p["dependencies"].as_array().unwrap().iter().filter(|d| d["kind"] != "dev");
+        let used = p["dependencies"].as_array().unwrap().iter().filter(|d| counts(d));
         let folder = Path::new(p["manifest_path"].as_str().unwrap()).parent().unwrap().to_path_buf();
         (text(&p["name"]).replace("d3dgen-", ""), (folder, used.map(|d| text(&d["name"])).collect()))
     };
@@ -196,5 +212,41 @@ fn only_the_command_reads_clock_and_environment() {
                 assert!(!code.contains(word), "{} uses {word}", file.display());
             }
         }
+    }
+}
+
+/// Adds all that a folder's Rust files say.
+fn add_code_below(folder: &Path, code: &mut String) {
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            add_code_below(&path, code);
+        } else if path.extension().is_some_and(|e| e == "rs") {
+            code.push_str(&std::fs::read_to_string(&path).unwrap());
+        }
+    }
+}
+
+#[test]
+fn nothing_is_depended_on_that_no_code_names() {
+    let mut named = BTreeSet::new();
+    for (name, (folder, used)) in dependencies() {
+        let mut code = String::new();
+        add_code_below(&folder, &mut code);
+        let is_letter = |c: char| c.is_alphanumeric() || c == '_';
+        let words: BTreeSet<&str> = code.split(|c| !is_letter(c)).collect();
+        for crate_name in used {
+            assert!(
+                words.contains(crate_name.replace('-', "_").as_str()),
+                "{name} names {crate_name} nowhere in its code"
+            );
+            named.insert(crate_name);
+        }
+    }
+    let manifest = std::fs::read_to_string(workspace().join("Cargo.toml")).unwrap();
+    let listed = manifest.split("[workspace.dependencies]").nth(1).unwrap().split("\n[").next().unwrap();
+    for line in listed.lines().filter(|l| l.contains('=')) {
+        let crate_name = line.split(['=', '.']).next().unwrap().trim();
+        assert!(named.contains(crate_name), "the workspace lists {crate_name}, which no crate of it uses");
     }
 }

@@ -53,6 +53,7 @@ fn plans_of_every_format_become_worlds_that_other_commands_take() {
         let folder = home.path().join(name);
         assert_eq!(done.status.code(), Some(i32::from(!breaks.is_empty())), "{name}: {told}");
         let report = report(&folder);
+        assert!(report.asks.is_empty(), "the name of a file asks for nothing: {:?}", report.asks);
         assert_eq!((given(&report).as_slice(), report.sound, report.given_plan), (*breaks, breaks.is_empty(), true));
         assert_eq!(breaks.is_empty(), !told.contains("plan as given breaks"), "{name}: {told}");
         let written = files(&folder);

@@ -135,6 +135,15 @@ pub struct Options<'a> {
 }
 
 impl Summary {
+    /// Returns the assets that are new or other than before, each once.
+    pub fn changed(&self) -> Vec<String> {
+        let ids = self.files.values().filter_map(|outcome| match outcome {
+            Outcome::Added { asset_id } | Outcome::Updated { asset_id } => Some(asset_id.clone()),
+            Outcome::Unchanged { .. } | Outcome::Refused { .. } => None,
+        });
+        ids.collect::<BTreeSet<_>>().into_iter().collect()
+    }
+
     /// Returns how many were added, updated, unchanged and refused.
     pub fn counts(&self) -> [usize; 4] {
         let mut counts = [0; 4];

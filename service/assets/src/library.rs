@@ -40,10 +40,13 @@ impl<'c> Library<'c> {
 
     /// Returns each object in each size once, under the first domain that has it.
     pub fn assets(&self) -> impl Iterator<Item = LibraryAsset<'c>> + use<'c> {
-        self.catalog.objects().iter().flat_map(|object| {
-            let domain = object.domains.first().map_or("common", String::as_str);
-            (0..object.sizes_m.len()).map(move |size| LibraryAsset { object, domain, size })
-        })
+        self.catalog.objects().iter().flat_map(Self::sizes_of)
+    }
+
+    /// Returns an object in each of its sizes, under the first domain that has it.
+    pub fn sizes_of(object: &'c CatalogObject) -> impl Iterator<Item = LibraryAsset<'c>> + use<'c> {
+        let domain = object.domains.first().map_or("common", String::as_str);
+        (0..object.sizes_m.len()).map(move |size| LibraryAsset { object, domain, size })
     }
 
     /// Returns the asset of a reference as worlds write it, with or without a size: `Hospital/HospitalBed`,

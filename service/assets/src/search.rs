@@ -110,6 +110,20 @@ impl AssetIndex {
         Ok(Self { index, rebuilt, unsaved: unsaved.map(|e| e.to_string()) })
     }
 
+    /// Returns the index after some assets have changed, each by its key as it is now; none when too many have changed since it
+    /// was made, see [`Index::changed`].
+    ///
+    /// # Errors
+    /// `Store`.
+    pub fn changed(
+        &self,
+        revision: u64,
+        changes: impl IntoIterator<Item = (String, Option<Document>)>,
+    ) -> Result<Option<Self>, Error> {
+        let index = self.index.changed(&document::spec(), revision, changes)?;
+        Ok(index.map(|index| Self { index, rebuilt: None, unsaved: None }))
+    }
+
     /// Returns the assets that fit best, best first.
     ///
     /// # Errors

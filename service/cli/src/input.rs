@@ -5,6 +5,7 @@ use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 use d3dgen_knowledge::import::{self, Imported};
+use d3dgen_model::brief::Brief;
 use d3dgen_model::document::Document;
 use d3dgen_model::scene_graph::{Note, SceneGraph};
 use d3dgen_model::world::World;
@@ -48,6 +49,15 @@ pub fn scene_graph(path: &Path) -> Result<SceneGraph, Error> {
     let is_world = serde_json::from_str::<serde_json::Value>(&text).is_ok_and(|v| v.get("scene_graph").is_some());
     let graph = if is_world { World::from_json(&text).map(|w| w.scene_graph) } else { SceneGraph::from_json(&text) };
     graph.map_err(|source| Error::Document { path, source })
+}
+
+/// Returns a checked brief; a folder stands for its `brief.json`.
+///
+/// # Errors
+/// As [`document`].
+pub fn brief(path: &Path) -> Result<Brief, Error> {
+    let (path, text) = text(path, "brief.json")?;
+    Brief::from_json(&text).map_err(|source| Error::Document { path, source })
 }
 
 /// Returns a checked knowledge base in SI with the shared rules it uses, and the file it is in; a folder stands for its `knowledge.json`.

@@ -8,7 +8,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use d3dgen_export::exporters;
+use d3dgen_export::{exporters, manifest};
 use tempfile::TempDir;
 
 use crate::error::Error;
@@ -25,7 +25,13 @@ const DOCUMENTS: &[&str] = &[
     "placements.json",
     "scenario.json",
     "proposal.json",
+    VIEW,
+    PICTURES,
+    manifest::FILE,
 ];
+/// Folders of the page and the pictures that `view` and `render` make of a world.
+pub const VIEW: &str = "view";
+pub const PICTURES: &str = "pictures";
 /// The file that only the folder of a world has which may be used.
 const WORLD: &str = "world.json";
 /// The file that every world's folder has, sound or not.
@@ -67,6 +73,19 @@ impl Output {
         Self::begin(path, check_ours(path, false)?, true)
     }
 
+    /// Returns an output that adds its files to whatever a folder holds, and replaces those of the same names.
+    ///
+    /// # Errors
+    /// `Input` when the path is a file, `Write` when it cannot be written.
+    pub fn among(path: &Path) -> Result<Self, Error> {
+        match fs::metadata(path) {
+            Ok(found) if !found.is_dir() => {
+                Err(Error::Input(format!("{} is a file; --out needs a folder", path.display())))
+            }
+            found => Self::begin(path, found.is_ok(), true),
+        }
+    }
+
     fn begin(path: &Path, exists: bool, adds: bool) -> Result<Self, Error> {
         interrupt::listen();
         let home = if exists { path } else { nearest_folder(path) };
@@ -91,6 +110,11 @@ impl Output {
         folder
             .and_then(|()| fs::write(&file, bytes))
             .map_err(|source| Error::Write { path: self.path.join(name), source })
+    }
+
+    /// Returns a file that stays in the folder unless it is written anew; none in a folder that goes away whole.
+    pub fn earlier(&self, name: &str) -> Option<Vec<u8>> {
+        self.adds.then(|| fs::read(self.path.join(name)).ok()).flatten()
     }
 
     /// Puts the folder in its place; an earlier output goes away whole. A folder without a world takes the place of none

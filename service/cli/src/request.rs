@@ -1,12 +1,14 @@
 //! The flags that say what to build, shared by `generate` and `scene-graph` so that both make the same graph.
 
 use std::io::{self, Read};
+use std::path::{Path, PathBuf};
 
 use d3dgen_model::robot_body::RobotBody;
 use d3dgen_model::style::{Clutter, Style};
 use d3dgen_pipeline::scene_graph::Request;
 
 use crate::error::Error;
+use crate::input;
 
 /// What the flags say beside the prompt.
 #[derive(clap::Args, Clone)]
@@ -57,6 +59,9 @@ pub struct RequestArgs {
     /// asymmetric, and one of linear, l_shaped, racetrack, courtyard, wings; otherwise read from the prompt
     #[arg(long, value_name = "WORDS", value_parser = style)]
     pub style: Option<Style>,
+    /// Plan the facts of a brief.json (`d3dgen brief --out`), and read no prompt
+    #[arg(long, value_name = "FILE", conflicts_with = "prompt")]
+    pub brief: Option<PathBuf>,
 }
 
 /// Returns the robot that a file describes.
@@ -89,10 +94,21 @@ impl RequestArgs {
         flags.or(self.robot_file.unwrap_or_default())
     }
 
-    /// Returns the request for a prompt.
-    pub fn request(&self, prompt: &str) -> Request {
-        Request {
-            prompt: prompt.to_owned(),
+    /// Returns the request for a prompt as it was given, or for a brief: that of the flag, or a file named in place of the
+    /// prompt.
+    ///
+    /// # Errors
+    /// `Read` and `Document` when the brief or standard input cannot be read.
+    pub fn request(&self, given: Option<&str>) -> Result<Request, Error> {
+        let named = given.filter(|g| g.ends_with(".json") && Path::new(g).is_file()).map(PathBuf::from);
+        let brief = self.brief.clone().or(named).map(|file| input::brief(&file)).transpose()?;
+        let text = match &brief {
+            Some(brief) => brief.prompt.clone(),
+            None => prompt(given.unwrap_or_default())?,
+        };
+        Ok(Request {
+            prompt: text,
+            brief,
             seed: self.seed,
             domain: self.domain.clone(),
             country: self.country.clone(),
@@ -101,7 +117,7 @@ impl RequestArgs {
             robot_radius_m: self.robot_radius,
             robot: self.robot(),
             style: Style { clutter: self.clutter, ..self.style.unwrap_or_default() },
-        }
+        })
     }
 }
 

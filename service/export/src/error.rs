@@ -3,6 +3,14 @@
 /// Why a world could not be written in a format.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
+    /// There is no such format.
+    #[error("format `{name}` is not known; there are {known}")]
+    NoFormat {
+        /// What was asked for.
+        name: String,
+        /// The names there are.
+        known: String,
+    },
     /// The format has no way to say something that the world contains.
     #[error("{exporter} cannot write {subject}: {reason}")]
     Unsupported {

@@ -5,15 +5,19 @@
 
 pub mod error;
 pub mod exporters;
+pub mod manifest;
 pub mod models;
+pub mod render;
 pub mod roadmap;
 pub mod scene;
+pub mod view;
 pub mod yaml;
 
 mod color;
 mod font;
 mod picture;
 mod used;
+mod xml;
 
 pub use error::Error;
 pub use exporters::{Exporter, File};

@@ -109,28 +109,48 @@ fn folder(domain: &str, name: &str, mut model: Model3d, annotation: &Value) -> R
 /// Models that are remembered for the next world: a few hundred objects of about 0.1 MB.
 const REMEMBERED: usize = 256;
 
-/// Returns the files of a model made by the shipped builds; the last few hundred are remembered, as the next world of a domain
-/// uses mostly the same ones.
-///
-/// # Errors
-/// As [`files`].
-pub(crate) fn remembered_files(request: &ModelRequest<'_>) -> Result<Arc<Vec<File>>, Error> {
-    static MADE: Mutex<BTreeMap<String, Arc<Vec<File>>>> = Mutex::new(BTreeMap::new());
+/// Things made of requests, the last few hundred of them: the next world of a domain uses mostly the same ones.
+type Remembered<T> = Mutex<BTreeMap<String, Arc<T>>>;
+
+/// Returns what is remembered for a request, else what is made.
+fn remembered<T>(
+    made: &Remembered<T>,
+    request: &ModelRequest<'_>,
+    make: impl FnOnce() -> Result<T, Error>,
+) -> Result<Arc<T>, Error> {
     let object = serde_json::to_string(request.object).unwrap_or_default();
     let key = format!(
         "{}/{} {:?} {:?} {} {object}",
         request.domain, request.name, request.size_m, request.mount, request.seed
     );
-    if let Some(files) = MADE.lock().unwrap_or_else(PoisonError::into_inner).get(&key) {
-        return Ok(Arc::clone(files));
+    if let Some(known) = made.lock().unwrap_or_else(PoisonError::into_inner).get(&key) {
+        return Ok(Arc::clone(known));
     }
-    let files = Arc::new(files(Library::shipped(), request)?);
-    let mut made = MADE.lock().unwrap_or_else(PoisonError::into_inner);
+    let own = Arc::new(make()?);
+    let mut made = made.lock().unwrap_or_else(PoisonError::into_inner);
     if made.len() >= REMEMBERED {
         made.clear();
     }
-    made.insert(key, Arc::clone(&files));
-    Ok(files)
+    made.insert(key, Arc::clone(&own));
+    Ok(own)
+}
+
+/// Returns the files of a model made by the shipped builds.
+///
+/// # Errors
+/// As [`files`].
+pub(crate) fn remembered_files(request: &ModelRequest<'_>) -> Result<Arc<Vec<File>>, Error> {
+    static MADE: Remembered<Vec<File>> = Mutex::new(BTreeMap::new());
+    remembered(&MADE, request, || files(Library::shipped(), request))
+}
+
+/// Returns a model made by the shipped builds.
+///
+/// # Errors
+/// `Model` when its build cannot be made at this size.
+pub(crate) fn remembered_model(request: &ModelRequest<'_>) -> Result<Arc<Model3d>, Error> {
+    static MADE: Remembered<Model3d> = Mutex::new(BTreeMap::new());
+    remembered(&MADE, request, || Ok(generate(Library::shipped(), request.object, request.size_m, request.seed)?))
 }
 
 /// Returns the ASA annotation; the model's front is -y.

@@ -8,6 +8,8 @@ mod convex;
 mod doors;
 mod floors;
 mod ids;
+mod manifest;
+mod merge;
 mod objects;
 mod physics;
 mod walls;
@@ -27,6 +29,7 @@ use crate::Error;
 use crate::models::KeptModels;
 use ids::Ids;
 
+pub use merge::merged;
 pub use ways::{SimWay, way_radius_m};
 
 /// Thickness of a floor, m: a hollow-core slab with screed.
@@ -298,6 +301,8 @@ pub struct SimObject {
     pub support: Option<String>,
     /// Whether it can be moved.
     pub mobility: Mobility,
+    /// False for what lies flat on the floor: rugs and mats, which wheels and legs stand on.
+    pub collides: bool,
     /// Mass of all its bodies, kg.
     pub mass_kg: f64,
     /// Coefficient of sliding friction.
@@ -520,6 +525,31 @@ fn storeys(world: &World) -> Vec<SimStorey> {
     match plan.levels.as_slice() {
         [] => vec![SimStorey { level: 0, elevation_m: 0.0, height_m: highest(0) }],
         levels => levels.iter().map(listed).collect(),
+    }
+}
+
+impl SimLeaf {
+    /// Returns where the leaf is at a position of its joint: rad, or m.
+    pub fn at(&self, position: f64) -> SimBox {
+        let (joint, mut moved) = (&self.joint, self.closed);
+        if !joint.hinge {
+            moved.center_m = std::array::from_fn(|i| moved.center_m[i] + joint.axis[i] * position);
+            return moved;
+        }
+        let turn = position * joint.axis[2];
+        let (sin, cos) = turn.sin_cos();
+        let [dx, dy] = [0, 1].map(|i| self.closed.center_m[i] - joint.origin_m[i]);
+        moved.center_m[0] = joint.origin_m[0] + cos * dx - sin * dy;
+        moved.center_m[1] = joint.origin_m[1] + sin * dx + cos * dy;
+        moved.yaw_rad += turn;
+        moved
+    }
+}
+
+impl SimDoor {
+    /// Returns true for a door that leads out of the building.
+    pub fn leads_out(&self) -> bool {
+        self.room_ids.len() < 2
     }
 }
 

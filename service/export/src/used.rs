@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use d3dgen_mesh::{Library, Model3d};
+use d3dgen_mesh::{Library, Model3d, generate};
 use d3dgen_model::domain::{Domain, Mount, ObjectType, Shape, Stock};
 use d3dgen_model::placements::Placement;
 use d3dgen_model::world::World;
@@ -125,23 +125,26 @@ impl UsedModels {
 
 impl Model {
     fn made(&self, own: Option<&Library>, domain: &Domain) -> Result<Arc<Model3d>, Error> {
-        let library = own.unwrap_or(Library::shipped());
-        Ok(Arc::new(d3dgen_mesh::generate(library, &self.object_type(domain), self.size_m, SEED)?))
+        let object = self.object_type(domain);
+        let request = self.request(&object);
+        match own {
+            Some(library) => Ok(Arc::new(generate(library, &object, self.size_m, SEED)?)),
+            None => models::remembered_model(&request),
+        }
     }
 
     fn files(&self, own: Option<&Library>, domain: &Domain) -> Result<Vec<File>, Error> {
-        let request = ModelRequest {
-            domain: &self.domain,
-            name: &self.name,
-            object: &self.object_type(domain),
-            size_m: self.size_m,
-            mount: self.mount,
-            seed: SEED,
-        };
+        let object = self.object_type(domain);
+        let request = self.request(&object);
         match own {
             Some(library) => models::files(library, &request),
             None => Ok(models::remembered_files(&request)?.to_vec()),
         }
+    }
+
+    fn request<'a>(&'a self, object: &'a ObjectType) -> ModelRequest<'a> {
+        let Self { domain, name, size_m, mount, .. } = self;
+        ModelRequest { domain, name, object, size_m: *size_m, mount: *mount, seed: SEED }
     }
 
     fn object_type<'a>(&self, domain: &'a Domain) -> Cow<'a, ObjectType> {
@@ -153,7 +156,7 @@ impl Model {
 }
 
 /// Returns the object type of a placement whose object the domain does not know: a plain box.
-fn plain(id: &str, size_m: [f64; 3], mount: Mount) -> ObjectType {
+pub(crate) fn plain(id: &str, size_m: [f64; 3], mount: Mount) -> ObjectType {
     ObjectType {
         id: id.to_owned(),
         label: id.to_owned(),

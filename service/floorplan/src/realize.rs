@@ -240,7 +240,8 @@ fn second_stairs(task: &mut Task<'_, '_>, len: i32, w: i32) {
 /// Returns length and width of a hub room that must be `len` long at least, from its area.
 fn hub_size(brief: &Brief, spine: usize, len: i32, misfit: &mut f64) -> (i32, i32) {
     let spec = &brief.rooms[spine];
-    let walls = INNER_HALF_M + OUTER_HALF_M;
+    // a room by itself has no neighbor to share a wall with
+    let walls = OUTER_HALF_M + if brief.rooms.len() == 1 { OUTER_HALF_M } else { INNER_HALF_M };
     let natural = up((spec.area_target * 1.4).sqrt() + walls);
     let proportion = meters(len).powi(2) / spec.area_target;
     let length = if (0.5..=2.2).contains(&proportion) { len } else { len.max(natural) };

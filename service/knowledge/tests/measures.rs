@@ -330,6 +330,22 @@ fn reports_count_what_the_law_of_the_country_says() {
 }
 
 #[test]
+fn countries_that_had_no_law_of_their_own_have_some_that_is_decided() {
+    let registry = Registry::builtin();
+    let knowledge = registry.get("office").expect("a shipped domain").knowledge();
+    let rooms = [square(0.0, 0.0, 30.0, 2.0), square(0.0, 2.0, 30.0, 8.0), square(0.0, 8.0, 30.0, 14.0)];
+    for country in ["BR", "ES", "IT", "KR", "PL"] {
+        let office = Building { country: Some(country), ..office_of_200(&rooms) };
+        let (results, summary) = office.against(knowledge);
+        assert!(summary.national_decided >= 1, "{country}: {summary:?}");
+        let own = |r: &&ConstraintResult| r.citation.jurisdiction == country && r.mandatory;
+        for result in results.iter().filter(own) {
+            assert!(result.citation.seen_at.is_some() && result.citation.clause.is_some(), "{result:?}");
+        }
+    }
+}
+
+#[test]
 fn pages_that_nothing_vouches_for_steer_no_plan() {
     let registry = Registry::builtin();
     let domain = registry.get("office").expect("a shipped domain").domain();

@@ -71,6 +71,8 @@ pub struct LanguageData {
     pub head_last: bool,
     /// Endings that do not count, longest first.
     pub(crate) endings: Vec<Ending>,
+    /// Endings of more than one, and what one ends in instead.
+    pub(crate) plural: Vec<Ending>,
     /// Spellings inside of words that do not count: from, to; folded.
     pub(crate) same: Vec<(String, String)>,
     /// Letters between the parts of compounds; empty where words are not compounded.
@@ -133,6 +135,8 @@ struct LanguageFile {
     head: Head,
     #[serde(default)]
     endings: Vec<String>,
+    #[serde(default)]
+    plural: Vec<String>,
     #[serde(default)]
     same: BTreeMap<String, String>,
     #[serde(default)]
@@ -215,6 +219,7 @@ fn language(file: &str, code: &str, text: &str) -> Result<LanguageData, Error> {
         decimal: read.decimal,
         head_last: read.head == Head::Last,
         endings,
+        plural: read.plural.iter().map(|e| ending(e)).collect(),
         same: read.same.into_iter().map(|(from, to)| (fold(&from), fold(&to))).collect(),
         joints,
         transcriptions: read.transcriptions.into_iter().collect(),

@@ -11,6 +11,9 @@ use crate::tokens::{Token, TokenKind, tokens};
 /// Code of what is the same in all languages.
 pub(crate) const ANY: &str = "any";
 
+/// Class of the small words that build sentences.
+const SMALL: &str = "particle";
+
 /// The phrases of all languages with what they stand for.
 #[derive(Debug, Clone)]
 pub struct Lexicon {
@@ -194,6 +197,19 @@ impl Language {
         if exact.is_empty() { all.iter().filter(|e| !e.exact).map(|e| (e, false)).collect() } else { exact }
     }
 
+    /// Returns true where a match is of a small word that builds sentences.
+    pub fn is_small(&self, node: u32) -> bool {
+        self.ends[node as usize].iter().any(|e| *e.class == *SMALL)
+    }
+
+    /// Returns true for the form of a word for more than one, where the word for one stands in the lexicon.
+    pub fn is_plural(&self, word: &str) -> bool {
+        self.data.plural.iter().any(|e| {
+            let one = word.strip_suffix(e.strip.as_str()).map(|root| format!("{root}{}", e.put));
+            one.is_some_and(|one| self.vocabulary.has(&one))
+        })
+    }
+
     /// Returns the entries of one word that is not a token, with whether it is written exactly so.
     pub fn word(&self, word: &str) -> Option<&[Entry]> {
         let key = self.keys.get(&stem(word, &self.data))?;
@@ -218,6 +234,7 @@ fn bare(code: &str) -> LanguageData {
         decimal: '.',
         head_last: true,
         endings: Vec::new(),
+        plural: Vec::new(),
         same: Vec::new(),
         joints: Vec::new(),
         transcriptions: Vec::new(),

@@ -5,7 +5,7 @@ use std::ops::Range;
 use crate::chunks::{Chunk, Sense};
 use crate::compounds::split;
 use crate::detect::{Detected, detect};
-use crate::lexicon::{ANY, Lexicon, Match};
+use crate::lexicon::{ANY, Language, Lexicon, Match};
 use crate::numbers;
 use crate::tokens::{Token, TokenKind, tokens};
 
@@ -37,6 +37,7 @@ pub struct Reading<'l> {
     chunks: Vec<Chunk<'l>>,
     languages: Vec<&'l str>,
     sentences: Vec<(&'l str, bool)>,
+    inflected: Vec<&'l Language>,
     unread: Option<String>,
     misspellings: Vec<Misspelling>,
 }
@@ -65,6 +66,13 @@ impl<'l> Reading<'l> {
     /// Returns true where names of several words have their noun last, by the language of a token.
     pub fn head_last(&self, token: usize) -> bool {
         self.tokens.get(token).and_then(|t| self.sentences.get(t.sentence)).is_none_or(|s| s.1)
+    }
+
+    /// Returns true where the noun of a run of tokens stands for more than one, as far as its form tells.
+    pub fn is_plural(&self, tokens: Range<usize>) -> bool {
+        let noun = if self.head_last(tokens.start) { tokens.end.checked_sub(1) } else { Some(tokens.start) };
+        let noun = noun.and_then(|at| self.tokens.get(at)).filter(|t| t.kind == TokenKind::Word);
+        noun.is_some_and(|t| self.inflected.get(t.sentence).is_some_and(|l| l.is_plural(&t.text)))
     }
 
     /// Returns the name of the language that it is written in when that one is not read, in English.
@@ -105,7 +113,9 @@ impl Lexicon {
             .map(|l| (self.languages[*l].data.code.as_str(), self.languages[*l].data.head_last));
         let sentences: Vec<(&str, bool)> = sentences.collect();
         let languages = by_share(&sentences, &tokens);
-        Reading { text: text.to_owned(), tokens, chunks, languages, sentences, unread: detected.unread, misspellings }
+        let inflected = detected.sentences.iter().map(|l| &self.languages[*l]).collect();
+        let (text, unread) = (text.to_owned(), detected.unread);
+        Reading { text, tokens, chunks, languages, sentences, inflected, unread, misspellings }
     }
 
     /// Spells words right that nobody knows.
@@ -245,7 +255,19 @@ fn join_unknown<'l>(chunks: Vec<Chunk<'l>>, tokens: &[Token]) -> Vec<Chunk<'l>> 
     let mut joined: Vec<Chunk<'l>> = Vec::with_capacity(chunks.len());
     for chunk in chunks {
         let sign = |c: &Chunk| c.senses.is_empty() && tokens[c.tokens.start].kind == TokenKind::Sign;
+        // "세탁물": the sign of a number that a longer unknown word begins with counts nothing
+        let numeral = |c: &Chunk| {
+            c.tokens.len() == 1
+                && tokens[c.tokens.start].kind == TokenKind::Sign
+                && c.has("number")
+                && is_spaced(&c.text)
+        };
         match joined.last_mut() {
+            Some(last) if numeral(last) && sign(&chunk) && tokens[chunk.tokens.start].joined => {
+                last.senses.clear();
+                last.tokens.end = chunk.tokens.end;
+                last.text.push_str(&chunk.text);
+            }
             Some(last) if sign(last) && sign(&chunk) && tokens[chunk.tokens.start].joined => {
                 last.tokens.end = chunk.tokens.end;
                 last.text.push_str(&chunk.text);
@@ -254,6 +276,11 @@ fn join_unknown<'l>(chunks: Vec<Chunk<'l>>, tokens: &[Token]) -> Vec<Chunk<'l>> 
         }
     }
     joined
+}
+
+/// Returns true for signs of scripts that write spaces between words.
+fn is_spaced(text: &str) -> bool {
+    text.chars().all(|c| ('\u{ac00}'..='\u{d7a3}').contains(&c))
 }
 
 fn text_of(tokens: &[Token]) -> String {

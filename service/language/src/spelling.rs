@@ -7,6 +7,9 @@ const SHORTEST: usize = 5;
 /// Words from this length on may have two slips.
 const LONG: usize = 9;
 
+/// Shortest words that are kept: to know them, not to mend others by them.
+const KEPT: usize = 2;
+
 /// The words of a language, by what a misspelling leaves alone: their first letter and about their length.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Vocabulary {
@@ -22,11 +25,17 @@ impl Vocabulary {
 
     pub fn add(&mut self, word: &str) {
         let length = word.chars().count();
-        if length >= SHORTEST - 1
+        if length >= KEPT
             && let Some(first) = word.chars().next()
         {
             self.words.entry((first, length)).or_default().insert(word.to_owned());
         }
+    }
+
+    /// Returns true for words that stand in the lexicon as they are.
+    pub fn has(&self, word: &str) -> bool {
+        let key = word.chars().next().map(|first| (first, word.chars().count()));
+        key.and_then(|key| self.words.get(&key)).is_some_and(|words| words.contains(word))
     }
 
     /// Returns the word that a misspelled one was meant to be, and nothing where it is right, short, or near to several.
@@ -38,7 +47,7 @@ impl Vocabulary {
         let slips = if length >= LONG { 2 } else { 1 };
         let first = word.chars().next()?;
         let mut best: Option<(usize, &str, bool)> = None;
-        for near in length.saturating_sub(slips)..=length + slips {
+        for near in length.saturating_sub(slips).max(SHORTEST - 1)..=length + slips {
             for known in self.words.get(&(first, near)).into_iter().flatten() {
                 if apart(word, known) > 2 * slips {
                     continue;

@@ -2,14 +2,14 @@
 //! bears the rest anywhere in its range, and damping that lets it move at the pace of furniture. All follow from masses and
 //! arms, so a dishwasher's door stays where it is left as a drawer does.
 
-use crate::affine::{Vec3, cross, dot, scale, sub};
+use crate::affine::{Vec3, add, cross, dot, scale, sub};
 use crate::mass::{Inertia, inertia};
 use crate::{Joint, JointKind, Model3d};
 
 /// Gravity, m/s^2.
 const GRAVITY: f64 = 9.81;
 /// How much more than the weight friction bears.
-const SAFETY: f64 = 1.3;
+const SAFETY: f64 = 1.1;
 /// Friction of a joint that bears no weight, as a share of the weight of what moves at a tenth of its arm, and at least,
 /// N m or N.
 const ROLLING: f64 = 0.02;
@@ -17,11 +17,16 @@ const LEAST: f64 = 0.01;
 /// How many ranges long a spring is drawn that pulls evenly.
 const FLAT: f64 = 50.0;
 /// How long what moves goes on by itself, s.
-const SLOWS_S: f64 = 0.5;
+const SLOWS_S: f64 = 1.0;
 /// Positions of its range at which the weight on a joint is looked at.
 const POSITIONS: usize = 33;
+/// An axis nearer to upright than this (cosine) does not tilt what it turns.
+const UPRIGHT: f64 = 0.999;
 /// How far a joint is looked at that has no limits: rad, and m.
 const ALL_ROUND: [f64; 2] = [0.0, std::f64::consts::TAU];
+
+/// Most joints above and below one whose ends are looked at together.
+const RELATED: usize = 4;
 
 /// How a joint resists.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,65 +51,134 @@ pub struct Spring {
 /// Returns how a joint of a model resists.
 pub fn of(model: &Model3d, joint: &Joint) -> Dynamics {
     let moved = moved(model, joint);
-    let mass: f64 = moved.iter().map(|b| b.mass_kg).sum();
+    let mass: f64 = moved.iter().map(|b| b.0.mass_kg).sum();
     let (resists, idle) = match joint.kind {
         JointKind::Prismatic => (mass, mass * GRAVITY),
         JointKind::Revolute | JointKind::Continuous => {
-            let about = moved.iter().map(|b| about_axis(b, joint)).sum::<f64>();
+            let about = moved.iter().map(|b| about_axis(&b.0, joint)).sum::<f64>();
             let arm = if mass > 0.0 { (about / mass).sqrt() } else { 0.0 };
             (about, mass * GRAVITY * arm * 0.1)
         }
     };
     let least = (ROLLING * idle).max(LEAST);
-    let loads = loads(&moved, joint);
+    let alone = loads(&moved, joint, &Pose::default());
+    let poses = poses(model, joint);
+    let all: Vec<(f64, f64)> = poses.iter().flat_map(|pose| loads(&moved, joint, pose)).collect();
     let most = |spring: Option<Spring>| {
         let left = |(at, load): &(f64, f64)| (load + spring.map_or(0.0, |s| s.stiffness * (s.reference - at))).abs();
-        loads.iter().map(left).fold(0.0, f64::max)
+        alone.iter().chain(&all).map(left).fold(0.0, f64::max)
     };
-    let spring = spring(&loads).filter(|s| joint.limits.is_some() && most(None) > least && most(Some(*s)) < most(None));
+    let spring = spring(&alone).filter(|s| joint.limits.is_some() && most(None) > least && most(Some(*s)) < most(None));
     let friction = (SAFETY * most(spring)).max(least);
     Dynamics { friction, damping: (resists / SLOWS_S).max(LEAST), spring }
 }
 
-/// Returns the spring that balances loads best: the line through them that leaves least squares, as steep as a spring can
-/// be.
+/// Returns the spring that balances loads best: the line along them that leaves least of the largest, as steep as a spring can
+/// be; the slope is that of least squares or that from end to end.
 fn spring(loads: &[(f64, f64)]) -> Option<Spring> {
     let count = loads.len() as f64;
     let mean = |value: &dyn Fn(&(f64, f64)) -> f64| loads.iter().map(value).sum::<f64>() / count;
     let (at, load) = (mean(&|l| l.0), mean(&|l| l.1));
     let spread = mean(&|l| (l.0 - at).powi(2));
-    let (first, last) = (loads.first()?.0, loads.last()?.0);
+    let (first, last) = (*loads.first()?, *loads.last()?);
     if spread <= 0.0 {
         return None;
     }
-    let slope = mean(&|l| (l.0 - at) * (l.1 - load)) / spread;
-    let stiffness = slope.max(load.abs() / (FLAT * (last - first)));
-    (stiffness > 0.0).then(|| Spring { stiffness, reference: at - load / stiffness })
+    let squares = mean(&|l| (l.0 - at) * (l.1 - load)) / spread;
+    let ends = (last.1 - first.1) / (last.0 - first.0);
+    let line = |slope: f64| {
+        let stiffness = slope.max(load.abs() / (FLAT * (last.0 - first.0)));
+        let left = loads.iter().map(|(at, load)| load - stiffness * at);
+        let (low, high) = left.fold((f64::MAX, f64::MIN), |b, v| (b.0.min(v), b.1.max(v)));
+        (stiffness > 0.0).then(|| (high - low, Spring { stiffness, reference: -(low + high) / 2.0 / stiffness }))
+    };
+    let lines = [squares, ends].into_iter().filter_map(line);
+    lines.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, spring)| spring)
 }
 
-/// Returns the moments, or forces, of gravity about a joint over its range, with all others at zero: each with the position,
+/// Positions of joints beside the one looked at: those above it from the root, then those of each moved body.
+#[derive(Default)]
+struct Pose<'a> {
+    above: Vec<(&'a Joint, f64)>,
+    below: Vec<(&'a Joint, f64)>,
+}
+
+/// Returns poses in which the joints above and below one are at their ends and at zero, in all ways for those nearest to it.
+///
+/// Of those above only what turns what hangs on it counts.
+fn poses<'a>(model: &'a Model3d, joint: &Joint) -> Vec<Pose<'a>> {
+    let mut above: Vec<&Joint> = Vec::new();
+    let mut at = joint.parent;
+    while let Some(next) = model.joints.iter().find(|j| j.child == at).filter(|_| above.len() < RELATED) {
+        above.push(next);
+        at = next.parent;
+    }
+    above.retain(|j| j.kind == JointKind::Revolute && j.axis[2].abs() < UPRIGHT);
+    let reach = bodies_moved(model, joint);
+    let mut below: Vec<&Joint> =
+        model.joints.iter().filter(|j| j.limits.is_some() && reach.contains(&j.parent)).collect();
+    below.truncate(RELATED - above.len());
+    let mut poses = vec![Pose::default()];
+    for (own, is_above) in above.into_iter().map(|j| (j, true)).chain(below.into_iter().map(|j| (j, false))) {
+        let [low, high] = own.limits.unwrap_or(ALL_ROUND);
+        let with = |pose: Pose<'a>| {
+            [low, 0.0_f64.clamp(low, high), high].map(|position| {
+                let mut longer = Pose { above: pose.above.clone(), below: pose.below.clone() };
+                if is_above {
+                    longer.above.push((own, position))
+                } else {
+                    longer.below.push((own, position))
+                }
+                longer
+            })
+        };
+        poses = poses.into_iter().flat_map(with).collect();
+    }
+    poses
+}
+
+/// Returns the moments, or forces, of gravity about a joint over its range, in a pose of the others: each with the position,
 /// N m or N.
-fn loads(moved: &[Inertia], joint: &Joint) -> Vec<(f64, f64)> {
+fn loads(moved: &[(Inertia, Vec<usize>)], joint: &Joint, pose: &Pose<'_>) -> Vec<(f64, f64)> {
     let [low, high] = joint.limits.unwrap_or(ALL_ROUND);
     let at = |step: usize| low + (high - low) * step as f64 / (POSITIONS - 1) as f64;
+    // What turns the joint turns gravity the other way as the joint sees it.
+    let down = pose.above.iter().rev().fold([0.0, 0.0, -1.0], |v, (j, position)| turned(v, j.axis, -position));
+    let placed: Vec<(f64, Vec3)> = moved
+        .iter()
+        .map(|(body, held_by)| {
+            let mine = pose.below.iter().rev().filter(|(j, _)| held_by.contains(&j.child));
+            (body.mass_kg, mine.fold(body.center_m, |p, (j, position)| moved_by(j, *position, p)))
+        })
+        .collect();
     let load = |position: f64| -> f64 {
-        let one = |body: &Inertia| {
-            let weight = [0.0, 0.0, -GRAVITY * body.mass_kg];
+        let one = |(mass, center): &(f64, Vec3)| {
+            let weight = scale(down, GRAVITY * mass);
             match joint.kind {
                 JointKind::Prismatic => dot(joint.axis, weight),
                 JointKind::Revolute | JointKind::Continuous => {
-                    let way = turned(sub(body.center_m, joint.origin), joint.axis, position);
+                    let way = turned(sub(*center, joint.origin), joint.axis, position);
                     dot(joint.axis, cross(way, weight))
                 }
             }
         };
-        moved.iter().map(one).sum()
+        placed.iter().map(one).sum()
     };
     (0..POSITIONS).map(at).map(|position| (position, load(position))).collect()
 }
 
-/// Returns the bodies that a joint moves: its own, and those that other joints hold to it.
-fn moved(model: &Model3d, joint: &Joint) -> Vec<Inertia> {
+/// Returns where a joint at a position takes a point.
+fn moved_by(joint: &Joint, position: f64, p: Vec3) -> Vec3 {
+    match joint.kind {
+        JointKind::Prismatic => add(p, scale(joint.axis, position)),
+        JointKind::Revolute | JointKind::Continuous => {
+            add(joint.origin, turned(sub(p, joint.origin), joint.axis, position))
+        }
+    }
+}
+
+/// Returns the indices of the bodies that a joint moves: its own, and those that other joints hold to it.
+fn bodies_moved(model: &Model3d, joint: &Joint) -> Vec<usize> {
     let mut bodies = vec![joint.child];
     let mut next = 0;
     while let Some(&body) = bodies.get(next) {
@@ -115,7 +189,23 @@ fn moved(model: &Model3d, joint: &Joint) -> Vec<Inertia> {
         }
         next += 1;
     }
-    bodies.iter().filter_map(|b| model.bodies.get(*b)).map(inertia).collect()
+    bodies
+}
+
+/// Returns the bodies that a joint moves, each with the bodies from it up to the joint's own.
+fn moved(model: &Model3d, joint: &Joint) -> Vec<(Inertia, Vec<usize>)> {
+    let up = |body: usize| {
+        let mut chain = vec![body];
+        while let Some(&last) = chain.last().filter(|b| **b != joint.child && chain.len() <= model.bodies.len()) {
+            match model.joints.iter().find(|j| j.child == last) {
+                Some(held) => chain.push(held.parent),
+                None => break,
+            }
+        }
+        chain
+    };
+    let bodies = bodies_moved(model, joint).into_iter();
+    bodies.filter_map(|b| model.bodies.get(b).map(|body| (inertia(body), up(b)))).collect()
 }
 
 /// Returns the inertia of a body about the axis of a joint, kg m^2.
@@ -154,8 +244,37 @@ mod tests {
     fn not_held(model: &Model3d, joint: &Joint) -> f64 {
         let Dynamics { friction, spring, .. } = of(model, joint);
         let pull = |at: f64| spring.map_or(0.0, |s| s.stiffness * (s.reference - at));
-        let all = loads(&moved(model, joint), joint);
+        let all: Vec<(f64, f64)> =
+            poses(model, joint).iter().flat_map(|pose| loads(&moved(model, joint), joint, pose)).collect();
         all.iter().map(|(at, load)| (load + pull(*at)).abs() - friction).fold(f64::MIN, f64::max)
+    }
+
+    #[test]
+    fn a_lamp_of_two_arms_holds_however_both_stand() {
+        // The second arm hangs on the first: what the first one does tilts the second.
+        let (mut model, first) = flap(JointKind::Revolute, [0.0, 1.0, 0.0], Some([-0.7, 0.7]));
+        let second = Joint {
+            name: "k".into(),
+            parent: 1,
+            child: 2,
+            origin: [0.0, 0.0, 0.5],
+            limits: Some([-1.0, 1.0]),
+            ..first.clone()
+        };
+        let tip = Collision::Box { min: [0.0, -0.1, 0.5], max: [0.3, 0.1, 0.6] };
+        model.bodies.push(Body { collisions: vec![tip], mass_kg: 1.0, ..Body::default() });
+        model.joints.push(second.clone());
+        for joint in [&first, &second] {
+            assert!(not_held(&model, joint) < 0.0, "{} {:?}", joint.name, of(&model, joint));
+        }
+        let upright = poses(&model, &second);
+        assert_eq!((upright.len(), poses(&model, &first).len()), (3, 3));
+        let straight = |pose: &&Pose<'_>| pose.above.iter().all(|(_, at)| *at == 0.0);
+        let alone = loads(&moved(&model, &second), &second, upright.iter().find(straight).expect("one is at zero"));
+        let most = |loads: &[(f64, f64)]| loads.iter().map(|l| l.1).fold(f64::MIN, f64::max);
+        let tilted =
+            upright.iter().map(|pose| most(&loads(&moved(&model, &second), &second, pose))).fold(f64::MIN, f64::max);
+        assert!(tilted > most(&alone) * 1.05, "tilted it weighs more: {tilted}, {}", most(&alone));
     }
 
     #[test]

@@ -14,6 +14,7 @@ pub mod edits;
 pub mod error;
 pub mod expression;
 pub mod floorplan;
+pub mod gazetteer;
 pub mod geometry;
 pub mod knowledge;
 pub mod measures;

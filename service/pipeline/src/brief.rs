@@ -5,12 +5,13 @@
 //! the brief; else that reader makes them of the words.
 
 use d3dgen_model::brief::Brief;
+use d3dgen_model::floorplan::Floorplan;
 use d3dgen_model::scene_graph::{Note, SceneGraph};
 use d3dgen_model::stage::Error;
 use d3dgen_plugins::Registry;
 use d3dgen_prompt::PromptReader;
 
-use crate::scene_graph::{self, Request};
+use crate::scene_graph::{self, Request, says_nothing};
 
 /// Codes of what is assumed where a prompt names no building that a domain knows.
 const NO_BUILDING: [&str; 2] = ["default_domain", "domain_from_rooms"];
@@ -20,26 +21,34 @@ pub fn of_prompt(prompt: &str, registry: &Registry) -> Option<Brief> {
     (!prompt.trim().is_empty()).then(|| PromptReader::new(registry).read(prompt).brief)
 }
 
+/// Reads the prompt of a building that is planned; none for a plan that somebody brought, which has the name of its file there.
+pub fn of_plan(prompt: &str, plan: Option<&Floorplan>, registry: &Registry) -> Option<Brief> {
+    if plan.is_some_and(Floorplan::is_given) { None } else { of_prompt(prompt, registry) }
+}
+
 /// Makes the rooms of a request, with the brief that they answer to.
 ///
 /// # Errors
 /// `Refused` for prompts without words, kinds of buildings that no domain knows, absurd sizes, unknown domains and countries.
 pub fn rooms(request: &Request, registry: &Registry) -> Result<(SceneGraph, Option<Brief>), Error> {
-    let brief = of_prompt(&request.prompt, registry);
-    let strange = brief.as_ref().filter(|b| b.languages.first().is_some_and(|l| !scene_graph::reads(l)));
-    let graph = match strange {
-        Some(brief) => rooms_of(brief, request, registry)?,
-        None => {
-            let graph = scene_graph::generate(request, registry)?;
-            let unnamed = graph.assumptions.iter().any(|n| NO_BUILDING.contains(&n.code.as_str()));
-            match brief.as_ref().filter(|b| unnamed && b.building.as_ref().is_some_and(|k| k.domain.is_none())) {
-                // a kind of building that no domain knows is no home by its rooms: this refuses it
-                Some(unknown) => rooms_of(unknown, request, registry)?,
-                None => graph,
-            }
-        }
+    if let Some(brief) = &request.brief {
+        return Ok((rooms_of(brief, request, registry)?, Some(brief.clone())));
+    }
+    let Some(brief) = of_prompt(&request.prompt, registry) else {
+        return Ok((scene_graph::generate(request, registry)?, None));
     };
-    Ok((graph, brief))
+    let of_words = brief.languages.first().is_none_or(|l| scene_graph::reads(l));
+    let free = request.domain.is_none();
+    let graph = if !of_words || free && says_nothing(&brief) {
+        rooms_of(&brief, request, registry)?
+    } else {
+        let graph = scene_graph::generate_with(&brief, request, registry)?;
+        let unnamed = graph.assumptions.iter().any(|n| NO_BUILDING.contains(&n.code.as_str()));
+        // a kind of building that no domain knows is no home by its rooms
+        let unknown = free && unnamed && brief.building.as_ref().is_some_and(|b| b.domain.is_none());
+        if unknown { rooms_of(&brief, request, registry)? } else { graph }
+    };
+    Ok((graph, Some(brief)))
 }
 
 /// Makes the rooms of a brief; the flags of the request overrule it.

@@ -162,7 +162,7 @@ pub fn furnish_and_check(
     cancelled: &AtomicBool,
 ) -> Result<Generated, Error> {
     let plugin = plugin_of(registry, graph)?;
-    let read = || brief::of_prompt(&graph.prompt, registry);
+    let read = || brief::of_plan(&graph.prompt, settings.pinned_floorplan.as_ref(), registry);
     let settings = &Settings { brief: settings.brief.clone().or_else(read), ..settings.clone() };
     let mut made = |graph: &SceneGraph, settings: &Settings| match attempts(graph, plugin, settings, observe, cancelled)
     {

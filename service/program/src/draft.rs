@@ -29,6 +29,7 @@ use super::subject::{practitioners, single};
 use super::tokens::text::Span;
 use super::tokens::words::{Tag, words};
 use super::wished::relations::{self, Said};
+use super::wished::unread::Unread;
 use super::wished::wishes::{self, Text, Wish, Wishes};
 use super::wished::{closed, comparisons, totals, unread};
 use crate::people::held::Held;
@@ -430,8 +431,8 @@ impl<'r, 'a> Draft<'r, 'a> {
         found
     }
 
-    /// States what was not read.
-    pub(crate) fn state_unread(&mut self, read: &[Span], doors: &[Span], parts: &Parts) {
+    /// States what was not read, and returns it.
+    pub(crate) fn state_unread(&mut self, read: &[Span], doors: &[Span], parts: &Parts) -> Vec<Unread> {
         let Heard { prompt, tokens, numbers, spoken, .. } = &self.heard;
         let unread = unread::Text {
             tokens,
@@ -447,6 +448,6 @@ impl<'r, 'a> Draft<'r, 'a> {
             planned: &parts.planned,
             parts: &parts.left,
         };
-        unread::state(&unread, &mut self.notes.conflicts);
+        unread::state(&unread, &mut self.notes.conflicts)
     }
 }

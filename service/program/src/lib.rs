@@ -39,6 +39,7 @@ use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::stage::Error;
 use d3dgen_plugins::Registry;
 
+pub use self::briefed::says_nothing;
 use self::built::program;
 pub use self::built::rooms::wished_assets;
 pub use self::built::vital::is_missed;
@@ -59,6 +60,17 @@ pub fn languages() -> Vec<&'static str> {
 /// `Refused` for prompts without words, absurd sizes, unknown domains and countries, with what would work.
 pub fn generate(request: &Request, registry: &Registry) -> Result<SceneGraph, Error> {
     let mut reading = read::read(request, registry)?;
+    let mut planned = program::complete(&mut reading);
+    Ok(settle::settle(request, registry, &mut reading, &mut planned))
+}
+
+/// As [`generate`], with a brief of the same prompt: what it states and the words here were not read for is planned as well.
+///
+/// # Errors
+/// As [`generate`].
+pub fn generate_with(brief: &Brief, request: &Request, registry: &Registry) -> Result<SceneGraph, Error> {
+    let mut reading = read::read(request, registry)?;
+    briefed::restore(&mut reading, brief, registry);
     let mut planned = program::complete(&mut reading);
     Ok(settle::settle(request, registry, &mut reading, &mut planned))
 }

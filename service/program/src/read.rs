@@ -36,7 +36,7 @@ pub(crate) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     let stays = draft.stays();
     draft.take_words(&called);
     let objects = draft.objects(&stops.docked);
-    draft.state_unread(&objects.words, &doors, &parts);
+    let unread = draft.state_unread(&objects.words, &doors, &parts);
     let Draft { heard, site, counted, wishes, named, notes, .. } = draft;
     Ok(Reading {
         language: heard.language,
@@ -60,6 +60,8 @@ pub(crate) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         seats: counted.seats,
         halves: counted.halves,
         called,
+        names: Vec::new(),
+        unread,
         habitable_fixed: named.habitable_fixed,
         area_m2,
         each_alone: site.lives && (site.shared || named.own_rooms),

@@ -11,6 +11,7 @@ use super::levels::storeys::Storeys;
 use super::machines::{robot_rules, robots};
 use super::named::objects::Thing;
 use super::people::seats::Called;
+use super::wished::unread::Unread;
 use super::wished::wishes::Wishes;
 use crate::people::held::Held;
 
@@ -48,6 +49,10 @@ pub(crate) struct Reading<'a> {
     pub halves: Vec<String>,
     /// What the prompt calls its rooms.
     pub called: Vec<Called>,
+    /// What a brief calls its rooms, in buildings of any kind.
+    pub names: Vec<Called>,
+    /// Words that nothing was made of.
+    pub unread: Vec<Unread>,
     /// True when the prompt counts the rooms to live in ("3-Zimmer-Wohnung", "2BHK").
     pub habitable_fixed: bool,
     pub area_m2: Option<f64>,

@@ -1,5 +1,6 @@
 //! What is asked for: the words, and the flags that overrule them.
 
+use d3dgen_model::brief::Brief;
 use d3dgen_model::robot_body::RobotBody;
 use d3dgen_model::stage::Error;
 use d3dgen_model::style::Style;
@@ -18,6 +19,8 @@ pub(crate) const MAX_AREA_M2: f64 = 200_000.0;
 pub struct Request {
     /// What people ask for, in English, German, French, Spanish, Chinese or Korean.
     pub prompt: String,
+    /// The facts to plan, where somebody states them: the prompt is not read then.
+    pub brief: Option<Brief>,
     /// Seed of every random choice.
     pub seed: u64,
     /// Domain id; read from the prompt when absent.

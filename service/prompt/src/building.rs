@@ -16,6 +16,8 @@ const NAMED: f64 = 1.0;
 const LATER: f64 = 0.6;
 /// How sure a kind is whose word is also a room.
 const ROOM_TOO: f64 = 0.8;
+/// What an object says of the building it stands in, beside a room.
+const THING: f64 = 0.5;
 /// How sure a domain is that most rooms suggest.
 const SUGGESTED: f64 = 0.5;
 
@@ -137,15 +139,30 @@ fn meant(registry: &Registry, node: &Node, reading: &Reading) -> Vec<AskedBuildi
     found
 }
 
-/// Returns the domain that knows most of the rooms, when no words name a building.
+/// Returns the domain that knows most of the rooms and objects, when no words name a building.
 fn suggested(registry: &Registry, nodes: &[Rc<Node>]) -> Option<AskedBuilding> {
     let mut votes: BTreeMap<&str, (f64, usize)> = BTreeMap::new();
     for (order, plugin) in registry.iter().enumerate() {
         let knows = |id: &str| plugin.domain().room_type(id).is_some();
-        let rooms = nodes.iter().filter(|n| n.is("room", None) || n.is("shorthand", None));
-        let votes_of = rooms.map(|n| {
-            if n.is("shorthand", None) && order == 0 { 2.0 } else { f64::from(u8::from(n.values("room").any(knows))) }
-        });
+        let owns = |id: &str| plugin.domain().object(id).is_some();
+        let vote = |n: &Rc<Node>| match () {
+            () if n.is("shorthand", None) => {
+                if order == 0 {
+                    2.0
+                } else {
+                    0.0
+                }
+            }
+            () if n.is("object", None) => {
+                if n.values("object").any(owns) || n.values("room").any(knows) {
+                    THING
+                } else {
+                    0.0
+                }
+            }
+            () => f64::from(u8::from(n.values("room").any(knows))),
+        };
+        let votes_of = nodes.iter().map(vote);
         votes.insert(plugin.id(), (votes_of.sum(), order));
     }
     let (domain, (most, _)) = votes.into_iter().max_by(|a, b| a.1.0.total_cmp(&b.1.0).then(b.1.1.cmp(&a.1.1)))?;

@@ -23,12 +23,14 @@ pub(crate) struct Stated {
     pub fact: Fact,
     /// True when the words only speak of a room or an object that others ask for.
     pub mention: bool,
+    /// True for a room with words of its own: "an office for the boss".
+    pub own: bool,
 }
 
 /// Makes facts of nodes.
 pub(crate) struct Maker<'a> {
     pub reading: &'a Reading<'a>,
-    pub known: Known,
+    pub known: Known<'a>,
     /// True where the first floor is the ground floor.
     pub first_is_ground: bool,
     pub facts: Vec<Stated>,
@@ -87,7 +89,7 @@ impl Maker<'_> {
     }
 
     fn say(&mut self, node: &Node, fact: Fact) {
-        self.facts.push(Stated { tokens: node.tokens.clone(), also: None, fact, mention: false });
+        self.facts.push(Stated { tokens: node.tokens.clone(), also: None, fact, mention: false, own: false });
     }
 
     fn subject(&self, node: &Node) -> Subject {
@@ -114,7 +116,17 @@ impl Maker<'_> {
         }
         let room = self.known.subject(node, "room", self.reading);
         let asked = count(node);
-        let count = asked.unwrap_or_default();
+        let count = asked.or_else(|| several(node, &["room", "own"])).unwrap_or_default();
+        // "1.5 baths": one bathroom, and half of one
+        let half = half(node).and_then(|n| Some((n, room.id.as_deref().and_then(|id| self.known.half_of(id))?)));
+        let count = half.as_ref().map_or(count, |(n, _)| AskedCount { n: *n, ..count });
+        if let Some((n, id)) = half {
+            let room = Subject::known(&id, &room.name);
+            self.say(node, Fact::Rooms(RoomsAsk { room, count: AskedCount::exactly(1), ..RoomsAsk::default() }));
+            if n == 0 {
+                return;
+            }
+        }
         let several = count.n > 1;
         let mut ask = RoomsAsk {
             room: room.clone(),
@@ -130,6 +142,11 @@ impl Maker<'_> {
             let each = inside.remove(at);
             ask.each = Some(self.subject(&each));
         }
+        let whose =
+            node.all("own").filter(|o| !o.is_unknown() && (o.is("person", None) || o.is("attribute", None))).count();
+        if whose > 1 && asked.is_none() && node.field("room").is_some() {
+            ask.count = AskedCount::at_least(whose as u32);
+        }
         if let Some(sex) = node.field("sex")
             && sex.is("sex", Some("each"))
         {
@@ -140,6 +157,7 @@ impl Maker<'_> {
             also: None,
             fact: Fact::Rooms(ask),
             mention: around.mention,
+            own: node.field("own").is_some(),
         });
         for held in node.all("hold") {
             self.held(held, &room, several);
@@ -193,7 +211,7 @@ impl Maker<'_> {
 
     /// States the places of a room: "4 screens of 80 seats", "meeting room for ten".
     fn held(&mut self, held: &Node, room: &Subject, several: bool) {
-        let count = count(held).or_else(|| household(held)).unwrap_or_default();
+        let count = count(held).or_else(|| number(held)).or_else(|| household(held)).unwrap_or_default();
         let of = held
             .values("capacity")
             .chain(held.field("what").into_iter().flat_map(|w| w.values("capacity")))
@@ -226,11 +244,15 @@ impl Maker<'_> {
         let within = node.field("in").cloned();
         let mut ask = ObjectsAsk {
             object: self.known.subject(node, "object", self.reading),
-            count: count(node).unwrap_or_default(),
+            count: count(node).or_else(|| several(node, &["object"])).unwrap_or_default(),
             room: within.as_ref().map(|n| self.subject(n)),
             each_room: within.as_ref().is_some_and(|n| n.field("each").is_some() || count(n).is_some_and(|c| c.n > 1)),
             attributes: attributes(node),
         };
+        // "one-way flow" is one of nothing
+        if ask.object.id.is_none() && ask.count == AskedCount::exactly(1) {
+            return self.other(node);
+        }
         if node.field("each_of").is_some() {
             ask.each_room = true;
         }
@@ -401,6 +423,13 @@ impl Maker<'_> {
         let within = node.field("within").map(|n| self.subject(n));
         for item in node.all("item") {
             let subject = self.subject(item);
+            // "no dead-end corridors" wants corridors, only none of that kind
+            let some = subject.id.is_some() && ["own", "attribute"].iter().any(|f| item.field(f).is_some());
+            if some {
+                let wish = self.reading.written(node.tokens.clone()).to_owned();
+                self.say(node, Fact::Other(OtherAsk { wish }));
+                continue;
+            }
             let (room, object) = match item.made() {
                 Some("rooms") => (Some(subject), None),
                 Some("objects") => (None, Some(subject)),
@@ -412,7 +441,7 @@ impl Maker<'_> {
                 (room, object) => Fact::Forbidden(ForbiddenAsk { room, object, within: within.clone() }),
             };
             let start = if item.tokens.start == words.start { node.tokens.start.min(words.start) } else { words.start };
-            self.facts.push(Stated { tokens: start..words.end, also: None, fact, mention: false });
+            self.facts.push(Stated { tokens: start..words.end, also: None, fact, mention: false, own: false });
         }
     }
 
@@ -505,6 +534,19 @@ impl Maker<'_> {
 fn count(node: &Node) -> Option<AskedCount> {
     let count = node.field("count")?;
     number(count)
+}
+
+/// Returns the whole of a number that ends in a half.
+fn half(node: &Node) -> Option<u32> {
+    let count = node.field("count")?;
+    let n = count.number.or_else(|| count.field("n").and_then(|n| n.number))?;
+    (n.fract() == 0.5 && n < 100.0).then_some(n as u32)
+}
+
+/// Returns the number of a plural without one.
+fn several(node: &Node, fields: &[&str]) -> Option<AskedCount> {
+    let noun = fields.iter().find_map(|f| if node.head_last { node.all(f).last() } else { node.field(f) })?;
+    noun.plural.then_some(AskedCount::at_least(2))
 }
 
 fn number(count: &Node) -> Option<AskedCount> {

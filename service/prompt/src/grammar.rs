@@ -180,7 +180,7 @@ mod tests {
         let classes = include_str!("../../language/data/classes.toml");
         let mut known: BTreeSet<String> =
             classes.lines().filter_map(|l| l.strip_prefix('[')?.strip_suffix(']').map(str::to_owned)).collect();
-        known.extend(["unknown", "mark", "number", "building", "location"].map(str::to_owned));
+        known.extend(["unknown", "mark", "number", "building", "location", "spaced"].map(str::to_owned));
         for rule in &grammar.rules {
             if let Makes::New(class) = &rule.makes {
                 known.insert(class.clone());

@@ -27,6 +27,8 @@ pub(crate) struct Node {
     pub head_last: bool,
     /// True when nothing stands between it and what comes before.
     pub joined: bool,
+    /// True for the form of a word for more than one.
+    pub plural: bool,
     /// True when it is written with a capital letter.
     pub capital: bool,
 }
@@ -65,6 +67,7 @@ impl Node {
             mark,
             head_last: reading.head_last(chunk.tokens.start),
             joined: first.joined,
+            plural: reading.is_plural(chunk.tokens.clone()),
             capital: first.capital,
             ..Self::default()
         }
@@ -75,6 +78,8 @@ impl Node {
         match (class, value) {
             ("number", None) => self.number.is_some() && self.rule.is_none(),
             ("unknown", None) => self.is_unknown(),
+            // a word of a class that stands by itself, not as the end of a longer one
+            ("spaced", Some(class)) => !self.joined && self.senses.iter().any(|(c, _)| **c == *class),
             ("mark", None) => self.mark,
             ("mark", Some(name)) => self.mark && MARKS.iter().any(|(text, n)| *n == name && **text == *self.text),
             (_, None) => self.senses.iter().any(|(c, _)| **c == *class),

@@ -2,7 +2,8 @@
 //!
 //! `count:count? attribute:attribute* room:room` is three elements: a name under which what matches is captured, what it must
 //! be (a class, or a class with a value: `particle.no`), and how often (`?` at most once, `*` any number of times, `+` at
-//! least once). `( a | b c )` is one of several sequences. `=mark` must come next, or the end, and is not taken. Small words that say nothing may stand between the elements.
+//! least once). `( a | b c )` is one of several sequences. `=mark` must come next, or the end, and is not taken; `!mark` must not come next; `<mark` must
+//! stand before, or the beginning. Small words that say nothing may stand between the elements.
 
 use std::rc::Rc;
 use std::sync::Arc;
@@ -25,8 +26,21 @@ struct Element {
 
 #[derive(Debug, Clone, PartialEq)]
 enum What {
-    Atom { name: Option<Arc<str>>, class: String, value: Option<String>, ahead: bool },
+    Atom { name: Option<Arc<str>>, class: String, value: Option<String>, look: Look },
     Any(Vec<Pattern>),
+}
+
+/// Where an atom looks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Look {
+    /// At the next node, which it takes.
+    Here,
+    /// At the next node or the end, which must be so and is not taken.
+    Ahead,
+    /// At the next node, which must not be so.
+    NotAhead,
+    /// At the node before, or the beginning, which must be so.
+    Behind,
 }
 
 /// Where a pattern fits.
@@ -68,12 +82,12 @@ impl Pattern {
         }
     }
 
-    /// Makes all of it what must come next and is not taken.
-    fn look_ahead(&mut self) {
+    /// Makes all of it look elsewhere, and take nothing.
+    fn look_to(&mut self, to: Look) {
         for element in &mut self.0 {
             match &mut element.what {
-                What::Atom { ahead, .. } => *ahead = true,
-                What::Any(ways) => ways.iter_mut().for_each(Pattern::look_ahead),
+                What::Atom { look, .. } => *look = to,
+                What::Any(ways) => ways.iter_mut().for_each(|way| way.look_to(to)),
             }
         }
     }
@@ -88,10 +102,11 @@ impl Pattern {
     fn collect_first<'a>(&'a self, classes: &mut Vec<&'a str>) -> bool {
         for element in &self.0 {
             let solid = match &element.what {
-                What::Atom { class, .. } => {
+                What::Atom { class, look: Look::Here, .. } => {
                     classes.push(class);
                     true
                 }
+                What::Atom { .. } => false,
                 What::Any(patterns) => {
                     // all of them: each adds what it may begin with
                     let solid: Vec<bool> = patterns.iter().map(|p| p.collect_first(classes)).collect();
@@ -176,8 +191,13 @@ impl Walk<'_> {
     fn once(&mut self, element: &Element, fit: Fit, then: Then) {
         match &element.what {
             What::Any(patterns) => patterns.iter().for_each(|p| self.sequence(&p.0, fit.clone(), then)),
-            What::Atom { class, value, ahead: true, .. } => {
-                let fits = self.nodes.get(fit.end).is_none_or(|n| n.is(class, value.as_deref()));
+            What::Atom { class, value, look: look @ (Look::Ahead | Look::NotAhead | Look::Behind), .. } => {
+                let is = |n: &Rc<Node>| n.is(class, value.as_deref());
+                let fits = match look {
+                    Look::Behind => fit.end.checked_sub(1).is_none_or(|before| is(&self.nodes[before])),
+                    Look::NotAhead => !self.nodes.get(fit.end).is_some_and(is),
+                    _ => self.nodes.get(fit.end).is_none_or(is),
+                };
                 if fits {
                     then(self, fit);
                 }
@@ -230,9 +250,9 @@ fn sequence(words: &[String], at: &mut usize) -> Result<Pattern, String> {
         // "item:( rooms | objects )": what is in the bracket is captured under the name
         let opens = words.get(*at).is_some_and(|w| w == "(");
         let name = word.strip_suffix(':').filter(|_| opens);
-        let ahead = word == "=" && opens;
-        if word == "(" || name.is_some() || ahead {
-            *at += usize::from(name.is_some() || ahead);
+        let look = look_of(word).filter(|_| opens && word.len() == 1);
+        if word == "(" || name.is_some() || look.is_some() {
+            *at += usize::from(name.is_some() || look.is_some());
             let mut ways = vec![sequence(words, at)?];
             while words.get(*at).is_some_and(|w| w == "|") {
                 *at += 1;
@@ -242,7 +262,7 @@ fn sequence(words: &[String], at: &mut usize) -> Result<Pattern, String> {
             let (_, least, most) = times(close);
             *at += 1;
             name.iter().for_each(|name| ways.iter_mut().for_each(|way| way.capture_as(name)));
-            ways.iter_mut().filter(|_| ahead).for_each(Pattern::look_ahead);
+            look.iter().for_each(|look| ways.iter_mut().for_each(|way| way.look_to(*look)));
             elements.push(Element { what: What::Any(ways), least, most });
         } else {
             elements.push(atom(word)?);
@@ -251,9 +271,19 @@ fn sequence(words: &[String], at: &mut usize) -> Result<Pattern, String> {
     Ok(Pattern(elements))
 }
 
+/// Returns where an element looks that begins with one of the signs for that.
+fn look_of(word: &str) -> Option<Look> {
+    match word.as_bytes().first() {
+        Some(b'=') => Some(Look::Ahead),
+        Some(b'!') => Some(Look::NotAhead),
+        Some(b'<') => Some(Look::Behind),
+        _ => None,
+    }
+}
+
 fn atom(word: &str) -> Result<Element, String> {
     let (text, least, most) = times(word);
-    let (ahead, text) = text.strip_prefix('=').map_or((false, text), |text| (true, text));
+    let (look, text) = look_of(text).map_or((Look::Here, text), |look| (look, &text[1..]));
     let (name, what) = text.split_once(':').map_or((None, text), |(name, what)| (Some(name), what));
     let (class, value) = what.split_once('.').map_or((what, None), |(class, value)| (class, Some(value.to_owned())));
     let plain = |s: &str| !s.is_empty() && s.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
@@ -261,7 +291,7 @@ fn atom(word: &str) -> Result<Element, String> {
         return Err(format!("`{word}` is no element"));
     }
     let name = name.map(Arc::from);
-    Ok(Element { what: What::Atom { name, class: class.to_owned(), value, ahead }, least, most })
+    Ok(Element { what: What::Atom { name, class: class.to_owned(), value, look }, least, most })
 }
 
 fn times(word: &str) -> (&str, usize, usize) {
@@ -292,6 +322,9 @@ mod tests {
             ("a ( a b )?", Some(4), 3),
             ("b", None, 0),
             ("a.2", None, 0),
+            ("a !small", None, 0),
+            ("a !b", Some(1), 1),
+            ("<b a", Some(1), 1),
         ] {
             let fit = Pattern::parse(pattern).unwrap().fit(&nodes, 0, &skip);
             assert_eq!(fit.as_ref().map(|f| f.end), end, "{pattern}");

@@ -2,10 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use d3dgen_model::gazetteer::PLACES;
 use serde::Deserialize;
-
-/// Names of places, of the reader of words that this one replaces.
-const PLACES: &str = include_str!("../../program/src/subject/places.jsonl");
 
 #[derive(Debug, Deserialize)]
 struct Line {

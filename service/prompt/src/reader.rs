@@ -6,7 +6,8 @@ use std::rc::Rc;
 use std::sync::Arc;
 
 use d3dgen_language::{Lexicon, Reading, TokenKind};
-use d3dgen_model::brief::{Ask, Brief, Fact, MAX_ASKS, PromptWords, ReadBy, Subject};
+use d3dgen_model::brief::{Ask, Bound, Brief, Fact, MAX_ASKS, PromptWords, ReadBy, RoomsAsk, Subject};
+use d3dgen_model::gazetteer::{first_floor_is_ground, first_floor_is_ground_in};
 use d3dgen_plugins::Registry;
 
 use crate::building::{building, place, stretch};
@@ -17,12 +18,6 @@ use crate::parse::{Applied, parse};
 use crate::places;
 use crate::subjects::Known;
 use crate::vocabulary::lexicon;
-
-/// Countries where the ground floor is the first floor.
-const FIRST_IS_GROUND: &[&str] =
-    &["US", "CA", "CN", "JP", "KR", "TW", "SG", "MX", "PH", "RU", "UA", "NO", "IS", "BY", "KZ"];
-/// Languages of such countries, for prompts that name none.
-const FIRST_IS_GROUND_IN: &[&str] = &["zh", "ja", "ko", "ru"];
 
 /// Reads prompts about the buildings of the domains that it was made with.
 pub struct PromptReader {
@@ -77,8 +72,8 @@ impl PromptReader {
         let domain = building.first.as_ref().and_then(|b| b.domain.as_deref());
         let country = place.as_ref().map(|p| p.country_code.as_str());
         let first_is_ground = match country {
-            Some(country) => FIRST_IS_GROUND.contains(&country),
-            None => reading.languages().first().is_some_and(|l| FIRST_IS_GROUND_IN.contains(l)),
+            Some(country) => first_floor_is_ground(country),
+            None => reading.languages().first().is_some_and(|l| first_floor_is_ground_in(l)),
         };
         let known = Known::of(&self.registry, domain);
         let mut maker = Maker { reading: &reading, known, first_is_ground, facts: Vec::new() };
@@ -150,6 +145,11 @@ fn named(nodes: Vec<Rc<Node>>, building: &[usize], places: &[usize]) -> Vec<Rc<N
     nodes.into_iter().enumerate().map(of).collect()
 }
 
+/// Returns true for rooms of which a number is told.
+fn is_counted(rooms: &RoomsAsk) -> bool {
+    rooms.count.bound != Bound::AtLeast || rooms.count.n > 2
+}
+
 /// Drops what is asked for elsewhere already, and doubles.
 fn settled(facts: Vec<Stated>) -> Vec<Stated> {
     let same = |a: &Subject, b: &Subject| match (&a.id, &b.id) {
@@ -173,6 +173,13 @@ fn settled(facts: Vec<Stated>) -> Vec<Stated> {
             _ => None,
         })
         .collect();
+    let numbered: Vec<(Subject, Range<usize>)> = facts
+        .iter()
+        .filter_map(|f| match &f.fact {
+            Fact::Rooms(r) if is_counted(r) && r.count.n > 1 => Some((r.room.clone(), f.tokens.clone())),
+            _ => None,
+        })
+        .collect();
     let mut kept: Vec<Stated> = Vec::new();
     for fact in facts {
         let subject = match &fact.fact {
@@ -185,8 +192,12 @@ fn settled(facts: Vec<Stated>) -> Vec<Stated> {
             (Fact::Objects(o), Some(s)) => same(&o.object, s),
             _ => false,
         };
-        let spoken_of = fact.mention
-            && subject.is_some_and(|s| asked.iter().chain(&eached).any(|a| same(a, s)) || kept.iter().any(again));
+        // "3 bedrooms ..., master bedroom with a balcony": one of them
+        let counted = matches!(&fact.fact, Fact::Rooms(r) if !is_counted(r)) && !fact.own;
+        let one_of = counted && subject.is_some_and(|s| numbered.iter().any(|(r, t)| same(r, s) && *t != fact.tokens));
+        let spoken_of = one_of
+            || fact.mention
+                && subject.is_some_and(|s| asked.iter().chain(&eached).any(|a| same(a, s)) || kept.iter().any(again));
         if !spoken_of && !kept.iter().any(|k| k.fact == fact.fact && k.tokens == fact.tokens) {
             kept.push(fact);
         }

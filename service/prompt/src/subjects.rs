@@ -1,28 +1,53 @@
 //! Rooms and objects that words name: which of their senses the building at hand knows.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::LazyLock;
 
-use d3dgen_language::Reading;
+use d3dgen_language::{Reading, fold};
 use d3dgen_model::brief::Subject;
+use d3dgen_model::domain::Domain;
 use d3dgen_plugins::Registry;
+use serde::Deserialize;
 
 use crate::node::Node;
 
-/// What a building knows.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct Known {
-    pub rooms: BTreeSet<String>,
-    pub objects: BTreeSet<String>,
+/// What prompts mean beside what words say, from `facts.toml`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct FactsData {
+    /// What half a room of a type is.
+    halves: BTreeMap<String, Vec<String>>,
 }
 
-impl Known {
+fn facts_data() -> &'static FactsData {
+    static DATA: LazyLock<FactsData> =
+        LazyLock::new(|| toml::from_str(include_str!("facts.toml")).expect("a test reads facts.toml"));
+    &DATA
+}
+
+/// What a building knows.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Known<'d> {
+    pub rooms: BTreeSet<String>,
+    pub objects: BTreeSet<String>,
+    domain: Option<&'d Domain>,
+}
+
+impl<'d> Known<'d> {
     /// Returns what a domain knows; nothing for a building that no domain knows.
-    pub fn of(registry: &Registry, domain: Option<&str>) -> Self {
+    pub fn of(registry: &'d Registry, domain: Option<&str>) -> Self {
         let Some(plugin) = domain.and_then(|d| registry.get(d)) else { return Self::default() };
         Self {
             rooms: plugin.domain().room_types.iter().map(|r| r.id.clone()).collect(),
             objects: plugin.domain().objects.iter().map(|o| o.id.clone()).collect(),
+            domain: Some(plugin.domain()),
         }
+    }
+
+    /// Returns what half a room of a type is, where such are counted in halves.
+    pub fn half_of(&self, id: &str) -> Option<String> {
+        let half = &facts_data().halves.get(id)?;
+        half.iter().find(|h| self.rooms.contains(*h)).or(half.first()).cloned()
     }
 
     /// Returns the sense of a node that the building knows, or else its first one.
@@ -31,7 +56,18 @@ impl Known {
         // of those that the building knows, the one that is called so
         let named = |v: &&str| node.text.contains(&v.replace('_', " "));
         let fits = || node.values(class).filter(|v| known.contains(*v));
-        fits().find(named).or_else(|| fits().next()).or_else(|| node.values(class).next())
+        // the building's own word for it before that of other buildings: "1인실" is an office elsewhere
+        let own = |v: &&str| fits().nth(1).is_some() && self.has_word(class, v, &node.text);
+        fits().find(named).or_else(|| fits().find(own)).or_else(|| fits().next()).or_else(|| node.values(class).next())
+    }
+
+    /// Returns true where the building's own domain has a word for a room or object.
+    fn has_word(&self, class: &str, id: &str, word: &str) -> bool {
+        let words = self.domain.and_then(|d| match class {
+            "room" => d.room_type(id).map(|r| &r.keywords),
+            _ => d.object(id).map(|o| &o.keywords),
+        });
+        words.is_some_and(|w| w.values().flatten().any(|w| fold(w) == word))
     }
 
     /// Returns the room or object that a node of the grammar is about: a field of that class, or words of the prompt's own.

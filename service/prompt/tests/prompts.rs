@@ -169,14 +169,23 @@ fn every_id_that_a_language_names_is_one_of_a_domain() {
     }
 }
 
-/// The shared prompts with gold facts, by the facts that words of the prompt state.
+/// Our own prompts with gold facts, in twelve languages, and the shared ones where they are.
 #[test]
-fn gold_facts_of_the_shared_prompts_are_read() {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/asks/asks_a.jsonl");
-    let Ok(text) = std::fs::read_to_string(&file) else {
-        eprintln!("{} is not here: nothing is compared", file.display());
-        return;
-    };
+fn gold_facts_of_prompts_are_read() {
+    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+    for (file, least) in [("tests/gold/mixed.jsonl", 90), ("../../../shared/asks/asks_a.jsonl", 80)] {
+        let Ok(text) = std::fs::read_to_string(here.join(file)) else {
+            eprintln!("{file} is not here: nothing is compared");
+            continue;
+        };
+        let (read, asked) = gold_facts(&text);
+        eprintln!("{read} of {asked} gold facts of {file}");
+        assert!(read * 100 >= asked * least, "{read} of {asked} of {file}");
+    }
+}
+
+/// Returns how many gold facts of prompts are read, and how many there are.
+fn gold_facts(text: &str) -> (usize, usize) {
     let reader = reader();
     let (mut asked, mut read) = (0, 0);
     for line in text.lines() {
@@ -204,8 +213,7 @@ fn gold_facts_of_the_shared_prompts_are_read() {
             eprintln!("{} {}: building {:?}", gold["id"], prompt, brief.building);
         }
     }
-    eprintln!("{read} of {asked} gold facts");
-    assert!(read * 100 >= asked * 80, "{read} of {asked}");
+    (read, asked)
 }
 
 /// Returns whether a brief has a gold fact; nothing for facts that no words state.

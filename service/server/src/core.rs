@@ -126,13 +126,13 @@ impl Core {
         self.databases.index_change(change).map_err(status::own)
     }
 
-    /// Makes searches and worlds know of changed assets.
+    /// Makes searches and worlds know of changed assets: kept ones by their ids, objects of the library by theirs.
     ///
     /// # Errors
     /// `INTERNAL` when the index cannot be made.
-    pub fn changed_assets(&self) -> Result<(), Status> {
-        let now = self.domains.refresh(&self.databases).map_err(status::own)?;
-        self.databases.index_assets(&now.catalog).map_err(status::own)
+    pub fn changed_assets(&self, changed: &[String]) -> Result<(), Status> {
+        let now = self.domains.refresh_assets(&self.databases).map_err(status::own)?;
+        self.databases.index_changed_assets(&now.catalog, changed).map_err(status::own)
     }
 
     /// Returns who changes something now, and why.

@@ -160,6 +160,21 @@ impl Databases {
         Ok(())
     }
 
+    /// Has searches find what a change of assets was about, without making the index anew where little has changed: kept
+    /// assets by their ids, objects of the library by theirs. The catalog is that of the index.
+    ///
+    /// # Errors
+    /// `Assets`.
+    pub fn index_changed_assets(&self, catalog: &Arc<Catalog>, changed: &[String]) -> Result<(), Error> {
+        let Some(now) = self.asset_index.get() else { return self.index_assets(catalog) };
+        let shelf = Shelf::new(Some(self.assets.clone()), catalog)?;
+        match shelf.changed_index(&now.index, changed)? {
+            Some(index) => self.asset_index.fill(AssetSearch { catalog: Arc::clone(catalog), index }),
+            None => self.index_assets(catalog)?,
+        }
+        Ok(())
+    }
+
     /// Returns the index of rules; waits for the first.
     ///
     /// # Errors

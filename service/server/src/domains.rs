@@ -10,6 +10,7 @@ use std::sync::{Arc, OnceLock};
 use arc_swap::ArcSwap;
 use d3dgen_assets::catalog::Catalog;
 use d3dgen_assets::stock::Stock;
+use d3dgen_knowledge::classify::{self, Classified};
 use d3dgen_knowledge::database::{Provenance, digest};
 use d3dgen_knowledge::glossary::Glossary;
 use d3dgen_model::domain::Domain;
@@ -36,17 +37,37 @@ pub struct Snapshot {
     pub catalog: Arc<Catalog>,
     /// Registered ones, by id.
     pub registered: BTreeMap<String, Entry>,
-    glossary: OnceLock<Glossary>,
+    words: Arc<Words>,
     /// Both registries with the rules that the domains brought.
     bare: (Registry, Registry),
     /// Rules that have changed since, by domain.
     rules: BTreeMap<String, Arc<KnowledgeBase>>,
 }
 
+/// What domains call things, made when first asked for; the same for as long as no domain comes, changes or goes.
+#[derive(Default)]
+struct Words {
+    glossary: OnceLock<Glossary>,
+    rooms: OnceLock<classify::Words>,
+}
+
 impl Snapshot {
-    /// Returns the words for what rules speak of, made when first asked for.
+    /// Returns the words for what rules speak of.
     pub fn glossary(&self) -> &Glossary {
-        self.glossary.get_or_init(|| Glossary::of(self.registry.iter().map(|p| p.domain())))
+        self.words.glossary.get_or_init(|| Glossary::of(self.as_given.iter().map(Plugin::domain)))
+    }
+
+    /// Returns what each domain takes labels of rooms for, or one domain, by its place; the best first.
+    pub fn classify(&self, labels: &[String], domain_id: Option<&str>) -> Vec<Classified> {
+        let domains: Vec<&Domain> = self.as_given.iter().map(Plugin::domain).collect();
+        let words = self.words.rooms.get_or_init(|| classify::Words::of(&domains));
+        match domain_id {
+            None => words.classify(labels, &domains),
+            Some(id) => {
+                let at = domains.iter().position(|d| d.id == id);
+                at.map_or_else(Vec::new, |at| words.classify_in(labels, at, domains[at]))
+            }
+        }
     }
 
     /// Returns the domains with their rules; `bare` are all domains, with the assets of the database and without.
@@ -55,13 +76,14 @@ impl Snapshot {
         rules: BTreeMap<String, Arc<KnowledgeBase>>,
         catalog: Arc<Catalog>,
         registered: BTreeMap<String, Entry>,
+        words: Arc<Words>,
     ) -> Self {
         let (mut registry, mut as_given) = bare.clone();
         for (id, knowledge) in &rules {
             registry.set_knowledge(id, KnowledgeBase::clone(knowledge));
             as_given.set_knowledge(id, KnowledgeBase::clone(knowledge));
         }
-        Self { registry, as_given, catalog, registered, glossary: OnceLock::new(), bare, rules }
+        Self { registry, as_given, catalog, registered, words, bare, rules }
     }
 }
 
@@ -154,18 +176,35 @@ impl Domains {
             Err(d3dgen_knowledge::Error::NoDomain { .. }) => drop(rules.remove(id)), // taken back
             Err(other) => return Err(other.into()),
         }
-        let (bare, registered) = (now.bare.clone(), now.registered.clone());
-        self.current.store(Arc::new(Snapshot::new(bare, rules, Arc::clone(&now.catalog), registered)));
+        self.replace(&now, now.bare.clone(), rules);
         Ok(())
     }
 
-    /// Makes a new snapshot after rules or assets have changed.
+    /// Makes a new snapshot after assets have changed; for a caller who sees to it that nobody else changes anything meanwhile.
+    ///
+    /// # Errors
+    /// `Store`, `Assets`.
+    pub fn refresh_assets(&self, databases: &Databases) -> Result<Arc<Snapshot>, Error> {
+        let now = self.now();
+        let without = now.bare.1.clone();
+        let with = stocked(databases, without.clone(), &now.catalog)?;
+        self.replace(&now, (with, without), now.rules.clone());
+        Ok(self.now())
+    }
+
+    /// Puts a snapshot of the same domains in the place of the one that there is.
+    fn replace(&self, now: &Snapshot, bare: (Registry, Registry), rules: BTreeMap<String, Arc<KnowledgeBase>>) {
+        let (catalog, registered, words) = (Arc::clone(&now.catalog), now.registered.clone(), Arc::clone(&now.words));
+        self.current.store(Arc::new(Snapshot::new(bare, rules, catalog, registered, words)));
+    }
+
+    /// Makes a new snapshot after domains have changed.
     ///
     /// # Errors
     /// `Store`, `Knowledge`, `Assets`.
-    pub fn refresh(&self, databases: &Databases) -> Result<Arc<Snapshot>, Error> {
+    fn refresh(&self, databases: &Databases) -> Result<(), Error> {
         self.current.store(Arc::new(snapshot(databases, &self.shipped)?));
-        Ok(self.now())
+        Ok(())
     }
 
     /// Looks at everything about a domain, and changes nothing.
@@ -362,17 +401,22 @@ fn snapshot(databases: &Databases, shipped: &Registry) -> Result<Snapshot, Error
             rules.insert(entry.domain.clone(), Arc::new(databases.rules.knowledge_base(&entry.domain)?));
         }
     }
-    let as_given = registry.clone();
     let catalog = Arc::new(Catalog::new(registry.iter().map(Plugin::domain)));
+    let with = stocked(databases, registry.clone(), &catalog)?;
+    Ok(Snapshot::new((with, registry), rules, catalog, entries, Arc::default()))
+}
+
+/// Returns domains with the assets of the database in the place of objects of the library.
+fn stocked(databases: &Databases, mut registry: Registry, catalog: &Catalog) -> Result<Registry, Error> {
     if !databases.assets.is_empty()?
-        && let Some(stock) = Stock::read(&databases.assets, &catalog)?
+        && let Some(stock) = Stock::read(&databases.assets, catalog)?
     {
         let stocked: Vec<Domain> = registry.iter().filter_map(|p| stock.stocked(p.domain())).collect();
         for domain in stocked {
             registry.set_domain(domain);
         }
     }
-    Ok(Snapshot::new((registry, as_given), rules, catalog, entries))
+    Ok(registry)
 }
 
 #[cfg(test)]

@@ -5,9 +5,10 @@
 
 mod admin;
 mod asset;
-mod domain;
+pub(crate) mod domain;
 mod job;
 mod knowledge;
+mod library;
 mod once;
 mod outbox;
 mod page;
@@ -31,11 +32,12 @@ use once::Once;
 pub use once::forget_old;
 
 /// Names of the services.
-pub const NAMES: [&str; 7] = [
+pub const NAMES: [&str; 8] = [
     "d3dgen.v1.DomainService",
     "d3dgen.v1.KnowledgeService",
     "d3dgen.v1.AssetService",
     "d3dgen.v1.WorldService",
+    "d3dgen.v1.LibraryService",
     "d3dgen.v1.JobService",
     "d3dgen.v1.AdminService",
     "d3dgen.v1.ServerService",
@@ -54,6 +56,7 @@ pub fn routes(core: &Arc<Core>) -> Routes {
         .add_service(service!(knowledge_service_server, KnowledgeServiceServer))
         .add_service(service!(asset_service_server, AssetServiceServer))
         .add_service(service!(world_service_server, WorldServiceServer))
+        .add_service(service!(library_service_server, LibraryServiceServer))
         .add_service(service!(job_service_server, JobServiceServer))
         .add_service(service!(admin_service_server, AdminServiceServer))
         .add_service(service!(server_service_server, ServerServiceServer))
@@ -82,8 +85,7 @@ impl Api {
         &self,
         work: impl FnOnce(&Core, &AtomicBool) -> Result<T, Status> + Send + 'static,
     ) -> Answer<T> {
-        let core = Arc::clone(&self.core);
-        self.core.pool.run(Lane::Work, move |stop| work(&core, stop)).await.map(Response::new)
+        self.on(Lane::Work, work).await
     }
 
     /// Does as [`Api::work`] what takes tens of milliseconds, beside the calls that take longer.
@@ -91,8 +93,16 @@ impl Api {
         &self,
         work: impl FnOnce(&Core, &AtomicBool) -> Result<T, Status> + Send + 'static,
     ) -> Answer<T> {
+        self.on(Lane::Short, work).await
+    }
+
+    async fn on<T: Send + 'static>(
+        &self,
+        lane: Lane,
+        work: impl FnOnce(&Core, &AtomicBool) -> Result<T, Status> + Send + 'static,
+    ) -> Answer<T> {
         let core = Arc::clone(&self.core);
-        self.core.pool.run(Lane::Short, move |stop| work(&core, stop)).await.map(Response::new)
+        self.core.pool.run(lane, move |stop| work(&core, stop)).await.map(Response::new)
     }
 
     /// Changes something, alone, and once for each request id of a client.
@@ -110,15 +120,15 @@ impl Api {
         Q: Message + Send + 'static,
         T: Message + Default + Send + 'static,
     {
-        self.change_read(method, request, Some(id), |_, asked, _| Ok(asked), change).await
+        self.change_read((method, Lane::Short), request, Some(id), |_, asked, _| Ok(asked), change).await
     }
 
-    /// Does as [`Api::change`] with what `read` makes of the request first: on a thread of its own, beside the changes of
+    /// Does as [`Api::change`] with what `read` makes of the request first: on a thread of its lane, beside the changes of
     /// others, and with a flag that tells when nobody waits for it any more. Without an id nothing is to be changed, so that
     /// nobody's turn is waited for.
     async fn change_read<Q, P, T>(
         &self,
-        method: &'static str,
+        (method, lane): (&'static str, Lane),
         request: Request<Q>,
         id: Option<String>,
         read: impl FnOnce(&Core, Q, &AtomicBool) -> Result<P, Status> + Send + 'static,
@@ -133,9 +143,9 @@ impl Api {
         let request = request.into_inner();
         let once = Once::new(&caller.name, method, id.as_deref().unwrap_or_default(), &request)?;
         if id.is_none() {
-            return self.work(move |core, stop| change(core, read(core, request, stop)?, &once)).await;
+            return self.on(lane, move |core, stop| change(core, read(core, request, stop)?, &once)).await;
         }
-        let read = self.work(move |core, stop| read(core, request, stop)).await?.into_inner();
+        let read = self.on(lane, move |core, stop| read(core, request, stop)).await?.into_inner();
         self.alone(move |core| {
             if let Some(answer) = once.answered(core)? {
                 return Ok(answer);

@@ -53,6 +53,15 @@ pub(crate) fn check_room(path: &Path, bytes: u64) -> Result<()> {
     Ok(())
 }
 
+/// Bytes of a trial of whether a file can grow.
+const TRIAL: usize = 256 << 10;
+
+/// Returns an error when no file beside this one can grow, by letting one grow: what a quota leaves, no disk tells.
+pub(crate) fn try_room(path: &Path) -> Result<()> {
+    let mut trial = new_file(&folder_of(path)).map_err(Error::io(path))?;
+    trial.write_all(&vec![0; TRIAL]).and_then(|()| trial.as_file().sync_data()).map_err(Error::io(path))
+}
+
 /// Makes the names in a folder durable: a renamed file may otherwise be gone after a power failure.
 pub(crate) fn sync_folder(dir: &Path) -> Result<()> {
     // Other systems do not open folders as files, and write names through.

@@ -138,6 +138,31 @@ impl<'c> Shelf<'c> {
         }
     }
 
+    /// Returns the index of these assets after some have changed, without making it anew: kept ones by their ids, objects of the
+    /// library by theirs. None when too much has changed since it was made.
+    ///
+    /// # Errors
+    /// `Store`.
+    pub fn changed_index<'i>(
+        &self,
+        index: &AssetIndex,
+        changed: impl IntoIterator<Item = &'i String>,
+    ) -> Result<Option<AssetIndex>, Error> {
+        let mut keys = BTreeSet::new();
+        for id in changed {
+            match self.catalog().object(id) {
+                Some(object) => keys.extend(Library::sizes_of(object).map(|asset| asset.asset_id())),
+                None => drop(keys.insert(id.clone())),
+            }
+        }
+        let mut changes = Vec::with_capacity(keys.len());
+        for key in keys {
+            let now = self.annotation(&key)?.map(|a| document(&a.asset_id, &a, self.catalog()));
+            changes.push((key, now));
+        }
+        index.changed(self.revision()?, changes)
+    }
+
     /// Returns a number that changes with the database and with the objects of the domains.
     fn revision(&self) -> Result<u64, Error> {
         let mut hash = Sha256::new();

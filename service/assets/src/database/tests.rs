@@ -1,5 +1,6 @@
 //! Assets going in, coming out and going away.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use d3dgen_store::embed::StaticTable;
@@ -105,4 +106,57 @@ fn own_assets_and_the_library_are_found_together() {
     changed.name = "Stool of iron".into();
     database.annotate(changed, &by("by hand")).expect("changed");
     assert_eq!(ask("stool of iron")[0], "Office/Seat");
+}
+
+#[test]
+fn an_index_that_changes_finds_what_one_made_anew_finds() {
+    let (_dir, database) = fresh();
+    let catalog = sample::catalog();
+    let shelf = || Shelf::new(Some(database.clone()), catalog).expect("a shelf");
+    let anew = |shelf: &Shelf<'_>| shelf.open_index(Arc::new(StaticTable::new()), Watch::nobody()).expect("an index");
+    let mut index = anew(&shelf());
+    let chair = ["dining_chair".to_owned()];
+    let steps: [&dyn Fn() -> Vec<String>; 5] = [
+        &|| {
+            database.put(Kind::Ingest, vec![asset("a.glb", "1", 1.0), asset("b.glb", "2", 2.0)], &by("in")).expect("in")
+        },
+        &|| {
+            let mut seat = database.get("Office/Seat").expect("readable").expect("kept");
+            seat.name = "Pew of oak".into();
+            database.annotate(seat, &by("named")).expect("annotated");
+            vec!["Office/Seat".into()]
+        },
+        &|| {
+            database
+                .remove(&["Office/Seat_2".into()], &chair, &by("away"))
+                .map(|()| vec!["Office/Seat_2".into()])
+                .expect("away")
+        },
+        &|| database.remove(&[], &chair, &by("away")).map(|()| chair.to_vec()).expect("away"),
+        &|| database.restore(&chair, &by("back")).map(|()| chair.to_vec()).expect("back"),
+    ];
+    for (n, step) in steps.iter().enumerate() {
+        let mut changed = step();
+        if n == 2 {
+            changed.extend(chair.iter().cloned());
+        }
+        let shelf = shelf();
+        index = shelf.changed_index(&index, &changed).expect("readable").expect("few changes");
+        let fresh = anew(&shelf);
+        assert_eq!(index.len(), fresh.len(), "step {n}");
+        assert_eq!(index.values("object"), fresh.values("object"), "step {n}");
+        for text in ["throne of plywood", "pew of oak", "dining chair", "bed", ""] {
+            let query = SearchQuery { text: text.into(), limit: 500, ..SearchQuery::default() };
+            let ids = |index: &crate::search::AssetIndex| -> BTreeSet<String> {
+                let found = index.search(&query, catalog, &shelf).expect("an answer");
+                found.into_iter().map(|f| f.annotation.asset_id).collect()
+            };
+            let first = |index: &crate::search::AssetIndex| {
+                let found = index.search(&query, catalog, &shelf).expect("an answer");
+                found.first().map(|f| f.annotation.asset_id.clone())
+            };
+            assert_eq!(ids(&index), ids(&fresh), "step {n}, {text:?}");
+            assert_eq!(first(&index), first(&fresh), "step {n}, {text:?}");
+        }
+    }
 }

@@ -1,6 +1,7 @@
 //! The flags that say which files to write of a world, shared by `generate` and `export`.
 
 use d3dgen_export::exporters::{self, File, plan};
+use d3dgen_export::manifest::{self, Manifest};
 use d3dgen_model::domain::Domain;
 use d3dgen_model::world::World;
 
@@ -14,7 +15,7 @@ use crate::output::Output;
 #[derive(clap::Args, Clone)]
 pub struct FormatArgs {
     /// Formats to write, with commas between, or `all` (`d3dgen version` lists them)
-    #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "arena,plan")]
+    #[arg(long, value_name = "LIST", value_delimiter = ',', default_values_t = usual())]
     format: Vec<String>,
     /// Leave out plan.png, which takes longer than all the rest
     #[arg(long)]
@@ -26,6 +27,10 @@ pub struct Formats {
     names: Vec<&'static str>,
     png: bool,
     kept: Kept,
+}
+
+fn usual() -> Vec<String> {
+    exporters::usual().map(|e| e.name().to_owned()).collect()
 }
 
 impl FormatArgs {
@@ -52,22 +57,8 @@ impl FormatArgs {
     /// # Errors
     /// `Input` with the formats there are.
     pub fn names(&self) -> Result<Vec<&'static str>, Error> {
-        let mut names = Vec::new();
-        let every = exporters::all().iter().map(|e| e.name().to_owned());
-        let asked = self.format.iter().flat_map(|name| match name.trim() {
-            "all" => every.clone().collect(),
-            name => vec![name.to_owned()],
-        });
-        for name in asked {
-            let exporter = exporters::get(&name).ok_or_else(|| {
-                let known: Vec<&str> = exporters::all().iter().map(|e| e.name()).collect();
-                Error::Input(format!("format `{name}` is not known; there are {}", known.join(", ")))
-            })?;
-            if !names.contains(&exporter.name()) {
-                names.push(exporter.name());
-            }
-        }
-        Ok(names)
+        let named = exporters::named(self.format.iter().map(|name| name.trim()));
+        Ok(named.map_err(|e| Error::Input(e.to_string()))?.iter().map(|e| e.name()).collect())
     }
 
     /// Returns true when plans are drawn as PNG too.
@@ -82,11 +73,12 @@ impl Formats {
         &self.names
     }
 
-    /// Writes the files of the world.
+    /// Writes the files of the world, and `manifest.json`, in which the formats that the folder has already stay.
     ///
     /// # Errors
     /// `Export`, `Write`, or `Interrupted` between two formats.
     pub fn write(&self, world: &World, domain: &Domain, output: &Output) -> Result<(), Error> {
+        let mut manifest = Manifest::of(world, domain, &self.kept)?;
         for exporter in self.names.iter().filter_map(|name| exporters::get(name)) {
             interrupt::check()?;
             let files = if exporter.name() == "plan" && !self.png {
@@ -94,10 +86,12 @@ impl Formats {
             } else {
                 exporter.export(world, domain, &self.kept)?
             };
+            manifest.add(exporter, &files);
             for File { path, bytes } in files {
                 output.write(&path, &bytes)?;
             }
         }
-        Ok(())
+        let File { path, bytes } = manifest.file(output.earlier(manifest::FILE).as_deref());
+        output.write(&path, &bytes)
     }
 }

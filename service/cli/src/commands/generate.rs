@@ -18,15 +18,15 @@ use crate::output::{Output, check_collection, check_free};
 use crate::progress::Progress;
 use crate::registry::RegistryArgs;
 use crate::remote::{self, Remote, ServerArgs};
-use crate::request::{RequestArgs, prompt};
+use crate::request::RequestArgs;
 use crate::summary::{Summary, closing};
 
 /// Arguments.
 #[derive(clap::Args)]
 pub struct Args {
     /// What to build, in a sentence (`-`: from standard input)
-    #[arg(allow_hyphen_values = true)]
-    prompt: String,
+    #[arg(allow_hyphen_values = true, required_unless_present = "brief")]
+    prompt: Option<String>,
     /// Folder to write: new, empty, or an earlier output, which is replaced; with --count it gets a folder for each seed,
     /// and worlds of other seeds in it stay
     #[arg(long, value_name = "DIR")]
@@ -79,7 +79,7 @@ impl Args {
             ));
         }
         let maker = one::Maker { registry: &registry, formats, allow_conflicts: self.allow_conflicts, proposals, flag };
-        let request = self.request.request(&prompt(&self.prompt)?);
+        let request = self.request.request(self.prompt.as_deref())?;
         if self.count == 1 && self.variations.is_none() {
             let job = Job { request, name: self.name, path: self.out };
             let progress = Progress::of(1);
@@ -114,7 +114,10 @@ impl Args {
         let formats = self.formats.names()?;
         let (png, allow_conflicts) = (self.formats.png(), self.allow_conflicts);
         let maker = remote::generate::Maker { remote, formats: &formats, png, allow_conflicts };
-        let request = self.request.request(&prompt(&self.prompt)?);
+        let request = self.request.request(self.prompt.as_deref())?;
+        if request.brief.is_some() {
+            return Err(Error::Input("a brief is planned here; use it without --server, or send its prompt".into()));
+        }
         let jobs = match self.count {
             1 => vec![Job { request, name: self.name.clone(), path: self.out.clone() }],
             _ => self.jobs(&request, &self.seeds(&request)?)?,

@@ -8,13 +8,13 @@ use d3dgen_pipeline::brief;
 use crate::error::Error;
 use crate::input::{self, write_text};
 use crate::registry::RegistryArgs;
-use crate::request::{RequestArgs, prompt};
+use crate::request::RequestArgs;
 
 /// Arguments.
 #[derive(clap::Args)]
 pub struct Args {
-    /// What to build, in a sentence (`-`: from standard input)
-    #[arg(required_unless_present = "from", conflicts_with = "from", allow_hyphen_values = true)]
+    /// What to build, in a sentence (`-`: from standard input), or a brief.json
+    #[arg(required_unless_present_any = ["from", "brief"], conflicts_with = "from", allow_hyphen_values = true)]
     prompt: Option<String>,
     /// Take the graph of a scene_graph.json, a world.json, or a world's folder
     #[arg(long, value_name = "FILE")]
@@ -36,7 +36,7 @@ impl Args {
         let graph = match (&self.from, &self.prompt) {
             (Some(file), _) => input::scene_graph(file)?,
             (None, text) => {
-                let request = self.request.request(&prompt(text.as_deref().unwrap_or_default())?);
+                let request = self.request.request(text.as_deref())?;
                 brief::rooms(&request, &self.registry.load()?)?.0
             }
         };

@@ -56,7 +56,7 @@ impl Args {
             document(&self.placements)?,
             document(&self.scenario)?,
         );
-        world.brief = brief::of_prompt(&world.scene_graph.prompt, &registry);
+        world.brief = brief::of_plan(&world.scene_graph.prompt, Some(&world.floorplan), &registry);
         let problems = world.check();
         if !problems.is_empty() {
             let source = d3dgen_model::Error::Invalid { kind: "world", problems };

@@ -5,14 +5,17 @@
 
 mod map;
 mod scenario;
+mod surfaces;
 mod world_yaml;
 
 use d3dgen_model::domain::Domain;
+use d3dgen_model::floorplan::DoorKind;
 use d3dgen_model::world::World;
 use serde_json::{Value, json};
 
 use super::{Exporter, File};
 use crate::models::{KeptModels, snake};
+use crate::scene::SimScene;
 use crate::used::UsedModels;
 use crate::{Error, yaml};
 
@@ -30,6 +33,10 @@ impl Exporter for Arena {
 
     fn roots(&self) -> &'static [&'static str] {
         &["arena"]
+    }
+
+    fn is_usual(&self) -> bool {
+        true
     }
 
     fn export(&self, world: &World, domain: &Domain, kept: &dyn KeptModels) -> Result<Vec<File>, Error> {
@@ -54,9 +61,21 @@ impl Exporter for Arena {
                 files.push(File::new(format!("{root}/scenarios/level_{level}/scenario.yaml"), document));
             }
         }
-        files.extend(models.files(&format!("{root}/assets"), domain, kept)?);
+        let assets = format!("{root}/assets");
+        files.extend(models.files(&assets, domain, kept)?);
+        files.extend(surfaces::files(world, &assets));
         files.sort_by(|a, b| a.path.cmp(&b.path));
         Ok(files)
+    }
+
+    fn places(&self, scene: &SimScene) -> Vec<(String, String)> {
+        let file = |level: i32| format!("arena/worlds/{}/{level}/world.yaml", scene.name);
+        let rooms = scene.rooms.iter().map(|r| (&r.id, r.level, "zones", r.room_id.clone()));
+        let doors = scene.doors.iter().filter(|d| d.kind != DoorKind::Open || d.room_ids.len() == 1);
+        let doors = doors.map(|d| (&d.id, d.level, "doors", snake(&d.id)));
+        let things = scene.objects.iter().map(|o| (&o.id, o.level, "entities", o.id.clone()));
+        let all = rooms.chain(doors).chain(things);
+        all.map(|(id, level, list, name)| (id.clone(), format!("{}#{list}/{name}", file(level)))).collect()
     }
 }
 

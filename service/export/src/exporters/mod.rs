@@ -1,20 +1,34 @@
 //! One file per target; [`all`] is the list that `--format` and its help read.
 
 mod arena;
+mod gazebo;
+mod gltf;
+mod mujoco;
 mod nav2;
 pub mod plan;
 mod rmf;
+mod usd;
 
 use d3dgen_model::domain::Domain;
 use d3dgen_model::world::World;
 
 use crate::Error;
 use crate::models::KeptModels;
+use crate::scene::SimScene;
 
 pub use arena::Arena;
+pub use gazebo::Gazebo;
+pub use gltf::Gltf;
+pub use mujoco::Mujoco;
 pub use nav2::Nav2;
 pub use plan::Plan;
 pub use rmf::Rmf;
+pub use usd::Usd;
+
+/// Name of all formats together.
+const ALL: &str = "all";
+/// Letters of a name that a refusal repeats.
+const NAME_SHOWN: usize = 60;
 
 /// A file to be written, relative to the world's output folder.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -45,17 +59,29 @@ pub trait Exporter: Sync {
     /// They are its own: a folder that holds nothing but such names and the documents of a world may be written again.
     fn roots(&self) -> &'static [&'static str];
 
+    /// Returns true for what is written when nobody names a format.
+    fn is_usual(&self) -> bool {
+        false
+    }
+
     /// Returns the files, sorted by path; a pure function of world, domain and kept models.
     ///
     /// # Errors
     /// `Unsupported` or `TooLarge` when the format cannot hold this world, `Model` and `Kept` when a model of it cannot be
     /// had, `Picture` when drawing fails.
     fn export(&self, world: &World, domain: &Domain, kept: &dyn KeptModels) -> Result<Vec<File>, Error>;
+
+    /// Returns where its files have what the ids of a scene name: id and place, for `manifest.json`. Nothing of what it leaves
+    /// out.
+    fn places(&self, scene: &SimScene) -> Vec<(String, String)> {
+        let _ = scene;
+        Vec::new()
+    }
 }
 
 /// Returns every exporter, the default ones first.
 pub fn all() -> &'static [&'static dyn Exporter] {
-    &[&Arena, &Plan, &Nav2, &Rmf]
+    &[&Arena, &Plan, &Nav2, &Rmf, &Mujoco, &Gazebo, &Gltf, &Usd]
 }
 
 /// Returns the names at the top of a world's folder that exporters write, each once.
@@ -66,6 +92,33 @@ pub fn roots() -> impl Iterator<Item = &'static str> {
 /// Returns the exporter with this name.
 pub fn get(name: &str) -> Option<&'static dyn Exporter> {
     all().iter().copied().find(|e| e.name() == name)
+}
+
+/// Returns those whose files are written when nobody names a format.
+pub fn usual() -> impl Iterator<Item = &'static dyn Exporter> {
+    all().iter().copied().filter(|e| e.is_usual())
+}
+
+/// Returns the exporters of a list of names, each once; `all` is the name of all of them.
+///
+/// # Errors
+/// `NoFormat` with the names there are.
+pub fn named<'a>(names: impl IntoIterator<Item = &'a str>) -> Result<Vec<&'static dyn Exporter>, Error> {
+    let mut found: Vec<&'static dyn Exporter> = Vec::new();
+    for name in names {
+        let of_name = if name == ALL { all().to_vec() } else { get(name).into_iter().collect() };
+        if of_name.is_empty() {
+            let known: Vec<&str> = all().iter().map(|e| e.name()).chain([ALL]).collect();
+            let name = name.chars().take(NAME_SHOWN).collect();
+            return Err(Error::NoFormat { name, known: known.join(", ") });
+        }
+        for exporter in of_name {
+            if found.iter().all(|f| f.name() != exporter.name()) {
+                found.push(exporter);
+            }
+        }
+    }
+    Ok(found)
 }
 
 #[cfg(test)]
@@ -82,9 +135,22 @@ mod tests {
             assert!(exporter.about().len() > 20, "{} needs a sentence", exporter.name());
             assert_eq!(get(exporter.name()).map(Exporter::name), Some(exporter.name()));
         }
-        assert!(get("no_such_format").is_none());
+        assert!(get("no_such_format").is_none() && get(ALL).is_none());
         let distinct: std::collections::BTreeSet<_> = roots().collect();
         assert_eq!(distinct.len(), roots().count(), "no two exporters write to one name");
+    }
+
+    #[test]
+    fn lists_of_names_are_exporters_each_once() {
+        let names = |list: &[&str]| named(list.iter().copied()).map(|l| l.iter().map(|e| e.name()).collect::<Vec<_>>());
+        assert_eq!(names(&["plan", "arena", "plan"]).unwrap(), ["plan", "arena"]);
+        assert_eq!(names(&["plan", "all"]).unwrap().len(), all().len());
+        assert!(names(&[]).unwrap().is_empty() && usual().count() > 0);
+        let refused = names(&["arena", "blend"]).unwrap_err().to_string();
+        assert!(
+            refused.starts_with("format `blend` is not known; there are ") && refused.contains("nav2"),
+            "{refused}"
+        );
     }
 
     #[test]

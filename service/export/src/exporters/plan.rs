@@ -72,6 +72,10 @@ impl Exporter for Plan {
         &["plan.dxf", "plan.pdf", "plan.png", "plan.svg"]
     }
 
+    fn is_usual(&self) -> bool {
+        true
+    }
+
     fn export(&self, world: &World, domain: &Domain, _: &dyn KeptModels) -> Result<Vec<File>, Error> {
         files(world, domain, true)
     }

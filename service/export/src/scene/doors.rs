@@ -13,8 +13,10 @@ use super::{Place, SimBox, SimDoor, SimJoint, SimLeaf, SimRobot};
 const LEAF_M: f64 = 0.04;
 const SLIDING_M: f64 = 0.035;
 const STACKED_M: f64 = 0.028;
-/// Mass of a leaf: honeycomb between hardboard, and the curtain of a gate that rolls up, kg/m^2.
-const LEAF_KG_M2: f64 = 8.0;
+/// Mass of a leaf: honeycomb between hardboard, foam between sheets of aluminum of 0.5 mm for one that slides, and the curtain of
+/// a gate that rolls up, kg/m^2.
+const LEAF_KG_M2: f64 = 7.0;
+const SLIDING_KG_M2: f64 = 4.0;
 const CURTAIN_KG_M2: f64 = 1.5;
 /// Air beside, above and below a leaf, m.
 const GAP_M: f64 = 0.004;
@@ -30,7 +32,7 @@ const ONE_LEAF_M: f64 = 1.2;
 const JAMB_M: f64 = 0.002;
 /// How a leaf resists: ball bearings of hinges, N m and N m s/rad; rollers of a slide, N and N s/m.
 const HINGE: [f64; 2] = [0.3, 0.5];
-const ROLLERS: [f64; 2] = [0.3, 1.0];
+const ROLLERS: [f64; 2] = [0.3, 0.5];
 
 /// The pockets of a sliding door: along its line, beyond the clear opening.
 pub(super) struct Pocket {
@@ -94,6 +96,16 @@ enum Motion {
     Along(f64),
     /// Up by its own height.
     Up,
+}
+
+impl Motion {
+    fn kg_m2(&self) -> f64 {
+        match self {
+            Self::Swing(..) => LEAF_KG_M2,
+            Self::Along(_) => SLIDING_KG_M2,
+            Self::Up => CURTAIN_KG_M2,
+        }
+    }
 }
 
 /// Returns the doors of a world, in the order of the plan.
@@ -242,7 +254,7 @@ fn leaf(door: &Door, line: &Line, floor: f64, panel: &Panel, name: String, ids: 
         },
         id,
         closed,
-        mass_kg: area * if matches!(panel.motion, Motion::Up) { CURTAIN_KG_M2 } else { LEAF_KG_M2 },
+        mass_kg: area * panel.motion.kg_m2(),
         balanced: matches!(panel.motion, Motion::Up),
         handles_m: handles(u),
     }

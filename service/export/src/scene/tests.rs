@@ -194,3 +194,19 @@ fn columns_at_an_angle_are_convex_pieces_from_floor_to_ceiling() {
     let expected = world.floorplan.obstacles[0].outline.area();
     assert!(column.pieces.len() > 1 && (sum / expected - 2.65).abs() < 0.01, "{} of {expected}", sum / expected);
 }
+
+#[test]
+fn what_rests_on_nothing_is_fixed_and_rugs_do_not_collide() {
+    let monitor = |lift: f64| {
+        let mut world = sample::world();
+        let on = world.placements.placements.iter_mut().find(|p| p.object == "monitor").unwrap();
+        on.pose.z += lift;
+        let scene = scene(&world);
+        scene.objects.iter().find(|o| o.class == "monitor").unwrap().mobility
+    };
+    assert_eq!([monitor(0.0), monitor(0.02), monitor(-0.01)], [Mobility::Movable, Mobility::Fixed, Mobility::Fixed]);
+    let scene = scene(&sample::world());
+    let without: Vec<&str> = scene.objects.iter().filter(|o| !o.collides).map(|o| o.class.as_str()).collect();
+    assert_eq!(without, ["rug"]);
+    assert!(scene.objects.iter().all(|o| o.collides || o.mobility == Mobility::Fixed));
+}

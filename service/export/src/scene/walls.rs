@@ -208,7 +208,7 @@ fn cut(whole: [f64; 2], holes: &[Hole]) -> Vec<([f64; 2], Vec<&Hole>)> {
     ends.dedup_by(|a, b| *a - *b < LEAST_M);
     let open = |middle: f64| {
         let mut open: Vec<&Hole> = holes.iter().filter(|h| h.along[0] < middle && middle < h.along[1]).collect();
-        open.sort_by(|a, b| a.slot.is_some().cmp(&b.slot.is_some()));
+        open.sort_by_key(|hole| hole.slot.is_some());
         let mut kept: Vec<&Hole> = Vec::new();
         for hole in open {
             if kept.iter().all(|k| k.z[1] <= hole.z[0] || hole.z[1] <= k.z[0]) {

@@ -37,26 +37,61 @@ const USUAL: f64 = 0.5;
 /// What the words of a label say whose room nobody knows, against a label that is known.
 const WORDS: f64 = 0.4;
 
+/// What the rooms and buildings of some domains are called, made ready to read labels with: to be made once for many lists.
+#[derive(Debug)]
+pub struct Words {
+    of: Vec<Vocabulary>,
+}
+
+impl Words {
+    /// Makes ready what some domains call things.
+    pub fn of(domains: &[&Domain]) -> Self {
+        Self { of: domains.iter().map(|d| Vocabulary::new(d)).collect() }
+    }
+
+    /// Returns a reading of labels for every domain, the best first; equal ones in the order given.
+    ///
+    /// # Panics
+    /// When the domains are not those, in their order, that the words were made of.
+    pub fn classify(&self, labels: &[String], domains: &[&Domain]) -> Vec<Classified> {
+        assert_eq!(self.of.len(), domains.len(), "words are asked with the domains that they are of");
+        readings(labels, domains, &self.of.iter().collect::<Vec<_>>())
+    }
+
+    /// Returns a reading of labels for one of the domains, by its place.
+    ///
+    /// # Panics
+    /// When the words are of fewer domains, or the domain is not that of this place.
+    pub fn classify_in(&self, labels: &[String], at: usize, domain: &Domain) -> Vec<Classified> {
+        readings(labels, &[domain], &[&self.of[at]])
+    }
+}
+
 /// Returns a reading for every domain, the best first; equal ones in the order given.
 pub fn classify(labels: &[String], domains: &[&Domain]) -> Vec<Classified> {
+    Words::of(domains).classify(labels, domains)
+}
+
+fn readings(labels: &[String], domains: &[&Domain], vocabularies: &[&Vocabulary]) -> Vec<Classified> {
     let phrases: Vec<Phrase> = labels.iter().map(|l| Phrase::new(l)).collect();
-    let vocabularies: Vec<Vocabulary> = domains.iter().map(|d| Vocabulary::new(d)).collect();
-    let language = spoken(&phrases, &vocabularies);
+    let language = spoken(&phrases, vocabularies);
     let meanings: Vec<Vec<Option<Match>>> =
         vocabularies.iter().map(|v| phrases.iter().map(|p| v.meaning(p, language)).collect()).collect();
-    let evidence: Vec<Vec<f64>> = (0..phrases.len()).map(|n| said(&phrases[n], n, &vocabularies, &meanings)).collect();
+    let evidence: Vec<Vec<f64>> = (0..phrases.len()).map(|n| said(&phrases[n], n, vocabularies, &meanings)).collect();
     let weights: Vec<f64> = evidence.iter().map(|e| rarity(e)).collect();
     let all: f64 = weights.iter().sum();
     let mut out: Vec<Classified> = (0..domains.len())
         .map(|at| {
+            let domain = domains[at];
             let each: f64 = evidence.iter().zip(&weights).map(|(e, w)| e[at] * w).sum();
-            let together = in_one_building(domains[at], &meanings[at], &weights);
+            let together = in_one_building(domain, &meanings[at], &weights);
             let score = ((1.0 - TOGETHER) * each + TOGETHER * together) / all;
-            let types: Vec<Option<&RoomType>> = meanings[at].iter().map(|m| m.map(|m| m.room_type)).collect();
+            let types: Vec<Option<&RoomType>> =
+                meanings[at].iter().map(|m| m.map(|m| &domain.room_types[m.at])).collect();
             Classified {
-                domain: domains[at].id.clone(),
+                domain: domain.id.clone(),
                 score: if all > 0.0 { score } else { 0.0 },
-                building_type: building_type(&types, domains[at]),
+                building_type: building_type(&types, domain),
                 rooms: labels.iter().cloned().zip(types.iter().map(|t| t.map(|t| t.id.clone()))).collect(),
             }
         })
@@ -82,13 +117,13 @@ pub fn ties(readings: &[Classified]) -> Vec<&Classified> {
 /// Returns the room type that a label names in a domain.
 pub fn room_type<'a>(label: &str, domain: &'a Domain) -> Option<&'a RoomType> {
     let phrase = Phrase::new(label);
-    let found = Vocabulary::new(domain).meaning(&phrase, None).map(|m| m.room_type);
+    let found = Vocabulary::new(domain).meaning(&phrase, None).map(|m| &domain.room_types[m.at]);
     let generic = || domain.room_type(GENERIC_ROOM_TYPE).filter(|_| !phrase.words.is_empty() && phrase.says_nothing());
     found.or_else(generic)
 }
 
 /// Returns the language in which most of the labels are names of rooms.
-fn spoken<'a>(phrases: &[Phrase], vocabularies: &[Vocabulary<'a>]) -> Option<&'a str> {
+fn spoken<'a>(phrases: &[Phrase], vocabularies: &[&'a Vocabulary]) -> Option<&'a str> {
     let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
     for phrase in phrases {
         let languages: BTreeSet<&str> = vocabularies.iter().flat_map(|v| v.languages(phrase)).collect();
@@ -98,12 +133,12 @@ fn spoken<'a>(phrases: &[Phrase], vocabularies: &[Vocabulary<'a>]) -> Option<&'a
 }
 
 /// Returns for each domain how much a label speaks for it, 0 to 1.
-fn said(phrase: &Phrase, n: usize, vocabularies: &[Vocabulary], meanings: &[Vec<Option<Match>>]) -> Vec<f64> {
+fn said(phrase: &Phrase, n: usize, vocabularies: &[&Vocabulary], meanings: &[Vec<Option<Match>>]) -> Vec<f64> {
     let words = shares(phrase, vocabularies);
     let known = meanings.iter().filter_map(|m| m[n]).map(|m| m.grade).fold(0.0, f64::max);
     let each = vocabularies.iter().zip(meanings).zip(words);
     each.map(|((vocabulary, own), words)| {
-        let name = own[n].map_or(0.0, |m| m.grade * (1.0 - USUAL + USUAL * vocabulary.usual(m.room_type)));
+        let name = own[n].map_or(0.0, |m| m.grade * (1.0 - USUAL + USUAL * vocabulary.usual(m.at)));
         // where one domain knows the label, its words are no longer a guess
         name.max(WORDS * words * (1.0 - known)).max(if known < 1.0 { WORDS * words * name } else { 0.0 })
     })
@@ -124,8 +159,10 @@ fn rarity(evidence: &[f64]) -> f64 {
 /// Returns the weight of those labels whose rooms one building of a domain has together, at most.
 fn in_one_building(domain: &Domain, meanings: &[Option<Match>], weights: &[f64]) -> f64 {
     let share = |rooms: BTreeSet<&str>| -> f64 {
-        let here =
-            |m: &Match| rooms.contains(m.room_type.id.as_str()) || domain.circulation.room_type == m.room_type.id;
+        let here = |m: &Match| {
+            let id = &domain.room_types[m.at].id;
+            rooms.contains(id.as_str()) || domain.circulation.room_type == *id
+        };
         let known = meanings.iter().zip(weights).filter_map(|(m, w)| m.filter(here).map(|m| m.grade * w));
         known.sum()
     };

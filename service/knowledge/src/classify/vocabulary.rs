@@ -1,16 +1,17 @@
 //! What the rooms and buildings of one domain are called, made ready to look labels up in.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::sync::Arc;
 
-use d3dgen_model::domain::{Domain, GENERIC_ROOM_TYPE, Program, RoomType};
+use d3dgen_model::domain::{Domain, GENERIC_ROOM_TYPE, Program};
 
 use super::text::{Phrase, forms, is_wide, stem_of};
 
 /// What a label means in a domain, and how sure that is.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Match<'a> {
-    /// The room type.
-    pub room_type: &'a RoomType,
+pub(super) struct Match {
+    /// Place of the room type in the domain.
+    pub at: usize,
     /// 1 for a name of the type, less the more of label and name differ.
     pub grade: f64,
 }
@@ -33,110 +34,123 @@ const FIRST: f64 = 4.0;
 const OWN: &str = "";
 
 /// What a room type is called in a language.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Name<'a> {
+#[derive(Debug, Clone, PartialEq)]
+struct Name {
     /// Place of the room type in the domain.
     at: usize,
     /// Language.
-    language: &'a str,
+    language: Arc<str>,
     /// 1 for the first name, less for others.
     grade: f64,
 }
 
-impl Name<'_> {
-    fn as_heart(self) -> Self {
+impl Name {
+    fn less_sure(self) -> Self {
         Self { grade: self.grade * SAME_HEART, ..self }
     }
 }
 
 /// The words of one domain.
-pub(super) struct Vocabulary<'a> {
-    /// The domain.
-    pub domain: &'a Domain,
+#[derive(Debug)]
+pub(super) struct Vocabulary {
     /// Names by their letters, spaces left out.
-    names: HashMap<String, Vec<Name<'a>>>,
+    names: HashMap<String, Vec<Name>>,
     /// Names by the same, without words for rooms as such.
-    hearts: HashMap<String, Vec<Name<'a>>>,
+    hearts: HashMap<String, Vec<Name>>,
     /// Names of buildings, with the main room of each.
-    buildings: HashMap<String, Vec<Name<'a>>>,
+    buildings: HashMap<String, Vec<Name>>,
     /// Words of names with the room types that have them.
     words: HashMap<String, BTreeSet<usize>>,
+    /// Letters that say something in each name of each room type.
+    lengths: Vec<Vec<usize>>,
     /// How much each room type belongs to the buildings of the domain, 0 to 1.
     usual: Vec<f64>,
 }
 
-impl<'a> Vocabulary<'a> {
-    pub fn new(domain: &'a Domain) -> Self {
+impl Vocabulary {
+    pub fn new(domain: &Domain) -> Self {
         let usual: Vec<f64> = domain.room_types.iter().map(|t| usual(&t.id, domain)).collect();
         let mut out = Self {
-            domain,
             names: HashMap::new(),
             hearts: HashMap::new(),
             buildings: HashMap::new(),
             words: HashMap::new(),
+            lengths: vec![Vec::new(); domain.room_types.len()],
             usual,
         };
-        for (at, room_type) in domain.room_types.iter().enumerate().filter(|(_, t)| t.id != GENERIC_ROOM_TYPE) {
-            for name in [room_type.id.replace('_', " "), room_type.label.clone()] {
-                out.add(&Phrase::new(&name), Name { at, language: OWN, grade: 1.0 });
+        let own: Arc<str> = OWN.into();
+        for (at, room_type) in domain.room_types.iter().enumerate() {
+            let is_kind = room_type.id != GENERIC_ROOM_TYPE;
+            for name in [room_type.id.replace('_', " "), room_type.label.clone()].iter().filter(|_| is_kind) {
+                out.add(&Phrase::new(name), Name { at, language: Arc::clone(&own), grade: 1.0 });
             }
             for (language, names) in &room_type.keywords {
+                let language: Arc<str> = language.as_str().into();
                 for (n, name) in names.iter().enumerate() {
+                    let phrase = Phrase::new(name);
+                    out.lengths[at].push(phrase.heart().chars().count());
                     let grade = if n == 0 { 1.0 } else { BY_THE_WAY };
-                    out.add(&Phrase::new(name), Name { at, language, grade });
+                    if is_kind {
+                        out.add(&phrase, Name { at, language: Arc::clone(&language), grade });
+                    }
                 }
             }
         }
+        out.add_buildings(domain);
+        out
+    }
+
+    fn add_buildings(&mut self, domain: &Domain) {
         for building in &domain.building_types {
             let main = domain.program(&building.program).and_then(|p| p.rooms.first());
             let main = main.and_then(|m| domain.room_types.iter().position(|t| t.id == m.room_type));
             let Some(at) = main else { continue };
             for (language, names) in &building.keywords {
+                let language: Arc<str> = language.as_str().into();
                 for name in names {
-                    let letters = Phrase::new(name).whole();
-                    out.buildings.entry(letters).or_default().push(Name { at, language, grade: BUILDING });
+                    let name_of = Name { at, language: Arc::clone(&language), grade: BUILDING };
+                    self.buildings.entry(Phrase::new(name).whole()).or_default().push(name_of);
                 }
             }
         }
-        out
     }
 
-    fn add(&mut self, phrase: &Phrase, name: Name<'a>) {
-        self.names.entry(phrase.whole()).or_default().push(name);
-        if !phrase.says_nothing() {
-            self.hearts.entry(phrase.heart()).or_default().push(name.as_heart());
-        }
+    fn add(&mut self, phrase: &Phrase, name: Name) {
         for word in &phrase.core {
             self.words.entry(word.clone()).or_default().insert(name.at);
         }
+        if !phrase.says_nothing() {
+            self.hearts.entry(phrase.heart()).or_default().push(name.clone().less_sure());
+        }
+        self.names.entry(phrase.whole()).or_default().push(name);
     }
 
     /// Returns the languages in which a label is a name here.
-    pub fn languages(&self, label: &Phrase) -> BTreeSet<&'a str> {
+    pub fn languages(&self, label: &Phrase) -> BTreeSet<&str> {
         let names = Self::all(&self.names, &label.whole());
-        names.iter().map(|n| n.language).filter(|l| *l != OWN).collect()
+        names.iter().map(|n| &*n.language).filter(|l| *l != OWN).collect()
     }
 
-    fn all<'m>(map: &'m HashMap<String, Vec<Name<'a>>>, letters: &str) -> &'m [Name<'a>] {
+    fn all<'m>(map: &'m HashMap<String, Vec<Name>>, letters: &str) -> &'m [Name] {
         forms(letters).iter().find_map(|f| map.get(f)).map_or(&[], Vec::as_slice)
     }
 
     /// Returns the best name with these letters: in the language spoken, the first of its type, of the usual type.
-    fn look_up(&self, map: &HashMap<String, Vec<Name<'a>>>, letters: &str, language: Option<&str>) -> Option<Name<'a>> {
+    fn look_up(&self, map: &HashMap<String, Vec<Name>>, letters: &str, language: Option<&str>) -> Option<Name> {
         let rank = |n: &Name| {
-            let spoken = n.language == OWN && language.is_none_or(|l| l == "en") || Some(n.language) == language;
+            let spoken = &*n.language == OWN && language.is_none_or(|l| l == "en") || Some(&*n.language) == language;
             (u8::from(spoken), n.grade, self.usual[n.at])
         };
-        let better = |a: &Name<'a>, b: &Name<'a>| {
+        let better = |a: &Name, b: &Name| {
             let ((x, p, u), (y, q, v)) = (rank(a), rank(b));
             x.cmp(&y).then(p.total_cmp(&q)).then(u.total_cmp(&v)).then(b.at.cmp(&a.at))
         };
-        Self::all(map, letters).iter().max_by(|a, b| better(a, b)).copied()
+        Self::all(map, letters).iter().max_by(|a, b| better(a, b)).cloned()
     }
 
     /// Returns what a label means here, where it is known which language is spoken; `None` when no name is like it.
-    pub fn meaning(&self, label: &Phrase, language: Option<&str>) -> Option<Match<'a>> {
-        let found = |at: usize, grade: f64| Match { room_type: &self.domain.room_types[at], grade };
+    pub fn meaning(&self, label: &Phrase, language: Option<&str>) -> Option<Match> {
+        let found = |at: usize, grade: f64| Match { at, grade };
         let whole = label.whole();
         if let Some(name) = self.look_up(&self.names, &whole, language) {
             return Some(found(name.at, name.grade));
@@ -146,7 +160,7 @@ impl<'a> Vocabulary<'a> {
         }
         let heart = label.heart();
         let same = self.look_up(&self.hearts, &heart, language);
-        let same = same.or_else(|| self.look_up(&self.names, &heart, language).map(|n| n.as_heart()));
+        let same = same.or_else(|| self.look_up(&self.names, &heart, language).map(|n| n.less_sure()));
         if let Some(name) = same.or_else(|| self.look_up(&self.buildings, &whole, language)) {
             return Some(found(name.at, name.grade));
         }
@@ -194,15 +208,14 @@ impl<'a> Vocabulary<'a> {
         }
         let best = types?.into_iter().max_by(|a, b| self.usual[*a].total_cmp(&self.usual[*b]).then(b.cmp(a)))?;
         let length = label.heart().chars().count();
-        let room_type = &self.domain.room_types[best];
-        let names = room_type.keywords.values().flatten().map(|n| Phrase::new(n).heart().chars().count());
-        let shortest = names.filter(|n| *n > length).min().unwrap_or(2 * length);
+        let longer = self.lengths[best].iter().copied().filter(|n| *n > length);
+        let shortest = longer.min().unwrap_or(2 * length);
         Some((best, length as f64 / shortest as f64))
     }
 
-    /// Returns how much a room type belongs to the buildings of the domain, 0 to 1.
-    pub fn usual(&self, room_type: &RoomType) -> f64 {
-        self.domain.room_types.iter().position(|t| t.id == room_type.id).map_or(0.0, |at| self.usual[at])
+    /// Returns how much the room type at a place belongs to the buildings of the domain, 0 to 1.
+    pub fn usual(&self, at: usize) -> f64 {
+        self.usual[at]
     }
 
     /// Returns how many names of room types have a word in them.
@@ -248,7 +261,7 @@ pub(super) fn rooms_of(program: &Program) -> BTreeSet<&str> {
 }
 
 /// How the words of labels that nobody knows whole are shared among domains.
-pub(super) fn shares(label: &Phrase, vocabularies: &[Vocabulary]) -> Vec<f64> {
+pub(super) fn shares(label: &Phrase, vocabularies: &[&Vocabulary]) -> Vec<f64> {
     let mut of_word: BTreeMap<&str, Vec<f64>> = BTreeMap::new();
     for word in &label.core {
         let uses: Vec<f64> = vocabularies.iter().map(|v| v.uses(word) as f64).collect();

@@ -2,7 +2,8 @@
 
 use std::collections::BinaryHeap;
 
-use d3dgen_model::{Point, Polygon, Rect};
+use d3dgen_model::geometry::Segment;
+use d3dgen_model::{Point, Polygon};
 
 /// A square is not looked into for a gain in radius below this, m.
 const GAIN_M: f64 = 0.004;
@@ -45,13 +46,16 @@ impl Ord for Square {
 ///
 /// Squares are split in four while one of them may hold something better: the radius around a point is at most that
 /// around another point and the way between them.
-pub(super) fn largest(outline: &Polygon, obstacles: &[Rect]) -> f64 {
-    let walls: Vec<Rect> = outline.edges().map(|w| w.bounds()).collect();
-    let nearest = |p: Point, list: &[Rect]| list.iter().map(|r| squared(p, r)).fold(f64::MAX, f64::min);
-    // below 0 outside of the outline
-    let radius = |p: Point| {
-        let to_walls = nearest(p, &walls);
-        if outline.contains(p) { nearest(p, obstacles).min(to_walls).sqrt() } else { -to_walls.sqrt() }
+pub(super) fn largest(outline: &Polygon, obstacles: &[Polygon]) -> f64 {
+    let walls: Vec<Segment> = outline.edges().collect();
+    let nearest = |p: Point, lines: &[Segment]| lines.iter().map(|l| squared(p, l)).fold(f64::MAX, f64::min);
+    let sides: Vec<Segment> = obstacles.iter().flat_map(Polygon::edges).collect();
+    let is_taken = |p: Point| obstacles.iter().any(|o| o.contains(p));
+    // below 0 outside of the outline and within an obstacle
+    let radius = |p: Point| match (outline.contains(p), is_taken(p)) {
+        (true, false) => nearest(p, &sides).min(nearest(p, &walls)).sqrt(),
+        (false, _) => -nearest(p, &walls).sqrt(),
+        (true, true) => -nearest(p, &sides).sqrt(),
     };
     let bounds = outline.bounds();
     let size = bounds.width().min(bounds.height());
@@ -100,24 +104,46 @@ pub(super) fn largest(outline: &Polygon, obstacles: &[Rect]) -> f64 {
     2.0 * found
 }
 
-/// Returns the square of the distance of a point from a rectangle, m^2; 0 inside.
-fn squared(p: Point, r: &Rect) -> f64 {
-    let dx = (r.x0 - p.x).max(p.x - r.x1).max(0.0);
-    let dy = (r.y0 - p.y).max(p.y - r.y1).max(0.0);
-    dx * dx + dy * dy
+/// Returns the square of the distance of a point from a line, m^2.
+fn squared(p: Point, line: &Segment) -> f64 {
+    let (dx, dy) = (line.end.x - line.start.x, line.end.y - line.start.y);
+    let length = dx * dx + dy * dy;
+    let along = if length > 0.0 { ((p.x - line.start.x) * dx + (p.y - line.start.y) * dy) / length } else { 0.0 };
+    let at = along.clamp(0.0, 1.0);
+    let (x, y) = (line.start.x + at * dx - p.x, line.start.y + at * dy - p.y);
+    x * x + y * y
 }
 
 #[cfg(test)]
 mod tests {
+    use d3dgen_model::Rect;
+
     use super::*;
+
+    fn boxed(x0: f64, y0: f64, x1: f64, y1: f64) -> Polygon {
+        Polygon(Rect::new(x0, y0, x1, y1).corners().to_vec())
+    }
 
     #[test]
     fn circles_pass_corners_that_squares_do_not() {
-        let room = Polygon(Rect::new(0.0, 0.0, 2.0, 2.0).corners().to_vec());
+        let room = boxed(0.0, 0.0, 2.0, 2.0);
         assert!((largest(&room, &[]) - 2.0).abs() < 0.01);
         // a square beside the box in the corner is 1.6 m wide; the circle may reach around its corner
-        let boxed = largest(&room, &[Rect::new(0.0, 0.0, 0.4, 0.4)]);
-        assert!((1.86..1.90).contains(&boxed), "{boxed}");
-        assert_eq!(largest(&room, &[Rect::new(-1.0, -1.0, 3.0, 3.0)]), 0.0);
+        let beside = largest(&room, &[boxed(0.0, 0.0, 0.4, 0.4)]);
+        assert!((1.86..1.90).contains(&beside), "{beside}");
+        assert_eq!(largest(&room, &[boxed(-1.0, -1.0, 3.0, 3.0)]), 0.0);
+    }
+
+    #[test]
+    fn walls_and_things_at_an_angle_take_no_more_than_their_own_floor() {
+        // a square on its corner, 2 m a side: the bounding boxes of its walls fill it
+        let d = 2.0_f64.sqrt();
+        let turned = Polygon([(0.0, -d), (d, 0.0), (0.0, d), (-d, 0.0)].map(|(x, y)| Point::new(x, y)).to_vec());
+        assert!((largest(&turned, &[]) - 2.0).abs() < 0.01, "{}", largest(&turned, &[]));
+        // a board across the corner of a room: what is before it is free
+        let room = boxed(0.0, 0.0, 3.0, 3.0);
+        let board = Polygon([(0.0, 1.0), (1.0, 0.0), (1.1, 0.1), (0.1, 1.1)].map(|(x, y)| Point::new(x, y)).to_vec());
+        let before = largest(&room, &[board]);
+        assert!((2.6..3.0).contains(&before), "{before}");
     }
 }

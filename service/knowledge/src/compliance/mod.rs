@@ -118,7 +118,13 @@ fn judge(a: &Applicable, rule: &Rule, readings: &[Reading], retrieval: &Retrieva
     if rule.quantity.any && broken.len() < readings.len() {
         broken.clear();
     }
-    let closest = if rule.quantity.any { readings.iter().max_by(order) } else { readings.iter().min_by(order) };
+    // one place that keeps a rule is enough for some: the tightest of those that do is told then
+    let keeping = readings.iter().filter(|r| margin(r) >= -SLACK).count();
+    let closest = match rule.quantity.any && keeping > 0 {
+        true => readings.iter().filter(|r| margin(r) >= -SLACK).min_by(order),
+        false if rule.quantity.any => readings.iter().max_by(order),
+        false => readings.iter().min_by(order),
+    };
     if let Some(reason) = nobody_knows(a, rule, retrieval, broken.is_empty()) {
         return one(closest, Status::NotDecidable, reason);
     }
@@ -135,7 +141,11 @@ fn judge(a: &Applicable, rule: &Rule, readings: &[Reading], retrieval: &Retrieva
             .map(|r| result(a, Some(rule), &r.subject, Status::Violated, Some(r.value), text.clone()))
             .collect();
     }
-    let among = if readings.len() > 1 { format!("closest of {}", readings.len()) } else { String::new() };
+    let among = match readings.len() {
+        0 | 1 => String::new(),
+        all if keeping < all => format!("closest of {keeping} of {all} that keep it"),
+        all => format!("closest of {all}"),
+    };
     let whatever = a.unsure.as_ref().map(|reason| format!("kept either way: {reason}"));
     let parts: Vec<String> = [Some(among), whatever].into_iter().flatten().filter(|p| !p.is_empty()).collect();
     one(closest, Status::Satisfied, parts.join("; "))

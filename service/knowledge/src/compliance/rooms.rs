@@ -1,7 +1,7 @@
 //! Sizes, heights and windows of rooms.
 
+use d3dgen_model::TOLERANCE_M;
 use d3dgen_model::storeys::LinkKind;
-use d3dgen_model::{Rect, TOLERANCE_M};
 
 use super::circle;
 use super::site::{Room, Site};
@@ -33,8 +33,9 @@ fn figure(site: &Site, room: &Room, rule: &Rule) -> Option<f64> {
         Measure::InnerRectangle => bare(room).width_at_length(rule.bounds.sides?[1]),
         Measure::FreeRectangle => room.space().width_at_length(rule.bounds.sides?[1]),
         Measure::TurningCircle => {
-            let taken: Vec<Rect> = room.objects.iter().filter(|o| o.blocks).map(|o| o.rect).collect();
-            circle::largest(&room.plan.net_polygon, &taken)
+            let standing = site.world.floorplan.obstacles_of(&room.plan.room_id).map(|o| o.outline.clone());
+            let furniture = room.objects.iter().filter(|o| o.blocks).map(|o| o.placement.footprint());
+            circle::largest(&room.plan.net_polygon, &furniture.chain(standing).collect::<Vec<_>>())
         }
         Measure::Proportion => {
             let b = room.plan.net_polygon.bounds();

@@ -1,7 +1,7 @@
 //! Figures as text, quickly and with as few digits as they need.
 
 /// Writes a figure with at most `decimals` digits behind the point, without closing zeros.
-pub(super) fn push(out: &mut String, value: f64, decimals: u32) {
+pub fn push(out: &mut String, value: f64, decimals: u32) {
     let unit = 10_i64.pow(decimals);
     let scaled = (value * unit as f64).round();
     if scaled.abs() > 9.0e15 {
@@ -37,7 +37,7 @@ pub(super) fn push(out: &mut String, value: f64, decimals: u32) {
 }
 
 /// Returns a figure with six digits behind the point.
-pub(super) fn n(value: f64) -> String {
+pub fn n(value: f64) -> String {
     let mut out = String::new();
     push(&mut out, value, 6);
     out
@@ -45,7 +45,7 @@ pub(super) fn n(value: f64) -> String {
 
 /// Returns a figure with nine digits that count: the moments of a thin plate are a sum to the sixth digit, and simulators
 /// refuse moments that no body can have.
-pub(super) fn small(value: f64) -> String {
+pub fn small(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return "0".to_owned();
     }

@@ -5,7 +5,7 @@ use std::fmt::Write;
 
 use super::number::{n, push};
 use super::{picture_extension, texture_of};
-use crate::{Body, Model3d};
+use crate::{Body, Mesh, Model3d, Visual};
 
 /// Returns the OBJ text of a body.
 pub(super) fn obj(model: &Model3d, body: &Body, library: &str) -> String {
@@ -37,6 +37,14 @@ pub(super) fn obj(model: &Model3d, body: &Body, library: &str) -> String {
     }
     out.push_str(&faces);
     out
+}
+
+/// Returns meshes of one material as OBJ text without materials, for readers that name the material elsewhere.
+pub fn mesh_obj(name: &str, meshes: &[&Mesh]) -> String {
+    let visual = |mesh: &&Mesh| Visual { mesh: (*mesh).clone(), ..Visual::default() };
+    let body = Body { name: name.to_owned(), visuals: meshes.iter().map(visual).collect(), ..Body::default() };
+    let text = obj(&Model3d::default(), &body, "");
+    text.split_once('\n').map_or_else(String::new, |(_, rest)| rest.to_owned())
 }
 
 /// Returns the material library of a model.

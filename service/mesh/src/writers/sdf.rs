@@ -7,6 +7,7 @@ use super::{ModelFile, check, obj, picture_extension, roll_pitch_yaw, texture_of
 use crate::affine::Vec3;
 use crate::dynamics;
 use crate::mass::inertia;
+use crate::model3d::welded;
 use crate::{Body, Collision, Error, Joint, JointKind, Model3d};
 
 /// Returns `<name>.sdf` and the meshes and materials it refers to, all for one folder.
@@ -25,7 +26,7 @@ pub fn sdf(model: &Model3d) -> Result<Vec<ModelFile>, Error> {
     for body in &model.bodies {
         let seen = body.visuals.iter().any(|v| !v.mesh.triangles.is_empty());
         let mesh = seen.then(|| format!("{}.obj", body.name));
-        write_link(&mut out, body, mesh.as_deref());
+        write_link(&mut out, body, mesh.as_deref(), None);
         if let Some(name) = mesh {
             files.push(ModelFile { name, bytes: obj::obj(model, body, &library).into_bytes() });
         }
@@ -44,6 +45,40 @@ pub fn sdf(model: &Model3d) -> Result<Vec<ModelFile>, Error> {
     out.push_str("  </model>\n</sdf>\n");
     files.push(ModelFile { name: format!("{}.sdf", model.name), bytes: out.into_bytes() });
     files.push(ModelFile { name: library, bytes: obj::mtl(model).into_bytes() });
+    files.extend(pictures(model));
+    files.sort_by(|a, b| a.name.cmp(&b.name));
+    Ok(files)
+}
+
+/// Returns a model as one rigid body that can be moved: `model.sdf` and, for its folder `meshes`, the mesh with its materials.
+///
+/// `uri` is where the folder is found: `model://chair/meshes`. What joints hold is held fast with every joint at zero.
+///
+/// # Errors
+/// `Model` when the model is broken.
+pub fn sdf_body(model: &Model3d, uri: &str, friction: f64) -> Result<(Vec<u8>, Vec<ModelFile>), Error> {
+    check(model)?;
+    let one = welded(model);
+    let library = format!("{}.mtl", one.name);
+    let mesh = format!("{}.obj", one.name);
+    let mut out = format!("<?xml version=\"1.0\"?>\n<sdf version=\"1.9\">\n  <model name=\"{}\">\n", one.name);
+    let body = &one.bodies[0];
+    let seen = body.visuals.iter().any(|v| !v.mesh.triangles.is_empty());
+    let place = format!("{uri}/{mesh}");
+    write_link(&mut out, body, seen.then_some(place.as_str()), Some(friction));
+    out.push_str("  </model>\n</sdf>\n");
+    let mut files = Vec::new();
+    if seen {
+        files.push(ModelFile { name: mesh, bytes: obj::obj(&one, body, &library).into_bytes() });
+        files.push(ModelFile { name: library, bytes: obj::mtl(&one).into_bytes() });
+        files.extend(pictures(&one));
+    }
+    Ok((out.into_bytes(), files))
+}
+
+/// Returns the pictures that materials refer to, each once.
+fn pictures(model: &Model3d) -> Vec<ModelFile> {
+    let mut files: Vec<ModelFile> = Vec::new();
     for material in 0..model.materials.len() {
         if let Some((index, bytes)) = texture_of(model, material)
             && let Some(extension) = picture_extension(bytes)
@@ -54,11 +89,10 @@ pub fn sdf(model: &Model3d) -> Result<Vec<ModelFile>, Error> {
             }
         }
     }
-    files.sort_by(|a, b| a.name.cmp(&b.name));
-    Ok(files)
+    files
 }
 
-fn write_link(out: &mut String, body: &Body, mesh: Option<&str>) {
+fn write_link(out: &mut String, body: &Body, mesh: Option<&str>, friction: Option<f64>) {
     let inertia = inertia(body);
     let [x, y, z] = inertia.center_m.map(n);
     let t = inertia.tensor;
@@ -85,12 +119,16 @@ fn write_link(out: &mut String, body: &Body, mesh: Option<&str>) {
             body.name
         );
     }
+    let surface = friction.map_or_else(String::new, |mu| {
+        let mu = n(mu);
+        format!("        <surface><friction><ode><mu>{mu}</mu><mu2>{mu}</mu2></ode></friction></surface>\n")
+    });
     for (i, shape) in body.collisions.iter().enumerate() {
         let (pose, geometry) = geometry(shape);
         let _ = write!(
             out,
             "      <collision name=\"{}_collision_{i}\">\n        <pose>{pose}</pose>\n        \
-             <geometry>{geometry}</geometry>\n      </collision>\n",
+             <geometry>{geometry}</geometry>\n{surface}      </collision>\n",
             body.name
         );
     }

@@ -3,12 +3,12 @@
 
 use d3dgen_knowledge::clearance::{Side, free_depth, is_shallow};
 use d3dgen_knowledge::freespace::FreeSpace;
-use d3dgen_model::Rect;
 use d3dgen_model::domain::Mount;
 use d3dgen_model::floorplan::{Door, DoorKind, PlanRoom};
 use d3dgen_model::placements::Placement;
 use d3dgen_model::scenario::Poi;
 use d3dgen_model::world::World;
+use d3dgen_model::{Rect, TOLERANCE_M};
 
 use crate::common::{body, gap, in_room, most, rooms, worlds};
 
@@ -315,4 +315,17 @@ fn visitors_of_an_office_find_a_seat_that_is_not_among_the_staff() {
     }
     assert!(held.len() >= 20, "{}", held.len());
     most("receptions with a seat for visitors", 0.93, &held);
+}
+
+#[test]
+fn a_room_by_itself_has_outer_walls_on_all_sides_and_its_least_width_between_them() {
+    for prompt in ["a classroom for 6 pupils", "a classroom for 12 pupils", "a classroom with 50 m2"] {
+        for world in worlds(prompt, 3) {
+            let [room] = world.floorplan.rooms.as_slice() else {
+                panic!("{prompt}: {} rooms", world.floorplan.rooms.len())
+            };
+            let bounds = room.net_polygon.bounds();
+            assert!(bounds.width().min(bounds.height()) >= 6.0 - TOLERANCE_M, "{prompt}: {bounds:?}");
+        }
+    }
 }

@@ -4,18 +4,22 @@
 //! and how they lie is said of mentions. All that follows from who sleeps, works and lives there is then as ever. Facts that
 //! nothing here plans are left to the report, which answers each.
 
+mod lost;
 mod machines;
+mod unknown;
 mod wishes;
 
 use std::sync::LazyLock;
 
-use d3dgen_model::brief::{Brief, Fact, PeopleAsk, PlaceKind};
+use d3dgen_model::brief::{Brief, Fact, PeopleAsk};
 use d3dgen_model::domain::{Domain, GENERIC_ROOM_TYPE};
 use d3dgen_model::scene_graph::Note;
 use d3dgen_model::stage::Error;
 use d3dgen_plugins::Registry;
 use serde::Deserialize;
 
+pub(crate) use self::lost::restore;
+pub use self::unknown::says_nothing;
 use self::wishes::Facts;
 use super::draft::{Draft, List};
 use super::heard::{Heard, Notes};
@@ -34,6 +38,7 @@ use super::subject::places;
 use super::subject::programs::{is_dwelling, program_of};
 use super::subject::site::Site;
 use super::tokens::text::Span;
+use super::wished::closed;
 use super::wished::relations::Said;
 use super::wished::wishes::{Wish, Wishes};
 
@@ -45,6 +50,15 @@ struct Roles {
     patients: Vec<String>,
     anybody: Vec<String>,
     children: Vec<String>,
+    unknown_building: UnknownBuilding,
+}
+
+/// What an unknown kind of building is planned as.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct UnknownBuilding {
+    domain: String,
+    building_type: String,
 }
 
 fn roles() -> &'static Roles {
@@ -74,8 +88,7 @@ pub(crate) fn read<'a>(brief: &Brief, request: &Request, registry: &'a Registry)
     draft.furnish_storeys(&mut storeys);
     draft.settle_types();
     let robots = machines::robots(brief, request, &draft.wishes, &mut draft.notes);
-    let (mut people, held) = draft.people(&said, None);
-    count_beds(brief, &mut people.occupancy);
+    let (people, held) = draft.people(&said, None);
     let total = draft.total()?;
     let style = styles::wished(&facts.styles, request.style, &mut draft.notes.conflicts);
     let list = list_of(&facts, &draft, total);
@@ -107,6 +120,8 @@ pub(crate) fn read<'a>(brief: &Brief, request: &Request, registry: &'a Registry)
         seats: counted.seats,
         halves: Vec::new(),
         called: Vec::new(),
+        names: facts.called,
+        unread: Vec::new(),
         habitable_fixed: false,
         area_m2,
         each_alone: site.lives && site.shared,
@@ -130,18 +145,14 @@ pub(crate) fn read<'a>(brief: &Brief, request: &Request, registry: &'a Registry)
 /// Returns what the brief is about: the domain of the request, else of the brief, else the one that knows most of its rooms.
 fn site_of<'a>(brief: &Brief, request: &Request, registry: &'a Registry, notes: &mut Notes) -> Result<Site<'a>, Error> {
     let named = brief.building.as_ref();
-    if request.domain.is_none()
-        && let Some(unknown) = named.filter(|b| b.domain.is_none())
-    {
-        let kinds: Vec<&str> = brief.other_buildings.iter().map(|b| b.name.as_str()).collect();
-        let nearest = if kinds.is_empty() { String::new() } else { format!("; the nearest are {}", kinds.join(", ")) };
-        let message = format!(
-            "no domain knows the kind of building `{}`{nearest}; name one of these, or plan its rooms with the domain general",
-            unknown.name
-        );
-        return Err(refused(message));
-    }
-    let wanted = request.domain.as_deref().or_else(|| named.and_then(|b| b.domain.as_deref()));
+    let free = request.domain.is_none();
+    let stand = match named.filter(|b| free && b.domain.is_none()) {
+        Some(unknown) => Some(unknown::stand_in(&unknown.name, brief, registry, notes)?),
+        None if free && says_nothing(brief) => return Err(unknown::nothing_said(brief, registry)),
+        None => None,
+    };
+    let known = named.and_then(|b| b.domain.as_deref()).or(stand.as_ref().map(|s| s.domain.as_str()));
+    let wanted = request.domain.as_deref().or(known);
     let id = match wanted {
         Some(id) => id.to_owned(),
         None => {
@@ -154,6 +165,7 @@ fn site_of<'a>(brief: &Brief, request: &Request, registry: &'a Registry, notes: 
     let plugin = registry.get(&id).ok_or_else(|| refused(format!("domain `{id}` is not registered")))?;
     let domain = plugin.domain();
     let own_type = named.filter(|b| b.domain.as_deref() == Some(&id)).and_then(|b| b.building_type.clone());
+    let own_type = own_type.or(stand.map(|s| s.building_type));
     let building = Building { building_type: own_type, ..Building::none(&id) };
     let program = program_of(domain, building.building_type.as_deref());
     let flag = request.country.as_deref().and_then(places::code_of);
@@ -176,13 +188,15 @@ fn room_id(fact: &Fact) -> Option<&str> {
 
 /// Returns a mention for each room and each head count of the facts.
 fn mentions_of(facts: &Facts) -> Vec<Mention> {
-    let rooms =
-        facts.wishes.wishes.iter().map(|w| (What::Room(w.room_type.clone()), w.count, facts.beds_of(&w.room_type)));
-    let heads = facts.heads.iter().map(|(what, n)| (what.clone(), *n, None));
-    let mention = |(i, (what, count, beds)): (usize, (What, u32, Option<u32>))| {
+    let counted = |w: &Wish| (!facts.open.contains(&w.room_type)).then_some(w.count);
+    let rooms = facts.wishes.wishes.iter();
+    let rooms = rooms.map(|w| (What::Room(w.room_type.clone()), counted(w), facts.beds_of(&w.room_type)));
+    let heads = facts.heads.iter().map(|(what, n)| (what.clone(), Some(*n), None));
+    let mention = |(i, (what, count, beds)): (usize, (What, Option<u32>, Option<u32>))| {
         let at = Heard::place_of(i);
         let span = Span { start: at, end: at + 1 };
-        Mention { count: Some(i64::from(count)), plural: count > 1, beds, ..Mention::plain(span, what) }
+        let plural = count.is_none_or(|n| n > 1);
+        Mention { count: count.map(i64::from), plural, beds, ..Mention::plain(span, what) }
     };
     rooms.chain(heads).enumerate().map(mention).collect()
 }
@@ -192,7 +206,8 @@ fn mentions_of(facts: &Facts) -> Vec<Mention> {
 fn list_of(facts: &Facts, draft: &Draft, total: Option<u32>) -> List {
     let wishes = &draft.wishes.wishes;
     let single = facts.single && wishes.len() == 1 && wishes[0].count == 1 && total.is_none_or(|n| n == 1);
-    let closed = single || facts.closed;
+    let whole = || closed::is_whole(&draft.wishes, false, (draft.site.domain, draft.site.lives));
+    let closed = single || facts.closed || facts.named && whole();
     List {
         total: total.filter(|_| !single),
         single,
@@ -200,23 +215,6 @@ fn list_of(facts: &Facts, draft: &Draft, total: Option<u32>) -> List {
         only: facts.closed,
         may_join: !facts.closed && facts.named,
         named_first: facts.named,
-    }
-}
-
-/// Takes the beds and desks that the brief counts for the whole building.
-fn count_beds(brief: &Brief, occupancy: &mut d3dgen_model::scene_graph::Occupancy) {
-    for ask in &brief.asks {
-        let Fact::Capacity(capacity) = &ask.fact else { continue };
-        if capacity.room.is_some() {
-            continue;
-        }
-        let place = match capacity.of {
-            PlaceKind::Beds => &mut occupancy.beds,
-            PlaceKind::Desks => &mut occupancy.desks,
-            PlaceKind::Seats => &mut occupancy.visitors,
-            _ => continue,
-        };
-        *place = place.or(Some(capacity.count.n));
     }
 }
 

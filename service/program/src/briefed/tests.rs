@@ -146,3 +146,86 @@ fn the_place_says_whose_rules_apply() {
     let found = of_brief(&brief, &Request::default(), &Registry::builtin()).expect("it can be planned");
     assert_eq!(found.country_code.as_deref(), Some("PL"));
 }
+
+#[test]
+fn beds_in_rooms_without_a_number_make_as_many_rooms_as_that_takes() {
+    let open = |id: &str, n: u32| {
+        Fact::Rooms(RoomsAsk { room: subject(id), count: AskedCount::at_least(n), ..RoomsAsk::default() })
+    };
+    let beds = |n: u32, room: Option<Subject>| {
+        Fact::Capacity(CapacityAsk {
+            of: PlaceKind::Beds,
+            count: AskedCount::exactly(n),
+            room,
+            each_room: false,
+            groups: None,
+        })
+    };
+    // "24 beds, mostly double rooms" and "12 beds in double rooms"
+    let ward = || Some(building("hospital", Some("ward")));
+    let apart = graph(ward(), vec![beds(24, None), open("patient_room_double", 2)]);
+    assert_eq!(count(&apart, "patient_room_double"), 12);
+    let inside = graph(ward(), vec![open("patient_room_double", 1), beds(12, Some(subject("patient_room_double")))]);
+    assert_eq!(count(&inside, "patient_room_double"), 6);
+}
+
+#[test]
+fn each_group_has_the_room_that_the_building_is_for() {
+    let groups = CapacityAsk {
+        of: PlaceKind::Seats,
+        count: AskedCount::exactly(20),
+        room: None,
+        each_room: false,
+        groups: Some(3),
+    };
+    let found =
+        graph(Some(building("school", Some("kindergarten"))), vec![Fact::Capacity(groups), rooms("kitchen", 1)]);
+    assert_eq!(count(&found, "group_room"), 3);
+}
+
+#[test]
+fn a_room_that_nobody_knows_has_the_name_it_was_given() {
+    let own = |name: &str| Fact::Rooms(RoomsAsk { room: Subject::unknown(name), ..RoomsAsk::default() });
+    let names = ["dog wash room", "пекарня", "세탁물실"];
+    let found = graph(Some(building("office", None)), names.iter().map(|n| own(n)).collect());
+    for name in names {
+        let called = |r: &&d3dgen_model::scene_graph::GraphRoom| r.name.to_lowercase() == name;
+        assert_eq!(found.rooms.iter().filter(called).count(), 1, "{name}: {:?}", found.rooms);
+    }
+}
+
+#[test]
+fn a_kind_of_building_that_nobody_knows_is_its_list_of_rooms_or_is_refused() {
+    let unknown = || {
+        let named = building("residential", None);
+        Some(AskedBuilding { domain: None, name: "planetarium".into(), ..named })
+    };
+    let listed = graph(unknown(), vec![rooms("kitchen", 1), rooms("holding_cell", 20)]);
+    assert_eq!((listed.domain.as_str(), count(&listed, "holding_cell")), ("general", 20));
+    assert!(listed.assumptions.iter().any(|n| n.code == "unknown_building"), "{:?}", listed.assumptions);
+    let brief = Brief { building: unknown(), ..Brief::of_prompt("planetarium") };
+    let refusal = of_brief(&brief, &Request::default(), &Registry::builtin()).map(|_| ()).unwrap_err().to_string();
+    assert!(refusal.contains("`planetarium`") && refusal.contains("the nearest are"), "{refusal}");
+    assert_eq!(
+        refusal.split("the nearest are ").nth(1).map(|r| r.split(';').next().unwrap_or("").split(", ").count()),
+        Some(3)
+    );
+}
+
+#[test]
+fn what_the_reader_of_words_left_out_comes_from_the_brief() {
+    let prompt = "house with 2 bedrooms, kitchen, a flumbarium";
+    let request = Request { prompt: prompt.into(), seed: 3, ..Request::default() };
+    let registry = Registry::builtin();
+    let without = crate::generate(&request, &registry).expect("it can be planned");
+    let lost = |g: &SceneGraph| g.conflicts.iter().any(|n| n.message.contains("flumbarium"));
+    assert!(lost(&without));
+    let at = prompt.find("flumbarium").expect("it is there") as u32;
+    let words = vec![d3dgen_model::brief::PromptWords::of(prompt, at, at + 10)];
+    let fact = Fact::Rooms(RoomsAsk { room: Subject::unknown("flumbarium"), ..RoomsAsk::default() });
+    let ask = Ask { id: "ask_1".into(), words, read_by: Default::default(), fact };
+    let brief = Brief { asks: vec![ask], ..Brief::of_prompt(prompt) };
+    let with = crate::generate_with(&brief, &request, &registry).expect("it can be planned");
+    assert!(!lost(&with) && with.rooms.iter().any(|r| r.name == "Flumbarium"), "{:?}", with.conflicts);
+    assert_eq!(count(&with, "bedroom"), 2);
+}

@@ -1,17 +1,21 @@
 //! The facts of a brief, sorted by what the building of rooms asks for.
 
+use std::collections::BTreeSet;
+
 use d3dgen_model::brief::{
     AskedCount, Bound, Brief, CapacityAsk, Fact, ObjectsAsk, PlaceKind, RelationAsk, RelationKind, RoomsAsk, Subject,
 };
-use d3dgen_model::domain::{Domain, Program};
+use d3dgen_model::domain::{Domain, Program, RoomType};
+use d3dgen_model::offer;
 use d3dgen_model::scene_graph::{Connector, Note};
 use d3dgen_model::style::StyleWord;
 use d3dgen_plugins::Registry;
 
 use super::{GENERIC_ROOM_TYPE, Held, Thing, What, Wish, Wishes, is_dwelling, program_of, roles, styles, what_of};
 use crate::levels::storeys::{Storeys, Wanted};
+use crate::people::seats::Called;
 use crate::tokens::storey::Where;
-use crate::tokens::text::Span;
+use crate::tokens::text::{Span, capital, fold};
 use crate::wished::relations::Spread;
 use crate::wished::wishes::{Apart, Pair, PerHost};
 
@@ -21,6 +25,28 @@ const SIZES: [(&str, f64); 2] = [("large", 1.4), ("small", 0.75)];
 const MOST_LEVELS: u32 = 12;
 /// Most objects of one kind that one fact asks for.
 const MOST_THINGS: u32 = 200;
+
+/// Number up to which "several" says no number.
+const FEW: u32 = 2;
+/// Beginning of the ids of rooms whose names have no letters for an id.
+const OWN_ROOM: &str = "own_room";
+
+/// Returns true for a number that is told.
+fn is_told(count: AskedCount) -> bool {
+    matches!(count.bound, Bound::Exactly | Bound::About | Bound::AtMost)
+}
+
+/// Returns true for a name of which every word is one of another name.
+fn is_part(name: &str, of: &str) -> bool {
+    let words = |text: &str| -> Vec<String> {
+        fold(text).split(|c: char| !c.is_alphanumeric()).filter(|w| !w.is_empty()).map(str::to_lowercase).collect()
+    };
+    let of = words(of);
+    words(name).iter().all(|w| of.contains(w) || w.strip_suffix('s').is_some_and(|one| of.iter().any(|o| o == one)))
+}
+
+/// Language of the names of room types on plans.
+const PLAN_LANGUAGE: &str = "en";
 
 /// What a brief asks for, sorted.
 #[derive(Default)]
@@ -37,6 +63,10 @@ pub(super) struct Facts<'a> {
     pub stations: Vec<Held>,
     /// Head counts of the building.
     pub heads: Vec<(What, u32)>,
+    /// Types of rooms of which no fact says how many there are.
+    pub open: BTreeSet<String>,
+    /// What the brief calls rooms that are not called as their type is.
+    pub called: Vec<Called>,
     pub children: u32,
     pub styles: Vec<styles::Said>,
     pub area_m2: Option<f64>,
@@ -51,8 +81,37 @@ pub(super) struct Facts<'a> {
     stated: Option<(u32, bool)>,
     /// Rooms on a storey.
     on_levels: Vec<Wanted>,
+    /// Names of rooms that no domain knows and that are written in letters which no id has, in their order.
+    own: Vec<String>,
+    /// True where the brief speaks the language that plans name rooms in.
+    in_plan_language: bool,
     registry: Option<&'a Registry>,
+    domain: Option<&'a Domain>,
     program: Option<&'a Program>,
+}
+
+/// Returns the id that a name is written as where its letters have a place in ids: `Abstellraum für Räder` is
+/// `abstellraum_fur_rader`.
+fn slug_of(name: &str) -> Option<String> {
+    let slug: String =
+        fold(name).chars().map(|c| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '_' }).collect();
+    let slug = slug.split('_').filter(|w| !w.is_empty()).collect::<Vec<_>>().join("_");
+    let told = name.chars().filter(|c| c.is_alphabetic()).count();
+    let kept = slug.chars().filter(char::is_ascii_alphabetic).count();
+    (kept > 0 && kept >= told).then_some(slug)
+}
+
+/// Returns the names of rooms that no domain knows and that make no id.
+fn own_names(brief: &Brief) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    let rooms =
+        brief.asks.iter().filter_map(|a| if let Fact::Rooms(rooms) = &a.fact { Some(&rooms.room) } else { None });
+    for room in rooms.filter(|r| r.id.is_none() && slug_of(&r.name).is_none()) {
+        if !names.contains(&room.name) {
+            names.push(room.name.clone());
+        }
+    }
+    names
 }
 
 impl<'a> Facts<'a> {
@@ -62,6 +121,9 @@ impl<'a> Facts<'a> {
         let lives = program.is_some_and(is_dwelling);
         let named = brief.building.as_ref().is_some_and(|b| !b.words.is_empty() || b.confidence >= 1.0);
         let mut out = Self { named, single: !named, registry: Some(registry), program, ..Self::default() };
+        out.own = own_names(brief);
+        out.domain = Some(domain);
+        out.in_plan_language = brief.languages.first().is_some_and(|l| l == PLAN_LANGUAGE);
         for ask in &brief.asks {
             match &ask.fact {
                 Fact::Rooms(rooms) => out.rooms(rooms),
@@ -72,7 +134,7 @@ impl<'a> Facts<'a> {
                     if lives && roles().children.contains(&people.role) {
                         out.children += people.count.n;
                     }
-                    out.heads.push((what_of(people, lives), people.count.n));
+                    out.head(what_of(people, lives), people.count.n);
                 }
                 Fact::Storeys(storeys) => out.stated = Some((storeys.count.n, storeys.basement)),
                 Fact::Area(area) => out.area_m2 = Some(area.area_m2),
@@ -104,11 +166,33 @@ impl<'a> Facts<'a> {
             // the pharmacy of a ward is its room for medicine
             return self.program.and_then(|p| p.means.get(id)).unwrap_or(id).clone();
         }
-        let slug: String =
-            subject.name.to_lowercase().chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
-        let slug = slug.trim_matches('_').to_owned();
-        // a name in other letters stands on the plan; as an id it is the generic room
-        if slug.is_empty() || !subject.name.is_ascii() { GENERIC_ROOM_TYPE.to_owned() } else { slug }
+        let numbered = || {
+            let at = self.own.iter().position(|name| *name == subject.name)?;
+            Some(format!("{OWN_ROOM}_{}", 1 + at))
+        };
+        slug_of(&subject.name).or_else(numbered).unwrap_or_else(|| GENERIC_ROOM_TYPE.to_owned())
+    }
+
+    /// Counts people, beds or desks of the building; those of several groups together.
+    fn head(&mut self, what: What, n: u32) {
+        match self.heads.iter_mut().find(|(of, _)| *of == what) {
+            Some((_, all)) => *all = all.saturating_add(n),
+            None => self.heads.push((what, n)),
+        }
+    }
+
+    /// Notes what the brief calls a room, where that is another word than its type has on a plan.
+    fn call(&mut self, id: &str, asked: &RoomsAsk) {
+        let name = asked.room.name.trim();
+        let own = asked.room.id.is_none();
+        let one = asked.count.n == 1;
+        let kind = self.domain.and_then(|d| d.room_type(id)).filter(|_| !own);
+        let plain = |k: &RoomType| !self.in_plan_language || !one || [&k.label, &k.id].iter().any(|l| is_part(name, l));
+        if name.is_empty() || kind.is_some_and(plain) || self.called.iter().any(|c| c.name == capital(name)) {
+            return;
+        }
+        let at = Span { start: 0, end: 0 };
+        self.called.push(Called { span: at, room_type: id.to_owned(), name: capital(name), count: asked.count.n });
     }
 
     /// Returns the beds of each room of a type, where the brief says so.
@@ -120,8 +204,12 @@ impl<'a> Facts<'a> {
         let id = self.type_of(&asked.room);
         let area = asked.area_m2.or_else(|| asked.sides_m.map(|s| s[0] * s[1]));
         let size = SIZES.iter().find(|(word, _)| asked.attributes.iter().any(|a| a == word)).map(|s| s.1);
-        let exact = matches!(asked.count.bound, Bound::Exactly | Bound::About) || asked.count.n == 1;
+        let exact = is_told(asked.count) || asked.count.n == 1;
         self.wish(&id, &asked.room.name, asked.count, exact);
+        if !is_told(asked.count) && asked.count.n <= FEW && asked.each.is_none() {
+            self.open.insert(id.clone());
+        }
+        self.call(&id, asked);
         if let Some(wish) = self.wishes.wishes.iter_mut().find(|w| w.room_type == id) {
             (wish.area_m2, wish.size) = (wish.area_m2.or(area), wish.size.or(size));
         }
@@ -162,6 +250,7 @@ impl<'a> Facts<'a> {
 
     /// Adds rooms of a type to those wished for.
     fn wish(&mut self, id: &str, name: &str, count: AskedCount, exact: bool) {
+        self.open.remove(id);
         match self.wishes.wishes.iter_mut().find(|w| w.room_type == id) {
             Some(wish) => {
                 wish.count = wish.count.saturating_add(count.n);
@@ -183,8 +272,31 @@ impl<'a> Facts<'a> {
     }
 
     fn capacity(&mut self, asked: &CapacityAsk) {
-        let Some(room) = &asked.room else { return };
+        let whole = |of| match of {
+            PlaceKind::Beds => Some(What::Beds),
+            PlaceKind::Desks => Some(What::Desks),
+            PlaceKind::Seats => Some(What::Visitors),
+            _ => None,
+        };
+        let all = asked.count.n.saturating_mul(asked.groups.unwrap_or(1));
+        let Some(room) = &asked.room else {
+            if let Some(groups) = asked.groups.filter(|_| asked.of == PlaceKind::Seats) {
+                self.house_groups(groups, asked.count.n);
+            }
+            if let Some(what) = whole(asked.of) {
+                self.head(what, all);
+            }
+            return;
+        };
         let room_type = self.type_of(room);
+        // "12 beds in double rooms": as many rooms as that takes
+        if asked.of == PlaceKind::Beds
+            && !asked.each_room
+            && self.open.contains(&room_type)
+            && self.sleeps(&room_type, asked.count.n)
+        {
+            return self.head(What::Beds, all);
+        }
         let rooms = self.wishes.wishes.iter().find(|w| w.room_type == room_type).map_or(1, |w| w.count);
         let each = if asked.each_room { asked.count.n } else { asked.count.n.div_ceil(rooms.max(1)) };
         let held = Held { room_type, count: rooms, beds: each };
@@ -195,6 +307,22 @@ impl<'a> Facts<'a> {
             PlaceKind::Treatment => self.stations.push(held),
             PlaceKind::Cars | PlaceKind::Bicycles | PlaceKind::Docks | PlaceKind::Animals | PlaceKind::Pallets => {}
         }
+    }
+
+    /// Gives each group the room that the building is for: a kindergarten of three groups has three group rooms.
+    fn house_groups(&mut self, groups: u32, each: u32) {
+        let kind = self.program.filter(|p| !is_dwelling(p)).and_then(|p| p.rooms.first()).zip(self.domain);
+        let Some(kind) = kind.and_then(|(entry, domain)| domain.room_type(&entry.room_type)) else { return };
+        if !self.wishes.wishes.iter().any(|w| w.room_type == kind.id) {
+            self.wish(&kind.id, &kind.label, AskedCount::exactly(groups), true);
+        }
+        self.seats.push(Held { room_type: kind.id.clone(), count: groups, beds: each });
+    }
+
+    /// Returns true for rooms to sleep in that hold fewer than so many.
+    fn sleeps(&self, room_type: &str, beds: u32) -> bool {
+        let held = self.domain.and_then(|d| offer::sleeps(d, d.room_type(room_type)?));
+        held.is_some_and(|[_, most]| most < beds)
     }
 
     fn relation(&mut self, asked: &RelationAsk) {

@@ -52,6 +52,7 @@ pub(crate) fn finish<'a>(reading: &mut Reading<'a>, mut rooms: Vec<Planned<'a>>)
     occupants::make_room_for_things(reading, &mut rooms);
     occupants::hold_beds(reading, &mut rooms);
     workers::settle(reading, &mut rooms);
+    call_as_told(reading, &mut rooms);
     occupants::hold_people(reading, &mut rooms);
     occupants::make_room_for_companions(reading, &mut rooms);
     occupants::serve_people(reading, &mut rooms);
@@ -61,6 +62,16 @@ pub(crate) fn finish<'a>(reading: &mut Reading<'a>, mut rooms: Vec<Planned<'a>>)
     hosts::share_last_bathroom(reading, &mut rooms);
     state_additions(reading, &rooms);
     rooms
+}
+
+/// Names the rooms that a brief calls otherwise than their type is called.
+fn call_as_told(reading: &Reading, rooms: &mut [Planned]) {
+    for told in &reading.names {
+        let own = |r: &&mut Planned| r.requested && r.called.is_none() && r.room_type == told.room_type;
+        for room in rooms.iter_mut().filter(own).take(told.count.max(1) as usize) {
+            room.called = Some(told.name.clone());
+        }
+    }
 }
 
 /// Adds the room that robots live in, where the rooms are left open and none of them suits that.

@@ -18,8 +18,6 @@ use crate::tokens::words::words;
 
 /// Most objects wished for in one room.
 pub(crate) const MOST_WISHES: usize = 15;
-/// Things named of a room that no domain knows.
-const MOST_NAMED: usize = 3;
 /// Share of the usual area per head that a building short of area leaves.
 const CROWDED: f64 = 0.6;
 /// Most area of a room that serves so many people, as a factor on what they need.
@@ -106,12 +104,8 @@ fn state_unknown(reading: &mut Reading, planned: &[Planned]) {
         }
         stated.push(&room.room_type);
         let words = room.name.clone().unwrap_or_else(|| room.room_type.replace('_', " "));
-        let things: Vec<String> =
-            furniture(reading.domain, room.kind).take(MOST_NAMED).map(|id| id.replace('_', " ")).collect();
-        let message = format!(
-            "`{words}` is no room that is known; it was planned as one for general use, furnished with {}",
-            things.join(", ")
-        );
+        let message =
+            format!("`{words}` is no room that is known; it has its name and its light, and is empty for the rest");
         reading.assumptions.push(Note::new("unknown_room", message));
     }
 }

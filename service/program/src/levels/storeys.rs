@@ -1,5 +1,6 @@
 //! Storeys in a prompt: how many there are, and which rooms are to be on which.
 
+use d3dgen_model::gazetteer::first_floor_is_ground;
 use d3dgen_model::scene_graph::Note;
 
 use crate::named::mention::{Mention, What};
@@ -7,7 +8,7 @@ use crate::subject::places::country_of;
 use crate::tokens::numbers::Number;
 use crate::tokens::storey::Where;
 use crate::tokens::text::{Kind, Phrases, Span, Token, fold};
-use crate::tokens::words::{Spoken, Tag, is_tagged, tag_end, words};
+use crate::tokens::words::{Spoken, Tag, is_tagged, tag_end};
 
 /// Storeys above the ground that a prompt may ask for.
 const MOST_LEVELS: u32 = 12;
@@ -414,7 +415,7 @@ fn counts_from_one(phrases: &[Phrase], stated: Option<i32>, country: Option<&str
         return true;
     }
     match country {
-        Some(code) => words().first_is_ground.iter().any(|c| c == country_of(code)),
+        Some(code) => first_floor_is_ground(country_of(code)),
         None => !ground,
     }
 }

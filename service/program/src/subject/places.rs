@@ -1,8 +1,9 @@
-//! Countries, their divisions and cities in prompts: which jurisdiction applies. The gazetteer is `places.jsonl`.
+//! Countries, their divisions and cities in prompts: which jurisdiction applies. Their names stand in `model::gazetteer`.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::LazyLock;
 
+use d3dgen_model::gazetteer::PLACES;
 use d3dgen_model::knowledge::is_jurisdiction;
 use d3dgen_model::scene_graph::Note;
 use serde::Deserialize;
@@ -10,7 +11,7 @@ use serde::Deserialize;
 use crate::tokens::text::{Kind, Phrases, Span, Token, tokens};
 use crate::tokens::words::{Spoken, Tag, is_tagged, tag_end, tag_ends_at};
 
-/// One line of `places.jsonl`.
+/// One line of the names of places.
 #[derive(Debug, Deserialize)]
 struct Line {
     /// ISO 3166 code of a country (`CA`) or a division (`CA-ON`); of a city, the nearest of both that is known.
@@ -59,8 +60,8 @@ fn gazetteer() -> &'static Gazetteer {
     static GAZETTEER: LazyLock<Gazetteer> = LazyLock::new(|| {
         let mut phrases = Phrases::new("");
         let (mut known, mut spoken_codes, mut written) = (BTreeMap::new(), BTreeSet::new(), BTreeSet::new());
-        for line in include_str!("places.jsonl").lines() {
-            let line: Line = serde_json::from_str(line).expect("a test reads places.jsonl");
+        for line in PLACES.lines() {
+            let line: Line = serde_json::from_str(line).expect("a test reads the places");
             let codes: Vec<String> = line.code.clone().into_iter().chain(line.codes).collect();
             if let (Some(code), Some(name), false) = (&line.code, line.names.first(), line.city) {
                 known.entry(code.clone()).or_insert_with(|| name.clone());

@@ -354,8 +354,6 @@ pub(crate) struct ByBedrooms {
 struct File {
     /// Usual words of languages that are not read, by English name of the language.
     unread_languages: BTreeMap<String, Vec<String>>,
-    /// Countries where the ground floor is the first floor.
-    first_is_ground: Vec<String>,
     /// What stands between two lengths.
     times: BTreeSet<String>,
     area_units: BTreeMap<String, f64>,
@@ -399,7 +397,6 @@ pub(crate) struct Words {
     pub length_units: Phrases<f64>,
     pub time_units: Phrases<f64>,
     pub dwelling: Dwelling,
-    pub first_is_ground: Vec<String>,
     pub work_vital: Vec<Vec<String>>,
     pub many_desks: u32,
     pub many_vital: Vec<Vec<String>>,
@@ -484,7 +481,6 @@ pub(crate) fn words() -> &'static Words {
             time_units: units(&file.time_units),
             languages: file.languages.into_iter().map(|(code, words)| (code.clone(), spoken(&code, words))).collect(),
             dwelling: rooms.dwelling,
-            first_is_ground: file.first_is_ground,
             work_vital: rooms.work_vital,
             many_desks: rooms.many_desks,
             many_vital: rooms.many_vital,

@@ -31,8 +31,13 @@ pub(crate) fn is_closed(
     if building.listed_type && building.list_from > 0 {
         return false;
     }
-    let listed: Vec<_> = wishes.wishes.iter().filter(|w| w.listed).collect();
     let colon = tokens.get(building.list_from).is_some_and(|t| t.mark() == Some(':'));
+    is_whole(wishes, colon, (domain, lives))
+}
+
+/// Returns true for a list that has all rooms of a building, by what is in it; `colon` where one stands before it.
+pub(crate) fn is_whole(wishes: &Wishes, colon: bool, (domain, lives): (&Domain, bool)) -> bool {
+    let listed: Vec<_> = wishes.wishes.iter().filter(|w| w.listed).collect();
     let types = listed.len();
     // how many toilets a long list has is no news about its other rooms
     let serves = |w: &Wish| domain.room_type(&w.room_type).is_some_and(|k| k.zone == Zone::Service);

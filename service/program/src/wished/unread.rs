@@ -54,8 +54,16 @@ impl Text<'_> {
     }
 }
 
-/// Adds a conflict for every wish that is left out.
-pub(crate) fn state(text: &Text, conflicts: &mut Vec<Note>) {
+/// Words of a prompt that nothing was made of, and what was said of them.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Unread {
+    /// Where they stand in the prompt.
+    pub bytes: std::ops::Range<usize>,
+    pub note: Note,
+}
+
+/// Adds a conflict for every wish that is left out; returns those of which nothing at all was planned.
+pub(crate) fn state(text: &Text, conflicts: &mut Vec<Note>) -> Vec<Unread> {
     let prompt = Prompt { text: text.prompt, tokens: text.tokens };
     let mut spans: Vec<Span> = Vec::new();
     let put = |span: Span, spans: &mut Vec<Span>| {
@@ -72,15 +80,20 @@ pub(crate) fn state(text: &Text, conflicts: &mut Vec<Note>) {
         counted(text).into_iter().for_each(|s| put(s, &mut spans));
     }
     spans.sort_by_key(|s| s.start);
+    let mut left = Vec::new();
     for span in spans.into_iter().take(MOST_NOTES) {
         let message = format!("`{}` is nothing that can be planned; it was left out", prompt.words(span));
-        conflicts.push(Note::new("unread_wish", message));
+        let note = Note::new("unread_wish", message);
+        let (first, last) = (&text.tokens[span.start], &text.tokens[span.end - 1]);
+        left.push(Unread { bytes: first.start..last.end, note: note.clone() });
+        conflicts.push(note);
     }
     for area in text.areas.iter().filter(|a| a.sides).take(MOST_NOTES) {
         let (words, value) = (prompt.words(area.span), area.value);
         let message = format!("of `{words}` the area was taken ({value:.1} m2); the two lengths are not planned");
         conflicts.push(Note::new("unread_wish", message));
     }
+    left
 }
 
 /// Returns the words of a prompt without a word for a building that could be one.

@@ -75,3 +75,23 @@ fn a_bad_domain_changes_nothing() {
     assert!(matches!(register(domain, other), Refusal::Problems("knowledge_base", _)));
     assert_eq!(domains.now().registry.iter().count(), Registry::builtin().iter().count());
 }
+
+#[test]
+fn words_of_domains_are_made_once_for_as_long_as_the_domains_are_the_same() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let databases = Databases::open(dir.path(), Arc::new(StaticTable::new())).expect("databases");
+    let domains = Domains::open(&databases, &by()).expect("domains");
+    let labels = ["patient room".to_owned(), "corridor".to_owned()];
+    let before = domains.now();
+    let best = before.classify(&labels, None).into_iter().next().expect("known rooms");
+    assert_eq!(best.domain, "hospital");
+    domains.refresh_rules(&databases, "hospital").expect("rules");
+    domains.refresh_assets(&databases).expect("assets");
+    assert!(Arc::ptr_eq(&before.words, &domains.now().words), "neither rules nor assets name rooms");
+    assert_eq!(before.classify(&labels, Some("hospital")).len(), 1);
+    assert!(before.classify(&labels, Some("castle")).is_empty());
+    let (domain, knowledge) = academy();
+    domains.register(&databases, domain, knowledge, &by(), 1, |_, _| ()).expect("registered");
+    assert!(!Arc::ptr_eq(&before.words, &domains.now().words), "another domain names other rooms");
+    assert_eq!(domains.now().classify(&["classroom".to_owned()], Some("academy")).len(), 1);
+}

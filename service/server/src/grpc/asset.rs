@@ -25,6 +25,7 @@ use crate::core::Core;
 use crate::jobs::Spec;
 use crate::jobs::ingest::Ingest;
 use crate::names;
+use crate::pool::Lane;
 use crate::status::{self, invalid};
 
 #[tonic::async_trait]
@@ -159,7 +160,7 @@ impl AssetService for Api {
             let asset_ids = change::remove(core, &who, asked, once)?;
             Ok(RemoveAssetsResponse { asset_ids })
         };
-        self.change_read("RemoveAssets", request, id, |_, asked, _| Ok(asked), change).await
+        self.change_read(("RemoveAssets", Lane::Short), request, id, |_, asked, _| Ok(asked), change).await
     }
 
     async fn restore_assets(&self, request: Request<RestoreAssetsRequest>) -> Answer<RestoreAssetsResponse> {

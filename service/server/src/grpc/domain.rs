@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::atomic::AtomicBool;
 
-use d3dgen_knowledge::classify::{classify, ties};
+use d3dgen_knowledge::classify::ties;
 use d3dgen_model::domain::Domain;
 use d3dgen_model::knowledge::KnowledgeBase;
 use d3dgen_pipeline::brief;
@@ -24,6 +24,7 @@ use crate::convert::{document, message, with_shared};
 use crate::core::Core;
 use crate::domains::{Entry, Refusal, Snapshot};
 use crate::names;
+use crate::pool::Lane;
 use crate::status::{self, invalid};
 
 #[tonic::async_trait]
@@ -125,7 +126,7 @@ impl DomainService for Api {
             core.open_indexes().map_err(status::own)?;
             Ok(answer(&entry))
         };
-        self.change_read("RegisterDomain", request, id, read, change).await
+        self.change_read(("RegisterDomain", Lane::Work), request, id, read, change).await
     }
 
     async fn remove_domain(&self, request: Request<RemoveDomainRequest>) -> Answer<RemoveDomainResponse> {
@@ -186,8 +187,7 @@ impl DomainService for Api {
         self.short(move |core, _| {
             let now = core.domains.now();
             if !asked.room_labels.is_empty() {
-                let domains: Vec<&Domain> = now.registry.iter().map(Plugin::domain).collect();
-                let found = classify(&asked.room_labels, &domains);
+                let found = now.classify(&asked.room_labels, None);
                 let tied = ties(&found).len();
                 let found = found.into_iter().filter(|r| r.score > 0.0).enumerate();
                 let room = |(label, room_type)| ClassifiedRoom { label, room_type };
@@ -228,7 +228,7 @@ impl DomainService for Api {
 }
 
 /// Returns a domain by id.
-pub(in crate::grpc) fn plugin<'a>(now: &'a Snapshot, field: &str, id: &str) -> Result<&'a dyn Plugin, Status> {
+pub(crate) fn plugin<'a>(now: &'a Snapshot, field: &str, id: &str) -> Result<&'a dyn Plugin, Status> {
     names::id(field, id)?;
     now.registry.get(id).ok_or_else(|| no_domain(now, id))
 }

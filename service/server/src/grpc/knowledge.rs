@@ -7,13 +7,11 @@ use std::collections::BTreeMap;
 use std::sync::atomic::AtomicBool;
 
 use d3dgen_knowledge::amend::states;
-use d3dgen_knowledge::classify::{Building, Classified, classify, ties};
+use d3dgen_knowledge::classify::{Building, Classified, ties};
 use d3dgen_knowledge::database::{Change, Edit, SearchQuery, difference, filter_names};
 use d3dgen_knowledge::{Policy, Stats, retrieve_with};
 use d3dgen_model::Document;
-use d3dgen_model::domain::Domain;
 use d3dgen_model::knowledge::{Constraint, KnowledgeBase, Statement, is_jurisdiction};
-use d3dgen_plugins::Plugin;
 use d3dgen_proto::v1::amend_knowledge_request::Change as Wanted;
 use d3dgen_proto::v1::knowledge_service_server::KnowledgeService;
 use d3dgen_proto::v1::{
@@ -34,6 +32,7 @@ use super::{Answer, Api, Once, caller, limits, mode};
 use crate::convert::{document, masked, message, part, with_shared};
 use crate::core::Core;
 use crate::domains::Snapshot;
+use crate::pool::Lane;
 use crate::status::{self, invalid};
 
 #[tonic::async_trait]
@@ -69,7 +68,7 @@ impl KnowledgeService for Api {
             })?;
             Ok(ImportKnowledgeResponse { change: changed.as_ref().map(messages::change), quarantined })
         };
-        self.change_read("ImportKnowledge", request, id, read, change).await
+        self.change_read(("ImportKnowledge", Lane::Work), request, id, read, change).await
     }
 
     async fn export_knowledge(&self, request: Request<ExportKnowledgeRequest>) -> Answer<ExportKnowledgeResponse> {
@@ -208,12 +207,14 @@ impl KnowledgeService for Api {
         let change = move |core: &Core, (wanted, asked): (Intended, AmendKnowledgeRequest), once: &Once| {
             let rules = &core.databases.rules;
             let why = asked.why;
-            let knowledge = rules.knowledge_base(&asked.domain_id).map_err(status::knowledge)?;
+            // as the database has it: whoever changes it makes a snapshot before the next may
+            let now = core.domains.now();
+            let knowledge = plugin(&now, "domain_id", &asked.domain_id)?.knowledge();
             if asked.validate_only {
-                let edits = edits(&knowledge, wanted, &core.provenance(&who, &why))?;
+                let edits = edits(knowledge, wanted, &core.provenance(&who, &why))?;
                 return Ok(AmendKnowledgeResponse { change: None, edits: edits.iter().map(messages::edit).collect() });
             }
-            let made = |by: &_| edits(&knowledge, wanted, by);
+            let made = |by: &_| edits(knowledge, wanted, by);
             let mut kept = Vec::new();
             let mut refused = None;
             let changed = changed_once(core, once, &who, &why, |by| match made(by) {
@@ -239,7 +240,7 @@ impl KnowledgeService for Api {
                 edits: kept.iter().map(messages::edit).collect(),
             })
         };
-        self.change_read("AmendKnowledge", request, id, read, change).await
+        self.change_read(("AmendKnowledge", Lane::Short), request, id, read, change).await
     }
 
     async fn list_knowledge_changes(
@@ -413,11 +414,10 @@ fn edits(
 
 /// Returns the best reading of the rooms, and the domains that they fit as well.
 fn reading(now: &Snapshot, asked: &RetrieveConstraintsRequest) -> Result<(Classified, Vec<String>), Status> {
-    let domains: Vec<&Domain> = match &asked.domain_id {
-        Some(id) => vec![plugin(now, "domain_id", id)?.domain()],
-        None => now.registry.iter().map(Plugin::domain).collect(),
-    };
-    let found = classify(&asked.room_labels, &domains);
+    if let Some(id) = &asked.domain_id {
+        plugin(now, "domain_id", id)?;
+    }
+    let found = now.classify(&asked.room_labels, asked.domain_id.as_deref());
     let tied = ties(&found).iter().map(|r| r.domain.clone()).collect();
     let best = found.into_iter().next().filter(|r| r.score > 0.0);
     let best =

@@ -49,7 +49,7 @@ pub struct Building {
 
 impl From<Request> for Building {
     fn from(r: Request) -> Self {
-        let Request { prompt, seed, domain, country, rooms, area_m2, robot_radius_m, robot, style } = r;
+        let Request { prompt, seed, domain, country, rooms, area_m2, robot_radius_m, robot, style, .. } = r;
         Self { prompt, seed, domain, country, rooms, area_m2, robot_radius_m, robot, style }
     }
 }
@@ -58,7 +58,7 @@ impl Building {
     /// Returns the request for one of its seeds.
     pub fn request(&self, seed: u64) -> Request {
         let Self { prompt, domain, country, rooms, area_m2, robot_radius_m, robot, style, .. } = self.clone();
-        Request { prompt, seed, domain, country, rooms, area_m2, robot_radius_m, robot, style }
+        Request { prompt, brief: None, seed, domain, country, rooms, area_m2, robot_radius_m, robot, style }
     }
 }
 
@@ -129,7 +129,7 @@ fn side_by_side(run: &Run, spec: &Batch, next: u64, count: usize) -> Vec<Result<
     })
 }
 
-/// Keeps what came of a seed; one that is refused is noted, and the batch goes on.
+/// Keeps what came of a seed.
 fn keep(
     run: &Run,
     done: &mut Done,
@@ -137,7 +137,19 @@ fn keep(
     seed: u64,
     made: Result<Generated, d3dgen_pipeline::Error>,
 ) -> Result<(), Status> {
-    let made = match made {
+    let made = outcome(dir, seed, made)?;
+    done.tried += 1;
+    done.sound += u32::from(made.sound);
+    if let Some(reason) = &made.reason {
+        done.failed.insert(seed, reason.clone());
+        run.log(Level::Warning, &format!("seed {seed}: {reason}"));
+    }
+    run.checkpoint(done, |batch| own::put(batch, WORLDS, &key(&run.job.id, seed), &made))
+}
+
+/// Writes the world of a seed, and returns what is kept of it; a seed that is refused is noted, and the batch goes on.
+fn outcome(dir: &Path, seed: u64, made: Result<Generated, d3dgen_pipeline::Error>) -> Result<Made, Status> {
+    Ok(match made {
         Ok(generated) => {
             write(dir, seed, &generated.world, &generated.report).map_err(|e| status::io(&e))?;
             let figures = generated.report.figures.iter().map(|(k, v)| (k.clone(), *v)).collect();
@@ -149,14 +161,7 @@ fn keep(
         Err(error @ d3dgen_pipeline::Error::Cancelled) => return Err(status::stage("building", error)),
         Err(d3dgen_pipeline::Error::Infeasible { stage, message }) => nothing(seed, format!("{stage}: {message}")),
         Err(error) => nothing(seed, error.to_string()),
-    };
-    done.tried += 1;
-    done.sound += u32::from(made.sound);
-    if let Some(reason) = &made.reason {
-        done.failed.insert(seed, reason.clone());
-        run.log(Level::Warning, &format!("seed {seed}: {reason}"));
-    }
-    run.checkpoint(done, |batch| own::put(batch, WORLDS, &key(&run.job.id, seed), &made))
+    })
 }
 
 /// Returns what is kept of a seed without a world.
@@ -224,4 +229,26 @@ pub fn read(dir: &Path, seed: u64) -> Result<(World, Report), Status> {
         World::from_json(&text("world.json")?).map_err(damaged)?,
         Report::from_json(&text("report.json")?).map_err(damaged)?,
     ))
+}
+
+#[cfg(test)]
+mod tests {
+    use d3dgen_pipeline::Error;
+
+    use super::*;
+
+    #[test]
+    fn a_seed_without_a_world_is_noted_and_ends_no_batch() {
+        let dir = tempfile::tempdir().expect("a folder");
+        let infeasible = Error::Infeasible { stage: "floorplan", message: "it is too dense".into() };
+        for (error, reason) in [
+            (infeasible, "floorplan: it is too dense"),
+            (Error::Refused { stage: "scene_graph", message: "it is too large".into() }, "it is too large"),
+        ] {
+            let kept = outcome(dir.path(), 7, Err(error)).expect("the batch goes on");
+            assert!(!kept.sound && kept.seed == 7 && kept.reason.is_some_and(|r| r.contains(reason)), "{reason}");
+        }
+        let stopped = outcome(dir.path(), 7, Err(Error::Cancelled)).expect_err("it ends");
+        assert_eq!(stopped.code(), tonic::Code::Cancelled);
+    }
 }

@@ -70,7 +70,7 @@ pub(super) fn run(run: &Run, spec: &Ingest) -> Result<serde_json::Value, Status>
     run.checkpoint(&summary, |_| ())?;
     {
         let _alone = core.writing();
-        core.changed_assets()?;
+        core.changed_assets(&summary.changed())?;
     }
     if summary.cancelled {
         return Err(Status::cancelled("stopped"));

@@ -95,3 +95,31 @@ fn what_is_open_to_all_is_not_served_without_tokens() {
     );
     assert!(answered.expect_err("refused").to_string().contains("give tokens"));
 }
+
+/// Rules, assets and tokens of a server are nobody else's.
+#[cfg(unix)]
+#[test]
+fn what_a_server_writes_is_for_its_own_user_only() {
+    use std::os::unix::fs::PermissionsExt;
+    let dir = tempfile::tempdir().expect("a folder");
+    let data = dir.path().join("data");
+    let server = Server::start(&data, &[]);
+    let begun = std::time::Instant::now();
+    while page(&server.url, "/readyz", "").0 != 200 {
+        assert!(begun.elapsed() < std::time::Duration::from_secs(60), "the indexes are made");
+        std::thread::sleep(std::time::Duration::from_millis(100));
+    }
+    let (mut folders, mut count) = (vec![data], 0);
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(&folder).expect("readable") {
+            let path = entry.expect("an entry").path();
+            let mode = std::fs::metadata(&path).expect("there").permissions().mode();
+            assert_eq!(mode & 0o077, 0, "{} is {:o}", path.display(), mode & 0o777);
+            count += 1;
+            if path.is_dir() {
+                folders.push(path);
+            }
+        }
+    }
+    assert!(count > 5, "{count} files");
+}

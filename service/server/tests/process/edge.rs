@@ -32,6 +32,24 @@ pub fn tls_settings() -> [String; 2] {
     ]
 }
 
+/// More than a server with its usual settings has places for.
+#[test]
+fn connections_that_say_nothing_shut_nobody_out() {
+    const SILENT: usize = 520;
+    let dir = tempfile::tempdir().expect("a folder");
+    let server = Server::start(&dir.path().join("data"), &[]);
+    let address = server.url.trim_start_matches("http://");
+    let silent: Vec<_> = (0..SILENT).map(|_| std::net::TcpStream::connect(address).expect("a connection")).collect();
+    let begun = Instant::now();
+    for path in ["/healthz", "/livez", "/metrics"] {
+        assert_eq!(page(&server.url, path, "").0, 200, "{path}");
+    }
+    let listed = d3dgen_tests::command().args(["domains", "list", "--server", &server.url]).output().expect("it runs");
+    assert!(listed.status.success(), "{}", String::from_utf8_lossy(&listed.stderr));
+    assert!(begun.elapsed() < Duration::from_secs(5), "{:.1} s", begun.elapsed().as_secs_f64());
+    assert_eq!(silent.len(), SILENT); // open until here
+}
+
 #[tokio::test(flavor = "multi_thread")]
 async fn pages_of_listed_origins_may_call_and_no_others() {
     let dir = tempfile::tempdir().expect("a folder");

@@ -9,11 +9,12 @@ use std::time::Duration;
 use d3dgen_mesh::{builds, writers};
 use d3dgen_plugins::Registry;
 use d3dgen_proto::v1::{
-    AnyOf, AssetFilter, GenerateBatchRequest, GetJobRequest, IngestFolderRequest, JobState, KnowledgeBase,
-    ListAssetsRequest, ListBatchWorldsRequest, ListDomainsRequest, RegisterDomainRequest, job,
+    AmendKnowledgeRequest, AnyOf, AssetFilter, GenerateBatchRequest, GetJobRequest, IngestFolderRequest, JobState,
+    KnowledgeBase, ListAssetsRequest, ListBatchWorldsRequest, ListDomainsRequest, ListKnowledgeChangesRequest,
+    RegisterDomainRequest, RuleSentence, SearchConstraintsRequest, amend_knowledge_request, job,
 };
 
-use crate::support::{self, Clients, Server, flat};
+use crate::support::{self, Clients, Server, code, flat, page};
 
 /// Rounds of the ordinary test; `D3DGEN_KILL_ROUNDS` asks for more.
 const ROUNDS: u64 = 4;
@@ -193,4 +194,68 @@ async fn a_stop_lets_jobs_go_on_at_the_next_start() {
     let found = c.jobs.get_job(GetJobRequest { job_id: job }).await.expect("kept").into_inner().job.expect("a job");
     assert!(matches!(JobState::try_from(found.state), Ok(JobState::Queued | JobState::Running)), "{found:?}");
     assert!(found.error.is_none());
+}
+
+/// Lets the files of a process grow to so many bytes and no further, as a full disk would; `None` for as far as they like.
+#[cfg(target_os = "linux")]
+fn limit_files(pid: u32, bytes: Option<u64>) {
+    let limit = bytes.map_or_else(|| "unlimited".to_owned(), |b| b.to_string());
+    let mut prlimit = std::process::Command::new("prlimit");
+    let done = prlimit.args(["--pid", &pid.to_string(), &format!("--fsize={limit}:unlimited")]).status();
+    assert!(done.expect("prlimit, of util-linux").success());
+}
+
+/// What a client sees of a disk that is full, and of one that has room again.
+#[cfg(target_os = "linux")]
+#[tokio::test(flavor = "multi_thread")]
+async fn a_full_disk_stops_writes_only_and_only_while_it_is_full() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let data = dir.path().join("data");
+    // the signal of this limit would end the process; a disk that is full sends none
+    let mut shell = std::process::Command::new("sh");
+    shell.args(["-c", "trap '' XFSZ; exec \"$0\" \"$@\""]).arg(d3dgen_tests::program());
+    let server = Server::start_by(shell, &data, &[]);
+    let mut c = Clients::of(&server).await;
+    let amend = async |c: &mut Clients, width: &str| {
+        let text = format!("Corridors are at least {width} m wide.");
+        let change = Some(amend_knowledge_request::Change::Sentence(RuleSentence { text, language: None }));
+        let asked = AmendKnowledgeRequest { domain_id: "hospital".into(), change, ..Default::default() };
+        code(c.knowledge.amend_knowledge(asked).await)
+    };
+    let search = async |c: &mut Clients| {
+        let asked = SearchConstraintsRequest { query: "corridor width".into(), page_size: 5, ..Default::default() };
+        c.knowledge.search_constraints(asked).await.expect("an answer").into_inner().constraints.len()
+    };
+    let until = async |path: &str, status: u16| {
+        let begun = std::time::Instant::now();
+        while page(&server.url, path, "").0 != status {
+            assert!(begun.elapsed() < Duration::from_secs(60), "{path} never says {status}: {}", server.log());
+            tokio::time::sleep(Duration::from_millis(100)).await;
+        }
+    };
+    until("/readyz", 200).await;
+    assert_eq!(amend(&mut c, "2.61").await, tonic::Code::Ok);
+    for round in 0..2 {
+        limit_files(server.pid(), Some(4096));
+        for width in ["2.62", "2.63", "2.64"] {
+            assert_eq!(amend(&mut c, width).await, tonic::Code::ResourceExhausted, "round {round}: {}", server.log());
+            assert!(search(&mut c).await > 0, "reading goes on");
+            c.domains.list_domains(ListDomainsRequest::default()).await.expect("reading goes on");
+        }
+        until("/readyz", 503).await;
+        assert_eq!(page(&server.url, "/livez", "").0, 200, "no restart would help");
+        limit_files(server.pid(), None);
+        until("/readyz", 200).await;
+        assert_eq!(amend(&mut c, &format!("2.7{round}")).await, tonic::Code::Ok, "{}", server.log());
+    }
+    // what was acknowledged, and nothing else, is there after a start
+    drop(c);
+    server.kill();
+    let server = Server::start(&data, &[]);
+    let mut c = Clients::of(&server).await;
+    let asked = ListKnowledgeChangesRequest { domain_id: Some("hospital".into()), ..Default::default() };
+    let made = c.knowledge.list_knowledge_changes(asked).await.expect("a list").into_inner().changes;
+    let whys: Vec<String> = made.into_iter().filter_map(|m| Some(m.provenance?.why)).collect();
+    let amended: Vec<&str> = whys.iter().filter_map(|w| w.strip_prefix("Corridors are at least ")).collect();
+    assert_eq!(amended, ["2.71 m wide.", "2.70 m wide.", "2.61 m wide."]);
 }

@@ -4,6 +4,8 @@
 mod access;
 mod assets;
 mod command;
+#[cfg(unix)]
+mod deploy;
 mod edge;
 mod fault;
 mod hostile;

@@ -34,7 +34,11 @@ pub struct Server {
 impl Server {
     /// Starts a server on a folder, with further settings.
     pub fn start(data: &Path, settings: &[&str]) -> Self {
-        let mut command = Command::new(program());
+        Self::start_by(Command::new(program()), data, settings)
+    }
+
+    /// Does as [`Server::start`] with a command that runs the program with the arguments it is given.
+    pub fn start_by(mut command: Command, data: &Path, settings: &[&str]) -> Self {
         command.args(["serve", "--listen", "127.0.0.1:0", "--data-dir"]).arg(data).env("D3DGEN_STORE", "");
         for setting in settings {
             command.args(["--set", setting]);

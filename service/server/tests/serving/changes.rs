@@ -8,7 +8,7 @@ use d3dgen_proto::v1::job_service_client::JobServiceClient;
 use d3dgen_proto::v1::world_service_client::WorldServiceClient;
 use d3dgen_proto::v1::{
     BuildingRequest, CancelJobRequest, FileChunk, GenerateBatchRequest, GetJobRequest, IngestAssetsRequest,
-    IngestHeader, Job, JobState,
+    IngestHeader, Job, JobState, WatchJobRequest,
 };
 use tonic::{Code, Status};
 
@@ -79,4 +79,21 @@ async fn a_batch_lets_others_go_first_and_goes_on() {
         tokio::time::sleep(Duration::from_millis(20)).await;
     }
     assert_eq!(job(&mut jobs, &batch).await.state, JobState::Cancelled as i32);
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn an_open_watch_of_a_job_holds_up_no_stop() {
+    let mut server = Server::start(&[]).await;
+    let mut worlds = WorldServiceClient::new(server.channel().await);
+    let mut jobs = JobServiceClient::new(server.channel().await);
+    let building = BuildingRequest { prompt: SMALL.into(), seed: 1, ..Default::default() };
+    let asked = GenerateBatchRequest { building: Some(building), world_count: 500, request_id: String::new() };
+    let batch = worlds.generate_batch(asked).await.expect("started").into_inner().job.expect("a job").job_id;
+    let asked = WatchJobRequest { job_id: batch, include_logs: true };
+    let mut watch = jobs.watch_job(asked).await.expect("a watch").into_inner();
+    watch.message().await.expect("news");
+    let begun = Instant::now();
+    server.stop();
+    tokio::time::timeout(Duration::from_secs(10), &mut server.ended).await.expect("it stops").expect("well");
+    assert!(begun.elapsed() < Duration::from_secs(10));
 }

@@ -187,6 +187,7 @@ impl KeyValue for Redb {
         }
         // A file that needs a repair cannot be read, and the repair writes: not without room.
         crate::files::check_room(&self.path, 0)?;
+        crate::files::try_room(&self.path)?;
         shielded(&self.path, || self.open_again(&mut self.change_handles()))
     }
 }

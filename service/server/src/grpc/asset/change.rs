@@ -78,7 +78,7 @@ pub(super) fn annotate(core: &Core, who: &str, asked: AnnotateAssetRequest, once
     if made.is_none() {
         core.databases.assets.annotate(changed.clone(), &by).map_err(status::assets)?;
     }
-    core.changed_assets()?;
+    core.changed_assets(std::slice::from_ref(&changed.asset_id))?;
     Ok(changed)
 }
 
@@ -117,7 +117,7 @@ pub(super) fn generate(
             core.databases.assets.put(Kind::Generate, assets, &by).map_err(status::assets)?
         }
     };
-    core.changed_assets()?;
+    core.changed_assets(&ids)?;
     let get = |id: &String| core.databases.assets.get(id).transpose();
     ids.iter().filter_map(get).collect::<Result<_, _>>().map_err(status::assets)
 }
@@ -130,6 +130,7 @@ pub(super) fn remove(core: &Core, who: &str, asked: RemoveAssetsRequest, once: &
         true => (Provenance { who: who.into(), when: core.clock.text(), why: asked.why.clone() }, None),
         false => begin(core, once, who, &asked.why)?,
     };
+    let mut changed = made.clone().unwrap_or_default();
     if made.is_none() {
         let now = core.domains.now();
         let shelf = shelf(core, &now.catalog)?;
@@ -148,10 +149,11 @@ pub(super) fn remove(core: &Core, who: &str, asked: RemoveAssetsRequest, once: &
         if !asked.validate_only {
             let (own, objects): (Vec<_>, Vec<_>) = (own.into_iter().collect(), objects.into_iter().collect());
             core.databases.assets.remove(&own, &objects, &by).map_err(status::assets)?;
+            changed = [own, objects].concat();
         }
     }
     if !asked.validate_only {
-        core.changed_assets()?;
+        core.changed_assets(&changed)?;
     }
     Ok(asked.asset_ids)
 }
@@ -172,7 +174,7 @@ pub(super) fn restore(core: &Core, who: &str, asked: RestoreAssetsRequest, once:
         if asked.object_ids.is_empty() { removed.into_keys().collect() } else { asked.object_ids };
     if !objects.is_empty() {
         core.databases.assets.restore(&objects, &by).map_err(status::assets)?;
-        core.changed_assets()?;
+        core.changed_assets(&objects)?;
     }
     Ok(objects)
 }

@@ -4,6 +4,7 @@ use std::sync::atomic::AtomicBool;
 
 use d3dgen_assets::annotation::asa;
 use d3dgen_export::exporters;
+use d3dgen_export::manifest::Manifest;
 use d3dgen_export::models::{KeptModel, KeptModels};
 use d3dgen_model::world::World;
 use d3dgen_plugins::Plugin;
@@ -15,9 +16,6 @@ use crate::grpc::domain::plugin;
 use crate::grpc::zip;
 use crate::names;
 use crate::status::{self, invalid};
-
-/// Formats that are written when the client names none.
-const USUAL: [&str; 2] = ["arena", "plan"];
 
 /// The models of the database, for the files of worlds.
 struct Kept<'a>(&'a Core);
@@ -49,25 +47,24 @@ pub(super) fn files(
     }
     let now = core.domains.now();
     let plugin: &dyn Plugin = plugin(&now, "world.scene_graph.domain", &world.scene_graph.domain)?;
-    let usual: Vec<String> = USUAL.iter().map(|f| (*f).to_owned()).collect();
+    let exporters = match formats {
+        [] => exporters::usual().collect(),
+        names => exporters::named(names.iter().map(String::as_str)).map_err(|e| invalid("formats", e.to_string()))?,
+    };
     let mut files = std::collections::BTreeMap::new();
-    for name in if formats.is_empty() { &usual } else { formats } {
+    let mut manifest = Manifest::of(world, plugin.domain(), &Kept(core)).map_err(status::export)?;
+    for exporter in exporters {
         go_on(stop)?;
-        let exporter = exporters::get(name).ok_or_else(|| {
-            let known: Vec<&str> = exporters::all().iter().map(|e| e.name()).collect();
-            invalid("formats", format!("{:?} is no format; there are {}", short(name), known.join(", ")))
-        })?;
         let made = exporter.export(world, plugin.domain(), &Kept(core)).map_err(status::export)?;
+        manifest.add(exporter, &made);
         files.extend(made.into_iter().map(|f| (f.path, f.bytes)));
     }
+    let manifest = manifest.file(None);
+    files.insert(manifest.path, manifest.bytes);
     for path in files.keys() {
         names::upload_path("world", path)?;
     }
     Ok(files.into_iter().collect())
-}
-
-fn short(text: &str) -> String {
-    text.chars().take(60).collect()
 }
 
 /// An archive on its way to a client, made whole: what is not taken yet lies in memory, and no thread waits for it.
