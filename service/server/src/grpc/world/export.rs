@@ -52,7 +52,7 @@ pub(super) fn files(
         names => exporters::named(names.iter().map(String::as_str)).map_err(|e| invalid("formats", e.to_string()))?,
     };
     let mut files = std::collections::BTreeMap::new();
-let mut manifest = Manifest::of(world, plugin.domain(), &Kept(core)).map_err(status::export)?;
+    let mut manifest = Manifest::of(world, plugin.domain(), &Kept(core)).map_err(status::export)?;
     for exporter in exporters {
         go_on(stop)?;
         let made = exporter.export(world, plugin.domain(), &Kept(core)).map_err(status::export)?;
