@@ -8,6 +8,7 @@ use std::process::{Command, Output};
 use std::sync::OnceLock;
 
 use d3dgen_assets::annotation::Annotation;
+use d3dgen_dataset::spec::Spec;
 use d3dgen_eval::Evaluation;
 use d3dgen_model::brief::Brief;
 use d3dgen_model::document::Document;
@@ -49,6 +50,7 @@ pub fn schemas() -> Vec<(PathBuf, String)> {
         entry::<Edits>(),
         entry::<Annotation>(),
         entry::<Evaluation>(),
+        entry::<Spec>(),
     ]
 }
 

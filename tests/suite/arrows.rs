@@ -33,6 +33,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("plans", &["model"]),
     ("research", &["model", "llm"]),
     ("propose", &["model", "llm", "plugins", "knowledge", "pipeline"]),
+    ("dataset", &["model", "plugins", "pipeline", "export", "eval"]),
     ("proto", &["model"]),
     (
         "server",
@@ -67,11 +68,12 @@ const ARROWS: &[(&str, &[&str])] = &[
             "eval",
             "research",
             "propose",
+            "dataset",
             "proto",
             "server",
         ],
     ),
-    ("tests", &["model", "assets", "plugins", "knowledge", "pipeline", "export", "eval"]),
+    ("tests", &["model", "assets", "dataset", "plugins", "knowledge", "pipeline", "export", "eval"]),
 ];
 
 /// Other people's file formats and protocols, and the crates that may know them.
@@ -92,6 +94,10 @@ const OUTSIDE: &[(&str, &[&str])] = &[
     ("roxmltree", &["assets", "plans"]),
     ("serde-saphyr", &["assets", "plans"]),
     ("reqwest", &["llm", "research"]),
+    ("async-nats", &["dataset"]),
+    ("object_store", &["dataset"]),
+    ("parquet", &["dataset"]),
+    ("tar", &["dataset"]),
     ("scraper", &["research"]),
     ("pdf-extract", &["research"]),
     ("tonic", &["proto", "server", "cli"]),

@@ -56,6 +56,9 @@ pub enum Error {
     /// A world cannot be written in a format.
     #[error(transparent)]
     Export(#[from] d3dgen_export::Error),
+    /// A data set cannot be made or read.
+    #[error(transparent)]
+    Dataset(#[from] d3dgen_dataset::Error),
     /// A list of the measures cannot be used.
     #[error(transparent)]
     Eval(#[from] d3dgen_eval::Error),
@@ -81,6 +84,7 @@ impl Error {
             Self::Interrupted
             | Self::Knowledge(d3dgen_knowledge::Error::Store(d3dgen_store::Error::Cancelled))
             | Self::Assets(d3dgen_assets::Error::Store(d3dgen_store::Error::Cancelled))
+            | Self::Dataset(d3dgen_dataset::Error::Interrupted)
             | Self::Stage(d3dgen_pipeline::Error::Cancelled) => 130,
             _ => 2,
         }

@@ -25,8 +25,13 @@ const DOCUMENTS: &[&str] = &[
     "placements.json",
     "scenario.json",
     "proposal.json",
+    VIEW,
+    PICTURES,
     manifest::FILE,
 ];
+/// Folders of the page and the pictures that `view` and `render` make of a world.
+pub const VIEW: &str = "view";
+pub const PICTURES: &str = "pictures";
 /// The file that only the folder of a world has which may be used.
 const WORLD: &str = "world.json";
 /// The file that every world's folder has, sound or not.
@@ -66,6 +71,19 @@ impl Output {
     /// As [`Output::new`]; an earlier export, which is no whole world, is taken too.
     pub fn adding_to(path: &Path) -> Result<Self, Error> {
         Self::begin(path, check_ours(path, false)?, true)
+    }
+
+    /// Returns an output that adds its files to whatever a folder holds, and replaces those of the same names.
+    ///
+    /// # Errors
+    /// `Input` when the path is a file, `Write` when it cannot be written.
+    pub fn among(path: &Path) -> Result<Self, Error> {
+        match fs::metadata(path) {
+            Ok(found) if !found.is_dir() => {
+                Err(Error::Input(format!("{} is a file; --out needs a folder", path.display())))
+            }
+            found => Self::begin(path, found.is_ok(), true),
+        }
     }
 
     fn begin(path: &Path, exists: bool, adds: bool) -> Result<Self, Error> {

@@ -7,8 +7,10 @@ pub mod error;
 pub mod exporters;
 pub mod manifest;
 pub mod models;
+pub mod render;
 pub mod roadmap;
 pub mod scene;
+pub mod view;
 pub mod yaml;
 
 mod color;

@@ -156,7 +156,7 @@ impl Model {
 }
 
 /// Returns the object type of a placement whose object the domain does not know: a plain box.
-fn plain(id: &str, size_m: [f64; 3], mount: Mount) -> ObjectType {
+pub(crate) fn plain(id: &str, size_m: [f64; 3], mount: Mount) -> ObjectType {
     ObjectType {
         id: id.to_owned(),
         label: id.to_owned(),

@@ -33,6 +33,16 @@ pub(crate) fn unit(a: Vec3) -> Vec3 {
     if length > 1e-300 { scale(a, 1.0 / length) } else { [1.0, 0.0, 0.0] }
 }
 
+/// Returns the quaternion (w, x, y, z) of the turn `b`, then `a`.
+pub(crate) fn product([aw, ax, ay, az]: [f64; 4], [bw, bx, by, bz]: [f64; 4]) -> [f64; 4] {
+    [
+        aw * bw - ax * bx - ay * by - az * bz,
+        aw * bx + ax * bw + ay * bz - az * by,
+        aw * by - ax * bz + ay * bw + az * bx,
+        aw * bz + ax * by - ay * bx + az * bw,
+    ]
+}
+
 /// An affine map: a matrix by columns, then a shift.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Affine {
@@ -44,6 +54,18 @@ pub(crate) struct Affine {
 
 impl Affine {
     pub const IDENTITY: Self = Self { axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], origin: [0.0; 3] };
+
+    /// Returns the turn by a unit quaternion (w, x, y, z), then the shift.
+    pub fn placed(by: Vec3, [w, x, y, z]: [f64; 4]) -> Self {
+        Self {
+            axes: [
+                [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y)],
+                [2.0 * (x * y - w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + w * x)],
+                [2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)],
+            ],
+            origin: by,
+        }
+    }
 
     /// Returns a shift.
     pub fn shift(by: Vec3) -> Self {

@@ -8,7 +8,7 @@ mod copies;
 mod make;
 mod scope;
 mod solids;
-mod tones;
+pub(crate) mod tones;
 
 pub use solids::triangulate;
 use std::collections::BTreeMap;

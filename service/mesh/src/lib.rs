@@ -6,10 +6,12 @@
 pub mod builds;
 pub mod dynamics;
 pub mod error;
+pub mod finish;
 pub mod mass;
 pub mod model3d;
 pub mod parts;
 pub mod picture;
+pub mod world3d;
 pub mod writers;
 
 mod affine;
@@ -17,4 +19,6 @@ mod surface;
 
 pub use builds::{Library, generate, generate_by, triangulate};
 pub use error::Error;
+pub use finish::Finish;
 pub use model3d::{Body, Collision, Joint, JointKind, Material, Mesh, Model3d, Texture, Visual};
+pub use world3d::World3d;

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::affine::{Vec3, cross, dot, length, scale, sub, unit};
+use crate::finish::{self, Finish};
 
 /// A direction closer than this to an axis is that axis.
 const STRAIGHT: f64 = 0.9999;
@@ -147,6 +148,9 @@ pub struct Material {
     pub emissive: [f32; 3],
     /// Index of the texture that replaces the base color.
     pub texture: Option<usize>,
+    /// Finish whose pictures it wears (`finish`), where it has no texture of its own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub finish: Option<String>,
 }
 
 /// A picture file.
@@ -168,6 +172,26 @@ impl Default for Material {
             roughness: 0.6,
             emissive: [0.0; 3],
             texture: None,
+            finish: None,
+        }
+    }
+}
+
+impl Material {
+    /// Returns the finish that it wears; none where it has a texture of its own.
+    pub fn worn(&self) -> Option<&'static Finish> {
+        self.finish.as_deref().filter(|_| self.texture.is_none()).and_then(finish::get)
+    }
+
+    /// Returns what the picture that it wears is multiplied with, linear: under the gray grain of a finish its base color
+    /// comes out; the base color itself where it wears none.
+    pub fn factor(&self) -> [f32; 3] {
+        match self.worn() {
+            Some(worn) if worn.tints => {
+                let mean = worn.mean();
+                std::array::from_fn(|k| (self.base_color[k] / mean[k].max(0.05)).min(1.0))
+            }
+            _ => self.base_color,
         }
     }
 }

@@ -1,9 +1,10 @@
 //! Pictures of models: a software rasterizer for thumbnails and contact sheets.
 //!
-//! One view for all: from the front, a little from the right and above. What it is not for: photographs.
+//! One view for all: from the front, a little from the right and above. Whole worlds are drawn in a [`studio`].
 
 mod raster;
 mod shade;
+pub mod studio;
 mod texture;
 
 use crate::{Error, Material, Model3d};

@@ -6,17 +6,17 @@ mod glb;
 pub mod number;
 mod obj;
 mod sdf;
-mod usd;
+pub mod usd;
 mod usdz;
 
-pub use glb::glb;
+pub use glb::{glb, world_glb};
 pub use obj::mesh_obj;
 pub use sdf::{sdf, sdf_body};
-pub use usd::usda;
-pub use usdz::usdz;
+pub use usd::{asset_usda, usda};
+pub use usdz::{pack, usdz};
 
 use crate::affine::{Vec3, cross, dot, unit};
-use crate::{Error, Model3d};
+use crate::{Error, Material, Model3d, Texture};
 
 /// A file beside others, by its name.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -80,6 +80,35 @@ pub fn check(model: &Model3d) -> Result<(), Error> {
 fn texture_of(model: &Model3d, material: usize) -> Option<(usize, &[u8])> {
     let index = model.materials.get(material)?.texture?;
     model.textures.get(index)?.bytes.as_deref().map(|bytes| (index, bytes))
+}
+
+/// Returns materials without finishes: the files of single models have no pictures but their own, so that they stay small,
+/// and programs that read them see the color itself.
+fn plain(materials: &[Material]) -> Vec<Material> {
+    materials.iter().map(|m| Material { finish: None, ..m.clone() }).collect()
+}
+
+/// A picture that a material wears, as a file beside its model.
+struct Picture<'a> {
+    name: String,
+    bytes: &'a [u8],
+    /// What its color is multiplied with.
+    factor: [f32; 3],
+}
+
+/// Returns the picture of a material: its own, or that of its finish; none when nobody could read it.
+fn picture_of<'a>(material: &Material, textures: &'a [Texture]) -> Option<Picture<'a>> {
+    if let Some(finish) = material.worn() {
+        return Some(Picture {
+            name: format!("{}.png", finish.id),
+            bytes: &finish.pictures().color,
+            factor: material.factor(),
+        });
+    }
+    let index = material.texture?;
+    let bytes = textures.get(index)?.bytes.as_deref()?;
+    let extension = picture_extension(bytes)?;
+    Some(Picture { name: format!("texture_{index}.{extension}"), bytes, factor: [1.0; 3] })
 }
 
 /// Returns the file extension of a picture by its first bytes; none when simulators read it nowhere.

@@ -16,7 +16,7 @@ use std::task::{Context, Poll};
 use std::time::{Duration, Instant};
 
 use axum::body::Body;
-use http::{HeaderMap, HeaderValue, Request, Response, StatusCode, Uri};
+use http::{HeaderMap, HeaderValue, Request, Response, Uri};
 use tokio::sync::watch;
 use tonic::{Code, Status};
 use tower::{Layer, Service};
@@ -302,15 +302,8 @@ fn refusal(status: Status, is_grpc: bool, mut call: Call) -> Response<Body> {
     let mut response = if is_grpc {
         status.into_http::<Body>()
     } else {
-        let code = match status.code() {
-            Code::Unauthenticated => StatusCode::UNAUTHORIZED,
-            Code::PermissionDenied => StatusCode::FORBIDDEN,
-            Code::ResourceExhausted => StatusCode::TOO_MANY_REQUESTS,
-            Code::DeadlineExceeded => StatusCode::GATEWAY_TIMEOUT,
-            _ => StatusCode::INTERNAL_SERVER_ERROR,
-        };
         let mut response = Response::new(Body::from(format!("{}\n", status.message())));
-        *response.status_mut() = code;
+        *response.status_mut() = status::http(status.code());
         response
     };
     with_id(&mut response, &call.id);
@@ -325,7 +318,7 @@ fn watched(response: Response<Body>, is_grpc: bool, mut call: Call, until: Until
     };
     // Answers without a body, and those that are no gRPC, say how they ended at once.
     call.code = body::code(response.headers()).or((!is_grpc).then_some(match response.status().as_u16() {
-        200..300 => Code::Ok,
+        200..400 => Code::Ok,
         404 => Code::NotFound,
         _ => Code::Unknown,
     }));

@@ -5,9 +5,10 @@
 
 mod admin;
 mod asset;
-mod domain;
+pub(crate) mod domain;
 mod job;
 mod knowledge;
+mod library;
 mod once;
 mod outbox;
 mod page;
@@ -31,11 +32,12 @@ use once::Once;
 pub use once::forget_old;
 
 /// Names of the services.
-pub const NAMES: [&str; 7] = [
+pub const NAMES: [&str; 8] = [
     "d3dgen.v1.DomainService",
     "d3dgen.v1.KnowledgeService",
     "d3dgen.v1.AssetService",
     "d3dgen.v1.WorldService",
+    "d3dgen.v1.LibraryService",
     "d3dgen.v1.JobService",
     "d3dgen.v1.AdminService",
     "d3dgen.v1.ServerService",
@@ -54,6 +56,7 @@ pub fn routes(core: &Arc<Core>) -> Routes {
         .add_service(service!(knowledge_service_server, KnowledgeServiceServer))
         .add_service(service!(asset_service_server, AssetServiceServer))
         .add_service(service!(world_service_server, WorldServiceServer))
+        .add_service(service!(library_service_server, LibraryServiceServer))
         .add_service(service!(job_service_server, JobServiceServer))
         .add_service(service!(admin_service_server, AdminServiceServer))
         .add_service(service!(server_service_server, ServerServiceServer))

@@ -8,6 +8,8 @@
 //! | [`databases`], [`own`] | rules, assets, indexes; the server's own records |
 //! | [`domains`] | the domains at run time |
 //! | [`core`] | what all services work with |
+//! | [`library`] | worlds that clients keep |
+//! | [`page`], [`pictures`] | the web page, and pictures by address |
 //! | [`jobs`] | long work that survives a restart |
 //! | [`grpc`], [`convert`] | the services of the contract |
 //! | [`serve`], [`backup`] | a running server, and copies of its databases |
@@ -32,10 +34,13 @@ pub mod gate;
 pub mod grpc;
 pub mod health;
 pub mod jobs;
+pub mod library;
 pub mod methods;
 pub mod metrics;
 pub mod names;
 pub mod own;
+pub mod page;
+pub mod pictures;
 pub mod pool;
 pub mod serve;
 pub mod status;

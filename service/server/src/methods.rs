@@ -7,6 +7,7 @@ use serde::Deserialize;
 
 use crate::access::Scope;
 use crate::config::Limits;
+use crate::{page, pictures};
 
 const METHODS: &str = include_str!("../data/methods.toml");
 
@@ -36,6 +37,9 @@ pub struct Need {
 /// The needs of all methods, by path: `/d3dgen.v1.DomainService/ListDomains`.
 #[derive(Debug)]
 pub struct Methods(BTreeMap<String, Need>);
+
+/// What the page needs: it asks for the token itself.
+const PAGE: Need = Need { scope: None, kind: Kind::Lookup };
 
 /// Protocols beside the contract, which libraries serve.
 const OTHERS: &[(&str, Need)] = &[
@@ -69,12 +73,14 @@ impl Methods {
 
     /// Returns what a call needs; one that nobody listed needs the most.
     pub fn need(&self, path: &str) -> Need {
-        self.0.get(path).copied().unwrap_or(Need { scope: Some(Scope::Admin), kind: Kind::Work })
+        let plain = || page::has(path).then_some(PAGE).or_else(|| pictures::need(path));
+        self.0.get(path).copied().or_else(plain).unwrap_or(Need { scope: Some(Scope::Admin), kind: Kind::Work })
     }
 
     /// Returns the path as it was listed, for counters; calls of anything else are counted as one.
     pub fn label(&self, path: &str) -> &str {
-        self.0.get_key_value(path).map_or("other", |(known, _)| known.as_str())
+        let plain = if page::has(path) { "page" } else { "other" };
+        self.0.get_key_value(path).map_or(plain, |(known, _)| known.as_str())
     }
 
     /// Returns all paths of the contract.

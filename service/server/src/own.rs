@@ -18,6 +18,14 @@ pub const DOMAIN_RULES: &str = "domain_rules";
 pub const JOBS: &str = "jobs";
 /// Lines of the logs of jobs, by id and number.
 pub const JOB_LOGS: &str = "job_logs";
+/// Kept worlds, by id.
+pub const WORLDS: &str = "worlds";
+/// How many worlds were kept so far: ids are never used again.
+pub const WORLDS_COUNTED: &str = "worlds_counted";
+/// What is said of the states of kept worlds, by id and number.
+pub const WORLD_REVISIONS: &str = "world_revisions";
+/// The states of kept worlds, by id and number.
+pub const WORLD_STATES: &str = "world_states";
 /// Requests that changed something, by client, method and the client's id.
 pub const REQUESTS: &str = "requests";
 

@@ -19,7 +19,7 @@ use crate::error::Error;
 use crate::gate::{GateLayer, Rules};
 use crate::jobs::Run;
 use crate::pool::{self, Pool};
-use crate::{grpc, health};
+use crate::{grpc, health, page, pictures};
 
 /// How often a client is asked whether it is still there, and how long it may take to say so.
 const ALIVE: (Duration, Duration) = (Duration::from_secs(30), Duration::from_secs(20));
@@ -164,6 +164,8 @@ fn router(
         .route("/livez", get(livez))
         .route("/readyz", get(readyz))
         .route("/metrics", get(metrics))
+        .merge(pictures::router())
+        .merge(page::router())
         .with_state(Arc::clone(core))
         .layer(gate);
     let all = pages.fallback_service(grpc);

@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use d3dgen_model::Problem;
+use http::StatusCode;
 use tonic::{Code, Status};
 use tonic_types::{ErrorDetails, FieldViolation, StatusExt};
 
@@ -32,10 +33,24 @@ pub fn code_name(code: Code) -> &'static str {
     }
 }
 
+/// Returns the status of plain HTTP for a code.
+pub fn http(code: Code) -> StatusCode {
+    match code {
+        Code::Unauthenticated => StatusCode::UNAUTHORIZED,
+        Code::PermissionDenied => StatusCode::FORBIDDEN,
+        Code::NotFound => StatusCode::NOT_FOUND,
+        Code::ResourceExhausted => StatusCode::TOO_MANY_REQUESTS,
+        Code::DeadlineExceeded => StatusCode::GATEWAY_TIMEOUT,
+        _ => StatusCode::INTERNAL_SERVER_ERROR,
+    }
+}
+
 /// Domain of the reasons that answers give (`google.rpc.ErrorInfo`).
 const DOMAIN: &str = "d3dgen";
 /// Reasons that say more than the code does; docs/api.md lists them, and they stay.
 pub mod reason {
+    /// What is to be changed is no more as the client saw it last.
+    pub const CHANGED: &str = "CHANGED_SINCE";
     /// A field of the request cannot be used.
     pub const FIELD: &str = "INVALID_FIELD";
     /// Too much at once; the answer says when to come again.

@@ -295,6 +295,7 @@ fn surfaces(builder: &mut Builder, document: &Document, buffers: &mut Buffers) {
             roughness: material.pbr.roughness.unwrap_or(1.0) as f32,
             emissive: material.emissive.unwrap_or_default().map(|v| v as f32),
             texture: texture.and_then(|t| pictures.get(&t).copied()),
+            finish: None,
         });
     }
 }

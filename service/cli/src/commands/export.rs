@@ -28,12 +28,7 @@ pub struct Args {
 impl Args {
     pub fn run(self) -> Result<(), Error> {
         let formats = self.formats.chosen(&self.registry.store)?;
-        let own = if self.world.is_dir() { Some(self.world.as_path()) } else { self.world.parent() };
-        let folder = match (&self.out, own) {
-            (Some(out), _) => out.clone(),
-            (None, Some(own)) if !own.as_os_str().is_empty() => own.to_path_buf(),
-            (None, _) => Path::new(".").to_path_buf(),
-        };
+        let folder = self.out.clone().unwrap_or_else(|| own_folder(&self.world));
         let world: World = document(&self.world)?;
         let registry = self.registry.load()?;
         let plugin = domain(&registry, &world.scene_graph.domain)?;
@@ -43,4 +38,10 @@ impl Args {
         eprintln!("wrote {} into {}", world.name, folder.display());
         Ok(())
     }
+}
+
+/// Returns the folder of a world that is given by itself or by its document.
+pub fn own_folder(world: &Path) -> PathBuf {
+    let own = if world.is_dir() { Some(world) } else { world.parent() };
+    own.filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new(".")).to_path_buf()
 }

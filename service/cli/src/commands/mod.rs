@@ -5,6 +5,7 @@ mod bench;
 mod brief;
 mod check;
 mod completions;
+mod dataset;
 mod domains;
 mod edit;
 mod eval;
@@ -17,11 +18,18 @@ mod jobs;
 mod knowledge;
 mod model;
 mod placement;
+mod render;
 mod research;
 mod scenario;
 mod scene_graph;
 mod serve;
 mod version;
+<<<<<<< HEAD
+mod view;
+=======
+#[cfg(feature = "cluster")]
+mod worker;
+>>>>>>> main
 mod world;
 
 use clap::Subcommand;
@@ -58,8 +66,17 @@ pub enum Command {
     Eval(eval::Args),
     /// Make the worlds of a published benchmark and measure them
     Bench(bench::Args),
+    /// Make data sets of many worlds, on one machine or many: spec, shards, index, card
+    Dataset(dataset::Args),
+    /// Make worlds of data sets for somebody else's `dataset make --nats`
+    #[cfg(feature = "cluster")]
+    Worker(worker::Args),
     /// Write a world in other formats
     Export(export::Args),
+    /// A page that shows a world in three dimensions, to walk in and to open doors
+    View(view::Args),
+    /// Pictures of a world in three dimensions, from above and from inside
+    Render(render::Args),
     /// List, show and validate the kinds of building
     Domains(domains::Args),
     /// Make a knowledge base of documents or of a model's search; find the rules in sentences
@@ -99,7 +116,12 @@ impl Command {
             Self::Check(args) => args.run(),
             Self::Eval(args) => args.run(),
             Self::Bench(args) => args.run(),
+            Self::Dataset(args) => args.run(),
+            #[cfg(feature = "cluster")]
+            Self::Worker(args) => args.run(),
             Self::Export(args) => args.run(),
+            Self::View(args) => args.run(),
+            Self::Render(args) => args.run(),
             Self::Domains(args) => args.run(),
             Self::Research(args) => args.run(),
             Self::Knowledge(args) => args.run(),

@@ -5,6 +5,7 @@
 
 mod map;
 mod scenario;
+mod surfaces;
 mod world_yaml;
 
 use d3dgen_model::domain::Domain;
@@ -60,7 +61,9 @@ impl Exporter for Arena {
                 files.push(File::new(format!("{root}/scenarios/level_{level}/scenario.yaml"), document));
             }
         }
-        files.extend(models.files(&format!("{root}/assets"), domain, kept)?);
+        let assets = format!("{root}/assets");
+        files.extend(models.files(&assets, domain, kept)?);
+        files.extend(surfaces::files(world, &assets));
         files.sort_by(|a, b| a.path.cmp(&b.path));
         Ok(files)
     }

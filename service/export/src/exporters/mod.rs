@@ -2,10 +2,12 @@
 
 mod arena;
 mod gazebo;
+mod gltf;
 mod mujoco;
 mod nav2;
 pub mod plan;
 mod rmf;
+mod usd;
 
 use d3dgen_model::domain::Domain;
 use d3dgen_model::world::World;
@@ -16,10 +18,12 @@ use crate::scene::SimScene;
 
 pub use arena::Arena;
 pub use gazebo::Gazebo;
+pub use gltf::Gltf;
 pub use mujoco::Mujoco;
 pub use nav2::Nav2;
 pub use plan::Plan;
 pub use rmf::Rmf;
+pub use usd::Usd;
 
 /// Name of all formats together.
 const ALL: &str = "all";
@@ -77,7 +81,7 @@ pub trait Exporter: Sync {
 
 /// Returns every exporter, the default ones first.
 pub fn all() -> &'static [&'static dyn Exporter] {
-    &[&Arena, &Plan, &Nav2, &Rmf, &Mujoco, &Gazebo]
+    &[&Arena, &Plan, &Nav2, &Rmf, &Mujoco, &Gazebo, &Gltf, &Usd]
 }
 
 /// Returns the names at the top of a world's folder that exporters write, each once.

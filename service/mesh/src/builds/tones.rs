@@ -14,21 +14,21 @@ pub(super) struct Look {
     pub wall: f64,
 }
 
-/// Stuff: metallic, roughness, density kg/m^3, wall m.
-type Stuff = (f32, f32, f64, f64);
+/// Stuff: metallic, roughness, density kg/m^3, wall m, and the finish that gives its grain.
+type Stuff = (f32, f32, f64, f64, Option<&'static str>);
 
-const WOOD: Stuff = (0.0, 0.55, 650.0, 0.018);
-const STEEL: Stuff = (1.0, 0.38, 7850.0, 0.0012);
-const PAINTED_STEEL: Stuff = (0.0, 0.42, 7850.0, 0.001);
-const FABRIC: Stuff = (0.0, 0.92, 60.0, 10.0);
-const LEATHER: Stuff = (0.0, 0.5, 70.0, 10.0);
-const PLASTIC: Stuff = (0.0, 0.45, 1050.0, 0.003);
-const CERAMIC: Stuff = (0.0, 0.12, 2300.0, 0.008);
-const GLASS: Stuff = (0.0, 0.06, 2500.0, 0.005);
-const PAPER: Stuff = (0.0, 0.85, 700.0, 10.0);
-const RUBBER: Stuff = (0.0, 0.8, 1150.0, 0.01);
-const LEAF: Stuff = (0.0, 0.7, 150.0, 10.0);
-const STONE: Stuff = (0.0, 0.6, 2300.0, 0.03);
+const WOOD: Stuff = (0.0, 0.55, 650.0, 0.018, Some("Wood_Grain"));
+const STEEL: Stuff = (1.0, 0.38, 7850.0, 0.0012, Some("Metal_Brushed"));
+const PAINTED_STEEL: Stuff = (0.0, 0.42, 7850.0, 0.001, None);
+const FABRIC: Stuff = (0.0, 0.92, 60.0, 10.0, Some("Fabric_Weave"));
+const LEATHER: Stuff = (0.0, 0.5, 70.0, 10.0, Some("Leather_Grain"));
+const PLASTIC: Stuff = (0.0, 0.45, 1050.0, 0.003, None);
+const CERAMIC: Stuff = (0.0, 0.12, 2300.0, 0.008, None);
+const GLASS: Stuff = (0.0, 0.06, 2500.0, 0.005, None);
+const PAPER: Stuff = (0.0, 0.85, 700.0, 10.0, None);
+const RUBBER: Stuff = (0.0, 0.8, 1150.0, 0.01, None);
+const LEAF: Stuff = (0.0, 0.7, 150.0, 10.0, None);
+const STONE: Stuff = (0.0, 0.6, 2300.0, 0.03, Some("Stone_Grain"));
 
 /// Returns the look of a part: its tone for this object, and its own color when it has one.
 pub(super) fn look(tone: Tone, color: Option<&str>, object: &ObjectType) -> Look {
@@ -36,18 +36,18 @@ pub(super) fn look(tone: Tone, color: Option<&str>, object: &ObjectType) -> Look
     let main = stuff(&object.material);
     // A tone that is what the object is made of has the object's color.
     let is = |words: &[&str], other: [f64; 3]| if words.contains(&object.material.as_str()) { own } else { other };
-    let (base, (metallic, roughness, density, wall)) = match tone {
+    let (base, (metallic, roughness, density, wall, finish)) = match tone {
         Tone::Main => (own, main),
         Tone::Dark => (mix(own, [0.0; 3], 0.35), main),
         Tone::Light => (mix(own, [1.0; 3], 0.35), main),
         Tone::Metal => ([0.66, 0.67, 0.69], STEEL),
-        Tone::Chrome => ([0.82, 0.83, 0.85], (1.0, 0.12, STEEL.2, STEEL.3)),
+        Tone::Chrome => ([0.82, 0.83, 0.85], (1.0, 0.12, STEEL.2, STEEL.3, None)),
         Tone::Wood => (is(&["wood"], [0.68, 0.50, 0.32]), WOOD),
-        Tone::White => ([0.93, 0.93, 0.92], (0.0, 0.4, PLASTIC.2, PLASTIC.3)),
-        Tone::Black => ([0.07, 0.07, 0.08], (0.0, 0.4, PLASTIC.2, PLASTIC.3)),
+        Tone::White => ([0.93, 0.93, 0.92], (0.0, 0.4, PLASTIC.2, PLASTIC.3, None)),
+        Tone::Black => ([0.07, 0.07, 0.08], (0.0, 0.4, PLASTIC.2, PLASTIC.3, None)),
         Tone::Glass => ([0.80, 0.90, 0.93], GLASS),
-        Tone::Mirror => ([0.86, 0.90, 0.92], (1.0, 0.03, GLASS.2, GLASS.3)),
-        Tone::Screen => ([0.03, 0.05, 0.10], (0.0, 0.15, PLASTIC.2, PLASTIC.3)),
+        Tone::Mirror => ([0.86, 0.90, 0.92], (1.0, 0.03, GLASS.2, GLASS.3, None)),
+        Tone::Screen => ([0.03, 0.05, 0.10], (0.0, 0.15, PLASTIC.2, PLASTIC.3, None)),
         Tone::Fabric => (is(&["fabric"], [0.52, 0.55, 0.58]), FABRIC),
         Tone::Leather => (is(&["leather"], [0.24, 0.17, 0.13]), LEATHER),
         Tone::Plastic => (is(&["plastic"], [0.72, 0.73, 0.74]), PLASTIC),
@@ -60,7 +60,7 @@ pub(super) fn look(tone: Tone, color: Option<&str>, object: &ObjectType) -> Look
         Tone::Yellow => ([0.95, 0.79, 0.15], PAINTED_STEEL),
         Tone::Orange => ([0.93, 0.48, 0.12], PAINTED_STEEL),
         Tone::Signal => ([0.15, 0.85, 0.35], PLASTIC),
-        Tone::Skin => ([0.84, 0.66, 0.54], (0.0, 0.6, 985.0, 10.0)),
+        Tone::Skin => ([0.84, 0.66, 0.54], (0.0, 0.6, 985.0, 10.0, None)),
         Tone::Warm => ([1.0, 0.93, 0.78], GLASS),
     };
     let base = color.and_then(srgb).unwrap_or(base);
@@ -76,7 +76,8 @@ pub(super) fn look(tone: Tone, color: Option<&str>, object: &ObjectType) -> Look
         Some(color) => format!("Color_{}", color.trim_start_matches('#').to_lowercase()),
         None => format!("{tone:?}"),
     };
-    let material = Material { name, base_color: linear, opacity, metallic, roughness, emissive, texture: None };
+    let finish = finish.map(str::to_owned);
+    let material = Material { name, base_color: linear, opacity, metallic, roughness, emissive, texture: None, finish };
     Look { material, density, wall }
 }
 

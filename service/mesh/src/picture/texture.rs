@@ -5,7 +5,7 @@ use std::io::Cursor;
 use image::imageops::FilterType;
 use image::{ImageReader, Limits};
 
-use crate::{Model3d, Texture};
+use crate::{Material, Model3d, Texture};
 
 /// Longest side of a picture that is drawn with, px.
 const SIDE: u32 = 256;
@@ -31,16 +31,24 @@ pub(super) fn worn(model: &Model3d) -> Vec<Option<Cloth>> {
         .filter(|v| !v.mesh.uvs.is_empty())
         .filter_map(|v| v.material)
         .collect();
-    let of = |(i, material): (usize, &crate::Material)| {
+    let of = |(i, material): (usize, &Material)| {
         let texture = material.texture.filter(|_| used.contains(&i)).and_then(|t| model.textures.get(t));
-        texture.and_then(Cloth::new)
+        texture.and_then(|t| Cloth::new(t.bytes.as_deref()?))
     };
     model.materials.iter().enumerate().map(of).chain([None]).collect()
 }
 
 impl Cloth {
-    fn new(texture: &Texture) -> Option<Self> {
-        let mut reader = ImageReader::new(Cursor::new(texture.bytes.as_deref()?)).with_guessed_format().ok()?;
+    /// Returns the picture that a material wears: its own, or that of its finish.
+    pub fn of(material: &Material, textures: &[Texture]) -> Option<Self> {
+        match material.worn() {
+            Some(finish) => Self::new(&finish.pictures().color),
+            None => Self::new(textures.get(material.texture?)?.bytes.as_deref()?),
+        }
+    }
+
+    fn new(bytes: &[u8]) -> Option<Self> {
+        let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().ok()?;
         let mut limits = Limits::default();
         limits.max_image_width = Some(MOST_SIDE);
         limits.max_image_height = Some(MOST_SIDE);

@@ -1,16 +1,23 @@
 //! glTF 2.0 as one binary file: a node a body, at its joint, so that it can be turned; y up, front along +z.
 
+mod world;
+
+use std::collections::BTreeMap;
+
 use serde_json::{Map, Value, json};
 
-use super::{check, picture_extension, texture_of};
+pub use world::world_glb;
+
+use super::{check, picture_extension, plain};
 use crate::affine::{Vec3, sub};
-use crate::{Body, Error, Joint, JointKind, Model3d};
+use crate::{Body, Error, Finish, Joint, JointKind, Material, Model3d, Texture, Visual};
 
 const ARRAY_BUFFER: u32 = 34_962;
 const ELEMENT_ARRAY_BUFFER: u32 = 34_963;
 const FLOAT: u32 = 5_126;
 const UNSIGNED_SHORT: u32 = 5_123;
 const UNSIGNED_INT: u32 = 5_125;
+const REPEAT: u32 = 10_497;
 
 /// Returns the file.
 ///
@@ -19,7 +26,8 @@ const UNSIGNED_INT: u32 = 5_125;
 pub fn glb(model: &Model3d) -> Result<Vec<u8>, Error> {
     check(model)?;
     let mut file = File::default();
-    let materials: Vec<Value> = (0..model.materials.len()).map(|i| file.material(model, i)).collect();
+    let materials = plain(&model.materials);
+    file.materials(&materials, &model.textures);
     let mut nodes = vec![json!({"name": model.name})];
     for (b, body) in model.bodies.iter().enumerate() {
         let joint = joint_of(model, b);
@@ -27,7 +35,7 @@ pub fn glb(model: &Model3d) -> Result<Vec<u8>, Error> {
         let parent = joint.map_or([0.0; 3], |j| joint_of(model, j.parent).map_or([0.0; 3], |p| p.origin));
         let mut node = Map::new();
         node.insert("name".into(), body.name.clone().into());
-        if let Some(mesh) = file.mesh(model, body, pivot) {
+        if let Some(mesh) = file.mesh(&body.name, &body.visuals, &materials, pivot) {
             node.insert("mesh".into(), mesh.into());
         }
         let way = y_up(sub(pivot, parent));
@@ -43,28 +51,12 @@ pub fn glb(model: &Model3d) -> Result<Vec<u8>, Error> {
     }
     let roots: Vec<usize> = (0..model.bodies.len()).filter(|b| joint_of(model, *b).is_none()).map(|b| b + 1).collect();
     nodes[0]["children"] = json!(roots);
-    let mut root = json!({
+    Ok(file.finish(json!({
         "asset": {"version": "2.0", "generator": "d3dgen"},
         "scene": 0,
         "scenes": [{"nodes": [0]}],
         "nodes": nodes,
-    });
-    for (key, list) in [
-        ("meshes", file.meshes),
-        ("materials", materials),
-        ("textures", file.textures),
-        ("images", file.images),
-        ("accessors", file.accessors),
-        ("bufferViews", file.views),
-    ] {
-        if !list.is_empty() {
-            root[key] = Value::Array(list);
-        }
-    }
-    if !file.bytes.is_empty() {
-        root["buffers"] = json!([{"byteLength": file.bytes.len()}]);
-    }
-    Ok(container(&root, file.bytes))
+    })))
 }
 
 fn joint_of(model: &Model3d, body: usize) -> Option<&Joint> {
@@ -100,30 +92,66 @@ struct File {
     views: Vec<Value>,
     accessors: Vec<Value>,
     meshes: Vec<Value>,
+    materials: Vec<Value>,
     images: Vec<Value>,
     textures: Vec<Value>,
+    /// Textures of pictures that are there already: pictures of models by index, those of finishes by name.
+    pictures: BTreeMap<String, usize>,
 }
 
 impl File {
-    fn material(&mut self, model: &Model3d, index: usize) -> Value {
-        let material = &model.materials[index];
-        let [r, g, b] = material.base_color.map(|v| round(f64::from(v)));
+    /// Returns the whole file; `root` has asset, scenes, nodes and what else is not of meshes.
+    fn finish(mut self, mut root: Value) -> Vec<u8> {
+        if !self.textures.is_empty() {
+            root["samplers"] = json!([{"wrapS": REPEAT, "wrapT": REPEAT}]);
+        }
+        let lists = [
+            ("meshes", std::mem::take(&mut self.meshes)),
+            ("materials", std::mem::take(&mut self.materials)),
+            ("textures", std::mem::take(&mut self.textures)),
+            ("images", std::mem::take(&mut self.images)),
+            ("accessors", std::mem::take(&mut self.accessors)),
+            ("bufferViews", std::mem::take(&mut self.views)),
+        ];
+        for (key, list) in lists {
+            if !list.is_empty() {
+                root[key] = Value::Array(list);
+            }
+        }
+        if !self.bytes.is_empty() {
+            root["buffers"] = json!([{"byteLength": self.bytes.len()}]);
+        }
+        container(&root, self.bytes)
+    }
+
+    fn materials(&mut self, materials: &[Material], textures: &[Texture]) {
+        for material in materials {
+            let value = self.material(material, textures);
+            self.materials.push(value);
+        }
+    }
+
+    fn material(&mut self, material: &Material, textures: &[Texture]) -> Value {
+        let own = material.texture.and_then(|t| Some((t, textures.get(t)?.bytes.as_deref()?)));
+        let own = own.and_then(|(t, bytes)| self.picture(&format!("{t}"), bytes));
+        let worn = material.worn();
+        let [r, g, b] = if own.is_some() { [1.0; 3] } else { material.factor().map(|v| round(f64::from(v))) };
         let mut surface = json!({
             "baseColorFactor": [r, g, b, round(f64::from(material.opacity))],
             "metallicFactor": round(f64::from(material.metallic)),
             "roughnessFactor": round(f64::from(material.roughness)),
         });
-        if let Some((_, bytes)) = texture_of(model, index)
-            && let Some(extension) = picture_extension(bytes)
-        {
-            let view = self.view(bytes, None);
-            let mime = if extension == "png" { "image/png" } else { "image/jpeg" };
-            self.images.push(json!({"bufferView": view, "mimeType": mime}));
-            self.textures.push(json!({"source": self.images.len() - 1}));
-            surface["baseColorFactor"] = json!([1.0, 1.0, 1.0, round(f64::from(material.opacity))]);
-            surface["baseColorTexture"] = json!({"index": self.textures.len() - 1});
+        let color = own.or_else(|| worn.and_then(|f| self.picture(&f.id, &f.pictures().color)));
+        if let Some(texture) = color {
+            surface["baseColorTexture"] = json!({"index": texture});
         }
         let mut value = json!({"name": material.name, "pbrMetallicRoughness": surface});
+        let normal = worn.and_then(|f| Some((f, f.pictures().normal.as_ref()?)));
+        if let Some((finish, bytes)) = normal
+            && let Some(texture) = self.picture(&format!("{}_normal", finish.id), bytes)
+        {
+            value["normalTexture"] = json!({"index": texture});
+        }
         if material.emissive != [0.0; 3] {
             value["emissiveFactor"] = json!(material.emissive.map(|v| round(f64::from(v).clamp(0.0, 1.0))));
         }
@@ -133,10 +161,23 @@ impl File {
         value
     }
 
-    /// Adds the mesh of a body with its corners counted from the pivot; none when nothing is seen.
-    fn mesh(&mut self, model: &Model3d, body: &Body, pivot: Vec3) -> Option<usize> {
+    /// Returns the texture of a picture, which it adds when it is not there yet; none when glTF cannot hold it.
+    fn picture(&mut self, key: &str, bytes: &[u8]) -> Option<usize> {
+        if let Some(index) = self.pictures.get(key) {
+            return Some(*index);
+        }
+        let mime = if picture_extension(bytes)? == "png" { "image/png" } else { "image/jpeg" };
+        let view = self.view(bytes, None);
+        self.images.push(json!({"bufferView": view, "mimeType": mime}));
+        self.textures.push(json!({"sampler": 0, "source": self.images.len() - 1}));
+        self.pictures.insert(key.to_owned(), self.textures.len() - 1);
+        Some(self.textures.len() - 1)
+    }
+
+    /// Adds a mesh with its corners counted from the pivot; none when nothing is seen.
+    fn mesh(&mut self, name: &str, visuals: &[Visual], materials: &[Material], pivot: Vec3) -> Option<usize> {
         let mut primitives = Vec::new();
-        for visual in body.visuals.iter().filter(|v| !v.mesh.triangles.is_empty()) {
+        for visual in visuals.iter().filter(|v| !v.mesh.triangles.is_empty()) {
             let mesh = &visual.mesh;
             let place = |p: &[f32; 3]| y_up(sub(p.map(f64::from), pivot)).map(|v| v as f32);
             let positions: Vec<[f32; 3]> = mesh.positions.iter().map(place).collect();
@@ -146,9 +187,12 @@ impl File {
                     mesh.normals.iter().map(|v| y_up(v.map(f64::from)).map(|v| v as f32)).collect();
                 attributes["NORMAL"] = self.floats(&normals, "VEC3").into();
             }
-            let textured = visual.material.is_some_and(|m| texture_of(model, m).is_some());
+            let material = visual.material.and_then(|m| materials.get(m));
+            let worn = material.and_then(Material::worn);
+            let textured = worn.is_some() || material.is_some_and(|m| m.texture.is_some());
             if textured && !mesh.uvs.is_empty() {
-                let flipped: Vec<[f32; 2]> = mesh.uvs.iter().map(|[u, v]| [*u, 1.0 - v]).collect();
+                let [width, height] = worn.map_or([1.0; 2], in_pictures);
+                let flipped: Vec<[f32; 2]> = mesh.uvs.iter().map(|[u, v]| [u / width, 1.0 - v / height]).collect();
                 attributes["TEXCOORD_0"] = self.floats(&flipped, "VEC2").into();
             }
             let mut primitive =
@@ -161,7 +205,7 @@ impl File {
         if primitives.is_empty() {
             return None;
         }
-        self.meshes.push(json!({"name": body.name, "primitives": primitives}));
+        self.meshes.push(json!({"name": name, "primitives": primitives}));
         Some(self.meshes.len() - 1)
     }
 
@@ -175,9 +219,19 @@ impl File {
         accessor
     }
 
+    /// Adds an attribute of corners.
     fn floats<const N: usize>(&mut self, list: &[[f32; N]], kind: &str) -> usize {
+        self.list(list, kind, Some(ARRAY_BUFFER))
+    }
+
+    /// Adds values of an animation.
+    fn values<const N: usize>(&mut self, list: &[[f32; N]], kind: &str) -> usize {
+        self.list(list, kind, None)
+    }
+
+    fn list<const N: usize>(&mut self, list: &[[f32; N]], kind: &str, target: Option<u32>) -> usize {
         let bytes: Vec<u8> = list.iter().flatten().flat_map(|v| v.to_le_bytes()).collect();
-        let view = self.view(&bytes, Some(ARRAY_BUFFER));
+        let view = self.view(&bytes, target);
         self.accessors.push(json!({"bufferView": view, "componentType": FLOAT, "count": list.len(), "type": kind}));
         self.accessors.len() - 1
     }
@@ -224,6 +278,11 @@ fn container(root: &Value, mut binary: Vec<u8>) -> Vec<u8> {
         out.extend(binary);
     }
     out
+}
+
+/// Returns what texture coordinates in m are divided by.
+fn in_pictures(finish: &Finish) -> [f32; 2] {
+    finish.size_m.map(|v| v as f32)
 }
 
 fn round(v: f64) -> f64 {

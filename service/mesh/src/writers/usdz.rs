@@ -1,7 +1,7 @@
 //! USDZ: a zip archive without compression whose files begin at multiples of 64 bytes.
 
-use super::usd::{texture_name, usda};
-use super::{ModelFile, texture_of};
+use super::usd::usda;
+use super::{ModelFile, picture_of, plain};
 use crate::{Error, Model3d};
 
 /// Where the content of each file begins.
@@ -17,18 +17,18 @@ const DATE: u16 = (1 << 5) | 1;
 /// `Model` when the model is broken.
 pub fn usdz(model: &Model3d) -> Result<Vec<u8>, Error> {
     let mut files = vec![ModelFile { name: format!("{}.usda", model.name), bytes: usda(model)?.into_bytes() }];
-    for material in 0..model.materials.len() {
-        if let Some((index, bytes)) = texture_of(model, material)
-            && let Some(name) = texture_name(index, bytes)
-            && files.iter().all(|f| f.name != name)
+    for material in &plain(&model.materials) {
+        if let Some(picture) = picture_of(material, &model.textures)
+            && files.iter().all(|f| f.name != picture.name)
         {
-            files.push(ModelFile { name, bytes: bytes.to_vec() });
+            files.push(ModelFile { name: picture.name, bytes: picture.bytes.to_vec() });
         }
     }
     Ok(pack(&files))
 }
 
-fn pack(files: &[ModelFile]) -> Vec<u8> {
+/// Returns files as one package, the layer that is opened first.
+pub fn pack(files: &[ModelFile]) -> Vec<u8> {
     let mut out = Vec::with_capacity(files.iter().map(|f| f.bytes.len() + 256).sum());
     let mut directory = Vec::new();
     for file in files {

@@ -228,7 +228,7 @@ impl DomainService for Api {
 }
 
 /// Returns a domain by id.
-pub(in crate::grpc) fn plugin<'a>(now: &'a Snapshot, field: &str, id: &str) -> Result<&'a dyn Plugin, Status> {
+pub(crate) fn plugin<'a>(now: &'a Snapshot, field: &str, id: &str) -> Result<&'a dyn Plugin, Status> {
     names::id(field, id)?;
     now.registry.get(id).ok_or_else(|| no_domain(now, id))
 }

@@ -243,7 +243,10 @@ impl WorldService for Api {
                 let first = broken.map_or("a hard rule", |r| r.rule.as_str());
                 return Err(Status::failed_precondition(format!("the world is not sound: it breaks {first}")));
             }
-            let files = export::files(core, &world, &asked.formats, stop)?;
+            let mut files = export::files(core, &world, &asked.formats, stop)?;
+            // whoever has the files can open the world again
+            files.push(("report.json".into(), found.to_json().into_bytes()));
+            files.push(("world.json".into(), world.to_json().into_bytes()));
             export::archive(files, stop, |chunk| ExportWorldResponse { chunk })
         })
         .await
@@ -362,7 +365,7 @@ fn plans(
 }
 
 /// Judges a world.
-fn report(core: &Core, world: &World) -> Result<Report, Status> {
+pub(super) fn report(core: &Core, world: &World) -> Result<Report, Status> {
     let now = core.domains.now();
     let plugin: &dyn Plugin = plugin(&now, "world.scene_graph.domain", &world.scene_graph.domain)?;
     Ok(world::check(world, plugin.domain(), &retrieve(&world.scene_graph, plugin)))
@@ -373,6 +376,6 @@ fn judged(core: &Core, world: World) -> Result<CheckedWorld, Status> {
     Ok(checked(&world, &found))
 }
 
-fn checked(world: &World, report: &Report) -> CheckedWorld {
+pub(super) fn checked(world: &World, report: &Report) -> CheckedWorld {
     CheckedWorld { world: Some(message(world)), report: Some(message(report)) }
 }

@@ -105,7 +105,7 @@ fn what_a_server_writes_is_for_its_own_user_only() {
     let data = dir.path().join("data");
     let server = Server::start(&data, &[]);
     let begun = std::time::Instant::now();
-    while crate::support::page(&server.url, "/readyz", "").0 != 200 {
+    while page(&server.url, "/readyz", "").0 != 200 {
         assert!(begun.elapsed() < std::time::Duration::from_secs(60), "the indexes are made");
         std::thread::sleep(std::time::Duration::from_millis(100));
     }

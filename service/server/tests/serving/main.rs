@@ -4,6 +4,8 @@
 mod bounds;
 mod changes;
 mod connections;
+mod library;
+mod page;
 mod reflection;
 mod support;
 mod unread;

@@ -142,6 +142,7 @@ fn surface(builder: &mut Builder, folder: &Folder, material: Node, name: Option<
         metallic: figure("metalness").unwrap_or(plain.metallic),
         roughness: figure("roughness").unwrap_or(plain.roughness),
         texture,
+        finish: None,
     });
     builder.materials.len() - 1
 }

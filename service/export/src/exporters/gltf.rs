@@ -1,0 +1,38 @@
+//! The whole world as one GLB file, for viewers, engines and people who look at it in a browser.
+
+use d3dgen_mesh::writers;
+use d3dgen_model::domain::Domain;
+use d3dgen_model::world::World;
+
+use super::{Exporter, File};
+use crate::models::KeptModels;
+use crate::scene::SimScene;
+use crate::{Error, view};
+
+/// The exporter.
+pub struct Gltf;
+
+impl Exporter for Gltf {
+    fn name(&self) -> &'static str {
+        "gltf"
+    }
+
+    fn about(&self) -> &'static str {
+        "one GLB of the whole world: rooms, doors and drawers that open, lamps, materials, ids in extras"
+    }
+
+    fn roots(&self) -> &'static [&'static str] {
+        &["gltf"]
+    }
+
+    fn export(&self, world: &World, domain: &Domain, kept: &dyn KeptModels) -> Result<Vec<File>, Error> {
+        let seen = view::world3d(&SimScene::of(world, domain, kept)?)?;
+        Ok(vec![File::new(format!("gltf/{}.glb", world.name), writers::world_glb(&seen)?)])
+    }
+
+    /// Nodes have the ids of the scene; zones and robots are not seen.
+    fn places(&self, scene: &SimScene) -> Vec<(String, String)> {
+        let seen = |kind: &str| !matches!(kind, "zone" | "robot");
+        scene.ids().into_iter().filter(|(_, kind)| seen(kind)).map(|(id, _)| (id.to_owned(), id.to_owned())).collect()
+    }
+}

@@ -1,0 +1,49 @@
+/** Calls of the server: clients of the contract, the token, and errors in words. */
+import { Code, ConnectError, createClient, type Interceptor } from "@connectrpc/connect";
+import { createGrpcWebTransport } from "@connectrpc/connect-web";
+
+import { AssetService } from "../gen/d3dgen/v1/asset_service_pb";
+import { DomainService } from "../gen/d3dgen/v1/domain_service_pb";
+import { JobService } from "../gen/d3dgen/v1/job_service_pb";
+import { LibraryService } from "../gen/d3dgen/v1/library_service_pb";
+import { ServerService } from "../gen/d3dgen/v1/server_service_pb";
+import { WorldService } from "../gen/d3dgen/v1/world_service_pb";
+import { access } from "./access.svelte";
+
+/** Sends the token, and asks the person for one when the server wants another. */
+const withToken: Interceptor = (next) => async (request) => {
+  for (;;) {
+    const used = access.token;
+    if (used) request.header.set("authorization", `Bearer ${used}`);
+    try {
+      return await next(request);
+    } catch (error) {
+      if (codeOf(error) !== Code.Unauthenticated || request.stream) throw error;
+      await access.ask(used);
+    }
+  }
+};
+
+const transport = createGrpcWebTransport({ baseUrl: location.origin, interceptors: [withToken] });
+
+export const server = createClient(ServerService, transport);
+export const worlds = createClient(WorldService, transport);
+export const assets = createClient(AssetService, transport);
+export const domains = createClient(DomainService, transport);
+export const library = createClient(LibraryService, transport);
+export const jobs = createClient(JobService, transport);
+
+export function codeOf(error: unknown): Code {
+  return ConnectError.from(error).code;
+}
+
+/** Returns true for what a person can do something about: no edit keeps the rules, a wish that contradicts itself. */
+export function isRefusal(error: unknown): boolean {
+  return [Code.FailedPrecondition, Code.InvalidArgument].includes(codeOf(error));
+}
+
+/** Returns what went wrong in the server's own words. */
+export function reasonOf(error: unknown): string {
+  const known = ConnectError.from(error);
+  return known.rawMessage || Code[known.code];
+}

@@ -1,0 +1,92 @@
+/** The verdict as rows: one for each hard rule and each constraint of the knowledge base. */
+import { type ConstraintResult, ConstraintStatus, type Report } from "../gen/d3dgen/v1/report_pb";
+import { figure, t, words } from "./texts.svelte";
+import { type Broken, ofViolation } from "./world";
+
+export type Standing = "broken" | "advice" | "held" | "undecided" | "elsewhere";
+
+/** A rule with everything it was held against. */
+export interface RuleRow {
+  id: string;
+  title: string;
+  standing: Standing;
+  hard: boolean;
+  mandatory: boolean;
+  checked: number;
+  broken: Broken[];
+  results: ConstraintResult[];
+}
+
+const RANK: Record<Standing, number> = { broken: 0, advice: 1, held: 2, undecided: 3, elsewhere: 4 };
+
+/** Returns what a constraint requires, in words: `at least 1.2 m`. */
+export function required(result: ConstraintResult): string {
+  const unit = result.unit;
+  const { requiredMin: min, requiredMax: max } = result;
+  if (min !== undefined && max !== undefined && min !== max) return `${figure(min)} – ${figure(max)} ${unit}`;
+  if (min !== undefined && max === min) return `${figure(min)} ${unit}`;
+  if (min !== undefined) return t("atLeast", { value: figure(min), unit });
+  if (max !== undefined) return t("atMost", { value: figure(max), unit });
+  return "";
+}
+
+export function ofConstraint(result: ConstraintResult): Broken {
+  const measured = result.measured === undefined ? "" : `${figure(result.measured)} ${result.unit}`;
+  return {
+    id: result.constraintId,
+    subject: result.subject,
+    message: t("measuredBut", { name: words(result.name), measured, required: required(result) }),
+    hard: result.mandatory,
+    measured: result.measured,
+    required: result.requiredMin ?? result.requiredMax,
+    unit: result.unit,
+  };
+}
+
+const violated = (r: ConstraintResult) => r.status === ConstraintStatus.VIOLATED;
+
+/** Returns everything that is broken, hard rules first. */
+export function brokenOf(report: Report | undefined): Broken[] {
+  if (!report) return [];
+  const hard = report.rules.flatMap((rule) => rule.violations.map((v) => ofViolation(v)));
+  const constraints = report.constraints.filter(violated).map(ofConstraint);
+  return [...hard, ...constraints.sort((a, b) => Number(b.hard) - Number(a.hard))];
+}
+
+function standing(results: ConstraintResult[]): Standing {
+  const has = (status: ConstraintStatus) => results.some((r) => r.status === status);
+  if (has(ConstraintStatus.VIOLATED)) return results.some((r) => violated(r) && r.mandatory) ? "broken" : "advice";
+  if (has(ConstraintStatus.SATISFIED)) return "held";
+  return has(ConstraintStatus.NOT_DECIDABLE) ? "undecided" : "elsewhere";
+}
+
+/** Returns all rules as rows, what is broken first. */
+export function rowsOf(report: Report | undefined): RuleRow[] {
+  if (!report) return [];
+  const byId = new Map<string, ConstraintResult[]>();
+  for (const result of report.constraints) {
+    byId.set(result.constraintId, [...(byId.get(result.constraintId) ?? []), result]);
+  }
+  const constraints = [...byId].map(([id, results]): RuleRow => ({
+    id,
+    title: words(results[0].name),
+    standing: standing(results),
+    hard: false,
+    mandatory: results.some((r) => r.mandatory),
+    checked: results.length,
+    broken: results.filter(violated).map(ofConstraint),
+    results,
+  }));
+  const hard = report.rules.map((rule): RuleRow => ({
+    id: rule.rule,
+    title: rule.title,
+    standing: rule.violations.length > 0 ? "broken" : rule.checked > 0 ? "held" : "elsewhere",
+    hard: true,
+    mandatory: true,
+    checked: rule.checked,
+    broken: rule.violations.map((v) => ofViolation(v)),
+    results: [],
+  }));
+  const weight = (row: RuleRow) => RANK[row.standing] * 4 + (row.hard ? 0 : row.mandatory ? 1 : 2);
+  return [...hard, ...constraints].sort((a, b) => weight(a) - weight(b));
+}

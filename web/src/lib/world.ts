@@ -1,0 +1,257 @@
+/** Questions about a world, and worlds with one thing changed; a world itself is never changed. */
+import type { Door, Floorplan, PlanRoom, Segment, Wall, Window } from "../gen/d3dgen/v1/floorplan_pb";
+import type { Placement } from "../gen/d3dgen/v1/placements_pb";
+import type { Violation } from "../gen/d3dgen/v1/report_pb";
+import type { World } from "../gen/d3dgen/v1/world_pb";
+import { areaOf, corners, ends, footprint, inside, type P, point, tidy } from "./geometry";
+
+/** What lies on one storey. */
+export interface Storey {
+  rooms: PlanRoom[];
+  walls: Wall[];
+  doors: Door[];
+  windows: Window[];
+  objects: Placement[];
+}
+
+export function levelsOf(world: World | undefined): number[] {
+  const found = new Set((world?.floorplan?.rooms ?? []).map((r) => r.level));
+  return [...found].sort((a, b) => a - b);
+}
+
+export function storeyOf(world: World | undefined, level: number): Storey {
+  const plan = world?.floorplan;
+  const rooms = (plan?.rooms ?? []).filter((r) => r.level === level);
+  const ids = new Set(rooms.map((r) => r.roomId));
+  const here = (roomIds: string[]) => roomIds.some((id) => ids.has(id));
+  return {
+    rooms,
+    walls: (plan?.walls ?? []).filter((w) => here(w.roomIds)),
+    doors: (plan?.doors ?? []).filter((d) => here(d.roomIds)),
+    windows: (plan?.windows ?? []).filter((w) => ids.has(w.roomId)),
+    objects: (world?.placements?.placements ?? []).filter((p) => ids.has(p.roomId)),
+  };
+}
+
+export function objectOf(world: World | undefined, id: string): Placement | undefined {
+  return world?.placements?.placements.find((p) => p.placementId === id);
+}
+
+export function roomOf(world: World | undefined, id: string): PlanRoom | undefined {
+  return world?.floorplan?.rooms.find((r) => r.roomId === id);
+}
+
+/** Returns the name of a thing as people read it. */
+export function nameOf(world: World | undefined, id: string): string {
+  return roomOf(world, id)?.name ?? id.replaceAll("_", " ");
+}
+
+/** Returns the room at a point of a storey. */
+export function roomAt(world: World | undefined, level: number, p: P): PlanRoom | undefined {
+  return storeyOf(world, level).rooms.find((r) => inside(corners(r.polygon), p));
+}
+
+/** Returns where a thing lies, whatever it is; nothing for the building as a whole. */
+export function placeOf(world: World, id: string): { at: P; level: number } | undefined {
+  const plan = world.floorplan;
+  const levelOf = (roomIds: string[]) => plan?.rooms.find((r) => roomIds.includes(r.roomId))?.level ?? 0;
+  const middle = (line: Segment | undefined) => {
+    const { a, b } = ends(line);
+    return { x: (a.x + b.x) / 2, y: (a.y + b.y) / 2 };
+  };
+  const object = objectOf(world, id);
+  if (object) return { at: { x: object.pose?.xM ?? 0, y: object.pose?.yM ?? 0 }, level: levelOf([object.roomId]) };
+  const room = roomOf(world, id);
+  if (room) {
+    const outline = corners(room.polygon);
+    const sum = outline.reduce((s, c) => ({ x: s.x + c.x, y: s.y + c.y }), { x: 0, y: 0 });
+    return { at: { x: sum.x / outline.length, y: sum.y / outline.length }, level: room.level };
+  }
+  const line =
+    plan?.doors.find((d) => d.doorId === id) ??
+    plan?.walls.find((w) => w.wallId === id) ??
+    plan?.windows.find((w) => w.windowId === id);
+  if (line) return { at: middle(line.line), level: levelOf("roomIds" in line ? line.roomIds : [line.roomId]) };
+  const poi = world.scenario?.pois.find((p) => p.poiId === id);
+  return poi && { at: { x: poi.pose?.xM ?? 0, y: poi.pose?.yM ?? 0 }, level: levelOf([poi.roomId]) };
+}
+
+/** Returns what a thing carries, things on these too. */
+function carriedBy(world: World, id: string): Set<string> {
+  const found = new Set([id]);
+  for (let before = 0; before !== found.size; ) {
+    before = found.size;
+    for (const p of world.placements?.placements ?? []) {
+      if (p.supportPlacementId && found.has(p.supportPlacementId)) found.add(p.placementId);
+    }
+  }
+  return found;
+}
+
+/** Returns the world with objects, and what stands on them, moved and turned about the first one's center. */
+export function withMoved(world: World, ids: string[], by: P, turn = 0): World {
+  const placements = world.placements;
+  const pivot = objectOf(world, ids[0])?.pose;
+  if (!placements || !pivot) return world;
+  const moved = new Set(ids.flatMap((id) => [...carriedBy(world, id)]));
+  const [c, s] = [Math.cos(turn), Math.sin(turn)];
+  const all = placements.placements.map((p) => {
+    if (!moved.has(p.placementId) || !p.pose) return p;
+    const [dx, dy] = [p.pose.xM - pivot.xM, p.pose.yM - pivot.yM];
+    const pose = {
+      ...p.pose,
+      xM: tidy(pivot.xM + dx * c - dy * s + by.x),
+      yM: tidy(pivot.yM + dx * s + dy * c + by.y),
+      yawRad: p.pose.yawRad + turn,
+    };
+    return { ...p, pose };
+  });
+  return { ...world, placements: { ...placements, placements: all } };
+}
+
+/** Returns the world without objects and what stands on them. */
+export function without(world: World, ids: string[]): World {
+  const gone = new Set(ids.flatMap((id) => [...carriedBy(world, id)]));
+  const placements = world.placements;
+  if (!placements) return world;
+  return { ...world, placements: { ...placements, placements: placements.placements.filter((p) => !gone.has(p.placementId)) } };
+}
+
+/** Returns all pieces of the wall that a piece belongs to: those on its line that part the same two sides. */
+export function wallPieces(plan: Floorplan, wallId: string): Wall[] {
+  const piece = plan.walls.find((w) => w.wallId === wallId);
+  if (!piece) return [];
+  const { a, across } = ends(piece.line);
+  const rooms = [...piece.roomIds].sort().join();
+  const off = (p: P) => Math.abs((p.x - a.x) * across.x + (p.y - a.y) * across.y);
+  return plan.walls.filter((w) => {
+    const line = ends(w.line);
+    return [...w.roomIds].sort().join() === rooms && off(line.a) < 1e-3 && off(line.b) < 1e-3;
+  });
+}
+
+/** Returns the world with a wall moved across its line, the rooms at its sides with it, and nothing else repaired. */
+export function withWallMoved(world: World, wallId: string, by: number): World {
+  const plan = world.floorplan;
+  const pieces = plan ? wallPieces(plan, wallId) : [];
+  if (!plan || pieces.length === 0) return world;
+  const { a, along, across } = ends(pieces[0].line);
+  const sides = new Set(pieces[0].roomIds);
+  // towards east or north, as WallMove counts
+  const sign = across.x + across.y > 0 ? 1 : -1;
+  const shift = { x: across.x * by * sign, y: across.y * by * sign };
+  const spots = pieces.flatMap((w) => [point(w.line?.start), point(w.line?.end)]);
+  const doors = plan.doors.filter((d) => [...d.roomIds].sort().join() === [...sides].sort().join());
+  for (const door of doors) spots.push(point(door.line?.start), point(door.line?.end));
+  const along1 = spots.map((p) => (p.x - a.x) * along.x + (p.y - a.y) * along.y);
+  const [from, to] = [Math.min(...along1), Math.max(...along1)];
+  const margin = Math.max(...pieces.map((w) => w.thicknessM)) / 2 + 0.01;
+  const touches = (p: P, slack: number) => {
+    const l = (p.x - a.x) * along.x + (p.y - a.y) * along.y;
+    const off = Math.abs((p.x - a.x) * across.x + (p.y - a.y) * across.y);
+    return off <= slack && l >= from - margin && l <= to + margin;
+  };
+  const at = (p: { xM: number; yM: number }, slack: number) =>
+    touches({ x: p.xM, y: p.yM }, slack) ? { ...p, xM: tidy(p.xM + shift.x), yM: tidy(p.yM + shift.y) } : p;
+  const outline = <T extends { corners: { xM: number; yM: number }[] }>(o: T | undefined, slack: number) =>
+    o && { ...o, corners: o.corners.map((p) => at(p, slack)) };
+  const line = (l: Segment | undefined) =>
+    l && { ...l, start: l.start && at(l.start, 1e-3), end: l.end && at(l.end, 1e-3) };
+  const rooms = plan.rooms.map((room) => {
+    if (!sides.has(room.roomId)) return room;
+    const net = outline(room.netPolygon, margin) as PlanRoom["netPolygon"];
+    const polygon = outline(room.polygon, 1e-3) as PlanRoom["polygon"];
+    return { ...room, polygon, netPolygon: net, netAreaM2: tidy(areaOf(corners(net))) };
+  });
+  const near = (roomIds: string[]) => roomIds.some((id) => sides.has(id));
+  const middle = { x: (spots[0].x + spots[1].x) / 2, y: (spots[0].y + spots[1].y) / 2 };
+  const ahead = { x: middle.x + Math.sign(shift.x) * 0.2, y: middle.y + Math.sign(shift.y) * 0.2 };
+  const shrinks = [...sides].find((id) => inside(corners(roomOf(world, id)?.polygon), ahead));
+  const grows = [...sides].find((id) => id !== shrinks);
+  const moving = new Set(pieces.map((w) => w.wallId));
+  const walls = plan.walls.flatMap((wall): Wall[] => {
+    if (moving.has(wall.wallId)) return [{ ...wall, line: line(wall.line) as Segment }];
+    const meets = [wall.line?.start, wall.line?.end].find((p) => touches(point(p), 1e-3));
+    const isSide = wall.roomIds.includes(shrinks ?? grows ?? "");
+    if (!meets || !isSide) return [wall];
+    const rest = { ...wall, line: line(wall.line) as Segment };
+    if (!shrinks) return [rest]; // outwards: the walls at its sides grow with it
+    // what parted the room that shrinks from a third one now parts the room that grows from it
+    const roomIds = wall.roomIds.flatMap((id) => (id !== shrinks ? [id] : grows ? [grows] : []));
+    if (roomIds.length === 0) return [rest];
+    const strip = { ...(wall.line as Segment), start: meets, end: at(meets, 1e-3) } as Segment;
+    return [rest, { ...wall, wallId: `${wall.wallId}_strip`, roomIds, exterior: roomIds.length < 2, line: strip }];
+  });
+  return {
+    ...world,
+    floorplan: {
+      ...plan,
+      rooms,
+      walls,
+      doors: plan.doors.map((d) => (near(d.roomIds) ? { ...d, line: line(d.line) as Segment } : d)),
+      windows: plan.windows.map((w) => (sides.has(w.roomId) ? { ...w, line: line(w.line) as Segment } : w)),
+    },
+  };
+}
+
+/** Returns the world with a door moved along its wall, whose pieces beside it give and take; nothing where it cannot go so far. */
+export function withDoorMoved(world: World, doorId: string, by: number): World | undefined {
+  const plan = world.floorplan;
+  const door = plan?.doors.find((d) => d.doorId === doorId);
+  if (!plan || !door?.line) return undefined;
+  const { a, b, along } = ends(door.line);
+  const shift = { x: along.x * by, y: along.y * by };
+  const same = (p: P, q: P) => Math.hypot(p.x - q.x, p.y - q.y) < 1e-3;
+  const moved = (p: { xM: number; yM: number }) => ({ ...p, xM: tidy(p.xM + shift.x), yM: tidy(p.yM + shift.y) });
+  let held = true;
+  const walls = plan.walls.map((wall) => {
+    const line = ends(wall.line);
+    const parallel = Math.abs(line.along.x * along.y - line.along.y * along.x) < 1e-3;
+    if (!wall.line || !parallel || !wall.roomIds.some((id) => door.roomIds.includes(id))) return wall;
+    const atStart = same(line.a, a) || same(line.a, b);
+    const atEnd = same(line.b, a) || same(line.b, b);
+    if (!atStart && !atEnd) return wall;
+    const next = {
+      ...wall.line,
+      start: atStart && wall.line.start ? moved(wall.line.start) : wall.line.start,
+      end: atEnd && wall.line.end ? moved(wall.line.end) : wall.line.end,
+    } as Segment;
+    const after = ends(next);
+    if (after.length < 0.05 || after.along.x * line.along.x + after.along.y * line.along.y < 0) held = false;
+    return { ...wall, line: next };
+  });
+  if (!held || !door.line.start || !door.line.end) return undefined;
+  const line = { ...door.line, start: moved(door.line.start), end: moved(door.line.end) } as Segment;
+  const doors = plan.doors.map((d) => (d.doorId === doorId ? { ...d, line } : d));
+  return { ...world, floorplan: { ...plan, walls, doors } };
+}
+
+/** Returns where an object's edges may snap to: along x and along y, walls of its room and edges and centers of its neighbors. */
+export function snapLines(world: World, id: string): { x: number[]; y: number[] } {
+  const object = objectOf(world, id);
+  const net = corners(roomOf(world, object?.roomId ?? "")?.netPolygon);
+  const others = (world.placements?.placements ?? []).filter(
+    (p) => p.roomId === object?.roomId && p.placementId !== id && !p.supportPlacementId && p.supportPlacementId !== id,
+  );
+  const points = [...net, ...others.flatMap((p) => [...footprint(p), { x: p.pose?.xM ?? 0, y: p.pose?.yM ?? 0 }])];
+  return { x: points.map((p) => p.x), y: points.map((p) => p.y) };
+}
+
+/** Everything that a verdict says is broken, hard rules first, each with where it comes from. */
+export interface Broken {
+  id: string;
+  subject: string;
+  message: string;
+  hard: boolean;
+  measured?: number;
+  required?: number;
+  unit: string;
+}
+
+export function key(broken: { id: string; subject: string }): string {
+  return `${broken.id} ${broken.subject}`;
+}
+
+export function ofViolation(v: Violation, hard = true): Broken {
+  return { id: v.code, subject: v.subject, message: v.message, hard, measured: v.measured, required: v.required, unit: v.unit };
+}

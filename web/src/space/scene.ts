@@ -1,0 +1,319 @@
+/** The view in space: looks, walks, opens doors, tells what was pointed at. Drawn only when something changes. */
+import {
+  AmbientLight,
+  BufferGeometry,
+  Color,
+  DirectionalLight,
+  HemisphereLight,
+  type Intersection,
+  Mesh,
+  type Object3D,
+  PerspectiveCamera,
+  PointLight,
+  Raycaster,
+  Scene,
+  Vector2,
+  Vector3,
+  WebGLRenderer,
+} from "three";
+import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import { acceleratedRaycast, MeshBVH } from "three-mesh-bvh";
+
+import type { World } from "../gen/d3dgen/v1/world_pb";
+import { type Bodies, bodiesOf } from "./build";
+import { furnish } from "./models";
+
+Mesh.prototype.raycast = acceleratedRaycast;
+
+const EYES = 1.6;
+/** Who walks is so wide, m, and so fast, m/s. */
+const WALKER = { radius: 0.22, speed: 1.6, knees: 0.35 };
+/** How long a door takes to open, s, and how near who walks has to be, m. */
+const DOOR = { time: 0.5, near: 1.4 };
+const LIGHTS = 12;
+const SKY = { day: "#dfe9ee", night: "#10151c" };
+const WAYS: Record<string, [number, number]> = {
+  w: [1, 0],
+  ArrowUp: [1, 0],
+  s: [-1, 0],
+  ArrowDown: [-1, 0],
+  a: [0, 1],
+  ArrowLeft: [0, 1],
+  d: [0, -1],
+  ArrowRight: [0, -1],
+};
+
+/** What was pointed at. */
+export interface Picked {
+  objectId?: string;
+  doorId?: string;
+  roomId?: string;
+}
+
+export class SpaceView {
+  #renderer: WebGLRenderer;
+  #scene = new Scene();
+  #camera = new PerspectiveCamera(55, 1, 0.05, 500);
+  #controls: OrbitControls;
+  #bodies: Bodies | undefined;
+  #collider: MeshBVH | undefined;
+  #open = new Map<string, { now: number; wished: number }>();
+  #keys = new Set<string>();
+  #walking = false;
+  #eyes = EYES;
+  #heading = 0;
+  #pitch = 0;
+  #asked = false;
+  #last = 0;
+  #over = false;
+  #sun = new DirectionalLight("#fff8ec", 1.4);
+  #hemisphere = new HemisphereLight("#ffffff", "#d9d4c8", 2.2);
+  #ambient = new AmbientLight("#8fa0c8", 0);
+  #lamps: PointLight[] = [];
+  #resize: ResizeObserver;
+
+  /** Called when a door begins to open or shut, with the number of those that are to be open. */
+  ondoors: (count: number) => void = () => {};
+
+  /**
+   * Puts a canvas into an element.
+   *
+   * Throws when the browser has no WebGL.
+   */
+  constructor(private element: HTMLElement) {
+    // what is drawn stays readable for pictures of the page
+    this.#renderer = new WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
+    this.#renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    element.append(this.#renderer.domElement);
+    this.#camera.up.set(0, 0, 1);
+    this.#controls = new OrbitControls(this.#camera, this.#renderer.domElement);
+    this.#controls.maxPolarAngle = Math.PI * 0.495;
+    this.#controls.addEventListener("change", () => this.#ask());
+    this.#sun.position.set(-6, -9, 14);
+    this.#scene.add(this.#sun, this.#hemisphere, this.#ambient);
+    this.#resize = new ResizeObserver(() => this.#fit());
+    this.#resize.observe(element);
+    this.light("day");
+    this.#fit();
+  }
+
+  /** Shows a storey of a world; where the camera stands stays, if it showed one already. */
+  show(world: World, level: number) {
+    const first = !this.#bodies;
+    this.#clear();
+    const bodies = bodiesOf(world, level);
+    this.#bodies = bodies;
+    this.#scene.add(bodies.root);
+    const solid = bodies.solid;
+    if (solid) {
+      const collider = new MeshBVH(solid);
+      solid.boundsTree = collider;
+      this.#collider = collider;
+    }
+    for (const leaf of bodies.leaves) leaf.set(this.#open.get(leaf.doorId)?.now ?? 0);
+    this.#lamps = bodies.floors.slice(0, LIGHTS).map(({ at, height }) => {
+      const lamp = new PointLight("#ffd9a0", 0, 9, 1.6);
+      lamp.position.set(at.x, at.y, height - 0.2);
+      bodies.root.add(lamp);
+      return lamp;
+    });
+    this.light(this.#night ? "night" : "day");
+    this.#overhead(this.#walking);
+    if (first) this.whole();
+    this.#ask();
+    const isOver = () => this.#over || this.#bodies !== bodies;
+    void furnish(bodies.objects, world.placements?.placements ?? [], () => this.#ask(), isOver);
+  }
+
+  #night = false;
+
+  light(time: "day" | "night") {
+    this.#night = time === "night";
+    this.#scene.background = new Color(SKY[time]);
+    this.#sun.intensity = this.#night ? 0 : 1.4;
+    this.#hemisphere.intensity = this.#night ? 0.08 : 2.2;
+    this.#ambient.intensity = this.#night ? 0.5 : 0;
+    for (const lamp of this.#lamps) lamp.intensity = this.#night ? 14 : 0;
+    this.#ask();
+  }
+
+  /** Looks at the whole storey from above. */
+  whole() {
+    this.#walking = false;
+    this.#controls.enabled = true;
+    const floors = this.#bodies?.floors ?? [];
+    const xs = floors.map((f) => f.at.x);
+    const ys = floors.map((f) => f.at.y);
+    const middle = new Vector3((Math.min(...xs) + Math.max(...xs)) / 2, (Math.min(...ys) + Math.max(...ys)) / 2, 0);
+    const far = Math.max(6, Math.max(...xs) - Math.min(...xs), Math.max(...ys) - Math.min(...ys)) * 1.25;
+    this.#controls.target.copy(middle);
+    this.#camera.position.set(middle.x - far * 0.2, middle.y - far * 0.6, far * 1.05);
+    this.#controls.update();
+    this.#overhead(false);
+    this.#ask();
+  }
+
+  /** Shows or hides what hangs from ceilings, which is in the way from above. */
+  #overhead(visible: boolean) {
+    for (const body of this.#bodies?.objects.values() ?? []) body.visible = visible || !body.userData.overhead;
+  }
+
+  /** Stands on the floor at a point, looking along a heading, the eyes so high. */
+  walk(at: { x: number; y: number }, heading: number, eyes = EYES) {
+    this.#walking = true;
+    this.#overhead(true);
+    this.#controls.enabled = false;
+    this.#eyes = eyes;
+    this.#heading = heading;
+    this.#pitch = 0;
+    this.#camera.position.set(at.x, at.y, eyes);
+    this.#look();
+  }
+
+  /** Turns who walks, by shares of the picture. */
+  turn(dx: number, dy: number) {
+    if (!this.#walking) return;
+    this.#heading -= dx * 2.5;
+    this.#pitch = Math.max(-1.2, Math.min(1.2, this.#pitch - dy * 2));
+    this.#look();
+  }
+
+  /** Hears that a key is held or let go; returns true for a key that walks. */
+  key(key: string, down: boolean): boolean {
+    const name = key.length === 1 ? key.toLowerCase() : key;
+    if (!this.#walking || !(name in WAYS)) return false;
+    if (down) this.#keys.add(name);
+    else this.#keys.delete(name);
+    this.#ask();
+    return true;
+  }
+
+  /** Opens a door, or shuts it when it is open. */
+  toggle(doorId: string) {
+    const state = this.#open.get(doorId) ?? { now: 0, wished: 0 };
+    this.#wish(doorId, state.wished > 0.5 ? 0 : 1);
+  }
+
+  /** Opens all doors, or shuts them. */
+  all(open: boolean) {
+    for (const leaf of this.#bodies?.leaves ?? []) this.#wish(leaf.doorId, open ? 1 : 0);
+  }
+
+  #wish(doorId: string, wished: number) {
+    const state = this.#open.get(doorId);
+    if ((state?.wished ?? 0) === wished) return;
+    this.#open.set(doorId, { now: state?.now ?? 0, wished });
+    this.ondoors([...this.#open.values()].filter((s) => s.wished > 0.5).length);
+    this.#ask();
+  }
+
+  /** Returns what lies under a point of the element, in shares of its size. */
+  pick(x: number, y: number): Picked | undefined {
+    const ray = new Raycaster();
+    ray.setFromCamera(new Vector2(x * 2 - 1, 1 - y * 2), this.#camera);
+    const hits: Intersection[] = this.#bodies ? ray.intersectObject(this.#bodies.root, true) : [];
+    for (let object: Object3D | null = hits[0]?.object ?? null; object; object = object.parent) {
+      const { objectId, doorId, roomId } = object.userData as Picked;
+      if (objectId || doorId || roomId) return { objectId, doorId, roomId };
+    }
+    return undefined;
+  }
+
+  dispose() {
+    this.#over = true;
+    this.#resize.disconnect();
+    this.#clear();
+    this.#controls.dispose();
+    this.#renderer.dispose();
+    this.#renderer.domElement.remove();
+  }
+
+  #clear() {
+    this.#bodies?.root.traverse((body) => {
+      if (body instanceof Mesh && body.geometry instanceof BufferGeometry) body.geometry.dispose();
+    });
+    this.#bodies?.root.removeFromParent();
+    this.#collider = undefined;
+  }
+
+  #look() {
+    const { x, y, z } = this.#camera.position;
+    const level = Math.cos(this.#pitch);
+    this.#camera.lookAt(x + Math.cos(this.#heading) * level, y + Math.sin(this.#heading) * level, z + Math.sin(this.#pitch));
+    this.#ask();
+  }
+
+  #fit() {
+    const { clientWidth: width, clientHeight: height } = this.element;
+    if (width === 0 || height === 0) return;
+    this.#renderer.setSize(width, height);
+    this.#camera.aspect = width / height;
+    this.#camera.updateProjectionMatrix();
+    this.#ask();
+  }
+
+  #ask() {
+    if (this.#asked || this.#over) return;
+    this.#asked = true;
+    requestAnimationFrame((now) => this.#draw(now));
+  }
+
+  #draw(now: number) {
+    this.#asked = false;
+    if (this.#over) return;
+    const passed = Math.min(0.1, (now - this.#last) / 1000);
+    this.#last = now;
+    const goesOn = this.#step(passed) || this.#swing(passed);
+    this.#renderer.render(this.#scene, this.#camera);
+    if (goesOn) this.#ask();
+  }
+
+  /** Moves who walks, along walls where they are in the way; returns true while a key is held. */
+  #step(passed: number): boolean {
+    if (!this.#walking || this.#keys.size === 0) return false;
+    let [ahead, left] = [0, 0];
+    for (const key of this.#keys) {
+      ahead += WAYS[key][0];
+      left += WAYS[key][1];
+    }
+    const [c, s] = [Math.cos(this.#heading), Math.sin(this.#heading)];
+    const by = WALKER.speed * passed;
+    const go = new Vector3((ahead * c - left * s) * by, (ahead * s + left * c) * by, 0);
+    const from = this.#camera.position;
+    for (const way of [go, new Vector3(go.x, 0, 0), new Vector3(0, go.y, 0)]) {
+      const next = from.clone().add(way);
+      if (!this.#isFree(from, next)) continue;
+      from.set(next.x, next.y, this.#eyes);
+      break;
+    }
+    for (const leaf of this.#bodies?.leaves ?? []) {
+      if (Math.hypot(leaf.body.position.x - from.x, leaf.body.position.y - from.y) < DOOR.near) this.#wish(leaf.doorId, 1);
+    }
+    this.#look();
+    return true;
+  }
+
+  #isFree(from: Vector3, to: Vector3): boolean {
+    const far = (p: Vector3) =>
+      this.#collider?.closestPointToPoint(new Vector3(p.x, p.y, WALKER.knees))?.distance ?? Infinity;
+    const next = far(to);
+    return next > WALKER.radius || next > far(from);
+  }
+
+  /** Moves leaves towards where they are to be; returns true while some move. */
+  #swing(passed: number): boolean {
+    let moves = false;
+    for (const leaf of this.#bodies?.leaves ?? []) {
+      const state = this.#open.get(leaf.doorId);
+      if (!state || state.now === state.wished) continue;
+      leaf.set(state.now);
+      moves = true;
+    }
+    for (const state of this.#open.values()) {
+      const by = Math.sign(state.wished - state.now) * (passed / DOOR.time);
+      state.now = Math.abs(state.wished - state.now) <= Math.abs(by) ? state.wished : state.now + by;
+    }
+    for (const leaf of this.#bodies?.leaves ?? []) leaf.set(this.#open.get(leaf.doorId)?.now ?? 0);
+    return moves;
+  }
+}

@@ -1,0 +1,111 @@
+/** A real server, a real browser, and what every test looks at afterwards: errors on the console and breaches of the policy. */
+import assert from "node:assert/strict";
+import { spawn } from "node:child_process";
+import { existsSync, mkdtempSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join, resolve } from "node:path";
+import { createInterface } from "node:readline";
+
+import { chromium } from "playwright-core";
+
+/** Where browsers lie; D3DGEN_BROWSER names another. */
+const BROWSERS = [process.env.D3DGEN_BROWSER, "/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"];
+const PROGRAM = resolve(process.env.D3DGEN ?? "../target/debug/d3dgen");
+export const PROMPT = "hospital ward with 8 rooms in Germany, for a delivery robot";
+
+export const executable = BROWSERS.find((path) => path && existsSync(path));
+
+/** A `d3dgen serve` with a folder of its own. */
+export class Server {
+  #child;
+  #home = mkdtempSync(join(tmpdir(), "d3dgen-web-"));
+  #port = 0;
+
+  /** Starts a server, on the same port as before when it is started again. */
+  async start(settings = "") {
+    const config = join(this.#home, "server.toml");
+    writeFileSync(config, `version = 1\nlog_level = "error"\n${settings}`);
+    const flags = ["serve", "--config", config, "--listen", `127.0.0.1:${this.#port}`, "--data-dir", join(this.#home, "data")];
+    this.#child = spawn(PROGRAM, flags, { stdio: ["ignore", "pipe", "inherit"], env: { ...process.env, D3DGEN_STORE: "" } });
+    for await (const line of createInterface(this.#child.stdout)) {
+      const address = /^listening on .*:(\d+)$/.exec(line);
+      if (!address) continue;
+      this.#port = Number(address[1]);
+      return this;
+    }
+    throw new Error("the server ended before it listened");
+  }
+
+  get url() {
+    return `http://127.0.0.1:${this.#port}/`;
+  }
+
+  /** Ends the server as a power cut would. */
+  async kill() {
+    const ended = new Promise((done) => this.#child.once("exit", done));
+    this.#child.kill("SIGKILL");
+    await ended;
+  }
+
+  async remove() {
+    await this.kill();
+    rmSync(this.#home, { recursive: true, force: true });
+  }
+}
+
+export function launch() {
+  return chromium.launch({ executablePath: executable, args: ["--no-sandbox", "--enable-unsafe-swiftshader"] });
+}
+
+/** Opens the page in a context of its own; `faults` collects what must not be. */
+export async function opened(browser, url, options = {}) {
+  const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, locale: "en-US", ...options });
+  const faults = [];
+  await watch(context, faults);
+  const page = await context.newPage();
+  await page.goto(url);
+  return { context, page, faults };
+}
+
+async function watch(context, faults) {
+  await context.addInitScript(() => {
+    addEventListener("securitypolicyviolation", (e) => console.error(`CSP: ${e.violatedDirective} ${e.blockedURI}`));
+  });
+  context.on("page", (page) => {
+    page.on("console", (message) => message.type() === "error" && faults.push(message.text()));
+    page.on("pageerror", (error) => faults.push(error.message));
+  });
+}
+
+/** Makes a world and waits for its plan. */
+export async function make(page, prompt = PROMPT) {
+  await page.getByTestId("prompt").fill(prompt);
+  await page.getByTestId("generate").click();
+  await page.getByTestId("plan-svg").waitFor({ timeout: 60_000 });
+  await page.locator("progress").waitFor({ state: "detached", timeout: 120_000 });
+  await saved(page);
+}
+
+/** Waits until the server has what the page has. */
+export async function saved(page) {
+  await page.locator('[data-testid="saved"][data-saved="saved"]').waitFor({ timeout: 30_000 });
+}
+
+/** Returns the plan as it is drawn: the same for the same world, whatever is selected. */
+export function drawn(page) {
+  return page.evaluate(() => {
+    const paths = document.querySelectorAll('[data-testid="plan-svg"] :is(.walls, .openings, .objects) path');
+    return [...paths].map((p) => p.getAttribute("d")).join("\n");
+  });
+}
+
+export function sound(faults) {
+  assert.deepEqual(faults, []);
+}
+
+/** Returns where a thing of the plan lies on the screen. */
+export async function middle(page, selector) {
+  const box = await page.locator(selector).first().boundingBox();
+  assert.ok(box, `${selector} is on the plan`);
+  return { x: box.x + box.width / 2, y: box.y + box.height / 2, width: box.width, height: box.height };
+}
