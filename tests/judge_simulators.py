@@ -162,23 +162,18 @@ def row(consumer, results):
     return "| " + " | ".join(cells) + " |"
 
 
-def page(rows, worlds, storeys, wrote, versions):
-    return "\n".join(
+SECTION = "## How they are judged"
+
+
+def page(before, rows, worlds, storeys, wrote):
+    """The page with the section of figures written anew."""
+    return before.split(SECTION)[0] + "\n".join(
         [
-            "# Worlds in simulators",
+            SECTION,
             "",
-            "`d3dgen generate PROMPT --format mujoco,gazebo` writes a folder a format; `d3dgen export WORLD --format mujoco` adds one to a",
-            "world that is there. `manifest.json` at the top says where each room, door and thing is in each format, and has the checksum",
-            "of every file.",
-            "",
-            "| folder | open it with |",
-            "|---|---|",
-            "| `mujoco/` | `python -m mujoco.viewer --mjcf=mujoco/world.xml`; `python mujoco/scene.py` drives a robot (Gymnasium) |",
-            "| `gazebo/` | `GZ_SIM_RESOURCE_PATH=gazebo/models gz sim gazebo/world.sdf`; with ROS 2 `ros2 launch gazebo/launch/world.launch.py` |",
-            "",
-            f"The table is measured on {worlds} worlds of homes, offices and hospitals, {storeys} of several storeys, with the consumers' own code, headless,",
-            "by `python tests/judge_simulators.py --kit FOLDER --write docs/simulators.md`; the kit is a set of scripts that load and step",
-            "a world and print what they found. Gazebo's graphics, sensors and plugins, RTX and PhysX are not part of it.",
+            f"Measured on {worlds} worlds of homes, offices and hospitals, {storeys} of several storeys, with the consumers' own code, headless, by",
+            "`python tests/judge_simulators.py --kit FOLDER --write docs/simulators.md`; the kit is a set of scripts that load and step a world",
+            "and print what they found. Gazebo's graphics, sensors and plugins, RTX and PhysX are not part of it.",
             "",
             "| consumer | worlds accepted | things stable | doors to their limit and back | doorways open | rooms reached | seconds (median) |",
             "|---|---|---|---|---|---|---|",
@@ -187,7 +182,7 @@ def page(rows, worlds, storeys, wrote, versions):
             "*Stable*: a thing that can be moved ends less than 5 cm from where it was in the three seconds after the first, as MolmoSpaces",
             "asks of its scenes; for Gazebo, how far the least stable of all moved in two seconds. *Doorways*: a disc of 0.25 m radius, or",
             "what the narrowest door leaves, is carried through the middle of each and along the routes of robots. *Rooms reached*: joined",
-            "to the main entrance by open doorways. *Seconds*: the check itself on two cores.",
+            "to the main entrance by open doorways. *Seconds*: the check itself.",
             "",
             f"Writing all of these formats took {wrote}.",
             "",
@@ -237,7 +232,7 @@ def main():
     print("\n".join(rows))
     if given.write:
         wrote = f"{statistics.median(took):.1f} s a world (median), making the world and starting the program included"
-        given.write.write_text(page(rows, len(turn), storeys, wrote, known))
+        given.write.write_text(page(given.write.read_text(), rows, len(turn), storeys, wrote))
     print(f"simulators: {len(turn)} worlds, {len(asked)} consumers, {refused} refused")
     sys.exit(1 if refused or not rows else 0)
 

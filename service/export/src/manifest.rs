@@ -21,7 +21,9 @@ const FORMAT: &str = "d3dgen-manifest/1";
 
 /// What the formats of a world report while they are written.
 pub struct Manifest {
-    scene: SimScene,
+    world: String,
+    /// None of a world that simulators cannot be given; the exporter that is asked for it says why.
+    scene: Option<SimScene>,
     formats: BTreeSet<&'static str>,
     /// Id -> format -> place in it.
     places: BTreeMap<String, BTreeMap<&'static str, String>>,
@@ -37,15 +39,19 @@ impl Manifest {
     /// # Errors
     /// As [`SimScene::of`].
     pub fn of(world: &World, domain: &Domain, kept: &dyn KeptModels) -> Result<Self, Error> {
-        let scene = SimScene::of(world, domain, kept)?;
-        Ok(Self { scene, formats: BTreeSet::new(), places: BTreeMap::new(), files: BTreeMap::new() })
+        let scene = match SimScene::of(world, domain, kept) {
+            Err(Error::Unsupported { .. }) => None,
+            made => Some(made?),
+        };
+        let world = world.name.clone();
+        Ok(Self { world, scene, formats: BTreeSet::new(), places: BTreeMap::new(), files: BTreeMap::new() })
     }
 
     /// Adds what an exporter has written.
     pub fn add(&mut self, exporter: &dyn Exporter, files: &[File]) {
         let format = exporter.name();
         self.formats.insert(format);
-        for (id, place) in exporter.places(&self.scene) {
+        for (id, place) in self.scene.iter().flat_map(|scene| exporter.places(scene)) {
             self.places.entry(id).or_default().insert(format, place);
         }
         for file in files {
@@ -56,7 +62,7 @@ impl Manifest {
     /// Returns the file; formats of an earlier one of the same world that were not written anew stay in it.
     pub fn file(&self, earlier: Option<&[u8]>) -> File {
         let earlier = earlier.and_then(|bytes| serde_json::from_slice::<Value>(bytes).ok());
-        let earlier = earlier.filter(|e| e["format"] == FORMAT && e["world"] == self.scene.name.as_str());
+        let earlier = earlier.filter(|e| e["format"] == FORMAT && e["world"] == self.world.as_str());
         let earlier = earlier.unwrap_or_else(|| json!({}));
         let is_kept = |format: &Value| format.as_str().is_some_and(|f| !self.formats.contains(f));
         let list = |key: &str| earlier[key].as_array().cloned().unwrap_or_default();
@@ -65,8 +71,8 @@ impl Manifest {
         formats.sort_by(|a, b| a.as_str().cmp(&b.as_str()));
         let ids: Map<String, Value> = self
             .scene
-            .ids()
-            .into_iter()
+            .iter()
+            .flat_map(SimScene::ids)
             .map(|(id, kind)| {
                 let mut own: BTreeMap<String, Value> = BTreeMap::new();
                 let before = earlier["ids"][id]["in"].as_object().cloned().unwrap_or_default();
@@ -83,7 +89,7 @@ impl Manifest {
         files.sort_by(|a, b| a["path"].as_str().cmp(&b["path"].as_str()));
         let manifest = json!({
             "format": FORMAT,
-            "world": self.scene.name,
+            "world": self.world,
             "formats": formats,
             "ids": ids,
             "files": files,

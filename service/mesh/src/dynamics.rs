@@ -258,7 +258,7 @@ mod tests {
             parent: 1,
             child: 2,
             origin: [0.0, 0.0, 0.5],
-            limits: Some([-1.0, 1.0]),
+            limits: Some([-1.0, -0.5]),
             ..first.clone()
         };
         let tip = Collision::Box { min: [0.0, -0.1, 0.5], max: [0.3, 0.1, 0.6] };

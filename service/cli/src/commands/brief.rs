@@ -43,7 +43,7 @@ impl Args {
 }
 
 /// Returns a brief as lines for people.
-fn lines(read: &ReadPrompt, explain: bool) -> String {
+pub(super) fn lines(read: &ReadPrompt, explain: bool) -> String {
     let brief = &read.brief;
     let mut lines = vec![format!("languages: {}", brief.languages.join(", "))];
     lines.extend(

@@ -1,18 +1,21 @@
 //! `d3dgen edit`: changes to a finished world, checked and repaired.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
+use d3dgen_model::Document;
 use d3dgen_model::edits::{Edit, Edits};
 use d3dgen_model::world::World;
-use d3dgen_pipeline::{Stop, edit};
+use d3dgen_pipeline::Stop;
+use d3dgen_pipeline::edit::{self, Edited};
+use d3dgen_plugins::Plugin;
 use serde_json::{Map, Value};
 
-use super::formats;
+use super::formats::{self, Formats};
 use crate::bundle;
 use crate::error::Error;
 use crate::input::document;
 use crate::interrupt;
-use crate::output::Output;
+use crate::output::{Kept, Output};
 use crate::registry::{RegistryArgs, domain};
 use crate::summary;
 
@@ -75,16 +78,11 @@ impl Args {
             let at = |reason: String| Error::Input(format!("--do number {} (`{words}`): {reason}", i + 1));
             edits.push(change(words).map_err(at)?);
         }
-        let checked = serde_json::to_value(Edits { version: 1, edits }).map_err(|e| Error::Input(e.to_string()))?;
-        let edits = <Edits as d3dgen_model::Document>::from_value(checked)
-            .map_err(|source| Error::Document { path: "the changes".into(), source })?;
+        let edits = checked(edits)?;
         let world: World = document(&self.world)?;
         let registry = self.registry.load()?;
         let plugin = domain(&registry, &world.scene_graph.domain)?;
-        let output = Output::new(&self.out)?;
-        let edited = edit::apply(&world, &edits.edits, plugin, Stop::from(interrupt::flag()))?;
-        bundle::write(&edited.world, &edited.report, plugin.domain(), &formats, &output)?;
-        let kept = output.commit()?;
+        let (edited, kept) = write(&world, &edits, plugin, &formats, &self.out, Stop::from(interrupt::flag()))?;
         summary::print_broken(&edited.report);
         let changed =
             if edited.changed_room_ids.is_empty() { "no room".into() } else { edited.changed_room_ids.join(", ") };
@@ -94,6 +92,34 @@ impl Args {
         }
         summary::judged(&edited.report)
     }
+}
+
+/// Returns changes as a document that was looked at like one of a file.
+///
+/// # Errors
+/// `Document` with every problem.
+pub fn checked(edits: Vec<Edit>) -> Result<Edits, Error> {
+    let value = serde_json::to_value(Edits { version: 1, edits }).map_err(|e| Error::Input(e.to_string()))?;
+    Edits::from_value(value).map_err(|source| Error::Document { path: "the changes".into(), source })
+}
+
+/// Changes a world and writes what comes of it into a folder; an earlier world stays there when it is unsound.
+///
+/// # Errors
+/// `Stage` for a change that cannot be made, and as [`bundle::write`].
+pub fn write(
+    world: &World,
+    edits: &Edits,
+    plugin: &dyn Plugin,
+    formats: &Formats,
+    out: &Path,
+    stop: Stop<'_>,
+) -> Result<(Edited, Option<Kept>), Error> {
+    let output = Output::new(out)?;
+    let edited = edit::apply(world, &edits.edits, plugin, stop)?;
+    bundle::write(&edited.world, &edited.report, plugin.domain(), formats, &output)?;
+    let kept = output.commit()?;
+    Ok((edited, kept))
 }
 
 /// Reads a change in words.

@@ -34,6 +34,11 @@ fn usual() -> Vec<String> {
 }
 
 impl FormatArgs {
+    /// Returns the flags for these formats, pictures and all.
+    pub fn with_png(format: Vec<String>) -> Self {
+        Self { format, no_png: false }
+    }
+
     /// Returns the flags for these formats, plan.png left out.
     pub fn without_png(format: Vec<String>) -> Self {
         Self { format, no_png: true }
@@ -63,6 +68,11 @@ impl FormatArgs {
 }
 
 impl Formats {
+    /// Returns the names of the formats.
+    pub fn names(&self) -> &[&'static str] {
+        &self.names
+    }
+
     /// Writes the files of the world, and `manifest.json`, in which the formats that the folder has already stay.
     ///
     /// # Errors

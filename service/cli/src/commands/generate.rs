@@ -1,7 +1,7 @@
 //! `d3dgen generate`: from a sentence to checked worlds on disk.
 
 mod batch;
-mod one;
+pub(super) mod one;
 mod proposals;
 
 use std::path::PathBuf;
@@ -59,10 +59,10 @@ pub struct Args {
 }
 
 /// One world to be made.
-struct Job {
-    request: Request,
-    name: Option<String>,
-    path: PathBuf,
+pub(super) struct Job {
+    pub request: Request,
+    pub name: Option<String>,
+    pub path: PathBuf,
 }
 
 impl Args {
@@ -78,7 +78,7 @@ impl Args {
                 "--variations chooses among plans made without a model; use it without --propose".into(),
             ));
         }
-        let maker = one::Maker { registry, formats, allow_conflicts: self.allow_conflicts, proposals, flag };
+        let maker = one::Maker { registry: &registry, formats, allow_conflicts: self.allow_conflicts, proposals, flag };
         let request = self.request.request(self.prompt.as_deref())?;
         if self.count == 1 && self.variations.is_none() {
             let job = Job { request, name: self.name, path: self.out };
@@ -93,7 +93,7 @@ impl Args {
             return verdict(&[made], 0);
         }
         let seeds = match self.variations {
-            Some(count) => different(&request, &maker.registry, count)?,
+            Some(count) => different(&request, maker.registry, count)?,
             None => self.seeds(&request)?,
         };
         let jobs = self.jobs(&request, &seeds)?;

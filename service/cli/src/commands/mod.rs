@@ -6,6 +6,7 @@ mod brief;
 mod check;
 mod completions;
 mod dataset;
+mod doctor;
 mod domains;
 mod edit;
 mod eval;
@@ -16,20 +17,19 @@ mod furnish;
 mod generate;
 mod jobs;
 mod knowledge;
+mod mcp;
 mod model;
 mod placement;
 mod render;
 mod research;
 mod scenario;
 mod scene_graph;
+mod self_test;
 mod serve;
 mod version;
-<<<<<<< HEAD
 mod view;
-=======
 #[cfg(feature = "cluster")]
 mod worker;
->>>>>>> main
 mod world;
 
 use clap::Subcommand;
@@ -91,6 +91,12 @@ pub enum Command {
     Serve(Box<serve::Args>),
     /// List, watch and cancel the jobs of a server
     Jobs(jobs::Args),
+    /// Give agents the commands as tools over the Model Context Protocol (standard input and output)
+    Mcp(mcp::Args),
+    /// Say what this machine has of what d3dgen can use, and what each missing part would be for
+    Doctor(doctor::Args),
+    /// Make a world of each kind twice, in a temporary folder, and compare: does this program work here
+    SelfTest(self_test::Args),
     /// Print a completion script for a shell
     Completions(completions::Args),
     /// Print the version, and the versions of the documents it reads
@@ -129,6 +135,9 @@ impl Command {
             Self::Ingest(args) => args.run(),
             Self::Serve(args) => args.run(),
             Self::Jobs(args) => args.run(),
+            Self::Mcp(args) => args.run(),
+            Self::Doctor(args) => args.run(),
+            Self::SelfTest(args) => args.run(),
             Self::Completions(args) => args.run(),
             Self::Version => version::run(),
         }

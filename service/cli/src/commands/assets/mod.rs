@@ -1,7 +1,7 @@
 //! `d3dgen assets`: the database of 3D models, and what is known about single files.
 
 mod annotate;
-mod common;
+pub mod common;
 mod export;
 mod generate;
 pub mod ingest;

@@ -16,7 +16,7 @@ use crate::summary::Summary;
 ///
 /// # Errors
 /// The first error in order of seeds that is not about one seed alone; worlds finished before it stay.
-pub fn run(maker: &Maker, jobs: &[Job], progress: &Progress, json: bool) -> Result<(Vec<Summary>, usize), Error> {
+pub fn run(maker: &Maker<'_>, jobs: &[Job], progress: &Progress, json: bool) -> Result<(Vec<Summary>, usize), Error> {
     let next = AtomicUsize::new(0);
     let stop = AtomicBool::new(false);
     let (send, receive) = mpsc::channel();

@@ -23,16 +23,17 @@ use crate::stage_clock::StageClock;
 use crate::summary::Summary;
 
 /// What all worlds of a run share.
-pub struct Maker {
-    pub registry: Registry,
+pub struct Maker<'a> {
+    pub registry: &'a Registry,
     pub formats: Formats,
     pub allow_conflicts: bool,
     /// A language model to ask, with the stages it is asked for.
     pub proposals: Option<Proposals>,
-    pub flag: &'static AtomicBool,
+    /// Ends the work when it becomes true.
+    pub flag: &'a AtomicBool,
 }
 
-impl Maker {
+impl Maker<'_> {
     /// Makes a world and writes its folder; of an unsound one only the report and the documents of the stages.
     pub fn make(&self, job: &Job, progress: &Progress) -> Result<Summary, Error> {
         let output = Output::new(&job.path)?;
@@ -43,7 +44,7 @@ impl Maker {
             talk(&event, &clock, progress);
         };
         observe(Event::Started(Stage::SceneGraph, 0));
-        let (graph, brief) = brief::rooms(&job.request, &self.registry)?;
+        let (graph, brief) = brief::rooms(&job.request, self.registry)?;
         settings.brief = brief;
         if !self.allow_conflicts {
             refuse_contradictions(&graph)?;
@@ -52,14 +53,14 @@ impl Maker {
         let (made, proposal) = match &self.proposals {
             Some(proposals) => {
                 let asked = (&job.request, &graph);
-                let found = proposals.make(asked, (&self.registry, &settings), &mut observe, progress, self.flag)?;
+                let found = proposals.make(asked, (self.registry, &settings), &mut observe, progress, self.flag)?;
                 (found.made, Some(found.proposal))
             }
-            None => (furnish_and_check(&graph, &self.registry, &settings, &mut observe, self.flag)?, None),
+            None => (furnish_and_check(&graph, self.registry, &settings, &mut observe, self.flag)?, None),
         };
         let begun = Instant::now();
         progress.doing("files");
-        let domain = domain(&self.registry, &made.world.scene_graph.domain)?.domain();
+        let domain = domain(self.registry, &made.world.scene_graph.domain)?.domain();
         bundle::write(&made.world, &made.report, domain, &self.formats, &output)?;
         if let Some(proposal) = &proposal {
             output.write("proposal.json", proposal.to_json().as_bytes())?;

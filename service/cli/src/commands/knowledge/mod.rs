@@ -3,7 +3,7 @@
 mod amend;
 mod history;
 mod retrieve;
-mod search;
+pub(super) mod search;
 mod stats;
 mod transfer;
 mod verify;

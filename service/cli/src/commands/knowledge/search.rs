@@ -16,7 +16,7 @@ use crate::registry::{RegistryArgs, domain};
 use crate::remote::{self, ServerArgs};
 
 /// Arguments.
-#[derive(clap::Args)]
+#[derive(clap::Args, Default)]
 pub struct Args {
     /// What to find, in any words; without, everything that the filters leave
     #[arg(value_name = "WORDS")]
@@ -73,6 +73,18 @@ pub struct Args {
 type Filters = BTreeMap<String, BTreeSet<String>>;
 
 impl Args {
+    /// Returns a search by words and by meaning in the database here.
+    pub fn of(
+        words: String,
+        country: Option<String>,
+        domain: Option<String>,
+        limit: usize,
+        registry: RegistryArgs,
+    ) -> Self {
+        let (words, domain) = (vec![words], domain.into_iter().collect());
+        Self { words, country, domain, limit, registry, ..Self::default() }
+    }
+
     pub fn run(self) -> Result<(), Error> {
         if let Some(remote) = self.server.instead_of(&self.registry)? {
             if !self.room_type.is_empty() {
@@ -84,6 +96,14 @@ impl Args {
             let filters = self.filters(&|name| there.get(name).cloned().unwrap_or_default())?;
             return self.print(&remote::knowledge::search(&remote, &self.query(filters))?);
         }
+        self.print(&self.answer()?)
+    }
+
+    /// Returns the rules that the database here has for it.
+    ///
+    /// # Errors
+    /// `Input` for a filter that no rule meets; `Knowledge`; `Interrupted`.
+    pub fn answer(&self) -> Result<Answer, Error> {
         let registry = self.registry.load_as_brought()?;
         let database = self.registry.store.read(&registry)?;
         let searcher = open(&database)?;
@@ -100,7 +120,7 @@ impl Args {
             filters.insert("space_type".into(), spaces);
         }
         let glossary = Glossary::of(registry.iter().map(|p| p.domain()));
-        self.print(&searcher.answer(&self.query(filters), &glossary)?)
+        Ok(searcher.answer(&self.query(filters), &glossary)?)
     }
 
     /// Returns what every rule must be, by filter; `values` are those that the rules have.
@@ -188,7 +208,8 @@ fn known(there: &BTreeSet<String>, filter: &str, values: &[String]) -> Result<()
     }
 }
 
-fn json(f: &Found) -> serde_json::Value {
+/// Returns a rule that was found as data.
+pub fn json(f: &Found) -> serde_json::Value {
     serde_json::json!({
         "domain": f.domain, "jurisdiction": f.jurisdiction, "ref_id": f.ref_id, "source": f.source,
         "constraint": f.constraint, "score": f.hit.score, "text_rank": f.hit.text_rank,
@@ -196,7 +217,8 @@ fn json(f: &Found) -> serde_json::Value {
     })
 }
 
-fn shown(f: &Found) -> String {
+/// Returns a rule that was found in lines.
+pub fn shown(f: &Found) -> String {
     let source = f.source.as_ref().map(|s| format!("{} ({}, {})", s.title, s.publisher, s.edition_or_year));
     format!(
         "{}\n    {} {}; {}, {} confidence\n    {}/{}\n",
