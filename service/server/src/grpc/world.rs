@@ -290,6 +290,7 @@ fn building(asked: Option<BuildingRequest>) -> Result<Asked, Status> {
     }
     Ok(Asked {
         prompt: asked.prompt,
+        brief: None,
         seed: asked.seed,
         domain: asked.domain_id,
         country: asked.country,
