@@ -147,8 +147,11 @@ fn asked(request: &Request, [seed, placement, scenario]: [u64; 3]) -> serde_json
     value
 }
 
+/// A place in the spec, and what is wrong there.
+type Problem = (String, String);
+
 /// Adds the prompts of a template, the last slot by name varying fastest.
-fn expand(spec: &PromptSpec, prompts: &mut Vec<Prompt>) -> Result<(), (String, String)> {
+fn expand(spec: &PromptSpec, prompts: &mut Vec<Prompt>) -> Result<(), Problem> {
     for text in spec.text.all() {
         let parts = parts(text).map_err(|why| ("text".to_owned(), why))?;
         let used: BTreeSet<&str> = parts.iter().filter_map(|p| p.slot()).collect();
@@ -168,12 +171,15 @@ fn expand(spec: &PromptSpec, prompts: &mut Vec<Prompt>) -> Result<(), (String, S
     Ok(())
 }
 
+/// A slot with the value chosen for it.
+type Choice<'s> = (&'s str, &'s Scalar);
+
 /// Calls `found` for every choice of one value a slot.
 fn choose<'s>(
     spec: &'s PromptSpec,
-    chosen: &mut Vec<(&'s str, &'s Scalar)>,
-    found: &mut dyn FnMut(&[(&'s str, &'s Scalar)]) -> Result<(), (String, String)>,
-) -> Result<(), (String, String)> {
+    chosen: &mut Vec<Choice<'s>>,
+    found: &mut dyn FnMut(&[Choice<'s>]) -> Result<(), Problem>,
+) -> Result<(), Problem> {
     let Some((name, values)) = spec.slots.iter().nth(chosen.len()) else { return found(chosen) };
     for value in values.all() {
         chosen.push((name, value));
@@ -183,7 +189,7 @@ fn choose<'s>(
     Ok(())
 }
 
-fn fill(parts: &[Part], used: &BTreeSet<&str>, chosen: &[(&str, &Scalar)]) -> Result<Prompt, (String, String)> {
+fn fill(parts: &[Part], used: &BTreeSet<&str>, chosen: &[(&str, &Scalar)]) -> Result<Prompt, Problem> {
     let mut request = Request::default();
     let mut slots = BTreeMap::new();
     for (name, value) in chosen {

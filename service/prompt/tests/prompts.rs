@@ -1,6 +1,8 @@
 //! Prompts and what must be read in them: those of `tests/prompts/`, the shared ones with gold facts where they are, and
 //! text that nobody means.
 
+#![allow(clippy::unwrap_used)] // helpers of tests are tests
+
 use std::path::Path;
 
 use d3dgen_model::Document;

@@ -60,16 +60,15 @@ struct Round {
     aside: Vec<Poison>,
 }
 
+/// Hears of a block that came home, or of none, with how far the run is; its error ends the run.
+type News<'a> = dyn Fn(Option<&Done>, &Standing) -> Result<(), Error> + Sync + 'a;
+
 impl Leader<'_> {
     /// Leads the run to its end; `news` hears of each block that came home, and now and then how far the run is.
     ///
     /// # Errors
     /// `Interrupted`; `Cluster` when queue or store fail for good, or with the blocks that were set aside.
-    pub async fn lead(
-        &self,
-        cancelled: &AtomicBool,
-        news: &(dyn Fn(Option<&Done>, &Standing) -> Result<(), Error> + Sync),
-    ) -> Result<(), Error> {
+    pub async fn lead(&self, cancelled: &AtomicBool, news: &News<'_>) -> Result<(), Error> {
         let run = run_id(self.part);
         let mut round = Round::default();
         let mut failures = 0;
@@ -94,12 +93,7 @@ impl Leader<'_> {
     }
 
     /// Brings home what is done and puts in what is missing; true when nothing is.
-    async fn round(
-        &self,
-        run: &str,
-        round: &mut Round,
-        news: &(dyn Fn(Option<&Done>, &Standing) -> Result<(), Error> + Sync),
-    ) -> Result<bool, Error> {
+    async fn round(&self, run: &str, round: &mut Round, news: &News<'_>) -> Result<bool, Error> {
         if !round.announced {
             self.announce(run).await?;
             round.announced = true;
@@ -150,12 +144,7 @@ impl Leader<'_> {
     }
 
     /// Brings the results of the ledger into the part; returns the blocks that the ledger lacks.
-    async fn bring_home(
-        &self,
-        run: &str,
-        standing: &mut Standing,
-        news: &(dyn Fn(Option<&Done>, &Standing) -> Result<(), Error> + Sync),
-    ) -> Result<BTreeSet<u64>, Error> {
+    async fn bring_home(&self, run: &str, standing: &mut Standing, news: &News<'_>) -> Result<BTreeSet<u64>, Error> {
         let lines = self.objects.list(&places::ledger(run)).await?;
         standing.done = lines.len() as u64;
         let in_ledger: BTreeSet<u64> = lines.iter().filter_map(|l| places::block_of(l)).collect();
