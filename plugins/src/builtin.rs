@@ -107,7 +107,7 @@ mod tests {
     #[test]
     fn the_knowledge_bases_hold_every_researched_fact() {
         // those of the domain alone, and the shared ones that join them
-        let expected = [("residential", 357), ("office", 363), ("hospital", 501), ("general", 145)];
+        let expected = [("residential", 362), ("office", 376), ("hospital", 514), ("general", 158)];
         for (id, count) in expected {
             let builtin = all().into_iter().find(|b| b.id == id).expect("shipped");
             let constraints: usize = builtin.knowledge().references.iter().map(|r| r.constraints.len()).sum();
@@ -127,7 +127,9 @@ mod tests {
                 .flat_map(|s| [Some(&s.stairs.room_type), s.elevator.as_ref().map(|e| &e.room_type)])
                 .flatten()
                 .collect();
-            for room in domain.room_types.iter().filter(|r| !vertical.contains(&&r.id)) {
+            // a room that no domain knows has a name of its own and stays empty but for its light
+            let unknown = |id: &str| id == "room";
+            for room in domain.room_types.iter().filter(|r| !vertical.contains(&&r.id) && !unknown(&r.id)) {
                 let mut objects = BTreeSet::new();
                 for line in &room.furnishing {
                     match domain.group(&line.item) {
