@@ -149,7 +149,7 @@ pub struct Material {
     /// Index of the texture that replaces the base color.
     pub texture: Option<usize>,
     /// Finish whose pictures it wears (`finish`), where it has no texture of its own.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default)] // never left out: the readers' frames (postcard) have no names of fields
     pub finish: Option<String>,
 }
 
