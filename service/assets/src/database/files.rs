@@ -9,7 +9,7 @@ use sha2::{Digest, Sha256};
 use crate::error::Error;
 
 /// First bytes: what it is, and the form of what follows.
-const MAGIC: &[u8] = b"d3dgen model 1\n";
+const MAGIC: &[u8] = b"d3dgen model 2\n";
 const ENDING: &str = "model";
 const PICTURE: &str = "png";
 
