@@ -29,7 +29,8 @@ pub struct Formats {
     kept: Kept,
 }
 
-fn usual() -> Vec<String> {
+/// Returns the names of the formats that are written where none is named.
+pub fn usual() -> Vec<String> {
     exporters::usual().map(|e| e.name().to_owned()).collect()
 }
 

@@ -20,7 +20,7 @@ use serde_json::{Value, json};
 
 use super::workshop::Workshop;
 use crate::commands::assets::common;
-use crate::commands::formats::FormatArgs;
+use crate::commands::formats::{self, FormatArgs};
 use crate::commands::generate::Job;
 use crate::commands::generate::one::Maker;
 use crate::commands::{brief, edit, knowledge};
@@ -265,8 +265,7 @@ fn read_brief(workshop: &Workshop, asked: Prompt, _: &AtomicBool) -> Result<Answ
 }
 
 fn generate(workshop: &Workshop, asked: Wanted, stop: &AtomicBool) -> Result<Answer, Error> {
-    let usual = || vec!["arena".to_owned(), "plan".to_owned()];
-    let formats = if asked.formats.is_empty() { usual() } else { asked.formats };
+    let formats = if asked.formats.is_empty() { formats::usual() } else { asked.formats };
     let path = workshop.path(&asked.name)?;
     let maker = Maker {
         registry: &workshop.registry,
@@ -343,8 +342,7 @@ fn change(workshop: &Workshop, asked: Changes, stop: &AtomicBool) -> Result<Answ
         world.name.clone_from(name);
     }
     let out = workshop.path(asked.name.as_deref().unwrap_or(&asked.world))?;
-    let usual = vec!["arena".to_owned(), "plan".to_owned()];
-    let formats = FormatArgs::without_png(usual).chosen(&workshop.args.store)?;
+    let formats = FormatArgs::without_png(formats::usual()).chosen(&workshop.args.store)?;
     let edits = edit::checked(asked.edits)?;
     let plugin = workshop.plugin(&world)?;
     let (edited, kept) = edit::write(&world, &edits, plugin, &formats, &out, Stop::from(stop))?;
