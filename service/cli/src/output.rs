@@ -25,7 +25,10 @@ const DOCUMENTS: &[&str] = &[
     "placements.json",
     "scenario.json",
     "proposal.json",
+    "scenarios",
 ];
+/// Files of a simulation's folder; one with anything else in it is somebody's work.
+const RUN: &[&str] = &["trajectory.json", "walkable.geojson", "metrics.json", "scenario.json", "crowd.png"];
 /// The file that only the folder of a world has which may be used.
 const WORLD: &str = "world.json";
 /// The file that every world's folder has, sound or not.
@@ -65,6 +68,27 @@ impl Output {
     /// As [`Output::new`]; an earlier export, which is no whole world, is taken too.
     pub fn adding_to(path: &Path) -> Result<Self, Error> {
         Self::begin(path, check_ours(path, false)?, true)
+    }
+
+    /// Returns an output for a folder that is absent, empty, or that of an earlier simulation.
+    ///
+    /// # Errors
+    /// As [`Output::new`].
+    pub fn run_of(path: &Path) -> Result<Self, Error> {
+        let exists = path.is_dir();
+        let names = if exists { entries(path) } else { Ok(Vec::new()) };
+        let names = names.map_err(|source| Error::Write { path: path.to_path_buf(), source })?;
+        let foreign = names.iter().find(|n| !is_leftover(n) && !RUN.contains(&n.as_str()));
+        match foreign {
+            _ if path.exists() && !exists => {
+                Err(Error::Input(format!("{} is a file; --out needs a folder", path.display())))
+            }
+            Some(name) => {
+                let message = format!("{} holds {name}, which is of no simulation; name another folder", path.display());
+                Err(Error::Input(message))
+            }
+            None => Self::begin(path, exists, true),
+        }
     }
 
     fn begin(path: &Path, exists: bool, adds: bool) -> Result<Self, Error> {

@@ -21,6 +21,7 @@ mod research;
 mod scenario;
 mod scene_graph;
 mod serve;
+mod simulate;
 mod version;
 mod world;
 
@@ -46,8 +47,10 @@ pub enum Command {
     Floorplan(floorplan::Args),
     /// Stage 3: furniture of a floorplan
     Placement(placement::Args),
-    /// Stage 4: robots, people and named areas of a furnished plan
+    /// Stage 4: robots, people and named areas of a furnished plan; more scenarios of a world, by the hour
     Scenario(scenario::Args),
+    /// Move the people and robots of a world's scenario: tracks, figures of social navigation, a film
+    Simulate(simulate::Args),
     /// Stage 5: one world of the four documents, checked
     World(world::Args),
     /// Change a world: move a wall, add a room, swap an object; the rest stays and is checked
@@ -94,6 +97,7 @@ impl Command {
             Self::Floorplan(args) => args.run(),
             Self::Placement(args) => args.run(),
             Self::Scenario(args) => args.run(),
+            Self::Simulate(args) => args.run(),
             Self::World(args) => args.run(),
             Self::Edit(args) => args.run(),
             Self::Check(args) => args.run(),

@@ -4,6 +4,7 @@ mod arena;
 mod nav2;
 pub mod plan;
 mod rmf;
+mod tasks;
 
 use d3dgen_model::domain::Domain;
 use d3dgen_model::world::World;
@@ -15,6 +16,7 @@ pub use arena::Arena;
 pub use nav2::Nav2;
 pub use plan::Plan;
 pub use rmf::Rmf;
+pub use tasks::Tasks;
 
 /// A file to be written, relative to the world's output folder.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -55,7 +57,7 @@ pub trait Exporter: Sync {
 
 /// Returns every exporter, the default ones first.
 pub fn all() -> &'static [&'static dyn Exporter] {
-    &[&Arena, &Plan, &Nav2, &Rmf]
+    &[&Arena, &Plan, &Nav2, &Rmf, &Tasks]
 }
 
 /// Returns the names at the top of a world's folder that exporters write, each once.
