@@ -16,6 +16,14 @@ pub enum Error {
     /// The model of an object could not be made.
     #[error(transparent)]
     Model(#[from] d3dgen_mesh::Error),
+    /// A model is broken.
+    #[error("the model of {asset} cannot be written: {source}; remove it from the database of assets or mend it")]
+    Asset {
+        /// Its reference.
+        asset: String,
+        /// What is wrong with it.
+        source: d3dgen_mesh::Error,
+    },
     /// A database of assets could not give a model.
     #[error("{asset}: {reason}")]
     Kept {

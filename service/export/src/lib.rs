@@ -8,11 +8,13 @@ pub mod exporters;
 pub mod film;
 pub mod models;
 pub mod roadmap;
+pub mod scene;
 pub mod yaml;
 
 mod color;
 mod font;
 mod picture;
+mod used;
 
 pub use error::Error;
 pub use exporters::{Exporter, File};

@@ -10,6 +10,7 @@ mod scope;
 mod solids;
 mod tones;
 
+pub use solids::triangulate;
 use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
 

@@ -15,6 +15,6 @@ pub mod writers;
 mod affine;
 mod surface;
 
-pub use builds::{Library, generate, generate_by};
+pub use builds::{Library, generate, generate_by, triangulate};
 pub use error::Error;
 pub use model3d::{Body, Collision, Joint, JointKind, Material, Mesh, Model3d, Texture, Visual};

@@ -30,7 +30,7 @@ pub struct ModelFile {
 ///
 /// # Errors
 /// `Model` with the first index out of range or figure that is none.
-fn check(model: &Model3d) -> Result<(), Error> {
+pub fn check(model: &Model3d) -> Result<(), Error> {
     let wrong = |reason: String| Err(Error::Model { model: model.name.clone(), reason });
     if model.name.is_empty() || !model.name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_') {
         return wrong("its name is not of letters, digits and underscores".to_owned());

@@ -3,7 +3,6 @@
 //! Arena finds the world when `ARENA_WORLD_PATH` names the folder `arena/worlds`. Every storey is a level: `0`
 //! is the ground floor, and stairwells and shafts above it are no zones but the ways in.
 
-mod assets;
 mod map;
 mod scenario;
 mod world_yaml;
@@ -14,6 +13,7 @@ use serde_json::{Value, json};
 
 use super::{Exporter, File};
 use crate::models::{KeptModels, snake};
+use crate::used::UsedModels;
 use crate::{Error, yaml};
 
 /// Writes the Arena bundle.
@@ -38,7 +38,7 @@ impl Exporter for Arena {
             return Err(Error::Unsupported { exporter: "arena", subject: world.name.clone(), reason });
         }
         let root = format!("arena/worlds/{}", world.name);
-        let models = assets::Models::of(world)?;
+        let models = UsedModels::of(world)?;
         let storeys = world.storeys();
         let ground = storeys.iter().find(|(level, _)| *level == 0).map_or(world, |(_, storey)| storey);
         let default = yaml::to_string(&scenario::scenario(ground));

@@ -9,6 +9,7 @@ mod tube;
 pub(super) use boxes::{cushion, shell, upright_box};
 pub(super) use foliage::leaves;
 pub(super) use prism::prism;
+pub use prism::triangulate;
 pub(super) use round::{cone, lathe, sphere, torus};
 pub(super) use tube::tube;
 

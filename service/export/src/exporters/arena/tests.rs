@@ -13,7 +13,7 @@ fn files() -> Vec<File> {
 
 fn level() -> Value {
     let world = sample::world();
-    world_yaml::level(&world, &sample::domain(), &assets::Models::of(&world).unwrap()).unwrap()
+    world_yaml::level(&world, &sample::domain(), &UsedModels::of(&world).unwrap()).unwrap()
 }
 
 fn zones(level: &Value) -> &Vec<Value> {

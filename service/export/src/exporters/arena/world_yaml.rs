@@ -13,15 +13,15 @@ use d3dgen_model::scenario::RoiKind;
 use d3dgen_model::world::World;
 use serde_json::{Value, json};
 
-use super::assets::Models;
 use super::{position, snake};
 use crate::Error;
+use crate::used::UsedModels;
 
 /// Thickness of a sliding panel, m.
 const PANEL_M: f64 = 0.1;
 
 /// Returns the level's document.
-pub(super) fn level(world: &World, domain: &Domain, models: &Models) -> Result<Value, Error> {
+pub(super) fn level(world: &World, domain: &Domain, models: &UsedModels) -> Result<Value, Error> {
     let walls = solid_walls(&world.floorplan);
     let zones = world
         .floorplan
@@ -32,7 +32,13 @@ pub(super) fn level(world: &World, domain: &Domain, models: &Models) -> Result<V
     Ok(json!({ "zones": zones }))
 }
 
-fn zone(room: &PlanRoom, world: &World, domain: &Domain, models: &Models, walls: &[SolidWall]) -> Result<Value, Error> {
+fn zone(
+    room: &PlanRoom,
+    world: &World,
+    domain: &Domain,
+    models: &UsedModels,
+    walls: &[SolidWall],
+) -> Result<Value, Error> {
     let id = &room.room_id;
     let room_type = domain.room_type_or_generic(&room.room_type);
     let description = world.scene_graph.room(id).map_or(room.name.as_str(), |r| r.description.as_str());
@@ -92,7 +98,7 @@ fn door(door: &Door) -> Value {
     })
 }
 
-fn thing(placement: &Placement, models: &Models) -> Result<Value, Error> {
+fn thing(placement: &Placement, models: &UsedModels) -> Result<Value, Error> {
     let [w, d, h] = placement.size_m;
     let pose = &placement.pose;
     let [qw, qz] = model_quaternion(pose.yaw_rad);

@@ -101,7 +101,7 @@ fn edge_normal(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
 }
 
 /// Returns the triangles of a simple counter-clockwise polygon by cutting ears; none when it crosses itself.
-fn triangulate(points: &[[f64; 2]]) -> Option<Vec<[usize; 3]>> {
+pub fn triangulate(points: &[[f64; 2]]) -> Option<Vec<[usize; 3]>> {
     let turn = |a: usize, b: usize, c: usize| {
         let (p, q, r) = (points[a], points[b], points[c]);
         (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])

@@ -1,8 +1,10 @@
-//! Which distinct models a world has: one folder each.
+//! Which distinct models a world has: one folder each, shared by all exporters.
 
+use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
-use d3dgen_mesh::Library;
+use d3dgen_mesh::{Library, Model3d};
 use d3dgen_model::domain::{Domain, Mount, ObjectType, Shape, Stock};
 use d3dgen_model::placements::Placement;
 use d3dgen_model::world::World;
@@ -11,11 +13,14 @@ use crate::Error;
 use crate::exporters::File;
 use crate::models::{self, KeptModels, ModelRequest};
 
+/// Seed of the variants of all models.
+const SEED: u64 = 0;
+
 /// Size in whole millimeters: what tells two models of one asset apart.
 type SizeMm = [i64; 3];
 
 /// The distinct models of a world.
-pub(super) struct Models {
+pub(crate) struct UsedModels {
     /// Asset reference and size -> model.
     by_asset: BTreeMap<(String, SizeMm), Model>,
 }
@@ -31,7 +36,7 @@ struct Model {
     mount: Mount,
 }
 
-impl Models {
+impl UsedModels {
     /// Returns the models that a world uses.
     ///
     /// # Errors
@@ -90,27 +95,59 @@ impl Models {
     }
 }
 
-impl Model {
-    fn files(&self, own: Option<&Library>, domain: &Domain) -> Result<Vec<File>, Error> {
-        let unknown;
-        let object = match domain.object(&self.object) {
-            Some(object) => object,
-            None => {
-                unknown = plain(&self.object, self.size_m, self.mount);
-                &unknown
-            }
+/// A model of a world.
+pub(crate) struct Made {
+    /// Reference `Domain/Name`, with the size where the world has the asset in several.
+    pub reference: String,
+    /// Object id of the catalog.
+    pub object: String,
+    pub model: Arc<Model3d>,
+}
+
+impl UsedModels {
+    /// Returns the models themselves, by reference.
+    ///
+    /// # Errors
+    /// As [`UsedModels::files`].
+    pub fn made(&self, domain: &Domain, kept: &dyn KeptModels) -> Result<Vec<Made>, Error> {
+        let library = (!domain.builds.is_empty()).then(|| Library::shipped().with(&domain.builds));
+        let one = |((asset, _), model): (&(String, SizeMm), &Model)| {
+            let reference = format!("{}/{}", model.domain, model.name);
+            let made = match kept.model(asset)? {
+                Some(kept) => Arc::new(kept.model),
+                None => model.made(library.as_ref(), domain)?,
+            };
+            Ok(Made { reference, object: model.object.clone(), model: made })
         };
+        self.by_asset.iter().map(one).collect()
+    }
+}
+
+impl Model {
+    fn made(&self, own: Option<&Library>, domain: &Domain) -> Result<Arc<Model3d>, Error> {
+        let library = own.unwrap_or(Library::shipped());
+        Ok(Arc::new(d3dgen_mesh::generate(library, &self.object_type(domain), self.size_m, SEED)?))
+    }
+
+    fn files(&self, own: Option<&Library>, domain: &Domain) -> Result<Vec<File>, Error> {
         let request = ModelRequest {
             domain: &self.domain,
             name: &self.name,
-            object,
+            object: &self.object_type(domain),
             size_m: self.size_m,
             mount: self.mount,
-            seed: 0,
+            seed: SEED,
         };
         match own {
             Some(library) => models::files(library, &request),
             None => Ok(models::remembered_files(&request)?.to_vec()),
+        }
+    }
+
+    fn object_type<'a>(&self, domain: &'a Domain) -> Cow<'a, ObjectType> {
+        match domain.object(&self.object) {
+            Some(object) => Cow::Borrowed(object),
+            None => Cow::Owned(plain(&self.object, self.size_m, self.mount)),
         }
     }
 }
