@@ -23,6 +23,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("placement", &["model", "knowledge"]),
     ("scenario", &["model", "knowledge"]),
     ("check", &["model", "knowledge"]),
+    ("crowd", &["model"]),
     (
         "pipeline",
         &["model", "plugins", "knowledge", "plans", "prompt", "program", "floorplan", "placement", "scenario", "check"],
@@ -63,6 +64,7 @@ const ARROWS: &[(&str, &[&str])] = &[
             "prompt",
             "plans",
             "export",
+            "crowd",
             "eval",
             "research",
             "propose",

@@ -3,6 +3,7 @@
 
 mod arrows;
 mod assets;
+mod crowd;
 mod documents;
 mod domain_guide;
 mod errors;

@@ -84,7 +84,8 @@ impl Output {
                 Err(Error::Input(format!("{} is a file; --out needs a folder", path.display())))
             }
             Some(name) => {
-                let message = format!("{} holds {name}, which is of no simulation; name another folder", path.display());
+                let message =
+                    format!("{} holds {name}, which is of no simulation; name another folder", path.display());
                 Err(Error::Input(message))
             }
             None => Self::begin(path, exists, true),

@@ -22,6 +22,8 @@ const NEARLY_M: f64 = 0.9;
 const FAR_M: f64 = 1.5;
 /// How often one looks for another way before it gives up what it went for.
 const MOST_TRIES: u32 = 5;
+/// How far one steps back, m.
+const BACK_M: f64 = 0.8;
 /// How much nearer those come to each other who do not get on, m.
 const SQUEEZE_M: f64 = 0.04;
 /// How near counts for the record, m.
@@ -126,7 +128,10 @@ impl<'e> Engine<'e> {
             let over = k > steps;
             if over {
                 // who is on its way gets there, the others are done
-                self.movers.iter_mut().filter(|m| !m.is_walking() || m.state == State::Idle).for_each(|m| m.state = State::Gone);
+                self.movers
+                    .iter_mut()
+                    .filter(|m| !m.is_walking() || m.state == State::Idle)
+                    .for_each(|m| m.state = State::Gone);
                 if self.movers.iter().all(|m| !m.is_there()) {
                     break;
                 }
@@ -190,7 +195,14 @@ impl<'e> Engine<'e> {
         for k in 0..size {
             source.count += 1;
             let id = format!("{}_{}", source.id, source.count);
-            let mut mover = Mover::new(id, source.role.clone(), d3dgen_model::scenario::PERSON_RADIUS_M, source.speed, source.level, source.at);
+            let mut mover = Mover::new(
+                id,
+                source.role.clone(),
+                d3dgen_model::scenario::PERSON_RADIUS_M,
+                source.speed,
+                source.level,
+                source.at,
+            );
             mover.group.clone_from(&group);
             mover.tasks.clone_from(&tasks);
             mover.repeats = false;
@@ -202,9 +214,10 @@ impl<'e> Engine<'e> {
     }
 
     fn is_open(&self, level: usize, at: Point, radius: f64, but: Option<usize>) -> bool {
-        self.movers.iter().enumerate().all(|(j, m)| {
-            Some(j) == but || !m.is_there() || m.level != level || m.at.distance(at) >= m.radius + radius
-        })
+        self.movers
+            .iter()
+            .enumerate()
+            .all(|(j, m)| Some(j) == but || !m.is_there() || m.level != level || m.at.distance(at) >= m.radius + radius)
     }
 
     fn sort(&mut self) {
@@ -222,7 +235,12 @@ impl<'e> Engine<'e> {
         for dj in -n..=n {
             for di in -n..=n {
                 let here = self.squares[level].get(&(i + di, j + dj)).into_iter().flatten();
-                out.extend(here.copied().filter(|k| *k != but && self.movers[*k].level == level && self.movers[*k].is_there() && self.movers[*k].at.distance(at) <= reach));
+                out.extend(here.copied().filter(|k| {
+                    *k != but
+                        && self.movers[*k].level == level
+                        && self.movers[*k].is_there()
+                        && self.movers[*k].at.distance(at) <= reach
+                }));
             }
         }
         out
@@ -290,7 +308,10 @@ impl<'e> Engine<'e> {
         let task = self.movers[i].tasks[self.movers[i].cursor].clone();
         let target = match task.act {
             Act::Sit | Act::Lie | Act::Operate => {
-                let station = task.station.filter(|s| self.users[*s].is_none_or(|u| u == i)).or_else(|| self.free_station(i, &task));
+                let station = task
+                    .station
+                    .filter(|s| self.users[*s].is_none_or(|u| u == i))
+                    .or_else(|| self.free_station(i, &task));
                 if let Some(s) = station {
                     self.users[s] = Some(i);
                     self.movers[i].station = Some(s);
@@ -469,7 +490,8 @@ impl<'e> Engine<'e> {
         while corner + 1 < leg.way.len() {
             let near = at.distance(leg.way[corner]) < 0.15;
             let least = (radius + 0.02).min(self.spaces[level].clear(self.spaces[level].node(leg.way[corner])));
-            let sees = at.distance(leg.way[corner]) < 1.5 && obstacles.along(at, leg.way[corner + 1], least) >= least - 1e-6;
+            let sees =
+                at.distance(leg.way[corner]) < 1.5 && obstacles.along(at, leg.way[corner + 1], least) >= least - 1e-6;
             if near || sees { corner += 1 } else { break }
         }
         self.movers[i].corner = corner;
@@ -550,6 +572,12 @@ impl<'e> Engine<'e> {
         self.movers[i].since = self.t;
         self.movers[i].left = f64::MAX;
         self.movers[i].tries += 1;
+        let stuck = self.movers[i].tries % 4 == 3;
+        if let Some(k) = self.blocker(i).filter(|_| stuck)
+            && self.steps_back(i, k)
+        {
+            return;
+        }
         if self.movers[i].tries > MOST_TRIES && !self.movers[i].leaving {
             return self.settle(i);
         }
@@ -560,14 +588,17 @@ impl<'e> Engine<'e> {
             return;
         }
         // robots make way for people, else the later one; the other one next time
-        let first = self.movers[i].robot && !self.movers[k].robot || self.movers[i].robot == self.movers[k].robot && i > k;
+        let first =
+            self.movers[i].robot && !self.movers[k].robot || self.movers[i].robot == self.movers[k].robot && i > k;
         let (gives, takes) = if (first == odd || self.movers[k].is_seated()) && moves { (i, k) } else { (k, i) };
         let _ = self.yields(gives, takes) || self.yields(takes, gives) || self.detour(i);
     }
 
     /// Looks for the way anew.
     fn again(&mut self, i: usize) {
-        let Some((level, to)) = self.movers[i].legs.last().and_then(|leg| Some((leg.level, *leg.way.last()?))) else { return };
+        let Some((level, to)) = self.movers[i].legs.last().and_then(|leg| Some((leg.level, *leg.way.last()?))) else {
+            return;
+        };
         if let Some(legs) = self.route(i, level, to) {
             self.movers[i].legs = legs;
             self.movers[i].corner = 0;
@@ -602,7 +633,10 @@ impl<'e> Engine<'e> {
             .filter(|k| !self.movers[*k].is_walking() || self.movers[*k].at.distance(at) < 1.0)
             .map(|k| (self.movers[k].at, self.movers[k].radius + radius))
             .collect();
-        let open = |n: usize| space.zone(n) != crate::space::NOWHERE && stands.iter().all(|(o, reach)| space.point(n).distance(*o) >= *reach);
+        let open = |n: usize| {
+            space.zone(n) != crate::space::NOWHERE
+                && stands.iter().all(|(o, reach)| space.point(n).distance(*o) >= *reach)
+        };
         // the first corner ahead that is not taken
         let ahead = (m.corner..leg.way.len()).find(|c| leg.way[*c].distance(at) > 0.8 && open(space.node(leg.way[*c])));
         let Some(corner) = ahead else { return false };
@@ -624,6 +658,22 @@ impl<'e> Engine<'e> {
 
     /// Lets one of two make way for the other; false where there is no floor for that.
     fn yields(&mut self, gives: usize, takes: usize) -> bool {
+        let other = &self.movers[takes];
+        let mut way = other.way_left();
+        way.truncate(6);
+        let reach = self.movers[gives].radius + other.radius + 0.08;
+        let is_aside = |p: Point| way.windows(2).all(|w| off_line(p, w[0], w[1]) >= reach);
+        self.goes_aside(gives, takes, &is_aside)
+    }
+
+    /// Steps back a little; false where there is no floor for that.
+    fn steps_back(&mut self, i: usize, from: usize) -> bool {
+        let (at, other) = (self.movers[i].at, self.movers[from].at);
+        self.goes_aside(i, from, &|p: Point| p.distance(at) >= BACK_M && p.distance(other) >= at.distance(other))
+    }
+
+    /// Lets somebody go to the nearest place that is aside, to wait there for another one to pass.
+    fn goes_aside(&mut self, gives: usize, takes: usize, is_aside: &dyn Fn(Point) -> bool) -> bool {
         let m = &self.movers[gives];
         let until = if let State::Busy { until } = m.state { until } else { self.t };
         let stands = matches!(m.state, State::Busy { .. }) && !self.is_queueing(gives) && !m.skips;
@@ -632,17 +682,22 @@ impl<'e> Engine<'e> {
         }
         let (level, radius, at) = (m.level, m.radius, m.at);
         let space = &self.spaces[level];
-        let other = &self.movers[takes];
-        let mut way = other.way_left();
-        way.truncate(6);
-        let reach = radius + other.radius + 0.08;
-        let others: Vec<(Point, f64)> = self.near(level, at, 6.0, gives).into_iter().map(|k| (self.movers[k].at, self.movers[k].radius + radius - 0.04)).collect();
-        let may = |n: usize| space.zone(n) != crate::space::NOWHERE && others.iter().all(|(o, r)| space.point(n).distance(*o) >= *r);
-        let aside = |n: usize| way.windows(2).all(|w| off_line(space.point(n), w[0], w[1]) >= reach);
+        let others: Vec<(Point, f64)> = self
+            .near(level, at, 6.0, gives)
+            .into_iter()
+            .map(|k| (self.movers[k].at, self.movers[k].radius + radius - 0.04))
+            .collect();
+        let may = |n: usize| {
+            space.zone(n) != crate::space::NOWHERE && others.iter().all(|(o, r)| space.point(n).distance(*o) >= *r)
+        };
         let start = space.node(at);
-        let start = if space.clear(start) >= radius { Some(start) } else { space.room_at(at).and_then(|r| standing(space, r, at, radius)) };
+        let start = if space.clear(start) >= radius {
+            Some(start)
+        } else {
+            space.room_at(at).and_then(|r| standing(space, r, at, radius))
+        };
         let Some(start) = start else { return false };
-        let (field, found) = search(space, start, radius, may, aside, 8.0);
+        let (field, found) = search(space, start, radius, may, |n| is_aside(space.point(n)), 8.0);
         let Some(found) = found else { return false };
         let mut nodes = field.back(found);
         nodes.reverse();
@@ -670,14 +725,16 @@ impl<'e> Engine<'e> {
         let end = m.legs.first().and_then(|leg| leg.way.last()).copied().unwrap_or(m.at);
         let there = arrived || m.at.distance(end) < THERE_M;
         let other = &self.movers[to];
-        let passed = !other.is_there() || other.level != m.level || other.at.distance(m.at) > 2.0 || !other.is_walking();
+        let passed =
+            !other.is_there() || other.level != m.level || other.at.distance(m.at) > 2.0 || !other.is_walking();
         if self.t >= until || there && passed && self.t > until - YIELD_S + 1.0 {
             self.movers[i].end_pause(self.t);
             let first = 1.min(self.movers[i].legs.len());
             let rest: Vec<Leg> = self.movers[i].legs.split_off(first);
             // who stood goes back to where that was
             let back = self.movers[i].resumes.map(|(at, _)| (self.movers[i].level, at));
-            let Some((level, at)) = back.or_else(|| rest.last().and_then(|leg| Some((leg.level, *leg.way.last()?)))) else {
+            let Some((level, at)) = back.or_else(|| rest.last().and_then(|leg| Some((leg.level, *leg.way.last()?))))
+            else {
                 return self.finish(i);
             };
             let target = self.movers[i].target;
@@ -747,6 +804,10 @@ impl<'e> Engine<'e> {
         let Some(s) = self.movers[i].station else { return self.finish(i) };
         let share = ((self.t - since) / ON_OFF_S).min(1.0);
         let (from, to) = (before(&self.stations[s].2), seat(&self.stations[s].2));
+        if self.is_met(i, Point::new(from.x + share * (to.x - from.x), from.y + share * (to.y - from.y))) {
+            self.movers[i].state = State::GettingOn { since: since + DT_S, until };
+            return;
+        }
         self.movers[i].at = Point::new(from.x + share * (to.x - from.x), from.y + share * (to.y - from.y));
         if share >= 1.0 {
             self.movers[i].state = State::On { until };
@@ -759,8 +820,19 @@ impl<'e> Engine<'e> {
         let at = before(&self.stations[s].2);
         self.near(m.level, at, 1.0, i).into_iter().all(|k| {
             let o = &self.movers[k];
-            o.is_seated() || o.at.distance(at) >= o.radius + m.radius
+            o.is_settled() || o.at.distance(at) >= o.radius + m.radius
         })
+    }
+
+    /// Returns true when somebody is met at a place who comes nearer by that.
+    fn is_met(&self, i: usize, next: Point) -> bool {
+        let m = &self.movers[i];
+        let meets = |k: usize| {
+            let o = &self.movers[k];
+            let off = o.at.distance(next);
+            !o.is_settled() && off < o.radius + m.radius - 0.05 && off < o.at.distance(m.at)
+        };
+        self.near(m.level, next, 1.0, i).into_iter().any(meets)
     }
 
     fn get_off(&mut self, i: usize, since: f64) {
@@ -768,12 +840,7 @@ impl<'e> Engine<'e> {
         let share = ((self.t - since) / ON_OFF_S).min(1.0);
         let (to, from) = (before(&self.stations[s].2), seat(&self.stations[s].2));
         let next = Point::new(from.x + share * (to.x - from.x), from.y + share * (to.y - from.y));
-        let near = self.near(self.movers[i].level, next, 1.0, i);
-        let hits = near.into_iter().any(|k| {
-            let (o, r) = (&self.movers[k], self.movers[i].radius);
-            !o.is_seated() && o.at.distance(next) < o.radius + r - 0.05 && o.at.distance(next) < o.at.distance(self.movers[i].at)
-        });
-        if hits {
+        if self.is_met(i, next) {
             // somebody passes: a moment later
             self.movers[i].state = State::GettingOff { since: since + DT_S };
             return;

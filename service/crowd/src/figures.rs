@@ -90,7 +90,8 @@ pub fn measure(world: &World, spaces: &[Space], trajectory: &Trajectory, outcome
         let outcome = outcomes.iter().find(|o| o.id == id);
         of_track(track, outcome, seen.get(id))
     };
-    let list = |tracks: &[Track]| -> Map<String, Value> { tracks.iter().map(|t| (t.id.clone(), figures(&t.id, t))).collect() };
+    let list =
+        |tracks: &[Track]| -> Map<String, Value> { tracks.iter().map(|t| (t.id.clone(), figures(&t.id, t))).collect() };
     json!({
         "format": "crowd-metrics/1",
         "world": world.name,
@@ -110,9 +111,8 @@ pub fn measure(world: &World, spaces: &[Space], trajectory: &Trajectory, outcome
 fn moment(track: &Track, robot: bool, t: f64) -> Option<Moment<'_>> {
     let here = track.at(t)?;
     let before = track.at(t - 0.2).filter(|s| s.level == here.level);
-    let velocity = before.map_or(Point::new(0.0, 0.0), |b| {
-        Point::new((here.at.x - b.at.x) / 0.2, (here.at.y - b.at.y) / 0.2)
-    });
+    let velocity =
+        before.map_or(Point::new(0.0, 0.0), |b| Point::new((here.at.x - b.at.x) / 0.2, (here.at.y - b.at.y) / 0.2));
     let seated = track.pause_at(t).is_some_and(|kind| matches!(kind, "seat" | "bed"));
     Some(Moment { track, robot, here, velocity, seated })
 }
@@ -142,9 +142,9 @@ fn look<'t>(now: &[Moment<'t>], seen: &mut BTreeMap<&'t str, Seen>) {
             entry.short += LOOK_S;
         }
         let own = me.track.group.as_deref();
-        let inside = groups.iter().any(|(name, level, hull)| {
-            Some(*name) != own && *level == me.here.level && is_within(hull, me.here.at)
-        });
+        let inside = groups
+            .iter()
+            .any(|(name, level, hull)| Some(*name) != own && *level == me.here.level && is_within(hull, me.here.at));
         if inside {
             entry.intruded += LOOK_S;
         }
@@ -300,7 +300,8 @@ fn density(spaces: &[Space], rooms: &BTreeMap<(i32, usize), (f64, f64)>, steps: 
             let space = spaces.iter().find(|s| s.level == *level)?;
             let area = space.outlines[*room].area().max(0.01);
             let mean = sum / f64::from(steps + 1) / area;
-            let entry = json!({"room_id": space.rooms[*room], "mean_per_m2": round(mean), "most_per_m2": round(most / area)});
+            let entry =
+                json!({"room_id": space.rooms[*room], "mean_per_m2": round(mean), "most_per_m2": round(most / area)});
             Some((most / area, entry))
         })
         .collect();

@@ -96,14 +96,8 @@ pub fn simulate(
             if robot { &mut robots } else { &mut agents }.push(track);
         }
     }
-    let trajectory = Trajectory {
-        format: "crowd/1",
-        world: world.name.clone(),
-        seed,
-        hour: scenario.hour.clone(),
-        agents,
-        robots,
-    };
+    let trajectory =
+        Trajectory { format: "crowd/1", world: world.name.clone(), seed, hour: scenario.hour.clone(), agents, robots };
     let metrics = figures::measure(world, &spaces, &trajectory, &outcomes, options.seconds);
     Ok(Run { walkable: walkable::geojson(&spaces), trajectory, metrics })
 }

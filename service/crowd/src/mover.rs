@@ -1,8 +1,8 @@
 //! Somebody who moves: what it is to do, where it is, and the record of that.
 
+use d3dgen_model::Point;
 use d3dgen_model::scenario::Act;
 use d3dgen_model::trajectory::{Goal, Pause, Sample, Track};
-use d3dgen_model::Point;
 
 use crate::routes::Leg;
 
@@ -29,20 +29,42 @@ pub enum State {
     Idle,
     Walking,
     /// Opens a door.
-    Opening { until: f64 },
+    Opening {
+        until: f64,
+    },
     /// Waits for a place in a lift or on a landing.
     BeforeRide,
-    Riding { until: f64, link: usize, from: (usize, usize), to: (usize, usize) },
+    Riding {
+        until: f64,
+        link: usize,
+        from: (usize, usize),
+        to: (usize, usize),
+    },
     /// Stands in a line.
-    InLine { station: usize },
+    InLine {
+        station: usize,
+    },
     /// Is served, talks, works or stands until then.
-    Busy { until: f64 },
+    Busy {
+        until: f64,
+    },
     /// Gets on or off a seat or bed, or is on it; `None`: to the end.
-    GettingOn { since: f64, until: f64 },
-    On { until: f64 },
-    GettingOff { since: f64 },
+    GettingOn {
+        since: f64,
+        until: f64,
+    },
+    On {
+        until: f64,
+    },
+    GettingOff {
+        since: f64,
+    },
     /// Makes way until then, at the end of its way.
-    Yielding { until: f64, to: usize, arrived: bool },
+    Yielding {
+        until: f64,
+        to: usize,
+        arrived: bool,
+    },
     Gone,
 }
 
@@ -142,6 +164,11 @@ impl Mover {
         matches!(self.state, State::GettingOn { .. } | State::On { .. } | State::GettingOff { .. })
     }
 
+    /// Returns true for one who sits or lies.
+    pub fn is_settled(&self) -> bool {
+        matches!(self.state, State::On { .. })
+    }
+
     /// Returns true for one who is on its way.
     pub fn is_walking(&self) -> bool {
         matches!(self.state, State::Walking | State::Opening { .. } | State::Yielding { arrived: false, .. })
@@ -199,15 +226,22 @@ impl Mover {
         let mut goals = Vec::new();
         for reached in &self.reached {
             let level = levels[reached.level];
-            let first = self.samples.iter().find(|s| {
-                s.t >= now - 1e-9 && s.level == level && s.at.distance(reached.at) <= reached.radius
-            });
+            let first = self
+                .samples
+                .iter()
+                .find(|s| s.t >= now - 1e-9 && s.level == level && s.at.distance(reached.at) <= reached.radius);
             let Some(first) = first else { continue };
             let left = reached.left.unwrap_or(end).min(end);
             let wait = ((left - first.t).max(0.0) * 1000.0).round() / 1000.0;
             now = first.t + wait;
             let round = |v: f64| (v * 1000.0).round() / 1000.0;
-            goals.push(Goal { x: round(reached.at.x), y: round(reached.at.y), radius: reached.radius, wait, level: level.to_string() });
+            goals.push(Goal {
+                x: round(reached.at.x),
+                y: round(reached.at.y),
+                radius: reached.radius,
+                wait,
+                level: level.to_string(),
+            });
         }
         Some(Track {
             id: self.id,

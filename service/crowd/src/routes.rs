@@ -128,7 +128,8 @@ impl Router {
         (to_level, to): (usize, Point),
     ) -> Option<Vec<Leg>> {
         let (a, b) = (spaces[from_level].room_at(from)?, spaces[to_level].room_at(to)?);
-        if from_level == to_level && a == b
+        if from_level == to_level
+            && a == b
             && let Some((_, way)) = self.within(&spaces[from_level], a, from, to)
         {
             return Some(vec![Leg { level: from_level, way, ride: None }]);
@@ -284,7 +285,12 @@ impl Router {
                 continue;
             }
             let room = *p.rooms.iter().filter(|r| q.rooms.contains(r)).min_by(|x, y| {
-                let cost = |r: &usize| self.stretches.get(&(r * 1000 + level, pair[0].min(pair[1]), pair[0].max(pair[1]))).and_then(|s| s.as_ref()).map_or(f64::MAX, |s| s.0);
+                let cost = |r: &usize| {
+                    self.stretches
+                        .get(&(r * 1000 + level, pair[0].min(pair[1]), pair[0].max(pair[1])))
+                        .and_then(|s| s.as_ref())
+                        .map_or(f64::MAX, |s| s.0)
+                };
                 cost(x).total_cmp(&cost(y))
             })?;
             let mut part = self.between(&spaces[level], level, room, pair[0], pair[1]).as_ref()?.1.clone();

@@ -46,7 +46,11 @@ pub fn search(
         }
         for (m, far) in space.around(n) {
             let next = so_far + cost(space, m, far, radius);
-            if next <= most && space.clear(m) >= radius && may(m) && field.costs.get(&m).is_none_or(|known| next < *known) {
+            if next <= most
+                && space.clear(m) >= radius
+                && may(m)
+                && field.costs.get(&m).is_none_or(|known| next < *known)
+            {
                 field.costs.insert(m, next);
                 field.before.insert(m, n);
                 open.push(Reverse((next, m)));

@@ -158,7 +158,7 @@ fn stay(room_id: &str, places: &Places, spaces: &[Space]) -> Option<Task> {
 
 fn source(flow: &Flow, places: &Places, seed: u64, access: usize) -> Option<Source> {
     let &(level, _) = places.rooms.get(flow.room_id.as_str())?;
-    let itineraries = flow.itineraries.iter().map(|steps| steps.iter().filter_map(|s| task(s, places)).collect());
+    let itineraries = flow.itineraries.iter().map(|i| i.steps.iter().filter_map(|s| task(s, places)).collect());
     Some(Source {
         id: flow.flow_id.clone(),
         role: flow.role.clone(),
@@ -194,7 +194,15 @@ fn robot(r: &RobotTask, scenario: &Scenario, places: &Places, spaces: &[Space], 
         }
         let corner = |p: &Point| {
             let room = spaces[level].room_at(*p)?;
-            Some(Task { level, room, at: *p, act: Act::Pass, seconds: CORNER_S, station: None, job: Some(job.job_id.clone()) })
+            Some(Task {
+                level,
+                room,
+                at: *p,
+                act: Act::Pass,
+                seconds: CORNER_S,
+                station: None,
+                job: Some(job.job_id.clone()),
+            })
         };
         mover.tasks.extend(job.path.iter().filter_map(corner));
     }

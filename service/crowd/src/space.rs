@@ -66,7 +66,8 @@ impl Space {
         let (nx, ny) = (count(bounds.width()), count(bounds.height()));
         let origin = Point::new(bounds.x0, bounds.y0);
         let (zones, clear) = (vec![NOWHERE; nx * ny], vec![0.0; nx * ny]);
-        let mut out = Self { level, rooms, outlines, doors, things, obstacles, exit: exit(plan), origin, nx, ny, zones, clear };
+        let mut out =
+            Self { level, rooms, outlines, doors, things, obstacles, exit: exit(plan), origin, nx, ny, zones, clear };
         out.paint();
         out
     }
@@ -168,15 +169,11 @@ impl Space {
         zone == room || zone >= self.rooms.len() && self.doors[zone - self.rooms.len()].rooms.contains(&room)
     }
 
-    /// Returns the distance of a point to the nearest wall or thing where that is less than `most`, m; as quickly as possible.
+    /// Returns true for a point of the floor that is at least so far from walls and things, m.
     pub fn is_clear(&self, p: Point, least: f64) -> bool {
         let n = self.node(p);
-        if self.zones[n] == NOWHERE && self.room_at(p).is_none() {
-            return false;
-        }
         let known = f64::from(self.clear[n]) - self.point(n).distance(p);
-        known >= least || self.obstacles.distance(p, least) >= least - 1e-9 && !self.things.is_empty() && self.is_open(p)
-            || self.things.is_empty() && self.obstacles.distance(p, least) >= least - 1e-9
+        known >= least || self.is_open(p) && self.obstacles.distance(p, least) >= least - 1e-9
     }
 
     /// Returns true for a point with a node around it that is floor: far from all edges means inside something, too.

@@ -80,8 +80,10 @@ impl Frame {
 /// # Errors
 /// `Picture` when the encoder refuses it: a bug of ours.
 pub fn film(world: &World, trajectory: &Trajectory) -> Result<Vec<u8>, Error> {
-    let roles: Vec<&str> = trajectory.agents.iter().map(|t| t.role.as_str()).collect::<BTreeSet<_>>().into_iter().collect();
-    let kinds: Vec<&str> = trajectory.robots.iter().map(|t| t.role.as_str()).collect::<BTreeSet<_>>().into_iter().collect();
+    let roles: Vec<&str> =
+        trajectory.agents.iter().map(|t| t.role.as_str()).collect::<BTreeSet<_>>().into_iter().collect();
+    let kinds: Vec<&str> =
+        trajectory.robots.iter().map(|t| t.role.as_str()).collect::<BTreeSet<_>>().into_iter().collect();
     let (frames, size) = layout(world);
     let lines = roles.len() + kinds.len() + 4;
     let height = size.1.max(lines as f64 * LINE_PX + 2.0 * MARGIN_PX);
@@ -143,7 +145,9 @@ fn background(
     (roles, kinds): (&[&str], &[&str]),
     (width, height): (usize, usize),
 ) -> String {
-    let mut svg = format!("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\"><rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>");
+    let mut svg = format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\"><rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>"
+    );
     for frame in frames {
         plan(&mut svg, world, frame);
     }
@@ -155,7 +159,9 @@ fn background(
     let mut line = |svg: &mut String, name: &str, color: [u8; 3], square: bool, count: usize| {
         let [r, g, b] = color;
         let mark = match square {
-            true => format!("<rect x=\"{}\" y=\"{}\" width=\"11\" height=\"11\" fill=\"rgb({r},{g},{b})\"/>", x, y - 10.0),
+            true => {
+                format!("<rect x=\"{}\" y=\"{}\" width=\"11\" height=\"11\" fill=\"rgb({r},{g},{b})\"/>", x, y - 10.0)
+            }
             false => format!("<circle cx=\"{}\" cy=\"{}\" r=\"5.5\" fill=\"rgb({r},{g},{b})\"/>", x + 5.5, y - 4.5),
         };
         svg.push_str(&mark);
@@ -209,7 +215,8 @@ fn plan(svg: &mut String, world: &World, frame: &Frame) {
 }
 
 fn shape(svg: &mut String, frame: &Frame, outline: &Polygon, fill: &str) {
-    let points: Vec<String> = outline.corners().iter().map(|p| frame.map(*p)).map(|(x, y)| format!("{x:.1},{y:.1}")).collect();
+    let points: Vec<String> =
+        outline.corners().iter().map(|p| frame.map(*p)).map(|(x, y)| format!("{x:.1},{y:.1}")).collect();
     // writing to a string cannot fail
     let _ = write!(svg, "<polygon points=\"{}\" fill=\"{fill}\"/>", points.join(" "));
 }
@@ -228,7 +235,8 @@ fn text_in(svg: &mut String, font: &Font, text: &str, (x, y): (f64, f64), size: 
 fn raster(svg: &str, width: usize, height: usize) -> Result<Canvas, Error> {
     let refused = |reason: String| Error::Picture { picture: "film", reason };
     let tree = usvg::Tree::from_str(svg, &usvg::Options::default()).map_err(|e| refused(e.to_string()))?;
-    let mut pixmap = tiny_skia::Pixmap::new(width as u32, height as u32).ok_or_else(|| refused("it has no size".into()))?;
+    let mut pixmap =
+        tiny_skia::Pixmap::new(width as u32, height as u32).ok_or_else(|| refused("it has no size".into()))?;
     resvg::render(&tree, tiny_skia::Transform::identity(), &mut pixmap.as_mut());
     let level = |v: u8| (u16::from(v) * u16::from(STEPS - 1) + 127) / 255;
     let index = |p: &tiny_skia::PremultipliedColorU8| {
@@ -254,7 +262,9 @@ fn palette() -> Vec<u8> {
 fn digits() -> Result<BTreeMap<char, Canvas>, Error> {
     let font = Font::new(Weight::SemiBold);
     let draw = |c: char| {
-        let mut svg = String::from("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"15\" height=\"28\"><rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>");
+        let mut svg = String::from(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"15\" height=\"28\"><rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>",
+        );
         text(&mut svg, &font, &c.to_string(), (if c == ':' { 4.0 } else { 1.0 }, 23.0), 26.0);
         Ok((c, raster(&(svg + "</svg>"), 15, 28)?))
     };

@@ -70,7 +70,8 @@ impl Hour {
 pub fn named_in(text: &str) -> Option<(&'static Hour, &'static str)> {
     let text = format!(" {} ", text.to_lowercase().replace(|c: char| !c.is_alphanumeric(), " "));
     let words = |hour: &'static Hour| hour.keywords.values().flatten().map(move |word| (hour, word.as_str()));
-    let spaced = |word: &str| if word.is_ascii() || !word.chars().any(is_unspaced) { format!(" {word} ") } else { word.into() };
+    let spaced =
+        |word: &str| if word.is_ascii() || !word.chars().any(is_unspaced) { format!(" {word} ") } else { word.into() };
     let said = HOURS.iter().flat_map(words).filter(|(_, word)| text.contains(&spaced(word)));
     // of equal length the first in the order of the day
     said.rev().max_by_key(|(_, word)| word.chars().count())
@@ -99,6 +100,10 @@ mod tests {
         }
         assert!(get(USUAL).is_some());
         let shares = all().iter().flat_map(|h| h.people.iter());
-        assert!(shares.clone().all(|(kind, share)| ["visitor", "occupant", "staff"].contains(&kind.as_str()) && *share >= 0.0));
+        assert!(
+            shares
+                .clone()
+                .all(|(kind, share)| ["visitor", "occupant", "staff"].contains(&kind.as_str()) && *share >= 0.0)
+        );
     }
 }

@@ -12,7 +12,8 @@ use crate::scene_graph::Robot;
 use crate::storeys::is_ground;
 
 pub use script::{
-    Act, Condition, ConditionOp, Flow, GROUP_SIZES, Job, JobKind, Station, Step, WALKING_SPEEDS_M_S,
+    Act, Condition, ConditionOp, Flow, GROUP_SIZES, Itinerary, RobotJob, RobotJobKind, Station, Step,
+    WALKING_SPEEDS_M_S,
 };
 
 /// What happens in a world.
@@ -171,7 +172,7 @@ pub struct RobotTask {
     pub routes: Vec<Route>,
     /// What it does, in turn.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub jobs: Vec<Job>,
+    pub jobs: Vec<RobotJob>,
     /// POI id of its dock.
     #[serde(default)]
     pub dock: Option<String>,
@@ -283,7 +284,7 @@ impl Scenario {
         let agents = self.agents.iter().enumerate();
         let agents = agents.map(|(i, a)| (format!("/agents/{i}"), a.steps.iter().collect::<Vec<_>>(), a.on.as_ref()));
         let flows = self.flows.iter().enumerate();
-        let flows = flows.map(|(i, f)| (format!("/flows/{i}"), f.itineraries.iter().flatten().collect(), None));
+        let flows = flows.map(|(i, f)| (format!("/flows/{i}"), f.steps().collect(), None));
         for (path, steps, on) in agents.chain(flows) {
             let named = steps.iter().filter_map(|s| s.station.as_ref()).chain(on);
             for id in named.filter(|id| !known.contains(id.as_str())) {

@@ -239,7 +239,7 @@ impl Scenario {
             agent.steps.retain(here);
         }
         let mut flows: Vec<_> = self.flows.iter().filter(|f| ids.contains(f.room_id.as_str())).cloned().collect();
-        flows.iter_mut().flat_map(|f| &mut f.itineraries).for_each(|steps| steps.retain(here));
+        flows.iter_mut().flat_map(|f| &mut f.itineraries).for_each(|i| i.steps.retain(here));
         for robot in &mut robots {
             robot.jobs.iter_mut().for_each(|job| job.to.retain(known));
             robot.jobs.retain(|job| job.from.iter().all(known) && !(job.to.is_empty() && job.path.is_empty()));

@@ -72,8 +72,7 @@ fn of_visitors(scenario: &Scenario, plan: &Floorplan, domain: &Domain) -> Vec<Co
         let own = domain.tags_of(domain.room_type_or_generic(room_type));
         own.contains(tags::RESTRICTED) || own.contains(tags::DIRTY)
     };
-    let closed: Vec<&str> =
-        plan.rooms.iter().filter(|r| is_closed(&r.room_type)).map(|r| r.room_id.as_str()).collect();
+    let closed: Vec<&str> = plan.rooms.iter().filter(|r| is_closed(&r.room_type)).map(|r| r.room_id.as_str()).collect();
     let never = |role: &str, room: &str| condition(ConditionOp::Never, role, room, format!("no {role} is in {room}"));
     visitors.flat_map(|role| closed.iter().map(|room| never(&role.id, room))).collect()
 }

@@ -8,7 +8,7 @@ use d3dgen_model::brief::{Ask, AskedTask, Brief, Fact, RobotsAsk, Subject};
 use d3dgen_model::domain::Goods;
 use d3dgen_model::geometry::to_mm;
 use d3dgen_model::robot_kind::{brings, cleans};
-use d3dgen_model::scenario::{Job, JobKind, Poi, RobotTask, RoiKind, Scenario};
+use d3dgen_model::scenario::{Poi, RobotJob, RobotJobKind, RobotTask, RoiKind, Scenario};
 use serde::Deserialize;
 
 use super::people::PeopleBuilding;
@@ -22,7 +22,7 @@ const OVERLAP: f64 = 0.1;
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Work {
-    kind: JobKind,
+    kind: RobotJobKind,
     /// Verbs of briefs that mean it.
     verbs: Vec<String>,
     /// Kinds of robots that do it where nothing is said.
@@ -47,7 +47,7 @@ fn work(of: impl Fn(&Work) -> bool) -> Option<&'static Work> {
 
 fn usual(kind: &str) -> &'static Work {
     let own = work(|w| w.robots.iter().any(|k| k == kind));
-    own.or_else(|| work(|w| w.kind == if brings(kind) { JobKind::Deliver } else { JobKind::Patrol }))
+    own.or_else(|| work(|w| w.kind == if brings(kind) { RobotJobKind::Deliver } else { RobotJobKind::Patrol }))
         .expect("a test reads these kinds of work")
 }
 
@@ -57,11 +57,12 @@ pub(crate) fn add(scenario: &mut Scenario, building: &PeopleBuilding, brief: Opt
     let mut robots = std::mem::take(&mut scenario.robots);
     let mut turns: BTreeMap<String, usize> = BTreeMap::new();
     for task in &mut robots {
-        let own: Vec<&(&Ask, &RobotsAsk)> = asks.iter().filter(|(_, r)| r.kind == task.robot.kind && !r.tasks.is_empty()).collect();
+        let own: Vec<&(&Ask, &RobotsAsk)> =
+            asks.iter().filter(|(_, r)| r.kind == task.robot.kind && !r.tasks.is_empty()).collect();
         let turn = turns.entry(task.robot.kind.clone()).or_default();
         let ask = own.get(*turn % own.len().max(1)).copied();
         *turn += 1;
-        let mut jobs: Vec<Job> = Vec::new();
+        let mut jobs: Vec<RobotJob> = Vec::new();
         for (asked, ask_id) in ask.iter().flat_map(|(ask, robots)| robots.tasks.iter().map(|t| (t, &ask.id))) {
             jobs.extend(asked_job(scenario, building, task, asked, ask_id));
         }
@@ -100,7 +101,7 @@ fn asked_job(
     task: &RobotTask,
     asked: &AskedTask,
     ask_id: &str,
-) -> Option<Job> {
+) -> Option<RobotJob> {
     let verb = asked.verb.to_lowercase();
     let work = work(|w| w.verbs.contains(&verb)).unwrap_or_else(|| usual(&task.robot.kind));
     let from = asked.from.as_ref().and_then(|s| points_in(scenario, building, task, s).into_iter().next());
@@ -109,16 +110,16 @@ fn asked_job(
         to = task.goals.iter().filter(|id| Some(*id) != from.as_ref()).cloned().collect();
     }
     let job = job(scenario, building, task, work, from, to)?;
-    Some(Job { what: asked.what.clone().unwrap_or_default(), ask_id: Some(ask_id.to_owned()), ..job })
+    Some(RobotJob { what: asked.what.clone().unwrap_or_default(), ask_id: Some(ask_id.to_owned()), ..job })
 }
 
-fn usual_job(scenario: &Scenario, building: &PeopleBuilding, task: &RobotTask) -> Option<Job> {
+fn usual_job(scenario: &Scenario, building: &PeopleBuilding, task: &RobotTask) -> Option<RobotJob> {
     let work = usual(&task.robot.kind);
     let clean = |id: &&String| {
         let room = scenario.pois.iter().find(|p| &p.poi_id == *id).map(|p| p.room_id.as_str());
         building.rooms.iter().any(|r| Some(r.plan.room_id.as_str()) == room && r.kind.goods == Goods::Clean)
     };
-    let loads = work.kind == JobKind::Deliver && task.goals.len() > 1;
+    let loads = work.kind == RobotJobKind::Deliver && task.goals.len() > 1;
     let from = if loads { task.goals.iter().find(clean).or(task.goals.first()).cloned() } else { None };
     let to = task.goals.iter().filter(|id| Some(*id) != from.as_ref()).cloned().collect();
     job(scenario, building, task, work, from, to)
@@ -132,12 +133,16 @@ fn job(
     work: &Work,
     from: Option<String>,
     to: Vec<String>,
-) -> Option<Job> {
-    let path = if work.kind == JobKind::Clean && cleans(&task.robot.kind) { lanes(scenario, building, task, &to) } else { Vec::new() };
+) -> Option<RobotJob> {
+    let path = if work.kind == RobotJobKind::Clean && cleans(&task.robot.kind) {
+        lanes(scenario, building, task, &to)
+    } else {
+        Vec::new()
+    };
     if to.is_empty() && path.is_empty() {
         return None;
     }
-    Some(Job {
+    Some(RobotJob {
         job_id: String::new(),
         kind: work.kind,
         what: String::new(),
@@ -207,7 +212,7 @@ mod tests {
         verbs.sort();
         verbs.dedup();
         assert_eq!(verbs.len(), all);
-        assert_eq!(usual("no_such_kind").kind, JobKind::Deliver);
-        assert_eq!(usual("cleaning").kind, JobKind::Clean);
+        assert_eq!(usual("no_such_kind").kind, RobotJobKind::Deliver);
+        assert_eq!(usual("cleaning").kind, RobotJobKind::Clean);
     }
 }

@@ -16,7 +16,7 @@ fn point(pose: &Pose) -> Point {
 /// What is known of those who do something: name, role, steps.
 fn all(c: &Context) -> Vec<(String, String, Vec<Step>)> {
     let of_agent = |a: &Agent| (a.agent_id.clone(), a.role.clone(), a.steps.clone());
-    let of_flow = |f: &Flow| (f.flow_id.clone(), f.role.clone(), f.itineraries.iter().flatten().cloned().collect());
+    let of_flow = |f: &Flow| (f.flow_id.clone(), f.role.clone(), f.steps().cloned().collect());
     let scenario = &c.world.scenario;
     scenario.agents.iter().map(of_agent).chain(scenario.flows.iter().map(of_flow)).collect()
 }
@@ -68,7 +68,8 @@ pub fn stations(c: &Context, out: &mut Findings) {
         c.world.scenario.stations.iter().map(|s| (s.station_id.as_str(), s.room_id.as_str())).collect();
     for (name, _, steps) in all(c) {
         for step in &steps {
-            let elsewhere = step.station.as_ref().and_then(|s| used.get(s.as_str())).is_some_and(|r| *r != step.room_id);
+            let elsewhere =
+                step.station.as_ref().and_then(|s| used.get(s.as_str())).is_some_and(|r| *r != step.room_id);
             if elsewhere {
                 out.add(&name, format!("uses what is not in `{}`", step.room_id));
             } else if !c.is_clear(&clear, point(&step.pose)) {
@@ -92,7 +93,13 @@ pub fn pace(c: &Context, out: &mut Findings) {
     }
     for flow in scenario.flows.iter().filter(|f| f.group[1] > GROUP_SIZES[1]) {
         let (most, found) = (f64::from(GROUP_SIZES[1]), f64::from(flow.group[1]));
-        out.add_figure(&flow.flow_id, format!("has groups of {found} people, of {most} at most are seen"), found, most, "");
+        out.add_figure(
+            &flow.flow_id,
+            format!("has groups of {found} people, of {most} at most are seen"),
+            found,
+            most,
+            "",
+        );
     }
 }
 

@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 use d3dgen_model::document::Document;
 use d3dgen_model::domain::Domain;
 use d3dgen_model::floorplan::Floorplan;
+use d3dgen_model::hours;
 use d3dgen_model::placements::Placements;
 use d3dgen_model::scenario::Scenario;
 use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::world::World;
-use d3dgen_model::hours;
 use d3dgen_pipeline::scenario::{self, Wishes};
 
 use crate::error::Error;
@@ -65,9 +65,12 @@ impl Args {
                 let world = world_of(world)?;
                 (world.scene_graph, world.floorplan, world.placements, world.brief)
             }
-            [graph, plan, placements] => {
-                (document::<SceneGraph>(graph)?, document::<Floorplan>(plan)?, document::<Placements>(placements)?, None)
-            }
+            [graph, plan, placements] => (
+                document::<SceneGraph>(graph)?,
+                document::<Floorplan>(plan)?,
+                document::<Placements>(placements)?,
+                None,
+            ),
             _ => return Err(Error::Input("give a world, or its scene graph, floorplan and placements".into())),
         };
         let plugin = domain(&registry, &graph.domain)?;

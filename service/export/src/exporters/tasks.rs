@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 use d3dgen_model::document::Document;
 use d3dgen_model::domain::Domain;
 use d3dgen_model::geometry::{Pose, to_mm};
-use d3dgen_model::scenario::{Act, Agent, Job, JobKind, RobotTask, Scenario};
+use d3dgen_model::scenario::{Act, Agent, RobotJob, RobotJobKind, RobotTask, Scenario};
 use d3dgen_model::world::World;
 use serde_json::{Map, Value, json};
 
@@ -103,7 +103,8 @@ fn waypoints(robot: &RobotTask, scenario: &Scenario) -> Value {
     let waypoint = |(k, pose): (usize, &Pose)| {
         let (sin, cos) = (pose.yaw_rad / 2.0).sin_cos();
         let round = |v: f64| (v * 1e6).round() / 1e6;
-        let value = json!({"pose": [to_mm(pose.x), to_mm(pose.y), 0.0], "orientation": [round(cos), 0.0, 0.0, round(sin)]});
+        let value =
+            json!({"pose": [to_mm(pose.x), to_mm(pose.y), 0.0], "orientation": [round(cos), 0.0, 0.0, round(sin)]});
         (format!("waypoint{k}"), value)
     };
     let all: Map<String, Value> = poses.map(|p| &p.pose).enumerate().map(waypoint).collect();
@@ -111,7 +112,7 @@ fn waypoints(robot: &RobotTask, scenario: &Scenario) -> Value {
 }
 
 /// Returns a job as Open-RMF's task API takes it: deliveries from one place to each other one, all else as a patrol.
-fn requests(job: &Job) -> Vec<Value> {
+fn requests(job: &RobotJob) -> Vec<Value> {
     let request = |category: &str, description: Value| {
         json!({"type": "dispatch_task_request", "request": {
             "unix_millis_earliest_start_time": 0, "category": category, "description": description,
@@ -119,8 +120,9 @@ fn requests(job: &Job) -> Vec<Value> {
     };
     let sku = if job.what.is_empty() { "goods" } else { &job.what };
     match (&job.from, job.kind) {
-        (Some(from), JobKind::Deliver) => {
-            let stop = |place: &String| json!({"place": place, "handler": place, "payload": [{"sku": sku, "quantity": 1}]});
+        (Some(from), RobotJobKind::Deliver) => {
+            let stop =
+                |place: &String| json!({"place": place, "handler": place, "payload": [{"sku": sku, "quantity": 1}]});
             job.to.iter().map(|to| request("delivery", json!({"pickup": stop(from), "dropoff": stop(to)}))).collect()
         }
         _ if job.to.is_empty() => Vec::new(),
@@ -141,7 +143,16 @@ mod tests {
         let first = &agents["hunav_loader"]["ros__parameters"]["agent1"];
         let keys: Vec<&String> = first.as_object().expect("it is a map").keys().collect();
         let known = [
-            "id", "skin", "behavior", "group_id", "max_vel", "radius", "init_pose", "goal_radius", "cyclic_goals", "goals",
+            "id",
+            "skin",
+            "behavior",
+            "group_id",
+            "max_vel",
+            "radius",
+            "init_pose",
+            "goal_radius",
+            "cyclic_goals",
+            "goals",
             "g0",
         ];
         assert_eq!(keys, known);
@@ -150,7 +161,7 @@ mod tests {
 
     #[test]
     fn deliveries_name_both_places_and_rounds_are_patrols() {
-        let job = |kind, from: Option<&str>| Job {
+        let job = |kind, from: Option<&str>| RobotJob {
             job_id: "job_1".into(),
             kind,
             what: "linen".into(),
@@ -161,11 +172,11 @@ mod tests {
             seconds: 10.0,
             ask_id: None,
         };
-        let deliveries = requests(&job(JobKind::Deliver, Some("store")));
+        let deliveries = requests(&job(RobotJobKind::Deliver, Some("store")));
         assert_eq!(deliveries.len(), 2);
         assert_eq!(deliveries[1]["request"]["description"]["dropoff"]["place"], "b");
         assert_eq!(deliveries[0]["request"]["description"]["pickup"]["payload"][0]["sku"], "linen");
-        let rounds = requests(&job(JobKind::Inspect, None));
+        let rounds = requests(&job(RobotJobKind::Inspect, None));
         assert_eq!(rounds[0]["request"]["category"], "patrol");
         assert_eq!(rounds[0]["request"]["description"]["places"], json!(["a", "b"]));
     }

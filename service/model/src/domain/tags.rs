@@ -43,9 +43,35 @@ pub const DESKS: &str = "desks";
 /// are made and repaired. `study`: people read and learn by themselves. `play`: children play. `live`: a household spends its
 /// days. `vehicle`: vehicles stand. `research`: things are examined scientifically.
 pub const GIVEN: [&str; 29] = [
-    "treatment", "operating", "imaging", "station", "medicine", "wait", "reception", "eat", "cook", "meet", "teach", "lead",
-    "sell", "pay", "travel", "stay", "show", "pray", "exercise", "change", "rest", "guard", "goods", "make", "study", "play",
-    "live", "vehicle", "research",
+    "treatment",
+    "operating",
+    "imaging",
+    "station",
+    "medicine",
+    "wait",
+    "reception",
+    "eat",
+    "cook",
+    "meet",
+    "teach",
+    "lead",
+    "sell",
+    "pay",
+    "travel",
+    "stay",
+    "show",
+    "pray",
+    "exercise",
+    "change",
+    "rest",
+    "guard",
+    "goods",
+    "make",
+    "study",
+    "play",
+    "live",
+    "vehicle",
+    "research",
 ];
 
 const DERIVED: [&str; 13] =

@@ -130,17 +130,32 @@ pub struct Flow {
     /// Fewest and most people of a group.
     pub group: [u32; 2],
     /// What they do: each group takes one of these, then leaves.
-    pub itineraries: Vec<Vec<Step>>,
+    pub itineraries: Vec<Itinerary>,
+}
+
+/// What people of a flow do between coming and leaving.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Itinerary {
+    /// Steps in turn.
+    pub steps: Vec<Step>,
+}
+
+impl Flow {
+    /// Returns the steps of all its itineraries.
+    pub fn steps(&self) -> impl Iterator<Item = &Step> {
+        self.itineraries.iter().flat_map(|i| &i.steps)
+    }
 }
 
 /// A piece of work of a robot.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Job {
+pub struct RobotJob {
     /// Unique within the robot: `deliver_1`.
     pub job_id: String,
     /// What it does.
-    pub kind: JobKind,
+    pub kind: RobotJobKind,
     /// What it carries or looks at, as the prompt says; empty where nothing does.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub what: String,
@@ -166,7 +181,7 @@ pub struct Job {
 /// Kind of a robot's work.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum JobKind {
+pub enum RobotJobKind {
     /// Takes something from one place to others.
     Deliver,
     /// Goes over all of a floor.
@@ -183,7 +198,7 @@ pub enum JobKind {
     Serve,
 }
 
-impl JobKind {
+impl RobotJobKind {
     /// Returns its name in documents.
     pub fn name(self) -> &'static str {
         match self {

@@ -34,7 +34,8 @@ impl<'a> Access<'a> {
     /// begins nowhere.
     pub fn reach(&self, role: &Role, from: Option<&str>) -> BTreeSet<&'a str> {
         let may = |id: &str| self.kinds.get(id).is_some_and(|(kind, tags)| role.may_enter(kind, tags));
-        let Some(from) = from.and_then(|id| self.kinds.get_key_value(id)).map(|(id, _)| *id).filter(|id| may(id)) else {
+        let Some(from) = from.and_then(|id| self.kinds.get_key_value(id)).map(|(id, _)| *id).filter(|id| may(id))
+        else {
             return self.kinds.keys().copied().filter(|id| may(id)).collect();
         };
         let mut out = BTreeSet::from([from]);

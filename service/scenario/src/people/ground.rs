@@ -161,9 +161,11 @@ fn spots(plan: &Floorplan, room: &PlanRoom, occupancy: &Occupancy, [easy, main]:
     let doors: Vec<Point> = plan.doors_of(&room.room_id).map(|d| d.line.middle()).collect();
     let cells = |map: &Bitmap, from_door: f64| -> Vec<Point> {
         let rows = j0.max(0)..j1.min(occupancy.frame.ny as i64);
-        let all = rows.flat_map(|j| (i0.max(0)..i1.min(occupancy.frame.nx as i64)).map(move |i| (i as usize, j as usize)));
+        let all =
+            rows.flat_map(|j| (i0.max(0)..i1.min(occupancy.frame.nx as i64)).map(move |i| (i as usize, j as usize)));
         // every other cell is enough
-        let all = all.filter(|(i, j)| i % 2 == 0 && j % 2 == 0 && map.get(*i, *j)).map(|(i, j)| occupancy.frame.center(i, j));
+        let all =
+            all.filter(|(i, j)| i % 2 == 0 && j % 2 == 0 && map.get(*i, *j)).map(|(i, j)| occupancy.frame.center(i, j));
         all.filter(|p| room.net_polygon.contains(*p) && doors.iter().all(|d| d.distance(*p) >= from_door)).collect()
     };
     let tries = [(easy, FROM_DOOR_M), (easy, 0.0), (main, FROM_DOOR_M), (main, 0.0)];

@@ -14,7 +14,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use d3dgen_model::domain::{Counted, Domain, Role, RoleKind, Round, is_named};
 use d3dgen_model::floorplan::Floorplan;
 use d3dgen_model::hours::Hour;
-use d3dgen_model::scenario::{Agent, Flow, Scenario, Station, Step};
+use d3dgen_model::scenario::{Agent, Flow, Itinerary, Scenario, Station, Step};
 use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::seed::Stream;
 use d3dgen_model::{Point, Pose};
@@ -50,7 +50,9 @@ pub(crate) fn fill(scenario: &mut Scenario, graph: &SceneGraph, plan: &Floorplan
     let mut writer = Writer::new(building, &scenario.robots, &scenario.pois);
     let mut agents: Vec<(usize, Agent)> = Vec::new();
     // those that others go to are known before these
-    let visited = |role: &Role| domain.roles.iter().flat_map(|r| &r.rounds).flat_map(|r| &r.steps).any(|s| s.to_role.as_ref() == Some(&role.id));
+    let visited = |role: &Role| {
+        domain.roles.iter().flat_map(|r| &r.rounds).flat_map(|r| &r.steps).any(|s| s.to_role.as_ref() == Some(&role.id))
+    };
     let mut order: Vec<usize> = (0..domain.roles.len()).collect();
     order.sort_by_key(|&i| !visited(&domain.roles[i]));
     let mut flows: Vec<(usize, Flow)> = Vec::new();
@@ -80,15 +82,16 @@ pub(crate) fn fill(scenario: &mut Scenario, graph: &SceneGraph, plan: &Floorplan
 
 /// Returns the stations that steps name, and all of the rooms and acts of steps that take what is free.
 fn used(writer: &Writer, agents: &[Agent], flows: &[Flow]) -> Vec<Station> {
-    let steps: Vec<&Step> =
-        agents.iter().flat_map(|a| &a.steps).chain(flows.iter().flat_map(|f| f.itineraries.iter().flatten())).collect();
-    let named: BTreeSet<&str> =
-        steps.iter().filter_map(|s| s.station.as_deref()).chain(agents.iter().filter_map(|a| a.on.as_deref())).collect();
+    let steps: Vec<&Step> = agents.iter().flat_map(|a| &a.steps).chain(flows.iter().flat_map(Flow::steps)).collect();
+    let named: BTreeSet<&str> = steps
+        .iter()
+        .filter_map(|s| s.station.as_deref())
+        .chain(agents.iter().filter_map(|a| a.on.as_deref()))
+        .collect();
     let open: BTreeSet<(&str, &str)> =
         steps.iter().filter(|s| s.station.is_none()).map(|s| (s.room_id.as_str(), s.act.name())).collect();
-    let is_used = |s: &&Station| {
-        named.contains(s.station_id.as_str()) || open.contains(&(s.room_id.as_str(), s.act.name()))
-    };
+    let is_used =
+        |s: &&Station| named.contains(s.station_id.as_str()) || open.contains(&(s.room_id.as_str(), s.act.name()));
     writer.stations().filter(is_used).cloned().collect()
 }
 
@@ -96,16 +99,28 @@ fn used(writer: &Writer, agents: &[Agent], flows: &[Flow]) -> Vec<Station> {
 fn counts(scene: &Scene) -> Vec<u32> {
     let Scene { building, graph, domain, hour, .. } = scene;
     let residents = graph.occupancy.residents.unwrap_or_else(|| building.beds().clamp(1, 8));
-    let lives = |role: &Role| role.kind == RoleKind::Occupant && role.number.as_ref().is_some_and(|n| n.of == Counted::Residents);
+    let lives = |role: &Role| {
+        role.kind == RoleKind::Occupant && role.number.as_ref().is_some_and(|n| n.of == Counted::Residents)
+    };
     let at_home: Vec<bool> = domain.roles.iter().map(|r| lives(r) && has_home(scene, r)).collect();
-    let mut out: Vec<u32> = domain.roles.iter().map(|role| if lives(role) { 0 } else { count(scene, role, residents) }).collect();
+    let mut out: Vec<u32> =
+        domain.roles.iter().map(|role| if lives(role) { 0 } else { count(scene, role, residents) }).collect();
     // one of each kind of those who live there, then more of the first
-    for i in (0..at_home.len()).filter(|i| at_home[*i]).cycle().take(if at_home.contains(&true) { residents as usize } else { 0 }) {
+    for i in (0..at_home.len()).filter(|i| at_home[*i]).cycle().take(if at_home.contains(&true) {
+        residents as usize
+    } else {
+        0
+    }) {
         out[i] += 1;
     }
     // as many as are said to work there, not more
-    let works = |i: &usize| domain.roles[*i].kind != RoleKind::Visitor && domain.roles[*i].number.as_ref().is_some_and(|n| !matches!(n.of, Counted::Residents | Counted::Beds));
-    if let Some(told) = graph.occupancy.staff.map(|n| (f64::from(n) * hour.share(RoleKind::Staff)).round().max(1.0) as u32) {
+    let works = |i: &usize| {
+        domain.roles[*i].kind != RoleKind::Visitor
+            && domain.roles[*i].number.as_ref().is_some_and(|n| !matches!(n.of, Counted::Residents | Counted::Beds))
+    };
+    if let Some(told) =
+        graph.occupancy.staff.map(|n| (f64::from(n) * hour.share(RoleKind::Staff)).round().max(1.0) as u32)
+    {
         let working: Vec<usize> = (0..out.len()).filter(works).collect();
         while working.iter().map(|i| out[*i]).sum::<u32>() > told {
             let Some(&most) = working.iter().rev().max_by_key(|i| out[**i]) else { break };
@@ -116,7 +131,8 @@ fn counts(scene: &Scene) -> Vec<u32> {
 }
 
 fn has_home(scene: &Scene, role: &Role) -> bool {
-    role.home.is_empty() || scene.building.rooms.iter().any(|r| role.home.iter().any(|name| is_named(name, r.kind, &r.tags)))
+    role.home.is_empty()
+        || scene.building.rooms.iter().any(|r| role.home.iter().any(|name| is_named(name, r.kind, &r.tags)))
 }
 
 fn count(scene: &Scene, role: &Role, residents: u32) -> u32 {
@@ -126,7 +142,8 @@ fn count(scene: &Scene, role: &Role, residents: u32) -> u32 {
     // a role of a domain that says no number: one
     let Some(number) = &role.number else { return 1 };
     let rooms = || {
-        let home = |r: &&ground::Room| role.home.is_empty() || role.home.iter().any(|name| is_named(name, r.kind, &r.tags));
+        let home =
+            |r: &&ground::Room| role.home.is_empty() || role.home.iter().any(|name| is_named(name, r.kind, &r.tags));
         scene.building.rooms.iter().filter(home)
     };
     let all = match number.of {
@@ -196,11 +213,11 @@ fn flow(
     let (door, room_id, at) = scene.building.entrance()?;
     let allowed = scene.access.reach(role, Some(room_id));
     let mut stream = Stream::new(scene.graph.seed, &format!("scenario/{}/{flow_id}", scene.hour.id));
-    let mut itineraries: Vec<Vec<Step>> = Vec::new();
+    let mut itineraries: Vec<Itinerary> = Vec::new();
     for _ in 0..MOST_ITINERARIES {
-        let steps = writer.open_steps(&round.steps, &allowed, known, &mut stream);
-        if !steps.is_empty() && !itineraries.contains(&steps) {
-            itineraries.push(steps);
+        let made = Itinerary { steps: writer.open_steps(&round.steps, &allowed, known, &mut stream) };
+        if !made.steps.is_empty() && !itineraries.contains(&made) {
+            itineraries.push(made);
         }
     }
     if itineraries.is_empty() {

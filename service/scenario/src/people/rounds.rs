@@ -56,7 +56,15 @@ impl<'s, 'a> Writer<'s, 'a> {
         let docks = pois.iter().filter(|p| p.kind == Poi::DOCK || p.kind == Poi::WAITING_BAY);
         let docks = docks.map(|p| (building.level_of(&p.room_id), at(&p.pose), radius));
         let (stations, owned) = (BTreeMap::new(), BTreeSet::new());
-        Self { building, stations, owned, begun: Vec::new(), robots: starts.chain(docks).collect(), stood: Vec::new(), crowd: BTreeMap::new() }
+        Self {
+            building,
+            stations,
+            owned,
+            begun: Vec::new(),
+            robots: starts.chain(docks).collect(),
+            stood: Vec::new(),
+            crowd: BTreeMap::new(),
+        }
     }
 
     /// Returns all places that were looked at, room by room.
@@ -94,9 +102,12 @@ impl<'s, 'a> Writer<'s, 'a> {
                 out.extend(own.into_iter().map(|room| self.in_room(room, step, stream)));
                 continue;
             }
-            let again = out.iter().find(|s| s.act == step.act && s.station.is_some() && self.suits(s, &step.at)).cloned();
+            let again =
+                out.iter().find(|s| s.act == step.act && s.station.is_some() && self.suits(s, &step.at)).cloned();
             let made = again.map(|s| Step { seconds: seconds(step, stream), ..s });
-            out.extend(made.or_else(|| self.at_station(&rooms, step, stream)).or_else(|| self.somewhere(&rooms, step, stream)));
+            out.extend(
+                made.or_else(|| self.at_station(&rooms, step, stream)).or_else(|| self.somewhere(&rooms, step, stream)),
+            );
         }
         out
     }
@@ -120,14 +131,16 @@ impl<'s, 'a> Writer<'s, 'a> {
                 continue;
             }
             let rooms = self.rooms(&step.at, allowed, None, (0, 1));
-            let with_place = rooms.iter().flat_map(|(_, rooms)| rooms.iter().copied()).find(|room| {
-                step.act.affordance().is_some() && !self.of_room(*room, step.act).is_empty()
-            });
+            let with_place = rooms
+                .iter()
+                .flat_map(|(_, rooms)| rooms.iter().copied())
+                .find(|room| step.act.affordance().is_some() && !self.of_room(*room, step.act).is_empty());
             let room = with_place.or_else(|| rooms.first().and_then(|(_, rooms)| stream.pick(rooms).copied()));
             let Some(mut room) = room else { continue };
             if with_place.is_some() && step.act != Act::Queue {
                 // all alike rooms are as good
-                let alike: Vec<usize> = rooms.iter().filter(|(_, rooms)| rooms.contains(&room)).flat_map(|(_, r)| r.clone()).collect();
+                let alike: Vec<usize> =
+                    rooms.iter().filter(|(_, rooms)| rooms.contains(&room)).flat_map(|(_, r)| r.clone()).collect();
                 room = stream.pick(&alike).copied().unwrap_or(room);
             }
             out.push(self.in_room(room, step, stream));
@@ -206,9 +219,12 @@ impl<'s, 'a> Writer<'s, 'a> {
     /// Returns how far a room is, m, by and large.
     fn apart(&self, here: Point, from: Option<&Room>, to: usize) -> f64 {
         let to = &self.building.rooms[to];
-        let storeys = from.map_or(0, |r| self.building.grounds[r.ground].level.abs_diff(self.building.grounds[to.ground].level));
+        let storeys =
+            from.map_or(0, |r| self.building.grounds[r.ground].level.abs_diff(self.building.grounds[to.ground].level));
         let other = from.is_some_and(|r| r.unit != to.unit);
-        here.distance(to.plan.net_polygon.bounds().center()) + f64::from(storeys) * STOREY_M + if other { UNIT_M } else { 0.0 }
+        here.distance(to.plan.net_polygon.bounds().center())
+            + f64::from(storeys) * STOREY_M
+            + if other { UNIT_M } else { 0.0 }
     }
 
     /// Returns the places of a room where an act is done.
@@ -250,7 +266,8 @@ impl<'s, 'a> Writer<'s, 'a> {
         let level = self.building.grounds[self.building.rooms[room].ground].level;
         let at = Point::new(station.before.x, station.before.y);
         let off = |(other, p, radius): &(i32, Point, f64)| *other != level || p.distance(at) >= radius + ROBOT_PLAY_M;
-        self.begun.iter().all(|(other, p)| *other != level || p.distance(at) >= BEGIN_APART_M) && self.robots.iter().all(off)
+        self.begun.iter().all(|(other, p)| *other != level || p.distance(at) >= BEGIN_APART_M)
+            && self.robots.iter().all(off)
     }
 
     /// Returns the step in one of the nearest rooms that suit.
@@ -259,7 +276,8 @@ impl<'s, 'a> Writer<'s, 'a> {
             let most = (self.building.rooms[*room].plan.net_area_m2 / STANDING_M2).max(1.0) as u32;
             self.crowd.get(room).is_none_or(|n| *n < most)
         };
-        let with_floor = |rooms: &[usize]| rooms.iter().copied().filter(has_floor).take(NEAREST).collect::<Vec<usize>>();
+        let with_floor =
+            |rooms: &[usize]| rooms.iter().copied().filter(has_floor).take(NEAREST).collect::<Vec<usize>>();
         // where all are full, nobody goes
         let near = rooms.iter().map(|(_, rooms)| with_floor(rooms)).find(|near| !near.is_empty())?;
         let room = *stream.pick(&near)?;
@@ -289,8 +307,10 @@ impl<'s, 'a> Writer<'s, 'a> {
         let here = &self.building.rooms[room];
         let level = self.building.grounds[here.ground].level;
         let taken = |p: Point| {
-            let people = self.stood.iter().chain(&self.begun).filter(|(other, _)| *other == level).map(|(_, o)| o.distance(p));
-            let robots = self.robots.iter().filter(|(other, ..)| *other == level).map(|(_, o, r)| o.distance(p) - r + 0.25);
+            let people =
+                self.stood.iter().chain(&self.begun).filter(|(other, _)| *other == level).map(|(_, o)| o.distance(p));
+            let robots =
+                self.robots.iter().filter(|(other, ..)| *other == level).map(|(_, o, r)| o.distance(p) - r + 0.25);
             people.chain(robots).fold(f64::MAX, f64::min)
         };
         let tries: Vec<Point> = (0..TRIES).filter_map(|_| stream.pick(&here.spots).copied()).collect();
@@ -311,7 +331,14 @@ impl<'s, 'a> Writer<'s, 'a> {
     fn to_person(&self, agent: &Agent, step: &RoundStep, stream: &mut Stream) -> Step {
         let room_id = agent.steps.first().map_or_else(String::new, |s| s.room_id.clone());
         let act = if step.act.affordance().is_some() { Act::Stand } else { step.act };
-        Step { room_id, act, pose: agent.start, seconds: seconds(step, stream), station: None, with: Some(agent.agent_id.clone()) }
+        Step {
+            room_id,
+            act,
+            pose: agent.start,
+            seconds: seconds(step, stream),
+            station: None,
+            with: Some(agent.agent_id.clone()),
+        }
     }
 }
 

@@ -113,5 +113,7 @@ fn queue(ground: &Ground, room: &Room, before: Point, object: Point) -> Vec<Poin
         out.push(at);
         last = at;
     }
-    out.into_iter().map(|p| Point::new(d3dgen_model::geometry::to_mm(p.x), d3dgen_model::geometry::to_mm(p.y))).collect()
+    out.into_iter()
+        .map(|p| Point::new(d3dgen_model::geometry::to_mm(p.x), d3dgen_model::geometry::to_mm(p.y)))
+        .collect()
 }

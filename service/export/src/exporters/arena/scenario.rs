@@ -50,7 +50,7 @@ fn regions(world: &World) -> Value {
     for flow in &world.scenario.flows {
         let Some(door) = world.floorplan.doors.iter().find(|d| d.door_id == flow.door_id) else { continue };
         let mut sinks: BTreeMap<&str, u32> = BTreeMap::new();
-        for step in flow.itineraries.iter().flatten().filter(|s| world.floorplan.room(&s.room_id).is_some()) {
+        for step in flow.steps().filter(|s| world.floorplan.room(&s.room_id).is_some()) {
             *sinks.entry(&step.room_id).or_default() += 1;
         }
         if sinks.is_empty() {
