@@ -24,6 +24,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("placement", &["model", "knowledge"]),
     ("scenario", &["model", "knowledge"]),
     ("check", &["model", "knowledge"]),
+    ("crowd", &["model"]),
     (
         "pipeline",
         &["model", "plugins", "knowledge", "plans", "prompt", "program", "floorplan", "placement", "scenario", "check"],
@@ -65,6 +66,7 @@ const ARROWS: &[(&str, &[&str])] = &[
             "prompt",
             "plans",
             "export",
+            "crowd",
             "eval",
             "research",
             "propose",

@@ -3,6 +3,7 @@
 
 mod arrows;
 mod assets;
+mod crowd;
 mod dataset;
 mod documents;
 mod domain_guide;

@@ -25,6 +25,7 @@ const DOCUMENTS: &[&str] = &[
     "placements.json",
     "scenario.json",
     "proposal.json",
+    "scenarios",
     VIEW,
     PICTURES,
     manifest::FILE,
@@ -32,6 +33,8 @@ const DOCUMENTS: &[&str] = &[
 /// Folders of the page and the pictures that `view` and `render` make of a world.
 pub const VIEW: &str = "view";
 pub const PICTURES: &str = "pictures";
+/// Files of a simulation's folder; one with anything else in it is somebody's work.
+const RUN: &[&str] = &["trajectory.json", "walkable.geojson", "metrics.json", "scenario.json", "crowd.png"];
 /// The file that only the folder of a world has which may be used.
 const WORLD: &str = "world.json";
 /// The file that every world's folder has, sound or not.
@@ -83,6 +86,28 @@ impl Output {
                 Err(Error::Input(format!("{} is a file; --out needs a folder", path.display())))
             }
             found => Self::begin(path, found.is_ok(), true),
+        }
+    }
+
+    /// Returns an output for a folder that is absent, empty, or that of an earlier simulation.
+    ///
+    /// # Errors
+    /// As [`Output::new`].
+    pub fn run_of(path: &Path) -> Result<Self, Error> {
+        let exists = path.is_dir();
+        let names = if exists { entries(path) } else { Ok(Vec::new()) };
+        let names = names.map_err(|source| Error::Write { path: path.to_path_buf(), source })?;
+        let foreign = names.iter().find(|n| !is_leftover(n) && !RUN.contains(&n.as_str()));
+        match foreign {
+            _ if path.exists() && !exists => {
+                Err(Error::Input(format!("{} is a file; --out needs a folder", path.display())))
+            }
+            Some(name) => {
+                let message =
+                    format!("{} holds {name}, which is of no simulation; name another folder", path.display());
+                Err(Error::Input(message))
+            }
+            None => Self::begin(path, exists, true),
         }
     }
 

@@ -209,9 +209,6 @@ pub fn world() -> World {
         pose: Pose { x, y, z: 0.0, yaw_rad: 0.0 },
     };
     let scenario = Scenario {
-        version: 1,
-        seed: 7,
-        rois: Vec::new(),
         pois: vec![poi("point_a", "a_1", 3.2, 2.2), poi("point_b", "b_1", 6.0, 1.5)],
         robots: vec![RobotTask {
             robot_id: "delivery_robot_1".into(),
@@ -221,9 +218,10 @@ pub fn world() -> World {
             goals: vec!["point_a".into(), "point_b".into()],
             ways: Vec::new(),
             routes: Vec::new(),
+            jobs: Vec::new(),
             dock: None,
         }],
-        agents: Vec::new(),
+        ..Scenario::empty(7)
     };
     let placements = Placements { version: 1, seed: 7, placements: objects(), unplaced: Vec::new() };
     let (name, generator) = ("two_rooms".to_owned(), "by hand".to_owned());

@@ -5,6 +5,7 @@
 
 pub mod error;
 pub mod exporters;
+pub mod film;
 pub mod manifest;
 pub mod models;
 pub mod render;

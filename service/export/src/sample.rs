@@ -190,7 +190,11 @@ fn scenario() -> Scenario {
         ],
         "robots": [{"robot_id": "cleaning_robot_1", "robot": robot, "start": pose(8.2, 5.2, 0.0), "goals": ["service_1"], "dock": "dock_1"}],
         "agents": [{"agent_id": "resident_1", "role": "resident", "model": "Residential/resident_1", "speed_m_s": 1.1,
-            "start": pose(3.0, 4.0, 0.0), "waypoints": ["living_room_1", "kitchen_1"]}],
+            "start": pose(3.0, 4.0, 0.0), "waypoints": ["living_room_1", "kitchen_1"],
+            "steps": [{"room_id": "kitchen_1", "act": "operate", "pose": pose(8.2, 1.6, 0.0), "seconds": 20.0}]}],
+        "flows": [{"flow_id": "visitor_flow_1", "role": "visitor", "model": "Residential/visitor_1", "speed_m_s": 1.0,
+            "door_id": "door_1", "room_id": "hallway_1", "pose": pose(0.8, 4.0, 0.0), "per_min": 0.6, "most": 2, "group": [1, 2],
+            "itineraries": [{"steps": [{"room_id": "kitchen_1", "pose": pose(8.2, 1.6, 0.0), "seconds": 60.0}]}]}],
     });
     Document::from_value(value).unwrap()
 }

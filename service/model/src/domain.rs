@@ -9,7 +9,9 @@ mod furnishing;
 mod layouts;
 mod object;
 mod program;
+mod role;
 mod room_type;
+pub mod tags;
 
 pub use build::{
     Axis, BASE, Build, BuildJoint, BuildJointKind, Formula, Mirror, Part, Repeat, Side, Solid, Tilt, Tone,
@@ -22,6 +24,7 @@ pub use program::{
     Adjacency, AdjacencyRelation, Circulation, Elevator, Large, Occupants, Program, ProgramRoom, Scheme, Stairs,
     Storeys, SupportRoom, TwoStairs, Units,
 };
+pub use role::{Counted, Number, Role, RoleKind, Round, RoundStep, VISITORS_NEVER, is_named};
 pub use room_type::{Access, AreaRange, Daylight, Goods, Materials, Privacy, RobotUse, RoomType, Zone};
 
 use std::collections::BTreeMap;
@@ -108,20 +111,6 @@ pub struct BuildingType {
     pub keywords: Words,
     /// The program it uses when the prompt does not list its rooms.
     pub program: String,
-}
-
-/// A kind of person in the building, for scenarios.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Role {
-    /// Snake-case id, for instance `nurse`.
-    pub id: String,
-    /// Arena human model, `Domain/name`.
-    pub model: String,
-    /// Walking speed, m/s.
-    pub speed_m_s: f64,
-    /// Room types this person walks between, most frequent first.
-    pub visits: Vec<String>,
 }
 
 impl Domain {
@@ -312,10 +301,9 @@ impl Document for Domain {
                 problems.push(Problem::new(format!("/practitioners/{i}/per_room"), "needs 1 at least"));
             }
         }
+        check_unique("/roles", self.roles.iter().map(|r| r.id.as_str()), &mut problems);
         for (i, role) in self.roles.iter().enumerate() {
-            for (j, id) in role.visits.iter().enumerate() {
-                room(format!("/roles/{i}/visits/{j}"), id, &mut problems);
-            }
+            role.check(&format!("/roles/{i}"), self, &mut problems);
         }
         problems
     }

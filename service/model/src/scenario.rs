@@ -1,5 +1,7 @@
 //! Regions, points, robots and people of a world.
 
+mod script;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -9,6 +11,11 @@ use crate::passage::RobotWay;
 use crate::scene_graph::Robot;
 use crate::storeys::is_ground;
 
+pub use script::{
+    Act, Condition, ConditionOp, Flow, GROUP_SIZES, Itinerary, RobotJob, RobotJobKind, Station, Step,
+    WALKING_SPEEDS_M_S,
+};
+
 /// What happens in a world.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -17,6 +24,12 @@ pub struct Scenario {
     pub version: u32,
     /// Seed it was made with.
     pub seed: u64,
+    /// Its name among those of a world; empty for the only one.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub name: String,
+    /// Hour of the day ([`crate::hours`]): `shift_change`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub hour: Option<String>,
     /// Robot zones and other named areas.
     pub rois: Vec<Roi>,
     /// Named points: docks, service points, waiting bays.
@@ -25,6 +38,39 @@ pub struct Scenario {
     pub robots: Vec<RobotTask>,
     /// People who fill the scene.
     pub agents: Vec<Agent>,
+    /// Places at objects that people use.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub stations: Vec<Station>,
+    /// People who come and go.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub flows: Vec<Flow>,
+    /// What is to come of it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub conditions: Vec<Condition>,
+}
+
+impl Scenario {
+    /// Returns a scenario in which nothing happens.
+    pub fn empty(seed: u64) -> Self {
+        Self {
+            version: 1,
+            seed,
+            name: String::new(),
+            hour: None,
+            rois: Vec::new(),
+            pois: Vec::new(),
+            robots: Vec::new(),
+            agents: Vec::new(),
+            stations: Vec::new(),
+            flows: Vec::new(),
+            conditions: Vec::new(),
+        }
+    }
+
+    /// Returns the station with this id.
+    pub fn station(&self, id: &str) -> Option<&Station> {
+        self.stations.iter().find(|s| s.station_id == id)
+    }
 }
 
 /// An area a scenario refers to by name.
@@ -124,6 +170,9 @@ pub struct RobotTask {
     /// Its round on the storey that it starts on: to its first goal, from there to the next, at last to its dock.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub routes: Vec<Route>,
+    /// What it does, in turn.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub jobs: Vec<RobotJob>,
     /// POI id of its dock.
     #[serde(default)]
     pub dock: Option<String>,
@@ -164,6 +213,24 @@ pub struct Agent {
     pub start: Pose,
     /// Room ids visited in turn.
     pub waypoints: Vec<String>,
+    /// What the person does, in turn; without steps it walks between the rooms.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub steps: Vec<Step>,
+    /// Station on which the person is at the beginning: a patient in bed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub on: Option<String>,
+    /// Group of people who belong together.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub group: Option<String>,
+    /// True for a person who is to be observed.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub spotlight: bool,
+    /// True when the person leaves the building after its steps; else it begins anew.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub leaves: bool,
+    /// When the person comes in, s from the beginning.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub begins_s: f64,
     /// Storey of the start and the rooms.
     #[serde(default, skip_serializing_if = "is_ground")]
     pub level: i32,
@@ -179,6 +246,9 @@ impl Document for Scenario {
         }
         check_unique("/rois", self.rois.iter().map(|r| r.roi_id.as_str()), &mut problems);
         check_unique("/pois", self.pois.iter().map(|p| p.poi_id.as_str()), &mut problems);
+        check_unique("/stations", self.stations.iter().map(|s| s.station_id.as_str()), &mut problems);
+        check_unique("/flows", self.flows.iter().map(|f| f.flow_id.as_str()), &mut problems);
+        check_unique("/conditions", self.conditions.iter().map(|c| c.condition_id.as_str()), &mut problems);
         check_unique("/agents", self.agents.iter().map(|a| a.agent_id.as_str()), &mut problems);
         for (i, robot) in self.robots.iter().enumerate() {
             for (j, goal) in robot.goals.iter().chain(&robot.dock).enumerate() {
@@ -194,10 +264,52 @@ impl Document for Scenario {
                     problems.push(Problem::new(format!("/robots/{i}/routes/{j}"), message));
                 }
             }
+            for (j, job) in robot.jobs.iter().enumerate() {
+                let ends = job.from.iter().chain(&job.to);
+                for end in ends.filter(|id| !self.pois.iter().any(|p| &p.poi_id == *id)) {
+                    let message = format!("poi `{end}` is not in pois");
+                    problems.push(Problem::new(format!("/robots/{i}/jobs/{j}"), message));
+                }
+            }
         }
+        self.check_people(&mut problems);
         problems
     }
 }
+
+impl Scenario {
+    /// Checks that steps name stations, and what is known of people is possible.
+    fn check_people(&self, problems: &mut Vec<Problem>) {
+        let known: std::collections::BTreeSet<&str> = self.stations.iter().map(|s| s.station_id.as_str()).collect();
+        let agents = self.agents.iter().enumerate();
+        let agents = agents.map(|(i, a)| (format!("/agents/{i}"), a.steps.iter().collect::<Vec<_>>(), a.on.as_ref()));
+        let flows = self.flows.iter().enumerate();
+        let flows = flows.map(|(i, f)| (format!("/flows/{i}"), f.steps().collect(), None));
+        for (path, steps, on) in agents.chain(flows) {
+            let named = steps.iter().filter_map(|s| s.station.as_ref()).chain(on);
+            for id in named.filter(|id| !known.contains(id.as_str())) {
+                problems.push(Problem::new(path.as_str(), format!("station `{id}` is not in stations")));
+            }
+            if steps.iter().any(|s| !s.seconds.is_finite() || s.seconds < 0.0) {
+                problems.push(Problem::new(path.as_str(), "has a step of a time that is none; give seconds from 0"));
+            }
+        }
+        for (i, flow) in self.flows.iter().enumerate() {
+            if !(flow.per_min.is_finite() && flow.per_min >= 0.0) || !(1..=flow.group[1]).contains(&flow.group[0]) {
+                let message = "needs per_min from 0 and a group of 1 or more, the fewest first";
+                problems.push(Problem::new(format!("/flows/{i}"), message));
+            }
+        }
+        if let Some(hour) = self.hour.as_ref().filter(|h| crate::hours::get(h).is_none()) {
+            let message = format!("`{hour}` is none of {}", crate::hours::ids().join(", "));
+            problems.push(Problem::new("/hour", message));
+        }
+    }
+}
+
+/// Radius of the disc that a person takes who walks among others, m: shoulders turn where it is tight (the usual value of
+/// pedestrian models).
+pub const PERSON_RADIUS_M: f64 = 0.2;
 
 /// Code of the conflict that says which robots have no dock of their own.
 pub const DOCKS_MISSING: &str = "docks_missing";
@@ -211,4 +323,8 @@ pub fn without_dock(robots: &[RobotTask]) -> Vec<&RobotTask> {
         None => planned[*i].robot.charging,
     };
     (0..planned.len()).filter(lacks).map(|i| planned[i]).collect()
+}
+
+fn is_zero(v: &f64) -> bool {
+    *v == 0.0
 }

@@ -13,7 +13,7 @@ use crate::document::Problem;
 use crate::floorplan::Floorplan;
 use crate::geometry::{Point, to_mm};
 use crate::placements::Placements;
-use crate::scenario::Scenario;
+use crate::scenario::{Scenario, Step};
 use crate::scene_graph::SceneGraph;
 use crate::world::World;
 
@@ -232,12 +232,29 @@ impl Scenario {
         for robot in &mut robots {
             robot.goals.retain(known);
         }
+        let here = |step: &Step| ids.contains(step.room_id.as_str());
+        let mut agents: Vec<_> = self.agents.iter().filter(|a| a.level == level).cloned().collect();
+        for agent in &mut agents {
+            agent.waypoints.retain(|id| ids.contains(id.as_str()));
+            agent.steps.retain(here);
+        }
+        let mut flows: Vec<_> = self.flows.iter().filter(|f| ids.contains(f.room_id.as_str())).cloned().collect();
+        flows.iter_mut().flat_map(|f| &mut f.itineraries).for_each(|i| i.steps.retain(here));
+        for robot in &mut robots {
+            robot.jobs.iter_mut().for_each(|job| job.to.retain(known));
+            robot.jobs.retain(|job| job.from.iter().all(known) && !(job.to.is_empty() && job.path.is_empty()));
+        }
         Self {
             version: self.version,
             seed: self.seed,
+            name: self.name.clone(),
+            hour: self.hour.clone(),
+            stations: self.stations.iter().filter(|s| ids.contains(s.room_id.as_str())).cloned().collect(),
+            conditions: self.conditions.iter().filter(|c| ids.contains(c.room_id.as_str())).cloned().collect(),
+            flows,
             rois: self.rois.iter().filter(|r| ids.contains(r.room_id.as_str())).cloned().collect(),
             robots,
-            agents: self.agents.iter().filter(|a| a.level == level).cloned().collect(),
+            agents,
             pois,
         }
     }

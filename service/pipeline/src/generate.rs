@@ -364,7 +364,8 @@ fn attempt(
     observe(Event::Finished(Stage::Placement, attempt, Artifact::Placements(&placements)));
 
     begin(Stage::Scenario, attempt, observe, cancelled)?;
-    let scenario = scenario::generate(&reseeded, &plan, &placements, domain)?;
+    let wishes = scenario::Wishes { brief: settings.brief.as_ref(), ..Default::default() };
+    let scenario = scenario::generate_as(&reseeded, &plan, &placements, domain, &wishes)?;
     observe(Event::Finished(Stage::Scenario, attempt, Artifact::Scenario(&scenario)));
 
     begin(Stage::World, attempt, observe, cancelled)?;
@@ -420,7 +421,8 @@ pub fn finish(
     brief: Option<Brief>,
 ) -> Result<(World, Report), Error> {
     let reseeded = SceneGraph { seed: plan.seed, ..graph.clone() };
-    let scenario = scenario::generate(&reseeded, &plan, &placements, domain)?;
+    let wishes = scenario::Wishes { brief: brief.as_ref(), ..Default::default() };
+    let scenario = scenario::generate_as(&reseeded, &plan, &placements, domain, &wishes)?;
     let mut world = World { brief, ..world::assemble(name, graph, plan, placements, scenario) };
     let report = world::check(&world, domain, retrieved);
     world.rules = Some(report.applied_rules());

@@ -197,12 +197,6 @@ impl<'a> Floor<'a> {
         looked.or(any)
     }
 
-    /// Returns the reachable spot of a room by its number in a list of them, wrapped around.
-    pub fn spot(&self, room: &Room, number: usize) -> Option<Point> {
-        let count = room.spots.count();
-        self.all(room).nth(number % count.max(1))
-    }
-
     /// Returns every so many-th reachable spot of a room.
     pub fn every(&self, room: &Room, step: usize) -> Vec<Point> {
         self.all(room).step_by(step).collect()

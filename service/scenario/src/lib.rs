@@ -3,7 +3,9 @@
 //! Everything stands on floor that the largest robot asked for (a disc of 0.30 m at least) can reach from the rest of the
 //! building. Which rooms are cleaned, served or off limits, and who walks where, is the domain's data.
 
+mod conditions;
 mod floor;
+mod jobs;
 mod lattice;
 mod people;
 mod points;
@@ -15,8 +17,10 @@ mod staging;
 mod storeys;
 mod tour;
 
+use d3dgen_model::brief::Brief;
 use d3dgen_model::domain::Domain;
 use d3dgen_model::floorplan::Floorplan;
+use d3dgen_model::hours::{self, Hour};
 use d3dgen_model::placements::Placements;
 use d3dgen_model::scenario::{DOCKS_MISSING, Scenario};
 use d3dgen_model::scene_graph::SceneGraph;
@@ -24,7 +28,18 @@ use d3dgen_model::stage::Error;
 
 use floor::Floor;
 
-/// Fills a furnished building with regions, points, robots and people.
+/// What is wished of a scenario.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Wishes<'w> {
+    /// Its name among those of a world.
+    pub name: &'w str,
+    /// Hour of the day ([`hours`]); the one that the brief names, else a usual one, where it is not said.
+    pub hour: Option<&'w str>,
+    /// What was asked for: robots' tasks, the hour.
+    pub brief: Option<&'w Brief>,
+}
+
+/// Fills a furnished building with regions, points, robots and people of a usual hour.
 ///
 /// Robots come from the scene graph; without any there are still points and people.
 ///
@@ -36,11 +51,51 @@ pub fn generate(
     placements: &Placements,
     domain: &Domain,
 ) -> Result<Scenario, Error> {
+    generate_as(graph, plan, placements, domain, &Wishes::default())
+}
+
+/// Fills a furnished building as [`generate`] does, as somebody wishes.
+///
+/// # Errors
+/// `Mismatch` when the placements or the graph speak of rooms that the plan does not have, or the hour is none.
+pub fn generate_as(
+    graph: &SceneGraph,
+    plan: &Floorplan,
+    placements: &Placements,
+    domain: &Domain,
+    wishes: &Wishes,
+) -> Result<Scenario, Error> {
     fits(graph, plan, placements)?;
-    if plan.has_storeys() {
-        return Ok(storeys::generate(graph, plan, placements, domain));
-    }
-    Ok(one_storey(graph, plan, placements, domain, true))
+    let hour = hour(wishes)?;
+    let seen = if plan.has_storeys() { storeys::seen(graph, plan, placements) } else { Vec::new() };
+    let mut scenario = match plan.has_storeys() {
+        true => storeys::generate(graph, plan, &seen, domain),
+        false => one_storey(graph, plan, placements, domain, true),
+    };
+    let parts: Vec<(i32, &Floorplan, &Placements)> = match seen.as_slice() {
+        [] => vec![(0, plan, placements)],
+        seen => seen.iter().map(|(level, world)| (*level, &world.floorplan, &world.placements)).collect(),
+    };
+    let building = people::PeopleBuilding::new(&parts, graph, domain);
+    people::fill(&mut scenario, graph, plan, &building, hour);
+    scenario.name = wishes.name.to_owned();
+    scenario.hour = Some(hour.id.clone());
+    jobs::add(&mut scenario, &building, wishes.brief);
+    conditions::add(&mut scenario, plan, domain);
+    Ok(scenario)
+}
+
+/// Returns the hour that is wished, that the brief names, or the usual one.
+fn hour(wishes: &Wishes) -> Result<&'static Hour, Error> {
+    let said = || wishes.brief.and_then(|b| hours::named_in(&b.prompt)).map(|(hour, _)| hour);
+    let wished = match wishes.hour {
+        Some(id) => Some(hours::get(id).ok_or_else(|| {
+            let message = format!("`{id}` is no hour; there are {}", hours::ids().join(", "));
+            Error::Mismatch { stage: "scenario", message }
+        })?),
+        None => said(),
+    };
+    Ok(wished.or_else(|| hours::get(hours::USUAL)).expect("a test reads the usual hour"))
 }
 
 /// Fills one storey. Where no robots were asked for, nothing is said of how they drive and where they put things down;
@@ -59,7 +114,7 @@ fn one_storey(
     }
     let pois = points::all(&floor, graph);
     regions::number(&mut rois, &floor, &pois);
-    let mut scenario = Scenario { version: 1, seed: graph.seed, rois, pois, robots: Vec::new(), agents: Vec::new() };
+    let mut scenario = Scenario { rois, pois, ..Scenario::empty(graph.seed) };
     scenario.robots = robots::all(&mut floor, graph, (plan, placements), &scenario.pois);
     if lived_in {
         robots::add_routes(&floor, &mut scenario);
@@ -67,7 +122,6 @@ fn one_storey(
     // goods stand beside the routes, wherever these lead
     let staged = staging::all(&floor, graph, &scenario);
     scenario.rois.extend(staged);
-    scenario.agents = people::all(&mut floor, graph);
     scenario
 }
 

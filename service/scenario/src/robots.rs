@@ -44,6 +44,7 @@ pub(crate) fn all(
                 dock: dock.map(|d| d.poi_id.clone()),
                 level: 0,
                 ways: Vec::new(),
+                jobs: Vec::new(),
                 routes: Vec::new(),
             };
             if robot.misfit && !keep_where_it_fits(floor, &mut task, pois) {

@@ -17,18 +17,9 @@ use super::regions::STAY_OUT;
 /// Code of the conflict that says which storeys robots do not get to.
 pub(crate) const STOREYS_MISSED: &str = "robots_miss_storeys";
 
-/// Fills all storeys of a building.
-pub(crate) fn generate(graph: &SceneGraph, plan: &Floorplan, placements: &Placements, domain: &Domain) -> Scenario {
-    let empty = Scenario {
-        version: 1,
-        seed: graph.seed,
-        rois: Vec::new(),
-        pois: Vec::new(),
-        robots: Vec::new(),
-        agents: Vec::new(),
-    };
-    let mut out = empty.clone();
-    let storeys = World {
+/// Returns the storeys of a furnished building as robots and people on them see them.
+pub(crate) fn seen(graph: &SceneGraph, plan: &Floorplan, placements: &Placements) -> Vec<(i32, World)> {
+    World {
         version: 1,
         name: String::new(),
         generator: String::new(),
@@ -36,21 +27,22 @@ pub(crate) fn generate(graph: &SceneGraph, plan: &Floorplan, placements: &Placem
         scene_graph: graph.clone(),
         floorplan: plan.clone(),
         placements: placements.clone(),
-        scenario: empty,
+        scenario: Scenario::empty(graph.seed),
         rules: None,
     }
-    .storeys();
+    .storeys()
+}
+
+/// Fills all storeys of a building with all but people.
+pub(crate) fn generate(graph: &SceneGraph, plan: &Floorplan, storeys: &[(i32, World)], domain: &Domain) -> Scenario {
+    let mut out = Scenario::empty(graph.seed);
     let has_dock = |world: &World| {
         let mut objects = world.placements.placements.iter().filter_map(|p| domain.object(&p.object));
         objects.any(|o| o.shape == Shape::Dock)
     };
     let docked = storeys.iter().find(|(_, world)| has_dock(world)).map_or(0, |s| s.0);
-    // those who live there are all over the house: one storey after the other has one more of them
-    let count = storeys.len() as u32;
     let mut away: Vec<RobotTask> = Vec::new();
-    for (at, (level, mut world)) in storeys.into_iter().enumerate() {
-        let share = |n: u32| n / count + u32::from((at as u32) < n % count);
-        world.scene_graph.occupancy.residents = graph.occupancy.residents.map(share);
+    for &(level, ref world) in storeys {
         let mut storey = one_storey(&world.scene_graph, &world.floorplan, &world.placements, domain, level == docked);
         storey.rois.extend(flights_down(plan, level));
         let robots = add(&mut out, storey, level);
@@ -163,13 +155,7 @@ fn add(out: &mut Scenario, mut storey: Scenario, level: i32) -> Vec<RobotTask> {
     storey.pois.iter_mut().for_each(|p| free(&pois, &mut p.poi_id));
     let rois: BTreeSet<String> = out.rois.iter().map(|r| r.roi_id.clone()).collect();
     storey.rois.iter_mut().for_each(|r| free(&rois, &mut r.roi_id));
-    let agents: BTreeSet<String> = out.agents.iter().map(|a| a.agent_id.clone()).collect();
-    for agent in &mut storey.agents {
-        free(&agents, &mut agent.agent_id);
-        agent.level = level;
-    }
     out.rois.extend(storey.rois);
     out.pois.extend(storey.pois);
-    out.agents.extend(storey.agents);
     storey.robots
 }

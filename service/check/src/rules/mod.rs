@@ -9,6 +9,7 @@ mod furniture;
 mod graph;
 mod navigation;
 mod objects;
+mod people;
 mod robots;
 mod rooms;
 mod storeys;
@@ -123,6 +124,10 @@ pub const RULES: &[Rule] = &[
     },
     rule("robot_stuck", "every robot reaches each of its goals from where it starts", robots::tasks),
     rule("pose_taken", "points and people of the scenario stand on free floor of their room", robots::poses),
+    whole("person_access", "nobody goes to rooms that are closed to them", people::access),
+    rule("person_station", "what people use affords it and can be stood before", people::stations),
+    whole("person_pace", "people walk as fast, and in groups as large, as people do", people::pace),
+    rule("robot_job", "what robots are to do is at points that they get to", people::jobs),
     rule("region_outside", "regions of the scenario lie in their room", robots::regions),
 ];
 

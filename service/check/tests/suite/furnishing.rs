@@ -3,8 +3,9 @@
 use std::f64::consts::PI;
 
 use d3dgen_knowledge::clearance::quarter;
-use d3dgen_model::domain::{Arrangement, Mount, Shape};
+use d3dgen_model::domain::{Arrangement, Mount, RoomType, Shape};
 use d3dgen_model::placements::{Placement, Unplaced};
+use d3dgen_model::world::World;
 use d3dgen_model::{Point, Pose, Rect};
 
 use super::{Break, Change, SAMPLES, Sample, add_thing, always, each, ids, one, placement, somewhere};
@@ -217,6 +218,48 @@ pub(super) const BREAKS: &[Break] = &[
         each(s, 0..s.world.scenario.agents.len(), |w, i| {
             w.scenario.agents[i].waypoints.push("no_such_room".into());
             Some(w.scenario.agents[i].agent_id.clone())
+        })
+    }),
+    somewhere("person_access", &[], |s| {
+        // whoever may not enter a room is sent there
+        let closed = |w: &World, i: usize| {
+            let role = s.domain.roles.iter().find(|r| r.id == w.scenario.agents[i].role)?;
+            let shut = |kind: &RoomType| !role.may_enter(kind, &s.domain.tags_of(kind));
+            let room = w.floorplan.rooms.iter().find(|r| shut(s.domain.room_type_or_generic(&r.room_type)))?;
+            Some(room.room_id.clone())
+        };
+        each(s, 0..s.world.scenario.agents.len(), |w, i| {
+            let room_id = closed(w, i)?;
+            let agent = &mut w.scenario.agents[i];
+            agent.steps.first_mut()?.room_id = room_id;
+            agent.steps[0].station = None;
+            Some(agent.agent_id.clone())
+        })
+    }),
+    somewhere("person_station", &[], |s| {
+        each(s, 0..s.world.scenario.stations.len(), |w, i| {
+            w.scenario.stations[i].placement_id = "no_such_thing".into();
+            Some(w.scenario.stations[i].station_id.clone())
+        })
+    }),
+    always("person_station", |s| {
+        each(s, 0..s.world.scenario.stations.len(), |w, i| {
+            w.scenario.stations[i].before.x += 500.0;
+            Some(w.scenario.stations[i].station_id.clone())
+        })
+    }),
+    always("person_pace", |s| {
+        each(s, 0..s.world.scenario.agents.len(), |w, i| {
+            w.scenario.agents[i].speed_m_s = 4.0;
+            Some(w.scenario.agents[i].agent_id.clone())
+        })
+    }),
+    somewhere("robot_job", &[], |s| {
+        each(s, 0..s.world.scenario.robots.len(), |w, i| {
+            let robot = &mut w.scenario.robots[i];
+            let goal = robot.jobs.first()?.to.first()?.clone();
+            robot.goals.retain(|g| *g != goal);
+            Some(format!("{}|{}", robot.robot_id, robot.jobs[0].job_id))
         })
     }),
     somewhere("pose_taken", &["robot_stuck"], |s| {

@@ -26,6 +26,7 @@ mod scenario;
 mod scene_graph;
 mod self_test;
 mod serve;
+mod simulate;
 mod version;
 mod view;
 #[cfg(feature = "cluster")]
@@ -54,8 +55,10 @@ pub enum Command {
     Floorplan(floorplan::Args),
     /// Stage 3: furniture of a floorplan
     Placement(placement::Args),
-    /// Stage 4: robots, people and named areas of a furnished plan
+    /// Stage 4: robots, people and named areas of a furnished plan; more scenarios of a world, by the hour
     Scenario(scenario::Args),
+    /// Move the people and robots of a world's scenario: tracks, figures of social navigation, a film
+    Simulate(simulate::Args),
     /// Stage 5: one world of the four documents, checked
     World(world::Args),
     /// Change a world: move a wall, add a room, swap an object; the rest stays and is checked
@@ -117,6 +120,7 @@ impl Command {
             Self::Floorplan(args) => args.run(),
             Self::Placement(args) => args.run(),
             Self::Scenario(args) => args.run(),
+            Self::Simulate(args) => args.run(),
             Self::World(args) => args.run(),
             Self::Edit(args) => args.run(),
             Self::Check(args) => args.run(),

@@ -7,6 +7,7 @@ mod mujoco;
 mod nav2;
 pub mod plan;
 mod rmf;
+mod tasks;
 mod usd;
 
 use d3dgen_model::domain::Domain;
@@ -23,6 +24,7 @@ pub use mujoco::Mujoco;
 pub use nav2::Nav2;
 pub use plan::Plan;
 pub use rmf::Rmf;
+pub use tasks::Tasks;
 pub use usd::Usd;
 
 /// Name of all formats together.
@@ -81,7 +83,7 @@ pub trait Exporter: Sync {
 
 /// Returns every exporter, the default ones first.
 pub fn all() -> &'static [&'static dyn Exporter] {
-    &[&Arena, &Plan, &Nav2, &Rmf, &Mujoco, &Gazebo, &Gltf, &Usd]
+    &[&Arena, &Plan, &Nav2, &Rmf, &Mujoco, &Gazebo, &Gltf, &Usd, &Tasks]
 }
 
 /// Returns the names at the top of a world's folder that exporters write, each once.

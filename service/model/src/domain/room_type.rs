@@ -26,6 +26,9 @@ pub struct RoomType {
     pub zone: Zone,
     /// Who may pass through it.
     pub privacy: Privacy,
+    /// What the room is beside what the other fields say ([`super::tags::GIVEN`]): `treatment`, `wait`, `eat`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub tags: Vec<String>,
     /// Net floor area, m^2.
     pub area_m2: AreaRange,
     /// Least clear extent in both directions, m.
@@ -228,6 +231,10 @@ impl RoomType {
                 format!("{path}/hosts"),
                 "access `host` names its hosts, access `circulation` has none",
             ));
+        }
+        for (i, tag) in self.tags.iter().enumerate().filter(|(_, tag)| !super::tags::is_known(tag)) {
+            let message = format!("`{tag}` is no tag; those that are given are {}", super::tags::GIVEN.join(", "));
+            problems.push(Problem::new(format!("{path}/tags/{i}"), message));
         }
         for (i, host) in self.hosts.iter().enumerate() {
             if domain.room_type(host).is_none() {

@@ -18,6 +18,7 @@ mod households;
 mod large;
 mod offices;
 mod order;
+mod people;
 mod prompts;
 mod review;
 mod review_furniture;

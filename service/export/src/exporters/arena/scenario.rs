@@ -1,6 +1,8 @@
-//! The default scenario: robots with their goals, people with their rounds, visitors who come in by the entrance.
+//! The default scenario: robots with their goals, people with their rounds, those who come in by the entrance.
 //!
 //! Only keys that every current reader of Arena knows: an unknown one makes the whole scenario unreadable.
+
+use std::collections::BTreeMap;
 
 use d3dgen_model::floorplan::Door;
 use d3dgen_model::geometry::{Point, Pose, Rect, to_mm};
@@ -12,8 +14,6 @@ use super::snake;
 
 /// Depth of the strip inside an entrance where visitors appear, m.
 const SOURCE_DEPTH_M: f64 = 1.0;
-/// Most visitors at a time.
-const MAX_VISITORS: u32 = 4;
 
 /// Returns `scenario.yaml`.
 pub(super) fn scenario(world: &World) -> Value {
@@ -44,34 +44,36 @@ fn robot(task: &RobotTask, world: &World) -> Value {
     json!({"start": pose(&task.start), "phases": phases})
 }
 
-/// Visitors flow from the main entrance to the rooms that people of this scenario visit.
+/// Those who come in flow from their entrance to the rooms that their rounds lead to, which are such as they may enter.
 fn regions(world: &World) -> Value {
-    let mut sinks: Vec<&str> = Vec::new();
-    for room in world.scenario.agents.iter().flat_map(|a| &a.waypoints) {
-        if sinks.len() < 4 && !sinks.contains(&room.as_str()) {
-            sinks.push(room);
-        }
-    }
-    let entrance = world.floorplan.ways_out().into_iter().max_by_key(|d| d.entrance);
-    let (Some(door), false) = (entrance, sinks.is_empty()) else {
-        return json!({});
-    };
-    let affinity: Vec<Value> = sinks.iter().map(|id| json!({"sink": format!("{id}_sink"), "weight": 1.0})).collect();
     let mut regions = Map::new();
-    regions.insert(
-        "main_entrance".into(),
-        json!({
-            "type": "source",
-            "polygon": strip_inside(door, world).corners().map(|p| json!({"x": to_mm(p.x), "y": to_mm(p.y)})),
-            "config": {
-                "rate_profile": [{"t": 0.0, "rate": 0.1}], "max_concurrent": MAX_VISITORS, "max_total": -1,
-                "agent": {"agent_type": "adult", "desired_velocity": {"min": 1.0, "max": 1.5}, "sink_affinity": affinity},
-            },
-        }),
-    );
-    for id in sinks {
-        let sink = json!({"type": "sink", "ref": id, "config": {"absorption_radius": 0.5, "capacity": MAX_VISITORS}});
-        regions.insert(format!("{id}_sink"), sink);
+    for flow in &world.scenario.flows {
+        let Some(door) = world.floorplan.doors.iter().find(|d| d.door_id == flow.door_id) else { continue };
+        let mut sinks: BTreeMap<&str, u32> = BTreeMap::new();
+        for step in flow.steps().filter(|s| world.floorplan.room(&s.room_id).is_some()) {
+            *sinks.entry(&step.room_id).or_default() += 1;
+        }
+        if sinks.is_empty() {
+            continue;
+        }
+        let affinity = sinks.iter().map(|(id, n)| json!({"sink": format!("{id}_sink"), "weight": f64::from(*n)}));
+        let speeds = json!({"min": to_mm(0.8 * flow.speed_m_s), "max": to_mm(1.2 * flow.speed_m_s)});
+        regions.insert(
+            snake(&flow.flow_id),
+            json!({
+                "type": "source",
+                "polygon": strip_inside(door, world).corners().map(|p| json!({"x": to_mm(p.x), "y": to_mm(p.y)})),
+                "config": {
+                    "rate_profile": [{"t": 0.0, "rate": to_mm(flow.per_min / 60.0)}],
+                    "max_concurrent": flow.most, "max_total": -1,
+                    "agent": {"agent_type": "adult", "desired_velocity": speeds, "sink_affinity": affinity.collect::<Vec<_>>()},
+                },
+            }),
+        );
+        for id in sinks.keys() {
+            let sink = json!({"type": "sink", "ref": id, "config": {"absorption_radius": 0.5, "capacity": flow.most}});
+            regions.insert(format!("{id}_sink"), sink);
+        }
     }
     Value::Object(regions)
 }

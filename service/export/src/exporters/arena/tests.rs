@@ -200,6 +200,6 @@ fn the_scenario_uses_portable_keys_only() {
     assert_eq!(scenario["robots"][0]["phases"].as_array().unwrap().len(), 2, "a service point, then the dock");
     assert_eq!(scenario["dynamic"][0]["waypoints"][1], "kitchen_1");
     assert_eq!(scenario["regions"]["kitchen_1_sink"]["ref"], "kitchen_1");
-    let strip = &scenario["regions"]["main_entrance"]["polygon"];
+    let strip = &scenario["regions"]["visitor_flow_1"]["polygon"];
     assert_eq!(strip[0], serde_json::json!({"x": 0.12, "y": 3.5}), "the strip lies inside the entrance");
 }
