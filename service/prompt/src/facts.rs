@@ -14,6 +14,11 @@ use serde::de::DeserializeOwned;
 use crate::node::Node;
 use crate::subjects::Known;
 
+/// Parents of a family with children.
+const PARENTS: u32 = 2;
+/// People of a family of which no more is said, at least.
+const FAMILY: u32 = 3;
+
 /// A fact with its words.
 #[derive(Debug, Clone)]
 pub(crate) struct Stated {
@@ -78,6 +83,8 @@ impl Maker<'_> {
                 self.facts[from..].iter_mut().for_each(|f| f.also = words.clone());
             }
             Some("each_group") => self.each_group(node),
+            Some("every_room") => self.every_room(node),
+            Some("fleet") => self.fleet(node),
             Some("shorthand_home") => self.shorthand(node),
             Some("style") => self.style(node),
             Some("site") => self.site(node),
@@ -137,20 +144,20 @@ impl Maker<'_> {
             attributes: attributes(node),
             each: None,
         };
-        let mut inside: Vec<Rc<Node>> = node.all("with").cloned().collect();
-        if several && let Some(at) = inside.iter().position(|n| n.is("rooms", Some("bare"))) {
-            let each = inside.remove(at);
-            ask.each = Some(self.subject(&each));
+        let (each, inside): (Vec<Rc<Node>>, Vec<Rc<Node>>) =
+            node.all("with").cloned().partition(|n| several && n.is("rooms", Some("bare")));
+        ask.each = each.first().map(|n| self.subject(n));
+        // "a bedroom for each of the four children"
+        if let Some(all) = node.field("each_of").and_then(|people| self::count(people)) {
+            ask.count = all;
         }
         let whose =
             node.all("own").filter(|o| !o.is_unknown() && (o.is("person", None) || o.is("attribute", None))).count();
         if whose > 1 && asked.is_none() && node.field("room").is_some() {
             ask.count = AskedCount::at_least(whose as u32);
         }
-        if let Some(sex) = node.field("sex")
-            && sex.is("sex", Some("each"))
-        {
-            ask.count = AskedCount { n: ask.count.n.max(1) * 2, ..ask.count };
+        if let Some(sex) = node.field("sex") {
+            ask.count = by_sex(sex, asked, ask.count);
         }
         self.facts.push(Stated {
             tokens: node.tokens.clone(),
@@ -159,6 +166,10 @@ impl Maker<'_> {
             mention: around.mention,
             own: node.field("own").is_some(),
         });
+        if room.id.is_none() {
+            self.named_for(node, &room);
+        }
+        each.iter().skip(1).for_each(|more| self.one_each(more, &room, count));
         for held in node.all("hold") {
             self.held(held, &room, several);
         }
@@ -168,6 +179,46 @@ impl Maker<'_> {
         node.all("other").for_each(|n| {
             self.state(n, Around::default());
         });
+    }
+
+    /// States what a room that no lexicon has is named for: the machine of a "washing machine room".
+    fn named_for(&mut self, node: &Node, room: &Subject) {
+        for own in node.all("own") {
+            let Some(id) = own.values("object").find(|id| self.known.objects.contains(*id)) else { continue };
+            let object = Subject::known(id, self.reading.written(own.tokens.clone()));
+            let asked = ObjectsAsk { object, room: Some(room.clone()), ..ObjectsAsk::default() };
+            self.facts.push(Stated {
+                tokens: own.tokens.clone(),
+                also: None,
+                fact: Fact::Objects(asked),
+                mention: false,
+                own: false,
+            });
+        }
+    }
+
+    /// States one more room that comes with each of others.
+    fn one_each(&mut self, guest: &Rc<Node>, host: &Subject, count: AskedCount) {
+        let room = self.subject(guest);
+        self.say(guest, Fact::Rooms(RoomsAsk { room: room.clone(), count, ..RoomsAsk::default() }));
+        self.say(guest, Fact::Relation(RelationAsk { a: room, relation: RelationKind::Door, b: host.clone() }));
+    }
+
+    /// States what every room has: each of the several that were named last.
+    fn every_room(&mut self, node: &Node) {
+        let several = |f: &Stated| matches!(&f.fact, Fact::Rooms(r) if r.count.n > 1);
+        let Some(at) = self.facts.iter().rposition(several) else { return self.other(node) };
+        let mut with: Vec<Rc<Node>> = node.all("with").cloned().collect();
+        let own = with.first().map(|n| self.subject(n));
+        let stated = &mut self.facts[at];
+        let Fact::Rooms(hosts) = &mut stated.fact else { return };
+        let (host, count) = (hosts.room.clone(), hosts.count);
+        if hosts.each.is_none() {
+            hosts.each = own;
+            stated.also = Some(node.tokens.clone());
+            with.remove(0);
+        }
+        with.iter().for_each(|more| self.one_each(more, &host, count));
     }
 
     /// States what a word is that names a room of other buildings, and an object or a manner of this one: "open plan" in a home.
@@ -280,10 +331,18 @@ impl Maker<'_> {
             }
             None => (count(node), kind.unwrap_or(PlaceKind::Seats)),
         };
-        let Some(count) = count else { return self.other(node) };
+        let all = node.field("all").and_then(|all| self::count(all));
+        let Some(count) = count.or(all) else { return self.other(node) };
+        // "48 children in 4 groups", "3 groups"
+        if let Some(all) = all {
+            let each = AskedCount { n: all.n.div_ceil(groups.unwrap_or(1).max(1)), ..all };
+            let of = PlaceKind::Seats;
+            return self.say(node, Fact::Capacity(CapacityAsk { of, count: each, room: None, each_room: false, groups }));
+        }
         if held.is_none() && what.is_some_and(|w| w.is("capacity", Some("group"))) {
-            let room = Subject::unknown(what.map_or("", |w| self.reading.written(w.tokens.clone())));
-            return self.say(node, Fact::Rooms(RoomsAsk { room, count, ..RoomsAsk::default() }));
+            let (of, groups) = (PlaceKind::Seats, Some(count.n));
+            let each = AskedCount::at_least(1);
+            return self.say(node, Fact::Capacity(CapacityAsk { of, count: each, room: None, each_room: false, groups }));
         }
         if what.is_some_and(|w| w.is("capacity", Some("locker"))) {
             let object = Subject::known("lockers", what.map_or("", |w| self.reading.written(w.tokens.clone())));
@@ -301,6 +360,9 @@ impl Maker<'_> {
 
     /// States what every group has: one for each of the groups that were counted.
     fn each_group(&mut self, node: &Node) {
+        if let Some(groups) = node.field("groups").cloned() {
+            self.capacity(&groups, None);
+        }
         let groups = self.facts.iter().rev().find_map(|f| match &f.fact {
             Fact::Capacity(c) => c.groups,
             _ => None,
@@ -323,8 +385,35 @@ impl Maker<'_> {
             .and_then(|w| w.values("person").next())
             .unwrap_or(if household(node).is_some() { "resident" } else { "people" })
             .to_owned();
+        if let Some(children) = node.field("children") {
+            self.say(node, Fact::People(PeopleAsk { role: "resident".to_owned(), count: AskedCount::exactly(PARENTS) }));
+            return self.people(children);
+        }
+        if let Some(all) = node.field("all").and_then(|all| count(all)) {
+            return self.say(node, Fact::People(PeopleAsk { role: "resident".to_owned(), count: all }));
+        }
+        if role == "family" {
+            let role = "resident".to_owned();
+            return self.say(node, Fact::People(PeopleAsk { role, count: AskedCount::at_least(FAMILY) }));
+        }
         let count = count(node).or_else(|| household(node)).unwrap_or_default();
         self.say(node, Fact::People(PeopleAsk { role, count }));
+    }
+
+    /// States robots of several kinds: "2 cleaning and 3 delivery robots".
+    fn fleet(&mut self, node: &Node) {
+        let mut n = None;
+        for (name, part) in &node.fields {
+            match &**name {
+                "n" => n = number(part),
+                "kind" => {
+                    let named = part.values("robot").next().or_else(|| part.values("task").next().map(kind_of_work));
+                    let (kind, count) = (named.unwrap_or("service").to_owned(), n.take().unwrap_or_default());
+                    self.say(node, Fact::Robots(RobotsAsk { kind, count, ..RobotsAsk::default() }));
+                }
+                _ => {}
+            }
+        }
     }
 
     fn robots(&mut self, node: &Node) {
@@ -354,7 +443,7 @@ impl Maker<'_> {
             node,
             Fact::Robots(RobotsAsk {
                 kind,
-                count: count(node).unwrap_or_default(),
+                count: count(node).or_else(|| several(node, &["robot"])).unwrap_or_default(),
                 width_m: side("width").or(round).or(sides.map(|s| s[0])).or(bare),
                 length_m: side("length").or(round).or(sides.map(|s| s[1])),
                 height_m: side("height"),
@@ -534,6 +623,18 @@ impl Maker<'_> {
 fn count(node: &Node) -> Option<AskedCount> {
     let count = node.field("count")?;
     number(count)
+}
+
+/// Returns how many rooms are asked for that men and women have their own of: `told` where the prompt says a number.
+fn by_sex(sex: &Node, told: Option<AskedCount>, count: AskedCount) -> AskedCount {
+    let n = told.map_or(1, |c| c.n.max(1));
+    match sex.values("sex").next() {
+        // "one bathroom for each sex"
+        Some("per") => AskedCount { n: 2 * n, ..count },
+        // "two toilets for men and women"
+        Some("each") => AskedCount { n: n.max(2), ..count },
+        _ => count,
+    }
 }
 
 /// Returns the whole of a number that ends in a half.

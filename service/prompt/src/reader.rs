@@ -69,7 +69,7 @@ impl PromptReader {
         let building = building(&self.registry, &leaves, &reading);
         let leaves = named(leaves, &building.nodes, &places);
         let (nodes, applied) = parse(grammar, leaves);
-        let domain = building.first.as_ref().and_then(|b| b.domain.as_deref());
+        let domain = building.first.as_ref().map(|b| b.domain.as_deref().unwrap_or(Known::stand_in()));
         let country = place.as_ref().map(|p| p.country_code.as_str());
         let first_is_ground = match country {
             Some(country) => first_floor_is_ground(country),
@@ -219,7 +219,12 @@ fn finished(mut brief: Brief, facts: Vec<Stated>, reading: &Reading) -> Brief {
     }
     let named = brief.building.iter().flat_map(|b| &b.words).chain(brief.place.iter().flat_map(|p| &p.words));
     let named: Vec<(u32, u32)> = named.map(|w| (w.start, w.end)).collect();
-    let open = reading.chunks().iter().filter(|chunk| {
+    // "a dining room. There are six chairs in the room": that one
+    let one_room = brief.asks.iter().filter(|a| matches!(a.fact, Fact::Rooms(_))).count() == 1;
+    let chunks = reading.chunks();
+    let definite = |at: usize| at.checked_sub(1).is_some_and(|before| chunks[before].is("particle", "article"));
+    let open = chunks.iter().enumerate().filter(|(at, chunk)| {
+        let spoken_of = one_room && chunk.is("room_word", "room") && definite(*at);
         let tokens = &reading.tokens()[chunk.tokens.clone()];
         let within = |t: &d3dgen_language::Token| {
             named.iter().any(|(s, e)| *s as usize <= t.chars.start && t.chars.end <= *e as usize)
@@ -227,11 +232,11 @@ fn finished(mut brief: Brief, facts: Vec<Stated>, reading: &Reading) -> Brief {
         let mark = tokens.iter().all(|t| t.kind == TokenKind::Mark);
         // "home" in "a flat ... works from home": the building once more
         let again = brief.building.as_ref().and_then(|b| b.domain.as_deref()).is_some_and(|d| chunk.is("domain", d));
-        let small = chunk.has("particle") || chunk.has("classifier") || again;
+        let small = chunk.has("particle") || chunk.has("classifier") || again || spoken_of;
         !mark && !small && !chunk.tokens.clone().all(|t| covered.contains(&t)) && !tokens.iter().all(within)
     });
     let mut left: Vec<Range<usize>> = Vec::new();
-    for chunk in open {
+    for (_, chunk) in open {
         match left.last_mut() {
             Some(last) if last.end == chunk.tokens.start => last.end = chunk.tokens.end,
             _ => left.push(chunk.tokens.clone()),

@@ -17,6 +17,8 @@ use crate::node::Node;
 struct FactsData {
     /// What half a room of a type is.
     halves: BTreeMap<String, Vec<String>>,
+    /// Domain whose rooms those of a building are that no domain knows.
+    stand_in: String,
 }
 
 fn facts_data() -> &'static FactsData {
@@ -42,6 +44,11 @@ impl<'d> Known<'d> {
             objects: plugin.domain().objects.iter().map(|o| o.id.clone()).collect(),
             domain: Some(plugin.domain()),
         }
+    }
+
+    /// Returns what a building is planned as that no domain knows.
+    pub fn stand_in() -> &'static str {
+        &facts_data().stand_in
     }
 
     /// Returns what half a room of a type is, where such are counted in halves.
