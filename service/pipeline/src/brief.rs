@@ -4,7 +4,7 @@
 //! of the same brief where the older reader of `d3dgen-program` does not know the prompt's language, or where somebody wrote
 //! the brief; else that reader makes them of the words.
 
-use d3dgen_model::brief::{AskedBuilding, Brief};
+use d3dgen_model::brief::Brief;
 use d3dgen_model::floorplan::Floorplan;
 use d3dgen_model::scene_graph::{Note, SceneGraph};
 use d3dgen_model::stage::Error;
@@ -15,9 +15,6 @@ use crate::scene_graph::{self, Request, says_nothing};
 
 /// Codes of what is assumed where a prompt names no building that a domain knows.
 const NO_BUILDING: [&str; 2] = ["default_domain", "domain_from_rooms"];
-
-/// Confidence from which on a brief is sure of the kind of building.
-const SURE: f64 = 0.8;
 
 /// Reads a prompt; none where there are no words.
 pub fn of_prompt(prompt: &str, registry: &Registry) -> Option<Brief> {
@@ -47,10 +44,9 @@ pub fn rooms(request: &Request, registry: &Registry) -> Result<(SceneGraph, Opti
     } else {
         let graph = scene_graph::generate_with(&brief, request, registry)?;
         let unnamed = graph.assumptions.iter().any(|n| NO_BUILDING.contains(&n.code.as_str()));
-        // a kind of building that no domain knows is no home by its rooms, nor is one that only the brief knows
-        let named = |b: &AskedBuilding| b.domain.is_none() || !b.words.is_empty() && b.confidence >= SURE;
-        let otherwise = free && unnamed && brief.building.as_ref().is_some_and(named);
-        if otherwise { rooms_of(&brief, request, registry)? } else { graph }
+        // a kind of building that no domain knows is no home by its rooms
+        let unknown = free && unnamed && brief.building.as_ref().is_some_and(|b| b.domain.is_none());
+        if unknown { rooms_of(&brief, request, registry)? } else { graph }
     };
     Ok((graph, Some(brief)))
 }

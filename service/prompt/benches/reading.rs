@@ -37,6 +37,7 @@ fn lap(reader: &PromptReader, text: &str) -> Duration {
 
 fn show(what: &str, time: Duration, most_ms: Option<f64>) {
     let ms = 1000.0 * time.as_secs_f64();
-    let target = most_ms.map_or(String::new(), |most| format!(", at most {most} ms: {}", if ms <= most { "kept" } else { "MISSED" }));
+    let target = most_ms
+        .map_or(String::new(), |most| format!(", at most {most} ms: {}", if ms <= most { "kept" } else { "MISSED" }));
     println!("{what:20} {ms:8.2} ms{target}");
 }

@@ -94,8 +94,7 @@ fn restore_rooms(reading: &mut Reading, brief: &Brief, registry: &Registry) {
     let counted = rooms().map(|(_, r)| r).filter(|r| r.count.n > 1 && r.count.bound == Bound::Exactly);
     for asked in counted {
         let Some(id) = &asked.room.id else { continue };
-        let alone = rooms().filter(|(_, r)| r.room.id.as_ref() == Some(id)).count() == 1;
-        let short = |w: &&mut Wish| &w.room_type == id && w.count < asked.count.n && (alone || !w.exact);
+        let short = |w: &&mut Wish| &w.room_type == id && w.count < asked.count.n && !w.exact;
         if let Some(wish) = reading.wishes.wishes.iter_mut().find(short) {
             (wish.count, wish.exact) = (asked.count.n, true);
         }

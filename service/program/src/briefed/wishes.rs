@@ -3,7 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use d3dgen_model::brief::{
-    Ask, AskedCount, Bound, Brief, CapacityAsk, Fact, ObjectsAsk, PlaceKind, RelationAsk, RelationKind, RoomsAsk, Subject,
+    Ask, AskedCount, Bound, Brief, CapacityAsk, Fact, ObjectsAsk, PlaceKind, RelationAsk, RelationKind, RoomsAsk,
+    Subject,
 };
 use d3dgen_model::domain::{Domain, Occupants, Program, RoomType};
 use d3dgen_model::offer;
@@ -24,6 +25,8 @@ use crate::wished::wishes::{Apart, Pair, PerHost};
 
 /// Factors on the usual area of rooms that the words for their size stand for.
 const SIZES: [(&str, f64); 2] = [("large", 1.4), ("small", 0.75)];
+/// For how many rooms are that are said to be so.
+const PEOPLE: [(&str, u32); 2] = [("single", 1), ("double", 2)];
 /// Most storeys above the ground, as for prompts.
 const MOST_LEVELS: u32 = 12;
 /// Most objects of one kind that one fact asks for.
@@ -114,9 +117,21 @@ fn slug_of(name: &str) -> Option<String> {
 /// Returns for how many rooms are that no lexicon has and of which that is said, by what they are called.
 fn sized_rooms(brief: &Brief) -> BTreeMap<String, u32> {
     let held = |a: &Ask| match &a.fact {
-        Fact::Capacity(CapacityAsk { of: PlaceKind::Beds | PlaceKind::Seats | PlaceKind::Desks, count, room, .. }) => {
+        Fact::Capacity(CapacityAsk { of, count, room, each_room, .. }) => {
             let room = room.as_ref().filter(|r| r.id.is_none())?;
-            Some((room.name.clone(), count.n))
+            // a "prayer room for 20" has its name for something else, a "4-bed room" and the rooms of 15 children each have not
+            let by_size = *each_room || room.name.contains(&count.n.to_string());
+            let sized = match of {
+                PlaceKind::Beds => true,
+                PlaceKind::Seats | PlaceKind::Desks => by_size,
+                _ => false,
+            };
+            sized.then(|| (room.name.clone(), count.n))
+        }
+        // "pokoje dwuosobowe"
+        Fact::Rooms(rooms) if rooms.room.id.is_none() => {
+            let of = |(word, n): &(&str, u32)| rooms.attributes.iter().any(|a| a == word).then_some(*n);
+            PEOPLE.iter().find_map(of).map(|n| (rooms.room.name.clone(), n))
         }
         _ => None,
     };
@@ -167,7 +182,12 @@ impl<'a> Facts<'a> {
                         out.head(what_of(people, lives), people.count.n);
                     }
                 }
-                Fact::Storeys(storeys) => out.stated = Some((storeys.count.n, storeys.basement)),
+                Fact::Storeys(storeys) => {
+                    // the cellar of a flat is a room of the house
+                    let within = |id: &str| words().dwelling.within_a_storey.iter().any(|w| w == id);
+                    let basement = storeys.basement && !building_type.is_some_and(within);
+                    out.stated = Some((storeys.count.n, basement));
+                }
                 Fact::Area(area) => out.area_m2 = Some(area.area_m2),
                 Fact::Style(style) => {
                     let at = Span { start: 0, end: 0 };
@@ -236,9 +256,11 @@ impl<'a> Facts<'a> {
         (alone && self.wishes.per_host.is_empty() && self.wishes.forbidden.is_empty()).then_some(room)
     }
 
-    /// Returns the room that guests of the building sleep in, for one that people sleep in elsewhere: a hotel has no patient rooms.
+    /// Returns the room that one sleeps in there, for one that people sleep in elsewhere: a hotel has no patient rooms.
     fn own_bedroom(&self, id: &str) -> Option<&String> {
-        let own = self.program?.means.get(GENERIC_ROOM_TYPE)?;
+        let program = self.program?;
+        let at_home = is_dwelling(program).then_some(&words().dwelling.bedroom);
+        let own = program.means.get(GENERIC_ROOM_TYPE).or(at_home)?;
         let known = self.domain?.room_type(id).is_some();
         let sleeps = |d: &Domain| d.room_type(id).is_some_and(|k| offer::sleeps(d, k).is_some());
         (!known && self.registry?.iter().any(|p| sleeps(p.domain()))).then_some(own)
@@ -253,7 +275,11 @@ impl<'a> Facts<'a> {
         let desks = |k: &RoomType| offer::desks(domain, k).filter(|_| offer::works_in(domain, k));
         let fits = |k: &&RoomType| desks(k).is_some_and(|[least, most]| (least..=most).contains(&n));
         let tightest = |k: &&RoomType| desks(k).map_or(u32::MAX, |d| d[1]);
-        is_office(program).then(|| domain.room_types.iter().filter(fits).min_by_key(tightest)).flatten()
+        if is_office(program) {
+            return domain.room_types.iter().filter(fits).min_by_key(tightest);
+        }
+        // the rooms of a kindergarten for so many are those that it is for
+        self.main_room()
     }
 
     /// Counts people, beds or desks of the building; those of several groups together.

@@ -2,7 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use d3dgen_model::domain::{AreaRange, Domain, GENERIC_ROOM_TYPE, ObjectType, Privacy, Relation, RoomType, Shape, Zone};
+use d3dgen_model::domain::{
+    AreaRange, Domain, GENERIC_ROOM_TYPE, ObjectType, Privacy, Relation, RoomType, Shape, Zone,
+};
 use d3dgen_model::measures::MOST_ELONGATED;
 use d3dgen_model::offer;
 use d3dgen_model::offer::{MOST_IN_TEAM, furniture};
@@ -83,11 +85,10 @@ pub(crate) fn describe(reading: &mut Reading, planned: &[Planned]) -> Vec<GraphR
                 None => room.kind.description.clone(),
             },
             target_area_m2: areas[i],
-            area_range_m2: kept_range(reading, room, areas[i])
-                .unwrap_or_else(|| {
-                    let wide = !lives || reading.area_m2.is_some();
-                    area_range(room, range_of(room, reading.single), areas[i], wide)
-                }),
+            area_range_m2: kept_range(reading, room, areas[i]).unwrap_or_else(|| {
+                let wide = !lives || reading.area_m2.is_some();
+                area_range(room, range_of(room, reading.single), areas[i], wide)
+            }),
             wished_assets: wished_assets(reading.domain, room.kind, named.get(&i).map_or(&[], Vec::as_slice)),
             sides_m: reading.single.then(|| kept_sides(room)).flatten(),
             occupants: room.occupants.filter(|n| *n > 0),

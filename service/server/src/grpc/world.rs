@@ -23,11 +23,11 @@ use d3dgen_proto::v1::world_service_server::WorldService;
 use d3dgen_proto::v1::{
     AssembleWorldRequest, AssembleWorldResponse, BatchWorld, BuildingRequest, CheckWorldRequest, CheckWorldResponse,
     CheckedWorld, EditWorldRequest, EditWorldResponse, ExportWorldRequest, ExportWorldResponse, Exporter,
-    GenerateBatchRequest, GenerateBatchResponse, GenerateBriefRequest, GenerateBriefResponse, GenerateFloorplanRequest, GenerateFloorplanResponse,
-    GeneratePlacementsRequest, GeneratePlacementsResponse, GenerateScenarioRequest, GenerateScenarioResponse,
-    GenerateSceneGraphRequest, GenerateSceneGraphResponse, GenerateWorldRequest, GetBatchWorldRequest,
-    GetBatchWorldResponse, ImportFloorplanRequest, ImportFloorplanResponse, ListBatchWorldsRequest,
-    ListBatchWorldsResponse, ListExportersRequest, ListExportersResponse, RankedFloorplan,
+    GenerateBatchRequest, GenerateBatchResponse, GenerateBriefRequest, GenerateBriefResponse, GenerateFloorplanRequest,
+    GenerateFloorplanResponse, GeneratePlacementsRequest, GeneratePlacementsResponse, GenerateScenarioRequest,
+    GenerateScenarioResponse, GenerateSceneGraphRequest, GenerateSceneGraphResponse, GenerateWorldRequest,
+    GetBatchWorldRequest, GetBatchWorldResponse, ImportFloorplanRequest, ImportFloorplanResponse,
+    ListBatchWorldsRequest, ListBatchWorldsResponse, ListExportersRequest, ListExportersResponse, RankedFloorplan,
 };
 use tonic::{Request, Response, Status};
 

@@ -7,12 +7,12 @@ use d3dgen_proto::v1::generate_world_response::Event;
 use d3dgen_proto::v1::world_edit::Edit;
 use d3dgen_proto::v1::{
     AmendKnowledgeRequest, AnyOf, AssembleWorldRequest, BuildingRequest, CheckWorldRequest, CheckedWorld, DomainFile,
-    EditWorldRequest, ExportWorldRequest, GenerateBatchRequest, GenerateBriefRequest, GenerateFloorplanRequest, GeneratePlacementsRequest,
-    GenerateScenarioRequest, GenerateSceneGraphRequest, GenerateWorldRequest, GetBatchWorldRequest, GetDomainRequest,
-    ImportFloorplanRequest, JobState, ListBatchWorldsRequest, ListConstraintFiltersRequest, ListDomainsRequest,
-    ListExportersRequest, ListJobLogsRequest, LockUpdate, ObjectMove, ParseDomainRequest, RegisterDomainRequest,
-    RemoveDomainRequest, RetrieveConstraintsRequest, RoomAddition, RuleSentence, SearchAssetsRequest,
-    SearchConstraintsRequest, UndoKnowledgeChangeRequest, WorldEdit,
+    EditWorldRequest, ExportWorldRequest, GenerateBatchRequest, GenerateBriefRequest, GenerateFloorplanRequest,
+    GeneratePlacementsRequest, GenerateScenarioRequest, GenerateSceneGraphRequest, GenerateWorldRequest,
+    GetBatchWorldRequest, GetDomainRequest, ImportFloorplanRequest, JobState, ListBatchWorldsRequest,
+    ListConstraintFiltersRequest, ListDomainsRequest, ListExportersRequest, ListJobLogsRequest, LockUpdate, ObjectMove,
+    ParseDomainRequest, RegisterDomainRequest, RemoveDomainRequest, RetrieveConstraintsRequest, RoomAddition,
+    RuleSentence, SearchAssetsRequest, SearchConstraintsRequest, UndoKnowledgeChangeRequest, WorldEdit,
 };
 use tonic::Code;
 use tonic_types::StatusExt;
