@@ -20,6 +20,8 @@ const PASSAGE: i32 = 250;
 const BACK_TO_BACK: i32 = 1800;
 /// Floor of the two behind them that those who sit back to back may share, mm.
 const SHARED_MOST: i32 = 200;
+/// Floor before things from which on it is a lane that those on its other side use too, mm.
+const SHARED_LANE: i32 = 1800;
 /// Free floor between tables in a row where there is room, mm.
 const TABLES_APART: i32 = 500;
 /// Steps away from a place on the ceiling that is taken, mm.
@@ -357,8 +359,10 @@ fn plans(state: &State, unit: &Unit, task: &Task, focus: Option<u8>, terms: &Ter
     // those who serve at two lines of counters share the floor between them, as on an island
     let island = shape == Shape::Counter && b.x0 < unit.anchor().solid.rect.x0;
     let gap_back = if island { back.max(aisle) } else { 0 };
-    let pairs =
-        matches!(shape, Shape::Desk | Shape::Rack | Shape::Shelf) || shape == Shape::Bench && !terms.one_way || island;
+    // cars and stalls share the lane before them
+    let lane = front >= SHARED_LANE && back == 0;
+    let kind = matches!(shape, Shape::Desk | Shape::Rack | Shape::Shelf) || shape == Shape::Bench && !terms.one_way;
+    let pairs = kind || island || lane;
     // tables stand apart where there is room
     let (apart, least) = match shape {
         Shape::Table => (TABLES_APART.max(side), side),

@@ -7,7 +7,6 @@ use d3dgen_model::offer::{MOST_IN_TEAM, sleeps};
 use crate::built::planned::Planned;
 use crate::named::objects::Thing;
 use crate::people::held::Held;
-use crate::people::stations;
 use crate::reading::Reading;
 use crate::subject::programs::is_dwelling;
 use crate::tokens::words::words;
@@ -134,9 +133,9 @@ pub(super) fn hold_people(reading: &mut Reading, rooms: &mut [Planned]) {
 fn hold_stations(reading: &Reading, rooms: &mut [Planned]) {
     for held in &reading.stationed {
         for room in rooms_of(held, rooms) {
-            let Some(line) = stations::line_of(reading.domain, room.kind) else { continue };
+            let Some(places) = offer::places(reading.domain, room.kind) else { continue };
             room.occupants = Some(held.beds);
-            room.size_for_people(stations::area_m2(line, held.beds));
+            room.size_for_people(places.area_m2(held.beds));
         }
     }
 }
