@@ -489,7 +489,7 @@ pub fn catalogue() -> World {
         (Shape::Track, [2.4, 2.6, 0.25]),
         (Shape::Stall, [1.25, 2.4, 1.2]),
     ];
-    let (width, depth) = (18.0, 18.0);
+    let (width, depth) = (18.0, 21.0);
     let hall =
         Polygon(vec![Point::new(0., 0.), Point::new(width, 0.), Point::new(width, depth), Point::new(0., depth)]);
     let mut floorplan = floorplan();

@@ -103,7 +103,8 @@ pub(super) fn hold_people(reading: &mut Reading, rooms: &mut [Planned]) {
         let elsewhere = if entry.occupants == Occupants::Staff { seated } else { 0 };
         let Some(people) = people.checked_sub(elsewhere).filter(|n| *n > 0) else { continue };
         let places: Vec<usize> = (0..rooms.len()).filter(|&i| rooms[i].room_type == entry.room_type).collect();
-        let sits = entry.area_per_occupant_m2.is_some() || entry.occupants != Occupants::Staff;
+        let flushes = reading.wet.has_toilet(reading.domain.room_type_or_generic(&entry.room_type));
+        let sits = entry.area_per_occupant_m2.is_some() || entry.occupants != Occupants::Staff && !flushes;
         if !sits || places.is_empty() || places.iter().any(|&i| rooms[i].occupants.is_some()) || reading.single {
             continue;
         }

@@ -21,6 +21,7 @@ const STATION: &str = "station";
 const LEAST_HEAD: usize = 3;
 /// Most places that are taken at their word.
 const MOST_PLACES: f64 = 400.0;
+
 /// Reads places.
 pub(crate) struct Reader<'a> {
     pub tokens: &'a [Token],
