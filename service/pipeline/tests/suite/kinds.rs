@@ -11,7 +11,7 @@ const SEEDS: u64 = 2;
 
 /// Prompts with what they count: the rooms, the objects in them, and how many there are in all.
 const COUNTED: [(&str, &str, &str, usize); 8] = [
-    ("parking garage for 60 cars", "parking_hall", "car", 60),
+    ("parking garage for 60 cars", "parking_hall", "parked_car", 60),
     ("dairy barn for 80 cows", "barn_hall", "cow_stall", 80),
     ("stable for 12 horses", "stable_hall", "horse_box", 12),
     ("data center with 40 racks", "data_hall", "server_rack", 40),
