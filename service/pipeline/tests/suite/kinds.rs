@@ -107,9 +107,10 @@ fn are_before_the_exit(world: &World) -> bool {
 #[test]
 fn screens_and_stages_are_away_from_where_one_comes_in() {
     let mut held = Vec::new();
-    for (prompt, room_type, shown) in
-        [("cinema with two screens", "auditorium", "cinema_screen"), ("theatre with 150 seats", "theatre_hall", "theatre_stage")]
-    {
+    for (prompt, room_type, shown) in [
+        ("cinema with two screens", "auditorium", "cinema_screen"),
+        ("theatre with 150 seats", "theatre_hall", "theatre_stage"),
+    ] {
         for world in worlds(prompt, SEEDS) {
             for room in rooms(&world, room_type) {
                 let stage = named(&world, room, shown);
