@@ -182,12 +182,12 @@ impl Reader<'_> {
         // "car wash": what is counted is the whole of a name
         let mention = mentions.iter().position(|m| m.span.overlaps(noun));
         let longer = |m: usize| mentions[m].span.start < at || mentions[m].span.end > end;
-        if mention.is_some_and(longer) || self.taken.iter().any(|s| s.overlaps(noun)) {
+        let counted = |m: usize| what.rooms && named(&mentions[m]);
+        if mention.is_some_and(|m| longer(m) || counted(m)) || self.taken.iter().any(|s| s.overlaps(noun)) {
             return None;
         }
         let number = self.number_before(at)?;
         let span = Span { start: number.span.start, end };
-        let mention = mention.filter(|&m| !named(&mentions[m]));
         let (count, rooms) = (bounded(number.value)?, what.rooms);
         Some(Found { span, count, noun, named: Some(id.clone()), mention, rooms })
     }
