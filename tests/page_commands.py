@@ -106,7 +106,7 @@ def environment(program, home):
     (bin / "cargo").chmod(stat.S_IRWXU)
     python = pathlib.Path(sys.executable).parent
     env = {k: v for k, v in os.environ.items() if not k.startswith(("D3DGEN_", "XDG_"))}
-    return {**env, "HOME": str(home), "PATH": f"{bin}:{python}:{env['PATH']}", "PYTHONDONTWRITEBYTECODE": "1", "CHECKOUT": str(WORKSPACE)}
+    return {**env, "HOME": str(home), "PATH": f"{bin}:{python}:{env['PATH']}", "PYTHONDONTWRITEBYTECODE": "1"}
 
 
 def follow(page, program):
