@@ -3,7 +3,7 @@
     tests/page_commands.py --program target/debug/d3dgen [PAGE...]
 
 Blocks of `sh` are run in order by bash -euo pipefail. In a block of `console`, the lines after `$ ` are run, and the lines below each
-must be among what it prints. What stands before a block, in a comment, changes that:
+must be among what it prints; `...` stands for anything. What stands before a block, in a comment, changes that:
 
     <!-- file: NAME -->       the block is written to that file
     <!-- not run: REASON -->  the block is left out; the reason is counted
@@ -69,9 +69,14 @@ def run_shown(text, home, env):
     for step in re.split(r"^\$ ", text, flags=re.M)[1:]:
         command, *shown = step.rstrip().splitlines()
         printed = [line.rstrip() for line in run(command, home, env)[1].splitlines()]
-        missing = [line for line in shown if line.rstrip() not in ["...", *printed]]
+        missing = [line for line in shown if not any(is_shown(line.rstrip(), said) for said in printed)]
         if missing:
             raise Failed(f"{command}\nshows\n  {missing[0]}\nand prints\n" + "\n".join(printed[-20:]))
+
+
+def is_shown(line, printed):
+    """Returns whether a printed line is the one that a page shows."""
+    return re.fullmatch(".*".join(re.escape(part) for part in line.split("...")), printed) is not None
 
 
 def serve(text, home, env):

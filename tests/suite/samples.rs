@@ -50,8 +50,19 @@ fn bless() {
     };
     fs::write(home.path().join("answers.jsonl"), ANSWER).unwrap();
     at(&[
-        "generate", PROMPT, "--seed", "1", "--no-png", "--format", "plan", "--propose", "scene_graph", "--model",
-        "replay:answers.jsonl", "--out", "flat",
+        "generate",
+        PROMPT,
+        "--seed",
+        "1",
+        "--no-png",
+        "--format",
+        "plan",
+        "--propose",
+        "scene_graph",
+        "--model",
+        "replay:answers.jsonl",
+        "--out",
+        "flat",
     ]);
     for kind in ["world", "scene_graph", "floorplan", "placements", "scenario", "report", "brief", "proposal"] {
         keep(kind, &fs::read_to_string(home.path().join(format!("flat/{kind}.json"))).unwrap());
@@ -71,7 +82,8 @@ fn bless() {
 fn check<D: Document>() {
     for version in 1..=D::current_version() {
         let file = sample(D::KIND, version);
-        let text = fs::read_to_string(&file).unwrap_or_else(|e| panic!("{}: {e}; every version has a sample", file.display()));
+        let text =
+            fs::read_to_string(&file).unwrap_or_else(|e| panic!("{}: {e}; every version has a sample", file.display()));
         let value: Value = serde_json::from_str(&text).unwrap();
         assert_eq!(D::version_of(&value), Some(version), "{}", file.display());
         let document = D::from_value(value).unwrap_or_else(|e| panic!("{}: {e}", file.display()));
@@ -148,5 +160,9 @@ fn migrate_refuses_what_a_later_release_wrote_before_anything_is_changed() {
     let told = |path: &str| String::from_utf8_lossy(&run(home.path(), &["migrate", path]).stderr).into_owned();
     assert!(told("rules").trim_end().ends_with("code: store.newer"), "{}", told("rules"));
     fs::write(home.path().join("song.json"), "{\"version\": 1, \"songs\": []}").unwrap();
-    assert!(told("song.json").contains("song.json") && told("song.json").contains("code: input"), "{}", told("song.json"));
+    assert!(
+        told("song.json").contains("song.json") && told("song.json").contains("code: input"),
+        "{}",
+        told("song.json")
+    );
 }

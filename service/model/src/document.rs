@@ -119,7 +119,11 @@ pub trait Document: Serialize + DeserializeOwned + JsonSchema {
 /// Returns the one thing to say of a document that a later release wrote.
 fn later<D: Document>(value: &Value) -> Option<Problem> {
     let (found, current) = (D::version_of(value)?, D::current_version());
-    let message = || format!("is {found}, this release reads version {current}: read it with the release that wrote it, or a later one");
+    let message = || {
+        format!(
+            "is {found}, this release reads version {current}: read it with the release that wrote it, or a later one"
+        )
+    };
     (found > current).then(|| Problem::new(D::VERSION_AT, message()))
 }
 
@@ -182,7 +186,10 @@ mod tests {
         let told = |value| Plank::from_value(value).unwrap_err().to_string();
         assert!(told(json!({"version": 1, "width": "wide"})).contains("/width: is no number"));
         let later = told(json!({"version": 4, "widths_m": [0.2]}));
-        assert!(later.contains("1 problem") && later.contains("/version: is 4, this release reads version 3"), "{later}");
+        assert!(
+            later.contains("1 problem") && later.contains("/version: is 4, this release reads version 3"),
+            "{later}"
+        );
         // neither a step nor a version of its own: the schema says what is wrong
         for odd in [json!({"version": 0}), json!({"version": -1}), json!({"version": "1"}), json!({}), json!([])] {
             assert!(!told(odd.clone()).contains("release"), "{odd}");

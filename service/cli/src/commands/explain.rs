@@ -18,13 +18,13 @@ impl Args {
     pub fn run(self) -> Result<(), Error> {
         let all = explanations();
         let Some(code) = self.code else {
-            let line = |(code, text): &(&str, &str)| format!("{code:<20} {}\n", text.lines().next().unwrap_or_default());
+            let line =
+                |(code, text): &(&str, &str)| format!("{code:<20} {}\n", text.lines().next().unwrap_or_default());
             return write_text(None, &all.iter().map(line).collect::<String>());
         };
         let found = all.iter().find(|(known, _)| *known == code);
-        let (_, text) = found.ok_or_else(|| {
-            Error::Input(format!("`{code}` is no code of an error; `d3dgen explain` lists them"))
-        })?;
+        let (_, text) = found
+            .ok_or_else(|| Error::Input(format!("`{code}` is no code of an error; `d3dgen explain` lists them")))?;
         write_text(None, &format!("{code}\n\n{text}\n"))
     }
 }

@@ -28,7 +28,8 @@ impl Args {
         command.build();
         let Some(out) = self.out else {
             let wanted = self.words.iter().try_fold(&command, |at, word| at.find_subcommand(word).ok_or(word));
-            let wanted = wanted.map_err(|word| Error::Input(format!("there is no command `{word}`; see d3dgen --help")))?;
+            let wanted =
+                wanted.map_err(|word| Error::Input(format!("there is no command `{word}`; see d3dgen --help")))?;
             return write_text(None, &page(wanted)?);
         };
         let folder = Output::among(&out)?;

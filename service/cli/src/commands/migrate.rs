@@ -94,10 +94,11 @@ fn kinds() -> Vec<Kind> {
 
 fn fits<D: Document>(value: &Value) -> bool {
     let mut value = value.clone();
+    if D::version_of(&value).is_none() || D::upgrade(&mut value).is_err() {
+        return false;
+    }
     let has = |name: &Value| name.as_str().is_some_and(|name| value.get(name).is_some());
-    D::version_of(&value).is_some()
-        && D::upgrade(&mut value).is_ok()
-        && D::schema()["required"].as_array().is_some_and(|names| names.iter().all(has))
+    D::schema()["required"].as_array().is_some_and(|names| names.iter().all(has))
 }
 
 fn read<D: Document>(value: Value) -> Result<Read, d3dgen_model::Error> {
@@ -196,7 +197,9 @@ fn document(path: &Path, named: bool, kinds: &[Kind]) -> Result<Option<Found>, E
     let by_name = kinds.iter().find(|k| k.name == stem && value.get("version").is_some());
     let Some(kind) = by_name.or_else(|| kinds.iter().find(|k| (k.fits)(&value))) else {
         return match named {
-            true => Err(Error::Input(format!("{}: no document of d3dgen has such fields; see schemas/", path.display()))),
+            true => {
+                Err(Error::Input(format!("{}: no document of d3dgen has such fields; see schemas/", path.display())))
+            }
             false => Ok(None),
         };
     };
@@ -212,7 +215,8 @@ fn document(path: &Path, named: bool, kinds: &[Kind]) -> Result<Option<Found>, E
 fn store(folder: &Path) -> Result<Found, Error> {
     let (path, text) = text(&folder.join(STORE), "")?;
     let format = serde_json::from_str(&text).ok().and_then(|v: Value| v.get("format").and_then(Value::as_u64));
-    let from = format.ok_or_else(|| Error::Input(format!("{}: names no format; restore a snapshot", path.display())))?;
+    let from =
+        format.ok_or_else(|| Error::Input(format!("{}: names no format; restore a snapshot", path.display())))?;
     let to = u64::from(FORMAT);
     if from > to {
         // says which release wrote it

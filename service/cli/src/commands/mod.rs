@@ -38,6 +38,7 @@ mod world;
 
 use clap::Subcommand;
 
+#[cfg(test)]
 pub use explain::explanations;
 pub use formats::Formats;
 pub use model::LlmArgs;
