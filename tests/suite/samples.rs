@@ -31,7 +31,7 @@ const PROMPT: &str = "studio flat in Germany with a cleaning robot";
 const EDITS: &str = r#"{"version": 1, "edits": [
     {"op": "add_room", "room_type": "storage", "area_m2": 4.0},
     {"op": "move_wall", "wall_id": "wall_1", "by_m": 0.2},
-    {"op": "lock", "ids": ["bathroom_1"]}
+    {"op": "lock", "ids": ["bathroom_1"], "locked": true}
 ]}"#;
 /// An answer of a language model, as it is recorded.
 const ANSWER: &str = r#"{"stage": "scene_graph", "answer": {"text": "{\"rooms\": [{\"id\": \"a\", \"room_type\": \"studio_room\", \"name\": \"x\", \"area_m2\": 20.0, \"objects\": []}], \"edges\": []}", "model": "recorded"}}"#;
