@@ -3,7 +3,7 @@
 
     d3dgen bench paper --out target/paper && tests/plan_objections.py target/paper
 
-Reads `floorplan.json`, `placements.json` and `scenario.json` of every world below the folder, and nothing of the program. One
+Reads `scene_graph.json`, `floorplan.json`, `placements.json` and `scenario.json` of every world below the folder, and nothing of the program. One
 objection of weight A, or three different ones of weight B, send a plan back. Exit status 1 when a tenth of the plans or more
 would be sent back, 2 when there are no worlds. `--list` names the plans of each objection; `--page` prints the tables of
 docs/plans.md and reads no worlds, `--page docs/plans.md` tells whether they are in it.
@@ -24,6 +24,8 @@ HAND_BASINS = {"accessible_basin", "clinical_basin", "small_basin", "washbasin"}
 DESKS = {"desk", "small_desk"}
 WORK_CHAIRS = {"swivel_chair", "task_chair"}
 VISITOR_SEATS = {"lounge_chair", "lounge_sofa", "visitor_chair"}
+HOUSES = {"house", "terraced_house", "tiny_house", "villa"}
+ATTACHED = {"flat", "one_bedroom_flat", "small_flat", "shared_flat", "studio", "terraced_house"}
 TOILETS = {"accessible_wc", "toilet", "wc_cubicle"}
 EAST, NORTH, WEST, SOUTH = range(4)
 GRAZE = 0.02
@@ -64,6 +66,7 @@ class Room:
 
     def __init__(self, room, plan, placements):
         self.id, self.kind, self.circulation = room["room_id"], room["room_type"], room["circulation"]
+        self.level = room.get("level", 0)
         self.area, self.corners = room["net_area_m2"], [(p["x"], p["y"]) for p in room["net_polygon"]]
         xs, ys = zip(*self.corners, strict=True)
         self.rect = (min(xs), min(ys), max(xs), max(ys))
@@ -97,9 +100,9 @@ class World:
     """The documents of one world."""
 
     def __init__(self, folder):
-        plan, placements, scenario = (
-            json.loads((folder / f"{name}.json").read_text()) for name in ("floorplan", "placements", "scenario")
-        )
+        documents = ("floorplan", "placements", "scenario", "scene_graph")
+        plan, placements, scenario, graph = (json.loads((folder / f"{name}.json").read_text()) for name in documents)
+        self.building, self.area = graph.get("building_type"), sum(r["net_area_m2"] for r in plan["rooms"])
         self.rooms = [Room(r, plan, placements["placements"]) for r in plan["rooms"]]
         self.walls = [line_of(w) for w in plan["walls"]]
         self.doors = plan["doors"]
@@ -998,6 +1001,45 @@ def route_behind_chairs(world):
                             if gap(pushed, (x, y, x, y)) < radius - 0.1:
                                 return True
     return False
+
+
+@objection("A", "residential")
+def no_garden_door(world):
+    """a house without a door to its garden from where one lives"""
+    if world.building not in HOUSES or any(r.kind in ("terrace", "balcony") for r in world.rooms):
+        return False
+    lived = [r for r in world.of("living_room", "living_kitchen", "family_room", "sunroom", "dining_room", "studio") if not r.level]
+    return bool(lived) and not any(len(d["room_ids"]) == 1 and not d["entrance"] for r in lived for d in r.doors)
+
+
+@objection("B", "residential")
+def hall_of_a_small_home(world):
+    """a hall in a home of less than 40 m2"""
+    return world.area < 40.0 and any(r.kind == "hallway" for r in world.rooms)
+
+
+@objection("B", "residential")
+def no_ensuite(world):
+    """two bathrooms or more, and none that is entered from a bedroom"""
+    baths, beds = world.of("bathroom", "ensuite"), {r.id for r in world.of("bedroom", "single_bedroom", "kids_room", "guest_room")}
+    toilets = len(baths) + len(world.of("toilet"))
+    if world.building == "shared_flat" or len(baths) < 2 or len(beds) < 2 or toilets <= len({r.level for r in world.rooms}):
+        return False
+    return not any(beds & set(d["room_ids"]) for r in baths for d in r.doors)
+
+
+@objection("B", "residential")
+def windows_at_neighbors(world):
+    """a flat or house in a row with windows on more than two opposite sides"""
+    panes = [line_of(w) for r in world.rooms if r.kind not in ("terrace", "balcony") for w in r.windows]
+    return world.building in ATTACHED and len({x1 - x0 > y1 - y0 for x0, y0, x1, y1 in panes}) > 1
+
+
+@objection("B", "residential")
+def motor_at_bedroom(world):
+    """a bedroom or bathroom of a home whose door opens by motor"""
+    quiet = ("bedroom", "single_bedroom", "kids_room", "guest_room", "bathroom", "ensuite", "toilet", "shower_room")
+    return any(d.get("automatic") for r in world.of(*quiet) for d in r.doors)
 
 
 @objection("B", "hospital")

@@ -10,12 +10,13 @@ use d3dgen_model::seed::Stream;
 
 use super::core::{Below, in_core, overhang};
 use super::hall;
+use super::locked::{self, Cut};
 use super::lattice::{CELL_M2, Cellbox, INNER_HALF_M, OUTER_HALF_M, meters, up};
 use super::mirror;
 use super::realize::{Layout, door_need};
 use super::spec::{Brief, RoomSpec};
 use crate::lattice::{between, distance};
-use crate::measures::LEAST_WALL_M;
+use crate::measures::{GARDEN_DOOR_M, LEAST_WALL_M, MARGIN_M};
 
 /// Cost of a room whose area is outside what is advised, beside that of how far.
 const ILL_ADVISED: f64 = 0.8;
@@ -25,6 +26,8 @@ const IN_WARDS: f64 = 2.5;
 const FEW_ROOMS: usize = 14;
 /// Cost of a room without the daylight that it is better with, beside those that take a facade and need none.
 const DARK: f64 = 1.8;
+/// Cost of a meter of outer wall that the room with the door to the garden lacks for that and a window.
+const NO_GARDEN: f64 = 1.0;
 /// Share by which circulation beyond what is advised counts as larger.
 const ILL_SHARED: f64 = 0.05;
 /// Length from which on the hall of a home is a tunnel, m, what a meter more counts as share of circulation, and how many more
@@ -110,6 +113,9 @@ const PUSHED: f64 = 8.0;
 /// What sums of costs may lack by rounding.
 const ROUNDING: f64 = 1e-9;
 
+/// Wall for a window beside the door to the garden, m.
+const GARDEN_PANE_M: f64 = 1.8 + 2.0 * MARGIN_M;
+
 /// Share by which the whole may miss the area asked for before it costs.
 const AREA_TOLERANCE: f64 = 0.03;
 /// Share from which on the building is plainly not as large as asked for, and the cost beyond.
@@ -181,6 +187,9 @@ pub(crate) struct Judge<'b> {
     aloof_pairs: Vec<usize>,
     /// What the doors to outdoors need, lattice units.
     pub(crate) entrance_need: i32,
+    garden_need: i32,
+    /// True where rooms are behind a lock.
+    locks: bool,
     wet_rooms: usize,
     /// Rooms along corridors that people sleep in, and stations with an open front for those who see to them.
     pub(crate) beds: Vec<usize>,
@@ -240,6 +249,8 @@ impl<'b> Judge<'b> {
             apart_pairs: Vec::new(),
             aloof_pairs: Vec::new(),
             entrance_need: door_need(brief.entrance_width),
+            garden_need: door_need(GARDEN_DOOR_M) + up(GARDEN_PANE_M),
+            locks: brief.rooms.iter().any(|r| r.locked),
             wet_rooms: brief.rooms.iter().filter(|r| r.wet).count(),
             beds: (0..n).filter(|&r| brief.rooms[r].zone == Zone::Night && brief.rooms[r].on_spine).collect(),
             stations: (0..n).filter(|&r| brief.rooms[r].zone == Zone::Staff && brief.rooms[r].open_front).collect(),
@@ -304,6 +315,7 @@ impl<'b> Judge<'b> {
             return;
         }
         self.links(score);
+        score.hard += self.cut(&layout.boxes).0;
         if !go_on(score) {
             return;
         }
@@ -368,7 +380,9 @@ impl<'b> Judge<'b> {
                 }
             }
         }
+        let party = self.brief.party;
         for ((room, shape), side) in boxes.iter().zip(&survey.side) {
+            let circulation = self.brief.rooms[*room].circulation || self.brief.rooms[*room].entrance;
             let room = &mut survey.rooms[*room];
             let area = shape.area_m2();
             room.gross_m2 += area;
@@ -382,7 +396,10 @@ impl<'b> Judge<'b> {
                 for [shared, own] in sides {
                     let free = len - shared;
                     survey.steps += usize::from(shared > 0 && (1..up(STEP_M)).contains(&free));
-                    room.outer = (room.outer.0.max(free), room.outer.1 + free);
+                    // neighbors stand against it; the way in may be there
+                    let lit = party.is_none_or(|p| p.vertical != (axis == 0) || circulation && p.entered);
+                    let longest = if lit { room.outer.0.max(free) } else { room.outer.0 };
+                    room.outer = (longest, room.outer.1 + free);
                     (outer, inner) = (outer + free, inner + shared - own);
                     // the clear extent ends at the thickest wall of a side
                     let half = if free > 0 { OUTER_HALF_M } else { INNER_HALF_M };
@@ -480,6 +497,9 @@ impl<'b> Judge<'b> {
             }
             if spec.entrance {
                 score.hard += meters((self.entrance_need - longest).max(0));
+            }
+            if self.brief.garden.first() == Some(&i) {
+                score.soft[3] += NO_GARDEN * meters((self.garden_need - total).max(0));
             }
         }
     }
@@ -597,6 +617,11 @@ impl<'b> Judge<'b> {
                 }
             }
         }
+    }
+
+    /// Returns what rooms before and behind a lock miss of lying at two ends of the corridor, m, and where the wall between is best.
+    pub(crate) fn cut(&self, boxes: &[(usize, Cellbox)]) -> (f64, Option<Cut>) {
+        if self.locks { locked::cut(self.brief, boxes, &self.spine_need) } else { (0.0, None) }
     }
 
     /// Returns how far it is from each bedroom to the nearest station, m; nothing where there is no station.

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use d3dgen_knowledge::jurisdiction::rules_here;
 use d3dgen_knowledge::{Limit, Limits, RoomLimits};
 use d3dgen_model::domain::{
-    Adjacency, AdjacencyRelation, Arrangement, Daylight, Domain, Materials, Privacy, Relation, RobotUse, RoomType,
+    Adjacency, AdjacencyRelation, Arrangement, Attached, BuildingType, Daylight, Domain, Materials, Privacy, Relation, RobotUse, RoomType,
     Shape, Zone,
 };
 use d3dgen_model::measures::JAMB_M;
@@ -19,10 +19,13 @@ use d3dgen_model::style::{Form, SpaceStyle, StyleWord, Symmetry};
 
 use super::core::Core;
 use super::lattice::OUTER_HALF_M;
+use super::party::Party;
 use crate::measures::{LEAST_WALL_M, SYMMETRIC};
 
 /// Code of the conflict that a building has another form than was asked for.
 const FORM_NOT_BUILT: &str = "form_not_built";
+/// Code of the conflict that a building has no neighbors where it was to have some.
+const STANDS_FREE: &str = "stands_free";
 /// Code of the conflict that a plan is not alike on both sides.
 const NOT_SYMMETRIC: &str = "not_symmetric";
 /// Clear width that a wheelchair and most robots need through a door, m; used when the prompt asks for access.
@@ -106,6 +109,8 @@ pub(crate) struct RoomSpec {
     pub elevator: bool,
     /// Unit of a large building that it belongs to, counted from 0.
     pub unit: Option<usize>,
+    /// True for rooms at the part of the corridor behind a lock, while it is looked for as one.
+    pub locked: bool,
 }
 
 impl RoomSpec {
@@ -157,6 +162,8 @@ pub(crate) struct Brief {
     pub spine: Option<usize>,
     /// The piece of corridor that closes a ring with the spine, if any.
     pub ring: Option<usize>,
+    /// The part of the corridor behind a lock, if any.
+    pub locked: Option<usize>,
     /// True when the spine is a room of its own right (a warehouse hall) and takes its width from its area.
     pub hub: bool,
     /// Clear corridor width, m.
@@ -192,6 +199,14 @@ pub(crate) struct Brief {
     pub of_home: bool,
     /// Stairs and elevator of a building with several storeys.
     pub core: Option<Core>,
+    /// True in a domain of homes.
+    pub for_homes: bool,
+    /// Rooms that may have the door to the garden, best first.
+    pub garden: Vec<usize>,
+    /// What it stands wall to wall with, if anything.
+    pub attached: Option<Attached>,
+    /// The walls that this stands against, in the frame of the boxes at hand, while such a plan is looked for.
+    pub party: Option<Party>,
 }
 
 impl Brief {
@@ -234,6 +249,7 @@ impl Brief {
         let mut brief = Self {
             hub: spine.is_some_and(|s| !rooms[s].circulation),
             ring: ring_of(graph, spine),
+            locked: locked_of(graph, spine),
             rooms,
             spine,
             spine_width: circulation_width,
@@ -260,8 +276,15 @@ impl Brief {
             upper: graph.rooms.iter().any(|r| r.level != 0),
             of_home,
             core: None,
+            for_homes: is_for_homes(domain),
+            garden: Vec::new(),
+            attached: None,
+            party: None,
         };
         brief.find_guests();
+        if let Some(building) = domain.building_types.iter().find(|b| graph.building_type.as_ref() == Some(&b.id)) {
+            brief.stand(building);
+        }
         if let Some(spine) = brief.spine
             && !brief.upper
             && !brief.rooms.iter().any(|r| r.entrance)
@@ -276,6 +299,33 @@ impl Brief {
             brief.apart.push([find(a)?, find(b)?]);
         }
         Ok(brief)
+    }
+
+    /// Fills in what follows from how the building stands: its garden, and the walls of others.
+    fn stand(&mut self, building: &BuildingType) {
+        let at = |id: &String| (0..self.rooms.len()).filter(|&r| &self.rooms[r].room_type == id).collect::<Vec<_>>();
+        // from a terrace one gets to the garden anyway
+        let terrace = self.rooms.iter().any(|r| r.zone == Zone::Outdoor);
+        if !self.upper && !terrace {
+            self.garden = building.garden_rooms.iter().flat_map(at).collect();
+        }
+        self.attached = building.attached;
+    }
+
+    /// Gives up the neighbors: a plan that stands free is better than none, and says so.
+    pub(crate) fn stand_free(&mut self) {
+        if self.party.take().is_some() {
+            self.conflicts.push(Note {
+                code: STANDS_FREE.into(),
+                message: "no plan was found with neighbors wall to wall at both ends; it has windows on other sides too".into(),
+            });
+        }
+    }
+
+    /// Returns the task in the frame of boxes that were turned.
+    pub(crate) fn turned(&self, swapped: bool) -> Self {
+        let party = self.party.map(|p| Party { vertical: p.vertical != swapped, ..p });
+        Self { party, ..self.clone() }
     }
 
     /// Gives up the form that is asked for: what would close a ring of corridors is a piece of corridor like any other room.
@@ -377,6 +427,7 @@ impl Brief {
             rooms: specs,
             spine: spine.and_then(|s| index[s]),
             ring: None,
+            locked: None,
             hub: false,
             links: self.links.iter().filter_map(link).collect(),
             apart: both(&self.apart),
@@ -388,6 +439,7 @@ impl Brief {
             guests: Vec::new(),
             stem: true,
             core: None,
+            garden: Vec::new(),
             ..*self
         };
         out.find_guests();
@@ -412,7 +464,7 @@ impl Brief {
     /// Returns true for buildings that people live in: they sleep there, and nobody works or is received.
     pub(crate) fn is_home(&self) -> bool {
         let any = |zone: Zone| self.rooms.iter().any(|r| r.zone == zone);
-        self.of_home || any(Zone::Night) && !any(Zone::Staff) && !any(Zone::Public)
+        self.of_home || self.for_homes || any(Zone::Night) && !any(Zone::Staff) && !any(Zone::Public)
     }
 
     /// Returns the structural opening of a door with this clear width, m, on the lattice.
@@ -431,6 +483,17 @@ impl Brief {
             _ => self.rooms[a].door_width.min(self.rooms[b].door_width),
         }
     }
+}
+
+/// Returns the part of the corridor that one comes to through a door from the other.
+fn locked_of(graph: &SceneGraph, spine: Option<usize>) -> Option<usize> {
+    let spine = &graph.rooms[spine?];
+    let joined = |id: &str| {
+        let ends = |e: &GraphEdge| e.a == id && e.b == spine.id || e.b == id && e.a == spine.id;
+        graph.edges.iter().any(|e| e.required && e.connector == Connector::Door && ends(e))
+    };
+    let way = |r: &GraphRoom| r.circulation && r.room_type == spine.room_type && r.id != spine.id && joined(&r.id);
+    graph.rooms.iter().position(way)
 }
 
 /// Returns the piece of corridor that is open to the spine, so that both together can run around a core or a court.
@@ -527,7 +590,9 @@ fn room_spec(
     let robot = graph.robots.iter().map(|r| 2.0 * r.planned_radius_m() + 0.1).fold(0.0, f64::max);
     let robots = !graph.robots.is_empty();
     let works = kind.robot.iter().any(|u| *u != RobotUse::KeepOut);
-    let automatic = robots && works && domain.circulation.automatic_doors;
+    // nobody sleeps or washes behind a motor at home: those doors stand open for the robot
+    let retreat = kind.privacy == Privacy::Private && is_for_homes(domain);
+    let automatic = robots && works && domain.circulation.automatic_doors && !retreat;
     // what hangs in the air or lies below the ground has no drive
     let gate = gate(domain, kind).filter(|_| room.level == 0);
     RoomSpec {
@@ -567,6 +632,7 @@ fn room_spec(
         fixed: false,
         elevator: graph.links.iter().any(|l| l.kind == LinkKind::Elevator && l.room_ids.contains(&room.id)),
         unit: None,
+        locked: false,
     }
 }
 

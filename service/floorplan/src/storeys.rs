@@ -15,6 +15,7 @@ use super::assemble::{Turn, assemble, turned_in_place};
 use super::core::{Below, Core, in_core, merged, overhang};
 use super::genome::is_nestable;
 use super::lattice::{CELL_M2, Cellbox, INNER_HALF_M, meters, nearest};
+use super::party::Party;
 use super::search::search;
 use super::spec::Brief;
 use super::{ATTEMPTS, LONGEST_BAR, schemes};
@@ -74,6 +75,7 @@ pub(crate) fn generate(
     for &level in &numbers {
         let mut brief = Brief::new(&graph.storey(level), domain, limits)?;
         brief.vary(&mut rng);
+        brief.party = brief.attached.map(Party::of);
         briefs.push(brief);
     }
     let heights: Vec<f64> = briefs.iter().map(|b| height(b, storeys)).collect();
@@ -224,6 +226,9 @@ fn storey(
     for attempt in 0..ATTEMPTS {
         if attempt == ATTEMPTS / 2 {
             brief.take_any_form();
+            if best.is_none() {
+                brief.stand_free();
+            }
         }
         let mut schemes = schemes(&brief, domain, rng);
         // a bar lies best on a bar
@@ -245,7 +250,7 @@ fn storey(
         let boxes: Vec<(usize, Cellbox)> = in_core(&found.layout.boxes, &frame);
         let name = format!("{:?}", found.scheme).to_lowercase();
         brief.tell_form(form, |f| found.has_form(f));
-        match assemble(&brief, &turned_in_place(&boxes, turn), &found.score, seed, &name, None, rng) {
+        match assemble(&brief.turned(turn.swap), &turned_in_place(&boxes, turn), &found.score, seed, &name, None, rng) {
             Ok(plan) => {
                 let wings = brief.core.as_ref().is_some_and(|c| c.far.is_some() && !c.gable);
                 let comb = wings.then_some(found.layout.comb);

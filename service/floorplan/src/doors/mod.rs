@@ -115,6 +115,7 @@ fn lay(site: &Site<'_>, entrance_first: bool, rng: &mut Stream) -> Laid {
     site.lay_entrances(after, &mut laid);
     site.lay_exits(&mut laid);
     site.lay_room_exits(&mut laid);
+    site.lay_garden_door(&mut laid);
     site.lay_second_doors(&mut laid, rng);
     site.lay_court_doors(&mut laid);
     laid.settle();
