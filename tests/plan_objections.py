@@ -1018,6 +1018,32 @@ def hall_of_a_small_home(world):
     return world.area < 40.0 and any(r.kind == "hallway" for r in world.rooms)
 
 
+def legs(corners):
+    """The smaller part of an L, cut off the larger in both ways that there are; nothing of other shapes."""
+    if len(corners) != 6:
+        return []
+    (x0, y0, x1, y1) = min(c[0] for c in corners), min(c[1] for c in corners), max(c[0] for c in corners), max(c[1] for c in corners)
+    (px, py) = next(c for c in corners if x0 + GRAZE < c[0] < x1 - GRAZE and y0 + GRAZE < c[1] < y1 - GRAZE)
+    # the corner of the rectangle around it that the L leaves out
+    hx, hy = next((x, y) for x in (x0, x1) for y in (y0, y1) if all(math.dist(c, (x, y)) > GRAZE for c in corners))
+    beside = (px, y0, x1, y1) if hx == x1 else (x0, y0, px, y1)
+    above = (x0, py, x1, y1) if hy == y1 else (x0, y0, x1, py)
+    left = [(beside[0], y0, beside[2], py) if hy == y1 else (beside[0], py, beside[2], y1)]
+    left += [(x0, above[1], px, above[3]) if hx == x1 else (px, above[1], x1, above[3])]
+    return left
+
+
+@objection("B", "residential")
+def dead_neck(world):
+    """a part of a bedroom or living room that is narrower than 1.9 m, longer than 1.8 m, and holds nothing"""
+    for room in world.of("bedroom", "single_bedroom", "kids_room", "guest_room", "living_room", "studio"):
+        for x0, y0, x1, y1 in legs(room.corners):
+            narrow, long = sorted((x1 - x0, y1 - y0))
+            if narrow < 1.9 and long > 1.8 and not any(overlap(b.rect, (x0, y0, x1, y1), 0.2) for b in room.standing):
+                return True
+    return False
+
+
 @objection("B", "residential")
 def no_ensuite(world):
     """two bathrooms or more, and none that is entered from a bedroom"""
@@ -1040,6 +1066,17 @@ def motor_at_bedroom(world):
     """a bedroom or bathroom of a home whose door opens by motor"""
     quiet = ("bedroom", "single_bedroom", "kids_room", "guest_room", "bathroom", "ensuite", "toilet", "shower_room")
     return any(d.get("automatic") for r in world.of(*quiet) for d in r.doors)
+
+
+@objection("A", "hospital")
+def visitors_at_surgery(world):
+    """operating rooms of up to 25 rooms on the corridor that visitors come to"""
+    surgery = ("operating_room", "operating_room_large", "operating_lobby", "scrub_room")
+    visited = ("entrance_lobby", "reception", "waiting_area")
+    if len(world.rooms) > 25:
+        return False
+    at = [{i for r in world.of(*kinds) for d in r.doors for i in d["room_ids"]} for kinds in (surgery, visited)]
+    return any(r.circulation and r.id in at[0] and r.id in at[1] for r in world.rooms)
 
 
 @objection("B", "hospital")

@@ -10,8 +10,8 @@ use d3dgen_model::seed::Stream;
 
 use super::core::{Below, in_core, overhang};
 use super::hall;
-use super::locked::{self, Cut};
 use super::lattice::{CELL_M2, Cellbox, INNER_HALF_M, OUTER_HALF_M, meters, up};
+use super::locked::{self, Cut};
 use super::mirror;
 use super::realize::{Layout, door_need};
 use super::spec::{Brief, RoomSpec};
@@ -92,6 +92,9 @@ const SLOT: f64 = 1.5;
 /// Share of a bedroom beside a small room that was cut out of it from which on that is a waste, and what more of it costs.
 const LEG_SHARE: f64 = 0.22;
 const WASTED_LEG: f64 = 4.0;
+/// Width between wall center lines below which a leg as long holds nothing, m, and what that costs a home.
+const NECK_M: f64 = 2.0;
+const DEAD_NECK: f64 = 1.5;
 /// What a leg costs of a room of another building that cannot spare a corner, unless what was cut out is the room's own.
 const CUT_CELL: f64 = 2.5;
 
@@ -223,8 +226,10 @@ pub(crate) struct Survey {
 pub(crate) struct Measured {
     /// Longest wall shared with the spine, lattice units.
     spine: i32,
-    /// Outer wall: the longest straight piece, and the sum.
+    /// Outer wall: the longest straight piece that a window can be in, and the sum.
     outer: (i32, i32),
+    /// The longest straight piece that a door to outdoors can be in.
+    way_in: i32,
     gross_m2: f64,
     pub(crate) net_m2: f64,
     /// Largest box.
@@ -382,7 +387,6 @@ impl<'b> Judge<'b> {
         }
         let party = self.brief.party;
         for ((room, shape), side) in boxes.iter().zip(&survey.side) {
-            let circulation = self.brief.rooms[*room].circulation || self.brief.rooms[*room].entrance;
             let room = &mut survey.rooms[*room];
             let area = shape.area_m2();
             room.gross_m2 += area;
@@ -396,10 +400,15 @@ impl<'b> Judge<'b> {
                 for [shared, own] in sides {
                     let free = len - shared;
                     survey.steps += usize::from(shared > 0 && (1..up(STEP_M)).contains(&free));
-                    // neighbors stand against it; the way in may be there
-                    let lit = party.is_none_or(|p| p.vertical != (axis == 0) || circulation && p.entered);
-                    let longest = if lit { room.outer.0.max(free) } else { room.outer.0 };
-                    room.outer = (longest, room.outer.1 + free);
+                    room.outer.1 += free;
+                    // a wall of neighbors has no window; the way in may be there
+                    let shut = party.filter(|p| p.vertical == (axis == 0));
+                    if shut.is_none() {
+                        room.outer.0 = room.outer.0.max(free);
+                    }
+                    if shut.is_none_or(|p| p.entered) {
+                        room.way_in = room.way_in.max(free);
+                    }
                     (outer, inner) = (outer + free, inner + shared - own);
                     // the clear extent ends at the thickest wall of a side
                     let half = if free > 0 { OUTER_HALF_M } else { INNER_HALF_M };
@@ -496,7 +505,7 @@ impl<'b> Judge<'b> {
                 _ => {}
             }
             if spec.entrance {
-                score.hard += meters((self.entrance_need - longest).max(0));
+                score.hard += meters((self.entrance_need - room.way_in).max(0));
             }
             if self.brief.garden.first() == Some(&i) {
                 score.soft[3] += NO_GARDEN * meters((self.garden_need - total).max(0));
@@ -611,6 +620,9 @@ impl<'b> Judge<'b> {
                 if !home && !self.hosts[*room] && !brief.rooms[*room].spares_a_corner() {
                     score.soft[8] += CUT_CELL;
                 }
+                let lived_in = matches!(brief.rooms[*room].zone, Zone::Night | Zone::Day);
+                score.soft[8] +=
+                    if home && lived_in && w.min(h) < NECK_M && w.max(h) > NECK_M { DEAD_NECK } else { 0.0 };
                 if home && brief.rooms[*room].zone == Zone::Night {
                     let share = shape.area_m2() / rooms[*room].gross_m2.max(1.0);
                     score.soft[8] += WASTED_LEG * (share - LEG_SHARE).max(0.0);

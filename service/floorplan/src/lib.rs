@@ -57,8 +57,8 @@ use d3dgen_model::style::Symmetry;
 pub use adjust::WallMove;
 use assemble::{Turn, assemble, turned};
 use cost::Judge;
-pub use proposed::{Follow, MOST_SKETCHED, Sketch, propose};
 use party::Party;
+pub use proposed::{Follow, MOST_SKETCHED, Sketch, propose};
 use search::search;
 use spec::Brief;
 

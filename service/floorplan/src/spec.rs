@@ -6,8 +6,8 @@ use std::collections::BTreeMap;
 use d3dgen_knowledge::jurisdiction::rules_here;
 use d3dgen_knowledge::{Limit, Limits, RoomLimits};
 use d3dgen_model::domain::{
-    Adjacency, AdjacencyRelation, Arrangement, Attached, BuildingType, Daylight, Domain, Materials, Privacy, Relation, RobotUse, RoomType,
-    Shape, Zone,
+    Adjacency, AdjacencyRelation, Arrangement, Attached, BuildingType, Daylight, Domain, Materials, Privacy, Relation,
+    RobotUse, RoomType, Shape, Zone,
 };
 use d3dgen_model::measures::JAMB_M;
 use d3dgen_model::offer::has_docks;
@@ -317,7 +317,9 @@ impl Brief {
         if self.party.take().is_some() {
             self.conflicts.push(Note {
                 code: STANDS_FREE.into(),
-                message: "no plan was found with neighbors wall to wall at both ends; it has windows on other sides too".into(),
+                message:
+                    "no plan was found with neighbors wall to wall at both ends; it has windows on other sides too"
+                        .into(),
             });
         }
     }
@@ -589,7 +591,8 @@ fn room_spec(
     // A robot's circle passes with 5 cm to spare on both sides.
     let robot = graph.robots.iter().map(|r| 2.0 * r.planned_radius_m() + 0.1).fold(0.0, f64::max);
     let robots = !graph.robots.is_empty();
-    let works = kind.robot.iter().any(|u| *u != RobotUse::KeepOut);
+    let sent = graph.robots.iter().any(|r| r.stops.contains(&room.id) || r.room_types.contains(&room.room_type));
+    let works = sent || kind.robot.iter().any(|u| *u != RobotUse::KeepOut);
     // nobody sleeps or washes behind a motor at home: those doors stand open for the robot
     let retreat = kind.privacy == Privacy::Private && is_for_homes(domain);
     let automatic = robots && works && domain.circulation.automatic_doors && !retreat;
@@ -616,7 +619,7 @@ fn room_spec(
         // who uses a wheelchair has no floor to spare for a leaf
         slides: kind.sliding_door || graph.accessible && kind.wet && kind.privacy == Privacy::Private || automatic,
         automatic,
-        kept_out: kind.robot.contains(&RobotUse::KeepOut),
+        kept_out: kind.robot.contains(&RobotUse::KeepOut) && !sent,
         entrance: room.entrance,
         by_entrance: is_by_entrance(room, graph),
         for_guests: is_for_guests(room, graph, domain),

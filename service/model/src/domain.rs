@@ -21,8 +21,8 @@ pub use furnishing::{Arrangement, FacingRule, Furnishing, Group, Member, Relatio
 pub use layouts::{LayoutSwap, Layouts};
 pub use object::{Mount, ObjectType, Shape, Stock, StockedAsset};
 pub use program::{
-    Adjacency, AdjacencyRelation, Circulation, Elevator, Large, LockedPart, Occupants, Program, ProgramRoom, Scheme, Stairs,
-    Storeys, SupportRoom, TwoStairs, Units,
+    Adjacency, AdjacencyRelation, Circulation, Elevator, Large, LockedPart, Occupants, Program, ProgramRoom, Scheme,
+    Stairs, Storeys, SupportRoom, TwoStairs, Units,
 };
 pub use role::{Counted, Number, Role, RoleKind, Round, RoundStep, VISITORS_NEVER, is_named};
 pub use room_type::{Access, AreaRange, Daylight, Goods, Materials, Privacy, RobotUse, RoomType, Zone};

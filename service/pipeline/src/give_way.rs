@@ -36,7 +36,8 @@ fn unlocked(graph: &SceneGraph, domain: &Domain) -> Option<SceneGraph> {
             end.clone_from(&outer.id);
         }
     }
-    let message = format!("no plan was found with a {} of its own; all rooms open to one corridor", inner.name.to_lowercase());
+    let message =
+        format!("no plan was found with a {} of its own; all rooms open to one corridor", inner.name.to_lowercase());
     out.conflicts.push(Note { code: "lock_not_built".into(), message });
     Some(out)
 }

@@ -49,7 +49,8 @@ pub fn private_passage(c: &Context, out: &mut Findings) {
 pub fn public_path_in_restricted(c: &Context, out: &mut Findings) {
     let closed = |room: &Room| {
         let name = &room.plan.name;
-        let behind_lock = room.plan.circulation && c.domain.circulation.locked.iter().any(|part| &part.corridor == name);
+        let behind_lock =
+            room.plan.circulation && c.domain.circulation.locked.iter().any(|part| &part.corridor == name);
         behind_lock || c.domain.tags_of(room.kind).contains(tags::RESTRICTED)
     };
     let mut reached: BTreeSet<&str> = BTreeSet::new();

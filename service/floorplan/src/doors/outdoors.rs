@@ -67,7 +67,7 @@ impl Site<'_> {
         for (room, spec) in self.brief.rooms.iter().enumerate() {
             let Some(clear) = spec.gate else { continue };
             let opening = Brief::opening(clear);
-            let walls = self.stretches.iter().filter(|s| s.leads_out_of() == Some(room));
+            let walls = self.stretches.iter().filter(|s| s.leads_out_of() == Some(room) && !self.is_party(s));
             let mut spots: Vec<Spot> = self.standing_spot(&[room], false).into_iter().collect();
             if spots.is_empty() {
                 spots.extend(walls.flat_map(|s| self.gate_spots(s, room, clear, opening)));

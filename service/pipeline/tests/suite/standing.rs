@@ -13,7 +13,9 @@ fn way_out<'w>(world: &'w World, room_id: &str) -> Option<&'w Door> {
 #[test]
 fn a_house_has_a_door_from_where_one_lives_to_its_garden() {
     let mut held = Vec::new();
-    for prompt in ["house with three bedrooms", "Family home with 4 bedrooms, 2 bathrooms and a kitchen", "Two-storey villa"] {
+    for prompt in
+        ["house with three bedrooms", "Family home with 4 bedrooms, 2 bathrooms and a kitchen", "Two-storey villa"]
+    {
         for world in worlds(prompt, 5) {
             let lived = ["living_room", "family_room", "dining_room", "living_kitchen", "sunroom"];
             let doors = lived.iter().flat_map(|kind| rooms(&world, kind)).filter_map(|r| way_out(&world, &r.room_id));
@@ -29,7 +31,9 @@ fn a_house_has_a_door_from_where_one_lives_to_its_garden() {
 
 #[test]
 fn a_small_home_has_no_hall() {
-    for world in ["studio apartment of 30 m2 with a kitchenette", "Tiny house of 24 m2"].iter().flat_map(|p| worlds(p, 4)) {
+    for world in
+        ["studio apartment of 30 m2 with a kitchenette", "Tiny house of 24 m2"].iter().flat_map(|p| worlds(p, 4))
+    {
         assert_eq!(rooms(&world, "hallway").count(), 0, "{}", world.scene_graph.prompt);
     }
     for world in worlds("one-bedroom apartment of 55 m2", 2) {
@@ -41,7 +45,9 @@ fn a_small_home_has_no_hall() {
 fn of_two_bathrooms_the_main_bedroom_has_one() {
     for world in worlds("flat with three bedrooms, two bathrooms, a living room and a kitchen", 4) {
         let beds: Vec<&String> = rooms(&world, "bedroom").map(|r| &r.room_id).collect();
-        let own = |d: &&Door| d.room_ids.iter().any(|id| beds.contains(&id)) && d.room_ids.iter().any(|id| id.starts_with("bathroom"));
+        let own = |d: &&Door| {
+            d.room_ids.iter().any(|id| beds.contains(&id)) && d.room_ids.iter().any(|id| id.starts_with("bathroom"))
+        };
         assert_eq!(world.floorplan.doors.iter().filter(own).count(), 1, "seed {}", world.scene_graph.seed);
     }
 }
@@ -63,7 +69,8 @@ fn operating_rooms_are_not_on_the_corridor_of_visitors() {
     let mut held = Vec::new();
     for world in worlds("Surgical department with three operating rooms, recovery and a waiting area", 4) {
         let plan = &world.floorplan;
-        let joined = |a: &str, b: &str| plan.doors.iter().any(|d| [a, b].iter().all(|x| d.room_ids.iter().any(|id| id == x)));
+        let joined =
+            |a: &str, b: &str| plan.doors.iter().any(|d| [a, b].iter().all(|x| d.room_ids.iter().any(|id| id == x)));
         let ways: Vec<_> = plan.rooms.iter().filter(|r| r.circulation).collect();
         let inner = ways.iter().find(|r| r.name == "Restricted corridor");
         let Some(inner) = inner else {

@@ -54,7 +54,8 @@ pub(crate) fn way_through(reading: &Reading, rooms: &[Planned]) -> Option<usize>
     let least = circulation.hall_from_m2.filter(|_| is_dwelling(reading.program) && !reading.single)?;
     let area = reading.area_m2.unwrap_or_else(|| rooms.iter().map(Planned::reckoned_m2).sum());
     let is_hall = |id: &String| id == &circulation.room_type || circulation.entrance_room_types.contains(id);
-    let asked = reading.wishes.wishes.iter().any(|w| is_hall(&w.room_type)) || rooms.iter().any(|r| is_hall(&r.room_type));
+    let asked =
+        reading.wishes.wishes.iter().any(|w| is_hall(&w.room_type)) || rooms.iter().any(|r| is_hall(&r.room_type));
     let around = rooms.iter().filter(|r| r.host.is_none()).count();
     if area >= least || asked || reading.storeys.levels.len() > 1 || around > MOST_AROUND + 1 {
         return None;

@@ -186,13 +186,17 @@ pub(super) fn give_main_bedroom_a_bath(reading: &mut Reading, rooms: &mut [Plann
         return;
     }
     let bathes = |r: &Planned| reading.wet.is_bathroom(r.kind);
-    let sleeps = |r: &Planned| r.kind.zone == Zone::Night && r.host.is_none() && sleeps(reading.domain, r.kind).is_some();
+    let sleeps =
+        |r: &Planned| r.kind.zone == Zone::Night && r.host.is_none() && sleeps(reading.domain, r.kind).is_some();
     let told = |id: &String| {
         let paired = reading.wishes.pairs.iter().any(|p| &p.a == id || &p.b == id);
-        paired || reading.wishes.apart.iter().any(|a| a.rooms.contains(id)) || reading.storeys.wanted.iter().any(|w| &w.room_type == id)
+        paired
+            || reading.wishes.apart.iter().any(|a| a.rooms.contains(id))
+            || reading.storeys.wanted.iter().any(|w| &w.room_type == id)
     };
     let own = rooms.iter().any(|r| bathes(r) && r.host.is_some());
-    let baths: Vec<usize> = (0..rooms.len()).filter(|&i| rooms[i].room_type == d.bathroom && rooms[i].host.is_none()).collect();
+    let baths: Vec<usize> =
+        (0..rooms.len()).filter(|&i| rooms[i].room_type == d.bathroom && rooms[i].host.is_none()).collect();
     // each storey keeps one for whoever is there
     let toilets = rooms.iter().filter(|r| reading.wet.has_toilet(r.kind) && r.host.is_none()).count();
     let enough = baths.len() > 1 && toilets > reading.storeys.above_ground().max(1);

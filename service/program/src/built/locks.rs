@@ -51,7 +51,8 @@ pub(crate) fn lock(reading: &mut Reading, rooms: &mut Vec<GraphRoom>, edges: &mu
     edges.push(door(&corridor, true));
     edges.extend(locks.iter().map(|id| door(id, false)));
     rooms.push(inner);
-    let message = format!("{} rooms open to a {} of their own ({})", behind.len(), part.corridor.to_lowercase(), part.source);
+    let message =
+        format!("{} rooms open to a {} of their own ({})", behind.len(), part.corridor.to_lowercase(), part.source);
     reading.assumptions.push(Note::new("locked_part", message));
 }
 
