@@ -255,9 +255,10 @@ def few_seats(world):
 
 @objection("B", "residential")
 def no_coats(world):
-    """no place for coats in the hall"""
+    """no place for coats where one comes in"""
     places = ("coat", "hook", "wardrobe")
-    return not any(word in b.object for r in world.rooms if r.circulation for b in r.bodies for word in places)
+    entered = [r for r in world.rooms if r.circulation or any(d["entrance"] for d in r.doors)]
+    return not any(word in b.object for r in entered for b in r.bodies for word in places)
 
 
 @objection("B", "residential")
@@ -1052,6 +1053,19 @@ def no_ensuite(world):
     if world.building == "shared_flat" or len(baths) < 2 or len(beds) < 2 or toilets <= len({r.level for r in world.rooms}):
         return False
     return not any(beds & set(d["room_ids"]) for r in baths for d in r.doors)
+
+
+@objection("A", "residential")
+def water_over_beds(world):
+    """a bathroom or kitchen of which more than half stands over a bedroom"""
+    sleeping = world.of("bedroom", "single_bedroom", "kids_room", "guest_room")
+
+    def shared(a, b):
+        width, height = min(a[2], b[2]) - max(a[0], b[0]), min(a[3], b[3]) - max(a[1], b[1])
+        return max(width, 0.0) * max(height, 0.0)
+
+    wet = (r for r in world.rooms if r.kind in WET and len(r.corners) == 4)
+    return any(shared(r.rect, s.rect) > 0.5 * r.area for r in wet for s in sleeping if s.level == r.level - 1 and len(s.corners) == 4)
 
 
 @objection("B", "residential")

@@ -28,6 +28,10 @@ const FEW_ROOMS: usize = 14;
 const DARK: f64 = 1.8;
 /// Cost of a meter of outer wall that the room with the door to the garden lacks for that and a window.
 const NO_GARDEN: f64 = 1.0;
+/// Facade of a bedroom whose other walls are those of neighbors, m: a bed with its head beside the window, and the way past its foot;
+/// what a meter less costs.
+const ACROSS_BED_M: f64 = 3.4;
+const ALONG_WINDOW: f64 = 1.5;
 /// Share by which circulation beyond what is advised counts as larger.
 const ILL_SHARED: f64 = 0.05;
 /// Length from which on the hall of a home is a tunnel, m, what a meter more counts as share of circulation, and how many more
@@ -83,6 +87,9 @@ const WRONG_SIZES: f64 = 1.5;
 /// What it costs that two rooms which the domain advises against putting wall to wall share one.
 const TOUCHING: f64 = 0.35;
 
+/// What it costs that all wet rooms stand over rooms that people live, sleep or work in.
+const OVER_QUIET: f64 = 4.0;
+
 /// How much more a wet room counts that lies beside no other in a home, where there are few of them.
 const PIPES_AT_HOME: f64 = 1.6;
 
@@ -94,7 +101,7 @@ const LEG_SHARE: f64 = 0.22;
 const WASTED_LEG: f64 = 4.0;
 /// Width between wall center lines below which a leg as long holds nothing, m, and what that costs a home.
 const NECK_M: f64 = 2.0;
-const DEAD_NECK: f64 = 1.5;
+const DEAD_NECK: f64 = 4.0;
 /// What a leg costs of a room of another building that cannot spare a corner, unless what was cut out is the room's own.
 const CUT_CELL: f64 = 2.5;
 
@@ -108,7 +115,7 @@ const BLOATED_FROM: [f64; 2] = [1.6, 1.5];
 const BLOATED: f64 = 6.0;
 
 /// Weight of what hangs in the air.
-pub(crate) const OVERHANG: f64 = 30.0;
+pub(crate) const OVERHANG: f64 = 45.0;
 
 /// Weight of a meter by which a wing pushes others away that stand on those below.
 const PUSHED: f64 = 8.0;
@@ -327,13 +334,22 @@ impl<'b> Judge<'b> {
         self.whole(layout, score);
         if let Some(below) = &self.below {
             let total: f64 = self.survey.rooms.iter().map(|r| r.gross_m2).sum();
-            let free = match layout.core.filter(|_| below.by_core) {
-                Some(core) if core.u == (1, 0) => overhang(&layout.boxes, &below.outline, core.origin),
-                Some(core) => overhang(&in_core(&layout.boxes, &core), &below.outline, (0, 0)),
-                None => overhang(&layout.boxes, &below.outline, (0, 0)),
-            } as f64
-                * CELL_M2;
-            score.overhang = free / total.max(1.0);
+            // what of some boxes has nothing of others below it, m^2
+            let free = |boxes: &[(usize, Cellbox)], outline: &[Cellbox]| {
+                let units = match layout.core.filter(|_| below.by_core) {
+                    Some(core) if core.u == (1, 0) => overhang(boxes, outline, core.origin),
+                    Some(core) => overhang(&in_core(boxes, &core), outline, (0, 0)),
+                    None => overhang(boxes, outline, (0, 0)),
+                };
+                units as f64 * CELL_M2
+            };
+            score.overhang = free(&layout.boxes, &below.outline) / total.max(1.0);
+            if !below.quiet.is_empty() {
+                let wet = layout.boxes.iter().filter(|(room, _)| self.brief.rooms[*room].wet).copied();
+                let wet: Vec<(usize, Cellbox)> = wet.collect();
+                let all: f64 = wet.iter().map(|(_, b)| b.area_m2()).sum();
+                score.soft[5] += OVER_QUIET * (all - free(&wet, &below.quiet)).max(0.0) / all.max(1.0);
+            }
             if let Some((south, north)) = below.between {
                 let low = layout.boxes.iter().map(|(_, b)| b.y0).min().unwrap_or(south);
                 let high = layout.boxes.iter().map(|(_, b)| b.y1).max().unwrap_or(north);
@@ -503,6 +519,9 @@ impl<'b> Judge<'b> {
                     score.soft[3] += 0.03 * meters(total).min(6.0)
                 }
                 _ => {}
+            }
+            if self.brief.party.is_some() && spec.zone == Zone::Night && spec.on_spine {
+                score.soft[1] += ALONG_WINDOW * meters((up(ACROSS_BED_M) - longest).max(0));
             }
             if spec.entrance {
                 score.hard += meters((self.entrance_need - room.way_in).max(0));

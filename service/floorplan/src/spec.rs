@@ -81,6 +81,8 @@ pub(crate) struct RoomSpec {
     pub slides: bool,
     /// True for rooms whose doors open by themselves, for robots.
     pub automatic: bool,
+    /// True for rooms whose doors only people open.
+    pub by_hand: bool,
     /// True for rooms that robots stay out of.
     pub kept_out: bool,
     pub entrance: bool,
@@ -226,9 +228,10 @@ impl Brief {
         let mut rooms: Vec<RoomSpec> =
             graph.rooms.iter().map(|r| room_spec(r, graph, domain, limits, &mut conflicts)).collect();
         let spine = spine_of(graph, domain, &index);
+        let locked = locked_of(graph, spine);
         let mut units: Vec<&str> = Vec::new();
         for (spec, room) in rooms.iter_mut().zip(&graph.rooms) {
-            spec.host = host_of(room, graph, domain, spine);
+            spec.host = host_of(room, graph, domain, spine).filter(|_| !is_at_corridor(room, graph, locked));
             let Some(unit) = room.unit.as_deref() else { continue };
             if !units.contains(&unit) {
                 units.push(unit);
@@ -249,7 +252,7 @@ impl Brief {
         let mut brief = Self {
             hub: spine.is_some_and(|s| !rooms[s].circulation),
             ring: ring_of(graph, spine),
-            locked: locked_of(graph, spine),
+            locked,
             rooms,
             spine,
             spine_width: circulation_width,
@@ -479,6 +482,9 @@ impl Brief {
         match self.spine {
             Some(s) if s == a => self.rooms[b].door_width,
             Some(s) if s == b => self.rooms[a].door_width,
+            // a corridor behind a lock is one like the other
+            _ if Some(a) == self.locked => self.rooms[b].door_width,
+            _ if Some(b) == self.locked => self.rooms[a].door_width,
             // Between two rooms the door serves the one that hangs on the other, or the lesser need of equals.
             _ if self.rooms[a].host == Some(b) => self.rooms[a].door_width,
             _ if self.rooms[b].host == Some(a) => self.rooms[b].door_width,
@@ -496,6 +502,14 @@ fn locked_of(graph: &SceneGraph, spine: Option<usize>) -> Option<usize> {
     };
     let way = |r: &GraphRoom| r.circulation && r.room_type == spine.room_type && r.id != spine.id && joined(&r.id);
     graph.rooms.iter().position(way)
+}
+
+/// Returns true for a room with a door to the corridor behind a lock.
+fn is_at_corridor(room: &GraphRoom, graph: &SceneGraph, locked: Option<usize>) -> bool {
+    let Some(corridor) = locked.map(|l| &graph.rooms[l].id) else { return false };
+    let walkable = |e: &&GraphEdge| e.required && matches!(e.connector, Connector::Door | Connector::Open);
+    let joins = |e: &GraphEdge| &e.a == corridor && e.b == room.id || e.a == room.id && &e.b == corridor;
+    graph.edges.iter().filter(walkable).any(joins)
 }
 
 /// Returns the piece of corridor that is open to the spine, so that both together can run around a core or a court.
@@ -619,6 +633,7 @@ fn room_spec(
         // who uses a wheelchair has no floor to spare for a leaf
         slides: kind.sliding_door || graph.accessible && kind.wet && kind.privacy == Privacy::Private || automatic,
         automatic,
+        by_hand: robots && retreat,
         kept_out: kind.robot.contains(&RobotUse::KeepOut) && !sent,
         entrance: room.entrance,
         by_entrance: is_by_entrance(room, graph),

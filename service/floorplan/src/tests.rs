@@ -38,6 +38,7 @@ fn room(id: &str, area: [f64; 3], min_dimension: f64, daylight: Daylight, zone: 
         desk_rows: false,
         slides: false,
         automatic: false,
+        by_hand: false,
         kept_out: false,
         entrance: false,
         by_entrance: false,

@@ -268,9 +268,12 @@ fn attempts(
                     best = Some((faults, found));
                 }
             }
-            Err(error @ Error::Infeasible { .. }) => {
+            Err(error) if is_of_plan(&error, pinned) => {
                 observe(Event::Rejected(attempt, &error.to_string()));
-                reason = Some(error);
+                reason = Some(match error {
+                    Error::Mismatch { stage, message } => Error::Infeasible { stage, message },
+                    other => other,
+                });
                 if !last && best.is_none() && attempt + 1 >= MOST_IN_VAIN {
                     break;
                 }
@@ -281,6 +284,16 @@ fn attempts(
     match best {
         Some((_, found)) => Ok(found),
         None => Err(reason.expect("every attempt ends in a world or an error")),
+    }
+}
+
+/// Returns true for what another plan may not have: there is none, or nothing that was brought stands where a door of it needs the
+/// floor.
+fn is_of_plan(error: &Error, pinned: bool) -> bool {
+    match error {
+        Error::Infeasible { .. } => true,
+        Error::Mismatch { stage, .. } => *stage == "placement" && !pinned,
+        _ => false,
     }
 }
 

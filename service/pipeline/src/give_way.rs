@@ -4,7 +4,7 @@
 use d3dgen_model::domain::Domain;
 use d3dgen_model::scene_graph::{BY_PROMPT, BY_STYLE, GraphRoom, Note, SceneGraph};
 
-/// Shares by which rooms may be smaller and larger than was meant, where what their type allows is wider.
+/// Shares by which rooms may be smaller and larger than was meant; none is smaller than its type allows.
 const SMALLER: f64 = 0.85;
 const LARGER: f64 = 1.35;
 /// Most over least area up to which the prompt gives the area in figures.
@@ -42,7 +42,7 @@ fn unlocked(graph: &SceneGraph, domain: &Domain) -> Option<SceneGraph> {
     Some(out)
 }
 
-/// Returns the graph with wider ranges of areas, within those of the types of rooms; what the prompt gives in figures stays.
+/// Returns the graph with wider ranges of areas; what the prompt gives in figures stays.
 fn roomier(graph: &SceneGraph, domain: &Domain) -> Option<SceneGraph> {
     let mut out = graph.clone();
     let mut wider = false;
@@ -50,7 +50,7 @@ fn roomier(graph: &SceneGraph, domain: &Domain) -> Option<SceneGraph> {
     for room in out.rooms.iter_mut().filter(|r| !r.circulation && !r.locked).filter(open) {
         let range = domain.room_type_or_generic(&room.room_type).area_m2;
         let [low, high] = room.area_range_m2;
-        let wide = [(SMALLER * low).max(range.min).min(low), (LARGER * high).min(range.max).max(high)];
+        let wide = [(SMALLER * low).max(range.min).min(low), LARGER * high];
         wider |= wide != [low, high];
         room.area_range_m2 = wide;
     }

@@ -42,6 +42,11 @@ const BEHIND_LEAF_M: f64 = 0.8;
 const TO_STREET: f64 = 0.15;
 const LOST_LIGHT: f64 = 2.0;
 const FROM_STREET_M: f64 = 2.0;
+/// What it costs that it is in the front where one comes in, and how far behind it another one lies, m; what each room costs
+/// that one rather has it in.
+const AT_STREET: f64 = 3.0;
+const BACK_M: f64 = 3.0;
+const LESS_LIVED_IN: f64 = 0.8;
 /// Wall for windows that a square meter of floor needs, m: a seventh of it as glass 1.3 m high.
 const GLASS_M_PER_M2: f64 = 0.11;
 
@@ -97,25 +102,31 @@ impl Site<'_> {
 
     /// Places the door from where one lives to the garden, away from the street, where it leaves the room its windows.
     pub(super) fn lay_garden_door(&self, laid: &mut Laid) {
-        let entrance = laid.entrance();
-        for &room in &self.brief.garden {
-            let mut spots: Vec<Spot> = self.standing_spot(&[room], false).into_iter().collect();
-            let own = [self.brief.rooms[room].id.clone()];
-            // a plan that is changed keeps what it had
-            let wanted = self.standing.is_empty() || self.standing.iter().any(|d| d.room_ids == own && !d.entrance);
-            if spots.is_empty() && wanted && laid.spots.iter().all(|l| l.door.room_ids != own) {
-                let walls = self.stretches.iter().filter(|s| s.leads_out_of() == Some(room) && !self.is_party(s));
-                spots = walls.flat_map(|s| self.garden_spots(s, room, entrance)).collect();
-            }
-            // furniture finds its place beside the other doors as well
-            spots.retain(|spot| laid.spots.iter().all(|other| spot.disturbs(other) == 0.0));
-            if laid.take_best(spots) {
+        let entrance = laid.spots.iter().find(|l| l.door.entrance).map(|l| l.door.line);
+        let mut spots: Vec<Spot> = Vec::new();
+        for (rank, &room) in self.brief.garden.iter().enumerate() {
+            let way_out = |d: &Door| d.room_ids == [self.brief.rooms[room].id.clone()] && !d.entrance;
+            if laid.spots.iter().any(|l| way_out(&l.door)) {
                 return;
             }
+            // a plan that is changed keeps what it had
+            if let Some(spot) = self.standing_spot(&[room], false) {
+                spots = vec![spot];
+                break;
+            }
+            if !self.standing.is_empty() && !self.standing.iter().any(way_out) {
+                continue;
+            }
+            let walls = self.stretches.iter().filter(|s| s.leads_out_of() == Some(room) && !self.is_party(s));
+            let own = walls.flat_map(|s| self.garden_spots(s, room, entrance));
+            spots.extend(own.map(|spot| Spot { penalty: spot.penalty + LESS_LIVED_IN * rank as f64, ..spot }));
         }
+        // furniture finds its place beside the other doors as well
+        spots.retain(|spot| laid.spots.iter().all(|other| spot.disturbs(other) == 0.0));
+        laid.take_best(spots);
     }
 
-    fn garden_spots(&self, s: &Stretch, room: usize, entrance: Option<Point>) -> Vec<Spot> {
+    fn garden_spots(&self, s: &Stretch, room: usize, entrance: Option<Segment>) -> Vec<Spot> {
         let opening = Brief::opening(GARDEN_DOOR_M);
         let (from, to) = self.usable(s);
         if to - from < opening - 1e-9 {
@@ -129,9 +140,12 @@ impl Site<'_> {
             let sides = [start - meters(s.from), meters(s.to) - start - opening];
             let light = others + sides.map(lit).iter().sum::<f64>();
             let at = s.point(start + opening / 2.0);
-            let away = entrance.map_or(MOST_WAY_M, |e| e.distance(at));
+            let away = entrance.map_or(MOST_WAY_M, |e| e.middle().distance(at));
+            let beside =
+                entrance.is_some_and(|e| e.is_vertical() == s.vertical && (e.span().0 - meters(s.at)).abs() < BACK_M);
             let short = (GLASS_M_PER_M2 * self.net_m2[room] - light).max(0.0);
-            let penalty = LOST_LIGHT * short - TO_STREET * away.min(MOST_WAY_M);
+            let street = if beside { AT_STREET } else { 0.0 };
+            let penalty = LOST_LIGHT * short + street - TO_STREET * away.min(MOST_WAY_M);
             let fits = light > 0.0 && away >= FROM_STREET_M;
             fits.then(|| self.outward_spot(s, room, (start, GARDEN_DOOR_M), penalty)).flatten()
         });
