@@ -1020,18 +1020,16 @@ def hall_of_a_small_home(world):
 
 
 def legs(corners):
-    """The smaller part of an L, cut off the larger in both ways that there are; nothing of other shapes."""
+    """The two arms of an L, without the part that both share; nothing of other shapes."""
     if len(corners) != 6:
         return []
-    (x0, y0, x1, y1) = min(c[0] for c in corners), min(c[1] for c in corners), max(c[0] for c in corners), max(c[1] for c in corners)
-    (px, py) = next(c for c in corners if x0 + GRAZE < c[0] < x1 - GRAZE and y0 + GRAZE < c[1] < y1 - GRAZE)
-    # the corner of the rectangle around it that the L leaves out
-    hx, hy = next((x, y) for x in (x0, x1) for y in (y0, y1) if all(math.dist(c, (x, y)) > GRAZE for c in corners))
-    beside = (px, y0, x1, y1) if hx == x1 else (x0, y0, px, y1)
-    above = (x0, py, x1, y1) if hy == y1 else (x0, y0, x1, py)
-    left = [(beside[0], y0, beside[2], py) if hy == y1 else (beside[0], py, beside[2], y1)]
-    left += [(x0, above[1], px, above[3]) if hx == x1 else (px, above[1], x1, above[3])]
-    return left
+    xs, ys = ([min(c), max(c)] for c in zip(*corners, strict=True))
+    # where it turns inwards, and the corner of the rectangle around it that it leaves out
+    x, y = next(c for c in corners if xs[0] + GRAZE < c[0] < xs[1] - GRAZE and ys[0] + GRAZE < c[1] < ys[1] - GRAZE)
+    a, b = next((u, v) for u in xs for v in ys if all(math.dist(c, (u, v)) > GRAZE for c in corners))
+    other_x, other_y = sum(xs) - a, sum(ys) - b
+    arms = [((x, a), (y, other_y)), ((x, other_x), (y, b))]
+    return [(min(u), min(v), max(u), max(v)) for u, v in arms]
 
 
 @objection("B", "residential")
