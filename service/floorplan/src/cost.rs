@@ -91,7 +91,7 @@ const TOUCHING: f64 = 0.35;
 const OVER_QUIET: f64 = 4.0;
 
 /// How much more a wet room counts that lies beside no other in a home, where there are few of them.
-const PIPES_AT_HOME: f64 = 1.6;
+const PIPES_AT_HOME: f64 = 2.6;
 
 /// Length over width from which on a room looks like a slot, and what that costs beside its proportion.
 const SLOT_FROM: f64 = 1.9;

@@ -77,3 +77,31 @@ fn loosened(graph: &SceneGraph, _: &Domain) -> Option<SceneGraph> {
     }
     (out.conflicts.len() > graph.conflicts.len()).then_some(out)
 }
+
+#[cfg(test)]
+mod tests {
+    use d3dgen_model::document::Document;
+    use d3dgen_plugins::Registry;
+
+    use super::*;
+    use crate::scene_graph::{Request, generate};
+
+    #[test]
+    fn each_step_gives_up_more_and_says_so() {
+        let registry = Registry::builtin();
+        let prompt = "Surgical department with two operating rooms next to each other, recovery and a waiting area";
+        let request = Request { prompt: prompt.into(), seed: 1, ..Request::default() };
+        let graph = generate(&request, &registry).expect("the prompt is plain");
+        let domain = registry.get(&graph.domain).expect("it is built in").domain();
+        let steps = steps(&graph, domain);
+        let codes: Vec<&str> = steps.iter().filter_map(|s| s.conflicts.last()).map(|n| n.code.as_str()).collect();
+        assert_eq!(codes[..2], ["lock_not_built", "areas_gave_way"]);
+        assert_eq!(graph.rooms.iter().filter(|r| r.circulation).count(), 2);
+        for step in &steps {
+            assert_eq!(step.check(), vec![]);
+            assert_eq!(step.rooms.iter().filter(|r| r.circulation).count(), 1);
+        }
+        let widest = |graph: &SceneGraph| graph.rooms.iter().map(|r| r.area_range_m2[1]).fold(0.0, f64::max);
+        assert!(widest(&steps[1]) > widest(&graph));
+    }
+}
