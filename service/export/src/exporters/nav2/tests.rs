@@ -5,7 +5,7 @@ use crate::models::NothingKept;
 use crate::sample;
 
 fn files() -> BTreeMap<String, Vec<u8>> {
-    let files = Nav2.export(&sample::world(), &sample::domain(), &NothingKept).unwrap();
+    let files = Nav2.export(&Subject::new(&sample::world(), &sample::domain(), &NothingKept)).unwrap();
     files.into_iter().map(|f| (f.path, f.bytes)).collect()
 }
 
