@@ -40,7 +40,13 @@ impl<'a> Manifest<'a> {
             Err(Error::Unsupported { .. }) => None,
             made => Some(made?),
         };
-        Ok(Self { world: &subject.world.name, scene, formats: BTreeSet::new(), places: BTreeMap::new(), files: BTreeMap::new() })
+        Ok(Self {
+            world: &subject.world.name,
+            scene,
+            formats: BTreeSet::new(),
+            places: BTreeMap::new(),
+            files: BTreeMap::new(),
+        })
     }
 
     /// Adds what an exporter has written.

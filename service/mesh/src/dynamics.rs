@@ -127,8 +127,8 @@ pub fn of(model: &Model3d, joint: &Joint) -> Dynamics {
     let weight = Weight::of(model, joint, &bodies);
     let pull = |spring: Spring| move |at: f64| spring.stiffness * (spring.reference - at);
     let none = weight.left(|_| 0.0);
-    let spring = spring(&weight.alone)
-        .filter(|s| joint.limits.is_some() && none > weight.idle && weight.left(pull(*s)) < none);
+    let spring =
+        spring(&weight.alone).filter(|s| joint.limits.is_some() && none > weight.idle && weight.left(pull(*s)) < none);
     let left = spring.map_or(none, |s| weight.left(pull(s)));
     Dynamics { friction: weight.friction(left), idle: weight.idle, damping: weight.damping, spring }
 }
@@ -352,8 +352,10 @@ mod tests {
     fn not_held(model: &Model3d, joint: &Joint) -> f64 {
         let Dynamics { friction, spring, .. } = of(model, joint);
         let pull = |at: f64| spring.map_or(0.0, |s| s.stiffness * (s.reference - at));
-        let all: Vec<(f64, f64)> =
-            poses(model, joint).iter().flat_map(|pose| loads(&moved(model, joint, &plain(model)), joint, pose)).collect();
+        let all: Vec<(f64, f64)> = poses(model, joint)
+            .iter()
+            .flat_map(|pose| loads(&moved(model, joint, &plain(model)), joint, pose))
+            .collect();
         all.iter().map(|(at, load)| (load + pull(*at)).abs() - friction).fold(f64::MIN, f64::max)
     }
 
@@ -400,10 +402,16 @@ mod tests {
         let upright = poses(&model, &second);
         assert_eq!((upright.len(), poses(&model, &first).len()), (3, 3));
         let straight = |pose: &&Pose<'_>| pose.above.iter().all(|(_, at)| *at == 0.0);
-        let alone = loads(&moved(&model, &second, &plain(&model)), &second, upright.iter().find(straight).expect("one is at zero"));
+        let alone = loads(
+            &moved(&model, &second, &plain(&model)),
+            &second,
+            upright.iter().find(straight).expect("one is at zero"),
+        );
         let most = |loads: &[(f64, f64)]| loads.iter().map(|l| l.1).fold(f64::MIN, f64::max);
-        let tilted =
-            upright.iter().map(|pose| most(&loads(&moved(&model, &second, &plain(&model)), &second, pose))).fold(f64::MIN, f64::max);
+        let tilted = upright
+            .iter()
+            .map(|pose| most(&loads(&moved(&model, &second, &plain(&model)), &second, pose)))
+            .fold(f64::MIN, f64::max);
         assert!(tilted > most(&alone) * 1.05, "tilted it weighs more: {tilted}, {}", most(&alone));
     }
 

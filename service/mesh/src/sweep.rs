@@ -76,9 +76,13 @@ pub fn swept(model: &Model3d, joint: &Joint) -> Vec<(usize, Block)> {
         ..block
     };
     let bodies = bodies_moved(model, joint).into_iter();
-    let shapes = bodies.flat_map(|b| model.bodies.get(b).into_iter().flat_map(move |body| body.collisions.iter().map(move |s| (b, s))));
+    let shapes = bodies.flat_map(|b| {
+        model.bodies.get(b).into_iter().flat_map(move |body| body.collisions.iter().map(move |s| (b, s)))
+    });
     let blocks: Vec<(usize, Block)> = shapes.map(|(body, shape)| (body, Block::around(shape))).collect();
-    (0..POSITIONS).flat_map(|step| blocks.iter().map(move |(body, block)| (*body, moved(*block, position(step))))).collect()
+    (0..POSITIONS)
+        .flat_map(|step| blocks.iter().map(move |(body, block)| (*body, moved(*block, position(step)))))
+        .collect()
 }
 
 #[cfg(test)]

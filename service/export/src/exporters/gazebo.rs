@@ -17,9 +17,9 @@ use serde_json::json;
 
 use super::mujoco::json_text;
 use super::{Exporter, File};
-use crate::{Error, Subject};
 use crate::scene::{Mobility, SimModel, SimObject, SimScene};
 use crate::xml::Xml;
+use crate::{Error, Subject};
 
 /// The first label of things; 0 is what has none, 1 to 4 is the building.
 const FIRST_LABEL: usize = 10;

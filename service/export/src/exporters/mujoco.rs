@@ -12,9 +12,9 @@ use d3dgen_mesh::dynamics;
 use d3dgen_mesh::writers::number::n;
 
 use super::{Exporter, File};
-use crate::{Error, Subject};
 use crate::scene::{SimBox, SimScene, SimShape};
 use crate::xml::Xml;
+use crate::{Error, Subject};
 
 /// Step of the simulation, s.
 const STEP_S: &str = "0.002";

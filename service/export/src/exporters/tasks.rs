@@ -181,7 +181,8 @@ mod tests {
 
     #[test]
     fn one_file_a_robot() {
-        let files = Tasks.export(&Subject::new(&sample::world(), &sample::domain(), &NothingKept)).expect("it can be written");
+        let files =
+            Tasks.export(&Subject::new(&sample::world(), &sample::domain(), &NothingKept)).expect("it can be written");
         let names: Vec<&str> = files.iter().map(|f| f.path.as_str()).collect();
         let wanted = [
             "tasks/hunav_agents.yaml",

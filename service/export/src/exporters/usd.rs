@@ -133,9 +133,8 @@ fn physics(text: &mut Text, scene: &SimScene, assets: &objects::Assets) {
         still.extend(parts.into_iter().chain(frames));
         // What stands fast never meets itself; engines that count groups need to be told.
         collision_group(text, STRUCTURAL, &still, &[STRUCTURAL]);
-        let leaf = |door: &SimDoor, leaf: &SimLeaf| {
-            format!("/World/Doors/{}/{}", identifier(&door.id), identifier(&leaf.id))
-        };
+        let leaf =
+            |door: &SimDoor, leaf: &SimLeaf| format!("/World/Doors/{}/{}", identifier(&door.id), identifier(&leaf.id));
         let leaves: Vec<String> = scene.doors.iter().flat_map(|d| d.leaves.iter().map(move |l| leaf(d, l))).collect();
         collision_group(text, LEAVES, &leaves, &[]);
         collision_group(text, ARTICULABLE, &moving, &[ARTICULABLE, LEAVES, STRUCTURAL]);
@@ -144,7 +143,8 @@ fn physics(text: &mut Text, scene: &SimScene, assets: &objects::Assets) {
 
 /// Writes a group of colliders and the groups that it does not meet.
 fn collision_group(text: &mut Text, name: &str, paths: &[String], passes: &[&str]) {
-    let targets = |paths: &mut dyn Iterator<Item = String>| paths.map(|p| format!("<{p}>")).collect::<Vec<_>>().join(", ");
+    let targets =
+        |paths: &mut dyn Iterator<Item = String>| paths.map(|p| format!("<{p}>")).collect::<Vec<_>>().join(", ");
     text.prim("def PhysicsCollisionGroup", name, &[schemas(&["CollectionAPI:colliders"])], |text| {
         text.line(format_args!("rel collection:colliders:includes = [{}]", targets(&mut paths.iter().cloned())));
         if !passes.is_empty() {

@@ -18,7 +18,11 @@ pub(super) fn all(models: &[SimModel], objects: &[SimObject]) -> Vec<SimPass> {
             let blocks = blocks(models, moved);
             let met = swept.iter().filter(|(_, own)| blocks.iter().any(|b| own.meets(b))).map(|(body, _)| *body);
             let met: BTreeSet<usize> = met.collect();
-            passes.extend(met.into_iter().map(|b| SimPass { object: index, body: model.bodies[b].name.clone(), other }));
+            passes.extend(met.into_iter().map(|b| SimPass {
+                object: index,
+                body: model.bodies[b].name.clone(),
+                other,
+            }));
         }
     }
     passes

@@ -1,6 +1,7 @@
 use std::collections::BTreeSet;
 
 use d3dgen_model::floorplan::DoorKind;
+use d3dgen_model::world::World;
 use serde_json::Value;
 
 use super::*;

@@ -3,9 +3,9 @@
 use std::sync::atomic::AtomicBool;
 
 use d3dgen_assets::annotation::asa;
-use d3dgen_export::{Subject, exporters};
 use d3dgen_export::manifest::Manifest;
 use d3dgen_export::models::{KeptModel, KeptModels};
+use d3dgen_export::{Subject, exporters};
 use d3dgen_model::world::World;
 use d3dgen_plugins::Plugin;
 use tonic::Status;
