@@ -3,7 +3,7 @@
 
     d3dgen bench paper --out target/paper && tests/plan_objections.py target/paper
 
-Reads `floorplan.json`, `placements.json` and `scenario.json` of every world below the folder, and nothing of the program. One
+Reads `floorplan.json`, `placements.json`, `scenario.json` and `scene_graph.json` of every world below the folder, and nothing of the program. One
 objection of weight A, or three different ones of weight B, send a plan back. Exit status 1 when a tenth of the plans or more
 would be sent back, 2 when there are no worlds. `--list` names the plans of each objection; `--page` prints the tables of
 docs/plans.md and reads no worlds, `--page docs/plans.md` tells whether they are in it.
@@ -100,6 +100,8 @@ class World:
         plan, placements, scenario = (
             json.loads((folder / f"{name}.json").read_text()) for name in ("floorplan", "placements", "scenario")
         )
+        graph = folder / "scene_graph.json"
+        self.notes = json.loads(graph.read_text()).get("conflicts", []) if graph.exists() else []
         self.rooms = [Room(r, plan, placements["placements"]) for r in plan["rooms"]]
         self.walls = [line_of(w) for w in plan["walls"]]
         self.doors = plan["doors"]
@@ -1127,6 +1129,64 @@ def pinched(world):
         if reached(room, taken, 0.85, outlines(chairs)).count(False) >= 4:
             return True
     return False
+
+
+# what people look at, rooms where the public is served, and doors that goods come through
+SHOWN = {"cinema_screen", "presiding_table", "stage_platform", "theatre_stage"}
+PUBLIC = {"auditorium", "boutique", "cafe", "check_in_hall", "courtroom", "dining_room", "exhibition_room", "gym_floor", "library", "mall_street",
+          "nave", "parking_hall", "pool_hall", "prayer_hall", "sales_floor", "theatre_hall", "ticket_hall", "visa_section"}  # fmt: skip
+DOCKS = {"loading_dock"}
+
+
+@objection("A")
+def fewer_places(world):
+    """fewer seats, desks, bays or stalls in a room than were asked for"""
+    return any(note["code"] == "too_few_places" for note in world.notes)
+
+
+@objection("A")
+def tills_anywhere(world):
+    """tills of a sales floor that stand in no line, or behind half of its shelves seen from the entrance"""
+    entrance = next((d for d in world.doors if d["entrance"]), None)
+    for room in world.of("sales_floor", "store_floor"):
+        tills, shelves = room.named("checkout_counter"), room.named("gondola_shelf")
+        if len(tills) < 2 or entrance is None:
+            continue
+        (x0, y0), (x1, y1) = ((entrance["line"][end]["x"], entrance["line"][end]["y"]) for end in ("start", "end"))
+        away = (lambda b: abs(b.x - x0)) if abs(x1 - x0) < abs(y1 - y0) else (lambda b: abs(b.y - y0))
+        far = max(map(away, tills))
+        if far - min(map(away, tills)) > 0.3 or 2 * sum(away(s) < far for s in shelves) > len(shelves):
+            return True
+    return False
+
+
+@objection("A")
+def screen_at_door(world):
+    """a screen or stage before rows of seats with a door of the room nearer to it than the middle of the seats"""
+    for room in world.of("auditorium", "theatre_hall", "lecture_hall", "event_room", "council_chamber"):
+        shown, seats = room.named(*SHOWN), room.having("seats", "chair_row", "council_desk")
+        if not shown or len(seats) < 4:
+            continue
+        x, y = (sum(getattr(b, axis) for b in seats) / len(seats) for axis in "xy")
+        ahead = shown[0].seen(x, y)[0]
+        if any(shown[0].seen(*middle(d))[0] < 0.25 * ahead for d in room.doors):
+            return True
+    return False
+
+
+@objection("A")
+def docks_around(world):
+    """loading docks with gates on more than one side of the building"""
+    gates = [d for room in world.of(*DOCKS) for d in room.doors if len(d["room_ids"]) == 1 and d["clear_width_m"] > 2.0]
+    sides = {(upright := abs(line[2] - line[0]) < GRAZE, round(line[0] if upright else line[1], 1)) for line in map(line_of, gates)}
+    return len(sides) > 1
+
+
+@objection("A")
+def no_accessible_toilet(world):
+    """a building where the public is served without a toilet for wheelchairs"""
+    served = world.of(*PUBLIC)
+    return sum(r.area for r in served) > 60 and not any(r.named("accessible_wc") for r in world.rooms)
 
 
 def page():

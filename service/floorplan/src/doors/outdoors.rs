@@ -2,6 +2,7 @@
 
 use d3dgen_model::domain::{Daylight, Zone};
 use d3dgen_model::floorplan::{Door, DoorKind, Swing};
+use d3dgen_model::measures::JAMB_M;
 use d3dgen_model::{Point, Rect, Segment};
 
 use super::super::cost::ill_placed;
@@ -37,6 +38,14 @@ const ENTRANCE_SHIFTED: f64 = 0.6;
 /// of another door, m.
 const HINGE_AWAY: f64 = 0.15;
 const BEHIND_LEAF_M: f64 = 0.8;
+
+/// Returns true for two openings of one wall of which one begins before the other ends.
+fn meets(a: &Segment, b: &Segment) -> bool {
+    let span = |from: f64, to: f64| [from.min(to), from.max(to)];
+    let crosses = |a: [f64; 2], b: [f64; 2]| a[0] < b[1] + JAMB_M && b[0] < a[1] + JAMB_M;
+    crosses(span(a.start.x, a.end.x), span(b.start.x, b.end.x))
+        && crosses(span(a.start.y, a.end.y), span(b.start.y, b.end.y))
+}
 
 impl Site<'_> {
     /// Places doors to outdoors.
@@ -247,6 +256,12 @@ impl Site<'_> {
         };
         let lit = spine || self.brief.rooms[room].daylight == Daylight::None || window(middle);
         let start = if !lit && aside >= from && window(aside) { aside } else { middle };
+        // beside a gate in the middle of the wall, or nowhere in it
+        let free = |start: &f64| {
+            let own = Segment { start: s.point(*start), end: s.point(*start + opening) };
+            !laid.iter().any(|l| meets(&l.door.line, &own))
+        };
+        let Some(start) = [start, from, to - opening].into_iter().find(free) else { return Vec::new() };
         let line = Segment { start: s.point(start), end: s.point(start + opening) };
         // The end of a corridor is where one looks for its door; a second exit belongs far from the first.
         let mut penalty = if spine && !self.brief.hub { meters(s.len()) } else { 0.1 * f64::from(s.at.abs()) * 0.05 };

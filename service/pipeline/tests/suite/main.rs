@@ -15,6 +15,7 @@ mod homes_plans;
 mod homes_read;
 mod hospitals;
 mod households;
+mod kinds;
 mod large;
 mod offices;
 mod order;
