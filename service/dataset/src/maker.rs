@@ -10,7 +10,6 @@ use d3dgen_export::Subject;
 use d3dgen_export::exporters::{self, File, plan};
 use d3dgen_export::models::KeptModels;
 use d3dgen_model::document::Document;
-use d3dgen_model::domain::Domain;
 use d3dgen_model::report::{Report, Status};
 use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::seed::Stream;
