@@ -19,6 +19,8 @@ const LEAST: f64 = 0.01;
 /// Inertia that engines add to a joint, kg m^2 or kg: the smallest lids, pushed as hard as a door, stay within what a step of
 /// theirs can follow.
 pub const ARMATURE: f64 = 0.005;
+/// Least damping of a drive that turns something, N m s/rad: the smallest lids, pushed as hard as a door, stop at their limit.
+const LEAST_TURNING: f64 = 0.2;
 /// How many ranges long a spring is drawn that pulls evenly.
 const FLAT: f64 = 50.0;
 /// How long what moves goes on by itself, s.
@@ -118,7 +120,8 @@ fn drive(weight: &Weight, joint: &Joint) -> Drive {
     let none = weight.left(|_| 0.0);
     let is_pushed = joint.limits.is_some() && none > weight.idle && weight.left(|_| even) < none;
     let push = if is_pushed { even } else { 0.0 };
-    Drive { push, friction: weight.friction(weight.left(|_| push)), damping: weight.damping }
+    let least = if joint.kind == JointKind::Prismatic { LEAST } else { LEAST_TURNING };
+    Drive { push, friction: weight.friction(weight.left(|_| push)), damping: weight.damping.max(least) }
 }
 
 /// Returns how a joint of a model resists.
