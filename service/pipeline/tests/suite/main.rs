@@ -25,6 +25,7 @@ mod review;
 mod review_furniture;
 mod robots;
 mod seats;
+mod standing;
 mod stop;
 mod storeys;
 mod style;
