@@ -68,6 +68,13 @@ pub enum State {
     Gone,
 }
 
+/// Where somebody stood before it made way, and until when it is to stand there.
+#[derive(Debug, Clone)]
+pub struct Stand {
+    pub at: Point,
+    pub until: f64,
+}
+
 /// A place that was gone to.
 struct Reached {
     at: Point,
@@ -109,9 +116,14 @@ pub struct Mover {
     pub done: Vec<usize>,
     pub missed: u32,
     /// Where it stood, and until when, before it made way.
-    pub resumes: Option<(Point, f64)>,
+    pub resumes: Option<Stand>,
+    /// Where it was when it made way last.
+    pub met: Point,
     /// The task at hand is given up.
     pub skips: bool,
+    /// It stands aside until a line has a place left, and how often it looked.
+    pub waits: bool,
+    pub waited: u32,
     reached: Vec<Reached>,
     pub pauses: Vec<Pause>,
     samples: Vec<Sample>,
@@ -147,7 +159,10 @@ impl Mover {
             done: Vec::new(),
             missed: 0,
             resumes: None,
+            met: at,
             skips: false,
+            waits: false,
+            waited: 0,
             reached: Vec::new(),
             pauses: Vec::new(),
             samples: Vec::new(),
@@ -193,6 +208,12 @@ impl Mover {
         if self.samples.last().is_none_or(|s| s.t < t) {
             self.samples.push(Sample { t, at, level: levels[self.level] });
         }
+    }
+
+    /// Returns where it was noted to be.
+    #[cfg(test)]
+    pub fn samples(&self) -> &[Sample] {
+        &self.samples
     }
 
     /// Notes that it got to where it wanted.

@@ -18,7 +18,7 @@ const SEAT_M: f64 = 0.6;
 /// From one of those who wait in turn to the next, m: with the room that strangers leave (0.6 to 0.8 m, Fruin 1971).
 const QUEUE_STEP_M: f64 = 0.75;
 /// Most who wait in one queue.
-const MOST_IN_QUEUE: usize = 6;
+const MOST_IN_QUEUE: usize = 10;
 
 /// Returns all places of a room where an act is done.
 pub(super) fn of_room(ground: &Ground, room: &Room, act: Act) -> Vec<Station> {
@@ -38,7 +38,7 @@ fn of_object(ground: &Ground, room: &Room, (p, o): (&Placement, &ObjectType), ac
         let middle = seat(p, k, count);
         let before = sides(act, o.shape).iter().find_map(|&side| {
             let wanted = beside(p, middle, side, STANDING_M + GAP_M);
-            ground.near(room.plan, wanted, OFF_M, 0.0)
+            ground.near(room.plan, wanted, OFF_M)
         })?;
         let pose = facing(before, middle);
         let at = match act {
@@ -104,7 +104,7 @@ fn queue(ground: &Ground, room: &Room, before: Point, object: Point) -> Vec<Poin
         let turned = [(dx, dy), (-dy, dx), (dy, -dx)];
         let next = turned.into_iter().find_map(|(x, y)| {
             let wanted = Point::new(last.x + x * QUEUE_STEP_M, last.y + y * QUEUE_STEP_M);
-            let at = ground.near(room.plan, wanted, 0.1, 0.0)?;
+            let at = ground.near(room.plan, wanted, 0.1)?;
             let apart = std::iter::once(&before).chain(&out).all(|p| p.distance(at) > QUEUE_STEP_M - 0.15);
             apart.then_some((at, (x, y)))
         });
