@@ -105,6 +105,8 @@ pub struct Mover {
     pub velocity: Point,
     pub legs: Vec<Leg>,
     pub corner: usize,
+    /// Corners up to which its way leads around somebody.
+    pub careful: usize,
     /// Station that is taken, and the target of the way.
     pub station: Option<usize>,
     pub target: Point,
@@ -151,6 +153,7 @@ impl Mover {
             velocity: Point::new(0.0, 0.0),
             legs: Vec::new(),
             corner: 0,
+            careful: 0,
             station: None,
             target: at,
             left: f64::MAX,

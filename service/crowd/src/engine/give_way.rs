@@ -9,6 +9,8 @@ use crate::routes::{Leg, standing};
 use crate::search::{pull, search};
 use crate::space::NOWHERE;
 
+/// Who walks within this of the direction of another one goes the same way (cosine).
+const SAME_WAY: f64 = 0.5;
 /// How far ahead somebody is in the way, m.
 const AHEAD_M: f64 = 1.3;
 /// How far others are looked at who may be asked aside, m; and how far somebody goes aside at most.
@@ -65,11 +67,16 @@ impl Engine<'_> {
         }
         self.movers[i].since = self.t;
         self.movers[i].left = f64::MAX;
+        let blocker = self.blocker(i);
+        if blocker.is_some_and(|k| self.movers[k].state == State::Walking && self.goes_the_same_way(i, k)) {
+            // those behind wait for the one in front, who sorts it out
+            return;
+        }
         self.movers[i].tries += 1;
         if self.movers[i].tries > MOST_TRIES && !self.movers[i].leaving {
             return self.settle(i);
         }
-        match self.blocker(i) {
+        match blocker {
             None => self.again(i),
             Some(k) if !self.movers[k].is_walking() && self.detour(i) => {}
             Some(k) => {
@@ -86,15 +93,26 @@ impl Engine<'_> {
         if let Some(legs) = self.route(i, level, to) {
             self.movers[i].legs = legs;
             self.movers[i].corner = 0;
+            self.movers[i].careful = 0;
         }
+    }
+
+    /// Returns the direction that somebody walks in, as a vector of length 1.
+    fn heading(&self, i: usize) -> Option<Point> {
+        let m = &self.movers[i];
+        let next = m.legs.first().and_then(|leg| leg.way.get(m.corner)).copied()?;
+        let far = m.at.distance(next).max(1e-6);
+        Some(Point::new((next.x - m.at.x) / far, (next.y - m.at.y) / far))
+    }
+
+    fn goes_the_same_way(&self, i: usize, k: usize) -> bool {
+        let both = self.heading(i).zip(self.heading(k));
+        both.is_some_and(|(a, b)| a.x * b.x + a.y * b.y > SAME_WAY)
     }
 
     /// Returns who is in the way.
     fn blocker(&self, i: usize) -> Option<usize> {
-        let m = &self.movers[i];
-        let next = m.legs.first().and_then(|leg| leg.way.get(m.corner)).copied()?;
-        let far = m.at.distance(next).max(1e-6);
-        let way = Point::new((next.x - m.at.x) / far, (next.y - m.at.y) / far);
+        let (m, way) = (&self.movers[i], self.heading(i)?);
         let ahead = |k: &usize| {
             let o = self.movers[*k].at;
             let (dx, dy) = (o.x - m.at.x, o.y - m.at.y);
@@ -132,10 +150,11 @@ impl Engine<'_> {
         // straight lines would lead through those who stand
         let mut way: Vec<Point> = nodes.iter().step_by(3).map(|n| space.point(*n)).collect();
         way.push(space.point(end));
-        let leg = &mut self.movers[i].legs[0];
-        way.extend(leg.way[corner..].iter().copied());
-        leg.way = way;
-        self.movers[i].corner = 0;
+        let m = &mut self.movers[i];
+        m.careful = way.len();
+        way.extend(m.legs[0].way[corner..].iter().copied());
+        m.legs[0].way = way;
+        m.corner = 0;
         true
     }
 
@@ -177,11 +196,12 @@ impl Engine<'_> {
         out
     }
 
-    /// Returns those in the way of somebody, the nearest first.
+    /// Returns those in the way of somebody who can be asked aside, the nearest first.
     fn in_lane(&self, i: usize) -> Vec<usize> {
         let (m, lane) = (&self.movers[i], self.lane(i));
         let mut out = self.near(m.level, m.at, AHEAD_M, i);
-        out.retain(|k| off(self.movers[*k].at, &lane) < m.radius + self.movers[*k].radius + BESIDE_M[0]);
+        out.retain(|k| off(self.movers[*k].at, &lane) < m.radius + self.movers[*k].radius + BESIDE_M[1]);
+        out.retain(|k| self.can_go_aside(*k));
         out.sort_by(|a, b| self.movers[*a].at.distance(m.at).total_cmp(&self.movers[*b].at.distance(m.at)));
         out
     }
@@ -244,12 +264,12 @@ impl Engine<'_> {
         Some(pull(space, &nodes, radius))
     }
 
-    /// Returns true for one who can be asked to step aside: who walks or stands, but is not served or gets on or off something.
+    /// Returns true for one who can be asked to step aside: who walks or stands, and does not get on or off something.
     fn can_go_aside(&self, k: usize) -> bool {
         let m = &self.movers[k];
         match m.state {
             State::Walking | State::InLine { .. } => true,
-            State::Busy { .. } => (m.waits || !self.is_queueing(k)) && !m.skips,
+            State::Busy { .. } => !m.skips,
             State::Yielding { arrived, .. } => arrived,
             _ => false,
         }
@@ -262,6 +282,7 @@ impl Engine<'_> {
         let first = Leg { level: m.level, way, ride: None };
         m.met = m.at;
         m.corner = 0;
+        m.careful = 0;
         match m.state {
             State::Busy { until } => {
                 m.leave(t);
@@ -353,6 +374,8 @@ impl Engine<'_> {
         if let Some(station) = line {
             let m = &mut self.movers[i];
             m.legs.clear();
+            // its place is gone to anew
+            m.target = Point::new(f64::MAX, f64::MAX);
             m.since = t;
             m.state = State::InLine { station };
             return;

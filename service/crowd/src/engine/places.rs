@@ -195,7 +195,8 @@ impl Engine<'_> {
             if k == 0 {
                 let m = &self.movers[i];
                 let seconds = m.tasks.get(m.cursor).map_or(0.0, |t| t.seconds);
-                self.movers[i].state = State::Busy { until: self.t + seconds };
+                let left = self.movers[i].resumes.take().map(|stand| stand.until.max(self.t + 1.0));
+                self.movers[i].state = State::Busy { until: left.unwrap_or(self.t + seconds) };
             }
             return;
         }

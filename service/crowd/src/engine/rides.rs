@@ -54,6 +54,7 @@ impl Engine<'_> {
                 self.movers[i].legs[0].way = vec![at, place];
             }
             self.movers[i].corner = 0;
+            self.movers[i].careful = 0;
             self.movers[i].target = place;
         }
         self.follow(i);
@@ -71,6 +72,7 @@ impl Engine<'_> {
         m.left = f64::MAX;
         m.legs.remove(0);
         m.corner = 0;
+        m.careful = 0;
         m.state = State::Walking;
         self.riders.remove(&(link, to.0, to.1));
         let end = m.legs.last().and_then(|leg| Some((leg.level, *leg.way.last()?)));

@@ -18,6 +18,7 @@ impl Engine<'_> {
         m.leave(self.t);
         m.legs = legs;
         m.corner = 0;
+        m.careful = 0;
         m.target = to;
         m.left = f64::MAX;
         m.since = self.t;
@@ -89,7 +90,8 @@ impl Engine<'_> {
             let least = (radius + 0.02).min(self.spaces[level].clear(self.spaces[level].node(leg.way[corner])));
             let sees =
                 at.distance(leg.way[corner]) < 1.5 && obstacles.along(at, leg.way[corner + 1], least) >= least - 1e-6;
-            if near || sees { corner += 1 } else { break }
+            // around those who stand there is no short cut
+            if near || sees && corner >= self.movers[i].careful { corner += 1 } else { break }
         }
         self.movers[i].corner = corner;
     }
