@@ -192,6 +192,7 @@ impl<'e> Engine<'e> {
 
     /// Draws the next group of a source.
     fn draw(&mut self, s: usize) {
+        let open = self.open_itineraries(s);
         let there = self.movers.iter().filter(|m| m.is_there() && m.id.starts_with(&self.sources[s].id)).count();
         let (t, source) = (self.t, &mut self.sources[s]);
         if source.per_min <= 0.0 || source.next > t || there + source.waiting.len() >= source.most {
@@ -201,7 +202,8 @@ impl<'e> Engine<'e> {
         source.next = t + gap;
         let [low, high] = source.group;
         let size = low + source.stream.below((high - low + 1) as usize) as u32;
-        let Some(tasks) = source.stream.pick(&source.itineraries).cloned() else { return };
+        // where there is no place for what they would come for, nobody comes
+        let Some(tasks) = source.stream.pick(&open).map(|k| source.itineraries[*k].clone()) else { return };
         let group = (size > 1).then(|| format!("{}_group_{}", source.id, source.count + 1));
         for k in 0..size {
             source.count += 1;
@@ -222,6 +224,17 @@ impl<'e> Engine<'e> {
             mover.begins = t + f64::from(k) * GROUP_GAP_S;
             source.waiting.push(mover);
         }
+    }
+
+    /// Returns the itineraries of a source for which there are places left, by index.
+    fn open_itineraries(&self, s: usize) -> Vec<usize> {
+        let source = &self.sources[s];
+        if source.next > self.t {
+            return Vec::new();
+        }
+        let coming = source.waiting.len() + source.group[1] as usize;
+        let has_place = |task: &Task| !matches!(task.act, Act::Sit | Act::Lie) || self.places_left(task) >= coming;
+        (0..source.itineraries.len()).filter(|k| source.itineraries[*k].iter().all(has_place)).collect()
     }
 
     fn is_open(&self, level: usize, at: Point, radius: f64, but: Option<usize>) -> bool {
@@ -426,4 +439,3 @@ fn before(s: &Station) -> Point {
 fn seat(s: &Station) -> Point {
     Point::new(s.at.x, s.at.y)
 }
-

@@ -231,6 +231,18 @@ impl Mover {
         }
     }
 
+    /// Returns true while it stands on purpose.
+    pub fn is_paused(&self) -> bool {
+        self.pauses.last().is_some_and(|p| p.to == f64::MAX)
+    }
+
+    /// Returns the share of its time that it stood on purpose, seats and beds left out.
+    pub fn paused_share(&self, t: f64) -> f64 {
+        let stood = self.pauses.iter().filter(|p| !matches!(p.kind, "seat" | "bed"));
+        let since = self.samples.first().map_or(t, |s| s.t);
+        stood.map(|p| p.to.min(t) - p.from).sum::<f64>() / (t - since).max(1.0)
+    }
+
     pub fn begin_pause(&mut self, t: f64, kind: &'static str) {
         self.pauses.push(Pause { from: (t * 1000.0).round() / 1000.0, to: f64::MAX, kind });
     }

@@ -4,13 +4,15 @@
 use d3dgen_model::Point;
 
 use super::{BACK_M, Engine, LANE_M, MOST_ASKED, MOST_TRIES, PATIENCE_S, PROGRESS_M, THERE_M, YIELD_S};
-use crate::mover::{State, Stand};
+use crate::mover::{Stand, State};
 use crate::routes::{Leg, standing};
 use crate::search::{pull, search};
 use crate::space::NOWHERE;
 
 /// Who walks within this of the direction of another one goes the same way (cosine).
 const SAME_WAY: f64 = 0.5;
+/// Share of its time that somebody stands aside on purpose.
+const MOST_PAUSED: f64 = 0.3;
 /// How far ahead somebody is in the way, m.
 const AHEAD_M: f64 = 1.3;
 /// How far others are looked at who may be asked aside, m; and how far somebody goes aside at most.
@@ -252,7 +254,8 @@ impl Engine<'_> {
             false => standing(space, space.room_at(m.at)?, m.at, radius)?,
         };
         let may = |n: usize| {
-            space.zone(n) != NOWHERE && fixed.iter().all(|(o, reach)| n == start || space.point(n).distance(*o) >= *reach)
+            space.zone(n) != NOWHERE
+                && fixed.iter().all(|(o, reach)| n == start || space.point(n).distance(*o) >= *reach)
         };
         let is_aside = |n: usize| {
             let p = space.point(n);
@@ -304,7 +307,10 @@ impl Engine<'_> {
                 m.legs = std::iter::once(first).chain(last).collect();
             }
         }
-        m.begin_pause(t, "yield");
+        // who makes way most of its time is in a crowd, and does not stand on purpose
+        if m.paused_share(t) < MOST_PAUSED {
+            m.begin_pause(t, "yield");
+        }
         m.state = State::Yielding { until: t + YIELD_S, to: takes, arrived: false };
     }
 
@@ -323,7 +329,8 @@ impl Engine<'_> {
             return false;
         }
         let may = |n: usize| {
-            space.zone(n) != NOWHERE && fixed.iter().all(|(o, reach)| n == start || space.point(n).distance(*o) >= *reach)
+            space.zone(n) != NOWHERE
+                && fixed.iter().all(|(o, reach)| n == start || space.point(n).distance(*o) >= *reach)
         };
         let is_back = |n: usize| {
             let p = space.point(n);

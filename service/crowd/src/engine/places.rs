@@ -34,6 +34,18 @@ impl Engine<'_> {
         all.map(|(k, _)| k).min_by(|a, b| far(*a).total_cmp(&far(*b)))
     }
 
+    /// Returns how many places of a task nobody has; many where it needs none.
+    pub(super) fn places_left(&self, task: &Task) -> usize {
+        let of_task = |(_, (level, room, s)): &(usize, &(usize, usize, Station))| {
+            *level == task.level && *room == task.room && s.act == task.act
+        };
+        let mut all = self.stations.iter().enumerate().filter(of_task).peekable();
+        if all.peek().is_none() {
+            return usize::MAX;
+        }
+        all.filter(|(k, _)| self.users[*k].is_none()).count()
+    }
+
     /// Returns the counter of a room with the shortest line that has a place left.
     pub(super) fn shortest_line(&self, task: &Task) -> Option<usize> {
         let fits = |(k, (level, room, s)): &(usize, &(usize, usize, Station))| {
@@ -136,9 +148,10 @@ impl Engine<'_> {
     /// Returns true for a task of waiting in a line before a counter that is there.
     pub(super) fn has_line(&self, task: &Task) -> bool {
         task.act == Act::Queue
-            && self.stations.iter().any(|(level, room, s)| {
-                *level == task.level && *room == task.room && s.act == Act::Queue
-            })
+            && self
+                .stations
+                .iter()
+                .any(|(level, room, s)| *level == task.level && *room == task.room && s.act == Act::Queue)
     }
 
     /// Stands aside until a line has a place left; after a while it gives that up.

@@ -29,16 +29,28 @@ impl Engine<'_> {
         let level = self.movers[i].level;
         let stop = |level: usize| self.links[link].stops.iter().position(|(l, _)| *l == level);
         let Some(from) = stop(level) else { return self.arrive(i) };
-        let own = self.riders.iter().find(|((l, s, _), r)| **r == i && *l == link && *s == from).map(|((.., k), _)| *k);
-        let Some(k) = own.or_else(|| self.slot(i, (link, from), true)) else {
-            self.movers[i].velocity = Point::new(0.0, 0.0);
+        let own = |stop: usize| {
+            self.riders.iter().find(|((l, s, _), r)| **r == i && *l == link && *s == stop).map(|((.., k), _)| *k)
+        };
+        // both places or none: nobody waits for what another one has who waits for this
+        let both = own(from).zip(own(to)).or_else(|| self.slot(i, (link, from), true).zip(self.slot(i, (link, to), false)));
+        let Some((k, other)) = both else {
+            let t = self.t;
+            let m = &mut self.movers[i];
+            m.velocity = Point::new(0.0, 0.0);
+            if !m.is_paused() {
+                m.begin_pause(t, "lift");
+            }
             return;
         };
+        if own(from).is_none() {
+            self.movers[i].since = self.t;
+            self.movers[i].end_pause(self.t);
+        }
         self.riders.insert((link, from, k), i);
+        self.riders.insert((link, to, other), i);
         let place = self.links[link].stops[from].1[k];
         if self.movers[i].at.distance(place) < 2.0 * THERE_M || self.t - self.movers[i].since > 6.0 {
-            let Some(other) = self.slot(i, (link, to), false) else { return };
-            self.riders.insert((link, to, other), i);
             self.movers[i].velocity = Point::new(0.0, 0.0);
             self.movers[i].reach(place, NEARLY_M + 0.6);
             let until = self.t + ride_s(self.links, link, from, to);
@@ -62,11 +74,21 @@ impl Engine<'_> {
     }
 
     pub(super) fn alight(&mut self, i: usize, link: usize, from: (usize, usize), to: (usize, usize)) {
-        self.riders.remove(&(link, from.0, from.1));
         let (level, slots) = &self.links[link].stops[to.0];
+        let (level, radius) = (*level, self.movers[i].radius);
+        if self.near(level, slots[to.1], 2.0 * radius, i).into_iter().any(|k| !self.movers[k].is_settled()) {
+            // somebody stands there: a moment later, or beside it
+            if let Some(other) = self.slot(i, (link, to.0), false) {
+                self.riders.remove(&(link, to.0, to.1));
+                self.riders.insert((link, to.0, other), i);
+                self.movers[i].state = State::Riding { until: self.t, link, from, to: (to.0, other) };
+            }
+            return;
+        }
+        self.riders.remove(&(link, from.0, from.1));
         let m = &mut self.movers[i];
         m.leave(self.t);
-        m.level = *level;
+        m.level = level;
         m.at = slots[to.1];
         m.since = self.t;
         m.left = f64::MAX;

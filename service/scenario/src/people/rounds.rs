@@ -148,21 +148,31 @@ impl<'s, 'a> Writer<'s, 'a> {
                 continue;
             }
             let rooms = self.rooms(&step.at, allowed, None, (0, 1));
-            let with_place = rooms
-                .iter()
-                .flat_map(|(_, rooms)| rooms.iter().copied())
-                .find(|room| step.act.affordance().is_some() && !self.of_room(*room, step.act).is_empty());
-            let room = with_place.or_else(|| rooms.first().and_then(|(_, rooms)| stream.pick(rooms).copied()));
-            let Some(mut room) = room else { continue };
-            if with_place.is_some() && step.act != Act::Queue {
-                // all alike rooms are as good
-                let alike: Vec<usize> =
-                    rooms.iter().filter(|(_, rooms)| rooms.contains(&room)).flat_map(|(_, r)| r.clone()).collect();
-                room = stream.pick(&alike).copied().unwrap_or(room);
-            }
+            let room = match self.with_places(&rooms, step.act, stream) {
+                Some(room) => room,
+                None => match rooms.first().and_then(|(_, rooms)| stream.pick(rooms).copied()) {
+                    Some(room) => room,
+                    None => continue,
+                },
+            };
             out.push(self.in_room(room, step, stream));
         }
         out
+    }
+
+    /// Returns a room where an act has places: of a line the first one, of all else any, as often as it has places.
+    fn with_places(&mut self, rooms: &[(String, Vec<usize>)], act: Act, stream: &mut Stream) -> Option<usize> {
+        act.affordance()?;
+        let mut places: Vec<usize> = Vec::new();
+        let mut known: BTreeSet<usize> = BTreeSet::new();
+        for room in rooms.iter().flat_map(|(_, rooms)| rooms.iter().copied()) {
+            let count = if known.insert(room) { self.of_room(room, act).len() } else { 0 };
+            if act == Act::Queue && count > 0 {
+                return Some(room);
+            }
+            places.extend(std::iter::repeat_n(room, count));
+        }
+        stream.pick(&places).copied()
     }
 
     /// Returns the steps of a person of whom only the rooms are known that it walks between.
@@ -293,20 +303,21 @@ impl<'s, 'a> Writer<'s, 'a> {
         if step.act == Act::Queue {
             for room in rooms.iter().flat_map(|(_, rooms)| rooms.iter().copied()) {
                 let places = self.of_room(room, Act::Queue).iter().map(|s| 1 + s.queue.len() as u32);
-                lines.insert(room, TURNS * places.sum::<u32>());
+                lines.insert(room, places.sum::<u32>());
             }
         }
         let has_floor = |room: &usize| {
-            let line = lines.get(room).copied().filter(|most| *most > 0);
             let floor = (self.building.rooms[*room].plan.net_area_m2 / STANDING_M2).max(1.0) as u32;
-            self.crowd.get(room).is_none_or(|n| *n < line.unwrap_or(floor))
+            let line = lines.get(room).copied().filter(|places| *places > 0);
+            let most = line.map_or(floor, |places| TURNS * places.min(floor));
+            self.crowd.get(room).is_none_or(|n| *n < most)
         };
         let with_floor =
             |rooms: &[usize]| rooms.iter().copied().filter(has_floor).take(NEAREST).collect::<Vec<usize>>();
         // where all are full, nobody goes
         let near = rooms.iter().map(|(_, rooms)| with_floor(rooms)).find(|near| !near.is_empty())?;
         let room = *stream.pick(&near)?;
-        if lines.get(&room).is_some_and(|most| *most > 0) {
+        if lines.get(&room).is_some_and(|places| *places > 0) {
             *self.crowd.entry(room).or_default() += 1;
         }
         Some(self.in_room(room, step, stream))

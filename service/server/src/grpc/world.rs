@@ -8,7 +8,6 @@ mod simulate;
 
 use d3dgen_crowd::Options;
 use d3dgen_model::Document;
-use d3dgen_model::brief::Brief;
 use d3dgen_model::floorplan::Floorplan;
 use d3dgen_model::hours;
 use d3dgen_model::placements::Placements;
@@ -132,7 +131,7 @@ impl WorldService for Api {
             if let Some(hour) = asked.hour.as_ref().filter(|h| hours::get(h).is_none()) {
                 return Err(invalid("hour", format!("`{hour}` is no hour; there are {}", hours::ids().join(", "))));
             }
-            let brief = asked.brief.map(|b| document::<Brief>("brief", Some(b))).transpose()?;
+            let brief = brief::of_plan(&graph.prompt, Some(&plan), &now.registry);
             let wishes = Wishes { name: &asked.name, hour: asked.hour.as_deref(), brief: brief.as_ref() };
             let made = scenario::generate_as(&graph, &plan, &placements, plugin.domain(), &wishes);
             let scenario = made.map_err(|e| status::stage("placements", e))?;
