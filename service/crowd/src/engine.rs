@@ -374,6 +374,8 @@ impl<'e> Engine<'e> {
 
     /// Does at the end of the way what it went for.
     fn arrive(&mut self, i: usize) {
+        let t = self.t;
+        self.movers[i].end_pause(t);
         self.movers[i].velocity = Point::new(0.0, 0.0);
         let target = self.movers[i].legs.last().and_then(|leg| leg.way.last()).copied().unwrap_or(self.movers[i].at);
         let off = self.movers[i].at.distance(target);

@@ -244,6 +244,7 @@ impl Mover {
     }
 
     pub fn begin_pause(&mut self, t: f64, kind: &'static str) {
+        self.end_pause(t);
         self.pauses.push(Pause { from: (t * 1000.0).round() / 1000.0, to: f64::MAX, kind });
     }
 

@@ -60,8 +60,11 @@ impl Engine<'_> {
             self.movers[i].left = left;
         } else if left < self.movers[i].left - PROGRESS_M {
             self.movers[i].left = left;
-            self.movers[i].since = self.t;
-            self.movers[i].tries = 0;
+            let t = self.t;
+            let m = &mut self.movers[i];
+            m.end_pause(t);
+            m.since = t;
+            m.tries = 0;
             return;
         }
         if self.t - self.movers[i].since < PATIENCE_S {
@@ -72,6 +75,11 @@ impl Engine<'_> {
         let blocker = self.blocker(i);
         if blocker.is_some_and(|k| self.movers[k].state == State::Walking && self.goes_the_same_way(i, k)) {
             // those behind wait for the one in front, who sorts it out
+            let t = self.t;
+            let m = &mut self.movers[i];
+            if !m.is_paused() && m.paused_share(t) < MOST_PAUSED {
+                m.begin_pause(t, "queue");
+            }
             return;
         }
         self.movers[i].tries += 1;
@@ -405,8 +413,9 @@ impl Engine<'_> {
 
     /// Gives up what it goes for; who made way stays where that was.
     fn settle(&mut self, i: usize) {
-        let Some(stand) = self.movers[i].resumes.take() else { return self.give_up(i) };
         let t = self.t;
+        self.movers[i].end_pause(t);
+        let Some(stand) = self.movers[i].resumes.take() else { return self.give_up(i) };
         let m = &mut self.movers[i];
         m.legs.clear();
         m.velocity = Point::new(0.0, 0.0);

@@ -33,7 +33,8 @@ impl Engine<'_> {
             self.riders.iter().find(|((l, s, _), r)| **r == i && *l == link && *s == stop).map(|((.., k), _)| *k)
         };
         // both places or none: nobody waits for what another one has who waits for this
-        let both = own(from).zip(own(to)).or_else(|| self.slot(i, (link, from), true).zip(self.slot(i, (link, to), false)));
+        let both =
+            own(from).zip(own(to)).or_else(|| self.slot(i, (link, from), true).zip(self.slot(i, (link, to), false)));
         let Some((k, other)) = both else {
             let t = self.t;
             let m = &mut self.movers[i];
