@@ -155,11 +155,11 @@ impl<'e> Engine<'e> {
                     self.act(i, over);
                 }
             }
-            if k % NOTED == 0 {
+            if k.is_multiple_of(NOTED) {
                 let (t, levels) = (self.t, &self.levels);
                 self.movers.iter_mut().filter(|m| m.is_there()).for_each(|m| m.sample(t, levels));
             }
-            if k % 100 == 0 && !observe(self.t.min(self.end)) {
+            if k.is_multiple_of(100) && !observe(self.t.min(self.end)) {
                 return false;
             }
         }

@@ -113,7 +113,7 @@ fn beside(p: &Placement, middle: Point, side: u8, distance: f64) -> Point {
         _ => (0.0, -width / 2.0 - distance),
     };
     // to the sides one leaves from the middle of the object
-    let from = if side % 2 == 0 { middle } else { Point::new(p.pose.x, p.pose.y) };
+    let from = if side.is_multiple_of(2) { middle } else { Point::new(p.pose.x, p.pose.y) };
     Point::new(from.x + cos * forward - sin * left, from.y + sin * forward + cos * left)
 }
 
