@@ -3,7 +3,7 @@
 
     d3dgen bench paper --out target/paper && tests/plan_objections.py target/paper
 
-Reads `floorplan.json`, `placements.json` and `scenario.json` of every world below the folder, and nothing of the program. One
+Reads `scene_graph.json`, `floorplan.json`, `placements.json` and `scenario.json` of every world below the folder, and nothing of the program. One
 objection of weight A, or three different ones of weight B, send a plan back. Exit status 1 when a tenth of the plans or more
 would be sent back, 2 when there are no worlds. `--list` names the plans of each objection; `--page` prints the tables of
 docs/plans.md and reads no worlds, `--page docs/plans.md` tells whether they are in it.
@@ -24,6 +24,8 @@ HAND_BASINS = {"accessible_basin", "clinical_basin", "small_basin", "washbasin"}
 DESKS = {"desk", "small_desk"}
 WORK_CHAIRS = {"swivel_chair", "task_chair"}
 VISITOR_SEATS = {"lounge_chair", "lounge_sofa", "visitor_chair"}
+HOUSES = {"house", "terraced_house", "tiny_house", "villa"}
+ATTACHED = {"flat", "one_bedroom_flat", "small_flat", "shared_flat", "studio", "terraced_house"}
 TOILETS = {"accessible_wc", "toilet", "wc_cubicle"}
 EAST, NORTH, WEST, SOUTH = range(4)
 GRAZE = 0.02
@@ -64,6 +66,7 @@ class Room:
 
     def __init__(self, room, plan, placements):
         self.id, self.kind, self.circulation = room["room_id"], room["room_type"], room["circulation"]
+        self.level = room.get("level", 0)
         self.area, self.corners = room["net_area_m2"], [(p["x"], p["y"]) for p in room["net_polygon"]]
         xs, ys = zip(*self.corners, strict=True)
         self.rect = (min(xs), min(ys), max(xs), max(ys))
@@ -97,9 +100,10 @@ class World:
     """The documents of one world."""
 
     def __init__(self, folder):
-        plan, placements, scenario = (
-            json.loads((folder / f"{name}.json").read_text()) for name in ("floorplan", "placements", "scenario")
-        )
+        documents = ("floorplan", "placements", "scenario", "scene_graph")
+        plan, placements, scenario, graph = (json.loads((folder / f"{name}.json").read_text()) for name in documents)
+        self.building, self.area = graph.get("building_type"), sum(r["net_area_m2"] for r in plan["rooms"])
+        self.notes = graph.get("conflicts", [])
         self.rooms = [Room(r, plan, placements["placements"]) for r in plan["rooms"]]
         self.walls = [line_of(w) for w in plan["walls"]]
         self.doors = plan["doors"]
@@ -252,9 +256,10 @@ def few_seats(world):
 
 @objection("B", "residential")
 def no_coats(world):
-    """no place for coats in the hall"""
+    """no place for coats where one comes in"""
     places = ("coat", "hook", "wardrobe")
-    return not any(word in b.object for r in world.rooms if r.circulation for b in r.bodies for word in places)
+    entered = [r for r in world.rooms if r.circulation or any(d["entrance"] for d in r.doors)]
+    return not any(word in b.object for r in entered for b in r.bodies for word in places)
 
 
 @objection("B", "residential")
@@ -1000,6 +1005,93 @@ def route_behind_chairs(world):
     return False
 
 
+@objection("A", "residential")
+def no_garden_door(world):
+    """a house without a door to its garden from where one lives"""
+    if world.building not in HOUSES or any(r.kind in ("terrace", "balcony") for r in world.rooms):
+        return False
+    lived = [r for r in world.of("living_room", "living_kitchen", "family_room", "sunroom", "dining_room", "studio") if not r.level]
+    return bool(lived) and not any(len(d["room_ids"]) == 1 and not d["entrance"] for r in lived for d in r.doors)
+
+
+@objection("B", "residential")
+def hall_of_a_small_home(world):
+    """a hall in a home of less than 40 m2"""
+    return world.area < 40.0 and any(r.kind == "hallway" for r in world.rooms)
+
+
+def legs(corners):
+    """The two arms of an L, without the part that both share; nothing of other shapes."""
+    if len(corners) != 6:
+        return []
+    xs, ys = ([min(c), max(c)] for c in zip(*corners, strict=True))
+    # where it turns inwards, and the corner of the rectangle around it that it leaves out
+    x, y = next(c for c in corners if xs[0] + GRAZE < c[0] < xs[1] - GRAZE and ys[0] + GRAZE < c[1] < ys[1] - GRAZE)
+    a, b = next((u, v) for u in xs for v in ys if all(math.dist(c, (u, v)) > GRAZE for c in corners))
+    other_x, other_y = sum(xs) - a, sum(ys) - b
+    arms = [((x, a), (y, other_y)), ((x, other_x), (y, b))]
+    return [(min(u), min(v), max(u), max(v)) for u, v in arms]
+
+
+@objection("B", "residential")
+def dead_neck(world):
+    """a part of a bedroom or living room that is narrower than 1.9 m, longer than 1.8 m, and holds nothing"""
+    for room in world.of("bedroom", "single_bedroom", "kids_room", "guest_room", "living_room", "studio"):
+        for x0, y0, x1, y1 in legs(room.corners):
+            narrow, long = sorted((x1 - x0, y1 - y0))
+            if narrow < 1.9 and long > 1.8 and not any(overlap(b.rect, (x0, y0, x1, y1), 0.2) for b in room.standing):
+                return True
+    return False
+
+
+@objection("B", "residential")
+def no_ensuite(world):
+    """two bathrooms or more, and none that is entered from a bedroom"""
+    baths, beds = world.of("bathroom", "ensuite"), {r.id for r in world.of("bedroom", "single_bedroom", "kids_room", "guest_room")}
+    toilets = len(baths) + len(world.of("toilet"))
+    if world.building == "shared_flat" or len(baths) < 2 or len(beds) < 2 or toilets <= len({r.level for r in world.rooms}):
+        return False
+    return not any(beds & set(d["room_ids"]) for r in baths for d in r.doors)
+
+
+@objection("A", "residential")
+def water_over_beds(world):
+    """a bathroom or kitchen of which more than half stands over a bedroom"""
+    sleeping = world.of("bedroom", "single_bedroom", "kids_room", "guest_room")
+
+    def shared(a, b):
+        width, height = min(a[2], b[2]) - max(a[0], b[0]), min(a[3], b[3]) - max(a[1], b[1])
+        return max(width, 0.0) * max(height, 0.0)
+
+    wet = (r for r in world.rooms if r.kind in WET and len(r.corners) == 4)
+    return any(shared(r.rect, s.rect) > 0.5 * r.area for r in wet for s in sleeping if s.level == r.level - 1 and len(s.corners) == 4)
+
+
+@objection("B", "residential")
+def windows_at_neighbors(world):
+    """a flat or house in a row with windows on more than two opposite sides"""
+    panes = [line_of(w) for r in world.rooms if r.kind not in ("terrace", "balcony") for w in r.windows]
+    return world.building in ATTACHED and len({x1 - x0 > y1 - y0 for x0, y0, x1, y1 in panes}) > 1
+
+
+@objection("B", "residential")
+def motor_at_bedroom(world):
+    """a bedroom or bathroom of a home whose door opens by motor"""
+    quiet = ("bedroom", "single_bedroom", "kids_room", "guest_room", "bathroom", "ensuite", "toilet", "shower_room")
+    return any(d.get("automatic") for r in world.of(*quiet) for d in r.doors)
+
+
+@objection("A", "hospital")
+def visitors_at_surgery(world):
+    """operating rooms of up to 25 rooms on the corridor that visitors come to"""
+    surgery = ("operating_room", "operating_room_large", "operating_lobby", "scrub_room")
+    visited = ("entrance_lobby", "reception", "waiting_area")
+    if len(world.rooms) > 25:
+        return False
+    at = [{i for r in world.of(*kinds) for d in r.doors for i in d["room_ids"]} for kinds in (surgery, visited)]
+    return any(r.circulation and r.id in at[0] and r.id in at[1] for r in world.rooms)
+
+
 @objection("B", "hospital")
 def dark_room(world):
     """a room with no lamp at its ceiling"""
@@ -1127,6 +1219,64 @@ def pinched(world):
         if reached(room, taken, 0.85, outlines(chairs)).count(False) >= 4:
             return True
     return False
+
+
+# what people look at, rooms where the public is served, and doors that goods come through
+SHOWN = {"cinema_screen", "presiding_table", "stage_platform", "theatre_stage"}
+PUBLIC = {"auditorium", "boutique", "cafe", "check_in_hall", "courtroom", "dining_room", "exhibition_room", "gym_floor", "library", "mall_street",
+          "nave", "parking_hall", "pool_hall", "prayer_hall", "sales_floor", "theatre_hall", "ticket_hall", "visa_section"}  # fmt: skip
+DOCKS = {"loading_dock"}
+
+
+@objection("A")
+def fewer_places(world):
+    """fewer seats, desks, bays or stalls in a room than were asked for"""
+    return any(note["code"] == "too_few_places" for note in world.notes)
+
+
+@objection("A")
+def tills_anywhere(world):
+    """tills of a sales floor that stand in no line, or behind half of its shelves seen from the entrance"""
+    entrance = next((d for d in world.doors if d["entrance"]), None)
+    for room in world.of("sales_floor", "store_floor"):
+        tills, shelves = room.named("checkout_counter"), room.named("gondola_shelf")
+        if len(tills) < 2 or entrance is None:
+            continue
+        (x0, y0), (x1, y1) = ((entrance["line"][end]["x"], entrance["line"][end]["y"]) for end in ("start", "end"))
+        away = (lambda b: abs(b.x - x0)) if abs(x1 - x0) < abs(y1 - y0) else (lambda b: abs(b.y - y0))
+        far = max(map(away, tills))
+        if far - min(map(away, tills)) > 0.3 or 2 * sum(away(s) < far for s in shelves) > len(shelves):
+            return True
+    return False
+
+
+@objection("A")
+def screen_at_door(world):
+    """a screen or stage before rows of seats with a door of the room nearer to it than the middle of the seats"""
+    for room in world.of("auditorium", "theatre_hall", "lecture_hall", "event_room", "council_chamber"):
+        shown, seats = room.named(*SHOWN), room.having("seats", "chair_row", "council_desk")
+        if not shown or len(seats) < 4:
+            continue
+        x, y = (sum(getattr(b, axis) for b in seats) / len(seats) for axis in "xy")
+        ahead = shown[0].seen(x, y)[0]
+        if any(shown[0].seen(*middle(d))[0] < 0.25 * ahead for d in room.doors):
+            return True
+    return False
+
+
+@objection("A")
+def docks_around(world):
+    """loading docks with gates on more than one side of the building"""
+    gates = [d for room in world.of(*DOCKS) for d in room.doors if len(d["room_ids"]) == 1 and d["clear_width_m"] > 2.0]
+    sides = {(upright := abs(line[2] - line[0]) < GRAZE, round(line[0] if upright else line[1], 1)) for line in map(line_of, gates)}
+    return len(sides) > 1
+
+
+@objection("A")
+def no_accessible_toilet(world):
+    """a building where the public is served without a toilet for wheelchairs"""
+    served = world.of(*PUBLIC)
+    return sum(r.area for r in served) > 60 and not any(r.named("accessible_wc") for r in world.rooms)
 
 
 def page():

@@ -55,11 +55,23 @@ for wrong in [lambda: d3dgen.generate("flat", country="Atlantis"), lambda: world
     try:
         wrong()
     except d3dgen.Refused as refused:
-        assert len(str(refused)) > 10, refused
+        assert len(str(refused)) > 10 and refused.code and "code:" not in str(refused), (refused, refused.code)
     else:
         raise AssertionError("a wrong request was taken")
 print("worlds:", world)
 '''
+
+# after the program of docs/gymnasium.md, which steps the environment 1,000 times
+DROVE = """
+assert env.observation_space.contains(observation) and env.unwrapped.world.sound, observation
+print("1,000 steps of", env.spec.id)
+"""
+
+
+def gymnasium_program():
+    """Returns the program of the page, as it stands there."""
+    page = (WORKSPACE / "docs" / "gymnasium.md").read_text()
+    return page.split("```python\n")[1].split("```")[0] + DROVE
 
 
 def run(*command, **options):
@@ -83,7 +95,8 @@ def main():
     python = HOME / "venv" / "bin" / "python"
     run(python, "-m", "pip", "install", "-q", "--disable-pip-version-check", f"{wheel}[numpy]")
     # a folder of its own: neither the sources nor a program of the checkout are found
-    said = run(python, "-c", SESSION, cwd=HOME, env={"PATH": "/usr/bin:/bin", "HOME": str(HOME), "D3DGEN_STORE": ""})
+    user = {"PATH": "/usr/bin:/bin", "HOME": str(HOME), "D3DGEN_STORE": ""}
+    said = run(python, "-c", SESSION, cwd=HOME, env=user)
     command = HOME / "venv" / "bin" / "d3dgen"
     bare = {"PATH": str(HOME / "nothing"), "HOME": str(HOME), "D3DGEN_STORE": ""}
     parts = {p["part"]: p["state"] for p in json.loads(run(command, "doctor", "--json", env=bare))["parts"]}
@@ -92,6 +105,8 @@ def main():
         sys.exit(f"failed: doctor says {parts}")
     run(command, "self-test", "--format", "plan", env=bare)
     print(said.strip())
+    run(python, "-m", "pip", "install", "-q", "--disable-pip-version-check", f"{wheel}[gym]")
+    print(run(python, "-c", gymnasium_program(), cwd=HOME, env=user).strip().splitlines()[-1])
     print(f"the wheel works in a clean environment, {wheel.stat().st_size / 1e6:.0f} MB")
 
 

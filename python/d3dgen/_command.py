@@ -13,11 +13,19 @@ UNSOUND = 1
 """Exit code of a world that breaks a hard rule: its report is written, the world is not."""
 
 
-class Refused(ValueError):
+class _Coded(Exception):
+    """An error of the command; `code` is its stable name, which `d3dgen explain CODE` tells more about."""
+
+    def __init__(self, message: str, code: str = "") -> None:
+        super().__init__(message)
+        self.code = code
+
+
+class Refused(_Coded, ValueError):
     """The request cannot be met; the message says what is wrong and what would work."""
 
 
-class Unsound(RuntimeError):
+class Unsound(_Coded, RuntimeError):
     """A world was made that breaks a hard rule; the message says which."""
 
 
@@ -48,5 +56,6 @@ def run(*arguments: str) -> str:
     if done.returncode == 0:
         return done.stdout
     said = done.stderr.strip()
-    reason = said.rsplit("error: ", 1)[-1] if "error: " in said else said
-    raise (Unsound if done.returncode == UNSOUND else Refused)(reason or f"d3dgen ended with {done.returncode}")
+    said, _, code = said.rpartition("\ncode: ") if "\ncode: " in said else (said, "", "")
+    reason = said.rsplit("error: ", 1)[-1]
+    raise (Unsound if done.returncode == UNSOUND else Refused)(reason or f"d3dgen ended with {done.returncode}", code)

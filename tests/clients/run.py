@@ -1,8 +1,8 @@
 """Runs client programs, generated from proto/ alone, against real servers on loopback: without TLS, and with TLS and a token.
 
-    .venv/bin/python tests/clients/run.py [--server target/debug/d3dgen] [--only python|typescript]
+    .venv/bin/python tests/clients/run.py [--server target/debug/d3dgen] [--only python|typescript|package]
 
-Every run has a server of its own with a new folder of databases. Generated code and packages go to target/clients. Where npm
+`package` is clients/typescript, built, packed and installed as users get it, with the program of its page. Every run has a server of its own with a new folder of databases. Generated code and packages go to target/clients. Where npm
 is missing, the TypeScript client is left out and said so. The last line counts the runs; exit status 1 when one failed.
 """
 
@@ -79,7 +79,33 @@ def prepare_typescript():
     return ["node", out / "client.js"], ["node", out / "quickstart.js"], {}, None
 
 
-CLIENTS = {"python": prepare_python, "typescript": prepare_typescript}
+def prepare_package():
+    """Builds and packs clients/typescript, installs the archive in a folder of a user, and returns the command of its page's program."""
+    source, folder, user = WORKSPACE / "clients" / "typescript", WORK / "package", WORK / "package_user"
+    for stale in (folder / "src", folder / "gen", folder / "dist", user):
+        shutil.rmtree(stale, ignore_errors=True)
+    shutil.copytree(source, folder, dirs_exist_ok=True, ignore=shutil.ignore_patterns("node_modules", "gen", "dist", "*.tgz"))
+    run(["npm", "ci", "--no-audit", "--no-fund", "--silent"], cwd=folder)
+    run([Path(sys.executable).with_name("buf"), "generate", WORKSPACE / "proto"], cwd=folder)
+    run([folder / "node_modules" / ".bin" / "tsc"], cwd=folder)
+    user.mkdir()
+    archive = run(["npm", "pack", "--silent", "--pack-destination", user], cwd=folder).split()[-1]
+    (user / "package.json").write_text('{"private": true, "type": "module"}')
+    run(["npm", "install", "--no-audit", "--no-fund", "--silent", "--prefer-offline", f"./{archive}", "@types/node@20.19.25"], cwd=user)
+    page = (source / "README.md").read_text()
+    (user / "program.ts").write_text(page.split("```ts\n")[1].split("```")[0])
+    check = ["--module", "nodenext", "--target", "es2022", "--strict", "--skipLibCheck", "--types", "node"]
+    run([folder / "node_modules" / ".bin" / "tsc", *check, "program.ts"], cwd=user)
+    (user / "start.js").write_text('process.argv[2] = "http://" + process.argv[2];\nawait import("./program.js");\n')
+    return None, ["node", user / "start.js"], {}, None
+
+
+PLAIN, SECURE, EXAMPLE = ("plain", False, False), ("TLS and token", True, False), ("example", False, True)
+CLIENTS = {
+    "python": (prepare_python, [PLAIN, SECURE, EXAMPLE]),
+    "typescript": (prepare_typescript, [PLAIN, SECURE, EXAMPLE]),
+    "package": (prepare_package, [EXAMPLE]),
+}
 
 
 class Server:
@@ -170,14 +196,14 @@ def main():
     program = arguments.server.resolve()
     passed = failed = 0
     left_out = ""
-    for name, prepare in CLIENTS.items():
+    for name, (prepare, runs) in CLIENTS.items():
         if arguments.only not in (None, name):
             continue
-        if name == "typescript" and not (shutil.which("npm") and shutil.which("node")):
+        if name != "python" and not (shutil.which("npm") and shutil.which("node")):
             left_out = ", TypeScript left out: npm is not here"
             continue
         prepared = None
-        for what, secure, example in [("plain", False, False), ("TLS and token", True, False), ("example", False, True)]:
+        for what, secure, example in runs:
             begun = time.monotonic()
             try:
                 prepared = prepared or prepare()

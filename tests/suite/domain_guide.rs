@@ -5,7 +5,7 @@ use std::fs;
 use d3dgen_tests::{run, run_well, workspace};
 
 /// Returns the code block of a language in the guide that begins with a text.
-fn block<'a>(guide: &'a str, language: &str, begins: &str) -> &'a str {
+pub(crate) fn block<'a>(guide: &'a str, language: &str, begins: &str) -> &'a str {
     let mut blocks = guide.split("\n```").skip(1).step_by(2);
     let mut texts = blocks.by_ref().filter_map(|b| b.strip_prefix(language)?.strip_prefix('\n'));
     texts.find(|t| t.starts_with(begins)).expect("the guide has this block")

@@ -20,4 +20,5 @@ mod pins;
 mod proposals;
 mod readme;
 mod same_bytes;
+mod samples;
 mod schemas;

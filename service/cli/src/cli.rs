@@ -11,6 +11,8 @@ Exit codes:
   2    the request, a file or the output folder cannot be used: nothing is written
   130  interrupted: nothing half-written is left behind
 
+An error ends with its code; `d3dgen explain CODE` says what it means and what to do.
+
 Data goes to standard output, everything else to standard error. FILE may be `-` for standard input, or the output
 folder of a world.";
 

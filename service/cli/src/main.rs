@@ -4,6 +4,7 @@
 
 mod bundle;
 mod cli;
+mod code;
 mod commands;
 mod database;
 mod error;
@@ -32,7 +33,7 @@ fn main() -> ExitCode {
     match cli.command.run() {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("error: {error}");
+            eprintln!("error: {error}\ncode: {}", error.code());
             ExitCode::from(error.exit_code())
         }
     }

@@ -4,13 +4,14 @@ use std::fs::File;
 use std::io::{self, Read, Write};
 use std::path::Path;
 
+use data_encoding::HEXLOWER;
 use sha2::{Digest, Sha256};
 
 use crate::error::Error;
 
 /// Returns the SHA-256 of bytes, hexadecimal.
 pub fn sha256(bytes: &[u8]) -> String {
-    hex(&Sha256::digest(bytes))
+    HEXLOWER.encode(&Sha256::digest(bytes))
 }
 
 /// Returns the SHA-256 of a file, hexadecimal.
@@ -23,7 +24,7 @@ pub fn sha256_of_file(path: &Path) -> Result<String, Error> {
     loop {
         let n = file.read(&mut buffer).map_err(Error::read(path))?;
         if n == 0 {
-            return Ok(hex(&hash.finalize()));
+            return Ok(HEXLOWER.encode(&hash.finalize()));
         }
         hash.update(&buffer[..n]);
     }
@@ -38,11 +39,7 @@ pub fn of_members<'a>(members: impl IntoIterator<Item = (&'a str, &'a str)>) -> 
     for (ext, sum) in sorted {
         hash.update(format!("{ext}\0{sum}\n"));
     }
-    hex(&hash.finalize())
-}
-
-fn hex(bytes: &[u8]) -> String {
-    bytes.iter().map(|b| format!("{b:02x}")).collect()
+    HEXLOWER.encode(&hash.finalize())
 }
 
 /// A writer that sums what passes.
@@ -60,7 +57,7 @@ impl<W: Write> Summed<W> {
 
     /// Returns the inner writer, the SHA-256 of what passed, and how many bytes that were.
     pub fn finish(self) -> (W, String, u64) {
-        (self.inner, hex(&self.hash.finalize()), self.bytes)
+        (self.inner, HEXLOWER.encode(&self.hash.finalize()), self.bytes)
     }
 }
 

@@ -449,7 +449,7 @@ fn furniture() -> Vec<Placement> {
 
 /// Returns a hall with one object of every build, six to a row, turned in all four directions.
 pub fn catalogue() -> World {
-    let sizes: [(Shape, [f64; 3]); 35] = [
+    let sizes: [(Shape, [f64; 3]); 38] = [
         (Shape::Box, [0.8, 0.5, 0.5]),
         (Shape::Cabinet, [1.2, 0.45, 1.8]),
         (Shape::Shelf, [1.2, 0.4, 1.8]),
@@ -485,8 +485,11 @@ pub fn catalogue() -> World {
         (Shape::Scanner, [1.9, 2.3, 1.9]),
         (Shape::Rack, [2.7, 1.1, 4.0]),
         (Shape::Stairs, [1.0, 2.6, 2.6]),
+        (Shape::Pool, [2.0, 2.4, 0.3]),
+        (Shape::Track, [2.4, 2.6, 0.25]),
+        (Shape::Stall, [1.25, 2.4, 1.2]),
     ];
-    let (width, depth) = (18.0, 18.0);
+    let (width, depth) = (18.0, 21.0);
     let hall =
         Polygon(vec![Point::new(0., 0.), Point::new(width, 0.), Point::new(width, depth), Point::new(0., depth)]);
     let mut floorplan = floorplan();

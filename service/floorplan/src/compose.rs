@@ -268,6 +268,7 @@ fn partition(brief: &Brief, count: usize, given: bool, rng: &mut Stream) -> Vec<
     let count = wings_before;
     let mean = clusters.iter().map(|c| c.front).sum::<f64>() / count as f64;
     improve(brief, &clusters, &mut wing_of, (count, mean), rng);
+    share_stations(brief, &clusters, &mut wing_of, count);
     let mut wings = vec![Vec::new(); count];
     for (cluster, wing) in clusters.iter().zip(wing_of) {
         wings[wing].extend_from_slice(&cluster.rooms);
@@ -329,6 +330,25 @@ fn improve(brief: &Brief, clusters: &[Cluster], wing_of: &mut [usize], (count, m
         } else {
             exchange(wing_of, from, to);
         }
+    }
+}
+
+/// Puts each station into the wing of its unit where the most beds have the fewest stations: nobody is watched from another wing.
+fn share_stations(brief: &Brief, clusters: &[Cluster], wing_of: &mut [usize], count: usize) {
+    let is_station = |&room: &usize| brief.rooms[room].zone == Zone::Staff && brief.rooms[room].open_front;
+    let sleeps = |room: &&usize| brief.rooms[**room].zone == Zone::Night;
+    let mut stations = vec![0; count];
+    for c in (0..clusters.len()).filter(|&c| clusters[c].rooms.iter().any(is_station)) {
+        let mut beds = vec![0; count];
+        for (other, &wing) in clusters.iter().zip(&*wing_of).filter(|(other, _)| other.unit == clusters[c].unit) {
+            beds[wing] += other.rooms.iter().filter(sleeps).count();
+        }
+        // beds to each station, had the wing one more; of equal ones where it is
+        let share =
+            |&wing: &usize| (beds[wing] * clusters.len() / (stations[wing] + 1), wing == wing_of[c], count - wing);
+        let Some(best) = (0..count).max_by_key(share).filter(|&wing| beds[wing] > 0) else { continue };
+        wing_of[c] = best;
+        stations[best] += 1;
     }
 }
 

@@ -39,6 +39,8 @@ pub(crate) struct Below {
     pub outline: Vec<Cellbox>,
     /// Boxes of its rooms, in the same frame, where walls are to be put over its walls.
     pub boxes: Vec<Cellbox>,
+    /// Those of rooms that people sleep, live or work in, in the same frame: water of the storey above runs down elsewhere.
+    pub quiet: Vec<Cellbox>,
     pub by_core: bool,
     pub comb: Option<Comb>,
     /// Where the second stairwell of a bar begins, along the corridor from the core.

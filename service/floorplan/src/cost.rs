@@ -11,11 +11,12 @@ use d3dgen_model::seed::Stream;
 use super::core::{Below, in_core, overhang};
 use super::hall;
 use super::lattice::{CELL_M2, Cellbox, INNER_HALF_M, OUTER_HALF_M, meters, up};
+use super::locked::{self, Cut};
 use super::mirror;
 use super::realize::{Layout, door_need};
 use super::spec::{Brief, RoomSpec};
 use crate::lattice::{between, distance};
-use crate::measures::LEAST_WALL_M;
+use crate::measures::{GARDEN_DOOR_M, LEAST_WALL_M, MARGIN_M};
 
 /// Cost of a room whose area is outside what is advised, beside that of how far.
 const ILL_ADVISED: f64 = 0.8;
@@ -25,6 +26,12 @@ const IN_WARDS: f64 = 2.5;
 const FEW_ROOMS: usize = 14;
 /// Cost of a room without the daylight that it is better with, beside those that take a facade and need none.
 const DARK: f64 = 1.8;
+/// Cost of a meter of outer wall that the room with the door to the garden lacks for that and a window.
+const NO_GARDEN: f64 = 1.0;
+/// Facade of a bedroom whose other walls are those of neighbors, m: a bed with its head beside the window, and the way past its foot;
+/// what a meter less costs.
+const ACROSS_BED_M: f64 = 3.4;
+const ALONG_WINDOW: f64 = 1.5;
 /// Share by which circulation beyond what is advised counts as larger.
 const ILL_SHARED: f64 = 0.05;
 /// Length from which on the hall of a home is a tunnel, m, what a meter more counts as share of circulation, and how many more
@@ -80,8 +87,11 @@ const WRONG_SIZES: f64 = 1.5;
 /// What it costs that two rooms which the domain advises against putting wall to wall share one.
 const TOUCHING: f64 = 0.35;
 
+/// What it costs that all wet rooms stand over rooms that people live, sleep or work in.
+const OVER_QUIET: f64 = 4.0;
+
 /// How much more a wet room counts that lies beside no other in a home, where there are few of them.
-const PIPES_AT_HOME: f64 = 1.6;
+const PIPES_AT_HOME: f64 = 2.6;
 
 /// Length over width from which on a room looks like a slot, and what that costs beside its proportion.
 const SLOT_FROM: f64 = 1.9;
@@ -89,6 +99,9 @@ const SLOT: f64 = 1.5;
 /// Share of a bedroom beside a small room that was cut out of it from which on that is a waste, and what more of it costs.
 const LEG_SHARE: f64 = 0.22;
 const WASTED_LEG: f64 = 4.0;
+/// Width between wall center lines below which a leg as long holds nothing, m, and what that costs a home.
+const NECK_M: f64 = 2.0;
+const DEAD_NECK: f64 = 4.0;
 /// What a leg costs of a room of another building that cannot spare a corner, unless what was cut out is the room's own.
 const CUT_CELL: f64 = 2.5;
 
@@ -102,13 +115,16 @@ const BLOATED_FROM: [f64; 2] = [1.6, 1.5];
 const BLOATED: f64 = 6.0;
 
 /// Weight of what hangs in the air.
-pub(crate) const OVERHANG: f64 = 30.0;
+pub(crate) const OVERHANG: f64 = 45.0;
 
 /// Weight of a meter by which a wing pushes others away that stand on those below.
 const PUSHED: f64 = 8.0;
 
 /// What sums of costs may lack by rounding.
 const ROUNDING: f64 = 1e-9;
+
+/// Wall for a window beside the door to the garden, m.
+const GARDEN_PANE_M: f64 = 1.8 + 2.0 * MARGIN_M;
 
 /// Share by which the whole may miss the area asked for before it costs.
 const AREA_TOLERANCE: f64 = 0.03;
@@ -181,6 +197,9 @@ pub(crate) struct Judge<'b> {
     aloof_pairs: Vec<usize>,
     /// What the doors to outdoors need, lattice units.
     pub(crate) entrance_need: i32,
+    garden_need: i32,
+    /// True where rooms are behind a lock.
+    locks: bool,
     wet_rooms: usize,
     /// Rooms along corridors that people sleep in, and stations with an open front for those who see to them.
     pub(crate) beds: Vec<usize>,
@@ -214,8 +233,10 @@ pub(crate) struct Survey {
 pub(crate) struct Measured {
     /// Longest wall shared with the spine, lattice units.
     spine: i32,
-    /// Outer wall: the longest straight piece, and the sum.
+    /// Outer wall: the longest straight piece that a window can be in, and the sum.
     outer: (i32, i32),
+    /// The longest straight piece that a door to outdoors can be in.
+    way_in: i32,
     gross_m2: f64,
     pub(crate) net_m2: f64,
     /// Largest box.
@@ -240,6 +261,8 @@ impl<'b> Judge<'b> {
             apart_pairs: Vec::new(),
             aloof_pairs: Vec::new(),
             entrance_need: door_need(brief.entrance_width),
+            garden_need: door_need(GARDEN_DOOR_M) + up(GARDEN_PANE_M),
+            locks: brief.rooms.iter().any(|r| r.locked),
             wet_rooms: brief.rooms.iter().filter(|r| r.wet).count(),
             beds: (0..n).filter(|&r| brief.rooms[r].zone == Zone::Night && brief.rooms[r].on_spine).collect(),
             stations: (0..n).filter(|&r| brief.rooms[r].zone == Zone::Staff && brief.rooms[r].open_front).collect(),
@@ -304,19 +327,29 @@ impl<'b> Judge<'b> {
             return;
         }
         self.links(score);
+        score.hard += self.cut(&layout.boxes).0;
         if !go_on(score) {
             return;
         }
         self.whole(layout, score);
         if let Some(below) = &self.below {
             let total: f64 = self.survey.rooms.iter().map(|r| r.gross_m2).sum();
-            let free = match layout.core.filter(|_| below.by_core) {
-                Some(core) if core.u == (1, 0) => overhang(&layout.boxes, &below.outline, core.origin),
-                Some(core) => overhang(&in_core(&layout.boxes, &core), &below.outline, (0, 0)),
-                None => overhang(&layout.boxes, &below.outline, (0, 0)),
-            } as f64
-                * CELL_M2;
-            score.overhang = free / total.max(1.0);
+            // what of some boxes has nothing of others below it, m^2
+            let free = |boxes: &[(usize, Cellbox)], outline: &[Cellbox]| {
+                let units = match layout.core.filter(|_| below.by_core) {
+                    Some(core) if core.u == (1, 0) => overhang(boxes, outline, core.origin),
+                    Some(core) => overhang(&in_core(boxes, &core), outline, (0, 0)),
+                    None => overhang(boxes, outline, (0, 0)),
+                };
+                units as f64 * CELL_M2
+            };
+            score.overhang = free(&layout.boxes, &below.outline) / total.max(1.0);
+            if !below.quiet.is_empty() {
+                let wet = layout.boxes.iter().filter(|(room, _)| self.brief.rooms[*room].wet).copied();
+                let wet: Vec<(usize, Cellbox)> = wet.collect();
+                let all: f64 = wet.iter().map(|(_, b)| b.area_m2()).sum();
+                score.soft[5] += OVER_QUIET * (all - free(&wet, &below.quiet)).max(0.0) / all.max(1.0);
+            }
             if let Some((south, north)) = below.between {
                 let low = layout.boxes.iter().map(|(_, b)| b.y0).min().unwrap_or(south);
                 let high = layout.boxes.iter().map(|(_, b)| b.y1).max().unwrap_or(north);
@@ -368,6 +401,7 @@ impl<'b> Judge<'b> {
                 }
             }
         }
+        let party = self.brief.party;
         for ((room, shape), side) in boxes.iter().zip(&survey.side) {
             let room = &mut survey.rooms[*room];
             let area = shape.area_m2();
@@ -382,7 +416,15 @@ impl<'b> Judge<'b> {
                 for [shared, own] in sides {
                     let free = len - shared;
                     survey.steps += usize::from(shared > 0 && (1..up(STEP_M)).contains(&free));
-                    room.outer = (room.outer.0.max(free), room.outer.1 + free);
+                    room.outer.1 += free;
+                    // a wall of neighbors has no window; the way in may be there
+                    let shut = party.filter(|p| p.vertical == (axis == 0));
+                    if shut.is_none() {
+                        room.outer.0 = room.outer.0.max(free);
+                    }
+                    if shut.is_none_or(|p| p.entered) {
+                        room.way_in = room.way_in.max(free);
+                    }
                     (outer, inner) = (outer + free, inner + shared - own);
                     // the clear extent ends at the thickest wall of a side
                     let half = if free > 0 { OUTER_HALF_M } else { INNER_HALF_M };
@@ -478,8 +520,14 @@ impl<'b> Judge<'b> {
                 }
                 _ => {}
             }
+            if self.brief.party.is_some() && spec.zone == Zone::Night && spec.on_spine {
+                score.soft[1] += ALONG_WINDOW * meters((up(ACROSS_BED_M) - longest).max(0));
+            }
             if spec.entrance {
-                score.hard += meters((self.entrance_need - longest).max(0));
+                score.hard += meters((self.entrance_need - room.way_in).max(0));
+            }
+            if self.brief.garden.first() == Some(&i) {
+                score.soft[3] += NO_GARDEN * meters((self.garden_need - total).max(0));
             }
         }
     }
@@ -591,12 +639,20 @@ impl<'b> Judge<'b> {
                 if !home && !self.hosts[*room] && !brief.rooms[*room].spares_a_corner() {
                     score.soft[8] += CUT_CELL;
                 }
+                let lived_in = matches!(brief.rooms[*room].zone, Zone::Night | Zone::Day);
+                score.soft[8] +=
+                    if home && lived_in && w.min(h) < NECK_M && w.max(h) > NECK_M { DEAD_NECK } else { 0.0 };
                 if home && brief.rooms[*room].zone == Zone::Night {
                     let share = shape.area_m2() / rooms[*room].gross_m2.max(1.0);
                     score.soft[8] += WASTED_LEG * (share - LEG_SHARE).max(0.0);
                 }
             }
         }
+    }
+
+    /// Returns what rooms before and behind a lock miss of lying at two ends of the corridor, m, and where the wall between is best.
+    pub(crate) fn cut(&self, boxes: &[(usize, Cellbox)]) -> (f64, Option<Cut>) {
+        if self.locks { locked::cut(self.brief, boxes, &self.spine_need) } else { (0.0, None) }
     }
 
     /// Returns how far it is from each bedroom to the nearest station, m; nothing where there is no station.

@@ -24,11 +24,13 @@ mod hall;
 mod holes;
 mod insert;
 mod lattice;
+mod locked;
 mod measures;
 mod mirror;
 mod numbers;
 mod order;
 mod outline;
+mod party;
 mod proposed;
 mod realize;
 mod revise;
@@ -54,6 +56,8 @@ use d3dgen_model::style::Symmetry;
 
 pub use adjust::WallMove;
 use assemble::{Turn, assemble, turned};
+use cost::Judge;
+use party::Party;
 pub use proposed::{Follow, MOST_SKETCHED, Sketch, propose};
 use search::search;
 use spec::Brief;
@@ -107,7 +111,8 @@ pub fn generate_until(
         if plan.levels.len() > 1 || graph.has_storeys() {
             return storey::replan(graph, domain, limits, plan, stop);
         }
-        let brief = Brief::new(graph, domain, limits)?;
+        let mut brief = Brief::new(graph, domain, limits)?;
+        brief.party = brief.attached.and_then(|a| Party::of_plan(a, plan));
         return adjust::replan(&brief, plan, graph.seed, &mut Stream::new(graph.seed, "floorplan"), stop);
     }
     if graph.has_storeys() {
@@ -117,6 +122,7 @@ pub fn generate_until(
     let mut rng = Stream::new(graph.seed, "floorplan");
     brief.vary(&mut rng);
     brief.widen(&mut rng);
+    brief.party = brief.attached.map(Party::of);
     let mut last = String::from("no layout was found");
     let form = brief.form;
     // the nearest to the area that is asked for
@@ -128,11 +134,16 @@ pub fn generate_until(
         // when a form was tried in vain often enough, any is better than no plan
         if attempt == ATTEMPTS / 2 {
             brief.take_any_form();
+            if best.is_none() {
+                brief.stand_free();
+            }
         }
         brief.mirrored &= attempt < MIRRORED_ATTEMPTS;
-        let schemes = schemes(&brief, domain, &mut rng);
+        let sought = locked::joined(&brief);
+        let sought = sought.as_ref().unwrap_or(&brief);
+        let schemes = schemes(sought, domain, &mut rng);
         let turn = Turn { flip_x: rng.chance(0.5), flip_y: rng.chance(0.5), swap: rng.chance(0.3) };
-        let found = search(&brief, &schemes, &mut rng, stop);
+        let found = search(sought, &schemes, &mut rng, stop);
         stop.check()?;
         let Some(found) = found else { continue };
         if found.score.hard > 1e-9 {
@@ -140,11 +151,15 @@ pub fn generate_until(
             continue;
         }
         let name = format!("{:?}", found.scheme).to_lowercase();
-        brief.tell_form(form, |f| found.has_form(f));
-        brief.tell_symmetry(mirror::share(&brief, &found.layout.boxes));
         let mut boxes = turned(&found.layout.boxes, turn);
-        numbers::along_corridor(graph, &brief, &mut boxes);
-        match assemble(&brief, &boxes, &found.score, graph.seed, &name, None, &mut rng) {
+        numbers::along_corridor(graph, sought, &mut boxes);
+        if let Some(cut) = Judge::new(sought).cut(&boxes).1 {
+            locked::part(&brief, &mut boxes, cut);
+        }
+        let symmetry = mirror::share(sought, &found.layout.boxes);
+        brief.tell_form(form, |f| found.has_form(f));
+        brief.tell_symmetry(symmetry);
+        match assemble(&brief.turned(turn.swap), &boxes, &found.score, graph.seed, &name, None, &mut rng) {
             Ok(plan) => {
                 let miss = brief.area.map_or(0.0, |area| (net_area_m2(&plan) - area).abs() / area);
                 if miss <= AREA_MISS {
@@ -185,7 +200,8 @@ pub fn change(
     if plan.levels.len() > 1 || graph.has_storeys() {
         return storey::change(graph, domain, limits, plan, moved, stop);
     }
-    let brief = Brief::new(graph, domain, limits)?;
+    let mut brief = Brief::new(graph, domain, limits)?;
+    brief.party = brief.attached.and_then(|a| Party::of_plan(a, plan));
     adjust::change(&brief, plan, moved, &mut Stream::new(plan.seed, "floorplan/change"), stop)
 }
 
@@ -252,11 +268,16 @@ fn schemes(brief: &Brief, domain: &Domain, rng: &mut Stream) -> Vec<Scheme> {
         return vec![Scheme::Straight];
     }
     let units = has_units(brief);
+    let locks = brief.rooms.iter().any(|r| r.locked);
     let suits = |s: &Scheme| match s {
         _ if units && *s != Scheme::Comb => false,
         Scheme::Straight => along <= LONGEST_BAR,
         Scheme::Capped => rooms >= 3 && along <= LONGEST_BAR,
         // no axis mirrors an angle
+        // one of its arms would look at the neighbors
+        Scheme::Angle if brief.party.is_some() => false,
+        // a lock parts a straight corridor
+        _ if locks && !matches!(s, Scheme::Straight | Scheme::Capped) => false,
         Scheme::Angle => rooms >= 8 && along <= Scheme::MOST_WHOLE && brief.symmetry != Some(Symmetry::Symmetric),
         // corridors make a ring where the scene graph has the piece that closes it
         Scheme::Racetrack => brief.ring.is_some() && rooms >= 14 && along <= Scheme::MOST_WHOLE,
@@ -273,7 +294,7 @@ fn schemes(brief: &Brief, domain: &Domain, rng: &mut Stream) -> Vec<Scheme> {
     if brief.second_exit && !brief.upper && rooms > MOST_CAPPED {
         list.sort_by_key(|s| *s == Scheme::Capped);
     }
-    if let Some(form) = brief.form {
+    if let Some(form) = brief.form.filter(|_| !locks) {
         let (asked, [least, most]) = Scheme::of(form);
         let closes = !asked.is_ring() || brief.ring.is_some();
         if (least..=most).contains(&rooms) && closes {

@@ -14,3 +14,6 @@ pub(crate) const PANE_M: (f64, f64) = (2.4, 0.6);
 
 /// Outer wall that takes the narrowest window, m: the least of a room that needs one.
 pub(crate) const LEAST_WALL_M: f64 = PANE_M.1 + 2.0 * MARGIN_M;
+
+/// Clear width of a door to the garden, m: two glazed leaves.
+pub(crate) const GARDEN_DOOR_M: f64 = 1.4;

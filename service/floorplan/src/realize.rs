@@ -244,6 +244,8 @@ fn hub_size(brief: &Brief, spine: usize, len: i32, misfit: &mut f64) -> (i32, i3
     let walls = OUTER_HALF_M + if brief.rooms.len() == 1 { OUTER_HALF_M } else { INNER_HALF_M };
     let natural = up((spec.area_target * 1.4).sqrt() + walls);
     let proportion = meters(len).powi(2) / spec.area_target;
+    // the small rooms of a small home are as long as the room they open to
+    let natural = if brief.for_homes { up((spec.area_target * 0.5).sqrt() + walls) } else { natural };
     let length = if (0.5..=2.2).contains(&proportion) { len } else { len.max(natural) };
     let length = length.max(up(spec.min_dimension + walls));
     let mut width = nearest(spec.area_target / (meters(length) - walls) + walls);

@@ -6,8 +6,8 @@ use std::collections::BTreeMap;
 use d3dgen_knowledge::jurisdiction::rules_here;
 use d3dgen_knowledge::{Limit, Limits, RoomLimits};
 use d3dgen_model::domain::{
-    Adjacency, AdjacencyRelation, Arrangement, Daylight, Domain, Materials, Privacy, Relation, RobotUse, RoomType,
-    Shape, Zone,
+    Adjacency, AdjacencyRelation, Arrangement, Attached, BuildingType, Daylight, Domain, Materials, Privacy, Relation,
+    RobotUse, RoomType, Shape, Zone,
 };
 use d3dgen_model::measures::JAMB_M;
 use d3dgen_model::offer::has_docks;
@@ -19,10 +19,13 @@ use d3dgen_model::style::{Form, SpaceStyle, StyleWord, Symmetry};
 
 use super::core::Core;
 use super::lattice::OUTER_HALF_M;
+use super::party::Party;
 use crate::measures::{LEAST_WALL_M, SYMMETRIC};
 
 /// Code of the conflict that a building has another form than was asked for.
 const FORM_NOT_BUILT: &str = "form_not_built";
+/// Code of the conflict that a building has no neighbors where it was to have some.
+const STANDS_FREE: &str = "stands_free";
 /// Code of the conflict that a plan is not alike on both sides.
 const NOT_SYMMETRIC: &str = "not_symmetric";
 /// Clear width that a wheelchair and most robots need through a door, m; used when the prompt asks for access.
@@ -78,6 +81,8 @@ pub(crate) struct RoomSpec {
     pub slides: bool,
     /// True for rooms whose doors open by themselves, for robots.
     pub automatic: bool,
+    /// True for rooms whose doors only people open.
+    pub by_hand: bool,
     /// True for rooms that robots stay out of.
     pub kept_out: bool,
     pub entrance: bool,
@@ -106,6 +111,8 @@ pub(crate) struct RoomSpec {
     pub elevator: bool,
     /// Unit of a large building that it belongs to, counted from 0.
     pub unit: Option<usize>,
+    /// True for rooms at the part of the corridor behind a lock, while it is looked for as one.
+    pub locked: bool,
 }
 
 impl RoomSpec {
@@ -157,6 +164,8 @@ pub(crate) struct Brief {
     pub spine: Option<usize>,
     /// The piece of corridor that closes a ring with the spine, if any.
     pub ring: Option<usize>,
+    /// The part of the corridor behind a lock, if any.
+    pub locked: Option<usize>,
     /// True when the spine is a room of its own right (a warehouse hall) and takes its width from its area.
     pub hub: bool,
     /// Clear corridor width, m.
@@ -192,6 +201,14 @@ pub(crate) struct Brief {
     pub of_home: bool,
     /// Stairs and elevator of a building with several storeys.
     pub core: Option<Core>,
+    /// True in a domain of homes.
+    pub for_homes: bool,
+    /// Rooms that may have the door to the garden, best first.
+    pub garden: Vec<usize>,
+    /// What it stands wall to wall with, if anything.
+    pub attached: Option<Attached>,
+    /// The walls that this stands against, in the frame of the boxes at hand, while such a plan is looked for.
+    pub party: Option<Party>,
 }
 
 impl Brief {
@@ -211,9 +228,10 @@ impl Brief {
         let mut rooms: Vec<RoomSpec> =
             graph.rooms.iter().map(|r| room_spec(r, graph, domain, limits, &mut conflicts)).collect();
         let spine = spine_of(graph, domain, &index);
+        let locked = locked_of(graph, spine);
         let mut units: Vec<&str> = Vec::new();
         for (spec, room) in rooms.iter_mut().zip(&graph.rooms) {
-            spec.host = host_of(room, graph, domain, spine);
+            spec.host = host_of(room, graph, domain, spine).filter(|_| !is_at_corridor(room, graph, locked));
             let Some(unit) = room.unit.as_deref() else { continue };
             if !units.contains(&unit) {
                 units.push(unit);
@@ -234,6 +252,7 @@ impl Brief {
         let mut brief = Self {
             hub: spine.is_some_and(|s| !rooms[s].circulation),
             ring: ring_of(graph, spine),
+            locked,
             rooms,
             spine,
             spine_width: circulation_width,
@@ -260,8 +279,15 @@ impl Brief {
             upper: graph.rooms.iter().any(|r| r.level != 0),
             of_home,
             core: None,
+            for_homes: is_for_homes(domain),
+            garden: Vec::new(),
+            attached: None,
+            party: None,
         };
         brief.find_guests();
+        if let Some(building) = domain.building_types.iter().find(|b| graph.building_type.as_ref() == Some(&b.id)) {
+            brief.stand(building);
+        }
         if let Some(spine) = brief.spine
             && !brief.upper
             && !brief.rooms.iter().any(|r| r.entrance)
@@ -276,6 +302,35 @@ impl Brief {
             brief.apart.push([find(a)?, find(b)?]);
         }
         Ok(brief)
+    }
+
+    /// Fills in what follows from how the building stands: its garden, and the walls of others.
+    fn stand(&mut self, building: &BuildingType) {
+        let at = |id: &String| (0..self.rooms.len()).filter(|&r| &self.rooms[r].room_type == id).collect::<Vec<_>>();
+        // from a terrace one gets to the garden anyway
+        let terrace = self.rooms.iter().any(|r| r.zone == Zone::Outdoor);
+        if !self.upper && !terrace {
+            self.garden = building.garden_rooms.iter().flat_map(at).collect();
+        }
+        self.attached = building.attached;
+    }
+
+    /// Gives up the neighbors: a plan that stands free is better than none, and says so.
+    pub(crate) fn stand_free(&mut self) {
+        if self.party.take().is_some() {
+            self.conflicts.push(Note {
+                code: STANDS_FREE.into(),
+                message:
+                    "no plan was found with neighbors wall to wall at both ends; it has windows on other sides too"
+                        .into(),
+            });
+        }
+    }
+
+    /// Returns the task in the frame of boxes that were turned.
+    pub(crate) fn turned(&self, swapped: bool) -> Self {
+        let party = self.party.map(|p| Party { vertical: p.vertical != swapped, ..p });
+        Self { party, ..self.clone() }
     }
 
     /// Gives up the form that is asked for: what would close a ring of corridors is a piece of corridor like any other room.
@@ -377,6 +432,7 @@ impl Brief {
             rooms: specs,
             spine: spine.and_then(|s| index[s]),
             ring: None,
+            locked: None,
             hub: false,
             links: self.links.iter().filter_map(link).collect(),
             apart: both(&self.apart),
@@ -388,6 +444,7 @@ impl Brief {
             guests: Vec::new(),
             stem: true,
             core: None,
+            garden: Vec::new(),
             ..*self
         };
         out.find_guests();
@@ -412,7 +469,7 @@ impl Brief {
     /// Returns true for buildings that people live in: they sleep there, and nobody works or is received.
     pub(crate) fn is_home(&self) -> bool {
         let any = |zone: Zone| self.rooms.iter().any(|r| r.zone == zone);
-        self.of_home || any(Zone::Night) && !any(Zone::Staff) && !any(Zone::Public)
+        self.of_home || self.for_homes || any(Zone::Night) && !any(Zone::Staff) && !any(Zone::Public)
     }
 
     /// Returns the structural opening of a door with this clear width, m, on the lattice.
@@ -425,12 +482,34 @@ impl Brief {
         match self.spine {
             Some(s) if s == a => self.rooms[b].door_width,
             Some(s) if s == b => self.rooms[a].door_width,
+            // a corridor behind a lock is one like the other
+            _ if Some(a) == self.locked => self.rooms[b].door_width,
+            _ if Some(b) == self.locked => self.rooms[a].door_width,
             // Between two rooms the door serves the one that hangs on the other, or the lesser need of equals.
             _ if self.rooms[a].host == Some(b) => self.rooms[a].door_width,
             _ if self.rooms[b].host == Some(a) => self.rooms[b].door_width,
             _ => self.rooms[a].door_width.min(self.rooms[b].door_width),
         }
     }
+}
+
+/// Returns the part of the corridor that one comes to through a door from the other.
+fn locked_of(graph: &SceneGraph, spine: Option<usize>) -> Option<usize> {
+    let spine = &graph.rooms[spine?];
+    let joined = |id: &str| {
+        let ends = |e: &GraphEdge| e.a == id && e.b == spine.id || e.b == id && e.a == spine.id;
+        graph.edges.iter().any(|e| e.required && e.connector == Connector::Door && ends(e))
+    };
+    let way = |r: &GraphRoom| r.circulation && r.room_type == spine.room_type && r.id != spine.id && joined(&r.id);
+    graph.rooms.iter().position(way)
+}
+
+/// Returns true for a room with a door to the corridor behind a lock.
+fn is_at_corridor(room: &GraphRoom, graph: &SceneGraph, locked: Option<usize>) -> bool {
+    let Some(corridor) = locked.map(|l| &graph.rooms[l].id) else { return false };
+    let walkable = |e: &&GraphEdge| e.required && matches!(e.connector, Connector::Door | Connector::Open);
+    let joins = |e: &GraphEdge| &e.a == corridor && e.b == room.id || e.a == room.id && &e.b == corridor;
+    graph.edges.iter().filter(walkable).any(joins)
 }
 
 /// Returns the piece of corridor that is open to the spine, so that both together can run around a core or a court.
@@ -526,8 +605,11 @@ fn room_spec(
     // A robot's circle passes with 5 cm to spare on both sides.
     let robot = graph.robots.iter().map(|r| 2.0 * r.planned_radius_m() + 0.1).fold(0.0, f64::max);
     let robots = !graph.robots.is_empty();
-    let works = kind.robot.iter().any(|u| *u != RobotUse::KeepOut);
-    let automatic = robots && works && domain.circulation.automatic_doors;
+    let sent = graph.robots.iter().any(|r| r.stops.contains(&room.id) || r.room_types.contains(&room.room_type));
+    let works = sent || kind.robot.iter().any(|u| *u != RobotUse::KeepOut);
+    // nobody sleeps or washes behind a motor at home: those doors stand open for the robot
+    let retreat = kind.privacy == Privacy::Private && is_for_homes(domain);
+    let automatic = robots && works && domain.circulation.automatic_doors && !retreat;
     // what hangs in the air or lies below the ground has no drive
     let gate = gate(domain, kind).filter(|_| room.level == 0);
     RoomSpec {
@@ -551,7 +633,8 @@ fn room_spec(
         // who uses a wheelchair has no floor to spare for a leaf
         slides: kind.sliding_door || graph.accessible && kind.wet && kind.privacy == Privacy::Private || automatic,
         automatic,
-        kept_out: kind.robot.contains(&RobotUse::KeepOut),
+        by_hand: robots && retreat,
+        kept_out: kind.robot.contains(&RobotUse::KeepOut) && !sent,
         entrance: room.entrance,
         by_entrance: is_by_entrance(room, graph),
         for_guests: is_for_guests(room, graph, domain),
@@ -567,6 +650,7 @@ fn room_spec(
         fixed: false,
         elevator: graph.links.iter().any(|l| l.kind == LinkKind::Elevator && l.room_ids.contains(&room.id)),
         unit: None,
+        locked: false,
     }
 }
 

@@ -19,6 +19,7 @@ use super::assemble::costs;
 use super::board::{Board, cells};
 use super::core::{Below, Core, merged};
 use super::cost::Judge;
+use super::party::Party;
 use super::spec::Brief;
 use super::storeys::{height, overhang_note, raise_stairwells};
 use crate::numbers::highest;
@@ -125,6 +126,7 @@ impl<'a> Building<'a> {
             None => None,
         };
         brief.core = Some(core);
+        brief.party = brief.attached.and_then(|a| Party::of_plan(a, plan));
         raise_stairwells(&mut brief, self.graph, (!top).then(|| plan.levels[at].height_m - 0.01));
         Ok(brief)
     }

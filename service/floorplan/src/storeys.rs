@@ -1,7 +1,7 @@
 //! Several storeys: each is planned by itself around the common core, the ground floor first, the others above it.
 
 use d3dgen_knowledge::Limits;
-use d3dgen_model::domain::{Domain, Scheme, Storeys};
+use d3dgen_model::domain::{Domain, Scheme, Storeys, Zone};
 use d3dgen_model::floorplan::{CostTerm, Floorplan};
 use d3dgen_model::geometry::to_mm;
 use d3dgen_model::scene_graph::{Note, SceneGraph};
@@ -15,12 +15,13 @@ use super::assemble::{Turn, assemble, turned_in_place};
 use super::core::{Below, Core, in_core, merged, overhang};
 use super::genome::is_nestable;
 use super::lattice::{CELL_M2, Cellbox, INNER_HALF_M, meters, nearest};
+use super::party::Party;
 use super::search::search;
-use super::spec::Brief;
+use super::spec::{Brief, RoomSpec};
 use super::{ATTEMPTS, LONGEST_BAR, schemes};
 
 /// Share of a storey that may jut out over the one below without a word.
-pub(crate) const OVERHANG_SHARE: f64 = 0.10;
+pub(crate) const OVERHANG_SHARE: f64 = 0.06;
 /// Share that may while there are few plans to compare, and how many are few.
 const LITTLE_OVERHANG: f64 = 0.04;
 const FEW_PLANS: usize = 3;
@@ -74,8 +75,11 @@ pub(crate) fn generate(
     for &level in &numbers {
         let mut brief = Brief::new(&graph.storey(level), domain, limits)?;
         brief.vary(&mut rng);
+        brief.party = brief.attached.map(Party::of);
         briefs.push(brief);
     }
+    let ground = numbers.iter().position(|&l| l == 0).unwrap_or(0);
+    carry(&mut briefs[ground..]);
     let heights: Vec<f64> = briefs.iter().map(|b| height(b, storeys)).collect();
     let tallest = heights.iter().copied().fold(0.0, f64::max);
     for (i, brief) in briefs.iter_mut().enumerate() {
@@ -94,7 +98,6 @@ pub(crate) fn generate(
     let least = briefs.iter().map(bar_length).max().unwrap_or(0);
     bars &= meters(least) <= LONGEST_BAR_M;
     briefs.iter_mut().filter_map(|b| b.core.as_mut()).for_each(|c| c.least = least);
-    let ground = numbers.iter().position(|&l| l == 0).unwrap_or(0);
     let order = (ground..numbers.len()).map(|i| (i, i.checked_sub(1).filter(|_| i > ground)));
     let order: Vec<(usize, Option<usize>)> = order.chain((0..ground).rev().map(|i| (i, Some(i + 1)))).collect();
     let plan = Plan { graph, domain, turn, numbers: &numbers, order: &order };
@@ -106,6 +109,37 @@ pub(crate) fn generate(
             Err(error) => return Err(error),
         }
     }
+}
+
+/// Makes each storey as large as those above it where its rooms may be larger, and these smaller by half of what it lacks: what is
+/// larger than the storey below hangs in the air. The lowest comes first.
+fn carry(briefs: &mut [Brief]) {
+    let all = |brief: &Brief| brief.rooms.iter().map(|r| r.area_target).sum::<f64>();
+    for upper in (1..briefs.len()).rev() {
+        let lacks = (all(&briefs[upper]) - all(&briefs[upper - 1])).max(0.0);
+        resize(&mut briefs[upper], -lacks / 2.0);
+        let lacks = (all(&briefs[upper]) - all(&briefs[upper - 1])).max(0.0);
+        resize(&mut briefs[upper - 1], lacks);
+    }
+}
+
+/// Changes the areas aimed for of rooms that people use by so much together, m^2, as far as they may change.
+fn resize(brief: &mut Brief, by: f64) {
+    let used = |r: &RoomSpec| !r.circulation && matches!(r.zone, Zone::Day | Zone::Night | Zone::Public | Zone::Staff);
+    let all: f64 = brief.rooms.iter().filter(|r| used(r)).map(|r| r.area_target).sum();
+    if by == 0.0 || all <= 0.0 {
+        return;
+    }
+    let mut changed = 0.0;
+    for room in brief.rooms.iter_mut().filter(|r| used(r)) {
+        let [least, most] = room.limits.area_advised.unwrap_or([0.0, f64::MAX]);
+        let low = (1.02 * room.area_min).max(least).min(room.area_target);
+        let high = (0.98 * room.area_max).min(most).max(room.area_target);
+        let area = (room.area_target * (1.0 + by / all)).clamp(low, high);
+        changed += area - room.area_target;
+        room.area_target = area;
+    }
+    brief.area = brief.area.map(|area| area + changed);
 }
 
 /// Returns about how long a storey is whose rooms stand on both sides of one corridor, lattice units.
@@ -224,6 +258,9 @@ fn storey(
     for attempt in 0..ATTEMPTS {
         if attempt == ATTEMPTS / 2 {
             brief.take_any_form();
+            if best.is_none() {
+                brief.stand_free();
+            }
         }
         let mut schemes = schemes(&brief, domain, rng);
         // a bar lies best on a bar
@@ -245,7 +282,7 @@ fn storey(
         let boxes: Vec<(usize, Cellbox)> = in_core(&found.layout.boxes, &frame);
         let name = format!("{:?}", found.scheme).to_lowercase();
         brief.tell_form(form, |f| found.has_form(f));
-        match assemble(&brief, &turned_in_place(&boxes, turn), &found.score, seed, &name, None, rng) {
+        match assemble(&brief.turned(turn.swap), &turned_in_place(&boxes, turn), &found.score, seed, &name, None, rng) {
             Ok(plan) => {
                 let wings = brief.core.as_ref().is_some_and(|c| c.far.is_some() && !c.gable);
                 let comb = wings.then_some(found.layout.comb);
@@ -254,6 +291,7 @@ fn storey(
                 let below = Below {
                     outline: merged(&boxes),
                     boxes: walls,
+                    quiet: if comb_built { Vec::new() } else { quiet(&brief, &boxes) },
                     by_core: true,
                     comb,
                     far: found.layout.far,
@@ -277,6 +315,12 @@ fn storey(
         }
     }
     best.ok_or(last)
+}
+
+/// Returns the boxes of rooms that people sleep, live or work in.
+fn quiet(brief: &Brief, boxes: &[(usize, Cellbox)]) -> Vec<Cellbox> {
+    let lived_in = |room: usize| matches!(brief.rooms[room].zone, Zone::Day | Zone::Night) && !brief.rooms[room].wet;
+    boxes.iter().filter(|(room, _)| lived_in(*room)).map(|(_, b)| *b).collect()
 }
 
 /// Returns the share of the storey below that boxes in the core's frame leave open.

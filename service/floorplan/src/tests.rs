@@ -38,6 +38,7 @@ fn room(id: &str, area: [f64; 3], min_dimension: f64, daylight: Daylight, zone: 
         desk_rows: false,
         slides: false,
         automatic: false,
+        by_hand: false,
         kept_out: false,
         entrance: false,
         by_entrance: false,
@@ -53,6 +54,7 @@ fn room(id: &str, area: [f64; 3], min_dimension: f64, daylight: Daylight, zone: 
         fixed: false,
         elevator: false,
         unit: None,
+        locked: false,
         limits: d3dgen_knowledge::RoomLimits::default(),
     }
 }
@@ -66,6 +68,7 @@ fn brief(mut rooms: Vec<RoomSpec>, width: f64, links: &[(usize, usize, Connector
     let mut brief = Brief {
         spine: Some(rooms.len() - 1),
         ring: None,
+        locked: None,
         rooms,
         hub: false,
         spine_width: width,
@@ -88,6 +91,10 @@ fn brief(mut rooms: Vec<RoomSpec>, width: f64, links: &[(usize, usize, Connector
         upper: false,
         of_home: false,
         core: None,
+        for_homes: false,
+        garden: Vec::new(),
+        attached: None,
+        party: None,
     };
     brief.find_guests();
     brief
@@ -111,7 +118,24 @@ fn home() -> Brief {
     brief(rooms, 1.2, &[(0, 1, Connector::Open), (5, 2, Connector::Door)])
 }
 
-fn ward(beds: usize) -> Brief {
+/// Returns the same with the part of the corridor behind a lock, and some of its rooms there.
+pub(crate) fn with_locked(mut brief: Brief, rooms: &[usize]) -> Brief {
+    let mut part = room("corridor_2", [1.0, 10.0, 500.0], 1.0, Daylight::None, Zone::Circulation);
+    (part.circulation, part.on_spine) = (true, false);
+    let inner = brief.rooms.len();
+    brief.locked = Some(inner);
+    brief.rooms.push(part);
+    let spine = brief.spine.expect("it has a corridor");
+    brief.links.push(Link { a: inner, b: spine, connector: Connector::Door, required: true });
+    for &room in rooms {
+        brief.rooms[room].on_spine = false;
+        brief.links.push(Link { a: room, b: inner, connector: Connector::Door, required: true });
+    }
+    brief.find_guests();
+    brief
+}
+
+pub(crate) fn ward(beds: usize) -> Brief {
     let mut rooms = vec![
         room("nurse_station_1", [9., 12., 20.], 2.5, Daylight::None, Zone::Staff),
         room("clean_utility_1", [6., 10., 14.], 2.2, Daylight::None, Zone::Service),

@@ -42,7 +42,8 @@ pub(crate) fn place_windows(brief: &Brief, stretches: &[Stretch], net_m2: &[f64]
         let pane = if room.zone == Zone::Outdoor { f64::MAX } else { PANE_M.0 };
         // nobody understands a large room by day with a long blank facade
         let wide = room.daylight == Daylight::Required && net_m2[i] >= LARGE_ROOM_M2;
-        let mut outer: Vec<&Stretch> = stretches.iter().filter(|s| s.only_room() == Some(i)).collect();
+        let open = |s: &&Stretch| !brief.party.is_some_and(|party| party.covers(s));
+        let mut outer: Vec<&Stretch> = stretches.iter().filter(|s| s.only_room() == Some(i)).filter(open).collect();
         outer.sort_by_key(|s| (-s.len(), s.vertical, s.at, s.from));
         let along = room.desk_rows.then(|| main_facade(&outer)).flatten();
         let crosses = |s: &Stretch| along.is_some_and(|vertical| s.vertical != vertical);

@@ -286,6 +286,8 @@ pub enum Measure {
     KindAreaPerBed,
     /// Area of the windows of a room over its net floor area, of which a part opens.
     OpenableRatio,
+    /// Somebody at work in a room sees a bed, or the door of a room with one, within 20 m.
+    SeesBeds,
 }
 
 impl Measure {

@@ -21,8 +21,8 @@ pub use furnishing::{Arrangement, FacingRule, Furnishing, Group, Member, Relatio
 pub use layouts::{LayoutSwap, Layouts};
 pub use object::{Mount, ObjectType, Shape, Stock, StockedAsset};
 pub use program::{
-    Adjacency, AdjacencyRelation, Circulation, Elevator, Large, Occupants, Program, ProgramRoom, Scheme, Stairs,
-    Storeys, SupportRoom, TwoStairs, Units,
+    Adjacency, AdjacencyRelation, Circulation, Elevator, Large, LockedPart, Occupants, Program, ProgramRoom, Scheme,
+    Stairs, Storeys, SupportRoom, TwoStairs, Units,
 };
 pub use role::{Counted, Number, Role, RoleKind, Round, RoundStep, VISITORS_NEVER, is_named};
 pub use room_type::{Access, AreaRange, Daylight, Goods, Materials, Privacy, RobotUse, RoomType, Zone};
@@ -111,6 +111,22 @@ pub struct BuildingType {
     pub keywords: Words,
     /// The program it uses when the prompt does not list its rooms.
     pub program: String,
+    /// How it stands among others; absent where it stands free.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub attached: Option<Attached>,
+    /// Room types that have a door to its garden on the ground floor, best first; none for buildings without one.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub garden_rooms: Vec<String>,
+}
+
+/// What stands wall to wall with a building.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Attached {
+    /// Other homes at both of its ends, and the stairs of the building at one: it has windows on two opposite sides at most.
+    Flat,
+    /// Other houses at both of its ends: windows and doors are at its front and at its back.
+    Row,
 }
 
 impl Domain {
@@ -198,11 +214,23 @@ impl Document for Domain {
         };
         room("/room_types".into(), GENERIC_ROOM_TYPE, &mut problems);
         room("/circulation/room_type".into(), &self.circulation.room_type, &mut problems);
+        for (i, building) in self.building_types.iter().enumerate() {
+            for (j, id) in building.garden_rooms.iter().enumerate() {
+                room(format!("/building_types/{i}/garden_rooms/{j}"), id, &mut problems);
+            }
+        }
         for (i, id) in self.circulation.hub_room_types.iter().enumerate() {
             room(format!("/circulation/hub_room_types/{i}"), id, &mut problems);
         }
         for (i, id) in self.circulation.entrance_room_types.iter().enumerate() {
             room(format!("/circulation/entrance_room_types/{i}"), id, &mut problems);
+        }
+        for (i, part) in self.circulation.locked.iter().enumerate() {
+            for (name, ids) in [("because", &part.because), ("rooms", &part.rooms), ("locks", &part.locks)] {
+                for (j, id) in ids.iter().enumerate() {
+                    room(format!("/circulation/locked/{i}/{name}/{j}"), id, &mut problems);
+                }
+            }
         }
         if let Some(storeys) = &self.circulation.storeys {
             let at = "/circulation/storeys";

@@ -29,6 +29,13 @@ pub enum Edit {
         /// How far to the east (a wall that runs north-south) or north, m; negative to the west or south. Steps of 5 cm.
         by_m: f64,
     },
+    /// Moves a door or a window along its wall.
+    MoveOpening {
+        /// Its id.
+        opening_id: String,
+        /// How far to the east, or to the north in a wall that runs north-south, m; negative to the west or south.
+        by_m: f64,
+    },
     /// Adds a room of a type of the domain.
     AddRoom {
         /// Room type id.
@@ -118,7 +125,7 @@ impl Document for Edits {
                 }
             };
             match edit {
-                Edit::MoveWall { by_m, .. } => number("by_m", *by_m, -100.0, 100.0),
+                Edit::MoveWall { by_m, .. } | Edit::MoveOpening { by_m, .. } => number("by_m", *by_m, -100.0, 100.0),
                 Edit::AddRoom { area_m2: Some(area), .. } => number("area_m2", *area, 0.5, 100_000.0),
                 Edit::MoveObject { x, y, yaw_rad, .. } => {
                     number("x", *x, -100_000.0, 100_000.0);

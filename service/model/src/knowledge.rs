@@ -214,6 +214,7 @@ pub const AMENDMENT: &str = "amendment";
 
 impl Document for KnowledgeBase {
     const KIND: &'static str = "knowledge_base";
+    const VERSION_AT: &'static str = "/metadata/version";
 
     fn check(&self) -> Vec<Problem> {
         let mut problems = Vec::new();

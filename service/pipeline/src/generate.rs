@@ -13,7 +13,7 @@ use d3dgen_model::floorplan::Floorplan;
 use d3dgen_model::placements::Placements;
 use d3dgen_model::report::Report;
 use d3dgen_model::scenario::{Scenario, without_dock};
-use d3dgen_model::scene_graph::{BY_PROMPT, BY_STYLE, Connector, Note, Robot, SceneGraph};
+use d3dgen_model::scene_graph::{BY_PROMPT, Connector, Note, Robot, SceneGraph};
 use d3dgen_model::seed::Stream;
 use d3dgen_model::stage::{Error, Stop};
 use d3dgen_model::world::World;
@@ -21,7 +21,7 @@ use d3dgen_plugins::{Plugin, Registry};
 
 use crate::placement::{Furnished, before_openings};
 use crate::scene_graph::Request;
-use crate::{brief, fit, floorplan, placement, scenario, scene_graph, ways_out, world};
+use crate::{brief, fit, floorplan, give_way, placement, scenario, scene_graph, ways_out, world};
 
 /// How to make a world, beside the request itself.
 #[derive(Debug, Clone)]
@@ -48,6 +48,8 @@ impl Default for Settings {
 const FEW_ATTEMPTS: u32 = 3;
 /// How often they are tried for a robot that somebody has and that the building need not be made for.
 const FOR_OWN_ROBOT: u32 = 2;
+/// Attempts without any plan after which something gives way, where something can.
+const MOST_IN_VAIN: u32 = 4;
 /// Rooms of a storey up to which a sound world that misses a law, or with something before a door or window, is tried again:
 /// in a large building there is always one.
 const FEW_ROOMS: usize = 26;
@@ -150,7 +152,8 @@ pub fn generate_world(
 
 /// Makes and checks a world of a scene graph: all stages but the first.
 ///
-/// When no plan can join the rooms as the prompt asks, that becomes a wish, and a conflict of the world's scene graph.
+/// When there is no plan of it, areas and then what the prompt wants beside each other give way, each a conflict of the world's scene
+/// graph.
 ///
 /// # Errors
 /// As [`generate_world`]; `Mismatch` when the graph's domain is not registered.
@@ -164,13 +167,14 @@ pub fn furnish_and_check(
     let plugin = plugin_of(registry, graph)?;
     let read = || brief::of_plan(&graph.prompt, settings.pinned_floorplan.as_ref(), registry);
     let settings = &Settings { brief: settings.brief.clone().or_else(read), ..settings.clone() };
-    let mut made = |graph: &SceneGraph, settings: &Settings| match attempts(graph, plugin, settings, observe, cancelled)
-    {
-        Err(error @ Error::Infeasible { .. }) => match relaxed(graph) {
-            Some(relaxed) => attempts(&relaxed, plugin, settings, observe, cancelled),
-            None => Err(error),
-        },
-        other => other,
+    let mut made = |graph: &SceneGraph, settings: &Settings| {
+        let mut steps = give_way::steps(graph, plugin.domain()).into_iter().peekable();
+        let mut outcome = attempts(graph, plugin, (settings, steps.peek().is_none()), observe, cancelled);
+        while matches!(outcome, Err(Error::Infeasible { .. })) {
+            let Some(step) = steps.next() else { break };
+            outcome = attempts(&step, plugin, (settings, steps.peek().is_none()), observe, cancelled);
+        }
+        outcome
     };
     if let Some(without) = fit::without_robots(graph) {
         let few = Settings { attempts: FOR_OWN_ROBOT.min(settings.attempts), ..settings.clone() };
@@ -186,7 +190,7 @@ pub fn furnish_and_check(
         return made;
     }
     let few = Settings { attempts: FEW_ATTEMPTS, ..settings.clone() };
-    fit::or_refused(made, graph, &mut |graph| attempts(graph, plugin, &few, &mut |_| (), cancelled))
+    fit::or_refused(made, graph, &mut |graph| attempts(graph, plugin, (&few, true), &mut |_| (), cancelled))
 }
 
 /// Returns the plugin of a graph's domain.
@@ -198,25 +202,6 @@ pub fn plugin_of<'r>(registry: &'r Registry, graph: &SceneGraph) -> Result<&'r d
         stage: "floorplan",
         message: format!("the scene graph is of domain `{}`, which is not registered", graph.domain),
     })
-}
-
-/// Returns the graph with what the prompt wants beside each other as wishes, or `None` when there is nothing to relax.
-fn relaxed(graph: &SceneGraph) -> Option<SceneGraph> {
-    let mut out = graph.clone();
-    let wished = |reason: &str| reason == BY_PROMPT || reason == BY_STYLE;
-    let reached =
-        |room: &str| graph.edges.iter().any(|e| e.required && !wished(&e.reason) && (e.a == room || e.b == room));
-    for edge in out.edges.iter_mut().filter(|e| e.required && wished(&e.reason)) {
-        if reached(&edge.a) && reached(&edge.b) {
-            edge.required = false;
-            let (a, b) = (&edge.a, &edge.b);
-            out.conflicts.push(Note {
-                code: "adjacency_not_built".into(),
-                message: format!("no plan was found with {a} and {b} joined as asked; it is a wish now"),
-            });
-        }
-    }
-    (out.conflicts.len() > graph.conflicts.len()).then_some(out)
 }
 
 /// What is wrong with a world, the worst first: the order in which attempts are compared.
@@ -234,10 +219,11 @@ struct Faults {
     advice: usize,
 }
 
+/// Makes a world of a graph in as many attempts as it takes; one that is not the last to look for ends sooner without a plan.
 fn attempts(
     graph: &SceneGraph,
     plugin: &dyn Plugin,
-    settings: &Settings,
+    (settings, last): (&Settings, bool),
     observe: &mut dyn FnMut(Event<'_>),
     cancelled: &AtomicBool,
 ) -> Result<Generated, Error> {
@@ -282,9 +268,15 @@ fn attempts(
                     best = Some((faults, found));
                 }
             }
-            Err(error @ Error::Infeasible { .. }) => {
+            Err(error) if is_of_plan(&error, pinned) => {
                 observe(Event::Rejected(attempt, &error.to_string()));
-                reason = Some(error);
+                reason = Some(match error {
+                    Error::Mismatch { stage, message } => Error::Infeasible { stage, message },
+                    other => other,
+                });
+                if !last && best.is_none() && attempt + 1 >= MOST_IN_VAIN {
+                    break;
+                }
             }
             Err(error) => return Err(error),
         }
@@ -292,6 +284,16 @@ fn attempts(
     match best {
         Some((_, found)) => Ok(found),
         None => Err(reason.expect("every attempt ends in a world or an error")),
+    }
+}
+
+/// Returns true for what another plan may not have: there is none, or nothing that was brought stands where a door of it needs the
+/// floor.
+fn is_of_plan(error: &Error, pinned: bool) -> bool {
+    match error {
+        Error::Infeasible { .. } => true,
+        Error::Mismatch { stage, .. } => *stage == "placement" && !pinned,
+        _ => false,
     }
 }
 

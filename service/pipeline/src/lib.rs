@@ -10,6 +10,7 @@ pub mod bring;
 pub mod edit;
 mod fit;
 pub mod generate;
+mod give_way;
 pub mod variations;
 mod ways_out;
 

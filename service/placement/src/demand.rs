@@ -2,6 +2,7 @@
 
 use d3dgen_model::domain::{Arrangement, Domain, Furnishing, Goods, Mount, ObjectType, RoomType, Shape};
 use d3dgen_model::occupancy::ROBOT_HEIGHT_M;
+use d3dgen_model::offer;
 use d3dgen_model::offer::{asked_objects, docks_held, has_docks, other_bed, widest_circle_m};
 use d3dgen_model::robot_kind::cleans;
 use d3dgen_model::scene_graph::{GraphRoom, SceneGraph};
@@ -124,7 +125,7 @@ impl Task<'_> {
 
     /// Returns true when all units are found in one go.
     pub fn is_batch(&self) -> bool {
-        matches!(self.arrangement, Arrangement::Rows | Arrangement::Overhead)
+        matches!(self.arrangement, Arrangement::Rows | Arrangement::Overhead | Arrangement::AtExit)
     }
 }
 
@@ -493,9 +494,7 @@ fn occupied_line(
         })
     };
     // treatment chairs are no seats of a waiting room
-    let lies = kind.furnishing.first().filter(|f| f.required && f.max > 1 && f.area_per_item_m2 > 0.0);
-    let lies = lies.and_then(|f| domain.anchor(&f.item)).is_some_and(|o| o.shape == Shape::Sofa);
-    let lying = || lies.then_some((0, 1));
+    let counted = || offer::places(domain, kind).map(|places| (0, places.each));
     let counter = || {
         let is = |f: &Furnishing| f.required && f.max > 1 && is_shape(domain, &f.item, &[Shape::Counter]);
         kind.furnishing.iter().position(is).map(|line| (line, 1))
@@ -513,7 +512,7 @@ fn occupied_line(
         )
     };
     let (line, each) = capacity(|u| u.beds())
-        .or_else(lying)
+        .or_else(counted)
         .or_else(counter)
         .or_else(|| capacity(|u| u.work_places()))
         .or_else(seats)?;

@@ -11,7 +11,7 @@ use d3dgen_model::stage::Stop;
 
 use super::demand::{Task, is_table, storage_width_m};
 use super::draft::{ASIDE, AT_WALL, DEEPEST, DEPARTURES, Departure, Draft, RESCUES, Seen};
-use super::find::{Candidate, Find, Tally, Terms, leave_out_single, over, rows};
+use super::find::{Candidate, Find, Tally, Terms, leave_out_single, lines_at_exit, over, rows};
 use super::nav::Nav;
 use super::space::{Open, Space};
 use super::state::{Placed, Rule, State};
@@ -642,10 +642,10 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
         for forms in self.forms[index].iter().take_while(|_| !self.job.stop.is_set()) {
             let mut best: Option<Rows> = None;
             let unit = &forms[0];
-            let batches = if task.arrangement == Arrangement::Overhead {
-                over(state, task, index, unit, tally)
-            } else {
-                rows(state, task, index, unit, terms, tally)
+            let batches = match task.arrangement {
+                Arrangement::Overhead => over(state, task, index, unit, tally),
+                Arrangement::AtExit => lines_at_exit(state, task, index, unit, terms, tally),
+                _ => rows(state, task, index, unit, terms, tally),
             };
             let counted = |placed: &[Placed]| task.counted(placed.len());
             let rank_of = |r: &Rows| (r.units.len() >= task.required as usize, r.open, r.reached, r.score);

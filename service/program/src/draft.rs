@@ -144,6 +144,7 @@ impl<'r, 'a> Draft<'r, 'a> {
         groups::belong_together(tokens, mentions, domain, spoken, &mut said);
         compounds::relate(&self.aside.compounds, mentions, domain, &mut said);
         compounds::open_belongings(tokens, mentions, domain, spoken, &mut said);
+        relations::keep_at_corridors(mentions, domain, &mut said);
         if self.site.lives {
             homes::share_bathrooms(tokens, mentions, domain, spoken, &mut said);
             homes::name_ensuites(mentions, &said, domain);

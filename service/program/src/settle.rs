@@ -5,7 +5,7 @@ use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_plugins::Registry;
 
 use super::built::planned::Planned;
-use super::built::{edges, program, ring, rooms, workers};
+use super::built::{edges, locks, program, ring, rooms, workers};
 use super::levels::deal;
 use super::machines::{charging, robot_rules, robots};
 use super::people::homes;
@@ -49,6 +49,7 @@ fn assemble(request: &Request, mut reading: Reading, planned: &[Planned]) -> Sce
         (edges::connect(&mut reading, planned, &mut rooms), Vec::new())
     };
     ring::close(&reading, &links, &mut rooms, &mut web.edges);
+    locks::lock(&mut reading, &mut rooms, &mut web.edges);
     charging::add_docks(reading.domain, &reading.robots, &reading.docked, &mut rooms);
     robots::send(&reading.errand, &rooms, &mut reading.robots);
     let robot_rules = robot_rules::of_rooms(&reading.robot_rules, &rooms);

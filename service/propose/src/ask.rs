@@ -6,6 +6,7 @@ use d3dgen_llm::{Error as LlmError, Message, Request as LlmRequest, Role};
 use d3dgen_model::proposal::{FateCounts, Outcome, ProposedItem, StageProposal, TokenUsage};
 use d3dgen_pipeline::Error;
 use d3dgen_pipeline::generate::Stage;
+use data_encoding::HEXLOWER;
 use serde::de::DeserializeOwned;
 use sha2::{Digest, Sha256};
 
@@ -185,8 +186,5 @@ fn digest(request: &LlmRequest) -> String {
         sha.update([0]);
         sha.update(schema.wire().to_string());
     }
-    sha.finalize().iter().fold(String::new(), |mut hex, byte| {
-        let _ = write!(hex, "{byte:02x}");
-        hex
-    })
+    HEXLOWER.encode(&sha.finalize())
 }

@@ -288,10 +288,14 @@ fn nearest(spots: &[(f64, Point)]) -> Option<usize> {
     (0..spots.len()).min_by(|a, b| spots[*a].0.total_cmp(&spots[*b].0))
 }
 
-/// Returns true for a room that robots stay out of.
+/// Returns true for a room that robots stay out of: of a kind that they do, where none is sent there, or because the prompt says so.
 pub(crate) fn keeps_out(graph: &SceneGraph, plan: &Floorplan, domain: &Domain, room_id: &str) -> bool {
-    let kind = plan.room(room_id).map(|r| domain.room_type_or_generic(&r.room_type));
-    kind.is_some_and(|kind| kind.robot.contains(&RobotUse::KeepOut))
+    let room = plan.room(room_id);
+    let kind = room.map(|r| domain.room_type_or_generic(&r.room_type));
+    let sent = graph.robots.iter().any(|robot| {
+        robot.stops.iter().any(|id| id == room_id) || room.is_some_and(|r| robot.room_types.contains(&r.room_type))
+    });
+    kind.is_some_and(|kind| kind.robot.contains(&RobotUse::KeepOut) && !sent)
         || graph.keeps_robots_out(room_id)
         || plan.link_of(room_id).is_some_and(|link| link.kind == LinkKind::Stairs)
 }

@@ -154,7 +154,10 @@ export function ofDoor(world: World, doorId: string): Drag {
         const far = reach(net, inward, now.along.x * sign, now.along.y * sign);
         return far === undefined ? [] : [{ from, to: { x: from.x + now.along.x * sign * far, y: from.y + now.along.y * sign * far } }];
       });
-      return { world: moved, guides: [], dimensions, label: t("did.door"), edits: [] };
+      const east = line.along.x > 1e-3 || (Math.abs(line.along.x) <= 1e-3 && line.along.y > 0) ? 1 : -1;
+      const byM = tidy(((now.a.x - line.a.x) * line.along.x + (now.a.y - line.a.y) * line.along.y) * east);
+      const edits: EditInit[] = [{ case: "movedOpening", value: { openingId: doorId, byM } }];
+      return { world: moved, guides: [], dimensions, label: t("did.door"), edits };
     },
   };
 }

@@ -4,6 +4,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use d3dgen_mesh::Model3d;
+use data_encoding::HEXLOWER;
 use sha2::{Digest, Sha256};
 
 use crate::error::Error;
@@ -106,7 +107,7 @@ pub(super) fn list(dir: &Path) -> Result<Vec<(String, u64)>, Error> {
 
 /// Returns the SHA-256 of bytes, hexadecimal.
 pub(crate) fn digest(bytes: &[u8]) -> String {
-    Sha256::digest(bytes).iter().map(|b| format!("{b:02x}")).collect()
+    HEXLOWER.encode(&Sha256::digest(bytes))
 }
 
 fn path(dir: &Path, hash: &str, ending: &str) -> PathBuf {

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
+use data_encoding::HEXLOWER;
 use sha2::{Digest, Sha256};
 
 use super::packages::leave_parts_out;
@@ -88,7 +89,7 @@ pub(super) fn digest(file: &Path, root: &Path) -> Result<String, String> {
     for path in std::iter::once(file).chain(beside.iter().map(PathBuf::as_path)) {
         add(&mut hash, path)?;
     }
-    Ok(hexadecimal(hash))
+    Ok(HEXLOWER.encode(&hash.finalize()))
 }
 
 /// Returns the digests of the files that a model is made of beside its own, by their paths below the root; those that
@@ -116,7 +117,7 @@ pub(super) fn beside(companions: &BTreeMap<String, String>, model: &str, copy: &
 fn of_file(file: &Path) -> Result<String, String> {
     let mut hash = Sha256::new();
     add(&mut hash, file)?;
-    Ok(hexadecimal(hash))
+    Ok(HEXLOWER.encode(&hash.finalize()))
 }
 
 fn add(hash: &mut Sha256, path: &Path) -> Result<(), String> {
@@ -134,10 +135,6 @@ fn add(hash: &mut Sha256, path: &Path) -> Result<(), String> {
         }
         hash.update(&page[..n]);
     }
-}
-
-fn hexadecimal(hash: Sha256) -> String {
-    hash.finalize().iter().map(|b| format!("{b:02x}")).collect()
 }
 
 fn slashed(path: &Path) -> Option<String> {

@@ -8,6 +8,8 @@ mod relations;
 mod subjects;
 mod whole;
 
+use std::collections::BTreeSet;
+
 use d3dgen_model::brief::{Ask, AskedCount, Brief, Fact, ObjectsAsk, RoomsAsk, Subject};
 use d3dgen_model::domain::Domain;
 use d3dgen_model::floorplan::{Door, DoorKind, PlanRoom};
@@ -24,6 +26,7 @@ const TELLING_LETTERS: usize = 4;
 
 /// What the answers are looked up in.
 struct Asked<'a> {
+    brief: &'a Brief,
     world: &'a World,
     domain: &'a Domain,
 }
@@ -96,7 +99,7 @@ impl Finding {
 
 /// Returns what became of each thing that a brief asks for, in the order of the brief.
 pub fn answers(brief: &Brief, world: &World, domain: &Domain) -> Vec<AskAnswer> {
-    let asked = Asked { world, domain };
+    let asked = Asked { brief, world, domain };
     brief.asks.iter().map(|ask| asked.answer(ask)).collect()
 }
 
@@ -155,8 +158,7 @@ impl Asked<'_> {
 
     fn rooms(&self, asked: &RoomsAsk) -> Finding {
         let found = self.rooms_called(&asked.room);
-        let on_level = |r: &&GraphRoom| asked.level.is_none_or(|level| r.level == level);
-        let there: Vec<&GraphRoom> = found.rooms.iter().copied().filter(on_level).collect();
+        let there = self.meant(asked, &found.rooms);
         let ids = || there.iter().map(|r| r.id.clone()).collect::<Vec<_>>();
         let mut out = Finding::counted(asked.count, ids(), &asked.room.label());
         if there.len() < found.rooms.len() && out.fate != Fate::Honored {
@@ -182,6 +184,33 @@ impl Asked<'_> {
             Some(each) => out.and(self.one_each(&there, each)),
             None => out,
         }
+    }
+
+    /// Returns the rooms of a name that are meant on the storey asked for. Where their number is not the one asked for, those that
+    /// the brief asks for by a name of their own do not count (the four-bed room among "6 patient rooms"), and at last only those
+    /// of the very type.
+    fn meant<'r>(&self, asked: &RoomsAsk, called: &[&'r GraphRoom]) -> Vec<&'r GraphRoom> {
+        let on_level = |r: &&GraphRoom| asked.level.is_none_or(|level| r.level == level);
+        let all: Vec<&GraphRoom> = called.iter().copied().filter(on_level).collect();
+        let others = self.named_elsewhere(&asked.room);
+        let narrower = all.iter().copied().filter(|r| !others.contains(r.room_type.as_str())).collect::<Vec<_>>();
+        let exact = all.iter().copied().filter(|r| asked.room.id.as_ref() == Some(&r.room_type)).collect::<Vec<_>>();
+        let kept = |rooms: &Vec<&GraphRoom>| asked.count.allows(rooms.len() as u32);
+        if kept(&all) {
+            return all;
+        }
+        [narrower, exact].into_iter().find(kept).unwrap_or(all)
+    }
+
+    /// Returns the types of rooms that the brief speaks of beside one.
+    fn named_elsewhere(&self, room: &Subject) -> BTreeSet<&str> {
+        let named = self.brief.asks.iter().filter_map(|ask| match &ask.fact {
+            Fact::Rooms(rooms) => Some(&rooms.room),
+            Fact::Objects(objects) => objects.room.as_ref(),
+            Fact::Capacity(capacity) => capacity.room.as_ref(),
+            _ => None,
+        });
+        named.filter_map(|subject| subject.id.as_deref()).filter(|id| room.id.as_deref() != Some(id)).collect()
     }
 
     /// Returns whether each of these rooms has a door to a room of its own of another kind.
@@ -217,8 +246,16 @@ impl Asked<'_> {
             "garden_door" | "outdoor_door" => all(&|r| plan.doors_of(&r.id).any(outdoors)),
             "own_bathroom" => all(&|r| self.doors_between(&r.id, wet).next().is_some()),
             "own_entrance" => all(&|r| plan.doors_of(&r.id).any(outdoors)),
+            "small" => all(&|r| self.is_sized(r, |area, usual| area <= usual)),
+            "large" => all(&|r| self.is_sized(r, |area, usual| area >= usual)),
             other => self.named_so(other, rooms),
         }
+    }
+
+    /// Returns whether the floor of a room compares so with the usual one of its type.
+    fn is_sized(&self, room: &GraphRoom, compares: fn(f64, f64) -> bool) -> bool {
+        let usual = self.domain.room_type_or_generic(&room.room_type).area_m2.target;
+        self.world.floorplan.room(&room.id).is_some_and(|plan| compares(plan.net_polygon.area(), usual))
     }
 
     /// Returns whether rooms are of a type that has the attribute in its name: `double` of `patient_room_double`.

@@ -101,7 +101,10 @@ impl Asked<'_> {
     pub(super) fn forbidden(&self, asked: &ForbiddenAsk) -> Finding {
         let mut ids: Vec<String> = Vec::new();
         if let Some(room) = &asked.room {
-            ids.extend(self.rooms_called(room).rooms.iter().map(|r| r.id.clone()));
+            // "no private offices, 30 desks in the open plan"
+            let wanted = self.named_elsewhere(room);
+            let found = self.rooms_called(room).rooms;
+            ids.extend(found.iter().filter(|r| !wanted.contains(r.room_type.as_str())).map(|r| r.id.clone()));
         }
         if let Some(object) = &asked.object {
             let rooms = asked.within.as_ref().map(|w| self.rooms_called(w).rooms);

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use d3dgen_model::domain::{Access, Privacy};
+use d3dgen_model::domain::{Access, Privacy, tags};
 use d3dgen_model::scene_graph::BY_HOST;
 
 use super::Findings;
@@ -41,6 +41,31 @@ pub fn private_passage(c: &Context, out: &mut Findings) {
                 rooms => format!("one reaches it only through private rooms ({})", rooms.join(", ")),
             };
             out.add(id, message);
+        }
+    }
+}
+
+/// Rooms for anybody are reached without a room or corridor that is closed to all but those whose work it is.
+pub fn public_path_in_restricted(c: &Context, out: &mut Findings) {
+    let closed = |room: &Room| {
+        let name = &room.plan.name;
+        let behind_lock =
+            room.plan.circulation && c.domain.circulation.locked.iter().any(|part| &part.corridor == name);
+        behind_lock || c.domain.tags_of(room.kind).contains(tags::RESTRICTED)
+    };
+    let mut reached: BTreeSet<&str> = BTreeSet::new();
+    let mut open: Vec<&str> = c.plan().ways_out().iter().flat_map(|d| d.room_ids.iter().map(String::as_str)).collect();
+    while let Some(id) = open.pop() {
+        let Some(room) = c.room(id).filter(|room| !closed(room)) else { continue };
+        if reached.insert(id) {
+            open.extend(neighbors(room));
+        }
+    }
+    let public = |room: &&Room| !closed(room) && c.domain.tags_of(room.kind).contains(tags::PUBLIC);
+    for room in c.rooms.iter().filter(public).filter(|_| !reached.is_empty()) {
+        out.look();
+        if !reached.contains(room.plan.room_id.as_str()) {
+            out.add(&room.plan.room_id, "one who visits it goes through a room that is closed to visitors");
         }
     }
 }

@@ -105,6 +105,11 @@ pub const RULES: &[Rule] = &[
     rule("adjacency_forbidden", "rooms that must be kept apart share no door or wall", graph::must_not),
     whole("room_forbidden", "no room is of a kind that was ruled out", graph::forbidden),
     rule("private_passage", "no room is reached only through a private room", building::private_passage),
+    rule(
+        "public_path_in_restricted",
+        "nobody who visits goes through what is closed to visitors",
+        building::public_path_in_restricted,
+    ),
     whole("room_area", "net areas lie within the range asked for", rooms::area),
     whole("room_dimension", "rooms keep their least clear extent", rooms::dimension),
     rule("room_proportion", "rooms are at most 2.5 times as long as wide", rooms::proportion),

@@ -6,6 +6,7 @@ use d3dgen_model::brief::{
     Ask, AskedCount, AskedTask, Bound, Brief, CapacityAsk, Fact, ForbiddenAsk, ObjectsAsk, OnlyAsk, OtherAsk,
     PeopleAsk, PlaceKind, RelationAsk, RelationKind, RobotsAsk, RoomsAsk, StoreysAsk, StyleAsk, Subject,
 };
+use d3dgen_model::domain::Shape;
 use d3dgen_model::report::{AskAnswer, Fate};
 use d3dgen_model::world::World;
 
@@ -93,6 +94,60 @@ fn facts_are_honored_where_they_hold_and_told_where_they_do_not() {
         assert_eq!(found.fate, fate, "{fact:?}: {found:?}");
         assert_eq!(found.reason.is_empty(), fate == Fate::Honored, "a reason for what is not as asked: {found:?}");
     }
+}
+
+/// Returns what became of facts that one brief has together.
+fn answers_of(sample: &Sample, facts: &[Fact]) -> Vec<AskAnswer> {
+    let ask = |(i, fact): (usize, &Fact)| Ask {
+        id: format!("ask_{i}"),
+        words: Vec::new(),
+        read_by: Default::default(),
+        fact: fact.clone(),
+    };
+    let brief = Brief { asks: facts.iter().enumerate().map(ask).collect(), ..Brief::of_prompt("") };
+    check(&World { brief: Some(brief), ..sample.world.clone() }, sample.domain, &sample.retrieval).asks
+}
+
+#[test]
+fn what_is_asked_for_by_a_name_of_its_own_is_not_counted_twice() {
+    let sample = &SAMPLES[WARD];
+    let number = |id: &str| {
+        let is_kind = |t: &str| t == id || t.ends_with(&format!("_{id}")) || t.starts_with(&format!("{id}_"));
+        sample.world.scene_graph.rooms.iter().filter(|r| is_kind(&r.room_type)).count() as u32
+    };
+    let (all, accessible) = (number("toilet"), number("accessible_toilet"));
+    assert!(accessible > 0 && all > accessible, "the ward has toilets of both kinds: {all}, {accessible}");
+    let plain = rooms("toilet", AskedCount::exactly(all - accessible));
+    let own = rooms("accessible_toilet", AskedCount::exactly(accessible));
+    let fates: Vec<Fate> = answers_of(sample, &[plain.clone(), own.clone()]).iter().map(|a| a.fate).collect();
+    assert_eq!(fates, [Fate::Honored, Fate::Honored]);
+    let too_many = rooms("toilet", AskedCount::exactly(all + 1));
+    assert_eq!(answers_of(sample, &[too_many, own])[0].fate, Fate::Substituted);
+}
+
+#[test]
+fn work_places_are_desks_and_beds_are_where_people_stay() {
+    let seats = |room_id: &str, n| {
+        let capacity = CapacityAsk {
+            of: PlaceKind::Seats,
+            count: AskedCount::exactly(n),
+            room: Some(room(room_id)),
+            each_room: false,
+            groups: None,
+        };
+        Fact::Capacity(capacity)
+    };
+    let office = &SAMPLES[OFFICE];
+    let in_office = |shape: Shape| {
+        let placements = &office.world.placements.placements;
+        let of_room = |id: &str| office.world.floorplan.room(id).is_some_and(|r| r.room_type == "open_office");
+        let is_so = |object: &str| office.domain.object(object).is_some_and(|o| o.shape == shape);
+        placements.iter().filter(|p| of_room(&p.room_id) && is_so(&p.object)).count() as u32
+    };
+    let desks = in_office(Shape::Desk);
+    assert!(desks > 0, "the office has an open room to work in");
+    assert_eq!(answer(office, seats("open_office", desks)).fate, Fate::Honored);
+    assert_eq!(answer(office, seats("open_office", 10 * desks)).fate, Fate::Substituted);
 }
 
 #[test]

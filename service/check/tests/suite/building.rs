@@ -109,6 +109,7 @@ pub(super) const BREAKS: &[Break] = &[
         ],
         through_private,
     ),
+    somewhere("public_path_in_restricted", &[], behind_lock),
     always("room_area", |s| range(s, |area| [area * 1.1, area * 1.2])),
     always("room_area", |s| range(s, |area| [area * 0.5, area * 0.9])),
     somewhere("room_dimension", &["room_proportion", "robot_stuck", "unreachable_zone", "object_clearance"], slits),
@@ -227,6 +228,16 @@ fn through_private(s: &Sample) -> Vec<Change> {
         w.floorplan.walls.extend([closing, rest]);
         let door = &mut w.floorplan.doors[k];
         (door.line, door.kind, door.swing, door.room_ids) = (opening, DoorKind::Open, None, wall.room_ids.clone());
+        Some(id)
+    })
+}
+
+/// The corridor becomes the one behind the lock, which nobody who visits goes through.
+fn behind_lock(s: &Sample) -> Vec<Change> {
+    let Some(part) = s.domain.circulation.locked.first() else { return Vec::new() };
+    let rooms = s.world.floorplan.rooms.iter().filter(|r| !r.circulation).map(|r| r.room_id.clone());
+    each(s, rooms, |w, id| {
+        w.floorplan.rooms.iter_mut().filter(|r| r.circulation).for_each(|r| r.name.clone_from(&part.corridor));
         Some(id)
     })
 }

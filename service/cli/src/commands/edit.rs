@@ -22,6 +22,7 @@ use crate::summary;
 /// What can be written after --do: the operation, and its fields in their order; fields in brackets may be left out.
 const FORMS: &[(&str, &[&str])] = &[
     ("move_wall", &["wall_id", "by_m"]),
+    ("move_opening", &["opening_id", "by_m"]),
     ("add_room", &["room_type", "[area_m2]", "[entered_from]"]),
     ("remove_room", &["room_id"]),
     ("swap_object", &["placement_id", "[object]", "[asset]"]),
@@ -37,6 +38,7 @@ const FORMS: &[(&str, &[&str])] = &[
 #[derive(clap::Args)]
 #[command(after_help = "Changes for --do, in words:
   move_wall WALL BY_M                     east or north; negative: west or south
+  move_opening DOOR_OR_WINDOW BY_M        along its wall, east or north; negative: west or south
   add_room TYPE [AREA_M2 [ENTERED_FROM]]
   remove_room ROOM
   swap_object OBJECT_ID [TYPE [MODEL]]    another model of the same when no type is given

@@ -10,6 +10,7 @@ mod doctor;
 mod domains;
 mod edit;
 mod eval;
+mod explain;
 mod export;
 mod floorplan;
 mod formats;
@@ -17,7 +18,9 @@ mod furnish;
 mod generate;
 mod jobs;
 mod knowledge;
+mod man;
 mod mcp;
+mod migrate;
 mod model;
 mod placement;
 mod render;
@@ -35,6 +38,8 @@ mod world;
 
 use clap::Subcommand;
 
+#[cfg(test)]
+pub use explain::explanations;
 pub use formats::Formats;
 pub use model::LlmArgs;
 
@@ -100,8 +105,14 @@ pub enum Command {
     Doctor(doctor::Args),
     /// Make a world of each kind twice, in a temporary folder, and compare: does this program work here
     SelfTest(self_test::Args),
+    /// Bring documents and databases of earlier releases to the form of this one
+    Migrate(migrate::Args),
+    /// Say what the code of an error means, and what to do
+    Explain(explain::Args),
     /// Print a completion script for a shell
     Completions(completions::Args),
+    /// Print or write the manual pages of the commands
+    Man(man::Args),
     /// Print the version, and the versions of the documents it reads
     Version,
 }
@@ -142,7 +153,10 @@ impl Command {
             Self::Mcp(args) => args.run(),
             Self::Doctor(args) => args.run(),
             Self::SelfTest(args) => args.run(),
+            Self::Migrate(args) => args.run(),
+            Self::Explain(args) => args.run(),
             Self::Completions(args) => args.run(),
+            Self::Man(args) => args.run(),
             Self::Version => version::run(),
         }
     }

@@ -24,7 +24,7 @@ pub struct Args {
     /// Servers of NATS, as nats://a:4222,nats://b:4222
     #[arg(long, value_name = "URL")]
     nats: String,
-    /// Store for the results, the leader's --objects: file:///folder, s3://bucket/prefix or nats://host/bucket
+    /// Store for the results, the leader's --objects: a folder, s3://bucket/prefix or nats://host/bucket
     #[arg(long, value_name = "URL")]
     store: String,
     /// Blocks in hand at once; otherwise one for each core

@@ -24,27 +24,32 @@ enum Kind {
 }
 
 impl Objects {
-    /// Opens a store: `file:///folder`, `s3://bucket/prefix`, or `nats://host:port/bucket`, which is made where it is not there.
+    /// Opens a store: a folder, `s3://bucket/prefix`, or `nats://host:port/bucket`, which is made where it is not there.
     ///
     /// `options` are settings of S3 as `object_store` names them (`aws_access_key_id`, `aws_endpoint`, ...).
     ///
     /// # Errors
     /// `Input` for a URL that names no store; `Cluster` when it cannot be reached.
     pub async fn open(url: &str, options: &[(String, String)]) -> Result<Self, Error> {
-        let parsed = Url::parse(url).map_err(|e| {
+        let refused = |why: String| {
             Error::Input(format!(
-                "`{url}` is no store: {e}; write file:///folder, s3://bucket/prefix or nats://host/bucket"
+                "`{url}` is no store: {why}; write a folder, s3://bucket/prefix or nats://host:4222/bucket"
             ))
-        })?;
+        };
+        let parsed = if url.contains("://") {
+            Url::parse(url).map_err(|e| refused(e.to_string()))?
+        } else {
+            let folder = std::path::absolute(url).map_err(|e| refused(e.to_string()))?;
+            Url::from_directory_path(folder).map_err(|()| refused("it is no path".into()))?
+        };
         if parsed.scheme() == "nats" || parsed.scheme() == "tls" {
             return Self::open_bucket(&parsed).await;
         }
-        if let Ok(folder) = parsed.to_file_path() {
+        if let Some(folder) = (parsed.scheme() == "file").then(|| parsed.to_file_path().ok()).flatten() {
             std::fs::create_dir_all(&folder).map_err(Error::write(&folder))?;
         }
         let known = options.iter().map(|(key, value)| (key.as_str(), value.clone()));
-        let (store, prefix) = object_store::parse_url_opts(&parsed, known)
-            .map_err(|e| Error::Input(format!("`{url}` is no store that can be used: {e}")))?;
+        let (store, prefix) = object_store::parse_url_opts(&parsed, known).map_err(|e| refused(e.to_string()))?;
         Ok(Self(Kind::Plain { store: store.into(), prefix }))
     }
 
@@ -163,8 +168,7 @@ mod tests {
     #[tokio::test]
     async fn objects_are_written_once_and_listed_by_place() {
         let folder = tempfile::tempdir().unwrap();
-        let url = Url::from_directory_path(folder.path().join("a b")).unwrap();
-        let store = Objects::open(url.as_str(), &[]).await.unwrap();
+        let store = Objects::open(folder.path().join("a b").to_str().unwrap(), &[]).await.unwrap();
         assert!(store.put_new("runs/x/ledger/1.json", b"one".to_vec()).await.unwrap());
         assert!(!store.put_new("runs/x/ledger/1.json", b"two".to_vec()).await.unwrap());
         assert_eq!(store.get("runs/x/ledger/1.json").await.unwrap().unwrap().as_ref(), b"one");
@@ -173,7 +177,7 @@ mod tests {
         assert_eq!(store.list("runs/y").await.unwrap(), Vec::<String>::new());
         store.remove("runs/x/ledger/1.json").await.unwrap();
         assert_eq!(store.get("runs/x/ledger/1.json").await.unwrap(), None);
-        assert!(Objects::open("folder", &[]).await.is_err());
+        assert!(Objects::open("ftp://host/folder", &[]).await.is_err());
         assert!(Objects::open("nats://127.0.0.1:1/", &[]).await.is_err());
     }
 }

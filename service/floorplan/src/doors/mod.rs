@@ -115,6 +115,7 @@ fn lay(site: &Site<'_>, entrance_first: bool, rng: &mut Stream) -> Laid {
     site.lay_entrances(after, &mut laid);
     site.lay_exits(&mut laid);
     site.lay_room_exits(&mut laid);
+    site.lay_garden_door(&mut laid);
     site.lay_second_doors(&mut laid, rng);
     site.lay_court_doors(&mut laid);
     laid.settle();
@@ -224,7 +225,8 @@ impl Site<'_> {
     fn lay_ring(&self, laid: &mut Laid) {
         let Some((ring, spine)) = self.brief.ring.zip(self.brief.spine) else { return };
         let before = laid.spots.len();
-        for s in self.stretches.iter().filter(|s| s.joins(ring, spine)) {
+        // stairs are open at the end of their flights only
+        for s in self.stretches.iter().filter(|s| s.joins(ring, spine) && self.is_front(s, ring)) {
             let start = meters(s.from) + self.half_across(s, s.from);
             let width = meters(s.to) - self.half_across(s, s.to) - start;
             if width >= self.brief.spine_width - 1e-9 {
@@ -560,7 +562,8 @@ impl Site<'_> {
         // nobody wants the door of a stairwell to open to a robot that passes
         let kept_out = rooms.iter().any(|&r| self.brief.rooms[r].kept_out);
         let works = rooms.iter().any(|&r| self.brief.rooms[r].automatic) && !kept_out;
-        let automatic = elevator || docks || works;
+        let by_hand = rooms.iter().any(|&r| self.brief.rooms[r].by_hand);
+        let automatic = elevator || (docks || works) && !by_hand;
         let slides = automatic
             || self.brief.rooms[into].slides
             || leaf * leaf > SLIDING_SHARE * self.net_m2[into]

@@ -2,6 +2,7 @@
 
 use d3dgen_model::domain::{Daylight, Zone};
 use d3dgen_model::floorplan::{Door, DoorKind, Swing};
+use d3dgen_model::measures::JAMB_M;
 use d3dgen_model::{Point, Rect, Segment};
 
 use super::super::cost::ill_placed;
@@ -12,7 +13,7 @@ use super::super::realize::ONE_WAY_M;
 use super::super::spec::{Brief, RoomSpec};
 use super::spot::{Spot, View};
 use super::{APPROACH_M, Laid, Site};
-use crate::measures::{DOUBLE_FROM_M, LEAST_WALL_M};
+use crate::measures::{DOUBLE_FROM_M, GARDEN_DOOR_M, LEAST_WALL_M, MARGIN_M};
 
 /// What a meter between the entrance and the nearest room for visitors counts against the length of its wall.
 const TO_PUBLIC: f64 = 0.2;
@@ -37,12 +38,34 @@ const ENTRANCE_SHIFTED: f64 = 0.6;
 /// of another door, m.
 const HINGE_AWAY: f64 = 0.15;
 const BEHIND_LEAF_M: f64 = 0.8;
+/// What it costs a door to the garden to be a meter nearer to the entrance, and to leave a meter less wall for windows than the
+/// room needs; how far it is from the entrance at least, m.
+const TO_STREET: f64 = 0.15;
+const LOST_LIGHT: f64 = 2.0;
+const FROM_STREET_M: f64 = 2.0;
+/// What it costs that it is in the front where one comes in, and how far behind it another one lies, m; what each room costs
+/// that one rather has it in.
+const AT_STREET: f64 = 3.0;
+const BACK_M: f64 = 3.0;
+const LESS_LIVED_IN: f64 = 0.8;
+/// Wall for windows that a square meter of floor needs, m: a seventh of it as glass 1.3 m high.
+const GLASS_M_PER_M2: f64 = 0.11;
+
+/// Returns true for two openings of one wall of which one begins before the other ends.
+fn meets(a: &Segment, b: &Segment) -> bool {
+    let span = |from: f64, to: f64| [from.min(to), from.max(to)];
+    let crosses = |a: [f64; 2], b: [f64; 2]| a[0] < b[1] + JAMB_M && b[0] < a[1] + JAMB_M;
+    crosses(span(a.start.x, a.end.x), span(b.start.x, b.end.x))
+        && crosses(span(a.start.y, a.end.y), span(b.start.y, b.end.y))
+}
 
 impl Site<'_> {
     /// Places doors to outdoors.
     pub(super) fn lay_entrances(&self, entrances: &[(usize, bool)], laid: &mut Laid) {
         for &(room, main) in entrances {
-            let stretches = self.stretches.iter().filter(|s| s.leads_out_of() == Some(room));
+            let shut = self.brief.party.filter(|party| !party.entered);
+            let open = |s: &&Stretch| !shut.is_some_and(|party| party.covers(s));
+            let stretches = self.stretches.iter().filter(|s| s.leads_out_of() == Some(room)).filter(open);
             let spots: Vec<Spot> = match self.standing_spot(&[room], main) {
                 Some(spot) => vec![spot],
                 None => stretches.flat_map(|s| self.entrance_spots(s, room, main, &laid.spots)).collect(),
@@ -58,7 +81,7 @@ impl Site<'_> {
         for (room, spec) in self.brief.rooms.iter().enumerate() {
             let Some(clear) = spec.gate else { continue };
             let opening = Brief::opening(clear);
-            let walls = self.stretches.iter().filter(|s| s.leads_out_of() == Some(room));
+            let walls = self.stretches.iter().filter(|s| s.leads_out_of() == Some(room) && !self.is_party(s));
             let mut spots: Vec<Spot> = self.standing_spot(&[room], false).into_iter().collect();
             if spots.is_empty() {
                 spots.extend(walls.flat_map(|s| self.gate_spots(s, room, clear, opening)));
@@ -86,14 +109,71 @@ impl Site<'_> {
         spots.filter(|spot| spot.zones.iter().all(|(r, zone)| self.inside(*r, zone))).collect()
     }
 
+    /// Places the door from where one lives to the garden, away from the street, where it leaves the room its windows.
+    pub(super) fn lay_garden_door(&self, laid: &mut Laid) {
+        let entrance = laid.spots.iter().find(|l| l.door.entrance).map(|l| l.door.line);
+        let mut spots: Vec<Spot> = Vec::new();
+        for (rank, &room) in self.brief.garden.iter().enumerate() {
+            let way_out = |d: &Door| d.room_ids == [self.brief.rooms[room].id.clone()] && !d.entrance;
+            if laid.spots.iter().any(|l| way_out(&l.door)) {
+                return;
+            }
+            // a plan that is changed keeps what it had
+            if let Some(spot) = self.standing_spot(&[room], false) {
+                spots = vec![spot];
+                break;
+            }
+            if !self.standing.is_empty() && !self.standing.iter().any(way_out) {
+                continue;
+            }
+            let walls = self.stretches.iter().filter(|s| s.leads_out_of() == Some(room) && !self.is_party(s));
+            let own = walls.flat_map(|s| self.garden_spots(s, room, entrance));
+            spots.extend(own.map(|spot| Spot { penalty: spot.penalty + LESS_LIVED_IN * rank as f64, ..spot }));
+        }
+        // furniture finds its place beside the other doors as well
+        spots.retain(|spot| laid.spots.iter().all(|other| spot.disturbs(other) == 0.0));
+        laid.take_best(spots);
+    }
+
+    fn garden_spots(&self, s: &Stretch, room: usize, entrance: Option<Segment>) -> Vec<Spot> {
+        let opening = Brief::opening(GARDEN_DOOR_M);
+        let (from, to) = self.usable(s);
+        if to - from < opening - 1e-9 {
+            return Vec::new();
+        }
+        let lit = |wall: f64| if wall >= LEAST_WALL_M { wall - 2.0 * MARGIN_M } else { 0.0 };
+        let others = self.stretches.iter().filter(|t| t.only_room() == Some(room) && *t != s && !self.is_party(t));
+        let others: f64 = others.map(|t| lit(meters(t.len()))).sum();
+        let starts = [from, (from + to - opening) / 2.0, to - opening].into_iter();
+        let spots = starts.filter_map(|start| {
+            let sides = [start - meters(s.from), meters(s.to) - start - opening];
+            let light = others + sides.map(lit).iter().sum::<f64>();
+            let at = s.point(start + opening / 2.0);
+            let away = entrance.map_or(MOST_WAY_M, |e| e.middle().distance(at));
+            let beside =
+                entrance.is_some_and(|e| e.is_vertical() == s.vertical && (e.span().0 - meters(s.at)).abs() < BACK_M);
+            let short = (GLASS_M_PER_M2 * self.net_m2[room] - light).max(0.0);
+            let street = if beside { AT_STREET } else { 0.0 };
+            let penalty = LOST_LIGHT * short + street - TO_STREET * away.min(MOST_WAY_M);
+            let fits = light > 0.0 && away >= FROM_STREET_M;
+            fits.then(|| self.outward_spot(s, room, (start, GARDEN_DOOR_M), penalty)).flatten()
+        });
+        spots.collect()
+    }
+
+    /// Returns true for an outer wall with neighbors behind it.
+    pub(super) fn is_party(&self, s: &Stretch) -> bool {
+        self.brief.party.is_some_and(|party| party.covers(s))
+    }
+
     /// Places exits at the ends of corridors that are far from all others: nobody should have to run back through a wing.
     pub(super) fn lay_exits(&self, laid: &mut Laid) {
         let Some(spine) = self.brief.spine.filter(|_| self.brief.second_exit && !self.brief.upper && !self.brief.hub)
         else {
             return;
         };
-        let is_end =
-            |s: &&Stretch| s.leads_out_of() == Some(spine) && meters(s.len()) <= END_WALL * self.brief.spine_width;
+        let way = |s: &Stretch| s.leads_out_of().filter(|room| *room == spine || Some(*room) == self.brief.locked);
+        let is_end = |s: &&Stretch| way(s).is_some() && meters(s.len()) <= END_WALL * self.brief.spine_width;
         let middle = |s: &Stretch| s.point((meters(s.from) + meters(s.to)) / 2.0);
         let mut ends: Vec<Stretch> = self.stretches.iter().filter(is_end).copied().collect();
         ends.extend(self.corners_of_ring(spine));
@@ -105,7 +185,8 @@ impl Site<'_> {
             if far[at] < ONE_WAY_M {
                 return;
             }
-            let spots = self.entrance_spots(&ends.remove(at), spine, false, &laid.spots);
+            let end = ends.remove(at);
+            let spots = self.entrance_spots(&end, way(&end).unwrap_or(spine), false, &laid.spots);
             laid.take_best(spots);
         }
     }
@@ -247,6 +328,12 @@ impl Site<'_> {
         };
         let lit = spine || self.brief.rooms[room].daylight == Daylight::None || window(middle);
         let start = if !lit && aside >= from && window(aside) { aside } else { middle };
+        // beside a gate in the middle of the wall, or nowhere in it
+        let free = |start: &f64| {
+            let own = Segment { start: s.point(*start), end: s.point(*start + opening) };
+            !laid.iter().any(|l| meets(&l.door.line, &own))
+        };
+        let Some(start) = [start, from, to - opening].into_iter().find(free) else { return Vec::new() };
         let line = Segment { start: s.point(start), end: s.point(start + opening) };
         // The end of a corridor is where one looks for its door; a second exit belongs far from the first.
         let mut penalty = if spine && !self.brief.hub { meters(s.len()) } else { 0.1 * f64::from(s.at.abs()) * 0.05 };

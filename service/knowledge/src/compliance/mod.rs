@@ -14,6 +14,7 @@ pub(crate) mod reading;
 mod robots;
 mod rooms;
 mod routes;
+mod sight;
 mod site;
 pub(crate) mod sizes;
 mod spacing;
@@ -93,7 +94,7 @@ fn readings(site: &Site, storeys: &[Site], a: &Applicable, rule: &Rule) -> Vec<R
     }
     let floors = if storeys.is_empty() { std::slice::from_ref(site) } else { storeys };
     let each = |read: fn(&Site, &Applicable, &Rule) -> Vec<Reading>| floors.iter().flat_map(move |f| read(f, a, rule));
-    let measured = [rooms::read, doors::read, routes::read].into_iter().flat_map(each);
+    let measured = [rooms::read, doors::read, routes::read, sight::read].into_iter().flat_map(each);
     let counted = counts::read(site, a, rule);
     let used = [objects::read, robots::read].into_iter().flat_map(each);
     measured.chain(counted).chain(used).collect()

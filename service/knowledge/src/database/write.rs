@@ -3,6 +3,7 @@
 use d3dgen_model::Document;
 use d3dgen_model::knowledge::{KnowledgeBase, Reference};
 use d3dgen_store::{Batch, View};
+use data_encoding::HEXLOWER;
 use sha2::{Digest, Sha256};
 
 use super::Database;
@@ -18,8 +19,7 @@ const PAGE: usize = 200;
 
 /// Returns the digest of a knowledge base: another one means another release.
 pub fn digest(knowledge: &KnowledgeBase) -> String {
-    let hash = Sha256::digest(knowledge.to_json());
-    hash.iter().take(16).map(|byte| format!("{byte:02x}")).collect()
+    HEXLOWER.encode(&Sha256::digest(knowledge.to_json())[..16])
 }
 
 /// A change about to be stored.

@@ -4,9 +4,9 @@
 //! requests of its `stage` in order, which is the form to write by hand. Files are the business of the caller.
 
 use std::collections::{BTreeMap, VecDeque};
-use std::fmt::Write as _;
 use std::sync::{Mutex, PoisonError};
 
+use data_encoding::HEXLOWER;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
@@ -51,11 +51,7 @@ fn key(request: &Request) -> String {
         "schema": request.schema.as_ref().map(|s| s.wire()),
         "grounding": request.grounding.is_some(),
     });
-    let digest = Sha256::digest(asked.to_string().as_bytes());
-    digest.iter().take(16).fold(String::new(), |mut hex, byte| {
-        let _ = write!(hex, "{byte:02x}");
-        hex
-    })
+    HEXLOWER.encode(&Sha256::digest(asked.to_string())[..16])
 }
 
 /// Answers from a recording.

@@ -81,6 +81,8 @@ pub enum Arrangement {
     AtWindow,
     /// Facing the door with its back to the far wall or free-standing (a reception counter).
     FacingDoor,
+    /// Side by side in one line across the way out, each with a lane beside it: tills, ticket gates, security lanes.
+    AtExit,
 }
 
 impl Arrangement {
@@ -99,6 +101,7 @@ impl Arrangement {
             Self::Overhead => "overhead",
             Self::AtWindow => "at_window",
             Self::FacingDoor => "facing_door",
+            Self::AtExit => "at_exit",
         }
     }
 }
@@ -263,7 +266,7 @@ mod tests {
 
     #[test]
     fn arrangements_are_called_as_in_documents() {
-        let names = "wall solid_wall window_wall corner center rows facing beside_door on_surface overhead at_window facing_door";
+        let names = "wall solid_wall window_wall corner center rows facing beside_door on_surface overhead at_window facing_door at_exit";
         for name in names.split(' ') {
             let arrangement: Arrangement = serde_json::from_value(name.into()).expect("it is one");
             assert_eq!(arrangement.name(), name);

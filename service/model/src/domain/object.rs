@@ -181,6 +181,12 @@ pub enum Shape {
     Rack,
     /// Two flights of steps side by side.
     Stairs,
+    /// A basin full of water.
+    Pool,
+    /// A railway track; its platform is at the front.
+    Track,
+    /// A place for an animal between rails, open at the front.
+    Stall,
 }
 
 impl Shape {
@@ -222,6 +228,9 @@ impl Shape {
             Self::Scanner => "scanner",
             Self::Rack => "rack",
             Self::Stairs => "stairs",
+            Self::Pool => "pool",
+            Self::Track => "track",
+            Self::Stall => "stall",
         }
     }
 
@@ -264,6 +273,9 @@ impl Shape {
             Scanner,
             Rack,
             Stairs,
+            Pool,
+            Track,
+            Stall,
         ]
         .into_iter()
     }

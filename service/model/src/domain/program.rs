@@ -193,6 +193,13 @@ pub struct Circulation {
     /// Rooms that serve as the hub instead of a corridor when the program has one (a warehouse hall, a sales floor, a studio).
     #[serde(default)]
     pub hub_room_types: Vec<String>,
+    /// Net floor area from which on a home of one storey has a hall, m^2: in a smaller one the room to live in is the way to the
+    /// others. Every building has one where it is not said.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub hall_from_m2: Option<f64>,
+    /// Where that figure is from.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub hall_source: String,
     /// Rooms through which one enters the building, best first; without one the corridor has the entrance.
     #[serde(default)]
     pub entrance_room_types: Vec<String>,
@@ -215,11 +222,31 @@ pub struct Circulation {
     /// True where doors to the rooms that robots work in open by themselves, when there are robots; in homes they stand open.
     #[serde(default)]
     pub automatic_doors: bool,
+    /// Parts of a building that only those come to whose work it is, through a door across the corridor.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub locked: Vec<LockedPart>,
     /// Layout schemes that suit the domain, best first.
     pub schemes: Vec<Scheme>,
     /// How buildings with several storeys are made; without it the domain has one storey only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub storeys: Option<Storeys>,
+}
+
+/// A part of a building behind a lock, with a corridor of its own.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LockedPart {
+    /// Name of its corridor on plans, English: `Restricted corridor`.
+    pub corridor: String,
+    /// Room types that make a building have it; one of them is enough.
+    pub because: Vec<String>,
+    /// Room types behind the lock that open to a corridor, those of `because` among them where they do.
+    pub rooms: Vec<String>,
+    /// Room types through which one goes in: they have a door to each side, where the plan allows it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub locks: Vec<String>,
+    /// The rule and where it is from, as a reader is told.
+    pub source: String,
 }
 
 fn court_width_m() -> f64 {

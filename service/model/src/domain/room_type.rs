@@ -80,6 +80,14 @@ pub struct RoomType {
     /// What stands in it, most important first.
     #[serde(default)]
     pub furnishing: Vec<Furnishing>,
+    /// Words for what a prompt counts such a room by, singular and plural: "60 cars", "40 racks", "80 cows". The number is how many
+    /// units of the first furnishing line there are, or the people who sit at them; the floor follows from it.
+    #[serde(default, skip_serializing_if = "Words::is_empty")]
+    pub places: Words,
+    /// Words for rooms of this type where the building's program has them, and for nothing in others: "four gates" of an
+    /// airport, "three engines" of a fire station.
+    #[serde(default, skip_serializing_if = "Words::is_empty")]
+    pub called: Words,
 }
 
 /// How clean what robots carry to and from a room is.
@@ -243,6 +251,13 @@ impl RoomType {
                     format!("room type `{host}` is not in room_types"),
                 ));
             }
+        }
+        let counted = self.furnishing.first().is_some_and(|f| f.required && f.max > 1 && f.area_per_item_m2 > 0.0);
+        if !self.places.is_empty() && !counted {
+            problems.push(Problem::new(
+                format!("{path}/places"),
+                "counts the units of the first furnishing line, which has to be required, to have a max above 1 and an area_per_item_m2",
+            ));
         }
         for (i, f) in self.furnishing.iter().enumerate() {
             f.check(&format!("{path}/furnishing/{i}"), domain, problems);

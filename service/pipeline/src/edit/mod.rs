@@ -5,6 +5,7 @@
 //! touch keep every object to the millimeter.
 
 mod objects;
+mod openings;
 mod rooms;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -114,6 +115,11 @@ impl<'a> Desk<'a> {
                 let moved = WallMove { wall_id: wall_id.clone(), by_m: *by_m };
                 self.change_plan(Some(&moved))
             }
+            Edit::MoveOpening { opening_id, by_m } => {
+                let before = self.plan.clone();
+                let rooms = openings::slide(&mut self.plan, opening_id, *by_m)?;
+                self.settle_all(&before, rooms)
+            }
             Edit::AddRoom { room_type, area_m2, entered_from } => {
                 let room =
                     rooms::add(&mut self.graph, self.plugin.domain(), room_type, *area_m2, entered_from.as_deref())?;
@@ -147,8 +153,12 @@ impl<'a> Desk<'a> {
         self.placements.unplaced.retain(|u| self.plan.room(&u.room_id).is_some());
         let touched: Vec<String> =
             self.plan.rooms.iter().map(|r| r.room_id.clone()).filter(|id| differs(&before, &self.plan, id)).collect();
-        for room_id in touched {
-            self.settle(&before, &room_id)?;
+        self.settle_all(&before, touched)
+    }
+
+    fn settle_all(&mut self, before: &Floorplan, room_ids: Vec<String>) -> Result<(), Error> {
+        for room_id in room_ids {
+            self.settle(before, &room_id)?;
         }
         Ok(())
     }

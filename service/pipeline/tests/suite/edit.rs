@@ -132,6 +132,43 @@ fn inner_walls_move_or_say_why_not() {
 }
 
 #[test]
+fn doors_and_windows_slide_along_their_walls_or_say_why_not() {
+    let registry = Registry::builtin();
+    let (mut moved, mut refused) = (0, 0);
+    for prompt in [HOME, OFFICE, WARD] {
+        let world = world(&registry, prompt, 3);
+        let plan = &world.floorplan;
+        let doors = plan.doors.iter().map(|d| (&d.door_id, d.line));
+        let openings = doors.chain(plan.windows.iter().map(|w| (&w.window_id, w.line)));
+        for (id, line) in openings {
+            for by_m in [0.1, -0.1] {
+                let edits = [Edit::MoveOpening { opening_id: id.clone(), by_m }];
+                match edited(&registry, &world, &edits) {
+                    Ok(done) => {
+                        let (dx, dy) = if line.is_vertical() { (0.0, by_m) } else { (by_m, 0.0) };
+                        let plan = &done.world.floorplan;
+                        let doors = plan.doors.iter().map(|d| (&d.door_id, d.line));
+                        let now = doors
+                            .chain(plan.windows.iter().map(|w| (&w.window_id, w.line)))
+                            .find(|(other, _)| *other == id);
+                        let middle = line.moved(dx, dy).middle();
+                        assert!(
+                            now.is_some_and(|(_, now)| now.middle().distance(middle) < 2e-3),
+                            "{prompt}: {id} by {by_m}"
+                        );
+                        moved += 1;
+                    }
+                    Err(Error::Infeasible { .. } | Error::Refused { .. }) => refused += 1,
+                    Err(error) => panic!("{prompt}: {id} by {by_m}: {error}"),
+                }
+            }
+        }
+    }
+    eprintln!("{moved} openings moved, {refused} refused");
+    assert!(moved > refused, "{moved} moved, {refused} refused");
+}
+
+#[test]
 fn rooms_come_and_go() {
     let registry = Registry::builtin();
     for (prompt, room_type) in [(HOME, "home_office"), (OFFICE, "meeting_room"), (LARGER_WARD, "patient_room")] {

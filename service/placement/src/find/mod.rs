@@ -3,6 +3,7 @@
 mod barred;
 mod center;
 mod ends;
+mod exits;
 mod fill;
 mod rows;
 mod top;
@@ -12,6 +13,7 @@ use std::rc::Rc;
 
 use d3dgen_model::domain::{Arrangement, Mount, Shape};
 
+pub(super) use exits::lines_at_exit;
 pub(super) use rows::{Terms, leave_out_single, over, rows};
 
 use super::demand::{Task, is_table};

@@ -7,7 +7,7 @@ use d3dgen_model::domain::{Arrangement, Shape};
 use super::{Rule, Tally};
 use crate::demand::Task;
 use crate::geom::{Box2, turn};
-use crate::space::{Space, WallSide};
+use crate::space::{DoorZone, Space, WallSide};
 use crate::state::{Placed, State, at_frame};
 use crate::style::grain;
 use crate::unit::Unit;
@@ -16,10 +16,15 @@ use crate::unit::Unit;
 const AISLE: i32 = 900;
 /// Floor by which two who sit back to back let a third pass, mm.
 const PASSAGE: i32 = 250;
+/// What rows lose for each door in the wall that they look at, and for each beside it.
+const IN_STAGE_WALL: f64 = 1.6;
+const BESIDE_STAGE: f64 = 1.6;
 /// Least floor between the desks of those who sit back to back, mm.
 const BACK_TO_BACK: i32 = 1800;
 /// Floor of the two behind them that those who sit back to back may share, mm.
 const SHARED_MOST: i32 = 200;
+/// Floor before things from which on it is a lane that those on its other side use too, mm.
+const SHARED_LANE: i32 = 1800;
 /// Free floor between tables in a row where there is room, mm.
 const TABLES_APART: i32 = 500;
 /// Steps away from a place on the ceiling that is taken, mm.
@@ -357,8 +362,10 @@ fn plans(state: &State, unit: &Unit, task: &Task, focus: Option<u8>, terms: &Ter
     // those who serve at two lines of counters share the floor between them, as on an island
     let island = shape == Shape::Counter && b.x0 < unit.anchor().solid.rect.x0;
     let gap_back = if island { back.max(aisle) } else { 0 };
-    let pairs =
-        matches!(shape, Shape::Desk | Shape::Rack | Shape::Shelf) || shape == Shape::Bench && !terms.one_way || island;
+    // cars and stalls share the lane before them
+    let lane = front >= SHARED_LANE && back == 0;
+    let kind = matches!(shape, Shape::Desk | Shape::Rack | Shape::Shelf) || shape == Shape::Bench && !terms.one_way;
+    let pairs = kind || island || lane;
     // tables stand apart where there is room
     let (apart, least) = match shape {
         Shape::Table => (TABLES_APART.max(side), side),
@@ -464,7 +471,17 @@ fn stage_score(state: &State, q: u8) -> f64 {
     let length: i32 = walls().map(|(_, w)| w.length()).sum();
     let windows: i32 = walls().flat_map(|(i, _)| state.space.windows_of(i)).map(|w| w.v1 - w.v0).sum();
     let doors = walls().map(|(i, _)| state.space.doors.iter().filter(|d| d.wall == i).count()).sum::<usize>();
-    -4.0 * f64::from(windows) / f64::from(length.max(1)) - 0.8 * doors as f64
+    let beside = state.space.doors.iter().map(|d| beside_stage(state.space, d, q)).sum::<f64>();
+    -4.0 * f64::from(windows) / f64::from(length.max(1)) - IN_STAGE_WALL * doors as f64 - BESIDE_STAGE * beside
+}
+
+/// Returns how near a door is to the wall that rows look at, from 1 beside it to 0 in the middle of the room and behind: who
+/// comes late walks before everybody.
+fn beside_stage(space: &Space, door: &DoorZone, q: u8) -> f64 {
+    let upright = (4 - q) % 4;
+    let (room, at) = (space.bounds.turned(upright), door.zone.turned(upright).center().0);
+    let far = f64::from(at - room.x0) / f64::from(room.width().max(1));
+    (1.0 - 2.0 * far).max(0.0)
 }
 
 /// Rates windows before or behind the screens of desks with this heading.

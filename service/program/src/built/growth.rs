@@ -3,7 +3,8 @@
 
 use std::collections::BTreeMap;
 
-use d3dgen_model::domain::{Access, Occupants, Program, ProgramRoom, RoomType, Zone};
+use d3dgen_knowledge::jurisdiction::rules_here;
+use d3dgen_model::domain::{Access, AdjacencyRelation, Occupants, Privacy, Program, ProgramRoom, RoomType, Zone};
 use d3dgen_model::offer;
 
 use super::occupants::head_count;
@@ -36,12 +37,38 @@ const TIGHT: f64 = 1.1;
 /// Returns the share of the net area that goes to corridors: none where a hall takes their part.
 pub(crate) fn circulation_share(reading: &Reading, rooms: &[Planned]) -> f64 {
     let hubs = &reading.domain.circulation.hub_room_types;
-    if rooms.len() < 2 || rooms.iter().any(|r| hubs.contains(&r.room_type)) {
+    if rooms.len() < 2 || rooms.iter().any(|r| hubs.contains(&r.room_type)) || way_through(reading, rooms).is_some() {
         return 0.0;
     }
     let stairs = stairs_share(reading);
     // halls of a home with stairs are short
     if stairs > 0.0 { HALLS_SHARE + stairs } else { CIRCULATION_SHARE }
+}
+
+/// Rooms that open to the one that is the way of a small home, at most: they have its walls.
+const MOST_AROUND: usize = 4;
+
+/// Returns the index of the room through which one gets to all others, in a home too small for a hall.
+pub(crate) fn way_through(reading: &Reading, rooms: &[Planned]) -> Option<usize> {
+    let circulation = &reading.domain.circulation;
+    let least = circulation.hall_from_m2.filter(|_| is_dwelling(reading.program) && !reading.single)?;
+    let area = reading.area_m2.unwrap_or_else(|| rooms.iter().map(Planned::reckoned_m2).sum());
+    let is_hall = |id: &String| id == &circulation.room_type || circulation.entrance_room_types.contains(id);
+    let asked =
+        reading.wishes.wishes.iter().any(|w| is_hall(&w.room_type)) || rooms.iter().any(|r| is_hall(&r.room_type));
+    let around = rooms.iter().filter(|r| r.host.is_none()).count();
+    if area >= least || asked || reading.storeys.levels.len() > 1 || around > MOST_AROUND + 1 {
+        return None;
+    }
+    // nobody goes from the table to the toilet next to it
+    let rules = || rules_here(reading.domain, reading.country_code.as_deref());
+    let bars = |id: &String| {
+        let mut barred = rules().filter(|r| r.relation == AdjacencyRelation::MustNot && (&r.a == id || &r.b == id));
+        barred.any(|r| rooms.iter().any(|room| room.room_type == if &r.a == id { r.b.as_str() } else { r.a.as_str() }))
+    };
+    let public = |r: &Planned| r.kind.zone == Zone::Day && r.kind.privacy == Privacy::Public && r.host.is_none();
+    let ways = (0..rooms.len()).filter(|&i| public(&rooms[i]) && !bars(&rooms[i].room_type));
+    ways.max_by(|&a, &b| rooms[a].reckoned_m2().total_cmp(&rooms[b].reckoned_m2()).then(b.cmp(&a)))
 }
 
 /// Returns the share of the net area that the stairs of a home take: one flight on every storey.

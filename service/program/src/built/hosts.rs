@@ -176,3 +176,40 @@ pub(super) fn share_last_bathroom(reading: &mut Reading, rooms: &mut [Planned]) 
     let message = format!("no other {label} serves all bedrooms; it opens to the hall and not into one of them");
     reading.assumptions.push(Note::new("shared_bathroom", message));
 }
+
+/// Gives the largest bedroom of a home its own of several bathrooms, where those that are left serve the others: nobody who has
+/// two baths crosses the hall to both.
+pub(super) fn give_main_bedroom_a_bath(reading: &mut Reading, rooms: &mut [Planned]) {
+    let d = &words().dwelling;
+    let shared_home = reading.building_type.as_ref().is_some_and(|b| d.shared.contains(b));
+    if !is_dwelling(reading.program) || reading.single || shared_home {
+        return;
+    }
+    let bathes = |r: &Planned| reading.wet.is_bathroom(r.kind);
+    let sleeps =
+        |r: &Planned| r.kind.zone == Zone::Night && r.host.is_none() && sleeps(reading.domain, r.kind).is_some();
+    let told = |id: &String| {
+        let paired = reading.wishes.pairs.iter().any(|p| &p.a == id || &p.b == id);
+        paired
+            || reading.wishes.apart.iter().any(|a| a.rooms.contains(id))
+            || reading.storeys.wanted.iter().any(|w| &w.room_type == id)
+    };
+    let own = rooms.iter().any(|r| bathes(r) && r.host.is_some());
+    let baths: Vec<usize> =
+        (0..rooms.len()).filter(|&i| rooms[i].room_type == d.bathroom && rooms[i].host.is_none()).collect();
+    // each storey keeps one for whoever is there
+    let toilets = rooms.iter().filter(|r| reading.wet.has_toilet(r.kind) && r.host.is_none()).count();
+    let enough = baths.len() > 1 && toilets > reading.storeys.above_ground().max(1);
+    if own || !enough || told(&d.bathroom) || rooms.iter().filter(|r| sleeps(r)).count() < 2 {
+        return;
+    }
+    let bedrooms = (0..rooms.len()).filter(|&i| rooms[i].room_type == d.bedroom && sleeps(&rooms[i]));
+    let main = bedrooms.max_by(|&a, &b| rooms[a].reckoned_m2().total_cmp(&rooms[b].reckoned_m2()).then(b.cmp(&a)));
+    let (Some(main), Some(&bath)) = (main, baths.last()) else { return };
+    rooms[bath].host = Some(main);
+    if let Some(kind) = reading.domain.room_type(&d.ensuite).filter(|_| rooms[bath].called.is_none()) {
+        rooms[bath].called = Some(kind.label.clone());
+    }
+    let message = "of several bathrooms one is entered from the main bedroom".to_owned();
+    reading.assumptions.push(Note::new("en_suite", message));
+}

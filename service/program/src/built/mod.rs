@@ -1,12 +1,13 @@
 //! From the reading to the graph: the rooms there are (`program`, `vital`, `large`, `workers`, `layout`), who is in them and what they are
 //! entered from (`occupants`, `hosts`), what they are like
-//! (`rooms`), and how they connect (`edges`, `ring`).
+//! (`rooms`), and how they connect (`edges`, `ring`, `locks`).
 
 pub(crate) mod edges;
 pub(crate) mod growth;
 pub(crate) mod hosts;
 pub(crate) mod large;
 pub(crate) mod layout;
+pub(crate) mod locks;
 pub(crate) mod occupants;
 pub(crate) mod planned;
 pub(crate) mod program;

@@ -7,7 +7,6 @@ use d3dgen_model::offer::{MOST_IN_TEAM, sleeps};
 use crate::built::planned::Planned;
 use crate::named::objects::Thing;
 use crate::people::held::Held;
-use crate::people::stations;
 use crate::reading::Reading;
 use crate::subject::programs::is_dwelling;
 use crate::tokens::words::words;
@@ -104,7 +103,8 @@ pub(super) fn hold_people(reading: &mut Reading, rooms: &mut [Planned]) {
         let elsewhere = if entry.occupants == Occupants::Staff { seated } else { 0 };
         let Some(people) = people.checked_sub(elsewhere).filter(|n| *n > 0) else { continue };
         let places: Vec<usize> = (0..rooms.len()).filter(|&i| rooms[i].room_type == entry.room_type).collect();
-        let sits = entry.area_per_occupant_m2.is_some() || entry.occupants != Occupants::Staff;
+        let flushes = reading.wet.has_toilet(reading.domain.room_type_or_generic(&entry.room_type));
+        let sits = entry.area_per_occupant_m2.is_some() || entry.occupants != Occupants::Staff && !flushes;
         if !sits || places.is_empty() || places.iter().any(|&i| rooms[i].occupants.is_some()) || reading.single {
             continue;
         }
@@ -134,9 +134,9 @@ pub(super) fn hold_people(reading: &mut Reading, rooms: &mut [Planned]) {
 fn hold_stations(reading: &Reading, rooms: &mut [Planned]) {
     for held in &reading.stationed {
         for room in rooms_of(held, rooms) {
-            let Some(line) = stations::line_of(reading.domain, room.kind) else { continue };
+            let Some(places) = offer::places(reading.domain, room.kind) else { continue };
             room.occupants = Some(held.beds);
-            room.size_for_people(stations::area_m2(line, held.beds));
+            room.size_for_people(places.area_m2(held.beds));
         }
     }
 }

@@ -15,6 +15,8 @@ use crate::subject::programs::{MOST_IN_OFFICE, is_dwelling};
 use crate::tokens::words::words;
 use crate::wished::wishes::Wishes;
 
+/// Tag of objects that are made for people in wheelchairs.
+const ACCESSIBLE: &str = "accessible";
 /// Beds without a bathroom of their own that share one, at most.
 const BEDS_TO_A_BATHROOM: u32 = 4;
 /// Rooms of a place to work at from which on it has a toilet beside that for wheelchairs.
@@ -44,11 +46,23 @@ fn classes<'a>(reading: &Reading<'a>, rooms: &[Planned]) -> Vec<Class<'a>> {
             let kind = reading.domain.room_type(id).filter(|k| reading.wet.has_toilet(k));
             kind.map(|k| reading.wet.is_bathroom(k))
         };
-        let alike = |o: &&str| *o != id.as_str() && flush(id).is_some() && flush(o) == flush(id);
+        // who comes in a wheelchair cannot use any other; all others can use that one
+        let narrow = |o: &str| is_step_free(reading.domain, id) && !is_step_free(reading.domain, o);
+        let alike = |o: &&str| *o != id.as_str() && flush(id).is_some() && flush(o) == flush(id) && !narrow(o);
         let others = reading.program.rooms.iter().map(|e| e.room_type.as_str()).filter(alike);
         Class { ids: std::iter::once(id.as_str()).chain(others).collect(), by_program: true }
     });
     work.map(|ids| Class { ids, by_program: false }).chain(own).collect()
+}
+
+/// Returns true for rooms that cannot do without something made for wheelchairs.
+fn is_step_free(domain: &Domain, id: &str) -> bool {
+    let made_for = |o: &str| domain.object(o).is_some_and(|o| o.tags.iter().any(|t| t == ACCESSIBLE));
+    let required = |kind: &RoomType| {
+        let lines = kind.furnishing.iter().filter(|f| f.required);
+        lines.flat_map(|f| domain.objects_of(&f.item)).any(made_for)
+    };
+    domain.room_type(id).is_some_and(required)
 }
 
 /// Kinds of rooms of which a building has one.

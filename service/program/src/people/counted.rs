@@ -56,7 +56,9 @@ impl Counted {
         let named = site.machines.spans.iter().chain(&site.places).chain(&site.building.head);
         let taken: Vec<Span> = named.copied().collect();
         let vocabulary = &aside.vocabulary;
-        let stations = stations::Reader { tokens, numbers, vocabulary, domain, program, spoken, taken: &taken };
+        let words = stations::counted(domain, program, &heard.languages);
+        let stations =
+            stations::Reader { tokens, numbers, vocabulary, domain, program, spoken, taken: &taken, counted: &words };
         let station_words = if lives { Vec::new() } else { stations.read(mentions) };
         let seats = seats::Reader { tokens, numbers, domain, program, spoken, taken: &taken, seated: &desks };
         let seats = if lives { seats::Found::default() } else { seats.read(mentions) };

@@ -7,7 +7,6 @@ use d3dgen_model::offer::{is_counter, most_desks, seating, seats_of, works_in};
 use d3dgen_model::placements::Placements;
 use d3dgen_model::scene_graph::{GraphRoom, Note, SceneGraph};
 
-use super::stations;
 use crate::named::mention::{Mention, What};
 use crate::named::unknown;
 use crate::people::held::Held;
@@ -72,7 +71,7 @@ impl Reader<'_> {
                 continue;
             }
             // "recovery for six": they lie there, each at a place of their own
-            if stations::line_of(self.domain, kind).is_some() {
+            if offer::places(self.domain, kind).is_some() {
                 let found = self.after(mentions, m).or_else(|| self.before(mentions, m));
                 if let Some((n, noun)) = found.filter(|f| (1..=MOST_PLACES).contains(&f.0)) {
                     mentions[m].places = Some(n as u32);
@@ -390,7 +389,10 @@ pub fn shortages(domain: &Domain, graph: &SceneGraph, placements: &Placements) -
         let count = |shapes: &[Shape]| -> u32 {
             here().filter(|p| domain.object(&p.object).is_some_and(|o| shapes.contains(&o.shape))).count() as u32
         };
-        let (have, what) = if works_in(domain, kind) {
+        let (have, what) = if let Some(of) = offer::places(domain, kind).filter(|_| !kind.places.is_empty()) {
+            let anchor = domain.anchor(&of.line.item)?;
+            (of.each * here().filter(|p| p.object == anchor.id).count() as u32, "places")
+        } else if works_in(domain, kind) {
             (count(&[Shape::Desk]), "desks")
         } else if kind.furnishing.iter().any(|f| is_counter(domain, f)) {
             (count(&[Shape::Counter]), "counters")

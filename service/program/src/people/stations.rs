@@ -1,12 +1,14 @@
-//! Places to be treated at that one room has several of: "10 dialysis stations", "PACU with 6 bays", "6-bay recovery",
-//! "infusion for 8 patients". They are no rooms of their own, and nobody who sits there stays overnight.
+//! Places that one room has several of: to be treated at ("10 dialysis stations", "PACU with 6 bays", "6-bay recovery",
+//! "infusion for 8 patients") and those that words of its type count ("60 cars", "40 racks", "80 cows"). They are no rooms of
+//! their own, and nobody who sits there stays overnight.
 
-use d3dgen_model::domain::{Domain, Furnishing, Privacy, Program, RoomType, Shape};
+use d3dgen_model::domain::{Domain, Program, RoomType};
+use d3dgen_model::offer::places;
 
 use crate::named::mention::{Mention, What};
 use crate::named::mentions::Vocabulary;
 use crate::tokens::numbers::Number;
-use crate::tokens::text::{Span, Token, fold};
+use crate::tokens::text::{Phrases, Span, Token, fold};
 use crate::tokens::words::{Spoken, Tag, tag_end};
 
 /// Words between a number and the places that it counts, at most: "10 reclining treatment chairs".
@@ -18,24 +20,7 @@ const STATION: &str = "station";
 /// Letters before the word for places in a compound, at least: "Dialyseplätze".
 const LEAST_HEAD: usize = 3;
 /// Most places that are taken at their word.
-const MOST_PLACES: f64 = 200.0;
-/// Floor of a room over what its places need, as a factor: the way in, the basin, the desk.
-const SPARE: f64 = 1.25;
-
-/// Returns the line of what people lie or sit on in a room that has many such places.
-pub(crate) fn line_of<'a>(domain: &Domain, kind: &'a RoomType) -> Option<&'a Furnishing> {
-    let line = kind.furnishing.first()?;
-    let lies =
-        domain.anchor(&line.item).is_some_and(|o| matches!(o.shape, Shape::Bed | Shape::HospitalBed | Shape::Sofa));
-    let many = line.required && line.max > 1 && line.area_per_item_m2 > 0.0;
-    // nobody is treated on the sofas of a lounge
-    (lies && many && kind.privacy == Privacy::Shared).then_some(line)
-}
-
-/// Returns the floor that a room with so many places needs, m^2.
-pub(crate) fn area_m2(line: &Furnishing, places: u32) -> f64 {
-    SPARE * line.area_per_item_m2 * f64::from(places)
-}
+const MOST_PLACES: f64 = 400.0;
 
 /// Reads places.
 pub(crate) struct Reader<'a> {
@@ -47,6 +32,32 @@ pub(crate) struct Reader<'a> {
     pub spoken: &'a [&'a Spoken],
     /// Places, areas, robots: no word of these is one for places to be treated at.
     pub taken: &'a [Span],
+    /// Words that room types are counted by, in the prompt's languages.
+    pub counted: &'a [Phrases<Counted>],
+}
+
+/// What a word of a room type counts.
+#[derive(Debug, Clone)]
+pub(crate) struct Counted {
+    room_type: String,
+    /// True for the rooms themselves, false for the places in one.
+    rooms: bool,
+}
+
+/// Returns the words by which room types of a domain and their places are counted, by language; rooms of the program come first.
+pub(crate) fn counted(domain: &Domain, program: &Program, languages: &[&str]) -> Vec<Phrases<Counted>> {
+    let own = |kind: &RoomType| program.rooms.iter().any(|e| e.room_type == kind.id);
+    let (mut kinds, others): (Vec<&RoomType>, Vec<&RoomType>) = domain.room_types.iter().partition(|k| own(k));
+    kinds.extend(others);
+    let phrases = |language: &&str| {
+        let mut out = Phrases::new(language);
+        for (kind, words, rooms) in kinds.iter().flat_map(|k| [(k, &k.called, true), (k, &k.places, false)]) {
+            let counted = Counted { room_type: kind.id.clone(), rooms };
+            words.get(*language).into_iter().flatten().for_each(|word| out.insert(word, counted.clone()));
+        }
+        out
+    };
+    languages.iter().map(phrases).collect()
 }
 
 /// Words for so many places.
@@ -60,6 +71,8 @@ struct Found {
     named: Option<String>,
     /// Mention that these words are read as so far.
     mention: Option<usize>,
+    /// True for words that count the rooms themselves.
+    rooms: bool,
 }
 
 impl Reader<'_> {
@@ -87,7 +100,7 @@ impl Reader<'_> {
 
     /// Returns true for rooms with many places.
     fn has_places(&self, id: &str) -> bool {
-        self.domain.room_type(id).is_some_and(|k| line_of(self.domain, k).is_some())
+        self.domain.room_type(id).is_some_and(|k| places(self.domain, k).is_some())
     }
 
     /// Returns the room that the building is for, where it has places.
@@ -96,6 +109,9 @@ impl Reader<'_> {
     }
 
     fn found(&self, mentions: &[Mention], at: usize) -> Option<Found> {
+        if let Some(found) = self.counted_by(mentions, at) {
+            return Some(found);
+        }
         let free = |span: Span| !self.taken.iter().any(|s| s.overlaps(span));
         let known = mentions.iter().position(|m| m.span.contains(at));
         if let Some(m) = known.filter(|&m| mentions[m].span.start == at) {
@@ -120,6 +136,7 @@ impl Reader<'_> {
                 noun: mention.span,
                 named: None,
                 mention: Some(m),
+                rooms: false,
             });
         }
         let token = &self.tokens[at];
@@ -132,18 +149,47 @@ impl Reader<'_> {
         };
         let plain = self.tagged(at, Tag::Stations).map(|end| (end, None));
         let (end, head) = plain.or_else(compound).filter(|_| known.is_none())?;
-        let number = (0..=MOST_BETWEEN).find_map(|gap| {
+        let number = self.number_before(at)?;
+        let span = Span { start: number.span.start, end };
+        let named = head.and_then(|h| self.vocabulary.whole(&h)).filter(|id| self.has_places(id)).map(str::to_owned);
+        let count = bounded(number.value)?;
+        let noun = Span { start: at, end };
+        free(span).then_some(Found { span, count, noun, named, mention: None, rooms: false })
+    }
+
+    /// Returns the number in "10 reclining treatment chairs", of the words at a token.
+    fn number_before(&self, at: usize) -> Option<&Number> {
+        (0..=MOST_BETWEEN).find_map(|gap| {
             let start = at.checked_sub(gap)?;
             let closed = (start..at).any(|k| {
                 self.tokens[k].is_mark()
                     || [Tag::Joins, Tag::Starts, Tag::Stops].iter().any(|&t| self.tagged(k, t).is_some())
             });
             self.numbers.iter().find(|n| n.span.end == start && !n.article && !n.vague && !closed)
-        })?;
+        })
+    }
+
+    /// Returns places that words of a room type count, where the building has such a room or the prompt names one.
+    fn counted_by(&self, mentions: &[Mention], at: usize) -> Option<Found> {
+        let (end, what) = self.counted.iter().filter_map(|p| p.longest_at(self.tokens, at)).max_by_key(|f| f.0)?;
+        let id = &what.room_type;
+        let named = |m: &Mention| m.room_type() == Some(id.as_str());
+        let named_too = !what.rooms && mentions.iter().any(named);
+        if !self.program.rooms.iter().any(|e| &e.room_type == id) && !named_too {
+            return None;
+        }
+        let noun = Span { start: at, end };
+        // "car wash": what is counted is the whole of a name
+        let mention = mentions.iter().position(|m| m.span.overlaps(noun));
+        let longer = |m: usize| mentions[m].span.start < at || mentions[m].span.end > end;
+        let counted = |m: usize| what.rooms && named(&mentions[m]);
+        if mention.is_some_and(|m| longer(m) || counted(m)) || self.taken.iter().any(|s| s.overlaps(noun)) {
+            return None;
+        }
+        let number = self.number_before(at)?;
         let span = Span { start: number.span.start, end };
-        let named = head.and_then(|h| self.vocabulary.whole(&h)).filter(|id| self.has_places(id)).map(str::to_owned);
-        let count = bounded(number.value)?;
-        free(span).then_some(Found { span, count, noun: Span { start: at, end }, named, mention: None })
+        let (count, rooms) = (bounded(number.value)?, what.rooms);
+        Some(Found { span, count, noun, named: Some(id.clone()), mention, rooms })
     }
 
     /// Gives a room the places; returns false where the prompt has none that they could be of.
@@ -152,16 +198,16 @@ impl Reader<'_> {
             let Some(id) = found.named.clone().or_else(|| self.alone(mentions, found)) else { return false };
             if let Some(m) = found.mention.filter(|&m| mentions[m].room_type().is_some()) {
                 mentions[m].what = What::Room(id);
-                self.settle(&mut mentions[m], found.count);
+                self.settle(&mut mentions[m], found);
                 return true;
             }
             let at = mentions.iter().position(|m| m.span.start >= found.noun.start).unwrap_or(mentions.len());
             let mut mention = Mention { from: found.span.start, ..Mention::plain(found.noun, What::Room(id)) };
-            self.settle(&mut mention, found.count);
+            self.settle(&mut mention, found);
             mentions.insert(at, mention);
             return true;
         };
-        self.settle(&mut mentions[room], found.count);
+        self.settle(&mut mentions[room], found);
         if let Some(m) = found.mention.filter(|&m| m != room) {
             mentions.remove(m);
         }
@@ -192,9 +238,15 @@ impl Reader<'_> {
 
     /// Returns the mention of the room that places belong to.
     fn room_of(&self, mentions: &[Mention], found: &Found) -> Option<usize> {
+        if found.rooms {
+            // "vehicle bays for three engines": each has its own
+            let bare = |m: &Mention| m.room_type() == found.named.as_deref() && (m.number.is_none() || m.article);
+            return mentions.iter().position(bare);
+        }
         let fits = |m: &usize| {
             let mention = &mentions[*m];
-            mention.places.is_none() && mention.room_type().is_some_and(|id| self.has_places(id))
+            let own = |id: &str| found.named.as_ref().is_none_or(|named| named == id) && self.has_places(id);
+            mention.places.is_none() && mention.room_type().is_some_and(own)
         };
         let (noun, span) = (found.noun, found.span);
         let own = |m: usize| Some(m) != found.mention;
@@ -241,20 +293,21 @@ impl Reader<'_> {
     }
 
     /// Gives a mention its places, in as many rooms as they need.
-    fn settle(&self, mention: &mut Mention, places: u32) {
+    fn settle(&self, mention: &mut Mention, found: &Found) {
+        let count = found.count;
         let kind = mention.room_type().and_then(|id| self.domain.room_type(id));
-        let Some((kind, line)) = kind.and_then(|k| Some((k, line_of(self.domain, k)?))) else {
+        let kind = kind.filter(|_| !found.rooms);
+        let Some((kind, of)) = kind.and_then(|k| Some((k, places(self.domain, k)?))) else {
             // each of them is a room
-            mention.count = Some(i64::from(places));
+            mention.count = Some(i64::from(count));
             (mention.plural, mention.article, mention.vague) = (true, false, false);
             return;
         };
-        let by_area = (kind.area_m2.max / (SPARE * line.area_per_item_m2)) as u32;
         let told = mention.count.filter(|_| mention.number.is_some() && !mention.article && !mention.vague);
         let own = told.filter(|&n| (2..=20).contains(&n) && mention.places.is_none()).map(|n| n as u32);
-        let counted = own.filter(|&n| n != places);
-        let rooms = counted.unwrap_or_else(|| places.div_ceil(line.max.min(by_area).max(1))).max(1);
-        mention.places = Some(if counted.is_some() { places } else { places.div_ceil(rooms) });
+        let counted = own.filter(|&n| n != count);
+        let rooms = counted.unwrap_or_else(|| count.div_ceil(of.most(kind.area_m2.max))).max(1);
+        mention.places = Some(if counted.is_some() { count } else { count.div_ceil(rooms) });
         mention.count = Some(i64::from(rooms));
         (mention.plural, mention.article, mention.vague) = (false, false, false);
     }

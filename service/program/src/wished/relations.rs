@@ -1,5 +1,6 @@
 //! Which rooms the prompt wants beside, open to, within or away from each other, and which it does not want at all.
 
+use d3dgen_model::domain::{Access, Domain, Privacy};
 use d3dgen_model::scene_graph::Connector;
 
 use crate::named::mention::{Mention, What};
@@ -401,6 +402,16 @@ fn belongings(reader: &Reader, said: &mut Said) {
         let (connector, spread) = (Connector::Door, Spread::Each);
         said.relations.push(Relation { subject: g, object: h, connector, spread, apart: false, belongs: true });
     }
+}
+
+/// Lets no room that is open to the corridor belong to rooms that one locks behind oneself: "double rooms with nurse station" have one
+/// station, and nobody goes to it through somebody's bedroom.
+pub(crate) fn keep_at_corridors(mentions: &[Mention], domain: &Domain, said: &mut Said) {
+    let kind = |m: usize| mentions[m].room_type().and_then(|id| domain.room_type(id));
+    let open = |m: usize| kind(m).is_some_and(|k| k.open_front && k.access != Access::Host);
+    let locked = |m: usize| kind(m).is_some_and(|k| k.privacy == Privacy::Private);
+    said.relations.retain(|r| !(r.belongs && open(r.subject) && locked(r.object)));
+    said.each.retain(|&(guest, host)| !(open(guest) && locked(host)));
 }
 
 /// Words before the last of "everywhere in the house except", at most.

@@ -179,7 +179,8 @@ fn phrases(text: &Text) -> Vec<Span> {
 pub(crate) fn doors(tokens: &[Token], mentions: &mut [Mention], spoken: &[&Spoken]) -> Vec<Span> {
     let end = |m: &Mention| tag_end(spoken, tokens, m.span.start, Tag::UnreadThings);
     let mut out = Vec::new();
-    for m in mentions.iter_mut().filter(|m| m.count.is_some_and(|n| n > 1) && !m.article) {
+    // "four gates" of an airport have been read as its lounges, and have no number of their own here
+    for m in mentions.iter_mut().filter(|m| m.number.is_some() && m.count.is_some_and(|n| n > 1) && !m.article) {
         if (m.what == What::Entrance || m.room_type().is_some()) && end(m) == Some(m.span.end) {
             out.push(Span { start: m.from, end: m.span.end });
             m.count = Some(1);

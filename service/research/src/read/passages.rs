@@ -4,6 +4,7 @@
 
 use std::collections::BTreeMap;
 
+use data_encoding::HEXLOWER;
 use sha2::{Digest, Sha256};
 
 use super::blocks::{Block, Reading, tidy};
@@ -143,7 +144,7 @@ impl Maker {
         let mut hash = Sha256::new();
         heading.iter().for_each(|h| hash.update(format!("{h}\n")));
         hash.update(format!("\n{text}"));
-        let hash: String = hash.finalize().iter().take(6).map(|b| format!("{b:02x}")).collect();
+        let hash = HEXLOWER.encode(&hash.finalize()[..6]);
         let count = self.seen.entry(hash.clone()).or_default();
         *count += 1;
         let id = if *count == 1 { format!("p-{hash}") } else { format!("p-{hash}-{count}") };

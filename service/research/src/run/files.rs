@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 
 use d3dgen_model::document::Document;
 use d3dgen_model::knowledge::is_date;
+use data_encoding::HEXLOWER;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
@@ -173,7 +174,7 @@ pub fn jsonl<R: Serialize>(records: &[R]) -> String {
 
 /// Returns the SHA-256 of bytes, lower-case hexadecimal.
 pub fn sha256(bytes: &[u8]) -> String {
-    Sha256::digest(bytes).iter().map(|b| format!("{b:02x}")).collect()
+    HEXLOWER.encode(&Sha256::digest(bytes))
 }
 
 /// Returns problems as an error, the first ones only where there are very many.

@@ -18,7 +18,7 @@ pub struct LeaderArgs {
     /// Have the worlds made by workers: servers of NATS, as nats://a:4222,nats://b:4222
     #[arg(long, value_name = "URL", requires = "objects")]
     nats: Option<String>,
-    /// Store that workers lay results into: file:///folder, s3://bucket/prefix or nats://host/bucket
+    /// Store that workers lay results into: a folder, s3://bucket/prefix or nats://host/bucket
     #[arg(long, value_name = "URL", requires = "nats")]
     objects: Option<String>,
     /// Turns that workers give this run for each turn of a run of priority 1

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
+use d3dgen_dataset::assemble::is_finished;
 use d3dgen_dataset::maker::{Maker, Outcome};
 use d3dgen_dataset::part::{Done, Part, Shard};
 use d3dgen_dataset::shelf::Shelf;
@@ -76,8 +77,13 @@ impl Args {
         let work = match self.shard {
             Some(_) => self.out.clone(),
             None => {
+                let work = self.out.join(WORK);
+                if is_finished(&self.out) && Part::is_at(&work) {
+                    eprintln!("{} was finished; only its traces are removed", self.out.display());
+                    return clear_work(&work); // a run that was killed in its last step
+                }
                 check_new(&self.out)?;
-                self.out.join(WORK)
+                work
             }
         };
         let part = self.run.part(&work, (&spec, &spec_text), self.shard.unwrap_or(Shard::WHOLE))?;

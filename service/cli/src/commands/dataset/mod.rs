@@ -171,9 +171,15 @@ fn tell(made: &Assembled, out: &Path) {
 
 /// Opens the parts in folders: those of shards, or one where a data set is made.
 fn parts(folders: &[PathBuf]) -> Result<Vec<Part>, Error> {
-    let at = |folder: &PathBuf| match folder.join(WORK) {
-        work if Part::is_at(&work) => work,
-        _ => folder.clone(),
+    let open = |folder: &PathBuf| {
+        let work = folder.join(WORK);
+        match [work, folder.clone()].iter().find(|place| Part::is_at(place)) {
+            Some(place) => Part::open(place).map_err(Error::from),
+            None => Err(Error::Input(format!(
+                "{} is no shard of a data set: name folders that `dataset make --shard k/n` wrote",
+                folder.display()
+            ))),
+        }
     };
-    folders.iter().map(|folder| Part::open(&at(folder)).map_err(Error::from)).collect()
+    folders.iter().map(open).collect()
 }

@@ -67,7 +67,7 @@ pub(super) fn roi_label(kind: RoiKind) -> &'static str {
 
 /// Returns the style sheet; `k` scales line weights with the drawing's scale.
 ///
-/// Classes: `b` body, `s` soft inlay, `f` fine line, `h` hidden (above the cut), `d` dark, `p` plant, `r` rug, `w` wall.
+/// Classes: `b` body, `s` soft inlay, `f` fine line, `h` hidden (above the cut), `d` dark, `wa` water, `p` plant, `r` rug, `w` wall.
 pub(super) fn sheet(k: f64) -> String {
     let w = |v: f64| format!("{:.2}", v * k);
     [
@@ -77,6 +77,7 @@ pub(super) fn sheet(k: f64) -> String {
         format!(".f{{fill:none;stroke:#8e939b;stroke-width:{}}}", w(0.9)),
         format!(".h{{fill:none;stroke:#a9adb4;stroke-width:{};stroke-dasharray:{} {}}}", w(0.9), w(5.0), w(4.0)),
         ".d{fill:#5a5f68}".to_owned(),
+        format!(".wa{{fill:#cfe8f5;stroke:#6aa7c8;stroke-width:{}}}", w(0.9)),
         format!(".p{{fill:#d9e8cd;stroke:#6f9463;stroke-width:{}}}", w(0.9)),
         format!(".pf{{fill:none;stroke:#6f9463;stroke-width:{}}}", w(0.8)),
         format!(".r{{fill:#fffdf8;fill-opacity:.75;stroke:#cfc4b2;stroke-width:{}}}", w(0.9)),

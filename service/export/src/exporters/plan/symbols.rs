@@ -1,5 +1,6 @@
 //! Top views of objects: one function per build, as an architect would draw them.
 
+mod halls;
 mod machines;
 mod sanitary;
 mod seats;
@@ -71,5 +72,8 @@ fn symbol_of(shape: Shape) -> fn(&mut Pen<'_>) {
         Shape::Vehicle => machines::vehicle,
         Shape::Scanner => machines::scanner,
         Shape::Stairs => storage::stairs,
+        Shape::Pool => halls::pool,
+        Shape::Track => halls::track,
+        Shape::Stall => halls::stall,
     }
 }

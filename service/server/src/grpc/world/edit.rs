@@ -83,6 +83,9 @@ fn one(world: &mut World, field: &str, edit: Edit) -> Result<Option<Planned>, St
         Edit::RemovedPlacementId(id) => remove(world, &at("removed_placement_id"), &id)?,
         Edit::Lock(u) => lock(world, &at("lock.ids"), &u.ids, u.include_contents, u.locked)?,
         Edit::MovedWall(m) => return Ok(Some(Planned::MoveWall { wall_id: m.wall_id, by_m: m.by_m })),
+        Edit::MovedOpening(m) => {
+            return Ok(Some(Planned::MoveOpening { opening_id: m.opening_id, by_m: m.by_m }));
+        }
         Edit::AddedRoom(a) => {
             let entered_from = given(a.entered_from_room_id);
             return Ok(Some(Planned::AddRoom { room_type: a.room_type, area_m2: a.area_m2, entered_from }));

@@ -1,0 +1,1 @@
+"""What the launch files need of a world of d3dgen: no ROS in here."""

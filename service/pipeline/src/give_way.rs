@@ -1,0 +1,107 @@
+//! What gives way when no plan is found, one thing after the other: a wall across the corridor, areas, then what the prompt wants
+//! beside each other. The world says each of it.
+
+use d3dgen_model::domain::Domain;
+use d3dgen_model::scene_graph::{BY_PROMPT, BY_STYLE, GraphRoom, Note, SceneGraph};
+
+/// Shares by which rooms may be smaller and larger than was meant; none is smaller than its type allows.
+const SMALLER: f64 = 0.85;
+const LARGER: f64 = 1.35;
+/// Most over least area up to which the prompt gives the area in figures.
+const TOLD: f64 = 1.3;
+
+/// Returns what to look for when there is no plan of a graph, each with more given up than the one before.
+pub(crate) fn steps(graph: &SceneGraph, domain: &Domain) -> Vec<SceneGraph> {
+    let mut out: Vec<SceneGraph> = Vec::new();
+    for step in [unlocked, roomier, loosened] {
+        let last = out.last().unwrap_or(graph);
+        out.extend(step(last, domain));
+    }
+    out
+}
+
+/// Returns the graph with one corridor for all instead of one behind a lock.
+fn unlocked(graph: &SceneGraph, domain: &Domain) -> Option<SceneGraph> {
+    let names = || domain.circulation.locked.iter().map(|part| &part.corridor);
+    let inner = graph.rooms.iter().find(|r| r.circulation && names().any(|name| name == &r.name))?;
+    let outer = graph.rooms.iter().find(|r| r.circulation && r.id != inner.id)?;
+    let mut out = graph.clone();
+    out.rooms.retain(|r| r.id != inner.id);
+    out.edges.retain(|e| {
+        let own = e.a == inner.id || e.b == inner.id;
+        !(own && (!e.required || e.a == outer.id || e.b == outer.id))
+    });
+    for end in out.edges.iter_mut().flat_map(|e| [&mut e.a, &mut e.b]) {
+        if *end == inner.id {
+            end.clone_from(&outer.id);
+        }
+    }
+    let message =
+        format!("no plan was found with a {} of its own; all rooms open to one corridor", inner.name.to_lowercase());
+    out.conflicts.push(Note { code: "lock_not_built".into(), message });
+    Some(out)
+}
+
+/// Returns the graph with wider ranges of areas; what the prompt gives in figures stays.
+fn roomier(graph: &SceneGraph, domain: &Domain) -> Option<SceneGraph> {
+    let mut out = graph.clone();
+    let mut wider = false;
+    let open = |r: &&mut GraphRoom| r.area_range_m2[1] > TOLD * r.area_range_m2[0];
+    for room in out.rooms.iter_mut().filter(|r| !r.circulation && !r.locked).filter(open) {
+        let range = domain.room_type_or_generic(&room.room_type).area_m2;
+        let [low, high] = room.area_range_m2;
+        let wide = [(SMALLER * low).max(range.min).min(low), LARGER * high];
+        wider |= wide != [low, high];
+        room.area_range_m2 = wide;
+    }
+    let message = "no plan was found with rooms of the areas that were meant; some are smaller or larger".into();
+    out.conflicts.push(Note { code: "areas_gave_way".into(), message });
+    wider.then_some(out)
+}
+
+/// Returns the graph with what the prompt wants beside each other as wishes.
+fn loosened(graph: &SceneGraph, _: &Domain) -> Option<SceneGraph> {
+    let mut out = graph.clone();
+    let wished = |reason: &str| reason == BY_PROMPT || reason == BY_STYLE;
+    let reached =
+        |room: &str| graph.edges.iter().any(|e| e.required && !wished(&e.reason) && (e.a == room || e.b == room));
+    for edge in out.edges.iter_mut().filter(|e| e.required && wished(&e.reason)) {
+        if reached(&edge.a) && reached(&edge.b) {
+            edge.required = false;
+            let (a, b) = (&edge.a, &edge.b);
+            out.conflicts.push(Note {
+                code: "adjacency_not_built".into(),
+                message: format!("no plan was found with {a} and {b} joined as asked; it is a wish now"),
+            });
+        }
+    }
+    (out.conflicts.len() > graph.conflicts.len()).then_some(out)
+}
+
+#[cfg(test)]
+mod tests {
+    use d3dgen_model::document::Document;
+    use d3dgen_plugins::Registry;
+
+    use super::*;
+    use crate::scene_graph::{Request, generate};
+
+    #[test]
+    fn each_step_gives_up_more_and_says_so() {
+        let registry = Registry::builtin();
+        let prompt = "Surgical department with two operating rooms next to each other, recovery and a waiting area";
+        let request = Request { prompt: prompt.into(), seed: 1, ..Request::default() };
+        let graph = generate(&request, &registry).expect("the prompt is plain");
+        let domain = registry.get(&graph.domain).expect("it is built in").domain();
+        let steps = steps(&graph, domain);
+        let codes: Vec<&str> = steps.iter().filter_map(|s| s.conflicts.last()).map(|n| n.code.as_str()).collect();
+        assert_eq!(codes[..2], ["lock_not_built", "areas_gave_way"]);
+        assert_eq!(graph.rooms.iter().filter(|r| r.circulation).count(), 2);
+        for step in &steps {
+            assert_eq!(step.check(), vec![]);
+            assert_eq!(step.rooms.iter().filter(|r| r.circulation).count(), 1);
+        }
+        let widest = |graph: &SceneGraph| graph.rooms.iter().map(|r| r.area_range_m2[1]).fold(0.0, f64::max);
+        assert!(widest(&steps[1]) > widest(&graph));
+    }
+}
