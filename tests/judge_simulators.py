@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
 """Makes worlds and has the consumers' own code load and step them, then writes what came of it as a table.
 
-Usage: judge_simulators.py --kit FOLDER [--program d3dgen] [--worlds N] [--formats LIST] [--out FOLDER] [--write docs/simulators.md]
+Usage: judge_simulators.py --kit FOLDER [--program d3dgen] [--worlds N | --prompts FILE | --made FOLDER...] [--formats LIST]
+                           [--out FOLDER] [--skip LIST] [--table docs/simulators.md]
 
-The kit is the folder of acceptance checks (check_mjcf.py, check_sdf.py, check_usd.py, check_glb.mjs, check_nav2.py,
-check_rmf.py), installed by its setup.sh. Worlds are those of PROMPTS, in turn of domains, seed by place in the list. Every
-figure is what a check printed; nothing is rounded up. Exit status 0 when every world is accepted by every check that ran.
+The kit is the folder of acceptance checks (check_mjcf.py, check_sdf.py, check_usd.py, check_simready.py, check_glb.mjs,
+check_nav2.py, check_rmf.py), installed by its setup.sh. Worlds are those of PROMPTS in turn of domains, or those of a file with
+a prompt a line, seed by place in the list; or folders of worlds that are there already. --skip leaves out consumers by the start of their titles: `--skip Newton,SimReady`.
+Every figure is what a check printed; nothing is rounded up. Exit status 0 when every world is accepted by every check that ran.
 """
 
 import argparse
@@ -21,8 +23,8 @@ from pathlib import Path
 PROMPTS = {
     "residential": [
         "two-bedroom flat in Germany, for a delivery robot",
-        "studio flat with a balcony",
         "house on 2 floors with three bedrooms, for a cleaning robot",
+        "studio flat with a balcony",
         "three-bedroom flat in France with an open kitchen",
         "flat for a family of five with two bathrooms",
         "one-bedroom flat for a wheelchair user, for a service robot",
@@ -55,11 +57,23 @@ PROMPTS = {
         "maternity ward with six rooms, for a cleaning robot",
         "small clinic with a pharmacy and a laboratory, for a delivery robot",
     ],
+    "general": [
+        "bakery shop with a storage room and an office, for a delivery robot",
+        "library with a reading room and a cafe",
+        "restaurant with a kitchen and 40 seats, for a serving robot",
+        "hairdresser's shop with a staff room",
+        "gym with changing rooms",
+        "bookshop on 2 floors with a cafe",
+        "pharmacy with a back office",
+        "hotel with 8 rooms and a lobby, for a delivery robot",
+        "supermarket with a storage room, for a cleaning robot",
+        "community center with a hall and a kitchen",
+    ],
 }
 
 
-def last_json(command, timeout=900):
-    """Runs a check; returns what it printed last as JSON, and how long it took."""
+def last_json(command, timeout=1500):
+    """Runs a check; returns what it printed last as JSON, and how long it took, s."""
     begun = time.monotonic()
     try:
         done = subprocess.run([str(c) for c in command], capture_output=True, text=True, timeout=timeout)
@@ -73,39 +87,35 @@ def last_json(command, timeout=900):
 
 
 class Consumer:
-    """One row of the table: what it is called, the format it reads, and how it is asked."""
+    """One row of the table: what it is called, the format it reads, how it is asked, and what is read from its facts."""
 
-    def __init__(self, title, format, commands, figures):
-        self.title, self.format, self.commands, self.figures = title, format, commands, figures
+    def __init__(self, title, format, commands, facts):
+        self.title, self.format, self.commands, self.facts = title, format, commands, facts
+
+    def found(self, verdict, seconds):
+        """Returns the figures of one verdict."""
+        facts = verdict.get("facts", {})
+        codes = collections.Counter(f["code"] for f in verdict.get("failures", []))
+        figures = {name: facts.get(key) for name, key in self.facts.items()}
+        return {"ok": verdict.get("ok", False), "seconds": seconds, "refused": codes["joint_blocked"] + codes["joint_limit"], "moved": codes["drift"] + codes["tilt"], **figures}
 
 
-def consumers(kit, python):
-    """The consumers; each gives the commands for a world's folder and reads figures from the facts printed."""
-    sdf = lambda f, out: out.update(bodies=f.get("gazebo_dynamic_bodies"), joints=f.get("gazebo_joints"), drift=f.get("gazebo_max_drift_m"))
-
-    def mjcf(f, out):
-        out.update(
-            bodies=f.get("settle_free_bodies"),
-            stable=f.get("settle_stable_percent"),
-            penetration=f.get("settle_max_penetration_m"),
-            joints=f.get("doors"),
-            doors_open=f.get("doors_open_percent"),
-            doorways=f.get("sweep_paths"),
-            doorways_open=f.get("sweep_open"),
-        )
-
-    def usd(f, out):
-        out.update(doorways=f.get("sweep_paths"), doorways_open=f.get("sweep_open"), bodies=f.get("newton_dynamic_bodies"), drift=f.get("newton_max_drift_m"), joints=f.get("newton_joints"))
-
-    nothing = lambda f, out: None
-    check = lambda name: [python, kit / name]
+def consumers(kit):
+    """The consumers, with the commands that judge a world's folder."""
+    check = lambda name: [sys.executable, kit / name]
+    sweep = {"doorways": "sweep_paths", "doorways_open": "sweep_open"}
+    stepped = lambda engine: {"bodies": f"{engine}_dynamic_bodies", "joints": f"{engine}_joints", "drift": f"{engine}_max_drift_m"}
+    usd = lambda w, engine: [*check("check_usd.py"), w / "usd/world.usda", "--engine", engine, "--world", w / "usd/manifest.json", "--path", w / "usd/paths.json", "--timeout", 1400]
+    mujoco = {"bodies": "settle_free_bodies", "stable": "settle_stable_percent", "joints": "doors", "doors_open": "doors_open_percent", **sweep}
     return [
-        Consumer("MuJoCo", "mujoco", lambda w: [[*check("check_mjcf.py"), w / "mujoco/world.xml", "--settle", "--doors", "--path", w / "mujoco/paths.json"]], mjcf),
-        Consumer("Gazebo Fortress (libsdformat, DART)", "gazebo", lambda w: [[*check("check_sdf.py"), w / "gazebo/world.sdf"]], sdf),
-        Consumer("USD, Newton", "usd", lambda w: [[*check("check_usd.py"), w / "usd/world.usda", "--world", w / "usd/manifest.json", "--path", w / "usd/paths.json"]], usd),
-        Consumer("glTF (Khronos validator)", "gltf", lambda w: [["node", kit / "check_glb.mjs", *sorted((w / "gltf").glob("*.glb"))]], nothing),
-        Consumer("nav2 (map, graph, masks)", "nav2", lambda w: [[*check("check_nav2.py"), w / "nav2", "--radius", "0.25"]], nothing),
-        Consumer("Open-RMF (rmf_site_format)", "rmf", lambda w: [[*check("check_rmf.py"), b, "--radius", "0.25"] for b in sorted((w / "rmf").glob("*.building.yaml"))], nothing),
+        Consumer("MuJoCo", "mujoco", lambda w: [[*check("check_mjcf.py"), w / "mujoco/world.xml", "--settle", "--doors", "--path", w / "mujoco/paths.json"]], mujoco),
+        Consumer("Gazebo Fortress (libsdformat, DART)", "gazebo", lambda w: [[*check("check_sdf.py"), w / "gazebo/world.sdf", "--timeout", 1400]], stepped("gazebo")),
+        Consumer("OpenUSD and NVIDIA's rules", "usd", lambda w: [usd(w, "none")], sweep),
+        Consumer("Newton", "usd", lambda w: [usd(w, "newton")], {**stepped("newton"), **sweep}),
+        Consumer("SimReady Robotics-Prop 3.2", "usd", lambda w: [[*check("check_simready.py"), w / "usd/models"]], {}),
+        Consumer("glTF (Khronos validator)", "gltf", lambda w: [["node", kit / "check_glb.mjs", *sorted((w / "gltf").glob("*.glb"))]], {}),
+        Consumer("nav2 (map, graph, masks)", "nav2", lambda w: [[*check("check_nav2.py"), w / "nav2", "--radius", "0.25"]], {}),
+        Consumer("Open-RMF (rmf_site_format)", "rmf", lambda w: [[*check("check_rmf.py"), b, "--radius", "0.25"] for b in sorted((w / "rmf").glob("*.building.yaml"))], {}),
     ]
 
 
@@ -137,24 +147,18 @@ def share(part, whole):
     return "-" if not whole else f"{part} of {whole}"
 
 
-def row(consumer, results):
+def row(title, results):
     """A line of the table from the figures of all worlds."""
     total = lambda key: sum(r[key] for r in results if r.get(key) is not None)
-    known = [r for r in results if r.get("stable") is not None]
-    bodies = sum(r["bodies"] or 0 for r in known)
-    stable = sum(round((r["bodies"] or 0) * r["stable"] / 100) for r in known)
-    drift = [r["drift"] for r in results if r.get("drift") is not None]
-    held = share(stable, bodies) if known else (f"{total('bodies')} move at most {max(drift) * 1000:.1f} mm" if drift else "-")
+    settled = [r for r in results if r.get("stable") is not None]
+    stable = sum(round((r["bodies"] or 0) * r["stable"] / 100) for r in settled) if settled else total("bodies") - total("moved")
     opened = [r for r in results if r.get("doors_open") is not None]
-    doors = share(sum(round(r["joints"] * r["doors_open"] / 100) for r in opened), sum(r["joints"] for r in opened)) if opened else "-"
-    if not opened and total("joints"):
-        refused = sum(r["joints_refused"] for r in results)
-        doors = share(total("joints") - refused, total("joints"))
+    doors = sum(round(r["joints"] * r["doors_open"] / 100) for r in opened) if opened else total("joints") - total("refused")
     cells = [
-        consumer.title,
+        title,
         share(sum(r["ok"] for r in results), len(results)),
-        held,
-        doors,
+        share(stable, total("bodies")),
+        share(doors, total("joints")),
         share(total("doorways_open"), total("doorways")),
         share(total("reached"), total("rooms")),
         f"{statistics.median(r['seconds'] for r in results):.1f}",
@@ -165,29 +169,58 @@ def row(consumer, results):
 SECTION = "## How they are judged"
 
 
-def page(before, rows, worlds, storeys, wrote):
+def page(before, rows, counts, took):
     """The page with the section of figures written anew."""
+    made, storeys, asked = counts
     return before.split(SECTION)[0] + "\n".join(
         [
             SECTION,
             "",
-            f"Measured on {worlds} worlds of homes, offices and hospitals, {storeys} of several storeys, with the consumers' own code, headless, by",
-            "`python tests/judge_simulators.py --kit FOLDER --write docs/simulators.md`; the kit is a set of scripts that load and step a world",
-            "and print what they found. Gazebo's graphics, sensors and plugins, RTX and PhysX are not part of it.",
+            f"Measured on {made} worlds, {storeys} of several storeys, with the consumers' own code, headless, on a machine without a GPU, by",
+            f"`python tests/judge_simulators.py --kit FOLDER {asked} --table docs/simulators.md`; the kit is a set of scripts that load",
+            "and step a world and print what they found. Gazebo's graphics, sensors and plugins, RTX and PhysX are not part of it.",
             "",
-            "| consumer | worlds accepted | things stable | doors to their limit and back | doorways open | rooms reached | seconds (median) |",
+            "| consumer | worlds accepted | things stable | joints to their limits and back | doorways open | rooms reached | seconds (median) |",
             "|---|---|---|---|---|---|---|",
             *rows,
             "",
-            "*Stable*: a thing that can be moved ends less than 5 cm from where it was in the three seconds after the first, as MolmoSpaces",
-            "asks of its scenes; for Gazebo, how far the least stable of all moved in two seconds. *Doorways*: a disc of 0.25 m radius, or",
-            "what the narrowest door leaves, is carried through the middle of each and along the routes of robots. *Rooms reached*: joined",
-            "to the main entrance by open doorways. *Seconds*: the check itself.",
-            "",
-            f"Writing all of these formats took {wrote}.",
+            "*Stable*: in MuJoCo a thing that can be moved ends less than 5 cm from where it was in the three seconds after the first, as",
+            "MolmoSpaces asks of its scenes; in Gazebo and Newton any body moves at most 2 cm and turns at most 0.05 rad in two seconds.",
+            "*Joints*: pushed with 8 N m or 8 N to one limit, to the other and back, they cover nine tenths of their range; in MuJoCo those of",
+            "doors, in Newton all that there are. *Doorways*: a disc of 0.25 m radius, or what the narrowest door leaves, is carried through",
+            "the middle of each and along the routes of robots. *Rooms reached*: joined to the main entrance by open doorways. *Seconds*:",
+            "the check itself.",
             "",
         ]
+        + ([f"Making and writing a world took {statistics.median(took):.1f} s (median), with the start of the program.", ""] if took else [])
     )
+
+
+def worlds(given, formats):
+    """The folders of the worlds that are asked for, made one after the other, each with how long that took, s; none for one that
+    cannot be made."""
+    if given.made:
+        yield from ((folder, None) for folder in given.made)
+        return
+    if given.prompts:
+        prompts = [line.strip() for line in given.prompts.read_text().splitlines() if line.strip()]
+    else:
+        prompts = [p for group in zip(*PROMPTS.values()) for p in group][: given.worlds]
+    for seed, prompt in enumerate(prompts, 1):
+        folder, begun = given.out / f"{seed:02}", time.monotonic()
+        command = [given.program, "generate", prompt, "--seed", str(seed), "--no-png", "--format", ",".join(formats), "--out", folder]
+        done = subprocess.run(command, capture_output=True, text=True)
+        made = done.returncode == 0 and (folder / "world.json").exists()
+        if not made:
+            print(f"{prompt}: not made: {done.stderr[-300:]}")
+        yield folder if made else None, time.monotonic() - begun
+
+
+def which(given):
+    """How this run is asked for again."""
+    if given.made:
+        return "--made FOLDER..."
+    return f"--prompts {given.prompts.name}" if given.prompts else f"--worlds {given.worlds}"
 
 
 def main():
@@ -195,45 +228,41 @@ def main():
     parser.add_argument("--kit", type=Path, required=True)
     parser.add_argument("--program", default="target/debug/d3dgen")
     parser.add_argument("--worlds", type=int, default=sum(map(len, PROMPTS.values())))
+    parser.add_argument("--prompts", type=Path)
+    parser.add_argument("--made", type=Path, nargs="+")
     parser.add_argument("--formats", default="mujoco,gazebo,usd,gltf,nav2,rmf")
+    parser.add_argument("--skip", default="")
     parser.add_argument("--out", type=Path, default=Path("target/simulators"))
-    parser.add_argument("--write", type=Path)
+    parser.add_argument("--table", type=Path)
     given = parser.parse_args()
-    known = subprocess.run([given.program, "version"], capture_output=True, text=True).stdout
-    formats = [f for f in given.formats.split(",") if f in known]
-    asked = [c for c in consumers(given.kit, sys.executable) if c.format in formats]
-    turn = [p for group in zip(*PROMPTS.values()) for p in group][: given.worlds]
-    results, storeys, refused, took = collections.defaultdict(list), 0, 0, []
-    for seed, prompt in enumerate(turn, 1):
-        world = given.out / f"{seed:02}"
-        begun = time.monotonic()
-        done = subprocess.run([given.program, "generate", prompt, "--seed", str(seed), "--no-png", "--format", ",".join(formats), "--out", world], capture_output=True, text=True)
-        took.append(time.monotonic() - begun)
-        if not (world / "world.json").exists():
-            print(f"{prompt}: not made: {done.stderr[-300:]}")
+    formats = given.formats.split(",")
+    left_out = tuple(title for title in given.skip.split(",") if title)
+    asked = [c for c in consumers(given.kit) if c.format in formats and not (left_out and c.title.startswith(left_out))]
+    results, made, storeys, refused, took = collections.defaultdict(list), 0, 0, 0, []
+    for world, seconds in worlds(given, formats):
+        took.extend([seconds] if seconds is not None else [])
+        if world is None:
             refused += 1
             continue
+        made += 1
         storeys += len(json.loads((world / "world.json").read_text())["floorplan"].get("levels", [])) > 1
         for consumer in asked:
             for command in consumer.commands(world):
                 verdict, seconds = last_json(command)
-                codes = collections.Counter(f["code"] for f in verdict.get("failures", []))
-                found = {"ok": verdict.get("ok", False), "seconds": seconds, "joints_refused": codes["joint_blocked"]}
-                consumer.figures(verdict.get("facts", {}), found)
+                found = consumer.found(verdict, seconds)
                 if found.get("doorways") is not None:
                     found["reached"], found["rooms"] = rooms_reached(world, verdict)
                 results[consumer.title].append(found)
+                print(f"{world.name} {consumer.title}: {'accepted' if found['ok'] else 'REFUSED'}, {seconds:.0f} s", flush=True)
                 if not found["ok"]:
                     refused += 1
-                    for failure in verdict.get("failures", [])[:6]:
-                        print(f"{seed:02} {consumer.format}: {failure['code']}: {failure['message'][:220]}")
-        sys.stdout.flush()
-    rows = [row(c, results[c.title]) for c in asked if results[c.title]]
+                    for failure in verdict.get("failures", [])[:8]:
+                        print(f"    {failure['code']}: {failure['message'][:220]}", flush=True)
+    rows = [row(c.title, results[c.title]) for c in asked if results[c.title]]
     print("\n".join(rows))
-    if given.write:
-        wrote = f"{statistics.median(took):.1f} s a world (median), making the world and starting the program included"
-        given.write.write_text(page(given.write.read_text(), rows, len(turn), storeys, wrote))
-    print(f"simulators: {len(turn)} worlds, {len(asked)} consumers, {refused} refused")
+    if given.table and rows:
+        given.table.write_text(page(given.table.read_text(), rows, (made, storeys, which(given)), took))
+    print(f"simulators: {made} worlds, {len(asked)} consumers, {refused} refused")
     sys.exit(1 if refused or not rows else 0)
 
 

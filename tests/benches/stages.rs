@@ -10,6 +10,7 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
+use d3dgen_export::Subject;
 use d3dgen_export::exporters::{self, File, plan};
 use d3dgen_export::models::NothingKept;
 use d3dgen_model::document::Document;
@@ -144,7 +145,7 @@ fn write(made: &Generated, registry: &Registry, folder: &Path) {
     let domain = registry.get(&world.scene_graph.domain).expect("the world is of this domain").domain();
     let mut files = exporters::get("arena")
         .expect("arena is shipped")
-        .export(world, domain, &NothingKept)
+        .export(&Subject::new(world, domain, &NothingKept))
         .expect("it can be exported");
     files.push(File::new("plan.svg", plan::svg(world, domain)));
     let documents = [

@@ -124,7 +124,7 @@ fn migrate_knows_every_kind_and_leaves_what_is_current() {
     let home = tempfile::tempdir().unwrap();
     let count = copy(&workspace().join(format!("tests/documents/v{UNRELEASED}")), &home.path().join("mine"));
     fs::write(home.path().join("mine/other.json"), "{\"version\": 1, \"songs\": []}").unwrap();
-    run_well(home.path(), &["knowledge", "stats", "--store", "mine/rules"]);
+    run_well(home.path(), &["knowledge", "search", "corridor", "--store", "mine/rules"]);
     let before = files(home.path());
     let said = run_well(home.path(), &["migrate", "mine"]);
     assert_eq!(said.matches("current").count(), count + 1, "{said}");
@@ -152,7 +152,7 @@ fn migrate_refuses_what_a_later_release_wrote_before_anything_is_changed() {
     assert!(files(home.path()) == before);
 
     // the same of a database, and of a file that is no document
-    run_well(home.path(), &["knowledge", "stats", "--store", "rules"]);
+    run_well(home.path(), &["knowledge", "search", "corridor", "--store", "rules"]);
     let manifest = home.path().join("rules/store.json");
     let mut value: Value = serde_json::from_slice(&fs::read(&manifest).unwrap()).unwrap();
     value["format"] = 99.into();

@@ -6,10 +6,10 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use d3dgen_eval::figures::FIGURES;
+use d3dgen_export::Subject;
 use d3dgen_export::exporters::{self, File, plan};
 use d3dgen_export::models::KeptModels;
 use d3dgen_model::document::Document;
-use d3dgen_model::domain::Domain;
 use d3dgen_model::report::{Report, Status};
 use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::seed::Stream;
@@ -288,9 +288,10 @@ impl Maker<'_> {
         }
         let plugin = registry.get(&world.scene_graph.domain);
         let domain = plugin.map(|p| p.domain()).expect("the world was made of this domain");
+        let subject = Subject::new(world, domain, self.kept.models());
         let mut files = self.documents(world, report);
         for format in &self.spec.formats {
-            let exported = exported(format, world, domain, self.kept.models())?;
+            let exported = exported(format, &subject)?;
             files.extend(
                 exported.into_iter().filter(|file| !files.iter().any(|f| f.path == file.path)).collect::<Vec<_>>(),
             );
@@ -347,13 +348,14 @@ impl Maker<'_> {
 }
 
 /// Returns the files of a format, or of one file of it: `plan`, `plan.svg`.
-fn exported(format: &str, world: &World, domain: &Domain, kept: &dyn KeptModels) -> Result<Vec<File>, Error> {
+fn exported(format: &str, subject: &Subject<'_>) -> Result<Vec<File>, Error> {
+    let Subject { world, domain, .. } = *subject;
     let (name, one) = format.split_once('.').map_or((format, None), |(name, _)| (name, Some(format)));
     let exporter = exporters::get(name).expect("the spec was checked");
     let mut files = match one {
         Some("plan.svg") => vec![File::new("plan.svg", plan::svg(world, domain))],
         Some("plan.pdf" | "plan.dxf") => plan::files(world, domain, false)?,
-        _ => exporter.export(world, domain, kept)?,
+        _ => exporter.export(subject)?,
     };
     if let Some(one) = one {
         files.retain(|f| f.path == one || f.path.rsplit('/').next() == one.split_once('.').map(|(_, file)| file));

@@ -148,6 +148,7 @@ fn graph(robot: &Robot) -> SceneGraph {
         target_area_m2: 10.0,
         area_range_m2: [8.0, 12.0],
         wished_assets: Vec::new(),
+        sides_m: None,
         occupants: None,
         circulation: false,
         unit: None,

@@ -11,6 +11,7 @@ pub mod models;
 pub mod render;
 pub mod roadmap;
 pub mod scene;
+pub mod subject;
 pub mod view;
 pub mod yaml;
 
@@ -22,6 +23,7 @@ mod xml;
 
 pub use error::Error;
 pub use exporters::{Exporter, File};
+pub use subject::Subject;
 
 #[cfg(test)]
 mod sample;

@@ -4,15 +4,12 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 
-use d3dgen_model::domain::Domain;
-use d3dgen_model::world::World;
 use serde_json::{Map, Value, json};
 use sha2::{Digest, Sha256};
 
-use crate::Error;
 use crate::exporters::{Exporter, File};
-use crate::models::KeptModels;
 use crate::scene::SimScene;
+use crate::{Error, Subject};
 
 /// Name of the file at the top of a world's folder.
 pub const FILE: &str = "manifest.json";
@@ -20,10 +17,10 @@ pub const FILE: &str = "manifest.json";
 const FORMAT: &str = "d3dgen-manifest/1";
 
 /// What the formats of a world report while they are written.
-pub struct Manifest {
-    world: String,
+pub struct Manifest<'a> {
+    world: &'a str,
     /// None of a world that simulators cannot be given; the exporter that is asked for it says why.
-    scene: Option<SimScene>,
+    scene: Option<&'a SimScene>,
     formats: BTreeSet<&'static str>,
     /// Id -> format -> place in it.
     places: BTreeMap<String, BTreeMap<&'static str, String>>,
@@ -31,27 +28,32 @@ pub struct Manifest {
     files: BTreeMap<String, (&'static str, String, usize)>,
 }
 
-impl Manifest {
+impl<'a> Manifest<'a> {
     /// Returns an empty manifest of a world.
     ///
     /// Every model of the world is made and looked at here, so that a broken one is known before anything is written.
     ///
     /// # Errors
     /// As [`SimScene::of`].
-    pub fn of(world: &World, domain: &Domain, kept: &dyn KeptModels) -> Result<Self, Error> {
-        let scene = match SimScene::of(world, domain, kept) {
+    pub fn of(subject: &'a Subject<'_>) -> Result<Self, Error> {
+        let scene = match subject.scene() {
             Err(Error::Unsupported { .. }) => None,
             made => Some(made?),
         };
-        let world = world.name.clone();
-        Ok(Self { world, scene, formats: BTreeSet::new(), places: BTreeMap::new(), files: BTreeMap::new() })
+        Ok(Self {
+            world: &subject.world.name,
+            scene,
+            formats: BTreeSet::new(),
+            places: BTreeMap::new(),
+            files: BTreeMap::new(),
+        })
     }
 
     /// Adds what an exporter has written.
     pub fn add(&mut self, exporter: &dyn Exporter, files: &[File]) {
         let format = exporter.name();
         self.formats.insert(format);
-        for (id, place) in self.scene.iter().flat_map(|scene| exporter.places(scene)) {
+        for (id, place) in self.scene.iter().flat_map(|scene| exporter.places(scene, files)) {
             self.places.entry(id).or_default().insert(format, place);
         }
         for file in files {
@@ -62,7 +64,7 @@ impl Manifest {
     /// Returns the file; formats of an earlier one of the same world that were not written anew stay in it.
     pub fn file(&self, earlier: Option<&[u8]>) -> File {
         let earlier = earlier.and_then(|bytes| serde_json::from_slice::<Value>(bytes).ok());
-        let earlier = earlier.filter(|e| e["format"] == FORMAT && e["world"] == self.world.as_str());
+        let earlier = earlier.filter(|e| e["format"] == FORMAT && e["world"] == self.world);
         let earlier = earlier.unwrap_or_else(|| json!({}));
         let is_kept = |format: &Value| format.as_str().is_some_and(|f| !self.formats.contains(f));
         let list = |key: &str| earlier[key].as_array().cloned().unwrap_or_default();
@@ -72,7 +74,7 @@ impl Manifest {
         let ids: Map<String, Value> = self
             .scene
             .iter()
-            .flat_map(SimScene::ids)
+            .flat_map(|scene| scene.ids())
             .map(|(id, kind)| {
                 let mut own: BTreeMap<String, Value> = BTreeMap::new();
                 let before = earlier["ids"][id]["in"].as_object().cloned().unwrap_or_default();
@@ -115,9 +117,10 @@ mod tests {
 
     fn manifest(formats: &[&str], earlier: Option<&[u8]>) -> (File, Value) {
         let (world, domain) = (sample::world(), sample::domain());
-        let mut manifest = Manifest::of(&world, &domain, &NothingKept).unwrap();
+        let subject = Subject::new(&world, &domain, &NothingKept);
+        let mut manifest = Manifest::of(&subject).unwrap();
         for exporter in formats.iter().filter_map(|f| exporters::get(f)) {
-            manifest.add(exporter, &exporter.export(&world, &domain, &NothingKept).unwrap());
+            manifest.add(exporter, &exporter.export(&subject).unwrap());
         }
         let file = manifest.file(earlier);
         let value = serde_json::from_slice(&file.bytes).unwrap();
@@ -133,6 +136,16 @@ mod tests {
         let files = found["files"].as_array().unwrap();
         let world = files.iter().find(|f| f["path"] == "mujoco/world.xml").unwrap();
         assert_eq!(world["sha256"].as_str().map(str::len), Some(64));
+    }
+
+    #[test]
+    fn every_format_with_places_says_where_a_door_is() {
+        let (_, found) = manifest(&["usd", "gltf", "gazebo", "nav2", "rmf"], None);
+        let door = &found["ids"]["door_2"]["in"];
+        assert_eq!((&door["usd"], &door["gltf"]), (&json!("/World/Doors/door_2"), &json!("door_2")));
+        let node = door["nav2"].as_str().expect("robots pass it").to_owned();
+        assert!(node.starts_with("nav2/0/route_graph.geojson#"), "{node}");
+        assert!(door["rmf"].as_str().is_some_and(|p| p.ends_with(".building.yaml#door_2")), "{door}");
     }
 
     #[test]

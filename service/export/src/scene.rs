@@ -11,6 +11,7 @@ mod ids;
 mod manifest;
 mod merge;
 mod objects;
+mod passing;
 mod physics;
 mod walls;
 mod ways;
@@ -56,6 +57,8 @@ pub struct SimScene {
     pub models: Vec<SimModel>,
     /// Things that stand, hang and lie about.
     pub objects: Vec<SimObject>,
+    /// Parts of things that do not meet other things.
+    pub passes: Vec<SimPass>,
     /// Lamps that give light; the sun and the sky are the business of formats.
     pub lights: Vec<SimLight>,
     /// Zones of robots.
@@ -274,6 +277,8 @@ pub struct SimModel {
     pub id: String,
     /// Object id of the domain.
     pub object: String,
+    /// It is of a database of assets, and its licence is that of its source; models that are made are free.
+    pub is_kept: bool,
     /// The model: front at -y, origin in the middle of its underside.
     pub model: Arc<Model3d>,
 }
@@ -309,6 +314,18 @@ pub struct SimObject {
     pub friction: f64,
     /// Coefficient of restitution.
     pub restitution: f64,
+}
+
+/// A door or a drawer of a thing that does not meet another thing: one that can be moved and stands in its way, a chair drawn
+/// up to a desk, would jam it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SimPass {
+    /// Index of the thing.
+    pub object: usize,
+    /// Name of the body of its model.
+    pub body: String,
+    /// Index of the thing in the way.
+    pub other: usize,
 }
 
 /// Whether a thing can be moved.
@@ -419,6 +436,7 @@ impl SimScene {
             walls,
             doors,
             windows,
+            passes: passing::all(&things.models, &things.objects),
             models: things.models,
             objects: things.objects,
             lights: things.lights,

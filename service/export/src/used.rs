@@ -102,6 +102,8 @@ pub(crate) struct Made {
     /// Object id of the catalog.
     pub object: String,
     pub model: Arc<Model3d>,
+    /// It is of the database, and its licence is that of its source.
+    pub is_kept: bool,
 }
 
 impl UsedModels {
@@ -113,11 +115,13 @@ impl UsedModels {
         let library = (!domain.builds.is_empty()).then(|| Library::shipped().with(&domain.builds));
         let one = |((asset, _), model): (&(String, SizeMm), &Model)| {
             let reference = format!("{}/{}", model.domain, model.name);
-            let made = match kept.model(asset)? {
+            let kept = kept.model(asset)?;
+            let is_kept = kept.is_some();
+            let made = match kept {
                 Some(kept) => Arc::new(kept.model),
                 None => model.made(library.as_ref(), domain)?,
             };
-            Ok(Made { reference, object: model.object.clone(), model: made })
+            Ok(Made { reference, object: model.object.clone(), model: made, is_kept })
         };
         self.by_asset.iter().map(one).collect()
     }

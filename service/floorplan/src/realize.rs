@@ -242,6 +242,9 @@ fn hub_size(brief: &Brief, spine: usize, len: i32, misfit: &mut f64) -> (i32, i3
     let spec = &brief.rooms[spine];
     // a room by itself has no neighbor to share a wall with
     let walls = OUTER_HALF_M + if brief.rooms.len() == 1 { OUTER_HALF_M } else { INNER_HALF_M };
+    if let Some([a, b]) = spec.sides {
+        return (nearest(a.max(b) + walls), nearest(a.min(b) + walls));
+    }
     let natural = up((spec.area_target * 1.4).sqrt() + walls);
     let proportion = meters(len).powi(2) / spec.area_target;
     // the small rooms of a small home are as long as the room they open to

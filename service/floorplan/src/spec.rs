@@ -63,6 +63,8 @@ pub(crate) struct RoomSpec {
     pub area_target: f64,
     pub area_max: f64,
     pub min_dimension: f64,
+    /// Clear lengths of its sides, for a room by itself of which they are told.
+    pub sides: Option<[f64; 2]>,
     pub daylight: Daylight,
     /// True for windows above what stands at the outer wall.
     pub high_windows: bool,
@@ -621,6 +623,7 @@ fn room_spec(
         area_target: area_target.clamp((area_min * 1.02).min(area_max), area_max),
         area_max,
         min_dimension: max_limit(least_dimension, limit.dimension_min.as_ref()).max(fitted),
+        sides: room.sides_m.filter(|_| graph.rooms.len() == 1),
         daylight: kind.daylight,
         high_windows: kind.high_windows,
         desk_rows: has_desk_rows(domain, kind),

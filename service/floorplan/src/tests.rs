@@ -27,6 +27,7 @@ fn room(id: &str, area: [f64; 3], min_dimension: f64, daylight: Daylight, zone: 
         area_target: area[1],
         area_max: area[2],
         min_dimension,
+        sides: None,
         daylight,
         zone,
         wet: false,

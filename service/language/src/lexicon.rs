@@ -1,15 +1,18 @@
 //! What words of all languages stand for.
 
 use std::collections::{BTreeMap, HashMap};
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, Mutex, PoisonError};
 
-use crate::data::{self, LanguageData, Shipped, Unread};
+use crate::data::{self, LanguageData, Shipped, Unread, Words};
 use crate::morphology::stem;
 use crate::spelling::Vocabulary;
 use crate::tokens::{Token, TokenKind, tokens};
 
 /// Code of what is the same in all languages.
 pub(crate) const ANY: &str = "any";
+
+/// Threads that fill a lexicon, at most.
+const MOST_THREADS: usize = 4;
 
 /// Class of the small words that build sentences.
 const SMALL: &str = "particle";
@@ -67,57 +70,64 @@ impl Lexicon {
     /// # Panics
     /// Never: a test reads the files of the crate.
     pub fn shipped() -> Self {
-        static SHIPPED: OnceLock<Lexicon> = OnceLock::new();
-        SHIPPED.get_or_init(|| Self::of(data::shipped().expect("a test reads the files of the crate"))).clone()
+        Self::of(data::shipped().expect("a test reads the files of the crate"))
     }
 
     fn of(shipped: Shipped) -> Self {
         let exact = shipped.classes.iter().filter(|(_, c)| c.exact).map(|(name, _)| name.clone()).collect();
         let travels = shipped.classes.iter().filter(|(_, c)| c.travels).map(|(name, _)| name.clone()).collect();
         let mut lexicon = Self { languages: Vec::new(), exact, travels, unread: Arc::new(shipped.unread) };
+        let mut words = Vec::new();
         for mut data in shipped.languages {
-            let words = std::mem::take(&mut data.words);
+            words.push(std::mem::take(&mut data.words));
             lexicon.languages.push(Language::of(data));
-            let at = lexicon.languages.len() - 1;
-            words.iter().for_each(|w| lexicon.put(at, &w.class, &w.value, &w.phrase));
         }
+        lexicon.fill(words);
         lexicon
     }
 
     /// Adds a phrase of a language: `any` for all of them. A language without a folder is as if it had one that says nothing.
     pub fn add(&mut self, language: &str, class: &str, value: &str, phrase: &str) {
-        let at = self.languages.iter().position(|l| l.data.code == language).unwrap_or_else(|| {
+        let at = self.place_of(language);
+        let word = Words { class: class.to_owned(), value: value.to_owned(), phrase: phrase.to_owned() };
+        self.languages[at].add(&self.exact, &word);
+    }
+
+    /// Adds many phrases, each of a language, as [`Self::add`] does in their order; the languages are filled side by side.
+    pub fn add_all(&mut self, words: Vec<(String, Words)>) {
+        let mut of: Vec<Vec<Words>> = vec![Vec::new(); self.languages.len()];
+        for (language, word) in words {
+            let at = self.place_of(&language);
+            of.resize(self.languages.len(), Vec::new());
+            of[at].push(word);
+        }
+        self.fill(of);
+    }
+
+    fn fill(&mut self, words: Vec<Vec<Words>>) {
+        let exact = &self.exact;
+        side_by_side(self.languages.iter_mut().zip(words).collect(), |(language, words)| {
+            words.iter().for_each(|word| language.add(exact, word));
+        });
+    }
+
+    fn place_of(&mut self, language: &str) -> usize {
+        self.languages.iter().position(|l| l.data.code == language).unwrap_or_else(|| {
             self.languages.push(Language::of(bare(language)));
             self.languages.len() - 1
-        });
-        self.put(at, class, value, phrase);
+        })
+    }
+
+    /// Returns the languages that a name is to be added for: all at once, and once more those that inflect names.
+    pub fn languages_of_names(&self) -> Vec<String> {
+        let decline = self.languages.iter().filter(|l| l.data.names_decline).map(|l| l.data.code.clone());
+        std::iter::once(ANY.to_owned()).chain(decline).collect()
     }
 
     /// Returns the codes of the languages it reads, and their names in English.
     pub fn languages(&self) -> BTreeMap<&str, &str> {
         let read = self.languages.iter().filter(|l| l.data.code != ANY);
         read.map(|l| (l.data.code.as_str(), l.data.name.as_str())).collect()
-    }
-
-    /// Adds a name: for all languages, and once more for those that inflect names.
-    pub fn add_name(&mut self, class: &str, value: &str, name: &str) {
-        self.add(ANY, class, value, name);
-        for at in 0..self.languages.len() {
-            if self.languages[at].data.names_decline {
-                self.put(at, class, value, name);
-            }
-        }
-    }
-
-    fn put(&mut self, at: usize, class: &str, value: &str, phrase: &str) {
-        let exact = self.exact.iter().any(|c| c == class);
-        let language = &mut self.languages[at];
-        language.put(class, value, phrase, exact);
-        let typed =
-            language.data.transcriptions.iter().fold(phrase.to_lowercase(), |p, (from, to)| p.replace(from, to));
-        if typed != phrase.to_lowercase() {
-            language.put(class, value, &typed, exact);
-        }
     }
 
     /// Returns every run of tokens that some language has an entry for, in no order that matters.
@@ -137,6 +147,20 @@ impl Language {
     fn of(data: LanguageData) -> Self {
         let vocabulary = Vocabulary::new(&data.lookalikes);
         Self { data, keys: HashMap::new(), steps: HashMap::new(), ends: vec![Vec::new()], vocabulary }
+    }
+
+    /// Adds a phrase, and as it is typed without its marks.
+    fn add(&mut self, exact: &[String], Words { class, value, phrase }: &Words) {
+        let exact = exact.contains(class);
+        self.put(class, value, phrase, exact);
+        if self.data.transcriptions.is_empty() {
+            return;
+        }
+        let plain = phrase.to_lowercase();
+        let typed = self.data.transcriptions.iter().fold(plain.clone(), |p, (from, to)| p.replace(from, to));
+        if typed != plain {
+            self.put(class, value, &typed, exact);
+        }
     }
 
     fn put(&mut self, class: &str, value: &str, phrase: &str, exact: bool) {
@@ -218,6 +242,19 @@ impl Language {
         let fits = entries.iter().any(|e| !e.exact || *e.words == *word);
         (fits && !entries.is_empty()).then_some(entries)
     }
+}
+
+/// Does a work for each of some items on a few threads; none sees what another does.
+fn side_by_side<T: Send>(items: Vec<T>, work: impl Fn(T) + Sync) {
+    let threads = std::thread::available_parallelism().map_or(1, usize::from).min(MOST_THREADS);
+    let left = Mutex::new(items.into_iter());
+    let next = || left.lock().unwrap_or_else(PoisonError::into_inner).next();
+    std::thread::scope(|scope| {
+        for _ in 1..threads {
+            scope.spawn(|| std::iter::from_fn(next).for_each(&work));
+        }
+        std::iter::from_fn(next).for_each(&work);
+    });
 }
 
 fn joined(tokens: &[Token]) -> String {

@@ -2,6 +2,8 @@
 //! bears the rest anywhere in its range, and damping that lets it move at the pace of furniture. All follow from masses and
 //! arms, so a dishwasher's door stays where it is left as a drawer does.
 
+use std::collections::BTreeSet;
+
 use crate::affine::{Vec3, add, cross, dot, scale, sub};
 use crate::mass::{Inertia, inertia};
 use crate::{Joint, JointKind, Model3d};
@@ -14,6 +16,11 @@ const SAFETY: f64 = 1.1;
 /// N m or N.
 const ROLLING: f64 = 0.02;
 const LEAST: f64 = 0.01;
+/// Inertia that engines add to a joint, kg m^2 or kg: the smallest lids, pushed as hard as a door, stay within what a step of
+/// theirs can follow.
+pub const ARMATURE: f64 = 0.005;
+/// Least damping of a drive that turns something, N m s/rad: the smallest lids, pushed as hard as a door, stop at their limit.
+const LEAST_TURNING: f64 = 0.2;
 /// How many ranges long a spring is drawn that pulls evenly.
 const FLAT: f64 = 50.0;
 /// How long what moves goes on by itself, s.
@@ -33,6 +40,8 @@ const RELATED: usize = 4;
 pub struct Dynamics {
     /// What moves it against its direction is borne up to this: N m, or N for a prismatic joint.
     pub friction: f64,
+    /// The same where a counterweight bears all that a spring would.
+    pub idle: f64,
     /// N m s/rad, or N s/m.
     pub damping: f64,
     /// What balances the weight; none where there is next to none.
@@ -48,29 +57,132 @@ pub struct Spring {
     pub reference: f64,
 }
 
+/// How a joint resists whose engine knows drives, and no springs with an end beyond the range.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Drive {
+    /// N m, or N, along the joint at any position: a counterweight on a rope.
+    pub push: f64,
+    /// As of [`Dynamics`].
+    pub friction: f64,
+    /// As of [`Dynamics`].
+    pub damping: f64,
+}
+
+/// A model whose lids, flaps and lifts are borne without springs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Borne {
+    /// How each body resists being moved: what hangs on a hinge has its counterweight in it, so that its center of mass lies on
+    /// the axis and it stays where it is left.
+    pub bodies: Vec<Inertia>,
+    /// How each joint resists.
+    pub joints: Vec<Drive>,
+}
+
+/// Returns a model with counterweights: in the bodies themselves of what turns, as an even push on what slides.
+pub fn borne(model: &Model3d) -> Borne {
+    let mut bodies: Vec<Inertia> = model.bodies.iter().map(inertia).collect();
+    let mut joints: Vec<&Joint> = model.joints.iter().filter(|j| j.kind == JointKind::Revolute).collect();
+    joints.sort_by_key(|joint| bodies_moved(model, joint).len());
+    for joint in joints {
+        let weight = Weight::of(model, joint, &bodies);
+        if joint.limits.is_some() && weight.left(|_| 0.0) > weight.idle {
+            counterweigh(&mut bodies, model, joint);
+        }
+    }
+    let joints = model.joints.iter().map(|joint| drive(&Weight::of(model, joint, &bodies), joint)).collect();
+    Borne { bodies, joints }
+}
+
+/// Puts into the body of a hinge what balances all that hangs on it.
+fn counterweigh(bodies: &mut [Inertia], model: &Model3d, joint: &Joint) {
+    let off_axis = |way: Vec3| sub(way, scale(joint.axis, dot(way, joint.axis)));
+    let moment = |b: usize| {
+        let body = bodies.get(b)?;
+        Some(scale(off_axis(sub(body.center_m, joint.origin)), body.mass_kg))
+    };
+    let hanging = bodies_moved(model, joint).into_iter().filter_map(moment).fold([0.0; 3], add);
+    let Some(own) = bodies.get_mut(joint.child).filter(|b| b.mass_kg > 0.0) else { return };
+    let arm = off_axis(sub(own.center_m, joint.origin));
+    let square = dot(arm, arm);
+    for i in 0..3 {
+        for j in 0..3 {
+            // Its inertia about the axis stays what it was.
+            own.tensor[i][j] += own.mass_kg * (if i == j { square } else { 0.0 } - arm[i] * arm[j]);
+        }
+    }
+    own.center_m = sub(own.center_m, scale(hanging, 1.0 / own.mass_kg));
+}
+
+/// Returns how a joint resists that bears a weight.
+fn drive(weight: &Weight, joint: &Joint) -> Drive {
+    let loads = || weight.alone.iter().map(|l| l.1);
+    let even = -(loads().fold(f64::MAX, f64::min) + loads().fold(f64::MIN, f64::max)) / 2.0;
+    let none = weight.left(|_| 0.0);
+    let is_pushed = joint.limits.is_some() && none > weight.idle && weight.left(|_| even) < none;
+    let push = if is_pushed { even } else { 0.0 };
+    let least = if joint.kind == JointKind::Prismatic { LEAST } else { LEAST_TURNING };
+    Drive { push, friction: weight.friction(weight.left(|_| push)), damping: weight.damping.max(least) }
+}
+
 /// Returns how a joint of a model resists.
 pub fn of(model: &Model3d, joint: &Joint) -> Dynamics {
-    let moved = moved(model, joint);
-    let mass: f64 = moved.iter().map(|b| b.0.mass_kg).sum();
-    let (resists, idle) = match joint.kind {
-        JointKind::Prismatic => (mass, mass * GRAVITY),
-        JointKind::Revolute | JointKind::Continuous => {
-            let about = moved.iter().map(|b| about_axis(&b.0, joint)).sum::<f64>();
-            let arm = if mass > 0.0 { (about / mass).sqrt() } else { 0.0 };
-            (about, mass * GRAVITY * arm * 0.1)
+    let bodies: Vec<Inertia> = model.bodies.iter().map(inertia).collect();
+    let weight = Weight::of(model, joint, &bodies);
+    let pull = |spring: Spring| move |at: f64| spring.stiffness * (spring.reference - at);
+    let none = weight.left(|_| 0.0);
+    let spring =
+        spring(&weight.alone).filter(|s| joint.limits.is_some() && none > weight.idle && weight.left(pull(*s)) < none);
+    let left = spring.map_or(none, |s| weight.left(pull(s)));
+    Dynamics { friction: weight.friction(left), idle: weight.idle, damping: weight.damping, spring }
+}
+
+/// Returns the bodies of a model whose weight springs balance, for engines that take weight away.
+pub fn balanced(model: &Model3d) -> BTreeSet<usize> {
+    let sprung = model.joints.iter().filter(|joint| of(model, joint).spring.is_some());
+    sprung.flat_map(|joint| bodies_moved(model, joint)).collect()
+}
+
+/// The weight on a joint.
+struct Weight {
+    /// Over its range, with all other joints at zero: position, and N m or N.
+    alone: Vec<(f64, f64)>,
+    /// The same in the poses that others can take.
+    posed: Vec<(f64, f64)>,
+    /// Friction where nothing pulls, N m or N.
+    idle: f64,
+    damping: f64,
+}
+
+impl Weight {
+    fn of(model: &Model3d, joint: &Joint, bodies: &[Inertia]) -> Self {
+        let moved = moved(model, joint, bodies);
+        let mass: f64 = moved.iter().map(|b| b.0.mass_kg).sum();
+        let (resists, idle) = match joint.kind {
+            JointKind::Prismatic => (mass, mass * GRAVITY),
+            JointKind::Revolute | JointKind::Continuous => {
+                let about = moved.iter().map(|b| about_axis(&b.0, joint)).sum::<f64>();
+                let arm = if mass > 0.0 { (about / mass).sqrt() } else { 0.0 };
+                (about, mass * GRAVITY * arm * 0.1)
+            }
+        };
+        let posed = poses(model, joint).iter().flat_map(|pose| loads(&moved, joint, pose)).collect();
+        Self {
+            alone: loads(&moved, joint, &Pose::default()),
+            posed,
+            idle: (ROLLING * idle).max(LEAST),
+            damping: (resists / SLOWS_S).max(LEAST),
         }
-    };
-    let least = (ROLLING * idle).max(LEAST);
-    let alone = loads(&moved, joint, &Pose::default());
-    let poses = poses(model, joint);
-    let all: Vec<(f64, f64)> = poses.iter().flat_map(|pose| loads(&moved, joint, pose)).collect();
-    let most = |spring: Option<Spring>| {
-        let left = |(at, load): &(f64, f64)| (load + spring.map_or(0.0, |s| s.stiffness * (s.reference - at))).abs();
-        alone.iter().chain(&all).map(left).fold(0.0, f64::max)
-    };
-    let spring = spring(&alone).filter(|s| joint.limits.is_some() && most(None) > least && most(Some(*s)) < most(None));
-    let friction = (SAFETY * most(spring)).max(least);
-    Dynamics { friction, damping: (resists / SLOWS_S).max(LEAST), spring }
+    }
+
+    /// Returns the largest load that is left beside what pulls at each position.
+    fn left(&self, pull: impl Fn(f64) -> f64) -> f64 {
+        self.alone.iter().chain(&self.posed).map(|(at, load)| (load + pull(*at)).abs()).fold(0.0, f64::max)
+    }
+
+    /// Returns the friction that bears a load at any position.
+    fn friction(&self, left: f64) -> f64 {
+        (SAFETY * left).max(self.idle)
+    }
 }
 
 /// Returns the spring that balances loads best: the line along them that leaves least of the largest, as steep as a spring can
@@ -168,7 +280,7 @@ fn loads(moved: &[(Inertia, Vec<usize>)], joint: &Joint, pose: &Pose<'_>) -> Vec
 }
 
 /// Returns where a joint at a position takes a point.
-fn moved_by(joint: &Joint, position: f64, p: Vec3) -> Vec3 {
+pub(crate) fn moved_by(joint: &Joint, position: f64, p: Vec3) -> Vec3 {
     match joint.kind {
         JointKind::Prismatic => add(p, scale(joint.axis, position)),
         JointKind::Revolute | JointKind::Continuous => {
@@ -178,7 +290,7 @@ fn moved_by(joint: &Joint, position: f64, p: Vec3) -> Vec3 {
 }
 
 /// Returns the indices of the bodies that a joint moves: its own, and those that other joints hold to it.
-fn bodies_moved(model: &Model3d, joint: &Joint) -> Vec<usize> {
+pub(crate) fn bodies_moved(model: &Model3d, joint: &Joint) -> Vec<usize> {
     let mut bodies = vec![joint.child];
     let mut next = 0;
     while let Some(&body) = bodies.get(next) {
@@ -193,7 +305,7 @@ fn bodies_moved(model: &Model3d, joint: &Joint) -> Vec<usize> {
 }
 
 /// Returns the bodies that a joint moves, each with the bodies from it up to the joint's own.
-fn moved(model: &Model3d, joint: &Joint) -> Vec<(Inertia, Vec<usize>)> {
+fn moved(model: &Model3d, joint: &Joint, bodies: &[Inertia]) -> Vec<(Inertia, Vec<usize>)> {
     let up = |body: usize| {
         let mut chain = vec![body];
         while let Some(&last) = chain.last().filter(|b| **b != joint.child && chain.len() <= model.bodies.len()) {
@@ -204,8 +316,7 @@ fn moved(model: &Model3d, joint: &Joint) -> Vec<(Inertia, Vec<usize>)> {
         }
         chain
     };
-    let bodies = bodies_moved(model, joint).into_iter();
-    bodies.filter_map(|b| model.bodies.get(b).map(|body| (inertia(body), up(b)))).collect()
+    bodies_moved(model, joint).into_iter().filter_map(|b| bodies.get(b).map(|body| (*body, up(b)))).collect()
 }
 
 /// Returns the inertia of a body about the axis of a joint, kg m^2.
@@ -218,7 +329,7 @@ fn about_axis(body: &Inertia, joint: &Joint) -> f64 {
 }
 
 /// Turns a vector about a unit axis by an angle, rad.
-fn turned(v: Vec3, axis: Vec3, angle: f64) -> Vec3 {
+pub(crate) fn turned(v: Vec3, axis: Vec3, angle: f64) -> Vec3 {
     let (sin, cos) = angle.sin_cos();
     let (across, along) = (cross(axis, v), scale(axis, dot(axis, v) * (1.0 - cos)));
     std::array::from_fn(|i| v[i] * cos + across[i] * sin + along[i])
@@ -244,9 +355,33 @@ mod tests {
     fn not_held(model: &Model3d, joint: &Joint) -> f64 {
         let Dynamics { friction, spring, .. } = of(model, joint);
         let pull = |at: f64| spring.map_or(0.0, |s| s.stiffness * (s.reference - at));
-        let all: Vec<(f64, f64)> =
-            poses(model, joint).iter().flat_map(|pose| loads(&moved(model, joint), joint, pose)).collect();
+        let all: Vec<(f64, f64)> = poses(model, joint)
+            .iter()
+            .flat_map(|pose| loads(&moved(model, joint, &plain(model)), joint, pose))
+            .collect();
         all.iter().map(|(at, load)| (load + pull(*at)).abs() - friction).fold(f64::MIN, f64::max)
+    }
+
+    /// Returns the bodies of a model as they are.
+    fn plain(model: &Model3d) -> Vec<Inertia> {
+        model.bodies.iter().map(inertia).collect()
+    }
+
+    #[test]
+    fn a_flap_with_its_counterweight_weighs_nothing_and_a_lift_is_pushed() {
+        let (model, joint) = flap(JointKind::Revolute, [0.0, 1.0, 0.0], Some([-0.2, 1.6]));
+        let found = borne(&model);
+        let weight = Weight::of(&model, &joint, &found.bodies);
+        assert!(weight.left(|_| 0.0) < 1e-9 && found.joints[0].push == 0.0, "{found:?}");
+        assert!((found.joints[0].friction - weight.idle).abs() < 1e-12 && found.bodies[1].mass_kg == 4.0);
+        let about = |bodies: &[Inertia]| about_axis(&bodies[1], &joint);
+        assert!((about(&found.bodies) - about(&plain(&model))).abs() < 1e-9, "it swings as before");
+        let (model, joint) = flap(JointKind::Prismatic, [0.0, 0.0, 1.0], Some([0.0, 0.3]));
+        let found = borne(&model);
+        assert!((found.joints[0].push - 4.0 * GRAVITY).abs() < 1e-9 && found.joints[0].friction < 4.0, "{found:?}");
+        assert_eq!(found.bodies, plain(&model), "what slides stays as it is: {}", joint.name);
+        let (model, _) = flap(JointKind::Revolute, [0.0, 0.0, 1.0], Some([0.0, 1.6]));
+        assert_eq!(borne(&model).bodies, plain(&model), "a door about an upright axis bears nothing");
     }
 
     #[test]
@@ -270,10 +405,16 @@ mod tests {
         let upright = poses(&model, &second);
         assert_eq!((upright.len(), poses(&model, &first).len()), (3, 3));
         let straight = |pose: &&Pose<'_>| pose.above.iter().all(|(_, at)| *at == 0.0);
-        let alone = loads(&moved(&model, &second), &second, upright.iter().find(straight).expect("one is at zero"));
+        let alone = loads(
+            &moved(&model, &second, &plain(&model)),
+            &second,
+            upright.iter().find(straight).expect("one is at zero"),
+        );
         let most = |loads: &[(f64, f64)]| loads.iter().map(|l| l.1).fold(f64::MIN, f64::max);
-        let tilted =
-            upright.iter().map(|pose| most(&loads(&moved(&model, &second), &second, pose))).fold(f64::MIN, f64::max);
+        let tilted = upright
+            .iter()
+            .map(|pose| most(&loads(&moved(&model, &second, &plain(&model)), &second, pose)))
+            .fold(f64::MIN, f64::max);
         assert!(tilted > most(&alone) * 1.05, "tilted it weighs more: {tilted}, {}", most(&alone));
     }
 

@@ -11,6 +11,7 @@ pub mod mass;
 pub mod model3d;
 pub mod parts;
 pub mod picture;
+pub mod sweep;
 pub mod world3d;
 pub mod writers;
 

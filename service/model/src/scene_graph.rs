@@ -130,6 +130,9 @@ pub struct GraphRoom {
     pub area_range_m2: [f64; 2],
     /// 8 to 15 objects wished for, most important first (object ids of the domain).
     pub wished_assets: Vec<String>,
+    /// Clear lengths of its sides, m, for a room planned by itself of which the prompt says them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sides_m: Option<[f64; 2]>,
     /// People, beds or desks it must hold, where the prompt or program says.
     #[serde(default)]
     pub occupants: Option<u32>,
@@ -197,6 +200,8 @@ impl Connector {
 
 /// Speeds that a robot in a building can be asked to keep to, m/s.
 pub const ROBOT_SPEEDS_M_S: RangeInclusive<f64> = 0.05..=5.0;
+/// Sides that a room can be asked to have, m.
+const SIDES_M: RangeInclusive<f64> = 0.5..=500.0;
 /// Radius of a usual service robot, m: what a building has ways for that is too small for the robot somebody has.
 const USUAL_RADIUS_M: f64 = 0.30;
 
@@ -333,6 +338,11 @@ impl Document for SceneGraph {
         }
         check_unique("/rooms", self.rooms.iter().map(|r| r.id.as_str()), &mut problems);
         for (i, room) in self.rooms.iter().enumerate() {
+            if let Some(side) = room.sides_m.iter().flatten().find(|s| !SIDES_M.contains(*s)) {
+                let (least, most) = (SIDES_M.start(), SIDES_M.end());
+                let message = format!("{side} m is outside {least}-{most} m");
+                problems.push(Problem::new(format!("/rooms/{i}/sides_m"), message));
+            }
             let [min, max] = room.area_range_m2;
             if !(0.0 < min && min <= room.target_area_m2 && room.target_area_m2 <= max) {
                 problems.push(Problem::new(

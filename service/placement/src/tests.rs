@@ -113,6 +113,7 @@ impl<'s> Site<'s> {
             target_area_m2: area,
             area_range_m2: [area, area],
             wished_assets: Vec::new(),
+            sides_m: None,
             occupants: None,
             circulation: self.circulation,
             requested: true,

@@ -33,6 +33,7 @@ use super::wished::unread::Unread;
 use super::wished::wishes::{self, Text, Wish, Wishes};
 use super::wished::{closed, comparisons, totals, unread};
 use crate::people::held::Held;
+use crate::reading::Understood;
 use crate::request::{MAX_ROOMS, Request, refused};
 
 /// Robots that fetch and bring: corridors are only their way.
@@ -430,6 +431,19 @@ impl<'r, 'a> Draft<'r, 'a> {
         let dock = |id: &str| self.site.domain.anchor(id).is_some_and(|o| o.shape == Shape::Dock);
         found.things.retain(|t| docked.is_empty() || !dock(&t.object));
         found
+    }
+
+    /// Returns where the words stand that something was made of: those for rooms and people, and others that were `read`.
+    pub(crate) fn understood(&self, read: &[&[Span]]) -> Vec<Understood> {
+        let found = |span: Span, room_type: Option<&str>| {
+            let tokens = &self.heard.tokens.get(span.start..span.end)?;
+            let bytes = tokens.first()?.start..tokens.last()?.end;
+            Some(Understood { bytes, room_type: room_type.map(str::to_owned) })
+        };
+        let mentions = self.named.mentions.iter();
+        let mentions = mentions.map(|m| found(Span { start: m.from.min(m.span.start), end: m.end() }, m.room_type()));
+        let others = read.iter().copied().flatten().chain(&self.site.building.head).map(|span| found(*span, None));
+        mentions.chain(others).flatten().collect()
     }
 
     /// States what was not read, and returns it.

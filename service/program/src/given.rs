@@ -416,6 +416,7 @@ pub fn of_plan(plan: &Floorplan, brought: &Brought, registry: &Registry) -> Resu
                 // nobody asked for less than is there
                 area_range_m2: [range.min, range.max.max(room.net_area_m2)],
                 wished_assets: wished_assets(domain, kind, &[]),
+                sides_m: None,
                 occupants: None,
                 circulation: room.circulation,
                 requested: true,

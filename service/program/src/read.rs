@@ -37,6 +37,7 @@ pub(crate) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
     draft.take_words(&called);
     let objects = draft.objects(&stops.docked);
     let unread = draft.state_unread(&objects.words, &doors, &parts);
+    let understood = draft.understood(&[&objects.words, &doors]);
     let Draft { heard, site, counted, wishes, named, notes, .. } = draft;
     Ok(Reading {
         language: heard.language,
@@ -62,6 +63,7 @@ pub(crate) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         called,
         names: Vec::new(),
         unread,
+        understood,
         habitable_fixed: named.habitable_fixed,
         area_m2,
         each_alone: site.lives && (site.shared || named.own_rooms),

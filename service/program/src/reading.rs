@@ -1,5 +1,6 @@
 //! A prompt understood: every fact it states, before rooms are added or connected.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use d3dgen_model::domain::{Domain, Program};
@@ -14,6 +15,15 @@ use super::people::seats::Called;
 use super::wished::unread::Unread;
 use super::wished::wishes::Wishes;
 use crate::people::held::Held;
+
+/// Words that something was made of.
+#[derive(Debug, Clone)]
+pub(crate) struct Understood {
+    /// Where they stand in the prompt.
+    pub bytes: Range<usize>,
+    /// Type of the room that they name, where they name one.
+    pub room_type: Option<String>,
+}
 
 /// Facts of a prompt.
 #[derive(Clone)]
@@ -53,6 +63,8 @@ pub(crate) struct Reading<'a> {
     pub names: Vec<Called>,
     /// Words that nothing was made of.
     pub unread: Vec<Unread>,
+    /// Where the words stand in the prompt that something was made of.
+    pub understood: Vec<Understood>,
     /// True when the prompt counts the rooms to live in ("3-Zimmer-Wohnung", "2BHK").
     pub habitable_fixed: bool,
     pub area_m2: Option<f64>,

@@ -41,21 +41,7 @@ pub(crate) fn building(registry: &Registry, nodes: &[Rc<Node>], reading: &Readin
     let head = nodes.iter().position(|n| ends_head(n)).unwrap_or(nodes.len());
     let mut named: Vec<Named> = Vec::new();
     for (i, node) in nodes.iter().enumerate() {
-        // "staff" of an office names those in it
-        if refused(nodes, i) || node.is("person", None) {
-            continue;
-        }
-        let room_too = node.is("room", None) || node.is("object", None) || node.is("room_word", None);
-        let place = if i < head || i == 0 { NAMED } else { LATER };
-        // a room that a list names is a room: "shop", "gym", "library"
-        if room_too && i >= head && i > 0 {
-            continue;
-        }
-        let counted = i > 0 && nodes[i - 1].number.is_some_and(|n| n > 1.0) && room_too;
-        if counted {
-            continue;
-        }
-        let confidence = place * if room_too { ROOM_TOO } else { 1.0 };
+        let Some(confidence) = confidence(nodes, i, head) else { continue };
         named.extend(meant(registry, node, reading).into_iter().take(3).enumerate().map(|(n, mut building)| {
             building.confidence = confidence * if n == 0 { 1.0 } else { 0.5 };
             Named { node: i, building }
@@ -73,22 +59,54 @@ pub(crate) fn building(registry: &Registry, nodes: &[Rc<Node>], reading: &Readin
         return Building { first, ..Building::default() };
     };
     let mut found = Building { nodes: vec![first.node], first: Some(first.building), others: Vec::new() };
-    for next in named {
-        let same = found.first.as_ref().is_some_and(|f| f.domain == next.building.domain);
-        let bare = !nodes[next.node].is("room", None) && !nodes[next.node].is("object", None);
-        // "hospital ward", "family house": one building, said twice
-        if same && bare && next.node < head.max(1) && !found.nodes.contains(&next.node) {
-            found.nodes.push(next.node);
-            found.first.as_mut().into_iter().for_each(|f| f.words.extend(next.building.words.clone()));
-        }
-        let new = |b: &AskedBuilding| (b.domain.clone(), b.building_type.clone(), b.name.clone());
-        let known = found.others.iter().chain(&found.first).any(|o| new(o) == new(&next.building));
-        if !known && found.others.len() < 3 {
-            found.others.push(next.building);
-        }
-    }
+    named.for_each(|next| found.add(next, nodes, head));
     found.first.as_mut().into_iter().for_each(|f| f.words.sort());
     found
+}
+
+/// Returns how sure a word is to name the building, if it may; `head` is where the words end that do.
+fn confidence(nodes: &[Rc<Node>], i: usize, head: usize) -> Option<f64> {
+    let node = &nodes[i];
+    // "staff" of an office names those in it
+    if refused(nodes, i) || node.is("person", None) {
+        return None;
+    }
+    let room_too = is_room_too(node) || node.is("room_word", None);
+    let place = if i < head || i == 0 { NAMED } else { LATER };
+    // a room that a list names is a room: "shop", "gym", "library"
+    let listed = i >= head && i > 0;
+    let counted = i > 0 && nodes[i - 1].number.is_some_and(|n| n > 1.0);
+    if room_too && (listed || counted) {
+        return None;
+    }
+    // "research institute offices": the last noun is the building
+    let after_kind = i > 0 && node.head_last && nodes[i - 1].is("kind", None);
+    let modifies = node.head_last
+        && nodes.get(i + 1).is_some_and(|next| i + 1 < head && next.is("kind", None) && is_room_too(next));
+    let sure = if room_too && !after_kind { ROOM_TOO } else { 1.0 };
+    Some(place * sure * if modifies { ROOM_TOO } else { 1.0 })
+}
+
+/// Returns true for a word that names a room or an object as well.
+fn is_room_too(node: &Node) -> bool {
+    node.is("room", None) || node.is("object", None)
+}
+
+impl Building {
+    /// Takes one more kind that is named: the same once more, or a next best one.
+    fn add(&mut self, next: Named, nodes: &[Rc<Node>], head: usize) {
+        let same = self.first.as_ref().is_some_and(|f| f.domain == next.building.domain);
+        // "hospital ward", "family house": one building, said twice
+        if same && !is_room_too(&nodes[next.node]) && next.node < head.max(1) && !self.nodes.contains(&next.node) {
+            self.nodes.push(next.node);
+            self.first.as_mut().into_iter().for_each(|f| f.words.extend(next.building.words.clone()));
+        }
+        let new = |b: &AskedBuilding| (b.domain.clone(), b.building_type.clone(), b.name.clone());
+        let known = self.others.iter().chain(&self.first).any(|o| new(o) == new(&next.building));
+        if !known && self.others.len() < 3 {
+            self.others.push(next.building);
+        }
+    }
 }
 
 /// Returns true for what ends the words that name the building: "with", a colon, a comma.

@@ -9,10 +9,16 @@ use d3dgen_model::brief::{
     PeopleAsk, PlaceKind, RelationAsk, RelationKind, RobotsAsk, RoomsAsk, SiteAsk, SiteKind, StoreysAsk, StyleAsk,
     Subject,
 };
+use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::node::Node;
 use crate::subjects::Known;
+
+/// Parents of a family with children.
+const PARENTS: u32 = 2;
+/// People of a family of which no more is said, at least.
+const FAMILY: u32 = 3;
 
 /// A fact with its words.
 #[derive(Debug, Clone)]
@@ -78,6 +84,8 @@ impl Maker<'_> {
                 self.facts[from..].iter_mut().for_each(|f| f.also = words.clone());
             }
             Some("each_group") => self.each_group(node),
+            Some("every_room") => self.every_room(node),
+            Some("fleet") => self.fleet(node),
             Some("shorthand_home") => self.shorthand(node),
             Some("style") => self.style(node),
             Some("site") => self.site(node),
@@ -114,7 +122,10 @@ impl Maker<'_> {
         if self.reads_otherwise(node) {
             return;
         }
-        let room = self.known.subject(node, "room", self.reading);
+        let mut room = self.known.subject(node, "room", self.reading);
+        if let Some(kind) = node.field("kind") {
+            room.id = self.known.main_room(kind);
+        }
         let asked = count(node);
         let count = asked.or_else(|| several(node, &["room", "own"])).unwrap_or_default();
         // "1.5 baths": one bathroom, and half of one
@@ -137,20 +148,20 @@ impl Maker<'_> {
             attributes: attributes(node),
             each: None,
         };
-        let mut inside: Vec<Rc<Node>> = node.all("with").cloned().collect();
-        if several && let Some(at) = inside.iter().position(|n| n.is("rooms", Some("bare"))) {
-            let each = inside.remove(at);
-            ask.each = Some(self.subject(&each));
+        let (each, inside): (Vec<Rc<Node>>, Vec<Rc<Node>>) =
+            node.all("with").cloned().partition(|n| several && n.is("rooms", Some("bare")));
+        ask.each = each.first().map(|n| self.subject(n));
+        // "a bedroom for each of the four children"
+        if let Some(all) = node.field("each_of").and_then(|people| self::count(people)) {
+            ask.count = all;
         }
         let whose =
             node.all("own").filter(|o| !o.is_unknown() && (o.is("person", None) || o.is("attribute", None))).count();
         if whose > 1 && asked.is_none() && node.field("room").is_some() {
             ask.count = AskedCount::at_least(whose as u32);
         }
-        if let Some(sex) = node.field("sex")
-            && sex.is("sex", Some("each"))
-        {
-            ask.count = AskedCount { n: ask.count.n.max(1) * 2, ..ask.count };
+        if let Some(sex) = node.field("sex") {
+            ask.count = by_sex(sex, asked, ask.count);
         }
         self.facts.push(Stated {
             tokens: node.tokens.clone(),
@@ -159,6 +170,10 @@ impl Maker<'_> {
             mention: around.mention,
             own: node.field("own").is_some(),
         });
+        if room.id.is_none() {
+            self.named_for(node, &room);
+        }
+        each.iter().skip(1).for_each(|more| self.one_each(more, &room, count));
         for held in node.all("hold") {
             self.held(held, &room, several);
         }
@@ -168,6 +183,46 @@ impl Maker<'_> {
         node.all("other").for_each(|n| {
             self.state(n, Around::default());
         });
+    }
+
+    /// States what a room that no lexicon has is named for: the machine of a "washing machine room".
+    fn named_for(&mut self, node: &Node, room: &Subject) {
+        for own in node.all("own") {
+            let Some(id) = own.values("object").find(|id| self.known.objects.contains(*id)) else { continue };
+            let object = Subject::known(id, self.reading.written(own.tokens.clone()));
+            let asked = ObjectsAsk { object, room: Some(room.clone()), ..ObjectsAsk::default() };
+            self.facts.push(Stated {
+                tokens: own.tokens.clone(),
+                also: None,
+                fact: Fact::Objects(asked),
+                mention: false,
+                own: false,
+            });
+        }
+    }
+
+    /// States one more room that comes with each of others.
+    fn one_each(&mut self, guest: &Rc<Node>, host: &Subject, count: AskedCount) {
+        let room = self.subject(guest);
+        self.say(guest, Fact::Rooms(RoomsAsk { room: room.clone(), count, ..RoomsAsk::default() }));
+        self.say(guest, Fact::Relation(RelationAsk { a: room, relation: RelationKind::Door, b: host.clone() }));
+    }
+
+    /// States what every room has: each of the several that were named last.
+    fn every_room(&mut self, node: &Node) {
+        let several = |f: &Stated| matches!(&f.fact, Fact::Rooms(r) if r.count.n > 1);
+        let Some(at) = self.facts.iter().rposition(several) else { return self.other(node) };
+        let mut with: Vec<Rc<Node>> = node.all("with").cloned().collect();
+        let own = with.first().map(|n| self.subject(n));
+        let stated = &mut self.facts[at];
+        let Fact::Rooms(hosts) = &mut stated.fact else { return };
+        let (host, count) = (hosts.room.clone(), hosts.count);
+        if hosts.each.is_none() {
+            hosts.each = own;
+            stated.also = Some(node.tokens.clone());
+            with.remove(0);
+        }
+        with.iter().for_each(|more| self.one_each(more, &host, count));
     }
 
     /// States what a word is that names a room of other buildings, and an object or a manner of this one: "open plan" in a home.
@@ -280,10 +335,20 @@ impl Maker<'_> {
             }
             None => (count(node), kind.unwrap_or(PlaceKind::Seats)),
         };
-        let Some(count) = count else { return self.other(node) };
+        let all = node.field("all").and_then(|all| self::count(all));
+        let Some(count) = count.or(all) else { return self.other(node) };
+        // "48 children in 4 groups", "3 groups"
+        if let Some(all) = all {
+            let each = AskedCount { n: all.n.div_ceil(groups.unwrap_or(1).max(1)), ..all };
+            let of = PlaceKind::Seats;
+            return self
+                .say(node, Fact::Capacity(CapacityAsk { of, count: each, room: None, each_room: false, groups }));
+        }
         if held.is_none() && what.is_some_and(|w| w.is("capacity", Some("group"))) {
-            let room = Subject::unknown(what.map_or("", |w| self.reading.written(w.tokens.clone())));
-            return self.say(node, Fact::Rooms(RoomsAsk { room, count, ..RoomsAsk::default() }));
+            let (of, groups) = (PlaceKind::Seats, Some(count.n));
+            let each = AskedCount::at_least(1);
+            return self
+                .say(node, Fact::Capacity(CapacityAsk { of, count: each, room: None, each_room: false, groups }));
         }
         if what.is_some_and(|w| w.is("capacity", Some("locker"))) {
             let object = Subject::known("lockers", what.map_or("", |w| self.reading.written(w.tokens.clone())));
@@ -301,6 +366,9 @@ impl Maker<'_> {
 
     /// States what every group has: one for each of the groups that were counted.
     fn each_group(&mut self, node: &Node) {
+        if let Some(groups) = node.field("groups").cloned() {
+            self.capacity(&groups, None);
+        }
         let groups = self.facts.iter().rev().find_map(|f| match &f.fact {
             Fact::Capacity(c) => c.groups,
             _ => None,
@@ -323,8 +391,38 @@ impl Maker<'_> {
             .and_then(|w| w.values("person").next())
             .unwrap_or(if household(node).is_some() { "resident" } else { "people" })
             .to_owned();
+        if let Some(children) = node.field("children") {
+            self.say(
+                node,
+                Fact::People(PeopleAsk { role: "resident".to_owned(), count: AskedCount::exactly(PARENTS) }),
+            );
+            return self.people(children);
+        }
+        if let Some(all) = node.field("all").and_then(|all| count(all)) {
+            return self.say(node, Fact::People(PeopleAsk { role: "resident".to_owned(), count: all }));
+        }
+        if role == "family" {
+            let role = "resident".to_owned();
+            return self.say(node, Fact::People(PeopleAsk { role, count: AskedCount::at_least(FAMILY) }));
+        }
         let count = count(node).or_else(|| household(node)).unwrap_or_default();
         self.say(node, Fact::People(PeopleAsk { role, count }));
+    }
+
+    /// States robots of several kinds: "2 cleaning and 3 delivery robots".
+    fn fleet(&mut self, node: &Node) {
+        let mut n = None;
+        for (name, part) in &node.fields {
+            match &**name {
+                "n" => n = number(part),
+                "kind" => {
+                    let named = part.values("robot").next().or_else(|| part.values("task").next().map(kind_of_work));
+                    let (kind, count) = (named.unwrap_or("service").to_owned(), n.take().unwrap_or_default());
+                    self.say(node, Fact::Robots(RobotsAsk { kind, count, ..RobotsAsk::default() }));
+                }
+                _ => {}
+            }
+        }
     }
 
     fn robots(&mut self, node: &Node) {
@@ -354,7 +452,7 @@ impl Maker<'_> {
             node,
             Fact::Robots(RobotsAsk {
                 kind,
-                count: count(node).unwrap_or_default(),
+                count: count(node).or_else(|| several(node, &["robot"])).unwrap_or_default(),
                 width_m: side("width").or(round).or(sides.map(|s| s[0])).or(bare),
                 length_m: side("length").or(round).or(sides.map(|s| s[1])),
                 height_m: side("height"),
@@ -430,7 +528,9 @@ impl Maker<'_> {
                 self.say(node, Fact::Other(OtherAsk { wish }));
                 continue;
             }
+            let basement = item.is("storey", Some("basement")) || item.is("storey_ref", Some("basement"));
             let (room, object) = match item.made() {
+                _ if basement => (Some(subject), None),
                 Some("rooms") => (Some(subject), None),
                 Some("objects") => (None, Some(subject)),
                 _ => (None, None),
@@ -474,8 +574,10 @@ impl Maker<'_> {
                 "n" => number = part.number,
                 "what" => {
                     let ids = part.values("shorthand").next().unwrap_or_default().to_owned();
+                    // "an LDK" counts no bedrooms
+                    let counted = number.is_some() || !ids.contains('+') || ids.contains('*');
                     let n = number.take().unwrap_or(1.0).clamp(0.0, 1000.0) as u32;
-                    for (i, id) in ids.split('+').enumerate() {
+                    for (i, id) in ids.split('+').enumerate().skip(usize::from(!counted)) {
                         // "bedroom-1": one less than the number, "bedroom*3": so many by itself
                         let (id, less) = id.strip_suffix("-1").map_or((id, 0), |id| (id, 1));
                         let (id, times) = id.split_once('*').map_or((id, None), |(id, t)| (id, t.parse().ok()));
@@ -534,6 +636,18 @@ impl Maker<'_> {
 fn count(node: &Node) -> Option<AskedCount> {
     let count = node.field("count")?;
     number(count)
+}
+
+/// Returns how many rooms are asked for that men and women have their own of: `told` where the prompt says a number.
+fn by_sex(sex: &Node, told: Option<AskedCount>, count: AskedCount) -> AskedCount {
+    let n = told.map_or(1, |c| c.n.max(1));
+    match sex.values("sex").next() {
+        // "one bathroom for each sex"
+        Some("per") => AskedCount { n: 2 * n, ..count },
+        // "two toilets for men and women"
+        Some("each") => AskedCount { n: n.max(2), ..count },
+        _ => count,
+    }
 }
 
 /// Returns the whole of a number that ends in a half.
@@ -661,93 +775,87 @@ fn from_name<T: DeserializeOwned>(name: &str) -> Option<T> {
 
 /// Returns a fact in one line, as the examples of rules and `--explain` have it.
 pub(crate) fn shown(fact: &Fact) -> String {
-    let subject = |s: &Subject| s.id.clone().unwrap_or_else(|| format!("'{}'", s.name));
-    let number = |c: &AskedCount| match c.bound {
-        Bound::Exactly => c.n.to_string(),
-        Bound::AtLeast => format!("{}+", c.n),
-        Bound::AtMost => format!("{}-", c.n),
-        Bound::About => format!("~{}", c.n),
-    };
-    let name = |v: &dyn erased::Named| v.name();
     match fact {
-        Fact::Rooms(r) => {
-            let mut line = format!("rooms {} {}", number(&r.count), subject(&r.room));
-            r.area_m2.iter().for_each(|a| line += &format!(" {a} m2"));
-            r.sides_m.iter().for_each(|s| line += &format!(" {} x {} m", s[0], s[1]));
-            r.level.iter().for_each(|l| line += &format!(" level {l}"));
-            r.attributes.iter().for_each(|a| line += &format!(" {a}"));
-            r.each.iter().for_each(|e| line += &format!(" each {}", subject(e)));
-            line
-        }
+        Fact::Rooms(asked) => shown_rooms(asked),
         Fact::Objects(o) => {
-            let mut line = format!("objects {} {}", number(&o.count), subject(&o.object));
-            o.attributes.iter().for_each(|a| line += &format!(" {a}"));
-            o.room
-                .iter()
-                .for_each(|r| line += &format!(" in {}{}", if o.each_room { "each " } else { "" }, subject(r)));
-            line
+            let attributes: String = o.attributes.iter().map(|a| format!(" {a}")).collect();
+            let room = shown_within(o.room.as_ref(), o.each_room);
+            format!("objects {} {}{attributes}{room}", shown_count(&o.count), shown_subject(&o.object))
         }
         Fact::Capacity(c) => {
-            let mut line = format!("capacity {} {}", number(&c.count), name(&c.of));
-            c.room
-                .iter()
-                .for_each(|r| line += &format!(" in {}{}", if c.each_room { "each " } else { "" }, subject(r)));
-            c.groups.iter().for_each(|g| line += &format!(" in {g} groups"));
-            line
+            let groups = c.groups.map_or(String::new(), |g| format!(" in {g} groups"));
+            let room = shown_within(c.room.as_ref(), c.each_room);
+            format!("capacity {} {}{room}{groups}", shown_count(&c.count), named(&c.of))
         }
-        Fact::Relation(r) => format!("relation {} {} {}", subject(&r.a), name(&r.relation), subject(&r.b)),
-        Fact::Storeys(s) => format!("storeys {}{}", number(&s.count), if s.basement { " and a basement" } else { "" }),
-        Fact::Area(a) => format!(
-            "area {}{}",
-            a.area_m2,
-            if a.bound == Bound::Exactly { String::new() } else { format!(" {}", name(&a.bound)) }
-        ),
-        Fact::Robots(r) => {
-            let mut line = format!("robots {} {}", number(&r.count), r.kind);
-            r.width_m.iter().for_each(|w| line += &format!(" {w} m wide"));
-            r.length_m.iter().for_each(|w| line += &format!(" {w} m long"));
-            for task in &r.tasks {
-                line += &format!(" {}", task.verb);
-                task.what.iter().for_each(|w| line += &format!(" '{w}'"));
-                task.from.iter().for_each(|f| line += &format!(" from {}", subject(f)));
-                task.to.iter().for_each(|t| line += &format!(" to {}", subject(t)));
-            }
-            r.keep_out.iter().for_each(|k| line += &format!(" not in {}", subject(k)));
-            line
+        Fact::Relation(r) => {
+            format!("relation {} {} {}", shown_subject(&r.a), named(&r.relation), shown_subject(&r.b))
         }
-        Fact::People(p) => format!("people {} {}", number(&p.count), p.role),
+        Fact::Storeys(s) => {
+            format!("storeys {}{}", shown_count(&s.count), if s.basement { " and a basement" } else { "" })
+        }
+        Fact::Area(a) if a.bound == Bound::Exactly => format!("area {}", a.area_m2),
+        Fact::Area(a) => format!("area {} {}", a.area_m2, named(&a.bound)),
+        Fact::Robots(asked) => shown_robots(asked),
+        Fact::People(p) => format!("people {} {}", shown_count(&p.count), p.role),
         Fact::Style(s) => format!("style {}", s.word),
         Fact::Accessible(a) => {
-            format!("accessible{}", a.room.as_ref().map_or(String::new(), |r| format!(" {}", subject(r))))
+            format!("accessible{}", a.room.as_ref().map_or(String::new(), |r| format!(" {}", shown_subject(r))))
         }
         Fact::Forbidden(f) => {
-            let what = f.room.iter().chain(&f.object).map(subject).collect::<Vec<_>>().join(" ");
-            let within = f.within.as_ref().map_or(String::new(), |w| format!(" in {}", subject(w)));
-            format!("forbidden {what}{within}")
+            let what = f.room.iter().chain(&f.object).map(shown_subject).collect::<Vec<_>>().join(" ");
+            format!("forbidden {what}{}", shown_within(f.within.as_ref(), false))
         }
         Fact::Only(o) => match (o.rooms, o.closed) {
             (Some(n), false) => format!("rooms in total {n}"),
             _ => "only these".to_owned(),
         },
-        Fact::Site(s) => format!("site {}", name(&s.kind)),
+        Fact::Site(s) => format!("site {}", named(&s.kind)),
         Fact::Other(o) => format!("other '{}'", o.wish),
     }
 }
 
-mod erased {
-    //! Names that documents have for the values of enums.
+fn shown_rooms(r: &RoomsAsk) -> String {
+    let mut line = format!("rooms {} {}", shown_count(&r.count), shown_subject(&r.room));
+    r.area_m2.iter().for_each(|a| line += &format!(" {a} m2"));
+    r.sides_m.iter().for_each(|s| line += &format!(" {} x {} m", s[0], s[1]));
+    r.level.iter().for_each(|l| line += &format!(" level {l}"));
+    r.attributes.iter().for_each(|a| line += &format!(" {a}"));
+    r.each.iter().for_each(|e| line += &format!(" each {}", shown_subject(e)));
+    line
+}
 
-    use serde::Serialize;
-
-    /// A value with a name in documents.
-    pub trait Named {
-        /// Returns the name.
-        fn name(&self) -> String;
+fn shown_robots(r: &RobotsAsk) -> String {
+    let mut line = format!("robots {} {}", shown_count(&r.count), r.kind);
+    r.width_m.iter().for_each(|w| line += &format!(" {w} m wide"));
+    r.length_m.iter().for_each(|w| line += &format!(" {w} m long"));
+    for task in &r.tasks {
+        line += &format!(" {}", task.verb);
+        task.what.iter().for_each(|w| line += &format!(" '{w}'"));
+        task.from.iter().for_each(|f| line += &format!(" from {}", shown_subject(f)));
+        task.to.iter().for_each(|t| line += &format!(" to {}", shown_subject(t)));
     }
+    r.keep_out.iter().for_each(|k| line += &format!(" not in {}", shown_subject(k)));
+    line
+}
 
-    impl<T: Serialize> Named for T {
-        fn name(&self) -> String {
-            serde_json::to_value(self).ok().and_then(|v| v.as_str().map(str::to_owned)).unwrap_or_default()
-        }
+fn shown_within(room: Option<&Subject>, each: bool) -> String {
+    room.map_or(String::new(), |r| format!(" in {}{}", if each { "each " } else { "" }, shown_subject(r)))
+}
+
+fn shown_subject(subject: &Subject) -> String {
+    subject.id.clone().unwrap_or_else(|| format!("'{}'", subject.name))
+}
+
+fn shown_count(count: &AskedCount) -> String {
+    match count.bound {
+        Bound::Exactly => count.n.to_string(),
+        Bound::AtLeast => format!("{}+", count.n),
+        Bound::AtMost => format!("{}-", count.n),
+        Bound::About => format!("~{}", count.n),
     }
+}
+
+/// Returns the name that documents have for a value of an enum.
+fn named<T: Serialize>(value: &T) -> String {
+    serde_json::to_value(value).ok().and_then(|v| v.as_str().map(str::to_owned)).unwrap_or_default()
 }

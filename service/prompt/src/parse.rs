@@ -87,6 +87,17 @@ fn may_begin(rule: &Rule, node: &Node) -> bool {
     order && (rule.first.is_empty() || rule.first.iter().any(|c| node.is(c, None) || (c == "mark" && node.mark)))
 }
 
+/// Returns the class of words whose value something is known by that a rule made, of what it captured under a name.
+fn class_of(name: &str) -> Option<&str> {
+    match name {
+        "room" | "object" | "classifier" => Some(name),
+        "who" => Some("person"),
+        "what" => Some("capacity"),
+        "named" => Some("storey"),
+        _ => None,
+    }
+}
+
 fn made(grammar: &Grammar, candidate: &Candidate, nodes: &[Rc<Node>], from: usize) -> Node {
     let rule = &grammar.rules[candidate.rule];
     let tokens = nodes[from].tokens.start..nodes[candidate.fit.end - 1].tokens.end;
@@ -105,10 +116,9 @@ fn made(grammar: &Grammar, candidate: &Candidate, nodes: &[Rc<Node>], from: usiz
     match &rule.makes {
         Makes::New(class) => {
             let class: Arc<str> = class.as_str().into();
-            // rooms and objects may be asked for by their ids
-            let ids = captured.iter().filter(|(name, _)| matches!(&**name, "room" | "object" | "classifier" | "who"));
-            let class_of = |name: &str| if name == "who" { "person".to_owned() } else { name.to_owned() };
-            let ids = ids.flat_map(|(name, n)| n.values(&class_of(name)).map(Arc::from).collect::<Vec<Arc<str>>>());
+            // rooms, objects, people, places and storeys may be asked for by their values
+            let ids = captured.iter().filter_map(|(name, n)| Some((class_of(name)?, n)));
+            let ids = ids.flat_map(|(of, n)| n.values(of).map(Arc::from).collect::<Vec<Arc<str>>>());
             node.senses = [Arc::from("")].into_iter().chain(ids).map(|id| (class.clone(), id)).collect();
         }
         Makes::More(name) => {

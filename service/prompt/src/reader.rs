@@ -15,7 +15,6 @@ use crate::facts::{Maker, Stated, shown};
 use crate::grammar::Grammar;
 use crate::node::Node;
 use crate::parse::{Applied, parse};
-use crate::places;
 use crate::subjects::Known;
 use crate::vocabulary::lexicon;
 
@@ -69,7 +68,7 @@ impl PromptReader {
         let building = building(&self.registry, &leaves, &reading);
         let leaves = named(leaves, &building.nodes, &places);
         let (nodes, applied) = parse(grammar, leaves);
-        let domain = building.first.as_ref().and_then(|b| b.domain.as_deref());
+        let domain = building.first.as_ref().map(|b| b.domain.as_deref().unwrap_or(Known::stand_in()));
         let country = place.as_ref().map(|p| p.country_code.as_str());
         let first_is_ground = match country {
             Some(country) => first_floor_is_ground(country),
@@ -114,11 +113,10 @@ fn steps(grammar: &Grammar, applied: &[Applied], reading: &Reading) -> Vec<Step>
     applied.iter().map(step).collect()
 }
 
-/// Takes the sense of a place from words that are not meant as one here.
+/// Takes the sense of a place from words that are not meant as one here: a "reading room" is not in Reading.
 fn without_places(nodes: Vec<Rc<Node>>, places: &[usize]) -> Vec<Rc<Node>> {
     let of = |(i, node): (usize, Rc<Node>)| {
-        let clear = node.values("place").next().is_some_and(|v| places::parts(v).country.is_some());
-        if places.contains(&i) || !node.is("place", None) || !clear {
+        if places.contains(&i) || !node.is("place", None) {
             return node;
         }
         let mut node = (*node).clone();
@@ -150,56 +148,71 @@ fn is_counted(rooms: &RoomsAsk) -> bool {
     rooms.count.bound != Bound::AtLeast || rooms.count.n > 2
 }
 
-/// Drops what is asked for elsewhere already, and doubles.
-fn settled(facts: Vec<Stated>) -> Vec<Stated> {
-    let same = |a: &Subject, b: &Subject| match (&a.id, &b.id) {
+/// Returns true for one room or object under two names.
+fn is_same(a: &Subject, b: &Subject) -> bool {
+    match (&a.id, &b.id) {
         (Some(a), Some(b)) => a == b,
         (None, None) => a.name.to_lowercase() == b.name.to_lowercase(),
         _ => false,
-    };
-    let asked: Vec<Subject> = facts
-        .iter()
-        .filter(|f| !f.mention)
-        .filter_map(|f| match &f.fact {
-            Fact::Rooms(r) => Some(r.room.clone()),
-            Fact::Objects(o) => Some(o.object.clone()),
-            _ => None,
-        })
-        .collect();
-    let eached: Vec<Subject> = facts
-        .iter()
-        .filter_map(|f| match &f.fact {
-            Fact::Rooms(r) => r.each.clone(),
-            _ => None,
-        })
-        .collect();
-    let numbered: Vec<(Subject, Range<usize>)> = facts
-        .iter()
-        .filter_map(|f| match &f.fact {
-            Fact::Rooms(r) if is_counted(r) && r.count.n > 1 => Some((r.room.clone(), f.tokens.clone())),
-            _ => None,
-        })
-        .collect();
-    let mut kept: Vec<Stated> = Vec::new();
-    for fact in facts {
-        let subject = match &fact.fact {
-            Fact::Rooms(r) => Some(&r.room),
-            Fact::Objects(o) => Some(&o.object),
-            _ => None,
-        };
-        let again = |k: &Stated| match (&k.fact, subject) {
-            (Fact::Rooms(r), Some(s)) => same(&r.room, s),
-            (Fact::Objects(o), Some(s)) => same(&o.object, s),
-            _ => false,
-        };
+    }
+}
+
+/// Returns the rooms or objects that a fact asks for.
+fn subject_of(fact: &Fact) -> Option<&Subject> {
+    match fact {
+        Fact::Rooms(rooms) => Some(&rooms.room),
+        Fact::Objects(objects) => Some(&objects.object),
+        _ => None,
+    }
+}
+
+fn rooms_of(stated: &Stated) -> Option<&RoomsAsk> {
+    if let Fact::Rooms(rooms) = &stated.fact { Some(rooms) } else { None }
+}
+
+/// What is asked for somewhere in a prompt.
+struct Elsewhere {
+    /// Rooms and objects that are asked for, and rooms that come with each of others.
+    asked: Vec<Subject>,
+    /// Rooms whose number is told, with where.
+    numbered: Vec<(Subject, Range<usize>)>,
+}
+
+impl Elsewhere {
+    fn of(facts: &[Stated]) -> Self {
+        let asked = facts.iter().filter(|f| !f.mention).filter_map(|f| subject_of(&f.fact));
+        let with_each = facts.iter().filter_map(|f| rooms_of(f)?.each.as_ref());
+        let numbered = facts.iter().filter_map(|f| Some((rooms_of(f)?, &f.tokens)));
+        let numbered = numbered.filter(|(r, _)| is_counted(r) && r.count.n > 1);
+        Self {
+            asked: asked.chain(with_each).cloned().collect(),
+            numbered: numbered.map(|(r, tokens)| (r.room.clone(), tokens.clone())).collect(),
+        }
+    }
+
+    /// Returns true for words that only speak of what is asked for elsewhere or was `kept` before.
+    fn has(&self, stated: &Stated, kept: &[Stated]) -> bool {
+        let Some(subject) = subject_of(&stated.fact) else { return false };
         // "3 bedrooms ..., master bedroom with a balcony": one of them
-        let counted = matches!(&fact.fact, Fact::Rooms(r) if !is_counted(r)) && !fact.own;
-        let one_of = counted && subject.is_some_and(|s| numbered.iter().any(|(r, t)| same(r, s) && *t != fact.tokens));
-        let spoken_of = one_of
-            || fact.mention
-                && subject.is_some_and(|s| asked.iter().chain(&eached).any(|a| same(a, s)) || kept.iter().any(again));
-        if !spoken_of && !kept.iter().any(|k| k.fact == fact.fact && k.tokens == fact.tokens) {
-            kept.push(fact);
+        let open = rooms_of(stated).is_some_and(|r| !is_counted(r)) && !stated.own;
+        let one_of = || self.numbered.iter().any(|(room, at)| is_same(room, subject) && *at != stated.tokens);
+        let kind = std::mem::discriminant(&stated.fact);
+        let again = |k: &Stated| {
+            std::mem::discriminant(&k.fact) == kind && subject_of(&k.fact).is_some_and(|other| is_same(other, subject))
+        };
+        let spoken_of = || self.asked.iter().any(|a| is_same(a, subject)) || kept.iter().any(again);
+        open && one_of() || stated.mention && spoken_of()
+    }
+}
+
+/// Drops what is asked for elsewhere already, and doubles.
+fn settled(facts: Vec<Stated>) -> Vec<Stated> {
+    let elsewhere = Elsewhere::of(&facts);
+    let mut kept: Vec<Stated> = Vec::new();
+    for stated in facts {
+        let double = kept.iter().any(|k| k.fact == stated.fact && k.tokens == stated.tokens);
+        if !double && !elsewhere.has(&stated, &kept) {
+            kept.push(stated);
         }
     }
     kept.sort_by_key(|f| (f.tokens.start, f.tokens.end));
@@ -219,7 +232,12 @@ fn finished(mut brief: Brief, facts: Vec<Stated>, reading: &Reading) -> Brief {
     }
     let named = brief.building.iter().flat_map(|b| &b.words).chain(brief.place.iter().flat_map(|p| &p.words));
     let named: Vec<(u32, u32)> = named.map(|w| (w.start, w.end)).collect();
-    let open = reading.chunks().iter().filter(|chunk| {
+    // "a dining room. There are six chairs in the room": that one
+    let one_room = brief.asks.iter().filter(|a| matches!(a.fact, Fact::Rooms(_))).count() == 1;
+    let chunks = reading.chunks();
+    let definite = |at: usize| at.checked_sub(1).is_some_and(|before| chunks[before].is("particle", "article"));
+    let open = chunks.iter().enumerate().filter(|(at, chunk)| {
+        let spoken_of = one_room && chunk.is("room_word", "room") && definite(*at);
         let tokens = &reading.tokens()[chunk.tokens.clone()];
         let within = |t: &d3dgen_language::Token| {
             named.iter().any(|(s, e)| *s as usize <= t.chars.start && t.chars.end <= *e as usize)
@@ -227,11 +245,11 @@ fn finished(mut brief: Brief, facts: Vec<Stated>, reading: &Reading) -> Brief {
         let mark = tokens.iter().all(|t| t.kind == TokenKind::Mark);
         // "home" in "a flat ... works from home": the building once more
         let again = brief.building.as_ref().and_then(|b| b.domain.as_deref()).is_some_and(|d| chunk.is("domain", d));
-        let small = chunk.has("particle") || chunk.has("classifier") || again;
+        let small = chunk.has("particle") || chunk.has("classifier") || again || spoken_of;
         !mark && !small && !chunk.tokens.clone().all(|t| covered.contains(&t)) && !tokens.iter().all(within)
     });
     let mut left: Vec<Range<usize>> = Vec::new();
-    for chunk in open {
+    for (_, chunk) in open {
         match left.last_mut() {
             Some(last) if last.end == chunk.tokens.start => last.end = chunk.tokens.end,
             _ => left.push(chunk.tokens.clone()),

@@ -17,6 +17,8 @@ use crate::node::Node;
 struct FactsData {
     /// What half a room of a type is.
     halves: BTreeMap<String, Vec<String>>,
+    /// Domain whose rooms those of a building are that no domain knows.
+    stand_in: String,
 }
 
 fn facts_data() -> &'static FactsData {
@@ -26,11 +28,12 @@ fn facts_data() -> &'static FactsData {
 }
 
 /// What a building knows.
-#[derive(Debug, Clone, Default)]
+#[derive(Clone, Default)]
 pub(crate) struct Known<'d> {
     pub rooms: BTreeSet<String>,
     pub objects: BTreeSet<String>,
     domain: Option<&'d Domain>,
+    registry: Option<&'d Registry>,
 }
 
 impl<'d> Known<'d> {
@@ -41,13 +44,28 @@ impl<'d> Known<'d> {
             rooms: plugin.domain().room_types.iter().map(|r| r.id.clone()).collect(),
             objects: plugin.domain().objects.iter().map(|o| o.id.clone()).collect(),
             domain: Some(plugin.domain()),
+            registry: Some(registry),
         }
+    }
+
+    /// Returns what a building is planned as that no domain knows.
+    pub fn stand_in() -> &'static str {
+        &facts_data().stand_in
     }
 
     /// Returns what half a room of a type is, where such are counted in halves.
     pub fn half_of(&self, id: &str) -> Option<String> {
         let half = &facts_data().halves.get(id)?;
         half.iter().find(|h| self.rooms.contains(*h)).or(half.first()).cloned()
+    }
+
+    /// Returns the room that a kind of building is there for, where this one knows it too: a restaurant's is to eat in.
+    pub fn main_room(&self, kind: &Node) -> Option<String> {
+        let types = self.registry?.iter().flat_map(|p| p.domain().building_types.iter().map(move |b| (p.domain(), b)));
+        let named = |id: &str| kind.values("kind").any(|v| v == id || v.split_once(':').is_some_and(|(_, v)| v == id));
+        let programs = types.filter(|(_, b)| named(&b.id)).filter_map(|(domain, b)| domain.program(&b.program));
+        let mut rooms = programs.filter_map(|p| p.rooms.first()).map(|entry| &entry.room_type);
+        rooms.find(|id| self.rooms.contains(*id)).cloned()
     }
 
     /// Returns the sense of a node that the building knows, or else its first one.

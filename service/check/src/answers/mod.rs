@@ -230,6 +230,8 @@ impl Asked<'_> {
         let has_window = |r: &&GraphRoom| plan.windows.iter().any(|w| w.room_id == r.id);
         let outdoors = |d: &Door| d.room_ids.len() == 1;
         let wet = |id: &str| plan.room(id).is_some_and(|p| self.domain.room_type_or_generic(&p.room_type).wet);
+        let area = |r: &&GraphRoom| plan.room(&r.id).map_or(0.0, |p| p.net_polygon.area());
+        let usual = |r: &&GraphRoom| self.domain.room_type_or_generic(&r.room_type).area_m2.target;
         let all = |holds: &dyn Fn(&&GraphRoom) -> bool| {
             let missing: Vec<String> = rooms.iter().filter(|r| !holds(r)).map(|r| r.name.clone()).collect();
             let reason = || format!("not {}: {}", attribute.replace('_', " "), missing.join(", "));
@@ -243,6 +245,9 @@ impl Asked<'_> {
                 plan.doors_of(&r.id).any(|d| d.kind == DoorKind::Open)
                     || self.domain.room_type_or_generic(&r.room_type).open_front
             }),
+            "separate" | "closed" => all(&|r| plan.doors_of(&r.id).all(|d| d.kind != DoorKind::Open)),
+            "large" => all(&|r| area(r) >= usual(r)),
+            "small" => all(&|r| area(r) <= usual(r)),
             "garden_door" | "outdoor_door" => all(&|r| plan.doors_of(&r.id).any(outdoors)),
             "own_bathroom" => all(&|r| self.doors_between(&r.id, wet).next().is_some()),
             "own_entrance" => all(&|r| plan.doors_of(&r.id).any(outdoors)),

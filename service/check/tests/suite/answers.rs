@@ -1,5 +1,7 @@
 //! What was asked for is measured in the world: the same fact is honored where it holds, and told where it does not.
 
+use std::collections::BTreeMap;
+
 use d3dgen_check::check;
 use d3dgen_model::brief::{AreaAsk, SiteAsk, SiteKind};
 use d3dgen_model::brief::{
@@ -110,19 +112,25 @@ fn answers_of(sample: &Sample, facts: &[Fact]) -> Vec<AskAnswer> {
 
 #[test]
 fn what_is_asked_for_by_a_name_of_its_own_is_not_counted_twice() {
-    let sample = &SAMPLES[WARD];
-    let number = |id: &str| {
-        let is_kind = |t: &str| t == id || t.ends_with(&format!("_{id}")) || t.starts_with(&format!("{id}_"));
-        sample.world.scene_graph.rooms.iter().filter(|r| is_kind(&r.room_type)).count() as u32
-    };
-    let (all, accessible) = (number("toilet"), number("accessible_toilet"));
-    assert!(accessible > 0 && all > accessible, "the ward has toilets of both kinds: {all}, {accessible}");
-    let plain = rooms("toilet", AskedCount::exactly(all - accessible));
-    let own = rooms("accessible_toilet", AskedCount::exactly(accessible));
-    let fates: Vec<Fate> = answers_of(sample, &[plain.clone(), own.clone()]).iter().map(|a| a.fate).collect();
-    assert_eq!(fates, [Fate::Honored, Fate::Honored]);
-    let too_many = rooms("toilet", AskedCount::exactly(all + 1));
-    assert_eq!(answers_of(sample, &[too_many, own])[0].fate, Fate::Substituted);
+    let mut pairs = 0;
+    for sample in SAMPLES.iter() {
+        let types = sample.world.scene_graph.rooms.iter().map(|r| r.room_type.as_str());
+        let mut numbers: BTreeMap<&str, u32> = BTreeMap::new();
+        types.for_each(|id| *numbers.entry(id).or_default() += 1);
+        let kind_of = |of: &str| numbers.iter().filter(|(id, _)| id.ends_with(&format!("_{of}"))).collect::<Vec<_>>();
+        for (id, n) in &numbers {
+            let [(other, others)] = kind_of(id)[..] else { continue };
+            pairs += 1;
+            let own = rooms(other, AskedCount::exactly(*others));
+            let fates = |n| {
+                let asked = [rooms(id, AskedCount::exactly(n)), own.clone()];
+                answers_of(sample, &asked).iter().map(|a| a.fate).collect::<Vec<_>>()
+            };
+            assert_eq!(fates(*n), [Fate::Honored, Fate::Honored], "{id} beside {other}");
+            assert_eq!(fates(n + others + 1)[0], Fate::Substituted, "{id} beside {other}");
+        }
+    }
+    assert!(pairs > 0, "no sample has rooms of a kind beside a kind of them");
 }
 
 #[test]

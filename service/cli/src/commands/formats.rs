@@ -1,5 +1,6 @@
 //! The flags that say which files to write of a world, shared by `generate` and `export`.
 
+use d3dgen_export::Subject;
 use d3dgen_export::exporters::{self, File, plan};
 use d3dgen_export::manifest::{self, Manifest};
 use d3dgen_model::domain::Domain;
@@ -79,13 +80,14 @@ impl Formats {
     /// # Errors
     /// `Export`, `Write`, or `Interrupted` between two formats.
     pub fn write(&self, world: &World, domain: &Domain, output: &Output) -> Result<(), Error> {
-        let mut manifest = Manifest::of(world, domain, &self.kept)?;
+        let subject = Subject::new(world, domain, &self.kept);
+        let mut manifest = Manifest::of(&subject)?;
         for exporter in self.names.iter().filter_map(|name| exporters::get(name)) {
             interrupt::check()?;
             let files = if exporter.name() == "plan" && !self.png {
                 plan::files(world, domain, false)? // the picture is never drawn
             } else {
-                exporter.export(world, domain, &self.kept)?
+                exporter.export(&subject)?
             };
             manifest.add(exporter, &files);
             for File { path, bytes } in files {

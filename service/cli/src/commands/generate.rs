@@ -115,9 +115,6 @@ impl Args {
         let (png, allow_conflicts) = (self.formats.png(), self.allow_conflicts);
         let maker = remote::generate::Maker { remote, formats: &formats, png, allow_conflicts };
         let request = self.request.request(self.prompt.as_deref())?;
-        if request.brief.is_some() {
-            return Err(Error::Input("a brief is planned here; use it without --server, or send its prompt".into()));
-        }
         let jobs = match self.count {
             1 => vec![Job { request, name: self.name.clone(), path: self.out.clone() }],
             _ => self.jobs(&request, &self.seeds(&request)?)?,

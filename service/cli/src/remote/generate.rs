@@ -79,7 +79,7 @@ impl Maker<'_> {
 
     async fn stages(&self, request: &Request, name: Option<&str>, progress: &Progress) -> Result<Generated, Error> {
         let asked = GenerateWorldRequest {
-            start: Some(Start::Building(building(request))),
+            start: Some(Start::Building(building(request)?)),
             name: name.map(str::to_owned),
             allow_conflicts: self.allow_conflicts,
             ..Default::default()
@@ -135,9 +135,11 @@ impl Maker<'_> {
     }
 }
 
-fn building(request: &Request) -> BuildingRequest {
-    BuildingRequest {
+fn building(request: &Request) -> Result<BuildingRequest, Error> {
+    let brief = request.brief.as_ref().map(d3dgen_proto::convert::to_proto).transpose();
+    Ok(BuildingRequest {
         prompt: request.prompt.clone(),
+        brief: brief.map_err(|e| Error::Remote(e.to_string()))?,
         seed: request.seed,
         domain_id: request.domain.clone(),
         country: request.country.clone(),
@@ -154,7 +156,7 @@ fn building(request: &Request) -> BuildingRequest {
             fit: request.robot.fit,
         }),
         styles: request.style.words().map(str::to_owned).collect(),
-    }
+    })
 }
 
 /// Returns why no world was made: for some seeds there is none, which is no reason to leave out the others.

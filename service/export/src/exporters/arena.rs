@@ -8,16 +8,14 @@ mod scenario;
 mod surfaces;
 mod world_yaml;
 
-use d3dgen_model::domain::Domain;
 use d3dgen_model::floorplan::DoorKind;
-use d3dgen_model::world::World;
 use serde_json::{Value, json};
 
 use super::{Exporter, File};
-use crate::models::{KeptModels, snake};
+use crate::models::snake;
 use crate::scene::SimScene;
 use crate::used::UsedModels;
-use crate::{Error, yaml};
+use crate::{Error, Subject, yaml};
 
 /// Writes the Arena bundle.
 pub struct Arena;
@@ -39,7 +37,8 @@ impl Exporter for Arena {
         true
     }
 
-    fn export(&self, world: &World, domain: &Domain, kept: &dyn KeptModels) -> Result<Vec<File>, Error> {
+    fn export(&self, subject: &Subject<'_>) -> Result<Vec<File>, Error> {
+        let Subject { world, domain, kept, .. } = *subject;
         if snake(&world.name) != world.name || world.name.is_empty() {
             let reason = "a world's name is of lower-case letters, digits and underscores".to_owned();
             return Err(Error::Unsupported { exporter: "arena", subject: world.name.clone(), reason });
@@ -68,7 +67,7 @@ impl Exporter for Arena {
         Ok(files)
     }
 
-    fn places(&self, scene: &SimScene) -> Vec<(String, String)> {
+    fn places(&self, scene: &SimScene, _: &[File]) -> Vec<(String, String)> {
         let file = |level: i32| format!("arena/worlds/{}/{level}/world.yaml", scene.name);
         let rooms = scene.rooms.iter().map(|r| (&r.id, r.level, "zones", r.room_id.clone()));
         let doors = scene.doors.iter().filter(|d| d.kind != DoorKind::Open || d.room_ids.len() == 1);

@@ -13,16 +13,13 @@ use std::collections::BTreeMap;
 
 use d3dgen_mesh::writers;
 use d3dgen_mesh::writers::number::n;
-use d3dgen_model::domain::Domain;
-use d3dgen_model::world::World;
 use serde_json::json;
 
 use super::mujoco::json_text;
 use super::{Exporter, File};
-use crate::Error;
-use crate::models::KeptModels;
 use crate::scene::{Mobility, SimModel, SimObject, SimScene};
 use crate::xml::Xml;
+use crate::{Error, Subject};
 
 /// The first label of things; 0 is what has none, 1 to 4 is the building.
 const FIRST_LABEL: usize = 10;
@@ -43,25 +40,25 @@ impl Exporter for Gazebo {
         &["gazebo"]
     }
 
-    fn export(&self, world: &World, domain: &Domain, kept: &dyn KeptModels) -> Result<Vec<File>, Error> {
-        let scene = SimScene::of(world, domain, kept)?;
-        let labels = labels(&scene);
+    fn export(&self, subject: &Subject<'_>) -> Result<Vec<File>, Error> {
+        let scene = subject.scene()?;
+        let labels = labels(scene);
         let mut files = Vec::new();
         for model in &scene.models {
-            files.extend(folder(model, &scene)?);
+            files.extend(folder(model, scene)?);
         }
-        files.extend(building::meshes(&scene));
-        files.push(File::new("gazebo/world.sdf", document(&scene, &labels)));
+        files.extend(building::meshes(scene));
+        files.push(File::new("gazebo/world.sdf", document(scene, &labels)));
         let named: BTreeMap<String, &str> = labels.iter().map(|(class, label)| (label.to_string(), *class)).collect();
         files.push(File::new("gazebo/labels.json", json_text(&json!(named))));
         files.push(File::new("gazebo/paths.json", json_text(&scene.paths())));
-        files.push(File::new("gazebo/manifest.json", json_text(&scene.world_manifest(|id| place(&scene, id)))));
-        files.extend(ros::files(&scene));
+        files.push(File::new("gazebo/manifest.json", json_text(&scene.world_manifest(|id| place(scene, id)))));
+        files.extend(ros::files(scene));
         files.sort_by(|a, b| a.path.cmp(&b.path));
         Ok(files)
     }
 
-    fn places(&self, scene: &SimScene) -> Vec<(String, String)> {
+    fn places(&self, scene: &SimScene, _: &[File]) -> Vec<(String, String)> {
         let ids = scene.ids().into_iter().filter(|(_, kind)| !matches!(*kind, "zone" | "robot"));
         ids.map(|(id, _)| (id.to_owned(), place(scene, id))).collect()
     }

@@ -1,13 +1,10 @@
 //! The whole world as one GLB file, for viewers, engines and people who look at it in a browser.
 
 use d3dgen_mesh::writers;
-use d3dgen_model::domain::Domain;
-use d3dgen_model::world::World;
 
 use super::{Exporter, File};
-use crate::models::KeptModels;
 use crate::scene::SimScene;
-use crate::{Error, view};
+use crate::{Error, Subject, view};
 
 /// The exporter.
 pub struct Gltf;
@@ -25,13 +22,13 @@ impl Exporter for Gltf {
         &["gltf"]
     }
 
-    fn export(&self, world: &World, domain: &Domain, kept: &dyn KeptModels) -> Result<Vec<File>, Error> {
-        let seen = view::world3d(&SimScene::of(world, domain, kept)?)?;
-        Ok(vec![File::new(format!("gltf/{}.glb", world.name), writers::world_glb(&seen)?)])
+    fn export(&self, subject: &Subject<'_>) -> Result<Vec<File>, Error> {
+        let seen = view::world3d(subject.scene()?)?;
+        Ok(vec![File::new(format!("gltf/{}.glb", subject.world.name), writers::world_glb(&seen)?)])
     }
 
     /// Nodes have the ids of the scene; zones and robots are not seen.
-    fn places(&self, scene: &SimScene) -> Vec<(String, String)> {
+    fn places(&self, scene: &SimScene, _: &[File]) -> Vec<(String, String)> {
         let seen = |kind: &str| !matches!(kind, "zone" | "robot");
         scene.ids().into_iter().filter(|(_, kind)| seen(kind)).map(|(id, _)| (id.to_owned(), id.to_owned())).collect()
     }

@@ -10,12 +10,8 @@ mod rmf;
 mod tasks;
 mod usd;
 
-use d3dgen_model::domain::Domain;
-use d3dgen_model::world::World;
-
-use crate::Error;
-use crate::models::KeptModels;
 use crate::scene::SimScene;
+use crate::{Error, Subject};
 
 pub use arena::Arena;
 pub use gazebo::Gazebo;
@@ -66,17 +62,17 @@ pub trait Exporter: Sync {
         false
     }
 
-    /// Returns the files, sorted by path; a pure function of world, domain and kept models.
+    /// Returns the files, sorted by path; a pure function of the subject.
     ///
     /// # Errors
     /// `Unsupported` or `TooLarge` when the format cannot hold this world, `Model` and `Kept` when a model of it cannot be
     /// had, `Picture` when drawing fails.
-    fn export(&self, world: &World, domain: &Domain, kept: &dyn KeptModels) -> Result<Vec<File>, Error>;
+    fn export(&self, subject: &Subject<'_>) -> Result<Vec<File>, Error>;
 
     /// Returns where its files have what the ids of a scene name: id and place, for `manifest.json`. Nothing of what it leaves
     /// out.
-    fn places(&self, scene: &SimScene) -> Vec<(String, String)> {
-        let _ = scene;
+    fn places(&self, scene: &SimScene, files: &[File]) -> Vec<(String, String)> {
+        let _ = (scene, files);
         Vec::new()
     }
 }
@@ -159,9 +155,9 @@ mod tests {
     fn every_exporter_is_deterministic_and_writes_relative_sorted_paths() {
         let (world, domain) = (sample::world(), sample::domain());
         for exporter in all() {
-            let files = exporter.export(&world, &domain, &NothingKept).unwrap();
+            let files = exporter.export(&Subject::new(&world, &domain, &NothingKept)).unwrap();
             assert!(!files.is_empty());
-            assert_eq!(files, exporter.export(&world, &domain, &NothingKept).unwrap());
+            assert_eq!(files, exporter.export(&Subject::new(&world, &domain, &NothingKept)).unwrap());
             assert!(files.iter().all(|f| !f.path.starts_with('/') && !f.path.contains("..")));
             let root = |f: &File| f.path.split('/').next().unwrap_or_default().to_owned();
             let used: std::collections::BTreeSet<String> = files.iter().map(root).collect();

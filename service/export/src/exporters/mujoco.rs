@@ -8,15 +8,13 @@ mod bodies;
 mod building;
 mod meshes;
 
+use d3dgen_mesh::dynamics;
 use d3dgen_mesh::writers::number::n;
-use d3dgen_model::domain::Domain;
-use d3dgen_model::world::World;
 
 use super::{Exporter, File};
-use crate::Error;
-use crate::models::KeptModels;
 use crate::scene::{SimBox, SimScene, SimShape};
 use crate::xml::Xml;
+use crate::{Error, Subject};
 
 /// Step of the simulation, s.
 const STEP_S: &str = "0.002";
@@ -37,10 +35,10 @@ impl Exporter for Mujoco {
         &["mujoco"]
     }
 
-    fn export(&self, world: &World, domain: &Domain, kept: &dyn KeptModels) -> Result<Vec<File>, Error> {
-        let scene = SimScene::of(world, domain, kept)?;
-        let mut files = meshes::files(&scene);
-        files.push(File::new("mujoco/world.xml", document(&scene)));
+    fn export(&self, subject: &Subject<'_>) -> Result<Vec<File>, Error> {
+        let scene = subject.scene()?;
+        let mut files = meshes::files(scene);
+        files.push(File::new("mujoco/world.xml", document(scene)));
         files.push(File::new("mujoco/scene.py", include_str!("../../data/mujoco/scene.py")));
         files.push(File::new("mujoco/paths.json", json_text(&scene.paths())));
         files.push(File::new("mujoco/manifest.json", json_text(&scene.world_manifest(|id| id.to_owned()))));
@@ -48,7 +46,7 @@ impl Exporter for Mujoco {
         Ok(files)
     }
 
-    fn places(&self, scene: &SimScene) -> Vec<(String, String)> {
+    fn places(&self, scene: &SimScene, _: &[File]) -> Vec<(String, String)> {
         scene.ids().into_iter().map(|(id, _)| (id.to_owned(), id.to_owned())).collect()
     }
 }
@@ -95,6 +93,7 @@ fn document(scene: &SimScene) -> String {
     for object in &scene.objects {
         bodies::thing(&mut xml, scene, object, &mut rest);
     }
+    bodies::passes(scene, &mut rest);
     building::sites(&mut xml, scene);
     xml.end();
     xml.begin("contact", &[]);
@@ -115,9 +114,10 @@ fn document(scene: &SimScene) -> String {
 
 /// The default classes; group 2 is seen, group 3 collides.
 ///
-/// Drawers and doors of furniture (`articulable`) meet what can be moved, doors of rooms and robots, not the building, other
-/// furniture and each other: as within one body of an articulation, what stands beside a cupboard does not jam it. By the
-/// engine's rule two shapes meet when the type of one is among the affinities of the other.
+/// Drawers and doors of furniture (`articulable`) meet what can be moved and robots, not the building, doors of rooms, other
+/// furniture and each other: as within one body of an articulation, what stands beside a cupboard does not jam it. Doors of
+/// rooms meet the building and furniture too. By the engine's rule two shapes meet when the type of one is among the affinities
+/// of the other.
 fn defaults(xml: &mut Xml) {
     let geom = |pairs: &[(&'static str, &str)]| pairs.iter().map(|(k, v)| (*k, (*v).to_owned())).collect::<Vec<_>>();
     let classes = [
@@ -127,7 +127,7 @@ fn defaults(xml: &mut Xml) {
             geom(&[
                 ("type", "box"),
                 ("group", "0"),
-                ("contype", "1"),
+                ("contype", "5"),
                 ("conaffinity", "2"),
                 ("friction", "0.8 0.005 0.0001"),
             ]),
@@ -145,7 +145,7 @@ fn defaults(xml: &mut Xml) {
         if class == "articulable" {
             // Friction of joints is dry: the engine's usual one lets them creep.
             let dry = ("solimpfriction", "0.9999 0.9999 0.001 0.5 2".to_owned());
-            xml.leaf("joint", &[("armature", "0.005".to_owned()), dry]);
+            xml.leaf("joint", &[("armature", n(dynamics::ARMATURE)), dry]);
         }
         xml.end();
     }

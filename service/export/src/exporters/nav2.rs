@@ -3,7 +3,8 @@
 //! Every storey has a folder of its own (`nav2/0/` is the ground floor). The map is what a robot as high as those of the
 //! world finds: what hangs above it leaves the floor free. The frame is the world's, in meters.
 
-use d3dgen_model::domain::Domain;
+use std::collections::BTreeSet;
+
 use d3dgen_model::geometry::{Point, Pose, to_mm};
 use d3dgen_model::occupancy::CELL_M;
 use d3dgen_model::scenario::{Poi, RoiKind};
@@ -11,9 +12,9 @@ use d3dgen_model::world::World;
 use serde_json::{Value, json};
 
 use super::{Exporter, File};
-use crate::models::KeptModels;
 use crate::roadmap::{Body, Ground, Place, Roadmap};
-use crate::{Error, yaml};
+use crate::scene::SimScene;
+use crate::{Error, Subject, yaml};
 
 /// Writes the nav2 folder.
 pub struct Nav2;
@@ -45,7 +46,8 @@ impl Exporter for Nav2 {
         &["nav2"]
     }
 
-    fn export(&self, world: &World, _: &Domain, _: &dyn KeptModels) -> Result<Vec<File>, Error> {
+    fn export(&self, subject: &Subject<'_>) -> Result<Vec<File>, Error> {
+        let world = subject.world;
         let body = Body::of(world);
         let mut files = vec![File::new("nav2/nav2.launch.py", include_str!("nav2/nav2.launch.py"))];
         for (level, storey) in &world.storeys() {
@@ -72,6 +74,21 @@ impl Exporter for Nav2 {
         }
         files.sort_by(|a, b| a.path.cmp(&b.path));
         Ok(files)
+    }
+
+    /// Rooms and doors that robots get to are nodes of a route graph.
+    fn places(&self, scene: &SimScene, files: &[File]) -> Vec<(String, String)> {
+        let known: BTreeSet<&str> = scene.ids().into_iter().map(|(id, _)| id).collect();
+        let mut places = Vec::new();
+        for file in files.iter().filter(|f| f.path.ends_with(".geojson")) {
+            let graph: Value = serde_json::from_slice(&file.bytes).unwrap_or_default();
+            for node in graph["features"].as_array().into_iter().flatten().map(|f| &f["properties"]) {
+                if let Some(name) = node["metadata"]["name"].as_str().filter(|name| known.contains(name)) {
+                    places.push((name.to_owned(), format!("{}#{}", file.path, node["id"])));
+                }
+            }
+        }
+        places
     }
 }
 

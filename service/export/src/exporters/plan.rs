@@ -27,8 +27,7 @@ use d3dgen_model::world::World;
 use resvg::{tiny_skia, usvg};
 
 use super::{Exporter, File};
-use crate::Error;
-use crate::models::KeptModels;
+use crate::{Error, Subject};
 use building::Sides;
 use dimensions::Dimensions;
 use page::{Frame, Page, Path};
@@ -76,8 +75,8 @@ impl Exporter for Plan {
         true
     }
 
-    fn export(&self, world: &World, domain: &Domain, _: &dyn KeptModels) -> Result<Vec<File>, Error> {
-        files(world, domain, true)
+    fn export(&self, subject: &Subject<'_>) -> Result<Vec<File>, Error> {
+        files(subject.world, subject.domain, true)
     }
 }
 

@@ -7,7 +7,6 @@ mod lifts;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use d3dgen_model::domain::Domain;
 use d3dgen_model::floorplan::{Door, DoorKind, Floorplan};
 use d3dgen_model::geometry::{Point, to_mm};
 use d3dgen_model::scenario::Poi;
@@ -16,9 +15,9 @@ use d3dgen_model::world::World;
 use serde_json::{Map, Value, json};
 
 use super::{Exporter, File};
-use crate::models::KeptModels;
 use crate::roadmap::{Body, Ground, Lane, Place, Roadmap};
-use crate::{Error, yaml};
+use crate::scene::SimScene;
+use crate::{Error, Subject, yaml};
 
 /// Writes the building map and the navigation graph.
 pub struct Rmf;
@@ -39,7 +38,8 @@ impl Exporter for Rmf {
         &["rmf"]
     }
 
-    fn export(&self, world: &World, _: &Domain, _: &dyn KeptModels) -> Result<Vec<File>, Error> {
+    fn export(&self, subject: &Subject<'_>) -> Result<Vec<File>, Error> {
+        let world = subject.world;
         let building = Building::of(world);
         let plan = &world.floorplan;
         let levels = building.storeys.iter().map(|s| (level_name(s.level), s.document(&building.lifts)));
@@ -60,6 +60,15 @@ impl Exporter for Rmf {
         }
         files.sort_by(|a, b| a.path.cmp(&b.path));
         Ok(files)
+    }
+
+    /// Doors and rooms that lanes pass have their names in the building's map; a name is an entry of its own there.
+    fn places(&self, scene: &SimScene, files: &[File]) -> Vec<(String, String)> {
+        let Some(map) = files.iter().find(|f| f.path.ends_with(".building.yaml")) else { return Vec::new() };
+        let text = String::from_utf8_lossy(&map.bytes);
+        let entries: BTreeSet<&str> = text.lines().filter_map(|line| line.trim().strip_prefix("- ")).collect();
+        let ids = scene.ids().into_iter().filter(|(id, kind)| matches!(*kind, "room" | "door") && entries.contains(id));
+        ids.map(|(id, _)| (id.to_owned(), format!("{}#{id}", map.path))).collect()
     }
 }
 

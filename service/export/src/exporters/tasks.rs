@@ -6,15 +6,12 @@
 use std::f64::consts::TAU;
 
 use d3dgen_model::document::Document;
-use d3dgen_model::domain::Domain;
 use d3dgen_model::geometry::{Pose, to_mm};
 use d3dgen_model::scenario::{Act, Agent, RobotJob, RobotJobKind, RobotTask, Scenario};
-use d3dgen_model::world::World;
 use serde_json::{Map, Value, json};
 
 use super::{Exporter, File};
-use crate::models::KeptModels;
-use crate::{Error, yaml};
+use crate::{Error, Subject, yaml};
 
 /// HuNavSim's `REGULAR` behavior, the radius that its social forces are tuned for, m, and the height of its models' middle, m.
 const REGULAR: u32 = 1;
@@ -39,7 +36,8 @@ impl Exporter for Tasks {
         &["tasks"]
     }
 
-    fn export(&self, world: &World, _domain: &Domain, _kept: &dyn KeptModels) -> Result<Vec<File>, Error> {
+    fn export(&self, subject: &Subject<'_>) -> Result<Vec<File>, Error> {
+        let world = subject.world;
         let mut files = vec![File::new("tasks/scenario.json", world.scenario.to_json())];
         for (level, storey) in world.storeys() {
             let tag = if level == 0 { String::new() } else { format!("_level_{level}") };
@@ -183,7 +181,8 @@ mod tests {
 
     #[test]
     fn one_file_a_robot() {
-        let files = Tasks.export(&sample::world(), &sample::domain(), &NothingKept).expect("it can be written");
+        let files =
+            Tasks.export(&Subject::new(&sample::world(), &sample::domain(), &NothingKept)).expect("it can be written");
         let names: Vec<&str> = files.iter().map(|f| f.path.as_str()).collect();
         let wanted = [
             "tasks/hunav_agents.yaml",

@@ -13,14 +13,11 @@ use d3dgen_mesh::writers::usd::parts::{self, Pictures};
 use d3dgen_mesh::writers::usd::text::{Text, identifier, schemas};
 use d3dgen_mesh::writers::{self, ModelFile};
 use d3dgen_mesh::{World3d, finish};
-use d3dgen_model::domain::Domain;
-use d3dgen_model::world::World;
 use serde_json::Value;
 
 use super::{Exporter, File};
-use crate::models::KeptModels;
-use crate::scene::SimScene;
-use crate::{Error, view};
+use crate::scene::{SimDoor, SimLeaf, SimScene};
+use crate::{Error, Subject, view};
 
 /// The exporter.
 pub struct Usd;
@@ -31,6 +28,10 @@ const ROOT: &str = "usd";
 const TEXTURES: &str = "./textures/";
 /// Friction and restitution of the building.
 const BUILDING_FRICTION: f64 = 0.8;
+/// Groups of colliders: the building with what is fixed to it, its doors, and doors and drawers of what is fixed.
+const STRUCTURAL: &str = "Structural";
+const LEAVES: &str = "Leaves";
+const ARTICULABLE: &str = "Articulable";
 
 impl Exporter for Usd {
     fn name(&self) -> &'static str {
@@ -45,28 +46,28 @@ impl Exporter for Usd {
         &[ROOT]
     }
 
-    fn export(&self, world: &World, domain: &Domain, kept: &dyn KeptModels) -> Result<Vec<File>, Error> {
-        let scene = SimScene::of(world, domain, kept)?;
-        let seen = view::world3d(&scene)?;
-        let assets = objects::Assets::of(&scene);
+    fn export(&self, subject: &Subject<'_>) -> Result<Vec<File>, Error> {
+        let scene = subject.scene()?;
+        let seen = view::world3d(scene)?;
+        let assets = objects::Assets::of(scene);
         let mut layers =
-            vec![ModelFile { name: "world.usda".to_owned(), bytes: layer(&scene, &seen, &assets)?.into_bytes() }];
+            vec![ModelFile { name: "world.usda".to_owned(), bytes: layer(scene, &seen, &assets)?.into_bytes() }];
         layers.extend(pictures(&seen));
-        let objects = assets.files(&scene)?;
+        let objects = assets.files(scene)?;
         // Thumbnails are for catalogs; a package holds what is loaded.
         let packed: Vec<ModelFile> =
             layers.iter().chain(objects.iter().filter(|f| !f.name.contains("/.thumbs/"))).cloned().collect();
         let mut files: Vec<File> =
             layers.into_iter().chain(objects).map(|f| File::new(format!("{ROOT}/{}", f.name), f.bytes)).collect();
         files.push(File::new(format!("{ROOT}/world.usdz"), writers::pack(&packed)));
-        files.push(File::new(format!("{ROOT}/manifest.json"), json_text(&manifest(&scene, &assets))));
+        files.push(File::new(format!("{ROOT}/manifest.json"), json_text(&manifest(scene, &assets))));
         files.push(File::new(format!("{ROOT}/paths.json"), json_text(&scene.paths())));
-        files.extend(lab::files(&scene));
+        files.extend(lab::files(scene));
         files.sort_by(|a, b| a.path.cmp(&b.path));
         Ok(files)
     }
 
-    fn places(&self, scene: &SimScene) -> Vec<(String, String)> {
+    fn places(&self, scene: &SimScene, _: &[File]) -> Vec<(String, String)> {
         places(scene).into_iter().map(|(id, path)| (id.to_owned(), path)).collect()
     }
 }
@@ -98,7 +99,7 @@ fn layer(scene: &SimScene, seen: &World3d, assets: &objects::Assets) -> Result<S
     text.prim("def Xform", "World", &[apis, "kind = \"assembly\"".to_owned()], |text| {
         text.labels("class", &["building"]);
         text.line("rel material:binding:physics = </World/Physics/Building>");
-        physics(text);
+        physics(text, scene, assets);
         let looks = looks(text, seen);
         let building = building::Building { scene, seen, looks: &looks };
         failed = building.write(text).err();
@@ -109,8 +110,11 @@ fn layer(scene: &SimScene, seen: &World3d, assets: &objects::Assets) -> Result<S
     failed.map_or_else(|| Ok(text.finish()), Err)
 }
 
-/// Writes gravity, and how the building rubs.
-fn physics(text: &mut Text) {
+/// Writes gravity, how the building rubs, and what does not collide.
+///
+/// As within one articulation, what stands beside a cupboard does not jam its doors and drawers: they meet what can be moved and
+/// robots, not the building with its doors, what stands fast, and each other.
+fn physics(text: &mut Text, scene: &SimScene, assets: &objects::Assets) {
     text.prim("def PhysicsScene", "PhysicsScene", &[], |text| {
         text.line("vector3f physics:gravityDirection = (0, 0, -1)");
         text.line("float physics:gravityMagnitude = 9.81");
@@ -123,6 +127,30 @@ fn physics(text: &mut Text) {
             text.line(format_args!("float physics:dynamicFriction = {BUILDING_FRICTION}"));
             text.line("float physics:restitution = 0.1");
         });
+        let [mut still, moving] = assets.fixed(scene);
+        let frames = scene.doors.iter().map(|d| format!("/World/Doors/{}/frame", identifier(&d.id)));
+        let parts = ["Ground", "Rooms", "Walls", "Windows"].map(|part| format!("/World/{part}"));
+        still.extend(parts.into_iter().chain(frames));
+        // What stands fast never meets itself; engines that count groups need to be told.
+        collision_group(text, STRUCTURAL, &still, &[STRUCTURAL]);
+        let leaf =
+            |door: &SimDoor, leaf: &SimLeaf| format!("/World/Doors/{}/{}", identifier(&door.id), identifier(&leaf.id));
+        let leaves: Vec<String> = scene.doors.iter().flat_map(|d| d.leaves.iter().map(move |l| leaf(d, l))).collect();
+        collision_group(text, LEAVES, &leaves, &[]);
+        collision_group(text, ARTICULABLE, &moving, &[ARTICULABLE, LEAVES, STRUCTURAL]);
+    });
+}
+
+/// Writes a group of colliders and the groups that it does not meet.
+fn collision_group(text: &mut Text, name: &str, paths: &[String], passes: &[&str]) {
+    let targets =
+        |paths: &mut dyn Iterator<Item = String>| paths.map(|p| format!("<{p}>")).collect::<Vec<_>>().join(", ");
+    text.prim("def PhysicsCollisionGroup", name, &[schemas(&["CollectionAPI:colliders"])], |text| {
+        text.line(format_args!("rel collection:colliders:includes = [{}]", targets(&mut paths.iter().cloned())));
+        if !passes.is_empty() {
+            let groups = &mut passes.iter().map(|group| format!("/World/Physics/{group}"));
+            text.line(format_args!("rel physics:filteredGroups = [{}]", targets(groups)));
+        }
     });
 }
 

@@ -57,6 +57,7 @@ fn models(place: &Place<'_>, used: &UsedModels, kept: &dyn KeptModels) -> Result
             id: names.new_id(&made.reference),
             reference: made.reference,
             object: made.object,
+            is_kept: made.is_kept,
             model: made.model,
         })
     };

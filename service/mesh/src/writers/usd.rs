@@ -8,7 +8,8 @@ use text::{Text, identifier, names, quat, schemas, triple};
 use super::number::{n, small};
 use super::quaternion;
 use super::{check, plain};
-use crate::mass::{inertia, whole};
+use crate::dynamics;
+use crate::mass::{Inertia, whole};
 use crate::{Body, Error, Model3d};
 
 /// First day of the format's year in which assets of this form were first written: a fixed date, as the same model is the
@@ -209,7 +210,8 @@ pub fn base_name(model: &Model3d) -> String {
     body_names(model).into_iter().next().unwrap_or_default()
 }
 
-fn body_names(model: &Model3d) -> Vec<String> {
+/// Returns the names of the prims of a model's bodies, in their order.
+pub fn body_names(model: &Model3d) -> Vec<String> {
     let all = names("Looks", model.bodies.iter().map(|b| b.name.as_str()));
     let scopes = ["Physics", "Prototypes"];
     all.into_iter().map(|n| if scopes.contains(&n.as_str()) { format!("{n}_body") } else { n }).collect()
@@ -217,8 +219,9 @@ fn body_names(model: &Model3d) -> Vec<String> {
 
 fn bodies_and_joints(text: &mut Text, model: &Model3d, form: &Form<'_>, root: &str, class: &str) {
     let bodies = body_names(model);
-    for (body, name) in model.bodies.iter().zip(&bodies) {
-        write_body(text, model, body, name, form, root, class);
+    let borne = dynamics::borne(model);
+    for ((body, inertia), name) in model.bodies.iter().zip(&borne.bodies).zip(&bodies) {
+        write_body(text, model, (body, inertia), name, form, root, class);
     }
     if model.joints.is_empty() {
         return;
@@ -230,13 +233,20 @@ fn bodies_and_joints(text: &mut Text, model: &Model3d, form: &Form<'_>, root: &s
     });
     let paths: Vec<String> = bodies.iter().map(|b| format!("/{root}/{b}")).collect();
     let joints = names("root_joint", model.joints.iter().map(|j| j.name.as_str()));
-    for (joint, name) in model.joints.iter().zip(&joints) {
-        parts::joint(text, model, joint, name, &paths);
+    for ((joint, resists), name) in model.joints.iter().zip(borne.joints).zip(&joints) {
+        parts::joint(text, joint, resists, name, &paths);
     }
 }
 
-fn write_body(text: &mut Text, model: &Model3d, body: &Body, name: &str, form: &Form<'_>, root: &str, class: &str) {
-    let inertia = inertia(body);
+fn write_body(
+    text: &mut Text,
+    model: &Model3d,
+    (body, inertia): (&Body, &Inertia),
+    name: &str,
+    form: &Form<'_>,
+    root: &str,
+    class: &str,
+) {
     let (moments, axes) = inertia.principal();
     let moments = moments.map(|v| small(v.max(1e-9)));
     let apis = schemas(&["PhysicsRigidBodyAPI", "PhysicsMassAPI", "SemanticsLabelsAPI:class"]);

@@ -139,6 +139,7 @@ fn described(graph: &SceneGraph, domain: &Domain, kind: &RoomType, area_m2: Opti
             range.max.min(target * (1.0 + margin)).max(target),
         ],
         wished_assets: wished_assets(domain, kind, &[]),
+        sides_m: None,
         occupants: None,
         circulation: false,
         requested: true,

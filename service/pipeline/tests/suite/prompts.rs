@@ -329,6 +329,14 @@ fn reads_counts_and_groups() {
     assert_eq!(right, all);
 }
 
+/// In languages that only the brief is read in.
+#[test]
+fn reads_prompts_of_which_the_rooms_come_from_the_brief() {
+    let (right, all) = score(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/prompts/briefed.jsonl"));
+    assert!(all >= 30, "{all} prompts");
+    assert_eq!(right, all);
+}
+
 #[test]
 fn reads_how_rooms_lie_to_each_other() {
     let (right, all) = score(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/prompts/relations.jsonl"));

@@ -1,22 +1,29 @@
 //! What a brief states and the reader of words missed: it is added to what that reader found.
 //!
-//! Both read the same prompt. Where the reader of words made something of a phrase, that stands. A room of whose words it
-//! said that they are nothing that can be planned, a number it read as one, a storey, a seat count or an object that it did
-//! not see at all are taken from the brief.
+//! Both read the same prompt. Where the reader of words made something of a phrase, that stands. A room of whose words it made
+//! nothing or said that they are nothing that can be planned, a number it read as one, a storey, a seat count or an object that
+//! it did not see at all are taken from the brief.
 
-use d3dgen_model::brief::{Ask, Brief, Fact, RoomsAsk};
+use std::ops::Range;
+
+use d3dgen_model::brief::{Ask, Bound, Brief, Fact, RoomsAsk};
+use d3dgen_model::domain::GENERIC_ROOM_TYPE;
+use d3dgen_model::scene_graph::Note;
 use d3dgen_plugins::Registry;
 
 use super::wishes::Facts;
-use crate::reading::Reading;
+use crate::people::seats::Called;
+use crate::reading::{Reading, Understood};
 use crate::request::MAX_AREA_M2;
 use crate::tokens::storey::Where;
+use crate::tokens::text::{Span, capital};
 use crate::wished::unread::Unread;
-use crate::wished::wishes::Wish;
+use crate::wished::wishes::{Pair, Wish};
 
 /// Adds to a reading what it lacks of a brief of the same prompt.
 pub(crate) fn restore(reading: &mut Reading, brief: &Brief, registry: &Registry) {
     let facts = Facts::of(brief, reading.domain, registry);
+    restore_single(reading, brief, &facts);
     if !reading.single {
         restore_rooms(reading, brief, registry);
         restore_levels(reading, &facts);
@@ -43,29 +50,64 @@ pub(crate) fn restore(reading: &mut Reading, brief: &Brief, registry: &Registry)
     reading.area_m2 = reading.area_m2.or(facts.area_m2.filter(usable));
 }
 
-/// Adds the rooms whose words nothing was made of, and the rooms that a number lacks.
+/// Takes a prompt for one room that names one and no building, whatever more it says of that room, with the sides that it gives.
+fn restore_single(reading: &mut Reading, brief: &Brief, facts: &Facts) {
+    let ([wish], Some(asked)) = (&mut reading.wishes.wishes[..], facts.only_room()) else { return };
+    if wish.room_type != asked.room_type || wish.count > 1 || reading.storeys.levels.len() > 1 {
+        return;
+    }
+    if !reading.single {
+        let message = "the prompt asks for one room and no building; it was planned by itself";
+        reading.assumptions.push(Note::new("single_room", message.into()));
+    }
+    (reading.single, reading.closed, reading.total) = (true, true, None);
+    wish.area_m2 = wish.area_m2.or(asked.area_m2);
+    wish.sides_m = asked.sides_m;
+    if wish.sides_m.is_some() {
+        let kept = |u: &&Unread| brief.asks.iter().any(|a| rooms_of(a).is_some() && overlaps(brief, a, u));
+        let read: Vec<Note> = reading.unread.iter().filter(kept).map(|u| u.note.clone()).collect();
+        reading.conflicts.retain(|note| !read.contains(note));
+    }
+}
+
+/// Adds the rooms whose words nothing was made of, with how they lie, and the rooms that a number lacks; those of which a part of
+/// the name was read are called as the brief has it.
 fn restore_rooms(reading: &mut Reading, brief: &Brief, registry: &Registry) {
-    let lost: Vec<&Ask> =
-        brief.asks.iter().filter(|a| rooms_of(a).is_some_and(|r| is_lost(reading, brief, a, r))).collect();
+    let rooms = || brief.asks.iter().filter_map(|a| Some((a, rooms_of(a)?)));
+    let lost: Vec<&Ask> = rooms().filter(|(a, r)| is_lost(reading, brief, a, r)).map(|found| found.0).collect();
     let part = Brief { asks: lost.iter().map(|a| (*a).clone()).collect(), ..brief.clone() };
     let found = Facts::of(&part, reading.domain, registry);
     let new = |w: &&Wish| !reading.wishes.wishes.iter().any(|o| o.room_type == w.room_type);
-    let rooms: Vec<Wish> = found.wishes.wishes.iter().filter(new).cloned().collect();
-    reading.wishes.wishes.extend(rooms);
+    let added: Vec<Wish> = found.wishes.wishes.iter().filter(new).cloned().collect();
+    restore_pairs(reading, &Facts::of(brief, reading.domain, registry), &added);
+    reading.wishes.wishes.extend(added);
     reading.names.extend(found.called);
     let said: Vec<Unread> =
         reading.unread.iter().filter(|u| lost.iter().any(|a| overlaps(brief, a, u))).cloned().collect();
     reading.conflicts.retain(|note| !said.iter().any(|u| &u.note == note));
-    for ask in &brief.asks {
-        let Some(rooms) = rooms_of(ask).filter(|r| r.count.n > 1 && r.count.bound == Default::default()) else {
-            continue;
-        };
-        let Some(id) = &rooms.room.id else { continue };
-        let short = |w: &&mut Wish| &w.room_type == id && w.count < rooms.count.n && !w.exact;
-        if let Some(wish) = reading.wishes.wishes.iter_mut().find(short) {
-            (wish.count, wish.exact) = (rooms.count.n, true);
+    for (ask, asked) in rooms().filter(|(_, r)| r.room.id.is_none()) {
+        if let Some(room_type) = part_read(reading, brief, ask, asked) {
+            let name = capital(&asked.room.name);
+            reading.names.push(Called { span: Span { start: 0, end: 0 }, room_type, name, count: asked.count.n });
         }
     }
+    let counted = rooms().map(|(_, r)| r).filter(|r| r.count.n > 1 && r.count.bound == Bound::Exactly);
+    for asked in counted {
+        let Some(id) = &asked.room.id else { continue };
+        let short = |w: &&mut Wish| &w.room_type == id && w.count < asked.count.n && !w.exact;
+        if let Some(wish) = reading.wishes.wishes.iter_mut().find(short) {
+            (wish.count, wish.exact) = (asked.count.n, true);
+        }
+    }
+}
+
+/// Adds how rooms that were `added` lie to others.
+fn restore_pairs(reading: &mut Reading, facts: &Facts, added: &[Wish]) {
+    let new = |id: &String| added.iter().any(|w| &w.room_type == id);
+    let there = |id: &String| new(id) || reading.wishes.wishes.iter().any(|w| &w.room_type == id);
+    let pairs = facts.wishes.pairs.iter().filter(|p| (new(&p.a) || new(&p.b)) && there(&p.a) && there(&p.b));
+    let pairs: Vec<Pair> = pairs.cloned().collect();
+    reading.wishes.pairs.extend(pairs);
 }
 
 /// Puts rooms on the storeys that the brief says, where nothing else was read of that.
@@ -93,9 +135,16 @@ fn rooms_of(ask: &Ask) -> Option<&RoomsAsk> {
     if let Fact::Rooms(rooms) = &ask.fact { Some(rooms) } else { None }
 }
 
-/// Returns true for rooms of which the reader of words said that they are nothing that can be planned.
+/// Returns true for rooms of whose words nothing was made, or of which the reader of words said that they are nothing that can be
+/// planned.
 fn is_lost(reading: &Reading, brief: &Brief, ask: &Ask, rooms: &RoomsAsk) -> bool {
     let name = rooms.room.name.to_lowercase();
+    if let Some(bytes) = bytes_of(brief, ask, &rooms.room.name) {
+        let read = |u: &Understood| u.bytes.start < bytes.end && bytes.start < u.bytes.end;
+        if !reading.understood.iter().any(read) {
+            return true;
+        }
+    }
     // a word of the domain's own was understood, if only as something else: "bureau" in a bedroom is a desk
     let kind = rooms.room.id.as_deref().and_then(|id| reading.domain.room_type(id));
     if kind.is_some_and(|k| k.keywords.values().flatten().any(|w| *w == name)) {
@@ -109,8 +158,33 @@ fn is_lost(reading: &Reading, brief: &Brief, ask: &Ask, rooms: &RoomsAsk) -> boo
     !last.is_empty() && reading.unread.iter().any(told)
 }
 
+/// Returns the type of the room that a part of a room's own words was read as: the hall of a "sculpture hall".
+fn part_read(reading: &Reading, brief: &Brief, ask: &Ask, rooms: &RoomsAsk) -> Option<String> {
+    let bytes = bytes_of(brief, ask, &rooms.room.name)?;
+    let within = |u: &&Understood| bytes.start <= u.bytes.start && u.bytes.end <= bytes.end;
+    let room_type = reading.understood.iter().filter(within).find_map(|u| u.room_type.clone())?;
+    let known = reading.domain.room_type(&room_type).is_some_and(|k| k.id != GENERIC_ROOM_TYPE);
+    let called = reading.called.iter().chain(&reading.names).any(|c| c.room_type == room_type);
+    (known && !called).then_some(room_type)
+}
+
+/// Returns where the name of a room stands in the words of an ask.
+fn bytes_of(brief: &Brief, ask: &Ask, name: &str) -> Option<Range<usize>> {
+    if name.is_empty() {
+        return None;
+    }
+    ask.words.iter().find_map(|w| {
+        let start = byte(brief, w.start) + w.text.rfind(name)?;
+        Some(start..start + name.len())
+    })
+}
+
+/// Returns where a character of the prompt begins.
+fn byte(brief: &Brief, char: u32) -> usize {
+    brief.prompt.char_indices().nth(char as usize).map_or(brief.prompt.len(), |c| c.0)
+}
+
 /// Returns true where words of an ask are among those.
 fn overlaps(brief: &Brief, ask: &Ask, unread: &Unread) -> bool {
-    let byte = |char: u32| brief.prompt.char_indices().nth(char as usize).map_or(brief.prompt.len(), |c| c.0);
-    ask.words.iter().any(|w| byte(w.start) < unread.bytes.end && unread.bytes.start < byte(w.end))
+    ask.words.iter().any(|w| byte(brief, w.start) < unread.bytes.end && unread.bytes.start < byte(brief, w.end))
 }

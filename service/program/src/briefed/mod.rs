@@ -50,6 +50,7 @@ struct Roles {
     patients: Vec<String>,
     anybody: Vec<String>,
     children: Vec<String>,
+    all_rooms_counted_in: Vec<String>,
     unknown_building: UnknownBuilding,
 }
 
@@ -122,6 +123,7 @@ pub(crate) fn read<'a>(brief: &Brief, request: &Request, registry: &'a Registry)
         called: Vec::new(),
         names: facts.called,
         unread: Vec::new(),
+        understood: Vec::new(),
         habitable_fixed: false,
         area_m2,
         each_alone: site.lives && site.shared,

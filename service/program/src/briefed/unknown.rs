@@ -1,6 +1,6 @@
 //! Kinds of buildings that no domain knows: their rooms where the brief lists them, else a refusal with the nearest kinds.
 
-use d3dgen_model::brief::{Brief, Fact};
+use d3dgen_model::brief::{Ask, Brief, Fact};
 use d3dgen_model::domain::Domain;
 use d3dgen_model::scene_graph::Note;
 use d3dgen_model::stage::Error;
@@ -38,10 +38,18 @@ pub(super) fn stand_in(name: &str, brief: &Brief, registry: &Registry, notes: &m
 
 /// Returns true for a brief in which nothing says what to plan: no kind of building, no room, nobody who is there.
 pub fn says_nothing(brief: &Brief) -> bool {
-    let told = |fact: &Fact| {
-        !matches!(fact, Fact::Other(_) | Fact::Style(_) | Fact::Site(_) | Fact::Accessible(_) | Fact::Robots(_))
+    // the range of a "shooting range" says nothing of cooking
+    let part_of_a_name = |ask: &Ask| {
+        let before = |at: u32| brief.not_understood.iter().any(|w| w.end <= at && at <= w.end + 1);
+        matches!(ask.fact, Fact::Objects(_)) && ask.words.first().is_some_and(|w| before(w.start))
     };
-    brief.building.is_none() && !brief.asks.iter().any(|a| told(&a.fact)) && !brief.not_understood.is_empty()
+    let told = |ask: &Ask| {
+        let aside =
+            matches!(ask.fact, Fact::Other(_) | Fact::Style(_) | Fact::Site(_) | Fact::Accessible(_) | Fact::Robots(_));
+        !aside && !part_of_a_name(ask)
+    };
+    let named = brief.building.as_ref().is_some_and(|b| !b.words.is_empty() || b.confidence >= 1.0);
+    !named && !brief.asks.iter().any(told) && !brief.not_understood.is_empty()
 }
 
 /// Returns the refusal of a brief that says nothing.
@@ -59,9 +67,11 @@ fn message(name: &str, brief: &Brief, registry: &Registry) -> String {
             kinds.push(kind);
         }
     }
+    let domains: Vec<&str> = registry.iter().map(|p| p.id()).collect();
     format!(
-        "no domain knows a kind of building called `{name}`; the nearest are {}; name one of these, list the rooms that it has, or plan them with `--domain {}`",
+        "no domain knows a kind of building called `{name}`; the nearest are {}; there are kinds of the domains {}; name one, list the rooms that it has, or plan them with `--domain {}`",
         kinds.join(", "),
+        domains.join(", "),
         roles().unknown_building.domain
     )
 }

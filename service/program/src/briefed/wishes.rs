@@ -1,11 +1,12 @@
 //! The facts of a brief, sorted by what the building of rooms asks for.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use d3dgen_model::brief::{
-    AskedCount, Bound, Brief, CapacityAsk, Fact, ObjectsAsk, PlaceKind, RelationAsk, RelationKind, RoomsAsk, Subject,
+    Ask, AskedCount, Bound, Brief, CapacityAsk, Fact, ObjectsAsk, PlaceKind, RelationAsk, RelationKind, RoomsAsk,
+    Subject,
 };
-use d3dgen_model::domain::{Domain, Program, RoomType};
+use d3dgen_model::domain::{Domain, Occupants, Program, RoomType};
 use d3dgen_model::offer;
 use d3dgen_model::scene_graph::{Connector, Note};
 use d3dgen_model::style::StyleWord;
@@ -13,18 +14,26 @@ use d3dgen_plugins::Registry;
 
 use super::{GENERIC_ROOM_TYPE, Held, Thing, What, Wish, Wishes, is_dwelling, program_of, roles, styles, what_of};
 use crate::levels::storeys::{Storeys, Wanted};
+use crate::people::beds::nearest;
 use crate::people::seats::Called;
+use crate::subject::programs::is_office;
 use crate::tokens::storey::Where;
 use crate::tokens::text::{Span, capital, fold};
+use crate::tokens::words::words;
 use crate::wished::relations::Spread;
 use crate::wished::wishes::{Apart, Pair, PerHost};
 
 /// Factors on the usual area of rooms that the words for their size stand for.
 const SIZES: [(&str, f64); 2] = [("large", 1.4), ("small", 0.75)];
+/// For how many rooms are that are said to be so.
+const PEOPLE: [(&str, u32); 2] = [("single", 1), ("double", 2)];
 /// Most storeys above the ground, as for prompts.
 const MOST_LEVELS: u32 = 12;
 /// Most objects of one kind that one fact asks for.
 const MOST_THINGS: u32 = 200;
+
+/// Rooms to live in that a home is told by, at most.
+const MOST_LIVED_IN: u32 = 12;
 
 /// Number up to which "several" says no number.
 const FEW: u32 = 2;
@@ -36,13 +45,15 @@ fn is_told(count: AskedCount) -> bool {
     matches!(count.bound, Bound::Exactly | Bound::About | Bound::AtMost)
 }
 
+/// Returns the words of a name, without accents.
+fn folded(name: &str) -> Vec<String> {
+    name.split(|c: char| !c.is_alphanumeric()).map(fold).filter(|w| !w.is_empty()).collect()
+}
+
 /// Returns true for a name of which every word is one of another name.
 fn is_part(name: &str, of: &str) -> bool {
-    let words = |text: &str| -> Vec<String> {
-        fold(text).split(|c: char| !c.is_alphanumeric()).filter(|w| !w.is_empty()).map(str::to_lowercase).collect()
-    };
-    let of = words(of);
-    words(name).iter().all(|w| of.contains(w) || w.strip_suffix('s').is_some_and(|one| of.iter().any(|o| o == one)))
+    let of = folded(of);
+    folded(name).iter().all(|w| of.contains(w) || w.strip_suffix('s').is_some_and(|one| of.iter().any(|o| o == one)))
 }
 
 /// Language of the names of room types on plans.
@@ -85,6 +96,8 @@ pub(super) struct Facts<'a> {
     own: Vec<String>,
     /// True where the brief speaks the language that plans name rooms in.
     in_plan_language: bool,
+    /// For how many those rooms are that have no other name: beds or people.
+    sized: BTreeMap<String, u32>,
     registry: Option<&'a Registry>,
     domain: Option<&'a Domain>,
     program: Option<&'a Program>,
@@ -93,12 +106,36 @@ pub(super) struct Facts<'a> {
 /// Returns the id that a name is written as where its letters have a place in ids: `Abstellraum für Räder` is
 /// `abstellraum_fur_rader`.
 fn slug_of(name: &str) -> Option<String> {
-    let slug: String =
-        fold(name).chars().map(|c| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '_' }).collect();
-    let slug = slug.split('_').filter(|w| !w.is_empty()).collect::<Vec<_>>().join("_");
+    let plain = |word: String| word.chars().filter(char::is_ascii_alphanumeric).collect::<String>();
+    let words: Vec<String> = folded(name).into_iter().map(plain).filter(|w| !w.is_empty()).collect();
+    let slug = words.join("_");
     let told = name.chars().filter(|c| c.is_alphabetic()).count();
     let kept = slug.chars().filter(char::is_ascii_alphabetic).count();
     (kept > 0 && kept >= told).then_some(slug)
+}
+
+/// Returns for how many rooms are that no lexicon has and of which that is said, by what they are called.
+fn sized_rooms(brief: &Brief) -> BTreeMap<String, u32> {
+    let held = |a: &Ask| match &a.fact {
+        Fact::Capacity(CapacityAsk { of, count, room, each_room, .. }) => {
+            let room = room.as_ref().filter(|r| r.id.is_none())?;
+            // a "prayer room for 20" has its name for something else, a "4-bed room" and the rooms of 15 children each have not
+            let by_size = *each_room || room.name.contains(&count.n.to_string());
+            let sized = match of {
+                PlaceKind::Beds => true,
+                PlaceKind::Seats | PlaceKind::Desks => by_size,
+                _ => false,
+            };
+            sized.then(|| (room.name.clone(), count.n))
+        }
+        // "pokoje dwuosobowe"
+        Fact::Rooms(rooms) if rooms.room.id.is_none() => {
+            let of = |(word, n): &(&str, u32)| rooms.attributes.iter().any(|a| a == word).then_some(*n);
+            PEOPLE.iter().find_map(of).map(|n| (rooms.room.name.clone(), n))
+        }
+        _ => None,
+    };
+    brief.asks.iter().filter_map(held).collect()
 }
 
 /// Returns the names of rooms that no domain knows and that make no id.
@@ -124,9 +161,15 @@ impl<'a> Facts<'a> {
         out.own = own_names(brief);
         out.domain = Some(domain);
         out.in_plan_language = brief.languages.first().is_some_and(|l| l == PLAN_LANGUAGE);
+        out.sized = sized_rooms(brief);
+        // how many there are of a room is known before what is said of it
+        for ask in &brief.asks {
+            if let Fact::Rooms(rooms) = &ask.fact {
+                out.rooms(rooms);
+            }
+        }
         for ask in &brief.asks {
             match &ask.fact {
-                Fact::Rooms(rooms) => out.rooms(rooms),
                 Fact::Objects(objects) => out.objects(objects),
                 Fact::Capacity(capacity) => out.capacity(capacity),
                 Fact::Relation(relation) => out.relation(relation),
@@ -134,9 +177,17 @@ impl<'a> Facts<'a> {
                     if lives && roles().children.contains(&people.role) {
                         out.children += people.count.n;
                     }
-                    out.head(what_of(people, lives), people.count.n);
+                    // a hotel for families is not for one
+                    if lives || people.count.bound != Bound::AtLeast {
+                        out.head(what_of(people, lives), people.count.n);
+                    }
                 }
-                Fact::Storeys(storeys) => out.stated = Some((storeys.count.n, storeys.basement)),
+                Fact::Storeys(storeys) => {
+                    // the cellar of a flat is a room of the house
+                    let within = |id: &str| words().dwelling.within_a_storey.iter().any(|w| w == id);
+                    let basement = storeys.basement && !building_type.is_some_and(within);
+                    out.stated = Some((storeys.count.n, basement));
+                }
                 Fact::Area(area) => out.area_m2 = Some(area.area_m2),
                 Fact::Style(style) => {
                     let at = Span { start: 0, end: 0 };
@@ -148,11 +199,13 @@ impl<'a> Facts<'a> {
                     out.wishes.forbidden.extend(room);
                 }
                 Fact::Only(only) => {
-                    out.heads.extend(only.rooms.map(|n| (What::Total, n)));
                     out.closed |= only.closed;
+                    if let Some(n) = only.rooms {
+                        out.total(n, brief, lives);
+                    }
                 }
                 // whoever answers the asks tells of these
-                Fact::Robots(_) | Fact::Site(_) | Fact::Other(_) => {}
+                Fact::Rooms(_) | Fact::Robots(_) | Fact::Site(_) | Fact::Other(_) => {}
             }
         }
         let wanted: Vec<String> = out.wishes.wishes.iter().map(|w| w.room_type.clone()).collect();
@@ -160,17 +213,73 @@ impl<'a> Facts<'a> {
         out
     }
 
+    /// Plans a number of rooms in all: those that guests sleep in where the building is for guests, those to live in where people
+    /// count these, else whatever such a building has.
+    fn total(&mut self, n: u32, brief: &Brief, lives: bool) {
+        let asleep = |id: &str| self.domain.and_then(|d| offer::sleeps(d, d.room_type(id)?)).is_some();
+        let named: u32 = self.wishes.wishes.iter().filter(|w| asleep(&w.room_type)).map(|w| w.count).sum();
+        if let Some(id) = self.program.and_then(|p| p.means.get(GENERIC_ROOM_TYPE)).cloned() {
+            if n > named {
+                self.wish(&id, &id.replace('_', " "), AskedCount::exactly(n - named), true);
+            }
+            return;
+        }
+        let of_home = brief.languages.first().is_some_and(|l| !roles().all_rooms_counted_in.contains(l));
+        let bedroom = &words().dwelling.bedroom;
+        if lives && of_home && !self.closed && named == 0 && (2..=MOST_LIVED_IN).contains(&n) {
+            return self.wish(bedroom, &bedroom.replace('_', " "), AskedCount::exactly(n - 1), true);
+        }
+        self.heads.push((What::Total, n));
+    }
+
     /// Returns the room type that a subject is planned as: the domain's, that of another domain, or one of its own name.
     pub(super) fn type_of(&self, subject: &Subject) -> String {
         if let Some(id) = &subject.id {
             // the pharmacy of a ward is its room for medicine
-            return self.program.and_then(|p| p.means.get(id)).unwrap_or(id).clone();
+            let meant = self.program.and_then(|p| p.means.get(id));
+            return meant.or_else(|| self.own_bedroom(id)).unwrap_or(id).clone();
+        }
+        if let Some(kind) = self.sized.get(&subject.name).and_then(|n| self.kind_for(*n)) {
+            return kind.id.clone();
         }
         let numbered = || {
             let at = self.own.iter().position(|name| *name == subject.name)?;
             Some(format!("{OWN_ROOM}_{}", 1 + at))
         };
         slug_of(&subject.name).or_else(numbered).unwrap_or_else(|| GENERIC_ROOM_TYPE.to_owned())
+    }
+
+    /// Returns the room that the brief is about, where it asks for that one and names no building.
+    pub(super) fn only_room(&self) -> Option<&Wish> {
+        let [room] = &self.wishes.wishes[..] else { return None };
+        let alone = self.single && room.count == 1 && self.heads.is_empty() && self.stated.is_none();
+        (alone && self.wishes.per_host.is_empty() && self.wishes.forbidden.is_empty()).then_some(room)
+    }
+
+    /// Returns the room that one sleeps in there, for one that people sleep in elsewhere: a hotel has no patient rooms.
+    fn own_bedroom(&self, id: &str) -> Option<&String> {
+        let program = self.program?;
+        let at_home = is_dwelling(program).then_some(&words().dwelling.bedroom);
+        let own = program.means.get(GENERIC_ROOM_TYPE).or(at_home)?;
+        let known = self.domain?.room_type(id).is_some();
+        let sleeps = |d: &Domain| d.room_type(id).is_some_and(|k| offer::sleeps(d, k).is_some());
+        (!known && self.registry?.iter().any(|p| sleeps(p.domain()))).then_some(own)
+    }
+
+    /// Returns the room of the building that so many have a bed or a desk in: a "4-bed room", "pokoje 2-osobowe".
+    fn kind_for(&self, n: u32) -> Option<&'a RoomType> {
+        let (domain, program) = (self.domain?, self.program?);
+        if program.rooms.iter().any(|e| e.occupants == Occupants::Beds) || is_dwelling(program) {
+            return nearest(domain, program, n);
+        }
+        let desks = |k: &RoomType| offer::desks(domain, k).filter(|_| offer::works_in(domain, k));
+        let fits = |k: &&RoomType| desks(k).is_some_and(|[least, most]| (least..=most).contains(&n));
+        let tightest = |k: &&RoomType| desks(k).map_or(u32::MAX, |d| d[1]);
+        if is_office(program) {
+            return domain.room_types.iter().filter(fits).min_by_key(tightest);
+        }
+        // the rooms of a kindergarten for so many are those that it is for
+        self.main_room()
     }
 
     /// Counts people, beds or desks of the building; those of several groups together.
@@ -212,6 +321,7 @@ impl<'a> Facts<'a> {
         self.call(&id, asked);
         if let Some(wish) = self.wishes.wishes.iter_mut().find(|w| w.room_type == id) {
             (wish.area_m2, wish.size) = (wish.area_m2.or(area), wish.size.or(size));
+            wish.sides_m = wish.sides_m.or(asked.sides_m);
         }
         if let Some(level) = asked.level {
             self.on_levels.push(Wanted { room_type: id.clone(), count: asked.count.n, at: Where::Level(level) });
@@ -278,13 +388,17 @@ impl<'a> Facts<'a> {
             PlaceKind::Seats => Some(What::Visitors),
             _ => None,
         };
-        let all = asked.count.n.saturating_mul(asked.groups.unwrap_or(1));
+        let told = asked.count.bound != Bound::AtLeast;
+        let all = if told { asked.count.n.saturating_mul(asked.groups.unwrap_or(1)) } else { 0 };
         let Some(room) = &asked.room else {
             if let Some(groups) = asked.groups.filter(|_| asked.of == PlaceKind::Seats) {
-                self.house_groups(groups, asked.count.n);
+                self.house_groups(groups, told.then_some(asked.count.n));
             }
-            if let Some(what) = whole(asked.of) {
+            if let Some(what) = whole(asked.of).filter(|_| all > 0) {
                 self.head(what, all);
+            }
+            if asked.of == PlaceKind::Treatment {
+                self.treat(asked.count.n);
             }
             return;
         };
@@ -302,7 +416,10 @@ impl<'a> Facts<'a> {
         let held = Held { room_type, count: rooms, beds: each };
         match asked.of {
             PlaceKind::Beds => self.beds.push(held),
-            PlaceKind::Desks => self.desks.push(held),
+            PlaceKind::Desks => {
+                self.head(What::Desks, held.beds.saturating_mul(rooms));
+                self.desks.push(held);
+            }
             PlaceKind::Seats | PlaceKind::Counters => self.seats.push(held),
             PlaceKind::Treatment => self.stations.push(held),
             PlaceKind::Cars | PlaceKind::Bicycles | PlaceKind::Docks | PlaceKind::Animals | PlaceKind::Pallets => {}
@@ -310,13 +427,26 @@ impl<'a> Facts<'a> {
     }
 
     /// Gives each group the room that the building is for: a kindergarten of three groups has three group rooms.
-    fn house_groups(&mut self, groups: u32, each: u32) {
-        let kind = self.program.filter(|p| !is_dwelling(p)).and_then(|p| p.rooms.first()).zip(self.domain);
-        let Some(kind) = kind.and_then(|(entry, domain)| domain.room_type(&entry.room_type)) else { return };
+    fn house_groups(&mut self, groups: u32, each: Option<u32>) {
+        let Some(kind) = self.main_room() else { return };
         if !self.wishes.wishes.iter().any(|w| w.room_type == kind.id) {
             self.wish(&kind.id, &kind.label, AskedCount::exactly(groups), true);
         }
-        self.seats.push(Held { room_type: kind.id.clone(), count: groups, beds: each });
+        self.seats.extend(each.map(|beds| Held { room_type: kind.id.clone(), count: groups, beds }));
+    }
+
+    /// Gives so many places to be treated at to the room that the building is for.
+    fn treat(&mut self, places: u32) {
+        let Some(kind) = self.main_room() else { return };
+        let rooms = self.wishes.wishes.iter().find(|w| w.room_type == kind.id).map_or(1, |w| w.count);
+        let beds = places.div_ceil(rooms.max(1));
+        self.stations.push(Held { room_type: kind.id.clone(), count: rooms, beds });
+    }
+
+    /// Returns the room that the building is for, where nobody lives.
+    fn main_room(&self) -> Option<&'a RoomType> {
+        let entry = self.program.filter(|p| !is_dwelling(p))?.rooms.first()?;
+        self.domain?.room_type(&entry.room_type)
     }
 
     /// Returns true for rooms to sleep in that hold fewer than so many.

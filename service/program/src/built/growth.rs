@@ -180,6 +180,7 @@ impl<'r, 'a> Build<'r, 'a> {
         self.rooms.push(Planned {
             name: wish.filter(|_| kind.id != room_type).map(|w| w.name.clone()),
             area_m2: wish.and_then(|w| w.area_m2),
+            sides_m: wish.and_then(|w| w.sides_m),
             size: wish.and_then(|w| w.size),
             requested: wish.is_some(),
             ..Planned::new(room_type, kind)

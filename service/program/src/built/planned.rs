@@ -13,6 +13,8 @@ pub(crate) struct Planned<'a> {
     pub name: Option<String>,
     /// Area the prompt gives, m^2.
     pub area_m2: Option<f64>,
+    /// Lengths of its sides that the prompt gives, m.
+    pub sides_m: Option<[f64; 2]>,
     /// Factor on its usual area that the prompt asks for.
     pub size: Option<f64>,
     /// Area that the people in it ask for, m^2.
@@ -53,6 +55,7 @@ impl<'a> Planned<'a> {
             kind,
             name: None,
             area_m2: None,
+            sides_m: None,
             size: None,
             people_area_m2: None,
             table_area_m2: None,

@@ -2,7 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use d3dgen_model::domain::{Domain, GENERIC_ROOM_TYPE, ObjectType, Privacy, Relation, RoomType, Shape, Zone};
+use d3dgen_model::domain::{
+    AreaRange, Domain, GENERIC_ROOM_TYPE, ObjectType, Privacy, Relation, RoomType, Shape, Zone,
+};
+use d3dgen_model::measures::MOST_ELONGATED;
 use d3dgen_model::offer;
 use d3dgen_model::offer::{MOST_IN_TEAM, furniture};
 use d3dgen_model::scene_graph::{GraphRoom, Note};
@@ -39,6 +42,9 @@ const GENEROUS: f64 = 1.25;
 const MOST_ASLEEP: f64 = 1.6;
 /// Share by which the areas may miss the one asked for before that is worth a note.
 const AREA_TOLERANCE: f64 = 0.1;
+
+/// Area of a room planned by itself over the largest one of its type up to which it is as asked for: beyond, it is another room.
+const MOST_ALONE: f64 = 3.0;
 
 /// Tag of what those sleep on who stay with a patient.
 const COMPANION: &str = "companion";
@@ -79,9 +85,12 @@ pub(crate) fn describe(reading: &mut Reading, planned: &[Planned]) -> Vec<GraphR
                 None => room.kind.description.clone(),
             },
             target_area_m2: areas[i],
-            area_range_m2: kept_range(reading, room, areas[i])
-                .unwrap_or_else(|| area_range(room, areas[i], !lives || reading.area_m2.is_some())),
+            area_range_m2: kept_range(reading, room, areas[i]).unwrap_or_else(|| {
+                let wide = !lives || reading.area_m2.is_some();
+                area_range(room, range_of(room, reading.single), areas[i], wide)
+            }),
             wished_assets: wished_assets(reading.domain, room.kind, named.get(&i).map_or(&[], Vec::as_slice)),
+            sides_m: reading.single.then(|| kept_sides(room)).flatten(),
             occupants: room.occupants.filter(|n| *n > 0),
             circulation: false,
             requested: room.requested,
@@ -121,6 +130,7 @@ pub(crate) fn circulation(reading: &Reading) -> GraphRoom {
         target_area_m2: kind.area_m2.target,
         area_range_m2: [kind.area_m2.min, kind.area_m2.max],
         wished_assets: wished_assets(reading.domain, kind, &[]),
+        sides_m: None,
         occupants: None,
         circulation: true,
         requested: reading.wishes.wishes.iter().any(|w| w.room_type == kind.id),
@@ -142,6 +152,21 @@ fn label(room: &Planned) -> String {
     capital(&room.room_type.replace('_', " "))
 }
 
+/// Returns the sides that a room by itself is to have, where that is a room to be in.
+fn kept_sides(room: &Planned) -> Option<[f64; 2]> {
+    let [a, b] = room.sides_m?;
+    let range = range_of(room, true);
+    let stands = (range.min..=range.max).contains(&(a * b)) && a.max(b) <= MOST_ELONGATED * a.min(b);
+    stands.then_some([a, b])
+}
+
+/// Returns the areas that a room can have: those of its type, and more where it is planned by itself and that is asked for.
+fn range_of(room: &Planned, alone: bool) -> AreaRange {
+    let range = room.kind.area_m2;
+    let asked = room.area_m2.filter(|a| alone && *a <= MOST_ALONE * range.max);
+    AreaRange { max: asked.map_or(range.max, |a| range.max.max((1.0 + AREA_TOLERANCE) * a)), ..range }
+}
+
 /// Returns the areas of offices for one and of stores in a building of a given area, whose floor to spare goes elsewhere.
 fn kept_range(reading: &Reading, room: &Planned, target: f64) -> Option<[f64; 2]> {
     let small = room.kind.privacy == Privacy::Private || room.kind.zone == Zone::Service;
@@ -155,8 +180,7 @@ fn kept_range(reading: &Reading, room: &Planned, target: f64) -> Option<[f64; 2]
 /// Returns the areas allowed, net m^2: those of the type; close to the one the prompt gives, enough for the people in it.
 ///
 /// Bedrooms do not take what a small plan has left over (`wide` says that rooms may).
-fn area_range(room: &Planned, target: f64, wide: bool) -> [f64; 2] {
-    let range = room.kind.area_m2;
+fn area_range(room: &Planned, range: AreaRange, target: f64, wide: bool) -> [f64; 2] {
     let about = |low: f64, high: f64| {
         [range.min.max(tenth(target * low)).min(target), range.max.min(tenth(target * high)).max(target)]
     };
@@ -177,7 +201,7 @@ fn target_areas(reading: &mut Reading, planned: &[Planned]) -> Vec<f64> {
     let mut areas = Vec::with_capacity(planned.len());
     let scale = space_scale(reading);
     for room in planned {
-        let range = room.kind.area_m2;
+        let range = range_of(room, reading.single);
         let usual = room.people_area_m2.unwrap_or(range.target);
         let wished = room.area_m2.unwrap_or(usual);
         let styled = match (room.area_m2, room.people_area_m2, room.proposed_area_m2) {

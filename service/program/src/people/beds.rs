@@ -35,7 +35,7 @@ pub(crate) struct BedRoom {
 /// Returns the sleeping room of the domain that is nearest to a number of beds, and how many people it usually sleeps.
 ///
 /// Of equals the program's own comes first; rather a type that gets a bed more than one that gets a bed too few.
-fn nearest<'a>(domain: &'a Domain, program: &Program, beds: u32) -> Option<&'a RoomType> {
+pub(crate) fn nearest<'a>(domain: &'a Domain, program: &Program, beds: u32) -> Option<&'a RoomType> {
     let listed = |id: &str| program.rooms.iter().any(|e| e.room_type == id);
     let found = domain.room_types.iter().enumerate().filter(|(_, kind)| is_bed_room(kind)).filter_map(|(i, kind)| {
         let [low, high] = sleeps(domain, kind)?;

@@ -128,16 +128,7 @@ fn add_rooms(
         let count = counted.map_or(entry.min.max(usual), |n| n.div_ceil(entry.occupants_per_room.unwrap_or(1).max(1)));
         let label = domain.room_type_or_generic(id).label.to_lowercase();
         out.push(format!("{count} x {label}"));
-        let room_type = id.to_owned();
-        wishes.wishes.push(Wish {
-            room_type,
-            count,
-            exact: false,
-            name: label,
-            area_m2: None,
-            size: None,
-            listed: false,
-        });
+        wishes.wishes.push(Wish { count, ..Wish::one(id, &label) });
     }
     out
 }

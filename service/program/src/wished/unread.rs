@@ -91,7 +91,10 @@ pub(crate) fn state(text: &Text, conflicts: &mut Vec<Note>) -> Vec<Unread> {
     for area in text.areas.iter().filter(|a| a.sides).take(MOST_NOTES) {
         let (words, value) = (prompt.words(area.span), area.value);
         let message = format!("of `{words}` the area was taken ({value:.1} m2); the two lengths are not planned");
-        conflicts.push(Note::new("unread_wish", message));
+        let note = Note::new("unread_wish", message);
+        let (first, last) = (&text.tokens[area.span.start], &text.tokens[area.span.end - 1]);
+        left.push(Unread { bytes: first.start..last.end, note: note.clone() });
+        conflicts.push(note);
     }
     left
 }

@@ -28,6 +28,8 @@ pub(crate) struct Wish {
     pub name: String,
     /// Area of one such room, m^2.
     pub area_m2: Option<f64>,
+    /// Lengths of the sides of one such room, m.
+    pub sides_m: Option<[f64; 2]>,
     /// Factor on the usual area that the prompt asks for: "big kitchen".
     pub size: Option<f64>,
     /// True when the rooms are listed, not only part of the building's name ("two-bedroom flat").
@@ -38,7 +40,7 @@ impl Wish {
     /// Returns the wish for a room that the prompt does not list by its type.
     pub(crate) fn one(room_type: &str, name: &str) -> Self {
         let (room_type, name) = (room_type.to_owned(), name.to_owned());
-        Self { room_type, count: 1, exact: false, name, area_m2: None, size: None, listed: false }
+        Self { room_type, count: 1, exact: false, name, area_m2: None, sides_m: None, size: None, listed: false }
     }
 }
 
@@ -408,6 +410,7 @@ fn count_type(text: &Text, id: &str, list: &[usize], out: &mut Wishes, conflicts
         exact: counted.1,
         name,
         area_m2,
+        sides_m: None,
         size,
         listed: counted.2,
     });

@@ -13,6 +13,7 @@ mod path;
 mod plan;
 pub(crate) mod wire;
 
+use d3dgen_model::brief::Brief;
 use d3dgen_model::domain::Domain;
 use d3dgen_model::floorplan::Floorplan;
 use d3dgen_model::knowledge::KnowledgeBase;
@@ -82,6 +83,7 @@ contract! {
     Scenario => v1::Scenario,
     SceneGraph => v1::SceneGraph,
     World => v1::World,
+    Brief => v1::Brief,
 }
 
 /// Returns the message of a document.

@@ -8,6 +8,7 @@ mod simulate;
 
 use d3dgen_crowd::Options;
 use d3dgen_model::Document;
+use d3dgen_model::brief::Brief;
 use d3dgen_model::floorplan::Floorplan;
 use d3dgen_model::hours;
 use d3dgen_model::placements::Placements;
@@ -26,12 +27,12 @@ use d3dgen_proto::v1::world_service_server::WorldService;
 use d3dgen_proto::v1::{
     AssembleWorldRequest, AssembleWorldResponse, BatchWorld, BuildingRequest, CheckWorldRequest, CheckWorldResponse,
     CheckedWorld, EditWorldRequest, EditWorldResponse, ExportWorldRequest, ExportWorldResponse, Exporter,
-    GenerateBatchRequest, GenerateBatchResponse, GenerateFloorplanRequest, GenerateFloorplanResponse,
-    GeneratePlacementsRequest, GeneratePlacementsResponse, GenerateScenarioRequest, GenerateScenarioResponse,
-    GenerateSceneGraphRequest, GenerateSceneGraphResponse, GenerateWorldRequest, GetBatchWorldRequest,
-    GetBatchWorldResponse, ImportFloorplanRequest, ImportFloorplanResponse, ListBatchWorldsRequest,
-    ListBatchWorldsResponse, ListExportersRequest, ListExportersResponse, RankedFloorplan, SimulateWorldRequest,
-    SimulateWorldResponse,
+    GenerateBatchRequest, GenerateBatchResponse, GenerateBriefRequest, GenerateBriefResponse, GenerateFloorplanRequest,
+    GenerateFloorplanResponse, GeneratePlacementsRequest, GeneratePlacementsResponse, GenerateScenarioRequest,
+    GenerateScenarioResponse, GenerateSceneGraphRequest, GenerateSceneGraphResponse, GenerateWorldRequest,
+    GetBatchWorldRequest, GetBatchWorldResponse, ImportFloorplanRequest, ImportFloorplanResponse,
+    ListBatchWorldsRequest, ListBatchWorldsResponse, ListExportersRequest, ListExportersResponse, RankedFloorplan,
+    SimulateWorldRequest, SimulateWorldResponse,
 };
 use tonic::{Request, Response, Status};
 
@@ -52,6 +53,16 @@ const SEEDS: u32 = 3;
 
 #[tonic::async_trait]
 impl WorldService for Api {
+    async fn generate_brief(&self, request: Request<GenerateBriefRequest>) -> Answer<GenerateBriefResponse> {
+        let prompt = request.into_inner().prompt;
+        self.short(move |core, _| {
+            let read = brief::of_prompt(&prompt, &core.domains.now().registry);
+            let read = read.ok_or_else(|| invalid("prompt", "has no words; describe a building"))?;
+            Ok(GenerateBriefResponse { brief: Some(message(&read)) })
+        })
+        .await
+    }
+
     async fn generate_scene_graph(
         &self,
         request: Request<GenerateSceneGraphRequest>,
@@ -311,9 +322,13 @@ fn building(asked: Option<BuildingRequest>) -> Result<Asked, Status> {
     if let Some(problem) = robot.problems().into_iter().next() {
         return Err(invalid("building.robot", problem));
     }
+    let brief: Option<Brief> = asked.brief.map(|b| document("building.brief", Some(b))).transpose()?;
+    if brief.as_ref().is_some_and(|b| !asked.prompt.is_empty() && asked.prompt != b.prompt) {
+        return Err(invalid("building.prompt", "is not that of building.brief; leave it empty"));
+    }
     Ok(Asked {
         prompt: asked.prompt,
-        brief: None,
+        brief,
         seed: asked.seed,
         domain: asked.domain_id,
         country: asked.country,

@@ -5,6 +5,7 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use d3dgen_model::Document;
+use d3dgen_model::brief::Brief;
 use d3dgen_model::report::Report;
 use d3dgen_model::robot_body::RobotBody;
 use d3dgen_model::style::Style;
@@ -29,6 +30,8 @@ pub const WORLDS: &str = "job_worlds";
 pub struct Building {
     /// The sentence.
     pub prompt: String,
+    /// What is asked for, in the place of the sentence.
+    pub brief: Option<Brief>,
     /// Seed of the first world.
     pub seed: u64,
     /// Domain id.
@@ -49,16 +52,16 @@ pub struct Building {
 
 impl From<Request> for Building {
     fn from(r: Request) -> Self {
-        let Request { prompt, seed, domain, country, rooms, area_m2, robot_radius_m, robot, style, .. } = r;
-        Self { prompt, seed, domain, country, rooms, area_m2, robot_radius_m, robot, style }
+        let Request { prompt, brief, seed, domain, country, rooms, area_m2, robot_radius_m, robot, style } = r;
+        Self { prompt, brief, seed, domain, country, rooms, area_m2, robot_radius_m, robot, style }
     }
 }
 
 impl Building {
     /// Returns the request for one of its seeds.
     pub fn request(&self, seed: u64) -> Request {
-        let Self { prompt, domain, country, rooms, area_m2, robot_radius_m, robot, style, .. } = self.clone();
-        Request { prompt, brief: None, seed, domain, country, rooms, area_m2, robot_radius_m, robot, style }
+        let Self { prompt, brief, domain, country, rooms, area_m2, robot_radius_m, robot, style, .. } = self.clone();
+        Request { prompt, brief, seed, domain, country, rooms, area_m2, robot_radius_m, robot, style }
     }
 }
 

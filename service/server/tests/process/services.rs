@@ -1,17 +1,19 @@
 //! The way of a client through the services: look, search, make, pin, edit, check, export, change and take back.
 
 use d3dgen_proto::v1::amend_knowledge_request::Change;
+use d3dgen_proto::v1::fact::Kind;
 use d3dgen_proto::v1::generate_world_request::Start;
 use d3dgen_proto::v1::generate_world_response::Event;
 use d3dgen_proto::v1::world_edit::Edit;
 use d3dgen_proto::v1::{
     AmendKnowledgeRequest, AnyOf, AssembleWorldRequest, BuildingRequest, CheckWorldRequest, CheckedWorld, DomainFile,
-    EditWorldRequest, ExportWorldRequest, GenerateBatchRequest, GenerateFloorplanRequest, GeneratePlacementsRequest,
-    GenerateScenarioRequest, GenerateSceneGraphRequest, GenerateWorldRequest, GetBatchWorldRequest, GetDomainRequest,
-    ImportFloorplanRequest, JobState, ListBatchWorldsRequest, ListConstraintFiltersRequest, ListDomainsRequest,
-    ListExportersRequest, ListJobLogsRequest, LockUpdate, ObjectMove, ParseDomainRequest, RegisterDomainRequest,
-    RemoveDomainRequest, RetrieveConstraintsRequest, RoomAddition, RuleSentence, SearchAssetsRequest,
-    SearchConstraintsRequest, SimulateWorldRequest, UndoKnowledgeChangeRequest, WorldEdit,
+    EditWorldRequest, ExportWorldRequest, GenerateBatchRequest, GenerateBriefRequest, GenerateFloorplanRequest,
+    GeneratePlacementsRequest, GenerateScenarioRequest, GenerateSceneGraphRequest, GenerateWorldRequest,
+    GetBatchWorldRequest, GetDomainRequest, ImportFloorplanRequest, JobState, ListBatchWorldsRequest,
+    ListConstraintFiltersRequest, ListDomainsRequest, ListExportersRequest, ListJobLogsRequest, LockUpdate, ObjectMove,
+    ParseDomainRequest, RegisterDomainRequest, RemoveDomainRequest, RetrieveConstraintsRequest, RoomAddition,
+    RuleSentence, SearchAssetsRequest, SearchConstraintsRequest, SimulateWorldRequest, UndoKnowledgeChangeRequest,
+    WorldEdit,
 };
 use tonic::Code;
 use tonic_types::StatusExt;
@@ -58,6 +60,26 @@ async fn worlds_are_made_pinned_edited_and_written() {
     assert_eq!(make(&mut c, start(3)).await.0, made, "the same request gives the same world");
     let world = made.world.expect("a world");
     assert!(made.report.expect("a report").sound);
+
+    // a brief stands in the place of its prompt, edited too
+    let prompt = "flat with a kitchen and two bedrooms".to_owned();
+    let read = c.worlds.generate_brief(GenerateBriefRequest { prompt }).await.expect("read").into_inner();
+    let mut brief = read.brief.expect("a brief");
+    for kind in brief.asks.iter_mut().filter_map(|a| a.fact.as_mut()?.kind.as_mut()) {
+        let Kind::Rooms(rooms) = kind else { continue };
+        if rooms.room.as_ref().is_some_and(|r| r.id.as_deref() == Some("bedroom")) {
+            rooms.count.as_mut().expect("a number").n = 3;
+        }
+    }
+    let building = BuildingRequest { prompt: String::new(), brief: Some(brief.clone()), ..flat(3).expect("one") };
+    let asked = GenerateSceneGraphRequest { building: Some(building.clone()) };
+    let edited = c.worlds.generate_scene_graph(asked).await.expect("rooms").into_inner().scene_graph.expect("rooms");
+    assert_eq!(edited.rooms.iter().filter(|r| r.room_type == "bedroom").count(), 3);
+    let other = BuildingRequest { prompt: "a ward".into(), ..building };
+    let asked = GenerateSceneGraphRequest { building: Some(other) };
+    assert_eq!(code(c.worlds.generate_scene_graph(asked).await), Code::InvalidArgument);
+    let nothing = GenerateBriefRequest { prompt: " ".into() };
+    assert_eq!(code(c.worlds.generate_brief(nothing).await), Code::InvalidArgument);
 
     // the stages one by one give a world too
     let graph = c.worlds.generate_scene_graph(GenerateSceneGraphRequest { building: flat(3) }).await;

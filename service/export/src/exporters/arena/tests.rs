@@ -1,6 +1,7 @@
 use std::collections::BTreeSet;
 
 use d3dgen_model::floorplan::DoorKind;
+use d3dgen_model::world::World;
 use serde_json::Value;
 
 use super::*;
@@ -8,7 +9,7 @@ use crate::models::NothingKept;
 use crate::sample;
 
 fn files() -> Vec<File> {
-    Arena.export(&sample::world(), &sample::domain(), &NothingKept).unwrap()
+    Arena.export(&Subject::new(&sample::world(), &sample::domain(), &NothingKept)).unwrap()
 }
 
 fn level() -> Value {
@@ -135,7 +136,7 @@ fn an_asset_in_two_sizes_becomes_two_models() {
     let mut world = sample::world();
     let chair = world.placements.placements.iter_mut().find(|p| p.object == "chair").unwrap();
     chair.size_m[0] = 0.5;
-    let files = Arena.export(&world, &sample::domain(), &NothingKept).unwrap();
+    let files = Arena.export(&Subject::new(&world, &sample::domain(), &NothingKept)).unwrap();
     let chairs: Vec<&str> =
         files.iter().map(|f| f.path.as_str()).filter(|p| p.contains("/Chair") && p.ends_with(".usdz")).collect();
     assert_eq!(chairs.len(), 2, "{chairs:?}");
@@ -149,7 +150,7 @@ fn an_asset_reference_cannot_leave_the_asset_folder() {
     for asset in ["Chair", "../../x/Chair", "Sample/../Chair", "Sample/..", "Sample/a b", "/Chair"] {
         let mut world = sample::world();
         world.placements.placements[0].asset = asset.into();
-        let error = Arena.export(&world, &sample::domain(), &NothingKept).unwrap_err();
+        let error = Arena.export(&Subject::new(&world, &sample::domain(), &NothingKept)).unwrap_err();
         assert!(error.to_string().contains(asset), "{error}");
     }
 }
@@ -158,7 +159,7 @@ fn an_asset_reference_cannot_leave_the_asset_folder() {
 fn a_world_name_cannot_leave_the_output_folder() {
     for name in ["", "../x", "A", "a/b"] {
         let world = World { name: name.into(), ..sample::world() };
-        assert!(Arena.export(&world, &sample::domain(), &NothingKept).is_err(), "{name}");
+        assert!(Arena.export(&Subject::new(&world, &sample::domain(), &NothingKept)).is_err(), "{name}");
     }
 }
 

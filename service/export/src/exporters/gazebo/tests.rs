@@ -52,7 +52,7 @@ fn only_doors_on_a_route_have_joints_and_controllers() {
 
 #[test]
 fn every_include_has_its_folder() {
-    let files = Gazebo.export(&sample::world(), &sample::domain(), &NothingKept).unwrap();
+    let files = Gazebo.export(&Subject::new(&sample::world(), &sample::domain(), &NothingKept)).unwrap();
     let world = files.iter().find(|f| f.path == "gazebo/world.sdf").unwrap();
     let text = String::from_utf8(world.bytes.clone()).unwrap();
     let uris: Vec<&str> = text.split("<uri>model://").skip(1).filter_map(|t| t.split("</uri>").next()).collect();

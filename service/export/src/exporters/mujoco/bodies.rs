@@ -1,5 +1,7 @@
 //! Things as bodies: fixed ones part of the world, others on free joints, each with the joints of its model.
 
+use std::collections::BTreeSet;
+
 use d3dgen_mesh::writers::number::{n, small};
 use d3dgen_mesh::writers::quaternion;
 use d3dgen_mesh::{Collision, Joint, JointKind, dynamics, mass};
@@ -12,7 +14,7 @@ use crate::xml::Xml;
 /// Writes a thing.
 pub(super) fn thing(xml: &mut Xml, scene: &SimScene, object: &SimObject, rest: &mut Rest) {
     let Some(model) = scene.models.get(object.model) else { return };
-    let thing = Thing { object, model, looks: meshes::looks(model) };
+    let thing = Thing { object, model, looks: meshes::looks(model), balanced: dynamics::balanced(&model.model) };
     thing.body(xml, 0, None, rest);
     let count = if thing.is_free() { model.model.bodies.len() } else { 0 };
     // The parts of one thing do not meet each other: those of a fixed thing by their class, these one by one.
@@ -20,10 +22,25 @@ pub(super) fn thing(xml: &mut Xml, scene: &SimScene, object: &SimObject, rest: &
     rest.excludes.extend(pairs.map(|(a, b)| [thing.name(a), thing.name(b)]));
 }
 
+/// Writes which doors and drawers pass what stands in their way.
+pub(super) fn passes(scene: &SimScene, rest: &mut Rest) {
+    let thing = |object: usize| {
+        let object = scene.objects.get(object)?;
+        Some(Thing { object, model: scene.models.get(object.model)?, looks: Vec::new(), balanced: BTreeSet::new() })
+    };
+    for pass in &scene.passes {
+        let (Some(own), Some(other)) = (thing(pass.object), thing(pass.other)) else { continue };
+        let Some(body) = own.model.model.bodies.iter().position(|b| b.name == pass.body) else { continue };
+        rest.excludes.extend((0..other.model.model.bodies.len()).map(|b| [own.name(body), other.name(b)]));
+    }
+}
+
 struct Thing<'a> {
     object: &'a SimObject,
     model: &'a SimModel,
     looks: Vec<Vec<Look<'a>>>,
+    /// Bodies that gas springs and counterweights bear; the engine knows them as bodies without weight.
+    balanced: BTreeSet<usize>,
 }
 
 impl Thing<'_> {
@@ -46,6 +63,9 @@ impl Thing<'_> {
         if index == 0 {
             attributes.push(("pos", list(&self.object.at_m)));
             attributes.push(("quat", list(&about_z(self.object.yaw_rad))));
+        }
+        if self.balanced.contains(&index) {
+            attributes.push(("gravcomp", "1".to_owned()));
         }
         xml.begin("body", &attributes);
         if index == 0 && self.is_free() {
@@ -100,13 +120,9 @@ impl Thing<'_> {
             ("pos", list(&joint.origin)),
             ("axis", list(&joint.axis)),
             ("damping", n(resists.damping)),
-            ("frictionloss", n(resists.friction)),
+            ("frictionloss", n(if resists.spring.is_some() { resists.idle } else { resists.friction })),
         ];
         attributes.extend(joint.limits.map(|l| ("range", list(&l))));
-        if let Some(spring) = resists.spring {
-            attributes.push(("stiffness", n(spring.stiffness)));
-            attributes.push(("springref", n(spring.reference)));
-        }
         xml.leaf("joint", &attributes);
         let rest_at = joint.limits.map_or(0.0, |[low, high]| 0.0_f64.clamp(low, high));
         rest.closed.push(rest_at);

@@ -160,8 +160,8 @@ fn leaf(xml: &mut Xml, door: &SimDoor, leaf: &SimLeaf, rest: &mut Rest) {
         ("class", "articulable".to_owned()),
         ("material", "building_leaf".to_owned()),
         ("group", "0".to_owned()),
-        // The leaf of a room's door meets furniture too.
-        ("conaffinity", "1".to_owned()),
+        // The leaf of a room's door meets what stands fast too, but not the doors of furniture.
+        ("conaffinity", "4".to_owned()),
         ("mass", small(leaf.mass_kg)),
     ];
     geom.extend(box_geom(&leaf.closed, joint.origin_m));

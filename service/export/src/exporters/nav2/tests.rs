@@ -5,7 +5,7 @@ use crate::models::NothingKept;
 use crate::sample;
 
 fn files() -> BTreeMap<String, Vec<u8>> {
-    let files = Nav2.export(&sample::world(), &sample::domain(), &NothingKept).unwrap();
+    let files = Nav2.export(&Subject::new(&sample::world(), &sample::domain(), &NothingKept)).unwrap();
     files.into_iter().map(|f| (f.path, f.bytes)).collect()
 }
 
@@ -53,8 +53,7 @@ fn the_graph_has_ids_of_its_own_for_every_node_and_direction() {
     let files = files();
     let graph: Value = serde_json::from_slice(&files["nav2/0/route_graph.geojson"]).unwrap();
     let features = graph["features"].as_array().unwrap();
-    let ids: std::collections::BTreeSet<u64> =
-        features.iter().map(|f| f["properties"]["id"].as_u64().unwrap()).collect();
+    let ids: BTreeSet<u64> = features.iter().map(|f| f["properties"]["id"].as_u64().unwrap()).collect();
     assert_eq!(ids.len(), features.len());
     let lanes: Vec<(u64, u64)> = features
         .iter()

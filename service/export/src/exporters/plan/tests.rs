@@ -4,7 +4,7 @@ use crate::sample;
 
 #[test]
 fn the_picture_decodes_and_shows_the_building() {
-    let files = Plan.export(&sample::world(), &sample::domain(), &NothingKept).unwrap();
+    let files = Plan.export(&Subject::new(&sample::world(), &sample::domain(), &NothingKept)).unwrap();
     let picture = files.iter().find(|f| f.path == "plan.png").unwrap();
     let mut reader = png::Decoder::new(std::io::Cursor::new(&picture.bytes)).read_info().unwrap();
     let mut pixels = vec![0; reader.output_buffer_size().unwrap()];

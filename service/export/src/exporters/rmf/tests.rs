@@ -5,7 +5,7 @@ use crate::models::NothingKept;
 use crate::sample;
 
 fn file(path: &str) -> String {
-    let files = Rmf.export(&sample::world(), &sample::domain(), &NothingKept).unwrap();
+    let files = Rmf.export(&Subject::new(&sample::world(), &sample::domain(), &NothingKept)).unwrap();
     let file = files.into_iter().find(|f| f.path.ends_with(path)).expect("it is written");
     String::from_utf8(file.bytes).unwrap()
 }

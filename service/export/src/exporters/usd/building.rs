@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use d3dgen_mesh::dynamics::Dynamics;
+use d3dgen_mesh::dynamics::Drive;
 use d3dgen_mesh::world3d::{Node, yaw};
 use d3dgen_mesh::writers::usd::parts::{self, UsdJoint};
 use d3dgen_mesh::writers::usd::prototype;
@@ -17,6 +17,11 @@ use crate::view::{Part, handle_places, leaf_part, window_part};
 const GROUND_M: f64 = 0.1;
 /// How far the ground goes on around the building, m.
 const AROUND_M: f64 = 20.0;
+/// Width of the line around a zone, and how far it is above the floor, m.
+const ZONE_LINE_M: f64 = 0.03;
+const ZONE_ABOVE_M: f64 = 0.01;
+/// What bears a leaf with a counterweight, m/s^2.
+const GRAVITY: f64 = 9.81;
 
 /// The building of a stage.
 pub(super) struct Building<'a> {
@@ -193,7 +198,11 @@ fn write_leaf(text: &mut Text, door: &SimDoor, leaf: &SimLeaf, parts: &Shared) {
         at: [joint.origin_m, [cos * dx + sin * dy, cos * dy - sin * dx, dz]],
         turn: [in_world, parts::turn_within(turn, in_world)],
         limits: Some([joint.limits[0].min(joint.limits[1]), joint.limits[0].max(joint.limits[1])]),
-        resists: Dynamics { friction: joint.friction, damping: joint.damping, spring: None },
+        resists: Drive {
+            push: if leaf.balanced { leaf.mass_kg * GRAVITY } else { 0.0 },
+            friction: joint.friction,
+            damping: joint.damping,
+        },
     };
     joint.write(text);
 }
@@ -222,9 +231,19 @@ fn component() -> [String; 2] {
     [schemas(&["SemanticsLabelsAPI:class"]), "kind = \"component\"".to_owned()]
 }
 
+/// Returns how far the line around a zone reaches, in single precision as USD works it out and with all its digits: validators
+/// compare the figures.
+fn zone_extent(zone: &SimZone, z: f64) -> String {
+    let (around, half) = (zone.outline.bounds(), ZONE_LINE_M as f32 / 2.0);
+    let corner = |p: [f64; 3], by: f32| p.map(|v| (v as f32 + by).to_string()).join(", ");
+    format!("({}), ({})", corner([around.x0, around.y0, z], -half), corner([around.x1, around.y1, z], half))
+}
+
 /// Writes a zone as an outline on the floor.
 pub(super) fn zone(text: &mut Text, zone: &SimZone) {
-    let points: Vec<String> = zone.outline.corners().iter().map(|p| triple([p.x, p.y, zone.floor_m + 0.01])).collect();
+    let z = zone.floor_m + ZONE_ABOVE_M;
+    let points: Vec<String> = zone.outline.corners().iter().map(|p| triple([p.x, p.y, z])).collect();
+    let extent = zone_extent(zone, z);
     let kind = serde_json::to_value(zone.kind).ok().and_then(|k| k.as_str().map(str::to_owned)).unwrap_or_default();
     text.prim("def BasisCurves", &identifier(&zone.id), &[schemas(&["SemanticsLabelsAPI:class"])], |text| {
         text.labels("class", &[&kind]);
@@ -233,7 +252,8 @@ pub(super) fn zone(text: &mut Text, zone: &SimZone) {
         text.line("uniform token wrap = \"periodic\"");
         text.line(format_args!("int[] curveVertexCounts = [{}]", points.len()));
         text.line(format_args!("point3f[] points = [{}]", points.join(", ")));
-        text.line("float[] widths = [0.03] (\n    interpolation = \"constant\"\n)");
+        text.line(format_args!("float[] widths = [{ZONE_LINE_M}] (\n    interpolation = \"constant\"\n)"));
+        text.line(format_args!("float3[] extent = [{extent}]"));
         text.line(format_args!("custom string d3dgen:room_id = \"{}\"", zone.room_id));
     });
 }

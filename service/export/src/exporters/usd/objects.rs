@@ -1,10 +1,12 @@
 //! Things: an asset for each model, with its metadata, pictures and thumbnail, and a place in the world for each thing.
 
+use std::collections::BTreeMap;
+
 use d3dgen_mesh::picture::{Ground, View, render};
 use d3dgen_mesh::world3d::yaw;
 use d3dgen_mesh::writers::ModelFile;
 use d3dgen_mesh::writers::usd::text::{Text, identifier, quoted, schemas};
-use d3dgen_mesh::writers::usd::{AssetFacts, asset_usda, base_name, pictures};
+use d3dgen_mesh::writers::usd::{AssetFacts, asset_usda, base_name, body_names, pictures};
 use d3dgen_mesh::{Body, Model3d};
 
 use crate::Error;
@@ -14,8 +16,9 @@ use crate::scene::{Mobility, SimObject, SimScene};
 const THUMBNAIL_PX: usize = 256;
 /// Lightest body with a joint of its own, kg.
 const LEAST_KG: f64 = 0.3;
-/// License of models that are made, and what is said of those that a database keeps.
+/// License of models that are made; of those that a database keeps nothing is claimed: theirs is that of their source.
 const LICENSE: &str = "CC0-1.0";
+const LICENSE_OF_SOURCE: &str = "NOASSERTION";
 
 /// The models of a scene as assets, in its order.
 pub(super) struct Assets(Vec<Model3d>);
@@ -45,7 +48,7 @@ impl Assets {
                 label: object.map_or(known.object.clone(), |o| o.label.clone()),
                 friction: object.map_or(0.5, |o| o.friction),
                 restitution: object.map_or(0.1, |o| o.restitution),
-                license: LICENSE.to_owned(),
+                license: if known.is_kept { LICENSE_OF_SOURCE } else { LICENSE }.to_owned(),
             };
             let name = &own.name;
             let folder = format!("models/{name}/usd");
@@ -71,16 +74,50 @@ impl Assets {
         self.0.get(object.model).is_some_and(|m| !m.joints.is_empty())
     }
 
+    /// Returns the paths of what stands fast, and those of the doors and drawers of things that stand fast.
+    pub fn fixed(&self, scene: &SimScene) -> [Vec<String>; 2] {
+        let [mut still, mut moving] = [Vec::new(), Vec::new()];
+        for object in scene.objects.iter().filter(|o| o.mobility == Mobility::Fixed) {
+            let Some(model) = self.0.get(object.model) else { continue };
+            let place = format!("/World/Objects/{}", identifier(&object.id));
+            if model.joints.is_empty() {
+                still.push(place);
+                continue;
+            }
+            let mut bodies = body_names(model).into_iter().map(|body| format!("{place}/{body}"));
+            still.extend(bodies.next());
+            moving.extend(bodies);
+        }
+        [still, moving]
+    }
+
     /// Writes the things.
     pub fn write(&self, text: &mut Text, scene: &SimScene) {
         text.prim("def Xform", "Objects", &["kind = \"group\"".to_owned()], |text| {
-            for object in &scene.objects {
-                self.place(text, object);
+            for (i, object) in scene.objects.iter().enumerate() {
+                self.place(text, object, &self.passes(scene, i));
             }
         });
     }
 
-    fn place(&self, text: &mut Text, object: &SimObject) {
+    /// Returns the bodies of a thing that pass others, and the paths of these.
+    fn passes(&self, scene: &SimScene, index: usize) -> BTreeMap<String, Vec<String>> {
+        let prim = |object: &SimObject, body: &str| {
+            let model = self.0.get(object.model)?;
+            let at = model.bodies.iter().position(|b| b.name == body)?;
+            body_names(model).into_iter().nth(at)
+        };
+        let mut passes: BTreeMap<String, Vec<String>> = BTreeMap::new();
+        for pass in scene.passes.iter().filter(|p| p.object == index) {
+            let (own, other) = (&scene.objects[pass.object], &scene.objects[pass.other]);
+            let (Some(own), Some(model)) = (prim(own, &pass.body), self.0.get(other.model)) else { continue };
+            let place = format!("/World/Objects/{}", identifier(&other.id));
+            passes.entry(own).or_default().extend(body_names(model).iter().map(|body| format!("{place}/{body}")));
+        }
+        passes
+    }
+
+    fn place(&self, text: &mut Text, object: &SimObject, passes: &BTreeMap<String, Vec<String>>) {
         let Some(model) = self.0.get(object.model) else { return };
         let payload = format!("prepend payload = @./models/{0}/usd/{0}.usda@", model.name);
         let apis = schemas(&["SemanticsLabelsAPI:class"]);
@@ -99,6 +136,13 @@ impl Assets {
                 // It may roll away: nothing holds its base.
                 (false, true) => text.prim("over", "root_joint", &["active = false".to_owned()], |_| {}),
                 (true, true) | (false, false) => {}
+            }
+            for (body, others) in passes {
+                let api = "prepend apiSchemas = [\"PhysicsFilteredPairsAPI\"]".to_owned();
+                text.prim("over", body, &[api], |text| {
+                    let others: Vec<String> = others.iter().map(|path| format!("<{path}>")).collect();
+                    text.line(format_args!("rel physics:filteredPairs = [{}]", others.join(", ")));
+                });
             }
         });
     }

@@ -3,7 +3,7 @@ use crate::models::NothingKept;
 use crate::sample;
 
 fn files() -> Vec<File> {
-    Usd.export(&sample::world(), &sample::domain(), &NothingKept).unwrap()
+    Usd.export(&Subject::new(&sample::world(), &sample::domain(), &NothingKept)).unwrap()
 }
 
 fn text(name: &str) -> String {
@@ -63,4 +63,23 @@ fn every_body_of_an_asset_collides() {
         assert!(model.bodies.iter().skip(1).all(|b| !b.collisions.is_empty()), "{}", model.name);
         assert_eq!(model.joints.len() + 1, model.bodies.len(), "{}", model.name);
     }
+}
+
+#[test]
+fn doors_and_drawers_of_what_is_fixed_pass_the_building() {
+    let scene = SimScene::of(&sample::world(), &sample::domain(), &NothingKept).unwrap();
+    let [still, moving] = objects::Assets::of(&scene).fixed(&scene);
+    assert!(!still.is_empty() && still.iter().all(|path| !moving.contains(path)));
+    let stage = text("usd/world.usda");
+    for path in still.iter().chain(&moving) {
+        assert!(stage.contains(&format!("<{path}>")), "{path} is in no group");
+    }
+    assert!(stage.contains("</World/Doors/door_1/frame>") || scene.doors.is_empty());
+}
+
+#[test]
+fn outlines_of_zones_say_how_far_they_reach() {
+    let stage = text("usd/world.usda");
+    let curves: Vec<&str> = stage.split("def BasisCurves").skip(1).collect();
+    assert!(!curves.is_empty() && curves.iter().all(|c| c.split("def ").next().unwrap().contains("float3[] extent")));
 }

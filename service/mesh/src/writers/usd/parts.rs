@@ -5,7 +5,7 @@ use crate::affine::Vec3;
 use crate::dynamics;
 use crate::writers::number::{n, push};
 use crate::writers::{frame_along, picture_of, quaternion};
-use crate::{Collision, Joint, JointKind, Material, Model3d, Texture, Visual};
+use crate::{Collision, Joint, JointKind, Material, Texture, Visual};
 
 /// Where the pictures of materials lie.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -280,20 +280,21 @@ pub struct UsdJoint<'a> {
     /// Least and largest position.
     pub limits: Option<[f64; 2]>,
     /// What it resists with.
-    pub resists: dynamics::Dynamics,
+    pub resists: dynamics::Drive,
 }
 
 impl UsdJoint<'_> {
-    /// Writes it with a drive that damps and, where a spring holds it, pulls.
+    /// Writes it with a drive that damps and balances its weight, and stops that are hard.
     pub fn write(&self, text: &mut Text) {
-        let spring = self.resists.spring.unwrap_or(dynamics::Spring { stiffness: 0.0, reference: 0.0 });
+        let resists = &self.resists;
         let slides = self.kind == JointKind::Prismatic;
         // Angles are degrees in USD, those of damping and stiffness too.
         let (what, drive, per_angle, angle) = match slides {
             true => ("def PhysicsPrismaticJoint", "linear", 1.0, 1.0),
             false => ("def PhysicsRevoluteJoint", "angular", 1.0_f64.to_radians(), 1.0_f64.to_degrees()),
         };
-        text.prim(what, self.name, &[schemas(&[&format!("PhysicsDriveAPI:{drive}")])], |text| {
+        let apis = [format!("PhysicsDriveAPI:{drive}"), format!("PhysxJointAxisAPI:{drive}")];
+        text.prim(what, self.name, &[schemas(&apis.each_ref().map(String::as_str))], |text| {
             text.line("uniform token physics:axis = \"X\"");
             if let Some(parent) = self.parent {
                 text.line(format_args!("rel physics:body0 = <{parent}>"));
@@ -307,20 +308,26 @@ impl UsdJoint<'_> {
                 text.line(format_args!("float physics:lowerLimit = {}", n(low * angle)));
                 text.line(format_args!("float physics:upperLimit = {}", n(high * angle)));
             }
-            let value = |text: &mut Text, name: &str, v: f64| {
-                text.line(format_args!("float drive:{drive}:physics:{name} = {}", n(v)));
-            };
-            value(text, "damping", self.resists.damping * per_angle);
-            value(text, "stiffness", spring.stiffness * per_angle);
-            value(text, "targetPosition", spring.reference * angle);
-            // Doors and drawers stay where they are left. Friction has no word in UsdPhysics; Newton knows this one.
-            text.line(format_args!("float newton:friction = {}", n(self.resists.friction)));
+            let value = |text: &mut Text, name: &str, v: f64| text.line(format_args!("float {name} = {}", n(v)));
+            let of_drive = |name: &str| format!("drive:{drive}:physics:{name}");
+            value(text, &of_drive("damping"), resists.damping * per_angle);
+            value(text, &of_drive("stiffness"), 0.0);
+            // An even push is damping times a velocity that is never reached.
+            value(text, &of_drive("targetVelocity"), resists.push / resists.damping * angle);
+            // Doors and drawers stay where they are left. Friction has no word in UsdPhysics; PhysX and Newton have theirs.
+            for name in ["staticFrictionEffort", "dynamicFrictionEffort"] {
+                value(text, &format!("physxJointAxis:{drive}:{name}"), resists.friction);
+            }
+            value(text, "newton:friction", resists.friction);
+            value(text, &format!("physxJointAxis:{drive}:armature"), dynamics::ARMATURE);
+            value(text, "newton:armature", dynamics::ARMATURE);
+            text.line("float newton:limitStiffness = inf");
         });
     }
 }
 
 /// Writes a joint of a model whose bodies have these paths; their frames are that of the model.
-pub(super) fn joint(text: &mut Text, model: &Model3d, joint: &Joint, name: &str, bodies: &[String]) {
+pub(super) fn joint(text: &mut Text, joint: &Joint, resists: dynamics::Drive, name: &str, bodies: &[String]) {
     let turn = quaternion(frame_along(joint.axis));
     let joint = UsdJoint {
         name,
@@ -330,7 +337,7 @@ pub(super) fn joint(text: &mut Text, model: &Model3d, joint: &Joint, name: &str,
         at: [joint.origin; 2],
         turn: [turn; 2],
         limits: joint.limits,
-        resists: dynamics::of(model, joint),
+        resists,
     };
     joint.write(text);
 }

@@ -3,9 +3,9 @@
 use std::sync::atomic::AtomicBool;
 
 use d3dgen_assets::annotation::asa;
-use d3dgen_export::exporters;
 use d3dgen_export::manifest::Manifest;
 use d3dgen_export::models::{KeptModel, KeptModels};
+use d3dgen_export::{Subject, exporters};
 use d3dgen_model::world::World;
 use d3dgen_plugins::Plugin;
 use tonic::Status;
@@ -52,10 +52,12 @@ pub(super) fn files(
         names => exporters::named(names.iter().map(String::as_str)).map_err(|e| invalid("formats", e.to_string()))?,
     };
     let mut files = std::collections::BTreeMap::new();
-    let mut manifest = Manifest::of(world, plugin.domain(), &Kept(core)).map_err(status::export)?;
+    let kept = Kept(core);
+    let subject = Subject::new(world, plugin.domain(), &kept);
+    let mut manifest = Manifest::of(&subject).map_err(status::export)?;
     for exporter in exporters {
         go_on(stop)?;
-        let made = exporter.export(world, plugin.domain(), &Kept(core)).map_err(status::export)?;
+        let made = exporter.export(&subject).map_err(status::export)?;
         manifest.add(exporter, &made);
         files.extend(made.into_iter().map(|f| (f.path, f.bytes)));
     }
